@@ -21,6 +21,7 @@ struct tribo_held {
     int64_t context, given, users;
 };
 TRIBO_API TRIBO_PURE size_t tribo_fortran_ndof(const struct tribo_held *held);
+TRIBO_API TRIBO_PURE size_t tribo_fortran_dimension(const struct tribo_held *held);
 TRIBO_API TRIBO_PURE size_t tribo_fortran_ncontact(const struct tribo_held *held);
 TRIBO_API TRIBO_PURE size_t tribo_fortran_given(const struct tribo_held *held);
 

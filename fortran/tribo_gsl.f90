@@ -1,8 +1,8 @@
 !> tribo with GSL: mechanical systems with friction, and their integration in time. To be used together with module tribo.
 !>
 !> A system is M q'' + C q' + K q = p(t) + J' f, v = J q' - b(t), with p and b sums of harmonics and tables; f are the friction
-!> forces of its contacts, and v their relative velocities. Its state is y = q(ndof), q'(ndof), energy dissipated by friction
-!> since t = 0: 2*ndof + 1 values.
+!> forces of its contacts, and v their relative velocities. Its state is y = q(ndof), q'(ndof), displacements of the sliders
+!> of contacts with compliance, energy dissipated by friction since t = 0.
 !>
 !>     use tribo
 !>     use tribo_dynamics
@@ -916,7 +916,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine get_truncation
 
-  !> Sizes; 0 for a system that has not been created. dimension is 2*ndof + 1. Arrays may be declared with them.
+  !> Sizes; 0 for a system that has not been created. dimension is that of a state. Arrays may be declared with them.
   pure integer function ndof(this)
     class(tribo_system), intent(in) :: this
     ndof = int(c_fortran_ndof(object_of(this)))
@@ -929,8 +929,7 @@ contains
 
   pure integer function dimension(this)
     class(tribo_system), intent(in) :: this
-    dimension = 0
-    if (c_associated(object_of(this))) dimension = 2*this%ndof() + 1
+    dimension = int(c_fortran_dimension(object_of(this)))
   end function dimension
 
   !> Makes c the settings of the system's contacts, borrowed: set law, limits, epsilon and coupling there. The system reads c and
@@ -1245,7 +1244,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine find_periodic
 
-  !> Floquet multipliers of the last periodic motion found, re(2*ndof) and im(2*ndof), the largest first.
+  !> Floquet multipliers of the last periodic motion found, re and im (dimension - 1), the largest first.
   subroutine get_multipliers(this, re, im, stat, errmsg)
     class(tribo_driver), intent(in) :: this
     real(dp), intent(inout) :: re(:), im(:)
@@ -1291,7 +1290,7 @@ contains
     real(dp) :: low(1), high(1), at_low(1), at_high(1)
 
     call find_driver(this, w)
-    call expect_size(w, 'c', c, w%dimension - 1)
+    call expect_size(w, 'c', c, 2*w%ndof)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_period_extremes(w%object, c, low, high, at_low, at_high)
     end if
@@ -1316,7 +1315,7 @@ contains
     real(dp) :: re(1), im(1)
 
     call find_driver(this, w)
-    call expect_size(w, 'c', c, w%dimension - 1)
+    call expect_size(w, 'c', c, 2*w%ndof)
     call expect_count(w, 'k', k)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_period_harmonic(w%object, c, int(k, c_size_t), re, im)
@@ -1506,6 +1505,7 @@ contains
     w%ctx = c_system_context(held%sys)
     w%found = c_system_message(held%sys)
     w%n = int(c_system_ncontact(held%sys))
+    w%ndof = int(c_system_ndof(held%sys))
     w%dimension = int(c_system_dimension(held%sys))
     w%given = int(held%given)
     w%status = TRIBO_OK

@@ -693,6 +693,12 @@ module tribo_gsl_c
       integer(c_size_t) :: answer
     end function c_fortran_ndof
 
+    pure function c_fortran_dimension(held) result(answer) bind(c,name='tribo_fortran_dimension')
+      import
+      type(c_ptr), intent(in), value :: held
+      integer(c_size_t) :: answer
+    end function c_fortran_dimension
+
     pure function c_fortran_ncontact(held) result(answer) bind(c,name='tribo_fortran_ncontact')
       import
       type(c_ptr), intent(in), value :: held

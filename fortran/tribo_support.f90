@@ -31,7 +31,7 @@ module tribo_support
   !> with indices from 0 as in the library's messages.
   type, public :: work
     type(c_ptr) :: object = c_null_ptr, ctx = c_null_ptr, found = c_null_ptr
-    integer :: n = 0, dimension = 0, given = 0
+    integer :: n = 0, ndof = 0, dimension = 0, given = 0
     integer(c_int) :: status = TRIBO_ERR_NULL
     character(len=8) :: kind = 'context'
     character(len=:), allocatable :: text

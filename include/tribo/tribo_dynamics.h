@@ -2,7 +2,7 @@
  *
  * A system is M q'' + C q' + K q = p(t) + J' f,  v = J q' - b(t),  with p and b sums of harmonics and tables; f are the friction
  * forces of its contacts, by the settings of tribo_system_context, and v their relative velocities. Its state is
- *     y = q [ndof], q' [ndof], energy dissipated by friction since t = 0        2 ndof + 1 values.
+ *     y = q [ndof], q' [ndof], displacements of the sliders of contacts with compliance, energy dissipated by friction since t = 0.
  *
  * Conventions, units and threads as in tribo.h; a system and its drivers belong to one thread.
  * All functions: since 1.0, unless said otherwise.
@@ -170,7 +170,8 @@ TRIBO_API int tribo_system_get_limit(tribo_system *sys, double t, double *limit)
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_UNSUPPORTED (not reduced), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_set_damping_ratio(tribo_system *sys, double zeta);
 
-/* Reduced systems: natural frequencies omega_k [ndof] out, ascending, rad/time, infinite without mass; and the displacements of
+/* Reduced systems: natural frequencies omega_k [ndof] out, ascending, rad/time, infinite without mass (contacts reduced with
+ * TRIBO_STATICS_COMPLIANCE, whose displacements are degrees of freedom); and the displacements of
  * the whole structure, full [ndof of the matrices given] out, that belong to modal ones, reduced [ndof] in.
  * Return TRIBO_ERR_NULL, TRIBO_ERR_UNSUPPORTED (not reduced). */
 TRIBO_API int tribo_system_get_frequencies(const tribo_system *sys, double *omega);
@@ -187,7 +188,7 @@ TRIBO_API int tribo_system_expand(const tribo_system *sys, const double *reduced
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_UNSUPPORTED (not reduced). */
 TRIBO_API int tribo_system_get_truncation(const tribo_system *sys, double omega, double *error);
 
-/* Sizes; 0 for NULL. dimension is 2 ndof + 1. */
+/* Sizes; 0 for NULL. A state y has dimension values: 2 ndof, one for each contact with compliance in the order of contacts, and 1. */
 TRIBO_API size_t tribo_system_ndof(const tribo_system *sys);
 TRIBO_API size_t tribo_system_ncontact(const tribo_system *sys);
 TRIBO_API size_t tribo_system_dimension(const tribo_system *sys);
@@ -276,9 +277,9 @@ typedef struct {
     /* Tries a step. Returns 0; TRIBO_ERR_STEP, TRIBO_ERR_NO_CONVERGENCE or TRIBO_ERR_NOT_FINITE: the driver tries a shorter one; any
      * other status ends the advance. A step from the t of the last one replaces it, else that was accepted. */
     int (*step)(const tribo_trial *trial, void *data);
-    double (*order)(void *data);  /* error of the step to come goes with the power order + 1 of h */
-    void (*restart)(void *data);  /* forgets the steps before; or NULL */
-    void (*destroy)(void *data);  /* frees data when the driver is destroyed; or NULL */
+    double (*order)(void *data); /* error of the step to come goes with the power order + 1 of h */
+    void (*restart)(void *data); /* forgets the steps before; or NULL */
+    void (*destroy)(void *data); /* frees data when the driver is destroyed; or NULL */
 } tribo_stepper;
 
 /* A driver with adaptive steps by a stepper of your own, see tribo_driver_create.
@@ -363,7 +364,7 @@ TRIBO_API int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(const tri
 TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y);
 
 /* Floquet multipliers re + i im of the last periodic motion found, the largest first; of a complex pair the one with im > 0.
- * re, im   [2 ndof] out
+ * re, im   [dimension - 1] out
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_STATE (the last search found none, or there was
  * none), TRIBO_ERR_UNSUPPORTED (contacts that act on each other stop or break away at one instant: the motion nearby is not
  * linear). */

@@ -183,16 +183,16 @@ struct damper create_damper(const struct options *o, const struct structure *s, 
     d.stiffness = need_memory(d.contacts, sizeof *d.stiffness);
     reduce(&d, o, s, &rows);
     free(rows.at);
-    d.motions = d.modes;
+    d.dimension = 2 * d.modes + 1;
     for (size_t c = 0; c < d.contacts; c++) {
         d.limit[c] = o->contacts.contact[c].limit;
         d.mu[c] = o->contacts.contact[c].mu;
         d.stiffness[c] = o->contacts.contact[c].stiffness;
-        d.motions += d.stiffness[c] > 0.0;
+        d.dimension += d.stiffness[c] > 0.0;
     }
     check_freedom(&d);
     build(&d, o);
-    d.load = need_memory(d.motions, sizeof *d.load);
+    d.load = need_memory(d.modes, sizeof *d.load);
     for (size_t k = 0; k < d.modes; k++) {
         d.load[k] = d.force * d.load_shape[k];
     }
@@ -253,7 +253,7 @@ double damping_power(const struct damper *d, const double *y)
 {
     double power = 0.0;
     for (size_t k = 0; k < d->modes; k++) {
-        power += 2.0 * d->damping * d->omega[k] * y[d->motions + k] * y[d->motions + k];
+        power += 2.0 * d->damping * d->omega[k] * y[d->modes + k] * y[d->modes + k];
     }
     return power;
 }

@@ -11,18 +11,18 @@
  * has a copy of sys. Static responses are modes, too, orthogonal to all others in mass and stiffness. Behind the modes sys has a
  * slider without mass for each contact on a spring. */
 struct damper {
-    tribo_system *reduced;             /* answers how much is left out */
-    tribo_system *sys;                 /* the same with springs, without a load */
-    size_t ndof, kept, modes;          /* of the structure; lowest modes kept; those and static responses */
-    size_t contacts, outputs, motions; /* motions: modes and sliders */
-    size_t planar;                     /* contacts in a plane, of which contacts counts both directions */
-    double *omega;                     /* [modes] natural frequencies, rad/time */
-    double *load_shape;                /* [modes] the modes where and as the load acts */
-    double *contact_shape;             /* [contacts][modes] the same for the contacts */
-    double *output_shape;              /* [outputs][modes] the same for the places of --output */
-    double *load;                      /* [motions] the load's amplitude */
-    double *stiffness;                 /* [contacts] of springs; 0: rigid */
-    double *limit;                     /* [contacts] NaN: mu times the limit that varies */
+    tribo_system *reduced;               /* answers how much is left out */
+    tribo_system *sys;                   /* the same with springs, without a load */
+    size_t ndof, kept, modes;            /* of the structure; lowest modes kept; those and static responses */
+    size_t contacts, outputs, dimension; /* dimension: of a state */
+    size_t planar;                       /* contacts in a plane, of which contacts counts both directions */
+    double *omega;                       /* [modes] natural frequencies, rad/time */
+    double *load_shape;                  /* [modes] the modes where and as the load acts */
+    double *contact_shape;               /* [contacts][modes] the same for the contacts */
+    double *output_shape;                /* [outputs][modes] the same for the places of --output */
+    double *load;                        /* [modes] the load's amplitude */
+    double *stiffness;                   /* [contacts] of springs; 0: rigid */
+    double *limit;                       /* [contacts] NaN: mu times the limit that varies */
     double *mu;
     double damping, force, step;
     int law;

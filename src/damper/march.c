@@ -74,17 +74,17 @@ static struct motion run_cycle(const struct run *r, double *y)
     const struct damper *d = r->d;
     struct motion m = {.hz = 1.0 / r->period};
     double t = 0.0, least = HUGE_VAL, most = -HUGE_VAL;
-    y[2 * d->motions] = 0.0;
+    y[d->dimension - 1] = 0.0;
     for (size_t i = 1; i <= r->steps; i++) {
         need(tribo_driver_advance(r->drv, &t, r->period * (double)i / (double)r->steps, y), tribo_driver_message(r->drv));
         const double x = load_displacement(d, y);
         least = fmin(least, x);
         most = fmax(most, x);
         m.damped += damping_power(d, y) / (double)r->steps;
-        m.input += d->force * sin(r->omega * t) * load_displacement(d, y + d->motions) / (double)r->steps;
+        m.input += d->force * sin(r->omega * t) * load_displacement(d, y + d->modes) / (double)r->steps;
     }
     m.amplitude = 0.5 * (most - least);
-    m.friction = y[2 * d->motions] / r->period;
+    m.friction = y[d->dimension - 1] / r->period;
     return m;
 }
 
@@ -95,7 +95,7 @@ static double distance(const struct damper *d, const double *a, const double *b)
 {
     double sum = 0.0;
     for (size_t k = 0; k < d->modes; k++) {
-        const double x = d->omega[k] * (a[k] - (b ? b[k] : 0.0)), v = a[d->motions + k] - (b ? b[d->motions + k] : 0.0);
+        const double x = d->omega[k] * (a[k] - (b ? b[k] : 0.0)), v = a[d->modes + k] - (b ? b[d->modes + k] : 0.0);
         sum += x * x + v * v;
     }
     return sqrt(sum);
@@ -106,7 +106,7 @@ static double distance(const struct damper *d, const double *a, const double *b)
  * 1977). Plain repetition would do too, but a mode with a damping ratio of 0.2% takes a thousand cycles. */
 static void extrapolate(const struct damper *d, double *const *y, size_t keep, double *to)
 {
-    const size_t n = 2 * d->motions;
+    const size_t n = d->dimension - 1;
     gsl_matrix *second = gsl_matrix_alloc(n, keep), *covariance = gsl_matrix_alloc(keep, keep);
     gsl_vector *first = gsl_vector_alloc(n), *c = gsl_vector_alloc(keep);
     gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(n, keep);
@@ -116,7 +116,7 @@ static void extrapolate(const struct damper *d, double *const *y, size_t keep, d
         die("out of memory for %zu modes", d->modes);
     }
     for (size_t i = 0; i < n; i++) {
-        const double weight = i < d->modes ? d->omega[i] : i < d->motions ? d->omega[0] : 1.0;
+        const double weight = i < d->modes ? d->omega[i] : i < 2 * d->modes ? 1.0 : d->omega[0];
         gsl_vector_set(first, i, weight * (y[1][i] - y[0][i]));
         for (size_t k = 0; k < keep; k++) {
             gsl_matrix_set(second, i, k, weight * (y[k + 2][i] - 2.0 * y[k + 1][i] + y[k][i]));
@@ -156,7 +156,7 @@ static int quiet(const struct scale *free, const struct motion *m)
 static void run_block(const struct run *r, double *const *state, struct motion *m)
 {
     for (size_t k = 0; k < BLOCK; k++) {
-        memcpy(state[k + 1], state[k], (2 * r->d->motions + 1) * sizeof *state[k]);
+        memcpy(state[k + 1], state[k], r->d->dimension * sizeof *state[k]);
         m[k] = run_cycle(r, state[k + 1]);
     }
 }
@@ -165,7 +165,7 @@ static void run_block(const struct run *r, double *const *state, struct motion *
 static struct motion settle(const struct run *r, double *const *state)
 {
     const struct damper *d = r->d;
-    const size_t n = 2 * d->motions + 1, keep = n - 1 < KEEP ? n - 1 : KEEP;
+    const size_t n = d->dimension, keep = n - 1 < KEEP ? n - 1 : KEEP;
     double *ahead = state[BLOCK + 1], change = HUGE_VAL;
     struct motion m[BLOCK];
     size_t cycles = 0, pause = 0, wait = 0;

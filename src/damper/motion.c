@@ -12,20 +12,20 @@
 
 struct worker create_worker(const struct damper *d, int march)
 {
-    struct worker w = {.d = d, .march = march, .dimension = 2 * d->motions + 1};
+    struct worker w = {.d = d, .march = march, .dimension = d->dimension};
     need(tribo_system_clone(d->sys, &w.sys), NULL);
     if (!d->planar) {
         need(tribo_driver_create(&w.drv, w.sys, "exact"), tribo_system_message(w.sys));
     }
     w.limit = need_memory(d->contacts, sizeof *w.limit);
-    w.c = need_memory(2 * d->motions, sizeof *w.c);
+    w.c = need_memory(2 * d->modes, sizeof *w.c);
     memcpy(w.c, d->load_shape, d->modes * sizeof *w.c);
     return w;
 }
 
 size_t record_of(const struct damper *d)
 {
-    return 2 * d->motions + 1 + 2 * d->contacts + 2 * d->outputs;
+    return d->dimension + 2 * d->contacts + 2 * d->outputs;
 }
 
 void free_worker(struct worker *w)

@@ -20,7 +20,7 @@ struct worker {
     int march;         /* steady motions are found by marching */
     size_t dimension;
     double *limit; /* [contacts] */
-    double *c;     /* [2 motions] the displacement where the load acts is c'[q, q'] */
+    double *c;     /* [2 modes] the displacement where the load acts is c'[q, q'] */
 };
 struct worker create_worker(const struct damper *d, int march);
 void free_worker(struct worker *w);

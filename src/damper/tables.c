@@ -92,7 +92,7 @@ void write_motion(FILE *file, const struct motion *m, const double *y, const str
         write_message(file, m->message);
     }
     if (d) {
-        const double *power = y + 2 * d->motions + 1, *output = power + 2 * d->contacts;
+        const double *power = y + d->dimension, *output = power + 2 * d->contacts;
         write_pairs(file, m, d->contacts, power, power + d->contacts, 1);
         write_pairs(file, m, d->outputs, output, output + 1, 2);
     }

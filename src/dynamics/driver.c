@@ -60,7 +60,8 @@ static int unknown(const tribo_system *sys, const char *name)
         snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", methods[i]->name);
     }
     return tribo_system_fail(sys, TRIBO_ERR_NAME,
-                             "method \"%.20s\" is unknown; there are %s; tribo_gsl_driver_create takes GSL's steppers", name, list);
+                             "method \"%.20s\" is unknown; there are %s; tribo_gsl_driver_create takes GSL's steppers", name,
+                             list);
 }
 
 /* Returns TRIBO_OK if all degrees of freedom have mass, or m is exact, event, moreau/fixed or auto, which need none. */
@@ -113,17 +114,18 @@ int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const stru
     if (status) {
         return status;
     }
-    const size_t dimension = tribo_system_dimension(sys);
-    tribo_driver *d = tribo_zeros(sizeof *d + 2 * dimension * sizeof *d->state, 1);
+    const size_t size = tribo_system_size(sys);
+    tribo_driver *d = tribo_zeros(sizeof *d + (sys->sliders ? 4 : 2) * size * sizeof *d->state, 1);
     if (!d) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a driver of %zu equation%s", dimension,
-                                 plural(dimension));
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a driver of %zu equation%s", size, plural(size));
     }
     d->sys = sys;
     d->message = d->text;
     d->method = d->at_work = m;
     d->state = (double *)(d + 1);
-    d->slope = d->state + dimension;
+    d->slope = d->state + size;
+    d->motion = sys->sliders ? d->slope + size : NULL;
+    d->shown = sys->sliders ? d->motion + size : NULL;
     d->excess = d->backslip = NAN;
     tribo_system_order_snaps(sys);
     status = m->create(d);
@@ -348,19 +350,20 @@ int tribo_driver_real(const tribo_driver *drv, int which, double *value)
 
 int tribo_driver_check(tribo_driver *drv, const double *y)
 {
-    if (tribo_few_finite(y, 2 * drv->sys->ndof + 1)) {
+    if (tribo_few_finite(y, tribo_system_size(drv->sys))) {
         return TRIBO_OK;
     }
     size_t i = 0;
     while (isfinite(y[i])) {
         i++;
     }
+    const size_t place = tribo_system_state_index(drv->sys, i);
     return drv->dt > 0.0
                ? tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE,
-                                   "y[%zu] = %g after t = %.17g: the motion grows without bound, or dt = %g is too long", i, y[i],
-                                   drv->time, drv->dt)
-               : tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "y[%zu] = %g after t = %.17g: the motion grows without bound", i,
-                                   y[i], drv->time);
+                                   "y[%zu] = %g after t = %.17g: the motion grows without bound, or dt = %g is too long", place,
+                                   y[i], drv->time, drv->dt)
+               : tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "y[%zu] = %g after t = %.17g: the motion grows without bound",
+                                   place, y[i], drv->time);
 }
 
 int tribo_driver_keep(tribo_driver *drv, double t, const double *y)
@@ -368,14 +371,17 @@ int tribo_driver_keep(tribo_driver *drv, double t, const double *y)
     const int status = tribo_driver_check(drv, y);
     if (!status) {
         drv->time = t;
-        memcpy(drv->state, y, (2 * drv->sys->ndof + 1) * sizeof *y);
+        memcpy(drv->state, y, tribo_system_size(drv->sys) * sizeof *y);
     }
     return status;
 }
 
 int tribo_driver_show(tribo_driver *drv, double t, const double *y, int kind, size_t contact)
 {
-    const tribo_moment moment = {sizeof moment, t, y, kind, contact};
+    const tribo_moment moment = {sizeof moment, t, drv->shown ? drv->shown : y, kind, contact};
+    if (drv->seen && drv->shown) {
+        tribo_system_write_state(drv->sys, y, drv->shown);
+    }
     const int answer = drv->seen ? drv->seen(&moment, drv->data) : 0;
     return answer ? tribo_driver_fail(drv, TRIBO_ERR_STOPPED, "the observer answered %d at t = %.17g", answer, t) : TRIBO_OK;
 }
@@ -391,8 +397,7 @@ static int check_times(tribo_driver *drv, const double *t, double t1, const doub
     if (!t || !y) {
         return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", t ? "y" : "t");
     }
-    int status = tribo_system_check_state(drv->sys, *t, y);
-    status = status ? status : tribo_system_take_settings(drv->sys);
+    const int status = tribo_system_check_state(drv->sys, *t, y);
     if (status) {
         return tribo_driver_fail(drv, status, "%s", tribo_system_message(drv->sys));
     }
@@ -402,6 +407,16 @@ static int check_times(tribo_driver *drv, const double *t, double t1, const doub
     if (t1 < *t) {
         return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "t1 = %.17g is before t = %.17g", t1, *t);
     }
+    return TRIBO_OK;
+}
+
+/* Takes the context's settings. Returns TRIBO_OK if drv's method can do the system with these. */
+static int check_settings(tribo_driver *drv)
+{
+    const int status = tribo_system_take_settings(drv->sys);
+    if (status) {
+        return tribo_driver_fail(drv, status, "%s", tribo_system_message(drv->sys));
+    }
     if (drv->method->takes == TAKES_STEP && drv->dt == 0.0) {
         return tribo_driver_fail(drv, TRIBO_ERR_STATE, "method %s has no step: call tribo_driver_set_step", drv->method->name);
     }
@@ -409,17 +424,15 @@ static int check_times(tribo_driver *drv, const double *t, double t1, const doub
     return unfit ? tribo_driver_fail(drv, unfit, "%s", tribo_system_message(drv->sys)) : TRIBO_OK;
 }
 
-int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)
+/* tribo_driver_advance of the methods' state y. */
+static int advance_motion(tribo_driver *drv, double *t, double t1, double *y)
 {
-    if (!drv) {
-        return TRIBO_ERR_NULL;
-    }
-    int status = check_times(drv, t, t1, y);
+    int status = check_settings(drv);
     if (status || t1 == *t) {
         return status;
     }
     tribo_system *sys = drv->sys;
-    const size_t bytes = tribo_system_dimension(sys) * sizeof *y, evaluations = sys->evaluations, jacobians = sys->jacobians;
+    const size_t bytes = tribo_system_size(sys) * sizeof *y, evaluations = sys->evaluations, jacobians = sys->jacobians;
     const int continues =
         drv->knows && *t == drv->time && drv->revision == tribo_system_revision(sys) && memcmp(y, drv->state, bytes) == 0;
     drv->time = *t;
@@ -435,6 +448,26 @@ int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)
     drv->revision = tribo_system_revision(sys);
     drv->evaluations += sys->evaluations - evaluations;
     drv->jacobians += sys->jacobians - jacobians;
+    return status;
+}
+
+int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
+    }
+    int status = check_times(drv, t, t1, y);
+    if (status || !drv->motion) {
+        return status ? status : advance_motion(drv, t, t1, y);
+    }
+    tribo_system_write_state(drv->sys, drv->state, drv->shown);
+    if (memcmp(y, drv->shown, tribo_system_dimension(drv->sys) * sizeof *y) == 0) { /* an advance that continues reads w', too */
+        memcpy(drv->motion, drv->state, tribo_system_size(drv->sys) * sizeof *y);
+    } else {
+        tribo_system_read_state(drv->sys, y, drv->motion);
+    }
+    status = advance_motion(drv, t, t1, drv->motion);
+    tribo_system_write_state(drv->sys, drv->motion, y);
     return status;
 }
 
@@ -508,8 +541,7 @@ static int delegate(tribo_driver *drv, int which, const struct task *x)
     inner->output = drv->output;
     inner->seen = drv->seen;
     inner->data = drv->data;
-    status =
-        x->finds ? inner->method->find_periodic(inner, *x->t, x->period, x->y) : tribo_driver_advance(inner, x->t, x->t1, x->y);
+    status = x->finds ? inner->method->find_periodic(inner, *x->t, x->period, x->y) : advance_motion(inner, x->t, x->t1, x->y);
     /* The caller counts the evaluations of an advance. */
     drv->steps += inner->steps - before.steps;
     drv->rejected += inner->rejected - before.rejected;

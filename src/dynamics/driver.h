@@ -38,7 +38,8 @@ struct tribo_driver {
 
     /* state */
     void *own;                 /* the method's own */
-    double *state, *slope;     /* [dimension] the state kept last; workspace */
+    double *state, *slope;     /* [tribo_system_size] the state kept last; workspace */
+    double *motion, *shown;    /* [tribo_system_size] a caller's state on its way in; out. NULL without sliders */
     double time;               /* of the state kept last */
     size_t revision;           /* of the system when the last advance ended */
     int knows;                 /* 1: what the method keeps belongs to time, state and revision */
@@ -63,7 +64,8 @@ int tribo_driver_fail(const tribo_driver *drv, int status, const char *format, .
 /* The same for a step h from t in which an evaluation failed, with the system's status and message. */
 int tribo_driver_explain(tribo_driver *drv, double t, double h);
 
-/* TRIBO_ERR_NOT_FINITE if a value of y is not finite. */
+/* States y here and in methods are those of tribo_system_size values, see system.h.
+ * TRIBO_ERR_NOT_FINITE if a value of y is not finite. */
 int tribo_driver_check(tribo_driver *drv, const double *y);
 
 /* Keeps (t, y) as the last good state, to which tribo_driver_advance goes back on any failure. TRIBO_ERR_NOT_FINITE if a value of

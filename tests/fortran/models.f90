@@ -132,7 +132,7 @@ contains
     type(tribo_system) :: s
     type(tribo_driver) :: d
     type(tribo_context) :: c
-    real(dp) :: y(5), least, most
+    real(dp) :: y(4), least, most
 
     call model%create(1, 1)
     call model%set_mass([1.0_dp])
@@ -147,7 +147,7 @@ contains
     call d%create(s, 'exact')
     y = 0
     call d%find_periodic(0.0_dp, 2*acos(-1.0_dp)/1.1_dp, y)
-    call d%period_extremes([1.0_dp, 0.0_dp, 0.0_dp, 0.0_dp], least, most)
+    call d%period_extremes([1.0_dp, 0.0_dp], least, most)
     call require(abs(most - 3.38660810_dp) < 1e-7_dp, 'compliance: the amplitude')
   end subroutine compliance
 end program models

@@ -11,15 +11,11 @@
 
 #include <math.h>
 
-/* The force is known to this part of what it is the sum of; it may go beyond its limit by so many times that. */
-#define FORCE_NOISE 2e-14
-#define ALLOWED 8.0
-
 void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const double *q)
 {
     tribo_elastic_forces(sys, q, m->rate, m->spring, m->slack);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->slack[i] *= ALLOWED * FORCE_NOISE * m->doubt;
+        m->slack[i] *= TRIBO_SPRING_ALLOWED * TRIBO_SPRING_NOISE * m->doubt;
     }
 }
 
@@ -85,15 +81,11 @@ static void share_rates(struct stick_slip *m, struct definite *c, double *v)
     for (size_t i = 0; i < c->n; i++) {
         const enum stand stand = m->elastic[i] ? stand_of(m, i) : OPEN;
         const signed char direction = against(m, i);
-        c->q[i] = m->elastic[i] ? v[i] : 0.0;
+        v[i] = m->elastic[i] ? v[i] : 0.0;
         c->lo[i] = stand == OPEN || (stand == AT_LIMIT && direction > 0) ? 0.0 : -HUGE_VAL;
         c->hi[i] = stand == OPEN || (stand == AT_LIMIT && direction < 0) ? 0.0 : HUGE_VAL;
     }
-    tribo_definite_box(c);
-    tribo_multiply_add(c->n, c->n, 1, 1.0, c->matrix, c->f, v);
-    for (size_t i = 0; i < c->n; i++) {
-        v[i] = c->f[i] != 0.0 ? 0.0 : v[i];
-    }
+    tribo_elastic_share_rates(c, v);
 }
 
 void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *y)

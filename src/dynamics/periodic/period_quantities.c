@@ -10,7 +10,7 @@ struct replay {
     struct company company;
     struct period_map *map;
     int (*phase)(struct replay *r, double tau, const double *end);
-    const double *c;             /* [2 ndof] the combination asked for */
+    const double *c;             /* [2 ndof] the combination asked for, of (q, w), (q, w)' */
     struct signal signal, slope; /* it, in the phase */
     double elapsed;              /* since the period began */
     struct extremes extremes;
@@ -67,12 +67,21 @@ static int replay(tribo_driver *drv, struct replay *r)
     return status && s->map.drv != drv ? tribo_driver_fail(drv, status, "%s", s->map.drv->message) : status;
 }
 
-static int check_combination(tribo_driver *drv, const double *c)
+/* Checks c'[q, q'] of the caller, and gives it zeros for sliders. */
+static int take_combination(tribo_driver *drv, struct replay *r, const double *c)
 {
-    for (size_t i = 0; i < 2 * drv->sys->ndof; i++) {
+    const size_t n = tribo_system_ndof(drv->sys), sliders = drv->sys->sliders;
+    for (size_t i = 0; i < 2 * n; i++) {
         if (!isfinite(c[i])) {
             return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "c[%zu] = %g is not finite", i, c[i]);
         }
+    }
+    r->c = c;
+    if (sliders) {
+        memset(drv->motion, 0, tribo_system_size(drv->sys) * sizeof *c);
+        memcpy(drv->motion, c, n * sizeof *c);
+        memcpy(drv->motion + n + sliders, c + n, n * sizeof *c);
+        r->c = drv->motion;
     }
     return TRIBO_OK;
 }
@@ -96,8 +105,8 @@ int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *lea
     if (!c || !least || !most) {
         return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", !c ? "c" : !least ? "least" : "most");
     }
-    struct replay r = {.phase = find_extremes, .c = c, .extremes = {HUGE_VAL, -HUGE_VAL, 0.0, 0.0}};
-    int status = check_combination(drv, c);
+    struct replay r = {.phase = find_extremes, .extremes = {HUGE_VAL, -HUGE_VAL, 0.0, 0.0}};
+    int status = take_combination(drv, &r, c);
     status = status ? status : replay(drv, &r);
     if (status) {
         return status;
@@ -136,8 +145,8 @@ int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, d
     if (!c || !cosine || !sine) {
         return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", !c ? "c" : !cosine ? "cosine" : "sine");
     }
-    struct replay r = {.phase = integrate, .c = c};
-    int status = check_combination(drv, c);
+    struct replay r = {.phase = integrate};
+    int status = take_combination(drv, &r, c);
     if (!status && drv->shooting) {
         r.omega = 2.0 * acos(-1.0) * (double)k / drv->shooting->map.period;
     }

@@ -99,7 +99,15 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
     status = status ? status : check_loads(drv, period);
     status = status ? status : check_massless(drv);
     status = status ? status : check_planar(drv);
-    return status ? status : drv->method->find_periodic(drv, t, period, y);
+    if (status || !drv->motion) {
+        return status ? status : drv->method->find_periodic(drv, t, period, y);
+    }
+    tribo_system_read_state(drv->sys, y, drv->motion);
+    status = drv->method->find_periodic(drv, t, period, drv->motion);
+    if (!status) {
+        tribo_system_write_state(drv->sys, drv->motion, y);
+    }
+    return status;
 }
 
 static int none_found(const tribo_driver *drv)

@@ -509,9 +509,12 @@ int tribo_shooting_multipliers(struct shooting *s, double *re, double *im)
     if (status) {
         return status;
     }
-    status = tribo_eigen(s->b, n, re, im, s->a);
-    if (!status) {
-        sort(n, re, im);
+    double *all_re = s->step, *all_im = s->guess;
+    status = tribo_eigen(s->b, n, all_re, all_im, s->a);
+    if (!status) { /* the velocities of sliders, which follow, have as many multipliers of 0: the last ones */
+        sort(n, all_re, all_im);
+        memcpy(re, all_re, (n - s->map.sys->sliders) * sizeof *re);
+        memcpy(im, all_im, (n - s->map.sys->sliders) * sizeof *im);
     }
     return status
                ? tribo_driver_fail(s->map.drv, status, "multipliers of %zu equation%s: %s", n, plural(n), tribo_strerror(status))

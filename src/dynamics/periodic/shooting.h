@@ -20,7 +20,7 @@ struct shooting {
     size_t setbacks;      /* how often the search has gone back */
     double nearest;       /* the least residual seen beside the size */
     int found;
-    size_t freedom; /* the dimension of the family of the motion found, once it is asked for; or UNKNOWN */
+    size_t freedom;  /* the dimension of the family of the motion found, once it is asked for; or UNKNOWN */
     size_t revision; /* of the system then */
 };
 
@@ -28,7 +28,7 @@ struct shooting {
 struct shooting *tribo_shooting_create(tribo_driver *drv);
 void tribo_shooting_free(struct shooting *s);
 
-/* The multipliers re, im [n] of the motion found; the dimension of its family. Both return a status. */
+/* The multipliers re, im [n, without a value for each slider] of the motion found; the dimension of its family. Both return a status. */
 int tribo_shooting_multipliers(struct shooting *s, double *re, double *im);
 int tribo_shooting_freedom(struct shooting *s, size_t *freedom);
 

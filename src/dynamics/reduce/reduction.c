@@ -229,6 +229,10 @@ static int build_compliant(const struct model *m, const struct reduced *r, tribo
     if (!status && !put_all_modes(&e, r, *sys)) {
         status = tribo_model_no_memory(m);
     }
+    /* with TRIBO_STATICS_COMPLIANCE w moves the structure, too, and is a degree of freedom */
+    if (!status && m->statics != TRIBO_STATICS_COMPLIANCE && !tribo_system_set_sliders(*sys, e.soft)) {
+        status = tribo_model_no_memory(m);
+    }
     tribo_model_free(&reduced);
     free(e.contact);
     free(e.shapes);
@@ -328,7 +332,7 @@ int tribo_system_get_frequencies(const tribo_system *sys, double *omega)
     if (!omega) {
         return tribo_system_fail(sys, TRIBO_ERR_NULL, "omega is NULL");
     }
-    memcpy(omega, sys->omega, sys->ndof * sizeof *omega);
+    memcpy(omega, sys->omega, (sys->ndof - sys->sliders) * sizeof *omega);
     return TRIBO_OK;
 }
 
@@ -343,7 +347,7 @@ int tribo_system_expand(const tribo_system *sys, const double *reduced, double *
     }
     for (size_t i = 0; i < sys->given; i++) {
         double sum = 0.0;
-        for (size_t j = 0; j < sys->ndof; j++) {
+        for (size_t j = 0; j < sys->ndof - sys->sliders; j++) {
             sum += sys->modes[i * sys->ndof + j] * reduced[j];
         }
         full[i] = sum;

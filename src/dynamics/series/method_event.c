@@ -393,7 +393,7 @@ static void state(void *motion, double tau, const double *from, double *to)
     const struct event *e = motion;
     const size_t n = e->sys->ndof;
     (void)from;
-    memset(to, 0, tribo_system_dimension(e->sys) * sizeof *to);
+    memset(to, 0, tribo_system_size(e->sys) * sizeof *to);
     for (size_t k = e->order + 1; k-- > 0;) {
         for (size_t i = 0; i < n; i++) {
             to[i] = to[i] * tau + e->q[k * n + i];

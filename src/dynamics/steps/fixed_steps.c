@@ -87,7 +87,7 @@ int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y,
     const struct march all = {begin, h, steps, t1};
     int status;
     double *good = march(drv, &all, drv->state, y, method, &status);
-    memcpy(good == y ? drv->state : y, good, tribo_system_dimension(drv->sys) * sizeof *y);
+    memcpy(good == y ? drv->state : y, good, tribo_system_size(drv->sys) * sizeof *y);
     *t = drv->time;
     return status;
 }

@@ -164,6 +164,58 @@ void tribo_elastic_enter(const tribo_system *sys, const double *limit, double *w
     tribo_elastic_give(sys, force, y);
 }
 
+void tribo_elastic_share_rates(struct definite *c, double *v)
+{
+    memcpy(c->q, v, c->n * sizeof *v);
+    tribo_definite_box(c);
+    tribo_multiply_add(c->n, c->n, 1, 1.0, c->matrix, c->f, v);
+    for (size_t i = 0; i < c->n; i++) {
+        v[i] = c->f[i] != 0.0 ? 0.0 : v[i];
+    }
+}
+
+/* v [ncontact]: velocities of elastic contacts if all slide, in; with these forces, out. limit, slack [ncontact]. */
+static void slide_sliders(const tribo_system *sys, const double *force, const double *limit, const double *slack, double *v)
+{
+    struct definite *c = sys->massless.shared;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const int elastic = is_elastic(sys, i), at_limit = fabs(force[i]) >= limit[i] - slack[i];
+        const int slides = elastic && (limit[i] == 0.0 || (at_limit && force[i] * v[i] < 0.0));
+        if (c) {
+            v[i] = elastic ? v[i] : 0.0;
+            c->lo[i] = !elastic || limit[i] == 0.0 || (at_limit && force[i] < 0.0) ? 0.0 : -HUGE_VAL;
+            c->hi[i] = !elastic || limit[i] == 0.0 || (at_limit && force[i] > 0.0) ? 0.0 : HUGE_VAL;
+        } else {
+            v[i] = slides ? v[i] : 0.0;
+        }
+    }
+    if (c) {
+        tribo_elastic_share_rates(c, v);
+    }
+}
+
+void tribo_elastic_set_velocities(tribo_system *sys, double *y)
+{
+    const size_t n = sys->ndof, first = n - sys->sliders;
+    double *force = sys->feq, *slack = sys->a, *v = sys->v, *limit = sys->dv_dt, *base = sys->put_limit;
+    tribo_elastic_forces(sys, y, sys->acceleration, force, slack);
+    memset(base, 0, sys->ncontact * sizeof *base);
+    tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, base);
+    tribo_massless_follow(&sys->massless, y + n);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        slack[i] *= TRIBO_SPRING_ALLOWED * TRIBO_SPRING_NOISE;
+        v[i] = tribo_matrix_row_dot(&sys->direction, i, y + n) - base[i];
+    }
+    tribo_get_limit(sys->contacts, limit);
+    slide_sliders(sys, force, limit, slack, v);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const size_t w = is_elastic(sys, i) ? sys->direction.col[sys->direction.first[i]] : 0;
+        if (w >= first) {
+            y[n + w] = v[i] + base[i];
+        }
+    }
+}
+
 /* way [ncontact][columns] += factor J v, of what has no mass. */
 static void add_ways(const tribo_system *sys, double factor, size_t columns, const double *v, double *way)
 {

@@ -35,6 +35,18 @@ void tribo_elastic_move(const tribo_system *sys, const signed char *slip, const 
  * them, and dissipate limit times way. All that has no mass then stands where it belongs. */
 void tribo_elastic_enter(const tribo_system *sys, const double *limit, double *work, double *force, double *y);
 
+/* A force is known to this part of what it is the sum of; it may go beyond its limit by so many times that. */
+#define TRIBO_SPRING_NOISE 2e-14
+#define TRIBO_SPRING_ALLOWED 8.0
+
+/* v [n] of elastic contacts, in which none of the forces of c changes, become those with the rates of these forces: within c->lo
+ * and c->hi, and 0 of contacts whose force changes. */
+void tribo_elastic_share_rates(struct definite *c, double *v);
+
+/* The velocities w' in the methods' state y, at the time set: where the force of its contact is at the limit and the slider goes
+ * with it, that of sliding; else that of the base. */
+void tribo_elastic_set_velocities(tribo_system *sys, double *y);
+
 /* Perturbations v [2 ndof][columns] of a state in which contacts do that: forces of those that slide stay what they are. What has
  * no mass has no velocity of its own, and its rows of these become 0. work [ncontact][columns]. */
 void tribo_elastic_perturb(const tribo_system *sys, const signed char *slip, size_t columns, double *v, double *work);

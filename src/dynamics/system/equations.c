@@ -170,14 +170,20 @@ int tribo_system_get_force(const tribo_system *sys, double *f)
 
 /* --------------------------------------------------------------------------------------------------------------------- states */
 
-/* v and a of a state, after checking it. */
-static int contacts_at(tribo_system *sys, double t, const double *y)
+/* v and a of a caller's state *y, after checking it; *y becomes that of the methods. */
+static int contacts_at(tribo_system *sys, double t, const double **y)
 {
-    int status = tribo_system_check_state(sys, t, y);
+    int status = tribo_system_check_state(sys, t, *y);
     status = status ? status : tribo_system_take_settings(sys);
     status = status ? status : tribo_system_check_solved(sys, "the force of contacts");
+    if (!status && sys->sliders) {
+        tribo_system_set_time(sys, t);
+        tribo_system_read_state(sys, *y, sys->motion);
+        tribo_elastic_set_velocities(sys, sys->motion);
+        *y = sys->motion;
+    }
     if (!status) {
-        tribo_system_free_motion(sys, t, y, sys->acceleration, sys->v, sys->a);
+        tribo_system_free_motion(sys, t, *y, sys->acceleration, sys->v, sys->a);
     }
     return status;
 }
@@ -211,7 +217,7 @@ static void equations_put_springs(tribo_system *sys, const double *y, double *to
 int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *v, double *feq, double *f)
 {
     int status = sys ? check_apart(sys) : TRIBO_ERR_NULL;
-    status = status ? status : contacts_at(sys, t, y);
+    status = status ? status : contacts_at(sys, t, &y);
     if (!status) {
         status = tribo_system_explain(sys, tribo_balance(sys->contacts, sys->v, sys->a, feq, f));
     }
@@ -228,7 +234,7 @@ int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *
 int tribo_system_accept(tribo_system *sys, double t, const double *y)
 {
     int status = sys ? tribo_system_check_mass(sys, "this call") : TRIBO_ERR_NULL;
-    status = status ? status : contacts_at(sys, t, y);
+    status = status ? status : contacts_at(sys, t, &y);
     if (!status) {
         status = tribo_system_explain(sys, tribo_balance(sys->contacts, sys->v, sys->a, sys->feq, NULL));
     }
@@ -305,7 +311,8 @@ static int copy_rest(tribo_system *to, const tribo_system *sys)
     return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && copy_lent(to, sys) &&
            tribo_matrix_copy(&to->elastic, &sys->elastic) && tribo_matrix_copy(&to->viscous, &sys->viscous) &&
            tribo_matrix_copy(&to->mass, &sys->mass) && tribo_cholesky_copy(&to->factor, &sys->factor) &&
-           tribo_massless_copy(&to->massless, &sys->massless, sys->ndof, sys->ncontact) && tribo_loads_copy(to, sys);
+           tribo_massless_copy(&to->massless, &sys->massless, sys->ndof, sys->ncontact) && tribo_loads_copy(to, sys) &&
+           tribo_system_set_sliders(to, sys->sliders);
 }
 
 int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
@@ -359,5 +366,6 @@ void tribo_system_destroy(tribo_system *sys)
     free(sys->omega);
     free(sys->v);
     free(sys->dense);
+    free(sys->motion);
     free(sys);
 }

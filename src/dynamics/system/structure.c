@@ -208,12 +208,15 @@ int tribo_model_build(struct model *m, tribo_system **sys)
     if (!status) {
         status = m->nmode ? tribo_model_reduce(m, &s) : tribo_model_build_whole(m, &s);
     }
+    if (!status && m->sliders) {
+        s->given -= m->sliders;
+        status = tribo_system_set_sliders(s, m->sliders) ? TRIBO_OK : tribo_model_no_memory(m);
+    }
     tribo_model_free(m);
     if (status) {
         tribo_system_destroy(s);
         return status;
     }
-    s->given -= m->sliders;
     *sys = s;
     return TRIBO_OK;
 }

@@ -94,7 +94,7 @@ size_t tribo_system_planar(const tribo_system *sys)
 
 size_t tribo_system_ndof(const tribo_system *sys)
 {
-    return sys ? sys->ndof : 0;
+    return sys ? sys->ndof - sys->sliders : 0;
 }
 
 size_t tribo_system_ncontact(const tribo_system *sys)
@@ -104,7 +104,7 @@ size_t tribo_system_ncontact(const tribo_system *sys)
 
 size_t tribo_system_dimension(const tribo_system *sys)
 {
-    return sys ? 2 * sys->ndof + 1 : 0;
+    return sys ? 2 * sys->ndof - sys->sliders + 1 : 0;
 }
 
 int tribo_dynamics_has(int feature)

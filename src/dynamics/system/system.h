@@ -46,6 +46,7 @@ struct truncation {
 
 struct tribo_system {
     size_t ndof, ncontact;
+    size_t sliders; /* of ndof, the last: contacts with compliance slide by these; a caller's state has no velocities of them */
     struct matrix stiffness, damping, direction, response; /* AK, AC, J, B */
     tribo_context *contacts; /* finds the forces; its settings are those of lent, its limits those of the time set */
     tribo_context *lent;     /* what tribo_system_context gives the caller to set; NULL: nothing is lent yet */
@@ -87,6 +88,7 @@ struct tribo_system {
     double *tally;                   /* [ncontact] how often y's energy counts what a contact dissipates: 1, but see chains */
     double *v, *a, *f, *feq, *dv_dt; /* [ncontact] workspace */
     double *acceleration;            /* [ndof] workspace */
+    double *motion;                  /* [tribo_system_size] workspace with sliders, else NULL */
     int snaps_in_order;              /* contacts at rest, whichever they are, can be snapped one after the other */
     double *dense;                   /* workspace of the Jacobian, allocated when it is first asked for */
 };
@@ -276,7 +278,27 @@ int tribo_system_check_solved(const tribo_system *sys, const char *what);
 /* Either of them: what makes rates of states takes neither kind. */
 int tribo_system_check_rates(const tribo_system *sys, const char *what);
 
-/* Checks that t and y are finite. */
+/* Checks that t and the caller's state y are finite. */
 int tribo_system_check_state(const tribo_system *sys, double t, const double *y);
+
+/* ---- state.c: a caller's state y = q, q', w, energy, and the state of the methods, (q, w), (q, w)', energy, of
+ * tribo_system_size values. Both are the same where no contact has compliance. */
+
+static inline size_t tribo_system_size(const tribo_system *sys)
+{
+    return 2 * sys->ndof + 1;
+}
+
+/* The last count degrees of freedom are sliders. 0 if out of memory. */
+int tribo_system_set_sliders(tribo_system *sys, size_t count);
+
+/* to [tribo_system_size] = y, with w' = 0: a motion that begins finds w' from q, q' and w. */
+void tribo_system_read_state(const tribo_system *sys, const double *y, double *to);
+
+/* y [tribo_system_dimension] = from. */
+void tribo_system_write_state(const tribo_system *sys, const double *from, double *y);
+
+/* The index in a caller's state of value i of the methods' state; of a velocity w' that of w. */
+size_t tribo_system_state_index(const tribo_system *sys, size_t i);
 
 #endif

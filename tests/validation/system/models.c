@@ -104,8 +104,8 @@ TEST(set_again)
 
 TEST(errors)
 {
-    const size_t backward[] = {0, 2, 1, 3}, late[] = {1, 2, 3, 4}, far[] = {0, 1, 7},
-                 leap[] = {0, (size_t)1 << 40, 2, 3}, twice[] = {1, 1, 0, 2, 1, 2, 1};
+    const size_t backward[] = {0, 2, 1, 3}, late[] = {1, 2, 3, 4}, far[] = {0, 1, 7}, leap[] = {0, (size_t)1 << 40, 2, 3},
+                 twice[] = {1, 1, 0, 2, 1, 2, 1};
     const double inf[N * N] = {1.0, 0.0, 0.0, 0.0, 1.0, INFINITY, 0.0, 0.0, 1.0},
                          skew[N * N] = {1.0, 2.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     const double negative[C] = {0.0, -1.0}, tiny[C] = {1e-310, 0.0};
@@ -125,7 +125,8 @@ TEST(errors)
     REFUSED(tribo_model_set_stiffness_csr(model, row, NULL, val), TRIBO_ERR_NULL, "stiffness: col is NULL");
     REFUSED(tribo_model_set_stiffness_csr(model, row, col, NULL), TRIBO_ERR_NULL, "stiffness: val is NULL");
     REFUSED(tribo_model_set_stiffness(model, inf), TRIBO_ERR_NOT_FINITE, "stiffness[1][2] = inf is not finite");
-    REFUSED(tribo_model_set_mass_csr(model, backward, mass_col, mass), TRIBO_ERR_SIZE, "mass: rowptr[2] = 1 is below rowptr[1] = 2");
+    REFUSED(tribo_model_set_mass_csr(model, backward, mass_col, mass), TRIBO_ERR_SIZE,
+            "mass: rowptr[2] = 1 is below rowptr[1] = 2");
     REFUSED(tribo_model_set_mass_csr(model, leap, mass_col, mass), TRIBO_ERR_SIZE, "mass: rowptr[2] = 2 is below rowptr[1]");
     REFUSED(tribo_model_set_mass_csr(model, late, mass_col, mass), TRIBO_ERR_SIZE, "mass: rowptr[0] = 1 is not 0");
     REFUSED(tribo_model_set_mass_csr(model, mass_row, far, mass), TRIBO_ERR_RANGE, "mass: col[2] = 7 is not below 3");
@@ -155,8 +156,8 @@ TEST(errors)
  * steady amplitude 3.38660810 (contacts.md of the design: one harmonic alone says 3.3923). */
 TEST(compliance)
 {
-    const double one = 1.0, c = 0.1, soft = 1.0, limit = 0.5, x[4] = {1.0};
-    double y[5] = {0.0}, least, most;
+    const double one = 1.0, c = 0.1, soft = 1.0, limit = 0.5, x[2] = {1.0};
+    double y[4] = {0.0}, least, most;
     tribo_model *model;
     tribo_system *sys;
     assert_ok(tribo_model_create(&model, 1, 1));
@@ -192,7 +193,7 @@ TEST(compliance_reduced)
         assert_ok(reduced ? tribo_system_reduce(&sys, model, N, TRIBO_STATICS_NONE) : tribo_system_create(&sys, model));
         assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
         assert_ok(tribo_system_add_load(sys, 1.3, NULL, load));
-        double y[2 * (N + 1) + 1] = {0.0}, t = 0.0;
+        double y[2 * N + 2] = {0.0}, t = 0.0;
         tribo_driver *drv = driver_create(sys, "exact", 0.5, 1e-9);
         assert_ok(tribo_driver_advance(drv, &t, 20.0, y));
         if (reduced) {
