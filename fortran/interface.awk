@@ -1,7 +1,8 @@
 # Fortran interfaces of the functions of C headers, and their constants:
 #   awk -v name=<name> -f interface.awk <header>...
-# writes a module <name>_constants with the enumerators, and a module <name>_c with an interface block for each function. It reads
-# what follows TRIBO_API to the semicolon, and enumerations whose numbers are given; a type that it does not know is an error.
+# writes a module <name>_constants with the enumerators, if the headers have any, and a module <name>_c with an interface block for
+# each function. It reads what follows TRIBO_API to the semicolon, and enumerations whose numbers are given; a type that it does not
+# know is an error.
 #
 # tribo_get_limit is c_get_limit in Fortran. Of its arguments
 #   double, int, size_t ...    are values
@@ -127,8 +128,10 @@ END {
     gsub(/\n\n$/, "\n", constants)
     gsub(/\n\n$/, "\n", functions)
     print "! Written by interface.awk from the headers of C, and not to be changed by hand: see target fortran-refresh."
-    print "\n!> The constants, as in C.\nmodule " name "_constants\n  implicit none\n  private\n"
-    printf "%send module %s_constants\n", constants, name
+    if (constants) {
+        print "\n!> The constants, as in C.\nmodule " name "_constants\n  implicit none\n  private\n"
+        printf "%send module %s_constants\n", constants, name
+    }
     print "\n!> The functions of C, see interface.awk. Not for programs.\nmodule " name "_c"
     print "  use, intrinsic :: iso_c_binding\n  implicit none\n  public\n\n  interface"
     printf "%s  end interface\nend module %s_c\n", functions, name

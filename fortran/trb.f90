@@ -1,5 +1,5 @@
-!> tribo for fixed-form Fortran: external routines that need no module and no interface block. Those for structures, with GSL, are
-!> in trb_gsl.f90.
+!> tribo for fixed-form Fortran: external routines that need no module and no interface block. Those for structures are in
+!> trb_dynamics.f90.
 !>
 !> I... are default INTEGER, as are N, NDOF, LDR, LDJ, LAW and NLAW; all other numbers are DOUBLE PRECISION; NAME and TEXT are
 !> CHARACTER*(*); MINV is a subroutine. Arrays hold one value a contact, N of them, unless said otherwise; an element of a bigger

@@ -1,4 +1,4 @@
-!> What the modules tribo and tribo_gsl and the fixed-form routines share: objects by number, sizes of arrays, texts, and how
+!> What the modules tribo and tribo_dynamics and the fixed-form routines share: objects by number, sizes of arrays, texts, and how
 !> calls begin and end. Not for programs.
 module tribo_support
   use tribo_c

@@ -6,7 +6,7 @@
 
 #include "tribo/tribo_gsl.h"
 
-/* Methods of tribo_dynamics.h and steppers of GSL in one list: method 0, the steppers, the other methods. NULL outside. */
+/* Methods of tribo_dynamics.h and steppers of GSL in one list. NULL outside. */
 static inline int any_method_count(void)
 {
     return tribo_method_count() + tribo_gsl_stepper_count();
@@ -14,8 +14,8 @@ static inline int any_method_count(void)
 
 static inline const char *any_method_name(int i)
 {
-    const int steppers = tribo_gsl_stepper_count();
-    return i > 0 && i <= steppers ? tribo_gsl_stepper_name(i - 1) : tribo_method_name(i > 0 ? i - steppers : i);
+    const int stepper = i - tribo_method_count();
+    return stepper < 0 ? tribo_method_name(i) : tribo_gsl_stepper_name(stepper);
 }
 
 /* A driver by the method or the stepper of that name. */

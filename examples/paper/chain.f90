@@ -7,7 +7,7 @@
 !> and FOLDER/values-paper_chain.txt.
 program paper_chain
   use tribo
-  use tribo_gsl
+  use tribo_dynamics
   implicit none
   character(len=*), parameter :: laws(3) = [character(len=16) :: 'coulomb', 'velocity-limited', 'quinn']
   integer, parameter :: blocks = 32

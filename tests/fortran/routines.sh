@@ -1,7 +1,7 @@
 #!/bin/sh
 # Every function of the headers has a routine of fixed form, or a reason for none, and every routine is told of and tested:
 #   routines.sh <root of the sources>
-# compares routines.txt with the headers, trb.f90 and trb_gsl.f90, their table in fortran/README.md, and the tests in fixed form.
+# compares routines.txt with the headers, trb.f90 and trb_dynamics.f90, their table in fortran/README.md, and the tests in fixed form.
 set -eu
 export LC_ALL=C
 cd "$1"
@@ -26,12 +26,12 @@ same "functions listed" headers
 
 awk '$2 != "-" { for (k = 2; k <= NF; k++) print $k } NF < 3 && $2 == "-" || NF < 2 { print $1, "has no routine and no reason" }' \
     "$scratch/list" | sort >"$scratch/routines listed"
-sed -n 's/^subroutine \(trb[a-z0-9]*\)(.*/\1/p' fortran/trb.f90 fortran/trb_gsl.f90 | tr a-z A-Z | sort >"$scratch/sources"
+sed -n 's/^subroutine \(trb[a-z0-9]*\)(.*/\1/p' fortran/trb.f90 fortran/trb_dynamics.f90 | tr a-z A-Z | sort >"$scratch/sources"
 same "routines listed" sources
 
 grep '^| *`TRB' fortran/README.md | routines >"$scratch/table of fortran README"
 same sources "table of fortran README"
-grep -h '^!>   TRB' fortran/trb.f90 fortran/trb_gsl.f90 | routines >"$scratch/heads of the sources"
+grep -h '^!>   TRB' fortran/trb.f90 fortran/trb_dynamics.f90 | routines >"$scratch/heads of the sources"
 same sources "heads of the sources"
 
 cat tests/fortran/*.f | grep -oi '\bCALL TRB[A-Z0-9]*' | awk '{ print $2 }' | sort -u >"$scratch/tests"

@@ -1,7 +1,7 @@
-!> Every error that a procedure of module tribo_gsl can answer: status, text, outputs left alone; and how systems, drivers and
+!> Every error that a procedure of module tribo_dynamics can answer: status, text, outputs left alone; and how systems, drivers and
 !> borrowed contexts end.
 module stoppers
-  use tribo_gsl, only: tribo_moment, tribo_observer
+  use tribo_dynamics, only: tribo_moment, tribo_observer
   implicit none
   private
 

@@ -2,7 +2,7 @@
 program system_threads
   use check, only: alive, report, require, same_bits
   use tribo
-  use tribo_gsl
+  use tribo_dynamics
   implicit none
 
   integer, parameter :: jobs = 32

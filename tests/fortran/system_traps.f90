@@ -3,7 +3,7 @@
 program system_traps
   use check, only: report, require
   use tribo
-  use tribo_gsl
+  use tribo_dynamics
   implicit none
 
   integer :: i

@@ -1,8 +1,8 @@
-!> Every procedure of module tribo_gsl that can succeed, with each of its results compared to that of the C call: systems.c plays
+!> Every procedure of module tribo_dynamics that can succeed, with each of its results compared to that of the C call: systems.c plays
 !> the same on its tape.
 module counting
   use tribo, only: dp
-  use tribo_gsl, only: tribo_moment, tribo_observer
+  use tribo_dynamics, only: tribo_moment, tribo_observer
   implicit none
   private
 

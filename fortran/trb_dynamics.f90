@@ -1,4 +1,4 @@
-!> tribo with GSL for fixed-form Fortran: linear structures with friction contacts, their integration, and periodic motions.
+!> tribo_dynamics for fixed-form Fortran: linear structures with friction contacts, their integration, and periodic motions.
 !> Arguments as in trb.f90.
 !>
 !> TRBLIN makes a structure M q'' + C q' + K q = p(t) + J' f, and a handle IH of its contacts: all of trb.f90 works with it
@@ -78,16 +78,16 @@
 !>   TRBSHS(IH, N, SHARE, IERR)                                                        SHARE(N) of the period for which each rests
 !> Counts and real quantities
 !>   TRBDCT(IH, IWHICH, IVAL, IERR)                  IWHICH TRIBO_COUNT_... of a       IVAL
-!>                                                   driver, see tribo_gsl.h
+!>                                                   driver, see tribo_dynamics.h
 !>   TRBDVL(IH, IWHICH, VAL, IERR)                   IWHICH TRIBO_REAL_... of a driver VAL
 
-!> What they share: the owner of a handle of TRBLIN is a structure with its driver, as module tribo_gsl has them.
-module tribo_fixed_gsl
+!> What they share: the owner of a handle of TRBLIN is a structure with its driver, as module tribo_dynamics has them.
+module tribo_fixed_dynamics
   use tribo_fixed, only: c_handle_add_part, c_handle_drop, c_handle_owner, c_handle_note, find, hand_out, refuse_value => refuse
   use tribo_c
   use tribo
-  use tribo_gsl
-  use tribo_gsl_c, only: c_fortran_given
+  use tribo_dynamics
+  use tribo_dynamics_c, only: c_fortran_given
   use tribo_support, only: object_of
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_null_char, c_ptr
   implicit none
@@ -255,12 +255,12 @@ contains
     call x%set_csr(columns, irow(:rows + 1), icol(:entries), val(:entries), ierr, found)
     if (ierr /= TRIBO_OK) text = name // ': ' // found
   end subroutine read_rows
-end module tribo_fixed_gsl
+end module tribo_fixed_dynamics
 
 ! --------------------------------------------------------------------------------------------------------------------- structure
 
 subroutine trblin(ndof, n, rm, c, rk, ldm, rj, ldj, ih, text, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ndof, n, ldm, ldj
   real(dp), intent(in) :: rm(ldm, *), c(ldm, *), rk(ldm, *), rj(ldj, *)
@@ -285,7 +285,7 @@ subroutine trblin(ndof, n, rm, c, rk, ldm, rj, ldj, ih, text, ierr)
 end subroutine trblin
 
 subroutine trblsp(ndof, n, irm, icm, rm, irc, icc, c, irk, ick, rk, irj, icj, rj, ih, text, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ndof, n, irm(*), icm(*), irc(*), icc(*), irk(*), ick(*), irj(*), icj(*)
   real(dp), intent(in) :: rm(*), c(*), rk(*), rj(*)
@@ -313,7 +313,7 @@ subroutine trblsp(ndof, n, irm, icm, rm, irc, icc, c, irk, ick, rk, irj, icj, rj
 end subroutine trblsp
 
 subroutine trbred(nfull, n, irm, icm, rm, irk, ick, rk, irj, icj, rj, nmode, istat, ih, text, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: nfull, n, irm(*), icm(*), irk(*), ick(*), irj(*), icj(*), nmode, istat
   real(dp), intent(in) :: rm(*), rk(*), rj(*)
@@ -337,7 +337,7 @@ subroutine trbred(nfull, n, irm, icm, rm, irk, ick, rk, irj, icj, rj, nmode, ist
 end subroutine trbred
 
 subroutine trbcln(ih, ihnew, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih
   integer, intent(inout) :: ihnew
@@ -352,7 +352,7 @@ subroutine trbcln(ih, ihnew, ierr)
 end subroutine trbcln
 
 subroutine trbndf(ih, ndof, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih
   integer, intent(inout) :: ndof
@@ -364,7 +364,7 @@ subroutine trbndf(ih, ndof, ierr)
 end subroutine trbndf
 
 subroutine trblod(ih, nfull, omega, pc, ps, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, nfull
   real(dp), intent(in) :: omega, pc(*), ps(*)
@@ -376,7 +376,7 @@ subroutine trblod(ih, nfull, omega, pc, ps, ierr)
 end subroutine trblod
 
 subroutine trbltb(ih, nfull, knots, time, val, pat, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, nfull, knots
   real(dp), intent(in) :: time(*), val(*), pat(*)
@@ -389,7 +389,7 @@ subroutine trbltb(ih, nfull, knots, time, val, pat, ierr)
 end subroutine trbltb
 
 subroutine trbcll(ih, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih
   integer, intent(out) :: ierr
@@ -400,7 +400,7 @@ subroutine trbcll(ih, ierr)
 end subroutine trbcll
 
 subroutine trbbas(ih, n, omega, bc, bs, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, n
   real(dp), intent(in) :: omega, bc(*), bs(*)
@@ -412,7 +412,7 @@ subroutine trbbas(ih, n, omega, bc, bs, ierr)
 end subroutine trbbas
 
 subroutine trbhlm(ih, n, omega, fc, fs, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, n
   real(dp), intent(in) :: omega, fc(*), fs(*)
@@ -424,7 +424,7 @@ subroutine trbhlm(ih, n, omega, fc, fs, ierr)
 end subroutine trbhlm
 
 subroutine trblmt(ih, n, knots, time, fmun, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, n, knots
   real(dp), intent(in) :: time(*), fmun(n, *)
@@ -437,7 +437,7 @@ subroutine trblmt(ih, n, knots, time, fmun, ierr)
 end subroutine trblmt
 
 subroutine trblmc(ih, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih
   integer, intent(out) :: ierr
@@ -448,7 +448,7 @@ subroutine trblmc(ih, ierr)
 end subroutine trblmc
 
 subroutine trbbsc(ih, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih
   integer, intent(out) :: ierr
@@ -459,7 +459,7 @@ subroutine trbbsc(ih, ierr)
 end subroutine trbbsc
 
 subroutine trbslm(ih, n, t, fmun, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, n
   real(dp), intent(in) :: t
@@ -472,7 +472,7 @@ subroutine trbslm(ih, n, t, fmun, ierr)
 end subroutine trbslm
 
 subroutine trbssl(ih, n, slip, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, n
   integer, intent(inout) :: slip(*)
@@ -484,7 +484,7 @@ subroutine trbssl(ih, n, slip, ierr)
 end subroutine trbssl
 
 subroutine trbscn(ih, which, value, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, which
   integer, intent(inout) :: value
@@ -496,7 +496,7 @@ subroutine trbscn(ih, which, value, ierr)
 end subroutine trbscn
 
 subroutine trbcon(ih, ndof, n, t, y, v, feq, f, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, ndof, n
   real(dp), intent(in) :: t, y(*)
@@ -512,7 +512,7 @@ end subroutine trbcon
 ! ------------------------------------------------------------------------------------------------------------ reduced structures
 
 subroutine trbzet(ih, zeta, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih
   real(dp), intent(in) :: zeta
@@ -524,7 +524,7 @@ subroutine trbzet(ih, zeta, ierr)
 end subroutine trbzet
 
 subroutine trbfrq(ih, ndof, w, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, ndof
   real(dp), intent(inout) :: w(*)
@@ -536,7 +536,7 @@ subroutine trbfrq(ih, ndof, w, ierr)
 end subroutine trbfrq
 
 subroutine trbexp(ih, ndof, nfull, q, u, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, ndof, nfull
   real(dp), intent(in) :: q(*)
@@ -549,7 +549,7 @@ subroutine trbexp(ih, ndof, nfull, q, u, ierr)
 end subroutine trbexp
 
 subroutine trbtrc(ih, omega, err, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih
   real(dp), intent(in) :: omega
@@ -564,7 +564,7 @@ end subroutine trbtrc
 ! ---------------------------------------------------------------------------------------------------- integrators of the caller's
 
 subroutine trbder(ih, ndof, t, y, dydt, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, ndof
   real(dp), intent(in) :: t, y(*)
@@ -577,7 +577,7 @@ subroutine trbder(ih, ndof, t, y, dydt, ierr)
 end subroutine trbder
 
 subroutine trbjac(ih, ndof, t, y, dfdy, ldj, dfdt, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, ndof, ldj
   real(dp), intent(in) :: t, y(*)
@@ -593,7 +593,7 @@ subroutine trbjac(ih, ndof, t, y, dfdy, ldj, dfdt, ierr)
 end subroutine trbjac
 
 subroutine trbsac(ih, ndof, t, y, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, ndof
   real(dp), intent(in) :: t, y(*)
@@ -607,7 +607,7 @@ end subroutine trbsac
 ! ------------------------------------------------------------------------------------------------------ integrators of the library
 
 subroutine trbnmt(nmeth, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(out) :: nmeth, ierr
   nmeth = tribo_method_count()
@@ -615,7 +615,7 @@ subroutine trbnmt(nmeth, ierr)
 end subroutine trbnmt
 
 subroutine trbhas(ifeat, ihas, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ifeat
   integer, intent(out) :: ihas, ierr
@@ -624,8 +624,8 @@ subroutine trbhas(ifeat, ihas, ierr)
 end subroutine trbhas
 
 subroutine trbmnm(meth, text, ierr)
-  use tribo_fixed_gsl
-  use tribo_gsl_c, only: c_fortran_method_name
+  use tribo_fixed_dynamics
+  use tribo_dynamics_c, only: c_fortran_method_name
   use tribo_support, only: to_int
   implicit none
   integer, intent(in) :: meth
@@ -635,7 +635,7 @@ subroutine trbmnm(meth, text, ierr)
 end subroutine trbmnm
 
 subroutine trbdrv(ih, name, dt, atol, rtol, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   use tribo_support, only: take
   implicit none
   integer, intent(in) :: ih
@@ -661,7 +661,7 @@ subroutine trbdrv(ih, name, dt, atol, rtol, ierr)
 end subroutine trbdrv
 
 subroutine trbhst(ih, dt, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih
   real(dp), intent(in) :: dt
@@ -673,7 +673,7 @@ subroutine trbhst(ih, dt, ierr)
 end subroutine trbhst
 
 subroutine trbtol(ih, atol, rtol, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih
   real(dp), intent(in) :: atol, rtol
@@ -685,7 +685,7 @@ subroutine trbtol(ih, atol, rtol, ierr)
 end subroutine trbtol
 
 subroutine trbout(ih, dt, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih
   real(dp), intent(in) :: dt
@@ -697,7 +697,7 @@ subroutine trbout(ih, dt, ierr)
 end subroutine trbout
 
 subroutine trbmth(ih, text, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih
   character(len=*), intent(inout) :: text
@@ -709,7 +709,7 @@ subroutine trbmth(ih, text, ierr)
 end subroutine trbmth
 
 subroutine trbhmx(ih, h, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih
   real(dp), intent(in) :: h
@@ -721,7 +721,7 @@ subroutine trbhmx(ih, h, ierr)
 end subroutine trbhmx
 
 subroutine trbobs(ih, seen, rpar, ipar, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih
   procedure(sees) :: seen
@@ -739,7 +739,7 @@ subroutine trbobs(ih, seen, rpar, ipar, ierr)
 end subroutine trbobs
 
 subroutine trbadv(ih, ndof, t, t1, y, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, ndof
   real(dp), intent(inout) :: t, y(*)
@@ -752,7 +752,7 @@ subroutine trbadv(ih, ndof, t, t1, y, ierr)
 end subroutine trbadv
 
 subroutine trbper(ih, ndof, t, period, y, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, ndof
   real(dp), intent(in) :: t, period
@@ -765,7 +765,7 @@ subroutine trbper(ih, ndof, t, period, y, ierr)
 end subroutine trbper
 
 subroutine trbdct(ih, iwhich, ival, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, iwhich
   integer, intent(inout) :: ival
@@ -777,7 +777,7 @@ subroutine trbdct(ih, iwhich, ival, ierr)
 end subroutine trbdct
 
 subroutine trbdvl(ih, iwhich, val, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, iwhich
   real(dp), intent(inout) :: val
@@ -791,7 +791,7 @@ end subroutine trbdvl
 ! --------------------------------------------------------------------------------------------------------------- periodic motion
 
 subroutine trbmul(ih, ndof, re, ai, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, ndof
   real(dp), intent(inout) :: re(*), ai(*)
@@ -803,7 +803,7 @@ subroutine trbmul(ih, ndof, re, ai, ierr)
 end subroutine trbmul
 
 subroutine trbfam(ih, nfree, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih
   integer, intent(inout) :: nfree
@@ -815,7 +815,7 @@ subroutine trbfam(ih, nfree, ierr)
 end subroutine trbfam
 
 subroutine trbext(ih, ndof, cv, xmin, xmax, tmin, tmax, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, ndof
   real(dp), intent(in) :: cv(*)
@@ -828,7 +828,7 @@ subroutine trbext(ih, ndof, cv, xmin, xmax, tmin, tmax, ierr)
 end subroutine trbext
 
 subroutine trbhar(ih, ndof, cv, k, xc, xs, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, ndof, k
   real(dp), intent(in) :: cv(*)
@@ -841,7 +841,7 @@ subroutine trbhar(ih, ndof, cv, k, xc, xs, ierr)
 end subroutine trbhar
 
 subroutine trbdis(ih, n, e, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, n
   real(dp), intent(inout) :: e(*)
@@ -854,7 +854,7 @@ subroutine trbdis(ih, n, e, ierr)
 end subroutine trbdis
 
 subroutine trbshs(ih, n, share, ierr)
-  use tribo_fixed_gsl
+  use tribo_fixed_dynamics
   implicit none
   integer, intent(in) :: ih, n
   real(dp), intent(inout) :: share(*)

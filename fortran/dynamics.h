@@ -1,10 +1,10 @@
-/* tribo_gsl.h for Fortran: see gsl.c. */
-#ifndef TRIBO_FORTRAN_GSL_H
-#define TRIBO_FORTRAN_GSL_H
+/* tribo_dynamics.h for Fortran: see dynamics.c and methods.c. */
+#ifndef TRIBO_FORTRAN_DYNAMICS_H
+#define TRIBO_FORTRAN_DYNAMICS_H
 
 #include <stdint.h>
 
-#include "tribo/tribo_gsl.h"
+#include "tribo/tribo_dynamics.h"
 
 #include "handle.h"
 
@@ -38,7 +38,8 @@ TRIBO_API int tribo_fortran_reduced(tribo_system **sys, const struct tribo_rows 
                                     const struct tribo_rows *direction, size_t nmode, int static_contacts, char *message,
                                     size_t size);
 
-/* Methods of tribo_dynamics.h and steppers of GSL in one list, and a driver by either. */
+/* Methods of tribo_dynamics.h, followed by the steppers of GSL in a build with libtribo_gsl, and a driver by one of them: methods.c
+ * without GSL, methods_gsl.c with it. */
 TRIBO_API int tribo_fortran_method_count(void);
 TRIBO_API const char *tribo_fortran_method_name(int method);
 TRIBO_API int tribo_fortran_driver_create(tribo_driver **drv, tribo_system *sys, const char *method);

@@ -1,7 +1,7 @@
 !> Ends by an error that no stat takes; the argument says by which. See stop.cmake.
-program stop_gsl
+program stop_systems
   use tribo
-  use tribo_gsl
+  use tribo_dynamics
   implicit none
 
   type(tribo_system) :: s, other_system
@@ -28,4 +28,4 @@ program stop_gsl
     call m%set_coo(1, 1, [1], [2], [1.0_dp])
   end select
   print '(a)', 'still running'
-end program stop_gsl
+end program stop_systems

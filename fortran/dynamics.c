@@ -1,9 +1,9 @@
-/* What of tribo_gsl.h Fortran cannot call as it is, since structures of GSL's stand in between, and
- * what must be pure there. */
+/* Functions for module tribo_dynamics beside those of tribo_dynamics.h: sizes by pure functions, and systems from the matrices of
+ * Fortran's type tribo_sparse. */
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "gsl.h"
+#include "dynamics.h"
 
 static const char *plural(size_t n)
 {
@@ -117,22 +117,4 @@ int tribo_fortran_reduced(tribo_system **sys, const struct tribo_rows *mass, con
                           const struct tribo_rows *direction, size_t nmode, int static_contacts, char *message, size_t size)
 {
     return make_system(sys, mass, NULL, stiffness, direction, 1, nmode, static_contacts, message, size);
-}
-
-int tribo_fortran_method_count(void)
-{
-    return tribo_method_count() + tribo_gsl_stepper_count();
-}
-
-const char *tribo_fortran_method_name(int method)
-{
-    const int steppers = tribo_gsl_stepper_count();
-    return method > 0 && method <= steppers ? tribo_gsl_stepper_name(method - 1)
-                                            : tribo_method_name(method > 0 ? method - steppers : method);
-}
-
-int tribo_fortran_driver_create(tribo_driver **drv, tribo_system *sys, const char *method)
-{
-    const int status = tribo_gsl_driver_create(drv, sys, method);
-    return status == TRIBO_ERR_NAME ? tribo_driver_create(drv, sys, method) : status;
 }

@@ -1,0 +1,724 @@
+! Written by interface.awk from the headers of C, and not to be changed by hand: see target fortran-refresh.
+
+!> The constants, as in C.
+module tribo_dynamics_constants
+  implicit none
+  private
+
+  !> sparse factors: systems of many degrees of freedom whose mass matrix is not diagonal
+  integer, parameter, public :: TRIBO_FEATURE_CHOLMOD = 0
+
+  integer, parameter, public :: TRIBO_STATICS_NONE = 0
+  integer, parameter, public :: TRIBO_STATICS_MASS = 1
+  integer, parameter, public :: TRIBO_STATICS_COMPLIANCE = 2
+
+  !> end of a step, output, end of an advance, or an event at which no contact changes
+  integer, parameter, public :: TRIBO_MOMENT_STEP = 0
+  !> a contact comes to rest
+  integer, parameter, public :: TRIBO_MOMENT_STICK = 1
+  !> a contact breaks away
+  integer, parameter, public :: TRIBO_MOMENT_SLIP = 2
+  !> the direction of sliding turns without rest
+  integer, parameter, public :: TRIBO_MOMENT_REVERSE = 3
+  !> the limit falls to 0
+  integer, parameter, public :: TRIBO_MOMENT_LIFT = 4
+  !> the limit rises from 0
+  integer, parameter, public :: TRIBO_MOMENT_TOUCH = 5
+
+  !> accepted steps
+  integer, parameter, public :: TRIBO_COUNT_STEPS = 100
+  !> steps tried and undone
+  integer, parameter, public :: TRIBO_COUNT_REJECTED = 101
+  !> evaluations of the right-hand side
+  integer, parameter, public :: TRIBO_COUNT_EVALUATIONS = 102
+  !> evaluations of its Jacobian
+  integer, parameter, public :: TRIBO_COUNT_JACOBIANS = 103
+  !> events located
+  integer, parameter, public :: TRIBO_COUNT_EVENTS = 104
+  !> periods integrated by tribo_driver_find_periodic, of each search rounded up
+  integer, parameter, public :: TRIBO_COUNT_PERIODS = 105
+  !> steps of Newton's method of these searches
+  integer, parameter, public :: TRIBO_COUNT_NEWTON = 106
+  !> degrees of freedom that steps left out since nothing moved there
+  integer, parameter, public :: TRIBO_COUNT_RESTED = 107
+
+  !> the largest force of a contact at rest beyond its limit
+  integer, parameter, public :: TRIBO_REAL_EXCESS = 100
+  !> the largest velocity of a sliding contact against its direction of sliding
+  integer, parameter, public :: TRIBO_REAL_BACKSLIP = 101
+end module tribo_dynamics_constants
+
+!> The functions of C, see interface.awk. Not for programs.
+module tribo_dynamics_c
+  use, intrinsic :: iso_c_binding
+  implicit none
+  public
+
+  interface
+    function c_model_create(model, ndof, ncontact) result(answer) bind(c,name='tribo_model_create')
+      import
+      type(c_ptr), intent(inout) :: model
+      integer(c_size_t), value :: ndof
+      integer(c_size_t), value :: ncontact
+      integer(c_int) :: answer
+    end function c_model_create
+
+    subroutine c_model_destroy(model) bind(c,name='tribo_model_destroy')
+      import
+      type(c_ptr), value :: model
+    end subroutine c_model_destroy
+
+    function c_model_message(model) result(answer) bind(c,name='tribo_model_message')
+      import
+      type(c_ptr), value :: model
+      type(c_ptr) :: answer
+    end function c_model_message
+
+    function c_model_set_mass(model, m) result(answer) bind(c,name='tribo_model_set_mass')
+      import
+      type(c_ptr), value :: model
+      real(c_double), intent(in), optional :: m(*)
+      integer(c_int) :: answer
+    end function c_model_set_mass
+
+    function c_model_set_mass_diagonal(model, m) result(answer) bind(c,name='tribo_model_set_mass_diagonal')
+      import
+      type(c_ptr), value :: model
+      real(c_double), intent(in), optional :: m(*)
+      integer(c_int) :: answer
+    end function c_model_set_mass_diagonal
+
+    function c_model_set_mass_csr(model, rowptr, col, val) result(answer) bind(c,name='tribo_model_set_mass_csr')
+      import
+      type(c_ptr), value :: model
+      integer(c_size_t), intent(in), optional :: rowptr(*)
+      integer(c_size_t), intent(in), optional :: col(*)
+      real(c_double), intent(in), optional :: val(*)
+      integer(c_int) :: answer
+    end function c_model_set_mass_csr
+
+    function c_model_set_damping(model, c) result(answer) bind(c,name='tribo_model_set_damping')
+      import
+      type(c_ptr), value :: model
+      real(c_double), intent(in), optional :: c(*)
+      integer(c_int) :: answer
+    end function c_model_set_damping
+
+    function c_model_set_damping_diagonal(model, c) result(answer) bind(c,name='tribo_model_set_damping_diagonal')
+      import
+      type(c_ptr), value :: model
+      real(c_double), intent(in), optional :: c(*)
+      integer(c_int) :: answer
+    end function c_model_set_damping_diagonal
+
+    function c_model_set_damping_csr(model, rowptr, col, val) result(answer) bind(c,name='tribo_model_set_damping_csr')
+      import
+      type(c_ptr), value :: model
+      integer(c_size_t), intent(in), optional :: rowptr(*)
+      integer(c_size_t), intent(in), optional :: col(*)
+      real(c_double), intent(in), optional :: val(*)
+      integer(c_int) :: answer
+    end function c_model_set_damping_csr
+
+    function c_model_set_stiffness(model, k) result(answer) bind(c,name='tribo_model_set_stiffness')
+      import
+      type(c_ptr), value :: model
+      real(c_double), intent(in), optional :: k(*)
+      integer(c_int) :: answer
+    end function c_model_set_stiffness
+
+    function c_model_set_stiffness_diagonal(model, k) result(answer) bind(c,name='tribo_model_set_stiffness_diagonal')
+      import
+      type(c_ptr), value :: model
+      real(c_double), intent(in), optional :: k(*)
+      integer(c_int) :: answer
+    end function c_model_set_stiffness_diagonal
+
+    function c_model_set_stiffness_csr(model, rowptr, col, val) result(answer) bind(c,name='tribo_model_set_stiffness_csr')
+      import
+      type(c_ptr), value :: model
+      integer(c_size_t), intent(in), optional :: rowptr(*)
+      integer(c_size_t), intent(in), optional :: col(*)
+      real(c_double), intent(in), optional :: val(*)
+      integer(c_int) :: answer
+    end function c_model_set_stiffness_csr
+
+    function c_model_set_direction(model, j) result(answer) bind(c,name='tribo_model_set_direction')
+      import
+      type(c_ptr), value :: model
+      real(c_double), intent(in), optional :: j(*)
+      integer(c_int) :: answer
+    end function c_model_set_direction
+
+    function c_model_set_direction_csr(model, rowptr, col, val) result(answer) bind(c,name='tribo_model_set_direction_csr')
+      import
+      type(c_ptr), value :: model
+      integer(c_size_t), intent(in), optional :: rowptr(*)
+      integer(c_size_t), intent(in), optional :: col(*)
+      real(c_double), intent(in), optional :: val(*)
+      integer(c_int) :: answer
+    end function c_model_set_direction_csr
+
+    function c_model_set_compliance(model, c) result(answer) bind(c,name='tribo_model_set_compliance')
+      import
+      type(c_ptr), value :: model
+      real(c_double), intent(in), optional :: c(*)
+      integer(c_int) :: answer
+    end function c_model_set_compliance
+
+    function c_model_ndof(model) result(answer) bind(c,name='tribo_model_ndof')
+      import
+      type(c_ptr), value :: model
+      integer(c_size_t) :: answer
+    end function c_model_ndof
+
+    function c_model_ncontact(model) result(answer) bind(c,name='tribo_model_ncontact')
+      import
+      type(c_ptr), value :: model
+      integer(c_size_t) :: answer
+    end function c_model_ncontact
+
+    function c_model_refuse(model, status, message) result(answer) bind(c,name='tribo_model_refuse')
+      import
+      type(c_ptr), value :: model
+      integer(c_int), value :: status
+      character(kind=c_char), intent(in), optional :: message(*)
+      integer(c_int) :: answer
+    end function c_model_refuse
+
+    function c_dynamics_has(feature) result(answer) bind(c,name='tribo_dynamics_has')
+      import
+      integer(c_int), value :: feature
+      integer(c_int) :: answer
+    end function c_dynamics_has
+
+    function c_system_create(sys, model) result(answer) bind(c,name='tribo_system_create')
+      import
+      type(c_ptr), intent(inout) :: sys
+      type(c_ptr), value :: model
+      integer(c_int) :: answer
+    end function c_system_create
+
+    function c_system_reduce(sys, model, nmode, static_contacts) result(answer) bind(c,name='tribo_system_reduce')
+      import
+      type(c_ptr), intent(inout) :: sys
+      type(c_ptr), value :: model
+      integer(c_size_t), value :: nmode
+      integer(c_int), value :: static_contacts
+      integer(c_int) :: answer
+    end function c_system_reduce
+
+    function c_system_oscillator(sys, limit, alpha, omega) result(answer) bind(c,name='tribo_system_oscillator')
+      import
+      type(c_ptr), intent(inout) :: sys
+      real(c_double), value :: limit
+      real(c_double), value :: alpha
+      real(c_double), value :: omega
+      integer(c_int) :: answer
+    end function c_system_oscillator
+
+    function c_system_chain(sys, n, limit, alpha, omega) result(answer) bind(c,name='tribo_system_chain')
+      import
+      type(c_ptr), intent(inout) :: sys
+      integer(c_size_t), value :: n
+      real(c_double), value :: limit
+      real(c_double), value :: alpha
+      real(c_double), value :: omega
+      integer(c_int) :: answer
+    end function c_system_chain
+
+    function c_system_belt(sys, kappa, limit1, limit2, speed, omega) result(answer) bind(c,name='tribo_system_belt')
+      import
+      type(c_ptr), intent(inout) :: sys
+      real(c_double), value :: kappa
+      real(c_double), value :: limit1
+      real(c_double), value :: limit2
+      real(c_double), value :: speed
+      real(c_double), value :: omega
+      integer(c_int) :: answer
+    end function c_system_belt
+
+    subroutine c_system_destroy(sys) bind(c,name='tribo_system_destroy')
+      import
+      type(c_ptr), value :: sys
+    end subroutine c_system_destroy
+
+    function c_system_clone(sys, copy) result(answer) bind(c,name='tribo_system_clone')
+      import
+      type(c_ptr), value :: sys
+      type(c_ptr), intent(inout) :: copy
+      integer(c_int) :: answer
+    end function c_system_clone
+
+    function c_system_add_load(sys, omega, cosine, sine) result(answer) bind(c,name='tribo_system_add_load')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: omega
+      real(c_double), intent(in), optional :: cosine(*)
+      real(c_double), intent(in), optional :: sine(*)
+      integer(c_int) :: answer
+    end function c_system_add_load
+
+    function c_system_clear_loads(sys) result(answer) bind(c,name='tribo_system_clear_loads')
+      import
+      type(c_ptr), value :: sys
+      integer(c_int) :: answer
+    end function c_system_clear_loads
+
+    function c_system_add_base_motion(sys, omega, cosine, sine) result(answer) bind(c,name='tribo_system_add_base_motion')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: omega
+      real(c_double), intent(in), optional :: cosine(*)
+      real(c_double), intent(in), optional :: sine(*)
+      integer(c_int) :: answer
+    end function c_system_add_base_motion
+
+    function c_system_add_load_table(sys, knots, time, value, pattern) result(answer) &
+      bind(c,name='tribo_system_add_load_table')
+      import
+      type(c_ptr), value :: sys
+      integer(c_size_t), value :: knots
+      real(c_double), intent(in), optional :: time(*)
+      real(c_double), intent(in), optional :: value(*)
+      real(c_double), intent(in), optional :: pattern(*)
+      integer(c_int) :: answer
+    end function c_system_add_load_table
+
+    function c_system_clear_base_motion(sys) result(answer) bind(c,name='tribo_system_clear_base_motion')
+      import
+      type(c_ptr), value :: sys
+      integer(c_int) :: answer
+    end function c_system_clear_base_motion
+
+    function c_system_add_limit(sys, omega, cosine, sine) result(answer) bind(c,name='tribo_system_add_limit')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: omega
+      real(c_double), intent(in), optional :: cosine(*)
+      real(c_double), intent(in), optional :: sine(*)
+      integer(c_int) :: answer
+    end function c_system_add_limit
+
+    function c_system_set_limit_table(sys, knots, time, limit) result(answer) bind(c,name='tribo_system_set_limit_table')
+      import
+      type(c_ptr), value :: sys
+      integer(c_size_t), value :: knots
+      real(c_double), intent(in), optional :: time(*)
+      real(c_double), intent(in), optional :: limit(*)
+      integer(c_int) :: answer
+    end function c_system_set_limit_table
+
+    function c_system_clear_limits(sys) result(answer) bind(c,name='tribo_system_clear_limits')
+      import
+      type(c_ptr), value :: sys
+      integer(c_int) :: answer
+    end function c_system_clear_limits
+
+    function c_system_get_limit(sys, t, limit) result(answer) bind(c,name='tribo_system_get_limit')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: t
+      real(c_double), intent(inout), optional :: limit(*)
+      integer(c_int) :: answer
+    end function c_system_get_limit
+
+    function c_system_set_damping_ratio(sys, zeta) result(answer) bind(c,name='tribo_system_set_damping_ratio')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: zeta
+      integer(c_int) :: answer
+    end function c_system_set_damping_ratio
+
+    function c_system_get_frequencies(sys, omega) result(answer) bind(c,name='tribo_system_get_frequencies')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), intent(inout), optional :: omega(*)
+      integer(c_int) :: answer
+    end function c_system_get_frequencies
+
+    function c_system_expand(sys, reduced, full) result(answer) bind(c,name='tribo_system_expand')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), intent(in), optional :: reduced(*)
+      real(c_double), intent(inout), optional :: full(*)
+      integer(c_int) :: answer
+    end function c_system_expand
+
+    function c_system_get_truncation(sys, omega, error) result(answer) bind(c,name='tribo_system_get_truncation')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: omega
+      real(c_double), intent(inout), optional :: error(*)
+      integer(c_int) :: answer
+    end function c_system_get_truncation
+
+    function c_system_ndof(sys) result(answer) bind(c,name='tribo_system_ndof')
+      import
+      type(c_ptr), value :: sys
+      integer(c_size_t) :: answer
+    end function c_system_ndof
+
+    function c_system_ncontact(sys) result(answer) bind(c,name='tribo_system_ncontact')
+      import
+      type(c_ptr), value :: sys
+      integer(c_size_t) :: answer
+    end function c_system_ncontact
+
+    function c_system_dimension(sys) result(answer) bind(c,name='tribo_system_dimension')
+      import
+      type(c_ptr), value :: sys
+      integer(c_size_t) :: answer
+    end function c_system_dimension
+
+    function c_system_context(sys) result(answer) bind(c,name='tribo_system_context')
+      import
+      type(c_ptr), value :: sys
+      type(c_ptr) :: answer
+    end function c_system_context
+
+    function c_system_message(sys) result(answer) bind(c,name='tribo_system_message')
+      import
+      type(c_ptr), value :: sys
+      type(c_ptr) :: answer
+    end function c_system_message
+
+    function c_system_contacts(sys, t, y, v, feq, f) result(answer) bind(c,name='tribo_system_contacts')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: t
+      real(c_double), intent(in), optional :: y(*)
+      real(c_double), intent(inout), optional :: v(*)
+      real(c_double), intent(inout), optional :: feq(*)
+      real(c_double), intent(inout), optional :: f(*)
+      integer(c_int) :: answer
+    end function c_system_contacts
+
+    function c_system_get_slip(sys, slip) result(answer) bind(c,name='tribo_system_get_slip')
+      import
+      type(c_ptr), value :: sys
+      integer(c_signed_char), intent(inout), optional :: slip(*)
+      integer(c_int) :: answer
+    end function c_system_get_slip
+
+    function c_system_get_count(sys, which, value) result(answer) bind(c,name='tribo_system_get_count')
+      import
+      type(c_ptr), value :: sys
+      integer(c_int), value :: which
+      integer(c_size_t), intent(inout) :: value
+      integer(c_int) :: answer
+    end function c_system_get_count
+
+    function c_system_accept(sys, t, y) result(answer) bind(c,name='tribo_system_accept')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: t
+      real(c_double), intent(in), optional :: y(*)
+      integer(c_int) :: answer
+    end function c_system_accept
+
+    function c_system_derivative(sys, t, y, dydt) result(answer) bind(c,name='tribo_system_derivative')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: t
+      real(c_double), intent(in), optional :: y(*)
+      real(c_double), intent(inout), optional :: dydt(*)
+      integer(c_int) :: answer
+    end function c_system_derivative
+
+    function c_system_jacobian(sys, t, y, dfdy, dfdt) result(answer) bind(c,name='tribo_system_jacobian')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: t
+      real(c_double), intent(in), optional :: y(*)
+      real(c_double), intent(inout), optional :: dfdy(*)
+      real(c_double), intent(inout), optional :: dfdt(*)
+      integer(c_int) :: answer
+    end function c_system_jacobian
+
+    function c_system_get_force(sys, f) result(answer) bind(c,name='tribo_system_get_force')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), intent(inout), optional :: f(*)
+      integer(c_int) :: answer
+    end function c_system_get_force
+
+    function c_system_set_message(sys, status, text) result(answer) bind(c,name='tribo_system_set_message')
+      import
+      type(c_ptr), value :: sys
+      integer(c_int), value :: status
+      character(kind=c_char), intent(in), optional :: text(*)
+      integer(c_int) :: answer
+    end function c_system_set_message
+
+    function c_system_attach(sys, key, data, destroy) result(answer) bind(c,name='tribo_system_attach')
+      import
+      type(c_ptr), value :: sys
+      type(c_ptr), value :: key
+      type(c_ptr), value :: data
+      type(c_funptr), value :: destroy
+      integer(c_int) :: answer
+    end function c_system_attach
+
+    function c_system_attached(sys, key) result(answer) bind(c,name='tribo_system_attached')
+      import
+      type(c_ptr), value :: sys
+      type(c_ptr), value :: key
+      type(c_ptr) :: answer
+    end function c_system_attached
+
+    function c_driver_create(drv, sys, method) result(answer) bind(c,name='tribo_driver_create')
+      import
+      type(c_ptr), intent(inout) :: drv
+      type(c_ptr), value :: sys
+      character(kind=c_char), intent(in), optional :: method(*)
+      integer(c_int) :: answer
+    end function c_driver_create
+
+    function c_driver_create_stepper(drv, sys, stepper, data) result(answer) bind(c,name='tribo_driver_create_stepper')
+      import
+      type(c_ptr), intent(inout) :: drv
+      type(c_ptr), value :: sys
+      type(c_ptr), value :: stepper
+      type(c_ptr), value :: data
+      integer(c_int) :: answer
+    end function c_driver_create_stepper
+
+    function c_driver_method(drv) result(answer) bind(c,name='tribo_driver_method')
+      import
+      type(c_ptr), value :: drv
+      type(c_ptr) :: answer
+    end function c_driver_method
+
+    function c_method_count() result(answer) bind(c,name='tribo_method_count')
+      import
+      integer(c_int) :: answer
+    end function c_method_count
+
+    function c_method_name(method) result(answer) bind(c,name='tribo_method_name')
+      import
+      integer(c_int), value :: method
+      type(c_ptr) :: answer
+    end function c_method_name
+
+    function c_driver_set_step(drv, dt) result(answer) bind(c,name='tribo_driver_set_step')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), value :: dt
+      integer(c_int) :: answer
+    end function c_driver_set_step
+
+    function c_driver_set_tolerance(drv, abstol, reltol) result(answer) bind(c,name='tribo_driver_set_tolerance')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), value :: abstol
+      real(c_double), value :: reltol
+      integer(c_int) :: answer
+    end function c_driver_set_tolerance
+
+    function c_driver_set_output(drv, dt) result(answer) bind(c,name='tribo_driver_set_output')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), value :: dt
+      integer(c_int) :: answer
+    end function c_driver_set_output
+
+    function c_driver_set_max_step(drv, h) result(answer) bind(c,name='tribo_driver_set_max_step')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), value :: h
+      integer(c_int) :: answer
+    end function c_driver_set_max_step
+
+    function c_driver_advance(drv, t, t1, y) result(answer) bind(c,name='tribo_driver_advance')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), intent(inout), optional :: t(*)
+      real(c_double), value :: t1
+      real(c_double), intent(inout), optional :: y(*)
+      integer(c_int) :: answer
+    end function c_driver_advance
+
+    function c_driver_set_observer(drv, seen, data) result(answer) bind(c,name='tribo_driver_set_observer')
+      import
+      type(c_ptr), value :: drv
+      type(c_funptr), value :: seen
+      type(c_ptr), value :: data
+      integer(c_int) :: answer
+    end function c_driver_set_observer
+
+    function c_driver_find_periodic(drv, t, period, y) result(answer) bind(c,name='tribo_driver_find_periodic')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), value :: t
+      real(c_double), value :: period
+      real(c_double), intent(inout), optional :: y(*)
+      integer(c_int) :: answer
+    end function c_driver_find_periodic
+
+    function c_driver_get_multipliers(drv, re, im) result(answer) bind(c,name='tribo_driver_get_multipliers')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), intent(inout), optional :: re(*)
+      real(c_double), intent(inout), optional :: im(*)
+      integer(c_int) :: answer
+    end function c_driver_get_multipliers
+
+    function c_driver_get_freedom(drv, freedom) result(answer) bind(c,name='tribo_driver_get_freedom')
+      import
+      type(c_ptr), value :: drv
+      integer(c_size_t), intent(inout) :: freedom
+      integer(c_int) :: answer
+    end function c_driver_get_freedom
+
+    function c_driver_period_extremes(drv, c, least, most, at_least, at_most) result(answer) &
+      bind(c,name='tribo_driver_period_extremes')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), intent(in), optional :: c(*)
+      real(c_double), intent(inout), optional :: least(*)
+      real(c_double), intent(inout), optional :: most(*)
+      real(c_double), intent(inout), optional :: at_least(*)
+      real(c_double), intent(inout), optional :: at_most(*)
+      integer(c_int) :: answer
+    end function c_driver_period_extremes
+
+    function c_driver_period_harmonic(drv, c, k, cosine, sine) result(answer) bind(c,name='tribo_driver_period_harmonic')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), intent(in), optional :: c(*)
+      integer(c_size_t), value :: k
+      real(c_double), intent(inout), optional :: cosine(*)
+      real(c_double), intent(inout), optional :: sine(*)
+      integer(c_int) :: answer
+    end function c_driver_period_harmonic
+
+    function c_driver_period_dissipation(drv, energy) result(answer) bind(c,name='tribo_driver_period_dissipation')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), intent(inout), optional :: energy(*)
+      integer(c_int) :: answer
+    end function c_driver_period_dissipation
+
+    function c_driver_period_stick(drv, share) result(answer) bind(c,name='tribo_driver_period_stick')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), intent(inout), optional :: share(*)
+      integer(c_int) :: answer
+    end function c_driver_period_stick
+
+    function c_driver_count(drv, which, value) result(answer) bind(c,name='tribo_driver_count')
+      import
+      type(c_ptr), value :: drv
+      integer(c_int), value :: which
+      integer(c_size_t), intent(inout) :: value
+      integer(c_int) :: answer
+    end function c_driver_count
+
+    function c_driver_real(drv, which, value) result(answer) bind(c,name='tribo_driver_real')
+      import
+      type(c_ptr), value :: drv
+      integer(c_int), value :: which
+      real(c_double), intent(inout), optional :: value(*)
+      integer(c_int) :: answer
+    end function c_driver_real
+
+    function c_driver_message(drv) result(answer) bind(c,name='tribo_driver_message')
+      import
+      type(c_ptr), value :: drv
+      type(c_ptr) :: answer
+    end function c_driver_message
+
+    subroutine c_driver_destroy(drv) bind(c,name='tribo_driver_destroy')
+      import
+      type(c_ptr), value :: drv
+    end subroutine c_driver_destroy
+
+    pure function c_fortran_ndof(held) result(answer) bind(c,name='tribo_fortran_ndof')
+      import
+      type(c_ptr), intent(in), value :: held
+      integer(c_size_t) :: answer
+    end function c_fortran_ndof
+
+    pure function c_fortran_dimension(held) result(answer) bind(c,name='tribo_fortran_dimension')
+      import
+      type(c_ptr), intent(in), value :: held
+      integer(c_size_t) :: answer
+    end function c_fortran_dimension
+
+    pure function c_fortran_ncontact(held) result(answer) bind(c,name='tribo_fortran_ncontact')
+      import
+      type(c_ptr), intent(in), value :: held
+      integer(c_size_t) :: answer
+    end function c_fortran_ncontact
+
+    pure function c_fortran_given(held) result(answer) bind(c,name='tribo_fortran_given')
+      import
+      type(c_ptr), intent(in), value :: held
+      integer(c_size_t) :: answer
+    end function c_fortran_given
+
+    function c_fortran_dense(sys, ndof, ncontact, mass, damping, stiffness, direction, nmode, message, size) &
+      result(answer) bind(c,name='tribo_fortran_dense')
+      import
+      type(c_ptr), intent(inout) :: sys
+      integer(c_size_t), value :: ndof
+      integer(c_size_t), value :: ncontact
+      real(c_double), intent(in), optional :: mass(*)
+      real(c_double), intent(in), optional :: damping(*)
+      real(c_double), intent(in), optional :: stiffness(*)
+      real(c_double), intent(in), optional :: direction(*)
+      integer(c_size_t), value :: nmode
+      character(kind=c_char), intent(inout), optional :: message(*)
+      integer(c_size_t), value :: size
+      integer(c_int) :: answer
+    end function c_fortran_dense
+
+    function c_fortran_linear(sys, mass, damping, stiffness, direction, nmode, message, size) result(answer) &
+      bind(c,name='tribo_fortran_linear')
+      import
+      type(c_ptr), intent(inout) :: sys
+      type(c_ptr), value :: mass
+      type(c_ptr), value :: damping
+      type(c_ptr), value :: stiffness
+      type(c_ptr), value :: direction
+      integer(c_size_t), value :: nmode
+      character(kind=c_char), intent(inout), optional :: message(*)
+      integer(c_size_t), value :: size
+      integer(c_int) :: answer
+    end function c_fortran_linear
+
+    function c_fortran_reduced(sys, mass, stiffness, direction, nmode, static_contacts, message, size) result(answer) &
+      bind(c,name='tribo_fortran_reduced')
+      import
+      type(c_ptr), intent(inout) :: sys
+      type(c_ptr), value :: mass
+      type(c_ptr), value :: stiffness
+      type(c_ptr), value :: direction
+      integer(c_size_t), value :: nmode
+      integer(c_int), value :: static_contacts
+      character(kind=c_char), intent(inout), optional :: message(*)
+      integer(c_size_t), value :: size
+      integer(c_int) :: answer
+    end function c_fortran_reduced
+
+    function c_fortran_method_count() result(answer) bind(c,name='tribo_fortran_method_count')
+      import
+      integer(c_int) :: answer
+    end function c_fortran_method_count
+
+    function c_fortran_method_name(method) result(answer) bind(c,name='tribo_fortran_method_name')
+      import
+      integer(c_int), value :: method
+      type(c_ptr) :: answer
+    end function c_fortran_method_name
+
+    function c_fortran_driver_create(drv, sys, method) result(answer) bind(c,name='tribo_fortran_driver_create')
+      import
+      type(c_ptr), intent(inout) :: drv
+      type(c_ptr), value :: sys
+      character(kind=c_char), intent(in), optional :: method(*)
+      integer(c_int) :: answer
+    end function c_fortran_driver_create
+  end interface
+end module tribo_dynamics_c
