@@ -8,13 +8,6 @@
 
 #include "handle.h"
 
-/* A sparse matrix in compressed rows: row i has val[k] at column col[k], k = first[i] to first[i + 1] - 1, from 0. */
-struct tribo_rows {
-    size_t rows, columns;
-    const int *first, *col;
-    const double *val;
-};
-
 /* A system as Fortran holds it, and its sizes; 0 for NULL. given: degrees of freedom of the matrices that it was made of. */
 struct tribo_held {
     tribo_system *sys;
@@ -24,19 +17,6 @@ TRIBO_API TRIBO_PURE size_t tribo_fortran_ndof(const struct tribo_held *held);
 TRIBO_API TRIBO_PURE size_t tribo_fortran_dimension(const struct tribo_held *held);
 TRIBO_API TRIBO_PURE size_t tribo_fortran_ncontact(const struct tribo_held *held);
 TRIBO_API TRIBO_PURE size_t tribo_fortran_given(const struct tribo_held *held);
-
-/* A system of all degrees of freedom, or, with nmode > 0, of the lowest modes; damping may be NULL. message [size]: the model's. */
-TRIBO_API int tribo_fortran_dense(tribo_system **sys, size_t ndof, size_t ncontact, const double *mass, const double *damping,
-                                  const double *stiffness, const double *direction, size_t nmode, char *message, size_t size);
-
-TRIBO_API int tribo_fortran_linear(tribo_system **sys, const struct tribo_rows *mass, const struct tribo_rows *damping,
-                                   const struct tribo_rows *stiffness, const struct tribo_rows *direction, size_t nmode,
-                                   char *message, size_t size);
-
-/* The same of the lowest modes and static responses. */
-TRIBO_API int tribo_fortran_reduced(tribo_system **sys, const struct tribo_rows *mass, const struct tribo_rows *stiffness,
-                                    const struct tribo_rows *direction, size_t nmode, int static_contacts, char *message,
-                                    size_t size);
 
 /* Methods of tribo_dynamics.h, followed by the steppers of GSL in a build with libtribo_gsl, and a driver by one of them: methods.c
  * without GSL, methods_gsl.c with it. */

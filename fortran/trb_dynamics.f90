@@ -239,22 +239,54 @@ contains
     text = found
   end subroutine expect_least
 
-  !> For TRBLSP and TRBRED: a matrix from its rows, whose name goes before what is wrong with them.
-  subroutine read_rows(name, rows, columns, irow, icol, val, x, text, ierr)
+  !> For TRBLSP and TRBRED: gives the matrix called name to the model. Without effect if ierr is an error already.
+  subroutine set_rows(model, name, rows, columns, irow, icol, val, text, ierr)
+    type(tribo_model), intent(inout) :: model
     character(len=*), intent(in) :: name
     integer, intent(in) :: rows, columns, irow(*), icol(*)
     real(dp), intent(in) :: val(*)
-    type(tribo_sparse), intent(inout) :: x
     character(len=*), intent(inout) :: text
     integer, intent(inout) :: ierr
+    type(tribo_sparse) :: x
     character(len=240) :: found
     integer :: entries
 
     if (ierr /= TRIBO_OK) return
     entries = max(irow(rows + 1) - 1, 0)
     call x%set_csr(columns, irow(:rows + 1), icol(:entries), val(:entries), ierr, found)
-    if (ierr /= TRIBO_OK) text = name // ': ' // found
-  end subroutine read_rows
+    if (ierr /= TRIBO_OK) then
+      text = name // ': ' // found
+      return
+    end if
+    select case (name)
+    case ('mass')
+      call model%set_mass(x, ierr, text)
+    case ('damping')
+      if (entries > 0) call model%set_damping(x, ierr, text)
+    case ('stiffness')
+      call model%set_stiffness(x, ierr, text)
+    case ('direction')
+      call model%set_direction(x, ierr, text)
+    end select
+  end subroutine set_rows
+
+  !> A structure of the model, reduced where nmode is present, and its handle.
+  subroutine make_structure(model, ih, text, ierr, nmode, istat)
+    type(tribo_model), intent(in) :: model
+    integer, intent(inout) :: ih
+    character(len=*), intent(inout) :: text
+    integer, intent(out) :: ierr
+    integer, intent(in), optional :: nmode, istat
+    type(structure), pointer :: s
+
+    allocate (s)
+    if (present(nmode)) then
+      call s%system%reduce(model, nmode, merge(TRIBO_STATICS_NONE, TRIBO_STATICS_MASS, istat == 0), ierr, text)
+    else
+      call s%system%create(model, ierr, text)
+    end if
+    call give_structure(s, ih, ierr)
+  end subroutine make_structure
 end module tribo_fixed_dynamics
 
 ! --------------------------------------------------------------------------------------------------------------------- structure
@@ -267,21 +299,21 @@ subroutine trblin(ndof, n, rm, c, rk, ldm, rj, ldj, ih, text, ierr)
   integer, intent(inout) :: ih
   character(len=*), intent(inout) :: text
   integer, intent(out) :: ierr
-  type(structure), pointer :: s
+  type(tribo_model) :: model
 
   ierr = TRIBO_OK
   call expect_least('NDOF', ndof, 0, text, ierr)
   call expect_least('N', n, 0, text, ierr)
   call expect_least('LDM', ldm, ndof, text, ierr)
   call expect_least('LDJ', ldj, n, text, ierr)
-  if (ierr /= TRIBO_OK) return
-  allocate (s)
-  if (all(abs(c(:ndof, :ndof)) <= 0)) then
-    call s%system%linear(rm(:ndof, :ndof), rk(:ndof, :ndof), rj(:n, :ndof), stat=ierr, errmsg=text)
-  else
-    call s%system%linear(rm(:ndof, :ndof), rk(:ndof, :ndof), rj(:n, :ndof), c(:ndof, :ndof), stat=ierr, errmsg=text)
+  if (ierr == TRIBO_OK) call model%create(ndof, n, ierr, text)
+  if (ierr == TRIBO_OK) call model%set_mass(rm(:ndof, :ndof), ierr, text)
+  if (ierr == TRIBO_OK) then
+    if (.not. all(abs(c(:ndof, :ndof)) <= 0)) call model%set_damping(c(:ndof, :ndof), ierr, text)
   end if
-  call give_structure(s, ih, ierr)
+  if (ierr == TRIBO_OK) call model%set_stiffness(rk(:ndof, :ndof), ierr, text)
+  if (ierr == TRIBO_OK) call model%set_direction(rj(:n, :ndof), ierr, text)
+  if (ierr == TRIBO_OK) call make_structure(model, ih, text, ierr)
 end subroutine trblin
 
 subroutine trblsp(ndof, n, irm, icm, rm, irc, icc, c, irk, ick, rk, irj, icj, rj, ih, text, ierr)
@@ -292,24 +324,17 @@ subroutine trblsp(ndof, n, irm, icm, rm, irc, icc, c, irk, ick, rk, irj, icj, rj
   integer, intent(inout) :: ih
   character(len=*), intent(inout) :: text
   integer, intent(out) :: ierr
-  type(structure), pointer :: s
-  type(tribo_sparse) :: mass, damping, stiffness, direction
+  type(tribo_model) :: model
 
   ierr = TRIBO_OK
   call expect_least('NDOF', ndof, 0, text, ierr)
   call expect_least('N', n, 0, text, ierr)
-  call read_rows('mass', ndof, ndof, irm, icm, rm, mass, text, ierr)
-  call read_rows('damping', ndof, ndof, irc, icc, c, damping, text, ierr)
-  call read_rows('stiffness', ndof, ndof, irk, ick, rk, stiffness, text, ierr)
-  call read_rows('direction', n, ndof, irj, icj, rj, direction, text, ierr)
-  if (ierr /= TRIBO_OK) return
-  allocate (s)
-  if (irc(ndof + 1) == 1) then
-    call s%system%linear(mass, stiffness, direction, stat=ierr, errmsg=text)
-  else
-    call s%system%linear(mass, stiffness, direction, damping, stat=ierr, errmsg=text)
-  end if
-  call give_structure(s, ih, ierr)
+  if (ierr == TRIBO_OK) call model%create(ndof, n, ierr, text)
+  call set_rows(model, 'mass', ndof, ndof, irm, icm, rm, text, ierr)
+  call set_rows(model, 'damping', ndof, ndof, irc, icc, c, text, ierr)
+  call set_rows(model, 'stiffness', ndof, ndof, irk, ick, rk, text, ierr)
+  call set_rows(model, 'direction', n, ndof, irj, icj, rj, text, ierr)
+  if (ierr == TRIBO_OK) call make_structure(model, ih, text, ierr)
 end subroutine trblsp
 
 subroutine trbred(nfull, n, irm, icm, rm, irk, ick, rk, irj, icj, rj, nmode, istat, ih, text, ierr)
@@ -320,20 +345,17 @@ subroutine trbred(nfull, n, irm, icm, rm, irk, ick, rk, irj, icj, rj, nmode, ist
   integer, intent(inout) :: ih
   character(len=*), intent(inout) :: text
   integer, intent(out) :: ierr
-  type(structure), pointer :: s
-  type(tribo_sparse) :: mass, stiffness, direction
+  type(tribo_model) :: model
 
   ierr = TRIBO_OK
   call expect_least('NFULL', nfull, 0, text, ierr)
   call expect_least('N', n, 0, text, ierr)
   call expect_least('NMODE', nmode, 1, text, ierr)
-  call read_rows('mass', nfull, nfull, irm, icm, rm, mass, text, ierr)
-  call read_rows('stiffness', nfull, nfull, irk, ick, rk, stiffness, text, ierr)
-  call read_rows('direction', n, nfull, irj, icj, rj, direction, text, ierr)
-  if (ierr /= TRIBO_OK) return
-  allocate (s)
-  call s%system%reduced(mass, stiffness, direction, nmode, istat /= 0, ierr, text)
-  call give_structure(s, ih, ierr)
+  if (ierr == TRIBO_OK) call model%create(nfull, n, ierr, text)
+  call set_rows(model, 'mass', nfull, nfull, irm, icm, rm, text, ierr)
+  call set_rows(model, 'stiffness', nfull, nfull, irk, ick, rk, text, ierr)
+  call set_rows(model, 'direction', n, nfull, irj, icj, rj, text, ierr)
+  if (ierr == TRIBO_OK) call make_structure(model, ih, text, ierr, nmode, istat)
 end subroutine trbred
 
 subroutine trbcln(ih, ihnew, ierr)

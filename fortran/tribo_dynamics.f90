@@ -36,7 +36,7 @@ module tribo_systems
   type, public :: tribo_sparse
     private
     integer :: rows = 0, columns = 0
-    integer(c_int), allocatable :: first(:), col(:)
+    integer(c_size_t), allocatable :: first(:), col(:) ! from 0
     real(dp), allocatable :: val(:)
   contains
     procedure :: set_csr, set_coo
@@ -73,9 +73,6 @@ module tribo_systems
     procedure :: reduce => reduce_system
     procedure :: oscillator, chain, belt
     procedure :: clone => clone_system
-    procedure, private :: linear_dense, linear_sparse
-    generic :: linear => linear_dense, linear_sparse
-    procedure :: reduced
     procedure :: add_load, add_base_motion, add_load_table, add_limit
     procedure :: clear_loads, clear_base_motion, clear_limits
     procedure :: set_limit_table, get_limit, set_damping_ratio
@@ -133,6 +130,22 @@ module tribo_systems
     end function seen
   end interface
 
+  abstract interface
+    !> tribo_model_set_mass and its kin, of full matrices and diagonals; of compressed rows.
+    integer(c_int) function values_setter(model, x) bind(c)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: model
+      real(c_double), intent(in), optional :: x(*)
+    end function values_setter
+
+    integer(c_int) function rows_setter(model, rowptr, col, val) bind(c)
+      import :: c_int, c_ptr, c_double, c_size_t
+      type(c_ptr), value :: model
+      integer(c_size_t), intent(in), optional :: rowptr(*), col(*)
+      real(c_double), intent(in), optional :: val(*)
+    end function rows_setter
+  end interface
+
   !> The library's system with what Fortran needs to know of it: tribo_held of dynamics.h. users counts the variable and the drivers.
   type, bind(c) :: held_system
     type(c_ptr) :: sys
@@ -153,12 +166,6 @@ module tribo_systems
     integer(c_int) :: kind
     integer(c_size_t) :: contact
   end type c_moment
-
-  !> tribo_rows of dynamics.h.
-  type, bind(c) :: rows_of
-    integer(c_size_t) :: rows, columns
-    type(c_ptr) :: first, col, val
-  end type rows_of
 
 contains
 
@@ -246,8 +253,8 @@ contains
     if (w%status /= TRIBO_OK) return
     this%rows = size(rowptr) - 1
     this%columns = columns
-    this%first = int(rowptr - 1, c_int)
-    this%col = int(col - 1, c_int)
+    this%first = from_zero(rowptr)
+    this%col = from_zero(col)
     this%val = val
   end subroutine fill
 
@@ -266,6 +273,7 @@ contains
     call expect_count(w, 'ndof', ndof)
     call expect_count(w, 'ncontact', ncontact)
     if (w%status == TRIBO_OK) w%status = c_model_create(model, int(ndof, c_size_t), int(ncontact, c_size_t))
+    if (w%status == TRIBO_ERR_SIZE .and. ndof == 0) w%text = 'ndof = 0: a model has a degree of freedom at least'
     if (w%status == TRIBO_OK) then
       w%status = adopt(this, model, c_funloc(release_model))
       if (w%status /= TRIBO_OK) call c_model_destroy(model)
@@ -279,12 +287,7 @@ contains
     real(dp), intent(in) :: m(:,:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(work) :: w
-
-    call find_model(this, w)
-    call expect_size(w, 'mass', m, w%dimension)
-    if (w%status == TRIBO_OK) w%status = c_model_set_mass(w%object, transpose(m))
-    call finish_model(w, stat, errmsg)
+    call set_dense(this, 'mass', m, c_model_set_mass, stat, errmsg)
   end subroutine mass_dense
 
   subroutine mass_diagonal(this, m, stat, errmsg)
@@ -292,12 +295,7 @@ contains
     real(dp), intent(in) :: m(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(work) :: w
-
-    call find_model(this, w)
-    call expect_size(w, 'mass', m, w%dimension)
-    if (w%status == TRIBO_OK) w%status = c_model_set_mass_diagonal(w%object, m)
-    call finish_model(w, stat, errmsg)
+    call set_diagonal(this, 'mass', m, c_model_set_mass_diagonal, stat, errmsg)
   end subroutine mass_diagonal
 
   subroutine mass_sparse(this, m, stat, errmsg)
@@ -305,13 +303,7 @@ contains
     type(tribo_sparse), intent(in) :: m
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(work) :: w
-
-    call find_model(this, w)
-    call expect_sparse(w, 'mass', m, w%dimension)
-    if (w%status == TRIBO_OK) w%status = &
-      c_model_set_mass_csr(w%object, int(m%first, c_size_t), int(m%col, c_size_t), m%val)
-    call finish_model(w, stat, errmsg)
+    call set_sparse(this, 'mass', m, c_model_set_mass_csr, stat, errmsg)
   end subroutine mass_sparse
 
   !> Damping as a full matrix, as its diagonal, or sparse. A new one takes the place of the last one.
@@ -320,12 +312,7 @@ contains
     real(dp), intent(in) :: c(:,:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(work) :: w
-
-    call find_model(this, w)
-    call expect_size(w, 'damping', c, w%dimension)
-    if (w%status == TRIBO_OK) w%status = c_model_set_damping(w%object, transpose(c))
-    call finish_model(w, stat, errmsg)
+    call set_dense(this, 'damping', c, c_model_set_damping, stat, errmsg)
   end subroutine damping_dense
 
   subroutine damping_diagonal(this, c, stat, errmsg)
@@ -333,12 +320,7 @@ contains
     real(dp), intent(in) :: c(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(work) :: w
-
-    call find_model(this, w)
-    call expect_size(w, 'damping', c, w%dimension)
-    if (w%status == TRIBO_OK) w%status = c_model_set_damping_diagonal(w%object, c)
-    call finish_model(w, stat, errmsg)
+    call set_diagonal(this, 'damping', c, c_model_set_damping_diagonal, stat, errmsg)
   end subroutine damping_diagonal
 
   subroutine damping_sparse(this, c, stat, errmsg)
@@ -346,13 +328,7 @@ contains
     type(tribo_sparse), intent(in) :: c
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(work) :: w
-
-    call find_model(this, w)
-    call expect_sparse(w, 'damping', c, w%dimension)
-    if (w%status == TRIBO_OK) w%status = &
-      c_model_set_damping_csr(w%object, int(c%first, c_size_t), int(c%col, c_size_t), c%val)
-    call finish_model(w, stat, errmsg)
+    call set_sparse(this, 'damping', c, c_model_set_damping_csr, stat, errmsg)
   end subroutine damping_sparse
 
   !> Stiffness as a full matrix, as its diagonal, or sparse. A new one takes the place of the last one.
@@ -361,12 +337,7 @@ contains
     real(dp), intent(in) :: k(:,:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(work) :: w
-
-    call find_model(this, w)
-    call expect_size(w, 'stiffness', k, w%dimension)
-    if (w%status == TRIBO_OK) w%status = c_model_set_stiffness(w%object, transpose(k))
-    call finish_model(w, stat, errmsg)
+    call set_dense(this, 'stiffness', k, c_model_set_stiffness, stat, errmsg)
   end subroutine stiffness_dense
 
   subroutine stiffness_diagonal(this, k, stat, errmsg)
@@ -374,12 +345,7 @@ contains
     real(dp), intent(in) :: k(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(work) :: w
-
-    call find_model(this, w)
-    call expect_size(w, 'stiffness', k, w%dimension)
-    if (w%status == TRIBO_OK) w%status = c_model_set_stiffness_diagonal(w%object, k)
-    call finish_model(w, stat, errmsg)
+    call set_diagonal(this, 'stiffness', k, c_model_set_stiffness_diagonal, stat, errmsg)
   end subroutine stiffness_diagonal
 
   subroutine stiffness_sparse(this, k, stat, errmsg)
@@ -387,13 +353,7 @@ contains
     type(tribo_sparse), intent(in) :: k
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(work) :: w
-
-    call find_model(this, w)
-    call expect_sparse(w, 'stiffness', k, w%dimension)
-    if (w%status == TRIBO_OK) w%status = &
-      c_model_set_stiffness_csr(w%object, int(k%first, c_size_t), int(k%col, c_size_t), k%val)
-    call finish_model(w, stat, errmsg)
+    call set_sparse(this, 'stiffness', k, c_model_set_stiffness_csr, stat, errmsg)
   end subroutine stiffness_sparse
 
   !> J (ncontact,ndof): row i is how the velocities of the degrees of freedom make that of contact i; or sparse.
@@ -402,12 +362,7 @@ contains
     real(dp), intent(in) :: j(:,:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(work) :: w
-
-    call find_model(this, w)
-    call expect_size(w, 'direction', j, w%dimension, w%n)
-    if (w%status == TRIBO_OK) w%status = c_model_set_direction(w%object, transpose(j))
-    call finish_model(w, stat, errmsg)
+    call set_dense(this, 'direction', j, c_model_set_direction, stat, errmsg)
   end subroutine direction_dense
 
   subroutine direction_sparse(this, j, stat, errmsg)
@@ -415,14 +370,61 @@ contains
     type(tribo_sparse), intent(in) :: j
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
+    call set_sparse(this, 'direction', j, c_model_set_direction_csr, stat, errmsg)
+  end subroutine direction_sparse
+
+  !> A matrix called name to the model, by set: full, its diagonal, or sparse. The direction has a row a contact.
+  subroutine set_dense(this, name, x, set, stat, errmsg)
+    class(tribo_model), intent(in) :: this
+    character(len=*), intent(in) :: name
+    real(dp), intent(in) :: x(:,:)
+    procedure(values_setter) :: set
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
     call find_model(this, w)
-    call expect_sparse(w, 'direction', j, w%n)
-    if (w%status == TRIBO_OK) w%status = &
-      c_model_set_direction_csr(w%object, int(j%first, c_size_t), int(j%col, c_size_t), j%val)
+    call expect_size(w, name, x, w%dimension, rows_of(w, name))
+    if (w%status == TRIBO_OK) w%status = set(w%object, transpose(x))
     call finish_model(w, stat, errmsg)
-  end subroutine direction_sparse
+  end subroutine set_dense
+
+  subroutine set_diagonal(this, name, x, set, stat, errmsg)
+    class(tribo_model), intent(in) :: this
+    character(len=*), intent(in) :: name
+    real(dp), intent(in) :: x(:)
+    procedure(values_setter) :: set
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_model(this, w)
+    call expect_size(w, name, x, w%dimension)
+    if (w%status == TRIBO_OK) w%status = set(w%object, x)
+    call finish_model(w, stat, errmsg)
+  end subroutine set_diagonal
+
+  subroutine set_sparse(this, name, x, set, stat, errmsg)
+    class(tribo_model), intent(in) :: this
+    character(len=*), intent(in) :: name
+    type(tribo_sparse), intent(in) :: x
+    procedure(rows_setter) :: set
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_model(this, w)
+    if (.not. allocated(x%val)) call fail(w, TRIBO_ERR_NULL, name // ' has not been set')
+    if (w%status == TRIBO_OK) call expect_shape(w, name, [x%rows, x%columns], [rows_of(w, name), w%dimension])
+    if (w%status == TRIBO_OK) w%status = set(w%object, x%first, x%col, x%val)
+    call finish_model(w, stat, errmsg)
+  end subroutine set_sparse
+
+  pure integer function rows_of(w, name)
+    type(work), intent(in) :: w
+    character(len=*), intent(in) :: name
+    rows_of = merge(w%n, w%dimension, name == 'direction')
+  end function rows_of
 
   !> Springs before the sliders of contacts, c(ncontact) = 1/stiffness >= 0; 0: a rigid contact.
   subroutine set_compliance(this, c, stat, errmsg)
@@ -510,15 +512,6 @@ contains
       call to_text(c_model_message(w%object), w%text)
     call finish(w, stat, errmsg)
   end subroutine finish_model
-
-  subroutine expect_sparse(w, name, x, rows)
-    type(work), intent(inout) :: w
-    character(len=*), intent(in) :: name
-    type(tribo_sparse), intent(in) :: x
-    integer, intent(in) :: rows
-    call expect_given(w, name, x)
-    if (w%status == TRIBO_OK) call expect_shape(w, name, [x%rows, x%columns], [rows, w%dimension])
-  end subroutine expect_sparse
 
   subroutine release_model(object) bind(c, name='')
     type(c_ptr), value :: object
@@ -611,115 +604,6 @@ contains
     call adopt_system(this, w, sys)
     call finish(w, stat, errmsg)
   end subroutine belt
-
-  !> Any linear structure, from its matrices in the caller's units.
-  !> mass       (ndof,ndof)      symmetric, positive definite; diagonal is fastest
-  !> damping    (ndof,ndof)      none where absent
-  !> stiffness  (ndof,ndof)      symmetric
-  !> direction  (ncontact,ndof)  J: row i is how the velocities of the degrees of freedom make that of contact i
-  !> nmode      keep only the motion in the nmode lowest modes of (K, M): q then holds their amplitudes (modes have modal mass 1),
-  !>            ndof of the system is nmode, and damping must be absent (see set_damping_ratio)
-  !> The context starts with Quinn's law and limit 0 (all contacts open), and with R = J M**-1 J'. No load, no motion yet.
-  subroutine linear_dense(this, mass, stiffness, direction, damping, nmode, stat, errmsg)
-    class(tribo_system), intent(inout) :: this
-    real(dp), intent(in) :: mass(:,:), stiffness(:,:), direction(:,:)
-    real(dp), intent(in), optional :: damping(:,:)
-    integer, intent(in), optional :: nmode
-    integer, intent(out), optional :: stat
-    character(len=*), intent(inout), optional :: errmsg
-    type(work) :: w
-    type(c_ptr) :: sys
-    real(dp), allocatable :: given_damping(:,:)
-    character(kind=c_char) :: message(240)
-    integer :: n
-
-    n = size(mass, 1)
-    w%status = TRIBO_OK
-    call expect_size(w, 'mass', mass, n)
-    if (present(nmode)) call expect_count(w, 'nmode', nmode)
-    call expect_size(w, 'stiffness', stiffness, n)
-    call expect_size(w, 'direction', direction, n, size(direction, 1))
-    if (present(damping)) then
-      call expect_size(w, 'damping', damping, n)
-      given_damping = transpose(damping)
-    end if
-    if (w%status == TRIBO_OK) then
-      message = c_null_char
-      w%status = c_fortran_dense(sys, int(n, c_size_t), size(direction, 1, c_size_t), transpose(mass), given_damping, &
-        transpose(stiffness), transpose(direction), modes(nmode), message, size(message, kind=c_size_t))
-      call note(w, message)
-    end if
-    call adopt_system(this, w, sys, n)
-    call finish(w, stat, errmsg)
-  end subroutine linear_dense
-
-  !> The same from sparse matrices. Without reduction a mass matrix that is not diagonal makes the system dense.
-  subroutine linear_sparse(this, mass, stiffness, direction, damping, nmode, stat, errmsg)
-    class(tribo_system), intent(inout) :: this
-    type(tribo_sparse), intent(in), target :: mass, stiffness, direction
-    type(tribo_sparse), intent(in), optional, target :: damping
-    integer, intent(in), optional :: nmode
-    integer, intent(out), optional :: stat
-    character(len=*), intent(inout), optional :: errmsg
-    type(work) :: w
-    type(rows_of), target :: rows(4)
-    type(c_ptr) :: sys, at
-    character(kind=c_char) :: message(240)
-
-    w%status = TRIBO_OK
-    call expect_given(w, 'mass', mass)
-    if (present(nmode)) call expect_count(w, 'nmode', nmode)
-    call expect_given(w, 'stiffness', stiffness)
-    call expect_given(w, 'direction', direction)
-    at = c_null_ptr
-    if (present(damping)) then
-      call expect_given(w, 'damping', damping)
-      if (w%status == TRIBO_OK) rows(4) = borrowed(damping)
-      at = c_loc(rows(4))
-    end if
-    if (w%status == TRIBO_OK) then
-      message = c_null_char
-      rows(:3) = [borrowed(mass), borrowed(stiffness), borrowed(direction)]
-      w%status = c_fortran_linear(sys, c_loc(rows(1)), at, c_loc(rows(2)), c_loc(rows(3)), modes(nmode), message, &
-        size(message, kind=c_size_t))
-      call note(w, message)
-    end if
-    call adopt_system(this, w, sys, mass%rows)
-    call finish(w, stat, errmsg)
-  end subroutine linear_sparse
-
-  !> A structure reduced to its lowest nmode modes and, unless static_contacts is .false., to what steady forces at its contacts
-  !> do beside them. A load's static response is had from a row of direction that is the load, as a contact whose limit stays 0.
-  subroutine reduced(this, mass, stiffness, direction, nmode, static_contacts, stat, errmsg)
-    class(tribo_system), intent(inout) :: this
-    type(tribo_sparse), intent(in), target :: mass, stiffness, direction
-    integer, intent(in) :: nmode
-    logical, intent(in), optional :: static_contacts
-    integer, intent(out), optional :: stat
-    character(len=*), intent(inout), optional :: errmsg
-    type(work) :: w
-    type(rows_of), target :: rows(3)
-    type(c_ptr) :: sys
-    integer(c_int) :: statics
-    character(kind=c_char) :: message(240)
-
-    w%status = TRIBO_OK
-    call expect_given(w, 'mass', mass)
-    call expect_count(w, 'nmode', nmode)
-    call expect_given(w, 'stiffness', stiffness)
-    call expect_given(w, 'direction', direction)
-    statics = 1
-    if (present(static_contacts)) statics = merge(1_c_int, 0_c_int, static_contacts)
-    if (w%status == TRIBO_OK) then
-      message = c_null_char
-      rows = [borrowed(mass), borrowed(stiffness), borrowed(direction)]
-      w%status = c_fortran_reduced(sys, c_loc(rows(1)), c_loc(rows(2)), c_loc(rows(3)), modes(nmode), statics, message, &
-        size(message, kind=c_size_t))
-      call note(w, message)
-    end if
-    call adopt_system(this, w, sys, mass%rows)
-    call finish(w, stat, errmsg)
-  end subroutine reduced
 
   !> Adds a harmonic to the load, p(t) = ... + cosine*cos(omega*t) + sine*sin(omega*t); forces on the degrees of freedom of the
   !> matrices given, also for a reduced system.
@@ -1595,43 +1479,6 @@ contains
     call finish(w)
   end subroutine refuse
 
-  integer(c_size_t) function modes(nmode)
-    integer, intent(in), optional :: nmode
-    modes = 0
-    if (present(nmode)) modes = int(nmode, c_size_t)
-  end function modes
-
-  !> Keeps the text of a creation that failed.
-  subroutine note(w, message)
-    type(work), intent(inout) :: w
-    character(kind=c_char), intent(in) :: message(:)
-    integer :: i
-    if (w%status == TRIBO_OK) return
-    w%text = ''
-    do i = 1, size(message)
-      if (message(i) == c_null_char) exit
-      w%text = w%text // message(i)
-    end do
-  end subroutine note
-
-  subroutine expect_given(w, name, x)
-    type(work), intent(inout) :: w
-    character(len=*), intent(in) :: name
-    type(tribo_sparse), intent(in) :: x
-    if (.not. allocated(x%val)) call fail(w, TRIBO_ERR_NULL, name // ' has not been set')
-  end subroutine expect_given
-
-  type(rows_of) function borrowed(x)
-    type(tribo_sparse), intent(in), target :: x
-    borrowed%rows = int(x%rows, c_size_t)
-    borrowed%columns = int(x%columns, c_size_t)
-    borrowed%first = c_loc(x%first)
-    borrowed%col = c_null_ptr
-    borrowed%val = c_null_ptr
-    if (size(x%val) == 0) return
-    borrowed%col = c_loc(x%col)
-    borrowed%val = c_loc(x%val)
-  end function borrowed
 end module tribo_systems
 
 !> What programs use: the module above, and the constants of tribo_dynamics.h.

@@ -658,50 +658,6 @@ module tribo_dynamics_c
       integer(c_size_t) :: answer
     end function c_fortran_given
 
-    function c_fortran_dense(sys, ndof, ncontact, mass, damping, stiffness, direction, nmode, message, size) &
-      result(answer) bind(c,name='tribo_fortran_dense')
-      import
-      type(c_ptr), intent(inout) :: sys
-      integer(c_size_t), value :: ndof
-      integer(c_size_t), value :: ncontact
-      real(c_double), intent(in), optional :: mass(*)
-      real(c_double), intent(in), optional :: damping(*)
-      real(c_double), intent(in), optional :: stiffness(*)
-      real(c_double), intent(in), optional :: direction(*)
-      integer(c_size_t), value :: nmode
-      character(kind=c_char), intent(inout), optional :: message(*)
-      integer(c_size_t), value :: size
-      integer(c_int) :: answer
-    end function c_fortran_dense
-
-    function c_fortran_linear(sys, mass, damping, stiffness, direction, nmode, message, size) result(answer) &
-      bind(c,name='tribo_fortran_linear')
-      import
-      type(c_ptr), intent(inout) :: sys
-      type(c_ptr), value :: mass
-      type(c_ptr), value :: damping
-      type(c_ptr), value :: stiffness
-      type(c_ptr), value :: direction
-      integer(c_size_t), value :: nmode
-      character(kind=c_char), intent(inout), optional :: message(*)
-      integer(c_size_t), value :: size
-      integer(c_int) :: answer
-    end function c_fortran_linear
-
-    function c_fortran_reduced(sys, mass, stiffness, direction, nmode, static_contacts, message, size) result(answer) &
-      bind(c,name='tribo_fortran_reduced')
-      import
-      type(c_ptr), intent(inout) :: sys
-      type(c_ptr), value :: mass
-      type(c_ptr), value :: stiffness
-      type(c_ptr), value :: direction
-      integer(c_size_t), value :: nmode
-      integer(c_int), value :: static_contacts
-      character(kind=c_char), intent(inout), optional :: message(*)
-      integer(c_size_t), value :: size
-      integer(c_int) :: answer
-    end function c_fortran_reduced
-
     function c_fortran_method_count() result(answer) bind(c,name='tribo_fortran_method_count')
       import
       integer(c_int) :: answer

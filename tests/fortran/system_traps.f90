@@ -3,6 +3,7 @@
 program system_traps
   use check, only: report, require
   use tribo
+  use making, only: make_linear
   use tribo_dynamics
   implicit none
 
@@ -29,7 +30,7 @@ contains
 
     do nmode = 0, 1
       message = ''
-      call sys%linear(reshape(mass, [2, 2]), stiffness, direction, nmode=nmode, stat=stat, errmsg=message)
+      call make_linear(sys, reshape(mass, [2, 2]), stiffness, direction, nmode=nmode, stat=stat, errmsg=message)
       call require(stat /= TRIBO_OK .and. index(message, text) > 0, text // ': ' // trim(message))
     end do
   end subroutine refused
@@ -50,7 +51,7 @@ contains
       call run(sys, method, law)
       call sys%belt(1.0_dp, 0.5_dp, 0.25_dp, 1.0_dp, 0.5_dp)
       call run(sys, method, law)
-      call sys%linear(mass, stiffness, direction)
+      call make_linear(sys, mass, stiffness, direction)
       call sys%add_load(1.0_dp, sine=[1.0_dp, 0.0_dp])
       call sys%context(c)
       call c%set_limit([0.5_dp, 0.0_dp, 0.25_dp])

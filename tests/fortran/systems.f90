@@ -27,6 +27,7 @@ program systems
   use, intrinsic :: iso_fortran_env, only: int64
   use check, only: alive, report, require, same_bits
   use counting, only: counter
+  use making, only: make_linear, make_reduced
   use tape, only: compare, end_of_tape, record
   use tribo
   use tribo_gsl
@@ -82,13 +83,13 @@ contains
     call sys%belt(1.5_dp, 0.3_dp, 0.2_dp, 1.0_dp, 0.8_dp, stat)
     call compare('belt', stat)
     call reference(sys)
-    call sys%linear(mass, stiffness, direction, stat=stat)
+    call make_linear(sys, mass, stiffness, direction, stat=stat)
     call compare('linear', stat)
     call linear(sys, .false.)
-    call sys%linear(mass, stiffness, direction, damping, stat=stat)
+    call make_linear(sys, mass, stiffness, direction, damping, stat=stat)
     call compare('linear', stat)
     call linear(sys, .false.)
-    call sys%linear(mass, stiffness, direction, nmode=2, stat=stat)
+    call make_linear(sys, mass, stiffness, direction, nmode=2, stat=stat)
     call compare('linear', stat)
     call linear(sys, .true.)
     ! Mass and direction by triplets, backwards; the others by rows.
@@ -97,19 +98,19 @@ contains
     call k%set_csr(dof, [1, 3, 6, 9, 11], [1, 2, 2, 1, 3, 2, 3, 4, 3, 4], [real(dp) :: 3, -1, 2, -1, -1, -1, 2, -1, -1, 1])
     call c%set_csr(dof, [1, 3, 6, 9, 11], [1, 2, 2, 1, 3, 2, 3, 4, 3, 4], &
       [0.3_dp, -0.05_dp, 0.2_dp, -0.1_dp, -0.1_dp, -0.1_dp, 0.2_dp, -0.1_dp, -0.1_dp, 0.1_dp])
-    call sys%linear(m, k, j, stat=stat)
+    call make_linear(sys, [dof, ncontact], m, k, j, stat=stat)
     call compare('linear, sparse', stat)
     call linear(sys, .false.)
-    call sys%linear(m, k, j, c, stat=stat)
+    call make_linear(sys, [dof, ncontact], m, k, j, c, stat=stat)
     call compare('linear, sparse', stat)
     call linear(sys, .false.)
-    call sys%linear(m, k, j, nmode=2, stat=stat)
+    call make_linear(sys, [dof, ncontact], m, k, j, nmode=2, stat=stat)
     call compare('linear, sparse', stat)
     call linear(sys, .true.)
-    call sys%reduced(m, k, j, 2, .false., stat)
+    call make_reduced(sys, [dof, ncontact], m, k, j, 2, .false., stat)
     call compare('reduced', stat)
     call linear(sys, .true.)
-    call sys%reduced(m, k, j, 1, stat=stat)
+    call make_reduced(sys, [dof, ncontact], m, k, j, 1, stat=stat)
     call compare('reduced, statics', stat)
     call truncation(sys)
   end subroutine all_systems
@@ -356,8 +357,8 @@ contains
     wide = gap
     wide(::2, ::2, 1) = mass
     wide(2:2*ncontact:2, :dof, 3) = direction
-    call a%linear(mass, stiffness, direction)
-    call b%linear(wide(::2, ::2, 1), stiffness, wide(2:2*ncontact:2, :dof, 3))
+    call make_linear(a, mass, stiffness, direction)
+    call make_linear(b, wide(::2, ::2, 1), stiffness, wide(2:2*ncontact:2, :dof, 3))
     rows = gap
     rows(1, :dof) = cosine
     rows(2, 3*dof:2*dof + 1:-1) = sine
@@ -406,7 +407,7 @@ contains
     call drv%set_max_step(0.02_dp)
     call drv%advance(t, 1.0_dp, y(1, :, 1))
     call require(all(same_bits(x(:, 1), y(1, :, 1))) .and. all(same_bits(y(2, :, :), gap)), 'sections: advance')
-    call a%linear(mass, stiffness, direction, nmode=2)
+    call make_linear(a, mass, stiffness, direction, nmode=2)
     call a%get_frequencies(x(:2, 1))
     call a%get_frequencies(y(1, :9:8, 1))
     call require(all(same_bits(x(:2, 1), y(1, ::8, 1))), 'sections: get_frequencies')
