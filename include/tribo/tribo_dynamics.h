@@ -141,7 +141,15 @@ TRIBO_API int tribo_system_add_base_motion(tribo_system *sys, double omega, cons
 TRIBO_API int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value,
                                           const double *pattern);
 
-/* Takes all base motions away. Returns TRIBO_ERR_NULL. */
+/* Adds driven velocities that follow a table, b(t) += pattern * value(t), with value as above: e.g. of the ground in an earthquake.
+ * time, value  [knots] in   time ascends
+ * pattern      [ncontact] in
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE (no knots), TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (time does not ascend),
+ * TRIBO_ERR_MEMORY. */
+TRIBO_API int tribo_system_add_base_table(tribo_system *sys, size_t knots, const double *time, const double *value,
+                                          const double *pattern);
+
+/* Takes all base motions away, harmonics and tables. Returns TRIBO_ERR_NULL. */
 TRIBO_API int tribo_system_clear_base_motion(tribo_system *sys);
 
 /* Adds a harmonic to the limits, limit(t) = max(0, limit + cosine cos(omega t) + sine sin(omega t) + ...): mu times a normal load

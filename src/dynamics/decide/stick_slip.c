@@ -28,6 +28,24 @@ static void add_amplitudes(const tribo_system *sys, enum drives drives, int orde
     }
 }
 
+/* The same of the tables of b: y += the largest values, rate += the steepest slopes. */
+static void add_base_tables(const tribo_system *sys, double *y, double *rate)
+{
+    for (size_t s = 0; s < sys->tables; s++) {
+        const struct table *table = &sys->table[s];
+        double most = 0.0, steepest = 0.0;
+        for (size_t k = 0; table->drives == DRIVES_BASE && k < table->knots; k++) {
+            const double rise = k ? (table->value[k] - table->value[k - 1]) / (table->time[k] - table->time[k - 1]) : 0.0;
+            most = greater(most, fabs(table->value[k]));
+            steepest = greater(steepest, fabs(rise));
+        }
+        for (size_t i = 0; table->drives == DRIVES_BASE && i < sys->ncontact; i++) {
+            y[i] += most * fabs(table->pattern[i]);
+            rate[i] += steepest * fabs(table->pattern[i]);
+        }
+    }
+}
+
 /* A time is known to its rounding. Where contacts that repeat each other may rest, what one holds follows its base, and the
  * others see the rounding of that. */
 static void find_base_sizes(struct stick_slip *m, const tribo_system *sys)
@@ -51,6 +69,7 @@ void tribo_stick_slip_find_scales(struct stick_slip *m, const tribo_system *sys)
     memset(m->load_size, 0, sys->ndof * sizeof *m->load_size);
     add_amplitudes(sys, DRIVES_BASE, 0, m->base_size);
     add_amplitudes(sys, DRIVES_BASE, 1, m->base_rate_size);
+    add_base_tables(sys, m->base_size, m->base_rate_size);
     add_amplitudes(sys, DRIVES_LOAD, 0, m->load_size);
     find_base_sizes(m, sys);
 }
@@ -67,7 +86,7 @@ static double find_size(struct stick_slip *m, const tribo_system *sys, const dou
         return m->size[d];
     }
     if (sys->tables) {
-        tribo_system_tables(sys, 0, 1.0, d, d + 1, m->size);
+        tribo_system_tables(sys, DRIVES_LOAD, 0, 1.0, d, d + 1, m->size);
     }
     double size = m->load_size[d] + fabs(m->size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
                   tribo_matrix_row_size(&sys->response, d, m->force);
@@ -142,7 +161,7 @@ void tribo_stick_slip_find_free(struct stick_slip *m, tribo_system *sys, double 
 {
     tribo_system_free_acceleration(sys, t, y, m->free);
     m->a = m->free;
-    if (!sys->direction.identity || sys->base_harmonics) {
+    if (!sys->direction.identity || tribo_system_bases_move(sys)) {
         tribo_stick_slip_contact_accelerations(sys, m->free, 1, m->own_a);
         m->a = m->own_a;
     }
@@ -151,7 +170,7 @@ void tribo_stick_slip_find_free(struct stick_slip *m, tribo_system *sys, double 
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
 {
     tribo_matrix_multiply(&sys->direction, acceleration, to);
-    if (sys->base_harmonics) {
+    if (tribo_system_bases_move(sys)) {
         tribo_system_loads(sys, DRIVES_BASE, order, -1.0, to);
     }
 }

@@ -158,7 +158,7 @@ int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, doubl
 /* b(t), which is zero throughout where no base moves. */
 static void find_base(struct stick_slip *m, const tribo_system *sys)
 {
-    if (sys->base_harmonics) {
+    if (tribo_system_bases_move(sys)) {
         memset(m->base, 0, sys->ncontact * sizeof *m->base);
         tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->base);
     }
@@ -201,6 +201,7 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
     tribo_breakaway_start(&m->breakaway, sys, m->rate, m->v);
     m->stick = m->breakaway.some ? m->breakaway.stick : m->limit;
     m->stick_rate = m->breakaway.some ? m->breakaway.stick_rate : m->limit_rate;
+    memset(m->base, 0, sys->ncontact * sizeof *m->base);
     find_base(m, sys);
     tribo_stick_slip_find_scales(m, sys);
     memset(m->seen, 0, sys->ncontact * sizeof *m->seen);
@@ -216,7 +217,7 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
     m->fresh = m->hold_differs = 1;
     m->steady = 0;
     m->reached = m->contacts;
-    m->base_moves = 0;
+    m->base_moves = sys->base_tables > 0;
     for (size_t k = 0; k < sys->harmonics; k++) {
         m->base_moves |= sys->harmonic[k].drives == DRIVES_BASE && sys->harmonic[k].count > 0;
     }

@@ -324,7 +324,9 @@ static int check_system(const tribo_system *sys)
     if (sys->tables || sys->limits.knots) {
         return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                  "%s follow a table, and method exact takes harmonic ones only: take event or auto",
-                                 sys->tables ? "loads" : "limits");
+                                 sys->tables > sys->base_tables ? "loads"
+                                 : sys->tables                  ? "base motions"
+                                                                : "limits");
     }
     const size_t i = tribo_system_first_falling(sys);
     return i == sys->ncontact ? TRIBO_OK

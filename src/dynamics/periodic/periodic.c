@@ -31,7 +31,8 @@ static int check_loads(tribo_driver *drv, double period)
     const tribo_system *sys = drv->sys;
     size_t of_kind[] = {0, 0, 0};
     if (sys->tables || sys->limits.knots) {
-        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "loads and limits that follow a table are not periodic");
+        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
+                                 "loads, base motions and limits that follow a table are not periodic");
     }
     for (size_t k = 0; k < sys->harmonics; k++) {
         const struct harmonic *w = &sys->harmonic[k];

@@ -102,6 +102,7 @@ static void find_velocities(const struct event *e, size_t k, double *v)
     const size_t c = e->sys->ncontact;
     memset(v, 0, c * sizeof *v);
     add_harmonics(e, DRIVES_BASE, k, -1.0, v);
+    tribo_system_tables(e->sys, DRIVES_BASE, (int)k, -1.0, 0, c, v);
     tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->u + k * e->sys->ndof, v);
     for (size_t i = 0; k == 0 && i < c; i++) {
         v[i] = m->rested[i] ? 0.0 : v[i];
@@ -120,7 +121,7 @@ static void expand_free(struct event *e, size_t k)
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -1.0, e->u + k * n, acc);
     }
-    tribo_system_tables(sys, (int)k, 1.0, 0, n, acc);
+    tribo_system_tables(sys, DRIVES_LOAD, (int)k, 1.0, 0, n, acc);
 }
 
 /* What is watched of contacts at rest is their force. */
@@ -157,6 +158,7 @@ static int expand_forces(struct event *e, size_t k)
     const size_t c = e->sys->ncontact;
     memset(e->base, 0, c * sizeof *e->base);
     add_harmonics(e, DRIVES_BASE, k + 1, (double)(k + 1), e->base);
+    tribo_system_tables(sys, DRIVES_BASE, (int)k + 1, (double)(k + 1), 0, c, e->base);
     for (size_t i = 0; i < c; i++) {
         e->a[i] = -e->base[i];
     }

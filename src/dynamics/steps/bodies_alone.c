@@ -209,9 +209,11 @@ int tribo_bodies_begin(struct bodies_alone *b, tribo_system *sys)
             }
         }
         for (size_t s = 0; s < sys->tables; s++) {
-            for (size_t d = 0; d < sys->ndof; d++) {
-                b->driven[d / MATRIX_BLOCK] |= sys->table[s].pattern[d] != 0.0;
-                b->loaded[d / MATRIX_BLOCK] |= sys->table[s].pattern[d] != 0.0;
+            const int of_load = sys->table[s].drives == DRIVES_LOAD;
+            for (size_t k = 0; k < (of_load ? sys->ndof : sys->ncontact); k++) {
+                const size_t block = (of_load ? k : b->body[k]) / MATRIX_BLOCK;
+                b->driven[block] |= sys->table[s].pattern[k] != 0.0;
+                b->loaded[block] |= of_load && sys->table[s].pattern[k] != 0.0;
             }
         }
         bodies_take_limits(b, sys);
@@ -240,13 +242,13 @@ void tribo_bodies_set_time(struct bodies_alone *b, tribo_system *sys, double t)
             b->load[h->index[k]] = 0.0;
         }
     }
-    if (sys->tables) {
+    if (sys->tables > sys->base_tables) {
         /* What tables say, of the blocks that they drive. Other loads there are forgotten. */
         for (size_t k = 0; k < b->blocks; k++) {
             if (b->driven[k]) {
                 const size_t begin = k * MATRIX_BLOCK, n = tribo_bodies_of_block(sys, k);
                 memset(b->load + begin, 0, n * sizeof *b->load);
-                tribo_system_tables(sys, 0, 1.0, begin, begin + n, b->load);
+                tribo_system_tables(sys, DRIVES_LOAD, 0, 1.0, begin, begin + n, b->load);
             }
         }
     }
@@ -351,7 +353,8 @@ static int step_block(const struct bodies_alone *b, const tribo_system *sys, con
     static const double nothing[MATRIX_BLOCK];
     double work[MATRIX_BLOCK];
     const size_t i = k * MATRIX_BLOCK, n = tribo_bodies_of_block(sys, k);
-    const double *before = sys->base_harmonics ? b->before + i : nothing, *after = sys->base_harmonics ? b->after + i : nothing;
+    const int moves = tribo_system_bases_move(sys);
+    const double *before = moves ? b->before + i : nothing, *after = moves ? b->after + i : nothing;
     accelerate_block(b, sys, k, s->q, s->u, work);
     const int did = move(n, s->time, s->h, b->rows[k].mass, b->rows[k].brake, before, after, s->q + i, s->u + i, s->q_to + i,
                          s->u_to + i, work);
@@ -402,7 +405,7 @@ int tribo_bodies_step(struct bodies_alone *b, tribo_system *sys, const struct bo
     if (tribo_system_limits_vary(sys)) {
         bodies_take_limits(b, sys);
     }
-    if (sys->base_harmonics) {
+    if (tribo_system_bases_move(sys)) {
         double *first = b->before;
         b->before = b->after;
         b->after = first;

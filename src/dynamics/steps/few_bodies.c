@@ -178,7 +178,7 @@ static int few_find_all(struct few_bodies *b, tribo_system *sys, size_t count, c
             few_add_harmonic(h, count, h->cos_ahead + place, h->sin_ahead + place, b->load);
         }
     }
-    if (sys->base_harmonics) {
+    if (tribo_system_bases_move(sys)) {
         /* At the ends of the steps. */
         double cosine[FORESIGHT], sine[FORESIGHT];
         few_clear(b->c, count, b->base);
@@ -189,14 +189,22 @@ static int few_find_all(struct few_bodies *b, tribo_system *sys, size_t count, c
                 few_add_harmonic(h, count, cosine, sine, b->base);
             }
         }
+        for (size_t s = 0; sys->base_tables && s < count; s++) {
+            double base[FEW] = {0.0};
+            tribo_system_set_time(sys, b->to[s]);
+            tribo_system_tables(sys, DRIVES_BASE, 0, 1.0, 0, b->c, base);
+            for (size_t i = 0; i < b->c; i++) {
+                b->base[i][s] += base[i];
+            }
+        }
     }
     /* What is not looked up for many times at once. 0 if a limit is too large. */
     const int vary = tribo_system_limits_vary(sys);
     int fits = 1;
-    for (size_t s = 0; (vary || sys->tables) && s < count; s++) {
+    for (size_t s = 0; (vary || sys->tables > sys->base_tables) && s < count; s++) {
         double load[FEW] = {0.0}, limit[FEW];
         tribo_system_set_time(sys, t[s]);
-        tribo_system_tables(sys, 0, 1.0, 0, b->n, load);
+        tribo_system_tables(sys, DRIVES_LOAD, 0, 1.0, 0, b->n, load);
         for (size_t d = 0; d < b->n; d++) {
             b->load[d][s] += load[d];
         }
@@ -232,7 +240,7 @@ static int is_finite(const struct few_bodies *b, const struct few_carried *m)
 size_t tribo_few_run(struct few_bodies *b, tribo_system *sys, size_t count, const double *t, struct few_motion *m)
 {
     const size_t n = b->n, c = b->c;
-    const struct few_parts has = {n, c, sys->damping.rows > 0, sys->base_harmonics > 0, tribo_system_limits_vary(sys)};
+    const struct few_parts has = {n, c, sys->damping.rows > 0, tribo_system_bases_move(sys), tribo_system_limits_vary(sys)};
     struct few_carried x;
     if (!few_find_all(b, sys, count, t, m->last)) {
         return 0;

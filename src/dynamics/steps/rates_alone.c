@@ -127,7 +127,7 @@ void tribo_rates_prepare(struct rates_alone *r, tribo_system *sys)
     int law;
     tribo_get_law(sys->contacts, &law);
     r->revision = tribo_system_revision(sys);
-    r->fits = tribo_bodies_begin(&r->bodies, sys) && find_grip(law, &r->grip) && !sys->base_harmonics &&
+    r->fits = tribo_bodies_begin(&r->bodies, sys) && find_grip(law, &r->grip) && !tribo_system_bases_move(sys) &&
               !tribo_system_limits_vary(sys) && rates_take_contacts(r, sys, law);
     if (r->fits) {
         memset(r->load[0], 0, RATES_TIMES * stride_of(sys) * sizeof *r->load[0]);

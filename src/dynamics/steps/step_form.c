@@ -28,6 +28,7 @@ void tribo_step_form_free(struct step_form *s)
 void tribo_step_form_start(struct step_form *s, const tribo_system *sys)
 {
     s->settings = tribo_system_revision(sys);
+    memset(s->base, 0, sys->ncontact * sizeof *s->base); /* bases may move no more */
     s->statics = 0;
     tribo_get_static(sys->contacts, s->f, NULL);
     for (size_t i = 0; i < sys->ncontact; i++) {
@@ -37,7 +38,7 @@ void tribo_step_form_start(struct step_form *s, const tribo_system *sys)
 
 void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t)
 {
-    if (sys->base_harmonics) {
+    if (tribo_system_bases_move(sys)) {
         tribo_system_set_time(sys, t);
         memset(s->base, 0, sys->ncontact * sizeof *s->base);
         tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, s->base);
@@ -47,7 +48,7 @@ void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t)
 void tribo_step_form_relative(const struct step_form *s, const tribo_system *sys, const double *u, double *v)
 {
     tribo_matrix_multiply(&sys->direction, u, v);
-    for (size_t i = 0; sys->base_harmonics && i < sys->ncontact; i++) {
+    for (size_t i = 0; tribo_system_bases_move(sys) && i < sys->ncontact; i++) {
         v[i] -= s->base[i];
     }
 }

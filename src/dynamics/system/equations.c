@@ -37,7 +37,7 @@ void tribo_system_free_motion(tribo_system *sys, double t, const double *y, doub
     tribo_system_free_acceleration(sys, t, y, acceleration);
     memset(v, 0, sys->ncontact * sizeof *v);
     memset(a, 0, sys->ncontact * sizeof *a);
-    if (sys->base_harmonics) {
+    if (tribo_system_bases_move(sys)) {
         tribo_system_loads(sys, DRIVES_BASE, 0, -1.0, v);
         tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, a);
     }
@@ -52,7 +52,7 @@ struct seen {
 
 static struct seen see(tribo_system *sys, double t, const double *y, double *acceleration)
 {
-    if (sys->base_harmonics) {
+    if (tribo_system_bases_move(sys)) {
         tribo_system_free_motion(sys, t, y, acceleration, sys->v, sys->a);
         return (struct seen){sys->v, sys->a};
     }
@@ -119,7 +119,7 @@ static void equations_complete(tribo_system *sys, const double *y, double *dydt)
 {
     const double *u = y + sys->ndof;
     memcpy(dydt, u, sys->ndof * sizeof *dydt);
-    if (sys->direction.identity && !sys->base_harmonics) {
+    if (sys->direction.identity && !tribo_system_bases_move(sys)) {
         memcpy(sys->v, u, sys->ncontact * sizeof *sys->v);
     }
 }

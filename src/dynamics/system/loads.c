@@ -78,14 +78,14 @@ static int copy_harmonic(struct harmonic *to, const struct harmonic *from)
     return 1;
 }
 
-/* A copy with its columns, and its pattern [ndof], if there is one. */
-static int copy_table(struct table *to, const struct table *from, size_t columns, size_t ndof)
+/* A copy with its columns, and its pattern [n], if there is one. */
+static int copy_table(struct table *to, const struct table *from, size_t columns, size_t n)
 {
     int done = 1;
-    *to = (struct table){0};
+    *to = (struct table){.drives = from->drives};
     if (from->knots) {
         done = create_table(to, from->knots, columns, from->time, from->value);
-        to->pattern = tribo_copy_of(from->pattern, ndof, sizeof *to->pattern, &done);
+        to->pattern = tribo_copy_of(from->pattern, n, sizeof *to->pattern, &done);
     }
     return done;
 }
@@ -99,8 +99,10 @@ int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
         done = copy_harmonic(&sys->harmonic[sys->harmonics++], &from->harmonic[k]);
     }
     for (size_t k = 0; done && k < from->tables; k++) {
-        done = copy_table(&sys->table[sys->tables++], &from->table[k], 1, sys->ndof);
+        const size_t n = from->table[k].drives == DRIVES_BASE ? sys->ncontact : sys->ndof;
+        done = copy_table(&sys->table[sys->tables++], &from->table[k], 1, n);
     }
+    sys->base_tables = from->base_tables;
     sys->base_harmonics = from->base_harmonics;
     sys->limit_harmonics = from->limit_harmonics;
     return done && copy_table(&sys->limits, &from->limits, sys->ncontact, 0);
@@ -181,12 +183,14 @@ double tribo_system_next_kink(const tribo_system *sys, double t)
     return next;
 }
 
-void tribo_system_tables(const tribo_system *sys, int order, double factor, size_t begin, size_t end, double *to)
+void tribo_system_tables(const tribo_system *sys, enum drives drives, int order, double factor, size_t begin, size_t end,
+                         double *to)
 {
     for (size_t k = 0; order < 2 && k < sys->tables; k++) {
-        const double value = factor * look_up(sys, &sys->table[k], 1, 0, order);
-        for (size_t i = begin; i < end; i++) {
-            to[i] += value * sys->table[k].pattern[i];
+        const struct table *table = &sys->table[k];
+        const double value = factor * look_up(sys, table, 1, 0, order);
+        for (size_t i = begin; table->drives == drives && i < end; i++) {
+            to[i] += value * table->pattern[i];
         }
     }
 }
@@ -217,8 +221,8 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
             to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
         }
     }
-    if (drives == DRIVES_LOAD && sys->tables) {
-        tribo_system_tables(sys, order, factor, 0, sys->ndof, to);
+    if (sys->tables && drives != DRIVES_LIMIT) {
+        tribo_system_tables(sys, drives, order, factor, 0, drives == DRIVES_BASE ? sys->ncontact : sys->ndof, to);
     }
 }
 
@@ -457,7 +461,8 @@ int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine,
     return loads_add_harmonic(sys, DRIVES_LOAD, omega, cosine, sine);
 }
 
-static void remove_harmonics(tribo_system *sys, enum drives drives)
+/* Removes the harmonics of loads, bases or limits, and the tables of loads or bases. */
+static void remove_driven(tribo_system *sys, enum drives drives)
 {
     size_t kept = 0;
     for (size_t k = 0; k < sys->harmonics; k++) {
@@ -472,6 +477,18 @@ static void remove_harmonics(tribo_system *sys, enum drives drives)
         }
     }
     sys->harmonics = kept;
+    kept = 0;
+    for (size_t k = 0; k < sys->tables; k++) {
+        if (sys->table[k].drives != drives) {
+            sys->table[kept++] = sys->table[k];
+        } else {
+            free_table(&sys->table[k]);
+        }
+    }
+    sys->tables = kept;
+    sys->base_tables = drives == DRIVES_BASE ? 0 : sys->base_tables;
+    sys->revision++;
+    tribo_system_forget_time(sys);
 }
 
 int tribo_system_clear_loads(tribo_system *sys)
@@ -479,13 +496,7 @@ int tribo_system_clear_loads(tribo_system *sys)
     if (!sys) {
         return TRIBO_ERR_NULL;
     }
-    remove_harmonics(sys, DRIVES_LOAD);
-    for (size_t k = 0; k < sys->tables; k++) {
-        free_table(&sys->table[k]);
-    }
-    sys->tables = 0;
-    sys->revision++;
-    tribo_system_forget_time(sys);
+    remove_driven(sys, DRIVES_LOAD);
     return TRIBO_OK;
 }
 
@@ -550,7 +561,9 @@ static int check_limit_table(const tribo_system *sys, size_t knots, const double
     return status;
 }
 
-int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value, const double *pattern)
+/* Adds the table with a pattern [given] of forces on the degrees of freedom, or of velocities of the bases. */
+static int add_table(tribo_system *sys, enum drives drives, size_t knots, const double *time, const double *value,
+                     const double *pattern)
 {
     if (!sys) {
         return TRIBO_ERR_NULL;
@@ -559,35 +572,51 @@ int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *t
         return knots ? tribo_system_fail(sys, TRIBO_ERR_NULL, "pattern is NULL")
                      : tribo_system_fail(sys, TRIBO_ERR_SIZE, "knots = 0");
     }
+    const int of_bases = drives == DRIVES_BASE;
     int status = check_knots(sys, knots, time, "value", value);
     status = status ? status : check_amplitudes(sys, "value", value, knots);
-    status = status ? status : check_amplitudes(sys, "pattern", pattern, sys->given);
-    status = status ? status : loads_check_massless(sys, DRIVES_LOAD, "pattern", pattern);
+    status = status ? status : check_amplitudes(sys, "pattern", pattern, of_bases ? sys->ncontact : sys->given);
+    status = status ? status : loads_check_massless(sys, drives, "pattern", pattern);
     if (status) {
         return status;
     }
-    struct table t = {0};
+    struct table t = {.drives = drives};
     struct table *all = realloc(sys->table, (sys->tables + 1) * sizeof *all);
     sys->table = all ? all : sys->table;
     if (all && create_table(&t, knots, 1, time, value)) {
-        t.pattern = malloc((sys->ndof + 1) * sizeof *t.pattern);
+        t.pattern = malloc(((of_bases ? sys->ncontact : sys->ndof) + 1) * sizeof *t.pattern);
     }
     if (!t.pattern) {
         free_table(&t);
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knot%s", knots, plural(knots));
     }
-    tribo_system_accelerate(sys, pattern, t.pattern);
-    memset(sys->feq, 0, sys->ncontact * sizeof *sys->feq);
-    bend(sys, t.pattern, sys->feq);
-    if (tribo_largest(sys->feq, sys->ncontact) > 0.0) {
+    if (of_bases) {
+        memcpy(t.pattern, pattern, sys->ncontact * sizeof *pattern);
+    } else {
+        tribo_system_accelerate(sys, pattern, t.pattern);
+        memset(sys->feq, 0, sys->ncontact * sizeof *sys->feq);
+        bend(sys, t.pattern, sys->feq);
+    }
+    if (!of_bases && tribo_largest(sys->feq, sys->ncontact) > 0.0) {
         free_table(&t);
         return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                  "the load of a table bends what is reduced to compliance: take TRIBO_STATICS_MASS");
     }
     sys->table[sys->tables++] = t;
+    sys->base_tables += (size_t)of_bases;
     sys->revision++;
     tribo_system_forget_time(sys);
     return TRIBO_OK;
+}
+
+int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value, const double *pattern)
+{
+    return add_table(sys, DRIVES_LOAD, knots, time, value, pattern);
+}
+
+int tribo_system_add_base_table(tribo_system *sys, size_t knots, const double *time, const double *value, const double *pattern)
+{
+    return add_table(sys, DRIVES_BASE, knots, time, value, pattern);
 }
 
 int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit)
@@ -622,11 +651,9 @@ int tribo_system_clear_limits(tribo_system *sys)
     if (tribo_system_limits_vary(sys)) {
         tribo_set_limit(sys->contacts, sys->given_limit);
     }
-    remove_harmonics(sys, DRIVES_LIMIT);
     free_table(&sys->limits);
     sys->limits = (struct table){0};
-    sys->revision++;
-    tribo_system_forget_time(sys);
+    remove_driven(sys, DRIVES_LIMIT);
     return TRIBO_OK;
 }
 
@@ -635,8 +662,6 @@ int tribo_system_clear_base_motion(tribo_system *sys)
     if (!sys) {
         return TRIBO_ERR_NULL;
     }
-    remove_harmonics(sys, DRIVES_BASE);
-    sys->revision++;
-    tribo_system_forget_time(sys);
+    remove_driven(sys, DRIVES_BASE);
     return TRIBO_OK;
 }

@@ -28,13 +28,14 @@ struct harmonic {
     double *cosine, *sine;
 };
 
-/* A function of time, linear between knots and constant outside: times pattern it adds to the load, or, with a row of limits to
- * each knot, it is the limits of the contacts. */
+/* A function of time, linear between knots and constant outside: times pattern it adds to the load or to b(t), or, with a row of
+ * limits to each knot, it is the limits of the contacts. */
 struct table {
+    enum drives drives;
     size_t knots, at; /* at: the knot at or before sys->time */
     double *time;
     double *value;   /* [knots], or [knots][ncontact] */
-    double *pattern; /* [ndof] accelerations, or NULL */
+    double *pattern; /* [ndof] accelerations, [ncontact] velocities, or NULL */
 };
 
 /* What a reduced system does not have of the whole structure's motion. Modes left out have omega^2 + shift of `above` or more;
@@ -55,7 +56,7 @@ struct tribo_system {
 
     size_t harmonics, base_harmonics, limit_harmonics; /* the latter are those of b(t) and of limits */
     struct harmonic *harmonic;
-    size_t tables;
+    size_t tables, base_tables; /* the latter are those of b(t) */
     struct table *table;
     struct table limits;         /* knots 0: the limits are those that the caller set, and harmonics on top */
     double *given_limit;         /* [ncontact] while limits vary: those that the caller set */
@@ -171,8 +172,15 @@ void tribo_system_set_low(tribo_system *sys, double low);
  * limits, to `to`, at the time set. */
 void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, double factor, double *to);
 
-/* The part of the load's that comes from tables, of the degrees of freedom from begin to end. */
-void tribo_system_tables(const tribo_system *sys, int order, double factor, size_t begin, size_t end, double *to);
+/* The part of the load's or b's that comes from tables, of the degrees of freedom or contacts from begin to end. */
+void tribo_system_tables(const tribo_system *sys, enum drives drives, int order, double factor, size_t begin, size_t end,
+                         double *to);
+
+/* Whether bases move. */
+static inline int tribo_system_bases_move(const tribo_system *sys)
+{
+    return sys->base_harmonics || sys->base_tables;
+}
 
 /* Whether limits change with time, by a table or harmonics. */
 static inline int tribo_system_limits_vary(const tribo_system *sys)
