@@ -29,6 +29,7 @@
 !>   TRBNDF(IH, NDOF, IERR)                          IH                                NDOF
 !>   TRBLOD(IH, NFULL, OMEGA, PC, PS, IERR)          adds PC(NFULL)*COS(OMEGA*t) + PS(NFULL)*SIN(OMEGA*t) to the load
 !>   TRBLTB(IH, NFULL, KNOTS, TIME, VAL, PAT, IERR)  adds PAT(NFULL)*value(t), value linear between VAL(KNOTS) at TIME(KNOTS)
+!>   TRBBTB(IH, N, KNOTS, TIME, VAL, PAT, IERR)      adds PAT(N)*value(t) to the velocities of the bases, value as in TRBLTB
 !>   TRBCLL(IH, IERR)                                takes all loads away
 !>   TRBBAS(IH, N, OMEGA, BC, BS, IERR)              adds BC(N)*COS(OMEGA*t) + BS(N)*SIN(OMEGA*t) to the velocities of the bases
 !>   TRBHLM(IH, N, OMEGA, FC, FS, IERR)              adds FC(N)*COS(OMEGA*t) + FS(N)*SIN(OMEGA*t) to the limits
@@ -409,6 +410,19 @@ subroutine trbltb(ih, nfull, knots, time, val, pat, ierr)
   call require_least(ih, 'KNOTS', knots, 1, ierr)
   if (ierr == TRIBO_OK) call s%system%add_load_table(time(:knots), val(:knots), pat(:nfull), ierr)
 end subroutine trbltb
+
+subroutine trbbtb(ih, n, knots, time, val, pat, ierr)
+  use tribo_fixed_dynamics
+  implicit none
+  integer, intent(in) :: ih, n, knots
+  real(dp), intent(in) :: time(*), val(*), pat(*)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_contacts(ih, s, ierr, n)
+  call require_least(ih, 'KNOTS', knots, 1, ierr)
+  if (ierr == TRIBO_OK) call s%system%add_base_table(time(:knots), val(:knots), pat(:n), ierr)
+end subroutine trbbtb
 
 subroutine trbcll(ih, ierr)
   use tribo_fixed_dynamics

@@ -73,7 +73,7 @@ module tribo_systems
     procedure :: reduce => reduce_system
     procedure :: oscillator, chain, belt
     procedure :: clone => clone_system
-    procedure :: add_load, add_base_motion, add_load_table, add_limit
+    procedure :: add_load, add_base_motion, add_load_table, add_base_table, add_limit
     procedure :: clear_loads, clear_base_motion, clear_limits
     procedure :: set_limit_table, get_limit, set_damping_ratio
     procedure :: get_frequencies, expand, get_truncation
@@ -706,6 +706,21 @@ contains
     if (w%status == TRIBO_OK) w%status = c_system_add_load_table(w%object, size(time, kind=c_size_t), time, value, pattern)
     call finish(w, stat, errmsg)
   end subroutine add_load_table
+
+  !> Adds driven velocities that follow a table, b(t) = ... + pattern(ncontact)*value(t), value as in add_load_table.
+  subroutine add_base_table(this, time, value, pattern, stat, errmsg)
+    class(tribo_system), intent(inout) :: this
+    real(dp), intent(in) :: time(:), value(:), pattern(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_system(this, w)
+    call expect_size(w, 'value', value, size(time))
+    call expect_size(w, 'pattern', pattern, w%n)
+    if (w%status == TRIBO_OK) w%status = c_system_add_base_table(w%object, size(time, kind=c_size_t), time, value, pattern)
+    call finish(w, stat, errmsg)
+  end subroutine add_base_table
 
   !> limit(ncontact): the limits at time t, with harmonics or table.
   subroutine get_limit(this, t, limit, stat, errmsg)

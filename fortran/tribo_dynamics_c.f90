@@ -285,6 +285,17 @@ module tribo_dynamics_c
       integer(c_int) :: answer
     end function c_system_add_load_table
 
+    function c_system_add_base_table(sys, knots, time, value, pattern) result(answer) &
+      bind(c,name='tribo_system_add_base_table')
+      import
+      type(c_ptr), value :: sys
+      integer(c_size_t), value :: knots
+      real(c_double), intent(in), optional :: time(*)
+      real(c_double), intent(in), optional :: value(*)
+      real(c_double), intent(in), optional :: pattern(*)
+      integer(c_int) :: answer
+    end function c_system_add_base_table
+
     function c_system_clear_base_motion(sys) result(answer) bind(c,name='tribo_system_clear_base_motion')
       import
       type(c_ptr), value :: sys

@@ -136,6 +136,7 @@ static void put_whole(int damped)
     tribo_system *sys = make(damped, 0, 0);
     tribo_driver *drv = NULL;
     put_one(tribo_system_add_load_table(sys, 3, time, value, pattern));
+    put_one(tribo_system_add_base_table(sys, 3, time, value, limits));
     put_one(tribo_system_set_limit_table(sys, 2, time, limits));
     for (int i = 0; i < FULL; i++) {
         y[i] = 0.1 * (i + 1);

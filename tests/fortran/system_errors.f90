@@ -271,6 +271,8 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_RANGE, 'time(2) = 1 is not after time(1) = 1')
     call s%add_load_table(x(:0), x(:0), x(:2), stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_SIZE, 'knots = 0')
+    call s%add_base_table([0.0_dp, 1.0_dp], x(:2), x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'pattern has size 3, not 1')
     call s%set_limit_table([0.0_dp, 1.0_dp], one, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_SIZE, 'limit has size 2 x 2, not 1 x 2')
     call s%set_limit_table([0.0_dp, 1.0_dp], reshape([1.0_dp, -2.0_dp], [1, 2]), stat, msg)

@@ -148,6 +148,7 @@ static void linear(tribo_system *sys, int reduced)
     run(sys, "auto", 4.0);
     run(sys, "rk4/fixed", 7.0);
     put_one(tribo_system_add_load_table(sys, KNOTS, times, values, sine));
+    put_one(tribo_system_add_base_table(sys, KNOTS, times, values, limit_table[0]));
     put_one(tribo_system_set_limit_table(sys, KNOTS, times, limit_table[0]));
     state(sys);
     run(sys, "event", 1e9);

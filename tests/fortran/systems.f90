@@ -197,6 +197,8 @@ contains
     call run(sys, 'rk4/fixed', 7.0_dp)
     call sys%add_load_table(times, values, sine, stat)
     call compare('add_load_table', stat)
+    call sys%add_base_table(times, values, limit_table(:, 1), stat)
+    call compare('add_base_table', stat)
     call sys%set_limit_table(times, limit_table, stat)
     call compare('set_limit_table', stat)
     call state(sys)

@@ -22,10 +22,12 @@ enum {
     LOAD,
     NO_LOADS,
     BASE,
+    NO_BASE,
     STATIC, /* elastic contacts take what stands before this, */
     NO_STATIC,
     SWING,
     LOAD_TABLE, /* and the closed form what stands before this */
+    BASE_TABLE,
     LIMIT_TABLE,
     NO_LIMIT_TABLE,
     FALLING,
@@ -89,10 +91,14 @@ static int apply(tribo_system *sys, const struct change *c)
         return tribo_system_clear_loads(sys);
     case BASE:
         return tribo_system_add_base_motion(sys, c->omega, c->x, c->y);
+    case NO_BASE:
+        return tribo_system_clear_base_motion(sys);
     case SWING:
         return tribo_system_add_limit(sys, c->omega, c->x, NULL);
     case LOAD_TABLE:
         return tribo_system_add_load_table(sys, KNOTS, c->time, c->x, c->y);
+    case BASE_TABLE:
+        return tribo_system_add_base_table(sys, KNOTS, c->time, c->x, c->y);
     default:
         return c->kind == LIMIT_TABLE ? tribo_system_set_limit_table(sys, KNOTS, c->time, c->x) : tribo_system_clear_limits(sys);
     }

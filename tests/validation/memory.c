@@ -165,6 +165,7 @@ static int make_copy(tribo_system **sys, tribo_driver **drv)
     (void)drv;
     int status = make_loaded(&from, drv);
     status = status ? status : tribo_system_add_load_table(from, 2, times, values, model->load[0]);
+    status = status ? status : tribo_system_add_base_table(from, 2, times, values, limits);
     status = status ? status : tribo_system_set_limit_table(from, 2, times, limits);
     status = status ? status : tribo_system_add_limit(from, 1.0, limits, NULL);
     status = status ? status : tribo_system_clone(from, sys);
@@ -186,7 +187,9 @@ static int advance_exact(tribo_system **sys, tribo_driver **drv, int damped)
 {
     double y[DIMENSION] = {0}, t = 0.0;
     int status = make_linear(sys, model, damped, 0);
-    status = status ? status : tribo_system_context(*sys) ? tribo_set_limit_all(tribo_system_context(*sys), 1.0) : TRIBO_ERR_MEMORY;
+    status = status                       ? status
+             : tribo_system_context(*sys) ? tribo_set_limit_all(tribo_system_context(*sys), 1.0)
+                                          : TRIBO_ERR_MEMORY;
     status = status ? status : tribo_system_add_load(*sys, 1.0, model->load[0], NULL);
     status = status ? status : tribo_system_add_base_motion(*sys, 1.0, NULL, model->motion[0]);
     status = status ? status : set_up_driver(drv, *sys, "exact", 1.0, 0.0, 0.0);
@@ -274,9 +277,7 @@ static int make_sliders(tribo_system **sys, size_t nmode)
     status = status ? status : tribo_model_set_stiffness_csr(from, row, col, stiffness);
     status = status ? status : tribo_model_set_direction_csr(from, end, col, j);
     status = status ? status : tribo_model_set_compliance(from, soft);
-    status = status   ? status
-             : nmode ? tribo_system_reduce(sys, from, nmode, TRIBO_STATICS_NONE)
-                     : tribo_system_create(sys, from);
+    status = status ? status : nmode ? tribo_system_reduce(sys, from, nmode, TRIBO_STATICS_NONE) : tribo_system_create(sys, from);
     tribo_model_destroy(from);
     return status;
 }
@@ -299,7 +300,9 @@ static int find_periodic(tribo_system **sys, tribo_driver **drv, const char *met
     const double limits[CONTACTS] = {1e3, 0.1, 0.1}, c[DIMENSION] = {1.0};
     double y[DIMENSION] = {0}, contact[CONTACTS], a, b;
     int status = make_linear(sys, model, 1, 0);
-    status = status ? status : tribo_system_context(*sys) ? tribo_set_limit(tribo_system_context(*sys), limits) : TRIBO_ERR_MEMORY;
+    status = status                       ? status
+             : tribo_system_context(*sys) ? tribo_set_limit(tribo_system_context(*sys), limits)
+                                          : TRIBO_ERR_MEMORY;
     status = status ? status : tribo_system_add_load(*sys, 1.0, model->load[0], NULL);
     status = status ? status : set_up_driver(drv, *sys, method, 1.0, 1e-13, 0.0);
     status = status ? status : tribo_driver_find_periodic(*drv, 0.0, 2.0 * PI, y);
