@@ -345,7 +345,7 @@ C     and, if it works on a driver, without one.
          CALL WANTED('TRBTOL', IH, IERR, ICODE(K), TEXT(K))
          CALL TRBOUT(IH, 1D0, IERR)
          CALL WANTED('TRBOUT', IH, IERR, ICODE(K), TEXT(K))
-         CALL TRBFAM(IH, IDLE, IERR)
+         CALL TRBFAM(IH, IDLE(1), IERR)
          CALL WANTED('TRBFAM', IH, IERR, ICODE(K), TEXT(K))
          CALL TRBOBS(IH, WATCH, X, IDLE, IERR)
          CALL WANTED('TRBOBS', IH, IERR, ICODE(K), TEXT(K))
