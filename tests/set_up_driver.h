@@ -4,7 +4,14 @@
 
 #include <string.h>
 
+#ifdef TRIBO_TESTS_WITHOUT_GSL /* no steppers */
+#include "tribo/tribo_dynamics.h"
+#define tribo_gsl_stepper_count() 0
+#define tribo_gsl_stepper_name(stepper) NULL
+#define tribo_gsl_driver_create(drv, sys, stepper) TRIBO_ERR_NAME
+#else
 #include "tribo/tribo_gsl.h"
+#endif
 
 /* Methods of tribo_dynamics.h and steppers of GSL in one list. NULL outside. */
 static inline int any_method_count(void)

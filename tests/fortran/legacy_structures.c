@@ -1,63 +1,31 @@
 /* What legacy_structures.f does, by the functions of C. */
-#include "../make.h"
-#include "tape.h"
-#include "tribo/tribo_gsl.h"
 #include "../set_up_driver.h"
+#include "structure.h"
+#include "tape.h"
 
 enum { N = 2, FULL = 6, WHOLE = 2 * FULL + 1, REDUCED = 4 };
 
-static gsl_spmatrix *rows_of(gsl_spmatrix *triplets)
+static void springs(double stiffness, double k[FULL][FULL])
 {
-    gsl_spmatrix *rows = gsl_spmatrix_compress(triplets, GSL_SPMATRIX_CSR);
-    gsl_spmatrix_free(triplets);
-    return rows;
-}
-
-static gsl_spmatrix *mass_of_row(void)
-{
-    gsl_spmatrix *m = gsl_spmatrix_alloc(FULL, FULL);
-    for (size_t i = 0; i < FULL; i++) {
-        gsl_spmatrix_set(m, i, i, 1.0 + 0.1 * (double)(i + 1));
-    }
-    return rows_of(m);
-}
-
-static gsl_spmatrix *springs(double stiffness)
-{
-    gsl_spmatrix *k = gsl_spmatrix_alloc(FULL, FULL);
-    for (size_t i = 0; i < FULL; i++) {
-        if (i > 0) {
-            gsl_spmatrix_set(k, i, i - 1, -stiffness);
-        }
-        gsl_spmatrix_set(k, i, i, 2.0 * stiffness);
-        if (i + 1 < FULL) {
-            gsl_spmatrix_set(k, i, i + 1, -stiffness);
+    for (int i = 0; i < FULL; i++) {
+        for (int j = 0; j < FULL; j++) {
+            k[i][j] = i == j ? 2.0 * stiffness : i - j == 1 || j - i == 1 ? -stiffness : 0.0;
         }
     }
-    return rows_of(k);
 }
 
-static gsl_spmatrix *contacts(void)
+static tribo_system *make(int damped, size_t nmode, int statics)
 {
-    gsl_spmatrix *j = gsl_spmatrix_alloc(N, FULL);
-    gsl_spmatrix_set(j, 0, 1, 1.0);
-    gsl_spmatrix_set(j, 1, 4, 1.0);
-    return rows_of(j);
-}
-
-static tribo_system *make(int damped, size_t nmode, int static_contacts)
-{
-    gsl_spmatrix *m = mass_of_row(), *c = springs(0.1), *k = springs(1.0), *j = contacts();
+    double mass[FULL][FULL] = {{0.0}}, damping[FULL][FULL], stiffness[FULL][FULL];
+    const double direction[N][FULL] = {{0.0, 1.0}, {0.0, 0.0, 0.0, 0.0, 1.0}};
+    const struct structure s = {FULL, N, mass[0], damped ? damping[0] : NULL, stiffness[0], direction[0], 1};
     tribo_system *sys = NULL;
-    if (nmode) {
-        reduced_system(&sys, m, k, j, nmode, static_contacts, NULL, 0);
-    } else {
-        sparse_system(&sys, m, damped ? c : NULL, k, j, 0, NULL, 0);
+    for (size_t i = 0; i < FULL; i++) {
+        mass[i][i] = 1.0 + 0.1 * (double)(i + 1);
     }
-    gsl_spmatrix_free(m);
-    gsl_spmatrix_free(c);
-    gsl_spmatrix_free(k);
-    gsl_spmatrix_free(j);
+    springs(0.1, damping);
+    springs(1.0, stiffness);
+    structure_system(&sys, &s, nmode, statics);
     return sys;
 }
 
@@ -65,7 +33,7 @@ static void put_reduced(void)
 {
     const double cosine[FULL] = {1.0}, sine[FULL] = {0.0};
     double omega[REDUCED] = {0.0}, full[FULL], error = 0.0, y[2 * REDUCED + 1] = {0.0}, t = 0.0;
-    tribo_system *sys = make(0, 2, 1), *copy = NULL;
+    tribo_system *sys = make(0, 2, TRIBO_STATICS_MASS), *copy = NULL;
     tribo_driver *drv = NULL;
     put_one((double)tribo_system_ndof(sys));
     tribo_system_get_frequencies(sys, omega);
@@ -87,22 +55,21 @@ static void put_reduced(void)
     put_one(error);
     tribo_driver_destroy(drv);
     tribo_system_destroy(copy);
-    sys = make(0, 2, 0);
+    sys = make(0, 2, TRIBO_STATICS_NONE);
     put_one((double)tribo_system_ndof(sys));
     tribo_system_destroy(sys);
 }
 
 static void put_look(tribo_system *sys, const double *y)
 {
-    const gsl_odeiv2_system *ode = tribo_gsl_system(sys);
     double v[N], feq[N], f[N], dydt[WHOLE], dfdy[WHOLE][WHOLE], dfdt[WHOLE];
     put_one(tribo_system_contacts(sys, 0.5, y, v, feq, f));
     put(N, v);
     put(N, feq);
     put(N, f);
-    put_one(ode->function(0.5, y, dydt, ode->params));
+    put_one(tribo_system_derivative(sys, 0.5, y, dydt));
     put(WHOLE, dydt);
-    put_one(ode->jacobian(0.5, y, dfdy[0], dfdt, ode->params));
+    put_one(tribo_system_jacobian(sys, 0.5, y, dfdy[0], dfdt));
     for (size_t j = 0; j < WHOLE; j++) {
         for (size_t i = 0; i < WHOLE; i++) {
             put_one(dfdy[i][j]);
@@ -143,7 +110,7 @@ static void put_whole(int damped)
         y[i + FULL] = 0.3 - 0.1 * (i + 1);
     }
     put_look(sys, y);
-    tribo_gsl_driver_create(&drv, sys, "rkf45");
+    create_any_driver(&drv, sys, any_method_count() > tribo_method_count() ? "rkf45" : "rk4/fixed");
     put_one(tribo_driver_set_step(drv, 0.1));
     put_one(tribo_driver_set_tolerance(drv, 1e-6, 1e-6));
     put_one(tribo_driver_set_output(drv, 0.1));

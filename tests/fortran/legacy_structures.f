@@ -156,7 +156,9 @@ C     The whole structure under a table of loads, its limits in another.
       CALL CMPI('TRBLMT', IERR)
       CALL START(Y)
       CALL LOOK(IH, Y)
+C     A stepper of GSL where there is one
       CALL TRBDRV(IH, 'rkf45', 0D0, 0D0, 0D0, IERR)
+      IF (IERR .NE. 0) CALL TRBDRV(IH, 'rk4/fixed', 0D0, 0D0, 0D0, IERR)
       CALL TRBHST(IH, 0.1D0, IERR)
       CALL CMPI('TRBHST', IERR)
       CALL TRBTOL(IH, 1D-6, 1D-6, IERR)

@@ -1,8 +1,7 @@
 /* What legacy_systems.f does, by the functions of C. */
-#include "../make.h"
-#include "tape.h"
-#include "tribo/tribo_gsl.h"
 #include "../set_up_driver.h"
+#include "structure.h"
+#include "tape.h"
 
 #define N 2
 #define DIMENSION (2 * N + 1)
@@ -42,7 +41,7 @@ void legacy_systems_play(void)
         double y[DIMENSION] = {0.0}, t = 0.5;
         tribo_system *sys = NULL;
         tribo_driver *drv = NULL;
-        dense_system(&sys, N, N, mass, damped ? damping : NULL, stiffness, direction, 0, NULL, 0);
+        structure_system(&sys, &(struct structure){N, N, mass, damped ? damping : NULL, stiffness, direction, 0}, 0, 0);
         tribo_set_limit(tribo_system_context(sys), limit);
         tribo_system_add_load(sys, omega, sine, cosine);
         tribo_system_clear_loads(sys);

@@ -1,8 +1,7 @@
 /* What systems.f90 does from Fortran, through the C interface: see tape.h. */
-#include "../make.h"
-#include "tape.h"
-#include "tribo/tribo_gsl.h"
 #include "../set_up_driver.h"
+#include "structure.h"
+#include "tape.h"
 
 #define DOF 4
 #define CONTACTS 3
@@ -48,10 +47,9 @@ static void state(tribo_system *sys)
     for (size_t i = 0; i < n; i++) {
         y[i] = 0.1 * (double)(i + 1) - 0.35;
     }
-    const gsl_odeiv2_system *s = tribo_gsl_system(sys);
-    put_one(s->function(0.5, y, dydt, s->params));
+    put_one(tribo_system_derivative(sys, 0.5, y, dydt));
     put(n, dydt);
-    put_one(s->jacobian(0.5, y, dfdy, dfdt, s->params));
+    put_one(tribo_system_jacobian(sys, 0.5, y, dfdy, dfdt));
     put(n * n, dfdy);
     put(n, dfdt);
     put_one(tribo_system_contacts(sys, 0.5, y, v, feq, f));
@@ -176,19 +174,6 @@ static void truncation(tribo_system *sys)
     tribo_system_destroy(sys);
 }
 
-static gsl_spmatrix *sparse(const double *a, size_t rows)
-{
-    gsl_spmatrix *s = gsl_spmatrix_alloc(rows, DOF);
-    for (size_t i = 0; i < rows; i++) {
-        for (size_t j = 0; j < DOF; j++) {
-            if (a[i * DOF + j] != 0.0) {
-                gsl_spmatrix_set(s, i, j, a[i * DOF + j]);
-            }
-        }
-    }
-    return s;
-}
-
 /* What the period of a forced oscillator holds. */
 static void periodic(void)
 {
@@ -241,27 +226,20 @@ void systems_play(void)
     reference(sys);
     put_one(tribo_system_belt(&sys, 1.5, 0.3, 0.2, 1.0, 0.8));
     reference(sys);
-    put_one(dense_system(&sys, DOF, CONTACTS, mass[0], NULL, stiffness[0], direction[0], 0, NULL, 0));
-    linear(sys, 0);
-    put_one(dense_system(&sys, DOF, CONTACTS, mass[0], damping[0], stiffness[0], direction[0], 0, NULL, 0));
-    linear(sys, 0);
-    put_one(dense_system(&sys, DOF, CONTACTS, mass[0], NULL, stiffness[0], direction[0], 2, NULL, 0));
+    struct structure full = {DOF, CONTACTS, mass[0], NULL, stiffness[0], direction[0], 0}, damped = full;
+    damped.damping = damping[0];
+    for (int sparse = 0; sparse < 2; sparse++) {
+        full.sparse = damped.sparse = sparse;
+        put_one(structure_system(&sys, &full, 0, 0));
+        linear(sys, 0);
+        put_one(structure_system(&sys, &damped, 0, 0));
+        linear(sys, 0);
+        put_one(structure_system(&sys, &full, 2, TRIBO_STATICS_NONE));
+        linear(sys, 1);
+    }
+    put_one(structure_system(&sys, &full, 2, TRIBO_STATICS_NONE));
     linear(sys, 1);
-    gsl_spmatrix *m = sparse(mass[0], DOF), *c = sparse(damping[0], DOF), *k = sparse(stiffness[0], DOF),
-                 *j = sparse(direction[0], CONTACTS);
-    put_one(sparse_system(&sys, m, NULL, k, j, 0, NULL, 0));
-    linear(sys, 0);
-    put_one(sparse_system(&sys, m, c, k, j, 0, NULL, 0));
-    linear(sys, 0);
-    put_one(sparse_system(&sys, m, NULL, k, j, 2, NULL, 0));
-    linear(sys, 1);
-    put_one(reduced_system(&sys, m, k, j, 2, 0, NULL, 0));
-    linear(sys, 1);
-    put_one(reduced_system(&sys, m, k, j, 1, 1, NULL, 0));
+    put_one(structure_system(&sys, &full, 1, TRIBO_STATICS_MASS));
     truncation(sys);
-    gsl_spmatrix_free(m);
-    gsl_spmatrix_free(c);
-    gsl_spmatrix_free(k);
-    gsl_spmatrix_free(j);
     periodic();
 }
