@@ -175,6 +175,19 @@ module tribo_c
       integer(c_int) :: answer
     end function c_elastic_force_planar
 
+    function c_contact_force(n, dz, depth, tangential, normal, mu, f, df) result(answer) bind(c,name='tribo_contact_force')
+      import
+      integer(c_size_t), value :: n
+      real(c_double), intent(in), optional :: dz(*)
+      real(c_double), intent(in), optional :: depth(*)
+      real(c_double), intent(in), optional :: tangential(*)
+      real(c_double), intent(in), optional :: normal(*)
+      real(c_double), intent(in), optional :: mu(*)
+      real(c_double), intent(inout), optional :: f(*)
+      real(c_double), intent(inout), optional :: df(*)
+      integer(c_int) :: answer
+    end function c_contact_force
+
     function c_create(ctx, ncontact) result(answer) bind(c,name='tribo_create')
       import
       type(c_ptr), intent(inout) :: ctx

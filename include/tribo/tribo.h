@@ -148,6 +148,20 @@ TRIBO_API int tribo_elastic_force(size_t n, const double *dz, const double *stif
 TRIBO_API int tribo_elastic_force_planar(size_t n, const double *dz, const double *stiffness, const double *limit, double *f,
                                          double *df_dz);
 
+/* n contact elements, no context: two tangential springs that end in a slider, and a normal spring that lifts off (Yang and
+ * Menq 1998).
+ * Pressed, depth > 0: load = normal depth, limit = mu load, both at the end of the step, f = (f_t, -load) with f_t as in
+ * tribo_elastic_force_planar. Open: f = 0, the slider goes along. A step that begins open takes all of dz as if pressed.
+ * dz [n][2]            in      tangential displacement since f, the force of the last accepted state
+ * depth [n]            in      penetration at the end of the step, positive presses
+ * tangential, normal   [n] in  stiffness, >= 0
+ * mu [n]               in      coefficient of friction, >= 0
+ * f [n][3]             in/out  force: two tangential directions, normal direction; 0 to begin with
+ * df [n][3][3]         out, or NULL   derivative of f by (dz, depth); where an element slides it is not symmetric
+ * Bodies get J' f; the third row of J gives depth. Thread-safe. Returns what tribo_elastic_force returns. */
+TRIBO_API int tribo_contact_force(size_t n, const double *dz, const double *depth, const double *tangential, const double *normal,
+                                  const double *mu, double *f, double *df);
+
 /* -------------------------------------------------------------------------------------------------------- contexts */
 
 /* A set of contacts with their law, limits, epsilon, operator R, solver memory and workspace. */

@@ -14,6 +14,8 @@ TRIBO_API int tribo_elastic_force(size_t n, const double *dz, const double *stif
                                   double *df_dz);
 TRIBO_API int tribo_elastic_force_planar(size_t n, const double *dz, const double *stiffness, const double *limit, double *f,
                                          double *df_dz);
+TRIBO_API int tribo_contact_force(size_t n, const double *dz, const double *depth, const double *tangential, const double *normal,
+                                  const double *mu, double *f, double *df);
 TRIBO_API int tribo_create(tribo_context **ctx, size_t ncontact);
 TRIBO_API int tribo_clone(const tribo_context *ctx, tribo_context **copy);
 TRIBO_API void tribo_destroy(tribo_context *ctx);

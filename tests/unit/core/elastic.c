@@ -111,6 +111,24 @@ TEST(slope)
     assert_ok(tribo_elastic_force(4, dz, k, limit, f, d));
     assert_all_exact(f, ((const double[]){0.7, 1.0, -1.0, 0.25}), 4);
     assert_all_exact(d, want, 4);
+    /* With limit 0 the force stays 0. */
+    const double none[4] = {0.0};
+    double nothing[2] = {0.0, 0.0};
+    assert_ok(tribo_elastic_force_planar(1, none, k, none, nothing, d));
+    assert_all_exact(d, none, 4);
+    assert_ok(tribo_elastic_force(1, none, k, none, nothing, d));
+    assert_exact(d[0], 0.0);
+    assert_all_exact(nothing, none, 2);
+}
+
+/* A displacement so large that stiffness dz is beyond all forces keeps its direction. */
+TEST(far)
+{
+    const double dz[] = {4e200, -3e200}, k = 1e200, limit = 10.0;
+    double f[] = {1.0, 1.0}, d[4];
+    assert_ok(tribo_elastic_force_planar(1, dz, &k, &limit, f, d));
+    assert_all_close(f, ((const double[]){-8.0, 6.0}), 2, 1e-14);
+    assert_close(d[0] * 5e200, -3.6, 1e-14);
 }
 
 /* Bodies get J' f as from every other call: a mass on an elastic contact, z = x, swings about the spring's zero at sqrt(k/m), and
@@ -180,5 +198,5 @@ TEST(bad_input)
     }
 }
 
-TEST_MAIN("elastic", {masing, 1}, {equivalent_stiffness, 1}, {plane_on_a_line, 20}, {plane, 20}, {slope, 1}, {signs, 1},
+TEST_MAIN("elastic", {masing, 1}, {equivalent_stiffness, 1}, {plane_on_a_line, 20}, {plane, 20}, {slope, 1}, {far, 1}, {signs, 1},
           {bad_input, 1})
