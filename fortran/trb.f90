@@ -23,6 +23,10 @@
 !>          F, DFDV, DFDQ, DFDN, IERR)
 !>   TRBELF(N, DZ, STIF, FMUN, F, DFDZ, IERR)        N elements, no handle             F after a displacement DZ, its derivative
 !>   TRBELP(N, DZ, STIF, FMUN, F, DFDZ, IERR)        the same in the plane: DZ(2,N)    F(2,N), DFDZ(2,2,N)
+!>   TRBCTF(N, DZ, DEPTH, TANG, RNORM, FMU, F, DF,   N elements with a normal spring   F(3,N): tangential forces, and normal force
+!>          IERR)                                    that lifts off, no handle: DZ(2,N)   -RNORM*max(DEPTH, 0); DF(I,J,N) = dF(I)
+!>                                                   since F, DEPTH at the end, TANG and  by (DZ(1), DZ(2), DEPTH)(J)
+!>                                                   RNORM stiffness, FMU friction
 !> Life
 !>   TRBNEW(N, IH, IERR)                             N >= 0                            IH new: quinn, limit 0, epsilon 1E-6,
 !>                                                                                     no operator yet
@@ -314,6 +318,17 @@ subroutine trbelp(n, dz, stif, fmun, f, dfdz, ierr)
   ierr = TRIBO_ERR_NEGATIVE
   if (n >= 0) call tribo_elastic_force(dz(:, :n), stif(:n), fmun(:n), f(:, :n), dfdz(:, :, :n), ierr)
 end subroutine trbelp
+
+subroutine trbctf(n, dz, depth, tang, rnorm, fmu, f, df, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: n
+  real(dp), intent(in) :: dz(2, *), depth(*), tang(*), rnorm(*), fmu(*)
+  real(dp), intent(inout) :: f(3, *), df(3, 3, *)
+  integer, intent(out) :: ierr
+  ierr = TRIBO_ERR_NEGATIVE
+  if (n >= 0) call tribo_contact_force(dz(:, :n), depth(:n), tang(:n), rnorm(:n), fmu(:n), f(:, :n), df(:, :, :n), ierr)
+end subroutine trbctf
 
 ! -------------------------------------------------------------------------------------------------------------------------- life
 

@@ -64,6 +64,13 @@ module trb_interfaces
       integer, intent(out) :: ierr
     end subroutine trbelp
 
+    subroutine trbctf(n, dz, depth, tang, rnorm, fmu, f, df, ierr)
+      integer, intent(in) :: n
+      double precision, intent(in) :: dz(2, *), depth(*), tang(*), rnorm(*), fmu(*)
+      double precision, intent(inout) :: f(3, *), df(3, 3, *)
+      integer, intent(out) :: ierr
+    end subroutine trbctf
+
     subroutine trbnew(n, ih, ierr)
       integer, intent(in) :: n
       integer, intent(inout) :: ih

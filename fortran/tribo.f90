@@ -46,6 +46,7 @@ module tribo_contexts
   public :: dp
   public :: tribo_version, tribo_version_string, tribo_strerror
   public :: tribo_law_count, tribo_law_name, tribo_law_reference, tribo_law_find, tribo_law_eval, tribo_elastic_force
+  public :: tribo_contact_force
 
   !> A set of contacts with their law, limits, epsilon, operator R, solver memory and workspace.
   type, extends(tribo_object), public :: tribo_context
@@ -257,6 +258,42 @@ contains
     call blame(w, 'limit', limit)
     call finish(w, stat, errmsg)
   end subroutine elastic_force_plane
+
+  !> Contact elements, no context: tangential springs that end in a slider, a normal spring that lifts off. dz(2,n) displacement
+  !> since f; depth, tangential, normal, mu (n); f(3,n) two tangential forces and -normal*max(depth, 0); df(i,j,k) = df(i)/d(dz(1),
+  !> dz(2), depth)(j) of element k.
+  subroutine tribo_contact_force(dz, depth, tangential, normal, mu, f, df, stat, errmsg)
+    real(dp), intent(in) :: dz(:,:), depth(:), tangential(:), normal(:), mu(:)
+    real(dp), intent(inout) :: f(:,:)
+    real(dp), intent(inout), optional, contiguous :: df(:,:,:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer :: k
+    type(work) :: w
+
+    w%status = TRIBO_OK
+    w%n = size(f, 2)
+    call expect_shape(w, 'f', shape(f), [3, w%n])
+    call expect_shape(w, 'dz', shape(dz), [2, w%n])
+    call expect_size(w, 'depth', depth, w%n)
+    call expect_size(w, 'tangential', tangential, w%n)
+    call expect_size(w, 'normal', normal, w%n)
+    call expect_size(w, 'mu', mu, w%n)
+    if (present(df)) call expect_shape(w, 'df', shape(df), [3, 3, w%n])
+    if (w%status == TRIBO_OK) then
+      w%status = c_contact_force(int(w%n, c_size_t), dz, depth, tangential, normal, mu, f, df)
+      if (w%status == TRIBO_OK .and. present(df)) then
+        do k = 1, w%n
+          call transpose_in_place(df(:, :, k))
+        end do
+      end if
+    end if
+    call blame(w, 'tangential', tangential)
+    call blame(w, 'normal', normal)
+    call blame(w, 'mu', mu)
+    call blame(w, 'depth', depth) ! last: it may be negative
+    call finish(w, stat, errmsg)
+  end subroutine tribo_contact_force
 
   ! ---------------------------------------------------------------------------------------------------------- life of a context
 

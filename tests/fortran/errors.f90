@@ -166,7 +166,8 @@ contains
   subroutine registry()
     integer :: law, stats(3)
     character(len=200) :: msgs(3)
-    real(dp) :: f, df_dv, df_dfeq, df_dlimit, values(3)
+    real(dp) :: f, df_dv, df_dfeq, df_dlimit, values(3), forces(3, 2)
+    real(dp), parameter :: ones(2, 2) = 1.0_dp
 
     law = blank_integer
     call tribo_law_find('quin', law, stat, msg)
@@ -199,6 +200,16 @@ contains
       errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_NEGATIVE, 'limit(3) = -2.000000 is negative')
     call require(all(untouched(values)), 'tribo_elastic_force: f')
+    forces = blank
+    call tribo_contact_force(ones, [1.0_dp, 1.0_dp], [1.0_dp], [1.0_dp, 1.0_dp], [1.0_dp, 1.0_dp], forces, stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'tangential has size 1, not 2')
+    call tribo_contact_force(ones, [-1.0_dp, 1.0_dp], [1.0_dp, 1.0_dp], [1.0_dp, 1.0_dp], [1.0_dp, -2.0_dp], forces, stat=stat, &
+      errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_NEGATIVE, 'mu(2) = -2.000000 is negative')
+    call tribo_contact_force(ones, [-1.0_dp, nan], [1.0_dp, 1.0_dp], [1.0_dp, 1.0_dp], [1.0_dp, 2.0_dp], forces, stat=stat, &
+      errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'depth(2) = NaN is not finite')
+    call require(all(untouched(reshape(forces, [6]))), 'tribo_contact_force: f')
     values = blank
     msgs = ''
     call tribo_law_eval(TRIBO_QUINN, [9.0_dp, inf, -9.0_dp], 0.0_dp, 2.0_dp, 1.0_dp, values, stat=stats, errmsg=msgs)

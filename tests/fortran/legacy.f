@@ -20,7 +20,8 @@ C
       INTEGER N
       PARAMETER (N = 4)
       INTEGER IVER, NLAW, LAW, IERR, I, J, IROW(5), ICOL(8), JROW(5)
-      INTEGER JCOL(5)
+      INTEGER JCOL(5), K
+      DOUBLE PRECISION P(3,2), DP(3,3,2), DT(18)
       DOUBLE PRECISION FMUN(N), EPS(N), D(N), R(N,N), VAL(8), RM(6)
       DOUBLE PRECISION RJ(5), FLO(N), FUP(N), V(N), A(N), FEQ(N), W(4)
       DOUBLE PRECISION SHARED
@@ -70,6 +71,24 @@ C
       CALL CMPI('TRBELP', IERR)
       CALL CMPR('TRBELP', N, FEQ)
       CALL CMPR('TRBELP', 2*N, VAL)
+      CALL SCSTAT(4, V, A, FEQ)
+      P(1,1) = FEQ(1)
+      P(2,1) = FEQ(2)
+      P(3,1) = FEQ(3)
+      P(1,2) = FEQ(4)
+      P(2,2) = 0D0
+      P(3,2) = 0D0
+      CALL TRBCTF(2, V, FMUN, D, D, EPS, P, DP, IERR)
+      DO 60 K = 1, 2
+         DO 50 I = 1, 3
+            DT(9*K-9+I) = DP(1, I, K)
+            DT(9*K-6+I) = DP(2, I, K)
+            DT(9*K-3+I) = DP(3, I, K)
+   50    CONTINUE
+   60 CONTINUE
+      CALL CMPI('TRBCTF', IERR)
+      CALL CMPR('TRBCTF', 6, P)
+      CALL CMPR('TRBCTF', 18, DT)
       J = -7
       CALL TRBFND('quin', J, IERR)
       CALL EXPECT('TRBFND of no law', J .EQ. -7 .AND. IERR .EQ. 7)

@@ -165,6 +165,8 @@ C     The errors of calls with a handle that is one.
       CALL EXPECT('TRBELF', IERR .EQ. 3)
       CALL TRBELP(-1, X, X, X, X, Y, IERR)
       CALL EXPECT('TRBELP', IERR .EQ. 3)
+      CALL TRBCTF(-1, X, X, X, X, X, X, Y, IERR)
+      CALL EXPECT('TRBCTF', IERR .EQ. 3)
       DO 10 K = 1, 4
          X(K) = 0D0
          Y(K) = -777D0

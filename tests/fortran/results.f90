@@ -45,7 +45,7 @@ program results
 contains
 
   subroutine registry()
-    real(dp) :: f(n), df_dv(n), df_dfeq(n), df_dlimit(n), plane(2, n/2), turn(2, 2, n/2)
+    real(dp) :: f(n), df_dv(n), df_dfeq(n), df_dlimit(n), plane(2, n/2), turn(2, 2, n/2), pressed(3, 2), df(3, 3, 2)
     integer :: status, law, number, i, stat(n)
 
     call compare('tribo_version', tribo_version())
@@ -80,6 +80,15 @@ contains
     call compare('tribo_elastic_force in the plane', stat(1))
     call compare('tribo_elastic_force in the plane', reshape(plane, [n]))
     call compare('tribo_elastic_force in the plane', reshape(turn, [2*n]))
+    pressed = reshape([scene_feq(:, 4), scene_feq(:2, 5)], shape(pressed))
+    call tribo_contact_force(reshape(scene_v(:, 4), [2, 2]), scene_limit(:2), scene_diagonal(:2), scene_diagonal(:2), &
+      scene_epsilon(:2), pressed, df, stat(1))
+    call compare('tribo_contact_force', stat(1))
+    call compare('tribo_contact_force', reshape(pressed, [6]))
+    call compare('tribo_contact_force', [transpose(df(:, :, 1)), transpose(df(:, :, 2))])
+    pressed = reshape([scene_feq(:, 4), scene_feq(:2, 5)], shape(pressed))
+    call tribo_contact_force(reshape(scene_v(:, 4), [2, 2]), scene_limit(:2), scene_diagonal(:2), scene_diagonal(:2), &
+      scene_epsilon(:2), pressed)
     do law = 0, tribo_law_count() - 1
       number = -1
       call tribo_law_find(tribo_law_name(law) // '  ', number)

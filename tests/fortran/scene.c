@@ -73,6 +73,11 @@ static void registry(void)
         put(N, f[plane]);
         put(plane ? 2 * N : N, d[plane]);
     }
+    double force[6], df[18];
+    memcpy(force, scene_feq + 3, sizeof force);
+    put_one(tribo_contact_force(2, scene_v[3], scene_limit, scene_diagonal, scene_diagonal, scene_epsilon, force, df));
+    put(6, force);
+    put(18, df);
 }
 
 static void settings(const tribo_context *c)
