@@ -70,7 +70,7 @@ module tribo_systems
   type, extends(tribo_object), public :: tribo_system
   contains
     procedure :: create => create_system
-    procedure :: reduce => reduce_system
+    procedure :: reduce => reduce_system, reduce_to
     procedure :: oscillator, chain, belt
     procedure :: clone => clone_system
     procedure :: add_load, add_base_motion, add_load_table, add_base_table, add_limit
@@ -488,6 +488,26 @@ contains
     call adopt_system(this, w, sys, w%dimension)
     call finish_model(w, stat, errmsg)
   end subroutine reduce_system
+
+  !> The same with so many modes that the error of get_truncation at omega, rad/time, is at most tolerance.
+  subroutine reduce_to(this, model, omega, tolerance, static_contacts, stat, errmsg)
+    class(tribo_system), intent(inout) :: this
+    class(tribo_model), intent(in) :: model
+    real(dp), intent(in) :: omega, tolerance
+    integer, intent(in), optional :: static_contacts
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    type(c_ptr) :: sys
+    integer(c_int) :: statics
+
+    statics = TRIBO_STATICS_MASS
+    if (present(static_contacts)) statics = int(static_contacts, c_int)
+    call find_model(model, w)
+    if (w%status == TRIBO_OK) w%status = c_system_reduce_to(sys, w%object, omega, tolerance, statics)
+    call adopt_system(this, w, sys, w%dimension)
+    call finish_model(w, stat, errmsg)
+  end subroutine reduce_to
 
   !> Begins a call on a model: w%dimension degrees of freedom, w%n contacts.
   subroutine find_model(this, w)

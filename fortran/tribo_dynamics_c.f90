@@ -208,6 +208,17 @@ module tribo_dynamics_c
       integer(c_int) :: answer
     end function c_system_reduce
 
+    function c_system_reduce_to(sys, model, omega, tolerance, static_contacts) result(answer) &
+      bind(c,name='tribo_system_reduce_to')
+      import
+      type(c_ptr), intent(inout) :: sys
+      type(c_ptr), value :: model
+      real(c_double), value :: omega
+      real(c_double), value :: tolerance
+      integer(c_int), value :: static_contacts
+      integer(c_int) :: answer
+    end function c_system_reduce_to
+
     function c_system_oscillator(sys, limit, alpha, omega) result(answer) bind(c,name='tribo_system_oscillator')
       import
       type(c_ptr), intent(inout) :: sys

@@ -86,13 +86,21 @@ TRIBO_API int tribo_system_create(tribo_system **sys, tribo_model *model);
 enum { TRIBO_STATICS_NONE = 0, TRIBO_STATICS_MASS = 1, TRIBO_STATICS_COMPLIANCE = 2 };
 
 /* The system of the nmode lowest modes of the model, nmode > 0, with modal mass 1 (the first of the largest displacements of a mode
- * is positive), without damping (tribo_system_set_damping_ratio). static_contacts:
+ * is positive). The damping matrix, if there is one, is projected on these motions; tribo_system_set_damping_ratio replaces it.
+ * static_contacts:
  *   TRIBO_STATICS_NONE        nothing beside the modes
  *   TRIBO_STATICS_MASS        and motions, orthonormal in M and orthogonal in K: ndof is nmode and at most one more a contact. The
  *                             response to a load is had in the same way, from a row of J whose limit stays 0
- *   TRIBO_STATICS_COMPLIANCE  and the flexibility that the modes leave to contacts, as compliance that contacts share
+ *   TRIBO_STATICS_COMPLIANCE  and the flexibility that the modes leave to contacts, as compliance that contacts share; no damping matrix
  * Returns what tribo_system_create does, and TRIBO_ERR_RANGE (static_contacts), TRIBO_ERR_NO_CONVERGENCE. */
 TRIBO_API int tribo_system_reduce(tribo_system **sys, tribo_model *model, size_t nmode, int static_contacts);
+
+/* The same with as many modes as the answer needs: the error of tribo_system_get_truncation at omega is at most tolerance.
+ * omega      in   >= 0, rad/time   the highest frequency that matters: of the load, times the highest harmonic
+ * tolerance  in   > 0
+ * Returns what tribo_system_reduce does, and TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE (omega), TRIBO_ERR_NOT_POSITIVE (tolerance),
+ * TRIBO_ERR_UNSUPPORTED (all modes are not enough). */
+TRIBO_API int tribo_system_reduce_to(tribo_system **sys, tribo_model *model, double omega, double tolerance, int static_contacts);
 
 /* Quinn's three reference systems (Quinn 2004, doi:10.1115/1.1760564), nondimensional. limits >= 0, everything finite.
  * All return TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_SIZE, TRIBO_ERR_MEMORY. */

@@ -65,6 +65,10 @@ contains
     call require(s%ndof() == 2 .and. all(abs(low - omega(:2)) < 1e-12_dp), 'forms: the lowest modes')
     call s%reduce(model, 1)
     call require(s%ndof() == 3, 'forms: a mode and two static responses')
+    call s%reduce_to(model, 0.1_dp*omega(1), 1e-3_dp)
+    call require(s%ndof() == 3, 'forms: within a tolerance')
+    call s%reduce_to(model, -1.0_dp, 1e-3_dp, stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_NEGATIVE, 'omega = -1 is negative')
   end subroutine forms
 
   subroutine follow(s, y)

@@ -151,8 +151,6 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_NEGATIVE, 'nmode = -1 is negative')
     call make_linear(s, one, one, one, nmode=3, stat=stat, errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_SIZE, 'nmode = 3 is more than the 2 degrees of freedom')
-    call make_linear(s, one, one, one, one, 1, stat, msg)
-    call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, 'damping of a reduced system is set by tribo_system_set_damping_ratio')
     call make_linear(s, one(:0, :0), one(:0, :0), one(:0, :0), stat=stat, errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_SIZE, &
       'ndof = 0: a model has a degree of freedom at least')

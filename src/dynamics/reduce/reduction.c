@@ -60,7 +60,43 @@ static void find_shapes(const struct model *m, const struct reduced *r, double *
     }
 }
 
-/* q'' + diag(omega^2) q = modes' p + shapes' f. responses [count][ncontact] out: transposed shapes. */
+/* An entry of Phi'C Phi that is less than this part of the sum of its terms is rounding, as between modes of proportional damping. */
+#define NO_DAMPING (256.0 * DBL_EPSILON)
+
+/* Phi'C Phi over the motions of r, in the first rows and columns of to [n][n], n >= r->count; no rows without damping. 0 if out of
+ * memory. */
+static int project_damping(const struct model *m, const struct reduced *r, size_t n, struct matrix *to)
+{
+    const size_t whole = m->ndof;
+    if (!m->damping.first || m->damping.first[whole] == 0) {
+        return 1;
+    }
+    double *c = calloc(n * n, sizeof *c), *force = malloc(2 * whole * sizeof *force), *size = force + whole;
+    for (size_t k = 0; c && force && k < r->count; k++) {
+        const double *phi = r->phi + k * whole;
+        for (size_t d = 0; d < whole; d++) {
+            force[d] = tribo_matrix_row_dot(&m->damping, d, phi);
+            size[d] = tribo_matrix_row_size(&m->damping, d, phi);
+        }
+        for (size_t i = 0; i < r->count; i++) {
+            double sum = 0.0, terms = 0.0;
+            for (size_t d = 0; d < whole; d++) {
+                sum += r->phi[i * whole + d] * force[d];
+                terms += fabs(r->phi[i * whole + d]) * size[d];
+            }
+            c[i * n + k] = fabs(sum) > NO_DAMPING * terms ? sum : 0.0;
+        }
+    }
+    if (c && force) {
+        tribo_even_out(n, c);
+    }
+    const int done = c && force && tribo_matrix_from_dense(to, n, n, c);
+    free(c);
+    free(force);
+    return done;
+}
+
+/* q'' + Phi'C Phi q' + diag(omega^2) q = modes' p + shapes' f. responses [count][ncontact] out: transposed shapes. */
 static int reduction_build(const struct model *m, const struct reduced *r, double *responses, tribo_system **sys)
 {
     const size_t count = r->count, c = m->ncontact;
@@ -71,7 +107,7 @@ static int reduction_build(const struct model *m, const struct reduced *r, doubl
         find_shapes(m, r, shapes);
         tribo_transpose(c, count, shapes, responses);
         done = tribo_matrix_diagonal(&stiffness, count, r->omega2) && tribo_matrix_from_dense(&direction, c, count, shapes) &&
-               tribo_matrix_from_dense(&response, count, c, responses);
+               tribo_matrix_from_dense(&response, count, c, responses) && project_damping(m, r, count, &damping);
     }
     free(shapes);
     if (done) {
@@ -79,6 +115,7 @@ static int reduction_build(const struct model *m, const struct reduced *r, doubl
                                                                                               : TRIBO_OK;
     }
     tribo_matrix_free(&stiffness);
+    tribo_matrix_free(&damping);
     tribo_matrix_free(&direction);
     tribo_matrix_free(&response);
     return tribo_model_no_memory(m);
@@ -224,7 +261,8 @@ static int build_compliant(const struct model *m, const struct reduced *r, tribo
     }
     struct model reduced = {.ndof = r->count + e.soft, .ncontact = c, .message = m->message, .size = m->size};
     if (!status) {
-        status = put_matrices(&e, r, &reduced) ? tribo_model_build_whole(&reduced, sys) : tribo_model_no_memory(m);
+        const int done = put_matrices(&e, r, &reduced) && project_damping(m, r, reduced.ndof, &reduced.damping);
+        status = done ? tribo_model_build_whole(&reduced, sys) : tribo_model_no_memory(m);
     }
     if (!status && !put_all_modes(&e, r, *sys)) {
         status = tribo_model_no_memory(m);

@@ -141,8 +141,8 @@ static int check_rows(const struct input *in, const size_t *rowptr, const size_t
     }
     for (size_t i = 1; i <= in->rows; i++) {
         if (rowptr[i] < rowptr[i - 1]) {
-            return tribo_model_fail(m, TRIBO_ERR_SIZE, "%s: rowptr[%zu] = %zu is below rowptr[%zu] = %zu", in->name, i,
-                                    rowptr[i], i - 1, rowptr[i - 1]);
+            return tribo_model_fail(m, TRIBO_ERR_SIZE, "%s: rowptr[%zu] = %zu is below rowptr[%zu] = %zu", in->name, i, rowptr[i],
+                                    i - 1, rowptr[i - 1]);
         }
     }
     for (size_t i = 0; i < in->rows; i++) {
@@ -337,9 +337,11 @@ int tribo_system_reduce(tribo_system **sys, tribo_model *model, size_t nmode, in
     if (!status && (static_contacts < TRIBO_STATICS_NONE || static_contacts > TRIBO_STATICS_COMPLIANCE)) {
         status = tribo_model_fail(g, TRIBO_ERR_RANGE, "static_contacts = %d is not TRIBO_STATICS_...", static_contacts);
     }
-    if (!status && g->damping.first) {
+    if (!status && g->damping.first && static_contacts == TRIBO_STATICS_COMPLIANCE) {
         status =
-            tribo_model_fail(g, TRIBO_ERR_UNSUPPORTED, "damping of a reduced system is set by tribo_system_set_damping_ratio");
+            tribo_model_fail(g, TRIBO_ERR_UNSUPPORTED,
+                             "TRIBO_STATICS_COMPLIANCE takes no damping matrix: call tribo_system_set_damping_ratio, or take "
+                             "TRIBO_STATICS_MASS");
     }
     return status ? status : build_system(sys, model, nmode, static_contacts);
 }
