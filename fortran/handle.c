@@ -1,11 +1,11 @@
 /* Objects by number, for Fortran.
  *
- * A Fortran object cannot own a pointer. Compilers copy its bits without asking (allocate(source=), allocatable components,
- * temporaries), and finalize a component twice where its type has an assignment of its own (GCC bug 110626; flang and ifx do so
- * too). So it holds a number that is never given twice: when the object has gone, all that is left of the number finds nothing.
+ * A Fortran object cannot own a pointer. Compilers copy its bits without its assignment (allocate(source=), allocatable
+ * components, temporaries), and finalize a component twice if its type has an assignment of its own (GCC bug 110626; flang and ifx
+ * do so too). So it holds a number that is never given twice: copies of the number of a destroyed object find nothing.
  *
- * A number is a place in a table, which grows by chunks that never move, and how often that place has been in use. A place that
- * has been in use as often as its numbers can tell is not used again. Finding takes no lock: an object belongs to one thread at a
+ * A number is a place in a table and the uses of this place. The table grows by chunks that never move. A place is not used again
+ * after the largest number of uses. Finding takes no lock: an object belongs to one thread at a
  * time, and a number of the past finds nothing at any time, since a place counts its use before it takes the object. */
 #include <stdint.h>
 #include <stdio.h>
@@ -26,8 +26,8 @@ struct place {
     char *message; /* [MESSAGE] of the object's last failure, or NULL */
 };
 
-/* Contexts keep the messages of the library's failures; of those that Fortran finds, and of calls on const contexts, which keep
- * none, these do. Places are locked meanwhile, so that no message is a mixture of two threads' failures. */
+/* Length of a message. Contexts keep the messages of the library's errors; places keep those of errors found by Fortran, and of
+ * calls on const contexts. Places are locked while a message is read or written, so that no message mixes two threads. */
 #define MESSAGE 300
 
 /* Place 0 is not used, so that 0 can be the end of the free places and never an object's number. */
@@ -82,7 +82,7 @@ static uint32_t place_of(int64_t number)
     return (uint32_t)((number > 0 ? number : -number) & (PLACES - 1));
 }
 
-/* The place that a number stands for, if it still does. */
+/* The place of a number; NULL if its object is destroyed. */
 static struct place *find(int64_t number)
 {
     if (number == 0 || number < -INT32_MAX) {

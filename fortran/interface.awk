@@ -6,18 +6,18 @@
 #
 # tribo_get_limit is c_get_limit in Fortran. Of its arguments
 #   double, int, size_t ...    are values
-#   const double *, char * ... are arrays, which may be left out, and are NULL then: what may be NULL C says
+#   const double *, char * ... are optional arrays, NULL where absent; the header has those that may be NULL
 #   double *                   too; where it is one output, that must be an element of an array
 #   int *, size_t *            are one output
 #   tribo_context ** ...       are one output, the address of an object
-# and all other addresses are type(c_ptr). Outputs are intent(inout), lest a compiler copies back a section that the call has not
-# written. TRIBO_PURE before the type, a macro without text, makes a pure function.
+# and all other addresses are type(c_ptr). Outputs are intent(inout), so that a compiler does not copy back a section that the call
+# has not written. TRIBO_PURE before the type, a macro without text, makes a pure function.
 
 function trim(s) { gsub(/^[ \t]+|[ \t]+$/, "", s); return s }
 
 function fail(text) { print FILENAME ": " text > "/dev/stderr"; failed = 1; exit 1 }
 
-# The type of a value, or of what an address points to.
+# The Fortran type of a value or an element.
 function kind(type) {
     if (!(type in kinds)) fail("no Fortran type is known for " type)
     return kinds[type]
@@ -89,7 +89,7 @@ function read_function(text,    open, head, symbol, pure, i, n, parts, lines, wh
     functions = functions "    end " what " " fortran "\n\n"
 }
 
-# Enumerators of a line, below what its comment says of them.
+# Enumerators of a line, below its comment.
 function read_constants(line,    comment) {
     comment = line
     if (!sub(/^.*\/\* /, "  !> ", comment)) comment = ""

@@ -5,19 +5,19 @@
 !> CHARACTER*(*); MINV is a subroutine. Arrays hold one value a contact, N of them, unless said otherwise; an element of a bigger
 !> array may be passed, and the array then begins there. Contacts, rows and columns are counted from 1.
 !>
-!> IH     handle of a set of contacts. It fits a default INTEGER and is never given twice (there are two thousand million of them,
-!>        then TRBNEW answers TRIBO_ERR_MEMORY); handles that were never given, or whose contacts have been deleted, are
-!>        recognized. One handle belongs to one thread at a time.
+!> IH     handle of a set of contacts. It fits a default INTEGER and is never given twice (after two thousand million handles TRBNEW
+!>        returns TRIBO_ERR_MEMORY). A handle that was never given, or is deleted, gives TRIBO_ERR_NULL. One handle belongs to one
+!>        thread at a time.
 !> N      number of contacts; must be that of TRBNEW
-!> IERR   0, or one of the codes of module tribo (TRIBO_ERR_...). Outputs are untouched then, and TRBMSG tells what is wrong.
+!> IERR   0, or one of the codes of module tribo (TRIBO_ERR_...): outputs are unchanged, and TRBMSG returns the text.
 !>
 !> Registry                                          in                                out
 !>   TRBVER(IVER, IERR)                                                                IVER 10000*major + 100*minor + patch
 !>   TRBVST(TEXT, IERR)                                                                TEXT version
-!>   TRBTXT(ICODE, TEXT, IERR)                       ICODE any status                  TEXT what it means
+!>   TRBTXT(ICODE, TEXT, IERR)                       ICODE any status                  TEXT its meaning
 !>   TRBNLW(NLAW, IERR)                                                                NLAW number of laws: 0 to NLAW - 1
 !>   TRBLNM(LAW, TEXT, IERR)                         LAW                               TEXT its name
-!>   TRBREF(LAW, TEXT, IERR)                         LAW                               TEXT where it comes from
+!>   TRBREF(LAW, TEXT, IERR)                         LAW                               TEXT its reference
 !>   TRBFND(NAME, LAW, IERR)                         NAME e.g. 'quinn', 'QUINN'        LAW its number
 !>   TRBEVL(LAW, V, FEQ, FMUN, EPS,                  one contact, no handle            F and its derivatives by V, FEQ, FMUN
 !>          F, DFDV, DFDQ, DFDN, IERR)
@@ -35,8 +35,8 @@
 !>   TRBFIX(IH, IERR)                                                                  the operator cannot be changed any more
 !>   TRBDEL(IH, IERR)                                IH
 !>   TRBNUM(IH, N, IERR)                             IH                                N number of contacts
-!>   TRBMSG(IH, TEXT, IERR)                          IH; IERR the one that one asks    TEXT what its last failing call found;
-!>                                                   about, or 0                       always defined, even if IH is no handle.
+!>   TRBMSG(IH, TEXT, IERR)                          IH; IERR of the call that failed, TEXT of its last error;
+!>                                                   or 0                              always defined, even if IH is no handle.
 !>                                                                                     An IERR that is not 0 stays as it is
 !> Settings
 !>   TRBLAW(IH, LAW, IERR)                           LAW
@@ -63,8 +63,8 @@
 !>          IERR)
 !>   TRBOPC(IH, N, NDOF, MINV, IROW, ICOL, VAL,      R = J M**-1 J', J as above, by CALL MINV(NDOF, FORCE, ACC, RPAR, IPAR, IER),
 !>          RPAR, IPAR, IERR)                        once a contact: MINV, which is EXTERNAL in your program, sets ACC(NDOF) to
-!>                                                   M**-1 FORCE(NDOF), to 1E-11, or else IER, which is 0 before, to what is not
-!>                                                   0: then IERR is TRIBO_ERR_CALLBACK. RPAR(*) and IPAR(*) are MINV's alone
+!>                                                   M**-1 FORCE(NDOF), to 1E-11, or IER, 0 before, to another value: IERR is
+!>                                                   TRIBO_ERR_CALLBACK then. RPAR(*) and IPAR(*) are for MINV alone
 !>   TRBCPL(IH, ICPL, IERR)                          ICPL 0 consistent, 1 partition
 !>   TRBGCP(IH, ICPL, IERR)                                                            ICPL
 !>   TRBSHR(IH, ISHR, IERR)                          ISHR: redundant contacts share    0 by least norm, 1 as in the last call
@@ -78,9 +78,9 @@
 !>                                                                                     of its contact; scalar ones: (2,I) is 0
 !>   TRBBAL(IH, N, V, A, FEQ, F, IERR)               V(N), A(N)                        FEQ(N), F(N)
 !>   TRBBTN(IH, N, V, A, FEQ, F, DFDV, DFDA, LDJ,    V(N), A(N); LDJ >= N              FEQ(N), F(N), DFDV(LDJ,N) and DFDA(LDJ,N):
-!>          IERR)                                                                      (I,J) is that of F(I) by V(J), A(J)
+!>          IERR)                                                                      (I,J) of F(I) by V(J), A(J)
 !>   TRBTPR(IH, N, DV, DA, DF, IERR)                 DV(N), DA(N): changes of V, A     DF(N) = DFDV DV + DFDA DA of TRBBTN
-!>   TRBLPR(IH, N, DLIM, DF, IERR)                   DLIM(N): change of the limits     DF(N): that of the forces of TRBBTN
+!>   TRBLPR(IH, N, DLIM, DF, IERR)                   DLIM(N): change of the limits     DF(N): change of the forces of TRBBTN
 !>   TRBSTF(IH, N, DT, VFREE, F, IERR)               DT, VFREE(N)                      F(N): Coulomb's law over one step
 !>   TRBSTM(IH, N, DT, V, VFREE, F, IERR)            DT, V(N) at its start, VFREE(N)   F(N): the same to second order
 !>   TRBBOX(IH, N, A, FLO, FUP, F, IERR)             A(N), FLO(N) <= FUP(N)            F(N): minimum of F'RF/2 + A'F in the box
@@ -91,9 +91,9 @@
 !>   TRBCNT(IH, IWHICH, IVAL, IERR)                  IWHICH TRIBO_COUNT_...            IVAL
 !>   TRBVAL(IH, IWHICH, VAL, IERR)                   IWHICH TRIBO_REAL_...             VAL
 
-!> What they share. A handle stands for a context of the library, the object of minus its number, see handle.h. Doubles go to the
-!> library as they are; where Fortran counts or stores otherwise (indices, matrices, integers, texts) a routine borrows the
-!> context as a tribo_context, and calls what module tribo has.
+!> Helpers. A handle stands for a context of the library, the object of minus its number, see handle.h. Doubles go to the library
+!> directly. For arguments that Fortran stores otherwise (indices, matrices, integers, texts) a routine borrows the context as a
+!> tribo_context, and calls module tribo.
 module tribo_fixed
   use tribo_c
   use tribo
@@ -112,7 +112,7 @@ module tribo_fixed
     end subroutine inverse_of_mass
   end interface
 
-  !> rpar and ipar begin where the caller's do; how long these are only the caller knows.
+  !> rpar and ipar point to the first elements of the caller's arrays of unknown length.
   type, extends(tribo_mass) :: external_mass
     procedure(inverse_of_mass), pointer, nopass :: minv => null()
     real(dp), pointer, contiguous :: rpar(:) => null()
@@ -131,7 +131,7 @@ contains
     call this%minv(size(force), force, acceleration, this%rpar, this%ipar, ier)
   end function call_minv
 
-  !> The context of a handle; ierr says whether there is one, and with n contacts.
+  !> The context of a handle; ierr is an error if it has none, or not n contacts.
   subroutine find(ih, ctx, ierr, n)
     integer, intent(in) :: ih
     type(c_ptr), intent(out) :: ctx
@@ -146,7 +146,7 @@ contains
     if (n /= found) call refuse(ctx, ierr, 'N', n, ', but the number of contacts is ', int(found))
   end subroutine find
 
-  !> Status of a call on ctx, whose message is noted if it failed; and of one on a const context, which keeps none.
+  !> Status of a call on ctx; notes its message on error, also of a call on a const context, which keeps none.
   integer function told(ctx, status)
     type(c_ptr), intent(in) :: ctx
     integer(c_int), intent(in) :: status
@@ -182,7 +182,7 @@ contains
     if (ierr == TRIBO_OK) call lend(c, -int(ih, c_int64_t))
   end subroutine borrow
 
-  !> An argument has a value that does not do.
+  !> The error of an argument with a wrong value.
   subroutine refuse(ctx, ierr, name, value, but, other)
     type(c_ptr), intent(in) :: ctx
     integer, intent(inout) :: ierr
@@ -210,7 +210,7 @@ contains
     end if
   end subroutine give
 
-  !> Hands out a text of the library, if there is one.
+  !> Returns a text of the library, if it has one.
   subroutine hand_out(s, text, ierr)
     type(c_ptr), intent(in) :: s
     character(len=*), intent(inout) :: text

@@ -6,13 +6,13 @@
 !> TRBLSP does the same from sparse matrices, TRBRED reduces a large structure to its lowest modes, and TRBCLN copies a structure.
 !> A handle of TRBNEW or TRBCPY has contacts only, and is refused here with TRIBO_ERR_STATE.
 !>
-!> NDOF   degrees of freedom; must be that of TRBLIN or TRBLSP, and of a reduced structure what TRBNDF says
+!> NDOF   degrees of freedom: NDOF of TRBLIN or TRBLSP; of a reduced structure the result of TRBNDF
 !> NFULL  degrees of freedom of the matrices; differs from NDOF in a reduced structure
 !> Y      2*NDOF + 1 values: displacements, velocities, energy that friction has taken
 !> CV     2*NDOF values: a combination of displacements and velocities
 !>
 !>   TRBLIN(NDOF, N, RM, C, RK, LDM, RJ, LDJ, IH,    RM(LDM,NDOF), C(LDM,NDOF),        IH new: N contacts, limit 0, no loads;
-!>          TEXT, IERR)                              RK(LDM,NDOF) mass, damping,       TEXT on error what is wrong, else as it was
+!>          TEXT, IERR)                              RK(LDM,NDOF) mass, damping,       TEXT the text of an error, else unchanged
 !>                                                   stiffness; RJ(LDJ,NDOF): row I
 !>                                                   makes the velocity of contact I
 !>   TRBLSP(NDOF, N, IRM, ICM, RM, IRC, ICC, C,      the same from sparse matrices     IH, TEXT as of TRBLIN
@@ -21,21 +21,21 @@
 !>                                                   IRC(NDOF+1) = 1: no damping
 !>   TRBRED(NFULL, N, IRM, ICM, RM, IRK, ICK, RK,    such matrices, reduced to NMODE   IH, TEXT as of TRBLIN
 !>          IRJ, ICJ, RJ, NMODE, ISTAT,              lowest modes and, unless ISTAT
-!>          IH, TEXT, IERR)                          is 0, to what steady forces at
-!>                                                   the contacts do beside them, at
-!>                                                   most a motion more a contact
+!>          IH, TEXT, IERR)                          is 0, static responses of the
+!>                                                   contacts, at most one more
+!>                                                   motion a contact
 !>   TRBCLN(IH, IHNEW, IERR)                         IH                                IHNEW a copy that shares nothing, with
 !>                                                                                     loads and tables, without integrator
 !>   TRBNDF(IH, NDOF, IERR)                          IH                                NDOF
 !>   TRBLOD(IH, NFULL, OMEGA, PC, PS, IERR)          adds PC(NFULL)*COS(OMEGA*t) + PS(NFULL)*SIN(OMEGA*t) to the load
 !>   TRBLTB(IH, NFULL, KNOTS, TIME, VAL, PAT, IERR)  adds PAT(NFULL)*value(t), value linear between VAL(KNOTS) at TIME(KNOTS)
 !>   TRBBTB(IH, N, KNOTS, TIME, VAL, PAT, IERR)      adds PAT(N)*value(t) to the velocities of the bases, value as in TRBLTB
-!>   TRBCLL(IH, IERR)                                takes all loads away
+!>   TRBCLL(IH, IERR)                                removes all loads
 !>   TRBBAS(IH, N, OMEGA, BC, BS, IERR)              adds BC(N)*COS(OMEGA*t) + BS(N)*SIN(OMEGA*t) to the velocities of the bases
 !>   TRBHLM(IH, N, OMEGA, FC, FS, IERR)              adds FC(N)*COS(OMEGA*t) + FS(N)*SIN(OMEGA*t) to the limits
 !>   TRBHAS(IFEAT, IHAS, IERR)                       IFEAT TRIBO_FEATURE_...           IHAS 1 if this build has it, else 0
-!>   TRBBSC(IH, IERR)                                takes all base motions away
-!>   TRBLMC(IH, IERR)                                takes the table and all harmonics of the limits away
+!>   TRBBSC(IH, IERR)                                removes all base motions
+!>   TRBLMC(IH, IERR)                                removes the table and all harmonics of the limits
 !>   TRBSLM(IH, N, T, FMUN, IERR)                    limits at time T                  FMUN(N)
 !>   TRBSSL(IH, N, ISLIP, IERR)                      slips where forces were found last  ISLIP(N)
 !>   TRBSCN(IH, IWHICH, IVAL, IERR)                  IWHICH TRIBO_COUNT_... of contacts  IVAL
@@ -45,11 +45,11 @@
 !>   TRBZET(IH, ZETA, IERR)                          ZETA >= 0: damping ratio of every mode
 !>   TRBFRQ(IH, NDOF, W, IERR)                                                         W(NDOF): natural frequencies, rad/time
 !>   TRBEXP(IH, NDOF, NFULL, Q, U, IERR)             Q(NDOF) of Y                      U(NFULL): displacements that belong to it
-!>   TRBTRC(IH, OMEGA, ERR, IERR)                    OMEGA the highest that matters    ERR: bound on what contacts miss
+!>   TRBTRC(IH, OMEGA, ERR, IERR)                    OMEGA the highest frequency       ERR: bound of the error at contacts
 !> Integrators of your own
 !>   TRBDER(IH, NDOF, T, Y, DYDT, IERR)              T, Y                              DYDT(2*NDOF+1)
-!>   TRBJAC(IH, NDOF, T, Y, DFDY, LDJ, DFDT, IERR)   T, Y; LDJ >= 2*NDOF+1             DFDY(LDJ,2*NDOF+1): (I,J) is that of DYDT(I)
-!>                                                                                     by Y(J); DFDT(2*NDOF+1) by T
+!>   TRBJAC(IH, NDOF, T, Y, DFDY, LDJ, DFDT, IERR)   T, Y; LDJ >= 2*NDOF+1             DFDY(LDJ,2*NDOF+1): (I,J) of DYDT(I) by Y(J);
+!>                                                                                     DFDT(2*NDOF+1) by T
 !>   TRBSAC(IH, NDOF, T, Y, IERR)                    T, Y: the step was accepted
 !> Integrators of the library
 !>   TRBDRV(IH, NAME, DT, ATOL, RTOL, IERR)          NAME of a method, e.g. 'exact': an integrator in the place of the one
@@ -58,7 +58,7 @@
 !>   TRBHST(IH, DT, IERR)                            DT > 0: the step of a method with fixed steps, or the first step
 !>   TRBTOL(IH, ATOL, RTOL, IERR)                    ATOL > 0, RTOL >= 0: tolerances of event, auto and adaptive methods
 !>   TRBOUT(IH, DT, IERR)                            DT > 0: exact, event and auto call SEEN of TRBOBS also every DT
-!>   TRBMTH(IH, TEXT, IERR)                                                            TEXT its name; of 'auto', the one at work
+!>   TRBMTH(IH, TEXT, IERR)                                                            TEXT its name; of 'auto', of the one in use
 !>   TRBNMT(NMETH, IERR)                                                               NMETH methods: 0 to NMETH - 1
 !>   TRBMNM(METH, TEXT, IERR)                        METH                              TEXT its name
 !>   TRBHMX(IH, H, IERR)                             H > 0: the largest step of an adaptive method
@@ -68,21 +68,21 @@
 !>                                                   that is not 0. RPAR(*), IPAR(*) are SEEN's alone. Until the next TRBOBS or
 !>                                                   TRBDRV
 !>   TRBADV(IH, NDOF, T, T1, Y, IERR)                T, Y, T1 >= T                     T, Y there; on error the last good step
-!>   TRBPER(IH, NDOF, T, PERIOD, Y, IERR)            T, PERIOD of the loads; Y guess   Y at T of a motion that comes back after it
+!>   TRBPER(IH, NDOF, T, PERIOD, Y, IERR)            T, PERIOD of the loads; Y guess   Y at T of a periodic motion
 !> Of the periodic motion found last
 !>   TRBFAM(IH, NFREE, IERR)                                                           NFREE: dimension of the family it belongs to
 !>   TRBMUL(IH, NDOF, RE, AI, IERR)                                                    RE(2*NDOF), AI(2*NDOF): Floquet multipliers
 !>   TRBEXT(IH, NDOF, CV, XMIN, XMAX, TMIN, TMAX,    CV(2*NDOF)                        the extremes of CV'Y, and when
 !>          IERR)
 !>   TRBHAR(IH, NDOF, CV, K, XC, XS, IERR)           CV(2*NDOF), K >= 0                XC*COS(K*w*t) + XS*SIN(K*w*t) of CV'Y
-!>   TRBDIS(IH, N, E, IERR)                                                            E(N): what each contact dissipates in it
+!>   TRBDIS(IH, N, E, IERR)                                                            E(N): energy that each contact dissipates
 !>   TRBSHS(IH, N, SHARE, IERR)                                                        SHARE(N) of the period for which each rests
 !> Counts and real quantities
 !>   TRBDCT(IH, IWHICH, IVAL, IERR)                  IWHICH TRIBO_COUNT_... of a       IVAL
 !>                                                   driver, see tribo_dynamics.h
 !>   TRBDVL(IH, IWHICH, VAL, IERR)                   IWHICH TRIBO_REAL_... of a driver VAL
 
-!> What they share: the owner of a handle of TRBLIN is a structure with its driver, as module tribo_dynamics has them.
+!> Helpers. The owner of a handle of TRBLIN is a structure with its driver, as module tribo_dynamics has them.
 module tribo_fixed_dynamics
   use tribo_fixed, only: c_handle_add_part, c_handle_drop, c_handle_owner, c_handle_note, find, hand_out, refuse_value => refuse
   use tribo_c
@@ -171,7 +171,7 @@ contains
     ierr = c_handle_note(ctx, int(TRIBO_ERR_STATE, c_int), 'IH has no integrator: call TRBDRV first' // c_null_char)
   end subroutine find_driven
 
-  !> The same of which all contacts are asked for.
+  !> The same for calls with arrays of its n contacts.
   subroutine find_contacts(ih, s, ierr, n)
     integer, intent(in) :: ih, n
     type(structure), pointer, intent(out) :: s

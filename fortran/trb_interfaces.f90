@@ -1,6 +1,6 @@
-! Written by trb_interfaces.awk from trb.f90 and trb_dynamics.f90, and not to be changed by hand: see target fortran-refresh.
+! Written by trb_interfaces.awk from trb.f90 and trb_dynamics.f90, not to be changed by hand: see target fortran-refresh.
 
-!> Interfaces of all routines TRB..., for a check of arguments by the compiler: USE TRB_INTERFACES in a program that calls them.
+!> Interfaces of all routines TRB...: with USE TRB_INTERFACES compilers check the arguments of calls.
 module trb_interfaces
   implicit none
   public

@@ -17,21 +17,21 @@
 !> Arguments. Arrays hold one value a contact unless said otherwise, and sections of arrays will do. A size that does not fit is
 !> an error (TRIBO_ERR_SIZE). On error outputs stay as they were: that is why they are intent(inout).
 !>
-!> Errors. Every call that can fail takes stat (TRIBO_OK or one of TRIBO_ERR_...) and errmsg, which is defined as that of
-!> ALLOCATE is: any character variable, padded or cut to its length, and left alone if there is no error. Without stat an error
+!> Errors. Every call that can fail takes stat (TRIBO_OK or one of TRIBO_ERR_...) and errmsg, which follows errmsg of
+!> ALLOCATE: any character variable, padded or cut to its length, and unchanged without an error. Without stat an error
 !> stops the program with its text.
 !>
 !> Contexts. b = a makes b a copy that shares nothing with a; b must exist, so an allocatable b is allocated first. A context
-!> that goes out of scope is destroyed. Where a compiler copies a context without asking its assignment - allocate(b, source=a),
-!> and in gfortran assignment of a type in which it is an allocatable component - both names mean one context, until either of
-!> them is destroyed: then the other has none. gfortran before version 13 does not destroy what a function returns: prefer a
-!> subroutine.
+!> that goes out of scope is destroyed. Where a compiler copies a context without its assignment - allocate(b, source=a),
+!> and in gfortran assignment of a type in which it is an allocatable component - both names mean one context until one of
+!> them is destroyed; the other is as if destroyed then. gfortran before version 13 does not destroy the result of a function:
+!> prefer a subroutine.
 !>
-!> Threads. Procedures that take a context as intent(in) may be called by several threads on one context; everything else wants
-!> one context a thread. In threads ask for texts by errmsg: where a function of deferred length, like message, is called,
-!> gfortran keeps the length in static memory.
+!> Threads. Procedures that take a context as intent(in) may be called by several threads on one context; all others need one
+!> context a thread. In threads get texts by errmsg: for a function of deferred length, like message, gfortran
+!> keeps the length in static memory.
 !>
-!> Names. Programs use module tribo, at the end of this file: it is what is here, and the constants of tribo.h, see tribo_c.f90.
+!> Names. Programs use module tribo, at the end of this file: module tribo_contexts, and the constants of tribo.h, see tribo_c.f90.
 !>
 !> Source: D. D. Quinn, "A New Regularization of Coulomb Friction", J. Vib. Acoust. 126 (2004) 391-397, doi:10.1115/1.1760564.
 module tribo_contexts
@@ -86,15 +86,15 @@ module tribo_contexts
     generic :: assignment(=) => assign
   end type tribo_context
 
-  !> A mass matrix that only the caller can solve with: a type of the caller's that extends this one, and so has factors and the
-  !> like at hand. For set_operator_callback.
+  !> A mass matrix with a solver of the caller's, for set_operator_callback. The caller extends this type by components, such as
+  !> the factors of the matrix.
   type, abstract, public :: tribo_mass
   contains
     procedure(apply), deferred :: apply
   end type tribo_mass
 
   abstract interface
-    !> acceleration = M**-1 force, to 1e-11. What it answers ends the call unless 0. It must not change the context.
+    !> acceleration = M**-1 force, to 1e-11. A result other than 0 ends the call. Must not change the context.
     integer function apply(this, force, acceleration)
       import :: dp, tribo_mass
       class(tribo_mass), intent(inout) :: this
@@ -138,14 +138,14 @@ contains
     tribo_law_count = int(c_law_count())
   end function tribo_law_count
 
-  !> Name of a law; empty if there is no such law.
+  !> Name of a law; empty if law is not a law.
   function tribo_law_name(law) result(text)
     integer, intent(in) :: law
     character(len=:), allocatable :: text
     call to_text(c_law_name(to_int(law)), text)
   end function tribo_law_name
 
-  !> Where a law comes from; empty if there is no such law.
+  !> Reference of a law; empty if law is not a law.
   function tribo_law_reference(law) result(text)
     integer, intent(in) :: law
     character(len=:), allocatable :: text
@@ -173,7 +173,7 @@ contains
     if (status == TRIBO_OK) law = int(number)
   end function number_of
 
-  !> That no law has this name, and which there are.
+  !> The text of an unknown name, with the names of the laws.
   subroutine tell_laws(name, text)
     character(len=*), intent(in) :: name
     character(len=:), allocatable, intent(out) :: text
@@ -297,8 +297,8 @@ contains
 
   ! ---------------------------------------------------------------------------------------------------------- life of a context
 
-  !> A context for ncontact contacts (0 is fine), in the place of the one that this held before: Quinn's law, limit 0, epsilon
-  !> 1e-6, consistent coupling, and no operator: that must be set before forces are asked for (TRIBO_ERR_STATE otherwise).
+  !> A context for ncontact contacts (0 is fine), in place of the one before: Quinn's law, limit 0, epsilon 1e-6, consistent
+  !> coupling, no operator. Calls that need the operator return TRIBO_ERR_STATE until one is set.
   subroutine create(this, ncontact, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     integer, intent(in) :: ncontact
@@ -355,7 +355,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine copy_settings
 
-  !> Fixes the operator: from here on the set_operator procedures are refused. That of a clone can be changed.
+  !> Fixes the operator: the set_operator procedures are refused afterwards. The operator of a clone can be changed.
   subroutine fix_operator(this, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     integer, intent(out), optional :: stat
@@ -367,7 +367,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine fix_operator
 
-  !> What the last call that failed on this context found: argument, contact and value; empty before any.
+  !> The text of the last error on this context: argument, contact and value; empty before any.
   function message(this) result(text)
     class(tribo_context), intent(in) :: this
     character(len=:), allocatable :: text
@@ -453,7 +453,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine set_limit_each
 
-  !> The limits that normal loads give, mu*max(load, 0): where a load is 0 or negative the contact has lifted off.
+  !> Limits mu*max(load, 0) from normal loads; a contact with a load <= 0 has lifted off.
   subroutine set_normal_load(this, mu, load, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     real(dp), intent(in) :: mu(:), load(:)
@@ -469,8 +469,8 @@ contains
   end subroutine set_normal_load
 
   !> Static friction above kinetic: a contact at rest holds up to ratio*limit, ratio >= 1. Once it slides, its limit drops to
-  !> limit at once; with velocity > 0 (Stribeck) it is limit*(1 + (ratio - 1)*exp(-abs(v)/velocity)). Without ratio, or all 1:
-  !> rest makes no difference. tribo.h tells what that means in each law.
+  !> limit at once; with velocity > 0 (Stribeck) it is limit*(1 + (ratio - 1)*exp(-abs(v)/velocity)). Without ratio, or with
+  !> ratio 1: no static friction. tribo_set_static of tribo.h has the meaning in each law.
   subroutine set_static(this, ratio, velocity, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     real(dp), intent(in), optional, contiguous :: ratio(:), velocity(:)
@@ -485,7 +485,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine set_static
 
-  !> ratio is 1 where nothing was set, and velocity 0 where there is none.
+  !> The ratios and velocities set; 1 and 0 by default.
   subroutine get_static(this, ratio, velocity, stat, errmsg)
     class(tribo_context), intent(in) :: this
     real(dp), intent(inout), optional, contiguous :: ratio(:), velocity(:)
@@ -556,10 +556,10 @@ contains
     call finish(w, stat, errmsg)
   end subroutine set_epsilon_each
 
-  !> Velocity scale for all contacts: epsilon itself, or else the time step of the caller's integrator. Then the rate at which
-  !> stuck contacts relax, 2*limit*R_ii/epsilon, is lambda_dt/step, whatever limits and operator are or become (in the partition
-  !> coupling up to a few times that, see TRIBO_REAL_MAX_RATE). The paper takes lambda_dt = 1 for the oscillator (as here where it
-  !> is absent) and 0.4 for the chain; rk4 is stable to 2.785. Before there is an operator there is no epsilon then.
+  !> Velocity scale for all contacts: epsilon itself, or the time step of the caller's integrator. With step, epsilon follows
+  !> limits and operator: the rate at which stuck contacts relax, 2*limit*R_ii/epsilon, is lambda_dt/step (a few times more in the
+  !> partition coupling, see TRIBO_REAL_MAX_RATE). The paper has lambda_dt = 1 for the oscillator (the default) and 0.4 for the
+  !> chain; rk4 is stable to 2.785. With step and without operator there is no epsilon.
   subroutine set_epsilon_all(this, epsilon, step, lambda_dt, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     real(dp), intent(in), optional :: epsilon, step, lambda_dt
@@ -596,9 +596,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine get_epsilon
 
-  !> The operator R of z'' = R f + a; on error the old one stays, and that of a system's context always (TRIBO_ERR_UNSUPPORTED).
-  !> With a vector R is diagonal, for contacts that share no body;
-  !> r >= 0.
+  !> The operator R of z'' = R f + a; on error the old one stays. The operator of a system's context cannot be set
+  !> (TRIBO_ERR_UNSUPPORTED). A vector r >= 0: R diagonal, for contacts that share no body.
   subroutine set_operator_diagonal(this, r, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     real(dp), intent(in) :: r(:)
@@ -612,7 +611,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine set_operator_diagonal
 
-  !> With a matrix: symmetric to rounding, positive semidefinite, redundant contacts welcome.
+  !> A matrix: symmetric to rounding, positive semidefinite; contacts may be redundant.
   subroutine set_operator_dense(this, r, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     real(dp), intent(in) :: r(:,:)
@@ -622,7 +621,7 @@ contains
 
     call begin(this, w)
     call expect_size(w, 'r', r, w%n)
-    ! Transposed for the sake of messages: r(i,j) is to be that of the caller.
+    ! Transposed, so that r(i,j) of a message is r(i,j) of the caller.
     if (w%status == TRIBO_OK) w%status = c_set_operator_dense(w%ctx, transpose(r))
     call finish(w, stat, errmsg)
   end subroutine set_operator_dense
@@ -643,8 +642,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine set_operator_csr
 
-  !> R = J diag(inverse_mass) J', J in compressed rows: row i is how the velocities of the size(inverse_mass) degrees of freedom
-  !> make v(i). inverse_mass >= 0 (0: a degree of freedom whose motion is prescribed).
+  !> R = J diag(inverse_mass) J', J in compressed rows: v = J u, u(size(inverse_mass)) being the velocities of the degrees of
+  !> freedom. inverse_mass >= 0 (0: a degree of freedom with prescribed motion).
   subroutine set_operator_mass(this, inverse_mass, rowptr, col, val, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     real(dp), intent(in) :: inverse_mass(:)
@@ -663,8 +662,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine set_operator_mass
 
-  !> R = J M**-1 J' with J [n][ndof] as above, for a mass matrix that only mass can solve with: mass%apply is called once a
-  !> contact, before this returns. Where contacts do not feel each other R has no entry.
+  !> R = J M**-1 J' with J [n][ndof] as above, for a mass matrix with a solver of the caller's: calls mass%apply once a contact.
+  !> Contacts that do not act on each other have no entry in R.
   subroutine set_operator_callback(this, ndof, mass, rowptr, col, val, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     integer, intent(in) :: ndof
@@ -687,7 +686,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine set_operator_callback
 
-  !> Passes on what the library asks.
+  !> Calls mass%apply for the library.
   integer(c_int) function ask_mass(ndof, force, acceleration, data) bind(c, name='')
     integer(c_size_t), value :: ndof
     real(c_double), intent(in) :: force(ndof)
@@ -755,7 +754,7 @@ contains
 
   ! --------------------------------------------------------------------------------------------------------------------- forces
 
-  !> Friction force of every contact from its law, f_eq being known; feq is read only where abs(v) <= epsilon. abs(f) <= limit.
+  !> Friction force of every contact from its law and f_eq; reads feq where abs(v) <= epsilon. abs(f) <= limit.
   subroutine force(this, v, feq, f, stat, errmsg)
     class(tribo_context), intent(in) :: this
     real(dp), intent(in) :: v(:), feq(:)
@@ -774,7 +773,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine force
 
-  !> The same with derivatives. Where epsilon follows the limit (set_epsilon with step), df_dlimit takes that into account.
+  !> The same with derivatives. df_dlimit includes the change of an epsilon that follows the limit (set_epsilon with step).
   subroutine force_tangent(this, v, feq, f, df_dv, df_dfeq, df_dlimit, stat, errmsg)
     class(tribo_context), intent(in) :: this
     real(dp), intent(in) :: v(:), feq(:)
@@ -796,8 +795,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine force_tangent
 
-  !> The same where contacts may be planar: df_dv(:, i), df_dfeq(:, i), df_dlimit(:, i) is how component i of the force follows
-  !> the first and the second direction of its contact; of a scalar contact its derivative and 0.
+  !> The same where contacts may be planar: df_dv(:, i), df_dfeq(:, i), df_dlimit(:, i) are the derivatives of component i of the
+  !> force by the first and the second direction of its contact; of a scalar contact its derivative and 0.
   subroutine force_tangent_planar(this, v, feq, f, df_dv, df_dfeq, df_dlimit, stat, errmsg)
     class(tribo_context), intent(in) :: this
     real(dp), intent(in) :: v(:), feq(:)
@@ -839,7 +838,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine balance
 
-  !> The same, and how f follows v and a, for Newton's method of an implicit integrator: df_dv(i,j) = df(i)/dv(j), df_da alike.
+  !> The same with derivatives of f, for Newton's method of an implicit integrator: df_dv(i,j) = df(i)/dv(j), df_da alike.
   subroutine balance_tangent(this, v, a, feq, f, df_dv, df_da, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     real(dp), intent(in) :: v(:), a(:)
@@ -864,8 +863,8 @@ contains
   end subroutine balance_tangent
 
   !> Product of these derivatives with a change of v and a, for solvers that need no matrix: df = df_dv dv + df_da da at the point
-  !> of the last balance_tangent, with or without its matrices. An error (TRIBO_ERR_STATE) where there has been none, or another
-  !> balance or setting since.
+  !> of the last balance_tangent, with or without its matrices. TRIBO_ERR_STATE before any, and after another balance
+  !> or setting.
   subroutine tangent_product(this, dv, da, df, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     real(dp), intent(in), optional, contiguous :: dv(:), da(:)
@@ -882,8 +881,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine tangent_product
 
-  !> The same for a change of limits, for hosts whose normal loads follow the motion: df = df_dlimit dlimit. Contacts with limit 0
-  !> are open and stay so.
+  !> The same for a change of limits, for normal loads that follow the motion: df = df_dlimit dlimit. Contacts with limit 0 stay
+  !> open.
   subroutine limit_product(this, dlimit, df, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     real(dp), intent(in), contiguous :: dlimit(:)
@@ -899,8 +898,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine limit_product
 
-  !> Coulomb's law over one time step, for integrators with fixed steps; needs no epsilon. The force, constant over the step dt,
-  !> that leaves the contacts in Coulomb's law at its end: v_end = vfree + dt R f, and v_end(i) = 0 or f(i) =
+  !> Coulomb's law over one time step, for integrators with fixed steps; needs no epsilon. The constant force over the step dt
+  !> with Coulomb's law at its end: v_end = vfree + dt R f, and v_end(i) = 0 or f(i) =
   !> -limit(i)*sign(v_end(i)).
   subroutine step_force(this, dt, vfree, f, stat, errmsg)
     class(tribo_context), intent(inout) :: this
@@ -934,8 +933,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine step_force_mean
 
-  !> The box-constrained problem behind it all, the minimum of f'Rf/2 + a'f with lower <= f <= upper, for laws of the caller's
-  !> own. Neither limits nor law nor epsilon matter.
+  !> The box-constrained problem of these calls, the minimum of f'Rf/2 + a'f with lower <= f <= upper, for laws of the caller's
+  !> own. Reads the operator alone: no limits, law or epsilon.
   subroutine solve_box(this, a, lower, upper, f, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     real(dp), intent(in) :: a(:), lower(:), upper(:)
@@ -953,7 +952,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine solve_box
 
-  !> Tells that the integrator accepted a step that ended at v, feq. Advances the memory of TRIBO_QUINN_REVERSAL: a contact is
+  !> The integrator has accepted a step that ended at v, feq. Advances the memory of TRIBO_QUINN_REVERSAL: a contact is
   !> marked when abs(v) > epsilon, and unmarked when abs(v) <= epsilon and abs(feq) <= limit. Does nothing for other laws.
   subroutine accept(this, v, feq, stat, errmsg)
     class(tribo_context), intent(inout) :: this
@@ -971,7 +970,8 @@ contains
 
   ! -------------------------------------------------------------------------------------------------------------------- queries
 
-  !> What each contact did in the last balance or step_force, TRIBO_SLIP_STUCK, _FORTH, _BACK, _OPEN or _PLANE. An error (TRIBO_ERR_STATE) where there has been none, or a solve_box since.
+  !> State of each contact in the last balance or step_force: TRIBO_SLIP_STUCK, _FORTH, _BACK, _OPEN or _PLANE. TRIBO_ERR_STATE
+  !> before any, and after solve_box.
   subroutine get_slip(this, slip, stat, errmsg)
     class(tribo_context), intent(in) :: this
     integer, intent(inout) :: slip(:)
@@ -987,7 +987,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine get_slip
 
-  !> One of TRIBO_COUNT_...; those that add up may outgrow a default integer, and value may be a longer one.
+  !> One of TRIBO_COUNT_...; value is a default integer, or one of eight bytes for large sums.
   subroutine get_count_short(this, which, value, stat, errmsg)
     class(tribo_context), intent(in) :: this
     integer, intent(in) :: which
@@ -1037,9 +1037,9 @@ contains
     call finish(w, stat, errmsg)
   end subroutine get_real
 
-  ! ------------------------------------------------------------------------------------------------------- what the calls share
+  ! ------------------------------------------------------------------------------------------------------- helpers of the calls
 
-  !> Gives a context of the library to this, in the place of the one before.
+  !> Makes a context of the library the object of this, in place of the one before.
   integer(c_int) function adopted(this, ctx) result(status)
     class(tribo_context), intent(inout) :: this
     type(c_ptr), intent(in) :: ctx
@@ -1048,7 +1048,7 @@ contains
   end function adopted
 end module tribo_contexts
 
-!> What programs use: the module above, and the constants of tribo.h.
+!> The module for programs: the module above, and the constants of tribo.h.
 module tribo
   use tribo_constants
   use tribo_contexts

@@ -13,9 +13,9 @@
 !>     call driver%create(chain, 'exact')
 !>     call driver%advance(t, t1, y)
 !>
-!> Arguments, errors and threads as in module tribo; a system and its drivers belong to one thread. What creates a system or a
-!> driver puts it in the place of the one before, and leaves that if it fails. Systems and drivers cannot be copied: an assignment
-!> stops the program. A driver keeps its system alive: it goes on working when the variable has gone.
+!> Arguments, errors and threads as in module tribo; a system and its drivers belong to one thread. A new system or driver
+!> replaces the one before; on error the one before stays. Systems and drivers cannot be copied: an assignment stops the program.
+!> A driver keeps its system alive, also after the system's variable is destroyed.
 !>
 !> Programs use module tribo_dynamics, at the end of this file: module tribo_systems, and the constants of tribo_dynamics.h, see
 !> tribo_dynamics_c.f90. In a build with GSL drivers also take its steppers, see tribo_gsl.f90.
@@ -114,14 +114,14 @@ module tribo_systems
     integer :: kind = 0, contact = 0
   end type tribo_moment
 
-  !> What watches a driver: a type of the caller's that extends this one, and so has the caller's data at hand.
+  !> An observer of a driver: the caller extends this type by components of its own.
   type, abstract, public :: tribo_observer
   contains
     procedure(seen), deferred :: seen
   end type tribo_observer
 
   abstract interface
-    !> Called at every moment, see tribo_driver_set_observer. Answers 0 to go on; else the advance ends with TRIBO_ERR_STOPPED.
+    !> Called at every moment, see tribo_driver_set_observer. Returns 0 to go on; else the advance ends with TRIBO_ERR_STOPPED.
     !> Must not change the system or the driver.
     integer function seen(this, moment)
       import :: tribo_moment, tribo_observer
@@ -146,7 +146,8 @@ module tribo_systems
     end function rows_setter
   end interface
 
-  !> The library's system with what Fortran needs to know of it: tribo_held of dynamics.h. users counts the variable and the drivers.
+  !> A system of the library, its context's number, the degrees of freedom of its matrices, and the number of its users, the
+  !> variable and drivers: tribo_held of dynamics.h.
   type, bind(c) :: held_system
     type(c_ptr) :: sys
     integer(c_int64_t) :: context, given, users
@@ -356,7 +357,7 @@ contains
     call set_sparse(this, 'stiffness', k, c_model_set_stiffness_csr, stat, errmsg)
   end subroutine stiffness_sparse
 
-  !> J (ncontact,ndof): row i is how the velocities of the degrees of freedom make that of contact i; or sparse.
+  !> J (ncontact,ndof), full or sparse: v = J q'.
   subroutine direction_dense(this, j, stat, errmsg)
     class(tribo_model), intent(inout) :: this
     real(dp), intent(in) :: j(:,:)
@@ -440,7 +441,7 @@ contains
     call finish_model(w, stat, errmsg)
   end subroutine set_compliance
 
-  !> What the last call that failed on the model found, also one that made no system of it; empty before any.
+  !> The text of the last error on the model, also of a system that was not made; empty before any.
   function model_message(this) result(text)
     class(tribo_model), intent(in) :: this
     character(len=:), allocatable :: text
@@ -522,7 +523,7 @@ contains
     w%status = TRIBO_OK
   end subroutine find_model
 
-  !> Ends it: the text of an error is the model's, or that of a check here.
+  !> Ends a call on a model: the text of an error is the model's, or w%text.
   subroutine finish_model(w, stat, errmsg)
     type(work), intent(inout) :: w
     integer, intent(out), optional :: stat
@@ -583,8 +584,8 @@ contains
   end subroutine clone_system
 
   !> n >= 2 blocks on a frictional surface, pulled by alpha*sin(omega*t) at the first one. Fig. 8. limit is the paper's mu N_i.
-  !> Contacts have the limit mu N_i/n and R = n, the last one 3/4 of that limit and 4/3 of that R, see tribo_dynamics.h; the last entry
-  !> of the state is the paper's D.
+  !> Contacts have the limit mu N_i/n and R = n, the last one 3/4 of that limit and 4/3 of that R, see tribo_dynamics.h. The
+  !> last entry of the state is the paper's D.
   subroutine chain(this, n, limit, alpha, omega, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     integer, intent(in) :: n
@@ -659,7 +660,7 @@ contains
   end subroutine add_base_motion
 
   !> Adds a harmonic to the limits, limit(t) = max(0, ... + cosine*cos(omega*t) + sine*sin(omega*t)), e.g. of a normal load that
-  !! changes: mu times it. At 0 the contact has lifted off. What is set in the context, or the table's, is what they are added to.
+  !! changes: mu times it. At 0 the contact has lifted off. They are added to the limits of the context, or of the table.
   subroutine add_limit(this, omega, cosine, sine, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     real(dp), intent(in) :: omega
@@ -675,7 +676,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine add_limit
 
-  !> Takes all loads away, harmonics and tables, those that a system came with, too. Motions of the bases and limits stay.
+  !> Removes all loads, harmonics and tables, also the loads of a new system. Base motions and limits stay.
   subroutine clear_loads(this, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     integer, intent(out), optional :: stat
@@ -687,7 +688,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine clear_loads
 
-  !> Takes all base motions away.
+  !> Removes all base motions.
   subroutine clear_base_motion(this, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     integer, intent(out), optional :: stat
@@ -699,7 +700,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine clear_base_motion
 
-  !> Takes the table and all harmonics of the limits away: limits are those of context.
+  !> Removes the table and all harmonics of the limits: the limits of the context remain.
   subroutine clear_limits(this, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     integer, intent(out), optional :: stat
@@ -757,8 +758,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine get_limit
 
-  !> Lets the limits follow a table, limit(ncontact,knots) >= 0, linear between its knots at time and constant outside, in the
-  !> place of those that are set in context.
+  !> Lets the limits follow a table, limit(ncontact,knots) >= 0, linear between its knots at time and constant outside,
+  !> in place of the limits of the context.
   subroutine set_limit_table(this, time, limit, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     real(dp), intent(in) :: time(:), limit(:,:)
@@ -799,7 +800,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine get_frequencies
 
-  !> Reduced systems: the displacements of the whole structure that belong to the modal ones, reduced(ndof).
+  !> Reduced systems: displacements full of the whole structure from the modal ones, reduced(ndof).
   subroutine expand(this, reduced, full, stat, errmsg)
     class(tribo_system), intent(in) :: this
     real(dp), intent(in) :: reduced(:)
@@ -815,8 +816,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine expand
 
-  !> Reduced systems: a bound on what forces at the contacts, up to the frequency omega, are short of by what was left out, in
-  !> terms of the work that they do on the whole elastic structure.
+  !> Reduced systems: a bound of the error at the contacts up to the frequency omega, as a part of the work of the contact forces
+  !> on the whole elastic structure.
   subroutine get_truncation(this, omega, error, stat, errmsg)
     class(tribo_system), intent(in) :: this
     real(dp), intent(in) :: omega
@@ -833,7 +834,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine get_truncation
 
-  !> Sizes; 0 for a system that has not been created. dimension is that of a state. Arrays may be declared with them.
+  !> Sizes; 0 for a system that has not been created. dimension: values of a state. Arrays may be declared with these functions.
   pure integer function ndof(this)
     class(tribo_system), intent(in) :: this
     ndof = int(c_fortran_ndof(object_of(this)))
@@ -850,7 +851,8 @@ contains
   end function dimension
 
   !> Makes c the settings of the system's contacts, borrowed: set law, limits, epsilon and coupling there. The system reads c and
-  !> never writes into it. Its operator is the system's, and fixed. When the system has gone, c is as if destroyed; c%destroy does nothing to the system.
+  !> never writes into it. Its operator is the system's, and fixed. c is as if destroyed when the system is destroyed; c%destroy
+  !> does nothing to the system.
   subroutine context(this, c, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     type(tribo_context), intent(inout) :: c
@@ -865,7 +867,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine context
 
-  !> For anyone's own integrator: dydt(dimension), and the Jacobian dfdy(i,j) = d(dydt(i))/d(y(j)), dfdt(i) = d(dydt(i))/dt. See
+  !> For integrators of the caller's: dydt(dimension), and the Jacobian dfdy(i,j) = d(dydt(i))/d(y(j)), dfdt(i) = d(dydt(i))/dt. See
   !> accept.
   subroutine derivative(this, t, y, dydt, stat, errmsg)
     class(tribo_system), intent(inout) :: this
@@ -901,7 +903,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine jacobian
 
-  !> What the contacts do in a state: v, feq and f as in balance of a context.
+  !> Velocities v, feq and forces f of the contacts in a state, as balance of a context has them.
   subroutine contacts(this, t, y, v, feq, f, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     real(dp), intent(in) :: t, y(:)
@@ -919,7 +921,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine contacts
 
-  !> slip(ncontact), TRIBO_SLIP_...: what the contacts did where the system last found forces by the law, as contacts does.
+  !> slip(ncontact), TRIBO_SLIP_...: states of the contacts when the system last computed forces by the law, as contacts does.
   subroutine get_slip(this, slip, stat, errmsg)
     class(tribo_system), intent(in) :: this
     integer, intent(inout) :: slip(:)
@@ -965,7 +967,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine accept
 
-  !> What the last call that failed on the system or a driver of it found; empty before any.
+  !> The text of the last error on the system or a driver of it; empty before any.
   function system_message(this) result(text)
     class(tribo_system), intent(in) :: this
     character(len=:), allocatable :: text
@@ -978,8 +980,8 @@ contains
   ! -------------------------------------------------------------------------------------------------------------------- drivers
 
   !> A driver of a system by a method, in any case of letters, and its settings as far as they are given. Coulomb's law: exact,
-  !> event, auto; central/fixed, moreau/fixed. The law of the context: rk4/fixed; adaptive rk2, rk4, rkf45, rkck, rk8pd, rk1imp,
-  !> rk2imp, rk4imp, bsimp, msadams, msbdf. Methods with fixed steps need step; all else has a default.
+  !> event, auto; central/fixed, moreau/fixed. The law of the context: rk4/fixed; with GSL adaptive rk2, rk4, rkf45, rkck,
+  !> rk8pd, rk1imp, rk2imp, rk4imp, bsimp, msadams, msbdf. Methods with fixed steps need step; other settings have defaults.
   !> step      see set_step; abstol, reltol: see set_tolerance, reltol where absent 0; output: see set_output;
   !> max_step  see set_max_step. A method that does not take one of them refuses it, TRIBO_ERR_UNSUPPORTED
   subroutine create(this, sys, method, step, abstol, reltol, output, max_step, stat, errmsg)
@@ -1026,7 +1028,7 @@ contains
     call c_driver_destroy(drv)
   end subroutine set_all
 
-  !> Name of the method; for auto, of the one at work. Empty for a driver that has not been created.
+  !> Name of the method; for auto, of the method in use. Empty for a driver that has not been created.
   function method(this) result(text)
     class(tribo_driver), intent(in) :: this
     character(len=:), allocatable :: text
@@ -1144,7 +1146,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine driver_real
 
-  !> A motion that comes back after a period, from a guess y; see tribo_driver_find_periodic.
+  !> A periodic motion, from a guess y; see tribo_driver_find_periodic.
   subroutine find_periodic(this, t, period, y, stat, errmsg)
     class(tribo_driver), intent(inout) :: this
     real(dp), intent(in) :: t, period
@@ -1195,7 +1197,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine get_freedom
 
-  !> The extremes over that period of c(1:ndof)*q + c(ndof+1:2*ndof)*q', and when it has them, from the t of find_periodic on.
+  !> The extremes over that period of c(1:ndof)*q + c(ndof+1:2*ndof)*q', and their times from the t of find_periodic on.
   subroutine period_extremes(this, c, least, most, at_least, at_most, stat, errmsg)
     class(tribo_driver), intent(in) :: this
     real(dp), intent(in) :: c(:)
@@ -1244,7 +1246,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine period_harmonic
 
-  !> What each contact dissipates in that period, energy(ncontact).
+  !> Energy that each contact dissipates in that period, energy(ncontact).
   subroutine period_dissipation(this, energy, stat, errmsg)
     class(tribo_driver), intent(in) :: this
     real(dp), intent(inout) :: energy(:)
@@ -1260,7 +1262,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine period_dissipation
 
-  !> The share of it for which each contact is at rest, share(ncontact).
+  !> Share of that period for which each contact rests, share(ncontact).
   subroutine period_stick(this, share, stat, errmsg)
     class(tribo_driver), intent(in) :: this
     real(dp), intent(inout) :: share(:)
@@ -1276,8 +1278,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine period_stick
 
-  !> Has observer%seen called from now on, see tribo_observer; without observer, nothing. The observer must have the attribute
-  !> target (or be a pointer) where it is declared, and live as long as it may be called.
+  !> Advances call observer%seen, see tribo_observer; without observer, none. The observer must have the attribute target (or be a
+  !> pointer) where it is declared, and must outlive its use.
   subroutine set_observer(this, observer, stat, errmsg)
     class(tribo_driver), intent(inout) :: this
     class(tribo_observer), intent(inout), optional, target :: observer
@@ -1363,7 +1365,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine set_max_step
 
-  !> What the last call that failed on the driver or its system found; empty before any.
+  !> The text of the last error on the driver or its system; empty before any.
   function driver_message(this) result(text)
     class(tribo_driver), intent(in) :: this
     character(len=:), allocatable :: text
@@ -1373,9 +1375,9 @@ contains
     call message_of(w, text)
   end function driver_message
 
-  ! ------------------------------------------------------------------------------------------------------- what the calls share
+  ! ------------------------------------------------------------------------------------------------------- helpers of the calls
 
-  !> What Fortran keeps of a system or driver; null if it has not been created.
+  !> The record of a system or driver; null if it has not been created.
   function system_of(this) result(held)
     class(tribo_system), intent(in) :: this
     type(held_system), pointer :: held
@@ -1428,7 +1430,7 @@ contains
     w%status = TRIBO_OK
   end subroutine work_on
 
-  !> Gives what a call has created, if it has, to this. given: degrees of freedom of the matrices, ndof where absent.
+  !> If w has no error, makes sys the object of this. given: degrees of freedom of the matrices, ndof where absent.
   subroutine adopt_system(this, w, sys, given)
     class(tribo_system), intent(inout) :: this
     type(work), intent(inout) :: w
@@ -1448,7 +1450,7 @@ contains
     if (w%status /= TRIBO_OK) call release_system(c_loc(held))
   end subroutine adopt_system
 
-  !> The variable has gone: its context has, too.
+  !> The variable is destroyed, and with it the number of the context.
   subroutine release_system(object) bind(c, name='')
     type(c_ptr), value :: object
     type(held_system), pointer :: held
@@ -1468,7 +1470,7 @@ contains
     deallocate (held)
   end subroutine release_driver
 
-  !> One user less; the last one sees to the end.
+  !> One user less; destroys the system after the last one.
   subroutine leave(held)
     type(held_system), pointer, intent(inout) :: held
     held%users = held%users - 1
@@ -1477,7 +1479,7 @@ contains
     deallocate (held)
   end subroutine leave
 
-  !> Passes on what the library sees. SIZE_MAX, the contact of a step, is -1 here.
+  !> Calls the observer for the library. SIZE_MAX, the contact of a step, is -1 here.
   integer(c_int) function tell_observer(seen, data) bind(c, name='')
     type(c_moment), intent(in) :: seen
     type(c_ptr), value :: data
@@ -1516,7 +1518,7 @@ contains
 
 end module tribo_systems
 
-!> What programs use: the module above, and the constants of tribo_dynamics.h.
+!> The module for programs: the module above, and the constants of tribo_dynamics.h.
 module tribo_dynamics
   use tribo_dynamics_constants
   use tribo_systems

@@ -1,5 +1,5 @@
-!> What the modules tribo and tribo_dynamics and the fixed-form routines share: objects by number, sizes of arrays, texts, and how
-!> calls begin and end. Not for programs.
+!> Helpers of the modules tribo and tribo_dynamics and of the fixed-form routines: objects by number, sizes of arrays, texts,
+!> begin and end of calls. Not for programs.
 module tribo_support
   use tribo_c
   use tribo_constants
@@ -15,7 +15,7 @@ module tribo_support
   public :: from_zero, to_int, transpose_in_place
   public :: to_text, message_of
 
-  !> What every type of tribo is: the number of an object of the library, see handle.c. A lent one is destroyed by its owner only.
+  !> The base of all types: the number of an object of the library, see handle.c. Only the owner destroys a lent object.
   type, public :: tribo_object
     private
     integer(c_int64_t) :: handle = 0
@@ -76,7 +76,7 @@ contains
     object_of = c_handle_find(this%handle)
   end function object_of
 
-  !> Gives an object of the library to this, in the place of the one before. remove is what destroys it.
+  !> Makes an object of the library the object of this, in place of the one before. remove destroys it.
   integer(c_int) function adopt(this, object, remove) result(status)
     class(tribo_object), intent(inout) :: this
     type(c_ptr), intent(in) :: object
@@ -91,7 +91,7 @@ contains
     status = TRIBO_OK
   end function adopt
 
-  !> Moves the object of from to this, in the place of the one before.
+  !> Moves the object of from to this, in place of the one before.
   subroutine take(this, from)
     class(tribo_object), intent(inout) :: this, from
     call this%destroy()
@@ -119,7 +119,7 @@ contains
     w%found = c_message(w%ctx)
   end subroutine begin
 
-  !> Begins a call on a const context, of whose failures the library keeps no message.
+  !> Begins a call on a const context: the library keeps no message of its errors.
   subroutine begin_const(this, w)
     class(tribo_object), intent(in) :: this
     type(work), intent(out) :: w
@@ -130,7 +130,7 @@ contains
     if (w%status == TRIBO_OK) w%n = int(n)
   end subroutine begin_const
 
-  !> Ends every call: hands over its status, and the text of an error; without a stat to take it, an error ends the program.
+  !> Ends a call: sets stat, and errmsg on error; without stat an error stops the program.
   subroutine finish(w, stat, errmsg)
     type(work), intent(in) :: w
     integer, intent(out), optional :: stat
@@ -305,7 +305,7 @@ contains
     from_zero = int(i, c_size_t) - 1
   end function from_zero
 
-  !> For an int of C: what that cannot hold is taken to its ends, where the library has no choice and no index.
+  !> For an int of C: values beyond its range become its ends, which are no index and no choice of the library.
   elemental integer(c_int) function to_int(i)
     integer, intent(in) :: i
     to_int = int(max(min(i, int(huge(0_c_int))), -int(huge(0_c_int))), c_int)
@@ -348,7 +348,7 @@ contains
     end if
   end subroutine to_text
 
-  !> What a call that failed found, with indices from 0.
+  !> The text of an error, with indices from 0.
   subroutine failure_of(w, text)
     type(work), intent(in) :: w
     character(len=:), allocatable, intent(out) :: text
@@ -364,7 +364,7 @@ contains
     end if
   end subroutine failure_of
 
-  !> What the last call that failed found: what Fortran noted, or else the library.
+  !> The text of the last error: the one noted by Fortran, or else the library's.
   subroutine message_of(w, text)
     type(work), intent(in) :: w
     character(len=:), allocatable, intent(out) :: text
@@ -388,8 +388,8 @@ contains
   end subroutine message_of
 
   !> A message for Fortran. The library counts from 0 and writes x[i][j]; here it counts from 1, and is x(i,j). In the library's
-  !> messages an index stands in brackets or after one of the words below, and nothing else does (a test sees to that), but in
-  !> quotes, where names stand that were given.
+  !> messages an index stands in brackets or after one of the words below, and no other number does (a test checks this), except in
+  !> quotes, around names given by the caller.
   subroutine from_one(zero, text)
     character(len=*), intent(in) :: zero
     character(len=:), allocatable, intent(out) :: text
