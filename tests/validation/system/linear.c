@@ -349,7 +349,6 @@ static const struct input refused[] = {
     {{2, 1, 1, 2}, {0}, {2, 0, 0, 2}, {1e200, 0}, 2, 0, 0, TRIBO_ERR_NOT_FINITE, "r[0][0] = inf"},
     {{1, 0, 0, 2}, {0}, {2, 0, 0, 2}, {1e200, 0}, 2, 2, 0, TRIBO_ERR_NOT_FINITE, "r[0][0] = inf"},
     {{1, 0, 0, 2}, {0}, {2, -1, -1, 2}, {1, 0}, 2, 3, 0, TRIBO_ERR_SIZE, "nmode = 3 is more than the 2"},
-    {{1, 0, 0, 2}, {0}, {2, -1, -1, 2}, {1, 0}, 2, 1, 1, TRIBO_ERR_UNSUPPORTED, "tribo_system_set_damping_ratio"},
     {{1, 0, 0, 2}, {0}, {2, -1, -1, 2}, {1, 0}, 0, 0, 0, TRIBO_ERR_SIZE, "sizes do not fit"},
     {{1, 0, 0, 2}, {0}, {2, -1, -1, 2}, {1, 0}, SIZE_MAX, 0, 0, TRIBO_ERR_SIZE, "sizes do not fit"},
 };
