@@ -76,7 +76,7 @@ PetscErrorCode CreateStudy(Study *s, const Options *o)
     s->rows = (size_t)rows;
     PetscCheck((size_t)o->load_row <= s->rows, PETSC_COMM_WORLD, PETSC_ERR_ARG_OUTOFRANGE, "-load_row %" PetscInt_FMT ", of %zu",
                o->load_row, s->rows);
-    PetscCallTribo(tribo_model_create(&model, s->rows, s->contacts.count), NULL, "structure of %zu rows", s->rows);
+    PetscCallTribo(tribo_model_create(&model, s->rows, (size_t)s->contacts.count), "no model", "structure of %zu rows", s->rows);
     PetscCall(Convert(&matrix[0], model, tribo_model_set_mass_csr));
     PetscCall(Convert(&matrix[1], model, tribo_model_set_stiffness_csr));
     PetscCall(Convert(&matrix[2], model, tribo_model_set_direction_csr));

@@ -38,14 +38,14 @@ static void chain(char **argument)
 }
 
 /* Contacts "row other limit" a line. */
-struct contacts {
+struct row_contacts {
     size_t count, at[MAX_CONTACTS], to[MAX_CONTACTS]; /* rows from 0; to: as many as there are for the ground */
     double limit[MAX_CONTACTS];
 };
 
-static struct contacts read_contacts(const char *path, size_t rows)
+static struct row_contacts read_row_contacts(const char *path, size_t rows)
 {
-    struct contacts c = {0};
+    struct row_contacts c = {0};
     struct lines l = open_lines(path);
     for (; next_data(&l); c.count++) {
         if (c.count == MAX_CONTACTS) {
@@ -66,7 +66,7 @@ static tribo_system *read_system(char **file, size_t n, double damping)
 {
     tribo_system *sys;
     const struct rows rows = {n, "the arguments"};
-    const struct contacts contacts = read_contacts(file[2], n);
+    const struct row_contacts contacts = read_row_contacts(file[2], n);
     struct structure s = {.ndof = n, .mass = read_matrix(file[0], &rows), .stiffness = read_matrix(file[1], &rows)};
     tribo_model *model = model_of(&s, contacts.count, contacts.at, contacts.to);
     if (damping > 0.0) {

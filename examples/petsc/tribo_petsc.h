@@ -8,7 +8,7 @@
 #include "tribo/tribo.h"
 
 /* message belongs to the handle of the call, tribo_message(contacts) or tribo_driver_message(driver), and counts the contacts of
- * that handle from 0; where, a literal for printf with arguments behind it, tells which of all these are. */
+ * that handle from 0; where, a literal for printf with arguments behind it, names the place among the contacts of all ranks. */
 #define PetscCallTribo(call, message, where, ...)                                                                                \
     do {                                                                                                                         \
         const int tribo_status_ = (call);                                                                                        \
