@@ -8,7 +8,8 @@
 !>
 !> NDOF   degrees of freedom: NDOF of TRBLIN or TRBLSP; of a reduced structure the result of TRBNDF
 !> NFULL  degrees of freedom of the matrices; differs from NDOF in a reduced structure
-!> Y      2*NDOF + 1 values: displacements, velocities, energy that friction has taken
+!> Y      displacements(NDOF), velocities(NDOF), sliders of contacts with compliance, energy that friction has dissipated:
+!>        2*NDOF + 1 values, and one more for each contact with compliance
 !> CV     2*NDOF values: a combination of displacements and velocities
 !>
 !>   TRBLIN(NDOF, N, RM, C, RK, LDM, RJ, LDJ, IH,    RM(LDM,NDOF), C(LDM,NDOF),        IH new: N contacts, limit 0, no loads;
@@ -24,6 +25,11 @@
 !>          IH, TEXT, IERR)                          is 0, static responses of the
 !>                                                   contacts, at most one more
 !>                                                   motion a contact
+!>   TRBMOD(NFULL, N, IRM, ICM, RM, IRC, ICC, C,     all of it: damping, CMP(N) =      IH, TEXT as of TRBLIN
+!>          IRK, ICK, RK, IRJ, ICJ, RJ, CMP,         1/stiffness of the springs in
+!>          NMODE, ISTAT, IH, TEXT, IERR)            series with the sliders, 0: a
+!>                                                   rigid contact; NMODE = 0: not
+!>                                                   reduced
 !>   TRBCLN(IH, IHNEW, IERR)                         IH                                IHNEW a copy that shares nothing, with
 !>                                                                                     loads and tables, without integrator
 !>   TRBNDF(IH, NDOF, IERR)                          IH                                NDOF
@@ -71,7 +77,7 @@
 !>   TRBPER(IH, NDOF, T, PERIOD, Y, IERR)            T, PERIOD of the loads; Y guess   Y at T of a periodic motion
 !> Of the periodic motion found last
 !>   TRBFAM(IH, NFREE, IERR)                                                           NFREE: dimension of the family it belongs to
-!>   TRBMUL(IH, NDOF, RE, AI, IERR)                                                    RE(2*NDOF), AI(2*NDOF): Floquet multipliers
+!>   TRBMUL(IH, NDOF, RE, AI, IERR)                                                    RE, AI: Floquet multipliers, one less than values of Y
 !>   TRBEXT(IH, NDOF, CV, XMIN, XMAX, TMIN, TMAX,    CV(2*NDOF)                        the extremes of CV'Y, and when
 !>          IERR)
 !>   TRBHAR(IH, NDOF, CV, K, XC, XS, IERR)           CV(2*NDOF), K >= 0                XC*COS(K*w*t) + XS*SIN(K*w*t) of CV'Y
@@ -338,6 +344,34 @@ subroutine trblsp(ndof, n, irm, icm, rm, irc, icc, c, irk, ick, rk, irj, icj, rj
   if (ierr == TRIBO_OK) call make_structure(model, ih, text, ierr)
 end subroutine trblsp
 
+subroutine trbmod(nfull, n, irm, icm, rm, irc, icc, c, irk, ick, rk, irj, icj, rj, cmp, nmode, istat, ih, text, ierr)
+  use tribo_fixed_dynamics
+  implicit none
+  integer, intent(in) :: nfull, n, irm(*), icm(*), irc(*), icc(*), irk(*), ick(*), irj(*), icj(*), nmode, istat
+  real(dp), intent(in) :: rm(*), c(*), rk(*), rj(*), cmp(*)
+  integer, intent(inout) :: ih
+  character(len=*), intent(inout) :: text
+  integer, intent(out) :: ierr
+  type(tribo_model) :: model
+
+  ierr = TRIBO_OK
+  call expect_least('NFULL', nfull, 0, text, ierr)
+  call expect_least('N', n, 0, text, ierr)
+  call expect_least('NMODE', nmode, 0, text, ierr)
+  if (ierr == TRIBO_OK) call model%create(nfull, n, ierr, text)
+  call set_rows(model, 'mass', nfull, nfull, irm, icm, rm, text, ierr)
+  call set_rows(model, 'damping', nfull, nfull, irc, icc, c, text, ierr)
+  call set_rows(model, 'stiffness', nfull, nfull, irk, ick, rk, text, ierr)
+  call set_rows(model, 'direction', n, nfull, irj, icj, rj, text, ierr)
+  if (ierr == TRIBO_OK) call model%set_compliance(cmp(:n), ierr, text)
+  if (ierr /= TRIBO_OK) return
+  if (nmode == 0) then
+    call make_structure(model, ih, text, ierr)
+  else
+    call make_structure(model, ih, text, ierr, nmode, istat)
+  end if
+end subroutine trbmod
+
 subroutine trbred(nfull, n, irm, icm, rm, irk, ick, rk, irj, icj, rj, nmode, istat, ih, text, ierr)
   use tribo_fixed_dynamics
   implicit none
@@ -542,7 +576,7 @@ subroutine trbcon(ih, ndof, n, t, y, v, feq, f, ierr)
 
   call find_contacts(ih, s, ierr, n)
   if (ierr == TRIBO_OK) call find_structure(ih, s, ierr, ndof)
-  if (ierr == TRIBO_OK) call s%system%contacts(t, y(:2*ndof + 1), v(:n), feq(:n), f(:n), ierr)
+  if (ierr == TRIBO_OK) call s%system%contacts(t, y(:s%system%dimension()), v(:n), feq(:n), f(:n), ierr)
 end subroutine trbcon
 
 ! ------------------------------------------------------------------------------------------------------------ reduced structures
@@ -609,7 +643,7 @@ subroutine trbder(ih, ndof, t, y, dydt, ierr)
   type(structure), pointer :: s
 
   call find_structure(ih, s, ierr, ndof)
-  if (ierr == TRIBO_OK) call s%system%derivative(t, y(:2*ndof + 1), dydt(:2*ndof + 1), ierr)
+  if (ierr == TRIBO_OK) call s%system%derivative(t, y(:s%system%dimension()), dydt(:s%system%dimension()), ierr)
 end subroutine trbder
 
 subroutine trbjac(ih, ndof, t, y, dfdy, ldj, dfdt, ierr)
@@ -637,7 +671,7 @@ subroutine trbsac(ih, ndof, t, y, ierr)
   type(structure), pointer :: s
 
   call find_structure(ih, s, ierr, ndof)
-  if (ierr == TRIBO_OK) call s%system%accept(t, y(:2*ndof + 1), ierr)
+  if (ierr == TRIBO_OK) call s%system%accept(t, y(:s%system%dimension()), ierr)
 end subroutine trbsac
 
 ! ------------------------------------------------------------------------------------------------------ integrators of the library
@@ -784,7 +818,7 @@ subroutine trbadv(ih, ndof, t, t1, y, ierr)
   type(structure), pointer :: s
 
   call find_driven(ih, s, ierr, ndof)
-  if (ierr == TRIBO_OK) call s%driver%advance(t, t1, y(:2*ndof + 1), ierr)
+  if (ierr == TRIBO_OK) call s%driver%advance(t, t1, y(:s%system%dimension()), ierr)
 end subroutine trbadv
 
 subroutine trbper(ih, ndof, t, period, y, ierr)
@@ -797,7 +831,7 @@ subroutine trbper(ih, ndof, t, period, y, ierr)
   type(structure), pointer :: s
 
   call find_driven(ih, s, ierr, ndof)
-  if (ierr == TRIBO_OK) call s%driver%find_periodic(t, period, y(:2*ndof + 1), ierr)
+  if (ierr == TRIBO_OK) call s%driver%find_periodic(t, period, y(:s%system%dimension()), ierr)
 end subroutine trbper
 
 subroutine trbdct(ih, iwhich, ival, ierr)
@@ -835,7 +869,7 @@ subroutine trbmul(ih, ndof, re, ai, ierr)
   type(structure), pointer :: s
 
   call find_driven(ih, s, ierr, ndof)
-  if (ierr == TRIBO_OK) call s%driver%get_multipliers(re(:2*ndof), ai(:2*ndof), ierr)
+  if (ierr == TRIBO_OK) call s%driver%get_multipliers(re(:s%system%dimension() - 1), ai(:s%system%dimension() - 1), ierr)
 end subroutine trbmul
 
 subroutine trbfam(ih, nfree, ierr)

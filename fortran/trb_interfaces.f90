@@ -357,6 +357,14 @@ module trb_interfaces
       integer, intent(out) :: ierr
     end subroutine trblsp
 
+    subroutine trbmod(nfull, n, irm, icm, rm, irc, icc, c, irk, ick, rk, irj, icj, rj, cmp, nmode, istat, ih, text, ierr)
+      integer, intent(in) :: nfull, n, irm(*), icm(*), irc(*), icc(*), irk(*), ick(*), irj(*), icj(*), nmode, istat
+      double precision, intent(in) :: rm(*), c(*), rk(*), rj(*), cmp(*)
+      integer, intent(inout) :: ih
+      character(len=*), intent(inout) :: text
+      integer, intent(out) :: ierr
+    end subroutine trbmod
+
     subroutine trbred(nfull, n, irm, icm, rm, irk, ick, rk, irj, icj, rj, nmode, istat, ih, text, ierr)
       integer, intent(in) :: nfull, n, irm(*), icm(*), irk(*), ick(*), irj(*), icj(*), nmode, istat
       double precision, intent(in) :: rm(*), rk(*), rj(*)

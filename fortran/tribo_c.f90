@@ -37,7 +37,7 @@ module tribo_constants
   integer, parameter, public :: TRIBO_ERR_STOPPED = 60
   !> the step size fell below what time resolves
   integer, parameter, public :: TRIBO_ERR_STEP = 61
-  !> a function of the caller's failed
+  !> a function of the caller failed
   integer, parameter, public :: TRIBO_ERR_CALLBACK = 62
   !> too many events in too short a time: "central/fixed" and "moreau/fixed" step over them
   integer, parameter, public :: TRIBO_ERR_CHATTER = 63
@@ -55,34 +55,37 @@ module tribo_constants
   integer, parameter, public :: TRIBO_SHARE_LEAST_NORM = 0
   integer, parameter, public :: TRIBO_SHARE_PREVIOUS = 1
 
+  !> slides towards -z, f = limit
   integer, parameter, public :: TRIBO_SLIP_BACK = -1
   integer, parameter, public :: TRIBO_SLIP_STUCK = 0
+  !> slides towards +z, f = -limit
   integer, parameter, public :: TRIBO_SLIP_FORTH = 1
+  !> limit 0, f = 0
   integer, parameter, public :: TRIBO_SLIP_OPEN = 2
-  !> both directions of a planar contact
+  !> slides in the plane; stands at both directions of a planar contact
   integer, parameter, public :: TRIBO_SLIP_PLANE = 3
 
-  !> contacts with slip 0; 0 where tribo_get_slip has none
+  !> contacts with slip 0; 0 if tribo_get_slip fails
   integer, parameter, public :: TRIBO_COUNT_STUCK = 0
   !> sum of the ranks of the matrices that the last call solved with
   integer, parameter, public :: TRIBO_COUNT_RANK = 1
   !> groups of coupled contacts in the operator, and single contacts
   integer, parameter, public :: TRIBO_COUNT_ISLANDS = 2
-  !> islands that had to be solved
+  !> islands solved by the solver
   integer, parameter, public :: TRIBO_COUNT_SOLVES = 3
-  !> islands that needed no solver: a single contact, or none near stick
+  !> islands that need no solver: a single contact, or no contact near stick
   integer, parameter, public :: TRIBO_COUNT_SKIPPED = 4
   !> matrices factorized
   integer, parameter, public :: TRIBO_COUNT_FACTORIZATIONS = 5
   !> contacts that entered or left a stick set
   integer, parameter, public :: TRIBO_COUNT_UPDATES = 6
-  !> reversal marks that tribo_accept has set or cleared
+  !> reversal marks set or cleared by tribo_accept
   integer, parameter, public :: TRIBO_COUNT_REVERSALS = 7
-  !> of the solves: those that ended with the stick set and the factor they began with
+  !> solves that kept the stick set and the factor of the solve before
   integer, parameter, public :: TRIBO_COUNT_REUSED = 8
   !> planar contacts
   integer, parameter, public :: TRIBO_COUNT_PLANAR = 9
-  !> grows with each call that changes a setting or the operator
+  !> calls that changed a setting or the operator
   integer, parameter, public :: TRIBO_COUNT_SETTINGS = 10
 
   integer, parameter, public :: TRIBO_REAL_RESIDUAL = 0

@@ -5,14 +5,14 @@ module tribo_dynamics_constants
   implicit none
   private
 
-  !> sparse factors: systems of many degrees of freedom whose mass matrix is not diagonal
+  !> sparse factors: systems of many degrees of freedom with a mass matrix that is not diagonal
   integer, parameter, public :: TRIBO_FEATURE_CHOLMOD = 0
 
   integer, parameter, public :: TRIBO_STATICS_NONE = 0
   integer, parameter, public :: TRIBO_STATICS_MASS = 1
   integer, parameter, public :: TRIBO_STATICS_COMPLIANCE = 2
 
-  !> end of a step, output, end of an advance, or an event at which no contact changes
+  !> end of a step, output, end of an advance, or an event without a change of a contact
   integer, parameter, public :: TRIBO_MOMENT_STEP = 0
   !> a contact comes to rest
   integer, parameter, public :: TRIBO_MOMENT_STICK = 1
@@ -27,19 +27,19 @@ module tribo_dynamics_constants
 
   !> accepted steps
   integer, parameter, public :: TRIBO_COUNT_STEPS = 100
-  !> steps tried and undone
+  !> rejected steps
   integer, parameter, public :: TRIBO_COUNT_REJECTED = 101
   !> evaluations of the right-hand side
   integer, parameter, public :: TRIBO_COUNT_EVALUATIONS = 102
-  !> evaluations of its Jacobian
+  !> evaluations of the Jacobian of the right-hand side
   integer, parameter, public :: TRIBO_COUNT_JACOBIANS = 103
   !> events located
   integer, parameter, public :: TRIBO_COUNT_EVENTS = 104
-  !> periods integrated by tribo_driver_find_periodic, of each search rounded up
+  !> periods integrated by tribo_driver_find_periodic, rounded up for each search
   integer, parameter, public :: TRIBO_COUNT_PERIODS = 105
-  !> steps of Newton's method of these searches
+  !> Newton steps of tribo_driver_find_periodic
   integer, parameter, public :: TRIBO_COUNT_NEWTON = 106
-  !> degrees of freedom that steps left out since nothing moved there
+  !> degrees of freedom at rest that steps skipped
   integer, parameter, public :: TRIBO_COUNT_RESTED = 107
 
   !> the largest force of a contact at rest beyond its limit

@@ -10,6 +10,7 @@ C     call (legacy_structures.c), then the errors.
       CALL SPARSE(.FALSE.)
       CALL SPARSE(.TRUE.)
       CALL SCEND
+      CALL ELASTC
       CALL CREATE
       CALL NODRIV
       CALL WRONG
@@ -240,6 +241,55 @@ C     Counts the steps, sums their times, and ends the run at the last.
       IPAR(1) = IPAR(1) + 1 + KIND + ICON
       RPAR(1) = RPAR(1) + T*Y(NY)
       IF (IPAR(1) .EQ. IPAR(2)) ISTOP = 1
+      END
+C
+C     x'' + 0.1 x' + x + f = cos 1.1 t, f of a slider of limit 0.5 on a
+C     spring of 1: the amplitude is 3.38660810; also of the only mode.
+      SUBROUTINE ELASTC
+      INTEGER IH, IERR, IRM(2), ICM(1), K, NDOF
+      DOUBLE PRECISION ONE(1), C(1), CMP(1), ZERO(1), HALF(1), Y(4)
+      DOUBLE PRECISION CV(2), XMIN, XMAX, TMIN, TMAX, RE(4), AI(4)
+      CHARACTER*80 TEXT
+      DATA IRM /1, 2/, ICM /1/, ONE /1D0/, C /0.1D0/, CMP /1D0/
+      DATA ZERO /0D0/, HALF /0.5D0/, CV /1D0, 0D0/
+      DO 10 K = 0, 1
+         CALL TRBMOD(1, 1, IRM, ICM, ONE, IRM, ICM, C, IRM, ICM, ONE,
+     1               IRM, ICM, ONE, CMP, K, 0, IH, TEXT, IERR)
+         CALL EXPECT('TRBMOD', IERR .EQ. 0)
+         CALL TRBNDF(IH, NDOF, IERR)
+         CALL EXPECT('one degree of freedom', NDOF .EQ. 1)
+         CALL TRBLIM(IH, 1, HALF, IERR)
+         CALL TRBLOD(IH, 1, 1.1D0, ONE, ZERO, IERR)
+         CALL TRBDRV(IH, 'exact', 0D0, 0D0, 0D0, IERR)
+         Y(1) = 0D0
+         Y(2) = 0D0
+         Y(3) = 0D0
+         Y(4) = 0D0
+         RE(4) = -7D0
+         CALL TRBPER(IH, 1, 0D0, 2D0*ACOS(-1D0)/1.1D0, Y, IERR)
+         CALL EXPECT('TRBPER', IERR .EQ. 0)
+         CALL TRBEXT(IH, 1, CV, XMIN, XMAX, TMIN, TMAX, IERR)
+         CALL EXPECT('amplitude', ABS(XMAX - 3.38660810D0) .LT. 1D-7)
+         CALL TRBMUL(IH, 1, RE, AI, IERR)
+         CALL EXPECT('three multipliers', IERR .EQ. 0 .AND.
+     1               ABS(RE(4) + 7D0) .LT. 1D-9)
+         CALL TRBDEL(IH, IERR)
+   10 CONTINUE
+      IH = -777
+      CMP(1) = -1D0
+      CALL TRBMOD(1, 1, IRM, ICM, ONE, IRM, ICM, C, IRM, ICM, ONE,
+     1            IRM, ICM, ONE, CMP, 0, 0, IH, TEXT, IERR)
+      CALL SAYS('CMP', IERR, 3, TEXT, 'compliance(1) = -1 is negative')
+      CALL TRBMOD(1, 1, IRM, ICM, ONE, IRM, ICM, C, IRM, ICM, ONE,
+     1            IRM, ICM, ONE, CMP, -1, 0, IH, TEXT, IERR)
+      CALL SAYS('NMODE', IERR, 6, TEXT, 'NMODE = -1 is less than 0')
+      CALL TRBMOD(1, -1, IRM, ICM, ONE, IRM, ICM, C, IRM, ICM, ONE,
+     1            IRM, ICM, ONE, CMP, 0, 0, IH, TEXT, IERR)
+      CALL SAYS('N', IERR, 6, TEXT, 'N = -1 is less than 0')
+      CALL TRBMOD(-1, 1, IRM, ICM, ONE, IRM, ICM, C, IRM, ICM, ONE,
+     1            IRM, ICM, ONE, CMP, 0, 0, IH, TEXT, IERR)
+      CALL SAYS('NFULL', IERR, 6, TEXT, 'NFULL = -1 is less than 0')
+      CALL EXPECT('no handle', IH .EQ. -777)
       END
 C
 C     Nothing is made of what is wrong, and the handle stays as it was.
