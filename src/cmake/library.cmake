@@ -71,18 +71,20 @@ endfunction()
 # The caller adds what is its own by target_link_libraries, and installs its headers or modules. C and Fortran sources.
 #
 #   tribo_library(<target> EXPORT <name> MAP <file> DESCRIPTION <text> SOURCES <file>...
-#                 [INCLUDES <folder>...] [REQUIRES <package>...] [REQUIRES_PRIVATE <package>...] [LIBS_PRIVATE <flag>...])
+#                 [INCLUDES <folder>...] [CFLAGS <flag>...] [REQUIRES <package>...] [REQUIRES_PRIVATE <package>...]
+#                 [LIBS_PRIVATE <flag>...])
 #
 #   <target>          is also the name of its pkg-config package
 #   EXPORT            the target is tribo::<name>, in the tree and installed; <name> is its component in find_package(tribo)
 #   MAP               version script with the library's symbols
 #   DESCRIPTION       one line, for pkg-config
-#   INCLUDES          further include folders of consumers, relative to the installed include folder (e.g. of modules)
+#   INCLUDES          further include folders of consumers, under the prefix (e.g. of modules)
+#   CFLAGS            further flags of consumers, for pkg-config
 #   REQUIRES          pkg-config packages whose headers or modules a consumer sees through those of this one
 #   REQUIRES_PRIVATE  pkg-config packages that this library needs by itself
 #   LIBS_PRIVATE      the same for libraries that pkg-config does not know
 function(tribo_library target)
-  cmake_parse_arguments(ARG "" "EXPORT;MAP;DESCRIPTION" "SOURCES;INCLUDES;REQUIRES;REQUIRES_PRIVATE;LIBS_PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "EXPORT;MAP;DESCRIPTION" "SOURCES;INCLUDES;CFLAGS;REQUIRES;REQUIRES_PRIVATE;LIBS_PRIVATE" ${ARGN})
   add_library(${target} ${ARG_SOURCES})
   add_library(tribo::${ARG_EXPORT} ALIAS ${target})
   # A new SOVERSION is due when a symbol goes, or what a call means changes: the major version. The installed libraries find each
@@ -92,9 +94,8 @@ function(tribo_library target)
   if(NOT CMAKE_INSTALL_RPATH)
     set_target_properties(${target} PROPERTIES INSTALL_RPATH "$ORIGIN")
   endif()
-  list(TRANSFORM ARG_INCLUDES PREPEND "${CMAKE_INSTALL_INCLUDEDIR}/" OUTPUT_VARIABLE includes)
   target_include_directories(${target} PUBLIC
-    "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR};${includes}>")
+    "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR};${ARG_INCLUDES}>")
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/src")
   # Products and sums stay apart, so that every variant of a kernel gives the same bits.
   target_compile_options(${target} PRIVATE
@@ -119,8 +120,12 @@ function(tribo_library target)
     set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS "${ARG_MAP}")
   endif()
 
-  install(TARGETS ${target} EXPORT tribo_${ARG_EXPORT})
-  install(EXPORT tribo_${ARG_EXPORT} NAMESPACE tribo:: FILE tribo-${ARG_EXPORT}.cmake DESTINATION "${TRIBO_CMAKE_DIR}")
+  install(TARGETS ${target} EXPORT tribo_${ARG_EXPORT}
+    RUNTIME COMPONENT runtime
+    LIBRARY COMPONENT runtime NAMELINK_COMPONENT development
+    ARCHIVE COMPONENT development)
+  install(EXPORT tribo_${ARG_EXPORT} NAMESPACE tribo:: FILE tribo-${ARG_EXPORT}.cmake DESTINATION "${TRIBO_CMAKE_DIR}"
+    COMPONENT development)
   set_property(GLOBAL APPEND PROPERTY TRIBO_COMPONENTS ${ARG_EXPORT})
   tribo_pkgconfig(${target})
 endfunction()
@@ -131,8 +136,13 @@ function(tribo_pkgconfig target)
   file(RELATIVE_PATH prefix "${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig" "${CMAKE_INSTALL_PREFIX}")
   file(RELATIVE_PATH libdir "${CMAKE_INSTALL_PREFIX}" "${CMAKE_INSTALL_FULL_LIBDIR}")
   file(RELATIVE_PATH includedir "${CMAKE_INSTALL_PREFIX}" "${CMAKE_INSTALL_FULL_INCLUDEDIR}")
-  list(TRANSFORM ARG_INCLUDES PREPEND " -I\${includedir}/" OUTPUT_VARIABLE cflags)
-  list(JOIN cflags "" cflags)
+  set(cflags ${ARG_CFLAGS})
+  foreach(folder IN LISTS ARG_INCLUDES)
+    get_filename_component(folder "${folder}" ABSOLUTE BASE_DIR "${CMAKE_INSTALL_PREFIX}")
+    file(RELATIVE_PATH folder "${CMAKE_INSTALL_PREFIX}" "${folder}")
+    list(APPEND cflags "-I\${prefix}/${folder}")
+  endforeach()
+  list(JOIN cflags " " cflags)
   set(requires ${ARG_REQUIRES})
   set(requires_private ${ARG_REQUIRES_PRIVATE})
   set(libs "-L\${libdir} -l${target}")
@@ -151,7 +161,7 @@ function(tribo_pkgconfig target)
   list(JOIN requires ", " requires)
   list(JOIN requires_private ", " requires_private)
   configure_file("${PROJECT_SOURCE_DIR}/src/cmake/library.pc.in" "${CMAKE_CURRENT_BINARY_DIR}/${target}.pc" @ONLY)
-  install(FILES "${CMAKE_CURRENT_BINARY_DIR}/${target}.pc" DESTINATION "${TRIBO_PKGCONFIG_DIR}")
+  install(FILES "${CMAKE_CURRENT_BINARY_DIR}/${target}.pc" DESTINATION "${TRIBO_PKGCONFIG_DIR}" COMPONENT development)
 endfunction()
 
 # Links what no consumer of the target sees: in a shared library the installed target does not name the dependency.

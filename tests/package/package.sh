@@ -144,6 +144,46 @@ install) # <cmake option>...
     mv "$WORK/prefix" "$WORK/elsewhere"
     ;;
 
+components) # Each component alone holds what its name says; the three together are the whole.
+    out=$WORK/components
+    rm -rf "$out"
+    for component in runtime development tool; do
+        "$CMAKE" --install "$WORK/build" --prefix "$out/$component" --component $component
+        (cd "$out/$component" && find . ! -type d ! -name LICENSE | sort) >"$out/$component.list"
+        [ -f "$out/$component/share/doc/tribo/LICENSE" ] || {
+            say "$component comes without LICENSE"
+            exit 1
+        }
+    done
+    (cd "$WORK/elsewhere" && find . ! -type d ! -name LICENSE | sort) >"$out/whole.list"
+    sort "$out/runtime.list" "$out/development.list" "$out/tool.list" | diff "$out/whole.list" -
+    if grep -v '^\./lib/libtribo[a-z0-9_]*\.so\.[0-9.]*$' "$out/runtime.list" || grep '\.so\.' "$out/development.list"; then
+        say "not of this component"
+        exit 1
+    fi
+    cp -a "$out/runtime/lib" "$out/tool"
+    [ ! -e "$out/tool/bin" ] || "$out/tool/bin/tribo-damper" --version
+    ;;
+
+again) # <cmake option>...: the tree as git archives it, in another folder, builds and installs the same bytes. The objects are new.
+    again=$WORK/again/in/another/folder
+    rm -rf "$WORK/again"
+    mkdir -p "$again"
+    if [ -e "$ROOT/.git" ]; then
+        tree=$(git -C "$ROOT" stash create) # what is not committed yet; empty if there is nothing
+        git -C "$ROOT" archive "${tree:-HEAD}" | tar -xf - -C "$again"
+    else
+        tar --exclude=./build -cf - -C "$ROOT" . | tar -xf - -C "$again"
+    fi
+    cd "$again"
+    export CCACHE_DISABLE=1
+    "$CMAKE" "$@" -DCMAKE_INSTALL_PREFIX="$WORK/again/prefix" -DCMAKE_INSTALL_LIBDIR=lib
+    "$CMAKE" --build build/release --parallel 2
+    "$CMAKE" --install build/release
+    diff -r "$WORK/elsewhere" "$WORK/again/prefix"
+    rm -rf "$WORK/again"
+    ;;
+
 find_package) # <source> <language> <component> [OPTIONAL_COMPONENTS <component>...]
     consume "find_package-$1" -DCMAKE_PREFIX_PATH="$WORK/elsewhere" -DCONSUMERS="$*"
     ;;
