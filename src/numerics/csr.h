@@ -1,26 +1,63 @@
-/* Square or rectangular matrices in compressed rows: how operators arrive. These allocate. */
+/* Matrices in compressed rows: row i has the entries first[i] to first[i + 1] - 1. */
 #ifndef TRIBO_CSR_H
 #define TRIBO_CSR_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 struct csr {
-    size_t n;
-    size_t *first, *col; /* first has the memory of all */
+    size_t n;      /* rows */
+    size_t *first; /* [n + 1]; owns the memory of all three arrays */
+    size_t *col;
     double *val;
 };
 
-int tribo_csr_create(struct csr *a, size_t n, size_t entries); /* 1, or 0 if out of memory; first is all 0 */
+/* Allocates a of n rows with room for entries; first is all 0. Returns 1, or 0 if out of memory. */
+int tribo_csr_create(struct csr *a, size_t n, size_t entries);
 void tribo_csr_free(struct csr *a);
 
-/* b = a', columns sorted, a being [n][columns]. */
+/* b = a', columns ascending, for a [n][columns]. Returns 1, or 0 if out of memory. */
 int tribo_csr_transpose(struct csr *b, size_t n, size_t columns, const size_t *rowptr, const size_t *col, const double *val);
 
-/* The entry at (i, j), or NULL. Columns are sorted. */
+/* Returns the entry at (i, j), or NULL. Columns ascend. */
 double *tribo_csr_entry(const struct csr *a, size_t i, size_t j);
 
-/* a = J diag(w) J', columns sorted; t is J'. */
+/* a = J diag(w) J', columns ascending, for J [n][t->n] in compressed rows and t = J'. Returns 1, or 0 if out of memory. */
 int tribo_csr_product(struct csr *a, size_t n, const struct csr *t, const double *w, const size_t *rowptr, const size_t *col,
                       const double *val);
+
+/* Returns the place of entry (i, j) in col, or SIZE_MAX. Columns ascend. */
+static inline size_t tribo_rows_find(const size_t *first, const size_t *col, size_t i, size_t j)
+{
+    size_t lo = first[i], hi = first[i + 1];
+    while (lo < hi) {
+        const size_t mid = lo + (hi - lo) / 2;
+        if (col[mid] < j) {
+            lo = mid + 1;
+        } else {
+            hi = mid;
+        }
+    }
+    return lo < first[i + 1] && col[lo] == j ? lo : SIZE_MAX;
+}
+
+/* Fills to_first [cols + 2], all 0, to_col and to_val with the transpose of a matrix [rows][cols]. */
+static inline void tribo_rows_transpose(size_t rows, size_t cols, const size_t *first, const size_t *col, const double *val,
+                                        size_t *to_first, size_t *to_col, double *to_val)
+{
+    size_t *next = to_first + 1; /* next[j]: place of the next entry of row j; at the end, the begin of row j + 1 */
+    for (size_t k = 0; k < first[rows]; k++) {
+        next[col[k] + 1]++;
+    }
+    for (size_t j = 0; j < cols; j++) {
+        next[j + 1] += next[j];
+    }
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t k = first[i]; k < first[i + 1]; k++) {
+            to_col[next[col[k]]] = i;
+            to_val[next[col[k]]++] = val[k];
+        }
+    }
+}
 
 #endif

@@ -2,26 +2,28 @@
 #include "common/layout.h"
 #include "common/real.h"
 #include "common/simd.h"
+#include "csr.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* As in the core: entries (i,j) and (j,i) may differ by rounding of whoever computed them. */
+/* Entries (i, j) and (j, i) may differ by this part of their size: rounding of the program that computed them. */
 #define ASYMMETRY 1e-10
+
+/* Diagonals that a matrix is stored by, at most. */
+enum { MOST_DIAGONALS = 16 };
 
 void tribo_matrix_free(struct matrix *a)
 {
     if (a->first) {
         free(a->first);
         free(a->offset);
-        free(a->block);
-        free(a->fast);
     }
     *a = (struct matrix){0};
 }
 
-static void lay_out_matrix(struct matrix *a, struct layout *l, size_t entries)
+static void lay_out_rows(struct matrix *a, struct layout *l, size_t entries)
 {
     a->first = tribo_layout_array(l, a->rows + 2, sizeof *a->first);
     a->col = tribo_layout_array(l, entries + 1, sizeof *a->col);
@@ -32,37 +34,31 @@ static int matrix_create(struct matrix *a, size_t rows, size_t cols, size_t entr
 {
     struct layout l = {0};
     *a = (struct matrix){.rows = rows, .cols = cols};
-    lay_out_matrix(a, &l, entries);
-    if (!tribo_layout_create(&l)) {
+    do {
+        lay_out_rows(a, &l, entries);
+    } while (!l.memory && tribo_layout_create(&l));
+    if (!l.memory) {
         *a = (struct matrix){0};
         return 0;
     }
-    lay_out_matrix(a, &l, entries);
     memset(a->first, 0, (rows + 2) * sizeof *a->first);
     return 1;
 }
 
-/* Where the diagonal (j - i) of entry (i, j) is counted. */
-static size_t diagonal(const struct matrix *a, size_t i, size_t j)
-{
-    return j + a->rows - i;
-}
-
-static size_t matrix_blocks_of(const struct matrix *a)
+static size_t blocks_of(const struct matrix *a)
 {
     return (a->rows + MATRIX_BLOCK - 1) / MATRIX_BLOCK;
 }
 
-/* A block that is like the one before it is not stored again: what is not stored is not read either. */
-static void take_diagonals(struct matrix *a)
+/* Fills fast from val. A block equal to the block before is not stored twice: less memory to read. */
+static void fill_blocks(struct matrix *a)
 {
     const size_t size = a->diagonals * MATRIX_BLOCK;
     size_t used = (size_t)(tribo_aligned(a->fast) - a->fast);
-    for (size_t b = 0; b < matrix_blocks_of(a); b++) {
-        /* to [diagonals][MATRIX_BLOCK] = block b of the diagonals. */
+    for (size_t b = 0; b < blocks_of(a); b++) {
         double *to = a->fast + used;
         const size_t begin = b * MATRIX_BLOCK, end = begin + MATRIX_BLOCK < a->rows ? begin + MATRIX_BLOCK : a->rows;
-        memset(to, 0, a->diagonals * MATRIX_BLOCK * sizeof *to);
+        memset(to, 0, size * sizeof *to);
         for (size_t i = begin; i < end; i++) {
             size_t d = 0;
             for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
@@ -72,75 +68,55 @@ static void take_diagonals(struct matrix *a)
                 to[d * MATRIX_BLOCK + i - begin] = a->val[k];
             }
         }
-        const int same = b > 0 && memcmp(a->fast + a->block[b - 1], a->fast + used, size * sizeof *a->fast) == 0;
+        const int same = b > 0 && memcmp(a->fast + a->block[b - 1], to, size * sizeof *to) == 0;
         a->block[b] = same ? a->block[b - 1] : used;
         used += same ? 0 : size;
     }
 }
 
-/* The diagonals that place numbers, from 1 on. 1, or 0 if out of memory. */
-static int create_diagonals(struct matrix *a, size_t diagonals, const size_t *place)
+/* offset [MOST_DIAGONALS] = the diagonals j - i that a has entries on, ascending. Returns their number, or 0 if they are too many,
+ * or more than half empty. */
+static size_t find_diagonals(const struct matrix *a, ptrdiff_t *offset)
 {
-    a->diagonals = diagonals;
-    if (a->rows <= MATRIX_FEW) {
-        return 1;
-    }
-    a->offset = malloc(diagonals * sizeof *a->offset);
-    if (!a->offset) {
-        return 0;
-    }
-    for (size_t d = 0; d < a->rows + a->cols + 1; d++) {
-        if (place[d]) {
-            a->offset[place[d] - 1] = (ptrdiff_t)d - (ptrdiff_t)a->rows;
-        }
-    }
-    a->block = malloc(matrix_blocks_of(a) * sizeof *a->block);
-    a->fast = malloc((matrix_blocks_of(a) * diagonals * MATRIX_BLOCK + TRIBO_LINE) * sizeof *a->fast);
-    if (!a->block || !a->fast) {
-        return 0;
-    }
-    take_diagonals(a);
-    return 1;
-}
-
-/* Fills `fast` if that pays: with diagonals if half of their entries are not zero, with all entries if a third of them is not. */
-static int speed_up(struct matrix *a)
-{
-    enum { SHORT = 5 * MATRIX_FEW + 1 };
-    const size_t entries = a->first[a->rows], count = a->rows + a->cols + 1;
-    size_t few[SHORT] = {0}, *more = count > SHORT ? calloc(count, sizeof *more) : NULL, *place = more ? more : few;
-    if (count > SHORT && !more) {
-        tribo_matrix_free(a);
-        return 0;
-    }
+    size_t count = 0;
     for (size_t i = 0; i < a->rows; i++) {
         for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            place[diagonal(a, i, a->col[k])] = 1;
+            const ptrdiff_t d = (ptrdiff_t)a->col[k] - (ptrdiff_t)i;
+            size_t at = 0;
+            while (at < count && offset[at] < d) {
+                at++;
+            }
+            if (at == count || offset[at] != d) {
+                if (count == MOST_DIAGONALS) {
+                    return 0;
+                }
+                memmove(offset + at + 1, offset + at, (count - at) * sizeof *offset);
+                offset[at] = d;
+                count++;
+            }
         }
     }
-    size_t diagonals = 0;
-    for (size_t d = 0; d < count; d++) {
-        place[d] = place[d] ? ++diagonals : 0;
-    }
-    int done = 1;
-    if (entries && diagonals * a->rows <= 2 * entries && diagonals <= 16) {
-        done = create_diagonals(a, diagonals, place);
-    } else if (!tribo_matrix_is_small(a) && entries >= a->rows * a->cols / 3) {
-        a->fast = tribo_matrix_to_dense(a);
-        done = a->fast != NULL;
-    }
-    free(more);
-    if (!done) {
-        tribo_matrix_free(a);
-    }
-    return done;
+    return count * a->rows <= 2 * a->first[a->rows] ? count : 0;
 }
 
-/* With what speeds up products. */
+/* Adds the diagonals to complete rows, and sets identity. Returns 1, or 0 with a freed if out of memory. */
 static int matrix_finish(struct matrix *a)
 {
-    if (!speed_up(a)) {
-        return 0;
+    ptrdiff_t offset[MOST_DIAGONALS];
+    a->diagonals = find_diagonals(a, offset);
+    if (a->diagonals && a->rows > MATRIX_FEW) {
+        struct layout l = {0};
+        do {
+            a->offset = tribo_layout_array(&l, a->diagonals, sizeof *a->offset);
+            a->block = tribo_layout_array(&l, blocks_of(a), sizeof *a->block);
+            a->fast = tribo_layout_array(&l, blocks_of(a) * a->diagonals * MATRIX_BLOCK + TRIBO_LINE, sizeof *a->fast);
+        } while (!l.memory && tribo_layout_create(&l));
+        if (!l.memory) {
+            tribo_matrix_free(a);
+            return 0;
+        }
+        memcpy(a->offset, offset, a->diagonals * sizeof *offset);
+        fill_blocks(a);
     }
     a->identity = a->rows == a->cols && a->diagonals == 1;
     for (size_t i = 0; a->identity && i < a->rows; i++) {
@@ -229,7 +205,7 @@ int tribo_matrix_sum(struct matrix *to, double factor, const struct matrix *a, d
     return matrix_finish(to);
 }
 
-/* order_out = order_in (NULL: 0, 1, ...), stably sorted by key. start [keys + 1] is workspace. */
+/* order_out [n] = order_in [n] (NULL: 0, 1, ...), stably sorted by key [n] < keys. start [keys + 1] is workspace. */
 static void counting_sort(size_t keys, size_t n, const size_t *key, const size_t *order_in, size_t *order_out, size_t *start)
 {
     memset(start, 0, (keys + 1) * sizeof *start);
@@ -275,19 +251,7 @@ int tribo_matrix_transpose(struct matrix *a, const struct matrix *from)
     if (!matrix_create(a, from->cols, from->rows, entries)) {
         return 0;
     }
-    size_t *next = a->first + 1; /* where the next entry of a row goes: at last, where the next row begins */
-    for (size_t k = 0; k < entries; k++) {
-        next[from->col[k] + 1]++;
-    }
-    for (size_t i = 0; i < a->rows; i++) {
-        next[i + 1] += next[i];
-    }
-    for (size_t i = 0; i < from->rows; i++) {
-        for (size_t k = from->first[i]; k < from->first[i + 1]; k++) {
-            a->col[next[from->col[k]]] = i;
-            a->val[next[from->col[k]]++] = from->val[k];
-        }
-    }
+    tribo_rows_transpose(from->rows, from->cols, from->first, from->col, from->val, a->first, a->col, a->val);
     return matrix_finish(a);
 }
 
@@ -333,17 +297,15 @@ void tribo_matrix_keep_lower(struct matrix *a)
         }
         a->first[i + 1] = count;
     }
-    /* Memory behind the entries kept is given back where a smaller piece is to be had. */
+    /* Moves the arrays together, and returns the memory behind them. */
     const double *val = a->val;
     struct layout l = {(char *)a->first, 0};
-    lay_out_matrix(a, &l, count);
+    lay_out_rows(a, &l, count);
     memmove(a->val, val, count * sizeof *val);
     char *less = realloc(l.memory, l.used + 1);
     l = (struct layout){less ? less : l.memory, 0};
-    lay_out_matrix(a, &l, count);
+    lay_out_rows(a, &l, count);
     free(a->offset);
-    free(a->block);
-    free(a->fast);
     a->offset = NULL;
     a->block = NULL;
     a->fast = NULL;
@@ -357,33 +319,16 @@ void tribo_matrix_scale_rows(struct matrix *a, const double *factor)
         for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
             a->val[k] *= factor[i];
         }
-        for (size_t j = 0; a->fast && !a->diagonals && j < a->cols; j++) {
-            a->fast[i * a->cols + j] *= factor[i];
-        }
     }
-    if (a->diagonals && a->fast) {
-        take_diagonals(a);
+    if (a->fast) {
+        fill_blocks(a);
     }
 }
 
 double tribo_matrix_get(const struct matrix *a, size_t i, size_t j)
 {
-    size_t lo = a->first[i], hi = a->first[i + 1];
-    while (lo < hi) {
-        const size_t mid = lo + (hi - lo) / 2;
-        if (a->col[mid] < j) {
-            lo = mid + 1;
-        } else {
-            hi = mid;
-        }
-    }
-    return lo < a->first[i + 1] && a->col[lo] == j ? a->val[lo] : 0.0;
-}
-
-/* What entry (i, j) is to be seen beside: its own size, or that of the diagonal. */
-static double matrix_size_at(const struct matrix *a, size_t i, size_t j, double own)
-{
-    return greater(own, sqrt(fabs(tribo_matrix_get(a, i, i))) * sqrt(fabs(tribo_matrix_get(a, j, j))));
+    const size_t at = tribo_rows_find(a->first, a->col, i, j);
+    return at == SIZE_MAX ? 0.0 : a->val[at];
 }
 
 int tribo_matrix_flaw(const struct matrix *a, int symmetric, size_t *row, size_t *column, double *value, double *mirror)
@@ -398,9 +343,12 @@ int tribo_matrix_flaw(const struct matrix *a, int symmetric, size_t *row, size_t
             if (!isfinite(*value)) {
                 return 1;
             }
-            if (*value != *mirror &&
-                fabs(*value - *mirror) > ASYMMETRY * matrix_size_at(a, i, j, greater(fabs(*value), fabs(*mirror)))) {
-                return 1;
+            if (*value != *mirror) {
+                const double own = greater(fabs(*value), fabs(*mirror));
+                const double roots = sqrt(fabs(tribo_matrix_get(a, i, i))) * sqrt(fabs(tribo_matrix_get(a, j, j)));
+                if (fabs(*value - *mirror) > ASYMMETRY * greater(own, roots)) {
+                    return 1;
+                }
             }
         }
     }

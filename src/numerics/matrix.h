@@ -1,29 +1,30 @@
-/* Real matrices as the right-hand sides multiply with them: compressed rows, and beside them, where that is faster, full
- * diagonals (chains, diagonal matrices) or all entries. */
+/* Real matrices in compressed rows, and, for chains and diagonal matrices, the same entries by diagonals, with which products are
+ * two to three times as fast. */
 #ifndef TRIBO_MATRIX_H
 #define TRIBO_MATRIX_H
 
 #include <math.h>
 #include <stddef.h>
 
-/* Products with matrices, and what goes with them, are done in blocks of so many rows, which stay in the first-level cache. */
+/* Rows of a block: products, and loops that go with them, pass over blocks, which stay in the first-level cache. */
 enum { MATRIX_BLOCK = 128 };
 
-/* So few rows are multiplied with sooner entry by entry, and have no blocks. */
+/* Matrices of at most MATRIX_FEW rows are multiplied entry by entry, and have no blocks. */
 enum { MATRIX_FEW = 4 };
 
 struct matrix {
     size_t rows, cols;
-    size_t *first, *col; /* row i: entries first[i] to first[i+1] - 1, columns ascending; first has the memory of all three */
+    size_t *first;     /* [rows + 1] row i has the entries first[i] to first[i + 1] - 1; owns the memory of col and val */
+    size_t *col;       /* columns, ascending in each row */
     double *val;
-    size_t diagonals;  /* number of full ones; 0 if `fast` has none, or all entries */
-    ptrdiff_t *offset; /* of these, and all that follows: NULL if rows are few */
-    size_t *block;     /* of diagonals: where in `fast` each block of rows stands; such as are equal stand in one place */
-    double *fast;      /* [blocks that differ][diagonals][MATRIX_BLOCK] or [rows][cols] or NULL */
-    int identity;      /* multiplying with it changes nothing */
+    size_t diagonals;  /* diagonals that hold all entries; 0: too many, or mostly empty */
+    ptrdiff_t *offset; /* [diagonals] j - i, ascending; NULL if rows are few; owns the memory of block and fast */
+    size_t *block;     /* [blocks] places in fast; equal neighbouring blocks share one place */
+    double *fast;      /* [places][diagonals][MATRIX_BLOCK] entries by diagonals */
+    int identity;      /* 1: A x = x */
 };
 
-/* All return 1, or 0 if out of memory. The results are zeroed on failure; tribo_matrix_free takes those too. */
+/* Each returns 1, or 0 with a zeroed if out of memory. tribo_matrix_free takes a zeroed a. */
 int tribo_matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const double *entries);
 int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_t n, const size_t *i, const size_t *j,
                                const double *v);
@@ -32,15 +33,15 @@ int tribo_matrix_copy(struct matrix *a, const struct matrix *from);
 int tribo_matrix_transpose(struct matrix *a, const struct matrix *from);
 int tribo_matrix_sum(struct matrix *to, double factor, const struct matrix *a, double other, const struct matrix *b);
 
-/* A copy of count things of size bytes each, NULL for NULL. *done becomes 0 if out of memory. */
+/* Returns a copy of count objects of size bytes, or NULL for NULL. Sets *done = 0 if out of memory. */
 void *tribo_copy_of(const void *from, size_t count, size_t size, int *done);
 
 void tribo_matrix_free(struct matrix *a);
 
-/* y += |A| |x|, entry by entry. */
+/* y += |A| |x|. */
 void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y);
 
-/* Row i of A times x. */
+/* Returns (A x)_i. */
 static inline double tribo_matrix_row_dot(const struct matrix *a, size_t i, const double *x)
 {
     double sum = 0.0;
@@ -50,7 +51,7 @@ static inline double tribo_matrix_row_dot(const struct matrix *a, size_t i, cons
     return sum;
 }
 
-/* The same of absolute values. */
+/* Returns (|A| |x|)_i. */
 static inline double tribo_matrix_row_size(const struct matrix *a, size_t i, const double *x)
 {
     double sum = 0.0;
@@ -60,18 +61,16 @@ static inline double tribo_matrix_row_size(const struct matrix *a, size_t i, con
     return sum;
 }
 
-/* y [end - begin] += factor times rows begin to end - 1 of A x, which are of one block. */
+/* y [end - begin] += factor times rows begin to end - 1 of A x. The rows lie in one block. */
 void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, double *y);
 
-/* The same with y = z - A x, z [end - begin] apart from y. */
-void tribo_matrix_subtract_rows(const struct matrix *a, size_t begin, size_t end, const double *x, const double *z, double *y);
-
-/* Whether a matrix has so few rows that a call would take as long as they do; and then, y += factor A x. */
+/* Returns 1 if a is so small that a call takes as long as its product. */
 static inline int tribo_matrix_is_small(const struct matrix *a)
 {
     return a->rows <= MATRIX_FEW && a->cols <= 4 * MATRIX_FEW;
 }
 
+/* y += factor A x of a small a. */
 static inline void tribo_matrix_add_few(const struct matrix *a, double factor, const double *x, double *y)
 {
     for (size_t i = 0; a->diagonals && i < a->rows; i++) {
@@ -87,52 +86,56 @@ static inline void tribo_matrix_add_few(const struct matrix *a, double factor, c
 /* y = A x. */
 void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y);
 
-/* A x, which is x itself or stands in room [rows]. */
+/* Returns A x: x if A is the identity, room [rows] otherwise. */
 const double *tribo_matrix_image(const struct matrix *a, const double *x, double *room);
 
 /* y += factor A x. */
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y);
 
-/* count vectors y [count][rows] = A x, x [count][cols]: the matrix is read once for some of them. */
+/* y [count][rows] = A x of count vectors x [count][cols]. */
 void tribo_matrix_multiply_all(const struct matrix *a, size_t count, const double *x, double *y);
 
-/* x'Ay, rounded only at the end: a form may be far smaller than its terms. */
+/* Returns x'Ay, summed with twice as many digits: a form may be far smaller than its terms. */
 double tribo_matrix_form(const struct matrix *a, const double *x, const double *y);
 
-/* What rounding of the entries of a square A may do to x'Ay: an entry is known to DBL_EPSILON of itself, or of the geometric mean
- * of its two diagonal entries, since it may have come out of sums of that size. root [rows] has the roots of the diagonal, of
- * absolute values, as tribo_matrix_roots finds them. */
+/* root [rows] = sqrt|a_ii|. */
 void tribo_matrix_roots(const struct matrix *a, double *root);
+
+/* Returns a bound on the error of x'Ay if entry a_ij has the error DBL_EPSILON max(|a_ij|, root_i root_j): it may be a sum of
+ * terms of the size of a_ii and a_jj. */
 double tribo_matrix_noise(const struct matrix *a, const double *root, const double *x, const double *y);
 
-/* to [z->cols][z->cols] = Z'AZ of a symmetric A, exactly symmetric. Of a and z, one that has no rows is the identity. 0 if out of
+/* to [z->cols][z->cols] = Z'AZ of a symmetric A, exactly symmetric. No rows: A, or Z, is the identity. Returns 1, or 0 if out of
  * memory. */
 int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, double *to);
 
-/* dense [rows][cols] = the entries; the same in memory that the caller frees, or NULL if there is none. */
+/* dense [rows][cols] = A. */
 void tribo_matrix_spread(const struct matrix *a, double *dense);
-double *tribo_matrix_to_dense(const struct matrix *a);
 
-/* The same of the transpose: [cols][rows]. */
+/* Return A [rows][cols], and A' [cols][rows], in memory of the caller's, or NULL if out of memory. */
+double *tribo_matrix_to_dense(const struct matrix *a);
 double *tribo_matrix_transpose_to_dense(const struct matrix *a);
 
-/* Leaves nothing of a symmetric matrix but the lower triangle, and gives back the memory of the rest. */
+/* Drops the entries above the diagonal, and returns their memory. */
 void tribo_matrix_keep_lower(struct matrix *a);
 
 /* Multiplies row i by factor[i]. */
 void tribo_matrix_scale_rows(struct matrix *a, const double *factor);
 
-/* Finds an entry that is not finite, or, with symmetric, one that differs from its mirror image: 1 and its place and values, or
- * 0. */
+/* Returns 1 and the place and value of an entry that is not finite, or, if symmetric = 1, of an entry that differs from its mirror
+ * image; 0 if there is none. */
 int tribo_matrix_flaw(const struct matrix *a, int symmetric, size_t *i, size_t *j, double *value, double *mirror);
 
-/* Raises below and above to how many diagonals to either side of the main one A has entries on. */
+/* *below = max(*below, i - j), *above = max(*above, j - i) over all entries (i, j). */
 void tribo_matrix_widen(const struct matrix *a, size_t *below, size_t *above);
 
-/* 1 if no entry is off the diagonal. */
+/* Returns 1 if all entries off the diagonal are 0. */
 int tribo_matrix_is_diagonal(const struct matrix *a);
-/* The largest sum of a row's absolute values: no eigenvalue is larger. 0 without rows. */
+
+/* Returns max_i sum_j |a_ij|, which no eigenvalue exceeds; 0 without rows. */
 double tribo_matrix_row_sum(const struct matrix *a);
+
+/* Returns the entry (i, j). */
 double tribo_matrix_get(const struct matrix *a, size_t i, size_t j);
 
 #endif

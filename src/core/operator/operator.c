@@ -8,6 +8,7 @@
 #include "numerics/csr.h"
 #include "common/simd.h"
 #include "numerics/twofold.h"
+#include "numerics/union_find.h"
 #include "common/zeros.h"
 
 /* Smaller groups are dense, whatever their entries. */
@@ -209,15 +210,6 @@ int tribo_memory_copy(struct memory *to, const struct memory *from, const struct
 }
 
 /* ------------------------------------------------------------------------------------------------------ finding them */
-
-static size_t operator_root_of(size_t *parent, size_t i)
-{
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    return i;
-}
 
 /* Makes groups of the islands of more than one contact. place [n] gets where a contact stands in its group; count [islands] is
  * workspace. */
@@ -505,14 +497,13 @@ int tribo_operator_create(struct delassus **created, struct memory *m, const str
         for (size_t i = 0; i < a->n; i++) {
             for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
                 if (a->val[k] != 0.0) {
-                    const size_t p = operator_root_of(place, i), q = operator_root_of(place, a->col[k]);
-                    place[p > q ? p : q] = p > q ? q : p;
+                    tribo_join(place, i, a->col[k]);
                 }
             }
         }
         size_t islands = 0;
         for (size_t i = 0; i < a->n; i++) {
-            label[i] = place[i] == i ? islands++ : label[operator_root_of(place, i)];
+            label[i] = place[i] == i ? islands++ : label[tribo_root(place, i)];
         }
         op->islands = islands;
         if (op->islands == n) {

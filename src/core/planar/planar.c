@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/context.h"
+#include "numerics/union_find.h"
 
 #if defined(TRIBO_GNU_C)
 #define COUNT(references, change) __atomic_add_fetch(&(references), (change), __ATOMIC_ACQ_REL)
@@ -66,21 +67,6 @@ void tribo_plane_free(struct plane *plane)
 
 /* -------------------------------------------------------------------------------------------------------- clusters */
 
-static size_t planar_root_of(size_t *parent, size_t i)
-{
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    return i;
-}
-
-static void planar_join(size_t *parent, size_t i, size_t j)
-{
-    const size_t p = planar_root_of(parent, i), q = planar_root_of(parent, j);
-    parent[p > q ? p : q] = p > q ? q : p;
-}
-
 /* parent [n] = the first direction of each one's cluster. Returns how many islands are left. */
 static size_t find_parents(const struct planar *c, const struct delassus *op, size_t n, size_t *parent)
 {
@@ -91,14 +77,14 @@ static size_t find_parents(const struct planar *c, const struct delassus *op, si
     for (size_t g = 0; g < op->groups; g++) {
         const size_t *member = op->member + op->group[g].first;
         for (size_t k = 1; k < op->group[g].size; k++) {
-            planar_join(parent, member[0], member[k]);
+            tribo_join(parent, member[0], member[k]);
         }
     }
     for (size_t k = 0; k < c->count; k++) {
-        planar_join(parent, c->first[k], c->first[k] + 1);
+        tribo_join(parent, c->first[k], c->first[k] + 1);
     }
     for (size_t i = 0; i < n; i++) {
-        parent[i] = planar_root_of(parent, i);
+        parent[i] = tribo_root(parent, i);
         islands += parent[i] == i;
     }
     return islands;

@@ -327,9 +327,13 @@ static inline double free_one(const struct bodies_alone *b, const tribo_system *
 static void accelerate_block(const struct bodies_alone *b, const tribo_system *sys, size_t k, const double *q, const double *u,
                              double *a)
 {
-    static const double nothing[MATRIX_BLOCK];
     const size_t i = k * MATRIX_BLOCK, n = tribo_bodies_of_block(sys, k);
-    tribo_matrix_subtract_rows(&sys->stiffness, i, i + n, q, b->loaded[k] ? b->load + i : nothing, a);
+    if (b->loaded[k]) {
+        memcpy(a, b->load + i, n * sizeof *a);
+    } else {
+        memset(a, 0, n * sizeof *a);
+    }
+    tribo_matrix_add_rows(&sys->stiffness, i, i + n, -1.0, q, a);
     if (sys->damping.rows) {
         tribo_matrix_add_rows(&sys->damping, i, i + n, -1.0, u, a);
     }
