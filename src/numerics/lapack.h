@@ -1,19 +1,18 @@
-/* LAPACK and BLAS by their Fortran symbols: arguments by address, matrices column by column, so that a row-major matrix is passed
- * as its transpose; the lengths of the texts (1) stand at the end. Callers check sizes and entries, since XERBLA prints, or ends
- * the program. */
+/* LAPACK and BLAS by their Fortran symbols: arguments by address, matrices by columns, so that a row-major matrix is passed as its
+ * transpose; the lengths of the texts (1) at the end. Callers check sizes and entries: XERBLA prints, or ends the program. */
 #ifndef TRIBO_LAPACK_H
 #define TRIBO_LAPACK_H
 
 #include <limits.h>
 #include <stddef.h>
 
-/* 1 if int counts the entries of n x n, and up to twice as many of workspace. */
+/* Returns 1 if int counts 2 n^2. */
 static inline int tribo_lapack_takes(size_t n)
 {
     return n <= 32000;
 }
 
-/* A = P L U of a band. */
+/* A = P L U of a band, and A^-1 x. */
 void dgbtrf_(const int *rows, const int *cols, const int *below, const int *above, double *band, const int *stride, int *pivot,
              int *info);
 void dgbtrs_(const char *trans, const int *n, const int *below, const int *above, const int *count, const double *band,
@@ -27,6 +26,11 @@ void dgeev_(const char *left, const char *right, const int *n, double *a, const 
             const int *next_l, double *vr, const int *next_r, double *work, const int *size, int *info, size_t one, size_t two);
 void dsyev_(const char *vectors, const char *triangle, const int *n, double *a, const int *stride, double *values, double *work,
             const int *size, int *info, size_t one, size_t two);
+
+/* Singular values, and left and right singular vectors. */
+void dgesvd_(const char *left, const char *right, const int *rows, const int *cols, double *a, const int *stride, double *values,
+             double *u, const int *next_u, double *v, const int *next_v, double *work, const int *size, int *info, size_t one,
+             size_t two);
 
 /* X = factor op(A)^-1 X, or factor X op(A)^-1, for a triangle A. */
 void dtrsm_(const char *side, const char *triangle, const char *trans, const char *unit, const int *rows, const int *cols,

@@ -29,7 +29,7 @@ void tribo_add(double *to, double factor, const double *x, size_t n)
 
 TRIBO_SIMD double tribo_sum(size_t n, const double *x)
 {
-    enum { LANES = 8 }; /* side by side, since one sum would wait for itself */
+    enum { LANES = 8 };
     double part[LANES] = {0.0}, sum = 0.0;
     size_t i = 0;
     for (; i + LANES <= n; i += LANES) {
@@ -52,7 +52,7 @@ double tribo_largest(const double *x, size_t n)
     return most;
 }
 
-/* x - x is zero if x is finite, and NaN otherwise; sums side by side, since one would have to be added up in order. */
+/* x - x is 0 if x is finite, and NaN otherwise. Eight sums side by side, since one sum waits for itself. */
 TRIBO_SIMD int tribo_dense_finite(const double *x, size_t n)
 {
     enum { SUMS = 8 };
@@ -69,7 +69,7 @@ TRIBO_SIMD int tribo_dense_finite(const double *x, size_t n)
     return sum[0] + sum[1] + (sum[2] + sum[3]) + (sum[4] + sum[5] + (sum[6] + sum[7])) == 0.0;
 }
 
-/* c += f[0] b + f[1] (b + n) + ..., four rows of b of length n. */
+/* c [n] += f_0 b_0 + f_1 b_1 + f_2 b_2 + f_3 b_3 for the rows b_k of b [4][n]. */
 TRIBO_SIMD static void add_four(double *restrict c, const double *restrict b, size_t n, const double *f)
 {
     const double f0 = f[0], f1 = f[1], f2 = f[2], f3 = f[3];
@@ -78,7 +78,7 @@ TRIBO_SIMD static void add_four(double *restrict c, const double *restrict b, si
     }
 }
 
-/* x'y in eight parts that are added at the end. */
+/* Returns x'y, summed in eight parts. */
 TRIBO_SIMD static double dot_of_eight(size_t n, const double *restrict x, const double *restrict y)
 {
     enum { LANES = 8 };
@@ -142,24 +142,8 @@ void tribo_multiply_transposed_add(size_t rows, size_t inner, size_t cols, const
 void tribo_multiply_two(size_t rows, size_t inner, size_t cols, const double *a, const double *b, size_t next_b, double *c,
                         size_t next_c)
 {
-    for (size_t i = 0; cols == 1 && i < rows; i++) {
-        c[i] += dot_of_eight(inner, a + i * inner, b);
-        c[next_c + i] += dot_of_eight(inner, a + i * inner, b + next_b);
-    }
-    for (size_t k = 0; cols != 1 && k < 2; k++) {
+    for (size_t k = 0; k < 2; k++) {
         tribo_multiply_add(rows, inner, cols, 1.0, a, b + k * next_b, c + k * next_c);
-    }
-}
-
-void tribo_multiply_transposed_two(size_t rows, size_t inner, size_t cols, const double *a, const double *b, size_t next_b,
-                                   double *c, size_t next_c)
-{
-    const size_t part = cols == 1 ? 4 : rows;
-    for (size_t i = 0; i < rows; i += part) {
-        for (size_t k = 0; k < 2; k++) {
-            const size_t count = rows - i < part ? rows - i : part;
-            tribo_multiply_transposed_add(count, inner, cols, a + i * inner, b + k * next_b + i * cols, c + k * next_c);
-        }
     }
 }
 
@@ -188,25 +172,18 @@ void tribo_cholesky_free(struct cholesky *c)
     memset(c, 0, sizeof *c);
 }
 
-static void lay_out_cholesky(struct cholesky *c, struct layout *l, int diagonal)
-{
-    c->root = tribo_layout_array(l, c->n, sizeof *c->root);
-    c->pivot = tribo_layout_array(l, c->n, sizeof *c->pivot);
-    c->factor = diagonal ? NULL : tribo_layout_array(l, c->n * c->n, sizeof *c->factor);
-}
-
-/* 0 if out of memory: then c has none. */
+/* Allocates the arrays of a dense c of n rows, or of a diagonal one. Returns 1, or 0 with c zeroed if out of memory. */
 static int create_cholesky(struct cholesky *c, size_t n, int diagonal)
 {
     struct layout l = {0};
     *c = (struct cholesky){.n = n};
-    lay_out_cholesky(c, &l, diagonal);
-    if (!tribo_layout_create(&l)) {
-        *c = (struct cholesky){0};
-        return 0;
-    }
-    lay_out_cholesky(c, &l, diagonal);
-    return 1;
+    do {
+        c->root = tribo_layout_array(&l, n, sizeof *c->root);
+        c->pivot = tribo_layout_array(&l, n, sizeof *c->pivot);
+        c->factor = diagonal ? NULL : tribo_layout_array(&l, n * n, sizeof *c->factor);
+    } while (!l.memory && tribo_layout_create(&l));
+    c->n = l.memory ? n : 0;
+    return l.memory != NULL;
 }
 
 int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from)
@@ -235,24 +212,6 @@ static void exchange_rows(double *a, size_t cols, size_t i, size_t j)
     }
 }
 
-/* Moves the largest pivot of rows k to n - 1 to row k, and returns the pivot. */
-static double exchange_pivot(struct cholesky *c, size_t k)
-{
-    const size_t n = c->n;
-    size_t best = k;
-    for (size_t i = k + 1; i < n; i++) {
-        best = c->factor[i * n + i] > c->factor[best * n + best] ? i : best;
-    }
-    exchange_rows(c->factor, n, k, best);
-    for (size_t i = k; best != k && i < n; i++) {
-        const double x = c->factor[i * n + k];
-        c->factor[i * n + k] = c->factor[i * n + best];
-        c->factor[i * n + best] = x;
-    }
-    c->pivot[k] = best;
-    return c->factor[k * n + k];
-}
-
 size_t tribo_cholesky_row(const struct cholesky *c, size_t k)
 {
     size_t row = k;
@@ -262,25 +221,41 @@ size_t tribo_cholesky_row(const struct cholesky *c, size_t k)
     return row;
 }
 
-/* Column k of L below the diagonal, and the pivots of the rows there without column k; above the diagonal A stays. */
-static void eliminate_below(struct cholesky *c, size_t k)
+/* Step k of P A P' = L L' in place: exchanges the largest remaining pivot into row k, and computes column k of L and the pivots
+ * below. Above the diagonal A stays. Returns the pivot; column k is computed if the pivot exceeds 1/DBL_MAX, so that neither root
+ * nor quotients raise exceptions. */
+static double eliminate_column(struct cholesky *c, size_t k)
 {
     const size_t n = c->n;
-    double *row = c->factor + k * n;
-    row[k] = c->root[k];
+    double *a = c->factor, *row = a + k * n;
+    size_t best = k;
     for (size_t i = k + 1; i < n; i++) {
-        double *below = c->factor + i * n;
-        below[k] = (below[k] - tribo_dot(row, below, k)) / c->root[k];
-        below[i] -= below[k] * below[k];
+        best = a[i * n + i] > a[best * n + best] ? i : best;
     }
+    exchange_rows(a, n, k, best);
+    for (size_t i = k; best != k && i < n; i++) {
+        const double x = a[i * n + k];
+        a[i * n + k] = a[i * n + best];
+        a[i * n + best] = x;
+    }
+    c->pivot[k] = best;
+    const double pivot = row[k];
+    if (pivot > 1.0 / DBL_MAX) {
+        row[k] = sqrt(pivot);
+        for (size_t i = k + 1; i < n; i++) {
+            double *below = a + i * n;
+            below[k] = (below[k] - tribo_dot(row, below, k)) / row[k];
+            below[i] -= below[k] * below[k];
+        }
+    }
+    return pivot;
 }
 
-/* As tribo_cholesky_create; spent as tribo_sparse_factor_create has it. */
+/* As tribo_cholesky_create; spent: see tribo_sparse_factor_create. */
 static int factorize(struct cholesky *c, const struct matrix *a, struct matrix *spent, size_t *where, double *pivot)
 {
     const int diagonal = tribo_matrix_is_diagonal(a);
-    memset(c, 0, sizeof *c);
-    c->n = a->rows;
+    *c = (struct cholesky){.n = a->rows};
     if (!diagonal && tribo_sparse_available() && c->n >= SPARSE_LEAST) {
         *pivot = NAN;
         return tribo_sparse_factor_create(&c->sparse, a, spent, where);
@@ -291,24 +266,21 @@ static int factorize(struct cholesky *c, const struct matrix *a, struct matrix *
     if (!create_cholesky(c, a->rows, diagonal)) {
         return TRIBO_ERR_MEMORY;
     }
-    for (size_t i = 0; i < c->n; i++) {
-        c->pivot[i] = i;
-    }
     if (!diagonal) {
         tribo_matrix_spread(a, c->factor);
     }
     for (size_t i = 0; i < c->n; i++) {
-        const double d = diagonal ? tribo_matrix_get(a, i, i) : exchange_pivot(c, i);
-        if (!(d > 1.0 / DBL_MAX)) { /* looked at first, since neither roots nor quotients may raise exceptions */
+        c->pivot[i] = i;
+    }
+    for (size_t i = 0; i < c->n; i++) {
+        const double d = diagonal ? tribo_matrix_get(a, i, i) : eliminate_column(c, i);
+        if (!(d > 1.0 / DBL_MAX)) {
             *where = tribo_cholesky_row(c, i);
             *pivot = d;
             tribo_cholesky_free(c);
             return TRIBO_ERR_INDEFINITE;
         }
         c->root[i] = sqrt(d);
-        if (!diagonal) {
-            eliminate_below(c, i);
-        }
     }
     return TRIBO_OK;
 }
@@ -409,8 +381,8 @@ void tribo_lu_solve(const double *lu, size_t n, const int *pivot, double *x, siz
     }
 }
 
-/* By the rotation that leaves nothing off the diagonal (Golub and Van Loan, Matrix Computations, 8.5.2), which knows a small
- * eigenvalue of a graded matrix to rounding of itself. */
+/* Eigenvalues and eigenvectors of a [2][2] by one Jacobi rotation (Golub and Van Loan, Matrix Computations, 8.5.2): small
+ * eigenvalues of a graded a are exact to their own rounding. */
 static void rotate_two(const double *a, double *values, double *vectors)
 {
     const double gap = 0.5 * a[3] - 0.5 * a[0], shared = fabs(a[1]), cot = shared > 0.0 ? quotient(fabs(gap), shared) : 0.0;
@@ -445,13 +417,12 @@ int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors)
     if (!work) {
         return TRIBO_ERR_MEMORY;
     }
-    /* Of a matrix whose entries decrease along the diagonal, QL from the first column on knows eigenvectors entry by entry, and not
-     * only to rounding of the largest: residuals in Krylov spaces are found from the smallest ones. Divide and conquer does not. */
+    /* QL from the first column on: where entries of a decrease along the diagonal, small entries of eigenvectors are exact to their
+     * own rounding, as residuals in Krylov spaces need. Divide and conquer is exact to rounding of the largest entry only. */
     dsyev_("V", "L", &rows, a, &rows, values, work, &size, &info, 1, 1);
     free(work);
     for (size_t k = 0; k < n; k++) {
-        /* Every LAPACK gives the same sign. */
-        size_t most = 0;
+        size_t most = 0; /* its sign is positive, with every LAPACK */
         for (size_t i = 1; i < n; i++) {
             most = fabs(a[k * n + i]) > fabs(a[k * n + most]) ? i : most;
         }

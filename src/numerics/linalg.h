@@ -5,16 +5,22 @@
 #include "matrix.h"
 #include "sparse_factor.h"
 
-/* x'y; the largest |x_i|; to += factor x; 1 if no x is an infinity or a NaN. All [n]. */
+/* Returns x'y. */
 double tribo_dot(const double *x, const double *y, size_t n);
+
+/* Returns max |x_i|. */
 double tribo_largest(const double *x, size_t n);
+
+/* to += factor x. */
 void tribo_add(double *to, double factor, const double *x, size_t n);
+
+/* Returns 1 if no x_i is an infinity or a NaN. */
 int tribo_dense_finite(const double *x, size_t n);
 
-/* The sum of x [n], in eight parts that are added at the end. */
+/* Returns sum x_i, summed in eight parts. */
 double tribo_sum(size_t n, const double *x);
 
-/* tribo_dense_finite without a call where there are few. */
+/* tribo_dense_finite, inline for n < 8. */
 static inline int tribo_few_finite(const double *x, size_t n)
 {
     double sum = 0.0;
@@ -24,62 +30,68 @@ static inline int tribo_few_finite(const double *x, size_t n)
     return n < 8 ? sum == 0.0 : tribo_dense_finite(x, n);
 }
 
-/* c [rows][cols] += factor a b, a [rows][inner], b [inner][cols], skipping zeros of a, of which diagonal operators have many;
- * c [inner][cols] += a'b, b [rows][cols]; to [cols][rows] = the transpose of a [rows][cols]. */
+/* c [rows][cols] += factor a b, for a [rows][inner] and b [inner][cols]. Skips groups of four zeros in a. */
 void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c);
+
+/* c [inner][cols] += a'b, for a [rows][inner] and b [rows][cols]. Skips groups of four zeros in a. */
 void tribo_multiply_transposed_add(size_t rows, size_t inner, size_t cols, const double *a, const double *b, double *c);
+
+/* to [cols][rows] = a', for a [rows][cols]. */
 void tribo_transpose(size_t rows, size_t cols, const double *a, double *to);
 
-/* The same with two b and two c, one after the other from b + next_b and c + next_c on: a is read once if cols is 1. */
+/* c += a b and (c + next_c) += a (b + next_b). */
 void tribo_multiply_two(size_t rows, size_t inner, size_t cols, const double *a, const double *b, size_t next_b, double *c,
                         size_t next_c);
-void tribo_multiply_transposed_two(size_t rows, size_t inner, size_t cols, const double *a, const double *b, size_t next_b,
-                                   double *c, size_t next_c);
 
-/* a [n][n], symmetric but for rounding, becomes exactly so. */
+/* a [n][n] = (a + a')/2. */
 void tribo_even_out(size_t n, double *a);
 
-/* Matrices that are not diagonal are factored as sparse ones from SPARSE_LEAST rows on, if the library can do that; if not, dense
- * ones may have DENSE_MOST. */
+/* Matrices that are not diagonal have sparse factors from SPARSE_LEAST rows on. Without CHOLMOD all factors are dense, of DENSE_MOST
+ * rows at most. */
 #define SPARSE_LEAST 200
 #define DENSE_MOST 3000
 
-/* A^-1 = S S'. Dense: S = P' L'^-1 from P A P' = L L', with L in the lower triangle of factor. A diagonal A has only root, a
- * sparse one neither. */
+/* A^-1 = S S'. Dense: S = P' L'^-1 from P A P' = L L'. Diagonal: root alone. Sparse: sparse alone. */
 struct cholesky {
-    size_t n; /* 0: the identity */
-    double *factor;
-    size_t *pivot; /* [n] P exchanges row k and row pivot[k] >= k, for k = 0, 1, ... */
-    double *root;  /* [n] the diagonal of L; has the memory of all three */
+    size_t n;       /* 0: A is the identity */
+    double *factor; /* [n][n] L in the lower triangle */
+    size_t *pivot;  /* [n] P exchanges row k and row pivot[k] >= k, for k = 0, 1, ... */
+    double *root;   /* [n] the diagonal of L; owns the memory of all three */
     struct sparse_factor *sparse;
 };
 
-/* Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_SIZE (more than DENSE_MOST rows), or TRIBO_ERR_INDEFINITE with the place of a
- * pivot that is not positive, and its value, NaN if that is not known. */
+/* Factors A. Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_SIZE (dense, more than DENSE_MOST rows), or TRIBO_ERR_INDEFINITE with
+ * the row *where and the value *pivot of a pivot that is not positive; NaN if the value is unknown. */
 int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *where, double *pivot);
-int tribo_cholesky_consume(struct cholesky *c, struct matrix *a, size_t *where, double *pivot); /* and frees a, error or not */
-int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from);                       /* 1, or 0 if out of memory */
+
+/* The same; frees a, also after an error. */
+int tribo_cholesky_consume(struct cholesky *c, struct matrix *a, size_t *where, double *pivot);
+
+/* Returns 1, or 0 if out of memory. */
+int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from);
 void tribo_cholesky_free(struct cholesky *c);
 
-/* The row of A that the k-th pivot belongs to, of a factor with root. */
+/* Returns the row of A of pivot k of a factor that is not sparse. */
 size_t tribo_cholesky_row(const struct cholesky *c, size_t k);
 
-/* count vectors x [count][n] = A^-1 x. 1, or 0 if out of memory, which does not happen to a single one. */
+/* x [count][n] = A^-1 x of count vectors. Returns 1, or 0 if out of memory, which cannot happen for count = 1. */
 int tribo_cholesky_solve(const struct cholesky *c, size_t count, double *x);
 
-/* x [n][cols] = S' x, and x = S x; one after the other they solve A y = x. */
+/* x [n][cols] = S' x. */
 void tribo_half_solve(const struct cholesky *c, double *x, size_t cols);
+
+/* x [n][cols] = S x. */
 void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols);
 
-/* Factors of a [n][n] with its columns exchanged, in place; pivot [n]. Returns the smallest pivot's size: 0 if a is singular, or
- * not finite, and then there are no factors. */
+/* Factors a [n][n] in place with exchanges pivot [n]. Returns the smallest |pivot|; 0 if a is singular or not finite: then there
+ * are no factors. */
 double tribo_lu_create(double *a, size_t n, int *pivot);
 
 /* x [n][cols] = A^-1 x. */
 void tribo_lu_solve(const double *lu, size_t n, const int *pivot, double *x, size_t cols);
 
-/* Eigenvalues (ascending) and orthonormal eigenvectors (columns) of a symmetric a [n][n], which is overwritten. Returns TRIBO_OK,
- * TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE. */
+/* values [n] = eigenvalues, ascending, and vectors [n][n] = orthonormal eigenvectors, as columns, of a symmetric a [n][n].
+ * Overwrites a. Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE. */
 int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors);
 
 #endif

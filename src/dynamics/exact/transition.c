@@ -42,7 +42,9 @@ static void transition_add_modes(const struct transition *x, double *v)
     const struct modal *h = x->h;
     double *rows = x->zr;
     memset(rows, 0, 2 * x->block * sizeof *rows);
-    tribo_multiply_transposed_two(h->modes, h->moving, x->columns, h->phi, x->eta, x->block, rows, x->block);
+    for (size_t k = 0; k < 2; k++) {
+        tribo_multiply_transposed_add(h->modes, h->moving, x->columns, h->phi, x->eta + k * x->block, rows + k * x->block);
+    }
     for (size_t i = 0; i < h->moving; i++) {
         for (size_t k = 0; k < 2; k++) {
             const double *row = rows + k * x->block + i * x->columns;
