@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* The first column of row i. */
+/* Returns the first column of row i. */
 static size_t begin_of(size_t width, size_t i)
 {
     return i > width ? i - width : 0;
@@ -19,35 +19,29 @@ void tribo_band_add(double *band, size_t width, const struct matrix *a, double f
     }
 }
 
-/* Row i of the factors from those above it; what it has left of the pivot. */
-static double eliminate_row(size_t width, const double *band, const signed char *held, double *l, size_t i)
-{
-    const size_t w = width, begin = begin_of(w, i);
-    const double *a = band + i * (w + 1);
-    double *own = l + i * (w + 1), pivot = a[w];
-    for (size_t j = begin; j < i; j++) {
-        const double *other = l + j * (w + 1);
-        double x = held && held[j] ? 0.0 : a[j + w - i];
-        for (size_t k = begin; k < j; k++) {
-            x -= own[k + w - i] * other[k + w - j];
-        }
-        own[j + w - i] = x;
-    }
-    for (size_t j = begin; j < i; j++) {
-        const double x = own[j + w - i];
-        own[j + w - i] = x / l[j * (w + 1) + w];
-        pivot -= x * own[j + w - i];
-    }
-    return pivot;
-}
-
 size_t tribo_band_factorize(size_t n, size_t width, const double *band, const signed char *held, double *l)
 {
+    const size_t w = width;
     for (size_t i = 0; i < n; i++) {
-        double *row = l + i * (width + 1);
-        memset(row, 0, width * sizeof *row);
-        row[width] = held && held[i] ? 1.0 : eliminate_row(width, band, held, l, i);
-        if (!(row[width] > 0.0)) {
+        const size_t begin = begin_of(w, i);
+        const double *a = band + i * (w + 1);
+        double *own = l + i * (w + 1), pivot = held && held[i] ? 1.0 : a[w];
+        memset(own, 0, w * sizeof *own);
+        for (size_t j = begin; j < i && !(held && held[i]); j++) {
+            const double *other = l + j * (w + 1);
+            double x = held && held[j] ? 0.0 : a[j + w - i];
+            for (size_t k = begin; k < j; k++) {
+                x -= own[k + w - i] * other[k + w - j];
+            }
+            own[j + w - i] = x;
+        }
+        for (size_t j = begin; j < i; j++) {
+            const double x = own[j + w - i];
+            own[j + w - i] = x / l[j * (w + 1) + w];
+            pivot -= x * own[j + w - i];
+        }
+        own[w] = pivot;
+        if (!(pivot > 0.0)) {
             return i;
         }
     }

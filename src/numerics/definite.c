@@ -12,31 +12,24 @@
 /* A pivot below this part of the diagonal entry is rounding. */
 #define ROUNDING (64.0 * DBL_EPSILON)
 
-/* Sets of the box problem that are tried while the number of wrong rows does not fall, before rows change one at a time; and
- * changes in all, for each row. */
+/* PATIENCE: sets tried without fewer wrong rows, before rows change one at a time. CHANGES: most sets tried, for each row. */
 enum { PATIENCE = 8, CHANGES = 32 };
 
-static void lay_out_definite(struct definite *d, struct layout *l)
+/* Makes factor that of the rows with skip [n] 0 (all rows: NULL), unless it is. Returns the place in index of a pivot that is
+ * rounding, or held. */
+static size_t choose_set(struct definite *d, const signed char *skip)
 {
-    d->memory = tribo_layout_array(l, 0, 1);
-    d->matrix = tribo_layout_array(l, d->n * d->n, sizeof *d->matrix);
-    d->inverse = tribo_layout_array(l, d->n * d->n, sizeof *d->inverse);
-    d->factor = tribo_layout_array(l, d->n * d->n, sizeof *d->factor);
-    d->x = tribo_layout_array(l, 5 * d->n + 1, sizeof *d->x);
-    d->q = d->x ? d->x + d->n : NULL;
-    d->lo = d->x ? d->q + d->n : NULL;
-    d->hi = d->x ? d->lo + d->n : NULL;
-    d->f = d->x ? d->hi + d->n : NULL;
-    d->index = tribo_layout_array(l, d->n + 1, sizeof *d->index);
-    d->at = tribo_layout_array(l, d->n + 1, sizeof *d->at);
-    d->to = tribo_layout_array(l, d->n + 1, sizeof *d->to);
-}
-
-/* Factor over index. Returns the place in index of a pivot that is rounding, or held. */
-static size_t factorize_set(struct definite *d)
-{
-    const size_t m = d->held;
-    for (size_t i = 0; i < m; i++) {
+    size_t m = 0;
+    int same = 1;
+    for (size_t i = 0; i < d->n; i++) {
+        if (d->matrix[i * d->n + i] > 0.0 && (!skip || skip[i] == 0)) {
+            same &= m < d->held && d->index[m] == i;
+            d->index[m++] = i;
+        }
+    }
+    same &= m == d->held;
+    d->held = m;
+    for (size_t i = 0; !same && i < m; i++) {
         const double *row = d->matrix + d->index[i] * d->n;
         double *l = d->factor + i * m;
         for (size_t j = 0; j <= i; j++) {
@@ -52,22 +45,6 @@ static size_t factorize_set(struct definite *d)
         }
     }
     return m;
-}
-
-/* Makes the factor that of the set. Returns what factorize_set does. */
-static size_t choose_set(struct definite *d, const signed char *skip)
-{
-    size_t held = 0;
-    int same = 1;
-    for (size_t i = 0; i < d->n; i++) {
-        if (d->matrix[i * d->n + i] > 0.0 && (!skip || skip[i] == 0)) {
-            same &= held < d->held && d->index[held] == i;
-            d->index[held++] = i;
-        }
-    }
-    same &= held == d->held;
-    d->held = held;
-    return same ? held : factorize_set(d);
 }
 
 static void divide_row(double *row, double by, size_t columns)
@@ -106,11 +83,23 @@ int tribo_definite_create(struct definite *d, size_t n, const double *a, size_t 
 {
     struct layout l = {0};
     *d = (struct definite){.n = n};
-    lay_out_definite(d, &l);
-    if (!tribo_layout_zeros(&l)) {
+    do {
+        d->memory = tribo_layout_array(&l, 0, 1);
+        d->matrix = tribo_layout_array(&l, n * n, sizeof *d->matrix);
+        d->inverse = tribo_layout_array(&l, n * n, sizeof *d->inverse);
+        d->factor = tribo_layout_array(&l, n * n, sizeof *d->factor);
+        d->x = tribo_layout_array(&l, n, sizeof *d->x);
+        d->q = tribo_layout_array(&l, n, sizeof *d->q);
+        d->lo = tribo_layout_array(&l, n, sizeof *d->lo);
+        d->hi = tribo_layout_array(&l, n, sizeof *d->hi);
+        d->f = tribo_layout_array(&l, n, sizeof *d->f);
+        d->index = tribo_layout_array(&l, n, sizeof *d->index);
+        d->at = tribo_layout_array(&l, n, sizeof *d->at);
+        d->to = tribo_layout_array(&l, n, sizeof *d->to);
+    } while (!l.memory && tribo_layout_zeros(&l));
+    if (!l.memory) {
         return TRIBO_ERR_MEMORY;
     }
-    lay_out_definite(d, &l);
     memcpy(d->matrix, a, n * n * sizeof *a);
     const size_t at = choose_set(d, NULL);
     if (at < d->held) {
@@ -130,7 +119,7 @@ void tribo_definite_free(struct definite *d)
     *d = (struct definite){0};
 }
 
-/* Where row i belongs: at 0 inside, -1 and 1 at lo and hi. */
+/* Returns the place of row i for f as it is: 0 inside the box, -1 at lo, 1 at hi. */
 static signed char place_of_row(const struct definite *d, size_t i)
 {
     const double *row = d->matrix + i * d->n, *f = d->f;
@@ -148,35 +137,28 @@ static signed char place_of_row(const struct definite *d, size_t i)
     return (signed char)(d->at[i] * sum > ROUNDING * size ? 0 : d->at[i]);
 }
 
-/* f of the set marked in at. */
-static void solve_set(struct definite *d)
-{
-    const size_t n = d->n;
-    double *f = d->f;
-    for (size_t i = 0; i < n; i++) {
-        f[i] = -d->q[i];
-        for (size_t k = 0; k < n; k++) {
-            f[i] -= d->at[k] ? d->matrix[i * n + k] * (d->at[k] < 0 ? d->lo[k] : d->hi[k]) : 0.0;
-        }
-    }
-    tribo_definite_solve(d, d->at, 1, f);
-    for (size_t i = 0; i < n; i++) {
-        f[i] = d->at[i] ? (d->at[i] < 0 ? d->lo[i] : d->hi[i]) : f[i];
-    }
-}
-
-/* Block principal pivoting: all wrong rows change at once while their number falls, and else the last one only, which is finite
- * for definite matrices. */
+/* Block principal pivoting: all wrong rows change at once while their number falls, else the last one alone, which ends for
+ * definite matrices. */
 void tribo_definite_box(struct definite *d)
 {
     const size_t n = d->n;
+    double *f = d->f;
     size_t fewest = n + 1, patience = PATIENCE;
     for (size_t i = 0; i < n; i++) {
         d->at[i] = (signed char)(d->lo[i] < d->hi[i] ? 0 : -1);
     }
     for (size_t change = 0; change < CHANGES * (n + 1); change++) {
         size_t wrong = 0, last = 0;
-        solve_set(d);
+        for (size_t i = 0; i < n; i++) {
+            f[i] = -d->q[i];
+            for (size_t k = 0; k < n; k++) {
+                f[i] -= d->at[k] ? d->matrix[i * n + k] * (d->at[k] < 0 ? d->lo[k] : d->hi[k]) : 0.0;
+            }
+        }
+        tribo_definite_solve(d, d->at, 1, f);
+        for (size_t i = 0; i < n; i++) {
+            f[i] = d->at[i] ? (d->at[i] < 0 ? d->lo[i] : d->hi[i]) : f[i];
+        }
         for (size_t i = 0; i < n; i++) {
             d->to[i] = place_of_row(d, i);
             last = d->to[i] != d->at[i] ? i : last;

@@ -1,4 +1,4 @@
-/* A dense symmetric matrix A, positive definite over the rows with a_ii > 0; all other rows are zero, and belong to no set. */
+/* A dense symmetric matrix A, positive definite over the rows with a_ii > 0. All other rows are 0, and belong to no set. */
 #ifndef TRIBO_DEFINITE_H
 #define TRIBO_DEFINITE_H
 
@@ -6,13 +6,18 @@
 
 struct definite {
     size_t n;
-    double *matrix, *inverse; /* [n][n] A, and A^-1 over the rows with a_ii > 0 */
-    double *factor;           /* [held][held] lower Cholesky factor of A over index */
-    size_t held, *index;      /* [held] rows of the set that was solved for last */
-    double *x;                /* [n] workspace of the caller */
-    double *q, *lo, *hi, *f;  /* [n] of tribo_definite_box */
-    signed char *at, *to;     /* [n] workspace */
-    void *memory;             /* of all arrays */
+    double *matrix;  /* [n][n] A */
+    double *inverse; /* [n][n] A^-1 over the rows with a_ii > 0 */
+    double *factor;  /* [held][held] lower Cholesky factor of A over index */
+    size_t held;     /* rows of the set solved for last */
+    size_t *index;   /* [held] these rows */
+    double *x;       /* [n] workspace of the caller */
+    double *q;       /* [n] see tribo_definite_box; lo, hi, f alike */
+    double *lo, *hi; /* [n] */
+    double *f;       /* [n] */
+    signed char *at; /* [n] workspace */
+    signed char *to; /* [n] workspace */
+    void *memory;    /* of all arrays */
 };
 
 /* Takes A = a [n][n]. Returns TRIBO_OK, TRIBO_ERR_MEMORY, or TRIBO_ERR_INDEFINITE with the row of a pivot that is rounding.

@@ -9,7 +9,7 @@ size_t tribo_gmres_room(size_t n, size_t most)
     return (most + 1) * (n + most + 4);
 }
 
-/* Turns (a, b) by the angle with cosine c and sine s. */
+/* (a, b) = (c a + s b, c b - s a). */
 static void rotate_pair(double c, double s, double *a, double *b)
 {
     const double x = *a;
@@ -17,7 +17,7 @@ static void rotate_pair(double c, double s, double *a, double *b)
     *b = c * *b - s * x;
 }
 
-/* v [k + 1][n], orthonormal but for the last one, which becomes so, too; h [k + 1] = what it was made of. */
+/* Makes v_k orthonormal to v_0 ... v_k-1, v [k + 1][n]: v_k = sum_i h_i v_i before. */
 static void orthonormalize(size_t n, size_t k, double *v, double *h)
 {
     double *last = v + k * n;
@@ -40,7 +40,7 @@ int tribo_gmres(size_t n, tribo_product *product, void *data, double tolerance, 
                 double *work)
 {
     const size_t rows = most + 1;
-    double *v = work, *r = v + rows * n, *c = r + rows * rows, *s = c + rows, *rhs = s + rows; /* r: its columns */
+    double *v = work, *r = v + rows * n, *c = r + rows * rows, *s = c + rows, *rhs = s + rows; /* r by columns */
     const double size = sqrt(tribo_dot(x, x, n));
     size_t count = 0;
     *part = size > 0.0 ? 1.0 : 0.0;

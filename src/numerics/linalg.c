@@ -327,7 +327,7 @@ static void solve_triangle(const struct cholesky *c, int transposed, double *x, 
 void tribo_half_solve(const struct cholesky *c, double *x, size_t cols)
 {
     if (c->sparse) {
-        tribo_sparse_factor_half_solve(c->sparse, x, cols);
+        tribo_sparse_factor_half_solve(c->sparse, 0, x, cols);
         return;
     }
     for (size_t k = 0; c->factor && k < c->n; k++) {
@@ -339,7 +339,7 @@ void tribo_half_solve(const struct cholesky *c, double *x, size_t cols)
 void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols)
 {
     if (c->sparse) {
-        tribo_sparse_factor_half_solve_back(c->sparse, x, cols);
+        tribo_sparse_factor_half_solve(c->sparse, 1, x, cols);
         return;
     }
     solve_triangle(c, 1, x, cols);

@@ -11,7 +11,7 @@
 
 #include "multifrontal.h"
 
-/* What solves take, kept from one to the next with as many vectors. */
+/* Workspace of solves, kept for the next solve of as many vectors. */
 struct room {
     cholmod_dense *solution, *work[2];
 };
@@ -28,16 +28,24 @@ int tribo_sparse_available(void)
     return 1;
 }
 
-static int status_of(const cholmod_common *common)
+static void sparse_factor_start(cholmod_common *common)
 {
-    return common->status == CHOLMOD_OUT_OF_MEMORY || common->status == CHOLMOD_TOO_LARGE ? TRIBO_ERR_MEMORY
-           : common->status == CHOLMOD_NOT_POSDEF                                         ? TRIBO_ERR_INDEFINITE
-                                                                                          : TRIBO_OK;
+    cholmod_l_start(common);
+    common->print = 0;
+    common->supernodal = CHOLMOD_SUPERNODAL;
+    common->final_ll = 1;
+    common->nmethods = 1;
+    common->method[0].ordering = CHOLMOD_AMD;
+    common->postorder = 1;
+    common->quick_return_if_not_posdef = 1;
 }
 
-/* The matrix as CHOLMOD sees it: its rows are columns there, and its lower triangle the upper one. */
-static cholmod_sparse view_of(const struct matrix *a)
+/* Returns a as CHOLMOD reads it: rows as columns, and the lower triangle as the upper one. Drops the upper triangle of spent. */
+static cholmod_sparse view_of(const struct matrix *a, struct matrix *spent)
 {
+    if (spent) {
+        tribo_matrix_keep_lower(spent);
+    }
     return (cholmod_sparse){.nrow = a->rows,
                             .ncol = a->cols,
                             .nzmax = a->first[a->rows],
@@ -52,19 +60,7 @@ static cholmod_sparse view_of(const struct matrix *a)
                             .packed = 1};
 }
 
-static void sparse_factor_start(cholmod_common *common)
-{
-    cholmod_l_start(common);
-    common->print = 0;
-    common->supernodal = CHOLMOD_SUPERNODAL;
-    common->final_ll = 1;
-    common->nmethods = 1;
-    common->method[0].ordering = CHOLMOD_AMD;
-    common->postorder = 1;
-    common->quick_return_if_not_posdef = 1;
-}
-
-/* The lower triangle of P A P', NULL if out of memory, after which a is of no more use if it is spent. */
+/* Returns the lower triangle of P A P', or NULL if out of memory. Frees spent, which a may be a view of. */
 static cholmod_sparse *half_of(cholmod_sparse *a, struct matrix *spent, const cholmod_factor *l, cholmod_common *common)
 {
     cholmod_sparse *half = l ? cholmod_l_ptranspose(a, 1, l->Perm, NULL, 0, common) : NULL;
@@ -74,51 +70,17 @@ static cholmod_sparse *half_of(cholmod_sparse *a, struct matrix *spent, const ch
     return half;
 }
 
-/* As view_of; of what may be spent half is enough. */
-static cholmod_sparse view_to_spend(const struct matrix *a, struct matrix *spent)
-{
-    if (spent) {
-        tribo_matrix_keep_lower(spent);
-    }
-    return view_of(a);
-}
-
-/* NULL with common->status if out of memory; a factor that stops at row l->minor if a pivot says so. cholmod_l_factorize would
- * make the half of a, too, but keep all of a beside it. */
-static cholmod_factor *sparse_factor_factorize(const struct matrix *a, struct matrix *spent, cholmod_common *common)
-{
-    double nothing[2] = {0.0, 0.0};
-    cholmod_sparse view = view_to_spend(a, spent);
-    cholmod_factor *l = cholmod_l_analyze(&view, common);
-    cholmod_sparse *half = half_of(&view, spent, l, common);
-    if (half) {
-        cholmod_l_super_numeric(half, NULL, nothing, l, common);
-    }
-    cholmod_l_free_sparse(&half, common);
-    return l;
-}
-
-static size_t given_row(const cholmod_factor *l, size_t row)
-{
-    return l && row < l->n ? (size_t)((const SuiteSparse_long *)l->Perm)[row] : 0;
-}
-
-/* Makes the room of count vectors. 0 if out of memory; cholmod_l_solve2 makes it, too, but goes on without work[0]. */
-static int sparse_factor_reserve(struct sparse_factor *f, struct room *room, size_t count)
-{
-    const size_t n = f->l->n, most = f->l->maxesize;
-    return cholmod_l_ensure_dense(&room->solution, n, count, n, CHOLMOD_REAL, &f->common) &&
-           cholmod_l_ensure_dense(&room->work[0], n, count, n, CHOLMOD_REAL, &f->common) &&
-           cholmod_l_ensure_dense(&room->work[1], count, most, count, CHOLMOD_REAL, &f->common);
-}
-
+/* x [count][n] = the solution of the system `what` of CHOLMOD. Makes the room of count vectors before: cholmod_l_solve2 goes on
+ * without work[0] where there is no memory. Returns 1, or 0 if out of memory. */
 static int sparse_factor_solve(struct sparse_factor *f, int what, size_t count, double *x)
 {
-    const size_t n = f->l->n;
+    const size_t n = f->l->n, most = f->l->maxesize;
     cholmod_dense b = {
         .nrow = n, .ncol = count, .nzmax = n * count, .d = n, .x = x, .xtype = CHOLMOD_REAL, .dtype = CHOLMOD_DOUBLE};
     struct room *room = count == 1 ? &f->one : &f->many;
-    if (!sparse_factor_reserve(f, room, count) ||
+    if (!cholmod_l_ensure_dense(&room->solution, n, count, n, CHOLMOD_REAL, &f->common) ||
+        !cholmod_l_ensure_dense(&room->work[0], n, count, n, CHOLMOD_REAL, &f->common) ||
+        !cholmod_l_ensure_dense(&room->work[1], count, most, count, CHOLMOD_REAL, &f->common) ||
         !cholmod_l_solve2(what, f->l, &b, NULL, &room->solution, NULL, &room->work[0], &room->work[1], &f->common)) {
         return 0;
     }
@@ -126,7 +88,7 @@ static int sparse_factor_solve(struct sparse_factor *f, int what, size_t count, 
     return 1;
 }
 
-/* Makes the room that single solves take: after this they cannot fail. */
+/* Makes the room of single solves, which cannot fail afterwards. */
 static int sparse_factor_prepare(struct sparse_factor *f)
 {
     f->column = f->column ? f->column : calloc(f->l->n + 1, sizeof *f->column);
@@ -136,15 +98,27 @@ static int sparse_factor_prepare(struct sparse_factor *f)
 int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, struct matrix *spent, size_t *where)
 {
     struct sparse_factor *f = calloc(1, sizeof *f);
+    double nothing[2] = {0.0, 0.0};
     if (!f) {
         return TRIBO_ERR_MEMORY;
     }
     sparse_factor_start(&f->common);
-    f->l = sparse_factor_factorize(a, spent, &f->common);
-    int status = status_of(&f->common);
+    /* cholmod_l_factorize would keep all of a beside its half. */
+    cholmod_sparse view = view_of(a, spent);
+    f->l = cholmod_l_analyze(&view, &f->common);
+    cholmod_sparse *half = half_of(&view, spent, f->l, &f->common);
+    if (half) {
+        cholmod_l_super_numeric(half, NULL, nothing, f->l, &f->common);
+    }
+    cholmod_l_free_sparse(&half, &f->common);
+    const int reason = f->common.status;
+    int status = reason == CHOLMOD_OUT_OF_MEMORY || reason == CHOLMOD_TOO_LARGE ? TRIBO_ERR_MEMORY
+                 : reason == CHOLMOD_NOT_POSDEF                                 ? TRIBO_ERR_INDEFINITE
+                                                                                : TRIBO_OK;
     status = status || (f->l && sparse_factor_prepare(f)) ? status : TRIBO_ERR_MEMORY;
     if (status) {
-        *where = f->l ? given_row(f->l, f->l->minor) : 0;
+        const size_t row = f->l ? f->l->minor : 0; /* of P A P' */
+        *where = f->l && row < f->l->n ? (size_t)((const SuiteSparse_long *)f->l->Perm)[row] : 0;
         tribo_sparse_factor_free(f);
         return status;
     }
@@ -200,36 +174,25 @@ int tribo_sparse_factor_solve(struct sparse_factor *f, size_t count, double *x)
     return sparse_factor_solve(f, CHOLMOD_A, count, x);
 }
 
-/* One column after the other of x [n][cols]: first one part of the factor, then the other. */
-static void solve_columns(struct sparse_factor *f, int first, int second, double *x, size_t cols)
+void tribo_sparse_factor_half_solve(struct sparse_factor *f, int back, double *x, size_t cols)
 {
     for (size_t j = 0; j < cols; j++) {
         for (size_t i = 0; i < f->l->n; i++) {
             f->column[i] = x[i * cols + j];
         }
-        sparse_factor_solve(f, first, 1, f->column);
-        sparse_factor_solve(f, second, 1, f->column);
+        sparse_factor_solve(f, back ? CHOLMOD_Lt : CHOLMOD_P, 1, f->column);
+        sparse_factor_solve(f, back ? CHOLMOD_Pt : CHOLMOD_L, 1, f->column);
         for (size_t i = 0; i < f->l->n; i++) {
             x[i * cols + j] = f->column[i];
         }
     }
 }
 
-void tribo_sparse_factor_half_solve(struct sparse_factor *f, double *x, size_t cols)
-{
-    solve_columns(f, CHOLMOD_P, CHOLMOD_L, x, cols);
-}
-
-void tribo_sparse_factor_half_solve_back(struct sparse_factor *f, double *x, size_t cols)
-{
-    solve_columns(f, CHOLMOD_Lt, CHOLMOD_Pt, x, cols);
-}
-
 int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *a, struct matrix *spent, const double *size,
                          struct inertia *found)
 {
     cholmod_common common;
-    cholmod_sparse view = view_to_spend(a, spent);
+    cholmod_sparse view = view_of(a, spent);
     sparse_factor_start(&common);
     cholmod_factor *own = like ? NULL : cholmod_l_analyze(&view, &common);
     const cholmod_factor *l = like ? like->l : own;
@@ -255,10 +218,7 @@ int tribo_sparse_available(void)
 
 int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, struct matrix *spent, size_t *where)
 {
-    (void)factor;
-    (void)a;
-    (void)spent;
-    (void)where;
+    (void)factor, (void)a, (void)spent, (void)where;
     return TRIBO_ERR_UNSUPPORTED;
 }
 
@@ -281,34 +241,19 @@ size_t tribo_sparse_factor_entries(const struct sparse_factor *factor)
 
 int tribo_sparse_factor_solve(struct sparse_factor *factor, size_t count, double *x)
 {
-    (void)factor;
-    (void)count;
-    (void)x;
+    (void)factor, (void)count, (void)x;
     return 0;
 }
 
-void tribo_sparse_factor_half_solve(struct sparse_factor *factor, double *x, size_t cols)
+void tribo_sparse_factor_half_solve(struct sparse_factor *factor, int back, double *x, size_t cols)
 {
-    (void)factor;
-    (void)x;
-    (void)cols;
-}
-
-void tribo_sparse_factor_half_solve_back(struct sparse_factor *factor, double *x, size_t cols)
-{
-    (void)factor;
-    (void)x;
-    (void)cols;
+    (void)factor, (void)back, (void)x, (void)cols;
 }
 
 int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *a, struct matrix *spent, const double *size,
                          struct inertia *found)
 {
-    (void)like;
-    (void)a;
-    (void)spent;
-    (void)size;
-    (void)found;
+    (void)like, (void)a, (void)spent, (void)size, (void)found;
     return TRIBO_ERR_UNSUPPORTED;
 }
 
