@@ -36,6 +36,13 @@ static size_t instants_at_rest(const char *name, double limit)
     return count;
 }
 
+/* Relative error of the amplitude without friction, of damping ratio zeta at resonance: after half a period the state comes back to
+ * 1e-10 of the largest (tolerance of tribo_driver_find_periodic), and the mode keeps exp(-pi zeta) of a deviation. */
+static double resonance_error(double zeta)
+{
+    return 1e-10 / (1.0 - exp(-PI * zeta));
+}
+
 /* Without friction and with all contacts stuck the motion is known; so is about how much friction takes at best: half of what the
  * load puts in. Marching agrees to what its step allows. */
 TEST(beam)
@@ -44,7 +51,7 @@ TEST(beam)
     require(!says(o.out, "not found"), "%s", o.out);
     /* all 288 modes, by numpy */
     assert_close(value_of("damper.free"), 11.45611358, 1e-6);
-    assert_close(value_of("damper.free"), value_of("damper.free.analytic"), 1e-9);
+    assert_close(value_of("damper.free"), value_of("damper.free.analytic"), resonance_error(0.002) * 11.456);
     assert_close(value_of("damper.stuck"), 2.47230951e-4, 1e-10);
     assert_close(value_of("damper.stuck"), value_of("damper.stuck.analytic"), 1e-13);
     assert_close(value_of("damper.best.limit"), value_of("damper.best.limit.balance"), 1e-3 * 0.02);
