@@ -10,8 +10,8 @@
 
 #include "support.h"
 
-#if defined(__SANITIZE_ADDRESS__)
-#define BOUND_MEMORY 0 /* it reserves terabytes */
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define BOUND_MEMORY 0 /* they reserve terabytes */
 #else
 #define BOUND_MEMORY 1
 #endif

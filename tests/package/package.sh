@@ -60,6 +60,7 @@ compile() {
     strict="-Wall -Wextra -pedantic -Werror"
     case $language in
     C) "$CC" -std=c99 $strict "$source" -o "$output" "$@" ;;
+    C90) "$CC" -std=c90 $strict "$source" -o "$output" "$@" -lm ;;
     CXX) "${CXX:-c++}" -std=c++98 $strict "$source" -o "$output" "$@" ;;
     Fortran) "$FC" $strict "$source" -o "$output" "$@" ;;
     esac
@@ -144,6 +145,18 @@ install) # <cmake option>...
     mv "$WORK/prefix" "$WORK/elsewhere"
     ;;
 
+copy) # <build folder>: the same of the build that these tests are part of. What it was installed to before is not forgotten.
+    rm -rf "$WORK/prefix" "$WORK/elsewhere"
+    mkdir -p "$WORK"
+    ln -sfn "$1" "$WORK/build"
+    manifest=$1/install_manifest.txt
+    [ ! -e "$manifest" ] || mv "$manifest" "$WORK/manifest.before"
+    "$CMAKE" --install "$1" --prefix "$WORK/prefix"
+    mv "$manifest" "$WORK/manifest"
+    [ ! -e "$WORK/manifest.before" ] || mv "$WORK/manifest.before" "$manifest"
+    mv "$WORK/prefix" "$WORK/elsewhere"
+    ;;
+
 components) # Each component alone holds what its name says; the three together are the whole.
     out=$WORK/components
     rm -rf "$out"
@@ -165,7 +178,7 @@ components) # Each component alone holds what its name says; the three together 
     [ ! -e "$out/tool/bin" ] || "$out/tool/bin/tribo-damper" --version
     ;;
 
-again) # <cmake option>...: the tree as git archives it, in another folder, builds and installs the same bytes. The objects are new.
+again) # The tree as git archives it, in another folder, passes its tests and installs the same bytes. The objects are new.
     again=$WORK/again/in/another/folder
     rm -rf "$WORK/again"
     mkdir -p "$again"
@@ -177,11 +190,38 @@ again) # <cmake option>...: the tree as git archives it, in another folder, buil
     fi
     cd "$again"
     export CCACHE_DISABLE=1
-    "$CMAKE" "$@" -DCMAKE_INSTALL_PREFIX="$WORK/again/prefix" -DCMAKE_INSTALL_LIBDIR=lib
-    "$CMAKE" --build build/release --parallel 2
-    "$CMAKE" --install build/release
+    sh tests/run.sh --no-install -L '^(house|unit|fortran|example|abi)$'
+    "$CMAKE" --install build/release --prefix "$WORK/again/prefix"
     diff -r "$WORK/elsewhere" "$WORK/again/prefix"
     rm -rf "$WORK/again"
+    ;;
+
+row) # <preset>
+    cd "$ROOT"
+    rm -rf "build/$1/CMakeCache.txt" "build/$1/CMakeFiles"
+    "$CMAKE" --preset "$1"
+    "$CMAKE" --build --preset "$1" --parallel 2
+    if "$CTEST" --list-presets | grep -q "\"$1\""; then
+        "$CTEST" --preset "$1" --parallel 2
+    fi
+    ;;
+
+blas) # <preset> <build folder> <libtribo_dynamics>: the preset's tests, listed in a folder of their own, since ctest writes there.
+    paths=$(sed -n "/\"name\": \"$1\"/,/}/s/.*\"LD_LIBRARY_PATH\": \"\([^\"]*\)\".*/\1/p" "$ROOT/CMakePresets.json")
+    export LD_LIBRARY_PATH="$paths" OPENBLAS_NUM_THREADS=1
+    ldd "$3" | grep -E "lib(blas|lapack)\.so" >"$WORK.libraries" || true
+    case $1 in openblas) folder=/openblas ;; *) folder=/blas/ ;; esac
+    grep -q "$folder" "$WORK.libraries" || {
+        cat "$WORK.libraries"
+        say "this LAPACK is not there (Debian: libopenblas0-pthread, liblapack3)"
+        exit 1
+    }
+    rm -rf "$WORK"
+    mkdir -p "$WORK"
+    for room in unit validation; do
+        printf 'subdirs("%s/tests/%s")\n' "$2" $room
+    done >"$WORK/CTestTestfile.cmake"
+    "$CTEST" --test-dir "$WORK" --parallel 2 --output-on-failure --no-tests=error -L '^(unit|validation)$' -LE '^long$'
     ;;
 
 find_package) # <source> <language> <component> [OPTIONAL_COMPONENTS <component>...]
@@ -315,16 +355,14 @@ needs) # The core needs a C compiler, libc and libm.
 
 uninstall)
     mv "$WORK/elsewhere" "$WORK/prefix"
-    "$CMAKE" --build "$WORK/build" --target uninstall
+    if [ -e "$WORK/manifest" ]; then
+        "$CMAKE" -D MANIFEST="$WORK/manifest" -P "$ROOT/src/cmake/uninstall.cmake"
+    else
+        "$CMAKE" --build "$WORK/build" --target uninstall
+    fi
     if find "$WORK/prefix" ! -type d -o -name 'tribo*' | grep .; then
         say "this was left behind"
         exit 1
     fi
-    ;;
-
-unit) # <cmake option>...
-    case $* in *clang*) command -v clang >/dev/null || { say "there is no clang" && exit 77; } ;; esac
-    build "$WORK/unit" "$@"
-    "$CTEST" --test-dir "$WORK/unit" --label-regex '^unit$' --no-tests=error --output-on-failure
     ;;
 esac

@@ -42,6 +42,10 @@ try "$stub:$PATH" present absent-1 absent-2
 ! says 'went on' && [ ! -e "$stub/apt" ] || fail "does not stop without root"
 
 command_stub id 'echo 0'
+status=0
+PATH=$stub:$PATH "$sh" -c '. tests/setup.sh && setup_install=no && setup absent && echo went on' >"$stub/log" 2>&1 || status=$?
+[ $status = 1 ] && says 'Missing' && says 'absent' && ! says 'went on' && [ ! -e "$stub/apt" ] || fail "installs against the order"
+
 try "$stub:$PATH" present absent
 [ $status = 1 ] && says 'not found or too old: absent' || fail "takes apt-get's word for it"
 [ "$(cut -d' ' -f1 "$stub/apt" | tr '\n' ' ')" = 'update install ' ] || fail "does not update, then install"
@@ -49,6 +53,7 @@ try "$stub:$PATH" present absent
 command_stub apt-get "[ \$1 = update ] || { : >'$stub/absent' && chmod +x '$stub/absent'; }"
 try "$stub:$PATH" present absent
 [ $status = 0 ] && says 'went on' || fail "does not go on after installing"
+says '== Installing absent' || fail "does not name what it installs"
 
 rm "$stub/absent"
 command_stub id 'echo 1000'
