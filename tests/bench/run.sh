@@ -27,7 +27,8 @@ cmake --build $build --parallel "$(getconf _NPROCESSORS_ONLN)" --target bench be
     bench_kernels bench_modes bench_whole bench_points
 
 echo "== Running; tables and pictures go to $results"
-mkdir -p "$results/balance"
+rm -f "$results"/*.csv
+mkdir -p "$results/balance" "$results/periodic"
 # One thread: times are those of one processor.
 OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $build/tests/bench/bench --out "$results" "$@"
 case " $* " in *" --quick "*) quick=--quick ;; *) quick= ;; esac
@@ -35,7 +36,7 @@ OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $build/tests/bench/bench_balance --out 
     > "$results/balance/tables.txt"
 $build/tests/bench/bench_planar > "$results/planar.txt"
 $build/tests/bench/bench_kernels $quick > "$results/kernels.txt"
-$build/tests/bench/bench_periodic --out "$results" > "$results/periodic.txt"
+$build/tests/bench/bench_periodic --out "$results/periodic" > "$results/periodic.txt"
 $build/tests/bench/bench_points > "$results/points.txt"
 sh tests/bench/modes.sh $build "$results" $quick > "$results/modes.txt"
 
