@@ -53,41 +53,47 @@ static struct place read_places(const char *origin, const char *text, int *secon
     return p;
 }
 
-/* What a contact's words may be. Each value is kept as it was given, NaN if it was not. */
-struct words {
-    double limit, mu, load, stiffness;
+/* A word name=NUMBER, positive; *value is NaN until it is given. */
+struct word {
+    const char *name;
+    double *value;
+    int any_sign, may_be_zero;
 };
 
-static double *find_word(struct words *w, const char *name, size_t length)
+/* Reads the words behind a place, parted by colons or blanks; to: the other end of a contact, or NULL; all: them all, for the
+ * message. */
+static void read_words(const char *origin, char *at, const struct word *known, size_t count, struct contact *to, const char *all)
 {
-    const struct {
-        const char *name;
-        double *value;
-    } known[] = {{"limit", &w->limit}, {"mu", &w->mu}, {"load", &w->load}, {"stiffness", &w->stiffness}};
-    for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
-        if (strlen(known[k].name) == length && strncmp(name, known[k].name, length) == 0) {
-            return known[k].value;
+    for (char *word = strtok(at, PARTED); word; word = strtok(NULL, PARTED)) {
+        const char *equals = strchr(word, '=');
+        const size_t length = equals ? (size_t)(equals - word) : strlen(word);
+        const struct word *w = NULL;
+        const int is_to = to && strncmp(word, "to=", 3) == 0;
+        for (size_t k = 0; k < count; k++) {
+            w = strlen(known[k].name) == length && strncmp(word, known[k].name, length) == 0 ? &known[k] : w;
+        }
+        if (!is_to && !(w && equals)) {
+            die("%s: \"%s\" is none of %s", origin, word, all);
+        }
+        if (is_to ? to->between : !isnan(*w->value)) {
+            die("%s: %.*s= is there twice", origin, (int)length, word);
+        }
+        if (is_to) {
+            read_coordinates(origin, word + 3, '\0', to->to.at);
+            to->between = 1;
+        } else {
+            *w->value = read_real(origin, equals + 1, w->any_sign ? -HUGE_VAL : 0.0, w->may_be_zero);
         }
     }
-    return NULL;
 }
 
-static void read_word(const char *origin, char *word, struct contact *c, struct words *w)
+/* Ends the first word of text, which is returned; *rest is behind it. */
+static char *first_word(char *text, char **rest)
 {
-    const char *equals = strchr(word, '=');
-    const size_t length = equals ? (size_t)(equals - word) : strlen(word);
-    double *value = find_word(w, word, length);
-    if (equals && (value ? !isnan(*value) : c->between && strncmp(word, "to=", 3) == 0)) {
-        die("%s: %.*s= is there twice", origin, (int)length, word);
-    }
-    if (equals && value) {
-        *value = read_real(origin, equals + 1, 0.0, value == &w->limit);
-    } else if (strncmp(word, "to=", 3) == 0) {
-        read_coordinates(origin, word + 3, '\0', c->to.at);
-        c->between = 1;
-    } else {
-        die("%s: \"%s\" is none of to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER", origin, word);
-    }
+    char *first = text + strspn(text, PARTED), *end = first + strcspn(first, PARTED);
+    *rest = end + (*end != '\0');
+    *end = '\0';
+    return first;
 }
 
 static void add_contact(struct contacts *all, const struct contact *c)
@@ -98,31 +104,26 @@ static void add_contact(struct contacts *all, const struct contact *c)
 
 void read_contact(const char *origin, const char *text, struct contacts *all)
 {
-    struct contact c = {.mu = 1.0};
+    struct contact c = {.mu = (double)NAN, .limit = (double)NAN, .stiffness = (double)NAN};
+    double load = (double)NAN;
+    const struct word known[] = {
+        {"limit", &c.limit, 0, 1}, {"mu", &c.mu, 0, 0}, {"load", &load, 0, 0}, {"stiffness", &c.stiffness, 0, 0}};
     int second;
-    struct words w = {(double)NAN, (double)NAN, (double)NAN, (double)NAN};
-    char *copy = new_text("%s", text), *place = copy + strspn(copy, PARTED), *word = place + strcspn(place, PARTED);
-    if (*word) {
-        *word++ = '\0';
-    }
-    c.at = read_places(origin, place, &second);
-    for (word += strspn(word, PARTED); *word; word += strspn(word, PARTED)) {
-        char *end = word + strcspn(word, PARTED);
-        const int last = *end == '\0';
-        *end = '\0';
-        read_word(origin, word, &c, &w);
-        word = last ? end : end + 1;
-    }
+    char *copy = new_text("%s", text), *rest;
+    c.at = read_places(origin, first_word(copy, &rest), &second);
+    read_words(origin, rest, known, sizeof known / sizeof *known, &c,
+               "to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER");
     free(copy);
-    if (!isnan(w.limit) && !(isnan(w.mu) && isnan(w.load))) {
+    if (!isnan(c.limit) && !(isnan(c.mu) && isnan(load))) {
         die("%s: either limit= or mu=, not both", origin);
     }
-    if (isnan(w.mu) && !isnan(w.load)) {
+    if (isnan(c.mu) && !isnan(load)) {
         die("%s: load= needs mu=, too", origin);
     }
-    c.mu = isnan(w.mu) ? 1.0 : w.mu;
-    c.stiffness = isnan(w.stiffness) ? 0.0 : w.stiffness;
-    c.limit = isnan(w.load) ? w.limit : w.mu * w.load;
+    c.by_load = isnan(c.limit) && isnan(load) && !isnan(c.mu);
+    c.limit = isnan(load) ? c.limit : c.mu * load;
+    c.mu = isnan(c.mu) ? 1.0 : c.mu;
+    c.stiffness = isnan(c.stiffness) ? 0.0 : c.stiffness;
     c.to.direction = c.at.direction;
     c.to.origin = origin;
     c.planar = second != 0;
@@ -132,6 +133,30 @@ void read_contact(const char *origin, const char *text, struct contacts *all)
         c.at.direction = c.to.direction = second;
         add_contact(all, &c);
     }
+}
+
+void read_load(const char *origin, const char *text, int supports, struct loads *all)
+{
+    struct load l = {.supports = supports, .size = (double)NAN, .phase = (double)NAN};
+    const struct word known[] = {{supports ? "acceleration" : "force", &l.size, 0, 0}, {"phase", &l.phase, 1, 1}};
+    char *copy = new_text("%s", text), *rest, *place = first_word(copy, &rest);
+    if (supports) {
+        l.at = (struct place){.origin = origin, .direction = place[0] && !place[1] ? read_direction(place[0]) : 0};
+        if (!l.at.direction) {
+            die("%s: direction \"%s\" must be x, y or z", origin, place);
+        }
+    } else {
+        l.at = read_place(origin, place);
+    }
+    read_words(origin, rest, known, sizeof known / sizeof *known, NULL,
+               supports ? "acceleration=NUMBER phase=DEGREES" : "force=FORCE phase=DEGREES");
+    if (supports && isnan(l.size)) {
+        die("%s: acceleration= is missing", origin);
+    }
+    l.phase = isnan(l.phase) ? 0.0 : l.phase;
+    free(copy);
+    all->load = need_room(all->load, all->count, &all->room, sizeof *all->load);
+    all->load[all->count++] = l;
 }
 
 static void cut_blanks(char *text)

@@ -16,12 +16,30 @@ struct contact {
     int between;  /* 0: to the ground, and there is no to */
     double limit; /* NaN: it varies, and is mu times what it varies with */
     double mu;
+    int by_load;      /* 1: it varies, and mu is given: what it varies with is a normal load */
     double stiffness; /* of the spring that it slides on; 0: none, it is rigid */
     int planar;       /* the first direction of two, and the next contact is the other one */
 };
 
 /* "X,Y,Z,DIR" */
 struct place read_place(const char *origin, const char *text);
+
+/* A harmonic load, size sin(omega t + phase): a force at a place; or an acceleration of all supports along a direction. */
+struct load {
+    struct place at; /* of the supports: the direction only */
+    int supports;    /* 1: the supports move */
+    double size;     /* a force, NaN: that of --force; or an acceleration */
+    double phase;    /* degrees */
+};
+
+struct loads {
+    struct load *load;
+    size_t count, room;
+};
+
+/* "X,Y,Z,DIR" and the words force=FORCE phase=DEGREES, or "DIR" and acceleration=NUMBER phase=DEGREES, parted by colons or
+ * blanks: adds the load. */
+void read_load(const char *origin, const char *text, int supports, struct loads *all);
 
 struct contacts {
     struct contact *contact;

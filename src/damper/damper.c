@@ -5,33 +5,49 @@
 #include <string.h>
 
 #include "output.h"
-#include "linear.h"
 
-/* Rows of the structure where a contact slides; to is ndof for the ground. Behind the contacts stands the load. */
-struct places {
-    size_t *at, *to, *output, load;
-};
-
-static struct places find_rows(const struct options *o, const struct structure *s)
+/* Rows over the degrees of freedom [ndof]: directions of contacts, then loads of size 1, then outputs, then the place where
+ * amplitudes are measured. A load of the supports is -M r with r the direction, which is 1 along it. */
+static struct sparse make_rows(const struct options *o, const struct structure *s)
 {
-    struct places r = {.load = find_degree(s, &o->load)};
-    r.at = need_memory(2 * (o->contacts.count + 1) + o->outputs, sizeof *r.at);
-    r.to = r.at + o->contacts.count + 1;
-    r.output = r.to + o->contacts.count + 1;
-    for (size_t k = 0; k < o->outputs; k++) {
-        r.output[k] = find_degree(s, &o->output[k]);
-    }
-    for (size_t c = 0; c < o->contacts.count; c++) {
-        const struct contact *contact = &o->contacts.contact[c];
-        r.at[c] = find_degree(s, &contact->at);
-        r.to[c] = contact->between ? find_degree(s, &contact->to) : s->ndof;
-        if (r.at[c] == r.to[c]) {
-            die("%s: both ends are the same node", contact->at.origin);
+    const size_t contacts = o->contacts.count, loads = o->loads.count, rows = contacts + loads + o->outputs + 1;
+    struct sparse j = {.rows = rows, .first = need_memory(rows + 1, sizeof *j.first)};
+    const size_t most = 2 * rows + loads * s->ndof;
+    size_t count = 0;
+    j.col = need_memory(most, sizeof *j.col);
+    j.val = need_memory(most, sizeof *j.val);
+    for (size_t r = 0; r < rows; r++) {
+        const struct contact *contact = r < contacts ? &o->contacts.contact[r] : NULL;
+        const struct load *load = r >= contacts && r < contacts + loads ? &o->loads.load[r - contacts] : NULL;
+        const size_t output = r - contacts - loads;
+        if (load && load->supports) {
+            for (size_t i = 0; i < s->ndof; i++) {
+                double sum = 0.0;
+                for (size_t k = s->mass.first[i]; k < s->mass.first[i + 1]; k++) {
+                    sum -= s->dof[s->mass.col[k]].direction == load->at.direction ? s->mass.val[k] : 0.0;
+                }
+                j.col[count] = i;
+                j.val[count] = sum;
+                count += sum != 0.0;
+            }
+        } else {
+            const struct place *at = contact       ? &contact->at
+                                     : load        ? &load->at
+                                     : r + 1 < rows ? &o->output[output]
+                                                    : measured_place(o);
+            j.col[count] = find_degree(s, at);
+            j.val[count++] = 1.0;
         }
+        if (contact && contact->between) {
+            j.col[count] = find_degree(s, &contact->to);
+            j.val[count++] = -1.0;
+            if (j.col[count - 1] == j.col[count - 2]) {
+                die("%s: both ends are the same node", contact->at.origin);
+            }
+        }
+        j.first[r + 1] = count;
     }
-    r.at[o->contacts.count] = r.load;
-    r.to[o->contacts.count] = s->ndof;
-    return r;
+    return j;
 }
 
 /* A mode that moves a contact by less than this part of what the strongest mode does, does not move it: what is left there is
@@ -49,33 +65,75 @@ static void clean_shape(const struct damper *d, double *shape)
     }
 }
 
-/* What a unit amplitude of each mode does at the load and at the contacts. */
-static void read_shapes(struct damper *d, const struct places *r)
+static double row_times(const struct sparse *m, size_t row, const double *x)
 {
-    double *unit = need_memory(d->modes, sizeof *unit), *full = need_memory(d->ndof + 1, sizeof *full);
+    double sum = 0.0;
+    for (size_t k = m->first[row]; k < m->first[row + 1]; k++) {
+        sum += m->val[k] * x[m->col[k]];
+    }
+    return sum;
+}
+
+/* The loads, and all places, in the modes. */
+static void read_shapes(struct damper *d, const struct options *o, const struct sparse *rows, const double *full)
+{
+    const double degree = TURN / 360.0;
+    const size_t loads = o->loads.count;
     for (size_t k = 0; k < d->modes; k++) {
-        unit[k] = 1.0;
-        need(tribo_system_expand(d->reduced, unit, full), NULL);
-        unit[k] = 0.0;
-        d->load_shape[k] = full[r->load];
-        for (size_t i = 0; i < d->outputs; i++) {
-            d->output_shape[i * d->modes + k] = full[r->output[i]];
-        }
+        const double *mode = full + k * d->ndof;
         for (size_t c = 0; c < d->contacts; c++) {
-            d->contact_shape[c * d->modes + k] = full[r->at[c]] - full[r->to[c]]; /* full[ndof] = 0 is the ground */
+            d->contact_shape[c * d->modes + k] = row_times(rows, c, mode);
         }
+        for (size_t i = 0; i < loads; i++) {
+            const struct load *load = &o->loads.load[i];
+            const double force = load->size * row_times(rows, d->contacts + i, mode);
+            d->open.cosine[k] += load->phase != 0.0 ? force * sin(degree * load->phase) : 0.0;
+            d->open.sine[k] += load->phase != 0.0 ? force * cos(degree * load->phase) : force;
+        }
+        for (size_t i = 0; i < d->outputs; i++) {
+            d->output_shape[i * d->modes + k] = row_times(rows, d->contacts + loads + i, mode);
+        }
+        d->open.measured[k] = row_times(rows, rows->rows - 1, mode);
     }
     for (size_t c = 0; c < d->contacts; c++) {
         clean_shape(d, d->contact_shape + c * d->modes);
     }
-    free(unit);
-    free(full);
 }
 
-static void reduce(struct damper *d, const struct options *o, const struct structure *s, const struct places *r)
+/* An entry of the modal damping matrix below this part of the largest sum of its terms is rounding. */
+static const double UNDAMPED = 1e-13;
+
+/* Modal damping: of ratios, or Phi' C Phi. */
+static void set_damping(struct damper *d, const struct options *o, const struct structure *s, const double *full)
 {
-    /* with statics the load is a contact, too: its static response is needed as those of contacts */
-    tribo_model *model = model_of(s, d->contacts + (size_t)o->statics, r->at, r->to);
+    double *c = d->open.damping, *force = need_memory(d->ndof, sizeof *force);
+    for (size_t k = 0; k < d->modes; k++) {
+        const size_t last = o->damping.count ? o->damping.count - 1 : 0;
+        for (size_t i = 0; o->damping_matrix && i < d->ndof; i++) {
+            force[i] = row_times(&s->damping, i, full + k * d->ndof);
+        }
+        for (size_t j = 0; o->damping_matrix && j < d->modes; j++) {
+            double sum = 0.0, terms = 0.0;
+            for (size_t i = 0; i < d->ndof; i++) {
+                sum += full[j * d->ndof + i] * force[i];
+                terms += fabs(full[j * d->ndof + i] * force[i]);
+            }
+            c[j * d->modes + k] = fabs(sum) > UNDAMPED * terms ? sum : 0.0;
+        }
+        if (!o->damping_matrix) {
+            c[k * d->modes + k] = 2.0 * o->damping.value[k < last ? k : last] * d->open.omega[k];
+        }
+    }
+    find_coupling(&d->open);
+    free(force);
+}
+
+static void reduce(struct damper *d, const struct options *o, const struct structure *s, const struct sparse *rows)
+{
+    /* with statics the loads are contacts, too: their static responses are needed as those of contacts */
+    const size_t directions = d->contacts + (o->statics ? o->loads.count : 0);
+    tribo_model *model = matrices_of(s, directions);
+    need(tribo_model_set_direction_csr(model, rows->first, rows->col, rows->val), tribo_model_message(model));
     if (tribo_system_reduce(&d->reduced, model, d->kept, o->statics ? TRIBO_STATICS_MASS : TRIBO_STATICS_NONE)) {
         const char *message = tribo_model_message(model);
         const int counts = strchr(message, '[') || strstr(message, "degree of freedom ");
@@ -83,12 +141,20 @@ static void reduce(struct damper *d, const struct options *o, const struct struc
     }
     tribo_model_destroy(model);
     d->modes = tribo_system_ndof(d->reduced);
-    d->omega = need_memory(d->modes, sizeof *d->omega);
-    d->load_shape = need_memory(d->modes, sizeof *d->load_shape);
+    d->open = create_linear(d->modes);
     d->contact_shape = need_memory(d->contacts * d->modes, sizeof *d->contact_shape);
     d->output_shape = need_memory(d->outputs * d->modes, sizeof *d->output_shape);
-    need(tribo_system_get_frequencies(d->reduced, d->omega), tribo_system_message(d->reduced));
-    read_shapes(d, r);
+    need(tribo_system_get_frequencies(d->reduced, d->open.omega), tribo_system_message(d->reduced));
+    double *unit = need_memory(d->modes, sizeof *unit), *full = need_memory(d->modes * d->ndof, sizeof *full);
+    for (size_t k = 0; k < d->modes; k++) {
+        unit[k] = 1.0;
+        need(tribo_system_expand(d->reduced, unit, full + k * d->ndof), NULL);
+        unit[k] = 0.0;
+    }
+    read_shapes(d, o, rows, full);
+    set_damping(d, o, s, full);
+    free(unit);
+    free(full);
 }
 
 /* A spring so many times as stiff as the lowest mode that is no rigid body's leaves of its frequency what is still right. */
@@ -100,7 +166,7 @@ static void check_spring(const struct damper *d, size_t c, const char *origin)
     for (size_t k = 0; k < d->modes; k++) {
         const double shape = d->contact_shape[c * d->modes + k];
         spring += d->stiffness[c] * shape * shape;
-        lowest = d->omega[k] > 1e-6 * d->omega[d->modes - 1] ? fmin(lowest, d->omega[k]) : lowest;
+        lowest = d->open.omega[k] > 1e-6 * d->open.omega[d->modes - 1] ? fmin(lowest, d->open.omega[k]) : lowest;
     }
     if (!(spring <= MOST_STIFF * lowest * lowest)) {
         die("%s: stiffness=%g is more than %g times that of the structure there: leave it out for a rigid contact", origin,
@@ -122,16 +188,15 @@ static void set_contacts(struct damper *d, const struct options *o)
     free(first);
 }
 
-/* The system of modes, and of sliders behind springs. */
+/* The system of modes, with the springs of contacts. */
 static void build(struct damper *d, const struct options *o)
 {
-    double *mass = need_memory(3 * d->modes + d->contacts, sizeof *mass);
-    double *damping = mass + d->modes, *stiffness = damping + d->modes, *compliance = stiffness + d->modes;
+    double *mass = need_memory(2 * d->modes + d->contacts, sizeof *mass);
+    double *stiffness = mass + d->modes, *compliance = stiffness + d->modes;
     tribo_model *model = NULL;
     for (size_t k = 0; k < d->modes; k++) {
         mass[k] = 1.0;
-        damping[k] = 2.0 * d->damping * d->omega[k];
-        stiffness[k] = d->omega[k] * d->omega[k];
+        stiffness[k] = d->open.omega[k] * d->open.omega[k];
     }
     for (size_t c = 0; c < d->contacts; c++) {
         if (d->stiffness[c] > 0.0) {
@@ -141,27 +206,20 @@ static void build(struct damper *d, const struct options *o)
     }
     need(tribo_model_create(&model, d->modes, d->contacts), NULL);
     need(tribo_model_set_mass_diagonal(model, mass), tribo_model_message(model));
-    need(tribo_model_set_damping_diagonal(model, damping), tribo_model_message(model));
     need(tribo_model_set_stiffness_diagonal(model, stiffness), tribo_model_message(model));
+    for (size_t k = 0; k < d->modes; k++) {
+        mass[k] = d->open.damping[k * (d->modes + 1)];
+    }
+    need(d->open.coupled ? tribo_model_set_damping(model, d->open.damping) : tribo_model_set_damping_diagonal(model, mass),
+         tribo_model_message(model));
     need(tribo_model_set_direction(model, d->contact_shape), tribo_model_message(model));
     need(tribo_model_set_compliance(model, compliance), tribo_model_message(model));
     if (tribo_system_create(&d->sys, model)) {
-        die("modes and sliders: %s", tribo_model_message(model));
+        die("modes and springs: %s", tribo_model_message(model));
     }
     tribo_model_destroy(model);
     free(mass);
     set_contacts(d, o);
-}
-
-/* Rigid contacts must not hold all of what the modes let move, unless they hold the structure itself. */
-static void check_freedom(const struct damper *d)
-{
-    double *stuck = need_memory(d->modes, sizeof *stuck);
-    if (d->modes < d->ndof && stuck_frequencies(d, stuck) == 0) {
-        die("the contacts, if they stick, hold all that the %zu mode%s of the reduced structure let%s move: keep more --modes",
-            d->modes, d->modes == 1 ? "" : "s", d->modes == 1 ? "s" : "");
-    }
-    free(stuck);
 }
 
 struct damper create_damper(const struct options *o, const struct structure *s, size_t kept)
@@ -170,19 +228,19 @@ struct damper create_damper(const struct options *o, const struct structure *s, 
                        .kept = kept,
                        .contacts = o->contacts.count,
                        .outputs = o->outputs,
-                       .damping = o->damping,
-                       .force = o->force,
+                       .harmonics = o->harmonics,
+                       .size = o->size,
                        .step = o->step,
                        .law = o->law};
     if (o->modes > s->ndof) {
         die("option --modes %zu: the structure has %zu degrees of freedom", o->modes, s->ndof);
     }
-    const struct places rows = find_rows(o, s);
+    struct sparse rows = make_rows(o, s);
     d.limit = need_memory(d.contacts, sizeof *d.limit);
     d.mu = need_memory(d.contacts, sizeof *d.mu);
     d.stiffness = need_memory(d.contacts, sizeof *d.stiffness);
     reduce(&d, o, s, &rows);
-    free(rows.at);
+    free_sparse(&rows);
     d.dimension = 2 * d.modes + 1;
     for (size_t c = 0; c < d.contacts; c++) {
         d.limit[c] = o->contacts.contact[c].limit;
@@ -190,12 +248,13 @@ struct damper create_damper(const struct options *o, const struct structure *s, 
         d.stiffness[c] = o->contacts.contact[c].stiffness;
         d.dimension += d.stiffness[c] > 0.0;
     }
-    check_freedom(&d);
-    build(&d, o);
-    d.load = need_memory(d.modes, sizeof *d.load);
-    for (size_t k = 0; k < d.modes; k++) {
-        d.load[k] = d.force * d.load_shape[k];
+    d.stuck = stick(&d.open, d.contacts, d.contact_shape, d.stiffness);
+    /* rigid contacts must not hold all motions of the modes, unless they hold the structure itself */
+    if (d.modes < d.ndof && d.stuck.count == 0) {
+        die("the contacts, if they stick, hold all that the %zu mode%s of the reduced structure let%s move: keep more --modes",
+            d.modes, d.modes == 1 ? "" : "s", d.modes == 1 ? "s" : "");
     }
+    build(&d, o);
     return d;
 }
 
@@ -203,11 +262,10 @@ void free_damper(struct damper *d)
 {
     tribo_system_destroy(d->reduced);
     tribo_system_destroy(d->sys);
-    free(d->omega);
-    free(d->load_shape);
+    free_linear(&d->open);
+    free_linear(&d->stuck);
     free(d->contact_shape);
     free(d->output_shape);
-    free(d->load);
     free(d->limit);
     free(d->mu);
     free(d->stiffness);
@@ -215,45 +273,42 @@ void free_damper(struct damper *d)
 
 double lowest_drive(const struct options *o, const struct damper *d)
 {
-    return o->drive.from > 0.0 ? o->drive.from : d->omega[0] / TURN;
+    return o->drive.from > 0.0 ? o->drive.from : d->open.omega[0] / TURN;
 }
 
 double highest_drive(const struct options *o, const struct damper *d)
 {
-    return o->drive.from > 0.0 ? o->drive.to : d->omega[0] / TURN;
+    return o->drive.from > 0.0 ? o->drive.to : d->open.omega[0] / TURN;
 }
 
 void check_drive(const struct damper *d, double hz)
 {
-    const double highest = d->omega[d->modes - 1];
+    const double highest = d->open.omega[d->modes - 1];
     if (!(TURN * hz > 1e-6 * highest)) {
         die("the load's frequency, %g Hz, is next to nothing beside %g Hz of the highest mode kept; see --drive", hz,
             highest / TURN);
     }
-    const struct scale s = free_scale(d, TURN * hz);
+    const struct scale s = scale_of(&d->open, TURN * hz);
     if (isnan(s.amplitude)) {
         die("the load's frequency, %g Hz, is beyond what can be computed with; see --drive", hz);
     }
     if (!isnormal(s.amplitude * s.amplitude) || !isnormal(s.power * s.power) || !isnormal(NOTHING * s.norm * s.norm)) {
-        die("without friction the load makes an amplitude of %g: nothing to compute with; see --load, --force and --modes",
+        die("without friction the load makes an amplitude of %g: nothing to compute with; see --load, --base, --force, "
+            "--output and --modes",
             s.amplitude);
     }
 }
 
-double load_displacement(const struct damper *d, const double *y)
+double displacement(const struct damper *d, const double *shape, const double *q)
 {
     double x = 0.0;
     for (size_t k = 0; k < d->modes; k++) {
-        x += d->load_shape[k] * y[k];
+        x += shape[k] * q[k];
     }
     return x;
 }
 
-double damping_power(const struct damper *d, const double *y)
+size_t output_size(const struct damper *d)
 {
-    double power = 0.0;
-    for (size_t k = 0; k < d->modes; k++) {
-        power += 2.0 * d->damping * d->omega[k] * y[d->modes + k] * y[d->modes + k];
-    }
-    return power;
+    return 1 + 2 * (d->harmonics ? d->harmonics : 1);
 }

@@ -1,30 +1,30 @@
 #ifndef DAMPER_DAMPER_H
 #define DAMPER_DAMPER_H
 
+#include "linear.h"
 #include "options.h"
 #include "structure.h"
-#include "tribo/tribo_gsl.h"
+#include "tribo/tribo_dynamics.h"
 
 #define TURN 6.283185307179586476925 /* radians */
 
 /* A structure reduced to its lowest modes and to static responses, with friction contacts. Made once, then only read: each thread
- * has a copy of sys. Static responses are modes, too, orthogonal to all others in mass and stiffness. Behind the modes sys has a
- * slider without mass for each contact on a spring. */
+ * has a copy of sys. Static responses are modes, too, orthogonal to all others in mass and stiffness. */
 struct damper {
-    tribo_system *reduced;               /* answers how much is left out */
-    tribo_system *sys;                   /* the same with springs, without a load */
-    size_t ndof, kept, modes;            /* of the structure; lowest modes kept; those and static responses */
-    size_t contacts, outputs, dimension; /* dimension: of a state */
-    size_t planar;                       /* contacts in a plane, of which contacts counts both directions */
-    double *omega;                       /* [modes] natural frequencies, rad/time */
-    double *load_shape;                  /* [modes] the modes where and as the load acts */
-    double *contact_shape;               /* [contacts][modes] the same for the contacts */
-    double *output_shape;                /* [outputs][modes] the same for the places of --output */
-    double *load;                        /* [modes] the load's amplitude */
-    double *stiffness;                   /* [contacts] of springs; 0: rigid */
-    double *limit;                       /* [contacts] NaN: mu times the limit that varies */
-    double *mu;
-    double damping, force, step;
+    tribo_system *reduced;            /* for truncation, and for displacements of the whole structure */
+    tribo_system *sys;                /* the same with springs, without a load */
+    size_t ndof, kept, modes;         /* of the structure; lowest modes kept; those and static responses */
+    size_t contacts, outputs;         /* numbers of them */
+    size_t harmonics;                 /* of each output, in tables; 0: none */
+    size_t dimension;                 /* of a state */
+    size_t planar;                    /* contacts in a plane, of which contacts counts both directions */
+    struct linear open, stuck;        /* without friction, and with all contacts stuck */
+    double *contact_shape;            /* [contacts][modes] the modes at the contacts */
+    double *output_shape;             /* [outputs][modes] at the places of --output */
+    double *stiffness;                /* [contacts] of springs; 0: rigid */
+    double *limit;                    /* [contacts] NaN: mu times the limit that varies */
+    double *mu;                       /* [contacts] */
+    double size, step;                /* of the loads; of marching */
     int law;
 };
 
@@ -39,10 +39,10 @@ double highest_drive(const struct options *o, const struct damper *d);
 /* Ends the program if at this frequency of the load there is nothing to compute with. */
 void check_drive(const struct damper *d, double hz);
 
-/* Displacement where the load acts; y may be the velocities, too. */
-double load_displacement(const struct damper *d, const double *y);
+/* shape'q, both [modes]. */
+double displacement(const struct damper *d, const double *shape, const double *q);
 
-/* Power lost to damping. */
-double damping_power(const struct damper *d, const double *y);
+/* Numbers in the record of an output: amplitude, and amplitude and phase of each harmonic, of the first one always. */
+size_t output_size(const struct damper *d);
 
 #endif

@@ -1,208 +1,216 @@
 #include "linear.h"
 
 #include <math.h>
-
-#include <gsl/gsl_blas.h>
-#include <gsl/gsl_complex_math.h>
-#include <gsl/gsl_eigen.h>
-#include <gsl/gsl_linalg.h>
-#include <gsl/gsl_sort_vector.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "output.h"
+#include "tribo/tribo.h"
+
+/* LAPACK: A P = Q R, columns of Q, eigenvectors of a symmetric matrix, and a complex linear system. Matrices column by column. */
+void dgeqp3_(const int *rows, const int *cols, double *a, const int *stride, int *pivot, double *tau, double *work,
+             const int *size, int *info);
+void dorgqr_(const int *rows, const int *cols, const int *count, double *a, const int *stride, const double *tau, double *work,
+             const int *size, int *info);
+void dsyev_(const char *vectors, const char *triangle, const int *n, double *a, const int *stride, double *values, double *work,
+            const int *size, int *info, size_t one, size_t two);
+void zgesv_(const int *n, const int *cols, double *a, const int *stride, int *pivot, double *b, const int *next, int *info);
 
 double relative_difference(double a, double b)
 {
     return a == b ? 0.0 : fabs(a - b) / fmax(fabs(a), fabs(b));
 }
 
-/* What a mode answers to a harmonic force on it is that force by this. */
-static gsl_complex dynamic_stiffness(const struct damper *d, size_t k, double omega)
+struct linear create_linear(size_t count)
 {
-    return gsl_complex_rect(d->omega[k] * d->omega[k] - omega * omega, 2.0 * d->damping * d->omega[k] * omega);
+    struct linear l = {.count = count, .omega = need_memory(4 * count, sizeof *l.omega)};
+    l.cosine = l.omega + count;
+    l.sine = l.cosine + count;
+    l.measured = l.sine + count;
+    l.damping = need_memory(count * count, sizeof *l.damping);
+    return l;
 }
 
-double free_amplitude(const struct damper *d, double omega)
+void free_linear(struct linear *l)
 {
-    gsl_complex sum = GSL_COMPLEX_ZERO;
-    for (size_t k = 0; k < d->modes; k++) {
-        const gsl_complex force = gsl_complex_rect(d->force * d->load_shape[k] * d->load_shape[k], 0.0);
-        sum = gsl_complex_add(sum, gsl_complex_div(force, dynamic_stiffness(d, k, omega)));
-    }
-    return gsl_complex_abs(sum);
+    free(l->omega);
+    free(l->damping);
 }
 
-struct scale free_scale(const struct damper *d, double omega)
+void find_coupling(struct linear *l)
 {
-    struct scale s = {.amplitude = free_amplitude(d, omega)};
-    for (size_t k = 0; k < d->modes; k++) {
-        const double q = d->force * fabs(d->load_shape[k]) / gsl_complex_abs(dynamic_stiffness(d, k, omega));
-        s.norm = hypot(s.norm, hypot(d->omega[k], omega) * q);
+    for (size_t k = 0; k < l->count * l->count; k++) {
+        l->coupled = l->coupled || (k / l->count != k % l->count && l->damping[k] != 0.0);
     }
-    s.power = 0.5 * d->force * omega * s.amplitude;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- all stuck */
+
+/* Orthonormal motions [returned][n] that move no rigid contact, in basis [n][n] from *first on. */
+static size_t held_motions(size_t n, size_t contacts, const double *shape, const double *stiffness, double *basis, double **first)
+{
+    enum { BLOCK = 32 };
+    const int rows = (int)n, size = BLOCK * ((int)n + 1);
+    double *tau = need_memory(n + (size_t)size, sizeof *tau), *work = tau + n;
+    double *column = need_memory(n * contacts, sizeof *column);
+    int *pivot = need_memory(contacts, sizeof *pivot), cols = 0, info = 0, least = 0, rank = 0;
+    for (size_t c = 0; c < contacts; c++) {
+        if (stiffness[c] == 0.0) {
+            memcpy(column + n * (size_t)cols++, shape + c * n, n * sizeof *column);
+        }
+    }
+    if (cols > 0) {
+        const int room = 3 * cols + 1 + BLOCK * (cols + 1);
+        double *more = need_memory((size_t)room, sizeof *more);
+        dgeqp3_(&rows, &cols, column, &rows, pivot, tau, more, &room, &info);
+        free(more);
+        least = rows < cols ? rows : cols;
+        while (rank < least && fabs(column[(size_t)rank * (n + 1)]) > 1e-10 * fabs(column[0])) {
+            rank++;
+        }
+        memcpy(basis, column, (size_t)least * n * sizeof *basis);
+    }
+    dorgqr_(&rows, &rows, &least, basis, &rows, tau, work, &size, &info);
+    free(tau);
+    free(column);
+    free(pivot);
+    *first = basis + (size_t)rank * n;
+    return n - (size_t)rank;
+}
+
+static double dot(const double *a, const double *b, size_t n)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
+/* Stiffness [count][count] of motions [count][n], of the structure and of the springs: LAPACK's lower triangle. */
+static void project_stiffness(const struct linear *open, size_t contacts, const double *shape, const double *stiffness,
+                              const double *motion, size_t count, double *to)
+{
+    const size_t n = open->count;
+    double *force = need_memory(n, sizeof *force);
+    for (size_t i = 0; i < count; i++) {
+        for (size_t k = 0; k < n; k++) {
+            force[k] = open->omega[k] * open->omega[k] * motion[i * n + k];
+        }
+        for (size_t c = 0; c < contacts; c++) {
+            const double spring = stiffness[c] > 0.0 ? stiffness[c] * dot(shape + c * n, motion + i * n, n) : 0.0;
+            for (size_t k = 0; spring != 0.0 && k < n; k++) {
+                force[k] += spring * shape[c * n + k];
+            }
+        }
+        for (size_t j = 0; j <= i; j++) {
+            to[j * count + i] = dot(force, motion + j * n, n);
+        }
+    }
+    free(force);
+}
+
+/* Damping, loads and measured place of the modes mode [l->count][open->count]. */
+static void project(const struct linear *open, const double *mode, struct linear *l)
+{
+    const size_t n = open->count;
+    double *force = need_memory(n, sizeof *force);
+    for (size_t i = 0; i < l->count; i++) {
+        l->cosine[i] = dot(open->cosine, mode + i * n, n);
+        l->sine[i] = dot(open->sine, mode + i * n, n);
+        l->measured[i] = dot(open->measured, mode + i * n, n);
+        for (size_t k = 0; k < n; k++) {
+            force[k] = dot(open->damping + k * n, mode + i * n, n);
+        }
+        for (size_t j = 0; j < l->count; j++) {
+            l->damping[j * l->count + i] = dot(force, mode + j * n, n);
+        }
+    }
+    free(force);
+    find_coupling(l);
+}
+
+struct linear stick(const struct linear *open, size_t contacts, const double *shape, const double *stiffness)
+{
+    const size_t n = open->count;
+    double *basis = need_memory(n * n, sizeof *basis), *held;
+    const size_t count = held_motions(n, contacts, shape, stiffness, basis, &held);
+    const int rows = (int)count, size = 34 * (rows + 1);
+    struct linear l = create_linear(count);
+    double *vector = need_memory(count * count, sizeof *vector), *mode = need_memory(count * n, sizeof *mode);
+    double *work = need_memory((size_t)size, sizeof *work);
+    int info = 0;
+    project_stiffness(open, contacts, shape, stiffness, held, count, vector);
+    if (count > 0) {
+        dsyev_("V", "L", &rows, vector, &rows, l.omega, work, &size, &info, 1, 1);
+    }
+    need(info ? TRIBO_ERR_NO_CONVERGENCE : TRIBO_OK, "modes with all contacts stuck");
+    for (size_t i = 0; i < count; i++) {
+        l.omega[i] = sqrt(fmax(l.omega[i], 0.0));
+        for (size_t k = 0; k < count * n; k++) {
+            mode[i * n + k % n] += vector[i * count + k / n] * held[k];
+        }
+    }
+    project(open, mode, &l);
+    free(basis);
+    free(vector);
+    free(mode);
+    free(work);
+    return l;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ response */
+
+/* x [count][2]: complex amplitudes of the modes; NaN where the dynamic stiffness is singular. */
+static void respond(const struct linear *l, double omega, double *x)
+{
+    const size_t n = l->count;
+    for (size_t k = 0; k < n; k++) {
+        x[2 * k] = l->cosine[k];
+        x[2 * k + 1] = -l->sine[k];
+    }
+    if (!l->coupled) {
+        for (size_t k = 0; k < n; k++) {
+            const double re = l->omega[k] * l->omega[k] - omega * omega, im = l->damping[k * (n + 1)] * omega;
+            const double size = hypot(re, im), c = re / size, s = im / size, p = x[2 * k], q = x[2 * k + 1];
+            x[2 * k] = (c * p + s * q) / size;
+            x[2 * k + 1] = (c * q - s * p) / size;
+        }
+        return;
+    }
+    double *a = need_memory(2 * n * n, sizeof *a);
+    int *pivot = need_memory(n, sizeof *pivot), info;
+    const int rows = (int)n, one = 1;
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j < n; j++) {
+            a[2 * (j * n + i)] = i == j ? l->omega[i] * l->omega[i] - omega * omega : 0.0;
+            a[2 * (j * n + i) + 1] = l->damping[i * n + j] * omega;
+        }
+    }
+    zgesv_(&rows, &one, a, &rows, pivot, x, &rows, &info);
+    x[0] = info ? (double)NAN : x[0];
+    free(a);
+    free(pivot);
+}
+
+struct scale scale_of(const struct linear *l, double omega)
+{
+    struct scale s = {0.0, 0.0, 0.0};
+    double *x = need_memory(2 * l->count, sizeof *x), re = 0.0, im = 0.0;
+    respond(l, omega, x);
+    for (size_t k = 0; k < l->count; k++) {
+        const double q = hypot(x[2 * k], x[2 * k + 1]);
+        re += l->measured[k] * x[2 * k];
+        im += l->measured[k] * x[2 * k + 1];
+        s.norm = hypot(s.norm, hypot(l->omega[k], omega) * q);
+        s.power += 0.5 * omega * hypot(l->cosine[k], l->sine[k]) * q;
+    }
+    s.amplitude = hypot(re, im);
+    free(x);
     return s;
 }
 
-/* Orthonormal motions of the modes that move no rigid contact, as the last columns of *basis [modes][modes]; returns how many. */
-static size_t held_motions(const struct damper *d, gsl_matrix **basis)
+double linear_amplitude(const struct linear *l, double omega)
 {
-    const size_t n = d->modes, m = d->contacts, least = n < m ? n : m;
-    gsl_matrix *shapes = gsl_matrix_alloc(n, m), *q = gsl_matrix_alloc(n, n), *r = gsl_matrix_alloc(n, m);
-    gsl_vector *tau = gsl_vector_alloc(least), *norm = gsl_vector_alloc(m);
-    gsl_permutation *p = gsl_permutation_alloc(m);
-    int sign;
-    if (!shapes || !q || !r || !tau || !norm || !p) {
-        die("out of memory for %zu contacts", m);
-    }
-    for (size_t c = 0; c < m; c++) {
-        for (size_t k = 0; k < n; k++) {
-            gsl_matrix_set(shapes, k, c, d->stiffness[c] > 0.0 ? 0.0 : d->contact_shape[c * n + k]);
-        }
-    }
-    gsl_linalg_QRPT_decomp2(shapes, q, r, tau, p, &sign, norm); /* fails for sizes that do not fit only */
-    size_t rank = 0;
-    while (rank < least && fabs(gsl_matrix_get(r, rank, rank)) > 1e-10 * fabs(gsl_matrix_get(r, 0, 0))) {
-        rank++;
-    }
-    gsl_matrix_free(shapes);
-    gsl_matrix_free(r);
-    gsl_vector_free(tau);
-    gsl_vector_free(norm);
-    gsl_permutation_free(p);
-    *basis = q;
-    return n - rank;
-}
-
-/* The spring of contact c, which holds, in those motions: its root, as what a unit of each stretches it by. 0 if it has none. */
-static int held_spring(const struct damper *d, size_t c, const gsl_matrix *basis, double *root, size_t n)
-{
-    for (size_t i = 0; i < n; i++) {
-        root[i] = 0.0;
-        for (size_t k = 0; k < d->modes; k++) {
-            root[i] += sqrt(d->stiffness[c]) * d->contact_shape[c * d->modes + k] * gsl_matrix_get(basis, k, d->modes - n + i);
-        }
-    }
-    return d->stiffness[c] > 0.0;
-}
-
-static void add_held_springs(const struct damper *d, const gsl_matrix *basis, gsl_matrix_complex *h)
-{
-    const size_t n = h->size1;
-    double *root = need_memory(n, sizeof *root);
-    for (size_t c = 0; c < d->contacts; c++) {
-        const int springs = held_spring(d, c, basis, root, n);
-        for (size_t i = 0; springs && i < n * n; i++) {
-            gsl_complex *at = gsl_matrix_complex_ptr(h, i / n, i % n);
-            *at = gsl_complex_add_real(*at, root[i / n] * root[i % n]);
-        }
-    }
-    free(root);
-}
-
-/* The dynamic stiffness and the load's shape in those motions. */
-static void reduce(const struct damper *d, double omega, const gsl_matrix *basis, gsl_matrix_complex *h, gsl_vector_complex *b)
-{
-    const size_t first = d->modes - b->size;
-    for (size_t k = 0; k < d->modes; k++) {
-        for (size_t i = 0; i < b->size; i++) {
-            const double mode = gsl_matrix_get(basis, k, first + i);
-            gsl_complex *at = gsl_vector_complex_ptr(b, i);
-            *at = gsl_complex_add_real(*at, mode * d->load_shape[k]);
-            for (size_t j = 0; j < b->size; j++) {
-                at = gsl_matrix_complex_ptr(h, i, j);
-                *at = gsl_complex_add(
-                    *at, gsl_complex_mul_real(dynamic_stiffness(d, k, omega), mode * gsl_matrix_get(basis, k, first + j)));
-            }
-        }
-    }
-}
-
-double stuck_amplitude(const struct damper *d, double omega)
-{
-    gsl_matrix *basis;
-    const size_t n = held_motions(d, &basis);
-    double amplitude = 0.0;
-    if (n > 0) {
-        gsl_matrix_complex *h = gsl_matrix_complex_calloc(n, n);
-        gsl_vector_complex *b = gsl_vector_complex_calloc(n), *s = gsl_vector_complex_calloc(n);
-        gsl_permutation *p = gsl_permutation_alloc(n);
-        gsl_complex x;
-        int sign;
-        if (!h || !b || !s || !p) {
-            die("out of memory for %zu modes", d->modes);
-        }
-        reduce(d, omega, basis, h, b);
-        add_held_springs(d, basis, h);
-        const int failed = gsl_linalg_complex_LU_decomp(h, p, &sign) || gsl_linalg_complex_LU_solve(h, p, b, s);
-        gsl_blas_zdotu(b, s, &x);
-        amplitude = failed ? (double)NAN : d->force * gsl_complex_abs(x);
-        gsl_matrix_complex_free(h);
-        gsl_vector_complex_free(b);
-        gsl_vector_complex_free(s);
-        gsl_permutation_free(p);
-    }
-    gsl_matrix_free(basis);
-    return amplitude;
-}
-
-size_t stuck_frequencies(const struct damper *d, double *omega)
-{
-    gsl_matrix *basis;
-    const size_t n = held_motions(d, &basis);
-    if (n > 0) {
-        gsl_matrix *k = gsl_matrix_calloc(n, n);
-        gsl_eigen_symm_workspace *work = gsl_eigen_symm_alloc(n);
-        if (!k || !work) {
-            die("out of memory for %zu modes", d->modes);
-        }
-        for (size_t m = 0; m < d->modes; m++) {
-            gsl_vector_view held = gsl_matrix_row(basis, m);
-            gsl_vector_view shape = gsl_vector_subvector(&held.vector, d->modes - n, n);
-            gsl_blas_dsyr(CblasLower, d->omega[m] * d->omega[m], &shape.vector, k);
-        }
-        for (size_t c = 0; c < d->contacts; c++) {
-            gsl_vector_view root = gsl_vector_view_array(omega, n);
-            if (held_spring(d, c, basis, omega, n)) {
-                gsl_blas_dsyr(CblasLower, 1.0, &root.vector, k);
-            }
-        }
-        gsl_vector_view values = gsl_vector_view_array(omega, n);
-        need(gsl_eigen_symm(k, &values.vector, work), "modes with all contacts stuck");
-        gsl_sort_vector(&values.vector);
-        for (size_t i = 0; i < n; i++) {
-            omega[i] = sqrt(fmax(omega[i], 0.0));
-        }
-        gsl_matrix_free(k);
-        gsl_eigen_symm_free(work);
-    }
-    gsl_matrix_free(basis);
-    return n;
-}
-
-/* Whether all contacts are rigid, along one axis, and have the limit that varies. */
-static int one_limit(const struct damper *d)
-{
-    int one = d->planar == 0;
-    for (size_t c = 0; c < d->contacts; c++) {
-        one = one && isnan(d->limit[c]) && d->mu[c] == 1.0 && d->stiffness[c] == 0.0;
-    }
-    return one;
-}
-
-struct optimum harmonic_balance(const struct damper *d, double drive)
-{
-    const double pi = acos(-1.0), none = (double)NAN;
-    size_t driven = 0;
-    double sum = 0.0;
-    for (size_t k = 1; k < d->modes; k++) {
-        driven = fabs(d->omega[k] - drive) < fabs(d->omega[driven] - drive) ? k : driven;
-    }
-    if (!one_limit(d) || fabs(d->omega[driven] / drive - 1.0) > 0.1 * d->damping) {
-        return (struct optimum){none, none, none};
-    }
-    for (size_t i = 0; i < d->contacts; i++) {
-        sum += fabs(d->contact_shape[i * d->modes + driven]);
-    }
-    const double shape = fabs(d->load_shape[driven]), load = d->force * shape, omega = d->omega[driven];
-    const double modal = load / (4.0 * d->damping * omega * omega);
-    return (struct optimum){pi * load / (8.0 * sum), 0.25 * drive * load * modal, shape * modal};
+    return scale_of(l, omega).amplitude;
 }

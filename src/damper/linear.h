@@ -1,37 +1,42 @@
 #ifndef DAMPER_LINEAR_H
 #define DAMPER_LINEAR_H
 
-#include "damper.h"
+#include <stddef.h>
 
-/* What is known without integrating, to check against and to measure by. omega is that of the load, rad/time. */
+/* A linear structure in its modes, of modal mass 1: without friction, or with all contacts stuck. The modal loads are
+ * cosine cos(omega t) + sine sin(omega t). */
+struct linear {
+    size_t count;          /* of modes */
+    double *omega;         /* [count] natural frequencies, rad/time; of stuck contacts ascending */
+    double *damping;       /* [count][count] */
+    int coupled;           /* 1: damping has entries off the diagonal */
+    double *cosine, *sine; /* [count] */
+    double *measured;      /* [count] the modes at the place where amplitudes are measured */
+};
 
-/* Amplitude where the load acts, without friction. */
-double free_amplitude(const struct damper *d, double omega);
+struct linear create_linear(size_t count);
+void free_linear(struct linear *l);
 
-/* Amplitude where the load acts, with all contacts stuck for ever. */
-double stuck_amplitude(const struct damper *d, double omega);
+/* Sets l->coupled. */
+void find_coupling(struct linear *l);
 
-/* Natural frequencies, rad/time, with all contacts stuck for ever, ascending: omega [modes] out; returns their number. */
-size_t stuck_frequencies(const struct damper *d, double *omega);
+/* The modes of `open` with all contacts stuck; none if the contacts leave no freedom.
+ * shape      [contacts][open->count] in   the modes at the contacts
+ * stiffness  [contacts] in                of the spring of each contact; 0: rigid */
+struct linear stick(const struct linear *open, size_t contacts, const double *shape, const double *stiffness);
 
-/* None between zeros. */
-double relative_difference(double a, double b);
+/* Amplitude at the measured place under loads of frequency omega, rad/time; NaN if it has no finite one. */
+double linear_amplitude(const struct linear *l, double omega);
 
-/* The motion without friction: amplitude, the most power that the load could put into it, and energy norm of its modes'
- * displacements and velocities at their largest. So much of it is nothing: less is rounding. */
+/* The motion under loads of frequency omega: amplitude at the measured place, a bound of the power of the loads, and the energy
+ * norm of the modes' displacements and velocities at their largest. Results below NOTHING of these are rounding. */
 struct scale {
     double amplitude, power, norm;
 };
-struct scale free_scale(const struct damper *d, double omega);
+struct scale scale_of(const struct linear *l, double omega);
 #define NOTHING 1e-13
 
-/* The best damper by harmonic balance of one mode that is driven at its resonance. All contacts slide in phase, so that the work
- * of a period is  pi F phi_L Q = 4 N S Q + 2 pi zeta omega^2 Q^2  with S the sum of |phi_i|: friction dissipates most where it
- * takes half of what the load puts in, 4 N S = pi F phi_L/2. NaN if the load is not at a natural frequency, or the limits
- * of contacts are not all the same. */
-struct optimum {
-    double limit, power, amplitude; /* amplitude where the load acts: half of the one without friction */
-};
-struct optimum harmonic_balance(const struct damper *d, double drive);
+/* |a - b| by the larger of both; 0 between zeros. */
+double relative_difference(double a, double b);
 
 #endif

@@ -3,8 +3,7 @@
  * tells the rest. */
 #include <stdlib.h>
 
-#include <gsl/gsl_errno.h>
-
+#include "matrix_file.h"
 #include "output.h"
 #include "plot.h"
 #include "study.h"
@@ -15,9 +14,12 @@ enum { INTERRUPTED = 130 /* status, as shells have it */ };
 int main(int argc, char **argv)
 {
     program = "tribo-damper";
-    gsl_set_error_handler_off();
-    const struct options options = read_options(argc, argv);
+    struct options options = read_options(argc, argv);
     struct structure structure = read_structure(options.mass, options.stiffness, options.dofs);
+    if (options.damping_matrix) {
+        structure.damping = read_matrix(options.damping_matrix, &(struct rows){structure.ndof, options.dofs});
+    }
+    complete_options(&options, &structure);
     tell_of_loose_rows(&structure, options.stiffness);
     watch_interrupts();
     struct model model = create_model(&options, &structure);

@@ -5,11 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <gsl/gsl_multifit.h>
-
 #include "output.h"
-#include "linear.h"
 #include "team.h"
+
+/* LAPACK: least squares by singular values; matrices column by column. */
+void dgelss_(const int *rows, const int *cols, const int *count, double *a, const int *stride, double *b, const int *next,
+             double *singular, const double *least, int *rank, double *work, const int *size, int *info);
 
 /* The motion is run in blocks of cycles, and its transient extrapolated after each from the last KEEP + 1 of them. */
 enum { BLOCK = 16, KEEP = 8, BLOCKS = 60, QUIET = 5 };
@@ -21,9 +22,11 @@ static const double COULOMB_STEPS = 1000;                /* a period in steps of
 struct run {
     const struct damper *d;
     tribo_driver *drv;
-    double period, omega; /* of the load */
+    double limit, period, omega; /* of the load */
     size_t steps;         /* a period */
     struct scale free;
+    double *output;  /* [outputs][output_size] of the last cycle: amplitude, then cosine and sine of each harmonic */
+    double *extreme; /* [outputs][2] least and most */
 };
 
 /* ---------------------------------------------------------------------------------------------------------------- steps */
@@ -32,7 +35,7 @@ struct run {
  * rule, of Coulomb's law, is stable with any. */
 static double steps_of(const struct damper *d, double hz)
 {
-    const double highest = fmax(d->omega[d->modes - 1], TURN * hz);
+    const double highest = fmax(d->open.omega[d->modes - 1], TURN * hz);
     const double radians = d->law == TRIBO_COULOMB ? COULOMB_STEPS : highest / hz;
     return fmax(LEAST_STEPS, ceil(radians / d->step));
 }
@@ -62,26 +65,62 @@ tribo_driver *create_marcher(struct worker *w, double limit, double hz)
 
 static struct run create_run(struct worker *w, double limit, double hz)
 {
-    struct run r = {.d = w->d, .period = 1.0 / hz, .omega = TURN * hz, .steps = (size_t)steps_of(w->d, hz)};
-    r.free = free_scale(w->d, r.omega);
+    struct run r = {.d = w->d, .limit = limit, .period = 1.0 / hz, .omega = TURN * hz, .steps = (size_t)steps_of(w->d, hz)};
+    r.free = scale_of(&w->d->open, r.omega);
+    r.output = need_memory(w->d->outputs * output_size(w->d), sizeof *r.output);
+    r.extreme = need_memory(2 * w->d->outputs, sizeof *r.extreme);
     r.drv = create_marcher(w, limit, hz);
     return r;
 }
 
-/* Runs y through one period and measures it. The load is the same in every period, so that time may begin at 0 again. */
+/* Adds what y at time t does for outputs; at the first step clears them. */
+static void sample_outputs(const struct run *r, const double *y, double t, size_t step)
+{
+    const struct damper *d = r->d;
+    double *o = r->output;
+    for (size_t k = 0; k < d->outputs; k++) {
+        const double x = displacement(d, d->output_shape + k * d->modes, y);
+        double *extreme = r->extreme + 2 * k;
+        extreme[0] = step == 1 ? x : fmin(extreme[0], x);
+        extreme[1] = step == 1 ? x : fmax(extreme[1], x);
+        *o++ = 0.5 * (extreme[1] - extreme[0]);
+        for (size_t h = 1; 2 * h < output_size(d); h++, o += 2) {
+            o[0] = (step == 1 ? 0.0 : o[0]) + 2.0 * x * cos((double)h * r->omega * t) / (double)r->steps;
+            o[1] = (step == 1 ? 0.0 : o[1]) + 2.0 * x * sin((double)h * r->omega * t) / (double)r->steps;
+        }
+    }
+}
+
+/* Power lost to damping at velocities v. */
+static double damping_power(const struct linear *l, const double *v)
+{
+    double power = 0.0;
+    for (size_t k = 0; k < l->count; k++) {
+        const size_t first = l->coupled ? 0 : k, end = l->coupled ? l->count : k + 1;
+        for (size_t j = first; j < end; j++) {
+            power += v[k] * l->damping[k * l->count + j] * v[j];
+        }
+    }
+    return power;
+}
+
+/* Runs y through one period and measures it. The loads are the same in every period, so that time may begin at 0 again. */
 static struct motion run_cycle(const struct run *r, double *y)
 {
     const struct damper *d = r->d;
+    const double *v = y + d->modes, share = 1.0 / (double)r->steps;
     struct motion m = {.hz = 1.0 / r->period};
     double t = 0.0, least = HUGE_VAL, most = -HUGE_VAL;
     y[d->dimension - 1] = 0.0;
     for (size_t i = 1; i <= r->steps; i++) {
         need(tribo_driver_advance(r->drv, &t, r->period * (double)i / (double)r->steps, y), tribo_driver_message(r->drv));
-        const double x = load_displacement(d, y);
+        const double x = displacement(d, d->open.measured, y);
         least = fmin(least, x);
         most = fmax(most, x);
-        m.damped += damping_power(d, y) / (double)r->steps;
-        m.input += d->force * sin(r->omega * t) * load_displacement(d, y + d->modes) / (double)r->steps;
+        m.damped += share * damping_power(&d->open, v);
+        m.input += share * cos(r->omega * t) * displacement(d, d->open.cosine, v);
+        m.input += share * sin(r->omega * t) * displacement(d, d->open.sine, v);
+        sample_outputs(r, y, t, i);
     }
     m.amplitude = 0.5 * (most - least);
     m.friction = y[d->dimension - 1] / r->period;
@@ -95,7 +134,7 @@ static double distance(const struct damper *d, const double *a, const double *b)
 {
     double sum = 0.0;
     for (size_t k = 0; k < d->modes; k++) {
-        const double x = d->omega[k] * (a[k] - (b ? b[k] : 0.0)), v = a[d->modes + k] - (b ? b[d->modes + k] : 0.0);
+        const double x = d->open.omega[k] * (a[k] - (b ? b[k] : 0.0)), v = a[d->modes + k] - (b ? b[d->modes + k] : 0.0);
         sum += x * x + v * v;
     }
     return sqrt(sum);
@@ -106,36 +145,34 @@ static double distance(const struct damper *d, const double *a, const double *b)
  * 1977). Plain repetition would do too, but a mode with a damping ratio of 0.2% takes a thousand cycles. */
 static void extrapolate(const struct damper *d, double *const *y, size_t keep, double *to)
 {
+    enum { SIZE = 3 * KEEP + 64 };
     const size_t n = d->dimension - 1;
-    gsl_matrix *second = gsl_matrix_alloc(n, keep), *covariance = gsl_matrix_alloc(keep, keep);
-    gsl_vector *first = gsl_vector_alloc(n), *c = gsl_vector_alloc(keep);
-    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(n, keep);
-    double unused;
-    size_t rank;
-    if (!second || !covariance || !first || !c || !work) {
-        die("out of memory for %zu modes", d->modes);
-    }
+    const double least = 1e-9;
+    const int rows = (int)n, cols = (int)keep, one = 1, size = SIZE + (int)n;
+    double *second = need_memory(n * keep, sizeof *second), *first = need_memory(n, sizeof *first);
+    double *work = need_memory((size_t)size, sizeof *work), norm[KEEP] = {0.0}, singular[KEEP];
+    int rank, info;
     for (size_t i = 0; i < n; i++) {
-        const double weight = i < d->modes ? d->omega[i] : i < 2 * d->modes ? 1.0 : d->omega[0];
-        gsl_vector_set(first, i, weight * (y[1][i] - y[0][i]));
+        const double weight = i < d->modes ? d->open.omega[i] : i < 2 * d->modes ? 1.0 : d->open.omega[0];
+        first[i] = weight * (y[1][i] - y[0][i]);
         for (size_t k = 0; k < keep; k++) {
-            gsl_matrix_set(second, i, k, weight * (y[k + 2][i] - 2.0 * y[k + 1][i] + y[k][i]));
+            second[k * n + i] = weight * (y[k + 2][i] - 2.0 * y[k + 1][i] + y[k][i]);
+            norm[k] = hypot(norm[k], second[k * n + i]);
         }
     }
-    if (gsl_multifit_linear_tsvd(second, first, 1e-9, c, covariance, &unused, &rank, work)) {
-        gsl_vector_set_zero(c);
+    for (size_t i = 0; i < n * keep; i++) {
+        second[i] /= norm[i / n] > 0.0 ? norm[i / n] : 1.0;
     }
+    dgelss_(&rows, &cols, &one, second, &rows, first, &rows, singular, &least, &rank, work, &size, &info);
     for (size_t i = 0; i < n; i++) {
         to[i] = y[0][i];
-        for (size_t k = 0; k < keep; k++) {
-            to[i] -= gsl_vector_get(c, k) * (y[k + 1][i] - y[k][i]);
+        for (size_t k = 0; k < keep && info == 0; k++) {
+            to[i] -= norm[k] > 0.0 ? first[k] / norm[k] * (y[k + 1][i] - y[k][i]) : 0.0;
         }
     }
-    gsl_matrix_free(second);
-    gsl_matrix_free(covariance);
-    gsl_vector_free(first);
-    gsl_vector_free(c);
-    gsl_multifit_linear_free(work);
+    free(second);
+    free(first);
+    free(work);
 }
 
 /* Whether amplitude and dissipated power have not changed for QUIET cycles. Powers are compared with the input, since friction
@@ -152,15 +189,6 @@ static int quiet(const struct scale *free, const struct motion *m)
     return 1;
 }
 
-/* Runs a block of cycles from state[0] on; state[k] is that at the beginning of cycle k. */
-static void run_block(const struct run *r, double *const *state, struct motion *m)
-{
-    for (size_t k = 0; k < BLOCK; k++) {
-        memcpy(state[k + 1], state[k], r->d->dimension * sizeof *state[k]);
-        m[k] = run_cycle(r, state[k + 1]);
-    }
-}
-
 /* Cycles from state[0] until they repeat themselves, the last one out; state[0] is then at the beginning of the next. */
 static struct motion settle(const struct run *r, double *const *state)
 {
@@ -171,15 +199,19 @@ static struct motion settle(const struct run *r, double *const *state)
     size_t cycles = 0, pause = 0, wait = 0;
     int steady = 0;
     while (!steady && cycles < BLOCKS * BLOCK && !interrupted()) {
-        run_block(r, state, m);
+        for (size_t k = 0; k < BLOCK; k++) {
+            memcpy(state[k + 1], state[k], n * sizeof *state[k]);
+            m[k] = run_cycle(r, state[k + 1]);
+        }
+        const double last = distance(d, state[BLOCK], state[BLOCK - 1]), size = distance(d, state[BLOCK], NULL);
         cycles += BLOCK;
-        const double last = distance(d, state[BLOCK], state[BLOCK - 1]);
+        tell_march(r->limit, 1.0 / r->period, cycles, size > 0.0 ? last / size : 0.0);
         memcpy(ahead, state[BLOCK], n * sizeof *ahead);
         if (last > NOTHING * r->free.norm) {
             extrapolate(d, state + BLOCK - (keep + 1), keep, ahead);
         }
         steady = quiet(&r->free, m) &&
-                 distance(d, ahead, state[BLOCK]) < fmax(TOLERANCE * distance(d, state[BLOCK], NULL), NOTHING * r->free.norm);
+                 distance(d, ahead, state[BLOCK]) < fmax(TOLERANCE * size, NOTHING * r->free.norm);
         /* contacts may begin or cease to stick on the way to where the extrapolation leads: then rather wait, longer each time */
         if (wait == 0 && last > 0.5 * change) {
             pause = 2 * pause + 1;
@@ -211,7 +243,18 @@ struct motion march(struct worker *w, double limit, double hz, double *y)
         snprintf(m.message, sizeof m.message, "%s after %zu periods", interrupted() ? "interrupted" : "not steady", m.periods);
     }
     memcpy(y, state[0], n * sizeof *y);
+    double *record = y + n;
+    for (size_t c = 0; c < 2 * r.d->contacts; c++) {
+        *record++ = (double)NAN;
+    }
+    for (size_t k = 0; k < output_size(r.d) * r.d->outputs; k++) {
+        const size_t h = k % output_size(r.d);
+        const double *o = &r.output[k];
+        *record++ = h == 0 ? o[0] : h % 2 ? hypot(o[0], o[1]) : atan2(o[-1], o[0]) * 360.0 / TURN;
+    }
     tribo_driver_destroy(r.drv);
+    free(r.output);
+    free(r.extreme);
     free(memory);
     return m;
 }

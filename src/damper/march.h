@@ -6,8 +6,8 @@
 /* Ends the program if a period of this frequency would take too many steps. */
 void check_steps(const struct damper *d, double hz);
 
-/* Finds the steady motion by time integration, the law being that of the context: runs from y [dimension] until the motion
- * repeats itself. y out: the state at the beginning of a period. */
+/* Finds the steady motion by time integration, the law being that of the context: runs from y until the motion
+ * repeats itself. y [record] out: the record of the motion. */
 struct motion march(struct worker *w, double limit, double hz, double *y);
 
 /* The driver that does: set to this limit and frequency. */

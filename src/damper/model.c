@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "linear.h"
 #include "march.h"
 #include "output.h"
 #include "study.h"
@@ -68,7 +67,7 @@ double model_error(const struct point *point, size_t count)
 /* So many modes; all, where these and static responses are more than half of them. */
 static struct damper with_modes(const struct options *o, const struct structure *s, size_t kept)
 {
-    return create_damper(o, s, 2 * (kept + o->contacts.count + 1) < s->ndof ? kept : s->ndof);
+    return create_damper(o, s, 2 * (kept + o->contacts.count + o->loads.count) < s->ndof ? kept : s->ndof);
 }
 
 /* What is missing at contacts and load, as a part of the displacements there, up to the highest harmonic that matters. */
@@ -176,7 +175,7 @@ void report_model(const struct tables *t, const struct model *m)
         printf("model: all %zu modes\n", d->kept);
     } else {
         printf("model: %zu mode%s, up to %.5g Hz, and %zu static responses; up to %d times the load's frequency\n  ", d->kept,
-               d->kept == 1 ? "" : "s", d->omega[d->kept - 1] / TURN, d->modes - d->kept, (int)HARMONICS);
+               d->kept == 1 ? "" : "s", d->open.omega[d->kept - 1] / TURN, d->modes - d->kept, (int)HARMONICS);
         if (error < 1.0) {
             printf("at most %.1e of displacements at contacts%s is missing\n", error, m->options->statics ? " and load" : "");
         } else {

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "output.h"
-#include "linear.h"
 #include "march.h"
 #include "team.h"
 
@@ -19,18 +18,18 @@ struct worker create_worker(const struct damper *d, int march)
     }
     w.limit = need_memory(d->contacts, sizeof *w.limit);
     w.c = need_memory(2 * d->modes, sizeof *w.c);
-    memcpy(w.c, d->load_shape, d->modes * sizeof *w.c);
     return w;
 }
 
 size_t record_of(const struct damper *d)
 {
-    return d->dimension + 2 * d->contacts + 2 * d->outputs;
+    return d->dimension + 2 * d->contacts + output_size(d) * d->outputs;
 }
 
 void free_worker(struct worker *w)
 {
     tribo_driver_destroy(w->drv);
+    tribo_driver_destroy(w->marcher);
     tribo_system_destroy(w->sys);
     free(w->limit);
     free(w->c);
@@ -45,47 +44,61 @@ void set_point(struct worker *w, double limit, double hz)
     }
     need(tribo_set_limit(contacts, w->limit), tribo_message(contacts));
     need(tribo_system_clear_loads(w->sys), tribo_system_message(w->sys));
-    need(tribo_system_add_load(w->sys, TURN * hz, NULL, d->load), tribo_system_message(w->sys));
+    need(tribo_system_add_load(w->sys, TURN * hz, d->open.cosine, d->open.sine), tribo_system_message(w->sys));
+}
+
+tribo_driver *driver_at(struct worker *w, double limit, double hz)
+{
+    if (!w->drv) {
+        tribo_driver_destroy(w->marcher);
+        w->marcher = create_marcher(w, limit, hz);
+        return w->marcher;
+    }
+    set_point(w, limit, hz);
+    return w->drv;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ measuring */
 
-/* output [outputs][2]: half of the way from least to most, and the phase. */
+/* output [outputs][output_size]: half of the way from least to most; of each harmonic amplitude and phase. */
 static int measure_outputs(struct worker *w, double *output)
 {
     const struct damper *d = w->d;
     int status = TRIBO_OK;
     for (size_t k = 0; k < d->outputs && !status; k++) {
-        double least, most, cosine, sine;
+        double least = 0.0, most = 0.0, cosine = 0.0, sine = 0.0;
         memcpy(w->c, d->output_shape + k * d->modes, d->modes * sizeof *w->c);
         status = tribo_driver_period_extremes(w->drv, w->c, &least, &most, NULL, NULL);
-        status = status ? status : tribo_driver_period_harmonic(w->drv, w->c, 1, &cosine, &sine);
-        output[2 * k] = status ? 0.0 : 0.5 * (most - least);
-        output[2 * k + 1] = status ? 0.0 : atan2(cosine, sine) * 360.0 / TURN;
+        *output++ = 0.5 * (most - least);
+        for (size_t h = 1; 2 * h < output_size(d) && !status; h++) {
+            status = tribo_driver_period_harmonic(w->drv, w->c, h, &cosine, &sine);
+            *output++ = hypot(cosine, sine);
+            *output++ = atan2(cosine, sine) * 360.0 / TURN;
+        }
     }
-    memcpy(w->c, d->load_shape, d->modes * sizeof *w->c);
     return status;
 }
 
-/* What the period of the motion just found holds, in closed form. The load is F sin(omega t), so that its mean power is that
- * of its velocity's part in phase; what friction does not take of it damping does. */
+/* Quantities of the motion just found, in closed form. The mean power of the loads is that of the first harmonic of the
+ * displacements in phase with their rates; friction and damping take it. */
 static int measure(struct worker *w, struct motion *m, double *power)
 {
     const struct damper *d = w->d;
-    double least, most, cosine, sine;
+    double least, most, cosine[2], sine[2];
+    memcpy(w->c, d->open.measured, d->modes * sizeof *w->c);
     int status = tribo_driver_period_extremes(w->drv, w->c, &least, &most, NULL, NULL);
-    status = status ? status : tribo_driver_period_harmonic(w->drv, w->c, 1, &cosine, &sine);
+    for (int k = 0; k < 2 && !status; k++) {
+        memcpy(w->c, k ? d->open.sine : d->open.cosine, d->modes * sizeof *w->c);
+        status = tribo_driver_period_harmonic(w->drv, w->c, 1, &cosine[k], &sine[k]);
+    }
     status = status ? status : tribo_driver_period_dissipation(w->drv, power);
     status = status ? status : tribo_driver_period_stick(w->drv, power + d->contacts);
-    if (status) {
-        return status;
-    }
-    status = measure_outputs(w, power + 2 * d->contacts);
+    status = status ? status : measure_outputs(w, power + 2 * d->contacts);
     if (status) {
         return status;
     }
     m->amplitude = 0.5 * (most - least);
-    m->input = -0.5 * TURN * m->hz * d->force * cosine;
+    m->input = 0.5 * TURN * m->hz * (sine[0] - cosine[1]);
     for (size_t c = 0; c < d->contacts; c++) {
         power[c] *= m->hz;
         m->friction += power[c];
@@ -97,7 +110,7 @@ static int measure(struct worker *w, struct motion *m, double *power)
 /* Rounding is nothing. */
 static void take_rounding_away(const struct damper *d, struct motion *m)
 {
-    const struct scale whole = free_scale(d, TURN * m->hz);
+    const struct scale whole = scale_of(&d->open, TURN * m->hz);
     m->amplitude = m->amplitude < NOTHING * whole.amplitude ? 0.0 : m->amplitude;
     m->friction = fabs(m->friction) < NOTHING * fmax(10.0 * m->damped, whole.power) ? 0.0 : m->friction;
     m->damped = fabs(m->damped) < NOTHING * whole.power ? 0.0 : m->damped;

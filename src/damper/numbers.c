@@ -37,6 +37,22 @@ size_t read_whole(const char *origin, const char *text, size_t smallest)
     return (size_t)value;
 }
 
+void add_number(struct list *list, double value)
+{
+    list->value = need_room(list->value, list->count, &list->room, sizeof *list->value);
+    list->value[list->count++] = value;
+}
+
+void read_list(const char *origin, const char *text, struct list *list)
+{
+    for (int more = 1; more;) {
+        double value;
+        more = strchr(text, ',') != NULL;
+        text = read_number(origin, text, more ? ',' : '\0', &value);
+        add_number(list, value);
+    }
+}
+
 struct range read_range(const char *origin, const char *text)
 {
     struct range r = {.points = 1};

@@ -13,6 +13,14 @@ const char *read_number(const char *origin, const char *at, char end, double *va
 double read_real(const char *origin, const char *text, double smallest, int may_equal);
 size_t read_whole(const char *origin, const char *text, size_t smallest);
 
+/* "NUMBER,NUMBER,...": adds them to list. */
+struct list {
+    double *value;
+    size_t count, room;
+};
+void add_number(struct list *list, double value);
+void read_list(const char *origin, const char *text, struct list *list);
+
 /* FROM:TO:N, or FROM alone with N = 1. FROM > 0, and ascending. */
 struct range {
     double from, to;

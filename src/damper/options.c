@@ -9,8 +9,8 @@
 #include "tribo/tribo.h"
 
 static const struct options standard = {
-    .out = ".", .name = "damper", .damping = 0.002, .force = 1.0, .statics = 1, .step = 0.25, .law = TRIBO_COULOMB};
-static const double LIMIT_FROM = 1e-3, LIMIT_TO = 10.0; /* times the load */
+    .out = ".", .name = "damper", .force = 1.0, .statics = 1, .step = 0.25, .law = TRIBO_COULOMB};
+static const double DAMPING = 0.002, LIMIT_FROM = 1e-3, LIMIT_TO = 10.0; /* times the size of the loads */
 enum { CURVE_LIMITS = 33, FAMILY_LIMITS = 9 };
 
 /* ------------------------------------------------------------------------------------------------------------- setters */
@@ -31,11 +31,35 @@ static void set_statics(const char *origin, const char *value, struct options *o
     }
 }
 
+static void check_ratio(const char *origin, double ratio)
+{
+    if (!(ratio > 0.0 && ratio < 1.0)) {
+        die("%s: must be above 0 and below 1", origin);
+    }
+}
+
 static void set_damping(const char *origin, const char *value, struct options *o)
 {
-    o->damping = read_real(origin, value, 0.0, 0);
-    if (o->damping >= 1.0) {
-        die("%s: must be below 1", origin);
+    o->damping.count = 0;
+    read_list(origin, value, &o->damping);
+    for (size_t k = 0; k < o->damping.count; k++) {
+        check_ratio(origin, o->damping.value[k]);
+    }
+}
+
+static void set_damping_ratios(const char *origin, const char *value, struct options *o)
+{
+    struct lines l = open_lines(value);
+    o->damping.count = 0;
+    while (next_data(&l)) {
+        add_number(&o->damping, next_real(&l, "damping ratio"));
+        expect_end(&l);
+        check_ratio(new_text("%s:%zu: %g", value, l.line, o->damping.value[o->damping.count - 1]),
+                    o->damping.value[o->damping.count - 1]);
+    }
+    close_lines(&l);
+    if (o->damping.count == 0) {
+        die("%s: there is no damping ratio in it", origin);
     }
 }
 
@@ -52,13 +76,34 @@ static void set_contacts(const char *origin, const char *value, struct options *
 
 static void set_load(const char *origin, const char *value, struct options *o)
 {
-    o->load = read_place(origin, value);
+    read_load(origin, value, 0, &o->loads);
+}
+
+static void set_base(const char *origin, const char *value, struct options *o)
+{
+    read_load(origin, value, 1, &o->loads);
 }
 
 static void set_output(const char *origin, const char *value, struct options *o)
 {
     o->output = need_room(o->output, o->outputs, &o->output_room, sizeof *o->output);
     o->output[o->outputs++] = read_place(origin, value);
+}
+
+static void set_harmonics(const char *origin, const char *value, struct options *o)
+{
+    o->harmonics = read_whole(origin, value, 1);
+}
+
+static void set_field(const char *origin, const char *value, struct options *o)
+{
+    o->field.count = 0;
+    read_list(origin, value, &o->field);
+    for (size_t k = 0; k < o->field.count; k++) {
+        if (!(o->field.value[k] >= 0.0 && o->field.value[k] <= 360.0)) {
+            die("%s: a phase must be from 0 to 360 degrees", origin);
+        }
+    }
 }
 
 static void set_force(const char *origin, const char *value, struct options *o)
@@ -148,16 +193,33 @@ static const struct option {
     size_t offset; /* where */
     int is_path;
 } table[] = {
-    {FILE_OPTION(mass)}, {FILE_OPTION(stiffness)},
-    {FILE_OPTION(dofs)}, {FILE_OPTION(frequencies)},
-    {FILE_OPTION(out)},  {OPTION(name)},
-    {OPTION(modes)},     {OPTION(statics)}, {OPTION(damping)},
-    {OPTION(contact)},   {"--contacts", set_contacts, 0, 1},
-    {OPTION(load)},      {OPTION(output)},  {OPTION(force)},
-    {OPTION(drive)},     {OPTION(limits)},
-    {OPTION(method)},    {OPTION(check)},
-    {OPTION(step)},      {OPTION(law)},
-    {OPTION(threads)},   {OPTION(plot)},
+    {FILE_OPTION(mass)},
+    {FILE_OPTION(stiffness)},
+    {FILE_OPTION(dofs)},
+    {FILE_OPTION(frequencies)},
+    {FILE_OPTION(out)},
+    {OPTION(name)},
+    {OPTION(modes)},
+    {OPTION(statics)},
+    {OPTION(damping)},
+    {"--damping-ratios", set_damping_ratios, 0, 1},
+    {"--damping-matrix", NULL, offsetof(struct options, damping_matrix), 1},
+    {OPTION(contact)},
+    {"--contacts", set_contacts, 0, 1},
+    {OPTION(load)},
+    {OPTION(base)},
+    {OPTION(output)},
+    {OPTION(harmonics)},
+    {OPTION(field)},
+    {OPTION(force)},
+    {OPTION(drive)},
+    {OPTION(limits)},
+    {OPTION(method)},
+    {OPTION(check)},
+    {OPTION(step)},
+    {OPTION(law)},
+    {OPTION(threads)},
+    {OPTION(plot)},
 };
 
 /* name has length characters, and no hyphens in front. */
@@ -190,14 +252,15 @@ static const char *path_beside(const char *file, const char *path)
     return as_it_is ? new_text("%s", path) : new_text("%.*s/%s", (int)(slash - file), file, path);
 }
 
-/* An option a line: its name without hyphens, and the rest of the line is its value. */
+/* An option a line: its name without hyphens, a blank or an equals sign, and its value up to the end of the line. */
 static void read_option_file(const char *path, struct options *o)
 {
     struct lines l = open_lines(path);
     while (next_data(&l)) {
-        const size_t length = strcspn(l.at, " \t\r");
+        const size_t length = strcspn(l.at, "= \t\r");
         const struct option *option = find_option(l.at, length);
-        char *value = l.at + length + strspn(l.at + length, " \t\r"), *end = value + strlen(value);
+        char *value = l.at + length + (l.at[length] == '='), *end = l.at + strlen(l.at);
+        value += strspn(value, " \t\r");
         while (end > value && strchr(" \t\r", end[-1])) {
             *--end = '\0';
         }
@@ -224,7 +287,7 @@ static void need_structure(const struct options *o)
                 {"--stiffness", o->stiffness != NULL},
                 {"--dofs", o->dofs != NULL},
                 {"--contact", o->contacts.count > 0},
-                {"--load", o->load.origin != NULL}};
+                {"--load", o->loads.count > 0}};
     char missing[80] = "";
     for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
         if (!part[k].given) {
@@ -245,11 +308,39 @@ int limits_vary(const struct options *o)
     return vary;
 }
 
-/* Sliders without mass cannot be marched with, and contacts in a plane have no closed form. */
-static void check_method(const struct options *o)
+const char *word_for_limit(const struct options *o)
 {
-    if (o->outputs && o->march) {
-        die("%s: is for --method exact; marching shows the place of the load only", o->output[0].origin);
+    int by_load = 0;
+    for (size_t c = 0; c < o->contacts.count; c++) {
+        by_load = by_load || o->contacts.contact[c].by_load;
+    }
+    return by_load ? "normal load" : "limit";
+}
+
+const struct place *measured_place(const struct options *o)
+{
+    for (size_t k = 0; k < o->loads.count; k++) {
+        if (!o->loads.load[k].supports) {
+            return &o->loads.load[k].at;
+        }
+    }
+    return o->outputs ? &o->output[0] : NULL;
+}
+
+/* Options that need others, or exclude them. */
+static void check_together(const struct options *o)
+{
+    if (!measured_place(o)) {
+        die("%s: --output is missing, the place where amplitudes are measured", o->loads.load[0].at.origin);
+    }
+    if (o->damping_matrix && o->damping.count) {
+        die("option --damping-matrix %s: either a matrix or damping ratios, not both", o->damping_matrix);
+    }
+    if (o->harmonics && !o->outputs) {
+        die("option --harmonics %zu: --output is missing, a place where they are wanted", o->harmonics);
+    }
+    if (o->field.count && o->drive.points > 1) {
+        die("option --field: displacement fields are for one frequency: --drive HZ");
     }
     for (size_t c = 0; c < o->contacts.count; c++) {
         if (o->contacts.contact[c].stiffness > 0.0 && (o->march || o->check) && o->law != TRIBO_COULOMB) {
@@ -263,22 +354,30 @@ static void check_method(const struct options *o)
     }
 }
 
-/* What has not been given. */
-static void complete(struct options *o)
+/* The mass that moves along a direction with the supports. */
+static double mass_along(const struct structure *s, int direction)
 {
-    need_structure(o);
-    check_method(o);
-    if (o->frequencies && strcmp(o->frequencies, "none") == 0) {
-        o->frequencies = NULL;
+    double mass = 0.0;
+    for (size_t i = 0; i < s->ndof; i++) {
+        for (size_t k = s->mass.first[i]; s->dof[i].direction == direction && k < s->mass.first[i + 1]; k++) {
+            mass += s->dof[s->mass.col[k]].direction == direction ? s->mass.val[k] : 0.0;
+        }
+    }
+    return mass;
+}
+
+void complete_options(struct options *o, const struct structure *s)
+{
+    for (size_t k = 0; k < o->loads.count; k++) {
+        struct load *l = &o->loads.load[k];
+        l->size = isnan(l->size) ? o->force : l->size;
+        o->size += l->supports ? l->size * mass_along(s, l->at.direction) : l->size;
     }
     if (!limits_vary(o)) {
-        if (o->limits.points) {
-            die("option --limits: every contact has a limit of its own, and none follows");
-        }
         o->limits = (struct range){1.0, 1.0, 1};
     } else if (!o->limits.points) {
         o->limits =
-            (struct range){LIMIT_FROM * o->force, LIMIT_TO * o->force, o->drive.points > 1 ? FAMILY_LIMITS : CURVE_LIMITS};
+            (struct range){LIMIT_FROM * o->size, LIMIT_TO * o->size, o->drive.points > 1 ? FAMILY_LIMITS : CURVE_LIMITS};
     }
     for (size_t c = 0; c < o->contacts.count; c++) {
         const struct contact *contact = &o->contacts.contact[c];
@@ -326,6 +425,16 @@ struct options read_options(int argc, char **argv)
             apply(option, new_text("option %s %s", name, value), value, &o);
         }
     }
-    complete(&o);
+    need_structure(&o);
+    check_together(&o);
+    if (!limits_vary(&o) && o.limits.points) {
+        die("option --limits: every contact has a limit of its own, and none follows");
+    }
+    if (!o.damping.count && !o.damping_matrix) {
+        add_number(&o.damping, DAMPING);
+    }
+    if (o.frequencies && strcmp(o.frequencies, "none") == 0) {
+        o.frequencies = NULL;
+    }
     return o;
 }

@@ -3,26 +3,31 @@
 
 #include "contact.h"
 #include "numbers.h"
+#include "structure.h"
 
 enum { DEFAULT_MODES = 12 /* kept by default */ };
 
 struct options {
     const char *mass, *stiffness, *dofs;
-    const char *out, *name;  /* folder of the tables, and how their names begin */
-    const char *plot;        /* png or svg: pictures; NULL: none */
-    const char *frequencies; /* NULL for none */
-    size_t modes;            /* 0: as many as the answer needs */
-    int statics;             /* beside the modes, static responses of contacts and load */
-    double damping;
+    const char *damping_matrix; /* NULL: ratios */
+    const char *out, *name;     /* folder of the tables, and how their names begin */
+    const char *plot;           /* png or svg: pictures; NULL: none */
+    const char *frequencies;    /* NULL for none */
+    size_t modes;               /* 0: as many as the answer needs */
+    int statics;                /* beside the modes, static responses of contacts and loads */
+    struct list damping;        /* ratios of mode 1, 2, ...; the last one is that of all others */
     struct contacts contacts;
-    struct place load;
+    struct loads loads;
     struct place *output; /* [outputs] */
     size_t outputs, output_room;
-    double force;
-    struct range drive; /* Hz; from 0: the first natural frequency */
-    struct range limits;
-    int march;    /* find steady motions by marching */
-    size_t check; /* points to be found by marching as well */
+    size_t harmonics;    /* of each output */
+    struct list field;   /* phases of displacement fields, degrees */
+    double force;        /* of loads without one */
+    double size;         /* the sum of all forces; of supports, acceleration times mass */
+    struct range drive;  /* Hz; from 0: the first natural frequency */
+    struct range limits; /* of contacts, or normal loads */
+    int march;           /* find steady motions by marching */
+    size_t check;        /* points to be found by marching as well */
     double step;
     int law;
     size_t threads; /* 0: one a core */
@@ -31,8 +36,17 @@ struct options {
 /* Reads the command line; prints help or version, or ends the program with a message, where that is due. */
 struct options read_options(int argc, char **argv);
 
-/* Whether a contact's limit follows the option --limits. */
+/* Sets what depends on the structure: the size of loads, and limits that were not given. */
+void complete_options(struct options *o, const struct structure *s);
+
+/* 1 if the limit of a contact follows the option --limits. */
 int limits_vary(const struct options *o);
+
+/* What --limits varies: "normal load" if a contact that follows has mu=, else "limit". */
+const char *word_for_limit(const struct options *o);
+
+/* Where amplitudes are measured: at the first force, without forces at the first output. */
+const struct place *measured_place(const struct options *o);
 
 void print_help(void);
 

@@ -66,22 +66,11 @@ static void begin_picture(const struct tables *t, const char *what, const char *
     free(picture);
 }
 
-/* With mu= alone limits are normal loads. */
-static const char *word_for_limit(const struct options *o)
-{
-    for (size_t c = 0; c < o->contacts.count; c++) {
-        if (isnan(o->contacts.contact[c].limit) && o->contacts.contact[c].mu != 1.0) {
-            return "normal load";
-        }
-    }
-    return "limit of each contact";
-}
-
-void plot_curve(const struct tables *t, const struct options *o)
+void plot_curve(const struct tables *t)
 {
     if (t->script) {
         char *file = file_of(t, "curve", "csv");
-        begin_picture(t, "curve", word_for_limit(o), "amplitude where the load acts");
+        begin_picture(t, "curve", t->limit, "amplitude where the load acts");
         fprintf(t->script,
                 "set logscale xy\nset y2label 'mean power that friction takes'\nset y2tics\nset key bottom\n"
                 "plot %s using 1:3 with lines linecolor '#0072b2' title 'amplitude', \\\n"
@@ -92,14 +81,14 @@ void plot_curve(const struct tables *t, const struct options *o)
     }
 }
 
-void plot_family(const struct tables *t, const struct options *o, const double *limit, size_t count, double best)
+void plot_family(const struct tables *t, const double *limit, size_t count, double best)
 {
     if (!t->script) {
         return;
     }
     char *family = file_of(t, "family", "csv"), *linear = file_of(t, "linear", "csv"), *optimum = file_of(t, "best", "csv");
     begin_picture(t, "family", "frequency of the load", "amplitude where the load acts");
-    fprintf(t->script, "set logscale y\nset key title '%s'\n", word_for_limit(o));
+    fprintf(t->script, "set logscale y\nset key title '%s'\n", t->limit);
     fprintf(t->script, "plot %s using 1:2 with lines linecolor '#9a9a9a' dashtype (2, 3) title 'no friction', \\\n", linear);
     for (size_t k = 0; k < count; k++) {
         fprintf(t->script, "     %s skip 1 every :::%zu::%zu using 2:3 with lines linecolor palette frac %.4g title '%.3g', \\\n",

@@ -22,6 +22,7 @@ void free_structure(struct structure *s)
 {
     free_sparse(&s->mass);
     free_sparse(&s->stiffness);
+    free_sparse(&s->damping);
     free(s->dof);
 }
 
@@ -78,9 +79,19 @@ size_t find_degree(const struct structure *s, const struct place *p)
     return found;
 }
 
-tribo_model *model_of(const struct structure *s, size_t contacts, const size_t *at, const size_t *to)
+tribo_model *matrices_of(const struct structure *s, size_t rows)
 {
     tribo_model *model = NULL;
+    need(tribo_model_create(&model, s->ndof, rows), NULL);
+    need(tribo_model_set_mass_csr(model, s->mass.first, s->mass.col, s->mass.val), tribo_model_message(model));
+    need(tribo_model_set_stiffness_csr(model, s->stiffness.first, s->stiffness.col, s->stiffness.val),
+         tribo_model_message(model));
+    return model;
+}
+
+tribo_model *model_of(const struct structure *s, size_t contacts, const size_t *at, const size_t *to)
+{
+    tribo_model *model = matrices_of(s, contacts);
     size_t *first = need_memory(contacts + 1, sizeof *first), *col = need_memory(2 * contacts + 1, sizeof *col), count = 0;
     double *val = need_memory(2 * contacts + 1, sizeof *val);
     for (size_t c = 0; c < contacts; c++) {
@@ -92,10 +103,6 @@ tribo_model *model_of(const struct structure *s, size_t contacts, const size_t *
         }
         first[c + 1] = count;
     }
-    need(tribo_model_create(&model, s->ndof, contacts), NULL);
-    need(tribo_model_set_mass_csr(model, s->mass.first, s->mass.col, s->mass.val), tribo_model_message(model));
-    need(tribo_model_set_stiffness_csr(model, s->stiffness.first, s->stiffness.col, s->stiffness.val),
-         tribo_model_message(model));
     need(tribo_model_set_direction_csr(model, first, col, val), tribo_model_message(model));
     free(first);
     free(col);

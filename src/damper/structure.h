@@ -11,7 +11,7 @@
 /* A structure as finite-element programs hand it over. */
 struct structure {
     size_t ndof;
-    struct sparse mass, stiffness;
+    struct sparse mass, stiffness, damping; /* damping: no rows if there is none */
     struct degree *dof; /* [ndof] in the order of the rows */
 };
 
@@ -24,6 +24,9 @@ void tell_of_loose_rows(const struct structure *s, const char *stiffness);
 
 /* The row of a place; ends the program if the structure has none there. */
 size_t find_degree(const struct structure *s, const struct place *p);
+
+/* A model of the structure without contacts; rows: that are to be set. */
+tribo_model *matrices_of(const struct structure *s, size_t rows);
 
 /* A model of the structure: contact i is at row at[i], and slides against row to[i], or the ground where that is ndof or `to` is
  * NULL. */

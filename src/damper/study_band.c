@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "output.h"
-#include "linear.h"
 #include "plot.h"
 #include "search.h"
 #include "study.h"
@@ -22,18 +21,16 @@ struct family {
 static void ask_band(const struct study *s, struct curve *c)
 {
     const struct range *band = &s->options->drive;
-    double *stuck = need_memory(s->damper->modes, sizeof *stuck);
-    const size_t held = stuck_frequencies(s->damper, stuck);
+    const struct damper *d = s->damper;
     for (size_t k = 0; k < band->points; k++) {
         ask_sample(c, band->from + (band->to - band->from) * ((double)k / (double)(band->points - 1)), 1);
     }
-    for (size_t k = 0; k < s->damper->kept + held; k++) {
-        const double hz = (k < held ? stuck[k] : s->damper->omega[k - held]) / TURN;
+    for (size_t k = 0; k < d->kept + d->stuck.count; k++) {
+        const double hz = (k < d->stuck.count ? d->stuck.omega[k] : d->open.omega[k - d->stuck.count]) / TURN;
         if (hz > band->from && hz < band->to) {
             ask_sample(c, hz, 0);
         }
     }
-    free(stuck);
 }
 
 static void run_curve(void *data, size_t k)
@@ -88,11 +85,12 @@ static int report_best(struct study *s, double limit)
     if (shown) {
         check_by_marching(s, &f.curve[0]);
         FILE *table = create_table(s->tables, "best");
-        write_motion_head(table, s->damper);
+        write_motion_head(s->tables, table, s->damper);
         write_curve(s->tables, table, &f.curve[0], s->damper);
         close_table(s->tables, table, "best");
-        printf("best limit of the band: %.6g, largest amplitude %.8g at %.7g Hz\n", limit, top->motion.amplitude, top->motion.hz);
-        write_result(s->tables, "band.limit", limit);
+        printf("best %s of the band: %.6g, largest amplitude %.8g at %.7g Hz\n", s->tables->limit, limit, top->motion.amplitude,
+               top->motion.hz);
+        write_result(s->tables, strcmp(s->tables->limit, "limit") == 0 ? "band.limit" : "band.load", limit);
         write_result(s->tables, "band.amplitude", top->motion.amplitude);
         write_result(s->tables, "band.frequency", top->motion.hz);
         s->gaps += gaps_of(&f.curve[0]);
@@ -148,10 +146,10 @@ static double find_best(struct study *s, const struct family *f, const double *l
     int shown = 0;
     end_telling();
     if (least == HUGE_VAL) {
-        printf("no motion was found at any of these limits: %s\n", first_message(f, count));
+        printf("no motion was found at any of these %ss: %s\n", s->tables->limit, first_message(f, count));
         check_by_marching(s, &f->curve[0]);
     } else if (found == 0.0 && !interrupted()) {
-        printf("no limit within the range is better than its ends: widen --limits to find the best\n");
+        printf("no %s within the range is better than its ends: widen --limits to find the best\n", s->tables->limit);
         check_by_marching(s, &f->curve[0]);
     } else if (!interrupted()) {
         shown = report_best(s, found);
@@ -166,8 +164,8 @@ static double find_best(struct study *s, const struct family *f, const double *l
 static double write_family(struct study *s, const struct family *f, size_t count)
 {
     FILE *table = create_table(s->tables, "family");
-    write_motion_head(table, s->damper);
-    printf("         limit   points    not found  largest amplitude  at frequency\n");
+    write_motion_head(s->tables, table, s->damper);
+    printf("  %12s   points    not found  largest amplitude  at frequency\n", s->tables->limit);
     for (size_t k = 0; k < count; k++) {
         const struct curve *c = &f->curve[k];
         const struct sample *top = largest_of(c);
@@ -209,7 +207,7 @@ void study_band(struct study *s)
     } else {
         check_by_marching(s, &f.curve[0]);
     }
-    plot_family(s->tables, s->options, limit, count, best);
+    plot_family(s->tables, limit, count, best);
     free_family(&f, count);
     free(limit);
 }

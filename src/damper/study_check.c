@@ -3,7 +3,6 @@
 #include <stdlib.h>
 
 #include "output.h"
-#include "linear.h"
 #include "study.h"
 #include "team.h"
 
@@ -59,12 +58,12 @@ void check_extremes(const struct study *s, double hz)
     follow_all(&all);
     struct worker w = create_worker(&all, s->options->march);
     double *y = need_memory(record_of(w.d), sizeof *y);
-    const struct motion open = find_motion(&w, 0.0, hz, NULL, y), stuck = find_motion(&w, 1e6 * d->force, hz, NULL, y);
+    const struct motion open = find_motion(&w, 0.0, hz, NULL, y), stuck = find_motion(&w, 1e6 * d->size, hz, NULL, y);
     const double omega = TURN * hz;
     end_telling();
     printf("load at %.7g Hz\n", hz);
-    compare(s, &open, free_amplitude(d, omega), "free", "without friction");
-    compare(s, &stuck, stuck_amplitude(d, omega), "stuck", "all contacts stuck");
+    compare(s, &open, linear_amplitude(&d->open, omega), "free", "without friction");
+    compare(s, &stuck, linear_amplitude(&d->stuck, omega), "stuck", "all contacts stuck");
     fflush(stdout);
     free(y);
     free_worker(&w);
@@ -135,9 +134,9 @@ static void report(const struct study *s, const struct marched *m, size_t count)
 {
     FILE *table = create_table(s->tables, "check");
     double amplitude = 0.0, power = 0.0, most = 0.0, unbalanced = 0.0;
-    write_motion_head(table, NULL);
-    printf("by marching in time (%s, %s)\n         limit    frequency    amplitude   difference  periods\n",
-           s->options->law == TRIBO_COULOMB ? "midpoint rule" : "rk4", tribo_law_name(s->options->law));
+    write_motion_head(s->tables, table, NULL);
+    printf("by marching in time (%s, %s)\n  %12s    frequency    amplitude   difference  periods\n",
+           s->options->law == TRIBO_COULOMB ? "midpoint rule" : "rk4", tribo_law_name(s->options->law), s->tables->limit);
     for (size_t k = 0; k < count; k++) {
         const struct motion *here = &m->motion[k], *known = &m->sample[k]->motion;
         write_motion(table, here, NULL, NULL);

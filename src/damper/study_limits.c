@@ -2,8 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "field.h"
 #include "output.h"
-#include "linear.h"
 #include "plot.h"
 #include "search.h"
 #include "study.h"
@@ -61,11 +61,42 @@ static size_t most_power(const struct curve *c)
     return best;
 }
 
+struct optimum {
+    double limit, power, amplitude;
+};
+
+/* The best damper by harmonic balance of one mode k that is driven at its resonance. All contacts slide in phase, so that the
+ * work of a period is  pi p_k Q = 4 N S Q + pi c_k omega Q^2  with S the sum of |phi_i|: friction dissipates most where it takes
+ * half of what the load puts in, 4 N S = pi p_k/2. NaN if the load is not at a natural frequency, if damping couples modes, or
+ * unless all contacts are rigid, along one axis, and have the limit that varies. */
+static struct optimum balance_mode(const struct damper *d, double drive)
+{
+    const double pi = acos(-1.0), none = (double)NAN;
+    const struct linear *l = &d->open;
+    size_t k = 0;
+    double sum = 0.0;
+    int one = d->planar == 0 && !l->coupled;
+    for (size_t i = 1; i < d->modes; i++) {
+        k = fabs(l->omega[i] - drive) < fabs(l->omega[k] - drive) ? i : k;
+    }
+    const double damping = l->damping[k * (d->modes + 1)], load = hypot(l->cosine[k], l->sine[k]);
+    for (size_t c = 0; c < d->contacts; c++) {
+        one = one && isnan(d->limit[c]) && d->mu[c] == 1.0 && d->stiffness[c] == 0.0;
+        sum += fabs(d->contact_shape[c * d->modes + k]);
+    }
+    if (!one || fabs(l->omega[k] - drive) > 0.05 * damping) {
+        return (struct optimum){none, none, none};
+    }
+    const double half = 0.5 * load / (damping * l->omega[k]);
+    return (struct optimum){pi * load / (8.0 * sum), 0.25 * drive * load * half, fabs(l->measured[k]) * half};
+}
+
 static void report_optimum(const struct study *s, const struct motion *best)
 {
-    const struct optimum simple = harmonic_balance(s->damper, TURN * best->hz);
-    printf("most power: limit %.8g dissipates %.8g, amplitude %.8g\n", best->limit, best->friction, best->amplitude);
-    write_result(s->tables, "best.limit", best->limit);
+    const struct optimum simple = balance_mode(s->damper, TURN * best->hz);
+    printf("most power: %s %.8g dissipates %.8g, amplitude %.8g\n", s->tables->limit, best->limit, best->friction,
+           best->amplitude);
+    write_result(s->tables, strcmp(s->tables->limit, "limit") == 0 ? "best.limit" : "best.load", best->limit);
     write_result(s->tables, "best.power", best->friction);
     write_result(s->tables, "best.amplitude", best->amplitude);
     if (isfinite(simple.limit)) {
@@ -84,6 +115,9 @@ static struct motion show_motion(struct study *s, struct curve *c, double limit,
     const struct motion m = there ? there->motion : (struct motion){.found = 0};
     if (there) {
         write_history(s->tables, &w, &m, there->y, what);
+        if (s->options->field.count) {
+            write_field(s->tables, s->model->structure, &s->options->field, &w, &m, there->y, what);
+        }
     }
     free_worker(&w);
     return m;
@@ -97,8 +131,8 @@ static void find_most_power(struct study *s, struct curve *c)
         return;
     }
     if (at == 0 || at + 1 == c->count) {
-        printf("most power is dissipated at the end of the range, at limit %g: widen --limits to find the optimum\n",
-               c->sample[at].motion.limit);
+        printf("most power is dissipated at the end of the range, at %s %g: widen --limits to find the optimum\n",
+               s->tables->limit, c->sample[at].motion.limit);
         return;
     }
     struct trial t = {.study = s, .from = &c->sample[at]};
@@ -131,9 +165,9 @@ static void run_curve(void *data, size_t k)
     free_worker(&w);
 }
 
-static void print_curve(const struct curve *c)
+static void print_curve(const struct study *s, const struct curve *c)
 {
-    printf("         limit    amplitude friction power  damping power  periods\n");
+    printf("  %12s    amplitude friction power  damping power  periods\n", s->tables->limit);
     for (size_t k = 0; k < c->count; k++) {
         const struct motion *m = &c->sample[k].motion;
         if (c->sample[k].asked && m->found) {
@@ -158,7 +192,7 @@ static double follow_limits(struct study *s, struct curve *c)
     }
     run_jobs(1, 1, run_curve, &j);
     end_telling();
-    print_curve(c);
+    print_curve(s, c);
     return show_model_error(s, c, 1);
 }
 
@@ -176,10 +210,10 @@ void study_limits(struct study *s)
         end_telling();
     }
     FILE *table = create_table(s->tables, "curve");
-    write_motion_head(table, s->damper);
+    write_motion_head(s->tables, table, s->damper);
     write_curve(s->tables, table, &c, s->damper);
     close_table(s->tables, table, "curve");
-    plot_curve(s->tables, s->options);
+    plot_curve(s->tables);
     s->gaps += gaps_of(&c);
     free_curve(&c);
 }

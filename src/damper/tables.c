@@ -4,16 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <gsl/gsl_sort.h>
-
 #include "output.h"
-#include "linear.h"
-#include "march.h"
 #include "plot.h"
 
 struct tables open_tables(const struct options *o)
 {
-    struct tables t = {.out = o->out, .name = o->name, .plot = o->plot, .script = open_plots(o)};
+    struct tables t = {.out = o->out, .name = o->name, .limit = word_for_limit(o), .plot = o->plot, .script = open_plots(o)};
     char *name = new_text("values-%s.txt", t.name);
     t.values = create_file(t.out, name);
     free(name);
@@ -49,14 +45,17 @@ void write_result(const struct tables *t, const char *key, double value)
 
 /* ------------------------------------------------------------------------------------------------------------- motions */
 
-void write_motion_head(FILE *file, const struct damper *d)
+void write_motion_head(const struct tables *t, FILE *file, const struct damper *d)
 {
-    fprintf(file, "limit,frequency,amplitude,friction power,damping power,input power,periods,message");
+    fprintf(file, "%s,frequency,amplitude,friction power,damping power,input power,periods,message", t->limit);
     for (size_t c = 1; d && c <= d->contacts; c++) {
         fprintf(file, ",power%zu,stick%zu", c, c);
     }
     for (size_t k = 1; d && k <= d->outputs; k++) {
         fprintf(file, ",amplitude%zu,phase%zu", k, k);
+        for (size_t h = 1; h <= d->harmonics; h++) {
+            fprintf(file, h > 1 ? ",harmonic%zu.%zu,phase%zu.%zu" : ",harmonic%zu.%zu", k, h, k, h);
+        }
     }
     fprintf(file, "\n");
 }
@@ -70,20 +69,15 @@ static void write_message(FILE *file, const char *message)
     fputc('"', file);
 }
 
-/* count pairs, first [i * step] and second [i * step]; blank if they were not found. */
-static void write_pairs(FILE *file, const struct motion *m, size_t count, const double *first, const double *second, size_t step)
+/* Blank for NaN. */
+static void write_number(FILE *file, double value)
 {
-    for (size_t i = 0; i < count; i++) {
-        if (m->found) {
-            fprintf(file, ",%.10g,%.10g", first[i * step], second[i * step]);
-        } else {
-            fprintf(file, ",,");
-        }
-    }
+    fprintf(file, isnan(value) ? "," : ",%.10g", value);
 }
 
 void write_motion(FILE *file, const struct motion *m, const double *y, const struct damper *d)
 {
+    const double none = (double)NAN;
     fprintf(file, "%.10g,%.10g", m->limit, m->hz);
     if (m->found) {
         fprintf(file, ",%.10g,%.10g,%.10g,%.10g,%zu,", m->amplitude, m->friction, m->damped, m->input, m->periods);
@@ -91,10 +85,20 @@ void write_motion(FILE *file, const struct motion *m, const double *y, const str
         fprintf(file, ",,,,,%zu,", m->periods);
         write_message(file, m->message);
     }
-    if (d) {
-        const double *power = y + d->dimension, *output = power + 2 * d->contacts;
-        write_pairs(file, m, d->contacts, power, power + d->contacts, 1);
-        write_pairs(file, m, d->outputs, output, output + 1, 2);
+    for (size_t c = 0; d && c < d->contacts; c++) {
+        write_number(file, m->found ? y[d->dimension + c] : none);
+        write_number(file, m->found ? y[d->dimension + d->contacts + c] : none);
+    }
+    for (size_t k = 0; d && k < d->outputs; k++) {
+        const double *o = y + d->dimension + 2 * d->contacts + k * output_size(d);
+        write_number(file, m->found ? o[0] : none);
+        write_number(file, m->found ? o[2] : none);
+        for (size_t h = 1; h <= d->harmonics; h++) {
+            write_number(file, m->found ? o[2 * h - 1] : none);
+            if (h > 1) {
+                write_number(file, m->found ? o[2 * h] : none);
+            }
+        }
     }
     fprintf(file, "\n");
 }
@@ -113,18 +117,18 @@ void write_curve(struct tables *t, FILE *file, const struct curve *c, const stru
 
 void write_frequencies(const struct tables *t, const struct damper *d, const char *given)
 {
-    double *hz = need_memory(2 * d->modes, sizeof *hz), *stuck = hz + d->modes, worst = 0.0;
-    const size_t known = given ? read_frequencies(given, hz, d->kept) : 0, held = stuck_frequencies(d, stuck);
+    double *hz = need_memory(d->kept, sizeof *hz), worst = 0.0;
+    const size_t known = given ? read_frequencies(given, hz, d->kept) : 0;
     FILE *table = create_table(t, "frequencies");
     fprintf(table, "mode,frequency,given,relative difference,stuck\n");
     printf("natural frequencies, Hz; the last with all contacts stuck\n  mode         here%s        stuck\n",
            known ? "        given  relative difference" : "");
     for (size_t k = 0; k < d->kept; k++) {
-        const double here = d->omega[k] / TURN, off = k < known ? here / hz[k] - 1.0 : 0.0;
+        const double here = d->open.omega[k] / TURN, off = k < known ? here / hz[k] - 1.0 : 0.0;
         char *seen = k < known ? new_text("%12.7g  %19.1e", hz[k], off) : new_text("%*s", known ? 33 : 0, "");
         char *kept = k < known ? new_text("%.10g,%.3g", hz[k], off) : new_text(",");
-        char *still = k < held ? new_text("%.10g", stuck[k] / TURN) : new_text("%s", "");
-        printf("  %4zu %12.7g %s%s %12.8s\n", k + 1, here, seen, known ? "" : "", still);
+        char *still = k < d->stuck.count ? new_text("%.10g", d->stuck.omega[k] / TURN) : new_text("%s", "");
+        printf("  %4zu %12.7g %s %12.8s\n", k + 1, here, seen, still);
         fprintf(table, "%zu,%.10g,%s,%s\n", k + 1, here, kept, still);
         worst = fmax(worst, fabs(off));
         write_value(t->values, here, "%s.frequency%zu", t->name, k + 1);
@@ -140,34 +144,32 @@ void write_frequencies(const struct tables *t, const struct damper *d, const cha
     free(hz);
 }
 
-/* Evenly spaced frequencies, and the resonances between them; *count out. */
-static double *linear_frequencies(const struct damper *d, const struct range *band, size_t *count)
+static int compare_numbers(const void *a, const void *b)
 {
-    enum { EVEN = 2001 };
-    double *omega = need_memory(EVEN + 2 * d->modes, sizeof *omega);
-    const size_t resonances = d->kept + stuck_frequencies(d, omega);
-    memcpy(omega + resonances - d->kept, d->omega, d->kept * sizeof *omega);
-    *count = 0;
-    for (size_t k = 0; k < resonances; k++) {
-        if (omega[k] > TURN * band->from && omega[k] < TURN * band->to) {
-            omega[(*count)++] = omega[k];
-        }
-    }
-    for (size_t k = 0; k < EVEN; k++) {
-        omega[(*count)++] = TURN * (band->from + (band->to - band->from) * ((double)k / (EVEN - 1)));
-    }
-    gsl_sort(omega, 1, *count);
-    return omega;
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
 }
 
 void write_linear(const struct tables *t, const struct damper *d, const struct range *band)
 {
-    size_t count;
-    double *omega = linear_frequencies(d, band, &count);
+    enum { EVEN = 2001 };
+    double *omega = need_memory(EVEN + 2 * d->modes, sizeof *omega);
+    size_t count = 0;
     FILE *table = create_table(t, "linear");
+    for (size_t k = 0; k < d->kept + d->stuck.count; k++) {
+        const double resonance = k < d->kept ? d->open.omega[k] : d->stuck.omega[k - d->kept];
+        if (resonance > TURN * band->from && resonance < TURN * band->to) {
+            omega[count++] = resonance;
+        }
+    }
+    for (size_t k = 0; k < EVEN; k++) {
+        omega[count++] = TURN * (band->from + (band->to - band->from) * ((double)k / (EVEN - 1)));
+    }
+    qsort(omega, count, sizeof *omega, compare_numbers);
     fprintf(table, "frequency,without friction,stuck\n");
     for (size_t k = 0; k < count; k++) {
-        fprintf(table, "%.10g,%.10g,%.10g\n", omega[k] / TURN, free_amplitude(d, omega[k]), stuck_amplitude(d, omega[k]));
+        fprintf(table, "%.10g,%.10g,%.10g\n", omega[k] / TURN, linear_amplitude(&d->open, omega[k]),
+                linear_amplitude(&d->stuck, omega[k]));
     }
     close_table(t, table, "linear");
     free(omega);
@@ -177,23 +179,6 @@ void write_linear(const struct tables *t, const struct damper *d, const struct r
 
 enum { PERIODS = 3, STEPS = 3000 /* of them all */ };
 
-static void write_instant(FILE *table, const struct damper *d, double cycle, double t, const double *y, const double *v,
-                          const double *f, const signed char *slip)
-{
-    fprintf(table, "%.8g,%.10g,%.10g", cycle, t, load_displacement(d, y));
-    for (size_t c = 0; c < d->contacts; c++) {
-        fprintf(table, ",%.8g,%.8g,%d", v[c], f[c], slip[c]);
-    }
-    for (size_t c = 0; c < d->contacts; c++) {
-        double z = 0.0;
-        for (size_t k = 0; k < d->modes; k++) {
-            z += d->contact_shape[c * d->modes + k] * y[k];
-        }
-        fprintf(table, ",%.8g", z);
-    }
-    fprintf(table, "\n");
-}
-
 void write_history(const struct tables *t, struct worker *w, const struct motion *m, const double *y, const char *what)
 {
     const struct damper *d = w->d;
@@ -202,12 +187,11 @@ void write_history(const struct tables *t, struct worker *w, const struct motion
     double *state = need_memory(w->dimension, sizeof *state);
     signed char *slip = need_memory(d->contacts, sizeof *slip);
     FILE *table = create_table(t, what);
-    tribo_driver *marcher = w->drv ? NULL : create_marcher(w, m->limit, m->hz), *drv = marcher ? marcher : w->drv;
-    if (!marcher) {
-        set_point(w, m->limit, m->hz);
+    tribo_driver *drv = driver_at(w, m->limit, m->hz);
+    if (drv == w->drv) {
         /* contacts that stick have velocities of rounding size: a law with a band around v = 0 sees them stick */
+        const double size = fmax(m->amplitude, 1e-6 * linear_amplitude(&d->open, TURN * m->hz));
         need(tribo_set_law(contacts, TRIBO_QUINN), tribo_message(contacts));
-        const double size = fmax(m->amplitude, 1e-6 * free_amplitude(d, TURN * m->hz));
         need(tribo_set_epsilon_all(contacts, 1e-8 * TURN * m->hz * size), tribo_message(contacts));
     }
     memcpy(state, y, w->dimension * sizeof *state);
@@ -224,11 +208,17 @@ void write_history(const struct tables *t, struct worker *w, const struct motion
         need(tribo_driver_advance(drv, &now, cycle / m->hz, state), tribo_driver_message(drv));
         need(tribo_system_contacts(w->sys, now, state, v, NULL, f), tribo_system_message(w->sys));
         need(tribo_system_get_slip(w->sys, slip), tribo_system_message(w->sys));
-        write_instant(table, d, cycle, now, state, v, f, slip);
+        fprintf(table, "%.8g,%.10g,%.10g", cycle, now, displacement(d, d->open.measured, state));
+        for (size_t c = 0; c < d->contacts; c++) {
+            fprintf(table, ",%.8g,%.8g,%d", v[c], f[c], slip[c]);
+        }
+        for (size_t c = 0; c < d->contacts; c++) {
+            fprintf(table, ",%.8g", displacement(d, d->contact_shape + c * d->modes, state));
+        }
+        fprintf(table, "\n");
     }
     close_table(t, table, what);
     plot_loops(t, d->contacts, m->limit, what);
-    tribo_driver_destroy(marcher);
     free(v);
     free(state);
     free(slip);

@@ -7,6 +7,7 @@
 struct tables {
     const char *out, *name;
     FILE *values;
+    const char *limit; /* what the column of limits is called */
     size_t motions;   /* found, in tables */
     const char *plot; /* format of pictures */
     FILE *script;     /* that draws them; NULL: none */
@@ -23,7 +24,7 @@ void write_result(const struct tables *t, const char *key, double value);
 
 /* A table of motions: its head, and a line for each of a curve. y: the record, with powers and shares of rest of contacts, and
  * outputs; both NULL: without these. */
-void write_motion_head(FILE *file, const struct damper *d);
+void write_motion_head(const struct tables *t, FILE *file, const struct damper *d);
 void write_motion(FILE *file, const struct motion *m, const double *y, const struct damper *d);
 void write_curve(struct tables *t, FILE *file, const struct curve *c, const struct damper *d);
 

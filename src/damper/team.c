@@ -131,20 +131,31 @@ void run_jobs(size_t threads, size_t jobs, job *run, void *data)
 /* ------------------------------------------------------------------------------------------------------------- progress */
 
 static size_t points;
+static const char blank[] = "                                                                      ";
 
 void tell_point(void)
 {
     begin_alone();
     points++;
     if (on_terminal()) {
-        fprintf(stderr, "\r%s: %zu points", program, points);
+        fprintf(stderr, "\r%s\r%s: %zu points", blank, program, points);
+    }
+    end_alone();
+}
+
+void tell_march(double limit, double hz, size_t periods, double change)
+{
+    begin_alone();
+    if (on_terminal()) {
+        fprintf(stderr, "\r%s\r%s: %zu points; marching at %.4g, %.5g Hz: %zu periods, changing by %.1e", blank, program, points,
+                limit, hz, periods, change);
     }
     end_alone();
 }
 
 void end_telling(void)
 {
-    if (points && on_terminal()) {
-        fprintf(stderr, "\r%40s\r", "");
+    if (on_terminal()) {
+        fprintf(stderr, "\r%s\r", blank);
     }
 }

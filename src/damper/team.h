@@ -21,6 +21,9 @@ int interrupted(void);
 /* A point has been found, or not: shown where stderr is a terminal. */
 void tell_point(void);
 
+/* A motion is being marched: periods so far, and the relative change of the last one. Shown as tell_point is. */
+void tell_march(double limit, double hz, size_t periods, double change);
+
 /* Takes what is shown away. */
 void end_telling(void);
 

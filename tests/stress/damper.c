@@ -329,7 +329,11 @@ TEST(options)
         const char *option, *values; /* parted by blanks */
     } bad[] = {
         {"--modes", "0 -1 1.5 5 1e9 nan x 1e300 2x"},
-        {"--damping", "0 -1 1 2 nan inf 0,1"},
+        {"--damping", "0 -1 1 2 nan inf 0,1 0.1, 0.1,x ,0.1 0.1,2"},
+        {"--harmonics", "0 -1 x 1.5"},
+        {"--field", "-1 361 x 0,x 0,,90 nan"},
+        {"--base", "w x x:acceleration=0 x:acceleration=nan x:force=1 xy:acceleration=1 2,0,0,x x:acceleration=1:acceleration=1"},
+        {"--output", "2,0,0 2,0,0,w 2,0,0,y 2,0,0.1,x"},
         {"--force", "0 -1 nan inf 1N 1e999"},
         {"--drive", "-1 nan inf 5Hz 1:2 1:2:0 2:1:3 1:1:2 0:1:3 1:2:x"},
         {"--limits", "0 1:2 1:2:0 1:2:1.5 2:1:3 1:1:2 0:1:3 -1:1:3 nan:1:3 1:inf:3 1:2:3:4 1:2:1e300 :: 1;2;3"},
@@ -346,7 +350,8 @@ TEST(options)
         {"--check", "-1 x 0.5"},
         {"--threads", "0 -1 x"},
         {"--name", "a/b"},
-        {"--load", "2,0,0 2,0,0,w 2,0,0,y 2,0,0.1,x nan,0,0,x"},
+        {"--load", "2,0,0 2,0,0,w 2,0,0,y 2,0,0.1,x nan,0,0,x 2,0,0,x:force=0 2,0,0,x:force=x 2,0,0,x:phase=inf "
+                   "2,0,0,x:phase=1:phase=2 2,0,0,x:to=1,0,0 2,0,0,x:acceleration=1"},
     };
     write_chain();
     for (size_t k = 0; k < COUNT(bad); k++) {
