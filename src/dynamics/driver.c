@@ -438,9 +438,6 @@ static int advance_motion(tribo_driver *drv, double *t, double t1, double *y)
     drv->time = *t;
     memcpy(drv->state, y, bytes);
     status = drv->method->advance(drv, t, t1, y, continues);
-    if (sys->foreseen) {
-        tribo_system_foresee(sys, 0, t);
-    }
     status = status ? status : tribo_driver_keep(drv, *t, y);
     *t = drv->time;
     memcpy(y, drv->state, bytes);

@@ -82,17 +82,17 @@ int tribo_driver_accept(tribo_driver *drv, double t, const double *y);
 /* A step from the state at t to that at next, y, all of which it writes and finds finite. */
 typedef int tribo_fixed_step(tribo_driver *drv, double t, double next, const double *from, double *y);
 
-/* Steps between the times t [count + 1] at once, from the state y at t[0] to that which follows, in its place. Returns how many
- * were taken: the next one is for tribo_fixed_step. */
+/* Takes steps between the times t [count + 1], count <= RUN: y is the state at t[0], and becomes that after the last step. Returns
+ * the number of steps taken; after less than count the next one is for tribo_fixed_step. */
 typedef size_t tribo_fixed_run(tribo_driver *drv, size_t count, const double *t, double *y);
 
-/* A method's step; a run of steps where nobody watches, or NULL; and the times that a step asks the system for: at so many
- * parts of it. */
+/* Steps that a run takes at most. */
+enum { RUN = 16 };
+
+/* run: steps without an observer, or NULL. */
 struct fixed_method {
     tribo_fixed_step *step;
     tribo_fixed_run *run;
-    size_t times;
-    double part[2];
 };
 
 /* Steps of drv->dt from y, which is the last good state, to t1, the last one shorter where it must be. States are kept as by

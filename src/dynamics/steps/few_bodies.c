@@ -127,80 +127,50 @@ int tribo_few_take(struct few_bodies *b, tribo_system *sys)
 
 /* ---------------------------------------------------------------------------------------------------- what acts in a run */
 
-/* The harmonic's part of rows, at count times. */
-static void few_add_harmonic(const struct harmonic *h, size_t count, const double *restrict cosine, const double *restrict sine,
-                             double to[FEW][FORESIGHT])
+/* Adds harmonics that drive loads or bases at the times t [count] to the rows `to`. */
+static void few_add_harmonics(const tribo_system *sys, enum drives drives, size_t count, const double *t, double to[FEW][RUN])
 {
-    for (size_t e = 0; e < h->count; e++) {
-        const double c = h->cosine[e], d = h->sine[e];
-        double *restrict row = to[h->index[e]];
-        for (size_t s = 0; s < count; s++) {
-            row[s] += c * cosine[s] + d * sine[s];
-        }
-    }
-}
-
-static void few_clear(size_t n, size_t count, double to[FEW][FORESIGHT])
-{
-    for (size_t i = 0; i < n; i++) {
-        memset(to[i], 0, count * sizeof *to[i]);
-    }
-}
-
-/* last: the length of the step before. */
-static void few_find_times(struct few_bodies *b, size_t count, const double *restrict t, double last)
-{
-    double *restrict h = b->h, *restrict to = b->to, *restrict time = b->time;
-    h[0] = last;
-    for (size_t s = 0; s < count; s++) {
-        h[s + 1] = t[s + 1] - t[s];
-        to[s] = t[s] + 0.5 * (t[s + 1] - t[s]);
-    }
-    for (size_t s = 0; s < count; s++) {
-        time[s] = 0.5 * (h[s] + h[s + 1]);
-    }
-}
-
-/* 0 if not all can be found. */
-static int few_find_all(struct few_bodies *b, tribo_system *sys, size_t count, const double *t, double last)
-{
-    const size_t harmonic_loads = sys->harmonics - sys->base_harmonics - sys->limit_harmonics;
-    /* the place of the first step among the times foreseen */
-    const size_t place = harmonic_loads ? tribo_system_place(sys, t[0]) : 0;
-    if (place + count > (harmonic_loads ? sys->foreseen : FORESIGHT)) {
-        return 0;
-    }
-    few_find_times(b, count, t, last);
-    few_clear(b->n, count, b->load);
+    double cosine[RUN], sine[RUN];
     for (size_t k = 0; k < sys->harmonics; k++) {
         const struct harmonic *h = &sys->harmonic[k];
-        if (h->drives == DRIVES_LOAD) {
-            few_add_harmonic(h, count, h->cos_ahead + place, h->sin_ahead + place, b->load);
-        }
-    }
-    if (tribo_system_bases_move(sys)) {
-        /* At the ends of the steps. */
-        double cosine[FORESIGHT], sine[FORESIGHT];
-        few_clear(b->c, count, b->base);
-        for (size_t k = 0; k < sys->harmonics; k++) {
-            const struct harmonic *h = &sys->harmonic[k];
-            if (h->drives == DRIVES_BASE) {
-                tribo_cos_sin_all(h->omega, count, b->to, cosine, sine);
-                few_add_harmonic(h, count, cosine, sine, b->base);
-            }
-        }
-        for (size_t s = 0; sys->base_tables && s < count; s++) {
-            double base[FEW] = {0.0};
-            tribo_system_set_time(sys, b->to[s]);
-            tribo_system_tables(sys, DRIVES_BASE, 0, 1.0, 0, b->c, base);
-            for (size_t i = 0; i < b->c; i++) {
-                b->base[i][s] += base[i];
+        if (h->drives == drives) {
+            tribo_cos_sin_all(h->omega, count, t, cosine, sine);
+            for (size_t e = 0; e < h->count; e++) {
+                double *row = to[h->index[e]];
+                for (size_t s = 0; s < count; s++) {
+                    row[s] += h->cosine[e] * cosine[s] + h->sine[e] * sine[s];
+                }
             }
         }
     }
-    /* What is not looked up for many times at once. 0 if a limit is too large. */
+}
+
+/* Finds lengths, loads at t, bases at the middles of steps, limits at t. last: the length of the step before. 0 if a limit is too
+ * large. */
+static int few_find_all(struct few_bodies *b, tribo_system *sys, size_t count, const double *t, double last)
+{
     const int vary = tribo_system_limits_vary(sys);
     int fits = 1;
+    b->h[0] = last;
+    for (size_t s = 0; s < count; s++) {
+        b->h[s + 1] = t[s + 1] - t[s];
+        b->to[s] = t[s] + 0.5 * (t[s + 1] - t[s]);
+        b->time[s] = 0.5 * (b->h[s] + b->h[s + 1]);
+    }
+    memset(b->load, 0, b->n * sizeof *b->load);
+    few_add_harmonics(sys, DRIVES_LOAD, count, t, b->load);
+    if (tribo_system_bases_move(sys)) {
+        memset(b->base, 0, b->c * sizeof *b->base);
+        few_add_harmonics(sys, DRIVES_BASE, count, b->to, b->base);
+    }
+    for (size_t s = 0; sys->base_tables && s < count; s++) {
+        double base[FEW] = {0.0};
+        tribo_system_set_time(sys, b->to[s]);
+        tribo_system_tables(sys, DRIVES_BASE, 0, 1.0, 0, b->c, base);
+        for (size_t i = 0; i < b->c; i++) {
+            b->base[i][s] += base[i];
+        }
+    }
     for (size_t s = 0; (vary || sys->tables > sys->base_tables) && s < count; s++) {
         double load[FEW] = {0.0}, limit[FEW];
         tribo_system_set_time(sys, t[s]);

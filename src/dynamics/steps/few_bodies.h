@@ -9,7 +9,7 @@
 #ifndef TRIBO_FEW_BODIES_H
 #define TRIBO_FEW_BODIES_H
 
-#include "dynamics/system/system.h"
+#include "dynamics/driver.h"
 
 /* The most degrees of freedom, and the most contacts, that are few. */
 enum { FEW = 4 };
@@ -38,8 +38,8 @@ struct few_bodies {
     struct few_slip slip;                /* of the step before */
     /* by steps of a run: the times for which velocities go on, and those at which they are known then; the lengths, that of the
      * step before the run first; and what acts */
-    double time[FORESIGHT], to[FORESIGHT], h[FORESIGHT + 1];
-    double load[FEW][FORESIGHT], base[FEW][FORESIGHT], limits[FEW][FORESIGHT];
+    double time[RUN], to[RUN], h[RUN + 1];
+    double load[FEW][RUN], base[FEW][RUN], limits[FEW][RUN];
 };
 
 /* A motion as central differences leave it between steps: places, velocities [ndof], those of the contacts, what friction has
@@ -66,8 +66,8 @@ size_t tribo_few_steps(const struct few_bodies *b, struct few_parts has, size_t 
 /* Takes over settings that have changed. Returns whether runs can be taken with them. */
 int tribo_few_take(struct few_bodies *b, tribo_system *sys);
 
-/* Steps between the times t [count + 1], count <= FORESIGHT, of which harmonic loads are foreseen. Returns how many were taken,
- * which leave the motion finite: the next one is for others, if that is not all. */
+/* Takes steps between the times t [count + 1], count <= RUN. Returns the number of steps taken, after which the motion is finite;
+ * if it is less than count, the next step is for others. */
 size_t tribo_few_run(struct few_bodies *b, tribo_system *sys, size_t count, const double *t, struct few_motion *m);
 
 #endif

@@ -232,7 +232,7 @@ static int check_step(tribo_driver *drv, double h)
 
 static int central_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
-    static const struct fixed_method method = {central_step, central_run, 1, {0.0, 0.0}};
+    static const struct fixed_method method = {central_step, central_run};
     struct central *x = drv->own;
     struct step_form *s = &x->common;
     const size_t n = drv->sys->ndof;

@@ -443,7 +443,7 @@ static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, in
 {
     struct moreau *m = drv->own;
     struct step_form *s = &m->common;
-    static const struct fixed_method method = {moreau_step, NULL, 1, {1.0, 0.0}};
+    static const struct fixed_method method = {moreau_step, NULL};
     s->goes_on = continues && s->goes_on;
     tribo_step_form_start(s, drv->sys);
     return tribo_driver_fixed_steps(drv, t, t1, y, &method);

@@ -211,7 +211,7 @@ enum { MANY = 20 };
 
 static int advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
-    static const struct fixed_method method = {step, NULL, 2, {0.5, 1.0}};
+    static const struct fixed_method method = {step, NULL};
     struct rk4 *r = drv->own;
     (void)continues;
     if (t1 - *t > MANY * drv->dt && !tribo_rates_fit(&r->alone, drv->sys)) {

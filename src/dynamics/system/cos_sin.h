@@ -1,4 +1,4 @@
-/* Cosine and sine at once: of an angle, and of omega t, for one time or for many, which loops of steps foresee. */
+/* Cosine and sine at once: of an angle, and of omega t, for one time or for many. */
 #ifndef TRIBO_COS_SIN_H
 #define TRIBO_COS_SIN_H
 

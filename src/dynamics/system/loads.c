@@ -1,4 +1,5 @@
 /* What comes from outside and changes with time: loads on the structure, motion of the bases, limits. */
+#include "cos_sin.h"
 #include "system.h"
 #include "common/layout.h"
 #include "common/real.h"
@@ -109,6 +110,33 @@ int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
 }
 
 /* ------------------------------------------------------------------------------------------------------------------ at a time */
+
+void tribo_system_forget_time(tribo_system *sys)
+{
+    sys->time = NAN;
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        sys->harmonic[k].time = NAN;
+    }
+}
+
+void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h)
+{
+    h->time = sys->time;
+    h->turns = 0;
+    tribo_cos_sin(h->omega, sys->time, sys->low, &h->cos_t, &h->sin_t);
+}
+
+enum { MOST_TURNS = 16 };
+
+void tribo_harmonic_take(const tribo_system *sys, struct harmonic *h, double c, double s)
+{
+    if (h->drives == DRIVES_LOAD && h->turns < MOST_TURNS) {
+        h->turns++;
+        h->time = sys->time;
+        h->cos_t = c;
+        h->sin_t = s;
+    }
+}
 
 /* The knot at or before t, the first one if there is none. */
 static size_t knot_at(const struct table *table, double t)

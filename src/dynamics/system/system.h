@@ -12,20 +12,16 @@
 /* What a harmonic adds to: the load, b(t) of the contacts, or their limits. */
 enum drives { DRIVES_LOAD, DRIVES_BASE, DRIVES_LIMIT };
 
-/* So many times can be foreseen. */
-enum { FORESIGHT = 32 };
-
-/* cosine cos(omega t) + sine sin(omega t), for the entries in which either is not zero; for all of them in limits. */
+/* cosine cos(omega t) + sine sin(omega t) at the entries index. */
 struct harmonic {
-    double omega, time, cos_t, sin_t;                  /* the latter are those of this time, */
-    size_t turns;                                      /* as found anew, and then turned on so often */
-    double cos_ahead[FORESIGHT], sin_ahead[FORESIGHT]; /* those of times foreseen */
-    size_t next;                                       /* which of them may be asked for next */
+    double omega;
+    double time, cos_t, sin_t; /* cos(omega time), sin(omega time); time NaN: not known */
+    size_t turns;              /* successive values of cos_t, sin_t that tribo_harmonic_take set */
     enum drives drives;
-    int by_load; /* of a base: a load moves it, see tribo_system_add_load */
-    size_t count;
-    size_t *index;
-    double *cosine, *sine;
+    int by_load;           /* 1: a motion of the base that belongs to a load, see tribo_system_add_load */
+    size_t count;          /* entries: those with cosine or sine not 0; of limits all */
+    size_t *index;         /* [count] degree of freedom, or contact */
+    double *cosine, *sine; /* [count] */
 };
 
 /* A function of time, linear between knots and constant outside: times pattern it adds to the load or to b(t), or, with a row of
@@ -63,8 +59,6 @@ struct tribo_system {
     double *put_limit;           /* [ncontact] workspace: limits of the time set */
     size_t revision, structure;  /* count changes of loads, tables and damping; of damping */
     double time, low;            /* that is set (NaN: none yet), and what rounding left of it (below) */
-    size_t foreseen;             /* times in foresight */
-    double foresight[FORESIGHT]; /* ascending */
 
     /* K and C, where the mass matrix is not diagonal: M^-1 K has lost the low modes to rounding. Else no rows: M AK and M AC are
      * K and C to rounding of every entry. */
@@ -131,22 +125,13 @@ int tribo_loads_copy(tribo_system *sys, const tribo_system *from);
 /* Prepares the loads for time t, and sets the limits of the contacts if they vary. */
 void tribo_system_set_time(tribo_system *sys, double t);
 
-/* ---- foresight.c */
-
-/* Times t, at most FORESIGHT and ascending, that will probably be set next: the loads' harmonics are found side by side. From
- * then on those of other times are found in the same way, until no times (0) are foreseen: so a motion is the same to the last
- * bit whatever its steps were foreseen with. low is 0 meanwhile. */
-void tribo_system_foresee(tribo_system *sys, size_t count, const double *t);
-
-/* What is set, or foreseen, is of loads or times that are others now. */
+/* Forgets the time that is set, and cosines and sines of all harmonics. */
 void tribo_system_forget_time(tribo_system *sys);
 
-/* Where time t stands among those foreseen; FORESIGHT if it is none of them. */
-size_t tribo_system_place(const tribo_system *sys, double t);
-
-/* Harmonic k becomes that of the time set, if it is not: whoever reads cos_t and sin_t asks for it first. */
+/* Sets cos_t and sin_t of h to those of the time set. */
 void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h);
 
+/* The same, if h->time is another time. Called before cos_t and sin_t are read. */
 static inline void tribo_system_turn_to(const tribo_system *sys, struct harmonic *h)
 {
     if (h->time != sys->time) {
@@ -159,11 +144,9 @@ static inline void tribo_system_turn(const tribo_system *sys, size_t k)
     tribo_system_turn_to(sys, &sys->harmonic[k]);
 }
 
-/* The same by what a motion has found them to be, c and s, going on from a time at which they were these; unless they have come
- * that way often, or bases are moved. */
+/* Sets cos_t and sin_t of a load to c and s, which a motion has found for the time set; at most 16 times in a row, since each adds
+ * its rounding. */
 void tribo_harmonic_take(const tribo_system *sys, struct harmonic *h, double c, double s);
-
-/* ---- loads.c */
 
 /* From here on every time means t + low, at which events happen between two numbers t. */
 void tribo_system_set_low(tribo_system *sys, double low);
