@@ -35,14 +35,15 @@ void tribo_remember_forces(tribo_context *ctx)
     }
 }
 
-/* The groups with a contact near stick among those from i to end. */
-static void find_near_groups(tribo_context *ctx, size_t i, size_t end)
+/* Lists the groups with a contact near stick. */
+static void find_near_groups(tribo_context *ctx)
 {
     struct memory *m = &ctx->memory;
-    for (size_t n; (n = tribo_next_near(ctx->last.did.of, &i, end)) > 0; i += n) {
-        for (size_t k = i; k < i + n; k++) {
+    for (size_t i = 0; i < ctx->n; i += tribo_chunk_size(ctx, i)) {
+        const size_t end = ctx->last.did.stored[i / TRIBO_CHUNK] == SOME_STORED ? i + tribo_chunk_size(ctx, i) : i;
+        for (size_t k = i; k < end; k++) {
             const size_t g = ctx->group_of[k];
-            if (g != TRIBO_ALONE && !m->solved[g]) {
+            if (ctx->last.did.of[k] == STORED && g != TRIBO_ALONE && !m->solved[g]) {
                 m->solved[g] = 1;
                 m->solved_list[m->nsolved++] = g;
             }
@@ -90,7 +91,8 @@ int tribo_solve_group(tribo_context *ctx, struct box_qp *p)
         p->unit[i] = ctx->op->diagonal[member[i]] * (0.5 * p->hi[i] - 0.5 * p->lo[i]);
     }
     ctx->count.solves++;
-    if (!tribo_box_solve(p)) {
+    const int small = g->small && !p->far && tribo_box_small(p);
+    if (!small && !tribo_box_solve(p)) {
         return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no stick set found for the %zu contact%s near stick around contact %zu",
                           p->count, plural(p->count), member[p->near[0]]);
     }
@@ -101,7 +103,7 @@ int tribo_solve_group(tribo_context *ctx, struct box_qp *p)
     ctx->last.rank += p->sets->rank;
     /* Keeps the largest part of its limit by which a force misses the balance of its contact beyond rounding of all forces. Each
      * contact is measured in its own unit: beside a light body's accelerations those of a heavy one count, too. */
-    for (size_t e = 0; e < p->count; e++) {
+    for (size_t e = 0; !small && e < p->count; e++) {
         const size_t k = p->near[e], i = p->member[k];
         double missed = missed_part(ctx, p, k, p->noise[k]);
         missed = missed > TRIBO_MISSED ? missed_part(ctx, p, k, tribo_box_doubt(p, k)) : missed;
@@ -191,15 +193,27 @@ static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *v
                       p->count, plural(p->count), member[p->near[0]], p->sets->rank);
 }
 
+/* f_eq of the contacts of a group without those near stick, if it was solved; 0 for open ones. */
+static void find_other_feq(tribo_context *ctx, struct box_qp *p, const double *a, int solved)
+{
+    const size_t size = p->group->size;
+    for (size_t k = 0; k < size; k++) {
+        p->step[k] = tribo_carried(ctx, p, k);
+    }
+    for (size_t k = 0; k < size; k++) {
+        const size_t i = p->member[k];
+        if (!(solved && ctx->last.did.of[i] == STORED)) {
+            const double feq = quotient(-(cut(a[i]) + tribo_row_others(p, k, p->step)), ctx->op->diagonal[i]);
+            ctx->last.feq[i] = ctx->follow.contacts.limit[i] > 0.0 ? feq : 0.0;
+        }
+    }
+}
+
 static int balance_all(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
     tribo_begin_call(ctx);
     tribo_forces_alone(ctx, v, a, wanted);
-    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        if (ctx->last.did.stored[k] == SOME_STORED) {
-            find_near_groups(ctx, i, i + tribo_chunk_size(ctx, i));
-        }
-    }
+    find_near_groups(ctx);
     int status = TRIBO_OK;
     for (size_t k = 0; k < ctx->memory.nsolved; k++) {
         if (k + 2 < ctx->memory.nsolved) {
@@ -220,6 +234,9 @@ static int balance_all(tribo_context *ctx, const double *v, const double *a, int
                 run++;
             }
             ctx->set.law->force(&c, run, v + i, ctx->last.feq + i, ctx->last.f + i);
+        }
+        if (wanted && p->count < p->group->size) {
+            find_other_feq(ctx, p, a, 1);
         }
     }
     return status || !ctx->planar ? status : tribo_planar_balance(ctx, v, a);
@@ -250,18 +267,9 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     ctx->last.slips = SLIPS_IN_FORCES;
     ctx->last.holds = ctx->set.law->holds;
     if (feq) {
-        /* f_eq of the contacts in groups that no solver saw. */
         for (size_t g = 0; g < ctx->op->groups; g++) {
-            struct box_qp *p = tribo_problem(ctx, g);
-            const size_t *member = p->member, size = p->group->size;
-            for (size_t k = 0; k < size; k++) {
-                p->step[k] = tribo_carried(ctx, p, k);
-            }
-            for (size_t k = 0; k < size; k++) {
-                const size_t i = member[k];
-                if (!(ctx->memory.solved[g] && ctx->last.did.of[i] == STORED) && ctx->follow.contacts.limit[i] > 0.0) {
-                    ctx->last.feq[i] = quotient(-(cut(a[i]) + tribo_row_others(p, k, p->step)), ctx->op->diagonal[i]);
-                }
+            if (!ctx->memory.solved[g]) {
+                find_other_feq(ctx, tribo_problem(ctx, g), a, 0);
             }
         }
         if (ctx->planar) {

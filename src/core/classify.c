@@ -21,17 +21,9 @@ TRIBO_SIMD void tribo_find_directions(size_t n, const double *restrict v, signed
     }
 }
 
-/* The same, and contacts near stick if all have one band: TRIBO_SLIP_BACK, STORED and TRIBO_SLIP_FORTH count -1, 0, 1. */
-TRIBO_SIMD static void find_states(size_t n, const double *restrict v, double band, signed char *restrict did)
-{
-    for (size_t i = 0; i < n; i++) {
-        did[i] = (signed char)((v[i] > band) + (v[i] >= -band) - 1);
-    }
-}
-
-/* The same with each contact's own band, or 0 if band is NULL, and open ones are not near stick. */
-TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const double *restrict band, const double *restrict limit,
-                                 signed char *restrict did)
+/* did [n]: STORED where |v| <= band, v = 0 if band is NULL, and the contact is not open; else the direction of v. */
+TRIBO_SIMD static void find_states(size_t n, const double *restrict v, const double *restrict band, const double *restrict limit,
+                                   signed char *restrict did)
 {
     for (size_t i = 0; band && i < n; i++) {
         const int near = (fabs(v[i]) <= band[i]) & (limit[i] > 0.0);
@@ -79,17 +71,26 @@ void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *
     }
 }
 
-TRIBO_SIMD static void force_of_slips(size_t n, const signed char *restrict did, const double *restrict limit, double *restrict f)
+/* f [n]: the limit against the slip, or kept where did is STORED. */
+TRIBO_SIMD static void forces_of_states(size_t n, const signed char *restrict did, const double *restrict limit,
+                                        const double *restrict kept, double *restrict f)
 {
     for (size_t i = 0; i < n; i++) {
-        f[i] = did[i] == TRIBO_SLIP_FORTH ? -limit[i] : limit[i];
+        const double slides = did[i] == TRIBO_SLIP_FORTH ? -limit[i] : limit[i];
+        f[i] = did[i] == STORED ? kept[i] : slides;
     }
 }
 
-TRIBO_SIMD static void force_of_alike_slips(size_t n, const signed char *restrict did, double limit, double *restrict f)
+/* f [n] of contacts that slide; same: all have the first limit. */
+TRIBO_SIMD static void forces_of_slips(size_t n, const signed char *restrict did, const double *restrict limit, int same,
+                                       double *restrict f)
 {
-    for (size_t i = 0; i < n; i++) {
-        f[i] = did[i] == TRIBO_SLIP_FORTH ? -limit : limit;
+    const double one = *limit;
+    for (size_t i = 0; same && i < n; i++) {
+        f[i] = did[i] == TRIBO_SLIP_FORTH ? -one : one;
+    }
+    for (size_t i = 0; !same && i < n; i++) {
+        f[i] = did[i] == TRIBO_SLIP_FORTH ? -limit[i] : limit[i];
     }
 }
 
@@ -176,27 +177,6 @@ static int check_motion(tribo_context *ctx, const double *v, const double *a)
     return status ? status : tribo_check_finite(ctx, "a", a, ctx->n);
 }
 
-size_t tribo_next_near(const signed char *did, size_t *i, size_t end)
-{
-    const signed char *found = memchr(did + *i, STORED, end - *i);
-    size_t n = 0;
-    *i = found ? (size_t)(found - did) : end;
-    while (*i + n < end && did[*i + n] == STORED) {
-        n++;
-    }
-    return n;
-}
-
-/* Of the contacts of a chunk that are in its band those that are near stick. */
-static void classify_narrow(const tribo_context *ctx, const double *v, size_t i, size_t end, signed char *did)
-{
-    double room[TRIBO_CHUNK];
-    for (size_t n; (n = tribo_next_near(did, &i, end)) > 0; i += n) {
-        const double *band = ctx->set.law->sticks_in_band ? tribo_epsilons(&ctx->follow.contacts, i, n, room) : NULL;
-        find_near(n, v + i, band, ctx->follow.contacts.limit + i, did + i);
-    }
-}
-
 void tribo_store_all(tribo_context *ctx)
 {
     if (!ctx->last.did.all_stored) {
@@ -228,16 +208,17 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a)
         const double band = tribo_widest_band(ctx, k);
         classify_expect(ctx, v, i, 0);
         classify_expect(ctx, a, i, 0);
-        if (!tribo_all_finite(v + i, n) || !tribo_all_finite(a + i, n)) {
+        if (tribo_motion_within(v + i, a + i, DBL_MAX, n) != 3) {
             return check_motion(ctx, v, a);
         }
         const int any = tribo_any_in_band(n, v + i, band);
         now.stored[k] = !any ? NONE_STORED : ctx->op->groups ? SOME_STORED : ALL_STORED;
         if (now.stored[k] == ALL_STORED) {
-            memset(now.of + i, STORED, n); /* or not: the law will tell */
+            memset(now.of + i, STORED, n); /* the law finds which of them slide */
         } else if (now.stored[k] == SOME_STORED) {
-            find_states(n, v + i, band, now.of + i);
-            classify_narrow(ctx, v, i, i + n, now.of);
+            double room[TRIBO_CHUNK];
+            const double *own = ctx->set.law->sticks_in_band ? tribo_epsilons(&ctx->follow.contacts, i, n, room) : NULL;
+            find_states(n, v + i, own, ctx->follow.contacts.limit + i, now.of + i);
         } else {
             tribo_find_directions(n, v + i, now.of + i);
         }
@@ -254,7 +235,7 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
         const int asked = ctx->last.did.stored[k] == ALL_STORED || (some && ctx->last.did.stored[k] == SOME_STORED);
-        if (wanted || (asked && ctx->set.law->uses_feq)) {
+        if (wanted ? some : asked && ctx->set.law->uses_feq) {
             tribo_find_feq(ctx, i, n, a, ctx->last.feq + i);
         }
         if (ctx->set.breaking) {
@@ -277,20 +258,14 @@ void tribo_forces(const tribo_context *ctx, double *f)
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
         classify_expect(ctx, f, i, 1);
+        const signed char *did = ctx->last.did.of + i;
+        const double *limit = ctx->follow.contacts.limit + i, *kept = ctx->last.f + i;
         if (ctx->last.did.stored[k] == ALL_STORED) {
-            memcpy(f + i, ctx->last.f + i, n * sizeof *f);
+            memcpy(f + i, kept, n * sizeof *f);
+        } else if (ctx->last.did.stored[k] == SOME_STORED) {
+            forces_of_states(n, did, limit, kept, f + i);
         } else {
-            /* f [n] of the n contacts of chunk k, from i on, which do not all store it. */
-            const signed char *did = ctx->last.did.of;
-            if (ctx->follow.chunk[k].least < ctx->follow.chunk[k].largest) {
-                force_of_slips(n, did + i, ctx->follow.contacts.limit + i, f + i);
-            } else {
-                force_of_alike_slips(n, did + i, ctx->follow.chunk[k].largest, f + i);
-            }
-            for (size_t j = i, near; ctx->last.did.stored[k] == SOME_STORED && (near = tribo_next_near(did, &j, i + n)) > 0;
-                 j += near) {
-                tribo_copy(f + j, ctx->last.f + j, near);
-            }
+            forces_of_slips(n, did, limit, !(ctx->follow.chunk[k].least < ctx->follow.chunk[k].largest), f + i);
         }
     }
 }

@@ -221,9 +221,6 @@ static inline const double *tribo_inverses(const tribo_context *ctx, size_t k)
     return ctx->op->inverse + ctx->follow.chunk[k].like;
 }
 
-/* How many contacts from *i on are near stick, where *i becomes the first before end that is: 0 if there is none. */
-size_t tribo_next_near(const signed char *did, size_t *i, size_t end);
-
 /* The forces of all contacts, f [n], while limits are those of the balance; or of one. */
 void tribo_forces(const tribo_context *ctx, double *f);
 

@@ -112,20 +112,22 @@ static int within_reach(const tribo_context *ctx, const struct box_qp *p, size_t
 static struct box_qp *pose(tribo_context *ctx, size_t g, const struct call *c)
 {
     struct box_qp *p = tribo_problem(ctx, g);
-    const struct limits l = limits_of(ctx, p);
+    const int all = c->all || p->group->small;
+    const struct limits l = all ? (struct limits){0} : limits_of(ctx, p);
     size_t behind = p->group->size;
     p->count = 0;
     p->far = ctx->last.far;
     for (size_t k = 0; k < p->group->size; k++) {
         const size_t i = p->member[k];
         const double lo = tribo_lower(&c->b, i), hi = c->b.upper[i];
-        if (lo < hi && (c->all || within_reach(ctx, p, k, c, &l))) {
+        if (lo < hi && (all || within_reach(ctx, p, k, c, &l))) {
             p->near[p->count++] = k;
             p->lo[k] = ctx->last.far ? tribo_cut(p, k, lo) : lo;
             p->hi[k] = ctx->last.far ? tribo_cut(p, k, hi) : hi;
             p->q[k] = step_pull_of(c->pull, c->v[i]);
         } else {
             p->near[--behind] = k;
+            ctx->last.f[i] = lo < hi ? ctx->last.f[i] : hi;
             p->x[k] = tribo_carried(ctx, p, k);
         }
     }
@@ -170,19 +172,23 @@ static inline int solve_boxes(tribo_context *ctx, double dt, const double *v, st
     const int estimates = !all && ctx->follow.largest < ESTIMATED && ctx->op->largest_sum < ESTIMATED;
     const double times = ctx->op->groups ? quotient(1.0, dt) : 0.0;
     const struct call c = {b, dt, {times, TRIBO_FAR / greater(times, 1.0)}, v, group_of, all, breaks, estimates};
+    /* A small group that is all there is takes as long to solve as to be found to slide. */
+    const int one = ctx->op->groups == 1 && ctx->op->group->small && ctx->op->group->size == ctx->n && *group_of == 0;
+    struct memory *m = &ctx->memory;
     tribo_store_all(ctx);
-    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+    for (size_t i = 0, k = 0; !one && i < ctx->n; i += TRIBO_CHUNK, k++) {
         tribo_stop_alone(ctx, k, dt, v + i, tribo_bounds_from(&b, i), ctx->last.f + i);
     }
     if (breaks) {
         tribo_break_alone(ctx, dt, v);
     }
-    if (ctx->op->groups) {
+    if (one) {
+        m->solved_list[m->nsolved++] = 0;
+    } else if (ctx->op->groups) {
         find_candidates(ctx, &c);
     }
     /* Solves for the groups that are candidates, of which those stay that a contact takes part in; after a failure none of the rest.
      */
-    struct memory *m = &ctx->memory;
     const size_t candidates = m->nsolved;
     int status = TRIBO_OK;
     m->nsolved = 0;

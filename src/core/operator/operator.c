@@ -5,6 +5,7 @@
 
 #include "operator.h"
 #include "common/layout.h"
+#include "numerics/box/small.h"
 #include "numerics/csr.h"
 #include "common/simd.h"
 #include "numerics/twofold.h"
@@ -96,7 +97,9 @@ static size_t fixed_by(const struct group *g)
 
 static size_t kept_by(const struct group *g)
 {
-    return 3 * g->size + (g->sparse ? 3 * g->size + tribo_sparse_slots(g->sparse) : (g->graded ? 2 : 1) * g->size * g->size);
+    const size_t inverse = g->size <= SMALL ? g->size * g->size : 0;
+    return 3 * g->size + inverse +
+           (g->sparse ? 3 * g->size + tribo_sparse_slots(g->sparse) : (g->graded ? 2 : 1) * g->size * g->size);
 }
 
 struct box_qp *tribo_memory_problem(const struct delassus *op, struct memory *m, size_t k)
@@ -118,6 +121,7 @@ struct box_qp *tribo_memory_problem(const struct delassus *op, struct memory *m,
     p->at = (void *)(p->x + 2 * size);
     p->l = p->x + 3 * size;
     p->l_low = p->l + size * size;
+    p->inverse = p->l + (g->graded ? 2 : 1) * size * size;
     if (g->sparse) {
         p->sparse = (struct sparse_factor){p->l + 3 * size, p->l, p->l + size, (void *)(p->l + 2 * size)};
     }
@@ -438,6 +442,7 @@ static int check_definite(struct delassus *op, struct memory *m, struct flaw *fl
             return TRIBO_ERR_INDEFINITE;
         }
         g->nullity = p->sets->dependents;
+        g->small = g->size <= SMALL && !g->nullity && !g->graded && tribo_small_fits(g->size, p->r, p->inverse);
         memset(p->at, AWAY, g->size);
         tribo_factor_rebuild(p, NULL);
     }

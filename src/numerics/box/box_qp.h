@@ -49,6 +49,7 @@ struct group {
     size_t terms;          /* entries of the fullest row */
     struct sparse *sparse; /* R and the pattern of its factor, if they are sparse */
     int graded;            /* they are kept to twice as many digits */
+    int small;             /* solved by small.c where it can */
     double spread;         /* how much the shares of bodies in one entry of R's diagonal differ, at most; that of contact */
     size_t uneven;         /* uneven */
     size_t nullity;        /* size - rank of R: redundant contacts */
@@ -59,6 +60,7 @@ struct sets {
     int far;           /* the problem was far in the last call */
     size_t rank;       /* free contacts in the factor, independent of each other, */
     size_t dependents; /* and those that depend on them */
+    unsigned inverse_of; /* small groups: the contacts of inverse, by bits */
 };
 
 /* Work done so far. */
@@ -89,6 +91,7 @@ struct box_qp {
     signed char *at;             /* [size] */
     double *l, *l_low;           /* [size][size] Cholesky factor of the scaled R over order[0 .. rank); see r */
     struct sparse_factor sparse; /* instead, if R is sparse */
+    double *inverse;             /* small groups: [size][size], see small.h */
     /* the problem: min 1/2 x'Rx + q'x, lo <= x <= hi, over the near contacts; the x of the others is given */
     int far;             /* solutions may be as large as they can be told apart */
     size_t *near, count; /* near[0 .. count): the contacts in the problem, ascending; near[count .. size): the others */
@@ -302,6 +305,9 @@ static inline void tribo_box_forget_low(const struct box_qp *p)
 
 /* Forces that miss the balance of a contact by more than this part of its limit are no solution. */
 #define TRIBO_MISSED 1e-6
+
+/* small.c: solves the problem of a small group. 1, or 0 if another solver is needed. */
+int tribo_box_small(struct box_qp *p);
 
 /* Solves the problem from what is kept. 1, or 0 without convergence. */
 int tribo_box_solve(struct box_qp *p);

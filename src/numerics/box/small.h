@@ -1,0 +1,127 @@
+/* The box problem min 1/2 x'Rx + q'x, lo <= x <= hi, of at most SMALL variables, R far from singular: x follows from sets of free
+ * variables and the inverse of R over these. The functions are inline: a caller with a constant n gets straight code. */
+#ifndef TRIBO_SMALL_H
+#define TRIBO_SMALL_H
+
+#include <math.h>
+#include <stddef.h>
+
+#include "box_qp.h"
+
+enum { SMALL = 4 };
+
+/* Inputs of a problem are at most this: products with R and its inverse are numbers. */
+#define TRIBO_SMALL_MOST 1e100
+
+/* A problem of n <= SMALL variables. Arrays are [n] unless stated. */
+struct small {
+    const double *r;                 /* [n][n] */
+    double *inverse;                 /* [n][n] of R over the variables in *inverse_of; 0 elsewhere */
+    unsigned *inverse_of;            /* bit i: variable i is in the set */
+    const double *part, *least;      /* noise_i = part_i (sizes of the terms of gradient_i + least_i) */
+    const double *q, *lo, *hi;
+    signed char *at;                 /* AT_LOWER, ...; AWAY: x_i is given */
+    double *x, *gradient, *noise;    /* the solution, R x + q, its rounding error bound */
+};
+
+/* inverse [n][n] = R^-1 over set, 0 elsewhere, by bordering. */
+void tribo_small_invert(size_t n, const double *r, unsigned set, double *inverse);
+
+/* 1 if R_ii are plain numbers and 1/(R^-1)_ii >= 0.01 R_ii, so that inverses over all sets are good to rounding. inverse [n][n] is
+ * zero on return. */
+int tribo_small_fits(size_t n, const double *r, double *inverse);
+
+/* Sets gradient and noise of all variables. Returns 1 if the gradients of free variables are noise. */
+static inline int tribo_small_gradients(size_t n, const struct small *s)
+{
+    double sum[SMALL] = {0.0}, size[SMALL] = {0.0};
+    int settled = 1;
+    for (size_t j = 0; j < n; j++) {
+        for (size_t i = 0; i < n; i++) {
+            const double term = s->r[j * n + i] * s->x[j];
+            sum[i] += term;
+            size[i] += fabs(term);
+        }
+    }
+    for (size_t i = 0; i < n; i++) {
+        const double noise = s->part[i] * (size[i] + fabs(s->q[i]) + s->least[i]);
+        s->gradient[i] = sum[i] + s->q[i];
+        s->noise[i] = noise;
+        settled &= (s->at[i] != FREE) | (fabs(sum[i] + s->q[i]) <= noise);
+    }
+    return settled;
+}
+
+/* x -= R^-1 gradient over the free variables. */
+static inline void tribo_small_step(size_t n, const struct small *s, const double *gradient)
+{
+    double step[SMALL] = {0.0};
+    for (size_t j = 0; j < n; j++) {
+        for (size_t i = 0; i < n; i++) {
+            step[i] += s->inverse[j * n + i] * gradient[j];
+        }
+    }
+    for (size_t i = 0; i < n; i++) {
+        s->x[i] -= step[i];
+    }
+}
+
+/* Finds x for the sets in at. Returns 1 if the gradients of free variables are noise, after three steps of Newton's at most. */
+static inline int tribo_small_find(size_t n, const struct small *s)
+{
+    unsigned set = 0;
+    double gradient[SMALL];
+    for (size_t i = 0; i < n; i++) {
+        const signed char at = s->at[i];
+        set |= (unsigned)(at == FREE) << i;
+        s->x[i] = at == AWAY ? s->x[i] : at == FREE ? 0.0 : at == AT_LOWER ? s->lo[i] : s->hi[i];
+        gradient[i] = s->q[i];
+    }
+    if (set != *s->inverse_of) {
+        tribo_small_invert(n, s->r, set, s->inverse);
+        *s->inverse_of = set;
+    }
+    for (size_t j = 0; j < n; j++) {
+        for (size_t i = 0; i < n; i++) {
+            gradient[i] += s->r[j * n + i] * s->x[j];
+        }
+    }
+    tribo_small_step(n, s, gradient);
+    for (int pass = 0; pass < 3; pass++) {
+        if (tribo_small_gradients(n, s)) {
+            return 1;
+        }
+        tribo_small_step(n, s, s->gradient);
+    }
+    return 0;
+}
+
+/* Frees variables at a bound whose gradient pulls away from it by more than noise; puts free ones outside their box to the bound.
+ * Returns 1 if at changed. */
+static inline int tribo_small_revise(size_t n, const struct small *s)
+{
+    int changed = 0;
+    for (size_t i = 0; i < n; i++) {
+        const signed char at = s->at[i];
+        if (at == FREE) {
+            s->at[i] = (signed char)((s->x[i] > s->hi[i]) - (s->x[i] < s->lo[i]));
+        } else if (at != AWAY && at * s->gradient[i] > s->noise[i] && s->lo[i] < s->hi[i]) {
+            s->at[i] = FREE;
+        }
+        changed |= s->at[i] != at;
+    }
+    return changed;
+}
+
+/* Solves the problem from the sets in at. Returns 0 if the sets have not settled after 2 n + 2 rounds, or rounding is in the way. */
+static inline int tribo_small_solve(size_t n, const struct small *s)
+{
+    for (size_t round = 0; round < 2 * n + 2 && tribo_small_find(n, s); round++) {
+        if (!tribo_small_revise(n, s)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+#endif
