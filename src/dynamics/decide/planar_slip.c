@@ -52,13 +52,13 @@ static int find_planar(tribo_context *disc, size_t contacts, double *one, signed
  * that the first one of a row of them is that of a contact. */
 static void take_contacts(struct planar_slip *p, const struct stick_slip *m, const signed char *slip)
 {
-    memset(p->in_plane, 0, m->contacts);
-    for (size_t i = 0; i + 1 < m->contacts; i++) {
+    memset(p->in_plane, 0, m->constant.contacts);
+    for (size_t i = 0; i + 1 < m->constant.contacts; i++) {
         if (slip[i] != TRIBO_SLIP_PLANE) {
             continue;
         }
-        if (m->limit[i] > 0.0 && m->limit[i + 1] > 0.0) {
-            p->contact[p->count++] = (struct planar_contact){.at = i, .limit = {m->limit[i], m->limit[i + 1]}};
+        if (m->state.limit[i] > 0.0 && m->state.limit[i + 1] > 0.0) {
+            p->contact[p->count++] = (struct planar_contact){.at = i, .limit = {m->state.limit[i], m->state.limit[i + 1]}};
             p->in_plane[i] = 1;
             p->in_plane[i + 1] = 2;
         }
@@ -125,8 +125,8 @@ static double length(const double *x)
  * slide beside another one that creeps may be slow for many steps. */
 static int rests(const struct stick_slip *m, const struct planar_contact *p)
 {
-    const double noise = greater(m->doubt * (m->noise[p->at] + m->noise[p->at + 1]), ROUNDING * p->most);
-    return p->now <= noise || (p->now <= NOTHING * (m->abstol + m->reltol * p->most) && p->now <= p->before);
+    const double noise = greater(m->noise.factor * (m->noise.velocity[p->at] + m->noise.velocity[p->at + 1]), ROUNDING * p->most);
+    return p->now <= noise || (p->now <= NOTHING * (m->constant.abstol + m->constant.reltol * p->most) && p->now <= p->before);
 }
 
 static void set_slip(struct stick_slip *m, const struct planar_contact *p, signed char slip)
@@ -139,10 +139,10 @@ static void set_slip(struct stick_slip *m, const struct planar_contact *p, signe
 static int check_limits(const struct stick_slip *m, const tribo_system *sys, size_t planar)
 {
     size_t i = 0;
-    while (i < m->contacts && !(tribo_breakaway_ratio(&m->breakaway, i) > 1.0)) {
+    while (i < m->constant.contacts && !(tribo_breakaway_ratio(&m->breakaway, i) > 1.0)) {
         i++;
     }
-    if (i < m->contacts) {
+    if (i < m->constant.contacts) {
         return tribo_system_fail(
             sys, TRIBO_ERR_UNSUPPORTED,
             "method event knows no static limits beside planar contacts: contact %zu has ratio[%zu] = %g: take "
@@ -191,7 +191,7 @@ static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *
         p->now = length(v);
         p->most = greater(p->most, p->now);
         p->begins = SLIDES_ON;
-        if (m->slip[p->at] == TRIBO_SLIP_PLANE && rests(m, p)) {
+        if (m->state.slip[p->at] == TRIBO_SLIP_PLANE && rests(m, p)) {
             set_slip(m, p, TRIBO_SLIP_STUCK);
             m->plane->stopped = p->at;
             found++;
@@ -203,8 +203,8 @@ static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *
 /* Of contacts at rest some may rest by the others. How they share what they carry is not known then. */
 static int check_holds(const struct stick_slip *m, const tribo_system *sys)
 {
-    for (size_t i = 0; m->dependents && i < m->contacts; i++) {
-        if (m->slip[i] == TRIBO_SLIP_STUCK && !m->holds[i]) {
+    for (size_t i = 0; m->state.dependents && i < m->constant.contacts; i++) {
+        if (m->state.slip[i] == TRIBO_SLIP_STUCK && !m->state.holds[i]) {
             return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                      "at t = %.17g contact %zu rests by what others hold: method event knows no redundant "
                                      "contacts at rest where some are planar",
@@ -217,7 +217,7 @@ static int check_holds(const struct stick_slip *m, const tribo_system *sys)
 static int find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
 {
     int status = TRIBO_OK;
-    m->plane->stopped = m->contacts;
+    m->plane->stopped = m->constant.contacts;
     do {
         stop(m, sys, y);
         status = tribo_stick_slip_find_resting(m, sys, y);
@@ -240,54 +240,54 @@ static double slide(const struct planar_contact *p, const double *v, const doubl
     return fabs(turn);
 }
 
-/* m->lo, rate = forces of contacts that slide, 0 of others, and their rates, as contacts accelerate by acc; the same for all.
- * Returns the fastest turn. */
+/* Sets work.lo = forces of sliding contacts, 0 of others, and plane->rate = their rates for accelerations acc [ncontact]. Returns
+ * the fastest rate of turn of a force. */
 static double given_forces(struct stick_slip *m, const tribo_system *sys, const double *y, const double *acc)
 {
     double fastest = 0.0;
-    for (size_t i = 0; i < m->contacts; i++) {
-        m->lo[i] = tribo_slides(m->slip[i]) ? -m->slip[i] * m->limit[i] : 0.0;
+    for (size_t i = 0; i < m->constant.contacts; i++) {
+        m->work.lo[i] = tribo_slides(m->state.slip[i]) ? -m->state.slip[i] * m->state.limit[i] : 0.0;
         m->plane->rate[i] = 0.0;
     }
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
-        if (m->slip[p->at] == TRIBO_SLIP_PLANE && p->begins == SLIDES_ON) {
+        if (m->state.slip[p->at] == TRIBO_SLIP_PLANE && p->begins == SLIDES_ON) {
             double v[2];
             velocity(m, sys, p, y, v);
-            fastest = greater(fastest, slide(p, v, acc + p->at, m->lo + p->at, m->plane->rate + p->at));
+            fastest = greater(fastest, slide(p, v, acc + p->at, m->work.lo + p->at, m->plane->rate + p->at));
         }
     }
     return fastest;
 }
 
-/* f [ncontact] = all forces, for accelerations a of contacts without friction, those that slide having m->lo, and those that do
- * not the limits m->hi; m->v = the accelerations of contacts. */
+/* Finds forces f [ncontact] at accelerations a without friction: work.lo of sliding contacts, Coulomb's law with limits work.hi
+ * for the others. Sets work.v = a + R f. */
 static int solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
 {
-    memset(m->rate, 0, sys->ndof * sizeof *m->rate);
-    memcpy(m->v, a, m->contacts * sizeof *a);
-    tribo_matrix_multiply_add(&sys->response, 1.0, m->lo, m->rate);
-    tribo_matrix_multiply_add(&sys->direction, 1.0, m->rate, m->v);
-    int status = tribo_set_limit(m->plane->disc, m->hi);
-    status = status ? status : tribo_balance(m->plane->disc, m->still, m->v, NULL, f);
+    memset(m->work.rate, 0, sys->ndof * sizeof *m->work.rate);
+    memcpy(m->work.v, a, m->constant.contacts * sizeof *a);
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->work.lo, m->work.rate);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, m->work.rate, m->work.v);
+    int status = tribo_set_limit(m->plane->disc, m->work.hi);
+    status = status ? status : tribo_balance(m->plane->disc, m->constant.still, m->work.v, NULL, f);
     if (status) {
         return tribo_system_fail(sys, status, "at t = %.17g: %s", sys->time, tribo_message(m->plane->disc));
     }
-    tribo_add(f, 1.0, m->lo, m->contacts);
-    memset(m->rate, 0, sys->ndof * sizeof *m->rate);
-    memcpy(m->v, a, m->contacts * sizeof *a);
-    tribo_matrix_multiply_add(&sys->response, 1.0, f, m->rate);
-    tribo_matrix_multiply_add(&sys->direction, 1.0, m->rate, m->v);
+    tribo_add(f, 1.0, m->work.lo, m->constant.contacts);
+    memset(m->work.rate, 0, sys->ndof * sizeof *m->work.rate);
+    memcpy(m->work.v, a, m->constant.contacts * sizeof *a);
+    tribo_matrix_multiply_add(&sys->response, 1.0, f, m->work.rate);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, m->work.rate, m->work.v);
     return TRIBO_OK;
 }
 
 static int find_forces(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
-    given_forces(m, sys, y, m->still);
-    for (size_t i = 0; i < m->contacts; i++) {
-        m->hi[i] = m->slip[i] == TRIBO_SLIP_STUCK ? m->limit[i] : 0.0;
+    given_forces(m, sys, y, m->constant.still);
+    for (size_t i = 0; i < m->constant.contacts; i++) {
+        m->work.hi[i] = m->state.slip[i] == TRIBO_SLIP_STUCK ? m->state.limit[i] : 0.0;
     }
-    return solve(m, sys, m->a, m->force);
+    return solve(m, sys, m->work.a, m->state.force);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- who slides */
@@ -296,17 +296,17 @@ static int find_forces(struct stick_slip *m, const tribo_system *sys, const doub
 static double share(const struct stick_slip *m, const struct planar_contact *p, const double *f, double *noise)
 {
     const double part[2] = {f[p->at] / p->limit[0], f[p->at + 1] / p->limit[1]};
-    *noise = greater(m->allowance[p->at], m->allowance[p->at + 1]) / lesser(p->limit[0], p->limit[1]);
+    *noise = greater(m->noise.allowance[p->at], m->noise.allowance[p->at + 1]) / lesser(p->limit[0], p->limit[1]);
     return length(part);
 }
 
-/* Whether a planar contact accelerates, by m->v, against force f by more than rounding. */
+/* Whether a planar contact accelerates, by m->work.v, against force f by more than rounding. */
 static int leaves(const struct stick_slip *m, const struct planar_contact *p, const double *f)
 {
     double against = 0.0, size = 0.0, noise = 0.0;
     for (size_t d = 0; d < 2; d++) {
-        against -= f[p->at + d] * m->v[p->at + d];
-        noise += fabs(f[p->at + d]) * m->gain[p->at + d];
+        against -= f[p->at + d] * m->work.v[p->at + d];
+        noise += fabs(f[p->at + d]) * m->noise.acceleration[p->at + d];
         size += fabs(f[p->at + d]);
     }
     return size > 0.0 && against > noise;
@@ -315,57 +315,59 @@ static int leaves(const struct stick_slip *m, const struct planar_contact *p, co
 /* The contact slides from here on, against the force that it has. */
 static void let_go(struct stick_slip *m, struct planar_contact *p, int begins)
 {
-    double part[2] = {m->force[p->at] / p->limit[0], m->force[p->at + 1] / p->limit[1]};
+    double part[2] = {m->state.force[p->at] / p->limit[0], m->state.force[p->at + 1] / p->limit[1]};
     const double size = length(part);
     set_slip(m, p, TRIBO_SLIP_PLANE);
     p->begins = begins;
     p->now = 0.0;
     for (size_t d = 0; d < 2; d++) {
         p->direction[d] = -part[d] / size;
-        m->force[p->at + d] = -p->limit[d] * p->direction[d];
+        m->state.force[p->at + d] = -p->limit[d] * p->direction[d];
     }
 }
 
 /* The same of scalar contacts. */
 static int leaves_line(const struct stick_slip *m, size_t i, const double *f)
 {
-    return f[i] != 0.0 && (f[i] > 0.0 ? -m->v[i] : m->v[i]) > m->gain[i];
+    return f[i] != 0.0 && (f[i] > 0.0 ? -m->work.v[i] : m->work.v[i]) > m->noise.acceleration[i];
 }
 
 static void let_go_line(struct stick_slip *m, size_t i)
 {
-    tribo_stick_slip_set(m, i, m->force[i] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH);
-    m->force[i] = -m->slip[i] * m->limit[i];
+    tribo_stick_slip_set(m, i, m->state.force[i] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH);
+    m->state.force[i] = -m->state.slip[i] * m->state.limit[i];
 }
 
 static int on_line(const struct stick_slip *m, size_t i)
 {
-    return !m->plane->in_plane[i] && m->slip[i] == TRIBO_SLIP_STUCK;
+    return !m->plane->in_plane[i] && m->state.slip[i] == TRIBO_SLIP_STUCK;
 }
 
-/* Contacts at rest whose force is at its limit: marks in m->tied such that do not accelerate. Returns how many these are. */
+/* Lets contacts at rest slide whose force is at its limit and that accelerate; marks those in state.tied that do not accelerate,
+ * and returns their number. */
 static size_t break_away(struct stick_slip *m)
 {
     size_t ties = 0;
-    for (size_t i = 0; i < m->contacts; i++) {
-        const double room = m->limit[i] - fabs(m->force[i]);
-        m->tied[i] = (signed char)(on_line(m, i) && (room <= m->allowance[i] || i == m->reached));
-        if (m->tied[i] && leaves_line(m, i, m->force)) {
-            m->tied[i] = 0;
+    for (size_t i = 0; i < m->constant.contacts; i++) {
+        const double room = m->state.limit[i] - fabs(m->state.force[i]);
+        m->state.tied[i] = (signed char)(on_line(m, i) && (room <= m->noise.allowance[i] || i == m->state.reached));
+        if (m->state.tied[i] && leaves_line(m, i, m->state.force)) {
+            m->state.tied[i] = 0;
             let_go_line(m, i);
         }
-        ties += (size_t)m->tied[i];
+        ties += (size_t)m->state.tied[i];
     }
     for (size_t k = 0; k < m->plane->count; k++) {
         struct planar_contact *p = &m->plane->contact[k];
         double noise;
-        const double part = share(m, p, m->force, &noise);
-        m->tied[p->at] = (signed char)(m->slip[p->at] == TRIBO_SLIP_STUCK && (part >= 1.0 - noise || p->at == m->reached));
-        if (m->tied[p->at] && leaves(m, p, m->force)) {
-            m->tied[p->at] = 0;
+        const double part = share(m, p, m->state.force, &noise);
+        m->state.tied[p->at] =
+            (signed char)(m->state.slip[p->at] == TRIBO_SLIP_STUCK && (part >= 1.0 - noise || p->at == m->state.reached));
+        if (m->state.tied[p->at] && leaves(m, p, m->state.force)) {
+            m->state.tied[p->at] = 0;
             let_go(m, p, BY_ACCELERATION);
         }
-        ties += (size_t)m->tied[p->at];
+        ties += (size_t)m->state.tied[p->at];
     }
     return ties;
 }
@@ -374,21 +376,23 @@ static size_t break_away(struct stick_slip *m)
  * theirs. */
 static void set_limits_ahead(struct stick_slip *m)
 {
-    for (size_t i = 0; i < m->contacts; i++) {
-        m->hi[i] = m->slip[i] != TRIBO_SLIP_STUCK ? 0.0 : m->tied[i] ? lesser(m->limit[i], fabs(m->force[i])) : m->limit[i];
+    for (size_t i = 0; i < m->constant.contacts; i++) {
+        m->work.hi[i] = m->state.slip[i] != TRIBO_SLIP_STUCK ? 0.0
+                        : m->state.tied[i]                   ? lesser(m->state.limit[i], fabs(m->state.force[i]))
+                                                             : m->state.limit[i];
     }
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
         double noise;
-        const double part = m->tied[p->at] ? lesser(share(m, p, m->force, &noise), 1.0) : 1.0;
-        for (size_t d = 0; d < 2 && (m->slip[p->at] == TRIBO_SLIP_STUCK || p->begins != SLIDES_ON); d++) {
-            m->hi[p->at + d] = part * p->limit[d];
+        const double part = m->state.tied[p->at] ? lesser(share(m, p, m->state.force, &noise), 1.0) : 1.0;
+        for (size_t d = 0; d < 2 && (m->state.slip[p->at] == TRIBO_SLIP_STUCK || p->begins != SLIDES_ON); d++) {
+            m->work.hi[p->at + d] = part * p->limit[d];
         }
     }
 }
 
-/* Whether the force that would hold a planar contact a moment later, with forces f and accelerations m->v, goes beyond the tangent to
- * its limits at the force that it has: what only turns along the limits stays within them, and curvature is of second order. */
+/* 1 if the force that holds planar contact p a moment later, at forces f and accelerations work.v, is beyond the tangent to the
+ * limit curve at its present force. A force that turns along the curve is not: curvature is of second order. */
 static int goes_beyond(const struct stick_slip *m, const tribo_system *sys, const struct planar_contact *p, const double *f)
 {
     double r[2][2] = {{0.0}}, beyond = 0.0, noise = 0.0;
@@ -399,12 +403,12 @@ static int goes_beyond(const struct stick_slip *m, const tribo_system *sys, cons
             r[d][1] += j->val[e] * tribo_matrix_get(&sys->response, j->col[e], p->at + 1);
         }
     }
-    const double *v = m->v + p->at, determinant = r[0][0] * r[1][1] - r[0][1] * r[1][0];
+    const double *v = m->work.v + p->at, determinant = r[0][0] * r[1][1] - r[0][1] * r[1][0];
     const double lacks[2] = {(r[0][1] * v[1] - r[1][1] * v[0]) / determinant, (r[1][0] * v[0] - r[0][0] * v[1]) / determinant};
     for (size_t d = 0; d < 2; d++) {
-        const double part = m->force[p->at + d] / (p->limit[d] * p->limit[d]);
-        beyond += part * (f[p->at + d] + lacks[d] - m->force[p->at + d]);
-        noise += fabs(part) * m->allowance[p->at + d];
+        const double part = m->state.force[p->at + d] / (p->limit[d] * p->limit[d]);
+        beyond += part * (f[p->at + d] + lacks[d] - m->state.force[p->at + d]);
+        noise += fabs(part) * m->noise.allowance[p->at + d];
     }
     return beyond > noise;
 }
@@ -412,24 +416,25 @@ static int goes_beyond(const struct stick_slip *m, const tribo_system *sys, cons
 /* Who of those that are tied slides by the forces of a moment later. */
 static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y)
 {
-    tribo_stick_slip_contact_accelerations(sys, tribo_stick_slip_find_acceleration(m, sys), 1, m->f);
-    const double turn = given_forces(m, sys, y, m->f), h = lesser(m->horizon, turn > 0.0 ? TURN / turn : m->horizon);
+    tribo_stick_slip_contact_accelerations(sys, tribo_stick_slip_find_acceleration(m, sys), 1, m->work.f);
+    const double turn = given_forces(m, sys, y, m->work.f),
+                 h = lesser(m->constant.horizon, turn > 0.0 ? TURN / turn : m->constant.horizon);
     tribo_stick_slip_find_rate(m, sys, y);
-    tribo_stick_slip_contact_accelerations(sys, m->rate, 2, m->v);
-    for (size_t i = 0; i < m->contacts; i++) {
-        m->plane->ahead[i] = m->a[i] + h * m->v[i];
-        m->lo[i] += h * m->plane->rate[i];
+    tribo_stick_slip_contact_accelerations(sys, m->work.rate, 2, m->work.v);
+    for (size_t i = 0; i < m->constant.contacts; i++) {
+        m->plane->ahead[i] = m->work.a[i] + h * m->work.v[i];
+        m->work.lo[i] += h * m->plane->rate[i];
     }
     set_limits_ahead(m);
-    const int status = solve(m, sys, m->plane->ahead, m->f);
-    for (size_t i = 0; !status && i < m->contacts; i++) {
-        if (m->tied[i] && on_line(m, i) && leaves_line(m, i, m->f)) {
+    const int status = solve(m, sys, m->plane->ahead, m->work.f);
+    for (size_t i = 0; !status && i < m->constant.contacts; i++) {
+        if (m->state.tied[i] && on_line(m, i) && leaves_line(m, i, m->work.f)) {
             let_go_line(m, i);
         }
     }
     for (size_t k = 0; !status && k < m->plane->count; k++) {
         struct planar_contact *p = &m->plane->contact[k];
-        if (m->tied[p->at] && leaves(m, p, m->f) && goes_beyond(m, sys, p, m->f)) {
+        if (m->state.tied[p->at] && leaves(m, p, m->work.f) && goes_beyond(m, sys, p, m->work.f)) {
             let_go(m, p, BY_FORCE);
         }
     }
@@ -454,8 +459,8 @@ int tribo_planar_slip_decide(struct stick_slip *m, tribo_system *sys, double t, 
     tribo_stick_slip_find_gains(m, sys, y);
     const size_t ties = break_away(m);
     status = ties ? look_ahead(m, sys, y) : TRIBO_OK;
-    m->reached = m->contacts;
-    memset(m->tied, 0, m->contacts);
+    m->state.reached = m->constant.contacts;
+    memset(m->state.tied, 0, m->constant.contacts);
     status = status ? status : tribo_stick_slip_find_holds(m, sys);
     return status ? status : check_holds(m, sys);
 }

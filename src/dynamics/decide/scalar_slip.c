@@ -32,18 +32,18 @@
  * about once more, too: the other way they might go, or none. Contacts that are not coupled do not mind. */
 static void begin_again(struct stick_slip *m)
 {
-    memset(m->tied, 0, m->contacts);
-    for (size_t i = 0; m->again && !m->uncoupled && i < m->contacts; i++) {
-        tribo_stick_slip_set(m, i, m->rested[i] ? TRIBO_SLIP_STUCK : m->slip[i]);
+    memset(m->state.tied, 0, m->constant.contacts);
+    for (size_t i = 0; m->work.limit_lost && !m->constant.uncoupled && i < m->constant.contacts; i++) {
+        tribo_stick_slip_set(m, i, m->state.rested[i] ? TRIBO_SLIP_STUCK : m->state.slip[i]);
     }
-    m->again = 0;
+    m->work.limit_lost = 0;
 }
 
 /* Whether a contact at rest whose force is at its limit, in `direction` of the slip that it resists, accelerates that way by more
  * than rounding. */
 static inline int breaks_away(const struct stick_slip *m, size_t i, signed char direction, double acceleration)
 {
-    return direction * acceleration > m->gain[i];
+    return direction * acceleration > m->noise.acceleration[i];
 }
 
 /* Contact i slides, or holds by its other limit. Returns how many have to be decided about once more: none where it was decided
@@ -51,49 +51,49 @@ static inline int breaks_away(const struct stick_slip *m, size_t i, signed char 
 static size_t let_go(struct stick_slip *m, size_t i, signed char direction)
 {
     tribo_stick_slip_let_go(m, i, direction);
-    if (m->slip[i] == TRIBO_SLIP_STUCK || !tribo_stick_slip_alone(m, i)) {
+    if (m->state.slip[i] == TRIBO_SLIP_STUCK || !tribo_stick_slip_alone(m, i)) {
         return 1;
     }
-    m->force[i] = -direction * m->limit[i];
+    m->state.force[i] = -direction * m->state.limit[i];
     return 0;
 }
 
 /* Where a contact at its limit slides by its force, or, if that is nothing, by its acceleration v. */
 static signed char direction_of(const struct stick_slip *m, size_t i, double force)
 {
-    return (signed char)(force != 0.0    ? (force > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH)
-                         : m->v[i] < 0.0 ? TRIBO_SLIP_BACK
-                                         : TRIBO_SLIP_FORTH);
+    return (signed char)(force != 0.0         ? (force > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH)
+                         : m->work.v[i] < 0.0 ? TRIBO_SLIP_BACK
+                                              : TRIBO_SLIP_FORTH);
 }
 
 /* Where contacts are not coupled, those that are not close to their limits are decided about, unless they may part. */
 static void ask_close(struct stick_slip *m)
 {
-    if (m->uncoupled && !(m->dependents && m->base_moves)) {
-        m->asked = m->close;
-        m->asks = m->closes;
+    if (m->constant.uncoupled && !(m->state.dependents && m->constant.base_moves)) {
+        m->work.undecided = m->work.close;
+        m->work.undecided_count = m->work.close_count;
     }
 }
 
-/* m->v = the accelerations that forces f, which were found last, leave at contacts of the list [n] that were searched for;
+/* m->work.v = the accelerations that forces f, which were found last, leave at contacts of the list [n] that were searched for;
  * without these forces they are a. */
 static void find_left(struct stick_slip *m, const tribo_system *sys, size_t n, const size_t *list, const double *a,
                       const double *f)
 {
-    const int all = !m->uncoupled && m->only == m->contacts;
+    const int all = !m->constant.uncoupled && m->work.single == m->constant.contacts;
     for (size_t k = 0; !all && k < n; k++) {
         const size_t i = list[k];
-        m->v[i] = (m->uncoupled ? a[i] : m->pull) + m->diagonal[i] * f[i];
+        m->work.v[i] = (m->constant.uncoupled ? a[i] : m->work.single_a) + m->constant.diagonal[i] * f[i];
     }
     if (all) {
-        tribo_stick_slip_accelerate(m, sys, a, f, m->v);
+        tribo_stick_slip_accelerate(m, sys, a, f, m->work.v);
     }
 }
 
 /* Whether contact i, whose force is at its limit but for room, may be said to be there. */
 static inline int is_at_limit(const struct stick_slip *m, size_t i, double room)
 {
-    return room <= (i == m->reached ? TRIBO_CLOSE * m->stick[i] : m->allowance[i] / TRIBO_ALLOWED);
+    return room <= (i == m->state.reached ? TRIBO_CLOSE * m->state.stick[i] : m->noise.allowance[i] / TRIBO_ALLOWED);
 }
 
 /* Who slides by the forces found; and who is tied. Returns how many have to be decided about once more, with how many are
@@ -103,21 +103,21 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
     size_t changes = 0;
     *ties = 0;
     ask_close(m);
-    if (m->closes > 0) {
-        find_left(m, sys, m->closes, m->close, m->a, m->force);
+    if (m->work.close_count > 0) {
+        find_left(m, sys, m->work.close_count, m->work.close, m->work.a, m->state.force);
     }
-    for (size_t k = 0; k < m->closes; k++) {
-        const size_t i = m->close[k];
-        const double room = m->stick[i] - fabs(m->force[i]);
+    for (size_t k = 0; k < m->work.close_count; k++) {
+        const size_t i = m->work.close[k];
+        const double room = m->state.stick[i] - fabs(m->state.force[i]);
         tribo_stick_slip_find_gain(m, sys, y, i);
         if (is_at_limit(m, i, room)) {
-            const signed char direction = direction_of(m, i, m->force[i]);
+            const signed char direction = direction_of(m, i, m->state.force[i]);
             const double sure = tribo_stick_slip_must_be_sure(m, i) ? CERTAIN : 1.0;
-            m->tied[i] = 1;
-            if (room <= 0.0 && breaks_away(m, i, direction, m->v[i] / sure)) {
+            m->state.tied[i] = 1;
+            if (room <= 0.0 && breaks_away(m, i, direction, m->work.v[i] / sure)) {
                 changes += let_go(m, i, direction);
             }
-            *ties += m->tied[i] != 0;
+            *ties += m->state.tied[i] != 0;
         }
     }
     return changes;
@@ -131,29 +131,29 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
 /* The limit of contact i now, and its rate. */
 static double limit_now(const struct stick_slip *m, size_t i, double *rate)
 {
-    *rate = m->slip[i] ? m->limit_rate[i] : m->stick_rate[i];
-    return m->slip[i] ? m->limit[i] : m->stick[i];
+    *rate = m->state.slip[i] ? m->state.limit_rate[i] : m->state.stick_rate[i];
+    return m->state.slip[i] ? m->state.limit[i] : m->state.stick[i];
 }
 
 static double limit_ahead(const struct stick_slip *m, size_t i, double moment)
 {
     double rate;
     const double now = limit_now(m, i, &rate);
-    return m->slip[i] == TRIBO_SLIP_OPEN ? 0.0 : greater(now + moment * rate, 0.0);
+    return m->state.slip[i] == TRIBO_SLIP_OPEN ? 0.0 : greater(now + moment * rate, 0.0);
 }
 
 /* How far to look ahead: to the horizon, or less where a limit that counts until then is to change much faster than that. */
 static double find_moment(const struct stick_slip *m)
 {
-    double moment = m->horizon, force = 0.0, rate;
-    for (size_t k = 0; k < m->asks; k++) {
-        const size_t i = m->asked[k];
-        force = greater(force, greater(fabs(m->force[i]), m->inertia[i] * fabs(m->a[i])));
+    double moment = m->constant.horizon, force = 0.0, rate;
+    for (size_t k = 0; k < m->work.undecided_count; k++) {
+        const size_t i = m->work.undecided[k];
+        force = greater(force, greater(fabs(m->state.force[i]), m->constant.inertia[i] * fabs(m->work.a[i])));
     }
-    for (size_t k = 0; k < m->asks; k++) {
-        const size_t i = m->asked[k];
+    for (size_t k = 0; k < m->work.undecided_count; k++) {
+        const size_t i = m->work.undecided[k];
         const double now = limit_now(m, i, &rate);
-        if (m->slip[i] != TRIBO_SLIP_OPEN && now <= fabs(m->force[i]) + m->horizon * fabs(rate) &&
+        if (m->state.slip[i] != TRIBO_SLIP_OPEN && now <= fabs(m->state.force[i]) + m->constant.horizon * fabs(rate) &&
             moment * fabs(rate) > CHANGES * force) {
             moment = force > 0.0 ? CHANGES * force / fabs(rate) : moment;
         }
@@ -166,9 +166,9 @@ static void find_static(struct stick_slip *m, const tribo_system *sys, const dou
 {
     if (m->breakaway.some) {
         for (size_t i = 0; i < sys->ncontact; i++) {
-            m->v[i] = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
+            m->work.v[i] = m->state.rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
         }
-        tribo_breakaway_limits(&m->breakaway, sys->ncontact, m->slip, m->v, m->limit, m->limit_rate);
+        tribo_breakaway_limits(&m->breakaway, sys->ncontact, m->state.slip, m->work.v, m->state.limit, m->state.limit_rate);
     }
 }
 
@@ -176,39 +176,40 @@ static void find_static(struct stick_slip *m, const tribo_system *sys, const dou
 static void find_falling(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     find_static(m, sys, y);
-    tribo_stick_slip_accelerate(m, sys, m->a, m->force, m->v);
-    for (size_t k = 0; k < m->asks; k++) {
-        const size_t i = m->asked[k];
-        const double v = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
-        m->limit_rate[i] +=
-            m->slip[i] == TRIBO_SLIP_OPEN ? 0.0 : m->slip[i] * m->v[i] * tribo_breakaway_slope(&m->breakaway, i, v);
+    tribo_stick_slip_accelerate(m, sys, m->work.a, m->state.force, m->work.v);
+    for (size_t k = 0; k < m->work.undecided_count; k++) {
+        const size_t i = m->work.undecided[k];
+        const double v = m->state.rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
+        m->state.limit_rate[i] += m->state.slip[i] == TRIBO_SLIP_OPEN
+                                      ? 0.0
+                                      : m->state.slip[i] * m->work.v[i] * tribo_breakaway_slope(&m->breakaway, i, v);
     }
 }
 
 static void set_bounds_ahead(struct stick_slip *m, double moment)
 {
-    for (size_t k = 0; k < m->asks; k++) {
-        const size_t i = m->asked[k];
-        const double limit = limit_ahead(m, i, moment), now = m->stick[i], wider = WIDER * now;
-        if (m->elastic[i]) {
-            m->lo[i] = m->hi[i] = m->spring[i] + moment * m->spring_rate[i];
+    for (size_t k = 0; k < m->work.undecided_count; k++) {
+        const size_t i = m->work.undecided[k];
+        const double limit = limit_ahead(m, i, moment), now = m->state.stick[i], wider = WIDER * now;
+        if (m->constant.elastic[i]) {
+            m->work.lo[i] = m->work.hi[i] = m->state.spring[i] + moment * m->state.spring_rate[i];
             continue;
         }
-        if (m->slip[i] != TRIBO_SLIP_STUCK) {
-            m->lo[i] = m->hi[i] = m->slip[i] == TRIBO_SLIP_OPEN ? 0.0 : -m->slip[i] * limit;
+        if (m->state.slip[i] != TRIBO_SLIP_STUCK) {
+            m->work.lo[i] = m->work.hi[i] = m->state.slip[i] == TRIBO_SLIP_OPEN ? 0.0 : -m->state.slip[i] * limit;
             continue;
         }
-        m->hi[i] = limit + (!m->tied[i] && now - m->force[i] < wider ? wider : 0.0);
-        m->lo[i] = -limit - (!m->tied[i] && now + m->force[i] < wider ? wider : 0.0);
+        m->work.hi[i] = limit + (!m->state.tied[i] && now - m->state.force[i] < wider ? wider : 0.0);
+        m->work.lo[i] = -limit - (!m->state.tied[i] && now + m->state.force[i] < wider ? wider : 0.0);
     }
 }
 
 /* Who slides by the forces of a moment later; the others that are tied, and then fewer, stay so, or go back inside. */
 static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *ties, size_t *changes)
 {
-    for (size_t k = 0; k < m->asks; k++) {
-        if (tribo_stick_slip_searches(m, m->asked[k])) {
-            tribo_stick_slip_find_gain(m, sys, y, m->asked[k]);
+    for (size_t k = 0; k < m->work.undecided_count; k++) {
+        if (tribo_stick_slip_searches(m, m->work.undecided[k])) {
+            tribo_stick_slip_find_gain(m, sys, y, m->work.undecided[k]);
         }
     }
     if (m->breakaway.falls) {
@@ -216,31 +217,31 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     }
     const double moment = find_moment(m);
     tribo_stick_slip_find_rate(m, sys, y);
-    tribo_stick_slip_contact_accelerations(sys, m->rate, 2, m->v);
-    for (size_t k = 0; k < m->asks; k++) {
-        const size_t i = m->asked[k];
-        m->v[i] = m->a[i] + moment * m->v[i];
+    tribo_stick_slip_contact_accelerations(sys, m->work.rate, 2, m->work.v);
+    for (size_t k = 0; k < m->work.undecided_count; k++) {
+        const size_t i = m->work.undecided[k];
+        m->work.v[i] = m->work.a[i] + moment * m->work.v[i];
     }
     set_bounds_ahead(m, moment);
-    const int status = tribo_stick_slip_solve(m, sys, m->v, m->f);
+    const int status = tribo_stick_slip_solve(m, sys, m->work.v, m->work.f);
     if (status) {
         return status;
     }
-    find_left(m, sys, m->asks, m->asked, m->v, m->f);
-    for (size_t k = 0; k < m->asks; k++) {
-        const size_t i = m->asked[k];
-        m->pulled[i] = 0;
-        const double limit = limit_ahead(m, i, moment), room = limit - fabs(m->f[i]);
+    find_left(m, sys, m->work.undecided_count, m->work.undecided, m->work.v, m->work.f);
+    for (size_t k = 0; k < m->work.undecided_count; k++) {
+        const size_t i = m->work.undecided[k];
+        m->work.pulled[i] = 0;
+        const double limit = limit_ahead(m, i, moment), room = limit - fabs(m->work.f[i]);
         if (tribo_stick_slip_searches(m, i) && room >= 0.0) {
-            const signed char direction = direction_of(m, i, m->f[i]);
+            const signed char direction = direction_of(m, i, m->work.f[i]);
             const int may = !tribo_breakaway_is_sudden(&m->breakaway, i);
-            const int goes = room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
-            m->pulled[i] = (signed char)(goes && !may && m->tied[i] ? direction : 0);
+            const int goes = room <= 0.0 && breaks_away(m, i, direction, m->work.v[i]);
+            m->work.pulled[i] = (signed char)(goes && !may && m->state.tied[i] ? direction : 0);
             if (goes && may) {
-                *ties -= m->tied[i] != 0;
+                *ties -= m->state.tied[i] != 0;
                 *changes += let_go(m, i, direction);
             }
-            m->tied[i] = (signed char)(!m->tied[i] ? 0 : room > m->allowance[i] ? 2 : 1);
+            m->state.tied[i] = (signed char)(!m->state.tied[i] ? 0 : room > m->noise.allowance[i] ? 2 : 1);
         }
     }
     return TRIBO_OK;
@@ -260,8 +261,8 @@ static int find_instant(struct stick_slip *m, tribo_system *sys, double t, doubl
         tribo_elastic_hold(m, sys, y);
         tribo_stick_slip_find_free(m, sys, t, y);
         tribo_stick_slip_forget_gains(m);
-        m->asked = m->all;
-        m->asks = m->contacts;
+        m->work.undecided = m->constant.all;
+        m->work.undecided_count = m->constant.contacts;
     }
     return status;
 }
@@ -272,7 +273,7 @@ static int go_round(struct stick_slip *m, tribo_system *sys, const double *y, si
     size_t ties;
     int status = tribo_stick_slip_find_forces(m, sys);
     *changes = status ? 0 : let_slide(m, sys, y, &ties);
-    if (!status && !*changes && (ties || (m->dependents && m->base_moves))) {
+    if (!status && !*changes && (ties || (m->state.dependents && m->constant.base_moves))) {
         status = look_ahead(m, sys, y, &ties, changes);
     }
     if (!status && !*changes && ties) {
@@ -290,8 +291,8 @@ static void restore_static(struct stick_slip *m, const tribo_system *sys, const 
     if (!status) {
         tribo_stick_slip_find_gains(m, sys, y);
     }
-    for (size_t i = 0; i < m->contacts; i++) {
-        m->tied[i] = (signed char)(tribo_breakaway_restore(&m->breakaway, i) ? 0 : m->tied[i]);
+    for (size_t i = 0; i < m->constant.contacts; i++) {
+        m->state.tied[i] = (signed char)(tribo_breakaway_restore(&m->breakaway, i) ? 0 : m->state.tied[i]);
     }
 }
 
@@ -301,7 +302,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     for (size_t changes = 1; !status && changes;) {
         status = go_round(m, sys, y, &changes);
     }
-    m->reached = m->contacts;
+    m->state.reached = m->constant.contacts;
     if (m->breakaway.some) {
         restore_static(m, sys, y, status);
     }

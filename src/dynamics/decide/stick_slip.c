@@ -52,46 +52,46 @@ static void find_base_sizes(struct stick_slip *m, const tribo_system *sys)
 {
     const double late = DBL_EPSILON * fabs(sys->time) / TRIBO_VELOCITY_NOISE;
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->base_size[i] += late * m->base_rate_size[i];
+        m->constant.base_size[i] += late * m->constant.base_rate_size[i];
     }
-    const double largest = m->independent ? 0.0 : tribo_largest(m->base_size, sys->ncontact);
+    const double largest = m->constant.independent ? 0.0 : tribo_largest(m->constant.base_size, sys->ncontact);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->base_size[i] = greater(m->base_size[i], largest);
+        m->constant.base_size[i] = greater(m->constant.base_size[i], largest);
     }
 }
 
 void tribo_stick_slip_find_scales(struct stick_slip *m, const tribo_system *sys)
 {
     const double fastest = tribo_system_fastest(sys) + m->breakaway.steepest;
-    m->horizon = LOOK_AHEAD / (fastest > 0.0 ? fastest : 1.0);
-    memset(m->base_size, 0, sys->ncontact * sizeof *m->base_size);
-    memset(m->base_rate_size, 0, sys->ncontact * sizeof *m->base_rate_size);
-    memset(m->load_size, 0, sys->ndof * sizeof *m->load_size);
-    add_amplitudes(sys, DRIVES_BASE, 0, m->base_size);
-    add_amplitudes(sys, DRIVES_BASE, 1, m->base_rate_size);
-    add_base_tables(sys, m->base_size, m->base_rate_size);
-    add_amplitudes(sys, DRIVES_LOAD, 0, m->load_size);
+    m->constant.horizon = LOOK_AHEAD / (fastest > 0.0 ? fastest : 1.0);
+    memset(m->constant.base_size, 0, sys->ncontact * sizeof *m->constant.base_size);
+    memset(m->constant.base_rate_size, 0, sys->ncontact * sizeof *m->constant.base_rate_size);
+    memset(m->constant.load_size, 0, sys->ndof * sizeof *m->constant.load_size);
+    add_amplitudes(sys, DRIVES_BASE, 0, m->constant.base_size);
+    add_amplitudes(sys, DRIVES_BASE, 1, m->constant.base_rate_size);
+    add_base_tables(sys, m->constant.base_size, m->constant.base_rate_size);
+    add_amplitudes(sys, DRIVES_LOAD, 0, m->constant.load_size);
     find_base_sizes(m, sys);
 }
 
 void tribo_stick_slip_forget_gains(struct stick_slip *m)
 {
-    memset(m->found, 0, m->founds * sizeof *m->found);
+    memset(m->noise.found, 0, m->noise.founds * sizeof *m->noise.found);
 }
 
 /* The size of all that q'' of degree of freedom d is the sum of. */
 static double find_size(struct stick_slip *m, const tribo_system *sys, const double *y, size_t d)
 {
-    if (m->size[d] > 0.0) {
-        return m->size[d];
+    if (m->noise.size[d] > 0.0) {
+        return m->noise.size[d];
     }
     if (sys->tables) {
-        tribo_system_tables(sys, DRIVES_LOAD, 0, 1.0, d, d + 1, m->size);
+        tribo_system_tables(sys, DRIVES_LOAD, 0, 1.0, d, d + 1, m->noise.size);
     }
-    double size = m->load_size[d] + fabs(m->size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
-                  tribo_matrix_row_size(&sys->response, d, m->force);
+    double size = m->constant.load_size[d] + fabs(m->noise.size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
+                  tribo_matrix_row_size(&sys->response, d, m->state.force);
     size += sys->damping.rows ? tribo_matrix_row_size(&sys->damping, d, y + sys->ndof) : 0.0;
-    return m->size[d] = size;
+    return m->noise.size[d] = size;
 }
 
 double tribo_stick_slip_acceleration_size(struct stick_slip *m, const tribo_system *sys, const double *y)
@@ -107,7 +107,7 @@ void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, c
 {
     const struct matrix *j = &sys->direction;
     double size = 0.0, speed = 0.0;
-    if (m->gain[i] > 0.0) {
+    if (m->noise.acceleration[i] > 0.0) {
         return;
     }
     for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
@@ -115,21 +115,24 @@ void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, c
         size += fabs(j->val[k] * find_size(m, sys, y, d));
         speed += fabs(j->val[k] * y[sys->ndof + d]);
     }
-    m->noise[i] = tribo_stick_slip_velocity_noise(m, i, speed);
-    m->gain[i] = NOISE * m->doubt * (m->base_rate_size[i] + size);
-    m->allowance[i] = TRIBO_ALLOWED * m->gain[i] * m->inertia[i];
-    if (m->swing[i] > 0.0) {
-        m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * tribo_breakaway_ratio(&m->breakaway, i) * m->swing[i];
+    m->noise.velocity[i] = tribo_stick_slip_velocity_noise(m, i, speed);
+    m->noise.acceleration[i] = NOISE * m->noise.factor * (m->constant.base_rate_size[i] + size);
+    m->noise.allowance[i] = TRIBO_ALLOWED * m->noise.acceleration[i] * m->constant.inertia[i];
+    if (m->constant.swing[i] > 0.0) {
+        m->noise.allowance[i] +=
+            TRIBO_LIMIT_NOISE * m->noise.factor * tribo_breakaway_ratio(&m->breakaway, i) * m->constant.swing[i];
     }
-    if (m->base_moves) {
-        m->parting[i] = greater(4.0 * m->doubt * m->noise[i], m->gain[i] * m->horizon / LOOK_AHEAD);
+    if (m->constant.base_moves) {
+        m->noise.parting[i] =
+            greater(4.0 * m->noise.factor * m->noise.velocity[i], m->noise.acceleration[i] * m->constant.horizon / LOOK_AHEAD);
     }
 }
 
 int tribo_stick_slip_is_faint(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i)
 {
     tribo_stick_slip_find_gain(m, sys, y, i);
-    return fabs(tribo_stick_slip_velocity(m, sys, i, y)) <= TRIBO_VELOCITY_NOISE * m->gain[i] * m->horizon / LOOK_AHEAD;
+    return fabs(tribo_stick_slip_velocity(m, sys, i, y)) <=
+           TRIBO_VELOCITY_NOISE * m->noise.acceleration[i] * m->constant.horizon / LOOK_AHEAD;
 }
 
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
@@ -143,27 +146,27 @@ void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, 
 
 double tribo_stick_slip_follows(const struct stick_slip *m, size_t i)
 {
-    if (m->slip[i] == TRIBO_SLIP_STUCK) {
+    if (m->state.slip[i] == TRIBO_SLIP_STUCK) {
         const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
-        return m->holds[i] || !m->tied[i] ? 0.0 : m->force[i] > 0.0 ? ratio : -ratio;
+        return m->state.holds[i] || !m->state.tied[i] ? 0.0 : m->state.force[i] > 0.0 ? ratio : -ratio;
     }
-    return m->slip[i] == TRIBO_SLIP_OPEN ? 0.0 : -m->slip[i];
+    return m->state.slip[i] == TRIBO_SLIP_OPEN ? 0.0 : -m->state.slip[i];
 }
 
 double tribo_stick_slip_slack(const struct stick_slip *m, size_t i)
 {
-    return tribo_breakaway_is_sudden(&m->breakaway, i) ? m->allowance[i] : 0.0;
+    return tribo_breakaway_is_sudden(&m->breakaway, i) ? m->noise.allowance[i] : 0.0;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ motion */
 
 void tribo_stick_slip_find_free(struct stick_slip *m, tribo_system *sys, double t, const double *y)
 {
-    tribo_system_free_acceleration(sys, t, y, m->free);
-    m->a = m->free;
+    tribo_system_free_acceleration(sys, t, y, m->work.free);
+    m->work.a = m->work.free;
     if (!sys->direction.identity || tribo_system_bases_move(sys)) {
-        tribo_stick_slip_contact_accelerations(sys, m->free, 1, m->own_a);
-        m->a = m->own_a;
+        tribo_stick_slip_contact_accelerations(sys, m->work.free, 1, m->work.own_a);
+        m->work.a = m->work.own_a;
     }
 }
 
@@ -177,17 +180,17 @@ void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const doubl
 
 const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys)
 {
-    memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
-    tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
-    return m->acceleration;
+    memcpy(m->work.acceleration, m->work.free, sys->ndof * sizeof *m->work.free);
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->state.force, m->work.acceleration);
+    return m->work.acceleration;
 }
 
 void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
-    memset(m->rate, 0, sys->ndof * sizeof *m->rate);
-    tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, m->rate);
-    tribo_matrix_multiply_add(&sys->stiffness, -1.0, y + sys->ndof, m->rate);
+    memset(m->work.rate, 0, sys->ndof * sizeof *m->work.rate);
+    tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, m->work.rate);
+    tribo_matrix_multiply_add(&sys->stiffness, -1.0, y + sys->ndof, m->work.rate);
     if (sys->damping.rows) {
-        tribo_matrix_multiply_add(&sys->damping, -1.0, tribo_stick_slip_find_acceleration(m, sys), m->rate);
+        tribo_matrix_multiply_add(&sys->damping, -1.0, tribo_stick_slip_find_acceleration(m, sys), m->work.rate);
     }
 }

@@ -14,70 +14,105 @@
 /* Forces may go beyond their limits by so many times their noise, before that is an event: by then it is no noise. */
 #define TRIBO_ALLOWED 8.0
 
-struct stick_slip {
-    tribo_context *box;  /* a clone of the system's context, for problems with bounds */
-    tribo_context *hold; /* another one, that finds the forces of the contacts that hold, and only theirs, as f_eq for v = 0; NULL
-                            where R couples nobody */
-    void *memory;        /* of all arrays, but for those of breakaway and plane */
+/* Constant during an advance. contacts, above: ncontact of the system. */
+struct slip_constant {
     size_t contacts;
-    int uncoupled;   /* R is diagonal */
-    int independent; /* the contacts at rest hold, whoever they are: none depends on others */
-    int base_moves;
-    double doubt;   /* 1, or by how much more than rounding may be in doubt, where events make no headway */
-    size_t reached; /* the contact whose force has just met its limit, whatever rounding says of it; ncontact if there is none */
-    double horizon; /* a time short beside the fastest motion: so far decisions look ahead */
-    signed char *slip;     /* [ncontact] TRIBO_SLIP_... */
-    unsigned char *holds;  /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest
-                              by themselves, and keep their forces */
-    signed char *loose;    /* [ncontact] 1: it does not hold */
-    signed char *key;      /* [ncontact] 1: at rest, 2: and holds; and zeros after it, up to whole words of 8 */
-    int dependents;        /* how many rest by themselves */
-    int steady;            /* limits are those that update_limits has seen */
-    unsigned char *rested; /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
-    double *limit, *limit_rate; /* [ncontact] by which contacts slide, and its rate */
-    double *stick, *stick_rate; /* [ncontact] by which those at rest hold: these, unless there are static limits */
-    double *swing;              /* [ncontact] by how much harmonics change the limit at most */
-    struct breakaway breakaway; /* of static limits */
-    int again;                  /* some were lost in this round of a decision */
-    struct planar_slip *plane;  /* of planar contacts; NULL if there are none */
-    double abstol, reltol;      /* of the driver */
-    double *force;              /* [ncontact] after tribo_stick_slip_decide: friction, */
-    double *found;              /* [founds] what a decision finds out where that is needed, and else is 0: */
-    size_t founds;
-    double *gain;               /* [ncontact] what accelerations of contacts may be rounding, */
-    double *allowance;          /* [ncontact] by how much forces may exceed their limits before that counts, */
-    double *excess;             /* [ncontact] by how much they do where this begins, */
-    double *size;               /* [ndof] and how large the parts of q'' are */
-    double *parting;            /* [ncontact] by how much the velocity of one that rests by itself may differ from zero */
-    double *base, *noise;       /* [ncontact] b(t); what of v may be rounding, of those that slide, and where gain is known */
-    double *seen;               /* [ncontact] size of all that v was the sum of in the phase before, if known, else 0 */
-    double *diagonal, *inertia; /* [ncontact] R_ii, and one over it, or 0 */
-    double *v, *own_a;          /* [ncontact] relative velocity; room for the next one */
-    const double *a;            /* [ncontact] acceleration without friction */
-    double *lo, *hi, *f;        /* [ncontact] workspace: bounds, forces */
-    double *free, *acceleration, *rate; /* [ndof] q'' without friction; workspace: with it, its rate */
-    double *base_size, *base_rate_size; /* [ncontact] how large b, and its rate, ever are */
-    double *load_size;                  /* [ndof] how large accelerations by harmonic loads ever are */
-    signed char *tied;                  /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
-    signed char *pulled; /* [ncontact] workspace: the way a contact at its limit goes a moment later, if it breaks away */
-    signed char *before; /* [ncontact] who was tied when find_holds looked last, if contacts depend on each other */
-    int fresh;           /* some slip has changed since then, or all may have: who holds has to be found anew */
-    int hold_differs;    /* hold has not been told who holds */
-    double *spring, *spring_rate, *slack; /* [ncontact] elastic contacts: their force, its rate, and its allowance */
-    signed char *slid;                    /* [ncontact] slip as decided last */
-    double *still;                        /* [ncontact] zeros */
-    const size_t *asked;                  /* [asks] the contacts that a decision still asks about: all if R couples them */
-    size_t asks, *all;                    /* the latter is [ncontact] */
-    size_t *close, closes;                /* [closes] of those asked about: such as may be at their limits by the forces found */
-    size_t only;                          /* contact whose force alone was searched for last, R coupling it; else ncontact, */
-    double pull;                          /* and its acceleration without that force */
-    unsigned char *elastic, *can_hold;    /* [ncontact] 1: an elastic contact; one that holds something, if it rests */
-    struct snap *snap;                    /* [snaps] of all contacts where their order is one for all, else of those that hold, */
+    tribo_context *box;  /* clone of the system's context; solves min 1/2 f'R f + a'f, lo <= f <= hi */
+    tribo_context *hold; /* solves R_HH f_H = -a_H over the holding contacts H, as f_eq for v = 0; NULL if R is diagonal */
+    void *memory;        /* all arrays of the four parts */
+    int uncoupled;       /* 1: R is diagonal */
+    int independent;     /* 1: the rows of J are linearly independent, so that every contact at rest holds */
+    int base_moves;      /* 1: b(t) is not zero throughout */
+    double abstol;       /* tolerances of the driver */
+    double reltol;
+    double horizon;          /* time that decisions look ahead, short compared with the fastest motion */
+    double *diagonal;        /* [ncontact] R_ii */
+    double *inertia;         /* [ncontact] 1/R_ii; 0 if R_ii = 0 */
+    double *still;           /* [ncontact] zeros */
+    double *swing;           /* [ncontact] largest change of the limit by harmonics */
+    double *base_size;       /* [ncontact] bound of |b_i|, with the rounding of t */
+    double *base_rate_size;  /* [ncontact] bound of |b_i'| */
+    double *load_size;       /* [ndof] bound of accelerations by harmonic loads */
+    unsigned char *elastic;  /* [ncontact] 1: elastic contact */
+    unsigned char *can_hold; /* [ncontact] 1: R_ii > 0, or elastic */
+    size_t *all;             /* [ncontact] 0, 1, 2, ... */
+};
+
+/* What contacts do from the last decision on. */
+struct slip_state {
+    signed char *slip;     /* [ncontact] TRIBO_SLIP_...; written by tribo_stick_slip_set */
+    unsigned char *rested; /* [ncontact] 1: at rest at the last decision, so that v_i = 0 there */
+    signed char *slid;     /* [ncontact] slip by the last decision; elastic contacts */
+    unsigned char *holds;  /* [ncontact] 1: at rest, in the independent set H that keeps all contacts at rest where they are; the
+                              other contacts at rest keep their forces */
+    signed char *loose;    /* [ncontact] 0: rigid and holds */
+    signed char *key;      /* [ncontact, and zeros up to whole words of 8] 1: at rest; 2: at rest and holds */
+    int dependents;        /* number of contacts at rest that do not hold */
+    signed char *tied;     /* [ncontact] at rest and at the limit: 1: stays there; 2: goes back inside */
+    signed char *before;   /* [ncontact] tied as of the last choice of H; contacts that depend on each other */
+    int fresh;             /* 1: slip changed since the last choice of H */
+    int hold_differs;      /* 1: H changed since constant.hold took it */
+    struct snap *snap;     /* [snaps] corrections that make J x = base exact: of all contacts if sys->snaps_in_order, else of H */
     size_t snaps;
-    int simple;          /* which are no more than these; */
-    int unlisted;        /* or who holds has changed since they were listed */
-    size_t *at;          /* [ncontact] workspace of find_holds, */
-    unsigned char *last; /* [ncontact] and this */
+    int simple;          /* 1: snap has a correction for every contact of H */
+    int unlisted;        /* 1: H changed since snap was listed */
+    int steady;          /* 1: limits do not change after those that update_limits took */
+    size_t reached;      /* the contact whose force just met its limit, by the event; ncontact if none */
+    double *limit;       /* [ncontact] limit while sliding */
+    double *limit_rate;  /* [ncontact] its rate */
+    double *stick;       /* [ncontact] limit at rest: limit, or the static limit */
+    double *stick_rate;  /* [ncontact] its rate */
+    double *force;       /* [ncontact] friction force f */
+    double *spring;      /* [ncontact] force of an elastic contact by the state */
+    double *spring_rate; /* [ncontact] its rate */
+    double *base;        /* [ncontact] b(t) */
+};
+
+/* Bounds of rounding. */
+struct slip_noise {
+    double factor;          /* 1; larger where events make no headway */
+    double *velocity;       /* [ncontact] of v_i; of sliding contacts, and where acceleration[i] > 0 */
+    double *velocity_scale; /* [ncontact] size of the terms of v_i in the phase before; 0: unknown */
+    double *spring;         /* [ncontact] of the force of an elastic contact */
+    double *parting;        /* [ncontact] of v_i of a contact at rest that does not hold, on a base that moves */
+    double *found;          /* [founds] the four arrays below, one after the other; zeroed as a decision begins */
+    size_t founds;
+    double *acceleration; /* [ncontact] of v_i' */
+    double *allowance;    /* [ncontact] excess of |f_i| over the limit that is no event */
+    double *excess;       /* [ncontact] excess of |f_i| over the limit at the beginning of the phase */
+    double *size;         /* [ndof] size of the terms of q'' */
+};
+
+/* Workspace of a decision. */
+struct slip_work {
+    const size_t *undecided; /* [undecided_count] contacts that the round decides about */
+    size_t undecided_count;
+    size_t *close; /* [close_count] contacts of undecided that may be at their limits */
+    size_t close_count;
+    size_t single;        /* the only contact of a coupled system whose force is unknown; ncontact if there are more */
+    double single_a;      /* its acceleration without its own force */
+    int limit_lost;       /* 1: a static limit was lost in this round */
+    const double *a;      /* [ncontact] J q'' - b' without friction: own_a, or free if J = 1 */
+    double *own_a;        /* [ncontact] */
+    double *v;            /* [ncontact] velocities or accelerations */
+    double *lo;           /* [ncontact] lower bounds of forces */
+    double *hi;           /* [ncontact] upper bounds of forces */
+    double *f;            /* [ncontact] forces */
+    double *free;         /* [ndof] q'' without friction */
+    double *acceleration; /* [ndof] q'' with friction */
+    double *rate;         /* [ndof] rate of q'' */
+    signed char *pulled;  /* [ncontact] direction in which a contact at its static limit slides a moment later; 0: none */
+    size_t *at;           /* [ncontact] contacts at rest, of tribo_stick_slip_find_holds */
+    unsigned char *last;  /* [ncontact] order of choice of these */
+};
+
+struct stick_slip {
+    struct slip_constant constant;
+    struct slip_state state;
+    struct slip_noise noise;
+    struct slip_work work;
+    struct breakaway breakaway; /* static limits */
+    struct planar_slip *plane;  /* planar contacts; NULL if there are none */
 };
 
 /* stick_slip_create.c: TRIBO_OK or a failure with its message on the system's context. tribo_stick_slip_free takes what failed
@@ -94,27 +129,27 @@ static inline int tribo_slides(signed char slip)
 /* Whether contact i is at rest, and nothing that it holds keeps it there. */
 static inline int tribo_stick_slip_depends(const struct stick_slip *m, size_t i)
 {
-    return m->slip[i] == TRIBO_SLIP_STUCK && !m->holds[i];
+    return m->state.slip[i] == TRIBO_SLIP_STUCK && !m->state.holds[i];
 }
 
 /* Contact i does this from here on. Nobody else writes slip: who holds follows from it, at once where contacts do not depend on
  * each other. */
 static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed char slip)
 {
-    if (slip == m->slip[i]) {
+    if (slip == m->state.slip[i]) {
         return;
     }
-    const int rested = m->slip[i] == TRIBO_SLIP_STUCK, rests = slip == TRIBO_SLIP_STUCK;
-    m->slip[i] = slip;
-    if (!m->independent) {
-        m->fresh = 1;
+    const int rested = m->state.slip[i] == TRIBO_SLIP_STUCK, rests = slip == TRIBO_SLIP_STUCK;
+    m->state.slip[i] = slip;
+    if (!m->constant.independent) {
+        m->state.fresh = 1;
         return;
     }
-    m->holds[i] = (unsigned char)(rests & m->can_hold[i]);
-    m->loose[i] = (signed char)(!m->holds[i] || m->elastic[i]);
-    m->key[i] = (signed char)(rests + m->holds[i]);
-    m->dependents += m->can_hold[i] ? 0 : rests - rested;
-    m->hold_differs = m->unlisted = 1;
+    m->state.holds[i] = (unsigned char)(rests & m->constant.can_hold[i]);
+    m->state.loose[i] = (signed char)(!m->state.holds[i] || m->constant.elastic[i]);
+    m->state.key[i] = (signed char)(rests + m->state.holds[i]);
+    m->state.dependents += m->constant.can_hold[i] ? 0 : rests - rested;
+    m->state.hold_differs = m->state.unlisted = 1;
 }
 
 /* stick_slip_instant.c: takes limits from the system, and, unless it continues, from the state who is at rest:
@@ -149,7 +184,7 @@ double tribo_stick_slip_acceleration_size(struct stick_slip *m, const tribo_syst
  * leave so much. */
 int tribo_stick_slip_is_faint(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i);
 
-/* The free motion at (t, y): m->free, and m->a. */
+/* The free motion at (t, y): m->work.free, and m->work.a. */
 void tribo_stick_slip_find_free(struct stick_slip *m, tribo_system *sys, double t, const double *y);
 
 /* q'' [ndof] with the forces found, also after a decision; its rate while the forces of contacts at rest are what they are; and
@@ -161,7 +196,7 @@ void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const doubl
 /* Whether contact i is at rest by a force that is to be found; that of elastic ones is known. */
 static inline int tribo_stick_slip_searches(const struct stick_slip *m, size_t i)
 {
-    return m->slip[i] == TRIBO_SLIP_STUCK && !m->elastic[i];
+    return m->state.slip[i] == TRIBO_SLIP_STUCK && !m->constant.elastic[i];
 }
 
 /* A force this close to the limit might be taken beyond it by rounding, or, by what other contacts do, in a moment. */
@@ -170,7 +205,7 @@ static inline int tribo_stick_slip_searches(const struct stick_slip *m, size_t i
 /* Whether contact i is the only one whose force was searched for, of those that it is coupled with. */
 static inline int tribo_stick_slip_alone(const struct stick_slip *m, size_t i)
 {
-    return m->uncoupled || m->only == i;
+    return m->constant.uncoupled || m->work.single == i;
 }
 
 /* stick_slip_forces.c, of the contacts that are asked about: f [ncontact] = the forces within lo and hi, where accelerations
@@ -185,14 +220,14 @@ static inline void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signe
 {
     const int again = m->breakaway.some && tribo_breakaway_lets_go(&m->breakaway, i);
     tribo_stick_slip_set(m, i, again ? TRIBO_SLIP_STUCK : direction);
-    m->tied[i] = 0;
-    m->again |= again;
+    m->state.tied[i] = 0;
+    m->work.limit_lost |= again;
 }
 
 /* Whether contact i would lose a static limit, and the forces at rest are not unique. */
 static inline int tribo_stick_slip_must_be_sure(const struct stick_slip *m, size_t i)
 {
-    return m->dependents && tribo_breakaway_is_sudden(&m->breakaway, i);
+    return m->state.dependents && tribo_breakaway_is_sudden(&m->breakaway, i);
 }
 
 /* stick_slip_relieve.c: where a contact must be sure, or accelerations are nothing but rounding, the forces tell that it takes to
@@ -216,7 +251,7 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys);
 /* Whether nothing is left to find out of that. */
 static inline int tribo_stick_slip_knows_holds(const struct stick_slip *m)
 {
-    return m->independent && !m->fresh;
+    return m->constant.independent && !m->state.fresh;
 }
 
 /* stick_slip_instant.c: q'' [ndof] in a state, and all forces [ncontact], while contacts do what they did when last decided
@@ -227,7 +262,7 @@ int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, doubl
 /* The force by which contact i, coupled with no other one, holds; 0 if it does not. */
 static inline double tribo_stick_slip_balance_alone(const struct stick_slip *m, size_t i, double a)
 {
-    return m->loose[i] ? 0.0 : -a / m->diagonal[i];
+    return m->state.loose[i] ? 0.0 : -a / m->constant.diagonal[i];
 }
 
 /* holds.c: f of the contacts that hold, R_II f_I = -a_I; zero for the others. */
@@ -249,7 +284,7 @@ double tribo_stick_slip_follows(const struct stick_slip *m, size_t i);
 /* 1 if contact i rests by itself on a base that moves: then its velocity has to be looked after. */
 static inline int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i)
 {
-    return m->base_moves && m->slip[i] == TRIBO_SLIP_STUCK && !m->holds[i];
+    return m->constant.base_moves && m->state.slip[i] == TRIBO_SLIP_STUCK && !m->state.holds[i];
 }
 
 /* By how much more than its limit contact i may be pulled and hold: where it would let go of much, what may be rounding does not
@@ -262,7 +297,7 @@ double tribo_stick_slip_slack(const struct stick_slip *m, size_t i);
 /* What of the velocity of contact i may be rounding, where the sizes of its terms come to this. */
 static inline double tribo_stick_slip_velocity_noise(const struct stick_slip *m, size_t i, double size)
 {
-    return TRIBO_VELOCITY_NOISE * greater(m->base_size[i] + size, m->seen[i]);
+    return TRIBO_VELOCITY_NOISE * greater(m->constant.base_size[i] + size, m->noise.velocity_scale[i]);
 }
 
 /* v_i in a state, at the time that was last decided for; and the same, with its noise found. */
@@ -270,7 +305,7 @@ static inline double tribo_stick_slip_velocity(const struct stick_slip *m, const
 {
     const struct matrix *j = &sys->direction;
     const double *u = y + sys->ndof;
-    double v = -m->base[i];
+    double v = -m->state.base[i];
     for (size_t k = j->first[i], end = j->first[i + 1]; k < end; k++) {
         v += j->val[k] * u[j->col[k]];
     }
@@ -281,13 +316,13 @@ static inline double tribo_stick_slip_find_velocity(struct stick_slip *m, const 
 {
     const struct matrix *j = &sys->direction;
     const double *u = y + sys->ndof;
-    double v = -m->base[i], size = 0.0;
+    double v = -m->state.base[i], size = 0.0;
     for (size_t k = j->first[i], end = j->first[i + 1]; k < end; k++) {
         const double part = j->val[k] * u[j->col[k]];
         v += part;
         size += fabs(part);
     }
-    m->noise[i] = tribo_stick_slip_velocity_noise(m, i, size);
+    m->noise.velocity[i] = tribo_stick_slip_velocity_noise(m, i, size);
     return v;
 }
 

@@ -1,4 +1,4 @@
-/* What is known of contacts whatever they do, and the memory for what they do. */
+/* The constant part of a decision, and the memory of all parts. */
 #include "numerics/constraint.h"
 #include "stick_slip.h"
 #include "common/layout.h"
@@ -8,126 +8,106 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void lay_out_numbers(struct stick_slip *m, struct layout *l, size_t contacts, size_t dofs)
+/* Sets every pointer of p [count] to an array of n doubles, one after the other. */
+static void lay_out_doubles(struct layout *l, double **const *p, size_t count, size_t n)
 {
-    double **const by_contact[] = {&m->limit,     &m->limit_rate,     &m->force,   &m->base,   &m->noise,     &m->diagonal,
-                                   &m->seen,      &m->parting,        &m->v,       &m->own_a,  &m->lo,        &m->hi,
-                                   &m->f,         &m->still,          &m->swing,   &m->spring, &m->slack,     &m->spring_rate,
-                                   &m->base_size, &m->base_rate_size, &m->inertia, &m->gain,   &m->allowance, &m->excess};
-    double **const by_dof[] = {&m->size, &m->acceleration, &m->free, &m->rate, &m->load_size};
-    const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
-    double *work = tribo_layout_array(l, contact_arrays * contacts + dof_arrays * dofs, sizeof *work);
-    for (size_t k = 0; work && k < contact_arrays; k++) {
-        *by_contact[k] = work + k * contacts;
-    }
-    for (size_t k = 0; work && k < dof_arrays; k++) {
-        *by_dof[k] = work + contact_arrays * contacts + k * dofs;
-    }
-    m->found = m->gain; /* three arrays of contacts, the last ones, and one of degrees of freedom, the first one */
-    m->founds = 3 * contacts + dofs;
-}
-
-static void lay_out_marks(struct stick_slip *m, struct layout *l, size_t contacts)
-{
-    signed char **const sign[] = {&m->slip, &m->tied, &m->before, &m->loose, &m->slid, &m->pulled, &m->key};
-    unsigned char **const mark[] = {&m->holds, &m->rested, &m->can_hold, &m->elastic, &m->last};
-    const size_t signs = sizeof sign / sizeof *sign, marks = sizeof mark / sizeof *mark;
-    signed char *work = tribo_layout_array(l, (signs + marks) * contacts + sizeof(uint64_t), 1);
-    for (size_t k = 0; work && k < marks; k++) {
-        *mark[k] = (unsigned char *)work + k * contacts;
-    }
-    for (size_t k = 0; work && k < signs; k++) {
-        *sign[k] = work + (marks + k) * contacts;
+    double *work = tribo_layout_array(l, count * n, sizeof *work);
+    for (size_t k = 0; work && k < count; k++) {
+        *p[k] = work + k * n;
     }
 }
 
 static void lay_out_arrays(struct stick_slip *m, struct layout *l, size_t contacts, size_t dofs)
 {
-    m->memory = tribo_layout_array(l, 0, 1);
-    lay_out_numbers(m, l, contacts, dofs);
-    lay_out_marks(m, l, contacts);
-    m->at = tribo_layout_array(l, contacts, sizeof *m->at);
-    m->asked = m->all = tribo_layout_array(l, contacts, sizeof *m->all);
-    m->close = tribo_layout_array(l, contacts, sizeof *m->close);
-    m->snap = tribo_layout_array(l, contacts, sizeof *m->snap);
-}
-
-static int create_arrays(struct stick_slip *m, size_t contacts, size_t dofs)
-{
-    struct layout l = {0};
-    lay_out_arrays(m, &l, contacts, dofs);
-    const int done = tribo_layout_zeros(&l);
-    if (done) {
-        lay_out_arrays(m, &l, contacts, dofs);
+    struct slip_constant *c = &m->constant;
+    struct slip_state *s = &m->state;
+    struct slip_noise *r = &m->noise;
+    struct slip_work *w = &m->work;
+    double **const by_contact[] = {
+        &c->diagonal, &c->inertia, &c->still,       &c->swing, &c->base_size, &c->base_rate_size, &s->limit,  &s->limit_rate,
+        &s->force,    &s->spring,  &s->spring_rate, &s->base,  &r->velocity,  &r->velocity_scale, &r->spring, &r->parting,
+        &w->own_a,    &w->v,       &w->lo,          &w->hi,    &w->f};
+    double **const by_dof[] = {&c->load_size, &w->acceleration, &w->free, &w->rate};
+    signed char **const sign[] = {&s->slip, &s->tied, &s->before, &s->loose, &s->slid, &w->pulled, &s->key};
+    unsigned char **const mark[] = {&s->holds, &s->rested, &c->can_hold, &c->elastic, &w->last};
+    const size_t signs = sizeof sign / sizeof *sign, marks = sizeof mark / sizeof *mark;
+    c->memory = tribo_layout_array(l, 0, 1);
+    lay_out_doubles(l, by_contact, sizeof by_contact / sizeof *by_contact, contacts);
+    lay_out_doubles(l, by_dof, sizeof by_dof / sizeof *by_dof, dofs);
+    r->founds = 3 * contacts + dofs;
+    r->found = tribo_layout_array(l, r->founds, sizeof *r->found);
+    w->at = tribo_layout_array(l, contacts, sizeof *w->at);
+    w->undecided = c->all = tribo_layout_array(l, contacts, sizeof *c->all);
+    w->close = tribo_layout_array(l, contacts, sizeof *w->close);
+    s->snap = tribo_layout_array(l, contacts, sizeof *s->snap);
+    signed char *bytes = tribo_layout_array(l, (signs + marks) * contacts + sizeof(uint64_t), 1);
+    if (bytes) {
+        r->acceleration = r->found;
+        r->allowance = r->found + contacts;
+        r->excess = r->found + 2 * contacts;
+        r->size = r->found + 3 * contacts;
     }
-    return done;
+    for (size_t k = 0; bytes && k < marks; k++) {
+        *mark[k] = (unsigned char *)bytes + k * contacts;
+    }
+    for (size_t k = 0; bytes && k < signs; k++) { /* key last: zeros follow it */
+        *sign[k] = bytes + (marks + k) * contacts;
+    }
 }
 
-/* Contexts that know directions only. Where R couples nobody they are not asked for forces, and the second one is not needed. */
-static int create_contexts(struct stick_slip *m, const tribo_context *contacts)
+/* Contexts that know J and M only. Where R is diagonal forces are found without them, and there is no constant.hold. */
+static int create_contexts(struct slip_constant *c, const tribo_context *contacts)
 {
     size_t islands;
-    if (tribo_clone(contacts, &m->box)) {
+    if (tribo_clone(contacts, &c->box)) {
         return 0;
     }
-    tribo_set_planar(m->box, 0, NULL);
-    tribo_get_count(m->box, TRIBO_COUNT_ISLANDS, &islands);
-    m->uncoupled = islands == m->contacts;
-    if (m->uncoupled) {
+    tribo_set_planar(c->box, 0, NULL);
+    tribo_get_count(c->box, TRIBO_COUNT_ISLANDS, &islands);
+    c->uncoupled = islands == c->contacts;
+    if (c->uncoupled) {
         return 1;
     }
-    tribo_set_static(m->box, NULL, NULL);
-    if (tribo_clone(m->box, &m->hold)) {
+    tribo_set_static(c->box, NULL, NULL);
+    if (tribo_clone(c->box, &c->hold)) {
         return 0;
     }
     /* a contact that has reached its limit stays there while others take over */
-    tribo_set_sharing(m->box, TRIBO_SHARE_PREVIOUS);
-    tribo_set_law(m->hold, TRIBO_COULOMB);
-    tribo_set_coupling(m->hold, TRIBO_PARTITION);
+    tribo_set_sharing(c->box, TRIBO_SHARE_PREVIOUS);
+    tribo_set_law(c->hold, TRIBO_COULOMB);
+    tribo_set_coupling(c->hold, TRIBO_PARTITION);
     return 1;
 }
 
-/* What contacts are, whatever they do. */
-static void find_kinds(struct stick_slip *m, const tribo_system *sys)
+/* Fills R_ii, 1/R_ii, elastic[] and can_hold[]; lists the snaps of all contacts; sets independent. Returns 0 if out of memory. */
+static int find_constants(struct stick_slip *m, const tribo_system *sys)
 {
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->diagonal[i] = tribo_system_delassus(sys, i, i);
-        m->inertia[i] = m->diagonal[i] > 0.0 ? quotient(1.0, m->diagonal[i]) : 0.0;
-        m->elastic[i] = (unsigned char)tribo_massless_touches(&sys->massless, i);
-        m->can_hold[i] = m->diagonal[i] > 0.0 || m->elastic[i];
-        m->all[i] = i;
+    struct slip_constant *c = &m->constant;
+    int in_order = sys->snaps_in_order; /* row by row, J has a degree of freedom that no row before has, with no loss of digits */
+    for (size_t i = 0; i < c->contacts; i++) {
+        c->diagonal[i] = tribo_system_delassus(sys, i, i);
+        c->inertia[i] = c->diagonal[i] > 0.0 ? quotient(1.0, c->diagonal[i]) : 0.0;
+        c->elastic[i] = (unsigned char)tribo_massless_touches(&sys->massless, i);
+        c->can_hold[i] = c->diagonal[i] > 0.0 || c->elastic[i];
+        c->all[i] = i;
+        in_order &= c->diagonal[i] > 0.0;
     }
-}
-
-/* Whether every contact, in order, moves a body that none before it touches: a single one, or one of two that it takes the
- * difference of, so that no pivot is lost to rounding. */
-static int are_in_order(const struct stick_slip *m, const tribo_system *sys)
-{
-    size_t i = 0;
-    while (i < sys->ncontact && m->diagonal[i] > 0.0) {
-        i++;
-    }
-    return i == sys->ncontact && sys->snaps_in_order && m->simple;
-}
-
-/* Whether any contact can hold without the others. 0 if out of memory. */
-static int find_dependence(struct stick_slip *m, const tribo_system *sys)
-{
-    const int plain = m->uncoupled || are_in_order(m, sys);
-    const size_t rank = plain ? sys->ncontact : tribo_constraints_rank(&sys->direction, &sys->mass);
-    m->independent = rank == sys->ncontact;
-    return rank <= sys->ncontact;
+    tribo_stick_slip_list_snaps(m, sys); /* loose[] = 0: of all contacts */
+    const int known = c->uncoupled || (in_order && m->state.simple);
+    const size_t rank = known ? c->contacts : tribo_constraints_rank(&sys->direction, &sys->mass);
+    c->independent = rank == c->contacts;
+    return rank <= c->contacts;
 }
 
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
 {
     const size_t c = sys->ncontact + 1;
-    *m = (struct stick_slip){.contacts = sys->ncontact, .only = sys->ncontact, .doubt = 1.0};
-    if (create_contexts(m, sys->contacts) && create_arrays(m, c, sys->ndof) &&
-        tribo_breakaway_create(&m->breakaway, sys->ncontact)) {
-        find_kinds(m, sys);
-        tribo_stick_slip_list_snaps(m, sys); /* nobody being loose */
-        if (find_dependence(m, sys)) {
+    struct layout l = {0};
+    *m = (struct stick_slip){.constant.contacts = sys->ncontact, .work.single = sys->ncontact, .noise.factor = 1.0};
+    lay_out_arrays(m, &l, c, sys->ndof);
+    if (create_contexts(&m->constant, sys->contacts) && tribo_layout_zeros(&l)) {
+        lay_out_arrays(m, &l, c, sys->ndof);
+        if (tribo_breakaway_create(&m->breakaway, sys->ncontact) && find_constants(m, sys)) {
             return TRIBO_OK;
         }
     }
@@ -137,9 +117,9 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
 
 void tribo_stick_slip_free(struct stick_slip *m)
 {
-    tribo_destroy(m->box);
-    tribo_destroy(m->hold);
+    tribo_destroy(m->constant.box);
+    tribo_destroy(m->constant.hold);
     tribo_breakaway_free(&m->breakaway);
-    free(m->memory);
+    free(m->constant.memory);
     memset(m, 0, sizeof *m);
 }

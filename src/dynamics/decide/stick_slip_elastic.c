@@ -13,9 +13,9 @@
 
 void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const double *q)
 {
-    tribo_elastic_forces(sys, q, m->rate, m->spring, m->slack);
+    tribo_elastic_forces(sys, q, m->work.rate, m->state.spring, m->noise.spring);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->slack[i] *= TRIBO_SPRING_ALLOWED * TRIBO_SPRING_NOISE * m->doubt;
+        m->noise.spring[i] *= TRIBO_SPRING_ALLOWED * TRIBO_SPRING_NOISE * m->noise.factor;
     }
 }
 
@@ -24,11 +24,11 @@ void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *
     if (sys->massless.count == 0) {
         return;
     }
-    tribo_elastic_enter(sys, m->limit, m->rate, m->spring, y);
+    tribo_elastic_enter(sys, m->state.limit, m->work.rate, m->state.spring, y);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        if (m->elastic[i]) {
-            m->slid[i] = (signed char)(m->limit[i] > 0.0 ? 0 : 2);
-            tribo_stick_slip_set(m, i, m->slid[i]);
+        if (m->constant.elastic[i]) {
+            m->state.slid[i] = (signed char)(m->state.limit[i] > 0.0 ? 0 : 2);
+            tribo_stick_slip_set(m, i, m->state.slid[i]);
         }
     }
 }
@@ -45,20 +45,22 @@ enum stand { OPEN, INSIDE, AT_LIMIT, STOPPED };
 
 static enum stand stand_of(const struct stick_slip *m, size_t i)
 {
-    const signed char before = m->slip[i];
-    const int slid = tribo_slides(m->slid[i]);
-    const int slides = tribo_slides(before) && m->slid[i] == before;
-    return before == TRIBO_SLIP_OPEN                                                      ? OPEN
-           : before == TRIBO_SLIP_STUCK && slid                                           ? STOPPED
-           : slides || i == m->reached || fabs(m->spring[i]) >= m->limit[i] - m->slack[i] ? AT_LIMIT
-                                                                                          : INSIDE;
+    const signed char before = m->state.slip[i];
+    const int slid = tribo_slides(m->state.slid[i]);
+    const int slides = tribo_slides(before) && m->state.slid[i] == before;
+    return before == TRIBO_SLIP_OPEN                                                                               ? OPEN
+           : before == TRIBO_SLIP_STUCK && slid                                                                    ? STOPPED
+           : slides || i == m->state.reached || fabs(m->state.spring[i]) >= m->state.limit[i] - m->noise.spring[i] ? AT_LIMIT
+                                                                                                                   : INSIDE;
 }
 
 /* Where contact i, at its limit, slides to if it slides: against its force. */
 static signed char against(const struct stick_slip *m, size_t i)
 {
-    const signed char before = m->slip[i];
-    return before != 0 && m->slid[i] == before ? before : (signed char)(m->spring[i] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH);
+    const signed char before = m->state.slip[i];
+    return before != 0 && m->state.slid[i] == before
+               ? before
+               : (signed char)(m->state.spring[i] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH);
 }
 
 /* Force and slip of contact i, whose velocity is v if it slides. */
@@ -66,12 +68,12 @@ static void place_elastic(struct stick_slip *m, size_t i, double v)
 {
     const enum stand stand = stand_of(m, i);
     const signed char direction = against(m, i);
-    const int slides = stand == AT_LIMIT && fabs(v) > m->doubt * m->noise[i] && direction * v > 0.0;
+    const int slides = stand == AT_LIMIT && fabs(v) > m->noise.factor * m->noise.velocity[i] && direction * v > 0.0;
     if (stand == OPEN) {
-        m->spring[i] = 0.0;
+        m->state.spring[i] = 0.0;
         return;
     }
-    m->spring[i] = stand == INSIDE ? m->spring[i] : -direction * m->limit[i];
+    m->state.spring[i] = stand == INSIDE ? m->state.spring[i] : -direction * m->state.limit[i];
     tribo_stick_slip_set(m, i, (signed char)(slides ? direction : TRIBO_SLIP_STUCK));
 }
 
@@ -79,9 +81,9 @@ static void place_elastic(struct stick_slip *m, size_t i, double v)
 static void share_rates(struct stick_slip *m, struct definite *c, double *v)
 {
     for (size_t i = 0; i < c->n; i++) {
-        const enum stand stand = m->elastic[i] ? stand_of(m, i) : OPEN;
+        const enum stand stand = m->constant.elastic[i] ? stand_of(m, i) : OPEN;
         const signed char direction = against(m, i);
-        v[i] = m->elastic[i] ? v[i] : 0.0;
+        v[i] = m->constant.elastic[i] ? v[i] : 0.0;
         c->lo[i] = stand == OPEN || (stand == AT_LIMIT && direction > 0) ? 0.0 : -HUGE_VAL;
         c->hi[i] = stand == OPEN || (stand == AT_LIMIT && direction < 0) ? 0.0 : HUGE_VAL;
     }
@@ -95,30 +97,30 @@ void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *
     }
     tribo_elastic_find(m, sys, y);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->v[i] = m->elastic[i] ? tribo_stick_slip_find_velocity(m, sys, i, y) : 0.0;
+        m->work.v[i] = m->constant.elastic[i] ? tribo_stick_slip_find_velocity(m, sys, i, y) : 0.0;
     }
     if (sys->massless.shared) {
-        share_rates(m, sys->massless.shared, m->v);
+        share_rates(m, sys->massless.shared, m->work.v);
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
-        if (m->elastic[i]) {
-            place_elastic(m, i, m->v[i]);
+        if (m->constant.elastic[i]) {
+            place_elastic(m, i, m->work.v[i]);
         }
     }
-    tribo_elastic_give(sys, m->spring, y);
+    tribo_elastic_give(sys, m->state.spring, y);
 }
 
 void tribo_elastic_hold(struct stick_slip *m, const tribo_system *sys, double *y)
 {
     if (sys->massless.count) {
-        tribo_elastic_move(sys, m->slip, m->base, y + sys->ndof, m->spring_rate);
+        tribo_elastic_move(sys, m->state.slip, m->state.base, y + sys->ndof, m->state.spring_rate);
     }
 }
 
 void tribo_elastic_finish(struct stick_slip *m, const tribo_system *sys)
 {
     for (size_t i = 0; sys->massless.count && i < sys->ncontact; i++) {
-        m->allowance[i] = m->elastic[i] ? m->slack[i] : m->allowance[i];
-        m->slid[i] = m->slip[i];
+        m->noise.allowance[i] = m->constant.elastic[i] ? m->noise.spring[i] : m->noise.allowance[i];
+        m->state.slid[i] = m->state.slip[i];
     }
 }

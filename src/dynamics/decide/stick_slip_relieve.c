@@ -19,31 +19,32 @@
 static int find_holding_forces(struct stick_slip *m, const tribo_system *sys)
 {
     int status = tribo_stick_slip_find_holds(m, sys);
-    for (size_t k = 0; m->uncoupled && k < m->asks; k++) {
-        const size_t i = m->asked[k];
-        m->f[i] = tribo_stick_slip_balance_alone(m, i, m->a[i]);
+    for (size_t k = 0; m->constant.uncoupled && k < m->work.undecided_count; k++) {
+        const size_t i = m->work.undecided[k];
+        m->work.f[i] = tribo_stick_slip_balance_alone(m, i, m->work.a[i]);
     }
-    if (status || m->uncoupled) {
+    if (status || m->constant.uncoupled) {
         return status;
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->f[i] = m->loose[i] ? m->force[i] : 0.0;
+        m->work.f[i] = m->state.loose[i] ? m->state.force[i] : 0.0;
     }
-    tribo_stick_slip_accelerate(m, sys, m->a, m->f, m->v);
-    status = tribo_stick_slip_balance(m, m->v, m->f);
-    return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
+    tribo_stick_slip_accelerate(m, sys, m->work.a, m->work.f, m->work.v);
+    status = tribo_stick_slip_balance(m, m->work.v, m->work.f);
+    return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->constant.hold)) : TRIBO_OK;
 }
 
 /* Which contact f takes most beyond its limit; ncontact if none. */
 static size_t most_overloaded(const struct stick_slip *m)
 {
-    size_t worst = m->contacts;
+    size_t worst = m->constant.contacts;
     double most = 1.0;
-    for (size_t k = 0; k < m->asks; k++) {
-        const size_t i = m->asked[k];
+    for (size_t k = 0; k < m->work.undecided_count; k++) {
+        const size_t i = m->work.undecided[k];
         const int sure = tribo_stick_slip_must_be_sure(m, i);
-        const double excess = fabs(m->f[i]) - m->stick[i], allowance = (sure ? AT_THE_EVENT : 1.0) * m->allowance[i];
-        if ((sure || m->tied[i]) && m->holds[i] && excess > most * allowance) {
+        const double excess = fabs(m->work.f[i]) - m->state.stick[i],
+                     allowance = (sure ? AT_THE_EVENT : 1.0) * m->noise.allowance[i];
+        if ((sure || m->state.tied[i]) && m->state.holds[i] && excess > most * allowance) {
             worst = i;
             most = excess / allowance;
         }
@@ -54,13 +55,13 @@ static size_t most_overloaded(const struct stick_slip *m)
 /* Forces by least norm in the place of those that stay where they were, and f from these. */
 static int share_anew(struct stick_slip *m, tribo_system *sys)
 {
-    tribo_set_sharing(m->box, TRIBO_SHARE_LEAST_NORM);
+    tribo_set_sharing(m->constant.box, TRIBO_SHARE_LEAST_NORM);
     const int status = tribo_stick_slip_find_forces(m, sys);
-    tribo_set_sharing(m->box, TRIBO_SHARE_PREVIOUS);
-    for (size_t k = 0; k < m->asks; k++) {
-        const size_t i = m->asked[k];
-        const double room = m->stick[i] - fabs(m->force[i]);
-        m->tied[i] = tribo_stick_slip_searches(m, i) && room <= m->allowance[i];
+    tribo_set_sharing(m->constant.box, TRIBO_SHARE_PREVIOUS);
+    for (size_t k = 0; k < m->work.undecided_count; k++) {
+        const size_t i = m->work.undecided[k];
+        const double room = m->state.stick[i] - fabs(m->state.force[i]);
+        m->state.tied[i] = tribo_stick_slip_searches(m, i) && room <= m->noise.allowance[i];
     }
     return status ? status : find_holding_forces(m, sys);
 }
@@ -70,10 +71,10 @@ static void let_overloaded_go(struct stick_slip *m, size_t worst, signed char di
 {
     const int sudden = tribo_breakaway_is_sudden(&m->breakaway, worst);
     int gone = 0;
-    for (size_t k = 0; sudden && k < m->asks; k++) {
-        const size_t i = m->asked[k];
-        if (m->pulled[i]) {
-            tribo_stick_slip_let_go(m, i, m->pulled[i]);
+    for (size_t k = 0; sudden && k < m->work.undecided_count; k++) {
+        const size_t i = m->work.undecided[k];
+        if (m->work.pulled[i]) {
+            tribo_stick_slip_let_go(m, i, m->work.pulled[i]);
             gone = 1;
         }
     }
@@ -85,10 +86,10 @@ static void let_overloaded_go(struct stick_slip *m, size_t worst, signed char di
 /* f are the forces. */
 static void keep_forces(struct stick_slip *m)
 {
-    for (size_t k = 0; k < m->asks; k++) {
-        const size_t i = m->asked[k];
-        m->force[i] = m->loose[i] ? m->force[i] : clamp(m->f[i], -m->stick[i], m->stick[i]);
-        m->excess[i] = m->loose[i] ? 0.0 : fabs(m->f[i] - m->force[i]);
+    for (size_t k = 0; k < m->work.undecided_count; k++) {
+        const size_t i = m->work.undecided[k];
+        m->state.force[i] = m->state.loose[i] ? m->state.force[i] : clamp(m->work.f[i], -m->state.stick[i], m->state.stick[i]);
+        m->noise.excess[i] = m->state.loose[i] ? 0.0 : fabs(m->work.f[i] - m->state.force[i]);
     }
 }
 
@@ -96,12 +97,12 @@ int tribo_stick_slip_relieve(struct stick_slip *m, tribo_system *sys, size_t *ch
 {
     int status = find_holding_forces(m, sys);
     size_t worst = most_overloaded(m);
-    const signed char direction = worst < m->contacts && m->f[worst] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH;
-    if (!status && worst < m->contacts && tribo_stick_slip_must_be_sure(m, worst)) {
+    const signed char direction = worst < m->constant.contacts && m->work.f[worst] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH;
+    if (!status && worst < m->constant.contacts && tribo_stick_slip_must_be_sure(m, worst)) {
         status = share_anew(m, sys);
-        worst = most_overloaded(m) < m->contacts ? worst : m->contacts;
+        worst = most_overloaded(m) < m->constant.contacts ? worst : m->constant.contacts;
     }
-    if (!status && worst < m->contacts) {
+    if (!status && worst < m->constant.contacts) {
         let_overloaded_go(m, worst, direction);
         *changes = 1;
     } else if (!status) {

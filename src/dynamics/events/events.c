@@ -16,7 +16,7 @@
 /* Events that there may be before that at once, and again in every time of 1/(16 fastest): some contacts, and some of each. */
 static double most_credit(const struct events *e)
 {
-    return 32.0 + 8.0 * (double)e->stick_slip.contacts;
+    return 32.0 + 8.0 * (double)e->stick_slip.constant.contacts;
 }
 
 /* That they use up their credit in this part of such a time is no headway, and so many of them in a row are the end. Some hundred
@@ -100,30 +100,30 @@ static struct guard *append(struct events *e, size_t i, int slides, double side,
 void tribo_events_guard_slip(struct events *e, size_t i, const struct watch *watch)
 {
     const struct stick_slip *m = &e->stick_slip;
-    append(e, i, SLIDES, m->slip[i], m->doubt * m->noise[i], watch);
+    append(e, i, SLIDES, m->state.slip[i], m->noise.factor * m->noise.velocity[i], watch);
 }
 
 void tribo_events_guard_stick(struct events *e, size_t i, const struct watch *watch)
 {
-    append(e, i, HOLDS, -1.0, e->stick_slip.allowance[i], watch);
-    append(e, i, HOLDS, 1.0, e->stick_slip.allowance[i], watch);
+    append(e, i, HOLDS, -1.0, e->stick_slip.noise.allowance[i], watch);
+    append(e, i, HOLDS, 1.0, e->stick_slip.noise.allowance[i], watch);
 }
 
 void tribo_events_guard_part(struct events *e, size_t i, const struct watch *watch)
 {
-    append(e, i, SLIDES, -1.0, e->stick_slip.parting[i], watch);
-    append(e, i, SLIDES, 1.0, e->stick_slip.parting[i], watch);
+    append(e, i, SLIDES, -1.0, e->stick_slip.noise.parting[i], watch);
+    append(e, i, SLIDES, 1.0, e->stick_slip.noise.parting[i], watch);
 }
 
 void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *watch)
 {
     const struct stick_slip *m = &e->stick_slip;
-    const int keeps = m->slip[i] == TRIBO_SLIP_STUCK && tribo_stick_slip_follows(m, i) == 0.0;
-    const double times = m->slip[i] == TRIBO_SLIP_OPEN ? -1.0 : keeps ? tribo_breakaway_ratio(&m->breakaway, i) : 1.0;
-    const double allowance = keeps ? m->allowance[i] : 2.0 * TRIBO_LIMIT_NOISE * m->doubt * m->swing[i];
+    const int keeps = m->state.slip[i] == TRIBO_SLIP_STUCK && tribo_stick_slip_follows(m, i) == 0.0;
+    const double times = m->state.slip[i] == TRIBO_SLIP_OPEN ? -1.0 : keeps ? tribo_breakaway_ratio(&m->breakaway, i) : 1.0;
+    const double allowance = keeps ? m->noise.allowance[i] : 2.0 * TRIBO_LIMIT_NOISE * m->noise.factor * m->constant.swing[i];
     struct guard *g = append(e, i, HOLDS, 0.0, allowance, watch);
     g->limit *= times;
-    g->offset = times * g->offset + (keeps ? tribo_stick_slip_slack(m, i) - fabs(m->force[i]) : 0.0);
+    g->offset = times * g->offset + (keeps ? tribo_stick_slip_slack(m, i) - fabs(m->state.force[i]) : 0.0);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- events */
@@ -165,7 +165,7 @@ static int count_event(struct events *e, tribo_driver *drv, size_t contact, doub
     drv->events++;
     e->credit += 16.0 * most * fastest * (t - e->paid);
     e->paid = t;
-    e->stick_slip.doubt = 1.0;
+    e->stick_slip.noise.factor = 1.0;
     if (e->credit >= most) {
         refill(e, t);
         e->suspects = 0;
@@ -173,7 +173,7 @@ static int count_event(struct events *e, tribo_driver *drv, size_t contact, doub
     suspect(e, contact);
     e->credit -= 1.0;
     if (e->credit < 0.0) {
-        e->stick_slip.doubt = DOUBT;
+        e->stick_slip.noise.factor = DOUBT;
         e->stuck = 16.0 * fastest * (t - e->since) < HEADWAY ? e->stuck + most : 0.0;
         refill(e, t);
     }
@@ -199,7 +199,7 @@ static void expect(struct events *e, const struct guard *event, double when)
     if (e->begun && event) {
         *e->begun = (struct lasted){when, fabs(when - e->begun->time)};
     }
-    e->begun = event ? e->lasted + SLIPS * event->contact + (e->stick_slip.slip[event->contact] + 1) : NULL;
+    e->begun = event ? e->lasted + SLIPS * event->contact + (e->stick_slip.state.slip[event->contact] + 1) : NULL;
     e->search.early = e->begun ? e->begun->change : 0.0;
     e->search.expected = e->begun && e->search.early <= ALIKE * e->begun->time ? e->begun->time : 0.0;
 }
@@ -216,7 +216,7 @@ static void forget(struct events *e, double t, int continues)
         e->idle = e->suspects = 0;
         e->stuck = 0.0;
         refill(e, t);
-        memset(e->lasted, 0, SLIPS * e->stick_slip.contacts * sizeof *e->lasted);
+        memset(e->lasted, 0, SLIPS * e->stick_slip.constant.contacts * sizeof *e->lasted);
     }
 }
 
@@ -227,10 +227,10 @@ static void learn(struct events *e, tribo_driver *drv, int brief, double when)
     for (size_t k = 0; k < e->search.guards; k++) {
         const struct guard *g = &e->search.guard[k];
         if (g->slides == SLIDES) {
-            m->seen[g->contact] = brief ? fabs(g->left.g) + when * fabs(g->left.d) : g->size;
+            m->noise.velocity_scale[g->contact] = brief ? fabs(g->left.g) + when * fabs(g->left.d) : g->size;
             drv->backslip = greater(drv->backslip, g->lowest);
         } else if (g->slides == HOLDS) {
-            drv->excess = greater(drv->excess, g->lowest + m->excess[g->contact]);
+            drv->excess = greater(drv->excess, g->lowest + m->noise.excess[g->contact]);
         }
     }
 }
@@ -271,13 +271,13 @@ static int show_changes(struct events *e, tribo_driver *drv, double t, const dou
 {
     const struct stick_slip *m = &e->stick_slip;
     int status = TRIBO_OK;
-    for (size_t i = 0; i < m->contacts && !status; i++) {
+    for (size_t i = 0; i < m->constant.contacts && !status; i++) {
         const signed char from = e->shown[i];
         const int second = m->plane && m->plane->in_plane[i] == 2;
-        e->shown[i] = m->slip[i];
-        if (!second && from != m->slip[i]) {
+        e->shown[i] = m->state.slip[i];
+        if (!second && from != m->state.slip[i]) {
             *some = 1;
-            status = tribo_driver_show(drv, t, y, kind_of(from, m->slip[i]), i);
+            status = tribo_driver_show(drv, t, y, kind_of(from, m->state.slip[i]), i);
         }
     }
     return status;
@@ -303,7 +303,7 @@ static int decide(struct events *e, tribo_system *sys, double t, double *y)
 {
     struct stick_slip *m = &e->stick_slip;
     const int status = m->plane ? tribo_planar_slip_decide(m, sys, t, y) : tribo_stick_slip_decide(m, sys, t, y);
-    memset(m->seen, 0, m->contacts * sizeof *m->seen);
+    memset(m->noise.velocity_scale, 0, m->constant.contacts * sizeof *m->noise.velocity_scale);
     e->decided = status == TRIBO_OK;
     return status;
 }
@@ -326,7 +326,7 @@ static void mark_event(struct stick_slip *m, const struct guard *event)
     if (event->slides == SLIDES) {
         tribo_stick_slip_set(m, event->contact, TRIBO_SLIP_STUCK);
     } else {
-        m->reached = event->contact;
+        m->state.reached = event->contact;
     }
 }
 
@@ -336,7 +336,7 @@ static int show_decided(struct events *e, tribo_driver *drv, const struct guard 
                         double fastest)
 {
     const struct planar_slip *plane = e->stick_slip.plane;
-    const int stops = plane && plane->stopped < e->stick_slip.contacts;
+    const int stops = plane && plane->stopped < e->stick_slip.constant.contacts;
     int status = stops ? count_event(e, drv, plane->stopped, t, fastest) : TRIBO_OK, some = 0;
     status = status ? status : tribo_driver_keep(drv, t, y);
     if (status || !drv->seen) {
@@ -371,17 +371,17 @@ static int is_brief(const struct events *e, const tribo_system *sys, const struc
 static int go_brief(struct stick_slip *m, tribo_system *sys, double t, double tau, double *y)
 {
     const size_t n = sys->ndof;
-    const int status = tribo_stick_slip_acceleration(m, sys, t, y, m->acceleration, m->force);
+    const int status = tribo_stick_slip_acceleration(m, sys, t, y, m->work.acceleration, m->state.force);
     for (size_t i = 0; i < n; i++) {
-        y[n + i] += 0.5 * tau * m->acceleration[i];
+        y[n + i] += 0.5 * tau * m->work.acceleration[i];
         y[i] += tau * y[n + i];
     }
-    for (size_t i = 0; i < m->contacts; i++) {
-        const double power = m->slip[i] ? -m->force[i] * tribo_stick_slip_velocity(m, sys, i, y) : 0.0;
+    for (size_t i = 0; i < m->constant.contacts; i++) {
+        const double power = m->state.slip[i] ? -m->state.force[i] * tribo_stick_slip_velocity(m, sys, i, y) : 0.0;
         y[2 * n] += sys->tally[i] * tau * power;
     }
     for (size_t i = 0; i < n; i++) {
-        y[n + i] += 0.5 * tau * m->acceleration[i];
+        y[n + i] += 0.5 * tau * m->work.acceleration[i];
     }
     tribo_stick_slip_forget_shares(m);
     return status;
@@ -462,7 +462,7 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
                                  t1);
     }
     if (!e->watched) {
-        memcpy(e->shown, e->stick_slip.slip, drv->sys->ncontact);
+        memcpy(e->shown, e->stick_slip.state.slip, drv->sys->ncontact);
     }
     e->watched = drv->seen != NULL;
     tribo_stick_slip_start(&e->stick_slip, drv->sys, *t, y, continues);
@@ -473,7 +473,7 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
     status = on_context(drv, status);
     forget(e, *t, continues);
     if (!continues) {
-        memcpy(e->shown, e->stick_slip.slip, drv->sys->ncontact);
+        memcpy(e->shown, e->stick_slip.state.slip, drv->sys->ncontact);
     } else if (!status && drv->seen) {
         int some;
         status = tribo_driver_keep(drv, *t, y);

@@ -106,7 +106,7 @@ static double belt_work(const struct modal_motion *x, double tau, size_t one)
             const size_t i = w->index[e];
             const double c = w->cosine[e], d = w->sine[e];
             const double way = w->omega == 0.0 ? c * tau : (c * (now.im - then.im) - d * (now.re - then.re)) / w->omega;
-            work += x->contacts->slip[i] && (i == one || one == ALL) ? x->sys->tally[i] * x->steady[i] * way : 0.0;
+            work += x->contacts->state.slip[i] && (i == one || one == ALL) ? x->sys->tally[i] * x->steady[i] * way : 0.0;
         }
     }
     return work;
@@ -152,7 +152,7 @@ static double sampled_work(struct modal_motion *x, size_t i, const struct output
         tribo_modal_motion_go(x, half * ((double)(2 * (k / 8) + 1) + (point % 2 ? at[point / 2] : -at[point / 2])));
         tribo_course_look(x, &c);
         const double limit = x->sys->given_limit[i] + tribo_modal_motion_limit(x, i).g;
-        work += weight[point / 2] * greater(limit, 0.0) * greater(x->contacts->slip[i] * c.at.g, 0.0);
+        work += weight[point / 2] * greater(limit, 0.0) * greater(x->contacts->state.slip[i] * c.at.g, 0.0);
     }
     tribo_modal_motion_go(x, tau);
     return half * work;
@@ -161,7 +161,7 @@ static double sampled_work(struct modal_motion *x, size_t i, const struct output
 /* The work of contact i, which follows harmonics of its limit, less what belt_work has of it. */
 static double swinging_work(struct modal_motion *x, size_t i, const struct output *v, double tau)
 {
-    const double closed = x->contacts->slip[i] * limit_work(x, i, v, tau), own = x->sys->tally[i];
+    const double closed = x->contacts->state.slip[i] * limit_work(x, i, v, tau), own = x->sys->tally[i];
     const double belt = belt_work(x, tau, i), whole = own * closed - steady_work(x, i) + belt;
     double fastest;
     const double size = own * size_of_parts(x, i, v, tau, &fastest), intervals = ceil(fastest * tau) + 1.0;
@@ -183,7 +183,7 @@ double tribo_modal_motion_work(struct modal_motion *x, size_t i, double tau)
 
 double tribo_modal_motion_dissipated(struct modal_motion *x, double tau)
 {
-    const signed char *slip = x->contacts->slip;
+    const signed char *slip = x->contacts->state.slip;
     double energy = 0.0;
     for (size_t o = 0; o < x->h->sliding; o++) {
         const struct output *v = &x->h->output[o];

@@ -74,10 +74,10 @@ static int find_held(struct exact *x, const struct modal **found)
 {
     tribo_system *sys = x->sys;
     const struct stick_slip *m = &x->events.stick_slip;
-    const uint64_t print = print_of(m->contacts, m->key);
+    const uint64_t print = print_of(m->constant.contacts, m->state.key);
     for (size_t i = x->helds; i-- > 0;) {
         const struct held held = x->held[i];
-        if (has_key(held, print, m->contacts, m->key)) {
+        if (has_key(held, print, m->constant.contacts, m->state.key)) {
             for (; i + 1 < x->helds; i++) {
                 x->held[i] = x->held[i + 1];
             }
@@ -102,7 +102,7 @@ static int find_held(struct exact *x, const struct modal **found)
     struct modal *h;
     int status = x->shared.sys ? TRIBO_OK : tribo_modal_shared_create(&x->shared, sys);
     x->shared.known = &x->known;
-    status = status ? status : tribo_modal_create(&h, &x->shared, m->slip, m->holds);
+    status = status ? status : tribo_modal_create(&h, &x->shared, m->state.slip, m->state.holds);
     if (status) {
         return status;
     }
@@ -197,7 +197,7 @@ static double method_exact_bound(void *motion, double tau)
         g->size = fabs(g->offset) + (c ? c->size : 0.0);
         g->bend = c ? c->bend : 0.0;
         if (g->limit != 0.0) {
-            g->size += fabs(g->limit) * x->events.stick_slip.swing[g->contact];
+            g->size += fabs(g->limit) * x->events.stick_slip.constant.swing[g->contact];
             g->bend += fabs(g->limit) * tribo_modal_motion_limit_bend(&x->motion, g->contact);
         }
     }
@@ -207,7 +207,7 @@ static double method_exact_bound(void *motion, double tau)
 /* The limit without harmonics. */
 static double steady_limit(const struct exact *x, size_t i)
 {
-    return x->events.stick_slip.swing[i] > 0.0 ? x->sys->given_limit[i] : x->events.stick_slip.limit[i];
+    return x->events.stick_slip.constant.swing[i] > 0.0 ? x->sys->given_limit[i] : x->events.stick_slip.state.limit[i];
 }
 
 /* Guards of a contact at rest, unless it is far from its limit for the whole phase. */
@@ -215,7 +215,7 @@ static void add_stick_guards(struct exact *x, struct course *c)
 {
     const size_t i = c->output->contact;
     const struct stick_slip *m = &x->events.stick_slip;
-    const double ratio = tribo_breakaway_ratio(&m->breakaway, i), swing = ratio * m->swing[i];
+    const double ratio = tribo_breakaway_ratio(&m->breakaway, i), swing = ratio * m->constant.swing[i];
     const double offset = ratio * steady_limit(x, i) + tribo_stick_slip_slack(m, i);
     const struct watch g = {.output = c, .limit = swing > 0.0 ? ratio : 0.0, .offset = offset};
     if (c->size >= offset - swing) {
@@ -243,22 +243,22 @@ static int method_exact_begin(void *motion, double t, const double *y, double *r
         const int of_velocity = k < x->motion.h->sliding;
         c->output = &x->motion.h->output[k];
         const size_t i = c->output->contact;
-        const double v = m->rested[i] || !of_velocity ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
-        tribo_course_begin(&x->motion, c, of_velocity, of_velocity ? v : m->force[i]);
-        if (m->slip[i] == TRIBO_SLIP_OPEN) {
-            m->seen[i] = c->size;
+        const double v = m->state.rested[i] || !of_velocity ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
+        tribo_course_begin(&x->motion, c, of_velocity, of_velocity ? v : m->state.force[i]);
+        if (m->state.slip[i] == TRIBO_SLIP_OPEN) {
+            m->noise.velocity_scale[i] = c->size;
         } else if (!of_velocity) {
             add_stick_guards(x, c);
         } else {
             const struct watch g = {.output = c};
-            (m->slip[i] == TRIBO_SLIP_STUCK ? tribo_events_guard_part : tribo_events_guard_slip)(&x->events, i, &g);
+            (m->state.slip[i] == TRIBO_SLIP_STUCK ? tribo_events_guard_part : tribo_events_guard_slip)(&x->events, i, &g);
         }
     }
     for (size_t i = 0; x->sys->limit_harmonics && i < x->sys->ncontact; i++) {
         /* One of the limit itself, if harmonics make it so small that it may fall to 0, or to the force that a contact keeps. Those that
          * hold have guards of their forces. */
         const struct stick_slip *m = &x->events.stick_slip;
-        if (m->swing[i] > 0.0 && !m->holds[i]) {
+        if (m->constant.swing[i] > 0.0 && !m->state.holds[i]) {
             const struct watch g = {.offset = x->sys->given_limit[i], .limit = 1.0};
             tribo_events_guard_limit(&x->events, i, &g);
         }

@@ -396,7 +396,7 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
         }
         steady[i] = tribo_stick_slip_follows(x->contacts, i) * limit;
     }
-    x->steady = sys->limit_harmonics ? steady : x->contacts->force;
+    x->steady = sys->limit_harmonics ? steady : x->contacts->state.force;
     find_pushes(x, sys, y);
     x->runs = 0;
     for (size_t k = 0; k < h->modes; k++) {
@@ -457,7 +457,7 @@ double tribo_modal_motion_start(struct modal_motion *x, const struct modal *h, d
         for (size_t o = 0; o < x->h->sliding; o++) {
             const size_t i = x->h->output[o].contact;
             struct course c = {.output = &x->h->output[o]};
-            tribo_course_begin(x, &c, 1, m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y));
+            tribo_course_begin(x, &c, 1, m->state.rested[i] ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y));
             x->line[i] = c.line;
         }
     }

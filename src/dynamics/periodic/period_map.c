@@ -125,9 +125,9 @@ static int hold_still(struct period_map *m)
 {
     struct stick_slip *contacts = &m->events->stick_slip;
     tribo_system_set_time(m->sys, m->t);
-    memset(contacts->base, 0, m->sys->ncontact * sizeof *contacts->base);
-    tribo_system_loads(m->sys, DRIVES_BASE, 0, 1.0, contacts->base);
-    const int status = tribo_stick_slip_hold(contacts, m->sys, contacts->base, m->y + m->sys->ndof);
+    memset(contacts->state.base, 0, m->sys->ncontact * sizeof *contacts->state.base);
+    tribo_system_loads(m->sys, DRIVES_BASE, 0, 1.0, contacts->state.base);
+    const int status = tribo_stick_slip_hold(contacts, m->sys, contacts->state.base, m->y + m->sys->ndof);
     return status ? tribo_driver_fail(m->drv, status, "%s", tribo_system_message(m->sys)) : TRIBO_OK;
 }
 

@@ -166,7 +166,7 @@ static int add_energy(struct replay *r, double tau, const double *end)
     const struct events *e = r->map->events;
     (void)end;
     for (size_t i = 0; i < r->map->sys->ncontact; i++) {
-        if (tribo_slides(e->stick_slip.slip[i])) {
+        if (tribo_slides(e->stick_slip.state.slip[i])) {
             r->sum[i] += r->map->sys->tally[i] * e->work(e->motion, i, tau);
         }
     }
@@ -177,7 +177,7 @@ static int period_quantities_add_rest(struct replay *r, double tau, const double
 {
     (void)end;
     for (size_t i = 0; i < r->map->sys->ncontact; i++) {
-        r->sum[i] += r->map->events->stick_slip.slip[i] == TRIBO_SLIP_STUCK ? tau / r->map->period : 0.0;
+        r->sum[i] += r->map->events->stick_slip.state.slip[i] == TRIBO_SLIP_STUCK ? tau / r->map->period : 0.0;
     }
     return TRIBO_OK;
 }

@@ -25,7 +25,7 @@ static int change_of_holds(struct variation *x, const double *acceleration, int 
     }
     tribo_matrix_multiply_add(&x->sys->direction, 1.0, acceleration, x->a);
     const int status = tribo_stick_slip_balance(&x->events->stick_slip, x->a, x->f);
-    return status ? tribo_system_fail(x->sys, status, "%s", tribo_message(x->events->stick_slip.hold)) : TRIBO_OK;
+    return status ? tribo_system_fail(x->sys, status, "%s", tribo_message(x->events->stick_slip.constant.hold)) : TRIBO_OK;
 }
 
 /* to [ndof] += the change of q'' by one of the state, q and u. */
@@ -84,11 +84,11 @@ static int variation_breaks_away(const struct variation *x)
 {
     const struct guard *g = x->events->met;
     const struct stick_slip *m = &x->events->stick_slip;
-    return g && g->slides == HOLDS && !m->breakaway.falls && m->holds[g->contact] &&
+    return g && g->slides == HOLDS && !m->breakaway.falls && m->state.holds[g->contact] &&
            tribo_breakaway_is_sudden(&m->breakaway, g->contact);
 }
 
-/* The contacts whose forces, just found to be m->f, meet their static limits. */
+/* The contacts whose forces, just found to be m->work.f, meet their static limits. */
 static void find_met(struct variation *x)
 {
     const struct stick_slip *m = &x->events->stick_slip;
@@ -100,9 +100,9 @@ static void find_met(struct variation *x)
     tribo_system_limits(x->sys, x->a, x->f);
     for (size_t i = 0; i < x->sys->ncontact; i++) {
         const double met = (1.0 - TOGETHER) * tribo_breakaway_ratio(&m->breakaway, i) * x->a[i];
-        const int may = m->holds[i] && tribo_breakaway_is_sudden(&m->breakaway, i);
-        if (may && (i == x->events->met->contact || fabs(m->f[i]) >= met)) {
-            x->side[i] = (signed char)(m->f[i] > 0.0 ? 1 : -1);
+        const int may = m->state.holds[i] && tribo_breakaway_is_sudden(&m->breakaway, i);
+        if (may && (i == x->events->met->contact || fabs(m->work.f[i]) >= met)) {
+            x->side[i] = (signed char)(m->work.f[i] > 0.0 ? 1 : -1);
             x->met[x->count++] = i;
         }
     }
@@ -143,7 +143,7 @@ static int find_bond(struct variation *x)
             x->bond = l != k && fabs(x->f[x->met[l]]) > TOGETHER * x->rise[x->met[l]] ? x->met[k ? k : l] : x->bond;
         }
     }
-    return status ? tribo_system_fail(x->sys, status, "%s", tribo_message(x->events->stick_slip.hold)) : TRIBO_OK;
+    return status ? tribo_system_fail(x->sys, status, "%s", tribo_message(x->events->stick_slip.constant.hold)) : TRIBO_OK;
 }
 
 /* All that the decision leaves unknown of forces that meet static limits. */
@@ -182,7 +182,7 @@ static int phase_ends(struct company *company, double tau, double t, const doubl
 {
     struct variation *x = (struct variation *)company;
     tribo_system *sys = x->sys;
-    memcpy(x->before, x->events->stick_slip.slip, sys->ncontact);
+    memcpy(x->before, x->events->stick_slip.state.slip, sys->ncontact);
     int status = tribo_stick_slip_acceleration(&x->events->stick_slip, sys, t, y, x->acceleration, x->force);
     status = status ? status : x->status;
     find_met(x);
@@ -201,7 +201,7 @@ static int phase_ends(struct company *company, double tau, double t, const doubl
 static int pulls_loose(const struct variation *x, size_t i)
 {
     const struct guard *met = x->events->met;
-    const signed char *now = x->events->stick_slip.slip;
+    const signed char *now = x->events->stick_slip.state.slip;
     int loose = 0;
     for (size_t k = 0; k < x->sys->ncontact; k++) {
         loose |= x->before[k] == 0 && tribo_slides(now[k]);
@@ -213,8 +213,8 @@ static int pulls_loose(const struct variation *x, size_t i)
  * one has the same force before and after. */
 static int stops(const struct variation *x, size_t i)
 {
-    const signed char before = x->before[i], now = x->events->stick_slip.slip[i];
-    const int slid = tribo_slides(before) && !x->events->stick_slip.elastic[i];
+    const signed char before = x->before[i], now = x->events->stick_slip.state.slip[i];
+    const int slid = tribo_slides(before) && !x->events->stick_slip.constant.elastic[i];
     return slid && now != 2 && before * x->slope[i] < 0.0 && (now != before || pulls_loose(x, i));
 }
 
@@ -283,8 +283,8 @@ static int together(struct variation *x, const size_t *contact, size_t count, co
 /* 1 if the force of contact i may have changed where others stop: it stops itself, or rests before or after. */
 static int takes_part(const struct variation *x, size_t i)
 {
-    const int rests = x->before[i] == 0 || x->events->stick_slip.slip[i] == TRIBO_SLIP_STUCK;
-    return !x->events->stick_slip.elastic[i] && (rests || stops(x, i));
+    const int rests = x->before[i] == 0 || x->events->stick_slip.state.slip[i] == TRIBO_SLIP_STUCK;
+    return !x->events->stick_slip.constant.elastic[i] && (rests || stops(x, i));
 }
 
 /* x->group = group, of contact i and all to which it passes forces, by shared bodies and through others that take part. */
@@ -338,7 +338,7 @@ static void stop_by_groups(struct variation *x, size_t count)
             const size_t n = x->sys->ndof;
             double *jump = add_earlier(x, slope, rows), *change = x->column;
             for (size_t i = 0; i < x->sys->ncontact; i++) {
-                x->f[i] = x->group[i] == group ? x->events->stick_slip.force[i] - x->force[i] : 0.0;
+                x->f[i] = x->group[i] == group ? x->events->stick_slip.state.force[i] - x->force[i] : 0.0;
             }
             memset(change, 0, n * sizeof *change);
             tribo_matrix_multiply_add(&x->sys->response, 1.0, x->f, change);
@@ -348,7 +348,7 @@ static void stop_by_groups(struct variation *x, size_t count)
         } else {
             /* a contact of the group slides afterwards: then the order of stops matters, and there is no derivative */
             for (size_t i = 0; i < x->sys->ncontact; i++) {
-                if (x->group[i] == group && x->events->stick_slip.slip[i] != TRIBO_SLIP_STUCK) {
+                if (x->group[i] == group && x->events->stick_slip.state.slip[i] != TRIBO_SLIP_STUCK) {
                     x->torn = i;
                     x->other = stopped[i == stopped[0]];
                 }
@@ -373,7 +373,7 @@ static void stop_earlier(struct variation *x)
     /* a contact that loses its static limit where another one stops, without cause: two jumps whose order counts */
     const struct stick_slip *m = &x->events->stick_slip;
     for (size_t i = 0; i < x->sys->ncontact; i++) {
-        const int goes = x->before[i] == 0 && tribo_slides(m->slip[i]);
+        const int goes = x->before[i] == 0 && tribo_slides(m->state.slip[i]);
         if (goes && (x->side[i] || !x->group[i]) && tribo_breakaway_is_sudden(&m->breakaway, i)) {
             x->torn = i;
             x->other = x->stopped[0];
@@ -391,7 +391,7 @@ static size_t find_bound(const struct variation *x)
 {
     size_t bound = x->bond;
     for (size_t i = 0; i < x->sys->ncontact; i++) {
-        const signed char now = x->events->stick_slip.slip[i];
+        const signed char now = x->events->stick_slip.state.slip[i];
         bound = x->before[i] == 0 && tribo_slides(now) && !x->side[i] ? i : bound;
     }
     return bound;
@@ -404,7 +404,7 @@ static void event_decided(struct company *company)
     x->jumps = 0;
     stop_earlier(x);
     /* contacts that lose their static limits together are taken one after the other */
-    const signed char *now = x->events->stick_slip.slip;
+    const signed char *now = x->events->stick_slip.state.slip;
     size_t gone = 0;
     for (size_t k = 0; k < x->count; k++) {
         gone += now[x->met[k]] != 0;
@@ -419,7 +419,8 @@ static void event_decided(struct company *company)
                 const size_t i = x->met[k];
                 const double *row = x->pull + k * 2 * x->sys->ndof;
                 const struct stick_slip *m = &x->events->stick_slip;
-                const double drop = -(m->slip[i] + x->side[i] * tribo_breakaway_ratio(&m->breakaway, i)) * m->limit[i];
+                const double drop =
+                    -(m->state.slip[i] + x->side[i] * tribo_breakaway_ratio(&m->breakaway, i)) * m->state.limit[i];
                 double *jump = add_earlier(x, x->rise[i], row);
                 for (size_t d = 0; d < x->sys->ndof; d++) {
                     jump[d * x->sys->ncontact] = drop * tribo_matrix_get(&x->sys->response, d, i);

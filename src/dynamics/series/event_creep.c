@@ -109,7 +109,7 @@ static int reserve(struct event *e, size_t slides)
 
 static int is_sliding(const struct stick_slip *m, size_t k)
 {
-    return m->slip[m->plane->contact[k].at] == TRIBO_SLIP_PLANE;
+    return m->state.slip[m->plane->contact[k].at] == TRIBO_SLIP_PLANE;
 }
 
 static size_t count_sliding(const struct stick_slip *m)
@@ -234,15 +234,15 @@ static int learn_response(struct event *e, size_t slides)
     struct creep *c = &e->creep;
     const struct stick_slip *m = &e->events.stick_slip;
     const size_t revision = tribo_system_revision(e->sys), contacts = e->sys->ncontact;
-    if (c->known && c->revision == revision && memcmp(c->slip, m->slip, contacts) == 0 &&
-        memcmp(c->holds, m->holds, contacts) == 0) {
+    if (c->known && c->revision == revision && memcmp(c->slip, m->state.slip, contacts) == 0 &&
+        memcmp(c->holds, m->state.holds, contacts) == 0) {
         return TRIBO_OK;
     }
     const int status = find_response(e, slides);
     c->known = !status;
     c->revision = revision;
-    memcpy(c->slip, m->slip, contacts);
-    memcpy(c->holds, m->holds, contacts);
+    memcpy(c->slip, m->state.slip, contacts);
+    memcpy(c->holds, m->state.holds, contacts);
     return status;
 }
 
@@ -333,7 +333,7 @@ static double allowed(const struct event *e, size_t k, double h, double error)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const struct planar_contact *p = &m->plane->contact[k];
-    const double r = greater(p->limit[0] * m->diagonal[p->at], p->limit[1] * m->diagonal[p->at + 1]);
+    const double r = greater(p->limit[0] * m->constant.diagonal[p->at], p->limit[1] * m->constant.diagonal[p->at + 1]);
     return lesser(MOST_OFF, error * (double)(NODES + 1) / (r * h));
 }
 
@@ -363,7 +363,8 @@ static double stop_of(const struct event *e, size_t k, double size)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const struct planar_contact *p = &m->plane->contact[k];
-    const double n = p->limit[0] * p->limit[0] * m->diagonal[p->at], t = p->limit[1] * p->limit[1] * m->diagonal[p->at + 1];
+    const double n = p->limit[0] * p->limit[0] * m->constant.diagonal[p->at],
+                 t = p->limit[1] * p->limit[1] * m->constant.diagonal[p->at + 1];
     return size / greater(n, t);
 }
 

@@ -58,8 +58,8 @@ static void expand_falling(struct event *e, size_t k)
     const size_t c = e->sys->ncontact;
     for (size_t i = 0; i < c; i++) {
         double *part = e->part + i;
-        if (tribo_slides(m->slip[i])) {
-            part[k * c] = tribo_breakaway_part(&m->breakaway, i, m->slip[i], k, c, e->watch + i, part);
+        if (tribo_slides(m->state.slip[i])) {
+            part[k * c] = tribo_breakaway_part(&m->breakaway, i, m->state.slip[i], k, c, e->watch + i, part);
             e->fall[k * c + i] = tribo_breakaway_series(&m->breakaway, i, k, c, e->terms, e->limit + i, part);
         }
     }
@@ -73,10 +73,10 @@ static int find_given(struct event *e, size_t k)
         /* rigid contacts: one that slides, or is just at its limit, follows the limit; others keep their force */
         const struct stick_slip *m = &e->events.stick_slip;
         for (size_t i = 0; i < e->sys->ncontact; i++) {
-            const int keeps = k == 0 && m->slip[i] == TRIBO_SLIP_STUCK && !m->holds[i];
-            const double *limit = (m->slip[i] ? e->slide : e->limit) + k * e->sys->ncontact,
+            const int keeps = k == 0 && m->state.slip[i] == TRIBO_SLIP_STUCK && !m->state.holds[i];
+            const double *limit = (m->state.slip[i] ? e->slide : e->limit) + k * e->sys->ncontact,
                          side = tribo_stick_slip_follows(m, i);
-            e->given[i] = keeps ? m->force[i] : side != 0.0 ? side * limit[i] : 0.0;
+            e->given[i] = keeps ? m->state.force[i] : side != 0.0 ? side * limit[i] : 0.0;
         }
     } else if (springs) {
         memset(e->given, 0, e->sys->ncontact * sizeof *e->given);
@@ -87,8 +87,8 @@ static int find_given(struct event *e, size_t k)
         const tribo_system *sys = e->sys;
         tribo_elastic_forces(sys, e->q + k * sys->ndof, e->work, e->spring, NULL);
         for (size_t i = 0; i < sys->ncontact; i++) {
-            if (m->slip[i] == TRIBO_SLIP_STUCK && m->elastic[i]) {
-                e->given[i] = k == 0 ? m->force[i] : e->spring[i];
+            if (m->state.slip[i] == TRIBO_SLIP_STUCK && m->constant.elastic[i]) {
+                e->given[i] = k == 0 ? m->state.force[i] : e->spring[i];
             }
         }
     }
@@ -105,7 +105,7 @@ static void find_velocities(const struct event *e, size_t k, double *v)
     tribo_system_tables(e->sys, DRIVES_BASE, (int)k, -1.0, 0, c, v);
     tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->u + k * e->sys->ndof, v);
     for (size_t i = 0; k == 0 && i < c; i++) {
-        v[i] = m->rested[i] ? 0.0 : v[i];
+        v[i] = m->state.rested[i] ? 0.0 : v[i];
     }
 }
 
@@ -129,8 +129,8 @@ static void watch_forces(const struct event *e, size_t k, int given, double *wat
 {
     const struct stick_slip *m = &e->events.stick_slip;
     for (size_t i = 0; i < e->sys->ncontact; i++) {
-        if (m->slip[i] == TRIBO_SLIP_STUCK && !tribo_stick_slip_may_part(m, i)) {
-            watch[i] = k == 0 ? m->force[i] : e->held[i] + (given ? e->given[i] : 0.0);
+        if (m->state.slip[i] == TRIBO_SLIP_STUCK && !tribo_stick_slip_may_part(m, i)) {
+            watch[i] = k == 0 ? m->state.force[i] : e->held[i] + (given ? e->given[i] : 0.0);
         }
     }
 }
@@ -165,7 +165,7 @@ static int expand_forces(struct event *e, size_t k)
     tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->acceleration, e->a);
     status = tribo_stick_slip_balance(m, e->a, e->held);
     if (status) {
-        return tribo_system_fail(sys, status, "%s", tribo_message(m->hold));
+        return tribo_system_fail(sys, status, "%s", tribo_message(m->constant.hold));
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, e->held, acc);
     status = m->plane ? tribo_planar_series_finish(&e->planar, m, sys, k, e->base, acc, e->held) : TRIBO_OK;
@@ -176,7 +176,7 @@ static int expand_forces(struct event *e, size_t k)
     /* contacts at rest must not creep by what rounding leaves in acc */
     status = tribo_stick_slip_hold(m, sys, e->base, acc);
     if (!status && sys->massless.count) {
-        tribo_elastic_move(sys, m->slip, e->base, acc, e->spring);
+        tribo_elastic_move(sys, m->state.slip, e->base, acc, e->spring);
     }
     return status;
 }
@@ -220,7 +220,7 @@ int tribo_event_series(struct event *e)
         for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
             const double *limit = e->slide + j * c, *v = e->watch + (k - j) * c;
             for (size_t i = 0; i < c; i++) {
-                power += tribo_slides(m->slip[i]) ? sys->tally[i] * m->slip[i] * limit[i] * v[i] : 0.0;
+                power += tribo_slides(m->state.slip[i]) ? sys->tally[i] * m->state.slip[i] * limit[i] * v[i] : 0.0;
             }
         }
         power += m->plane ? tribo_planar_series_power(&e->planar, m, sys, k) : 0.0;
@@ -243,7 +243,7 @@ void tribo_event_slopes(struct event *e)
     for (size_t k = 0; k <= e->order; k++) {
         for (size_t i = 0; i < c; i++) {
             const double more = e->fall[k * c + i] - e->limit[k * c + i];
-            e->slope[k * c + i] = tribo_slides(m->slip[i]) ? more / m->breakaway.velocity[i] : 0.0;
+            e->slope[k * c + i] = tribo_slides(m->state.slip[i]) ? more / m->breakaway.velocity[i] : 0.0;
         }
     }
 }
@@ -256,7 +256,7 @@ static double power_of(const struct event *e, size_t i, size_t k)
     for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
         power += e->slide[j * c + i] * e->watch[(k - j) * c + i];
     }
-    return e->events.stick_slip.slip[i] * power;
+    return e->events.stick_slip.state.slip[i] * power;
 }
 
 double tribo_event_work(const struct event *e, size_t i, double tau)

@@ -66,7 +66,7 @@ static void event_find_moves(struct event *e, const double *y)
     }
     e->moves[1] = tribo_largest(y + n, n) + radian * tribo_stick_slip_acceleration_size(m, e->sys, y);
     e->moves[0] = tribo_largest(y, n) + radian * e->moves[1];
-    e->moves[2] = fabs(y[2 * n]) + radian * tribo_largest(m->force, m->contacts) * e->moves[1];
+    e->moves[2] = fabs(y[2 * n]) + radian * tribo_largest(m->state.force, m->constant.contacts) * e->moves[1];
 }
 
 /* The step on which the last two terms of everything stay below the tolerance. */
@@ -84,12 +84,12 @@ static double step_length(const struct event *e)
         for (size_t i = 0; i < c; i++) {
             /* forces of contacts at rest to the same part of their limit, or of what it becomes; and this itself */
             const double rise = e->terms > 1 ? fabs(e->limit[c + i]) * lesser(most, DBL_MAX) : 0.0;
-            const double force = tolerance * (greater(e->limit[i], 0.0) + m->swing[i] + rise);
+            const double force = tolerance * (greater(e->limit[i], 0.0) + m->constant.swing[i] + rise);
             const double stick = tribo_breakaway_ratio(&m->breakaway, i) * force;
             const double speed = m->plane ? lesser(u, m->plane->error[i]) : u;
-            const double scale = m->slip[i] == TRIBO_SLIP_STUCK && !tribo_stick_slip_may_part(m, i) ? stick : speed;
-            term = m->slip[i] == TRIBO_SLIP_OPEN ? term : greater(term, fabs(e->watch[k * c + i]) / scale);
-            term = k < e->terms && m->swing[i] > 0.0 ? greater(term, fabs(e->limit[k * c + i]) / force) : term;
+            const double scale = m->state.slip[i] == TRIBO_SLIP_STUCK && !tribo_stick_slip_may_part(m, i) ? stick : speed;
+            term = m->state.slip[i] == TRIBO_SLIP_OPEN ? term : greater(term, fabs(e->watch[k * c + i]) / scale);
+            term = k < e->terms && m->constant.swing[i] > 0.0 ? greater(term, fabs(e->limit[k * c + i]) / force) : term;
         }
         h = term > 0.0 ? lesser(h, pow(term, -1.0 / (double)k)) : h;
     }
@@ -181,8 +181,8 @@ static double method_event_bound(void *motion, double tau)
  * limit that only follows a table has its zeros at knots, where steps end. */
 static int limit_tells(const struct stick_slip *m, size_t i, int varies)
 {
-    const int keeps = m->slip[i] == TRIBO_SLIP_STUCK && !m->holds[i] && tribo_stick_slip_follows(m, i) == 0.0;
-    return keeps ? varies : m->swing[i] > 0.0 && !m->holds[i];
+    const int keeps = m->state.slip[i] == TRIBO_SLIP_STUCK && !m->state.holds[i] && tribo_stick_slip_follows(m, i) == 0.0;
+    return keeps ? varies : m->constant.swing[i] > 0.0 && !m->state.holds[i];
 }
 
 /* A step is at most so long that the speed of no planar contact falls to less than this part of what it began with. Where the
@@ -196,12 +196,12 @@ static void set_planar_guards(struct event *e)
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
         const struct planar_line *line = &e->planar.line[k];
-        const int moves = m->slip[p->at] == TRIBO_SLIP_PLANE;
+        const int moves = m->state.slip[p->at] == TRIBO_SLIP_PLANE;
         double *square = e->planar.square + k;
         const double limit = greater(p->limit[0], p->limit[1]);
         struct guard g = {.contact = p->at, .output = square, .slides = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
         g.offset = moves ? -SLOWER * SLOWER * square[0] : 0.5 * limit;
-        g.allowance = moves ? 0.0 : greater(m->allowance[p->at], m->allowance[p->at + 1]);
+        g.allowance = moves ? 0.0 : greater(m->noise.allowance[p->at], m->noise.allowance[p->at + 1]);
         e->size[p->at] = line->size;
         e->bend[p->at] = line->bend;
         if (moves || line->size >= 0.5 * limit) {
@@ -216,21 +216,21 @@ static void set_guards(struct event *e)
     const double h = e->length;
     const int varies = e->terms > 1;
     tribo_events_clear_guards(&e->events);
-    method_event_find_bounds(m->contacts, e->order + 1, h, e->watch, e->size, e->bend);
-    method_event_find_bounds(m->contacts, e->terms, h, e->limit, e->limit_size, e->limit_bend);
+    method_event_find_bounds(m->constant.contacts, e->order + 1, h, e->watch, e->size, e->bend);
+    method_event_find_bounds(m->constant.contacts, e->terms, h, e->limit, e->limit_size, e->limit_bend);
     if (m->plane) {
         set_planar_guards(e);
     }
-    for (size_t i = 0; i < m->contacts; i++) {
+    for (size_t i = 0; i < m->constant.contacts; i++) {
         const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
         struct watch g = {.output = e->watch + i};
-        if (m->slip[i] == TRIBO_SLIP_OPEN) { /* not guarded, but when it touches down, rounding of its velocity counts */
-            e->events.stick_slip.seen[i] = e->size[i];
+        if (m->state.slip[i] == TRIBO_SLIP_OPEN) { /* not guarded, but when it touches down, rounding of its velocity counts */
+            e->events.stick_slip.noise.velocity_scale[i] = e->size[i];
         }
         if (m->plane && m->plane->in_plane[i]) {
             continue;
         }
-        if (tribo_slides(m->slip[i])) {
+        if (tribo_slides(m->state.slip[i])) {
             tribo_events_guard_slip(&e->events, i, &g);
         } else if (tribo_stick_slip_may_part(m, i)) {
             /* size of the terms of v_i over [0, h] */
@@ -248,7 +248,7 @@ static void set_guards(struct event *e)
         }
         g.limit = varies ? ratio : 0.0;
         g.offset = (varies ? 0.0 : ratio * e->limit[i]) + tribo_stick_slip_slack(m, i);
-        if (m->holds[i] && e->size[i] >= ratio * (2.0 * e->limit[i] - e->limit_size[i])) {
+        if (m->state.holds[i] && e->size[i] >= ratio * (2.0 * e->limit[i] - e->limit_size[i])) {
             tribo_events_guard_stick(&e->events, i, &g);
         } else if (limit_tells(m, i, varies)) {
             tribo_events_guard_limit(&e->events, i, &(struct watch){.limit = 1.0});
@@ -358,8 +358,8 @@ static int method_event_prepare(struct event *e)
 {
     const tribo_system *sys = e->sys;
     int status = take_tolerances(e);
-    e->events.stick_slip.abstol = e->drv->abstol;
-    e->events.stick_slip.reltol = e->drv->abstol > 0.0 ? e->drv->reltol : USUAL;
+    e->events.stick_slip.constant.abstol = e->drv->abstol;
+    e->events.stick_slip.constant.reltol = e->drv->abstol > 0.0 ? e->drv->reltol : USUAL;
     if (status || (e->cosine && e->revision == sys->revision)) {
         return status;
     }
@@ -428,7 +428,7 @@ static int speeds_tell(const struct event *e, double h)
         for (size_t k = last + 1; k-- > 0;) {
             sum = sum * h + fabs(l->xn[k]) + fabs(l->xt[k]);
         }
-        tell &= e->events.stick_slip.slip[plane->contact[c].at] != TRIBO_SLIP_PLANE || sum <= FASTER * l->xn[0];
+        tell &= e->events.stick_slip.state.slip[plane->contact[c].at] != TRIBO_SLIP_PLANE || sum <= FASTER * l->xn[0];
     }
     return tell;
 }

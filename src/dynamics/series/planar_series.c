@@ -26,7 +26,7 @@ void tribo_planar_series_free(struct planar_series *s)
 
 static int slides(const struct stick_slip *m, const struct planar_contact *p)
 {
-    return m->slip[p->at] == TRIBO_SLIP_PLANE;
+    return m->state.slip[p->at] == TRIBO_SLIP_PLANE;
 }
 
 static int planar_series_reserve(struct planar_series *s, size_t terms, size_t contacts)
@@ -95,7 +95,7 @@ static int planar_series_answer(struct planar_series *s, size_t q, struct stick_
     tribo_matrix_multiply_add(&sys->direction, 1.0, acc, a);
     const int status = tribo_stick_slip_balance(m, a, held);
     if (status) {
-        return tribo_system_fail(sys, status, "%s", tribo_message(m->hold));
+        return tribo_system_fail(sys, status, "%s", tribo_message(m->constant.hold));
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, held, acc);
     memset(a, 0, c * sizeof *a);
@@ -111,7 +111,7 @@ double tribo_planar_series_stop(const struct stick_slip *m, const tribo_system *
 {
     double time[2];
     for (size_t d = 0; d < 2; d++) {
-        time[d] = fabs(tribo_stick_slip_velocity(m, sys, p->at + d, y)) / (p->limit[d] * m->diagonal[p->at + d]);
+        time[d] = fabs(tribo_stick_slip_velocity(m, sys, p->at + d, y)) / (p->limit[d] * m->constant.diagonal[p->at + d]);
     }
     return greater(time[0], time[1]);
 }
@@ -320,7 +320,7 @@ void tribo_planar_series_squares(struct planar_series *s, const struct stick_sli
         const size_t terms = s->order + 1 - (moves ? (size_t)p->begins : 0);
         const double scale = moves ? 1.0 : 0.5 * greater(p->limit[0], p->limit[1]);
         if (!moves) {
-            take_forces(l, p, s->order, m->contacts, f);
+            take_forces(l, p, s->order, m->constant.contacts, f);
         }
         double power = 1.0;
         l->size = l->bend = 0.0;
@@ -346,7 +346,7 @@ double tribo_planar_series_value(const double *x, size_t powers, double h)
 
 void tribo_planar_series_errors(const struct planar_series *s, const struct stick_slip *m, double *error)
 {
-    for (size_t i = 0; i < m->contacts; i++) {
+    for (size_t i = 0; i < m->constant.contacts; i++) {
         error[i] = HUGE_VAL;
     }
     for (size_t c = 0; c < m->plane->count; c++) {
@@ -369,7 +369,8 @@ double tribo_planar_series_defect(const struct planar_series *s, const struct st
                          size = hypot(xn, xt);
             const double off = hypot(tribo_planar_series_value(l->un, s->order, h) - xn / size,
                                      tribo_planar_series_value(l->ut, s->order, h) - xt / size);
-            const double most_r = greater(p->limit[0] * m->diagonal[p->at], p->limit[1] * m->diagonal[p->at + 1]);
+            const double most_r =
+                greater(p->limit[0] * m->constant.diagonal[p->at], p->limit[1] * m->constant.diagonal[p->at + 1]);
             const double defect = off * most_r * h / (double)(s->order + 1);
             most = greater(most, defect / lesser(error, m->plane->error[p->at]));
         }

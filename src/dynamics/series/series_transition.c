@@ -60,15 +60,15 @@ static int series_transition_project(struct stick_slip *m, const tribo_system *s
         columns[j * n + j] += a ? 0.0 : 1.0;
         if (sys->massless.count && a == &sys->stiffness) {
             /* x [ndof] -= accelerations by the springs of elastic contacts that hold, for a unit displacement j */
-            double *unit = m->size, *force = m->own_a;
+            double *unit = m->noise.size, *force = m->work.own_a;
             memset(unit, 0, sys->ndof * sizeof *unit);
             unit[j] = 1.0;
-            tribo_elastic_answer(sys, m->slip, unit, m->rate, force);
+            tribo_elastic_answer(sys, m->state.slip, unit, m->work.rate, force);
             tribo_matrix_multiply_add(&sys->response, -1.0, force, (columns + j * n));
         }
-        status = tribo_stick_slip_project(m, sys, m->still, columns + j * n);
+        status = tribo_stick_slip_project(m, sys, m->constant.still, columns + j * n);
         if (sys->massless.count) {
-            tribo_elastic_move(sys, m->slip, m->still, columns + j * n, m->v);
+            tribo_elastic_move(sys, m->state.slip, m->constant.still, columns + j * n, m->work.v);
         }
         for (size_t i = 0; i < n; i++) {
             to[i * n + j] = factor * columns[j * n + i];
@@ -82,13 +82,13 @@ static int series_transition_project(struct stick_slip *m, const tribo_system *s
 static int project_response(struct series_transition *x, struct stick_slip *m, const tribo_system *sys)
 {
     const size_t n = sys->ndof, c = sys->ncontact;
-    double *column = m->size;
+    double *column = m->noise.size;
     int status = TRIBO_OK;
     for (size_t i = 0; !status && i < c; i++) {
         for (size_t d = 0; d < n; d++) {
             column[d] = tribo_matrix_get(&sys->response, d, i);
         }
-        status = tribo_stick_slip_project(m, sys, m->still, column);
+        status = tribo_stick_slip_project(m, sys, m->constant.still, column);
         for (size_t d = 0; d < n; d++) {
             x->push[d * c + i] = column[d];
         }
@@ -99,10 +99,10 @@ static int project_response(struct series_transition *x, struct stick_slip *m, c
 /* The matrices for the contacts that hold. */
 static int update(struct series_transition *x, struct stick_slip *m, const tribo_system *sys)
 {
-    if (x->known && x->revision == sys->revision && memcmp(x->holds, m->holds, sys->ncontact) == 0) {
+    if (x->known && x->revision == sys->revision && memcmp(x->holds, m->state.holds, sys->ncontact) == 0) {
         return TRIBO_OK;
     }
-    memcpy(x->holds, m->holds, sys->ncontact);
+    memcpy(x->holds, m->state.holds, sys->ncontact);
     x->revision = sys->revision;
     int status = series_transition_project(m, sys, NULL, 1.0, x->project);
     status = status ? status : series_transition_project(m, sys, &sys->stiffness, -1.0, x->stiff);
