@@ -179,15 +179,15 @@ static int planar_force_solve(tribo_context *ctx, const struct cluster *g)
 {
     struct disc_qp *p = &ctx->plane.problem;
     const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
-    p->factor.work.factorizations = 0;
+    p->factor.qp.work.factorizations = 0;
     p->near_enough = ctx->plane.cuts ? NEAREST : TRIBO_NEAR_ENOUGH;
     int done = tribo_disc_solve(p);
     if (done && g->redundant && ctx->set.sharing == TRIBO_SHARE_LEAST_NORM) {
         done = tribo_disc_share(p);
     }
     ctx->count.solves++;
-    ctx->count.reused += p->factor.work.factorizations == 0;
-    ctx->memory.problem.work.factorizations += p->factor.work.factorizations;
+    ctx->count.reused += p->factor.qp.work.factorizations == 0;
+    ctx->memory.problem.work.factorizations += p->factor.qp.work.factorizations;
     if (!done || p->residual > TOO_FAR) {
         return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE,
                           "no forces found for the %zu direction%s near stick around contact %zu: %g of a limit is missing",
@@ -216,7 +216,7 @@ static int solve_all(tribo_context *ctx, const struct cluster *g, double dt, con
         } while (!status && ctx->plane.cuts && tribo_planar_widen(ctx, g));
     } while (!status && ctx->set.breaking && tribo_planar_break(ctx, g, dt, a));
     ctx->plane.solved++;
-    ctx->last.rank += status ? 0 : ctx->plane.problem.sets.rank;
+    ctx->last.rank += status ? 0 : ctx->plane.problem.factor.sets.rank;
     return status;
 }
 

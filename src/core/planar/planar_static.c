@@ -73,7 +73,7 @@ static int pulled_beyond(const struct disc_qp *p, size_t e)
     const double weak = b.small > 16.0 * DBL_EPSILON * b.great ? b.small : b.great;
     const double doubt = fabs(n[0] * b.e[0] + n[1] * b.e[1]) * quotient(noise, b.great) +
                          fabs(n[1] * b.e[0] - n[0] * b.e[1]) * quotient(noise, weak);
-    return size - 1.0 > doubt + (p->sets.dependents ? DISAGREEMENT : 8.0 * DBL_EPSILON);
+    return size - 1.0 > doubt + (p->factor.sets.dependents ? DISAGREEMENT : 8.0 * DBL_EPSILON);
 }
 
 /* The velocities that a step of dt leaves to the contacts of the cluster. */

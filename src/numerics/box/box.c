@@ -1,15 +1,17 @@
-/* The box-constrained quadratic program of a group, min 1/2 x'Rx + q'x with lo <= x <= hi, which Coulomb's law comes down to:
- * an x inside its box has no gradient, and the gradient at a bound pushes against it.
+/* The box-constrained quadratic program of a group, min 1/2 x'Rx + q'x with lo <= x <= hi, to which Coulomb's law leads: an x inside
+ * its box has no gradient, and the gradient at a bound pushes against the bound.
  *
  *     begin with the sets of the last call
- *     repeat  x = the solution with these sets; what is outside its box goes to the bound, what pulls away from its bound is
- * freed until   no set changes, or patience ends if it has ended: change one contact at a time, down the objective, until no
- * gradient pulls if contacts are redundant: x = the solution of least norm
+ *     repeat  x = the solution with these sets; an x outside its box goes to the bound, an x whose gradient leads away from its
+ *             bound becomes free
+ *     until   no set changes, or patience ends
+ *     after patience: change one contact at a time, down the objective, until no gradient pulls
+ *     redundant contacts: x = the solution of least norm
  *
- * Whole sets change at once at first (the primal-dual active set method of
- * Hintermueller, Ito and Kunisch 2002, SIAM J. Optim. 13, 865, doi:10.1137/S1052623401383558): usually none does, and the call
- * costs a solve and a look at the gradient. That method may cycle; then a primal active set method finishes, in which every
- * change lowers the objective. Either ends only when the gradient shows that x is the solution, up to its own rounding. */
+ * Whole sets change at once (the primal-dual active set method of Hintermueller, Ito and Kunisch 2002, SIAM J. Optim. 13, 865,
+ * doi:10.1137/S1052623401383558). Usually none changes, and a call costs a solve and a gradient. That method may cycle; a primal
+ * active set method, each change of which lowers the objective, then finishes. Either ends only when the gradient shows that x is
+ * the solution, up to the gradient's rounding. */
 #include "box_qp.h"
 
 #include <float.h>
@@ -17,7 +19,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Takes the gradient of the independent x, which is found, to zero. */
+/* Takes the gradient of the independent x, which is up to date, to its rounding. */
 static void box_refine(struct box_qp *p)
 {
     for (int pass = 0; pass < 4 && !tribo_box_settled(p, 1.0); pass++) {
@@ -30,12 +32,7 @@ static void box_refine(struct box_qp *p)
     }
 }
 
-static int outside(double x, double lo, double hi)
-{
-    return (x > hi) - (x < lo);
-}
-
-/* Where each x wants to be, in p->to. Returns whether that is where it is. */
+/* to = the place where each x belongs. Returns 1 if all are there. */
 static int box_revise(struct box_qp *p)
 {
     const struct group *g = p->group;
@@ -48,7 +45,7 @@ static int box_revise(struct box_qp *p)
     }
     for (size_t k = 0; k < p->sets->rank; k++) {
         const size_t i = p->order[k];
-        p->to[i] = (signed char)outside(p->x[i], p->lo[i], p->hi[i]);
+        p->to[i] = (signed char)((p->x[i] > p->hi[i]) - (p->x[i] < p->lo[i]));
     }
     for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
         const size_t i = p->order[k];
@@ -59,7 +56,7 @@ static int box_revise(struct box_qp *p)
     return memcmp(p->to, p->at, g->size) == 0;
 }
 
-/* Forces of earlier calls go, which may have been so large that their rounding is what is left of them. */
+/* x = 0, or the bound next to 0: forces of earlier calls may be so large that their rounding hides others. */
 static void box_forget(struct box_qp *p)
 {
     tribo_box_forget_low(p);
@@ -69,7 +66,7 @@ static void box_forget(struct box_qp *p)
     }
 }
 
-/* x with the sets and the factor as they are. Returns whether it is found to rounding. */
+/* x = the solution with the sets and the factor as they are. Returns 1 if its gradient is rounding. */
 static int box_solve_sets(struct box_qp *p)
 {
     tribo_box_forget_low(p);
@@ -86,22 +83,7 @@ static int box_solve_sets(struct box_qp *p)
     return tribo_box_settled(p, TRIBO_SETTLED);
 }
 
-/* The same; if rounding has gathered in the factor over many changes with a new one, and where forces of earlier calls are in the
- * way without them. */
-static int box_find(struct box_qp *p)
-{
-    if (box_solve_sets(p)) {
-        return 1;
-    }
-    tribo_factor_rebuild(p, NULL);
-    if (box_solve_sets(p)) {
-        return 1;
-    }
-    box_forget(p);
-    return box_solve_sets(p);
-}
-
-/* Whether a dependent is to go to a bound so far away that beside its force there what pulls at it is rounding. */
+/* Returns 1 if a dependent is to go to a bound so far away that its pull is rounding beside its force there. */
 static int box_hides(const struct box_qp *p)
 {
     int hides = 0;
@@ -119,7 +101,15 @@ static int box_primal_dual(struct box_qp *p)
 {
     size_t least = SIZE_MAX;
     for (int patience = 10; patience > 0; patience--) {
-        const int found = box_find(p);
+        int found = box_solve_sets(p);
+        if (!found) { /* rounding of many changes in the factor */
+            tribo_factor_rebuild(p, NULL);
+            found = box_solve_sets(p);
+        }
+        if (!found) {
+            box_forget(p);
+            found = box_solve_sets(p);
+        }
         if (box_revise(p)) {
             return found;
         }
@@ -137,7 +127,7 @@ static int box_primal_dual(struct box_qp *p)
 
 /* ------------------------------------------------------------------------------------------------ primal active set */
 
-/* Moves x along step, as tribo_box_advance does; a contact that meets a bound stays there. Returns 1 if one did. */
+/* tribo_box_advance; a contact that meets a bound stays there. Returns 1 if one did. */
 static int box_move(struct box_qp *p, double longest)
 {
     const size_t hit = tribo_box_advance(p, longest);
@@ -148,7 +138,7 @@ static int box_move(struct box_qp *p, double longest)
     return 1;
 }
 
-/* error [size] = what rounding leaves of doubt about the x of the free contacts. */
+/* error [size] = rounding errors of the free x; 0 elsewhere. */
 static void find_doubt(const struct box_qp *p, double *error)
 {
     memset(error, 0, p->group->size * sizeof *error);
@@ -166,8 +156,8 @@ double tribo_box_doubt(const struct box_qp *p, size_t i)
     return p->noise[i] + doubt;
 }
 
-/* A contact whose gradient is farthest beyond rounding, its own and that of the others' x: a dependent one, or one at a bound
- * that should leave it. size if there is none. */
+/* Returns the contact whose pull is the largest in parts of its rounding and that of the free x, or size if all are within it: of
+ * the dependents, or of the contacts at a bound. */
 static size_t box_worst(const struct box_qp *p, int dependent)
 {
     const struct group *g = p->group;
@@ -190,8 +180,8 @@ static size_t box_worst(const struct box_qp *p, int dependent)
     return found;
 }
 
-/* Down along the null vector in which the dependent d moves by 1, as far as a bound; or, where R is not quite singular, to the
- * bottom. */
+/* Moves x down along the null vector in which the dependent d moves by 1, to a bound, or to the minimum if R is not quite
+ * singular. */
 static int box_slide(struct box_qp *p, size_t d)
 {
     double size;
@@ -202,8 +192,7 @@ static int box_slide(struct box_qp *p, size_t d)
     for (size_t k = 0; pull > 0.0 && k < p->sets->rank + p->sets->dependents; k++) {
         p->step[p->order[k]] *= -1.0;
     }
-    /* twice as many digits leave no doubt that R is singular along a null vector */
-    double curvature = 0.0;
+    double curvature = 0.0; /* with twice as many digits R is singular along a null vector */
     if (!p->twofold) {
         curvature = fabs(tribo_row_dot(p, d, p->step, &size));
         curvature = greater(curvature, tribo_resolution(p->group->size) * size);
@@ -211,7 +200,7 @@ static int box_slide(struct box_qp *p, size_t d)
     return box_move(p, quotient(fabs(pull), greater(curvature, DBL_MIN)));
 }
 
-/* 1 if something moved as far as a bound. */
+/* Newton's step, to the first bound. Returns 1 if there is one. */
 static int box_descend(struct box_qp *p)
 {
     tribo_box_gradients(p);
@@ -219,7 +208,7 @@ static int box_descend(struct box_qp *p)
     return box_move(p, 1.0);
 }
 
-/* Every round lowers the objective, or takes an x out of the set, so that no set comes back. */
+/* Each round lowers the objective, or takes an x out of the set: no set returns. */
 static int box_primal(struct box_qp *p)
 {
     memcpy(p->to, p->at, p->group->size);
@@ -265,16 +254,6 @@ static void box_restore(struct box_qp *p, const double *x)
     tribo_box_gradients(p);
 }
 
-static int box_inside(const struct box_qp *p)
-{
-    int all = 1;
-    for (size_t k = 0; k < p->sets->rank; k++) {
-        const size_t i = p->order[k];
-        all &= p->lo[i] <= p->x[i] && p->x[i] <= p->hi[i];
-    }
-    return all;
-}
-
 int tribo_box_solve(struct box_qp *p)
 {
     for (size_t e = 0; (p->far || p->sets->far) && e < p->count; e++) {
@@ -287,11 +266,13 @@ int tribo_box_solve(struct box_qp *p)
     return box_primal_dual(p) || box_primal(p);
 }
 
-/* Of solutions takes the one of least norm. The rounding of shares may be much to a contact that carries little: then it is taken
- * away again, where the boxes have room for that. Returns how far x is from a solution; before is the x that it comes from, and
- * after is x. */
+/* x = the solution of least norm. Takes the rounding of shares, which may be much to a contact that carries little, away again if
+ * x stays in its boxes. before [size] = x as it was, after [size] = x. Returns the distance of x from a solution, in parts of
+ * tolerances. */
 static double box_share_once(struct box_qp *p, double *before, double *after)
 {
+    double most = 0.0;
+    int inside = 1;
     memcpy(before, p->x, p->group->size * sizeof *before);
     if (!tribo_least_norm(p)) {
         return 0.0;
@@ -299,13 +280,16 @@ static double box_share_once(struct box_qp *p, double *before, double *after)
     memcpy(after, p->x, p->group->size * sizeof *after);
     tribo_box_gradients(p);
     box_refine(p);
-    if (!box_inside(p)) {
+    for (size_t k = 0; k < p->sets->rank; k++) {
+        const size_t i = p->order[k];
+        inside &= p->lo[i] <= p->x[i] && p->x[i] <= p->hi[i];
+    }
+    if (!inside) {
         box_restore(p, after);
     }
     memcpy(after, p->x, p->group->size * sizeof *after);
-    /* How far x is from the fixed point, in parts of the tolerances: by the acceleration that the contact is free to follow; by all of
-     * its gradient where x misses by more than a trace of its box, which may be less than the tolerance altogether. */
-    double most = 0.0;
+    /* Counts the acceleration that contact i is free to follow; all of its gradient if it exceeds a trace of the box, which may be
+     * less than the tolerance. */
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
         const double r = p->unit[i] / greater(0.5 * p->hi[i] - 0.5 * p->lo[i], DBL_MIN);
@@ -316,22 +300,18 @@ static double box_share_once(struct box_qp *p, double *before, double *after)
     return most;
 }
 
-/* A solution as without earlier calls. Returns 0 if none is found with patience. */
-static int box_solve_afresh(struct box_qp *p)
-{
-    box_forget(p);
-    tribo_box_enter(p, 0);
-    return box_primal_dual(p);
-}
-
-/* Of large forces of earlier calls that come to nothing there is left what was rounding of them, and that may be too much: then
- * all begins without them. Where that does not do either, contacts share as they did before. */
+/* Large forces of earlier calls may have left too much rounding: then solves anew from x = 0. Where that does not help, contacts
+ * share as they did before. */
 void tribo_box_share(struct box_qp *p)
 {
     double *before = p->spare[0], *after = p->spare[1];
     double violation = box_share_once(p, before, after);
-    if (violation > TRIBO_SETTLED && box_solve_afresh(p)) {
-        violation = box_share_once(p, before, after);
+    if (violation > TRIBO_SETTLED) {
+        box_forget(p);
+        tribo_box_enter(p, 0);
+        if (box_primal_dual(p)) {
+            violation = box_share_once(p, before, after);
+        }
     }
     if (violation > TRIBO_SETTLED) {
         box_restore(p, before);

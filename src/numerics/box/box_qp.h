@@ -164,11 +164,14 @@ void tribo_dense_remove(struct box_qp *p, size_t i);
 double tribo_dense_rebuild(struct box_qp *p, size_t *where);
 void tribo_dense_solve(const struct box_qp *p, double *step);
 
-/* What factorizations that choose their pivots share: the free contacts, in p->order; symmetric exchange of rows and columns k
- * and other > k in the lower triangle l, columns before k included; what elimination has left of the rows from k on. */
+/* Shared by factorizations that choose their pivots. order = the free contacts; returns their number. */
 size_t tribo_dense_order(struct box_qp *p);
-void tribo_dense_exchange(const struct box_qp *p, double *l, size_t all, size_t k, size_t other);
-double tribo_dense_leftover(const struct box_qp *p, size_t k, size_t all, size_t *where);
+
+/* Exchanges the largest pivot of rows k to all - 1 into row k, in l, l_low if graded, and order. Returns 0 if it is at most zero. */
+int tribo_dense_pivot(struct box_qp *p, size_t k, size_t all, double zero);
+
+/* Sets rank, and the other contacts as dependents. Returns as tribo_factor_rebuild. */
+double tribo_dense_end(struct box_qp *p, size_t rank, size_t all, size_t *where);
 
 double tribo_graded_rebuild(struct box_qp *p, size_t *where);
 void tribo_graded_solve(const struct box_qp *p, double *step, double *low);

@@ -1,4 +1,4 @@
-/* The factor of R over the free contacts of a group, and the rows of R, whichever way they are kept. */
+/* The factor of R over the free contacts of a group, and rows of R: dense, sparse or graded. */
 #include "box_qp.h"
 
 #include <float.h>
@@ -50,22 +50,17 @@ static void factor_solve(const struct box_qp *p, double *step)
     }
 }
 
-static double largest_step(const struct box_qp *p, const double *step)
-{
-    double most = 0.0;
-    for (size_t k = 0; k < p->sets->rank; k++) {
-        most = greater(most, fabs(step[p->order[k]]));
-    }
-    return most;
-}
-
 void tribo_factor_solve(const struct box_qp *p, double *step)
 {
     if (!p->far) {
         factor_solve(p, step);
         return;
     }
-    const double room = largest_step(p, step) < TRIBO_ROOM * TRIBO_FAR ? 1.0 : TRIBO_ROOM, far = room * TRIBO_FAR;
+    double most = 0.0;
+    for (size_t k = 0; k < p->sets->rank; k++) {
+        most = greater(most, fabs(step[p->order[k]]));
+    }
+    const double room = most < TRIBO_ROOM * TRIBO_FAR ? 1.0 : TRIBO_ROOM, far = room * TRIBO_FAR;
     for (size_t k = 0; k < p->sets->rank; k++) {
         step[p->order[k]] *= room;
     }
@@ -77,11 +72,11 @@ void tribo_factor_solve(const struct box_qp *p, double *step)
 
 int tribo_factor_many(const struct box_qp *p, size_t changes, size_t free)
 {
-    /* dense: about rank^2 for each, and a third of that for every free contact */
+    /* A change of a dense factor costs about rank^2, a dense factor free^3/3. */
     return p->group->sparse ? tribo_sparse_many(p, changes) : p->group->graded || 3 * changes > free;
 }
 
-/* Sums side by side, since one would have to be added up in order. */
+/* Returns row'x, and *size = |row|'|x|: four sums side by side, since one sum waits for itself. */
 TRIBO_SIMD static double factor_dense_dot(const double *restrict row, const double *restrict x, size_t n, double *size)
 {
     enum { SUMS = 4 };

@@ -1,6 +1,6 @@
-/* The factor of a group whose R is kept as a square block. Rows are appended and deleted in O(rank^2), and contacts that depend
- * on those in the factor wait beside it. A pivot that is small, but not zero to rounding, is not trusted: then everything is
- * factorized anew with the largest pivots first, which is where the rank is decided.
+/* The factor of a group whose R is a square block. Rows are appended and deleted in O(rank^2); contacts that depend on those in the
+ * factor wait beside it. A pivot that is small, but not zero to rounding, leads to a factor with the largest pivots first, which
+ * decides the rank.
  *
  * Row k of l holds l_k0, ... l_k,k-1 and 1/l_kk. */
 #include "box_qp.h"
@@ -13,7 +13,7 @@ static double dense_entry(const struct box_qp *p, size_t i, size_t j)
     return p->scale[i] * p->r[i * p->group->size + j] * p->scale[j];
 }
 
-/* Four sums side by side, since one would have to be added up in order. */
+/* Returns x'y: four sums side by side, since one sum waits for itself. */
 static double dense_row_dot(const double *x, const double *y, size_t n)
 {
     double sum[4] = {0.0};
@@ -29,34 +29,27 @@ static double dense_row_dot(const double *x, const double *y, size_t n)
     return sum[0] + sum[1] + (sum[2] + sum[3]);
 }
 
-/* row [rank] = L^-1 (column of contact i); returns the pivot that i would have. */
-static double dense_column(const struct box_qp *p, size_t i, double *row)
+/* Appends i to the independent contacts or to the dependents. Returns 0 if the pivot is doubtful. */
+static int dense_append(struct box_qp *p, size_t i)
 {
     const size_t rank = p->sets->rank, size = p->group->size;
-    double pivot = dense_entry(p, i, i);
+    const double diagonal = dense_entry(p, i, i);
+    double *row = p->l + rank * size, pivot = diagonal;
     for (size_t k = 0; k < rank; k++) {
         const double *l = p->l + k * size;
         row[k] = (dense_entry(p, i, p->order[k]) - dense_row_dot(l, row, k)) * l[k];
         pivot -= row[k] * row[k];
     }
-    return pivot;
-}
-
-/* Appends i to the independent contacts or to the dependents. Returns 0 if it is not clear which. */
-static int dense_append(struct box_qp *p, size_t i)
-{
-    const struct group *g = p->group;
-    double *row = p->l + p->sets->rank * g->size;
-    const double pivot = dense_column(p, i, row), relative = pivot / dense_entry(p, i, i);
-    p->order[p->sets->rank + p->sets->dependents] = i;
-    if (relative <= tribo_resolution(p->sets->rank + 1)) {
+    const double relative = pivot / diagonal;
+    p->order[rank + p->sets->dependents] = i;
+    if (relative <= tribo_resolution(rank + 1)) {
         p->sets->dependents++;
     } else if (relative <= TRIBO_DOUBTFUL) {
         return 0;
     } else {
-        row[p->sets->rank] = 1.0 / sqrt(pivot);
-        /* the first dependent makes room at the end of the independent ones */
-        p->order[p->sets->rank + p->sets->dependents] = p->order[p->sets->rank];
+        row[rank] = 1.0 / sqrt(pivot);
+        /* The first dependent makes room at the end of the independent contacts. */
+        p->order[rank + p->sets->dependents] = p->order[rank];
         p->order[p->sets->rank++] = i;
     }
     return 1;
@@ -83,8 +76,7 @@ void tribo_dense_remove(struct box_qp *p, size_t i)
     }
     /* Row at leaves the factor: the rows below move up, their diagonal to the right of the new one, and rotations of neighbouring
      * columns make the matrix triangular again. */
-    const struct group *g = p->group;
-    const size_t size = g->size;
+    const size_t size = p->group->size;
     p->sets->rank--;
     for (size_t k = at; k < p->sets->rank; k++) {
         memcpy(p->l + k * size, p->l + (k + 1) * size, (k + 2) * sizeof *p->l);
@@ -100,7 +92,7 @@ void tribo_dense_remove(struct box_qp *p, size_t i)
             m[k + 1] = c * y - s * x;
         }
     }
-    /* what depended on the one that left may be independent now */
+    /* Dependents of the contact that left may be independent. */
     const size_t waiting = p->sets->dependents;
     p->sets->dependents = 0;
     for (size_t d = 0; d < waiting; d++) {
@@ -111,9 +103,21 @@ void tribo_dense_remove(struct box_qp *p, size_t i)
     }
 }
 
-void tribo_dense_exchange(const struct box_qp *p, double *l, size_t all, size_t k, size_t other)
+size_t tribo_dense_order(struct box_qp *p)
 {
-    const size_t size = p->group->size;
+    size_t all = 0;
+    p->work.factorizations++;
+    for (size_t e = 0; e < p->count; e++) {
+        if (p->at[p->near[e]] == FREE) {
+            p->order[all++] = p->near[e];
+        }
+    }
+    return all;
+}
+
+/* Exchanges rows and columns k and other > k of the lower triangle l [all][size], columns before k included. */
+static void dense_exchange(double *l, size_t size, size_t all, size_t k, size_t other)
+{
     for (size_t j = 0; j < all; j++) {
         if (j != k && j != other) {
             double *a = j < k ? &l[k * size + j] : &l[j * size + k];
@@ -128,12 +132,36 @@ void tribo_dense_exchange(const struct box_qp *p, double *l, size_t all, size_t 
     l[other * size + other] = x;
 }
 
-double tribo_dense_leftover(const struct box_qp *p, size_t k, size_t all, size_t *where)
+int tribo_dense_pivot(struct box_qp *p, size_t k, size_t all, double zero)
+{
+    const size_t size = p->group->size;
+    size_t best = k;
+    for (size_t i = k + 1; i < all; i++) {
+        best = p->l[i * size + i] > p->l[best * size + best] ? i : best;
+    }
+    if (k == all || p->l[best * size + best] <= zero) {
+        return 0;
+    }
+    if (best != k) {
+        dense_exchange(p->l, size, all, k, best);
+        if (p->group->graded) {
+            dense_exchange(p->l_low, size, all, k, best);
+        }
+        const size_t i = p->order[k];
+        p->order[k] = p->order[best];
+        p->order[best] = i;
+    }
+    return 1;
+}
+
+double tribo_dense_end(struct box_qp *p, size_t rank, size_t all, size_t *where)
 {
     const size_t size = p->group->size;
     double most = 0.0;
-    for (size_t i = k; i < all; i++) {
-        for (size_t j = k; j <= i; j++) {
+    p->sets->rank = rank;
+    p->sets->dependents = all - rank;
+    for (size_t i = rank; where && i < all; i++) {
+        for (size_t j = rank; j <= i; j++) {
             const double x = p->l[i * size + j];
             if (fabs(x) > fabs(most)) {
                 most = i == j ? x : -fabs(x);
@@ -144,43 +172,17 @@ double tribo_dense_leftover(const struct box_qp *p, size_t k, size_t all, size_t
     return most;
 }
 
-size_t tribo_dense_order(struct box_qp *p)
-{
-    size_t all = 0;
-    for (size_t e = 0; e < p->count; e++) {
-        if (p->at[p->near[e]] == FREE) {
-            p->order[all++] = p->near[e];
-        }
-    }
-    return all;
-}
-
-/* Cholesky factorization with the largest pivot next, so that the rank is revealed. */
+/* Cholesky factorization with the largest pivot next. */
 double tribo_dense_rebuild(struct box_qp *p, size_t *where)
 {
-    const struct group *g = p->group;
-    const size_t size = g->size, all = tribo_dense_order(p);
+    const size_t size = p->group->size, all = tribo_dense_order(p);
     size_t k = 0;
-    p->work.factorizations++;
     for (size_t i = 0; i < all; i++) {
         for (size_t j = 0; j <= i; j++) {
             p->l[i * size + j] = dense_entry(p, p->order[i], p->order[j]);
         }
     }
-    for (; k < all; k++) {
-        size_t best = k;
-        for (size_t i = k + 1; i < all; i++) {
-            best = p->l[i * size + i] > p->l[best * size + best] ? i : best;
-        }
-        if (p->l[best * size + best] <= tribo_resolution(all)) {
-            break;
-        }
-        if (best != k) {
-            tribo_dense_exchange(p, p->l, all, k, best);
-            const size_t order = p->order[k];
-            p->order[k] = p->order[best];
-            p->order[best] = order;
-        }
+    for (; tribo_dense_pivot(p, k, all, tribo_resolution(all)); k++) {
         const double inverse = 1.0 / sqrt(p->l[k * size + k]);
         p->l[k * size + k] = inverse;
         for (size_t i = k + 1; i < all; i++) {
@@ -193,9 +195,7 @@ double tribo_dense_rebuild(struct box_qp *p, size_t *where)
             }
         }
     }
-    p->sets->rank = k;
-    p->sets->dependents = all - k;
-    return where ? tribo_dense_leftover(p, k, all, where) : 0.0;
+    return tribo_dense_end(p, k, all, where);
 }
 
 void tribo_dense_solve(const struct box_qp *p, double *step)

@@ -1,8 +1,8 @@
-/* The factor of a graded group: one of whose contacts touches a light body and a heavy one. In R = J M^-1 J' as a double the
- * light body's 1/m hides the heavy one's 1/M, but for the digits that are left, and with them what friction does to it. So R, its
- * factor, and the forces of the free contacts are kept to twice as many digits, which are enough for masses that differ by 1e18.
+/* The factor of a graded group, one of whose contacts touches a light body and a heavy one. In R = J M^-1 J' as a double 1/m of the
+ * light body hides 1/M of the heavy one but for the last digits, and with them the effect of friction on it. R, its factor, and the
+ * forces of the free contacts are therefore kept to twice as many digits, which are enough for masses that differ by 1e18.
  *
- * Changes of the stick set factorize anew. Row k of l holds l_k0, ... l_k,k-1 and 1/l_kk, as in factor_dense.c. */
+ * A change of the stick set factorizes anew. Row k of l holds l_k0, ... l_k,k-1 and 1/l_kk, as in factor_dense.c. */
 #include "box_qp.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@
 #include "common/real.h"
 #include "numerics/twofold.h"
 
-/* Numbers up to this are worked with: what solves make of them is below TWOFOLD_FAR. */
+/* Largest numbers of a graded solve: its results stay below TWOFOLD_FAR. */
 #define FITS 1e100
 
 static struct twofold graded_entry(const struct box_qp *p, size_t i, size_t j)
@@ -37,30 +37,14 @@ static void graded_set_factor(const struct box_qp *p, size_t i, size_t j, struct
 
 double tribo_graded_rebuild(struct box_qp *p, size_t *where)
 {
-    const struct group *g = p->group;
-    const size_t size = g->size, all = tribo_dense_order(p);
+    const size_t all = tribo_dense_order(p);
     size_t k = 0;
-    p->work.factorizations++;
     for (size_t i = 0; i < all; i++) {
         for (size_t j = 0; j <= i; j++) {
             graded_set_factor(p, i, j, graded_entry(p, p->order[i], p->order[j]));
         }
     }
-    for (; k < all; k++) {
-        size_t best = k;
-        for (size_t i = k + 1; i < all; i++) {
-            best = p->l[i * size + i] > p->l[best * size + best] ? i : best;
-        }
-        if (p->l[best * size + best] <= TRIBO_GRADED_ZERO) {
-            break;
-        }
-        if (best != k) {
-            tribo_dense_exchange(p, p->l, all, k, best);
-            tribo_dense_exchange(p, p->l_low, all, k, best);
-            const size_t i = p->order[k];
-            p->order[k] = p->order[best];
-            p->order[best] = i;
-        }
+    for (; tribo_dense_pivot(p, k, all, TRIBO_GRADED_ZERO); k++) {
         const struct twofold inverse = twofold_inverse_root(graded_factor(p, k, k));
         graded_set_factor(p, k, k, inverse);
         for (size_t i = k + 1; i < all; i++) {
@@ -73,9 +57,7 @@ double tribo_graded_rebuild(struct box_qp *p, size_t *where)
             }
         }
     }
-    p->sets->rank = k;
-    p->sets->dependents = all - k;
-    return where ? tribo_dense_leftover(p, k, all, where) : 0.0;
+    return tribo_dense_end(p, k, all, where);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ solve */
@@ -89,7 +71,6 @@ static struct twofold graded_subtract(const struct box_qp *p, struct twofold y, 
 void tribo_graded_solve(const struct box_qp *p, double *step, double *low)
 {
     const size_t rank = p->sets->rank;
-    /* A power of 2 that brings step to sizes that may be worked with. */
     double most = 1.0;
     int e;
     for (size_t k = 0; k < p->sets->rank; k++) {
@@ -97,7 +78,7 @@ void tribo_graded_solve(const struct box_qp *p, double *step, double *low)
         most = greater(most, product(fabs(step[i]), greater(p->scale[i], 1.0)));
     }
     frexp(most, &e);
-    const double unit = most > FITS ? ldexp(1.0, -e) : 1.0;
+    const double unit = most > FITS ? ldexp(1.0, -e) : 1.0; /* brings step to at most FITS */
     for (size_t k = 0; k < rank; k++) {
         const size_t i = p->order[k];
         struct twofold y = twofold_scale((struct twofold){unit * step[i], unit * low[i]}, p->scale[i]);

@@ -1,14 +1,14 @@
-/* The factor of a large group with few entries: R = L D L' over the free contacts, for an order of elimination and with the
- * entries of L that R as a whole asks for, both found once. Contacts that are not in the factor have zeros there. One that enters
- * or leaves changes its row and column of L, and what lies behind it on the way to the root of the elimination tree (Davis and
- * Hager 2005, SIAM J. Matrix Anal. Appl. 26, 621, doi:10.1137/S089547980343641X).
+/* The factor of a large group with few entries: R = L D L' over the free contacts, for an order of elimination and a pattern of L
+ * that are those of R as a whole, found once. Contacts that are not in the factor have zeros there. A contact that enters or leaves
+ * changes its row and column of L, and the columns on the way to the root of the elimination tree (Davis and Hager 2005, SIAM J.
+ * Matrix Anal. Appl. 26, 621, doi:10.1137/S089547980343641X).
  *
  *     all anew     row by row
- *     k enters     row k so; column k from R and those rows; L D L' -= pivot times the square of column k, behind k
+ *     k enters     row k likewise; column k from R and those rows; L D L' -= pivot times the square of column k, behind k
  *     k leaves     L D L' += pivot times the square of column k, behind k; row and column k become zero
- *     += a w w'    for j on the way from k to the root: a new pivot and column j, and w without what column j takes of it
+ *     += a w w'    for j on the way from k to the root: a new pivot and column j; w -= its part in column j
  *
- * "Place" is where a contact stands in its group, "position" where it stands in the order of elimination. */
+ * "Place" is the number of a contact in its group, "position" its number in the order of elimination. */
 #include "factor_sparse.h"
 
 #include <math.h>
@@ -17,7 +17,7 @@
 
 #include "common/real.h"
 
-/* A dense factor of this many contacts is affordable where a sparse one is not trusted. */
+/* Groups of at most DENSE_UP_TO contacts have a dense factor where a sparse one would have small pivots. */
 #define DENSE_UP_TO 2048
 
 void tribo_sparse_free(struct sparse *s)
@@ -31,51 +31,15 @@ void tribo_sparse_free(struct sparse *s)
     }
 }
 
-/* What depends on the number of contacts, or of slots. */
-static int allocate_contacts(struct sparse *s, size_t size)
-{
-    s->position = malloc(2 * size * sizeof *s->position);
-    s->column = calloc(2 * (size + 1), sizeof *s->column);
-    if (!s->position || !s->column) {
-        return 0;
-    }
-    s->place = s->position + size;
-    s->row = s->column + size + 1;
-    return 1;
-}
-
-static int allocate_slots(struct sparse *s, size_t slots)
-{
-    s->row_of = malloc((3 * slots + 1) * sizeof *s->row_of);
-    if (!s->row_of) {
-        return 0;
-    }
-    s->column_of = s->row_of + slots;
-    s->slot = s->row_of + 2 * slots;
-    return 1;
-}
-
 size_t tribo_sparse_slots(const struct sparse *s)
 {
     return s->column[s->r.n];
 }
 
-static int copy_rows(struct csr *to, const struct csr *from)
-{
-    const size_t entries = from->first[from->n];
-    if (!tribo_csr_create(to, from->n, entries)) {
-        return 0;
-    }
-    memcpy(to->first, from->first, (from->n + 1) * sizeof *to->first);
-    memcpy(to->col, from->col, entries * sizeof *to->col);
-    memcpy(to->val, from->val, entries * sizeof *to->val);
-    return 1;
-}
-
 /* ---------------------------------------------------------------------------------------------------------- pattern of L */
 
-/* Walks the entries of L row by row: counts those of every column in count [size] (added to what is there), or if fill puts them
- * at these slots, and counts on. seen [size] is workspace. */
+/* Walks the entries of L row by row, and counts them by columns in count [size]. fill: also puts row k at the slot count[j].
+ * seen [size] is workspace. */
 static void sparse_walk(struct sparse *s, const size_t *parent, size_t *seen, size_t *count, int fill)
 {
     memset(seen, 0xff, s->r.n * sizeof *seen);
@@ -94,10 +58,49 @@ static void sparse_walk(struct sparse *s, const size_t *parent, size_t *seen, si
     }
 }
 
-/* The same entries by rows. */
-static void sparse_fill_rows(struct sparse *s, size_t *count)
+/* parent [size] of the elimination tree, NONE for roots (Liu 1990). seen [size]: the ancestors found so far. */
+static void find_tree(const struct sparse *s, size_t *parent, size_t *seen)
 {
-    const size_t size = s->r.n, slots = s->column[size];
+    for (size_t k = 0; k < s->r.n; k++) {
+        const size_t i = s->place[k];
+        parent[k] = seen[k] = NONE;
+        for (size_t e = s->r.first[i]; e < s->r.first[i + 1]; e++) {
+            size_t j = s->position[s->r.col[e]];
+            while (j < k && seen[j] != k) {
+                const size_t next = seen[j];
+                seen[j] = k;
+                parent[j] = next == NONE ? k : parent[j];
+                j = next == NONE ? k : next;
+            }
+        }
+    }
+}
+
+/* Finds the pattern of L by columns and rows, and the costs. work [4 size]. Returns 1; 0 if a dense factor is better; -1 if out of
+ * memory. */
+static int find_pattern(struct sparse *s, double *work)
+{
+    const size_t size = s->r.n;
+    double *path = work; /* cost of the way to the root */
+    size_t *parent = (size_t *)(work + size), *seen = parent + size, *count = seen + size;
+    find_tree(s, parent, seen);
+    memset(count, 0, size * sizeof *count);
+    sparse_walk(s, parent, seen, count, 0);
+    for (size_t j = 0; j < size; j++) {
+        s->column[j + 1] = s->column[j] + count[j];
+        count[j] = s->column[j];
+    }
+    const size_t slots = s->column[size];
+    if (slots > size * size / 8) {
+        return 0;
+    }
+    s->row_of = malloc((3 * slots + 1) * sizeof *s->row_of);
+    if (!s->row_of) {
+        return -1;
+    }
+    s->column_of = s->row_of + slots;
+    s->slot = s->row_of + 2 * slots;
+    sparse_walk(s, parent, seen, count, 1);
     for (size_t q = 0; q < slots; q++) {
         s->row[s->row_of[q] + 1]++;
     }
@@ -112,57 +115,16 @@ static void sparse_fill_rows(struct sparse *s, size_t *count)
             s->slot[t] = q;
         }
     }
-}
-
-/* 1; 0 if a dense factor is better; -1 if out of memory. */
-static int find_pattern(struct sparse *s)
-{
-    const size_t size = s->r.n;
-    size_t *parent = malloc(3 * size * sizeof *parent);
-    double *path = malloc(size * sizeof *path);
-    if (!parent || !path) {
-        free(parent);
-        free(path);
-        return -1;
+    /* Nanoseconds of a change, which goes from its column to the root, and of a factor, as measured on carpets and chains of 400 to
+     * 100,000 contacts; only their ratio counts. */
+    for (size_t j = size; j-- > 0;) {
+        const double entries = (double)(s->column[j + 1] - s->column[j] + 1);
+        path[j] = 1.25 * entries + (parent[j] == NONE ? 0.0 : path[parent[j]]);
+        s->change += path[j] / (double)size;
+        s->rebuild += (0.5 * entries + 4.0) * entries + 6.0;
     }
-    size_t *seen = parent + size, *count = parent + 2 * size;
-    /* parent [size] of the elimination tree, NONE for roots (Liu 1990); seen [size]: ancestors found so far. */
-    for (size_t k = 0; k < s->r.n; k++) {
-        const size_t i = s->place[k];
-        parent[k] = seen[k] = NONE;
-        for (size_t e = s->r.first[i]; e < s->r.first[i + 1]; e++) {
-            size_t j = s->position[s->r.col[e]];
-            while (j < k && seen[j] != k) {
-                const size_t next = seen[j];
-                seen[j] = k;
-                parent[j] = next == NONE ? k : parent[j];
-                j = next == NONE ? k : next;
-            }
-        }
-    }
-    memset(count, 0, size * sizeof *count);
-    sparse_walk(s, parent, seen, count, 0);
-    for (size_t j = 0; j < size; j++) {
-        s->column[j + 1] = s->column[j] + count[j];
-        count[j] = s->column[j];
-    }
-    const int good = s->column[size] > size * size / 8 ? 0 : allocate_slots(s, s->column[size]) ? 1 : -1;
-    if (good > 0) {
-        sparse_walk(s, parent, seen, count, 1);
-        sparse_fill_rows(s, count);
-        /* What a change and a new factor cost, in nanoseconds, of which only the ratio counts: measured on carpets and chains of 400 to
-         * 100,000 contacts. A change goes from its column to the root. */
-        for (size_t j = s->r.n; j-- > 0;) {
-            const double entries = (double)(s->column[j + 1] - s->column[j] + 1);
-            path[j] = 1.25 * entries + (parent[j] == NONE ? 0.0 : path[parent[j]]);
-            s->change += path[j] / (double)s->r.n;
-            s->rebuild += (0.5 * entries + 4.0) * entries + 6.0;
-        }
-        s->change += 150.0;
-    }
-    free(parent);
-    free(path);
-    return good;
+    s->change += 150.0;
+    return 1;
 }
 
 /* ------------------------------------------------------------------------------------------------------- rows of R */
@@ -195,8 +157,8 @@ void tribo_sparse_spread(const struct box_qp *p, size_t i, double factor, double
 
 /* ------------------------------------------------------------------------------------------------------- the factor */
 
-/* Row k of L, by elimination with the rows before it that are in the factor. Returns its pivot. Of the contacts that are free but
- * not in the factor, *left gets the largest entry that elimination leaves. */
+/* Computes row k of L by elimination with the rows before it in the factor. Returns its pivot. Raises *left to the largest entry
+ * that elimination leaves of free contacts that are not in the factor. */
 static double sparse_eliminate(const struct box_qp *p, size_t k, double *left)
 {
     const struct sparse *s = p->group->sparse;
@@ -239,7 +201,7 @@ double tribo_sparse_rebuild(struct box_qp *p, size_t *where)
 {
     const struct group *g = p->group;
     const struct sparse *s = g->sparse;
-    size_t waiting = g->size; /* dependents gather at the end of order */
+    size_t waiting = g->size; /* order[waiting ...]: dependents */
     double left = 0.0;
     p->work.factorizations++;
     p->sets->rank = 0;
@@ -299,8 +261,8 @@ void tribo_sparse_solve(const struct box_qp *p, double *step)
     memset(y, 0, size * sizeof *y);
 }
 
-/* L D L' += alpha w w' behind position k, w being in the workspace, with entries where column k of L may have some. Returns 0 if
- * that would leave a pivot without sign. */
+/* L D L' += alpha w w' behind position k, for the workspace w with the pattern of column k of L. Clears w. Returns 0 if a pivot
+ * would not be positive: then L D L' is invalid. */
 static int sparse_modify(const struct box_qp *p, size_t k, double alpha)
 {
     const struct sparse *s = p->group->sparse;
@@ -328,7 +290,7 @@ static int sparse_modify(const struct box_qp *p, size_t k, double alpha)
     return good;
 }
 
-/* Row and column k of L, for a contact that enters; its own pivot is positive. */
+/* Enters the contact at position k into the factor. Returns 0 if a pivot would not be positive: then the factor is invalid. */
 static int sparse_enter(struct box_qp *p, size_t k)
 {
     const struct sparse *s = p->group->sparse;
@@ -366,7 +328,7 @@ static void sparse_put(struct box_qp *p, size_t at, size_t i)
     p->sparse.index[i] = at;
 }
 
-/* Whether contact i depends on those in the factor: by the pivot that it would have as the last one. */
+/* Returns 1 if contact i depends on those in the factor: its pivot as the last one would be 0 to rounding. */
 static int sparse_depends(struct box_qp *p, size_t i)
 {
     const struct sparse *s = p->group->sparse;
@@ -393,7 +355,7 @@ void tribo_sparse_add(struct box_qp *p, size_t i)
     if (g->nullity && sparse_depends(p, i)) {
         sparse_put(p, p->sets->rank + p->sets->dependents++, i);
     } else if (sparse_enter(p, g->sparse->position[i])) {
-        /* the first dependent makes room at the end of the independent ones */
+        /* The first dependent makes room at the end of the independent contacts. */
         if (p->sets->dependents) {
             sparse_put(p, p->sets->rank + p->sets->dependents, p->order[p->sets->rank]);
         }
@@ -426,7 +388,7 @@ void tribo_sparse_remove(struct box_qp *p, size_t i)
     const double pivot = 1.0 / p->sparse.d[k];
     p->sparse.d[k] = 0.0;
     sparse_modify(p, k, pivot);
-    /* what depended on it may be independent now */
+    /* Dependents of the contact that left may be independent. */
     p->sets->dependents = 0;
     for (size_t d = 0; d < waiting && p->work.factorizations == work; d++) {
         tribo_sparse_add(p, p->order[p->sets->rank + p->sets->dependents]);
@@ -442,7 +404,7 @@ int tribo_sparse_many(const struct box_qp *p, size_t changes)
 
 /* ---------------------------------------------------------------------------------------------------------- creation */
 
-/* Whether all pivots of R are well above zero: 1 or 0, or -1 if out of memory. */
+/* Returns 1 if all pivots of R are well above zero, 0 if not, -1 if out of memory. */
 static int well_conditioned(struct sparse *s)
 {
     const size_t size = s->r.n;
@@ -475,17 +437,31 @@ static int well_conditioned(struct sparse *s)
 
 int tribo_sparse_create(struct sparse **s, const struct csr *r)
 {
-    const size_t size = r->n;
+    const size_t size = r->n, entries = r->first[size];
     *s = NULL;
-    if (r->first[size] > size * size / 8) {
+    if (entries > size * size / 8) {
         return 1;
     }
     struct sparse *c = calloc(1, sizeof *c);
-    int good = c && copy_rows(&c->r, r) && allocate_contacts(c, size) && tribo_nested_dissection(r, c->place) ? 1 : -1;
+    double *work = malloc((4 * size + 1) * sizeof *work);
+    int good = -1;
+    if (c && work && tribo_csr_create(&c->r, size, entries)) {
+        c->position = malloc(2 * size * sizeof *c->position);
+        c->column = calloc(2 * (size + 1), sizeof *c->column);
+        good = c->position && c->column ? 1 : -1;
+    }
+    if (good > 0) {
+        memcpy(c->r.first, r->first, (size + 1) * sizeof *c->r.first);
+        memcpy(c->r.col, r->col, entries * sizeof *c->r.col);
+        memcpy(c->r.val, r->val, entries * sizeof *c->r.val);
+        c->place = c->position + size;
+        c->row = c->column + size + 1;
+        good = tribo_nested_dissection(r, c->place) ? 1 : -1;
+    }
     for (size_t k = 0; good > 0 && k < size; k++) {
         c->position[c->place[k]] = k;
     }
-    good = good > 0 ? find_pattern(c) : good;
+    good = good > 0 ? find_pattern(c, work) : good;
     if (good > 0) {
         const int well = well_conditioned(c);
         good = well < 0 ? well : well || size > DENSE_UP_TO;
@@ -495,5 +471,6 @@ int tribo_sparse_create(struct sparse **s, const struct csr *r)
     } else {
         tribo_sparse_free(c);
     }
+    free(work);
     return good >= 0;
 }

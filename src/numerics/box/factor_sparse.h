@@ -1,4 +1,4 @@
-/* What factor_sparse.c and nested_dissection.c share. */
+/* The pattern of a sparse factor, of factor_sparse.c and nested_dissection.c. */
 #ifndef TRIBO_SPARSE_H
 #define TRIBO_SPARSE_H
 
@@ -10,15 +10,19 @@
 #define NONE SIZE_MAX
 
 struct sparse {
-    struct csr r;             /* by place */
-    size_t *position, *place; /* [size] of a place; at a position */
-    size_t *column, *row;     /* [size + 1] column j of L has the slots column[j] to column[j + 1] - 1; rows alike */
-    size_t *row_of;           /* [slots] rows ascending within a column */
-    size_t *column_of, *slot; /* [slots] by rows: the columns, ascending, and the slots */
-    double change, rebuild;   /* cost of a change, on average, and of a new factor */
+    struct csr r;      /* R by places */
+    size_t *position;  /* [size] of a place */
+    size_t *place;     /* [size] of a position */
+    size_t *column;    /* [size + 1] column j of L has the slots column[j] to column[j + 1] - 1 */
+    size_t *row_of;    /* [slots] rows, ascending in a column */
+    size_t *row;       /* [size + 1] row k of L has the entries row[k] to row[k + 1] - 1 of: */
+    size_t *column_of; /* [slots] columns, ascending in a row */
+    size_t *slot;      /* [slots] slots */
+    double change;     /* average cost of a change */
+    double rebuild;    /* cost of a new factor */
 };
 
-/* An order of elimination that keeps L sparse: place [size] by position. 1, or 0 if out of memory. */
+/* place [size] = an order of elimination that keeps L sparse. Returns 1, or 0 if out of memory. */
 int tribo_nested_dissection(const struct csr *r, size_t *place);
 
 #endif

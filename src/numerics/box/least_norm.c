@@ -1,16 +1,15 @@
-/* The share of redundant contacts. Where R is singular R x is unique but x is not: of all solutions in the box the one of least
- * norm is taken, which depends neither on the order of the contacts nor on how it was found.
+/* The share of redundant contacts. Where R is singular R x is unique, but x is not: x becomes the solution in the box of least norm,
+ * which depends neither on the order of the contacts nor on the way to it.
  *
- * It is where the objective |x|^2 is least in the box along the null space of R over the contacts that have no gradient. That
- * takes a primal active set method once more: basis holds the null space, its first vectors the directions in which the contacts
- * at a bound do not move. */
+ * A primal active set method minimizes |x|^2 in the box along the null space of R over the contacts without gradient: basis spans the
+ * null space, and its first vectors do not move the contacts at a bound. */
 #include "box_qp.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-/* Null vectors are found through a factor, which leaves more than the rounding of a sum. */
+/* Rounding of null vectors, which come from a factor, in parts of that of a sum. */
 #define NULL_NOISE 64.0
 
 void tribo_null_vector(const struct box_qp *p, size_t d, double *y)
@@ -71,7 +70,7 @@ size_t tribo_null_basis(struct box_qp *p)
     return vectors;
 }
 
-/* A reflection of the first vectors, after which only the last of them moves contact i. */
+/* Reflects the first vectors so that only the last of them moves contact i. */
 static void hold_contact(struct box_qp *p, size_t vectors, size_t i)
 {
     const size_t size = p->group->size, last = vectors - 1;
@@ -98,8 +97,8 @@ static void hold_contact(struct box_qp *p, size_t vectors, size_t i)
     memset(u, 0, vectors * sizeof *u);
 }
 
-/* Whether the first vectors move contact i by more than rounding. If not they let it rest from here on: to hold it would take one
- * of them away, in which others can still share. */
+/* Returns 1 if the first vectors move contact i by more than rounding. If not, makes these moves 0: to hold i would take away a
+ * vector along which others share. */
 static int can_move(struct box_qp *p, size_t vectors, size_t i)
 {
     double square = 0.0;
@@ -113,7 +112,7 @@ static int can_move(struct box_qp *p, size_t vectors, size_t i)
     return can;
 }
 
-/* step = the way to least norm that the first vectors leave. */
+/* step = the move of x to the least norm along the first vectors. */
 static void aim_at_least(struct box_qp *p, size_t vectors)
 {
     for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
@@ -125,10 +124,10 @@ static void aim_at_least(struct box_qp *p, size_t vectors)
     }
 }
 
-/* Of the free x: scaled, since their squares may overflow. */
-static double free_norm(const struct box_qp *p)
+/* Lets the first held contact go that moves off its bound then. Returns 0 if there is none. */
+static int release_contact(struct box_qp *p, size_t vectors, size_t *held)
 {
-    double most = DBL_MIN, sum = 0.0;
+    double most = DBL_MIN, sum = 0.0; /* scaled, since squares may overflow */
     for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
         most = greater(most, fabs(p->x[p->order[k]]));
     }
@@ -136,13 +135,7 @@ static double free_norm(const struct box_qp *p)
         const double part = p->x[p->order[k]] / most;
         sum += part * part;
     }
-    return most * sqrt(sum);
-}
-
-/* Lets one of the held contacts go, if its x then moves off its bound. */
-static int release_contact(struct box_qp *p, size_t vectors, size_t *held)
-{
-    const double noise = tribo_resolution(p->group->size) * free_norm(p);
+    const double noise = tribo_resolution(p->group->size) * (most * sqrt(sum));
     for (size_t tried = 0; tried < *held; tried++) {
         const size_t i = p->held[0], others = *held - 1;
         memmove(p->held, p->held + 1, others * sizeof *p->held);
@@ -163,7 +156,7 @@ static int release_contact(struct box_qp *p, size_t vectors, size_t *held)
 int tribo_least_norm(struct box_qp *p)
 {
     const size_t size = p->group->size;
-    /* those at a bound that nothing pushes against may share, too */
+    /* Contacts at a bound without gradient share, too. */
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
         if (p->at[i] != FREE && p->lo[i] < p->hi[i] && fabs(p->gradient[i]) <= tribo_box_tolerance(p, i)) {

@@ -1,11 +1,11 @@
-/* The linear system of the partition coupling, R x + q = 0 over the near contacts, all of them free: the solution of least norm,
- * or, where there is none, the least-squares one. */
+/* The linear system of the partition coupling, R x + q = 0 over the near contacts, all of them free: its solution of least norm, or
+ * its least-squares one. */
 #include "box_qp.h"
 
 #include <float.h>
 #include <math.h>
 
-/* With the factor as it is. */
+/* x = that solution, with the factor as it is. Returns 1 if R x + q = 0. */
 static int minimum_norm(struct box_qp *p)
 {
     tribo_box_forget_low(p);
@@ -38,7 +38,7 @@ static int minimum_norm(struct box_qp *p)
         }
     }
     tribo_box_gradients(p);
-    /* without null vectors those that depend on others tell by themselves */
+    /* Without null vectors the system is consistent if the dependents have no gradient. */
     for (size_t d = 0; d < p->sets->dependents && !vectors; d++) {
         const size_t i = p->order[p->sets->rank + d];
         consistent &= fabs(p->gradient[i]) <= 16.0 * p->noise[i] + tribo_box_disagreement(p, i);
@@ -52,7 +52,7 @@ int tribo_box_linear(struct box_qp *p)
     tribo_box_begin(p, 0);
     tribo_box_enter(p, 0);
     int consistent = minimum_norm(p);
-    /* a factor that grew row by row may see another rank than one that has chosen among all pivots */
+    /* The rank of a factor made row by row may differ from that of one with the largest pivots first. */
     if (!consistent || !tribo_box_settled(p, TRIBO_SETTLED)) {
         tribo_factor_rebuild(p, NULL);
         consistent = minimum_norm(p);

@@ -1,21 +1,23 @@
-/* Nested dissection (George 1973): a level of a breadth-first search splits the graph of R in two; it is eliminated last, its two
- * sides before it, and so on with each. */
+/* Nested dissection (George 1973): a level of a breadth-first search splits the graph of R into two sides, and is eliminated after
+ * them; each side is split likewise. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "factor_sparse.h"
 
-/* Parts this small are not split. */
+/* Parts of at most LEAF nodes are not split. */
 #define LEAF 24
 
 struct graph {
     const struct csr *r;
-    size_t *node;         /* parts are pieces of it */
-    size_t *list, *level; /* of a search; nodes in the order found, and their distance from the start */
-    size_t *mark, stamp;  /* mark[i] = stamp: in the part, and not found yet */
+    size_t *node;  /* [n] the order; parts are pieces of it */
+    size_t *list;  /* [n] nodes in the order of a search */
+    size_t *level; /* [n] distances from its start */
+    size_t *mark;  /* [n] stamp: node of the part, not found */
+    size_t stamp;
 };
 
-/* Appends what hangs together with start to list[count ...]; returns its new length. */
+/* Appends the nodes connected with start to list[count ...]. Returns the length of list. */
 static size_t search_breadth_first(struct graph *g, size_t start, size_t count)
 {
     size_t next = count;
@@ -44,7 +46,7 @@ static void mark_part(struct graph *g, size_t begin, size_t end)
     }
 }
 
-/* A level that is small and splits the rest evenly: list[*from, *to). 0 if there are no two sides. */
+/* list[*from, *to) = a small level that splits the others evenly. Returns 0 if no level has two sides. */
 static int find_level(const struct graph *g, size_t count, size_t *from, size_t *to)
 {
     const size_t last = g->level[g->list[count - 1]];
@@ -68,7 +70,7 @@ struct part {
     size_t begin, end;
 };
 
-/* Orders a part, and puts those that are left to order on the stack. */
+/* Orders a part, and appends the pieces that are not in order to stack. */
 static void dissect(struct graph *g, struct part part, struct part *stack, size_t *depth)
 {
     size_t *node = g->node + part.begin, count = 0, pieces = 0, from = 0, to = 0;
@@ -91,7 +93,7 @@ static void dissect(struct graph *g, struct part part, struct part *stack, size_
     if (pieces > 1) {
         return;
     }
-    /* once more from the far end, which makes more and smaller levels */
+    /* A search from the far end has more and smaller levels. */
     mark_part(g, part.begin, part.end);
     search_breadth_first(g, node[size - 1], 0);
     if (!find_level(g, size, &from, &to)) {
@@ -110,7 +112,8 @@ int tribo_nested_dissection(const struct csr *r, size_t *place)
     struct part *stack = malloc((r->n + 2) * sizeof *stack);
     g.list = malloc(2 * r->n * sizeof *g.list);
     g.mark = calloc(r->n, sizeof *g.mark);
-    if (stack && g.list && g.mark) {
+    const int done = stack && g.list && g.mark;
+    if (done) {
         size_t depth = 1;
         g.level = g.list + r->n;
         for (size_t i = 0; i < r->n; i++) {
@@ -122,7 +125,6 @@ int tribo_nested_dissection(const struct csr *r, size_t *place)
             dissect(&g, stack[depth], stack, &depth);
         }
     }
-    const int done = stack && g.list && g.mark;
     free(stack);
     free(g.list);
     free(g.mark);

@@ -1,34 +1,26 @@
-/* The gradient of a group's problem, what of it may be rounding, and Newton's step over the free contacts that takes it to zero.
- */
+/* The gradient of a group's problem and its rounding, and Newton's step, which takes the gradient of the free contacts to zero. */
 #include "box_qp.h"
 
 #include <float.h>
 #include <math.h>
 
-/* Rounding of a graded group's terms beside that of doubles. */
+/* Rounding of the terms of a graded group, in parts of that of doubles. */
 #define GRADED_PART 0x1p-50
 
-/* The gradient of i is found, what of its terms is rounded being of this size; times most forces underflow. */
+/* noise_i: rounded: size of the terms of the gradient that are rounded; most: largest force, in parts of which forces underflow. */
 static inline void set_noise(struct box_qp *p, size_t i, double rounded, double most)
 {
     p->noise[i] = p->part[i] * (rounded + p->least[i] * most);
 }
 
-/* How much larger the largest force of the group may be than 1: beside it forces underflow in a solve. */
-static double most_underflow(const struct box_qp *p)
+/* Forces and R of a graded group are as good as exact: only q is rounded. */
+void tribo_box_gradients(struct box_qp *p)
 {
-    double most = 1.0;
+    double most = 1.0, size, low;
     for (size_t i = 0; p->far && i < p->group->size; i++) {
         most = greater(most, fabs(p->x[i]));
     }
-    return lesser(most, TRIBO_FAR);
-}
-
-/* A graded group's forces and R are as good as exact, and what it knows of q is q. */
-void tribo_box_gradients(struct box_qp *p)
-{
-    const double most = most_underflow(p);
-    double size, low;
+    most = lesser(most, TRIBO_FAR);
     for (size_t e = 0; !p->twofold && e < p->count; e++) {
         const size_t i = p->near[e];
         p->gradient[i] = tribo_row_dot(p, i, p->x, &size) + p->q[i];
@@ -72,7 +64,7 @@ void tribo_box_begin(struct box_qp *p, int bounded)
 {
     p->twofold = p->group->graded && tribo_graded_fits(p, bounded);
     if (p->group->nullity && !p->twofold) {
-        /* What the gradient consists of where each contact carries what it would alone: forces of earlier calls have no part in it. */
+        /* Sizes of the gradient's terms at x_i = clamp(-q_i/R_ii, lo_i, hi_i): independent of earlier calls. */
         double *alone = p->step, size;
         for (size_t e = 0; e < p->group->size; e++) {
             const size_t i = p->near[e];

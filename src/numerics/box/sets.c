@@ -1,12 +1,11 @@
-/* The stick sets of a group: which contacts are free and which at a bound, how they change and with them the factor, and how much
- * gradient a contact may have before it changes its place. */
+/* The stick sets of a group: which contacts are free and which at a bound, and their changes, with which the factor changes. */
 #include "box_qp.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-/* A bound that moves by this factor is another one. */
+/* A contact begins free if its bound exceeds its last force by this factor. */
 #define FAR_AWAY 1e3
 
 void tribo_box_change(struct box_qp *p, size_t i, signed char to)
@@ -30,8 +29,7 @@ size_t tribo_box_change_all(struct box_qp *p)
         changes += (p->at[i] == FREE) != (p->to[i] == FREE);
         free += p->to[i] == FREE;
     }
-    /* a change that loses contacts while others depend on them may end in a factorization of its own, over a set that is no
-     * longer that of at */
+    /* Where contacts depend on others, a single change may factorize anew, over at as it is then: several changes factorize once. */
     if (changes > 0 && (tribo_factor_many(p, changes, free) || (p->sets->dependents && changes > 1))) {
         p->work.updates += changes;
         memcpy(p->at, p->to, n);
@@ -75,25 +73,20 @@ size_t tribo_box_advance(struct box_qp *p, double longest)
     return hit;
 }
 
-/* Where the problem begins with a contact that is near: where it was, unless it was not near, or its bound has gone far away, or
- * its box is a point. */
-static signed char begin_at(const struct box_qp *p, size_t i)
-{
-    const signed char at = p->at[i];
-    if (!(p->lo[i] < p->hi[i])) {
-        return AT_LOWER;
-    }
-    if (at == FREE || at == AWAY) {
-        return FREE;
-    }
-    return fabs(at == AT_LOWER ? p->lo[i] : p->hi[i]) <= FAR_AWAY * fabs(p->x[i]) ? at : FREE;
-}
-
 void tribo_box_enter(struct box_qp *p, int keep_bounds)
 {
     for (size_t e = 0; e < p->group->size; e++) {
         const size_t i = p->near[e];
-        p->to[i] = e >= p->count ? AWAY : keep_bounds ? begin_at(p, i) : FREE;
+        const signed char at = p->at[i];
+        if (e >= p->count) {
+            p->to[i] = AWAY;
+        } else if (keep_bounds && !(p->lo[i] < p->hi[i])) {
+            p->to[i] = AT_LOWER;
+        } else if (keep_bounds && (at == AT_LOWER || at == AT_UPPER)) {
+            p->to[i] = fabs(at == AT_LOWER ? p->lo[i] : p->hi[i]) <= FAR_AWAY * fabs(p->x[i]) ? at : FREE;
+        } else {
+            p->to[i] = FREE;
+        }
     }
     tribo_box_change_all(p);
 }

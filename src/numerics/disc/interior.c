@@ -1,7 +1,6 @@
-/* A primal-dual interior-point method (Boyd and Vandenberghe 2004, Convex Optimization, section 11.7): it begins in the middle of
- * all lenses, needs a few dozen factorizations whatever the problem is like, and ends so near the solution that the place of each
- * contact can be told. Each disc is a constraint |y + o|^2 <= 1, o being 0 or c; room is (1 - |y + o|^2)/2, and press its
- * multiplier. */
+/* A primal-dual interior-point method (Boyd and Vandenberghe 2004, Convex Optimization, section 11.7): it begins in the middle of all
+ * lenses, takes a few dozen factorizations, and ends so near the solution that the place of each contact shows. Each disc is a
+ * constraint |y + o|^2 <= 1, o = 0 or c, with room (1 - |y + o|^2)/2 and multiplier press. */
 #include "disc_qp.h"
 
 #include <float.h>
@@ -12,31 +11,25 @@
 
 enum { DISCS = 2, ROUNDS = 100 };
 
-/* Each round aims at a part of what room times press is on average: a small one while steps are long. */
-static double shrink(double length)
-{
-    return length > 0.9 ? 0.1 : length > 0.2 ? 0.5 : 1.0;
-}
-
-/* By so much press and aim/room may differ. */
+/* press and aim/room differ by this factor at most. */
 #define FAR_OFF 100.0
 
-/* With so much, in parts of the largest stiffness, it ends. */
+/* The method ends when the average of room times press falls below this part of the largest stiffness. */
 #define NEXT_TO_NOTHING 1e-13
 
-/* Steps go as far as this part of the way to the first rim. */
+/* Part of the way to the first rim that a step takes. */
 #define NEARLY 0.99
 
-/* Of disc d of the contact at i. */
+/* The least room: less may be rounding. */
+#define NO_ROOM 1e-20
+
+/* Returns y_k + o_k of disc d of the contact at i. */
 static double offset(const struct disc_qp *p, size_t i, size_t k, int d)
 {
     return p->y[i + k] + (d ? p->shift[i + k] : 0.0);
 }
 
-/* What rounding may take for none. */
-#define NO_ROOM 1e-20
-
-/* Without cancellation where y is near the rim in one direction only: 1 - |x|^2 = (1 - |x|)(1 + |x|). */
+/* Returns the room of disc d, as (1 - |x|)(1 + |x|)/2, without cancellation where y is near the rim in one direction only. */
 static double room_of(const struct disc_qp *p, size_t i, int d)
 {
     double x[2];
@@ -47,7 +40,7 @@ static double room_of(const struct disc_qp *p, size_t i, int d)
     return greater(0.5 * (1.0 - length) * (1.0 + length), NO_ROOM);
 }
 
-/* Average of room times press. */
+/* Returns the average of room times press. */
 static double average(const struct disc_qp *p)
 {
     double sum = 0.0, count = 0.0;
@@ -60,20 +53,20 @@ static double average(const struct disc_qp *p)
     return sum / count;
 }
 
-/* step = the move towards room times press = aim. */
+/* step = the change of y towards room times press = aim. */
 static void find_step(struct disc_qp *p, double aim)
 {
     const size_t n = p->size;
     tribo_disc_gradients(p);
-    memcpy(p->matrix, p->s, n * n * sizeof *p->matrix);
+    memcpy(p->factor.matrix, p->s, n * n * sizeof *p->factor.matrix);
     for (size_t i = 0; i < n; i += p->wide[i]) {
         for (int d = 0; d < DISCS; d++) {
             const double press = p->press[DISCS * i + (size_t)d], room = room_of(p, i, d);
             for (size_t k = 0; k < p->wide[i]; k++) {
                 p->gradient[i + k] += aim / room * offset(p, i, k, d);
-                p->matrix[(i + k) * (n + 1)] += press;
+                p->factor.matrix[(i + k) * (n + 1)] += press;
                 for (size_t j = 0; j < p->wide[i]; j++) {
-                    p->matrix[(i + k) * n + i + j] += press / room * offset(p, i, k, d) * offset(p, i, j, d);
+                    p->factor.matrix[(i + k) * n + i + j] += press / room * offset(p, i, k, d) * offset(p, i, j, d);
                 }
             }
         }
@@ -85,7 +78,7 @@ static void find_step(struct disc_qp *p, double aim)
     tribo_disc_backsolve(p);
 }
 
-/* The change of the press of disc d. */
+/* Returns the change of the press of disc d with step. */
 static double press_step(const struct disc_qp *p, size_t i, int d, double aim)
 {
     const double press = p->press[DISCS * i + (size_t)d], room = room_of(p, i, d);
@@ -96,6 +89,7 @@ static double press_step(const struct disc_qp *p, size_t i, int d, double aim)
     return aim / room - press + product(press / room, turn);
 }
 
+/* Returns the part of step, and of the changes of press, that a step takes. */
 static double longest_step(const struct disc_qp *p, double aim)
 {
     double length = 1.0 / NEARLY;
@@ -115,7 +109,6 @@ static double longest_step(const struct disc_qp *p, double aim)
 
 void tribo_disc_interior(struct disc_qp *p)
 {
-    /* complementarity that counts as zero */
     double most = 0.0, stiffest = 0.0;
     for (size_t i = 0; i < p->size; i++) {
         p->y[i] = -0.5 * p->shift[i];
@@ -133,7 +126,7 @@ void tribo_disc_interior(struct disc_qp *p)
     const double enough = NEXT_TO_NOTHING * stiffest;
     double length = 1.0;
     for (int round = 0; round < ROUNDS; round++) {
-        const double product = average(p), aim = shrink(length) * product;
+        const double product = average(p), aim = (length > 0.9 ? 0.1 : length > 0.2 ? 0.5 : 1.0) * product;
         if (!(product > enough)) {
             break;
         }
@@ -142,7 +135,7 @@ void tribo_disc_interior(struct disc_qp *p)
         if (!(length > 1e-12)) {
             break;
         }
-        /* y and press go by length along their steps; a press far from its room's would let y cross the disc again and again */
+        /* y and press go by length along their steps. A press far from aim/room would let y cross the disc again and again. */
         for (size_t i = 0; i < p->size; i += p->wide[i]) {
             for (int d = 0; d < DISCS; d++) {
                 p->press[DISCS * i + (size_t)d] += length * press_step(p, i, d, aim);

@@ -1,5 +1,5 @@
-/* Projection onto lenses. Where the nearest point of one disc lies in the other one it is that of the lens; where neither does,
- * a corner is. Nothing here subtracts from 1 what is nearly 1, so that thin lenses are as good as others. */
+/* Projection onto lenses: the nearest point of one disc if it lies in the other disc, else a corner. Nothing subtracts from 1 a
+ * number near 1, so that thin lenses are as exact as others. */
 #include "lens.h"
 
 #include <float.h>
@@ -22,7 +22,7 @@ double tribo_length(int directions, const double *x)
     return most * sqrt(u * u + w * w);
 }
 
-/* Without cancellation where x is near the rim: 1 - |x|^2 = (1 - |x|)(1 + |x|). */
+/* Uses 1 - |x|^2 = (1 - |x|)(1 + |x|), without cancellation near the rim. */
 double tribo_way_to_rim(int directions, const double *x, const double *step)
 {
     const double from = tribo_length(directions, x), c = (1.0 - from) * (1.0 + from), size = tribo_length(directions, step);
@@ -90,8 +90,8 @@ int tribo_lens_project(int directions, const double *c, const double *z, double 
     return LENS_AT_CORNER;
 }
 
-/* n = q_k/(weight_k + mu) with the mu >= 0 at which |n| = 1: 1/|n| is concave in mu, so that Newton's method for 1/|n| = 1 rises
- * to it. Returns 0, with mu = 0, if |n| <= 1 there. */
+/* n_k = q_k/(weight_k + mu) for the mu >= 0 with |n| = 1: 1/|n| is concave in mu, so that Newton's method for 1/|n| = 1 rises to it.
+ * Returns 0, with mu = 0, if |n| <= 1 there. */
 static int minimize_on_disc(const double *weight, const double *q, double *n)
 {
     double mu = greater(0.0, greater(fabs(q[0]) - weight[0], fabs(q[1]) - weight[1])), rise = 1.0;

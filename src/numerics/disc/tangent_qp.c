@@ -1,7 +1,6 @@
-/* Newton's method on the projection equations y = P(y - gain gradient), P being the projection onto the lenses. The projection
- * tells the place of each contact, and its derivative there what is left to move: all of it inside; along the rim on a rim, as
- * if on a spring, since what presses outwards turns with it; nothing at a corner. Along what is left the equations are
- * symmetric. */
+/* Newton's method on the projection equations y = P(y - gain gradient), P the projection onto the lenses. The projection gives the
+ * place of each contact, and its derivative there the freedoms: all directions inside; along the rim on a rim, as if on a spring,
+ * since the pressure turns with y; none at a corner. Along the freedoms the equations are symmetric. */
 #include "disc_qp.h"
 
 #include <float.h>
@@ -10,22 +9,22 @@
 
 #include "common/real.h"
 
-/* Of a set of redundant contacts this counts as balanced, in parts of limits: the rounding of whoever computed what pulls. */
+/* A set of redundant contacts counts as balanced up to this part of limits: the rounding of pull. */
 #define DISAGREEMENT 5e-13
 
-/* Diagonal entries of Newton's matrix that are less than this part of the largest: null vectors have squares all the same. */
+/* Least diagonal entry of Newton's matrix, in parts of the largest: null vectors then have squares that do not underflow. */
 #define NEXT_TO_NOTHING 1e-200
 
-/* A contact whose stiffnesses along its two directions differ by more than this factor has a gain for each of them. */
+/* A contact whose stiffnesses along its directions differ by more than this factor is skew: it has a gain for each direction. */
 #define SKEW 1e4
 
-/* Distances along the stiffer direction of such a contact count by the ratio of lengths that need the same energy, or this. */
+/* Distances along its stiffer direction count by the ratio of lengths of the same energy, at most FINEST. */
 #define FINEST 1e6
 
-/* What rounding moves by more than this part of a limit is turned by less where it is pressed against a rim. */
+/* Rounding beyond this part of a limit is divided by the pressure on the rim. */
 #define DOUBTFUL 1e-8
 
-/* No two points of a set are so far apart, in parts of limits. */
+/* A distance longer than any within a set, in parts of limits. */
 #define BEYOND_ALL 4.0
 
 void tribo_disc_gains(struct disc_qp *p)
@@ -42,7 +41,7 @@ void tribo_disc_gains(struct disc_qp *p)
     }
 }
 
-/* The contact at i has a gain for each of its directions. */
+/* Returns 1 if the contact at i has a gain for each direction. */
 static int is_skew(const struct disc_qp *p, size_t i)
 {
     return p->wide[i] == 2 && p->gain[i] != p->gain[i + 1];
@@ -86,13 +85,13 @@ void tribo_disc_gradients(struct disc_qp *p)
     }
 }
 
-/* The limit of direction i, 1, or what pulls at it if forces are far from limits. */
+/* Returns the limit of direction i, 1, or the size of its pull if forces are far below limits. */
 static double unit_of(const struct disc_qp *p, size_t i)
 {
     return p->near_enough < TRIBO_NEAR_ENOUGH ? lesser(product(p->gain[i], p->noise[i] / tribo_resolution(p->size)), 1.0) : 1.0;
 }
 
-/* How far the contact at i may be off where rounding moves y - gain gradient by noise: less if it is pressed against a rim. */
+/* Returns the error of the contact at i for the error noise of y - gain gradient: less if it is pressed against a rim. */
 static double doubt_of(const struct disc_qp *p, size_t i, double noise)
 {
     double move[2];
@@ -118,7 +117,7 @@ double tribo_disc_places(struct disc_qp *p)
             off[k] = p->to[i + k] - p->y[i + k];
             noise[k] = product(p->gain[i + k], p->noise[i + k]);
         }
-        /* pressure on the rim: the part of y - gain gradient beyond the rim, over gain */
+        /* Pressure on the rim: the part of y - gain gradient beyond the rim, over gain. */
         double sum = 0.0;
         for (size_t k = i; k < i + p->wide[i]; k++) {
             sum += p->outward[k] * ((p->y[k] - p->to[k]) / p->gain[k] - p->gradient[k]);
@@ -134,7 +133,7 @@ double tribo_disc_places(struct disc_qp *p)
             distance = tribo_length(2, off);
         }
         const double unit = far ? greater(unit_of(p, i), unit_of(p, i + p->wide[i] - 1)) : 1.0;
-        const double rounding = unit * (p->sets.dependents ? DISAGREEMENT : 16.0 * DBL_EPSILON);
+        const double rounding = unit * (p->factor.sets.dependents ? DISAGREEMENT : 16.0 * DBL_EPSILON);
         worst = greater(worst, quotient(distance, greater(rounding, doubt_of(p, i, greater(noise[0], noise[1])))));
     }
     return worst;
@@ -145,7 +144,7 @@ static void add_freedom(struct disc_qp *p, size_t at, double x, double y, double
     p->freedom[p->freedoms++] = (struct freedom){at, {x, y}, curvature};
 }
 
-/* x [size] along a freedom. */
+/* Returns x [size] along a freedom. */
 static double tangent_qp_along(const struct freedom *e, const double *x)
 {
     return e->tangent[0] * x[e->at] + (e->tangent[1] != 0.0 ? e->tangent[1] * x[e->at + 1] : 0.0);
@@ -153,29 +152,29 @@ static double tangent_qp_along(const struct freedom *e, const double *x)
 
 void tribo_disc_factorize(struct disc_qp *p, size_t size)
 {
-    struct box_qp *f = &p->factor;
+    struct box_qp *f = &p->factor.qp;
     double *scale = f->q, largest = 0.0;
-    p->group = (struct group){.size = size};
-    f->group = &p->group;
-    f->sets = &p->sets;
-    f->r = p->matrix;
+    p->factor.group = (struct group){.size = size};
+    f->group = &p->factor.group;
+    f->sets = &p->factor.sets;
+    f->r = p->factor.matrix;
     f->scale = scale;
     f->count = size;
     for (size_t k = 0; k < size; k++) {
-        largest = greater(largest, p->matrix[k * size + k]);
+        largest = greater(largest, p->factor.matrix[k * size + k]);
     }
     for (size_t k = 0; k < size; k++) {
-        p->matrix[k * size + k] = greater(p->matrix[k * size + k], NEXT_TO_NOTHING * largest);
-        scale[k] = tribo_scale(p->matrix[k * size + k]);
+        p->factor.matrix[k * size + k] = greater(p->factor.matrix[k * size + k], NEXT_TO_NOTHING * largest);
+        scale[k] = tribo_scale(p->factor.matrix[k * size + k]);
         f->near[k] = k;
         f->at[k] = FREE;
     }
     tribo_dense_rebuild(f, NULL);
     f->redundant = size;
-    p->redundant = tribo_null_basis(f);
+    p->factor.redundant = tribo_null_basis(f);
 }
 
-/* What a factor with pivots next to nothing makes of numbers of this size are numbers. */
+/* A factor with the least pivots makes finite numbers of numbers up to 1/ROOM. */
 #define ROOM 0x1p200
 #define LEAST_EXPONENT (-1000)
 
@@ -183,22 +182,22 @@ void tribo_disc_backsolve(struct disc_qp *p)
 {
     double most = 0.0;
     int e;
-    for (size_t k = 0; k < p->group.size; k++) {
+    for (size_t k = 0; k < p->factor.group.size; k++) {
         most = greater(most, fabs(p->step[k]));
     }
     frexp(most, &e);
     e = e > LEAST_EXPONENT ? e : LEAST_EXPONENT;
     const double unit = ldexp(1.0, e - 1), inverse = 0.5 / unit;
-    for (size_t k = 0; k < p->group.size; k++) {
+    for (size_t k = 0; k < p->factor.group.size; k++) {
         p->step[k] = p->step[k] * inverse * (1.0 / ROOM);
     }
-    tribo_null_project(&p->factor, p->redundant, p->step);
-    tribo_dense_solve(&p->factor, p->step);
-    for (size_t d = 0; d < p->sets.dependents; d++) {
-        p->step[p->factor.order[p->sets.rank + d]] = 0.0;
+    tribo_null_project(&p->factor.qp, p->factor.redundant, p->step);
+    tribo_dense_solve(&p->factor.qp, p->step);
+    for (size_t d = 0; d < p->factor.sets.dependents; d++) {
+        p->step[p->factor.qp.order[p->factor.sets.rank + d]] = 0.0;
     }
-    tribo_null_project(&p->factor, p->redundant, p->step);
-    for (size_t k = 0; k < p->group.size; k++) {
+    tribo_null_project(&p->factor.qp, p->factor.redundant, p->step);
+    for (size_t k = 0; k < p->factor.group.size; k++) {
         p->step[k] = product(product(p->step[k], 2.0 * ROOM), unit);
     }
 }
@@ -223,14 +222,14 @@ void tribo_disc_linearize(struct disc_qp *p)
             p->spare[j] = e->tangent[0] * row[j] + (e->tangent[1] != 0.0 ? e->tangent[1] * row[n + j] : 0.0);
         }
         for (size_t j = 0; j < p->freedoms; j++) {
-            p->matrix[k * p->freedoms + j] = tangent_qp_along(&p->freedom[j], p->spare);
+            p->factor.matrix[k * p->freedoms + j] = tangent_qp_along(&p->freedom[j], p->spare);
         }
-        p->matrix[k * p->freedoms + k] += e->curvature;
+        p->factor.matrix[k * p->freedoms + k] += e->curvature;
     }
     tribo_disc_factorize(p, p->freedoms);
 }
 
-/* move [size] = the steps of freedoms. */
+/* move [size] = step [freedoms] along the freedoms. */
 static void spread(const struct disc_qp *p, const double *step, double *move)
 {
     memset(move, 0, p->size * sizeof *move);
@@ -259,7 +258,7 @@ void tribo_disc_slide(struct disc_qp *p, const double *rhs, double *move)
     for (size_t k = 0; k < p->freedoms; k++) {
         pull[k] = balanced[k] = -tangent_qp_along(&p->freedom[k], rhs);
     }
-    tribo_null_project(&p->factor, p->redundant, balanced);
+    tribo_null_project(&p->factor.qp, p->factor.redundant, balanced);
     for (size_t k = 0; k < p->freedoms; k++) {
         pull[k] -= balanced[k];
         most = greater(most, fabs(pull[k]));
@@ -277,7 +276,7 @@ void tribo_disc_drag(const struct disc_qp *p, size_t i, const double *dshift, do
         dy[k] = p->place[i] == LENS_ON_SHIFTED ? -dshift[k] : 0.0;
     }
     if (p->place[i] == LENS_AT_CORNER) {
-        /* d(corner) = -dc/2 + d(side height across), across = (-c_2, c_1)/|c|: the height falls as |c| grows, and across turns with c. */
+        /* d(corner) = -dc/2 + d(side height across), across = (-c_2, c_1)/|c|: height falls as |c| grows, across turns with c. */
         const struct corner k = tribo_lens_corner(p->shift + i, p->to + i);
         const double *e = k.along, grows = e[0] * dshift[0] + e[1] * dshift[1], turns = e[0] * dshift[1] - e[1] * dshift[0];
         const double falls = -0.5 * quotient(k.half, greater(k.height, DBL_MIN)) * grows,
