@@ -88,7 +88,7 @@ int tribo_solve_group(tribo_context *ctx, struct box_qp *p)
     const struct work before = p->work;
     for (size_t e = 0; g->nullity && e < p->count; e++) {
         const size_t i = p->near[e];
-        p->unit[i] = ctx->op->diagonal[member[i]] * (0.5 * p->hi[i] - 0.5 * p->lo[i]);
+        p->rounding.unit[i] = ctx->op->diagonal[member[i]] * (0.5 * p->hi[i] - 0.5 * p->lo[i]);
     }
     ctx->count.solves++;
     const int small = g->small && !p->far && tribo_box_small(p);
@@ -163,7 +163,7 @@ static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *v
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
         p->q[k] = cut(a[i]);
-        p->unit[k] = ctx->op->diagonal[i] * ctx->follow.contacts.bound[i];
+        p->rounding.unit[k] = ctx->op->diagonal[i] * ctx->follow.contacts.bound[i];
     }
     ctx->count.solves++;
     int consistent = tribo_box_linear(p);

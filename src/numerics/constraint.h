@@ -1,8 +1,8 @@
 /* Contacts that hold, as constraints between degrees of freedom: by J_I q = 0 some of them, the slaves, follow the others.
  *
- * J_I is eliminated as it stands, without masses: in J M^-1 J' the mass of a heavy body is rounded away beside that of a light one,
- * and contacts of the two look dependent. Masses choose the slaves, by complete pivoting of J_I M^-1/2, which keeps the digits of
- * rows and columns of very different size (Demmel and others 1999, Linear Algebra Appl. 299, 21,
+ * J_I is eliminated as it stands, without masses: in J M^-1 J' the mass of a heavy body is rounded away beside that of a light
+ * one, and contacts of the two look dependent. Masses choose the slaves, by complete pivoting of J_I M^-1/2, which keeps the
+ * digits of rows and columns of very different size (Demmel and others 1999, Linear Algebra Appl. 299, 21,
  * doi:10.1016/S0024-3795(99)00134-2). */
 #ifndef TRIBO_CONSTRAINT_H
 #define TRIBO_CONSTRAINT_H
@@ -41,8 +41,8 @@ size_t tribo_constraints_rank(const struct matrix *direction, const struct matri
 
 /* The following need rank = count and last = NULL. */
 
-/* z [ndof][ndof - count]: q = z y are the displacements with J_I q = 0. Entries are exact where rows tie pairs. Returns 1, or 0 if
- * out of memory. */
+/* z [ndof][ndof - count]: q = z y are the displacements with J_I q = 0. Entries are exact where rows tie pairs. Returns 1, or 0
+ * if out of memory. */
 int tribo_constraints_basis(const struct constraints *c, size_t ndof, struct matrix *z);
 
 /* Adds displacements of slaves with J_I q = b [count] to q [ndof]. */

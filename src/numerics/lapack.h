@@ -1,5 +1,5 @@
-/* LAPACK and BLAS by their Fortran symbols: arguments by address, matrices by columns, so that a row-major matrix is passed as its
- * transpose; the lengths of the texts (1) at the end. Callers check sizes and entries: XERBLA prints, or ends the program. */
+/* LAPACK and BLAS by their Fortran symbols: arguments by address, matrices by columns, so that a row-major matrix is passed as
+ * its transpose; the lengths of the texts (1) at the end. Callers check sizes and entries: XERBLA prints, or ends the program. */
 #ifndef TRIBO_LAPACK_H
 #define TRIBO_LAPACK_H
 

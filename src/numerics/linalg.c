@@ -417,8 +417,8 @@ int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors)
     if (!work) {
         return TRIBO_ERR_MEMORY;
     }
-    /* QL from the first column on: where entries of a decrease along the diagonal, small entries of eigenvectors are exact to their
-     * own rounding, as residuals in Krylov spaces need. Divide and conquer is exact to rounding of the largest entry only. */
+    /* QL from the first column on: where entries of a decrease along the diagonal, small entries of eigenvectors are exact to
+     * their own rounding, as residuals in Krylov spaces need. Divide and conquer is exact to rounding of the largest one only. */
     dsyev_("V", "L", &rows, a, &rows, values, work, &size, &info, 1, 1);
     free(work);
     for (size_t k = 0; k < n; k++) {

@@ -46,8 +46,8 @@ void tribo_multiply_two(size_t rows, size_t inner, size_t cols, const double *a,
 /* a [n][n] = (a + a')/2. */
 void tribo_even_out(size_t n, double *a);
 
-/* Matrices that are not diagonal have sparse factors from SPARSE_LEAST rows on. Without CHOLMOD all factors are dense, of DENSE_MOST
- * rows at most. */
+/* Matrices that are not diagonal have sparse factors from SPARSE_LEAST rows on. Without CHOLMOD all factors are dense, of
+ * DENSE_MOST rows at most. */
 #define SPARSE_LEAST 200
 #define DENSE_MOST 3000
 

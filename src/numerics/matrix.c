@@ -74,8 +74,8 @@ static void fill_blocks(struct matrix *a)
     }
 }
 
-/* offset [MOST_DIAGONALS] = the diagonals j - i that a has entries on, ascending. Returns their number, or 0 if they are too many,
- * or more than half empty. */
+/* offset [MOST_DIAGONALS] = the diagonals j - i that a has entries on, ascending. Returns their number, or 0 if they are too
+ * many, or more than half empty. */
 static size_t find_diagonals(const struct matrix *a, ptrdiff_t *offset)
 {
     size_t count = 0;

@@ -122,8 +122,8 @@ void tribo_matrix_keep_lower(struct matrix *a);
 /* Multiplies row i by factor[i]. */
 void tribo_matrix_scale_rows(struct matrix *a, const double *factor);
 
-/* Returns 1 and the place and value of an entry that is not finite, or, if symmetric = 1, of an entry that differs from its mirror
- * image; 0 if there is none. */
+/* Returns 1 and the place and value of an entry that is not finite, or, if symmetric = 1, of an entry that differs from its
+ * mirror image; 0 if there is none. */
 int tribo_matrix_flaw(const struct matrix *a, int symmetric, size_t *i, size_t *j, double *value, double *mirror);
 
 /* *below = max(*below, i - j), *above = max(*above, j - i) over all entries (i, j). */

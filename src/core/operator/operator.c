@@ -53,7 +53,7 @@ void tribo_memory_free(struct memory *m)
 {
     struct box_qp *p = &m->problem;
     free(m->store);
-    free(p->basis);
+    free(p->null.basis);
     *m = (struct memory){0};
 }
 
@@ -112,20 +112,20 @@ struct box_qp *tribo_memory_problem(const struct delassus *op, struct memory *m,
     p->sets = &m->sets[k];
     p->member = op->member + g->first;
     p->scale = fixed;
-    p->part = fixed + size;
-    p->least = fixed + 2 * size;
+    p->rounding.part = fixed + size;
+    p->rounding.least = fixed + 2 * size;
     p->r = fixed + 3 * size;
-    p->r_low = p->r + size * size;
+    p->low.r = p->r + size * size;
     p->x = m->store + g->kept;
     p->order = (void *)(p->x + size);
     p->at = (void *)(p->x + 2 * size);
     p->l = p->x + 3 * size;
-    p->l_low = p->l + size * size;
+    p->low.l = p->l + size * size;
     p->inverse = p->l + (g->graded ? 2 : 1) * size * size;
     if (g->sparse) {
         p->sparse = (struct sparse_factor){p->l + 3 * size, p->l, p->l + size, (void *)(p->l + 2 * size)};
     }
-    p->redundant = op->basis / size;
+    p->null.redundant = op->basis / size;
     return p;
 }
 
@@ -143,9 +143,9 @@ static void lay_out_memory(struct memory *m, struct layout *b, const struct dela
     m->sets = tribo_layout_array(b, op->groups, sizeof *m->sets);
     m->solved_list = tribo_layout_array(b, op->groups, sizeof *m->solved_list);
     m->solved = tribo_layout_array(b, op->groups, 1);
-    double **const vector[] = {&m->problem.q,       &m->problem.lo,       &m->problem.hi,    &m->problem.gradient,
-                               &m->problem.noise,   &m->problem.low,      &m->problem.terms, &m->problem.unit,
-                               &m->problem.step,    &m->problem.step_low, &m->problem.row,   &m->problem.spare[0],
+    double **const vector[] = {&m->problem.q,        &m->problem.lo,       &m->problem.hi,             &m->problem.gradient,
+                               &m->problem.noise,    &m->problem.low.x,    &m->problem.rounding.terms, &m->problem.rounding.unit,
+                               &m->problem.step,     &m->problem.low.step, &m->problem.row,            &m->problem.spare[0],
                                &m->problem.spare[1]};
     enum { VECTORS = sizeof vector / sizeof *vector };
     const size_t s = op->largest + 1;
@@ -154,7 +154,7 @@ static void lay_out_memory(struct memory *m, struct layout *b, const struct dela
         *vector[k] = numbers + k * s;
     }
     m->problem.near = tribo_layout_array(b, s, sizeof *m->problem.near);
-    m->problem.held = tribo_layout_array(b, s, sizeof *m->problem.held);
+    m->problem.null.held = tribo_layout_array(b, s, sizeof *m->problem.null.held);
     m->problem.to = tribo_layout_array(b, s, 1);
 }
 
@@ -172,8 +172,8 @@ static int allocate_memory(struct memory *m, const struct delassus *op)
 
 static int allocate_basis(struct memory *m, const struct delassus *op)
 {
-    m->problem.basis = op->basis ? malloc(op->basis * sizeof *m->problem.basis) : NULL;
-    return m->problem.basis || !op->basis;
+    m->problem.null.basis = op->basis ? malloc(op->basis * sizeof *m->problem.null.basis) : NULL;
+    return m->problem.null.basis || !op->basis;
 }
 
 static void lay_out_groups(struct delassus *op, struct layout *b, size_t n, size_t groups)

@@ -1,5 +1,5 @@
-/* The box-constrained quadratic program of a group, min 1/2 x'Rx + q'x with lo <= x <= hi, to which Coulomb's law leads: an x inside
- * its box has no gradient, and the gradient at a bound pushes against the bound.
+/* The box-constrained quadratic program of a group, min 1/2 x'Rx + q'x with lo <= x <= hi, to which Coulomb's law leads: an x
+ * inside its box has no gradient, and the gradient at a bound pushes against the bound.
  *
  *     begin with the sets of the last call
  *     repeat  x = the solution with these sets; an x outside its box goes to the bound, an x whose gradient leads away from its
@@ -90,7 +90,7 @@ static int box_hides(const struct box_qp *p)
     for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
         const size_t i = p->order[k];
         const double bound = p->to[i] == AT_LOWER ? p->lo[i] : p->to[i] == AT_UPPER ? p->hi[i] : 0.0;
-        hides |= p->part[i] * fabs(bound) > product(fabs(p->gradient[i]), p->scale[i] * p->scale[i]);
+        hides |= p->rounding.part[i] * fabs(bound) > product(fabs(p->gradient[i]), p->scale[i] * p->scale[i]);
     }
     return hides;
 }
@@ -187,7 +187,7 @@ static int box_slide(struct box_qp *p, size_t d)
     double size;
     const double pull = p->gradient[d];
     memset(p->step, 0, p->group->size * sizeof *p->step);
-    memset(p->step_low, 0, p->group->size * sizeof *p->step_low);
+    memset(p->low.step, 0, p->group->size * sizeof *p->low.step);
     tribo_null_vector(p, d, p->step);
     for (size_t k = 0; pull > 0.0 && k < p->sets->rank + p->sets->dependents; k++) {
         p->step[p->order[k]] *= -1.0;
@@ -288,13 +288,13 @@ static double box_share_once(struct box_qp *p, double *before, double *after)
         box_restore(p, after);
     }
     memcpy(after, p->x, p->group->size * sizeof *after);
-    /* Counts the acceleration that contact i is free to follow; all of its gradient if it exceeds a trace of the box, which may be
-     * less than the tolerance. */
+    /* Counts the acceleration that contact i is free to follow; all of its gradient if it exceeds a trace of the box, which may
+     * be less than the tolerance. */
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
-        const double r = p->unit[i] / greater(0.5 * p->hi[i] - 0.5 * p->lo[i], DBL_MIN);
+        const double r = p->rounding.unit[i] / greater(0.5 * p->hi[i] - 0.5 * p->lo[i], DBL_MIN);
         const double off = clamp(-p->gradient[i], r * (p->lo[i] - p->x[i]), r * (p->hi[i] - p->x[i]));
-        const double counts = fabs(off) > TRIBO_MISSED * p->unit[i] ? fabs(p->gradient[i]) : fabs(off);
+        const double counts = fabs(off) > TRIBO_MISSED * p->rounding.unit[i] ? fabs(p->gradient[i]) : fabs(off);
         most = greater(most, quotient(counts, greater(tribo_box_tolerance(p, i), DBL_MIN)));
     }
     return most;

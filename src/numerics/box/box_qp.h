@@ -1,16 +1,12 @@
-/* A group of contacts that R couples, and the box-constrained quadratic program over those of them that are near stick.
- * Everything is indexed by place in the group. Nothing here allocates, except where it says so.
+/* A group of contacts that R couples, and the box-constrained quadratic program over its contacts near stick. Arrays are indexed
+ * by place in the group. Nothing here allocates, unless it says so.
  *
- *   factor.c          the rows of R, and its factor over the free contacts, whichever way they are kept:
- *   factor_dense.c    as square blocks, kept from call to call and changed row by row
- *   factor_sparse.c   the same for large groups with few entries
- *   factor_graded.c   for light bodies between heavy ones, with twice as many digits
- *   sets.c            which contacts are free and which at a bound, and what makes them change
- *   newton.c          gradients, their rounding, and the step that takes them to zero
- *   box.c             solves the problem
- *   least_squares.c   solves the linear system of the partition coupling
- *   least_norm.c      shares forces among redundant contacts
- * Each calls those above it only. */
+ * factor.c          rows of R, and its factor over the free contacts, of one of three kinds: factor_dense.c    a square block,
+ * kept from call to call and changed row by row factor_sparse.c   the same for large groups with few entries factor_graded.c
+ * with twice as many digits, for light bodies between heavy ones sets.c            the sets of free contacts and of contacts at a
+ * bound, and their changes newton.c          the gradient, its rounding, and the step that takes it to zero small.c
+ * solves the problem of up to 4 contacts box.c             solves the problem least_squares.c   solves the linear system of the
+ * partition coupling least_norm.c      shares forces among redundant contacts Each calls those above it only. */
 #ifndef TRIBO_BOX_H
 #define TRIBO_BOX_H
 
@@ -21,20 +17,19 @@
 
 #include "common/real.h"
 
-/* Where a contact is: at the lower or upper end of its box, inside and free to move, or not in the problem at all. */
+/* Places of a contact: at the lower or upper end of its box, inside and free to move, or not in the problem. */
 enum { AT_LOWER = -1, FREE = 0, AT_UPPER = 1, AWAY = 2 };
 
-/* Pivots below this, relative to the diagonal, are not trusted without a look at the others. */
+/* A pivot below this part of the diagonal is trusted only as the largest of the remaining ones. */
 #define TRIBO_DOUBTFUL 1e-7
 
-/* Without a choice of pivots, those of a sparse factor below this count as zero. */
+/* Pivots of a sparse factor, which does not choose them, below this count as zero. */
 #define TRIBO_SPARSE_ZERO 1e-10
 
-/* Pivots of a graded group below this count as zero: those of rows of J that depend on each other up to rounding are, since they
- * go with its square. */
+/* Pivots of a graded group below this count as zero: the square of rounding, as where rows of J depend on each other. */
 #define TRIBO_GRADED_ZERO 1e-28
 
-/* Redundant contacts of one sparse group whose share is found; of a dense one, all of them. */
+/* Redundant contacts of a sparse group that share forces, at most; of a dense one, all. */
 #define TRIBO_SPARSE_REDUNDANT 64
 
 struct sparse;
@@ -42,25 +37,25 @@ struct sparse;
 /* What lasts as long as the operator. */
 struct group {
     size_t size;
-    size_t first;          /* into the operator's members */
-    size_t fixed;          /* into the operator's store: scale, terms, r and r_low */
-    size_t kept;           /* into the store of what is kept from call to call: x, order, at and the factor */
+    size_t first;          /* place in the operator's members */
+    size_t fixed;          /* place in the operator's store: scale, rounding.part, rounding.least, r and low.r */
+    size_t kept;           /* place in the store kept from call to call: x, order, at and the factor */
     double lightest;       /* the smallest scale, that of the largest diagonal entry */
     size_t terms;          /* entries of the fullest row */
-    struct sparse *sparse; /* R and the pattern of its factor, if they are sparse */
-    int graded;            /* they are kept to twice as many digits */
-    int small;             /* solved by small.c where it can */
-    double spread;         /* how much the shares of bodies in one entry of R's diagonal differ, at most; that of contact */
-    size_t uneven;         /* uneven */
+    struct sparse *sparse; /* R and the pattern of its factor; NULL if dense */
+    int graded;            /* 1: R and its factor have twice as many digits */
+    int small;             /* 1: small.c solves the problem where it can */
+    double spread;         /* largest ratio of the shares of bodies in an R_ii, */
+    size_t uneven;         /* and its contact i */
     size_t nullity;        /* size - rank of R: redundant contacts */
 };
 
-/* What is kept of a group from call to call, besides arrays. */
+/* Scalars of a group that are kept from call to call. */
 struct sets {
-    int far;           /* the problem was far in the last call */
-    size_t rank;       /* free contacts in the factor, independent of each other, */
-    size_t dependents; /* and those that depend on them */
-    unsigned inverse_of; /* small groups: the contacts of inverse, by bits */
+    int far;             /* 1: the problem of the last call was far */
+    size_t rank;         /* independent free contacts, in the factor */
+    size_t dependents;   /* free contacts that depend on those */
+    unsigned inverse_of; /* small groups: bit i is 1 if contact i is in inverse */
 };
 
 /* Work done so far. */
@@ -70,56 +65,74 @@ struct work {
 
 /* L D L' of a sparse group. */
 struct sparse_factor {
-    double *l, *d; /* [slots]; [size] 1/d, 0 for contacts that are not in the factor */
+    double *l;     /* [slots] */
+    double *d;     /* [size] 1/d; 0 for contacts that are not in the factor */
     double *w;     /* [size] workspace, zero between calls */
-    size_t *index; /* [size] where a free contact stands in the problem's order */
+    size_t *index; /* [size] place of a free contact in order */
+};
+
+/* Sizes by which rounding is told from motion. */
+struct rounding {
+    const double *part;  /* [size] part of the terms of a gradient that may be rounding */
+    const double *least; /* [size] terms below which forces underflow */
+    double *unit;        /* [size] R_ii times the limit, or half the box; of groups with redundant contacts */
+    double *terms;       /* [size] sizes of the gradient's terms with each contact alone at its solution; likewise */
+};
+
+/* Low parts of numbers with twice as many digits, of graded groups. */
+struct low_parts {
+    const double *r; /* [size][size] */
+    double *l;       /* [size][size] */
+    double *x;       /* [size] */
+    double *step;    /* [size] workspace */
+};
+
+/* Null vectors of R. */
+struct null_space {
+    double *basis;    /* [redundant][size] workspace: orthonormal null vectors */
+    size_t redundant; /* vectors that there is room for */
+    size_t *held;     /* [redundant] workspace */
 };
 
 /* A group at work: views of what is kept, and workspace. */
 struct box_qp {
     /* constant */
     const struct group *group;
-    const size_t *member;    /* [size] the contacts, ascending */
-    const double *scale;     /* [size] powers of 2 that bring the diagonal of R to between 1/2 and 2 */
-    const double *part;      /* [size] of the terms of a gradient that may be rounding; terms so small that forces */
-    const double *least;     /* underflow in them */
-    const double *r, *r_low; /* [size][size] R, if dense; what rounding left of it, if graded */
+    const size_t *member; /* [size] the contacts, ascending */
+    const double *scale;  /* [size] powers of 2: scale_i^2 R_ii is between 1/2 and 2 */
+    const double *r;      /* [size][size] R, if dense */
+    struct rounding rounding;
     /* kept */
     struct sets *sets;
     double *x;                   /* [size] */
     size_t *order;               /* [size] rank independent free contacts, in the order of the factor, then the dependents */
-    signed char *at;             /* [size] */
-    double *l, *l_low;           /* [size][size] Cholesky factor of the scaled R over order[0 .. rank); see r */
-    struct sparse_factor sparse; /* instead, if R is sparse */
-    double *inverse;             /* small groups: [size][size], see small.h */
+    signed char *at;             /* [size] places */
+    double *l;                   /* [size][size] Cholesky factor of the scaled R over order[0 .. rank); see factor_dense.c */
+    struct low_parts low;        /* of r, l, x and step */
+    struct sparse_factor sparse; /* in the place of l, if R is sparse */
+    double *inverse;             /* [size][size] small groups: see small.h */
     /* the problem: min 1/2 x'Rx + q'x, lo <= x <= hi, over the near contacts; the x of the others is given */
-    int far;             /* solutions may be as large as they can be told apart */
-    size_t *near, count; /* near[0 .. count): the contacts in the problem, ascending; near[count .. size): the others */
-    double *q, *lo, *hi;
-    double *gradient, *noise; /* R x + q, and what of it may be rounding */
-    int twofold;              /* x is kept to twice as many digits */
-    double *low;              /* what rounding left of it */
-    double *unit;             /* R_ii times the limit, or half the box; of groups with redundant contacts */
-    double *terms;            /* size of the gradient's terms where each contact carries what it would alone; of the same */
-    signed char *to;          /* workspace */
-    double *step, *step_low;  /* workspace, [size]; the latter is what rounding left, if the group is graded */
-    double *spare[2];         /* workspace, [size] */
-    double *row;              /* the same, zero between calls */
-    double *basis;            /* workspace: orthonormal null vectors, [redundant][size] */
-    size_t redundant;         /* how many there is room for */
-    size_t *held;             /* workspace, [redundant] */
+    int far;                  /* 1: forces may be so large that products overflow */
+    size_t *near, count;      /* near[0 .. count): the contacts in the problem, ascending; near[count .. size): the others */
+    double *q, *lo, *hi;      /* [size] */
+    double *gradient, *noise; /* [size] R x + q, and its rounding */
+    int twofold;              /* 1: x = x + low.x */
+    signed char *to;          /* [size] workspace: places */
+    double *step;             /* [size] workspace */
+    double *spare[2];         /* [size] workspace */
+    double *row;              /* [size] workspace, zero between calls */
+    struct null_space null;
     struct work work;
 };
 
-/* The largest force that is told apart at place i: the accelerations that such forces make add up to a number. |R_ij| is at most
- * 2/(scale_i scale_j). */
+/* Returns the largest force of contact i: accelerations by such forces are finite, since |R_ij| <= 2/(scale_i scale_j). */
 static inline double tribo_most(const struct box_qp *p, size_t i)
 {
     const double each = DBL_MAX / 6.0 / (double)p->group->terms;
     return lesser(each * lesser(p->scale[i] * p->group->lightest, 1.0), TRIBO_FAR);
 }
 
-/* What an ill-conditioned factor makes of a number is a number if this part of it is less than TRIBO_FAR. */
+/* An ill-conditioned factor makes a number of x if TRIBO_ROOM x is less than TRIBO_FAR. */
 #define TRIBO_ROOM 0x1p-64
 
 static inline double tribo_cut(const struct box_qp *p, size_t i, double force)
@@ -128,13 +141,13 @@ static inline double tribo_cut(const struct box_qp *p, size_t i, double force)
     return clamp(force, -most, most);
 }
 
-/* Rounding of a sum of n terms of size 1 leaves about this; what is smaller counts as zero. */
+/* Returns the rounding of a sum of n terms of size 1; a smaller sum counts as zero. */
 static inline double tribo_resolution(size_t n)
 {
     return 4.0 * (double)(n + 4) * DBL_EPSILON;
 }
 
-/* A power of 2 that takes a diagonal entry to between 1/2 and 2, from both sides. */
+/* Returns a power of 2, s, with s^2 diagonal between 1/2 and 2. */
 static inline double tribo_scale(double diagonal)
 {
     int e;
@@ -144,19 +157,20 @@ static inline double tribo_scale(double diagonal)
 
 /* ---- factor */
 
-/* A contact has become free: it enters the factor, or the dependents. Or it no longer is, and leaves. */
+/* Enters contact i, which is free, into the factor or the dependents. */
 void tribo_factor_add(struct box_qp *p, size_t i);
+
+/* Takes contact i, which is not free, out of the factor or the dependents. */
 void tribo_factor_remove(struct box_qp *p, size_t i);
 
-/* Factorizes anew, over all contacts that are FREE, which are near. Unless where is NULL, returns the largest entry left over
- * after the independent ones are eliminated, which is rounding unless R is indefinite; negative if a pivot is. *where is whose it
- * is. */
+/* Factorizes anew over all FREE contacts, which are near. where not NULL: returns the largest entry left after elimination of the
+ * independent contacts, rounding unless R is indefinite, negative if a pivot is, and its contact *where; else 0. */
 double tribo_factor_rebuild(struct box_qp *p, size_t *where);
 
-/* step = R^-1 step over the independent ones. Entries of the others are left alone. */
+/* step = R^-1 step over the independent contacts. Leaves the other entries. */
 void tribo_factor_solve(const struct box_qp *p, double *step);
 
-/* Whether that number of changes, towards that number of free contacts, costs more than a new factor. */
+/* Returns 1 if changes towards `free` free contacts cost more than a new factor. */
 int tribo_factor_many(const struct box_qp *p, size_t changes, size_t free);
 
 void tribo_dense_add(struct box_qp *p, size_t i);
@@ -167,7 +181,7 @@ void tribo_dense_solve(const struct box_qp *p, double *step);
 /* Shared by factorizations that choose their pivots. order = the free contacts; returns their number. */
 size_t tribo_dense_order(struct box_qp *p);
 
-/* Exchanges the largest pivot of rows k to all - 1 into row k, in l, l_low if graded, and order. Returns 0 if it is at most zero. */
+/* Exchanges the largest pivot of rows k to all - 1 into row k of l, low.l if graded, and order. Returns 0 if it is <= zero. */
 int tribo_dense_pivot(struct box_qp *p, size_t k, size_t all, double zero);
 
 /* Sets rank, and the other contacts as dependents. Returns as tribo_factor_rebuild. */
@@ -176,23 +190,23 @@ double tribo_dense_end(struct box_qp *p, size_t rank, size_t all, size_t *where)
 double tribo_graded_rebuild(struct box_qp *p, size_t *where);
 void tribo_graded_solve(const struct box_qp *p, double *step, double *low);
 
-/* Whether q and x, which may be bounded, are of sizes for which there are twice as many digits. */
+/* Returns 1 if q and x have sizes that twice as many digits allow. bounded: x is within lo and hi. */
 int tribo_graded_fits(const struct box_qp *p, int bounded);
 
-/* (R x + q)_i, *low being what rounding left of it, and *size the size of R x's terms. */
+/* Returns (R x + q)_i, its low part *low, and *size = sum_j |R_ij x_j|. */
 double tribo_graded_gradient(const struct box_qp *p, size_t i, double *low, double *size);
 
-/* step and step_low = the move of the independent x that takes their gradient to zero. */
+/* step and low.step = the move of the independent x that takes their gradient to zero. */
 void tribo_graded_newton(struct box_qp *p);
 
-/* tribo_null_vector, but for y of the dependents. */
+/* tribo_null_vector without the y of the dependents. */
 void tribo_graded_null_vector(const struct box_qp *p, size_t d, double *y);
 
-/* |q_i| + sum_j |y_j q_j| over the independent j, y = R^-1 R_.i: the gradient of i follows errors of all q by at most this part of
- * it, since the forces of the independent contacts do. Uses step_low. */
+/* Returns |q_i| + sum_j |y_j q_j| over the independent j, y = R^-1 R_.i: relative errors of q move gradient_i by at most this
+ * times them. Uses low.step. */
 double tribo_graded_terms(const struct box_qp *p, size_t i);
 
-/* x_i + length step_i, its low part kept. */
+/* Returns x_i + length step_i; its low part goes to low.x. */
 double tribo_graded_move(struct box_qp *p, size_t i, double length);
 
 void tribo_sparse_add(struct box_qp *p, size_t i);
@@ -203,62 +217,62 @@ int tribo_sparse_many(const struct box_qp *p, size_t changes);
 double tribo_sparse_dot(const struct box_qp *p, size_t i, const double *x, double *size);
 void tribo_sparse_spread(const struct box_qp *p, size_t i, double factor, double *y);
 
-/* Finds the pattern of the factor of a group with these rows (sorted columns, by place): allocates. NULL in *s if a dense one is
- * the better choice: the sparse one would have too many entries, or the group has redundant contacts, or nearly so, and is not
- * too large for a factor that chooses its pivots. 1, or 0 if out of memory. */
+/* Allocates the pattern of the factor of R = r (columns ascending, by place). *s = NULL if a dense factor is better: the sparse
+ * one would have too many entries, or R is nearly singular and not too large for a factor that chooses its pivots. Returns 1, or
+ * 0 if out of memory. */
 struct csr;
 int tribo_sparse_create(struct sparse **s, const struct csr *r);
-size_t tribo_sparse_slots(const struct sparse *s); /* of the factor */
+size_t tribo_sparse_slots(const struct sparse *s);
 void tribo_sparse_free(struct sparse *s);
 
 /* ---- rows of R */
 
-/* Row i times x [size]; *size is the sum of the terms' absolute values. */
+/* Returns sum_j R_ij x_j, and *size = sum_j |R_ij x_j|. */
 double tribo_row_dot(const struct box_qp *p, size_t i, const double *x, double *size);
 
-/* The same without the diagonal's term; x is as before in the end. */
+/* Returns the sum without j = i. Leaves x as it was. */
 double tribo_row_others(const struct box_qp *p, size_t i, double *x);
 
-/* y [size] = factor * row i, at the free contacts. Other entries are left alone. */
+/* y_j = factor R_ij at the free contacts j. Leaves the other entries. */
 void tribo_row_spread(const struct box_qp *p, size_t i, double factor, double *y);
 
 /* ---- sets: which contacts are free */
 
-/* Puts a contact in its place, and changes the factor with it. */
+/* at_i = to, and the factor accordingly. */
 void tribo_box_change(struct box_qp *p, size_t i, signed char to);
 
-/* Puts all contacts in their places in p->to. Returns how many were free, or are now, but not both. */
+/* at = to, and the factor accordingly. Returns the number of contacts that became free or not free. */
 size_t tribo_box_change_all(struct box_qp *p);
 
-/* Takes contacts into the problem that are near for the first time, and others out of it. keep_bounds: a contact may begin at the
- * bound where it was; otherwise all are free. */
+/* Takes the near contacts into the problem, free, and the others out of it. keep_bounds: contacts at a bound stay there, unless
+ * the bound went far away. */
 void tribo_box_enter(struct box_qp *p, int keep_bounds);
 
-/* Moves the free x along step, at most by longest times it, and so far that none leaves its box. Returns the contact that met a
- * bound first, or size. */
+/* Moves the free x by as much of longest step as keeps them in their boxes. Returns the contact that meets its bound, or size. */
 size_t tribo_box_advance(struct box_qp *p, double longest);
 
-/* What a caller's rounding may do to a must not pit redundant contacts against each other: so much of its unit the gradient of
- * one may have; but not more than so much of its terms, since limits that are never reached say nothing of rounding. */
+/* Rounding of the caller's a must not set redundant contacts against each other: their gradient may be this part of the unit, but
+ * not more than that part of the terms, since limits that are never reached do not bound rounding. */
 #define TRIBO_DISAGREEMENT 5e-13
 #define TRIBO_DISAGREED_TERMS 5e-9
 
-/* How much gradient an x may have that should have none: rounding, and, of a group with redundant contacts, disagreement. */
+/* Returns the gradient of i that rounding of the caller's a may cause, for groups with redundant contacts. */
 static inline double tribo_box_disagreement(const struct box_qp *p, size_t i)
 {
     if (!p->group->nullity) {
         return 0.0;
     }
     return p->twofold ? TRIBO_DISAGREEMENT * tribo_graded_terms(p, i)
-                      : lesser(TRIBO_DISAGREEMENT * p->unit[i], TRIBO_DISAGREED_TERMS * p->terms[i]);
+                      : lesser(TRIBO_DISAGREEMENT * p->rounding.unit[i], TRIBO_DISAGREED_TERMS * p->rounding.terms[i]);
 }
 
+/* Returns the gradient of i that counts as zero. */
 static inline double tribo_box_tolerance(const struct box_qp *p, size_t i)
 {
     return p->noise[i] + tribo_box_disagreement(p, i);
 }
 
-/* 1 if a pull, which may be negative, is beyond the tolerance of i. */
+/* Returns 1 if pull, which may be negative, exceeds the tolerance of i. */
 static inline int tribo_box_pulls(const struct box_qp *p, size_t i, double pull)
 {
     return pull > p->noise[i] && pull > tribo_box_tolerance(p, i);
@@ -266,25 +280,25 @@ static inline int tribo_box_pulls(const struct box_qp *p, size_t i, double pull)
 
 /* ---- Newton's method with the sets as they are */
 
-/* Refinement ends with gradients of so much rounding, or the factor is not what it should be. */
+/* Largest gradient of a solution, in parts of its rounding; more shows an inexact factor. */
 #define TRIBO_SETTLED 4.0
 
-/* Chooses whether x is kept to twice as many digits in this call; bounded: lo and hi are set. */
+/* Chooses twofold, and finds rounding.terms. bounded: lo and hi are set. */
 void tribo_box_begin(struct box_qp *p, int bounded);
 
-/* gradient and noise at x. */
+/* Finds gradient and noise at x. */
 void tribo_box_gradients(struct box_qp *p);
 
-/* step = the move of the independent x that takes their gradient to zero; dependent ones stay. */
+/* step = the move of the independent x that takes their gradient to zero; 0 for the dependents. */
 void tribo_box_newton(struct box_qp *p);
 
-/* The same for the gradient as it stands, which the caller has projected: of a graded group to the digits of a double. */
+/* The same for gradient as it is, with the digits of a double. */
 void tribo_box_downhill(struct box_qp *p);
 
-/* Returns where the step takes x. */
+/* Returns x_i + step_i. */
 double tribo_box_moved(struct box_qp *p, size_t i);
 
-/* Whether the gradient of the independent x is at most noises times its rounding. */
+/* Returns 1 if the gradients of the independent x are at most noises times their rounding. */
 static inline int tribo_box_settled(const struct box_qp *p, double noises)
 {
     for (size_t k = 0; k < p->sets->rank; k++) {
@@ -296,11 +310,11 @@ static inline int tribo_box_settled(const struct box_qp *p, double noises)
     return 1;
 }
 
-/* Forgets what rounding left of x: it is known of what a solver found, and of nothing else. */
+/* low.x = 0: an x that no solver found has no low part. */
 static inline void tribo_box_forget_low(const struct box_qp *p)
 {
     if (p->twofold) {
-        memset(p->low, 0, p->group->size * sizeof *p->low);
+        memset(p->low.x, 0, p->group->size * sizeof *p->low.x);
     }
 }
 
@@ -312,34 +326,32 @@ static inline void tribo_box_forget_low(const struct box_qp *p)
 /* small.c: solves the problem of a small group. 1, or 0 if another solver is needed. */
 int tribo_box_small(struct box_qp *p);
 
-/* Solves the problem from what is kept. 1, or 0 without convergence. */
+/* Solves the problem from what is kept. Returns 1, or 0 without convergence. */
 int tribo_box_solve(struct box_qp *p);
 
-/* What rounding of the gradient of i, and of the x of the free contacts, may add to the gradient of i. Uses spare[0]. */
+/* Returns the rounding of gradient_i, that of the free x included. Uses spare[0]. */
 double tribo_box_doubt(const struct box_qp *p, size_t i);
 
-/* Makes x the one of least norm among all solutions of the problem. */
+/* x = the solution of the problem of least norm. */
 void tribo_box_share(struct box_qp *p);
 
-/* x = the minimum-norm solution of R x + q = 0 over the near contacts, all of them free. 1, or 0 if there is none: then x is the
- * least-squares one. */
+/* x = the solution of R x + q = 0 of least norm over the near contacts, all of them free. Returns 1, or 0 if there is none: then
+ * x is the least-squares solution. */
 int tribo_box_linear(struct box_qp *p);
 
 /* ---- least norm */
 
-/* y [size] = the null vector of R over the free contacts in which the dependent d moves by 1. Entries of other contacts are left
- * alone. */
+/* y [size] = the null vector of R over the free contacts with y_d = 1, d a dependent. Leaves the entries of other contacts. */
 void tribo_null_vector(const struct box_qp *p, size_t d, double *y);
 
-/* basis = orthonormal null vectors of R over the free contacts. Returns their number: the dependents', or 0 if there is no room
- * for them. */
+/* basis = orthonormal null vectors of R over the free contacts. Returns their number: dependents, or 0 if there is no room. */
 size_t tribo_null_basis(struct box_qp *p);
 
-/* Takes the part of y [size] in the span of the first k vectors of basis out of it. */
+/* y [size] -= its projection to the first k vectors of basis. */
 void tribo_null_project(const struct box_qp *p, size_t k, double *y);
 
-/* x becomes the solution of least norm, up to rounding; contacts at a bound that have no gradient become free. Returns 0 if there
- * is only one. */
+/* x = the solution of least norm, up to rounding. Contacts at a bound without gradient become free. Returns 0 if the solution is
+ * unique. */
 int tribo_least_norm(struct box_qp *p);
 
 #endif

@@ -1,6 +1,6 @@
-/* The factor of a group whose R is a square block. Rows are appended and deleted in O(rank^2); contacts that depend on those in the
- * factor wait beside it. A pivot that is small, but not zero to rounding, leads to a factor with the largest pivots first, which
- * decides the rank.
+/* The factor of a group whose R is a square block. Rows are appended and deleted in O(rank^2); contacts that depend on those in
+ * the factor wait beside it. A pivot that is small, but not zero to rounding, leads to a factor with the largest pivots first,
+ * which decides the rank.
  *
  * Row k of l holds l_k0, ... l_k,k-1 and 1/l_kk. */
 #include "box_qp.h"
@@ -145,7 +145,7 @@ int tribo_dense_pivot(struct box_qp *p, size_t k, size_t all, double zero)
     if (best != k) {
         dense_exchange(p->l, size, all, k, best);
         if (p->group->graded) {
-            dense_exchange(p->l_low, size, all, k, best);
+            dense_exchange(p->low.l, size, all, k, best);
         }
         const size_t i = p->order[k];
         p->order[k] = p->order[best];

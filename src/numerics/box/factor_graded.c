@@ -1,6 +1,7 @@
-/* The factor of a graded group, one of whose contacts touches a light body and a heavy one. In R = J M^-1 J' as a double 1/m of the
- * light body hides 1/M of the heavy one but for the last digits, and with them the effect of friction on it. R, its factor, and the
- * forces of the free contacts are therefore kept to twice as many digits, which are enough for masses that differ by 1e18.
+/* The factor of a graded group, one of whose contacts touches a light body and a heavy one. In R = J M^-1 J' as a double 1/m of
+ * the light body hides 1/M of the heavy one but for the last digits, and with them the effect of friction on it. R, its factor,
+ * and the forces of the free contacts are therefore kept to twice as many digits, which are enough for masses that differ by
+ * 1e18.
  *
  * A change of the stick set factorizes anew. Row k of l holds l_k0, ... l_k,k-1 and 1/l_kk, as in factor_dense.c. */
 #include "box_qp.h"
@@ -17,20 +18,20 @@
 static struct twofold graded_entry(const struct box_qp *p, size_t i, size_t j)
 {
     const size_t at = i * p->group->size + j;
-    return twofold_scale((struct twofold){p->r[at], p->r_low[at]}, p->scale[i] * p->scale[j]);
+    return twofold_scale((struct twofold){p->r[at], p->low.r[at]}, p->scale[i] * p->scale[j]);
 }
 
 static struct twofold graded_factor(const struct box_qp *p, size_t i, size_t j)
 {
     const size_t at = i * p->group->size + j;
-    return (struct twofold){p->l[at], p->l_low[at]};
+    return (struct twofold){p->l[at], p->low.l[at]};
 }
 
 static void graded_set_factor(const struct box_qp *p, size_t i, size_t j, struct twofold x)
 {
     const size_t at = i * p->group->size + j;
     p->l[at] = x.hi;
-    p->l_low[at] = x.lo;
+    p->low.l[at] = x.lo;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- rebuild */
@@ -113,7 +114,7 @@ void tribo_graded_null_vector(const struct box_qp *p, size_t d, double *y)
     for (size_t k = 0; k < p->sets->rank; k++) {
         const size_t i = p->order[k];
         y[i] = -p->r[d * size + i];
-        low[i] = -p->r_low[d * size + i];
+        low[i] = -p->low.r[d * size + i];
     }
     tribo_graded_solve(p, y, low);
     memset(low, 0, size * sizeof *low);
@@ -139,7 +140,7 @@ double tribo_graded_gradient(const struct box_qp *p, size_t i, double *low, doub
     struct twofold sum = {p->scale[i] * p->q[i], 0.0};
     *size = 0.0;
     for (size_t j = 0; j < p->group->size; j++) {
-        const struct twofold x = twofold_scale((struct twofold){p->x[j], p->low[j]}, 1.0 / p->scale[j]),
+        const struct twofold x = twofold_scale((struct twofold){p->x[j], p->low.x[j]}, 1.0 / p->scale[j]),
                              term = twofold_times(graded_entry(p, i, j), x);
         sum = twofold_add(sum, term);
         *size += fabs(term.hi);
@@ -154,15 +155,15 @@ void tribo_graded_newton(struct box_qp *p)
     double size;
     for (size_t k = 0; k < p->sets->rank; k++) {
         const size_t i = p->order[k];
-        p->step[i] = -tribo_graded_gradient(p, i, &p->step_low[i], &size);
-        p->step_low[i] *= -1.0;
+        p->step[i] = -tribo_graded_gradient(p, i, &p->low.step[i], &size);
+        p->low.step[i] *= -1.0;
     }
-    tribo_graded_solve(p, p->step, p->step_low);
+    tribo_graded_solve(p, p->step, p->low.step);
 }
 
 double tribo_graded_terms(const struct box_qp *p, size_t i)
 {
-    double *y = p->step_low, sum = fabs(p->q[i]);
+    double *y = p->low.step, sum = fabs(p->q[i]);
     tribo_graded_null_vector(p, i, y);
     for (size_t k = 0; k < p->sets->rank; k++) {
         sum += fabs(y[p->order[k]] * p->q[p->order[k]]);
@@ -172,8 +173,8 @@ double tribo_graded_terms(const struct box_qp *p, size_t i)
 
 double tribo_graded_move(struct box_qp *p, size_t i, double length)
 {
-    const struct twofold step = twofold_times((struct twofold){p->step[i], p->step_low[i]}, (struct twofold){length, 0.0}),
-                         x = twofold_add((struct twofold){p->x[i], p->low[i]}, step);
-    p->low[i] = x.lo;
+    const struct twofold step = twofold_times((struct twofold){p->step[i], p->low.step[i]}, (struct twofold){length, 0.0}),
+                         x = twofold_add((struct twofold){p->x[i], p->low.x[i]}, step);
+    p->low.x[i] = x.lo;
     return x.hi;
 }

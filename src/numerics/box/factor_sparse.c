@@ -1,7 +1,7 @@
 /* The factor of a large group with few entries: R = L D L' over the free contacts, for an order of elimination and a pattern of L
- * that are those of R as a whole, found once. Contacts that are not in the factor have zeros there. A contact that enters or leaves
- * changes its row and column of L, and the columns on the way to the root of the elimination tree (Davis and Hager 2005, SIAM J.
- * Matrix Anal. Appl. 26, 621, doi:10.1137/S089547980343641X).
+ * that are those of R as a whole, found once. Contacts that are not in the factor have zeros there. A contact that enters or
+ * leaves changes its row and column of L, and the columns on the way to the root of the elimination tree (Davis and Hager 2005,
+ * SIAM J. Matrix Anal. Appl. 26, 621, doi:10.1137/S089547980343641X).
  *
  *     all anew     row by row
  *     k enters     row k likewise; column k from R and those rows; L D L' -= pivot times the square of column k, behind k
@@ -76,8 +76,8 @@ static void find_tree(const struct sparse *s, size_t *parent, size_t *seen)
     }
 }
 
-/* Finds the pattern of L by columns and rows, and the costs. work [4 size]. Returns 1; 0 if a dense factor is better; -1 if out of
- * memory. */
+/* Finds the pattern of L by columns and rows, and the costs. work [4 size]. Returns 1; 0 if a dense factor is better; -1 if out
+ * of memory. */
 static int find_pattern(struct sparse *s, double *work)
 {
     const size_t size = s->r.n;
@@ -115,8 +115,8 @@ static int find_pattern(struct sparse *s, double *work)
             s->slot[t] = q;
         }
     }
-    /* Nanoseconds of a change, which goes from its column to the root, and of a factor, as measured on carpets and chains of 400 to
-     * 100,000 contacts; only their ratio counts. */
+    /* Nanoseconds of a change, which goes from its column to the root, and of a factor, as measured on carpets and chains of 400
+     * to 100,000 contacts; only their ratio counts. */
     for (size_t j = size; j-- > 0;) {
         const double entries = (double)(s->column[j + 1] - s->column[j] + 1);
         path[j] = 1.25 * entries + (parent[j] == NONE ? 0.0 : path[parent[j]]);

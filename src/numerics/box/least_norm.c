@@ -1,8 +1,8 @@
-/* The share of redundant contacts. Where R is singular R x is unique, but x is not: x becomes the solution in the box of least norm,
- * which depends neither on the order of the contacts nor on the way to it.
+/* The share of redundant contacts. Where R is singular R x is unique, but x is not: x becomes the solution in the box of least
+ * norm, which depends neither on the order of the contacts nor on the way to it.
  *
- * A primal active set method minimizes |x|^2 in the box along the null space of R over the contacts without gradient: basis spans the
- * null space, and its first vectors do not move the contacts at a bound. */
+ * A primal active set method minimizes |x|^2 in the box along the null space of R over the contacts without gradient: basis spans
+ * the null space, and its first vectors do not move the contacts at a bound. */
 #include "box_qp.h"
 
 #include <float.h>
@@ -46,7 +46,7 @@ static void free_add(const struct box_qp *p, double factor, const double *x, dou
 void tribo_null_project(const struct box_qp *p, size_t k, double *y)
 {
     for (size_t j = 0; j < k; j++) {
-        const double *b = p->basis + j * p->group->size;
+        const double *b = p->null.basis + j * p->group->size;
         free_add(p, -free_dot(p, b, y), b, y);
     }
 }
@@ -54,11 +54,11 @@ void tribo_null_project(const struct box_qp *p, size_t k, double *y)
 size_t tribo_null_basis(struct box_qp *p)
 {
     const size_t vectors = p->sets->dependents;
-    if (vectors > p->redundant) {
+    if (vectors > p->null.redundant) {
         return 0;
     }
     for (size_t j = 0; j < vectors; j++) {
-        double *b = p->basis + j * p->group->size;
+        double *b = p->null.basis + j * p->group->size;
         tribo_null_vector(p, p->order[p->sets->rank + j], b);
         tribo_null_project(p, j, b);
         tribo_null_project(p, j, b);
@@ -76,14 +76,14 @@ static void hold_contact(struct box_qp *p, size_t vectors, size_t i)
     const size_t size = p->group->size, last = vectors - 1;
     double *u = p->row, square = 0.0;
     for (size_t j = 0; j < vectors; j++) {
-        u[j] = p->basis[j * size + i];
+        u[j] = p->null.basis[j * size + i];
         square += u[j] * u[j];
     }
     const double length = sqrt(square);
     u[last] += u[last] < 0.0 ? -length : length;
     const double scale = length * fabs(u[last]); /* u'u/2 */
     for (size_t k = 0; scale > 0.0 && k < p->sets->rank + p->sets->dependents; k++) {
-        double *column = p->basis + p->order[k], sum = 0.0;
+        double *column = p->null.basis + p->order[k], sum = 0.0;
         for (size_t j = 0; j < vectors; j++) {
             sum += u[j] * column[j * size];
         }
@@ -92,7 +92,7 @@ static void hold_contact(struct box_qp *p, size_t vectors, size_t i)
         }
     }
     for (size_t j = 0; j < last; j++) {
-        p->basis[j * size + i] = 0.0;
+        p->null.basis[j * size + i] = 0.0;
     }
     memset(u, 0, vectors * sizeof *u);
 }
@@ -103,11 +103,11 @@ static int can_move(struct box_qp *p, size_t vectors, size_t i)
 {
     double square = 0.0;
     for (size_t j = 0; j < vectors; j++) {
-        square += p->basis[j * p->group->size + i] * p->basis[j * p->group->size + i];
+        square += p->null.basis[j * p->group->size + i] * p->null.basis[j * p->group->size + i];
     }
     const int can = sqrt(square) > NULL_NOISE * tribo_resolution(p->group->size);
     for (size_t j = 0; !can && j < vectors; j++) {
-        p->basis[j * p->group->size + i] = 0.0;
+        p->null.basis[j * p->group->size + i] = 0.0;
     }
     return can;
 }
@@ -116,10 +116,10 @@ static int can_move(struct box_qp *p, size_t vectors, size_t i)
 static void aim_at_least(struct box_qp *p, size_t vectors)
 {
     for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
-        p->step[p->order[k]] = p->step_low[p->order[k]] = 0.0;
+        p->step[p->order[k]] = p->low.step[p->order[k]] = 0.0;
     }
     for (size_t j = 0; j < vectors; j++) {
-        const double *b = p->basis + j * p->group->size;
+        const double *b = p->null.basis + j * p->group->size;
         free_add(p, -free_dot(p, b, p->x), b, p->step);
     }
 }
@@ -137,17 +137,17 @@ static int release_contact(struct box_qp *p, size_t vectors, size_t *held)
     }
     const double noise = tribo_resolution(p->group->size) * (most * sqrt(sum));
     for (size_t tried = 0; tried < *held; tried++) {
-        const size_t i = p->held[0], others = *held - 1;
-        memmove(p->held, p->held + 1, others * sizeof *p->held);
+        const size_t i = p->null.held[0], others = *held - 1;
+        memmove(p->null.held, p->null.held + 1, others * sizeof *p->null.held);
         for (size_t h = 0; h < others; h++) {
-            hold_contact(p, vectors - h, p->held[h]);
+            hold_contact(p, vectors - h, p->null.held[h]);
         }
         aim_at_least(p, vectors - others);
         if (p->x[i] <= p->lo[i] ? p->step[i] > noise : p->step[i] < -noise) {
             *held = others;
             return 1;
         }
-        p->held[others] = i;
+        p->null.held[others] = i;
         hold_contact(p, vectors - others, i);
     }
     return 0;
@@ -171,7 +171,7 @@ int tribo_least_norm(struct box_qp *p)
         if (hit < size && held < vectors) {
             if (can_move(p, vectors - held, hit)) {
                 hold_contact(p, vectors - held, hit);
-                p->held[held++] = hit;
+                p->null.held[held++] = hit;
             }
         } else if (!release_contact(p, vectors, &held)) {
             break;

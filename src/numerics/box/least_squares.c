@@ -1,5 +1,5 @@
-/* The linear system of the partition coupling, R x + q = 0 over the near contacts, all of them free: its solution of least norm, or
- * its least-squares one. */
+/* The linear system of the partition coupling, R x + q = 0 over the near contacts, all of them free: its solution of least norm,
+ * or its least-squares one. */
 #include "box_qp.h"
 
 #include <float.h>

@@ -1,5 +1,5 @@
-/* Nested dissection (George 1973): a level of a breadth-first search splits the graph of R into two sides, and is eliminated after
- * them; each side is split likewise. */
+/* Nested dissection (George 1973): a level of a breadth-first search splits the graph of R into two sides, and is eliminated
+ * after them; each side is split likewise. */
 #include <stdlib.h>
 #include <string.h>
 

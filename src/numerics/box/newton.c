@@ -1,4 +1,4 @@
-/* The gradient of a group's problem and its rounding, and Newton's step, which takes the gradient of the free contacts to zero. */
+/* The gradient of a group's problem, its rounding, and Newton's step, which takes the gradient of free contacts to zero. */
 #include "box_qp.h"
 
 #include <float.h>
@@ -7,10 +7,10 @@
 /* Rounding of the terms of a graded group, in parts of that of doubles. */
 #define GRADED_PART 0x1p-50
 
-/* noise_i: rounded: size of the terms of the gradient that are rounded; most: largest force, in parts of which forces underflow. */
+/* Sets noise_i from the size of the terms of gradient_i that are rounded, and the largest force, by which forces underflow. */
 static inline void set_noise(struct box_qp *p, size_t i, double rounded, double most)
 {
-    p->noise[i] = p->part[i] * (rounded + p->least[i] * most);
+    p->noise[i] = p->rounding.part[i] * (rounded + p->rounding.least[i] * most);
 }
 
 /* Forces and R of a graded group are as good as exact: only q is rounded. */
@@ -36,7 +36,7 @@ void tribo_box_gradients(struct box_qp *p)
 static void rest_dependents(struct box_qp *p)
 {
     for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
-        p->step[p->order[k]] = p->step_low[p->order[k]] = 0.0;
+        p->step[p->order[k]] = p->low.step[p->order[k]] = 0.0;
     }
 }
 
@@ -44,7 +44,7 @@ void tribo_box_downhill(struct box_qp *p)
 {
     for (size_t k = 0; k < p->sets->rank; k++) {
         p->step[p->order[k]] = -p->gradient[p->order[k]];
-        p->step_low[p->order[k]] = 0.0;
+        p->low.step[p->order[k]] = 0.0;
     }
     tribo_factor_solve(p, p->step);
     rest_dependents(p);
@@ -74,7 +74,7 @@ void tribo_box_begin(struct box_qp *p, int bounded)
         for (size_t e = 0; e < p->count; e++) {
             const size_t i = p->near[e];
             tribo_row_dot(p, i, alone, &size);
-            p->terms[i] = size + fabs(p->q[i]);
+            p->rounding.terms[i] = size + fabs(p->q[i]);
         }
     }
 }

@@ -29,7 +29,7 @@ size_t tribo_box_change_all(struct box_qp *p)
         changes += (p->at[i] == FREE) != (p->to[i] == FREE);
         free += p->to[i] == FREE;
     }
-    /* Where contacts depend on others, a single change may factorize anew, over at as it is then: several changes factorize once. */
+    /* Where contacts depend on others, a change may factorize anew, over at as it is then: several changes factorize once. */
     if (changes > 0 && (tribo_factor_many(p, changes, free) || (p->sets->dependents && changes > 1))) {
         p->work.updates += changes;
         memcpy(p->at, p->to, n);
@@ -64,11 +64,11 @@ size_t tribo_box_advance(struct box_qp *p, double longest)
         const size_t i = p->order[k];
         const double x = p->twofold ? tribo_graded_move(p, i, length) : p->x[i] + length * p->step[i];
         p->x[i] = clamp(x, p->lo[i], p->hi[i]);
-        p->low[i] = p->x[i] == x ? p->low[i] : 0.0;
+        p->low.x[i] = p->x[i] == x ? p->low.x[i] : 0.0;
     }
     if (hit < p->group->size) {
         p->x[hit] = p->step[hit] > 0.0 ? p->hi[hit] : p->lo[hit];
-        p->low[hit] = 0.0;
+        p->low.x[hit] = 0.0;
     }
     return hit;
 }

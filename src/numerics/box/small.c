@@ -46,7 +46,7 @@ int tribo_small_fits(size_t n, const double *r, double *inverse)
 int tribo_box_small(struct box_qp *p)
 {
     const size_t n = p->group->size;
-    const struct small s = {p->r, p->inverse, &p->sets->inverse_of, p->part, p->least, p->q,
+    const struct small s = {p->r, p->inverse, &p->sets->inverse_of, p->rounding.part, p->rounding.least, p->q,
                             p->lo, p->hi, p->to, p->x, p->gradient, p->noise};
     double most = 0.0;
     for (size_t e = 0; e < n; e++) {

@@ -27,8 +27,8 @@ struct small {
 /* inverse [n][n] = R^-1 over set, 0 elsewhere, by bordering. */
 void tribo_small_invert(size_t n, const double *r, unsigned set, double *inverse);
 
-/* 1 if R_ii are plain numbers and 1/(R^-1)_ii >= 0.01 R_ii, so that inverses over all sets are good to rounding. inverse [n][n] is
- * zero on return. */
+/* 1 if R_ii are plain numbers and 1/(R^-1)_ii >= 0.01 R_ii, so that inverses over all sets are good to rounding. inverse [n][n]
+ * is zero on return. */
 int tribo_small_fits(size_t n, const double *r, double *inverse);
 
 /* Sets gradient and noise of all variables. Returns 1 if the gradients of free variables are noise. */
@@ -113,7 +113,7 @@ static inline int tribo_small_revise(size_t n, const struct small *s)
     return changed;
 }
 
-/* Solves the problem from the sets in at. Returns 0 if the sets have not settled after 2 n + 2 rounds, or rounding is in the way. */
+/* Solves the problem from the sets in at. Returns 0 if the sets do not settle in 2 n + 2 rounds, or rounding is in the way. */
 static inline int tribo_small_solve(size_t n, const struct small *s)
 {
     for (size_t round = 0; round < 2 * n + 2 && tribo_small_find(n, s); round++) {

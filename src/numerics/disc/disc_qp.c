@@ -77,9 +77,9 @@ static int descends(const struct disc_qp *p)
     return change <= rounding;
 }
 
-/* Takes as much of Newton's step as lowers the objective: from its part up to the first rim of an inside contact on, halved until it
- * does; all of it if it halves the distance, since near the solution the objective is rounding. If no part does, takes each contact
- * to the point of its set nearest to y - gain gradient, which always does. */
+/* Takes as much of Newton's step as lowers the objective: from its part up to the first rim of an inside contact on, halved until
+ * it does; all of it if it halves the distance, since near the solution the objective is rounding. If no part does, takes each
+ * contact to the point of its set nearest to y - gain gradient, which always does. */
 static void step_down(struct disc_qp *p)
 {
     const double before = p->residual;
@@ -167,8 +167,8 @@ int tribo_disc_solve(struct disc_qp *p)
 /* A share within this part of limits of a solution is one: a further solution would leave the share. */
 #define SHARED 1e-12
 
-/* With SOFT more stiffness the solution is off by as much; its solutions with SOFT, SOFT/2 and SOFT/4 extrapolate to 0 with errors
- * of third order. */
+/* With SOFT more stiffness the solution is off by as much; its solutions with SOFT, SOFT/2 and SOFT/4 extrapolate to 0 with
+ * errors of third order. */
 int tribo_disc_share(struct disc_qp *p)
 {
     const double part[] = {1.0, 0.5, 0.25}, weight[] = {1.0 / 3.0, -2.0, 8.0 / 3.0};
@@ -240,8 +240,9 @@ int tribo_disc_create(struct disc_qp *p, size_t most)
     f->order = malloc(s * sizeof *f->order);
     f->at = malloc(s);
     f->l = malloc(s * s * sizeof *f->l);
-    f->basis = malloc(s * s * sizeof *f->basis);
-    return store && p->wide && p->place && p->s && p->factor.matrix && p->freedom && f->near && f->order && f->at && f->l && f->basis;
+    f->null.basis = malloc(s * s * sizeof *f->null.basis);
+    return store && p->wide && p->place && p->s && p->factor.matrix && p->freedom && f->near && f->order && f->at && f->l &&
+           f->null.basis;
 }
 
 void tribo_disc_free(struct disc_qp *p)
@@ -256,7 +257,7 @@ void tribo_disc_free(struct disc_qp *p)
     free(p->factor.qp.order);
     free(p->factor.qp.at);
     free(p->factor.qp.l);
-    free(p->factor.qp.basis);
+    free(p->factor.qp.null.basis);
     *p = (struct disc_qp){0};
 }
 
@@ -268,7 +269,7 @@ void tribo_disc_alone(struct disc_alone *x, const double *s, const double *pull,
     x->p = (struct disc_qp){.size = 2, .wide = x->wide, .place = x->place, .s = x->s, .freedom = x->freedom};
     x->p.factor.matrix = x->matrix;
     x->p.near_enough = TRIBO_NEAR_ENOUGH;
-    x->p.factor.qp = (struct box_qp){.near = x->near, .order = x->order, .at = x->at, .l = x->l, .basis = x->basis};
+    x->p.factor.qp = (struct box_qp){.near = x->near, .order = x->order, .at = x->at, .l = x->l, .null = {.basis = x->basis}};
     lay_out(&x->p, x->store, TRIBO_DISC_ALONE);
     memcpy(x->p.pull, pull, 2 * sizeof *pull);
     memcpy(x->p.shift, shift, 2 * sizeof *shift);

@@ -1,11 +1,9 @@
-/* The convex quadratic program of coupled contacts, planar ones among them: min 1/2 y's y + pull'y, where the y of each contact lies
- * in its lens, or interval, in units of its limit. Knows no friction, and allocates nothing but in tribo_disc_create.
+/* The convex quadratic program of coupled contacts, planar ones among them: min 1/2 y's y + pull'y, where the y of each contact
+ * lies in its lens, or interval, in units of its limit. Knows no friction, and allocates nothing but in tribo_disc_create.
  *
- *   lens.c        the set of one contact, and its point nearest to another point
- *   tangent_qp.c  the directions in which contacts may move y, and Newton's equations along them
- *   interior.c    an interior-point method, which needs no beginning
- *   disc_qp.c     solves the problem
- * Each calls those above it only, and the dense factor of box/. */
+ * lens.c        the set of one contact, and its point nearest to another point tangent_qp.c  the directions in which contacts may
+ * move y, and Newton's equations along them interior.c    an interior-point method, which needs no beginning disc_qp.c     solves
+ * the problem Each calls those above it only, and the dense factor of box/. */
 #ifndef TRIBO_DISC_QP_H
 #define TRIBO_DISC_QP_H
 
@@ -37,7 +35,7 @@ struct disc_qp {
     double *s;           /* [size][size] */
     double *pull;        /* [size] */
     double *shift;       /* [size] c of the lenses */
-    double near_enough;  /* distances below this part of limits count as 0: TRIBO_NEAR_ENOUGH, unless forces are far below limits */
+    double near_enough;  /* distances below this part of limits are 0: TRIBO_NEAR_ENOUGH, unless forces are far below limits */
     double *weight;      /* [size] weights of y in tribo_disc_share */
     /* the solution; in: the beginning */
     double *y;       /* [size] */
@@ -81,8 +79,8 @@ void tribo_disc_alone(struct disc_alone *x, const double *s, const double *pull,
 /* Solves the problem from y. Returns 1, or 0 without convergence. */
 int tribo_disc_solve(struct disc_qp *p);
 
-/* y = the solution with the least sum of (weight y)^2, to about 1e-8 where the nonzero eigenvalues of s are alike, for a singular s
- * and a solution y. Returns 1, or 0 without convergence. */
+/* y = the solution with the least sum of (weight y)^2, to about 1e-8 where the nonzero eigenvalues of s are alike, for a singular
+ * s and a solution y. Returns 1, or 0 without convergence. */
 int tribo_disc_share(struct disc_qp *p);
 
 /* ---- tangent_qp.c */

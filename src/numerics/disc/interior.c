@@ -1,6 +1,6 @@
-/* A primal-dual interior-point method (Boyd and Vandenberghe 2004, Convex Optimization, section 11.7): it begins in the middle of all
- * lenses, takes a few dozen factorizations, and ends so near the solution that the place of each contact shows. Each disc is a
- * constraint |y + o|^2 <= 1, o = 0 or c, with room (1 - |y + o|^2)/2 and multiplier press. */
+/* A primal-dual interior-point method (Boyd and Vandenberghe 2004, Convex Optimization, section 11.7): it begins in the middle of
+ * all lenses, takes a few dozen factorizations, and ends so near the solution that the place of each contact shows. Each disc is
+ * a constraint |y + o|^2 <= 1, o = 0 or c, with room (1 - |y + o|^2)/2 and multiplier press. */
 #include "disc_qp.h"
 
 #include <float.h>

@@ -90,8 +90,8 @@ int tribo_lens_project(int directions, const double *c, const double *z, double 
     return LENS_AT_CORNER;
 }
 
-/* n_k = q_k/(weight_k + mu) for the mu >= 0 with |n| = 1: 1/|n| is concave in mu, so that Newton's method for 1/|n| = 1 rises to it.
- * Returns 0, with mu = 0, if |n| <= 1 there. */
+/* n_k = q_k/(weight_k + mu) for the mu >= 0 with |n| = 1: 1/|n| is concave in mu, so that Newton's method for 1/|n| = 1 rises to
+ * it. Returns 0, with mu = 0, if |n| <= 1 there. */
 static int minimize_on_disc(const double *weight, const double *q, double *n)
 {
     double mu = greater(0.0, greater(fabs(q[0]) - weight[0], fabs(q[1]) - weight[1])), rise = 1.0;

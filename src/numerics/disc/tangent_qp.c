@@ -1,6 +1,6 @@
-/* Newton's method on the projection equations y = P(y - gain gradient), P the projection onto the lenses. The projection gives the
- * place of each contact, and its derivative there the freedoms: all directions inside; along the rim on a rim, as if on a spring,
- * since the pressure turns with y; none at a corner. Along the freedoms the equations are symmetric. */
+/* Newton's method on the projection equations y = P(y - gain gradient), P the projection onto the lenses. The projection gives
+ * the place of each contact, and its derivative there the freedoms: all directions inside; along the rim on a rim, as if on a
+ * spring, since the pressure turns with y; none at a corner. Along the freedoms the equations are symmetric. */
 #include "disc_qp.h"
 
 #include <float.h>
@@ -170,7 +170,7 @@ void tribo_disc_factorize(struct disc_qp *p, size_t size)
         f->at[k] = FREE;
     }
     tribo_dense_rebuild(f, NULL);
-    f->redundant = size;
+    f->null.redundant = size;
     p->factor.redundant = tribo_null_basis(f);
 }
 
