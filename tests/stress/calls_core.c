@@ -3,10 +3,7 @@
  * and within their limits, and solve the problem that was asked.
  *
  * As a program of its own: test_stress_calls_core [-n <strings>] [-s <seed>] [<file>...] runs the strings in the files, and so
- * many random ones. With libFuzzer, in the root of the tree: clang -g -O1 -fsanitize=fuzzer,address,undefined -DTRIBO_FUZZER
- * -Iinclude tests/stress/calls_{core,settings,forces}.c -Isrc $(find src/core src/numerics/{box,disc,csr.c} -name '*.c') -lm
- *   ./a.out /tmp/new tests/stress/corpus
- * New strings go to the first folder. */
+ * many random ones. As a target of libFuzzer: ../fuzz. */
 #include <float.h>
 #include <math.h>
 #include <string.h>

@@ -3,14 +3,8 @@
  * finite, and on an error untouched or those of the last good step; errors have a message; outputs of calls that fail stay as
  * they were; nothing crashes, and GSL's error handler, which aborts, is never called.
  *
- * ctest replays the strings in corpus_gsl, and TRIBO_BLOCKS times 1000 random ones from TRIBO_SEED on. To search for more
- * with libFuzzer, from the project's folder:
- *
- *     clang -std=c99 -g -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -DTRIBO_FUZZER -Iinclude \
- *         tests/stress/calls_gsl.c $(find src -name '*.c') -lgsl -lgslcblas -lm -o /tmp/calls_gsl &&
- *         /tmp/calls_gsl -max_total_time=600 /tmp tests/stress/corpus_gsl
- *
- * New strings go to the first folder. */
+ * ctest replays the strings in corpus_gsl, and TRIBO_BLOCKS times 1000 random ones from TRIBO_SEED on. As a target of
+ * libFuzzer: ../fuzz. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
