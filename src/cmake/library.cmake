@@ -62,7 +62,7 @@ set_property(GLOBAL PROPERTY TRIBO_COMPONENTS "")
 # isfinite begins with a conversion to float.
 function(tribo_warnings target)
   target_compile_options(${target} PRIVATE
-    "$<$<COMPILE_LANG_AND_ID:C,GNU,Clang,AppleClang>:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>"
+    "$<$<COMPILE_LANG_AND_ID:C,GNU,Clang,AppleClang>:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow;-Wdouble-promotion>"
     "$<$<AND:$<COMPILE_LANG_AND_ID:C,GNU>,$<BOOL:${MINGW}>>:-Wno-format;-Wno-float-conversion>"
     "$<$<AND:$<COMPILE_LANG_AND_ID:C,GNU,Clang,AppleClang>,$<BOOL:${TRIBO_WERROR}>>:-Werror>")
 endfunction()

@@ -327,7 +327,7 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
     status = status ? status : tribo_planar_prepare(ctx, count, first, ctx->op, &ctx->memory, &planar, &plane);
     if (!status) {
         tribo_write_slips(ctx);
-        tribo_planar_install(ctx, planar, &plane);
+        tribo_planar_install(ctx, planar, &plane); /* NOLINT(clang-analyzer-unix.Malloc): tribo_fail does not return 0 */
         tribo_refresh(ctx);
     }
     return status;

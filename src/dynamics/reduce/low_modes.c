@@ -521,7 +521,7 @@ static int find_lowest_densely(const struct model *m, struct shifted *s, struct 
 static int find_lowest(const struct model *m, struct shifted *s, struct reduced *r)
 {
     const int large = m->ndof > DENSE_MOST || (m->ndof >= SPARSE_LEAST && 4 * m->nmode <= m->ndof);
-    size_t where;
+    size_t where = 0;
     if (!large || !tribo_sparse_available()) {
         const int status = find_lowest_densely(m, s, r);
         if (status != TRIBO_ERR_INDEFINITE || !tribo_sparse_available() || check_mass(m, &where) == TRIBO_ERR_INDEFINITE) {
