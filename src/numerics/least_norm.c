@@ -22,7 +22,7 @@ int tribo_least_norm_solve(double *a, size_t n, double cut, double *x, size_t *k
         dgesvd_("O", "A", &rows, &rows, a, &rows, value, &unused, &one, v, &rows, work, &size, &info, 1, 1);
     }
     for (size_t i = 0; i < n; i++) {
-        x[i] = info ? NAN : 0.0;
+        x[i] = info ? (double)NAN : 0.0;
     }
     for (size_t k = 0; !info && k < n; k++) {
         double part = 0.0;
