@@ -16,9 +16,14 @@ static char *word[WORDS + 1];
 static void read_words(void)
 {
     const struct options o = read_options(count, word);
-    if (!o.mass || !o.stiffness || !o.dofs || !o.contacts.count || !(o.damping > 0.0 && o.damping < 1.0) || !o.limits.points ||
-        !(o.limits.from > 0.0)) {
+    if (!o.mass || !o.stiffness || !o.dofs || !o.contacts.count || !o.limits.points || !(o.limits.from > 0.0) ||
+        !o.damping.count == !o.damping_matrix) {
         abort();
+    }
+    for (size_t k = 0; k < o.damping.count; k++) {
+        if (!(o.damping.value[k] > 0.0 && o.damping.value[k] < 1.0)) {
+            abort();
+        }
     }
 }
 

@@ -208,7 +208,7 @@ static void ask_in_vain(struct life *l)
     double t = l->t, y[MOST_STATES], bad[MOST_CONTACTS], load[MOST_DOFS] = {0.0};
     tribo_context *contacts = tribo_system_context(l->sys);
     for (size_t i = 0; i < MOST_CONTACTS; i++) {
-        bad[i] = i + 1 < l->s.ncontact ? 0.3 : -NAN;
+        bad[i] = i + 1 < l->s.ncontact ? 0.3 : -(double)NAN;
     }
     load[l->s.ndof - 1] = HUGE_VAL;
     memcpy(y, l->y, sizeof y);

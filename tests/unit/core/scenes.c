@@ -186,7 +186,7 @@ TEST(mostly_sliding)
         /* a bad number in the last contact, after all others have been looked at */
         double *bad = below(&g, 2) ? v : a;
         const double good = bad[SCENE - 1];
-        bad[SCENE - 1] = below(&g, 2) ? NAN : -HUGE_VAL;
+        bad[SCENE - 1] = below(&g, 2) ? (double)NAN : -HUGE_VAL;
         for (size_t i = 0; i + 1 < SCENE; i++) {
             v[i] = -v[i];
         }

@@ -54,7 +54,7 @@ TEST(unset_feq)
     assert_ok(tribo_set_epsilon_all(c, 0.5));
     for (size_t i = 0; i < N; i++) {
         v[i] = i % 3 ? -1.0 : 0.0;
-        feq[i] = i % 3 ? NAN : 0.25;
+        feq[i] = i % 3 ? (double)NAN : 0.25;
     }
     if (trapped(_i)) {
         assert_quiet(tribo_force(c, v, feq, f));

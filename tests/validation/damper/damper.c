@@ -230,11 +230,13 @@ static void write_pair(void)
     write_text("pair.txt", "1 1 1 1 0 0\n2 1 2 1 0 0\n3 2 1 2 0 0\n4 2 2 2 0 0\n");
 }
 
+#define J ((double complex)I) /* I is a complex float */
+
 /* The complex amplitude of mass 2 under forces p1, p2. */
 static double complex pair_motion(int stuck, double complex p1, double complex p2)
 {
     const double w = 2.0 * PI * 0.2;
-    const double complex a = 5.0 - w * w + 0.25 * w * I, b = -2.0 - 0.1 * w * I, d = 2.0 - 2.0 * w * w + 0.2 * w * I;
+    const double complex a = 5.0 - w * w + 0.25 * w * J, b = -2.0 - 0.1 * w * J, d = 2.0 - 2.0 * w * w + 0.2 * w * J;
     return stuck ? p2 / d : (a * p2 - b * p1) / (a * d - b * b);
 }
 
@@ -249,7 +251,7 @@ TEST(loads)
 {
     static const char *const given[] = {"--load 2,0,0,x --load=1,0,0,x:force=3:phase=60 --output 2,0,0,x",
                                         "--base x:acceleration=0.5:phase=-90 --output 2,0,0,x"};
-    const double complex turn = 0.5 + 0.5 * sqrt(3.0) * I, force[2][2] = {{3.0 * turn, 1.0}, {0.5 * I, I}};
+    const double complex turn = 0.5 + 0.5 * sqrt(3.0) * J, force[2][2] = {{3.0 * turn, 1.0}, {0.5 * J, J}};
     write_pair();
     for (int k = 0; k < 2; k++) {
         char options[400];

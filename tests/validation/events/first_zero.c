@@ -45,7 +45,7 @@ static void look(void *motion, double tau, size_t guards, struct guard *const *g
     const double t = tau / s->unit;
     for (size_t k = 0; k < guards; k++) {
         const struct course *c = &s->course[guard[k]->contact];
-        const double g = s->broken && t > 1.0 ? NAN : derivative(c, t, 0);
+        const double g = s->broken && t > 1.0 ? (double)NAN : derivative(c, t, 0);
         guard[k]->middle = (struct sample){s->scale * g, s->scale * derivative(c, t, 1) / s->unit,
                                            s->scale * derivative(c, t, 2) / s->unit / s->unit};
     }
