@@ -1,10 +1,17 @@
-/* Whether the compiler offers what GNU C does beyond C99: attributes and built-in functions. All of it has a plain fallback,
- * which TRIBO_PLAIN_C asks for. */
+/* TRIBO_GNU_C is defined if the compiler has GNU C's attributes and built-in functions, unless TRIBO_PLAIN_C is: every use has a
+ * plain alternative. */
 #ifndef TRIBO_COMPILER_H
 #define TRIBO_COMPILER_H
 
 #if defined(__GNUC__) && !defined(TRIBO_PLAIN_C)
 #define TRIBO_GNU_C
+#endif
+
+/* Adds change to x, which threads share, and returns x. */
+#if defined(TRIBO_GNU_C)
+#define TRIBO_SHARED_ADD(x, change) __atomic_add_fetch(&(x), (change), __ATOMIC_ACQ_REL)
+#else
+#define TRIBO_SHARED_ADD(x, change) ((x) += (change))
 #endif
 
 #endif

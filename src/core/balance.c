@@ -1,14 +1,14 @@
 /* Forces of contacts that share bodies: f_eq and f from z'' = R f + a.
  *
- * The consistent coupling is a box-constrained quadratic program. With kappa = slope v inside the band of a law that relaxes, and
- * 0 for the others, the fixed point f_i = clamp(clamp(f_eq,i, -N, N) - kappa_i, -N, N) minimizes 1/2 f'Rf + (a + diag(R) kappa)'f
- * over the contacts near stick, where  kappa > 0: -N <= f <= max(-N, N - kappa);  kappa < 0: min(N, -N - kappa) <= f <= N.
+ * The consistent coupling is a box problem. With kappa = slope v inside the band of a law that relaxes, and 0 for the others, the
+ * fixed point f_i = clamp(clamp(f_eq,i, -N, N) - kappa_i, -N, N) minimizes 1/2 f'Rf + (a + diag(R) kappa)'f over the contacts near
+ * stick, where  kappa > 0: -N <= f <= max(-N, N - kappa);  kappa < 0: min(N, -N - kappa) <= f <= N.
  *
- * A call first looks at all contacts as if they were alone, which is all there is to know of those that are, of open ones and of
- * sliding ones; then it solves for the groups in which it found one near stick. */
-#include <float.h>
-
+ * A call first finds forces of contacts as if each was alone, which is right for those in no group, and for open and sliding ones;
+ * then it solves the groups with a contact near stick. */
 #include "check.h"
+#include "clusters.h"
+#include "static.h"
 
 void tribo_begin_call(tribo_context *ctx)
 {
@@ -23,7 +23,6 @@ void tribo_begin_call(tribo_context *ctx)
     ctx->last.linearized = 0;
 }
 
-/* For shares that go on from these forces, also in groups that no solver saw. */
 void tribo_remember_forces(tribo_context *ctx)
 {
     for (size_t g = 0; ctx->set.sharing == TRIBO_SHARE_PREVIOUS && g < ctx->op->groups; g++) {
@@ -35,42 +34,25 @@ void tribo_remember_forces(tribo_context *ctx)
     }
 }
 
-/* Lists the groups with a contact near stick. */
-static void find_near_groups(tribo_context *ctx)
+struct box_qp *tribo_collect(tribo_context *ctx, size_t g)
 {
-    struct memory *m = &ctx->memory;
-    for (size_t i = 0; i < ctx->n; i += tribo_chunk_size(ctx, i)) {
-        const size_t end = ctx->last.did.stored[i / TRIBO_CHUNK] == SOME_STORED ? i + tribo_chunk_size(ctx, i) : i;
-        for (size_t k = i; k < end; k++) {
-            const size_t g = ctx->group_of[k];
-            if (ctx->last.did.of[k] == STORED && g != TRIBO_ALONE && !m->solved[g]) {
-                m->solved[g] = 1;
-                m->solved_list[m->nsolved++] = g;
-            }
-        }
-    }
-}
-
-struct box_qp *tribo_collect(tribo_context *ctx, size_t k)
-{
-    struct box_qp *p = tribo_problem(ctx, k);
+    struct box_qp *p = tribo_problem(ctx, g);
     const size_t *member = p->member;
     size_t behind = p->group->size;
     p->count = 0;
     p->far = ctx->last.far;
-    for (size_t i = 0; i < p->group->size; i++) {
-        if (ctx->last.did.of[member[i]] == STORED) {
-            p->near[p->count++] = i;
+    for (size_t k = 0; k < p->group->size; k++) {
+        if (ctx->last.did.of[member[k]] == STORED) {
+            p->near[p->count++] = k;
         } else {
-            p->near[--behind] = i;
-            p->x[i] = tribo_carried(ctx, p, i);
+            p->near[--behind] = k;
+            p->x[k] = tribo_carried(ctx, p, k);
         }
     }
     return p;
 }
 
-/* The part of its limit by which the force of the contact at place k misses its balance, but for an error of its gradient, which
- * is at least that of an underflow. */
+/* Returns the part of its limit by which the force at place k misses its balance, beyond an error of the gradient. */
 static double missed_part(const tribo_context *ctx, const struct box_qp *p, size_t k, double error)
 {
     const double beyond = fabs(p->gradient[k]) - TRIBO_SETTLED * greater(error, DBL_MIN),
@@ -80,78 +62,65 @@ static double missed_part(const tribo_context *ctx, const struct box_qp *p, size
     return quotient(fabs(f - to), greater(greater(fabs(p->lo[k]), fabs(p->hi[k])), DBL_MIN));
 }
 
-/* Solves the problem of a group; q, lo and hi are set. */
 int tribo_solve_group(tribo_context *ctx, struct box_qp *p)
 {
     const struct group *g = p->group;
-    const size_t *member = p->member;
     const struct work before = p->work;
     for (size_t e = 0; g->nullity && e < p->count; e++) {
-        const size_t i = p->near[e];
-        p->rounding.unit[i] = ctx->op->diagonal[member[i]] * (0.5 * p->hi[i] - 0.5 * p->lo[i]);
+        const size_t k = p->near[e];
+        p->rounding.unit[k] = ctx->op->diagonal[p->member[k]] * (0.5 * p->hi[k] - 0.5 * p->lo[k]);
     }
     ctx->count.solves++;
     const int small = g->small && !p->far && tribo_box_small(p);
     if (!small && !tribo_box_solve(p)) {
         return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no stick set found for the %zu contact%s near stick around contact %zu",
-                          p->count, plural(p->count), member[p->near[0]]);
+                          p->count, plural(p->count), p->member[p->near[0]]);
     }
     if (g->nullity && ctx->set.sharing == TRIBO_SHARE_LEAST_NORM) {
         tribo_box_share(p);
     }
     ctx->count.reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
     ctx->last.rank += p->sets->rank;
-    /* Keeps the largest part of its limit by which a force misses the balance of its contact beyond rounding of all forces. Each
-     * contact is measured in its own unit: beside a light body's accelerations those of a heavy one count, too. */
+    /* Each contact is measured by its own limit and R_ii: heavy bodies count beside the accelerations of light ones. */
     for (size_t e = 0; !small && e < p->count; e++) {
-        const size_t k = p->near[e], i = p->member[k];
+        const size_t k = p->near[e];
         double missed = missed_part(ctx, p, k, p->noise[k]);
         missed = missed > TRIBO_MISSED ? missed_part(ctx, p, k, tribo_box_doubt(p, k)) : missed;
         ctx->last.residual = greater(ctx->last.residual, missed);
         if (!(missed <= TRIBO_MISSED)) {
             return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE,
-                              "the forces found miss the balance of contact %zu by %g of its limit", i, missed);
+                              "the forces found miss the balance of contact %zu by %g of its limit", p->member[k], missed);
         }
     }
     return TRIBO_OK;
 }
 
-/* kappa, see above. */
-static double relaxation(const tribo_context *ctx, size_t i, const double *v)
-{
-    return ctx->set.law->relaxes ? tribo_slope_of(&ctx->follow.contacts, i) * v[i] : 0.0;
-}
-
-/* f_eq = f + kappa - (R f + a + diag(R) kappa)/R_ii, with f as the solver finds it. */
-static int solve_bounded(tribo_context *ctx, struct box_qp *p, const double *v, const double *a)
-{
-    const size_t *member = p->member;
-    for (size_t e = 0; e < p->count; e++) {
-        const size_t k = p->near[e], i = member[k];
-        const double limit = ctx->follow.contacts.bound[i], kappa = relaxation(ctx, i, v);
-        p->lo[k] = kappa < 0.0 ? lesser(limit, -limit - kappa) : -limit;
-        p->hi[k] = kappa > 0.0 ? greater(-limit, limit - kappa) : limit;
-        p->q[k] = cut(a[i]) + ctx->op->diagonal[i] * kappa;
-    }
-    const int status = tribo_solve_group(ctx, p);
-    for (size_t e = 0; !status && e < p->count; e++) {
-        const size_t k = p->near[e], i = member[k];
-        const double beyond = quotient(p->gradient[k], ctx->op->diagonal[i]);
-        /* of a contact inside its box the gradient is rounding, of which the forces of a large group would gather too much */
-        ctx->last.feq[i] = cut(p->x[k] + relaxation(ctx, i, v) - (p->at[k] == FREE ? 0.0 : beyond));
-    }
-    return status;
-}
-
-/* Where limits are static, until nobody breaks away any more. */
+/* Solves for the contacts of a group near stick, again while static limits break; a status.
+ * f_eq = f + kappa - (R f + a + diag(R) kappa)/R_ii. */
 static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *v, const double *a)
 {
+    const struct contacts *c = &ctx->follow.contacts;
+    const int relaxes = ctx->set.law->relaxes;
     int status;
     if (ctx->set.breaking) {
         tribo_hold(ctx, p);
     }
     do {
-        status = solve_bounded(ctx, p, v, a);
+        for (size_t e = 0; e < p->count; e++) {
+            const size_t k = p->near[e], i = p->member[k];
+            const double limit = c->bound[i], kappa = relaxes ? tribo_slope_of(c, i) * v[i] : 0.0;
+            p->lo[k] = kappa < 0.0 ? lesser(limit, -limit - kappa) : -limit;
+            p->hi[k] = kappa > 0.0 ? greater(-limit, limit - kappa) : limit;
+            p->q[k] = cut(a[i]) + ctx->op->diagonal[i] * kappa;
+        }
+        status = tribo_solve_group(ctx, p);
+        for (size_t e = 0; !status && e < p->count; e++) {
+            const size_t k = p->near[e], i = p->member[k];
+            const double kappa = relaxes ? tribo_slope_of(c, i) * v[i] : 0.0;
+            /* The gradient of a free contact is rounding, of which a large group would gather too much. */
+            const double beyond = p->at[k] == FREE ? 0.0 : quotient(p->gradient[k], ctx->op->diagonal[i]);
+            ctx->last.feq[i] = cut(p->x[k] + kappa - beyond);
+        }
     } while (!status && ctx->set.breaking && tribo_break_away(ctx, p, 0.0));
     return status;
 }
@@ -176,24 +145,19 @@ static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *v
         p->lo[k] = -p->hi[k];
         consistent &= missed_part(ctx, p, k, p->noise[k]) <= TRIBO_MISSED;
         ctx->last.feq[i] = p->x[k];
-    }
-    ctx->last.rank += p->sets->rank;
-    if (ctx->set.breaking) {
-        /* The limits by which near contacts go, each by its own f_eq. */
-        for (size_t e = 0; e < p->count; e++) {
-            const size_t i = p->member[p->near[e]];
+        if (ctx->set.breaking) {
             tribo_find_limits(ctx, i, 1, v + i, ctx->last.feq + i, ctx->follow.now + i);
         }
     }
-    if (consistent) {
-        return TRIBO_OK;
-    }
-    return tribo_fail(ctx, TRIBO_ERR_INCONSISTENT,
-                      "no f_eq balances the %zu contact%s near stick around contact %zu: rank %zu, and a is outside its range",
-                      p->count, plural(p->count), member[p->near[0]], p->sets->rank);
+    ctx->last.rank += p->sets->rank;
+    return consistent ? TRIBO_OK
+                      : tribo_fail(ctx, TRIBO_ERR_INCONSISTENT,
+                                   "no f_eq balances the %zu contact%s near stick around contact %zu: rank %zu, and a is outside "
+                                   "its range",
+                                   p->count, plural(p->count), member[p->near[0]], p->sets->rank);
 }
 
-/* f_eq of the contacts of a group without those near stick, if it was solved; 0 for open ones. */
+/* f_eq of the contacts of a group; if it was solved, of those that were not near stick. 0 for open ones. */
 static void find_other_feq(tribo_context *ctx, struct box_qp *p, const double *a, int solved)
 {
     const size_t size = p->group->size;
@@ -209,12 +173,20 @@ static void find_other_feq(tribo_context *ctx, struct box_qp *p, const double *a
     }
 }
 
+/* Finds the forces of all contacts; wanted: and f_eq of the contacts of solved groups. */
 static int balance_all(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
+    int status = TRIBO_OK;
     tribo_begin_call(ctx);
     tribo_forces_alone(ctx, v, a, wanted);
-    find_near_groups(ctx);
-    int status = TRIBO_OK;
+    for (size_t i = 0; i < ctx->n; i += tribo_chunk_size(ctx, i)) {
+        const size_t end = ctx->last.did.stored[i / TRIBO_CHUNK] == SOME_STORED ? i + tribo_chunk_size(ctx, i) : i;
+        for (size_t k = i; k < end; k++) {
+            if (ctx->last.did.of[k] == STORED) {
+                tribo_list_group(ctx, ctx->group_of[k]);
+            }
+        }
+    }
     for (size_t k = 0; k < ctx->memory.nsolved; k++) {
         if (k + 2 < ctx->memory.nsolved) {
             tribo_memory_expect(ctx->op, &ctx->memory, ctx->memory.solved_list[k + 2]);
@@ -225,12 +197,11 @@ static int balance_all(tribo_context *ctx, const double *v, const double *a, int
             return one;
         }
         status = one ? one : status;
-        /* The law's forces of the near contacts of a group, run by run of neighbours. */
-        const size_t *member = p->member;
+        /* The law's forces of the contacts near stick, neighbours at once. */
         for (size_t e = 0, run; e < p->count; e += run) {
-            const size_t i = member[p->near[e]];
+            const size_t i = p->member[p->near[e]];
             const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
-            for (run = 1; e + run < p->count && member[p->near[e + run]] == i + run;) {
+            for (run = 1; e + run < p->count && p->member[p->near[e + run]] == i + run;) {
                 run++;
             }
             ctx->set.law->force(&c, run, v + i, ctx->last.feq + i, ctx->last.f + i);
@@ -239,15 +210,12 @@ static int balance_all(tribo_context *ctx, const double *v, const double *a, int
             find_other_feq(ctx, p, a, 1);
         }
     }
-    return status || !ctx->planar ? status : tribo_planar_balance(ctx, v, a);
+    return status ? status : tribo_clusters_balance(ctx, v, a);
 }
 
 int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    int status = tribo_need_operator(ctx);
+    int status = ctx ? tribo_need_operator(ctx) : TRIBO_ERR_NULL;
     if (status) {
         return status;
     }
@@ -255,11 +223,8 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
         return tribo_balance_alone(ctx, v, a, feq, f);
     }
     status = tribo_classify(ctx, v, a);
-    if (status) {
-        return status;
-    }
-    status = balance_all(ctx, v, a, feq != NULL);
-    if (status == TRIBO_ERR_NO_CONVERGENCE) {
+    status = status ? status : balance_all(ctx, v, a, feq != NULL);
+    if (status && status != TRIBO_ERR_INCONSISTENT) {
         return status;
     }
     ctx->count.skipped += ctx->op->islands - ctx->memory.nsolved;
@@ -272,9 +237,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
                 find_other_feq(ctx, tribo_problem(ctx, g), a, 0);
             }
         }
-        if (ctx->planar) {
-            tribo_planar_feq(ctx, a);
-        }
+        tribo_clusters_feq(ctx, a);
         tribo_copy(feq, ctx->last.feq, ctx->n);
     }
     if (f) {

@@ -1,41 +1,33 @@
-/* Checks of arguments. */
-#include <math.h>
+/* Checks of arguments: loops over arrays, and messages. */
+#include "check.h"
 
-#include "context.h"
-
-/* The size of a number as one that compares alike: infinity and NaN are larger than all others. As integers they raise no
- * exception. */
-static inline int64_t check_bits_of(const double *x)
+/* |x| as an integer: larger for larger |x|; infinity and NaN are above all numbers. */
+static inline int64_t check_size_of(const double *x)
 {
     int64_t bits;
     memcpy(&bits, x, sizeof bits);
-    return bits;
-}
-
-static inline int64_t check_size_of(int64_t bits)
-{
     return bits & INT64_MAX;
 }
 
 TRIBO_SIMD int tribo_all_within(const double *x, size_t n, double most)
 {
-    const int64_t limit = check_bits_of(&most);
-    int64_t room = 0; /* negative once one is */
+    const int64_t limit = check_size_of(&most);
+    int64_t room = 0; /* negative if a difference is */
     TRIBO_UNROLLED
     for (size_t i = 0; i < n; i++) {
-        room |= limit - check_size_of(check_bits_of(x + i));
+        room |= limit - check_size_of(x + i);
     }
     return room >= 0;
 }
 
 TRIBO_SIMD int tribo_two_within(const double *x, double most_x, const double *y, double most_y, size_t n)
 {
-    const int64_t limit_x = check_bits_of(&most_x), limit_y = check_bits_of(&most_y);
+    const int64_t limit_x = check_size_of(&most_x), limit_y = check_size_of(&most_y);
     int64_t room_x = 0, room_y = 0;
     TRIBO_UNROLLED
     for (size_t i = 0; i < n; i++) {
-        room_x |= limit_x - check_size_of(check_bits_of(x + i));
-        room_y |= limit_y - check_size_of(check_bits_of(y + i));
+        room_x |= limit_x - check_size_of(x + i);
+        room_y |= limit_y - check_size_of(y + i);
     }
     return (room_x >= 0 ? 1 : 0) | (room_y >= 0 ? 2 : 0);
 }
@@ -53,15 +45,16 @@ int tribo_fail_not_finite(tribo_context *ctx, const char *name, const double *x,
     return TRIBO_OK;
 }
 
-/* Whether no sign is set, and all are finite. */
+/* 1 if all x_i are finite and have no sign. */
 TRIBO_SIMD static int check_all_positive(const double *x, size_t n)
 {
     const double most = DBL_MAX;
-    const uint64_t limit = (uint64_t)check_bits_of(&most), sign = (uint64_t)1 << 63;
-    uint64_t beyond = 0; /* has that sign once one is */
+    const uint64_t limit = (uint64_t)check_size_of(&most), sign = (uint64_t)1 << 63;
+    uint64_t beyond = 0; /* has the sign bit if an entry has, or its difference */
     TRIBO_UNROLLED
     for (size_t i = 0; i < n; i++) {
-        const uint64_t bits = (uint64_t)check_bits_of(x + i);
+        uint64_t bits;
+        memcpy(&bits, x + i, sizeof bits);
         beyond |= bits | (limit - bits);
     }
     return !(beyond & sign);
@@ -84,16 +77,21 @@ int tribo_check_nonnegative(tribo_context *ctx, const char *name, const double *
 
 int tribo_check_positive(tribo_context *ctx, const char *name, const double *x, size_t n)
 {
-    const int status = x && tribo_all_within(x, n, DBL_MAX) ? TRIBO_OK : tribo_fail_not_finite(ctx, name, x, n);
-    if (status) {
-        return status;
-    }
-    for (size_t i = 0; i < n; i++) {
+    const int status = tribo_check_finite(ctx, name, x, n);
+    for (size_t i = 0; !status && i < n; i++) {
         if (x[i] <= 0.0) {
             return tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "%s[%zu] = %g is not positive", name, i, x[i]);
         }
     }
-    return TRIBO_OK;
+    return status;
+}
+
+int tribo_check_one_positive(tribo_context *ctx, const char *name, double x)
+{
+    if (!isfinite(x)) {
+        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "%s = %g is not finite", name, x);
+    }
+    return x > 0.0 ? TRIBO_OK : tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "%s = %g is not positive", name, x);
 }
 
 int tribo_fail_without_operator(tribo_context *ctx)

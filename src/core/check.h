@@ -1,4 +1,5 @@
-/* Checks of arguments that cost nothing to speak of where all is well; check.c has the words for where it is not. */
+/* Checks of arguments. The functions here are inline, and cost next to nothing where all is well; check.c finds the message. A
+ * check returns TRIBO_OK, or a failure that names the argument, its first wrong entry and the value; ctx NULL: keeps no message. */
 #ifndef TRIBO_CHECK_H
 #define TRIBO_CHECK_H
 
@@ -6,6 +7,21 @@
 #include <math.h>
 
 #include "context.h"
+
+/* 1 if all |x_i| <= most, which is finite. Raises no floating-point exception, whatever x is. */
+int tribo_all_within(const double *x, size_t n, double most);
+
+/* The same of two arrays, which are read together: 1 for x plus 2 for y. */
+int tribo_two_within(const double *x, double most_x, const double *y, double most_y, size_t n);
+
+int tribo_fail_not_finite(tribo_context *ctx, const char *name, const double *x, size_t n);
+int tribo_check_nonnegative(tribo_context *ctx, const char *name, const double *x, size_t n);
+int tribo_check_positive(tribo_context *ctx, const char *name, const double *x, size_t n);
+
+/* The same of one number. */
+int tribo_check_one_positive(tribo_context *ctx, const char *name, double x);
+
+int tribo_fail_without_operator(tribo_context *ctx);
 
 static inline int tribo_within(double x, double most)
 {
@@ -17,19 +33,18 @@ static inline int tribo_all_finite(const double *x, size_t n)
     return n == 1 ? isfinite(*x) : tribo_all_within(x, n, DBL_MAX);
 }
 
-/* The same of numbers that are TRIBO_PLAIN at most. */
+/* 1 if all |x_i| <= TRIBO_PLAIN. */
 static inline int tribo_all_plain(const double *x, size_t n)
 {
     return n == 1 ? tribo_within(*x, TRIBO_PLAIN) : tribo_all_within(x, n, TRIBO_PLAIN);
 }
 
-/* 1 if all of v is finite, and 2 if all of y is so small; neither is NULL. */
+/* 1 if all v_i are finite, plus 2 if all |y_i| <= most. */
 static inline int tribo_motion_within(const double *v, const double *y, double most, size_t n)
 {
     return n == 1 ? (isfinite(*v) ? 1 : 0) | (tribo_within(*y, most) ? 2 : 0) : tribo_two_within(v, DBL_MAX, y, most, n);
 }
 
-/* TRIBO_OK, or a failure that names the argument, the first offending contact and its value; ctx NULL: that keeps no message. */
 static inline int tribo_check_finite(tribo_context *ctx, const char *name, const double *x, size_t n)
 {
     return x && tribo_all_finite(x, n) ? TRIBO_OK : tribo_fail_not_finite(ctx, name, x, n);
@@ -40,32 +55,29 @@ static inline int tribo_has_operator(const tribo_context *ctx)
     return ctx->op->diagonal || !ctx->n;
 }
 
+/* 1 if epsilon is given, or follows an operator that is there. */
 static inline int tribo_has_epsilon(const tribo_context *ctx)
 {
     return ctx->set.step > 0.0 ? tribo_has_operator(ctx) : 1;
 }
 
-/* TRIBO_OK, or a failure that names the call that is missing. */
 static inline int tribo_need_operator(tribo_context *ctx)
 {
     return tribo_has_operator(ctx) ? TRIBO_OK : tribo_fail_without_operator(ctx);
 }
 
+static inline int tribo_check_output(tribo_context *ctx, const char *name, const double *x)
+{
+    return !x && ctx->n ? tribo_fail(ctx, TRIBO_ERR_NULL, "%s is NULL", name) : TRIBO_OK;
+}
+
 /* The arguments of a step. */
 static inline int tribo_check_step(tribo_context *ctx, double dt, const double *vfree, const double *f)
 {
-    if (!isfinite(dt)) {
-        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "dt = %g is not finite", dt);
-    }
-    if (dt <= 0.0) {
-        return tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "dt = %g is not positive", dt);
-    }
-    int status = tribo_need_operator(ctx);
+    int status = isfinite(dt) && dt > 0.0 ? TRIBO_OK : tribo_check_one_positive(ctx, "dt", dt);
+    status = status ? status : tribo_need_operator(ctx);
     status = status ? status : tribo_check_finite(ctx, "vfree", vfree, ctx->n);
-    if (status) {
-        return status;
-    }
-    return !f && ctx->n ? tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL") : TRIBO_OK;
+    return status ? status : tribo_check_output(ctx, "f", f);
 }
 
 #endif

@@ -1,12 +1,12 @@
-/* What a call learns of all contacts before it solves for any. In a large scene most slide, of which the direction is all that
- * there is to know, and reading and writing memory is all that they cost: so every array is passed over as seldom as can be, in
- * chunks that stay in the first-level cache. What a call learns takes the last call's place once v and a are found good. */
+/* The states of all contacts before groups are solved. In a large scene most contacts slide, and all costs are those of memory:
+ * arrays are read once, in chunks that stay in the first-level cache. */
 #include "check.h"
+#include "contacts.h"
+#include "static.h"
 
-/* Whether any contact is in the band, beyond which laws that ask for f_eq all say the same. */
 TRIBO_SIMD int tribo_any_in_band(size_t n, const double *v, double band)
 {
-    int64_t any = 0; /* as wide as what is compared */
+    int64_t any = 0; /* as wide as a double, for vectors */
     TRIBO_UNROLLED
     for (size_t i = 0; i < n; i++) {
         any |= fabs(v[i]) <= band ? -1 : 0;
@@ -21,7 +21,7 @@ TRIBO_SIMD void tribo_find_directions(size_t n, const double *restrict v, signed
     }
 }
 
-/* did [n]: STORED where |v| <= band, v = 0 if band is NULL, and the contact is not open; else the direction of v. */
+/* did [n]: STORED where limit > 0 and |v| <= band, or v = 0 if band is NULL; else the direction of v. */
 TRIBO_SIMD static void find_states(size_t n, const double *restrict v, const double *restrict band, const double *restrict limit,
                                    signed char *restrict did)
 {
@@ -35,7 +35,6 @@ TRIBO_SIMD static void find_states(size_t n, const double *restrict v, const dou
     }
 }
 
-/* f_eq of contacts that share no body. */
 TRIBO_SIMD static void feq_alone(size_t n, const double *restrict inverse, const double *restrict a, double *restrict feq)
 {
     for (size_t i = 0; i < n; i++) {
@@ -43,31 +42,19 @@ TRIBO_SIMD static void feq_alone(size_t n, const double *restrict inverse, const
     }
 }
 
-static void feq_alone_far(size_t n, const double *inverse, const double *a, double *feq)
-{
-    for (size_t i = 0; i < n; i++) {
-        feq[i] = tribo_alone_far(a[i], inverse[i]);
-    }
-}
-
-TRIBO_SIMD static void no_feq_if_open(size_t n, const double *restrict limit, double *restrict feq)
-{
-    for (size_t i = 0; i < n; i++) {
-        feq[i] = limit[i] > 0.0 ? feq[i] : 0.0;
-    }
-}
-
 void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq)
 {
     const struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
-    const double *inverse = ctx->op->inverse + chunk->like;
+    const double *inverse = ctx->op->inverse + chunk->like, *limit = ctx->follow.contacts.limit + i;
     if (chunk->plain && tribo_all_plain(a + i, n)) {
         feq_alone(n, inverse, a + i, feq);
     } else {
-        feq_alone_far(n, inverse, a + i, feq);
+        for (size_t k = 0; k < n; k++) {
+            feq[k] = tribo_alone_far(a[i + k], inverse[k]);
+        }
     }
-    if (chunk->least == 0.0) {
-        no_feq_if_open(n, ctx->follow.contacts.limit + i, feq);
+    for (size_t k = 0; chunk->least == 0.0 && k < n; k++) {
+        feq[k] = limit[k] > 0.0 ? feq[k] : 0.0;
     }
 }
 
@@ -94,63 +81,11 @@ TRIBO_SIMD static void forces_of_slips(size_t n, const signed char *restrict did
     }
 }
 
-/* The chunk after next will soon be read, or written. */
+/* Prefetches the chunk after next of x. */
 static void classify_expect(const tribo_context *ctx, const double *x, size_t i, int written)
 {
     if (ctx->n - i > 2 * TRIBO_CHUNK) {
         tribo_expect(x + i + 2 * TRIBO_CHUNK, tribo_chunk_size(ctx, i + 2 * TRIBO_CHUNK) * sizeof *x, written);
-    }
-}
-
-/* Each of the first with its partner in the second half. */
-static inline void fold(size_t half, double *least, double *largest)
-{
-    for (size_t k = 0; k < half; k++) {
-        least[k] = lesser(least[k], least[k + half]);
-        largest[k] = greater(largest[k], largest[k + half]);
-    }
-}
-
-/* Of a whole chunk, half upon half: one after the other they would have to be looked at in order. */
-TRIBO_SIMD static void classify_find_bounds(const double *x, struct chunk *chunk)
-{
-    enum { HALF = TRIBO_CHUNK / 2, FEW = 8 };
-    double least[HALF], largest[HALF];
-    for (size_t k = 0; k < HALF; k++) {
-        least[k] = lesser(x[k], x[k + HALF]);
-        largest[k] = greater(x[k], x[k + HALF]);
-    }
-    fold(HALF / 2, least, largest);
-    fold(HALF / 4, least, largest);
-    fold(FEW, least, largest);
-    for (size_t k = 1; k < FEW; k++) {
-        least[0] = lesser(least[0], least[k]);
-        largest[0] = greater(largest[0], largest[k]);
-    }
-    chunk->least = least[0];
-    chunk->largest = largest[0];
-}
-
-void tribo_take_limits(size_t n, const double *from, double *to, struct chunk *chunk)
-{
-    enum { FEW = 16 };
-    double whole[TRIBO_CHUNK];
-    memcpy(to, from, n * sizeof *to);
-    if (n < FEW) {
-        /* Few limits are looked at one by one. */
-        chunk->least = chunk->largest = from[0];
-        for (size_t i = 1; i < n; i++) {
-            chunk->least = lesser(chunk->least, from[i]);
-            chunk->largest = greater(chunk->largest, from[i]);
-        }
-    } else if (n < TRIBO_CHUNK) {
-        memcpy(whole, from, n * sizeof *whole);
-        for (size_t k = n; k < TRIBO_CHUNK; k++) {
-            whole[k] = from[0];
-        }
-        classify_find_bounds(whole, chunk);
-    } else {
-        classify_find_bounds(from, chunk);
     }
 }
 
@@ -171,12 +106,6 @@ const double *tribo_epsilons(const struct contacts *c, size_t i, size_t n, doubl
     return room;
 }
 
-static int check_motion(tribo_context *ctx, const double *v, const double *a)
-{
-    const int status = tribo_check_finite(ctx, "v", v, ctx->n);
-    return status ? status : tribo_check_finite(ctx, "a", a, ctx->n);
-}
-
 void tribo_store_all(tribo_context *ctx)
 {
     if (!ctx->last.did.all_stored) {
@@ -192,10 +121,16 @@ double tribo_widest_band(const tribo_context *ctx, size_t k)
     return ctx->set.law->sticks_in_band ? band : lesser(band, 0.0);
 }
 
+static int check_motion(tribo_context *ctx, const double *v, const double *a)
+{
+    const int status = tribo_check_finite(ctx, "v", v, ctx->n);
+    return status ? status : tribo_check_finite(ctx, "a", a, ctx->n);
+}
+
 int tribo_classify(tribo_context *ctx, const double *v, const double *a)
 {
     struct deeds now = ctx->spare;
-    const int few = !ctx->op->groups && ctx->n <= TRIBO_CHUNK; /* whose laws are asked sooner than what they do is found */
+    const int few = !ctx->op->groups && ctx->n <= TRIBO_CHUNK; /* the law is evaluated sooner than states are found */
     if (!v || !a || few || !ctx->set.law->uses_feq) {
         const int status = check_motion(ctx, v, a);
         if (!status) {
@@ -231,18 +166,18 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a)
 
 void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
-    const int some = ctx->op->islands > ctx->op->groups;
+    const int some = ctx->op->islands > ctx->op->groups; /* contacts in no group */
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
-        const int asked = ctx->last.did.stored[k] == ALL_STORED || (some && ctx->last.did.stored[k] == SOME_STORED);
-        if (wanted ? some : asked && ctx->set.law->uses_feq) {
+        const int stored = ctx->last.did.stored[k] == ALL_STORED || (some && ctx->last.did.stored[k] == SOME_STORED);
+        const int reads = stored && ctx->set.law->uses_feq;
+        if (wanted ? some : reads) {
             tribo_find_feq(ctx, i, n, a, ctx->last.feq + i);
         }
         if (ctx->set.breaking) {
-            const int known = asked && ctx->set.law->uses_feq;
-            tribo_find_limits(ctx, i, n, v + i, known ? ctx->last.feq + i : NULL, ctx->follow.now + i);
+            tribo_find_limits(ctx, i, n, v + i, reads ? ctx->last.feq + i : NULL, ctx->follow.now + i);
         }
-        if (asked) {
+        if (stored) {
             const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
             ctx->set.law->force(&c, n, v + i, ctx->last.feq + i, ctx->last.f + i);
         }
@@ -256,16 +191,17 @@ void tribo_forces(const tribo_context *ctx, double *f)
         return;
     }
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        const struct chunk *chunk = &ctx->follow.chunk[k];
         const size_t n = tribo_chunk_size(ctx, i);
-        classify_expect(ctx, f, i, 1);
         const signed char *did = ctx->last.did.of + i;
         const double *limit = ctx->follow.contacts.limit + i, *kept = ctx->last.f + i;
+        classify_expect(ctx, f, i, 1);
         if (ctx->last.did.stored[k] == ALL_STORED) {
             memcpy(f + i, kept, n * sizeof *f);
         } else if (ctx->last.did.stored[k] == SOME_STORED) {
             forces_of_states(n, did, limit, kept, f + i);
         } else {
-            forces_of_slips(n, did, limit, !(ctx->follow.chunk[k].least < ctx->follow.chunk[k].largest), f + i);
+            forces_of_slips(n, did, limit, !(chunk->least < chunk->largest), f + i);
         }
     }
 }

@@ -1,19 +1,17 @@
-/* Life of a context, and its settings. */
-#include <math.h>
-#include <stdint.h>
+/* Life of a context. */
 #include <stdlib.h>
-#include <string.h>
 
-#include "context.h"
+#include "common/layout.h"
+#include "clusters.h"
 
 #define DEFAULT_EPSILON 1e-6
 
-/* All arrays. One contact more than asked for, so that none of them is empty. */
-static void context_lay_out_arrays(tribo_context *ctx, struct layout *b, size_t n)
+/* Lays out all arrays, with room for one contact more, so that none is empty. */
+static void context_lay_out(tribo_context *ctx, struct layout *b, size_t n)
 {
     const size_t m = n + 1, chunks = tribo_chunks(m);
-    /* The arrays of n numbers. Each begins a line of cache, and an odd number of lines behind the last: of arrays that are a power of
-     * two apart few would stay in cache. */
+    /* Each array of n doubles begins a line of cache, an odd number of lines behind the one before: of arrays at distances of a
+     * power of two few would stay in cache. */
     double **const array[] = {&ctx->set.limit,    &ctx->set.width,         &ctx->set.rate,   &ctx->set.ratio,
                               &ctx->set.stribeck, &ctx->follow.cut_limit,  &ctx->follow.now, &ctx->follow.cut_factor,
                               &ctx->follow.hold,  &ctx->follow.hold_width, &ctx->last.f,     &ctx->last.feq,
@@ -34,13 +32,13 @@ static void context_lay_out_arrays(tribo_context *ctx, struct layout *b, size_t 
     ctx->spare.stored = tribo_layout_array(b, chunks, 1);
 }
 
-/* A context with arrays of zeros, and all else as in another one; NULL if out of memory. */
+/* Returns a context with arrays of zeros, and all else as in like; NULL if out of memory. */
 static tribo_context *context_allocate(size_t n, const tribo_context *like)
 {
     struct layout b = {0};
     tribo_context measured, *ctx = tribo_layout_array(&b, 1, sizeof *ctx);
     const size_t begin = b.used;
-    context_lay_out_arrays(&measured, &b, n);
+    context_lay_out(&measured, &b, n);
     const size_t end = b.used;
     if (!tribo_layout_create(&b)) {
         return NULL;
@@ -48,7 +46,7 @@ static tribo_context *context_allocate(size_t n, const tribo_context *like)
     ctx = tribo_layout_array(&b, 1, sizeof *ctx);
     memcpy(ctx, like, sizeof *ctx);
     memset(b.memory + begin, 0, end - begin);
-    context_lay_out_arrays(ctx, &b, n);
+    context_lay_out(ctx, &b, n);
     ctx->n = n;
     return ctx;
 }
@@ -74,9 +72,6 @@ int tribo_create(tribo_context **ctx, size_t ncontact)
         c->set.width[i] = DEFAULT_EPSILON;
         c->set.rate[i] = tribo_rate(DEFAULT_EPSILON);
     }
-    for (size_t k = 0; k < tribo_chunks(ncontact); k++) {
-        c->follow.chunk[k].least = c->follow.chunk[k].largest = 0.0;
-    }
     tribo_refresh(c);
     *ctx = c;
     return TRIBO_OK;
@@ -84,13 +79,10 @@ int tribo_create(tribo_context **ctx, size_t ncontact)
 
 int tribo_clone(const tribo_context *ctx, tribo_context **copy)
 {
-    if (!ctx) {
+    if (!ctx || !copy) {
         return TRIBO_ERR_NULL;
     }
-    if (!copy) {
-        return TRIBO_ERR_NULL;
-    }
-    const size_t n = ctx->n;
+    const size_t n = ctx->n, breaking = ctx->set.breaking ? n : 0;
     tribo_context *c = context_allocate(n, ctx);
     if (!c) {
         return TRIBO_ERR_MEMORY;
@@ -98,29 +90,23 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     c->fixed = 0;
     c->op = tribo_operator_share(ctx->op);
     c->memory = (struct memory){0};
-    c->planar = tribo_planar_share(ctx->planar);
-    if (!tribo_plane_create(&c->plane, c->planar, n) || !tribo_memory_copy(&c->memory, &ctx->memory, ctx->op)) {
+    if (!tribo_clusters_clone(c, ctx) || !tribo_memory_copy(&c->memory, &ctx->memory, ctx->op)) {
         tribo_destroy(c);
         return TRIBO_ERR_MEMORY;
     }
-    c->last.linearized = 0;
     tribo_copy(c->set.limit, ctx->set.limit, n);
     tribo_copy(c->set.width, ctx->set.width, n);
     tribo_copy(c->set.rate, ctx->set.rate, n);
+    tribo_copy(c->set.ratio, ctx->set.ratio, breaking);
+    tribo_copy(c->set.stribeck, ctx->set.stribeck, breaking);
     tribo_copy(c->last.feq, ctx->last.feq, n);
     tribo_copy(c->last.f, ctx->last.f, n);
-    tribo_copy(c->plane.y, ctx->plane.y, c->planar ? n : 0);
-    tribo_copy(c->plane.radius, ctx->plane.radius, c->planar ? n : 0);
     memcpy(c->moving, ctx->moving, n);
     memcpy(c->follow.chunk, ctx->follow.chunk, tribo_chunks(n) * sizeof *c->follow.chunk);
     memcpy(c->last.did.of, ctx->last.did.of, n);
     memcpy(c->last.did.stored, ctx->last.did.stored, tribo_chunks(n));
-    if (ctx->set.breaking) {
-        tribo_copy(c->set.ratio, ctx->set.ratio, n);
-        tribo_copy(c->set.stribeck, ctx->set.stribeck, n);
-    }
     tribo_refresh_limits(c);
-    tribo_copy(c->follow.now, ctx->follow.now, ctx->set.breaking ? n : 0);
+    tribo_copy(c->follow.now, ctx->follow.now, breaking);
     c->revision = ctx->revision;
     *copy = c;
     return TRIBO_OK;
@@ -128,12 +114,10 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
 
 void tribo_destroy(tribo_context *ctx)
 {
-    if (!ctx) {
-        return;
+    if (ctx) {
+        tribo_operator_release(ctx->op);
+        tribo_memory_free(&ctx->memory);
+        tribo_clusters_free(ctx);
+        free(ctx);
     }
-    tribo_operator_release(ctx->op);
-    tribo_memory_free(&ctx->memory);
-    tribo_planar_release(ctx->planar);
-    tribo_plane_free(&ctx->plane);
-    free(ctx);
 }

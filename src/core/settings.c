@@ -1,12 +1,12 @@
-/* What a caller sets: law, limits, epsilon, coupling, sharing; and what follows from it. Nothing but bounds follows from limits,
- * which change more often than everything else. */
-#include <float.h>
-#include <math.h>
-#include <string.h>
-
+/* What a caller sets: law, limits, epsilon, coupling, sharing; and what follows. Only bounds follow from limits, which change more
+ * often than the rest. */
 #include "check.h"
+#include "clusters.h"
+#include "static.h"
 
-/* Whether epsilon follows limits and operator. */
+/* ------------------------------------------------------------------------------------------------------- what follows */
+
+/* 1 if epsilon follows limits and operator. */
 static int epsilon_follows(const tribo_context *ctx)
 {
     return ctx->set.step > 0.0 && ctx->op->diagonal;
@@ -21,8 +21,8 @@ static double largest_of(size_t n, const double *x)
     return largest;
 }
 
-/* Compared with the first, so that all are looked at. */
-static int even(size_t n, const double *x)
+/* 1 if all x_i are equal. */
+static int all_equal(size_t n, const double *x)
 {
     int differ = 0;
     for (size_t i = 1; i < n; i++) {
@@ -31,40 +31,40 @@ static int even(size_t n, const double *x)
     return !differ;
 }
 
-/* Of the n contacts of the chunk that begins with i. */
-static int evenness(const tribo_context *ctx, size_t i, size_t n)
+void tribo_cut_limits(tribo_context *ctx, double *limit)
 {
-    const double *width = ctx->set.width + i, *rate = ctx->set.rate + i;
-    if (!even(n, width) || !even(n, rate)) {
-        return UNEVEN;
+    for (size_t g = 0; g < ctx->op->groups; g++) {
+        const struct box_qp *p = tribo_problem(ctx, g);
+        for (size_t k = 0; k < p->group->size; k++) {
+            limit[p->member[k]] = lesser(limit[p->member[k]], tribo_most(p, k));
+        }
     }
-    return i && ctx->follow.chunk[i / TRIBO_CHUNK - 1].even && width[-1] == *width && rate[-1] == *rate ? EVEN_AS_BEFORE : EVEN;
 }
 
-/* Whether n numbers are the same as those from like on. */
-static int repeats(const double *x, size_t like, size_t i, size_t n)
+/* Cuts far limits to what the solver resolves, and the factors so that epsilon and slope are numbers. */
+static void cut_far(tribo_context *ctx)
 {
-    return memcmp(x + like, x + i, n * sizeof *x) == 0;
-}
-
-static double band_of(const struct chunk *chunk, int follows)
-{
-    if (chunk->largest == 0.0) {
-        return -1.0;
+    struct contacts *c = &ctx->follow.contacts;
+    double *limit = ctx->follow.cut_limit;
+    const double *factor = c->follows ? ctx->set.width : ctx->set.rate, far = c->follows ? TRIBO_FAR : 2.0 * TRIBO_FAR;
+    for (size_t i = 0; i < ctx->n; i++) {
+        limit[i] = lesser(ctx->set.limit[i], TRIBO_FAR);
     }
-    const double widest = follows ? greater(product(chunk->widest, chunk->largest), DBL_MIN) : chunk->widest;
-    return widest < TRIBO_FAR ? widest : DBL_MAX;
-}
-
-/* Whether a chunk's contacts are as those of the one before, in width and rate, and if they are alike in limit too. */
-static inline int settings_goes_on(const struct chunk *chunk)
-{
-    return chunk->even == EVEN_AS_BEFORE && (!chunk->alike || (chunk[-1].alike && chunk->largest == chunk[-1].largest));
+    tribo_cut_limits(ctx, limit);
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->follow.cut_factor[i] = lesser(factor[i], far / greater(limit[i], 1.0));
+    }
+    for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
+        ctx->follow.chunk[k].alike = 0;
+        ctx->follow.chunk[k].model = k * TRIBO_CHUNK;
+    }
+    c->bound = limit;
+    *(c->follows ? &c->width : &c->rate) = ctx->follow.cut_factor;
 }
 
 void tribo_refresh_limits(tribo_context *ctx)
 {
-    const int follows = epsilon_follows(ctx);
+    const int follows = epsilon_follows(ctx), fixed = !ctx->set.breaking;
     ctx->follow.largest = 0.0;
     ctx->follow.contacts =
         (struct contacts){ctx->set.limit, ctx->set.limit, ctx->set.width, ctx->set.rate, ctx->moving, follows, follows, 0};
@@ -73,33 +73,16 @@ void tribo_refresh_limits(tribo_context *ctx)
     }
     for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
         struct chunk *chunk = &ctx->follow.chunk[k];
+        const double widest = follows ? greater(product(chunk->widest, chunk->largest), DBL_MIN) : chunk->widest;
         ctx->follow.largest = greater(ctx->follow.largest, chunk->largest);
-        chunk->band = band_of(chunk, follows);
-        chunk->alike = !ctx->set.breaking && chunk->even && chunk->least == chunk->largest && chunk->largest > 0.0;
-        chunk->model = !ctx->set.breaking && settings_goes_on(chunk) ? chunk[-1].model : k * TRIBO_CHUNK;
+        chunk->band = chunk->largest == 0.0 ? -1.0 : widest < TRIBO_FAR ? widest : DBL_MAX;
+        chunk->alike = fixed && chunk->even && chunk->least == chunk->largest && chunk->largest > 0.0;
+        const int goes_on = fixed && chunk->even == EVEN_AS_BEFORE &&
+                            (!chunk->alike || (chunk[-1].alike && chunk->largest == chunk[-1].largest));
+        chunk->model = goes_on ? chunk[-1].model : k * TRIBO_CHUNK;
     }
-    if (!ctx->set.breaking && ctx->follow.largest > lesser(ctx->op->most, TRIBO_FAR / ctx->follow.steepest)) {
-        /* Far limits are cut to what the solver tells apart, and the factors to what makes epsilon and slope numbers. */
-        struct contacts *c = &ctx->follow.contacts;
-        for (size_t i = 0; i < ctx->n; i++) {
-            ctx->follow.cut_limit[i] = lesser(ctx->set.limit[i], TRIBO_FAR);
-        }
-        for (size_t g = 0; g < ctx->op->groups; g++) {
-            const struct box_qp *p = tribo_problem(ctx, g);
-            for (size_t k = 0; k < p->group->size; k++) {
-                ctx->follow.cut_limit[p->member[k]] = lesser(ctx->set.limit[p->member[k]], tribo_most(p, k));
-            }
-        }
-        const double *factor = c->follows ? ctx->set.width : ctx->set.rate, far = c->follows ? TRIBO_FAR : 2.0 * TRIBO_FAR;
-        for (size_t i = 0; i < ctx->n; i++) {
-            ctx->follow.cut_factor[i] = lesser(factor[i], far / greater(ctx->follow.cut_limit[i], 1.0));
-        }
-        for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
-            ctx->follow.chunk[k].alike = 0;
-            ctx->follow.chunk[k].model = k * TRIBO_CHUNK;
-        }
-        c->bound = ctx->follow.cut_limit;
-        *(c->follows ? &c->width : &c->rate) = ctx->follow.cut_factor;
+    if (fixed && ctx->follow.largest > lesser(ctx->op->most, TRIBO_FAR / ctx->follow.steepest)) {
+        cut_far(ctx);
     }
     ctx->last.linearized = 0;
     ctx->revision++;
@@ -107,44 +90,43 @@ void tribo_refresh_limits(tribo_context *ctx)
 
 void tribo_refresh(tribo_context *ctx)
 {
-    ctx->group_of = ctx->planar && ctx->op->diagonal ? ctx->planar->group_of : ctx->op->group_of;
-    if (epsilon_follows(ctx)) {
-        /* epsilon = 2 limit R_ii time. What friction cannot move does not relax. */
-        const double time = quotient(ctx->set.step, ctx->set.lambda_dt);
-        for (size_t i = 0; i < ctx->n; i++) {
-            const double half = greater(product(ctx->op->diagonal[i], time), DBL_MIN);
-            ctx->set.width[i] = 2.0 * half;
-            ctx->set.rate[i] = ctx->op->diagonal[i] > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
-        }
-        for (size_t k = 0; ctx->planar && k < ctx->planar->count; k++) {
-            /* A planar contact has one epsilon for all directions: for R_ii stands the largest eigenvalue of its own block. */
-            const double *own = ctx->planar->own[k], turned[2] = {0.5 * own[0] - 0.5 * own[2], own[1]};
-            const double largest = 0.5 * own[0] + 0.5 * own[2] + tribo_length(2, turned),
-                         half = greater(product(largest, time), DBL_MIN);
-            for (size_t i = ctx->planar->first[k]; i < ctx->planar->first[k] + 2; i++) {
-                ctx->set.width[i] = 2.0 * half;
-                ctx->set.rate[i] = largest > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
-            }
-        }
+    const struct delassus *op = ctx->op;
+    const int follows = epsilon_follows(ctx);
+    const double time = follows ? quotient(ctx->set.step, ctx->set.lambda_dt) : 0.0;
+    double *width = ctx->set.width, *rate = ctx->set.rate;
+    /* epsilon = 2 limit R_ii time. What friction cannot move does not relax. */
+    for (size_t i = 0; follows && i < ctx->n; i++) {
+        const double half = greater(product(op->diagonal[i], time), DBL_MIN);
+        width[i] = 2.0 * half;
+        rate[i] = op->diagonal[i] > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
     }
-    const double *factor = epsilon_follows(ctx) ? ctx->set.width : ctx->set.rate;
+    ctx->group_of = op->group_of;
+    tribo_clusters_refresh(ctx, follows, time);
     ctx->follow.steepest = 1.0;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        const size_t n = tribo_chunk_size(ctx, i);
-        ctx->follow.chunk[k].widest = largest_of(n, ctx->set.width + i);
-        ctx->follow.chunk[k].even = evenness(ctx, i, n);
-        ctx->follow.steepest = greater(ctx->follow.steepest, largest_of(n, factor + i));
-    }
-    const struct delassus *op = ctx->op;
-    for (size_t i = 0, k = 0; op->diagonal && i < ctx->n; i += TRIBO_CHUNK, k++) {
         struct chunk *chunk = &ctx->follow.chunk[k];
         const size_t n = tribo_chunk_size(ctx, i), before = k > 0 ? chunk[-1].like : 0;
-        chunk->quickest = largest_of(n, op->diagonal + i);
-        chunk->plain = largest_of(n, op->inverse + i) <= TRIBO_PLAIN;
-        chunk->like = repeats(op->inverse, before, i, n) ? before : i;
+        const int even = all_equal(n, width + i) && all_equal(n, rate + i);
+        const int as_before = even && k > 0 && chunk[-1].even && width[i - 1] == width[i] && rate[i - 1] == rate[i];
+        chunk->widest = largest_of(n, width + i);
+        chunk->even = as_before ? EVEN_AS_BEFORE : even ? EVEN : UNEVEN;
+        ctx->follow.steepest = greater(ctx->follow.steepest, largest_of(n, (follows ? width : rate) + i));
+        if (op->diagonal) {
+            chunk->quickest = largest_of(n, op->diagonal + i);
+            chunk->plain = largest_of(n, op->inverse + i) <= TRIBO_PLAIN;
+            chunk->like = memcmp(op->inverse + before, op->inverse + i, n * sizeof *op->inverse) == 0 ? before : i;
+        }
     }
     tribo_refresh_limits(ctx);
 }
+
+static void settings_changed(tribo_context *ctx)
+{
+    ctx->last.linearized = 0;
+    ctx->revision++;
+}
+
+/* --------------------------------------------------------------------------------------------------------------- law */
 
 int tribo_set_law(tribo_context *ctx, int law)
 {
@@ -156,66 +138,98 @@ int tribo_set_law(tribo_context *ctx, int law)
         return tribo_fail(ctx, TRIBO_ERR_RANGE, "law = %d is none of the %d laws", law, tribo_law_count());
     }
     const int status = tribo_check_breaking(ctx, l, ctx->set.breaking, ctx->set.ratio);
-    if (status) {
-        return status;
+    if (!status) {
+        ctx->set.law = l;
+        memset(ctx->moving, 0, ctx->n);
+        settings_changed(ctx);
     }
-    ctx->set.law = l;
-    ctx->last.linearized = 0;
-    ctx->revision++;
-    memset(ctx->moving, 0, ctx->n);
-    return TRIBO_OK;
+    return status;
 }
 
 int tribo_get_law(const tribo_context *ctx, int *law)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!law) {
+    if (!ctx || !law) {
         return TRIBO_ERR_NULL;
     }
     *law = ctx->set.law->id;
     return TRIBO_OK;
 }
 
-int tribo_set_limit(tribo_context *ctx, const double *limit)
+/* ------------------------------------------------------------------------------------------------------------ limits */
+
+/* Sets least and largest of a whole chunk, half upon half: vectors can do that, not one after the other. */
+TRIBO_SIMD static void find_least_and_largest(const double *x, struct chunk *chunk)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
+    enum { HALF = TRIBO_CHUNK / 2, FEW = 8 };
+    double least[HALF], largest[HALF];
+    for (size_t k = 0; k < HALF; k++) {
+        least[k] = lesser(x[k], x[k + HALF]);
+        largest[k] = greater(x[k], x[k + HALF]);
     }
-    const int status = tribo_check_nonnegative(ctx, "limit", limit, ctx->n);
-    if (status) {
-        return status;
+    for (size_t half = HALF / 2; half >= FEW; half /= 2) {
+        for (size_t k = 0; k < half; k++) {
+            least[k] = lesser(least[k], least[k + half]);
+            largest[k] = greater(largest[k], largest[k + half]);
+        }
     }
-    tribo_write_slips(ctx);
+    for (size_t k = 1; k < FEW; k++) {
+        least[0] = lesser(least[0], least[k]);
+        largest[0] = greater(largest[0], largest[k]);
+    }
+    chunk->least = least[0];
+    chunk->largest = largest[0];
+}
+
+void tribo_take_limits(tribo_context *ctx, const double *limit)
+{
+    enum { FEW = 16 };
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        struct chunk *chunk = &ctx->follow.chunk[k];
         const size_t n = tribo_chunk_size(ctx, i);
-        tribo_take_limits(n, limit + i, ctx->set.limit + i, &ctx->follow.chunk[k]);
+        double whole[TRIBO_CHUNK];
+        if (limit != ctx->set.limit) {
+            memcpy(ctx->set.limit + i, limit + i, n * sizeof *limit);
+        }
+        if (n < FEW) {
+            chunk->least = chunk->largest = limit[i];
+            for (size_t j = i + 1; j < i + n; j++) {
+                chunk->least = lesser(chunk->least, limit[j]);
+                chunk->largest = greater(chunk->largest, limit[j]);
+            }
+        } else if (n < TRIBO_CHUNK) {
+            for (size_t j = 0; j < TRIBO_CHUNK; j++) {
+                whole[j] = limit[i + (j < n ? j : 0)];
+            }
+            find_least_and_largest(whole, chunk);
+        } else {
+            find_least_and_largest(limit + i, chunk);
+        }
     }
     tribo_refresh_limits(ctx);
-    return TRIBO_OK;
+}
+
+int tribo_set_limit(tribo_context *ctx, const double *limit)
+{
+    const int status = ctx ? tribo_check_nonnegative(ctx, "limit", limit, ctx->n) : TRIBO_ERR_NULL;
+    if (!status) {
+        tribo_write_slips(ctx);
+        tribo_take_limits(ctx, limit);
+    }
+    return status;
 }
 
 int tribo_set_normal_load(tribo_context *ctx, const double *mu, const double *load)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    int status = tribo_check_nonnegative(ctx, "mu", mu, ctx->n);
+    int status = ctx ? tribo_check_nonnegative(ctx, "mu", mu, ctx->n) : TRIBO_ERR_NULL;
     status = status ? status : tribo_check_finite(ctx, "load", load, ctx->n);
     if (status) {
         return status;
     }
     tribo_write_slips(ctx);
-    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        const size_t n = tribo_chunk_size(ctx, i);
-        double limit[TRIBO_CHUNK];
-        for (size_t j = 0; j < n; j++) {
-            limit[j] = product(greater(load[i + j], 0.0), mu[i + j]);
-        }
-        tribo_take_limits(n, limit, ctx->set.limit + i, &ctx->follow.chunk[k]);
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->set.limit[i] = product(greater(load[i], 0.0), mu[i]);
     }
-    tribo_refresh_limits(ctx);
+    tribo_take_limits(ctx, ctx->set.limit);
     return TRIBO_OK;
 }
 
@@ -234,24 +248,20 @@ int tribo_set_limit_all(tribo_context *ctx, double limit)
     for (size_t i = 0; i < ctx->n; i++) {
         ctx->set.limit[i] = limit;
     }
-    for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
-        ctx->follow.chunk[k].least = ctx->follow.chunk[k].largest = limit;
-    }
-    tribo_refresh_limits(ctx);
+    tribo_take_limits(ctx, ctx->set.limit);
     return TRIBO_OK;
 }
 
 int tribo_get_limit(const tribo_context *ctx, double *limit)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!limit && ctx->n) {
+    if (!ctx || (!limit && ctx->n)) {
         return TRIBO_ERR_NULL;
     }
     tribo_copy(limit, ctx->set.limit, ctx->n);
     return TRIBO_OK;
 }
+
+/* ----------------------------------------------------------------------------------------------------------- epsilon */
 
 int tribo_get_epsilon(const tribo_context *ctx, double *epsilon)
 {
@@ -270,70 +280,48 @@ int tribo_get_epsilon(const tribo_context *ctx, double *epsilon)
     return TRIBO_OK;
 }
 
-int tribo_set_epsilon(tribo_context *ctx, const double *epsilon)
+/* Sets epsilon [n]; stride 0: all have the first. */
+static void put_epsilon(tribo_context *ctx, const double *epsilon, size_t stride)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    const int status = tribo_check_positive(ctx, "epsilon", epsilon, ctx->n);
-    if (status) {
-        return status;
-    }
     for (size_t i = 0; i < ctx->n; i++) {
-        ctx->set.width[i] = epsilon[i];
-        ctx->set.rate[i] = tribo_rate(epsilon[i]);
+        ctx->set.width[i] = epsilon[i * stride];
+        ctx->set.rate[i] = tribo_rate(epsilon[i * stride]);
     }
     ctx->set.step = 0.0;
     tribo_refresh(ctx);
-    return TRIBO_OK;
 }
 
-static int check_scalar(tribo_context *ctx, const char *name, double x)
+int tribo_set_epsilon(tribo_context *ctx, const double *epsilon)
 {
-    if (!isfinite(x)) {
-        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "%s = %g is not finite", name, x);
+    const int status = ctx ? tribo_check_positive(ctx, "epsilon", epsilon, ctx->n) : TRIBO_ERR_NULL;
+    if (!status) {
+        put_epsilon(ctx, epsilon, 1);
     }
-    if (x <= 0.0) {
-        return tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "%s = %g is not positive", name, x);
-    }
-    return TRIBO_OK;
+    return status;
 }
 
 int tribo_set_epsilon_all(tribo_context *ctx, double epsilon)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
+    const int status = ctx ? tribo_check_one_positive(ctx, "epsilon", epsilon) : TRIBO_ERR_NULL;
+    if (!status) {
+        put_epsilon(ctx, &epsilon, 0);
     }
-    const int status = check_scalar(ctx, "epsilon", epsilon);
-    if (status) {
-        return status;
-    }
-    for (size_t i = 0; i < ctx->n; i++) {
-        ctx->set.width[i] = epsilon;
-        ctx->set.rate[i] = tribo_rate(epsilon);
-    }
-    ctx->set.step = 0.0;
-    tribo_refresh(ctx);
-    return TRIBO_OK;
+    return status;
 }
 
 int tribo_set_epsilon_step(tribo_context *ctx, double dt, double lambda_dt)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    int status = check_scalar(ctx, "dt", dt);
+    int status = ctx ? tribo_check_one_positive(ctx, "dt", dt) : TRIBO_ERR_NULL;
+    status = status ? status : tribo_check_one_positive(ctx, "lambda_dt", lambda_dt);
     if (!status) {
-        status = check_scalar(ctx, "lambda_dt", lambda_dt);
+        ctx->set.step = dt;
+        ctx->set.lambda_dt = lambda_dt;
+        tribo_refresh(ctx);
     }
-    if (status) {
-        return status;
-    }
-    ctx->set.step = dt;
-    ctx->set.lambda_dt = lambda_dt;
-    tribo_refresh(ctx);
-    return TRIBO_OK;
+    return status;
 }
+
+/* ------------------------------------------------------------------------------------------------------------ choices */
 
 int tribo_set_coupling(tribo_context *ctx, int coupling)
 {
@@ -343,22 +331,17 @@ int tribo_set_coupling(tribo_context *ctx, int coupling)
     if (coupling != TRIBO_CONSISTENT && coupling != TRIBO_PARTITION) {
         return tribo_fail(ctx, TRIBO_ERR_RANGE, "coupling = %d is neither TRIBO_CONSISTENT nor TRIBO_PARTITION", coupling);
     }
-    if (coupling == TRIBO_PARTITION && ctx->planar) {
-        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "the partition coupling knows no planar contacts, and contact %zu is one",
-                          ctx->planar->first[0]);
+    const int status = tribo_plane_check_coupling(ctx, coupling, tribo_plane_count(ctx), tribo_plane_first(ctx));
+    if (!status) {
+        ctx->set.coupling = coupling;
+        settings_changed(ctx);
     }
-    ctx->set.coupling = coupling;
-    ctx->last.linearized = 0;
-    ctx->revision++;
-    return TRIBO_OK;
+    return status;
 }
 
 int tribo_get_coupling(const tribo_context *ctx, int *coupling)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!coupling) {
+    if (!ctx || !coupling) {
         return TRIBO_ERR_NULL;
     }
     *coupling = ctx->set.coupling;
@@ -375,100 +358,20 @@ int tribo_set_sharing(tribo_context *ctx, int sharing)
                           sharing);
     }
     ctx->set.sharing = sharing;
-    ctx->last.linearized = 0;
-    ctx->revision++;
+    settings_changed(ctx);
     return TRIBO_OK;
 }
 
 int tribo_get_sharing(const tribo_context *ctx, int *sharing)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!sharing) {
+    if (!ctx || !sharing) {
         return TRIBO_ERR_NULL;
     }
     *sharing = ctx->set.sharing;
     return TRIBO_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------ static limits */
-
-/* Where a ratio is above 1, or n; either of ratio and velocity may be NULL. */
-static int settings_check_static(tribo_context *ctx, const double *ratio, const double *velocity, size_t *above)
-{
-    int status = ratio ? tribo_check_finite(ctx, "ratio", ratio, ctx->n) : TRIBO_OK;
-    status = status || !velocity ? status : tribo_check_positive(ctx, "velocity", velocity, ctx->n);
-    *above = ctx->n;
-    for (size_t i = 0; !status && ratio && i < ctx->n; i++) {
-        if (ratio[i] < 1.0) {
-            return tribo_fail(ctx, TRIBO_ERR_RANGE, "ratio[%zu] = %g is below 1", i, ratio[i]);
-        }
-        *above = *above == ctx->n && ratio[i] > 1.0 ? i : *above;
-    }
-    return status;
-}
-
-int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velocity)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    size_t above = ctx->n;
-    int status = settings_check_static(ctx, ratio, velocity, &above);
-    const int breaking = above == ctx->n ? NEVER : velocity ? FALLS : DROPS;
-    status = status ? status : tribo_check_breaking(ctx, ctx->set.law, breaking, ratio);
-    if (!status && breaking && ctx->planar) {
-        status = tribo_check_one_ratio(ctx, ratio, velocity, ctx->planar->count, ctx->planar->first);
-    }
-    if (status) {
-        return status;
-    }
-    tribo_write_slips(ctx);
-    ctx->set.breaking = breaking;
-    for (size_t i = 0; i < ctx->n; i++) {
-        ctx->set.ratio[i] = breaking ? ratio[i] : 1.0;
-        ctx->set.stribeck[i] = breaking == FALLS ? velocity[i] : 0.0;
-    }
-    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        tribo_take_limits(tribo_chunk_size(ctx, i), ctx->set.limit + i, ctx->follow.now + i, &ctx->follow.chunk[k]);
-    }
-    tribo_refresh_limits(ctx);
-    return TRIBO_OK;
-}
-
-int tribo_get_static(const tribo_context *ctx, double *ratio, double *velocity)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    for (size_t i = 0; ratio && i < ctx->n; i++) {
-        ratio[i] = ctx->set.breaking ? ctx->set.ratio[i] : 1.0;
-    }
-    for (size_t i = 0; velocity && i < ctx->n; i++) {
-        velocity[i] = ctx->set.breaking == FALLS ? ctx->set.stribeck[i] : 0.0;
-    }
-    return TRIBO_OK;
-}
-
-/* ------------------------------------------------------------------------------------------------------ all of them */
-
-/* The planar contacts of from, if ctx has others. */
-static int copy_planar(tribo_context *ctx, const tribo_context *from)
-{
-    const size_t count = from->planar ? from->planar->count : 0, *first = count ? from->planar->first : NULL;
-    const size_t now = ctx->planar ? ctx->planar->count : 0;
-    struct planar *planar;
-    struct plane plane;
-    if (count == now && (!count || memcmp(first, ctx->planar->first, count * sizeof *first) == 0)) {
-        return TRIBO_OK;
-    }
-    const int status = tribo_planar_prepare(ctx, count, first, ctx->op, &ctx->memory, &planar, &plane);
-    if (!status) {
-        tribo_planar_install(ctx, planar, &plane);
-    }
-    return status;
-}
+/* --------------------------------------------------------------------------------------------------------- all of them */
 
 int tribo_copy_settings(tribo_context *ctx, const tribo_context *from)
 {
@@ -483,26 +386,30 @@ int tribo_copy_settings(tribo_context *ctx, const tribo_context *from)
                           plural(ctx->n));
     }
     tribo_write_slips(ctx);
-    const int status = copy_planar(ctx, from);
+    const int status = tribo_clusters_copy(ctx, from);
     if (status) {
         return status;
     }
     if (ctx->set.law != from->set.law) {
         memset(ctx->moving, 0, ctx->n);
     }
-    struct settings *to = &ctx->set;
-    const struct settings *s = &from->set;
-    tribo_copy(to->width, s->width, ctx->n);
-    tribo_copy(to->rate, s->rate, ctx->n);
-    if (s->breaking) {
-        tribo_copy(to->ratio, s->ratio, ctx->n);
-        tribo_copy(to->stribeck, s->stribeck, ctx->n);
+    const struct settings own = ctx->set;
+    const size_t breaking = from->set.breaking ? ctx->n : 0;
+    tribo_copy(own.limit, from->set.limit, ctx->n);
+    tribo_copy(own.width, from->set.width, ctx->n);
+    tribo_copy(own.rate, from->set.rate, ctx->n);
+    tribo_copy(own.ratio, from->set.ratio, breaking);
+    tribo_copy(own.stribeck, from->set.stribeck, breaking);
+    for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
+        ctx->follow.chunk[k].least = from->follow.chunk[k].least;
+        ctx->follow.chunk[k].largest = from->follow.chunk[k].largest;
     }
-    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        tribo_take_limits(tribo_chunk_size(ctx, i), s->limit + i, to->limit + i, &ctx->follow.chunk[k]);
-    }
-    *to = (struct settings){s->law,    s->coupling, s->sharing,  s->step,   s->lambda_dt, to->limit,
-                            to->width, to->rate,    s->breaking, to->ratio, to->stribeck};
+    ctx->set = from->set;
+    ctx->set.limit = own.limit;
+    ctx->set.width = own.width;
+    ctx->set.rate = own.rate;
+    ctx->set.ratio = own.ratio;
+    ctx->set.stribeck = own.stribeck;
     tribo_refresh(ctx);
     return TRIBO_OK;
 }

@@ -1,19 +1,21 @@
-/* Static friction above kinetic: the limits by which contacts go are then found in every call, and stand in now.
+/* Static friction above kinetic. Laws read the limits follow.now, which each call finds.
  *
- * With a Stribeck velocity the limit is a continuous function N(|v|) of the speed, which takes the limit's place in every law.
- * Without one it drops at once. Then contacts near stick have the static limit, the others the kinetic one, and
+ * With a Stribeck velocity the limit is a continuous function N(|v|) of the speed, in every law. Without one it drops at once.
+ * Contacts near stick then have the static limit, the others the kinetic one, and
  *
  *     repeat
- *         forces from the problem with bounds
- *         those near stick whose f_eq is beyond the static limit have the kinetic one from here on
- *     until there are none
+ *         forces of the box problem
+ *         contacts near stick with |f_eq| above their static limit get the kinetic one
+ *     until no limit changes
  *
- * all of them together, so that the order of contacts does not matter. Limits only fall, so that this ends. A contact that has
- * broken away and that the others now hold rests with less than the kinetic limit, as it may. planar_static.c is this in the
- * plane. */
-#include "context.h"
+ * All limits change together, so that the order of contacts has no effect. Limits only fall, so that the loop ends. A contact that
+ * broke away, and is then held by others, rests with less than the kinetic limit. */
+#include "static.h"
 
-/* N(|v|), and its derivative by |v|. */
+#include "check.h"
+#include "clusters.h"
+
+/* Returns N(|v|), and its derivative by |v|. */
 static double limit_at(const tribo_context *ctx, size_t i, double speed, double *rate)
 {
     const double slide = ctx->follow.cut_limit[i], hold = ctx->follow.hold[i], scale = ctx->set.stribeck[i];
@@ -41,27 +43,22 @@ double tribo_limit_rate(const tribo_context *ctx, size_t i, double v)
     return copysign(1.0, v) * rate;
 }
 
-static int near_stick(const tribo_context *ctx, size_t i, double v)
-{
-    return fabs(v) <= (ctx->set.law->sticks_in_band ? ctx->follow.hold_width[i] : 0.0);
-}
-
 void tribo_find_limits(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *limit)
 {
     for (size_t k = 0; k < n; k++) {
-        const double hold = ctx->follow.hold[i + k];
-        const int holds = ctx->set.breaking == DROPS && near_stick(ctx, i + k, v[k]) && !(feq && fabs(feq[k]) > hold);
+        const double hold = ctx->follow.hold[i + k], band = ctx->set.law->sticks_in_band ? ctx->follow.hold_width[i + k] : 0.0;
+        const int holds = ctx->set.breaking == DROPS && fabs(v[k]) <= band && !(feq && fabs(feq[k]) > hold);
         limit[k] = holds ? hold : tribo_limit_at(ctx, i + k, fabs(v[k]));
     }
 }
 
-/* Over a step a contact rests if its speed is this part of what friction can stop: more than rounding, and so little that what
- * it takes to stop it is no load for others. */
+/* Over a step a contact comes in sliding if its speed exceeds this part of what friction can stop: more than rounding, and so
+ * little that stopping it is no load for other contacts. */
 #define RESTS 1e-4
 
-/* Whether contact i, of 1 or 2 directions, comes into a step with a velocity that counts. */
-static int comes_sliding(const tribo_context *ctx, double dt, size_t i, size_t directions, const double *v)
+static int comes_sliding(const tribo_context *ctx, double dt, size_t i, const double *v)
 {
+    const size_t directions = tribo_directions(ctx, i);
     double stops = 0.0;
     for (size_t k = i; k < i + directions; k++) {
         stops = greater(stops, product(product(ctx->op->diagonal[k], dt), ctx->follow.hold[k]));
@@ -69,38 +66,31 @@ static int comes_sliding(const tribo_context *ctx, double dt, size_t i, size_t d
     return tribo_length((int)directions, v + i) > RESTS * stops;
 }
 
-/* Whether f does not act against v. */
-static int turns(size_t directions, const double *v, const double *f)
+/* 1 if the force f of the contact at i does not act against v. */
+static int turns(const tribo_context *ctx, size_t i, const double *v, const double *f)
 {
     double power = 0.0;
-    for (size_t k = 0; k < directions; k++) {
+    for (size_t k = i; k < i + tribo_directions(ctx, i); k++) {
         power += product(f[k], v[k]);
     }
     return !(power < 0.0);
 }
 
-static size_t directions_of(const tribo_context *ctx, size_t i)
-{
-    return ctx->planar && ctx->planar->role[i] == ROLE_FIRST ? 2 : 1;
-}
-
 int tribo_any_turns(const tribo_context *ctx, double dt, const double *v, const double *f)
 {
-    for (size_t i = 0, directions; i < ctx->n; i += directions) {
-        directions = directions_of(ctx, i);
-        if (comes_sliding(ctx, dt, i, directions, v) && turns(directions, v + i, f + i)) {
-            return 1;
-        }
+    int any = 0;
+    for (size_t i = 0; !any && i < ctx->n; i += tribo_directions(ctx, i)) {
+        any = comes_sliding(ctx, dt, i, v) && turns(ctx, i, v, f);
     }
-    return 0;
+    return any;
 }
 
 void tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, const double *f)
 {
     tribo_copy(ctx->follow.now, ctx->follow.hold, ctx->n);
     for (size_t i = 0, directions; v && i < ctx->n; i += directions) {
-        directions = directions_of(ctx, i);
-        const int slides = comes_sliding(ctx, dt, i, directions, v) && !(f && turns(directions, v + i, f + i));
+        directions = tribo_directions(ctx, i);
+        const int slides = comes_sliding(ctx, dt, i, v) && !(f && turns(ctx, i, v, f));
         const double speed = tribo_length((int)directions, v + i);
         for (size_t k = i; slides && k < i + directions; k++) {
             ctx->follow.now[k] = tribo_limit_at(ctx, k, speed);
@@ -116,25 +106,19 @@ void tribo_hold(const tribo_context *ctx, const struct box_qp *p)
     }
 }
 
-/* Whether the contact at place k is pulled at by more than its static limit, and rounding. */
-static int breaks(const tribo_context *ctx, const struct box_qp *p, size_t k)
-{
-    const size_t i = p->member[k];
-    const double hold = ctx->follow.hold[i], doubt = quotient(tribo_box_tolerance(p, k), ctx->op->diagonal[i]);
-    return p->at[k] != FREE && ctx->follow.now[i] == hold && fabs(ctx->last.feq[i]) - hold > doubt + 4.0 * DBL_EPSILON * hold;
-}
-
 size_t tribo_break_away(tribo_context *ctx, const struct box_qp *p, double dt)
 {
     size_t broken = 0;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = p->member[k];
-        if (breaks(ctx, p, k)) {
+        const double hold = ctx->follow.hold[i], doubt = quotient(tribo_box_tolerance(p, k), ctx->op->diagonal[i]);
+        const double beyond = fabs(ctx->last.feq[i]) - hold;
+        if (p->at[k] != FREE && ctx->follow.now[i] == hold && beyond > doubt + 4.0 * DBL_EPSILON * hold) {
             ctx->follow.now[i] = tribo_limit_at(ctx, i, product(dt, fabs(p->gradient[k])));
-            broken += ctx->follow.now[i] < ctx->follow.hold[i];
+            broken += ctx->follow.now[i] < hold;
         }
     }
-    ctx->last.rank -= broken ? p->sets->rank : 0; /* they will be solved for once more */
+    ctx->last.rank -= broken ? p->sets->rank : 0; /* the group will be solved again */
     return broken;
 }
 
@@ -143,15 +127,14 @@ void tribo_break_alone(tribo_context *ctx, double dt, const double *vfree)
     for (size_t i = 0; i < ctx->n; i++) {
         const double hold = ctx->follow.hold[i], held = product(ctx->op->diagonal[i] * dt, hold), beyond = fabs(vfree[i]) - held;
         const int alone = !ctx->op->groups || ctx->op->group_of[i] == TRIBO_ALONE;
-        const int scalar = !ctx->planar || ctx->planar->role[i] == ROLE_SCALAR;
-        if (alone && scalar && fabs(ctx->last.f[i]) == hold && beyond > 0.0) {
+        if (alone && tribo_is_scalar(ctx, i) && fabs(ctx->last.f[i]) == hold && beyond > 0.0) {
             ctx->follow.now[i] = tribo_limit_at(ctx, i, beyond);
             ctx->last.f[i] = copysign(ctx->follow.now[i], -vfree[i]);
         }
     }
 }
 
-/* What a law says of a given limit becomes what it says of the caller's, and of v on which that limit depends. */
+/* The law's derivatives are by the limit of this call, which depends on v and on the caller's limit. */
 void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size_t i, size_t n, const double *v,
                         const double *feq, const struct tangents *d)
 {
@@ -172,33 +155,23 @@ void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size
 void tribo_refresh_static(tribo_context *ctx)
 {
     struct contacts *c = &ctx->follow.contacts;
-    double *rate = ctx->follow.cut_factor;
-    /* Limits to slide and to stick, as far as the solver tells them apart. */
+    double *rate = ctx->follow.cut_factor, *now = ctx->follow.now;
     for (size_t i = 0; i < ctx->n; i++) {
         ctx->follow.cut_limit[i] = lesser(ctx->set.limit[i], TRIBO_FAR);
         ctx->follow.hold[i] = product(ctx->set.ratio[i], ctx->set.limit[i]);
     }
-    for (size_t g = 0; g < ctx->op->groups; g++) {
-        const struct box_qp *p = tribo_problem(ctx, g);
-        for (size_t k = 0; k < p->group->size; k++) {
-            const size_t i = p->member[k];
-            ctx->follow.cut_limit[i] = lesser(ctx->follow.cut_limit[i], tribo_most(p, k));
-            ctx->follow.hold[i] = lesser(ctx->follow.hold[i], tribo_most(p, k));
-        }
-    }
+    tribo_cut_limits(ctx, ctx->follow.cut_limit);
+    tribo_cut_limits(ctx, ctx->follow.hold);
     for (size_t i = 0; i < ctx->n; i++) {
+        struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
         const double hold = ctx->follow.hold[i];
+        now[i] = hold;
         ctx->follow.hold_width[i] = c->follows ? greater(product(c->width[i], hold), DBL_MIN) : c->width[i];
         rate[i] = c->follows ? quotient(c->rate[i], greater(hold, DBL_MIN)) : c->rate[i];
         rate[i] = lesser(rate[i], 2.0 * TRIBO_FAR / greater(hold, 1.0));
+        chunk->largest = i % TRIBO_CHUNK ? greater(chunk->largest, hold) : hold;
     }
-    tribo_copy(ctx->follow.now, ctx->follow.hold, ctx->n);
-    const double *now = ctx->follow.now;
     *c = (struct contacts){now, now, ctx->follow.hold_width, rate, ctx->moving, 0, c->scales, 0};
-    for (size_t i = 0; i < ctx->n; i++) {
-        struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
-        chunk->largest = i % TRIBO_CHUNK ? greater(chunk->largest, now[i]) : now[i];
-    }
 }
 
 int tribo_refuse_static(tribo_context *ctx, const char *who)
@@ -214,15 +187,15 @@ int tribo_refuse_static(tribo_context *ctx, const char *who)
 int tribo_check_one_ratio(tribo_context *ctx, const double *ratio, const double *velocity, size_t count, const size_t *first)
 {
     for (size_t k = 0; k < count; k++) {
-        const size_t i = first[k];
-        if (ratio[i] < ratio[i + 1] || ratio[i] > ratio[i + 1]) {
+        const size_t i = first[k], j = i + 1;
+        if (ratio[i] < ratio[j] || ratio[i] > ratio[j]) {
             return tribo_fail(ctx, TRIBO_ERR_RANGE, "ratio[%zu] = %g and ratio[%zu] = %g are of one planar contact, and differ",
-                              i, ratio[i], i + 1, ratio[i + 1]);
+                              i, ratio[i], j, ratio[j]);
         }
-        if (velocity && (velocity[i] < velocity[i + 1] || velocity[i] > velocity[i + 1])) {
+        if (velocity && (velocity[i] < velocity[j] || velocity[i] > velocity[j])) {
             return tribo_fail(ctx, TRIBO_ERR_RANGE,
-                              "velocity[%zu] = %g and velocity[%zu] = %g are of one planar contact, and differ", i, velocity[i],
-                              i + 1, velocity[i + 1]);
+                              "velocity[%zu] = %g and velocity[%zu] = %g are of one planar contact, and differ", i, velocity[i], j,
+                              velocity[j]);
         }
     }
     return TRIBO_OK;
@@ -236,6 +209,51 @@ int tribo_check_breaking(tribo_context *ctx, const struct law *law, int breaking
                               "ratio[%zu] = %g needs a velocity by which the limit falls: law %s has no stick", i, ratio[i],
                               law->name);
         }
+    }
+    return TRIBO_OK;
+}
+
+int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velocity)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    int above = 0, status = ratio ? tribo_check_finite(ctx, "ratio", ratio, ctx->n) : TRIBO_OK;
+    status = status || !velocity ? status : tribo_check_positive(ctx, "velocity", velocity, ctx->n);
+    for (size_t i = 0; !status && ratio && i < ctx->n; i++) {
+        if (ratio[i] < 1.0) {
+            return tribo_fail(ctx, TRIBO_ERR_RANGE, "ratio[%zu] = %g is below 1", i, ratio[i]);
+        }
+        above |= ratio[i] > 1.0;
+    }
+    const int breaking = !above ? NEVER : velocity ? FALLS : DROPS;
+    status = status ? status : tribo_check_breaking(ctx, ctx->set.law, breaking, ratio);
+    if (!status && breaking) {
+        status = tribo_check_one_ratio(ctx, ratio, velocity, tribo_plane_count(ctx), tribo_plane_first(ctx));
+    }
+    if (status) {
+        return status;
+    }
+    tribo_write_slips(ctx);
+    ctx->set.breaking = breaking;
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->set.ratio[i] = breaking ? ratio[i] : 1.0;
+        ctx->set.stribeck[i] = breaking == FALLS ? velocity[i] : 0.0;
+    }
+    tribo_take_limits(ctx, ctx->set.limit);
+    return TRIBO_OK;
+}
+
+int tribo_get_static(const tribo_context *ctx, double *ratio, double *velocity)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    for (size_t i = 0; ratio && i < ctx->n; i++) {
+        ratio[i] = ctx->set.breaking ? ctx->set.ratio[i] : 1.0;
+    }
+    for (size_t i = 0; velocity && i < ctx->n; i++) {
+        velocity[i] = ctx->set.breaking == FALLS ? ctx->set.stribeck[i] : 0.0;
     }
     return TRIBO_OK;
 }

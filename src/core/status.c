@@ -1,4 +1,6 @@
 /* Version and texts of status codes. */
+#include <stddef.h>
+
 #include "tribo/tribo.h"
 
 #define TEXT_(x) #x
@@ -16,48 +18,28 @@ const char *tribo_version_string(void)
 
 const char *tribo_strerror(int status)
 {
-    switch (status) {
-    case TRIBO_OK:
-        return "success";
-    case TRIBO_ERR_NULL:
-        return "a required argument is NULL";
-    case TRIBO_ERR_NOT_FINITE:
-        return "a value is NaN or infinite";
-    case TRIBO_ERR_NEGATIVE:
-        return "a value is negative";
-    case TRIBO_ERR_NOT_POSITIVE:
-        return "a value is not positive";
-    case TRIBO_ERR_RANGE:
-        return "an index or a choice is out of range";
-    case TRIBO_ERR_SIZE:
-        return "sizes do not fit each other, or are too large";
-    case TRIBO_ERR_NAME:
-        return "unknown name";
-    case TRIBO_ERR_STATE:
-        return "another call must come first";
-    case TRIBO_ERR_UNSUPPORTED:
-        return "not available here";
-    case TRIBO_ERR_MEMORY:
-        return "out of memory";
-    case TRIBO_ERR_NOT_SYMMETRIC:
-        return "a matrix is not symmetric";
-    case TRIBO_ERR_INDEFINITE:
-        return "a matrix is not positive (semi)definite";
-    case TRIBO_ERR_DUPLICATE:
-        return "an entry is given twice";
-    case TRIBO_ERR_INCONSISTENT:
-        return "no balancing force exists in the partition coupling; the least-squares one was returned";
-    case TRIBO_ERR_NO_CONVERGENCE:
-        return "a solver did not converge";
-    case TRIBO_ERR_STOPPED:
-        return "the observer ended the run";
-    case TRIBO_ERR_STEP:
-        return "the step size became too small";
-    case TRIBO_ERR_CALLBACK:
-        return "a function of the caller's failed";
-    case TRIBO_ERR_CHATTER:
-        return "too many events in too short a time: \"central/fixed\" and \"moreau/fixed\" step over them";
-    default:
-        return "not a tribo status";
-    }
+    static const char *const text[] = {
+        [TRIBO_OK] = "success",
+        [TRIBO_ERR_NULL] = "a required argument is NULL",
+        [TRIBO_ERR_NOT_FINITE] = "a value is NaN or infinite",
+        [TRIBO_ERR_NEGATIVE] = "a value is negative",
+        [TRIBO_ERR_NOT_POSITIVE] = "a value is not positive",
+        [TRIBO_ERR_RANGE] = "an index or a choice is out of range",
+        [TRIBO_ERR_SIZE] = "sizes do not fit each other, or are too large",
+        [TRIBO_ERR_NAME] = "unknown name",
+        [TRIBO_ERR_STATE] = "another call must come first",
+        [TRIBO_ERR_UNSUPPORTED] = "not available here",
+        [TRIBO_ERR_MEMORY] = "out of memory",
+        [TRIBO_ERR_NOT_SYMMETRIC] = "a matrix is not symmetric",
+        [TRIBO_ERR_INDEFINITE] = "a matrix is not positive (semi)definite",
+        [TRIBO_ERR_DUPLICATE] = "an entry is given twice",
+        [TRIBO_ERR_INCONSISTENT] = "no balancing force exists in the partition coupling; the least-squares one was returned",
+        [TRIBO_ERR_NO_CONVERGENCE] = "a solver did not converge",
+        [TRIBO_ERR_STOPPED] = "the observer ended the run",
+        [TRIBO_ERR_STEP] = "the step size became too small",
+        [TRIBO_ERR_CALLBACK] = "a function of the caller's failed",
+        [TRIBO_ERR_CHATTER] = "too many events in too short a time: \"central/fixed\" and \"moreau/fixed\" step over them",
+    };
+    const int known = status >= 0 && (size_t)status < sizeof text / sizeof *text && text[status];
+    return known ? text[status] : "not a tribo status";
 }

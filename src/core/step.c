@@ -1,8 +1,9 @@
-/* The force over a time step, and the box-constrained problem for laws of the caller's own. */
-
+/* The force over a time step, and the box problem for laws of the caller's. */
 #include "check.h"
+#include "clusters.h"
+#include "static.h"
 
-/* How hard a contact is pulled that would end a step with v, in numbers: times v, up to most. */
+/* The acceleration 1/dt v, cut to a number: times clamp(v, -most, most). */
 struct pull {
     double times, most;
 };
@@ -12,22 +13,22 @@ static inline double step_pull_of(struct pull p, double v)
     return p.times * clamp(v, -p.most, p.most);
 }
 
-/* A call: its bounds, and what pulls. */
+/* Inputs of a call. */
 struct call {
     struct bounds b;
     double dt;
     struct pull pull;
     const double *v;
-    const size_t *group_of;
-    int all;       /* contacts take part, whatever friction can do against the pull */
+    const size_t *group_of; /* [n] */
+    int all;       /* all contacts take part, also those pulled harder than friction can hold */
     int breaks;    /* limits are static */
-    int estimates; /* the pull tells something, and what limits can do against it is found from the sums of R's rows first */
+    int estimates; /* sums of R's rows times limits are numbers: they bound what friction can hold */
 };
 
-/* Sums of rows and limits up to this make numbers of each other. */
+/* Sums of rows and limits up to this have numbers as products. */
 #define ESTIMATED 1e150
 
-/* Whether a contact is pulled harder than forces of this limit can hold it, through a row of R with this sum. */
+/* 1 if forces up to limit cannot hold a contact, through a row of R with this sum. */
 static inline int out_of_reach(struct pull pull, double v, double row_sum, double limit)
 {
     return fabs(step_pull_of(pull, v)) > row_sum * limit;
@@ -36,14 +37,14 @@ static inline int out_of_reach(struct pull pull, double v, double row_sum, doubl
 TRIBO_SIMD static int any_within_reach(size_t n, struct pull pull, const double *restrict v, const double *restrict row_sum,
                                        double largest)
 {
-    int64_t any = 0; /* as wide as what is compared */
+    int64_t any = 0; /* as wide as a double, for vectors */
     for (size_t i = 0; i < n; i++) {
         any |= out_of_reach(pull, v[i], row_sum[i], largest) ? 0 : -1;
     }
     return any != 0;
 }
 
-/* At least the largest limit in any group with a contact in chunk k. */
+/* Returns at least the largest limit in any group with a contact in chunk k. */
 static double largest_around(const tribo_context *ctx, size_t k)
 {
     if (ctx->op->span >= TRIBO_CHUNK) {
@@ -54,29 +55,25 @@ static double largest_around(const tribo_context *ctx, size_t k)
     return greater(ctx->follow.chunk[k].largest, greater(before, behind));
 }
 
-/* Finds the groups in which a contact may take part, chunk by chunk: in a large scene most have none. */
+/* Lists the groups with a contact that may take part, chunk by chunk: in a large scene most chunks have none. */
 static void find_candidates(tribo_context *ctx, const struct call *c)
 {
-    const struct delassus *op = ctx->op;
-    const size_t *group_of = c->group_of;
-    struct memory *m = &ctx->memory;
+    const double *row_sum = ctx->op->row_sum;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
         const double largest = largest_around(ctx, k);
-        if (c->estimates && (largest == 0.0 || !any_within_reach(n, c->pull, c->v + i, op->row_sum + i, largest))) {
+        if (c->estimates && (largest == 0.0 || !any_within_reach(n, c->pull, c->v + i, row_sum + i, largest))) {
             continue;
         }
         for (size_t j = i; j < i + n; j++) {
-            const size_t g = group_of[j];
-            if (g != TRIBO_ALONE && !m->solved[g] && !(c->estimates && out_of_reach(c->pull, c->v[j], op->row_sum[j], largest))) {
-                m->solved[g] = 1;
-                m->solved_list[m->nsolved++] = g;
+            if (!(c->estimates && out_of_reach(c->pull, c->v[j], row_sum[j], largest))) {
+                tribo_list_group(ctx, c->group_of[j]);
             }
         }
     }
 }
 
-/* The limits of a group, by place, and what they are at least and at most. */
+/* Limits of a group, by place, the least and the largest. */
 struct limits {
     double least, largest;
     double *of;
@@ -93,7 +90,7 @@ static struct limits limits_of(const tribo_context *ctx, const struct box_qp *p)
     return l;
 }
 
-/* Whether friction could hold the contact at place k: limits that are all the same need no look at the row. */
+/* 1 if friction could hold the contact at place k. The row is read only if the least and the largest limit disagree. */
 static int within_reach(const tribo_context *ctx, const struct box_qp *p, size_t k, const struct call *c, const struct limits *l)
 {
     const double v = c->v[p->member[k]], row_sum = c->estimates ? ctx->op->row_sum[p->member[k]] : 0.0;
@@ -107,13 +104,12 @@ static int within_reach(const tribo_context *ctx, const struct box_qp *p, size_t
     return !(fabs(step_pull_of(c->pull, v)) > reach);
 }
 
-/* Sets the problem of a group: its contacts in the problem's order, those that take part first. Contacts whose bounds leave no
- * choice do not, nor do those of Coulomb's law that are out of reach. */
+/* Sets the problem of group g. Contacts whose bounds are equal, or that are out of reach, do not take part. */
 static struct box_qp *pose(tribo_context *ctx, size_t g, const struct call *c)
 {
     struct box_qp *p = tribo_problem(ctx, g);
     const int all = c->all || p->group->small;
-    const struct limits l = all ? (struct limits){0} : limits_of(ctx, p);
+    const struct limits l = all ? (struct limits){0.0, 0.0, NULL} : limits_of(ctx, p);
     size_t behind = p->group->size;
     p->count = 0;
     p->far = ctx->last.far;
@@ -134,7 +130,7 @@ static struct box_qp *pose(tribo_context *ctx, size_t g, const struct call *c)
     return p;
 }
 
-/* Where limits are static: which contacts of a group break away. Returns how many, with their new bounds. */
+/* Static limits: returns how many contacts of a group break away, and sets their bounds. */
 static size_t step_let_go(tribo_context *ctx, struct box_qp *p, double dt)
 {
     for (size_t e = 0; e < p->count; e++) {
@@ -150,30 +146,35 @@ static size_t step_let_go(tribo_context *ctx, struct box_qp *p, double dt)
     return broken;
 }
 
-/* Solves for the contacts of a group that take part; there are some. */
-static int solve_for(tribo_context *ctx, struct box_qp *p, const struct call *c)
+/* Solves group g. Returns a status; *takes_part = 0 if no contact does. */
+static int solve_for(tribo_context *ctx, size_t g, const struct call *c, unsigned char *takes_part)
 {
-    const struct bounds *b = &c->b;
-    int status;
+    struct box_qp *p = pose(ctx, g, c);
+    int status = TRIBO_OK;
+    *takes_part = p->count > 0;
+    if (!*takes_part) {
+        return status;
+    }
     do {
         status = tribo_solve_group(ctx, p);
     } while (!status && c->breaks && step_let_go(ctx, p, c->dt));
     for (size_t e = 0; !status && e < p->count; e++) {
         const size_t k = p->near[e], i = p->member[k];
-        ctx->last.f[i] = clamp(p->x[k], tribo_lower(b, i), b->upper[i]);
+        ctx->last.f[i] = clamp(p->x[k], tribo_lower(&c->b, i), c->b.upper[i]);
     }
     return status;
 }
 
-/* Solves for all contacts, but for clusters. */
-static inline int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bounds b, const size_t *group_of)
+/* Finds f in last.f of the contacts in groups by group_of [n], and in none; a status. */
+static int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bounds b, const size_t *group_of)
 {
+    const struct delassus *op = ctx->op;
     const int breaks = !b.lower && ctx->set.breaking, all = b.lower || breaks;
-    const int estimates = !all && ctx->follow.largest < ESTIMATED && ctx->op->largest_sum < ESTIMATED;
-    const double times = ctx->op->groups ? quotient(1.0, dt) : 0.0;
+    const int estimates = !all && ctx->follow.largest < ESTIMATED && op->largest_sum < ESTIMATED;
+    const double times = op->groups ? quotient(1.0, dt) : 0.0;
     const struct call c = {b, dt, {times, TRIBO_FAR / greater(times, 1.0)}, v, group_of, all, breaks, estimates};
-    /* A small group that is all there is takes as long to solve as to be found to slide. */
-    const int one = ctx->op->groups == 1 && ctx->op->group->small && ctx->op->group->size == ctx->n && *group_of == 0;
+    /* A small group of all contacts is solved as fast as it is found to slide. */
+    const int one = op->groups == 1 && op->group->small && op->group->size == ctx->n && *group_of == 0;
     struct memory *m = &ctx->memory;
     tribo_store_all(ctx);
     for (size_t i = 0, k = 0; !one && i < ctx->n; i += TRIBO_CHUNK, k++) {
@@ -183,83 +184,64 @@ static inline int solve_boxes(tribo_context *ctx, double dt, const double *v, st
         tribo_break_alone(ctx, dt, v);
     }
     if (one) {
-        m->solved_list[m->nsolved++] = 0;
-    } else if (ctx->op->groups) {
+        tribo_list_group(ctx, *group_of);
+    } else if (op->groups) {
         find_candidates(ctx, &c);
     }
-    /* Solves for the groups that are candidates, of which those stay that a contact takes part in; after a failure none of the rest.
-     */
+    /* Groups stay in the list if a contact takes part; after a failure none does. */
     const size_t candidates = m->nsolved;
     int status = TRIBO_OK;
     m->nsolved = 0;
     for (size_t k = 0; k < candidates; k++) {
         const size_t g = m->solved_list[k];
         if (k + 2 < candidates) {
-            tribo_memory_expect(ctx->op, m, m->solved_list[k + 2]);
+            tribo_memory_expect(op, m, m->solved_list[k + 2]);
         }
-        struct box_qp *p = status ? NULL : pose(ctx, g, &c);
-        m->solved[g] = p && p->count > 0;
+        m->solved[g] = 0;
+        status = status ? status : solve_for(ctx, g, &c, &m->solved[g]);
         if (m->solved[g]) {
             m->solved_list[m->nsolved++] = g;
-            status = solve_for(ctx, p, &c);
         }
     }
     return status;
 }
 
-static inline void hand_out(tribo_context *ctx, double *f)
+/* Ends a call with forces f [n], unless it has failed. */
+static int hand_out(tribo_context *ctx, int status, double *f)
 {
-    ctx->count.skipped += ctx->op->islands - ctx->memory.nsolved;
-    tribo_remember_forces(ctx);
-    tribo_copy(f, ctx->last.f, ctx->n);
-}
-
-/* Solves for all contacts, which are scalar. */
-static int box_all(tribo_context *ctx, double dt, const double *v, struct bounds b, double *f)
-{
-    const int status = solve_boxes(ctx, dt, v, b, ctx->op->group_of);
     if (!status) {
-        hand_out(ctx, f);
+        ctx->count.skipped += ctx->op->islands - ctx->memory.nsolved;
+        tribo_remember_forces(ctx);
+        tribo_copy(f, ctx->last.f, ctx->n);
     }
     return status;
 }
 
 int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known, double *f)
 {
-    if (!ctx->planar) {
-        return box_all(ctx, dt, v, b, f);
-    }
-    int status = solve_boxes(ctx, dt, v, b, ctx->group_of);
-    status = status ? status : tribo_planar_step(ctx, dt, v, known);
-    if (!status) {
-        hand_out(ctx, f);
-    }
-    return status;
+    const int status = solve_boxes(ctx, dt, v, b, ctx->group_of);
+    return hand_out(ctx, status ? status : tribo_clusters_step(ctx, dt, v, known), f);
 }
 
-/* With the limits that contacts have for now. */
 static int step_once(tribo_context *ctx, double dt, const double *vfree, double *f)
 {
-    const struct bounds b = {NULL, ctx->follow.contacts.limit};
     tribo_begin_call(ctx);
-    return ctx->planar ? tribo_solve_step(ctx, dt, vfree, b, NULL, f) : box_all(ctx, dt, vfree, b, f);
+    return tribo_solve_step(ctx, dt, vfree, (struct bounds){NULL, ctx->follow.contacts.limit}, NULL, f);
 }
 
-/* Where limits are static: whoever slides does so until it comes to a stop, and holds there if it can. */
+/* Static limits: a contact that comes in sliding does so until it comes to a stop, and holds there if it can. */
 static int step_from(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f)
 {
     double *first = ctx->last.v;
     tribo_hold_for_step(ctx, dt, v, NULL);
-    const int status = step_once(ctx, dt, vfree, v ? first : f);
-    if (status || !v) {
-        return status;
-    }
-    if (!tribo_any_turns(ctx, dt, v, first)) {
+    int status = step_once(ctx, dt, vfree, v ? first : f);
+    if (!status && v && tribo_any_turns(ctx, dt, v, first)) {
+        tribo_hold_for_step(ctx, dt, v, first);
+        status = step_once(ctx, dt, vfree, f);
+    } else if (!status && v) {
         tribo_copy(f, first, ctx->n);
-        return TRIBO_OK;
     }
-    tribo_hold_for_step(ctx, dt, v, first);
-    return step_once(ctx, dt, vfree, f);
+    return status;
 }
 
 int tribo_step_at_end(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f)
@@ -274,10 +256,7 @@ int tribo_step_at_end(tribo_context *ctx, double dt, const double *v, const doub
 
 int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    const int status = tribo_check_step(ctx, dt, vfree, f);
+    const int status = ctx ? tribo_check_step(ctx, dt, vfree, f) : TRIBO_ERR_NULL;
     if (!status && tribo_all_alone(ctx)) {
         return tribo_step_alone(ctx, dt, vfree, f);
     }
@@ -286,27 +265,22 @@ int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double 
 
 int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, const double *upper, double *f)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    int status = tribo_need_operator(ctx);
+    int status = ctx ? tribo_need_operator(ctx) : TRIBO_ERR_NULL;
     status = status ? status : tribo_check_finite(ctx, "a", a, ctx->n);
     status = status ? status : tribo_check_finite(ctx, "lower", lower, ctx->n);
     status = status ? status : tribo_check_finite(ctx, "upper", upper, ctx->n);
-    if (status) {
-        return status;
-    }
     double most = 0.0;
-    for (size_t i = 0; i < ctx->n; i++) {
+    for (size_t i = 0; !status && i < ctx->n; i++) {
         if (lower[i] > upper[i]) {
             return tribo_fail(ctx, TRIBO_ERR_RANGE, "lower[%zu] = %g is above upper[%zu] = %g", i, lower[i], i, upper[i]);
         }
         most = greater(most, greater(upper[i], -lower[i]));
     }
-    if (!f && ctx->n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
+    status = status ? status : tribo_check_output(ctx, "f", f);
+    if (status) {
+        return status;
     }
     tribo_begin_call(ctx);
     ctx->last.far = most > TRIBO_ROOM * ctx->op->most;
-    return box_all(ctx, 1.0, a, (struct bounds){lower, upper}, f);
+    return hand_out(ctx, solve_boxes(ctx, 1.0, a, (struct bounds){lower, upper}, ctx->op->group_of), f);
 }

@@ -1,9 +1,11 @@
-/* How the forces of coupled contacts follow velocities, accelerations and limits. With the sets of contacts that the last
- * balance found this is linear: those inside their box (in the partition: all near stick) move so that the accelerations, or
- * f_eq, stay balanced, the others as their law or their bound tells. */
+/* Derivatives of the forces of all contacts by velocities, accelerations and limits. With the sets of the last balance they are
+ * linear: contacts inside their box (in the partition: all near stick) move so that accelerations, or f_eq, stay balanced; the
+ * others follow their law or their bound. */
 #include "check.h"
+#include "clusters.h"
+#include "static.h"
 
-/* What every contact's law says at the last balance, which was at v. */
+/* Keeps the derivatives of all laws at the last balance, which was at v and a. */
 static void linearize_laws(tribo_context *ctx, const double *v, const double *a)
 {
     for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
@@ -19,13 +21,11 @@ static void linearize_laws(tribo_context *ctx, const double *v, const double *a)
         }
     }
     tribo_copy(ctx->last.v, v, ctx->n);
-    if (ctx->planar) {
-        tribo_planar_linearize(ctx, v, a);
-    }
+    tribo_clusters_linearize(ctx, v, a);
     ctx->last.linearized = 1;
 }
 
-/* How kappa = slope v follows v. */
+/* Returns d kappa/dv, kappa = slope v. */
 static double relaxation_rate(const tribo_context *ctx, size_t i)
 {
     const struct contacts *c = &ctx->follow.contacts;
@@ -33,23 +33,35 @@ static double relaxation_rate(const tribo_context *ctx, size_t i)
     return ctx->set.breaking ? slope + product(c->rate[i] * ctx->last.v[i], tribo_limit_rate(ctx, i, ctx->last.v[i])) : slope;
 }
 
-/* How the force of contact i, at place k, changes by itself where it is not balanced. */
-static double own_change(const tribo_context *ctx, const struct box_qp *p, size_t k, size_t i, double dv, double dlimit)
+/* Returns the change of kappa with the limit. */
+static double relaxation_turn(const tribo_context *ctx, size_t i, double dlimit)
 {
+    return product(product(tribo_slope_rate_of(&ctx->follow.contacts, i), ctx->last.v[i]), dlimit);
+}
+
+/* Returns the change of a force by its law, f_eq fixed. */
+static double law_change(const tribo_context *ctx, size_t i, double dv, double dlimit)
+{
+    return product(ctx->last.tangent[i].dv, dv) + product(ctx->last.tangent[i].dlimit, dlimit);
+}
+
+/* Returns the change of the force of contact i at place k, which is not balanced: by its law, or with its bound. */
+static double own_change(const tribo_context *ctx, const struct box_qp *p, size_t k, double dv, double dlimit)
+{
+    const size_t i = p->member[k];
     if (ctx->last.did.of[i] != STORED) {
-        return product(ctx->last.tangent[i].dv, dv) + product(ctx->last.tangent[i].dlimit, dlimit);
+        return law_change(ctx, i, dv, dlimit);
     }
-    /* the bound of a relaxing law moves with kappa while it is not at the other limit */
+    /* The bound of a law that relaxes moves with kappa, unless it is the other limit. */
     const struct contacts *c = &ctx->follow.contacts;
     const double v = ctx->last.v[i], kappa = tribo_slope_of(c, i) * v;
     const int side = p->at[k] == AT_UPPER ? 1 : -1, shifted = ctx->set.law->relaxes && side * kappa >= 0.0;
     const int moves = shifted && 0.5 * fabs(kappa) < c->limit[i], across = shifted && !moves;
     const double wider = dlimit + product(tribo_limit_rate(ctx, i, v), dv), change = (across ? -side : side) * wider;
-    const double turned = product(product(tribo_slope_rate_of(c, i), v), dlimit);
-    return moves ? change - product(relaxation_rate(ctx, i), dv) - turned : change;
+    return moves ? change - product(relaxation_rate(ctx, i), dv) - relaxation_turn(ctx, i, dlimit) : change;
 }
 
-/* df = R^-1 (-rhs) over the free contacts, the least in norm; df of the others is given, and rhs holds what they do not. */
+/* df = R^-1 (-rhs) over the free contacts, the least in norm; df of the others is given. */
 static void follow_free(struct box_qp *p, size_t vectors, const double *rhs, double *df)
 {
     const size_t rank = p->sets->rank, all = rank + p->sets->dependents;
@@ -57,7 +69,7 @@ static void follow_free(struct box_qp *p, size_t vectors, const double *rhs, dou
     for (size_t k = 0; k < all; k++) {
         df[p->order[k]] = 0.0;
     }
-    /* the second pass takes away what rounding left; of a graded group it would see nothing but the rounding of df */
+    /* The second pass removes rounding errors; in a graded group it would find those of df only. */
     for (int pass = 0; pass < (p->group->graded ? 1 : 2); pass++) {
         for (size_t k = 0; k < all; k++) {
             const size_t i = p->order[k];
@@ -75,76 +87,72 @@ static void follow_free(struct box_qp *p, size_t vectors, const double *rhs, dou
     }
 }
 
-/* df [size] of a group that was solved for, from dv and da [size], all by place; and from the limits that d changes. */
-static void group_product(const tribo_context *ctx, struct box_qp *p, size_t vectors, const double *dv, const double *da,
-                          const struct change *d, double *df)
+/* Sets gradient [size] of a solved group to df for the changes lo (of v) and hi (of a), all by place, and d->limit. */
+static void group_product(const tribo_context *ctx, struct box_qp *p, size_t vectors, const struct change *d)
 {
     const int partition = ctx->set.coupling == TRIBO_PARTITION;
-    p->far = 1; /* derivatives may be anything */
     const size_t *member = p->member, size = p->group->size;
-    double *rhs = p->noise;
+    const double *dv = p->lo, *da = p->hi;
+    double *df = p->gradient, *rhs = p->noise;
+    p->far = 1; /* derivatives are of any size */
     for (size_t k = 0; k < size; k++) {
         const size_t i = member[k];
         const double r = ctx->op->diagonal[i], most = TRIBO_ROOM * tribo_most(p, k),
                      pull = TRIBO_ROOM * TRIBO_FAR * lesser(r, 1.0);
         const double dlimit = tribo_limit_change(ctx, d, i);
-        df[k] = p->at[k] == FREE ? 0.0 : clamp(own_change(ctx, p, k, i, dv[k], dlimit), -most, most);
+        df[k] = p->at[k] == FREE ? 0.0 : clamp(own_change(ctx, p, k, dv[k], dlimit), -most, most);
         rhs[k] = clamp(da[k], -pull, pull);
         if (!partition && ctx->set.law->relaxes) {
-            const double turned = product(product(tribo_slope_rate_of(&ctx->follow.contacts, i), ctx->last.v[i]), dlimit);
-            rhs[k] += r * clamp(product(relaxation_rate(ctx, i), dv[k]) + turned, -most, most);
+            rhs[k] += r * clamp(product(relaxation_rate(ctx, i), dv[k]) + relaxation_turn(ctx, i, dlimit), -most, most);
         }
     }
     follow_free(p, vectors, rhs, df);
     if (partition) {
         for (size_t k = 0; k < size; k++) {
-            const struct tangent *law = &ctx->last.tangent[member[k]];
-            const double own = product(law->dv, dv[k]) + product(law->dlimit, tribo_limit_change(ctx, d, member[k]));
-            df[k] = p->at[k] == FREE ? law->dfeq * df[k] + own : df[k];
+            const size_t i = member[k];
+            const double own = law_change(ctx, i, dv[k], tribo_limit_change(ctx, d, i));
+            df[k] = p->at[k] == FREE ? ctx->last.tangent[i].dfeq * df[k] + own : df[k];
         }
     } else if (ctx->set.law->remembers) {
-        /* the forces so far are those that f_eq balances; the law itself has another derivative where f_eq is beyond the limit */
+        /* So far forces are those that f_eq balances; the law has another derivative where |f_eq| exceeds the limit. */
         memcpy(p->step, df, size * sizeof *df);
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
-            const struct tangent *law = &ctx->last.tangent[i];
             const double r = ctx->op->diagonal[i], sum = divisible(da[k], r) + tribo_row_others(p, k, p->step);
-            const double own = product(law->dv, dv[k]) + product(law->dlimit, tribo_limit_change(ctx, d, i));
-            df[k] = own - (ctx->last.did.of[i] == STORED ? law->dfeq * quotient(sum, r) : 0.0);
+            const double own = law_change(ctx, i, dv[k], tribo_limit_change(ctx, d, i));
+            df[k] = own - (ctx->last.did.of[i] == STORED ? ctx->last.tangent[i].dfeq * quotient(sum, r) : 0.0);
         }
     }
 }
 
-/* Contacts for which nothing was solved. Where friction moves nothing, the force jumps as a changes its sign. */
+/* Returns df of a contact in no solved group. Where friction moves nothing, the force jumps as a changes its sign. */
 static double alone_product(const tribo_context *ctx, size_t i, double dv, double da, double dlimit)
 {
-    const struct tangent *d = &ctx->last.tangent[i];
     const double r = ctx->op->diagonal[i];
     const int balanced = !ctx->op->groups || ctx->op->group_of[i] == TRIBO_ALONE;
     const int follows = balanced && ctx->follow.contacts.limit[i] > 0.0 && r > TRIBO_IMMOVABLE;
-    return product(d->dv, dv) + product(d->dlimit, dlimit) - (follows ? quotient(product(d->dfeq, da), r) : 0.0);
+    return law_change(ctx, i, dv, dlimit) - (follows ? quotient(product(ctx->last.tangent[i].dfeq, da), r) : 0.0);
 }
 
+/* Columns of the contacts of a solved group, in df_dv and df_da, each of which may be NULL. */
 static void solved_columns(tribo_context *ctx, struct box_qp *p, double *df_dv, double *df_da)
 {
-    const size_t *member = p->member, size = p->group->size;
-    const size_t vectors = tribo_null_basis(p);
+    const size_t *member = p->member, size = p->group->size, vectors = tribo_null_basis(p);
     const struct change none = {NULL, NULL, NULL};
-    double *zero = p->lo, *unit = p->hi, *df = p->gradient;
-    memset(zero, 0, size * sizeof *zero);
-    memset(unit, 0, size * sizeof *unit);
+    memset(p->lo, 0, size * sizeof *p->lo);
+    memset(p->hi, 0, size * sizeof *p->hi);
     for (size_t c = 0; c < size; c++) {
-        unit[c] = 1.0;
         for (int by_v = 0; by_v < 2; by_v++) {
-            double *out = by_v ? df_dv : df_da;
+            double *out = by_v ? df_dv : df_da, *unit = by_v ? p->lo : p->hi;
+            unit[c] = 1.0;
             if (out) {
-                group_product(ctx, p, vectors, by_v ? unit : zero, by_v ? zero : unit, &none, df);
-                for (size_t k = 0; k < size; k++) {
-                    out[member[k] * ctx->n + member[c]] = df[k];
-                }
+                group_product(ctx, p, vectors, &none);
             }
+            for (size_t k = 0; out && k < size; k++) {
+                out[member[k] * ctx->n + member[c]] = p->gradient[k];
+            }
+            unit[c] = 0.0;
         }
-        unit[c] = 0.0;
     }
 }
 
@@ -159,29 +167,26 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
     linearize_laws(ctx, v, a);
     for (int by_v = 0; by_v < 2; by_v++) {
         double *out = by_v ? df_dv : df_da;
-        if (out) {
-            for (size_t k = 0; k < n * n; k++) {
-                out[k] = 0.0;
-            }
-            for (size_t i = 0; i < n; i++) {
-                out[i * n + i] = alone_product(ctx, i, by_v ? 1.0 : 0.0, by_v ? 0.0 : 1.0, 0.0);
-            }
+        for (size_t k = 0; out && k < n * n; k++) {
+            out[k] = 0.0;
+        }
+        for (size_t i = 0; out && i < n; i++) {
+            out[i * n + i] = alone_product(ctx, i, by_v ? 1.0 : 0.0, by_v ? 0.0 : 1.0, 0.0);
         }
     }
     for (size_t k = 0; (df_dv || df_da) && k < ctx->memory.nsolved; k++) {
         solved_columns(ctx, tribo_collect(ctx, ctx->memory.solved_list[k]), df_dv, df_da);
     }
-    if (ctx->planar) {
-        tribo_planar_columns(ctx, df_dv, df_da);
-    }
+    tribo_clusters_columns(ctx, df_dv, df_da);
     return TRIBO_OK;
 }
 
-/* df [n] of all contacts. */
+/* df [n] of all contacts; a status. */
 static int tangent_product_of(tribo_context *ctx, const struct change *d, double *df)
 {
-    if (!df && ctx->n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "df is NULL");
+    const int status = tribo_check_output(ctx, "df", df);
+    if (status) {
+        return status;
     }
     if (!ctx->last.linearized) {
         return tribo_fail(ctx, TRIBO_ERR_STATE, "no tribo_balance_tangent since the last balance or change");
@@ -191,38 +196,30 @@ static int tangent_product_of(tribo_context *ctx, const struct change *d, double
     }
     for (size_t g = 0; g < ctx->memory.nsolved; g++) {
         struct box_qp *p = tribo_collect(ctx, ctx->memory.solved_list[g]);
-        const size_t *member = p->member, size = p->group->size;
-        for (size_t k = 0; k < size; k++) {
-            p->lo[k] = tribo_entry(d->v, member[k]);
-            p->hi[k] = tribo_entry(d->a, member[k]);
+        for (size_t k = 0; k < p->group->size; k++) {
+            p->lo[k] = tribo_entry(d->v, p->member[k]);
+            p->hi[k] = tribo_entry(d->a, p->member[k]);
         }
-        group_product(ctx, p, tribo_null_basis(p), p->lo, p->hi, d, p->gradient);
-        for (size_t k = 0; k < size; k++) {
-            df[member[k]] = p->gradient[k];
+        group_product(ctx, p, tribo_null_basis(p), d);
+        for (size_t k = 0; k < p->group->size; k++) {
+            df[p->member[k]] = p->gradient[k];
         }
     }
-    if (ctx->planar) {
-        tribo_planar_product(ctx, d, df);
-    }
+    tribo_clusters_product(ctx, d, df);
     return TRIBO_OK;
 }
 
 int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da, double *df)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    int status = dv ? tribo_check_finite(ctx, "dv", dv, ctx->n) : TRIBO_OK;
+    int status = ctx ? TRIBO_OK : TRIBO_ERR_NULL;
+    status = status || !dv ? status : tribo_check_finite(ctx, "dv", dv, ctx->n);
     status = status || !da ? status : tribo_check_finite(ctx, "da", da, ctx->n);
     return status ? status : tangent_product_of(ctx, &(struct change){dv, da, NULL}, df);
 }
 
 int tribo_limit_product(tribo_context *ctx, const double *dlimit, double *df)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    int status = tribo_check_finite(ctx, "dlimit", dlimit, ctx->n);
+    int status = ctx ? tribo_check_finite(ctx, "dlimit", dlimit, ctx->n) : TRIBO_ERR_NULL;
     status = status ? status : tribo_refuse_static(ctx, "tribo_limit_product knows no");
     return status ? status : tangent_product_of(ctx, &(struct change){NULL, NULL, dlimit}, df);
 }

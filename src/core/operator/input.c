@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/context.h"
+#include "core/check.h"
+#include "core/clusters.h"
 #include "numerics/csr.h"
 
 /* Entries (i,j) and (j,i) may differ by rounding of whoever computed them. */
@@ -58,20 +59,17 @@ static int input_out_of_memory(tribo_context *ctx)
     return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for an operator of %zu contact%s", ctx->n, plural(ctx->n));
 }
 
-/* The new operator is right: it takes the old one's place, and its memory that of the old one's, if there is room for what it
- * makes of planar contacts. */
+/* Replaces the operator and its memory; if there is no memory for clusters of op, the old ones stay. */
 static int install(tribo_context *ctx, struct delassus *op, struct memory *m)
 {
-    struct planar *planar;
-    struct plane plane;
-    const int status = tribo_planar_prepare(ctx, ctx->planar ? ctx->planar->count : 0, ctx->planar ? ctx->planar->first : NULL,
-                                            op, m, &planar, &plane);
+    struct clusters c;
+    const int status = tribo_clusters_prepare(ctx, tribo_plane_count(ctx), tribo_plane_first(ctx), op, m, &c);
     if (status) {
         tribo_operator_release(op);
         tribo_memory_free(m);
         return status;
     }
-    tribo_planar_install(ctx, planar, &plane);
+    tribo_clusters_install(ctx, &c);
     m->problem.work.factorizations += ctx->memory.problem.work.factorizations;
     m->problem.work.updates += ctx->memory.problem.work.updates;
     tribo_operator_release(ctx->op);

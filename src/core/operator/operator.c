@@ -24,21 +24,15 @@
 #define GRADED_MOST 1e18
 #define GRADED_MOST_LARGE 1e10
 
-#if defined(TRIBO_GNU_C)
-#define COUNT(references, change) __atomic_add_fetch(&(references), (change), __ATOMIC_ACQ_REL)
-#else
-#define COUNT(references, change) ((references) += (change))
-#endif
-
 struct delassus *tribo_operator_share(struct delassus *op)
 {
-    COUNT(op->references, (size_t)1);
+    TRIBO_SHARED_ADD(op->references, (size_t)1);
     return op;
 }
 
 void tribo_operator_release(struct delassus *op)
 {
-    if (!op || COUNT(op->references, SIZE_MAX) > 0) { /* one less */
+    if (!op || TRIBO_SHARED_ADD(op->references, SIZE_MAX) > 0) { /* one less */
         return;
     }
     for (size_t k = 0; op->group && k < op->groups; k++) {

@@ -1,27 +1,13 @@
-/* Life of planar contacts: clusters are made whenever operator or contacts change. */
+/* Life and settings of planar contacts. Clusters are made anew whenever operator or contacts change. */
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/context.h"
+#include "core/static.h"
 #include "numerics/union_find.h"
+#include "parts.h"
 
-#if defined(TRIBO_GNU_C)
-#define COUNT(references, change) __atomic_add_fetch(&(references), (change), __ATOMIC_ACQ_REL)
-#else
-#define COUNT(references, change) ((references) += (change))
-#endif
-
-struct planar *tribo_planar_share(struct planar *planar)
+static void release(struct planar *planar)
 {
-    if (planar) {
-        COUNT(planar->references, (size_t)1);
-    }
-    return planar;
-}
-
-void tribo_planar_release(struct planar *planar)
-{
-    if (!planar || COUNT(planar->references, SIZE_MAX) > 0) { /* one less */
+    if (!planar || TRIBO_SHARED_ADD(planar->references, SIZE_MAX) > 0) { /* one less */
         return;
     }
     free(planar->first);
@@ -34,7 +20,8 @@ void tribo_planar_release(struct planar *planar)
     free(planar);
 }
 
-int tribo_plane_create(struct plane *plane, const struct planar *planar, size_t n)
+/* Returns 1, or 0 if out of memory: then tribo_plane_free still applies. */
+static int plane_create(struct plane *plane, const struct planar *planar, size_t n)
 {
     enum { VECTORS = 10 };
     *plane = (struct plane){0};
@@ -55,7 +42,7 @@ int tribo_plane_create(struct plane *plane, const struct planar *planar, size_t 
     return plane->near && plane->y && plane->directions && tribo_disc_create(&plane->problem, planar->largest);
 }
 
-void tribo_plane_free(struct plane *plane)
+static void plane_free(struct plane *plane)
 {
     if (plane->near && plane->y && plane->directions) {
         tribo_disc_free(&plane->problem);
@@ -65,14 +52,37 @@ void tribo_plane_free(struct plane *plane)
     free(plane->y);
 }
 
-/* -------------------------------------------------------------------------------------------------------- clusters */
-
-/* parent [n] = the first direction of each one's cluster. Returns how many islands are left. */
-static size_t find_parents(const struct planar *c, const struct delassus *op, size_t n, size_t *parent)
+int tribo_clusters_clone(tribo_context *clone, const tribo_context *from)
 {
-    size_t islands = 0;
+    const size_t n = from->planar ? from->n : 0;
+    clone->planar = from->planar;
+    if (clone->planar) {
+        TRIBO_SHARED_ADD(clone->planar->references, (size_t)1);
+    }
+    const int done = plane_create(&clone->plane, clone->planar, n);
+    if (done) {
+        tribo_copy(clone->plane.y, from->plane.y, n);
+        tribo_copy(clone->plane.radius, from->plane.radius, n);
+    }
+    return done;
+}
+
+void tribo_clusters_free(tribo_context *ctx)
+{
+    release(ctx->planar);
+    plane_free(&ctx->plane);
+}
+
+/* --------------------------------------------------------------------------------------------------------- clusters */
+
+/* Sets islands, clusters and their members. label [n] = the cluster of a direction, or SIZE_MAX; place [n] = its place there;
+ * parent [n] is workspace. */
+static void find_members(struct planar *c, const struct delassus *op, size_t n, size_t *label, size_t *place, size_t *parent)
+{
+    size_t members = 0, entries = 0;
     for (size_t i = 0; i < n; i++) {
         parent[i] = i;
+        label[i] = SIZE_MAX;
     }
     for (size_t g = 0; g < op->groups; g++) {
         const size_t *member = op->member + op->group[g].first;
@@ -83,29 +93,14 @@ static size_t find_parents(const struct planar *c, const struct delassus *op, si
     for (size_t k = 0; k < c->count; k++) {
         tribo_join(parent, c->first[k], c->first[k] + 1);
     }
-    for (size_t i = 0; i < n; i++) {
-        parent[i] = tribo_root(parent, i);
-        islands += parent[i] == i;
-    }
-    return islands;
-}
-
-/* Members of clusters, cluster by cluster; label [n]: the cluster of a direction, or clusters if it is in none. place [n]. */
-static void find_members(struct planar *c, size_t n, const size_t *parent, size_t *label, size_t *place)
-{
-    size_t members = 0, entries = 0;
-    for (size_t i = 0; i < n; i++) {
-        label[i] = SIZE_MAX;
-    }
     for (size_t k = 0; k < c->count; k++) {
-        size_t *of = &label[parent[c->first[k]]];
+        size_t *of = &label[tribo_root(parent, c->first[k])];
         *of = *of == SIZE_MAX ? c->clusters++ : *of;
     }
     for (size_t i = 0; i < n; i++) {
-        label[i] = label[parent[i]];
-        if (label[i] != SIZE_MAX) {
-            place[i] = c->cluster[label[i]].size++;
-        }
+        c->islands += tribo_root(parent, i) == i;
+        label[i] = label[tribo_root(parent, i)];
+        place[i] = label[i] != SIZE_MAX ? c->cluster[label[i]].size++ : 0;
     }
     for (size_t k = 0; k < c->clusters; k++) {
         struct cluster *g = &c->cluster[k];
@@ -122,34 +117,33 @@ static void find_members(struct planar *c, size_t n, const size_t *parent, size_
     }
 }
 
-/* Rows of the operator's groups into those of clusters. */
-static void fill_groups(struct planar *c, const struct delassus *op, struct memory *m, const size_t *label, const size_t *place)
+/* Copies rows of the operator's group g to those of the cluster that has its members. */
+static void copy_group(struct planar *c, struct box_qp *p, struct cluster *to, const size_t *place)
 {
-    for (size_t g = 0; g < op->groups; g++) {
-        struct box_qp *p = tribo_memory_problem(op, m, g);
-        const size_t size = p->group->size;
-        if (label[p->member[0]] == SIZE_MAX) {
-            continue;
+    const size_t size = p->group->size;
+    double *unit = p->step, ignored;
+    to->redundant |= p->group->nullity > 0;
+    memset(unit, 0, size * sizeof *unit);
+    for (size_t j = 0; j < size; j++) {
+        unit[j] = 1.0;
+        for (size_t i = 0; i < size; i++) {
+            c->r[to->r + place[p->member[i]] * to->size + place[p->member[j]]] =
+                p->group->sparse ? tribo_row_dot(p, i, unit, &ignored) : p->r[i * size + j];
         }
-        struct cluster *to = &c->cluster[label[p->member[0]]];
-        to->redundant |= p->group->nullity > 0;
-        double *unit = p->step, ignored;
-        memset(unit, 0, size * sizeof *unit);
-        for (size_t j = 0; j < size; j++) {
-            unit[j] = 1.0;
-            for (size_t i = 0; i < size; i++) {
-                c->r[to->r + place[p->member[i]] * to->size + place[p->member[j]]] =
-                    p->group->sparse ? tribo_row_dot(p, i, unit, &ignored) : p->r[i * size + j];
-            }
-            unit[j] = 0.0;
-        }
+        unit[j] = 0.0;
     }
 }
 
-static void planar_fill_rows(struct planar *c, const struct delassus *op, struct memory *m, size_t n, const size_t *label,
-                             const size_t *place)
+/* Sets R of all clusters, group_of and own. */
+static void fill_clusters(struct planar *c, const struct delassus *op, struct memory *m, size_t n, const size_t *label,
+                      const size_t *place)
 {
-    fill_groups(c, op, m, label, place);
+    for (size_t g = 0; g < op->groups; g++) {
+        struct box_qp *p = tribo_memory_problem(op, m, g);
+        if (label[p->member[0]] != SIZE_MAX) {
+            copy_group(c, p, &c->cluster[label[p->member[0]]], place);
+        }
+    }
     for (size_t i = 0; i < n; i++) {
         c->group_of[i] = op->groups && label[i] == SIZE_MAX ? op->group_of[i] : TRIBO_ALONE;
         if (label[i] != SIZE_MAX) {
@@ -160,14 +154,15 @@ static void planar_fill_rows(struct planar *c, const struct delassus *op, struct
     for (size_t k = 0; k < c->count; k++) {
         const size_t i = c->first[k];
         const struct cluster *g = &c->cluster[label[i]];
-        const double *row = c->r + g->r + place[i] * g->size + place[i];
+        const double *row = c->r + g->r + place[i] * (g->size + 1);
         c->own[k][0] = row[0];
         c->own[k][1] = row[1];
         c->own[k][2] = row[g->size + 1];
     }
 }
 
-static int find_clusters(struct planar *c, size_t n, const struct delassus *op, struct memory *m, size_t *flaw)
+/* Makes clusters for the operator op and its memory m; a status. */
+static int find_clusters(struct planar *c, size_t n, const struct delassus *op, struct memory *m)
 {
     size_t *work = malloc((3 * n + 1) * sizeof *work), entries = 0;
     int status = TRIBO_ERR_MEMORY;
@@ -175,9 +170,7 @@ static int find_clusters(struct planar *c, size_t n, const struct delassus *op, 
     c->member = malloc(n * sizeof *c->member);
     c->group_of = malloc(n * sizeof *c->group_of);
     if (work && c->cluster && c->member && c->group_of) {
-        c->islands = find_parents(c, op, n, work);
-        find_members(c, n, work, work + n, work + 2 * n);
-        *flaw = c->largest;
+        find_members(c, op, n, work, work + n, work + 2 * n);
         status = c->largest > TRIBO_CLUSTER_MOST ? TRIBO_ERR_UNSUPPORTED : TRIBO_OK;
     }
     for (size_t k = 0; !status && k < c->clusters; k++) {
@@ -185,47 +178,127 @@ static int find_clusters(struct planar *c, size_t n, const struct delassus *op, 
     }
     c->r = status ? NULL : calloc(entries, sizeof *c->r);
     if (c->r) {
-        planar_fill_rows(c, op, m, n, work + n, work + 2 * n);
+        fill_clusters(c, op, m, n, work, work + n);
     }
     free(work);
     return status || c->r ? status : TRIBO_ERR_MEMORY;
 }
 
-/* Planar contacts of n directions, with the clusters that op makes of them, if op has an operator; m is what goes with op. A
- * status; *flaw is the size of a cluster that is too large. */
-static int create_planar(struct planar **planar, size_t n, size_t count, const size_t *first, const struct delassus *op,
-                         struct memory *m, size_t *flaw)
+/* Makes count planar contacts of n directions, with clusters if op has an operator; a status. *planar is to be released. */
+static int planar_create(struct planar **planar, size_t n, size_t count, const size_t *first, const struct delassus *op,
+                         struct memory *m)
 {
-    struct planar *c = calloc(1, sizeof *c);
-    int status = TRIBO_ERR_MEMORY;
-    *planar = NULL;
-    if (c) {
-        c->references = 1;
-        c->count = count;
-        c->first = malloc(count * sizeof *c->first);
-        c->role = calloc(n, 1);
-        c->own = calloc(count, sizeof *c->own);
+    struct planar *c = *planar = calloc(1, sizeof *c);
+    if (!c) {
+        return TRIBO_ERR_MEMORY;
     }
-    if (c && c->first && c->role && c->own) {
-        memcpy(c->first, first, count * sizeof *first);
-        for (size_t k = 0; k < count; k++) {
-            c->role[first[k]] = ROLE_FIRST;
-            c->role[first[k] + 1] = ROLE_SECOND;
-            c->own[k][0] = c->own[k][2] = 1.0;
+    c->references = 1;
+    c->count = count;
+    c->first = malloc(count * sizeof *c->first);
+    c->role = calloc(n, 1);
+    c->own = calloc(count, sizeof *c->own);
+    if (!c->first || !c->role || !c->own) {
+        return TRIBO_ERR_MEMORY;
+    }
+    memcpy(c->first, first, count * sizeof *first);
+    for (size_t k = 0; k < count; k++) {
+        c->role[first[k]] = ROLE_FIRST;
+        c->role[first[k] + 1] = ROLE_SECOND;
+        c->own[k][0] = c->own[k][2] = 1.0;
+    }
+    return op->diagonal ? find_clusters(c, n, op, m) : TRIBO_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------------- settings */
+
+/* Light bodies between heavy ones come out right to this ratio in doubles, which clusters use. */
+#define SPREAD_MOST 1e10
+
+static int check_spread(tribo_context *ctx, const struct planar *c, const struct delassus *op)
+{
+    for (size_t k = 0; op->diagonal && k < op->groups; k++) {
+        const struct group *g = &op->group[k];
+        if (g->graded && g->spread > SPREAD_MOST && c->group_of[op->member[g->first]] == TRIBO_ALONE) {
+            return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
+                              "contact %zu touches bodies of which one is %g times as heavy as the other, and in a group with "
+                              "planar contacts not more than %g can be told",
+                              g->uneven, g->spread, SPREAD_MOST);
         }
-        status = op->diagonal ? find_clusters(c, n, op, m, flaw) : TRIBO_OK;
+    }
+    return TRIBO_OK;
+}
+
+static int out_of_memory(tribo_context *ctx, size_t count)
+{
+    return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s in the plane", count, plural(count));
+}
+
+int tribo_clusters_prepare(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m,
+                           struct clusters *c)
+{
+    *c = (struct clusters){0};
+    int status = count ? planar_create(&c->planar, ctx->n, count, first, op, m) : TRIBO_OK;
+    if (status == TRIBO_ERR_UNSUPPORTED) {
+        const size_t large = c->planar->largest;
+        tribo_fail(ctx, status, "planar contacts couple %zu direction%s with each other, and not more than %d can be", large,
+                   plural(large), TRIBO_CLUSTER_MOST);
+    } else if (status || !plane_create(&c->plane, c->planar, ctx->n)) {
+        status = out_of_memory(ctx, count);
+    } else if (c->planar) {
+        status = check_spread(ctx, c->planar, op);
     }
     if (status) {
-        tribo_planar_release(c);
-    } else {
-        *planar = c;
+        plane_free(&c->plane);
+        release(c->planar);
     }
     return status;
 }
 
-/* ------------------------------------------------------------------------------------------------------- settings */
+void tribo_clusters_install(tribo_context *ctx, const struct clusters *c)
+{
+    tribo_clusters_free(ctx);
+    ctx->planar = c->planar;
+    ctx->plane = c->plane;
+}
 
-/* owner [n] is workspace. */
+int tribo_clusters_copy(tribo_context *ctx, const tribo_context *from)
+{
+    const size_t count = tribo_plane_count(from), *first = tribo_plane_first(from);
+    struct clusters c;
+    if (count == tribo_plane_count(ctx) && (!count || memcmp(first, ctx->planar->first, count * sizeof *first) == 0)) {
+        return TRIBO_OK;
+    }
+    const int status = tribo_clusters_prepare(ctx, count, first, ctx->op, &ctx->memory, &c);
+    if (!status) {
+        tribo_clusters_install(ctx, &c);
+    }
+    return status;
+}
+
+/* A planar contact has one epsilon for all directions: for R_ii stands the largest eigenvalue of its block. */
+void tribo_clusters_refresh(tribo_context *ctx, int follows, double time)
+{
+    if (ctx->planar && ctx->op->diagonal) {
+        ctx->group_of = ctx->planar->group_of;
+    }
+    for (size_t k = 0; follows && k < tribo_plane_count(ctx); k++) {
+        const double largest = tribo_block_of(ctx->planar->own[k]).great, half = greater(product(largest, time), DBL_MIN);
+        for (size_t i = ctx->planar->first[k]; i < ctx->planar->first[k] + 2; i++) {
+            ctx->set.width[i] = 2.0 * half;
+            ctx->set.rate[i] = largest > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
+        }
+    }
+}
+
+int tribo_plane_check_coupling(tribo_context *ctx, int coupling, size_t count, const size_t *first)
+{
+    return count && coupling == TRIBO_PARTITION
+               ? tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "the partition coupling knows no planar contacts, and contact %zu is one",
+                            first[0])
+               : TRIBO_OK;
+}
+
+/* Checks that first [count] are pairs of contacts, none in two of them; owner [n] is workspace. */
 static int check_first(tribo_context *ctx, size_t count, const size_t *first, size_t *owner)
 {
     for (size_t i = 0; i < ctx->n; i++) {
@@ -248,56 +321,6 @@ static int check_first(tribo_context *ctx, size_t count, const size_t *first, si
     return TRIBO_OK;
 }
 
-/* In ordinary digits, light bodies between heavy ones come out right to this ratio. */
-#define SPREAD_MOST 1e10
-
-/* Clusters have no more digits. */
-static int check_spread(tribo_context *ctx, const struct planar *c, const struct delassus *op)
-{
-    for (size_t k = 0; op->diagonal && k < op->groups; k++) {
-        const struct group *g = &op->group[k];
-        if (g->graded && g->spread > SPREAD_MOST && c->group_of[op->member[g->first]] == TRIBO_ALONE) {
-            return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
-                              "contact %zu touches bodies of which one is %g times as heavy as the other, and in a group with "
-                              "planar contacts not more than %g can be told",
-                              g->uneven, g->spread, SPREAD_MOST);
-        }
-    }
-    return TRIBO_OK;
-}
-
-int tribo_planar_prepare(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m,
-                         struct planar **planar, struct plane *plane)
-{
-    size_t large = 0;
-    *planar = NULL;
-    *plane = (struct plane){0};
-    int status = count ? create_planar(planar, ctx->n, count, first, op, m, &large) : TRIBO_OK;
-    if (status == TRIBO_ERR_UNSUPPORTED) {
-        return tribo_fail(ctx, status, "planar contacts couple %zu direction%s with each other, and not more than %d can be",
-                          large, plural(large), TRIBO_CLUSTER_MOST);
-    }
-    if (status || !tribo_plane_create(plane, *planar, ctx->n)) {
-        tribo_plane_free(plane);
-        tribo_planar_release(*planar);
-        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s in the plane", count, plural(count));
-    }
-    status = *planar ? check_spread(ctx, *planar, op) : TRIBO_OK;
-    if (status) {
-        tribo_plane_free(plane);
-        tribo_planar_release(*planar);
-    }
-    return status;
-}
-
-void tribo_planar_install(tribo_context *ctx, struct planar *planar, const struct plane *plane)
-{
-    tribo_planar_release(ctx->planar);
-    tribo_plane_free(&ctx->plane);
-    ctx->planar = planar;
-    ctx->plane = *plane;
-}
-
 int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
 {
     if (!ctx) {
@@ -306,28 +329,21 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
     if (!first && count) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "first is NULL");
     }
-    if (count && ctx->set.coupling == TRIBO_PARTITION) {
-        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "the partition coupling knows no planar contacts, and contact %zu is one",
-                          first[0]);
-    }
-    if (!count && !ctx->planar) {
-        return TRIBO_OK;
+    int status = tribo_plane_check_coupling(ctx, ctx->set.coupling, count, first);
+    if (status || (!count && !ctx->planar)) {
+        return status;
     }
     size_t *owner = malloc((ctx->n + 1) * sizeof *owner);
-    if (!owner) {
-        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s in the plane", count, plural(count));
-    }
-    struct planar *planar;
-    struct plane plane;
-    int status = check_first(ctx, count, first, owner);
+    struct clusters c;
+    status = owner ? check_first(ctx, count, first, owner) : out_of_memory(ctx, count);
     free(owner);
     if (!status && ctx->set.breaking) {
         status = tribo_check_one_ratio(ctx, ctx->set.ratio, ctx->set.stribeck, count, first);
     }
-    status = status ? status : tribo_planar_prepare(ctx, count, first, ctx->op, &ctx->memory, &planar, &plane);
+    status = status ? status : tribo_clusters_prepare(ctx, count, first, ctx->op, &ctx->memory, &c);
     if (!status) {
         tribo_write_slips(ctx);
-        tribo_planar_install(ctx, planar, &plane); /* NOLINT(clang-analyzer-unix.Malloc): tribo_fail does not return 0 */
+        tribo_clusters_install(ctx, &c); /* NOLINT(clang-analyzer-unix.Malloc): tribo_fail does not return 0 */
         tribo_refresh(ctx);
     }
     return status;

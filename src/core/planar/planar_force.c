@@ -1,22 +1,20 @@
-/* Forces of planar contacts, and of the scalar ones that R couples them with.
+/* Forces of planar contacts, and of the scalar ones that R couples with them.
  *
- * In units of its limits, y = f/limit, a planar contact slides with y = -n, n being the direction of limit v. Near stick
- * y is in the lens D ∩ (D - c), D being the unit disc and c = 2 |v|/epsilon n, which is kappa in these units; and y minimizes
- * 1/2 y'Sy + pull'y over the lenses and intervals of its cluster, S = limit R limit. Limits that differ make an ellipse: its
- * longer way to the edge of the band, limit epsilon, holds for both directions, so that c points along limit v, as f does where
- * it slides.
+ * In units of its limits, y = f/limit, a planar contact slides with y = -n, n being the direction of limit v. Near stick y is in
+ * the lens D ∩ (D - c), D being the unit disc and c = 2 |v|/epsilon n, which is kappa in these units; and y minimizes
+ * 1/2 y'Sy + pull'y over the lenses and intervals of its cluster, S = limit R limit. Limits that differ make an ellipse: its longer
+ * way to the edge of the band, limit epsilon, holds for both directions, so that c points along limit v, as f does where it slides.
  *
- * Force and R come in any units: in S limits and R are parts of the largest ones near stick in the cluster. A limit that is far
- * beyond the force stands back for a reach that is not, see planar_reach.c; c is then kappa/reach. */
-#include <float.h>
-#include <string.h>
+ * In S, limits and R are parts of the largest ones near stick in the cluster. A reach stands in for a limit that is far beyond the
+ * force, see planar_reach.c; c is then kappa/reach. */
+#include "core/check.h"
+#include "core/static.h"
+#include "parts.h"
 
-#include "core/context.h"
+/* ---------------------------------------------------------------------------------------------------------- problems */
 
-/* --------------------------------------------------------------------------------------------------------- clusters */
-
-/* Takes the direction at place k into the problem; directions: 1, or of a pair 2 and 0. */
-static void planar_force_take(tribo_context *ctx, size_t k, size_t directions, double shift)
+/* Takes the direction at place k into the problem; directions: 1, or 2 and 0 of a pair. */
+static void take_direction(tribo_context *ctx, size_t k, size_t directions, double shift)
 {
     struct disc_qp *p = &ctx->plane.problem;
     ctx->plane.shift[p->size] = shift;
@@ -24,75 +22,44 @@ static void planar_force_take(tribo_context *ctx, size_t k, size_t directions, d
     ctx->plane.near[p->size++] = k;
 }
 
-/* Takes those directions of the planar contact i, at place k, that have a limit. */
+/* Takes the directions of planar contact i, at place k, that have a limit. */
 static void take_pair(tribo_context *ctx, size_t k, size_t i, const double *shift)
 {
     const double *bound = ctx->follow.contacts.bound + i;
     const int both = bound[0] > 0.0 && bound[1] > 0.0;
     for (size_t d = 0; d < 2; d++) {
         if (bound[d] > 0.0) {
-            planar_force_take(ctx, k + d, both ? 2 - 2 * d : 1, shift[d]);
+            take_direction(ctx, k + d, both ? 2 - 2 * d : 1, shift[d]);
         } else {
             ctx->last.f[i + d] = 0.0;
         }
     }
 }
 
-/* Takes scalar contact i at place k if it is near stick. */
-static void take_scalar(tribo_context *ctx, size_t k, size_t i, double v)
+int tribo_planar_collect(tribo_context *ctx, const struct cluster *g, const double *v)
 {
     const struct law *law = ctx->set.law;
     const struct contacts *c = &ctx->follow.contacts;
-    if (tribo_scalar_near(law, c, i, v)) {
-        planar_force_take(ctx, k, 1, law->relaxes ? 2.0 * quotient(v, tribo_epsilon_of(c, i)) : 0.0);
-    } else if (law->uses_feq && ctx->last.did.of[i] == STORED) {
-        ctx->last.f[i] = sliding(v, c->limit[i]);
-    }
-}
-
-/* Takes the planar contact that begins with direction i if it is near stick, or finds its force. */
-static void take_planar(tribo_context *ctx, size_t k, size_t i, const double *v)
-{
-    const struct slide s = tribo_planar_slide(&ctx->follow.contacts, i, v);
-    const double turn = ctx->set.law->relaxes ? 2.0 * s.speed : 0.0, shift[2] = {turn * s.n[0], turn * s.n[1]};
-    if (!tribo_planar_near(ctx->set.law, &s)) {
-        tribo_planar_slide_force(ctx->set.law, &s, ctx->follow.contacts.limit + i, ctx->last.f + i);
-        return;
-    }
-    take_pair(ctx, k, i, shift);
-}
-
-int tribo_planar_collect(tribo_context *ctx, const struct cluster *g, const double *v)
-{
-    struct disc_qp *p = &ctx->plane.problem;
-    const size_t *member = ctx->planar->member + g->member;
-    p->size = 0;
+    ctx->plane.problem.size = 0;
     for (size_t k = 0; k < g->size; k++) {
-        const size_t i = member[k];
+        const size_t i = ctx->planar->member[g->member + k];
         if (ctx->planar->role[i] == ROLE_FIRST) {
-            take_planar(ctx, k, i, v + i);
+            const struct slide s = tribo_planar_slide(c, i, v + i);
+            const double turn = law->relaxes ? 2.0 * s.speed : 0.0, shift[2] = {turn * s.n[0], turn * s.n[1]};
+            if (tribo_planar_near(law, &s)) {
+                take_pair(ctx, k, i, shift);
+            } else {
+                tribo_planar_slide_force(law, &s, c->limit + i, ctx->last.f + i);
+            }
         } else if (ctx->planar->role[i] == ROLE_SCALAR) {
-            take_scalar(ctx, k, i, v[i]);
+            if (tribo_scalar_near(law, c, i, v[i])) {
+                take_direction(ctx, k, 1, law->relaxes ? 2.0 * quotient(v[i], tribo_epsilon_of(c, i)) : 0.0);
+            } else if (law->uses_feq && ctx->last.did.of[i] == STORED) {
+                ctx->last.f[i] = sliding(v[i], c->limit[i]);
+            }
         }
     }
-    return p->size > 0;
-}
-
-/* What the forces that are given make of a, and a itself: of a cluster's place k. */
-static double pull_of(const tribo_context *ctx, const struct cluster *g, size_t k, double a)
-{
-    const size_t *member = ctx->planar->member + g->member;
-    const double *row = ctx->planar->r + g->r + k * g->size;
-    double sum = cut(a);
-    for (size_t j = 0, e = 0; j < g->size; j++) {
-        if (e < ctx->plane.problem.size && ctx->plane.near[e] == j) {
-            e++;
-        } else if (row[j] != 0.0) {
-            const double bound = ctx->follow.contacts.bound[member[j]];
-            sum += row[j] * clamp(tribo_force_of(ctx, member[j]), -bound, bound);
-        }
-    }
-    return sum;
+    return ctx->plane.problem.size > 0;
 }
 
 struct unit tribo_planar_units(const tribo_context *ctx, const struct cluster *g)
@@ -107,7 +74,7 @@ struct unit tribo_planar_units(const tribo_context *ctx, const struct cluster *g
     return u;
 }
 
-/* Of what pulls harder than anything that friction could do about it, in units of that, only the direction matters. */
+/* Harder pulls, in units of what friction can hold, count by their direction only. */
 #define HARDEST 1e100
 
 void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pull)
@@ -123,7 +90,26 @@ void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pu
     }
 }
 
-/* The problem of forces in parts of their reach, from pull_of. */
+/* plane.pull = R f + a of the problem's directions, with the forces of all others. */
+static void find_pulls(tribo_context *ctx, const struct cluster *g, const double *a)
+{
+    const size_t n = ctx->plane.problem.size, *near = ctx->plane.near, *member = ctx->planar->member + g->member;
+    for (size_t e = 0; e < n; e++) {
+        const double *row = ctx->planar->r + g->r + near[e] * g->size;
+        double sum = cut(a[member[near[e]]]);
+        for (size_t j = 0, other = 0; j < g->size; j++) {
+            const double bound = ctx->follow.contacts.bound[member[j]];
+            if (other < n && near[other] == j) {
+                other++;
+            } else if (row[j] != 0.0) {
+                sum += row[j] * clamp(tribo_force_of(ctx, member[j]), -bound, bound);
+            }
+        }
+        ctx->plane.pull[e] = sum;
+    }
+}
+
+/* Sets the problem of forces in parts of their reach, from plane.pull. */
 static void pose_cluster(tribo_context *ctx, const struct cluster *g)
 {
     struct disc_qp *p = &ctx->plane.problem;
@@ -154,14 +140,6 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
     }
 }
 
-static void find_pulls(tribo_context *ctx, const struct cluster *g, const double *a)
-{
-    for (size_t e = 0; e < ctx->plane.problem.size; e++) {
-        const size_t k = ctx->plane.near[e];
-        ctx->plane.pull[e] = pull_of(ctx, g, k, a[ctx->planar->member[g->member + k]]);
-    }
-}
-
 void tribo_planar_resume(tribo_context *ctx, const struct cluster *g, const double *a)
 {
     find_pulls(ctx, g, a);
@@ -169,13 +147,14 @@ void tribo_planar_resume(tribo_context *ctx, const struct cluster *g, const doub
     pose_cluster(ctx, g);
 }
 
-/* Where forces are far within their reach, distances of this part of it are none. */
+/* Where a force is far within its reach, distances of this part of the reach are 0. */
 #define NEAREST 1e-20
 
-/* Forces that miss their balance by more than this part of a reach are none. */
+/* No forces are found if one misses its balance by more than this part of its reach. */
 #define TOO_FAR 1e-6
 
-static int planar_force_solve(tribo_context *ctx, const struct cluster *g)
+/* Solves the problem as it is set; a status. */
+static int solve_once(tribo_context *ctx, const struct cluster *g)
 {
     struct disc_qp *p = &ctx->plane.problem;
     const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
@@ -202,8 +181,8 @@ static int planar_force_solve(tribo_context *ctx, const struct cluster *g)
     return TRIBO_OK;
 }
 
-/* Until all forces are within their reach; where limits are static, until no contact breaks away. */
-static int solve_all(tribo_context *ctx, const struct cluster *g, double dt, const double *a)
+/* Solves until all forces are within their reach, and no static limit breaks; a status. */
+static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt, const double *a)
 {
     int status;
     do {
@@ -212,7 +191,7 @@ static int solve_all(tribo_context *ctx, const struct cluster *g, double dt, con
         do {
             tribo_planar_arrange(ctx, g);
             pose_cluster(ctx, g);
-            status = planar_force_solve(ctx, g);
+            status = solve_once(ctx, g);
         } while (!status && ctx->plane.cuts && tribo_planar_widen(ctx, g));
     } while (!status && ctx->set.breaking && tribo_planar_break(ctx, g, dt, a));
     ctx->plane.solved++;
@@ -220,47 +199,26 @@ static int solve_all(tribo_context *ctx, const struct cluster *g, double dt, con
     return status;
 }
 
-/* Where planar contacts join islands there are fewer of them; and those that clusters solve for are not skipped. */
+/* Corrects the islands skipped: planar contacts join some, and clusters that are solved are not skipped. */
 static void count_skipped(tribo_context *ctx)
 {
     ctx->count.skipped += ctx->planar->islands;
     ctx->count.skipped -= ctx->op->islands + ctx->plane.solved;
 }
 
-/* The forces of planar contacts are stored, whatever they did. */
-static void store_planar(tribo_context *ctx)
-{
-    struct deeds *did = &ctx->last.did;
-    for (size_t k = 0; k < ctx->planar->count; k++) {
-        for (size_t i = ctx->planar->first[k]; i < ctx->planar->first[k] + 2; i++) {
-            unsigned char *stored = &did->stored[i / TRIBO_CHUNK];
-            did->of[i] = STORED;
-            *stored = *stored == NONE_STORED ? SOME_STORED : *stored;
-        }
-    }
-}
-
 /* ------------------------------------------------------------------------------------------------------------- f_eq */
 
+/* f_eq of the scalar contact at place k. */
 static double scalar_feq(const tribo_context *ctx, const struct cluster *g, size_t k, double a)
 {
     return quotient(-tribo_planar_others(ctx, g, k, k, 1, a), ctx->planar->r[g->r + k * (g->size + 1)]);
 }
 
-static void planar_feq(const tribo_context *ctx, const struct cluster *g, size_t k, const double *a, double *feq)
-{
-    const double *r = ctx->planar->r + g->r + k * (g->size + 1), own[3] = {r[0], r[1], r[g->size + 1]};
-    feq[0] = tribo_planar_others(ctx, g, k, k, 2, a[0]);
-    feq[1] = tribo_planar_others(ctx, g, k + 1, k, 2, a[1]);
-    const struct block block = tribo_block_of(own);
-    tribo_planar_push(&block, feq);
-}
-
-void tribo_planar_feq(tribo_context *ctx, const double *a)
+void tribo_clusters_feq(tribo_context *ctx, const double *a)
 {
     const struct planar *c = ctx->planar;
     const double *limit = ctx->set.limit;
-    for (size_t q = 0; q < c->clusters; q++) {
+    for (size_t q = 0; c && q < c->clusters; q++) {
         const struct cluster *g = &c->cluster[q];
         for (size_t k = 0; k < g->size; k++) {
             const size_t i = c->member[g->member + k];
@@ -268,7 +226,11 @@ void tribo_planar_feq(tribo_context *ctx, const double *a)
             if (c->role[i] == ROLE_SCALAR) {
                 *feq = limit[i] > 0.0 ? scalar_feq(ctx, g, k, a[i]) : 0.0;
             } else if (c->role[i] == ROLE_FIRST && (limit[i] > 0.0 || limit[i + 1] > 0.0)) {
-                planar_feq(ctx, g, k, a + i, feq);
+                const double *r = c->r + g->r + k * (g->size + 1), own[3] = {r[0], r[1], r[g->size + 1]};
+                const struct block block = tribo_block_of(own);
+                feq[0] = tribo_planar_others(ctx, g, k, k, 2, a[i]);
+                feq[1] = tribo_planar_others(ctx, g, k + 1, k, 2, a[i + 1]);
+                tribo_planar_push(&block, feq);
             } else if (c->role[i] == ROLE_FIRST) {
                 feq[0] = feq[1] = 0.0;
             }
@@ -278,11 +240,11 @@ void tribo_planar_feq(tribo_context *ctx, const double *a)
 
 /* ------------------------------------------------------------------------------------------------------------ calls */
 
-/* What the law says to the f_eq of a scalar contact. */
+/* Forces by the law of scalar contacts in the problem, from their f_eq, all of which are found before any force changes. */
 static void scalar_laws(tribo_context *ctx, const struct cluster *g, const double *v, const double *a)
 {
-    const size_t *member = ctx->planar->member + g->member;
-    for (size_t e = 0; ctx->set.law->remembers && e < ctx->plane.problem.size; e++) {
+    const size_t *member = ctx->planar->member + g->member, n = ctx->plane.problem.size;
+    for (size_t e = 0; e < n; e++) {
         const size_t i = member[ctx->plane.near[e]];
         if (ctx->planar->role[i] == ROLE_SCALAR) {
             const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
@@ -290,16 +252,25 @@ static void scalar_laws(tribo_context *ctx, const struct cluster *g, const doubl
             ctx->set.law->force(&c, 1, v + i, ctx->last.feq + i, ctx->plane.v + i);
         }
     }
-    for (size_t e = 0; ctx->set.law->remembers && e < ctx->plane.problem.size; e++) {
+    for (size_t e = 0; e < n; e++) {
         const size_t i = member[ctx->plane.near[e]];
         ctx->last.f[i] = ctx->planar->role[i] == ROLE_SCALAR ? ctx->plane.v[i] : ctx->last.f[i];
     }
 }
 
-int tribo_planar_balance(tribo_context *ctx, const double *v, const double *a)
+int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a)
 {
     int status = TRIBO_OK;
-    store_planar(ctx);
+    if (!ctx->planar) {
+        return status;
+    }
+    for (size_t i = 0; i < ctx->n; i++) {
+        unsigned char *stored = &ctx->last.did.stored[i / TRIBO_CHUNK];
+        if (!tribo_is_scalar(ctx, i)) {
+            ctx->last.did.of[i] = STORED;
+            *stored = *stored == NONE_STORED ? SOME_STORED : *stored;
+        }
+    }
     ctx->plane.solved = 0;
     for (size_t k = 0; !status && k < ctx->planar->clusters; k++) {
         const struct cluster *g = &ctx->planar->cluster[k];
@@ -307,57 +278,137 @@ int tribo_planar_balance(tribo_context *ctx, const double *v, const double *a)
             tribo_planar_hold(ctx, g, v);
         }
         if (tribo_planar_collect(ctx, g, v)) {
-            status = solve_all(ctx, g, 0.0, a);
-            scalar_laws(ctx, g, v, a);
+            status = solve_cluster(ctx, g, 0.0, a);
+            if (ctx->set.law->remembers) {
+                scalar_laws(ctx, g, v, a);
+            }
         }
     }
     count_skipped(ctx);
     return status;
 }
 
-/* All contacts of a cluster whose force is not known. */
-static int collect_free(tribo_context *ctx, const struct cluster *g, const signed char *known)
+int tribo_clusters_step(tribo_context *ctx, double dt, const double *v, const signed char *known)
 {
-    struct disc_qp *p = &ctx->plane.problem;
-    const size_t *member = ctx->planar->member + g->member;
     const double *limit = ctx->set.limit, none[2] = {0.0, 0.0};
-    p->size = 0;
-    for (size_t k = 0; k < g->size; k++) {
-        const size_t i = member[k];
-        const int role = ctx->planar->role[i];
-        if (role == ROLE_FIRST) {
-            take_pair(ctx, k, i, none);
-        } else if (role == ROLE_SCALAR && limit[i] > 0.0 && !(known && known[i])) {
-            planar_force_take(ctx, k, 1, 0.0);
-        }
-    }
-    return p->size > 0;
-}
-
-int tribo_planar_step(tribo_context *ctx, double dt, const double *v, const signed char *known)
-{
     int status = TRIBO_OK;
+    if (!ctx->planar) {
+        return status;
+    }
     ctx->plane.solved = 0;
-    for (size_t k = 0; !status && k < ctx->planar->clusters; k++) {
-        const struct cluster *g = &ctx->planar->cluster[k];
-        const size_t *member = ctx->planar->member + g->member;
-        for (size_t j = 0; j < g->size; j++) {
-            ctx->plane.a[member[j]] = quotient(v[member[j]], dt);
+    for (size_t q = 0; !status && q < ctx->planar->clusters; q++) {
+        const struct cluster *g = &ctx->planar->cluster[q];
+        ctx->plane.problem.size = 0;
+        for (size_t k = 0; k < g->size; k++) {
+            const size_t i = ctx->planar->member[g->member + k];
+            ctx->plane.a[i] = quotient(v[i], dt);
+            if (ctx->planar->role[i] == ROLE_FIRST) {
+                take_pair(ctx, k, i, none);
+            } else if (ctx->planar->role[i] == ROLE_SCALAR && limit[i] > 0.0 && !(known && known[i])) {
+                take_direction(ctx, k, 1, 0.0);
+            }
         }
-        if (collect_free(ctx, g, known)) {
-            status = solve_all(ctx, g, dt, ctx->plane.a);
+        if (ctx->plane.problem.size) {
+            status = solve_cluster(ctx, g, dt, ctx->plane.a);
         }
     }
     count_skipped(ctx);
     return status;
 }
 
-double tribo_planar_feels(const tribo_context *ctx, const struct cluster *g, size_t k, int own)
+void tribo_clusters_feel(const tribo_context *ctx, double *feels)
 {
-    return tribo_planar_others(ctx, g, k, k, own ? 0 : 1, 0.0);
+    const struct planar *c = ctx->planar;
+    for (size_t q = 0; c && q < c->clusters; q++) {
+        const struct cluster *g = &c->cluster[q];
+        for (size_t k = 0; k < g->size; k++) {
+            const size_t i = c->member[g->member + k];
+            if (c->role[i] == ROLE_SCALAR) {
+                feels[i] = tribo_planar_others(ctx, g, k, k, 1, 0.0);
+            }
+        }
+    }
+}
+
+/* Rounding of the length of a force in parts of its limit. */
+#define ROUNDING (8.0 * DBL_EPSILON)
+
+/* 1 if the force of the planar contact at i reaches its limits. */
+static int reaches_limits(const tribo_context *ctx, size_t i)
+{
+    const double *limit = ctx->follow.contacts.limit + i, *f = ctx->last.f + i;
+    const double y[2] = {limit[0] > 0.0 ? quotient(f[0], limit[0]) : 0.0, limit[1] > 0.0 ? quotient(f[1], limit[1]) : 0.0};
+    return tribo_length(2, y) >= ctx->last.holds * (1.0 - ROUNDING);
+}
+
+signed char tribo_plane_slip(const tribo_context *ctx, size_t i)
+{
+    const size_t first = i - (ctx->planar->role[i] == ROLE_SECOND);
+    const int open = !(ctx->follow.contacts.limit[i] > 0.0);
+    return open ? TRIBO_SLIP_OPEN : reaches_limits(ctx, first) ? TRIBO_SLIP_PLANE : TRIBO_SLIP_STUCK;
+}
+
+void tribo_plane_slips(const tribo_context *ctx, signed char *slip)
+{
+    for (size_t i = 0; tribo_plane_count(ctx) && i < ctx->n; i++) {
+        slip[i] = tribo_is_scalar(ctx, i) ? slip[i] : tribo_plane_slip(ctx, i);
+    }
+}
+
+size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const double *vfree, signed char *reverses,
+                           const double **free)
+{
+    const struct planar *c = ctx->planar;
+    size_t changes = 0;
+    *free = vfree;
+    for (size_t q = 0; c && q < c->clusters; q++) {
+        const struct cluster *g = &c->cluster[q];
+        for (size_t k = 0; k < g->size; k++) {
+            const size_t i = c->member[g->member + k];
+            if (c->role[i] == ROLE_FIRST && reaches_limits(ctx, i)) {
+                double forward = 0.0; /* v_end'v */
+                for (size_t d = 0; d < 2; d++) {
+                    const double end = vfree[i + d] + product(tribo_planar_others(ctx, g, k + d, k, 0, 0.0), dt);
+                    forward += product(end, v[i + d]);
+                }
+                reverses[i] = tribo_plane_slip(ctx, i);
+                reverses[i + 1] = tribo_plane_slip(ctx, i + 1);
+                changes += forward > 0.0;
+                if (changes && *free == vfree) {
+                    tribo_copy(ctx->plane.v, vfree, ctx->n);
+                    *free = ctx->plane.v;
+                }
+                for (size_t d = i; forward > 0.0 && d < i + 2; d++) {
+                    ctx->plane.v[d] = v[d] + vfree[d];
+                }
+            }
+        }
+    }
+    return changes;
 }
 
 /* ------------------------------------------------------------------------------------------------ f_eq that is given */
+
+/* 1 if f_eq is beyond the limits. */
+static int is_beyond(const double *limit, const double *feq)
+{
+    double y[2];
+    for (int d = 0; d < 2; d++) {
+        y[d] = limit[d] > 0.0 ? quotient(cut(feq[d]), limit[d]) : 0.0;
+    }
+    return tribo_length(2, y) > 1.0;
+}
+
+void tribo_planar_given(const tribo_context *ctx, size_t k, const double *v, const double *feq, struct given *g)
+{
+    const size_t i = ctx->planar->first[k];
+    g->c = tribo_planar_view(ctx, i, g->limit);
+    g->s = tribo_planar_slide(&g->c, 0, v);
+    g->near = tribo_planar_near(ctx->set.law, &g->s);
+    if (ctx->set.breaking) {
+        tribo_planar_limits(ctx, i, g->near && !is_beyond(g->limit, feq), v, g->limit);
+    }
+}
 
 int tribo_planar_given_near(const tribo_context *ctx, size_t k, const struct given *g, const double *feq, struct disc_alone *x)
 {
@@ -383,9 +434,9 @@ int tribo_planar_given_near(const tribo_context *ctx, size_t k, const struct giv
     return tribo_disc_solve(&x->p);
 }
 
-int tribo_planar_check_feq(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq)
+int tribo_plane_check_feq(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq)
 {
-    for (size_t k = 0; k < ctx->planar->count; k++) {
+    for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
         double limit[2];
         const size_t i = ctx->planar->first[k];
         const struct contacts c = tribo_planar_view(ctx, i, limit);
@@ -399,31 +450,10 @@ int tribo_planar_check_feq(const tribo_context *ctx, tribo_context *note, const 
     return TRIBO_OK;
 }
 
-/* Whether f_eq is beyond the limits. */
-static int beyond(const double *limit, const double *feq)
-{
-    double y[2];
-    for (int d = 0; d < 2; d++) {
-        y[d] = limit[d] > 0.0 ? quotient(cut(feq[d]), limit[d]) : 0.0;
-    }
-    return tribo_length(2, y) > 1.0;
-}
-
-void tribo_planar_given(const tribo_context *ctx, size_t k, const double *v, const double *feq, struct given *g)
-{
-    const size_t i = ctx->planar->first[k];
-    g->c = tribo_planar_view(ctx, i, g->limit);
-    g->s = tribo_planar_slide(&g->c, 0, v);
-    g->near = tribo_planar_near(ctx->set.law, &g->s);
-    if (ctx->set.breaking) {
-        tribo_planar_limits(ctx, i, g->near && !beyond(g->limit, feq), v, g->limit);
-    }
-}
-
-int tribo_planar_force(const tribo_context *ctx, const double *v, const double *feq, double *f)
+int tribo_plane_force(const tribo_context *ctx, const double *v, const double *feq, double *f)
 {
     const double none[2] = {0.0, 0.0};
-    for (size_t k = 0; k < ctx->planar->count; k++) {
+    for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
         const size_t i = ctx->planar->first[k];
         struct given g;
         struct disc_alone x;
@@ -442,41 +472,21 @@ int tribo_planar_force(const tribo_context *ctx, const double *v, const double *
     return TRIBO_OK;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- queries */
-
-signed char tribo_planar_slip(const tribo_context *ctx, size_t k)
+double tribo_plane_rate(const tribo_context *ctx)
 {
-    const size_t i = ctx->planar->first[k];
-    const double *limit = ctx->follow.contacts.limit + i, *f = ctx->last.f + i, rounding = 8.0 * DBL_EPSILON;
-    if (!(limit[0] > 0.0 || limit[1] > 0.0)) {
-        return TRIBO_SLIP_OPEN;
-    }
-    const double y[2] = {limit[0] > 0.0 ? quotient(f[0], limit[0]) : 0.0, limit[1] > 0.0 ? quotient(f[1], limit[1]) : 0.0};
-    return tribo_length(2, y) >= ctx->last.holds * (1.0 - rounding) ? TRIBO_SLIP_PLANE : 0;
-}
-
-void tribo_planar_slips(const tribo_context *ctx, signed char *slip)
-{
-    for (size_t k = 0; k < ctx->planar->count; k++) {
-        const signed char own = tribo_planar_slip(ctx, k);
-        for (size_t i = ctx->planar->first[k]; i < ctx->planar->first[k] + 2; i++) {
-            slip[i] = (signed char)(ctx->follow.contacts.limit[i] > 0.0 ? own : TRIBO_SLIP_OPEN);
+    const double none[2] = {0.0, 0.0};
+    double rate = 0.0;
+    for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
+        double limit[2];
+        const struct contacts c = tribo_planar_view(ctx, ctx->planar->first[k], limit);
+        const double *own = ctx->planar->own[k];
+        const struct slide s = tribo_planar_slide(&c, 0, none);
+        const double weighed[3] = {product(s.part[0], product(s.part[0], own[0])), product(s.part[0], product(s.part[1], own[1])),
+                                   product(s.part[1], product(s.part[1], own[2]))};
+        const double far = s.part[0] == 1.0 ? c.bound[0] : c.bound[1];
+        if (!s.open) {
+            rate = greater(rate, product(2.0 * quotient(far, s.epsilon), tribo_block_of(weighed).great));
         }
     }
-}
-
-double tribo_planar_rate(const tribo_context *ctx, size_t k)
-{
-    double limit[2];
-    const struct contacts c = tribo_planar_view(ctx, ctx->planar->first[k], limit);
-    const double *own = ctx->planar->own[k], none[2] = {0.0, 0.0};
-    const struct slide s = tribo_planar_slide(&c, 0, none);
-    const double far = s.part[0] == 1.0 ? c.bound[0] : c.bound[1];
-    if (s.open) {
-        return 0.0;
-    }
-    const double a = product(s.part[0], product(s.part[0], own[0])), b = product(s.part[0], product(s.part[1], own[1]));
-    const double d = product(s.part[1], product(s.part[1], own[2]));
-    const double turned[2] = {0.5 * a - 0.5 * d, b};
-    return product(2.0 * quotient(far, s.epsilon), 0.5 * a + 0.5 * d + tribo_length(2, turned));
+    return rate;
 }

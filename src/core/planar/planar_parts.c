@@ -1,10 +1,7 @@
-/* What forces of planar contacts are made of: how a contact slides, whether it is near stick, and what its own 2x2 block of R and
- * the forces of others make of a pull. */
-#include <float.h>
+/* What forces of planar contacts are made of: sliding, nearness to stick, the own block of R, forces of others. */
+#include "parts.h"
 
-#include "core/context.h"
-
-/* Lenses of contacts that are nearer to the edge of their band than that have no inside for rounding. */
+/* Contacts nearer to the edge of their band have lenses whose inside is rounding. */
 #define EDGE (1.0 - 16.0 * DBL_EPSILON)
 
 struct slide tribo_planar_slide(const struct contacts *c, size_t i, const double *v)
@@ -24,21 +21,23 @@ struct slide tribo_planar_slide(const struct contacts *c, size_t i, const double
     return s;
 }
 
+/* speed: |v|/epsilon; rests: v = 0. */
+static int is_near(const struct law *law, double speed, int rests)
+{
+    return law->uses_feq && (!law->sticks_in_band ? rests : law->relaxes ? speed < EDGE : speed <= 1.0);
+}
+
 int tribo_planar_near(const struct law *law, const struct slide *s)
 {
-    if (!law->uses_feq || s->open) {
-        return 0;
-    }
-    return !law->sticks_in_band ? s->length == 0.0 : law->relaxes ? s->speed < EDGE : s->speed <= 1.0;
+    return !s->open && is_near(law, s->speed, s->length == 0.0);
 }
 
 int tribo_scalar_near(const struct law *law, const struct contacts *c, size_t i, double v)
 {
-    const double speed = quotient(fabs(v), tribo_epsilon_of(c, i));
-    return law->uses_feq && c->limit[i] > 0.0 && (!law->sticks_in_band ? v == 0.0 : law->relaxes ? speed < EDGE : speed <= 1.0);
+    return c->limit[i] > 0.0 && is_near(law, quotient(fabs(v), tribo_epsilon_of(c, i)), v == 0.0);
 }
 
-/* Laws that read no f_eq are those of a scalar contact, along the direction of motion. */
+/* Laws that do not use f_eq are those of a scalar contact, along the direction of motion. */
 double tribo_planar_carried(const struct law *law, double speed, double *slope)
 {
     const double one = 1.0, two = 2.0, none = 0.0;

@@ -1,35 +1,41 @@
-/* The reach of planar contacts and of the scalar ones beside them. A limit that is far beyond what pulls at a contact leaves no
- * digits to a force in parts of it. The force is then looked for within a smaller disc, a reach. Where it lies inside, it is the
- * solution for the limit, too, since the problem is convex; where it does not, the reach grows.
+/* Reaches of planar contacts and of the scalar ones beside them. In parts of a limit that is far beyond the pull at a contact, a
+ * force has no digits. The force is then looked for within a smaller disc, a reach. If it lies inside, it is the solution for the
+ * limit, too, since the problem is convex; else the reach grows.
  *
  * A direction of a planar contact is loose if its force is such a small part of its limit that the other direction has its whole
- * limit, to the last digit. Then each of them is an interval of its own, with a reach of its own. Else both have one reach if
- * the limits of both are beyond it, or none. */
-#include <float.h>
+ * limit, to the last digit. Then both are intervals, each with a reach. Else both have one reach, if both limits exceed it, or
+ * none. */
+#include "parts.h"
 
-#include "core/context.h"
-
-/* A reach is that many times what pulls at a contact would ask for. */
+/* A reach is this factor times what the pull at a contact would make of its force. */
 #define AMPLE 1e3
 
-/* A reach is at least such a part of what any contact could be asked for. */
+/* A reach is at least this part of the largest force that any contact could carry. */
 #define LITTLE 1e-50
 
 /* A direction whose reach is less than this part of its limit is loose. */
 #define BESIDE 1e-8
 
-/* What the rim of the other direction adds to the stiffness of one that is loose is at most this part of it. */
+/* The rim of the other direction adds at most this part to the stiffness of a loose one. */
 #define STRAIGHT 1e-12
 
-static int is_loose(const tribo_context *ctx, size_t i)
+/* R_ii and the contact of direction e of the problem. */
+struct reach_place {
+    double r;
+    size_t i;
+};
+
+static inline struct reach_place reach_at(const tribo_context *ctx, const struct cluster *g, size_t e)
 {
-    return ctx->plane.radius[i] < BESIDE * ctx->follow.contacts.bound[i];
+    const size_t k = ctx->plane.near[e];
+    return (struct reach_place){ctx->planar->r[g->r + k * (g->size + 1)], ctx->planar->member[g->member + k]};
 }
 
 void tribo_planar_arrange(tribo_context *ctx, const struct cluster *g)
 {
     struct disc_qp *p = &ctx->plane.problem;
     const size_t *member = ctx->planar->member + g->member;
+    const double *bound = ctx->follow.contacts.bound, *radius = ctx->plane.radius;
     const unsigned char *directions = ctx->plane.directions;
     ctx->plane.cuts = 0;
     for (size_t k = 0; k < p->size; k++) {
@@ -37,19 +43,19 @@ void tribo_planar_arrange(tribo_context *ctx, const struct cluster *g)
         p->wide[k] = directions[k];
         p->shift[k] = ctx->plane.shift[k];
         if (tribo_planar_cut(ctx, i)) {
-            p->shift[k] = product(quotient(ctx->follow.contacts.bound[i], ctx->plane.radius[i]), p->shift[k]);
+            p->shift[k] = product(quotient(bound[i], radius[i]), p->shift[k]);
             ctx->plane.cuts++;
         }
     }
     for (size_t e = 0; ctx->plane.cuts && e < p->size; e += directions[e]) {
         const size_t i = member[ctx->plane.near[e]];
-        if (directions[e] == 2 && (is_loose(ctx, i) || is_loose(ctx, i + 1))) {
+        if (directions[e] == 2 && (radius[i] < BESIDE * bound[i] || radius[i + 1] < BESIDE * bound[i + 1])) {
             p->wide[e] = p->wide[e + 1] = 1;
         }
     }
 }
 
-/* Gives the contact at e of the problem the reaches wanted [directions], as far as its limits are beyond them. */
+/* Gives the contact at e of the problem the reaches wanted [directions], as far as its limits exceed them. */
 static void set_radius(tribo_context *ctx, const struct cluster *g, size_t e, size_t directions, const double *wanted)
 {
     const size_t i = ctx->planar->member[g->member + ctx->plane.near[e]];
@@ -65,59 +71,25 @@ static void set_radius(tribo_context *ctx, const struct cluster *g, size_t e, si
     }
 }
 
-/* Whether all contacts are pulled at by so much that their limits are not far, and have no reach below them. */
-static int all_ask(const tribo_context *ctx, const struct cluster *g)
+/* 1 if the pulls at all contacts are so large that no limit is far, and no contact has a reach below its limit. */
+static int no_limit_is_far(const tribo_context *ctx, const struct cluster *g)
 {
-    const size_t n = ctx->plane.problem.size, *near = ctx->plane.near, *member = ctx->planar->member + g->member;
-    size_t k = 0;
-    while (k < n &&
-           product(ctx->follow.contacts.bound[member[near[k]]], ctx->planar->r[g->r + near[k] * (g->size + 1)]) <=
-               AMPLE * fabs(ctx->plane.pull[k]) &&
-           !tribo_planar_cut(ctx, member[near[k]])) {
-        k++;
+    size_t k = 0, n = ctx->plane.problem.size;
+    for (; k < n; k++) {
+        const struct reach_place p = reach_at(ctx, g, k);
+        if (!(product(ctx->follow.contacts.bound[p.i], p.r) <= AMPLE * fabs(ctx->plane.pull[k])) || tribo_planar_cut(ctx, p.i)) {
+            break;
+        }
     }
     return k == n;
 }
 
-/* What direction k of the problem would carry alone. */
-static double ask_of(const tribo_context *ctx, const struct cluster *g, size_t k)
-{
-    const size_t at = ctx->plane.near[k], i = ctx->planar->member[g->member + at];
-    const double r = ctx->planar->r[g->r + at * (g->size + 1)], bound = ctx->follow.contacts.bound[i];
-    return lesser(quotient(fabs(ctx->plane.pull[k]), r) + product(fabs(ctx->plane.shift[k]), bound), bound);
-}
-
-/* The most that a direction would carry alone, times sqrt(R_kk): what any of them could be asked for, in the same units. */
-static double largest_ask(const tribo_context *ctx, const struct cluster *g)
-{
-    double most = 0.0;
-    for (size_t k = 0; k < ctx->plane.problem.size; k++) {
-        const double r = ctx->planar->r[g->r + ctx->plane.near[k] * (g->size + 1)];
-        most = greater(most, product(ask_of(ctx, g, k), sqrt(r)));
-    }
-    return most;
-}
-
-/* Whether a limit is far beyond what the contact could be asked for. */
-static int any_unreachable(const tribo_context *ctx, const struct cluster *g, double most)
-{
-    size_t far = 0;
-    for (size_t k = 0; k < ctx->plane.problem.size; k++) {
-        const size_t at = ctx->plane.near[k], i = ctx->planar->member[g->member + at];
-        const double root = sqrt(ctx->planar->r[g->r + at * (g->size + 1)]);
-        far += product(ctx->follow.contacts.bound[i], root) > AMPLE * most || tribo_planar_cut(ctx, i);
-    }
-    return far > 0;
-}
-
-/* ask [size] = what each direction would carry alone, or for the sake of the others, at most. */
-static void spread_asks(const tribo_context *ctx, const struct cluster *g, double *ask)
+/* ask [size] = the force of each direction alone, or for the sake of the others, at most. */
+static void find_asks(const tribo_context *ctx, const struct cluster *g, double *ask)
 {
     const size_t n = ctx->plane.problem.size, *near = ctx->plane.near;
+    const double *bound = ctx->follow.contacts.bound;
     int grown = 1;
-    for (size_t k = 0; k < n; k++) {
-        ask[k] = ask_of(ctx, g, k);
-    }
     for (size_t round = 0; grown && round < n; round++) {
         grown = 0;
         for (size_t k = 0; k < n; k++) {
@@ -125,51 +97,52 @@ static void spread_asks(const tribo_context *ctx, const struct cluster *g, doubl
             for (size_t j = 0; j < n; j++) {
                 ask[k] = j == k ? ask[k] : greater(ask[k], quotient(product(fabs(row[near[j]]), ask[j]), row[near[k]]));
             }
-            ask[k] = lesser(ask[k], ctx->follow.contacts.bound[ctx->planar->member[g->member + near[k]]]);
+            ask[k] = lesser(ask[k], bound[ctx->planar->member[g->member + near[k]]]);
             grown |= ask[k] > before;
         }
-    }
-}
-
-/* Nothing pulls at any contact. */
-static void rest(tribo_context *ctx, const struct cluster *g)
-{
-    for (size_t k = 0; k < ctx->plane.problem.size; k++) {
-        const size_t i = ctx->planar->member[g->member + ctx->plane.near[k]];
-        ctx->plane.radius[i] = HUGE_VAL;
-        ctx->plane.y[i] = 0.0;
     }
 }
 
 void tribo_planar_estimate(tribo_context *ctx, const struct cluster *g)
 {
     const size_t n = ctx->plane.problem.size;
-    double *ask = ctx->plane.problem.spare;
-    if (all_ask(ctx, g)) {
+    const double *bound = ctx->follow.contacts.bound;
+    double *ask = ctx->plane.problem.spare, most = 0.0; /* of ask sqrt(R_ii), in which any contact could ask another */
+    int far = 0;
+    if (no_limit_is_far(ctx, g)) {
         return;
     }
-    const double most = largest_ask(ctx, g);
-    if (!any_unreachable(ctx, g, most)) {
+    for (size_t k = 0; k < n; k++) {
+        const struct reach_place p = reach_at(ctx, g, k);
+        ask[k] = lesser(quotient(fabs(ctx->plane.pull[k]), p.r) + product(fabs(ctx->plane.shift[k]), bound[p.i]), bound[p.i]);
+        most = greater(most, product(ask[k], sqrt(p.r)));
+    }
+    for (size_t k = 0; k < n; k++) {
+        const struct reach_place p = reach_at(ctx, g, k);
+        far |= product(bound[p.i], sqrt(p.r)) > AMPLE * most || tribo_planar_cut(ctx, p.i);
+    }
+    for (size_t k = 0; far && !(most > 0.0) && k < n; k++) {
+        const struct reach_place p = reach_at(ctx, g, k);
+        ctx->plane.radius[p.i] = HUGE_VAL;
+        ctx->plane.y[p.i] = 0.0;
+    }
+    if (!far || !(most > 0.0)) {
         return;
     }
-    if (!(most > 0.0)) {
-        rest(ctx, g);
-        return;
-    }
-    spread_asks(ctx, g, ask);
+    find_asks(ctx, g, ask);
     for (size_t e = 0; e < n; e += ctx->plane.directions[e]) {
         const size_t count = ctx->plane.directions[e];
         double wanted[2];
         for (size_t d = 0; d < count; d++) {
-            const double root = sqrt(ctx->planar->r[g->r + ctx->plane.near[e + d] * (g->size + 1)]);
+            const double root = sqrt(reach_at(ctx, g, e + d).r);
             wanted[d] = product(greater(ask[e + d], greater(quotient(LITTLE * most, root), DBL_MIN)), AMPLE);
         }
         set_radius(ctx, g, e, count, wanted);
     }
 }
 
-/* Whether the direction at e of the problem is on the rim of its limit, and that bends so much that the direction at other cannot
- * be loose. */
+/* 1 if the direction at e of the problem is on the rim of its limit, which bends so much that the direction at other cannot be
+ * loose. */
 static int planar_reach_bends(const tribo_context *ctx, const struct cluster *g, size_t e, size_t other)
 {
     const struct disc_qp *p = &ctx->plane.problem;

@@ -1,14 +1,17 @@
-/* How the forces of a cluster follow velocities, accelerations and limits: the contacts near stick stay in their places, and
- * Newton's equations along what these leave them say how they stay balanced. */
-#include "core/context.h"
+/* Derivatives of the forces of a cluster by velocities, accelerations and limits: the contacts near stick stay in their places, and
+ * Newton's equations along the freedoms that these leave keep them balanced. */
+#include "core/static.h"
+#include "parts.h"
 
-void tribo_planar_linearize(tribo_context *ctx, const double *v, const double *a)
+void tribo_clusters_linearize(tribo_context *ctx, const double *v, const double *a)
 {
-    tribo_copy(ctx->plane.v, v, ctx->n);
-    tribo_copy(ctx->plane.a, a, ctx->n);
+    if (ctx->planar) {
+        tribo_copy(ctx->plane.v, v, ctx->n);
+        tribo_copy(ctx->plane.a, a, ctx->n);
+    }
 }
 
-/* The problem of a cluster as the last balance left it. */
+/* Sets and linearizes the problem of a cluster at the last balance. */
 static void resume(tribo_context *ctx, const struct cluster *g)
 {
     struct disc_qp *p = &ctx->plane.problem;
@@ -21,8 +24,7 @@ static void resume(tribo_context *ctx, const struct cluster *g)
     }
 }
 
-/* along [2], which is the direction of a velocity v, or at rest, where |v| has a kink, that in which a contact beyond its limits is
- * about to slide, in unit length; 0 if it stays. */
+/* along [2] = v/|v|; at rest, where |v| has a kink, along/|along|, the direction in which a contact begins to slide, or 0. */
 static void heading(const double *v, double *along)
 {
     const int moves = tribo_length(2, v) > 0.0;
@@ -35,7 +37,7 @@ static void heading(const double *v, double *along)
     }
 }
 
-/* By how much |v| of the planar contact whose first direction is i grows with dv. */
+/* Returns d|v| of the planar contact that begins with direction i. */
 static double faster_by(const tribo_context *ctx, const struct cluster *g, size_t i, const double *dv)
 {
     const struct disc_qp *p = &ctx->plane.problem;
@@ -53,7 +55,7 @@ static double faster_by(const tribo_context *ctx, const struct cluster *g, size_
     return along[0] * tribo_entry(dv, i) + along[1] * tribo_entry(dv, i + 1);
 }
 
-/* What d makes of the limits of a cluster, where these fall with the speed: with v, in the plane by |v|. */
+/* Returns d with the limits of a cluster, which change with |v| if they fall with speed. */
 static struct change with_limits(tribo_context *ctx, const struct cluster *g, const struct change *d)
 {
     const size_t *member = ctx->planar->member + g->member;
@@ -62,16 +64,15 @@ static struct change with_limits(tribo_context *ctx, const struct cluster *g, co
         return *d;
     }
     for (size_t k = 0; k < g->size; k++) {
-        const size_t i = member[k], first = i - (ctx->planar->role[i] == ROLE_SECOND);
-        const int directions = ctx->planar->role[i] == ROLE_SCALAR ? 1 : 2;
-        const double speed = tribo_length(directions, ctx->plane.v + first), rate = tribo_limit_rate(ctx, i, speed);
+        const size_t i = member[k], first = i - (ctx->planar->role[i] == ROLE_SECOND), directions = tribo_directions(ctx, i);
+        const double speed = tribo_length((int)directions, ctx->plane.v + first), rate = tribo_limit_rate(ctx, i, speed);
         const double alone = ctx->plane.v[i] < 0.0 ? -tribo_entry(d->v, i) : tribo_entry(d->v, i);
         dlimit[i] = tribo_entry(d->limit, i) + product(rate, directions == 1 ? alone : faster_by(ctx, g, first, d->v));
     }
     return (struct change){d->v, d->a, dlimit};
 }
 
-/* What changes about one planar contact: velocity, limits, and epsilon, as a part of itself. */
+/* Changes of one planar contact; epsilon: d(epsilon)/epsilon. */
 struct turn {
     double v[2], limit[2], epsilon;
 };
@@ -86,7 +87,7 @@ static struct turn planar_tangent_turn_of(const tribo_context *ctx, size_t i, co
     return t;
 }
 
-/* How x of a slide changes, and with it the parts of which it is made. */
+/* dx [2] = the change of part v of a slide. */
 static void turn_slide(const struct slide *s, const double *limit, const double *v, const struct turn *t, double *dx)
 {
     for (size_t k = 0; k < 2; k++) {
@@ -113,7 +114,7 @@ static void turn_force(const struct law *law, const struct slide *s, const doubl
     }
 }
 
-/* How the shift of a lens changes, epsilon being what it is. */
+/* dshift [2] = the change of the shift of a lens, epsilon fixed. */
 static void turn_shift(const struct slide *s, const double *limit, const double *v, const struct turn *t, double *dshift)
 {
     double dx[2];
@@ -123,8 +124,8 @@ static void turn_shift(const struct slide *s, const double *limit, const double 
     }
 }
 
-/* df of all contacts of a cluster that are not near stick, and of the others what their limits make of it. by_v: what limits
- * that follow v make of d, which the derivatives of scalar contacts know. */
+/* df of the contacts of a cluster that are not near stick; of the others its part that follows limits. by_v: d with_limits; the
+ * derivatives of scalar laws have that part already. */
 static void products_of_slips(const tribo_context *ctx, const struct cluster *g, const struct change *d,
                               const struct change *by_v, double *df)
 {
@@ -148,10 +149,10 @@ static void products_of_slips(const tribo_context *ctx, const struct cluster *g,
     }
 }
 
-/* Lenses that move faster with v have the derivatives of these. */
+/* Derivatives of shifts are cut to this. */
 #define STEEPEST 1e150
 
-/* How the shift of the contact at e of the problem changes. */
+/* dshift = the change of the shift of the contact at e of the problem. */
 static void shift_change(const tribo_context *ctx, const size_t *member, size_t e, const struct change *d, double *dshift)
 {
     const struct contacts *c = &ctx->follow.contacts;
@@ -174,16 +175,7 @@ static void shift_change(const tribo_context *ctx, const size_t *member, size_t 
     }
 }
 
-/* y of the contacts near stick goes with their shift; dshift [size]. */
-static void drag_all(const struct disc_qp *p, const double *dshift, double *dy)
-{
-    for (size_t e = 0; e < p->size; e += p->wide[e]) {
-        tribo_disc_drag(p, e, dshift + e, dy + e);
-    }
-}
-
-/* rhs [size] = the gradient that df, changes and shifts leave to balance, limits, of which shifts are parts, among them; dy: what
- * shifts drag along. */
+/* rhs [size] = the change of the gradient by df, d, dshift and dy. dy [size]: the part of the change of y that follows shifts. */
 static void find_rhs(const tribo_context *ctx, const struct cluster *g, const struct change *d, const double *df,
                      const double *dshift, const double *dy, double *rhs)
 {
@@ -207,12 +199,15 @@ static void find_rhs(const tribo_context *ctx, const struct cluster *g, const st
     tribo_planar_turn(ctx, turn, rhs);
 }
 
-/* Forces so far are those that f_eq balances; a law with a memory has another derivative where f_eq is beyond the limit.
- * before: the former, df: what becomes of them. */
-static void reverse(const tribo_context *ctx, const struct cluster *g, const struct change *d, const double *before, double *df)
+/* Laws with a memory have another derivative where |f_eq| exceeds the limit: corrects df of scalar contacts, from f_eq. */
+static void apply_laws(tribo_context *ctx, const struct cluster *g, const struct change *d, double *df)
 {
     const size_t *member = ctx->planar->member + g->member;
-    for (size_t e = 0; ctx->set.law->remembers && e < ctx->plane.problem.size; e++) {
+    double *before = ctx->plane.other;
+    for (size_t k = 0; k < g->size; k++) {
+        before[member[k]] = df[member[k]];
+    }
+    for (size_t e = 0; e < ctx->plane.problem.size; e++) {
         const size_t k = ctx->plane.near[e], i = member[k];
         const double *row = ctx->planar->r + g->r + k * g->size;
         const struct tangent *law = &ctx->last.tangent[i];
@@ -237,8 +232,8 @@ static void cluster_product(tribo_context *ctx, const struct cluster *g, const s
     products_of_slips(ctx, g, d, &by_v, df);
     for (size_t e = 0; e < p->size; e += p->wide[e]) {
         shift_change(ctx, member, e, &by_v, dshift + e);
+        tribo_disc_drag(p, e, dshift + e, dy + e);
     }
-    drag_all(p, dshift, dy);
     find_rhs(ctx, g, &by_v, df, dshift, dy, rhs);
     if (p->size) {
         tribo_disc_follow(p, rhs, move);
@@ -247,47 +242,36 @@ static void cluster_product(tribo_context *ctx, const struct cluster *g, const s
         df[member[near[e]]] += product(tribo_planar_reach(ctx, member[near[e]]), dy[e] + move[e]);
     }
     if (ctx->set.law->remembers) {
-        for (size_t k = 0; k < g->size; k++) {
-            ctx->plane.other[member[k]] = df[member[k]];
-        }
-        reverse(ctx, g, d, ctx->plane.other, df);
+        apply_laws(ctx, g, d, df);
     }
 }
 
-static void write_column(const tribo_context *ctx, const struct cluster *g, size_t column, const double *df, double *out)
+void tribo_clusters_columns(tribo_context *ctx, double *df_dv, double *df_da)
 {
-    for (size_t k = 0; k < g->size; k++) {
-        const size_t i = ctx->planar->member[g->member + k];
-        out[i * ctx->n + column] = df[i];
-    }
-}
-
-void tribo_planar_columns(tribo_context *ctx, double *df_dv, double *df_da)
-{
-    double *unit = ctx->plane.unit, *df = ctx->plane.df;
-    const struct change by_v = {unit, NULL, NULL}, by_a = {NULL, unit, NULL};
-    for (size_t q = 0; q < ctx->planar->clusters; q++) {
+    double *unit = ctx->plane.unit, *df = ctx->plane.df, *const out[2] = {df_dv, df_da};
+    const struct change by[2] = {{unit, NULL, NULL}, {NULL, unit, NULL}};
+    for (size_t q = 0; ctx->planar && q < ctx->planar->clusters; q++) {
         const struct cluster *g = &ctx->planar->cluster[q];
+        const size_t *member = ctx->planar->member + g->member;
         resume(ctx, g);
         for (size_t k = 0; k < g->size; k++) {
-            const size_t i = ctx->planar->member[g->member + k];
-            unit[i] = 1.0;
-            if (df_dv) {
-                cluster_product(ctx, g, &by_v, df);
-                write_column(ctx, g, i, df, df_dv);
+            unit[member[k]] = 1.0;
+            for (int w = 0; w < 2; w++) {
+                if (out[w]) {
+                    cluster_product(ctx, g, &by[w], df);
+                }
+                for (size_t j = 0; out[w] && j < g->size; j++) {
+                    out[w][member[j] * ctx->n + member[k]] = df[member[j]];
+                }
             }
-            if (df_da) {
-                cluster_product(ctx, g, &by_a, df);
-                write_column(ctx, g, i, df, df_da);
-            }
-            unit[i] = 0.0;
+            unit[member[k]] = 0.0;
         }
     }
 }
 
-void tribo_planar_product(tribo_context *ctx, const struct change *d, double *df)
+void tribo_clusters_product(tribo_context *ctx, const struct change *d, double *df)
 {
-    for (size_t q = 0; q < ctx->planar->clusters; q++) {
+    for (size_t q = 0; ctx->planar && q < ctx->planar->clusters; q++) {
         const struct cluster *g = &ctx->planar->cluster[q];
         resume(ctx, g);
         cluster_product(ctx, g, d, df);
@@ -296,7 +280,7 @@ void tribo_planar_product(tribo_context *ctx, const struct change *d, double *df
 
 /* ------------------------------------------------------------------------------------------------ f_eq that is given */
 
-/* df [2] of a contact near stick, whose problem is solved and linearized, by t and a change of f_eq. */
+/* df [2] of a contact near stick by t and dfeq [2]; its problem is solved and linearized. */
 static void turn_near(struct disc_qp *p, const struct given *g, const double *v, int relaxes, const struct turn *t,
                       const double *dfeq, double *df)
 {
@@ -322,8 +306,8 @@ static void turn_near(struct disc_qp *p, const struct given *g, const double *v,
     }
 }
 
-/* t with what limits that are static make of it, of the contact at i: they follow those that the caller set, and |v|. */
-static struct turn turn_static(const tribo_context *ctx, size_t i, const struct given *g, const struct disc_qp *p,
+/* Returns t with d(epsilon), and with the changes of static limits, which follow those of the caller, and |v|. */
+static struct turn turn_limits(const tribo_context *ctx, size_t i, const struct given *g, const struct disc_qp *p,
                                const double *v, struct turn t)
 {
     const double *set = ctx->set.breaking ? ctx->follow.cut_limit + i : g->c.limit, speed = tribo_length(2, v);
@@ -341,12 +325,12 @@ static struct turn turn_static(const tribo_context *ctx, size_t i, const struct 
     return t;
 }
 
-int tribo_planar_blocks(const tribo_context *ctx, const double *v, const double *feq, double *df_dv, double *df_dfeq,
-                        double *df_dlimit)
+int tribo_plane_blocks(const tribo_context *ctx, const double *v, const double *feq, double *df_dv, double *df_dfeq,
+                       double *df_dlimit)
 {
     double *const out[3] = {df_dv, df_dfeq, df_dlimit};
     const double none[2] = {0.0, 0.0};
-    for (size_t q = 0; q < ctx->planar->count; q++) {
+    for (size_t q = 0; q < tribo_plane_count(ctx); q++) {
         const size_t i = ctx->planar->first[q];
         struct given g;
         struct disc_alone x;
@@ -363,7 +347,7 @@ int tribo_planar_blocks(const tribo_context *ctx, const double *v, const double 
             double unit[6] = {0.0}, df[2] = {0.0, 0.0};
             unit[column] = column < 4 || ctx->set.limit[i + column - 4] > 0.0;
             const struct turn by = {{unit[0], unit[1]}, {unit[4], unit[5]}, 0.0};
-            const struct turn t = turn_static(ctx, i, &g, g.near ? &x.p : NULL, v + i, by);
+            const struct turn t = turn_limits(ctx, i, &g, g.near ? &x.p : NULL, v + i, by);
             if (g.near) {
                 turn_near(&x.p, &g, v + i, ctx->set.law->relaxes, &t, unit + 2, df);
             } else {

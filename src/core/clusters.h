@@ -1,0 +1,102 @@
+/* Clusters: planar contacts, and the contacts that R couples with them, as the rest of core calls them. Without planar contacts
+ * functions have no effect, and return TRIBO_OK or 0. */
+#ifndef TRIBO_CLUSTERS_H
+#define TRIBO_CLUSTERS_H
+
+#include "core/groups.h"
+
+/* 1 if contact i is no direction of a planar contact. */
+static inline int tribo_is_scalar(const tribo_context *ctx, size_t i)
+{
+    return !ctx->planar || ctx->planar->role[i] == ROLE_SCALAR;
+}
+
+/* Directions of the contact that begins with direction i. */
+static inline size_t tribo_directions(const tribo_context *ctx, size_t i)
+{
+    return tribo_is_scalar(ctx, i) ? 1 : 2;
+}
+
+/* Single contacts, and connected ones counted as one, joined by R or by planar contacts. */
+static inline size_t tribo_islands(const tribo_context *ctx)
+{
+    return ctx->planar && ctx->op->diagonal ? ctx->planar->islands : ctx->op->islands;
+}
+
+static inline size_t tribo_plane_count(const tribo_context *ctx)
+{
+    return ctx->planar ? ctx->planar->count : 0;
+}
+
+/* First directions of planar contacts, [count]. */
+static inline const size_t *tribo_plane_first(const tribo_context *ctx)
+{
+    return ctx->planar ? ctx->planar->first : NULL;
+}
+
+/* ---- planar.c */
+
+/* Planar contacts that are to become those of a context. */
+struct clusters {
+    struct planar *planar;
+    struct plane plane;
+};
+
+/* Makes c of these planar contacts for an operator and the memory that goes with it; a status. Then c takes the place of what ctx
+ * has. */
+int tribo_clusters_prepare(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m,
+                           struct clusters *c);
+void tribo_clusters_install(tribo_context *ctx, const struct clusters *c);
+
+/* The planar contacts of from, if ctx has others; a status. */
+int tribo_clusters_copy(tribo_context *ctx, const tribo_context *from);
+
+/* Those of from for its clone; 1, or 0 if out of memory. */
+int tribo_clusters_clone(tribo_context *clone, const tribo_context *from);
+void tribo_clusters_free(tribo_context *ctx);
+
+/* Fails if coupling is TRIBO_PARTITION, and count > 0; a status. */
+int tribo_plane_check_coupling(tribo_context *ctx, int coupling, size_t count, const size_t *first);
+
+/* Sets group_of; widths and rates of planar contacts if epsilon follows the operator: time as in tribo_refresh. */
+void tribo_clusters_refresh(tribo_context *ctx, int follows, double time);
+
+/* ---- planar_force.c */
+
+/* Forces of clusters in last.f, where those of all others are known; of the balance, and over a step (see tribo_solve_step); a
+ * status. */
+int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a);
+int tribo_clusters_step(tribo_context *ctx, double dt, const double *vfree, const signed char *known);
+
+/* f_eq of the contacts of clusters, in last.feq. */
+void tribo_clusters_feq(tribo_context *ctx, const double *a);
+
+/* feels [n] = (R f)_i without f_i, of the scalar contacts of clusters. */
+void tribo_clusters_feel(const tribo_context *ctx, double *feels);
+
+/* Sets reverses of planar contacts that slide after a step to TRIBO_SLIP_PLANE. *free [n] = vfree, but v + vfree of those that do
+ * not turn back, whose number is returned. */
+size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const double *vfree, signed char *reverses,
+                           const double **free);
+
+/* f_eq given, which has to be finite where forces of planar contacts depend on it; a status. */
+int tribo_plane_check_feq(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq);
+
+/* f of planar contacts from v and f_eq; their derivatives [n][2], each of which may be NULL; a status. */
+int tribo_plane_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
+int tribo_plane_blocks(const tribo_context *ctx, const double *v, const double *feq, double *df_dv, double *df_dfeq,
+                       double *df_dlimit);
+
+/* slip of the directions of planar contacts in the last call; all, or direction i alone. */
+void tribo_plane_slips(const tribo_context *ctx, signed char *slip);
+signed char tribo_plane_slip(const tribo_context *ctx, size_t i);
+
+/* The largest rate at which a planar contact relaxes. */
+double tribo_plane_rate(const tribo_context *ctx);
+
+/* ---- planar_tangent.c: derivatives of the forces of clusters at the last tribo_balance_tangent, at v and a. */
+void tribo_clusters_linearize(tribo_context *ctx, const double *v, const double *a);
+void tribo_clusters_columns(tribo_context *ctx, double *df_dv, double *df_da);
+void tribo_clusters_product(tribo_context *ctx, const struct change *d, double *df);
+
+#endif

@@ -1,0 +1,56 @@
+/* Static limits: static.c. Where a context has none, tribo_find_limits and those below it are not called. */
+#ifndef TRIBO_STATIC_H
+#define TRIBO_STATIC_H
+
+#include "groups.h"
+
+/* Sets what follows from static limits, and contacts->limit to those of the last call. */
+void tribo_refresh_static(tribo_context *ctx);
+
+/* A law without stick needs Stribeck velocities where a ratio exceeds 1; a status. */
+int tribo_check_breaking(tribo_context *ctx, const struct law *law, int breaking, const double *ratio);
+
+/* Both directions of a planar contact have the same ratio and velocity; a status. */
+int tribo_check_one_ratio(tribo_context *ctx, const double *ratio, const double *velocity, size_t count, const size_t *first);
+
+/* Fails if there are static limits: "<who> static limits, ...". */
+int tribo_refuse_static(tribo_context *ctx, const char *who);
+
+/* limit [n] of the contacts from i on at v [n]: static near stick, unless |feq| exceeds it; feq NULL: it does not. */
+void tribo_find_limits(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *limit);
+
+/* The limit by which contact i slides at this speed. */
+double tribo_limit_at(const tribo_context *ctx, size_t i, double speed);
+
+/* d(limit)/dv of contact i; 0 without static limits. */
+double tribo_limit_rate(const tribo_context *ctx, size_t i, double v);
+
+/* The law's derivatives d [n] of the contacts from i on, of which c is a view, by v, f_eq and the caller's limit. */
+void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size_t i, size_t n, const double *v,
+                        const double *feq, const struct tangents *d);
+
+/* Limits over a step of dt: static, but those to slide of contacts that come in sliding at v [n], or NULL, and do not come to a
+ * stop: f [n], or NULL, acts against v. */
+void tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, const double *f);
+
+/* 1 if a contact that comes in sliding has a force that does not act against v. */
+int tribo_any_turns(const tribo_context *ctx, double dt, const double *v, const double *f);
+
+/* Gives the near contacts of a problem their static limits. */
+void tribo_hold(const tribo_context *ctx, const struct box_qp *p);
+
+/* Gives contacts whose f_eq exceeds the static limit that to slide at the end of a step of dt, or (0) from rest. Returns their
+ * number. */
+size_t tribo_break_away(tribo_context *ctx, const struct box_qp *p, double dt);
+
+/* The same for contacts in no group, by vfree; their forces follow. */
+void tribo_break_alone(tribo_context *ctx, double dt, const double *vfree);
+
+/* The largest slope by which the law of contact i relaxes. */
+static inline double tribo_steepest_slope(const tribo_context *ctx, size_t i)
+{
+    const struct contacts *c = &ctx->follow.contacts;
+    return ctx->set.breaking ? c->rate[i] * ctx->follow.hold[i] : tribo_slope_of(c, i);
+}
+
+#endif
