@@ -28,7 +28,7 @@ void free_curve(struct curve *c)
 }
 
 /* Where x belongs. */
-static size_t place_of(const struct curve *c, double x)
+static size_t index_of(const struct curve *c, double x)
 {
     size_t low = 0, high = c->count;
     while (low < high) {
@@ -52,7 +52,7 @@ static void insert_sample(struct curve *c, size_t k, double x, int asked)
 
 void ask_sample(struct curve *c, double x, int asked)
 {
-    const size_t k = place_of(c, x);
+    const size_t k = index_of(c, x);
     if (k < c->count && c->sample[k].x == x) {
         c->sample[k].asked |= asked;
     } else {
@@ -141,7 +141,7 @@ static int wants_more(const struct curve *c, size_t k, const struct height *h, d
 }
 
 /* A sample between k and k + 1, from which what was not found beside it is tried again. */
-static void split(struct curve *c, struct worker *w, size_t k)
+static void split_gap(struct curve *c, struct worker *w, size_t k)
 {
     insert_sample(c, k + 1, 0.5 * (c->sample[k].x + c->sample[k + 1].x), 0);
     find_sample(c, w, k + 1, ALL);
@@ -162,7 +162,7 @@ static size_t refine(struct curve *c, struct worker *w, double tolerance)
     }
     for (size_t k = c->count - 1; k-- > 0;) {
         if (wanted[k] && c->count < MOST_SAMPLES && !interrupted()) {
-            split(c, w, k);
+            split_gap(c, w, k);
             added++;
         }
     }
@@ -185,16 +185,16 @@ void find_curve(struct curve *c, struct worker *w, double tolerance)
 const struct sample *reach_sample(struct curve *c, struct worker *w, double x)
 {
     ask_sample(c, x, 0);
-    find_sample(c, w, place_of(c, x), ALL);
-    for (int i = 0; i < ROUNDS && !found(c, place_of(c, x)) && !interrupted(); i++) {
-        const size_t k = place_of(c, x);
+    find_sample(c, w, index_of(c, x), ALL);
+    for (int i = 0; i < ROUNDS && !found(c, index_of(c, x)) && !interrupted(); i++) {
+        const size_t k = index_of(c, x);
         if (k > 0 && found(c, k - 1)) {
-            split(c, w, k - 1);
+            split_gap(c, w, k - 1);
         } else if (k + 1 < c->count && found(c, k + 1)) {
-            split(c, w, k);
+            split_gap(c, w, k);
         }
     }
-    const size_t k = place_of(c, x);
+    const size_t k = index_of(c, x);
     return found(c, k) ? &c->sample[k] : NULL;
 }
 
@@ -238,15 +238,15 @@ static int is_top(const struct curve *c, size_t k)
 static void climb(struct curve *c, struct worker *w, double x)
 {
     for (int i = 0; i < CLIMBS && !interrupted(); i++) {
-        const size_t k = place_of(c, x);
+        const size_t k = index_of(c, x);
         const double top = top_of(&c->sample[k]), whole = c->sample[c->count - 1].x - c->sample[0].x;
         const double reached = c->sample[k].motion.amplitude;
         if (!(is_top(c, k) && fabs(top - x) > 1e-8 * whole)) {
             return;
         }
         ask_sample(c, top, 0);
-        find_sample(c, w, place_of(c, top), ALL);
-        const struct motion *there = &c->sample[place_of(c, top)].motion;
+        find_sample(c, w, index_of(c, top), ALL);
+        const struct motion *there = &c->sample[index_of(c, top)].motion;
         x = there->found && there->amplitude > reached ? top : x;
     }
 }

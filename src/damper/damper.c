@@ -65,7 +65,7 @@ static void clean_shape(const struct damper *d, double *shape)
     }
 }
 
-static double row_times(const struct sparse *m, size_t row, const double *x)
+static double row_product(const struct sparse *m, size_t row, const double *x)
 {
     double sum = 0.0;
     for (size_t k = m->first[row]; k < m->first[row + 1]; k++) {
@@ -82,18 +82,18 @@ static void read_shapes(struct damper *d, const struct options *o, const struct 
     for (size_t k = 0; k < d->modes; k++) {
         const double *mode = full + k * d->ndof;
         for (size_t c = 0; c < d->contacts; c++) {
-            d->contact_shape[c * d->modes + k] = row_times(rows, c, mode);
+            d->contact_shape[c * d->modes + k] = row_product(rows, c, mode);
         }
         for (size_t i = 0; i < loads; i++) {
             const struct load *load = &o->loads.load[i];
-            const double force = load->size * row_times(rows, d->contacts + i, mode);
+            const double force = load->size * row_product(rows, d->contacts + i, mode);
             d->open.cosine[k] += load->phase != 0.0 ? force * sin(degree * load->phase) : 0.0;
             d->open.sine[k] += load->phase != 0.0 ? force * cos(degree * load->phase) : force;
         }
         for (size_t i = 0; i < d->outputs; i++) {
-            d->output_shape[i * d->modes + k] = row_times(rows, d->contacts + loads + i, mode);
+            d->output_shape[i * d->modes + k] = row_product(rows, d->contacts + loads + i, mode);
         }
-        d->open.measured[k] = row_times(rows, rows->rows - 1, mode);
+        d->open.measured[k] = row_product(rows, rows->rows - 1, mode);
     }
     for (size_t c = 0; c < d->contacts; c++) {
         clean_shape(d, d->contact_shape + c * d->modes);
@@ -104,13 +104,13 @@ static void read_shapes(struct damper *d, const struct options *o, const struct 
 static const double UNDAMPED = 1e-13;
 
 /* Modal damping: of ratios, or Phi' C Phi. */
-static void set_damping(struct damper *d, const struct options *o, const struct structure *s, const double *full)
+static void put_damping(struct damper *d, const struct options *o, const struct structure *s, const double *full)
 {
     double *c = d->open.damping, *force = need_memory(d->ndof, sizeof *force);
     for (size_t k = 0; k < d->modes; k++) {
         const size_t last = o->damping.count ? o->damping.count - 1 : 0;
         for (size_t i = 0; o->damping_matrix && i < d->ndof; i++) {
-            force[i] = row_times(&s->damping, i, full + k * d->ndof);
+            force[i] = row_product(&s->damping, i, full + k * d->ndof);
         }
         for (size_t j = 0; o->damping_matrix && j < d->modes; j++) {
             double sum = 0.0, terms = 0.0;
@@ -152,7 +152,7 @@ static void reduce(struct damper *d, const struct options *o, const struct struc
         unit[k] = 0.0;
     }
     read_shapes(d, o, rows, full);
-    set_damping(d, o, s, full);
+    put_damping(d, o, s, full);
     free(unit);
     free(full);
 }
@@ -174,7 +174,7 @@ static void check_spring(const struct damper *d, size_t c, const char *origin)
     }
 }
 
-static void set_contacts(struct damper *d, const struct options *o)
+static void put_contacts(struct damper *d, const struct options *o)
 {
     tribo_context *contacts = tribo_system_context(d->sys);
     size_t *first = need_memory(d->contacts, sizeof *first);
@@ -219,7 +219,7 @@ static void build(struct damper *d, const struct options *o)
     }
     tribo_model_destroy(model);
     free(mass);
-    set_contacts(d, o);
+    put_contacts(d, o);
 }
 
 struct damper create_damper(const struct options *o, const struct structure *s, size_t kept)

@@ -5,7 +5,7 @@
 
 #include "output.h"
 
-static int compare_nodes(const void *a, const void *b)
+static int by_node(const void *a, const void *b)
 {
     const struct degree *x = *(const struct degree *const *)a, *y = *(const struct degree *const *)b;
     return x->node != y->node ? (x->node < y->node ? -1 : 1) : (x->row > y->row) - (x->row < y->row);
@@ -21,7 +21,7 @@ void write_field(const struct tables *t, const struct structure *s, const struct
     for (size_t i = 0; i < n; i++) {
         row[i] = &s->dof[i];
     }
-    qsort(row, n, sizeof *row, compare_nodes);
+    qsort(row, n, sizeof *row, by_node);
     for (size_t i = 0; i < n; i++) {
         nodes += i == 0 || row[i]->node != row[i - 1]->node;
     }

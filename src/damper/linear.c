@@ -111,7 +111,7 @@ static void project_stiffness(const struct linear *open, size_t contacts, const 
 }
 
 /* Damping, loads and measured place of the modes mode [l->count][open->count]. */
-static void project(const struct linear *open, const double *mode, struct linear *l)
+static void project_linear(const struct linear *open, const double *mode, struct linear *l)
 {
     const size_t n = open->count;
     double *force = need_memory(n, sizeof *force);
@@ -151,7 +151,7 @@ struct linear stick(const struct linear *open, size_t contacts, const double *sh
             mode[i * n + k % n] += vector[i * count + k / n] * held[k];
         }
     }
-    project(open, mode, &l);
+    project_linear(open, mode, &l);
     free(basis);
     free(vector);
     free(mode);

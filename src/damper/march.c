@@ -190,7 +190,7 @@ static int quiet(const struct scale *free, const struct motion *m)
 }
 
 /* Cycles from state[0] until they repeat themselves, the last one out; state[0] is then at the beginning of the next. */
-static struct motion settle(const struct run *r, double *const *state)
+static struct motion settle_motion(const struct run *r, double *const *state)
 {
     const struct damper *d = r->d;
     const size_t n = d->dimension, keep = n - 1 < KEEP ? n - 1 : KEEP;
@@ -236,7 +236,7 @@ struct motion march(struct worker *w, double limit, double hz, double *y)
     }
     memcpy(state[0], y, n * sizeof *y);
     struct run r = create_run(w, limit, hz);
-    struct motion m = settle(&r, state);
+    struct motion m = settle_motion(&r, state);
     m.limit = limit;
     m.hz = hz;
     if (!m.found) {

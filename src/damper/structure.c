@@ -45,7 +45,7 @@ void tell_of_loose_rows(const struct structure *s, const char *stiffness)
     }
 }
 
-static double distance(const struct degree *d, const double *at)
+static double distance_to(const struct degree *d, const double *at)
 {
     return hypot(hypot(d->at[0] - at[0], d->at[1] - at[1]), d->at[2] - at[2]);
 }
@@ -56,15 +56,15 @@ size_t find_degree(const struct structure *s, const struct place *p)
     double size = 0.0;
     size_t nearest = 0, found = s->ndof;
     for (size_t i = 0; i < s->ndof; i++) {
-        size = fmax(size, distance(&s->dof[i], origin));
-        nearest = distance(&s->dof[i], p->at) < distance(&s->dof[nearest], p->at) ? i : nearest;
+        size = fmax(size, distance_to(&s->dof[i], origin));
+        nearest = distance_to(&s->dof[i], p->at) < distance_to(&s->dof[nearest], p->at) ? i : nearest;
     }
     const double *at = s->dof[nearest].at;
-    if (!(distance(&s->dof[nearest], p->at) <= 1e-6 * size)) {
+    if (!(distance_to(&s->dof[nearest], p->at) <= 1e-6 * size)) {
         die("%s: no free node is there; the nearest is at %g,%g,%g", p->origin, at[0], at[1], at[2]);
     }
     for (size_t i = 0; i < s->ndof; i++) {
-        if (s->dof[i].direction != p->direction || distance(&s->dof[i], p->at) > 1e-6 * size) {
+        if (s->dof[i].direction != p->direction || distance_to(&s->dof[i], p->at) > 1e-6 * size) {
             continue;
         }
         if (found < s->ndof) {
