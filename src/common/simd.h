@@ -32,6 +32,15 @@
 #define TRIBO_UNROLLED
 #endif
 
+/* Before a loop over arrays that share no memory, where restrict on pointers of a struct is not enough. */
+#if defined(TRIBO_GNU_C) && !defined(__clang__)
+#define TRIBO_APART _Pragma("GCC ivdep")
+#elif defined(__clang__)
+#define TRIBO_APART _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define TRIBO_APART
+#endif
+
 /* Contacts that are looked at together: few enough that in a large scene most chunks have none near stick, and all that is read
  * of them stays in the first-level cache. */
 #define TRIBO_CHUNK 128

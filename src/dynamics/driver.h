@@ -82,8 +82,8 @@ int tribo_driver_accept(tribo_driver *drv, double t, const double *y);
 /* A step from the state at t to that at next, y, all of which it writes and finds finite. */
 typedef int tribo_fixed_step(tribo_driver *drv, double t, double next, const double *from, double *y);
 
-/* Takes steps between the times t [count + 1], count <= RUN: y is the state at t[0], and becomes that after the last step. Returns
- * the number of steps taken; after less than count the next one is for tribo_fixed_step. */
+/* Takes steps between the times t [count + 1], count <= RUN: y is the state at t[0], and becomes that after the last step.
+ * Returns the number of steps taken; after less than count the next one is for tribo_fixed_step. */
 typedef size_t tribo_fixed_run(tribo_driver *drv, size_t count, const double *t, double *y);
 
 /* Steps that a run takes at most. */

@@ -1,4 +1,5 @@
-/* The methods that choose their steps: the loop in which a stepper tries steps, and their errors decide whether these are taken. */
+/* The methods that choose their steps: the loop in which a stepper tries steps, and their errors decide whether these are
+ * taken. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -45,7 +46,7 @@ struct adaptive {
     double *band, *rate; /* [ncontact] while |v| is at most band, v relaxes at rate */
 };
 
-static void destroy(tribo_driver *drv)
+static void adaptive_destroy(tribo_driver *drv)
 {
     struct adaptive *a = drv->own;
     if (a && a->owned) {
@@ -57,7 +58,7 @@ static void destroy(tribo_driver *drv)
     }
 }
 
-static int create(tribo_driver *drv)
+static int adaptive_create(tribo_driver *drv)
 {
     drv->abstol = ABSTOL;
     drv->reltol = RELTOL;
@@ -90,7 +91,8 @@ static void find_bands(struct adaptive *a, tribo_system *sys)
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (limit[i] > 0.0) {
-            /* Contact i changes its force by 2 limit_i in epsilon_i: errors of velocities that matter little beside the largest limit. */
+            /* Contact i changes its force by 2 limit_i in epsilon_i: errors of velocities that matter little beside the
+             * largest limit. */
             const double error = law == TRIBO_COULOMB ? HUGE_VAL : PART_OF_EPSILON * a->band[i] * (most / limit[i]);
             const struct matrix *j = &sys->direction;
             double sum = 0.0;
@@ -248,8 +250,8 @@ static int begin_step(tribo_driver *drv, double t, const double *y)
     if (tribo_system_limits_vary(drv->sys)) {
         find_bands(a, drv->sys);
     }
-    /* Displacements, velocities and the energy, each relative to the largest of their kind. A status: no step is short enough for an
-     * error below rounding. */
+    /* Displacements, velocities and the energy, each relative to the largest of their kind. A status: no step is short
+     * enough for an error below rounding. */
     const size_t n = drv->sys->ndof, dimension = tribo_system_dimension(drv->sys);
     const double q = drv->abstol + drv->reltol * tribo_largest(y, n), u = drv->abstol + drv->reltol * tribo_largest(y + n, n);
     for (size_t d = 0; d < n; d++) {
@@ -266,7 +268,7 @@ static int begin_step(tribo_driver *drv, double t, const double *y)
     return TRIBO_OK;
 }
 
-static int advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
+static int adaptive_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
     struct adaptive *a = drv->own;
     int status = adaptive_prepare(a, drv);
@@ -324,8 +326,11 @@ int tribo_driver_create_stepper(tribo_driver **drv, tribo_system *sys, const tri
     }
     a->stepper = *stepper;
     a->data = data;
-    a->method = (struct method){
-        .name = stepper->name, .takes = TAKES_ALL, .create = create, .destroy = destroy, .advance = advance};
+    a->method = (struct method){.name = stepper->name,
+                                .takes = TAKES_ALL,
+                                .create = adaptive_create,
+                                .destroy = adaptive_destroy,
+                                .advance = adaptive_advance};
     a->memory = memory;
     a->to = memory;
     a->error = memory + n;

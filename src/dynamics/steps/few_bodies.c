@@ -7,6 +7,7 @@
 
 #include "dynamics/system/cos_sin.h"
 #include "common/real.h"
+#include "step_form.h"
 
 /* ------------------------------------------------------------------------------------------------------------- settings */
 
@@ -70,15 +71,13 @@ static int take_operator(struct few_bodies *b, const tribo_system *sys)
     return fits;
 }
 
-/* Whether Coulomb's law of scalar contacts with one limit, which is a plain number, is all that there is. */
+/* 0 if contacts are planar, have static limits, or a limit is too large. */
 static int few_take_contacts(struct few_bodies *b, const tribo_system *sys)
 {
-    double ratio[FEW];
-    int fits = !tribo_system_planar(sys);
-    tribo_get_static(sys->contacts, ratio, NULL);
+    int fits = tribo_step_form_plain(sys);
     tribo_get_limit(sys->contacts, b->limit);
     for (size_t i = 0; i < b->c; i++) {
-        fits &= ratio[i] <= 1.0 && b->limit[i] <= MOST;
+        fits &= b->limit[i] <= MOST;
         b->tally[i] = sys->tally[i];
     }
     return fits;

@@ -7,9 +7,10 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Takes `steps` steps of h from drv->time on, the last one up to t1. Begins with the last good state, drv->state; states are written
- * there and in y by turns. Returns the last good one. */
-static double *march(tribo_driver *drv, double h, double steps, double t1, double *y, const struct fixed_method *method, int *status)
+/* Takes `steps` steps of h from drv->time on, the last one up to t1. Begins with the last good state, drv->state; states are
+ * written there and in y by turns. Returns the last good one. */
+static double *march(tribo_driver *drv, double h, double steps, double t1, double *y, const struct fixed_method *method,
+                     int *status)
 {
     const double begin = drv->time;
     double *from = drv->state, *to = y;

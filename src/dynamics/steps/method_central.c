@@ -1,13 +1,13 @@
 /* Method "central/fixed": central differences, velocities half a step apart from positions. Explicit; stable for dt below
  * 2/omega_max. Damping acts on the velocity of half a step before. Steps of small systems are taken in runs by few_bodies.c,
- * those of others where contacts share no body by bodies_alone.c. */
+ * those of others where contacts share no body by blockwise.c. */
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "bodies_alone.h"
+#include "blockwise.h"
 #include "few_bodies.h"
 #include "dynamics/reduce/spectrum.h"
 #include "step_form.h"
@@ -17,7 +17,7 @@
 struct central {
     struct step_form common;
     struct few_bodies few;
-    struct bodies_alone alone;
+    struct blockwise alone;
     double *next;        /* [ndof] room for u of the next step */
     double energy, last; /* dissipated up to u; the step before, 0: u is the velocity at t */
     double stable;       /* a step found to be stable; 0: none */
@@ -28,7 +28,7 @@ static void central_destroy(tribo_driver *drv)
     struct central *x = drv->own;
     if (x) {
         tribo_step_form_free(&x->common);
-        tribo_bodies_free(&x->alone);
+        tribo_blockwise_free(&x->alone);
         free(x->next);
         free(x);
     }
@@ -42,7 +42,7 @@ static int central_create(tribo_driver *drv)
         x->few.revision = SIZE_MAX;
         x->next = tribo_zeros(drv->sys->ndof, sizeof *x->next);
     }
-    if (!x || !x->next || !tribo_step_form_create(&x->common, drv->sys) || !tribo_bodies_create(&x->alone, drv->sys)) {
+    if (!x || !x->next || !tribo_step_form_create(&x->common, drv->sys) || !tribo_blockwise_create(&x->alone, drv->sys)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
     return TRIBO_OK;
@@ -69,7 +69,9 @@ static int kick(tribo_driver *drv, const struct body_step *k, double *energy)
     sys->evaluations++;
     tribo_step_form_find_base(s, sys, k->to);
     tribo_step_form_relative(s, sys, k->u_to, s->end);
-    tribo_step_form_set_limits(sys, k->t);
+    if (tribo_system_limits_vary(sys)) {
+        tribo_system_set_time(sys, k->t);
+    }
     const int status = tribo_step_form_force(s, sys, sys->contacts, k->time);
     if (status == TRIBO_ERR_NOT_FINITE) {
         return tribo_step_form_grew(drv, k->t);
@@ -126,7 +128,7 @@ static int step_alone(tribo_driver *drv, const struct body_step *k, double *y)
     double energy = x->energy;
     x->common.goes_on = 0;
     drv->sys->evaluations++;
-    if (!tribo_bodies_step(&x->alone, drv->sys, k, &energy) || !isfinite(energy)) {
+    if (!tribo_blockwise_step(&x->alone, drv->sys, k, &energy) || !isfinite(energy)) {
         return tribo_step_form_grew(drv, k->t);
     }
     drv->rested = x->alone.skipped;
@@ -159,7 +161,7 @@ static size_t central_run(tribo_driver *drv, size_t count, const double *t, doub
 static void take_settings(struct central *x, tribo_system *sys)
 {
     if (!tribo_few_take(&x->few, sys)) {
-        tribo_bodies_begin(&x->alone, sys);
+        tribo_blockwise_take(&x->alone, sys);
     }
 }
 

@@ -154,7 +154,8 @@ static int find_operator(const struct moreau *m, const tribo_system *sys, double
 {
     const int symmetric = tribo_step_matrix_has_halves(&m->matrix);
     if (symmetric && m->response) {
-        /* r = W'W with W = H^-1 J', S = H H', as symmetric and semidefinite as rounding lets it be, and x [ncontact][ndof] = S^-1 J'. */
+        /* r = W'W with W = H^-1 J', S = H H', as symmetric and semidefinite as rounding lets it be, and x [ncontact][ndof] =
+         * S^-1 J'. */
         double *x = m->response;
         const size_t n = sys->ndof, c = sys->ncontact;
         for (size_t i = 0; i < c; i++) {
@@ -411,7 +412,9 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     tribo_step_form_begin(s, sys, t, u);
     find_push(m, sys, t, next, from, s->a);
     tribo_step_form_find_base(s, sys, next);
-    tribo_step_form_set_limits(sys, t + 0.5 * h);
+    if (tribo_system_limits_vary(sys)) {
+        tribo_system_set_time(sys, t + 0.5 * h);
+    }
     moreau_take_limits(m, sys);
     const int status = moreau_respond(m, sys, h, u, s->a);
     if (status == TRIBO_ERR_NOT_FINITE) {

@@ -1,228 +1,163 @@
-/* Method "rk4/fixed": the classical Runge-Kutta method in steps of a fixed size. GSL's doubles each step for an estimate of its
- * error, which nobody asks for here, and takes twelve evaluations instead of four.
- *
- * From one evaluation follows the state of the next, or of the end, place by place. Where contacts share no body all is done
- * block by block, and an evaluation follows the one before as closely as can be, as soon as this has left behind what pulls at a
- * block: what is written is read again while it is near. */
+/* Method "rk4/fixed": the classical Runge-Kutta method in steps of a fixed size, four evaluations a step. (GSL's takes twelve: it
+ * doubles each step to estimate its error.) */
 #include <math.h>
 #include <stdlib.h>
 
+#include "blockwise.h"
+#include "common/simd.h"
 #include "dynamics/driver.h"
 #include "numerics/linalg.h"
-#include "rates_alone.h"
-#include "common/simd.h"
 
 enum { STAGES = 4 };
 
 struct rk4 {
-    struct rates_alone alone;
+    struct blockwise alone;
     double *memory;
-    double *k;   /* [ndof] or a block's: accelerations; of the slope of q, which is the velocity, there is no copy */
-    double *sum; /* [ndof] weighted sum of accelerations */
+    double *k;                 /* [ndof] accelerations of the last evaluation: with the velocities, the slope */
+    double *sum;               /* [ndof] weighted sum of accelerations */
     double *stage[STAGES - 1]; /* [2 ndof] states of the second evaluation and the following */
-    double power[STAGES];      /* what friction dissipates */
     double time;               /* of the last evaluation */
-    int blockwise;             /* the next step goes block by block */
+    int blockwise;             /* 1: evaluations go block by block */
 };
 
-static void destroy(tribo_driver *drv)
+static void rk4_destroy(tribo_driver *drv)
 {
     struct rk4 *r = drv->own;
     if (r) {
-        tribo_rates_free(&r->alone);
+        tribo_blockwise_free(&r->alone);
         free(r->memory);
         free(r);
     }
 }
 
-static int create(tribo_driver *drv)
+static int rk4_create(tribo_driver *drv)
 {
-    const size_t n = tribo_system_dimension(drv->sys);
+    const size_t n = drv->sys->ndof;
     struct rk4 *r = calloc(1, sizeof *r);
     drv->own = r;
-    if (!r || !(r->memory = malloc((4 * n + TRIBO_LINE) * sizeof *r->memory)) || !tribo_rates_create(&r->alone, drv->sys)) {
+    if (!r || !(r->memory = malloc((8 * n + TRIBO_LINE) * sizeof *r->memory)) || !tribo_blockwise_create(&r->alone, drv->sys)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method rk4/fixed");
     }
     r->k = tribo_aligned(r->memory);
-    r->sum = r->k + drv->sys->ndof;
+    r->sum = r->k + n;
     for (size_t s = 0; s < STAGES - 1; s++) {
-        r->stage[s] = r->sum + drv->sys->ndof + s * 2 * drv->sys->ndof;
+        r->stage[s] = r->sum + n + s * 2 * n;
     }
-    tribo_rates_prepare(&r->alone, drv->sys);
+    tribo_blockwise_take_law(&r->alone, drv->sys);
     return TRIBO_OK;
 }
 
-/* From q and u the second state, by the accelerations a, with which the sum begins. */
-TRIBO_SIMD static void first_stage(size_t n, double h, const double *restrict q, const double *restrict u,
-                                   const double *restrict a, double *restrict sum, double *restrict to_q, double *restrict to_u)
+/* The second state from q and u, by the accelerations a, with which the sum begins. */
+TRIBO_SIMD static void first_stage(size_t n, double h, const double *restrict from, const double *restrict a,
+                                   double *restrict sum, double *restrict to)
 {
+    const double *restrict u = from + n;
+    double *restrict to_u = to + n;
     for (size_t i = 0; i < n; i++) {
-        to_q[i] = q[i] + h * u[i];
+        to[i] = from[i] + h * u[i];
         to_u[i] = u[i] + h * a[i];
         sum[i] = a[i];
     }
 }
 
-/* From q and u the third or fourth, by the velocities v and accelerations of the last one. */
-TRIBO_SIMD static void next_stage(size_t n, double h, const double *restrict q, const double *restrict u,
-                                  const double *restrict v, const double *restrict a, double *restrict sum, double *restrict to_q,
-                                  double *restrict to_u)
+/* The third or fourth state from q and u, by velocities v and accelerations a of the one before. */
+TRIBO_SIMD static void next_stage(size_t n, double h, const double *restrict from, const double *restrict v,
+                                  const double *restrict a, double *restrict sum, double *restrict to)
 {
+    const double *restrict u = from + n;
+    double *restrict to_u = to + n;
     for (size_t i = 0; i < n; i++) {
-        to_q[i] = q[i] + h * v[i];
+        to[i] = from[i] + h * v[i];
         to_u[i] = u[i] + h * a[i];
         sum[i] += 2.0 * a[i];
     }
 }
 
-/* The end of the step, v_1 to v_3 being the velocities of the states between, and a the accelerations of the last one. */
-TRIBO_SIMD static void rk4_finish(size_t n, double h, const double *restrict q, const double *restrict u,
-                                  const double *restrict v_1, const double *restrict v_2, const double *restrict v_3,
-                                  const double *restrict sum, const double *restrict a, double *restrict to_q,
-                                  double *restrict to_u)
+/* The end of the step: h is a sixth of it, v[k] are the velocities of the states between, a the last accelerations. */
+TRIBO_SIMD static void last_stage(size_t n, double h, const double *restrict from, double *const *stage, const double *restrict a,
+                                  const double *restrict sum, double *restrict to)
 {
+    const double *restrict u = from + n, *restrict v_1 = stage[0] + n, *restrict v_2 = stage[1] + n, *restrict v_3 = stage[2] + n;
+    double *restrict to_u = to + n;
     for (size_t i = 0; i < n; i++) {
-        to_q[i] = q[i] + h * (((u[i] + 2.0 * v_1[i]) + 2.0 * v_2[i]) + v_3[i]);
+        to[i] = from[i] + h * (((u[i] + 2.0 * v_1[i]) + 2.0 * v_2[i]) + v_3[i]);
         to_u[i] = u[i] + h * (sum[i] + a[i]);
     }
 }
 
-/* An evaluation of a step from `from`: at a time, which has a number, and a state, and the state to, that which follows a time h
- * later by its slopes. */
-struct evaluation {
-    size_t number, time;
-    double t, h;
-    const double *from, *at;
-    double *to;
-};
-
-/* n degrees of freedom from i on, their accelerations being a. */
-static void rk4_proceed(const struct rk4 *r, size_t ndof, const struct evaluation *e, size_t i, size_t n, const double *a)
-{
-    const double *q = e->from + i, *u = q + ndof, *v = e->at + ndof + i;
-    double *sum = r->sum + i, *to_q = e->to + i, *to_u = to_q + ndof;
-    if (e->number == 0) {
-        first_stage(n, e->h, q, u, a, sum, to_q, to_u);
-    } else if (e->number < STAGES - 1) {
-        next_stage(n, e->h, q, u, v, a, sum, to_q, to_u);
-    } else {
-        rk4_finish(n, e->h, q, u, r->stage[0] + ndof + i, r->stage[1] + ndof + i, v, sum, a, to_q, to_u);
-    }
-}
-
-/* Evaluation e of block k; returns whether what it writes is finite, of the last one. */
-static int evaluate_block(struct rk4 *r, const tribo_system *sys, const struct evaluation *e, size_t k)
-{
-    const size_t ndof = sys->ndof, i = k * MATRIX_BLOCK, n = tribo_bodies_of_block(sys, k);
-    r->power[e->number] += tribo_rates_block(&r->alone, sys, e->time, k, e->at, e->at + ndof, r->k);
-    rk4_proceed(r, ndof, e, i, n, r->k);
-    return e->number < STAGES - 1 || (tribo_dense_finite(e->to + i, n) && tribo_dense_finite(e->to + ndof + i, n));
-}
-
-/* All evaluations. Each goes `lag` blocks behind the one before, which by then has written all that pulls at the block.
- * What is not finite on the way is not so at the end: returns whether all is finite there. */
-static int evaluate_blocks(struct rk4 *r, tribo_system *sys, const struct evaluation *all)
-{
-    const size_t blocks = r->alone.blocks, lag = r->alone.reach;
-    int finite = 1;
-    for (size_t s = 0; s < STAGES; s++) {
-        r->power[s] = 0.0;
-        if (s == 0 || all[s].time != all[s - 1].time) {
-            tribo_rates_set_time(&r->alone, sys, all[s].time, all[s].t);
-        }
-    }
-    for (size_t front = 0; finite && front < blocks + (STAGES - 1) * lag; front++) {
-        for (size_t s = 0; s < STAGES && s * lag <= front; s++) {
-            const size_t k = front - s * lag;
-            finite &= k >= blocks || evaluate_block(r, sys, &all[s], k);
-        }
-    }
-    sys->evaluations += STAGES;
-    return finite;
-}
-
-/* Each evaluation for all degrees of freedom at once; a status. */
-static int evaluate_all(struct rk4 *r, tribo_system *sys, const struct evaluation *all)
-{
-    int status = TRIBO_OK;
-    for (size_t s = 0; !status && s < STAGES; s++) {
-        const struct evaluation *e = &all[s];
-        status = (s ? tribo_system_rates : tribo_system_begin_rates)(sys, e->t, e->at, r->k, &r->power[s]);
-        rk4_proceed(r, sys->ndof, e, 0, status ? 0 : sys->ndof, r->k);
-    }
-    return status;
-}
-
-/* The system's contacts are told of the last evaluation, for those who ask them. */
-static int tell_contacts(tribo_driver *drv)
+/* A step of h to y, block by block or not. Returns a status; the message is that of the system if an evaluation failed. */
+static int take_step(tribo_driver *drv, double t, double h, const double *from, double *y, int blockwise)
 {
     struct rk4 *r = drv->own;
     tribo_system *sys = drv->sys;
-    const size_t evaluations = sys->evaluations;
-    const int status =
-        r->blockwise ? tribo_system_rates(sys, r->time, r->stage[STAGES - 2], r->k, &r->power[STAGES - 1]) : TRIBO_OK;
-    sys->evaluations = evaluations;
-    return status;
-}
-
-static double energy_of(const struct rk4 *r, double h, double from)
-{
-    const double *p = r->power;
-    return from + h / 6.0 * (((p[0] + 2.0 * p[1]) + 2.0 * p[2]) + p[3]);
-}
-
-/* What cannot be done block by block can all at once, or tells why not. */
-static int rk4_evaluate(tribo_driver *drv, const struct evaluation *all, double h, const double *from, double *y)
-{
-    struct rk4 *r = drv->own;
-    const size_t place = 2 * drv->sys->ndof;
-    if (r->blockwise && evaluate_blocks(r, drv->sys, all)) {
-        y[place] = energy_of(r, h, from[place]);
-        if (isfinite(y[place])) {
-            return TRIBO_OK;
+    const size_t n = sys->ndof;
+    const double part[STAGES] = {0.0, 0.5, 0.5, 1.0};
+    double power[STAGES];
+    for (size_t s = 0; s < STAGES; s++) {
+        const double *at = s ? r->stage[s - 1] : from;
+        int status = TRIBO_OK;
+        r->time = t + part[s] * h;
+        if (blockwise) {
+            tribo_blockwise_rates(&r->alone, sys, r->time, at, r->k, &power[s]);
+        } else {
+            status = (s ? tribo_system_rates : tribo_system_begin_rates)(sys, r->time, at, r->k, &power[s]);
+        }
+        if (status) {
+            return tribo_driver_explain(drv, t, h);
+        }
+        if (s == 0) {
+            first_stage(n, part[s + 1] * h, from, r->k, r->sum, r->stage[s]);
+        } else if (s + 1 < STAGES) {
+            next_stage(n, part[s + 1] * h, from, at + n, r->k, r->sum, r->stage[s]);
+        } else {
+            last_stage(n, h / 6.0, from, r->stage, r->k, r->sum, y);
         }
     }
-    const int status = evaluate_all(r, drv->sys, all);
-    y[place] = energy_of(r, h, from[place]);
-    return status ? tribo_driver_explain(drv, all[0].t, h) : tribo_driver_check(drv, y);
+    y[2 * n] = from[2 * n] + h / 6.0 * (((power[0] + 2.0 * power[1]) + 2.0 * power[2]) + power[3]);
+    return tribo_driver_check(drv, y);
 }
 
-static int step(tribo_driver *drv, double t, double next, const double *from, double *y)
+/* Evaluates the contacts at the last evaluation of a step that went block by block, for queries of the system. */
+static int tell_contacts(tribo_driver *drv, double t, double h)
+{
+    struct rk4 *r = drv->own;
+    const size_t evaluations = drv->sys->evaluations;
+    double power;
+    const int status = r->blockwise ? tribo_system_rates(drv->sys, r->time, r->stage[STAGES - 2], r->k, &power) : TRIBO_OK;
+    drv->sys->evaluations = evaluations;
+    return status ? tribo_driver_explain(drv, t, h) : TRIBO_OK;
+}
+
+static int settings_are_taken(const struct rk4 *r, const tribo_system *sys)
+{
+    return r->alone.has_law && r->alone.revision == tribo_system_revision(sys);
+}
+
+static int rk4_step(tribo_driver *drv, double t, double next, const double *from, double *y)
 {
     struct rk4 *r = drv->own;
     const double h = next - t;
-    const struct evaluation all[STAGES] = {{0, 0, t, 0.5 * h, from, from, r->stage[0]},
-                                           {1, 1, t + 0.5 * h, 0.5 * h, from, r->stage[0], r->stage[1]},
-                                           {2, 1, t + 0.5 * h, h, from, r->stage[1], r->stage[2]},
-                                           {3, 2, t + h, h / 6.0, from, r->stage[2], y}};
-    if (drv->seen) {
-        r->blockwise = tribo_rates_fit(&r->alone, drv->sys);
-    }
-    r->time = t + h;
-    const int status = rk4_evaluate(drv, all, h, from, y);
-    if (!status && drv->seen && tell_contacts(drv)) {
-        return tribo_driver_explain(drv, t, h);
-    }
-    return status;
+    r->blockwise = drv->seen ? settings_are_taken(r, drv->sys) : r->blockwise;
+    /* the system says what is wrong with a motion that is not finite */
+    const int done = r->blockwise && take_step(drv, t, h, from, y, 1) == TRIBO_OK;
+    const int status = done ? TRIBO_OK : take_step(drv, t, h, from, y, 0);
+    return status || !drv->seen ? status : tell_contacts(drv, t, h);
 }
 
-/* An advance of more than this many steps is worth taking new settings. */
+/* An advance of more steps than this is worth taking changed settings. */
 enum { MANY = 20 };
 
-static int advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
+static int rk4_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
-    static const struct fixed_method method = {step, NULL};
+    static const struct fixed_method method = {rk4_step, NULL};
     struct rk4 *r = drv->own;
     (void)continues;
-    if (t1 - *t > MANY * drv->dt && !tribo_rates_fit(&r->alone, drv->sys)) {
-        tribo_rates_prepare(&r->alone, drv->sys);
+    if (t1 - *t > MANY * drv->dt && !settings_are_taken(r, drv->sys)) {
+        tribo_blockwise_take_law(&r->alone, drv->sys);
     }
-    r->blockwise = tribo_rates_fit(&r->alone, drv->sys);
+    r->blockwise = settings_are_taken(r, drv->sys);
     const int status = tribo_driver_fixed_steps(drv, t, t1, y, &method);
-    if (!status && !drv->seen && tell_contacts(drv)) {
-        return tribo_driver_explain(drv, *t, drv->dt);
-    }
-    return status;
+    return status || drv->seen ? status : tell_contacts(drv, *t, drv->dt);
 }
 
-const struct method tribo_method_rk4_fixed = {"rk4/fixed", TAKES_STEP, create, destroy, advance, NULL, NULL, NULL};
+const struct method tribo_method_rk4_fixed = {"rk4/fixed", TAKES_STEP, rk4_create, rk4_destroy, rk4_advance, NULL, NULL, NULL};

@@ -3,6 +3,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+int tribo_step_form_plain(const tribo_system *sys)
+{
+    double *ratio = sys->feq;
+    int plain = !tribo_system_planar(sys);
+    tribo_get_static(sys->contacts, ratio, NULL);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        plain &= ratio[i] <= 1.0;
+    }
+    return plain;
+}
+
 int tribo_step_form_create(struct step_form *s, const tribo_system *sys)
 {
     const size_t n = sys->ndof, c = sys->ncontact;
@@ -28,12 +39,8 @@ void tribo_step_form_free(struct step_form *s)
 void tribo_step_form_start(struct step_form *s, const tribo_system *sys)
 {
     s->settings = tribo_system_revision(sys);
-    memset(s->base, 0, sys->ncontact * sizeof *s->base); /* bases may move no more */
-    s->statics = 0;
-    tribo_get_static(sys->contacts, s->f, NULL);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        s->statics |= s->f[i] > 1.0;
-    }
+    s->plain = tribo_step_form_plain(sys);
+    memset(s->base, 0, sys->ncontact * sizeof *s->base); /* in case that bases no longer move */
 }
 
 void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t)
@@ -62,6 +69,7 @@ void tribo_step_form_turn(struct step_form *s)
 
 void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, const double *u)
 {
+    /* a degree of freedom without mass may begin a step with another velocity than it ended the last one with */
     if (s->goes_on && sys->massless.count == 0) {
         tribo_step_form_turn(s);
     } else {
@@ -72,16 +80,10 @@ void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, con
 
 int tribo_step_form_force(struct step_form *s, const tribo_system *sys, tribo_context *contacts, double h)
 {
-    size_t planar;
     if (s->settings != tribo_system_revision(sys)) {
         tribo_step_form_start(s, sys);
     }
-    const int status = tribo_get_count(contacts, TRIBO_COUNT_PLANAR, &planar);
-    if (status) {
-        return status;
-    }
-    return planar || s->statics ? tribo_step_force_mean(contacts, h, s->v, s->end, s->f)
-                                : tribo_step_force(contacts, h, s->end, s->f);
+    return s->plain ? tribo_step_force(contacts, h, s->end, s->f) : tribo_step_force_mean(contacts, h, s->v, s->end, s->f);
 }
 
 double tribo_step_form_power(const tribo_system *sys, const double *f, const double *before, const double *after)
@@ -98,11 +100,4 @@ int tribo_step_form_grew(tribo_driver *drv, double t)
     return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE,
                              "at t = %.17g forces are too large: the motion grew without bound, or dt = %g is too long", t,
                              drv->dt);
-}
-
-void tribo_step_form_set_limits(tribo_system *sys, double middle)
-{
-    if (tribo_system_limits_vary(sys)) {
-        tribo_system_set_time(sys, middle);
-    }
 }

@@ -111,7 +111,8 @@ int tribo_system_explain(const tribo_system *sys, int status);
 /* How many planar contacts there are. */
 size_t tribo_system_planar(const tribo_system *sys);
 
-/* The first contact whose limit falls with the speed (a velocity of tribo_set_static), or ncontact; 1 if there is such a contact. */
+/* The first contact whose limit falls with the speed (a velocity of tribo_set_static), or ncontact; 1 if there is such a
+ * contact. */
 size_t tribo_system_first_falling(const tribo_system *sys);
 int tribo_system_falls(const tribo_system *sys);
 
@@ -144,8 +145,8 @@ static inline void tribo_system_turn(const tribo_system *sys, size_t k)
     tribo_system_turn_to(sys, &sys->harmonic[k]);
 }
 
-/* Sets cos_t and sin_t of a load to c and s, which a motion has found for the time set; at most 16 times in a row, since each adds
- * its rounding. */
+/* Sets cos_t and sin_t of a load to c and s, which a motion has found for the time set; at most 16 times in a row, since
+ * each adds its rounding. */
 void tribo_harmonic_take(const tribo_system *sys, struct harmonic *h, double c, double s);
 
 /* From here on every time means t + low, at which events happen between two numbers t. */
