@@ -5,17 +5,17 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "dynamics/system/cos_sin.h"
 #include "common/real.h"
+#include "dynamics/system/cos_sin.h"
 #include "step_form.h"
 
 /* ------------------------------------------------------------------------------------------------------------- settings */
 
-/* Numbers whose products are numbers. */
+/* Products of numbers between these are numbers. */
 #define LEAST 1e-100
 #define MOST 1e100
 
-/* What elimination must leave of the diagonal of R: inverses are good to rounding. */
+/* Elimination must leave this part of the diagonal of R: then inverses are good to rounding. */
 #define LEAST_PIVOT 0.01
 
 static void take_matrix(const struct matrix *a, double to[FEW][FEW])
@@ -28,8 +28,7 @@ static void take_matrix(const struct matrix *a, double to[FEW][FEW])
     }
 }
 
-/* The inverse over a set of contacts, from that over all of them but the last one, i: rank one more. 0 if R is nearly
- * singular. */
+/* The inverse over a set of contacts, from that over the set without its last one, i. 0 if R is nearly singular. */
 static int few_invert(struct few_bodies *b, unsigned set, size_t i)
 {
     double(*to)[FEW] = b->inverse[set], (*less)[FEW] = b->inverse[set & ~(1u << i)];
@@ -52,7 +51,7 @@ static int few_invert(struct few_bodies *b, unsigned set, size_t i)
     return fits;
 }
 
-/* 0 if R is no matrix for runs. */
+/* R and its inverses. 0 if R is out of range, or nearly singular. */
 static int take_operator(struct few_bodies *b, const tribo_system *sys)
 {
     int fits = 1;
@@ -71,30 +70,9 @@ static int take_operator(struct few_bodies *b, const tribo_system *sys)
     return fits;
 }
 
-/* 0 if contacts are planar, have static limits, or a limit is too large. */
-static int few_take_contacts(struct few_bodies *b, const tribo_system *sys)
+/* The snaps of each set of holding contacts. */
+static void take_snaps(struct few_bodies *b, const tribo_system *sys)
 {
-    int fits = tribo_step_form_plain(sys);
-    tribo_get_limit(sys->contacts, b->limit);
-    for (size_t i = 0; i < b->c; i++) {
-        fits &= b->limit[i] <= MOST;
-        b->tally[i] = sys->tally[i];
-    }
-    return fits;
-}
-
-static int take_all(struct few_bodies *b, const tribo_system *sys)
-{
-    b->n = sys->ndof;
-    b->c = sys->ncontact;
-    if (b->n > FEW || b->c > FEW || sys->unsolved || sys->massless.count) {
-        return 0;
-    }
-    take_matrix(&sys->stiffness, b->stiffness);
-    take_matrix(&sys->damping, b->damping);
-    take_matrix(&sys->direction, b->direction);
-    take_matrix(&sys->response, b->response);
-    b->slip = (struct few_slip){.resting = (1u << b->c) - 1};
     for (unsigned set = 0; set < 1u << b->c; set++) {
         struct snap list[FEW];
         signed char loose[FEW];
@@ -103,104 +81,248 @@ static int take_all(struct few_bodies *b, const tribo_system *sys)
         }
         b->snaps[set] = tribo_system_list_snaps(sys, loose, list);
         for (size_t k = 0; k < b->snaps[set]; k++) {
-            const struct snap *from = &list[k];
-            struct few_snap x = {.contact = from->contact, .to = from->to};
+            struct few_snap x = {.contact = list[k].contact, .to = list[k].to};
             memcpy(x.rest, b->direction[x.contact], sizeof x.rest);
             x.turn = x.rest[x.to];
             x.rest[x.to] = 0.0;
             b->snap[set][k] = x;
         }
     }
-    return few_take_contacts(b, sys) && take_operator(b, sys);
 }
 
 int tribo_few_take(struct few_bodies *b, tribo_system *sys)
 {
     const size_t revision = tribo_system_revision(sys);
-    if (b->revision != revision) {
-        b->fits = take_all(b, sys);
-        b->revision = revision;
+    if (b->revision == revision) {
+        return b->fits;
+    }
+    b->revision = revision;
+    b->n = sys->ndof;
+    b->c = sys->ncontact;
+    b->fits = b->n <= FEW && b->c <= FEW && !sys->unsolved && !sys->massless.count && tribo_step_form_plain(sys);
+    if (b->fits) {
+        take_matrix(&sys->stiffness, b->stiffness);
+        take_matrix(&sys->damping, b->damping);
+        take_matrix(&sys->direction, b->direction);
+        take_matrix(&sys->response, b->response);
+        take_snaps(b, sys);
+        memcpy(b->tally, sys->tally, b->c * sizeof *b->tally);
+        b->slip = (struct few_slip){.holding = (1u << b->c) - 1};
+        b->fits = take_operator(b, sys);
     }
     return b->fits;
 }
 
 /* ---------------------------------------------------------------------------------------------------- what acts in a run */
 
-/* Adds harmonics that drive loads or bases at the times t [count] to the rows `to`. */
-static void few_add_harmonics(const tribo_system *sys, enum drives drives, size_t count, const double *t, double to[FEW][RUN])
+/* Adds harmonics and tables that drive loads or bases at the times t [count] to rows [n], which begin with 0. */
+static void few_find_drives(tribo_system *sys, enum drives drives, size_t n, size_t count, const double *t, double row[FEW][RUN])
 {
     double cosine[RUN], sine[RUN];
+    memset(row, 0, n * sizeof *row);
     for (size_t k = 0; k < sys->harmonics; k++) {
         const struct harmonic *h = &sys->harmonic[k];
         if (h->drives == drives) {
             tribo_cos_sin_all(h->omega, count, t, cosine, sine);
             for (size_t e = 0; e < h->count; e++) {
-                double *row = to[h->index[e]];
+                double *to = row[h->index[e]];
                 for (size_t s = 0; s < count; s++) {
-                    row[s] += h->cosine[e] * cosine[s] + h->sine[e] * sine[s];
+                    to[s] += h->cosine[e] * cosine[s] + h->sine[e] * sine[s];
                 }
             }
         }
     }
+    for (size_t s = 0; sys->tables && s < count; s++) {
+        double x[FEW] = {0.0};
+        tribo_system_set_time(sys, t[s]);
+        tribo_system_tables(sys, drives, 0, 1.0, 0, n, x);
+        for (size_t i = 0; i < n; i++) {
+            row[i][s] += x[i];
+        }
+    }
 }
 
-/* Finds lengths, loads at t, bases at the middles of steps, limits at t. last: the length of the step before. 0 if a limit is too
- * large. */
+/* Durations and lengths of steps, after one of length `last`; loads and limits at t, bases at the middles. 0 if a limit is
+ * too large. */
 static int few_find_all(struct few_bodies *b, tribo_system *sys, size_t count, const double *t, double last)
 {
-    const int vary = tribo_system_limits_vary(sys);
+    double middle[RUN], limit[FEW];
     int fits = 1;
     b->h[0] = last;
     for (size_t s = 0; s < count; s++) {
         b->h[s + 1] = t[s + 1] - t[s];
-        b->to[s] = t[s] + 0.5 * (t[s + 1] - t[s]);
         b->time[s] = 0.5 * (b->h[s] + b->h[s + 1]);
+        middle[s] = t[s] + 0.5 * (t[s + 1] - t[s]);
     }
-    memset(b->load, 0, b->n * sizeof *b->load);
-    few_add_harmonics(sys, DRIVES_LOAD, count, t, b->load);
-    if (tribo_system_bases_move(sys)) {
-        memset(b->base, 0, b->c * sizeof *b->base);
-        few_add_harmonics(sys, DRIVES_BASE, count, b->to, b->base);
-    }
-    for (size_t s = 0; sys->base_tables && s < count; s++) {
-        double base[FEW] = {0.0};
-        tribo_system_set_time(sys, b->to[s]);
-        tribo_system_tables(sys, DRIVES_BASE, 0, 1.0, 0, b->c, base);
+    few_find_drives(sys, DRIVES_LOAD, b->n, count, t, b->load);
+    few_find_drives(sys, DRIVES_BASE, b->c, count, middle, b->base);
+    const int vary = tribo_system_limits_vary(sys);
+    for (size_t s = 0; s < count; s++) {
+        if (vary) {
+            tribo_system_set_time(sys, t[s]);
+        }
+        if (vary || s == 0) {
+            tribo_get_limit(sys->contacts, limit);
+        }
         for (size_t i = 0; i < b->c; i++) {
-            b->base[i][s] += base[i];
-        }
-    }
-    for (size_t s = 0; (vary || sys->tables > sys->base_tables) && s < count; s++) {
-        double load[FEW] = {0.0}, limit[FEW];
-        tribo_system_set_time(sys, t[s]);
-        tribo_system_tables(sys, DRIVES_LOAD, 0, 1.0, 0, b->n, load);
-        for (size_t d = 0; d < b->n; d++) {
-            b->load[d][s] += load[d];
-        }
-        tribo_get_limit(sys->contacts, limit);
-        for (size_t i = 0; vary && i < b->c; i++) {
             fits &= limit[i] <= MOST;
-            b->limits[i][s] = limit[i];
+            b->limit[i][s] = limit[i];
         }
     }
     return fits;
 }
 
-/* ----------------------------------------------------------------------------------------------------------------- runs */
+/* ---------------------------------------------------------------------------------------------------------------- steps */
 
-/* Of so few numbers that a call would take longer. */
-static inline void copy_few(size_t n, const double *from, double *to)
+/* The contacts in a step: bounds of impulses, velocities without friction; impulses, and velocities at the end. */
+struct impulses {
+    double most[FEW], v[FEW], p[FEW], end[FEW];
+};
+
+/* Row a [m] times x. */
+static inline double row_times(size_t m, const double a[FEW], const double *x)
 {
-    for (size_t i = 0; i < n && i < FEW; i++) {
-        to[i] = from[i];
+    double sum = a[0] * x[0];
+    for (size_t j = 1; j < m; j++) {
+        sum += a[j] * x[j];
+    }
+    return sum;
+}
+
+static inline int few_holds(const struct few_slip *slip, size_t i)
+{
+    return slip->holding >> i & 1;
+}
+
+/* Error bound of the velocity of contact i by rounding. */
+static inline double noise_of(const struct few_bodies *b, size_t c, size_t i, const struct impulses *x)
+{
+    double size = fabs(x->v[i]);
+    for (size_t j = 0; j < c; j++) {
+        size += fabs(b->r[i][j]) * x->most[j];
+    }
+    return 4.0 * DBL_EPSILON * size;
+}
+
+/* Lets contacts slide whose impulse is beyond its bound, and those hold that move in the direction of their friction.
+ * Returns 1 if any changes. */
+static inline int few_revise(const struct few_bodies *b, size_t c, const struct impulses *x, struct few_slip *slip)
+{
+    int changed = 0;
+    for (size_t i = 0; i < c; i++) {
+        const double along = slip->side[i] * x->end[i];
+        if (few_holds(slip, i) && fabs(x->p[i]) > x->most[i]) {
+            slip->side[i] = x->p[i] > 0.0 ? 1.0 : -1.0;
+            slip->holding &= ~(1u << i);
+            changed = 1;
+        } else if (along > 0.0 && along > noise_of(b, c, i, x) && x->most[i] > 0.0) {
+            slip->side[i] = 0.0;
+            slip->holding |= 1u << i;
+            changed = 1;
+        }
+    }
+    return changed;
+}
+
+/* Finds slip, p and end. 0 if contacts still change after ROUNDS. */
+static inline int few_settle(const struct few_bodies *b, size_t c, struct few_slip *slip, struct impulses *x)
+{
+    enum { ROUNDS = 2 * FEW + 2 };
+    int changed = 1;
+    for (int round = 0; changed && round < ROUNDS; round++) {
+        double held[FEW] = {0.0};
+        for (size_t i = 0; i < c; i++) {
+            x->p[i] = slip->side[i] * x->most[i];
+        }
+        for (size_t i = 0; i < c; i++) {
+            x->end[i] = x->v[i] + row_times(c, b->r[i], x->p);
+        }
+        for (size_t i = 0; slip->holding && i < c; i++) {
+            held[i] = row_times(c, b->inverse[slip->holding][i], x->end);
+        }
+        for (size_t i = 0; slip->holding && i < c; i++) {
+            x->p[i] -= held[i];
+            x->end[i] = few_holds(slip, i) ? 0.0 : x->end[i] - row_times(c, b->r[i], held);
+        }
+        changed = few_revise(b, c, x, slip);
+    }
+    return !changed;
+}
+
+/* Makes the velocities u of holding contacts exact, but of those at their bounds. */
+static inline void few_snap_all(const struct few_bodies *b, size_t n, size_t c, size_t s, const struct few_slip *slip,
+                                const struct impulses *x, double *u)
+{
+    unsigned set = 0;
+    for (size_t i = 0; i < c; i++) {
+        set |= (unsigned)(few_holds(slip, i) && fabs(x->p[i]) < x->most[i]) << i;
+    }
+    for (size_t k = 0; k < c && k < b->snaps[set]; k++) {
+        const struct few_snap *to = &b->snap[set][k];
+        const double value = (b->base[to->contact][s] - row_times(n, to->rest, u)) / to->turn;
+        for (size_t d = 0; d < n; d++) {
+            u[d] = to->to == d ? value : u[d];
+        }
     }
 }
 
-/* Numbers that are not finite come back in every step that follows. */
-static int is_finite(const struct few_bodies *b, const struct few_carried *m)
+/* The motion of a run, in local memory: compilers keep it in registers. */
+struct few_state {
+    double q[FEW], u[FEW], v[FEW], energy;
+    struct few_slip slip;
+};
+
+/* Step s of a run. 0 if it has to be left to others: then only m->slip has changed. */
+static inline int few_step(const struct few_bodies *b, size_t n, size_t c, size_t s, struct few_state *m)
+{
+    struct impulses x = {{0.0}, {0.0}, {0.0}, {0.0}};
+    double u[FEW] = {0.0}, work = 0.0;
+    for (size_t d = 0; d < n; d++) {
+        const double a = b->load[d][s] - row_times(n, b->stiffness[d], m->q);
+        u[d] = m->u[d] + b->time[s] * (a - row_times(n, b->damping[d], m->u));
+    }
+    for (size_t i = 0; i < c; i++) {
+        x.v[i] = row_times(n, b->direction[i], u) - b->base[i][s];
+        x.most[i] = b->time[s] * b->limit[i][s];
+    }
+    if (!few_settle(b, c, &m->slip, &x)) {
+        return 0;
+    }
+    for (size_t d = 0; d < n; d++) {
+        u[d] += row_times(c, b->response[d], x.p);
+    }
+    if (m->slip.holding) {
+        few_snap_all(b, n, c, s, &m->slip, &x, u);
+    }
+    for (size_t i = 0; i < c; i++) {
+        work += b->tally[i] * x.p[i] * (m->v[i] + x.end[i]);
+        m->v[i] = x.end[i];
+    }
+    for (size_t d = 0; d < n; d++) {
+        m->q[d] += b->h[s + 1] * u[d];
+        m->u[d] = u[d];
+    }
+    m->energy -= 0.5 * work;
+    return 1;
+}
+
+/* The first steps of a run. Returns how many of count could be taken. */
+static inline size_t few_steps(const struct few_bodies *b, size_t n, size_t c, size_t count, struct few_state *motion)
+{
+    struct few_state m = *motion;
+    size_t s = 0;
+    while (s < count && few_step(b, n, c, s, &m)) {
+        s++;
+    }
+    *motion = m;
+    return s;
+}
+
+/* 1 if the motion is finite: numbers that are not come back in every step that follows. */
+static int few_finite(size_t n, const struct few_state *m)
 {
     int finite = isfinite(m->energy) != 0;
-    for (size_t d = 0; d < b->n; d++) {
+    for (size_t d = 0; d < n; d++) {
         finite &= fabs(m->q[d]) + fabs(m->u[d]) <= DBL_MAX;
     }
     return finite;
@@ -209,23 +331,25 @@ static int is_finite(const struct few_bodies *b, const struct few_carried *m)
 size_t tribo_few_run(struct few_bodies *b, tribo_system *sys, size_t count, const double *t, struct few_motion *m)
 {
     const size_t n = b->n, c = b->c;
-    const struct few_parts has = {n, c, sys->damping.rows > 0, tribo_system_bases_move(sys), tribo_system_limits_vary(sys)};
-    struct few_carried x;
+    struct few_state x = {.energy = m->energy, .slip = b->slip};
     if (!few_find_all(b, sys, count, t, m->last)) {
         return 0;
     }
-    copy_few(n, m->q, x.q);
-    copy_few(n, m->u, x.u);
-    copy_few(c, m->v, x.v);
-    x.energy = m->energy;
-    x.slip = b->slip;
-    const size_t taken = tribo_few_steps(b, has, count, &x);
-    if (taken == 0 || !is_finite(b, &x)) {
+    memcpy(x.q, m->q, n * sizeof *x.q);
+    memcpy(x.u, m->u, n * sizeof *x.u);
+    memcpy(x.v, m->v, c * sizeof *x.v);
+    /* sizes as constants make loops straight: a step then takes half the time */
+    const size_t taken = n != c   ? few_steps(b, n, c, count, &x)
+                         : n == 1 ? few_steps(b, 1, 1, count, &x)
+                         : n == 2 ? few_steps(b, 2, 2, count, &x)
+                         : n == 3 ? few_steps(b, 3, 3, count, &x)
+                                  : few_steps(b, FEW, FEW, count, &x);
+    if (taken == 0 || !few_finite(n, &x)) {
         return 0;
     }
-    copy_few(n, x.q, m->q);
-    copy_few(n, x.u, m->u);
-    copy_few(c, x.v, m->v);
+    memcpy(m->q, x.q, n * sizeof *x.q);
+    memcpy(m->u, x.u, n * sizeof *x.u);
+    memcpy(m->v, x.v, c * sizeof *x.v);
     m->energy = x.energy;
     m->last = b->h[taken];
     b->slip = x.slip;
