@@ -1,4 +1,4 @@
-/* Drivers: the table of methods, settings, queries, the advance with its last good state, and method "auto". */
+/* Drivers by any method: settings, queries, and the advance with its last good state. */
 #include "driver.h"
 
 #include <math.h>
@@ -10,71 +10,6 @@
 
 #include "common/real.h"
 #include "common/zeros.h"
-
-static const struct method automatic;
-
-static const struct method *const methods[] = {
-    &tribo_method_rk4_fixed,     &tribo_method_exact,        &tribo_method_event,
-    &tribo_method_central_fixed, &tribo_method_moreau_fixed, &automatic,
-};
-
-int tribo_method_count(void)
-{
-    return (int)(sizeof methods / sizeof *methods);
-}
-
-const char *tribo_method_name(int method)
-{
-    return method >= 0 && method < tribo_method_count() ? methods[method]->name : NULL;
-}
-
-static int driver_lower(char c)
-{
-    return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c;
-}
-
-static int driver_same_name(const char *a, const char *b)
-{
-    while (*a && driver_lower(*a) == driver_lower(*b)) {
-        a++;
-        b++;
-    }
-    return driver_lower(*a) == driver_lower(*b);
-}
-
-static const struct method *driver_find(const char *name)
-{
-    for (int i = 0; i < tribo_method_count(); i++) {
-        if (driver_same_name(methods[i]->name, name)) {
-            return methods[i];
-        }
-    }
-    return NULL;
-}
-
-static int unknown(const tribo_system *sys, const char *name)
-{
-    char list[200] = "";
-    for (int i = 0; i < tribo_method_count(); i++) {
-        const size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", methods[i]->name);
-    }
-    return tribo_system_fail(sys, TRIBO_ERR_NAME,
-                             "method \"%.20s\" is unknown; there are %s; tribo_gsl_driver_create takes GSL's steppers", name,
-                             list);
-}
-
-/* Returns TRIBO_OK if all degrees of freedom have mass, or m is exact, event, moreau/fixed or auto, which need none. */
-static int driver_check_mass(const tribo_system *sys, const struct method *m)
-{
-    const int able = m == &tribo_method_exact || m == &tribo_method_event || m == &tribo_method_moreau_fixed || m == &automatic;
-    char who[40];
-    if (able || !sys->massless.count) {
-        return TRIBO_OK;
-    }
-    snprintf(who, sizeof who, "method %s", m->name);
-    return tribo_system_check_mass(sys, who);
-}
 
 /* Returns TRIBO_ERR_UNSUPPORTED if an elastic contact has a static limit above its limit. */
 static int driver_check_static(const tribo_system *sys)
@@ -91,12 +26,11 @@ static int driver_check_static(const tribo_system *sys)
                                    "contact %zu is elastic, and takes no static limit: ratio[%zu] = %g", i, i, ratio[i]);
 }
 
-/* Returns TRIBO_ERR_UNSUPPORTED if m takes no planar contacts and there are some, or an elastic contact has a static limit.
- * Called by each advance, since contacts may change between advances. */
+/* Returns TRIBO_ERR_UNSUPPORTED if there are planar contacts and m takes none, or an elastic contact has a static limit. Each
+ * advance calls it, since contacts may change between advances. */
 static int check_contacts(const tribo_system *sys, const struct method *m)
 {
-    const int scalar_only = m == &tribo_method_exact || sys->massless.count;
-    const size_t planar = scalar_only ? tribo_system_planar(sys) : 0;
+    const size_t planar = m->takes & TAKES_PLANAR && !sys->massless.count ? 0 : tribo_system_planar(sys);
     const int status = !planar ? TRIBO_OK
                                : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                                    "method %s knows no planar contacts%s, of which the system has %zu%s", m->name,
@@ -109,8 +43,12 @@ int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const stru
 {
     int status = tribo_system_take_settings(sys);
     status = status ? status : check_contacts(sys, m);
-    status = status ? status : driver_check_mass(sys, m);
-    status = status || m == &tribo_method_moreau_fixed ? status : tribo_system_check_solved(sys, m->name);
+    if (!status && !(m->takes & TAKES_MASSLESS)) {
+        char who[40];
+        snprintf(who, sizeof who, "method %s", m->name);
+        status = tribo_system_check_mass(sys, who);
+    }
+    status = status || m->takes & TAKES_UNSOLVED ? status : tribo_system_check_solved(sys, m->name);
     if (status) {
         return status;
     }
@@ -135,18 +73,6 @@ int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const stru
     }
     *drv = d;
     return TRIBO_OK;
-}
-
-int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method)
-{
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!drv || !method) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", drv ? "method" : "drv");
-    }
-    const struct method *m = driver_find(method);
-    return m ? tribo_driver_create_method(drv, sys, m) : unknown(sys, method);
 }
 
 void tribo_driver_destroy(tribo_driver *drv)
@@ -298,34 +224,26 @@ int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
     if (status) {
         return status;
     }
-    switch (which) {
-    case TRIBO_COUNT_STEPS:
-        *value = drv->steps;
-        return TRIBO_OK;
-    case TRIBO_COUNT_REJECTED:
-        *value = drv->rejected;
-        return TRIBO_OK;
-    case TRIBO_COUNT_EVALUATIONS:
-        *value = drv->evaluations;
-        return TRIBO_OK;
-    case TRIBO_COUNT_JACOBIANS:
-        *value = drv->jacobians;
-        return TRIBO_OK;
-    case TRIBO_COUNT_EVENTS:
-        *value = drv->events;
-        return TRIBO_OK;
-    case TRIBO_COUNT_PERIODS:
-        *value = drv->periods;
-        return TRIBO_OK;
-    case TRIBO_COUNT_NEWTON:
-        *value = drv->newton;
-        return TRIBO_OK;
-    case TRIBO_COUNT_RESTED:
-        *value = drv->rested;
-        return TRIBO_OK;
-    default:
-        return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "which = %d is no count of a driver", which);
+    const struct {
+        int which;
+        size_t value;
+    } counts[] = {
+        {TRIBO_COUNT_STEPS, drv->steps},
+        {TRIBO_COUNT_REJECTED, drv->rejected},
+        {TRIBO_COUNT_EVALUATIONS, drv->evaluations},
+        {TRIBO_COUNT_JACOBIANS, drv->jacobians},
+        {TRIBO_COUNT_EVENTS, drv->events},
+        {TRIBO_COUNT_PERIODS, drv->periods},
+        {TRIBO_COUNT_NEWTON, drv->newton},
+        {TRIBO_COUNT_RESTED, drv->rested},
+    };
+    for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
+        if (counts[k].which == which) {
+            *value = counts[k].value;
+            return TRIBO_OK;
+        }
     }
+    return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "which = %d is no count of a driver", which);
 }
 
 int tribo_driver_real(const tribo_driver *drv, int which, double *value)
@@ -417,15 +335,14 @@ static int check_settings(tribo_driver *drv)
     if (status) {
         return tribo_driver_fail(drv, status, "%s", tribo_system_message(drv->sys));
     }
-    if (drv->method->takes == TAKES_STEP && drv->dt == 0.0) {
+    if ((drv->method->takes & (TAKES_STEP | TAKES_TOLERANCE)) == TAKES_STEP && drv->dt == 0.0) {
         return tribo_driver_fail(drv, TRIBO_ERR_STATE, "method %s has no step: call tribo_driver_set_step", drv->method->name);
     }
     const int unfit = check_contacts(drv->sys, drv->method);
     return unfit ? tribo_driver_fail(drv, unfit, "%s", tribo_system_message(drv->sys)) : TRIBO_OK;
 }
 
-/* tribo_driver_advance of the methods' state y. */
-static int advance_motion(tribo_driver *drv, double *t, double t1, double *y)
+int tribo_driver_advance_motion(tribo_driver *drv, double *t, double t1, double *y)
 {
     int status = check_settings(drv);
     if (status || t1 == *t) {
@@ -455,7 +372,7 @@ int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)
     }
     int status = check_times(drv, t, t1, y);
     if (status || !drv->motion) {
-        return status ? status : advance_motion(drv, t, t1, y);
+        return status ? status : tribo_driver_advance_motion(drv, t, t1, y);
     }
     tribo_system_write_state(drv->sys, drv->state, drv->shown);
     if (memcmp(y, drv->shown, tribo_system_dimension(drv->sys) * sizeof *y) == 0) { /* an advance that continues reads w', too */
@@ -463,125 +380,7 @@ int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)
     } else {
         tribo_system_read_state(drv->sys, y, drv->motion);
     }
-    status = advance_motion(drv, t, t1, drv->motion);
+    status = tribo_driver_advance_motion(drv, t, t1, drv->motion);
     tribo_system_write_state(drv->sys, drv->motion, y);
     return status;
 }
-
-/* ------------------------------------------------------------------------------------------------------ method "auto" */
-
-enum { EVENT, EXACT };
-
-/* The two drivers of auto, each created when it is first chosen. */
-struct choice {
-    tribo_driver *inner[2];
-    int refused; /* 1: exact cannot do the system of this revision */
-    size_t revision;
-};
-
-/* Returns EXACT for up to 200 degrees of freedom, whose modes cost little, and a system that exact can do. */
-static int driver_choose(const tribo_driver *drv)
-{
-    const tribo_system *sys = drv->sys;
-    const struct choice *c = drv->own;
-    const int refused = c->refused && c->revision == tribo_system_revision(sys);
-    const int closed = !sys->tables && !sys->limits.knots && !tribo_system_falls(sys) && !tribo_system_planar(sys);
-    return sys->ndof <= 200 && closed && !refused ? EXACT : EVENT;
-}
-
-/* Creates inner[which] where it is missing. The message of a failure is the system's. */
-static int provide(tribo_driver *drv, int which)
-{
-    static const struct method *const of[] = {&tribo_method_event, &tribo_method_exact};
-    struct choice *c = drv->own;
-    drv->at_work = of[which];
-    return c->inner[which] ? TRIBO_OK : tribo_driver_create_method(&c->inner[which], drv->sys, of[which]);
-}
-
-static int create_choice(tribo_driver *drv)
-{
-    drv->own = tribo_zeros(1, sizeof(struct choice));
-    drv->excess = drv->backslip = 0.0;
-    return drv->own ? provide(drv, driver_choose(drv))
-                    : tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method auto");
-}
-
-static void destroy_choice(tribo_driver *drv)
-{
-    struct choice *c = drv->own;
-    if (c) {
-        tribo_driver_destroy(c->inner[EXACT]);
-        tribo_driver_destroy(c->inner[EVENT]);
-        free(c);
-    }
-}
-
-/* An advance from *t to t1; or, if finds is 1, the search of a periodic motion from *t on. */
-struct task {
-    double *t, t1, period, *y;
-    int finds;
-};
-
-/* Runs task x by inner[which] with the settings of drv, and adds its counts. Returns a status. */
-static int delegate(tribo_driver *drv, int which, const struct task *x)
-{
-    const struct choice *c = drv->own;
-    int status = provide(drv, which);
-    if (status) {
-        return tribo_driver_fail(drv, status, "method %s: %s", drv->at_work->name, tribo_system_message(drv->sys));
-    }
-    tribo_driver *inner = c->inner[which];
-    const tribo_driver before = *inner;
-    inner->knows &= inner->abstol == drv->abstol && inner->reltol == drv->reltol;
-    inner->abstol = drv->abstol;
-    inner->reltol = drv->reltol;
-    inner->output = drv->output;
-    inner->seen = drv->seen;
-    inner->data = drv->data;
-    status = x->finds ? inner->method->find_periodic(inner, *x->t, x->period, x->y) : advance_motion(inner, x->t, x->t1, x->y);
-    /* The caller counts the evaluations of an advance. */
-    drv->steps += inner->steps - before.steps;
-    drv->rejected += inner->rejected - before.rejected;
-    drv->events += inner->events - before.events;
-    drv->periods += inner->periods - before.periods;
-    drv->newton += inner->newton - before.newton;
-    drv->evaluations += x->finds ? inner->evaluations - before.evaluations : 0;
-    drv->excess = greater(drv->excess, inner->excess);
-    drv->backslip = greater(drv->backslip, inner->backslip);
-    if (x->finds) {
-        drv->shooting = inner->shooting;
-    }
-    const int kept = x->finds ? TRIBO_OK : tribo_driver_keep(drv, *x->t, x->y);
-    if (status && !(which == EXACT && status == TRIBO_ERR_UNSUPPORTED)) {
-        tribo_driver_fail(drv, status, "%s", inner->message);
-    }
-    return status ? status : kept;
-}
-
-static int choose_and_delegate(tribo_driver *drv, const struct task *x)
-{
-    struct choice *c = drv->own;
-    if (driver_choose(drv) == EXACT) {
-        const int status = delegate(drv, EXACT, x);
-        if (status != TRIBO_ERR_UNSUPPORTED) {
-            return status;
-        }
-        c->refused = 1;
-        c->revision = tribo_system_revision(drv->sys);
-    }
-    return delegate(drv, EVENT, x);
-}
-
-static int advance_choice(tribo_driver *drv, double *t, double t1, double *y, int continues)
-{
-    (void)continues;
-    return choose_and_delegate(drv, &(struct task){.t = t, .t1 = t1, .y = y});
-}
-
-static int find_by_choice(tribo_driver *drv, double t, double period, double *y)
-{
-    return choose_and_delegate(drv, &(struct task){.t = &t, .period = period, .y = y, .finds = 1});
-}
-
-static const struct method automatic = {
-    "auto", TAKES_TOLERANCE | TAKES_OUTPUT, create_choice, destroy_choice, advance_choice, NULL, NULL, find_by_choice};

@@ -4,20 +4,28 @@
 
 #include "dynamics/system/system.h"
 
-/* Settings of a driver, bit by bit: see tribo_driver_set_step and its neighbours. */
-enum { TAKES_STEP = 1, TAKES_TOLERANCE = 2, TAKES_OUTPUT = 4, TAKES_MAX_STEP = 8 };
+/* Bits of what a method takes: settings, see tribo_driver_set_step and its neighbours; planar contacts; systems with degrees of
+ * freedom without mass, and unsolved ones. */
+enum {
+    TAKES_STEP = 1,
+    TAKES_TOLERANCE = 2,
+    TAKES_OUTPUT = 4,
+    TAKES_MAX_STEP = 8,
+    TAKES_PLANAR = 16,
+    TAKES_MASSLESS = 32,
+    TAKES_UNSOLVED = 64
+};
 
 struct events;
 
 struct method {
     const char *name;
-    int takes; /* sum of the settings that the method takes */
+    int takes; /* sum of TAKES_... */
     int (*create)(tribo_driver *drv);
     void (*destroy)(tribo_driver *drv); /* also after a create that failed */
     /* Advances from *t to t1 > *t. continues = 1: the method's last advance ended at (t, y), and nothing has changed since.
      * Returns a status; on error t and y may be anything: the driver restores the state kept last. */
     int (*advance)(tribo_driver *drv, double *t, double t1, double *y, int continues);
-    const void *with; /* the method's own */
     /* Methods that loop over events (events.h): prepares *events. Other methods: NULL. */
     int (*open)(tribo_driver *drv, struct events **events);
     /* tribo_driver_find_periodic for checked arguments; NULL: TRIBO_ERR_UNSUPPORTED. */
@@ -98,6 +106,9 @@ struct fixed_method {
 /* Steps of drv->dt from y, which is the last good state, to t1, the last one shorter where it must be. States are kept as by
  * tribo_driver_keep, but not copied. */
 int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, const struct fixed_method *method);
+
+/* tribo_driver_advance for a state of tribo_system_size values. */
+int tribo_driver_advance_motion(tribo_driver *drv, double *t, double t1, double *y);
 
 /* A driver by method, which must live longer, in *drv. Returns what tribo_driver_create returns. */
 int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const struct method *method);

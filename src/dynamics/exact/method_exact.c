@@ -391,10 +391,9 @@ static int method_exact_open_events(tribo_driver *drv, struct events **events)
 }
 
 const struct method tribo_method_exact = {"exact",
-                                          TAKES_OUTPUT,
+                                          TAKES_OUTPUT | TAKES_MASSLESS,
                                           method_exact_create,
                                           method_exact_destroy,
                                           tribo_events_method,
-                                          NULL,
                                           method_exact_open_events,
                                           tribo_events_find_periodic};

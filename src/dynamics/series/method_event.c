@@ -605,6 +605,10 @@ static int open_events(tribo_driver *drv, struct events **events)
     return status ? tribo_driver_fail(drv, status, "%s", tribo_system_message(drv->sys)) : TRIBO_OK;
 }
 
-const struct method tribo_method_event = {
-    "event",     TAKES_TOLERANCE | TAKES_OUTPUT, method_event_create, destroy, tribo_events_method, NULL,
-    open_events, tribo_events_find_periodic};
+const struct method tribo_method_event = {"event",
+                                          TAKES_TOLERANCE | TAKES_OUTPUT | TAKES_PLANAR | TAKES_MASSLESS,
+                                          method_event_create,
+                                          destroy,
+                                          tribo_events_method,
+                                          open_events,
+                                          tribo_events_find_periodic};

@@ -1,6 +1,6 @@
-/* Method "central/fixed": central differences, velocities half a step apart from positions. Explicit; stable for dt below
- * 2/omega_max. Damping acts on the velocity of half a step before. Steps of small systems are taken in runs by few_bodies.c,
- * those of others where contacts share no body by blockwise.c. */
+/* Method "central/fixed": central differences, velocities half a step apart from displacements. Explicit; stable for dt
+ * below 2/omega_max. Damping acts on the velocity of half a step before. few_bodies.c takes the steps of small systems,
+ * blockwise.c those of others whose contacts share no body. */
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
@@ -18,9 +18,10 @@ struct central {
     struct step_form common;
     struct few_bodies few;
     struct blockwise alone;
-    double *next;        /* [ndof] room for u of the next step */
-    double energy, last; /* dissipated up to u; the step before, 0: u is the velocity at t */
-    double stable;       /* a step found to be stable; 0: none */
+    double *next;  /* [ndof] u at the end of a step in progress */
+    double energy; /* dissipated up to u */
+    double last;   /* length of the step before; 0: u is the velocity at t */
+    double stable; /* a step length known to be stable; 0: none */
 };
 
 static void central_destroy(tribo_driver *drv)
@@ -48,14 +49,14 @@ static int central_create(tribo_driver *drv)
     return TRIBO_OK;
 }
 
-/* What u, the velocity at the time from, becomes at the time to. Adds to the energy. */
+/* Makes u_to of u, and adds the work of friction to the energy. Returns a status. */
 static int kick(tribo_driver *drv, const struct body_step *k, double *energy)
 {
     struct central *x = drv->own;
     struct step_form *s = &x->common;
     tribo_system *sys = drv->sys;
     tribo_step_form_begin(s, sys, k->from, k->u);
-    /* without friction: forces at t and q */
+    /* velocities without friction, by forces at t and q */
     tribo_system_set_time(sys, k->t);
     memset(s->a, 0, sys->ndof * sizeof *s->a);
     tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, s->a);
@@ -87,7 +88,7 @@ static int kick(tribo_driver *drv, const struct body_step *k, double *energy)
     return TRIBO_OK;
 }
 
-/* Velocities and energy of y, from half a step back to t: for those who look. The next step goes on from where it would have. */
+/* Sets velocities and energy of y, half a step ahead of u, to those at t. The next step goes on from u. */
 static int synchronise(tribo_driver *drv, double t, double *y)
 {
     struct central *x = drv->own;
@@ -103,25 +104,25 @@ static int synchronise(tribo_driver *drv, double t, double *y)
     return status;
 }
 
-/* A step of all contacts together. */
+/* A step by one problem of all contacts. */
 static int step_all(tribo_driver *drv, const struct body_step *k, double *y)
 {
     struct central *x = drv->own;
-    struct step_form *s = &x->common;
     const size_t n = drv->sys->ndof;
     const int status = kick(drv, k, &x->energy);
-    s->goes_on = 1;
-    if (!status) {
-        for (size_t i = 0; i < n; i++) {
-            k->q_to[i] = k->q[i] + k->h * k->u_to[i];
-        }
-        memcpy(y + n, k->u_to, n * sizeof *y);
-        y[2 * n] = x->energy;
+    x->common.goes_on = 1;
+    if (status) {
+        return status;
     }
-    return status ? status : tribo_driver_check(drv, y);
+    for (size_t i = 0; i < n; i++) {
+        k->q_to[i] = k->q[i] + k->h * k->u_to[i];
+    }
+    memcpy(y + n, k->u_to, n * sizeof *y);
+    y[2 * n] = x->energy;
+    return tribo_driver_check(drv, y);
 }
 
-/* The same where each contact has a body of its own. y gets positions and energy; velocities are in u until somebody looks. */
+/* A step block by block. Velocities of y are set by synchronise. */
 static int step_alone(tribo_driver *drv, const struct body_step *k, double *y)
 {
     struct central *x = drv->own;
@@ -136,7 +137,7 @@ static int step_alone(tribo_driver *drv, const struct body_step *k, double *y)
     return TRIBO_OK;
 }
 
-/* As many of the steps between the times t [count + 1] as can be taken at once, of the motion in y and u. */
+/* A run of the motion in y and u, if the system is small: velocities of y are set by synchronise. */
 static size_t central_run(tribo_driver *drv, size_t count, const double *t, double *y)
 {
     struct central *x = drv->own;
@@ -165,47 +166,32 @@ static void take_settings(struct central *x, tribo_system *sys)
     }
 }
 
-/* A step of others than central_run. */
-static int step_many(tribo_driver *drv, double t, double next, const double *from, double *y)
-{
-    struct central *x = drv->own;
-    struct step_form *s = &x->common;
-    const double h = next - t;
-    const struct body_step k = {t - 0.5 * x->last, t, t + 0.5 * h, 0.5 * (x->last + h), h, from, s->u, y, x->next};
-    const int status = x->few.fits || !x->alone.fits ? step_all(drv, &k, y) : step_alone(drv, &k, y);
-    if (!status) {
-        x->next = s->u;
-        s->u = k.u_to;
-        x->last = h;
-    }
-    return status;
-}
-
-/* A run of one. */
-static size_t step_few(tribo_driver *drv, const double *t, const double *from, double *y)
-{
-    const struct central *x = drv->own;
-    if (!x->few.fits) {
-        return 0;
-    }
-    memcpy(y, from, drv->sys->ndof * sizeof *y);
-    return central_run(drv, 1, t, y);
-}
-
 static int central_step(tribo_driver *drv, double t, double next, const double *from, double *y)
 {
     struct central *x = drv->own;
-    const double times[] = {t, next};
-    /* nobody but the observer changes anything meanwhile */
+    struct step_form *s = &x->common;
+    const double times[] = {t, next}, h = next - t;
     if (drv->seen && x->few.revision != tribo_system_revision(drv->sys)) {
-        take_settings(x, drv->sys);
+        take_settings(x, drv->sys); /* the observer has changed them */
     }
-    const int status = step_few(drv, times, from, y) ? TRIBO_OK : step_many(drv, t, next, from, y);
-    return status || !drv->seen ? status : synchronise(drv, next, y);
+    if (drv->seen && x->few.fits) {
+        memcpy(y, from, drv->sys->ndof * sizeof *y);
+        if (central_run(drv, 1, times, y)) {
+            return synchronise(drv, next, y);
+        }
+    }
+    const struct body_step k = {t - 0.5 * x->last, t, t + 0.5 * h, 0.5 * (x->last + h), h, from, s->u, y, x->next};
+    const int status = x->few.fits || !x->alone.fits ? step_all(drv, &k, y) : step_alone(drv, &k, y);
+    if (status) {
+        return status;
+    }
+    x->next = s->u;
+    s->u = k.u_to;
+    x->last = h;
+    return drv->seen ? synchronise(drv, next, y) : TRIBO_OK;
 }
 
-/* Refuses steps with which the motion would grow without bound: steps of h are stable while h^2 AK + 2 h AC has no eigenvalue of
- * 4 or more. */
+/* TRIBO_ERR_STEP if steps of h are unstable: they are stable while h^2 AK + 2 h AC has no eigenvalue of 4 or more. */
 static int check_step(tribo_driver *drv, double h)
 {
     struct central *x = drv->own;
@@ -222,7 +208,7 @@ static int check_step(tribo_driver *drv, double h)
         x->stable = h;
         return TRIBO_OK;
     }
-    /* the eigenvalue over h^2 falls with h, so that this comes down to the largest step that is stable */
+    /* the eigenvalue over h^2 falls with h: limit descends to the largest stable step */
     while (!status && 2.0 / sqrt(value) < 0.9999 * limit) {
         limit = 2.0 / sqrt(value);
         status = tribo_system_highest(sys, 1.0, 2.0 / limit, &value);
@@ -258,5 +244,8 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
     return status || drv->seen ? status : synchronise(drv, t1, y);
 }
 
-const struct method tribo_method_central_fixed = {"central/fixed", TAKES_STEP, central_create, central_destroy,
-                                                  central_advance, NULL,       NULL,           NULL};
+const struct method tribo_method_central_fixed = {.name = "central/fixed",
+                                                  .takes = TAKES_STEP | TAKES_PLANAR,
+                                                  .create = central_create,
+                                                  .destroy = central_destroy,
+                                                  .advance = central_advance};

@@ -452,5 +452,8 @@ static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, in
     return tribo_driver_fixed_steps(drv, t, t1, y, &method);
 }
 
-const struct method tribo_method_moreau_fixed = {"moreau/fixed", TAKES_STEP, moreau_create, moreau_destroy,
-                                                 moreau_advance, NULL,       NULL,          NULL};
+const struct method tribo_method_moreau_fixed = {.name = "moreau/fixed",
+                                                 .takes = TAKES_STEP | TAKES_PLANAR | TAKES_MASSLESS | TAKES_UNSOLVED,
+                                                 .create = moreau_create,
+                                                 .destroy = moreau_destroy,
+                                                 .advance = moreau_advance};

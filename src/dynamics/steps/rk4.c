@@ -160,4 +160,8 @@ static int rk4_advance(tribo_driver *drv, double *t, double t1, double *y, int c
     return status || drv->seen ? status : tell_contacts(drv, *t, drv->dt);
 }
 
-const struct method tribo_method_rk4_fixed = {"rk4/fixed", TAKES_STEP, rk4_create, rk4_destroy, rk4_advance, NULL, NULL, NULL};
+const struct method tribo_method_rk4_fixed = {.name = "rk4/fixed",
+                                              .takes = TAKES_STEP | TAKES_PLANAR,
+                                              .create = rk4_create,
+                                              .destroy = rk4_destroy,
+                                              .advance = rk4_advance};
