@@ -236,7 +236,8 @@ static void write_pair(void)
 static double complex pair_motion(int stuck, double complex p1, double complex p2)
 {
     const double w = 2.0 * PI * 0.2;
-    const double complex a = 5.0 - w * w + 0.25 * w * J, b = -2.0 - 0.1 * w * J, d = 2.0 - 2.0 * w * w + 0.2 * w * J;
+    const double complex i = (double complex)I, a = 5.0 - w * w + 0.25 * w * i, b = -2.0 - 0.1 * w * i,
+                         d = 2.0 - 2.0 * w * w + 0.2 * w * i;
     return stuck ? p2 / d : (a * p2 - b * p1) / (a * d - b * b);
 }
 
@@ -251,7 +252,8 @@ TEST(loads)
 {
     static const char *const given[] = {"--load 2,0,0,x --load=1,0,0,x:force=3:phase=60 --output 2,0,0,x",
                                         "--base x:acceleration=0.5:phase=-90 --output 2,0,0,x"};
-    const double complex turn = 0.5 + 0.5 * sqrt(3.0) * J, force[2][2] = {{3.0 * turn, 1.0}, {0.5 * J, J}};
+    const double complex i = (double complex)I, turn = 0.5 + 0.5 * sqrt(3.0) * i;
+    const double complex force[2][2] = {{3.0 * turn, 1.0}, {0.5 * i, i}};
     write_pair();
     for (int k = 0; k < 2; k++) {
         char options[400];
