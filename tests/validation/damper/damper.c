@@ -12,6 +12,9 @@
 #include "support.h"
 #include "tool.h"
 
+#undef I
+#define I ((double complex)_Complex_I) /* _Complex_I is of float */
+
 #define READ_BEAM "--read " BEAM "/beam.txt"
 #define READ_FAMILY "--read " BEAM "/family.txt --name damper --drive 25:45:6 --limits 0.1:10:3 --check 1"
 
