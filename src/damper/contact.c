@@ -159,20 +159,16 @@ void read_load(const char *origin, const char *text, int supports, struct loads 
     all->load[all->count++] = l;
 }
 
-static void cut_blanks(char *text)
-{
-    for (char *end = text + strlen(text); end > text && (end[-1] == ' ' || end[-1] == '\t');) {
-        *--end = '\0';
-    }
-}
-
 void read_contacts(const char *path, struct contacts *all)
 {
     struct lines l = open_lines(path);
     const size_t before = all->count;
     while (next_data(&l)) {
         l.at[strcspn(l.at, "\r")] = '\0';
-        cut_blanks(make_printable(l.at));
+        make_printable(l.at);
+        for (char *end = l.at + strlen(l.at); end > l.at && (end[-1] == ' ' || end[-1] == '\t');) {
+            *--end = '\0';
+        }
         read_contact(new_text("%s:%zu: contact %s", path, l.line, l.at), l.at, all);
     }
     close_lines(&l);

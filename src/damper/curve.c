@@ -96,7 +96,7 @@ static void find_sample(struct curve *c, struct worker *w, size_t k, int tries)
 
 /* ------------------------------------------------------------------------------------------------------------ refinement */
 
-/* What a curve is measured by. */
+/* The largest amplitude and power of a curve. */
 struct height {
     double amplitude, power;
 };
@@ -118,7 +118,7 @@ static double off_chord(const struct sample *s, double left, double middle, doub
     return fabs(middle - left - (right - left) * (s[0].x - s[-1].x) / (s[1].x - s[-1].x));
 }
 
-/* Whether the curve bends at sample k: the amplitude is looked at by its logarithm, the power as it is. */
+/* 1 if the curve bends at sample k: the logarithm of the amplitude, or the power. */
 static int bends(const struct curve *c, size_t k, const struct height *h, double tolerance)
 {
     if (k == 0 || k + 1 >= c->count || !found(c, k - 1) || !found(c, k) || !found(c, k + 1)) {
@@ -133,14 +133,7 @@ static int bends(const struct curve *c, size_t k, const struct height *h, double
     return off_chord(s, x[0], x[1], x[2]) > tolerance || off_chord(s, p[0], p[1], p[2]) > tolerance * h->power;
 }
 
-static int wants_more(const struct curve *c, size_t k, const struct height *h, double tolerance)
-{
-    const double whole = c->sample[c->count - 1].x - c->sample[0].x, width = c->sample[k + 1].x - c->sample[k].x;
-    return width > LEAST_WIDTH * whole &&
-           (found(c, k) != found(c, k + 1) || bends(c, k, h, tolerance) || bends(c, k + 1, h, tolerance));
-}
-
-/* A sample between k and k + 1, from which what was not found beside it is tried again. */
+/* Adds a sample between k and k + 1; from its motion, motions beside it that were not found are tried again. */
 static void split_gap(struct curve *c, struct worker *w, size_t k)
 {
     insert_sample(c, k + 1, 0.5 * (c->sample[k].x + c->sample[k + 1].x), 0);
@@ -151,14 +144,17 @@ static void split_gap(struct curve *c, struct worker *w, size_t k)
     }
 }
 
-/* One more sample in every gap that wants one; from the right, so that those on the left keep their places. Returns how many. */
+/* Adds a sample to each gap beside a bend or a motion that was not found; from the right, since samples on the left keep their
+ * places then. Returns the number of samples added. */
 static size_t refine(struct curve *c, struct worker *w, double tolerance)
 {
     const struct height h = height_of(c);
+    const double whole = c->sample[c->count - 1].x - c->sample[0].x;
     char *wanted = need_memory(c->count, 1);
     size_t added = 0;
     for (size_t k = 0; k + 1 < c->count; k++) {
-        wanted[k] = (char)wants_more(c, k, &h, tolerance);
+        wanted[k] = c->sample[k + 1].x - c->sample[k].x > LEAST_WIDTH * whole &&
+                    (found(c, k) != found(c, k + 1) || bends(c, k, &h, tolerance) || bends(c, k + 1, &h, tolerance));
     }
     for (size_t k = c->count - 1; k-- > 0;) {
         if (wanted[k] && c->count < MOST_SAMPLES && !interrupted()) {
@@ -200,21 +196,15 @@ const struct sample *reach_sample(struct curve *c, struct worker *w, double x)
 
 /* --------------------------------------------------------------------------------------------------------------- largest */
 
-static size_t place_of_largest(const struct curve *c)
+const struct sample *largest_of(const struct curve *c)
 {
-    size_t best = c->count;
+    const struct sample *best = NULL;
     for (size_t k = 0; k < c->count; k++) {
-        if (found(c, k) && (best == c->count || c->sample[k].motion.amplitude > c->sample[best].motion.amplitude)) {
-            best = k;
+        if (found(c, k) && (!best || c->sample[k].motion.amplitude > best->motion.amplitude)) {
+            best = &c->sample[k];
         }
     }
     return best;
-}
-
-const struct sample *largest_of(const struct curve *c)
-{
-    const size_t k = place_of_largest(c);
-    return k < c->count ? &c->sample[k] : NULL;
 }
 
 /* The top of the parabola through a sample and its neighbours. */
@@ -226,7 +216,7 @@ static double top_of(const struct sample *s)
     return s[0].x + 0.5 * (a * right - b * left) / (a - b);
 }
 
-/* Whether sample k is not below its neighbours. */
+/* 1 if sample k is not below its neighbours. */
 static int is_top(const struct curve *c, size_t k)
 {
     const struct sample *s = &c->sample[k];

@@ -50,20 +50,8 @@ static struct sparse make_rows(const struct options *o, const struct structure *
     return j;
 }
 
-/* A mode that moves a contact by less than this part of what the strongest mode does, does not move it: what is left there is
- * rounding, and counts as a body with an enormous mass. */
+/* A displacement of a contact below this part of that of its strongest mode is rounding: it would be a body of enormous mass. */
 static const double UNMOVED = 1e-8;
-
-static void clean_shape(const struct damper *d, double *shape)
-{
-    double most = 0.0;
-    for (size_t k = 0; k < d->modes; k++) {
-        most = fmax(most, fabs(shape[k]));
-    }
-    for (size_t k = 0; k < d->modes; k++) {
-        shape[k] = fabs(shape[k]) < UNMOVED * most ? 0.0 : shape[k];
-    }
-}
 
 static double row_product(const struct sparse *m, size_t row, const double *x)
 {
@@ -96,7 +84,13 @@ static void read_shapes(struct damper *d, const struct options *o, const struct 
         d->open.measured[k] = row_product(rows, rows->rows - 1, mode);
     }
     for (size_t c = 0; c < d->contacts; c++) {
-        clean_shape(d, d->contact_shape + c * d->modes);
+        double *shape = d->contact_shape + c * d->modes, most = 0.0;
+        for (size_t k = 0; k < d->modes; k++) {
+            most = fmax(most, fabs(shape[k]));
+        }
+        for (size_t k = 0; k < d->modes; k++) {
+            shape[k] = fabs(shape[k]) < UNMOVED * most ? 0.0 : shape[k];
+        }
     }
 }
 
@@ -157,7 +151,7 @@ static void reduce(struct damper *d, const struct options *o, const struct struc
     free(full);
 }
 
-/* A spring so many times as stiff as the lowest mode that is no rigid body's leaves of its frequency what is still right. */
+/* The largest stiffness of a spring, times that of the lowest elastic mode: below, that mode's frequency keeps digits. */
 static const double MOST_STIFF = 1e9;
 
 static void check_spring(const struct damper *d, size_t c, const char *origin)
@@ -172,20 +166,6 @@ static void check_spring(const struct damper *d, size_t c, const char *origin)
         die("%s: stiffness=%g is more than %g times that of the structure there: leave it out for a rigid contact", origin,
             d->stiffness[c], MOST_STIFF);
     }
-}
-
-static void put_contacts(struct damper *d, const struct options *o)
-{
-    tribo_context *contacts = tribo_system_context(d->sys);
-    size_t *first = need_memory(d->contacts, sizeof *first);
-    for (size_t c = 0; c < d->contacts; c++) {
-        if (o->contacts.contact[c].planar) {
-            first[d->planar++] = c;
-        }
-    }
-    need(tribo_set_law(contacts, o->law), tribo_message(contacts));
-    need(tribo_set_planar(contacts, d->planar, first), tribo_message(contacts));
-    free(first);
 }
 
 /* The system of modes, with the springs of contacts. */
@@ -219,7 +199,16 @@ static void build(struct damper *d, const struct options *o)
     }
     tribo_model_destroy(model);
     free(mass);
-    put_contacts(d, o);
+    tribo_context *context = tribo_system_context(d->sys);
+    size_t *first = need_memory(d->contacts, sizeof *first);
+    for (size_t c = 0; c < d->contacts; c++) {
+        if (o->contacts.contact[c].planar) {
+            first[d->planar++] = c;
+        }
+    }
+    need(tribo_set_law(context, o->law), tribo_message(context));
+    need(tribo_set_planar(context, d->planar, first), tribo_message(context));
+    free(first);
 }
 
 struct damper create_damper(const struct options *o, const struct structure *s, size_t kept)

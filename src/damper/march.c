@@ -18,7 +18,7 @@ static const double TOLERANCE = 1e-6;
 static const double LEAST_STEPS = 400, MOST_STEPS = 1e5; /* a period; an amplitude is the largest of the values there */
 static const double COULOMB_STEPS = 1000;                /* a period in steps of 1 */
 
-/* A system that is marched. */
+/* The march of one motion. */
 struct run {
     const struct damper *d;
     tribo_driver *drv;
@@ -63,17 +63,7 @@ tribo_driver *create_marcher(struct worker *w, double limit, double hz)
     return drv;
 }
 
-static struct run create_run(struct worker *w, double limit, double hz)
-{
-    struct run r = {.d = w->d, .limit = limit, .period = 1.0 / hz, .omega = TURN * hz, .steps = (size_t)steps_of(w->d, hz)};
-    r.free = scale_of(&w->d->open, r.omega);
-    r.output = need_memory(w->d->outputs * output_size(w->d), sizeof *r.output);
-    r.extreme = need_memory(2 * w->d->outputs, sizeof *r.extreme);
-    r.drv = create_marcher(w, limit, hz);
-    return r;
-}
-
-/* Adds what y at time t does for outputs; at the first step clears them. */
+/* Adds the displacements of outputs in state y at time t to r->output; the first step clears it. */
 static void sample_outputs(const struct run *r, const double *y, double t, size_t step)
 {
     const struct damper *d = r->d;
@@ -235,7 +225,12 @@ struct motion march(struct worker *w, double limit, double hz, double *y)
         state[k] = memory + k * n;
     }
     memcpy(state[0], y, n * sizeof *y);
-    struct run r = create_run(w, limit, hz);
+    const struct damper *d = w->d;
+    struct run r = {.d = d, .limit = limit, .period = 1.0 / hz, .omega = TURN * hz, .steps = (size_t)steps_of(d, hz)};
+    r.free = scale_of(&d->open, r.omega);
+    r.output = need_memory(d->outputs * output_size(d), sizeof *r.output);
+    r.extreme = need_memory(2 * d->outputs, sizeof *r.extreme);
+    r.drv = create_marcher(w, limit, hz);
     struct motion m = settle_motion(&r, state);
     m.limit = limit;
     m.hz = hz;
@@ -244,11 +239,11 @@ struct motion march(struct worker *w, double limit, double hz, double *y)
     }
     memcpy(y, state[0], n * sizeof *y);
     double *record = y + n;
-    for (size_t c = 0; c < 2 * r.d->contacts; c++) {
+    for (size_t c = 0; c < 2 * d->contacts; c++) {
         *record++ = (double)NAN;
     }
-    for (size_t k = 0; k < output_size(r.d) * r.d->outputs; k++) {
-        const size_t h = k % output_size(r.d);
+    for (size_t k = 0; k < output_size(d) * d->outputs; k++) {
+        const size_t h = k % output_size(d);
         const double *o = &r.output[k];
         *record++ = h == 0 ? o[0] : h % 2 ? hypot(o[0], o[1]) : atan2(o[-1], o[0]) * 360.0 / TURN;
     }

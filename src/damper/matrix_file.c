@@ -5,16 +5,11 @@
 #include "calculix.h"
 #include "matrix_market.h"
 
-static int is_calculix(const char *path)
-{
-    return is_named(path, ".sti") || is_named(path, ".mas");
-}
-
 struct sparse read_matrix(const char *path, const struct rows *rows)
 {
     struct entries all = {0, 0, NULL};
     int symmetric = 1;
-    if (is_calculix(path)) {
+    if (is_named(path, ".sti") || is_named(path, ".mas")) {
         read_calculix_matrix(path, rows, &all);
     } else {
         symmetric = read_matrix_market(path, rows, &all);

@@ -107,16 +107,6 @@ static int measure(struct worker *w, struct motion *m, double *power)
     return TRIBO_OK;
 }
 
-/* Rounding is nothing. */
-static void take_rounding_away(const struct damper *d, struct motion *m)
-{
-    const struct scale whole = scale_of(&d->open, TURN * m->hz);
-    m->amplitude = m->amplitude < NOTHING * whole.amplitude ? 0.0 : m->amplitude;
-    m->friction = fabs(m->friction) < NOTHING * fmax(10.0 * m->damped, whole.power) ? 0.0 : m->friction;
-    m->damped = fabs(m->damped) < NOTHING * whole.power ? 0.0 : m->damped;
-    m->input = fabs(m->input) < NOTHING * whole.power ? 0.0 : m->input;
-}
-
 /* ------------------------------------------------------------------------------------------------------------- shooting */
 
 static size_t periods_of(const struct worker *w)
@@ -149,7 +139,11 @@ struct motion find_motion(struct worker *w, double limit, double hz, const doubl
     }
     struct motion m = w->march ? march(w, limit, hz, state) : shoot(w, limit, hz, state);
     if (m.found) {
-        take_rounding_away(w->d, &m);
+        const struct scale whole = scale_of(&w->d->open, TURN * hz); /* below NOTHING of it, results are rounding */
+        m.amplitude = m.amplitude < NOTHING * whole.amplitude ? 0.0 : m.amplitude;
+        m.friction = fabs(m.friction) < NOTHING * fmax(10.0 * m.damped, whole.power) ? 0.0 : m.friction;
+        m.damped = fabs(m.damped) < NOTHING * whole.power ? 0.0 : m.damped;
+        m.input = fabs(m.input) < NOTHING * whole.power ? 0.0 : m.input;
         memcpy(y, state, record_of(w->d) * sizeof *y);
     }
     free(state);

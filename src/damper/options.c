@@ -15,13 +15,8 @@ enum { CURVE_LIMITS = 33, FAMILY_LIMITS = 9 };
 
 /* ------------------------------------------------------------------------------------------------------------- setters */
 
-/* What an option does with its value; origin is "option NAME VALUE", or where that stands in a file. */
+/* Puts the value of an option into o; origin, for messages, is "option NAME VALUE", or file and line. */
 typedef void setter(const char *origin, const char *value, struct options *o);
-
-static void set_modes(const char *origin, const char *value, struct options *o)
-{
-    o->modes = read_whole(origin, value, 1);
-}
 
 static void set_statics(const char *origin, const char *value, struct options *o)
 {
@@ -90,11 +85,6 @@ static void set_output(const char *origin, const char *value, struct options *o)
     o->output[o->outputs++] = read_place(origin, value);
 }
 
-static void set_harmonics(const char *origin, const char *value, struct options *o)
-{
-    o->harmonics = read_whole(origin, value, 1);
-}
-
 static void set_field(const char *origin, const char *value, struct options *o)
 {
     o->field.count = 0;
@@ -104,6 +94,11 @@ static void set_field(const char *origin, const char *value, struct options *o)
             die("%s: a phase must be from 0 to 360 degrees", origin);
         }
     }
+}
+
+static void set_limits(const char *origin, const char *value, struct options *o)
+{
+    o->limits = read_range(origin, value);
 }
 
 static void set_force(const char *origin, const char *value, struct options *o)
@@ -117,22 +112,12 @@ static void set_drive(const char *origin, const char *value, struct options *o)
     o->drive = first ? (struct range){0.0, 0.0, 1} : read_range(origin, value);
 }
 
-static void set_limits(const char *origin, const char *value, struct options *o)
-{
-    o->limits = read_range(origin, value);
-}
-
 static void set_method(const char *origin, const char *value, struct options *o)
 {
     o->march = strcmp(value, "march") == 0;
     if (!o->march && strcmp(value, "exact") != 0) {
         die("%s: methods are exact and march", origin);
     }
-}
-
-static void set_check(const char *origin, const char *value, struct options *o)
-{
-    o->check = read_whole(origin, value, 0);
 }
 
 static void set_step(const char *origin, const char *value, struct options *o)
@@ -161,11 +146,6 @@ static void set_law(const char *origin, const char *value, struct options *o)
     }
 }
 
-static void set_threads(const char *origin, const char *value, struct options *o)
-{
-    o->threads = read_whole(origin, value, 1);
-}
-
 static void set_plot(const char *origin, const char *value, struct options *o)
 {
     if (strcmp(value, "png") != 0 && strcmp(value, "svg") != 0) {
@@ -184,14 +164,16 @@ static void set_name(const char *origin, const char *value, struct options *o)
 
 /* --------------------------------------------------------------------------------------------------------------- table */
 
-#define FILE_OPTION(name) "--" #name, NULL, offsetof(struct options, name), 1
-#define OPTION(name) "--" #name, set_##name, 0, 0
+#define FILE_OPTION(name) "--" #name, NULL, offsetof(struct options, name), 1, 0, 0
+#define COUNT_OPTION(name, least) "--" #name, NULL, offsetof(struct options, name), 0, 1, least
+#define OPTION(name) "--" #name, set_##name, 0, 0, 0, 0
 
 static const struct option {
     const char *name;
-    setter *set;   /* NULL: the value itself is kept */
-    size_t offset; /* where */
-    int is_path;
+    setter *set;   /* NULL: the value itself is kept, or the count */
+    size_t offset; /* of the member that keeps it */
+    int is_path, is_count;
+    size_t least; /* of a count */
 } table[] = {
     {FILE_OPTION(mass)},
     {FILE_OPTION(stiffness)},
@@ -199,26 +181,26 @@ static const struct option {
     {FILE_OPTION(frequencies)},
     {FILE_OPTION(out)},
     {OPTION(name)},
-    {OPTION(modes)},
+    {COUNT_OPTION(modes, 1)},
     {OPTION(statics)},
     {OPTION(damping)},
-    {"--damping-ratios", set_damping_ratios, 0, 1},
-    {"--damping-matrix", NULL, offsetof(struct options, damping_matrix), 1},
+    {"--damping-ratios", set_damping_ratios, 0, 1, 0, 0},
+    {"--damping-matrix", NULL, offsetof(struct options, damping_matrix), 1, 0, 0},
     {OPTION(contact)},
-    {"--contacts", set_contacts, 0, 1},
+    {"--contacts", set_contacts, 0, 1, 0, 0},
     {OPTION(load)},
     {OPTION(base)},
     {OPTION(output)},
-    {OPTION(harmonics)},
+    {COUNT_OPTION(harmonics, 1)},
     {OPTION(field)},
     {OPTION(force)},
     {OPTION(drive)},
     {OPTION(limits)},
     {OPTION(method)},
-    {OPTION(check)},
+    {COUNT_OPTION(check, 0)},
     {OPTION(step)},
     {OPTION(law)},
-    {OPTION(threads)},
+    {COUNT_OPTION(threads, 1)},
     {OPTION(plot)},
 };
 
@@ -237,6 +219,9 @@ static void apply(const struct option *option, const char *origin, const char *v
 {
     if (option->set) {
         option->set(origin, value, o);
+    } else if (option->is_count) {
+        const size_t count = read_whole(origin, value, option->least);
+        memcpy((char *)o + option->offset, &count, sizeof count);
     } else {
         memcpy((char *)o + option->offset, &value, sizeof value);
     }
@@ -244,7 +229,7 @@ static void apply(const struct option *option, const char *origin, const char *v
 
 /* ---------------------------------------------------------------------------------------------------- files of options */
 
-/* What is relative is so to the folder of the file that says it. */
+/* A relative path is relative to the folder of the file that holds the option. */
 static const char *path_beside(const char *file, const char *path)
 {
     const char *slash = strrchr(file, '/');
@@ -388,7 +373,7 @@ void complete_options(struct options *o, const struct structure *s)
     }
 }
 
-/* What some options print instead of a study; ends the program where name is one of these. */
+/* --help and --version: prints, and ends the program. */
 static void answer(const char *name)
 {
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {

@@ -19,15 +19,6 @@ static void compare(const struct study *s, const struct motion *m, double known,
     free(analytic);
 }
 
-/* Without friction no contact has any, and stuck all are, whatever limits they have. */
-static void follow_all(struct damper *d)
-{
-    for (size_t c = 0; c < d->contacts; c++) {
-        d->limit[c] = (double)NAN;
-        d->mu[c] = 1.0;
-    }
-}
-
 int begin_again(struct study *s, double error)
 {
     const int again = take_more_modes(s->model, error);
@@ -55,7 +46,10 @@ void check_extremes(const struct study *s, double hz)
     struct damper all = *d;
     all.limit = each;
     all.mu = each + d->contacts;
-    follow_all(&all);
+    for (size_t c = 0; c < d->contacts; c++) { /* limits of their own are left out: all contacts are open, or all stuck */
+        all.limit[c] = (double)NAN;
+        all.mu[c] = 1.0;
+    }
     struct worker w = create_worker(&all, s->options->march);
     double *y = need_memory(record_of(w.d), sizeof *y);
     const struct motion open = find_motion(&w, 0.0, hz, NULL, y), stuck = find_motion(&w, 1e6 * d->size, hz, NULL, y);

@@ -152,21 +152,21 @@ static void find_most_power(struct study *s, struct curve *c)
 
 /* --------------------------------------------------------------------------------------------------------------- curve */
 
-struct limits_job {
-    const struct study *study;
-    struct curve *curve;
-};
-
-static void run_curve(void *data, size_t k)
+/* The curve c over the limits; returns the model error. */
+static double follow_limits(struct study *s, struct curve *c)
 {
-    const struct limits_job *j = data;
-    struct worker w = create_worker(j->study->damper, j->study->options->march);
-    find_curve(&j->curve[k], &w, BEND);
+    const struct range *limits = &s->options->limits;
+    const double hz = lowest_drive(s->options, s->damper);
+    *c = create_curve(1, hz, record_of(s->damper));
+    show_model(s);
+    check_extremes(s, hz);
+    for (size_t k = 0; k < limits->points; k++) {
+        ask_sample(c, log(limit_of(limits, k)), 1);
+    }
+    struct worker w = create_worker(s->damper, s->options->march);
+    find_curve(c, &w, BEND);
     free_worker(&w);
-}
-
-static void print_curve(const struct study *s, const struct curve *c)
-{
+    end_telling();
     printf("  %12s    amplitude friction power  damping power  periods\n", s->tables->limit);
     for (size_t k = 0; k < c->count; k++) {
         const struct motion *m = &c->sample[k].motion;
@@ -176,23 +176,6 @@ static void print_curve(const struct study *s, const struct curve *c)
             printf("  %12.5g  not found: %s\n", m->limit, m->message);
         }
     }
-}
-
-/* The curve with the modes that there are; returns the model error. */
-static double follow_limits(struct study *s, struct curve *c)
-{
-    const struct range *limits = &s->options->limits;
-    const double hz = lowest_drive(s->options, s->damper);
-    struct limits_job j = {s, c};
-    *c = create_curve(1, hz, record_of(s->damper));
-    show_model(s);
-    check_extremes(s, hz);
-    for (size_t k = 0; k < limits->points; k++) {
-        ask_sample(c, log(limit_of(limits, k)), 1);
-    }
-    run_jobs(1, 1, run_curve, &j);
-    end_telling();
-    print_curve(s, c);
     return show_model_error(s, c, 1);
 }
 
