@@ -343,7 +343,7 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
     status = status ? status : tribo_clusters_prepare(ctx, count, first, ctx->op, &ctx->memory, &c);
     if (!status) {
         tribo_write_slips(ctx);
-        tribo_clusters_install(ctx, &c); /* NOLINT(clang-analyzer-unix.Malloc): tribo_fail does not return 0 */
+        tribo_clusters_install(ctx, &c);
         tribo_refresh(ctx);
     }
     return status;

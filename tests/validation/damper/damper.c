@@ -233,8 +233,6 @@ static void write_pair(void)
     write_text("pair.txt", "1 1 1 1 0 0\n2 1 2 1 0 0\n3 2 1 2 0 0\n4 2 2 2 0 0\n");
 }
 
-#define J ((double complex)I) /* I is a complex float */
-
 /* The complex amplitude of mass 2 under forces p1, p2. */
 static double complex pair_motion(int stuck, double complex p1, double complex p2)
 {
