@@ -28,7 +28,7 @@ struct source {
     size_t *number;            /* [cols] at roots: the tie, plus 1 */
 };
 
-/* Gaussian elimination of a tie in tie->entry: rows and columns below tie->rank are those of pivots. */
+/* Gaussian elimination of a tie in tie->entry: rows and columns below tie->rank have pivots. */
 struct elimination {
     struct tie *tie;
     const unsigned char *last;
@@ -202,7 +202,7 @@ TRIBO_SIMD static void eliminate(double *restrict row, double *restrict size, co
     }
 }
 
-/* Fills the entries of the tie, and what goes with them. */
+/* Fills the entries of the tie, size, weight and scale. */
 static void fill(struct elimination *e, const struct source *s)
 {
     const struct tie *tie = e->tie;

@@ -25,7 +25,7 @@ struct constraints {
     size_t ties;
     struct tie *tie; /* [ties] */
     double *work;    /* [count] */
-    void *memory[2]; /* of these arrays, and of those of the ties */
+    void *memory[2]; /* of these arrays, and of the arrays of the ties */
 };
 
 /* Eliminates the rows row [count] of direction. The diagonal of mass [cols][cols] (no rows: the identity) chooses the slaves.

@@ -433,3 +433,59 @@ int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors)
     }
     return info ? TRIBO_ERR_NO_CONVERGENCE : TRIBO_OK;
 }
+
+int tribo_eigen(double *a, size_t n, double *re, double *im, double *x)
+{
+    if (n == 0 || !tribo_dense_finite(a, n * n)) {
+        return n ? TRIBO_ERR_NOT_FINITE : TRIBO_OK;
+    }
+    enum { BLOCK = 32 };
+    const int rows = (int)n, one = 1, size = (4 + BLOCK) * rows;
+    double *work = tribo_lapack_takes(n) ? malloc((size_t)size * sizeof *work) : NULL;
+    int info;
+    if (!work) {
+        return TRIBO_ERR_MEMORY;
+    }
+    /* Left eigenvectors of the transpose are the conjugates of the right ones of A. */
+    dgeev_("V", "N", &rows, a, &rows, re, im, x, &rows, NULL, &one, work, &size, &info, 1, 1);
+    free(work);
+    for (size_t k = 0; info == 0 && k < n; k++) {
+        for (size_t i = 0; im[k] < 0.0 && i < n; i++) {
+            x[k * n + i] = -x[k * n + i];
+        }
+    }
+    return info ? TRIBO_ERR_NO_CONVERGENCE : TRIBO_OK;
+}
+
+int tribo_least_norm_solve(double *a, size_t n, double cut, double *x, size_t *kernel)
+{
+    const int rows = (int)n, size = 6 * rows + 1;
+    double *v = tribo_lapack_takes(n) ? malloc((n * n + 8 * n + 1) * sizeof *v) : NULL, unused;
+    int info = 1, one = 1;
+    size_t zeros = 0;
+    if (!v) {
+        return 0;
+    }
+    double *value = v + n * n, *right = value + n, *work = right + n;
+    memcpy(right, x, n * sizeof *x);
+    /* By columns a is A' = sum_k value_k u_k v_k': u_k replaces row k of a, and v [n][n] has v_k in column k. */
+    if (n && tribo_dense_finite(a, n * n)) {
+        dgesvd_("O", "A", &rows, &rows, a, &rows, value, &unused, &one, v, &rows, work, &size, &info, 1, 1);
+    }
+    for (size_t i = 0; i < n; i++) {
+        x[i] = info ? (double)NAN : 0.0;
+    }
+    for (size_t k = 0; !info && k < n; k++) {
+        double part = 0.0;
+        for (size_t i = 0; i < n; i++) {
+            part += v[i * n + k] * right[i];
+        }
+        zeros += value[k] < cut;
+        tribo_add(x, value[k] < cut ? 0.0 : part / value[k], a + k * n, n);
+    }
+    free(v);
+    if (kernel) {
+        *kernel = zeros;
+    }
+    return 1;
+}

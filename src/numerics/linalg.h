@@ -64,7 +64,7 @@ struct cholesky {
  * the row *where and the value *pivot of a pivot that is not positive; NaN if the value is unknown. */
 int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *where, double *pivot);
 
-/* The same; frees a, also after an error. */
+/* tribo_cholesky_create; frees a, also after an error. */
 int tribo_cholesky_consume(struct cholesky *c, struct matrix *a, size_t *where, double *pivot);
 
 /* Returns 1, or 0 if out of memory. */
@@ -93,5 +93,18 @@ void tribo_lu_solve(const double *lu, size_t n, const int *pivot, double *x, siz
 /* values [n] = eigenvalues, ascending, and vectors [n][n] = orthonormal eigenvectors, as columns, of a symmetric a [n][n].
  * Overwrites a. Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE. */
 int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors);
+
+/* Eigenvalues and eigenvectors of a general real matrix.
+ * a [n][n]      in, overwritten
+ * re, im [n]    out  eigenvalues; of a complex pair the one with im > 0 first, its conjugate next
+ * x [n][n]      out  eigenvectors of length 1: row k of a real eigenvalue k; of a pair k, k + 1 the real part in row k and the
+ *                    imaginary part in row k + 1. Nearly parallel eigenvectors may be anything.
+ * Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_NOT_FINITE (a), TRIBO_ERR_NO_CONVERGENCE. */
+int tribo_eigen(double *a, size_t n, double *re, double *im, double *x);
+
+/* x [n] = the shortest y that minimizes |a y - x|, with singular values of a [n][n] below cut taken as zero. Overwrites a.
+ * kernel  out, or NULL   the number of singular values below cut
+ * Returns 1, or 0 if out of memory. x is NaN if a is not finite. */
+int tribo_least_norm_solve(double *a, size_t n, double cut, double *x, size_t *kernel);
 
 #endif

@@ -64,25 +64,6 @@ static inline double tribo_matrix_row_size(const struct matrix *a, size_t i, con
 /* y [end - begin] += factor times rows begin to end - 1 of A x. The rows lie in one block. */
 void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, double *y);
 
-/* Returns 1 if a is so small that a call takes as long as its product. */
-static inline int tribo_matrix_is_small(const struct matrix *a)
-{
-    return a->rows <= MATRIX_FEW && a->cols <= 4 * MATRIX_FEW;
-}
-
-/* y += factor A x of a small a. */
-static inline void tribo_matrix_add_few(const struct matrix *a, double factor, const double *x, double *y)
-{
-    for (size_t i = 0; a->diagonals && i < a->rows; i++) {
-        for (size_t k = a->first[i], end = a->first[i + 1]; k < end; k++) {
-            y[i] += factor * a->val[k] * x[a->col[k]];
-        }
-    }
-    for (size_t i = 0; !a->diagonals && i < a->rows; i++) {
-        y[i] += factor * tribo_matrix_row_dot(a, i, x);
-    }
-}
-
 /* y = A x. */
 void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y);
 

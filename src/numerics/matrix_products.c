@@ -86,10 +86,6 @@ void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y)
 
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y)
 {
-    if (tribo_matrix_is_small(a)) {
-        tribo_matrix_add_few(a, factor, x, y);
-        return;
-    }
     for (size_t i = 0; i < a->rows; i += MATRIX_BLOCK) {
         const size_t end = a->rows - i < MATRIX_BLOCK ? a->rows : i + MATRIX_BLOCK;
         tribo_matrix_add_rows(a, i, end, factor, x, y + i);

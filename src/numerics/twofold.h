@@ -1,5 +1,5 @@
-/* Numbers of twice as many digits, as the sum of two: Dekker (1971, Numer. Math. 18, 224, doi:10.1007/BF01397083). Whoever uses
- * them keeps sizes below TWOFOLD_FAR, so that nothing overflows. */
+/* Numbers with twice as many digits, as sums of two doubles: Dekker (1971, Numer. Math. 18, 224, doi:10.1007/BF01397083). Sizes
+ * must stay below TWOFOLD_FAR: nothing overflows then. */
 #ifndef TRIBO_TWOFOLD_H
 #define TRIBO_TWOFOLD_H
 
@@ -8,7 +8,7 @@
 #define TWOFOLD_FAR 1e140
 
 struct twofold {
-    double hi, lo; /* lo is at most half a unit of hi's last digit */
+    double hi, lo; /* |lo| is at most half a unit of hi's last digit */
 };
 
 static inline struct twofold twofold_sum(double a, double b)
@@ -17,7 +17,7 @@ static inline struct twofold twofold_sum(double a, double b)
     return (struct twofold){s, (a - (s - part)) + (b - part)};
 }
 
-/* The upper half of the digits of x. */
+/* Returns the upper half of the digits of x. */
 static inline double twofold_upper(double x)
 {
     const double c = 134217729.0 * x;
@@ -42,7 +42,7 @@ static inline struct twofold twofold_times(struct twofold a, struct twofold b)
     return twofold_sum(p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi));
 }
 
-/* a factor, where factor is a power of 2. */
+/* Returns a factor, for a power of 2. */
 static inline struct twofold twofold_scale(struct twofold a, double factor)
 {
     return (struct twofold){a.hi * factor, a.lo * factor};
@@ -53,7 +53,7 @@ static inline struct twofold twofold_minus(struct twofold a, struct twofold b)
     return twofold_add(a, twofold_scale(b, -1.0));
 }
 
-/* 1/sqrt(a): one step of Newton's iteration from the rounded value. */
+/* Returns 1/sqrt(a), by one step of Newton's iteration from the rounded value. */
 static inline struct twofold twofold_inverse_root(struct twofold a)
 {
     const double x = 1.0 / sqrt(a.hi);

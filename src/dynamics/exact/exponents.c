@@ -1,7 +1,7 @@
 /* Exponents of the free motion in the modes. */
 #include "parts.h"
 #include "common/real.h"
-#include "numerics/eigen.h"
+#include "numerics/linalg.h"
 
 #include <math.h>
 

@@ -16,9 +16,8 @@
  * long, and a little more. */
 #include "shooting.h"
 #include "common/real.h"
-#include "numerics/eigen.h"
+#include "numerics/linalg.h"
 #include "numerics/krylov.h"
-#include "numerics/least_norm.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -8,16 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* y -= A x. */
-static inline void subtract(const struct matrix *a, const double *x, double *y)
-{
-    if (tribo_matrix_is_small(a)) {
-        tribo_matrix_add_few(a, -1.0, x, y);
-    } else {
-        tribo_matrix_multiply_add(a, -1.0, x, y);
-    }
-}
-
 void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration)
 {
     const size_t n = sys->ndof;
@@ -26,9 +16,9 @@ void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y
     }
     memset(acceleration, 0, n * sizeof *acceleration);
     tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, acceleration);
-    subtract(&sys->stiffness, y, acceleration);
+    tribo_matrix_multiply_add(&sys->stiffness, -1.0, y, acceleration);
     if (sys->damping.rows) {
-        subtract(&sys->damping, y + n, acceleration);
+        tribo_matrix_multiply_add(&sys->damping, -1.0, y + n, acceleration);
     }
 }
 

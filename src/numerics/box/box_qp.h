@@ -1,12 +1,16 @@
 /* A group of contacts that R couples, and the box-constrained quadratic program over its contacts near stick. Arrays are indexed
  * by place in the group. Nothing here allocates, unless it says so.
  *
- * factor.c          rows of R, and its factor over the free contacts, of one of three kinds: factor_dense.c    a square block,
- * kept from call to call and changed row by row factor_sparse.c   the same for large groups with few entries factor_graded.c
- * with twice as many digits, for light bodies between heavy ones sets.c            the sets of free contacts and of contacts at a
- * bound, and their changes newton.c          the gradient, its rounding, and the step that takes it to zero small.c
- * solves the problem of up to 4 contacts box.c             solves the problem least_squares.c   solves the linear system of the
- * partition coupling least_norm.c      shares forces among redundant contacts Each calls those above it only. */
+ *   factor.c          rows of R, and its factor over the free contacts, of one of three kinds:
+ *   factor_dense.c    a square block, kept from call to call and changed row by row
+ *   factor_sparse.c   the same for large groups with few entries
+ *   factor_graded.c   with twice as many digits, for light bodies between heavy ones
+ *   sets.c            the sets of free contacts and of contacts at a bound, and their changes
+ *   newton.c          the gradient, its rounding, and the step that takes it to zero
+ *   small.c           solves the problem of up to 4 contacts
+ *   least_norm.c      shares forces among redundant contacts, and solves the linear system of the partition coupling
+ *   box.c             solves the problem
+ * Each calls those above it only. */
 #ifndef TRIBO_BOX_H
 #define TRIBO_BOX_H
 
@@ -34,7 +38,7 @@ enum { AT_LOWER = -1, FREE = 0, AT_UPPER = 1, AWAY = 2 };
 
 struct sparse;
 
-/* What lasts as long as the operator. */
+/* Constants of a group, of the life of the operator. */
 struct group {
     size_t size;
     size_t first;          /* place in the operator's members */
@@ -54,7 +58,7 @@ struct group {
 struct sets {
     int far;             /* 1: the problem of the last call was far */
     size_t rank;         /* independent free contacts, in the factor */
-    size_t dependents;   /* free contacts that depend on those */
+    size_t dependents;   /* free contacts that depend on the independent ones */
     unsigned inverse_of; /* small groups: bit i is 1 if contact i is in inverse */
 };
 
@@ -94,7 +98,7 @@ struct null_space {
     size_t *held;     /* [redundant] workspace */
 };
 
-/* A group at work: views of what is kept, and workspace. */
+/* The problem of a group: views of arrays kept from call to call, and workspace. */
 struct box_qp {
     /* constant */
     const struct group *group;
@@ -157,11 +161,8 @@ static inline double tribo_scale(double diagonal)
 
 /* ---- factor */
 
-/* Enters contact i, which is free, into the factor or the dependents. */
-void tribo_factor_add(struct box_qp *p, size_t i);
-
-/* Takes contact i, which is not free, out of the factor or the dependents. */
-void tribo_factor_remove(struct box_qp *p, size_t i);
+/* Takes contact i into the factor or the dependents if it is FREE, and out of them if not; it was not, or was, FREE before. */
+void tribo_factor_change(struct box_qp *p, size_t i);
 
 /* Factorizes anew over all FREE contacts, which are near. where not NULL: returns the largest entry left after elimination of the
  * independent contacts, rounding unless R is indefinite, negative if a pivot is, and its contact *where; else 0. */
@@ -292,7 +293,7 @@ void tribo_box_gradients(struct box_qp *p);
 /* step = the move of the independent x that takes their gradient to zero; 0 for the dependents. */
 void tribo_box_newton(struct box_qp *p);
 
-/* The same for gradient as it is, with the digits of a double. */
+/* tribo_box_newton for gradient as it is, with the digits of a double. */
 void tribo_box_downhill(struct box_qp *p);
 
 /* Returns x_i + step_i. */
@@ -326,7 +327,7 @@ static inline void tribo_box_forget_low(const struct box_qp *p)
 /* small.c: solves the problem of a small group. 1, or 0 if another solver is needed. */
 int tribo_box_small(struct box_qp *p);
 
-/* Solves the problem from what is kept. Returns 1, or 0 without convergence. */
+/* Solves the problem from the sets and the x of the last call. Returns 1, or 0 without convergence. */
 int tribo_box_solve(struct box_qp *p);
 
 /* Returns the rounding of gradient_i, that of the free x included. Uses spare[0]. */

@@ -8,25 +8,15 @@
 #include "common/real.h"
 #include "common/simd.h"
 
-void tribo_factor_add(struct box_qp *p, size_t i)
+void tribo_factor_change(struct box_qp *p, size_t i)
 {
+    const int enters = p->at[i] == FREE;
     if (p->group->graded) {
         tribo_factor_rebuild(p, NULL);
     } else if (p->group->sparse) {
-        tribo_sparse_add(p, i);
+        (enters ? tribo_sparse_add : tribo_sparse_remove)(p, i);
     } else {
-        tribo_dense_add(p, i);
-    }
-}
-
-void tribo_factor_remove(struct box_qp *p, size_t i)
-{
-    if (p->group->graded) {
-        tribo_factor_rebuild(p, NULL);
-    } else if (p->group->sparse) {
-        tribo_sparse_remove(p, i);
-    } else {
-        tribo_dense_remove(p, i);
+        (enters ? tribo_dense_add : tribo_dense_remove)(p, i);
     }
 }
 

@@ -1,6 +1,5 @@
-/* The factor of a group whose R is a square block. Rows are appended and deleted in O(rank^2); contacts that depend on those in
- * the factor wait beside it. A pivot that is small, but not zero to rounding, leads to a factor with the largest pivots first,
- * which decides the rank.
+/* The factor of a group whose R is a square block. Rows are appended and deleted in O(rank^2). Dependents wait beside the factor.
+ * A pivot that is small, but not zero to rounding, leads to a new factor with the largest pivots first, which decides the rank.
  *
  * Row k of l holds l_k0, ... l_k,k-1 and 1/l_kk. */
 #include "box_qp.h"

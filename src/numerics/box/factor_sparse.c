@@ -328,7 +328,7 @@ static void sparse_put(struct box_qp *p, size_t at, size_t i)
     p->sparse.index[i] = at;
 }
 
-/* Returns 1 if contact i depends on those in the factor: its pivot as the last one would be 0 to rounding. */
+/* Returns 1 if contact i depends on the contacts in the factor: its pivot as the last one would be 0 to rounding. */
 static int sparse_depends(struct box_qp *p, size_t i)
 {
     const struct sparse *s = p->group->sparse;

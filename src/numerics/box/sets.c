@@ -12,12 +12,9 @@ void tribo_box_change(struct box_qp *p, size_t i, signed char to)
 {
     const signed char from = p->at[i];
     p->at[i] = to;
-    if (from == FREE && to != FREE) {
+    if ((from == FREE) != (to == FREE)) {
         p->work.updates++;
-        tribo_factor_remove(p, i);
-    } else if (from != FREE && to == FREE) {
-        p->work.updates++;
-        tribo_factor_add(p, i);
+        tribo_factor_change(p, i);
     }
 }
 

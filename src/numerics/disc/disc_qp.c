@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/layout.h"
 #include "common/real.h"
 
 enum { FROM_BEFORE = 12, FROM_INTERIOR = 40 };
@@ -214,12 +215,12 @@ int tribo_disc_share(struct disc_qp *p)
 /* ------------------------------------------------------------------------------------------------------------ room */
 
 /* Lays out vectors in store [TRIBO_DISC_VECTORS s]; press is two of them. */
-static void lay_out(struct disc_qp *p, double *store, size_t s)
+static void lay_out_vectors(struct disc_qp *p, double *store, size_t s)
 {
     double **const vector[] = {&p->pull,    &p->shift,       &p->y,             &p->gradient, &p->noise,    &p->gain,  &p->to,
                                &p->outward, &p->curvature,   &p->step,          &p->spare,    &p->best,     &p->from,  &p->aim,
                                &p->slide,   &p->factor.qp.q, &p->factor.qp.row, &p->weight,   &p->diagonal, &p->share, &p->press};
-    for (size_t k = 0; k < sizeof vector / sizeof *vector; k++) {
+    for (size_t k = 0; store && k < sizeof vector / sizeof *vector; k++) {
         *vector[k] = store + k * s;
     }
 }
@@ -228,36 +229,28 @@ int tribo_disc_create(struct disc_qp *p, size_t most)
 {
     const size_t s = most + 1;
     struct box_qp *f = &p->factor.qp;
+    struct layout l = {0};
     *p = (struct disc_qp){0};
-    double *store = calloc(TRIBO_DISC_VECTORS * s, sizeof *store);
-    lay_out(p, store, s);
-    p->wide = calloc(s, 1);
-    p->place = malloc(s);
-    p->s = calloc(s * s, sizeof *p->s);
-    p->factor.matrix = malloc(s * s * sizeof *p->factor.matrix);
-    p->freedom = malloc(s * sizeof *p->freedom);
-    f->near = malloc(s * sizeof *f->near);
-    f->order = malloc(s * sizeof *f->order);
-    f->at = malloc(s);
-    f->l = malloc(s * s * sizeof *f->l);
-    f->null.basis = malloc(s * s * sizeof *f->null.basis);
-    return store && p->wide && p->place && p->s && p->factor.matrix && p->freedom && f->near && f->order && f->at && f->l &&
-           f->null.basis;
+    do {
+        p->memory = tribo_layout_array(&l, 0, 1);
+        lay_out_vectors(p, tribo_layout_array(&l, TRIBO_DISC_VECTORS * s, sizeof *p->y), s);
+        p->s = tribo_layout_array(&l, s * s, sizeof *p->s);
+        p->factor.matrix = tribo_layout_array(&l, s * s, sizeof *p->factor.matrix);
+        f->l = tribo_layout_array(&l, s * s, sizeof *f->l);
+        f->null.basis = tribo_layout_array(&l, s * s, sizeof *f->null.basis);
+        p->freedom = tribo_layout_array(&l, s, sizeof *p->freedom);
+        f->near = tribo_layout_array(&l, s, sizeof *f->near);
+        f->order = tribo_layout_array(&l, s, sizeof *f->order);
+        p->wide = tribo_layout_array(&l, s, 1);
+        p->place = tribo_layout_array(&l, s, 1);
+        f->at = tribo_layout_array(&l, s, 1);
+    } while (!l.memory && tribo_layout_zeros(&l));
+    return l.memory != NULL;
 }
 
 void tribo_disc_free(struct disc_qp *p)
 {
-    free(p->pull);
-    free(p->wide);
-    free(p->place);
-    free(p->s);
-    free(p->factor.matrix);
-    free(p->freedom);
-    free(p->factor.qp.near);
-    free(p->factor.qp.order);
-    free(p->factor.qp.at);
-    free(p->factor.qp.l);
-    free(p->factor.qp.null.basis);
+    free(p->memory);
     *p = (struct disc_qp){0};
 }
 
@@ -270,7 +263,7 @@ void tribo_disc_alone(struct disc_alone *x, const double *s, const double *pull,
     x->p.factor.matrix = x->matrix;
     x->p.near_enough = TRIBO_NEAR_ENOUGH;
     x->p.factor.qp = (struct box_qp){.near = x->near, .order = x->order, .at = x->at, .l = x->l, .null = {.basis = x->basis}};
-    lay_out(&x->p, x->store, TRIBO_DISC_ALONE);
+    lay_out_vectors(&x->p, x->store, TRIBO_DISC_ALONE);
     memcpy(x->p.pull, pull, 2 * sizeof *pull);
     memcpy(x->p.shift, shift, 2 * sizeof *shift);
 }

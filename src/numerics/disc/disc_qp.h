@@ -1,9 +1,11 @@
 /* The convex quadratic program of coupled contacts, planar ones among them: min 1/2 y's y + pull'y, where the y of each contact
- * lies in its lens, or interval, in units of its limit. Knows no friction, and allocates nothing but in tribo_disc_create.
+ * lies in its lens, or interval, in units of its limit. Knows no friction, and allocates in tribo_disc_create only.
  *
- * lens.c        the set of one contact, and its point nearest to another point tangent_qp.c  the directions in which contacts may
- * move y, and Newton's equations along them interior.c    an interior-point method, which needs no beginning disc_qp.c     solves
- * the problem Each calls those above it only, and the dense factor of box/. */
+ *   lens.c        the set of one contact, and its point nearest to another point
+ *   tangent_qp.c  the directions in which contacts may move y, and Newton's equations along them
+ *   interior.c    an interior-point method, which needs no beginning
+ *   disc_qp.c     solves the problem
+ * Each calls those above it only, and the dense factor of box/. */
 #ifndef TRIBO_DISC_QP_H
 #define TRIBO_DISC_QP_H
 
@@ -54,6 +56,7 @@ struct disc_qp {
     double *step, *spare, *best, *from, *aim, *slide, *press; /* [size]; press [2 size] */
     double *diagonal, *share;                                 /* [size] */
     struct disc_factor factor;
+    void *memory; /* of all arrays; NULL: the caller's */
 };
 
 /* Allocates room for up to most directions. Returns 1, or 0 if out of memory: tribo_disc_free takes that too. */

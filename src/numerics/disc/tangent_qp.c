@@ -47,7 +47,7 @@ static int is_skew(const struct disc_qp *p, size_t i)
     return p->wide[i] == 2 && p->gain[i] != p->gain[i + 1];
 }
 
-static inline int descend(const struct disc_qp *p, size_t i, const double *gradient, double *to)
+int tribo_disc_descend(const struct disc_qp *p, size_t i, const double *gradient, double *to)
 {
     const double most = 1e150, *y = p->y + i;
     double z[2];
@@ -62,11 +62,6 @@ static inline int descend(const struct disc_qp *p, size_t i, const double *gradi
         z[k] = y[k] - (far ? gradient[k] / length * most : p->gain[i] * gradient[k]);
     }
     return tribo_lens_project(p->wide[i], p->shift + i, z, to);
-}
-
-int tribo_disc_descend(const struct disc_qp *p, size_t i, const double *gradient, double *to)
-{
-    return descend(p, i, gradient, to);
 }
 
 void tribo_disc_gradients(struct disc_qp *p)
@@ -111,7 +106,7 @@ double tribo_disc_places(struct disc_qp *p)
     p->residual = 0.0;
     for (size_t i = 0; i < p->size; i += p->wide[i]) {
         double off[2] = {0.0, 0.0}, noise[2] = {0.0, 0.0};
-        p->place[i] = (unsigned char)descend(p, i, p->gradient + i, p->to + i);
+        p->place[i] = (unsigned char)tribo_disc_descend(p, i, p->gradient + i, p->to + i);
         for (size_t k = 0; k < p->wide[i]; k++) {
             p->outward[i + k] = p->to[i + k] + (p->place[i] == LENS_ON_SHIFTED ? p->shift[i + k] : 0.0);
             off[k] = p->to[i + k] - p->y[i + k];

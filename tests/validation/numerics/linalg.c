@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "numerics/constraint.h"
-#include "numerics/eigen.h"
+#include "numerics/linalg.h"
 #include "numerics/krylov.h"
 #include "dynamics/reduce/normal_modes.h"
 #include "support.h"
@@ -571,7 +571,61 @@ TEST(krylov)
     assert_close(sqrt(left / size), part, 1e-13);
 }
 
+/* ------------------------------------------------------------------------------------------------------- least norm */
+
+/* A = B (I - V V') has the kernel V. The solution has no part in V, and its residual none in the range of A. */
+TEST(shortest)
+{
+    struct random g = random_of(_i);
+    const size_t zeros = (size_t)(_i % 5);
+    double a[SPACE * SPACE], b[SPACE * SPACE], v[SPACE * SPACE], value[SPACE], x[SPACE], y[SPACE], left[SPACE];
+    size_t kernel;
+    for (size_t i = 0; i < SPACE; i++) {
+        x[i] = y[i] = uniform(&g, -1.0, 1.0);
+        for (size_t k = 0; k < SPACE; k++) {
+            b[i * SPACE + k] = uniform(&g, -1.0, 1.0);
+            a[i * SPACE + k] = a[k * SPACE + i] = uniform(&g, -1.0, 1.0);
+        }
+    }
+    assert_ok(tribo_symmetric_eigen(a, SPACE, value, v));
+    memcpy(a, b, sizeof a);
+    for (size_t i = 0; i < SPACE; i++) {
+        for (size_t j = 0; j < zeros; j++) {
+            double part = 0.0;
+            for (size_t k = 0; k < SPACE; k++) {
+                part += b[i * SPACE + k] * v[k * SPACE + j];
+            }
+            for (size_t k = 0; k < SPACE; k++) {
+                a[i * SPACE + k] -= part * v[k * SPACE + j];
+            }
+        }
+    }
+    memcpy(b, a, sizeof b);
+    require(tribo_least_norm_solve(b, SPACE, 1e-9, y, &kernel), "out of memory");
+    ck_assert_uint_eq(kernel, zeros);
+    for (size_t j = 0; j < zeros; j++) {
+        double part = 0.0;
+        for (size_t k = 0; k < SPACE; k++) {
+            part += v[k * SPACE + j] * y[k];
+        }
+        assert_close(part, 0.0, 1e-12 * (1.0 + tribo_largest(y, SPACE)));
+    }
+    for (size_t i = 0; i < SPACE; i++) {
+        left[i] = tribo_dot(a + i * SPACE, y, SPACE) - x[i];
+    }
+    for (size_t k = 0; k < SPACE; k++) {
+        double part = 0.0;
+        for (size_t i = 0; i < SPACE; i++) {
+            part += a[i * SPACE + k] * left[i];
+        }
+        assert_close(part, 0.0, 1e-12 * (1.0 + tribo_largest(y, SPACE)));
+    }
+    a[0] = INFINITY;
+    require(tribo_least_norm_solve(a, SPACE, 1e-9, y, NULL), "out of memory");
+    ck_assert(isnan(y[0]));
+}
+
 TEST_MAIN("linalg", {light_between, 31}, {light_follows, 1}, {piles, 20}, {clusters, 20}, {graded_rows, 45},
           {forces_and_displacements, 20}, {nearly_dependent, 17}, {touches_nothing, 1}, {graded_stiffness, 20}, {pairs, 400},
           {one_alone, 1}, {negative_stiffness, 1}, {overflowing_stiffness, 1}, {random_eigenvalues, 120}, {circles, 20},
-          {eigenvalues_of_what_is_none, 1}, {equations, 10}, {definite_factor, 50}, {krylov, 20})
+          {eigenvalues_of_what_is_none, 1}, {equations, 10}, {definite_factor, 50}, {krylov, 20}, {shortest, 50})
