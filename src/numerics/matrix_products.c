@@ -86,6 +86,10 @@ void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y)
 
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y)
 {
+    if (a->diagonals && a->rows <= MATRIX_FEW) { /* a second call would take as long as the product */
+        add_outer_rows(a, 0, a->rows, factor, x, y);
+        return;
+    }
     for (size_t i = 0; i < a->rows; i += MATRIX_BLOCK) {
         const size_t end = a->rows - i < MATRIX_BLOCK ? a->rows : i + MATRIX_BLOCK;
         tribo_matrix_add_rows(a, i, end, factor, x, y + i);

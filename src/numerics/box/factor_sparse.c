@@ -443,7 +443,7 @@ int tribo_sparse_create(struct sparse **s, const struct csr *r)
         return 1;
     }
     struct sparse *c = calloc(1, sizeof *c);
-    double *work = malloc((4 * size + 1) * sizeof *work);
+    double *work = calloc(4 * size + 1, sizeof *work);
     int good = -1;
     if (c && work && tribo_csr_create(&c->r, size, entries)) {
         c->position = malloc(2 * size * sizeof *c->position);
