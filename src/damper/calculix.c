@@ -7,7 +7,7 @@
 
 /* ---------------------------------------------------------------------------------------------------------------- matrices */
 
-/* Nothing announces how many entries there are; but they end with the last row's, on the diagonal. */
+/* The format has no count of entries: a file that is cut off lacks entries on the diagonal. */
 static void check_diagonal(const char *path, const char *seen, const struct rows *rows)
 {
     const char *missing = memchr(seen, 0, rows->count);
@@ -63,7 +63,7 @@ struct nodes {
     struct node *node;
 };
 
-/* Whether the line begins with that keyword, which stands in capitals here. */
+/* 1 if the line begins with the keyword, given in capitals. */
 static int is_keyword(const struct lines *l, const char *keyword)
 {
     const char *c = l->at;

@@ -1,5 +1,5 @@
-/* What CalculiX writes for *FREQUENCY, SOLVER=MATRIXSTORAGE: matrices name.sti and name.mas, degrees of freedom name.dof; and of
- * its input, name.inp, where the nodes are. */
+/* Files that CalculiX writes for *FREQUENCY, SOLVER=MATRIXSTORAGE: matrices name.sti and name.mas, degrees of freedom name.dof;
+ * and its input name.inp, which has the coordinates of the nodes. */
 #ifndef DAMPER_CALCULIX_H
 #define DAMPER_CALCULIX_H
 

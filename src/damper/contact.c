@@ -17,7 +17,7 @@ static const char *read_coordinates(const char *origin, const char *text, char e
     return text;
 }
 
-/* 1, 2, 3 for x, y, z; 0 for what is none. */
+/* 1, 2, 3 for x, y, z; 0 for any other name. */
 static int read_direction(char name)
 {
     for (int d = 1; d <= 3; d++) {
@@ -39,7 +39,7 @@ struct place read_place(const char *origin, const char *text)
     return p;
 }
 
-/* The same where there may be two directions; *second is 0, or the other one. */
+/* "X,Y,Z,DIR", DIR one direction or two; *second out: the second one, or 0. */
 static struct place read_places(const char *origin, const char *text, int *second)
 {
     struct place p = {.origin = origin};

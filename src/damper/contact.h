@@ -14,9 +14,9 @@ struct place {
 struct contact {
     struct place at, to;
     int between;  /* 0: to the ground, and there is no to */
-    double limit; /* NaN: it varies, and is mu times what it varies with */
+    double limit; /* NaN: mu times the value of --limits */
     double mu;
-    int by_load;      /* 1: it varies, and mu is given: what it varies with is a normal load */
+    int by_load;      /* 1: limit is NaN and mu is given, so that --limits gives normal loads */
     double stiffness; /* of the spring that it slides on; 0: none, it is rigid */
     int planar;       /* the first direction of two, and the next contact is the other one */
 };

@@ -27,7 +27,7 @@ void free_curve(struct curve *c)
     free(c->sample);
 }
 
-/* Where x belongs. */
+/* Index of the first sample at or right of x. */
 static size_t index_of(const struct curve *c, double x)
 {
     size_t low = 0, high = c->count;
@@ -65,7 +65,7 @@ static int found(const struct curve *c, size_t k)
     return c->sample[k].motion.found;
 }
 
-/* The nearest one found on that side of sample k, or NULL. */
+/* The nearest sample that was found, on one side of sample k; or NULL. */
 static const struct sample *neighbour(const struct curve *c, size_t k, int right)
 {
     while (right ? ++k < c->count : k-- > 0) {
@@ -76,7 +76,7 @@ static const struct sample *neighbour(const struct curve *c, size_t k, int right
     return NULL;
 }
 
-/* From the nearer neighbour, from the other one, from rest, until it is found: so many of these are tried. */
+/* Starts of a search: the nearer neighbour, the other one, rest; the first `tries` of them are tried until one succeeds. */
 enum { NEARER = 1, ALL = 3 };
 static void find_sample(struct curve *c, struct worker *w, size_t k, int tries)
 {
@@ -150,19 +150,19 @@ static size_t refine(struct curve *c, struct worker *w, double tolerance)
 {
     const struct height h = height_of(c);
     const double whole = c->sample[c->count - 1].x - c->sample[0].x;
-    char *wanted = need_memory(c->count, 1);
+    char *more = need_memory(c->count, 1);
     size_t added = 0;
     for (size_t k = 0; k + 1 < c->count; k++) {
-        wanted[k] = c->sample[k + 1].x - c->sample[k].x > LEAST_WIDTH * whole &&
+        more[k] = c->sample[k + 1].x - c->sample[k].x > LEAST_WIDTH * whole &&
                     (found(c, k) != found(c, k + 1) || bends(c, k, &h, tolerance) || bends(c, k + 1, &h, tolerance));
     }
     for (size_t k = c->count - 1; k-- > 0;) {
-        if (wanted[k] && c->count < MOST_SAMPLES && !interrupted()) {
+        if (more[k] && c->count < MOST_SAMPLES && !interrupted()) {
             split_gap(c, w, k);
             added++;
         }
     }
-    free(wanted);
+    free(more);
     return added;
 }
 
@@ -224,7 +224,7 @@ static int is_top(const struct curve *c, size_t k)
            s->motion.amplitude >= s[-1].motion.amplitude && s->motion.amplitude >= s[1].motion.amplitude;
 }
 
-/* From a top among the samples to that of the curve. */
+/* Adds samples from a top of the samples, at x, to the top of the curve. */
 static void climb(struct curve *c, struct worker *w, double x)
 {
     for (int i = 0; i < CLIMBS && !interrupted(); i++) {
@@ -274,7 +274,7 @@ size_t spread_samples(const struct curve *c, size_t most, const struct sample **
     return wanted;
 }
 
-int looked_for(const struct sample *s)
+int searched(const struct sample *s)
 {
     return s->motion.found || s->motion.message[0] != '\0';
 }
@@ -283,7 +283,7 @@ size_t gaps_of(const struct curve *c)
 {
     size_t gaps = 0;
     for (size_t k = 0; k < c->count; k++) {
-        gaps += !found(c, k) && looked_for(&c->sample[k]);
+        gaps += !found(c, k) && searched(&c->sample[k]);
     }
     return gaps;
 }

@@ -8,7 +8,7 @@ struct sample {
     double x; /* Hz, or the logarithm of the limit */
     struct motion motion;
     double *y; /* [record] the record, if it was found */
-    int asked; /* one of those that the user wanted; others were added */
+    int asked; /* 1: given by the user; 0: added */
 };
 
 struct curve {
@@ -22,30 +22,30 @@ struct curve {
 struct curve create_curve(int over_limit, double fixed, size_t record);
 void free_curve(struct curve *c);
 
-/* Adds a place where a motion is to be found; one that is there already is asked for. */
+/* Adds a sample at x; a sample that is there already becomes asked if asked is 1. */
 void ask_sample(struct curve *c, double x, int asked);
 
-/* Finds the motions from left to right, each from a neighbour's; then more of them wherever the curve bends or was not found,
- * until neighbours differ from a chord by no more than the tolerance, relative. */
+/* Finds the motions from left to right, each from the motion of a neighbour; then adds samples where the curve bends or a motion
+ * was not found, until neighbours differ from a chord by at most the tolerance, relative. */
 void find_curve(struct curve *c, struct worker *w, double tolerance);
 
-/* Finds the motion at x, with more of them on the way there if it takes that; NULL if it is not found. The sample stays where it
- * is until the next one is added. */
+/* Finds the motion at x, if needed by samples between x and its neighbours. Returns NULL if it is not found. The sample keeps its
+ * address until the next one is added. */
 const struct sample *reach_sample(struct curve *c, struct worker *w, double x);
 
 /* The sample with the largest amplitude; NULL if none was found. */
 const struct sample *largest_of(const struct curve *c);
 
-/* Finds the largest amplitude to rounding: more samples about every top that may be it, samples being off by the tolerance. */
+/* Finds the largest amplitude to rounding, by more samples at each top that is within the tolerance of the largest. */
 void find_largest(struct curve *c, struct worker *w, double tolerance);
 
-/* At most so many of the samples that were asked for and found, spread over the curve, into chosen [most]; returns how many. */
+/* chosen [most] out: samples that were asked for and found, spread over the curve. Returns their number. */
 size_t spread_samples(const struct curve *c, size_t most, const struct sample **chosen);
 
-/* Whether it was found, or not: after an interruption there are others. */
-int looked_for(const struct sample *s);
+/* 1 if the motion was searched; after an interruption some were not. */
+int searched(const struct sample *s);
 
-/* How many were looked for and not found. */
+/* The number of motions that were searched and not found. */
 size_t gaps_of(const struct curve *c);
 
 #endif

@@ -72,7 +72,7 @@ static int is_mirrored(const struct entry *e, int symmetric)
     return symmetric && e->row != e->column;
 }
 
-/* Where each row begins: first[row], counted from 0; first [rows + 1], zeros before. */
+/* first [rows + 1] in: zeros; out: where each row begins. */
 static void count_rows(const struct entries *all, size_t rows, int symmetric, size_t *first)
 {
     for (size_t k = 0; k < all->count; k++) {
@@ -85,7 +85,7 @@ static void count_rows(const struct entries *all, size_t rows, int symmetric, si
     }
 }
 
-/* Rows come one after the other, so that each gets its lower triangle first, and then what other rows mirror into it. */
+/* Entries come row by row, so that each row gets its lower triangle first, then the mirrored entries of later rows. */
 static void fill_rows(const struct entries *all, int symmetric, size_t *next, struct sparse *m)
 {
     for (size_t k = 0; k < all->count; k++) {

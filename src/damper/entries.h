@@ -29,13 +29,13 @@ struct entries {
     struct entry *entry;
 };
 
-/* What is left of the line: "row column value". */
+/* Reads the rest of the line: "row column value". */
 struct entry read_entry(struct lines *l, const struct rows *rows);
 
 void add_entry(struct entries *all, const struct entry *e);
 
 /* Sorts the entries, and makes a matrix of those that are not zero, in compressed rows; of symmetric ones, which lie in the lower
- * triangle, also what is above. Ends the program if a place has been given twice in the file of that path. */
+ * triangle, also the upper triangle. Ends the program if a place has been given twice in the file of that path. */
 struct sparse make_matrix(const char *path, struct entries *all, size_t rows, int symmetric);
 
 #endif

@@ -1,6 +1,5 @@
-/* A structure with friction contacts, as a user meets it: matrices from a finite-element program, contacts by coordinates, its
- * steady response to a harmonic load, and the question which contact force makes the best friction damper. tribo-damper --help
- * tells the rest. */
+/* tribo-damper: the steady response of a finite-element model with friction contacts to harmonic loads, and the limit of contacts
+ * that makes the best friction damper. Options: tribo-damper --help. */
 #include <stdlib.h>
 
 #include "matrix_file.h"
@@ -20,7 +19,7 @@ int main(int argc, char **argv)
         structure.damping = read_matrix(options.damping_matrix, &(struct rows){structure.ndof, options.dofs});
     }
     complete_options(&options, &structure);
-    tell_of_loose_rows(&structure, options.stiffness);
+    report_loose_rows(&structure, options.stiffness);
     watch_interrupts();
     struct model model = create_model(&options, &structure);
     struct tables tables = open_tables(&options);

@@ -1,10 +1,10 @@
-# The manual page of tribo-damper, from what it prints itself:
+# The manual page of tribo-damper, from its --help:
 #   cmake -D TOOL=<tribo-damper> -D MANUAL=<file> -P manual.cmake
 # Lines stay as they are; those without indentation that end in a colon, after a blank one, become headings.
 execute_process(COMMAND "${TOOL}" --help OUTPUT_VARIABLE text RESULT_VARIABLE status)
 execute_process(COMMAND "${TOOL}" --version OUTPUT_VARIABLE version OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE failed)
 if(status OR failed)
-  message(FATAL_ERROR "${TOOL} does not tell its help and version: ${status} ${failed}")
+  message(FATAL_ERROR "${TOOL} does not print its help and version: ${status} ${failed}")
 endif()
 string(REGEX REPLACE "^tribo-damper: ([^\n]*)\\.\n" "" text "${text}")
 set(purpose "${CMAKE_MATCH_1}")

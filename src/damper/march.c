@@ -165,7 +165,7 @@ static void extrapolate(const struct damper *d, double *const *y, size_t keep, d
     free(work);
 }
 
-/* Whether amplitude and dissipated power have not changed for QUIET cycles. Powers are compared with the input, since friction
+/* 1 if amplitude and dissipated power have not changed for QUIET cycles. Powers are compared with the input, since friction
  * dissipates nothing where contacts never slip. */
 static int quiet(const struct scale *free, const struct motion *m)
 {
@@ -195,7 +195,7 @@ static struct motion settle_motion(const struct run *r, double *const *state)
         }
         const double last = distance(d, state[BLOCK], state[BLOCK - 1]), size = distance(d, state[BLOCK], NULL);
         cycles += BLOCK;
-        tell_march(r->limit, 1.0 / r->period, cycles, size > 0.0 ? last / size : 0.0);
+        show_march(r->limit, 1.0 / r->period, cycles, size > 0.0 ? last / size : 0.0);
         memcpy(ahead, state[BLOCK], n * sizeof *ahead);
         if (last > NOTHING * r->free.norm) {
             extrapolate(d, state + BLOCK - (keep + 1), keep, ahead);

@@ -10,7 +10,7 @@
 #include "team.h"
 
 enum { LEAST_MODES = 12, MOST_MODES = 200 /* kept by default */ };
-enum { HARMONICS = 9 /* of the load, up to which next to nothing may be missing at the contacts */ };
+enum { HARMONICS = 9 /* of the load, up to which displacements at the contacts are right to MOST_MISSING */ };
 static const double MOST_MISSING = 0.01, MOST_ERROR = 0.01;
 
 /* -------------------------------------------------------------------------------------------------------------- comparing */
@@ -53,24 +53,40 @@ void compare_models(const struct model *m, size_t threads, struct point *point, 
     free(c.motion);
 }
 
-double model_error(const struct point *point, size_t count)
+/* The largest change with all contacts stuck: of amplitudes at the ends of the band, and of natural frequencies up to the highest
+ * of the loads, the first one always. */
+static double stuck_change(const struct model *m)
+{
+    const struct linear *kept = &m->damper.stuck, *more = &m->finer.stuck;
+    const double end[] = {TURN * lowest_drive(m->options, &m->damper), TURN * highest_drive(m->options, &m->damper)};
+    double change = 0.0;
+    for (int k = 0; k < 2; k++) {
+        change = fmax(change, relative_difference(linear_amplitude(kept, end[k]), linear_amplitude(more, end[k])));
+    }
+    for (size_t k = 0; k < kept->count && k < more->count && (k == 0 || more->omega[k] <= end[1]); k++) {
+        change = fmax(change, relative_difference(kept->omega[k], more->omega[k]));
+    }
+    return change;
+}
+
+double model_error(const struct model *m, const struct point *point, size_t count)
 {
     double error = (double)NAN;
     for (size_t k = 0; k < count; k++) {
         error = point[k].compared ? fmax(error, 2.0 * fmax(point[k].amplitude, point[k].power)) : error;
     }
-    return error;
+    return m->whole ? 0.0 : isnan(error) ? error : fmax(error, 2.0 * stuck_change(m));
 }
 
 /* --------------------------------------------------------------------------------------------------------------- choosing */
 
-/* So many modes; all, where these and static responses are more than half of them. */
+/* The damper with `kept` modes; with all, if modes and static responses are more than half of them. */
 static struct damper with_modes(const struct options *o, const struct structure *s, size_t kept)
 {
     return create_damper(o, s, 2 * (kept + o->contacts.count + o->loads.count) < s->ndof ? kept : s->ndof);
 }
 
-/* What is missing at contacts and load, as a part of the displacements there, up to the highest harmonic that matters. */
+/* A bound of the part of the displacements at contacts and loads that is missing, up to harmonic HARMONICS. */
 static double missing(const struct damper *d, const struct options *o)
 {
     const double hz = highest_drive(o, d);
@@ -79,7 +95,7 @@ static double missing(const struct damper *d, const struct options *o)
     return d->kept < d->ndof ? error : 0.0;
 }
 
-/* Whether the number of modes is free, and there may be twice as many. */
+/* 1 if --modes does not fix the modes and twice as many are allowed. */
 static int may_double(const struct model *m)
 {
     return !m->options->modes && m->damper.kept < m->damper.ndof && 2 * m->damper.kept <= MOST_MODES;
@@ -87,25 +103,20 @@ static int may_double(const struct model *m)
 
 enum { PROBES = 3 };
 
-/* The middle of each third of all limits, at PROBES frequencies of a band. Returns how many. */
-static size_t place_probes(const struct options *o, const struct damper *d, struct point *probe)
-{
-    const size_t limits = o->limits.points < PROBES ? o->limits.points : PROBES, bands = o->drive.points > 1 ? PROBES : 1;
-    for (size_t k = 0; k < limits * bands; k++) {
-        const double part = (double)(k / limits) / (PROBES - 1);
-        const double hz = lowest_drive(o, d) + part * (highest_drive(o, d) - lowest_drive(o, d));
-        const size_t middle = (2 * (k % limits) + 1) * o->limits.points / (2 * limits);
-        probe[k] = (struct point){.limit = limit_of(&o->limits, middle), .hz = hz};
-    }
-    return limits * bands;
-}
-
+/* The model error at the middle of each third of all limits, at PROBES frequencies of a band. */
 static double probe_error(const struct model *m)
 {
+    const struct options *o = m->options;
+    const double low = lowest_drive(o, &m->damper), high = highest_drive(o, &m->damper);
+    const size_t limits = o->limits.points < PROBES ? o->limits.points : PROBES, bands = o->drive.points > 1 ? PROBES : 1;
     struct point probe[PROBES * PROBES];
-    const size_t count = place_probes(m->options, &m->damper, probe);
-    compare_models(m, m->options->threads, probe, count);
-    return model_error(probe, count);
+    for (size_t k = 0; k < limits * bands; k++) {
+        const size_t middle = (2 * (k % limits) + 1) * o->limits.points / (2 * limits);
+        probe[k].limit = limit_of(&o->limits, middle);
+        probe[k].hz = low + (double)(k / limits) / (PROBES - 1) * (high - low);
+    }
+    compare_models(m, o->threads, probe, limits * bands);
+    return model_error(m, probe, limits * bands);
 }
 
 static void check_drives(const struct options *o, const struct damper *d)
@@ -152,7 +163,7 @@ struct model create_model(const struct options *o, const struct structure *s)
     add_finer(&m);
     while (may_double(&m) && take_more_modes(&m, probe_error(&m))) {
     }
-    end_telling();
+    end_progress();
     check_drives(o, &m.damper);
     return m;
 }
@@ -190,7 +201,7 @@ void report_model(const struct tables *t, const struct model *m)
 
 void report_error(const struct tables *t, const struct model *m, const struct point *point, size_t count)
 {
-    const double error = m->whole ? 0.0 : model_error(point, count);
+    const double error = model_error(m, point, count), stuck = m->whole ? 0.0 : stuck_change(m);
     double amplitude = 0.0, power = 0.0;
     size_t compared = 0;
     for (size_t k = 0; k < count; k++) {
@@ -203,8 +214,9 @@ void report_error(const struct tables *t, const struct model *m, const struct po
     } else if (compared == 0) {
         printf("model error: not known, since no motion was found with %zu modes, too\n", m->finer.kept);
     } else {
-        printf("model error: at most %.1e; with %zu modes amplitudes change by %.1e, powers by %.1e (at %zu point%s)%s\n", error,
-               m->finer.kept, amplitude, power, compared, compared == 1 ? "" : "s",
+        printf("model error: at most %.1e; with %zu modes amplitudes change by %.1e, powers by %.1e (at %zu point%s), all stuck "
+               "by %.1e%s\n",
+               error, m->finer.kept, amplitude, power, compared, compared == 1 ? "" : "s", stuck,
                error <= MOST_ERROR ? "" : may_double(m) ? ": again with these" : ": take more --modes");
     }
     if (!isnan(error)) {

@@ -147,6 +147,6 @@ struct motion find_motion(struct worker *w, double limit, double hz, const doubl
         memcpy(y, state, record_of(w->d) * sizeof *y);
     }
     free(state);
-    tell_point();
+    show_point();
     return m;
 }

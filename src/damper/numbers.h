@@ -3,10 +3,10 @@
 
 #include <stddef.h>
 
-/* Numbers in what the user wrote. origin says where that was, e.g. "option --force 1N": what is no number ends the program with a
- * message that begins so. */
+/* Numbers given by the user. origin is their place, e.g. "option --force 1N": any error ends the program with a message that
+ * begins with origin. */
 
-/* Reads a number that ends with the character end, and returns what is behind that. */
+/* Reads a number that ends with the character end. Returns the text behind end. */
 const char *read_number(const char *origin, const char *at, char end, double *value);
 
 /* The whole text is a number, or a whole one up to 1000000. */

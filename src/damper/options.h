@@ -36,7 +36,7 @@ struct options {
 /* Reads the command line; prints help or version, or ends the program with a message, where that is due. */
 struct options read_options(int argc, char **argv);
 
-/* Sets what depends on the structure: the size of loads, and limits that were not given. */
+/* Sets values that depend on the structure: the size of loads, and limits that were not given. */
 void complete_options(struct options *o, const struct structure *s);
 
 /* 1 if the limit of a contact follows the option --limits. */

@@ -1,5 +1,5 @@
-/* What the tool and the larger examples share: errors that end the program, files in the folder of results, and named values,
- * from which run.sh makes its closing table. */
+/* Shared by the tool and the larger examples: errors that end the program, files in the folder of results, and named values, from
+ * which run.sh makes its closing table. */
 #ifndef DAMPER_OUTPUT_H
 #define DAMPER_OUTPUT_H
 

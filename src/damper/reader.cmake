@@ -1,4 +1,4 @@
-# damper_reader(<target>): adds what reads matrices and degrees of freedom from files; compressed ones if zlib is there.
+# damper_reader(<target>): adds the readers of matrices and degrees of freedom; of compressed files if zlib is there.
 find_package(ZLIB QUIET)
 set(damper_folder "${CMAKE_CURRENT_LIST_DIR}")
 function(damper_reader target)

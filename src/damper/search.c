@@ -4,8 +4,8 @@
 
 #include "team.h"
 
-/* Each time two more values, in the middles of the halves: the least of three and its neighbours are half as far apart, and what
- * was the least of all is known. */
+/* Each step finds two more values, in the middles of the halves, and keeps the least of three with its neighbours: the interval
+ * is halved. */
 double find_least(double low, double high, double part, evaluate *values, void *data, double *least)
 {
     double a = log(low), b = log(high), best = sqrt(low * high);

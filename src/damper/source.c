@@ -59,7 +59,7 @@ static int refill(struct packed *p)
     return p->stream.avail_in > 0;
 }
 
-/* A file that is cut off, or has other bytes behind its members, gives what it has, and the error with it. */
+/* Of a file that is cut off, or has other bytes behind its members, reads the bytes that are there, and sets the error. */
 static size_t read_packed(struct source *s)
 {
     struct packed *p = s->file;

@@ -11,7 +11,7 @@ void close_source(struct source *s);
 /* The next byte, or -1: then there is no more, and *error says why, or is NULL at the end of the file. */
 int next_byte(struct source *s, const char **error);
 
-/* Whether a path ends so, or so and .gz. */
+/* 1 if path ends in ending, or in ending and .gz. */
 int is_named(const char *path, const char *ending);
 
 #endif

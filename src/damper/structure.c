@@ -26,7 +26,7 @@ void free_structure(struct structure *s)
     free(s->dof);
 }
 
-void tell_of_loose_rows(const struct structure *s, const char *stiffness)
+void report_loose_rows(const struct structure *s, const char *stiffness)
 {
     char *held = need_memory(s->ndof, sizeof *held);
     size_t loose = 0, first = 0;

@@ -8,7 +8,7 @@
 #include "entries.h"
 #include "tribo/tribo_dynamics.h"
 
-/* A structure as finite-element programs hand it over. */
+/* A structure from a finite-element program. */
 struct structure {
     size_t ndof;
     struct sparse mass, stiffness, damping; /* damping: no rows if there is none */
@@ -19,8 +19,8 @@ struct structure {
 struct structure read_structure(const char *mass, const char *stiffness, const char *dofs);
 void free_structure(struct structure *s);
 
-/* Tells of rows of the stiffness that are empty, as those of what nothing holds but contacts, or has been left out by mistake. */
-void tell_of_loose_rows(const struct structure *s, const char *stiffness);
+/* Prints a line about empty rows of the stiffness: bodies held by contacts only, or a part left out by mistake. */
+void report_loose_rows(const struct structure *s, const char *stiffness);
 
 /* The row of a place; ends the program if the structure has none there. */
 size_t find_degree(const struct structure *s, const struct place *p);

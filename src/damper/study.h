@@ -3,7 +3,7 @@
 
 #include "model.h"
 
-/* What a run has at hand. */
+/* A run. */
 struct study {
     const struct options *options;
     struct model *model;
@@ -12,7 +12,7 @@ struct study {
     size_t gaps; /* points that were not found */
 };
 
-/* Takes twice the modes and empties the tables, if the model error is too large; returns whether it did. */
+/* If the model error is too large, takes twice the modes and empties the tables. Returns 1 if it did. */
 int begin_again(struct study *s, double error);
 
 /* Modes and model, before a study: to be shown again where there are more of them. */
@@ -24,16 +24,16 @@ void study_limits(struct study *s);
 /* The response over a band of frequencies for every limit, and the limit with the least of the largest amplitudes. */
 void study_band(struct study *s);
 
-/* A limit of so many in equal ratios. */
+/* Limit k of the geometric series. */
 double limit_of(const struct range *limits, size_t k);
 
-/* Without friction, and with so much that nothing slips: both are known. */
+/* The motions without friction and with all contacts stuck, beside their closed forms. */
 void check_extremes(const struct study *s, double hz);
 
-/* A few points of each curve with twice the modes, too: prints what that changes. Returns the model error, or NaN. */
+/* Finds a few points of each curve also with twice the modes, and prints the changes. Returns the model error, or NaN. */
 double show_model_error(const struct study *s, const struct curve *c, size_t curves);
 
-/* Some points of a curve by marching: writes the table, and the largest differences. */
+/* Some points of a curve by marching: writes the table, prints the differences; or prints why this was not done. */
 void check_by_marching(const struct study *s, const struct curve *c);
 
 #endif

@@ -8,8 +8,8 @@
 #include "study.h"
 #include "team.h"
 
-static const double BEND = 0.02;       /* curves are followed to that; with more, narrow peaks are missed */
-static const double LEAST_PART = 5e-4; /* the best limit is found to that */
+static const double BEND = 0.02;       /* tolerance of curves; a larger one misses narrow peaks */
+static const double LEAST_PART = 5e-4; /* tolerance of the best limit */
 
 /* Curves over the band, one for each limit. */
 struct family {
@@ -17,7 +17,7 @@ struct family {
     struct curve *curve;
 };
 
-/* The frequencies that are asked for, and those at which the structure resonates, free or stuck. */
+/* The frequencies that the user gives, and the resonances of the structure, free or stuck. */
 static void ask_band(const struct study *s, struct curve *c)
 {
     const struct range *band = &s->options->drive;
@@ -80,10 +80,10 @@ static int report_best(struct study *s, double limit)
 {
     struct family f = run_family(s, &limit, 1);
     const struct sample *top = largest_of(&f.curve[0]);
-    end_telling();
+    end_progress();
     const int shown = top && !interrupted();
+    check_by_marching(s, &f.curve[0]);
     if (shown) {
-        check_by_marching(s, &f.curve[0]);
         FILE *table = create_table(s->tables, "best");
         write_motion_head(s->tables, table, s->damper);
         write_curve(s->tables, table, &f.curve[0], s->damper);
@@ -99,7 +99,7 @@ static int report_best(struct study *s, double limit)
     return shown;
 }
 
-/* Why a motion was not found. */
+/* The first message of a motion that was not found. */
 static const char *first_message(const struct family *f, size_t count)
 {
     for (size_t k = 0; k < count; k++) {
@@ -112,7 +112,7 @@ static const char *first_message(const struct family *f, size_t count)
     return "not looked for";
 }
 
-/* Largest amplitudes over the limits may have several valleys, of which each that is not far above the lowest is searched. */
+/* Largest amplitudes over the limits may have several valleys: those within this factor of the lowest value are searched. */
 static const double NEAR_LOWEST = 1.25;
 
 /* The limit with the least value, between the neighbours of limits with low ones; 0 if the least is at an end. */
@@ -144,7 +144,7 @@ static double find_best(struct study *s, const struct family *f, const double *l
     }
     const double found = least < HUGE_VAL ? search_valleys(s, limit, value, count) : 0.0;
     int shown = 0;
-    end_telling();
+    end_progress();
     if (least == HUGE_VAL) {
         printf("no motion was found at any of these %ss: %s\n", s->tables->limit, first_message(f, count));
         check_by_marching(s, &f->curve[0]);
@@ -153,6 +153,8 @@ static double find_best(struct study *s, const struct family *f, const double *l
         check_by_marching(s, &f->curve[0]);
     } else if (!interrupted()) {
         shown = report_best(s, found);
+    } else {
+        check_by_marching(s, &f->curve[0]);
     }
     free(value);
     return shown ? found : 0.0;
@@ -194,7 +196,7 @@ void study_band(struct study *s)
         show_model(s);
         check_extremes(s, lowest_drive(s->options, s->damper));
         f = run_family(s, limit, count);
-        end_telling();
+        end_progress();
         again = begin_again(s, write_family(s, &f, count));
         if (again) {
             free_family(&f, count);

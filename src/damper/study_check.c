@@ -1,4 +1,4 @@
-/* What the steady motions are checked against. */
+/* Checks of steady motions: closed forms, twice the modes, marching. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -54,7 +54,7 @@ void check_extremes(const struct study *s, double hz)
     double *y = need_memory(record_of(w.d), sizeof *y);
     const struct motion open = find_motion(&w, 0.0, hz, NULL, y), stuck = find_motion(&w, 1e6 * d->size, hz, NULL, y);
     const double omega = TURN * hz;
-    end_telling();
+    end_progress();
     printf("load at %.7g Hz\n", hz);
     compare(s, &open, linear_amplitude(&d->open, omega), "free", "without friction");
     compare(s, &stuck, linear_amplitude(&d->stuck, omega), "stuck", "all contacts stuck");
@@ -66,18 +66,35 @@ void check_extremes(const struct study *s, double hz)
 
 /* --------------------------------------------------------------------------------------------------------- more modes */
 
-enum { EVEN_POINTS = 5, CURVE_POINTS = 3 /* of one curve, and of each of several: with the largest amplitude */ };
+enum { EVEN_POINTS = 8, CURVE_POINTS = 4 /* of one curve, and of each of several, with the largest and the most sensitive */ };
 
-/* Points of a curve to be found again; returns how many. */
+/* The motion that more modes change most: contacts slip by the least, and friction still takes a good part of the power. */
+static const struct sample *most_sensitive(const struct curve *c)
+{
+    static const double PART = 0.3;
+    const struct sample *best = NULL;
+    for (size_t k = 0; k < c->count; k++) {
+        const struct motion *m = &c->sample[k].motion, *b = best ? &best->motion : NULL;
+        if (m->found && m->friction > PART * m->input && (!b || m->friction / m->limit < b->friction / b->limit)) {
+            best = &c->sample[k];
+        }
+    }
+    return best;
+}
+
+/* point [most] out: points of a curve to be found again. Returns their number. */
 static size_t place_points(const struct curve *c, size_t most, struct point *point)
 {
-    const struct sample *chosen[EVEN_POINTS], *largest = largest_of(c);
-    size_t count = spread_samples(c, most - 1, chosen);
-    for (size_t k = 0; k < count; k++) {
-        largest = chosen[k] == largest ? NULL : largest;
-    }
-    if (largest) {
-        chosen[count++] = largest;
+    const struct sample *chosen[EVEN_POINTS + 2], *more[] = {largest_of(c), most_sensitive(c)};
+    size_t count = spread_samples(c, most - 2, chosen);
+    for (int i = 0; i < 2; i++) {
+        int is_there = more[i] == NULL;
+        for (size_t k = 0; k < count; k++) {
+            is_there = is_there || chosen[k] == more[i];
+        }
+        if (!is_there) {
+            chosen[count++] = more[i];
+        }
     }
     for (size_t k = 0; k < count; k++) {
         point[k] = (struct point){.limit = chosen[k]->motion.limit, .hz = chosen[k]->motion.hz};
@@ -94,19 +111,19 @@ double show_model_error(const struct study *s, const struct curve *c, size_t cur
         count += place_points(&c[k], most, point + count);
     }
     compare_models(s->model, s->options->threads, point, count);
-    end_telling();
+    end_progress();
     if (!interrupted()) {
         report_error(s->tables, s->model, point, count);
     }
     fflush(stdout);
-    const double error = model_error(point, count);
+    const double error = model_error(s->model, point, count);
     free(point);
     return error;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- marching */
 
-/* Those of a curve that are marched, and what comes of it. */
+/* Samples of a curve, and the same motions by marching. */
 struct marched {
     const struct damper *damper;
     const struct sample **sample;
@@ -154,16 +171,20 @@ static void report(const struct study *s, const struct marched *m, size_t count)
 void check_by_marching(const struct study *s, const struct curve *c)
 {
     const size_t most = s->options->check;
-    if (most == 0 || interrupted()) {
+    if (most == 0) {
+        return;
+    }
+    if (s->options->march) {
+        printf("--check was not done: all points are by marching already\n");
         return;
     }
     struct marched m = {s->damper, need_memory(most, sizeof *m.sample), need_memory(most, sizeof *m.motion)};
     const size_t count = spread_samples(c, most, m.sample);
     run_jobs(s->options->threads, count, march_one, &m);
-    end_telling();
-    if (count == 0) {
-        printf("--check was not done: no motion was found\n");
-    } else if (!interrupted()) {
+    end_progress();
+    if (count == 0 || interrupted()) {
+        printf("--check was not done: %s\n", interrupted() ? "interrupted" : "no motion was found");
+    } else {
         report(s, &m, count);
     }
     free(m.sample);

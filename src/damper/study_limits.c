@@ -9,8 +9,8 @@
 #include "study.h"
 #include "team.h"
 
-static const double BEND = 0.02;       /* a curve is followed to that */
-static const double LEAST_PART = 1e-6; /* the limit of most power is found to that */
+static const double BEND = 0.02;       /* tolerance of the curve */
+static const double LEAST_PART = 1e-6; /* tolerance of the limit of most power */
 
 double limit_of(const struct range *limits, size_t k)
 {
@@ -20,7 +20,7 @@ double limit_of(const struct range *limits, size_t k)
 
 /* -------------------------------------------------------------------------------------------------------------- power */
 
-/* Limits at which the dissipated power is looked at, each from the motion at one in the middle of them. */
+/* Limits at which the dissipated power is found, each from the motion of one sample. */
 struct trial {
     const struct study *study;
     const struct sample *from;
@@ -143,7 +143,7 @@ static void find_most_power(struct study *s, struct curve *c)
         const struct motion best = show_motion(s, c, limit, "history");
         /* above the optimum contacts rest for a part of each period */
         show_motion(s, c, 3.0 * limit, "sticking");
-        end_telling();
+        end_progress();
         if (best.found) {
             report_optimum(s, &best);
         }
@@ -166,13 +166,13 @@ static double follow_limits(struct study *s, struct curve *c)
     struct worker w = create_worker(s->damper, s->options->march);
     find_curve(c, &w, BEND);
     free_worker(&w);
-    end_telling();
+    end_progress();
     printf("  %12s    amplitude friction power  damping power  periods\n", s->tables->limit);
     for (size_t k = 0; k < c->count; k++) {
         const struct motion *m = &c->sample[k].motion;
         if (c->sample[k].asked && m->found) {
             printf("  %12.5g %12.5g %14.5g %14.5g %8zu\n", m->limit, m->amplitude, m->friction, m->damped, m->periods);
-        } else if (!m->found && looked_for(&c->sample[k])) {
+        } else if (!m->found && searched(&c->sample[k])) {
             printf("  %12.5g  not found: %s\n", m->limit, m->message);
         }
     }
@@ -190,7 +190,7 @@ void study_limits(struct study *s)
         find_most_power(s, &c);
     } else if (!interrupted()) {
         show_motion(s, &c, s->options->limits.from, "loop");
-        end_telling();
+        end_progress();
     }
     FILE *table = create_table(s->tables, "curve");
     write_motion_head(s->tables, table, s->damper);

@@ -106,7 +106,7 @@ void write_motion(FILE *file, const struct motion *m, const double *y, const str
 void write_curve(struct tables *t, FILE *file, const struct curve *c, const struct damper *d)
 {
     for (size_t k = 0; k < c->count; k++) {
-        if (looked_for(&c->sample[k])) {
+        if (searched(&c->sample[k])) {
             write_motion(file, &c->sample[k].motion, c->sample[k].y, d);
             t->motions += (size_t)c->sample[k].motion.found;
         }

@@ -7,7 +7,7 @@
 struct tables {
     const char *out, *name;
     FILE *values;
-    const char *limit; /* what the column of limits is called */
+    const char *limit; /* the head of the column of limits */
     size_t motions;   /* found, in tables */
     const char *plot; /* format of pictures */
     FILE *script;     /* that draws them; NULL: none */
@@ -19,7 +19,7 @@ void close_tables(struct tables *t);
 FILE *create_table(const struct tables *t, const char *what);
 void close_table(const struct tables *t, FILE *file, const char *what);
 
-/* Shown by NAME.key. */
+/* Writes NAME.key and the value to values-NAME.txt. */
 void write_result(const struct tables *t, const char *key, double value);
 
 /* A table of motions: its head, and a line for each of a curve. y: the record, with powers and shares of rest of contacts, and
@@ -33,7 +33,7 @@ void write_frequencies(const struct tables *t, const struct damper *d, const cha
 /* Over a band: frequency, amplitudes without friction and with all contacts stuck. */
 void write_linear(const struct tables *t, const struct damper *d, const struct range *band);
 
-/* Three periods of the motion that begins with y, with what each contact does. */
+/* Three periods of the motion that begins with y, with velocity, force, slip and displacement of each contact. */
 void write_history(const struct tables *t, struct worker *w, const struct motion *m, const double *y, const char *what);
 
 #endif

@@ -31,7 +31,7 @@ int interrupted(void)
 
 /* ---------------------------------------------------------------------------------------------------------------- jobs */
 
-/* What is left to do. */
+/* Jobs to do: next to jobs - 1. */
 struct queue {
     size_t next, jobs;
     job *run;
@@ -95,7 +95,7 @@ static void *work(void *data)
 
 enum { MOST_THREADS = 64 };
 
-/* This thread is one of them, and does all if there are to be no others. */
+/* This thread works too, alone if no other can be created. */
 static void run_team(size_t threads, struct queue *q)
 {
     pthread_t helper[MOST_THREADS];
@@ -133,7 +133,7 @@ void run_jobs(size_t threads, size_t jobs, job *run, void *data)
 static size_t points;
 static const char blank[] = "                                                                      ";
 
-void tell_point(void)
+void show_point(void)
 {
     begin_alone();
     points++;
@@ -143,7 +143,7 @@ void tell_point(void)
     end_alone();
 }
 
-void tell_march(double limit, double hz, size_t periods, double change)
+void show_march(double limit, double hz, size_t periods, double change)
 {
     begin_alone();
     if (on_terminal()) {
@@ -153,7 +153,7 @@ void tell_march(double limit, double hz, size_t periods, double change)
     end_alone();
 }
 
-void end_telling(void)
+void end_progress(void)
 {
     if (on_terminal()) {
         fprintf(stderr, "\r%s\r", blank);

@@ -3,28 +3,27 @@
 
 #include <stddef.h>
 
-/* Jobs for as many threads as there are cores, told about on a terminal, ended by Ctrl-C. */
+/* Jobs on several threads, with progress on a terminal, ended by Ctrl-C. */
 
 /* Does job k of data. */
 typedef void job(void *data, size_t k);
 
-/* Runs all jobs, on at most that many threads, 0 for one a core; returns when they are done. What a job gives must not depend on
- * which thread it runs in, and when. */
+/* Runs all jobs on at most `threads` threads, 0: one a core. Results of a job must not depend on the thread, nor on the order. */
 void run_jobs(size_t threads, size_t jobs, job *run, void *data);
 
-/* To be called once, at first: from then on Ctrl-C is remembered instead of ending the program; a second one ends it. */
+/* To be called once: from then on the first Ctrl-C sets interrupted(), the second one ends the program. */
 void watch_interrupts(void);
 
-/* Whether the user wants no more: a job that sees this leaves what it has, and returns. */
+/* 1 after Ctrl-C: a job then keeps its results so far, and returns. */
 int interrupted(void);
 
-/* A point has been found, or not: shown where stderr is a terminal. */
-void tell_point(void);
+/* A point has been searched: shown if stderr is a terminal. */
+void show_point(void);
 
-/* A motion is being marched: periods so far, and the relative change of the last one. Shown as tell_point is. */
-void tell_march(double limit, double hz, size_t periods, double change);
+/* A motion is being marched: periods so far, and the relative change of the last one. Shown as show_point is. */
+void show_march(double limit, double hz, size_t periods, double change);
 
-/* Takes what is shown away. */
-void end_telling(void);
+/* Removes the progress from the terminal. */
+void end_progress(void);
 
 #endif
