@@ -16,7 +16,7 @@ static char *word[WORDS + 1];
 static void read_words(void)
 {
     const struct options o = read_options(count, word);
-    if (!o.mass || !o.stiffness || !o.dofs || !o.contacts.count || !o.limits.points || !(o.limits.from > 0.0) ||
+    if (!o.mass || !o.stiffness || !o.dofs || !o.contacts.count || o.limits.from < 0.0 ||
         !o.damping.count == !o.damping_matrix) {
         abort();
     }
