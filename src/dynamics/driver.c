@@ -17,7 +17,7 @@ static int driver_check_static(const tribo_system *sys)
     double *ratio = sys->feq;
     size_t i = 0;
     tribo_get_static(sys->contacts, ratio, NULL);
-    while (i < sys->ncontact && !(tribo_massless_touches(&sys->massless, i) && ratio[i] > 1.0)) {
+    while (i < sys->ncontact && !(tribo_is_compliant(&sys->compliance, i) && ratio[i] > 1.0)) {
         i++;
     }
     return i == sys->ncontact
@@ -30,13 +30,14 @@ static int driver_check_static(const tribo_system *sys)
  * advance calls it, since contacts may change between advances. */
 static int check_contacts(const tribo_system *sys, const struct method *m)
 {
-    const size_t planar = m->takes & TAKES_PLANAR && !sys->massless.count ? 0 : tribo_system_planar(sys);
+    const int springs = sys->expansion.place != NULL;
+    const size_t planar = m->takes & TAKES_PLANAR && !springs ? 0 : tribo_system_planar(sys);
     const int status = !planar ? TRIBO_OK
                                : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                                    "method %s knows no planar contacts%s, of which the system has %zu%s", m->name,
-                                                   sys->massless.count ? " where degrees of freedom have no mass" : "", planar,
-                                                   sys->massless.count ? "" : ": take event");
-    return status || sys->massless.count == 0 ? status : driver_check_static(sys);
+                                                   springs ? " where degrees of freedom have no mass" : "", planar,
+                                                   springs ? "" : ": take event");
+    return status || !springs ? status : driver_check_static(sys);
 }
 
 int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const struct method *m)
@@ -52,8 +53,9 @@ int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const stru
     if (status) {
         return status;
     }
-    const size_t size = tribo_system_size(sys);
-    tribo_driver *d = tribo_zeros(sizeof *d + (sys->sliders ? 4 : 2) * size * sizeof *d->state, 1);
+    const size_t size = tribo_system_size(sys), room = tribo_system_dimension(sys) + sys->compliance.count;
+    const size_t shown = sys->expansion.place ? room : 0;
+    tribo_driver *d = tribo_zeros(sizeof *d + (2 * size + 2 * shown) * sizeof *d->state, 1);
     if (!d) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a driver of %zu equation%s", size, plural(size));
     }
@@ -62,8 +64,8 @@ int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const stru
     d->method = d->at_work = m;
     d->state = (double *)(d + 1);
     d->slope = d->state + size;
-    d->motion = sys->sliders ? d->slope + size : NULL;
-    d->shown = sys->sliders ? d->motion + size : NULL;
+    d->motion = shown ? d->slope + size : NULL;
+    d->shown = shown ? d->motion + shown : NULL;
     d->excess = d->backslip = NAN;
     tribo_system_order_snaps(sys);
     status = m->create(d);
@@ -298,7 +300,7 @@ int tribo_driver_show(tribo_driver *drv, double t, const double *y, int kind, si
 {
     const tribo_moment moment = {sizeof moment, t, drv->shown ? drv->shown : y, kind, contact};
     if (drv->seen && drv->shown) {
-        tribo_system_write_state(drv->sys, y, drv->shown);
+        tribo_system_write_state(drv->sys, t, y, drv->shown);
     }
     const int answer = drv->seen ? drv->seen(&moment, drv->data) : 0;
     return answer ? tribo_driver_fail(drv, TRIBO_ERR_STOPPED, "the observer answered %d at t = %.17g", answer, t) : TRIBO_OK;
@@ -374,13 +376,13 @@ int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)
     if (status || !drv->motion) {
         return status ? status : tribo_driver_advance_motion(drv, t, t1, y);
     }
-    tribo_system_write_state(drv->sys, drv->state, drv->shown);
-    if (memcmp(y, drv->shown, tribo_system_dimension(drv->sys) * sizeof *y) == 0) { /* an advance that continues reads w', too */
+    tribo_system_write_state(drv->sys, drv->time, drv->state, drv->shown);
+    if (memcmp(y, drv->shown, tribo_system_dimension(drv->sys) * sizeof *y) == 0) { /* an advance that continues keeps f */
         memcpy(drv->motion, drv->state, tribo_system_size(drv->sys) * sizeof *y);
     } else {
         tribo_system_read_state(drv->sys, y, drv->motion);
     }
     status = tribo_driver_advance_motion(drv, t, t1, drv->motion);
-    tribo_system_write_state(drv->sys, drv->motion, y);
+    tribo_system_write_state(drv->sys, *t, drv->motion, y);
     return status;
 }

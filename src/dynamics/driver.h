@@ -47,7 +47,7 @@ struct tribo_driver {
     /* state */
     void *own;                 /* the method's own */
     double *state, *slope;     /* [tribo_system_size] the state kept last; workspace */
-    double *motion, *shown;    /* [tribo_system_size] a caller's state on its way in; out. NULL without sliders */
+    double *motion, *shown;    /* [dimension + compliant contacts] a caller's state, in; out. NULL without an expansion */
     double time;               /* of the state kept last */
     size_t revision;           /* of the system when the last advance ended */
     int knows;                 /* 1: what the method keeps belongs to time, state and revision */

@@ -446,7 +446,7 @@ int tribo_planar_slip_decide(struct stick_slip *m, tribo_system *sys, double t, 
     for (size_t k = 0; k < m->plane->count; k++) {
         m->plane->contact[k].before = m->plane->contact[k].now;
     }
-    tribo_stick_slip_begin_decision(m, sys, t, y);
+    tribo_stick_slip_begin_decision(m, sys, t);
     int status = find_resting(m, sys, y);
     if (!status) {
         tribo_stick_slip_find_free(m, sys, t, y);

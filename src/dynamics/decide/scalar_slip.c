@@ -252,13 +252,13 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
 /* Who is at rest at (t, y), and how all contacts go on without friction. A status. */
 static int find_instant(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
-    tribo_stick_slip_begin_decision(m, sys, t, y);
+    tribo_stick_slip_begin_decision(m, sys, t);
     tribo_stick_slip_update_limits(m, sys, y);
     tribo_elastic_place(m, sys, y);
     const int status = tribo_stick_slip_find_resting(m, sys, y);
     find_static(m, sys, y);
     if (!status) {
-        tribo_elastic_hold(m, sys, y);
+        tribo_elastic_move(m, sys, y);
         tribo_stick_slip_find_free(m, sys, t, y);
         tribo_stick_slip_forget_gains(m);
         m->work.undecided = m->constant.all;

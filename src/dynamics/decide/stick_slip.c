@@ -91,6 +91,7 @@ static double find_size(struct stick_slip *m, const tribo_system *sys, const dou
     double size = m->constant.load_size[d] + fabs(m->noise.size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
                   tribo_matrix_row_size(&sys->response, d, m->state.force);
     size += sys->damping.rows ? tribo_matrix_row_size(&sys->damping, d, y + sys->ndof) : 0.0;
+    size += sys->compliance.count ? tribo_matrix_row_size(&sys->compliance.pull, d, m->state.spring) : 0.0;
     return m->noise.size[d] = size;
 }
 
@@ -192,5 +193,8 @@ void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, c
     tribo_matrix_multiply_add(&sys->stiffness, -1.0, y + sys->ndof, m->work.rate);
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -1.0, tribo_stick_slip_find_acceleration(m, sys), m->work.rate);
+    }
+    if (sys->compliance.count) {
+        tribo_matrix_multiply_add(&sys->compliance.pull, 1.0, m->state.spring_rate, m->work.rate);
     }
 }

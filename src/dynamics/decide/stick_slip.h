@@ -65,6 +65,7 @@ struct slip_state {
     double *force;       /* [ncontact] friction force f */
     double *spring;      /* [ncontact] force of an elastic contact by the state */
     double *spring_rate; /* [ncontact] its rate */
+    double *glide;       /* [ncontact] velocity of an elastic contact that slides */
     double *base;        /* [ncontact] b(t) */
 };
 
@@ -162,7 +163,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
 
 /* stick_slip_instant.c: a decision begins at time t, with the base there. Limits, and with them which contacts are open, are
  * brought up to that time. Then whoever has no velocity, or none in the direction of its slip any more, is at rest; a status. */
-void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, double *y);
+void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t);
 void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y);
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);
 
@@ -234,15 +235,13 @@ static inline int tribo_stick_slip_must_be_sure(const struct stick_slip *m, size
  * hold all that are at rest: these are the forces, or contacts are let go; a status. */
 int tribo_stick_slip_relieve(struct stick_slip *m, tribo_system *sys, size_t *changes);
 
-/* stick_slip_elastic.c: elastic contacts, whose forces the state knows. The first finds these, and what of them may be rounding:
- * spring, slack. For the decision, in this order: velocities that they would slide with; forces, slip, and places without mass;
- * velocities of those that hold; what the next decision remembers. The start takes what is beyond limits out of y, and dissipates
- * it. */
+/* stick_slip_elastic.c: elastic contacts, whose forces are part of the state. find sets state.spring and noise.spring; start takes
+ * forces beyond limits back in y, and dissipates their energy. A decision calls place (sets slip, and forces, also in y), move
+ * (sets rates of forces, and velocities of those that slide), and finish (keeps slip for the next decision). */
 void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *y);
-void tribo_elastic_release(const tribo_system *sys, double *y);
 void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *y);
-void tribo_elastic_hold(struct stick_slip *m, const tribo_system *sys, double *y);
+void tribo_elastic_move(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_elastic_finish(struct stick_slip *m, const tribo_system *sys);
 
 /* holds.c: finds out which of the contacts at rest hold, as they are marked; a status. */
@@ -310,6 +309,14 @@ static inline double tribo_stick_slip_velocity(const struct stick_slip *m, const
         v += j->val[k] * u[j->col[k]];
     }
     return v;
+}
+
+/* The velocity of contact i as the motion after the decision at y begins. */
+static inline double tribo_stick_slip_first_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i,
+                                                     const double *y)
+{
+    const double v = m->constant.elastic[i] ? m->state.glide[i] : tribo_stick_slip_velocity(m, sys, i, y);
+    return m->state.rested[i] ? 0.0 : v;
 }
 
 static inline double tribo_stick_slip_find_velocity(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)

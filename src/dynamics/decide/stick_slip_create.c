@@ -24,9 +24,9 @@ static void lay_out_arrays(struct stick_slip *m, struct layout *l, size_t contac
     struct slip_noise *r = &m->noise;
     struct slip_work *w = &m->work;
     double **const by_contact[] = {
-        &c->diagonal, &c->inertia, &c->still,       &c->swing, &c->base_size, &c->base_rate_size, &s->limit,  &s->limit_rate,
-        &s->force,    &s->spring,  &s->spring_rate, &s->base,  &r->velocity,  &r->velocity_scale, &r->spring, &r->parting,
-        &w->own_a,    &w->v,       &w->lo,          &w->hi,    &w->f};
+        &c->diagonal, &c->inertia, &c->still, &c->swing, &c->base_size, &c->base_rate_size, &s->limit, &s->limit_rate,
+        &s->force, &s->spring, &s->spring_rate, &s->base, &s->glide, &r->velocity, &r->velocity_scale, &r->spring,
+        &r->parting, &w->own_a, &w->v, &w->lo, &w->hi, &w->f};
     double **const by_dof[] = {&c->load_size, &w->acceleration, &w->free, &w->rate};
     signed char **const sign[] = {&s->slip, &s->tied, &s->before, &s->loose, &s->slid, &w->pulled, &s->key};
     unsigned char **const mark[] = {&s->holds, &s->rested, &c->can_hold, &c->elastic, &w->last};
@@ -79,24 +79,34 @@ static int create_contexts(struct slip_constant *c, const tribo_context *contact
     return 1;
 }
 
-/* Fills R_ii, 1/R_ii, elastic[] and can_hold[]; lists the snaps of all contacts; sets independent. Returns 0 if out of memory. */
+/* Fills R_ii, 1/R_ii, elastic[] and can_hold[]; lists the snaps of all rigid contacts; sets independent. Returns 0 if out of
+ * memory. */
 static int find_constants(struct stick_slip *m, const tribo_system *sys)
 {
     struct slip_constant *c = &m->constant;
+    struct constraints ties = {0};
+    size_t *rigid = m->work.at, count = 0;
     int in_order = sys->snaps_in_order; /* row by row, J has a degree of freedom that no row before has, with no loss of digits */
     for (size_t i = 0; i < c->contacts; i++) {
         c->diagonal[i] = tribo_system_delassus(sys, i, i);
         c->inertia[i] = c->diagonal[i] > 0.0 ? quotient(1.0, c->diagonal[i]) : 0.0;
-        c->elastic[i] = (unsigned char)tribo_massless_touches(&sys->massless, i);
+        c->elastic[i] = (unsigned char)tribo_is_compliant(&sys->compliance, i);
         c->can_hold[i] = c->diagonal[i] > 0.0 || c->elastic[i];
         c->all[i] = i;
+        m->state.loose[i] = (signed char)c->elastic[i];
+        rigid[count] = i;
+        count += !c->elastic[i];
         in_order &= c->diagonal[i] > 0.0;
     }
-    tribo_stick_slip_list_snaps(m, sys); /* loose[] = 0: of all contacts */
-    const int known = c->uncoupled || (in_order && m->state.simple);
-    const size_t rank = known ? c->contacts : tribo_constraints_rank(&sys->direction, &sys->mass);
-    c->independent = rank == c->contacts;
-    return rank <= c->contacts;
+    tribo_stick_slip_list_snaps(m, sys); /* loose[] = 0: of all rigid contacts */
+    if (c->uncoupled || (in_order && m->state.simple)) {
+        c->independent = 1;
+        return 1;
+    }
+    const int done = tribo_constraints_create(&ties, &sys->direction, &sys->mass, rigid, count, m->work.last);
+    c->independent = done && ties.rank == count;
+    tribo_constraints_free(&ties);
+    return done;
 }
 
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)

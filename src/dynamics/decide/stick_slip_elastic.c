@@ -1,42 +1,34 @@
-/* Elastic contacts: a slider without mass on a spring. The state says what its force is, compliance f = J w - J follow q, and
- * J u - b with w' = follow q' is the velocity v that it slides with, if all slide: rates of forces f' add C f' to these. A contact
- * with a diagonal C is decided about by itself, and shared compliance makes a box problem of f', min 1/2 f''C f' + v'f':
+/* Elastic contacts, whose forces are part of the state. Their velocities are v + G f', v = J q' - b. With a diagonal G each
+ * contact is decided alone; else f' solves the box problem min 1/2 f''G f' + v'f':
  *
- *     inside the limit: it holds, and v + C f' = 0
- *     at the limit: it slides if v goes against the force, and holds if v takes the force back inside
- *     at the limit, without velocity: it holds; if v comes to go against the force, that leaves the limit, which is an event
+ *     inside the limit: the contact rests, and v + G f' = 0
+ *     at the limit: it slides if v points against the force, and rests if v takes the force back inside
+ *     at the limit, without velocity: it rests; if v comes to point against the force, that leaves the limit, which is an event
  */
-#include "dynamics/system/elastic.h"
 #include "stick_slip.h"
 
 #include <math.h>
 
-void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const double *q)
+void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
-    tribo_elastic_forces(sys, q, m->work.rate, m->state.spring, m->noise.spring);
+    tribo_compliance_get(sys, y, m->state.spring);
+    tribo_compliance_noise(sys, y, m->noise.spring);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->noise.spring[i] *= TRIBO_SPRING_ALLOWED * TRIBO_SPRING_NOISE * m->noise.factor;
+        m->noise.spring[i] *= TRIBO_SPRING_ALLOWED * m->noise.factor;
     }
 }
 
 void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *y)
 {
-    if (sys->massless.count == 0) {
+    if (sys->compliance.count == 0) {
         return;
     }
-    tribo_elastic_enter(sys, m->state.limit, m->work.rate, m->state.spring, y);
+    tribo_compliance_enter(sys, m->state.limit, m->state.spring, y);
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (m->constant.elastic[i]) {
             m->state.slid[i] = (signed char)(m->state.limit[i] > 0.0 ? 0 : 2);
             tribo_stick_slip_set(m, i, m->state.slid[i]);
         }
-    }
-}
-
-void tribo_elastic_release(const tribo_system *sys, double *y)
-{
-    if (sys->massless.count) {
-        tribo_massless_follow(&sys->massless, y + sys->ndof);
     }
 }
 
@@ -54,7 +46,7 @@ static enum stand stand_of(const struct stick_slip *m, size_t i)
                                                                                                                    : INSIDE;
 }
 
-/* Where contact i, at its limit, slides to if it slides: against its force. */
+/* The slip of contact i, at its limit, if it slides: against its force. */
 static signed char against(const struct stick_slip *m, size_t i)
 {
     const signed char before = m->state.slip[i];
@@ -77,7 +69,7 @@ static void place_elastic(struct stick_slip *m, size_t i, double v)
     tribo_stick_slip_set(m, i, (signed char)(slides ? direction : TRIBO_SLIP_STUCK));
 }
 
-/* Velocities v [ncontact] become those with the rates of forces that shared compliance makes of them; 0 of contacts that hold. */
+/* Velocities v [ncontact] become those with the rates of forces of a shared G; 0 of contacts that rest. */
 static void share_rates(struct stick_slip *m, struct definite *c, double *v)
 {
     for (size_t i = 0; i < c->n; i++) {
@@ -87,39 +79,42 @@ static void share_rates(struct stick_slip *m, struct definite *c, double *v)
         c->lo[i] = stand == OPEN || (stand == AT_LIMIT && direction > 0) ? 0.0 : -HUGE_VAL;
         c->hi[i] = stand == OPEN || (stand == AT_LIMIT && direction < 0) ? 0.0 : HUGE_VAL;
     }
-    tribo_elastic_share_rates(c, v);
+    tribo_compliance_share(c, v);
 }
 
 void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *y)
 {
-    if (sys->massless.count == 0) {
+    if (sys->compliance.count == 0) {
         return;
     }
     tribo_elastic_find(m, sys, y);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->work.v[i] = m->constant.elastic[i] ? tribo_stick_slip_find_velocity(m, sys, i, y) : 0.0;
     }
-    if (sys->massless.shared) {
-        share_rates(m, sys->massless.shared, m->work.v);
+    if (sys->compliance.shared) {
+        share_rates(m, sys->compliance.shared, m->work.v);
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (m->constant.elastic[i]) {
             place_elastic(m, i, m->work.v[i]);
         }
     }
-    tribo_elastic_give(sys, m->state.spring, y);
+    tribo_compliance_put(sys, m->state.spring, y);
 }
 
-void tribo_elastic_hold(struct stick_slip *m, const tribo_system *sys, double *y)
+void tribo_elastic_move(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
-    if (sys->massless.count) {
-        tribo_elastic_move(sys, m->state.slip, m->state.base, y + sys->ndof, m->state.spring_rate);
+    for (size_t i = 0; sys->compliance.count && i < sys->ncontact; i++) {
+        m->state.glide[i] = m->constant.elastic[i] ? tribo_stick_slip_velocity(m, sys, i, y) : 0.0;
+    }
+    if (sys->compliance.count) {
+        tribo_compliance_rates(sys, m->state.slip, m->state.glide, m->state.spring_rate);
     }
 }
 
 void tribo_elastic_finish(struct stick_slip *m, const tribo_system *sys)
 {
-    for (size_t i = 0; sys->massless.count && i < sys->ncontact; i++) {
+    for (size_t i = 0; sys->compliance.count && i < sys->ncontact; i++) {
         m->noise.allowance[i] = m->constant.elastic[i] ? m->noise.spring[i] : m->noise.allowance[i];
         m->state.slid[i] = m->state.slip[i];
     }

@@ -139,7 +139,7 @@ static void find_all_alone(struct stick_slip *m, const tribo_system *sys)
         find_alone(1, m->state.slip + i, m->work.a + i, m->constant.diagonal + i, m->state.limit + i, m->state.stick + i,
                    1.0 - NEAR, m->state.force + i, over + i);
     }
-    if (sys->massless.count) {
+    if (sys->compliance.count) {
         put_springs(m, over);
     }
     if (m->state.reached < n && tribo_stick_slip_searches(m, m->state.reached)) {

@@ -45,7 +45,7 @@ static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *
     const signed char *const slip = m->state.slip;
     size_t found = 0;
     for (size_t i = 0; i < n; i++) {
-        if (tribo_slides(slip[i]) &&
+        if (tribo_slides(slip[i]) && !m->constant.elastic[i] &&
             slip[i] * tribo_stick_slip_find_velocity(m, sys, i, y) <= m->noise.factor * m->noise.velocity[i]) {
             tribo_stick_slip_set(m, i, TRIBO_SLIP_STUCK);
             found++;
@@ -80,7 +80,6 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
     for (size_t found = 1; !status && found;) {
         status = tribo_stick_slip_knows_holds(m) ? TRIBO_OK : tribo_stick_slip_find_holds(m, sys);
         status = status ? status : tribo_stick_slip_hold(m, sys, m->state.base, y + sys->ndof);
-        tribo_elastic_hold(m, sys, y);
         found = status ? 0 : stop(m, sys, y);
     }
     if (!status && m->state.dependents && m->constant.base_moves) {
@@ -104,7 +103,7 @@ int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, doubl
     const size_t c = sys->ncontact;
     double *limit = m->work.lo; /* those of (t, y): they swing, or fall with the speed */
     tribo_system_free_motion(sys, t, y, acceleration, m->work.v, m->work.own_a);
-    if (sys->massless.count) {
+    if (sys->compliance.count) {
         tribo_elastic_find(m, sys, y);
     }
     tribo_system_limits(sys, limit, m->work.hi);
@@ -145,14 +144,13 @@ static void find_base(struct stick_slip *m, const tribo_system *sys)
     }
 }
 
-void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, double *y)
+void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t)
 {
     if (!tribo_system_is_at(sys, t)) {
         tribo_system_set_time(sys, t);
     }
     find_base(m, sys);
     memset(m->state.tied, 0, sys->ncontact);
-    tribo_elastic_release(sys, y);
 }
 
 void tribo_stick_slip_forget_shares(struct stick_slip *m)

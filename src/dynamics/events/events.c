@@ -361,7 +361,7 @@ static int show_decided(struct events *e, tribo_driver *drv, const struct guard 
  * become so large that they are lost in its rounding. */
 static int is_brief(const struct events *e, const tribo_system *sys, const struct guard *event, double reach, double when)
 {
-    const int simple = !e->stick_slip.plane && !e->stick_slip.breakaway.falls && !sys->massless.count;
+    const int simple = !e->stick_slip.plane && !e->stick_slip.breakaway.falls && !sys->compliance.count;
     const int brief = when * tribo_system_fastest(sys) <= BRIEF && (!(sys->tables || sys->limits.knots) || when <= BRIEF * reach);
     return event && e->search.at_once && simple && brief && when * fabs(event->left.e) <= STEADY * fabs(event->left.d);
 }
@@ -378,7 +378,7 @@ static int go_brief(struct stick_slip *m, tribo_system *sys, double t, double ta
     }
     for (size_t i = 0; i < m->constant.contacts; i++) {
         const double power = m->state.slip[i] ? -m->state.force[i] * tribo_stick_slip_velocity(m, sys, i, y) : 0.0;
-        y[2 * n] += sys->tally[i] * tau * power;
+        y[tribo_system_energy(sys)] += sys->tally[i] * tau * power;
     }
     for (size_t i = 0; i < n; i++) {
         y[n + i] += 0.5 * tau * m->work.acceleration[i];

@@ -20,12 +20,19 @@
 static int list_rest(struct modal_build *b, const unsigned char *holds)
 {
     tribo_system *sys = b->shared->sys;
+    const struct compliance *g = &sys->compliance;
     b->rest = tribo_modal_scratch_indices(b, sys->ncontact);
     for (size_t i = 0; b->rest && i < sys->ncontact; i++) {
-        if (holds[i]) {
+        if (holds[i] && !tribo_is_compliant(g, i)) {
             b->rest[b->rests++] = i;
         }
     }
+    for (size_t k = 0; b->rest && k < g->count; k++) {
+        if (holds[g->contact[k]]) {
+            b->rest[b->rests + b->springs++] = g->contact[k];
+        }
+    }
+    b->rates = b->springs ? sys->ncontact : 0;
     if (!b->rest || !tribo_constraints_create(&b->ties, &sys->direction, &sys->mass, b->rest, b->rests, NULL)) {
         return 0;
     }
@@ -35,6 +42,34 @@ static int list_rest(struct modal_build *b, const unsigned char *holds)
         return 0;
     }
     return 1;
+}
+
+/* b->stiffness. 0 if out of memory. */
+static int find_stiffness(struct modal_build *b)
+{
+    const tribo_system *sys = b->shared->sys;
+    const size_t n = b->n, c = sys->ncontact;
+    b->stiffness = b->shared->stiffness;
+    if (!b->springs) {
+        return 1;
+    }
+    const int whole = sys->compliance.shared != NULL;
+    double *inverse = tribo_modal_scratch(b, whole ? c * c : c), *added = tribo_modal_scratch(b, n * n);
+    struct matrix g = {0}, k = {0};
+    for (size_t i = 0; inverse && i < c; i++) {
+        inverse[whole ? i * c + i : i] = 1.0;
+    }
+    if (inverse) {
+        tribo_compliance_solve(sys, b->slip, whole ? c : 1, inverse);
+    }
+    const int done = inverse && added &&
+                     (whole ? tribo_matrix_from_dense(&g, c, c, inverse) : tribo_matrix_diagonal(&g, c, inverse)) &&
+                     tribo_matrix_congruent(&g, &sys->direction, added) && tribo_matrix_from_dense(&k, n, n, added) &&
+                     tribo_matrix_sum(&b->own_stiffness, 1.0, b->shared->stiffness, 1.0, &k);
+    tribo_matrix_free(&g);
+    tribo_matrix_free(&k);
+    b->stiffness = &b->own_stiffness;
+    return done;
 }
 
 /* ------------------------------------------------------------------------------------------------- modes of vibration */
@@ -84,7 +119,6 @@ static int find_modes(struct modal_build *b)
     struct doubt doubt = {0};
     const int all_free = b->rests == 0;
     int status = all_free || tribo_constraints_basis(&b->ties, b->n, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
-    status = status || !b->shared->sys->massless.count ? status : tribo_modal_condense(b, &z);
     const int held = z.rows > 0;
     b->h->modes = held ? z.cols : b->n;
     b->h->omega2 = tribo_modal_keep(b, b->h->modes);
@@ -94,7 +128,7 @@ static int find_modes(struct modal_build *b)
         status = held ? factorize_mass(b, &z, &own) : TRIBO_OK;
         status = status ? status
                         : build_modes_failed(b,
-                                             tribo_normal_modes(b->shared->stiffness, &z, held ? &own : &b->shared->sys->factor,
+                                             tribo_normal_modes(b->stiffness, &z, held ? &own : &b->shared->sys->factor,
                                                                 b->h->modes, b->h->omega2, b->phi, &doubt),
                                              &doubt);
     }
@@ -117,7 +151,7 @@ static int multiply_modes(struct modal_build *b)
     for (size_t k = 0; k < m; k++) {
         const double *phi = b->phi + k * n;
         tribo_system_add_mass(b->shared->sys, 1.0, phi, b->psi + k * n);
-        tribo_matrix_multiply_add(b->shared->stiffness, 1.0, phi, b->k_phi + k * n);
+        tribo_matrix_multiply_add(b->stiffness, 1.0, phi, b->k_phi + k * n);
         if (b->shared->damping) {
             tribo_matrix_multiply_add(b->shared->damping, 1.0, phi, b->c_phi + k * n);
         }
@@ -241,7 +275,7 @@ static int find_structure(struct modal_build *b)
 struct modal_piece {
     struct modal_piece *next;
     struct modal *modal;
-    size_t rests, rest[]; /* [rests] the contacts that hold */
+    size_t rests, springs, rest[]; /* [rests + springs] as in struct modal_build */
 };
 
 void tribo_modal_forget(struct modal_known *known)
@@ -258,7 +292,7 @@ void tribo_modal_forget(struct modal_known *known)
 /* Adds a structure that is not known. Returns a status. */
 static int build_learn(struct modal_build *b, struct modal_known *known)
 {
-    const size_t bytes = sizeof(struct modal_piece) + b->rests * sizeof *b->rest;
+    const size_t list = (b->rests + b->springs) * sizeof *b->rest, bytes = sizeof(struct modal_piece) + list;
     struct modal_piece *p = malloc(bytes);
     struct modal *h = b->h, *found = b->h = p ? tribo_modal_alloc() : NULL;
     const int status = found ? find_structure(b) : TRIBO_ERR_MEMORY;
@@ -270,7 +304,8 @@ static int build_learn(struct modal_build *b, struct modal_known *known)
     }
     p->modal = found;
     p->rests = b->rests;
-    memcpy(p->rest, b->rest, b->rests * sizeof *b->rest);
+    p->springs = b->springs;
+    memcpy(p->rest, b->rest, list);
     p->next = known->first;
     known->first = p;
     known->bytes += bytes + found->bytes;
@@ -281,7 +316,8 @@ static int build_learn(struct modal_build *b, struct modal_known *known)
 static int recall_structure(struct modal_build *b, struct modal_known *known)
 {
     const struct modal_piece *p = known->first;
-    while (p && (p->rests != b->rests || memcmp(p->rest, b->rest, b->rests * sizeof *b->rest) != 0)) {
+    const size_t list = (b->rests + b->springs) * sizeof *b->rest;
+    while (p && (p->rests != b->rests || p->springs != b->springs || memcmp(p->rest, b->rest, list) != 0)) {
         p = p->next;
     }
     const int status = p ? TRIBO_OK : build_learn(b, known);
@@ -304,12 +340,10 @@ static int recall_structure(struct modal_build *b, struct modal_known *known)
 /* Returns a status, TRIBO_ERR_MEMORY if none is in b. */
 static int build_find_all(struct modal_build *b, const unsigned char *holds)
 {
-    if (!list_rest(b, holds)) {
+    if (!list_rest(b, holds) || !find_stiffness(b)) {
         return b->status ? b->status : TRIBO_ERR_MEMORY;
     }
-    const tribo_system *sys = b->shared->sys;
-    struct modal_known *known = sys->massless.count && sys->base_harmonics ? NULL : b->shared->known;
-    const int status = known ? recall_structure(b, known) : find_structure(b);
+    const int status = b->shared->known ? recall_structure(b, b->shared->known) : find_structure(b);
     if (status) {
         return status;
     }
@@ -322,7 +356,6 @@ int tribo_modal_build(struct modal_build *b, const unsigned char *holds)
 {
     const int status = build_find_all(b, holds);
     tribo_constraints_free(&b->ties);
-    tribo_matrix_free(&b->slack);
-    tribo_cholesky_free(&b->slack_stiffness);
+    tribo_matrix_free(&b->own_stiffness);
     return status;
 }

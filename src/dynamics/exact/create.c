@@ -46,7 +46,7 @@ int tribo_modal_shared_create(struct modal_shared *shared, tribo_system *sys)
 int tribo_modal_create(struct modal **modal, struct modal_shared *shared, const signed char *slip, const unsigned char *holds)
 {
     const size_t contacts = shared->sys->ncontact;
-    struct modal_build b = {.shared = shared, .n = shared->sys->ndof, .h = tribo_modal_alloc()};
+    struct modal_build b = {.shared = shared, .n = shared->sys->ndof, .h = tribo_modal_alloc(), .slip = slip};
     signed char *key = b.h ? (signed char *)tribo_modal_keep_bytes(&b, contacts) : NULL;
     for (size_t i = 0; key && i < contacts; i++) {
         key[i] = (signed char)((slip[i] == TRIBO_SLIP_STUCK) + holds[i]);

@@ -89,10 +89,15 @@ static double limit_work(const struct modal_motion *x, size_t i, const struct ou
 
 #define ALL ((size_t)-1)
 
-/* The work of steady forces: their size times the distance slid, J dq, */
+/* The work of steady forces: their size times the distance slid, J dq + G df, */
 static double steady_work(const struct modal_motion *x, size_t i)
 {
-    return x->sys->tally[i] * x->steady[i] * tribo_matrix_row_dot(&x->sys->direction, i, x->dq);
+    const struct compliance *g = &x->sys->compliance;
+    double way = tribo_matrix_row_dot(&x->sys->direction, i, x->dq);
+    for (size_t k = 0; tribo_is_compliant(g, i) && k < g->count; k++) {
+        way += tribo_compliance_entry(g, x->sys->ncontact, i, g->contact[k]) * x->df[g->contact[k]];
+    }
+    return x->sys->tally[i] * x->steady[i] * way;
 }
 
 /* minus the way of the belts: of all contacts, or of one. */

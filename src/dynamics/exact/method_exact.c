@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "dynamics/events/events.h"
-#include "dynamics/system/elastic.h"
 #include "motion.h"
 #include "terms.h"
 #include "transition.h"
@@ -243,8 +242,8 @@ static int method_exact_begin(void *motion, double t, const double *y, double *r
         const int of_velocity = k < x->motion.h->sliding;
         c->output = &x->motion.h->output[k];
         const size_t i = c->output->contact;
-        const double v = m->state.rested[i] || !of_velocity ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
-        tribo_course_begin(&x->motion, c, of_velocity, of_velocity ? v : m->state.force[i]);
+        const double value = of_velocity ? tribo_stick_slip_first_velocity(m, x->sys, i, y) : m->state.force[i];
+        tribo_course_begin(&x->motion, c, of_velocity, value);
         if (m->state.slip[i] == TRIBO_SLIP_OPEN) {
             m->noise.velocity_scale[i] = c->size;
         } else if (!of_velocity) {
@@ -375,7 +374,7 @@ static int method_exact_open_events(tribo_driver *drv, struct events **events)
 {
     struct exact *x = drv->own;
     tribo_system *sys = drv->sys;
-    if (check_system(sys) || tribo_elastic_check(sys)) {
+    if (check_system(sys) || tribo_compliance_check(sys)) {
         return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "%s", tribo_system_message(sys));
     }
     if (x->revision != sys->revision) {

@@ -42,7 +42,9 @@ struct modal {
     double *omega2, *damping;
     double *coupling;      /* [modes][modes] C~, or NULL if it is diagonal */
     unsigned char *drifts; /* [modes] omega = 0 and no damping */
-    double *by_q, *by_u;   /* [modes][contacts that hold] their forces by eta and eta' */
+    double *by_q, *by_u;   /* [modes][contacts that hold] their forces by eta and eta'; those of compliant contacts are last */
+    size_t springs;        /* compliant contacts at rest; their outputs are the last ones */
+    double *fr, *fi, *f0;  /* [given][springs], [springs] their f' by bases; by those of constant speed */
 
     size_t exponents, terms;   /* terms: with harmonics, and zeros after them, at least TRIBO_TERMS */
     double *lr, *li, *size;    /* [terms] lambda (of harmonics: i Omega), and its absolute value, */

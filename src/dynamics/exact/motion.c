@@ -16,7 +16,7 @@ int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const s
     const size_t n = sys->ndof;
     double **const by_mode[] = {&x->vel, &x->acc, &x->drift, &x->drift_rate, &x->dq};
     const size_t modes = sizeof by_mode / sizeof *by_mode;
-    double *work = malloc((modes * n + 2 * sys->ncontact + 1) * sizeof *work);
+    double *work = malloc((modes * n + 4 * sys->ncontact + 1) * sizeof *work);
     x->line = malloc((sys->ncontact + 1) * sizeof *x->line);
     for (size_t k = 0; work && k < modes; k++) {
         *by_mode[k] = work + k * n;
@@ -27,6 +27,9 @@ int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const s
     x->sys = sys;
     x->room_for_steady = work + modes * n;
     x->push = x->room_for_steady + sys->ncontact;
+    x->df = x->push + sys->ncontact;
+    x->way = x->df + sys->ncontact;
+    memset(x->df, 0, sys->ncontact * sizeof *x->df);
     x->contacts = contacts;
     return 1;
 }
@@ -236,6 +239,26 @@ static void carry(struct modal_motion *x, size_t s, double *u)
     }
 }
 
+/* x->df = -G_AA^-1 (J_A dq - way of bases), A the compliant contacts at rest; forces in `to` = those in `from` + x->df. */
+static void move_springs(struct modal_motion *x, double tau, const double *from, double *to)
+{
+    const tribo_system *sys = x->sys;
+    tribo_matrix_multiply(&sys->direction, x->dq, x->way);
+    for (size_t s = 0; sys->base_harmonics && s < x->h->given; s++) {
+        const struct harmonic *w = &sys->harmonic[s];
+        const struct number now = tribo_harmonic(x, s), then = tribo_harmonic_at_start(x, s);
+        for (size_t e = 0; w->drives == DRIVES_BASE && e < w->count; e++) {
+            const double c = w->cosine[e], d = w->sine[e];
+            x->way[w->index[e]] -=
+                w->omega == 0.0 ? c * tau : (c * (now.im - then.im) - d * (now.re - then.re)) / w->omega;
+        }
+    }
+    tribo_compliance_rates(sys, x->contacts->state.slip, x->way, x->df);
+    for (size_t k = 0; k < sys->compliance.count; k++) {
+        to[2 * sys->ndof + k] = from[2 * sys->ndof + k] + x->df[sys->compliance.contact[k]];
+    }
+}
+
 void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *from, double *to)
 {
     const tribo_system *sys = x->sys;
@@ -249,7 +272,7 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
         memset(x->dq, 0, n * sizeof *x->dq);
     }
     if (to != from) {
-        memcpy(to, from, (2 * n + 1) * sizeof *to);
+        memcpy(to, from, tribo_system_size(sys) * sizeof *to);
     }
     for (size_t i = 0; i < h->moving; i++) {
         x->dq[h->dof[i]] = h->y0[i] * tau;
@@ -264,7 +287,10 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     for (size_t i = 0; i < h->moving; i++) {
         to[h->dof[i]] += x->dq[h->dof[i]];
     }
-    to[2 * n] += tribo_modal_motion_dissipated(x, tau);
+    if (sys->compliance.count) {
+        move_springs(x, tau, from, to);
+    }
+    to[tribo_system_energy(sys)] += tribo_modal_motion_dissipated(x, tau);
 }
 
 /* ------------------------------------------------------------------------------------------------------- the start of a phase */
@@ -304,9 +330,10 @@ static void start_harmonics(struct modal_motion *x, tribo_system *sys)
 static void find_pushes(struct modal_motion *x, const tribo_system *sys, const double *y)
 {
     const struct modal *h = x->h;
+    tribo_compliance_give(sys, 1, x->contacts->state.force, x->way);
     for (size_t o = 0; h->modes > 0 && o < h->outputs; o++) {
         const size_t i = h->output[o].contact;
-        x->push[o] = o < h->sliding ? x->steady[i] : -motion_offset(sys, i, y);
+        x->push[o] = o < h->sliding ? x->steady[i] : -motion_offset(sys, i, y) - x->way[i];
     }
 }
 
@@ -457,7 +484,7 @@ double tribo_modal_motion_start(struct modal_motion *x, const struct modal *h, d
         for (size_t o = 0; o < x->h->sliding; o++) {
             const size_t i = x->h->output[o].contact;
             struct course c = {.output = &x->h->output[o]};
-            tribo_course_begin(x, &c, 1, m->state.rested[i] ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y));
+            tribo_course_begin(x, &c, 1, tribo_stick_slip_first_velocity(m, x->sys, i, y));
             x->line[i] = c.line;
         }
     }

@@ -40,6 +40,7 @@ struct modal_motion {
     double *side;               /* [harmonics] how many times their force follows the limit; others 1 */
     double *push;               /* [outputs] by which an output pushes modes */
     double *dq;                 /* [ndof] by how much q has changed at tau */
+    double *df, *way;           /* [ncontact] by how much forces of compliant contacts have; workspace */
     const double *steady;       /* [ncontact] force of a sliding contact, without harmonics of its limit; */
     struct line *line;          /* [ncontact] while limits have any: its velocity, as far as it is linear in time */
     double *room_for_steady;    /* [ncontact] where steady stands if limits have any */

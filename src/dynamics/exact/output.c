@@ -63,7 +63,8 @@ static double largest(const double *x, const double *y, size_t n)
  * there is anything. */
 static int output_belts(const struct modal_build *b, struct output *w, size_t i)
 {
-    const struct matrix *j = &b->shared->sys->direction;
+    const tribo_system *sys = b->shared->sys;
+    const struct matrix *j = &sys->direction;
     int any = 0;
     for (size_t s = 0; s < b->h->given; s++) {
         const struct harmonic *wave = &b->shared->sys->harmonic[s];
@@ -78,6 +79,11 @@ static int output_belts(const struct modal_build *b, struct output *w, size_t i)
             re -= wave->index[e] == i ? wave->cosine[e] : 0.0;
             im += wave->index[e] == i ? wave->sine[e] : 0.0;
         }
+        for (size_t p = b->rests; tribo_is_compliant(&sys->compliance, i) && p < b->rests + b->springs; p++) {
+            const double entry = tribo_compliance_entry(&sys->compliance, sys->ncontact, i, b->rest[p]);
+            re += entry * b->rate_r[s * b->rates + b->rest[p]];
+            im += entry * b->rate_i[s * b->rates + b->rest[p]];
+        }
         if (fabs(re) + fabs(im) > NO_MOTION * size) {
             w->rr[s] += re;
             w->ri[s] += im;
@@ -87,7 +93,7 @@ static int output_belts(const struct modal_build *b, struct output *w, size_t i)
     return any;
 }
 
-/* v_i = J_i q' - b_i. */
+/* v_i = J_i q' - b_i, and what G makes of f' of compliant contacts at rest. */
 static int output_sliding(struct modal_build *b, struct output *w, size_t i)
 {
     if (!create_output(b, w, i)) {
@@ -122,21 +128,22 @@ struct holding {
     double *force[2], *load; /* [ndof] workspace */
 };
 
-/* By modes, with K phi_k = omega_k^2 M phi_k + J_I'f, and so with damping. */
+/* By modes, with K phi_k = omega_k^2 M phi_k + J_I'f, and so with damping; those of compliant contacts are -G_AA^-1 J_A phi_k. */
 int tribo_modal_hold(struct modal_build *b)
 {
     struct modal *h = b->h;
-    const size_t n = b->n, m = h->modes, s = b->rests;
+    const tribo_system *sys = b->shared->sys;
+    const size_t n = b->n, m = h->modes, s = b->rests + b->springs, c = sys->ncontact;
     double **const kept[] = {&h->by_q, &h->by_u};
     const size_t count[] = {m * s, m * s};
-    double *load = tribo_modal_scratch(b, m * n);
+    double *load = tribo_modal_scratch(b, m * n + 2 * c), *v = load ? load + m * n : NULL;
     if (!load || !tribo_modal_keep_all(b, 2, kept, count)) {
         return 0;
     }
     if (b->shared->damping && h->coupling) {
         tribo_multiply_transposed_add(m, m, n, h->coupling, b->psi, load);
     }
-    for (size_t k = 0; s > 0 && k < m; k++) {
+    for (size_t k = 0; b->rests > 0 && k < m; k++) {
         const double *psi = b->psi + k * n;
         double *force = load + k * n;
         for (size_t d = 0; b->shared->damping && d < n; d++) {
@@ -148,6 +155,13 @@ int tribo_modal_hold(struct modal_build *b)
         memcpy(force, b->k_phi + k * n, n * sizeof *force);
         tribo_add(force, -h->omega2[k], psi, n);
         tribo_constraints_react(&b->ties, force, h->by_q + k * s);
+    }
+    for (size_t k = 0; b->springs > 0 && k < m; k++) {
+        tribo_matrix_multiply(&sys->direction, b->phi + k * n, v);
+        tribo_compliance_rates(sys, b->slip, v, v + c);
+        for (size_t p = b->rests; p < s; p++) {
+            h->by_q[k * s + p] = v[c + b->rest[p]];
+        }
     }
     return 1;
 }
@@ -177,6 +191,7 @@ static void hold_harmonic(const struct modal_build *b, struct holding *f, size_t
                 tribo_matrix_multiply_add(b->shared->damping, 1.0, y[part], f->force[part]);
             }
             tribo_matrix_multiply_add(b->shared->stiffness, turn / omega, y[part], f->force[1 - part]);
+            tribo_modal_add_springs(b, -turn / omega, (part ? b->rate_i : b->rate_r) + w * b->rates, f->force[1 - part]);
             tribo_system_add_mass(b->shared->sys, -turn * omega, y[part], f->force[1 - part]);
         }
     } else if (wave->drives == DRIVES_LOAD) {
@@ -215,6 +230,7 @@ static int find_holding(struct modal_build *b, struct holding *f)
     if (b->steady) {
         memset(f->load, 0, n * sizeof *f->load);
         tribo_matrix_multiply_add(b->shared->stiffness, 1.0, b->y0, f->load);
+        tribo_modal_add_springs(b, -1.0, b->rate_0, f->load);
         tribo_modal_react(b, f->load, f->ramp);
     }
     return 1;
@@ -224,14 +240,31 @@ static int find_holding(struct modal_build *b, struct holding *f)
 static int changes(const struct modal_build *b, const struct holding *f, size_t p)
 {
     const struct modal *h = b->h;
+    const size_t held = b->rests + b->springs;
     int found = f->ramp[p] != 0.0 || tribo_system_swing(b->shared->sys, b->rest[p]) > 0.0;
     for (size_t k = 0; k < h->modes; k++) {
-        found |= h->by_q[k * b->rests + p] != 0.0 || h->by_u[k * b->rests + p] != 0.0;
+        found |= h->by_q[k * held + p] != 0.0 || h->by_u[k * held + p] != 0.0;
     }
     for (size_t w = 0; w < h->harmonics; w++) {
         found |= f->wave_r[w * b->rests + p] != 0.0 || f->wave_i[w * b->rests + p] != 0.0;
     }
     return found;
+}
+
+/* The output of contact p of those that hold, by modes. */
+static struct output *output_by_modes(struct modal_build *b, struct output *all, size_t *used, size_t p)
+{
+    const struct modal *h = b->h;
+    const size_t held = b->rests + b->springs;
+    struct output *output = &all[(*used)++];
+    if (!create_output(b, output, b->rest[p])) {
+        return NULL;
+    }
+    for (size_t k = 0; k < h->modes; k++) {
+        output->on_rate[k] = h->by_q[k * held + p];
+        output_mode(b, output, k, h->by_q[k * held + p], h->by_u[k * held + p]);
+    }
+    return output;
 }
 
 /* Outputs of those contacts that hold and do not always carry the same part of their limit. */
@@ -243,23 +276,48 @@ static int output_held(struct modal_build *b, struct output *all, size_t *used)
         return 0;
     }
     for (size_t p = 0; p < b->rests; p++) {
-        if (!changes(b, &f, p)) {
-            continue;
-        }
-        struct output *output = &all[(*used)++];
-        if (!create_output(b, output, b->rest[p])) {
+        struct output *output = changes(b, &f, p) ? output_by_modes(b, all, used, p) : NULL;
+        if (!output && changes(b, &f, p)) {
             return 0;
         }
-        output->ramp = f.ramp[p];
-        for (size_t k = 0; k < h->modes; k++) {
-            output->on_rate[k] = h->by_q[k * b->rests + p];
-            output_mode(b, output, k, h->by_q[k * b->rests + p], h->by_u[k * b->rests + p]);
-        }
-        for (size_t w = 0; w < h->harmonics; w++) {
+        for (size_t w = 0; output && w < h->harmonics; w++) {
             output->rr[w] += f.wave_r[w * b->rests + p];
             output->ri[w] += f.wave_i[w * b->rests + p];
         }
-        finish_output(b->h, output);
+        if (output) {
+            output->ramp = f.ramp[p];
+            finish_output(h, output);
+        }
+    }
+    return 1;
+}
+
+/* Outputs of the compliant contacts at rest, f = f' /(i Omega), and what the structure keeps of f'. */
+static int output_springs(struct modal_build *b, struct output *all, size_t *used)
+{
+    struct modal *h = b->h;
+    const size_t s = b->springs;
+    double **const kept[] = {&h->fr, &h->fi, &h->f0};
+    const size_t count[] = {h->given * s, h->given * s, s};
+    if (s > 0 && !tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count)) {
+        return 0;
+    }
+    h->springs = s;
+    for (size_t p = 0; p < s; p++) {
+        const size_t i = b->rest[b->rests + p];
+        struct output *output = output_by_modes(b, all, used, b->rests + p);
+        if (!output) {
+            return 0;
+        }
+        for (size_t w = 0; w < h->given; w++) {
+            const double omega = h->forcing[w].omega, by = omega != 0.0 ? 1.0 / omega : 0.0;
+            h->fr[w * s + p] = b->rate_r[w * b->rates + i];
+            h->fi[w * s + p] = b->rate_i[w * b->rates + i];
+            output->rr[w] += by * h->fi[w * s + p];
+            output->ri[w] -= by * h->fr[w * s + p];
+        }
+        output->ramp = h->f0[p] = b->rate_0[i];
+        finish_output(h, output);
     }
     return 1;
 }
@@ -318,5 +376,5 @@ int tribo_modal_outputs(struct modal_build *b)
         }
     }
     h->sliding = h->outputs;
-    return output_held(b, h->output, &h->outputs);
+    return output_held(b, h->output, &h->outputs) && output_springs(b, h->output, &h->outputs);
 }

@@ -168,7 +168,13 @@ unsigned char *tribo_modal_scratch_bytes(struct modal_build *b, size_t count)
 
 double tribo_modal_shape(const struct modal_build *b, size_t i, size_t k)
 {
-    return tribo_matrix_row_dot(&b->shared->sys->direction, i, b->phi + k * b->n);
+    const tribo_system *sys = b->shared->sys;
+    const size_t held = b->rests + b->springs;
+    double sum = tribo_matrix_row_dot(&sys->direction, i, b->phi + k * b->n);
+    for (size_t p = b->rests; tribo_is_compliant(&sys->compliance, i) && p < held; p++) {
+        sum += tribo_compliance_entry(&sys->compliance, sys->ncontact, i, b->rest[p]) * b->h->by_q[k * held + p];
+    }
+    return sum;
 }
 
 void tribo_modal_react(const struct modal_build *b, double *force, double *f)

@@ -10,10 +10,13 @@ struct modal_build {
     struct modal_shared *shared;
     size_t n; /* ndof */
     struct modal *h;
-    size_t rests, *rest;               /* [rests] the contacts that hold */
-    struct constraints ties;           /* and what they tie together */
-    struct matrix slack;               /* [ndof][..] displacements that are free and have no mass: they follow the others, */
-    struct cholesky slack_stiffness;   /* by this */
+    const signed char *slip;           /* [ncontact] */
+    size_t rests, springs, *rest;      /* [rests + springs] the rigid contacts that hold, and the compliant ones at rest */
+    struct constraints ties;           /* between degrees of freedom, by the rigid contacts that hold */
+    const struct matrix *stiffness;    /* K + J_A' G_AA^-1 J_A, A the compliant contacts at rest */
+    struct matrix own_stiffness;       /* memory of it, if A is not empty */
+    size_t rates;                      /* ncontact, if A is not empty, else 0 */
+    double *rate_r, *rate_i, *rate_0;  /* [given][rates], [rates] f' of A by bases; by those of constant speed */
     double *phi, *psi, *k_phi, *c_phi; /* and M phi, K phi, C phi */
     double *yr, *yi;                   /* [given][ndof] */
     double *y0;                        /* [ndof] velocities from belts of constant speed, */
@@ -48,12 +51,8 @@ double tribo_modal_shape(const struct modal_build *b, size_t i, size_t k);
 /* f [rests] = the forces J_I'f = force [ndof] of the contacts that hold. Takes out of force first what moves the modes. */
 void tribo_modal_react(const struct modal_build *b, double *force, double *f);
 
-/* slack.c: takes out of the displacements z that constraints allow (without rows: all) those without mass, and lets them
- * follow the others. Returns a status. */
-int tribo_modal_condense(struct modal_build *b, struct matrix *z);
-
-/* Lets what has no mass and is free follow displacements y [ndof]. 0 if out of memory. */
-int tribo_modal_relax(struct modal_build *b, double *y);
+/* pull [ndof] += by J'rate, rate [ncontact] of the compliant contacts at rest. */
+void tribo_modal_add_springs(const struct modal_build *b, double by, const double *rate, double *pull);
 
 /* The exponents of eta. Returns a status. */
 int tribo_modal_exponents(struct modal_build *b);

@@ -12,16 +12,12 @@
 #define UNDAMPED 1e-9
 
 /* y [ndof] = velocities from the b [rest] of the contacts that hold, in which the modes have no part. */
-static int belt_velocities(struct modal_build *b, const double *x, double *y)
+static void belt_velocities(struct modal_build *b, const double *x, double *y)
 {
     tribo_constraints_follow(&b->ties, x, y);
-    if (!tribo_modal_relax(b, y)) {
-        return 0;
-    }
     for (size_t k = 0; k < b->h->modes; k++) {
         tribo_add(y, -tribo_dot(b->psi + k * b->n, y, b->n), b->phi + k * b->n, b->n);
     }
-    return 1;
 }
 
 /* One part (0 cosine, 1 minus sine: harmonics are Re((c - i s) e^{i Omega t})) of a harmonic of b_I. Returns whether it moves
@@ -39,6 +35,38 @@ static int base_part(const struct modal_build *b, const struct harmonic *w, int 
         }
     }
     return moves;
+}
+
+/* rate [ncontact] = the same part of f' of the compliant contacts at rest, for velocities y of the degrees of freedom. work
+ * [ncontact]. Returns 1 if any is not 0. */
+static int spring_part(const struct modal_build *b, const struct harmonic *w, int part, const double *y, double *work,
+                       double *rate)
+{
+    const tribo_system *sys = b->shared->sys;
+    int moves = 0;
+    if (!b->springs) {
+        return 0;
+    }
+    tribo_matrix_multiply(&sys->direction, y, work);
+    for (size_t e = 0; e < w->count; e++) {
+        work[w->index[e]] -= part ? -w->sine[e] : w->cosine[e];
+    }
+    tribo_compliance_rates(sys, b->slip, work, rate);
+    for (size_t p = b->rests; p < b->rests + b->springs; p++) {
+        moves |= rate[b->rest[p]] != 0.0;
+    }
+    return moves;
+}
+
+void tribo_modal_add_springs(const struct modal_build *b, double by, const double *rate, double *pull)
+{
+    const struct matrix *j = &b->shared->sys->direction;
+    for (size_t p = b->rests; p < b->rests + b->springs; p++) {
+        const size_t i = b->rest[p];
+        for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+            pull[j->col[e]] += by * rate[i] * j->val[e];
+        }
+    }
 }
 
 static int list_forcing(struct modal_build *b)
@@ -74,40 +102,46 @@ static void resist(const struct modal_build *b, const double *y, double by, doub
     }
 }
 
-/* Forcing of eta by a base: -K y/(i Omega) - C y, where held contacts move the structure with velocities y; 1/i turns the real
- * part into minus the imaginary one. Velocities of belts of constant speed go to y0. 0 if out of memory, or with the status
- * of another failure in b. */
-static int force_by_base(struct modal_build *b, size_t w, double *x, double *pull, double *drag)
+/* Forcing of eta by a base: (J'f' - K y)/(i Omega) - C y, where held contacts move the structure with velocities y, and springs
+ * have rates f'; 1/i turns the real part into minus the imaginary one. Velocities of belts of constant speed go to y0, and rates
+ * by these to rate_0. x [rests + ncontact], pull and drag [ndof] are workspace. */
+static void force_by_base(struct modal_build *b, size_t w, double *x, double *pull, double *drag)
 {
     struct modal *h = b->h;
-    const size_t n = b->n, m = h->modes;
+    const size_t n = b->n, m = h->modes, c = b->rates;
     const struct harmonic *wave = &b->shared->sys->harmonic[w];
     double *const g[] = {h->gr + w * m, h->gi + w * m}, *const y[] = {b->yr + w * n, b->yi + w * n};
+    double *const rate[] = {b->rate_r + w * c, b->rate_i + w * c};
     int moves[2];
     for (int part = 0; part < 2; part++) {
         moves[part] = base_part(b, wave, part, x);
-        if (moves[part] && !belt_velocities(b, x, y[part])) {
-            return 0;
+        if (moves[part]) {
+            belt_velocities(b, x, y[part]);
         }
+        moves[part] |= spring_part(b, wave, part, y[part], x + b->rests, rate[part]);
     }
     if (wave->omega == 0.0) {
         tribo_add(b->y0, 1.0, y[0], n);
+        tribo_add(b->rate_0, 1.0, rate[0], c);
         b->steady |= moves[0];
         memset(y[0], 0, n * sizeof **y);
         memset(y[1], 0, n * sizeof **y);
-        return 1;
+        memset(rate[0], 0, c * sizeof **rate);
+        memset(rate[1], 0, c * sizeof **rate);
+        return;
     }
     for (int part = 0; part < 2; part++) {
         if (!moves[part]) {
             continue;
         }
-        resist(b, y[part], (part ? 1.0 : -1.0) / wave->omega, pull, drag);
+        const double by = (part ? 1.0 : -1.0) / wave->omega;
+        resist(b, y[part], by, pull, drag);
+        tribo_modal_add_springs(b, by, rate[part], pull);
         for (size_t k = 0; k < m; k++) {
             g[1 - part][k] += tribo_dot(b->phi + k * n, pull, n);
             g[part][k] += tribo_dot(b->phi + k * n, drag, n);
         }
     }
-    return 1;
 }
 
 /* What constant loads force, and belts of constant speed. */
@@ -116,6 +150,7 @@ static void force_by_constants(struct modal_build *b, double *pull, double *drag
     struct modal *h = b->h;
     if (b->steady) {
         resist(b, b->y0, 1.0, pull, drag);
+        tribo_modal_add_springs(b, 1.0, b->rate_0, pull);
     }
     for (size_t k = 0; k < h->modes; k++) {
         h->ramp[k] = b->steady ? tribo_dot(b->phi + k * b->n, pull, b->n) : 0.0;
@@ -130,15 +165,19 @@ static int create_forcing(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t m = h->modes, velocities = b->shared->sys->harmonics * b->n;
+    const size_t rates = b->shared->sys->harmonics * b->rates;
     double **const kept[] = {&h->gr, &h->gi, &h->ramp, &h->constant};
     const size_t count[] = {h->harmonics * m, h->harmonics * m, m, m};
-    double *y = tribo_modal_scratch(b, 2 * velocities + b->n);
+    double *y = tribo_modal_scratch(b, 2 * velocities + b->n + 2 * rates + b->rates);
     if (!y || !tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count)) {
         return 0;
     }
     b->yr = y;
     b->yi = y + velocities;
     b->y0 = y + 2 * velocities;
+    b->rate_r = b->y0 + b->n;
+    b->rate_i = b->rate_r + rates;
+    b->rate_0 = b->rate_i + rates;
     return 1;
 }
 
@@ -151,8 +190,9 @@ int tribo_modal_forcing(struct modal_build *b)
     struct modal *h = b->h;
     const tribo_system *sys = b->shared->sys;
     const size_t m = h->modes;
-    double *pull = tribo_modal_scratch(b, 2 * b->n + b->rests), *drag = pull ? pull + b->n : NULL, *x = pull ? drag + b->n : NULL;
-    int done = pull != NULL;
+    double *pull = tribo_modal_scratch(b, 2 * b->n + b->rests + sys->ncontact), *drag = pull ? pull + b->n : NULL;
+    double *x = pull ? drag + b->n : NULL;
+    const int done = pull != NULL;
     for (size_t w = 0; done && w < sys->harmonics; w++) {
         const enum drives drives = sys->harmonic[w].drives;
         if (drives == DRIVES_LOAD) {
@@ -166,7 +206,7 @@ int tribo_modal_forcing(struct modal_build *b)
                 }
             }
         } else if (drives == DRIVES_BASE) {
-            done = force_by_base(b, w, x, pull, drag);
+            force_by_base(b, w, x, pull, drag);
         }
     }
     for (size_t w = sys->harmonics; done && w < h->harmonics; w++) {

@@ -2,14 +2,34 @@
 #include "terms.h"
 
 #include <math.h>
+#include <string.h>
 
 /* A resonance closer than this part of omega^2 costs more than half of the digits. */
 #define TOO_CLOSE 1e-7
 
-/* How the combination c [2 ndof] sees mode k: its amplitude, and the rate of that. */
-static void weights(const struct modal *h, size_t n, const double *c, size_t k, double *place, double *speed)
+/* The index of the p-th compliant contact at rest among all compliant ones. */
+static size_t spring_index(const struct modal_motion *x, size_t p)
 {
+    const size_t contact = x->h->output[x->h->outputs - x->h->springs + p].contact;
+    size_t i = 0;
+    while (x->sys->compliance.contact[i] != contact) {
+        i++;
+    }
+    return i;
+}
+
+/* How the combination c of q, q', f, f' sees mode k: its amplitude, and the rate of that. */
+static void weights(const struct modal_motion *x, const double *c, size_t k, double *place, double *speed)
+{
+    const struct modal *h = x->h;
+    const size_t n = x->sys->ndof;
     *place = *speed = 0.0;
+    for (size_t p = 0; p < h->springs; p++) {
+        const double rate = h->output[h->outputs - h->springs + p].on_rate[k];
+        const double *of = c + 2 * n + spring_index(x, p);
+        *place += rate * of[0];
+        *speed += rate * of[x->sys->compliance.count];
+    }
     for (size_t i = 0; i < h->moving; i++) {
         *place += h->phi[k * h->moving + i] * c[h->dof[i]];
         *speed += h->phi[k * h->moving + i] * c[n + h->dof[i]];
@@ -86,7 +106,7 @@ static void add_exponents(const struct modal_motion *x, const double *c, struct 
     for (size_t p = 0; p < h->exponents; p++) {
         double cr = 0.0, ci = 0.0, place, speed;
         for (size_t k = h->owner ? h->owner[p] : 0; k < (h->owner ? h->owner[p] + 1 : h->modes); k++) {
-            weights(h, x->sys->ndof, c, k, &place, &speed);
+            weights(x, c, k, &place, &speed);
             add_exponent(x, p, place, speed, h->owner ? 1.0 : h->rr[k * h->exponents + p],
                          h->owner ? 0.0 : h->ri[k * h->exponents + p], &cr, &ci);
         }
@@ -104,7 +124,7 @@ static void add_harmonic(const struct modal_motion *x, const double *c, size_t s
     for (size_t k = 0; k < h->modes; k++) {
         double place, speed, xr, xi;
         response(x, s, k, &xr, &xi);
-        weights(h, n, c, k, &place, &speed);
+        weights(x, c, k, &place, &speed);
         re += place * xr - speed * omega * xi;
         im += place * xi + speed * omega * xr;
     }
@@ -113,6 +133,12 @@ static void add_harmonic(const struct modal_motion *x, const double *c, size_t s
         re += speed * yr + (omega != 0.0 ? place * yi / omega : 0.0);
         im += speed * yi - (omega != 0.0 ? place * yr / omega : 0.0);
     }
+    for (size_t p = 0; s < h->given && p < h->springs; p++) {
+        const double fr = h->fr[s * h->springs + p], fi = h->fi[s * h->springs + p], *of = c + 2 * n + spring_index(x, p);
+        const double speed = of[x->sys->compliance.count], place = omega != 0.0 ? of[0] / omega : 0.0;
+        re += speed * fr + place * fi;
+        im += speed * fi - place * fr;
+    }
     const struct number w = tribo_harmonic_at_start(x, s);
     tribo_signal_add(to, re * w.re - im * w.im, re * w.im + im * w.re, 0.0, omega);
 }
@@ -120,17 +146,38 @@ static void add_harmonic(const struct modal_motion *x, const double *c, size_t s
 static void add_powers(const struct modal_motion *x, const double *c, double *a)
 {
     const struct modal *h = x->h;
-    const size_t n = x->sys->ndof;
     for (size_t k = 0; k < h->modes; k++) {
         double place, speed;
         const double rate = x->vel[k] + (h->drifts[k] ? x->drift_rate[k] : 0.0);
-        weights(h, n, c, k, &place, &speed);
+        weights(x, c, k, &place, &speed);
         a[1] += place * rate + speed * x->acc[k];
         a[2] += 0.5 * place * x->acc[k];
     }
     for (size_t i = 0; i < h->moving; i++) {
         a[1] += c[h->dof[i]] * h->y0[i];
     }
+    for (size_t p = 0; p < h->springs; p++) {
+        a[1] += c[2 * x->sys->ndof + spring_index(x, p)] * h->f0[p];
+    }
+}
+
+/* c'[q, q', f, f'] at the end of the phase, tau later. */
+static double value_at_end(const struct modal_motion *x, const double *c, double tau, const double *end)
+{
+    const tribo_system *sys = x->sys;
+    const size_t f = tribo_system_energy(sys);
+    double value = tribo_dot(c, end, f);
+    if (x->h->springs) {
+        memset(x->way, 0, sys->ncontact * sizeof *x->way);
+        tribo_system_add_base_at(sys, x->t0 + tau, -1.0, x->way);
+        tribo_matrix_multiply_add(&sys->direction, 1.0, end + sys->ndof, x->way);
+        tribo_compliance_rates(sys, x->contacts->state.slip, x->way, x->push);
+        for (size_t p = 0; p < x->h->springs; p++) {
+            const size_t i = spring_index(x, p);
+            value += c[f + i] * x->push[sys->compliance.contact[i]];
+        }
+    }
+    return value;
 }
 
 int tribo_modal_motion_signal(const struct modal_motion *x, const double *c, double tau, const double *end, struct signal *to)
@@ -153,6 +200,6 @@ int tribo_modal_motion_signal(const struct modal_motion *x, const double *c, dou
     add_powers(x, c, to->a);
     /* what is constant follows from where the phase ends */
     tribo_signal_at(to, tau, v);
-    to->a[0] = tribo_dot(c, end, 2 * x->sys->ndof) - v[0];
+    to->a[0] = value_at_end(x, c, tau, end) - v[0];
     return TRIBO_OK;
 }

@@ -53,18 +53,39 @@ static void transition_add_modes(const struct transition *x, double *v)
     }
 }
 
-/* Amplitudes that v has, and pulls of contacts that are held elsewhere. */
+/* Amplitudes that v has, and pulls of contacts that are held elsewhere, J q + G f. */
 static void transition_split(const struct transition *x, const double *v)
 {
     const struct modal *h = x->h;
+    const struct compliance *g = &x->sys->compliance;
     const size_t c = x->columns;
     memset(x->eta, 0, 3 * x->block * sizeof *x->eta);
     to_modes(x, v);
     for (size_t o = h->sliding; o < h->outputs; o++) {
         const struct output *out = &h->output[o];
         tribo_contact_row(x->sys, out->contact, v, c, x->row);
+        for (size_t i = 0; tribo_is_compliant(g, out->contact) && i < g->count; i++) {
+            const double entry = tribo_compliance_entry(g, x->sys->ncontact, out->contact, g->contact[i]);
+            tribo_add(x->row, entry, v + 2 * x->block + i * c, c);
+        }
         for (size_t k = 0; k < h->modes; k++) {
             tribo_add(x->pull + k * c, -out->on_rate[k], x->row, c);
+        }
+    }
+}
+
+/* Forces of compliant contacts at rest, in v, += those of the change of amplitudes in x->eta. */
+static void add_springs(const struct transition *x, double *v)
+{
+    const struct modal *h = x->h;
+    const struct compliance *g = &x->sys->compliance;
+    for (size_t o = h->outputs - h->springs, i = 0; o < h->outputs; o++) {
+        const struct output *out = &h->output[o];
+        while (g->contact[i] != out->contact) {
+            i++;
+        }
+        for (size_t k = 0; k < h->modes; k++) {
+            tribo_add(v + 2 * x->block + i * x->columns, out->on_rate[k], x->eta + k * x->columns, x->columns);
         }
     }
 }
@@ -203,4 +224,5 @@ void tribo_modal_transition(const struct modal *h, const tribo_system *sys, doub
     memset(v + block, 0, block * sizeof *v);
     tribo_add(x.eta, -1.0, x.change, h->modes * columns);
     transition_add_modes(&x, v);
+    add_springs(&x, v);
 }

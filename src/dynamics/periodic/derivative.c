@@ -1,5 +1,4 @@
 #include "derivative.h"
-#include "dynamics/system/elastic.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -75,7 +74,8 @@ int tribo_derivative_add_phase(struct derivative *d, double tau, const signed ch
 
 int tribo_derivative_add_jumps(struct derivative *d, size_t jumps, const double *row, const double *column)
 {
-    const size_t n = d->sys->ndof, count = 3 * n * jumps, room = 2 * d->number_room + count;
+    const size_t n = d->sys->ndof, all = tribo_system_energy(d->sys), count = (all + n) * jumps;
+    const size_t room = 2 * d->number_room + count;
     if (d->numbers + count > d->number_room) {
         double *more = realloc(d->number, room * sizeof *more);
         if (!more) {
@@ -88,29 +88,29 @@ int tribo_derivative_add_jumps(struct derivative *d, size_t jumps, const double 
         return 0;
     }
     d->step[d->steps++] = (struct derivative_step){.first = d->numbers, .jumps = jumps};
-    memcpy(d->number + d->numbers, row, 2 * n * jumps * sizeof *row);
-    memcpy(d->number + d->numbers + 2 * n * jumps, column, n * jumps * sizeof *column);
+    memcpy(d->number + d->numbers, row, all * jumps * sizeof *row);
+    memcpy(d->number + d->numbers + all * jumps, column, n * jumps * sizeof *column);
     d->numbers += count;
     return 1;
 }
 
 int tribo_derivative_apply(const struct derivative *d, size_t first, size_t columns, double *v)
 {
-    const size_t n = d->sys->ndof, c = d->sys->ncontact;
-    double *work = malloc((c * columns + 1) * sizeof *work);
+    const size_t n = d->sys->ndof, c = d->sys->ncontact, all = tribo_system_energy(d->sys);
+    double *work = malloc((2 * c * columns + 1) * sizeof *work);
     int status = work ? TRIBO_OK
                       : tribo_system_fail(d->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     for (size_t k = first; !status && k < d->steps; k++) {
         const struct derivative_step *s = d->step + k;
         if (s->jumps) {
-            const double *row = d->number + s->first, *column = row + 2 * n * s->jumps;
+            const double *row = d->number + s->first, *column = row + all * s->jumps;
             memset(work, 0, s->jumps * columns * sizeof *work);
-            tribo_multiply_add(s->jumps, 2 * n, columns, 1.0, row, v, work);
+            tribo_multiply_add(s->jumps, all, columns, 1.0, row, v, work);
             tribo_multiply_add(n, s->jumps, columns, 1.0, column, work, v + n * columns);
             continue;
         }
-        if (d->sys->massless.count) {
-            tribo_elastic_perturb(d->sys, d->slip + k * c, columns, v, work);
+        if (d->sys->compliance.count) {
+            tribo_compliance_perturb(d->sys, d->slip + k * c, columns, v, work);
         }
         status = d->events->transition(d->events->motion, s->phase, s->tau, columns, v);
     }

@@ -26,47 +26,26 @@ static int dense_stiffness(const tribo_system *sys, double *k)
     return entries != NULL;
 }
 
-/* Columns of x [n][n]: those of what has mass += factor times the columns of what follows, by how it follows. */
-static void add_followers(const tribo_system *sys, double factor, double *x)
-{
-    const struct matrix *f = &sys->massless.follow;
-    for (size_t i = 0; i < sys->ndof; i++) {
-        for (size_t d = 0; d < f->rows; d++) {
-            for (size_t e = f->first[d]; e < f->first[d + 1]; e++) {
-                x[i * sys->ndof + f->col[e]] += factor * f->val[e] * x[i * sys->ndof + d];
-            }
-        }
-    }
-}
-
-/* rate = phi'M, and psi. */
+/* psi = phi'M. */
 static void energy_norm_weigh(struct energy_norm *e, const tribo_system *sys)
 {
     const size_t n = e->n;
     double *mode = e->omega; /* not set yet */
-    tribo_transpose(n, n, e->phi, e->rate);
+    tribo_transpose(n, n, e->phi, e->psi);
     for (size_t k = 0; k < n; k++) {
-        memcpy(mode, e->rate + k * n, n * sizeof *mode);
-        memset(e->rate + k * n, 0, n * sizeof *mode);
-        tribo_system_add_mass(sys, 1.0, mode, e->rate + k * n);
-        for (size_t d = 0; sys->massless.count && d < n; d++) {
-            e->psi[k * n + d] = e->rate[k * n + d] + (sys->massless.is[d] ? mode[d] : 0.0);
-        }
+        memcpy(mode, e->psi + k * n, n * sizeof *mode);
+        memset(e->psi + k * n, 0, n * sizeof *mode);
+        tribo_system_add_mass(sys, 1.0, mode, e->psi + k * n);
     }
 }
 
-/* Modes by S'KS, M^-1 = S S'. k [n][n] is workspace. What has no mass counts by how far it is from where it would follow the
- * others: these have the modes of the free structure. */
+/* Modes by S'KS, M^-1 = S S'. k [n][n] is workspace. */
 static int find(struct energy_norm *e, const tribo_system *sys, double *k)
 {
     const size_t n = e->n;
     if (!dense_stiffness(sys, k)) {
         return TRIBO_ERR_MEMORY;
     }
-    add_followers(sys, 1.0, k);
-    tribo_transpose(n, n, k, e->psi);
-    add_followers(sys, 1.0, e->psi);
-    memcpy(k, e->psi, n * n * sizeof *k);
     tribo_half_solve(&sys->factor, k, n);
     tribo_transpose(n, n, k, e->psi);
     tribo_half_solve(&sys->factor, e->psi, n);
@@ -79,35 +58,42 @@ static int find(struct energy_norm *e, const tribo_system *sys, double *k)
     }
     tribo_half_solve_back(&sys->factor, e->phi, n);
     energy_norm_weigh(e, sys);
-    if (sys->massless.count) {
-        add_followers(sys, -1.0, e->psi);
-    }
-    for (size_t d = 0; d < sys->massless.follow.rows; d++) {
-        for (size_t j = sys->massless.follow.first[d]; j < sys->massless.follow.first[d + 1]; j++) {
-            tribo_add(e->phi + d * n, sys->massless.follow.val[j], e->phi + sys->massless.follow.col[j] * n, n);
-        }
-    }
     for (size_t i = 0; i < n; i++) {
         e->natural[i] = sqrt(fabs(e->natural[i]));
     }
     return TRIBO_OK;
 }
 
+/* root: G = root root'. Returns a status. */
+static int find_root(struct energy_norm *e, const tribo_system *sys)
+{
+    const struct compliance *g = &sys->compliance;
+    const size_t c = g->count;
+    for (size_t i = 0; i < c; i++) {
+        for (size_t k = 0; k <= i; k++) {
+            double sum = tribo_compliance_entry(g, sys->ncontact, g->contact[i], g->contact[k]);
+            sum -= tribo_dot(e->root + i * c, e->root + k * c, k);
+            e->root[i * c + k] = k < i ? sum / e->root[k * c + k] : sqrt(sum);
+        }
+    }
+    return tribo_dense_finite(e->root, c * c) ? TRIBO_OK : TRIBO_ERR_NOT_FINITE;
+}
+
 int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys)
 {
     const size_t n = sys->ndof;
-    *e = (struct energy_norm){.n = n};
-    const size_t matrices = sys->massless.count ? 3 : 2;
-    e->phi = malloc((matrices * n * n + 3 * n + 1) * sizeof *e->phi);
+    *e = (struct energy_norm){.n = n, .springs = sys->compliance.count};
+    e->phi = calloc(2 * n * n + 3 * n + e->springs * e->springs + 1, sizeof *e->phi);
     double *work = malloc((n * n + 1) * sizeof *work);
     int status = TRIBO_ERR_MEMORY;
     if (e->phi && work) {
         e->psi = e->phi + n * n;
-        e->rate = e->phi + (matrices - 1) * n * n;
-        e->omega = e->rate + n * n;
+        e->omega = e->psi + n * n;
         e->natural = e->omega + n;
         e->damping = e->natural + n;
+        e->root = e->damping + n;
         status = find(e, sys, work);
+        status = status ? status : find_root(e, sys);
     }
     free(work);
     return status ? tribo_system_fail(sys, status, "%s",
@@ -130,7 +116,7 @@ void tribo_energy_norm_set_damping(struct energy_norm *e, const tribo_system *sy
         for (size_t m = sys->damping.first[i]; m < sys->damping.first[i + 1]; m++) {
             const double *column = e->phi + sys->damping.col[m] * n, c = sys->damping.val[m];
             for (size_t k = 0; k < n; k++) {
-                e->damping[k] += e->rate[k * n + i] * c * column[k];
+                e->damping[k] += e->psi[k * n + i] * c * column[k];
             }
         }
     }
@@ -168,8 +154,15 @@ void tribo_energy_norm_of(const struct energy_norm *e, size_t columns, const dou
     const size_t n = e->n, half = n * columns;
     memset(x, 0, 2 * half * sizeof *x);
     tribo_multiply_add(n, n, columns, 1.0, e->psi, y, x);
-    tribo_multiply_add(n, n, columns, 1.0, e->rate, y + half, x + half);
+    tribo_multiply_add(n, n, columns, 1.0, e->psi, y + half, x + half);
     scale_rows(e, columns, 0, x);
+    /* root' f */
+    for (size_t i = 0; i < e->springs; i++) {
+        memset(x + 2 * half + i * columns, 0, columns * sizeof *x);
+        for (size_t k = i; k < e->springs; k++) {
+            tribo_add(x + 2 * half + i * columns, e->root[k * e->springs + i], y + 2 * half + k * columns, columns);
+        }
+    }
 }
 
 void tribo_energy_norm_state(const struct energy_norm *e, size_t columns, const double *x, double *y)
@@ -181,4 +174,14 @@ void tribo_energy_norm_state(const struct energy_norm *e, size_t columns, const 
     tribo_multiply_add(n, n, columns, 1.0, e->phi, y + half, y);
     memset(y + half, 0, half * sizeof *y);
     tribo_multiply_add(n, n, columns, 1.0, e->phi, x + half, y + half);
+    for (size_t i = e->springs; i-- > 0;) {
+        double *f = y + 2 * half + i * columns;
+        memcpy(f, x + 2 * half + i * columns, columns * sizeof *f);
+        for (size_t k = i + 1; k < e->springs; k++) {
+            tribo_add(f, -e->root[k * e->springs + i], y + 2 * half + k * columns, columns);
+        }
+        for (size_t j = 0; j < columns; j++) {
+            f[j] /= e->root[i * e->springs + i];
+        }
+    }
 }

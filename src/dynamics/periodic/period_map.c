@@ -1,4 +1,3 @@
-#include "dynamics/system/elastic.h"
 #include "period_map.h"
 #include "common/real.h"
 
@@ -181,10 +180,9 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
     }
     set_state(m, p->x);
     int status = m->moved ? hold_still(m) : TRIBO_OK;
-    /* Sliders that begin beyond their limits go back to them. */
-    if (m->sys->massless.count) {
+    if (m->sys->compliance.count) {
         tribo_get_limit(m->sys->contacts, m->limit);
-        tribo_elastic_enter(m->sys, m->limit, m->x, m->limit + m->sys->ncontact, m->y);
+        tribo_compliance_enter(m->sys, m->limit, m->limit + m->sys->ncontact, m->y);
     }
     memcpy(p->y, m->y, n * sizeof *p->y);
     tribo_period_map_coordinates(m, m->y, p->x);
@@ -245,10 +243,6 @@ int tribo_period_map_matrix(struct period_map *m, const struct point *p, const d
 
 int tribo_period_map_complete(struct period_map *m, struct point *p, double *residual)
 {
-    for (size_t d = 0; m->sys->massless.count && d < m->sys->ndof; d++) {
-        const size_t i = m->sys->ndof + d;
-        p->y[i] = !m->sys->massless.is[d] ? p->y[i] : m->odd ? -p->end[i] : p->end[i];
-    }
     *residual = p->residual;
     if (!m->odd) {
         return TRIBO_OK;
@@ -298,9 +292,9 @@ static double size_of_base(const struct period_map *m, const struct harmonic *w,
     double size = 0.0;
     for (size_t k = 0; k < w->count; k++) {
         const double r = tribo_system_delassus(m->sys, w->index[k], w->index[k]);
-        const int elastic = tribo_massless_touches(&m->sys->massless, w->index[k]) && w->omega != 0.0;
+        const int elastic = tribo_is_compliant(&m->sys->compliance, w->index[k]) && w->omega != 0.0;
         size = r > 0.0 ? hypot(size, amplitude[k] / sqrt(r)) : size;
-        size = elastic ? hypot(size, amplitude[k] / (w->omega * sqrt(m->sys->massless.compliance[w->index[k]]))) : size;
+        size = elastic ? hypot(size, amplitude[k] / (w->omega * sqrt(m->sys->compliance.own[w->index[k]]))) : size;
     }
     return size;
 }
@@ -392,7 +386,7 @@ void tribo_period_map_choose(struct period_map *m, int odd)
 
 int tribo_period_map_create(struct period_map *m, tribo_driver *drv)
 {
-    const size_t n = 2 * drv->sys->ndof;
+    const size_t n = tribo_system_energy(drv->sys);
     *m = (struct period_map){.drv = drv, .sys = drv->sys, .n = n, .company = {phase_ends, event_decided}};
     m->y = malloc((2 * n + 2 * drv->sys->ncontact + 2) * sizeof *m->y);
     if (m->y) {

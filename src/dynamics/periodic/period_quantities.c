@@ -10,7 +10,7 @@ struct replay {
     struct company company;
     struct period_map *map;
     int (*phase)(struct replay *r, double tau, const double *end);
-    const double *c;             /* [2 ndof] the combination asked for, of (q, w), (q, w)' */
+    const double *c;             /* the combination asked for, of q, q' (and f, f') */
     struct signal signal, slope; /* it, in the phase */
     double elapsed;              /* since the period began */
     struct extremes extremes;
@@ -67,20 +67,18 @@ static int replay(tribo_driver *drv, struct replay *r)
     return status && s->map.drv != drv ? tribo_driver_fail(drv, status, "%s", s->map.drv->message) : status;
 }
 
-/* Checks c'[q, q'] of the caller, and gives it zeros for sliders. */
+/* Checks c'[q, q'] of the caller, and makes r->c of it. */
 static int take_combination(tribo_driver *drv, struct replay *r, const double *c)
 {
-    const size_t n = tribo_system_ndof(drv->sys), sliders = drv->sys->sliders;
+    const size_t n = tribo_system_ndof(drv->sys);
     for (size_t i = 0; i < 2 * n; i++) {
         if (!isfinite(c[i])) {
             return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "c[%zu] = %g is not finite", i, c[i]);
         }
     }
     r->c = c;
-    if (sliders) {
-        memset(drv->motion, 0, tribo_system_size(drv->sys) * sizeof *c);
-        memcpy(drv->motion, c, n * sizeof *c);
-        memcpy(drv->motion + n + sliders, c + n, n * sizeof *c);
+    if (drv->motion) {
+        tribo_system_read_combination(drv->sys, c, drv->motion);
         r->c = drv->motion;
     }
     return TRIBO_OK;

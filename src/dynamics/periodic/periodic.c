@@ -48,11 +48,11 @@ static int check_loads(tribo_driver *drv, double period)
 }
 
 /* Derivatives of motions do not know of forces that jump beside springs without mass. */
-static int check_massless(tribo_driver *drv)
+static int check_static(tribo_driver *drv)
 {
     double *ratio = drv->sys->feq;
     tribo_get_static(drv->sys->contacts, ratio, NULL);
-    for (size_t i = 0; drv->sys->massless.count && i < drv->sys->ncontact; i++) {
+    for (size_t i = 0; drv->sys->expansion.place && i < drv->sys->ncontact; i++) {
         if (ratio[i] > 1.0) {
             return tribo_driver_fail(
                 drv, TRIBO_ERR_UNSUPPORTED,
@@ -98,7 +98,7 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
     int status = drv->method->find_periodic ? check_state(drv, t, y) : unsupported(drv);
     status = status ? status : check_period(drv, t, period);
     status = status ? status : check_loads(drv, period);
-    status = status ? status : check_massless(drv);
+    status = status ? status : check_static(drv);
     status = status ? status : check_planar(drv);
     if (status || !drv->motion) {
         return status ? status : drv->method->find_periodic(drv, t, period, y);
@@ -106,7 +106,7 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
     tribo_system_read_state(drv->sys, y, drv->motion);
     status = drv->method->find_periodic(drv, t, period, drv->motion);
     if (!status) {
-        tribo_system_write_state(drv->sys, drv->motion, y);
+        tribo_system_write_state(drv->sys, t, drv->motion, y);
     }
     return status;
 }

@@ -157,7 +157,7 @@ struct equation {
 /* x = s->free x */
 static void apply_free(const struct shooting *s, double *x)
 {
-    const size_t half = s->map.n / 2;
+    const size_t half = s->map.sys->ndof;
     for (size_t k = 0; k < half; k++) {
         const double *t = s->free + 4 * k, q = x[k], u = x[half + k];
         x[k] = t[0] * q + t[1] * u;
@@ -510,10 +510,13 @@ int tribo_shooting_multipliers(struct shooting *s, double *re, double *im)
     }
     double *all_re = s->step, *all_im = s->guess;
     status = tribo_eigen(s->b, n, all_re, all_im, s->a);
-    if (!status) { /* the velocities of sliders, which follow, have as many multipliers of 0: the last ones */
+    if (!status) { /* a caller's state has more values, which follow: their multipliers are 0 */
+        const size_t more = (tribo_system_dimension(s->map.sys) - 1 - n) * sizeof *re;
         sort(n, all_re, all_im);
-        memcpy(re, all_re, (n - s->map.sys->sliders) * sizeof *re);
-        memcpy(im, all_im, (n - s->map.sys->sliders) * sizeof *im);
+        memcpy(re, all_re, n * sizeof *re);
+        memcpy(im, all_im, n * sizeof *im);
+        memset(re + n, 0, more);
+        memset(im + n, 0, more);
     }
     return status
                ? tribo_driver_fail(s->map.drv, status, "multipliers of %zu equation%s: %s", n, plural(n), tribo_strerror(status))
@@ -577,7 +580,7 @@ static double *place_point(struct point *p, size_t n, double *at)
 
 struct shooting *tribo_shooting_create(tribo_driver *drv)
 {
-    const size_t n = 2 * drv->sys->ndof;
+    const size_t n = tribo_system_energy(drv->sys);
     struct shooting *s = calloc(1, sizeof *s);
     if (!s) {
         return NULL;

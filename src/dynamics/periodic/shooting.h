@@ -28,7 +28,7 @@ struct shooting {
 struct shooting *tribo_shooting_create(tribo_driver *drv);
 void tribo_shooting_free(struct shooting *s);
 
-/* The multipliers re, im [n, without a value for each slider] of the motion found; the dimension of its family. Both return a status. */
+/* The multipliers re, im [tribo_system_dimension - 1] of the motion found; the dimension of its family. Both return a status. */
 int tribo_shooting_multipliers(struct shooting *s, double *re, double *im);
 int tribo_shooting_freedom(struct shooting *s, size_t *freedom);
 

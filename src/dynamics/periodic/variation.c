@@ -62,7 +62,7 @@ static int find_rise(struct variation *x, const double *y)
 /* x->pull, of side times the forces. */
 static int find_pull(struct variation *x)
 {
-    const size_t n = x->sys->ndof;
+    const size_t n = x->sys->ndof, all = tribo_system_energy(x->sys);
     double *state = x->column, *change = state + 2 * n;
     int status = TRIBO_OK;
     memset(state, 0, 2 * n * sizeof *state);
@@ -73,7 +73,7 @@ static int find_pull(struct variation *x)
         state[j] = 0.0;
         status = change_of_holds(x, change, 0);
         for (size_t k = 0; k < x->count; k++) {
-            x->pull[k * 2 * n + j] = x->side[x->met[k]] * x->f[x->met[k]];
+            x->pull[k * all + j] = x->side[x->met[k]] * x->f[x->met[k]];
         }
     }
     return status;
@@ -222,7 +222,7 @@ static int stops(const struct variation *x, size_t i)
  * in ncontact numbers. */
 static double *add_earlier(struct variation *x, double slope, const double *row)
 {
-    const size_t n = 2 * x->sys->ndof;
+    const size_t n = tribo_system_energy(x->sys);
     double *to = x->row + x->jumps * n;
     for (size_t j = 0; j < n; j++) {
         to[j] = row[j] / slope;
@@ -247,8 +247,8 @@ static size_t find_stopped(struct variation *x)
     size_t count = 0;
     for (size_t i = 0; i < x->sys->ncontact; i++) {
         if (stops(x, i)) {
-            double *row = x->rows + count * 2 * x->sys->ndof;
-            memset(row, 0, 2 * x->sys->ndof * sizeof *row);
+            double *row = x->rows + count * tribo_system_energy(x->sys);
+            memset(row, 0, tribo_system_energy(x->sys) * sizeof *row);
             for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
                 row[x->sys->ndof + j->col[k]] += j->val[k];
             }
@@ -267,7 +267,7 @@ static int together(struct variation *x, const size_t *contact, size_t count, co
     }
     x->status = x->status ? x->status : catch_up(x);
     memset(x->changes, 0, count * x->columns * sizeof *x->changes);
-    tribo_multiply_add(count, 2 * x->sys->ndof, x->columns, 1.0, rows, x->v, x->changes);
+    tribo_multiply_add(count, tribo_system_energy(x->sys), x->columns, 1.0, rows, x->v, x->changes);
     const double first = slope[contact[0]], size = tribo_largest(x->changes, x->columns) / fabs(first);
     for (size_t k = 1; k < count; k++) {
         for (size_t j = 0; j < x->columns; j++) {
@@ -312,7 +312,7 @@ static size_t bring_forward(struct variation *x, size_t first, size_t count, siz
     for (size_t k = first; k < count; k++) {
         if (x->group[x->stopped[k]] == group) {
             const size_t i = next++;
-            const size_t contact = x->stopped[i], n = 2 * x->sys->ndof;
+            const size_t contact = x->stopped[i], n = tribo_system_energy(x->sys);
             x->stopped[i] = x->stopped[k];
             x->stopped[k] = contact;
             for (size_t j = 0; i != k && j < n; j++) {
@@ -330,7 +330,7 @@ static void stop_by_groups(struct variation *x, size_t count)
 {
     for (size_t next = 0, of_group; next < count; next += of_group) {
         const size_t *stopped = x->stopped + next, group = x->group[stopped[0]];
-        const double *rows = x->rows + next * 2 * x->sys->ndof;
+        const double *rows = x->rows + next * tribo_system_energy(x->sys);
         of_group = bring_forward(x, next, count, group);
         if (together(x, stopped, of_group, x->slope, rows)) {
             /* jump of accelerations by the forces of the group */
@@ -417,7 +417,7 @@ static void event_decided(struct company *company)
             if (now[x->met[k]] != 0) {
                 /* contact i slides; the change of the forces that hold the others is part of its jump */
                 const size_t i = x->met[k];
-                const double *row = x->pull + k * 2 * x->sys->ndof;
+                const double *row = x->pull + k * tribo_system_energy(x->sys);
                 const struct stick_slip *m = &x->events->stick_slip;
                 const double drop =
                     -(m->state.slip[i] + x->side[i] * tribo_breakaway_ratio(&m->breakaway, i)) * m->state.limit[i];
@@ -444,7 +444,7 @@ static void event_decided(struct company *company)
 
 void tribo_variation_begin(struct variation *x, const double *v, struct derivative *to)
 {
-    memcpy(x->v, v, 2 * x->sys->ndof * x->columns * sizeof *v);
+    memcpy(x->v, v, tribo_system_energy(x->sys) * x->columns * sizeof *v);
     x->to = to;
     x->applied = 0;
     x->status = TRIBO_OK;
@@ -453,9 +453,9 @@ void tribo_variation_begin(struct variation *x, const double *v, struct derivati
 
 int tribo_variation_create(struct variation *x, struct events *e, tribo_system *sys, size_t columns)
 {
-    const size_t n = sys->ndof, c = sys->ncontact;
+    const size_t n = sys->ndof, c = sys->ncontact, all = tribo_system_energy(sys);
     *x = (struct variation){.company = {phase_ends, event_decided}, .events = e, .sys = sys, .columns = columns};
-    x->v = malloc((2 * n * columns + c * (columns + 7 * n) + 5 * c + 4 * n + 1) * sizeof *x->v);
+    x->v = malloc((all * columns + c * (columns + 3 * all + n) + 5 * c + 4 * n + 1) * sizeof *x->v);
     x->before = malloc(2 * c + 1);
     x->stopped = malloc((4 * c + 1) * sizeof *x->stopped);
     if (!x->v || !x->before || !x->stopped) {
@@ -463,8 +463,8 @@ int tribo_variation_create(struct variation *x, struct events *e, tribo_system *
     }
     double **const array[] = {&x->rows, &x->pull, &x->row,  &x->jump,  &x->changes,      &x->slope,
                               &x->a,    &x->f,    &x->rise, &x->force, &x->acceleration, &x->column};
-    const size_t count[] = {2 * n * c, 2 * n * c, 2 * n * c, n * c, c * columns, c, c, c, c, c, n, 3 * n};
-    double *next = x->v + 2 * n * columns;
+    const size_t count[] = {all * c, all * c, all * c, n * c, c * columns, c, c, c, c, c, n, 3 * n};
+    double *next = x->v + all * columns;
     for (size_t k = 0; k < sizeof array / sizeof *array; k++) {
         *array[k] = next;
         next += count[k];

@@ -96,24 +96,26 @@ static int project_damping(const struct model *m, const struct reduced *r, size_
     return done;
 }
 
-/* q'' + Phi'C Phi q' + diag(omega^2) q = modes' p + shapes' f. responses [count][ncontact] out: transposed shapes. */
-static int reduction_build(const struct model *m, const struct reduced *r, double *responses, tribo_system **sys)
+/* q'' + Phi'C Phi q' + diag(omega^2) q = modes' p + shapes' f, shapes [ncontact][count] of the rigid contacts, 0 of others; and
+ * the operator of these. */
+static int reduction_build(const struct model *m, const struct reduced *r, const double *shapes, tribo_system **sys)
 {
     const size_t count = r->count, c = m->ncontact;
     struct matrix stiffness = {0}, damping = {0}, direction = {0}, response = {0};
-    double *shapes = malloc((c * count + 1) * sizeof *shapes);
-    int done = shapes != NULL;
+    double *responses = malloc((c * count + 1) * sizeof *responses);
+    int done = responses != NULL;
     if (done) {
-        find_shapes(m, r, shapes);
         tribo_transpose(c, count, shapes, responses);
         done = tribo_matrix_diagonal(&stiffness, count, r->omega2) && tribo_matrix_from_dense(&direction, c, count, shapes) &&
                tribo_matrix_from_dense(&response, count, c, responses) && project_damping(m, r, count, &damping);
     }
-    free(shapes);
     if (done) {
-        return tribo_system_build(sys, count, c, &stiffness, &damping, &direction, &response) ? tribo_model_no_memory(m)
-                                                                                              : TRIBO_OK;
+        int status = tribo_system_build(sys, count, c, &stiffness, &damping, &direction, &response);
+        status = status ? tribo_model_no_memory(m) : tribo_model_set_operator(m, *sys, responses, count);
+        free(responses);
+        return status;
     }
+    free(responses);
     tribo_matrix_free(&stiffness);
     tribo_matrix_free(&damping);
     tribo_matrix_free(&direction);
@@ -126,19 +128,22 @@ static int reduction_build(const struct model *m, const struct reduced *r, doubl
 /* A contact to which the modes leave no more than this part of its flexibility is rigid. */
 #define RIGID 1e-7
 
-/* The soft contacts of a reduced structure, to which the modes leave flexibility, and w = J q of them, degrees of freedom without
- * mass. With the shapes P = J Phi, the flexibility G that the modes leave, and B = G^-1 over soft contacts,
- *     q'' + (Omega^2 + P'B P) q - P'B w = modes' p,   B (w - P q) = f,   displacements = Phi q + residual' B (w - P q). */
+/* A structure reduced to modes q and a compliance G at its soft contacts: of springs before sliders, and, with
+ * TRIBO_STATICS_COMPLIANCE, the flexibility that the modes leave. With w = P q + G f of the soft contacts,
+ *     q'' + Omega^2 q = modes' p + P'f,   displacements = Phi q + residual'f. */
 struct compliant {
-    size_t modes, contacts, given, soft; /* numbers */
-    size_t *contact;                     /* [soft] */
-    double *shapes, *spring;             /* [contacts][modes] P; [soft][soft] B */
-    double *pull;                        /* [soft][modes] B P */
+    size_t modes, contacts, soft;
+    size_t *contact;          /* [soft] */
+    double *shapes, *rigid;   /* [contacts][modes] P of all contacts; of the rigid ones, else 0 */
+    double *own, *entries;    /* [contacts] G_ii; [contacts][contacts] G */
+    double *by;               /* [contacts][modes + soft] f by q and w: -G^-1 P and G^-1 */
 };
 
-/* Contacts with springs before their sliders (compliance, or NULL) are soft, and others that are not rigid. */
-static void find_soft(struct compliant *e, const struct reduced *r, const double *compliance)
+/* contact, rigid, own and entries. Contacts with springs before their sliders (compliance, or NULL) are soft, and others that are
+ * not rigid. Returns 1 if G is not diagonal. */
+static int find_soft(struct compliant *e, const struct reduced *r, const double *compliance)
 {
+    int shared = 0;
     for (size_t i = 0; i < e->contacts; i++) {
         const double *shape = e->shapes + i * e->modes, own = r->flexibility[i * e->contacts + i];
         double whole = own;
@@ -147,99 +152,67 @@ static void find_soft(struct compliant *e, const struct reduced *r, const double
         }
         if ((compliance && compliance[i] > 0.0) || own > RIGID * whole) {
             e->contact[e->soft++] = i;
+            e->own[i] = own;
+        } else {
+            memcpy(e->rigid + i * e->modes, shape, e->modes * sizeof *shape);
         }
     }
-}
-
-/* B and B P. Returns a status. */
-static int find_springs(const struct model *m, struct compliant *e, const struct reduced *r)
-{
-    const size_t c = e->contacts, n = e->soft;
-    struct definite g = {0};
-    size_t where = 0;
-    for (size_t a = 0; a < n; a++) {
-        for (size_t b = 0; b < n; b++) {
-            e->spring[a * n + b] = r->flexibility[e->contact[a] * c + e->contact[b]];
-        }
-    }
-    const int status = tribo_definite_create(&g, n, e->spring, &where);
-    if (!status) {
-        memcpy(e->spring, g.inverse, n * n * sizeof *e->spring);
-        tribo_even_out(n, e->spring);
-        for (size_t a = 0; a < n; a++) {
-            for (size_t b = 0; b < n; b++) {
-                tribo_add(e->pull + a * e->modes, e->spring[a * n + b], e->shapes + e->contact[b] * e->modes, e->modes);
-            }
-        }
-    }
-    tribo_definite_free(&g);
-    return status == TRIBO_ERR_INDEFINITE
-               ? tribo_model_fail(
-                     m, TRIBO_ERR_UNSUPPORTED,
-                     "the flexibility that %zu mode%s to contact %zu is that of other contacts: take other modes, or "
-                     "TRIBO_STATICS_MASS",
-                     e->modes, e->modes == 1 ? " leaves" : "s leave", e->contact[where])
-           : status ? tribo_model_no_memory(m)
-                    : TRIBO_OK;
-}
-
-/* Mass, stiffness and direction of q and w. 0 if out of memory. */
-static int put_matrices(const struct compliant *e, const struct reduced *r, struct model *to)
-{
-    const size_t m = e->modes, n = m + e->soft;
-    double *k = calloc(n * n, sizeof *k), *j = calloc(e->contacts * n + 1, sizeof *j), *mass = calloc(n, sizeof *mass);
-    int done = k && j && mass;
-    for (size_t a = 0; done && a < m; a++) {
-        mass[a] = 1.0;
-        k[a * n + a] = r->omega2[a];
+    for (size_t a = 0; a < e->soft; a++) {
         for (size_t b = 0; b < e->soft; b++) {
-            const double shape = e->shapes[e->contact[b] * m + a];
-            tribo_add(k + a * n, shape, e->pull + b * m, m);
-            k[a * n + m + b] = k[(m + b) * n + a] = -e->pull[b * m + a];
+            const size_t at = e->contact[a] * e->contacts + e->contact[b];
+            e->entries[at] = r->flexibility[at];
+            shared |= a != b && e->entries[at] != 0.0;
         }
     }
-    for (size_t i = 0; done && i < e->contacts; i++) {
-        memcpy(j + i * n, e->shapes + i * m, m * sizeof *j);
+    return shared;
+}
+
+/* The caller's degrees of freedom are q and w, w = P q + G f. 0 if out of memory. */
+static int expand(const struct compliant *e, size_t sliders, tribo_system *sys)
+{
+    struct matrix follow = {0}, give = {0}, touch = {0};
+    const size_t m = e->modes, c = e->contacts;
+    size_t *place = malloc((m + e->soft) * sizeof *place);
+    double *p = calloc(e->soft * (m + 2 * c) + 1, sizeof *p), *g = p + e->soft * m, *j = g + e->soft * c;
+    for (size_t d = 0; place && d < m + e->soft; d++) {
+        place[d] = d;
     }
-    for (size_t a = 0; done && a < e->soft; a++) {
-        memcpy(k + (m + a) * n + m, e->spring + a * e->soft, e->soft * sizeof *k);
-        memset(j + e->contact[a] * n, 0, m * sizeof *j);
-        j[e->contact[a] * n + m + a] = 1.0;
+    for (size_t a = 0; p && a < e->soft; a++) {
+        memcpy(p + a * m, e->shapes + e->contact[a] * m, m * sizeof *p);
+        memcpy(g + a * c, e->entries + e->contact[a] * c, c * sizeof *g);
+        j[e->contact[a] * e->soft + a] = 1.0;
     }
-    if (done) {
-        tribo_even_out(n, k);
-        done = tribo_matrix_diagonal(&to->mass, n, mass) && tribo_matrix_from_dense(&to->stiffness, n, n, k) &&
-               tribo_matrix_from_dense(&to->direction, e->contacts, n, j);
-    }
-    free(k);
-    free(j);
-    free(mass);
+    int done = place && p && tribo_matrix_from_dense(&follow, e->soft, m, p) && tribo_matrix_from_dense(&give, e->soft, c, g) &&
+               tribo_matrix_from_dense(&touch, c, e->soft, j);
+    done = done && tribo_expansion_create(sys, sliders, place, &follow, &give, &touch);
+    tribo_matrix_free(&follow);
+    tribo_matrix_free(&give);
+    free(place);
+    free(p);
     return done;
 }
 
 /* Displacements of q and w, and omega: infinite without mass. 0 if out of memory. */
-static int put_all_modes(const struct compliant *e, const struct reduced *r, tribo_system *sys)
+static int put_all_modes(const struct compliant *e, size_t given, const struct reduced *r, tribo_system *sys)
 {
     const size_t m = e->modes, n = m + e->soft;
-    double *x = calloc(n * e->given, sizeof *x), *omega2 = malloc(n * sizeof *omega2);
+    double *x = calloc(n * given + 1, sizeof *x), *omega2 = malloc((n + 1) * sizeof *omega2);
     const struct reduced all = {n, omega2, x, r->truncation, NULL, NULL};
     int done = x && omega2;
+    for (size_t a = 0; a < e->soft; a++) {
+        double *row = e->by + e->contact[a] * n;
+        memcpy(row, e->shapes + e->contact[a] * m, m * sizeof *row);
+        row[m + a] = -1.0;
+    }
+    tribo_compliance_solve(sys, NULL, n, e->by);
     for (size_t k = 0; done && k < n; k++) {
         omega2[k] = k < m ? r->omega2[k] : HUGE_VAL;
-    }
-    if (done) {
-        memcpy(x, r->phi, m * e->given * sizeof *x);
-        for (size_t b = 0; b < e->soft; b++) {
-            const double *residual = r->residual + e->contact[b] * e->given;
-            for (size_t a = 0; a < e->soft; a++) {
-                tribo_add(x + (m + a) * e->given, e->spring[a * e->soft + b], residual, e->given);
-            }
-            for (size_t k = 0; k < m; k++) {
-                tribo_add(x + k * e->given, -e->pull[b * m + k], residual, e->given);
-            }
+        memcpy(x + k * given, r->phi + k * given, k < m ? given * sizeof *x : 0);
+        for (size_t a = 0; a < e->soft; a++) {
+            tribo_add(x + k * given, -e->by[e->contact[a] * n + k], r->residual + e->contact[a] * given, given);
         }
-        done = take_modes(sys, e->given, &all);
     }
+    done = done && take_modes(sys, given, &all);
     free(x);
     free(omega2);
     return done;
@@ -247,47 +220,59 @@ static int put_all_modes(const struct compliant *e, const struct reduced *r, tri
 
 static int build_compliant(const struct model *m, const struct reduced *r, tribo_system **sys)
 {
-    const size_t c = m->ncontact;
-    struct compliant e = {.modes = r->count, .contacts = c, .given = m->ndof};
+    const size_t c = m->ncontact, k = r->count;
+    struct compliant e = {.modes = k, .contacts = c};
+    struct matrix direction = {0};
+    size_t where = 0;
+    int status = TRIBO_ERR_MEMORY, shared = 0;
     e.contact = malloc((c + 1) * sizeof *e.contact);
-    e.shapes = calloc(2 * c * r->count + c * c + 1, sizeof *e.shapes);
-    int status = e.contact && e.shapes ? TRIBO_OK : tribo_model_no_memory(m);
-    if (!status) {
-        e.pull = e.shapes + c * r->count;
-        e.spring = e.pull + c * r->count;
+    e.shapes = calloc(3 * c * k + 2 * c * c + c + 1, sizeof *e.shapes);
+    if (e.contact && e.shapes) {
+        e.rigid = e.shapes + c * k;
+        e.by = e.rigid + c * k;
+        e.entries = e.by + c * (k + c);
+        e.own = e.entries + c * c;
         find_shapes(m, r, e.shapes);
-        find_soft(&e, r, m->compliance);
-        status = find_springs(m, &e, r);
+        shared = find_soft(&e, r, m->compliance);
+        status = tribo_matrix_from_dense(&direction, c, k, e.shapes) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     }
-    struct model reduced = {.ndof = r->count + e.soft, .ncontact = c, .message = m->message, .size = m->size};
+    status = status ? status : reduction_build(m, r, e.rigid, sys);
     if (!status) {
-        const int done = put_matrices(&e, r, &reduced) && project_damping(m, r, reduced.ndof, &reduced.damping);
-        status = done ? tribo_model_build_whole(&reduced, sys) : tribo_model_no_memory(m);
+        status = tribo_compliance_create(*sys, &direction, e.own, shared ? e.entries : NULL, &where);
     }
-    if (!status && !put_all_modes(&e, r, *sys)) {
-        status = tribo_model_no_memory(m);
+    if (!status) {
+        /* with TRIBO_STATICS_COMPLIANCE w moves the structure, too, and is a degree of freedom */
+        const size_t sliders = m->statics == TRIBO_STATICS_COMPLIANCE ? 0 : e.soft;
+        const int done = !e.soft || expand(&e, sliders, *sys);
+        status = done && put_all_modes(&e, m->ndof, r, *sys) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     }
-    /* with TRIBO_STATICS_COMPLIANCE w moves the structure, too, and is a degree of freedom */
-    if (!status && m->statics != TRIBO_STATICS_COMPLIANCE && !tribo_system_set_sliders(*sys, e.soft)) {
-        status = tribo_model_no_memory(m);
-    }
-    tribo_model_free(&reduced);
+    tribo_matrix_free(&direction);
+    const size_t contact = status == TRIBO_ERR_INDEFINITE ? where : 0;
     free(e.contact);
     free(e.shapes);
-    return status;
+    return status == TRIBO_ERR_INDEFINITE
+               ? tribo_model_fail(
+                     m, TRIBO_ERR_UNSUPPORTED,
+                     "the flexibility that %zu mode%s to contact %zu is that of other contacts: take other modes, or "
+                     "TRIBO_STATICS_MASS",
+                     k, k == 1 ? " leaves" : "s leave", contact)
+           : status == TRIBO_ERR_MEMORY ? tribo_model_no_memory(m)
+                                        : status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------------- build */
 
 static int build_with_mass(const struct model *m, const struct reduced *r, tribo_system **sys)
 {
-    double *responses = malloc((m->ncontact * r->count + 1) * sizeof *responses);
-    int status = responses ? reduction_build(m, r, responses, sys) : tribo_model_no_memory(m);
-    if (!status) {
-        status = take_modes(*sys, m->ndof, r) ? tribo_model_set_operator(m, *sys, responses, r->count) : tribo_model_no_memory(m);
+    double *shapes = malloc((m->ncontact * r->count + 1) * sizeof *shapes);
+    int status = TRIBO_ERR_MEMORY;
+    if (shapes) {
+        find_shapes(m, r, shapes);
+        status = reduction_build(m, r, shapes, sys);
+        status = status || take_modes(*sys, m->ndof, r) ? status : TRIBO_ERR_MEMORY;
     }
-    free(responses);
-    return status;
+    free(shapes);
+    return status == TRIBO_ERR_MEMORY ? tribo_model_no_memory(m) : status;
 }
 
 /* The flexibility of contacts grows by that of the springs before their sliders. 0 if out of memory. */
@@ -370,7 +355,7 @@ int tribo_system_get_frequencies(const tribo_system *sys, double *omega)
     if (!omega) {
         return tribo_system_fail(sys, TRIBO_ERR_NULL, "omega is NULL");
     }
-    memcpy(omega, sys->omega, (sys->ndof - sys->sliders) * sizeof *omega);
+    memcpy(omega, sys->omega, tribo_system_ndof(sys) * sizeof *omega);
     return TRIBO_OK;
 }
 
@@ -383,10 +368,11 @@ int tribo_system_expand(const tribo_system *sys, const double *reduced, double *
     if (!reduced || !full) {
         return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", reduced ? "full" : "reduced");
     }
+    const size_t n = tribo_system_ndof(sys), dofs = sys->expansion.place ? sys->expansion.dofs : n;
     for (size_t i = 0; i < sys->given; i++) {
         double sum = 0.0;
-        for (size_t j = 0; j < sys->ndof - sys->sliders; j++) {
-            sum += sys->modes[i * sys->ndof + j] * reduced[j];
+        for (size_t j = 0; j < n; j++) {
+            sum += sys->modes[i * dofs + j] * reduced[j];
         }
         full[i] = sum;
     }

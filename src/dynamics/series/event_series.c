@@ -3,8 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "dynamics/system/elastic.h"
-
 static void expand_harmonics(struct event *e, double t)
 {
     tribo_system *sys = e->sys;
@@ -68,7 +66,7 @@ static void expand_falling(struct event *e, size_t k)
 /* given, and whether any of it is not 0. */
 static int find_given(struct event *e, size_t k)
 {
-    const int springs = e->sys->massless.count > 0, some = k < e->slide_terms;
+    const int some = k < e->slide_terms;
     if (some) {
         /* rigid contacts: one that slides, or is just at its limit, follows the limit; others keep their force */
         const struct stick_slip *m = &e->events.stick_slip;
@@ -78,21 +76,8 @@ static int find_given(struct event *e, size_t k)
                          side = tribo_stick_slip_follows(m, i);
             e->given[i] = keeps ? m->state.force[i] : side != 0.0 ? side * limit[i] : 0.0;
         }
-    } else if (springs) {
-        memset(e->given, 0, e->sys->ncontact * sizeof *e->given);
     }
-    if (springs) {
-        /* elastic contacts that hold: their springs, by the k-th coefficients of displacements */
-        const struct stick_slip *m = &e->events.stick_slip;
-        const tribo_system *sys = e->sys;
-        tribo_elastic_forces(sys, e->q + k * sys->ndof, e->work, e->spring, NULL);
-        for (size_t i = 0; i < sys->ncontact; i++) {
-            if (m->state.slip[i] == TRIBO_SLIP_STUCK && m->constant.elastic[i]) {
-                e->given[i] = k == 0 ? m->state.force[i] : e->spring[i];
-            }
-        }
-    }
-    return some || springs;
+    return some;
 }
 
 /* The k-th coefficients of the contacts' velocities. */
@@ -104,6 +89,12 @@ static void find_velocities(const struct event *e, size_t k, double *v)
     add_harmonics(e, DRIVES_BASE, k, -1.0, v);
     tribo_system_tables(e->sys, DRIVES_BASE, (int)k, -1.0, 0, c, v);
     tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->u + k * e->sys->ndof, v);
+    if (e->sys->compliance.count) {
+        tribo_compliance_rates(e->sys, m->state.slip, v, e->rate);
+        for (size_t i = 0; k < e->order && i < c; i++) {
+            e->spring[(k + 1) * c + i] = e->rate[i] / (double)(k + 1);
+        }
+    }
     for (size_t i = 0; k == 0 && i < c; i++) {
         v[i] = m->state.rested[i] ? 0.0 : v[i];
     }
@@ -122,6 +113,9 @@ static void expand_free(struct event *e, size_t k)
         tribo_matrix_multiply_add(&sys->damping, -1.0, e->u + k * n, acc);
     }
     tribo_system_tables(sys, DRIVES_LOAD, (int)k, 1.0, 0, n, acc);
+    if (sys->compliance.count) {
+        tribo_matrix_multiply_add(&sys->compliance.pull, 1.0, e->spring + k * sys->ncontact, acc);
+    }
 }
 
 /* What is watched of contacts at rest is their force. */
@@ -130,7 +124,9 @@ static void watch_forces(const struct event *e, size_t k, int given, double *wat
     const struct stick_slip *m = &e->events.stick_slip;
     for (size_t i = 0; i < e->sys->ncontact; i++) {
         if (m->state.slip[i] == TRIBO_SLIP_STUCK && !tribo_stick_slip_may_part(m, i)) {
-            watch[i] = k == 0 ? m->state.force[i] : e->held[i] + (given ? e->given[i] : 0.0);
+            const double spring = e->spring[k * e->sys->ncontact + i], own = e->held[i] + (given ? e->given[i] : 0.0);
+            const double found = m->constant.elastic[i] ? spring : own;
+            watch[i] = k == 0 ? m->state.force[i] : found;
         }
     }
 }
@@ -174,11 +170,7 @@ static int expand_forces(struct event *e, size_t k)
     }
     watch_forces(e, k, given, watch);
     /* contacts at rest must not creep by what rounding leaves in acc */
-    status = tribo_stick_slip_hold(m, sys, e->base, acc);
-    if (!status && sys->massless.count) {
-        tribo_elastic_move(sys, m->state.slip, e->base, acc, e->spring);
-    }
-    return status;
+    return tribo_stick_slip_hold(m, sys, e->base, acc);
 }
 
 int tribo_event_start(struct event *e, double t, const double *y)
@@ -188,7 +180,8 @@ int tribo_event_start(struct event *e, double t, const double *y)
     struct stick_slip *m = &e->events.stick_slip;
     memcpy(e->q, y, n * sizeof *y);
     memcpy(e->u, y + n, n * sizeof *y);
-    e->d[0] = y[2 * n];
+    e->d[0] = y[tribo_system_energy(sys)];
+    tribo_compliance_get(sys, y, e->spring);
     const int status = m->plane ? tribo_planar_series_begin(&e->planar, e->most_order, m, sys, y, e->a, e->given) : TRIBO_OK;
     e->order = m->plane ? e->planar.order : e->most_order;
     expand_harmonics(e, t);

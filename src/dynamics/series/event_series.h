@@ -33,7 +33,7 @@ struct event {
     double *acceleration, *base, *a, *given, *held;
     struct planar_series planar;
     struct creep creep;
-    double *work, *spring; /* [ndof], [ncontact] workspace for elastic contacts */
+    double *spring, *rate; /* [order + 1][ncontact] coefficients of forces of compliant contacts; [ncontact] of their rates */
     struct series_transition perturbed;
 };
 

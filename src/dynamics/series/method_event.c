@@ -12,7 +12,6 @@
 #include <string.h>
 
 #include "event_series.h"
-#include "dynamics/system/elastic.h"
 #include "common/real.h"
 #include "common/simd.h"
 #include "common/zeros.h"
@@ -66,7 +65,8 @@ static void event_find_moves(struct event *e, const double *y)
     }
     e->moves[1] = tribo_largest(y + n, n) + radian * tribo_stick_slip_acceleration_size(m, e->sys, y);
     e->moves[0] = tribo_largest(y, n) + radian * e->moves[1];
-    e->moves[2] = fabs(y[2 * n]) + radian * tribo_largest(m->state.force, m->constant.contacts) * e->moves[1];
+    e->moves[2] =
+        fabs(y[tribo_system_energy(e->sys)]) + radian * tribo_largest(m->state.force, m->constant.contacts) * e->moves[1];
 }
 
 /* The step on which the last two terms of everything stay below the tolerance. */
@@ -300,7 +300,7 @@ static int take_tolerances(struct event *e)
     }
     const double tolerance = drv->abstol > 0.0 ? clamp(drv->abstol, 1e-16, 1e-2) : USUAL;
     const size_t order = best_order(tolerance, 0.0, MOST_DIGITS), terms = order + 1;
-    double *all = realloc(e->q, (terms * (2 * n + 6 * c + 1) + 2 * n + 9 * c + 1) * sizeof *all);
+    double *all = realloc(e->q, (terms * (2 * n + 7 * c + 1) + n + 9 * c + 1) * sizeof *all);
     if (!all) {
         return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for method event");
     }
@@ -316,7 +316,8 @@ static int take_tolerances(struct event *e)
     e->fall = e->limit + terms * c;
     e->part = e->fall + terms * c;
     e->slope = e->part + terms * c;
-    e->d = e->slope + terms * c;
+    e->spring = e->slope + terms * c;
+    e->d = e->spring + terms * c;
     e->acceleration = e->d + terms;
     e->base = e->acceleration + n;
     e->a = e->base + c;
@@ -326,8 +327,7 @@ static int take_tolerances(struct event *e)
     e->bend = e->size + c;
     e->limit_size = e->bend + c;
     e->limit_bend = e->limit_size + c;
-    e->spring = e->limit_bend + c;
-    e->work = e->spring + c;
+    e->rate = e->limit_bend + c;
     return TRIBO_OK;
 }
 
@@ -363,7 +363,7 @@ static int method_event_prepare(struct event *e)
     if (status || (e->cosine && e->revision == sys->revision)) {
         return status;
     }
-    status = tribo_elastic_check(sys);
+    status = tribo_compliance_check(sys);
     if (status) {
         return status;
     }
@@ -392,6 +392,8 @@ static void state(void *motion, double tau, const double *from, double *to)
 {
     const struct event *e = motion;
     const size_t n = e->sys->ndof;
+    const struct compliance *g = &e->sys->compliance;
+    double *energy = to + tribo_system_energy(e->sys);
     (void)from;
     memset(to, 0, tribo_system_size(e->sys) * sizeof *to);
     for (size_t k = e->order + 1; k-- > 0;) {
@@ -399,7 +401,10 @@ static void state(void *motion, double tau, const double *from, double *to)
             to[i] = to[i] * tau + e->q[k * n + i];
             to[n + i] = to[n + i] * tau + e->u[k * n + i];
         }
-        to[2 * n] = to[2 * n] * tau + e->d[k];
+        for (size_t i = 0; i < g->count; i++) {
+            to[2 * n + i] = to[2 * n + i] * tau + e->spring[k * e->sys->ncontact + g->contact[i]];
+        }
+        *energy = *energy * tau + e->d[k];
     }
 }
 
@@ -580,7 +585,8 @@ static int transition(void *motion, const void *phase, double tau, size_t column
 static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to)
 {
     const struct event *e = motion;
-    const size_t n = e->sys->ndof;
+    const struct compliance *g = &e->sys->compliance;
+    const size_t n = e->sys->ndof, count = e->sys->ncontact;
     (void)end;
     if (!tribo_signal_reserve(to, 0, e->order)) {
         return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu power%s", e->order, plural(e->order));
@@ -588,6 +594,10 @@ static int combine(void *motion, const double *c, double tau, const double *end,
     to->tau = tau;
     for (size_t k = 0; k <= e->order; k++) {
         to->a[k] = tribo_dot(c, e->q + k * n, n) + tribo_dot(c + n, e->u + k * n, n);
+        for (size_t i = 0; i < g->count; i++) {
+            const double *f = e->spring + k * count + g->contact[i], next = k < e->order ? (double)(k + 1) * f[count] : 0.0;
+            to->a[k] += c[2 * n + i] * f[0] + c[2 * n + g->count + i] * next;
+        }
     }
     return TRIBO_OK;
 }

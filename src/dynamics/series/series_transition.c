@@ -1,4 +1,3 @@
-#include "dynamics/system/elastic.h"
 #include "series_transition.h"
 #include "dynamics/periodic/variation.h"
 
@@ -14,6 +13,7 @@ void tribo_series_transition_free(struct series_transition *x)
     free(x->project);
     free(x->holds);
     free(x->push);
+    free(x->pull);
     memset(x, 0, sizeof *x);
 }
 
@@ -32,6 +32,18 @@ static int series_transition_reserve(struct series_transition *x, const tribo_sy
     x->u = x->q + n * columns;
     x->next = x->u + n * columns;
     x->columns = columns;
+    return TRIBO_OK;
+}
+
+static int reserve_springs(struct series_transition *x, const tribo_system *sys)
+{
+    const size_t n = sys->ndof, c = sys->ncontact;
+    x->pull = malloc((n * c + c * x->columns + 1) * sizeof *x->pull);
+    if (!x->pull) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", x->columns, plural(x->columns));
+    }
+    x->spring = x->pull + n * c;
+    x->known = 0;
     return TRIBO_OK;
 }
 
@@ -58,18 +70,7 @@ static int series_transition_project(struct stick_slip *m, const tribo_system *s
     int status = columns ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu column%s", n, plural(n));
     for (size_t j = 0; !status && j < n; j++) {
         columns[j * n + j] += a ? 0.0 : 1.0;
-        if (sys->massless.count && a == &sys->stiffness) {
-            /* x [ndof] -= accelerations by the springs of elastic contacts that hold, for a unit displacement j */
-            double *unit = m->noise.size, *force = m->work.own_a;
-            memset(unit, 0, sys->ndof * sizeof *unit);
-            unit[j] = 1.0;
-            tribo_elastic_answer(sys, m->state.slip, unit, m->work.rate, force);
-            tribo_matrix_multiply_add(&sys->response, -1.0, force, (columns + j * n));
-        }
         status = tribo_stick_slip_project(m, sys, m->constant.still, columns + j * n);
-        if (sys->massless.count) {
-            tribo_elastic_move(sys, m->state.slip, m->constant.still, columns + j * n, m->work.v);
-        }
         for (size_t i = 0; i < n; i++) {
             to[i * n + j] = factor * columns[j * n + i];
         }
@@ -78,19 +79,19 @@ static int series_transition_project(struct stick_slip *m, const tribo_system *s
     return status;
 }
 
-/* x->push = P B */
-static int project_response(struct series_transition *x, struct stick_slip *m, const tribo_system *sys)
+/* to [ndof][ncontact] = P b */
+static int project_response(struct stick_slip *m, const tribo_system *sys, const struct matrix *b, double *to)
 {
     const size_t n = sys->ndof, c = sys->ncontact;
     double *column = m->noise.size;
     int status = TRIBO_OK;
     for (size_t i = 0; !status && i < c; i++) {
         for (size_t d = 0; d < n; d++) {
-            column[d] = tribo_matrix_get(&sys->response, d, i);
+            column[d] = tribo_matrix_get(b, d, i);
         }
         status = tribo_stick_slip_project(m, sys, m->constant.still, column);
         for (size_t d = 0; d < n; d++) {
-            x->push[d * c + i] = column[d];
+            to[d * c + i] = column[d];
         }
     }
     return status;
@@ -110,7 +111,10 @@ static int update(struct series_transition *x, struct stick_slip *m, const tribo
         status = series_transition_project(m, sys, &sys->damping, -1.0, x->damp);
     }
     if (!status && x->terms) {
-        status = project_response(x, m, sys);
+        status = project_response(m, sys, &sys->response, x->push);
+    }
+    if (!status && x->pull) {
+        status = project_response(m, sys, &sys->compliance.pull, x->pull);
     }
     x->known = !status;
     return status;
@@ -135,9 +139,36 @@ static void series_transition_find_forces(struct series_transition *x, const tri
     }
 }
 
+/* x->spring = part f', by x->u. */
+static void find_rates(struct series_transition *x, const struct stick_slip *m, const tribo_system *sys, double part)
+{
+    const size_t c = sys->ncontact, columns = x->columns;
+    for (size_t i = 0; i < c; i++) {
+        tribo_contact_row(sys, i, x->u, columns, x->spring + i * columns);
+    }
+    tribo_compliance_solve(sys, m->state.slip, columns, x->spring);
+    for (size_t i = 0; i < c * columns; i++) {
+        x->spring[i] *= -part;
+    }
+}
+
+/* Forces of compliant contacts in perturbations v += x->spring; or, begin, x->spring = these. */
+static void take_springs(const struct series_transition *x, const tribo_system *sys, int begin, double *v)
+{
+    const size_t columns = x->columns;
+    for (size_t k = 0; k < sys->compliance.count; k++) {
+        double *f = v + (2 * sys->ndof + k) * columns, *term = x->spring + sys->compliance.contact[k] * columns;
+        if (begin) {
+            memcpy(term, f, columns * sizeof *f);
+        } else {
+            tribo_add(f, 1.0, term, columns);
+        }
+    }
+}
+
 /* The k-th terms, x^(k) tau^k/k!, from those before. */
-static void series_transition_differentiate(struct series_transition *x, const tribo_system *sys, const struct slopes *slopes,
-                                            size_t k, double tau)
+static void series_transition_differentiate(struct series_transition *x, const struct stick_slip *m, const tribo_system *sys,
+                                            const struct slopes *slopes, size_t k, double tau)
 {
     const size_t n = sys->ndof, c = x->columns;
     const double part = tau / (double)k;
@@ -149,6 +180,10 @@ static void series_transition_differentiate(struct series_transition *x, const t
     if (slopes->terms) {
         series_transition_find_forces(x, sys, slopes, k - 1, tau);
         tribo_multiply_add(n, sys->ncontact, c, part, x->push, x->force, x->next);
+    }
+    if (x->pull) {
+        tribo_multiply_add(n, sys->ncontact, c, part, x->pull, x->spring, x->next);
+        find_rates(x, m, sys, part);
     }
     for (size_t i = 0; i < n * c; i++) {
         x->q[i] = part * x->u[i];
@@ -162,6 +197,7 @@ int tribo_series_transition(struct series_transition *x, struct stick_slip *m, c
     const size_t n = sys->ndof, half = n * columns;
     int status = x->project ? TRIBO_OK : series_transition_reserve(x, sys, columns);
     status = status || !slopes->terms || x->push ? status : reserve_slopes(x, sys, slopes->terms);
+    status = status || !sys->compliance.count || x->pull ? status : reserve_springs(x, sys);
     status = status ? status : update(x, m, sys);
     if (status) {
         return status;
@@ -170,10 +206,17 @@ int tribo_series_transition(struct series_transition *x, struct stick_slip *m, c
     memset(x->u, 0, half * sizeof *v);
     tribo_multiply_add(n, n, columns, 1.0, x->project, v + half, x->u);
     memcpy(v + half, x->u, half * sizeof *v);
+    if (x->pull) {
+        memset(x->spring, 0, sys->ncontact * columns * sizeof *v);
+        take_springs(x, sys, 1, v);
+    }
     for (size_t k = 1, small = 0; small < 2 && k < MOST_TERMS; k++) {
-        series_transition_differentiate(x, sys, slopes, k, tau);
+        series_transition_differentiate(x, m, sys, slopes, k, tau);
         tribo_add(v, 1.0, x->q, half);
         tribo_add(v + half, 1.0, x->u, half);
+        if (x->pull) {
+            take_springs(x, sys, 0, v);
+        }
         small = tribo_largest(x->q, half) <= DBL_EPSILON * tribo_largest(v, half) &&
                         tribo_largest(x->u, half) <= DBL_EPSILON * tribo_largest(v + half, half)
                     ? small + 1

@@ -99,7 +99,7 @@ int tribo_few_take(struct few_bodies *b, tribo_system *sys)
     b->revision = revision;
     b->n = sys->ndof;
     b->c = sys->ncontact;
-    b->fits = b->n <= FEW && b->c <= FEW && !sys->unsolved && !sys->massless.count && tribo_step_form_plain(sys);
+    b->fits = b->n <= FEW && b->c <= FEW && !sys->unsolved && tribo_step_form_plain(sys);
     if (b->fits) {
         take_matrix(&sys->stiffness, b->stiffness);
         take_matrix(&sys->damping, b->damping);

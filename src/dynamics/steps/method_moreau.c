@@ -7,17 +7,17 @@
 
 #include "dynamics/decide/breakaway.h"
 #include "dynamics/system/delassus.h"
-#include "dynamics/system/elastic.h"
 #include "dynamics/system/hidden.h"
 #include "step_band.h"
 #include "step_form.h"
 #include "step_matrix.h"
+#include "common/real.h"
 
 /* For steps of length h: the matrix S = M + h/2 C + h^2/4 K, S^-1 J', and the contacts, whose operator is J S^-1 J'.
  *
- * What has no mass starts each step without velocity, and ends it with twice the mean. Elastic contacts have in every step the
- * mean of their forces at both ends, of which the later is within the limit, and slides by what J moves over the step: half the
- * later force is what the contacts find, within half the limit. */
+ * A compliant contact has in a step of length h the mean (f0 + f1)/2 of its forces at both ends. Over the step it slides by
+ * h J (u0 + u1)/2 + G (f1 - f0) less the way of its base, where |f1| <= limit. The contacts find f1/2 within limit/2, with
+ * 4 G/h^2 in their operator, and J (u0 + u1) - 2 G f0/h in the place of a velocity at the end; f0/2 acts throughout. */
 struct moreau {
     struct step_form common;
     double h;              /* 0: nothing is prepared */
@@ -31,9 +31,10 @@ struct moreau {
     int taken, tell, breaks;  /* these are known; contacts have not got them yet; some are static */
     size_t settings_taken;    /* revision of the system's contacts that these came from */
     double *load;             /* [ndof] at the end of the step before */
-    double *spring, *rate;    /* [ncontact] forces of elastic contacts at the end of the step before; workspace */
+    double *spring, *give;    /* [ncontact] forces f0 of compliant contacts, and G f0; */
+    double *change;           /* [ncontact] f1 - f0 */
     double *work;             /* [ndof] */
-    signed char *loose;       /* [ncontact] slip, but 1 of elastic contacts: what they hold has no velocity of its own */
+    signed char *loose;       /* [ncontact] slip, but 1 of compliant contacts: they hold no velocity */
     tribo_context *contacts;
     size_t settings; /* revision of the system's contacts that these came from, if planar ones are among them */
 };
@@ -59,7 +60,7 @@ static int moreau_create(tribo_driver *drv)
     struct moreau *m = calloc(1, sizeof *m);
     drv->own = m;
     if (m) {
-        m->limit = calloc(5 * c + 3 * n + 1, sizeof *m->limit);
+        m->limit = calloc(6 * c + 3 * n + 1, sizeof *m->limit);
         m->loose = malloc(c + 1);
     }
     if (!m || !m->limit || !m->loose || !tribo_step_form_create(&m->common, drv->sys)) {
@@ -68,8 +69,9 @@ static int moreau_create(tribo_driver *drv)
     m->ratio = m->limit + c;
     m->velocity = m->limit + 2 * c;
     m->spring = m->limit + 3 * c;
-    m->rate = m->limit + 4 * c;
-    m->load = m->limit + 5 * c;
+    m->give = m->limit + 4 * c;
+    m->change = m->limit + 5 * c;
+    m->load = m->limit + 6 * c;
     m->work = m->load + n;
     m->push = m->work + n;
     return TRIBO_OK;
@@ -102,7 +104,7 @@ static int set_operator(struct moreau *m, const tribo_system *sys, const double 
     case 0:
         break;
     case 1:
-        return !tribo_step_matrix_is_diagonal(&m->matrix)
+        return !tribo_step_matrix_is_diagonal(&m->matrix) || sys->compliance.count
                    ? tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                        "contact %zu touches bodies of which one gives way %g times as much as the other in steps "
                                        "of %g: %s",
@@ -193,6 +195,11 @@ static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
     m->response = keeps ? malloc((c * sys->ndof + 1) * sizeof *m->response) : NULL;
     double *r = calloc(c * c + 1, sizeof *r), *own = malloc((sys->direction.first[c] + 1) * sizeof *own);
     const int done = r && own && (m->response || !keeps) && make_contacts(m, sys) && find_operator(m, sys, r, own);
+    for (size_t k = 0; done && k < c * c; k++) {
+        const size_t i = k / c, j = k % c;
+        const int both = tribo_is_compliant(&sys->compliance, i) && tribo_is_compliant(&sys->compliance, j);
+        r[k] += both ? 4.0 / (h * h) * tribo_compliance_entry(&sys->compliance, c, i, j) : 0.0;
+    }
     status = done ? set_operator(m, sys, r, own, h)
                   : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
     free(r);
@@ -262,31 +269,8 @@ static void moreau_take_limits(struct moreau *m, const tribo_system *sys)
     tribo_get_limit(sys->contacts, m->limit);
     tribo_get_static(sys->contacts, m->ratio, m->velocity);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->limit[i] *= tribo_massless_touches(&sys->massless, i) ? 0.5 : 1.0;
+        m->limit[i] *= tribo_is_compliant(&sys->compliance, i) ? 0.5 : 1.0;
         m->breaks |= m->ratio[i] > 1.0;
-    }
-}
-
-/* -------------------------------------------------------------------------------------------------------- without mass */
-
-static void begin_elastic(struct moreau *m, tribo_system *sys, double *y)
-{
-    for (size_t d = 0; d < sys->ndof; d++) {
-        y[sys->ndof + d] = tribo_has_mass(&sys->massless, d) ? y[sys->ndof + d] : 0.0;
-    }
-    if (!m->common.goes_on) {
-        tribo_get_limit(sys->contacts, m->rate);
-        tribo_elastic_enter(sys, m->rate, m->work, m->spring, y);
-    }
-}
-
-/* Half of what elastic contacts had before acts all the step. */
-static void keep_half(const struct moreau *m, const tribo_system *sys, double h, double *u)
-{
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        if (tribo_massless_touches(&sys->massless, i)) {
-            tribo_add(u, 0.5 * h * m->spring[i], m->response + i * sys->ndof, sys->ndof);
-        }
     }
 }
 
@@ -334,16 +318,23 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
 static int respond_whole(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
 {
     struct step_form *s = &m->common;
+    const struct compliance *g = &sys->compliance;
     const size_t n = sys->ndof;
     tribo_step_matrix_solve(&m->matrix, 1, du);
     for (size_t i = 0; i < n; i++) {
         s->u[i] = u[i] + du[i];
     }
-    keep_half(m, sys, h, s->u);
+    if (g->count) {
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            s->f[i] = 0.5 * m->spring[i];
+        }
+        push(m, sys, h, s->f, s->u);
+        tribo_compliance_give(sys, 1, m->spring, m->give);
+    }
     tribo_step_form_relative(s, sys, s->u, s->end);
-    /* What decides about elastic contacts is all that J moves over the step. */
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        s->end[i] += tribo_massless_touches(&sys->massless, i) ? s->v[i] : 0.0;
+    for (size_t k = 0; k < g->count; k++) {
+        const size_t i = g->contact[k];
+        s->end[i] += s->v[i] - 2.0 / h * m->give[i];
     }
     if (m->tell) {
         tribo_set_limit(m->contacts, m->limit);
@@ -355,12 +346,9 @@ static int respond_whole(struct moreau *m, const tribo_system *sys, double h, co
         return status;
     }
     push(m, sys, h, s->f, s->u);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        s->f[i] *= tribo_massless_touches(&sys->massless, i) ? 2.0 : 1.0;
-    }
     tribo_get_slip(m->contacts, m->common.mode);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->loose[i] = (signed char)(tribo_massless_touches(&sys->massless, i) ? 1 : m->common.mode[i]);
+        m->loose[i] = (signed char)(tribo_is_compliant(g, i) ? 1 : m->common.mode[i]);
     }
     return TRIBO_OK;
 }
@@ -389,12 +377,32 @@ static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, c
     return status ? status : respond_whole(m, sys, h, u, du);
 }
 
+/* m->spring = f1 = 2 s->f of compliant contacts, and s->f = 0. Returns the energy that they dissipate. */
+static double end_springs(struct moreau *m, const tribo_system *sys, double h)
+{
+    struct step_form *s = &m->common;
+    const struct compliance *g = &sys->compliance;
+    double energy = 0.0, *change = m->change;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        change[i] = tribo_is_compliant(g, i) ? 2.0 * s->f[i] - m->spring[i] : 0.0;
+    }
+    tribo_compliance_give(sys, 1, change, m->give);
+    for (size_t k = 0; k < g->count; k++) {
+        const size_t i = g->contact[k];
+        const double way = 0.5 * h * (s->v[i] + s->end[i]) + m->give[i];
+        m->spring[i] = 2.0 * s->f[i];
+        s->f[i] = 0.0;
+        energy += s->mode[i] == TRIBO_SLIP_STUCK ? 0.0 : sys->tally[i] * greater(-m->spring[i] * way, 0.0);
+    }
+    return energy;
+}
+
 static int moreau_step(tribo_driver *drv, double t, double next, const double *from, double *y)
 {
     struct moreau *m = drv->own;
     struct step_form *s = &m->common;
     tribo_system *sys = drv->sys;
-    const size_t n = sys->ndof;
+    const size_t n = sys->ndof, energy = tribo_system_energy(sys);
     const double h = next - t, *u = from + n;
     /* steps of equal length differ by the rounding of time only */
     if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision || planar_changed(m, sys)) {
@@ -403,9 +411,10 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
             return tribo_driver_fail(drv, status, "%s", tribo_system_message(sys));
         }
     }
-    if (sys->massless.count) {
-        memcpy(y, from, (2 * n + 1) * sizeof *y);
-        begin_elastic(m, sys, y);
+    if (sys->compliance.count && !s->goes_on) {
+        memcpy(y, from, tribo_system_size(sys) * sizeof *y);
+        tribo_get_limit(sys->contacts, m->give);
+        tribo_compliance_enter(sys, m->give, m->spring, y);
         from = y;
         u = from + n;
     }
@@ -431,14 +440,9 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
         y[i] = from[i] + 0.5 * h * (u[i] + s->u[i]);
         y[n + i] = s->u[i];
     }
-    y[2 * n] = from[2 * n] + h * tribo_step_form_power(sys, s->f, s->v, s->end);
-    /* Forces at the end of the step; what has no mass, there. */
-    double *f = m->common.f;
-    if (sys->massless.count) {
-        memcpy(m->spring, f, sys->ncontact * sizeof *f);
-        tribo_elastic_give(sys, f, y);
-        tribo_elastic_move(sys, m->common.mode, m->common.base, y + sys->ndof, m->rate);
-    }
+    const double slid = sys->compliance.count ? end_springs(m, sys, h) : 0.0;
+    tribo_compliance_put(sys, m->spring, y);
+    y[energy] = from[energy] + h * tribo_step_form_power(sys, s->f, s->v, s->end) + slid;
     return tribo_driver_check(drv, y);
 }
 

@@ -69,8 +69,7 @@ void tribo_step_form_turn(struct step_form *s)
 
 void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, const double *u)
 {
-    /* a degree of freedom without mass may begin a step with another velocity than it ended the last one with */
-    if (s->goes_on && sys->massless.count == 0) {
+    if (s->goes_on) {
         tribo_step_form_turn(s);
     } else {
         tribo_step_form_find_base(s, sys, t);

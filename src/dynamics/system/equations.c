@@ -1,5 +1,5 @@
 /* The equations of motion of a system, and its life. */
-#include "elastic.h"
+#include "system.h"
 #include "common/real.h"
 #include "common/simd.h"
 #include "common/zeros.h"
@@ -20,6 +20,15 @@ void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -1.0, y + n, acceleration);
     }
+    if (sys->compliance.count) {
+        tribo_system_add_springs(sys, y, acceleration);
+    }
+}
+
+void tribo_system_add_springs(const tribo_system *sys, const double *y, double *acceleration)
+{
+    tribo_compliance_get(sys, y, sys->put_limit);
+    tribo_matrix_multiply_add(&sys->compliance.pull, 1.0, sys->put_limit, acceleration);
 }
 
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a)
@@ -166,54 +175,41 @@ static int contacts_at(tribo_system *sys, double t, const double **y)
     int status = tribo_system_check_state(sys, t, *y);
     status = status ? status : tribo_system_take_settings(sys);
     status = status ? status : tribo_system_check_solved(sys, "the force of contacts");
-    if (!status && sys->sliders) {
+    if (!status && sys->expansion.place) {
         tribo_system_set_time(sys, t);
         tribo_system_read_state(sys, *y, sys->motion);
-        tribo_elastic_set_velocities(sys, sys->motion);
-        *y = sys->motion;
+        tribo_get_limit(sys->contacts, sys->a);
+        tribo_compliance_enter(sys, sys->a, sys->feq, sys->motion);
     }
     if (!status) {
-        tribo_system_free_motion(sys, t, *y, sys->acceleration, sys->v, sys->a);
+        tribo_system_free_motion(sys, t, sys->expansion.place ? sys->motion : *y, sys->acceleration, sys->v, sys->a);
     }
+    if (!status && sys->expansion.sliders) {
+        tribo_compliance_move(sys, sys->motion, sys->v, sys->feq);
+    } else if (!status && sys->expansion.place) {
+        tribo_system_add_velocities(sys, *y, sys->v);
+    }
+    *y = sys->expansion.place ? sys->motion : *y;
     return status;
 }
 
-/* The law knows nothing of springs: where elastic contacts touch mass themselves, it would answer what they do to others. */
-static int check_apart(const tribo_system *sys)
+/* to [ncontact], or NULL: forces of compliant contacts, by the state. */
+static void put_spring_forces(const tribo_system *sys, const double *y, double *to)
 {
-    for (size_t i = 0; sys->massless.count && i < sys->ncontact; i++) {
-        if (tribo_massless_touches(&sys->massless, i) && tribo_system_delassus(sys, i, i) > 0.0) {
-            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                     "contact %zu is elastic and touches mass, too: what contacts do is not told of this system",
-                                     i);
-        }
-    }
-    return TRIBO_OK;
-}
-
-/* to [ncontact], or NULL: forces of elastic contacts, by the state. */
-static void equations_put_springs(tribo_system *sys, const double *y, double *to)
-{
-    if (sys->massless.count && to) {
-        tribo_elastic_forces(sys, y, sys->acceleration, sys->feq, NULL);
-        tribo_get_limit(sys->contacts, sys->a);
-        tribo_elastic_bound(sys, sys->a, sys->feq);
-        for (size_t i = 0; i < sys->ncontact; i++) {
-            to[i] = tribo_massless_touches(&sys->massless, i) ? sys->feq[i] : to[i];
-        }
+    for (size_t k = 0; to && k < sys->compliance.count; k++) {
+        to[sys->compliance.contact[k]] = y[2 * sys->ndof + k];
     }
 }
 
 int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *v, double *feq, double *f)
 {
-    int status = sys ? check_apart(sys) : TRIBO_ERR_NULL;
-    status = status ? status : contacts_at(sys, t, &y);
+    int status = sys ? contacts_at(sys, t, &y) : TRIBO_ERR_NULL;
     if (!status) {
         status = tribo_system_explain(sys, tribo_balance(sys->contacts, sys->v, sys->a, feq, f));
     }
     if (!status) {
-        equations_put_springs(sys, y, feq);
-        equations_put_springs(sys, y, f);
+        put_spring_forces(sys, y, feq);
+        put_spring_forces(sys, y, f);
     }
     if (!status && v) {
         memcpy(v, sys->v, sys->ncontact * sizeof *v);
@@ -295,14 +291,14 @@ static int copy_rest(tribo_system *to, const tribo_system *sys)
     to->copied = sys->copied;
     memcpy(to->tally, sys->tally, sys->ncontact * sizeof *to->tally);
     int done = 1;
-    to->modes = tribo_copy_of(sys->modes, sys->given * sys->ndof, sizeof *to->modes, &done);
-    to->omega = tribo_copy_of(sys->omega, sys->ndof, sizeof *to->omega, &done);
+    const size_t dofs = sys->expansion.place ? sys->expansion.dofs : sys->ndof;
+    to->modes = tribo_copy_of(sys->modes, sys->given * dofs, sizeof *to->modes, &done);
+    to->omega = tribo_copy_of(sys->omega, dofs, sizeof *to->omega, &done);
     to->truncation = sys->truncation;
     return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && copy_lent(to, sys) &&
            tribo_matrix_copy(&to->elastic, &sys->elastic) && tribo_matrix_copy(&to->viscous, &sys->viscous) &&
            tribo_matrix_copy(&to->mass, &sys->mass) && tribo_cholesky_copy(&to->factor, &sys->factor) &&
-           tribo_massless_copy(&to->massless, &sys->massless, sys->ndof, sys->ncontact) && tribo_loads_copy(to, sys) &&
-           tribo_system_set_sliders(to, sys->sliders);
+           tribo_compliance_copy(to, sys) && tribo_expansion_copy(to, sys) && tribo_loads_copy(to, sys);
 }
 
 int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
@@ -351,7 +347,8 @@ void tribo_system_destroy(tribo_system *sys)
     tribo_matrix_free(&sys->viscous);
     tribo_matrix_free(&sys->mass);
     tribo_cholesky_free(&sys->factor);
-    tribo_massless_free(&sys->massless);
+    tribo_compliance_free(&sys->compliance);
+    tribo_expansion_free(&sys->expansion);
     free(sys->modes);
     free(sys->omega);
     free(sys->v);

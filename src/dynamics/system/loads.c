@@ -357,18 +357,18 @@ static int check_amplitudes(const tribo_system *sys, const char *name, const dou
     return TRIBO_OK;
 }
 
-/* What has no mass takes no load, and elastic contacts limits that are constant: else w would move by itself. */
-static int loads_check_massless(const tribo_system *sys, enum drives drives, const char *name, const double *x)
+/* Returns TRIBO_ERR_UNSUPPORTED for a load on a degree of freedom without mass, and a limit of a compliant contact that varies. */
+static int check_place(const tribo_system *sys, enum drives drives, const char *name, const double *x)
 {
-    const struct massless *w = &sys->massless;
+    const size_t *place = sys->expansion.place;
     const int of_load = drives == DRIVES_LOAD;
-    const size_t n = !x || !w->count || (of_load && sys->modes) ? 0 : of_load ? sys->given : sys->ncontact;
+    const size_t n = !x || !place || (of_load && sys->modes) ? 0 : of_load ? sys->given : sys->ncontact;
     for (size_t i = 0; i < n; i++) {
-        if (x[i] != 0.0 && of_load && w->is[i]) {
+        if (x[i] != 0.0 && of_load && place[i] >= sys->ndof) {
             return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                      "%s[%zu] = %g, but degree of freedom %zu has no mass, and takes no load", name, i, x[i], i);
         }
-        if (x[i] != 0.0 && drives == DRIVES_LIMIT && tribo_massless_touches(w, i)) {
+        if (x[i] != 0.0 && drives == DRIVES_LIMIT && tribo_is_compliant(&sys->compliance, i)) {
             return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                      "%s[%zu] = %g, but contact %zu is elastic, and its limit must be constant", name, i, x[i],
                                      i);
@@ -391,23 +391,6 @@ static int loads_check_limits(const tribo_system *sys, const double *cosine, con
         }
     }
     return TRIBO_OK;
-}
-
-/* Loads x [ndof] on what has no mass, of systems reduced with compliance, become loads on the others and the static displacements
- * way [ncontact] of contacts without force. */
-static void bend(const tribo_system *sys, double *x, double *way)
-{
-    const struct massless *w = &sys->massless;
-    for (size_t d = 0; d < w->follow.rows; d++) {
-        const double load = w->is[d] ? x[d] : 0.0;
-        x[d] -= load;
-        for (size_t e = w->follow.first[d]; load != 0.0 && e < w->follow.first[d + 1]; e++) {
-            x[w->follow.col[e]] += w->follow.val[e] * load;
-        }
-        for (size_t e = w->give.first[d]; load != 0.0 && e < w->give.first[d + 1]; e++) {
-            way[w->give.col[e]] += w->give.val[e] * load;
-        }
-    }
 }
 
 /* The harmonic of parts [2][n], cosine and sine. 0 if out of memory. */
@@ -460,8 +443,8 @@ static int loads_add_harmonic(tribo_system *sys, enum drives drives, double omeg
     }
     int status = check_amplitudes(sys, "cosine", cosine, given);
     status = status ? status : check_amplitudes(sys, "sine", sine, given);
-    status = status ? status : loads_check_massless(sys, drives, "cosine", cosine);
-    status = status ? status : loads_check_massless(sys, drives, "sine", sine);
+    status = status ? status : check_place(sys, drives, "cosine", cosine);
+    status = status ? status : check_place(sys, drives, "sine", sine);
     status = status || drives != DRIVES_LIMIT ? status : loads_check_limits(sys, cosine, sine);
     if (status) {
         return status;
@@ -472,8 +455,7 @@ static int loads_add_harmonic(tribo_system *sys, enum drives drives, double omeg
         if (from && of_contacts) {
             memcpy(parts + (size_t)part * n, from, n * sizeof *parts);
         } else if (from) {
-            tribo_system_accelerate(sys, from, parts + (size_t)part * n);
-            bend(sys, parts + (size_t)part * n, way + (size_t)part * sys->ncontact);
+            tribo_system_accelerate(sys, from, parts + (size_t)part * n, way + (size_t)part * sys->ncontact);
         }
     }
     const int done =
@@ -584,7 +566,7 @@ static int check_limit_table(const tribo_system *sys, size_t knots, const double
         }
     }
     for (size_t k = 0; !status && k < knots; k++) {
-        status = loads_check_massless(sys, DRIVES_LIMIT, "limit", limit + k * n);
+        status = check_place(sys, DRIVES_LIMIT, "limit", limit + k * n);
     }
     return status;
 }
@@ -604,7 +586,7 @@ static int add_table(tribo_system *sys, enum drives drives, size_t knots, const 
     int status = check_knots(sys, knots, time, "value", value);
     status = status ? status : check_amplitudes(sys, "value", value, knots);
     status = status ? status : check_amplitudes(sys, "pattern", pattern, of_bases ? sys->ncontact : sys->given);
-    status = status ? status : loads_check_massless(sys, drives, "pattern", pattern);
+    status = status ? status : check_place(sys, drives, "pattern", pattern);
     if (status) {
         return status;
     }
@@ -621,9 +603,8 @@ static int add_table(tribo_system *sys, enum drives drives, size_t knots, const 
     if (of_bases) {
         memcpy(t.pattern, pattern, sys->ncontact * sizeof *pattern);
     } else {
-        tribo_system_accelerate(sys, pattern, t.pattern);
         memset(sys->feq, 0, sys->ncontact * sizeof *sys->feq);
-        bend(sys, t.pattern, sys->feq);
+        tribo_system_accelerate(sys, pattern, t.pattern, sys->feq);
     }
     if (!of_bases && tribo_largest(sys->feq, sys->ncontact) > 0.0) {
         free_table(&t);

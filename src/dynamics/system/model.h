@@ -34,12 +34,12 @@ int tribo_model_factorize(const struct model *m, struct cholesky *c);
 /* structure.c: the system of all degrees of freedom, of matrices that need no check. */
 int tribo_model_build_whole(struct model *m, tribo_system **sys);
 
-/* sliders.c: adds a degree of freedom w without mass for each contact with compliance, a spring 1/compliance between w and the
- * displacement of the contact, and lets the contact act on w. */
+/* condense.c: adds a degree of freedom w without mass for each contact with compliance, a spring 1/compliance between w and the
+ * displacement of the contact, and lets the contact act on w. Mass and damping have no rows of w. */
 int tribo_model_add_sliders(struct model *m);
 
-/* massless.c: a system by build_massive, which knows only degrees of freedom with mass, and those without mass beside it. */
-int tribo_model_build_massless(struct model *m, int (*build_massive)(struct model *, tribo_system **), tribo_system **sys);
+/* condense.c: a system by build_massive, which knows only degrees of freedom with mass; those without mass are its expansion. */
+int tribo_model_condense(struct model *m, int (*build_massive)(struct model *, tribo_system **), tribo_system **sys);
 
 /* Gives the context R = Z'Z, Z [n][ncontact], which is as symmetric and semidefinite as rounding lets it be. */
 int tribo_model_set_operator(const struct model *m, tribo_system *sys, const double *z, size_t n);

@@ -85,7 +85,7 @@ static size_t snap_heaviest(struct snapping *s)
     return found < s->sys->ncontact;
 }
 
-/* No contact moves what an earlier one touches. */
+/* No rigid contact moves what an earlier one touches. */
 void tribo_system_order_snaps(tribo_system *sys)
 {
     const struct matrix *j = &sys->direction;
@@ -93,7 +93,8 @@ void tribo_system_order_snaps(tribo_system *sys)
     memset(s.known, 0, sys->ndof * sizeof *s.known);
     sys->snaps_in_order = 1;
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const size_t first = j->first[i], count = j->first[i + 1] - first;
+        const size_t first = j->first[i];
+        const size_t count = tribo_is_compliant(&sys->compliance, i) ? 0 : j->first[i + 1] - first;
         const size_t moves = first + (count == 2 ? follows(sys, i, first) : 0);
         sys->snaps_in_order &= count == 0 || count > 2 || !knows(&s, moves);
         for (size_t k = first; count <= 2 && k < first + count; k++) {

@@ -1,37 +1,199 @@
-/* States, as callers and as methods order their values. */
+/* States and linear combinations of them, in callers' degrees of freedom and in those of methods. */
 #include "system.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-int tribo_system_set_sliders(tribo_system *sys, size_t count)
+int tribo_expansion_create(tribo_system *sys, size_t sliders, const size_t *place, struct matrix *follow, struct matrix *give,
+                           struct matrix *touch)
 {
-    sys->motion = count ? malloc(tribo_system_size(sys) * sizeof *sys->motion) : NULL;
-    sys->sliders = sys->motion ? count : 0;
-    return sys->sliders == count;
+    const size_t dofs = sys->ndof + follow->rows;
+    size_t *copy = malloc((dofs + 1) * sizeof *copy);
+    sys->motion = malloc((tribo_system_size(sys) + follow->rows + 2 * sys->ncontact) * sizeof *sys->motion);
+    sys->expansion = (struct expansion){dofs, sliders, copy, *follow, *give, *touch};
+    *follow = *give = *touch = (struct matrix){0};
+    if (copy) {
+        memcpy(copy, place, dofs * sizeof *copy);
+    }
+    return copy && sys->motion;
+}
+
+int tribo_expansion_copy(tribo_system *to, const tribo_system *from)
+{
+    const struct expansion *x = &from->expansion;
+    struct matrix a[3] = {{0}};
+    if (!x->place) {
+        return 1;
+    }
+    const int done =
+        tribo_matrix_copy(&a[0], &x->follow) && tribo_matrix_copy(&a[1], &x->give) && tribo_matrix_copy(&a[2], &x->touch);
+    return tribo_expansion_create(to, x->sliders, x->place, &a[0], &a[1], &a[2]) && done;
+}
+
+void tribo_expansion_free(struct expansion *x)
+{
+    free(x->place);
+    tribo_matrix_free(&x->follow);
+    tribo_matrix_free(&x->give);
+    tribo_matrix_free(&x->touch);
+    memset(x, 0, sizeof *x);
+}
+
+/* Where the displacement and the velocity of a caller's degree of freedom d stand in the caller's state; a slider's velocity
+ * nowhere. */
+static size_t displacement_at(const struct expansion *x, size_t d)
+{
+    const size_t n = x->dofs - x->sliders;
+    return d < n ? d : d + n;
+}
+
+static int has_velocity(const struct expansion *x, size_t d)
+{
+    return d < x->dofs - x->sliders;
 }
 
 void tribo_system_read_state(const tribo_system *sys, const double *y, double *to)
 {
-    const size_t e = sys->sliders, n = sys->ndof - e;
-    memcpy(to, y, n * sizeof *to);
-    memcpy(to + n, y + 2 * n, e * sizeof *to);
-    memcpy(to + n + e, y + n, n * sizeof *to);
-    memset(to + 2 * n + e, 0, e * sizeof *to);
-    to[2 * (n + e)] = y[2 * n + e];
+    const struct expansion *x = &sys->expansion;
+    const size_t n = sys->ndof, caller = x->dofs - x->sliders;
+    double *off = sys->motion + tribo_system_size(sys), *force = off + (x->dofs - n);
+    for (size_t d = 0; d < x->dofs; d++) {
+        const size_t k = x->place[d];
+        if (k < n) {
+            to[k] = y[d];
+            to[n + k] = y[caller + d];
+        } else {
+            off[k - n] = y[displacement_at(x, d)];
+        }
+    }
+    /* f = G^-1 J_w (w - follow q) */
+    tribo_matrix_multiply_add(&x->follow, -1.0, to, off);
+    tribo_matrix_multiply(&x->touch, off, force);
+    tribo_compliance_solve(sys, NULL, 1, force);
+    tribo_compliance_put(sys, force, to);
+    to[tribo_system_energy(sys)] = y[2 * caller + x->sliders];
 }
 
-void tribo_system_write_state(const tribo_system *sys, const double *from, double *y)
+void tribo_system_add_velocities(const tribo_system *sys, const double *y, double *v)
 {
-    const size_t e = sys->sliders, n = sys->ndof - e;
-    memcpy(y, from, n * sizeof *y);
-    memcpy(y + n, from + n + e, n * sizeof *y);
-    memcpy(y + 2 * n, from + n, e * sizeof *y);
-    y[2 * n + e] = from[2 * (n + e)];
+    const struct expansion *x = &sys->expansion;
+    const size_t n = sys->ndof, caller = x->dofs - x->sliders;
+    double *off = sys->motion + tribo_system_size(sys);
+    for (size_t d = 0; d < caller; d++) {
+        if (x->place[d] >= n) {
+            off[x->place[d] - n] = y[caller + d];
+        }
+    }
+    tribo_matrix_multiply_add(&x->follow, -1.0, sys->motion + n, off);
+    tribo_matrix_multiply_add(&x->touch, 1.0, off, v);
+}
+
+void tribo_system_add_base_at(const tribo_system *sys, double t, double factor, double *to)
+{
+    for (size_t s = 0; s < sys->harmonics; s++) {
+        const struct harmonic *w = &sys->harmonic[s];
+        const double c = factor * cos(w->omega * t), d = factor * sin(w->omega * t);
+        for (size_t e = 0; w->drives == DRIVES_BASE && e < w->count; e++) {
+            to[w->index[e]] += c * w->cosine[e] + d * w->sine[e];
+        }
+    }
+    for (size_t s = 0; s < sys->tables; s++) {
+        const struct table *table = &sys->table[s];
+        size_t k = 0;
+        while (k + 1 < table->knots && table->time[k + 1] <= t) {
+            k++;
+        }
+        const int last = k + 1 == table->knots || t <= table->time[k];
+        const double part = last ? 0.0 : (t - table->time[k]) / (table->time[k + 1] - table->time[k]);
+        const double value = table->value[k] + (last ? 0.0 : part * (table->value[k + 1] - table->value[k]));
+        for (size_t i = 0; table->drives == DRIVES_BASE && i < sys->ncontact; i++) {
+            to[i] += factor * value * table->pattern[i];
+        }
+    }
+}
+
+/* f' [ncontact] at time t. v [ncontact] is workspace. */
+static void state_find_rates(const tribo_system *sys, double t, const double *y, double *v, double *rate)
+{
+    memset(v, 0, sys->ncontact * sizeof *v);
+    tribo_system_add_base_at(sys, t, -1.0, v);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, y + sys->ndof, v);
+    tribo_compliance_move(sys, y, v, rate);
+}
+
+/* Displacements w that are no more than this part of their terms are rounding of 0. */
+#define ROUNDING (16.0 * DBL_EPSILON)
+
+void tribo_system_write_state(const tribo_system *sys, double t, const double *from, double *y)
+{
+    const struct expansion *x = &sys->expansion;
+    const size_t n = sys->ndof, caller = x->dofs - x->sliders, without = x->dofs - n;
+    double *w = sys->motion + tribo_system_size(sys), *force = w + without, *v = force + sys->ncontact;
+    for (size_t d = 0; d < x->dofs; d++) {
+        if (x->place[d] < n) {
+            y[d] = from[x->place[d]];
+            y[caller + d] = from[n + x->place[d]];
+        }
+    }
+    for (int rate = 0; rate < (without > x->sliders ? 2 : 1); rate++) {
+        if (rate) {
+            state_find_rates(sys, t, from, v, force);
+        } else {
+            tribo_compliance_get(sys, from, force);
+        }
+        memset(w, 0, without * sizeof *w);
+        tribo_matrix_multiply_add(&x->follow, 1.0, from + (rate ? n : 0), w);
+        tribo_matrix_multiply_add(&x->give, 1.0, force, w);
+        for (size_t d = 0; d < x->dofs; d++) {
+            if (x->place[d] >= n && (!rate || has_velocity(x, d))) {
+                const size_t k = x->place[d] - n;
+                const double size =
+                    tribo_matrix_row_size(&x->follow, k, from + (rate ? n : 0)) + tribo_matrix_row_size(&x->give, k, force);
+                y[rate ? caller + d : displacement_at(x, d)] = fabs(w[k]) > ROUNDING * size ? w[k] : 0.0;
+            }
+        }
+    }
+    y[2 * caller + x->sliders] = from[tribo_system_energy(sys)];
 }
 
 size_t tribo_system_state_index(const tribo_system *sys, size_t i)
 {
-    const size_t e = sys->sliders, n = sys->ndof - e;
-    return i < n ? i : i < n + e ? i + n : i < 2 * (n + e) ? i - e : 2 * n + e;
+    const struct expansion *x = &sys->expansion;
+    const size_t n = sys->ndof;
+    size_t d = 0;
+    if (!x->place || i >= tribo_system_energy(sys)) {
+        return x->place ? tribo_system_dimension(sys) - 1 : i;
+    }
+    const size_t k = i < n ? i : i < 2 * n ? i - n : n;
+    while (x->place[d] != k) {
+        d++;
+    }
+    return i < n || i >= 2 * n ? displacement_at(x, d) : x->dofs - x->sliders + d;
+}
+
+void tribo_system_read_combination(const tribo_system *sys, const double *c, double *to)
+{
+    const struct expansion *x = &sys->expansion;
+    const struct compliance *g = &sys->compliance;
+    const size_t n = sys->ndof, caller = tribo_system_ndof(sys);
+    memset(to, 0, 2 * (n + g->count) * sizeof *to);
+    for (int rate = 0; rate < 2; rate++) {
+        double *q = to + (rate ? n : 0), *f = to + 2 * n + (rate ? g->count : 0);
+        for (size_t d = 0; d < caller; d++) {
+            const size_t k = x->place ? x->place[d] : d;
+            const double part = c[d + (rate ? caller : 0)];
+            if (k < n) {
+                q[k] += part;
+                continue;
+            }
+            for (size_t e = x->follow.first[k - n]; e < x->follow.first[k - n + 1]; e++) {
+                q[x->follow.col[e]] += part * x->follow.val[e];
+            }
+            for (size_t i = 0; i < g->count; i++) {
+                f[i] += part * tribo_matrix_get(&x->give, k - n, g->contact[i]);
+            }
+        }
+    }
 }

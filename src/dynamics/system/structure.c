@@ -197,7 +197,7 @@ static int build_massive(struct model *m, tribo_system **sys)
 
 int tribo_model_build_whole(struct model *m, tribo_system **sys)
 {
-    return tribo_model_build_massless(m, build_massive, sys);
+    return tribo_model_condense(m, build_massive, sys);
 }
 
 int tribo_model_build(struct model *m, tribo_system **sys)
@@ -207,10 +207,6 @@ int tribo_model_build(struct model *m, tribo_system **sys)
     status = status || m->nmode ? status : tribo_model_add_sliders(m);
     if (!status) {
         status = m->nmode ? tribo_model_reduce(m, &s) : tribo_model_build_whole(m, &s);
-    }
-    if (!status && m->sliders) {
-        s->given -= m->sliders;
-        status = tribo_system_set_sliders(s, m->sliders) ? TRIBO_OK : tribo_model_no_memory(m);
     }
     tribo_model_free(m);
     if (status) {

@@ -28,11 +28,12 @@ const char *tribo_system_message(const tribo_system *sys)
 
 int tribo_system_check_mass(const tribo_system *sys, const char *who)
 {
+    const struct expansion *x = &sys->expansion;
     size_t d = 0;
-    while (sys->massless.count && !sys->massless.is[d]) {
+    while (x->place && x->place[d] < sys->ndof) {
         d++;
     }
-    return sys->massless.count
+    return x->place
                ? tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                    "%s needs mass, and degree of freedom %zu has none: take exact, event or moreau/fixed", who, d)
                : TRIBO_OK;
@@ -94,7 +95,7 @@ size_t tribo_system_planar(const tribo_system *sys)
 
 size_t tribo_system_ndof(const tribo_system *sys)
 {
-    return sys ? sys->ndof - sys->sliders : 0;
+    return !sys ? 0 : sys->expansion.place ? sys->expansion.dofs - sys->expansion.sliders : sys->ndof;
 }
 
 size_t tribo_system_ncontact(const tribo_system *sys)
@@ -104,7 +105,7 @@ size_t tribo_system_ncontact(const tribo_system *sys)
 
 size_t tribo_system_dimension(const tribo_system *sys)
 {
-    return sys ? 2 * sys->ndof - sys->sliders + 1 : 0;
+    return sys ? 2 * tribo_system_ndof(sys) + sys->expansion.sliders + 1 : 0;
 }
 
 int tribo_dynamics_has(int feature)
@@ -198,37 +199,55 @@ void tribo_system_add_mass(const tribo_system *sys, double factor, const double 
     }
 }
 
-void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to)
+void tribo_system_solve_mass(const tribo_system *sys, double *x)
 {
-    if (sys->modes) {
-        for (size_t j = 0; j < sys->ndof; j++) {
-            to[j] = 0.0;
-        }
-        for (size_t i = 0; i < sys->given; i++) {
-            for (size_t j = 0; j < sys->ndof; j++) {
-                to[j] += sys->modes[i * sys->ndof + j] * force[i];
-            }
-        }
+    if (sys->unsolved || !sys->mass.rows) {
         return;
     }
-    memcpy(to, force, sys->given * sizeof *to);
-    memset(to + sys->given, 0, (sys->ndof - sys->given) * sizeof *to); /* sliders carry no load */
-    if (sys->unsolved) {
+    if (sys->factor.factor || sys->factor.sparse) {
+        tribo_cholesky_solve(&sys->factor, 1, x);
         return;
     }
-    const int diagonal = !sys->factor.factor && !sys->factor.sparse;
-    if (!diagonal) {
-        tribo_cholesky_solve(&sys->factor, 1, to);
+    for (size_t d = 0; d < sys->ndof; d++) {
+        x[d] *= 1.0 / tribo_matrix_get(&sys->mass, d, d);
     }
-    for (size_t i = 0; diagonal && i < sys->ndof; i++) {
-        const double mass = tribo_matrix_get(&sys->mass, i, i);
-        to[i] *= mass > 0.0 ? 1.0 / mass : 0.0;
+}
+
+/* A force on degree of freedom k of q and w: one on w acts on q by follow, and displaces contacts by give. */
+static void add_force(const tribo_system *sys, size_t k, double force, double *to, double *way)
+{
+    const struct expansion *x = &sys->expansion;
+    const size_t w = k - sys->ndof;
+    if (k < sys->ndof) {
+        to[k] += force;
+        return;
     }
+    for (size_t e = x->follow.first[w]; e < x->follow.first[w + 1]; e++) {
+        to[x->follow.col[e]] += x->follow.val[e] * force;
+    }
+    for (size_t e = x->give.first[w]; e < x->give.first[w + 1]; e++) {
+        way[x->give.col[e]] += x->give.val[e] * force;
+    }
+}
+
+void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to, double *way)
+{
+    const size_t *place = sys->expansion.place, dofs = place ? sys->expansion.dofs : sys->ndof;
+    memset(to, 0, sys->ndof * sizeof *to);
+    for (size_t i = 0; i < sys->given; i++) {
+        if (!sys->modes) {
+            add_force(sys, place ? place[i] : i, force[i], to, way);
+        }
+        for (size_t j = 0; sys->modes && j < dofs; j++) {
+            add_force(sys, place ? place[j] : j, sys->modes[i * dofs + j] * force[i], to, way);
+        }
+    }
+    tribo_system_solve_mass(sys, to);
 }
 
 double tribo_system_fastest(const tribo_system *sys)
 {
-    const double stiffest = sys->massless.count ? sys->massless.stiffest : tribo_matrix_row_sum(&sys->stiffness);
+    const double stiffest = sys->compliance.count ? sys->compliance.stiffest : tribo_matrix_row_sum(&sys->stiffness);
     double most = greater(sqrt(stiffest), tribo_matrix_row_sum(&sys->damping));
     for (size_t s = 0; s < sys->harmonics; s++) {
         most = greater(most, fabs(sys->harmonic[s].omega));

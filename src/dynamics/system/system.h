@@ -6,7 +6,7 @@
 #include "tribo/tribo_dynamics.h"
 
 #include "numerics/linalg.h"
-#include "massless.h"
+#include "compliance.h"
 #include "common/plural.h"
 
 /* What a harmonic adds to: the load, b(t) of the contacts, or their limits. */
@@ -41,9 +41,16 @@ struct truncation {
     double order; /* but only this power of omega^2/above of it, as the displacements by steady forces are there */
 };
 
+/* A caller's degrees of freedom: x_d = q_k for k = place[d] < ndof, else w_(k - ndof), without mass, w = follow q + give f. */
+struct expansion {
+    size_t dofs, sliders; /* sliders: the last of dofs; a caller's state has no velocities of them */
+    size_t *place;        /* [dofs]; NULL: x = q, and all other members are empty */
+    struct matrix follow, give; /* [dofs - ndof][ndof], [dofs - ndof][ncontact] */
+    struct matrix touch;        /* [ncontact][dofs - ndof] J_w: forces are f = G^-1 J_w (w - follow q) */
+};
+
 struct tribo_system {
-    size_t ndof, ncontact;
-    size_t sliders; /* of ndof, the last: contacts with compliance slide by these; a caller's state has no velocities of them */
+    size_t ndof, ncontact; /* ndof: degrees of freedom with mass */
     struct matrix stiffness, damping, direction, response; /* AK, AC, J, B */
     tribo_context *contacts; /* finds the forces; its settings are those of lent, its limits those of the time set */
     tribo_context *lent;     /* what tribo_system_context gives the caller to set; NULL: nothing is lent yet */
@@ -69,12 +76,13 @@ struct tribo_system {
     int unsolved;
 
     struct matrix mass;     /* no rows: the identity, of reduced systems */
-    struct cholesky factor; /* of it; degrees of freedom without mass count as if it were 1, and nothing accelerates them */
-    struct massless massless;
+    struct cholesky factor; /* of it */
+    struct compliance compliance;
+    struct expansion expansion;
 
     /* Forces on the given degrees of freedom become accelerations by the modes, or by the mass matrix. */
     size_t given;
-    double *modes, *omega; /* [given][ndof], [ndof]; NULL if not reduced */
+    double *modes, *omega; /* [given][dofs], [dofs] of a caller's degrees of freedom; NULL if not reduced */
     struct truncation truncation;
 
     struct attached *attached; /* what tribo_system_attach has hung on the system */
@@ -83,7 +91,7 @@ struct tribo_system {
     double *tally;                   /* [ncontact] how often y's energy counts what a contact dissipates: 1, but see chains */
     double *v, *a, *f, *feq, *dv_dt; /* [ncontact] workspace */
     double *acceleration;            /* [ndof] workspace */
-    double *motion;                  /* [tribo_system_size] workspace with sliders, else NULL */
+    double *motion;                  /* [tribo_system_size] and more: workspace with an expansion, else NULL */
     int snaps_in_order;              /* contacts at rest, whichever they are, can be snapped one after the other */
     double *dense;                   /* workspace of the Jacobian, allocated when it is first asked for */
 };
@@ -160,6 +168,9 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
 void tribo_system_tables(const tribo_system *sys, enum drives drives, int order, double factor, size_t begin, size_t end,
                          double *to);
 
+/* to [ncontact] += factor b(t), whatever time is set. */
+void tribo_system_add_base_at(const tribo_system *sys, double t, double factor, double *to);
+
 /* Whether bases move. */
 static inline int tribo_system_bases_move(const tribo_system *sys)
 {
@@ -208,8 +219,11 @@ double tribo_system_fastest(const tribo_system *sys);
 /* R_ij. */
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 
-/* q'' without friction, [ndof]. */
+/* q'' without friction of rigid contacts, [ndof]. */
 void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration);
+
+/* acceleration [ndof] += that by the forces of compliant contacts in y. */
+void tribo_system_add_springs(const tribo_system *sys, const double *y, double *acceleration);
 
 /* q'' without friction, and v and a of the contacts. Outputs v, a [ncontact], acceleration [ndof]. */
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a);
@@ -224,8 +238,11 @@ int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double
 /* to [ndof] += factor M x. */
 void tribo_system_add_mass(const tribo_system *sys, double factor, const double *x, double *to);
 
-/* to [ndof] = M^-1 force, force [given]. */
-void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to);
+/* x [ndof] = M^-1 x; unsolved systems leave it. */
+void tribo_system_solve_mass(const tribo_system *sys, double *x);
+
+/* to [ndof] = M^-1 force, force [given]; way [ncontact] += displacements of compliant contacts by what acts on w. */
+void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to, double *way);
 
 /* ---- snap.c */
 
@@ -273,24 +290,37 @@ int tribo_system_check_rates(const tribo_system *sys, const char *what);
 /* Checks that t and the caller's state y are finite. */
 int tribo_system_check_state(const tribo_system *sys, double t, const double *y);
 
-/* ---- state.c: a caller's state y = q, q', w, energy, and the state of the methods, (q, w), (q, w)', energy, of
- * tribo_system_size values. Both are the same where no contact has compliance. */
+/* ---- state.c: a caller's state y = x, x' without those of sliders, displacements of sliders, energy; the state of the methods,
+ * q, q', f of compliant contacts, energy. */
+
+/* The index of the energy in the state of the methods: as many values have perturbations. */
+static inline size_t tribo_system_energy(const tribo_system *sys)
+{
+    return 2 * sys->ndof + sys->compliance.count;
+}
 
 static inline size_t tribo_system_size(const tribo_system *sys)
 {
-    return 2 * sys->ndof + 1;
+    return tribo_system_energy(sys) + 1;
 }
 
-/* The last count degrees of freedom are sliders. 0 if out of memory. */
-int tribo_system_set_sliders(tribo_system *sys, size_t count);
+/* The expansion of a system that has its compliance; the matrices are its own from then on. 0 if out of memory. */
+int tribo_expansion_create(tribo_system *sys, size_t sliders, const size_t *place, struct matrix *follow, struct matrix *give,
+                           struct matrix *touch);
+int tribo_expansion_copy(tribo_system *to, const tribo_system *from);
+void tribo_expansion_free(struct expansion *x);
 
-/* to [tribo_system_size] = y, with w' = 0: a motion that begins finds w' from q, q' and w. */
+/* With an expansion: to [tribo_system_size] = y; y [tribo_system_dimension] = from, at time t. */
 void tribo_system_read_state(const tribo_system *sys, const double *y, double *to);
+void tribo_system_write_state(const tribo_system *sys, double t, const double *from, double *y);
 
-/* y [tribo_system_dimension] = from. */
-void tribo_system_write_state(const tribo_system *sys, const double *from, double *y);
+/* v [ncontact] += J_w (w' - follow q') of the caller's state y, which was read last. */
+void tribo_system_add_velocities(const tribo_system *sys, const double *y, double *v);
 
-/* The index in a caller's state of value i of the methods' state; of a velocity w' that of w. */
+/* The index in a caller's state of value i of the methods' state; of a force that of a degree of freedom without mass. */
 size_t tribo_system_state_index(const tribo_system *sys, size_t i);
+
+/* to [2 ndof + 2 count], of q, q', f, f' = a combination c [2 tribo_system_ndof] of a caller's x, x'. */
+void tribo_system_read_combination(const tribo_system *sys, const double *c, double *to);
 
 #endif
