@@ -34,8 +34,8 @@ static const struct matrix *force_matrix(const tribo_system *sys, const struct m
 int tribo_modal_shared_create(struct modal_shared *shared, tribo_system *sys)
 {
     *shared = (struct modal_shared){.sys = sys};
-    shared->stiffness = force_matrix(sys, &sys->elastic, &sys->stiffness, &shared->own_stiffness);
-    shared->damping = sys->damping.rows ? force_matrix(sys, &sys->viscous, &sys->damping, &shared->own_damping) : NULL;
+    shared->stiffness = force_matrix(sys, &sys->k, &sys->stiffness, &shared->own_stiffness);
+    shared->damping = sys->damping.rows ? force_matrix(sys, &sys->c, &sys->damping, &shared->own_damping) : NULL;
     if (shared->stiffness && (shared->damping || !sys->damping.rows)) {
         return TRIBO_OK;
     }

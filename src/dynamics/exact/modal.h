@@ -32,6 +32,13 @@ struct forcing {
     size_t harmonic, contact; /* contact: the system's ncontact if it is none's */
 };
 
+/* Forces of the contacts that hold, those of compliant contacts last. */
+struct held_forces {
+    double *by_q, *by_u;  /* [modes][contacts that hold] by eta and eta' */
+    size_t springs;       /* compliant contacts at rest; their outputs are the last ones */
+    double *fr, *fi, *f0; /* [given][springs], [springs] f' by bases; by bases of constant speed */
+};
+
 struct modal {
     signed char *key; /* [ncontact] 1: the contact rests, 2: and holds */
 
@@ -42,9 +49,7 @@ struct modal {
     double *omega2, *damping;
     double *coupling;      /* [modes][modes] C~, or NULL if it is diagonal */
     unsigned char *drifts; /* [modes] omega = 0 and no damping */
-    double *by_q, *by_u;   /* [modes][contacts that hold] their forces by eta and eta'; those of compliant contacts are last */
-    size_t springs;        /* compliant contacts at rest; their outputs are the last ones */
-    double *fr, *fi, *f0;  /* [given][springs], [springs] their f' by bases; by those of constant speed */
+    struct held_forces held;
 
     size_t exponents, terms;   /* terms: with harmonics, and zeros after them, at least TRIBO_TERMS */
     double *lr, *li, *size;    /* [terms] lambda (of harmonics: i Omega), and its absolute value, */

@@ -134,7 +134,7 @@ int tribo_modal_hold(struct modal_build *b)
     struct modal *h = b->h;
     const tribo_system *sys = b->shared->sys;
     const size_t n = b->n, m = h->modes, s = b->rests + b->springs, c = sys->ncontact;
-    double **const kept[] = {&h->by_q, &h->by_u};
+    double **const kept[] = {&h->held.by_q, &h->held.by_u};
     const size_t count[] = {m * s, m * s};
     double *load = tribo_modal_scratch(b, m * n + 2 * c), *v = load ? load + m * n : NULL;
     if (!load || !tribo_modal_keep_all(b, 2, kept, count)) {
@@ -150,17 +150,17 @@ int tribo_modal_hold(struct modal_build *b)
             force[d] = b->c_phi[k * n + d] - (h->coupling ? force[d] : h->damping[k] * psi[d]);
         }
         if (b->shared->damping) {
-            tribo_constraints_react(&b->ties, force, h->by_u + k * s);
+            tribo_constraints_react(&b->ties, force, h->held.by_u + k * s);
         }
         memcpy(force, b->k_phi + k * n, n * sizeof *force);
         tribo_add(force, -h->omega2[k], psi, n);
-        tribo_constraints_react(&b->ties, force, h->by_q + k * s);
+        tribo_constraints_react(&b->ties, force, h->held.by_q + k * s);
     }
     for (size_t k = 0; b->springs > 0 && k < m; k++) {
         tribo_matrix_multiply(&sys->direction, b->phi + k * n, v);
         tribo_compliance_rates(sys, b->slip, v, v + c);
         for (size_t p = b->rests; p < s; p++) {
-            h->by_q[k * s + p] = v[c + b->rest[p]];
+            h->held.by_q[k * s + p] = v[c + b->rest[p]];
         }
     }
     return 1;
@@ -243,7 +243,7 @@ static int changes(const struct modal_build *b, const struct holding *f, size_t 
     const size_t held = b->rests + b->springs;
     int found = f->ramp[p] != 0.0 || tribo_system_swing(b->shared->sys, b->rest[p]) > 0.0;
     for (size_t k = 0; k < h->modes; k++) {
-        found |= h->by_q[k * held + p] != 0.0 || h->by_u[k * held + p] != 0.0;
+        found |= h->held.by_q[k * held + p] != 0.0 || h->held.by_u[k * held + p] != 0.0;
     }
     for (size_t w = 0; w < h->harmonics; w++) {
         found |= f->wave_r[w * b->rests + p] != 0.0 || f->wave_i[w * b->rests + p] != 0.0;
@@ -261,8 +261,8 @@ static struct output *output_by_modes(struct modal_build *b, struct output *all,
         return NULL;
     }
     for (size_t k = 0; k < h->modes; k++) {
-        output->on_rate[k] = h->by_q[k * held + p];
-        output_mode(b, output, k, h->by_q[k * held + p], h->by_u[k * held + p]);
+        output->on_rate[k] = h->held.by_q[k * held + p];
+        output_mode(b, output, k, h->held.by_q[k * held + p], h->held.by_u[k * held + p]);
     }
     return output;
 }
@@ -297,12 +297,12 @@ static int output_springs(struct modal_build *b, struct output *all, size_t *use
 {
     struct modal *h = b->h;
     const size_t s = b->springs;
-    double **const kept[] = {&h->fr, &h->fi, &h->f0};
+    double **const kept[] = {&h->held.fr, &h->held.fi, &h->held.f0};
     const size_t count[] = {h->given * s, h->given * s, s};
     if (s > 0 && !tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count)) {
         return 0;
     }
-    h->springs = s;
+    h->held.springs = s;
     for (size_t p = 0; p < s; p++) {
         const size_t i = b->rest[b->rests + p];
         struct output *output = output_by_modes(b, all, used, b->rests + p);
@@ -311,12 +311,12 @@ static int output_springs(struct modal_build *b, struct output *all, size_t *use
         }
         for (size_t w = 0; w < h->given; w++) {
             const double omega = h->forcing[w].omega, by = omega != 0.0 ? 1.0 / omega : 0.0;
-            h->fr[w * s + p] = b->rate_r[w * b->rates + i];
-            h->fi[w * s + p] = b->rate_i[w * b->rates + i];
-            output->rr[w] += by * h->fi[w * s + p];
-            output->ri[w] -= by * h->fr[w * s + p];
+            h->held.fr[w * s + p] = b->rate_r[w * b->rates + i];
+            h->held.fi[w * s + p] = b->rate_i[w * b->rates + i];
+            output->rr[w] += by * h->held.fi[w * s + p];
+            output->ri[w] -= by * h->held.fr[w * s + p];
         }
-        output->ramp = h->f0[p] = b->rate_0[i];
+        output->ramp = h->held.f0[p] = b->rate_0[i];
         finish_output(h, output);
     }
     return 1;

@@ -172,7 +172,7 @@ double tribo_modal_shape(const struct modal_build *b, size_t i, size_t k)
     const size_t held = b->rests + b->springs;
     double sum = tribo_matrix_row_dot(&sys->direction, i, b->phi + k * b->n);
     for (size_t p = b->rests; tribo_is_compliant(&sys->compliance, i) && p < held; p++) {
-        sum += tribo_compliance_entry(&sys->compliance, sys->ncontact, i, b->rest[p]) * b->h->by_q[k * held + p];
+        sum += tribo_compliance_entry(&sys->compliance, sys->ncontact, i, b->rest[p]) * b->h->held.by_q[k * held + p];
     }
     return sum;
 }

@@ -10,7 +10,7 @@
 /* The index of the p-th compliant contact at rest among all compliant ones. */
 static size_t spring_index(const struct modal_motion *x, size_t p)
 {
-    const size_t contact = x->h->output[x->h->outputs - x->h->springs + p].contact;
+    const size_t contact = x->h->output[x->h->outputs - x->h->held.springs + p].contact;
     size_t i = 0;
     while (x->sys->compliance.contact[i] != contact) {
         i++;
@@ -24,8 +24,8 @@ static void weights(const struct modal_motion *x, const double *c, size_t k, dou
     const struct modal *h = x->h;
     const size_t n = x->sys->ndof;
     *place = *speed = 0.0;
-    for (size_t p = 0; p < h->springs; p++) {
-        const double rate = h->output[h->outputs - h->springs + p].on_rate[k];
+    for (size_t p = 0; p < h->held.springs; p++) {
+        const double rate = h->output[h->outputs - h->held.springs + p].on_rate[k];
         const double *of = c + 2 * n + spring_index(x, p);
         *place += rate * of[0];
         *speed += rate * of[x->sys->compliance.count];
@@ -133,8 +133,8 @@ static void add_harmonic(const struct modal_motion *x, const double *c, size_t s
         re += speed * yr + (omega != 0.0 ? place * yi / omega : 0.0);
         im += speed * yi - (omega != 0.0 ? place * yr / omega : 0.0);
     }
-    for (size_t p = 0; s < h->given && p < h->springs; p++) {
-        const double fr = h->fr[s * h->springs + p], fi = h->fi[s * h->springs + p], *of = c + 2 * n + spring_index(x, p);
+    for (size_t p = 0; s < h->given && p < h->held.springs; p++) {
+        const double fr = h->held.fr[s * h->held.springs + p], fi = h->held.fi[s * h->held.springs + p], *of = c + 2 * n + spring_index(x, p);
         const double speed = of[x->sys->compliance.count], place = omega != 0.0 ? of[0] / omega : 0.0;
         re += speed * fr + place * fi;
         im += speed * fi - place * fr;
@@ -156,8 +156,8 @@ static void add_powers(const struct modal_motion *x, const double *c, double *a)
     for (size_t i = 0; i < h->moving; i++) {
         a[1] += c[h->dof[i]] * h->y0[i];
     }
-    for (size_t p = 0; p < h->springs; p++) {
-        a[1] += c[2 * x->sys->ndof + spring_index(x, p)] * h->f0[p];
+    for (size_t p = 0; p < h->held.springs; p++) {
+        a[1] += c[2 * x->sys->ndof + spring_index(x, p)] * h->held.f0[p];
     }
 }
 
@@ -167,12 +167,12 @@ static double value_at_end(const struct modal_motion *x, const double *c, double
     const tribo_system *sys = x->sys;
     const size_t f = tribo_system_energy(sys);
     double value = tribo_dot(c, end, f);
-    if (x->h->springs) {
+    if (x->h->held.springs) {
         memset(x->way, 0, sys->ncontact * sizeof *x->way);
         tribo_system_add_base_at(sys, x->t0 + tau, -1.0, x->way);
         tribo_matrix_multiply_add(&sys->direction, 1.0, end + sys->ndof, x->way);
         tribo_compliance_rates(sys, x->contacts->state.slip, x->way, x->push);
-        for (size_t p = 0; p < x->h->springs; p++) {
+        for (size_t p = 0; p < x->h->held.springs; p++) {
             const size_t i = spring_index(x, p);
             value += c[f + i] * x->push[sys->compliance.contact[i]];
         }

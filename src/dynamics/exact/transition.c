@@ -79,7 +79,7 @@ static void add_springs(const struct transition *x, double *v)
 {
     const struct modal *h = x->h;
     const struct compliance *g = &x->sys->compliance;
-    for (size_t o = h->outputs - h->springs, i = 0; o < h->outputs; o++) {
+    for (size_t o = h->outputs - h->held.springs, i = 0; o < h->outputs; o++) {
         const struct output *out = &h->output[o];
         while (g->contact[i] != out->contact) {
             i++;

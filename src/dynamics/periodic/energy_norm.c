@@ -9,8 +9,8 @@
 static int dense_stiffness(const tribo_system *sys, double *k)
 {
     const size_t n = sys->ndof;
-    const int scaled = !sys->elastic.rows && sys->mass.rows;
-    double *entries = tribo_matrix_to_dense(sys->elastic.rows ? &sys->elastic : &sys->stiffness);
+    const int scaled = !sys->k.rows && sys->mass.rows;
+    double *entries = tribo_matrix_to_dense(sys->k.rows ? &sys->k : &sys->stiffness);
     for (size_t i = 0; entries && i < n; i++) {
         const double mass = scaled ? tribo_matrix_get(&sys->mass, i, i) : 1.0;
         for (size_t j = 0; j < n; j++) {

@@ -93,7 +93,7 @@ static int band_allocate(struct step_band *b, size_t n, size_t count)
 static int applies(struct step_band *b, const tribo_system *sys)
 {
     const size_t n = sys->ndof;
-    if (!sys->ncontact || sys->compliance.count || sys->elastic.rows || sys->modes || sys->mass.rows != n ||
+    if (!sys->ncontact || sys->compliance.count || sys->k.rows || sys->modes || sys->mass.rows != n ||
         !tribo_matrix_is_diagonal(&sys->mass)) {
         return 0;
     }

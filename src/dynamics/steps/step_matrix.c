@@ -33,12 +33,12 @@ int tribo_step_matrix_is_diagonal(const struct step_matrix *m)
 
 struct step_part tribo_step_stiffness(const tribo_system *sys)
 {
-    return sys->elastic.rows ? (struct step_part){&sys->elastic, 0} : (struct step_part){&sys->stiffness, !sys->unsolved};
+    return sys->k.rows ? (struct step_part){&sys->k, 0} : (struct step_part){&sys->stiffness, !sys->unsolved};
 }
 
 struct step_part tribo_step_damping(const tribo_system *sys)
 {
-    return sys->viscous.rows ? (struct step_part){&sys->viscous, 0} : (struct step_part){&sys->damping, !sys->unsolved};
+    return sys->c.rows ? (struct step_part){&sys->c, 0} : (struct step_part){&sys->damping, !sys->unsolved};
 }
 
 /* a += factor b. 0 if out of memory. */

@@ -296,7 +296,7 @@ static int copy_rest(tribo_system *to, const tribo_system *sys)
     to->omega = tribo_copy_of(sys->omega, dofs, sizeof *to->omega, &done);
     to->truncation = sys->truncation;
     return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && copy_lent(to, sys) &&
-           tribo_matrix_copy(&to->elastic, &sys->elastic) && tribo_matrix_copy(&to->viscous, &sys->viscous) &&
+           tribo_matrix_copy(&to->k, &sys->k) && tribo_matrix_copy(&to->c, &sys->c) &&
            tribo_matrix_copy(&to->mass, &sys->mass) && tribo_cholesky_copy(&to->factor, &sys->factor) &&
            tribo_compliance_copy(to, sys) && tribo_expansion_copy(to, sys) && tribo_loads_copy(to, sys);
 }
@@ -343,8 +343,8 @@ void tribo_system_destroy(tribo_system *sys)
     tribo_matrix_free(&sys->direction);
     tribo_matrix_free(&sys->response);
     tribo_loads_free(sys);
-    tribo_matrix_free(&sys->elastic);
-    tribo_matrix_free(&sys->viscous);
+    tribo_matrix_free(&sys->k);
+    tribo_matrix_free(&sys->c);
     tribo_matrix_free(&sys->mass);
     tribo_cholesky_free(&sys->factor);
     tribo_compliance_free(&sys->compliance);

@@ -119,8 +119,8 @@ static int build_solved(struct model *m, tribo_system **sys)
         return tribo_model_no_memory(m);
     }
     give_mass(m, *sys, &c);
-    (*sys)->elastic = m->stiffness;
-    (*sys)->viscous = m->damping;
+    (*sys)->k = m->stiffness;
+    (*sys)->c = m->damping;
     m->stiffness = m->damping = (struct matrix){0};
     status = tribo_model_set_operator(m, *sys, z, m->ndof);
     free(z);

@@ -1,5 +1,6 @@
 /* A mechanical system with friction as the drivers see it: accelerations solved for,
- *     q'' = load(t) - AK q - AC q' + B f,   v = J q' - b(t),   AK = M^-1 K, AC = M^-1 C, B = M^-1 J'. */
+ *     q'' = load(t) - AK q - AC q' + B f,   v = J q' + G f' - b(t),   AK = M^-1 K, AC = M^-1 C, B = M^-1 J',
+ * where response has the columns of B of rigid contacts, and compliance.pull those of compliant ones. */
 #ifndef TRIBO_SYSTEM_H
 #define TRIBO_SYSTEM_H
 
@@ -69,10 +70,10 @@ struct tribo_system {
 
     /* K and C, where the mass matrix is not diagonal: M^-1 K has lost the low modes to rounding. Else no rows: M AK and M AC are
      * K and C to rounding of every entry. */
-    struct matrix elastic, viscous;
+    struct matrix k, c;
 
-    /* The equations are M q'' = load - K q - C q' + J' f: stiffness, damping and response are K, C and J', loads are forces, and
-     * nobody has accelerations. */
+    /* 1: the equations are M q'' = load - K q - C q' + J' f: stiffness, damping and response are K, C and J', loads are forces; no
+     * accelerations are solved for. */
     int unsolved;
 
     struct matrix mass;     /* no rows: the identity, of reduced systems */
