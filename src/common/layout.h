@@ -1,5 +1,5 @@
-/* All arrays of an object in one piece of memory: a function lays them out twice, first to find how much they take, while all
- * pointers are NULL, and then in the memory that has been made for them. */
+/* All arrays of an object in one piece of memory. A function lays them out twice: first to add up their sizes, with pointers
+ * NULL; then in the memory allocated. */
 #ifndef TRIBO_LAYOUT_H
 #define TRIBO_LAYOUT_H
 
@@ -14,14 +14,14 @@ struct layout {
     size_t used;
 };
 
-/* What every array begins as it is aligned for. */
+/* The alignment of arrays. */
 union layout_unit {
     double number;
     size_t index;
     void *pointer;
 };
 
-/* An array of so many things of this size. What is too much to be counted becomes more than there is memory. */
+/* Returns an array of count elements of this size. Sizes that overflow become more than there is memory. */
 static inline void *tribo_layout_array(struct layout *b, size_t count, size_t size)
 {
     enum { UNIT = sizeof(union layout_unit) };
@@ -32,7 +32,7 @@ static inline void *tribo_layout_array(struct layout *b, size_t count, size_t si
     return array;
 }
 
-/* Memory for what has been measured, all of it zero, or as it comes; to be laid out from the beginning. 0 if there is none. */
+/* Allocates the sum of sizes, zero or not, to be laid out from the begin. Returns 0 if out of memory. */
 static inline int tribo_layout_zeros(struct layout *b)
 {
     b->memory = tribo_zeros(b->used + 1, 1);

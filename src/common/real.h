@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-/* Forces beyond this, and accelerations that forces make, are cut to it: sums of such numbers stay finite. */
+/* Forces and accelerations are cut to this: sums of such numbers stay finite. */
 #define TRIBO_FAR 1e300
 
 /* Minimum and maximum that compile to one instruction; those of math.h are calls, for the sake of NaN. */
@@ -35,7 +35,7 @@ static inline double quotient(double x, double y)
     return x / greater(y, fabs(x) * (1.0 / TRIBO_FAR));
 }
 
-/* As much of x as makes a quotient. */
+/* x, cut to numbers that y divides without overflow. */
 static inline double divisible(double x, double y)
 {
     const double most = TRIBO_FAR * lesser(y, 1.0);
@@ -49,7 +49,7 @@ static inline double product(double x, double y)
     return clamp(x, -most, most) * y;
 }
 
-/* The same, where x may be beyond TRIBO_FAR; y > 0. */
+/* product(x, y) for any finite x; y > 0. */
 static inline double scaled(double x, double y)
 {
     return y > 1.0 ? product(x, y) : cut(x * y);

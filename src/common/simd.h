@@ -1,6 +1,6 @@
-/* Loops over contacts or degrees of freedom, compiled for more than one instruction set where the compiler and the system can
- * choose among them when the library is loaded. Every variant gives the same bits: nothing is reordered, and products and sums
- * are not fused. Such functions are called by name only: in 32 bits linkers know no addresses of static ones. */
+/* Loops over contacts or degrees of freedom, compiled for several instruction sets, if the compiler and the system can choose one
+ * when the library is loaded. Every variant gives the same bits: sums are not reordered, products and sums not fused. Call such
+ * functions by name only: 32-bit linkers have no addresses of static ones. */
 #ifndef TRIBO_SIMD_H
 #define TRIBO_SIMD_H
 
@@ -18,14 +18,14 @@
 #define TRIBO_SIMD
 #endif
 
-/* The same for sums of four numbers at a time, of which compilers make nothing good where vectors are wider. */
+/* The same for sums of four numbers at a time, which compilers turn into slow code for wider vectors. */
 #if defined(TRIBO_CLONES) || defined(TRIBO_CLONES_512)
 #define TRIBO_SIMD_OF_FOUR __attribute__((target_clones("avx2", "default")))
 #else
 #define TRIBO_SIMD_OF_FOUR
 #endif
 
-/* Before a loop that does next to nothing with each number, where counting them would take as long; clang does so unasked. */
+/* Before a loop whose counting would take as long as its body; clang unrolls it by itself. */
 #if defined(TRIBO_GNU_C) && !defined(__clang__)
 #define TRIBO_UNROLLED _Pragma("GCC unroll 4")
 #else
@@ -41,11 +41,11 @@
 #define TRIBO_APART
 #endif
 
-/* Contacts that are looked at together: few enough that in a large scene most chunks have none near stick, and all that is read
- * of them stays in the first-level cache. */
+/* Contacts of a chunk: so few that in a large scene most chunks have none near stick, and that their data stays in the
+ * first-level cache. */
 #define TRIBO_CHUNK 128
 
-/* Where a line of cache begins, so that no vector of an array lies in two: at most TRIBO_LINE - 1 numbers on. */
+/* Returns the next begin of a line of cache, at most TRIBO_LINE - 1 numbers on: no vector of the array lies in two lines. */
 enum { TRIBO_LINE = 8 };
 static inline double *tribo_aligned(double *x)
 {
@@ -53,7 +53,7 @@ static inline double *tribo_aligned(double *x)
     return x ? x + (BYTES - (uintptr_t)x % BYTES) % BYTES / sizeof *x : NULL;
 }
 
-/* These bytes will soon be read, or written: for memory that is far away, and not simply passed over. */
+/* Prefetches memory that is not read in order. */
 static inline void tribo_expect(const void *from, size_t bytes, int written)
 {
 #if defined(TRIBO_GNU_C)

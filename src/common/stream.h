@@ -1,5 +1,5 @@
-/* Outputs that are found in chunks of TRIBO_CHUNK at most. Long ones go to memory past the caches, which would read each line
- * before it is written: in whole lines, of which the last one waits for the next chunk. */
+/* Outputs found in chunks of at most TRIBO_CHUNK numbers. Long ones are written to memory past the caches, which would read each
+ * line before: whole lines, the rest waits for the next chunk. */
 #ifndef TRIBO_STREAM_H
 #define TRIBO_STREAM_H
 
@@ -11,9 +11,9 @@
 #endif
 
 struct stream {
-    double *to;  /* where the next number goes; NULL: nobody wants any */
-    int past;    /* the caches; otherwise numbers are found in their place */
-    size_t kept; /* numbers at the beginning of room that wait for the rest of their line */
+    double *to;  /* place of the next number; NULL: no output */
+    int past;    /* 1: past the caches; 0: numbers are found in their place */
+    size_t kept; /* numbers at the begin of room that wait for the rest of their line */
     double room[TRIBO_CHUNK + 2 * TRIBO_LINE];
 };
 
@@ -24,13 +24,13 @@ static inline void tribo_stream_begin(struct stream *s, double *to, int past)
     s->kept = 0;
 }
 
-/* Where the numbers of the next chunk are to be put. */
+/* Returns room for the numbers of the next chunk. */
 static inline double *tribo_stream_room(struct stream *s)
 {
     return s->to && !s->past ? s->to : tribo_aligned(s->room) + s->kept;
 }
 
-/* The widest stores are fastest: a line of cache is one. */
+/* One store writes a line of cache. */
 #if defined(TRIBO_STREAMS) && defined(TRIBO_CLONES_512)
 __attribute__((target("avx512f"))) static void tribo_stream_wide(double *to, const double *from, size_t n)
 {
@@ -40,7 +40,7 @@ __attribute__((target("avx512f"))) static void tribo_stream_wide(double *to, con
 }
 #endif
 
-/* n numbers that are whole lines. */
+/* Writes n numbers, whole lines. */
 static inline void tribo_stream_lines(double *to, const double *from, size_t n)
 {
 #if defined(TRIBO_STREAMS) && defined(TRIBO_CLONES_512)
@@ -58,7 +58,7 @@ static inline void tribo_stream_lines(double *to, const double *from, size_t n)
 #endif
 }
 
-/* The next n numbers are in the room. */
+/* Writes the n numbers in the room. */
 static inline void tribo_stream_put(struct stream *s, size_t n)
 {
     if (!s->to || !s->past) {
@@ -76,7 +76,7 @@ static inline void tribo_stream_put(struct stream *s, size_t n)
     memmove(room, from + lines, s->kept * sizeof *room);
 }
 
-/* All are there: between threads too. */
+/* Writes the rest; other threads see all numbers. */
 static inline void tribo_stream_end(struct stream *s)
 {
     if (s->to && s->past) {

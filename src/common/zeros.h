@@ -1,6 +1,5 @@
-/* Memory full of zeros, or NULL if there is none; an array of nothing is something. What is small is most likely to be where
- * malloc looks first, in what has just been freed, which calloc of the GNU C library passes by; what is large comes fresh from
- * the system, and is zero when calloc gets it. */
+/* Returns memory of zeros, or NULL; not NULL for count 0. Small memory is best taken from what was just freed, where malloc looks
+ * first, and calloc of the GNU C library does not; large memory comes from the system as zeros, which calloc makes use of. */
 #ifndef TRIBO_ZEROS_H
 #define TRIBO_ZEROS_H
 
@@ -10,8 +9,8 @@
 
 static inline void *tribo_zeros(size_t count, size_t size)
 {
-    enum { SMALL = 1024 };
-    if (count > SMALL / size) {
+    enum { FRESH = 1024 };
+    if (count > FRESH / size) {
         return calloc(count, size);
     }
     void *memory = malloc(count * size + 1);

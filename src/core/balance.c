@@ -1,11 +1,11 @@
 /* Forces of contacts that share bodies: f_eq and f from z'' = R f + a.
  *
  * The consistent coupling is a box problem. With kappa = slope v inside the band of a law that relaxes, and 0 for the others, the
- * fixed point f_i = clamp(clamp(f_eq,i, -N, N) - kappa_i, -N, N) minimizes 1/2 f'Rf + (a + diag(R) kappa)'f over the contacts near
- * stick, where  kappa > 0: -N <= f <= max(-N, N - kappa);  kappa < 0: min(N, -N - kappa) <= f <= N.
+ * fixed point f_i = clamp(clamp(f_eq,i, -N, N) - kappa_i, -N, N) minimizes 1/2 f'Rf + (a + diag(R) kappa)'f over the contacts
+ * near stick, where  kappa > 0: -N <= f <= max(-N, N - kappa);  kappa < 0: min(N, -N - kappa) <= f <= N.
  *
- * A call first finds forces of contacts as if each was alone, which is right for those in no group, and for open and sliding ones;
- * then it solves the groups with a contact near stick. */
+ * A call first finds forces of contacts as if each was alone, which is right for those in no group, and for open and sliding
+ * ones; then it solves the groups with a contact near stick. */
 #include "check.h"
 #include "clusters.h"
 #include "static.h"

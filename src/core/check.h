@@ -1,5 +1,6 @@
 /* Checks of arguments. The functions here are inline, and cost next to nothing where all is well; check.c finds the message. A
- * check returns TRIBO_OK, or a failure that names the argument, its first wrong entry and the value; ctx NULL: keeps no message. */
+ * check returns TRIBO_OK, or a failure that names the argument, its first wrong entry and the value; ctx NULL: keeps no
+ * message. */
 #ifndef TRIBO_CHECK_H
 #define TRIBO_CHECK_H
 

@@ -42,8 +42,9 @@ static inline size_t tribo_chunks(size_t n)
     return (n + TRIBO_CHUNK - 1) / TRIBO_CHUNK;
 }
 
-/* State of a contact in the last call that found forces: TRIBO_SLIP_FORTH, TRIBO_SLIP_BACK: it slides, and its force is its limit;
- * STORED: its force is in last.f. Once slips are written (see tribo_write_slips): TRIBO_SLIP_STUCK, ... TRIBO_SLIP_OPEN. */
+/* State of a contact in the last call that found forces: TRIBO_SLIP_FORTH, TRIBO_SLIP_BACK: it slides, and its force is its
+ * limit; STORED: its force is in last.f. Once slips are written (see tribo_write_slips): TRIBO_SLIP_STUCK, ...
+ * TRIBO_SLIP_OPEN. */
 enum { STORED = TRIBO_SLIP_STUCK };
 
 /* How many contacts of a chunk are STORED; ALL_STORED is set only where it is known. */

@@ -18,8 +18,8 @@ TRIBO_SIMD static void select_feq(size_t n, const double *restrict v, const doub
     }
 }
 
-/* used [n] = f_eq of the contacts from i on where laws depend on it, else 0: there feq need not be finite, nor set. Planar contacts
- * have checks of their own. */
+/* used [n] = f_eq of the contacts from i on where laws depend on it, else 0: there feq need not be finite, nor set. Planar
+ * contacts have checks of their own. */
 static void used_feq(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *used)
 {
     double room[TRIBO_CHUNK];

@@ -43,8 +43,8 @@ void tribo_remember_forces(tribo_context *ctx);
 
 /* ---- step.c */
 
-/* Finds forces f [n] within bounds with v + dt R f = 0, or pushed against a bound. known [n] or NULL: not 0 for scalar contacts of
- * clusters whose force is in last.f. */
+/* Finds forces f [n] within bounds with v + dt R f = 0, or pushed against a bound. known [n] or NULL: not 0 for scalar contacts
+ * of clusters whose force is in last.f. */
 int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known, double *f);
 
 /* tribo_step_force without checks. v [n]: velocities at the begin, or NULL; read where limits are static. */

@@ -108,9 +108,9 @@ int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
     return TRIBO_OK;
 }
 
-/* In the consistent coupling a stuck contact relaxes at its own 2 N R_ii/epsilon; otherwise v' = -R diag(s) v with s = 2N/epsilon,
- * or half of it for laws that are dampers near v = 0. The eigenvalues of R diag(s), for any set of contacts near stick, are at most
- * the largest s_i R_ii times the largest eigenvalue of D^-1 R. */
+/* In the consistent coupling a stuck contact relaxes at its own 2 N R_ii/epsilon; otherwise v' = -R diag(s) v with s =
+ * 2N/epsilon, or half of it for laws that are dampers near v = 0. The eigenvalues of R diag(s), for any set of contacts near
+ * stick, are at most the largest s_i R_ii times the largest eigenvalue of D^-1 R. */
 static double max_rate(const tribo_context *ctx)
 {
     double rate = tribo_plane_rate(ctx);

@@ -1,5 +1,5 @@
-/* What a caller sets: law, limits, epsilon, coupling, sharing; and what follows. Only bounds follow from limits, which change more
- * often than the rest. */
+/* What a caller sets: law, limits, epsilon, coupling, sharing; and what follows. Only bounds follow from limits, which change
+ * more often than the rest. */
 #include "check.h"
 #include "clusters.h"
 #include "static.h"

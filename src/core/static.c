@@ -8,8 +8,8 @@
  *         contacts near stick with |f_eq| above their static limit get the kinetic one
  *     until no limit changes
  *
- * All limits change together, so that the order of contacts has no effect. Limits only fall, so that the loop ends. A contact that
- * broke away, and is then held by others, rests with less than the kinetic limit. */
+ * All limits change together, so that the order of contacts has no effect. Limits only fall, so that the loop ends. A contact
+ * that broke away, and is then held by others, rests with less than the kinetic limit. */
 #include "static.h"
 
 #include "check.h"
@@ -106,9 +106,10 @@ void tribo_hold(const tribo_context *ctx, const struct box_qp *p)
     }
 }
 
-size_t tribo_break_away(tribo_context *ctx, const struct box_qp *p, double dt)
+size_t tribo_break_away(tribo_context *ctx, struct box_qp *p, double dt)
 {
     size_t broken = 0;
+    tribo_box_gradients(p);
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = p->member[k];
         const double hold = ctx->follow.hold[i], doubt = quotient(tribo_box_tolerance(p, k), ctx->op->diagonal[i]);
@@ -194,8 +195,8 @@ int tribo_check_one_ratio(tribo_context *ctx, const double *ratio, const double 
         }
         if (velocity && (velocity[i] < velocity[j] || velocity[i] > velocity[j])) {
             return tribo_fail(ctx, TRIBO_ERR_RANGE,
-                              "velocity[%zu] = %g and velocity[%zu] = %g are of one planar contact, and differ", i, velocity[i], j,
-                              velocity[j]);
+                              "velocity[%zu] = %g and velocity[%zu] = %g are of one planar contact, and differ", i, velocity[i],
+                              j, velocity[j]);
         }
     }
     return TRIBO_OK;

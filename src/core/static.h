@@ -41,7 +41,7 @@ void tribo_hold(const tribo_context *ctx, const struct box_qp *p);
 
 /* Gives contacts whose f_eq exceeds the static limit that to slide at the end of a step of dt, or (0) from rest. Returns their
  * number. */
-size_t tribo_break_away(tribo_context *ctx, const struct box_qp *p, double dt);
+size_t tribo_break_away(tribo_context *ctx, struct box_qp *p, double dt);
 
 /* The same for contacts in no group, by vfree; their forces follow. */
 void tribo_break_alone(tribo_context *ctx, double dt, const double *vfree);

@@ -1,6 +1,6 @@
-/* The force over a step to second order. Coulomb's law at the end of a step, as tribo_step_force gives it, has two errors of first
- * order: a planar contact that turns slides in the direction of the end, and a scalar one that is driven through v = 0 stops there
- * until the step is over.
+/* The force over a step to second order. Coulomb's law at the end of a step, as tribo_step_force gives it, has two errors of
+ * first order: a planar contact that turns slides in the direction of the end, and a scalar one that is driven through v = 0
+ * stops there until the step is over.
  *
  *     solve at the end of the step: which contacts stick, and R f
  *     planar contacts that slide: in the direction of v + v_end, which is the same problem with v + vfree in the place of vfree

@@ -12,9 +12,7 @@ static inline struct tangent coulomb_tangent(double v, double feq, double limit,
                                              double follows)
 {
     (void)epsilon, (void)slope, (void)turn, (void)follows;
-    const int slides = v != 0.0, held = fabs(feq) < limit;
-    const double gain = held ? 1.0 : 0.0, rate = held_rate(feq, held);
-    return (struct tangent){0.0, slides ? 0.0 : gain, slides ? sliding_rate(v) : rate};
+    return dry_tangent(v != 0.0, v, feq, limit);
 }
 
 TRIBO_LAW_LOOPS(coulomb)
@@ -26,8 +24,5 @@ const struct law tribo_law_coulomb = {
                  "doi:10.1115/1.1760564",
     .uses_feq = 1,
     .holds = 1.0,
-    .force = coulomb_force_all,
-    .balance = coulomb_balance_all,
-    .tangent = coulomb_tangent_all,
-    .force_of_one = coulomb_force_of_one,
+    TRIBO_LAW_CALLS(coulomb),
 };

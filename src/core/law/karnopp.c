@@ -12,9 +12,7 @@ static inline struct tangent karnopp_tangent(double v, double feq, double limit,
                                              double follows)
 {
     (void)slope, (void)turn, (void)follows;
-    const int slides = fabs(v) > epsilon, held = fabs(feq) < limit;
-    const double gain = held ? 1.0 : 0.0, rate = held_rate(feq, held);
-    return (struct tangent){0.0, slides ? 0.0 : gain, slides ? sliding_rate(v) : rate};
+    return dry_tangent(fabs(v) > epsilon, v, feq, limit);
 }
 
 TRIBO_LAW_LOOPS(karnopp)
@@ -26,8 +24,5 @@ const struct law tribo_law_karnopp = {
     .uses_feq = 1,
     .sticks_in_band = 1,
     .holds = 1.0,
-    .force = karnopp_force_all,
-    .balance = karnopp_balance_all,
-    .tangent = karnopp_tangent_all,
-    .force_of_one = karnopp_force_of_one,
+    TRIBO_LAW_CALLS(karnopp),
 };

@@ -1,6 +1,5 @@
-/* What a friction law is: a record in the registry, a force and its derivatives for one contact, and the loops over
- * contacts that TRIBO_LAW_LOOPS makes of them. To add a law, write one file like quinn.c, and add its record to
- * registry.c and its number to tribo.h. */
+/* Friction laws. A law is a force of one contact, its derivatives, the loops over contacts that TRIBO_LAW_LOOPS makes of both,
+ * and a record. To add a law, write one file like quinn.c; add its record to registry.c and its number to tribo.h. */
 #ifndef TRIBO_LAW_H
 #define TRIBO_LAW_H
 
@@ -11,19 +10,19 @@
 #include "common/real.h"
 #include "common/simd.h"
 
-/* What laws know of contacts, an array each. Everything but limits stays when limits change: a law finds epsilon, and slope =
- * 2 limit/epsilon, from width and rate.
+/* Contacts as laws see them, an array each. A law finds epsilon, and slope = 2 limit/epsilon, from width and rate, which stay
+ * when limits change:
  *   epsilon does not follow the limit:  epsilon = width,        slope = rate bound,  rate = 2/epsilon
  *   it follows the limit:               epsilon = width bound,  slope = rate,        rate = 2/width, or 0 where nothing relaxes
- */
+ * */
 struct contacts {
     const double *limit;
-    const double *bound; /* the same, or less where width or rate times it would be no number */
+    const double *bound; /* the limit, or less where products with width or rate would overflow */
     const double *width, *rate;
     const unsigned char *moving; /* reversal memory */
     int follows;
-    int scales; /* epsilon goes with the caller's limit, also where it is in width (static limits) */
-    int alike;  /* limit, bound, width and rate of the first are those of all */
+    int scales; /* epsilon follows the caller's limit, also where it is in width (static limits) */
+    int alike;  /* all have the first limit, bound, width and rate */
 };
 
 /* follows is a constant. */
@@ -37,7 +36,7 @@ static inline double tribo_slope(int follows, double rate, double bound)
     return follows ? (bound > 0.0 ? rate : 0.0) : rate * bound;
 }
 
-/* rate of an epsilon that is given. */
+/* Returns rate for a given epsilon. */
 static inline double tribo_rate(double epsilon)
 {
     return 2.0 * quotient(1.0, epsilon);
@@ -49,8 +48,8 @@ static inline struct contacts tribo_contacts_from(const struct contacts *c, size
                              c->moving + i, c->follows,   c->scales,    c->alike};
 }
 
-/* epsilon and slope of contact i, where follows is no constant: factors are chosen, not products, which might overflow where they
- * are not wanted. */
+/* epsilon and slope of contact i, follows being no constant: factors are chosen, since a product that is not needed might
+ * overflow. */
 static inline double tribo_epsilon_of(const struct contacts *c, size_t i)
 {
     return greater(c->width[i] * (c->follows ? c->bound[i] : 1.0), c->follows ? DBL_MIN : 0.0);
@@ -61,17 +60,18 @@ static inline double tribo_slope_of(const struct contacts *c, size_t i)
     return c->rate[i] * (!c->follows ? c->bound[i] : c->bound[i] > 0.0 ? 1.0 : 0.0);
 }
 
-/* How the slope follows the limit. */
+/* d(slope)/d(limit) */
 static inline double tribo_slope_rate_of(const struct contacts *c, size_t i)
 {
     return c->follows ? 0.0 : c->rate[i];
 }
 
+/* Derivatives of a force. */
 struct tangent {
     double dv, dfeq, dlimit;
 };
 
-/* The same of many contacts, and their forces. */
+/* Forces and derivatives of many contacts. */
 struct tangents {
     double *f, *dv, *dfeq, *dlimit;
 };
@@ -80,26 +80,26 @@ struct law {
     int id;
     const char *name, *reference;
     int uses_feq;
-    int sticks_in_band; /* reads f_eq where |v| <= epsilon; otherwise where v = 0 */
-    int relaxes;        /* inside the band f = clamp(f_eq) - slope v, otherwise clamp(f_eq) */
-    int remembers;      /* uses the reversal memory, and must be told of accepted steps */
-    double holds;       /* a contact counts as stuck while |f| is less than this part of its limit */
-    /* f_eq is finite, also where it does not matter, and TRIBO_FAR at most; v is any finite number. A law that does not use f_eq
-     * gets numbers all the same. */
+    int sticks_in_band; /* reads f_eq where |v| <= epsilon; else where v = 0 */
+    int relaxes;        /* near stick f = clamp(f_eq) - slope v; else clamp(f_eq) */
+    int remembers;      /* uses the reversal memory, which tribo_accept updates */
+    double holds;       /* a contact is stuck if |f| < holds limit */
+    /* f [n]; v is finite, and |feq| <= TRIBO_FAR, also where the law does not use it */
     void (*force)(const struct contacts *c, size_t n, const double *v, const double *feq, double *f);
-    /* the same with the f_eq of contacts that share no body; a and 1/R_ii are TRIBO_PLAIN at most */
+    /* f [n] with feq = tribo_alone(a, inverse); |a| and 1/R_ii are at most TRIBO_PLAIN */
     void (*balance)(const struct contacts *c, size_t n, const double *v, const double *a, const double *inverse, double *f);
     void (*tangent)(const struct contacts *c, size_t n, const double *v, const double *feq, const struct tangents *d);
-    double (*force_of_one)(const struct contacts *c, double v, double feq); /* the force of the first */
+    double (*force_of_one)(const struct contacts *c, double v, double feq); /* of the first contact */
 };
 
 extern const struct law tribo_law_coulomb, tribo_law_velocity_limited, tribo_law_smooth, tribo_law_karnopp, tribo_law_quinn,
     tribo_law_quinn_reversal;
 
-const struct law *tribo_law(int id); /* NULL if there is none */
+/* Returns the law of this number, or NULL. */
+const struct law *tribo_law(int id);
 
-/* f_eq of a contact that shares no body, from 1/R_ii: a product takes a tenth of the time of a division. Where that might be no
- * number, tribo_alone_far is for it; where both are numbers they have the same bits. */
+/* f_eq of a contact that shares no body, from 1/R_ii: a product takes a tenth of the time of a division. tribo_alone_far never
+ * overflows, and has the same bits where tribo_alone does not. */
 #define TRIBO_PLAIN 1e100
 static inline double tribo_alone(double a, double inverse)
 {
@@ -116,8 +116,7 @@ static inline double sign(double x)
     return x != 0.0 ? copysign(1.0, x) : 0.0;
 }
 
-/* v where |v| <= epsilon, and elsewhere what makes no product overflow: laws reckon with it for all contacts before they
- * choose. */
+/* v within the band: laws compute with it for all contacts before they choose, and no product overflows. */
 static inline double inside_band(double v, double epsilon)
 {
     return clamp(v, -epsilon, epsilon);
@@ -129,8 +128,8 @@ static inline double sliding(double v, double limit)
     return copysign(limit, -v);
 }
 
-/* How the force follows the limit where a contact slides, and where it carries clamp(feq, -limit, limit). These and the laws
- * choose between numbers that are there already, which is what makes loops of them fast. */
+/* d(force)/d(limit) where a contact slides, and where it carries clamp(feq, -limit, limit). Laws choose between numbers, not
+ * between computations: their loops become vectors. */
 static inline double sliding_rate(double v)
 {
     return copysign(1.0, -v);
@@ -140,6 +139,18 @@ static inline double held_rate(double feq, int held)
 {
     return held ? 0.0 : sign(feq);
 }
+
+/* Derivatives of a law that slides with its limit, or carries clamp(feq, -limit, limit). */
+static inline struct tangent dry_tangent(int slides, double v, double feq, double limit)
+{
+    const int held = fabs(feq) < limit;
+    const double gain = held ? 1.0 : 0.0, rate = held_rate(feq, held);
+    return (struct tangent){0.0, slides ? 0.0 : gain, slides ? sliding_rate(v) : rate};
+}
+
+/* The calls in the record of a law. */
+#define TRIBO_LAW_CALLS(name)                                                                                                    \
+    .force = name##_force_all, .balance = name##_balance_all, .tangent = name##_tangent_all, .force_of_one = name##_force_of_one
 
 /* Defines <name>_force_all, <name>_balance_all, <name>_tangent_all and <name>_force_of_one from the law's functions of one
  * contact, <name>_force and <name>_tangent. */
@@ -162,7 +173,7 @@ static inline double held_rate(double feq, int held)
         dlimit[i] = d.dlimit;                                                                                                    \
     }
 
-/* What is the same for all contacts is read once, and whether epsilon follows the limit is asked once. */
+/* Reads once what is the same for all contacts; checks once if epsilon follows the limit. */
 #define TRIBO_LAW_LOOP(each, name)                                                                                               \
     const double *limit = c->limit, *bound = c->bound, *width = c->width, *rate = c->rate;                                       \
     if (c->alike) {                                                                                                              \

@@ -1,7 +1,7 @@
 /* The paper's law: Quinn (2004), Eq. 4, with half-width epsilon/2 and slope 2N/epsilon. */
 #include "law.h"
 
-/* Outside the band the middle line would say what the last one says up to rounding, but slope v may overflow there. */
+/* Outside the band both expressions are equal up to rounding, but slope v might overflow. */
 static inline double quinn_force(double v, double feq, double limit, double epsilon, double slope)
 {
     const double f = clamp(clamp(feq, -limit, limit) - slope * inside_band(v, epsilon), -limit, limit);
@@ -30,8 +30,5 @@ const struct law tribo_law_quinn = {
     .sticks_in_band = 1,
     .relaxes = 1,
     .holds = 1.0,
-    .force = quinn_force_all,
-    .balance = quinn_balance_all,
-    .tangent = quinn_tangent_all,
-    .force_of_one = quinn_force_of_one,
+    TRIBO_LAW_CALLS(quinn),
 };

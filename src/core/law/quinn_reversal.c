@@ -102,8 +102,5 @@ const struct law tribo_law_quinn_reversal = {
     .relaxes = 1,
     .remembers = 1,
     .holds = 1.0,
-    .force = reversal_force_all,
-    .balance = reversal_balance_all,
-    .tangent = reversal_tangent_all,
-    .force_of_one = reversal_force_of_one,
+    TRIBO_LAW_CALLS(reversal),
 };

@@ -34,7 +34,7 @@ const char *tribo_law_reference(int law)
     return l ? l->reference : NULL;
 }
 
-/* Without locales, of which names know nothing. */
+/* tolower without locales. */
 static char registry_lower(char c)
 {
     static const char upper_case[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZ", lower_case[] = "abcdefghijklmnopqrstuvwxyz";
@@ -75,11 +75,8 @@ int tribo_law_eval(int law, double v, double feq, double limit, double epsilon, 
     if (!f) {
         return TRIBO_ERR_NULL;
     }
-    if (!isfinite(v) || !isfinite(limit) || !isfinite(epsilon)) {
-        return TRIBO_ERR_NOT_FINITE;
-    }
     const int needs_feq = l->uses_feq && fabs(v) <= epsilon;
-    if (needs_feq && !isfinite(feq)) {
+    if (!isfinite(v) || !isfinite(limit) || !isfinite(epsilon) || (needs_feq && !isfinite(feq))) {
         return TRIBO_ERR_NOT_FINITE;
     }
     if (limit < 0.0) {
@@ -92,16 +89,8 @@ int tribo_law_eval(int law, double v, double feq, double limit, double epsilon, 
     const double rate = lesser(tribo_rate(epsilon), TRIBO_FAR / greater(bound, 1.0));
     const unsigned char moving = 1;
     const struct contacts c = {&limit, &bound, &epsilon, &rate, &moving, 0, 0, 0};
-    struct tangent d;
-    l->tangent(&c, 1, &v, &read, &(struct tangents){f, &d.dv, &d.dfeq, &d.dlimit});
-    if (df_dv) {
-        *df_dv = d.dv;
-    }
-    if (df_dfeq) {
-        *df_dfeq = d.dfeq;
-    }
-    if (df_dlimit) {
-        *df_dlimit = d.dlimit;
-    }
+    double ignored[3], *const to[3] = {df_dv, df_dfeq, df_dlimit};
+    l->tangent(&c, 1, &v, &read,
+               &(struct tangents){f, to[0] ? to[0] : ignored, to[1] ? to[1] : ignored + 1, to[2] ? to[2] : ignored + 2});
     return TRIBO_OK;
 }

@@ -24,8 +24,5 @@ const struct law tribo_law_smooth = {
                  "cites as references 13 and 14",
     .sticks_in_band = 1,
     .holds = 0.7615941559557649, /* tanh(1), at |v| = epsilon */
-    .force = smooth_force_all,
-    .balance = smooth_balance_all,
-    .tangent = smooth_tangent_all,
-    .force_of_one = smooth_force_of_one,
+    TRIBO_LAW_CALLS(smooth),
 };

@@ -26,8 +26,5 @@ const struct law tribo_law_velocity_limited = {
                  "D. D. Quinn (2004), Eq. 3",
     .sticks_in_band = 1,
     .holds = 1.0,
-    .force = limited_force_all,
-    .balance = limited_balance_all,
-    .tangent = limited_tangent_all,
-    .force_of_one = limited_force_of_one,
+    TRIBO_LAW_CALLS(limited),
 };

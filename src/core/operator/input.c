@@ -1,21 +1,18 @@
-/* The operator R: its forms of input and their checks. Every form becomes sorted compressed rows first; the new operator replaces
- * the old one only when everything about it is known to be right. */
-#include <math.h>
-#include <stdint.h>
+/* The operator R: forms of input, and their checks. Every form becomes sorted compressed rows. The operator of a context is
+ * replaced when all checks are done. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "core/check.h"
 #include "core/clusters.h"
 #include "numerics/csr.h"
 
-/* Entries (i,j) and (j,i) may differ by rounding of whoever computed them. */
+/* Entries (i,j) and (j,i) may differ by this part: the caller's rounding. */
 #define ASYMMETRY 1e-10
 
-/* Entries this small beside the diagonal are rounding of an inverse. */
+/* Entries up to this part of the diagonal are rounding of an inverse. */
 #define NEGLIGIBLE 1e-17
 
-/* Makes a exactly symmetric, or says where it is not; and diagonal [n] its diagonal. */
+/* Makes a exactly symmetric; diagonal [n] = its diagonal; a status. */
 static int symmetrize(tribo_context *ctx, const struct csr *a, double *diagonal)
 {
     for (size_t i = 0; i < a->n; i++) {
@@ -81,7 +78,7 @@ static int install(tribo_context *ctx, struct delassus *op, struct memory *m)
     return TRIBO_OK;
 }
 
-/* Whether the caller may change the operator. */
+/* Fails if the caller must not change the operator; a status. */
 static int check_fixed(tribo_context *ctx)
 {
     if (!ctx) {
@@ -118,7 +115,7 @@ int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
     return install(ctx, op, &m);
 }
 
-/* Takes a, sorted rows with finite entries, as the operator. Frees a. from: what they came from, if that is known. */
+/* Takes rows a, columns ascending, as the operator, and frees them; a status. from: see tribo_operator_create. */
 static int install_rows(tribo_context *ctx, struct csr *a, const struct inertia *from)
 {
     struct delassus *op;
@@ -183,9 +180,9 @@ int tribo_set_operator_dense(tribo_context *ctx, const double *r)
 }
 
 /* Checks the compressed rows of an [n][columns] matrix called name. */
-static int input_check_rows(tribo_context *ctx, size_t n, size_t columns, const size_t *rowptr, const size_t *col,
-                            const double *val)
+static int input_check_rows(tribo_context *ctx, size_t columns, const size_t *rowptr, const size_t *col, const double *val)
 {
+    const size_t n = ctx->n;
     if (!rowptr) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "rowptr is NULL");
     }
@@ -214,13 +211,23 @@ static int input_check_rows(tribo_context *ctx, size_t n, size_t columns, const 
     return TRIBO_OK;
 }
 
-/* In the transposed matrix equal columns of a row have become neighbours. */
-static int check_duplicates(tribo_context *ctx, const struct csr *t)
+/* Checks the rows of a matrix [n][columns], t = its transpose, in which equal columns of a row are neighbours; a status. */
+static int input_read(tribo_context *ctx, size_t columns, const size_t *rowptr, const size_t *col, const double *val,
+                      struct csr *t)
 {
+    const int status = input_check_rows(ctx, columns, rowptr, col, val);
+    if (status) {
+        return status;
+    }
+    if (!tribo_csr_transpose(t, ctx->n, columns, rowptr, col, val)) {
+        return input_out_of_memory(ctx);
+    }
     for (size_t j = 0; j < t->n; j++) {
         for (size_t k = t->first[j] + 1; k < t->first[j + 1]; k++) {
             if (t->col[k] == t->col[k - 1]) {
-                return tribo_fail(ctx, TRIBO_ERR_DUPLICATE, "contact %zu has column %zu twice", t->col[k], j);
+                const size_t i = t->col[k];
+                tribo_csr_free(t);
+                return tribo_fail(ctx, TRIBO_ERR_DUPLICATE, "contact %zu has column %zu twice", i, j);
             }
         }
     }
@@ -229,54 +236,27 @@ static int check_duplicates(tribo_context *ctx, const struct csr *t)
 
 int tribo_set_operator_csr(tribo_context *ctx, const size_t *rowptr, const size_t *col, const double *val)
 {
-    int status = check_fixed(ctx);
-    status = status ? status : input_check_rows(ctx, ctx->n, ctx->n, rowptr, col, val);
-    if (status) {
-        return status;
-    }
     struct csr t, a;
-    if (!tribo_csr_transpose(&t, ctx->n, ctx->n, rowptr, col, val)) {
-        return input_out_of_memory(ctx);
-    }
-    status = check_duplicates(ctx, &t);
-    if (!status && !tribo_csr_transpose(&a, t.n, t.n, t.first, t.col, t.val)) {
-        status = input_out_of_memory(ctx);
-    }
-    tribo_csr_free(&t);
-    return status ? status : install_rows(ctx, &a, NULL);
-}
-
-/* J [n][ndof] in compressed rows is right; t is J'. */
-static int input_read_direction(tribo_context *ctx, size_t ndof, const size_t *rowptr, const size_t *col, const double *val,
-                                struct csr *t)
-{
-    int status = input_check_rows(ctx, ctx->n, ndof, rowptr, col, val);
+    int status = check_fixed(ctx);
+    status = status ? status : input_read(ctx, ctx->n, rowptr, col, val, &t);
     if (status) {
         return status;
     }
-    if (!tribo_csr_transpose(t, ctx->n, ndof, rowptr, col, val)) {
-        return input_out_of_memory(ctx);
-    }
-    status = check_duplicates(ctx, t);
-    if (status) {
-        tribo_csr_free(t);
-    }
-    return status;
+    const int done = tribo_csr_transpose(&a, t.n, t.n, t.first, t.col, t.val);
+    tribo_csr_free(&t);
+    return done ? install_rows(ctx, &a, NULL) : input_out_of_memory(ctx);
 }
 
 int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inverse_mass, const size_t *rowptr, const size_t *col,
                             const double *val)
 {
+    struct csr t, a;
     int status = check_fixed(ctx);
-    if (status) {
-        return status;
-    }
-    if (ndof >= SIZE_MAX / 64) {
+    if (!status && ndof >= SIZE_MAX / 64) {
         return tribo_fail(ctx, TRIBO_ERR_SIZE, "ndof = %zu is too large", ndof);
     }
-    struct csr t, a;
-    status = tribo_check_nonnegative(ctx, "inverse_mass", inverse_mass, ndof);
-    status = status ? status : input_read_direction(ctx, ndof, rowptr, col, val, &t);
+    status = status ? status : tribo_check_nonnegative(ctx, "inverse_mass", inverse_mass, ndof);
+    status = status ? status : input_read(ctx, ndof, rowptr, col, val, &t);
     if (status) {
         return status;
     }
@@ -287,7 +267,7 @@ int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inver
     return status;
 }
 
-/* The caller's mass matrix, with a force and the acceleration that it makes. */
+/* The caller's mass matrix. */
 struct solver {
     size_t ndof;
     int (*apply)(size_t ndof, const double *force, double *acceleration, void *data);
@@ -321,31 +301,21 @@ static int find_column(tribo_context *ctx, const struct solver *m, size_t j, con
     return TRIBO_OK;
 }
 
-/* a, of which j rows are there, gets room for so many entries. */
-static int input_make_room(struct csr *a, size_t j, size_t room)
-{
-    struct csr more;
-    if (!tribo_csr_create(&more, a->n, room)) {
-        return 0;
-    }
-    memcpy(more.first, a->first, (j + 1) * sizeof *more.first);
-    memcpy(more.col, a->col, a->first[j] * sizeof *more.col);
-    memcpy(more.val, a->val, a->first[j] * sizeof *more.val);
-    tribo_csr_free(a);
-    *a = more;
-    return 1;
-}
-
-/* Appends the entries of column j to a, whose room grows where that is too little. */
+/* Appends the entries of column j to a, whose room grows as needed. Returns 0 if out of memory. */
 static int append_column(struct csr *a, size_t *room, size_t j, const double *column)
 {
     const size_t n = a->n;
     if (*room - a->first[j] < n) {
-        const size_t more = 2 * *room + n;
-        if (!input_make_room(a, j, more)) {
+        struct csr more;
+        *room = 2 * *room + n;
+        if (!tribo_csr_create(&more, n, *room)) {
             return 0;
         }
-        *room = more;
+        memcpy(more.first, a->first, (j + 1) * sizeof *more.first);
+        memcpy(more.col, a->col, a->first[j] * sizeof *more.col);
+        memcpy(more.val, a->val, a->first[j] * sizeof *more.val);
+        tribo_csr_free(a);
+        *a = more;
     }
     a->first[j + 1] = a->first[j];
     for (size_t i = 0; i < n; i++) {
@@ -357,7 +327,7 @@ static int append_column(struct csr *a, size_t *room, size_t j, const double *co
     return 1;
 }
 
-/* Entries that are nothing beside the diagonal go. */
+/* Removes entries that are rounding beside the diagonal; diagonal [n] = |r_ii|. */
 static void drop_negligible(struct csr *a, double *diagonal)
 {
     size_t kept = 0, k = 0;
@@ -392,7 +362,7 @@ int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
         return tribo_fail(ctx, TRIBO_ERR_SIZE, "ndof = %zu is too large", ndof);
     }
     struct csr t, a;
-    status = input_read_direction(ctx, ndof, rowptr, col, val, &t);
+    status = input_read(ctx, ndof, rowptr, col, val, &t);
     if (status) {
         return status;
     }

@@ -1,4 +1,4 @@
-/* The operator as it is kept, the connected parts of R's graph found once; and the memory of contexts that goes with it. */
+/* The operator: groups, the connected parts of R's graph; and the memory of a context that goes with it. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,11 +15,11 @@
 /* Smaller groups are dense, whatever their entries. */
 #define SPARSE_FROM 128
 
-/* A group whose contacts touch bodies with masses so far apart is kept to twice as many digits, if a pivot of R is small, too. */
+/* Groups of up to GRADED_TO contacts are kept to twice as many digits if the masses of a contact's bodies differ by more than
+ * GRADED_FROM, and a pivot of R is less than GRADED_PIVOT. Masses differ by at most GRADED_MOST; in larger groups by
+ * GRADED_MOST_LARGE. */
 #define GRADED_FROM 1e3
 #define GRADED_PIVOT 1e-4
-
-/* That is worth its cost in groups so small, and does up to this; in larger ones masses must not differ more than that. */
 #define GRADED_TO 256
 #define GRADED_MOST 1e18
 #define GRADED_MOST_LARGE 1e10
@@ -51,7 +51,7 @@ void tribo_memory_free(struct memory *m)
     *m = (struct memory){0};
 }
 
-/* If the diagonal of n contacts is given, with room for it and its inverse. */
+/* given: with room for the diagonal of n contacts and its inverse. */
 static struct delassus *lay_out_operator(struct layout *l, size_t n, int given)
 {
     struct delassus *op = tribo_layout_array(l, 1, sizeof *op);
@@ -83,7 +83,7 @@ int tribo_operator_diagonal(struct delassus **op, size_t n, const double *r)
     return 1;
 }
 
-/* What is constant of a group, and what a memory keeps of it, in doubles, which are as large as everything else. */
+/* Room for what is constant of a group, and for what a memory keeps of it, in doubles, which are as large as indices. */
 static size_t fixed_by(const struct group *g)
 {
     return 3 * g->size + (g->sparse ? 0 : (g->graded ? 2 : 1) * g->size * g->size);
@@ -125,7 +125,7 @@ struct box_qp *tribo_memory_problem(const struct delassus *op, struct memory *m,
 
 void tribo_memory_expect(const struct delassus *op, const struct memory *m, size_t k)
 {
-    enum { MOST = 1024 }; /* what there is beyond will come by itself */
+    enum { MOST = 1024 }; /* bytes behind these follow by themselves */
     const size_t fixed = fixed_by(&op->group[k]) * sizeof *op->fixed, kept = kept_by(&op->group[k]) * sizeof *m->store;
     tribo_expect(op->fixed + op->group[k].fixed, fixed < MOST ? fixed : MOST, 0);
     tribo_expect(m->store + op->group[k].kept, kept < MOST ? kept : MOST, 0);
@@ -152,7 +152,7 @@ static void lay_out_memory(struct memory *m, struct layout *b, const struct dela
     m->problem.to = tribo_layout_array(b, s, 1);
 }
 
-/* A memory of nothing yet, but for room for null vectors, which is known when ranks are. */
+/* Allocates a memory of zeros without its basis, whose size follows from ranks. Returns 0 if out of memory. */
 static int allocate_memory(struct memory *m, const struct delassus *op)
 {
     struct layout b = {0};
@@ -209,8 +209,8 @@ int tribo_memory_copy(struct memory *to, const struct memory *from, const struct
 
 /* ------------------------------------------------------------------------------------------------------ finding them */
 
-/* Makes groups of the islands of more than one contact. place [n] gets where a contact stands in its group; count [islands] is
- * workspace. */
+/* Makes groups of the islands label [n] of more than one contact. place [n] = the place of a contact in its group; count
+ * [islands] is workspace. Returns 0 if out of memory. */
 static int find_groups(struct delassus *op, size_t n, const size_t *label, size_t *place, size_t *count)
 {
     size_t members = 0;
@@ -227,7 +227,7 @@ static int find_groups(struct delassus *op, size_t n, const size_t *label, size_
         if (count[label[i]] > 1 && place[i] == 0) {
             op->group[op->groups].size = count[label[i]];
             op->group_of[i] = op->groups++;
-            /* the others of the group learn it from their first */
+            /* for the other contacts of the island */
             count[label[i]] = op->group_of[i];
         } else if (place[i] > 0) {
             op->group_of[i] = count[label[i]];
@@ -246,7 +246,7 @@ static int find_groups(struct delassus *op, size_t n, const size_t *label, size_
     return 1;
 }
 
-/* The rows of a group by place, if it may be worth to keep it sparse. */
+/* Makes the sparse factor of a group, if it is worth it. Returns 0 if out of memory. */
 static int make_sparse(struct group *g, const struct csr *a, const size_t *member, const size_t *place)
 {
     struct csr own;
@@ -272,8 +272,8 @@ static int make_sparse(struct group *g, const struct csr *a, const size_t *membe
     return done;
 }
 
-/* y = D^-1 |R| x, x [n] being positive. Returns the largest y_i/x_i, which bounds the eigenvalues of D^-1 R from above (Collatz
- * 1942), more closely with every call on the last y. */
+/* y = D^-1 |R| x, x [n] > 0. Returns the largest y_i/x_i, which bounds the eigenvalues of D^-1 R from above (Collatz 1942), more
+ * closely with every call on the last y. */
 static double operator_grow(const struct delassus *op, const struct csr *a, const double *x, double *y)
 {
     double most = 1.0;
@@ -288,7 +288,7 @@ static double operator_grow(const struct delassus *op, const struct csr *a, cons
     return most;
 }
 
-/* 0 if out of memory. */
+/* Sets growth. Returns 0 if out of memory. */
 static int find_growth(struct delassus *op, const struct csr *a)
 {
     enum { FEW = 4, MANY = 8 }; /* for the largest eigenvalue of contacts in a row, to 2% whatever the masses */
@@ -304,39 +304,30 @@ static int find_growth(struct delassus *op, const struct csr *a)
     return x != NULL;
 }
 
-/* How much the shares J_ik^2 w_k of bodies in R_ii differ: the largest over the smallest. */
-static double spread_of(const struct inertia *from, size_t i)
-{
-    double least = HUGE_VAL, most = 0.0;
-    for (size_t e = from->rowptr[i]; e < from->rowptr[i + 1]; e++) {
-        const double x = fabs(from->val[e]), root = x * sqrt(from->w[from->col[e]]);
-        if (root > 0.0) {
-            least = lesser(least, root);
-            most = greater(most, root);
-        }
-    }
-    const double ratio = most > 0.0 ? quotient(most, least) : 1.0;
-    return ratio < 1e150 ? ratio * ratio : TRIBO_FAR;
-}
-
-/* Whether the group may have to be graded. Returns 0 if the masses differ too much for it: then flaw says where. */
+/* Sets spread: the largest ratio of shares J_ik^2 w_k of bodies in one R_ii. Returns 0 if it is too large: flaw is set. */
 static int find_grading(struct group *g, const struct inertia *from, const size_t *member, struct flaw *flaw)
 {
-    double most = 1.0;
+    g->spread = 1.0;
     for (size_t c = 0; from && c < g->size; c++) {
-        const double spread = spread_of(from, member[c]);
-        if (spread > most) {
-            most = spread;
-            g->uneven = member[c];
-            *flaw = (struct flaw){member[c], g->size, spread};
+        const size_t i = member[c];
+        double least = HUGE_VAL, most = 0.0;
+        for (size_t e = from->rowptr[i]; e < from->rowptr[i + 1]; e++) {
+            const double root = fabs(from->val[e]) * sqrt(from->w[from->col[e]]);
+            least = root > 0.0 ? lesser(least, root) : least;
+            most = greater(most, root);
+        }
+        const double ratio = most > 0.0 ? quotient(most, least) : 1.0, spread = ratio < 1e150 ? ratio * ratio : TRIBO_FAR;
+        if (spread > g->spread) {
+            g->spread = spread;
+            g->uneven = i;
+            *flaw = (struct flaw){i, g->size, spread};
         }
     }
-    g->spread = most;
-    g->graded = most > GRADED_FROM && g->size <= GRADED_TO;
-    return most <= (g->graded ? GRADED_MOST : GRADED_MOST_LARGE);
+    g->graded = g->spread > GRADED_FROM && g->size <= GRADED_TO;
+    return g->spread <= (g->graded ? GRADED_MOST : GRADED_MOST_LARGE);
 }
 
-/* Everything is free. Returns what is left, as tribo_factor_rebuild does. */
+/* Factorizes R over all contacts of a group. Returns what tribo_factor_rebuild does. */
 static double factorize_all(struct box_qp *p, size_t *where)
 {
     p->count = p->group->size;
@@ -347,7 +338,7 @@ static double factorize_all(struct box_qp *p, size_t *where)
     return tribo_factor_rebuild(p, where);
 }
 
-/* 1 if R as it is filled in has a pivot so small that its rounding counts. */
+/* 1 if R in doubles has a pivot so small that its rounding counts. */
 static int loses_digits(struct box_qp *p)
 {
     const struct group *g = p->group;
@@ -357,7 +348,7 @@ static int loses_digits(struct box_qp *p)
     return p->sets->rank < g->size || 1.0 < GRADED_PIVOT * last * last;
 }
 
-/* R of a graded group to twice as many digits: r and r_low. */
+/* r + r_low = R of a graded group to twice as many digits. */
 static void fill_graded(const struct box_qp *p, double *r, double *r_low, const struct inertia *from, const size_t *member,
                         const size_t *place)
 {
@@ -379,6 +370,7 @@ static void fill_graded(const struct box_qp *p, double *r, double *r_low, const 
     }
 }
 
+/* Sets what is constant of group k. */
 static void fill_group(struct delassus *op, struct memory *m, size_t k, const struct csr *a, const struct inertia *from,
                        const size_t *place)
 {
@@ -422,7 +414,7 @@ static void fill_group(struct delassus *op, struct memory *m, size_t k, const st
     }
 }
 
-/* The ranks of all groups. */
+/* Sets the ranks of all groups; a status: R may be indefinite. */
 static int check_definite(struct delassus *op, struct memory *m, struct flaw *flaw)
 {
     for (size_t k = 0; k < op->groups; k++) {

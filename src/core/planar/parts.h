@@ -95,8 +95,8 @@ struct given {
 /* Sets what is given of planar contact k at v [2], feq [2]. */
 void tribo_planar_given(const tribo_context *ctx, size_t k, const double *v, const double *feq, struct given *g);
 
-/* Near stick: x->p.y = the point of the lens nearest to feq - kappa in the norm of the contact's block, in parts of limits. Returns
- * 1, or 0 without convergence. */
+/* Near stick: x->p.y = the point of the lens nearest to feq - kappa in the norm of the contact's block, in parts of limits.
+ * Returns 1, or 0 without convergence. */
 int tribo_planar_given_near(const tribo_context *ctx, size_t k, const struct given *g, const double *feq, struct disc_alone *x);
 
 /* ---- planar_static.c, where limits are static */
@@ -110,8 +110,8 @@ struct contacts tribo_planar_view(const tribo_context *ctx, size_t i, double *li
 /* Gives contacts of a cluster near stick at v their static limits, the others those by which they slide. */
 void tribo_planar_hold(tribo_context *ctx, const struct cluster *g, const double *v);
 
-/* Gives contacts that the solution cannot hold the limits by which they slide at the end of a step of dt, or (0) from rest. Returns
- * their number. a [n]: accelerations without friction. */
+/* Gives contacts that the solution cannot hold the limits by which they slide at the end of a step of dt, or (0) from rest.
+ * Returns their number. a [n]: accelerations without friction. */
 size_t tribo_planar_break(tribo_context *ctx, const struct cluster *g, double dt, const double *a);
 
 /* The change of the limit of direction i in parts of the limit. */

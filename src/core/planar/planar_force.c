@@ -2,11 +2,12 @@
  *
  * In units of its limits, y = f/limit, a planar contact slides with y = -n, n being the direction of limit v. Near stick y is in
  * the lens D ∩ (D - c), D being the unit disc and c = 2 |v|/epsilon n, which is kappa in these units; and y minimizes
- * 1/2 y'Sy + pull'y over the lenses and intervals of its cluster, S = limit R limit. Limits that differ make an ellipse: its longer
- * way to the edge of the band, limit epsilon, holds for both directions, so that c points along limit v, as f does where it slides.
+ * 1/2 y'Sy + pull'y over the lenses and intervals of its cluster, S = limit R limit. Limits that differ make an ellipse: its
+ * longer way to the edge of the band, limit epsilon, holds for both directions, so that c points along limit v, as f does where
+ * it slides.
  *
- * In S, limits and R are parts of the largest ones near stick in the cluster. A reach stands in for a limit that is far beyond the
- * force, see planar_reach.c; c is then kappa/reach. */
+ * In S, limits and R are parts of the largest ones near stick in the cluster. A reach stands in for a limit that is far beyond
+ * the force, see planar_reach.c; c is then kappa/reach. */
 #include "core/check.h"
 #include "core/static.h"
 #include "parts.h"

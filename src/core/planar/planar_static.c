@@ -44,7 +44,8 @@ void tribo_planar_hold(tribo_context *ctx, const struct cluster *g, const double
 /* The forces of redundant contacts are known to this part of their limits. */
 #define DISAGREEMENT 1e-12
 
-/* 1 if |f_eq| of the contact at e of the problem exceeds its limits by more than rounding; f_eq = y + shift - block^-1 gradient. */
+/* 1 if |f_eq| of the contact at e of the problem exceeds its limits by more than rounding; f_eq = y + shift - block^-1
+ * gradient. */
 static int is_pulled_beyond(const struct disc_qp *p, size_t e)
 {
     const int plane = p->wide[e] == 2;

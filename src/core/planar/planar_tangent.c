@@ -1,5 +1,5 @@
-/* Derivatives of the forces of a cluster by velocities, accelerations and limits: the contacts near stick stay in their places, and
- * Newton's equations along the freedoms that these leave keep them balanced. */
+/* Derivatives of the forces of a cluster by velocities, accelerations and limits: the contacts near stick stay in their places,
+ * and Newton's equations along the freedoms that these leave keep them balanced. */
 #include "core/static.h"
 #include "parts.h"
 

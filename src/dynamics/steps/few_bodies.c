@@ -11,13 +11,6 @@
 
 /* ------------------------------------------------------------------------------------------------------------- settings */
 
-/* Products of numbers between these are numbers. */
-#define LEAST 1e-100
-#define MOST 1e100
-
-/* Elimination must leave this part of the diagonal of R: then inverses are good to rounding. */
-#define LEAST_PIVOT 0.01
-
 static void take_matrix(const struct matrix *a, double to[FEW][FEW])
 {
     memset(to, 0, FEW * sizeof *to);
@@ -28,46 +21,18 @@ static void take_matrix(const struct matrix *a, double to[FEW][FEW])
     }
 }
 
-/* The inverse over a set of contacts, from that over the set without its last one, i. 0 if R is nearly singular. */
-static int few_invert(struct few_bodies *b, unsigned set, size_t i)
-{
-    double(*to)[FEW] = b->inverse[set], (*less)[FEW] = b->inverse[set & ~(1u << i)];
-    double z[FEW] = {0.0}, pivot = 0.0;
-    z[i] = 1.0;
-    for (size_t k = 0; k < i; k++) {
-        for (size_t l = 0; l < i; l++) {
-            z[k] -= less[k][l] * b->r[l][i];
-        }
-    }
-    for (size_t k = 0; k <= i; k++) {
-        pivot += b->r[i][k] * z[k];
-    }
-    const int fits = pivot > LEAST_PIVOT * b->r[i][i];
-    for (size_t k = 0; fits && k < FEW; k++) {
-        for (size_t l = 0; l < FEW; l++) {
-            to[k][l] = less[k][l] + z[k] * z[l] / pivot;
-        }
-    }
-    return fits;
-}
-
-/* R and its inverses. 0 if R is out of range, or nearly singular. */
+/* R, and what its small problems need. 0 if R is out of range, or nearly singular. */
 static int take_operator(struct few_bodies *b, const tribo_system *sys)
 {
-    int fits = 1;
     for (size_t i = 0; i < b->c; i++) {
         for (size_t j = 0; j < b->c; j++) {
-            b->r[i][j] = tribo_system_delassus(sys, i, j);
+            b->r[i * b->c + j] = tribo_system_delassus(sys, i, j);
         }
-        fits &= b->r[i][i] >= LEAST && b->r[i][i] <= MOST;
+        b->at[i] = FREE;
+        b->part[i] = tribo_resolution(b->c);
     }
-    memset(b->inverse[0], 0, sizeof b->inverse[0]);
-    for (size_t i = 0; fits && i < b->c; i++) {
-        for (unsigned set = 1u << i; fits && set < 2u << i; set++) {
-            fits = few_invert(b, set, i);
-        }
-    }
-    return fits;
+    b->inverse_of = 0;
+    return tribo_small_fits(b->c, b->r, b->inverse);
 }
 
 /* The snaps of each set of holding contacts. */
@@ -107,7 +72,6 @@ int tribo_few_take(struct few_bodies *b, tribo_system *sys)
         take_matrix(&sys->response, b->response);
         take_snaps(b, sys);
         memcpy(b->tally, sys->tally, b->c * sizeof *b->tally);
-        b->slip = (struct few_slip){.holding = (1u << b->c) - 1};
         b->fits = take_operator(b, sys);
     }
     return b->fits;
@@ -165,7 +129,7 @@ static int few_find_all(struct few_bodies *b, tribo_system *sys, size_t count, c
             tribo_get_limit(sys->contacts, limit);
         }
         for (size_t i = 0; i < b->c; i++) {
-            fits &= limit[i] <= MOST;
+            fits &= limit[i] <= TRIBO_SMALL_MOST;
             b->limit[i][s] = limit[i];
         }
     }
@@ -173,11 +137,6 @@ static int few_find_all(struct few_bodies *b, tribo_system *sys, size_t count, c
 }
 
 /* ---------------------------------------------------------------------------------------------------------------- steps */
-
-/* The contacts in a step: bounds of impulses, velocities without friction; impulses, and velocities at the end. */
-struct impulses {
-    double most[FEW], v[FEW], p[FEW], end[FEW];
-};
 
 /* Row a [m] times x. */
 static inline double row_times(size_t m, const double a[FEW], const double *x)
@@ -189,73 +148,12 @@ static inline double row_times(size_t m, const double a[FEW], const double *x)
     return sum;
 }
 
-static inline int few_holds(const struct few_slip *slip, size_t i)
-{
-    return slip->holding >> i & 1;
-}
-
-/* Error bound of the velocity of contact i by rounding. */
-static inline double noise_of(const struct few_bodies *b, size_t c, size_t i, const struct impulses *x)
-{
-    double size = fabs(x->v[i]);
-    for (size_t j = 0; j < c; j++) {
-        size += fabs(b->r[i][j]) * x->most[j];
-    }
-    return 4.0 * DBL_EPSILON * size;
-}
-
-/* Lets contacts slide whose impulse is beyond its bound, and those hold that move in the direction of their friction.
- * Returns 1 if any changes. */
-static inline int few_revise(const struct few_bodies *b, size_t c, const struct impulses *x, struct few_slip *slip)
-{
-    int changed = 0;
-    for (size_t i = 0; i < c; i++) {
-        const double along = slip->side[i] * x->end[i];
-        if (few_holds(slip, i) && fabs(x->p[i]) > x->most[i]) {
-            slip->side[i] = x->p[i] > 0.0 ? 1.0 : -1.0;
-            slip->holding &= ~(1u << i);
-            changed = 1;
-        } else if (along > 0.0 && along > noise_of(b, c, i, x) && x->most[i] > 0.0) {
-            slip->side[i] = 0.0;
-            slip->holding |= 1u << i;
-            changed = 1;
-        }
-    }
-    return changed;
-}
-
-/* Finds slip, p and end. 0 if contacts still change after ROUNDS. */
-static inline int few_settle(const struct few_bodies *b, size_t c, struct few_slip *slip, struct impulses *x)
-{
-    enum { ROUNDS = 2 * FEW + 2 };
-    int changed = 1;
-    for (int round = 0; changed && round < ROUNDS; round++) {
-        double held[FEW] = {0.0};
-        for (size_t i = 0; i < c; i++) {
-            x->p[i] = slip->side[i] * x->most[i];
-        }
-        for (size_t i = 0; i < c; i++) {
-            x->end[i] = x->v[i] + row_times(c, b->r[i], x->p);
-        }
-        for (size_t i = 0; slip->holding && i < c; i++) {
-            held[i] = row_times(c, b->inverse[slip->holding][i], x->end);
-        }
-        for (size_t i = 0; slip->holding && i < c; i++) {
-            x->p[i] -= held[i];
-            x->end[i] = few_holds(slip, i) ? 0.0 : x->end[i] - row_times(c, b->r[i], held);
-        }
-        changed = few_revise(b, c, x, slip);
-    }
-    return !changed;
-}
-
 /* Makes the velocities u of holding contacts exact, but of those at their bounds. */
-static inline void few_snap_all(const struct few_bodies *b, size_t n, size_t c, size_t s, const struct few_slip *slip,
-                                const struct impulses *x, double *u)
+static inline void few_snap_all(const struct few_bodies *b, size_t n, size_t c, size_t s, const struct small *x, double *u)
 {
     unsigned set = 0;
     for (size_t i = 0; i < c; i++) {
-        set |= (unsigned)(few_holds(slip, i) && fabs(x->p[i]) < x->most[i]) << i;
+        set |= (unsigned)(x->at[i] == FREE && fabs(x->x[i]) < x->hi[i]) << i;
     }
     for (size_t k = 0; k < c && k < b->snaps[set]; k++) {
         const struct few_snap *to = &b->snap[set][k];
@@ -269,34 +167,37 @@ static inline void few_snap_all(const struct few_bodies *b, size_t n, size_t c, 
 /* The motion of a run, in local memory: compilers keep it in registers. */
 struct few_state {
     double q[FEW], u[FEW], v[FEW], energy;
-    struct few_slip slip;
+    signed char at[FEW];
 };
 
-/* Step s of a run. 0 if it has to be left to others: then only m->slip has changed. */
-static inline int few_step(const struct few_bodies *b, size_t n, size_t c, size_t s, struct few_state *m)
+/* Step s of a run. 0 if it has to be left to others: then only m->at has changed. */
+static inline int few_step(struct few_bodies *b, size_t n, size_t c, size_t s, struct few_state *m)
 {
-    struct impulses x = {{0.0}, {0.0}, {0.0}, {0.0}};
-    double u[FEW] = {0.0}, work = 0.0;
+    static const double least[FEW] = {0.0};
+    double u[FEW] = {0.0}, v[FEW], less[FEW], most[FEW], p[FEW] = {0.0}, end[FEW], work = 0.0;
+    const struct small x = {b->r, b->inverse, &b->inverse_of, b->part, least, v, less, most, m->at, p, end};
     for (size_t d = 0; d < n; d++) {
         const double a = b->load[d][s] - row_times(n, b->stiffness[d], m->q);
         u[d] = m->u[d] + b->time[s] * (a - row_times(n, b->damping[d], m->u));
     }
     for (size_t i = 0; i < c; i++) {
-        x.v[i] = row_times(n, b->direction[i], u) - b->base[i][s];
-        x.most[i] = b->time[s] * b->limit[i][s];
+        v[i] = row_times(n, b->direction[i], u) - b->base[i][s];
+        most[i] = b->time[s] * b->limit[i][s];
+        less[i] = -most[i];
     }
-    if (!few_settle(b, c, &m->slip, &x)) {
+    if (!tribo_small_solve(c, &x)) {
         return 0;
     }
     for (size_t d = 0; d < n; d++) {
-        u[d] += row_times(c, b->response[d], x.p);
+        u[d] += row_times(c, b->response[d], p);
     }
-    if (m->slip.holding) {
-        few_snap_all(b, n, c, s, &m->slip, &x, u);
+    if (b->inverse_of) {
+        few_snap_all(b, n, c, s, &x, u);
     }
     for (size_t i = 0; i < c; i++) {
-        work += b->tally[i] * x.p[i] * (m->v[i] + x.end[i]);
-        m->v[i] = x.end[i];
+        const double to = m->at[i] == FREE ? 0.0 : end[i];
+        work += b->tally[i] * p[i] * (m->v[i] + to);
+        m->v[i] = to;
     }
     for (size_t d = 0; d < n; d++) {
         m->q[d] += b->h[s + 1] * u[d];
@@ -307,7 +208,7 @@ static inline int few_step(const struct few_bodies *b, size_t n, size_t c, size_
 }
 
 /* The first steps of a run. Returns how many of count could be taken. */
-static inline size_t few_steps(const struct few_bodies *b, size_t n, size_t c, size_t count, struct few_state *motion)
+static inline size_t few_steps(struct few_bodies *b, size_t n, size_t c, size_t count, struct few_state *motion)
 {
     struct few_state m = *motion;
     size_t s = 0;
@@ -331,13 +232,14 @@ static int few_finite(size_t n, const struct few_state *m)
 size_t tribo_few_run(struct few_bodies *b, tribo_system *sys, size_t count, const double *t, struct few_motion *m)
 {
     const size_t n = b->n, c = b->c;
-    struct few_state x = {.energy = m->energy, .slip = b->slip};
+    struct few_state x = {.energy = m->energy};
     if (!few_find_all(b, sys, count, t, m->last)) {
         return 0;
     }
     memcpy(x.q, m->q, n * sizeof *x.q);
     memcpy(x.u, m->u, n * sizeof *x.u);
     memcpy(x.v, m->v, c * sizeof *x.v);
+    memcpy(x.at, b->at, sizeof x.at);
     /* sizes as constants make loops straight: a step then takes half the time */
     const size_t taken = n != c   ? few_steps(b, n, c, count, &x)
                          : n == 1 ? few_steps(b, 1, 1, count, &x)
@@ -352,6 +254,6 @@ size_t tribo_few_run(struct few_bodies *b, tribo_system *sys, size_t count, cons
     memcpy(m->v, x.v, c * sizeof *x.v);
     m->energy = x.energy;
     m->last = b->h[taken];
-    b->slip = x.slip;
+    memcpy(b->at, x.at, sizeof x.at);
     return taken;
 }

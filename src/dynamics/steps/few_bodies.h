@@ -4,15 +4,15 @@
  * Friction over a step is the solution of min 1/2 p'Rp + v'p with |p| <= time limit, where v are the velocities of the
  * contacts without friction and p the impulses. The first guess is that contacts hold and slide as in the step before: its p
  * is the solution if each is within its bounds, and no contact that slides moves in the direction of its friction. Else
- * contacts change between the two as in numerics/box/box.c; if that takes too many rounds, the step is left to the caller. R
- * is far from singular, so that the solution is unique, and inverses over any set of holding contacts are good to rounding. */
+ * contacts change between the two as in numerics/box/small.h; if that takes too many rounds, the step is left to the caller. */
 #ifndef TRIBO_FEW_BODIES_H
 #define TRIBO_FEW_BODIES_H
 
 #include "dynamics/driver.h"
+#include "numerics/box/small.h"
 
 /* The most degrees of freedom, and the most contacts. */
-enum { FEW = 4 };
+enum { FEW = SMALL };
 
 /* u[to] = (base - rest u)/turn while the contact holds, without rounding. */
 struct few_snap {
@@ -20,22 +20,17 @@ struct few_snap {
     double turn, rest[FEW];
 };
 
-/* Contacts in a step. */
-struct few_slip {
-    unsigned holding; /* bit i: contact i holds */
-    double side[FEW]; /* of sliding contacts the sign of friction, else 0 */
-};
-
 struct few_bodies {
     int fits;        /* 1: runs can be taken with the settings */
     size_t revision; /* of the system to which all of this belongs; SIZE_MAX: none */
     size_t n, c;     /* degrees of freedom, contacts */
-    double stiffness[FEW][FEW], damping[FEW][FEW], direction[FEW][FEW], response[FEW][FEW], r[FEW][FEW];
-    double inverse[1 << FEW][FEW][FEW]; /* [holding] of R over a set of contacts, 0 elsewhere */
+    double stiffness[FEW][FEW], damping[FEW][FEW], direction[FEW][FEW], response[FEW][FEW];
+    double r[FEW * FEW], inverse[FEW * FEW], part[FEW]; /* see numerics/box/small.h; of r and inverse [c][c] */
+    unsigned inverse_of;
     double tally[FEW];
-    struct few_snap snap[1 << FEW][FEW]; /* [holding][snaps] in the order in which they are applied */
+    struct few_snap snap[1 << FEW][FEW]; /* [set that holds][snaps] in the order in which they are applied */
     size_t snaps[1 << FEW];
-    struct few_slip slip; /* of the step before */
+    signed char at[FEW]; /* in the step before: FREE: holds; AT_LOWER, AT_UPPER: slides, with friction -limit, limit */
     /* of the steps of a run: durations over which forces act; lengths, that of the step before the run first; and what acts */
     double time[RUN], h[RUN + 1];
     double load[FEW][RUN], base[FEW][RUN], limit[FEW][RUN];

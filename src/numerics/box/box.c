@@ -12,7 +12,7 @@
  * doi:10.1137/S1052623401383558). Usually none changes, and a call costs a solve and a gradient. That method may cycle; a primal
  * active set method, each change of which lowers the objective, then finishes. Either ends only when the gradient shows that x is
  * the solution, up to the gradient's rounding. */
-#include "box_qp.h"
+#include "small.h"
 
 #include <float.h>
 #include <math.h>
@@ -252,6 +252,36 @@ static void box_restore(struct box_qp *p, const double *x)
         p->x[p->near[e]] = x[p->near[e]];
     }
     tribo_box_gradients(p);
+}
+
+int tribo_box_small(struct box_qp *p)
+{
+    const size_t n = p->group->size;
+    const struct small s = {p->r, p->inverse, &p->sets->inverse_of, p->rounding.part, p->rounding.least, p->q,
+                            p->lo, p->hi, p->to, p->x, p->gradient};
+    double most = 0.0;
+    for (size_t e = 0; e < n; e++) {
+        const size_t i = p->near[e];
+        if (e < p->count) {
+            most = greater(most, greater(fabs(p->q[i]), greater(fabs(p->lo[i]), fabs(p->hi[i]))));
+            p->to[i] = !(p->lo[i] < p->hi[i]) ? AT_LOWER : p->at[i] == AWAY ? FREE : p->at[i];
+        } else {
+            most = greater(most, fabs(p->x[i]));
+            p->to[i] = AWAY;
+            p->q[i] = 0.0;
+        }
+    }
+    const int done = most <= TRIBO_SMALL_MOST && (n == 2   ? tribo_small_solve(2, &s)
+                                                  : n == 3 ? tribo_small_solve(3, &s)
+                                                           : tribo_small_solve(4, &s));
+    if (done) {
+        p->sets->far = 0;
+        p->twofold = 0;
+        if (memcmp(p->to, p->at, n) != 0) {
+            tribo_box_change_all(p);
+        }
+    }
+    return done;
 }
 
 int tribo_box_solve(struct box_qp *p)

@@ -7,7 +7,7 @@
  *   factor_graded.c   with twice as many digits, for light bodies between heavy ones
  *   sets.c            the sets of free contacts and of contacts at a bound, and their changes
  *   newton.c          the gradient, its rounding, and the step that takes it to zero
- *   small.c           solves the problem of up to 4 contacts
+ *   small.h           solves the problem of up to 4 contacts
  *   least_norm.c      shares forces among redundant contacts, and solves the linear system of the partition coupling
  *   box.c             solves the problem
  * Each calls those above it only. */
@@ -48,7 +48,7 @@ struct group {
     size_t terms;          /* entries of the fullest row */
     struct sparse *sparse; /* R and the pattern of its factor; NULL if dense */
     int graded;            /* 1: R and its factor have twice as many digits */
-    int small;             /* 1: small.c solves the problem where it can */
+    int small;             /* 1: tribo_box_small applies */
     double spread;         /* largest ratio of the shares of bodies in an R_ii, */
     size_t uneven;         /* and its contact i */
     size_t nullity;        /* size - rank of R: redundant contacts */
@@ -324,7 +324,8 @@ static inline void tribo_box_forget_low(const struct box_qp *p)
 /* Forces that miss the balance of a contact by more than this part of its limit are no solution. */
 #define TRIBO_MISSED 1e-6
 
-/* small.c: solves the problem of a small group. 1, or 0 if another solver is needed. */
+/* Solves the problem of a small group to rounding, which is not far; noise is not set. Returns 1, or 0 if tribo_box_solve is
+ * needed. */
 int tribo_box_small(struct box_qp *p);
 
 /* Solves the problem from the sets and the x of the last call. Returns 1, or 0 without convergence. */

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "box_qp.h"
 
@@ -15,39 +16,81 @@ enum { SMALL = 4 };
 
 /* A problem of n <= SMALL variables. Arrays are [n] unless stated. */
 struct small {
-    const double *r;                 /* [n][n] */
-    double *inverse;                 /* [n][n] of R over the variables in *inverse_of; 0 elsewhere */
-    unsigned *inverse_of;            /* bit i: variable i is in the set */
-    const double *part, *least;      /* noise_i = part_i (sizes of the terms of gradient_i + least_i) */
+    const double *r;            /* [n][n] */
+    double *inverse;            /* [n][n] of R over the variables in *inverse_of; 0 elsewhere */
+    unsigned *inverse_of;       /* bit i: variable i is in the set */
+    const double *part, *least; /* rounding error bound of gradient_i: part_i (sizes of its terms + least_i) */
     const double *q, *lo, *hi;
-    signed char *at;                 /* AT_LOWER, ...; AWAY: x_i is given */
-    double *x, *gradient, *noise;    /* the solution, R x + q, its rounding error bound */
+    signed char *at;      /* AT_LOWER, ...; AWAY: x_i is given */
+    double *x, *gradient; /* the solution, R x + q */
 };
 
 /* inverse [n][n] = R^-1 over set, 0 elsewhere, by bordering. */
-void tribo_small_invert(size_t n, const double *r, unsigned set, double *inverse);
+static inline void tribo_small_invert(size_t n, const double *r, unsigned set, double *inverse)
+{
+    memset(inverse, 0, n * n * sizeof *inverse);
+    for (size_t i = 0; i < n; i++) {
+        double z[SMALL] = {0.0}, pivot = 0.0;
+        z[i] = 1.0;
+        for (size_t k = 0; k < i; k++) {
+            for (size_t l = 0; l < i; l++) {
+                z[k] -= inverse[k * n + l] * r[l * n + i];
+            }
+        }
+        for (size_t k = 0; k <= i; k++) {
+            pivot += r[i * n + k] * z[k];
+        }
+        for (size_t k = 0; (set >> i & 1u) && k <= i; k++) {
+            for (size_t l = 0; l <= i; l++) {
+                inverse[k * n + l] += z[k] * z[l] / pivot;
+            }
+        }
+    }
+}
 
 /* 1 if R_ii are plain numbers and 1/(R^-1)_ii >= 0.01 R_ii, so that inverses over all sets are good to rounding. inverse [n][n]
  * is zero on return. */
-int tribo_small_fits(size_t n, const double *r, double *inverse);
+static inline int tribo_small_fits(size_t n, const double *r, double *inverse)
+{
+    const double least_pivot = 0.01;
+    int fits = n <= SMALL;
+    for (size_t i = 0; fits && i < n; i++) {
+        fits = r[i * (n + 1)] >= 1.0 / TRIBO_SMALL_MOST && r[i * (n + 1)] <= TRIBO_SMALL_MOST;
+    }
+    if (fits) {
+        tribo_small_invert(n, r, (1u << n) - 1, inverse);
+    }
+    for (size_t i = 0; fits && i < n; i++) {
+        fits = inverse[i * (n + 1)] > 0.0 && least_pivot * inverse[i * (n + 1)] * r[i * (n + 1)] < 1.0;
+    }
+    memset(inverse, 0, n * n * sizeof *inverse);
+    return fits;
+}
 
-/* Sets gradient and noise of all variables. Returns 1 if the gradients of free variables are noise. */
+/* Returns the rounding error bound of gradient_i. */
+static inline double tribo_small_noise(size_t n, const struct small *s, size_t i)
+{
+    double size = fabs(s->q[i]);
+    for (size_t j = 0; j < n; j++) {
+        size += fabs(s->r[i * n + j] * s->x[j]);
+    }
+    return s->part[i] * (size + s->least[i]);
+}
+
+/* Sets gradient = R x + q. Returns 1 if the gradients of free variables are noise, of which a part of q is the cheapest bound. */
 static inline int tribo_small_gradients(size_t n, const struct small *s)
 {
-    double sum[SMALL] = {0.0}, size[SMALL] = {0.0};
+    double sum[SMALL] = {0.0};
     int settled = 1;
     for (size_t j = 0; j < n; j++) {
         for (size_t i = 0; i < n; i++) {
-            const double term = s->r[j * n + i] * s->x[j];
-            sum[i] += term;
-            size[i] += fabs(term);
+            sum[i] += s->r[j * n + i] * s->x[j];
         }
     }
     for (size_t i = 0; i < n; i++) {
-        const double noise = s->part[i] * (size[i] + fabs(s->q[i]) + s->least[i]);
+        const double size = fabs(sum[i] + s->q[i]);
         s->gradient[i] = sum[i] + s->q[i];
-        s->noise[i] = noise;
-        settled &= (s->at[i] != FREE) | (fabs(sum[i] + s->q[i]) <= noise);
+        settled &= s->at[i] != FREE || size <= s->part[i] * fabs(s->q[i]) || size <= tribo_small_noise(n, s, i);
     }
     return settled;
 }
@@ -81,12 +124,14 @@ static inline int tribo_small_find(size_t n, const struct small *s)
         tribo_small_invert(n, s->r, set, s->inverse);
         *s->inverse_of = set;
     }
-    for (size_t j = 0; j < n; j++) {
+    for (size_t j = 0; set && j < n; j++) {
         for (size_t i = 0; i < n; i++) {
             gradient[i] += s->r[j * n + i] * s->x[j];
         }
     }
-    tribo_small_step(n, s, gradient);
+    if (set) {
+        tribo_small_step(n, s, gradient);
+    }
     for (int pass = 0; pass < 3; pass++) {
         if (tribo_small_gradients(n, s)) {
             return 1;
@@ -105,7 +150,8 @@ static inline int tribo_small_revise(size_t n, const struct small *s)
         const signed char at = s->at[i];
         if (at == FREE) {
             s->at[i] = (signed char)((s->x[i] > s->hi[i]) - (s->x[i] < s->lo[i]));
-        } else if (at != AWAY && at * s->gradient[i] > s->noise[i] && s->lo[i] < s->hi[i]) {
+        } else if (at != AWAY && at * s->gradient[i] > 0.0 && s->lo[i] < s->hi[i] &&
+                   at * s->gradient[i] > tribo_small_noise(n, s, i)) {
             s->at[i] = FREE;
         }
         changed |= s->at[i] != at;

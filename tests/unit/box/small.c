@@ -8,13 +8,13 @@
 struct bench {
     double r[SMALL * SMALL], inverse[SMALL * SMALL], part[SMALL], least[SMALL], q[SMALL], lo[SMALL], hi[SMALL];
     signed char at[SMALL];
-    double x[SMALL], gradient[SMALL], noise[SMALL];
+    double x[SMALL], gradient[SMALL];
     unsigned inverse_of;
 };
 
 static struct small view(struct bench *b)
 {
-    return (struct small){b->r, b->inverse, &b->inverse_of, b->part, b->least, b->q, b->lo, b->hi, b->at, b->x, b->gradient, b->noise};
+    return (struct small){b->r, b->inverse, &b->inverse_of, b->part, b->least, b->q, b->lo, b->hi, b->at, b->x, b->gradient};
 }
 
 /* R = I + random J J'; bounds and q are multiples of 1/4, so that some x lie at a bound exactly, and some boxes are points. */
