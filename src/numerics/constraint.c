@@ -14,7 +14,7 @@
 #define ROUNDING (16.0 * DBL_EPSILON)
 
 /* sqrt(mass) of a degree of freedom without mass, in parts of the smallest sqrt(mass) of a tie. */
-#define MASSLESS 1e-8
+#define NO_MASS 1e-8
 
 /* The rows of constraints, and their ties. */
 struct source {
@@ -217,7 +217,7 @@ static void fill(struct elimination *e, const struct source *s)
         lightest = greater(lightest, e->weight[l]);
     }
     for (size_t l = 0; l < t; l++) {
-        e->weight[l] = e->weight[l] > 0.0 ? e->weight[l] : lightest / MASSLESS;
+        e->weight[l] = e->weight[l] > 0.0 ? e->weight[l] : lightest / NO_MASS;
     }
     for (size_t p = 0; p < tie->rows; p++) {
         const size_t row = s->row[tie->order[p]];
