@@ -8,7 +8,7 @@ cmake -S . -B build/oss-fuzz -DCMAKE_BUILD_TYPE=Debug -DCMAKE_C_FLAGS_DEBUG="" -
 for target in core reader options; do
     corpus=tests/fuzz/corpus/$target
     [ "$target" != core ] || corpus=tests/stress/corpus
-    cmake --build build/oss-fuzz --target "fuzz_$target" --parallel
+    cmake --build build/oss-fuzz --target "fuzz_$target" --parallel "$(nproc)"
     cp "build/oss-fuzz/tests/fuzz/fuzz_$target" "$OUT/$target"
     (cd "$corpus" && python3 -m zipfile -c "$OUT/${target}_seed_corpus.zip" ./*)
 done
