@@ -18,6 +18,9 @@ void dgbtrf_(const int *rows, const int *cols, const int *below, const int *abov
 void dgbtrs_(const char *trans, const int *n, const int *below, const int *above, const int *count, const double *band,
              const int *stride, const int *pivot, double *x, const int *next, int *info, size_t one);
 
+/* A = L L'. */
+void dpotrf_(const char *triangle, const int *n, double *a, const int *stride, int *info, size_t one);
+
 /* A = P L U. */
 void dgetrf_(const int *rows, const int *cols, double *a, const int *stride, int *pivot, int *info);
 

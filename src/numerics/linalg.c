@@ -179,7 +179,6 @@ static int create_cholesky(struct cholesky *c, size_t n, int diagonal)
     *c = (struct cholesky){.n = n};
     do {
         c->root = tribo_layout_array(&l, n, sizeof *c->root);
-        c->pivot = tribo_layout_array(&l, n, sizeof *c->pivot);
         c->factor = diagonal ? NULL : tribo_layout_array(&l, n * n, sizeof *c->factor);
     } while (!l.memory && tribo_layout_create(&l));
     c->n = l.memory ? n : 0;
@@ -196,59 +195,10 @@ int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from)
         return 0;
     }
     memcpy(c->root, from->root, from->n * sizeof *c->root);
-    memcpy(c->pivot, from->pivot, from->n * sizeof *c->pivot);
     if (from->factor) {
         memcpy(c->factor, from->factor, from->n * from->n * sizeof *c->factor);
     }
     return 1;
-}
-
-static void exchange_rows(double *a, size_t cols, size_t i, size_t j)
-{
-    for (size_t k = 0; i != j && k < cols; k++) {
-        const double x = a[i * cols + k];
-        a[i * cols + k] = a[j * cols + k];
-        a[j * cols + k] = x;
-    }
-}
-
-size_t tribo_cholesky_row(const struct cholesky *c, size_t k)
-{
-    size_t row = k;
-    for (size_t j = k + 1; j-- > 0;) {
-        row = row == j ? c->pivot[j] : row == c->pivot[j] ? j : row;
-    }
-    return row;
-}
-
-/* Step k of P A P' = L L' in place: exchanges the largest remaining pivot into row k, and computes column k of L and the pivots
- * below. Above the diagonal A stays. Returns the pivot; column k is computed if the pivot exceeds 1/DBL_MAX, so that neither root
- * nor quotients raise exceptions. */
-static double eliminate_column(struct cholesky *c, size_t k)
-{
-    const size_t n = c->n;
-    double *a = c->factor, *row = a + k * n;
-    size_t best = k;
-    for (size_t i = k + 1; i < n; i++) {
-        best = a[i * n + i] > a[best * n + best] ? i : best;
-    }
-    exchange_rows(a, n, k, best);
-    for (size_t i = k; best != k && i < n; i++) {
-        const double x = a[i * n + k];
-        a[i * n + k] = a[i * n + best];
-        a[i * n + best] = x;
-    }
-    c->pivot[k] = best;
-    const double pivot = row[k];
-    if (pivot > 1.0 / DBL_MAX) {
-        row[k] = sqrt(pivot);
-        for (size_t i = k + 1; i < n; i++) {
-            double *below = a + i * n;
-            below[k] = (below[k] - tribo_dot(row, below, k)) / row[k];
-            below[i] -= below[k] * below[k];
-        }
-    }
-    return pivot;
 }
 
 /* As tribo_cholesky_create; spent: see tribo_sparse_factor_create. */
@@ -266,16 +216,17 @@ static int factorize(struct cholesky *c, const struct matrix *a, struct matrix *
     if (!create_cholesky(c, a->rows, diagonal)) {
         return TRIBO_ERR_MEMORY;
     }
+    int info = 0; /* the row of a pivot that is not positive, plus 1: the pivot stands on the diagonal */
     if (!diagonal) {
+        const int rows = (int)c->n;
         tribo_matrix_spread(a, c->factor);
+        dpotrf_("U", &rows, c->factor, &rows, &info, 1);
     }
     for (size_t i = 0; i < c->n; i++) {
-        c->pivot[i] = i;
-    }
-    for (size_t i = 0; i < c->n; i++) {
-        const double d = diagonal ? tribo_matrix_get(a, i, i) : eliminate_column(c, i);
+        const double own = diagonal ? tribo_matrix_get(a, i, i) : c->factor[i * (c->n + 1)];
+        const double d = diagonal || i + 1 == (size_t)info ? own : own * own;
         if (!(d > 1.0 / DBL_MAX)) {
-            *where = tribo_cholesky_row(c, i);
+            *where = i;
             *pivot = d;
             tribo_cholesky_free(c);
             return TRIBO_ERR_INDEFINITE;
@@ -328,23 +279,17 @@ void tribo_half_solve(const struct cholesky *c, double *x, size_t cols)
 {
     if (c->sparse) {
         tribo_sparse_factor_half_solve(c->sparse, 0, x, cols);
-        return;
+    } else {
+        solve_triangle(c, 0, x, cols);
     }
-    for (size_t k = 0; c->factor && k < c->n; k++) {
-        exchange_rows(x, cols, k, c->pivot[k]);
-    }
-    solve_triangle(c, 0, x, cols);
 }
 
 void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols)
 {
     if (c->sparse) {
         tribo_sparse_factor_half_solve(c->sparse, 1, x, cols);
-        return;
-    }
-    solve_triangle(c, 1, x, cols);
-    for (size_t k = c->n; c->factor && k-- > 0;) {
-        exchange_rows(x, cols, k, c->pivot[k]);
+    } else {
+        solve_triangle(c, 1, x, cols);
     }
 }
 
@@ -377,7 +322,12 @@ void tribo_lu_solve(const double *lu, size_t n, const int *pivot, double *x, siz
     dtrsm_("R", "U", "N", "N", &count, &rows, &one, lu, &rows, x, &count, 1, 1, 1, 1);
     dtrsm_("R", "L", "N", "U", &count, &rows, &one, lu, &rows, x, &count, 1, 1, 1, 1);
     for (size_t k = n; k-- > 0;) {
-        exchange_rows(x, cols, k, (size_t)pivot[k] - 1);
+        double *row = x + k * cols, *other = x + (size_t)(pivot[k] - 1) * cols;
+        for (size_t j = 0; j < cols; j++) {
+            const double own = row[j];
+            row[j] = other[j];
+            other[j] = own;
+        }
     }
 }
 

@@ -51,12 +51,11 @@ void tribo_even_out(size_t n, double *a);
 #define SPARSE_LEAST 200
 #define DENSE_MOST 3000
 
-/* A^-1 = S S'. Dense: S = P' L'^-1 from P A P' = L L'. Diagonal: root alone. Sparse: sparse alone. */
+/* A^-1 = S S'. Dense: S = L'^-1 from A = L L'. Diagonal: root alone. Sparse: sparse alone. */
 struct cholesky {
     size_t n;       /* 0: A is the identity */
     double *factor; /* [n][n] L in the lower triangle */
-    size_t *pivot;  /* [n] P exchanges row k and row pivot[k] >= k, for k = 0, 1, ... */
-    double *root;   /* [n] the diagonal of L; owns the memory of all three */
+    double *root;   /* [n] the diagonal of L; owns the memory of both */
     struct sparse_factor *sparse;
 };
 
@@ -70,9 +69,6 @@ int tribo_cholesky_consume(struct cholesky *c, struct matrix *a, size_t *where, 
 /* Returns 1, or 0 if out of memory. */
 int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from);
 void tribo_cholesky_free(struct cholesky *c);
-
-/* Returns the row of A of pivot k of a factor that is not sparse. */
-size_t tribo_cholesky_row(const struct cholesky *c, size_t k);
 
 /* x [count][n] = A^-1 x of count vectors. Returns 1, or 0 if out of memory, which cannot happen for count = 1. */
 int tribo_cholesky_solve(const struct cholesky *c, size_t count, double *x);

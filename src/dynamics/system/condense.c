@@ -270,9 +270,9 @@ static int factorize_without(const struct model *m, struct condensed *s)
     double pivot = 0.0;
     int status = tribo_cholesky_create(&s->factor, &s->kww, &where, &pivot);
     for (size_t k = 0; !status && s->factor.root && k < s->without; k++) {
-        where = tribo_cholesky_row(&s->factor, k);
+        where = k;
         pivot = s->factor.root[k] * s->factor.root[k];
-        status = pivot <= ROUNDING * tribo_matrix_get(&s->kww, where, where) ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
+        status = pivot <= ROUNDING * tribo_matrix_get(&s->kww, k, k) ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
     }
     return status == TRIBO_ERR_INDEFINITE
                ? tribo_model_fail(m, status,
