@@ -31,7 +31,7 @@ static int driver_check_static(const tribo_system *sys)
 static int check_contacts(const tribo_system *sys, const struct method *m)
 {
     const int springs = sys->expansion.place != NULL;
-    const size_t planar = m->takes & TAKES_PLANAR && !springs ? 0 : tribo_system_planar(sys);
+    const size_t planar = m->takes & NEEDS_SCALAR || springs ? tribo_system_planar(sys) : 0;
     const int status = !planar ? TRIBO_OK
                                : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                                    "method %s knows no planar contacts%s, of which the system has %zu%s", m->name,
@@ -44,7 +44,7 @@ int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const stru
 {
     int status = tribo_system_take_settings(sys);
     status = status ? status : check_contacts(sys, m);
-    if (!status && !(m->takes & TAKES_MASSLESS)) {
+    if (!status && m->takes & NEEDS_MASS) {
         char who[40];
         snprintf(who, sizeof who, "method %s", m->name);
         status = tribo_system_check_mass(sys, who);

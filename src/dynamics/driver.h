@@ -4,23 +4,23 @@
 
 #include "dynamics/system/system.h"
 
-/* Bits of what a method takes: settings, see tribo_driver_set_step and its neighbours; planar contacts; systems with degrees of
- * freedom without mass, and unsolved ones. */
+/* Bits of what a method takes: settings, see tribo_driver_set_step and its neighbours; and systems: unsolved ones too, only those
+ * whose contacts are all scalar, only those with mass at all degrees of freedom. */
 enum {
     TAKES_STEP = 1,
     TAKES_TOLERANCE = 2,
     TAKES_OUTPUT = 4,
     TAKES_MAX_STEP = 8,
-    TAKES_PLANAR = 16,
-    TAKES_MASSLESS = 32,
-    TAKES_UNSOLVED = 64
+    TAKES_UNSOLVED = 16,
+    NEEDS_SCALAR = 32,
+    NEEDS_MASS = 64
 };
 
 struct events;
 
 struct method {
     const char *name;
-    int takes; /* sum of TAKES_... */
+    int takes; /* sum of TAKES_... and NEEDS_... */
     int (*create)(tribo_driver *drv);
     void (*destroy)(tribo_driver *drv); /* also after a create that failed */
     /* Advances from *t to t1 > *t. continues = 1: the method's last advance ended at (t, y), and nothing has changed since.

@@ -189,7 +189,7 @@ static int find_by_choice(tribo_driver *drv, double t, double period, double *y)
 }
 
 static const struct method automatic = {.name = "auto",
-                                        .takes = TAKES_TOLERANCE | TAKES_OUTPUT | TAKES_PLANAR | TAKES_MASSLESS,
+                                        .takes = TAKES_TOLERANCE | TAKES_OUTPUT,
                                         .create = create_choice,
                                         .destroy = destroy_choice,
                                         .advance = advance_choice,

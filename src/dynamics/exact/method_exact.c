@@ -390,7 +390,7 @@ static int method_exact_open_events(tribo_driver *drv, struct events **events)
 }
 
 const struct method tribo_method_exact = {"exact",
-                                          TAKES_OUTPUT | TAKES_MASSLESS,
+                                          TAKES_OUTPUT | NEEDS_SCALAR,
                                           method_exact_create,
                                           method_exact_destroy,
                                           tribo_events_method,

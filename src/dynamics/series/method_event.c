@@ -616,7 +616,7 @@ static int open_events(tribo_driver *drv, struct events **events)
 }
 
 const struct method tribo_method_event = {"event",
-                                          TAKES_TOLERANCE | TAKES_OUTPUT | TAKES_PLANAR | TAKES_MASSLESS,
+                                          TAKES_TOLERANCE | TAKES_OUTPUT,
                                           method_event_create,
                                           destroy,
                                           tribo_events_method,

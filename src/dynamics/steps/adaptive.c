@@ -294,7 +294,7 @@ static int adaptive_advance(tribo_driver *drv, double *t, double t1, double *y, 
     return status;
 }
 
-enum { TAKES_ALL = TAKES_STEP | TAKES_TOLERANCE | TAKES_MAX_STEP | TAKES_PLANAR };
+enum { TAKES_ALL = TAKES_STEP | TAKES_TOLERANCE | TAKES_MAX_STEP | NEEDS_MASS };
 
 static int check_stepper(const tribo_system *sys, const tribo_stepper *s)
 {

@@ -245,7 +245,7 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
 }
 
 const struct method tribo_method_central_fixed = {.name = "central/fixed",
-                                                  .takes = TAKES_STEP | TAKES_PLANAR,
+                                                  .takes = TAKES_STEP | NEEDS_MASS,
                                                   .create = central_create,
                                                   .destroy = central_destroy,
                                                   .advance = central_advance};

@@ -457,7 +457,7 @@ static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, in
 }
 
 const struct method tribo_method_moreau_fixed = {.name = "moreau/fixed",
-                                                 .takes = TAKES_STEP | TAKES_PLANAR | TAKES_MASSLESS | TAKES_UNSOLVED,
+                                                 .takes = TAKES_STEP | TAKES_UNSOLVED,
                                                  .create = moreau_create,
                                                  .destroy = moreau_destroy,
                                                  .advance = moreau_advance};

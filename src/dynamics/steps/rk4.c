@@ -161,7 +161,7 @@ static int rk4_advance(tribo_driver *drv, double *t, double t1, double *y, int c
 }
 
 const struct method tribo_method_rk4_fixed = {.name = "rk4/fixed",
-                                              .takes = TAKES_STEP | TAKES_PLANAR,
+                                              .takes = TAKES_STEP | NEEDS_MASS,
                                               .create = rk4_create,
                                               .destroy = rk4_destroy,
                                               .advance = rk4_advance};
