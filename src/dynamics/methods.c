@@ -143,7 +143,8 @@ static int delegate(tribo_driver *drv, int which, const struct task *x)
     inner->output = drv->output;
     inner->seen = drv->seen;
     inner->data = drv->data;
-    status = x->finds ? inner->method->find_periodic(inner, *x->t, x->period, x->y) : tribo_driver_advance_motion(inner, x->t, x->t1, x->y);
+    status = x->finds ? inner->method->find_periodic(inner, *x->t, x->period, x->y)
+                      : tribo_driver_advance_motion(inner, x->t, x->t1, x->y);
     /* The caller counts the evaluations of an advance. */
     drv->steps += inner->steps - before.steps;
     drv->rejected += inner->rejected - before.rejected;

@@ -1,6 +1,6 @@
-/* GSL's steppers as steppers of tribo_dynamics.h, by its public calls only. GSL calls its error handler, which ends the program, where
- * memory ends and where a matrix of an implicit step is singular, and divides by zero where an estimate is zero: a step is prepared
- * so that none of that happens. */
+/* GSL's steppers as steppers of tribo_dynamics.h, by its public calls only. GSL's error handler ends the program where
+ * memory ends or a matrix of an implicit step is singular, and GSL divides by zero where an estimate is zero: each step is
+ * prepared so that none of that happens. */
 #include "tribo/tribo_gsl.h"
 
 #include "common/real.h"
@@ -16,30 +16,30 @@
 
 #include <gsl/gsl_errno.h>
 
-/* A pivot that is this part, or less, of what it is the sum of is taken for rounding. */
+/* A pivot of at most this part of the sum of its terms' sizes counts as zero. */
 #define LEAST_PIVOT 1e-13
 
-/* GSL multiplies by inverses of pivots, which of larger ones have no digits left. */
+/* Largest entry of a matrix: GSL multiplies by inverses of pivots, which lose all digits beyond. */
 #define LARGEST_ENTRY 1e140
 
-/* Implicit Runge-Kutta steps solve their equations to this part of the tolerance, since their estimates know nothing of that. */
+/* Implicit Runge-Kutta steps solve their equations to this part of the tolerance, which their estimates of the error leave
+ * out. */
 #define NEWTON 0.05
 
-/* Newton's method takes a change within a step that is this part of the tolerance, or less, for none. */
+/* Changes within a step up to this part of the tolerance are set to 0 for Newton's method; of a tolerance above ROUNDING
+ * times the state, this part of ROUNDING times the state. */
 #define NEGLIGIBLE 1e-3
-#define ROUNDING 1e-6 /* of a tolerance that is larger than this part of the state, that part */
+#define ROUNDING 1e-6
 
 struct gsl_kind {
     const char *name;
     const gsl_odeiv2_step_type *const *type;
-    /* Steps longer than this over the rate at which a contact at rest relaxes must not pass a change of what the contact does.
-     * HUGE_VAL: all may */
-    double stable;
-    int takes_slope; /* a step begins with f(t, y) */
-    int newton;      /* an implicit Runge-Kutta method with GSL's Newton iteration */
-    size_t matrices; /* that a step may factorize: I - h c_i A x J; 0 for explicit ones */
-    const double *c;
-    size_t stages;
+    double stable;   /* step times rate of a sticking contact above which no contact may change within a step; HUGE_VAL: none */
+    int takes_slope; /* 1: a step begins with f(t, y) */
+    int newton;      /* 1: an implicit Runge-Kutta method with GSL's Newton iteration */
+    size_t matrices; /* matrices I - h c[i] A x J that a step may factorize; 0: explicit */
+    const double *c; /* [matrices] */
+    size_t stages;   /* rows of A */
     const double *a; /* [stages][stages] A; NULL: 1 */
 };
 
@@ -49,18 +49,19 @@ struct gsl_step {
     size_t dimension, ndof, ncontact;
     int status; /* of the last evaluation */
     gsl_odeiv2_step *step;
-    gsl_odeiv2_system guarded;  /* what GSL sees of the system */
-    gsl_odeiv2_control control; /* GSL asks this one for the tolerance, */
-    gsl_odeiv2_driver driver;   /* by way of this one */
-    const tribo_trial *trial;
+    gsl_odeiv2_system guarded;  /* the system with callbacks of this file */
+    gsl_odeiv2_control control; /* gives GSL the tolerance, through driver */
+    gsl_odeiv2_driver driver;
+    const tribo_trial *trial; /* the step in progress */
 
     /* implicit kinds */
-    double *jacobian, *matrix; /* [dimension][dimension] the last one, if known; workspace of a factorization */
-    int known;
-    double regular;    /* all matrices of the step h with this Jacobian can be solved with; 0: of none known */
-    double *end;       /* [dimension] slope where it ends, newton kinds */
-    double *force;     /* [ncontact] */
-    signed char *mode; /* [2][ncontact] what contacts do where the step begins; workspace */
+    double *jacobian;  /* [dimension][dimension] the last one, if known */
+    double *matrix;    /* [stages dimension][stages dimension] workspace */
+    int known;         /* 1: jacobian is set */
+    double regular;    /* step length for which all matrices with this Jacobian are regular; 0: none */
+    double *end;       /* [dimension] slope at the end, newton kinds */
+    double *force;     /* [ncontact] workspace */
+    signed char *mode; /* [2][ncontact] slip at the beginning of a step; workspace */
 };
 
 /* ------------------------------------------------------------------------------------------------------------- memory */
@@ -69,7 +70,7 @@ struct request {
     size_t blocks, bytes;
 };
 
-/* Whether malloc has so much for all of them at once. */
+/* 1 if malloc has memory for all requests at once. */
 static int memory_for(const struct request *r, size_t count)
 {
     int enough = 1;
@@ -92,7 +93,7 @@ static int memory_for(const struct request *r, size_t count)
     return enough;
 }
 
-/* At least what creating a stepper of GSL takes: headers, vectors, histories of up to 13 vectors, and matrices. */
+/* 1 if there is memory for a stepper of GSL: headers, vectors, histories of up to 13 vectors, and matrices. */
 static int memory_to_create(const struct gsl_kind *kind, size_t n)
 {
     const size_t size = n * kind->stages, header = 512, vector = header + size * sizeof(double);
@@ -103,7 +104,7 @@ static int memory_to_create(const struct gsl_kind *kind, size_t n)
     return memory_for(all, sizeof all / sizeof *all);
 }
 
-/* A factorization allocates a vector of integers. */
+/* 1 if there is memory for a factorization, which allocates a vector of integers. */
 static int memory_to_factorize(const struct gsl_step *g)
 {
     const size_t header = 512;
@@ -119,7 +120,7 @@ static int gsl_step_out_of_memory(struct gsl_step *g)
 
 /* ---------------------------------------------------------------------------------------------------------- callbacks */
 
-static double largest(const double *x, size_t n)
+static double largest_size(const double *x, size_t n)
 {
     double most = 0.0;
     for (size_t i = 0; i < n; i++) {
@@ -128,14 +129,15 @@ static double largest(const double *x, size_t n)
     return most;
 }
 
-/* Open contacts carry nothing, and nearly nothing just before they lift off, or after they have touched down: no jump. */
+/* 1 if the force of a contact jumps between two slip states: open contacts (2) carry nothing, and nearly nothing just before
+ * they open and after they close. */
 static int jumps(signed char before, signed char after)
 {
     return before != after && before != 2 && after != 2;
 }
 
-/* Whether a contact sticks, breaks away or turns between where the step begins and the last evaluation, in a step that is longer
- * than so much beside the time in which it relaxes; one of rate 0 does not relax but jumps. */
+/* 1 if a contact jumps between the beginning of the step and the last evaluation, and relaxes by more than `part` within the
+ * step, or has rate 0: it does not relax. */
 static int passes_a_change(const struct gsl_step *g, double part)
 {
     const size_t n = g->ncontact;
@@ -151,7 +153,7 @@ static int passes_a_change(const struct gsl_step *g, double part)
     return 0;
 }
 
-/* Where GSL factorizes, one of these two has come before it and nothing allocates in between. */
+/* GSL factorizes after one of the next two functions, and allocates nothing in between: both end with a check of memory. */
 static int guarded_function(double t, const double y[], double dydt[], void *params)
 {
     struct gsl_step *g = params;
@@ -163,12 +165,12 @@ static int guarded_function(double t, const double y[], double dydt[], void *par
         return GSL_FAILURE;
     }
     if (g->kind->newton) {
-        /* Slopes that are nothing beside the tolerance, and beside the state, are left out for Newton's method: GSL's takes rounding
-         * that does not decrease for divergence. */
+        /* Slopes that change a value by less than NEGLIGIBLE of its tolerance are 0 for Newton's method: GSL's takes
+         * rounding that does not decrease for divergence. */
         const size_t n = g->ndof;
-        const double h = g->trial->h, way = largest(y, n) + h * largest(y + n, n);
+        const double h = g->trial->h, way = largest_size(y, n) + h * largest_size(y + n, n);
         tribo_system_get_force(g->sys, g->force);
-        const double size[] = {way, way / h, fabs(y[2 * n]) + way * largest(g->force, g->ncontact)};
+        const double size[] = {way, way / h, fabs(y[2 * n]) + way * largest_size(g->force, g->ncontact)};
         for (size_t i = 0; i <= 2 * n; i++) {
             const double least = NEGLIGIBLE * lesser(g->trial->tolerance[i], ROUNDING * size[i / n]);
             dydt[i] = fabs(dydt[i]) * h < least ? 0.0 : dydt[i];
@@ -177,7 +179,7 @@ static int guarded_function(double t, const double y[], double dydt[], void *par
     return memory_to_factorize(g) ? GSL_SUCCESS : gsl_step_out_of_memory(g);
 }
 
-/* matrix = I - h A x J, row by row, as GSL has it. */
+/* matrix = I - h A x J, by rows. */
 static void fill_matrix(const struct gsl_step *g, double h)
 {
     const size_t n = g->dimension, stages = g->kind->stages, size = n * stages;
@@ -195,8 +197,8 @@ static void fill_matrix(const struct gsl_step *g, double h)
     }
 }
 
-/* 1 if elimination of a [n][n], which is overwritten, meets no pivot that may be rounding: each is compared with the sum of the sizes
- * of its terms, so that scales of rows and columns do not matter. */
+/* 1 if elimination of a [n][n], which is overwritten, meets no pivot that may be rounding: each is compared with the sum of
+ * the sizes of its terms, so that scales of rows and columns do not matter. */
 static int has_sure_pivots(double *a, size_t n)
 {
     for (size_t k = 0; k < n; k++) {
@@ -228,8 +230,8 @@ static int has_sure_pivots(double *a, size_t n)
     return 1;
 }
 
-/* Whether GSL can solve with all matrices of a step h. Of msbdf, whose factor is that of its order, only the orders that there
- * are so far: an order grows from one step to the next only. */
+/* 1 if all matrices of a step are regular. Of msbdf, whose matrix belongs to its order, only those of orders up to the
+ * present one: an order grows from one step to the next only. */
 static int is_regular(struct gsl_step *g)
 {
     const size_t size = g->dimension * g->kind->stages;
@@ -238,7 +240,7 @@ static int is_regular(struct gsl_step *g)
     const double h = g->trial->h;
     for (size_t i = 0; i < count && h != g->regular; i++) {
         fill_matrix(g, g->kind->c[i] * h);
-        if (!(largest(g->matrix, size * size) <= LARGEST_ENTRY) || !has_sure_pivots(g->matrix, size)) {
+        if (!(largest_size(g->matrix, size * size) <= LARGEST_ENTRY) || !has_sure_pivots(g->matrix, size)) {
             return 0;
         }
     }
@@ -246,7 +248,7 @@ static int is_regular(struct gsl_step *g)
     return 1;
 }
 
-/* GSL takes any status as a reason to fail the step, and a shorter one has other matrices. */
+/* For a singular matrix returns GSL_FAILURE, for which GSL fails the step: a shorter one has other matrices. */
 static int guarded_jacobian(double t, const double y[], double *dfdy, double dfdt[], void *params)
 {
     struct gsl_step *g = params;
@@ -340,7 +342,7 @@ static void gsl_step_restart(void *data)
     g->known = 0;
 }
 
-/* Whether a contact sticks at either end of the step, or slides back at one and forth at the other. */
+/* 1 if a contact sticks at either end of the step, or slides in two directions at its ends. */
 static int has_stuck(const struct gsl_step *g)
 {
     const size_t n = g->ncontact;
@@ -360,7 +362,7 @@ static int gsl_step_apply(struct gsl_step *g)
         return gsl_step_out_of_memory(g);
     }
     if (g->known && !is_regular(g)) {
-        gsl_step_restart(g); /* so that GSL takes another Jacobian before it factorizes */
+        gsl_step_restart(g); /* GSL then asks for a Jacobian before it factorizes */
     }
     return gsl_odeiv2_step_apply(g->step, x->t, x->h, x->to, x->error, g->kind->takes_slope ? x->slope : NULL,
                                  g->kind->newton ? g->end : NULL, &g->guarded);
@@ -376,8 +378,8 @@ static int gsl_step_try(const tribo_trial *x, void *data)
     feholdexcept(&callers);
     const int status = gsl_step_apply(g);
     if (!status && g->kind->newton) {
-        /* Half steps see nothing of a force that jumps before or after all of their stages, nor of a contact that breaks away after
-         * them; slopes at both ends do. */
+        /* The estimate by half steps misses a force that jumps before or after all stages, and a contact that breaks away
+         * after them: adds the difference to the trapezoidal rule by slopes at both ends. */
         const int jumps = has_stuck(g);
         for (size_t i = 0; jumps && i < g->dimension; i++) {
             x->error[i] = fabs(x->error[i]) + fabs(0.5 * x->h * (x->slope[i] + g->end[i]) - (x->to[i] - x->y[i]));

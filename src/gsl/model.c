@@ -6,8 +6,8 @@
 
 typedef int csr_setter(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val);
 
-/* Row and column of entry k; of compressed forms *at is the row or column of the entry before. */
-static void place_of(const gsl_spmatrix *a, size_t k, size_t *at, size_t *row, size_t *column)
+/* Row and column of entry k. *at: of compressed forms the row or column of entry k - 1. */
+static void find_entry(const gsl_spmatrix *a, size_t k, size_t *at, size_t *row, size_t *column)
 {
     if (GSL_SPMATRIX_ISCOO(a)) {
         *row = (size_t)a->i[k];
@@ -22,18 +22,18 @@ static void place_of(const gsl_spmatrix *a, size_t k, size_t *at, size_t *row, s
 }
 
 /* Compressed rows of a: rowptr [rows + 1] all 0, col and val [entries]. */
-static void compress(const gsl_spmatrix *a, size_t *rowptr, size_t *col, double *val)
+static void compress_rows(const gsl_spmatrix *a, size_t *rowptr, size_t *col, double *val)
 {
     size_t row, column;
     for (size_t k = 0, at = 0; k < a->nz; k++) {
-        place_of(a, k, &at, &row, &column);
+        find_entry(a, k, &at, &row, &column);
         rowptr[row + 1]++;
     }
     for (size_t i = 0; i < a->size1; i++) {
         rowptr[i + 1] += rowptr[i];
     }
     for (size_t k = 0, at = 0; k < a->nz; k++) { /* rowptr[i] goes up to the end of row i */
-        place_of(a, k, &at, &row, &column);
+        find_entry(a, k, &at, &row, &column);
         col[rowptr[row]] = column;
         val[rowptr[row]++] = a->data[k];
     }
@@ -43,7 +43,7 @@ static void compress(const gsl_spmatrix *a, size_t *rowptr, size_t *col, double 
     rowptr[0] = 0;
 }
 
-static int set_matrix(tribo_model *model, const gsl_spmatrix *a, const char *name, size_t rows, csr_setter *set)
+static int set_spmatrix(tribo_model *model, const gsl_spmatrix *a, const char *name, size_t rows, csr_setter *set)
 {
     const size_t cols = tribo_model_ndof(model);
     char text[160];
@@ -62,7 +62,7 @@ static int set_matrix(tribo_model *model, const gsl_spmatrix *a, const char *nam
     double *val = malloc((a->nz + 1) * sizeof *val);
     int status = TRIBO_ERR_MEMORY;
     if (rowptr && val) {
-        compress(a, rowptr, col, val);
+        compress_rows(a, rowptr, col, val);
         status = set(model, rowptr, col, val);
     } else {
         snprintf(text, sizeof text, "out of memory for %s", name);
@@ -75,20 +75,20 @@ static int set_matrix(tribo_model *model, const gsl_spmatrix *a, const char *nam
 
 int tribo_gsl_model_set_mass(tribo_model *model, const gsl_spmatrix *m)
 {
-    return set_matrix(model, m, "mass", tribo_model_ndof(model), tribo_model_set_mass_csr);
+    return set_spmatrix(model, m, "mass", tribo_model_ndof(model), tribo_model_set_mass_csr);
 }
 
 int tribo_gsl_model_set_damping(tribo_model *model, const gsl_spmatrix *c)
 {
-    return set_matrix(model, c, "damping", tribo_model_ndof(model), tribo_model_set_damping_csr);
+    return set_spmatrix(model, c, "damping", tribo_model_ndof(model), tribo_model_set_damping_csr);
 }
 
 int tribo_gsl_model_set_stiffness(tribo_model *model, const gsl_spmatrix *k)
 {
-    return set_matrix(model, k, "stiffness", tribo_model_ndof(model), tribo_model_set_stiffness_csr);
+    return set_spmatrix(model, k, "stiffness", tribo_model_ndof(model), tribo_model_set_stiffness_csr);
 }
 
 int tribo_gsl_model_set_direction(tribo_model *model, const gsl_spmatrix *j)
 {
-    return set_matrix(model, j, "direction", tribo_model_ncontact(model), tribo_model_set_direction_csr);
+    return set_spmatrix(model, j, "direction", tribo_model_ncontact(model), tribo_model_set_direction_csr);
 }

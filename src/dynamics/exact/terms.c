@@ -106,11 +106,7 @@ void tribo_modal_terms_go(struct modal_motion *x, double tau)
         /* e^{lambda tau} of all terms. */
         double *re = x->far_r;
         double *im = x->far_i;
-        if (fabs(tau) * h->quickest <= COS_SIN_NEAR) {
-            tribo_cos_sin_near(tau, h->terms, h->li, re, im);
-        } else {
-            tribo_cos_sin_all(tau, h->terms, h->li, re, im);
-        }
+        tribo_cos_sin_all(tau, h->terms, h->li, re, im);
         for (size_t p = 0; !h->swings && p < h->exponents; p++) {
             if (h->lr[p] != 0.0) {
                 const double size = exp(h->lr[p] * tau);

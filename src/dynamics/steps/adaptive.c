@@ -1,5 +1,5 @@
-/* The methods that choose their steps: the loop in which a stepper tries steps, and their errors decide whether these are
- * taken. */
+/* Drivers by a stepper of tribo_dynamics.h: the loop that tries steps, accepts them by their errors, and chooses their
+ * lengths. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,40 +10,40 @@
 #include "dynamics/driver.h"
 #include "dynamics/reduce/spectrum.h"
 
-/* While all contacts rest, nothing moves, and an estimate sees no error however long the step: this long in terms of the
- * fastest motion of structure and loads it may be. */
+/* The largest step, times the highest frequency of structure and loads: while all contacts rest, an estimate of the error is
+ * 0 however long the step is. */
 #define LARGEST_STEP 0.1
 
-/* Defaults: tolerances, and the first step in terms of the largest one. */
+/* Defaults: tolerances, and the first step as a part of the largest one. */
 #define ABSTOL 1e-12
 #define RELTOL 1e-8
 #define FIRST_STEP 1e-2
 
-/* Velocities of contacts are found to this part of epsilon, over which friction changes from one end to the other. */
+/* Tolerance of the velocities of contacts, as a part of epsilon, over which friction changes from one end to the other. */
 #define PART_OF_EPSILON 1e-3
 
-/* So many steps may be rejected while time gets on by this part of the largest step. */
+/* Most steps rejected while time proceeds by HEADWAY times the largest step. */
 #define MOST_REJECTED 2000
 #define HEADWAY 1e-3
 
 struct adaptive {
     tribo_stepper stepper;
-    void *data;                     /* the stepper's own */
-    int owned;                      /* the driver destroys the stepper */
-    struct method method;           /* of the stepper's name */
-    double h;                       /* the next step */
-    double span;                    /* of the advance */
-    double since;                   /* when the count began of */
-    size_t rejected;                /* steps rejected without headway */
+    void *data;           /* of the stepper */
+    int owned;            /* 1: the driver destroys the stepper */
+    struct method method; /* of the stepper's name */
+    double h;             /* length of the next step */
+    double span;          /* of the advance */
+    double since;         /* time from which `rejected` counts */
+    size_t rejected;
     double *memory;                 /* all arrays */
-    double *to, *error, *tolerance; /* [dimension] */
+    double *to, *error, *tolerance; /* [dimension] end of a step; its error; tolerance */
 
-    /* what follows from the system, as it was with these revisions */
+    /* found from the system of revisions structure and revision, if prepared */
     int prepared;
     size_t structure, revision;
-    double largest;      /* step by default */
-    double *cap;         /* [ndof] on the tolerance of velocities */
-    double *band, *rate; /* [ncontact] while |v| is at most band, v relaxes at rate */
+    double largest;      /* step, unless the caller sets it */
+    double *cap;         /* [ndof] most tolerance of velocities */
+    double *band, *rate; /* [ncontact] epsilon; rate at which v relaxes while |v| <= band */
 };
 
 static void adaptive_destroy(tribo_driver *drv)
@@ -72,7 +72,7 @@ static void restart(const struct adaptive *a)
     }
 }
 
-/* What the contacts ask of velocities and steps, with the limits that they have. */
+/* cap, band and rate, from the limits at the time set. */
 static void find_bands(struct adaptive *a, tribo_system *sys)
 {
     double *limit = a->rate, *ratio = sys->feq, most = 0.0, fastest = 0.0, bound;
@@ -91,8 +91,7 @@ static void find_bands(struct adaptive *a, tribo_system *sys)
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (limit[i] > 0.0) {
-            /* Contact i changes its force by 2 limit_i in epsilon_i: errors of velocities that matter little beside the
-             * largest limit. */
+            /* the force changes by 2 limit_i over epsilon_i: this error of v_i changes it by a small part of the largest limit */
             const double error = law == TRIBO_COULOMB ? HUGE_VAL : PART_OF_EPSILON * a->band[i] * (most / limit[i]);
             const struct matrix *j = &sys->direction;
             double sum = 0.0;
@@ -111,7 +110,7 @@ static void find_bands(struct adaptive *a, tribo_system *sys)
     }
 }
 
-/* Brings all that up to date that follows from the system. */
+/* Finds anew what follows from the system, where that has changed. Returns a status. */
 static int adaptive_prepare(struct adaptive *a, tribo_driver *drv)
 {
     tribo_system *sys = drv->sys;
@@ -133,8 +132,8 @@ static int adaptive_prepare(struct adaptive *a, tribo_driver *drv)
     return TRIBO_OK;
 }
 
-/* The longest step from here, sys->v being the velocities of the contacts: where one is about to stick, an explicit method jumps
- * about in its band if a step is longer than is stable, and now and then its estimate happens to see nothing. */
+/* The longest step from velocities sys->v of contacts: inside a band an explicit method oscillates in steps that are longer than
+ * stable, and its estimate of the error may happen to be 0. */
 static double adaptive_longest(const struct adaptive *a, const tribo_driver *drv)
 {
     const tribo_system *sys = drv->sys;
@@ -147,7 +146,7 @@ static double adaptive_longest(const struct adaptive *a, const tribo_driver *drv
     return h;
 }
 
-/* The largest error in terms of the tolerance; infinite if something is not finite. */
+/* The largest error divided by its tolerance; HUGE_VAL if a value is not finite. */
 static double adaptive_size_of(const struct adaptive *a, size_t n)
 {
     double most = 0.0;
@@ -166,7 +165,7 @@ static int may_be_shorter(int status)
     return status == TRIBO_ERR_STEP || status == TRIBO_ERR_NO_CONVERGENCE || status == TRIBO_ERR_NOT_FINITE;
 }
 
-/* Says why a step of h from t failed with status: in the stepper, or in an evaluation of the system. */
+/* Keeps the message of a step of h from t that failed with status, in the stepper or in an evaluation of the system. */
 static int say_why(tribo_driver *drv, int status, double t, double h)
 {
     return drv->sys->status == status ? tribo_driver_explain(drv, t, h)
@@ -174,7 +173,7 @@ static int say_why(tribo_driver *drv, int status, double t, double h)
                                                           tribo_strerror(status));
 }
 
-/* Why a step failed however short it was. */
+/* Keeps the message of steps that failed at any length: with status, or with errors of size tolerances. */
 static int adaptive_give_up(tribo_driver *drv, int status, double t, double h, double size)
 {
     if (status == TRIBO_ERR_NOT_FINITE) {
@@ -188,7 +187,7 @@ static int adaptive_give_up(tribo_driver *drv, int status, double t, double h, d
                              h, size);
 }
 
-/* How many times longer the next step is: as GSL's control has it, none is changed for little. */
+/* The next length of steps, divided by the last one: as in GSL's control, small changes are not made. */
 static double next_step(const struct adaptive *a, double size)
 {
     const double order = a->stepper.order(a->data);
@@ -198,14 +197,14 @@ static double next_step(const struct adaptive *a, double size)
     return size > 0.5 ? 1.0 : size > 0.0 ? clamp(0.9 * pow(size, -1.0 / (order + 1.0)), 1.0, 5.0) : 5.0;
 }
 
-/* A step from *t, at most to end. */
+/* Takes a step from *t, at most to end. Returns a status. */
 static int advance_step(tribo_driver *drv, double *t, double end, double *y)
 {
     struct adaptive *a = drv->own;
     const size_t n = tribo_system_dimension(drv->sys);
     a->h = lesser(a->h, adaptive_longest(a, drv));
     for (;;) {
-        const double left = end - *t, h = a->h >= left ? left : lesser(a->h, 0.5 * left); /* no tiny rest */
+        const double left = end - *t, h = a->h >= left ? left : lesser(a->h, 0.5 * left); /* leaves no tiny rest */
         if (!(*t + h > *t)) {
             return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", *t, h);
         }
@@ -238,7 +237,8 @@ static int advance_step(tribo_driver *drv, double *t, double end, double *y)
     }
 }
 
-/* What a step from (t, y) has to know. The reversal law is told of each state that is accepted. */
+/* Prepares a step from (t, y): slope, bands, tolerances. The reversal law needs the slope of each accepted state. Returns a
+ * status. */
 static int begin_step(tribo_driver *drv, double t, const double *y)
 {
     struct adaptive *a = drv->own;
@@ -250,8 +250,8 @@ static int begin_step(tribo_driver *drv, double t, const double *y)
     if (tribo_system_limits_vary(drv->sys)) {
         find_bands(a, drv->sys);
     }
-    /* Displacements, velocities and the energy, each relative to the largest of their kind. A status: no step is short
-     * enough for an error below rounding. */
+    /* tolerances relative to the largest displacement, the largest velocity, and the energy; no step has an error below
+     * rounding */
     const size_t n = drv->sys->ndof, dimension = tribo_system_dimension(drv->sys);
     const double q = drv->abstol + drv->reltol * tribo_largest(y, n), u = drv->abstol + drv->reltol * tribo_largest(y + n, n);
     for (size_t d = 0; d < n; d++) {

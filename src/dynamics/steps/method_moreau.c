@@ -1,6 +1,6 @@
-/* Method "moreau/fixed": the implicit midpoint rule for the structure, Coulomb's law over the step, the mean of the
- * loads at both ends (Jean and Moreau 1992, theta = 1/2); the structure's part is factorized once for a step length. Stable for
- * any dt. */
+/* Method "moreau/fixed": the implicit midpoint rule for the structure, Coulomb's law over the step, the mean of the loads at
+ * both ends (Jean and Moreau 1992, theta = 1/2). The matrix of the structure is factorized once for a step length. Stable
+ * for any dt. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -77,7 +77,7 @@ static int moreau_create(tribo_driver *drv)
     return TRIBO_OK;
 }
 
-/* S is diagonal: the operator is that of the bodies one by one. */
+/* For a diagonal S: sets the operator of single bodies. Returns a status. */
 static int set_bodies(struct moreau *m, const tribo_system *sys, const double *own)
 {
     const struct matrix *j = &sys->direction;
@@ -96,7 +96,8 @@ static int set_bodies(struct moreau *m, const tribo_system *sys, const double *o
     return status ? tribo_system_fail(sys, status, "in a step, %s", tribo_message(m->contacts)) : TRIBO_OK;
 }
 
-/* The operator is r, unless that hides bodies; own as in hidden.h. */
+/* Sets the operator r. Where r has lost light bodies to rounding, sets that of single bodies or refuses; own as in hidden.h.
+ * Returns a status. */
 static int set_operator(struct moreau *m, const tribo_system *sys, const double *r, const double *own, double h)
 {
     struct hidden where;
@@ -124,13 +125,13 @@ static size_t planar_of(const tribo_context *contacts)
     return contacts && !tribo_get_count(contacts, TRIBO_COUNT_PLANAR, &planar) ? planar : 0;
 }
 
-/* Whether the system's contacts may have become planar, or others than before. */
+/* 1 if the system's contacts may have become planar, or other planar ones. */
 static int planar_changed(const struct moreau *m, const tribo_system *sys)
 {
     return m->settings != sys->changes && (planar_of(sys->contacts) || planar_of(m->contacts));
 }
 
-/* Contacts of its own, planar where the system's are. */
+/* Creates m->contacts, with planar contacts where the system has them. 0 if out of memory. */
 static int make_contacts(struct moreau *m, const tribo_system *sys)
 {
     if (m->contacts && !planar_of(sys->contacts) && !planar_of(m->contacts)) {
@@ -180,7 +181,7 @@ static int find_operator(const struct moreau *m, const tribo_system *sys, double
     return done;
 }
 
-/* The factor, S^-1 J', and a context with the operator J S^-1 J'. */
+/* Makes the factor, S^-1 J', and a context with the operator J S^-1 J'. Returns a status. */
 static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
 {
     const size_t c = sys->ncontact;
@@ -230,7 +231,7 @@ static void push(struct moreau *m, const tribo_system *sys, double h, const doub
     }
 }
 
-/* Prepares steps of length h. */
+/* Prepares steps of length h: in the band, or the whole. Returns a status. */
 static int moreau_prepare(struct moreau *m, const tribo_system *sys, double h)
 {
     size_t where = 0;
@@ -256,7 +257,7 @@ static void find_load(struct moreau *m, tribo_system *sys, double t)
     tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, m->load);
 }
 
-/* Limits as the contacts of a step have them, and static ones, if they may be others than in the step before. */
+/* Takes limits and static limits, if they may have changed since the last step. */
 static void moreau_take_limits(struct moreau *m, const tribo_system *sys)
 {
     const size_t revision = tribo_system_settings(sys);
@@ -276,7 +277,7 @@ static void moreau_take_limits(struct moreau *m, const tribo_system *sys)
 
 /* ------------------------------------------------------------------------------------------------------------ a step */
 
-/* Of what M is to be multiplied with, or of the rest. */
+/* p -= h (K q + C u), of the parts that are weighed or of those that are not. */
 static void pull_back(const tribo_system *sys, int weighed, double h, const double *q, const double *u, double *p)
 {
     const struct step_part k = tribo_step_stiffness(sys), c = tribo_step_damping(sys);
@@ -288,7 +289,7 @@ static void pull_back(const tribo_system *sys, int weighed, double h, const doub
     }
 }
 
-/* The impulse p of loads and structure in a step; s->u is where half of a step leads to. */
+/* p = impulse of loads and structure in a step; s->u = displacements in the middle of the step without changes of velocity. */
 static void find_push(struct moreau *m, tribo_system *sys, double t, double next, const double *from, double *p)
 {
     struct step_form *s = &m->common;
@@ -314,7 +315,7 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
     sys->evaluations++;
 }
 
-/* The forces of the step, which contacts slide, and the velocity s->u at its end: from the operator that contacts see. */
+/* s->f, s->mode and the velocity s->u at the end of the step, by the operator. Returns a status. */
 static int respond_whole(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
 {
     struct step_form *s = &m->common;
@@ -353,11 +354,12 @@ static int respond_whole(struct moreau *m, const tribo_system *sys, double h, co
     return TRIBO_OK;
 }
 
-/* The same in the band; 0 if that is not the way, or has not led to the end. */
+/* The same in the band. 0 if the system has no such band, or static limits, or no solution is found. */
 static int respond_in_band(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
 {
     struct step_form *s = &m->common;
-    if (!m->held.n || m->breaks || !tribo_step_band_solve(&m->held, h, m->limit, s->base, u, du, s->f)) {
+    const struct band_step step = {h, m->limit, s->base, u, du, s->f};
+    if (!m->held.n || m->breaks || !tribo_step_band_solve(&m->held, &step)) {
         return 0;
     }
     for (size_t i = 0; i < sys->ndof; i++) {

@@ -1,12 +1,11 @@
-/* The box-constrained problem of a step by the method of src/numerics/box/box.c, for bodies instead of contacts:
+/* The box-constrained problem of a step by the method of numerics/box/box.c, for bodies instead of contacts:
  *
- *     begin with the contacts that held in the last step
- *     repeat  du = the solution with these held; who carries more than the limit slides, who is pushed by its force holds
- *     until   no contact changes, or rounds end
+ * begin with the contacts that held in the last step repeat  du = solution with these held; contacts whose force is above the
+ * limit slide, contacts that move along their force hold until   no contact changes, or rounds end
  *
- * Where the band is stiff, a push goes on from body to body within the step, and each would find out only after the one before
- * it. So as long as contacts only begin to slide, twice as many neighbours slide along from round to round; who did so too early
- * is found to be pushed by its force, and holds again. */
+ * Where the band is stiff, the slip of a body overloads its neighbours within the step, and each round would reach the next
+ * neighbour only. So in rounds in which contacts only begin to slide, neighbours within `reach` slide along, and reach
+ * doubles from round to round; a contact that slides too early moves along its force, and holds again. */
 #include "step_band.h"
 #include "numerics/band.h"
 
@@ -17,7 +16,7 @@
 
 #include "common/real.h"
 
-/* What a contact does to its body: nothing, holds it, or held it until others began to slide. */
+/* held[]: the contact on a body slides, holds, or held until neighbours began to slide. */
 enum { FREE, HOLDS, FOLLOWS };
 
 /* A round costs as much as the band has entries, and a step hardly ever takes more than 10. */
@@ -40,7 +39,7 @@ void tribo_step_band_free(struct step_band *b)
 
 /* ---------------------------------------------------------------------------------------------------- whether it applies */
 
-/* Each contact touches one body, and each body one contact at most. seen [ndof] is workspace, all zero. */
+/* 1 if each contact touches one body, and each body one contact at most. seen [ndof]: workspace, all 0. */
 static int each_its_own(const struct matrix *j, signed char *seen)
 {
     for (size_t i = 0; i < j->rows; i++) {
@@ -53,7 +52,7 @@ static int each_its_own(const struct matrix *j, signed char *seen)
     return 1;
 }
 
-/* A damping matrix may be what its caller likes. */
+/* 1 if M A is symmetric, to rounding: damping matrices need not be. */
 static int symmetric(const struct matrix *a, const double *mass)
 {
     for (size_t i = 0; i < a->rows; i++) {
@@ -89,7 +88,7 @@ static int band_allocate(struct step_band *b, size_t n, size_t count)
     return 1;
 }
 
-/* A system whose masses are known one by one, with the narrow band that is worth it. */
+/* 1 if M is diagonal, contacts have bodies of their own, and the band is symmetric and narrow enough to save work. */
 static int applies(struct step_band *b, const tribo_system *sys)
 {
     const size_t n = sys->ndof;
@@ -111,7 +110,7 @@ static int applies(struct step_band *b, const tribo_system *sys)
 
 /* ------------------------------------------------------------------------------------------------------------ the factor */
 
-/* Of A without who is held; the place of a pivot that is not positive, or n. */
+/* Factorizes A without held bodies. Returns the place of a pivot that is not positive, or n. */
 static size_t band_factorize(struct step_band *b)
 {
     const size_t where = tribo_band_factorize(b->n, b->width, b->a, b->held, b->l);
@@ -153,13 +152,14 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, double 
     b->n = n;
     memset(b->held, 0, n);
     b->factored = 0;
-    *where = band_factorize(b); /* with nobody held: A is definite if and only if all these pivots are */
+    *where = band_factorize(b); /* with no body held: A is definite if and only if all these pivots are positive */
     return *where < n ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
 }
 
 /* --------------------------------------------------------------------------------------------------------------- the step */
 
-/* Row i of A times x, and the size of its terms. A is symmetric: right of the diagonal its rows are columns of what is stored. */
+/* Row i of A times x; *size = sum of the absolute values of its terms. Right of the diagonal rows are columns of the lower
+ * half. */
 static double row_dot(const struct step_band *b, size_t i, const double *x, double *size)
 {
     const size_t w = b->width, end = i + w < b->n ? i + w : b->n - 1;
@@ -179,24 +179,9 @@ static double row_dot(const struct step_band *b, size_t i, const double *x, doub
     return sum;
 }
 
-/* Moves by which held bodies stay with the base; whether there are any. */
-static int band_find_moves(struct step_band *b, const double *base, const double *u)
+/* Sets held[]; the factor is kept if it does not change. */
+static void hold_bodies(struct step_band *b)
 {
-    int any = 0;
-    for (size_t i = 0; i < b->count; i++) {
-        const size_t d = b->body[i];
-        b->move[d] = b->at[i] ? 0.0 : base[i] / b->lever[i] - u[d];
-        any |= b->move[d] != 0.0;
-    }
-    return any;
-}
-
-/* x = du and the forces with the sets as they are. */
-static void solve_sets(struct step_band *b, double h, const double *limit, const double *base, const double *u, double *x,
-                       double *f)
-{
-    const double doubt = 8.0 * DBL_EPSILON;
-    /* Marks the bodies that contacts hold; the factor is of no more use if these are others than before. */
     for (size_t i = 0; i < b->count; i++) {
         const signed char holds = b->at[i] ? FREE : HOLDS;
         b->factored &= b->held[b->body[i]] == holds;
@@ -205,65 +190,71 @@ static void solve_sets(struct step_band *b, double h, const double *limit, const
     if (!b->factored) {
         band_factorize(b);
     }
-    memcpy(x, b->push, b->n * sizeof *x);
+}
+
+/* du, f and noise with the contacts as they are in at[]. */
+static void solve_sets(struct step_band *b, const struct band_step *s)
+{
+    const double doubt = 8.0 * DBL_EPSILON, rate = 1.0 / s->h;
+    const size_t n = b->n, w = b->width;
+    double *x = s->du, *f = s->f;
+    hold_bodies(b);
+    memcpy(x, b->push, n * sizeof *x);
     for (size_t i = 0; i < b->count; i++) {
-        f[i] = b->at[i] * limit[i];
-        x[b->body[i]] += h * b->lever[i] * f[i];
+        f[i] = b->at[i] * s->limit[i];
+        x[b->body[i]] += s->h * b->lever[i] * f[i];
     }
-    if (band_find_moves(b, base, u)) {
-        /* What of x comes from the moves of held bodies, and those near them, goes to the other side. */
-        const size_t w = b->width;
-        for (size_t i = 0; i < b->count; i++) {
-            const size_t d = b->body[i], end = d + w < b->n ? d + w : b->n - 1;
-            for (size_t j = band_begin_of(b, d); b->move[d] != 0.0 && j <= end; j++) {
-                x[j] -= b->move[d] * (j <= d ? b->a[d * (w + 1) + j + w - d] : b->a[j * (w + 1) + d + w - j]);
-            }
+    /* columns of held bodies that move with their bases go to the right-hand side */
+    for (size_t i = 0; i < b->count; i++) {
+        const size_t d = b->body[i], end = d + w < n ? d + w : n - 1;
+        b->move[d] = b->at[i] ? 0.0 : s->base[i] / b->lever[i] - s->u[d];
+        for (size_t j = band_begin_of(b, d); b->move[d] != 0.0 && j <= end; j++) {
+            x[j] -= b->move[d] * (j <= d ? b->a[d * (w + 1) + j + w - d] : b->a[j * (w + 1) + d + w - j]);
         }
     }
-    for (size_t d = 0; d < b->n; d++) {
+    for (size_t d = 0; d < n; d++) {
         x[d] = b->held[d] ? 0.0 : x[d];
     }
-    tribo_band_solve(b->n, b->width, b->l, x);
+    tribo_band_solve(n, w, b->l, x);
     for (size_t i = 0; i < b->count; i++) {
         x[b->body[i]] = b->at[i] ? x[b->body[i]] : b->move[b->body[i]];
     }
-    const double rate = 1.0 / h;
     for (size_t i = 0; i < b->count; i++) {
         const size_t d = b->body[i];
         double size;
         const double sum = row_dot(b, d, x, &size), unit = rate * b->inverse[i];
-        b->noise[i] = doubt * fabs(unit) * (size + fabs(b->push[d]) + fabs(b->a[d * (b->width + 1) + b->width] * u[d]));
+        b->noise[i] = doubt * fabs(unit) * (size + fabs(b->push[d]) + fabs(b->a[d * (w + 1) + w] * s->u[d]));
         f[i] = b->at[i] ? f[i] : unit * (sum - b->push[d]);
     }
 }
 
-/* Where a contact wants to be. */
-static signed char wants(const struct step_band *b, size_t i, double rate, double limit, double v, double f)
+/* Revises at[] by forces and velocities: *freed contacts begin to slide, *caught contacts begin to hold. */
+static void band_revise(struct step_band *b, const struct band_step *s, size_t *freed, size_t *caught)
 {
-    if (b->at[i] == 0) {
-        return (signed char)((f > limit + b->noise[i]) - (f < -limit - b->noise[i]));
-    }
-    /* a velocity counts by the force that would take it away within the step */
-    const double pull = v * b->a[b->body[i] * (b->width + 1) + b->width] * (rate * b->inverse[i] * b->inverse[i]);
-    return pull * b->at[i] > b->noise[i] ? 0 : b->at[i];
-}
-
-/* Puts contacts where they want to be: *freed of them begin to slide, *caught of them hold. */
-static void band_revise(struct step_band *b, double h, const double *limit, const double *base, const double *u, const double *du,
-                        const double *f, size_t *freed, size_t *caught)
-{
-    const double rate = 1.0 / h;
+    const double rate = 1.0 / s->h;
     *freed = *caught = 0;
     for (size_t i = 0; i < b->count; i++) {
         const size_t d = b->body[i];
-        const signed char to = wants(b, i, rate, limit[i], b->lever[i] * (u[d] + du[d]) - base[i], f[i]);
-        *freed += !b->at[i] && to;
-        *caught += b->at[i] && !to;
-        b->at[i] = to;
+        const double noise = b->noise[i], most = s->limit[i] + noise;
+        const signed char at = b->at[i];
+        if (at == 0) {
+            const int side = (s->f[i] > most) - (s->f[i] < -most);
+            b->at[i] = (signed char)side;
+            *freed += side != 0;
+        } else {
+            /* the force that would take the velocity away within the step */
+            const double v = b->lever[i] * (s->u[d] + s->du[d]) - s->base[i];
+            const double pull = v * b->a[d * (b->width + 1) + b->width] * (rate * b->inverse[i] * b->inverse[i]);
+            if (pull * at > noise) {
+                b->at[i] = 0;
+                ++*caught;
+            }
+        }
     }
 }
 
-/* One body after the other, upwards or downwards: who held slides along if one of the last `reach` begins to. */
+/* Passes over the bodies upwards or downwards: a holding contact within `reach` bodies after one that begins to slide slides
+ * along. */
 static void band_sweep(struct step_band *b, size_t reach, int upwards)
 {
     size_t left = 0;
@@ -284,17 +275,16 @@ static void band_sweep(struct step_band *b, size_t reach, int upwards)
     }
 }
 
-int tribo_step_band_solve(struct step_band *b, double h, const double *limit, const double *base, const double *u, double *du,
-                          double *f)
+int tribo_step_band_solve(struct step_band *b, const struct band_step *s)
 {
     size_t reach = 0, freed, caught;
-    memcpy(b->push, du, b->n * sizeof *du);
+    memcpy(b->push, s->du, b->n * sizeof *s->du);
     for (int round = 0; round < ROUNDS; round++) {
-        solve_sets(b, h, limit, base, u, du, f);
-        band_revise(b, h, limit, base, u, du, f, &freed, &caught);
+        solve_sets(b, s);
+        band_revise(b, s, &freed, &caught);
         if (freed + caught == 0) {
             for (size_t i = 0; i < b->count; i++) {
-                f[i] = clamp(f[i], -limit[i], limit[i]);
+                s->f[i] = clamp(s->f[i], -s->limit[i], s->limit[i]);
             }
             return 1;
         }
@@ -304,6 +294,6 @@ int tribo_step_band_solve(struct step_band *b, double h, const double *limit, co
             band_sweep(b, reach, 0);
         }
     }
-    memcpy(du, b->push, b->n * sizeof *du);
+    memcpy(s->du, b->push, b->n * sizeof *s->du);
     return 0;
 }

@@ -68,7 +68,8 @@ static int step_matrix_weigh(struct matrix *a, const struct matrix *mass)
     return factor != NULL;
 }
 
-/* a = S: what is weighed begins as a sum with the identity. Zeroed if out of memory. */
+/* a = S. Weighed parts are added to the identity, then multiplied with M; the others are added after that. 0 if out of
+ * memory: then a is zeroed. */
 static int step_matrix_sum_up(const tribo_system *sys, double h, struct matrix *a)
 {
     const struct step_part k = tribo_step_stiffness(sys), c = tribo_step_damping(sys);
@@ -86,7 +87,7 @@ static int step_matrix_sum_up(const tribo_system *sys, double h, struct matrix *
 
 /* ------------------------------------------------------------------------------------------------------------ its factor */
 
-/* A band that holds far more than there is, or that is a whole matrix, gives way to a sparse factor. */
+/* 1 if a sparse factor costs less than the band: the band has far more entries than A, or is nearly the whole matrix. */
 static int suits_sparse(const struct step_matrix *m, const struct matrix *a)
 {
     const size_t width = m->below > m->above ? m->below : m->above;
@@ -108,7 +109,7 @@ static int factorize_band(struct step_matrix *m, const struct matrix *a, size_t 
     return status;
 }
 
-/* With exchange of rows: definite or not, it only must not be singular. */
+/* A factor with exchange of rows by LAPACK: S need not be definite, only regular. Returns a status. */
 static int factorize_lopsided(struct step_matrix *m, const struct matrix *a, size_t *where)
 {
     const size_t n = m->n, width = 2 * m->below + m->above + 1, middle = m->below + m->above;

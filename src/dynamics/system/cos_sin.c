@@ -1,21 +1,20 @@
-/* For many times: the angle omega t as the sum of two numbers, less a whole number of quarter turns, is at most an eighth of a
- * turn: there Taylor's series end soon. A caller that rounds upwards or downwards is left with at most a quarter turn, where they
- * are right to 1e-12. Nothing is chosen, so that loops over times become vectors. */
+/* For many times: the angle omega t as the sum of two numbers, less a whole number of quarter turns, is at most an eighth of
+ * a turn, for which Taylor's series of eight terms are enough. Where the caller rounds upwards or downwards it is at most a
+ * quarter turn, for which they are right to 1e-12. Without branches, so that loops over times become vectors. */
 #include "cos_sin.h"
 #include "common/simd.h"
 #include "numerics/twofold.h"
 
 #include <math.h>
 
-/* A whole number next to x, |x| < 2^51: the nearest one, where the caller rounds to nearest. */
+/* A whole number next to x, |x| < 2^51: the nearest one where the caller rounds to nearest. */
 static inline double nearest(double x)
 {
     const double lift = 6755399441055744.0; /* 1.5 2^52: the digits of a sum end before the point */
     return (x + lift) - lift;
 }
 
-/* angle less so many quarter turns: of pi/2 three pieces, of which the first two have so few digits that multiples of them up to
- * 2^20 are exact. */
+/* angle - quarters pi/2. pi/2 is first + second + third; multiples of first and second up to 2^20 are exact. */
 static inline struct twofold without_quarters(struct twofold angle, double quarters)
 {
     const double first = 0x1.921fb544p+0, second = 0x1.0b4611a6p-34, third = 0x1.3198a2e037073p-69;
@@ -23,7 +22,7 @@ static inline struct twofold without_quarters(struct twofold angle, double quart
     return twofold_sum(x.hi, (x.lo - quarters * third) + angle.lo);
 }
 
-/* The sum of c[k] (-z)^k, by pairs, so that no term waits for more than three others. */
+/* The sum of c[k] (-z)^k, k < 8, by pairs: no term waits for more than three others. */
 static inline double alternating(double z, const double *c)
 {
     const double z2 = z * z;
@@ -46,7 +45,8 @@ static inline double sine_near_0(struct twofold x)
     return x.hi + (x.lo * (1.0 - 0.5 * z) - x.hi * z * alternating(z, c));
 }
 
-TRIBO_SIMD void tribo_cos_sin_near(double omega, size_t n, const double *restrict t, double *restrict c, double *restrict s)
+TRIBO_SIMD static void cos_sin_near(double omega, size_t n, const double *restrict t, double *restrict c,
+                                    double *restrict s)
 {
     for (size_t k = 0; k < n; k++) {
         const struct twofold angle = twofold_product(omega, t[k]);
@@ -70,16 +70,6 @@ TRIBO_SIMD static int any_far(double omega, size_t n, const double *t)
     return any != 0;
 }
 
-/* How many of the times, from the first on, are near. */
-static size_t near_run(double omega, size_t n, const double *t)
-{
-    size_t k = any_far(omega, n, t) ? 0 : n;
-    while (k < n && fabs(omega * t[k]) <= COS_SIN_NEAR) {
-        k++;
-    }
-    return k;
-}
-
 void tribo_turn(double angle, double *cosine, double *sine)
 {
     const double c = cos(angle), s = sin(angle);
@@ -87,23 +77,10 @@ void tribo_turn(double angle, double *cosine, double *sine)
     *sine = s;
 }
 
-void tribo_cos_sin_all(double omega, size_t n, const double *t, double *c, double *s)
-{
-    for (size_t k = 0, run; k < n; k += run) {
-        run = near_run(omega, n - k, t + k);
-        if (run) {
-            tribo_cos_sin_near(omega, run, t + k, c + k, s + k);
-        } else {
-            tribo_cos_sin(omega, t[k], 0.0, c + k, s + k);
-            run = 1;
-        }
-    }
-}
-
-/* An angle so small has the cosine 1 and is its own sine. */
+/* Angles below have cosine 1, and are their own sine, to rounding. */
 #define TINY_ANGLE 1e-8
 
-/* What rounding leaves of omega t is turned on: phases of late times would tremble by it. */
+/* Turns on by `rest`, the rounding of omega t, by which phases of late times would tremble. */
 void tribo_cos_sin(double omega, double t, double low, double *c, double *s)
 {
     const double angle = omega * t, rest = (fabs(angle) < TWOFOLD_FAR ? twofold_product(omega, t).lo : 0.0) + omega * low;
@@ -114,4 +91,19 @@ void tribo_cos_sin(double omega, double t, double low, double *c, double *s)
     }
     *c = ca * cr - sa * sr;
     *s = sa * cr + ca * sr;
+}
+
+void tribo_cos_sin_all(double omega, size_t n, const double *t, double *c, double *s)
+{
+    if (!any_far(omega, n, t)) {
+        cos_sin_near(omega, n, t, c, s);
+        return;
+    }
+    for (size_t k = 0; k < n; k++) {
+        if (any_far(omega, 1, t + k)) {
+            tribo_cos_sin(omega, t[k], 0.0, c + k, s + k);
+        } else {
+            cos_sin_near(omega, 1, t + k, c + k, s + k);
+        }
+    }
 }

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The matrices of the Jacobian, dense, and room for its products. */
+/* Dense matrices in sys->dense: AK, AC [ndof][ndof], J [ncontact][ndof], B [ndof][ncontact]; derivatives of the forces by v and a
+ * [ncontact][ncontact], by q and u [ncontact][ndof]; workspace [ncontact][ndof], [ndof]. */
 struct dense {
     double *stiffness, *damping, *direction, *response, *df_dv, *df_da, *df_dq, *df_du, *pull, *load;
 };
@@ -53,10 +54,11 @@ static int create_dense(tribo_system *sys)
     return 0;
 }
 
-/* A time short beside the fastest motion, for differences. */
+/* The time of differences, times the highest frequency. */
 #define SHORT 1e-7
 
-/* df_dt [ncontact] = what limits that vary do to the forces, by the difference over a short time. Returns a status. */
+/* df_dt [ncontact] = change of the forces by limits that vary, by a difference over a short time; 0 if limits are constant.
+ * Returns a status. */
 static int find_limit_rates(tribo_system *sys, double *df_dt)
 {
     const double fastest = tribo_system_fastest(sys), later = SHORT / (fastest > 0.0 ? fastest : 1.0);
@@ -99,7 +101,7 @@ static void follow_time(tribo_system *sys, const struct dense *d, double *df_dt)
     tribo_multiply_add(m, m, 1, 1.0, d->df_da, sys->a, df_dt);
 }
 
-/* The rows of u' = load - AK q - AC u + B f, dfdy being 0 there. */
+/* Writes the rows of u' = load - AK q - AC u + B f; dfdy is 0 there. */
 static void write_motion(const tribo_system *sys, const struct dense *d, const double *df_dt, double *dfdy, double *dfdt)
 {
     const size_t n = sys->ndof, m = sys->ncontact, size = tribo_system_dimension(sys);
@@ -118,7 +120,7 @@ static void write_motion(const tribo_system *sys, const struct dense *d, const d
     }
 }
 
-/* The row of the energy, whose rate is -sum of tally f v. Spoils v of sys, and pull. */
+/* Writes the row of the energy, whose rate is -sum of tally f v. Overwrites v of sys, and pull. */
 static void write_power(tribo_system *sys, const struct dense *d, const double *df_dt, double *row, double *dfdt)
 {
     const size_t n = sys->ndof, m = sys->ncontact;
@@ -157,14 +159,14 @@ int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *
     }
     const struct dense d = dense_of(sys);
     double *df_dt = sys->feq;
-    /* Contacts at a state: forces in sys->f, how they follow v and a, and df_dt, as find_limit_rates has it. Returns a status. */
+    /* sys->f, df_dv, df_da and df_dt at the state */
     tribo_system_free_motion(sys, t, y, d.load, sys->v, sys->a);
     const int status = find_limit_rates(sys, df_dt);
     sys->status = status ? status
                          : tribo_system_explain(sys, tribo_balance_tangent(sys->contacts, sys->v, sys->a, NULL, sys->f, d.df_dv,
                                                                            d.df_da));
     if (sys->status) {
-        const int found = tribo_system_check_state(sys, t, y); /* names the value of y, if it is one */
+        const int found = tribo_system_check_state(sys, t, y); /* its message names the value of y that is not finite */
         return sys->status = found ? found : sys->status;
     }
     follow_state(n, sys->ncontact, &d);

@@ -1,4 +1,4 @@
-/* What comes from outside and changes with time: loads on the structure, motion of the bases, limits. */
+/* Functions of time: loads on the structure, motions of the bases, limits. */
 #include "cos_sin.h"
 #include "system.h"
 #include "common/layout.h"
@@ -22,7 +22,7 @@ static void lay_out_harmonic(struct harmonic *h, struct layout *l, size_t n)
     h->sine = tribo_layout_array(l, n, sizeof *h->sine);
 }
 
-/* Room for so many entries; 0 if out of memory: then there is none. */
+/* Allocates n entries. 0 if out of memory: then nothing is allocated. */
 static int create_harmonic(struct harmonic *h, size_t n)
 {
     struct layout l = {0};
@@ -56,7 +56,7 @@ void tribo_loads_free(tribo_system *sys)
 
 /* ------------------------------------------------------------------------------------------------------------------- copies */
 
-/* A copy of the table; 0 if out of memory. */
+/* t = the table of time [knots] and value [knots][columns]. 0 if out of memory. */
 static int create_table(struct table *t, size_t knots, size_t columns, const double *time, const double *value)
 {
     int done = 1;
@@ -79,7 +79,7 @@ static int copy_harmonic(struct harmonic *to, const struct harmonic *from)
     return 1;
 }
 
-/* A copy with its columns, and its pattern [n], if there is one. */
+/* to = from, with its columns and its pattern [n], if there is one. 0 if out of memory. */
 static int copy_table(struct table *to, const struct table *from, size_t columns, size_t n)
 {
     int done = 1;
@@ -138,7 +138,7 @@ void tribo_harmonic_take(const tribo_system *sys, struct harmonic *h, double c, 
     }
 }
 
-/* The knot at or before t, the first one if there is none. */
+/* The last knot at or before t; the first one if there is none. */
 static size_t knot_at(const struct table *table, double t)
 {
     size_t lo = 0, hi = table->knots;
@@ -149,7 +149,7 @@ static size_t knot_at(const struct table *table, double t)
     return lo;
 }
 
-/* Value (order 0) or slope (1) of column i, of columns, of a table at the time set. */
+/* Value (order 0) or slope (order 1) of column i of a table at the time set. */
 static double look_up(const tribo_system *sys, const struct table *table, size_t columns, size_t i, int order)
 {
     const size_t k = table->at;
@@ -223,7 +223,7 @@ void tribo_system_tables(const tribo_system *sys, enum drives drives, int order,
     }
 }
 
-/* The order-th derivatives of cos(omega t) and sin(omega t) at the time set. */
+/* *c, *s = order-th derivatives of cos(omega t), sin(omega t) at the time set. */
 static inline void loads_differentiate(const struct harmonic *h, int order, double *c, double *s)
 {
     *c = h->cos_t;
@@ -305,7 +305,7 @@ void tribo_system_most_limits(const tribo_system *sys, double *most)
     }
 }
 
-/* A limit of which so many derivatives are nothing but rounding is 0. */
+/* A limit whose first DERIVATIVES derivatives are all rounding is 0. */
 #define DERIVATIVES 9
 
 int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
@@ -331,7 +331,8 @@ int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
 
 /* ------------------------------------------------------------------------------------------------------------------ harmonics */
 
-/* Keeps only entries in which cosine or sine is not zero, but all those of limits, which are looked up contact by contact. */
+/* h = the entries of cosine and sine [n] in which either is not 0; of limits, which are looked up by contact, all. 0 if out
+ * of memory. */
 static int loads_compress(struct harmonic *h, size_t n, const double *cosine, const double *sine)
 {
     if (!create_harmonic(h, n)) {
@@ -377,7 +378,7 @@ static int check_place(const tribo_system *sys, enum drives drives, const char *
     return TRIBO_OK;
 }
 
-/* Limits, and what is computed from them, are to remain numbers. */
+/* The largest limit: what is computed from limits is finite. */
 #define MOST_LIMIT 1e300
 
 static int loads_check_limits(const tribo_system *sys, const double *cosine, const double *sine)
@@ -515,7 +516,7 @@ int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *
     return loads_add_harmonic(sys, DRIVES_BASE, omega, cosine, sine);
 }
 
-/* Before limits begin to vary: given_limit becomes what the caller set. */
+/* Takes the settings, and keeps the limits of the context in given_limit before limits begin to vary. Returns a status. */
 static int loads_begin_limits(tribo_system *sys)
 {
     const int status = tribo_system_take_settings(sys);
@@ -533,7 +534,7 @@ int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine
 
 /* --------------------------------------------------------------------------------------------------------------------- tables */
 
-/* At the knots stands what is called name. */
+/* Returns TRIBO_OK if time [knots] ascends and is finite, and value, of the name `name`, is not NULL. */
 static int check_knots(const tribo_system *sys, size_t knots, const double *time, const char *name, const double *value)
 {
     if (!time || !value) {
@@ -551,7 +552,7 @@ static int check_knots(const tribo_system *sys, size_t knots, const double *time
     return TRIBO_OK;
 }
 
-/* The index is the knot's. */
+/* Returns TRIBO_OK if limit [knots][ncontact] is finite, not negative, and constant at elastic contacts. */
 static int check_limit_table(const tribo_system *sys, size_t knots, const double *limit)
 {
     const size_t n = sys->ncontact;
@@ -571,7 +572,7 @@ static int check_limit_table(const tribo_system *sys, size_t knots, const double
     return status;
 }
 
-/* Adds the table with a pattern [given] of forces on the degrees of freedom, or of velocities of the bases. */
+/* Adds the table value [knots] times pattern: forces [given], or velocities of bases [ncontact]. Returns a status. */
 static int add_table(tribo_system *sys, enum drives drives, size_t knots, const double *time, const double *value,
                      const double *pattern)
 {
