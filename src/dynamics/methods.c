@@ -39,28 +39,6 @@ static int driver_same_name(const char *a, const char *b)
     return driver_lower(*a) == driver_lower(*b);
 }
 
-static const struct method *driver_find(const char *name)
-{
-    for (int i = 0; i < tribo_method_count(); i++) {
-        if (driver_same_name(methods[i]->name, name)) {
-            return methods[i];
-        }
-    }
-    return NULL;
-}
-
-static int unknown(const tribo_system *sys, const char *name)
-{
-    char list[200] = "";
-    for (int i = 0; i < tribo_method_count(); i++) {
-        const size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", methods[i]->name);
-    }
-    return tribo_system_fail(sys, TRIBO_ERR_NAME,
-                             "method \"%.20s\" is unknown; there are %s; tribo_gsl_driver_create takes GSL's steppers", name,
-                             list);
-}
-
 int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method)
 {
     if (!sys) {
@@ -69,8 +47,17 @@ int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *metho
     if (!drv || !method) {
         return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", drv ? "method" : "drv");
     }
-    const struct method *m = driver_find(method);
-    return m ? tribo_driver_create_method(drv, sys, m) : unknown(sys, method);
+    const struct method *m = NULL;
+    char list[200] = "";
+    for (int i = 0; i < tribo_method_count(); i++) {
+        const size_t used = strlen(list);
+        m = driver_same_name(methods[i]->name, method) ? methods[i] : m;
+        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", methods[i]->name);
+    }
+    return m ? tribo_driver_create_method(drv, sys, m)
+             : tribo_system_fail(sys, TRIBO_ERR_NAME,
+                                 "method \"%.20s\" is unknown; there are %s; tribo_gsl_driver_create takes GSL's steppers",
+                                 method, list);
 }
 
 /* ------------------------------------------------------------------------------------------------------ method "auto" */

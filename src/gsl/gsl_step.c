@@ -440,26 +440,6 @@ static int same_name(const char *a, const char *b)
     return a[i] == b[i];
 }
 
-static const struct gsl_kind *find_kind(const char *name)
-{
-    for (int i = 0; i < tribo_gsl_stepper_count(); i++) {
-        if (same_name(kinds[i].name, name)) {
-            return &kinds[i];
-        }
-    }
-    return NULL;
-}
-
-static int unknown_stepper(tribo_system *sys, const char *name)
-{
-    char text[200];
-    size_t used = (size_t)snprintf(text, sizeof text, "stepper \"%.20s\" is unknown; GSL has ", name);
-    for (int i = 0; i < tribo_gsl_stepper_count(); i++) {
-        used += (size_t)snprintf(text + used, sizeof text - used, "%s%s", i ? ", " : "", kinds[i].name);
-    }
-    return tribo_system_set_message(sys, TRIBO_ERR_NAME, text);
-}
-
 int tribo_gsl_driver_create(tribo_driver **drv, tribo_system *sys, const char *stepper)
 {
     if (!sys) {
@@ -468,9 +448,15 @@ int tribo_gsl_driver_create(tribo_driver **drv, tribo_system *sys, const char *s
     if (!drv || !stepper) {
         return tribo_system_set_message(sys, TRIBO_ERR_NULL, drv ? "stepper is NULL" : "drv is NULL");
     }
-    const struct gsl_kind *kind = find_kind(stepper);
+    const struct gsl_kind *kind = NULL;
+    char text[200];
+    size_t used = (size_t)snprintf(text, sizeof text, "stepper \"%.20s\" is unknown; GSL has ", stepper);
+    for (int i = 0; i < tribo_gsl_stepper_count(); i++) {
+        kind = same_name(kinds[i].name, stepper) ? &kinds[i] : kind;
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s%s", i ? ", " : "", kinds[i].name);
+    }
     if (!kind) {
-        return unknown_stepper(sys, stepper);
+        return tribo_system_set_message(sys, TRIBO_ERR_NAME, text);
     }
     struct gsl_step *g = gsl_step_create(kind, sys);
     const tribo_stepper table = {.size = sizeof table,

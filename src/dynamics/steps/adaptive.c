@@ -132,20 +132,6 @@ static int adaptive_prepare(struct adaptive *a, tribo_driver *drv)
     return TRIBO_OK;
 }
 
-/* The longest step from velocities sys->v of contacts: inside a band an explicit method oscillates in steps that are longer than
- * stable, and its estimate of the error may happen to be 0. */
-static double adaptive_longest(const struct adaptive *a, const tribo_driver *drv)
-{
-    const tribo_system *sys = drv->sys;
-    double h = drv->max_step > 0.0 ? drv->max_step : a->largest;
-    for (size_t i = 0; a->stepper.stable > 0.0 && i < sys->ncontact; i++) {
-        if (fabs(sys->v[i]) <= a->band[i] && a->rate[i] * h > a->stepper.stable) {
-            h = a->stepper.stable / a->rate[i];
-        }
-    }
-    return h;
-}
-
 /* The largest error divided by its tolerance; HUGE_VAL if a value is not finite. */
 static double adaptive_size_of(const struct adaptive *a, size_t n)
 {
@@ -157,12 +143,6 @@ static double adaptive_size_of(const struct adaptive *a, size_t n)
         most = greater(most, fabs(a->error[i]) / a->tolerance[i]);
     }
     return most;
-}
-
-/* 1 if a shorter step may succeed where one has failed with status. */
-static int may_be_shorter(int status)
-{
-    return status == TRIBO_ERR_STEP || status == TRIBO_ERR_NO_CONVERGENCE || status == TRIBO_ERR_NOT_FINITE;
 }
 
 /* Keeps the message of a step of h from t that failed with status, in the stepper or in an evaluation of the system. */
@@ -202,7 +182,14 @@ static int advance_step(tribo_driver *drv, double *t, double end, double *y)
 {
     struct adaptive *a = drv->own;
     const size_t n = tribo_system_dimension(drv->sys);
-    a->h = lesser(a->h, adaptive_longest(a, drv));
+    double longest = drv->max_step > 0.0 ? drv->max_step : a->largest;
+    /* inside a band an explicit method oscillates in steps that are longer than stable, and its error may happen to be 0 */
+    for (size_t i = 0; a->stepper.stable > 0.0 && i < drv->sys->ncontact; i++) {
+        if (fabs(drv->sys->v[i]) <= a->band[i] && a->rate[i] * longest > a->stepper.stable) {
+            longest = a->stepper.stable / a->rate[i];
+        }
+    }
+    a->h = lesser(a->h, longest);
     for (;;) {
         const double left = end - *t, h = a->h >= left ? left : lesser(a->h, 0.5 * left); /* leaves no tiny rest */
         if (!(*t + h > *t)) {
@@ -211,7 +198,8 @@ static int advance_step(tribo_driver *drv, double *t, double end, double *y)
         const tribo_trial trial = {sizeof trial, *t, h, y, drv->slope, a->tolerance, a->rate, a->to, a->error};
         drv->sys->status = TRIBO_OK;
         const int status = a->stepper.step(&trial, a->data);
-        if (status && !may_be_shorter(status)) {
+        const int shorter = status == TRIBO_ERR_STEP || status == TRIBO_ERR_NO_CONVERGENCE || status == TRIBO_ERR_NOT_FINITE;
+        if (status && !shorter) {
             return say_why(drv, status, *t, h);
         }
         const double size = status ? HUGE_VAL : adaptive_size_of(a, n);
@@ -296,15 +284,6 @@ static int adaptive_advance(tribo_driver *drv, double *t, double t1, double *y, 
 
 enum { TAKES_ALL = TAKES_STEP | TAKES_TOLERANCE | TAKES_MAX_STEP | NEEDS_MASS };
 
-static int check_stepper(const tribo_system *sys, const tribo_stepper *s)
-{
-    const char *missing = !s->name ? "name" : !s->step ? "step" : !s->order ? "order" : NULL;
-    if (s->size < sizeof *s) {
-        return tribo_system_fail(sys, TRIBO_ERR_SIZE, "stepper->size = %zu is below %zu", s->size, sizeof *s);
-    }
-    return missing ? tribo_system_fail(sys, TRIBO_ERR_NULL, "stepper->%s is NULL", missing) : TRIBO_OK;
-}
-
 int tribo_driver_create_stepper(tribo_driver **drv, tribo_system *sys, const tribo_stepper *stepper, void *data)
 {
     if (!sys) {
@@ -313,9 +292,12 @@ int tribo_driver_create_stepper(tribo_driver **drv, tribo_system *sys, const tri
     if (!drv || !stepper) {
         return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", drv ? "stepper" : "drv");
     }
-    int status = check_stepper(sys, stepper);
-    if (status) {
-        return status;
+    if (stepper->size < sizeof *stepper) {
+        return tribo_system_fail(sys, TRIBO_ERR_SIZE, "stepper->size = %zu is below %zu", stepper->size, sizeof *stepper);
+    }
+    const char *missing = !stepper->name ? "name" : !stepper->step ? "step" : !stepper->order ? "order" : NULL;
+    if (missing) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "stepper->%s is NULL", missing);
     }
     const size_t n = tribo_system_dimension(sys), c = sys->ncontact;
     struct adaptive *a = tribo_zeros(1, sizeof *a);
@@ -338,7 +320,7 @@ int tribo_driver_create_stepper(tribo_driver **drv, tribo_system *sys, const tri
     a->cap = memory + 3 * n;
     a->band = memory + 4 * n;
     a->rate = a->band + c;
-    status = tribo_driver_create_method(drv, sys, &a->method);
+    const int status = tribo_driver_create_method(drv, sys, &a->method);
     if (status) {
         free(memory);
         free(a);

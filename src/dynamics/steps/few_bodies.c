@@ -177,8 +177,8 @@ static inline int few_step(struct few_bodies *b, size_t n, size_t c, size_t s, s
     double u[FEW] = {0.0}, v[FEW], less[FEW], most[FEW], p[FEW] = {0.0}, end[FEW], work = 0.0;
     const struct small x = {b->r, b->inverse, &b->inverse_of, b->part, least, v, less, most, m->at, p, end};
     for (size_t d = 0; d < n; d++) {
-        const double a = b->load[d][s] - row_times(n, b->stiffness[d], m->q);
-        u[d] = m->u[d] + b->time[s] * (a - row_times(n, b->damping[d], m->u));
+        const double a = b->load[d][s] - row_times(n, b->damping[d], m->u); /* q is known later than u */
+        u[d] = m->u[d] + b->time[s] * (a - row_times(n, b->stiffness[d], m->q));
     }
     for (size_t i = 0; i < c; i++) {
         v[i] = row_times(n, b->direction[i], u) - b->base[i][s];
