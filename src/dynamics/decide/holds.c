@@ -118,7 +118,7 @@ void tribo_stick_slip_list_snaps(struct stick_slip *m, const tribo_system *sys)
     m->state.unlisted = 0;
 }
 
-static void snap(const struct slip_state *state, const double *base, double *x)
+static void apply_snaps(const struct slip_state *state, const double *base, double *x)
 {
     for (const struct snap *s = state->snap; s < state->snap + state->snaps; s++) {
         if (!state->loose[s->contact]) {
@@ -132,13 +132,13 @@ int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const d
     if (m->state.unlisted && !sys->snaps_in_order) {
         tribo_stick_slip_list_snaps(m, sys);
     }
-    snap(&m->state, base, x);
+    apply_snaps(&m->state, base, x);
     if (m->state.simple || !moves(m, sys, base, x)) {
         return TRIBO_OK;
     }
     const int status = tribo_stick_slip_project(m, sys, base, x);
     if (!status) {
-        snap(&m->state, base, x);
+        apply_snaps(&m->state, base, x);
     }
     return status;
 }

@@ -85,7 +85,7 @@ static struct planar_slip *allocate(size_t contacts)
     return p;
 }
 
-static int create(struct stick_slip *m, const tribo_system *sys)
+static int create_plane(struct stick_slip *m, const tribo_system *sys)
 {
     const size_t c = sys->ncontact;
     struct planar_slip *p = m->plane = m->plane ? m->plane : allocate(c);
@@ -168,7 +168,7 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
         return TRIBO_OK;
     }
     int status = check_limits(m, sys, planar);
-    status = status ? status : create(m, sys);
+    status = status ? status : create_plane(m, sys);
     for (size_t k = 0; !status && k < m->plane->count; k++) {
         set_slip(m, &m->plane->contact[k], TRIBO_SLIP_PLANE); /* whether it is at rest is seen by its speed alone */
         m->plane->contact[k].now = HUGE_VAL;
@@ -179,7 +179,7 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
 /* ----------------------------------------------------------------------------------------------------------- at rest */
 
 /* Contacts without speed are at rest; returns how many more. */
-static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *y)
+static size_t stop_in_plane(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     size_t found = 0;
     for (size_t k = 0; k < m->plane->count; k++) {
@@ -219,17 +219,17 @@ static int find_resting(struct stick_slip *m, const tribo_system *sys, double *y
     int status = TRIBO_OK;
     m->plane->stopped = m->constant.contacts;
     do {
-        stop(m, sys, y);
+        stop_in_plane(m, sys, y);
         status = tribo_stick_slip_find_resting(m, sys, y);
         status = status ? status : check_holds(m, sys);
-    } while (!status && stop(m, sys, y));
+    } while (!status && stop_in_plane(m, sys, y));
     return status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ forces */
 
 /* Force of a contact that slides, and how it changes at the acceleration acc. Returns how fast its direction turns. */
-static double slide(const struct planar_contact *p, const double *v, const double *acc, double *force, double *rate)
+static double slide_in_plane(const struct planar_contact *p, const double *v, const double *acc, double *force, double *rate)
 {
     const double x[2] = {p->limit[0] * v[0], p->limit[1] * v[1]}, size = length(x), n[2] = {x[0] / size, x[1] / size};
     const double turn = (n[0] * p->limit[1] * acc[1] - n[1] * p->limit[0] * acc[0]) / size;
@@ -254,7 +254,7 @@ static double given_forces(struct stick_slip *m, const tribo_system *sys, const 
         if (m->state.slip[p->at] == TRIBO_SLIP_PLANE && p->begins == SLIDES_ON) {
             double v[2];
             velocity(m, sys, p, y, v);
-            fastest = greater(fastest, slide(p, v, acc + p->at, m->work.lo + p->at, m->plane->rate + p->at));
+            fastest = greater(fastest, slide_in_plane(p, v, acc + p->at, m->work.lo + p->at, m->plane->rate + p->at));
         }
     }
     return fastest;
@@ -313,7 +313,7 @@ static int leaves(const struct stick_slip *m, const struct planar_contact *p, co
 }
 
 /* The contact slides from here on, against the force that it has. */
-static void let_go(struct stick_slip *m, struct planar_contact *p, int begins)
+static void let_go_in_plane(struct stick_slip *m, struct planar_contact *p, int begins)
 {
     double part[2] = {m->state.force[p->at] / p->limit[0], m->state.force[p->at + 1] / p->limit[1]};
     const double size = length(part);
@@ -365,7 +365,7 @@ static size_t break_away(struct stick_slip *m)
             (signed char)(m->state.slip[p->at] == TRIBO_SLIP_STUCK && (part >= 1.0 - noise || p->at == m->state.reached));
         if (m->state.tied[p->at] && leaves(m, p, m->state.force)) {
             m->state.tied[p->at] = 0;
-            let_go(m, p, BY_ACCELERATION);
+            let_go_in_plane(m, p, BY_ACCELERATION);
         }
         ties += (size_t)m->state.tied[p->at];
     }
@@ -414,7 +414,7 @@ static int goes_beyond(const struct stick_slip *m, const tribo_system *sys, cons
 }
 
 /* Who of those that are tied slides by the forces of a moment later. */
-static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y)
+static int look_ahead_in_plane(struct stick_slip *m, tribo_system *sys, const double *y)
 {
     tribo_stick_slip_contact_accelerations(sys, tribo_stick_slip_find_acceleration(m, sys), 1, m->work.f);
     const double turn = given_forces(m, sys, y, m->work.f),
@@ -435,7 +435,7 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y)
     for (size_t k = 0; !status && k < m->plane->count; k++) {
         struct planar_contact *p = &m->plane->contact[k];
         if (m->state.tied[p->at] && leaves(m, p, m->work.f) && goes_beyond(m, sys, p, m->work.f)) {
-            let_go(m, p, BY_FORCE);
+            let_go_in_plane(m, p, BY_FORCE);
         }
     }
     return status;
@@ -458,7 +458,7 @@ int tribo_planar_slip_decide(struct stick_slip *m, tribo_system *sys, double t, 
     tribo_stick_slip_forget_gains(m);
     tribo_stick_slip_find_gains(m, sys, y);
     const size_t ties = break_away(m);
-    status = ties ? look_ahead(m, sys, y) : TRIBO_OK;
+    status = ties ? look_ahead_in_plane(m, sys, y) : TRIBO_OK;
     m->state.reached = m->constant.contacts;
     memset(m->state.tied, 0, m->constant.contacts);
     status = status ? status : tribo_stick_slip_find_holds(m, sys);

@@ -59,7 +59,7 @@ static size_t let_go(struct stick_slip *m, size_t i, signed char direction)
 }
 
 /* Where a contact at its limit slides by its force, or, if that is nothing, by its acceleration v. */
-static signed char direction_of(const struct stick_slip *m, size_t i, double force)
+static signed char slip_direction(const struct stick_slip *m, size_t i, double force)
 {
     return (signed char)(force != 0.0         ? (force > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH)
                          : m->work.v[i] < 0.0 ? TRIBO_SLIP_BACK
@@ -111,7 +111,7 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
         const double room = m->state.stick[i] - fabs(m->state.force[i]);
         tribo_stick_slip_find_gain(m, sys, y, i);
         if (is_at_limit(m, i, room)) {
-            const signed char direction = direction_of(m, i, m->state.force[i]);
+            const signed char direction = slip_direction(m, i, m->state.force[i]);
             const double sure = tribo_stick_slip_must_be_sure(m, i) ? CERTAIN : 1.0;
             m->state.tied[i] = 1;
             if (room <= 0.0 && breaks_away(m, i, direction, m->work.v[i] / sure)) {
@@ -233,7 +233,7 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
         m->work.pulled[i] = 0;
         const double limit = limit_ahead(m, i, moment), room = limit - fabs(m->work.f[i]);
         if (tribo_stick_slip_searches(m, i) && room >= 0.0) {
-            const signed char direction = direction_of(m, i, m->work.f[i]);
+            const signed char direction = slip_direction(m, i, m->work.f[i]);
             const int may = !tribo_breakaway_is_sudden(&m->breakaway, i);
             const int goes = room <= 0.0 && breaks_away(m, i, direction, m->work.v[i]);
             m->work.pulled[i] = (signed char)(goes && !may && m->state.tied[i] ? direction : 0);

@@ -288,7 +288,7 @@ static inline int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i
 
 /* By how much more than its limit contact i may be pulled and hold: where it would let go of much, what may be rounding does not
  * count. */
-double tribo_stick_slip_slack(const struct stick_slip *m, size_t i);
+double tribo_stick_slip_margin(const struct stick_slip *m, size_t i);
 
 /* Velocities are known to this part of what they are the sum of. */
 #define TRIBO_VELOCITY_NOISE 2e-14

@@ -39,7 +39,7 @@ void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sy
 }
 
 /* Brings to rest contacts with no velocity left in the direction of their slip; returns their number. */
-static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *y)
+static size_t stop_slips(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     const size_t n = m->constant.contacts;
     const signed char *const slip = m->state.slip;
@@ -80,7 +80,7 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
     for (size_t found = 1; !status && found;) {
         status = tribo_stick_slip_knows_holds(m) ? TRIBO_OK : tribo_stick_slip_find_holds(m, sys);
         status = status ? status : tribo_stick_slip_hold(m, sys, m->state.base, y + sys->ndof);
-        found = status ? 0 : stop(m, sys, y);
+        found = status ? 0 : stop_slips(m, sys, y);
     }
     if (!status && m->state.dependents && m->constant.base_moves) {
         status = part(m, sys, y);

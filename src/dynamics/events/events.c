@@ -43,9 +43,11 @@ static void lay_out_events(struct events *e, struct layout *l, const tribo_syste
     e->shown = tribo_layout_array(l, c, sizeof *e->shown);
 }
 
-int tribo_events_create(struct events *e, tribo_driver *drv)
+int tribo_events_create(struct events *e, tribo_driver *drv, const struct motion *motion, void *own)
 {
     tribo_system *sys = drv->sys;
+    e->motion = e->search.motion = motion;
+    e->own = e->search.own = own;
     const int status = tribo_stick_slip_create(&e->stick_slip, sys);
     if (status) {
         return status;
@@ -68,62 +70,6 @@ void tribo_events_free(struct events *e)
     tribo_planar_slip_free(e->stick_slip.plane);
     tribo_stick_slip_free(&e->stick_slip);
     free(e->lasted);
-}
-
-/* ------------------------------------------------------------------------------------------------------------- guards */
-
-void tribo_events_clear_guards(struct events *e)
-{
-    e->search.guards = 0;
-}
-
-void tribo_events_guard(struct events *e, const struct guard *guard)
-{
-    e->search.guard[e->search.guards++] = *guard;
-}
-
-/* A guard of contact i, one that slides or holds. Its samples are the search's to set. */
-static struct guard *append(struct events *e, size_t i, int slides, double side, double allowance, const struct watch *watch)
-{
-    struct guard *g = &e->search.guard[e->search.guards++];
-    g->contact = i;
-    g->slides = slides;
-    g->side = side;
-    g->output = watch->output;
-    g->offset = watch->offset;
-    g->limit = watch->limit;
-    g->allowance = allowance;
-    g->lowest = g->right.g = 0.0;
-    return g;
-}
-
-void tribo_events_guard_slip(struct events *e, size_t i, const struct watch *watch)
-{
-    const struct stick_slip *m = &e->stick_slip;
-    append(e, i, SLIDES, m->state.slip[i], m->noise.factor * m->noise.velocity[i], watch);
-}
-
-void tribo_events_guard_stick(struct events *e, size_t i, const struct watch *watch)
-{
-    append(e, i, HOLDS, -1.0, e->stick_slip.noise.allowance[i], watch);
-    append(e, i, HOLDS, 1.0, e->stick_slip.noise.allowance[i], watch);
-}
-
-void tribo_events_guard_part(struct events *e, size_t i, const struct watch *watch)
-{
-    append(e, i, SLIDES, -1.0, e->stick_slip.noise.parting[i], watch);
-    append(e, i, SLIDES, 1.0, e->stick_slip.noise.parting[i], watch);
-}
-
-void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *watch)
-{
-    const struct stick_slip *m = &e->stick_slip;
-    const int keeps = m->state.slip[i] == TRIBO_SLIP_STUCK && tribo_stick_slip_follows(m, i) == 0.0;
-    const double times = m->state.slip[i] == TRIBO_SLIP_OPEN ? -1.0 : keeps ? tribo_breakaway_ratio(&m->breakaway, i) : 1.0;
-    const double allowance = keeps ? m->noise.allowance[i] : 2.0 * TRIBO_LIMIT_NOISE * m->noise.factor * m->constant.swing[i];
-    struct guard *g = append(e, i, HOLDS, 0.0, allowance, watch);
-    g->limit *= times;
-    g->offset = times * g->offset + (keeps ? tribo_stick_slip_slack(m, i) - fabs(m->state.force[i]) : 0.0);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- events */
@@ -152,7 +98,7 @@ static void suspect(struct events *e, size_t contact)
 }
 
 /* Gives events all their credit, from t on. */
-static void refill(struct events *e, double t)
+static void refill_credit(struct events *e, double t)
 {
     e->credit = most_credit(e);
     e->since = t;
@@ -167,7 +113,7 @@ static int count_event(struct events *e, tribo_driver *drv, size_t contact, doub
     e->paid = t;
     e->stick_slip.noise.factor = 1.0;
     if (e->credit >= most) {
-        refill(e, t);
+        refill_credit(e, t);
         e->suspects = 0;
     }
     suspect(e, contact);
@@ -175,7 +121,7 @@ static int count_event(struct events *e, tribo_driver *drv, size_t contact, doub
     if (e->credit < 0.0) {
         e->stick_slip.noise.factor = DOUBT;
         e->stuck = 16.0 * fastest * (t - e->since) < HEADWAY ? e->stuck + most : 0.0;
-        refill(e, t);
+        refill_credit(e, t);
     }
     return e->stuck > MOST_STUCK ? give_up(e, drv, t) : TRIBO_OK;
 }
@@ -215,23 +161,8 @@ static void forget(struct events *e, double t, int continues)
         e->paid = e->rested = t;
         e->idle = e->suspects = 0;
         e->stuck = 0.0;
-        refill(e, t);
+        refill_credit(e, t);
         memset(e->lasted, 0, SLIPS * e->stick_slip.constant.contacts * sizeof *e->lasted);
-    }
-}
-
-/* What the search has learnt of the size of velocities, and how far the phase, which was brief or not, strayed from the law. */
-static void learn(struct events *e, tribo_driver *drv, int brief, double when)
-{
-    struct stick_slip *m = &e->stick_slip;
-    for (size_t k = 0; k < e->search.guards; k++) {
-        const struct guard *g = &e->search.guard[k];
-        if (g->slides == SLIDES) {
-            m->noise.velocity_scale[g->contact] = brief ? fabs(g->left.g) + when * fabs(g->left.d) : g->size;
-            drv->backslip = greater(drv->backslip, g->lowest);
-        } else if (g->slides == HOLDS) {
-            drv->excess = greater(drv->excess, g->lowest + m->noise.excess[g->contact]);
-        }
     }
 }
 
@@ -246,7 +177,7 @@ static int show_between(struct events *e, tribo_driver *drv, double begin, doubl
     int status = TRIBO_OK;
     const int shows = drv->seen && drv->output > 0.0;
     for (double at; shows && !status && (at = begin + *shown * drv->output) < t + tau; *shown += 1.0) {
-        e->state(e->motion, greater((at - t) - drv->sys->low, 0.0), y, drv->slope);
+        e->motion->state(e->own, greater((at - t) - drv->sys->low, 0.0), y, drv->slope);
         status = tribo_driver_accept(drv, at, drv->slope);
     }
     return status;
@@ -284,7 +215,7 @@ static int show_changes(struct events *e, tribo_driver *drv, double t, const dou
 }
 
 /* The time after another tau, and its low part; end if that is all there was. */
-static double go_on(tribo_system *sys, double t, double tau, double end)
+static double time_after(tribo_system *sys, double t, double tau, double end)
 {
     const struct twofold next = twofold_sum(t, sys->low + tau);
     const int there = tau >= (end - t) - sys->low || next.hi > end || (next.hi == end && next.lo > 0.0);
@@ -312,22 +243,12 @@ static int decide(struct events *e, tribo_system *sys, double t, double *y)
  * too far away. */
 static int cannot_follow(struct events *e, tribo_driver *drv, double t, double reach, double *y)
 {
-    e->state(e->motion, reach, y, y);
+    e->motion->state(e->own, reach, y, y);
     const int status = tribo_driver_check(drv, y);
     return status ? status
                   : tribo_driver_fail(drv, TRIBO_ERR_STEP,
                                       "from t = %.17g on the motion is too fast to be followed: given up after %zu look%s", t,
                                       e->search.looks, plural(e->search.looks));
-}
-
-/* Tells the decision that follows what the event was: a contact that stops, or one that may have reached its limit. */
-static void mark_event(struct stick_slip *m, const struct guard *event)
-{
-    if (event->slides == SLIDES) {
-        tribo_stick_slip_set(m, event->contact, TRIBO_SLIP_STUCK);
-    } else {
-        m->state.reached = event->contact;
-    }
 }
 
 /* Counts a planar contact that the decision at t has stopped; keeps the state after it; and shows contacts that change, or the
@@ -390,7 +311,7 @@ static int go_brief(struct stick_slip *m, tribo_system *sys, double t, double ta
 /* y at the end of a phase from (t, y), to which the method's own motion goes too. Returns a status. */
 static int go(struct events *e, tribo_driver *drv, int brief, double t, double when, double *y)
 {
-    e->state(e->motion, when, y, brief ? drv->slope : y);
+    e->motion->state(e->own, when, y, brief ? drv->slope : y);
     const int status = brief ? on_context(drv, go_brief(&e->stick_slip, drv->sys, t, when, y)) : TRIBO_OK;
     return status ? status : tribo_driver_check(drv, y);
 }
@@ -405,7 +326,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     const struct guard *event = NULL;
     double reach = (end - *t) - sys->low, when = 0.0;
     e->decided = 0;
-    int status = on_context(drv, e->begin(e->motion, *t, y, &reach));
+    int status = on_context(drv, e->motion->begin(e->own, *t, y, &reach));
     if (status) {
         return status;
     }
@@ -427,9 +348,9 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     if (status) {
         return status;
     }
-    *t = go_on(sys, *t, when, end);
-    if (e->arrive) {
-        e->arrive(e->motion, *t);
+    *t = time_after(sys, *t, when, end);
+    if (e->motion->arrive) {
+        e->motion->arrive(e->own, *t);
     }
     e->met = event;
     status = e->company ? on_context(drv, e->company->ends(e->company, when, *t, y)) : TRIBO_OK;
@@ -437,11 +358,11 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
         return status;
     }
     drv->steps++;
-    learn(e, drv, brief, when);
-    event = event && event->slides != SLOWS ? event : NULL;
+    tribo_events_learn(e, drv, brief, when);
+    event = event && event->kind != SLOWS ? event : NULL;
     if (event) {
         status = count_event(e, drv, event->contact, *t, fastest);
-        mark_event(&e->stick_slip, event);
+        tribo_events_mark(&e->stick_slip, event);
     } else if (*t < end) {
         status = count_step(e, drv, *t, when, fastest);
     }

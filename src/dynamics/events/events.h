@@ -25,26 +25,8 @@ struct events {
     struct stick_slip stick_slip;
     struct first_zero search;
 
-    /* the method's own */
-    void *motion;
-    /* Begins a phase at (t, y) that lasts *reach, or less if *reach becomes less, and sets its guards. Returns a status, its
-     * message on the system's context. */
-    int (*begin)(void *motion, double t, const double *y, double *reach);
-    /* The state at tau into the phase that began with `from`, which `to` may be. */
-    void (*state)(void *motion, double tau, const double *from, double *to);
-    /* Tells the system of what it knows of t, at which the phase that state was asked for last has ended; NULL: of nothing. */
-    void (*arrive)(void *motion, double t);
-    /* What transition needs of the phase that ends, until it is released; NULL: phases are not kept. */
-    const void *(*keep)(void *motion);
-    void (*release)(const void *phase);
-    /* Moves perturbations v [2 ndof][columns] of the state to tau into a phase that was kept, or, with NULL, the one that ends;
-     * contacts at rest are held in it, and what would move these is taken away first. Returns a status, its message on the
-     * system's context. */
-    int (*transition)(void *motion, const void *phase, double tau, size_t columns, double *v);
-    /* c'y, c [2 ndof], in the phase that lasts tau and ends with the state end. Returns a status, likewise. */
-    int (*signal)(void *motion, const double *c, double tau, const double *end, struct signal *to);
-    /* The energy that contact i, which slides, dissipated in the phase that lasted tau, if its force is counted once. */
-    double (*work)(void *motion, size_t i, double tau);
+    const struct motion *motion; /* the method's, also of search */
+    void *own;
 
     signed char *shown; /* [ncontact] slip of contacts as the observer saw it last */
     int watched;        /* the last advance had an observer, and kept shown up to date */
@@ -66,8 +48,7 @@ struct events {
     size_t suspects;
 };
 
-/* The method sets its own, and search.go, .read, .bound and .motion. */
-int tribo_events_create(struct events *e, tribo_driver *drv);
+int tribo_events_create(struct events *e, tribo_driver *drv, const struct motion *motion, void *own);
 void tribo_events_free(struct events *e);
 
 /* As advance of struct method. */
@@ -79,20 +60,33 @@ int tribo_events_method(tribo_driver *drv, double *t, double t1, double *y, int 
 /* The find_periodic of methods that have an open. */
 int tribo_events_find_periodic(tribo_driver *drv, double t, double period, double *y);
 
-/* What a guard watches, in the method's own terms: the value is offset + output, and so many times the limit. */
+/* guards.c: what guards of contact i are made of by a motion. */
 struct watch {
-    void *output;
-    double offset, limit;
+    void *output;    /* the motion's, velocity or force of the contact */
+    double size;     /* bound of |output| */
+    double constant; /* limit without the part that the motion adds */
+    double least;    /* lower bound of the limit */
+    int varies;      /* 1: the motion adds a part */
 };
 
-/* For begin: forgets the guards; and adds one of any kind, all set; or one of the velocity of contact i, which slides, or two of
- * its force, which is at rest, or two of its velocity, which may part from its base: of side * output. Or one of its limit:
- * whether the contact lifts off, or touches down, or has its limit fall to the force that it keeps. */
+/* For begin. Forgets all guards. */
 void tribo_events_clear_guards(struct events *e);
+
+/* Adds a guard of any kind, all of it set. */
 void tribo_events_guard(struct events *e, const struct guard *guard);
-void tribo_events_guard_slip(struct events *e, size_t i, const struct watch *watch);
-void tribo_events_guard_stick(struct events *e, size_t i, const struct watch *watch);
-void tribo_events_guard_part(struct events *e, size_t i, const struct watch *watch);
-void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *watch);
+
+/* Adds the guards of contact i by its slip: that its velocity keeps its sign; that its force, both ways, keeps below its limit,
+ * unless size says so; that a contact at rest which does not hold keeps to its base, both ways. */
+void tribo_events_guard_contact(struct events *e, size_t i, const struct watch *w);
+
+/* Adds the guard of the limit of contact i, if it swings or the contact keeps its force: that the limit does not fall to 0, or, of
+ * an open contact, does not rise above, or, of one that keeps its force, does not fall to that. */
+void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *w);
+
+/* Marks for the decision which contact stops, or has reached its limit, by an event. */
+void tribo_events_mark(struct stick_slip *m, const struct guard *event);
+
+/* Takes the size of velocities, and excess and backslip of the driver, from the guards of a phase that lasted `when`. */
+void tribo_events_learn(struct events *e, tribo_driver *drv, int brief, double when);
 
 #endif

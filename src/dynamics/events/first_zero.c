@@ -81,7 +81,7 @@ static void sample(struct first_zero *s, double tau)
 {
     double all = 0.0;
     s->falls = 0;
-    s->look(s->motion, tau, s->watching, s->watched);
+    s->motion->look(s->own, tau, s->watching, s->watched);
     for (size_t k = 0; k < s->watching; k++) {
         struct guard *g = s->watched[k];
         struct sample *m = &g->middle;
@@ -264,7 +264,7 @@ static struct guard *first_in_sight(const struct first_zero *s, double span, dou
 static int series(const struct first_zero *s, const struct guard *g, double span, double *p, double *end)
 {
     double d[3];
-    if (!s->further || !s->further(s->motion, s->a, g, d)) {
+    if (!s->motion->further || !s->motion->further(s->own, s->a, g, d)) {
         return 0;
     }
     p[0] = g->left.g;
@@ -424,7 +424,7 @@ static int divide(struct first_zero *s, double *b)
 /* Finds bounds from a on, the reach that they leave to derivatives, and a length of interval to try. */
 static void find_bounds(struct first_zero *s)
 {
-    s->better = s->bound(s->motion, s->a);
+    s->better = s->motion->bound(s->own, s->a);
     const double length = first_length(s, s->longest);
     s->reach = SHORT * length;
     s->far_reach = FAR * length;
@@ -460,12 +460,12 @@ static const struct guard *stops_at_once(struct first_zero *s, double *when)
     double step = lesser(s->reach, s->longest), fastest = 0.0;
     for (size_t k = 0; k < s->guards; k++) {
         const struct guard *g = &s->guard[k];
-        fastest = g->slides == SLIDES ? greater(fastest, g->left.g - g->allowance) : fastest;
+        fastest = g->kind == SLIDES ? greater(fastest, g->left.g - g->allowance) : fastest;
     }
     for (size_t k = 0; k < s->guards; k++) {
         const struct guard *g = &s->guard[k];
         const struct sample begins = {g->left.g - g->allowance, g->left.d, g->left.e};
-        const int moves = g->slides == SLIDES && begins.g > ALLOWED * fastest;
+        const int moves = g->kind == SLIDES && begins.g > ALLOWED * fastest;
         const double own = moves ? parabola_fall(&begins, step) : HUGE_VAL;
         if (own <= step) {
             first = g;
@@ -513,7 +513,7 @@ static void come_to(struct first_zero *s)
 }
 
 /* Nothing happens until b, where the middle samples are: goes there, and returns a guard if its zero is in reach. */
-static const struct guard *go_on(struct first_zero *s, double b, double *when)
+static const struct guard *pass_interval(struct first_zero *s, double b, double *when)
 {
     watch_all(s);
     s->h = greater(s->h, longer(s, b - s->a));
@@ -548,7 +548,7 @@ static const struct guard *fallen(struct first_zero *s, double b, double *when)
 
 /* An interval up to *b, where the middle samples are, is not clear: returns CLEAR if it is after another look, or finds the first
  * guard in it, or leaves less to try. */
-static int settle(struct first_zero *s, int known, double *b, const struct guard **first, double *when)
+static int settle_interval(struct first_zero *s, int known, double *b, const struct guard **first, double *when)
 {
     const double begun = s->a;
     keep_right(s);
@@ -601,10 +601,10 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
         sample(s, b);
         int known = judge(s, b - s->a);
         if (known != CLEAR) {
-            known = settle(s, known, &b, first, when);
+            known = settle_interval(s, known, &b, first, when);
         }
         if (known == CLEAR) {
-            *first = go_on(s, b, when);
+            *first = pass_interval(s, b, when);
         }
     }
     return 1;

@@ -2,8 +2,7 @@
 #ifndef TRIBO_FIRST_ZERO_H
 #define TRIBO_FIRST_ZERO_H
 
-#include <stddef.h>
-
+#include "motion.h"
 #include "quintic.h"
 
 /* What a guard is of; the last one ends a step, and is no event. */
@@ -13,7 +12,7 @@ enum { HOLDS, SLIDES, SLOWS };
  * times its force and the limit, or what presses it together, or keeps it apart (HOLDS), or its speed (SLOWS). */
 struct guard {
     size_t contact;
-    int slides;
+    int kind; /* HOLDS, SLIDES or SLOWS */
     double side;
     void *output;      /* the motion's own */
     double offset;     /* the motion's own */
@@ -28,23 +27,17 @@ struct guard {
 struct first_zero {
     size_t guards;
     struct guard *guard;
-    struct guard **watched; /* [guards] workspace: those that may be below zero before the next one is known to be, */
-    size_t watching;        /* their number; */
-    size_t asked;           /* then the others that are looked at, up to this number; then those that are not, */
-    double positive_until;  /* since they are known to be positive until then */
-    /* Sets middle of guards to what they are at tau. */
-    void (*look)(void *motion, double tau, size_t guards, struct guard *const *guard);
-    /* The third to fifth derivative of a guard at tau, into to [3]; 1, or 0 if they are not known. Where they are, the guard is a
-     * sum of exponentials and sines, and what is linear in time. NULL: they never are. */
-    int (*further)(void *motion, double tau, const struct guard *g, double *to);
-    /* Sets size and bend of all guards, for tau and all that comes; answers when smaller ones will be worth the work. */
-    double (*bound)(void *motion, double tau);
-    void *motion;
-    double expected;   /* when there may be a zero, for all that the caller knows; 0: no idea */
-    double early;      /* by how much it may be earlier, as far as that is known */
-    double reach;      /* over such times two derivatives tell all of every guard but rounding, */
-    double far_reach;  /* and over such five */
-    double resolution; /* times closer than this are the same */
+    struct guard **watched;      /* [guards] workspace: those that may be below zero before the next one is known to be, */
+    size_t watching;             /* their number; */
+    size_t asked;                /* then the others that are looked at, up to this number; then those that are not, */
+    double positive_until;       /* since they are known to be positive until then */
+    const struct motion *motion; /* look, further, bound */
+    void *own;                   /* the motion's */
+    double expected;             /* when there may be a zero, for all that the caller knows; 0: no idea */
+    double early;                /* by how much it may be earlier, as far as that is known */
+    double reach;                /* over such times two derivatives tell all of every guard but rounding, */
+    double far_reach;            /* and over such five */
+    double resolution;           /* times closer than this are the same */
     size_t looks;
     double a;       /* nobody is below zero until then */
     double h, most; /* so much longer is to be tried, or up to most if a zero is expected there */

@@ -34,7 +34,7 @@ static void bernstein(const struct sample *a, const struct sample *b, double h, 
 }
 
 /* The coefficients of the part before s (from), and after it (c). */
-static void split(double *c, double s, double *from)
+static void split_bernstein(double *c, double s, double *from)
 {
     for (int left = COEFFICIENTS; left > 0; left--) {
         from[COEFFICIENTS - left] = c[0];
@@ -53,7 +53,7 @@ static double least(double *c, double enough, int halvings)
         return all;
     }
     double from[COEFFICIENTS];
-    split(c, 0.5, from);
+    split_bernstein(c, 0.5, from);
     const double first = least(from, enough, halvings - 1);
     return first >= enough ? lesser(first, least(c, enough, halvings - 1)) : first;
 }
@@ -63,7 +63,7 @@ double tribo_quintic_least(const struct sample *a, const struct sample *b, doubl
     double c[COEFFICIENTS], from[COEFFICIENTS];
     bernstein(a, b, h, bend, c);
     if (until < h) {
-        split(c, until / h, from);
+        split_bernstein(c, until / h, from);
     }
     return least(until < h ? from : c, enough, HALVINGS);
 }
@@ -75,7 +75,7 @@ double tribo_quintic_error(double at, double h, double bend)
 }
 
 /* The quintic in powers of s = t/h. */
-static void powers(const struct sample *a, const struct sample *b, double h, double *p)
+static void quintic_powers(const struct sample *a, const struct sample *b, double h, double *p)
 {
     const double d = h * a->d, e = h * h * a->e;
     const double rise = b->g - a->g - d - 0.5 * e, tilt = h * b->d - d - e, curve = h * h * b->e - e;
@@ -117,13 +117,13 @@ static double zero(const double *p, double s)
 double tribo_quintic_zero(const struct sample *a, const struct sample *b, double h)
 {
     double p[POWERS + ROOTS] = {0.0};
-    powers(a, b, h, p);
+    quintic_powers(a, b, h, p);
     const double s = zero(p, a->g / (a->g - b->g));
     if (s <= 0.5 || !(b->g < 0.0)) {
         return s * h;
     }
     const struct sample end = {-b->g, b->d, -b->e}, start = {-a->g, a->d, -a->e};
-    powers(&end, &start, h, p);
+    quintic_powers(&end, &start, h, p);
     return h - zero(p, 1.0 - s) * h;
 }
 

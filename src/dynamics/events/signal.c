@@ -77,9 +77,9 @@ struct course {
     struct first_zero *search;
 };
 
-static void look_at_slope(void *motion, double tau, size_t guards, struct guard *const *guard)
+static void look_at_slope(void *own, double tau, size_t guards, struct guard *const *guard)
 {
-    const struct course *c = motion;
+    const struct course *c = own;
     double v[3];
     (void)guards;
     tribo_signal_at(c->s, c->from + tau, v);
@@ -91,9 +91,9 @@ static double sixth(double x)
     return x * x * x * x * x * x;
 }
 
-static double bound(void *motion, double tau)
+static double bound(void *own, double tau)
 {
-    const struct course *c = motion;
+    const struct course *c = own;
     const struct signal *s = c->s;
     struct guard *g = c->search->guard;
     double power = 1.0;
@@ -150,11 +150,12 @@ int tribo_signal_extremes(const struct signal *s, struct signal *slope, double t
         return 0;
     }
     struct guard guard = {0}, *watched = &guard;
-    struct first_zero search = {.guards = 1, .guard = &guard, .watched = &watched, .look = look_at_slope, .bound = bound};
+    static const struct motion motion = {.look = look_at_slope, .bound = bound};
+    struct first_zero search = {.guards = 1, .guard = &guard, .watched = &watched, .motion = &motion};
     struct course course = {.s = slope, .search = &search};
     const struct guard *met = &guard;
     double v[3], when = 0.0;
-    search.motion = &course;
+    search.own = &course;
     search.resolution = 1e-16 * s->tau;
     look(s, 0.0, t, e);
     look(s, s->tau, t, e);
@@ -204,7 +205,7 @@ static void exponential(double zr, double zi, double tau, double *re, double *im
 }
 
 /* The same of s^j e^{-i omega s} for all powers: upwards by parts where that loses nothing, or by the series. */
-static void powers(const struct signal *s, double omega, double *re, double *im)
+static void integrate_powers(const struct signal *s, double omega, double *re, double *im)
 {
     const double tau = s->tau, turn = fabs(omega) * tau, er = cos(omega * tau), ei = -sin(omega * tau);
     double power = 1.0, mr = 0.0, mi = 0.0;
@@ -225,7 +226,7 @@ static void powers(const struct signal *s, double omega, double *re, double *im)
 
 void tribo_signal_integrate(const struct signal *s, double omega, double *re, double *im)
 {
-    powers(s, omega, re, im);
+    integrate_powers(s, omega, re, im);
     for (size_t p = 0; p < s->terms; p++) {
         /* half of c e^{lambda s} and half of its conjugate */
         for (int side = -1; side <= 1; side += 2) {

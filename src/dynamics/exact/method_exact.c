@@ -113,9 +113,9 @@ static int find_held(struct exact *x, const struct modal **found)
 
 /* --------------------------------------------------------------------------------------------------------------------- guards */
 
-static void method_exact_look(void *motion, double tau, size_t guards, struct guard *const *guard)
+static void method_exact_look(void *own, double tau, size_t guards, struct guard *const *guard)
 {
-    struct modal_motion *x = &((struct exact *)motion)->motion;
+    struct modal_motion *x = &((struct exact *)own)->motion;
     tribo_modal_motion_go(x, tau);
     for (size_t k = 0; k < guards; k++) {
         struct guard *g = guard[k];
@@ -142,9 +142,9 @@ static void method_exact_look(void *motion, double tau, size_t guards, struct gu
 }
 
 /* Guards of limits that swing, and resonances, are left to two derivatives. */
-static int look_further(void *motion, double tau, const struct guard *g, double *to)
+static int look_further(void *own, double tau, const struct guard *g, double *to)
 {
-    struct modal_motion *x = &((struct exact *)motion)->motion;
+    struct modal_motion *x = &((struct exact *)own)->motion;
     const struct course *c = g->output;
     if (!c || g->limit != 0.0) {
         return 0;
@@ -159,15 +159,15 @@ static int look_further(void *motion, double tau, const struct guard *g, double 
     return 1;
 }
 
-static void move_to(void *motion, double tau, const double *from, double *to)
+static void move_to(void *own, double tau, const double *from, double *to)
 {
-    tribo_modal_motion_state(&((struct exact *)motion)->motion, tau, from, to);
+    tribo_modal_motion_state(&((struct exact *)own)->motion, tau, from, to);
 }
 
 /* The load at the end of a phase, where its terms are. */
-static void arrive(void *motion, double t)
+static void arrive(void *own, double t)
 {
-    const struct exact *exact = motion;
+    const struct exact *exact = own;
     const struct modal_motion *x = &exact->motion;
     x->sys->evaluations += exact->events.search.looks;
     tribo_system_set_time(x->sys, t);
@@ -179,9 +179,9 @@ static void arrive(void *motion, double t)
 
 /* Where exponents decay, bounds are worth finding again after the time of the fastest of them, and after twice that, and so on.
  * Those of courses from the start on come with them. */
-static double method_exact_bound(void *motion, double tau)
+static double method_exact_bound(void *own, double tau)
 {
-    struct exact *x = motion;
+    struct exact *x = own;
     const double decay = x->motion.h->decay;
     if (tau > 0.0) {
         tribo_modal_motion_bound(&x->motion, tau);
@@ -209,22 +209,17 @@ static double steady_limit(const struct exact *x, size_t i)
     return x->events.stick_slip.constant.swing[i] > 0.0 ? x->sys->given_limit[i] : x->events.stick_slip.state.limit[i];
 }
 
-/* Guards of a contact at rest, unless it is far from its limit for the whole phase. */
-static void add_stick_guards(struct exact *x, struct course *c)
+/* Guards of contact i; course c is that of its output, NULL if there is none. */
+static struct watch watch_of(const struct exact *x, size_t i, struct course *c)
 {
-    const size_t i = c->output->contact;
-    const struct stick_slip *m = &x->events.stick_slip;
-    const double ratio = tribo_breakaway_ratio(&m->breakaway, i), swing = ratio * m->constant.swing[i];
-    const double offset = ratio * steady_limit(x, i) + tribo_stick_slip_slack(m, i);
-    const struct watch g = {.output = c, .limit = swing > 0.0 ? ratio : 0.0, .offset = offset};
-    if (c->size >= offset - swing) {
-        tribo_events_guard_stick(&x->events, i, &g);
-    }
+    const double steady = steady_limit(x, i), swing = x->events.stick_slip.constant.swing[i];
+    return (struct watch){
+        .output = c, .size = c ? c->size : 0.0, .constant = steady, .least = steady - swing, .varies = swing > 0.0};
 }
 
-static int method_exact_begin(void *motion, double t, const double *y, double *reach)
+static int method_exact_begin(void *own, double t, const double *y, double *reach)
 {
-    struct exact *x = motion;
+    struct exact *x = own;
     const struct modal *h = NULL;
     const int status = find_held(x, &h);
     if (status) {
@@ -236,38 +231,26 @@ static int method_exact_begin(void *motion, double t, const double *y, double *r
     *reach = tribo_modal_motion_start(&x->motion, h, t, y, *reach);
     tribo_events_clear_guards(&x->events);
     for (size_t k = 0; k < x->motion.h->outputs; k++) {
-        /* Of output k. The velocity of an open contact is not guarded, but when it touches down its rounding counts. */
         struct course *c = &x->course[k];
-        struct stick_slip *m = &x->events.stick_slip;
+        const struct stick_slip *m = &x->events.stick_slip;
         const int of_velocity = k < x->motion.h->sliding;
         c->output = &x->motion.h->output[k];
         const size_t i = c->output->contact;
         const double value = of_velocity ? tribo_stick_slip_first_velocity(m, x->sys, i, y) : m->state.force[i];
         tribo_course_begin(&x->motion, c, of_velocity, value);
-        if (m->state.slip[i] == TRIBO_SLIP_OPEN) {
-            m->noise.velocity_scale[i] = c->size;
-        } else if (!of_velocity) {
-            add_stick_guards(x, c);
-        } else {
-            const struct watch g = {.output = c};
-            (m->state.slip[i] == TRIBO_SLIP_STUCK ? tribo_events_guard_part : tribo_events_guard_slip)(&x->events, i, &g);
-        }
+        const struct watch w = watch_of(x, i, c);
+        tribo_events_guard_contact(&x->events, i, &w);
     }
     for (size_t i = 0; x->sys->limit_harmonics && i < x->sys->ncontact; i++) {
-        /* One of the limit itself, if harmonics make it so small that it may fall to 0, or to the force that a contact keeps. Those that
-         * hold have guards of their forces. */
-        const struct stick_slip *m = &x->events.stick_slip;
-        if (m->constant.swing[i] > 0.0 && !m->state.holds[i]) {
-            const struct watch g = {.offset = x->sys->given_limit[i], .limit = 1.0};
-            tribo_events_guard_limit(&x->events, i, &g);
-        }
+        const struct watch w = watch_of(x, i, NULL);
+        tribo_events_guard_limit(&x->events, i, &w);
     }
     return TRIBO_OK;
 }
 
-static const void *keep_phase(void *motion)
+static const void *keep_phase(void *own)
 {
-    return tribo_modal_share(((struct exact *)motion)->motion.h);
+    return tribo_modal_share(((struct exact *)own)->motion.h);
 }
 
 static void release_phase(const void *phase)
@@ -275,9 +258,9 @@ static void release_phase(const void *phase)
     tribo_modal_free(phase);
 }
 
-static int method_exact_transition(void *motion, const void *phase, double tau, size_t columns, double *v)
+static int method_exact_transition(void *own, const void *phase, double tau, size_t columns, double *v)
 {
-    struct exact *x = motion;
+    struct exact *x = own;
     if (columns > x->columns) {
         double *more = realloc(x->work, tribo_modal_transition_room(x->sys, columns) * sizeof *more);
         if (!more) {
@@ -290,15 +273,27 @@ static int method_exact_transition(void *motion, const void *phase, double tau, 
     return TRIBO_OK;
 }
 
-static int method_exact_combine(void *motion, const double *c, double tau, const double *end, struct signal *to)
+static int method_exact_combine(void *own, const double *c, double tau, const double *end, struct signal *to)
 {
-    return tribo_modal_motion_signal(&((struct exact *)motion)->motion, c, tau, end, to);
+    return tribo_modal_motion_signal(&((struct exact *)own)->motion, c, tau, end, to);
 }
 
-static double work(void *motion, size_t i, double tau)
+static double closed_work(void *own, size_t i, double tau)
 {
-    return tribo_modal_motion_work(&((struct exact *)motion)->motion, i, tau);
+    return tribo_modal_motion_work(&((struct exact *)own)->motion, i, tau);
 }
+
+static const struct motion motion_closed = {.begin = method_exact_begin,
+                                            .look = method_exact_look,
+                                            .further = look_further,
+                                            .bound = method_exact_bound,
+                                            .state = move_to,
+                                            .arrive = arrive,
+                                            .keep = keep_phase,
+                                            .release = release_phase,
+                                            .transition = method_exact_transition,
+                                            .signal = method_exact_combine,
+                                            .work = closed_work};
 
 /* --------------------------------------------------------------------------------------------------------- the driver */
 
@@ -348,22 +343,10 @@ static int method_exact_create(tribo_driver *drv)
     }
     x->sys = drv->sys;
     x->course = malloc((drv->sys->ncontact + 1) * sizeof *x->course);
-    const int status = tribo_events_create(&x->events, drv);
+    const int status = tribo_events_create(&x->events, drv, &motion_closed, x);
     if (status) {
         return status;
     }
-    x->events.search.look = method_exact_look;
-    x->events.search.further = look_further;
-    x->events.search.bound = method_exact_bound;
-    x->events.search.motion = x->events.motion = x;
-    x->events.begin = method_exact_begin;
-    x->events.state = move_to;
-    x->events.arrive = arrive;
-    x->events.keep = keep_phase;
-    x->events.release = release_phase;
-    x->events.transition = method_exact_transition;
-    x->events.signal = method_exact_combine;
-    x->events.work = work;
     if (!x->course || !tribo_modal_motion_create(&x->motion, drv->sys, &x->events.stick_slip)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }

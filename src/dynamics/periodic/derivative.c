@@ -21,7 +21,7 @@ void tribo_derivative_clear(struct derivative *d)
 {
     for (size_t k = 0; k < d->steps; k++) {
         if (d->step[k].phase) {
-            d->events->release(d->step[k].phase);
+            d->events->motion->release(d->step[k].phase);
         }
     }
     d->steps = d->numbers = 0;
@@ -68,7 +68,7 @@ int tribo_derivative_add_phase(struct derivative *d, double tau, const signed ch
     for (size_t i = 0; i < d->sys->ncontact; i++) {
         d->rests[i] &= slip[i] == TRIBO_SLIP_STUCK;
     }
-    d->step[d->steps++] = (struct derivative_step){.phase = e->keep ? e->keep(e->motion) : NULL, .tau = tau};
+    d->step[d->steps++] = (struct derivative_step){.phase = e->motion->keep ? e->motion->keep(e->own) : NULL, .tau = tau};
     return 1;
 }
 
@@ -112,7 +112,7 @@ int tribo_derivative_apply(const struct derivative *d, size_t first, size_t colu
         if (d->sys->compliance.count) {
             tribo_compliance_perturb(d->sys, d->slip + k * c, columns, v, work);
         }
-        status = d->events->transition(d->events->motion, s->phase, s->tau, columns, v);
+        status = d->events->motion->transition(d->events->own, s->phase, s->tau, columns, v);
     }
     free(work);
     return status;

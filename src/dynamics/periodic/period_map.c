@@ -202,7 +202,7 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
     p->odd = m->odd;
     p->torn = m->variation.torn;
     p->other = m->variation.other;
-    return m->events->keep ? TRIBO_OK : keep_matrix(m, p, m->variation.v);
+    return m->events->motion->keep ? TRIBO_OK : keep_matrix(m, p, m->variation.v);
 }
 
 int tribo_period_map_apply(struct period_map *m, const struct point *p, double *x)
@@ -317,7 +317,7 @@ static double least_motion(struct period_map *m)
 /* What the variation follows: all perturbations, or some, between which there is nothing alike. */
 static int prepare_probes(struct period_map *m)
 {
-    const size_t columns = m->events->keep && m->n > PROBES ? PROBES : m->n;
+    const size_t columns = m->events->motion->keep && m->n > PROBES ? PROBES : m->n;
     if (!m->variation.v && !tribo_variation_create(&m->variation, m->events, m->sys, columns)) {
         return no_room(m);
     }

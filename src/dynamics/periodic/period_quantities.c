@@ -41,7 +41,7 @@ static void event_decided(struct company *company)
 
 static int set_signal(struct replay *r, double tau, const double *end)
 {
-    return r->map->events->signal(r->map->events->motion, r->c, tau, end, &r->signal);
+    return r->map->events->motion->signal(r->map->events->own, r->c, tau, end, &r->signal);
 }
 
 /* Has r->phase called with all phases of the period. Returns a status. */
@@ -165,7 +165,7 @@ static int add_energy(struct replay *r, double tau, const double *end)
     (void)end;
     for (size_t i = 0; i < r->map->sys->ncontact; i++) {
         if (tribo_slides(e->stick_slip.state.slip[i])) {
-            r->sum[i] += r->map->sys->tally[i] * e->work(e->motion, i, tau);
+            r->sum[i] += r->map->sys->tally[i] * e->motion->work(e->own, i, tau);
         }
     }
     return TRIBO_OK;

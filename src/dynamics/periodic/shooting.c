@@ -218,7 +218,7 @@ static int solve_in_space(struct shooting *s, const struct point *at, double shi
 /* 1 if matrices are too large to be made where that can be avoided. */
 static int is_matrix_free(const struct shooting *s)
 {
-    return s->map.n > DENSE && s->map.events->keep;
+    return s->map.n > DENSE && s->map.events->motion->keep;
 }
 
 /* s->step with (I + shift - derivative) step = image - x, the least one if there are many. */

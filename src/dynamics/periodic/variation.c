@@ -84,7 +84,7 @@ static int variation_breaks_away(const struct variation *x)
 {
     const struct guard *g = x->events->met;
     const struct stick_slip *m = &x->events->stick_slip;
-    return g && g->slides == HOLDS && !m->breakaway.falls && m->state.holds[g->contact] &&
+    return g && g->kind == HOLDS && !m->breakaway.falls && m->state.holds[g->contact] &&
            tribo_breakaway_is_sudden(&m->breakaway, g->contact);
 }
 
@@ -192,7 +192,7 @@ static int phase_ends(struct company *company, double tau, double t, const doubl
     if (!status && !tribo_derivative_add_phase(x->to, tau, x->before)) {
         status = no_derivative(x);
     }
-    status = status || x->events->keep ? status : catch_up(x);
+    status = status || x->events->motion->keep ? status : catch_up(x);
     return status || !x->count ? status : look_at_met(x, y);
 }
 
@@ -206,7 +206,7 @@ static int pulls_loose(const struct variation *x, size_t i)
     for (size_t k = 0; k < x->sys->ncontact; k++) {
         loose |= x->before[k] == 0 && tribo_slides(now[k]);
     }
-    return loose && met && met->slides == SLIDES && met->contact == i;
+    return loose && met && met->kind == SLIDES && met->contact == i;
 }
 
 /* 1 if contact i slid, and does not any more, or the other way. One that only touches v = 0 has no derivative there; an elastic
@@ -437,7 +437,7 @@ static void event_decided(struct company *company)
     }
     if (x->jumps && !tribo_derivative_add_jumps(x->to, x->jumps, x->row, x->jump)) {
         x->status = no_derivative(x);
-    } else if (!x->events->keep && !x->status) {
+    } else if (!x->events->motion->keep && !x->status) {
         x->status = catch_up(x);
     }
 }

@@ -252,8 +252,9 @@ static double power_of(const struct event *e, size_t i, size_t k)
     return e->events.stick_slip.state.slip[i] * power;
 }
 
-double tribo_event_work(const struct event *e, size_t i, double tau)
+double tribo_event_work(void *own, size_t i, double tau)
 {
+    const struct event *e = own;
     double work = 0.0;
     for (size_t k = e->order; k-- > 0;) {
         work = work * tau + power_of(e, i, k) / (double)(k + 1);

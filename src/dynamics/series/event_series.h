@@ -47,6 +47,6 @@ int tribo_event_expand(struct event *e, double t, const double *y);
 void tribo_event_slopes(struct event *e);
 
 /* What the limit of contact i, which slides, has done against its velocity at tau: energy. */
-double tribo_event_work(const struct event *e, size_t i, double tau);
+double tribo_event_work(void *own, size_t i, double tau);
 
 #endif

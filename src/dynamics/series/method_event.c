@@ -123,9 +123,9 @@ static struct sample watch(const struct event *e, const struct guard *g, double 
 }
 
 /* The two sides of what is watched follow one another, and are computed once. */
-static void method_event_look(void *motion, double tau, size_t guards, struct guard *const *guard)
+static void method_event_look(void *own, double tau, size_t guards, struct guard *const *guard)
 {
-    const struct event *e = motion;
+    const struct event *e = own;
     const void *seen = NULL;
     struct sample v = {0.0, 0.0, 0.0};
     for (size_t k = 0; k < guards; k++) {
@@ -163,9 +163,9 @@ TRIBO_SIMD static void method_event_find_bounds(size_t c, size_t terms, double h
     }
 }
 
-static double method_event_bound(void *motion, double tau)
+static double method_event_bound(void *own, double tau)
 {
-    struct event *e = motion;
+    struct event *e = own;
     struct first_zero *s = &e->events.search;
     (void)tau;
     for (size_t k = 0; k < s->guards; k++) {
@@ -175,14 +175,6 @@ static double method_event_bound(void *motion, double tau)
         g->bend = side * e->bend[g->contact] + limit * e->limit_bend[g->contact];
     }
     return HUGE_VAL;
-}
-
-/* Whether the limit of contact i may fall to 0, or to the force that it keeps, while no other guard of it looks after that. A
- * limit that only follows a table has its zeros at knots, where steps end. */
-static int limit_tells(const struct stick_slip *m, size_t i, int varies)
-{
-    const int keeps = m->state.slip[i] == TRIBO_SLIP_STUCK && !m->state.holds[i] && tribo_stick_slip_follows(m, i) == 0.0;
-    return keeps ? varies : m->constant.swing[i] > 0.0 && !m->state.holds[i];
 }
 
 /* A step is at most so long that the speed of no planar contact falls to less than this part of what it began with. Where the
@@ -199,7 +191,7 @@ static void set_planar_guards(struct event *e)
         const int moves = m->state.slip[p->at] == TRIBO_SLIP_PLANE;
         double *square = e->planar.square + k;
         const double limit = greater(p->limit[0], p->limit[1]);
-        struct guard g = {.contact = p->at, .output = square, .slides = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
+        struct guard g = {.contact = p->at, .output = square, .kind = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
         g.offset = moves ? -SLOWER * SLOWER * square[0] : 0.5 * limit;
         g.allowance = moves ? 0.0 : greater(m->noise.allowance[p->at], m->noise.allowance[p->at + 1]);
         e->size[p->at] = line->size;
@@ -222,17 +214,10 @@ static void set_guards(struct event *e)
         set_planar_guards(e);
     }
     for (size_t i = 0; i < m->constant.contacts; i++) {
-        const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
-        struct watch g = {.output = e->watch + i};
-        if (m->state.slip[i] == TRIBO_SLIP_OPEN) { /* not guarded, but when it touches down, rounding of its velocity counts */
-            e->events.stick_slip.noise.velocity_scale[i] = e->size[i];
-        }
         if (m->plane && m->plane->in_plane[i]) {
             continue;
         }
-        if (tribo_slides(m->state.slip[i])) {
-            tribo_events_guard_slip(&e->events, i, &g);
-        } else if (tribo_stick_slip_may_part(m, i)) {
+        if (tribo_stick_slip_may_part(m, i)) {
             /* size of the terms of v_i over [0, h] */
             const struct matrix *j = &e->sys->direction;
             double size = 0.0, power = 1.0, lever = 0.0;
@@ -244,21 +229,20 @@ static void set_guards(struct event *e)
                 power = lesser(power * h, DBL_MAX);
             }
             e->size[i] = size;
-            tribo_events_guard_part(&e->events, i, &g);
         }
-        g.limit = varies ? ratio : 0.0;
-        g.offset = (varies ? 0.0 : ratio * e->limit[i]) + tribo_stick_slip_slack(m, i);
-        if (m->state.holds[i] && e->size[i] >= ratio * (2.0 * e->limit[i] - e->limit_size[i])) {
-            tribo_events_guard_stick(&e->events, i, &g);
-        } else if (limit_tells(m, i, varies)) {
-            tribo_events_guard_limit(&e->events, i, &(struct watch){.limit = 1.0});
-        }
+        const struct watch w = {.output = e->watch + i,
+                                .size = e->size[i],
+                                .constant = varies ? 0.0 : e->limit[i],
+                                .least = 2.0 * e->limit[i] - e->limit_size[i],
+                                .varies = varies};
+        tribo_events_guard_contact(&e->events, i, &w);
+        tribo_events_guard_limit(&e->events, i, &w);
     }
 }
 
 /* ------------------------------------------------------------------------------------------------------- the driver */
 
-static void destroy(tribo_driver *drv)
+static void method_event_destroy(tribo_driver *drv)
 {
     struct event *e = drv->own;
     if (e) {
@@ -271,12 +255,6 @@ static void destroy(tribo_driver *drv)
         free(e);
     }
 }
-
-static int method_event_begin(void *motion, double t, const double *y, double *reach);
-static int transition(void *motion, const void *phase, double tau, size_t columns, double *v);
-static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to);
-static double method_event_work(void *motion, size_t i, double tau);
-static void state(void *motion, double tau, const double *from, double *to);
 
 /* Powers of frequencies and of steps stay within so many digits, which leaves room for sizes, and half as many where squares of
  * series are made, as in a plane; but so many terms there are. */
@@ -331,28 +309,6 @@ static int take_tolerances(struct event *e)
     return TRIBO_OK;
 }
 
-static int method_event_create(tribo_driver *drv)
-{
-    tribo_system *sys = drv->sys;
-    struct event *e = tribo_zeros(1, sizeof *e);
-    drv->own = e;
-    if (!e) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
-    }
-    const int status = tribo_events_create(&e->events, drv);
-    e->drv = drv;
-    e->sys = sys;
-    e->events.search.look = method_event_look;
-    e->events.search.bound = method_event_bound;
-    e->events.search.motion = e->events.motion = e;
-    e->events.begin = method_event_begin;
-    e->events.state = state;
-    e->events.transition = transition;
-    e->events.signal = combine;
-    e->events.work = method_event_work;
-    return status ? status : take_tolerances(e);
-}
-
 /* Tolerances, room for the harmonics, which may have become more, and the highest frequency. */
 static int method_event_prepare(struct event *e)
 {
@@ -388,9 +344,9 @@ static int method_event_prepare(struct event *e)
     return TRIBO_OK;
 }
 
-static void state(void *motion, double tau, const double *from, double *to)
+static void series_state(void *own, double tau, const double *from, double *to)
 {
-    const struct event *e = motion;
+    const struct event *e = own;
     const size_t n = e->sys->ndof;
     const struct compliance *g = &e->sys->compliance;
     double *energy = to + tribo_system_energy(e->sys);
@@ -550,9 +506,9 @@ static int never_ends(const struct event *e, double end)
     return (double)(e->order + 1) < DBL_EPSILON * fabs(end) * e->fastest;
 }
 
-static int method_event_begin(void *motion, double t, const double *y, double *reach)
+static int method_event_begin(void *own, double t, const double *y, double *reach)
 {
-    struct event *e = motion;
+    struct event *e = own;
     double length;
     event_find_moves(e, y);
     const int status = method_event_expand(e, t, y, *reach, &length);
@@ -570,10 +526,10 @@ static int method_event_begin(void *motion, double t, const double *y, double *r
                                    "at t = %.17g derivatives of the motion overflow: it grows without bound, or is too fast", t);
 }
 
-static int transition(void *motion, const void *phase, double tau, size_t columns, double *v)
+static int series_transition(void *own, const void *phase, double tau, size_t columns, double *v)
 {
     (void)phase;
-    struct event *e = motion;
+    struct event *e = own;
     const int falls = e->events.stick_slip.breakaway.falls;
     const struct slopes slopes = {falls ? e->order + 1 : 0, e->slope};
     if (falls) {
@@ -582,9 +538,9 @@ static int transition(void *motion, const void *phase, double tau, size_t column
     return tribo_series_transition(&e->perturbed, &e->events.stick_slip, e->sys, &slopes, tau, columns, v);
 }
 
-static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to)
+static int series_signal(void *own, const double *c, double tau, const double *end, struct signal *to)
 {
-    const struct event *e = motion;
+    const struct event *e = own;
     const struct compliance *g = &e->sys->compliance;
     const size_t n = e->sys->ndof, count = e->sys->ncontact;
     (void)end;
@@ -602,9 +558,26 @@ static int combine(void *motion, const double *c, double tau, const double *end,
     return TRIBO_OK;
 }
 
-static double method_event_work(void *motion, size_t i, double tau)
+static const struct motion motion_in_series = {.begin = method_event_begin,
+                                               .look = method_event_look,
+                                               .bound = method_event_bound,
+                                               .state = series_state,
+                                               .transition = series_transition,
+                                               .signal = series_signal,
+                                               .work = tribo_event_work};
+
+static int method_event_create(tribo_driver *drv)
 {
-    return tribo_event_work(motion, i, tau);
+    tribo_system *sys = drv->sys;
+    struct event *e = tribo_zeros(1, sizeof *e);
+    drv->own = e;
+    if (!e) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
+    }
+    e->drv = drv;
+    e->sys = sys;
+    const int status = tribo_events_create(&e->events, drv, &motion_in_series, e);
+    return status ? status : take_tolerances(e);
 }
 
 static int open_events(tribo_driver *drv, struct events **events)
@@ -618,7 +591,7 @@ static int open_events(tribo_driver *drv, struct events **events)
 const struct method tribo_method_event = {"event",
                                           TAKES_TOLERANCE | TAKES_OUTPUT,
                                           method_event_create,
-                                          destroy,
+                                          method_event_destroy,
                                           tribo_events_method,
                                           open_events,
                                           tribo_events_find_periodic};

@@ -39,9 +39,9 @@ static double derivative(const struct course *c, double t, int k)
     return sum;
 }
 
-static void look(void *motion, double tau, size_t guards, struct guard *const *guard)
+static void look(void *own, double tau, size_t guards, struct guard *const *guard)
 {
-    const struct scene *s = motion;
+    const struct scene *s = own;
     const double t = tau / s->unit;
     for (size_t k = 0; k < guards; k++) {
         const struct course *c = &s->course[guard[k]->contact];
@@ -51,9 +51,9 @@ static void look(void *motion, double tau, size_t guards, struct guard *const *g
     }
 }
 
-static int further(void *motion, double tau, const struct guard *g, double *to)
+static int further(void *own, double tau, const struct guard *g, double *to)
 {
-    const struct scene *s = motion;
+    const struct scene *s = own;
     for (int k = 0; k < 3; k++) {
         to[k] = s->scale * derivative(&s->course[g->contact], tau / s->unit, k + 3);
         for (int j = 0; j < k + 3; j++) {
@@ -63,9 +63,9 @@ static int further(void *motion, double tau, const struct guard *g, double *to)
     return 1;
 }
 
-static double bound(void *motion, double tau)
+static double bound(void *own, double tau)
 {
-    struct scene *s = motion;
+    struct scene *s = own;
     for (size_t k = 0; k < s->guards; k++) {
         const struct course *c = &s->course[k];
         struct guard *g = &s->guard[k];
@@ -85,13 +85,13 @@ static double bound(void *motion, double tau)
 static double find(struct scene *s, double expected, int knows_further, const struct guard **first)
 {
     double when;
+    static const struct motion motion = {.look = look, .bound = bound};
+    static const struct motion motion_further = {.look = look, .further = further, .bound = bound};
     s->search = (struct first_zero){.guards = s->guards,
                                     .guard = s->guard,
                                     .watched = s->watched,
-                                    .look = look,
-                                    .further = knows_further ? further : NULL,
-                                    .bound = bound,
-                                    .motion = s,
+                                    .motion = knows_further ? &motion_further : &motion,
+                                    .own = s,
                                     .expected = expected * s->unit,
                                     .resolution = 1e-30 * s->unit};
     for (size_t k = 0; k < s->guards; k++) {

@@ -5,19 +5,22 @@
 #include "support.h"
 #include "../../set_up_driver.h"
 
-static int (*honest_begin)(void *motion, double t, const double *y, double *reach);
+static const struct motion *honest;
+static struct motion dishonest;
 static struct events *spoilt;
 static tribo_system *sys;
 static tribo_driver *drv;
 
 /* A driver of an oscillator that slides and sticks, whose phases begin by `begin`. */
-static void spoil(const char *method, int (*begin)(void *motion, double t, const double *y, double *reach))
+static void spoil(const char *method, int (*begin)(void *own, double t, const double *y, double *reach))
 {
     assert_ok(tribo_system_oscillator(&sys, 1.0, 1.5, 0.5));
     assert_ok(set_up_driver(&drv, sys, method, 0.01, 1e-10, 1e-10));
     assert_ok(drv->method->open(drv, &spoilt));
-    honest_begin = spoilt->begin;
-    spoilt->begin = begin;
+    honest = spoilt->motion;
+    dishonest = *honest;
+    dishonest.begin = begin;
+    spoilt->motion = &dishonest;
 }
 
 static void give_back(void)
@@ -27,30 +30,30 @@ static void give_back(void)
 }
 
 /* Every contact that slides seems to go the other way, and to stop a moment after it began. */
-static int begin_backwards(void *motion, double t, const double *y, double *reach)
+static int begin_backwards(void *own, double t, const double *y, double *reach)
 {
-    const int status = honest_begin(motion, t, y, reach);
+    const int status = honest->begin(own, t, y, reach);
     for (size_t k = 0; k < spoilt->search.guards; k++) {
         struct guard *g = &spoilt->search.guard[k];
-        g->side = g->slides ? -g->side : g->side;
+        g->side = g->kind ? -g->side : g->side;
     }
     return status;
 }
 
 /* Every contact at rest seems to be at its limit before it is. */
-static int begin_weak(void *motion, double t, const double *y, double *reach)
+static int begin_weak(void *own, double t, const double *y, double *reach)
 {
-    const int status = honest_begin(motion, t, y, reach);
+    const int status = honest->begin(own, t, y, reach);
     for (size_t k = 0; k < spoilt->search.guards; k++) {
         struct guard *g = &spoilt->search.guard[k];
-        g->offset -= g->slides ? 0.0 : 0.5;
+        g->offset -= g->kind ? 0.0 : 0.5;
     }
     return status;
 }
 
-static int begin_short(void *motion, double t, const double *y, double *reach)
+static int begin_short(void *own, double t, const double *y, double *reach)
 {
-    const int status = honest_begin(motion, t, y, reach);
+    const int status = honest->begin(own, t, y, reach);
     *reach = 1e-25;
     return status;
 }

@@ -1,0 +1,89 @@
+/* All that a guard means beside its course in time: which contacts have it, what the decision after its event learns, and what its
+ * samples tell of the size of rounding. Another kind of event is added here, and in the enum of first_zero.h. */
+#include "events.h"
+#include "common/real.h"
+
+#include <math.h>
+
+void tribo_events_clear_guards(struct events *e)
+{
+    e->search.guards = 0;
+}
+
+void tribo_events_guard(struct events *e, const struct guard *guard)
+{
+    e->search.guard[e->search.guards++] = *guard;
+}
+
+/* offset + side w->output + times the part of the limit that the motion adds */
+static void append(struct events *e, size_t i, int kind, double side, double times, double offset, double allowance,
+                   const struct watch *w)
+{
+    struct guard *g = &e->search.guard[e->search.guards++]; /* samples, size and bend are the search's and the motion's */
+    g->contact = i;
+    g->kind = kind;
+    g->side = side;
+    g->output = side != 0.0 ? w->output : NULL;
+    g->offset = offset;
+    g->limit = w->varies ? times : 0.0;
+    g->allowance = allowance;
+    g->lowest = g->right.g = 0.0;
+}
+
+void tribo_events_guard_contact(struct events *e, size_t i, const struct watch *w)
+{
+    struct stick_slip *m = &e->stick_slip;
+    const double ratio = tribo_breakaway_ratio(&m->breakaway, i), slack = tribo_stick_slip_margin(m, i);
+    if (m->state.slip[i] == TRIBO_SLIP_OPEN) {
+        m->noise.velocity_scale[i] = w->size; /* for the decision when it touches down */
+    } else if (tribo_slides(m->state.slip[i])) {
+        append(e, i, SLIDES, m->state.slip[i], 0.0, 0.0, m->noise.factor * m->noise.velocity[i], w);
+    } else if (m->state.holds[i]) {
+        for (double side = -1.0; w->size >= ratio * w->least + slack && side <= 1.0; side += 2.0) {
+            append(e, i, HOLDS, side, ratio, ratio * w->constant + slack, m->noise.allowance[i], w);
+        }
+    } else if (tribo_stick_slip_may_part(m, i)) {
+        append(e, i, SLIDES, -1.0, 0.0, 0.0, m->noise.parting[i], w);
+        append(e, i, SLIDES, 1.0, 0.0, 0.0, m->noise.parting[i], w);
+    }
+}
+
+void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *w)
+{
+    const struct stick_slip *m = &e->stick_slip;
+    const int keeps = m->state.slip[i] == TRIBO_SLIP_STUCK && tribo_stick_slip_follows(m, i) == 0.0;
+    const double ratio = tribo_breakaway_ratio(&m->breakaway, i), swing = m->constant.swing[i];
+    if (m->state.holds[i] || !(keeps ? w->varies : swing > 0.0)) {
+        return;
+    }
+    if (keeps) {
+        append(e, i, HOLDS, 0.0, ratio, ratio * w->constant + (tribo_stick_slip_margin(m, i) - fabs(m->state.force[i])),
+               m->noise.allowance[i], w);
+    } else {
+        const double side = m->state.slip[i] == TRIBO_SLIP_OPEN ? -1.0 : 1.0;
+        append(e, i, HOLDS, 0.0, side, side * w->constant, 2.0 * TRIBO_LIMIT_NOISE * m->noise.factor * swing, w);
+    }
+}
+
+void tribo_events_mark(struct stick_slip *m, const struct guard *event)
+{
+    if (event->kind == SLIDES) {
+        tribo_stick_slip_set(m, event->contact, TRIBO_SLIP_STUCK);
+    } else {
+        m->state.reached = event->contact;
+    }
+}
+
+void tribo_events_learn(struct events *e, tribo_driver *drv, int brief, double when)
+{
+    struct stick_slip *m = &e->stick_slip;
+    for (size_t k = 0; k < e->search.guards; k++) {
+        const struct guard *g = &e->search.guard[k];
+        if (g->kind == SLIDES) {
+            m->noise.velocity_scale[g->contact] = brief ? fabs(g->left.g) + when * fabs(g->left.d) : g->size;
+            drv->backslip = greater(drv->backslip, g->lowest);
+        } else if (g->kind == HOLDS) {
+            drv->excess = greater(drv->excess, g->lowest + m->noise.excess[g->contact]);
+        }
+    }
+}

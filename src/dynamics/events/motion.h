@@ -1,0 +1,38 @@
+/* The motion between two events, a phase, as the loop over events and the search for the first event know it: one const table for
+ * each method, and `own`, the method's own data, with which all functions are called. */
+#ifndef TRIBO_MOTION_H
+#define TRIBO_MOTION_H
+
+#include <stddef.h>
+
+struct guard;
+struct signal;
+
+struct motion {
+    /* Begins a phase at (t, y) that lasts *reach, or lowers *reach, and sets the guards. Returns a status, its message on the
+     * system's context. */
+    int (*begin)(void *own, double t, const double *y, double *reach);
+    /* Sets the middle samples of guards [count] at tau into the phase. */
+    void (*look)(void *own, double tau, size_t count, struct guard *const *guard);
+    /* Sets to [3] = the third to fifth derivative of a guard at tau; 1, or 0 if unknown. If known, the guard is a sum of
+     * exponentials, sines and what is linear in time. NULL: never known. */
+    int (*further)(void *own, double tau, const struct guard *g, double *to);
+    /* Sets size and bend of all guards from tau on; returns the time from which smaller bounds are worth finding. */
+    double (*bound)(void *own, double tau);
+    /* Sets to = the state at tau into the phase that began with from; to may be from. */
+    void (*state)(void *own, double tau, const double *from, double *to);
+    /* Sets the system's time to t, where the phase ends to which state went last. NULL: not needed. */
+    void (*arrive)(void *own, double t);
+    /* Returns the data of the phase that transition needs after its end, until release. NULL: phases are not kept. */
+    const void *(*keep)(void *own);
+    void (*release)(const void *phase);
+    /* Moves perturbations v [2 ndof][columns] of the state by tau in a phase that was kept; in the one that ends if phase is NULL.
+     * Projects them first so that contacts at rest stay there. Returns a status, its message on the system's context. */
+    int (*transition)(void *own, const void *phase, double tau, size_t columns, double *v);
+    /* Sets to = c'y, c [2 ndof], in the phase that lasts tau and ends with the state end. Returns a status, likewise. */
+    int (*signal)(void *own, const double *c, double tau, const double *end, struct signal *to);
+    /* Returns the energy that sliding contact i dissipated in the phase that lasted tau, its force counted once. */
+    double (*work)(void *own, size_t i, double tau);
+};
+
+#endif
