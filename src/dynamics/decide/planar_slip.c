@@ -240,8 +240,8 @@ static double slide_in_plane(const struct planar_contact *p, const double *v, co
     return fabs(turn);
 }
 
-/* Sets work.lo = forces of sliding contacts, 0 of others, and plane->rate = their rates for accelerations acc [ncontact]. Returns
- * the fastest rate of turn of a force. */
+/* Sets work.lo = forces of sliding contacts, 0 of others, and plane->rate = their rates for accelerations acc [ncontact].
+ * Returns the fastest rate of turn of a force. */
 static double given_forces(struct stick_slip *m, const tribo_system *sys, const double *y, const double *acc)
 {
     double fastest = 0.0;
@@ -343,8 +343,8 @@ static int on_line(const struct stick_slip *m, size_t i)
     return !m->plane->in_plane[i] && m->state.slip[i] == TRIBO_SLIP_STUCK;
 }
 
-/* Lets contacts at rest slide whose force is at its limit and that accelerate; marks those in state.tied that do not accelerate,
- * and returns their number. */
+/* Lets contacts at rest slide whose force is at its limit and that accelerate; marks those in state.tied that do not
+ * accelerate, and returns their number. */
 static size_t break_away(struct stick_slip *m)
 {
     size_t ties = 0;

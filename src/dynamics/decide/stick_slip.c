@@ -1,5 +1,5 @@
-/* What is known of contacts between decisions: velocities and accelerations, and how much of them may be rounding. Decisions are
- * made in scalar_slip.c and planar_slip.c. */
+/* Velocities and accelerations of contacts, and bounds of their rounding. Decisions are made in scalar_slip.c and
+ * planar_slip.c. */
 #include "stick_slip.h"
 #include "common/real.h"
 
@@ -7,16 +7,16 @@
 #include <math.h>
 #include <string.h>
 
-/* Accelerations are known to this part of what they are the sum of. */
+/* Rounding of an acceleration, in parts of the sum of the sizes of its terms. */
 #define NOISE 2e-14
 
-/* The moment later, in parts of one over the highest frequency. What has changed by then is far above noise, as a rule, and
- * nearly linear in time. */
+/* The horizon, in parts of one over the highest frequency: changes until then are nearly linear in time, and mostly far above
+ * noise. */
 #define LOOK_AHEAD 1e-4
 
 /* ---------------------------------------------------------------------------------------------------------- rounding */
 
-/* y += amplitudes of the order-th derivatives of loads, or of b. */
+/* y += amplitudes of the harmonics that drive loads or bases, or (order 1) of their rates. */
 static void add_amplitudes(const tribo_system *sys, enum drives drives, int order, double *y)
 {
     for (size_t s = 0; s < sys->harmonics; s++) {
@@ -28,7 +28,7 @@ static void add_amplitudes(const tribo_system *sys, enum drives drives, int orde
     }
 }
 
-/* The same of the tables of b: y += the largest values, rate += the steepest slopes. */
+/* y [ncontact] += largest values of the tables of bases; rate [ncontact] += their steepest slopes. */
 static void add_base_tables(const tribo_system *sys, double *y, double *rate)
 {
     for (size_t s = 0; s < sys->tables; s++) {
@@ -46,32 +46,29 @@ static void add_base_tables(const tribo_system *sys, double *y, double *rate)
     }
 }
 
-/* A time is known to its rounding. Where contacts that repeat each other may rest, what one holds follows its base, and the
- * others see the rounding of that. */
-static void find_base_sizes(struct stick_slip *m, const tribo_system *sys)
-{
-    const double late = DBL_EPSILON * fabs(sys->time) / TRIBO_VELOCITY_NOISE;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->constant.base_size[i] += late * m->constant.base_rate_size[i];
-    }
-    const double largest = m->constant.independent ? 0.0 : tribo_largest(m->constant.base_size, sys->ncontact);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->constant.base_size[i] = greater(m->constant.base_size[i], largest);
-    }
-}
-
 void tribo_stick_slip_find_scales(struct stick_slip *m, const tribo_system *sys)
 {
+    struct slip_constant *k = &m->constant;
+    const size_t c = sys->ncontact;
     const double fastest = tribo_system_fastest(sys) + m->breakaway.steepest;
-    m->constant.horizon = LOOK_AHEAD / (fastest > 0.0 ? fastest : 1.0);
-    memset(m->constant.base_size, 0, sys->ncontact * sizeof *m->constant.base_size);
-    memset(m->constant.base_rate_size, 0, sys->ncontact * sizeof *m->constant.base_rate_size);
-    memset(m->constant.load_size, 0, sys->ndof * sizeof *m->constant.load_size);
-    add_amplitudes(sys, DRIVES_BASE, 0, m->constant.base_size);
-    add_amplitudes(sys, DRIVES_BASE, 1, m->constant.base_rate_size);
-    add_base_tables(sys, m->constant.base_size, m->constant.base_rate_size);
-    add_amplitudes(sys, DRIVES_LOAD, 0, m->constant.load_size);
-    find_base_sizes(m, sys);
+    k->horizon = LOOK_AHEAD / (fastest > 0.0 ? fastest : 1.0);
+    memset(k->base_size, 0, c * sizeof *k->base_size);
+    memset(k->base_rate_size, 0, c * sizeof *k->base_rate_size);
+    memset(k->load_size, 0, sys->ndof * sizeof *k->load_size);
+    add_amplitudes(sys, DRIVES_BASE, 0, k->base_size);
+    add_amplitudes(sys, DRIVES_BASE, 1, k->base_rate_size);
+    add_base_tables(sys, k->base_size, k->base_rate_size);
+    add_amplitudes(sys, DRIVES_LOAD, 0, k->load_size);
+    /* t is known to its rounding. Of contacts that depend on each other one follows its base, and the others see its
+     * rounding. */
+    const double late = DBL_EPSILON * fabs(sys->time) / TRIBO_VELOCITY_NOISE;
+    for (size_t i = 0; i < c; i++) {
+        k->base_size[i] += late * k->base_rate_size[i];
+    }
+    const double largest = k->independent ? 0.0 : tribo_largest(k->base_size, c);
+    for (size_t i = 0; i < c; i++) {
+        k->base_size[i] = greater(k->base_size[i], largest);
+    }
 }
 
 void tribo_stick_slip_forget_gains(struct stick_slip *m)
@@ -79,7 +76,7 @@ void tribo_stick_slip_forget_gains(struct stick_slip *m)
     memset(m->noise.found, 0, m->noise.founds * sizeof *m->noise.found);
 }
 
-/* The size of all that q'' of degree of freedom d is the sum of. */
+/* Returns noise.size[d], the size of the terms of q''_d; finds it first if it is 0. */
 static double find_size(struct stick_slip *m, const tribo_system *sys, const double *y, size_t d)
 {
     if (m->noise.size[d] > 0.0) {

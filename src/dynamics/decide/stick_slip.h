@@ -157,8 +157,8 @@ static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed c
  * contacts whose velocity is zero to rounding. A decision must follow. */
 void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues);
 
-/* scalar_slip.c: decides about the contacts at rest, one of which may have reached its limit (see above), and takes rounding out
- * of their velocities in y. Sets slip, holds, force and allowance. */
+/* scalar_slip.c: decides about the contacts at rest, one of which may have reached its limit (see above), and takes rounding
+ * out of their velocities in y. Sets slip, holds, force and allowance. */
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
 
 /* stick_slip_instant.c: a decision begins at time t, with the base there. Limits, and with them which contacts are open, are
@@ -173,7 +173,8 @@ void tribo_stick_slip_forget_shares(struct stick_slip *m);
 /* How large b, its rate, and accelerations by loads ever are, and how far decisions look ahead. */
 void tribo_stick_slip_find_scales(struct stick_slip *m, const tribo_system *sys);
 
-/* What accelerations of contacts may be rounding, and how far forces may go: forgotten, and found anew of one contact, or all. */
+/* What accelerations of contacts may be rounding, and how far forces may go: forgotten, and found anew of one contact, or
+ * all. */
 void tribo_stick_slip_forget_gains(struct stick_slip *m);
 void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i);
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y);
@@ -181,8 +182,8 @@ void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, 
 /* How large the parts of q'' are, at most. */
 double tribo_stick_slip_acceleration_size(struct stick_slip *m, const tribo_system *sys, const double *y);
 
-/* Whether contact i moves by less than rounding of what its accelerations make of it: several contacts that hold a body together
- * leave so much. */
+/* Whether contact i moves by less than rounding of what its accelerations make of it: several contacts that hold a body
+ * together leave so much. */
 int tribo_stick_slip_is_faint(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i);
 
 /* The free motion at (t, y): m->work.free, and m->work.a. */
@@ -210,8 +211,8 @@ static inline int tribo_stick_slip_alone(const struct stick_slip *m, size_t i)
 }
 
 /* stick_slip_forces.c, of the contacts that are asked about: f [ncontact] = the forces within lo and hi, where accelerations
- * without them are a; the forces, with contacts at rest as they are marked, and who is close to its limit by them; both return a
- * status. v [ncontact] = a + R f, the accelerations that forces f leave; v may be a. */
+ * without them are a; the forces, with contacts at rest as they are marked, and who is close to its limit by them; both return
+ * a status. v [ncontact] = a + R f, the accelerations that forces f leave; v may be a. */
 int tribo_stick_slip_solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f);
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v);
@@ -231,8 +232,8 @@ static inline int tribo_stick_slip_must_be_sure(const struct stick_slip *m, size
     return m->state.dependents && tribo_breakaway_is_sudden(&m->breakaway, i);
 }
 
-/* stick_slip_relieve.c: where a contact must be sure, or accelerations are nothing but rounding, the forces tell that it takes to
- * hold all that are at rest: these are the forces, or contacts are let go; a status. */
+/* stick_slip_relieve.c: where a contact must be sure, or accelerations are nothing but rounding, the forces tell that it takes
+ * to hold all that are at rest: these are the forces, or contacts are let go; a status. */
 int tribo_stick_slip_relieve(struct stick_slip *m, tribo_system *sys, size_t *changes);
 
 /* stick_slip_elastic.c: elastic contacts, whose forces are part of the state. find sets state.spring and noise.spring; start takes
@@ -286,8 +287,8 @@ static inline int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i
     return m->constant.base_moves && m->state.slip[i] == TRIBO_SLIP_STUCK && !m->state.holds[i];
 }
 
-/* By how much more than its limit contact i may be pulled and hold: where it would let go of much, what may be rounding does not
- * count. */
+/* By how much more than its limit contact i may be pulled and hold: where it would let go of much, what may be rounding does
+ * not count. */
 double tribo_stick_slip_margin(const struct stick_slip *m, size_t i);
 
 /* Velocities are known to this part of what they are the sum of. */

@@ -19,8 +19,8 @@ static double most_credit(const struct events *e)
     return 32.0 + 8.0 * (double)e->stick_slip.constant.contacts;
 }
 
-/* That they use up their credit in this part of such a time is no headway, and so many of them in a row are the end. Some hundred
- * thousand happen where limits swing, and lead on. */
+/* That they use up their credit in this part of such a time is no headway, and so many of them in a row are the end. Some
+ * hundred thousand happen where limits swing, and lead on. */
 #define HEADWAY 1e-2
 #define MOST_STUCK 1e6
 
@@ -150,8 +150,8 @@ static void expect(struct events *e, const struct guard *event, double when)
     e->search.expected = e->begun && e->search.early <= ALIKE * e->begun->time ? e->begun->time : 0.0;
 }
 
-/* A run that does not continue another one is not to depend on it, not even in its rounding; events of one that does are counted
- * as if it had not been interrupted. */
+/* A run that does not continue another one is not to depend on it, not even in its rounding; events of one that does are
+ * counted as if it had not been interrupted. */
 static void forget(struct events *e, double t, int continues)
 {
     e->begun = NULL;
@@ -196,8 +196,8 @@ static int kind_of(signed char from, signed char to)
                                       : TRIBO_MOMENT_REVERSE;
 }
 
-/* Shows the observer each contact whose slip differs from shown[], in ascending order, until it answers anything but 0; the next
- * advance shows the others if it continues. Sets *some = 1 if a contact is shown. Returns a status. */
+/* Shows the observer each contact whose slip differs from shown[], in ascending order, until it answers anything but 0; the
+ * next advance shows the others if it continues. Sets *some = 1 if a contact is shown. Returns a status. */
 static int show_changes(struct events *e, tribo_driver *drv, double t, const double *y, int *some)
 {
     const struct stick_slip *m = &e->stick_slip;
@@ -239,8 +239,8 @@ static int decide(struct events *e, tribo_system *sys, double t, double *y)
     return status;
 }
 
-/* Says why the search for an event from (t, y) until reach later was given up: the state there, which y becomes, overflows, or is
- * too far away. */
+/* Says why the search for an event from (t, y) until reach later was given up: the state there, which y becomes, overflows, or
+ * is too far away. */
 static int cannot_follow(struct events *e, tribo_driver *drv, double t, double reach, double *y)
 {
     e->motion->state(e->own, reach, y, y);
@@ -287,8 +287,8 @@ static int is_brief(const struct events *e, const tribo_system *sys, const struc
     return event && e->search.at_once && simple && brief && when * fabs(event->left.e) <= STEADY * fabs(event->left.d);
 }
 
-/* y after a brief phase from (t, y), by the accelerations and forces there; contacts that stop do not hold against each other by
- * such forces. Returns a status. */
+/* y after a brief phase from (t, y), by the accelerations and forces there; contacts that stop do not hold against each other
+ * by such forces. Returns a status. */
 static int go_brief(struct stick_slip *m, tribo_system *sys, double t, double tau, double *y)
 {
     const size_t n = sys->ndof;
@@ -316,8 +316,8 @@ static int go(struct events *e, tribo_driver *drv, int brief, double t, double w
     return status ? status : tribo_driver_check(drv, y);
 }
 
-/* One phase, from (t, y) to its end and the decision there. What y is after a failure is nobody's: the driver has kept the state
- * that the phase began with. */
+/* One phase, from (t, y) to its end and the decision there. What y is after a failure is nobody's: the driver has kept the
+ * state that the phase began with. */
 static int phase(struct events *e, tribo_driver *drv, double begin, double *shown, double *t, double t1, double *y,
                  double fastest)
 {

@@ -9,8 +9,8 @@
 
 #define TRIBO_SUSPECTS 8
 
-/* Who goes along with the motion: hears of a phase that has lasted tau and ends at (t, y), before contacts are decided about, and
- * of an event once they are. ends returns a status, its message on the system's context. */
+/* Who goes along with the motion: hears of a phase that has lasted tau and ends at (t, y), before contacts are decided about,
+ * and of an event once they are. ends returns a status, its message on the system's context. */
 struct company {
     int (*ends)(struct company *c, double tau, double t, const double *y);
     void (*decided)(struct company *c);
@@ -79,8 +79,8 @@ void tribo_events_guard(struct events *e, const struct guard *guard);
  * unless size says so; that a contact at rest which does not hold keeps to its base, both ways. */
 void tribo_events_guard_contact(struct events *e, size_t i, const struct watch *w);
 
-/* Adds the guard of the limit of contact i, if it swings or the contact keeps its force: that the limit does not fall to 0, or, of
- * an open contact, does not rise above, or, of one that keeps its force, does not fall to that. */
+/* Adds the guard of the limit of contact i, if it swings or the contact keeps its force: that the limit does not fall to 0,
+ * or, of an open contact, does not rise above, or, of one that keeps its force, does not fall to that. */
 void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *w);
 
 /* Marks for the decision which contact stops, or has reached its limit, by an event. */

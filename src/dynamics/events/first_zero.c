@@ -1,8 +1,9 @@
 /* Intervals [a, b] are walked through from left to right. Where all guards are positive at both ends, their quintics and the
- * bounds of what these leave out tell whether they are so between; where they do not tell, or a guard is not positive at b, the
- * interval becomes shorter: up to where the quintics have their first zero, or by a part. Then only those guards are looked at of
- * which the longer interval does not tell that they are positive. Where intervals end is a guess: when a zero came last time, or
- * what derivatives at a see ahead; what is certain comes from the bounds. Close to a zero derivatives tell where it is. */
+ * bounds of what these leave out tell whether they are so between; where they do not tell, or a guard is not positive at b,
+ * the interval becomes shorter: up to where the quintics have their first zero, or by a part. Then only those guards are
+ * looked at of which the longer interval does not tell that they are positive. Where intervals end is a guess: when a zero
+ * came last time, or what derivatives at a see ahead; what is certain comes from the bounds. Close to a zero derivatives tell
+ * where it is. */
 #include "first_zero.h"
 #include "common/real.h"
 #include "parabola.h"
@@ -19,15 +20,16 @@
 /* Where bounds that hold so long leave intervals of which that many are not this part of it, it need not be tried. */
 #define HOPELESS 1e-6
 
-/* The third derivative of a sum of exponentials and sines is at most the root of its size times its bend (Cauchy, Schwarz), that
- * of powers of time at most 4.5 times this and 60 size/longest^3. So over this part of a first length it changes what two
+/* The third derivative of a sum of exponentials and sines is at most the root of its size times its bend (Cauchy, Schwarz),
+ * that of powers of time at most 4.5 times this and 60 size/longest^3. So over this part of a first length it changes what two
  * derivatives tell by a tenth of noise. */
 #define SHORT 1.9e-6
 
 /* Over this part of a first length, what five derivatives tell is changed by a tenth of noise by the bound of the sixth. */
 #define FAR 2.2e-3
 
-/* So far ahead, in terms of an interval, do five derivatives tell as much as all samples at the ends of it tell in its middle. */
+/* So far ahead, in terms of an interval, do five derivatives tell as much as all samples at the ends of it tell in its
+ * middle. */
 #define AHEAD 0.5
 
 /* Within this part of an interval two derivatives foresee a zero to a thousandth: from just before it, it is in their reach. */
@@ -159,8 +161,8 @@ static double first_length(const struct first_zero *s, double longest)
     return lesser(sixth_root(400.0 * ratio), longest);
 }
 
-/* What is known of an interval at the end of which the middle samples are: that no guard is below zero in it, or that one is not
- * positive there, or neither. */
+/* What is known of an interval at the end of which the middle samples are: that no guard is below zero in it, or that one is
+ * not positive there, or neither. */
 enum { CLEAR, FALLS, IN_DOUBT };
 
 static int judge(struct first_zero *s, double h)
@@ -217,8 +219,8 @@ static void keep_right(struct first_zero *s)
     }
 }
 
-/* By how much the third derivative may change what two tell of a sum of exponentials and sines a step on: it is at most the root
- * of size times bend. */
+/* By how much the third derivative may change what two tell of a sum of exponentials and sines a step on: it is at most the
+ * root of size times bend. */
 static double cubic(const struct guard *g, double step)
 {
     return sqrt(g->size) * sqrt(g->bend) * step * step * step * (1 / 6.);
@@ -242,8 +244,8 @@ static int is_first(const struct first_zero *s, const struct guard *g, double st
     return 1;
 }
 
-/* The one of those watched that is first to fall to zero within a span of the left samples, as two derivatives see it, and when;
- * NULL if none does. */
+/* The one of those watched that is first to fall to zero within a span of the left samples, as two derivatives see it, and
+ * when; NULL if none does. */
 static struct guard *first_in_sight(const struct first_zero *s, double span, double *step)
 {
     struct guard *first = NULL;
@@ -259,8 +261,8 @@ static struct guard *first_in_sight(const struct first_zero *s, double span, dou
     return first;
 }
 
-/* The Taylor series p [6] of a guard from its left sample on, in terms of a span, at the end of which it is *end. 1, or 0 if the
- * motion does not know it. */
+/* The Taylor series p [6] of a guard from its left sample on, in terms of a span, at the end of which it is *end. 1, or 0 if
+ * the motion does not know it. */
 static int series(const struct first_zero *s, const struct guard *g, double span, double *p, double *end)
 {
     double d[3];
@@ -329,8 +331,8 @@ static double time_of(double much, double slope)
     return slope < 0.0 ? -much / slope : HUGE_VAL;
 }
 
-/* All left samples are at a. Where five derivatives see that guard fall to zero which two see fall first, a zero is expected, and
- * only those guards are asked which two derivatives do not tell to be positive until after that. */
+/* All left samples are at a. Where five derivatives see that guard fall to zero which two see fall first, a zero is expected,
+ * and only those guards are asked which two derivatives do not tell to be positive until after that. */
 static void predict(struct first_zero *s)
 {
     const double span = lesser(AHEAD * s->h, s->longest - s->a);
@@ -530,8 +532,8 @@ static const struct guard *pass_interval(struct first_zero *s, double b, double 
     return first;
 }
 
-/* In an interval up to b that is too short to be divided: the guard that falls there, if one is below zero at its end. What else
- * is in doubt is rounding, and all guards come there. */
+/* In an interval up to b that is too short to be divided: the guard that falls there, if one is below zero at its end. What
+ * else is in doubt is rounding, and all guards come there. */
 static const struct guard *fallen(struct first_zero *s, double b, double *when)
 {
     double at;
@@ -546,8 +548,8 @@ static const struct guard *fallen(struct first_zero *s, double b, double *when)
     return NULL;
 }
 
-/* An interval up to *b, where the middle samples are, is not clear: returns CLEAR if it is after another look, or finds the first
- * guard in it, or leaves less to try. */
+/* An interval up to *b, where the middle samples are, is not clear: returns CLEAR if it is after another look, or finds the
+ * first guard in it, or leaves less to try. */
 static int settle_interval(struct first_zero *s, int known, double *b, const struct guard **first, double *when)
 {
     const double begun = s->a;

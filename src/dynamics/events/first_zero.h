@@ -8,8 +8,8 @@
 /* What a guard is of; the last one ends a step, and is no event. */
 enum { HOLDS, SLIDES, SLOWS };
 
-/* What must not fall below zero while a contact does what it does: side times its velocity (SLIDES), or what is left between side
- * times its force and the limit, or what presses it together, or keeps it apart (HOLDS), or its speed (SLOWS). */
+/* What must not fall below zero while a contact does what it does: side times its velocity (SLIDES), or what is left between
+ * side times its force and the limit, or what presses it together, or keeps it apart (HOLDS), or its speed (SLOWS). */
 struct guard {
     size_t contact;
     int kind; /* HOLDS, SLIDES or SLOWS */

@@ -1,5 +1,5 @@
-/* The motion between two events, a phase, as the loop over events and the search for the first event know it: one const table for
- * each method, and `own`, the method's own data, with which all functions are called. */
+/* The motion between two events, a phase, as the loop over events and the search for the first event know it: one const table
+ * for each method, and `own`, the method's own data, with which all functions are called. */
 #ifndef TRIBO_MOTION_H
 #define TRIBO_MOTION_H
 
@@ -26,8 +26,8 @@ struct motion {
     /* Returns the data of the phase that transition needs after its end, until release. NULL: phases are not kept. */
     const void *(*keep)(void *own);
     void (*release)(const void *phase);
-    /* Moves perturbations v [2 ndof][columns] of the state by tau in a phase that was kept; in the one that ends if phase is NULL.
-     * Projects them first so that contacts at rest stay there. Returns a status, its message on the system's context. */
+    /* Moves perturbations v [2 ndof][columns] of the state by tau in a phase that was kept; in the one that ends if phase is
+     * NULL. Projects them first so that contacts at rest stay there. Returns a status, its message on the system's context. */
     int (*transition)(void *own, const void *phase, double tau, size_t columns, double *v);
     /* Sets to = c'y, c [2 ndof], in the phase that lasts tau and ends with the state end. Returns a status, likewise. */
     int (*signal)(void *own, const double *c, double tau, const double *end, struct signal *to);

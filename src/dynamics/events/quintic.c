@@ -17,8 +17,8 @@ enum { ROOTS = 3 };
 #define CLOSE 1e-8
 
 /* The coefficients of a function that is nowhere above one with these samples. That one differs from the quintic which has the
- * samples' values and derivatives by at most bend h^6/6! s^3 (1-s)^3, in Bernstein's basis of degree 6 the middle element alone,
- * 20 s^3 (1-s)^3: the quintic, raised to that degree, with the middle coefficient less by this much. */
+ * samples' values and derivatives by at most bend h^6/6! s^3 (1-s)^3, in Bernstein's basis of degree 6 the middle element
+ * alone, 20 s^3 (1-s)^3: the quintic, raised to that degree, with the middle coefficient less by this much. */
 static void bernstein(const struct sample *a, const struct sample *b, double h, double bend, double *c)
 {
     const double h_3 = h * h * h, doubt = bend * h_3 * h_3 * (1 / 14400.);

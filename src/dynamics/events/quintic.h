@@ -1,5 +1,5 @@
-/* A function by its values and two derivatives at both ends of an interval, or by five derivatives at one: where it has no zero,
- * and where it has one. */
+/* A function by its values and two derivatives at both ends of an interval, or by five derivatives at one: where it has no
+ * zero, and where it has one. */
 #ifndef TRIBO_QUINTIC_H
 #define TRIBO_QUINTIC_H
 
@@ -16,8 +16,8 @@ double tribo_quintic_least(const struct sample *a, const struct sample *b, doubl
 /* The first place in (0, h) where the quintic through both samples falls to zero; a.g > 0 >= b.g. */
 double tribo_quintic_zero(const struct sample *a, const struct sample *b, double h);
 
-/* The first place where a series p [6] in powers of s, 0 <= s <= 1, falls to zero, looked for from a guess on; it is positive at
- * 0, and not at 1. */
+/* The first place where a series p [6] in powers of s, 0 <= s <= 1, falls to zero, looked for from a guess on; it is positive
+ * at 0, and not at 1. */
 double tribo_taylor_zero(const double *p, double guess);
 
 /* By how much the quintic may differ from the function there. */
