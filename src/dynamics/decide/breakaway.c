@@ -28,7 +28,7 @@ void tribo_breakaway_free(struct breakaway *b)
     free(b->ratio);
 }
 
-/* The largest row sum of |J| |B| diag(slopes at rest, with the largest limits that there will be). */
+/* The largest row sum of |J| |B| diag(slopes at rest), with the largest limits of all times. */
 static double steepest(struct breakaway *b, const tribo_system *sys, double *dof, double *contact)
 {
     memset(dof, 0, sys->ndof * sizeof *dof);
@@ -56,7 +56,7 @@ void tribo_breakaway_start(struct breakaway *b, tribo_system *sys, double *dof, 
     }
 }
 
-/* exp(-|v|/velocity), or 0 where limits drop at once. */
+/* exp(-|v|/velocity); 0 if limits drop at once. */
 static double part_at(const struct breakaway *b, size_t i, double v)
 {
     return b->falls ? exp(-quotient(fabs(v), b->velocity[i])) : 0.0;

@@ -1,4 +1,4 @@
-/* How it is decided, at an instant, where there are planar contacts:
+/* Decides, at an instant, which contacts stick and which slide, if there are planar contacts:
  *
  *     contacts whose velocity is nothing beside the tolerance are at rest
  *     find the forces of those at rest, others sliding as they do: min 1/2 f'Rf + a'f over intervals, discs, and ellipses
@@ -15,13 +15,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A contact is at rest whose velocity is this part of the tolerance. */
+/* A speed below this part of the tolerance is rest. */
 #define NOTHING 0.1
 
-/* Velocities this far below those seen are rounding. */
+/* Rounding of a speed, in parts of the largest one so far. */
 #define ROUNDING 1e-14
 
-/* Directions of sliding forces may turn by so much in the moment looked ahead. */
+/* Largest turn of a sliding force, in radians, in the moment looked ahead. */
 #define TURN 0.02
 
 void tribo_planar_slip_free(struct planar_slip *p)
@@ -37,83 +37,59 @@ void tribo_planar_slip_free(struct planar_slip *p)
 
 /* --------------------------------------------------------------------------------------------------------- contacts */
 
-/* slip [ncontact] = TRIBO_SLIP_PLANE for directions of planar contacts: what a context says of contacts that all slide. */
-static int find_planar(tribo_context *disc, size_t contacts, double *one, signed char *slip)
-{
-    for (size_t i = 0; i < contacts; i++) {
-        one[i] = 1.0;
-    }
-    int status = tribo_set_limit(disc, one);
-    status = status ? status : tribo_balance(disc, one, one, NULL, one);
-    return status ? status : tribo_get_slip(disc, slip);
-}
-
-/* Contacts with limits in both directions; those without are scalar, or open. Directions of planar contacts stand in pairs, so
- * that the first one of a row of them is that of a contact. */
-static void take_contacts(struct planar_slip *p, const struct stick_slip *m, const signed char *slip)
-{
-    memset(p->in_plane, 0, m->constant.contacts);
-    for (size_t i = 0; i + 1 < m->constant.contacts; i++) {
-        if (slip[i] != TRIBO_SLIP_PLANE) {
-            continue;
-        }
-        if (m->state.limit[i] > 0.0 && m->state.limit[i + 1] > 0.0) {
-            p->contact[p->count++] = (struct planar_contact){.at = i, .limit = {m->state.limit[i], m->state.limit[i + 1]}};
-            p->in_plane[i] = 1;
-            p->in_plane[i + 1] = 2;
-        }
-        i++;
-    }
-}
-
-/* All of it, or NULL. */
-static struct planar_slip *allocate(size_t contacts)
-{
-    struct planar_slip *p = calloc(1, sizeof *p);
-    if (!p) {
-        return NULL;
-    }
-    p->contact = malloc((contacts / 2) * sizeof *p->contact);
-    p->in_plane = malloc(contacts);
-    p->rate = malloc(3 * contacts * sizeof *p->rate);
-    if (!p->contact || !p->in_plane || !p->rate) {
-        tribo_planar_slip_free(p);
-        return NULL;
-    }
-    p->ahead = p->rate + contacts;
-    p->error = p->rate + 2 * contacts;
-    return p;
-}
-
 static int create_plane(struct stick_slip *m, const tribo_system *sys)
 {
     const size_t c = sys->ncontact;
-    struct planar_slip *p = m->plane = m->plane ? m->plane : allocate(c);
+    struct planar_slip *p = m->plane = m->plane ? m->plane : calloc(1, sizeof *p);
     signed char *slip = malloc(c);
-    if (p) {
+    if (p && !p->rate) {
+        p->contact = malloc((c / 2) * sizeof *p->contact);
+        p->in_plane = malloc(c);
+        p->rate = malloc(3 * c * sizeof *p->rate);
+    }
+    const int room = p && slip && p->contact && p->in_plane && p->rate;
+    int status = TRIBO_ERR_MEMORY;
+    if (room) {
         tribo_destroy(p->disc);
         p->disc = NULL;
         p->count = 0;
+        memset(p->in_plane, 0, c);
+        status = tribo_clone(sys->contacts, &p->disc);
+    } else {
+        tribo_planar_slip_free(p);
+        m->plane = NULL;
     }
-    int status = !p || !slip ? TRIBO_ERR_MEMORY : tribo_clone(sys->contacts, &p->disc);
     if (!status) {
+        p->ahead = p->rate + c;
+        p->error = p->rate + 2 * c;
         tribo_set_law(p->disc, TRIBO_COULOMB);
         tribo_set_sharing(p->disc, TRIBO_SHARE_PREVIOUS);
-        status = find_planar(p->disc, c, p->rate, slip);
+        /* slip[i] = TRIBO_SLIP_PLANE for directions of planar contacts: the slip of contacts that all slide */
+        double *one = p->rate;
+        for (size_t i = 0; i < c; i++) {
+            one[i] = 1.0;
+        }
+        status = tribo_set_limit(p->disc, one);
+        status = status ? status : tribo_balance(p->disc, one, one, NULL, one);
+        status = status ? status : tribo_get_slip(p->disc, slip);
     }
-    if (!status) {
-        take_contacts(p, m, slip);
+    for (size_t i = 0; !status && i + 1 < c; i++) {
+        /* directions of planar contacts stand in pairs; one without both limits is scalar, or open */
+        const double *limit = m->state.limit + i;
+        if (slip[i] == TRIBO_SLIP_PLANE && limit[0] > 0.0 && limit[1] > 0.0) {
+            p->contact[p->count++] = (struct planar_contact){.at = i, .limit = {limit[0], limit[1]}};
+            p->in_plane[i] = 1;
+            p->in_plane[i + 1] = 2;
+        }
+        i += slip[i] == TRIBO_SLIP_PLANE;
     }
     free(slip);
     return status ? tribo_system_fail(sys, status, "%s, of planar contacts", tribo_strerror(status)) : TRIBO_OK;
 }
 
-static void velocity(const struct stick_slip *m, const tribo_system *sys, const struct planar_contact *p, const double *y,
-                     double *v)
+static int slides_in_plane(const struct stick_slip *m, const struct planar_contact *p)
 {
-    for (size_t d = 0; d < 2; d++) {
-        v[d] = tribo_stick_slip_velocity(m, sys, p->at + d, y);
-    }
+    return m->state.slip[p->at] == TRIBO_SLIP_PLANE;
 }
 
 static double length(const double *x)
@@ -121,8 +97,8 @@ static double length(const double *x)
     return hypot(x[0], x[1]);
 }
 
-/* A contact is at rest whose speed is nothing but rounding, or nothing beside the tolerance and not growing: one that begins to
- * slide beside another one that creeps may be slow for many steps. */
+/* 1 if the speed of a contact is rounding, or below NOTHING of the tolerance and not growing: a contact that begins to slide
+ * beside one that creeps may be slow for many steps. */
 static int rests(const struct stick_slip *m, const struct planar_contact *p)
 {
     const double noise = greater(m->noise.factor * (m->noise.velocity[p->at] + m->noise.velocity[p->at + 1]), ROUNDING * p->most);
@@ -135,19 +111,16 @@ static void set_slip(struct stick_slip *m, const struct planar_contact *p, signe
     tribo_stick_slip_set(m, p->at + 1, slip);
 }
 
-/* The forces of contacts in a plane are followed by limits that are the same at all times and speeds, at rest and not. */
+/* Forces of planar contacts are known for limits that are the same at all times and speeds, at rest and not. */
 static int check_limits(const struct stick_slip *m, const tribo_system *sys, size_t planar)
 {
-    size_t i = 0;
-    while (i < m->constant.contacts && !(tribo_breakaway_ratio(&m->breakaway, i) > 1.0)) {
-        i++;
-    }
-    if (i < m->constant.contacts) {
-        return tribo_system_fail(
-            sys, TRIBO_ERR_UNSUPPORTED,
-            "method event knows no static limits beside planar contacts: contact %zu has ratio[%zu] = %g: take "
-            "moreau/fixed",
-            i, i, m->breakaway.ratio[i]);
+    for (size_t i = 0; i < m->constant.contacts; i++) {
+        if (tribo_breakaway_ratio(&m->breakaway, i) > 1.0) {
+            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                     "method event knows no static limits beside planar contacts: contact %zu has ratio[%zu] = "
+                                     "%g: take moreau/fixed",
+                                     i, i, m->breakaway.ratio[i]);
+        }
     }
     return !tribo_system_limits_vary(sys)
                ? TRIBO_OK
@@ -178,7 +151,7 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
 
 /* ----------------------------------------------------------------------------------------------------------- at rest */
 
-/* Contacts without speed are at rest; returns how many more. */
+/* Brings contacts without speed to rest; returns their number. */
 static size_t stop_in_plane(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     size_t found = 0;
@@ -191,7 +164,7 @@ static size_t stop_in_plane(struct stick_slip *m, const tribo_system *sys, const
         p->now = length(v);
         p->most = greater(p->most, p->now);
         p->begins = SLIDES_ON;
-        if (m->state.slip[p->at] == TRIBO_SLIP_PLANE && rests(m, p)) {
+        if (slides_in_plane(m, p) && rests(m, p)) {
             set_slip(m, p, TRIBO_SLIP_STUCK);
             m->plane->stopped = p->at;
             found++;
@@ -200,7 +173,7 @@ static size_t stop_in_plane(struct stick_slip *m, const tribo_system *sys, const
     return found;
 }
 
-/* Of contacts at rest some may rest by the others. How they share what they carry is not known then. */
+/* An error if a contact at rest depends on others: the forces of these contacts are not unique then. */
 static int check_holds(const struct stick_slip *m, const tribo_system *sys)
 {
     for (size_t i = 0; m->state.dependents && i < m->constant.contacts; i++) {
@@ -228,18 +201,6 @@ static int find_resting(struct stick_slip *m, const tribo_system *sys, double *y
 
 /* ------------------------------------------------------------------------------------------------------------ forces */
 
-/* Force of a contact that slides, and how it changes at the acceleration acc. Returns how fast its direction turns. */
-static double slide_in_plane(const struct planar_contact *p, const double *v, const double *acc, double *force, double *rate)
-{
-    const double x[2] = {p->limit[0] * v[0], p->limit[1] * v[1]}, size = length(x), n[2] = {x[0] / size, x[1] / size};
-    const double turn = (n[0] * p->limit[1] * acc[1] - n[1] * p->limit[0] * acc[0]) / size;
-    force[0] = -p->limit[0] * n[0];
-    force[1] = -p->limit[1] * n[1];
-    rate[0] = p->limit[0] * n[1] * turn;
-    rate[1] = -p->limit[1] * n[0] * turn;
-    return fabs(turn);
-}
-
 /* Sets work.lo = forces of sliding contacts, 0 of others, and plane->rate = their rates for accelerations acc [ncontact].
  * Returns the fastest rate of turn of a force. */
 static double given_forces(struct stick_slip *m, const tribo_system *sys, const double *y, const double *acc)
@@ -251,10 +212,17 @@ static double given_forces(struct stick_slip *m, const tribo_system *sys, const 
     }
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
-        if (m->state.slip[p->at] == TRIBO_SLIP_PLANE && p->begins == SLIDES_ON) {
-            double v[2];
-            velocity(m, sys, p, y, v);
-            fastest = greater(fastest, slide_in_plane(p, v, acc + p->at, m->work.lo + p->at, m->plane->rate + p->at));
+        if (slides_in_plane(m, p) && p->begins == SLIDES_ON) {
+            const double *limit = p->limit, *a = acc + p->at;
+            const double x[2] = {limit[0] * tribo_stick_slip_velocity(m, sys, p->at, y),
+                                 limit[1] * tribo_stick_slip_velocity(m, sys, p->at + 1, y)};
+            const double size = length(x), n[2] = {x[0] / size, x[1] / size};
+            const double turn = (n[0] * limit[1] * a[1] - n[1] * limit[0] * a[0]) / size;
+            m->work.lo[p->at] = -limit[0] * n[0];
+            m->work.lo[p->at + 1] = -limit[1] * n[1];
+            m->plane->rate[p->at] = limit[0] * n[1] * turn;
+            m->plane->rate[p->at + 1] = -limit[1] * n[0] * turn;
+            fastest = greater(fastest, fabs(turn));
         }
     }
     return fastest;
@@ -292,7 +260,7 @@ static int find_forces(struct stick_slip *m, const tribo_system *sys, const doub
 
 /* ---------------------------------------------------------------------------------------------------------- who slides */
 
-/* How near to its limit a planar contact's force is: |force/limit|, and in parts of the limit what of it may be noise. */
+/* |f/limit| of a planar contact; *noise = its rounding. */
 static double share(const struct stick_slip *m, const struct planar_contact *p, const double *f, double *noise)
 {
     const double part[2] = {f[p->at] / p->limit[0], f[p->at + 1] / p->limit[1]};
@@ -300,7 +268,7 @@ static double share(const struct stick_slip *m, const struct planar_contact *p, 
     return length(part);
 }
 
-/* Whether a planar contact accelerates, by m->work.v, against force f by more than rounding. */
+/* 1 if a planar contact accelerates, by work.v, against force f by more than rounding. */
 static int leaves(const struct stick_slip *m, const struct planar_contact *p, const double *f)
 {
     double against = 0.0, size = 0.0, noise = 0.0;
@@ -312,7 +280,7 @@ static int leaves(const struct stick_slip *m, const struct planar_contact *p, co
     return size > 0.0 && against > noise;
 }
 
-/* The contact slides from here on, against the force that it has. */
+/* Lets contact p slide against its force. */
 static void let_go_in_plane(struct stick_slip *m, struct planar_contact *p, int begins)
 {
     double part[2] = {m->state.force[p->at] / p->limit[0], m->state.force[p->at + 1] / p->limit[1]};
@@ -326,7 +294,7 @@ static void let_go_in_plane(struct stick_slip *m, struct planar_contact *p, int 
     }
 }
 
-/* The same of scalar contacts. */
+/* 1 if scalar contact i accelerates against force f by more than rounding. */
 static int leaves_line(const struct stick_slip *m, size_t i, const double *f)
 {
     return f[i] != 0.0 && (f[i] > 0.0 ? -m->work.v[i] : m->work.v[i]) > m->noise.acceleration[i];
@@ -372,8 +340,8 @@ static size_t break_away(struct stick_slip *m)
     return ties;
 }
 
-/* Limits of a moment later: those that are tied are at them, whatever rounding says; and contacts that begin to slide have
- * theirs. */
+/* Sets work.hi = limits of a moment later: for tied contacts at most their forces; full ones for contacts that begin to
+ * slide. */
 static void set_limits_ahead(struct stick_slip *m)
 {
     for (size_t i = 0; i < m->constant.contacts; i++) {
@@ -413,7 +381,7 @@ static int goes_beyond(const struct stick_slip *m, const tribo_system *sys, cons
     return beyond > noise;
 }
 
-/* Who of those that are tied slides by the forces of a moment later. */
+/* Lets tied contacts slide by the forces of a moment later. */
 static int look_ahead_in_plane(struct stick_slip *m, tribo_system *sys, const double *y)
 {
     tribo_stick_slip_contact_accelerations(sys, tribo_stick_slip_find_acceleration(m, sys), 1, m->work.f);

@@ -1,9 +1,9 @@
-/* Coulomb's law itself, for the event-located drivers: which contacts stick at an instant, and which way the others slide.
+/* Coulomb's law for methods with events: the decision, at an instant, which contacts stick, and in which direction others slide.
  *
- * What counts is the law just after that instant, and the least change there may decide: contacts of equal limits reach them
- * together and let go one after another, each by a higher power of time. No finite number of derivatives decides that. So
- * what rounding hides is left undecided here, and such a contact holds; but the whole motion until the next event is looked over
- * (first_zero.h), and what goes beyond the law by more than is allowed for is an event of its own, at which the forces tell. */
+ * The decision is about the motion just after the instant. Contacts of equal limits may reach them together and let go one after
+ * another, each by a higher power of time, which no finite number of derivatives decides. So a contact whose slip rounding hides
+ * holds; the search over the motion until the next event (first_zero.h) finds a force or velocity beyond the law by more than its
+ * allowance, which is an event of its own. */
 #ifndef TRIBO_STICK_SLIP_H
 #define TRIBO_STICK_SLIP_H
 
@@ -11,7 +11,7 @@
 #include "breakaway.h"
 #include "planar_slip.h"
 
-/* Forces may go beyond their limits by so many times their noise, before that is an event: by then it is no noise. */
+/* Excess of a force over its limit that is an event, in units of its noise. */
 #define TRIBO_ALLOWED 8.0
 
 /* Constant during an advance. contacts, above: ncontact of the system. */
@@ -116,8 +116,7 @@ struct stick_slip {
     struct planar_slip *plane;  /* planar contacts; NULL if there are none */
 };
 
-/* stick_slip_create.c: TRIBO_OK or a failure with its message on the system's context. tribo_stick_slip_free takes what failed
- * too. */
+/* stick_slip_create.c: returns a status, its message on the system's context. */
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_free(struct stick_slip *m);
 
@@ -127,14 +126,13 @@ static inline int tribo_slides(signed char slip)
     return slip == TRIBO_SLIP_FORTH || slip == TRIBO_SLIP_BACK;
 }
 
-/* Whether contact i is at rest, and nothing that it holds keeps it there. */
+/* 1 if contact i is at rest and does not hold. */
 static inline int tribo_stick_slip_depends(const struct stick_slip *m, size_t i)
 {
     return m->state.slip[i] == TRIBO_SLIP_STUCK && !m->state.holds[i];
 }
 
-/* Contact i does this from here on. Nobody else writes slip: who holds follows from it, at once where contacts do not depend on
- * each other. */
+/* Sets the slip of contact i; the only function that writes slip. H follows: at once if independent, else by find_holds. */
 static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed char slip)
 {
     if (slip == m->state.slip[i]) {
@@ -153,71 +151,69 @@ static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed c
     m->state.hold_differs = m->state.unlisted = 1;
 }
 
-/* stick_slip_instant.c: takes limits from the system, and, unless it continues, from the state who is at rest:
- * contacts whose velocity is zero to rounding. A decision must follow. */
+/* stick_slip_instant.c: begins an advance: takes limits; unless it continues, contacts whose velocity is rounding are at rest.
+ * A decision must follow. */
 void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues);
 
-/* scalar_slip.c: decides about the contacts at rest, one of which may have reached its limit (see above), and takes rounding
- * out of their velocities in y. Sets slip, holds, force and allowance. */
+/* scalar_slip.c: the decision at (t, y); sets slip, holds, force and allowance, and removes rounding of velocities at rest
+ * from y. Returns a status. */
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
 
-/* stick_slip_instant.c: a decision begins at time t, with the base there. Limits, and with them which contacts are open, are
- * brought up to that time. Then whoever has no velocity, or none in the direction of its slip any more, is at rest; a status. */
+/* stick_slip_instant.c, the steps of a decision. Sets the time and bases; updates limits, and opens and closes contacts by
+ * them; brings contacts to rest that have no velocity in the direction of their slip. The last one returns a status. */
 void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t);
 void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y);
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);
 
-/* Forces at rest that are not unique go on from those found last, but for this. */
+/* Redundant forces start from those found last; this makes them start from zero. */
 void tribo_stick_slip_forget_shares(struct stick_slip *m);
 
-/* How large b, its rate, and accelerations by loads ever are, and how far decisions look ahead. */
+/* Sets horizon, base_size, base_rate_size and load_size. */
 void tribo_stick_slip_find_scales(struct stick_slip *m, const tribo_system *sys);
 
-/* What accelerations of contacts may be rounding, and how far forces may go: forgotten, and found anew of one contact, or
- * all. */
+/* noise.acceleration and allowance: zeroed; found of contact i, unless known; found of all. */
 void tribo_stick_slip_forget_gains(struct stick_slip *m);
 void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i);
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y);
 
-/* How large the parts of q'' are, at most. */
+/* The largest of noise.size. */
 double tribo_stick_slip_acceleration_size(struct stick_slip *m, const tribo_system *sys, const double *y);
 
-/* Whether contact i moves by less than rounding of what its accelerations make of it: several contacts that hold a body
- * together leave so much. */
+/* 1 if v_i is below what rounding of accelerations makes of it, which several contacts that hold a body together leave. */
 int tribo_stick_slip_is_faint(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i);
 
-/* The free motion at (t, y): m->work.free, and m->work.a. */
+/* Sets work.free and work.a at (t, y). */
 void tribo_stick_slip_find_free(struct stick_slip *m, tribo_system *sys, double t, const double *y);
 
-/* q'' [ndof] with the forces found, also after a decision; its rate while the forces of contacts at rest are what they are; and
- * to [ncontact] = J acceleration - order-th derivative of b. */
+/* Returns q'' [ndof] with state.force, also after a decision; sets work.rate = its rate at constant forces; sets to [ncontact]
+ * = J acceleration - the order-th derivative of b. */
 const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys);
 void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to);
 
-/* Whether contact i is at rest by a force that is to be found; that of elastic ones is known. */
+/* 1 if contact i is rigid and at rest: its force is unknown. */
 static inline int tribo_stick_slip_searches(const struct stick_slip *m, size_t i)
 {
     return m->state.slip[i] == TRIBO_SLIP_STUCK && !m->constant.elastic[i];
 }
 
-/* A force this close to the limit might be taken beyond it by rounding, or, by what other contacts do, in a moment. */
+/* A force this close to its limit, in parts of it, may exceed it by rounding, or in a moment as other contacts begin to
+ * slide. */
 #define TRIBO_CLOSE 0.1
 
-/* Whether contact i is the only one whose force was searched for, of those that it is coupled with. */
+/* 1 if the force of contact i was found alone. */
 static inline int tribo_stick_slip_alone(const struct stick_slip *m, size_t i)
 {
     return m->constant.uncoupled || m->work.single == i;
 }
 
-/* stick_slip_forces.c, of the contacts that are asked about: f [ncontact] = the forces within lo and hi, where accelerations
- * without them are a; the forces, with contacts at rest as they are marked, and who is close to its limit by them; both return
- * a status. v [ncontact] = a + R f, the accelerations that forces f leave; v may be a. */
+/* stick_slip_forces.c, for contacts of work.undecided. Finds f [ncontact] within work.lo and hi at accelerations a without f;
+ * finds state.force, and work.close by it. Both return a status. Sets v [ncontact] = a + R f; v may be a. */
 int tribo_stick_slip_solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f);
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v);
 
-/* Contact i, which cannot hold, slides; but if it held by a static limit, it is decided about once more by the other one. */
+/* Lets contact i slide; if it held by a static limit, lowers that instead, and the next round decides about it. */
 static inline void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction)
 {
     const int again = m->breakaway.some && tribo_breakaway_lets_go(&m->breakaway, i);
@@ -226,14 +222,14 @@ static inline void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signe
     m->work.limit_lost |= again;
 }
 
-/* Whether contact i would lose a static limit, and the forces at rest are not unique. */
+/* 1 if contact i would lose a static limit and forces at rest are not unique. */
 static inline int tribo_stick_slip_must_be_sure(const struct stick_slip *m, size_t i)
 {
     return m->state.dependents && tribo_breakaway_is_sudden(&m->breakaway, i);
 }
 
-/* stick_slip_relieve.c: where a contact must be sure, or accelerations are nothing but rounding, the forces tell that it takes
- * to hold all that are at rest: these are the forces, or contacts are let go; a status. */
+/* stick_slip_relieve.c: decides about contacts whose accelerations are rounding, and those that must be sure, by the forces
+ * that hold all contacts at rest: takes these, or lets contacts slide and sets *changes = 1. Returns a status. */
 int tribo_stick_slip_relieve(struct stick_slip *m, tribo_system *sys, size_t *changes);
 
 /* stick_slip_elastic.c: elastic contacts, whose forces are part of the state. find sets state.spring and noise.spring; start takes
@@ -245,62 +241,61 @@ void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *
 void tribo_elastic_move(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_elastic_finish(struct stick_slip *m, const tribo_system *sys);
 
-/* holds.c: finds out which of the contacts at rest hold, as they are marked; a status. */
+/* holds.c: chooses H among the contacts at rest; sets holds, loose, key and dependents. Returns a status. */
 int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys);
 
-/* Whether nothing is left to find out of that. */
+/* 1 if holds[] is up to date. */
 static inline int tribo_stick_slip_knows_holds(const struct stick_slip *m)
 {
     return m->constant.independent && !m->state.fresh;
 }
 
-/* stick_slip_instant.c: q'' [ndof] in a state, and all forces [ncontact], while contacts do what they did when last decided
- * about. Returns a status. */
+/* stick_slip_instant.c: finds q'' [ndof] and all forces [ncontact] at (t, y) for the slip of the last decision. Returns a
+ * status. */
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration,
                                   double *force);
 
-/* The force by which contact i, coupled with no other one, holds; 0 if it does not. */
+/* R diagonal: the force of contact i if it holds, else 0. */
 static inline double tribo_stick_slip_balance_alone(const struct stick_slip *m, size_t i, double a)
 {
     return m->state.loose[i] ? 0.0 : -a / m->constant.diagonal[i];
 }
 
-/* holds.c: f of the contacts that hold, R_II f_I = -a_I; zero for the others. */
+/* holds.c: solves R_HH f_H = -a_H; other f are 0. Returns a status. */
 int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f);
 
-/* holds.c: makes J x = base for the contacts that hold by impulses of theirs. Returns a status. */
+/* holds.c: x -= B_H R_HH^-1 (J_H x - base), which makes J_H x = base. Returns a status. */
 int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, const double *base, double *x);
 
-/* The same where J x - base is rounding: takes that out of x [ndof]. Returns a status. */
+/* The same for J x - base that is rounding: by snaps, then by project if they are not enough. Returns a status. */
 int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x);
 
-/* What takes the last bits out of the contacts that hold. */
+/* Lists the corrections that make J x = base exact for contacts that are not loose. */
 void tribo_stick_slip_list_snaps(struct stick_slip *m, const tribo_system *sys);
 
-/* How many times its limit to slide the force of contact i is from here on: +1 or -1, at rest these times the ratio of static
- * limits, or 0 if it does not follow it. */
+/* Force of contact i over its limit at high speed, if it follows the limit: -slip if it slides; + or - ratio if it is tied and
+ * does not hold; else 0. */
 double tribo_stick_slip_follows(const struct stick_slip *m, size_t i);
 
-/* 1 if contact i rests by itself on a base that moves: then its velocity has to be looked after. */
+/* 1 if contact i is at rest, does not hold, and a base moves: its velocity needs guards. */
 static inline int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i)
 {
     return m->constant.base_moves && m->state.slip[i] == TRIBO_SLIP_STUCK && !m->state.holds[i];
 }
 
-/* By how much more than its limit contact i may be pulled and hold: where it would let go of much, what may be rounding does
- * not count. */
+/* Force beyond its limit with which contact i holds: the allowance, if its limit drops as it breaks away. */
 double tribo_stick_slip_margin(const struct stick_slip *m, size_t i);
 
-/* Velocities are known to this part of what they are the sum of. */
+/* Rounding of a velocity, in parts of the sum of the sizes of its terms. */
 #define TRIBO_VELOCITY_NOISE 2e-14
 
-/* What of the velocity of contact i may be rounding, where the sizes of its terms come to this. */
+/* Bound of the rounding of v_i, size being the sum of the sizes of J_ik u_k. */
 static inline double tribo_stick_slip_velocity_noise(const struct stick_slip *m, size_t i, double size)
 {
     return TRIBO_VELOCITY_NOISE * greater(m->constant.base_size[i] + size, m->noise.velocity_scale[i]);
 }
 
-/* v_i in a state, at the time that was last decided for; and the same, with its noise found. */
+/* v_i in y, with b at the time of the last decision; find_velocity also sets noise.velocity[i]. */
 static inline double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
 {
     const struct matrix *j = &sys->direction;
