@@ -10,25 +10,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where events are many, so many times as much is taken for rounding by one decision. */
+/* Factor of noise for one decision where events make no headway. */
 #define DOUBT 10.0
 
-/* Events that there may be before that at once, and again in every time of 1/(16 fastest): some contacts, and some of each. */
+/* Events at once, and again in every time of 1/(16 fastest), before they count as no headway. */
 static double most_credit(const struct events *e)
 {
     return 32.0 + 8.0 * (double)e->stick_slip.constant.contacts;
 }
 
-/* That they use up their credit in this part of such a time is no headway, and so many of them in a row are the end. Some
+/* Credit used up in this part of such a time is no headway; MOST_STUCK events in a row without headway end the advance. Some
  * hundred thousand happen where limits swing, and lead on. */
 #define HEADWAY 1e-2
 #define MOST_STUCK 1e6
 
-/* So many steps without events mean that there is no headway, if together they take less than such a time. Planar contacts that
- * creep, and are too many for the longer steps of event_creep.h, take some ten thousand. */
+/* Steps without events in less than such a time that end the advance. Planar contacts that creep, too many for the longer
+ * steps of event_creep.h, take some ten thousand. */
 #define MOST_IDLE 100000
 
-/* By no more than this part of it do phases differ that are alike. */
+/* Phases are alike if their lengths differ by at most this part. */
 #define ALIKE 0.1
 
 /* Slips from -1 to 3. */
@@ -74,29 +74,6 @@ void tribo_events_free(struct events *e)
 
 /* -------------------------------------------------------------------------------------------------------------- events */
 
-static int give_up(struct events *e, tribo_driver *drv, double t)
-{
-    char text[TRIBO_SUSPECTS * 32] = "";
-    for (size_t k = 0, used = 0; k < e->suspects; k++) {
-        used += (size_t)snprintf(text + used, sizeof text - used, "%scontact %zu", k ? ", " : "", e->suspect[k]);
-    }
-    return tribo_driver_fail(
-        drv, TRIBO_ERR_CHATTER,
-        "events make no headway at t = %.17g (%s): take central/fixed or moreau/fixed, or limits that differ", t, text);
-}
-
-static void suspect(struct events *e, size_t contact)
-{
-    for (size_t k = 0; k < e->suspects; k++) {
-        if (e->suspect[k] == contact) {
-            return;
-        }
-    }
-    if (e->suspects < TRIBO_SUSPECTS) {
-        e->suspect[e->suspects++] = contact;
-    }
-}
-
 /* Gives events all their credit, from t on. */
 static void refill_credit(struct events *e, double t)
 {
@@ -104,7 +81,7 @@ static void refill_credit(struct events *e, double t)
     e->since = t;
 }
 
-/* Counts an event against the credit that has gathered since the last one. */
+/* Counts an event of a contact against the credit, which grows with time; an error if events make no headway. */
 static int count_event(struct events *e, tribo_driver *drv, size_t contact, double t, double fastest)
 {
     const double most = most_credit(e);
@@ -116,14 +93,29 @@ static int count_event(struct events *e, tribo_driver *drv, size_t contact, doub
         refill_credit(e, t);
         e->suspects = 0;
     }
-    suspect(e, contact);
+    size_t k = 0;
+    while (k < e->suspects && e->suspect[k] != contact) {
+        k++;
+    }
+    if (k == e->suspects && k < TRIBO_SUSPECTS) {
+        e->suspect[e->suspects++] = contact;
+    }
     e->credit -= 1.0;
     if (e->credit < 0.0) {
         e->stick_slip.noise.factor = DOUBT;
         e->stuck = 16.0 * fastest * (t - e->since) < HEADWAY ? e->stuck + most : 0.0;
         refill_credit(e, t);
     }
-    return e->stuck > MOST_STUCK ? give_up(e, drv, t) : TRIBO_OK;
+    if (!(e->stuck > MOST_STUCK)) {
+        return TRIBO_OK;
+    }
+    char text[TRIBO_SUSPECTS * 32] = "";
+    for (size_t i = 0, used = 0; i < e->suspects; i++) {
+        used += (size_t)snprintf(text + used, sizeof text - used, "%scontact %zu", i ? ", " : "", e->suspect[i]);
+    }
+    return tribo_driver_fail(
+        drv, TRIBO_ERR_CHATTER,
+        "events make no headway at t = %.17g (%s): take central/fixed or moreau/fixed, or limits that differ", t, text);
 }
 
 /* Counts a step that no event ended. */
@@ -139,7 +131,7 @@ static int count_step(struct events *e, tribo_driver *drv, double t, double tau,
                                    t, tau, MOST_IDLE, e->stick_slip.plane ? ": take moreau/fixed" : "");
 }
 
-/* Where phases that begin alike lasted alike, the next one is expected to. */
+/* Sets search.expected by the phases that began as this one does, if the last two were alike. */
 static void expect(struct events *e, const struct guard *event, double when)
 {
     if (e->begun && event) {
@@ -150,8 +142,8 @@ static void expect(struct events *e, const struct guard *event, double when)
     e->search.expected = e->begun && e->search.early <= ALIKE * e->begun->time ? e->begun->time : 0.0;
 }
 
-/* A run that does not continue another one is not to depend on it, not even in its rounding; events of one that does are
- * counted as if it had not been interrupted. */
+/* Begins a run: one that does not continue must not depend on the run before, not even in rounding; for one that continues
+ * events are counted on. */
 static void forget(struct events *e, double t, int continues)
 {
     e->begun = NULL;
@@ -171,7 +163,7 @@ static int on_context(tribo_driver *drv, int status)
     return status ? tribo_driver_fail(drv, status, "%s", tribo_system_message(drv->sys)) : TRIBO_OK;
 }
 
-/* Shows the observer the motion between t and t + tau at begin + k output. */
+/* Shows the observer the states at begin + k output, between t and t + tau. */
 static int show_between(struct events *e, tribo_driver *drv, double begin, double *shown, double t, double tau, const double *y)
 {
     int status = TRIBO_OK;
@@ -183,7 +175,7 @@ static int show_between(struct events *e, tribo_driver *drv, double begin, doubl
     return status;
 }
 
-/* Stands in shown[] for a planar contact that stopped and slides again at one instant. */
+/* In shown[]: a planar contact that stopped and slides again at one instant. */
 #define TURNS (-TRIBO_SLIP_PLANE)
 
 /* The moment at which the slip of a contact changes. */
@@ -214,7 +206,7 @@ static int show_changes(struct events *e, tribo_driver *drv, double t, const dou
     return status;
 }
 
-/* The time after another tau, and its low part; end if that is all there was. */
+/* t + tau, its low part in the system; end if tau reaches it. */
 static double time_after(tribo_system *sys, double t, double tau, double end)
 {
     const struct twofold next = twofold_sum(t, sys->low + tau);
@@ -223,7 +215,7 @@ static double time_after(tribo_system *sys, double t, double tau, double end)
     return there ? end : next.hi;
 }
 
-/* Steps that no event ends do so at a number t, if they are long enough for that. */
+/* reach, changed by rounding so that t + reach is a double, if reach is long enough for that. */
 static double to_a_number(const tribo_system *sys, double t, double reach, double end)
 {
     const double next = lesser(t + (sys->low + reach), end), there = (next - t) - sys->low;
@@ -239,8 +231,7 @@ static int decide(struct events *e, tribo_system *sys, double t, double *y)
     return status;
 }
 
-/* Says why the search for an event from (t, y) until reach later was given up: the state there, which y becomes, overflows, or
- * is too far away. */
+/* The error of a search given up from (t, y) on: y, the state at t + reach, overflows, or the motion is too fast. */
 static int cannot_follow(struct events *e, tribo_driver *drv, double t, double reach, double *y)
 {
     e->motion->state(e->own, reach, y, y);
@@ -251,8 +242,8 @@ static int cannot_follow(struct events *e, tribo_driver *drv, double t, double r
                                       e->search.looks, plural(e->search.looks));
 }
 
-/* Counts a planar contact that the decision at t has stopped; keeps the state after it; and shows contacts that change, or the
- * state alone at other events and at the end of the advance. */
+/* Counts a planar contact that the decision at t has stopped; keeps the state; shows contacts whose slip changed, or the state
+ * alone at other events and at the end of the advance. */
 static int show_decided(struct events *e, tribo_driver *drv, const struct guard *event, double t, double t1, const double *y,
                         double fastest)
 {
@@ -273,13 +264,13 @@ static int show_decided(struct events *e, tribo_driver *drv, const struct guard 
     return seen ? tribo_driver_show(drv, t, y, TRIBO_MOMENT_STEP, SIZE_MAX) : status;
 }
 
-/* Over this part of the time of the fastest motion accelerations do not change; nor do they where the second derivative of a
- * velocity changes its first one by no more than that part. */
+/* Accelerations are constant over BRIEF of the time of the fastest motion, if the second derivative of the velocity changes
+ * the first one by at most STEADY. */
 #define BRIEF 1e-9
 #define STEADY 1e-8
 
-/* A limit far above all other forces stops a contact in such a time: small differences to a motion that, if it went on, would
- * become so large that they are lost in its rounding. */
+/* 1 if a contact stops in such a time, by a limit far above all other forces: the closed motion, which becomes large later,
+ * loses that in its rounding. */
 static int is_brief(const struct events *e, const tribo_system *sys, const struct guard *event, double reach, double when)
 {
     const int simple = !e->stick_slip.plane && !e->stick_slip.breakaway.falls && !sys->compliance.count;
@@ -287,8 +278,8 @@ static int is_brief(const struct events *e, const tribo_system *sys, const struc
     return event && e->search.at_once && simple && brief && when * fabs(event->left.e) <= STEADY * fabs(event->left.d);
 }
 
-/* y after a brief phase from (t, y), by the accelerations and forces there; contacts that stop do not hold against each other
- * by such forces. Returns a status. */
+/* Moves y by a brief phase at constant accelerations, and forgets the shares of redundant contacts: these forces are no guess
+ * for the next ones. Returns a status. */
 static int go_brief(struct stick_slip *m, tribo_system *sys, double t, double tau, double *y)
 {
     const size_t n = sys->ndof;
@@ -308,7 +299,7 @@ static int go_brief(struct stick_slip *m, tribo_system *sys, double t, double ta
     return status;
 }
 
-/* y at the end of a phase from (t, y), to which the method's own motion goes too. Returns a status. */
+/* Moves y to the end of a phase, and the method's motion too. Returns a status. */
 static int go(struct events *e, tribo_driver *drv, int brief, double t, double when, double *y)
 {
     e->motion->state(e->own, when, y, brief ? drv->slope : y);
@@ -316,8 +307,8 @@ static int go(struct events *e, tribo_driver *drv, int brief, double t, double w
     return status ? status : tribo_driver_check(drv, y);
 }
 
-/* One phase, from (t, y) to its end and the decision there. What y is after a failure is nobody's: the driver has kept the
- * state that the phase began with. */
+/* One phase, from (t, y) to its end and the decision there. After an error y is undefined: the driver has kept the state
+ * before. */
 static int phase(struct events *e, tribo_driver *drv, double begin, double *shown, double *t, double t1, double *y,
                  double fastest)
 {

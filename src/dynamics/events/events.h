@@ -1,5 +1,5 @@
-/* The loop over events that the methods "exact" and "event" share. A method knows the motion while contacts do what they do, a
- * phase; here it is found out when that ends, what comes then, and whether all of it kept to Coulomb's law. */
+/* The loop over events of the methods "exact" and "event": phase after phase of the method's motion, each until its first
+ * event, and the decision there. */
 #ifndef TRIBO_EVENTS_H
 #define TRIBO_EVENTS_H
 
@@ -9,14 +9,14 @@
 
 #define TRIBO_SUSPECTS 8
 
-/* Who goes along with the motion: hears of a phase that has lasted tau and ends at (t, y), before contacts are decided about,
- * and of an event once they are. ends returns a status, its message on the system's context. */
+/* An observer of phases. ends: a phase that lasted tau has ended at (t, y), before the decision; returns a status, its message
+ * on the system's context. decided: the decision at an event is done. */
 struct company {
     int (*ends)(struct company *c, double tau, double t, const double *y);
     void (*decided)(struct company *c);
 };
 
-/* How long the last phase of a kind did, 0: there was none yet; and by how much less or more than the one before. */
+/* Length of the last phase of a kind, 0 if there was none, and its difference to the one before. */
 struct lasted {
     double time, change;
 };
@@ -24,27 +24,27 @@ struct lasted {
 struct events {
     struct stick_slip stick_slip;
     struct first_zero search;
-
     const struct motion *motion; /* the method's, also of search */
-    void *own;
+    void *own;                   /* the motion's */
 
-    signed char *shown; /* [ncontact] slip of contacts as the observer saw it last */
-    int watched;        /* the last advance had an observer, and kept shown up to date */
+    signed char *shown;      /* [ncontact] slip as shown to the observer last */
+    int watched;             /* 1: the last advance had an observer, and kept shown up to date */
+    struct company *company; /* NULL: none */
+    const struct guard *met; /* the guard that ended the phase; NULL: none */
+    int decided;             /* 1: no motion since the last decision */
+    int anew;                /* 1: the run does not continue another one; read and cleared by the method */
+    int sharp;               /* 1: the motion is followed to rounding, regardless of tolerances */
 
-    struct company *company; /* NULL: nobody */
-    const struct guard *met; /* what ended the phase that ends; NULL: no event did */
-    int decided;             /* nothing has moved since contacts were decided about */
-    int anew;                /* this run does not continue another one; the method takes note, and clears it */
-    int sharp;               /* the motion is followed to rounding, whatever tolerances say */
+    struct lasted *lasted; /* [ncontact][5] phases that began as contact i turned to this slip */
+    struct lasted *begun;  /* the entry of this phase; NULL if it began otherwise */
 
-    struct lasted *lasted; /* [ncontact][5] the phases that began as contact i turned to this slip */
-    struct lasted *begun;  /* which of them this phase is; NULL if it began otherwise */
-
-    double credit, paid, since;     /* how many more events there may be, as of when; since when it is being used up */
-    double stuck;                   /* how many did so in a row in hardly any time */
-    size_t idle;                    /* steps that no event ended since then, */
-    double rested;                  /* which is not long ago */
-    size_t suspect[TRIBO_SUSPECTS]; /* contacts of the events since credit was full */
+    double credit;                  /* number of events that may follow at once */
+    double paid;                    /* time of the last event */
+    double since;                   /* time of the last full credit */
+    double stuck;                   /* events in a row without headway */
+    size_t idle;                    /* steps without event since rested */
+    double rested;                  /* time, at most 1/(16 fastest) ago */
+    size_t suspect[TRIBO_SUSPECTS]; /* [suspects] contacts of the events since the credit was full */
     size_t suspects;
 };
 

@@ -1,9 +1,8 @@
-/* Intervals [a, b] are walked through from left to right. Where all guards are positive at both ends, their quintics and the
- * bounds of what these leave out tell whether they are so between; where they do not tell, or a guard is not positive at b,
- * the interval becomes shorter: up to where the quintics have their first zero, or by a part. Then only those guards are
- * looked at of which the longer interval does not tell that they are positive. Where intervals end is a guess: when a zero
- * came last time, or what derivatives at a see ahead; what is certain comes from the bounds. Close to a zero derivatives tell
- * where it is. */
+/* Walks intervals [a, b] from left to right. Where all guards are positive at both ends, quintics through both samples and the
+ * bound of the sixth derivative decide whether they are positive between; if that is open, or a guard is not positive at b,
+ * the interval becomes shorter: up to the first zero of the quintics, or by a part. Then only guards are sampled that the
+ * longer interval leaves open. Ends of intervals are guesses: when a zero came last time, or what derivatives at a foresee.
+ * What is certain comes from the bounds. Close to a zero derivatives alone find it. */
 #include "first_zero.h"
 #include "common/real.h"
 #include "parabola.h"
@@ -13,47 +12,46 @@
 #include <stdint.h>
 #include <string.h>
 
-/* So many looks at a motion between two events, or a first step of zero, mean that it has frequencies which cannot be followed.
- */
+/* Looks at a phase after which it is given up: the motion has frequencies that cannot be followed. */
 #define MOST_LOOKS ((size_t)1 << 24)
 
-/* Where bounds that hold so long leave intervals of which that many are not this part of it, it need not be tried. */
+/* Give up at the start if MOST_LOOKS first intervals do not cover this part of the time that bounds hold. */
 #define HOPELESS 1e-6
 
-/* The third derivative of a sum of exponentials and sines is at most the root of its size times its bend (Cauchy, Schwarz),
- * that of powers of time at most 4.5 times this and 60 size/longest^3. So over this part of a first length it changes what two
- * derivatives tell by a tenth of noise. */
+/* Reach of two derivatives, in parts of a first length. The third derivative of a sum of exponentials and sines is at most
+ * sqrt(size bend) (Cauchy, Schwarz), that of powers of time at most 4.5 times this and 60 size/longest^3: over SHORT it
+ * changes the guard by a tenth of noise. */
 #define SHORT 1.9e-6
 
-/* Over this part of a first length, what five derivatives tell is changed by a tenth of noise by the bound of the sixth. */
+/* Reach of five derivatives, in parts of a first length: the bound of the sixth changes the guard by a tenth of noise. */
 #define FAR 2.2e-3
 
-/* So far ahead, in terms of an interval, do five derivatives tell as much as all samples at the ends of it tell in its
- * middle. */
+/* The part of an interval over which five derivatives are as exact as the quintic in its middle. */
 #define AHEAD 0.5
 
-/* Within this part of an interval two derivatives foresee a zero to a thousandth: from just before it, it is in their reach. */
+/* The part of an interval within which two derivatives foresee a zero to a thousandth; from just before, it is in their
+ * reach. */
 #define SOON 0.1
 
-/* A zero of a quintic which differs there from the guard by no more than this part of its noise is that of the guard. */
+/* A zero of the quintic is that of the guard if both differ there by at most this part of noise. */
 #define FINE 0.1
 
-/* After an interval of which not all is known, this part of it is tried. */
+/* After an interval that stays open, this part of it is tried. */
 #define SHRINK 0.7
 
-/* An interval may be longer by this factor if it ends where a zero is expected. */
+/* An interval that ends at an expected zero may be longer by this factor. */
 #define STRETCH 1.5
 
-/* A guard that begins at zero may stray from there by this part of its size. */
+/* A guard that begins at zero is allowed to be negative by this part of its size. */
 #define ALLOWED 1e-14
 
-/* Values of a guard that are rounding. */
+/* Rounding of a guard. */
 static double noise(const struct guard *g)
 {
     return 4.0 * DBL_EPSILON * g->size;
 }
 
-/* x^(1/6) within 7%: of the bits of a number, read as a whole number, logarithms are nearly linear. */
+/* x^(1/6) within 7%: the bits of a double, as an integer, are nearly linear in its logarithm. */
 static double sixth_root(double x)
 {
     const uint64_t one = (uint64_t)1023 << 52;
@@ -78,7 +76,7 @@ static void exchange(struct guard **watched, size_t i, size_t k)
     watched[k] = g;
 }
 
-/* Middle samples of those watched, and whether one of them is not above zero there. */
+/* Sets the middle samples of watched guards; falls = 1 if one is not above zero. */
 static void sample(struct first_zero *s, double tau)
 {
     double all = 0.0;
@@ -95,7 +93,7 @@ static void sample(struct first_zero *s, double tau)
     s->lost |= all != 0.0 || s->looks >= MOST_LOOKS;
 }
 
-/* Whether a lower bound is enough; if so, notes how low the guard may be. */
+/* 1 if least >= enough; then updates lowest. */
 static int note_least(struct guard *g, double least, double enough)
 {
     if (!(least >= enough)) {
@@ -105,15 +103,15 @@ static int note_least(struct guard *g, double least, double enough)
     return 1;
 }
 
-/* Whether a guard cannot be below zero between two samples of it, h apart, until so much after the first one; if so, notes how
- * low it may be. */
+/* 1 if a guard with samples from and to, h apart, is not below zero from the first one until `until` later; then updates
+ * lowest. */
 static int positive(struct guard *g, const struct sample *from, const struct sample *to, double h, double until)
 {
     const double enough = -noise(g);
     return note_least(g, tribo_quintic_least(from, to, h, g->bend, until, enough), enough);
 }
 
-/* All that are watched, between the left and the middle sample, h later. */
+/* 1 if all watched guards are positive between the left and the middle sample, h later. */
 static int all_positive(struct first_zero *s, double h)
 {
     for (size_t k = 0; k < s->watching; k++) {
@@ -125,7 +123,7 @@ static int all_positive(struct first_zero *s, double h)
     return 1;
 }
 
-/* From the left sample on, the right one being h later. */
+/* The same from the left sample until `until` later; the right sample is h later. */
 static int all_positive_until(struct first_zero *s, double until, double h)
 {
     for (size_t k = 0; k < s->watching; k++) {
@@ -137,7 +135,7 @@ static int all_positive_until(struct first_zero *s, double until, double h)
     return 1;
 }
 
-/* Leaves under watch those only of which left and right samples, h apart, do not tell that they are positive between. */
+/* Watches only guards that may be negative between the left and right samples, h apart. */
 static void watch_doubtful(struct first_zero *s, double h)
 {
     size_t left = 0;
@@ -150,19 +148,7 @@ static void watch_doubtful(struct first_zero *s, double h)
     s->watching = left;
 }
 
-/* The length of interval to try first: a fraction of the guards' sizes in doubt. */
-static double first_length(const struct first_zero *s, double longest)
-{
-    double ratio = HUGE_VAL;
-    for (size_t k = 0; k < s->guards; k++) {
-        const struct guard *g = &s->guard[k];
-        ratio = lesser(ratio, g->bend > 0.0 ? g->size / g->bend : HUGE_VAL);
-    }
-    return lesser(sixth_root(400.0 * ratio), longest);
-}
-
-/* What is known of an interval at the end of which the middle samples are: that no guard is below zero in it, or that one is
- * not positive there, or neither. */
+/* State of an interval that ends at the middle samples: no guard is below zero in it; one is not positive at its end; open. */
 enum { CLEAR, FALLS, IN_DOUBT };
 
 static int judge(struct first_zero *s, double h)
@@ -170,18 +156,8 @@ static int judge(struct first_zero *s, double h)
     return s->falls ? FALLS : all_positive(s, h) ? CLEAR : IN_DOUBT;
 }
 
-static int some_below(const struct first_zero *s)
-{
-    for (size_t k = 0; k < s->watching; k++) {
-        if (s->watched[k]->middle.g < -noise(s->watched[k])) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
-/* The guard that, among those not positive at the right end of the interval of length h, is the first to fall to zero as far as
- * the quintics tell, and when. */
+/* The guard not positive at the right end of the interval of length h whose quintic is the first to be zero; *when = its
+ * zero. */
 static struct guard *first_to_fall(const struct first_zero *s, double h, double *when)
 {
     struct guard *first = NULL;
@@ -198,7 +174,7 @@ static struct guard *first_to_fall(const struct first_zero *s, double h, double 
     return first;
 }
 
-/* The middle sample becomes the left one. A guard that has left zero there needs no allowance any more. */
+/* Makes the middle samples the left ones; drops the allowance of guards that have left zero. */
 static void keep_left(struct first_zero *s)
 {
     for (size_t k = 0; k < s->watching; k++) {
@@ -219,20 +195,19 @@ static void keep_right(struct first_zero *s)
     }
 }
 
-/* By how much the third derivative may change what two tell of a sum of exponentials and sines a step on: it is at most the
- * root of size times bend. */
+/* Bound of the third derivative's part in a guard a step on: sqrt(size bend) step^3/6. */
 static double cubic(const struct guard *g, double step)
 {
     return sqrt(g->size) * sqrt(g->bend) * step * step * step * (1 / 6.);
 }
 
-/* Whether two derivatives tell, but for a doubt, that a guard is not below zero until a step after its left sample. */
+/* 1 if the parabola at the left sample, less doubt, is not below zero until a step on. */
 static int clears(struct guard *g, double step, double doubt)
 {
     return note_least(g, parabola_least(&g->left, step) - doubt, -noise(g));
 }
 
-/* Whether two derivatives tell that no other one is below zero when g is zero, a step after the left samples. */
+/* 1 if no other watched guard is below zero until a step after the left samples, where g is zero. */
 static int is_first(const struct first_zero *s, const struct guard *g, double step)
 {
     for (size_t k = 0; k < s->watching; k++) {
@@ -244,8 +219,8 @@ static int is_first(const struct first_zero *s, const struct guard *g, double st
     return 1;
 }
 
-/* The one of those watched that is first to fall to zero within a span of the left samples, as two derivatives see it, and
- * when; NULL if none does. */
+/* The watched guard whose parabola at its left sample is the first to be zero within span; *step = when. NULL if there is
+ * none. */
 static struct guard *first_in_sight(const struct first_zero *s, double span, double *step)
 {
     struct guard *first = NULL;
@@ -261,8 +236,8 @@ static struct guard *first_in_sight(const struct first_zero *s, double span, dou
     return first;
 }
 
-/* The Taylor series p [6] of a guard from its left sample on, in terms of a span, at the end of which it is *end. 1, or 0 if
- * the motion does not know it. */
+/* Taylor series p [6] of a guard at its left sample in units of span; *end = its sum. Returns 0 if the motion does not know
+ * it. */
 static int series(const struct first_zero *s, const struct guard *g, double span, double *p, double *end)
 {
     double d[3];
@@ -279,15 +254,15 @@ static int series(const struct first_zero *s, const struct guard *g, double span
     return 1;
 }
 
-/* By how much a guard may differ from its Taylor series after a span. */
+/* Bound of the difference between a guard and its Taylor series a span on. */
 static double remainder_of(const struct guard *g, double span)
 {
     const double cube = span * span * span;
     return g->bend * cube * cube * (1 / 720.);
 }
 
-/* A guard that two derivatives see fall to zero a step on, in the far reach: whether it falls all the way to there and beyond,
- * and *step is when it is zero. */
+/* 1 if a guard, whose parabola is zero a step on in the far reach, falls monotonically to twice the step; *step = its zero by
+ * five derivatives. */
 static int lands(const struct first_zero *s, const struct guard *g, double *step)
 {
     const double span = 2.0 * *step;
@@ -303,8 +278,7 @@ static int lands(const struct first_zero *s, const struct guard *g, double *step
     return remainder_of(g, *step) <= FINE * noise(g);
 }
 
-/* Derivatives at the left samples, at a, foresee zeros within a part of the length h. One in reach is the first if this
- * returns it; another one is expected. */
+/* Foresees zeros by derivatives at a within SOON h. Returns the guard if it is certain to be the first; else sets expected. */
 static const struct guard *foresee(struct first_zero *s, double h, double longest, double *when)
 {
     double step;
@@ -319,20 +293,20 @@ static const struct guard *foresee(struct first_zero *s, double h, double longes
     return reached && *when <= lesser(longest, s->positive_until) && is_first(s, first, step) ? first : NULL;
 }
 
-/* By how much earlier to look than where a zero is foreseen that may be earlier, so that it is within reach from there. */
+/* The time to look before a foreseen zero, which may be earlier by `early`, so that it is in reach from there. */
 static double margin(const struct first_zero *s, double early)
 {
     return greater(0.5 * s->reach, lesser(early, 0.5 * s->far_reach));
 }
 
-/* The time in which a guard falls by so much. */
+/* The time in which a guard of this slope falls by `much`. */
 static double time_of(double much, double slope)
 {
     return slope < 0.0 ? -much / slope : HUGE_VAL;
 }
 
-/* All left samples are at a. Where five derivatives see that guard fall to zero which two see fall first, a zero is expected,
- * and only those guards are asked which two derivatives do not tell to be positive until after that. */
+/* All left samples are at a. If the guard that falls first by two derivatives has a zero by five, expects it, and asks only
+ * guards that two derivatives do not prove positive until after it. */
 static void predict(struct first_zero *s)
 {
     const double span = lesser(AHEAD * s->h, s->longest - s->a);
@@ -358,8 +332,8 @@ static void predict(struct first_zero *s)
     s->positive_until = s->asked < s->guards ? s->a + until : HUGE_VAL;
 }
 
-/* A guard is not positive at *b. Narrows [a, *b] to the first zero of all guards: returns that guard, with *when, or NULL if
- * [a, *b] must be divided to tell. */
+/* A guard is not positive at *b. Narrows [a, *b] to the first zero of all guards and returns that guard, with *when; NULL if
+ * [a, *b] must be divided. */
 static const struct guard *narrow(struct first_zero *s, double *b, double *when)
 {
     const struct guard *first = NULL;
@@ -381,7 +355,10 @@ static const struct guard *narrow(struct first_zero *s, double *b, double *when)
             return NULL;
         }
         sample(s, *when);
-        const int below = some_below(s);
+        int below = 0;
+        for (size_t k = 0; k < s->watching; k++) {
+            below |= s->watched[k]->middle.g < -noise(s->watched[k]);
+        }
         if (below || !all_positive(s, at)) {
             *b = *when;
             keep_right(s);
@@ -399,8 +376,7 @@ static const struct guard *narrow(struct first_zero *s, double *b, double *when)
     return first;
 }
 
-/* Looks in the middle of an interval [a, *b] in doubt. Returns what is known of it then, or of its first half, up to which *b
- * comes back. */
+/* Looks in the middle of an open interval [a, *b]. Returns the state of it, or of its first half, to which *b moves back. */
 static int divide(struct first_zero *s, double *b)
 {
     const double half = 0.5 * (*b - s->a);
@@ -423,23 +399,22 @@ static int divide(struct first_zero *s, double *b)
     return CLEAR;
 }
 
-/* Finds bounds from a on, the reach that they leave to derivatives, and a length of interval to try. */
+/* Finds bounds from a on, the reach of derivatives by them, and a length of interval to try. */
 static void find_bounds(struct first_zero *s)
 {
     s->better = s->motion->bound(s->own, s->a);
-    const double length = first_length(s, s->longest);
+    double ratio = HUGE_VAL;
+    for (size_t k = 0; k < s->guards; k++) {
+        const struct guard *g = &s->guard[k];
+        ratio = lesser(ratio, g->bend > 0.0 ? g->size / g->bend : HUGE_VAL);
+    }
+    const double length = lesser(sixth_root(400.0 * ratio), s->longest);
     s->reach = SHORT * length;
     s->far_reach = FAR * length;
     s->h = greater(s->h, length);
 }
 
-/* What to try after an interval of length h: with care where it is of the length that bounds allow. */
-static double longer(const struct first_zero *s, double h)
-{
-    return (SHORT * h < 0.5 * s->reach ? 1.7 : 1.15) * h;
-}
-
-/* Where to look next: where a zero is expected, which is then in reach, unless that is after too much. */
+/* The time to look at next: just before an expected zero, unless that is too far. */
 static double next_look(const struct first_zero *s)
 {
     const double before = s->expected - margin(s, s->early);
@@ -453,9 +428,9 @@ static void ask_all(struct first_zero *s)
     s->positive_until = HUGE_VAL;
 }
 
-/* The velocity that is the first to fall to zero so soon after the start that derivatives there see it, and when; NULL if none
- * does. What the motion becomes until longest may be so large that this is lost in the rounding of it. A velocity that is
- * rounding beside others does not count. */
+/* The velocity that is first to fall to zero within reach of the derivatives at the start, with *when; NULL if there is none.
+ * A motion that becomes large until longest hides this zero in its rounding. A velocity that is rounding beside others does
+ * not count. */
 static const struct guard *stops_at_once(struct first_zero *s, double *when)
 {
     const struct guard *first = NULL;
@@ -479,7 +454,7 @@ static const struct guard *stops_at_once(struct first_zero *s, double *when)
     return s->at_once ? first : NULL;
 }
 
-/* Looks at the start: one that is zero there, or at once, or NULL. */
+/* Looks at the start; returns a guard that is zero there, or at once, or NULL. */
 static const struct guard *start(struct first_zero *s, double *when)
 {
     ask_all(s);
@@ -505,7 +480,7 @@ static const struct guard *start(struct first_zero *s, double *when)
     return first;
 }
 
-/* All left samples are at a again, to which only some have come. */
+/* Samples all guards at a, where only some have left samples. */
 static void come_to(struct first_zero *s)
 {
     ask_all(s);
@@ -514,11 +489,12 @@ static void come_to(struct first_zero *s)
     keep_left(s);
 }
 
-/* Nothing happens until b, where the middle samples are: goes there, and returns a guard if its zero is in reach. */
+/* No guard is zero until b, where the middle samples are: moves a there; returns a guard if its zero is in reach. */
 static const struct guard *pass_interval(struct first_zero *s, double b, double *when)
 {
     watch_all(s);
-    s->h = greater(s->h, longer(s, b - s->a));
+    /* with care near the length that bounds allow */
+    s->h = greater(s->h, (SHORT * (b - s->a) < 0.5 * s->reach ? 1.7 : 1.15) * (b - s->a));
     s->most = STRETCH * s->h;
     s->a = b;
     keep_left(s);
@@ -532,8 +508,8 @@ static const struct guard *pass_interval(struct first_zero *s, double b, double 
     return first;
 }
 
-/* In an interval up to b that is too short to be divided: the guard that falls there, if one is below zero at its end. What
- * else is in doubt is rounding, and all guards come there. */
+/* In an interval up to b too short to be divided: returns the guard below zero at b, if there is one. Else the doubt is
+ * rounding, and a moves to b. */
 static const struct guard *fallen(struct first_zero *s, double b, double *when)
 {
     double at;
@@ -548,8 +524,8 @@ static const struct guard *fallen(struct first_zero *s, double b, double *when)
     return NULL;
 }
 
-/* An interval up to *b, where the middle samples are, is not clear: returns CLEAR if it is after another look, or finds the
- * first guard in it, or leaves less to try. */
+/* The interval up to *b, where the middle samples are, is not clear: returns CLEAR if another look makes it so; or finds the
+ * first guard in it; or shortens it. */
 static int settle_interval(struct first_zero *s, int known, double *b, const struct guard **first, double *when)
 {
     const double begun = s->a;

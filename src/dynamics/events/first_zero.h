@@ -5,51 +5,55 @@
 #include "motion.h"
 #include "quintic.h"
 
-/* What a guard is of; the last one ends a step, and is no event. */
+/* Kinds of guards: force or limit; velocity; speed of a planar contact, which ends a step and is no event. */
 enum { HOLDS, SLIDES, SLOWS };
 
-/* What must not fall below zero while a contact does what it does: side times its velocity (SLIDES), or what is left between
- * side times its force and the limit, or what presses it together, or keeps it apart (HOLDS), or its speed (SLOWS). */
+/* A function that is not below zero while a contact keeps its slip: offset + side output + limit times the motion's part of the
+ * limit, in time from the start of the phase. */
 struct guard {
     size_t contact;
-    int kind; /* HOLDS, SLIDES or SLOWS */
-    double side;
-    void *output;      /* the motion's own */
-    double offset;     /* the motion's own */
-    double limit;      /* how many times the limit, as far as that is the motion's own, is in it */
-    double size, bend; /* bounds, from where the search is on, of its parts together and of its sixth derivative */
-    double allowance;  /* it begins at zero: so far below counts as zero until it has left zero, and then no more */
-    double lowest;     /* below zero by this much at most, so far */
-    struct sample left, right, middle; /* with the allowance added */
+    int kind;             /* HOLDS, SLIDES or SLOWS */
+    double side;          /* 1 or -1; 0: no output */
+    void *output;         /* velocity or force of the contact, in the motion's terms */
+    double offset;        /* constant */
+    double limit;         /* factor of the motion's part of the limit; 0: none */
+    double size;          /* bound of the sum of the sizes of its terms, from the last bound on */
+    double bend;          /* bound of its sixth derivative, likewise */
+    double allowance;     /* values down to -allowance count as zero until the guard has left zero */
+    double lowest;        /* bound of its negative values so far */
+    struct sample left;   /* at a, with the allowance added */
+    struct sample middle; /* at the last look */
+    struct sample right;  /* at the end of the interval */
 };
 
-/* Guards, and the motion that they are about, which starts at time 0. */
+/* The search, from time 0 on. */
 struct first_zero {
     size_t guards;
-    struct guard *guard;
-    struct guard **watched;      /* [guards] workspace: those that may be below zero before the next one is known to be, */
-    size_t watching;             /* their number; */
-    size_t asked;                /* then the others that are looked at, up to this number; then those that are not, */
-    double positive_until;       /* since they are known to be positive until then */
+    struct guard *guard;    /* [guards] */
+    struct guard **watched; /* [guards] first the guards that are sampled, then others of [asked], then the rest */
+    size_t watching;        /* number of guards that are sampled */
+    size_t asked;           /* guards [asked, guards) of watched are positive until positive_until */
+    double positive_until;
     const struct motion *motion; /* look, further, bound */
     void *own;                   /* the motion's */
-    double expected;             /* when there may be a zero, for all that the caller knows; 0: no idea */
-    double early;                /* by how much it may be earlier, as far as that is known */
-    double reach;                /* over such times two derivatives tell all of every guard but rounding, */
-    double far_reach;            /* and over such five */
+    double expected;             /* time of an expected zero; 0: unknown */
+    double early;                /* how much earlier it may be; 0: unknown */
+    double reach;                /* time over which two derivatives give a guard to rounding */
+    double far_reach;            /* time over which five derivatives do */
     double resolution;           /* times closer than this are the same */
     size_t looks;
-    double a;       /* nobody is below zero until then */
-    double h, most; /* so much longer is to be tried, or up to most if a zero is expected there */
-    double longest; /* the end of the search */
-    double better;  /* when smaller bounds will be worth the work */
-    int falls;      /* a guard is not positive where it was looked at last */
-    int at_once;    /* a velocity falls to zero so soon after the start that derivatives there tell when */
-    int lost;       /* there is no end of looks, or what they see is not finite */
+    double a;       /* no guard is below zero until a */
+    double h;       /* length of the next interval */
+    double most;    /* its largest length, if it ends at an expected zero */
+    double longest; /* end of the search */
+    double better;  /* time from which smaller bounds are worth finding */
+    int falls;      /* 1: a guard was not positive at the last look */
+    int at_once;    /* 1: the zero is in reach of derivatives at the start */
+    int lost;       /* 1: too many looks, or samples that are not finite */
 };
 
-/* The guard that is first to meet zero, and when; *first is NULL if none does before longest. Guards start at zero or above.
- * 1, or 0 if this takes too many looks, or guards are not finite. */
+/* Finds *first, the guard that is first to be zero, and *when; NULL if none is before longest. Guards start at zero or above.
+ * Returns 0 if this takes too many looks, or guards are not finite. */
 int tribo_first_zero(struct first_zero *s, double longest, const struct guard **first, double *when);
 
 #endif

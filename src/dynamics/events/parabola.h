@@ -1,4 +1,4 @@
-/* A function by its value and two derivatives at one place, after which it is a parabola. */
+/* The parabola with the value and two derivatives of a sample. */
 #ifndef TRIBO_PARABOLA_H
 #define TRIBO_PARABOLA_H
 
@@ -7,7 +7,7 @@
 #include "common/real.h"
 #include "quintic.h"
 
-/* The least that it is until a step after its sample. */
+/* Its least value until a step on. */
 static inline double parabola_least(const struct sample *m, double step)
 {
     const double end = m->g + step * (m->d + 0.5 * step * m->e);
@@ -15,8 +15,7 @@ static inline double parabola_least(const struct sample *m, double step)
     return turns ? lesser(end, m->g - 0.5 * m->d * m->d / m->e) : end;
 }
 
-/* When after its sample it falls to zero; HUGE_VAL if it does not, or not within most. No quotient is larger than times up to
- * most make it. */
+/* Its first zero within most; HUGE_VAL if there is none. No quotient overflows that most does not make large. */
 static inline double parabola_fall(const struct sample *m, double most)
 {
     double when = HUGE_VAL;

@@ -7,18 +7,18 @@
 /* In Bernstein's basis, and in powers. */
 enum { COEFFICIENTS = 7, POWERS = 6 };
 
-/* So many roots at the start are divided out, after which that many coefficients are zero. */
+/* Roots at 0 that are divided out; as many zeros follow the coefficients. */
 enum { ROOTS = 3 };
 
-/* So often is an interval halved to see that a function is positive. */
+/* Halvings of an interval to prove a function positive. */
 #define HALVINGS 3
 
-/* A step this short, beside the whole, leaves an error of its square. */
+/* A step of Newton's method below this leaves an error of its square. */
 #define CLOSE 1e-8
 
-/* The coefficients of a function that is nowhere above one with these samples. That one differs from the quintic which has the
- * samples' values and derivatives by at most bend h^6/6! s^3 (1-s)^3, in Bernstein's basis of degree 6 the middle element
- * alone, 20 s^3 (1-s)^3: the quintic, raised to that degree, with the middle coefficient less by this much. */
+/* Bernstein coefficients c [7], degree 6, of a lower bound of all functions with samples a, b and sixth derivative up to bend:
+ * they differ from the quintic through both samples by at most bend h^6/6! s^3 (1-s)^3, a multiple of the middle element 20
+ * s^3 (1-s)^3 of the basis. */
 static void bernstein(const struct sample *a, const struct sample *b, double h, double bend, double *c)
 {
     const double h_3 = h * h * h, doubt = bend * h_3 * h_3 * (1 / 14400.);
@@ -33,7 +33,7 @@ static void bernstein(const struct sample *a, const struct sample *b, double h, 
     c[6] = p5;
 }
 
-/* The coefficients of the part before s (from), and after it (c). */
+/* Splits at s: from = the coefficients before s, c = those after s. */
 static void split_bernstein(double *c, double s, double *from)
 {
     for (int left = COEFFICIENTS; left > 0; left--) {
@@ -44,7 +44,7 @@ static void split_bernstein(double *c, double s, double *from)
     }
 }
 
-/* A function is nowhere below the least of its coefficients; of those of its halves if that does not do. */
+/* A lower bound of the function: the least coefficient, or that of its halves if it is below enough. */
 static double least(double *c, double enough, int halvings)
 {
     const double ends = lesser(c[0], c[6]);
@@ -87,8 +87,8 @@ static void quintic_powers(const struct sample *a, const struct sample *b, doubl
     p[5] = 6.0 * rise - 3.0 * tilt + 0.5 * curve;
 }
 
-/* Where that falls to zero, by Newton's method from s on, and by halves where it leaves the interval. Roots at the start are
- * divided out. Sums are by pairs, so that no term waits for more than two others. */
+/* The zero of p by Newton's method from s on, bisecting where it leaves the interval. Roots at 0 are divided out. Sums are by
+ * pairs, so that no term waits for more than two others. */
 static double zero(const double *p, double s)
 {
     int roots = 0;
@@ -113,7 +113,7 @@ static double zero(const double *p, double s)
     return s;
 }
 
-/* Near the end it is found from there, or rounding of what the other end tells would count. */
+/* A zero near the end is found from the end, which has less rounding there. */
 double tribo_quintic_zero(const struct sample *a, const struct sample *b, double h)
 {
     double p[POWERS + ROOTS] = {0.0};

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Turning points that a phase may have; more are rounding. */
+/* Most turning points of a phase; more are rounding. */
 #define MOST_TURNS 100000
 
 int tribo_signal_reserve(struct signal *s, size_t terms, size_t degree)
@@ -70,7 +70,7 @@ void tribo_signal_at(const struct signal *s, double at, double *to)
 
 /* -------------------------------------------------------------------------------------------------------------- extremes */
 
-/* A signal from a time on, that must not fall below zero on one side. */
+/* side times a signal, from a time on: must not fall below zero. */
 struct course {
     const struct signal *s;
     double from, side;
@@ -143,7 +143,7 @@ static void look(const struct signal *s, double at, double t, struct extremes *e
     }
 }
 
-/* From one turning point to the next: where the slope leaves the side on which it is. */
+/* Goes from one turning point to the next, the first zero of the slope. */
 int tribo_signal_extremes(const struct signal *s, struct signal *slope, double t, struct extremes *e)
 {
     if (!differentiate(s, slope)) {
@@ -204,7 +204,7 @@ static void exponential(double zr, double zi, double tau, double *re, double *im
     *im = (ei * zr - er * zi) / square;
 }
 
-/* The same of s^j e^{-i omega s} for all powers: upwards by parts where that loses nothing, or by the series. */
+/* Adds the integrals of a_j s^j e^{-i omega s}: upwards in j by parts where that loses no digits, else by the series. */
 static void integrate_powers(const struct signal *s, double omega, double *re, double *im)
 {
     const double tau = s->tau, turn = fabs(omega) * tau, er = cos(omega * tau), ei = -sin(omega * tau);

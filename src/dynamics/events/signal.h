@@ -12,7 +12,7 @@ struct signal {
     double tau;
 };
 
-/* Room for terms, none yet, and powers up to degree, all zero. 1, or 0 if out of memory. */
+/* Makes room for terms, and sets terms = 0 and a = 0 up to degree. Returns 0 if out of memory. */
 int tribo_signal_reserve(struct signal *s, size_t terms, size_t degree);
 void tribo_signal_free(struct signal *s);
 
@@ -21,15 +21,15 @@ void tribo_signal_add(struct signal *s, double cr, double ci, double lr, double 
 /* to[3] = the value and its first two derivatives. */
 void tribo_signal_at(const struct signal *s, double at, double *to);
 
-/* Of a signal in several pieces so far, and when. */
+/* Least and largest value of a signal in pieces, and their times. */
 struct extremes {
     double least, most, at_least, at_most;
 };
 
-/* Takes into *e what a piece that begins at t has. slope is workspace, freed by the caller. 1, or 0 if out of memory. */
+/* Updates *e by a piece that begins at t. slope: workspace, freed by the caller. Returns 0 if out of memory. */
 int tribo_signal_extremes(const struct signal *s, struct signal *slope, double t, struct extremes *e);
 
-/* *re + i *im += the integral of it times e^{-i omega s}. */
+/* *re + i *im += integral of the signal times e^{-i omega s} over [0, tau]. */
 void tribo_signal_integrate(const struct signal *s, double omega, double *re, double *im);
 
 #endif
