@@ -7,38 +7,38 @@
 
 #define NODES TRIBO_CREEP_NODES
 
-/* Of more planar contacts that slide all follow their series: Newton's matrices are dense. */
+/* Most sliding planar contacts for steps by collocation: Newton's matrices are dense. */
 #define MOST_CONTACTS 128
 
-/* A step pays that is longer than this many times the time in which friction would stop a contact; and than more, as the cube of
- * their number, where these matrices are most of the work. */
+/* A step pays if it is longer than PAYS times the time in which friction would stop a contact, and for more than FEW_CONTACTS
+ * contacts, whose matrices are most of the work, times the cube of their ratio. */
 #define PAYS 100.0
 #define FEW_CONTACTS 32.0
 
 #define MOST_ITERATIONS 10
 #define BISECTIONS 60
 
-/* Newton's method ends with steps of this part of what directions may be off, and velocities off at nodes by that part; and fails
- * at steps of this angle, or if one is not less than this part of the one before. */
+/* Newton's method ends with a step of ENOUGH times the error allowed of directions and a stray of STRAY_ENOUGH at nodes; fails
+ * with a step of TOO_FAR radians, or of more than HEADWAY times the step before. */
 #define ENOUGH 1e-2
 #define STRAY_ENOUGH 0.1
 #define TOO_FAR 1.5
 #define HEADWAY 0.5
 
-/* Structure and loads may turn directions as fast as this many times their highest frequency; what turns faster relaxes. */
+/* Rate of turn by structure and loads, in units of the highest frequency; faster turns are relaxation. */
 #define TURNS 2.0
 
-/* By how much directions of forces may be off, and those of velocities, however small these are. */
+/* Errors allowed of directions of forces, and of velocities however small. */
 #define MOST_OFF 1e-4
 #define MOST_STRAY 1e-3
 
-/* A step that was shorter than the one before leaves this part of what is astray where it begins, or it is not for its length. */
+/* A shorter step leaves at most this part of the stray at its start, if the stray is due to the length. */
 #define LESS_STRAY 0.5
 
-/* Over a step speeds grow by this factor at most: what is small where it begins is not to be lost beside what comes. */
+/* Largest growth of a speed over a step: a small one at its start must not be lost in rounding. */
 #define FASTER 100.0
 
-/* Lengths of steps change by these factors. */
+/* Factors by which lengths of steps change. */
 #define GROWS 4.0
 #define SHRINKS 0.2
 
@@ -142,7 +142,7 @@ double tribo_creep_least(const struct event *e, const double *y)
 
 /* --------------------------------------------------------------------------------------------------------- directions */
 
-/* The directions of contact k as c->angle says. */
+/* Fits the polynomial u of contact k through c->angle at the nodes. */
 static void fit(struct event *e, size_t k, double h)
 {
     const struct creep *c = &e->creep;
@@ -159,7 +159,7 @@ static void fit(struct event *e, size_t k, double h)
     }
 }
 
-/* How fast the direction of contact k turns where the last step ends. */
+/* Rate of turn of the direction of contact k at the end of the last step. */
 static double event_creep_turn_of(const struct event *e, size_t k)
 {
     const struct planar_line *l = &e->planar.line[k];
@@ -228,7 +228,7 @@ static int find_response(struct event *e, size_t slides)
     return status;
 }
 
-/* The same, unless it is known. */
+/* The same, unless c->response is that of this slip, holds and revision. */
 static int learn_response(struct event *e, size_t slides)
 {
     struct creep *c = &e->creep;
@@ -248,7 +248,7 @@ static int learn_response(struct event *e, size_t slides)
 
 /* ------------------------------------------------------------------------------------------------------------- Newton */
 
-/* u turned by a quarter, along axes, at a node of the s-th one that slides. */
+/* w = u turned by a right angle, along the axes, at node i of the s-th sliding contact. */
 static void across(const struct event *e, size_t s, size_t i, double *w)
 {
     const size_t k = e->creep.slides[s];
@@ -259,7 +259,7 @@ static void across(const struct event *e, size_t s, size_t i, double *w)
     }
 }
 
-/* to [NODES][NODES] = what a force along axis `from` of those that slide does to x along `axis` of all. */
+/* to [NODES][NODES] = response of x along `axis` of all contacts to a force along axis `from` of the sliding ones. */
 static void add_response(const struct event *e, size_t from, size_t axis, double h, double (*to)[NODES])
 {
     const struct creep *c = &e->creep;
@@ -275,7 +275,7 @@ static void add_response(const struct event *e, size_t from, size_t axis, double
     }
 }
 
-/* c->rest = what x has across u; and by what of it along u the matrix is less. */
+/* Sets c->rest = x across u; subtracts x along u from the diagonal of the matrix. */
 static void set_rest(struct event *e, size_t s, double h, size_t unknowns)
 {
     struct creep *c = &e->creep;
@@ -328,7 +328,7 @@ static double improve(struct event *e, size_t slides, double h)
     return tribo_largest(c->rest, unknowns);
 }
 
-/* By how much directions may be off over a step: as little as keeps forces from making more than this error of velocities. */
+/* Error of directions allowed over a step, by the error of velocities that forces make of it. */
 static double allowed(const struct event *e, size_t k, double h, double error)
 {
     const struct stick_slip *m = &e->events.stick_slip;
@@ -337,18 +337,17 @@ static double allowed(const struct event *e, size_t k, double h, double error)
     return lesser(MOST_OFF, error * (double)(NODES + 1) / (r * h));
 }
 
-/* By how much they are: what the last power has between nodes. */
+/* Error of directions: the last power between nodes. */
 static double find_off(const struct event *e, size_t k, double h)
 {
     const struct planar_line *l = &e->planar.line[k];
     return 2.0 * pow(0.25 * h, NODES - 1) * hypot(l->un[NODES - 1], l->ut[NODES - 1]);
 }
 
-/* A step may go on beyond a stop, where x is against u. It ends where x has become this part of what it was (method_event.c),
- * and no smaller one has to have the direction of u. */
+/* A step ends where |x| has fallen to this part (method_event.c): a smaller x need not have the direction of u. */
 #define LEFT 1e-2
 
-/* What x has along u, and across. */
+/* x along u and across u at tau. */
 static void take_parts(const struct event *e, size_t k, double tau, double *along, double *across)
 {
     const struct planar_line *l = &e->planar.line[k];
@@ -368,8 +367,8 @@ static double stop_of(const struct event *e, size_t k, double size)
     return size / greater(n, t);
 }
 
-/* The direction that the velocity has at tau in a step of length h is another one. That is gone at once, and the velocity with
- * it, or as much of it as friction takes in such a step; in parts of what the velocity may be off. */
+/* Stray: velocity across u at tau in a step of length h, in units of its error allowed. Friction takes it away at once, or the
+ * part of it that it can take in such a step. */
 static double find_stray(const struct event *e, size_t k, double h, double tau, double error)
 {
     const struct planar_contact *p = &e->events.stick_slip.plane->contact[k];
@@ -380,7 +379,7 @@ static double find_stray(const struct event *e, size_t k, double h, double tau, 
     return gone / lesser(MOST_STRAY, error * lesser(p->limit[0], p->limit[1]) / size);
 }
 
-/* 1 if the contact slides along u; or stops on the way, so that the step ends before it does not. */
+/* 1 if the contact slides along u, or stops before it does not. */
 static int is_with(const struct event *e, size_t k, double h)
 {
     double along, across, from = 0.0, to = 0.0;
@@ -408,7 +407,7 @@ static double size_at(const struct event *e, size_t k, double tau)
     return hypot(tribo_planar_series_value(l->xn, e->order, tau), tribo_planar_series_value(l->xt, e->order, tau));
 }
 
-/* How much of a step of length h has no more speed than FASTER times that which it begins with: h, or h halved some times. */
+/* h, halved until the speed over the step is at most FASTER times that at its start. */
 static double find_slow_part(const struct event *e, size_t k, double h)
 {
     const double most = FASTER * e->planar.line[k].xn[0];
@@ -421,7 +420,7 @@ static double find_slow_part(const struct event *e, size_t k, double h)
     return part;
 }
 
-/* By how much a step is not as it should be, 1 being what it may; looked at between nodes. */
+/* Error of a step, between nodes, in units of that allowed; HUGE_VAL if the contact does not slide along u. */
 static double find_defect(const struct event *e, size_t k, double h, double error)
 {
     double most = find_off(e, k, h) / allowed(e, k, h, error);
@@ -431,13 +430,13 @@ static double find_defect(const struct event *e, size_t k, double h, double erro
     return is_with(e, k, h) ? most : HUGE_VAL;
 }
 
-/* How many times as long a step may be as one that has this defect, with some reserve. */
+/* Factor of the length of a step with this defect, with some reserve. */
 static double change(double defect)
 {
     return lesser(greater(0.8 * pow(defect, -1.0 / NODES), SHRINKS), GROWS);
 }
 
-/* Newton's method leaves something there. */
+/* Largest stray at nodes, which Newton's method leaves. */
 static double stray_at_nodes(const struct event *e, size_t slides, double h, double error)
 {
     double most = 0.0;
@@ -503,8 +502,8 @@ int tribo_creep_expand(struct event *e, double t, const double *y, double h, dou
     step->good = 0;
     step->next = SHRINKS * h;
     if (!status && found) {
-        /* Judges the step. A contact that creeps may start in another direction than its equation asks for, at any length of the
-         * step: stray is no reason for shorter steps then. */
+        /* Judges the step. A contact that creeps may start in another direction than its equation asks for, at any length of
+         * the step: stray is no reason for shorter steps then. */
         double defect = 0.0, slow = h, stray = 0.0;
         for (size_t s = 0; s < slides; s++) {
             const size_t k = e->creep.slides[s];

@@ -18,35 +18,38 @@ struct event;
 #define TRIBO_CREEP_NODES 8
 
 struct creep {
-    double length;                                      /* what the next such step may have; 0: none is known */
-    double shorter;                                     /* when last tried none was good that is longer than this; 0: unknown */
-    size_t waited, wait;                                /* steps since contacts creep, and how many these have to be */
-    size_t contacts, room, terms;                       /* there is room for; room of those that slide */
-    double basis[TRIBO_CREEP_NODES][TRIBO_CREEP_NODES]; /* [node][power] coefficients of what is 1 there and 0 at the others */
-    double *weight;                                     /* [terms][node][node]: a force that is basis[second] and acts by
-                                                             time^term acts so much at the first node, both in steps */
-    double *angle;                                      /* [contacts][node] of u, from the first direction of its line */
-    double *response;                                   /* [2 room][terms][2 contacts]: series of x, by u = a unit vector; */
-    signed char *slip;                                  /* [ncontact] for contacts that slid so */
-    unsigned char *holds;                               /* [ncontact] or held, */
-    size_t revision;                                    /* and this system; */
-    int known;
-    size_t *slides; /* [contacts] those that slide */
-    int *pivot;     /* [room NODES] */
-    double *matrix, *rest;  /* [room NODES][room NODES], [room NODES] */
+    double length;                                      /* of the next such step; 0: unknown */
+    double shorter;                                     /* longest step to try after trials that failed; 0: unknown */
+    size_t waited, wait;                                /* steps since contacts creep, and number of steps to wait */
+    size_t contacts;                                    /* room for planar contacts */
+    size_t room;                                        /* room for sliding ones */
+    size_t terms;                                       /* room for terms */
+    double basis[TRIBO_CREEP_NODES][TRIBO_CREEP_NODES]; /* [node][power] of the polynomial that is 1 there, 0 at other nodes */
+    double *weight;   /* [terms][node][node] effect at the first node of a force basis[second] that acts by time^term, in steps */
+    double *angle;    /* [contacts][node] of u, from n of its line */
+    double *response; /* [2 room][terms][2 contacts] series of x by u = a unit vector, for slip, holds and revision */
+    signed char *slip;    /* [ncontact] */
+    unsigned char *holds; /* [ncontact] */
+    size_t revision;      /* of the system */
+    int known;            /* 1: response is known */
+    size_t *slides;       /* [contacts] the sliding contacts */
+    int *pivot;           /* [room NODES] */
+    double *matrix;       /* [room NODES][room NODES] Newton's */
+    double *rest;         /* [room NODES] its right-hand side */
 };
 
 void tribo_creep_free(struct creep *c);
 
-/* Steps longer than this are worthwhile, since friction would stop a contact long before; HUGE_VAL where none can be. */
+/* Least length of a step that pays: much longer than the time in which friction would stop a contact; HUGE_VAL if none can
+ * pay. */
 double tribo_creep_least(const struct event *e, const double *y);
 
-/* The longest step in which those contacts do not creep whose directions, by the last step, which ended with y, do not follow yet
- * what is asked of them, to what keeps velocities to `error`. HUGE_VAL: all follow. */
+/* The longest step in which no contact creeps whose direction, at the end y of the last step, has not relaxed yet to what keeps
+ * velocities to `error`; HUGE_VAL if all have. */
 double tribo_creep_settled(const struct event *e, const double *y, double error);
 
-/* Sets the series of the motion from (t, y) on for a step of length h, which is good if velocities are right to `error`. Returns
- * a status. */
+/* Finds the series of the motion from (t, y) on for a step of length h; step->good = 1 if velocities are right to `error`.
+ * Returns a status. */
 struct creep_step {
     int good;
     double next;  /* how long another one may be, after this one or in its place; 0: none can be good */

@@ -21,7 +21,7 @@ static void expand_harmonics(struct event *e, double t)
     }
 }
 
-/* to += factor times the k-th coefficient of the harmonics that load the structure, or move the base. */
+/* to += factor times the k-th coefficients of the harmonics that drive loads, bases or limits. */
 static void add_harmonics(const struct event *e, enum drives drives, size_t k, double factor, double *to)
 {
     for (size_t s = 0; s < e->sys->harmonics; s++) {
@@ -33,8 +33,8 @@ static void add_harmonics(const struct event *e, enum drives drives, size_t k, d
     }
 }
 
-/* Coefficients of the limits, at the time that the harmonics have been expanded for. Of such that fall with the speed each
- * coefficient has to wait for the velocity's. */
+/* Sets the coefficients of limits at the time of the harmonics' expansion. A coefficient of a limit that falls with the speed
+ * needs that of the velocity first. */
 static void expand_limits(struct event *e)
 {
     const tribo_system *sys = e->sys;
@@ -49,7 +49,7 @@ static void expand_limits(struct event *e)
     }
 }
 
-/* The k-th coefficients of limits that fall with the speed, for contacts that slide. */
+/* Sets the k-th coefficients of limits of sliding contacts that fall with the speed. */
 static void expand_falling(struct event *e, size_t k)
 {
     const struct stick_slip *m = &e->events.stick_slip;
@@ -63,7 +63,7 @@ static void expand_falling(struct event *e, size_t k)
     }
 }
 
-/* given, and whether any of it is not 0. */
+/* Sets the k-th coefficients of given forces; 0 if all of them are 0. */
 static int find_given(struct event *e, size_t k)
 {
     const int some = k < e->slide_terms;
@@ -80,7 +80,7 @@ static int find_given(struct event *e, size_t k)
     return some;
 }
 
-/* The k-th coefficients of the contacts' velocities. */
+/* Sets v = the k-th coefficients of the contacts' velocities. */
 static void find_velocities(const struct event *e, size_t k, double *v)
 {
     const struct stick_slip *m = &e->events.stick_slip;
@@ -118,7 +118,7 @@ static void expand_free(struct event *e, size_t k)
     }
 }
 
-/* What is watched of contacts at rest is their force. */
+/* Sets watch of contacts at rest to their forces. */
 static void watch_forces(const struct event *e, size_t k, int given, double *watch)
 {
     const struct stick_slip *m = &e->events.stick_slip;
@@ -131,7 +131,7 @@ static void watch_forces(const struct event *e, size_t k, int given, double *wat
     }
 }
 
-/* The k-th coefficients of accelerations and of what is watched. Returns a status. */
+/* Sets the k-th coefficients of accelerations and of watch. Returns a status. */
 static int expand_forces(struct event *e, size_t k)
 {
     struct stick_slip *m = &e->events.stick_slip;
@@ -189,6 +189,17 @@ int tribo_event_start(struct event *e, double t, const double *y)
     return status;
 }
 
+/* The k-th coefficient of the power of sliding contact i, limit times velocity. */
+static double power_of(const struct event *e, size_t i, size_t k)
+{
+    const size_t c = e->sys->ncontact;
+    double power = 0.0;
+    for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
+        power += e->slide[j * c + i] * e->watch[(k - j) * c + i];
+    }
+    return e->events.stick_slip.state.slip[i] * power;
+}
+
 int tribo_event_series(struct event *e)
 {
     const size_t n = e->sys->ndof;
@@ -204,19 +215,12 @@ int tribo_event_series(struct event *e)
         }
     }
     e->sys->evaluations += e->order + 1;
-    /* power of the sliding contacts: limits times velocities */
     const struct stick_slip *m = &e->events.stick_slip;
-    const tribo_system *sys = e->sys;
-    const size_t c = sys->ncontact;
     for (size_t k = 0; k < e->order; k++) {
-        double power = 0.0;
-        for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
-            const double *limit = e->slide + j * c, *v = e->watch + (k - j) * c;
-            for (size_t i = 0; i < c; i++) {
-                power += tribo_slides(m->state.slip[i]) ? sys->tally[i] * m->state.slip[i] * limit[i] * v[i] : 0.0;
-            }
+        double power = m->plane ? tribo_planar_series_power(&e->planar, m, e->sys, k) : 0.0;
+        for (size_t i = 0; i < e->sys->ncontact; i++) {
+            power += tribo_slides(m->state.slip[i]) ? e->sys->tally[i] * power_of(e, i, k) : 0.0;
         }
-        power += m->plane ? tribo_planar_series_power(&e->planar, m, sys, k) : 0.0;
         e->d[k + 1] = power / (double)(k + 1);
     }
     return TRIBO_OK;
@@ -228,7 +232,7 @@ int tribo_event_expand(struct event *e, double t, const double *y)
     return status ? status : tribo_event_series(e);
 }
 
-/* N falls from the limit at high speed by (ratio - 1) limit exp(-|v|/velocity), and so does the slope, over velocity. */
+/* N(|v|) = limit + (ratio - 1) limit exp(-|v|/velocity): its slope is (limit - N)/velocity. */
 void tribo_event_slopes(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
@@ -239,17 +243,6 @@ void tribo_event_slopes(struct event *e)
             e->slope[k * c + i] = tribo_slides(m->state.slip[i]) ? more / m->breakaway.velocity[i] : 0.0;
         }
     }
-}
-
-/* The k-th coefficient of the power of contact i, which slides: its limit times its velocity. */
-static double power_of(const struct event *e, size_t i, size_t k)
-{
-    const size_t c = e->sys->ncontact;
-    double power = 0.0;
-    for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
-        power += e->slide[j * c + i] * e->watch[(k - j) * c + i];
-    }
-    return e->events.stick_slip.state.slip[i] * power;
 }
 
 double tribo_event_work(void *own, size_t i, double tau)

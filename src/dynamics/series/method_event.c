@@ -1,11 +1,9 @@
-/* Method "event": Coulomb's law itself on any system. While the modes of the contacts last, the motion is smooth, and its Taylor
- * series at the start of a step follows from the equations of motion, one product with the structure's matrices and one solve for
- * the held contacts an order; velocities and forces of the contacts come out as polynomials too. Of planar contacts that slide
- * the force turns with the velocity: its series goes along (planar_series.h).
+/* Method "event": Coulomb's law on any system, by Taylor series of the motion between events (event_series.h); velocities and
+ * forces of contacts are polynomials too. The force of a sliding planar contact turns with its velocity (planar_series.h).
  *
- * Why no event is missed: on a step of length h, at most (order + 1)/2 over the highest frequency that structure or loads can
- * have, what the series leaves out is less than its last term, and that is below the tolerance; and the search on the polynomials
- * cannot skip a zero (first_zero.h). */
+ * Why no event is missed: a step is at most (order + 1)/2 over the highest frequency of structure and loads; there the remainder
+ * of the series is less than its last term, which is below the tolerance; and the search on the polynomials skips no zero
+ * (first_zero.h). */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -16,13 +14,13 @@
 #include "common/simd.h"
 #include "common/zeros.h"
 
-/* A motion that is to come back must not depend on where steps happen to end: followed so, their errors are this part of it. */
+/* Error of a step of a periodic motion, in parts of the motion: it must not depend on where steps end. */
 #define SHARP 1e-13
 
-/* Errors of a step without tolerances are this part of how far values move within the time of the fastest motion. */
+/* Error of a step without tolerances, in parts of how far values move within the time of the fastest motion. */
 #define USUAL 1e-12
 
-/* The largest value of a series, [order + 1][n], on a step of this length, by its terms. */
+/* Bound, by its largest term, of a series [order + 1][n] on a step of this length. */
 static double size_on_step(const struct event *e, const double *series, size_t n, double length)
 {
     double size = 0.0, power = 1.0;
@@ -38,14 +36,14 @@ static double fastest(const struct event *e)
     return e->fastest + e->events.stick_slip.breakaway.steepest;
 }
 
-/* The error that a step may have in values of this size, which within the time of the fastest motion move by `moves`. */
+/* Error allowed in values of this size, which move by `moves` within the time of the fastest motion. */
 static double tolerated(const struct event *e, double size, double moves)
 {
     const tribo_driver *drv = e->drv;
     return drv->abstol > 0.0 ? drv->abstol + drv->reltol * size : greater(USUAL * moves, DBL_MIN);
 }
 
-/* The error that a step of at most `most` may have in a series, [order + 1][n]: not less than the rounding of its first term. */
+/* Error allowed in a series [order + 1][n] on a step of at most `most`; not below the rounding of its first term. */
 static double wanted(const struct event *e, const double *series, size_t n, double moves, double most)
 {
     const double size = tribo_largest(series, n), error = tolerated(e, size, moves);
@@ -53,8 +51,8 @@ static double wanted(const struct event *e, const double *series, size_t n, doub
     return greater(sharp > 0.0 ? lesser(error, sharp) : error, DBL_EPSILON * size);
 }
 
-/* Where no tolerances are set: how far displacements, velocities and energy move within the time of the fastest motion, by the
- * velocities of y, and by accelerations as large as all their parts. */
+/* Sets moves[] of displacements, velocities and energy within the time of the fastest motion, by the velocities in y and the
+ * sizes of the terms of accelerations; not needed with tolerances. */
 static void event_find_moves(struct event *e, const double *y)
 {
     struct stick_slip *m = &e->events.stick_slip;
@@ -69,7 +67,7 @@ static void event_find_moves(struct event *e, const double *y)
         fabs(y[tribo_system_energy(e->sys)]) + radian * tribo_largest(m->state.force, m->constant.contacts) * e->moves[1];
 }
 
-/* The step on which the last two terms of everything stay below the tolerance. */
+/* Length of the step on which the last two terms of all series are below the tolerance. */
 static double step_length(const struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
@@ -98,7 +96,7 @@ static double step_length(const struct event *e)
 
 /* --------------------------------------------------------------------------------------------------------- guards */
 
-/* Adds factor times a polynomial at s with so many terms, c apart, and its derivatives. */
+/* to += factor times the polynomial with term [terms], c doubles apart, at s, and its derivatives. */
 static void add_polynomial(struct sample *to, double factor, size_t terms, size_t c, const double *term, double s)
 {
     double v0 = 0.0, v1 = 0.0, v2 = 0.0;
@@ -112,17 +110,7 @@ static void add_polynomial(struct sample *to, double factor, size_t terms, size_
     to->e += 2.0 * factor * v2;
 }
 
-/* What a guard watches, at tau. */
-static struct sample watch(const struct event *e, const struct guard *g, double tau)
-{
-    const int plane = e->events.stick_slip.plane && e->events.stick_slip.plane->in_plane[g->contact];
-    const size_t terms = plane ? 2 * e->order + 1 : e->order + 1;
-    struct sample v = {0.0, 0.0, 0.0};
-    add_polynomial(&v, 1.0, terms, plane ? e->planar.room : e->sys->ncontact, g->output, tau);
-    return v;
-}
-
-/* The two sides of what is watched follow one another, and are computed once. */
+/* The two guards of an output follow one another: its value is computed once. */
 static void method_event_look(void *own, double tau, size_t guards, struct guard *const *guard)
 {
     const struct event *e = own;
@@ -131,8 +119,11 @@ static void method_event_look(void *own, double tau, size_t guards, struct guard
     for (size_t k = 0; k < guards; k++) {
         struct guard *g = guard[k];
         if (g->side != 0.0 && seen != g->output) {
+            const int plane = e->events.stick_slip.plane && e->events.stick_slip.plane->in_plane[g->contact];
             seen = g->output;
-            v = watch(e, g, tau);
+            v = (struct sample){0.0, 0.0, 0.0};
+            add_polynomial(&v, 1.0, plane ? 2 * e->order + 1 : e->order + 1, plane ? e->planar.room : e->sys->ncontact, seen,
+                           tau);
         }
         g->middle = (struct sample){g->offset, 0.0, 0.0};
         if (g->side != 0.0) {
@@ -144,7 +135,7 @@ static void method_event_look(void *own, double tau, size_t guards, struct guard
     }
 }
 
-/* Bounds of so many terms of all that is watched, or of limits, over [0, h]. */
+/* Bounds over [0, h] of polynomials watch [terms][c], and of their sixth derivatives. */
 TRIBO_SIMD static void method_event_find_bounds(size_t c, size_t terms, double h, const double *restrict watch,
                                                 double *restrict size, double *restrict bend)
 {
@@ -177,8 +168,8 @@ static double method_event_bound(void *own, double tau)
     return HUGE_VAL;
 }
 
-/* A step is at most so long that the speed of no planar contact falls to less than this part of what it began with. Where the
- * speed is small the direction turns fast, and a stop is come to in ever shorter steps. */
+/* A step ends where the speed of a planar contact falls to this part: at a small speed the direction turns fast, and a stop is
+ * approached in ever shorter steps. */
 #define SLOWER 1e-2
 
 static void set_planar_guards(struct event *e)
@@ -256,19 +247,19 @@ static void method_event_destroy(tribo_driver *drv)
     }
 }
 
-/* Powers of frequencies and of steps stay within so many digits, which leaves room for sizes, and half as many where squares of
- * series are made, as in a plane; but so many terms there are. */
+/* Powers of frequencies and of steps stay within MOST_DIGITS decimal digits, half of that with squares of planar series; there
+ * are at least LEAST_ORDER terms. */
 #define MOST_DIGITS 240.0
 #define LEAST_ORDER 4.0
 
-/* The more digits are wanted, the more terms pay. */
+/* The order grows with the digits of the tolerance. */
 static size_t best_order(double tolerance, double fastest, double digits)
 {
     const double wanted = 10.0 - 1.5 * log10(tolerance);
     return (size_t)(fastest > 0.0 ? greater(lesser(wanted, digits / (1.0 + fabs(log10(fastest)))), LEAST_ORDER) : wanted);
 }
 
-/* Takes the driver's tolerances, and makes room for the terms that they want. */
+/* Takes the driver's tolerances, and makes room for the order by these. */
 static int take_tolerances(struct event *e)
 {
     const tribo_driver *drv = e->drv;
@@ -309,7 +300,7 @@ static int take_tolerances(struct event *e)
     return TRIBO_OK;
 }
 
-/* Tolerances, room for the harmonics, which may have become more, and the highest frequency. */
+/* Takes tolerances, makes room for the harmonics, and finds the highest frequency. */
 static int method_event_prepare(struct event *e)
 {
     const tribo_system *sys = e->sys;
@@ -364,8 +355,7 @@ static void series_state(void *own, double tau, const double *from, double *to)
     }
 }
 
-/* The same where contacts slide in the plane, whose series may end sooner than their last terms tell: shorter where the
- * velocities and forces of contacts do not belong to each other any more, and so short that squares do not cancel. */
+/* Longest step with planar series, over the highest frequency: squares do not cancel. */
 #define LONGEST 3.0
 
 static double longest(const struct event *e, double most)
@@ -373,11 +363,11 @@ static double longest(const struct event *e, double most)
     return fastest(e) > 0.0 ? lesser(most, LONGEST / fastest(e)) : most;
 }
 
-/* Over a step the terms of no speed come to more than this many times what it begins with: else the squares of a small one, and
- * that it falls to zero, are lost in the rounding of what comes later. */
+/* Largest sum of the terms of a speed over a step, in units of the speed at its start: else the square of a small speed is
+ * lost in rounding, and with it a zero. */
 #define FASTER 1e4
 
-/* Of each of which terms they are. */
+/* 1 if no speed exceeds that on a step of length h. */
 static int speeds_tell(const struct event *e, double h)
 {
     const struct planar_slip *plane = e->events.stick_slip.plane;
@@ -406,17 +396,17 @@ static double planar_length(struct event *e, double most)
     return h;
 }
 
-/* Contacts have to creep for this many steps by series before longer ones are tried, a few times; and later for as many as take
- * this many times the work of the trials that failed. */
+/* Steps by series before longer ones by collocation are tried; after trials that failed, steps of DEAR times their work;
+ * trials at once. */
 #define PATIENCE 16
 #define DEAR 8
 #define MOST_TRIALS 3
 
-/* A first step, in parts of the longest one. */
+/* First step tried, in parts of the longest one. */
 #define FIRST 0.25
 
-/* Tries steps with directions by collocation, the first one of length h, all longer than least. *length is that of the one in
- * which velocities are right to `error`, or 0. */
+/* Tries steps with directions by collocation, of length h first, all longer than least. *length = length of the step whose
+ * velocities are right to `error`; 0 if none is. */
 static int try_creep(struct event *e, double t, const double *y, double h, double least, double error, double *length)
 {
     struct stick_slip *m = &e->events.stick_slip;
@@ -437,8 +427,8 @@ static int try_creep(struct event *e, double t, const double *y, double h, doubl
     return TRIBO_OK;
 }
 
-/* How long the first step to try is, 0 if none is to be: such that are worthwhile are longer than least, and most is the longest
- * one. Contacts have to creep for a while before; but not where such steps just became shorter than that. */
+/* Length of the first step to try, in (least, most]; 0: none, until contacts have crept for `wait` steps, or such steps just
+ * became shorter than least. */
 static double first_trial(struct event *e, const double *y, double least, double most, double error)
 {
     struct creep *c = &e->creep;
@@ -455,7 +445,7 @@ static double first_trial(struct event *e, const double *y, double least, double
     return first > least ? first : 0.0;
 }
 
-/* The same if contacts creep, and have done so for a while; most is the longest step. */
+/* Tries steps by collocation if contacts creep; *length = 0 if none is good. most: longest step. */
 static int creep(struct event *e, double t, const double *y, double most, double *length)
 {
     struct creep *c = &e->creep;
@@ -484,38 +474,23 @@ static int creep(struct event *e, double t, const double *y, double most, double
     return status;
 }
 
-/* The series from (t, y) on, and how far it may serve. */
-static int method_event_expand(struct event *e, double t, const double *y, double most, double *length)
-{
-    if (!e->events.stick_slip.plane) {
-        const int status = tribo_event_expand(e, t, y);
-        *length = status ? 0.0 : step_length(e);
-        return status;
-    }
-    int status = creep(e, t, y, longest(e, most), length);
-    if (!status && *length == 0.0) {
-        status = tribo_event_expand(e, t, y);
-        *length = status ? 0.0 : planar_length(e, most);
-    }
-    return status;
-}
-
-/* Whether all steps that frequencies allow are lost beside `end`, which is never come to. */
-static int never_ends(const struct event *e, double end)
-{
-    return (double)(e->order + 1) < DBL_EPSILON * fabs(end) * e->fastest;
-}
-
 static int method_event_begin(void *own, double t, const double *y, double *reach)
 {
     struct event *e = own;
-    double length;
+    const int planar = e->events.stick_slip.plane != NULL;
+    double length = 0.0;
     event_find_moves(e, y);
-    const int status = method_event_expand(e, t, y, *reach, &length);
+    int status = planar ? creep(e, t, y, longest(e, *reach), &length) : TRIBO_OK;
+    if (!status && length == 0.0) {
+        status = tribo_event_expand(e, t, y);
+        length = status ? 0.0 : planar ? planar_length(e, *reach) : step_length(e);
+    }
     if (status) {
         return status;
     }
-    length = never_ends(e, t + *reach) ? 0.0 : length;
+    if ((double)(e->order + 1) < DBL_EPSILON * fabs(t + *reach) * e->fastest) {
+        length = 0.0; /* steps that frequencies allow are lost in the rounding of the end: it is never reached */
+    }
     *reach = lesser(length, *reach);
     /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
     e->length = fastest(e) > 0.0 ? greater(*reach, lesser(length, 1.0 / fastest(e))) : *reach;

@@ -4,15 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Coefficients may become as large as ten to this, and those of squares as that squared. Where the speed is small time is short,
- * and its powers are large. */
+/* Decimal digits of the largest coefficient; squares have twice as many. At a small speed time is short, and its inverse
+ * powers are large. */
 #define MOST_DIGITS 100.0
 
-/* Velocities are found to this part of a contact's own, however small that is beside the tolerance: where it is, their direction
- * is what counts. */
+/* Error of a velocity, in parts of the contact's own speed, even if that is far below the tolerance: the direction counts. */
 #define PART 1e-4
 
-/* So many terms there are always. */
+/* Least order. */
 #define LEAST_ORDER 4.0
 
 void tribo_planar_series_free(struct planar_series *s)
@@ -72,13 +71,14 @@ static int reserve_begins(struct planar_series *s, const tribo_system *sys, size
     return 1;
 }
 
-/* limit t times J acc. */
+/* (limit t)'J acc, acc [ncontact] being J acc. */
 static double planar_series_along(const struct planar_contact *p, const struct planar_line *l, const double *acc)
 {
     return p->limit[0] * l->t[0] * acc[p->at] + p->limit[1] * l->t[1] * acc[p->at + 1];
 }
 
-/* What a t-part of 1 of contact q among those that begin does to q'', to the forces of contacts that hold, and to all t-parts. */
+/* Fills answer, held and a column of S: what a unit t-part of beginning contact q does to q'', to holding forces, to
+ * accelerations along all t. */
 static int planar_series_answer(struct planar_series *s, size_t q, struct stick_slip *m, const tribo_system *sys, double *a,
                                 double *f)
 {
@@ -126,7 +126,7 @@ double tribo_planar_series_first_stop(const struct stick_slip *m, const tribo_sy
     return least;
 }
 
-/* As many terms as numbers have room for, order at most: time counts in parts of that in which friction would stop a contact. */
+/* The order for which coefficients stay within MOST_DIGITS, at most order: their unit of time is that of the first stop. */
 static size_t find_order(size_t order, const struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     const double most = MOST_DIGITS / greater(-log10(tribo_planar_series_first_stop(m, sys, y)), 1.0);
@@ -166,7 +166,7 @@ int tribo_planar_series_begin(struct planar_series *s, size_t order, struct stic
 
 /* ------------------------------------------------------------------------------------------------------- coefficients */
 
-/* sum of x_j y_{k - j}, from <= j < to. */
+/* Sum of x_j y_{k - j}, from <= j < to. */
 static double product_of(const double *x, const double *y, size_t k, size_t from, size_t to)
 {
     double sum = 0.0;
@@ -176,7 +176,7 @@ static double product_of(const double *x, const double *y, size_t k, size_t from
     return sum;
 }
 
-/* Coefficient m of x from that of v; the first one says where n is, or has to be along it. Returns 0 where it is against it. */
+/* Sets coefficient m of x = limit v; the first one gives n, or has to be along n. Returns 0 if it is against n. */
 static int take_velocity(struct planar_line *l, const struct planar_contact *p, size_t m, const double *v)
 {
     const double x[2] = {p->limit[0] * v[0], p->limit[1] * v[1]};
@@ -193,7 +193,7 @@ static int take_velocity(struct planar_line *l, const struct planar_contact *p, 
     return m > 0 || l->xn[0] > 0.0;
 }
 
-/* What |x| u has along t at power k, but for the last coefficients of u and |x|. */
+/* Part of coefficient k of |x| u along t that does not have the last coefficients of u and |x|. */
 static double before(const struct planar_line *l, size_t k)
 {
     return k > 1 ? product_of(l->speed, l->ut, k, 1, k) : 0.0;
@@ -230,7 +230,7 @@ int tribo_planar_series_forces(struct planar_series *s, const struct stick_slip 
     return TRIBO_OK;
 }
 
-/* What tau_k has to be besides what accelerations make of it; and D_k. */
+/* Right-hand side of tau_k without accelerations; *shift = D_k. */
 static double asked(const struct planar_line *l, int begins, size_t k, double *shift)
 {
     const double times = (double)(k + 1);
@@ -292,7 +292,7 @@ double tribo_planar_series_power(const struct planar_series *s, const struct sti
 
 /* -------------------------------------------------------------------------------------------------------------- guards */
 
-/* The parts of force/limit, from forces f [order + 1][ncontact], in the place of x. */
+/* Sets x = force/limit, from forces f [order + 1][ncontact]. */
 static void take_forces(struct planar_line *l, const struct planar_contact *p, size_t order, size_t stride, const double *f)
 {
     for (size_t k = 0; k <= order; k++) {
@@ -301,7 +301,7 @@ static void take_forces(struct planar_line *l, const struct planar_contact *p, s
     }
 }
 
-/* The k-th coefficient of x x, x having `terms` coefficients. */
+/* Coefficient k of x^2, x [terms]. */
 static double square_of(const double *x, size_t terms, size_t k)
 {
     return product_of(x, x, k, k < terms ? 0 : k - terms + 1, k < terms ? k + 1 : terms);

@@ -18,27 +18,33 @@
 
 struct planar_line {
     double n[2], t[2];
-    double *xn, *xt, *un, *ut, *speed; /* [order + 1] coefficients; speed: of |x| */
-    double size, bend;                 /* bounds of the square, and of its sixth derivative */
+    double *xn, *xt, *un, *ut; /* [order + 1] coefficients of x and u along n and t */
+    double *speed;             /* [order + 1] coefficients of |x| */
+    double size;               /* bound of the square */
+    double bend;               /* bound of its sixth derivative */
 };
 
 struct planar_series {
-    size_t order, room;       /* so many contacts there is room for, */
-    int given;                /* un and ut of those that slide, who all do so already, are given */
+    size_t order;
+    size_t room;              /* for contacts */
+    int given;                /* 1: un and ut are given, and all sliding contacts slide already */
     struct planar_line *line; /* [room] */
-    double *work;
-    double *square;            /* [2 order + 1][room] coefficients */
-    size_t begins, begin_room; /* contacts that begin to slide, */
-    size_t *begin;             /* [begins] which; and room for */
-    int *pivot;                /* [begins] */
-    double *s, *lu, *tau;      /* [begins][begins] S, S + D, [begins] */
-    double *answer, *held;     /* [begins][ndof], [ncontact] what t-parts do to q'', and to the forces of contacts that hold */
+    double *work;             /* the series of all lines */
+    double *square;           /* [2 order + 1][room] coefficients */
+    size_t begins;            /* number of contacts that begin to slide */
+    size_t begin_room;        /* for such contacts */
+    size_t *begin;            /* [begins] these contacts */
+    int *pivot;               /* [begins] */
+    double *s, *lu;           /* [begins][begins] S, S + D */
+    double *tau;              /* [begins] */
+    double *answer;           /* [begins][ndof] q'' by unit t-parts */
+    double *held;             /* [begins][ncontact] holding forces by unit t-parts */
 };
 
 void tribo_planar_series_free(struct planar_series *s);
 
-/* The time in which friction would stop the planar contact p; and the least one of those that slide already, HUGE_VAL if there
- * is none. */
+/* The time in which friction would stop planar contact p; and the least such time of contacts that slide already, HUGE_VAL if
+ * there is none. */
 double tribo_planar_series_stop(const struct stick_slip *m, const tribo_system *sys, const struct planar_contact *p,
                                 const double *y);
 double tribo_planar_series_first_stop(const struct stick_slip *m, const tribo_system *sys, const double *y);
@@ -46,33 +52,34 @@ double tribo_planar_series_first_stop(const struct stick_slip *m, const tribo_sy
 /* The value at h of a series x [powers + 1]. */
 double tribo_planar_series_value(const double *x, size_t powers, double h);
 
-/* Sets the order for a phase that begins with y, order at most; makes room, and S for contacts that begin to slide. a, f
- * [ncontact] workspace. Returns a status, its message on the system's context, and so below. */
+/* Sets the order for a phase that begins with y, at most order; makes room; finds S for contacts that begin to slide. a, f
+ * [ncontact]: workspace. Returns a status, its message on the system's context, as the functions below. */
 int tribo_planar_series_begin(struct planar_series *s, size_t order, struct stick_slip *m, const tribo_system *sys,
                               const double *y, double *a, double *f);
 
-/* Takes the k-th coefficients v [ncontact] of velocities, and sets those of the forces f [ncontact] of contacts that slide, but
- * for the t-parts of such that begin to. */
+/* Takes the k-th coefficients v [ncontact] of velocities; sets those of sliding forces f [ncontact], without the t-parts of
+ * contacts that begin to slide. */
 int tribo_planar_series_forces(struct planar_series *s, const struct stick_slip *m, const tribo_system *sys, size_t k,
                                const double *v, double *f);
 
-/* Finds these, and adds what they do to the k-th coefficients of q'' (acc) and of forces that hold. base [ncontact] is that of
- * accelerations of bases. */
+/* Finds these t-parts, and adds their effect to the k-th coefficients of q'' (acc) and of holding forces. base [ncontact]:
+ * that of accelerations of bases. */
 int tribo_planar_series_finish(struct planar_series *s, const struct stick_slip *m, const tribo_system *sys, size_t k,
                                const double *base, double *acc, double *held);
 
-/* The k-th coefficient of the power that contacts take. */
+/* The k-th coefficient of the power that planar contacts dissipate. */
 double tribo_planar_series_power(const struct planar_series *s, const struct stick_slip *m, const tribo_system *sys, size_t k);
 
-/* For guards over [0, h]: squares of |x|, but for tau^2s, or half the larger limit times |force/limit|^2 of contacts at rest,
- * whose forces are f [order + 1][ncontact]. All terms count: those of x, or force, end where their squares' are not small yet. */
+/* Sets square, size and bend for guards over [0, h]: |x|^2/tau^2s of sliding contacts; half the larger limit times
+ * |force/limit|^2 of contacts at rest, with forces f [order + 1][ncontact]. All terms count: those of the square are not small
+ * where those of x end. */
 void tribo_planar_series_squares(struct planar_series *s, const struct stick_slip *m, const double *f, double h);
 
-/* The errors that velocities of contacts may have, [ncontact], besides that of the driver's tolerance. */
+/* Sets error [ncontact] of velocities, besides that of the driver's tolerance. */
 void tribo_planar_series_errors(const struct planar_series *s, const struct stick_slip *m, double *error);
 
-/* By how much, at h, the velocities of contacts may be off, as the series of forces differ from what those of velocities ask for:
- * in parts of error, and of m->plane->error. */
+/* Error of the velocities of contacts at h, by the difference between the series of u and x/|x|, in units of error or
+ * plane->error, the smaller one. */
 double tribo_planar_series_defect(const struct planar_series *s, const struct stick_slip *m, double h, double error);
 
 #endif

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A series of exponentials over a step of method event ends long before. */
+/* Most terms; a series of exponentials over a step of method event has far less. */
 #define MOST_TERMS 400
 
 void tribo_series_transition_free(struct series_transition *x)
@@ -120,7 +120,7 @@ static int update(struct series_transition *x, struct stick_slip *m, const tribo
     return status;
 }
 
-/* Term k of the forces that follow from the terms of velocities up to u, which is the k-th, to x->force. */
+/* Sets x->force = term k of the forces by slopes, from the terms of velocities up to u, the k-th. */
 static void series_transition_find_forces(struct series_transition *x, const tribo_system *sys, const struct slopes *slopes,
                                           size_t k, double tau)
 {
@@ -166,7 +166,7 @@ static void take_springs(const struct series_transition *x, const tribo_system *
     }
 }
 
-/* The k-th terms, x^(k) tau^k/k!, from those before. */
+/* Sets q, u and spring to the k-th terms, x^(k) tau^k/k!, from those before. */
 static void series_transition_differentiate(struct series_transition *x, const struct stick_slip *m, const tribo_system *sys,
                                             const struct slopes *slopes, size_t k, double tau)
 {
