@@ -33,14 +33,14 @@ static void append(struct events *e, size_t i, int kind, double side, double tim
 void tribo_events_guard_contact(struct events *e, size_t i, const struct watch *w)
 {
     struct stick_slip *m = &e->stick_slip;
-    const double ratio = tribo_breakaway_ratio(&m->breakaway, i), slack = tribo_stick_slip_margin(m, i);
+    const double ratio = tribo_breakaway_ratio(&m->breakaway, i), margin = tribo_stick_slip_margin(m, i);
     if (m->state.slip[i] == TRIBO_SLIP_OPEN) {
         m->noise.velocity_scale[i] = w->size; /* for the decision when it touches down */
     } else if (tribo_slides(m->state.slip[i])) {
         append(e, i, SLIDES, m->state.slip[i], 0.0, 0.0, m->noise.factor * m->noise.velocity[i], w);
     } else if (m->state.holds[i]) {
-        for (double side = -1.0; w->size >= ratio * w->least + slack && side <= 1.0; side += 2.0) {
-            append(e, i, HOLDS, side, ratio, ratio * w->constant + slack, m->noise.allowance[i], w);
+        for (double side = -1.0; w->size >= ratio * w->least + margin && side <= 1.0; side += 2.0) {
+            append(e, i, HOLDS, side, ratio, ratio * w->constant + margin, m->noise.allowance[i], w);
         }
     } else if (tribo_stick_slip_may_part(m, i)) {
         append(e, i, SLIDES, -1.0, 0.0, 0.0, m->noise.parting[i], w);

@@ -74,7 +74,7 @@ static int find_given(struct event *e, size_t k)
             const int keeps = k == 0 && m->state.slip[i] == TRIBO_SLIP_STUCK && !m->state.holds[i];
             const double *limit = (m->state.slip[i] ? e->slide : e->limit) + k * e->sys->ncontact,
                          side = tribo_stick_slip_follows(m, i);
-            e->given[i] = keeps ? m->state.force[i] : side != 0.0 ? side * limit[i] : 0.0;
+            e->room.given[i] = keeps ? m->state.force[i] : side != 0.0 ? side * limit[i] : 0.0;
         }
     }
     return some;
@@ -90,9 +90,9 @@ static void find_velocities(const struct event *e, size_t k, double *v)
     tribo_system_tables(e->sys, DRIVES_BASE, (int)k, -1.0, 0, c, v);
     tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->u + k * e->sys->ndof, v);
     if (e->sys->compliance.count) {
-        tribo_compliance_rates(e->sys, m->state.slip, v, e->rate);
+        tribo_compliance_rates(e->sys, m->state.slip, v, e->room.rate);
         for (size_t i = 0; k < e->order && i < c; i++) {
-            e->spring[(k + 1) * c + i] = e->rate[i] / (double)(k + 1);
+            e->spring[(k + 1) * c + i] = e->room.rate[i] / (double)(k + 1);
         }
     }
     for (size_t i = 0; k == 0 && i < c; i++) {
@@ -105,7 +105,7 @@ static void expand_free(struct event *e, size_t k)
 {
     const tribo_system *sys = e->sys;
     const size_t n = sys->ndof;
-    double *acc = e->acceleration;
+    double *acc = e->room.acceleration;
     memset(acc, 0, n * sizeof *acc);
     add_harmonics(e, DRIVES_LOAD, k, 1.0, acc);
     tribo_matrix_multiply_add(&sys->stiffness, -1.0, e->q + k * n, acc);
@@ -124,7 +124,7 @@ static void watch_forces(const struct event *e, size_t k, int given, double *wat
     const struct stick_slip *m = &e->events.stick_slip;
     for (size_t i = 0; i < e->sys->ncontact; i++) {
         if (m->state.slip[i] == TRIBO_SLIP_STUCK && !tribo_stick_slip_may_part(m, i)) {
-            const double spring = e->spring[k * e->sys->ncontact + i], own = e->held[i] + (given ? e->given[i] : 0.0);
+            const double spring = e->spring[k * e->sys->ncontact + i], own = e->room.held[i] + (given ? e->room.given[i] : 0.0);
             const double found = m->constant.elastic[i] ? spring : own;
             watch[i] = k == 0 ? m->state.force[i] : found;
         }
@@ -136,41 +136,41 @@ static int expand_forces(struct event *e, size_t k)
 {
     struct stick_slip *m = &e->events.stick_slip;
     tribo_system *sys = e->sys;
-    double *acc = e->acceleration, *watch = e->watch + k * sys->ncontact;
+    double *acc = e->room.acceleration, *watch = e->watch + k * sys->ncontact;
     expand_free(e, k);
     find_velocities(e, k, watch);
     if (m->breakaway.falls) {
         expand_falling(e, k);
     }
     const int given = find_given(e, k);
-    int status = given && m->plane ? tribo_planar_series_forces(&e->planar, m, sys, k, watch, e->given) : TRIBO_OK;
+    int status = given && m->plane ? tribo_planar_series_forces(&e->planar, m, sys, k, watch, e->room.given) : TRIBO_OK;
     if (status) {
         return status;
     }
     if (given) {
-        tribo_matrix_multiply_add(&sys->response, 1.0, e->given, acc);
+        tribo_matrix_multiply_add(&sys->response, 1.0, e->room.given, acc);
     }
     /* k-th coefficients: base = accelerations of the bases, a = accelerations of the contacts against them */
     const size_t c = e->sys->ncontact;
-    memset(e->base, 0, c * sizeof *e->base);
-    add_harmonics(e, DRIVES_BASE, k + 1, (double)(k + 1), e->base);
-    tribo_system_tables(sys, DRIVES_BASE, (int)k + 1, (double)(k + 1), 0, c, e->base);
+    memset(e->room.base, 0, c * sizeof *e->room.base);
+    add_harmonics(e, DRIVES_BASE, k + 1, (double)(k + 1), e->room.base);
+    tribo_system_tables(sys, DRIVES_BASE, (int)k + 1, (double)(k + 1), 0, c, e->room.base);
     for (size_t i = 0; i < c; i++) {
-        e->a[i] = -e->base[i];
+        e->room.a[i] = -e->room.base[i];
     }
-    tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->acceleration, e->a);
-    status = tribo_stick_slip_balance(m, e->a, e->held);
+    tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->room.acceleration, e->room.a);
+    status = tribo_stick_slip_balance(m, e->room.a, e->room.held);
     if (status) {
         return tribo_system_fail(sys, status, "%s", tribo_message(m->constant.hold));
     }
-    tribo_matrix_multiply_add(&sys->response, 1.0, e->held, acc);
-    status = m->plane ? tribo_planar_series_finish(&e->planar, m, sys, k, e->base, acc, e->held) : TRIBO_OK;
+    tribo_matrix_multiply_add(&sys->response, 1.0, e->room.held, acc);
+    status = m->plane ? tribo_planar_series_finish(&e->planar, m, sys, k, e->room.base, acc, e->room.held) : TRIBO_OK;
     if (status) {
         return status;
     }
     watch_forces(e, k, given, watch);
     /* contacts at rest must not creep by what rounding leaves in acc */
-    return tribo_stick_slip_hold(m, sys, e->base, acc);
+    return tribo_stick_slip_hold(m, sys, e->room.base, acc);
 }
 
 int tribo_event_start(struct event *e, double t, const double *y)
@@ -182,7 +182,8 @@ int tribo_event_start(struct event *e, double t, const double *y)
     memcpy(e->u, y + n, n * sizeof *y);
     e->d[0] = y[tribo_system_energy(sys)];
     tribo_compliance_get(sys, y, e->spring);
-    const int status = m->plane ? tribo_planar_series_begin(&e->planar, e->most_order, m, sys, y, e->a, e->given) : TRIBO_OK;
+    const int status =
+        m->plane ? tribo_planar_series_begin(&e->planar, e->most_order, m, sys, y, e->room.a, e->room.given) : TRIBO_OK;
     e->order = m->plane ? e->planar.order : e->most_order;
     expand_harmonics(e, t);
     expand_limits(e);
@@ -211,7 +212,7 @@ int tribo_event_series(struct event *e)
         const double part = 1.0 / (double)(k + 1);
         for (size_t i = 0; k < e->order && i < n; i++) {
             e->q[(k + 1) * n + i] = part * e->u[k * n + i];
-            e->u[(k + 1) * n + i] = part * e->acceleration[i];
+            e->u[(k + 1) * n + i] = part * e->room.acceleration[i];
         }
     }
     e->sys->evaluations += e->order + 1;

@@ -8,34 +8,48 @@
 #include "planar_series.h"
 #include "series_transition.h"
 
+/* Workspace. */
+struct event_room {
+    double *acceleration; /* [ndof] */
+    double *base;         /* [ncontact], as the others */
+    double *a;
+    double *given;
+    double *held;
+    double *rate;
+};
+
+/* Bounds over [0, length] of watch and limit, and of their sixth derivatives; [ncontact]. */
+struct event_bound {
+    double *size, *bend, *limit_size, *limit_bend;
+};
+
 struct event {
     tribo_driver *drv;
     tribo_system *sys;
     struct events events;
-    size_t order;                    /* of the series of a phase */
-    size_t most_order;               /* room */
-    double tolerance;                /* relative */
-    double abstol;                   /* that of the driver when tolerance was found */
-    double fastest;                  /* bound of the frequencies of the motion, without growth by falling friction */
-    size_t revision;                 /* of the system that fastest is of */
-    double moves[3];                 /* change of q, u and d within the time of the fastest motion; if abstol = 0 */
-    double length;                   /* of the step, and of the interval of bounds */
-    double *q, *u;                   /* [order + 1][ndof] coefficients of the powers of time of displacements and velocities */
-    double *watch;                   /* [order + 1][ncontact] velocities of sliding contacts, forces of contacts at rest */
-    double *limit;                   /* [order + 1][ncontact] limits, below 0 where a contact has lifted off */
-    size_t terms;                    /* number of rows of limit that are not zero */
-    double *slide;                   /* [order + 1][ncontact] limits to slide: limit, or fall */
-    size_t slide_terms;              /* number of rows of slide that are not zero */
-    double *fall, *part;             /* [order + 1][ncontact] limits that fall with the speed; exp(-|v|/velocity) */
-    double *slope;                   /* [order + 1][ncontact] derivatives of such limits by the velocity */
-    double *d;                       /* [order + 1] dissipated energy */
-    double *size, *bend;             /* [ncontact] bounds of watch over [0, length], and of its sixth derivative */
-    double *limit_size, *limit_bend; /* [ncontact] the same of limit */
-    double *cosine, *sine;           /* [order + 2][harmonics] coefficients of cos(omega t) and sin(omega t) */
-    double *acceleration, *base, *a, *given, *held; /* workspace: [ndof], and four of [ncontact] */
+    size_t order;          /* of the series of a phase */
+    size_t most_order;     /* room */
+    double tolerance;      /* relative */
+    double abstol;         /* that of the driver when tolerance was found */
+    double fastest;        /* bound of the frequencies of the motion, without growth by falling friction */
+    size_t revision;       /* of the system that fastest is of */
+    double moves[3];       /* change of q, u and d within the time of the fastest motion; if abstol = 0 */
+    double length;         /* of the step, and of the interval of bounds */
+    double *q, *u;         /* [order + 1][ndof] coefficients of the powers of time of displacements and velocities */
+    double *watch;         /* [order + 1][ncontact] velocities of sliding contacts, forces of contacts at rest */
+    double *limit;         /* [order + 1][ncontact] limits, below 0 where a contact has lifted off */
+    size_t terms;          /* number of rows of limit that are not zero */
+    double *slide;         /* [order + 1][ncontact] limits to slide: limit, or fall */
+    size_t slide_terms;    /* number of rows of slide that are not zero */
+    double *fall, *part;   /* [order + 1][ncontact] limits that fall with the speed; exp(-|v|/velocity) */
+    double *slope;         /* [order + 1][ncontact] derivatives of such limits by the velocity */
+    double *d;             /* [order + 1] dissipated energy */
+    double *spring;        /* [order + 1][ncontact] forces of compliant contacts */
+    double *cosine, *sine; /* [order + 2][harmonics] coefficients of cos(omega t) and sin(omega t) */
+    struct event_bound bound;
+    struct event_room room;
     struct planar_series planar;
     struct creep creep;
-    double *spring, *rate; /* [order + 1][ncontact] coefficients of forces of compliant contacts; [ncontact] of their rates */
     struct series_transition perturbed;
 };
 

@@ -162,8 +162,8 @@ static double method_event_bound(void *own, double tau)
     for (size_t k = 0; k < s->guards; k++) {
         struct guard *g = &s->guard[k];
         const double side = fabs(g->side), limit = fabs(g->limit);
-        g->size = side * e->size[g->contact] + limit * e->limit_size[g->contact] + fabs(g->offset);
-        g->bend = side * e->bend[g->contact] + limit * e->limit_bend[g->contact];
+        g->size = side * e->bound.size[g->contact] + limit * e->bound.limit_size[g->contact] + fabs(g->offset);
+        g->bend = side * e->bound.bend[g->contact] + limit * e->bound.limit_bend[g->contact];
     }
     return HUGE_VAL;
 }
@@ -185,8 +185,8 @@ static void set_planar_guards(struct event *e)
         struct guard g = {.contact = p->at, .output = square, .kind = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
         g.offset = moves ? -SLOWER * SLOWER * square[0] : 0.5 * limit;
         g.allowance = moves ? 0.0 : greater(m->noise.allowance[p->at], m->noise.allowance[p->at + 1]);
-        e->size[p->at] = line->size;
-        e->bend[p->at] = line->bend;
+        e->bound.size[p->at] = line->size;
+        e->bound.bend[p->at] = line->bend;
         if (moves || line->size >= 0.5 * limit) {
             tribo_events_guard(&e->events, &g);
         }
@@ -199,8 +199,8 @@ static void set_guards(struct event *e)
     const double h = e->length;
     const int varies = e->terms > 1;
     tribo_events_clear_guards(&e->events);
-    method_event_find_bounds(m->constant.contacts, e->order + 1, h, e->watch, e->size, e->bend);
-    method_event_find_bounds(m->constant.contacts, e->terms, h, e->limit, e->limit_size, e->limit_bend);
+    method_event_find_bounds(m->constant.contacts, e->order + 1, h, e->watch, e->bound.size, e->bound.bend);
+    method_event_find_bounds(m->constant.contacts, e->terms, h, e->limit, e->bound.limit_size, e->bound.limit_bend);
     if (m->plane) {
         set_planar_guards(e);
     }
@@ -219,12 +219,12 @@ static void set_guards(struct event *e)
                 size += lever * tribo_largest(e->u + k * e->sys->ndof, e->sys->ndof) * power;
                 power = lesser(power * h, DBL_MAX);
             }
-            e->size[i] = size;
+            e->bound.size[i] = size;
         }
         const struct watch w = {.output = e->watch + i,
-                                .size = e->size[i],
+                                .size = e->bound.size[i],
                                 .constant = varies ? 0.0 : e->limit[i],
-                                .least = 2.0 * e->limit[i] - e->limit_size[i],
+                                .least = 2.0 * e->limit[i] - e->bound.limit_size[i],
                                 .varies = varies};
         tribo_events_guard_contact(&e->events, i, &w);
         tribo_events_guard_limit(&e->events, i, &w);
@@ -287,16 +287,16 @@ static int take_tolerances(struct event *e)
     e->slope = e->part + terms * c;
     e->spring = e->slope + terms * c;
     e->d = e->spring + terms * c;
-    e->acceleration = e->d + terms;
-    e->base = e->acceleration + n;
-    e->a = e->base + c;
-    e->given = e->a + c;
-    e->held = e->given + c;
-    e->size = e->held + c;
-    e->bend = e->size + c;
-    e->limit_size = e->bend + c;
-    e->limit_bend = e->limit_size + c;
-    e->rate = e->limit_bend + c;
+    e->room.acceleration = e->d + terms;
+    e->room.base = e->room.acceleration + n;
+    e->room.a = e->room.base + c;
+    e->room.given = e->room.a + c;
+    e->room.held = e->room.given + c;
+    e->bound.size = e->room.held + c;
+    e->bound.bend = e->bound.size + c;
+    e->bound.limit_size = e->bound.bend + c;
+    e->bound.limit_bend = e->bound.limit_size + c;
+    e->room.rate = e->bound.limit_bend + c;
     return TRIBO_OK;
 }
 
@@ -495,7 +495,7 @@ static int method_event_begin(void *own, double t, const double *y, double *reac
     /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
     e->length = fastest(e) > 0.0 ? greater(*reach, lesser(length, 1.0 / fastest(e))) : *reach;
     set_guards(e);
-    return tribo_dense_finite(e->size, 2 * e->sys->ncontact)
+    return tribo_dense_finite(e->bound.size, 2 * e->sys->ncontact)
                ? TRIBO_OK
                : tribo_system_fail(e->sys, TRIBO_ERR_NOT_FINITE,
                                    "at t = %.17g derivatives of the motion overflow: it grows without bound, or is too fast", t);
@@ -563,10 +563,6 @@ static int open_events(tribo_driver *drv, struct events **events)
     return status ? tribo_driver_fail(drv, status, "%s", tribo_system_message(drv->sys)) : TRIBO_OK;
 }
 
-const struct method tribo_method_event = {"event",
-                                          TAKES_TOLERANCE | TAKES_OUTPUT,
-                                          method_event_create,
-                                          method_event_destroy,
-                                          tribo_events_method,
-                                          open_events,
-                                          tribo_events_find_periodic};
+const struct method tribo_method_event = {
+    "event",     TAKES_TOLERANCE | TAKES_OUTPUT, method_event_create, method_event_destroy, tribo_events_method,
+    open_events, tribo_events_find_periodic};
