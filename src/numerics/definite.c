@@ -1,6 +1,7 @@
 #include "definite.h"
 #include "common/layout.h"
 #include "common/real.h"
+#include "lapack.h"
 #include "linalg.h"
 
 #include <float.h>
@@ -20,62 +21,50 @@ enum { PATIENCE = 8, CHANGES = 32 };
 static size_t choose_set(struct definite *d, const signed char *skip)
 {
     size_t m = 0;
-    int same = 1;
+    int same = 1, info = 0;
     for (size_t i = 0; i < d->n; i++) {
         if (d->matrix[i * d->n + i] > 0.0 && (!skip || skip[i] == 0)) {
             same &= m < d->held && d->index[m] == i;
             d->index[m++] = i;
         }
     }
-    same &= m == d->held;
+    if (m == 0 || (same && m == d->held)) {
+        d->held = m;
+        return m;
+    }
     d->held = m;
-    for (size_t i = 0; !same && i < m; i++) {
-        const double *row = d->matrix + d->index[i] * d->n;
-        double *l = d->factor + i * m;
+    for (size_t i = 0; i < m; i++) {
         for (size_t j = 0; j <= i; j++) {
-            const double *other = d->factor + j * m;
-            double sum = row[d->index[j]];
-            for (size_t k = 0; k < j; k++) {
-                sum -= l[k] * other[k];
-            }
-            if (i == j && !(sum > ROUNDING * row[d->index[i]])) {
-                return i;
-            }
-            l[j] = i == j ? sqrt(sum) : sum / other[j];
+            d->factor[i * m + j] = d->matrix[d->index[i] * d->n + d->index[j]];
+        }
+    }
+    const int rows = (int)m;
+    dpotrf_("U", &rows, d->factor, &rows, &info, 1);
+    for (size_t i = 0; i < m; i++) {
+        const double l = d->factor[i * (m + 1)];
+        if (i + 1 == (size_t)info || !(l * l > ROUNDING * d->matrix[d->index[i] * (d->n + 1)])) {
+            return i;
         }
     }
     return m;
 }
 
-static void divide_row(double *row, double by, size_t columns)
-{
-    for (size_t j = 0; j < columns; j++) {
-        row[j] /= by;
-    }
-}
-
 void tribo_definite_solve(struct definite *d, const signed char *skip, size_t columns, double *x)
 {
     choose_set(d, skip);
-    const size_t m = d->held;
-    for (size_t i = 0, at = 0; i < d->n; i++) {
-        const int in = at < m && d->index[at] == i;
-        memset(x + i * columns, 0, in ? 0 : columns * sizeof *x);
-        at += (size_t)in;
+    const struct cholesky factor = {.n = d->held, .factor = d->factor};
+    for (size_t k = 0; k < d->held; k++) {
+        memmove(x + k * columns, x + d->index[k] * columns, columns * sizeof *x);
     }
-    for (size_t i = 0; i < m; i++) {
-        double *row = x + d->index[i] * columns;
-        for (size_t k = 0; k < i; k++) {
-            tribo_add(row, -d->factor[i * m + k], x + d->index[k] * columns, columns);
+    tribo_half_solve(&factor, x, columns);
+    tribo_half_solve_back(&factor, x, columns);
+    for (size_t i = d->n, k = d->held; i-- > 0;) {
+        if (k > 0 && d->index[k - 1] == i) {
+            k--;
+            memmove(x + i * columns, x + k * columns, columns * sizeof *x);
+        } else {
+            memset(x + i * columns, 0, columns * sizeof *x);
         }
-        divide_row(row, d->factor[i * m + i], columns);
-    }
-    for (size_t i = m; i-- > 0;) {
-        double *row = x + d->index[i] * columns;
-        for (size_t k = i + 1; k < m; k++) {
-            tribo_add(row, -d->factor[k * m + i], x + d->index[k] * columns, columns);
-        }
-        divide_row(row, d->factor[i * m + i], columns);
     }
 }
 
@@ -96,7 +85,7 @@ int tribo_definite_create(struct definite *d, size_t n, const double *a, size_t 
         d->index = tribo_layout_array(&l, n, sizeof *d->index);
         d->at = tribo_layout_array(&l, n, sizeof *d->at);
         d->to = tribo_layout_array(&l, n, sizeof *d->to);
-    } while (!l.memory && tribo_layout_zeros(&l));
+    } while (tribo_lapack_takes(n) && !l.memory && tribo_layout_zeros(&l));
     if (!l.memory) {
         return TRIBO_ERR_MEMORY;
     }
