@@ -157,6 +157,15 @@ int tribo_get_law(const tribo_context *ctx, int *law)
 
 /* ------------------------------------------------------------------------------------------------------------ limits */
 
+/* least and largest [half] of these and the other half. */
+static inline void fold(size_t half, double *least, double *largest)
+{
+    for (size_t k = 0; k < half; k++) {
+        least[k] = lesser(least[k], least[k + half]);
+        largest[k] = greater(largest[k], largest[k + half]);
+    }
+}
+
 /* Sets least and largest of a whole chunk, half upon half: vectors can do that, not one after the other. */
 TRIBO_SIMD static void find_least_and_largest(const double *x, struct chunk *chunk)
 {
@@ -166,12 +175,9 @@ TRIBO_SIMD static void find_least_and_largest(const double *x, struct chunk *chu
         least[k] = lesser(x[k], x[k + HALF]);
         largest[k] = greater(x[k], x[k + HALF]);
     }
-    for (size_t half = HALF / 2; half >= FEW; half /= 2) {
-        for (size_t k = 0; k < half; k++) {
-            least[k] = lesser(least[k], least[k + half]);
-            largest[k] = greater(largest[k], largest[k + half]);
-        }
-    }
+    fold(HALF / 2, least, largest);
+    fold(HALF / 4, least, largest);
+    fold(FEW, least, largest);
     for (size_t k = 1; k < FEW; k++) {
         least[0] = lesser(least[0], least[k]);
         largest[0] = greater(largest[0], largest[k]);

@@ -84,7 +84,7 @@ static int no_limit_is_far(const tribo_context *ctx, const struct cluster *g)
     return k == n;
 }
 
-/* ask [size] = the force of each direction alone, or for the sake of the others, at most. */
+/* ask [size]: the force of each direction alone becomes the largest that balances the asks of the others, up to its limit. */
 static void find_asks(const tribo_context *ctx, const struct cluster *g, double *ask)
 {
     const size_t n = ctx->plane.problem.size, *near = ctx->plane.near;
@@ -107,7 +107,7 @@ void tribo_planar_estimate(tribo_context *ctx, const struct cluster *g)
 {
     const size_t n = ctx->plane.problem.size;
     const double *bound = ctx->follow.contacts.bound;
-    double *ask = ctx->plane.problem.spare, most = 0.0; /* of ask sqrt(R_ii), in which any contact could ask another */
+    double *ask = ctx->plane.problem.spare, most = 0.0; /* the largest ask sqrt(R_ii): in these units asks of contacts compare */
     int far = 0;
     if (no_limit_is_far(ctx, g)) {
         return;
