@@ -102,7 +102,7 @@ static int all_known(const struct modal *h, const double *s, const double *re, c
     return 1;
 }
 
-/* Exponents, and how they and eta make each other, from eigenvectors x (see eigen.h) and the inverse of the matrix that has them
+/* Exponents, and how they and eta make each other, from eigenvectors x (see linalg.h) and the inverse of the matrix that has them
  * in columns. */
 static int keep_exponents(struct modal_build *b, const double *s, const double *re, const double *im, const double *x,
                           const double *inverse)
