@@ -161,7 +161,7 @@ static void add_powers(const struct modal_motion *x, const double *c, double *a)
     }
 }
 
-/* c'[q, q', f, f'] at the end of the phase, tau later. */
+/* c'[q, q', f, f'] at the end of the phase, tau after its start. x->way and x->push are workspace. */
 static double value_at_end(const struct modal_motion *x, const double *c, double tau, const double *end)
 {
     const tribo_system *sys = x->sys;

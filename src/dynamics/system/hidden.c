@@ -1,5 +1,5 @@
-/* A contact on a light and a heavy body makes an entry 1/m + 1/M of R, of which rounding leaves little of 1/M. That counts where
- * other contacts hold the light body: then a pivot of R is as small as m/M, though rows of J are independent. */
+/* A contact between a light body m and a heavy body M gives the entry 1/m + 1/M of R, in which rounding hides 1/M. Where other
+ * contacts hold the light body, a pivot of R is as small as m/M, though the rows of J are independent. */
 #include "numerics/constraint.h"
 #include "hidden.h"
 #include "common/real.h"
@@ -9,10 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where pivots are smaller than this, rounding of R does more than 1e-7 to the motion of a body. */
+/* A smaller pivot: rounding of R changes the motion of a body by more than 1e-7 of it. */
 #define SMALL (DBL_EPSILON / 1e-7)
 
-/* Contacts whose bodies differ by less have small pivots for another reason. */
+/* With a smaller ratio of the shares J^2/m of a contact, small pivots have another cause. */
 #define APART 1e3
 
 /* How many pivots of the Cholesky factorization of r, with the largest first and the diagonal scaled to 1, are not small; r is

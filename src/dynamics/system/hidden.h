@@ -1,16 +1,16 @@
-/* Whether R, in rounding, has lost heavy bodies behind light ones. */
+/* Heavy bodies behind light ones, which the rounding of R hides. */
 #ifndef TRIBO_HIDDEN_H
 #define TRIBO_HIDDEN_H
 
 #include "numerics/matrix.h"
 
 struct hidden {
-    size_t contact; /* touches bodies */
-    double spread;  /* of which one gives way so many times as much as the other */
+    size_t contact; /* contact with the largest spread */
+    double spread;  /* ratio of the largest to the smallest share J^2/m in R_ii of that contact */
 };
 
-/* r [ncontact][ncontact] = J X, X being what forces of the contacts do to the bodies; own [entries of J]: what that of its
- * contact does to the degree of freedom of each entry. 1 if bodies are hidden, 0 if not, -1 if out of memory. */
+/* r [ncontact][ncontact] = J X, X the responses of the bodies to forces of the contacts. own [entries of J]: the entry of X of
+ * the same contact and degree of freedom. Returns 1 if R hides a body, 0 if not, -1 if out of memory. */
 int tribo_hidden(const struct matrix *direction, const struct matrix *mass, const double *own, const double *r,
                  struct hidden *where);
 

@@ -47,7 +47,7 @@ int tribo_model_factorize(const struct model *m, struct cholesky *c)
     }
 }
 
-/* Whether R, of a system whose mass matrix is not diagonal, tells all that it should. */
+/* Returns TRIBO_ERR_UNSUPPORTED if R, of a mass matrix that is not diagonal, hides a body. */
 static int check_operator(const struct model *m, const tribo_system *sys, const double *r, const double *own)
 {
     struct hidden where;

@@ -44,7 +44,7 @@ int tribo_model_condense(struct model *m, int (*build_massive)(struct model *, t
 /* Gives the context R = Z'Z, Z [n][ncontact], which is as symmetric and semidefinite as rounding lets it be. */
 int tribo_model_set_operator(const struct model *m, tribo_system *sys, const double *z, size_t n);
 
-/* The same for R itself, with what tribo_hidden asks for, or NULL where no body is hidden. */
+/* Gives the context R = r. own: as in tribo_hidden; NULL: no check for hidden bodies. */
 int tribo_model_give_operator(const struct model *m, tribo_system *sys, const double *r, const double *own);
 
 /* reduction.c: the system of the lowest nmode modes. */

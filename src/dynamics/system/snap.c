@@ -110,7 +110,7 @@ static int snap_first(struct snapping *s)
     int left = 0;
     for (size_t i = 0, n = s->sys->ncontact; i < n; i++) {
         if (!s->loose[i] && first[i + 1] - first[i] == 1) {
-            /* The same for entry `to` alone, which each step asks for of many. */
+            /* snap_take of a single entry, in line: each step does this for many contacts */
             const size_t to = first[i];
             if (s->list) {
                 snap_take(s, i, to, to);

@@ -251,7 +251,7 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
  * the difference of two. Uses the workspace of accelerations. */
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x);
 
-/* Finds out whether that can be done one contact after the other: whoever makes use of it asks for this first. */
+/* Sets snaps_in_order. To be called before tribo_system_snap and tribo_system_list_snaps. */
 void tribo_system_order_snaps(tribo_system *sys);
 
 /* What that does with a contact: x[to] = (base - other x[from])/value, where other may be 0, and x[from] anything. */

@@ -1,6 +1,7 @@
 /* Elastic contacts in methods other than "exact": events by series, fixed steps, periodic motions; and what is refused. */
 #include "sliders.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include "../../set_up_driver.h"
 
@@ -110,6 +111,65 @@ TEST(moreau_loop)
     assert_close(2.0 * 12.0 * (4.0 * chord - 1.5), 60.0, 1e-4);
     tribo_driver_destroy(d);
     tribo_system_destroy(s);
+}
+
+/* Two bodies that mass and stiffness couple, with a contact of this compliance on the first; and oscillators, each by itself. */
+static tribo_system *coupled(size_t n, double soft)
+{
+    const size_t entries = n + 2;
+    const double head[2][4] = {{2.0, 0.5, 0.5, 1.0}, {3.0, -1.0, -1.0, 2.0}}, limit = 0.3, one = 1.0;
+    size_t *first = calloc(n + 1 + entries, sizeof *first), *col = first + n + 1, row[] = {0, 1}, zero = 0;
+    double *mass = calloc(2 * entries + n, sizeof *mass), *stiffness = mass + entries, *load = stiffness + entries;
+    tribo_model *model;
+    tribo_system *sys;
+    for (size_t i = 0, k = 0; i < n; i++) {
+        for (size_t j = i < 2 ? 0 : i; j < (i < 2 ? 2 : i + 1); j++, k++) {
+            col[k] = j;
+            mass[k] = i < 2 ? head[0][2 * i + j] : 1.0;
+            stiffness[k] = i < 2 ? head[1][2 * i + j] : 1.0;
+        }
+        first[i + 1] = first[i] + (i < 2 ? 2 : 1);
+    }
+    load[1] = 1.0;
+    assert_ok(tribo_model_create(&model, n, 1));
+    assert_ok(tribo_model_set_mass_csr(model, first, col, mass));
+    assert_ok(tribo_model_set_stiffness_csr(model, first, col, stiffness));
+    assert_ok(tribo_model_set_direction_csr(model, row, &zero, &one));
+    assert_ok(tribo_model_set_compliance(model, &soft));
+    const int status = tribo_system_create(&sys, model);
+    require(!status, "%s", tribo_model_message(model));
+    tribo_model_destroy(model);
+    assert_ok(tribo_set_limit(tribo_system_context(sys), &limit));
+    assert_ok(tribo_system_add_load(sys, 0.8, load, NULL));
+    free(first);
+    free(mass);
+    return sys;
+}
+
+/* A mass matrix too large for dense factors, beside the two bodies alone. */
+TEST(moreau_large)
+{
+    enum { N = 3001 };
+    static double y[2 * N + 2];
+    double z[6] = {0.0}, t = 0.0, u = 0.0;
+    if (!tribo_dynamics_has(TRIBO_FEATURE_CHOLMOD)) {
+        return;
+    }
+    tribo_system *large = coupled(N, 0.5), *small = coupled(2, 0.5);
+    tribo_driver *d = driver_create(large, "moreau/fixed", 0.01, 0.0), *e = driver_create(small, "moreau/fixed", 0.01, 0.0);
+    for (int k = 1; k <= 10; k++) {
+        driver_advance(d, &t, k, y);
+        driver_advance(e, &u, k, z);
+        const double all[] = {y[0], y[1], y[N], y[N + 1], y[2 * N], y[2 * N + 1]};
+        for (size_t i = 0; i < 6; i++) {
+            assert_close(all[i], z[i], 1e-12);
+        }
+    }
+    ck_assert(z[5] > 0.1);
+    tribo_driver_destroy(d);
+    tribo_driver_destroy(e);
+    tribo_system_destroy(large);
+    tribo_system_destroy(small);
 }
 
 /* Steady state, max x = 3.38660810 as far as the steps show it; and the state there. */
@@ -385,6 +445,7 @@ TEST(springs_alone)
     tribo_system_destroy(sys);
 }
 
-TEST_MAIN("elastic_methods", {event_is_exact, 4}, {table, 1}, {moreau_order, 4}, {moreau_loop, 1}, {moreau_steady_state, 2},
+TEST_MAIN("elastic_methods", {event_is_exact, 4}, {table, 1}, {moreau_order, 4}, {moreau_loop, 1}, {moreau_large, 1},
+          {moreau_steady_state, 2},
           {beyond_limit, 3}, {rest_at_limit, 3}, {periodic_element, 4}, {periodic_held, 4}, {periodic_structure, 16},
           {multipliers, 2}, {contacts_of_state, 1}, {static_limits, 4}, {springs_that_are_rigid, 4}, {springs_alone, 2})
