@@ -271,6 +271,33 @@ TEST(periodic_element)
     tribo_system_destroy(s);
 }
 
+static int see_fastest(const tribo_moment *moment, void *most)
+{
+    *(double *)most = fmax(*(double *)most, moment->y[3]);
+    return 0;
+}
+
+/* Extremes of the displacement w and the velocity w' of the slider: |w| <= X - N/k, and w' as an observer sees it. */
+TEST(periodic_slider)
+{
+    const double period = 2.0 * acos(-1.0) / 1.1, place[4] = {0.0, 1.0}, speed[4] = {0.0, 0.0, 0.0, 1.0};
+    tribo_system *s = element(0.5, 1);
+    tribo_driver *d = driver_create(s, _i ? "event" : "exact", 1e-3, 1e-14);
+    double y[5] = {0.0}, least, most, fastest, seen = 0.0, t = 0.0;
+    assert_ok(tribo_driver_find_periodic(d, 0.0, period, y));
+    assert_ok(tribo_driver_period_extremes(d, place, &least, &most, NULL, NULL));
+    assert_close(most, 2.88660810, 1e-8);
+    assert_close(least, -2.88660810, 1e-8);
+    assert_ok(tribo_driver_period_extremes(d, speed, &least, &fastest, NULL, NULL));
+    assert_close(least, -fastest, 1e-9);
+    assert_ok(tribo_driver_set_output(d, period / 10000.0));
+    assert_ok(tribo_driver_set_observer(d, see_fastest, &seen));
+    driver_advance(d, &t, period, y);
+    require(seen <= fastest + 1e-9 && seen > fastest - 1e-5, "w' is up to %.17g, not %.17g", seen, fastest);
+    tribo_driver_destroy(d);
+    tribo_system_destroy(s);
+}
+
 /* A slider that never moves is a spring, and may stand anywhere: a family of motions, of which the guess tells. */
 TEST(periodic_held)
 {
@@ -406,7 +433,7 @@ static tribo_system *sprung(double on_0, double on_1, double k)
     return sys;
 }
 
-/* A spring 10^8 times as stiff as the structure, or what its loads make of the masses, is rigid: that is said at once, and which. */
+/* A spring 10^8 times as stiff as the structure, or as the inertia under its loads, is refused, with its contact's number. */
 TEST(springs_that_are_rigid)
 {
     const double load[] = {0.5, 0.4, 0.0, 0.0};
@@ -446,6 +473,6 @@ TEST(springs_alone)
 }
 
 TEST_MAIN("elastic_methods", {event_is_exact, 4}, {table, 1}, {moreau_order, 4}, {moreau_loop, 1}, {moreau_large, 1},
-          {moreau_steady_state, 2},
-          {beyond_limit, 3}, {rest_at_limit, 3}, {periodic_element, 4}, {periodic_held, 4}, {periodic_structure, 16},
-          {multipliers, 2}, {contacts_of_state, 1}, {static_limits, 4}, {springs_that_are_rigid, 4}, {springs_alone, 2})
+          {moreau_steady_state, 2}, {beyond_limit, 3}, {rest_at_limit, 3}, {periodic_element, 4}, {periodic_slider, 2},
+          {periodic_held, 4}, {periodic_structure, 16}, {multipliers, 2}, {contacts_of_state, 1}, {static_limits, 4},
+          {springs_that_are_rigid, 4}, {springs_alone, 2})
