@@ -1,4 +1,4 @@
-/* Static limits: static.c. Where a context has none, tribo_find_limits and those below it are not called. */
+/* Static limits: static.c. */
 #ifndef TRIBO_STATIC_H
 #define TRIBO_STATIC_H
 
