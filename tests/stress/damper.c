@@ -460,6 +460,38 @@ TEST(same_limit)
 }
 END_TEST
 
+/* Every option with an equals sign, on the command line and in a file, as with a blank. */
+TEST(equals)
+{
+    static const char *const option[] = {
+        "mass M.mtx", "stiffness K.mtx", "dofs dofs.txt", "frequencies hz.txt", "contact 2,0,0,x", "contacts c.txt",
+        "load 4,0,0,x", "base x:acceleration=1", "output 3,0,0,x", "harmonics 2", "force 2", "drive 0.7", "limits 0.1",
+        "modes 3", "statics on", "damping 0.01,0.02", "damping-ratios r.txt", "method exact", "check 1", "law coulomb",
+        "step 1", "threads 1", "out .", "name damper", "field 0,90"};
+    char line[3][TEXT] = {"", "", "--read o.txt"}, file[TEXT] = "", values[3][TEXT];
+    write_chain();
+    write_text("c.txt", "3,0,0,x\n");
+    write_text("r.txt", "0.03\n");
+    for (size_t k = 0; k < COUNT(option); k++) {
+        const int name = (int)strcspn(option[k], " ");
+        for (int way = 0; way < 2; way++) {
+            const size_t length = strlen(line[way]);
+            snprintf(line[way] + length, TEXT - length, "%s--%.*s%c%s", length ? " " : "", name, option[k], " ="[way],
+                     option[k] + name + 1);
+        }
+        const size_t length = strlen(file);
+        snprintf(file + length, TEXT - length, "%.*s=%s\n", name, option[k], option[k] + name + 1);
+    }
+    write_text("o.txt", file);
+    for (int way = 0; way < 3; way++) {
+        assert_runs(line[way]);
+        read_text("values-damper.txt", values[way]);
+        require(strcmp(values[way], values[0]) == 0, "%s: %.2000s", line[way], values[way]);
+        assert_exact(value_of("damper.model.modes"), 3.0);
+    }
+}
+END_TEST
+
 /* A contact between two nodes: both ends move alike when it sticks. */
 TEST(between)
 {
@@ -616,4 +648,4 @@ TEST(many_contacts)
 END_TEST
 
 TEST_MAIN("damper", {damage, 6}, {the_same, 1}, {no_files, 1}, {options, 1}, {parts, 1}, {files_of_words, 1}, {same_limit, 1},
-          {between, 1}, {plane, 1}, {one_mass, 1}, {few, 1}, {many_contacts, 1}, {check_at_the_end, 1})
+          {equals, 1}, {between, 1}, {plane, 1}, {one_mass, 1}, {few, 1}, {many_contacts, 1}, {check_at_the_end, 1})
