@@ -9,7 +9,7 @@ set xrange [1e-4:1]
 set format x '10^{%T}'
 set format y '10^{%T}'
 set yrange [1e-4:100]
-set xlabel 'friction limit of each contact (μ times normal load), N'
+set xlabel 'friction limit of each contact (mu times normal load), N'
 set ylabel 'amplitude of the tip, mm' textcolor '#0072b2'
 set y2label 'dissipated by friction, mW' textcolor '#d55e00'
 set y2range [0:30]
