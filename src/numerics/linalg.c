@@ -78,6 +78,18 @@ TRIBO_SIMD static void add_four(double *restrict c, const double *restrict b, si
     }
 }
 
+/* add_four for (c, f) and (d, g); reads b once. */
+TRIBO_SIMD static void add_four_twice(double *restrict c, double *restrict d, const double *restrict b, size_t n, const double *f,
+                                      const double *g)
+{
+    const double f0 = f[0], f1 = f[1], f2 = f[2], f3 = f[3], g0 = g[0], g1 = g[1], g2 = g[2], g3 = g[3];
+    for (size_t j = 0; j < n; j++) {
+        const double b0 = b[j], b1 = b[n + j], b2 = b[2 * n + j], b3 = b[3 * n + j];
+        c[j] = (((c[j] + f0 * b0) + f1 * b1) + f2 * b2) + f3 * b3;
+        d[j] = (((d[j] + g0 * b0) + g1 * b1) + g2 * b2) + g3 * b3;
+    }
+}
+
 /* Returns x'y, summed in eight parts. */
 TRIBO_SIMD static double dot_of_eight(size_t n, const double *restrict x, const double *restrict y)
 {
@@ -133,17 +145,22 @@ void tribo_multiply_transposed_add(size_t rows, size_t inner, size_t cols, const
         }
     }
     for (; k < rows; k++) {
-        for (size_t i = 0; i < inner; i++) {
+        for (size_t i = 0; cols > 1 && i < inner; i++) {
             tribo_add(c + i * cols, a[k * inner + i], b + k * cols, cols);
         }
+        tribo_add(c, cols == 1 ? b[k] : 0.0, a + k * inner, cols == 1 ? inner : 0);
     }
 }
 
-void tribo_multiply_two(size_t rows, size_t inner, size_t cols, const double *a, const double *b, size_t next_b, double *c,
-                        size_t next_c)
+void tribo_multiply_transposed_two(size_t rows, size_t inner, size_t cols, const double *a, const double *b, size_t next_b,
+                                   double *c, size_t next_c)
 {
+    size_t i = 0;
+    for (; cols == 1 && i + 4 <= rows; i += 4) {
+        add_four_twice(c, c + next_c, a + i * inner, inner, b + i, b + next_b + i);
+    }
     for (size_t k = 0; k < 2; k++) {
-        tribo_multiply_add(rows, inner, cols, 1.0, a, b + k * next_b, c + k * next_c);
+        tribo_multiply_transposed_add(rows - i, inner, cols, a + i * inner, b + k * next_b + i * cols, c + k * next_c);
     }
 }
 

@@ -39,9 +39,9 @@ void tribo_multiply_transposed_add(size_t rows, size_t inner, size_t cols, const
 /* to [cols][rows] = a', for a [rows][cols]. */
 void tribo_transpose(size_t rows, size_t cols, const double *a, double *to);
 
-/* c += a b and (c + next_c) += a (b + next_b). */
-void tribo_multiply_two(size_t rows, size_t inner, size_t cols, const double *a, const double *b, size_t next_b, double *c,
-                        size_t next_c);
+/* c += a'b and (c + next_c) += a'(b + next_b); reads a once if cols is 1. */
+void tribo_multiply_transposed_two(size_t rows, size_t inner, size_t cols, const double *a, const double *b, size_t next_b,
+                                   double *c, size_t next_c);
 
 /* a [n][n] = (a + a')/2. */
 void tribo_even_out(size_t n, double *a);

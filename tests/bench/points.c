@@ -1,7 +1,7 @@
 /* What a steady motion costs over the number of modes of the structure and of its contacts.
- *   bench_points [mass stiffness dofs contacts modes [mass|compliance]]
+ *   bench_points [[mass stiffness dofs contacts] modes none|mass|compliance]
  * Without arguments: the beam of the examples on three contacts, driven at frequencies about three times its first one, in 12, 24,
- * 48 and 96 modes, alone, with static responses of the contacts, and with compliance. Otherwise a structure whose contacts are spread over the
+ * 48 and 96 modes, alone, with static responses of the contacts, and with compliance; or one row of these. Otherwise a structure whose contacts are spread over the
  * degrees of freedom in direction z, the last of which has the load, driven about its first frequency.
  * POINTS motions at several frequencies and limits, by one driver, each from the motion before. Prints a row a system: times in
  * milliseconds and beside those of the first row; spans followed, events and decompositions a point; power at the first point. */
@@ -153,25 +153,28 @@ int main(int argc, char **argv)
 {
     program = "bench_points";
     gsl_set_error_handler_off(); /* as read_structure expects */
-    if (argc != 1 && argc != 6 && argc != 7) {
-        die("usage: bench_points [mass stiffness dofs contacts modes [mass|compliance]]");
+    if (argc != 1 && argc != 3 && argc != 7) {
+        die("usage: bench_points [[mass stiffness dofs contacts] modes none|mass|compliance]");
     }
     struct scene x = {.force = 0.1};
     printf("%5s %10s %6s %10s %8s %9s %9s %14s\n", "modes", "statics", "found", "ms a point", "ratio", "periods", "events",
            "power");
-    if (argc == 1) {
-        static const size_t modes[] = {12, 24, 48, 96};
-        double unit = 0.0;
+    if (argc < 7) {
         place_beam(&x);
-        for (size_t k = 0; k < 12; k++) {
-            const double seconds = measure(&x, modes[k % 4], (int)(k / 4), unit);
-            unit = k ? unit : seconds;
-        }
     } else {
         x.s = read_structure(argv[1], argv[2], argv[3]);
         x.contacts = strtoul(argv[4], NULL, 10);
         spread_contacts(&x);
-        measure(&x, strtoul(argv[5], NULL, 10), argc == 7 ? !strcmp(argv[6], kind[1]) + 2 * !strcmp(argv[6], kind[2]) : 0, 0.0);
+    }
+    if (argc > 1) {
+        const char *statics = argv[argc - 1];
+        measure(&x, strtoul(argv[argc - 2], NULL, 10), !strcmp(statics, kind[1]) + 2 * !strcmp(statics, kind[2]), 0.0);
+    }
+    static const size_t modes[] = {12, 24, 48, 96};
+    double unit = 0.0;
+    for (size_t k = 0; argc == 1 && k < 12; k++) {
+        const double seconds = measure(&x, modes[k % 4], (int)(k / 4), unit);
+        unit = k ? unit : seconds;
     }
     free(x.at);
     free_structure(&x.s);

@@ -23,9 +23,10 @@ struct motion {
     void (*state)(void *own, double tau, const double *from, double *to);
     /* Sets the system's time to t, where the phase ends to which state went last. NULL: not needed. */
     void (*arrive)(void *own, double t);
-    /* Returns the data of the phase that transition needs after its end, until release. NULL: phases are not kept. */
-    const void *(*keep)(void *own);
-    void (*release)(const void *phase);
+    /* Returns the data of the phase, which ends after tau, that transition needs later, until release; NULL if out of memory.
+     * keep NULL: phases are not kept. */
+    void *(*keep)(void *own, double tau);
+    void (*release)(void *phase);
     /* Moves perturbations v [2 ndof][columns] of the state by tau in a phase that was kept; in the one that ends if phase is
      * NULL. Projects them first so that contacts at rest stay there. Returns a status, its message on the system's context. */
     int (*transition)(void *own, const void *phase, double tau, size_t columns, double *v);

@@ -15,6 +15,9 @@
 /* Damping that is not more than so many times the rounding of its terms is none. */
 #define ROUNDING 8.0
 
+/* So few modes are not worth a dense product. */
+#define FEW 4
+
 /* ------------------------------------------------------------------------------------------------- the contacts that hold */
 
 static int list_rest(struct modal_build *b, const unsigned char *holds)
@@ -245,22 +248,33 @@ static int build_compress(struct modal_build *b)
     if (!h->dof || !h->begin || !h->end || !tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count)) {
         return 0;
     }
+    size_t entries = 0;
     for (size_t k = 0; k < m; k++) {
-        h->end[k] = h->moving;
+        double *phi = h->phi + k * h->moving, *psi = h->psi + k * h->moving;
+        for (size_t i = 0; i < h->moving; i++) {
+            phi[i] = b->phi[k * n + h->dof[i]];
+            psi[i] = b->psi[k * n + h->dof[i]];
+            if (phi[i] != 0.0 || psi[i] != 0.0) {
+                h->begin[k] = h->end[k] ? h->begin[k] : i;
+                h->end[k] = i + 1;
+            }
+        }
+        entries += h->end[k] - h->begin[k];
     }
     for (size_t i = 0; i < h->moving; i++) {
         const size_t d = h->dof[i];
-        for (size_t k = 0; k < m; k++) {
-            h->phi[k * h->moving + i] = b->phi[k * n + d];
-            h->psi[k * h->moving + i] = b->psi[k * n + d];
-        }
         for (size_t w = 0; w < s; w++) {
             h->yr[w * h->moving + i] = b->yr[w * n + d];
             h->yi[w * h->moving + i] = b->yi[w * n + d];
         }
         h->y0[i] = b->y0[d];
     }
-    return 1;
+    const int dense = m > FEW && 4 * entries >= m * h->moving;
+    h->columns = dense ? tribo_modal_keep(b, m * h->moving) : NULL;
+    if (h->columns) {
+        tribo_transpose(m, h->moving, h->psi, h->columns);
+    }
+    return h->columns || !dense;
 }
 
 /* What does not depend on loads. Returns a status, TRIBO_ERR_MEMORY if none is in b. */

@@ -2,9 +2,7 @@
 #ifndef TRIBO_DIVIDED_H
 #define TRIBO_DIVIDED_H
 
-#include <complex.h>
-#undef I
-#define I ((double complex)_Complex_I) /* of double, which _Complex_I is not: -Wdouble-promotion finds each use */
+#include "common/imaginary.h"
 
 /* exp[0, z] = (e^z - 1)/z, which is the integral of e^{z s} over s from 0 to 1. */
 double complex tribo_exp_1(double complex z);

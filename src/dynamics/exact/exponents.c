@@ -113,8 +113,8 @@ static int keep_exponents(struct modal_build *b, const double *s, const double *
         h->exponents += !(im[i] < 0.0);
     }
     const size_t e = h->exponents;
-    double **const kept[] = {&h->lr, &h->li, &h->ar, &h->ai, &h->br, &h->bi, &h->rr, &h->ri};
-    const size_t count[] = {e, e, e * m, e * m, e * m, e * m, e * m, e * m};
+    double **const kept[] = {&h->lr, &h->li, &h->br, &h->bi, &h->rr, &h->ri};
+    const size_t count[] = {e, e, e * m, e * m, e * m, e * m};
     const int done = tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count);
     for (size_t i = 0, p = 0; done && i < size; i++) {
         if (im[i] < 0.0) {
@@ -126,13 +126,11 @@ static int keep_exponents(struct modal_build *b, const double *s, const double *
         h->li[p] = im[i];
         for (size_t k = 0; k < m; k++) {
             /* x = (v + i w) z + its conjugate = 2 (v Re z - w Im z) */
-            h->ar[p * m + k] = half * s[k] * inverse[i * size + k];
-            h->br[p * m + k] = half * inverse[i * size + m + k];
-            h->rr[k * e + p] = twice * x[i * size + k] / s[k];
+            h->br[k * e + p] = half * inverse[i * size + m + k];
+            h->rr[p * m + k] = twice * x[i * size + k] / s[k];
             if (pair) {
-                h->ai[p * m + k] = -half * s[k] * inverse[(i + 1) * size + k];
-                h->bi[p * m + k] = -half * inverse[(i + 1) * size + m + k];
-                h->ri[k * e + p] = twice * x[(i + 1) * size + k] / s[k];
+                h->bi[k * e + p] = -half * inverse[(i + 1) * size + m + k];
+                h->ri[p * m + k] = twice * x[(i + 1) * size + k] / s[k];
             }
         }
         p++;

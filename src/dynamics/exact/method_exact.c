@@ -248,18 +248,19 @@ static int method_exact_begin(void *own, double t, const double *y, double *reac
     return TRIBO_OK;
 }
 
-static const void *keep_phase(void *own)
+static void *keep_phase(void *own, double tau)
 {
-    return tribo_modal_share(((struct exact *)own)->motion.h);
+    return tribo_modal_phase_create(((struct exact *)own)->motion.h, tau);
 }
 
-static void release_phase(const void *phase)
+static void release_phase(void *phase)
 {
-    tribo_modal_free(phase);
+    tribo_modal_phase_free(phase);
 }
 
 static int method_exact_transition(void *own, const void *phase, double tau, size_t columns, double *v)
 {
+    (void)tau;
     struct exact *x = own;
     if (columns > x->columns) {
         double *more = realloc(x->work, tribo_modal_transition_room(x->sys, columns) * sizeof *more);
@@ -269,7 +270,7 @@ static int method_exact_transition(void *own, const void *phase, double tau, siz
         x->work = more;
         x->columns = columns;
     }
-    tribo_modal_transition(phase ? phase : x->motion.h, x->sys, tau, columns, v, x->work);
+    tribo_modal_transition(phase, x->sys, columns, v, x->work);
     return TRIBO_OK;
 }
 

@@ -45,6 +45,7 @@ struct modal {
     size_t moving, *dof; /* degrees of freedom that move */
     size_t modes;
     double *phi, *psi;   /* [modes][moving] and M phi; */
+    double *columns;     /* [moving][modes] the transpose of M phi, unless most of it is 0; */
     size_t *begin, *end; /* [modes] these are 0 but for degrees of freedom from begin to end - 1 of those that move */
     double *omega2, *damping;
     double *coupling;      /* [modes][modes] C~, or NULL if it is diagonal */
@@ -54,8 +55,8 @@ struct modal {
     size_t exponents, terms;   /* terms: with harmonics, and zeros after them, at least TRIBO_TERMS */
     double *lr, *li, *size;    /* [terms] lambda (of harmonics: i Omega), and its absolute value, */
     double *sixth;             /* and this to the power of six */
-    double *ar, *ai, *br, *bi; /* z = a eta + b eta';  [exponents], or [exponents][modes] if coupled */
-    double *rr, *ri;           /* eta = Re(r z), coupled only: [modes][exponents] */
+    double *ar, *ai, *br, *bi; /* [exponents] z = a eta + b eta'; coupled: z = b (eta' - omega^2 eta/lambda), b [modes][exponents], */
+    double *rr, *ri;           /* [exponents][modes] and eta = Re(r z) */
     size_t *owner;             /* the mode of an exponent, if not coupled (then r = 1) */
 
     size_t given, harmonics;   /* as many as the system has, and in its order; and with those of single contacts after them */
@@ -71,7 +72,6 @@ struct modal {
 
     size_t outputs, sliding; /* the first ones are of sliding contacts, the others of held ones */
     struct output *output;
-    int swings;           /* no exponent decays or grows */
     double fastest;       /* largest |lambda| */
     double quickest;      /* the largest of these and the frequencies of harmonics */
     double decay, growth; /* the largest rate of decay, and of growth */
@@ -115,5 +115,11 @@ void tribo_modal_free(const struct modal *h);
 
 /* For another user. */
 const struct modal *tribo_modal_share(const struct modal *h);
+
+/* eta [modes][columns] = amplitudes of displacements v [ndof][columns], and of velocities, which follow v after `block` numbers, next
+ * numbers after eta; and v += what amplitudes and rates are, changed. work [2][moving][columns]. */
+void tribo_modal_amplitudes(const struct modal *h, size_t columns, const double *v, size_t block, double *eta, size_t next,
+                            double *work);
+void tribo_modal_add(const struct modal *h, size_t columns, const double *eta, size_t next, double *v, size_t block, double *work);
 
 #endif

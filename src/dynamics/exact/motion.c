@@ -14,9 +14,9 @@
 int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const struct stick_slip *contacts)
 {
     const size_t n = sys->ndof;
-    double **const by_mode[] = {&x->vel, &x->acc, &x->drift, &x->drift_rate, &x->dq};
-    const size_t modes = sizeof by_mode / sizeof *by_mode;
-    double *work = malloc((modes * n + 4 * sys->ncontact + 1) * sizeof *work);
+    double **const by_mode[] = {&x->vel, &x->acc, &x->drift, &x->drift_rate, &x->dq, &x->du, &x->work};
+    const size_t modes = sizeof by_mode / sizeof *by_mode, numbers = modes - 1 + 10;
+    double *work = malloc((numbers * n + 4 * sys->ncontact + 1) * sizeof *work);
     x->line = malloc((sys->ncontact + 1) * sizeof *x->line);
     for (size_t k = 0; work && k < modes; k++) {
         *by_mode[k] = work + k * n;
@@ -25,7 +25,7 @@ int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const s
         return 0;
     }
     x->sys = sys;
-    x->room_for_steady = work + modes * n;
+    x->room_for_steady = work + numbers * n;
     x->push = x->room_for_steady + sys->ncontact;
     x->df = x->push + sys->ncontact;
     x->way = x->df + sys->ncontact;
@@ -186,47 +186,48 @@ static inline void add_term(const struct modal_motion *x, size_t p, int brief, d
     a->rate += rr * rate.re - ri * rate.im;
 }
 
-/* Moves degrees of freedom by mode k. */
-static void add_mode(const struct modal_motion *x, size_t k, struct amplitude a, double *velocity)
+/* Adds the modes to x->dq and x->du. */
+static void motion_add_modes(struct modal_motion *x, int brief)
 {
     const struct modal *h = x->h;
-    const double *phi = h->phi + k * h->moving;
-    double *dq = x->dq;
-    for (size_t i = h->begin[k], end = h->end[k]; i < end; i++) {
-        const size_t d = h->dof[i];
-        dq[d] += phi[i] * a.place;
-        velocity[d] += phi[i] * a.rate;
-    }
-}
-
-static void motion_add_modes(struct modal_motion *x, int brief, double *velocity)
-{
-    const struct modal *h = x->h;
-    const size_t e = h->exponents, harmonics = h->harmonics, modes = h->modes;
+    const size_t e = h->exponents, harmonics = h->harmonics, modes = h->modes, n = x->sys->ndof;
+    double *place = x->work, *rate = place + n, *move = rate + n; /* move: er, their rates; then ei, theirs */
     find_moves(x);
+    if (!h->owner) {
+        memset(place, 0, 2 * n * sizeof *place);
+        for (size_t p = 0; p < e; p++) {
+            const struct number to = change_of_rate(x, p, brief);
+            move[p] = x->er[p];
+            move[2 * n + p] = to.re;
+            move[4 * n + p] = -x->ei[p];
+            move[6 * n + p] = -to.im;
+        }
+        tribo_multiply_transposed_two(e, modes, 1, h->rr, move, 2 * n, place, n);
+        tribo_multiply_transposed_two(e, modes, 1, h->ri, move + 4 * n, 2 * n, place, n);
+    }
     for (size_t k = 0, p = 0; k < modes; k++) {
-        struct amplitude a = {0.0, 0.0};
+        struct amplitude a = {h->owner ? 0.0 : place[k], h->owner ? 0.0 : rate[k]};
         if (x->runs) {
             /* What is linear in time, or quadratic, of mode k. */
             const double drift = x->vel[k] + (x->h->drifts[k] ? x->drift_rate[k] : 0.0), acc = x->acc[k], tau = x->tau;
-            a = (struct amplitude){tau * (drift + 0.5 * acc * tau), (brief ? 0.0 : drift) + acc * tau};
+            a.place += tau * (drift + 0.5 * acc * tau);
+            a.rate += (brief ? 0.0 : drift) + acc * tau;
         }
         for (; h->owner && p < e && h->owner[p] == k; p++) {
             a.place += x->er[p];
             a.rate += change_of_rate(x, p, brief).re;
         }
-        for (size_t l = 0; !h->owner && l < e; l++) {
-            add_term(x, l, brief, h->rr[k * e + l], h->ri[k * e + l], &a);
-        }
         for (size_t s = 0; s < harmonics; s++) {
             add_term(x, e + s, brief, h->xr[s * modes + k], h->xi[s * modes + k], &a);
         }
-        add_mode(x, k, a, velocity);
+        place[k] = a.place;
+        rate[k] = a.rate;
     }
+    tribo_modal_add(h, 1, place, n, x->dq, n, move);
 }
 
-/* What a harmonic of the base adds to velocities u, and has added to dq: the contacts that hold are carried along. */
-static void carry(struct modal_motion *x, size_t s, double *u)
+/* What a harmonic of the base adds to velocities, and has added to dq: the contacts that hold are carried along. */
+static void carry(struct modal_motion *x, size_t s)
 {
     const struct modal *h = x->h;
     const double omega = h->forcing[s].omega, by = omega != 0.0 ? 1.0 / omega : 0.0;
@@ -234,7 +235,7 @@ static void carry(struct modal_motion *x, size_t s, double *u)
     const double c = now.re, d = now.im, dc = by * (c - then.re), dd = by * (d - then.im);
     for (size_t i = 0; i < h->moving; i++) {
         const double yr = h->yr[s * h->moving + i], yi = h->yi[s * h->moving + i];
-        u[h->dof[i]] += yr * c - yi * d;
+        x->du[h->dof[i]] += yr * c - yi * d;
         x->dq[h->dof[i]] += yr * dd + yi * dc;
     }
 }
@@ -264,7 +265,6 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     const tribo_system *sys = x->sys;
     const struct modal *h = x->h;
     const size_t n = sys->ndof;
-    double *velocity = to + n;
     tribo_modal_motion_go(x, tau);
     /* where all terms have moved by small parts of themselves velocities, too, are those at t0 and what they have changed by */
     const int brief = x->tau * h->quickest < LITTLE && !h->any_resonant && !sys->base_harmonics;
@@ -276,16 +276,17 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     }
     for (size_t i = 0; i < h->moving; i++) {
         x->dq[h->dof[i]] = h->y0[i] * tau;
-        velocity[h->dof[i]] = brief ? velocity[h->dof[i]] : h->y0[i];
+        x->du[h->dof[i]] = brief ? 0.0 : h->y0[i];
     }
     for (size_t s = 0; sys->base_harmonics && s < h->given; s++) {
         if (sys->harmonic[s].drives == DRIVES_BASE) {
-            carry(x, s, velocity);
+            carry(x, s);
         }
     }
-    motion_add_modes(x, brief, velocity);
+    motion_add_modes(x, brief);
     for (size_t i = 0; i < h->moving; i++) {
         to[h->dof[i]] += x->dq[h->dof[i]];
+        to[n + h->dof[i]] = (brief ? to[n + h->dof[i]] : 0.0) + x->du[h->dof[i]];
     }
     if (sys->compliance.count) {
         move_springs(x, tau, from, to);
@@ -349,19 +350,7 @@ static double constant_force(const struct modal_motion *x, size_t k)
     return force;
 }
 
-/* Of mode k at t0: where it is and how fast; and that, less what the right-hand side makes of it: by a constant and what grows
- * with time, and by harmonics. */
-static struct amplitude amplitude(const struct modal *h, size_t k, const double *q, const double *velocity)
-{
-    const double *psi = h->psi + k * h->moving;
-    struct amplitude a = {0.0, 0.0};
-    for (size_t i = h->begin[k]; i < h->end[k]; i++) {
-        a.place += psi[i] * q[h->dof[i]];
-        a.rate += psi[i] * velocity[h->dof[i]];
-    }
-    return a;
-}
-
+/* What a mode does at t0 less what the right-hand side makes of it: by a constant and what grows with time, and by harmonics. */
 static struct amplitude without_linear_part(struct modal_motion *x, size_t k, struct amplitude a)
 {
     const struct modal *h = x->h;
@@ -394,17 +383,30 @@ static struct amplitude without_harmonics(const struct modal_motion *x, size_t k
     return a;
 }
 
-/* z of exponent p: of its own mode, or of all. */
-static void begin_exponent(struct modal_motion *x, size_t p)
+/* z of all exponents: of their own modes; or of all modes that damping couples, z = b (eta' - omega^2 eta/lambda), as b is a left
+ * eigenvector. */
+static void begin_exponents(struct modal_motion *x)
 {
     const struct modal *h = x->h;
-    if (h->owner) {
-        const double q = x->drift[h->owner[p]], u = x->drift_rate[h->owner[p]];
-        tribo_term_begin(x, p, h->ar[p] * q + h->br[p] * u, h->ai[p] * q + h->bi[p] * u);
-    } else {
-        const size_t m = h->modes;
-        tribo_term_begin(x, p, tribo_dot(h->ar + p * m, x->drift, m) + tribo_dot(h->br + p * m, x->drift_rate, m),
-                         tribo_dot(h->ai + p * m, x->drift, m) + tribo_dot(h->bi + p * m, x->drift_rate, m));
+    const size_t n = x->sys->ndof, e = h->exponents;
+    double *pull = x->work, *r = pull + 2 * n, *i = r + 4 * n;
+    if (!h->owner) {
+        for (size_t k = 0; k < h->modes; k++) {
+            pull[k] = h->omega2[k] * x->drift[k];
+            pull[n + k] = x->drift_rate[k];
+        }
+        memset(r, 0, 8 * n * sizeof *r);
+        tribo_multiply_transposed_two(h->modes, e, 1, h->br, pull, n, r, 2 * n);
+        tribo_multiply_transposed_two(h->modes, e, 1, h->bi, pull, n, i, 2 * n);
+    }
+    for (size_t p = 0; p < e; p++) {
+        if (h->owner) {
+            const double q = x->drift[h->owner[p]], u = x->drift_rate[h->owner[p]];
+            tribo_term_begin(x, p, h->ar[p] * q + h->br[p] * u, h->ai[p] * q + h->bi[p] * u);
+        } else {
+            const double lr = h->lr[p], li = h->li[p], square = lr * lr + li * li;
+            tribo_term_begin(x, p, r[2 * n + p] - (lr * r[p] + li * i[p]) / square, i[2 * n + p] - (lr * i[p] - li * r[p]) / square);
+        }
     }
 }
 
@@ -426,14 +428,14 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
     x->steady = sys->limit_harmonics ? steady : x->contacts->state.force;
     find_pushes(x, sys, y);
     x->runs = 0;
+    tribo_modal_amplitudes(h, 1, y, sys->ndof, x->drift, sys->ndof, x->work);
     for (size_t k = 0; k < h->modes; k++) {
-        const struct amplitude a = without_harmonics(x, k, without_linear_part(x, k, amplitude(h, k, y, y + sys->ndof)));
+        const struct amplitude at = {x->drift[k], x->drift_rate[k]};
+        const struct amplitude a = without_harmonics(x, k, without_linear_part(x, k, at));
         x->drift[k] = a.place;
         x->drift_rate[k] = a.rate;
     }
-    for (size_t p = 0; p < h->exponents; p++) {
-        begin_exponent(x, p);
-    }
+    begin_exponents(x);
 }
 
 /* What resonances add to the bounds of exponent p, whose frequency is within RESONANCE of theirs. */

@@ -39,8 +39,9 @@ struct modal_motion {
     double *growth, *growth6;   /* [terms] bounds of |z| and of its sixth derivative */
     double *side;               /* [harmonics] how many times their force follows the limit; others 1 */
     double *push;               /* [outputs] by which an output pushes modes */
-    double *dq;                 /* [ndof] by how much q has changed at tau */
+    double *dq, *du;            /* [ndof] by how much q has changed at tau; q' there, or by how much that has changed */
     double *df, *way;           /* [ncontact] by how much forces of compliant contacts have; workspace */
+    double *work;               /* [10 ndof] workspace */
     const double *steady;       /* [ncontact] force of a sliding contact, without harmonics of its limit; */
     struct line *line;          /* [ncontact] while limits have any: its velocity, as far as it is linear in time */
     double *room_for_steady;    /* [ncontact] where steady stands if limits have any */

@@ -18,7 +18,7 @@ static void output_mode(const struct modal_build *b, struct output *w, size_t k,
         if (h->owner && h->owner[p] != k) {
             continue;
         }
-        const double rr = h->owner ? 1.0 : h->rr[k * h->exponents + p], ri = h->owner ? 0.0 : h->ri[k * h->exponents + p];
+        const double rr = h->owner ? 1.0 : h->rr[p * m + k], ri = h->owner ? 0.0 : h->ri[p * m + k];
         const double fr = position + velocity * h->lr[p], fi = velocity * h->li[p];
         w->cr[p] += fr * rr - fi * ri;
         w->ci[p] += fr * ri + fi * rr;
@@ -346,9 +346,7 @@ static int find_terms(struct modal_build *b)
     for (size_t s = 0; s < h->harmonics; s++) {
         h->li[p + s] = h->forcing[s].omega;
     }
-    h->swings = 1;
     for (size_t k = 0; k < h->terms; k++) {
-        h->swings &= h->lr[k] == 0.0;
         h->size[k] = tribo_modal_magnitude(h->lr[k], h->li[k]);
         h->sixth[k] = sixth_power(h->size[k]);
         h->fastest = greater(h->fastest, k < p ? h->size[k] : 0.0);

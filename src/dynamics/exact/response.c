@@ -1,5 +1,6 @@
 /* Harmonics: what they do to the modes, and the response to that. */
 #include "parts.h"
+#include "common/imaginary.h"
 
 #include <math.h>
 #include <string.h>
@@ -8,7 +9,7 @@
  * exceeds the motion by is lost in digits. */
 #define RESONANCE 1e-2
 
-/* A response larger than one over this would leave too few digits. */
+/* An exponent this close to i Omega, in parts of Omega, would leave too few digits of the response. */
 #define UNDAMPED 1e-9
 
 /* y [ndof] = velocities from the b [rest] of the contacts that hold, in which the modes have no part. */
@@ -250,32 +251,61 @@ static void respond_alone(struct modal_build *b, size_t w)
     }
 }
 
-/* Response of modes that damping couples: real and imaginary parts are the unknowns. a [2 modes][2 modes], x [2 modes]. */
-static int respond_together(struct modal_build *b, size_t w, double *a, double *x, int *pivot)
+/* x [modes] += the response to a force of amplitude g [modes], by the exponents: z' = lambda z + b Re(g e^{i Omega t}) has a part
+ * with e^{i Omega t} and one with its conjugate, eta = Re(r z). push [2][exponents] is workspace. */
+static void add_resolvent(const struct modal *h, double omega, const double complex *g, double complex *push, double complex *x)
 {
-    struct modal *h = b->h;
-    const size_t m = h->modes, size = 2 * m;
-    const double omega = b->h->forcing[w].omega;
-    memset(a, 0, size * size * sizeof *a);
+    const size_t m = h->modes, e = h->exponents;
+    double complex *back = push + e;
+    memset(push, 0, 2 * e * sizeof *push);
     for (size_t k = 0; k < m; k++) {
-        a[k * size + k] = a[(m + k) * size + m + k] = h->omega2[k] - omega * omega;
-        for (size_t l = 0; l < m; l++) {
-            a[k * size + m + l] = -omega * h->coupling[k * m + l];
-            a[(m + k) * size + l] = omega * h->coupling[k * m + l];
+        for (size_t p = 0; p < e; p++) {
+            push[p] += (h->br[k * e + p] + h->bi[k * e + p] * I) * g[k];
+            back[p] += (h->br[k * e + p] - h->bi[k * e + p] * I) * g[k];
         }
     }
-    memcpy(x, h->gr + w * m, m * sizeof *x);
-    memcpy(x + m, h->gi + w * m, m * sizeof *x);
-    if (!(tribo_lu_create(a, size, pivot) > UNDAMPED * omega * omega)) {
-        b->status = tribo_system_fail(b->shared->sys, TRIBO_ERR_UNSUPPORTED,
-                                      "the harmonic of omega = %g is in resonance with an undamped mode, while damping couples "
-                                      "others: take method event",
-                                      omega);
-        return 0;
+    for (size_t p = 0; p < e; p++) {
+        const double complex lambda = h->lr[p] + h->li[p] * I;
+        const double complex one = 0.5 * push[p] / (omega * I - lambda), other = 0.5 * back[p] / (omega * I - conj(lambda));
+        for (size_t k = 0; k < m; k++) {
+            x[k] += (one + other) * h->rr[p * m + k] + (one - other) * I * h->ri[p * m + k];
+        }
     }
-    tribo_lu_solve(a, size, pivot, x, 1);
-    memcpy(h->xr + w * m, x, m * sizeof *x);
-    memcpy(h->xi + w * m, x + m, m * sizeof *x);
+}
+
+/* Response of modes that damping couples; and what it misses of the force once more. x [7 modes] is workspace. */
+static int respond_together(struct modal_build *b, size_t w, double complex *x)
+{
+    struct modal *h = b->h;
+    const size_t m = h->modes;
+    const double omega = b->h->forcing[w].omega;
+    double complex *g = x + m, *missed = g + m, *push = missed + m;
+    for (size_t p = 0; p < h->exponents; p++) {
+        if (!(hypot(h->lr[p], fabs(h->li[p]) - fabs(omega)) > UNDAMPED * fabs(omega))) {
+            b->status = tribo_system_fail(b->shared->sys, TRIBO_ERR_UNSUPPORTED,
+                                          "the harmonic of omega = %g is in resonance with an undamped mode, while damping couples "
+                                          "others: take method event",
+                                          omega);
+            return 0;
+        }
+    }
+    for (size_t k = 0; k < m; k++) {
+        x[k] = 0.0;
+        g[k] = h->gr[w * m + k] + h->gi[w * m + k] * I;
+    }
+    add_resolvent(h, omega, g, push, x);
+    for (size_t k = 0; k < m; k++) {
+        double complex drag = 0.0;
+        for (size_t l = 0; l < m; l++) {
+            drag += h->coupling[k * m + l] * x[l];
+        }
+        missed[k] = g[k] - (h->omega2[k] - omega * omega) * x[k] - omega * I * drag;
+    }
+    add_resolvent(h, omega, missed, push, x);
+    for (size_t k = 0; k < m; k++) {
+        h->xr[w * m + k] = creal(x[k]);
+        h->xi[w * m + k] = cimag(x[k]);
+    }
     return 1;
 }
 
@@ -283,17 +313,16 @@ static int respond_together(struct modal_build *b, size_t w, double *a, double *
 int tribo_modal_response(struct modal_build *b)
 {
     struct modal *h = b->h;
-    const size_t m = h->modes, count = h->harmonics, size = h->coupling ? 2 * m : 0;
-    double *kept = tribo_modal_keep(b, 2 * count * m), *a = tribo_modal_scratch(b, size * size + size);
-    int *pivot = (int *)tribo_modal_scratch_indices(b, size);
+    const size_t m = h->modes, count = h->harmonics;
+    double *kept = tribo_modal_keep(b, 2 * count * m);
+    double complex *x = (double complex *)tribo_modal_scratch(b, 14 * m);
     h->resonant = tribo_modal_keep_bytes(b, count * m);
-    int done = kept && a && pivot && h->resonant;
-    double *x = done ? a + size * size : NULL;
+    int done = kept && x && h->resonant;
     h->xr = kept;
     h->xi = done ? kept + count * m : NULL;
     for (size_t w = 0; done && w < count; w++) {
         if (b->h->forcing[w].omega != 0.0 && h->coupling) {
-            done = respond_together(b, w, a, x, pivot);
+            done = respond_together(b, w, x);
         } else if (b->h->forcing[w].omega != 0.0) {
             respond_alone(b, w);
         }

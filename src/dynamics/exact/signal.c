@@ -107,8 +107,8 @@ static void add_exponents(const struct modal_motion *x, const double *c, struct 
         double cr = 0.0, ci = 0.0, place, speed;
         for (size_t k = h->owner ? h->owner[p] : 0; k < (h->owner ? h->owner[p] + 1 : h->modes); k++) {
             weights(x, c, k, &place, &speed);
-            add_exponent(x, p, place, speed, h->owner ? 1.0 : h->rr[k * h->exponents + p],
-                         h->owner ? 0.0 : h->ri[k * h->exponents + p], &cr, &ci);
+            add_exponent(x, p, place, speed, h->owner ? 1.0 : h->rr[p * h->modes + k],
+                         h->owner ? 0.0 : h->ri[p * h->modes + k], &cr, &ci);
         }
         tribo_signal_add(to, cr, ci, h->lr[p], h->li[p]);
     }

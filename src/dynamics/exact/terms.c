@@ -107,7 +107,7 @@ void tribo_modal_terms_go(struct modal_motion *x, double tau)
         double *re = x->far_r;
         double *im = x->far_i;
         tribo_cos_sin_all(tau, h->terms, h->li, re, im);
-        for (size_t p = 0; !h->swings && p < h->exponents; p++) {
+        for (size_t p = 0; (h->decay > 0.0 || h->growth > 0.0) && p < h->exponents; p++) {
             if (h->lr[p] != 0.0) {
                 const double size = exp(h->lr[p] * tau);
                 re[p] *= size;

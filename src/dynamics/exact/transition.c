@@ -5,52 +5,48 @@
 #include "dynamics/periodic/variation.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Rows [modes][columns] of amplitudes, of their rates, of the constant that pulls at them; [exponents][columns] of z, and of its
  * rate, which `next` numbers later. */
 struct transition {
+    const struct modal_phase *phase;
     const struct modal *h;
     const tribo_system *sys;
-    double tau;
     size_t columns, block, next; /* block: from displacements to velocities */
     double *eta, *rate, *pull, *change, *zr, *zi, *row;
 };
 
+struct modal_phase *tribo_modal_phase_create(const struct modal *h, double tau)
+{
+    struct modal_phase *phase = malloc(sizeof *phase + 2 * h->exponents * sizeof *phase->re);
+    if (!phase) {
+        return NULL;
+    }
+    phase->h = tribo_modal_share(h);
+    phase->tau = tau;
+    phase->im = phase->re + h->exponents;
+    for (size_t p = 0; p < h->exponents; p++) {
+        const double size = h->lr[p] != 0.0 ? exp(h->lr[p] * tau) : 1.0;
+        tribo_turn(h->li[p] * tau, &phase->re[p], &phase->im[p]);
+        phase->re[p] *= size;
+        phase->im[p] *= size;
+    }
+    return phase;
+}
+
+void tribo_modal_phase_free(struct modal_phase *phase)
+{
+    if (phase) {
+        tribo_modal_free(phase->h);
+        free(phase);
+    }
+}
+
 size_t tribo_modal_transition_room(const tribo_system *sys, size_t columns)
 {
     return (12 * sys->ndof + 1) * columns;
-}
-
-/* Amplitudes of displacements and velocities v. */
-static void to_modes(const struct transition *x, const double *v)
-{
-    const struct modal *h = x->h;
-    double *rows = x->zr;
-    for (size_t i = 0; i < h->moving; i++) {
-        for (size_t k = 0; k < 2; k++) {
-            const double *row = v + k * x->block + h->dof[i] * x->columns;
-            memcpy(rows + k * x->block + i * x->columns, row, x->columns * sizeof *rows);
-        }
-    }
-    tribo_multiply_two(h->modes, h->moving, x->columns, h->psi, rows, x->block, x->eta, x->block);
-}
-
-/* Displacements and velocities v += those of amplitudes. */
-static void transition_add_modes(const struct transition *x, double *v)
-{
-    const struct modal *h = x->h;
-    double *rows = x->zr;
-    memset(rows, 0, 2 * x->block * sizeof *rows);
-    for (size_t k = 0; k < 2; k++) {
-        tribo_multiply_transposed_add(h->modes, h->moving, x->columns, h->phi, x->eta + k * x->block, rows + k * x->block);
-    }
-    for (size_t i = 0; i < h->moving; i++) {
-        for (size_t k = 0; k < 2; k++) {
-            const double *row = rows + k * x->block + i * x->columns;
-            tribo_add(v + k * x->block + h->dof[i] * x->columns, 1.0, row, x->columns);
-        }
-    }
 }
 
 /* Amplitudes that v has, and pulls of contacts that are held elsewhere, J q + G f. */
@@ -59,8 +55,8 @@ static void transition_split(const struct transition *x, const double *v)
     const struct modal *h = x->h;
     const struct compliance *g = &x->sys->compliance;
     const size_t c = x->columns;
-    memset(x->eta, 0, 3 * x->block * sizeof *x->eta);
-    to_modes(x, v);
+    memset(x->pull, 0, x->block * sizeof *x->pull);
+    tribo_modal_amplitudes(h, c, v, x->block, x->eta, x->block, x->zr);
     for (size_t o = h->sliding; o < h->outputs; o++) {
         const struct output *out = &h->output[o];
         tribo_contact_row(x->sys, out->contact, v, c, x->row);
@@ -90,23 +86,13 @@ static void add_springs(const struct transition *x, double *v)
     }
 }
 
-/* e^{lambda tau} */
-static void growth_of(const struct transition *x, size_t p, double *re, double *im)
-{
-    const double size = exp(x->h->lr[p] * x->tau);
-    tribo_turn(x->h->li[p] * x->tau, re, im);
-    *re *= size;
-    *im *= size;
-}
-
 /* x' = [[aa, ab], [ba, bb]] x of an amplitude and its rate, by its exponents p to end - 1. */
 static void propagator(const struct transition *x, size_t p, size_t end, double *t)
 {
     const struct modal *h = x->h;
     memset(t, 0, 4 * sizeof *t);
     for (; p < end; p++) {
-        double re, im;
-        growth_of(x, p, &re, &im);
+        const double re = x->phase->re[p], im = x->phase->im[p];
         const double fr = h->lr[p] * re - h->li[p] * im, fi = h->lr[p] * im + h->li[p] * re;
         t[0] += re * h->ar[p] - im * h->ai[p];
         t[1] += re * h->br[p] - im * h->bi[p];
@@ -120,7 +106,7 @@ static void move_row(const struct transition *x, size_t k, const double *t)
 {
     const struct modal *h = x->h;
     double *eta = x->eta + k * x->columns, *rate = x->rate + k * x->columns;
-    const double *pull = x->pull + k * x->columns, tau = x->tau;
+    const double *pull = x->pull + k * x->columns, tau = x->phase->tau;
     const double place = h->omega2[k] != 0.0 ? 1.0 / h->omega2[k] : 0.0;
     const double speed = h->omega2[k] == 0.0 && !h->drifts[k] ? 1.0 / h->damping[k] : 0.0, push = h->drifts[k] ? tau : 0.0;
     for (size_t j = 0; j < x->columns; j++) {
@@ -134,7 +120,7 @@ static void move_alone(const struct transition *x)
 {
     const struct modal *h = x->h;
     for (size_t k = 0, p = 0; k < h->modes; k++) {
-        double t[] = {1.0, x->tau, 0.0, 1.0};
+        double t[] = {1.0, x->phase->tau, 0.0, 1.0};
         size_t end = p;
         while (end < h->exponents && h->owner[end] == k) {
             end++;
@@ -170,12 +156,12 @@ static void move_exponents(const struct transition *x)
             x->eta[k * c + j] *= h->omega2[k];
         }
     }
-    tribo_multiply_two(h->exponents, m, c, h->br, x->eta, x->block, x->zr, x->next);
-    tribo_multiply_two(h->exponents, m, c, h->bi, x->eta, x->block, x->zi, x->next);
+    tribo_multiply_transposed_two(m, h->exponents, c, h->br, x->eta, x->block, x->zr, x->next);
+    tribo_multiply_transposed_two(m, h->exponents, c, h->bi, x->eta, x->block, x->zi, x->next);
     for (size_t p = 0; p < h->exponents; p++) {
-        double re, im, *zr = x->zr + p * c, *zi = x->zi + p * c, *rate_r = zr + x->next, *rate_i = zi + x->next;
+        const double re = x->phase->re[p], im = x->phase->im[p];
+        double *zr = x->zr + p * c, *zi = x->zi + p * c, *rate_r = zr + x->next, *rate_i = zi + x->next;
         const double lr = h->lr[p], li = h->li[p], square = lr * lr + li * li;
-        growth_of(x, p, &re, &im);
         for (size_t j = 0; j < c; j++) {
             const double r = rate_r[j] - (lr * zr[j] + li * zi[j]) / square, i = rate_i[j] - (lr * zi[j] - li * zr[j]) / square;
             zr[j] = re * r - im * i;
@@ -193,17 +179,18 @@ static void move_together(const struct transition *x)
     transition_add_rest(x, -1.0);
     move_exponents(x);
     memset(x->eta, 0, 2 * x->block * sizeof *x->eta);
-    tribo_multiply_two(h->modes, h->exponents, x->columns, h->rr, x->zr, x->next, x->eta, x->block);
-    tribo_multiply_two(h->modes, h->exponents, x->columns, h->ri, x->zi, x->next, x->eta, x->block);
+    tribo_multiply_transposed_two(h->exponents, h->modes, x->columns, h->rr, x->zr, x->next, x->eta, x->block);
+    tribo_multiply_transposed_two(h->exponents, h->modes, x->columns, h->ri, x->zi, x->next, x->eta, x->block);
     transition_add_rest(x, 1.0);
 }
 
-void tribo_modal_transition(const struct modal *h, const tribo_system *sys, double tau, size_t columns, double *v, double *work)
+void tribo_modal_transition(const struct modal_phase *phase, const tribo_system *sys, size_t columns, double *v, double *work)
 {
     const size_t block = sys->ndof * columns;
-    const struct transition x = {.h = h,
+    const struct modal *h = phase->h;
+    const struct transition x = {.phase = phase,
+                                 .h = h,
                                  .sys = sys,
-                                 .tau = tau,
                                  .columns = columns,
                                  .block = block,
                                  .next = 2 * block,
@@ -223,6 +210,6 @@ void tribo_modal_transition(const struct modal *h, const tribo_system *sys, doub
     }
     memset(v + block, 0, block * sizeof *v);
     tribo_add(x.eta, -1.0, x.change, h->modes * columns);
-    transition_add_modes(&x, v);
+    tribo_modal_add(h, columns, x.eta, block, v, block, x.zr);
     add_springs(&x, v);
 }

@@ -68,8 +68,11 @@ int tribo_derivative_add_phase(struct derivative *d, double tau, const signed ch
     for (size_t i = 0; i < d->sys->ncontact; i++) {
         d->rests[i] &= slip[i] == TRIBO_SLIP_STUCK;
     }
-    d->step[d->steps++] = (struct derivative_step){.phase = e->motion->keep ? e->motion->keep(e->own) : NULL, .tau = tau};
-    return 1;
+    void *phase = e->motion->keep ? e->motion->keep(e->own, tau) : NULL;
+    const int kept = phase || !e->motion->keep;
+    d->step[d->steps] = (struct derivative_step){.phase = phase, .tau = tau};
+    d->steps += (size_t)kept;
+    return kept;
 }
 
 int tribo_derivative_add_jumps(struct derivative *d, size_t jumps, const double *row, const double *column)

@@ -7,7 +7,7 @@
 
 /* A phase, or, with phase NULL and no tau, jumps. */
 struct derivative_step {
-    const void *phase;
+    void *phase;
     double tau;
     size_t first, jumps; /* first: where rows and columns of the jumps are in number */
 };

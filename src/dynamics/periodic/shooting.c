@@ -15,6 +15,7 @@
  * solutions begins there: Newton's steps become half as long each time, and a quarter is left. Then the step is made twice as
  * long, and a little more. */
 #include "shooting.h"
+#include "forecast.h"
 #include "common/real.h"
 #include "numerics/linalg.h"
 #include "numerics/krylov.h"
@@ -62,11 +63,12 @@
 #define CUT 1e-9
 #define FREE 1e-7
 
-/* Matrices with more rows are not made for steps. These leave the part of the residual that it is of the size, between two
- * bounds: the motion, which is not linear, leaves about as much. The free structure stands in where its determinants are more
- * than NEARLY_SINGULAR. */
+/* Matrices with more rows are not made for steps. These leave the part of the residual that it is of the size, or, if that is
+ * more, about the square of what the step before left (Eisenstat and Walker 1996), between two bounds: the motion, which is not
+ * linear, leaves about as much. The upper bound keeps steps longer than FLAT. The free structure stands in where its determinants
+ * are more than NEARLY_SINGULAR. */
 #define DENSE 40
-#define MOST_INEXACT 0.3
+#define MOST_INEXACT 0.15
 #define LEAST_INEXACT 1e-6
 #define NEARLY_SINGULAR 1e-6
 
@@ -74,6 +76,9 @@
 
 /* A guess that is so much of the motion's size away from the odd one, along the family, is meant. */
 #define MEANT 0.1
+
+/* A guess farther from the forecast than this part of its size is left for the forecast. */
+#define FAR 0.1
 
 static double shooting_length(const double *x, size_t n)
 {
@@ -225,7 +230,9 @@ static int is_matrix_free(const struct shooting *s)
 static int newton_step(struct shooting *s, double shift)
 {
     const size_t n = s->map.n;
-    const double *derivative = NULL, part = clamp(s->here.residual / s->here.size, LEAST_INEXACT, MOST_INEXACT);
+    const double *derivative = NULL, near = s->here.residual / s->here.size;
+    const double fell = s->before > 0.0 && near > LEAST_INEXACT ? lesser(s->here.residual / s->before, 1.0) : 0.0;
+    const double part = clamp(greater(near, 0.9 * fell * fell), LEAST_INEXACT, MOST_INEXACT);
     int done = 0, status = TRIBO_OK;
     for (int large = is_matrix_free(s); large >= 0 && !status && !done; large--) {
         for (size_t i = 0; i < n; i++) {
@@ -275,6 +282,7 @@ static int newton(struct shooting *s)
     const int to_double = s->rate > DOUBLE_FROM && s->rate < DOUBLE_TO;
     const int status = newton_step(s, 0.0);
     s->map.drv->newton++;
+    s->before = s->here.residual;
     if (!status && shooting_length(s->step, s->map.n) < FLAT * s->here.residual) {
         return stride(s);
     }
@@ -350,7 +358,7 @@ static int search(struct shooting *s, size_t halves)
     }
     copy_point(s, &s->best, &s->here);
     s->astray = s->setbacks = 0;
-    s->rate = s->stride = 0.0;
+    s->rate = s->stride = s->before = 0.0;
     s->nearest = s->here.residual / s->here.size;
     while (!status && !close_enough(&s->best, AIM) && s->map.halves < most) {
         status = newton(s);
@@ -371,9 +379,30 @@ static int search_again(struct shooting *s, size_t periods)
     return status ? status : search(s, MOST);
 }
 
+/* From the forecast on, unless the guess is near it. *done = 0: the motion is not found. */
+static int search_from_forecast(struct shooting *s, int *done)
+{
+    const size_t n = s->map.n;
+    const int may = s->map.odd && !s->map.events->stick_slip.breakaway.some && s->map.scale == 1.0;
+    int status = may ? tribo_forecast(&s->map, s->here.x, done) : TRIBO_OK;
+    if (!status && *done) {
+        memcpy(s->step, s->guess, n * sizeof *s->step);
+        tribo_add(s->step, -1.0, s->here.x, n);
+        *done = shooting_length(s->step, n) > FAR * shooting_length(s->here.x, n);
+    }
+    status = status || !*done ? status : search(s, FIRST);
+    *done = *done && !status && close_enough(&s->best, TOLERANCE);
+    return status;
+}
+
 static int search_all(struct shooting *s)
 {
-    int status = search(s, FIRST);
+    int done = 0, status = search_from_forecast(s, &done);
+    if (status || done) {
+        return status;
+    }
+    memcpy(s->here.x, s->guess, s->map.n * sizeof *s->guess);
+    status = search(s, FIRST);
     if (!status && !close_enough(&s->best, TOLERANCE)) {
         status = search_again(s, MARCHED);
     }

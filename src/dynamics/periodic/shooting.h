@@ -16,6 +16,7 @@ struct shooting {
     double ratio;         /* what is left along the step after it, beside what was before */
     double first, rate;   /* that of the step from best; that of the last one, if it was good */
     double stride;        /* spans followed at once; 0: steps are Newton's */
+    double before;        /* the residual before the last step; 0: there was none */
     size_t astray;        /* steps since best that did not pay */
     size_t setbacks;      /* how often the search has gone back */
     double nearest;       /* the least residual seen beside the size */
