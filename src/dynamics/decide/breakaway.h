@@ -1,6 +1,6 @@
 /* Static limits above the limits to slide (tribo_set_static), for methods with events. A contact at rest holds up to its static
- * limit; one that cannot breaks away: its bound is the limit to slide, and all contacts are decided about again. A limit that falls with
- * the speed (Stribeck) is
+ * limit; one that cannot breaks away: its bound is the limit to slide, and all contacts are decided about again. A limit that
+ * falls with the speed (Stribeck) is
  *     N(|v|) = limit + (ratio - 1) limit exp(-|v|/velocity),
  * whose last part is smooth while the contact slides, and belongs to the equations of its motion. */
 #ifndef TRIBO_BREAKAWAY_H

@@ -6,7 +6,7 @@
  *     of others that are at their limit: solve for a moment later, and those that accelerate then slide from here on
  *     an independent set of those at rest holds
  *
- * The problem is convex, so that both solutions tell of all contacts together who slides. */
+ * The problem is convex: each solution decides about all contacts together. */
 #include "planar_slip.h"
 #include "stick_slip.h"
 #include "common/real.h"
@@ -258,7 +258,7 @@ static int find_forces(struct stick_slip *m, const tribo_system *sys, const doub
     return solve(m, sys, m->work.a, m->state.force);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- who slides */
+/* ------------------------------------------------------------------------------------------------------- letting go */
 
 /* |f/limit| of a planar contact; *noise = its rounding. */
 static double share(const struct stick_slip *m, const struct planar_contact *p, const double *f, double *noise)

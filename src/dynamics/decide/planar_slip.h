@@ -1,4 +1,4 @@
-/* Planar contacts of the event-located drivers: who sticks at an instant, and who slides, and which way. */
+/* The decision about planar contacts, for methods with events: which of them stick, and in which direction the others slide. */
 #ifndef TRIBO_PLANAR_SLIP_H
 #define TRIBO_PLANAR_SLIP_H
 

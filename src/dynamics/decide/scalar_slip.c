@@ -12,8 +12,8 @@
  *     an independent set of the contacts at rest holds: it keeps all of them where they are
  *
  * Where R is diagonal, each contact is decided about alone, and from the second step on only contacts close to their limits are
- * looked at. The single contact at rest of a coupled system is decided about alone too: the forces of the others are known, and if
- * it slides they do not change. */
+ * looked at. The single contact at rest of a coupled system is decided about alone too: the forces of the others are known, and
+ * do not change if it slides. */
 #include "stick_slip.h"
 #include "common/real.h"
 

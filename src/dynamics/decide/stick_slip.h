@@ -232,9 +232,9 @@ static inline int tribo_stick_slip_must_be_sure(const struct stick_slip *m, size
  * that hold all contacts at rest: takes these, or lets contacts slide and sets *changes = 1. Returns a status. */
 int tribo_stick_slip_relieve(struct stick_slip *m, tribo_system *sys, size_t *changes);
 
-/* stick_slip_elastic.c: elastic contacts, whose forces are part of the state. find sets state.spring and noise.spring; start takes
- * forces beyond limits back in y, and dissipates their energy. A decision calls place (sets slip, and forces, also in y), move
- * (sets rates of forces, and velocities of those that slide), and finish (keeps slip for the next decision). */
+/* stick_slip_elastic.c: elastic contacts, whose forces are part of the state. find sets state.spring and noise.spring; start
+ * takes forces beyond limits back in y, and dissipates their energy. A decision calls place (sets slip, and forces, also in y),
+ * move (sets rates of forces, and velocities of those that slide), and finish (keeps slip for the next decision). */
 void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *y);
 void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *y);

@@ -1,13 +1,12 @@
-/* Steps of driver "event" in which planar contacts creep: the direction of a force that turns with a small velocity v follows
- * what the rest of the motion asks for within the time m|v|/limit, and a Taylor series ends after a few of these.
+/* Steps of method "event" in which planar contacts creep: the direction of the force at a small velocity v relaxes to that of the
+ * motion within the time m|v|/limit, and a Taylor series converges over a few such times only.
  *
- * There the directions u = x/|x|, x = limit v, are taken as polynomials instead, which is collocation: of degree NODES - 1, and
- * right at the nodes of Radau's formula, the last of which is the end of the step. In the limit |v| -> 0 this damps at once what
- * is off (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). With such u given the motion is that of a linear
- * structure under a load, its series has all terms that it takes, and everything else goes on as ever.
+ * There the directions u = x/|x|, x = limit v, are polynomials of degree NODES - 1, by collocation at the nodes of Radau's
+ * formula, the last of which is the end of the step. For |v| -> 0 this damps errors at once (Hairer and Wanner, Solving Ordinary
+ * Differential Equations II, IV.5). With u given the motion is that of a linear structure under a load, and its series converges.
  *
- * The unknowns are the angles of u at the nodes, and they solve, by Newton's method, that x has no part across u. This stays
- * regular for v = 0. Its derivative follows from what a constant force does to x. */
+ * The unknowns are the angles of u at the nodes; Newton's method solves that x has no part across u, which is regular for v = 0.
+ * The derivative follows from the response of x to a constant force. */
 #ifndef TRIBO_EVENT_CREEP_H
 #define TRIBO_EVENT_CREEP_H
 

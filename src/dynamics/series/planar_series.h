@@ -1,4 +1,4 @@
-/* Taylor series of the forces of planar contacts that slide, coefficient by coefficient beside those of the motion.
+/* Taylor series of the forces of sliding planar contacts, found coefficient by coefficient with those of the motion.
  *
  * In units of its limits a contact has the velocity x = limit v, which is tau^s times a series, with s = 0 where it slides
  * already, and 1 or 2 where it begins to (planar_slip.h); and the direction u = x/|x|, which makes the force -limit u. Both are
@@ -6,8 +6,9 @@
  *     |u| = 1   gives the n-part of each coefficient of u from those before,
  *     x = |x| u gives its t-part, if x is known; and the next one of |x|.
  * Where the contact begins to slide x follows from the acceleration, and so from the force itself: then t-parts, tau_k, solve
- *     (S + D_k) tau_k = acceleration along limit t without them - what those before ask for
- * with S what t-parts do to such accelerations while contacts at rest are held; D_k = (k + 1)|x_0| for s = 1, and 0 for s = 2.
+ *     (S + D_k) tau_k = acceleration along limit t without t-parts - terms of the coefficients before,
+ * with S the response of such accelerations to t-parts while contacts at rest are held;
+ * D_k = (k + 1)|x_0| for s = 1, and 0 for s = 2.
  * For s = 1 the series converges; for s = 2 it is asymptotic: as good as its last terms, which are what a step is chosen by.
  *
  * Or u is given, a polynomial, and only what follows from it is found (event_creep.h). */

@@ -10,8 +10,8 @@ struct slopes {
     double *term; /* [terms][ncontact] */
 };
 
-/* Accelerations of perturbed states, -P AK q - P AC q' + P B s J q' + P M^-1 J'f. P projects onto accelerations that leave holding
- * contacts at rest; s: slopes; f: forces of compliant contacts, f_A' = -G_AA^-1 J_A q'. */
+/* Accelerations of perturbed states, -P AK q - P AC q' + P B s J q' + P M^-1 J'f. P projects onto accelerations that leave
+ * holding contacts at rest; s: slopes; f: forces of compliant contacts, f_A' = -G_AA^-1 J_A q'. */
 struct series_transition {
     size_t columns;       /* of perturbations */
     unsigned char *holds; /* [ncontact] the holding contacts of P */
