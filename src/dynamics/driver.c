@@ -55,17 +55,18 @@ int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const stru
     }
     const size_t size = tribo_system_size(sys), room = tribo_system_dimension(sys) + sys->compliance.count;
     const size_t shown = sys->expansion.place ? room : 0;
-    tribo_driver *d = tribo_zeros(sizeof *d + (2 * size + 2 * shown) * sizeof *d->state, 1);
+    tribo_driver *d = tribo_zeros(sizeof *d + (2 * size + 2 * shown) * sizeof *d->state + TRIBO_MESSAGE, 1);
     if (!d) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a driver of %zu equation%s", size, plural(size));
     }
     d->sys = sys;
-    d->message = d->text;
+    d->revision = SIZE_MAX;
     d->method = d->at_work = m;
     d->state = (double *)(d + 1);
     d->slope = d->state + size;
     d->motion = shown ? d->slope + size : NULL;
     d->shown = shown ? d->motion + shown : NULL;
+    d->message = (char *)(d->slope + size + 2 * shown);
     d->excess = d->backslip = NAN;
     tribo_system_order_snaps(sys);
     status = m->create(d);
@@ -103,7 +104,7 @@ int tribo_driver_fail(const tribo_driver *drv, int status, const char *format, .
 {
     va_list args;
     va_start(args, format);
-    vsnprintf(drv->message, sizeof drv->text, format, args);
+    vsnprintf(drv->message, TRIBO_MESSAGE, format, args);
     va_end(args);
     return status;
 }
@@ -163,7 +164,7 @@ int tribo_driver_set_step(tribo_driver *drv, double dt)
     status = status ? status : check_positive(drv, "dt", dt);
     if (!status) {
         drv->dt = dt;
-        drv->knows = 0;
+        drv->revision = SIZE_MAX;
     }
     return status;
 }
@@ -186,7 +187,7 @@ int tribo_driver_set_tolerance(tribo_driver *drv, double abstol, double reltol)
     }
     drv->abstol = abstol;
     drv->reltol = reltol;
-    drv->knows = 0;
+    drv->revision = SIZE_MAX;
     return TRIBO_OK;
 }
 
@@ -352,16 +353,14 @@ int tribo_driver_advance_motion(tribo_driver *drv, double *t, double t1, double 
     }
     tribo_system *sys = drv->sys;
     const size_t bytes = tribo_system_size(sys) * sizeof *y, evaluations = sys->evaluations, jacobians = sys->jacobians;
-    const int continues =
-        drv->knows && *t == drv->time && drv->revision == tribo_system_revision(sys) && memcmp(y, drv->state, bytes) == 0;
+    const int continues = *t == drv->time && drv->revision == tribo_system_revision(sys) && memcmp(y, drv->state, bytes) == 0;
     drv->time = *t;
     memcpy(drv->state, y, bytes);
     status = drv->method->advance(drv, t, t1, y, continues);
     status = status ? status : tribo_driver_keep(drv, *t, y);
     *t = drv->time;
     memcpy(y, drv->state, bytes);
-    drv->knows = status == TRIBO_OK || status == TRIBO_ERR_STOPPED;
-    drv->revision = tribo_system_revision(sys);
+    drv->revision = status == TRIBO_OK || status == TRIBO_ERR_STOPPED ? tribo_system_revision(sys) : SIZE_MAX;
     drv->evaluations += sys->evaluations - evaluations;
     drv->jacobians += sys->jacobians - jacobians;
     return status;

@@ -49,12 +49,10 @@ struct tribo_driver {
     double *state, *slope;     /* [tribo_system_size] the state kept last; workspace */
     double *motion, *shown;    /* [dimension + compliant contacts] a caller's state, in; out. NULL without an expansion */
     double time;               /* of the state kept last */
-    size_t revision;           /* of the system when the last advance ended */
-    int knows;                 /* 1: what the method keeps belongs to time, state and revision */
+    size_t revision;           /* of the system when the last advance ended; SIZE_MAX: the method begins anew */
     struct shooting *shooting; /* the last search; borrowed if free_shooting is NULL */
     void (*free_shooting)(struct shooting *s);
-    char *message; /* text: also for calls on a const driver */
-    char text[240];
+    char *message; /* [TRIBO_MESSAGE] a const driver keeps it, too */
 
     /* counters */
     size_t steps, rejected, evaluations, jacobians, events, periods, newton;

@@ -1,6 +1,7 @@
 /* The table of methods, and method "auto". */
 #include "driver.h"
 
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -124,7 +125,9 @@ static int delegate(tribo_driver *drv, int which, const struct task *x)
     }
     tribo_driver *inner = c->inner[which];
     const tribo_driver before = *inner;
-    inner->knows &= inner->abstol == drv->abstol && inner->reltol == drv->reltol;
+    if (inner->abstol != drv->abstol || inner->reltol != drv->reltol) {
+        inner->revision = SIZE_MAX;
+    }
     inner->abstol = drv->abstol;
     inner->reltol = drv->reltol;
     inner->output = drv->output;

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -83,7 +84,7 @@ static int period_map_integrate(struct period_map *m, double t, double end, stru
     const size_t evaluations = m->sys->evaluations, halves = end - t < 0.75 * m->period ? 1 : 2;
     m->y[m->n] = 0.0;
     drv->time = t;
-    drv->knows = 0;
+    drv->revision = SIZE_MAX;
     int status = tribo_driver_check(drv, m->y);
     if (status) {
         return status;

@@ -20,23 +20,23 @@
  * 4 G/h^2 in their operator, and J (u0 + u1) - 2 G f0/h in the place of a velocity at the end; f0/2 acts throughout. */
 struct moreau {
     struct step_form common;
-    double h;              /* 0: nothing is prepared */
-    struct step_band held; /* where the system allows it: then the rest is made when it is first needed */
-    int whole;             /* the rest is made */
+    double h;              /* step length that is prepared; 0: none */
+    struct step_band held; /* if the system has such a band: then the rest is made when it is first needed */
+    int whole;             /* 1: matrix, response and contacts are made */
     struct step_matrix matrix;
-    double *response;         /* [ncontact][ndof], or NULL: then a step takes a second solve */
-    double *push;             /* [ndof] for that */
-    double *limit;            /* [ncontact] */
-    double *ratio, *velocity; /* [ncontact] of static limits */
-    int taken, tell, breaks;  /* these are known; contacts have not got them yet; some are static */
-    size_t settings_taken;    /* revision of the system's contacts that these came from */
+    double *response;         /* [ncontact][ndof] S^-1 J'; NULL: a step takes a second solution */
+    double *push;             /* [ndof] workspace of that solution */
+    double *limit;            /* [ncontact] of the contacts of a step */
+    double *ratio, *velocity; /* [ncontact] static limits */
+    int taken, tell, breaks;  /* 1: limit, ratio and velocity are taken; contacts have yet to get them; a ratio is above 1 */
+    size_t settings_taken;    /* tribo_system_settings when they were taken */
     double *load;             /* [ndof] at the end of the step before */
-    double *spring, *give;    /* [ncontact] forces f0 of compliant contacts, and G f0; */
+    double *spring, *give;    /* [ncontact] forces f0 of compliant contacts; G f0 */
     double *change;           /* [ncontact] f1 - f0 */
-    double *work;             /* [ndof] */
+    double *work;             /* [ndof] workspace */
     signed char *loose;       /* [ncontact] slip, but 1 of compliant contacts: they hold no velocity */
-    tribo_context *contacts;
-    size_t settings; /* revision of the system's contacts that these came from, if planar ones are among them */
+    tribo_context *contacts;  /* with the operator */
+    size_t settings;          /* sys->changes when contacts were made */
 };
 
 static void moreau_destroy(tribo_driver *drv)
