@@ -66,7 +66,8 @@ void check_extremes(const struct study *s, double hz)
 
 /* --------------------------------------------------------------------------------------------------------- more modes */
 
-enum { EVEN_POINTS = 8, CURVE_POINTS = 4 /* of one curve, and of each of several, with the largest and the most sensitive */ };
+enum { EVEN_POINTS = 8 /* of one curve, the largest and the most sensitive among them */ };
+enum { CURVE_POINTS = 3 /* of each of several curves, the largest among them */ };
 
 /* The motion that more modes change most: contacts slip by the least, and friction still takes a good part of the power. */
 static const struct sample *most_sensitive(const struct curve *c)
@@ -85,9 +86,10 @@ static const struct sample *most_sensitive(const struct curve *c)
 /* point [most] out: points of a curve to be found again. Returns their number. */
 static size_t place_points(const struct curve *c, size_t most, struct point *point)
 {
-    const struct sample *chosen[EVEN_POINTS + 2], *more[] = {largest_of(c), most_sensitive(c)};
-    size_t count = spread_samples(c, most - 2, chosen);
-    for (int i = 0; i < 2; i++) {
+    const struct sample *chosen[EVEN_POINTS], *more[] = {largest_of(c), most_sensitive(c)};
+    const size_t others = most == EVEN_POINTS ? 2 : 1;
+    size_t count = spread_samples(c, most - others, chosen);
+    for (size_t i = 0; i < others; i++) {
         int is_there = more[i] == NULL;
         for (size_t k = 0; k < count; k++) {
             is_there = is_there || chosen[k] == more[i];
