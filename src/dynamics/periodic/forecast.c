@@ -1,7 +1,8 @@
 /* Free modes k with eta'' + c eta' + omega^2 eta = J_k'f move by z = (eta, eta') -> A z + (1 - A) (J_k'f/omega^2, 0) in an interval
  * of length h. Odd motions are sums of e^{i theta j}, theta = pi, 3 pi, ... (N - 1) pi over N, so that mean velocities are
  *     v = w + G(theta) f,    G = sum over modes of J_k J_k' (e^{i theta} - 1)/h [(e^{i theta} - A)^-1 (1 - A)]_11/omega^2
- * with w of the loads and bases. The work of f against v is that of the structure, and G does not generate energy. With the limits L,
+ * with w of the loads and bases; compliance adds (1 - e^{-i theta})/h times its matrix to G. The work of f against v is that of the
+ * structure, and G does not generate energy. With the limits L,
  *     f = clamp(s, -L, L),    (1 + rho G) y = 2 f - s - rho w,    s += y - f
  * therefore converges to f = clamp(f - rho v, -L, L), Coulomb's law (Douglas and Rachford 1956; Lions and Mercier 1979). rho is
  * diagonal over the contacts. */

@@ -379,7 +379,7 @@ static int search_again(struct shooting *s, size_t periods)
     return status ? status : search(s, MOST);
 }
 
-/* From the forecast on, unless the guess is near it. *done = 0: the motion is not found. */
+/* From the forecast on, unless the guess is near it. *done = 0: the motion is not found, also where motions from there on fail. */
 static int search_from_forecast(struct shooting *s, int *done)
 {
     const size_t n = s->map.n;
@@ -390,8 +390,11 @@ static int search_from_forecast(struct shooting *s, int *done)
         tribo_add(s->step, -1.0, s->here.x, n);
         *done = shooting_length(s->step, n) > FAR * shooting_length(s->here.x, n);
     }
-    status = status || !*done ? status : search(s, FIRST);
-    *done = *done && !status && close_enough(&s->best, TOLERANCE);
+    if (!status && *done) {
+        status = search(s, FIRST);
+        *done = !status && close_enough(&s->best, TOLERANCE);
+        status = status == TRIBO_ERR_MEMORY ? status : TRIBO_OK;
+    }
     return status;
 }
 
