@@ -196,7 +196,7 @@ function circles(    pair, room, from, to, out, into, gone, left) {
 }
 
 BEGIN {
-    nfeature = split("planar _static|static_|breakaway elastic|massless|slack", feature, " ")
+    nfeature = split("planar _static|static_|breakaway elastic|massless|complian", feature, " ")
     split("planar contacts/static limits/elastic contacts", name_of, "/")
 }
 
