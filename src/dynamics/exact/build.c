@@ -12,8 +12,11 @@
 /* A mode may have so much of another one. */
 #define IMPURITY 1e-14
 
-/* Damping that is not more than so many times the rounding of its terms is none. */
+/* Damping of at most this many times the rounding of its terms counts as 0. */
 #define ROUNDING 8.0
+
+/* Largest part of a mode that counts as rounding of another mode. */
+#define TINY 1e-6
 
 /* So few modes are not worth a dense product. */
 #define FEW 4
@@ -131,8 +134,9 @@ static int find_modes(struct modal_build *b)
         status = held ? factorize_mass(b, &z, &own) : TRIBO_OK;
         status = status ? status
                         : build_modes_failed(b,
-                                             tribo_normal_modes(b->stiffness, &z, held ? &own : &b->shared->sys->factor,
-                                                                b->h->modes, b->h->omega2, b->phi, &doubt),
+                                             tribo_normal_modes(b->stiffness, b->shared->sys->expansion.terms, &z,
+                                                                held ? &own : &b->shared->sys->factor, b->h->modes, b->h->omega2,
+                                                                b->phi, &doubt),
                                              &doubt);
     }
     tribo_matrix_free(&z);
@@ -162,16 +166,26 @@ static int multiply_modes(struct modal_build *b)
     return 1;
 }
 
-/* 1 if the modes share damping c [modes][modes] that is neither negligible beside their own nor rounding. */
-static int damping_couples(const struct modal_build *b, const double *c, const double *root)
+/* Returns the part of mode l in mode k by rounding of K: noise of phi_k'K phi_l over the distance of omega^2, or 0 if above TINY. */
+static double mixed(const struct modal_build *b, const double *root, size_t k, size_t l)
+{
+    const double distance = fabs(b->h->omega2[k] - b->h->omega2[l]);
+    const double noise = tribo_matrix_noise(b->stiffness, root, b->phi + k * b->n, b->phi + l * b->n);
+    return noise <= TINY * distance ? noise / distance : 0.0;
+}
+
+/* 1 if the modes share damping c [modes][modes] that is neither negligible beside their own nor rounding of C or of the modes.
+ * root, stiff_root [n]: roots of the terms of the diagonals of C and K. */
+static int damping_couples(const struct modal_build *b, const double *c, const double *root, const double *stiff_root)
 {
     const size_t n = b->n, m = b->h->modes;
     for (size_t k = 0; k < m; k++) {
         for (size_t l = 0; l < m; l++) {
             const double shared = fabs(c[k * m + l]), own = sqrt(fabs(c[k * m + k] * c[l * m + l]));
-            const double impure = IMPURITY * greater(fabs(c[k * m + k]), fabs(c[l * m + l]));
-            if (k != l && shared > greater(NEGLIGIBLE * own, impure) &&
-                shared > ROUNDING * tribo_matrix_noise(b->shared->damping, root, b->phi + k * n, b->phi + l * n)) {
+            const double larger = greater(fabs(c[k * m + k]), fabs(c[l * m + l]));
+            if (k != l && shared > greater(NEGLIGIBLE * own, IMPURITY * larger) &&
+                shared > ROUNDING * (tribo_matrix_noise(b->shared->damping, root, b->phi + k * n, b->phi + l * n) +
+                                     mixed(b, stiff_root, k, l) * larger)) {
                 return 1;
             }
         }
@@ -185,11 +199,16 @@ static int find_damping(struct modal_build *b)
     struct modal *h = b->h;
     const size_t n = b->n, m = h->modes;
     h->damping = tribo_modal_keep(b, m);
-    double *c = b->shared->damping ? tribo_modal_scratch(b, m * m + n) : NULL, *root = c ? c + m * m : NULL;
+    double *c = b->shared->damping ? tribo_modal_scratch(b, m * m + 2 * n) : NULL, *root = c ? c + m * m : NULL;
+    const double *terms = b->shared->sys->expansion.terms;
     if (!h->damping || !c) {
         return h->damping && !b->shared->damping;
     }
     tribo_matrix_roots(b->shared->damping, root);
+    tribo_matrix_roots(b->stiffness, root + n);
+    for (size_t d = 0; terms && d < n; d++) {
+        root[n + d] = greater(root[n + d], sqrt(terms[d]));
+    }
     double most = 0.0;
     for (size_t k = 0; k < m; k++) {
         for (size_t l = 0; l < m; l++) {
@@ -201,7 +220,7 @@ static int find_damping(struct modal_build *b)
         const double own = c[k * m + k], noise = tribo_matrix_noise(b->shared->damping, root, b->phi + k * n, b->phi + k * n);
         h->damping[k] = fabs(own) > greater(ROUNDING * noise, IMPURITY * IMPURITY * most) ? own : 0.0;
     }
-    if (damping_couples(b, c, root)) {
+    if (damping_couples(b, c, root, root + n)) {
         h->coupling = tribo_modal_keep(b, m * m);
         if (!h->coupling) {
             return 0;

@@ -182,7 +182,7 @@ static int find_among(const struct model *m, size_t count, const double *x, size
     free(columns);
     free(product);
     int status = done ? tribo_cholesky_create(&c, &mass, &where, &pivot) : TRIBO_ERR_MEMORY;
-    status = status ? status : tribo_normal_modes(&m->stiffness, &z, &c, wanted, r->omega2, r->phi, &doubt);
+    status = status ? status : tribo_normal_modes(&m->stiffness, m->terms, &z, &c, wanted, r->omega2, r->phi, &doubt);
     tribo_cholesky_free(&c);
     tribo_matrix_free(&mass);
     tribo_matrix_free(&z);
@@ -198,7 +198,7 @@ static int find_densely(const struct model *m, const struct cholesky *mass, stru
 {
     const struct matrix whole = {0};
     struct doubt doubt = {0};
-    const int status = tribo_normal_modes(&m->stiffness, &whole, mass, m->nmode, r->omega2, r->phi, &doubt);
+    const int status = tribo_normal_modes(&m->stiffness, m->terms, &whole, mass, m->nmode, r->omega2, r->phi, &doubt);
     r->count = m->nmode;
     r->truncation.above = m->nmode < m->ndof ? r->omega2[m->nmode - 1] : HUGE_VAL;
     return modes_failed(m, status, &doubt);

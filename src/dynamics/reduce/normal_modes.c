@@ -195,19 +195,21 @@ static void modes_expand(const struct spectrum *s, const struct matrix *z, size_
     }
 }
 
-/* The stiffness, and what tells rounding of it. */
+/* The stiffness, and the sizes that bound its rounding errors. */
 struct entries {
     const struct matrix *matrix;
-    double *root, *largest; /* [rows] roots of the diagonal, and of the largest entry of each row */
+    double *root, *largest; /* [rows] roots of the terms of the diagonal, and of the largest entry of each row */
     double *force;          /* [rows] workspace */
 };
 
-static void look_at_entries(struct entries *k)
+/* Sets root and largest; terms as in tribo_normal_modes. */
+static void look_at_entries(struct entries *k, const double *terms)
 {
     const struct matrix *a = k->matrix;
     tribo_matrix_roots(a, k->root);
     for (size_t i = 0; i < a->rows; i++) {
-        double most = 0.0;
+        double most = terms ? terms[i] : 0.0;
+        k->root[i] = greater(k->root[i], sqrt(most));
         for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
             most = greater(most, fabs(a->val[e]));
         }
@@ -319,8 +321,8 @@ static int finish(struct spectrum *s, const struct entries *k, const struct matr
     return TRIBO_OK;
 }
 
-int tribo_normal_modes(const struct matrix *k, const struct matrix *z, const struct cholesky *mass, size_t wanted, double *omega2,
-                       double *phi, struct doubt *doubt)
+int tribo_normal_modes(const struct matrix *k, const double *terms, const struct matrix *z, const struct cholesky *mass,
+                       size_t wanted, double *omega2, double *phi, struct doubt *doubt)
 {
     const size_t n = k->rows, m = z->rows ? z->cols : n;
     struct spectrum s = {.n = m};
@@ -335,7 +337,7 @@ int tribo_normal_modes(const struct matrix *k, const struct matrix *z, const str
     s.turn = s.block + m * m;
     s.value = s.turn + m * m;
     struct entries entries = {k, s.value + m, s.value + m + n, s.value + m + 2 * n};
-    look_at_entries(&entries);
+    look_at_entries(&entries, terms);
     int status = tribo_matrix_congruent(k, z, s.k) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     status = status || m == 0 ? status : modes_find(&s, mass);
     status = status ? status : finish(&s, &entries, z, wanted, omega2, phi, doubt);

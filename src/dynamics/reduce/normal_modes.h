@@ -19,6 +19,7 @@ struct doubt {
 /* The lowest modes, in the displacements q = Z y that constraints allow. omega^2 of rigid-body motions is exactly 0. An
  * indefinite K has modes with omega^2 < 0.
  * k       [n][n] in   symmetric
+ * terms   [n] in      sizes of the terms of which k_ii is the sum, or NULL: |k_ii|
  * z       [n][m] in   without rows: the identity, m = n
  * mass    [m] in      factor of Z'MZ; n = 0: the identity
  * wanted  in          <= m, but for that many there is no limit
@@ -27,7 +28,7 @@ struct doubt {
  * doubt   out         on the last two errors
  * Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_NOT_FINITE (K over M overflows), TRIBO_ERR_UNSUPPORTED (omega^2 of a mode is
  * hardly more than rounding), TRIBO_ERR_NO_CONVERGENCE. */
-int tribo_normal_modes(const struct matrix *k, const struct matrix *z, const struct cholesky *mass, size_t wanted, double *omega2,
-                       double *phi, struct doubt *doubt);
+int tribo_normal_modes(const struct matrix *k, const double *terms, const struct matrix *z, const struct cholesky *mass,
+                       size_t wanted, double *omega2, double *phi, struct doubt *doubt);
 
 #endif

@@ -184,7 +184,7 @@ static int expand(const struct compliant *e, size_t sliders, tribo_system *sys)
     }
     int done = place && p && tribo_matrix_from_dense(&follow, e->soft, m, p) && tribo_matrix_from_dense(&give, e->soft, c, g) &&
                tribo_matrix_from_dense(&touch, c, e->soft, j);
-    done = done && tribo_expansion_create(sys, sliders, place, &follow, &give, &touch);
+    done = done && tribo_expansion_create(sys, sliders, place, NULL, &follow, &give, &touch);
     tribo_matrix_free(&follow);
     tribo_matrix_free(&give);
     free(place);

@@ -129,6 +129,7 @@ struct condensed {
     size_t *place, *dof;      /* [ndof] index in q or w; [without] degree of freedom of w */
     struct cholesky factor;   /* of K_ww */
     double *x, *sum, *size;   /* [without], [with], [with] workspace */
+    double *terms;            /* [with] sizes of the terms of the diagonal of the stiffness of q */
     double *own, *shared;     /* [ncontact] G_ii; [ncontact][ncontact] G if it is not diagonal, else NULL */
     struct matrix kqq, kqw, kww, jq, touch; /* blocks of K and J; touch = J_w */
     struct matrix follow, give;             /* [without][with], [without][ncontact] */
@@ -153,14 +154,15 @@ static int condense_number(const struct model *m, struct condensed *s)
 {
     s->is = malloc(m->ndof + 1);
     s->place = malloc((2 * m->ndof + 1) * sizeof *s->place);
-    s->sum = malloc((3 * m->ndof + m->ncontact + 1) * sizeof *s->sum);
+    s->sum = malloc((4 * m->ndof + m->ncontact + 1) * sizeof *s->sum);
     if (!s->is || !s->place || !s->sum) {
         return 0;
     }
     s->dof = s->place + m->ndof;
     s->size = s->sum + m->ndof;
     s->x = s->size + m->ndof;
-    s->own = s->x + m->ndof;
+    s->terms = s->x + m->ndof;
+    s->own = s->terms + m->ndof;
     for (size_t d = 0; d < m->ndof; d++) {
         s->is[d] = 1;
         for (size_t e = 0, row = d < m->mass.rows; row && e < m->mass.first[d + 1] - m->mass.first[d]; e++) {
@@ -230,10 +232,10 @@ static int condense_respond(struct condensed *s, const struct matrix *a, double 
     return finish_triplets(&t, s->without, a->rows, to);
 }
 
-/* to = q + w follow, q [..][with], w [..][without]; entries that are rounding become 0, and so do rows with skip [rows] != 0. 0 if
- * out of memory. */
+/* to = q + w follow, q [..][with], w [..][without]; entries that are rounding become 0, and so do rows with skip [rows] != 0.
+ * terms [rows] out, or NULL: sizes of the terms of to_ii. 0 if out of memory. */
 static int condense_combine(struct condensed *s, const struct matrix *q, const struct matrix *w, const double *skip,
-                            struct matrix *to)
+                            double *terms, struct matrix *to)
 {
     struct triplets t = {0};
     for (size_t i = 0; i < q->rows; i++) {
@@ -242,6 +244,9 @@ static int condense_combine(struct condensed *s, const struct matrix *q, const s
         }
         if (w->first[i] == w->first[i + 1]) {
             put_row(&t, q, i, i);
+            if (terms) {
+                terms[i] = fabs(tribo_matrix_get(q, i, i));
+            }
             continue;
         }
         memset(s->sum, 0, s->with * sizeof *s->sum);
@@ -258,6 +263,9 @@ static int condense_combine(struct condensed *s, const struct matrix *q, const s
         }
         for (size_t j = 0; j < s->with; j++) {
             condense_put(&t, i, j, fabs(s->sum[j]) > ROUNDING * s->size[j] ? s->sum[j] : 0.0);
+        }
+        if (terms) {
+            terms[i] = s->size[i];
         }
     }
     return finish_triplets(&t, q->rows, s->with, to);
@@ -319,10 +327,10 @@ static int replace_matrices(struct model *m, struct condensed *s, struct matrix 
 {
     struct matrix mass = {0}, damping = {0}, stiffness = {0}, rigid = {0}, half = {0}, other = {0};
     const int done = take_block(s, &m->mass, Q, Q, &mass) && (!m->damping.rows || take_block(s, &m->damping, Q, Q, &damping)) &&
-                     condense_combine(s, &s->kqq, &s->kqw, NULL, &half) && tribo_matrix_transpose(&other, &half) &&
+                     condense_combine(s, &s->kqq, &s->kqw, NULL, s->terms, &half) && tribo_matrix_transpose(&other, &half) &&
                      tribo_matrix_sum(&stiffness, 0.5, &half, 0.5, &other) &&
-                     condense_combine(s, &s->jq, &s->touch, NULL, direction) &&
-                     condense_combine(s, &s->jq, &s->touch, s->own, &rigid);
+                     condense_combine(s, &s->jq, &s->touch, NULL, NULL, direction) &&
+                     condense_combine(s, &s->jq, &s->touch, s->own, NULL, &rigid);
     tribo_matrix_free(&half);
     tribo_matrix_free(&other);
     tribo_model_free(m);
@@ -330,6 +338,7 @@ static int replace_matrices(struct model *m, struct condensed *s, struct matrix 
     m->damping = damping;
     m->stiffness = stiffness;
     m->direction = rigid;
+    m->terms = s->terms;
     m->ndof = s->with;
     return done;
 }
@@ -348,7 +357,8 @@ static int build_without(struct model *m, struct condensed *s, int (*build_massi
         }
         (*sys)->given = dofs - m->sliders;
         status = tribo_compliance_create(*sys, &direction, s->own, s->shared, &where);
-        if (!status && !tribo_expansion_create(*sys, m->sliders, s->place, &s->follow, &s->give, &s->touch)) {
+        if (!status && !tribo_expansion_create(*sys, m->sliders, s->place, m->nmode ? NULL : s->terms, &s->follow, &s->give,
+                                               &s->touch)) {
             status = TRIBO_ERR_MEMORY;
         }
         status = status == TRIBO_ERR_INDEFINITE

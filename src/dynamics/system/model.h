@@ -9,6 +9,7 @@ struct model {
     size_t ndof, ncontact, nmode;
     int statics; /* beside the modes, what steady forces at the contacts do: TRIBO_STATICS_... */
     struct matrix mass, damping, stiffness, direction;
+    const double *terms;      /* [ndof] sizes of the terms of which stiffness_ii is the sum; NULL: its own size */
     const double *compliance; /* [ncontact] of the springs before sliders, 0: a rigid contact; NULL: all are rigid */
     size_t sliders;           /* degrees of freedom without mass that stand for them, the last ones of ndof */
     char *message;

@@ -6,18 +6,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-int tribo_expansion_create(tribo_system *sys, size_t sliders, const size_t *place, struct matrix *follow, struct matrix *give,
-                           struct matrix *touch)
+int tribo_expansion_create(tribo_system *sys, size_t sliders, const size_t *place, const double *terms, struct matrix *follow,
+                           struct matrix *give, struct matrix *touch)
 {
     const size_t dofs = sys->ndof + follow->rows;
     size_t *copy = malloc((dofs + 1) * sizeof *copy);
+    int done = 1;
     sys->motion = malloc((tribo_system_size(sys) + follow->rows + 2 * sys->ncontact) * sizeof *sys->motion);
-    sys->expansion = (struct expansion){dofs, sliders, copy, *follow, *give, *touch};
+    sys->expansion = (struct expansion){dofs,  sliders, copy, *follow, *give, *touch,
+                                        tribo_copy_of(terms, sys->ndof, sizeof *terms, &done)};
     *follow = *give = *touch = (struct matrix){0};
     if (copy) {
         memcpy(copy, place, dofs * sizeof *copy);
     }
-    return copy && sys->motion;
+    return copy && sys->motion && done;
 }
 
 int tribo_expansion_copy(tribo_system *to, const tribo_system *from)
@@ -29,12 +31,13 @@ int tribo_expansion_copy(tribo_system *to, const tribo_system *from)
     }
     const int done =
         tribo_matrix_copy(&a[0], &x->follow) && tribo_matrix_copy(&a[1], &x->give) && tribo_matrix_copy(&a[2], &x->touch);
-    return tribo_expansion_create(to, x->sliders, x->place, &a[0], &a[1], &a[2]) && done;
+    return tribo_expansion_create(to, x->sliders, x->place, x->terms, &a[0], &a[1], &a[2]) && done;
 }
 
 void tribo_expansion_free(struct expansion *x)
 {
     free(x->place);
+    free(x->terms);
     tribo_matrix_free(&x->follow);
     tribo_matrix_free(&x->give);
     tribo_matrix_free(&x->touch);

@@ -48,6 +48,7 @@ struct expansion {
     size_t *place;        /* [dofs]; NULL: x = q, and all other members are empty */
     struct matrix follow, give; /* [dofs - ndof][ndof], [dofs - ndof][ncontact] */
     struct matrix touch;        /* [ncontact][dofs - ndof] J_w: forces are f = G^-1 J_w (w - follow q) */
+    double *terms;              /* [ndof] sizes of the terms of which K_ii is the sum; NULL if reduced */
 };
 
 struct tribo_system {
@@ -305,9 +306,9 @@ static inline size_t tribo_system_size(const tribo_system *sys)
     return tribo_system_energy(sys) + 1;
 }
 
-/* The expansion of a system that has its compliance; the matrices are its own from then on. 0 if out of memory. */
-int tribo_expansion_create(tribo_system *sys, size_t sliders, const size_t *place, struct matrix *follow, struct matrix *give,
-                           struct matrix *touch);
+/* The expansion of a system that has its compliance; takes the matrices, copies terms [ndof] (NULL: reduced). 0 if out of memory. */
+int tribo_expansion_create(tribo_system *sys, size_t sliders, const size_t *place, const double *terms, struct matrix *follow,
+                           struct matrix *give, struct matrix *touch);
 int tribo_expansion_copy(tribo_system *to, const tribo_system *from);
 void tribo_expansion_free(struct expansion *x);
 

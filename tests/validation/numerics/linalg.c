@@ -282,7 +282,7 @@ TEST(graded_stiffness)
         k[i * N + i] *= 2.0 * k[i * N + i];
     }
     struct matrix a = dense(N, N, k);
-    assert_ok(tribo_normal_modes(&a, &whole, &unit, N, omega2, phi, &doubt));
+    assert_ok(tribo_normal_modes(&a, NULL, &whole, &unit, N, omega2, phi, &doubt));
     for (size_t i = 0; i < N; i++) {
         product /= omega2[i];
         require(omega2[i] > 0.0 && (i == 0 || omega2[i] >= omega2[i - 1]), "%g after %g", omega2[i], omega2[i ? i - 1 : 0]);
@@ -308,7 +308,7 @@ TEST(negative_stiffness)
     const struct cholesky unit = {0};
     struct doubt doubt;
     struct matrix a = dense(3, 3, k);
-    assert_ok(tribo_normal_modes(&a, &whole, &unit, 3, omega2, phi, &doubt));
+    assert_ok(tribo_normal_modes(&a, NULL, &whole, &unit, 3, omega2, phi, &doubt));
     assert_close(omega2[0], low, 1e-14);
     assert_close(omega2[1] / 1e7, 1.0, 1e-13);
     assert_close(omega2[2] / 1e15, 1.0, 1e-15);
@@ -325,7 +325,7 @@ TEST(overflowing_stiffness)
     struct doubt doubt;
     struct matrix a = dense(2, 2, k), mass = diagonal(2, m);
     assert_ok(tribo_cholesky_create(&c, &mass, &where, &pivot));
-    assert_status(tribo_normal_modes(&a, &whole, &c, 2, omega2, phi, &doubt), TRIBO_ERR_NOT_FINITE);
+    assert_status(tribo_normal_modes(&a, NULL, &whole, &c, 2, omega2, phi, &doubt), TRIBO_ERR_NOT_FINITE);
     tribo_cholesky_free(&c);
     tribo_matrix_free(&mass);
     tribo_matrix_free(&a);
