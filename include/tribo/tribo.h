@@ -152,7 +152,7 @@ TRIBO_API int tribo_elastic_force_planar(size_t n, const double *dz, const doubl
 /* n contact elements, no context: two tangential springs that end in a slider, and a normal spring that lifts off (Yang and
  * Menq 1998).
  * Pressed, depth > 0: load = normal depth, limit = mu load, both at the end of the step, f = (f_t, -load) with f_t as in
- * tribo_elastic_force_planar. Open: f = 0, the slider goes along. A step that begins open takes all of dz as if pressed.
+ * tribo_elastic_force_planar. Open: f = 0. At touch-down the slider begins where the body was at the start of the step.
  * dz [n][2]            in      tangential displacement since f, the force of the last accepted state
  * depth [n]            in      penetration at the end of the step, positive presses
  * tangential, normal   [n] in  stiffness, >= 0
@@ -395,7 +395,7 @@ enum {
     TRIBO_SLIP_PLANE = 3  /* slides in the plane; stands at both directions of a planar contact */
 };
 
-/* Slip state of each contact in the last tribo_balance or tribo_step_force, by the limits of that call.
+/* Slip state of each contact in the last tribo_balance, tribo_step_force or tribo_step_force_mean, by the limits of that call.
  * slip  [n] out  TRIBO_SLIP_...
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_STATE (no such call succeeded yet, or tribo_solve_box or tribo_set_operator_... was called
  * since). */

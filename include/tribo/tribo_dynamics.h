@@ -232,13 +232,14 @@ TRIBO_API const char *tribo_system_message(const tribo_system *sys);
 
 /* Relative velocities and forces of the contacts in the state y at time t.
  * y    [dimension] in
- * v, feq, f   [ncontact] out, each or NULL, as in tribo_balance; elastic contacts: feq = f = force of the spring
+ * v, feq, f   [ncontact] out, each or NULL, as in tribo_balance; elastic contacts: feq = f = force of the spring,
+ *             v = velocity of the slider, 0 while the spring holds
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_UNSUPPORTED (no accelerations), and what tribo_balance
  * returns. */
 TRIBO_API int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *v, double *feq, double *f);
 
-/* Slip states at the last call that found forces by the law: tribo_system_contacts, or a step of central/fixed, rk4/fixed or an
- * adaptive method.
+/* Slip states at the last tribo_system_contacts, or step of central/fixed, rk4/fixed or an adaptive method. After a step of another
+ * method, and in an observer, call tribo_system_contacts first.
  * slip  [ncontact] out   TRIBO_SLIP_...
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_STATE (no such call yet). */
 TRIBO_API int tribo_system_get_slip(const tribo_system *sys, signed char *slip);
@@ -382,7 +383,7 @@ enum {
  * ascending order, with the same t and y (a planar contact by its first direction); TRIBO_MOMENT_STEP at the end of the advance
  * and every dt of tribo_driver_set_output. Other methods: TRIBO_MOMENT_STEP after each step.
  * seen   in   returns 0 to continue. Any other value ends the advance with TRIBO_ERR_STOPPED; the next advance continues with
- *             the next moment. Must not change the system. NULL: no observer
+ *             the next moment. Must not change the system; may call tribo_system_contacts. NULL: no observer
  * data   in   passed to seen
  * Returns TRIBO_ERR_NULL. */
 TRIBO_API int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(const tribo_moment *moment, void *data), void *data);
@@ -390,7 +391,7 @@ TRIBO_API int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(const tri
 /* Finds a state at t to which the motion returns after a period: the steady response without the transient. Methods exact,
  * event, auto. The manual describes the accuracy, and which of several motions is found. The search does not call the observer.
  * t        in       time at which the period begins
- * period   in       > 0; the period of the loads, or a multiple
+ * period   in       > 0; the period of the loads to 12 digits (2 pi/omega in double precision), or a multiple
  * y        [dimension] in/out   in: a guess, e.g. zeros; out: the state, with energy 0; unchanged on error
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_STEP (a period below the resolution of t),
  * TRIBO_ERR_RANGE (a load or base motion without this period), TRIBO_ERR_UNSUPPORTED (other methods; tables; static limits

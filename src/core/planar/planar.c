@@ -307,7 +307,7 @@ static int check_first(tribo_context *ctx, size_t count, const size_t *first, si
     for (size_t k = 0; k < count; k++) {
         if (ctx->n < 2 || first[k] > ctx->n - 2) {
             return tribo_fail(ctx, TRIBO_ERR_RANGE,
-                              "first[%zu] is contact %zu of %zu contact%s, and a planar one takes the next one, too", k, first[k],
+                              "first[%zu] is contact %zu of %zu contact%s; a planar contact needs first and first + 1", k, first[k],
                               ctx->n, plural(ctx->n));
         }
         for (size_t i = first[k]; i < first[k] + 2; i++) {

@@ -1,10 +1,11 @@
 /* Periodic motions: what callers see of them. */
 #include "shooting.h"
 
+#include <float.h>
 #include <math.h>
 
-/* A load goes round a whole number of times in a period, to this part of a turn. */
-#define WHOLE 1e-9
+/* Largest distance of omega period/(2 pi) from a whole number, beside rounding. */
+#define WHOLE 3e-12
 
 static int unsupported(tribo_driver *drv)
 {
@@ -37,7 +38,7 @@ static int check_loads(tribo_driver *drv, double period)
     for (size_t k = 0; k < sys->harmonics; k++) {
         const struct harmonic *w = &sys->harmonic[k];
         const double turns = fabs(w->omega) / (2.0 * acos(-1.0)) * period, whole = fmax(round(turns), w->omega != 0.0);
-        if (w->count > 0 && !(fabs(turns - whole) <= WHOLE)) {
+        if (w->count > 0 && !(fabs(turns - whole) <= WHOLE + 4.0 * DBL_EPSILON * whole)) {
             return tribo_driver_fail(drv, TRIBO_ERR_RANGE,
                                      "%s[%zu], omega = %.17g, is not periodic in period = %.17g: %.12g turns", kind[w->drives],
                                      of_kind[w->drives], w->omega, period, turns);

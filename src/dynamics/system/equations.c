@@ -189,6 +189,9 @@ static int contacts_at(tribo_system *sys, double t, const double **y)
     } else if (!status && sys->expansion.place) {
         tribo_system_add_velocities(sys, *y, sys->v);
     }
+    for (size_t k = 0; !status && k < sys->compliance.count; k++) { /* with R_ii = 0 and a_i = 0 a contact sticks where v_i = 0 */
+        sys->a[sys->compliance.contact[k]] = 0.0;
+    }
     *y = sys->expansion.place ? sys->motion : *y;
     return status;
 }

@@ -149,7 +149,8 @@ int tribo_system_take_settings(tribo_system *sys)
 int tribo_system_get_slip(const tribo_system *sys, signed char *slip)
 {
     const int status = sys ? tribo_get_slip(sys->contacts, slip) : TRIBO_ERR_NULL;
-    return status && sys ? tribo_system_fail(sys, status, "%s", slip ? "no forces were found yet" : "slip is NULL") : status;
+    static const char early[] = "no forces of contacts were computed yet: call tribo_system_contacts";
+    return status && sys ? tribo_system_fail(sys, status, "%s", slip ? early : "slip is NULL") : status;
 }
 
 int tribo_system_get_count(const tribo_system *sys, int which, size_t *value)

@@ -393,6 +393,12 @@ TEST(contacts_of_state)
     assert_exact(feq[1], -0.25);
     assert_exact(v[0], 0.0);
     assert_exact(v[1], 2.0);
+    signed char slip[2];
+    size_t stuck;
+    assert_ok(tribo_system_get_slip(e, slip));
+    assert_ok(tribo_system_get_count(e, TRIBO_COUNT_STUCK, &stuck));
+    require(slip[0] == TRIBO_SLIP_STUCK && slip[1] == TRIBO_SLIP_FORTH && stuck == 1, "slips %d and %d, %zu stuck", slip[0], slip[1],
+            stuck);
     tribo_system_destroy(s);
     tribo_system_destroy(e);
 }
