@@ -1,5 +1,5 @@
-/* TRIBO_GNU_C is defined if the compiler has GNU C's attributes and built-in functions, unless TRIBO_PLAIN_C is: every use has a
- * plain alternative. */
+/* TRIBO_GNU_C: defined if the compiler has GNU C's attributes and built-in functions and TRIBO_PLAIN_C is not defined. Every use
+ * has a plain alternative. */
 #ifndef TRIBO_COMPILER_H
 #define TRIBO_COMPILER_H
 
@@ -7,7 +7,7 @@
 #define TRIBO_GNU_C
 #endif
 
-/* Adds change to x, which threads share, and returns x. */
+/* Adds change to x, shared by threads, and returns the new x. */
 #if defined(TRIBO_GNU_C)
 #define TRIBO_SHARED_ADD(x, change) __atomic_add_fetch(&(x), (change), __ATOMIC_ACQ_REL)
 #else

@@ -1,4 +1,4 @@
-/* complex.h with I of double, which _Complex_I is not: -Wdouble-promotion finds each use. */
+/* Defines I of type double complex. _Complex_I is of type float complex: -Wdouble-promotion reports every use. */
 #ifndef TRIBO_IMAGINARY_H
 #define TRIBO_IMAGINARY_H
 

@@ -1,5 +1,5 @@
-/* All arrays of an object in one piece of memory. A function lays them out twice: first to add up their sizes, with pointers
- * NULL; then in the memory allocated. */
+/* All arrays of an object in one block of memory. A function lays out the arrays twice: first with memory NULL, to add up the
+ * sizes; then in the allocated memory. */
 #ifndef TRIBO_LAYOUT_H
 #define TRIBO_LAYOUT_H
 
@@ -10,7 +10,7 @@
 #include "zeros.h"
 
 struct layout {
-    char *memory; /* NULL while sizes are added up */
+    char *memory; /* NULL in the first pass */
     size_t used;
 };
 
@@ -21,7 +21,7 @@ union layout_unit {
     void *pointer;
 };
 
-/* Returns an array of count elements of this size. Sizes that overflow become more than there is memory. */
+/* Returns an array [count] of elements; NULL in the first pass. If sizes overflow, their sum is too large to allocate. */
 static inline void *tribo_layout_array(struct layout *b, size_t count, size_t size)
 {
     enum { UNIT = sizeof(union layout_unit) };
@@ -32,7 +32,7 @@ static inline void *tribo_layout_array(struct layout *b, size_t count, size_t si
     return array;
 }
 
-/* Allocates the sum of sizes, zero or not, to be laid out from the begin. Returns 0 if out of memory. */
+/* Allocates the sum of the sizes, tribo_layout_zeros as zeros, and restarts the layout at 0. Returns 0 if out of memory. */
 static inline int tribo_layout_zeros(struct layout *b)
 {
     b->memory = tribo_zeros(b->used + 1, 1);

@@ -1,13 +1,13 @@
-/* Arithmetic that neither calls a function nor raises a floating-point exception: some programs stop at those. */
+/* Arithmetic without function calls and without floating-point exceptions, at which some programs stop. */
 #ifndef TRIBO_REAL_H
 #define TRIBO_REAL_H
 
 #include <math.h>
 
-/* Forces and accelerations are cut to this: sums of such numbers stay finite. */
+/* Bound of forces and accelerations. Sums of such numbers stay finite. */
 #define TRIBO_FAR 1e300
 
-/* Minimum and maximum that compile to one instruction; those of math.h are calls, for the sake of NaN. */
+/* Minimum and maximum that compile to one instruction. fmin and fmax are calls, because of NaN. */
 static inline double lesser(double x, double y)
 {
     return x < y ? x : y;
@@ -18,7 +18,7 @@ static inline double greater(double x, double y)
     return x > y ? x : y;
 }
 
-/* A NaN becomes lo. */
+/* Returns x within [lo, hi]; lo for NaN. */
 static inline double clamp(double x, double lo, double hi)
 {
     return lesser(greater(x, lo), hi);
@@ -29,27 +29,27 @@ static inline double cut(double x)
     return clamp(x, -TRIBO_FAR, TRIBO_FAR);
 }
 
-/* x/y, TRIBO_FAR at most; y > 0. */
+/* Returns x/y, |x/y| limited to TRIBO_FAR; y > 0. */
 static inline double quotient(double x, double y)
 {
     return x / greater(y, fabs(x) * (1.0 / TRIBO_FAR));
 }
 
-/* x, cut to numbers that y divides without overflow. */
+/* Returns x limited to a range in which x/y does not overflow. */
 static inline double divisible(double x, double y)
 {
     const double most = TRIBO_FAR * lesser(y, 1.0);
     return clamp(x, -most, most);
 }
 
-/* x y, TRIBO_FAR at most. */
+/* Returns x y, |x y| limited to TRIBO_FAR. */
 static inline double product(double x, double y)
 {
     const double most = TRIBO_FAR / greater(fabs(y), 1.0);
     return clamp(x, -most, most) * y;
 }
 
-/* product(x, y) for any finite x; y > 0. */
+/* Returns product(x, y) for any finite x; y > 0. */
 static inline double scaled(double x, double y)
 {
     return y > 1.0 ? product(x, y) : cut(x * y);

@@ -1,6 +1,6 @@
-/* Loops over contacts or degrees of freedom, compiled for several instruction sets, if the compiler and the system can choose one
- * when the library is loaded. Every variant gives the same bits: sums are not reordered, products and sums not fused. Call such
- * functions by name only: 32-bit linkers have no addresses of static ones. */
+/* Loops compiled for several instruction sets, if compiler and system can choose one when the library is loaded. All variants
+ * give the same bits: sums are not reordered, products and sums not fused. Call such functions by name only: linkers for 32 bits
+ * have no addresses of static functions. */
 #ifndef TRIBO_SIMD_H
 #define TRIBO_SIMD_H
 
@@ -18,21 +18,21 @@
 #define TRIBO_SIMD
 #endif
 
-/* The same for sums of four numbers at a time, which compilers turn into slow code for wider vectors. */
+/* TRIBO_SIMD for sums of four numbers at a time; compilers make slow code of these sums for wider vectors. */
 #if defined(TRIBO_CLONES) || defined(TRIBO_CLONES_512)
 #define TRIBO_SIMD_OF_FOUR __attribute__((target_clones("avx2", "default")))
 #else
 #define TRIBO_SIMD_OF_FOUR
 #endif
 
-/* Before a loop whose counting would take as long as its body; clang unrolls it by itself. */
+/* Before a loop whose counter costs as much as its body. clang unrolls such loops by itself. */
 #if defined(TRIBO_GNU_C) && !defined(__clang__)
 #define TRIBO_UNROLLED _Pragma("GCC unroll 4")
 #else
 #define TRIBO_UNROLLED
 #endif
 
-/* Before a loop over arrays that share no memory, where restrict on pointers of a struct is not enough. */
+/* Before a loop over arrays that do not overlap, where restrict on pointers in a struct has no effect. */
 #if defined(TRIBO_GNU_C) && !defined(__clang__)
 #define TRIBO_APART _Pragma("GCC ivdep")
 #elif defined(__clang__)
@@ -41,11 +41,11 @@
 #define TRIBO_APART
 #endif
 
-/* Contacts of a chunk: so few that in a large scene most chunks have none near stick, and that their data stays in the
- * first-level cache. */
+/* Contacts in a chunk: few enough that most chunks of a large scene have no contact near stick, and that the data of a chunk fit
+ * in the first-level cache. */
 #define TRIBO_CHUNK 128
 
-/* Returns the next begin of a line of cache, at most TRIBO_LINE - 1 numbers on: no vector of the array lies in two lines. */
+/* Returns x rounded up to the start of a cache line, by at most TRIBO_LINE - 1 numbers: no vector of the array crosses lines. */
 enum { TRIBO_LINE = 8 };
 static inline double *tribo_aligned(double *x)
 {
@@ -53,7 +53,7 @@ static inline double *tribo_aligned(double *x)
     return x ? x + (BYTES - (uintptr_t)x % BYTES) % BYTES / sizeof *x : NULL;
 }
 
-/* Prefetches memory that is not read in order. */
+/* Prefetches memory that is read in irregular order. */
 static inline void tribo_expect(const void *from, size_t bytes, int written)
 {
 #if defined(TRIBO_GNU_C)

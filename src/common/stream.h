@@ -1,5 +1,5 @@
-/* Outputs found in chunks of at most TRIBO_CHUNK numbers. Long ones are written to memory past the caches, which would read each
- * line before: whole lines, the rest waits for the next chunk. */
+/* Writes outputs computed in chunks of at most TRIBO_CHUNK numbers. Large outputs bypass the caches, which would read each line
+ * before a write: only whole lines are written, the rest waits for the next chunk. */
 #ifndef TRIBO_STREAM_H
 #define TRIBO_STREAM_H
 
@@ -11,9 +11,9 @@
 #endif
 
 struct stream {
-    double *to;  /* place of the next number; NULL: no output */
-    int past;    /* 1: past the caches; 0: numbers are found in their place */
-    size_t kept; /* numbers at the begin of room that wait for the rest of their line */
+    double *to;  /* address of the next number; NULL: no output */
+    int past;    /* 1: bypasses the caches; 0: numbers are computed in place */
+    size_t kept; /* numbers at the start of room, waiting for the rest of their line */
     double room[TRIBO_CHUNK + 2 * TRIBO_LINE];
 };
 
@@ -24,13 +24,13 @@ static inline void tribo_stream_begin(struct stream *s, double *to, int past)
     s->kept = 0;
 }
 
-/* Returns room for the numbers of the next chunk. */
+/* Returns the memory for the numbers of the next chunk. */
 static inline double *tribo_stream_room(struct stream *s)
 {
     return s->to && !s->past ? s->to : tribo_aligned(s->room) + s->kept;
 }
 
-/* One store writes a line of cache. */
+/* Writes one cache line with each store. */
 #if defined(TRIBO_STREAMS) && defined(TRIBO_CLONES_512)
 __attribute__((target("avx512f"))) static void tribo_stream_wide(double *to, const double *from, size_t n)
 {
@@ -40,7 +40,7 @@ __attribute__((target("avx512f"))) static void tribo_stream_wide(double *to, con
 }
 #endif
 
-/* Writes n numbers, whole lines. */
+/* Writes n numbers; n is a multiple of TRIBO_LINE. */
 static inline void tribo_stream_lines(double *to, const double *from, size_t n)
 {
 #if defined(TRIBO_STREAMS) && defined(TRIBO_CLONES_512)
@@ -58,7 +58,7 @@ static inline void tribo_stream_lines(double *to, const double *from, size_t n)
 #endif
 }
 
-/* Writes the n numbers in the room. */
+/* Outputs the n numbers in tribo_stream_room. */
 static inline void tribo_stream_put(struct stream *s, size_t n)
 {
     if (!s->to || !s->past) {
@@ -76,7 +76,7 @@ static inline void tribo_stream_put(struct stream *s, size_t n)
     memmove(room, from + lines, s->kept * sizeof *room);
 }
 
-/* Writes the rest; other threads see all numbers. */
+/* Writes the waiting numbers; makes all numbers visible to other threads. */
 static inline void tribo_stream_end(struct stream *s)
 {
     if (s->to && s->past) {

@@ -1,5 +1,5 @@
-/* Returns memory of zeros, or NULL; not NULL for count 0. Small memory is best taken from what was just freed, where malloc looks
- * first, and calloc of the GNU C library does not; large memory comes from the system as zeros, which calloc makes use of. */
+/* Returns zeroed memory, or NULL; not NULL for count 0. Small blocks: malloc reuses memory just freed, calloc of the GNU C
+ * library does not. Large blocks: memory from the system is zero already, and calloc does not clear it again. */
 #ifndef TRIBO_ZEROS_H
 #define TRIBO_ZEROS_H
 

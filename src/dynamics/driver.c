@@ -1,4 +1,4 @@
-/* Drivers by any method: settings, queries, and the advance with its last good state. */
+/* Drivers: settings, queries, and advances that restore the last good state after an error. */
 #include "driver.h"
 
 #include <math.h>
@@ -26,8 +26,8 @@ static int driver_check_static(const tribo_system *sys)
                                    "contact %zu is elastic, and takes no static limit: ratio[%zu] = %g", i, i, ratio[i]);
 }
 
-/* Returns TRIBO_ERR_UNSUPPORTED if there are planar contacts and m takes none, or an elastic contact has a static limit. Each
- * advance calls it, since contacts may change between advances. */
+/* Returns TRIBO_ERR_UNSUPPORTED for planar contacts if m or the system does not allow them, and for static limits of elastic
+ * contacts. Every advance calls this function, since contacts may change between advances. */
 static int check_contacts(const tribo_system *sys, const struct method *m)
 {
     const int springs = sys->expansion.place != NULL;
@@ -126,7 +126,7 @@ int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(const tribo_moment 
     return TRIBO_OK;
 }
 
-/* [bit of TAKES_...] Name of the setting, and the methods that take it. */
+/* [bit number of TAKES_...] name of a setting; methods that accept the setting. */
 static const struct {
     const char *name, *taken_by;
 } settings[] = {
@@ -136,7 +136,7 @@ static const struct {
     {"largest step", "GSL's adaptive methods do"},
 };
 
-/* Returns TRIBO_OK if drv's method takes the setting. */
+/* Returns TRIBO_OK if the method of drv accepts the setting, a bit TAKES_... */
 static int check_setting(const tribo_driver *drv, int setting)
 {
     size_t k = 0;
@@ -331,7 +331,7 @@ static int check_times(tribo_driver *drv, const double *t, double t1, const doub
     return TRIBO_OK;
 }
 
-/* Takes the context's settings. Returns TRIBO_OK if drv's method can do the system with these. */
+/* Copies the context's settings. Returns TRIBO_OK if the method of drv can integrate the system with these settings. */
 static int check_settings(tribo_driver *drv)
 {
     const int status = tribo_system_take_settings(drv->sys);
@@ -376,7 +376,7 @@ int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)
         return status ? status : tribo_driver_advance_motion(drv, t, t1, y);
     }
     tribo_system_write_state(drv->sys, drv->time, drv->state, drv->shown);
-    if (memcmp(y, drv->shown, tribo_system_dimension(drv->sys) * sizeof *y) == 0) { /* an advance that continues keeps f */
+    if (memcmp(y, drv->shown, tribo_system_dimension(drv->sys) * sizeof *y) == 0) { /* an unchanged y keeps f */
         memcpy(drv->motion, drv->state, tribo_system_size(drv->sys) * sizeof *y);
     } else {
         tribo_system_read_state(drv->sys, y, drv->motion);

@@ -1,11 +1,11 @@
-/* The interface of a method of integration, and what all methods share. */
+/* The interface of integration methods, and functions shared by all methods. */
 #ifndef TRIBO_DRIVER_H
 #define TRIBO_DRIVER_H
 
 #include "dynamics/system/system.h"
 
-/* Bits of what a method takes: settings, see tribo_driver_set_step and its neighbours; and systems: unsolved ones too, only those
- * whose contacts are all scalar, only those with mass at all degrees of freedom. */
+/* Bits of `takes`. TAKES_STEP to TAKES_MAX_STEP: settings accepted, see tribo_driver_set_step and the functions after it.
+ * TAKES_UNSOLVED: unsolved systems accepted. NEEDS_SCALAR: scalar contacts only. NEEDS_MASS: no massless degrees of freedom. */
 enum {
     TAKES_STEP = 1,
     TAKES_TOLERANCE = 2,
@@ -22,93 +22,93 @@ struct method {
     const char *name;
     int takes; /* sum of TAKES_... and NEEDS_... */
     int (*create)(tribo_driver *drv);
-    void (*destroy)(tribo_driver *drv); /* also after a create that failed */
-    /* Advances from *t to t1 > *t. continues = 1: the method's last advance ended at (t, y), and nothing has changed since.
-     * Returns a status; on error t and y may be anything: the driver restores the state kept last. */
+    void (*destroy)(tribo_driver *drv); /* called also after create failed */
+    /* Advances (*t, y) to t1 > *t. continues = 1: the last advance ended at (t, y), and settings and system are unchanged.
+     * Returns a status; after an error the driver restores the last kept state, so t and y may have any value. */
     int (*advance)(tribo_driver *drv, double *t, double t1, double *y, int continues);
-    /* Methods that loop over events (events.h): prepares *events. Other methods: NULL. */
+    /* Methods with a loop over events (events.h): prepares *events. NULL: other methods. */
     int (*open)(tribo_driver *drv, struct events **events);
-    /* tribo_driver_find_periodic for checked arguments; NULL: TRIBO_ERR_UNSUPPORTED. */
+    /* tribo_driver_find_periodic with checked arguments. NULL: TRIBO_ERR_UNSUPPORTED. */
     int (*find_periodic)(tribo_driver *drv, double t, double period, double *y);
 };
 
 struct tribo_driver {
     tribo_system *sys;
-    const struct method *method, *at_work; /* at_work: the method that tribo_driver_method names */
+    const struct method *method, *at_work; /* at_work: named by tribo_driver_method */
 
     /* settings */
-    double dt;             /* step, or first step; 0: not set */
-    double abstol, reltol; /* abstol 0: not set */
+    double dt;             /* step, or first step of adaptive methods; 0: not set */
+    double abstol, reltol; /* abstol = 0: not set */
     double output;         /* time between outputs; 0: no outputs */
-    double max_step;       /* 0: 0.1 times the shortest 1/omega */
+    double max_step;       /* largest step; 0: 0.1/omega of the highest frequency omega */
     int (*seen)(const tribo_moment *moment, void *data);
     void *data;
 
     /* state */
-    void *own;                 /* the method's own */
-    double *state, *slope;     /* [tribo_system_size] the state kept last; workspace */
-    double *motion, *shown;    /* [dimension + compliant contacts] a caller's state, in; out. NULL without an expansion */
-    double time;               /* of the state kept last */
-    size_t revision;           /* of the system when the last advance ended; SIZE_MAX: the method begins anew */
-    struct shooting *shooting; /* the last search; borrowed if free_shooting is NULL */
+    void *own;                 /* data of the method */
+    double *state, *slope;     /* [tribo_system_size] last kept state; workspace */
+    double *motion, *shown;    /* [dimension + compliant contacts] methods' state; caller's state. NULL without an expansion */
+    double time;               /* time of `state` */
+    size_t revision;           /* tribo_system_revision after the last advance; SIZE_MAX: the next starts from scratch */
+    struct shooting *shooting; /* last search of a periodic motion; borrowed if free_shooting is NULL */
     void (*free_shooting)(struct shooting *s);
-    char *message; /* [TRIBO_MESSAGE] a const driver keeps it, too */
+    char *message; /* [TRIBO_MESSAGE] also written for a const driver */
 
     /* counters */
     size_t steps, rejected, evaluations, jacobians, events, periods, newton;
-    size_t rested;           /* degrees of freedom left out, step by step */
-    double excess, backslip; /* largest so far; NaN for methods that do not know them */
+    size_t rested;           /* sum over the steps of the degrees of freedom at rest that a step skips */
+    double excess, backslip; /* largest values so far; NaN for methods without these bounds */
 };
 
-/* Keeps the message and returns status. */
+/* Writes the message of the driver and returns status. */
 int tribo_driver_fail(const tribo_driver *drv, int status, const char *format, ...)
 #if defined(__GNUC__)
     __attribute__((format(printf, 3, 4)))
 #endif
     ;
 
-/* The same for a step h from t in which an evaluation failed, with the system's status and message. */
+/* tribo_driver_fail with status and message of the system, for a failed evaluation in a step h from t. */
 int tribo_driver_explain(tribo_driver *drv, double t, double h);
 
-/* States y here and in methods are those of tribo_system_size values, see system.h.
- * TRIBO_ERR_NOT_FINITE if a value of y is not finite. */
+/* Returns TRIBO_ERR_NOT_FINITE if a value of y is not finite. States y here and in methods are methods' states,
+ * [tribo_system_size], see system.h. */
 int tribo_driver_check(tribo_driver *drv, const double *y);
 
-/* Keeps (t, y) as the last good state, to which tribo_driver_advance goes back on any failure. TRIBO_ERR_NOT_FINITE if a value of
- * y is not finite. Every state that a method finds is kept before anything is built on it. */
+/* Keeps (t, y) as the last good state, restored by tribo_driver_advance after an error. Returns TRIBO_ERR_NOT_FINITE if a value
+ * of y is not finite. Methods keep every computed state before any further use. */
 int tribo_driver_keep(tribo_driver *drv, double t, const double *y);
 
-/* Calls the observer, if there is one, for a state that was kept: kind TRIBO_MOMENT_..., contact SIZE_MAX for a step. Returns
- * TRIBO_ERR_STOPPED if the observer answers anything but 0. */
+/* Calls the observer, if any, for a kept state: kind TRIBO_MOMENT_..., contact SIZE_MAX for a step. Returns TRIBO_ERR_STOPPED if
+ * the observer returns a value other than 0. */
 int tribo_driver_show(tribo_driver *drv, double t, const double *y, int kind, size_t contact);
 
-/* Keeps (t, y), and shows it as a step. */
+/* Keeps (t, y), and calls the observer for a step. Returns a status. */
 int tribo_driver_accept(tribo_driver *drv, double t, const double *y);
 
-/* A step from the state at t to that at next, y, all of which it writes and finds finite. */
+/* Computes y, all values, at time next from the state `from` at t. Returns a status, an error if y is not finite. */
 typedef int tribo_fixed_step(tribo_driver *drv, double t, double next, const double *from, double *y);
 
-/* Takes steps between the times t [count + 1], count <= RUN: y is the state at t[0], and becomes that after the last step.
- * Returns the number of steps taken; after less than count the next one is for tribo_fixed_step. */
+/* Advances y from t[0] over the times t [count + 1], count <= RUN. Returns the number of steps taken; if less than count, the
+ * next step needs tribo_fixed_step. */
 typedef size_t tribo_fixed_run(tribo_driver *drv, size_t count, const double *t, double *y);
 
-/* Steps that a run takes at most. */
+/* Largest number of steps of a run. */
 enum { RUN = 16 };
 
-/* run: steps without an observer, or NULL. */
+/* step: one step. run: several steps without an observer, or NULL. */
 struct fixed_method {
     tribo_fixed_step *step;
     tribo_fixed_run *run;
 };
 
-/* Steps of drv->dt from y, which is the last good state, to t1, the last one shorter where it must be. States are kept as by
- * tribo_driver_keep, but not copied. */
+/* Takes steps drv->dt from the last good state y at *t to t1; the last step may be shorter. Keeps states as tribo_driver_keep
+ * does, without copies. Returns a status. */
 int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, const struct fixed_method *method);
 
-/* tribo_driver_advance for a state of tribo_system_size values. */
+/* tribo_driver_advance for a methods' state y [tribo_system_size]. */
 int tribo_driver_advance_motion(tribo_driver *drv, double *t, double t1, double *y);
 
-/* A driver by method, which must live longer, in *drv. Returns what tribo_driver_create returns. */
+/* *drv = new driver with a method that must outlive the driver. Returns what tribo_driver_create returns. */
 int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const struct method *method);
 
 extern const struct method tribo_method_exact, tribo_method_event, tribo_method_central_fixed, tribo_method_moreau_fixed,

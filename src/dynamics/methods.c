@@ -65,14 +65,14 @@ int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *metho
 
 enum { EVENT, EXACT };
 
-/* The two drivers of auto, each created when it is first chosen. */
+/* The two drivers of auto, each created at first use. */
 struct choice {
     tribo_driver *inner[2];
-    int refused; /* 1: exact cannot do the system of this revision */
+    int refused; /* 1: exact has refused the system of this revision */
     size_t revision;
 };
 
-/* Returns EXACT for up to 200 degrees of freedom, whose modes cost little, and a system that exact can do. */
+/* Returns EXACT for up to 200 degrees of freedom, where modes are cheap, if exact supports the system; else EVENT. */
 static int driver_choose(const tribo_driver *drv)
 {
     const tribo_system *sys = drv->sys;
@@ -82,7 +82,7 @@ static int driver_choose(const tribo_driver *drv)
     return sys->ndof <= 200 && closed && !refused ? EXACT : EVENT;
 }
 
-/* Creates inner[which] where it is missing. The message of a failure is the system's. */
+/* Creates inner[which] unless it exists. Returns a status; the message is in the system. */
 static int provide(tribo_driver *drv, int which)
 {
     static const struct method *const of[] = {&tribo_method_event, &tribo_method_exact};
@@ -109,13 +109,13 @@ static void destroy_choice(tribo_driver *drv)
     }
 }
 
-/* An advance from *t to t1; or, if finds is 1, the search of a periodic motion from *t on. */
+/* An advance from *t to t1; with finds = 1 the search for a periodic motion from *t. */
 struct task {
     double *t, t1, period, *y;
     int finds;
 };
 
-/* Runs task x by inner[which] with the settings of drv, and adds its counts. Returns a status. */
+/* Runs task x by inner[which] with the settings of drv; adds the counts of inner[which] to drv. Returns a status. */
 static int delegate(tribo_driver *drv, int which, const struct task *x)
 {
     const struct choice *c = drv->own;
@@ -135,7 +135,7 @@ static int delegate(tribo_driver *drv, int which, const struct task *x)
     inner->data = drv->data;
     status = x->finds ? inner->method->find_periodic(inner, *x->t, x->period, x->y)
                       : tribo_driver_advance_motion(inner, x->t, x->t1, x->y);
-    /* The caller counts the evaluations of an advance. */
+    /* evaluations of an advance: counted by tribo_driver_advance_motion for drv */
     drv->steps += inner->steps - before.steps;
     drv->rejected += inner->rejected - before.rejected;
     drv->events += inner->events - before.events;

@@ -1,6 +1,5 @@
-/* Method "moreau/fixed": the implicit midpoint rule for the structure, Coulomb's law over the step, the mean of the loads at
- * both ends (Jean and Moreau 1992, theta = 1/2). The matrix of the structure is factorized once for a step length. Stable
- * for any dt. */
+/* Method "moreau/fixed": implicit midpoint rule for the structure, Coulomb's law over the step, mean of the loads at both ends
+ * (Jean and Moreau 1992, theta = 1/2). The matrix of the structure is factorized once for each step length. Stable for any dt. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,30 +12,31 @@
 #include "step_matrix.h"
 #include "common/real.h"
 
-/* For steps of length h: the matrix S = M + h/2 C + h^2/4 K, S^-1 J', and the contacts, whose operator is J S^-1 J'.
+/* Data of steps of length h: matrix S = M + h/2 C + h^2/4 K, S^-1 J', and contacts with the operator J S^-1 J'.
  *
- * A compliant contact has in a step of length h the mean (f0 + f1)/2 of its forces at both ends. Over the step it slides by
- * h J (u0 + u1)/2 + G (f1 - f0) less the way of its base, where |f1| <= limit. The contacts find f1/2 within limit/2, with
- * 4 G/h^2 in their operator, and J (u0 + u1) - 2 G f0/h in the place of a velocity at the end; f0/2 acts throughout. */
+ * A compliant contact has forces f0 and f1 at the ends of the step; (f0 + f1)/2 acts during the step. The contact slides by
+ *     h J (u0 + u1)/2 + G (f1 - f0) - displacement of its base,   |f1| <= limit.
+ * The context computes f1/2 within limit/2: 4 G/h^2 is added to its operator, J (u0 + u1) - 2 G f0/h replaces the velocity at the
+ * end. */
 struct moreau {
     struct step_form common;
-    double h;              /* step length that is prepared; 0: none */
-    struct step_band held; /* if the system has such a band: then the rest is made when it is first needed */
-    int whole;             /* 1: matrix, response and contacts are made */
+    double h;              /* prepared step length; 0: none */
+    struct step_band held; /* solver of bands; n = 0: not for this system. With n > 0 the rest is made at first need */
+    int whole;             /* 1: matrix, response and contacts are ready */
     struct step_matrix matrix;
-    double *response;         /* [ncontact][ndof] S^-1 J'; NULL: a step takes a second solution */
-    double *push;             /* [ndof] workspace of that solution */
-    double *limit;            /* [ncontact] of the contacts of a step */
+    double *response;         /* [ncontact][ndof] S^-1 J'; NULL: each step solves with S twice */
+    double *push;             /* [ndof] workspace of the second solution */
+    double *limit;            /* [ncontact] limits in a step; limit/2 for compliant contacts */
     double *ratio, *velocity; /* [ncontact] static limits */
-    int taken, tell, breaks;  /* 1: limit, ratio and velocity are taken; contacts have yet to get them; a ratio is above 1 */
-    size_t settings_taken;    /* tribo_system_settings when they were taken */
-    double *load;             /* [ndof] at the end of the step before */
-    double *spring, *give;    /* [ncontact] forces f0 of compliant contacts; G f0 */
+    int taken, tell, breaks;  /* 1: limit, ratio, velocity are set; not yet copied to contacts; a ratio is > 1 */
+    size_t settings_taken;    /* tribo_system_settings at the last update of limit */
+    double *load;             /* [ndof] load at the end of the last step */
+    double *spring, *give;    /* [ncontact] forces f0 of compliant contacts; workspace, as G f0 */
     double *change;           /* [ncontact] f1 - f0 */
     double *work;             /* [ndof] workspace */
-    signed char *loose;       /* [ncontact] slip, but 1 of compliant contacts: they hold no velocity */
-    tribo_context *contacts;  /* with the operator */
-    size_t settings;          /* sys->changes when contacts were made */
+    signed char *loose;       /* [ncontact] slip; 1 for compliant contacts, which are not snapped */
+    tribo_context *contacts;  /* contacts with the operator of a step */
+    size_t settings;          /* sys->changes at the creation of contacts */
 };
 
 static void moreau_destroy(tribo_driver *drv)
@@ -77,7 +77,7 @@ static int moreau_create(tribo_driver *drv)
     return TRIBO_OK;
 }
 
-/* For a diagonal S: sets the operator of single bodies. Returns a status. */
+/* For diagonal S: sets the operator of separate bodies, from own. Returns a status. */
 static int set_bodies(struct moreau *m, const tribo_system *sys, const double *own)
 {
     const struct matrix *j = &sys->direction;
@@ -96,8 +96,8 @@ static int set_bodies(struct moreau *m, const tribo_system *sys, const double *o
     return status ? tribo_system_fail(sys, status, "in a step, %s", tribo_message(m->contacts)) : TRIBO_OK;
 }
 
-/* Sets the operator r. Where r has lost light bodies to rounding, sets that of single bodies or refuses; own as in hidden.h.
- * Returns a status. */
+/* Sets the operator r. If r has lost light bodies to rounding, sets the operator of separate bodies or refuses. own: see
+ * hidden.h. Returns a status. */
 static int set_operator(struct moreau *m, const tribo_system *sys, const double *r, const double *own, double h)
 {
     struct hidden where;
@@ -125,13 +125,13 @@ static size_t planar_of(const tribo_context *contacts)
     return contacts && !tribo_get_count(contacts, TRIBO_COUNT_PLANAR, &planar) ? planar : 0;
 }
 
-/* 1 if the system's contacts may have become planar, or other planar ones. */
+/* Returns 1 if planar contacts may have changed since the creation of m->contacts. */
 static int planar_changed(const struct moreau *m, const tribo_system *sys)
 {
     return m->settings != sys->changes && (planar_of(sys->contacts) || planar_of(m->contacts));
 }
 
-/* Creates m->contacts, with planar contacts where the system has them. 0 if out of memory. */
+/* Creates m->contacts, with the planar contacts of the system. Returns 0 if out of memory. */
 static int make_contacts(struct moreau *m, const tribo_system *sys)
 {
     if (m->contacts && !planar_of(sys->contacts) && !planar_of(m->contacts)) {
@@ -152,13 +152,12 @@ static int solve_steps(const void *matrix, size_t count, double *x)
     return tribo_step_matrix_solve(matrix, count, x);
 }
 
-/* r [ncontact][ncontact] = J S^-1 J', and own as in hidden.h. 0 if out of memory. */
+/* r [ncontact][ncontact] = J S^-1 J'; own as in hidden.h. Returns 0 if out of memory. */
 static int find_operator(const struct moreau *m, const tribo_system *sys, double *r, double *own)
 {
     const int symmetric = tribo_step_matrix_has_halves(&m->matrix);
     if (symmetric && m->response) {
-        /* r = W'W with W = H^-1 J', S = H H', as symmetric and semidefinite as rounding lets it be, and x [ncontact][ndof] =
-         * S^-1 J'. */
+        /* r = W'W, W = H^-1 J', S = H H': symmetric, and semidefinite up to rounding; x [ncontact][ndof] = S^-1 J'. */
         double *x = m->response;
         const size_t n = sys->ndof, c = sys->ncontact;
         for (size_t i = 0; i < c; i++) {
@@ -181,7 +180,7 @@ static int find_operator(const struct moreau *m, const tribo_system *sys, double
     return done;
 }
 
-/* Makes the factor, S^-1 J', and a context with the operator J S^-1 J'. Returns a status. */
+/* Computes the factor, S^-1 J', and contacts with the operator J S^-1 J'. Returns a status. */
 static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
 {
     const size_t c = sys->ncontact;
@@ -189,7 +188,7 @@ static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
     if (status) {
         return status;
     }
-    /* S^-1 J' is kept unless it is more than a fifth of a sparse factor: then a step is one solve. */
+    /* S^-1 J' is kept up to 1/5 of the entries of a sparse factor: a step then solves with S once instead of twice. */
     const int keeps =
         !m->matrix.sparse.sparse || sys->ncontact * sys->ndof <= tribo_sparse_factor_entries(m->matrix.sparse.sparse) / 5;
     free(m->response);
@@ -231,7 +230,7 @@ static void push(struct moreau *m, const tribo_system *sys, double h, const doub
     }
 }
 
-/* Prepares steps of length h: in the band, or the whole. Returns a status. */
+/* Prepares steps of length h: the band solver, or all of prepare_whole. Returns a status. */
 static int moreau_prepare(struct moreau *m, const tribo_system *sys, double h)
 {
     size_t where = 0;
@@ -257,7 +256,7 @@ static void find_load(struct moreau *m, tribo_system *sys, double t)
     tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, m->load);
 }
 
-/* Takes limits and static limits, if they may have changed since the last step. */
+/* Updates limit, ratio and velocity after a change of settings or limits. */
 static void moreau_take_limits(struct moreau *m, const tribo_system *sys)
 {
     const size_t revision = tribo_system_settings(sys);
@@ -277,7 +276,7 @@ static void moreau_take_limits(struct moreau *m, const tribo_system *sys)
 
 /* ------------------------------------------------------------------------------------------------------------ a step */
 
-/* p -= h (K q + C u), of the parts that are weighed or of those that are not. */
+/* p -= h (K q + C u), only the terms with this value of `weighed`. */
 static void pull_back(const tribo_system *sys, int weighed, double h, const double *q, const double *u, double *p)
 {
     const struct step_part k = tribo_step_stiffness(sys), c = tribo_step_damping(sys);
@@ -289,7 +288,7 @@ static void pull_back(const tribo_system *sys, int weighed, double h, const doub
     }
 }
 
-/* p = impulse of loads and structure in a step; s->u = displacements in the middle of the step without changes of velocity. */
+/* p = impulse of loads and structure in a step; s->u = displacements in the middle of the step at constant velocity. */
 static void find_push(struct moreau *m, tribo_system *sys, double t, double next, const double *from, double *p)
 {
     struct step_form *s = &m->common;
@@ -315,7 +314,7 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
     sys->evaluations++;
 }
 
-/* s->f, s->mode and the velocity s->u at the end of the step, by the operator. Returns a status. */
+/* Sets s->f, s->mode, and s->u = velocity at the end of the step, with the operator of contacts. Returns a status. */
 static int respond_whole(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
 {
     struct step_form *s = &m->common;
@@ -354,7 +353,7 @@ static int respond_whole(struct moreau *m, const tribo_system *sys, double h, co
     return TRIBO_OK;
 }
 
-/* The same in the band. 0 if the system has no such band, or static limits, or no solution is found. */
+/* respond_whole by the band solver. Returns 0 without a band, with static limits, or if no solution is found. */
 static int respond_in_band(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
 {
     struct step_form *s = &m->common;
@@ -379,7 +378,7 @@ static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, c
     return status ? status : respond_whole(m, sys, h, u, du);
 }
 
-/* m->spring = f1 = 2 s->f of compliant contacts, and s->f = 0. Returns the energy that they dissipate. */
+/* For compliant contacts: m->spring = f1 = 2 s->f, then s->f = 0. Returns the energy dissipated. */
 static double end_springs(struct moreau *m, const tribo_system *sys, double h)
 {
     struct step_form *s = &m->common;
@@ -406,7 +405,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     tribo_system *sys = drv->sys;
     const size_t n = sys->ndof, energy = tribo_system_energy(sys);
     const double h = next - t, *u = from + n;
-    /* steps of equal length differ by the rounding of time only */
+    /* steps of equal length differ only by rounding of times */
     if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision || planar_changed(m, sys)) {
         const int status = moreau_prepare(m, sys, h);
         if (status) {

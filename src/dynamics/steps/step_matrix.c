@@ -41,7 +41,7 @@ struct step_part tribo_step_damping(const tribo_system *sys)
     return sys->c.rows ? (struct step_part){&sys->c, 0} : (struct step_part){&sys->damping, !sys->unsolved};
 }
 
-/* a += factor b. 0 if out of memory. */
+/* a += factor b. Returns 0 if out of memory. */
 static int add(struct matrix *a, double factor, const struct matrix *b)
 {
     struct matrix sum;
@@ -54,7 +54,7 @@ static int add(struct matrix *a, double factor, const struct matrix *b)
     return done;
 }
 
-/* a = M a for a diagonal M. */
+/* a = M a for diagonal M. Returns 0 if out of memory. */
 static int step_matrix_weigh(struct matrix *a, const struct matrix *mass)
 {
     double *factor = malloc((a->rows + 1) * sizeof *factor);
@@ -68,8 +68,8 @@ static int step_matrix_weigh(struct matrix *a, const struct matrix *mass)
     return factor != NULL;
 }
 
-/* a = S. Weighed parts are added to the identity, then multiplied with M; the others are added after that. 0 if out of
- * memory: then a is zeroed. */
+/* a = S. Adds weighed parts to the identity, multiplies by M, then adds the other parts. Returns 0 if out of memory; then a is
+ * zeroed. */
 static int step_matrix_sum_up(const tribo_system *sys, double h, struct matrix *a)
 {
     const struct step_part k = tribo_step_stiffness(sys), c = tribo_step_damping(sys);
@@ -87,7 +87,7 @@ static int step_matrix_sum_up(const tribo_system *sys, double h, struct matrix *
 
 /* ------------------------------------------------------------------------------------------------------------ its factor */
 
-/* 1 if a sparse factor costs less than the band: the band has far more entries than A, or is nearly the whole matrix. */
+/* Returns 1 if a sparse factor costs less than the band: the band has far more entries than a, or is almost the whole matrix. */
 static int suits_sparse(const struct step_matrix *m, const struct matrix *a)
 {
     const size_t width = m->below > m->above ? m->below : m->above;
@@ -109,7 +109,7 @@ static int factorize_band(struct step_matrix *m, const struct matrix *a, size_t 
     return status;
 }
 
-/* A factor with exchange of rows by LAPACK: S need not be definite, only regular. Returns a status. */
+/* Factorizes with exchanges of rows, by LAPACK: a must be regular, but need not be definite. Returns a status. */
 static int factorize_lopsided(struct step_matrix *m, const struct matrix *a, size_t *where)
 {
     const size_t n = m->n, width = 2 * m->below + m->above + 1, middle = m->below + m->above;

@@ -19,7 +19,7 @@ void tribo_compliance_free(struct compliance *g)
     memset(g, 0, sizeof *g);
 }
 
-/* own, contact, count and shared. Returns the status of tribo_definite_create. */
+/* Sets own, contact, count and shared. Returns the status of tribo_definite_create, or TRIBO_ERR_MEMORY. */
 static int set_entries(struct compliance *g, size_t ncontact, const double *own, const double *entries, size_t *where)
 {
     g->own = malloc((ncontact + 1) * sizeof *g->own);
@@ -36,7 +36,7 @@ static int set_entries(struct compliance *g, size_t ncontact, const double *own,
     return entries ? tribo_definite_create(g->shared, ncontact, entries, where) : TRIBO_OK;
 }
 
-/* pull. 0 if out of memory. */
+/* Sets pull = M^-1 J' in the columns of compliant contacts. Returns 0 if out of memory. */
 static int compliance_find_pull(tribo_system *sys)
 {
     struct compliance *g = &sys->compliance;
@@ -88,7 +88,7 @@ static void solve_sizes(const struct compliance *g, size_t ncontact, double *siz
     }
 }
 
-/* stiffest, structure, added and tightest, from forces as large as they can be beside displacements of 1. 0 if out of memory. */
+/* Sets stiffest, structure, added, tightest, by the bound |G^-1| |J| of forces per displacement. Returns 0 if out of memory. */
 static int find_stiffest(tribo_system *sys)
 {
     const size_t n = sys->ndof;
@@ -136,8 +136,8 @@ int tribo_compliance_copy(tribo_system *to, const tribo_system *from)
     return !g->count || !tribo_compliance_create(to, NULL, g->own, g->shared ? g->shared->matrix : NULL, &where);
 }
 
-/* A compliant contact this many times as stiff as the structure changes a motion by 1e-8 of it, and the rounding of
- * displacements changes its force by as much: it had better be rigid. */
+/* Largest stiffness of a compliant contact, relative to the structure. At this ratio the compliance changes a motion by 1e-8 of
+ * the motion, and the rounding of displacements changes the force by 1e-8 of the force: the contact should be rigid. */
 #define MOST_STIFF 1e8
 
 int tribo_compliance_check(const tribo_system *sys)

@@ -1,5 +1,5 @@
-/* Compliant contacts: v = J q' + G f' - b with a symmetric G, positive definite over the compliant contacts and zero in rows of
- * rigid ones. The forces f are part of a state. With A the compliant contacts at rest and S those that slide,
+/* Compliant contacts: v = J q' + G f' - b. G is symmetric, positive definite over compliant contacts, 0 in rows of rigid
+ * contacts. The forces f are part of the state. With the sets A of compliant contacts at rest and S of sliding contacts,
  *     f_A' = -G_AA^-1 (J_A q' - b_A),   f_S' = 0,   v_S = J_S q' - b_S + G_SA f_A'. */
 #ifndef TRIBO_COMPLIANCE_H
 #define TRIBO_COMPLIANCE_H
@@ -9,18 +9,18 @@
 #include "tribo/tribo_dynamics.h"
 
 struct compliance {
-    size_t count;            /* compliant contacts; 0: all other members are empty */
-    size_t *contact;         /* [count] ascending */
+    size_t count;            /* number of compliant contacts; 0: all other members are empty */
+    size_t *contact;         /* [count] compliant contacts, ascending */
     double *own;             /* [ncontact] G_ii */
-    struct definite *shared; /* G, where it is not diagonal; else NULL */
-    struct matrix pull;      /* [ndof][ncontact] M^-1 J' in columns of compliant contacts, else zero */
-    double stiffest;         /* bound on omega^2, whichever contacts rest */
+    struct definite *shared; /* G, if not diagonal; else NULL */
+    struct matrix pull;      /* [ndof][ncontact] M^-1 J' in columns of compliant contacts, else 0 */
+    double stiffest;         /* bound of omega^2, with any contacts at rest */
     double structure;        /* largest (M^-1 K)_dd */
-    double added;            /* largest part that one compliant contact adds to omega^2 of a degree of freedom; */
-    size_t tightest;         /* this contact */
+    double added;            /* largest contribution of one compliant contact to omega^2 of a degree of freedom */
+    size_t tightest;         /* the contact of `added` */
 };
 
-/* A force is known to this part of the terms that it is the sum of, and may pass its limit by this many times that. */
+/* NOISE: rounding error of a force, relative to its terms. ALLOWED: excess of a force over its limit, in rounding errors. */
 #define TRIBO_SPRING_NOISE 2e-14
 #define TRIBO_SPRING_ALLOWED 8.0
 
@@ -29,53 +29,53 @@ static inline int tribo_is_compliant(const struct compliance *g, size_t i)
     return g->count && g->own[i] > 0.0;
 }
 
-/* G_ik of compliant contacts among n contacts. */
+/* Returns G_ik; n: number of contacts. */
 static inline double tribo_compliance_entry(const struct compliance *g, size_t n, size_t i, size_t k)
 {
     return g->shared ? g->shared->matrix[i * n + k] : i == k ? g->own[i] : 0.0;
 }
 
-/* Gives sys, whose R and M^-1 J' are those of the rigid contacts, J and G. direction: J of all contacts, taken; NULL: sys has it.
- * own [ncontact]: G_ii. g [ncontact][ncontact]: G; NULL: it is diagonal. Returns TRIBO_OK, TRIBO_ERR_MEMORY, or
- * TRIBO_ERR_INDEFINITE and a contact whose row of G depends on those before it. */
+/* Sets J and G of sys; R and M^-1 J' of sys belong to the rigid contacts. direction: J of all contacts, taken; NULL: sys has J.
+ * own [ncontact]: G_ii. g [ncontact][ncontact]: G; NULL: diagonal. Returns TRIBO_OK, TRIBO_ERR_MEMORY, or TRIBO_ERR_INDEFINITE
+ * and *where = a contact with a row of G that depends on earlier rows. */
 int tribo_compliance_create(tribo_system *sys, struct matrix *direction, const double *own, const double *g, size_t *where);
 int tribo_compliance_copy(tribo_system *to, const tribo_system *from); /* 1, or 0 if out of memory */
 void tribo_compliance_free(struct compliance *g);
 
-/* Returns TRIBO_ERR_UNSUPPORTED if a compliant contact is so stiff beside the structure and its loads that the rounding of
- * displacements hides its force. */
+/* Returns TRIBO_ERR_UNSUPPORTED if a compliant contact is so stiff relative to structure and loads that rounding of displacements
+ * hides its force. */
 int tribo_compliance_check(const tribo_system *sys);
 
-/* force [ncontact] = f of a state y, 0 of rigid contacts; and back. */
+/* get: force [ncontact] = f of a state y, 0 for rigid contacts. put: f of y = force. */
 void tribo_compliance_get(const tribo_system *sys, const double *y, double *force);
 void tribo_compliance_put(const tribo_system *sys, const double *force, double *y);
 
-/* x [ncontact][columns] = G_AA^-1 x over the compliant contacts A with slip 0; slip NULL: all of them. Other rows become 0. */
+/* x [ncontact][columns] = G_AA^-1 x over the set A of compliant contacts with slip 0 (NULL: all); 0 in other rows. */
 void tribo_compliance_solve(const tribo_system *sys, const signed char *slip, size_t columns, double *x);
 
 /* x [ncontact][columns] = G f. */
 void tribo_compliance_give(const tribo_system *sys, size_t columns, const double *f, double *x);
 
-/* rate [ncontact] = f', and v [ncontact] = J q' - b in, the velocity against the bases out. Elements of rigid contacts stay. */
+/* rate [ncontact] = f'; 0 for rigid contacts. v [ncontact]: in J q' - b; out J q' + G f' - b, unchanged for rigid contacts. */
 void tribo_compliance_rates(const tribo_system *sys, const signed char *slip, double *v, double *rate);
 
-/* The same, without slip: a contact slides if its force in y is at its limit and v points against the force. */
+/* tribo_compliance_rates without slip: a contact slides if its force in y is at its limit and v points against the force. */
 void tribo_compliance_move(const tribo_system *sys, const double *y, double *v, double *rate);
 
-/* noise [ncontact] = bounds of the rounding errors of forces, 0 of rigid contacts. */
+/* noise [ncontact] = TRIBO_SPRING_NOISE |G^-1| |J| |q|, bounds of rounding errors of forces; 0 for rigid contacts. */
 void tribo_compliance_noise(const tribo_system *sys, const double *q, double *noise);
 
-/* Takes forces back within limits [ncontact], as their sliders slide back. Returns the energy that this dissipates. */
+/* Reduces forces to their limits [ncontact]; sliders slide back. Returns the energy dissipated. */
 double tribo_compliance_bound(const tribo_system *sys, const double *limit, double *force);
 
-/* The same for the state y, in which energy becomes dissipated. force [ncontact] out: f. */
+/* tribo_compliance_bound for the forces in y; adds the energy dissipated to the energy of y. force [ncontact] = f. */
 void tribo_compliance_enter(const tribo_system *sys, const double *limit, double *force, double *y);
 
-/* v [n], velocities without f', becomes G f' + v with rates f' within c->lo and c->hi, in c->f; 0 where f' is not 0. */
+/* c->f = rates f' in [c->lo, c->hi]; v [n]: in velocities without f', out v + G f', exactly 0 where f' != 0. */
 void tribo_compliance_share(struct definite *c, double *v);
 
-/* Perturbations v [2 ndof + count][columns] of a state whose contacts have this slip from here on: forces of contacts that slide
- * have none. work [2 ncontact][columns]. */
+/* Applies slip [ncontact] to perturbations v [2 ndof + count][columns] of a state: 0 for forces of sliding contacts. work [2
+ * ncontact][columns]. */
 void tribo_compliance_perturb(const tribo_system *sys, const signed char *slip, size_t columns, double *v, double *work);
 
 #endif

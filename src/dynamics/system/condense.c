@@ -1,6 +1,6 @@
-/* Degrees of freedom without mass, w, of a model follow those with mass, q, by K_ww w = J_w'f - K_wq q:
+/* Eliminates the degrees of freedom w without mass of a model by K_ww w = J_w'f - K_wq q; q: degrees of freedom with mass.
  *     w = follow q + give f,   follow = -K_ww^-1 K_wq,   give = K_ww^-1 J_w'.
- * The system of q has the stiffness K_qq + K_qw follow, the directions J_q + J_w follow, and the compliance G = J_w give. */
+ * The system of q has stiffness K_qq + K_qw follow, directions J_q + J_w follow, and compliance G = J_w give. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,12 +9,12 @@
 #include "model.h"
 #include "common/real.h"
 
-/* A sum that is not more than this part of its terms is rounding, and so is a pivot beside its diagonal entry. */
+/* A sum is rounding if at most ROUNDING times its terms; a pivot, if at most ROUNDING times its diagonal entry. */
 #define ROUNDING (64.0 * DBL_EPSILON)
 
 /* ---------------------------------------------------------------------------------------------------- lists of entries */
 
-/* Entries of a matrix, row i and column j. */
+/* Entries v of a matrix: row i, column j. */
 struct triplets {
     size_t count, room, *i, *j;
     double *v;
@@ -40,7 +40,7 @@ static void condense_put(struct triplets *t, size_t i, size_t j, double v)
     }
 }
 
-/* to = the matrix of the entries, which are freed. 0 if out of memory. */
+/* to [rows][cols] = matrix of the entries in t; frees t. Returns 0 if out of memory. */
 static int finish_triplets(struct triplets *t, size_t rows, size_t cols, struct matrix *to)
 {
     const int done = !t->failed && tribo_matrix_from_triplets(to, rows, cols, t->count, t->i, t->j, t->v);
@@ -59,7 +59,7 @@ static void put_row(struct triplets *t, const struct matrix *a, size_t row, size
 
 /* ------------------------------------------------------------------------------------------------------------- sliders */
 
-/* Entries of m->stiffness in one place become their sum. 0 if out of memory. */
+/* Adds up entries of k with equal row and column. Returns 0 if out of memory. */
 static int sum_places(struct matrix *k)
 {
     struct triplets t = {0};
@@ -96,7 +96,7 @@ int tribo_model_add_sliders(struct model *m)
             put_row(&d, j, i, i);
             continue;
         }
-        /* P'P/compliance with P = (row i of J, -1 at w) */
+        /* k += P'P/compliance with P = (row i of J, -1 at w) */
         for (size_t a = first; a <= last; a++) {
             for (size_t b = first; b <= last; b++) {
                 const double product = (a < last ? j->val[a] : -1.0) * (b < last ? j->val[b] : -1.0);
@@ -124,13 +124,13 @@ int tribo_model_add_sliders(struct model *m)
 /* ------------------------------------------------------------------------------------------------------------- q and w */
 
 struct condensed {
-    size_t with, without;     /* numbers of q and w */
-    unsigned char *is;        /* [ndof] 1: without mass */
-    size_t *place, *dof;      /* [ndof] index in q or w; [without] degree of freedom of w */
-    struct cholesky factor;   /* of K_ww */
+    size_t with, without;     /* lengths of q and w */
+    unsigned char *is;        /* [ndof] 1: no mass */
+    size_t *place, *dof;      /* [ndof] index in q or w; [without] degree of freedom of an index in w */
+    struct cholesky factor;   /* Cholesky factor of K_ww */
     double *x, *sum, *size;   /* [without], [with], [with] workspace */
-    double *terms;            /* [with] sizes of the terms of the diagonal of the stiffness of q */
-    double *own, *shared;     /* [ncontact] G_ii; [ncontact][ncontact] G if it is not diagonal, else NULL */
+    double *terms;            /* [with] sum of the sizes of the terms of the stiffness K_ii of q */
+    double *own, *shared;     /* [ncontact] G_ii; [ncontact][ncontact] G, NULL if G is diagonal */
     struct matrix kqq, kqw, kww, jq, touch; /* blocks of K and J; touch = J_w */
     struct matrix follow, give;             /* [without][with], [without][ncontact] */
 };
@@ -148,7 +148,7 @@ static void condensed_free(struct condensed *s)
     free(s->shared);
 }
 
-/* Sets is, place, dof, with and without. A degree of freedom has no mass if M has no row of it, or an empty one. 0 if out of
+/* Sets is, place, dof, with and without. A degree of freedom has no mass if its row of M is missing or 0. Returns 0 if out of
  * memory. */
 static int condense_number(const struct model *m, struct condensed *s)
 {
@@ -192,7 +192,7 @@ static int check_damping(const struct model *m, const struct condensed *s)
 
 enum { Q, W, ALL };
 
-/* to = the block of a of the rows and columns of q or w; of J, whose rows are contacts, ALL rows. 0 if out of memory. */
+/* to = block of a, rows and columns of q or w; ALL rows for J (rows are contacts). Returns 0 if out of memory. */
 static int take_block(const struct condensed *s, const struct matrix *a, int rows, int cols, struct matrix *to)
 {
     const size_t of[] = {s->with, s->without, a->rows};
@@ -207,7 +207,7 @@ static int take_block(const struct condensed *s, const struct matrix *a, int row
     return finish_triplets(&t, of[rows], of[cols], to);
 }
 
-/* s->x = K_ww^-1 times row i of a [..][without]. 0 if the row is empty. */
+/* s->x = K_ww^-1 (row i of a)', a [..][without]. Returns 1, or 0 if the row is empty. */
 static int solve_row(struct condensed *s, const struct matrix *a, size_t i)
 {
     memset(s->x, 0, s->without * sizeof *s->x);
@@ -220,7 +220,7 @@ static int solve_row(struct condensed *s, const struct matrix *a, size_t i)
     return a->first[i] < a->first[i + 1];
 }
 
-/* to = factor K_ww^-1 a', a [..][without]. 0 if out of memory. */
+/* to = factor K_ww^-1 a', a [..][without]. Returns 0 if out of memory. */
 static int condense_respond(struct condensed *s, const struct matrix *a, double factor, struct matrix *to)
 {
     struct triplets t = {0};
@@ -232,8 +232,8 @@ static int condense_respond(struct condensed *s, const struct matrix *a, double 
     return finish_triplets(&t, s->without, a->rows, to);
 }
 
-/* to = q + w follow, q [..][with], w [..][without]; entries that are rounding become 0, and so do rows with skip [rows] != 0.
- * terms [rows] out, or NULL: sizes of the terms of to_ii. 0 if out of memory. */
+/* to = q + w follow, q [..][with], w [..][without]; 0 for entries that are rounding and rows with skip [rows] != 0 (NULL: none).
+ * terms [rows] out, or NULL: sum of the sizes of the terms of to_ii. Returns 0 if out of memory. */
 static int condense_combine(struct condensed *s, const struct matrix *q, const struct matrix *w, const double *skip,
                             double *terms, struct matrix *to)
 {
@@ -271,7 +271,7 @@ static int condense_combine(struct condensed *s, const struct matrix *q, const s
     return finish_triplets(&t, q->rows, s->with, to);
 }
 
-/* Factor of K_ww, of which no pivot is rounding. */
+/* Factorizes K_ww. Returns a status, TRIBO_ERR_INDEFINITE if a pivot is rounding. */
 static int factorize_without(const struct model *m, struct condensed *s)
 {
     size_t where = 0;
@@ -292,7 +292,7 @@ static int factorize_without(const struct model *m, struct condensed *s)
                                       : TRIBO_OK;
 }
 
-/* G, diagonal if entries beside the diagonal are rounding. */
+/* Sets own = G_ii, and shared = G if an entry off the diagonal is more than rounding. Returns a status. */
 static int find_compliance(const struct model *m, struct condensed *s)
 {
     const size_t n = m->ncontact;
@@ -321,8 +321,8 @@ static int find_compliance(const struct model *m, struct condensed *s)
     return TRIBO_OK;
 }
 
-/* The matrices of q take the place of those of m; direction = J of all contacts, m->direction only that of rigid ones. 0 if out
- * of memory. */
+/* Replaces the matrices of m by the matrices of q. direction = J of all contacts; m->direction = J with empty rows of compliant
+ * contacts. Returns 0 if out of memory. */
 static int replace_matrices(struct model *m, struct condensed *s, struct matrix *direction)
 {
     struct matrix mass = {0}, damping = {0}, stiffness = {0}, rigid = {0}, half = {0}, other = {0};
@@ -343,7 +343,7 @@ static int replace_matrices(struct model *m, struct condensed *s, struct matrix 
     return done;
 }
 
-/* Builds the system of q, and gives it w. */
+/* Builds the system of q, with its compliance, and w as its expansion. Returns a status. */
 static int build_without(struct model *m, struct condensed *s, int (*build_massive)(struct model *, tribo_system **),
                          tribo_system **sys)
 {

@@ -1,20 +1,20 @@
-/* For many times: the angle omega t as the sum of two numbers, less a whole number of quarter turns, is at most an eighth of
- * a turn, for which Taylor's series of eight terms are enough. Where the caller rounds upwards or downwards it is at most a
- * quarter turn, for which they are right to 1e-12. Without branches, so that loops over times become vectors. */
+/* For many times: omega t is a sum of two doubles. Subtracting whole quarter turns gives an angle up to an eighth of a turn,
+ * where eight terms of Taylor's series suffice. In a rounding mode upwards or downwards the angle is up to a quarter turn, where
+ * the series have errors of 1e-12. There are no branches, so that loops over times become vectors. */
 #include "cos_sin.h"
 #include "common/simd.h"
 #include "numerics/twofold.h"
 
 #include <math.h>
 
-/* A whole number next to x, |x| < 2^51: the nearest one where the caller rounds to nearest. */
+/* Returns a whole number next to x, |x| < 2^51; the nearest one in the rounding mode to nearest. */
 static inline double nearest(double x)
 {
-    const double lift = 6755399441055744.0; /* 1.5 2^52: the digits of a sum end before the point */
+    const double lift = 6755399441055744.0; /* 1.5 2^52: sums with lift have no digits after the point */
     return (x + lift) - lift;
 }
 
-/* angle - quarters pi/2. pi/2 is first + second + third; multiples of first and second up to 2^20 are exact. */
+/* Returns angle - quarters pi/2. pi/2 = first + second + third; multiples of first and second up to 2^20 are exact. */
 static inline struct twofold without_quarters(struct twofold angle, double quarters)
 {
     const double first = 0x1.921fb544p+0, second = 0x1.0b4611a6p-34, third = 0x1.3198a2e037073p-69;
@@ -22,7 +22,7 @@ static inline struct twofold without_quarters(struct twofold angle, double quart
     return twofold_sum(x.hi, (x.lo - quarters * third) + angle.lo);
 }
 
-/* The sum of c[k] (-z)^k, k < 8, by pairs: no term waits for more than three others. */
+/* Returns the sum of c[k] (-z)^k, k < 8, added in pairs: no term waits for more than three others. */
 static inline double alternating(double z, const double *c)
 {
     const double z2 = z * z;
@@ -53,8 +53,8 @@ TRIBO_SIMD static void cos_sin_near(double omega, size_t n, const double *restri
         const double quarters = nearest(angle.hi * 0.63661977236758134);
         const struct twofold x = without_quarters(angle, quarters);
         const double cx = cosine_near_0(x), sx = sine_near_0(x);
-        const double left = quarters - 4.0 * nearest(0.25 * quarters), size = fabs(left); /* -2 to 2, rounded otherwise -3 to 3 */
-        const double past = (size - 1.0) * (size - 2.0) * (1 / 3.);                       /* 0 but for 0 and 3 */
+        const double left = quarters - 4.0 * nearest(0.25 * quarters), size = fabs(left); /* -2 to 2; in other modes -3 to 3 */
+        const double past = (size - 1.0) * (size - 2.0) * (1 / 3.);                       /* 0 unless size is 0 or 3 */
         const double cq = (1.0 - size) + size * past, sq = left * (2.0 - size) + left * past;
         c[k] = cq * cx - sq * sx;
         s[k] = sq * cx + cq * sx;
@@ -63,7 +63,7 @@ TRIBO_SIMD static void cos_sin_near(double omega, size_t n, const double *restri
 
 TRIBO_SIMD static int any_far(double omega, size_t n, const double *t)
 {
-    int64_t any = 0; /* as wide as what is compared */
+    int64_t any = 0; /* as wide as the doubles compared, for vectors */
     for (size_t k = 0; k < n; k++) {
         any |= fabs(omega * t[k]) <= COS_SIN_NEAR ? 0 : -1;
     }
@@ -77,10 +77,10 @@ void tribo_turn(double angle, double *cosine, double *sine)
     *sine = s;
 }
 
-/* Angles below have cosine 1, and are their own sine, to rounding. */
+/* For smaller angles, cosine = 1 and sine = angle up to rounding. */
 #define TINY_ANGLE 1e-8
 
-/* Turns on by `rest`, the rounding of omega t, by which phases of late times would tremble. */
+/* Rotates by `rest`, the rounding error of omega t plus omega low, without which phases at late times have random errors. */
 void tribo_cos_sin(double omega, double t, double low, double *c, double *s)
 {
     const double angle = omega * t, rest = (fabs(angle) < TWOFOLD_FAR ? twofold_product(omega, t).lo : 0.0) + omega * low;

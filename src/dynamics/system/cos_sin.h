@@ -1,19 +1,19 @@
-/* Cosine and sine at once: of an angle, and of omega t, for one time or for many. */
+/* Cosine and sine of an angle, or of omega t, for one time or many. */
 #ifndef TRIBO_COS_SIN_H
 #define TRIBO_COS_SIN_H
 
 #include <stddef.h>
 
-/* By the functions of math.h. A function of its own, without branches, in which compilers see that both are of the same angle. */
+/* cosine, sine of angle by math.h. A separate function without branches: compilers then compute both values together. */
 void tribo_turn(double angle, double *cosine, double *sine);
 
-/* c [n] and s [n] of omega t at the times t [n], to 1.2e-16 of the exact product: each pair is a function of omega and its t
- * to the last bit, whatever n is. Up to |omega t| = COS_SIN_NEAR it takes some 100 operations for several times at once,
- * beyond that the functions of math.h. */
+/* c [n], s [n] = cosine and sine of omega t, times t [n], to 1.2e-16 for the exact product omega t. The bits of a pair depend
+ * only on omega and its t, not on n. For |omega t| <= COS_SIN_NEAR: some 100 operations, several times at once; beyond by
+ * math.h. */
 #define COS_SIN_NEAR 1e6
 void tribo_cos_sin_all(double omega, size_t n, const double *t, double *c, double *s);
 
-/* The same at t + low, where low is the part of a time below its last digit, by the functions of math.h, to 2.5e-16. */
+/* c, s = cosine and sine of omega (t + low), low the part of the time below the last digit of t; by math.h, error 2.5e-16. */
 void tribo_cos_sin(double omega, double t, double low, double *c, double *s);
 
 #endif

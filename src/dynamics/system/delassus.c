@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows of J that are solved for at a time: factors are read once for them. */
+/* Rows of J solved at a time: one pass through the factor serves BATCH rows. */
 enum { BATCH = 16 };
 
 void tribo_delassus_put_row(const struct matrix *j, size_t i, double *x)

@@ -1,4 +1,4 @@
-/* The equations of motion of a system, and its life. */
+/* The equations of motion of a system; creation and destruction of systems. */
 #include "system.h"
 #include "common/real.h"
 #include "common/simd.h"
@@ -44,7 +44,7 @@ void tribo_system_free_motion(tribo_system *sys, double t, const double *y, doub
     tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, a);
 }
 
-/* v and a as contacts see the motion: vectors of the system, or, where nothing is between them, of the motion itself. */
+/* v and a of the contacts: arrays of the system, or, if J is the identity and bases do not move, of the motion. */
 struct seen {
     const double *v, *a;
 };
@@ -60,7 +60,7 @@ static struct seen see(tribo_system *sys, double t, const double *y, double *acc
                          tribo_matrix_image(&sys->direction, acceleration, sys->a)};
 }
 
-enum { LANES = 8 }; /* side by side, since one sum would wait for itself */
+enum { LANES = 8 }; /* partial sums: additions to a single sum wait for each other */
 
 TRIBO_SIMD static double equations_power_of(size_t n, const double *restrict tally, const double *restrict f,
                                             const double *restrict v)
@@ -106,14 +106,14 @@ int tribo_system_begin_rates(tribo_system *sys, double t, const double *y, doubl
     const struct seen seen = see(sys, t, y, acceleration);
     sys->status = tribo_balance(sys->contacts, seen.v, seen.a, sys->feq, sys->f);
     if (!sys->status) {
-        /* the forces stay: where a mark changes, the law's two forms agree */
+        /* f stays valid: where a reversal mark changes, both forms of the law give the same force */
         sys->status = tribo_accept(sys->contacts, seen.v, sys->feq);
         add_forces(sys, seen.v, acceleration, power);
     }
     return tribo_system_explain(sys, sys->status);
 }
 
-/* What a derivative has besides accelerations and power; sys->v has the velocities for the driver. */
+/* Sets the rest of dydt, q' [ndof]. If J is the identity and bases do not move, also sys->v = q' for the driver. */
 static void equations_complete(tribo_system *sys, const double *y, double *dydt)
 {
     const double *u = y + sys->ndof;
@@ -146,7 +146,7 @@ int tribo_system_derivative(tribo_system *sys, double t, const double *y, double
         return sys->status;
     }
     if (tribo_system_rates(sys, t, y, sys->acceleration, &power)) {
-        const int status = tribo_system_check_state(sys, t, y); /* names the value of y, if it is one */
+        const int status = tribo_system_check_state(sys, t, y); /* names the value of y that is not finite */
         return sys->status = status ? status : sys->status;
     }
     equations_complete(sys, y, dydt);
@@ -169,7 +169,7 @@ int tribo_system_get_force(const tribo_system *sys, double *f)
 
 /* --------------------------------------------------------------------------------------------------------------------- states */
 
-/* v and a of a caller's state *y, after checking it; *y becomes that of the methods. */
+/* Checks the caller's state *y; sets sys->v and sys->a, and *y = the methods' state. Returns a status. */
 static int contacts_at(tribo_system *sys, double t, const double **y)
 {
     int status = tribo_system_check_state(sys, t, *y);
@@ -196,7 +196,7 @@ static int contacts_at(tribo_system *sys, double t, const double **y)
     return status;
 }
 
-/* to [ncontact], or NULL: forces of compliant contacts, by the state. */
+/* to [ncontact], or NULL: sets the forces of compliant contacts from y. */
 static void put_spring_forces(const tribo_system *sys, const double *y, double *to)
 {
     for (size_t k = 0; to && k < sys->compliance.count; k++) {
@@ -273,7 +273,7 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
     return TRIBO_OK;
 }
 
-/* A copy of the lent context, too, if there is one; 0 if out of memory. */
+/* Copies the lent context, if there is one. Returns 0 if out of memory. */
 static int copy_lent(tribo_system *to, const tribo_system *sys)
 {
     if (!sys->lent) {
@@ -282,7 +282,7 @@ static int copy_lent(tribo_system *to, const tribo_system *sys)
     return tribo_clone(sys->lent, &to->lent) == TRIBO_OK && tribo_fix_operator(to->lent) == TRIBO_OK;
 }
 
-/* What tribo_system_build does not make. 1, or 0 if out of memory. */
+/* Copies all that tribo_system_build does not set. Returns 1, or 0 if out of memory. */
 static int copy_rest(tribo_system *to, const tribo_system *sys)
 {
     tribo_destroy(to->contacts);

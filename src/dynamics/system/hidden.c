@@ -1,5 +1,5 @@
-/* A contact between a light body m and a heavy body M gives the entry 1/m + 1/M of R, in which rounding hides 1/M. Where other
- * contacts hold the light body, a pivot of R is as small as m/M, though the rows of J are independent. */
+/* A contact between a light body m and a heavy body M has the entry 1/m + 1/M of R; rounding hides 1/M. If other contacts hold
+ * the light body, a pivot of R is as small as m/M although the rows of J are independent. */
 #include "numerics/constraint.h"
 #include "hidden.h"
 #include "common/real.h"
@@ -9,14 +9,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A smaller pivot: rounding of R changes the motion of a body by more than 1e-7 of it. */
+/* For pivots up to SMALL, rounding of R changes the motion of a body by more than 1e-7 of the motion. */
 #define SMALL (DBL_EPSILON / 1e-7)
 
-/* With a smaller ratio of the shares J^2/m of a contact, small pivots have another cause. */
+/* If the shares J^2/m of every contact have smaller ratios, small pivots have another cause. */
 #define APART 1e3
 
-/* How many pivots of the Cholesky factorization of r, with the largest first and the diagonal scaled to 1, are not small; r is
- * used up. */
+/* Returns the number of pivots > SMALL of the Cholesky factorization of r, scaled to a diagonal of 1, largest pivot first.
+ * Overwrites r. */
 static size_t large_pivots(double *r, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
@@ -41,7 +41,7 @@ static size_t large_pivots(double *r, size_t n)
                 r[i * n + k] -= k != best ? r[i * n + best] / pivot * r[best * n + k] : 0.0;
             }
         }
-        /* the last row and column take the place of those that are done */
+        /* moves the last row and column to the place of the eliminated ones */
         for (size_t k = 0; k < left; k++) {
             r[best * n + k] = r[(left - 1) * n + k];
         }
@@ -58,7 +58,7 @@ int tribo_hidden(const struct matrix *direction, const struct matrix *mass, cons
     const size_t n = direction->rows;
     where->spread = 1.0;
     for (size_t i = 0; i < n; i++) {
-        /* How much more the body that gives way most in contact i does than the one that does least. */
+        /* spread = ratio of the largest to the smallest share J^2/m in R_ii */
         double least = HUGE_VAL, most = 0.0;
         for (size_t k = direction->first[i]; k < direction->first[i + 1]; k++) {
             const double share = fabs(product(direction->val[k], own[k]));

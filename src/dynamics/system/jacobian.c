@@ -1,11 +1,11 @@
-/* The Jacobian of a system's right-hand side, for implicit integrators: dense, with the derivatives of the contact forces. */
+/* The Jacobian of a system's right-hand side, for implicit integrators: dense, with derivatives of the contact forces. */
 #include "system.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Dense matrices in sys->dense: AK, AC [ndof][ndof], J [ncontact][ndof], B [ndof][ncontact]; derivatives of the forces by v and a
- * [ncontact][ncontact], by q and u [ncontact][ndof]; workspace [ncontact][ndof], [ndof]. */
+/* Dense matrices in sys->dense: AK, AC [ndof][ndof], J [ncontact][ndof], B [ndof][ncontact]; df/dv, df/da [ncontact][ncontact];
+ * df/dq, df/du [ncontact][ndof]; workspace pull [ncontact][ndof], load [ndof]. */
 struct dense {
     double *stiffness, *damping, *direction, *response, *df_dv, *df_da, *df_dq, *df_du, *pull, *load;
 };
@@ -54,11 +54,10 @@ static int create_dense(tribo_system *sys)
     return 0;
 }
 
-/* The time of differences, times the highest frequency. */
+/* Time step of finite differences, times the highest frequency. */
 #define SHORT 1e-7
 
-/* df_dt [ncontact] = change of the forces by limits that vary, by a difference over a short time; 0 if limits are constant.
- * Returns a status. */
+/* df_dt [ncontact] = (df/dlimit) limit', by a difference over a short time; 0 if limits are constant. Returns a status. */
 static int find_limit_rates(tribo_system *sys, double *df_dt)
 {
     const double fastest = tribo_system_fastest(sys), later = SHORT / (fastest > 0.0 ? fastest : 1.0);
@@ -86,7 +85,7 @@ static void follow_state(size_t n, size_t m, const struct dense *d)
     tribo_multiply_add(m, m, n, 1.0, d->df_dv, d->direction, d->df_du);
 }
 
-/* df/dt = -(df/dv) b' + (df/da) (J load' - b'') + (df/dlimit) limit', of which df_dt holds the last; d->load = load' */
+/* df_dt = -(df/dv) b' + (df/da) (J load' - b'') + (df/dlimit) limit'; df_dt in: the last term. d->load = load'. */
 static void follow_time(tribo_system *sys, const struct dense *d, double *df_dt)
 {
     const size_t n = sys->ndof, m = sys->ncontact;
@@ -101,7 +100,7 @@ static void follow_time(tribo_system *sys, const struct dense *d, double *df_dt)
     tribo_multiply_add(m, m, 1, 1.0, d->df_da, sys->a, df_dt);
 }
 
-/* Writes the rows of u' = load - AK q - AC u + B f; dfdy is 0 there. */
+/* Writes the rows of u' = load - AK q - AC u + B f; dfdy is 0 there before the call. */
 static void write_motion(const tribo_system *sys, const struct dense *d, const double *df_dt, double *dfdy, double *dfdt)
 {
     const size_t n = sys->ndof, m = sys->ncontact, size = tribo_system_dimension(sys);
@@ -120,7 +119,7 @@ static void write_motion(const tribo_system *sys, const struct dense *d, const d
     }
 }
 
-/* Writes the row of the energy, whose rate is -sum of tally f v. Overwrites v of sys, and pull. */
+/* Writes the row of the energy, of rate -sum tally_i f_i v_i. Overwrites sys->v and d->pull. */
 static void write_power(tribo_system *sys, const struct dense *d, const double *df_dt, double *row, double *dfdt)
 {
     const size_t n = sys->ndof, m = sys->ncontact;
@@ -159,14 +158,14 @@ int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *
     }
     const struct dense d = dense_of(sys);
     double *df_dt = sys->feq;
-    /* sys->f, df_dv, df_da and df_dt at the state */
+    /* at (t, y): sys->f, df_dv, df_da, df_dt */
     tribo_system_free_motion(sys, t, y, d.load, sys->v, sys->a);
     const int status = find_limit_rates(sys, df_dt);
     sys->status = status ? status
                          : tribo_system_explain(sys, tribo_balance_tangent(sys->contacts, sys->v, sys->a, NULL, sys->f, d.df_dv,
                                                                            d.df_da));
     if (sys->status) {
-        const int found = tribo_system_check_state(sys, t, y); /* its message names the value of y that is not finite */
+        const int found = tribo_system_check_state(sys, t, y); /* names the value of y that is not finite */
         return sys->status = found ? found : sys->status;
     }
     follow_state(n, sys->ncontact, &d);

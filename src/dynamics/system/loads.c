@@ -1,4 +1,4 @@
-/* Functions of time: loads on the structure, motions of the bases, limits. */
+/* Functions of time: loads on the structure, motions of bases, limits. */
 #include "cos_sin.h"
 #include "system.h"
 #include "common/layout.h"
@@ -22,7 +22,7 @@ static void lay_out_harmonic(struct harmonic *h, struct layout *l, size_t n)
     h->sine = tribo_layout_array(l, n, sizeof *h->sine);
 }
 
-/* Allocates n entries. 0 if out of memory: then nothing is allocated. */
+/* Allocates n entries. Returns 0 if out of memory; then nothing is allocated. */
 static int create_harmonic(struct harmonic *h, size_t n)
 {
     struct layout l = {0};
@@ -56,7 +56,7 @@ void tribo_loads_free(tribo_system *sys)
 
 /* ------------------------------------------------------------------------------------------------------------------- copies */
 
-/* t = the table of time [knots] and value [knots][columns]. 0 if out of memory. */
+/* t = table of time [knots] and value [knots][columns]. Returns 0 if out of memory. */
 static int create_table(struct table *t, size_t knots, size_t columns, const double *time, const double *value)
 {
     int done = 1;
@@ -79,7 +79,7 @@ static int copy_harmonic(struct harmonic *to, const struct harmonic *from)
     return 1;
 }
 
-/* to = from, with its columns and its pattern [n], if there is one. 0 if out of memory. */
+/* to = from, with value [knots][columns] and pattern [n] or NULL. Returns 0 if out of memory. */
 static int copy_table(struct table *to, const struct table *from, size_t columns, size_t n)
 {
     int done = 1;
@@ -138,7 +138,7 @@ void tribo_harmonic_take(const tribo_system *sys, struct harmonic *h, double c, 
     }
 }
 
-/* The last knot at or before t; the first one if there is none. */
+/* Returns the last knot at or before t; 0 if there is none. */
 static size_t knot_at(const struct table *table, double t)
 {
     size_t lo = 0, hi = table->knots;
@@ -149,7 +149,7 @@ static size_t knot_at(const struct table *table, double t)
     return lo;
 }
 
-/* Value (order 0) or slope (order 1) of column i of a table at the time set. */
+/* Returns value (order 0) or slope (order 1) of column i of a table at the set time. */
 static double look_up(const tribo_system *sys, const struct table *table, size_t columns, size_t i, int order)
 {
     const size_t k = table->at;
@@ -223,7 +223,7 @@ void tribo_system_tables(const tribo_system *sys, enum drives drives, int order,
     }
 }
 
-/* *c, *s = order-th derivatives of cos(omega t), sin(omega t) at the time set. */
+/* *c, *s = order-th derivatives of cos(omega t), sin(omega t) at the set time. */
 static inline void loads_differentiate(const struct harmonic *h, int order, double *c, double *s)
 {
     *c = h->cos_t;
@@ -256,7 +256,7 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
 
 /* ------------------------------------------------------------------------------------------------------------------- limits */
 
-/* The order-th derivative of the limit of contact i without harmonics. */
+/* Returns the order-th derivative of the limit of contact i without harmonics. */
 static double loads_steady_limit(const tribo_system *sys, size_t i, int order)
 {
     if (sys->limits.knots) {
@@ -305,7 +305,7 @@ void tribo_system_most_limits(const tribo_system *sys, double *most)
     }
 }
 
-/* A limit whose first DERIVATIVES derivatives are all rounding is 0. */
+/* A limit is 0 if its derivatives of order 0 to DERIVATIVES - 1 are all rounding. */
 #define DERIVATIVES 9
 
 int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
@@ -331,7 +331,7 @@ int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
 
 /* ------------------------------------------------------------------------------------------------------------------ harmonics */
 
-/* h = the entries of cosine and sine [n] in which either is not 0; of limits, which are looked up by contact, all. 0 if out
+/* h = entries of cosine, sine [n] that are not both 0; all entries for limits, where the index is the contact. Returns 0 if out
  * of memory. */
 static int loads_compress(struct harmonic *h, size_t n, const double *cosine, const double *sine)
 {
@@ -358,7 +358,7 @@ static int check_amplitudes(const tribo_system *sys, const char *name, const dou
     return TRIBO_OK;
 }
 
-/* Returns TRIBO_ERR_UNSUPPORTED for a load on a degree of freedom without mass, and a limit of a compliant contact that varies. */
+/* Returns TRIBO_ERR_UNSUPPORTED for a load on a degree of freedom without mass, or a varying limit of a compliant contact. */
 static int check_place(const tribo_system *sys, enum drives drives, const char *name, const double *x)
 {
     const size_t *place = sys->expansion.place;
@@ -378,7 +378,7 @@ static int check_place(const tribo_system *sys, enum drives drives, const char *
     return TRIBO_OK;
 }
 
-/* The largest limit: what is computed from limits is finite. */
+/* Largest limit; keeps results computed from limits finite. */
 #define MOST_LIMIT 1e300
 
 static int loads_check_limits(const tribo_system *sys, const double *cosine, const double *sine)
@@ -394,7 +394,7 @@ static int loads_check_limits(const tribo_system *sys, const double *cosine, con
     return TRIBO_OK;
 }
 
-/* The harmonic of parts [2][n], cosine and sine. 0 if out of memory. */
+/* Appends a harmonic, parts [2][n] cosine and sine. Returns 0 if out of memory. */
 static int append_harmonic(tribo_system *sys, enum drives drives, double omega, size_t n, const double *parts)
 {
     struct harmonic h = {.omega = omega, .drives = drives, .time = NAN};
@@ -411,8 +411,8 @@ static int append_harmonic(tribo_system *sys, enum drives drives, double omega, 
     return 1;
 }
 
-/* The load added last displaces contacts by way [2][ncontact], cosine and sine: what w is beside that moves against bases that go
- * back, b = -d(way)/dt. 0 if out of memory. */
+/* Appends the base motion b = -d(way)/dt, way [2][ncontact] cosine and sine: displacements of compliant contacts by the last
+ * load, so that v includes d(way)/dt. Returns 0 if out of memory; then the load is removed. */
 static int append_bend(tribo_system *sys, double omega, double *way)
 {
     const size_t c = sys->ncontact;
@@ -516,7 +516,7 @@ int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *
     return loads_add_harmonic(sys, DRIVES_BASE, omega, cosine, sine);
 }
 
-/* Takes the settings, and keeps the limits of the context in given_limit before limits begin to vary. Returns a status. */
+/* Takes the settings; if limits are still constant, copies the limits of the context to given_limit. Returns a status. */
 static int loads_begin_limits(tribo_system *sys)
 {
     const int status = tribo_system_take_settings(sys);
@@ -534,7 +534,7 @@ int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine
 
 /* --------------------------------------------------------------------------------------------------------------------- tables */
 
-/* Returns TRIBO_OK if time [knots] ascends and is finite, and value, of the name `name`, is not NULL. */
+/* Returns TRIBO_OK if time [knots] ascends and is finite, and value is not NULL; name: of value, for the message. */
 static int check_knots(const tribo_system *sys, size_t knots, const double *time, const char *name, const double *value)
 {
     if (!time || !value) {
@@ -552,7 +552,7 @@ static int check_knots(const tribo_system *sys, size_t knots, const double *time
     return TRIBO_OK;
 }
 
-/* Returns TRIBO_OK if limit [knots][ncontact] is finite, not negative, and constant at elastic contacts. */
+/* Returns TRIBO_OK if limit [knots][ncontact] is finite, not negative, and 0 at elastic contacts. */
 static int check_limit_table(const tribo_system *sys, size_t knots, const double *limit)
 {
     const size_t n = sys->ncontact;
@@ -572,7 +572,7 @@ static int check_limit_table(const tribo_system *sys, size_t knots, const double
     return status;
 }
 
-/* Adds the table value [knots] times pattern: forces [given], or velocities of bases [ncontact]. Returns a status. */
+/* Adds the table value [knots] times pattern: forces [given], or base velocities [ncontact]. Returns a status. */
 static int add_table(tribo_system *sys, enum drives drives, size_t knots, const double *time, const double *value,
                      const double *pattern)
 {

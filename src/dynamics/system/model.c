@@ -72,7 +72,7 @@ int tribo_model_give_operator(const struct model *m, tribo_system *sys, const do
     return status;
 }
 
-/* What forces of contacts do to the degrees of freedom that they touch: one number an entry of J. NULL if out of memory. */
+/* Returns own [entries of J], own[k] = B_di for entry k in row i, column d of J. NULL if out of memory. */
 static double *own_responses(const tribo_system *sys)
 {
     const struct matrix *j = &sys->direction;

@@ -1,4 +1,4 @@
-/* tribo_model: what the caller gives of a structure, and the systems that are made of it. */
+/* tribo_model: the matrices of a structure as set by the caller, and systems built from them. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -6,7 +6,7 @@
 
 #include "model.h"
 
-/* Copies of the caller's matrices; the message of the last call that failed. */
+/* Copies of the caller's matrices; message of the last failed call. */
 struct tribo_model {
     struct model given;
     double *compliance; /* [ncontact] or NULL: all contacts are rigid */
@@ -63,7 +63,7 @@ size_t tribo_model_ncontact(const tribo_model *model)
 
 /* ------------------------------------------------------------------------------------------------------------------- matrices */
 
-/* A matrix of the model, and its name. */
+/* A matrix `to` of the model; its name for messages; its number of rows. */
 struct input {
     tribo_model *model;
     struct matrix *to;
@@ -91,7 +91,7 @@ static struct input direction_of(tribo_model *m)
     return (struct input){m, m ? &m->given.direction : NULL, "direction", m ? m->given.ncontact : 0};
 }
 
-/* Takes a as the matrix of the model if its entries are finite; done: 0 if there was no memory for a. */
+/* Sets *in->to = a if all entries are finite. done: 0 if there was no memory for a. Returns a status. */
 static int take(const struct input *in, struct matrix *a, int done)
 {
     size_t i, j;
@@ -108,7 +108,7 @@ static int take(const struct input *in, struct matrix *a, int done)
     return TRIBO_OK;
 }
 
-/* NULL in the place of numbers is right only where there are none. part: which of several arrays, or "". */
+/* Returns TRIBO_ERR_NULL if the model is NULL, or numbers is NULL with count > 0. part: name of an array of the matrix, or "". */
 static int check_input(const struct input *in, const void *numbers, const char *part, size_t count)
 {
     if (!in->model) {
@@ -131,8 +131,8 @@ static int set_diagonal(struct input in, const double *entries)
     return status ? status : take(&in, &a, tribo_matrix_diagonal(&a, in.rows, entries));
 }
 
-/* Refuses compressed rows that do not begin at 0 and ascend, and columns beyond the last. Reads col after all of
- * rowptr. */
+/* Returns an error if rowptr does not begin at 0 and ascend, or a column is too large. Checks all of rowptr before reading
+ * col. */
 static int check_rows(const struct input *in, const size_t *rowptr, const size_t *col)
 {
     const struct model *m = &in->model->given;
@@ -275,7 +275,7 @@ int tribo_model_set_compliance(tribo_model *model, const double *c)
 
 /* -------------------------------------------------------------------------------------------------------------------- systems */
 
-/* A matrix that must be set has been. */
+/* Returns TRIBO_ERR_STATE if a matrix that is required has not been set. */
 static int check_set(const tribo_model *m)
 {
     const struct model *g = &m->given;
@@ -287,7 +287,7 @@ static int check_set(const tribo_model *m)
                    : TRIBO_OK;
 }
 
-/* The system of a copy of the model's matrices. */
+/* Builds a system from copies of the model's matrices. Returns a status. */
 static int build_system(tribo_system **sys, tribo_model *model, size_t nmode, int statics)
 {
     const struct model *g = &model->given;

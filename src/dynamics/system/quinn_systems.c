@@ -1,11 +1,11 @@
-/* Quinn's three reference systems, built as structures. */
+/* Quinn's three reference systems. */
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "model.h"
 
-/* *sys = made, or destroys it if status is an error. Returns status. */
+/* Sets *sys = made, or destroys made if status is an error. Returns status. */
 static int quinn_finish(tribo_system **sys, tribo_system *made, int status)
 {
     if (status) {
@@ -16,7 +16,7 @@ static int quinn_finish(tribo_system **sys, tribo_system *made, int status)
     return status;
 }
 
-/* A system of n bodies with masses [n] and n contacts; stiffness and direction [n][n]. Returns a status. */
+/* Builds a system of n bodies with masses [n] and n contacts; stiffness and direction [n][n]. Returns a status. */
 static int build_dense(tribo_system **sys, size_t n, const double *mass, const double *stiffness, const double *direction)
 {
     tribo_model *model = NULL;
@@ -58,7 +58,7 @@ int tribo_system_belt(tribo_system **sys, double kappa, double limit1, double li
 
 /* ----------------------------------------------------------------------------------------------------------------- chain */
 
-/* k = springs of stiffness n between neighbours, and of 2 n between the last block and the ground. 0 if out of memory. */
+/* k = stiffness matrix: springs n between neighbours, 2 n between the last block and the ground. Returns 0 if out of memory. */
 static int chain_stiffness(struct matrix *k, size_t n)
 {
     const double spring = (double)n;
@@ -79,8 +79,8 @@ static int chain_stiffness(struct matrix *k, size_t n)
     return done;
 }
 
-/* each [n] = whole/n; the last 3/4 of it: the last equation of the paper is 4/3 of one that makes the stiffness symmetric,
- * so that the last block has 3/4 of the mass and friction of the others. */
+/* each [n] = whole/n, but 3/4 of whole/n for the last block: the paper's last equation is 4/3 times an equation with symmetric
+ * stiffness, so the last block has 3/4 of the mass and friction of the others. */
 static void share_out(double *each, size_t n, double whole)
 {
     for (size_t i = 0; i < n; i++) {
@@ -112,7 +112,7 @@ int tribo_system_chain(tribo_system **sys, size_t n, double limit, double alpha,
     double *each = malloc(n * sizeof *each); /* [n] masses, then limits, then loads */
     int status = each ? build_chain(&s, n, each) : TRIBO_ERR_MEMORY;
     if (!status) {
-        s->tally[n - 1] = 4.0 / 3.0; /* the paper counts all friction in full */
+        s->tally[n - 1] = 4.0 / 3.0; /* the paper counts the friction of every block in full */
         share_out(each, n, limit);
         status = tribo_set_limit(s->contacts, each);
     }

@@ -1,37 +1,37 @@
-/* Velocities of bodies whose contacts rest, without a last bit of rounding. A contact on one degree of freedom stops it; one that
- * takes the difference of two, of which one is stopped, stops the other; and so on, so that none moves again what another one has
- * stopped. Of bodies that hold each other and nothing else, the heaviest goes on as it does. */
+/* Removes rounding errors from velocities of bodies with resting contacts. A contact with one degree of freedom sets its
+ * velocity. A contact with the difference of two, one of them set, sets the other; and so on: no velocity is set twice. Of bodies
+ * joined to each other and nothing else, the pair with the heaviest body is set first. */
 #include "system.h"
 #include "common/real.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Velocities x of the degrees of freedom; or a list of what would be done to them. */
+/* Velocities x [ndof] to correct; or, if list is not NULL, corrections to write to list. */
 struct snapping {
     const tribo_system *sys;
     const signed char *loose;
     const double *base;
-    double *x, *known; /* known [ndof] 1: is not to change any more */
+    double *x, *known; /* known [ndof] 1: x is final */
     struct snap *list;
     size_t listed;
 };
 
-/* How much degree of freedom d gives way to contact i. */
+/* Returns |B_di|, the acceleration of degree of freedom d by a unit force of contact i; 1/m_d in unsolved systems. */
 static double yield_of(const tribo_system *sys, size_t d, size_t i)
 {
     return sys->unsolved ? 1.0 / tribo_matrix_get(&sys->mass, d, d) : fabs(tribo_matrix_get(&sys->response, d, i));
 }
 
-/* Which of its two degrees of freedom a contact at rest moves by rounding of the other: the second, but no heavy one by a light
- * one's. */
+/* Returns which entry of row i to correct by the other: 1, the second; 0 if the second is over 1000 times as heavy as the
+ * first. */
 static size_t follows(const tribo_system *sys, size_t i, size_t first)
 {
     const size_t *dof = sys->direction.col + first;
     return yield_of(sys, dof[1], i) >= 1e-3 * yield_of(sys, dof[0], i);
 }
 
-/* Whether contact i rests, and takes a difference, or a sum, of two degrees of freedom. */
+/* Returns 1 if contact i rests and its row is the difference or sum of two degrees of freedom, with entries of equal size. */
 static inline int is_pair(const struct snapping *s, size_t i)
 {
     const struct matrix *j = &s->sys->direction;
@@ -39,7 +39,7 @@ static inline int is_pair(const struct snapping *s, size_t i)
     return !s->loose[i] && j->first[i + 1] - first == 2 && fabs(j->val[first]) == fabs(j->val[first + 1]);
 }
 
-/* Entry `to` of row i follows entry `from`, if that is another one. */
+/* Corrects, or lists, entry `to` of row i by entry `from`; to = from: the row has one entry. */
 static void snap_take(struct snapping *s, size_t i, size_t to, size_t from)
 {
     const struct matrix *j = &s->sys->direction;
@@ -51,7 +51,7 @@ static void snap_take(struct snapping *s, size_t i, size_t to, size_t from)
     }
 }
 
-/* Entry `to` of row i, a pair, follows the other one. */
+/* Corrects entry `to` of row i, a pair, by the other entry. Both are known then. */
 static void snap_pair(struct snapping *s, size_t i, size_t to)
 {
     const struct matrix *j = &s->sys->direction;
@@ -65,7 +65,7 @@ static int knows(const struct snapping *s, size_t entry)
     return s->known[s->sys->direction.col[entry]] != 0.0;
 }
 
-/* Where nothing is known, the pair with the heaviest body makes a beginning; returns 0 if there is none. */
+/* Corrects the pair with the heaviest body, of pairs with both ends unknown. Returns 0 if there is none. */
 static size_t snap_heaviest(struct snapping *s)
 {
     const struct matrix *j = &s->sys->direction;
@@ -85,7 +85,7 @@ static size_t snap_heaviest(struct snapping *s)
     return found < s->sys->ncontact;
 }
 
-/* No rigid contact moves what an earlier one touches. */
+/* Sets snaps_in_order = 1 if no rigid contact corrects a degree of freedom in the row of an earlier rigid contact. */
 void tribo_system_order_snaps(tribo_system *sys)
 {
     const struct matrix *j = &sys->direction;
@@ -103,14 +103,14 @@ void tribo_system_order_snaps(tribo_system *sys)
     }
 }
 
-/* Whoever has one degree of freedom; in order, all. Returns whether any are left. */
+/* Corrects rows of one entry; if snaps_in_order, also pairs. Returns 1 if other resting contacts remain. */
 static int snap_first(struct snapping *s)
 {
     const size_t *first = s->sys->direction.first;
     int left = 0;
     for (size_t i = 0, n = s->sys->ncontact; i < n; i++) {
         if (!s->loose[i] && first[i + 1] - first[i] == 1) {
-            /* snap_take of a single entry, in line: each step does this for many contacts */
+            /* snap_take for a single entry, inline: every step calls it for many contacts */
             const size_t to = first[i];
             if (s->list) {
                 snap_take(s, i, to, to);
@@ -130,7 +130,7 @@ static int snap_first(struct snapping *s)
 static void snap(struct snapping *s)
 {
     if (snap_first(s) && !s->sys->snaps_in_order) {
-        /* What one contact alone stops is known. */
+        /* known = 1 in rows of one entry */
         const struct matrix *j = &s->sys->direction;
         memset(s->known, 0, s->sys->ndof * sizeof *s->known);
         for (size_t i = 0; i < s->sys->ncontact; i++) {
@@ -140,7 +140,7 @@ static void snap(struct snapping *s)
             }
         }
         for (size_t done = 1; done;) {
-            /* What is known takes along what is not; returns how often. */
+            /* corrects pairs with one known end; found: number of these pairs */
             size_t found = 0;
             for (size_t i = 0; i < s->sys->ncontact; i++) {
                 const size_t first = s->sys->direction.first[i];

@@ -1,4 +1,4 @@
-/* States and linear combinations of them, in callers' degrees of freedom and in those of methods. */
+/* States, and linear combinations of states, in the caller's degrees of freedom and in the methods'. */
 #include "system.h"
 
 #include <float.h>
@@ -44,8 +44,8 @@ void tribo_expansion_free(struct expansion *x)
     memset(x, 0, sizeof *x);
 }
 
-/* Where the displacement and the velocity of a caller's degree of freedom d stand in the caller's state; a slider's velocity
- * nowhere. */
+/* Returns the index of the displacement of the caller's degree of freedom d in the caller's state. Velocities of sliders are not
+ * in the state. */
 static size_t displacement_at(const struct expansion *x, size_t d)
 {
     const size_t n = x->dofs - x->sliders;
@@ -117,7 +117,7 @@ void tribo_system_add_base_at(const tribo_system *sys, double t, double factor, 
     }
 }
 
-/* f' [ncontact] at time t. v [ncontact] is workspace. */
+/* rate [ncontact] = f' at time t. v [ncontact] is workspace. */
 static void state_find_rates(const tribo_system *sys, double t, const double *y, double *v, double *rate)
 {
     memset(v, 0, sys->ncontact * sizeof *v);
@@ -126,7 +126,7 @@ static void state_find_rates(const tribo_system *sys, double t, const double *y,
     tribo_compliance_move(sys, y, v, rate);
 }
 
-/* Displacements w that are no more than this part of their terms are rounding of 0. */
+/* A displacement w is a rounded 0 if at most ROUNDING times the sum of the sizes of its terms. */
 #define ROUNDING (16.0 * DBL_EPSILON)
 
 void tribo_system_write_state(const tribo_system *sys, double t, const double *from, double *y)

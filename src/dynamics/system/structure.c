@@ -1,5 +1,5 @@
-/* Linear structures from their matrices: as they are if the mass matrix is diagonal, and solved for the accelerations if not,
- * or left as they are where that would take too much. */
+/* Builds systems from matrices. A diagonal mass matrix is inverted; else accelerations are solved for (M^-1 K, M^-1 C), up to
+ * DENSE_MOST degrees of freedom. Larger systems keep their matrices (unsolved). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,9 +30,9 @@ static int structure_check(const struct model *m)
     return TRIBO_OK;
 }
 
-/* --------------------------------------------------------------------------------------------------------------- the ways */
+/* --------------------------------------------------------------------------------------------------------------- builders */
 
-/* The system owns the mass matrix and its factor from now on. */
+/* Moves the mass matrix and its factor to the system. */
 static void give_mass(struct model *m, tribo_system *sys, struct cholesky *c)
 {
     sys->mass = m->mass;
@@ -74,7 +74,7 @@ static int build_diagonal(struct model *m, tribo_system **sys)
     return status;
 }
 
-/* solved = M^-1 a; zeroed if out of memory. */
+/* solved = M^-1 a. Returns 0 if out of memory. */
 static int solve_matrix(const struct cholesky *c, const struct matrix *a, struct matrix *solved)
 {
     double *x = tribo_matrix_to_dense(a);
@@ -149,7 +149,7 @@ static int check_unsolved(const struct model *m)
     return TRIBO_OK;
 }
 
-/* The matrices stay as they are; the mass matrix has a factor only for as long as R takes. */
+/* Keeps the matrices; the factor of the mass matrix exists only while R is computed. Returns a status. */
 static int build_unsolved(struct model *m, tribo_system **sys)
 {
     struct cholesky c = {0};

@@ -214,7 +214,7 @@ void tribo_system_solve_mass(const tribo_system *sys, double *x)
     }
 }
 
-/* A force on degree of freedom k of q and w: one on w acts on q by follow, and displaces contacts by give. */
+/* Adds a force on degree of freedom k of (q, w). For w: to += follow' force, way += give' force. */
 static void add_force(const tribo_system *sys, size_t k, double force, double *to, double *way)
 {
     const struct expansion *x = &sys->expansion;

@@ -1,6 +1,6 @@
-/* A mechanical system with friction as the drivers see it: accelerations solved for,
- *     q'' = load(t) - AK q - AC q' + B f,   v = J q' + G f' - b(t),   AK = M^-1 K, AC = M^-1 C, B = M^-1 J',
- * where response has the columns of B of rigid contacts, and compliance.pull those of compliant ones. */
+/* A mechanical system with friction, with accelerations solved for:
+ *     q'' = load(t) - AK q - AC q' + B f,   v = J q' + G f' - b(t),   AK = M^-1 K, AC = M^-1 C, B = M^-1 J'.
+ * `response` holds the columns of B of rigid contacts, compliance.pull the columns of compliant contacts. */
 #ifndef TRIBO_SYSTEM_H
 #define TRIBO_SYSTEM_H
 
@@ -10,119 +10,118 @@
 #include "compliance.h"
 #include "common/plural.h"
 
-/* What a harmonic adds to: the load, b(t) of the contacts, or their limits. */
+/* The function of time to which a harmonic or table adds: load, base velocity b(t), or limits. */
 enum drives { DRIVES_LOAD, DRIVES_BASE, DRIVES_LIMIT };
 
-/* cosine cos(omega t) + sine sin(omega t) at the entries index. */
+/* cosine[e] cos(omega t) + sine[e] sin(omega t), added to element index[e]. */
 struct harmonic {
     double omega;
-    double time, cos_t, sin_t; /* cos(omega time), sin(omega time); time NaN: not known */
-    size_t turns;              /* successive values of cos_t, sin_t that tribo_harmonic_take set */
+    double time, cos_t, sin_t; /* cos(omega time), sin(omega time); time NaN: not computed */
+    size_t turns;              /* calls of tribo_harmonic_take since the last tribo_harmonic_turn */
     enum drives drives;
-    int by_load;           /* 1: a motion of the base that belongs to a load, see tribo_system_add_load */
-    size_t count;          /* entries: those with cosine or sine not 0; of limits all */
+    int by_load;           /* 1: base motion that a load causes (tribo_system_add_load), removed with the loads */
+    size_t count;          /* entries: limits have all contacts; else those with cosine or sine not 0 */
     size_t *index;         /* [count] degree of freedom, or contact */
     double *cosine, *sine; /* [count] */
 };
 
-/* A function of time, linear between knots and constant outside: times pattern it adds to the load or to b(t), or, with a row of
- * limits to each knot, it is the limits of the contacts. */
+/* A function of time, linear between knots, constant outside. Load or base: adds value(t) pattern to the load or to b(t). Limits:
+ * value(t) [ncontact] is the limit of the contacts. */
 struct table {
     enum drives drives;
-    size_t knots, at; /* at: the knot at or before sys->time */
+    size_t knots, at; /* at: last knot at or before sys->time, or 0 */
     double *time;
-    double *value;   /* [knots], or [knots][ncontact] */
-    double *pattern; /* [ndof] accelerations, [ncontact] velocities, or NULL */
+    double *value;   /* [knots], or [knots][ncontact] for limits */
+    double *pattern; /* [ndof] accelerations, [ncontact] velocities; NULL for limits */
 };
 
-/* What a reduced system does not have of the whole structure's motion. Modes left out have omega^2 + shift of `above` or more;
- * of the work that steady forces at the contacts do on the elastic structure they take up to the part `missing`. */
+/* Error bound of a reduced system at omega: missing x^order/(1 - x), x = (omega^2 + shift)/above. Left-out modes have omega^2 +
+ * shift >= above, and at most the part `missing` of the work of steady contact forces on the elastic structure. */
 struct truncation {
     double above, shift, missing;
-    double order; /* but only this power of omega^2/above of it, as the displacements by steady forces are there */
+    double order; /* 0, 1, 2 with TRIBO_STATICS_NONE, _COMPLIANCE, _MASS: the static displacements included reduce the error */
 };
 
-/* A caller's degrees of freedom: x_d = q_k for k = place[d] < ndof, else w_(k - ndof), without mass, w = follow q + give f. */
+/* The caller's x: with k = place[d], x_d = q_k if k < ndof, else w_(k - ndof), without mass, w = follow q + give f. */
 struct expansion {
-    size_t dofs, sliders; /* sliders: the last of dofs; a caller's state has no velocities of them */
+    size_t dofs, sliders; /* sliders: the last of dofs; the caller's state has no velocities of sliders */
     size_t *place;        /* [dofs]; NULL: x = q, and all other members are empty */
     struct matrix follow, give; /* [dofs - ndof][ndof], [dofs - ndof][ncontact] */
-    struct matrix touch;        /* [ncontact][dofs - ndof] J_w: forces are f = G^-1 J_w (w - follow q) */
-    double *terms;              /* [ndof] sizes of the terms of which K_ii is the sum; NULL if reduced */
+    struct matrix touch;        /* [ncontact][dofs - ndof] J_w: f = G^-1 J_w (w - follow q) */
+    double *terms;              /* [ndof] sum of the sizes of the terms of K_ii; NULL if reduced */
 };
 
 struct tribo_system {
-    size_t ndof, ncontact; /* ndof: degrees of freedom with mass */
+    size_t ndof, ncontact; /* ndof: number of degrees of freedom with mass */
     struct matrix stiffness, damping, direction, response; /* AK, AC, J, B */
-    tribo_context *contacts; /* finds the forces; its settings are those of lent, its limits those of the time set */
-    tribo_context *lent;     /* what tribo_system_context gives the caller to set; NULL: nothing is lent yet */
-    size_t copied, changes;  /* count of settings of lent when they were copied last; how often they were */
-    char *message;           /* [TRIBO_MESSAGE] a const system keeps it, too */
+    tribo_context *contacts; /* computes forces, with the settings of `lent` and the limits at the set time */
+    tribo_context *lent;     /* the caller's context of tribo_system_context; NULL before the first call */
+    size_t copied, changes;  /* TRIBO_COUNT_SETTINGS of lent at the last copy; number of copies */
+    char *message;           /* [TRIBO_MESSAGE] also written for a const system */
 
-    size_t harmonics, base_harmonics, limit_harmonics; /* the latter are those of b(t) and of limits */
+    size_t harmonics, base_harmonics, limit_harmonics; /* numbers: all; of b(t); of limits */
     struct harmonic *harmonic;
-    size_t tables, base_tables; /* the latter are those of b(t) */
+    size_t tables, base_tables; /* numbers: all; of b(t) */
     struct table *table;
-    struct table limits;         /* knots 0: the limits are those that the caller set, and harmonics on top */
-    double *given_limit;         /* [ncontact] while limits vary: those that the caller set */
-    double *put_limit;           /* [ncontact] workspace: limits of the time set */
-    size_t revision, structure;  /* count changes of loads, tables and damping; of damping */
-    double time, low;            /* that is set (NaN: none yet), and what rounding left of it (below) */
+    struct table limits;         /* knots 0: the limits are given_limit, plus harmonics */
+    double *given_limit;         /* [ncontact] limits set by the caller; valid while limits vary */
+    double *put_limit;           /* [ncontact] workspace: limits at the set time */
+    size_t revision, structure;  /* number of changes of loads, tables and damping; of damping */
+    double time, low;            /* the set time (NaN: none) and its part below the last digit (tribo_system_set_low) */
 
-    /* K and C, where the mass matrix is not diagonal: M^-1 K has lost the low modes to rounding. Else no rows: M AK and M AC are
-     * K and C to rounding of every entry. */
+    /* K and C, if the mass matrix is not diagonal: rounding in M^-1 K has destroyed the low modes. Otherwise no rows: M AK = K
+     * and M AC = C up to rounding of every entry. */
     struct matrix k, c;
 
-    /* 1: the equations are M q'' = load - K q - C q' + J' f: stiffness, damping and response are K, C and J', loads are forces; no
-     * accelerations are solved for. */
+    /* 1: accelerations are not solved for, M q'' = load - K q - C q' + J' f: stiffness, damping, response are K, C, J', and loads
+     * are forces. */
     int unsolved;
 
-    struct matrix mass;     /* no rows: the identity, of reduced systems */
-    struct cholesky factor; /* of it */
+    struct matrix mass;     /* no rows: the identity (reduced systems) */
+    struct cholesky factor; /* Cholesky factor of mass */
     struct compliance compliance;
     struct expansion expansion;
 
-    /* Forces on the given degrees of freedom become accelerations by the modes, or by the mass matrix. */
+    /* Length of the caller's loads. The modes convert loads to accelerations; the mass matrix, if modes is NULL. */
     size_t given;
-    double *modes, *omega; /* [given][dofs], [dofs] of a caller's degrees of freedom; NULL if not reduced */
+    double *modes, *omega; /* [given][dofs] modes, [dofs] frequencies; NULL if not reduced */
     struct truncation truncation;
 
-    struct attached *attached; /* what tribo_system_attach has hung on the system */
+    struct attached *attached; /* list of the data of tribo_system_attach */
     size_t evaluations, jacobians;
-    int status;                      /* what the last evaluation returned */
-    double *tally;                   /* [ncontact] how often y's energy counts what a contact dissipates: 1, but see chains */
+    int status;                      /* status of the last evaluation */
+    double *tally;                   /* [ncontact] weight of f_i v_i in the energy of y: 1; 4/3 at a chain's last contact */
     double *v, *a, *f, *feq, *dv_dt; /* [ncontact] workspace */
     double *acceleration;            /* [ndof] workspace */
-    double *motion;                  /* [tribo_system_size] and more: workspace with an expansion, else NULL */
-    int snaps_in_order;              /* contacts at rest, whichever they are, can be snapped one after the other */
-    double *dense;                   /* workspace of the Jacobian, allocated when it is first asked for */
+    double *motion;                  /* [tribo_system_size + dofs - ndof + 2 ncontact] workspace; NULL without an expansion */
+    int snaps_in_order;              /* 1: any set of resting contacts can be snapped in the order of contacts */
+    double *dense;                   /* workspace of the Jacobian, allocated by the first tribo_system_jacobian */
 };
 
-/* A system of ndof degrees of freedom whose matrices (which it takes, also on failure) and M = identity are these. damping may be
- * all zeros: no rows. */
+/* Creates a system with M = identity. Takes the matrices, also after an error. damping without rows: 0. Returns a status. */
 int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct matrix *stiffness, struct matrix *damping,
                        struct matrix *direction, struct matrix *response);
 
 enum { TRIBO_MESSAGE = 240 };
 
-/* Copies the settings of the lent context, if there are others, to the contacts: to be called where a caller's call begins.
- * Returns a tribo status. */
+/* Copies the settings of sys->lent to sys->contacts if they have changed. Call at the start of public functions. Returns a
+ * status. */
 int tribo_system_take_settings(tribo_system *sys);
 
-/* Counts all changes that a caller can make: of loads, tables and damping, and of settings, as taken. */
+/* Returns the number of the caller's changes of loads, tables, damping, and of settings (as copied to the contacts). */
 size_t tribo_system_revision(const tribo_system *sys);
 
-/* Counts changes of the contacts' settings, and of limits with time. */
+/* Returns the number of changes of the contacts' settings, including changes of limits with time. */
 size_t tribo_system_settings(const tribo_system *sys);
 
-/* Status of a call on the contacts, which keeps its message on the system if it failed. */
+/* Returns status, of a call on sys->contacts. After an error copies the message of the contacts to the system. */
 int tribo_system_explain(const tribo_system *sys, int status);
 
-/* How many planar contacts there are. */
+/* Returns the number of planar contacts. */
 size_t tribo_system_planar(const tribo_system *sys);
 
-/* The first contact whose limit falls with the speed (a velocity of tribo_set_static), or ncontact; 1 if there is such a
- * contact. */
+/* Returns the first contact with a limit that falls with speed (ratio > 1, velocity > 0 in tribo_set_static), or ncontact.
+ * tribo_system_falls returns 1 if such a contact exists. */
 size_t tribo_system_first_falling(const tribo_system *sys);
 int tribo_system_falls(const tribo_system *sys);
 
@@ -130,19 +129,19 @@ int tribo_system_falls(const tribo_system *sys);
 
 void tribo_loads_free(tribo_system *sys);
 
-/* The loads, motions and tables of from for sys, which has none; 1, or 0 if out of memory. */
+/* Copies loads, base motions and tables from `from` to sys, which has none. Returns 1, or 0 if out of memory. */
 int tribo_loads_copy(tribo_system *sys, const tribo_system *from);
 
-/* Prepares the loads for time t, and sets the limits of the contacts if they vary. */
+/* Sets time t and the tables' knots at t. If limits vary, sets the limits of the contacts at t. */
 void tribo_system_set_time(tribo_system *sys, double t);
 
-/* Forgets the time that is set, and cosines and sines of all harmonics. */
+/* Sets sys->time and the time of all harmonics to NaN: the next use computes everything again. */
 void tribo_system_forget_time(tribo_system *sys);
 
-/* Sets cos_t and sin_t of h to those of the time set. */
+/* Sets cos_t and sin_t of h at the set time. */
 void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h);
 
-/* The same, if h->time is another time. Called before cos_t and sin_t are read. */
+/* Calls tribo_harmonic_turn if h->time is not the set time. Call before reading cos_t and sin_t. */
 static inline void tribo_system_turn_to(const tribo_system *sys, struct harmonic *h)
 {
     if (h->time != sys->time) {
@@ -155,107 +154,107 @@ static inline void tribo_system_turn(const tribo_system *sys, size_t k)
     tribo_system_turn_to(sys, &sys->harmonic[k]);
 }
 
-/* Sets cos_t and sin_t of a load to c and s, which a motion has found for the time set; at most 16 times in a row, since
- * each adds its rounding. */
+/* Sets cos_t = c and sin_t = s of a load at the set time, as computed by the motion. Does nothing after 16 calls in a row, since
+ * rounding errors accumulate. */
 void tribo_harmonic_take(const tribo_system *sys, struct harmonic *h, double c, double s);
 
-/* From here on every time means t + low, at which events happen between two numbers t. */
+/* Sets the part of the time below its last digit: all times t mean t + low. An event can lie between two adjacent doubles t. */
 void tribo_system_set_low(tribo_system *sys, double low);
 
-/* Adds factor times the order-th derivative of b(t), of the accelerations that the load makes, or of what harmonics add to the
- * limits, to `to`, at the time set. */
+/* to += factor times the order-th derivative, at the set time, of the accelerations by the load [ndof], of b(t) [ncontact], or of
+ * the harmonics of the limits [ncontact]. */
 void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, double factor, double *to);
 
-/* The part of the load's or b's that comes from tables, of the degrees of freedom or contacts from begin to end. */
+/* to[i] += factor times the order-th derivative of the tables' part of the load or of b(t), begin <= i < end. */
 void tribo_system_tables(const tribo_system *sys, enum drives drives, int order, double factor, size_t begin, size_t end,
                          double *to);
 
-/* to [ncontact] += factor b(t), whatever time is set. */
+/* to [ncontact] += factor b(t), for any t; does not use the set time. */
 void tribo_system_add_base_at(const tribo_system *sys, double t, double factor, double *to);
 
-/* Whether bases move. */
+/* Returns 1 if a base moves. */
 static inline int tribo_system_bases_move(const tribo_system *sys)
 {
     return sys->base_harmonics || sys->base_tables;
 }
 
-/* Whether limits change with time, by a table or harmonics. */
+/* Returns 1 if limits change with time, by a table or harmonics. */
 static inline int tribo_system_limits_vary(const tribo_system *sys)
 {
     return sys->limits.knots || sys->limit_harmonics;
 }
 
-/* Whether setting time t would change nothing. */
+/* Returns 1 if t is the set time and limits are constant: tribo_system_set_time would change nothing. */
 static inline int tribo_system_is_at(const tribo_system *sys, double t)
 {
     return t == sys->time && !tribo_system_limits_vary(sys);
 }
 
-/* limit, and its derivative, each [ncontact], at the time set. Harmonics take it below 0 where the contact has lifted off. */
+/* limit, rate [ncontact] = limits and derivatives at the set time. With harmonics limit < 0 where a contact has lifted off. */
 void tribo_system_limits(const tribo_system *sys, double *limit, double *rate);
 
-/* Sets the limits of the contacts to those of the time set, plus their rates times later. */
+/* Sets the limits of the contacts to limit + later rate at the set time, at least 0. */
 void tribo_system_put_limits(tribo_system *sys, double later);
 
-/* By how much harmonics change the limit of contact i at most; 0 for one that they leave alone. */
+/* Returns the sum of the amplitudes of the harmonics of limit i, a bound of their change; 0 without harmonics. */
 double tribo_system_swing(const tribo_system *sys, size_t i);
 
-/* The largest limits that contacts ever have, most [ncontact]. */
+/* most [ncontact] = upper bounds of the limits over all times. */
 void tribo_system_most_limits(const tribo_system *sys, double *most);
 
-/* Limits are known to this part of what they are the sum of. */
+/* Rounding error of a limit, relative to the sum of the sizes of its terms. */
 #define TRIBO_LIMIT_NOISE 4e-14
 
-/* Whether contact i is pressed from the time set on, by the first derivative of its limit that is more than rounding, or more
- * than so many times that. */
+/* Returns 1 if the limit of contact i is positive just after the set time: the lowest derivative (order 0 to 8) larger than
+ * TRIBO_LIMIT_NOISE doubt times its terms is positive. */
 int tribo_system_presses(const tribo_system *sys, size_t i, double doubt);
 
-/* The next time after t at which a load or limit has a kink; HUGE_VAL if there is none. */
+/* Returns the next time after t of a kink of a load or limit; HUGE_VAL if there is none. */
 double tribo_system_next_kink(const tribo_system *sys, double t);
 
 /* ---- system.c */
 
-/* A bound on the frequencies: neither an exponent of the structure, held or not, nor a load is faster. */
+/* Returns a bound of all frequencies: of |exponents| of the structure, with any contacts held, and of loads. */
 double tribo_system_fastest(const tribo_system *sys);
 
-/* R_ij. */
+/* Returns R_ij. */
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 
-/* q'' without friction of rigid contacts, [ndof]. */
+/* acceleration [ndof] = q'' without the forces of rigid contacts, at t and y. */
 void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration);
 
-/* acceleration [ndof] += that by the forces of compliant contacts in y. */
+/* acceleration [ndof] += pull f, with the forces f of compliant contacts in y. */
 void tribo_system_add_springs(const tribo_system *sys, const double *y, double *acceleration);
 
-/* q'' without friction, and v and a of the contacts. Outputs v, a [ncontact], acceleration [ndof]. */
+/* acceleration [ndof] = q'' without the forces of rigid contacts; v, a [ncontact] = J q' - b and J q'' - b'. */
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a);
 
-/* q'' with friction, [ndof], and the power that friction dissipates. Returns a tribo status. */
+/* acceleration [ndof] = q'' with friction; power = power dissipated by friction. Returns a status. */
 int tribo_system_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power);
 
-/* The same, and dydt, with the reversal memory brought up to date first: (t, y) is an accepted state. Returns a tribo status. */
+/* tribo_system_rates at an accepted state (t, y); updates the reversal memory. begin_step outputs dydt. Returns a status. */
 int tribo_system_begin_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power);
 int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double *dydt);
 
 /* to [ndof] += factor M x. */
 void tribo_system_add_mass(const tribo_system *sys, double factor, const double *x, double *to);
 
-/* x [ndof] = M^-1 x; unsolved systems leave it. */
+/* x [ndof] = M^-1 x; unchanged in unsolved systems. */
 void tribo_system_solve_mass(const tribo_system *sys, double *x);
 
-/* to [ndof] = M^-1 force, force [given]; way [ncontact] += displacements of compliant contacts by what acts on w. */
+/* to [ndof] = M^-1 force [given]; way [ncontact] += displacements of compliant contacts by forces on w. */
 void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to, double *way);
 
 /* ---- snap.c */
 
-/* Takes the last bits of rounding out of J_i x = base_i for contacts that are not loose (0), and have one degree of freedom or
- * the difference of two. Uses the workspace of accelerations. */
+/* Removes the rounding error from J_i x = base_i for contacts with loose 0 and a row J_i of one entry, or of two of equal size.
+ * Overwrites sys->acceleration. */
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x);
 
-/* Sets snaps_in_order. To be called before tribo_system_snap and tribo_system_list_snaps. */
+/* Sets snaps_in_order. Call before tribo_system_snap and tribo_system_list_snaps. */
 void tribo_system_order_snaps(tribo_system *sys);
 
-/* What that does with a contact: x[to] = (base - other x[from])/value, where other may be 0, and x[from] anything. */
+/* A correction for one contact: x[to] = (base[contact] - other x[from])/value. If other = 0, x[from] is not read. */
 struct snap {
     size_t contact, to, from;
     double value, other;
@@ -267,35 +266,35 @@ static inline void tribo_snap(const struct snap *s, const double *base, double *
     x[s->to] = (base[s->contact] - moved) / s->value;
 }
 
-/* All that it does, in its order: none undoes another. list [ncontact] out; returns how many. */
+/* list [ncontact] = corrections of tribo_system_snap in their order; no correction undoes another. Returns their number. */
 size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list);
 
 /* attached.c */
 void tribo_system_detach(tribo_system *sys);
 
-/* Keeps the message on the system and returns status. */
+/* Writes the message of the system and returns status. */
 int tribo_system_fail(const tribo_system *sys, int status, const char *format, ...)
 #if defined(__GNUC__)
     __attribute__((format(printf, 3, 4)))
 #endif
     ;
 
-/* TRIBO_ERR_UNSUPPORTED, and what it says: `who` takes only systems with mass everywhere. TRIBO_OK if this is one. */
+/* Returns TRIBO_OK if all degrees of freedom have mass; else TRIBO_ERR_UNSUPPORTED, with a message that names `who`. */
 int tribo_system_check_mass(const tribo_system *sys, const char *who);
 
-/* TRIBO_ERR_UNSUPPORTED for an unsolved system, to which `what` cannot be done. */
+/* Returns TRIBO_OK, or TRIBO_ERR_UNSUPPORTED for an unsolved system, with a message that names `what`. */
 int tribo_system_check_solved(const tribo_system *sys, const char *what);
 
-/* Either of them: what makes rates of states takes neither kind. */
+/* Both checks, for functions that compute rates of states: neither massless degrees of freedom nor unsolved systems. */
 int tribo_system_check_rates(const tribo_system *sys, const char *what);
 
-/* Checks that t and the caller's state y are finite. */
+/* Returns TRIBO_OK if t and the caller's state y are finite, else an error. */
 int tribo_system_check_state(const tribo_system *sys, double t, const double *y);
 
-/* ---- state.c: a caller's state y = x, x' without those of sliders, displacements of sliders, energy; the state of the methods,
- * q, q', f of compliant contacts, energy. */
+/* ---- state.c. The caller's state y: x and x' without sliders, displacements of sliders, energy. The methods' state: q, q', f of
+ * compliant contacts, energy. */
 
-/* The index of the energy in the state of the methods: as many values have perturbations. */
+/* Returns the index of the energy in the methods' state; a perturbation has as many values. */
 static inline size_t tribo_system_energy(const tribo_system *sys)
 {
     return 2 * sys->ndof + sys->compliance.count;
@@ -306,23 +305,24 @@ static inline size_t tribo_system_size(const tribo_system *sys)
     return tribo_system_energy(sys) + 1;
 }
 
-/* The expansion of a system that has its compliance; takes the matrices, copies terms [ndof] (NULL: reduced). 0 if out of memory. */
+/* Creates the expansion of a system that has its compliance. Takes the matrices, copies terms [ndof] (NULL: reduced). Returns 1,
+ * or 0 if out of memory. */
 int tribo_expansion_create(tribo_system *sys, size_t sliders, const size_t *place, const double *terms, struct matrix *follow,
                            struct matrix *give, struct matrix *touch);
 int tribo_expansion_copy(tribo_system *to, const tribo_system *from);
 void tribo_expansion_free(struct expansion *x);
 
-/* With an expansion: to [tribo_system_size] = y; y [tribo_system_dimension] = from, at time t. */
+/* With an expansion, read: to [tribo_system_size] = y; write: y [tribo_system_dimension] = from, at time t. */
 void tribo_system_read_state(const tribo_system *sys, const double *y, double *to);
 void tribo_system_write_state(const tribo_system *sys, double t, const double *from, double *y);
 
-/* v [ncontact] += J_w (w' - follow q') of the caller's state y, which was read last. */
+/* v [ncontact] += J_w (w' - follow q') of the caller's state y. Call after tribo_system_read_state for y. */
 void tribo_system_add_velocities(const tribo_system *sys, const double *y, double *v);
 
-/* The index in a caller's state of value i of the methods' state; of a force that of a degree of freedom without mass. */
+/* Returns the index in the caller's state of value i of the methods' state; for a force, of a massless displacement. */
 size_t tribo_system_state_index(const tribo_system *sys, size_t i);
 
-/* to [2 ndof + 2 count], of q, q', f, f' = a combination c [2 tribo_system_ndof] of a caller's x, x'. */
+/* to [2 ndof + 2 count] = coefficients of q, q', f, f' in the combination c [2 tribo_system_ndof] of x, x'. */
 void tribo_system_read_combination(const tribo_system *sys, const double *c, double *to);
 
 #endif
