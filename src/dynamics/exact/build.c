@@ -6,19 +6,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Damping that two modes share is none beside so much more of their own. */
+/* C~_kl, k != l, counts as 0 up to NEGLIGIBLE sqrt|C~_kk C~_ll|. */
 #define NEGLIGIBLE 1e-9
 
-/* A mode may have so much of another one. */
+/* Part of other modes that a computed mode may contain. */
 #define IMPURITY 1e-14
 
-/* Damping of at most this many times the rounding of its terms counts as 0. */
+/* Damping of a mode counts as 0 up to ROUNDING times the rounding of the terms of phi'C phi. */
 #define ROUNDING 8.0
 
-/* Largest part of a mode that counts as rounding of another mode. */
+/* Largest part of a mode in another mode that counts as rounding. */
 #define TINY 1e-6
 
-/* So few modes are not worth a dense product. */
+/* Up to FEW modes a dense product does not pay. */
 #define FEW 4
 
 /* ------------------------------------------------------------------------------------------------- the contacts that hold */
@@ -50,7 +50,7 @@ static int list_rest(struct modal_build *b, const unsigned char *holds)
     return 1;
 }
 
-/* b->stiffness. 0 if out of memory. */
+/* Sets b->stiffness. Returns 0 if out of memory. */
 static int find_stiffness(struct modal_build *b)
 {
     const tribo_system *sys = b->shared->sys;
@@ -80,7 +80,7 @@ static int find_stiffness(struct modal_build *b)
 
 /* ------------------------------------------------------------------------------------------------- modes of vibration */
 
-/* Factor of Z'MZ. Returns a status. */
+/* *c = Cholesky factor of Z'MZ. Returns a status. */
 static int factorize_mass(struct modal_build *b, const struct matrix *z, struct cholesky *c)
 {
     const size_t m = z->cols;
@@ -98,7 +98,7 @@ static int factorize_mass(struct modal_build *b, const struct matrix *z, struct 
     return status;
 }
 
-/* What to say of modes that were not found. */
+/* Sets the message for a failure of tribo_normal_modes. Returns status. */
 static int build_modes_failed(const struct modal_build *b, int status, const struct doubt *doubt)
 {
     switch (status) {
@@ -145,7 +145,7 @@ static int find_modes(struct modal_build *b)
     return !status;
 }
 
-/* M phi, K phi and C phi. */
+/* Sets psi = M phi, k_phi = stiffness phi and c_phi = C phi. Returns 0 if out of memory. */
 static int multiply_modes(struct modal_build *b)
 {
     const size_t n = b->n, m = b->h->modes;
@@ -166,7 +166,7 @@ static int multiply_modes(struct modal_build *b)
     return 1;
 }
 
-/* Returns the part of mode l in mode k by rounding of K: noise of phi_k'K phi_l over the distance of omega^2, or 0 if above TINY. */
+/* Returns the part of mode l in mode k by rounding of K: noise of phi_k'K phi_l over |omega_k^2 - omega_l^2|; 0 if above TINY. */
 static double mixed(const struct modal_build *b, const double *root, size_t k, size_t l)
 {
     const double distance = fabs(b->h->omega2[k] - b->h->omega2[l]);
@@ -174,8 +174,8 @@ static double mixed(const struct modal_build *b, const double *root, size_t k, s
     return noise <= TINY * distance ? noise / distance : 0.0;
 }
 
-/* 1 if the modes share damping c [modes][modes] that is neither negligible beside their own nor rounding of C or of the modes.
- * root, stiff_root [n]: roots of the terms of the diagonals of C and K. */
+/* Returns 1 if some c_kl, k != l, of c = C~ [modes][modes] is neither negligible beside c_kk and c_ll nor rounding of C or of the
+ * modes. root, stiff_root [n]: square roots of the sizes of the terms of C_ii and K_ii. */
 static int damping_couples(const struct modal_build *b, const double *c, const double *root, const double *stiff_root)
 {
     const size_t n = b->n, m = b->h->modes;
@@ -193,7 +193,7 @@ static int damping_couples(const struct modal_build *b, const double *c, const d
     return 0;
 }
 
-/* Damping of the modes, each by itself, or coupled. */
+/* Sets h->damping = diagonal of C~, 0 where only rounding; h->coupling = C~ if not diagonal. Returns 0 if out of memory. */
 static int find_damping(struct modal_build *b)
 {
     struct modal *h = b->h;
@@ -242,7 +242,7 @@ static int find_drifts(struct modal_build *b)
 
 /* ------------------------------------------------------------------------------------------------------- structures */
 
-/* Keeps modes and belt velocities for the degrees of freedom that move. */
+/* Sets h->dof, and keeps phi, psi, yr, yi and y0 of the degrees of freedom h->dof. Returns 0 if out of memory. */
 static int build_compress(struct modal_build *b)
 {
     struct modal *h = b->h;
@@ -296,7 +296,7 @@ static int build_compress(struct modal_build *b)
     return h->columns || !dense;
 }
 
-/* What does not depend on loads. Returns a status, TRIBO_ERR_MEMORY if none is in b. */
+/* Sets the parts of b->h that do not depend on loads. Returns a status; TRIBO_ERR_MEMORY for a failure with b->status 0. */
 static int find_structure(struct modal_build *b)
 {
     if (!find_modes(b) || !multiply_modes(b) || !find_damping(b) || !find_drifts(b) || !tribo_modal_hold(b)) {
@@ -322,7 +322,7 @@ void tribo_modal_forget(struct modal_known *known)
     *known = (struct modal_known){NULL, 0};
 }
 
-/* Adds a structure that is not known. Returns a status. */
+/* Adds a piece with the parts of find_structure to known. Returns a status. */
 static int build_learn(struct modal_build *b, struct modal_known *known)
 {
     const size_t list = (b->rests + b->springs) * sizeof *b->rest, bytes = sizeof(struct modal_piece) + list;
@@ -345,7 +345,7 @@ static int build_learn(struct modal_build *b, struct modal_known *known)
     return TRIBO_OK;
 }
 
-/* The same, which is kept while the structure is what it is. */
+/* Sets the parts of find_structure in b->h from known, adds a missing piece; valid for one sys->structure. Returns a status. */
 static int recall_structure(struct modal_build *b, struct modal_known *known)
 {
     const struct modal_piece *p = known->first;
@@ -370,7 +370,7 @@ static int recall_structure(struct modal_build *b, struct modal_known *known)
     return b->psi || multiply_modes(b) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
-/* Returns a status, TRIBO_ERR_MEMORY if none is in b. */
+/* Builds all of b->h. Returns a status; TRIBO_ERR_MEMORY for a failure with b->status 0. */
 static int build_find_all(struct modal_build *b, const unsigned char *holds)
 {
     if (!list_rest(b, holds) || !find_stiffness(b)) {

@@ -1,4 +1,4 @@
-/* An output in a phase: sums over terms, TRIBO_TERMS at a time as in modal_terms.c, and a line. */
+/* An output in a phase: sums over terms, TRIBO_TERMS at a time as in terms.c, plus a line. */
 #include "terms.h"
 #include "common/simd.h"
 
@@ -40,8 +40,8 @@ static inline void add_products(const double *restrict a, const double *restrict
     }
 }
 
-/* Re(c w), Re(c w'), Re(c w'') into sum [3][T], which is not of this function, or compilers would take several lots of terms at
- * once, and sort them first. */
+/* sum [3][T] = sums of Re(c w), Re(c w'), Re(c w'') over lots. sum is an array of the caller: with a local array compilers take
+ * several lots at once, and reorder the lots first. */
 TRIBO_SIMD_OF_FOUR static void sum_terms(const struct modal_motion *x, const struct output *c, double *restrict sum)
 {
     const size_t n = x->h->terms;
@@ -57,7 +57,7 @@ TRIBO_SIMD_OF_FOUR static void sum_terms(const struct modal_motion *x, const str
     }
 }
 
-/* Re(c lambda w), Re(c lambda^2 w), Re(c lambda^3 w) of a lot, added to sum [3][T], w being the second derivatives. */
+/* sum [3][T] += Re(c lambda w''), Re(c lambda^2 w''), Re(c lambda^3 w'') of one lot: third to fifth derivative. */
 static inline void add_further(const double *restrict lr, const double *restrict li, const double *restrict cr,
                                const double *restrict ci, const struct lot *restrict lot, double *restrict sum)
 {
@@ -80,7 +80,7 @@ TRIBO_SIMD_OF_FOUR static void sum_further(const struct modal_motion *x, const s
     }
 }
 
-/* |c| times the bounds of |w| and of its sixth derivative into sum [2][T]. */
+/* sum [2][T] = sums of |c| growth and |c| growth6 over lots: bounds of the output and of the sixth derivative. */
 TRIBO_SIMD_OF_FOUR static void sum_bounds(const struct modal_motion *x, const struct output *c, double *restrict sum)
 {
     const size_t n = x->h->terms;

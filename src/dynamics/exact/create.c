@@ -1,4 +1,4 @@
-/* Structures with contacts held: what they share, and one of them. */
+/* Creates structures with contacts held, and the data that structures share. */
 #include "parts.h"
 
 #include <stdlib.h>
@@ -12,7 +12,7 @@ void tribo_modal_shared_free(struct modal_shared *shared)
     memset(shared, 0, sizeof *shared);
 }
 
-/* K or C: as given, or M times what accelerates. NULL if out of memory. */
+/* Returns K or C: given, if given has rows; else accelerates, if M = 1; else own = M accelerates. NULL if out of memory. */
 static const struct matrix *force_matrix(const tribo_system *sys, const struct matrix *given, const struct matrix *accelerates,
                                          struct matrix *own)
 {

@@ -1,6 +1,6 @@
 #include "divided.h"
 
-/* Closer to 0 series are taken, of so many terms. */
+/* CLOSE: |z| below which series are used; TERMS: terms of a series. */
 #define CLOSE 0.5
 #define TERMS 18
 
@@ -19,7 +19,7 @@ double complex tribo_exp_1(double complex z)
     return re + im * I;
 }
 
-/* exp[a, b], from the one of them that grows more: so nothing overflows that the result does not. */
+/* Returns exp[a, b] = e^a exp[0, b - a], or with a and b exchanged if Re b >= Re a: overflows only if the result does. */
 static double complex between(double complex a, double complex b)
 {
     return creal(a) > creal(b) ? cexp(a) * tribo_exp_1(b - a) : cexp(b) * tribo_exp_1(a - b);
@@ -28,7 +28,7 @@ static double complex between(double complex a, double complex b)
 double complex tribo_exp_2(double complex a, double complex b)
 {
     if (cabs(a) < CLOSE && cabs(b) < CLOSE) {
-        /* The sum of h_k(a, b)/(k + 2)!, h_k being that of all products of k factors a or b. */
+        /* Sum of h_k(a, b)/(k + 2)!, h_k(a, b) = sum of a^j b^(k - j) over j from 0 to k. */
         double complex products = 1.0, power = 1.0, sum = 0.0;
         double factor = 0.5;
         for (int k = 0; k < TERMS; k++) {

@@ -1,13 +1,13 @@
-/* The energy that friction dissipates in a phase, in closed form. A steady force dissipates its size times the distance slid.
- * What harmonics add to it is a sum of e^{i Omega t}, and so, with other exponents, is the velocity: integrals of their products
- * are divided differences of the exponential function (divided.h). Where a large limit swings through zero these parts cancel
- * each other: then the power, of one sign, is summed over samples of it. */
+/* The energy that friction dissipates in a phase, in closed form. A steady force dissipates |force| times the distance slid. The
+ * part of a force by harmonics of the limit is a sum of e^{i Omega t}; the velocity is a sum of exponentials, too: the integrals
+ * of products are divided differences of the exponential function (divided.h). If a large limit swings through zero, these parts
+ * cancel each other: then the power, of one sign, is integrated by samples. */
 #include "divided.h"
 #include "terms.h"
 
 #include <math.h>
 
-/* A harmonic of a limit from t0 on, Re(a e^{i Omega t}), as it goes until tau: turn = i Omega tau. */
+/* A harmonic of a limit in the phase, Re(a e^{i Omega t}), t from 0 (at t0) to tau; turn = i Omega tau. */
 struct tide {
     double complex a, turn;
     double tau;
@@ -18,19 +18,19 @@ static double complex complex_of(struct number z)
     return z.re + z.im * I;
 }
 
-/* What the mean over [0, tau] of the tide times Re(c e^{z t/tau}) is the real part of, for c = 1. */
+/* Returns m: the mean of Re(a e^{i Omega t}) Re(c e^{z t/tau}) over [0, tau] is Re(c m). */
 static double complex mean(const struct tide *w, double complex z)
 {
     return 0.5 * (w->a * tribo_exp_1(z + w->turn) + conj(w->a) * tribo_exp_1(z - w->turn));
 }
 
-/* The same for (e^{y t/tau} - e^{z t/tau})/(y - z). */
+/* Returns m: the mean of Re(a e^{i Omega t}) Re(c (e^{y t/tau} - e^{z t/tau})/(y - z)) over [0, tau] is Re(c m). */
 static double complex mean_2(const struct tide *w, double complex y, double complex z)
 {
     return 0.5 * (w->a * tribo_exp_2(y + w->turn, z + w->turn) + conj(w->a) * tribo_exp_2(y - w->turn, z - w->turn));
 }
 
-/* For what a resonant harmonic does to exponent p, which add_resonance of modal_motion.c has. */
+/* Returns m for the part of exponent p by the resonant harmonic s, see add_resonance in motion.c. */
 static double complex mean_resonance(const struct modal_motion *x, const struct tide *w, size_t p, size_t s)
 {
     const struct modal *h = x->h;
@@ -40,7 +40,7 @@ static double complex mean_resonance(const struct modal_motion *x, const struct 
     return -I / h->li[p] * w->tau * (g * mean_2(w, y, z) + conj(g) * mean_2(w, -y, z));
 }
 
-/* For all that is in exponent p. */
+/* Returns m for exponent p with all resonances. */
 static double complex mean_exponent(const struct modal_motion *x, const struct tide *w, size_t p)
 {
     const struct modal *h = x->h;
@@ -53,7 +53,7 @@ static double complex mean_exponent(const struct modal_motion *x, const struct t
     return sum;
 }
 
-/* The integral of the tide times the velocity of contact i, whose output is v. */
+/* Returns the integral over [0, tau] of the harmonic w of a limit times the velocity of contact i, with output v. */
 static double integral(const struct modal_motion *x, const struct tide *w, size_t i, const struct output *v)
 {
     const struct modal *h = x->h;
@@ -72,7 +72,7 @@ static double integral(const struct modal_motion *x, const struct tide *w, size_
     return w->tau * sum;
 }
 
-/* The work of what harmonics add to the limit of contact i against its velocity. */
+/* Returns the integral over [0, tau] of the part of the limit of contact i by harmonics times the velocity. */
 static double limit_work(const struct modal_motion *x, size_t i, const struct output *v, double tau)
 {
     double sum = 0.0;
@@ -89,7 +89,7 @@ static double limit_work(const struct modal_motion *x, size_t i, const struct ou
 
 #define ALL ((size_t)-1)
 
-/* The work of steady forces: their size times the distance slid, J dq + G df, */
+/* Returns the work of the steady force of contact i: tally steady (J dq + G df)_i, without the displacement of the base. */
 static double steady_work(const struct modal_motion *x, size_t i)
 {
     const struct compliance *g = &x->sys->compliance;
@@ -100,7 +100,7 @@ static double steady_work(const struct modal_motion *x, size_t i)
     return x->sys->tally[i] * x->steady[i] * way;
 }
 
-/* minus the way of the belts: of all contacts, or of one. */
+/* Returns the sum of tally steady (displacement of the base) over contacts with slip != 0: all if one = ALL, else contact one. */
 static double belt_work(const struct modal_motion *x, double tau, size_t one)
 {
     double work = 0.0;
@@ -117,13 +117,13 @@ static double belt_work(const struct modal_motion *x, double tau, size_t one)
     return work;
 }
 
-/* A sum of parts may be this part of their sizes, and keeps its digits. */
+/* Smallest |sum|/(size of the parts) at which the sum keeps enough digits. */
 #define CANCELS 1e-4
 
-/* So many samples a phase may have. */
+/* Largest number of samples in a phase. */
 #define MOST_SAMPLES 32768.0
 
-/* How large the parts of the work of contact i may be, and the fastest of the exponents in them. */
+/* Returns an estimate of the size of the parts of the work of contact i; *fastest = largest |lambda| or Omega of the terms. */
 static double size_of_parts(const struct modal_motion *x, size_t i, const struct output *v, double tau, double *fastest)
 {
     const struct modal *h = x->h;
@@ -143,8 +143,8 @@ static double size_of_parts(const struct modal_motion *x, size_t i, const struct
     return tau * limits * size;
 }
 
-/* The work of contact i by Gauss's rule with 8 points on intervals in which nothing turns by more than a quarter. Goes elsewhere
- * in the phase. */
+/* Returns the work of contact i by Gauss's rule with 8 points in each interval. The caller chooses intervals in which no term
+ * turns by more than 1 rad. Goes through the phase and back to tau. */
 static double sampled_work(struct modal_motion *x, size_t i, const struct output *v, double tau, size_t intervals)
 {
     static const double at[] = {0.18343464249564980, 0.52553240991632899, 0.79666647741362674, 0.96028985649753623},
@@ -163,7 +163,7 @@ static double sampled_work(struct modal_motion *x, size_t i, const struct output
     return half * work;
 }
 
-/* The work of contact i, which follows harmonics of its limit, less what belt_work has of it. */
+/* Returns the energy dissipated by contact i, which follows harmonics of the limit, minus belt_work of contact i. */
 static double swinging_work(struct modal_motion *x, size_t i, const struct output *v, double tau)
 {
     const double closed = x->contacts->state.slip[i] * limit_work(x, i, v, tau), own = x->sys->tally[i];

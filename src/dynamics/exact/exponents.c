@@ -1,17 +1,17 @@
-/* Exponents of the free motion in the modes. */
+/* Exponents lambda of the free motion of the modes. */
 #include "parts.h"
 #include "common/real.h"
 #include "numerics/linalg.h"
 
 #include <math.h>
 
-/* A mode this close to critical damping has no two exponents that could be told apart to 12 digits. */
+/* |omega^2 - (damping/2)^2|, relative, below which the difference of the two exponents is known to fewer than 12 digits. */
 #define CRITICAL 1e-8
 
-/* Eigenvectors of length 1 that come so close to each other are one. */
+/* Smallest pivot of the matrix of eigenvectors, of length 1: below ALIKE two eigenvectors count as equal. */
 #define ALIKE 1e-6
 
-/* So much of an exponent may be wrong. */
+/* Largest |A x - lambda x|/|lambda|, |x| = 1, of an exponent that is accepted. */
 #define KNOWN 1e-8
 
 static int exponents_unsupported(const struct modal_build *b, const char *why)
@@ -59,7 +59,7 @@ static int exponents_decoupled(struct modal_build *b)
     return TRIBO_OK;
 }
 
-/* x' = A x, x = (s eta, eta') with s = omega. */
+/* a [2 modes][2 modes], zero before, = A of x' = A x, x = (s eta, eta'), s = omega. */
 static void first_order(const struct modal *h, const double *s, double *a)
 {
     const size_t m = h->modes, size = 2 * m;
@@ -72,7 +72,7 @@ static void first_order(const struct modal *h, const double *s, double *a)
     }
 }
 
-/* What is left of A x - lambda x, beside |lambda|, for x of length 1 with parts x [0] and, if lambda is complex, x [1]. */
+/* Returns |A x - lambda x|/|lambda|, lambda = re + i im, |x| = 1: real part x[0], imaginary part x[1] if im != 0. */
 static double exponents_residual(const struct modal *h, const double *s, double re, double im, const double *const *x)
 {
     const size_t m = h->modes, parts = im != 0.0 ? 2 : 1;
@@ -89,7 +89,7 @@ static double exponents_residual(const struct modal *h, const double *s, double 
     return sqrt(square) / hypot(re, im);
 }
 
-/* 1 if all exponents are known well. */
+/* Returns 1 if the residuals of all exponents are at most KNOWN. */
 static int all_known(const struct modal *h, const double *s, const double *re, const double *im, const double *x)
 {
     const size_t size = 2 * h->modes;
@@ -102,8 +102,8 @@ static int all_known(const struct modal *h, const double *s, const double *re, c
     return 1;
 }
 
-/* Exponents, and how they and eta make each other, from eigenvectors x (see linalg.h) and the inverse of the matrix that has them
- * in columns. */
+/* Sets lr, li, b (eta' to z) and r (z to eta) from eigenvectors x (see linalg.h) and inverse, of the matrix with eigenvectors as
+ * columns. Returns a status. */
 static int keep_exponents(struct modal_build *b, const double *s, const double *re, const double *im, const double *x,
                           const double *inverse)
 {
@@ -125,7 +125,7 @@ static int keep_exponents(struct modal_build *b, const double *s, const double *
         h->lr[p] = re[i];
         h->li[p] = im[i];
         for (size_t k = 0; k < m; k++) {
-            /* x = (v + i w) z + its conjugate = 2 (v Re z - w Im z) */
+            /* x = (v + i w) z + conjugate = 2 (v Re z - w Im z) */
             h->br[k * e + p] = half * inverse[i * size + m + k];
             h->rr[p * m + k] = twice * x[i * size + k] / s[k];
             if (pair) {
@@ -138,7 +138,7 @@ static int keep_exponents(struct modal_build *b, const double *s, const double *
     return done ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
-/* Inverse of the matrix that has the vectors x in columns. Returns a status. */
+/* inverse, zero before, = inverse of the matrix with the vectors x as columns. Returns a status. */
 static int invert(const struct modal_build *b, const double *x, double *lu, int *pivot, double *inverse)
 {
     const size_t size = 2 * b->h->modes;

@@ -1,8 +1,8 @@
-/* Method "exact": Coulomb's law itself on a linear structure, without time steps. Between events the motion is known in closed
- * form from the modes of the structure with its contacts at rest held (modal.h); no event can be skipped (first_zero.h), since
- * the sixth derivative of a sum of exponentials is at most the sum of their amplitudes times |lambda|^6, which bounds how far it
- * strays from a quintic; and at an event the contacts at rest are decided about anew (stick_slip.h). The energy integral is
- * closed too (modal_energy.c). */
+/* Method "exact": Coulomb's law without regularization on a linear structure, without time steps. Between events the motion is
+ * known in closed form from the modes of the structure with the contacts at rest held (modal.h). No event is skipped
+ * (first_zero.h): the sixth derivative of a sum of exponentials is at most the sum of |amplitude| |lambda|^6, which bounds the
+ * difference to a quintic. At an event stick_slip.h decides which contacts stick. The energy integral is closed, too
+ * (energy.c). */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -15,10 +15,10 @@
 #include "common/real.h"
 #include "common/zeros.h"
 
-/* Decompositions are dropped when they take more than this. */
+/* Bytes of structures above which all structures are dropped. */
 #define CACHE_BYTES ((size_t)256 << 20)
 
-/* A structure with contacts held, and what its key makes of all its bytes: two that differ in that have other keys. */
+/* A structure with contacts held; print: hash of all bytes of modal->key. Structures of different print have different keys. */
 struct held {
     struct modal *modal;
     uint64_t print;
@@ -27,16 +27,16 @@ struct held {
 struct exact {
     tribo_system *sys;
     struct events events;
-    struct modal_shared shared; /* by these; zeros until there is one */
+    struct modal_shared shared; /* data of all held structures; zeros until the first structure is created */
     struct held *held;
     size_t helds, room, bytes, revision;
-    struct modal_known known; /* what of these stays when loads change, */
-    size_t structure;         /* while the system has this one */
+    struct modal_known known; /* parts of structures that do not depend on loads */
+    size_t structure;         /* sys->structure that known belongs to */
 
-    struct modal_motion motion; /* of the phase, */
-    struct course *course;      /* [ncontact] and of the outputs that guards are of */
-    double *work;               /* of transitions, allocated when one is first asked for */
-    size_t columns;             /* for so many */
+    struct modal_motion motion; /* of the phase */
+    struct course *course;      /* [ncontact] courses of the outputs of the structure */
+    double *work;               /* workspace of transitions; NULL before the first one */
+    size_t columns;             /* number of columns that work has room for */
 };
 
 /* ---------------------------------------------------------------------------------------------- structures that are held */
@@ -51,7 +51,7 @@ static void drop_helds(struct exact *x)
     x->bytes = 0;
 }
 
-/* What a key of n bytes, and zeros after them, comes down to. */
+/* Returns a hash of key [n], with zeros after key up to a multiple of 8 bytes. */
 static uint64_t print_of(size_t n, const signed char *key)
 {
     uint64_t print = 0, part;
@@ -62,13 +62,13 @@ static uint64_t print_of(size_t n, const signed char *key)
     return print;
 }
 
-/* Few contacts have a print that no other key has. */
+/* Returns 1 if held has the key [n] with this print. Up to 8 contacts different keys have different prints. */
 static int has_key(struct held held, uint64_t print, size_t n, const signed char *key)
 {
     return held.print == print && (n <= sizeof print || memcmp(held.modal->key, key, n) == 0);
 }
 
-/* *found = the structure with the contacts at rest held. Those used last are looked at first. */
+/* *found = structure with the contacts at rest held. held[] is in order of last use, searched from the end. Returns a status. */
 static int find_held(struct exact *x, const struct modal **found)
 {
     tribo_system *sys = x->sys;
@@ -120,7 +120,7 @@ static void method_exact_look(void *own, double tau, size_t guards, struct guard
     for (size_t k = 0; k < guards; k++) {
         struct guard *g = guard[k];
         if (g->output) {
-            /* The two sides of an output are computed at once. */
+            /* An output is computed once for both guards, side 1 and -1. */
             struct course *c = g->output;
             if (c->tau != tau) {
                 tribo_course_look(x, c);
@@ -132,7 +132,7 @@ static void method_exact_look(void *own, double tau, size_t guards, struct guard
             g->middle = (struct sample){g->offset, 0.0, 0.0};
         }
         if (g->limit != 0.0) {
-            /* Adds what harmonics make of the limit. */
+            /* Adds the part of the limit by harmonics. */
             const struct sample limit = tribo_modal_motion_limit(x, g->contact);
             g->middle.g += g->limit * limit.g;
             g->middle.d += g->limit * limit.d;
@@ -141,7 +141,7 @@ static void method_exact_look(void *own, double tau, size_t guards, struct guard
     }
 }
 
-/* Guards of limits that swing, and resonances, are left to two derivatives. */
+/* to [3] = third to fifth derivative of guard g. Returns 1; 0, to not set, for a varying limit, a resonance, or no output. */
 static int look_further(void *own, double tau, const struct guard *g, double *to)
 {
     struct modal_motion *x = &((struct exact *)own)->motion;
@@ -164,7 +164,7 @@ static void move_to(void *own, double tau, const double *from, double *to)
     tribo_modal_motion_state(&((struct exact *)own)->motion, tau, from, to);
 }
 
-/* The load at the end of a phase, where its terms are. */
+/* Sets the time t of the system, and cosine and sine of each harmonic from the terms at the end of the phase. */
 static void arrive(void *own, double t)
 {
     const struct exact *exact = own;
@@ -177,8 +177,8 @@ static void arrive(void *own, double t)
     }
 }
 
-/* Where exponents decay, bounds are worth finding again after the time of the fastest of them, and after twice that, and so on.
- * Those of courses from the start on come with them. */
+/* Sets size and bend of all guards from tau on. Returns the time from which new bounds are worth finding: max(2 tau, 1/decay),
+ * HUGE_VAL if nothing decays. At tau = 0 courses have bounds from tribo_course_begin. */
 static double method_exact_bound(void *own, double tau)
 {
     struct exact *x = own;
@@ -190,7 +190,7 @@ static double method_exact_bound(void *own, double tau)
         }
     }
     for (size_t k = 0; k < x->events.search.guards; k++) {
-        /* Of a guard, its course being bounded. */
+        /* g->size and g->bend from the bounds of course c */
         struct guard *g = &x->events.search.guard[k];
         const struct course *c = g->output;
         g->size = fabs(g->offset) + (c ? c->size : 0.0);
@@ -203,13 +203,13 @@ static double method_exact_bound(void *own, double tau)
     return decay > 0.0 ? greater(2.0 * tau, 1.0 / decay) : HUGE_VAL;
 }
 
-/* The limit without harmonics. */
+/* Returns the limit of contact i without harmonics. */
 static double steady_limit(const struct exact *x, size_t i)
 {
     return x->events.stick_slip.constant.swing[i] > 0.0 ? x->sys->given_limit[i] : x->events.stick_slip.state.limit[i];
 }
 
-/* Guards of contact i; course c is that of its output, NULL if there is none. */
+/* Returns the data for the guards of contact i; c: course of the output of contact i; NULL: none. */
 static struct watch watch_of(const struct exact *x, size_t i, struct course *c)
 {
     const double steady = steady_limit(x, i), swing = x->events.stick_slip.constant.swing[i];
@@ -313,7 +313,7 @@ static void method_exact_destroy(tribo_driver *drv)
     }
 }
 
-/* What the system has become since a driver was created is looked at again by every advance. */
+/* Returns a status: tables and falling static limits are unsupported. Every advance checks, since the system may change. */
 static int check_system(const tribo_system *sys)
 {
     if (sys->tables || sys->limits.knots) {

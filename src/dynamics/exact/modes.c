@@ -1,4 +1,4 @@
-/* From displacements and velocities to amplitudes of the modes of a structure with contacts held, and back. */
+/* Structures with contacts held: amplitudes of modes from displacements and velocities, and displacements from amplitudes. */
 #include "modal.h"
 
 #include <string.h>

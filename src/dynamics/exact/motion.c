@@ -7,8 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Over a time this short, in terms of its exponent, an exponential moves by a small part of itself: by how much is not found as a
- * difference, which would lose digits. */
+/* |lambda tau| below which the change of an exponential is computed by tribo_exp_1: a difference would lose digits. */
 #define LITTLE 0.1
 
 int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const struct stick_slip *contacts)
@@ -63,7 +62,7 @@ int tribo_modal_motion_reserve(struct modal_motion *x, size_t terms)
 
 /* ------------------------------------------------------------------------------------------------------------------- later on */
 
-/* Adds what a resonant harmonic does to an exponent, from nothing at t0 on: z' = lambda z - (i/nu) Re(g e^{i Omega t}). */
+/* Adds to w of exponent p the part by the resonant harmonic s: z' = lambda z - (i/nu) Re(g e^{i Omega t}), z = 0 at t0. */
 static void add_resonance(struct modal_motion *x, size_t p, size_t s, double tau)
 {
     const struct modal *h = x->h;
@@ -76,7 +75,7 @@ static void add_resonance(struct modal_motion *x, size_t p, size_t s, double tau
         const double side = conjugate ? -1.0 : 1.0;
         const double complex u = tau * tribo_exp_1(tau * (-h->lr[p] + (side * omega - nu) * I));
         const double ur = creal(u), ui = cimag(u);
-        /* (g e^{i Omega t0})/2, or its conjugate, times e^{lambda tau} times u */
+        /* z += a e^{lambda tau} u, a = g e^{i Omega t0}/2 or the conjugate */
         const double ar = 0.5 * (gr * c0 - gi * s0), ai = 0.5 * side * (gr * s0 + gi * c0);
         const double br = ar * er - ai * ei, bi = ar * ei + ai * er;
         zr += br * ur - bi * ui;
@@ -143,7 +142,7 @@ double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i)
     return sum;
 }
 
-/* By how much terms have moved from t0 to where go() was: into er, ei. */
+/* er, ei = w - z: change of the terms from t0 to x->tau. */
 static void find_moves(struct modal_motion *x)
 {
     const struct modal *h = x->h;
@@ -155,8 +154,8 @@ static void find_moves(struct modal_motion *x)
     }
     for (size_t p = h->any_resonant ? e : 0; p < terms; p++) {
         if (x->tau * h->size[p] < LITTLE) {
-            /* With a load far above the frequency of exponential p, or a limit far above all forces that a contact slides by for a
-             * moment, the little by which it moves is all of the motion: no difference. */
+            /* With a load far above the frequency of exponent p, or in a short slip under a limit far above all other forces,
+             * this small change of z is the whole motion: a difference would lose digits. */
             const double complex lambda_tau = x->tau * (x->h->lr[p] + x->h->li[p] * I);
             const struct number z = tribo_term_at_start(x, p);
             const double complex move = (z.re + z.im * I) * lambda_tau * tribo_exp_1(lambda_tau);
@@ -166,19 +165,19 @@ static void find_moves(struct modal_motion *x)
     }
 }
 
-/* Of a mode: eta, or by how much it has changed, and eta'. */
+/* eta and eta' of a mode, or the changes of both since t0. */
 struct amplitude {
     double place, rate;
 };
 
-/* The rate of term p, or, brief, by how much that has changed. */
+/* Returns w' of term p, or, if brief, w' - z' = lambda (w - z). */
 static inline struct number change_of_rate(const struct modal_motion *x, size_t p, int brief)
 {
     const double lr = x->h->lr[p], li = x->h->li[p], er = x->er[p], ei = x->ei[p];
     return brief ? (struct number){lr * er - li * ei, lr * ei + li * er} : tribo_term_rate(x, p);
 }
 
-/* Adds what term p, times r, has moved a mode by. */
+/* a->place += Re(r (w - z)) of term p; a->rate += Re(r w'), or Re(r (w' - z')) if brief. */
 static inline void add_term(const struct modal_motion *x, size_t p, int brief, double rr, double ri, struct amplitude *a)
 {
     const struct number rate = change_of_rate(x, p, brief);
@@ -186,12 +185,12 @@ static inline void add_term(const struct modal_motion *x, size_t p, int brief, d
     a->rate += rr * rate.re - ri * rate.im;
 }
 
-/* Adds the modes to x->dq and x->du. */
+/* Adds the motion of the modes to x->dq and x->du. */
 static void motion_add_modes(struct modal_motion *x, int brief)
 {
     const struct modal *h = x->h;
     const size_t e = h->exponents, harmonics = h->harmonics, modes = h->modes, n = x->sys->ndof;
-    double *place = x->work, *rate = place + n, *move = rate + n; /* move: er, their rates; then ei, theirs */
+    double *place = x->work, *rate = place + n, *move = rate + n; /* move: er, Re w', -ei, -Im w', 2n apart */
     find_moves(x);
     if (!h->owner) {
         memset(place, 0, 2 * n * sizeof *place);
@@ -208,7 +207,7 @@ static void motion_add_modes(struct modal_motion *x, int brief)
     for (size_t k = 0, p = 0; k < modes; k++) {
         struct amplitude a = {h->owner ? 0.0 : place[k], h->owner ? 0.0 : rate[k]};
         if (x->runs) {
-            /* What is linear in time, or quadratic, of mode k. */
+            /* Linear and quadratic part of mode k. */
             const double drift = x->vel[k] + (x->h->drifts[k] ? x->drift_rate[k] : 0.0), acc = x->acc[k], tau = x->tau;
             a.place += tau * (drift + 0.5 * acc * tau);
             a.rate += (brief ? 0.0 : drift) + acc * tau;
@@ -226,7 +225,7 @@ static void motion_add_modes(struct modal_motion *x, int brief)
     tribo_modal_add(h, 1, place, n, x->dq, n, move);
 }
 
-/* What a harmonic of the base adds to velocities, and has added to dq: the contacts that hold are carried along. */
+/* Adds harmonic s of bases to x->du and, integrated from t0, to x->dq: contacts that hold follow the bases. */
 static void carry(struct modal_motion *x, size_t s)
 {
     const struct modal *h = x->h;
@@ -240,7 +239,7 @@ static void carry(struct modal_motion *x, size_t s)
     }
 }
 
-/* x->df = -G_AA^-1 (J_A dq - way of bases), A the compliant contacts at rest; forces in `to` = those in `from` + x->df. */
+/* x->df = -G_AA^-1 (J_A dq - base displacements), A: compliant contacts at rest; forces in `to` = forces in `from` + x->df. */
 static void move_springs(struct modal_motion *x, double tau, const double *from, double *to)
 {
     const tribo_system *sys = x->sys;
@@ -266,7 +265,7 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     const struct modal *h = x->h;
     const size_t n = sys->ndof;
     tribo_modal_motion_go(x, tau);
-    /* where all terms have moved by small parts of themselves velocities, too, are those at t0 and what they have changed by */
+    /* brief: |lambda| tau is small for all terms; then q', as q, is computed as the value at t0 plus a change */
     const int brief = x->tau * h->quickest < LITTLE && !h->any_resonant && !sys->base_harmonics;
     if (h->moving < n) {
         memset(x->dq, 0, n * sizeof *x->dq);
@@ -296,7 +295,7 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
 
 /* ------------------------------------------------------------------------------------------------------- the start of a phase */
 
-/* J_i q, less what harmonics of the base have moved it by. */
+/* Returns J_i q minus the displacement of base i by harmonics of omega != 0. */
 static double motion_offset(const tribo_system *sys, size_t i, const double *q)
 {
     double sum = tribo_matrix_row_dot(&sys->direction, i, q);
@@ -309,7 +308,7 @@ static double motion_offset(const tribo_system *sys, size_t i, const double *q)
     return sum;
 }
 
-/* The harmonics at t0, those of limits as many times as the force of their contact follows them; and the nothing after them. */
+/* Sets z, growth and growth6 of harmonics at t0, of limits times side; zeros after the last term. */
 static void start_harmonics(struct modal_motion *x, tribo_system *sys)
 {
     const struct modal *h = x->h;
@@ -327,7 +326,7 @@ static void start_harmonics(struct modal_motion *x, tribo_system *sys)
     }
 }
 
-/* By what contacts push modes: forces that slide, places where contacts hold. */
+/* Sets push: steady force of a sliding contact; -(J_i q - displacement of the base + (G f)_i) of a held contact. */
 static void find_pushes(struct modal_motion *x, const tribo_system *sys, const double *y)
 {
     const struct modal *h = x->h;
@@ -338,8 +337,8 @@ static void find_pushes(struct modal_motion *x, const tribo_system *sys, const d
     }
 }
 
-/* The constant part of the right-hand side of mode k: by contacts, by constant loads. The stiffness of the whole has no part in
- * it: what it makes of a rigid-body displacement would be its rounding. */
+/* Returns the constant right-hand side of mode k, by contacts and constant loads. K q is not added: for a rigid-body displacement
+ * q, K q would be rounding only. */
 static double constant_force(const struct modal_motion *x, size_t k)
 {
     const struct modal *h = x->h;
@@ -350,7 +349,7 @@ static double constant_force(const struct modal_motion *x, size_t k)
     return force;
 }
 
-/* What a mode does at t0 less what the right-hand side makes of it: by a constant and what grows with time, and by harmonics. */
+/* Return a = (eta, eta') of mode k at t0 minus a response: to the constant and linear right-hand side; to harmonics. */
 static struct amplitude without_linear_part(struct modal_motion *x, size_t k, struct amplitude a)
 {
     const struct modal *h = x->h;
@@ -383,7 +382,7 @@ static struct amplitude without_harmonics(const struct modal_motion *x, size_t k
     return a;
 }
 
-/* z of all exponents: of their own modes; or of all modes that damping couples, z = b (eta' - omega^2 eta/lambda), as b is a left
+/* Sets z of all exponents at t0: z = a eta + b eta' of the owner; coupled: z = b (eta' - omega^2 eta/lambda), since b is a left
  * eigenvector. */
 static void begin_exponents(struct modal_motion *x)
 {
@@ -410,12 +409,12 @@ static void begin_exponents(struct modal_motion *x)
     }
 }
 
-/* Splits the motion into what the right-hand side makes of it and exponentials. */
+/* Splits the motion from y on into the response to the right-hand side and exponentials. */
 static void split_motion(struct modal_motion *x, tribo_system *sys, const double *y)
 {
     const struct modal *h = x->h;
     start_harmonics(x, sys);
-    /* The forces of contacts but for harmonics of limits that they follow. */
+    /* steady: forces of contacts without harmonics of limits */
     double *steady = x->room_for_steady;
     for (size_t i = 0; sys->limit_harmonics && i < sys->ncontact; i++) {
         double limit = sys->given_limit[i];
@@ -438,7 +437,7 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
     begin_exponents(x);
 }
 
-/* What resonances add to the bounds of exponent p, whose frequency is within RESONANCE of theirs. */
+/* Adds the resonant harmonics, Omega within RESONANCE of |lambda|, to the bounds of exponent p. */
 static void bound_resonances(struct modal_motion *x, size_t p)
 {
     const struct modal *h = x->h;
@@ -471,17 +470,17 @@ double tribo_modal_motion_start(struct modal_motion *x, const struct modal *h, d
     x->h = h;
     x->t0 = t;
     split_motion(x, x->sys, y);
-    /* At t0 nothing has moved; but what resonates pulls already. */
+    /* w = z at t0; resonances change only w' and w'' there. */
     tribo_modal_terms_rest(x);
     if (x->h->any_resonant) {
         add_resonances(x, 0.0);
     }
-    /* How long the bounds of a phase can hold: for good, unless something grows. */
+    /* The bounds hold for longest; at most 1/growth if an exponent grows, and 16/fastest with resonances. */
     const double last = h->growth > 0.0 ? lesser(longest, 1.0 / h->growth) : longest;
     x->longest = h->any_resonant ? lesser(last, 16.0 / h->fastest) : last;
     tribo_modal_motion_bound(x, 0.0);
     if (x->sys->limit_harmonics) {
-        /* The part of the velocities of sliding contacts that is linear in time. */
+        /* The linear part of the velocities of sliding contacts. */
         const struct stick_slip *m = x->contacts;
         for (size_t o = 0; o < x->h->sliding; o++) {
             const size_t i = x->h->output[o].contact;

@@ -1,4 +1,4 @@
-/* The motion of a structure with contacts held, from a state on, in closed form: a phase of method "exact". */
+/* Motion of a structure with contacts held, from a state on, in closed form: a phase of method "exact". */
 #ifndef TRIBO_MODAL_MOTION_H
 #define TRIBO_MODAL_MOTION_H
 
@@ -7,7 +7,7 @@
 #include "dynamics/decide/stick_slip.h"
 #include "dynamics/events/signal.h"
 
-/* What of an output is linear in time. */
+/* The linear part of an output, start + ramp tau. */
 struct line {
     double start, ramp;
 };
@@ -16,75 +16,75 @@ struct line {
 struct course {
     const struct output *output;
     struct line line;
-    double size, bend; /* bounds of it, and of its sixth derivative */
-    double tau;        /* when it was looked at last, */
-    struct sample at;  /* and what it was, with two derivatives */
+    double size, bend; /* bounds of |output| and of the sixth derivative */
+    double tau;        /* time of the last look */
+    struct sample at;  /* output at tau, with two derivatives */
 };
 
-/* It began at t0; amplitudes eta = constant + vel t + acc t^2/2 (of modes that drift, from their state) + harmonics + Re(r z). */
+/* A phase from t0: eta = constant + vel tau + acc tau^2/2 + harmonics + (Re(r z), or drift_rate tau if the mode drifts). */
 struct modal_motion {
     tribo_system *sys;
     const struct stick_slip *contacts; /* the caller's */
     const struct modal *h;
-    double t0, tau;             /* tau: where w is */
-    double *vel, *acc;          /* [modes] */
-    int runs;                   /* any mode drifts, or has a vel or acc */
-    double *drift, *drift_rate; /* [modes] of those that drift: what harmonics do not explain, at t0 */
-    size_t room;                /* of terms */
-    struct lot *lot;            /* the terms, of which harmonics are the last ones; of contacts times */
-    int looked;                 /* since t0; */
-    double far;                 /* the time of the last look that was far from another one, */
-    double *far_r, *far_i;      /* [terms] and e^{lambda far} */
-    double *er, *ei;            /* [terms] workspace: by how much they have moved */
-    double *growth, *growth6;   /* [terms] bounds of |z| and of its sixth derivative */
-    double *side;               /* [harmonics] how many times their force follows the limit; others 1 */
-    double *push;               /* [outputs] by which an output pushes modes */
-    double *dq, *du;            /* [ndof] by how much q has changed at tau; q' there, or by how much that has changed */
-    double *df, *way;           /* [ncontact] by how much forces of compliant contacts have; workspace */
+    double t0, tau;             /* tau: time after t0 that the terms w are for */
+    double *vel, *acc;          /* [modes] eta = ... + vel tau + acc tau^2/2 */
+    int runs;                   /* 1: some mode drifts, or has vel or acc not 0 */
+    double *drift, *drift_rate; /* [modes] eta, eta' at t0 minus harmonics; of modes without drift, minus constant and vel */
+    size_t room;                /* number of terms that lot and arrays [terms] have room for */
+    struct lot *lot;            /* [terms/TRIBO_TERMS] terms: exponents, then harmonics; harmonics of limits times side */
+    int looked;                 /* 1: far is set, in this phase */
+    double far;                 /* time after t0 of the last look with e^{lambda tau} computed in full */
+    double *far_r, *far_i;      /* [terms] e^{lambda far} */
+    double *er, *ei;            /* [terms] workspace: w - z, the change since t0 */
+    double *growth, *growth6;   /* [terms] bounds of |w| and of the sixth derivative */
+    double *side;               /* [harmonics] factor of the limit in the force of the contact; 1 for given harmonics */
+    double *push;               /* [outputs] constant force on mode k: sum of push on_rate[k] */
+    double *dq, *du;            /* [ndof] dq: q - q(t0) at tau; du: q' at tau, or q' - q'(t0) if brief (tau short) */
+    double *df, *way;           /* [ncontact] df: change of forces of compliant contacts since t0; way: workspace */
     double *work;               /* [10 ndof] workspace */
-    const double *steady;       /* [ncontact] force of a sliding contact, without harmonics of its limit; */
-    struct line *line;          /* [ncontact] while limits have any: its velocity, as far as it is linear in time */
-    double *room_for_steady;    /* [ncontact] where steady stands if limits have any */
-    double longest;             /* so long do bounds hold */
+    const double *steady;       /* [ncontact] force of a sliding contact without harmonics of the limit */
+    struct line *line;          /* [ncontact] linear part of the velocity of a sliding contact; only if limits have harmonics */
+    double *room_for_steady;    /* [ncontact] memory of steady if limits have harmonics */
+    double longest;             /* time from t0 for which the bounds hold */
 };
 
-/* 1, or 0 if out of memory. tribo_modal_motion_free takes what failed too. */
+/* Returns 1, or 0 if out of memory. tribo_modal_motion_free also takes an x that failed. */
 int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const struct stick_slip *contacts);
 void tribo_modal_motion_free(struct modal_motion *x);
 
-/* Makes room for this many terms; 1, or 0 if out of memory. */
+/* Makes room for terms. Returns 1, or 0 if out of memory. */
 int tribo_modal_motion_reserve(struct modal_motion *x, size_t terms);
 
-/* Starts at (t, y) with h held, for a time of longest. Returns for how long its bounds can hold. */
+/* Starts a phase at (t, y) with structure h, for a time of at most longest. Returns the time for which the bounds hold. */
 double tribo_modal_motion_start(struct modal_motion *x, const struct modal *h, double t, const double *y, double longest);
 
-/* Goes to t0 + tau: z and its derivatives, and the harmonics. */
+/* Goes to t0 + tau: sets w, w' and w'' of all terms. */
 void tribo_modal_motion_go(struct modal_motion *x, double tau);
 
-/* What harmonics add to the limit of contact i there, with two derivatives; and a bound of the sixth derivative of that. */
+/* Return the part of limit i by harmonics, with two derivatives, at x->tau; a bound of the sixth derivative of this part. */
 struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i);
 double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i);
 
-/* Energy dissipated by contact i, which slides, until t0 + tau, where dq is, if its force is counted once; and by all. */
+/* Return the energy dissipated until t0 + tau, x and dq being there: by contact i, which slides, counted once; by all. */
 double tribo_modal_motion_work(struct modal_motion *x, size_t i, double tau);
 double tribo_modal_motion_dissipated(struct modal_motion *x, double tau);
 
-/* Goes to t0 + tau: the state there. from is the state at t0; to may be the same. */
+/* Goes to t0 + tau: to = state there, from = state at t0. to may be from. */
 void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *from, double *to);
 
-/* Bounds of the terms from tau on. */
+/* Sets growth and growth6 for times from tau to longest. */
 void tribo_modal_motion_bound(struct modal_motion *x, double tau);
 
-/* c'y, c [2 ndof], in the phase that lasts tau and ends with the state end. Returns a status. */
+/* *to = c'[q, q', f, f'], f: of compliant contacts, in the phase of length tau that ends in the state end. Returns a status. */
 int tribo_modal_motion_signal(const struct modal_motion *x, const double *c, double tau, const double *end, struct signal *to);
 
-/* modal_course.c: the course of c->output, a velocity or not, which is value at t0, where the motion still is; and where go()
- * was; and its bounds, from those of terms. */
+/* course.c. begin: starts the course of c->output, value at t0; x is at t0; of_velocity 1: a velocity, 0: a force. look: sets
+ * c->at for x->tau. bound: sets c->size and c->bend from growth and growth6. */
 void tribo_course_begin(const struct modal_motion *x, struct course *c, int of_velocity, double value);
 void tribo_course_look(const struct modal_motion *x, struct course *c);
 void tribo_course_bound(const struct modal_motion *x, struct course *c);
 
-/* Its third to fifth derivative where go() was, into to [3]; 1, or 0 if they are not known: where loads resonate. */
+/* to [3] = third to fifth derivative of c->output at x->tau. Returns 1; 0 if a load resonates: to is not set. */
 int tribo_course_look_further(const struct modal_motion *x, const struct course *c, double *to);
 
 #endif

@@ -1,4 +1,4 @@
-/* What the motion in the modes means for contacts. */
+/* Outputs: velocities and forces of contacts by the modes and by bases. */
 #include "parts.h"
 
 #include <math.h>
@@ -6,10 +6,10 @@
 
 #include "common/real.h"
 
-/* Bases that part from each other by no more than this part of their motion go together. */
+/* Relative difference of the velocities of bases up to which the difference is rounding. */
 #define NO_MOTION 1e-14
 
-/* Adds what a contact gets from position (eta) and velocity (eta') amplitudes of mode k. */
+/* Adds position eta_k + velocity eta_k' of mode k to an output: exponents and harmonics. */
 static void output_mode(const struct modal_build *b, struct output *w, size_t k, double position, double velocity)
 {
     const struct modal *h = b->h;
@@ -49,7 +49,7 @@ static void finish_output(const struct modal *h, struct output *w)
     }
 }
 
-/* The largest |x| + |y|. */
+/* Returns the largest |x_i| + |y_i|. */
 static double largest(const double *x, const double *y, size_t n)
 {
     double most = 0.0;
@@ -59,8 +59,8 @@ static double largest(const double *x, const double *y, size_t n)
     return most;
 }
 
-/* What the belts make of v_i = J_i q' - b_i, in all harmonics; what is only rounding of their motion is left out. Returns whether
- * there is anything. */
+/* Adds to rr and ri the part of v_i = J_i q' + (G f')_i - b_i by harmonics of bases, except parts that are only rounding. Returns
+ * 1 if any part was added. */
 static int output_belts(const struct modal_build *b, struct output *w, size_t i)
 {
     const tribo_system *sys = b->shared->sys;
@@ -93,7 +93,7 @@ static int output_belts(const struct modal_build *b, struct output *w, size_t i)
     return any;
 }
 
-/* v_i = J_i q' - b_i, and what G makes of f' of compliant contacts at rest. */
+/* Output v_i = J_i q' + (G f')_i - b_i of a sliding contact, f' of compliant contacts at rest. Returns 0 if out of memory. */
 static int output_sliding(struct modal_build *b, struct output *w, size_t i)
 {
     if (!create_output(b, w, i)) {
@@ -109,7 +109,7 @@ static int output_sliding(struct modal_build *b, struct output *w, size_t i)
     return 1;
 }
 
-/* The same of a contact that rests by itself: the modes do not move it, but its base may part from those that hold. */
+/* Output v_i of a contact at rest that does not hold: not moved by modes, but by bases that part; dropped if v_i is 0. */
 static int output_parting(struct modal_build *b, struct output *all, size_t *used, size_t i)
 {
     struct output *w = &all[*used];
@@ -121,14 +121,14 @@ static int output_parting(struct modal_build *b, struct output *all, size_t *use
     return 1;
 }
 
-/* What the held contacts carry, J_I'f = K q + C q' + M q'' - M load: by modes, by harmonics, and per unit of time. */
+/* Forces f of the rigid contacts that hold, J_I'f = K q + C q' + M q'' - M load: by harmonics, and rates by constant speeds. */
 struct holding {
-    double *wave_r, *wave_i; /* [harmonics][rest] */
-    double *ramp;            /* [rest] */
+    double *wave_r, *wave_i; /* [harmonics][rests] f by harmonics */
+    double *ramp;            /* [rests] f' by bases of constant speed */
     double *force[2], *load; /* [ndof] workspace */
 };
 
-/* By modes, with K phi_k = omega_k^2 M phi_k + J_I'f, and so with damping; those of compliant contacts are -G_AA^-1 J_A phi_k. */
+/* Sets by_q, J_I'f = (stiffness - omega_k^2 M) phi_k, compliant f = -G_AA^-1 J_A phi_k; by_u, J_I'f = C phi_k - M Phi C~_k. */
 int tribo_modal_hold(struct modal_build *b)
 {
     struct modal *h = b->h;
@@ -174,7 +174,7 @@ static void hold_harmonic(const struct modal_build *b, struct holding *f, size_t
     memset(f->force[0], 0, n * sizeof **f->force);
     memset(f->force[1], 0, n * sizeof **f->force);
     if (forcing->contact < b->shared->sys->ncontact) {
-        /* The force of another contact, which follows its limit. */
+        /* Force f = limit of contact i, which does not hold, by a harmonic of the limit. */
         const size_t i = forcing->contact;
         const struct matrix *j = &b->shared->sys->direction;
         for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
@@ -182,7 +182,7 @@ static void hold_harmonic(const struct modal_build *b, struct holding *f, size_t
             f->force[1][j->col[e]] = j->val[e] * wave->sine[i];
         }
     } else if (wave->drives == DRIVES_BASE) {
-        /* Belts that move y [2][ndof], displaced by y/(i Omega), accelerated by i Omega y. */
+        /* Bases with velocities y [2][ndof], displacements y/(i Omega), accelerations i Omega y. */
         const double omega = wave->omega;
         const double *const *y = (const double *const[]){b->yr + w * n, b->yi + w * n};
         for (int part = 0; part < 2; part++) {
@@ -236,7 +236,7 @@ static int find_holding(struct modal_build *b, struct holding *f)
     return 1;
 }
 
-/* 1 if what contact p of those that hold carries, or its limit, changes at all. */
+/* Returns 1 if the force or the limit of contact rest[p] varies. */
 static int changes(const struct modal_build *b, const struct holding *f, size_t p)
 {
     const struct modal *h = b->h;
@@ -251,7 +251,7 @@ static int changes(const struct modal_build *b, const struct holding *f, size_t 
     return found;
 }
 
-/* The output of contact p of those that hold, by modes. */
+/* Appends an output of contact rest[p] and adds the part by modes. Returns NULL if out of memory. */
 static struct output *output_by_modes(struct modal_build *b, struct output *all, size_t *used, size_t p)
 {
     const struct modal *h = b->h;
@@ -267,7 +267,7 @@ static struct output *output_by_modes(struct modal_build *b, struct output *all,
     return output;
 }
 
-/* Outputs of those contacts that hold and do not always carry the same part of their limit. */
+/* Appends the outputs of rigid contacts that hold and have a varying force or limit. Returns 0 if out of memory. */
 static int output_held(struct modal_build *b, struct output *all, size_t *used)
 {
     struct modal *h = b->h;
@@ -292,7 +292,7 @@ static int output_held(struct modal_build *b, struct output *all, size_t *used)
     return 1;
 }
 
-/* Outputs of the compliant contacts at rest, f = f' /(i Omega), and what the structure keeps of f'. */
+/* Appends the outputs f = f'/(i Omega) of the compliant contacts at rest; sets held.fr, fi, f0. Returns 0 if out of memory. */
 static int output_springs(struct modal_build *b, struct output *all, size_t *used)
 {
     struct modal *h = b->h;

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Arrays are many and short: blocks hold several, the first one this many bytes, for which allocators need not search, the next
- * ones twice as many as those before. The first one is zeroed as a whole, which is little; of larger ones every array is when
- * it is taken. An emptied list keeps no block of more than LASTING. */
+/* Arrays are many and short: a block holds several. The first block has BLOCK bytes, a size that allocators serve without a
+ * search; each next block is at least twice as large as the block before. The first block is zeroed as a whole, since it is
+ * small; in larger blocks tribo_modal_take zeroes each array. An emptied list keeps no block of more than LASTING bytes. */
 #define BLOCK 992
 #define LASTING ((size_t)1 << 20)
 
@@ -17,7 +17,7 @@ struct block {
     union layout_unit unit[];
 };
 
-/* Whether a block with so many units is not a first one. */
+/* Returns 1 if a block of room units is larger than a first block. */
 static int is_large(size_t room)
 {
     return room > BLOCK / sizeof(union layout_unit);

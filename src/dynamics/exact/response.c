@@ -1,18 +1,18 @@
-/* Harmonics: what they do to the modes, and the response to that. */
+/* Harmonics: forcing of the modes, and response of the modes. */
 #include "parts.h"
 #include "common/imaginary.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Closer than this, relative, the response to a harmonic is computed without the closed form's small divisor: what a response
- * exceeds the motion by is lost in digits. */
+/* |omega^2 - Omega^2 + i Omega damping|/omega^2 below which the closed form with a small divisor is not used: a response much
+ * larger than the motion loses digits. */
 #define RESONANCE 1e-2
 
-/* An exponent this close to i Omega, in parts of Omega, would leave too few digits of the response. */
+/* |lambda - i Omega|/Omega down to which the response of coupled modes keeps enough digits. */
 #define UNDAMPED 1e-9
 
-/* y [ndof] = velocities from the b [rest] of the contacts that hold, in which the modes have no part. */
+/* y [ndof], zero before, = velocities with J_I y = x, x [rests] = b_I, and Phi'M y = 0. */
 static void belt_velocities(struct modal_build *b, const double *x, double *y)
 {
     tribo_constraints_follow(&b->ties, x, y);
@@ -21,8 +21,7 @@ static void belt_velocities(struct modal_build *b, const double *x, double *y)
     }
 }
 
-/* One part (0 cosine, 1 minus sine: harmonics are Re((c - i s) e^{i Omega t})) of a harmonic of b_I. Returns whether it moves
- * anything. */
+/* x [rests] = a part of harmonic w of b_I = Re((c - i s) e^{i Omega t}): c for part 0, -s for part 1. Returns 1 if x is not 0. */
 static int base_part(const struct modal_build *b, const struct harmonic *w, int part, double *x)
 {
     int moves = 0;
@@ -38,8 +37,8 @@ static int base_part(const struct modal_build *b, const struct harmonic *w, int 
     return moves;
 }
 
-/* rate [ncontact] = the same part of f' of the compliant contacts at rest, for velocities y of the degrees of freedom. work
- * [ncontact]. Returns 1 if any is not 0. */
+/* rate [ncontact] = the same part of f' of compliant contacts at rest, for velocities y [ndof]. work [ncontact] is workspace.
+ * Returns 1 if rate is not 0. */
 static int spring_part(const struct modal_build *b, const struct harmonic *w, int part, const double *y, double *work,
                        double *rate)
 {
@@ -92,7 +91,7 @@ static int list_forcing(struct modal_build *b)
     return 1;
 }
 
-/* pull = -K y by, drag = -C y: the forces of stiffness and of damping where degrees of freedom move as y [ndof] says. */
+/* pull [ndof] = -by K y, drag [ndof] = -C y: forces of stiffness and of damping for velocities y [ndof]. */
 static void resist(const struct modal_build *b, const double *y, double by, double *pull, double *drag)
 {
     memset(pull, 0, b->n * sizeof *pull);
@@ -103,9 +102,9 @@ static void resist(const struct modal_build *b, const double *y, double by, doub
     }
 }
 
-/* Forcing of eta by a base: (J'f' - K y)/(i Omega) - C y, where held contacts move the structure with velocities y, and springs
- * have rates f'; 1/i turns the real part into minus the imaginary one. Velocities of belts of constant speed go to y0, and rates
- * by these to rate_0. x [rests + ncontact], pull and drag [ndof] are workspace. */
+/* Adds the forcing of eta by harmonic w of bases, Phi'((J'f' - K y)/(i Omega) - C y), y: velocities by held contacts, f': rates
+ * of compliant contacts at rest; 1/i turns the real part into minus the imaginary part. Omega = 0: adds y to y0 and f' to rate_0.
+ * x [rests + ncontact], pull and drag [ndof] are workspace. */
 static void force_by_base(struct modal_build *b, size_t w, double *x, double *pull, double *drag)
 {
     struct modal *h = b->h;
@@ -145,7 +144,7 @@ static void force_by_base(struct modal_build *b, size_t w, double *x, double *pu
     }
 }
 
-/* What constant loads force, and belts of constant speed. */
+/* Sets h->ramp and h->constant by constant loads and bases of constant speed. */
 static void force_by_constants(struct modal_build *b, double *pull, double *drag)
 {
     struct modal *h = b->h;
@@ -182,7 +181,7 @@ static int create_forcing(struct modal_build *b)
     return 1;
 }
 
-/* Forcing of eta by each harmonic, and what the held contacts are moved by. */
+/* Sets the forcing of eta by each harmonic, and the velocities y and rates f' by bases. */
 int tribo_modal_forcing(struct modal_build *b)
 {
     if (!list_forcing(b) || !create_forcing(b)) {
@@ -211,7 +210,7 @@ int tribo_modal_forcing(struct modal_build *b)
         }
     }
     for (size_t w = sys->harmonics; done && w < h->harmonics; w++) {
-        /* Forcing of eta by a limit. */
+        /* Forcing of eta by a harmonic of a limit, f = limit. */
         const size_t i = h->forcing[w].contact;
         const struct harmonic *limit = &sys->harmonic[h->forcing[w].harmonic];
         for (size_t k = 0; k < m; k++) {
@@ -222,8 +221,8 @@ int tribo_modal_forcing(struct modal_build *b)
     }
     if (done) {
         force_by_constants(b, pull, drag);
-        /* Belts of constant speed move modes with stiffness, whose damping resists that: a constant force. Modes that damping couples all
-         * have stiffness. */
+        /* With bases of constant speed modes of omega != 0 have eta' = ramp/omega^2; damping of eta' is a constant force. Modes
+         * that damping couples all have omega != 0. */
         for (size_t k = 0; k < m; k++) {
             for (size_t l = h->coupling ? 0 : k; l < (h->coupling ? m : k + 1) && h->omega2[l] != 0.0; l++) {
                 h->constant[k] -= (h->coupling ? h->coupling[k * m + l] : h->damping[k]) * (h->ramp[l] / h->omega2[l]);
@@ -233,7 +232,7 @@ int tribo_modal_forcing(struct modal_build *b)
     return done;
 }
 
-/* Response of modes of which each has damping of its own. */
+/* Sets the response to harmonic w, and resonant, of modes without coupling. */
 static void respond_alone(struct modal_build *b, size_t w)
 {
     struct modal *h = b->h;
@@ -251,8 +250,8 @@ static void respond_alone(struct modal_build *b, size_t w)
     }
 }
 
-/* x [modes] += the response to a force of amplitude g [modes], by the exponents: z' = lambda z + b Re(g e^{i Omega t}) has a part
- * with e^{i Omega t} and one with its conjugate, eta = Re(r z). push [2][exponents] is workspace. */
+/* x [modes] += response to Re(g e^{i Omega t}), g [modes], by exponents: z' = lambda z + b Re(g e^{i Omega t}) has a solution
+ * with parts e^{i Omega t} and e^{-i Omega t}; eta = Re(r z). push [2][exponents] is workspace. */
 static void add_resolvent(const struct modal *h, double omega, const double complex *g, double complex *push, double complex *x)
 {
     const size_t m = h->modes, e = h->exponents;
@@ -273,7 +272,7 @@ static void add_resolvent(const struct modal *h, double omega, const double comp
     }
 }
 
-/* Response of modes that damping couples; and what it misses of the force once more. x [7 modes] is workspace. */
+/* Sets the response to harmonic w of coupled modes, refined once. x [7 modes] is workspace. Returns 0 on failure. */
 static int respond_together(struct modal_build *b, size_t w, double complex *x)
 {
     struct modal *h = b->h;
@@ -309,7 +308,7 @@ static int respond_together(struct modal_build *b, size_t w, double complex *x)
     return 1;
 }
 
-/* Response of eta to the harmonics, (diag(omega^2) - Omega^2 + i Omega C~) x = g. */
+/* Sets the response of eta to the harmonics, (diag(omega^2) - Omega^2 + i Omega C~) x = g. */
 int tribo_modal_response(struct modal_build *b)
 {
     struct modal *h = b->h;

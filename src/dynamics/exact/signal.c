@@ -4,10 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-/* A resonance closer than this part of omega^2 costs more than half of the digits. */
+/* |omega^2 - Omega^2 + i Omega damping|/omega^2 below which more than half of the digits are lost. */
 #define TOO_CLOSE 1e-7
 
-/* The index of the p-th compliant contact at rest among all compliant ones. */
+/* Returns the index in compliance.contact of the p-th compliant contact at rest. */
 static size_t spring_index(const struct modal_motion *x, size_t p)
 {
     const size_t contact = x->h->output[x->h->outputs - x->h->held.springs + p].contact;
@@ -18,7 +18,7 @@ static size_t spring_index(const struct modal_motion *x, size_t p)
     return i;
 }
 
-/* How the combination c of q, q', f, f' sees mode k: its amplitude, and the rate of that. */
+/* *place, *speed = derivatives of c'[q, q', f, f'] by eta_k and eta_k'. */
 static void weights(const struct modal_motion *x, const double *c, size_t k, double *place, double *speed)
 {
     const struct modal *h = x->h;
@@ -36,8 +36,8 @@ static void weights(const struct modal_motion *x, const double *c, size_t k, dou
     }
 }
 
-/* The response of mode k to harmonic s. A motion that finds it without the small divisor of a resonance has it among its
- * exponents. */
+/* *xr + i *xi = response of mode k to harmonic s, also if resonant. In the motion a resonant response is part of the exponents,
+ * which avoids the small divisor. */
 static void response(const struct modal_motion *x, size_t s, size_t k, double *xr, double *xi)
 {
     const struct modal *h = x->h;
@@ -52,7 +52,7 @@ static void response(const struct modal_motion *x, size_t s, size_t k, double *x
     }
 }
 
-/* z of exponent p at the start of the phase, without what resonant responses are there. */
+/* *zr + i *zi = z of exponent p at t0 minus the resonant responses at t0. */
 static void exponent(const struct modal_motion *x, size_t p, double *zr, double *zi)
 {
     const struct modal *h = x->h;
@@ -73,7 +73,7 @@ static void exponent(const struct modal_motion *x, size_t p, double *zr, double 
     }
 }
 
-/* 1 if a resonance leaves too few digits. */
+/* Returns 1 if a resonance is closer than TOO_CLOSE. */
 static int too_close(const struct modal_motion *x)
 {
     const struct modal *h = x->h;
@@ -87,7 +87,7 @@ static int too_close(const struct modal_motion *x)
     return 0;
 }
 
-/* An exponent p of mode k, of which the mode has r z. */
+/* *cr + i *ci += (place + speed lambda) r z, the part by exponent p of a mode with eta = Re(r z). */
 static void add_exponent(const struct modal_motion *x, size_t p, double place, double speed, double rr, double ri, double *cr,
                          double *ci)
 {
@@ -114,7 +114,7 @@ static void add_exponents(const struct modal_motion *x, const double *c, struct 
     }
 }
 
-/* Harmonic s: what it makes of the modes, and of the contacts that hold. */
+/* Adds harmonic s: response of the modes, velocities by bases, and f' of compliant contacts at rest. */
 static void add_harmonic(const struct modal_motion *x, const double *c, size_t s, struct signal *to)
 {
     const struct modal *h = x->h;
@@ -161,7 +161,7 @@ static void add_powers(const struct modal_motion *x, const double *c, double *a)
     }
 }
 
-/* c'[q, q', f, f'] at the end of the phase, tau after its start. x->way and x->push are workspace. */
+/* Returns c'[q, q', f, f'] at the end of the phase, t0 + tau. Overwrites x->way and x->push. */
 static double value_at_end(const struct modal_motion *x, const double *c, double tau, const double *end)
 {
     const tribo_system *sys = x->sys;
@@ -198,7 +198,7 @@ int tribo_modal_motion_signal(const struct modal_motion *x, const double *c, dou
         add_harmonic(x, c, s, to);
     }
     add_powers(x, c, to->a);
-    /* what is constant follows from where the phase ends */
+    /* a[0] from the state at the end of the phase */
     tribo_signal_at(to, tau, v);
     to->a[0] = value_at_end(x, c, tau, end) - v[0];
     return TRIBO_OK;

@@ -1,5 +1,5 @@
-/* Terms are done TRIBO_TERMS at a time, since one sum would wait for itself; and in places that are known apart, or compilers
- * would not do so. */
+/* Terms are computed TRIBO_TERMS at a time: in a single sum each addition waits for the one before. Arrays are restrict, or
+ * compilers would not compute several terms at once. */
 #include "terms.h"
 #include "dynamics/system/cos_sin.h"
 #include "common/simd.h"
@@ -8,10 +8,10 @@
 
 enum { T = TRIBO_TERMS };
 
-/* Over a time this short, in terms of the fastest term, four terms of a series are all of it. */
+/* |lambda delta| up to which the series up to (lambda delta)^4 gives e^{lambda delta} to rounding. */
 #define CLOSE 1e-3
 
-/* Products a b. */
+/* re + i im = a b */
 static inline void multiply(const double *restrict ar, const double *restrict ai, const double *restrict br,
                             const double *restrict bi, double *restrict re, double *restrict im)
 {
@@ -21,7 +21,7 @@ static inline void multiply(const double *restrict ar, const double *restrict ai
     }
 }
 
-/* w = e z, w' and w'' of a lot. */
+/* Sets w = e z, w' = lambda w and w'' = lambda w' of a lot. */
 static inline void terms_turn(struct lot *lot, const double *lr, const double *li, const double *er, const double *ei)
 {
     multiply(er, ei, lot->zr, lot->zi, lot->wr, lot->wi);
@@ -29,7 +29,7 @@ static inline void terms_turn(struct lot *lot, const double *lr, const double *l
     multiply(lr, li, lot->w1r, lot->w1i, lot->w2r, lot->w2i);
 }
 
-/* e^{lambda delta}, lambda delta being small. */
+/* re + i im = e^{lambda delta}, for small lambda delta. */
 static inline void grow_little(const double *restrict lr, const double *restrict li, double delta, double *restrict re,
                                double *restrict im)
 {
@@ -41,7 +41,7 @@ static inline void grow_little(const double *restrict lr, const double *restrict
     }
 }
 
-/* All lots: where they begin; where e = e^{lambda far} is; and a little later than that. */
+/* Set w, w', w'' of all lots. move_nowhere: at t0. move_far: w = e z, e = e^{lambda far}. move_little: at far + delta. */
 TRIBO_SIMD_OF_FOUR static void move_nowhere(size_t n, const double *lr, const double *li, struct lot *lot)
 {
     static const double one[T] = {1.0, 1.0, 1.0, 1.0}, nothing[T];
@@ -92,8 +92,8 @@ void tribo_modal_terms_rest(struct modal_motion *x)
     move_nowhere(x->h->terms, x->h->lr, x->h->li, x->lot);
 }
 
-/* From t0, or, if that is close, from where it was. Far ones from t0, since what rounding leaves of a late time must not tremble
- * within a phase. */
+/* w = e^{lambda tau} z. e^{lambda tau} is computed from tau, or from e^{lambda far} if tau is close to far. Other looks do not
+ * start at far: the rounding of w at late times must not vary from look to look. */
 void tribo_modal_terms_go(struct modal_motion *x, double tau)
 {
     const struct modal *h = x->h;
@@ -103,7 +103,7 @@ void tribo_modal_terms_go(struct modal_motion *x, double tau)
     } else {
         x->looked = 1;
         x->far = tau;
-        /* e^{lambda tau} of all terms. */
+        /* re + i im = e^{lambda tau} of all terms */
         double *re = x->far_r;
         double *im = x->far_i;
         tribo_cos_sin_all(tau, h->terms, h->li, re, im);

@@ -4,13 +4,13 @@
 
 #include "motion.h"
 
-/* So many terms side by side: z at t0, z, z' and z'' at tau. */
+/* TRIBO_TERMS terms side by side: z at t0; w, w1 = w' and w2 = w'' at tau. */
 struct lot {
     double zr[TRIBO_TERMS], zi[TRIBO_TERMS];
     double wr[TRIBO_TERMS], wi[TRIBO_TERMS], w1r[TRIBO_TERMS], w1i[TRIBO_TERMS], w2r[TRIBO_TERMS], w2i[TRIBO_TERMS];
 };
 
-/* Term p at t0, and where it is, and its derivative there: a complex number, of harmonics cosine and sine. */
+/* A complex number; of a harmonic, cosine and sine. The functions return term p at t0, w of term p, and w' of term p. */
 struct number {
     double re, im;
 };
@@ -50,10 +50,10 @@ static inline void tribo_term_begin(struct modal_motion *x, size_t p, double re,
     lot->zi[p % TRIBO_TERMS] = im;
 }
 
-/* Zeros for what stands after the last term: in the last of those that are done side by side, before terms are set. */
+/* Sets z, growth and growth6 of the last lot to 0, before terms are set: entries after the last term stay 0. */
 void tribo_modal_terms_clear(struct modal_motion *x);
 
-/* w = z at t0; or at t0 + tau, without resonances. */
+/* Set w, w' and w'': tribo_modal_terms_rest for t0; tribo_modal_terms_go for t0 + tau, without resonances. */
 void tribo_modal_terms_rest(struct modal_motion *x);
 void tribo_modal_terms_go(struct modal_motion *x, double tau);
 

@@ -1,5 +1,5 @@
-/* Sliding forces and loads do not depend on the state, so that amplitudes of the modes move as without them. What contacts at
- * rest hold does: a perturbed place of theirs pulls at the modes with a constant force. */
+/* Sliding forces and loads do not depend on the state: perturbations of eta move as without these forces. The forces of contacts
+ * at rest depend on the state: a perturbation of J q + G f of a held contact is a constant force on the modes. */
 #include "transition.h"
 #include "dynamics/system/cos_sin.h"
 #include "dynamics/periodic/variation.h"
@@ -8,13 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows [modes][columns] of amplitudes, of their rates, of the constant that pulls at them; [exponents][columns] of z, and of its
- * rate, which `next` numbers later. */
+/* [modes][columns]: eta, rate = eta', pull = constant force on eta, change = eta at the start; [exponents][columns]:
+ * z = zr - i zi, with z' `next` numbers later; row [columns] workspace. */
 struct transition {
     const struct modal_phase *phase;
     const struct modal *h;
     const tribo_system *sys;
-    size_t columns, block, next; /* block: from displacements to velocities */
+    size_t columns, block, next; /* block: distance from displacements to velocities */
     double *eta, *rate, *pull, *change, *zr, *zi, *row;
 };
 
@@ -49,7 +49,7 @@ size_t tribo_modal_transition_room(const tribo_system *sys, size_t columns)
     return (12 * sys->ndof + 1) * columns;
 }
 
-/* Amplitudes that v has, and pulls of contacts that are held elsewhere, J q + G f. */
+/* Sets eta and rate from v, and pull = -sum of on_rate (J q + G f) over held contacts. */
 static void transition_split(const struct transition *x, const double *v)
 {
     const struct modal *h = x->h;
@@ -70,7 +70,7 @@ static void transition_split(const struct transition *x, const double *v)
     }
 }
 
-/* Forces of compliant contacts at rest, in v, += those of the change of amplitudes in x->eta. */
+/* Adds to the forces of compliant contacts at rest in v: on_rate times the change of amplitudes, x->eta. */
 static void add_springs(const struct transition *x, double *v)
 {
     const struct modal *h = x->h;
@@ -86,7 +86,7 @@ static void add_springs(const struct transition *x, double *v)
     }
 }
 
-/* x' = [[aa, ab], [ba, bb]] x of an amplitude and its rate, by its exponents p to end - 1. */
+/* t [2][2] of (eta, eta')(tau) = t (eta, eta')(0), for a mode with exponents p to end - 1. */
 static void propagator(const struct transition *x, size_t p, size_t end, double *t)
 {
     const struct modal *h = x->h;
@@ -101,7 +101,7 @@ static void propagator(const struct transition *x, size_t p, size_t end, double 
     }
 }
 
-/* A mode of its own damping: eta, rate and pull of one row. */
+/* Moves eta and rate of mode k, without coupling, by tau, with t of propagator and pull. */
 static void move_row(const struct transition *x, size_t k, const double *t)
 {
     const struct modal *h = x->h;
@@ -133,7 +133,7 @@ static void move_alone(const struct transition *x)
     }
 }
 
-/* Takes away, or adds, where the amplitudes would rest. */
+/* eta += factor pull/omega^2; pull/omega^2 is eta at rest. */
 static void transition_add_rest(const struct transition *x, double factor)
 {
     for (size_t k = 0; k < x->h->modes; k++) {
@@ -141,8 +141,8 @@ static void transition_add_rest(const struct transition *x, double factor)
     }
 }
 
-/* z of the amplitudes, after tau, and its rate. z = a eta + b eta' with a = -b omega^2/lambda, as b is a left eigenvector: b
- * serves both, which is half as much to read. */
+/* zr - i zi = z at tau, from eta and rate at the start; the same for z'. Overwrites eta. z = a eta + b eta' with
+ * a = -b omega^2/lambda, since b is a left eigenvector: only b is read, half as much data. */
 static void move_exponents(const struct transition *x)
 {
     const struct modal *h = x->h;
@@ -172,7 +172,7 @@ static void move_exponents(const struct transition *x)
     }
 }
 
-/* Modes that damping couples: all of them have stiffness. zi has minus the imaginary parts. */
+/* Moves modes that damping couples, all with omega > 0. zi = -Im z. */
 static void move_together(const struct transition *x)
 {
     const struct modal *h = x->h;
