@@ -43,7 +43,7 @@ void tribo_derivative_free(struct derivative *d)
     free(d);
 }
 
-/* Makes room for another step. */
+/* Makes room for one more step. Returns 0 if out of memory. */
 static int reserve_step(struct derivative *d)
 {
     if (d->steps < d->room) {

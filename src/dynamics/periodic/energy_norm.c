@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* k [n][n] = K, made as symmetric as it should be. */
+/* k [n][n] = K, made symmetric. Returns 0 if out of memory. */
 static int dense_stiffness(const tribo_system *sys, double *k)
 {
     const size_t n = sys->ndof;
@@ -26,11 +26,11 @@ static int dense_stiffness(const tribo_system *sys, double *k)
     return entries != NULL;
 }
 
-/* psi = phi'M. */
+/* Sets psi = phi'M. */
 static void energy_norm_weigh(struct energy_norm *e, const tribo_system *sys)
 {
     const size_t n = e->n;
-    double *mode = e->omega; /* not set yet */
+    double *mode = e->omega; /* workspace here: not set yet */
     tribo_transpose(n, n, e->phi, e->psi);
     for (size_t k = 0; k < n; k++) {
         memcpy(mode, e->psi + k * n, n * sizeof *mode);
@@ -39,7 +39,7 @@ static void energy_norm_weigh(struct energy_norm *e, const tribo_system *sys)
     }
 }
 
-/* Modes by S'KS, M^-1 = S S'. k [n][n] is workspace. */
+/* Sets natural, phi and psi by the eigenvectors of S'KS, M^-1 = S S'. k [n][n]: workspace. Returns a status. */
 static int find(struct energy_norm *e, const tribo_system *sys, double *k)
 {
     const size_t n = e->n;
@@ -64,7 +64,7 @@ static int find(struct energy_norm *e, const tribo_system *sys, double *k)
     return TRIBO_OK;
 }
 
-/* root: G = root root'. Returns a status. */
+/* Sets root, G = root root'. Returns a status. */
 static int find_root(struct energy_norm *e, const tribo_system *sys)
 {
     const struct compliance *g = &sys->compliance;

@@ -1,11 +1,10 @@
-/* Free modes k with eta'' + c eta' + omega^2 eta = J_k'f move by z = (eta, eta') -> A z + (1 - A) (J_k'f/omega^2, 0) in an interval
- * of length h. Odd motions are sums of e^{i theta j}, theta = pi, 3 pi, ... (N - 1) pi over N, so that mean velocities are
+/* Mode k, eta'' + c eta' + omega^2 eta = J_k'f, has the map z = (eta, eta') -> A z + (1 - A) (J_k'f/omega^2, 0) over an interval
+ * of length h. Odd motions are sums of e^{i theta j}, theta = pi/N, 3 pi/N, ... (N - 1) pi/N, so that mean velocities are
  *     v = w + G(theta) f,    G = sum over modes of J_k J_k' (e^{i theta} - 1)/h [(e^{i theta} - A)^-1 (1 - A)]_11/omega^2
- * with w of the loads and bases; compliance adds (1 - e^{-i theta})/h times its matrix to G. The work of f against v is that of the
- * structure, and G does not generate energy. With the limits L,
+ * w: velocities by loads and bases. Compliance adds (1 - e^{-i theta})/h times its matrix to G. f'v is the work on the structure,
+ * so G does not generate energy. Therefore, with the limits L and a rho that is diagonal over the contacts,
  *     f = clamp(s, -L, L),    (1 + rho G) y = 2 f - s - rho w,    s += y - f
- * therefore converges to f = clamp(f - rho v, -L, L), Coulomb's law (Douglas and Rachford 1956; Lions and Mercier 1979). rho is
- * diagonal over the contacts. */
+ * converges to f = clamp(f - rho v, -L, L), Coulomb's law (Douglas and Rachford 1956; Lions and Mercier 1979). */
 #include "forecast.h"
 #include "common/imaginary.h"
 #include "common/layout.h"
@@ -15,30 +14,30 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Intervals, one a mode between these bounds; sweeps at most, times the intervals. */
+/* N = number of modes, rounded down to even, within these bounds; at most SWEEPS N sweeps. */
 enum { LEAST_INTERVALS = 32, MOST_INTERVALS = 64, SWEEPS = 2 };
 
-/* The forces change by less than this part in a sweep. */
+/* Sweeps end when |y - f| <= SETTLED |f|. */
 #define SETTLED 1e-2
 
-/* A mode whose free motion comes back after a period but for less than this has no forecast. */
+/* There is no forecast if |det(1 + A^N)| <= RESONANCE for a mode: its free motion comes back after a period. */
 #define RESONANCE 1e-9
 
-/* rho times the size of G(pi/N): a third lets the forces of few and of many modes settle in the fewest sweeps. */
+/* rho_i |G_ii(pi/N)| without compliance: about 1/3 needs the fewest sweeps, with few and with many modes. */
 #define STEP 0.3
 
 struct forecast {
     struct period_map *m;
-    size_t modes, contacts, intervals; /* N, even */
+    size_t modes, contacts, intervals; /* intervals: N, even */
     double h;
     double *shape;       /* [modes][contacts] J phi_k */
     double *move;        /* [modes][4] A */
-    double *give;        /* [contacts][contacts] G of compliant contacts */
-    double complex *eta; /* [harmonics][modes] amplitudes that loads give the modes, times e^{i omega t0} */
+    double *give;        /* [contacts][contacts] matrix of compliance, 0 for rigid contacts */
+    double complex *eta; /* [harmonics][modes] modal amplitudes by loads, times e^{i omega t0} */
     double *wave, *back; /* [N][N] orthogonal: rows cos theta j and sin theta j of each theta; its transpose */
-    double *inverse;     /* [N/2][2 contacts][2 contacts] (1 + rho G)^-1, of cosine and sine parts */
-    double complex *g;   /* [contacts][contacts] workspace, */
-    double *scaled;      /* [modes][2 contacts] and this */
+    double *inverse;     /* [N/2][2 contacts][2 contacts] (1 + rho G)^-1 on cosine and sine parts */
+    double complex *g;   /* [contacts][contacts] workspace */
+    double *scaled;      /* [modes][2 contacts] workspace */
     double *rho;         /* [contacts] */
     double *limit, *w, *f, *s, *y, *change; /* [contacts][N] */
     double *part;                           /* [4 contacts] workspace */
@@ -64,7 +63,7 @@ static void lay_out_forecast(struct forecast *x, struct layout *l)
     }
 }
 
-/* a [2][2] moves (eta, eta') of free mode k, which swings, by tau. */
+/* Sets a [2][2] = the map of (eta, eta') over tau for free mode k with omega > c/2. */
 static void move_mode(const struct energy_norm *norm, size_t k, double tau, double *a)
 {
     const double omega = norm->natural[k], half = 0.5 * norm->damping[k], nu = sqrt(omega * omega - half * half);
@@ -75,7 +74,7 @@ static void move_mode(const struct energy_norm *norm, size_t k, double tau, doub
     a[3] = c - half * s;
 }
 
-/* det(1 + A^N) of mode k, and 1 + A^N in end [4]: 0 if the mode resonates without damping. */
+/* Sets end [4] = 1 + A^N of mode k. Returns det(1 + A^N): 0 if the mode resonates without damping. */
 static double end_mode(const struct forecast *x, size_t k, double *end)
 {
     move_mode(&x->m->norm, k, x->m->span, end);
@@ -84,7 +83,7 @@ static double end_mode(const struct forecast *x, size_t k, double *end)
     return end[0] * end[3] - end[1] * end[2];
 }
 
-/* Shapes and motions of the modes; 0 if one of them does not swing, or resonates without damping. */
+/* Sets shape, move and give. Returns 0 if a mode does not oscillate, or resonates without damping. */
 static int forecast_modes(struct forecast *x)
 {
     const struct energy_norm *norm = &x->m->norm;
@@ -109,7 +108,7 @@ static int forecast_modes(struct forecast *x)
     return 1;
 }
 
-/* x->w, x->limit: mean velocities without friction, and the limits in the middle of the intervals. */
+/* Sets x->eta, x->w = mean velocities without friction, and x->limit = the limits in the middle of the intervals. */
 static void find_drive(struct forecast *x)
 {
     const struct period_map *m = x->m;
@@ -117,7 +116,7 @@ static void find_drive(struct forecast *x)
     for (size_t s = 0; s < m->sys->harmonics; s++) {
         const struct harmonic *p = &m->sys->harmonic[s];
         const double complex unit = cexp(p->omega * m->t * I), step = cexp(p->omega * x->h * I);
-        double complex *eta = x->eta + s * x->modes, *way = (double complex *)x->change; /* [contacts], of N contacts numbers */
+        double complex *eta = x->eta + s * x->modes, *way = (double complex *)x->change; /* [contacts], memory of change */
         memset(way, 0, c * sizeof *way);
         for (size_t k = 0; p->drives == DRIVES_LOAD && k < x->modes; k++) {
             const double omega = m->norm.natural[k];
@@ -149,7 +148,7 @@ static void find_drive(struct forecast *x)
     }
 }
 
-/* g [c][c] becomes its inverse, by Gauss and Jordan. */
+/* Sets g [c][c] = g^-1, by Gauss and Jordan. */
 static void invert_without_pivots(size_t c, double complex *g)
 {
     for (size_t k = 0; k < c; k++) {
@@ -168,7 +167,7 @@ static void invert_without_pivots(size_t c, double complex *g)
     }
 }
 
-/* x->wave, x->rho, and the inverses. 1 + rho G needs no pivots: with rho^1/2 on either side its real part is positive definite. */
+/* Sets wave, back, rho and inverse. 1 + rho G needs no pivots: 1 + rho^1/2 G rho^1/2 has a positive definite real part. */
 static void find_inverses(struct forecast *x)
 {
     const size_t c = x->contacts, two = 2 * c;
@@ -190,7 +189,7 @@ static void find_inverses(struct forecast *x)
                 x->scaled[k * two + c + i] = cimag(r) * x->shape[k * c + i];
             }
         }
-        double *inverse = x->inverse + p * two * two; /* real and imaginary part of G, so far */
+        double *inverse = x->inverse + p * two * two; /* real and imaginary part of G here */
         tribo_multiply_transposed_add(x->modes, two, c, x->scaled, x->shape, inverse);
         for (size_t i = 0; i < c; i++) {
             const double size = hypot(inverse[i * c + i], inverse[(c + i) * c + i]);
@@ -201,7 +200,7 @@ static void find_inverses(struct forecast *x)
             }
         }
         invert_without_pivots(c, g);
-        for (size_t i = 0; i < c; i++) { /* of signals cosine - i sine */
+        for (size_t i = 0; i < c; i++) { /* for signals cosine - i sine */
             for (size_t j = 0; j < c; j++) {
                 double *to = inverse + i * two + j;
                 to[0] = to[c * two + c] = creal(g[i * c + j]);
@@ -213,7 +212,7 @@ static void find_inverses(struct forecast *x)
     tribo_transpose(x->intervals, x->intervals, x->wave, x->back);
 }
 
-/* x->f by sweeps. */
+/* Sets x->f by sweeps. */
 static void forecast_forces(struct forecast *x)
 {
     const size_t c = x->contacts, n = x->intervals * c, two = 2 * c;
@@ -248,7 +247,7 @@ static void forecast_forces(struct forecast *x)
     }
 }
 
-/* x->m->y = the state at t0. eta [2][modes] is workspace. */
+/* Sets x->m->y = the state at t0 = m->t. eta [2][modes]: workspace. */
 static void forecast_state(struct forecast *x, double *eta)
 {
     struct period_map *m = x->m;

@@ -6,16 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Motions smaller than this part of what loads and bases would do at least are rounding of that. */
+/* m->least over the least motion by loads and bases: smaller motions are rounding. */
 #define LEAST_SIZE 1e-4
 
-/* Perturbations that tell whether contacts stop at one time by coincidence. */
+/* Number of perturbations that decide whether contacts stop at one time by coincidence. */
 #define PROBES 4
 
-/* Modes without stiffness count with this part of the frequency of the period. */
+/* Least frequency of modes in the norm, also without stiffness, over the frequency of the period. */
 #define LEAST_OMEGA 0.1
 
-/* Sizes between this and one over it have squares that are numbers, and so have those of what is far smaller or larger. */
+/* Sizes in [1/LARGE, LARGE] need no scale: squares of these and of far smaller or larger sizes neither underflow nor overflow. */
 #define LARGE 1e100
 
 static double period_map_turn(void)
@@ -45,7 +45,7 @@ void tribo_period_map_coordinates(const struct period_map *m, const double *y, d
     }
 }
 
-/* m->y = the state that has the coordinates x. */
+/* Sets m->y = the state with the coordinates x [n]. */
 static void set_state(struct period_map *m, const double *x)
 {
     tribo_energy_norm_state(&m->norm, 1, x, m->y);
@@ -75,7 +75,7 @@ static void event_decided(struct company *company)
     m->variation.company.decided(&m->variation.company);
 }
 
-/* m->y from t to end, unseen by the driver's observer, after which the driver begins anew. */
+/* Integrates m->y from t to end without the driver's observer; the driver's next run is a new one. Returns a status. */
 static int period_map_integrate(struct period_map *m, double t, double end, struct company *company)
 {
     tribo_driver *drv = m->drv;
@@ -119,7 +119,7 @@ int tribo_period_map_march(struct period_map *m, size_t periods, double *x)
     return status;
 }
 
-/* What rests where an integration ends does so where the next one begins: rounding is taken away. */
+/* Removes rounding of velocities from m->y at contacts that rest since the last integration. Returns a status. */
 static int hold_still(struct period_map *m)
 {
     struct stick_slip *contacts = &m->events->stick_slip;
@@ -147,7 +147,7 @@ static int on_driver(const struct period_map *m, int status)
     return status ? tribo_driver_fail(m->drv, status, "%s", tribo_system_message(m->sys)) : TRIBO_OK;
 }
 
-/* A derivative without steps that is this point's alone; 0 if out of memory. */
+/* Sets p->derivative = one without steps and with users = 1. Returns 0 if out of memory. */
 static int renew(struct period_map *m, struct point *p)
 {
     if (p->derivative && p->derivative->users == 1) {
@@ -159,7 +159,7 @@ static int renew(struct period_map *m, struct point *p)
     return p->derivative != NULL;
 }
 
-/* d->matrix = perturbations v [n][n], with which those of length 1 in coordinates of the norm end. */
+/* Sets p->derivative->matrix from v [n][n], the final perturbations of initial unit coordinates. Returns a status. */
 static int keep_matrix(struct period_map *m, const struct point *p, const double *v)
 {
     double *matrix = malloc(m->n * m->n * sizeof *matrix);
@@ -214,7 +214,7 @@ int tribo_period_map_apply(struct period_map *m, const struct point *p, double *
     return status;
 }
 
-/* v [n][n] = states of length 1. */
+/* v [n][n] = states, in columns, with unit vectors as coordinates. work [n][n]. */
 static void set_units(const struct period_map *m, double *work, double *v)
 {
     memset(work, 0, m->n * m->n * sizeof *work);
@@ -256,7 +256,7 @@ int tribo_period_map_complete(struct period_map *m, struct point *p, double *res
 
 /* -------------------------------------------------------------------------------------------------------------- preparation */
 
-/* 1 if all that drives the system is minus itself half a period later, and limits are the same. */
+/* Returns 1 if, half a period later, loads and bases have the opposite sign and limits are the same. */
 static int is_odd(const tribo_system *sys, double period)
 {
     for (size_t k = 0; k < sys->harmonics; k++) {
@@ -269,7 +269,7 @@ static int is_odd(const tribo_system *sys, double period)
     return 1;
 }
 
-/* How far a load moves the structure at least, against stiffness or inertia. */
+/* Returns the least motion by a load in the norm: |psi amplitude| with components over max(omega of mode, omega of load). */
 static double size_of_load(struct period_map *m, const struct harmonic *w, const double *amplitude)
 {
     double size = 0.0;
@@ -286,7 +286,7 @@ static double size_of_load(struct period_map *m, const struct harmonic *w, const
     return size;
 }
 
-/* The same of a base that takes along what its contacts touch, or stretches their springs. */
+/* The same for a base: amplitude/sqrt(R_ii) of bodies that follow the base, amplitude/(omega sqrt(G_ii)) of stretched springs. */
 static double size_of_base(const struct period_map *m, const struct harmonic *w, const double *amplitude)
 {
     double size = 0.0;
@@ -299,7 +299,7 @@ static double size_of_base(const struct period_map *m, const struct harmonic *w,
     return size;
 }
 
-/* How far loads and bases move the structure at least. */
+/* Returns the least motion by all loads and bases in the norm. */
 static double least_motion(struct period_map *m)
 {
     double size = 0.0;
@@ -314,7 +314,7 @@ static double least_motion(struct period_map *m)
     return size;
 }
 
-/* What the variation follows: all perturbations, or some, between which there is nothing alike. */
+/* Sets m->probe: all n unit perturbations, or, if phases are kept, at most PROBES without any symmetry. Returns a status. */
 static int prepare_probes(struct period_map *m)
 {
     const size_t columns = m->events->motion->keep && m->n > PROBES ? PROBES : m->n;
@@ -362,7 +362,7 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period, cons
     tribo_energy_norm_set_damping(&m->norm, m->sys);
     m->t = t;
     tribo_period_map_choose(m, is_odd(m->sys, period));
-    /* the size of the motion: of the loads, and of the guess y */
+    /* size of the motion: the larger of least and the guess y */
     const double least = least_motion(m);
     double size = least;
     m->scale = 1.0;
@@ -370,7 +370,7 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period, cons
     for (size_t i = 0; i < m->n; i++) {
         size = greater(size, fabs(m->x[i]));
     }
-    /* a power of two that brings very small and very large motions to ordinary size */
+    /* scale: a power of two that brings very small and very large motions to ordinary size */
     m->scale = size > 0.0 && !(size >= 1.0 / LARGE && size <= LARGE) ? ldexp(1.0, -(int)clamp(logb(size), -1000.0, 1000.0)) : 1.0;
     m->least = LEAST_SIZE * (m->scale * least);
     return TRIBO_OK;

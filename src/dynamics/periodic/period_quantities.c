@@ -1,21 +1,21 @@
-/* What the periodic motion found last holds. Each call follows it through its period once more, phase by phase in closed form. */
+/* Quantities of the periodic motion found last. Each call integrates one period again, phase by phase in closed form. */
 #include "shooting.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Goes along with a period, and does something with each phase. */
+/* Observer of one period: calls `phase` for each phase. */
 struct replay {
     struct company company;
     struct period_map *map;
     int (*phase)(struct replay *r, double tau, const double *end);
-    const double *c;             /* the combination asked for, of q, q' (and f, f') */
-    struct signal signal, slope; /* it, in the phase */
-    double elapsed;              /* since the period began */
+    const double *c;             /* coefficients of q, q' (and f, f') */
+    struct signal signal, slope; /* the combination in the phase; workspace */
+    double elapsed;              /* time since the start of the period */
     struct extremes extremes;
-    double omega, re, im; /* integral with e^{-i omega t} */
-    double *sum;          /* [ncontact] */
+    double omega, re, im; /* integral of signal e^{-i omega t} */
+    double *sum;          /* [ncontact] sum over the phases */
 };
 
 static int period_quantities_no_memory(const struct replay *r)
@@ -23,7 +23,7 @@ static int period_quantities_no_memory(const struct replay *r)
     return tribo_system_fail(r->map->sys, TRIBO_ERR_MEMORY, "out of memory for a phase of the period");
 }
 
-/* map->x is the state that the phase began with. */
+/* map->x: state at the start of the phase. */
 static int phase_ends(struct company *company, double tau, double t, const double *y)
 {
     struct replay *r = (struct replay *)company;
@@ -44,7 +44,7 @@ static int set_signal(struct replay *r, double tau, const double *end)
     return r->map->events->motion->signal(r->map->events->own, r->c, tau, end, &r->signal);
 }
 
-/* Has r->phase called with all phases of the period. Returns a status. */
+/* Calls r->phase for each phase of the period. Returns a status. */
 static int replay(tribo_driver *drv, struct replay *r)
 {
     struct shooting *s = drv->shooting;
@@ -67,7 +67,7 @@ static int replay(tribo_driver *drv, struct replay *r)
     return status && s->map.drv != drv ? tribo_driver_fail(drv, status, "%s", s->map.drv->message) : status;
 }
 
-/* Checks c'[q, q'] of the caller, and makes r->c of it. */
+/* Checks the caller's c, coefficients of q and q', and sets r->c. Returns a status. */
 static int take_combination(tribo_driver *drv, struct replay *r, const double *c)
 {
     const size_t n = tribo_system_ndof(drv->sys);
@@ -180,7 +180,7 @@ static int period_quantities_add_rest(struct replay *r, double tau, const double
     return TRIBO_OK;
 }
 
-/* to [ncontact] = the sum over the phases. */
+/* to [ncontact] = the sums that `phase` adds to r.sum over the period. Returns a status. */
 static int sum_up(tribo_driver *drv, const char *name, int (*phase)(struct replay *, double, const double *), double *to)
 {
     if (!drv) {

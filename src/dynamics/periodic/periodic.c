@@ -1,4 +1,4 @@
-/* Periodic motions: what callers see of them. */
+/* Periodic motions: the public functions. */
 #include "shooting.h"
 
 #include <float.h>
@@ -48,7 +48,7 @@ static int check_loads(tribo_driver *drv, double period)
     return TRIBO_OK;
 }
 
-/* Derivatives of motions do not know of forces that jump beside springs without mass. */
+/* Refuses static limits with massless degrees of freedom: derivatives lack the jumps of forces at massless springs. */
 static int check_static(tribo_driver *drv)
 {
     double *ratio = drv->sys->feq;
@@ -65,7 +65,7 @@ static int check_static(tribo_driver *drv)
     return TRIBO_OK;
 }
 
-/* Nor do they know that sliding forces turn. */
+/* Refuses planar contacts: derivatives lack the turning of sliding forces. */
 static int check_planar(tribo_driver *drv)
 {
     const size_t planar = tribo_system_planar(drv->sys);

@@ -1,19 +1,18 @@
-/* Newton's method on x = image(x). The map does not part two states in the energy norm (energy_norm.h), so that x - image is
- * monotone: what is left of it along a step, step'(x - image), rises with the length of the step from below zero, and passes zero
- * where the step should end. That, and not the size of the residual, tells how good a step is: where contacts begin to slip the
- * residual may well have to rise for a while.
+/* Newton's method for r(x) = x - image(x) = 0. The map never increases the distance of two states in the energy norm
+ * (energy_norm.h), so r is monotone: step'r(x + part step) rises with part from below zero, and is zero at the right length. This
+ * product, and not |r|, measures a step: where contacts begin to slip, |r| may have to rise for some steps.
  *
  *     repeat
- *         step by Newton's method, and follow the motion from there
- *         take it if the residual falls
- *         otherwise go on from there nevertheless, a few times, unless the step has gone much too far
- *         otherwise go back to the best point, and make its step shorter: in its direction, or, the next time, with a shift of
- *             the matrix that first spares what the least force moves the most, and follow the motion for once, since contacts
- *             that come to rest forget
+ *         find Newton's step, and integrate from its end
+ *         accept the step if the residual falls
+ *         otherwise continue from the end, for a few steps, unless the step has gone much too far
+ *         otherwise go back to the best point and shorten its step, in turn by a shift of the matrix, which shortens the
+ *             directions first where a small force makes a large motion, or by a factor; if no shifted step is good, take
+ *             the image as the next point, because contacts that come to rest forget the initial state
  *
- * A contact that hardly slips does so with the square of the distance to where it does not any more, and a whole family of
- * solutions begins there: Newton's steps become half as long each time, and a quarter is left. Then the step is made twice as
- * long, and a little more. */
+ * If a contact hardly slips, r goes with the square of the distance to states where the contact rests, the border of a family
+ * of solutions (a double root): Newton's steps halve each time, and ratio = 1/4. Then the step is made twice as long, and a
+ * little more. */
 #include "shooting.h"
 #include "forecast.h"
 #include "common/real.h"
@@ -24,49 +23,49 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The state comes back to this part of the largest on the way; and this much is aimed for. */
+/* Residual over size: TOLERANCE of a motion that is found, AIM that ends the search. */
 #define TOLERANCE 1e-10
 #define AIM 1e-12
 
-/* Half periods at most of the search from the guess; and of another one from what so many periods of marching come to, where
- * static limits may need more of them. */
+/* FIRST: half periods, at most, of the search from the guess. MOST: the same of a search from the state after MARCHED periods
+ * from the guess, or after MARCHED_STATIC, since static limits may need more. */
 #define FIRST 120
 #define MOST 200
 #define MARCHED 20
 #define MARCHED_STATIC 100
 
-/* A step pays if the residual falls to this part. */
+/* A step is successful if the residual falls to this part. */
 #define PAYS 0.9
 
-/* Steps that do not pay, one after the other; one of which this many times as much is left on the other side goes too far. */
+/* MOST_ASTRAY: unsuccessful steps in a row. TOO_FAR: a step with ratio <= -TOO_FAR has gone too far. */
 #define MOST_ASTRAY 2
 #define TOO_FAR 10.0
 
-/* A shorter step is good if so much is left along it; it is looked for so often. */
+/* LEFT: |ratio| below which a shorter step is good. MOST_TRIALS: number of shorter steps tried. */
 #define LEFT 0.5
 #define MOST_TRIALS 3
 
-/* What is left along the steps towards a double root; and how much further than there the step goes. */
+/* DOUBLE_FROM, DOUBLE_TO: range of ratio near a double root. BEYOND: length of the step over the distance to the double root. */
 #define DOUBLE_FROM 0.15
 #define DOUBLE_TO 0.4
 #define BEYOND 1.05
 
-/* The matrix I - derivative is not larger than 2: a step shorter than this part of the residual is none. */
+/* |I - derivative| <= 2: a step shorter than this part of the residual cannot solve the equation. */
 #define FLAT 0.4
 
-/* Spans followed at once: so few that a motion which grows with each never seems to come back beside its size. */
+/* Most spans extrapolated at once: few enough that a motion that grows in each span has residual > TOLERANCE size. */
 #define LONGEST 1024.0
 
-/* A pivot of I - derivative below this may be that of a family of motions, a singular value below CUT is for steps, and one below
- * FREE when they are counted. */
+/* SINGULAR: pivot of I - derivative below which there may be a family of motions. Singular values are zero below CUT in steps,
+ * and below FREE in the dimension of the family. */
 #define SINGULAR 1e-5
 #define CUT 1e-9
 #define FREE 1e-7
 
-/* Matrices with more rows are not made for steps. These leave the part of the residual that it is of the size, or, if that is
- * more, about the square of what the step before left (Eisenstat and Walker 1996), between two bounds: the motion, which is not
- * linear, leaves about as much. The upper bound keeps steps longer than FLAT. The free structure stands in where its determinants
- * are more than NEARLY_SINGULAR. */
+/* DENSE: with more rows, steps are solved by GMRES without a matrix, to a part of the residual: residual/size, or, if larger, 0.9
+ * (residual/previous residual)^2 (Eisenstat and Walker 1996), within [LEAST_INEXACT, MOST_INEXACT], because the nonlinear motion
+ * leaves about as much. MOST_INEXACT keeps steps longer than FLAT. NEARLY_SINGULAR: the free structure preconditions modes with
+ * a larger determinant. */
 #define DENSE 40
 #define MOST_INEXACT 0.15
 #define LEAST_INEXACT 1e-6
@@ -74,10 +73,10 @@
 
 #define UNKNOWN ((size_t)-1)
 
-/* A guess that is so much of the motion's size away from the odd one, along the family, is meant. */
+/* A guess chooses a motion of the family if its distance from the odd motion along the family is this part of the size. */
 #define MEANT 0.1
 
-/* A guess farther from the forecast than this part of its size is left for the forecast. */
+/* The search starts from the forecast if |guess - forecast| > FAR |forecast|. */
 #define FAR 0.1
 
 static double shooting_length(const double *x, size_t n)
@@ -93,7 +92,7 @@ static int shooting_no_memory(const struct shooting *s)
 
 /* -------------------------------------------------------------------------------------------------------------- points */
 
-/* Whether what is left of a motion of that size is this part of it; of what overflows it never is. */
+/* Returns 1 if residual <= part size and size is finite. */
 static int comes_back(double residual, double size, double part)
 {
     return residual <= part * size && isfinite(size);
@@ -114,7 +113,7 @@ static void shooting_exchange(struct shooting *s)
 static void copy_point(const struct shooting *s, struct point *to, const struct point *from)
 {
     const size_t n = s->map.n;
-    memcpy(to->y, from->y, 4 * n * sizeof *to->y); /* all arrays of a point are in one piece */
+    memcpy(to->y, from->y, 4 * n * sizeof *to->y); /* y, x, end and image are contiguous */
     from->derivative->users++;
     tribo_derivative_free(to->derivative);
     to->derivative = from->derivative;
@@ -125,7 +124,7 @@ static void copy_point(const struct shooting *s, struct point *to, const struct 
     to->other = from->other;
 }
 
-/* Goes there, and begins anew from there. */
+/* Accepts the step: here = best = there, astray = 0. */
 static void shooting_settle(struct shooting *s)
 {
     shooting_exchange(s);
@@ -150,8 +149,8 @@ static void set_matrix(const struct shooting *s, const double *derivative, doubl
     }
 }
 
-/* The matrix (1 + shift) I - derivative at a point, of one span or of two; `from the right` times the inverse that it has for
- * the free structure. */
+/* The matrix (1 + shift) I - D, D = the derivative at the point `at` over 1 or 2 spans; free = 1: times s->free from the right,
+ * its inverse for the free structure. */
 struct equation {
     struct shooting *s;
     const struct point *at;
@@ -189,8 +188,8 @@ static int apply_equation(void *data, double *x)
     return status;
 }
 
-/* x [n], the right-hand side, becomes the solution; *done = 0: there is none, x may be anything. Where contacts rest all
- * the time, there may be many solutions: the Krylov space of a map that brings nothing further apart has the least one. */
+/* Solves in place for x [n], first the right-hand side. *done = 0: no solution, x undefined. If contacts rest all the time, there
+ * may be many solutions: the Krylov space, then without s->free, of a map that increases no distance has the shortest. */
 static int solve_in_space(struct shooting *s, const struct point *at, double shift, int spans, double tolerance, double *x,
                           int *done)
 {
@@ -220,13 +219,13 @@ static int solve_in_space(struct shooting *s, const struct point *at, double shi
     return status;
 }
 
-/* 1 if matrices are too large to be made where that can be avoided. */
+/* Returns 1 if n > DENSE and phases are kept: then steps are solved without a matrix. */
 static int is_matrix_free(const struct shooting *s)
 {
     return s->map.n > DENSE && s->map.events->motion->keep;
 }
 
-/* s->step with (I + shift - derivative) step = image - x, the least one if there are many. */
+/* Sets s->step, the shortest solution of ((1 + shift) I - derivative) step = image - x. Returns a status. */
 static int newton_step(struct shooting *s, double shift)
 {
     const size_t n = s->map.n;
@@ -253,7 +252,7 @@ static int newton_step(struct shooting *s, double shift)
     return tribo_least_norm_solve(s->a, n, CUT, s->step, NULL) ? TRIBO_OK : shooting_no_memory(s);
 }
 
-/* s->there = s->here and part of the step. */
+/* Sets s->there from there.x = here.x + part step, s->ratio and s->nearest. Returns a status. */
 static int try_step(struct shooting *s, double part)
 {
     memcpy(s->there.x, s->here.x, s->map.n * sizeof *s->there.x);
@@ -266,8 +265,8 @@ static int try_step(struct shooting *s, double part)
     return status;
 }
 
-/* Where no step changes the residual, as on a slow belt that takes a body along for many periods, the motion is followed for one
- * period, four, and so on at once. */
+/* Sets s->there from there.x = here.x + stride (image - x), stride = 1, 4, 16, ... spans, where no step changes the residual, as
+ * on a slow belt that carries a body for many periods. Returns a status. */
 static int stride(struct shooting *s)
 {
     const size_t n = s->map.n;
@@ -290,7 +289,7 @@ static int newton(struct shooting *s)
     return status ? status : try_step(s, to_double ? BEYOND / (1.0 - sqrt(s->rate)) : 1.0);
 }
 
-/* Looks for a shorter step, whose ratio for part 1 is known, between low and high; with a shift, or without. */
+/* Tries shorter steps, part in (low, high); ratio = s->first at part 1. shifted = 1: steps by a shifted matrix. */
 static int shorten(struct shooting *s, int shifted)
 {
     const double whole = shooting_length(s->step, s->map.n);
@@ -312,7 +311,7 @@ static int shorten(struct shooting *s, int shifted)
 
 /* -------------------------------------------------------------------------------------------------------------- search */
 
-/* After a step. */
+/* Accepts or rejects s->there after a step. Returns a status. */
 static int proceed(struct shooting *s)
 {
     s->rate = 0.0;
@@ -338,7 +337,7 @@ static int proceed(struct shooting *s)
         status = shorten(s, shifted);
     }
     if (!status && shifted && !(s->there.residual < PAYS * s->best.residual)) {
-        /* s->there: the image of s->here */
+        /* there = the image of here */
         memcpy(s->there.x, s->here.image, s->map.n * sizeof *s->there.x);
         status = tribo_period_map_follow(&s->map, &s->there);
     }
@@ -348,7 +347,7 @@ static int proceed(struct shooting *s)
     return status;
 }
 
-/* From s->here on: s->best. */
+/* Searches from s->here for at most `halves` half periods; the result is s->best. Returns a status. */
 static int search(struct shooting *s, size_t halves)
 {
     const size_t most = s->map.halves + halves;
@@ -363,15 +362,15 @@ static int search(struct shooting *s, size_t halves)
     while (!status && !close_enough(&s->best, AIM) && s->map.halves < most) {
         status = newton(s);
         if (!status && close_enough(&s->best, TOLERANCE) && !(s->there.residual < PAYS * s->best.residual)) {
-            break; /* rounding allows no more */
+            break; /* limit of rounding */
         }
         status = status ? status : proceed(s);
     }
     return status;
 }
 
-/* Where contacts hardly slip, or, by static limits, motions part from each other, steps of Newton's may lead nowhere. What
- * marching from the guess comes to is then where to look. */
+/* Searches from the state `periods` periods after the guess: where contacts hardly slip, or static limits make motions diverge,
+ * Newton's steps may fail. Returns a status. */
 static int search_again(struct shooting *s, size_t periods)
 {
     memcpy(s->here.x, s->guess, s->map.n * sizeof *s->guess);
@@ -379,7 +378,7 @@ static int search_again(struct shooting *s, size_t periods)
     return status ? status : search(s, MOST);
 }
 
-/* From the forecast on, unless the guess is near it. *done = 0: the motion is not found, also where motions from there on fail. */
+/* Searches from the forecast, unless the guess is near it. *done = 0: not found, also after a failed integration. */
 static int search_from_forecast(struct shooting *s, int *done)
 {
     const size_t n = s->map.n;
@@ -412,7 +411,7 @@ static int search_all(struct shooting *s)
     if (!status && !close_enough(&s->best, TOLERANCE) && s->map.events->stick_slip.breakaway.some) {
         status = search_again(s, MARCHED_STATIC);
     }
-    /* Under static limits a motion may be stable and not odd, though all that drives it is. */
+    /* With static limits a stable motion may be not odd, although all drives are odd. */
     if (!status && !close_enough(&s->best, TOLERANCE) && s->map.odd && s->map.events->stick_slip.breakaway.some) {
         tribo_period_map_choose(&s->map, 0);
         memcpy(s->here.x, s->guess, s->map.n * sizeof *s->guess);
@@ -426,7 +425,7 @@ static int search_all(struct shooting *s)
 
 /* -------------------------------------------------------------------------------------------------------------- the family */
 
-/* s->b = the derivative of the whole period. */
+/* Sets s->b = the derivative over the whole period. Returns a status. */
 static int whole_derivative(struct shooting *s)
 {
     const size_t n = s->map.n;
@@ -441,7 +440,7 @@ static int whole_derivative(struct shooting *s)
     return status;
 }
 
-/* Counts the directions in which there are other such motions; takes out of move [n] what leads elsewhere. */
+/* Sets s->freedom = dimension of the kernel of I - derivative, and projects move [n] on the kernel. Returns a status. */
 static int find_family(struct shooting *s, double *move)
 {
     const size_t n = s->map.n;
@@ -466,8 +465,8 @@ static int find_family(struct shooting *s, double *move)
     return TRIBO_OK;
 }
 
-/* Takes out of move [n] what leads out of the family, if there is one. Where all contacts slide, and all modes are damped, there
- * is none. */
+/* Projects move [n] on the family of periodic motions. If all modes are damped and no contact rests in all phases, there is no
+ * family: move = 0. Returns a status. */
 static int stay_in_family(struct shooting *s, double *move)
 {
     const size_t n = s->map.n;
@@ -487,7 +486,7 @@ static int stay_in_family(struct shooting *s, double *move)
     return status || done ? status : find_family(s, move);
 }
 
-/* The odd motion may be one of a family, and the guess near another one: that is taken if it comes back. */
+/* Takes the motion nearest to the guess in the family of the odd motion, if that motion comes back. */
 static int approach_guess(struct shooting *s)
 {
     const size_t n = s->map.n;
@@ -518,7 +517,7 @@ int tribo_shooting_freedom(struct shooting *s, size_t *freedom)
 
 /* -------------------------------------------------------------------------------------------------------------- multipliers */
 
-/* The largest first; pairs, next to each other and of one size, stay as they are. */
+/* Sorts by size, the largest first. The order within pairs, neighbours of equal size, stays. */
 static void sort(size_t n, double *all_re, double *all_im)
 {
     for (size_t i = 1; i < n; i++) {
@@ -542,7 +541,7 @@ int tribo_shooting_multipliers(struct shooting *s, double *re, double *im)
     }
     double *all_re = s->step, *all_im = s->guess;
     status = tribo_eigen(s->b, n, all_re, all_im, s->a);
-    if (!status) { /* a caller's state has more values, which follow: their multipliers are 0 */
+    if (!status) { /* further values of a caller's state depend on these: their multipliers are 0 */
         const size_t more = (tribo_system_dimension(s->map.sys) - 1 - n) * sizeof *re;
         sort(n, all_re, all_im);
         memcpy(re, all_re, n * sizeof *re);

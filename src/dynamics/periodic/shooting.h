@@ -1,4 +1,4 @@
-/* The search for a motion that comes back after a period. */
+/* Shooting: the search for a fixed point x = image(x) of the period map. */
 #ifndef TRIBO_SHOOTING_H
 #define TRIBO_SHOOTING_H
 
@@ -6,34 +6,34 @@
 
 struct shooting {
     struct period_map map;
-    struct point here, there, best; /* where the search is; where a step leads; where it goes back to */
+    struct point here, there, best; /* current point; end of the step; point to go back to */
     double *memory;
     double *a, *b;        /* [n][n] workspace */
-    double *space;        /* of Krylov spaces, and */
-    double *free;         /* [2 n] the inverse of I - derivative that the free structure has: [n/2] matrices of two rows */
+    double *space;        /* workspace of tribo_gmres */
+    double *free;         /* [ndof][2][2] inverse of (1 + shift) I - derivative of each free mode */
     double *step, *guess; /* [n] */
     int *pivot;           /* [n] */
-    double ratio;         /* what is left along the step after it, beside what was before */
-    double first, rate;   /* that of the step from best; that of the last one, if it was good */
-    double stride;        /* spans followed at once; 0: steps are Newton's */
-    double before;        /* the residual before the last step; 0: there was none */
-    size_t astray;        /* steps since best that did not pay */
-    size_t setbacks;      /* how often the search has gone back */
-    double nearest;       /* the least residual seen beside the size */
+    double ratio;         /* left_along(there)/left_along(here) of the step */
+    double first, rate;   /* first: ratio of the step from best; rate: ratio of the last step if it was good, else 0 */
+    double stride;        /* spans extrapolated at once; 0: Newton's steps */
+    double before;        /* residual before the last step; 0: no step yet */
+    size_t astray;        /* unsuccessful steps since best */
+    size_t setbacks;      /* number of returns to best */
+    double nearest;       /* least residual/size so far */
     int found;
-    size_t freedom;  /* the dimension of the family of the motion found, once it is asked for; or UNKNOWN */
-    size_t revision; /* of the system then */
+    size_t freedom;  /* dimension of the family of the motion found; UNKNOWN until computed */
+    size_t revision; /* of the system when the motion was found */
 };
 
-/* NULL if out of memory. */
+/* Returns NULL if out of memory. */
 struct shooting *tribo_shooting_create(tribo_driver *drv);
 void tribo_shooting_free(struct shooting *s);
 
-/* The multipliers re, im [tribo_system_dimension - 1] of the motion found; the dimension of its family. Both return a status. */
+/* Sets re, im [tribo_system_dimension - 1] = multipliers of the motion found; *freedom = dimension of its family. */
 int tribo_shooting_multipliers(struct shooting *s, double *re, double *im);
 int tribo_shooting_freedom(struct shooting *s, size_t *freedom);
 
-/* As tribo_driver_find_periodic, arguments being checked. */
+/* As tribo_driver_find_periodic, with arguments already checked. */
 int tribo_shooting_find(struct shooting *s, double t, double period, double *y);
 
 #endif

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Times at which contacts stop are one time if they differ by no more than this part. */
+/* Relative difference of equal times, and of a force at its limit; relative size of a negligible coupling. */
 #define TOGETHER 1e-6
 
 void tribo_contact_row(const tribo_system *sys, size_t i, const double *v, size_t columns, double *row)
@@ -16,7 +16,7 @@ void tribo_contact_row(const tribo_system *sys, size_t i, const double *v, size_
     }
 }
 
-/* x->f = the change of the forces that hold contacts by that of q'' without them. Returns a status. */
+/* Sets x->f: R_HH f_H = -a_H, a = J acceleration - (order-th derivative of b; 0 if order = 0). Returns a status. */
 static int change_of_holds(struct variation *x, const double *acceleration, int order)
 {
     memset(x->a, 0, x->sys->ncontact * sizeof *x->a);
@@ -28,7 +28,7 @@ static int change_of_holds(struct variation *x, const double *acceleration, int 
     return status ? tribo_system_fail(x->sys, status, "%s", tribo_message(x->events->stick_slip.constant.hold)) : TRIBO_OK;
 }
 
-/* to [ndof] += the change of q'' by one of the state, q and u. */
+/* to [ndof] += -AK q - AC u: the change of q'' by a change (q, u) of the state. */
 static void add_change(const tribo_system *sys, const double *q, const double *u, double *to)
 {
     tribo_matrix_multiply_add(&sys->stiffness, -1.0, q, to);
@@ -37,7 +37,7 @@ static void add_change(const tribo_system *sys, const double *q, const double *u
     }
 }
 
-/* x->rise, while the forces of contacts that do not hold follow their limits. */
+/* Sets x->rise at the state y; forces of contacts outside H follow their limits. Returns a status. */
 static int find_rise(struct variation *x, const double *y)
 {
     tribo_system *sys = x->sys;
@@ -59,7 +59,7 @@ static int find_rise(struct variation *x, const double *y)
     return status;
 }
 
-/* x->pull, of side times the forces. */
+/* Sets x->pull. Returns a status. */
 static int find_pull(struct variation *x)
 {
     const size_t n = x->sys->ndof, all = tribo_system_energy(x->sys);
@@ -79,7 +79,7 @@ static int find_pull(struct variation *x)
     return status;
 }
 
-/* Whether a static limit is what ends the phase. */
+/* Returns 1 if the phase ended because a holding force met a static limit that drops at once. */
 static int variation_breaks_away(const struct variation *x)
 {
     const struct guard *g = x->events->met;
@@ -88,7 +88,7 @@ static int variation_breaks_away(const struct variation *x)
            tribo_breakaway_is_sudden(&m->breakaway, g->contact);
 }
 
-/* The contacts whose forces, just found to be m->work.f, meet their static limits. */
+/* Sets x->met, x->count and x->side from m->work.f, the forces at the end of the phase. */
 static void find_met(struct variation *x)
 {
     const struct stick_slip *m = &x->events->stick_slip;
@@ -108,7 +108,7 @@ static void find_met(struct variation *x)
     }
 }
 
-/* x->f = how letting contact i go changes the rates of forces that hold: damping hands on the jump of its acceleration. */
+/* Sets x->f = the change of f' of holding contacts if contact i is released, by damping and the jump of q''. */
 static int change_of_rates(struct variation *x, size_t i)
 {
     const struct breakaway *b = &x->events->stick_slip.breakaway;
@@ -124,8 +124,8 @@ static int change_of_rates(struct variation *x, size_t i)
     return change_of_holds(x, rate, 0);
 }
 
-/* Whether letting one of them go changes the force of another one, or how fast that rises: x->bond, one but the first, or
- * ncontact. */
+/* Sets x->bond = a contact in met, but not met[0], if the release of one contact in met changes the force of another or its rate;
+ * else ncontact. Returns a status. */
 static int find_bond(struct variation *x)
 {
     int status = TRIBO_OK;
@@ -146,11 +146,11 @@ static int find_bond(struct variation *x)
     return status ? tribo_system_fail(x->sys, status, "%s", tribo_message(x->events->stick_slip.constant.hold)) : TRIBO_OK;
 }
 
-/* All that the decision leaves unknown of forces that meet static limits. */
+/* Sets x->rise, x->pull and x->bond, and removes contacts with rise <= 0 from x->met. Returns a status. */
 static int look_at_met(struct variation *x, const double *y)
 {
     int status = find_rise(x, y);
-    /* keep the contacts whose force goes beyond the limit; the others only touch it */
+    /* keep contacts with rise > 0; the other forces only touch their limits */
     size_t count = 0;
     for (size_t k = 0; k < x->count; k++) {
         const size_t i = x->met[k];
@@ -170,7 +170,7 @@ static int no_derivative(const struct variation *x)
     return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for the derivative of a motion");
 }
 
-/* Takes x->v along. */
+/* Applies the steps of x->to from x->applied on to x->v. Returns a status. */
 static int catch_up(struct variation *x)
 {
     const size_t first = x->applied;
@@ -196,8 +196,8 @@ static int phase_ends(struct company *company, double tau, double t, const doubl
     return status || !x->count ? status : look_at_met(x, y);
 }
 
-/* 1 if contact i, which slid, comes to rest for an instant only, since the force of that pulls another one loose: accelerations
- * jump where it stops, and it goes on. */
+/* Returns 1 if v_i = 0 ended the phase and a contact at rest begins to slide: the force of contact i makes it slide. Then q''
+ * jumps at the stop of contact i, which lasts an instant only. */
 static int pulls_loose(const struct variation *x, size_t i)
 {
     const struct guard *met = x->events->met;
@@ -209,8 +209,8 @@ static int pulls_loose(const struct variation *x, size_t i)
     return loose && met && met->kind == SLIDES && met->contact == i;
 }
 
-/* 1 if contact i slid, and does not any more, or the other way. One that only touches v = 0 has no derivative there; an elastic
- * one has the same force before and after. */
+/* Returns 1 if contact i slid and stops or reverses. Returns 0 if v_i only touches 0, where there is no derivative, and for an
+ * elastic contact, because its force is continuous. */
 static int stops(const struct variation *x, size_t i)
 {
     const signed char before = x->before[i], now = x->events->stick_slip.state.slip[i];
@@ -218,8 +218,8 @@ static int stops(const struct variation *x, size_t i)
     return slid && now != 2 && before * x->slope[i] < 0.0 && (now != before || pulls_loose(x, i));
 }
 
-/* Adds a jump of accelerations, dt earlier: slope dt = row times perturbation. Returns where it is to be set: entries ndof, one
- * in ncontact numbers. */
+/* Appends a jump of q'' that comes earlier by dt = row v/slope. Returns the place of the jump: ndof entries, ncontact doubles
+ * apart. */
 static double *add_earlier(struct variation *x, double slope, const double *row)
 {
     const size_t n = tribo_system_energy(x->sys);
@@ -230,7 +230,7 @@ static double *add_earlier(struct variation *x, double slope, const double *row)
     return x->jump + x->jumps++;
 }
 
-/* That of all accelerations. */
+/* Appends the whole jump q''+ - q''-, earlier by row v/slope. */
 static void jump_earlier(struct variation *x, double slope, const double *row)
 {
     const double *after = tribo_stick_slip_find_acceleration(&x->events->stick_slip, x->sys);
@@ -240,7 +240,7 @@ static void jump_earlier(struct variation *x, double slope, const double *row)
     }
 }
 
-/* The contacts that stop, to x->stopped, and by how much perturbations change their velocities, in rows. Returns how many. */
+/* Sets x->stopped = the contacts that stop, and x->rows = (0, J_i) of these contacts. Returns their number. */
 static size_t find_stopped(struct variation *x)
 {
     const struct matrix *j = &x->sys->direction;
@@ -258,8 +258,8 @@ static size_t find_stopped(struct variation *x)
     return count;
 }
 
-/* 1 if perturbed motions, too, have these contacts stop, or break away, at one time: others that hold tie them together. What has
- * to be zero then has slopes by contact, and changes by rows times perturbation. */
+/* Returns 1 if the `count` contacts stop, or break away, at one time in perturbed motions too, tied together by holding contacts:
+ * dt = rows[k] v/slope[contact[k]] is the same for all k. slope [ncontact], rows [count][n]. */
 static int together(struct variation *x, const size_t *contact, size_t count, const double *slope, const double *rows)
 {
     if (count == 1) {
@@ -280,14 +280,14 @@ static int together(struct variation *x, const size_t *contact, size_t count, co
     return 1;
 }
 
-/* 1 if the force of contact i may have changed where others stop: it stops itself, or rests before or after. */
+/* Returns 1 if the force of contact i may jump when others stop: i stops, or rests before or after, and is not elastic. */
 static int takes_part(const struct variation *x, size_t i)
 {
     const int rests = x->before[i] == 0 || x->events->stick_slip.state.slip[i] == TRIBO_SLIP_STUCK;
     return !x->events->stick_slip.constant.elastic[i] && (rests || stops(x, i));
 }
 
-/* x->group = group, of contact i and all to which it passes forces, by shared bodies and through others that take part. */
+/* Sets x->group = group for contact i and all contacts that its forces reach by shared bodies and contacts that take part. */
 static void gather(struct variation *x, size_t i, size_t group)
 {
     size_t count = 0;
@@ -305,7 +305,7 @@ static void gather(struct variation *x, size_t i, size_t group)
     }
 }
 
-/* Moves those of a group, from contact first of those that stop on, to there. Returns how many. */
+/* Moves the contacts of the group in stopped[first .. count - 1], and their rows, to index `first` on. Returns their number. */
 static size_t bring_forward(struct variation *x, size_t first, size_t count, size_t group)
 {
     size_t next = first;
@@ -325,7 +325,7 @@ static size_t bring_forward(struct variation *x, size_t first, size_t count, siz
     return next - first;
 }
 
-/* Contacts that stop by coincidence do so each at its own time: groups of them, between which no forces pass, one by one. */
+/* Appends one jump for each group of contacts that stop by coincidence: no forces pass between groups. */
 static void stop_by_groups(struct variation *x, size_t count)
 {
     for (size_t next = 0, of_group; next < count; next += of_group) {
@@ -333,7 +333,7 @@ static void stop_by_groups(struct variation *x, size_t count)
         const double *rows = x->rows + next * tribo_system_energy(x->sys);
         of_group = bring_forward(x, next, count, group);
         if (together(x, stopped, of_group, x->slope, rows)) {
-            /* jump of accelerations by the forces of the group */
+            /* jump of q'' by the change of the forces of the group */
             const double slope = x->slope[stopped[0]];
             const size_t n = x->sys->ndof;
             double *jump = add_earlier(x, slope, rows), *change = x->column;
@@ -346,7 +346,7 @@ static void stop_by_groups(struct variation *x, size_t count)
                 jump[d * x->sys->ncontact] = change[d];
             }
         } else {
-            /* a contact of the group slides afterwards: then the order of stops matters, and there is no derivative */
+            /* if a contact of the group slides afterwards, the order of stops matters: there is no derivative */
             for (size_t i = 0; i < x->sys->ncontact; i++) {
                 if (x->group[i] == group && x->events->stick_slip.state.slip[i] != TRIBO_SLIP_STUCK) {
                     x->torn = i;
@@ -363,14 +363,14 @@ static void stop_earlier(struct variation *x)
     if (!count) {
         return;
     }
-    /* group: contacts that stop, with all contacts that their forces reach */
+    /* group: contacts that stop, and all contacts that their forces reach */
     memset(x->group, 0, x->sys->ncontact * sizeof *x->group);
     for (size_t k = 0; k < count; k++) {
         if (!x->group[x->stopped[k]]) {
             gather(x, x->stopped[k], k + 1);
         }
     }
-    /* a contact that loses its static limit where another one stops, without cause: two jumps whose order counts */
+    /* contact i loses its static limit by its own rise, or outside all groups: the order of this jump and the stop matters */
     const struct stick_slip *m = &x->events->stick_slip;
     for (size_t i = 0; i < x->sys->ncontact; i++) {
         const int goes = x->before[i] == 0 && tribo_slides(m->state.slip[i]);
@@ -386,7 +386,7 @@ static void stop_earlier(struct variation *x)
     }
 }
 
-/* A contact that bears upon those whose limits are met by coincidence, or is pulled loose by them; ncontact: none. */
+/* Returns a contact that couples contacts in met: bond, or one outside met that begins to slide; ncontact: none. */
 static size_t find_bound(const struct variation *x)
 {
     size_t bound = x->bond;
@@ -403,7 +403,7 @@ static void event_decided(struct company *company)
     const size_t n = x->sys->ndof, c = x->sys->ncontact;
     x->jumps = 0;
     stop_earlier(x);
-    /* contacts that lose their static limits together are taken one after the other */
+    /* gone: contacts in met that are released; one jump if perturbed motions release them at one time, else one jump for each */
     const signed char *now = x->events->stick_slip.state.slip;
     size_t gone = 0;
     for (size_t k = 0; k < x->count; k++) {
@@ -415,7 +415,7 @@ static void event_decided(struct company *company)
         const size_t bound = find_bound(x);
         for (size_t k = 0; k < x->count; k++) {
             if (now[x->met[k]] != 0) {
-                /* contact i slides; the change of the forces that hold the others is part of its jump */
+                /* jump by the drop of f_i; the projection at the start of the next phase adds the change of holding forces */
                 const size_t i = x->met[k];
                 const double *row = x->pull + k * tribo_system_energy(x->sys);
                 const struct stick_slip *m = &x->events->stick_slip;

@@ -1,16 +1,16 @@
-/* The derivative of the motion by the state that it began with, along events: perturbations of the state in columns.
+/* Derivative of a motion by its initial state, along events. The columns of v [n], n = tribo_system_energy(sys), are
+ * perturbations of the state.
  *
- * In a phase they move as the structure does without loads and without what slides, contacts at rest being held: a perturbed
- * velocity that would move those is taken away. Where a contact that slides comes to rest or reverses, accelerations jump, for
- * perturbed motions a little earlier or later, by J_i du/v_i': S = I + (q''+ - q''-) J_i/v_i'. Where several do so at once
- * by coincidence, each makes the jump of its force and of those of contacts at rest that it pulls at; but if it passes forces to
- * another one, directly or through these, and any of them slides from there on, the order in which they stop changes when, and
- * there is no derivative. Where one breaks away accelerations are continuous, since the problem that decides about them has one
- * solution: S = I. But not by a static limit that drops at once: there they jump when the force that holds contact i meets it,
- * S = I + (q''+ - q''-) df_i/(limit' - f_i') for a force that rises. Where several forces meet theirs at once by coincidence,
- * each contact makes its own jump, if letting one go leaves the force of the other, and how fast that rises, what they are; else
- * who goes first decides, and there is no derivative, nor where others stop at that instant. Forces of elastic contacts are
- * continuous, too; but once one slides, its force stays, and what has no mass moves by the rest. */
+ * In a phase v moves as the structure without loads and without sliding contacts; contacts at rest are held: the part of v that
+ * would move a contact at rest is removed. If a sliding contact i stops or reverses, q'' jumps, in a perturbed motion earlier by
+ * J_i du/v_i': S = I + (q''+ - q''-) J_i/v_i'. If several contacts stop at one instant by coincidence, each makes the jump of its
+ * own force and of the forces at rest that it changes. But if contact i passes forces to another stopping contact, directly or
+ * through contacts at rest, and one of these slides afterwards, the order of stops matters: there is no derivative.
+ * If a contact breaks away, q'' is continuous, because the problem that decides slip has one solution: S = I. At a static limit
+ * that drops at once, q'' jumps when the holding force f_i meets the limit: S = I + (q''+ - q''-) df_i/(limit' - f_i') for a
+ * rising f_i. If several forces do so at one instant by coincidence, each contact makes its own jump, if its release changes
+ * neither the other forces nor their rates; else, or if other contacts stop then, the order matters: there is no derivative.
+ * Forces of elastic contacts are continuous; if contact i slides, df_i = 0, and massless parts follow from the other df. */
 #ifndef TRIBO_VARIATION_H
 #define TRIBO_VARIATION_H
 
@@ -22,41 +22,41 @@ struct variation {
     tribo_system *sys;
     struct derivative *to; /* of the motion so far */
     size_t columns;
-    double *v;            /* [2 ndof][columns] perturbations, as the first `applied` steps of that leave them */
-    size_t applied;       /* if phases are not kept: all of them */
+    double *v;            /* [n][columns] perturbations after the first `applied` steps of `to` */
+    size_t applied;       /* all steps, if phases are not kept */
     int status;           /* of a failure in an event, its message on the system's context */
-    double *rows;         /* [ncontact][2 ndof] by how much a perturbation changes velocities where contacts stop */
+    double *rows;         /* [ncontact][n] row k: dv_i/dstate, i = stopped[k] */
     double *changes;      /* [ncontact][columns] workspace */
-    double *slope;        /* [ncontact] v' where the phase ends, */
-    double *acceleration; /* [ndof] and q'' */
+    double *slope;        /* [ncontact] v' at the end of the phase */
+    double *acceleration; /* [ndof] q'' at the end of the phase */
     signed char *before;  /* [ncontact] slip in the phase that ends */
-    size_t *stopped;      /* [ncontact] the contacts that stop there */
-    size_t *group;     /* [ncontact] which of them, and of those at rest, pass forces to each other: 1, 2, ...; 0: none of them */
+    size_t *stopped;      /* [ncontact] contacts that stop at the event */
+    size_t *group;     /* [ncontact] 1, 2, ...: group of contacts, stopping or at rest, that pass forces to each other; 0: none */
     size_t *queue;     /* [ncontact] workspace */
-    double *force;     /* [ncontact] friction where the phase ends */
-    size_t *met;       /* [ncontact] the contacts whose static limits their forces meet there, */
-    size_t count;      /* how many they are, */
-    signed char *side; /* [ncontact] the signs of these forces, */
-    double *pull;      /* [ncontact][2 ndof] by how much a perturbation changes them, in the order of met, */
-    double *rise;      /* [ncontact] and how fast they outgrow the limits */
-    size_t bond;       /* one of them whose force changes if another one is let go; ncontact: there is none */
-    size_t torn, other; /* two contacts that leave the motion without a derivative; ncontact: there are none */
-    size_t jumps;       /* of q'' at the event: */
-    double *row;        /* [ncontact][2 ndof] by how much earlier it is */
-    double *jump;       /* [ndof][ncontact] times this */
-    double *column;     /* [3 ndof] workspace; */
-    double *a, *f;      /* [ncontact] and this */
+    double *force;     /* [ncontact] friction forces at the end of the phase */
+    size_t *met;       /* [ncontact] contacts with forces that meet static limits at the end of the phase */
+    size_t count;      /* number of contacts in met */
+    signed char *side; /* [ncontact] sign of the force of a contact in met, else 0 */
+    double *pull;      /* [ncontact][n] row k: d(side f_i)/dstate, i = met[k] */
+    double *rise;      /* [ncontact] d(side f_i - limit_i)/dt, contacts in met */
+    size_t bond;       /* contact in met with a force that another one changes by its release; ncontact: none */
+    size_t torn, other; /* two contacts because of which there is no derivative; ncontact: there is one */
+    size_t jumps;       /* number of jumps of q'' at the event */
+    double *row;        /* [jumps][n] row k: dt by which jump k comes earlier, per perturbation */
+    double *jump;       /* [ndof][ncontact] column k: jump k of q'' */
+    double *column;     /* [3 ndof] workspace */
+    double *a, *f;      /* [ncontact] workspace */
 };
 
-/* 1, or 0 if out of memory; tribo_variation_free takes what failed too. */
+/* Returns 1, or 0 if out of memory. Call tribo_variation_free also after a failure. */
 int tribo_variation_create(struct variation *x, struct events *e, tribo_system *sys, size_t columns);
 void tribo_variation_free(struct variation *x);
 
-/* Before the motion begins: v [2 ndof][columns]: perturbations that are looked at where contacts stop at one time; steps go
- * `to` a derivative without any. */
+/* Call before the motion begins. v [n][columns]: perturbations that decide whether contacts stop at one time. `to`: a derivative
+ * without steps, to which the steps of the motion are appended. */
 void tribo_variation_begin(struct variation *x, const double *v, struct derivative *to);
 
-/* row [columns] = J_i times rows of v, those of displacements (ndof rows) or of velocities. */
+/* row [columns] = J_i v, v [ndof][columns]: the rows of displacements or of velocities of perturbations. */
 void tribo_contact_row(const tribo_system *sys, size_t i, const double *v, size_t columns, double *row);
 
 #endif
