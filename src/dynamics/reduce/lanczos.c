@@ -8,25 +8,25 @@
 
 #include "tribo/tribo.h"
 
-/* Vectors that are carried on together. */
+/* Number of vectors in a block. */
 #define BLOCK 6
 
-/* A mode is found when its residual is this part of it. */
+/* A mode is found if its residual is at most this part of theta. */
 #define FOUND 1e-11
 
-/* Of a vector that is in the space of others, rounding leaves no more than this part. */
+/* A vector depends on the basis if the rest orthogonal to the basis is at most this part of the vector: rounding. */
 #define NOTHING 1e-13
 
-/* What remains of a vector beside others is orthogonal to them to rounding, unless it is less than this part. */
+/* If the rest of a vector after a subtraction is less than this part, rounding makes it not orthogonal: repeat. */
 #define LITTLE 0.1
 
-/* Modes are counted at a place that is this far, relative, from the next ones. */
+/* Modes are counted in a gap between two theta, relative, larger than this. */
 #define GAP 1e-3
 
-/* Modes beyond the last wanted one among which that place is looked for. */
+/* The gap is searched up to this number of modes after the last wanted one. */
 #define FURTHER 30
 
-/* Modes whose omega^2 + shift is the same to this part have one frequency. */
+/* Modes have one frequency if their omega^2 + shift differ by no more than this part. */
 #define ONE 1e-5
 
 #define MOST_BLOCKS 2000
@@ -36,16 +36,16 @@ struct lanczos {
     const struct matrix *mass;
     const struct cholesky *shifted;
     double shift;
-    size_t n, room, size;      /* of vectors: room for so many, and so many there are */
-    size_t pending;            /* the last ones, of which w holds what shift (K + shift M)^-1 M makes of them beyond all */
-    int complete;              /* there is nothing beyond */
-    double *q;                 /* [room][n] */
+    size_t n, room, size;      /* length of a vector; most vectors in the basis; vectors in the basis */
+    size_t pending;            /* number of newest basis vectors q with w = shift (K + shift M)^-1 M q, orthogonal to the basis */
+    int complete;              /* 1: no vector is independent of the basis */
+    double *q;                 /* [room][n] basis */
     double *w, *mw;            /* [BLOCK][n]; [BLOCK][n] M W */
-    double norm[BLOCK];        /* of those of w before anything was taken out of them */
+    double norm[BLOCK];        /* norms in M of w before orthogonalization */
     double *c;                 /* [BLOCK][room] workspace */
     double *h;                 /* [room][room] Q'M shift (K + shift M)^-1 M Q */
-    double *theta;             /* [size] its eigenvalues shift/(omega^2 + shift), the largest first */
-    double *s, *work;          /* [size][size] its eigenvectors, one a row; [room][room] workspace */
+    double *theta;             /* [size] eigenvalues of h, shift/(omega^2 + shift), descending */
+    double *s, *work;          /* [size][size] eigenvectors of h, in rows; [room][room] workspace */
     double gram[BLOCK][BLOCK]; /* W'M W */
     uint64_t seed;
 };
@@ -60,15 +60,15 @@ static void lanczos_scatter(struct lanczos *l, double *x)
     }
 }
 
-/* Norm in M of the j-th vector of w. */
+/* Returns the norm in M of vector j of w. */
 static double norm_of(const struct lanczos *l, size_t j)
 {
     const double square = tribo_dot(l->w + j * l->n, l->mw + j * l->n, l->n);
     return square > 0.0 ? sqrt(square) : 0.0;
 }
 
-/* Takes out of the vectors of w, from the j-th on, what they have of the basis: twice, since the first time leaves rounding. c
- * [count][room] gets how much that was; mw is up to date then. */
+/* Orthogonalizes vectors j .. j + count - 1 of w to the basis, twice, because one pass is not exact. Sets c [count][room] = the
+ * coefficients of the parts removed, norm, and mw = M W. */
 static void separate(struct lanczos *l, size_t j, size_t count)
 {
     const size_t n = l->n;
@@ -91,8 +91,8 @@ static void separate(struct lanczos *l, size_t j, size_t count)
     }
 }
 
-/* The j-th vector of w, and those that follow, become any that forces make, with nothing of the basis. 0 if out of memory, which
- * does not happen to a single one. */
+/* Sets vectors j .. j + count - 1 of w = (K + shift M)^-1 (random forces), orthogonal to the basis. Returns 0 if out of memory,
+ * never for count = 1. */
 static int draw(struct lanczos *l, size_t j, size_t count)
 {
     for (size_t k = j; k < j + count; k++) {
@@ -103,8 +103,8 @@ static int draw(struct lanczos *l, size_t j, size_t count)
     return done;
 }
 
-/* Takes out of the j-th vector of w what it has of those before it, which are the last of the basis; if little remains, of all
- * others once more. Returns the norm of the rest. */
+/* Orthogonalizes vector j of w to vectors 0 .. j - 1 of w, which are the last j of the basis; if little remains, to the whole
+ * basis again. Returns the norm of the rest, 0 if it is rounding. */
 static double separate_from_block(struct lanczos *l, size_t j)
 {
     const size_t n = l->n;
@@ -121,8 +121,8 @@ static double separate_from_block(struct lanczos *l, size_t j)
     return rest > NOTHING * whole ? rest : 0.0;
 }
 
-/* Appends the direction of the j-th vector of w to the basis, which ends with those before it, or another if it has none of its
- * own; if there is none at all, the basis is complete. */
+/* Appends vector j of w, normalized, to the basis, or a random vector if vector j depends on the basis. The last j vectors of
+ * the basis come from w. Sets complete = 1 if no vector is independent. */
 static void lanczos_append(struct lanczos *l, size_t j)
 {
     for (int attempt = 0; attempt < 3 && l->size < l->n; attempt++) {
@@ -149,7 +149,7 @@ static void find_gram(struct lanczos *l)
     }
 }
 
-/* One block more. 0 if out of memory. */
+/* Appends one block to the basis, and updates w, h and gram. Returns 0 if out of memory. */
 static int lanczos_extend(struct lanczos *l)
 {
     const size_t first = l->size;
@@ -172,10 +172,9 @@ static int lanczos_extend(struct lanczos *l)
     return 1;
 }
 
-/* ------------------------------------------------------------------------------------------------------- what is known of
- * modes */
+/* ------------------------------------------------------------------------------------------------------ modes of the basis */
 
-/* theta and s. 0 if out of memory. */
+/* Sets theta and s from h. Returns 0 if out of memory. */
 static int project(struct lanczos *l)
 {
     const size_t m = l->size;
@@ -195,7 +194,7 @@ static int project(struct lanczos *l)
     return 1;
 }
 
-/* Norm of shift (K + shift M)^-1 M x - theta x for the k-th. */
+/* Returns the norm in M of shift (K + shift M)^-1 M x - theta x for mode k. */
 static double residual(const struct lanczos *l, size_t k)
 {
     const double *s = l->s + k * l->size + l->size - l->pending;
@@ -217,7 +216,7 @@ static size_t count_found(const struct lanczos *l)
     return k;
 }
 
-/* The best combinations become the basis, as many as are kept: in strips, so that it takes no memory. */
+/* Replaces the basis by the first `keep` combinations s; in strips, without more memory. */
 static void compress(struct lanczos *l, size_t keep)
 {
     enum { STRIP = 32 };
@@ -241,13 +240,13 @@ static void compress(struct lanczos *l, size_t keep)
     l->pending = 0;
 }
 
-/* The best become the basis, keep of them or as many as leave room for two blocks more. */
+/* Replaces the basis by the first `keep` combinations s, or fewer: room for two blocks remains. */
 static void lanczos_make_room(struct lanczos *l, size_t keep)
 {
     compress(l, l->room == l->n || keep < l->room - 2 * BLOCK ? keep : l->room - 2 * BLOCK);
 }
 
-/* Goes on until target modes are found, or all that there are. */
+/* Extends the basis until `target` modes are found or the basis is complete. Returns a status. */
 static int converge(struct lanczos *l, size_t target)
 {
     for (size_t blocks = 0; blocks < MOST_BLOCKS; blocks++) {
@@ -265,18 +264,17 @@ static int converge(struct lanczos *l, size_t target)
     return TRIBO_ERR_NO_CONVERGENCE;
 }
 
-/* The modes found stay; the search goes on from vectors that have nothing to do with them. */
+/* Restarts: the modes found become the basis, w = random vectors orthogonal to these. Returns a status. */
 static int lanczos_start_anew(struct lanczos *l)
 {
     lanczos_make_room(l, count_found(l));
     return draw(l, 0, BLOCK) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
-/* -----------------------------------------------------------------------------------------------------------------
- * completeness */
+/* --------------------------------------------------------------------------------------------------------- completeness */
 
-/* A theta above those of the wanted modes that have one frequency with the last of them: the frequency may have more modes than
- * there is room for, and any combination of them is one. */
+/* Returns a theta above all modes that have the frequency of mode wanted - 1: the frequency may have more modes than there is
+ * room for, and any combination of these is a mode. */
 static double above_frequency(const struct lanczos *l, size_t wanted)
 {
     size_t first = wanted - 1;
@@ -287,8 +285,8 @@ static double above_frequency(const struct lanczos *l, size_t wanted)
     return first > 0 ? lesser(above, sqrt(l->theta[first - 1] * l->theta[first])) : above;
 }
 
-/* A theta that is well between the wanted ones and others: the first such place from the last wanted one on, within FURTHER; 0 if
- * there is none. More may have to be found for that. */
+/* Sets *between = a theta in the first gap after mode wanted - 1, or, if the basis is complete, below all theta; 0 if there is no
+ * gap within FURTHER modes. Finds more modes if needed. Returns a status. */
 static int find_gap(struct lanczos *l, size_t wanted, double *between)
 {
     for (size_t p = wanted; l->complete ? p < l->size : p <= wanted + FURTHER; p++) {
@@ -306,7 +304,7 @@ static int find_gap(struct lanczos *l, size_t wanted, double *between)
     return TRIBO_OK;
 }
 
-/* How many modes have a theta above this one, and the growth of the factor that shows it. */
+/* Sets found->below = the number of modes above theta, found->above and found->growth. Returns a status. */
 static int count_modes(const struct lanczos *l, const struct matrix *k, double theta, struct low_modes *found)
 {
     const struct matrix *m = l->mass;
@@ -339,7 +337,7 @@ static size_t count_above(const struct lanczos *l, double theta)
     return k;
 }
 
-/* Finds all modes with theta above that, which are so many. */
+/* Finds all `count` modes above theta. Returns a status. */
 static int complete(struct lanczos *l, double theta, size_t count)
 {
     for (int search = 0; search < MOST_SEARCHES && count_above(l, theta) < count; search++) {
@@ -352,7 +350,7 @@ static int complete(struct lanczos *l, double theta, size_t count)
     return count_above(l, theta) == count ? TRIBO_OK : TRIBO_ERR_NO_CONVERGENCE;
 }
 
-/* Where there is no room for all that have the frequency of the last wanted one: finds all below it. */
+/* Finds all modes below the frequency of mode wanted - 1, if the modes of this frequency do not fit. Returns a status. */
 static int complete_below(struct lanczos *l, const struct matrix *k, size_t wanted, struct low_modes *found)
 {
     for (size_t search = 0; search < MOST_SEARCHES + wanted / BLOCK; search++) {
@@ -367,10 +365,9 @@ static int complete_below(struct lanczos *l, const struct matrix *k, size_t want
     return TRIBO_ERR_NO_CONVERGENCE;
 }
 
-/* ------------------------------------------------------------------------------------------------------------------------
- * calls */
+/* ---------------------------------------------------------------------------------------------------------------- calls */
 
-/* The modes found, once more through (K + shift M)^-1 M: that takes out of them what has no mass. */
+/* Sets found->phi = shift/theta (K + shift M)^-1 M q, q the first `count` modes: removes parts without mass. Returns a status. */
 static int lanczos_take(struct lanczos *l, size_t count, struct low_modes *found)
 {
     const size_t n = l->n;

@@ -1,31 +1,31 @@
 /* The lowest modes of a large structure, K phi = omega^2 M phi, by Lanczos' method in blocks (Grimes, Lewis and Simon 1994,
- * SIAM J. Matrix Anal. Appl. 15, 228, doi:10.1137/S0895479888151111) for shift (K + shift M)^-1 M, whose largest
- * eigenvalues shift/(omega^2 + shift) belong to them. Vectors are orthogonal in M, all to all; when there are many, the best
- * combinations of them stay (Wu and Simon 2000, doi:10.1137/S0895479898334605).
+ * SIAM J. Matrix Anal. Appl. 15, 228, doi:10.1137/S0895479888151111) for shift (K + shift M)^-1 M. Its eigenvalues
+ * theta = shift/(omega^2 + shift) are largest for these modes. All vectors are orthogonal in M. A full basis is replaced by its
+ * best combinations (Wu and Simon 2000, doi:10.1137/S0895479898334605).
  *
- * That no mode is missed, though frequencies repeat, is seen by Sylvester's law: K - sigma M has as many negative eigenvalues as
- * there are modes with omega^2 < sigma. Where some are missing, the search goes on from other vectors, orthogonal to those found.
+ * Sylvester's law shows that no mode is missed, even if frequencies repeat: K - sigma M has as many negative eigenvalues as there
+ * are modes with omega^2 < sigma. If modes are missing, the search restarts with vectors orthogonal to the modes found.
  *
- * ARPACK does it with one vector instead of a block, and keeps its state in variables that all threads share. */
+ * ARPACK is not used: ARPACK has one vector instead of a block, and its state is in variables that all threads share. */
 #ifndef TRIBO_LANCZOS_H
 #define TRIBO_LANCZOS_H
 
 #include "numerics/linalg.h"
 
 struct low_modes {
-    size_t count;  /* those wanted, and more if they are close to the last of them */
-    double *phi;   /* [count][n] in ascending order, modal masses are 1; the caller frees it */
-    double above;  /* no other mode has omega^2 below this, */
-    size_t below;  /* only these, all of them or all but some that have one frequency, */
-    double growth; /* if rounding of the stiffness, times this, does not move any across it */
+    size_t count;  /* modes in phi: the wanted ones, and others close to the last one */
+    double *phi;   /* [count][n] ascending omega^2, modal masses 1; freed by the caller */
+    double above;  /* value of omega^2 at which modes are counted */
+    size_t below;  /* modes with omega^2 < above: those in phi, or all but some of one frequency */
+    double growth; /* `below` is certain if growth times the rounding of the stiffness moves no omega^2 across above */
 };
 
 /* k, m     [n][n] in   symmetric, m semidefinite
  * shift    in          > 0
  * shifted  in          the factor of K + shift M
  * wanted   in          > 0
- * Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED (no CHOLMOD), TRIBO_ERR_NO_CONVERGENCE, or TRIBO_ERR_SIZE: there
- * are only found->count modes, the mass matrix being singular. */
+ * Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED (no CHOLMOD), TRIBO_ERR_NO_CONVERGENCE, or TRIBO_ERR_SIZE: only
+ * found->count modes exist, because the mass matrix is singular. */
 int tribo_low_modes(const struct matrix *k, const struct matrix *m, double shift, const struct cholesky *shifted, size_t wanted,
                     struct low_modes *found);
 

@@ -1,5 +1,5 @@
-/* The motions that a structure is reduced to: its lowest modes, found densely or by Lanczos' method, and what steady forces at
- * its contacts add to them. */
+/* The motions of a reduced structure: its lowest modes, found densely or by Lanczos' method, and static responses to forces at
+ * its contacts. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,33 +10,33 @@
 #include "dynamics/system/model.h"
 #include "normal_modes.h"
 
-/* The shift beside the mean omega^2 of the degrees of freedom, weighted by their masses: far below what is elastic, and far above
- * what rounding makes of rigid-body motions. Where it is not, larger ones follow. */
+/* SHIFT: shift over the mean omega^2 of the degrees of freedom, weighted by mass: far below elastic omega^2, far above rounding
+ * in rigid-body motions. If K + shift M is not definite, the shift grows by MORE, below MOST_SHIFT. */
 #define SHIFT 1e-9
 #define MORE 1e3
 #define MOST_SHIFT 1e-3
 
-/* What a singular mass matrix is made definite with, in the same way. */
+/* For a singular M, M + SLIGHT K/(mean omega^2) is factored, which is definite if M is semidefinite. */
 #define SLIGHT 1e-12
 
-/* Modes must come out of the factor again, their omega^2 to this part of itself and to this part of the shift, beside which
- * rounding of the factor is not nothing. */
+/* The factor of K + shift M must reproduce a mode, with an error of omega^2 up to SAME omega^2 + SAME_SHIFT shift; the second
+ * term allows for rounding of the factor. */
 #define SAME 1e-5
 #define SAME_SHIFT 1e-3
 
-/* A static response that has no more of its own than this part is one of the others; and what is left of it beside the modes is
- * nothing if it is no more than this part of the whole, rounding of what was taken out. */
+/* A static response is new if its part orthogonal to the other responses is more than OWN times the response beside the modes,
+ * and more than ROUNDING times the whole response, the rounding of the parts removed. */
 #define OWN 1e-7
 #define ROUNDING (16.0 * DBL_EPSILON)
 
-/* Contacts whose displacements depend on each other make a flexibility that is singular but for this part. */
+/* Part of the diagonal added to a flexibility that is singular because displacements of contacts depend on each other. */
 #define RIDGE 1e-12
 
-/* Contacts whose responses are solved for at a time, and modes that are checked at a time. */
+/* BATCH: responses of contacts solved at a time. CHECKED: modes checked at a time. */
 #define BATCH 16
 #define CHECKED 6
 
-/* K + shift M. */
+/* K + shift M and its factor. */
 struct shifted {
     double shift;
     struct cholesky factor;
@@ -44,7 +44,7 @@ struct shifted {
 
 /* ------------------------------------------------------------------------------------------------------------------- messages */
 
-/* What to say of modes that were not found. */
+/* Writes the message for a status of tribo_normal_modes, and returns the status. */
 static int modes_failed(const struct model *m, int status, const struct doubt *doubt)
 {
     switch (status) {
@@ -84,7 +84,7 @@ static int search_failed(const struct model *m, int status, const struct low_mod
 
 /* ---------------------------------------------------------------------------------------------------------------- the factors */
 
-/* Of the diagonals, stiffness over mass, 1 without stiffness; 0 if there is no mass. */
+/* Returns sum |K_ii| / sum |M_ii|; 1 without stiffness, 0 without mass. */
 static double mean_square_frequency(const struct model *m)
 {
     double stiffness = 0.0, mass = 0.0;
@@ -95,7 +95,7 @@ static double mean_square_frequency(const struct model *m)
     return !(mass > 0.0) ? 0.0 : stiffness > 0.0 ? greater(stiffness / mass, 1e-200) : 1.0;
 }
 
-/* The factor of factor K + other M. */
+/* Sets *c = the factor of factor K + other M. Returns a status. */
 static int factorize_sum(const struct model *m, double factor, double other, struct cholesky *c, size_t *where)
 {
     struct matrix sum;
@@ -132,7 +132,7 @@ static int factorize_shifted(const struct model *m, struct shifted *s)
     return factor_failed(m, status, "stiffness", where);
 }
 
-/* Whether |M_ij| <= sqrt(M_ii M_jj) for all entries, and where not. */
+/* Returns TRIBO_ERR_INDEFINITE, and *where = i, if |M_ij| > sqrt(M_ii M_jj) for an entry; else TRIBO_OK. */
 static int check_minors(const struct matrix *mass, size_t *where)
 {
     for (size_t i = 0; i < mass->rows; i++) {
@@ -148,8 +148,8 @@ static int check_minors(const struct matrix *mass, size_t *where)
     return TRIBO_OK;
 }
 
-/* TRIBO_ERR_INDEFINITE if the mass matrix is not semidefinite, and where it shows. Of large ones only the minors of two rows are
- * looked at: positive definite stiffness makes the low modes right whatever the mass does to high ones. */
+/* Returns TRIBO_ERR_INDEFINITE, and the row *where, if M is not semidefinite. For large M only minors of two rows are checked:
+ * with a positive definite K the low modes are right whatever M does to the high ones. */
 static int check_mass(const struct model *m, size_t *where)
 {
     struct cholesky c;
@@ -163,8 +163,8 @@ static int check_mass(const struct model *m, size_t *where)
 
 /* ------------------------------------------------------------------------------------------------------------------ the modes */
 
-/* The lowest modes of motions that are combinations of x [count][ndof]. Of stiffer motions than these nothing is known here: what
- * rounding of the largest entries does to omega^2 is kept out of it. */
+/* Finds the `wanted` lowest modes among combinations of x [count][ndof]. Stiffer motions are unknown here: omega^2 is computed
+ * without rounding of the largest entries, by tribo_matrix_form. Returns a status. */
 static int find_among(const struct model *m, size_t count, const double *x, size_t wanted, struct reduced *r)
 {
     const size_t n = m->ndof;
@@ -204,8 +204,8 @@ static int find_densely(const struct model *m, const struct cholesky *mass, stru
     return modes_failed(m, status, &doubt);
 }
 
-/* Norms in M of (omega^2 + shift) (K + shift M)^-1 M phi - phi, change [count], for modes from first on. work [2 count][ndof]. 0
- * if out of memory. */
+/* Sets change [count] = norms in M of (omega^2 + shift) (K + shift M)^-1 M phi - phi, for modes first .. first + count - 1. work
+ * [2 count][ndof]. Returns 0 if out of memory. */
 static int find_residuals(const struct model *m, const struct shifted *s, const struct reduced *r, size_t first, size_t count,
                           double *work, double *change)
 {
@@ -228,7 +228,7 @@ static int find_residuals(const struct model *m, const struct shifted *s, const 
     return 1;
 }
 
-/* No mode lies where modes were counted: those next to it are beyond rounding of it. work [ndof]. */
+/* Checks that rounding moves no mode across low->above, where modes were counted. work [ndof]. Returns a status. */
 static int check_gap(const struct model *m, const struct low_modes *low, const struct reduced *r, double *work)
 {
     const size_t below = low->below < r->count ? low->below : r->count;
@@ -243,7 +243,7 @@ static int check_gap(const struct model *m, const struct low_modes *low, const s
     return TRIBO_OK;
 }
 
-/* Each mode is one. work [2 CHECKED][ndof]. */
+/* Checks that each mode is an eigenvector, by SAME and SAME_SHIFT. work [2 CHECKED][ndof]. Returns a status. */
 static int check_residuals(const struct model *m, const struct shifted *s, const struct reduced *r, double *work)
 {
     for (size_t first = 0; first < r->count; first += CHECKED) {
@@ -283,7 +283,7 @@ static int find_sparsely(const struct model *m, const struct shifted *s, struct 
 
 /* --------------------------------------------------------------------------------------------------------------- contacts */
 
-/* mx [ndof] = M x. Returns the norm of x in M. */
+/* Sets mx [ndof] = M x. Returns the norm of x in M. */
 static double low_modes_weigh(const struct model *m, const double *x, double *mx)
 {
     memset(mx, 0, m->ndof * sizeof *mx);
@@ -292,7 +292,7 @@ static double low_modes_weigh(const struct model *m, const double *x, double *mx
     return square > 0.0 ? sqrt(square) : 0.0;
 }
 
-/* x -= the part of it in each of count motions, orthonormal in M, twice. mx [ndof] is workspace. Returns the norm of the rest. */
+/* x -= sum of phi_k (phi_k'M x), count phi_k orthonormal in M, twice. Sets mx [ndof] = M x. Returns the norm of x in M. */
 static double low_modes_separate(const struct model *m, size_t count, const double *phi, double *x, double *mx)
 {
     for (int pass = 0; pass < 2; pass++) {
@@ -304,15 +304,15 @@ static double low_modes_separate(const struct model *m, size_t count, const doub
     return low_modes_weigh(m, x, mx);
 }
 
-/* Whether a motion of that norm is slower than the shift: no stiffness holds it, and a steady force has no response to it. */
+/* Sets *omega2 = |x'Kx|/norm^2. Returns 1 if *omega2 < shift/2: no stiffness holds x, a static response does not exist. */
 static int drifts(const struct model *m, const struct shifted *s, const double *x, double norm, double *omega2)
 {
     *omega2 = norm > 0.0 ? fabs(tribo_matrix_form(&m->stiffness, x, x)) / norm / norm : HUGE_VAL;
     return *omega2 < 0.5 * s->shift;
 }
 
-/* What a force does to a structure that drifts is the drift, and a little of what is elastic: takes that out of x [ndof], which
- * has nothing of the motions. mx [ndof] is workspace. Returns the norm of the rest. */
+/* If x [ndof], orthogonal to the motions, is a drift with a small elastic part, removes the elastic part by inverse iteration.
+ * mx [ndof]: workspace. Returns the norm of x in M. */
 static double purify(const struct model *m, const struct shifted *s, const struct reduced *r, double *x, double norm, double *mx)
 {
     double omega2, before = HUGE_VAL;
@@ -327,8 +327,8 @@ static double purify(const struct model *m, const struct shifted *s, const struc
     return norm;
 }
 
-/* x [ndof] is what a steady force at contact i does. Takes out of it what the modes have, enters what the rest does at the
- * contacts into missing [ncontact][ncontact], and adds what is new in it to the motions. */
+/* x [ndof]: response to a steady force at contact i. Removes its part in the modes, sets row i of missing [ncontact][ncontact] =
+ * J x of the rest, and, with TRIBO_STATICS_MASS, appends the new part of the rest to the motions. */
 static void add_static(const struct model *m, const struct shifted *s, struct reduced *r, size_t i, double *x, double *mx,
                        double *missing)
 {
@@ -350,10 +350,10 @@ static void add_static(const struct model *m, const struct shifted *s, struct re
     }
 }
 
-/* A force at a contact that the modes take but for this part moves nothing else. */
+/* A force at a contact acts on the modes only, if the rest after deflate is at most this part of the force. */
 #define TAKEN 1e-12
 
-/* force [ndof] -= what accelerates the modes, twice; 0 if the rest is rounding. mx [ndof] is workspace. */
+/* force [ndof] -= sum of M phi_k (phi_k'force) over the modes, twice; force = 0 if the rest is rounding. mx [ndof]: workspace. */
 static void deflate(const struct model *m, const struct reduced *r, double *force, double *mx)
 {
     const double whole = tribo_dot(force, force, m->ndof);
@@ -368,8 +368,8 @@ static void deflate(const struct model *m, const struct reduced *r, double *forc
     }
 }
 
-/* Takes the shift of K, but for its square, out of responses x [count][ndof] of contacts from first on. mx [ndof] is workspace. 0 if
- * out of memory. */
+/* Removes the effect of shift, except shift^2, from the responses x [count][ndof] of contacts first .. first + count - 1:
+ * x += (K + shift M)^-1 shift M x. mx [ndof]: workspace. Returns 0 if out of memory. */
 static int unshift(const struct model *m, const struct shifted *s, struct reduced *r, size_t first, size_t count, double *x,
                    double *mx)
 {
@@ -420,7 +420,7 @@ static int add_statics(const struct model *m, const struct shifted *s, struct re
     return done ? status : tribo_model_no_memory(m);
 }
 
-/* The motions that add_statics has added become orthogonal in K. */
+/* Makes the motions, with those of add_statics, orthogonal in K. Returns a status. */
 static int finish_statics(const struct model *m, struct reduced *r)
 {
     const size_t count = r->count;
@@ -434,7 +434,7 @@ static int finish_statics(const struct model *m, struct reduced *r)
     return status;
 }
 
-/* whole = missing + the elastic displacements that steady forces at the contacts make by the modes. */
+/* whole [ncontact][ncontact] += the elastic part of the modes, J phi phi'J'/(omega^2 + shift); whole = missing on entry. */
 static void add_modes(const struct model *m, const struct shifted *s, const struct reduced *r, double *whole)
 {
     const size_t c = m->ncontact;
@@ -450,8 +450,8 @@ static void add_modes(const struct model *m, const struct shifted *s, const stru
     }
 }
 
-/* The largest x'Ax beside x'Bx, A [n][n] semidefinite, B, of which A is a part, to rounding of its diagonal: 1 where B is lost in
- * the rounding of what was taken out, as beside rigid-body motions. Both are overwritten. */
+/* Sets *part = the largest x'Ax/x'Bx, A [n][n] semidefinite and a part of B, to rounding of the diagonal of B; 1 if B is lost in
+ * the rounding of a subtraction, as of rigid-body motions. Overwrites a and b. Returns 0 if out of memory. */
 static int largest_part(size_t n, double *a, double *b, double *part)
 {
     struct matrix whole = {0};
@@ -477,7 +477,7 @@ static int largest_part(size_t n, double *a, double *b, double *part)
     return status != TRIBO_ERR_MEMORY;
 }
 
-/* What the modes lack at the contacts, and the static motions beside them. */
+/* Sets r->flexibility and r->truncation.missing, and adds static motions to r. Returns a status. */
 static int find_statics(const struct model *m, const struct shifted *s, struct reduced *r)
 {
     const size_t c = m->ncontact;
@@ -517,7 +517,7 @@ static int find_lowest_densely(const struct model *m, struct shifted *s, struct 
     return status || r->omega2[0] < 0.0 ? status : factorize_shifted(m, s);
 }
 
-/* Lanczos' method is for large structures, of which few modes are wanted, and for masses that are singular. */
+/* Finds the lowest modes: by Lanczos' method for large structures with few modes, and for singular mass. Returns a status. */
 static int find_lowest(const struct model *m, struct shifted *s, struct reduced *r)
 {
     const int large = m->ndof > DENSE_MOST || (m->ndof >= SPARSE_LEAST && 4 * m->nmode <= m->ndof);

@@ -8,42 +8,42 @@
 
 #include "tribo/tribo.h"
 
-/* Eigenvalues above this part of the largest are what the QR algorithm finds to a dozen digits. */
+/* QR finds eigenvalues above this part of the largest to a dozen digits. */
 #define FOUND 1e-4
 
-/* Modes whose omega^2 are closer than this, relative, are left as they are: what mixes them is rounding of either. */
+/* Modes are not separated if the relative difference of their omega^2 is less: rounding of either decides their mixture. */
 #define CLOSE 1e-6
 
-/* A turn is a small correction. What asks for more is between modes whose omega^2 are rounding, and would mix them at random. */
+/* Largest turn, a small correction: larger ones are between modes with omega^2 of rounding, and would mix them at random. */
 #define SLIGHT 1e-5
 
-/* Modes that turn by less than this stay orthonormal to rounding, whatever is done about the square of it. */
+/* Modes with smaller turns stay orthonormal to rounding without correction of second order. */
 #define TINY 1e-8
 
-/* Of another mode a mode may have so much, in terms of the root of its energy. */
+/* Accepted |y_j'K y_k| over omega_j omega_k, the roots of the energies of modes j and k. */
 #define SHARED 1e-6
 
-/* Displacements of a mode are known to this part of the largest, and the stiffest mode makes the square of that of it. */
+/* Relative error of the displacements of a mode: the part of the stiffest mode adds up to ROUNDING^2 max omega^2. */
 #define ROUNDING (4.0 * DBL_EPSILON)
 
-/* What is not more than so many times the rounding of its terms is nothing else; what is more than so many times has two digits
- * at the very least. */
+/* |omega^2| <= NOTHING noise is taken as 0; omega^2 has at least two digits if |omega^2| >= CERTAIN noise. noise: rounding of the
+ * terms of phi'K phi. */
 #define NOTHING 2.0
 #define CERTAIN 100.0
 
-/* Rounding of an energy that two modes share comes to no more than so many times that of its terms. */
+/* Bound of the rounding of y_j'K y_k over the rounding of its terms. */
 #define EXPLAINED 8.0
 
 struct spectrum {
-    size_t n;             /* of the displacements y */
+    size_t n;             /* number of displacements y */
     double *k;            /* [n][n] Z'KZ */
-    double *y, *value;    /* [n][n] modes, one a row, those to be found anew first; [n] what is known of their omega^2 */
+    double *y, *value;    /* [n][n] modes in rows, those to find again first; [n] their omega^2 so far */
     double *ky;           /* [n][n] K y */
     double *block, *turn; /* [n][n] workspace */
     double most;          /* largest |omega^2| */
 };
 
-/* All modes, their omega^2 to rounding of the largest. */
+/* Finds all modes, omega^2 to rounding of the largest. Returns a status. */
 static int find_all(struct spectrum *s, const struct cholesky *mass)
 {
     const size_t n = s->n;
@@ -72,7 +72,7 @@ static void modes_exchange(double *x, double *y, size_t n)
     }
 }
 
-/* Brings those of the first `open` modes that are far below the largest of them to the front. Returns how many they are. */
+/* Moves those of the first `open` modes with |omega^2| < FOUND max |omega^2| to the front. Returns their number. */
 static size_t set_apart(struct spectrum *s, size_t open)
 {
     double most = 0.0;
@@ -91,15 +91,14 @@ static size_t set_apart(struct spectrum *s, size_t open)
     return low;
 }
 
-/* ky = K y for count modes from the first one on. */
+/* Sets ky = K y of modes first .. first + count - 1. */
 static void stress(struct spectrum *s, size_t first, size_t count)
 {
     memset(s->ky + first * s->n, 0, count * s->n * sizeof *s->ky);
     tribo_multiply_add(count, s->n, s->n, 1.0, s->y + first * s->n, s->k, s->ky + first * s->n);
 }
 
-/* block [low][count] = y_k'K y_j, for the first `low` modes k, of which ky is known, and `count` modes j from the first one on.
- */
+/* Sets block [low][count] = y_k'K y_j, k < low, j = first .. first + count - 1, from ky of modes k. */
 static void modes_share(struct spectrum *s, size_t low, size_t first, size_t count)
 {
     tribo_transpose(count, s->n, s->y + first * s->n, s->turn);
@@ -107,8 +106,8 @@ static void modes_share(struct spectrum *s, size_t low, size_t first, size_t cou
     tribo_multiply_add(low, s->n, count, 1.0, s->ky, s->turn, s->block);
 }
 
-/* block [low][others] = by how much the first `low` modes and the others turn towards each other, to first order, so that they
- * share nothing: (y_j'K y_k)/(omega_j^2 - omega_k^2). Returns the largest. */
+/* Sets block [low][others] = the turns of modes k < low and j >= low after which y_j'K y_k = 0, to first order:
+ * (y_j'K y_k)/(omega_j^2 - omega_k^2), or 0 by CLOSE and SLIGHT. Returns the largest |turn|. */
 static double find_turns(struct spectrum *s, size_t low)
 {
     const size_t n = s->n, others = n - low;
@@ -128,14 +127,14 @@ static double find_turns(struct spectrum *s, size_t low)
     return most;
 }
 
-/* Takes so much of the turns of the others out of the first `low` modes. */
+/* Subtracts part block (y of the others) from the first `low` modes. */
 static void take_out(struct spectrum *s, size_t low, double part)
 {
     tribo_multiply_add(low, s->n - low, s->n, -part, s->block, s->y + low * s->n, s->y);
 }
 
-/* Takes out of the first `low` modes what they have of the others, and what those have of them; half before and half after that
- * leaves them orthonormal but for a quarter of the third power of turns. Leaves ky of the first. */
+/* Turns the first `low` modes and the others by block. Half of the first turn before and half after that of the others makes the
+ * modes orthonormal except for a quarter of turn^3. Sets ky of the first `low` modes. */
 static void modes_separate(struct spectrum *s, size_t low)
 {
     const size_t n = s->n, others = n - low;
@@ -155,7 +154,7 @@ static void modes_separate(struct spectrum *s, size_t low)
     }
 }
 
-/* The first `low` modes anew, from the stiffness in the space of them alone. */
+/* Finds the first `low` modes again, from K projected on them alone. Returns a status. */
 static int find_low(struct spectrum *s, size_t low)
 {
     const size_t n = s->n;
@@ -184,7 +183,7 @@ static int modes_find(struct spectrum *s, const struct cholesky *mass)
     return status;
 }
 
-/* phi [n] = Z y of mode k. */
+/* Sets phi [n] = Z y of mode k. */
 static void modes_expand(const struct spectrum *s, const struct matrix *z, size_t k, double *phi)
 {
     if (z->rows) {
@@ -198,7 +197,7 @@ static void modes_expand(const struct spectrum *s, const struct matrix *z, size_
 /* The stiffness, and the sizes that bound its rounding errors. */
 struct entries {
     const struct matrix *matrix;
-    double *root, *largest; /* [rows] roots of the terms of the diagonal, and of the largest entry of each row */
+    double *root, *largest; /* [rows] square roots of the terms of the diagonal, and of the largest entry of each row */
     double *force;          /* [rows] workspace */
 };
 
@@ -217,7 +216,7 @@ static void look_at_entries(struct entries *k, const double *terms)
     }
 }
 
-/* At least what rounding of the entries may do to x'Kx. */
+/* Returns a bound of the error of x'Kx by rounding of the entries. */
 static double noise_bound(const struct entries *k, const double *x)
 {
     double sum = 0.0;
@@ -227,7 +226,7 @@ static double noise_bound(const struct entries *k, const double *x)
     return DBL_EPSILON * sum * sum;
 }
 
-/* What a mode has of the others: how much of phi'K phi is theirs, and whether that is more than rounding. */
+/* Parts of other modes in a mode: their share of phi'K phi; unexplained = 1 if a part is more than rounding. */
 struct impurity {
     double energy;
     int unexplained;
@@ -252,7 +251,7 @@ static struct impurity find_impurity(struct spectrum *s, const struct entries *s
     return found;
 }
 
-/* omega^2 = phi'K phi of mode k, if that is more than rounding. */
+/* Sets *omega2 = phi'K phi of mode k, or 0 if that is rounding, and *doubt if in doubt. Returns a status. */
 static int modes_judge(struct spectrum *s, const struct entries *stiffness, const struct matrix *z, size_t k, const double *phi,
                        double *omega2, struct doubt *doubt)
 {
@@ -278,7 +277,7 @@ static int modes_judge(struct spectrum *s, const struct entries *stiffness, cons
     return impurity.unexplained ? TRIBO_ERR_NO_CONVERGENCE : TRIBO_OK;
 }
 
-/* The first of the largest displacements of a mode is positive: else its sign would be chance. */
+/* Makes the first of the largest |phi_i| positive, because the sign of a mode would be chance. */
 static void turn(double *phi, size_t n)
 {
     double most = 0.0;
@@ -295,7 +294,7 @@ static void turn(double *phi, size_t n)
     }
 }
 
-/* The `wanted` lowest modes as displacements, ascending. */
+/* Sets omega2 and phi of the `wanted` lowest modes, ascending. Returns a status. */
 static int finish(struct spectrum *s, const struct entries *k, const struct matrix *z, size_t wanted, double *omega2, double *phi,
                   struct doubt *doubt)
 {

@@ -1,10 +1,10 @@
-/* Reduction to a tolerance, in terms of reductions to a number of modes. */
+/* Reduction to a tolerance, by bisection of the number of modes. */
 #include <math.h>
 #include <stdio.h>
 
 #include "tribo/tribo_dynamics.h"
 
-/* The first number of modes; numbers that differ by this part are close to each other. */
+/* FIRST: first number of modes. The bisection ends at a difference of 1 + enough/CLOSE modes. */
 enum { FIRST = 8, CLOSE = 8 };
 
 static int refuse(tribo_model *model, int status, const char *name, double value, const char *text)
@@ -31,7 +31,7 @@ int tribo_system_reduce_to(tribo_system **sys, tribo_model *model, double omega,
                            : refuse(model, TRIBO_ERR_NOT_POSITIVE, "tolerance", tolerance, "not positive");
     }
     const size_t most = tribo_model_ndof(model);
-    size_t few = 0, enough = 0, nmode = FIRST < most ? FIRST : most; /* too few, and enough modes */
+    size_t few = 0, enough = 0, nmode = FIRST < most ? FIRST : most; /* number of modes: too few, enough */
     int status = TRIBO_OK;
     tribo_system *best = NULL;
     while (!status && (enough == 0 || enough - few > 1 + enough / CLOSE)) {

@@ -7,7 +7,7 @@
 #include "dynamics/system/model.h"
 #include "common/real.h"
 
-/* The modes as the system keeps them, [ndof][count], and omega; takes what else it needs from r. 0 if out of memory. */
+/* Sets sys->modes [given][count] = Phi, sys->omega and sys->truncation. Returns 0 if out of memory. */
 static int take_modes(tribo_system *sys, size_t given, const struct reduced *r)
 {
     const size_t count = r->count;
@@ -25,12 +25,12 @@ static int take_modes(tribo_system *sys, size_t given, const struct reduced *r)
     return 1;
 }
 
-/* Velocities of contacts are none if rounding leaves less than two digits of them, in parts of what they are the sum of: as where
- * a mode moves both sides alike. A contact can hold nothing by such. */
+/* J_i phi is 0 below this part of the sum of its |terms|, where rounding keeps less than two digits, as where a mode moves both
+ * sides of the contact alike. A contact can hold nothing by such a velocity. */
 #define NO_SHAPE (100.0 * DBL_EPSILON)
 
-/* What of a mode may be rounding at contact i: modes have a norm of 1, and degrees of freedom that move alone one over the root
- * of their mass. */
+/* Returns a bound of the rounding of J_i phi: phi has norm 1 in M, and a degree of freedom d that moves alone
+ * has phi_d = 1/sqrt(M_dd). */
 static double least_shape(const struct model *m, size_t i)
 {
     const struct matrix *j = &m->direction;
@@ -42,14 +42,14 @@ static double least_shape(const struct model *m, size_t i)
     return DBL_EPSILON * alone;
 }
 
-/* How mode phi [ndof] moves contact i, of which no more than least is nothing. */
+/* Returns J_i phi, phi [ndof], or 0 if |J_i phi| is rounding: by NO_SHAPE, or not above `least`. */
 static double shape(const struct model *m, size_t i, const double *phi, double least)
 {
     const double sum = tribo_matrix_row_dot(&m->direction, i, phi);
     return fabs(sum) > greater(NO_SHAPE * tribo_matrix_row_size(&m->direction, i, phi), least) ? sum : 0.0;
 }
 
-/* shapes [ncontact][count] = J phi. */
+/* Sets shapes [ncontact][count] = J Phi. */
 static void find_shapes(const struct model *m, const struct reduced *r, double *shapes)
 {
     for (size_t i = 0; i < m->ncontact; i++) {
@@ -60,11 +60,11 @@ static void find_shapes(const struct model *m, const struct reduced *r, double *
     }
 }
 
-/* An entry of Phi'C Phi that is less than this part of the sum of its terms is rounding, as between modes of proportional damping. */
+/* An entry of Phi'C Phi is 0 below this part of the sum of its |terms|: rounding, as between modes of proportional damping. */
 #define NO_DAMPING (256.0 * DBL_EPSILON)
 
-/* Phi'C Phi over the motions of r, in the first rows and columns of to [n][n], n >= r->count; no rows without damping. 0 if out of
- * memory. */
+/* Sets the first r->count rows and columns of `to` [n][n] = Phi'C Phi, n >= r->count; without damping `to` stays without rows.
+ * Returns 0 if out of memory. */
 static int project_damping(const struct model *m, const struct reduced *r, size_t n, struct matrix *to)
 {
     const size_t whole = m->ndof;
@@ -96,8 +96,8 @@ static int project_damping(const struct model *m, const struct reduced *r, size_
     return done;
 }
 
-/* q'' + Phi'C Phi q' + diag(omega^2) q = modes' p + shapes' f, shapes [ncontact][count] of the rigid contacts, 0 of others; and
- * the operator of these. */
+/* Builds q'' + Phi'C Phi q' + diag(omega^2) q = modes' p + shapes' f, shapes [ncontact][count] of the rigid contacts, 0 of
+ * others; and sets the operator R = shapes shapes'. Returns a status. */
 static int reduction_build(const struct model *m, const struct reduced *r, const double *shapes, tribo_system **sys)
 {
     const size_t count = r->count, c = m->ncontact;
@@ -125,22 +125,22 @@ static int reduction_build(const struct model *m, const struct reduced *r, const
 
 /* ------------------------------------------------------------------------------------------------------------ compliance */
 
-/* A contact to which the modes leave no more than this part of its flexibility is rigid. */
+/* A contact is rigid if the flexibility that the modes lack is at most this part of its flexibility. */
 #define RIGID 1e-7
 
-/* A structure reduced to modes q and a compliance G at its soft contacts: of springs before sliders, and, with
- * TRIBO_STATICS_COMPLIANCE, the flexibility that the modes leave. With w = P q + G f of the soft contacts,
+/* A structure reduced to modes q and a compliance G at its soft contacts: springs before sliders, and, with
+ * TRIBO_STATICS_COMPLIANCE, the flexibility that the modes lack. With w = P q + G f of the soft contacts,
  *     q'' + Omega^2 q = modes' p + P'f,   displacements = Phi q + residual'f. */
 struct compliant {
     size_t modes, contacts, soft;
-    size_t *contact;          /* [soft] */
-    double *shapes, *rigid;   /* [contacts][modes] P of all contacts; of the rigid ones, else 0 */
+    size_t *contact;          /* [soft] ascending */
+    double *shapes, *rigid;   /* [contacts][modes] P of all contacts; of rigid contacts, 0 of others */
     double *own, *entries;    /* [contacts] G_ii; [contacts][contacts] G */
-    double *by;               /* [contacts][modes + soft] f by q and w: -G^-1 P and G^-1 */
+    double *by;               /* [contacts][modes + soft] -f by q and w: G^-1 P and -G^-1 */
 };
 
-/* contact, rigid, own and entries. Contacts with springs before their sliders (compliance, or NULL) are soft, and others that are
- * not rigid. Returns 1 if G is not diagonal. */
+/* Sets contact, rigid, own and entries. Contacts with springs before their sliders (compliance [contacts] > 0; NULL: no
+ * springs) are soft, and contacts that are not rigid by RIGID. Returns 1 if G is not diagonal. */
 static int find_soft(struct compliant *e, const struct reduced *r, const double *compliance)
 {
     int shared = 0;
@@ -167,7 +167,7 @@ static int find_soft(struct compliant *e, const struct reduced *r, const double 
     return shared;
 }
 
-/* The caller's degrees of freedom are q and w, w = P q + G f. 0 if out of memory. */
+/* Sets the expansion: a caller's degrees of freedom are q and w = P q + G f. Returns 0 if out of memory. */
 static int expand(const struct compliant *e, size_t sliders, tribo_system *sys)
 {
     struct matrix follow = {0}, give = {0}, touch = {0};
@@ -192,7 +192,7 @@ static int expand(const struct compliant *e, size_t sliders, tribo_system *sys)
     return done;
 }
 
-/* Displacements of q and w, and omega: infinite without mass. 0 if out of memory. */
+/* Sets sys->modes = displacements by q and w, and sys->omega, infinite for w, which has no mass. Returns 0 if out of memory. */
 static int put_all_modes(const struct compliant *e, size_t given, const struct reduced *r, tribo_system *sys)
 {
     const size_t m = e->modes, n = m + e->soft;
@@ -241,7 +241,7 @@ static int build_compliant(const struct model *m, const struct reduced *r, tribo
         status = tribo_compliance_create(*sys, &direction, e.own, shared ? e.entries : NULL, &where);
     }
     if (!status) {
-        /* with TRIBO_STATICS_COMPLIANCE w moves the structure, too, and is a degree of freedom */
+        /* with TRIBO_STATICS_COMPLIANCE, w moves the structure too, and is a degree of freedom */
         const size_t sliders = m->statics == TRIBO_STATICS_COMPLIANCE ? 0 : e.soft;
         const int done = !e.soft || expand(&e, sliders, *sys);
         status = done && put_all_modes(&e, m->ndof, r, *sys) ? TRIBO_OK : TRIBO_ERR_MEMORY;
@@ -275,7 +275,7 @@ static int build_with_mass(const struct model *m, const struct reduced *r, tribo
     return status == TRIBO_ERR_MEMORY ? tribo_model_no_memory(m) : status;
 }
 
-/* The flexibility of contacts grows by that of the springs before their sliders. 0 if out of memory. */
+/* Adds the compliance of springs before sliders to the flexibility of their contacts. Returns 0 if out of memory. */
 static int add_compliance(const struct model *m, struct reduced *r)
 {
     const size_t c = m->ncontact;

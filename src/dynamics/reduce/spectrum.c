@@ -1,5 +1,5 @@
-/* Lanczos' method for the highest eigenvalue, in the metric of the mass matrix, in which AK is symmetric. Contacts at rest only
- * lower it. */
+/* Lanczos' method for the highest eigenvalue, in the metric of the mass matrix, in which AK is symmetric. Contacts at rest can
+ * only lower the eigenvalue. */
 #include "spectrum.h"
 #include "common/real.h"
 
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* It ends when doubling the number of vectors has changed the eigenvalue by no more than this part, or at so many vectors. */
+/* The search ends if twice the number of vectors changes the eigenvalue by at most this part, or at MOST_VECTORS vectors. */
 #define CLOSE 0.01
 #define MOST_VECTORS 1024
 
@@ -17,8 +17,8 @@ struct lanczos {
     const tribo_system *sys;
     double stiffness, damping;
     size_t n;
-    double *v, *mv, *before, *next, *m_next; /* [n] a vector, M times it, the one before, the next, M times that */
-    double *alpha, *beta;                    /* [MOST_VECTORS] */
+    double *v, *mv, *before, *next, *m_next; /* [n] vector k; M v; vector k - 1; vector k + 1; M next */
+    double *alpha, *beta;                    /* [MOST_VECTORS] diagonals */
 };
 
 static void apply_mass(const tribo_system *sys, const double *x, double *y)
@@ -36,7 +36,7 @@ static void spectrum_apply(const struct lanczos *l, const double *x, double *y)
     }
 }
 
-/* Numbers between 1/2 and 1 of either sign, the same every time. */
+/* Sets x [n] = numbers of either sign, 1/2 <= |x_i| <= 1, the same at every call with this seed. */
 static void spectrum_scatter(double *x, size_t n, uint64_t seed)
 {
     for (size_t i = 0; i < n; i++) {
@@ -46,7 +46,7 @@ static void spectrum_scatter(double *x, size_t n, uint64_t seed)
     }
 }
 
-/* Symmetric to rounding: x'M AC y is y'M AC x for two vectors that nothing is special about. */
+/* Returns 1 if damping is symmetric: x'M AC y = y'M AC x to rounding, for two pseudo-random x and y. */
 static int symmetric_damping(struct lanczos *l)
 {
     const tribo_system *sys = l->sys;
@@ -65,7 +65,7 @@ static int symmetric_damping(struct lanczos *l)
     return fabs(sum[0] - sum[1]) <= 1e-10 * size;
 }
 
-/* Number of eigenvalues of the tridiagonal matrix of k rows above x (Sturm). */
+/* Returns the number of eigenvalues above x of the tridiagonal matrix of k rows (Sturm). */
 static size_t above(const struct lanczos *l, size_t k, double x)
 {
     size_t count = 0;
@@ -97,7 +97,7 @@ static double highest(const struct lanczos *l, size_t k)
     return hi;
 }
 
-/* One vector more. 0 if there is none. */
+/* Sets alpha[k], beta[k] and the next Lanczos vector. Returns 0 if the space is exhausted. */
 static int spectrum_extend(struct lanczos *l, size_t k, double size)
 {
     const size_t n = l->n;

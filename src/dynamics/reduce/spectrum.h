@@ -1,14 +1,14 @@
-/* The fast end of what a structure does. */
+/* Bounds of the highest frequencies of a structure. */
 #ifndef TRIBO_SPECTRUM_H
 #define TRIBO_SPECTRUM_H
 
 #include "dynamics/system/system.h"
 
-/* A little above the highest eigenvalue of stiffness AK + damping AC, by at most a hundredth; 0 if none is positive. Damping that
- * is not symmetric is left out. A status: TRIBO_OK or TRIBO_ERR_MEMORY, with the message on the context. */
+/* Sets *value = an estimate from above, by at most 1%, of the highest eigenvalue of stiffness AK + damping AC; 0 if none is
+ * positive. Neglects damping that is not symmetric. Returns TRIBO_OK or TRIBO_ERR_MEMORY, with a message on the context. */
 int tribo_system_highest(const tribo_system *sys, double stiffness, double damping, double *value);
 
-/* A bound on the frequencies of structure and loads. */
+/* Sets *omega = a bound of the frequencies of structure and loads. Returns a status. */
 int tribo_system_top_frequency(const tribo_system *sys, double *omega);
 
 #endif
