@@ -97,13 +97,14 @@ rests() {
 }
 
 # follow <folder>: compiles and runs the programs in README.md and fortran/README.md by the lines beside them, as they stand there
-# but for the folder that stands for any, and the version of the compiler.
+# but for the folder that stands for any, and the version of the compiler. $searched stands before compilers of fixed form.
+searched=
 follow() {
     modules=$(basename "$1"/include/tribo/gfortran-*[0-9])
     for page in fortran/README.md README.md; do
         page $page
-        sed -n -e "s,/opt/tribo,$1,g" -e "s,tribo/gfortran-12,tribo/$modules,g" -e '/^cc /p' -e '/^gfortran /p' lines \
-            >compile.lines
+        sed -n -e "s,/opt/tribo,$1,g" -e "s,tribo/gfortran-12,tribo/$modules,g" -e "s,^gfortran user.f -l,$searched &," \
+            -e '/^cc /p' -e '/^\(LIBRARY_PATH=[^ ]* \| \)*gfortran /p' lines | sed 's/# .*//' | sort -u >compile.lines
         while read -r compile; do
             rm -f a.out
             eval "$compile"
@@ -273,6 +274,7 @@ pages) # usual | elsewhere: installs as README.md says, into /usr/local as root 
         export HOME="$WORK/home"
         line install.lines 'cmake --install build --prefix'
         line lines export
+        searched=$(sed -n 's/^\(LIBRARY_PATH=[^ ]*\) gfortran .*/\1/p' lines)
         follow "$HOME/tribo"
         ;;
     esac
