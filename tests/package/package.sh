@@ -103,7 +103,7 @@ follow() {
     modules=$(basename "$1"/include/tribo/gfortran-*[0-9])
     for page in fortran/README.md README.md; do
         page $page
-        sed -n -e "s,/opt/tribo,$1,g" -e "s,tribo/gfortran-12,tribo/$modules,g" -e "s,^gfortran user.f -l,$searched &," \
+        sed -n -e "s,/opt/tribo,$1,g" -e "s,tribo/gfortran-12,tribo/$modules,g" -e "/ -ltribo/s,^gfortran ,$searched &," \
             -e '/^cc /p' -e '/^\(LIBRARY_PATH=[^ ]* \| \)*gfortran /p' lines | sed 's/# .*//' | sort -u >compile.lines
         while read -r compile; do
             rm -f a.out
