@@ -79,8 +79,8 @@ void tribo_matrix_multiply_all(const struct matrix *a, size_t count, const doubl
 /* Returns x'Ay, summed with twice as many digits: a form may be far smaller than its terms. */
 double tribo_matrix_form(const struct matrix *a, const double *x, const double *y);
 
-/* root [rows] = sqrt|a_ii|. */
-void tribo_matrix_roots(const struct matrix *a, double *root);
+/* root_i = sqrt(max(|a_ii|, terms_i)), all [rows]; terms: sizes of the terms of which a_ii is the sum, or NULL. */
+void tribo_matrix_roots(const struct matrix *a, const double *terms, double *root);
 
 /* Returns a bound on the error of x'Ay if entry a_ij has the error DBL_EPSILON max(|a_ij|, root_i root_j): it may be a sum of
  * terms of the size of a_ii and a_jj. */

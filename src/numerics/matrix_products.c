@@ -145,10 +145,10 @@ double tribo_matrix_form(const struct matrix *a, const double *x, const double *
     return all.hi + all.lo;
 }
 
-void tribo_matrix_roots(const struct matrix *a, double *root)
+void tribo_matrix_roots(const struct matrix *a, const double *terms, double *root)
 {
     for (size_t i = 0; i < a->rows; i++) {
-        root[i] = sqrt(fabs(tribo_matrix_get(a, i, i)));
+        root[i] = sqrt(greater(fabs(tribo_matrix_get(a, i, i)), terms ? terms[i] : 0.0));
     }
 }
 

@@ -200,15 +200,11 @@ static int find_damping(struct modal_build *b)
     const size_t n = b->n, m = h->modes;
     h->damping = tribo_modal_keep(b, m);
     double *c = b->shared->damping ? tribo_modal_scratch(b, m * m + 2 * n) : NULL, *root = c ? c + m * m : NULL;
-    const double *terms = b->shared->sys->expansion.terms;
     if (!h->damping || !c) {
         return h->damping && !b->shared->damping;
     }
-    tribo_matrix_roots(b->shared->damping, root);
-    tribo_matrix_roots(b->stiffness, root + n);
-    for (size_t d = 0; terms && d < n; d++) {
-        root[n + d] = greater(root[n + d], sqrt(terms[d]));
-    }
+    tribo_matrix_roots(b->shared->damping, NULL, root);
+    tribo_matrix_roots(b->stiffness, b->shared->sys->expansion.terms, root + n);
     double most = 0.0;
     for (size_t k = 0; k < m; k++) {
         for (size_t l = 0; l < m; l++) {

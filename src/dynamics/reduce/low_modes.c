@@ -232,7 +232,7 @@ static int find_residuals(const struct model *m, const struct shifted *s, const 
 static int check_gap(const struct model *m, const struct low_modes *low, const struct reduced *r, double *work)
 {
     const size_t below = low->below < r->count ? low->below : r->count;
-    tribo_matrix_roots(&m->stiffness, work);
+    tribo_matrix_roots(&m->stiffness, NULL, work);
     for (size_t k = below ? below - 1 : 0; k <= below && k < r->count; k++) {
         const double *phi = r->phi + k * m->ndof, distance = low->above - r->omega2[k];
         const double noise = low->growth * tribo_matrix_noise(&m->stiffness, work, phi, phi);

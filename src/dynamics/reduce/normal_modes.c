@@ -205,10 +205,9 @@ struct entries {
 static void look_at_entries(struct entries *k, const double *terms)
 {
     const struct matrix *a = k->matrix;
-    tribo_matrix_roots(a, k->root);
+    tribo_matrix_roots(a, terms, k->root);
     for (size_t i = 0; i < a->rows; i++) {
         double most = terms ? terms[i] : 0.0;
-        k->root[i] = greater(k->root[i], sqrt(most));
         for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
             most = greater(most, fabs(a->val[e]));
         }
