@@ -72,7 +72,7 @@ static void at_contacts(const struct scene *s, const double *x, int of_force, do
  * acceleration. */
 static int can_hold(const struct scene *s, tribo_context *box, double times)
 {
-    double a[CONTACTS], lower[CONTACTS], upper[CONTACTS], f[CONTACTS], sum[BODIES];
+    double a[CONTACTS], lower[CONTACTS], upper[CONTACTS], f[CONTACTS], sum[BODIES] = {0.0};
     for (size_t b = 0; b < s->bodies; b++) {
         sum[b] = times * s->pull[b];
     }
