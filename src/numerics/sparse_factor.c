@@ -1,5 +1,7 @@
 #include "sparse_factor.h"
+#include "common/real.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,8 +10,6 @@
 #if defined(TRIBO_CHOLMOD)
 
 #include <cholmod.h>
-
-#include "multifrontal.h"
 
 /* Workspace of solves, kept for the next solve of as many vectors. */
 struct room {
@@ -95,6 +95,13 @@ static int sparse_factor_prepare(struct sparse_factor *f)
     return f->column && sparse_factor_solve(f, CHOLMOD_A, 1, f->column);
 }
 
+static int status_of(const cholmod_common *common)
+{
+    return common->status == CHOLMOD_OUT_OF_MEMORY || common->status == CHOLMOD_TOO_LARGE ? TRIBO_ERR_MEMORY
+           : common->status == CHOLMOD_NOT_POSDEF                                         ? TRIBO_ERR_INDEFINITE
+                                                                                          : TRIBO_OK;
+}
+
 int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, struct matrix *spent, size_t *where)
 {
     struct sparse_factor *f = calloc(1, sizeof *f);
@@ -111,10 +118,7 @@ int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matri
         cholmod_l_super_numeric(half, NULL, nothing, f->l, &f->common);
     }
     cholmod_l_free_sparse(&half, &f->common);
-    const int reason = f->common.status;
-    int status = reason == CHOLMOD_OUT_OF_MEMORY || reason == CHOLMOD_TOO_LARGE ? TRIBO_ERR_MEMORY
-                 : reason == CHOLMOD_NOT_POSDEF                                 ? TRIBO_ERR_INDEFINITE
-                                                                                : TRIBO_OK;
+    int status = status_of(&f->common);
     status = status || (f->l && sparse_factor_prepare(f)) ? status : TRIBO_ERR_MEMORY;
     if (status) {
         const size_t row = f->l ? f->l->minor : 0; /* of P A P' */
@@ -188,23 +192,55 @@ void tribo_sparse_factor_half_solve(struct sparse_factor *f, int back, double *x
     }
 }
 
+/* Finds the inertia of L D L', a column of which begins with its entry of D. Returns a status. */
+static int find_inertia(const cholmod_factor *l, const double *size, struct inertia *found)
+{
+    const SuiteSparse_long *first = l->p, *count = l->nz, *row = l->i, *order = l->Perm;
+    const double *x = l->x;
+    double *sum = calloc(l->n + 1, sizeof *sum); /* [n] sum_k |L_ik|^2 |D_k| */
+    struct inertia all = {0, 0.0};
+    int finite = 1;
+    if (!sum) {
+        return TRIBO_ERR_MEMORY;
+    }
+    for (size_t k = 0; k < l->n; k++) {
+        const double *column = x + first[k], d = column[0];
+        finite &= isfinite(d);
+        all.negative += d < 0.0;
+        sum[k] += fabs(d);
+        for (SuiteSparse_long e = 1; e < count[k]; e++) {
+            sum[row[first[k] + e]] += column[e] * column[e] * fabs(d);
+        }
+    }
+    for (size_t k = 0; k < l->n; k++) {
+        all.growth = greater(all.growth, sum[k] / fabs(size[order[k]]));
+    }
+    free(sum);
+    *found = finite ? all : *found;
+    return finite ? TRIBO_OK : TRIBO_ERR_INDEFINITE;
+}
+
 int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *a, struct matrix *spent, const double *size,
                          struct inertia *found)
 {
     cholmod_common common;
+    double nothing[2] = {0.0, 0.0};
     cholmod_sparse view = view_of(a, spent);
     sparse_factor_start(&common);
-    cholmod_factor *own = like ? NULL : cholmod_l_analyze(&view, &common);
-    const cholmod_factor *l = like ? like->l : own;
-    cholmod_sparse *half = half_of(&view, spent, l, &common);
-    int status = TRIBO_ERR_MEMORY;
-    if (half) {
-        const struct supernodes groups = {l->n, l->nsuper, l->Perm, l->super, l->pi, l->s};
-        const struct lower_columns columns = {half->p, half->i, half->x};
-        status = tribo_multifrontal_inertia(&columns, &groups, size, found);
-    }
+    common.supernodal = CHOLMOD_SIMPLICIAL; /* the only one of CHOLMOD's factors that may be indefinite */
+    common.final_ll = 0;
+    common.grow2 = 0;
+    common.method[0].ordering = like ? CHOLMOD_GIVEN : CHOLMOD_AMD;
+    cholmod_factor *l = cholmod_l_analyze_p(&view, like ? like->l->Perm : NULL, NULL, 0, &common);
+    cholmod_sparse *half = half_of(&view, spent, l, &common), *upper = half ? cholmod_l_transpose(half, 1, &common) : NULL;
     cholmod_l_free_sparse(&half, &common);
-    cholmod_l_free_factor(&own, &common);
+    if (upper) {
+        cholmod_l_rowfac(upper, NULL, nothing, 0, l->n, l, &common);
+    }
+    int status = status_of(&common);
+    status = status ? status : l && l->minor < l->n ? TRIBO_ERR_INDEFINITE : find_inertia(l, size, found);
+    cholmod_l_free_sparse(&upper, &common);
+    cholmod_l_free_factor(&l, &common);
     cholmod_l_finish(&common);
     return status;
 }

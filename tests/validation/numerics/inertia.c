@@ -61,7 +61,7 @@ static size_t count_of_grid(size_t rows, size_t cols, double shift)
     return count;
 }
 
-/* Shifts from none to all below, also with the groups of a definite factor. */
+/* Shifts from none to all below, also with the order of a definite factor. */
 TEST(grids)
 {
     static const size_t rows[] = {1, 3, 9, 25}, cols[] = {7, 50, 41, 26};
@@ -86,7 +86,7 @@ TEST(grids)
     tribo_matrix_free(&definite);
 }
 
-/* A = Q'SQ with signs S is full: one front, of all sizes beside those of panels and tiles. */
+/* A = Q'SQ with signs S is full. */
 static double *signed_products(size_t n, size_t negative, int seed)
 {
     struct random g = random_of(seed);
@@ -147,7 +147,7 @@ TEST(growth)
 
 /* ------------------------------------------------------------------------------------------------------------ sparse ones */
 
-/* Few entries anywhere: groups of all sizes, and columns that hang together with nothing. */
+/* Few entries anywhere, and columns without neighbours. */
 TEST(random_places)
 {
     enum { N = 160 };
