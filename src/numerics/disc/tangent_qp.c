@@ -128,7 +128,7 @@ double tribo_disc_places(struct disc_qp *p)
             distance = tribo_length(2, off);
         }
         const double unit = far ? greater(unit_of(p, i), unit_of(p, i + p->wide[i] - 1)) : 1.0;
-        const double rounding = unit * (p->factor.sets.dependents ? DISAGREEMENT : 16.0 * DBL_EPSILON);
+        const double rounding = greater(unit * (p->factor.sets.dependents ? DISAGREEMENT : 16.0 * DBL_EPSILON), DBL_MIN);
         worst = greater(worst, quotient(distance, greater(rounding, doubt_of(p, i, greater(noise[0], noise[1])))));
     }
     return worst;
