@@ -271,7 +271,7 @@ int tribo_driver_real(const tribo_driver *drv, int which, double *value)
 
 int tribo_driver_check(tribo_driver *drv, const double *y)
 {
-    if (tribo_few_finite(y, tribo_system_size(drv->sys))) {
+    if (tribo_dense_finite(y, tribo_system_size(drv->sys))) {
         return TRIBO_OK;
     }
     size_t i = 0;

@@ -1,13 +1,8 @@
 #include "band.h"
+#include "lapack.h"
 
 #include <math.h>
 #include <string.h>
-
-/* Returns the first column of row i. */
-static size_t begin_of(size_t width, size_t i)
-{
-    return i > width ? i - width : 0;
-}
 
 void tribo_band_add(double *band, size_t width, const struct matrix *a, double factor, const double *row)
 {
@@ -21,81 +16,46 @@ void tribo_band_add(double *band, size_t width, const struct matrix *a, double f
 
 size_t tribo_band_factorize(size_t n, size_t width, const double *band, const signed char *held, double *l)
 {
-    const size_t w = width;
     for (size_t i = 0; i < n; i++) {
-        const size_t begin = begin_of(w, i);
-        const double *a = band + i * (w + 1);
-        double *own = l + i * (w + 1), pivot = held && held[i] ? 1.0 : a[w];
-        memset(own, 0, w * sizeof *own);
-        for (size_t j = begin; j < i && !(held && held[i]); j++) {
-            const double *other = l + j * (w + 1);
-            double x = held && held[j] ? 0.0 : a[j + w - i];
-            for (size_t k = begin; k < j; k++) {
-                x -= own[k + w - i] * other[k + w - j];
+        const int holds = held && held[i];
+        double *own = l + i * (width + 1) + width - i, pivot = holds ? 1.0 : band[i * (width + 1) + width]; /* own[j] = l_ij */
+        memset(l + i * (width + 1), 0, width * sizeof *l);
+        for (size_t j = i > width ? i - width : 0; !holds && j < i; j++) {
+            const double *other = l + j * (width + 1) + width - j;
+            double x = held && held[j] ? 0.0 : band[i * (width + 1) + width - i + j];
+            for (size_t k = i > width ? i - width : 0; k < j; k++) {
+                x -= own[k] * other[k];
             }
-            own[j + w - i] = x;
+            own[j] = x / other[j];
+            pivot -= own[j] * own[j];
         }
-        for (size_t j = begin; j < i; j++) {
-            const double x = own[j + w - i];
-            own[j + w - i] = x / l[j * (w + 1) + w];
-            pivot -= x * own[j + w - i];
-        }
-        own[w] = pivot;
         if (!(pivot > 0.0)) {
             return i;
         }
+        own[i] = sqrt(pivot);
     }
     return n;
 }
 
-/* x = L^-1 x. */
-static void forward(size_t n, size_t width, const double *l, double *x)
+/* x = L^-1 x, or x = L'^-1 x: LAPACK's upper band, by columns, is L by rows. */
+static void band_solve_triangle(size_t n, size_t width, const double *l, int transposed, double *x)
 {
-    for (size_t i = 0; i < n; i++) {
-        const double *row = l + i * (width + 1) + width - i;
-        double rest = x[i];
-        for (size_t j = begin_of(width, i); j < i; j++) {
-            rest -= row[j] * x[j];
-        }
-        x[i] = rest;
-    }
-}
-
-/* x = L'^-1 x. */
-static void back(size_t n, size_t width, const double *l, double *x)
-{
-    for (size_t i = n; i-- > 0;) {
-        const double *row = l + i * (width + 1) + width - i, own = x[i];
-        for (size_t j = begin_of(width, i); j < i; j++) {
-            x[j] -= row[j] * own;
-        }
-    }
-}
-
-void tribo_band_solve(size_t n, size_t width, const double *l, double *x)
-{
-    forward(n, width, l, x);
-    for (size_t i = 0; i < n; i++) {
-        x[i] /= l[i * (width + 1) + width];
-    }
-    back(n, width, l, x);
-}
-
-static void band_divide_by_root(size_t n, size_t width, const double *l, double *x)
-{
-    for (size_t i = 0; i < n; i++) {
-        x[i] /= sqrt(l[i * (width + 1) + width]);
-    }
+    const int rows = (int)n, below = (int)width, stride = below + 1, one = 1;
+    dtbsv_("U", transposed ? "N" : "T", "N", &rows, &below, l, &stride, x, &one, 1, 1, 1);
 }
 
 void tribo_band_half_solve(size_t n, size_t width, const double *l, double *x)
 {
-    forward(n, width, l, x);
-    band_divide_by_root(n, width, l, x);
+    band_solve_triangle(n, width, l, 0, x);
 }
 
 void tribo_band_half_solve_back(size_t n, size_t width, const double *l, double *x)
 {
-    band_divide_by_root(n, width, l, x);
-    back(n, width, l, x);
+    band_solve_triangle(n, width, l, 1, x);
+}
+
+void tribo_band_solve(size_t n, size_t width, const double *l, double *x)
+{
+    band_solve_triangle(n, width, l, 0, x);
+    band_solve_triangle(n, width, l, 1, x);
 }

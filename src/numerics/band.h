@@ -1,5 +1,5 @@
-/* Symmetric band matrices, as the band [n][width + 1] of their lower triangle: row i begins with column i - width. Factors L D L'
- * likewise, with D in the place of the ones on L's diagonal. */
+/* Symmetric band matrices, as the band [n][width + 1] of their lower triangle: row i begins with column i - width. Factors L L'
+ * likewise. */
 #ifndef TRIBO_BAND_H
 #define TRIBO_BAND_H
 
@@ -15,7 +15,7 @@ size_t tribo_band_factorize(size_t n, size_t width, const double *band, const si
 /* x [n] = A^-1 x. */
 void tribo_band_solve(size_t n, size_t width, const double *l, double *x);
 
-/* x [n] = D^-1/2 L^-1 x, and x = L'^-1 D^-1/2 x; one after the other they are tribo_band_solve. */
+/* x [n] = L^-1 x, and x = L'^-1 x; one after the other they are tribo_band_solve. */
 void tribo_band_half_solve(size_t n, size_t width, const double *l, double *x);
 void tribo_band_half_solve_back(size_t n, size_t width, const double *l, double *x);
 

@@ -20,6 +20,23 @@ double tribo_dot(const double *x, const double *y, size_t n)
     return sum;
 }
 
+/* Returns x'y, summed in eight parts. */
+TRIBO_SIMD static double dot_of_eight(size_t n, const double *restrict x, const double *restrict y)
+{
+    enum { LANES = 8 };
+    double part[LANES] = {0.0};
+    size_t i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        for (size_t k = 0; k < LANES; k++) {
+            part[k] += x[i + k] * y[i + k];
+        }
+    }
+    for (size_t k = 0; i < n; i++, k++) {
+        part[k] += x[i] * y[i];
+    }
+    return ((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7]));
+}
+
 void tribo_add(double *to, double factor, const double *x, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
@@ -52,21 +69,13 @@ double tribo_largest(const double *x, size_t n)
     return most;
 }
 
-/* x - x is 0 if x is finite, and NaN otherwise. Eight sums side by side, since one sum waits for itself. */
 TRIBO_SIMD int tribo_dense_finite(const double *x, size_t n)
 {
-    enum { SUMS = 8 };
-    double sum[SUMS] = {0.0};
-    size_t i = 0;
-    for (; i + SUMS <= n; i += SUMS) {
-        for (size_t k = 0; k < SUMS; k++) {
-            sum[k] += x[i + k] - x[i + k];
-        }
+    int finite = 1;
+    for (size_t i = 0; i < n; i++) {
+        finite &= isfinite(x[i]) != 0;
     }
-    for (; i < n; i++) {
-        sum[0] += x[i] - x[i];
-    }
-    return sum[0] + sum[1] + (sum[2] + sum[3]) + (sum[4] + sum[5] + (sum[6] + sum[7])) == 0.0;
+    return finite;
 }
 
 /* c [n] += f_0 b_0 + f_1 b_1 + f_2 b_2 + f_3 b_3 for the rows b_k of b [4][n]. */
@@ -76,35 +85,6 @@ TRIBO_SIMD static void add_four(double *restrict c, const double *restrict b, si
     for (size_t j = 0; j < n; j++) {
         c[j] = (((c[j] + f0 * b[j]) + f1 * b[n + j]) + f2 * b[2 * n + j]) + f3 * b[3 * n + j];
     }
-}
-
-/* add_four for (c, f) and (d, g); reads b once. */
-TRIBO_SIMD static void add_four_twice(double *restrict c, double *restrict d, const double *restrict b, size_t n, const double *f,
-                                      const double *g)
-{
-    const double f0 = f[0], f1 = f[1], f2 = f[2], f3 = f[3], g0 = g[0], g1 = g[1], g2 = g[2], g3 = g[3];
-    for (size_t j = 0; j < n; j++) {
-        const double b0 = b[j], b1 = b[n + j], b2 = b[2 * n + j], b3 = b[3 * n + j];
-        c[j] = (((c[j] + f0 * b0) + f1 * b1) + f2 * b2) + f3 * b3;
-        d[j] = (((d[j] + g0 * b0) + g1 * b1) + g2 * b2) + g3 * b3;
-    }
-}
-
-/* Returns x'y, summed in eight parts. */
-TRIBO_SIMD static double dot_of_eight(size_t n, const double *restrict x, const double *restrict y)
-{
-    enum { LANES = 8 };
-    double part[LANES] = {0.0};
-    size_t i = 0;
-    for (; i + LANES <= n; i += LANES) {
-        for (size_t k = 0; k < LANES; k++) {
-            part[k] += x[i + k] * y[i + k];
-        }
-    }
-    for (size_t k = 0; i < n; i++, k++) {
-        part[k] += x[i] * y[i];
-    }
-    return ((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7]));
 }
 
 void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c)
@@ -155,12 +135,8 @@ void tribo_multiply_transposed_add(size_t rows, size_t inner, size_t cols, const
 void tribo_multiply_transposed_two(size_t rows, size_t inner, size_t cols, const double *a, const double *b, size_t next_b,
                                    double *c, size_t next_c)
 {
-    size_t i = 0;
-    for (; cols == 1 && i + 4 <= rows; i += 4) {
-        add_four_twice(c, c + next_c, a + i * inner, inner, b + i, b + next_b + i);
-    }
     for (size_t k = 0; k < 2; k++) {
-        tribo_multiply_transposed_add(rows - i, inner, cols, a + i * inner, b + k * next_b + i * cols, c + k * next_c);
+        tribo_multiply_transposed_add(rows, inner, cols, a, b + k * next_b, c + k * next_c);
     }
 }
 

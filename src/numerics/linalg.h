@@ -20,16 +20,6 @@ int tribo_dense_finite(const double *x, size_t n);
 /* Returns sum x_i, summed in eight parts. */
 double tribo_sum(size_t n, const double *x);
 
-/* tribo_dense_finite, inline for n < 8. */
-static inline int tribo_few_finite(const double *x, size_t n)
-{
-    double sum = 0.0;
-    for (size_t i = 0; n < 8 && i < n; i++) {
-        sum += x[i] - x[i];
-    }
-    return n < 8 ? sum == 0.0 : tribo_dense_finite(x, n);
-}
-
 /* c [rows][cols] += factor a b, for a [rows][inner] and b [inner][cols]. Skips groups of four zeros in a. */
 void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c);
 
@@ -39,7 +29,7 @@ void tribo_multiply_transposed_add(size_t rows, size_t inner, size_t cols, const
 /* to [cols][rows] = a', for a [rows][cols]. */
 void tribo_transpose(size_t rows, size_t cols, const double *a, double *to);
 
-/* c += a'b and (c + next_c) += a'(b + next_b); reads a once if cols is 1. */
+/* c += a'b and (c + next_c) += a'(b + next_b). */
 void tribo_multiply_transposed_two(size_t rows, size_t inner, size_t cols, const double *a, const double *b, size_t next_b,
                                    double *c, size_t next_c);
 

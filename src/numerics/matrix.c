@@ -23,19 +23,14 @@ void tribo_matrix_free(struct matrix *a)
     *a = (struct matrix){0};
 }
 
-static void lay_out_rows(struct matrix *a, struct layout *l, size_t entries)
-{
-    a->first = tribo_layout_array(l, a->rows + 2, sizeof *a->first);
-    a->col = tribo_layout_array(l, entries + 1, sizeof *a->col);
-    a->val = tribo_layout_array(l, entries + 1, sizeof *a->val);
-}
-
 static int matrix_create(struct matrix *a, size_t rows, size_t cols, size_t entries)
 {
     struct layout l = {0};
     *a = (struct matrix){.rows = rows, .cols = cols};
     do {
-        lay_out_rows(a, &l, entries);
+        a->first = tribo_layout_array(&l, rows + 2, sizeof *a->first);
+        a->col = tribo_layout_array(&l, entries + 1, sizeof *a->col);
+        a->val = tribo_layout_array(&l, entries + 1, sizeof *a->val);
     } while (!l.memory && tribo_layout_create(&l));
     if (!l.memory) {
         *a = (struct matrix){0};
@@ -205,46 +200,6 @@ int tribo_matrix_sum(struct matrix *to, double factor, const struct matrix *a, d
     return matrix_finish(to);
 }
 
-/* order_out [n] = order_in [n] (NULL: 0, 1, ...), stably sorted by key [n] < keys. start [keys + 1] is workspace. */
-static void counting_sort(size_t keys, size_t n, const size_t *key, const size_t *order_in, size_t *order_out, size_t *start)
-{
-    memset(start, 0, (keys + 1) * sizeof *start);
-    for (size_t k = 0; k < n; k++) {
-        start[key[k] + 1]++;
-    }
-    for (size_t k = 0; k < keys; k++) {
-        start[k + 1] += start[k];
-    }
-    for (size_t k = 0; k < n; k++) {
-        const size_t from = order_in ? order_in[k] : k;
-        order_out[start[key[from]]++] = from;
-    }
-}
-
-int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_t n, const size_t *i, const size_t *j,
-                               const double *v)
-{
-    size_t *by_col = malloc((2 * n + (rows > cols ? rows : cols) + 1) * sizeof *by_col);
-    const int done = by_col && matrix_create(a, rows, cols, n);
-    if (done) {
-        size_t *by_row = by_col + n, *start = by_row + n;
-        counting_sort(cols, n, j, NULL, by_col, start);
-        counting_sort(rows, n, i, by_col, by_row, start);
-        for (size_t k = 0; k < n; k++) {
-            a->first[i[by_row[k]] + 1] = k + 1;
-            a->col[k] = j[by_row[k]];
-            a->val[k] = v[by_row[k]];
-        }
-        for (size_t r = 0; r < rows; r++) {
-            a->first[r + 1] = a->first[r + 1] ? a->first[r + 1] : a->first[r];
-        }
-    } else {
-        memset(a, 0, sizeof *a);
-    }
-    free(by_col);
-    return done && matrix_finish(a);
-}
-
 int tribo_matrix_transpose(struct matrix *a, const struct matrix *from)
 {
     const size_t entries = from->first[from->rows];
@@ -253,6 +208,30 @@ int tribo_matrix_transpose(struct matrix *a, const struct matrix *from)
     }
     tribo_rows_transpose(from->rows, from->cols, from->first, from->col, from->val, a->first, a->col, a->val);
     return matrix_finish(a);
+}
+
+int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_t n, const size_t *i, const size_t *j,
+                               const double *v)
+{
+    struct matrix by_column;
+    *a = (struct matrix){0};
+    if (!matrix_create(&by_column, cols, rows, n)) {
+        return 0;
+    }
+    size_t *next = by_column.first + 1; /* next[c]: place of the next entry of column c */
+    for (size_t k = 0; k < n; k++) {
+        next[j[k] + 1]++;
+    }
+    for (size_t c = 0; c < cols; c++) {
+        next[c + 1] += next[c];
+    }
+    for (size_t k = 0; k < n; k++) {
+        by_column.col[next[j[k]]] = i[k];
+        by_column.val[next[j[k]]++] = v[k];
+    }
+    const int done = tribo_matrix_transpose(a, &by_column);
+    tribo_matrix_free(&by_column);
+    return done;
 }
 
 void tribo_matrix_spread(const struct matrix *a, double *dense)
@@ -283,33 +262,6 @@ double *tribo_matrix_transpose_to_dense(const struct matrix *a)
         }
     }
     return dense;
-}
-
-void tribo_matrix_keep_lower(struct matrix *a)
-{
-    size_t count = 0;
-    for (size_t i = 0, k = 0; i < a->rows; i++) {
-        for (; k < a->first[i + 1]; k++) {
-            if (a->col[k] <= i) {
-                a->col[count] = a->col[k];
-                a->val[count++] = a->val[k];
-            }
-        }
-        a->first[i + 1] = count;
-    }
-    /* Moves the arrays together, and returns the memory behind them. */
-    const double *val = a->val;
-    struct layout l = {(char *)a->first, 0};
-    lay_out_rows(a, &l, count);
-    memmove(a->val, val, count * sizeof *val);
-    char *less = realloc(l.memory, l.used + 1);
-    l = (struct layout){less ? less : l.memory, 0};
-    lay_out_rows(a, &l, count);
-    free(a->offset);
-    a->offset = NULL;
-    a->block = NULL;
-    a->fast = NULL;
-    a->diagonals = 0;
 }
 
 void tribo_matrix_scale_rows(struct matrix *a, const double *factor)

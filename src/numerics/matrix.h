@@ -14,8 +14,8 @@ enum { MATRIX_FEW = 4 };
 
 struct matrix {
     size_t rows, cols;
-    size_t *first;     /* [rows + 1] row i has the entries first[i] to first[i + 1] - 1; owns the memory of col and val */
-    size_t *col;       /* columns, ascending in each row */
+    size_t *first; /* [rows + 1] row i has the entries first[i] to first[i + 1] - 1; owns the memory of col and val */
+    size_t *col;   /* columns, ascending in each row */
     double *val;
     size_t diagonals;  /* diagonals that hold all entries; 0: too many, or mostly empty */
     ptrdiff_t *offset; /* [diagonals] j - i, ascending; NULL if rows are few; owns the memory of block and fast */
@@ -96,9 +96,6 @@ void tribo_matrix_spread(const struct matrix *a, double *dense);
 /* Return A [rows][cols], and A' [cols][rows], in memory of the caller's, or NULL if out of memory. */
 double *tribo_matrix_to_dense(const struct matrix *a);
 double *tribo_matrix_transpose_to_dense(const struct matrix *a);
-
-/* Drops the entries above the diagonal, and returns their memory. */
-void tribo_matrix_keep_lower(struct matrix *a);
 
 /* Multiplies row i by factor[i]. */
 void tribo_matrix_scale_rows(struct matrix *a, const double *factor);

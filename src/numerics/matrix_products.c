@@ -2,6 +2,7 @@
 #include "matrix.h"
 #include "common/real.h"
 #include "common/simd.h"
+#include "linalg.h"
 #include "twofold.h"
 
 #include <float.h>
@@ -179,9 +180,8 @@ static size_t row_end(const struct matrix *a, size_t i)
 int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, double *to)
 {
     const size_t n = z->rows ? z->rows : a->rows, m = z->rows ? z->cols : n;
-    enum { SHORT = 16 };
-    double few[SHORT], *more = m > SHORT ? malloc(m * sizeof *more) : NULL, *row = more ? more : few;
-    if (m > SHORT && !more) {
+    double *row = malloc((m + 1) * sizeof *row);
+    if (!row) {
         return 0;
     }
     memset(to, 0, m * m * sizeof *to);
@@ -203,11 +203,7 @@ int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, doubl
             }
         }
     }
-    for (size_t i = 0; i < m; i++) {
-        for (size_t j = 0; j < i; j++) {
-            to[i * m + j] = to[j * m + i] = 0.5 * (to[i * m + j] + to[j * m + i]);
-        }
-    }
-    free(more);
+    tribo_even_out(m, to);
+    free(row);
     return 1;
 }

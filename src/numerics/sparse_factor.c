@@ -40,12 +40,9 @@ static void sparse_factor_start(cholmod_common *common)
     common->quick_return_if_not_posdef = 1;
 }
 
-/* Returns a as CHOLMOD reads it: rows as columns, and the lower triangle as the upper one. Drops the upper triangle of spent. */
-static cholmod_sparse view_of(const struct matrix *a, struct matrix *spent)
+/* Returns a as CHOLMOD reads it: rows as columns, and the lower triangle as the upper one. */
+static cholmod_sparse view_of(const struct matrix *a)
 {
-    if (spent) {
-        tribo_matrix_keep_lower(spent);
-    }
     return (cholmod_sparse){.nrow = a->rows,
                             .ncol = a->cols,
                             .nzmax = a->first[a->rows],
@@ -111,7 +108,7 @@ int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matri
     }
     sparse_factor_start(&f->common);
     /* cholmod_l_factorize would keep all of a beside its half. */
-    cholmod_sparse view = view_of(a, spent);
+    cholmod_sparse view = view_of(a);
     f->l = cholmod_l_analyze(&view, &f->common);
     cholmod_sparse *half = half_of(&view, spent, f->l, &f->common);
     if (half) {
@@ -225,7 +222,7 @@ int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *
 {
     cholmod_common common;
     double nothing[2] = {0.0, 0.0};
-    cholmod_sparse view = view_of(a, spent);
+    cholmod_sparse view = view_of(a);
     sparse_factor_start(&common);
     common.supernodal = CHOLMOD_SIMPLICIAL; /* the only one of CHOLMOD's factors that may be indefinite */
     common.final_ll = 0;
