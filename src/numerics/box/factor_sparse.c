@@ -38,9 +38,9 @@ size_t tribo_sparse_slots(const struct sparse *s)
 
 /* ---------------------------------------------------------------------------------------------------------- pattern of L */
 
-/* Walks the entries of L row by row, and counts them by columns in count [size]. fill: also puts row k at the slot count[j].
- * seen [size] is workspace. */
-static void sparse_walk(struct sparse *s, const size_t *parent, size_t *seen, size_t *count, int fill)
+/* Walks the entries of L row by row, and counts them by columns in count [size]. Sets parent [size] of the elimination tree where
+ * it is NONE; it stays NONE for roots. fill: also puts row k at the slot count[j]. seen [size] is workspace. */
+static void sparse_walk(struct sparse *s, size_t *parent, size_t *seen, size_t *count, int fill)
 {
     memset(seen, 0xff, s->r.n * sizeof *seen);
     for (size_t k = 0; k < s->r.n; k++) {
@@ -49,6 +49,7 @@ static void sparse_walk(struct sparse *s, const size_t *parent, size_t *seen, si
         for (size_t e = s->r.first[i]; e < s->r.first[i + 1]; e++) {
             for (size_t j = s->position[s->r.col[e]]; j < k && seen[j] != k; j = parent[j]) {
                 seen[j] = k;
+                parent[j] = parent[j] == NONE ? k : parent[j];
                 if (fill) {
                     s->row_of[count[j]] = k;
                 }
@@ -58,33 +59,12 @@ static void sparse_walk(struct sparse *s, const size_t *parent, size_t *seen, si
     }
 }
 
-/* parent [size] of the elimination tree, NONE for roots (Liu 1990). seen [size]: the ancestors found so far. */
-static void find_tree(const struct sparse *s, size_t *parent, size_t *seen)
-{
-    for (size_t k = 0; k < s->r.n; k++) {
-        const size_t i = s->place[k];
-        parent[k] = seen[k] = NONE;
-        for (size_t e = s->r.first[i]; e < s->r.first[i + 1]; e++) {
-            size_t j = s->position[s->r.col[e]];
-            while (j < k && seen[j] != k) {
-                const size_t next = seen[j];
-                seen[j] = k;
-                parent[j] = next == NONE ? k : parent[j];
-                j = next == NONE ? k : next;
-            }
-        }
-    }
-}
-
-/* Finds the pattern of L by columns and rows, and the costs. work [4 size]. Returns 1; 0 if a dense factor is better; -1 if out
- * of memory. */
-static int find_pattern(struct sparse *s, double *work)
+/* Finds the pattern of L by columns and rows, and the costs. path [size]: workspace, costs of the ways to the root; parent, seen,
+ * count [size]: workspace, count 0. Returns 1; 0 if a dense factor is better; -1 if out of memory. */
+static int find_pattern(struct sparse *s, double *path, size_t *parent, size_t *seen, size_t *count)
 {
     const size_t size = s->r.n;
-    double *path = work; /* cost of the way to the root */
-    size_t *parent = (size_t *)(work + size), *seen = parent + size, *count = seen + size;
-    find_tree(s, parent, seen);
-    memset(count, 0, size * sizeof *count);
+    memset(parent, 0xff, size * sizeof *parent);
     sparse_walk(s, parent, seen, count, 0);
     for (size_t j = 0; j < size; j++) {
         s->column[j + 1] = s->column[j] + count[j];
@@ -410,66 +390,59 @@ static int well_conditioned(struct sparse *s)
     const size_t size = s->r.n;
     const struct group group = {.size = size, .sparse = s};
     struct sets sets = {0};
-    double least = 1.0, most = 1.0; /* of 1/pivot, which is 0 where there is none */
-    double *values = calloc(tribo_sparse_slots(s) + 3 * size, sizeof *values);
-    size_t *places = malloc(2 * size * sizeof *places);
-    signed char *at = calloc(size, 1);
-    const int memory = values && places && at;
-    if (memory) {
-        double *scale = values + 2 * size;
-        const struct sparse_factor factor = {.l = values + 3 * size, .d = values, .w = values + size, .index = places};
-        struct box_qp p = {.group = &group, .sets = &sets, .scale = scale, .at = at, .order = places + size, .sparse = factor};
-        for (size_t i = 0; i < size; i++) {
-            const double *diagonal = tribo_csr_entry(&s->r, i, i);
-            scale[i] = tribo_scale(diagonal ? *diagonal : 0.0);
-        }
-        tribo_sparse_rebuild(&p, NULL);
-        for (size_t k = 0; k < size; k++) {
-            least = lesser(least, factor.d[k]);
-            most = greater(most, factor.d[k]);
-        }
+    double *scale = calloc(tribo_sparse_slots(s) + 6 * size, sizeof *scale), least = 1.0, most = 1.0; /* of 1/pivot or 0 */
+    if (!scale) {
+        return -1;
     }
-    free(values);
-    free(places);
-    free(at);
-    return memory ? least > 0.0 && most * TRIBO_DOUBTFUL < 1.0 : -1;
+    const struct sparse_factor factor = {
+        .d = scale + size, .w = scale + 2 * size, .index = (size_t *)(scale + 3 * size), .l = scale + 6 * size};
+    struct box_qp p = {.group = &group, .sets = &sets, .scale = scale, .sparse = factor};
+    p.order = (size_t *)(scale + 4 * size);
+    p.at = (signed char *)(scale + 5 * size);
+    for (size_t i = 0; i < size; i++) {
+        const double *diagonal = tribo_csr_entry(&s->r, i, i);
+        scale[i] = tribo_scale(diagonal ? *diagonal : 0.0);
+    }
+    tribo_sparse_rebuild(&p, NULL);
+    for (size_t k = 0; k < size; k++) {
+        least = lesser(least, factor.d[k]);
+        most = greater(most, factor.d[k]);
+    }
+    free(scale);
+    return least > 0.0 && most * TRIBO_DOUBTFUL < 1.0;
 }
 
-int tribo_sparse_create(struct sparse **s, const struct csr *r)
+int tribo_sparse_create(struct sparse **created, const struct csr *r)
 {
     const size_t size = r->n, entries = r->first[size];
-    *s = NULL;
+    *created = NULL;
     if (entries > size * size / 8) {
         return 1;
     }
-    struct sparse *c = calloc(1, sizeof *c);
+    struct sparse *s = calloc(1, sizeof *s);
     double *work = calloc(4 * size + 1, sizeof *work);
     int good = -1;
-    if (c && work && tribo_csr_create(&c->r, size, entries)) {
-        c->position = malloc(2 * size * sizeof *c->position);
-        c->column = calloc(2 * (size + 1), sizeof *c->column);
-        good = c->position && c->column ? 1 : -1;
-    }
-    if (good > 0) {
-        memcpy(c->r.first, r->first, (size + 1) * sizeof *c->r.first);
-        memcpy(c->r.col, r->col, entries * sizeof *c->r.col);
-        memcpy(c->r.val, r->val, entries * sizeof *c->r.val);
-        c->place = c->position + size;
-        c->row = c->column + size + 1;
-        good = tribo_nested_dissection(r, c->place) ? 1 : -1;
+    if (s && work && tribo_csr_transpose(&s->r, size, size, r->first, r->col, r->val)) { /* r is symmetric */
+        s->position = malloc(2 * size * sizeof *s->position);
+        s->column = calloc(2 * (size + 1), sizeof *s->column);
+        s->place = s->position ? s->position + size : NULL;
+        s->row = s->column ? s->column + size + 1 : NULL;
+        good = s->place && s->row && tribo_nested_dissection(r, s->place) ? 1 : -1;
     }
     for (size_t k = 0; good > 0 && k < size; k++) {
-        c->position[c->place[k]] = k;
-    }
-    good = good > 0 ? find_pattern(c, work) : good;
-    if (good > 0) {
-        const int well = well_conditioned(c);
-        good = well < 0 ? well : well || size > DENSE_UP_TO;
+        s->position[s->place[k]] = k;
     }
     if (good > 0) {
-        *s = c;
+        size_t *index = (size_t *)(work + size);
+        good = find_pattern(s, work, index, index + size, index + 2 * size);
+    }
+    if (good > 0 && size <= DENSE_UP_TO) {
+        good = well_conditioned(s);
+    }
+    if (good > 0) {
+        *created = s;
     } else {
-        tribo_sparse_free(c);
+        tribo_sparse_free(s);
     }
     free(work);
     return good >= 0;

@@ -17,14 +17,22 @@ struct graph {
     size_t stamp;
 };
 
-/* Appends the nodes connected with start to list[count ...]. Returns the length of list. */
-static size_t search_breadth_first(struct graph *g, size_t start, size_t count)
+struct part {
+    size_t begin, end;
+};
+
+/* list = the nodes of the part connected with start, nearest first. Returns their number. The other nodes of the part have the
+ * mark stamp. */
+static size_t search_breadth_first(struct graph *g, struct part part, size_t start)
 {
-    size_t next = count;
-    g->list[count++] = start;
-    g->level[start] = 0;
-    g->mark[start] = 0;
-    for (; next < count; next++) {
+    size_t count = 1;
+    g->stamp++;
+    for (size_t k = part.begin; k < part.end; k++) {
+        g->mark[g->node[k]] = g->stamp;
+    }
+    g->list[0] = start;
+    g->level[start] = g->mark[start] = 0;
+    for (size_t next = 0; next < count; next++) {
         const size_t i = g->list[next];
         for (size_t e = g->r->first[i]; e < g->r->first[i + 1]; e++) {
             const size_t j = g->r->col[e];
@@ -36,14 +44,6 @@ static size_t search_breadth_first(struct graph *g, size_t start, size_t count)
         }
     }
     return count;
-}
-
-static void mark_part(struct graph *g, size_t begin, size_t end)
-{
-    g->stamp++;
-    for (size_t k = begin; k < end; k++) {
-        g->mark[g->node[k]] = g->stamp;
-    }
 }
 
 /* list[*from, *to) = a small level that splits the others evenly. Returns 0 if no level has two sides. */
@@ -66,42 +66,33 @@ static int find_level(const struct graph *g, size_t count, size_t *from, size_t 
     return best < SIZE_MAX;
 }
 
-struct part {
-    size_t begin, end;
-};
-
-/* Orders a part, and appends the pieces that are not in order to stack. */
+/* Orders a part, and appends the two sides that are not in order to stack: of a part in pieces, one piece and the others. */
 static void dissect(struct graph *g, struct part part, struct part *stack, size_t *depth)
 {
-    size_t *node = g->node + part.begin, count = 0, pieces = 0, from = 0, to = 0;
+    size_t *node = g->node + part.begin, from = 0, to = 0;
     const size_t size = part.end - part.begin;
     if (size <= LEAF) {
         return;
     }
-    mark_part(g, part.begin, part.end);
-    for (size_t k = 0; k < size; k++) {
-        if (g->mark[node[k]] == g->stamp) {
-            const size_t begin = count;
-            count = search_breadth_first(g, node[k], count);
-            pieces++;
-            if (count - begin < size) {
-                stack[(*depth)++] = (struct part){part.begin + begin, part.begin + count};
+    const size_t count = search_breadth_first(g, part, node[0]);
+    if (count < size) {
+        for (size_t k = 0, next = count; k < size; k++) {
+            if (g->mark[node[k]] == g->stamp) {
+                g->list[next++] = node[k];
             }
         }
+        memcpy(node, g->list, size * sizeof *node);
+        from = to = count;
+    } else {
+        /* A search from the far end has more and smaller levels. */
+        search_breadth_first(g, part, g->list[size - 1]);
+        if (!find_level(g, size, &from, &to)) {
+            return;
+        }
+        memcpy(node, g->list, from * sizeof *node);
+        memcpy(node + from, g->list + to, (size - to) * sizeof *node);
+        memcpy(node + from + size - to, g->list + from, (to - from) * sizeof *node);
     }
-    memcpy(node, g->list, size * sizeof *node);
-    if (pieces > 1) {
-        return;
-    }
-    /* A search from the far end has more and smaller levels. */
-    mark_part(g, part.begin, part.end);
-    search_breadth_first(g, node[size - 1], 0);
-    if (!find_level(g, size, &from, &to)) {
-        return;
-    }
-    memcpy(node, g->list, from * sizeof *node);
-    memcpy(node + from, g->list + to, (size - to) * sizeof *node);
-    memcpy(node + from + size - to, g->list + from, (to - from) * sizeof *node);
     stack[(*depth)++] = (struct part){part.begin, part.begin + from};
     stack[(*depth)++] = (struct part){part.begin + from, part.begin + from + size - to};
 }
