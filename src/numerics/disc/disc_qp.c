@@ -214,36 +214,36 @@ int tribo_disc_share(struct disc_qp *p)
 
 /* ------------------------------------------------------------------------------------------------------------ room */
 
-/* Lays out vectors in store [TRIBO_DISC_VECTORS s]; press is two of them. */
-static void lay_out_vectors(struct disc_qp *p, double *store, size_t s)
+static void lay_out_disc(struct disc_qp *p, struct layout *l, size_t most)
 {
-    double **const vector[] = {&p->pull,    &p->shift,       &p->y,             &p->gradient, &p->noise,    &p->gain,  &p->to,
-                               &p->outward, &p->curvature,   &p->step,          &p->spare,    &p->best,     &p->from,  &p->aim,
-                               &p->slide,   &p->factor.qp.q, &p->factor.qp.row, &p->weight,   &p->diagonal, &p->share, &p->press};
-    for (size_t k = 0; store && k < sizeof vector / sizeof *vector; k++) {
-        *vector[k] = store + k * s;
+    double **const vector[] = {&p->pull,     &p->shift,   &p->y,         &p->gradient,    &p->noise,         &p->gain,
+                               &p->to,       &p->outward, &p->curvature, &p->step,        &p->spare,         &p->best,
+                               &p->from,     &p->aim,     &p->slide,     &p->factor.qp.q, &p->factor.qp.row, &p->weight,
+                               &p->diagonal, &p->share,   &p->press};
+    double **const square[] = {&p->s, &p->factor.matrix, &p->factor.qp.l, &p->factor.qp.null.basis};
+    enum { VECTORS = sizeof vector / sizeof *vector, SQUARES = sizeof square / sizeof *square };
+    const size_t s = most + 1;
+    for (size_t k = 0; k < VECTORS; k++) {
+        *vector[k] = tribo_layout_array(l, vector[k] == &p->press ? 2 * s : s, sizeof **vector[k]);
     }
+    for (size_t k = 0; k < SQUARES; k++) {
+        *square[k] = tribo_layout_array(l, s * s, sizeof **square[k]);
+    }
+    p->freedom = tribo_layout_array(l, s, sizeof *p->freedom);
+    p->factor.qp.near = tribo_layout_array(l, s, sizeof *p->factor.qp.near);
+    p->factor.qp.order = tribo_layout_array(l, s, sizeof *p->factor.qp.order);
+    p->wide = tribo_layout_array(l, s, 1);
+    p->place = tribo_layout_array(l, s, 1);
+    p->factor.qp.at = tribo_layout_array(l, s, 1);
 }
 
 int tribo_disc_create(struct disc_qp *p, size_t most)
 {
-    const size_t s = most + 1;
-    struct box_qp *f = &p->factor.qp;
     struct layout l = {0};
     *p = (struct disc_qp){0};
     do {
         p->memory = tribo_layout_array(&l, 0, 1);
-        lay_out_vectors(p, tribo_layout_array(&l, TRIBO_DISC_VECTORS * s, sizeof *p->y), s);
-        p->s = tribo_layout_array(&l, s * s, sizeof *p->s);
-        p->factor.matrix = tribo_layout_array(&l, s * s, sizeof *p->factor.matrix);
-        f->l = tribo_layout_array(&l, s * s, sizeof *f->l);
-        f->null.basis = tribo_layout_array(&l, s * s, sizeof *f->null.basis);
-        p->freedom = tribo_layout_array(&l, s, sizeof *p->freedom);
-        f->near = tribo_layout_array(&l, s, sizeof *f->near);
-        f->order = tribo_layout_array(&l, s, sizeof *f->order);
-        p->wide = tribo_layout_array(&l, s, 1);
-        p->place = tribo_layout_array(&l, s, 1);
-        f->at = tribo_layout_array(&l, s, 1);
+        lay_out_disc(p, &l, most);
     } while (!l.memory && tribo_layout_zeros(&l));
     return l.memory != NULL;
 }
@@ -256,14 +256,12 @@ void tribo_disc_free(struct disc_qp *p)
 
 void tribo_disc_alone(struct disc_alone *x, const double *s, const double *pull, const double *shift)
 {
+    struct layout l = {.memory = (char *)x->store};
     memset(x, 0, sizeof *x);
-    memcpy(x->s, s, 4 * sizeof *s);
-    x->wide[0] = 2;
-    x->p = (struct disc_qp){.size = 2, .wide = x->wide, .place = x->place, .s = x->s, .freedom = x->freedom};
-    x->p.factor.matrix = x->matrix;
+    lay_out_disc(&x->p, &l, 2);
+    x->p.size = x->p.wide[0] = 2;
     x->p.near_enough = TRIBO_NEAR_ENOUGH;
-    x->p.factor.qp = (struct box_qp){.near = x->near, .order = x->order, .at = x->at, .l = x->l, .null = {.basis = x->basis}};
-    lay_out_vectors(&x->p, x->store, TRIBO_DISC_ALONE);
+    memcpy(x->p.s, s, 4 * sizeof *s);
     memcpy(x->p.pull, pull, 2 * sizeof *pull);
     memcpy(x->p.shift, shift, 2 * sizeof *shift);
 }

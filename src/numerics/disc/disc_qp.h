@@ -63,16 +63,9 @@ struct disc_qp {
 int tribo_disc_create(struct disc_qp *p, size_t most);
 void tribo_disc_free(struct disc_qp *p);
 
-/* TRIBO_DISC_VECTORS: vectors of doubles of a problem. disc_alone: room for the problem of one planar contact. */
-enum { TRIBO_DISC_VECTORS = 22, TRIBO_DISC_ALONE = 3 };
+/* Room for the problem of one planar contact. */
 struct disc_alone {
-    double store[TRIBO_DISC_VECTORS * TRIBO_DISC_ALONE], s[TRIBO_DISC_ALONE * TRIBO_DISC_ALONE];
-    double matrix[TRIBO_DISC_ALONE * TRIBO_DISC_ALONE], l[TRIBO_DISC_ALONE * TRIBO_DISC_ALONE];
-    double basis[TRIBO_DISC_ALONE * TRIBO_DISC_ALONE];
-    unsigned char wide[TRIBO_DISC_ALONE], place[TRIBO_DISC_ALONE];
-    signed char at[TRIBO_DISC_ALONE];
-    size_t near[TRIBO_DISC_ALONE], order[TRIBO_DISC_ALONE];
-    struct freedom freedom[TRIBO_DISC_ALONE];
+    double store[160];
     struct disc_qp p;
 };
 

@@ -58,43 +58,11 @@ static void corner_at(struct corner k, double *y)
     y[1] = -k.half * k.along[1] + k.side * k.height * k.along[0];
 }
 
-int tribo_lens_project(int directions, const double *c, const double *z, double *y)
-{
-    if (directions == 1) {
-        return project_interval(c[0], z[0], y);
-    }
-    const double w[2] = {z[0] + c[0], z[1] + c[1]}, square = c[0] * c[0] + c[1] * c[1];
-    const double from_disc = tribo_length(2, z), from_shifted = tribo_length(2, w);
-    if (from_disc <= 1.0 && from_shifted <= 1.0) {
-        y[0] = z[0];
-        y[1] = z[1];
-        return LENS_INSIDE;
-    }
-    if (from_disc > 1.0) {
-        const double n[2] = {z[0] / from_disc, z[1] / from_disc};
-        if (2.0 * (n[0] * c[0] + n[1] * c[1]) + square <= 0.0) { /* |n + c| <= 1 */
-            y[0] = n[0];
-            y[1] = n[1];
-            return LENS_ON_DISC;
-        }
-    }
-    if (from_shifted > 1.0) {
-        const double n[2] = {w[0] / from_shifted, w[1] / from_shifted};
-        if (square <= 2.0 * (n[0] * c[0] + n[1] * c[1])) { /* |n - c| <= 1 */
-            y[0] = n[0] - c[0];
-            y[1] = n[1] - c[1];
-            return LENS_ON_SHIFTED;
-        }
-    }
-    corner_at(tribo_lens_corner(c, z), y);
-    return LENS_AT_CORNER;
-}
-
 /* n_k = q_k/(weight_k + mu) for the mu >= 0 with |n| = 1: 1/|n| is concave in mu, so that Newton's method for 1/|n| = 1 rises to
  * it. Returns 0, with mu = 0, if |n| <= 1 there. */
 static int minimize_on_disc(const double *weight, const double *q, double *n)
 {
-    double mu = greater(0.0, greater(fabs(q[0]) - weight[0], fabs(q[1]) - weight[1])), rise = 1.0;
+    double mu = greater(0.0, greater(fabs(q[0]) - weight[0], fabs(q[1]) - weight[1])), rise = HUGE_VAL;
     for (int round = 0; round < SECULAR_ROUNDS && rise > DBL_EPSILON * mu; round++) {
         n[0] = q[0] / (weight[0] + mu);
         n[1] = q[1] / (weight[1] + mu);
@@ -146,4 +114,10 @@ int tribo_lens_minimize(const double *c, const double *weight, const double *q, 
         y[1] = other[1];
     }
     return LENS_AT_CORNER;
+}
+
+int tribo_lens_project(int directions, const double *c, const double *z, double *y)
+{
+    const double even[2] = {1.0, 1.0};
+    return directions == 1 ? project_interval(c[0], z[0], y) : tribo_lens_minimize(c, even, z, y);
 }

@@ -49,19 +49,14 @@ static int is_skew(const struct disc_qp *p, size_t i)
 
 int tribo_disc_descend(const struct disc_qp *p, size_t i, const double *gradient, double *to)
 {
-    const double most = 1e150, *y = p->y + i;
-    double z[2];
-    if (is_skew(p, i)) {
-        const double weight[2] = {1.0 / p->gain[i], 1.0 / p->gain[i + 1]};
-        const double q[2] = {weight[0] * y[0] - gradient[0], weight[1] * y[1] - gradient[1]};
-        return tribo_lens_minimize(p->shift + i, weight, q, to);
+    const double *y = p->y + i;
+    if (p->wide[i] == 1) {
+        const double z = y[0] - product(p->gain[i], gradient[0]);
+        return tribo_lens_project(1, p->shift + i, &z, to);
     }
-    const double length = tribo_length(p->wide[i], gradient);
-    const int far = product(p->gain[i], length) > most;
-    for (size_t k = 0; k < p->wide[i]; k++) {
-        z[k] = y[k] - (far ? gradient[k] / length * most : p->gain[i] * gradient[k]);
-    }
-    return tribo_lens_project(p->wide[i], p->shift + i, z, to);
+    const double weight[2] = {1.0 / p->gain[i], 1.0 / p->gain[i + 1]};
+    const double q[2] = {weight[0] * y[0] - gradient[0], weight[1] * y[1] - gradient[1]};
+    return tribo_lens_minimize(p->shift + i, weight, q, to);
 }
 
 void tribo_disc_gradients(struct disc_qp *p)
