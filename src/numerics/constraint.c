@@ -48,17 +48,6 @@ void tribo_constraints_free(struct constraints *c)
 
 /* ------------------------------------------------------------------------------------------------------------ the ties */
 
-/* Returns the place of the first entry of row p that is not 0, or the row's end. */
-static size_t first_entry(const struct source *s, size_t p)
-{
-    const struct matrix *j = s->direction;
-    size_t k = j->first[s->row[p]];
-    while (k < j->first[s->row[p] + 1] && j->val[k] == 0.0) {
-        k++;
-    }
-    return k;
-}
-
 /* Joins the degrees of freedom of each row, numbers the ties, and counts their rows and degrees of freedom. A row without entries
  * is a tie. */
 static void find_ties(const struct source *s, struct constraints *c)
@@ -68,24 +57,19 @@ static void find_ties(const struct source *s, struct constraints *c)
         s->parent[d] = d;
     }
     for (size_t p = 0; p < s->count; p++) {
-        const size_t first = first_entry(s, p);
-        for (size_t k = first; k < j->first[s->row[p] + 1]; k++) {
-            if (j->val[k] != 0.0) {
-                tribo_join(s->parent, j->col[k], j->col[first]);
-            }
+        for (size_t k = j->first[s->row[p]]; k < j->first[s->row[p] + 1]; k++) {
+            tribo_join(s->parent, j->col[k], j->col[j->first[s->row[p]]]);
         }
     }
     for (size_t p = 0; p < s->count; p++) {
-        const size_t first = first_entry(s, p), end = j->first[s->row[p] + 1];
-        size_t *number = first < end ? &s->number[tribo_root(s->parent, j->col[first])] : NULL;
-        s->member[p] = number && *number ? *number - 1 : c->ties++;
-        if (number) {
-            *number = s->member[p] + 1;
-        }
+        const size_t first = j->first[s->row[p]], end = j->first[s->row[p] + 1];
+        size_t none = 0, *number = first < end ? &s->number[tribo_root(s->parent, j->col[first])] : &none;
+        *number = *number ? *number : ++c->ties;
+        s->member[p] = *number - 1;
         struct tie *tie = &c->tie[s->member[p]];
         tie->rows++;
         for (size_t k = first; k < end; k++) {
-            if (j->val[k] != 0.0 && s->place[j->col[k]] == 0) {
+            if (s->place[j->col[k]] == 0) {
                 s->place[j->col[k]] = ++tie->touched;
             }
         }
@@ -121,9 +105,7 @@ static int create_ties(const struct source *s, struct constraints *c, struct eli
         struct tie *tie = &c->tie[s->member[p]];
         tie->order[tie->rows++] = p;
         for (size_t k = j->first[s->row[p]]; k < j->first[s->row[p] + 1]; k++) {
-            if (j->val[k] != 0.0) {
-                tie->dof[s->place[j->col[k]] - 1] = j->col[k];
-            }
+            tie->dof[s->place[j->col[k]] - 1] = j->col[k];
         }
     }
     return l.memory != NULL;
@@ -177,11 +159,14 @@ static size_t find_pivot(const struct elimination *e)
     return found;
 }
 
-static void exchange_values(double *x, double *y)
+/* Exchanges count elements of x and y, at distances of stride. */
+static void exchange(double *x, double *y, size_t count, size_t stride)
 {
-    const double z = *x;
-    *x = *y;
-    *y = z;
+    for (size_t i = 0; i < count; i++) {
+        const double z = x[i * stride];
+        x[i * stride] = y[i * stride];
+        y[i * stride] = z;
+    }
 }
 
 static void exchange_indices(size_t *list, size_t i, size_t k)
@@ -223,12 +208,10 @@ static void fill(struct elimination *e, const struct source *s)
         const size_t row = s->row[tie->order[p]];
         double most = 0.0;
         for (size_t k = j->first[row]; k < j->first[row + 1]; k++) {
-            if (j->val[k] != 0.0) {
-                const size_t l = s->place[j->col[k]] - 1;
-                tie->entry[p * t + l] = j->val[k];
-                e->size[p * t + l] = fabs(j->val[k]);
-                most = greater(most, e->size[p * t + l] * e->weight[l]);
-            }
+            const size_t l = s->place[j->col[k]] - 1;
+            tie->entry[p * t + l] = j->val[k];
+            e->size[p * t + l] = fabs(j->val[k]);
+            most = greater(most, e->size[p * t + l] * e->weight[l]);
         }
         e->scale[p] = most > 0.0 ? 1.0 / most : 0.0; /* a row of zeros has no pivot */
     }
@@ -248,17 +231,13 @@ static void eliminate_tie(struct elimination *e)
         while (!(weighted(e, p, column) >= e->most[p])) {
             column++;
         }
-        for (size_t l = 0; l < t; l++) {
-            exchange_values(&tie->entry[to * t + l], &tie->entry[p * t + l]);
-            exchange_values(&e->size[to * t + l], &e->size[p * t + l]);
-        }
-        for (size_t i = 0; i < tie->rows; i++) {
-            exchange_values(&tie->entry[i * t + to], &tie->entry[i * t + column]);
-            exchange_values(&e->size[i * t + to], &e->size[i * t + column]);
-        }
-        exchange_values(&e->weight[to], &e->weight[column]);
-        exchange_values(&e->scale[to], &e->scale[p]);
-        exchange_values(&e->most[to], &e->most[p]);
+        exchange(tie->entry + to * t, tie->entry + p * t, t, 1);
+        exchange(e->size + to * t, e->size + p * t, t, 1);
+        exchange(tie->entry + to, tie->entry + column, tie->rows, t);
+        exchange(e->size + to, e->size + column, tie->rows, t);
+        exchange(e->weight + to, e->weight + column, 1, 1);
+        exchange(e->scale + to, e->scale + p, 1, 1);
+        exchange(e->most + to, e->most + p, 1, 1);
         exchange_indices(tie->order, to, p);
         exchange_indices(tie->dof, to, column);
         const double *from = tie->entry + to * t;

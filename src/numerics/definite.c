@@ -97,8 +97,8 @@ int tribo_definite_create(struct definite *d, size_t n, const double *a, size_t 
     }
     for (size_t i = 0; i < n; i++) {
         d->inverse[i * n + i] = 1.0;
-        tribo_definite_solve(d, NULL, 1, d->inverse + i * n);
     }
+    tribo_definite_solve(d, NULL, n, d->inverse);
     return TRIBO_OK;
 }
 
@@ -131,7 +131,7 @@ static signed char place_of_row(const struct definite *d, size_t i)
 void tribo_definite_box(struct definite *d)
 {
     const size_t n = d->n;
-    double *f = d->f;
+    double *f = d->f, *x = d->x;
     size_t fewest = n + 1, patience = PATIENCE;
     for (size_t i = 0; i < n; i++) {
         d->at[i] = (signed char)(d->lo[i] < d->hi[i] ? 0 : -1);
@@ -139,15 +139,12 @@ void tribo_definite_box(struct definite *d)
     for (size_t change = 0; change < CHANGES * (n + 1); change++) {
         size_t wrong = 0, last = 0;
         for (size_t i = 0; i < n; i++) {
-            f[i] = -d->q[i];
-            for (size_t k = 0; k < n; k++) {
-                f[i] -= d->at[k] ? d->matrix[i * n + k] * (d->at[k] < 0 ? d->lo[k] : d->hi[k]) : 0.0;
-            }
+            f[i] = d->at[i] < 0 ? d->lo[i] : d->at[i] > 0 ? d->hi[i] : 0.0;
+            x[i] = -d->q[i];
         }
-        tribo_definite_solve(d, d->at, 1, f);
-        for (size_t i = 0; i < n; i++) {
-            f[i] = d->at[i] ? (d->at[i] < 0 ? d->lo[i] : d->hi[i]) : f[i];
-        }
+        tribo_multiply_add(n, n, 1, -1.0, d->matrix, f, x);
+        tribo_definite_solve(d, d->at, 1, x);
+        tribo_add(f, 1.0, x, n);
         for (size_t i = 0; i < n; i++) {
             d->to[i] = place_of_row(d, i);
             last = d->to[i] != d->at[i] ? i : last;

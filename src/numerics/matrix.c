@@ -25,19 +25,11 @@ void tribo_matrix_free(struct matrix *a)
 
 static int matrix_create(struct matrix *a, size_t rows, size_t cols, size_t entries)
 {
-    struct layout l = {0};
-    *a = (struct matrix){.rows = rows, .cols = cols};
-    do {
-        a->first = tribo_layout_array(&l, rows + 2, sizeof *a->first);
-        a->col = tribo_layout_array(&l, entries + 1, sizeof *a->col);
-        a->val = tribo_layout_array(&l, entries + 1, sizeof *a->val);
-    } while (!l.memory && tribo_layout_create(&l));
-    if (!l.memory) {
-        *a = (struct matrix){0};
-        return 0;
-    }
-    memset(a->first, 0, (rows + 2) * sizeof *a->first);
-    return 1;
+    struct csr own;
+    const int done = tribo_csr_create(&own, rows, entries);
+    *a = done ? (struct matrix){.rows = rows, .cols = cols, .first = own.first, .col = own.col, .val = own.val}
+              : (struct matrix){0};
+    return done;
 }
 
 static size_t blocks_of(const struct matrix *a)

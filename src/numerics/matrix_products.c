@@ -12,8 +12,8 @@
 
 /* y [rows] += factor times rows begin to begin + rows - 1 of A x. These rows lie in one block, and all diagonals are inside the
  * matrix there. Passes over y once for three diagonals, but adds them one after the other. */
-static inline void add_diagonals(const struct matrix *a, size_t begin, size_t rows, double factor, const double *x,
-                                 double *restrict y)
+TRIBO_SIMD static void add_diagonals(const struct matrix *a, size_t begin, size_t rows, double factor, const double *x,
+                                     double *restrict y)
 {
     const double *restrict val = a->fast + a->block[begin / MATRIX_BLOCK] + begin % MATRIX_BLOCK, *restrict at = x + begin;
     size_t d = 0;
@@ -29,19 +29,6 @@ static inline void add_diagonals(const struct matrix *a, size_t begin, size_t ro
         for (size_t i = 0; i < rows; i++) {
             y[i] += factor * u[i] * p[i];
         }
-    }
-}
-
-/* add_diagonals, compiled without a product for the factors 1 and -1. */
-TRIBO_SIMD static void add_inner_rows(const struct matrix *a, size_t begin, size_t rows, double factor, const double *x,
-                                      double *restrict y)
-{
-    if (factor == -1.0) {
-        add_diagonals(a, begin, rows, -1.0, x, y);
-    } else if (factor == 1.0) {
-        add_diagonals(a, begin, rows, 1.0, x, y);
-    } else {
-        add_diagonals(a, begin, rows, factor, x, y);
     }
 }
 
@@ -73,7 +60,7 @@ void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, dou
         const size_t first = row_between(-a->offset[0], begin, end),
                      last = row_between((ptrdiff_t)a->cols - a->offset[a->diagonals - 1], first, end);
         add_outer_rows(a, begin, first, factor, x, y);
-        add_inner_rows(a, first, last - first, factor, x, y + (first - begin));
+        add_diagonals(a, first, last - first, factor, x, y + (first - begin));
         add_outer_rows(a, last, end, factor, x, y + (last - begin));
     }
 }
