@@ -1,30 +1,6 @@
 #include "csr.h"
-#include "common/layout.h"
 
-#include <stdlib.h>
 #include <string.h>
-
-void tribo_csr_free(struct csr *a)
-{
-    free(a->first);
-    memset(a, 0, sizeof *a);
-}
-
-int tribo_csr_create(struct csr *a, size_t n, size_t entries)
-{
-    struct layout l = {0};
-    *a = (struct csr){0};
-    do {
-        a->first = tribo_layout_array(&l, n + 2, sizeof *a->first);
-        a->col = tribo_layout_array(&l, entries + 1, sizeof *a->col);
-        a->val = tribo_layout_array(&l, entries + 1, sizeof *a->val);
-    } while (!l.memory && tribo_layout_create(&l));
-    if (l.memory) {
-        a->n = n;
-        memset(a->first, 0, (n + 2) * sizeof *a->first);
-    }
-    return l.memory != NULL;
-}
 
 int tribo_csr_transpose(struct csr *b, size_t n, size_t columns, const size_t *rowptr, const size_t *col, const double *val)
 {

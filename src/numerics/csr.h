@@ -4,6 +4,10 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/layout.h"
 
 struct csr {
     size_t n;      /* rows */
@@ -12,9 +16,28 @@ struct csr {
     double *val;
 };
 
+static inline void tribo_csr_free(struct csr *a)
+{
+    free(a->first);
+    *a = (struct csr){0};
+}
+
 /* Allocates a of n rows with room for entries; first is all 0. Returns 1, or 0 if out of memory. */
-int tribo_csr_create(struct csr *a, size_t n, size_t entries);
-void tribo_csr_free(struct csr *a);
+static inline int tribo_csr_create(struct csr *a, size_t n, size_t entries)
+{
+    struct layout l = {0};
+    *a = (struct csr){0};
+    do {
+        a->first = tribo_layout_array(&l, n + 2, sizeof *a->first);
+        a->col = tribo_layout_array(&l, entries + 1, sizeof *a->col);
+        a->val = tribo_layout_array(&l, entries + 1, sizeof *a->val);
+    } while (!l.memory && tribo_layout_create(&l));
+    if (l.memory) {
+        a->n = n;
+        memset(a->first, 0, (n + 2) * sizeof *a->first);
+    }
+    return l.memory != NULL;
+}
 
 /* b = a', columns ascending, for a [n][columns]. Returns 1, or 0 if out of memory. */
 int tribo_csr_transpose(struct csr *b, size_t n, size_t columns, const size_t *rowptr, const size_t *col, const double *val);
