@@ -6,27 +6,27 @@
 
 /* ---- planar_parts.c */
 
-/* A contact in motion, in units in which the direction with the longer way to the edge of its band has limit 1. */
+/* A contact of a cluster in motion, in units in which the direction with the longer way to the edge of its band has limit 1. */
 struct slide {
+    size_t directions;
     int open;
     size_t far;     /* that direction, 0 or 1 */
-    double part[2]; /* limits */
+    double part[2]; /* limits; of a scalar contact, the second is 0 */
     double x[2];    /* part v */
     double n[2];    /* x/|x|, or 0 */
     double length;  /* |x| */
     double epsilon; /* |x| from which the contact slides */
     double speed;   /* length/epsilon */
 };
-struct slide tribo_planar_slide(const struct contacts *c, size_t i, const double *v);
+struct slide tribo_planar_slide(const struct contacts *c, size_t i, size_t directions, const double *v);
 
-/* 1 if the force of a planar contact depends on f_eq; of the scalar contact i at v. */
+/* 1 if the force of a contact depends on f_eq. */
 int tribo_planar_near(const struct law *law, const struct slide *s);
-int tribo_scalar_near(const struct law *law, const struct contacts *c, size_t i, double v);
 
 /* Returns the part of its limit that a contact carries which is not near stick, along n; slope: its derivative by speed. */
 double tribo_planar_carried(const struct law *law, double speed, double *slope);
 
-/* f [2] of a planar contact that is not near stick. */
+/* f [directions] of a contact that is not near stick. */
 void tribo_planar_slide_force(const struct law *law, const struct slide *s, const double *limit, double *f);
 
 /* R_ii = 0 is the limit of R_ii from above: in parts of the largest R_ii it is this. */
@@ -38,6 +38,9 @@ struct block {
     double e[2];
 };
 struct block tribo_block_of(const double *own);
+
+/* The block of the contact at place k of a matrix r [size][size]. */
+struct block tribo_block_at(const double *r, size_t size, size_t k, size_t directions);
 
 /* x = -block^-1 x, far away where friction moves nothing, or the block is singular. */
 void tribo_planar_push(const struct block *b, double *x);
@@ -101,11 +104,11 @@ int tribo_planar_given_near(const tribo_context *ctx, size_t k, const struct giv
 
 /* ---- planar_static.c, where limits are static */
 
-/* limit [2] of the planar contact at i: static ones if it holds, or those by which it slides at v. */
-void tribo_planar_limits(const tribo_context *ctx, size_t i, int holds, const double *v, double *limit);
+/* limit [directions] of the contact at i: static ones if it holds, or those by which it slides at v. */
+void tribo_planar_limits(const tribo_context *ctx, size_t i, size_t directions, int holds, const double *v, double *limit);
 
-/* Returns the planar contact at i as laws see it with static limits, which are copied to limit [2]. */
-struct contacts tribo_planar_view(const tribo_context *ctx, size_t i, double *limit);
+/* Returns the contact at i as laws see it with static limits, which are copied to limit [directions]. */
+struct contacts tribo_planar_view(const tribo_context *ctx, size_t i, size_t directions, double *limit);
 
 /* Gives contacts of a cluster near stick at v their static limits, the others those by which they slide. */
 void tribo_planar_hold(tribo_context *ctx, const struct cluster *g, const double *v);

@@ -1,23 +1,17 @@
 /* Life and settings of planar contacts. Clusters are made anew whenever operator or contacts change. */
 #include <stdlib.h>
 
+#include "common/layout.h"
 #include "core/static.h"
 #include "numerics/union_find.h"
 #include "parts.h"
 
 static void release(struct planar *planar)
 {
-    if (!planar || TRIBO_SHARED_ADD(planar->references, SIZE_MAX) > 0) { /* one less */
-        return;
+    if (planar && TRIBO_SHARED_ADD(planar->references, SIZE_MAX) == 0) { /* one less */
+        free(planar->cluster->r);
+        free(planar);
     }
-    free(planar->first);
-    free(planar->role);
-    free(planar->own);
-    free(planar->cluster);
-    free(planar->member);
-    free(planar->r);
-    free(planar->group_of);
-    free(planar);
 }
 
 /* Returns 1, or 0 if out of memory: then tribo_plane_free still applies. */
@@ -75,86 +69,69 @@ void tribo_clusters_free(tribo_context *ctx)
 
 /* --------------------------------------------------------------------------------------------------------- clusters */
 
-/* Sets islands, clusters and their members. label [n] = the cluster of a direction, or SIZE_MAX; place [n] = its place there;
- * parent [n] is workspace. */
-static void find_members(struct planar *c, const struct delassus *op, size_t n, size_t *label, size_t *place, size_t *parent)
+/* Workspace: forest of islands, 2 at the roots of clusters, and what tribo_list_sets finds. */
+struct lists {
+    size_t *parent, *chosen, *of, *place, *first;
+};
+
+/* Sets islands, clusters and their members. */
+static void find_members(struct planar *c, const struct delassus *op, size_t n, const struct lists *w)
 {
-    size_t members = 0, entries = 0;
     for (size_t i = 0; i < n; i++) {
-        parent[i] = i;
-        label[i] = SIZE_MAX;
+        w->parent[i] = i;
+        w->chosen[i] = 0;
     }
     for (size_t g = 0; g < op->groups; g++) {
         const size_t *member = op->member + op->group[g].first;
         for (size_t k = 1; k < op->group[g].size; k++) {
-            tribo_join(parent, member[0], member[k]);
+            tribo_join(w->parent, member[0], member[k]);
         }
     }
     for (size_t k = 0; k < c->count; k++) {
-        tribo_join(parent, c->first[k], c->first[k] + 1);
+        tribo_join(w->parent, c->first[k], c->first[k] + 1);
     }
     for (size_t k = 0; k < c->count; k++) {
-        size_t *of = &label[tribo_root(parent, c->first[k])];
-        *of = *of == SIZE_MAX ? c->clusters++ : *of;
+        w->chosen[tribo_root(w->parent, c->first[k])] = 2;
     }
+    size_t *member = c->cluster->member;
+    c->clusters = tribo_list_sets(n, w->parent, w->chosen, w->of, w->place, w->first, member);
     for (size_t i = 0; i < n; i++) {
-        c->islands += tribo_root(parent, i) == i;
-        label[i] = label[tribo_root(parent, i)];
-        place[i] = label[i] != SIZE_MAX ? c->cluster[label[i]].size++ : 0;
+        c->islands += w->parent[i] == i;
     }
     for (size_t k = 0; k < c->clusters; k++) {
-        struct cluster *g = &c->cluster[k];
-        g->member = members;
-        g->r = entries;
-        members += g->size;
-        entries += g->size > TRIBO_CLUSTER_MOST ? 0 : g->size * g->size;
-        c->largest = g->size > c->largest ? g->size : c->largest;
-    }
-    for (size_t i = 0; i < n; i++) {
-        if (label[i] != SIZE_MAX) {
-            c->member[c->cluster[label[i]].member + place[i]] = i;
-        }
-    }
-}
-
-/* Copies rows of the operator's group g to those of the cluster that has its members. */
-static void copy_group(struct planar *c, struct box_qp *p, struct cluster *to, const size_t *place)
-{
-    const size_t size = p->group->size;
-    double *unit = p->step, ignored;
-    to->redundant |= p->group->nullity > 0;
-    memset(unit, 0, size * sizeof *unit);
-    for (size_t j = 0; j < size; j++) {
-        unit[j] = 1.0;
-        for (size_t i = 0; i < size; i++) {
-            c->r[to->r + place[p->member[i]] * to->size + place[p->member[j]]] =
-                p->group->sparse ? tribo_row_dot(p, i, unit, &ignored) : p->r[i * size + j];
-        }
-        unit[j] = 0.0;
+        c->cluster[k].member = member + w->first[k];
+        c->cluster[k].size = w->first[k + 1] - w->first[k];
+        c->largest = c->cluster[k].size > c->largest ? c->cluster[k].size : c->largest;
     }
 }
 
 /* Sets R of all clusters, group_of and own. */
-static void fill_clusters(struct planar *c, const struct delassus *op, struct memory *m, size_t n, const size_t *label,
-                      const size_t *place)
+static void fill_clusters(struct planar *c, const struct delassus *op, struct memory *m, size_t n, const struct lists *w)
 {
-    for (size_t g = 0; g < op->groups; g++) {
-        struct box_qp *p = tribo_memory_problem(op, m, g);
-        if (label[p->member[0]] != SIZE_MAX) {
-            copy_group(c, p, &c->cluster[label[p->member[0]]], place);
+    for (size_t i = 0; i < n; i++) {
+        c->group_of[i] = op->groups && w->of[i] == SIZE_MAX ? op->group_of[i] : TRIBO_ALONE;
+        if (w->of[i] != SIZE_MAX) {
+            c->cluster[w->of[i]].r[w->place[i] * (c->cluster[w->of[i]].size + 1)] = op->diagonal[i];
         }
     }
-    for (size_t i = 0; i < n; i++) {
-        c->group_of[i] = op->groups && label[i] == SIZE_MAX ? op->group_of[i] : TRIBO_ALONE;
-        if (label[i] != SIZE_MAX) {
-            const struct cluster *g = &c->cluster[label[i]];
-            c->r[g->r + place[i] * (g->size + 1)] = op->diagonal[i];
+    for (size_t g = 0; g < op->groups; g++) {
+        struct box_qp *p = tribo_memory_problem(op, m, g);
+        struct cluster *to = w->of[p->member[0]] != SIZE_MAX ? &c->cluster[w->of[p->member[0]]] : NULL;
+        double *unit = p->step, ignored;
+        memset(unit, 0, p->group->size * sizeof *unit);
+        for (size_t j = 0; to && j < p->group->size; j++) {
+            unit[j] = 1.0;
+            for (size_t i = 0; i < p->group->size; i++) {
+                to->r[w->place[p->member[i]] * to->size + w->place[p->member[j]]] =
+                    p->group->sparse ? tribo_row_dot(p, i, unit, &ignored) : p->r[i * p->group->size + j];
+            }
+            unit[j] = 0.0;
+            to->redundant |= p->group->nullity > 0;
         }
     }
     for (size_t k = 0; k < c->count; k++) {
-        const size_t i = c->first[k];
-        const struct cluster *g = &c->cluster[label[i]];
-        const double *row = c->r + g->r + place[i] * (g->size + 1);
+        const struct cluster *g = &c->cluster[w->of[c->first[k]]];
+        const double *row = g->r + w->place[c->first[k]] * (g->size + 1);
         c->own[k][0] = row[0];
         c->own[k][1] = row[1];
         c->own[k][2] = row[g->size + 1];
@@ -164,42 +141,57 @@ static void fill_clusters(struct planar *c, const struct delassus *op, struct me
 /* Makes clusters for the operator op and its memory m; a status. */
 static int find_clusters(struct planar *c, size_t n, const struct delassus *op, struct memory *m)
 {
-    size_t *work = malloc((3 * n + 1) * sizeof *work), entries = 0;
-    int status = TRIBO_ERR_MEMORY;
-    c->cluster = calloc(c->count, sizeof *c->cluster);
-    c->member = malloc(n * sizeof *c->member);
-    c->group_of = malloc(n * sizeof *c->group_of);
-    if (work && c->cluster && c->member && c->group_of) {
-        find_members(c, op, n, work, work + n, work + 2 * n);
-        status = c->largest > TRIBO_CLUSTER_MOST ? TRIBO_ERR_UNSUPPORTED : TRIBO_OK;
+    enum { LISTS = 5 };
+    size_t *work = malloc(LISTS * (n + 1) * sizeof *work), entries = 0;
+    if (!work) {
+        return TRIBO_ERR_MEMORY;
     }
+    const struct lists w = {work, work + (n + 1), work + 2 * (n + 1), work + 3 * (n + 1), work + 4 * (n + 1)};
+    find_members(c, op, n, &w);
+    const int status = c->largest > TRIBO_CLUSTER_MOST ? TRIBO_ERR_UNSUPPORTED : TRIBO_OK;
     for (size_t k = 0; !status && k < c->clusters; k++) {
         entries += c->cluster[k].size * c->cluster[k].size;
     }
-    c->r = status ? NULL : calloc(entries, sizeof *c->r);
-    if (c->r) {
-        fill_clusters(c, op, m, n, work, work + n);
+    double *r = status ? NULL : calloc(entries, sizeof *r);
+    if (r) {
+        for (size_t k = 0; k < c->clusters; k++) {
+            c->cluster[k].r = r;
+            r += c->cluster[k].size * c->cluster[k].size;
+        }
+        fill_clusters(c, op, m, n, &w);
     }
     free(work);
-    return status || c->r ? status : TRIBO_ERR_MEMORY;
+    return status || r ? status : TRIBO_ERR_MEMORY;
+}
+
+static struct planar *lay_out_planar(struct layout *b, size_t n, size_t count)
+{
+    struct planar *c = tribo_layout_array(b, 1, sizeof *c), at = {0};
+    at.first = tribo_layout_array(b, count, sizeof *at.first);
+    at.role = tribo_layout_array(b, n, 1);
+    at.own = tribo_layout_array(b, count, sizeof *at.own);
+    at.group_of = tribo_layout_array(b, n, sizeof *at.group_of);
+    at.cluster = tribo_layout_array(b, count, sizeof *at.cluster);
+    size_t *member = tribo_layout_array(b, n, sizeof *member);
+    if (c) {
+        *c = at;
+        c->cluster->member = member;
+    }
+    return c;
 }
 
 /* Makes count planar contacts of n directions, with clusters if op has an operator; a status. *planar is to be released. */
 static int planar_create(struct planar **planar, size_t n, size_t count, const size_t *first, const struct delassus *op,
                          struct memory *m)
 {
-    struct planar *c = *planar = calloc(1, sizeof *c);
-    if (!c) {
+    struct layout b = {0};
+    lay_out_planar(&b, n, count);
+    if (!tribo_layout_zeros(&b)) {
         return TRIBO_ERR_MEMORY;
     }
+    struct planar *c = *planar = lay_out_planar(&b, n, count);
     c->references = 1;
     c->count = count;
-    c->first = malloc(count * sizeof *c->first);
-    c->role = calloc(n, 1);
-    c->own = calloc(count, sizeof *c->own);
-    if (!c->first || !c->role || !c->own) {
-        return TRIBO_ERR_MEMORY;
-    }
     memcpy(c->first, first, count * sizeof *first);
     for (size_t k = 0; k < count; k++) {
         c->role[first[k]] = ROLE_FIRST;
@@ -307,8 +299,8 @@ static int check_first(tribo_context *ctx, size_t count, const size_t *first, si
     for (size_t k = 0; k < count; k++) {
         if (ctx->n < 2 || first[k] > ctx->n - 2) {
             return tribo_fail(ctx, TRIBO_ERR_RANGE,
-                              "first[%zu] is contact %zu of %zu contact%s; a planar contact needs first and first + 1", k, first[k],
-                              ctx->n, plural(ctx->n));
+                              "first[%zu] is contact %zu of %zu contact%s; a planar contact needs first and first + 1", k,
+                              first[k], ctx->n, plural(ctx->n));
         }
         for (size_t i = first[k]; i < first[k] + 2; i++) {
             if (owner[i] != SIZE_MAX) {

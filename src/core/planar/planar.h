@@ -22,9 +22,9 @@ enum { ROLE_SCALAR, ROLE_FIRST, ROLE_SECOND };
  * neighbours. */
 struct cluster {
     size_t size;
-    size_t member; /* place of the first in members */
-    size_t r;      /* place of the first entry of R [size][size] */
-    int redundant; /* R is singular */
+    size_t *member; /* [size] */
+    double *r;      /* [size][size] R */
+    int redundant;  /* R is singular */
 };
 
 /* Shared by clones, and constant. Without an operator there are no clusters. */
@@ -34,10 +34,8 @@ struct planar {
     unsigned char *role;  /* [n] */
     double (*own)[3];     /* [count] R of the contact alone: 11, 12, 22 */
     size_t clusters, islands, largest;
-    struct cluster *cluster; /* [clusters] */
-    size_t *member;
-    double *r;
-    size_t *group_of; /* [n] that of the operator; TRIBO_ALONE for members of clusters */
+    struct cluster *cluster; /* [clusters]; the first has the memory of R of all */
+    size_t *group_of;        /* [n] that of the operator; TRIBO_ALONE for members of clusters */
 };
 
 /* Kept by a context from call to call, and workspace. */

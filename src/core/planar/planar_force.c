@@ -14,23 +14,17 @@
 
 /* ---------------------------------------------------------------------------------------------------------- problems */
 
-/* Takes the direction at place k into the problem; directions: 1, or 2 and 0 of a pair. */
-static void take_direction(tribo_context *ctx, size_t k, size_t directions, double shift)
-{
-    struct disc_qp *p = &ctx->plane.problem;
-    ctx->plane.shift[p->size] = shift;
-    ctx->plane.directions[p->size] = (unsigned char)directions;
-    ctx->plane.near[p->size++] = k;
-}
-
-/* Takes the directions of planar contact i, at place k, that have a limit. */
-static void take_pair(tribo_context *ctx, size_t k, size_t i, const double *shift)
+/* Takes the directions of contact i, at place k of its cluster, that have a limit into the problem. */
+static void take_contact(tribo_context *ctx, size_t k, size_t i, size_t directions, const double *shift)
 {
     const double *bound = ctx->follow.contacts.bound + i;
-    const int both = bound[0] > 0.0 && bound[1] > 0.0;
-    for (size_t d = 0; d < 2; d++) {
+    const int both = directions == 2 && bound[0] > 0.0 && bound[1] > 0.0;
+    for (size_t d = 0; d < directions; d++) {
+        struct disc_qp *p = &ctx->plane.problem;
         if (bound[d] > 0.0) {
-            take_direction(ctx, k + d, both ? 2 - 2 * d : 1, shift[d]);
+            ctx->plane.shift[p->size] = shift[d];
+            ctx->plane.directions[p->size] = (unsigned char)(both ? 2 - 2 * d : 1);
+            ctx->plane.near[p->size++] = k + d;
         } else {
             ctx->last.f[i + d] = 0.0;
         }
@@ -42,22 +36,15 @@ int tribo_planar_collect(tribo_context *ctx, const struct cluster *g, const doub
     const struct law *law = ctx->set.law;
     const struct contacts *c = &ctx->follow.contacts;
     ctx->plane.problem.size = 0;
-    for (size_t k = 0; k < g->size; k++) {
-        const size_t i = ctx->planar->member[g->member + k];
-        if (ctx->planar->role[i] == ROLE_FIRST) {
-            const struct slide s = tribo_planar_slide(c, i, v + i);
-            const double turn = law->relaxes ? 2.0 * s.speed : 0.0, shift[2] = {turn * s.n[0], turn * s.n[1]};
-            if (tribo_planar_near(law, &s)) {
-                take_pair(ctx, k, i, shift);
-            } else {
-                tribo_planar_slide_force(law, &s, c->limit + i, ctx->last.f + i);
-            }
-        } else if (ctx->planar->role[i] == ROLE_SCALAR) {
-            if (tribo_scalar_near(law, c, i, v[i])) {
-                take_direction(ctx, k, 1, law->relaxes ? 2.0 * quotient(v[i], tribo_epsilon_of(c, i)) : 0.0);
-            } else if (law->uses_feq && ctx->last.did.of[i] == STORED) {
-                ctx->last.f[i] = sliding(v[i], c->limit[i]);
-            }
+    for (size_t k = 0, directions; k < g->size; k += directions) {
+        const size_t i = g->member[k];
+        directions = tribo_directions(ctx, i);
+        const struct slide s = tribo_planar_slide(c, i, directions, v + i);
+        const double turn = law->relaxes ? 2.0 * s.speed : 0.0, shift[2] = {turn * s.n[0], turn * s.n[1]};
+        if (tribo_planar_near(law, &s)) {
+            take_contact(ctx, k, i, directions, shift);
+        } else {
+            tribo_planar_slide_force(law, &s, c->limit + i, ctx->last.f + i);
         }
     }
     return ctx->plane.problem.size > 0;
@@ -65,12 +52,11 @@ int tribo_planar_collect(tribo_context *ctx, const struct cluster *g, const doub
 
 struct unit tribo_planar_units(const tribo_context *ctx, const struct cluster *g)
 {
-    const size_t *member = ctx->planar->member + g->member;
     struct unit u = {0.0, 0.0};
     for (size_t e = 0; e < ctx->plane.problem.size; e++) {
         const size_t k = ctx->plane.near[e];
-        u.force = greater(u.force, tribo_planar_reach(ctx, member[k]));
-        u.r = greater(u.r, ctx->planar->r[g->r + k * (g->size + 1)]);
+        u.force = greater(u.force, tribo_planar_reach(ctx, g->member[k]));
+        u.r = greater(u.r, g->r[k * (g->size + 1)]);
     }
     return u;
 }
@@ -94,9 +80,9 @@ void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pu
 /* plane.pull = R f + a of the problem's directions, with the forces of all others. */
 static void find_pulls(tribo_context *ctx, const struct cluster *g, const double *a)
 {
-    const size_t n = ctx->plane.problem.size, *near = ctx->plane.near, *member = ctx->planar->member + g->member;
+    const size_t n = ctx->plane.problem.size, *near = ctx->plane.near, *member = g->member;
     for (size_t e = 0; e < n; e++) {
-        const double *row = ctx->planar->r + g->r + near[e] * g->size;
+        const double *row = g->r + near[e] * g->size;
         double sum = cut(a[member[near[e]]]);
         for (size_t j = 0, other = 0; j < g->size; j++) {
             const double bound = ctx->follow.contacts.bound[member[j]];
@@ -115,14 +101,14 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
 {
     struct disc_qp *p = &ctx->plane.problem;
     const struct unit u = tribo_planar_units(ctx, g);
-    const size_t n = p->size, *member = ctx->planar->member + g->member, *near = ctx->plane.near;
+    const size_t n = p->size, *member = g->member, *near = ctx->plane.near;
     int turned = 0;
     for (size_t e = 0; e < n; e++) {
         p->weight[e] = tribo_planar_reach(ctx, member[near[e]]) / u.force;
         p->y[e] = ctx->plane.y[member[near[e]]];
     }
     for (size_t e = 0; e < n; e++) {
-        const double *row = ctx->planar->r + g->r + near[e] * g->size;
+        const double *row = g->r + near[e] * g->size;
         for (size_t j = 0; j < n; j++) {
             const double r = row[near[j]] / u.r;
             p->s[e * n + j] = p->weight[e] * p->weight[j] * (j == e ? greater(r, NEXT_TO_IMMOVABLE) : r);
@@ -158,7 +144,7 @@ void tribo_planar_resume(tribo_context *ctx, const struct cluster *g, const doub
 static int solve_once(tribo_context *ctx, const struct cluster *g)
 {
     struct disc_qp *p = &ctx->plane.problem;
-    const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
+    const size_t *member = g->member, *near = ctx->plane.near;
     p->factor.qp.work.factorizations = 0;
     p->near_enough = ctx->plane.cuts ? NEAREST : TRIBO_NEAR_ENOUGH;
     int done = tribo_disc_solve(p);
@@ -209,32 +195,29 @@ static void count_skipped(tribo_context *ctx)
 
 /* ------------------------------------------------------------------------------------------------------------- f_eq */
 
-/* f_eq of the scalar contact at place k. */
-static double scalar_feq(const tribo_context *ctx, const struct cluster *g, size_t k, double a)
+/* feq [directions] of the contact at place k of a cluster, with a [directions]; 0 if it is open. */
+static void contact_feq(const tribo_context *ctx, const struct cluster *g, size_t k, size_t directions, const double *a,
+                        double *feq)
 {
-    return quotient(-tribo_planar_others(ctx, g, k, k, 1, a), ctx->planar->r[g->r + k * (g->size + 1)]);
+    const struct block block = tribo_block_at(g->r, g->size, k, directions);
+    double x[2] = {0.0, 0.0}, most = 0.0;
+    for (size_t d = 0; d < directions; d++) {
+        x[d] = tribo_planar_others(ctx, g, k + d, k, directions, a[d]);
+        most = greater(most, ctx->set.limit[g->member[k + d]]);
+    }
+    tribo_planar_push(&block, x);
+    for (size_t d = 0; d < directions; d++) {
+        feq[d] = most > 0.0 ? x[d] : 0.0;
+    }
 }
 
 void tribo_clusters_feq(tribo_context *ctx, const double *a)
 {
-    const struct planar *c = ctx->planar;
-    const double *limit = ctx->set.limit;
-    for (size_t q = 0; c && q < c->clusters; q++) {
-        const struct cluster *g = &c->cluster[q];
-        for (size_t k = 0; k < g->size; k++) {
-            const size_t i = c->member[g->member + k];
-            double *feq = ctx->last.feq + i;
-            if (c->role[i] == ROLE_SCALAR) {
-                *feq = limit[i] > 0.0 ? scalar_feq(ctx, g, k, a[i]) : 0.0;
-            } else if (c->role[i] == ROLE_FIRST && (limit[i] > 0.0 || limit[i + 1] > 0.0)) {
-                const double *r = c->r + g->r + k * (g->size + 1), own[3] = {r[0], r[1], r[g->size + 1]};
-                const struct block block = tribo_block_of(own);
-                feq[0] = tribo_planar_others(ctx, g, k, k, 2, a[i]);
-                feq[1] = tribo_planar_others(ctx, g, k + 1, k, 2, a[i + 1]);
-                tribo_planar_push(&block, feq);
-            } else if (c->role[i] == ROLE_FIRST) {
-                feq[0] = feq[1] = 0.0;
-            }
+    for (size_t q = 0; ctx->planar && q < ctx->planar->clusters; q++) {
+        const struct cluster *g = &ctx->planar->cluster[q];
+        for (size_t k = 0; k < g->size; k += tribo_directions(ctx, g->member[k])) {
+            const size_t i = g->member[k];
+            contact_feq(ctx, g, k, tribo_directions(ctx, i), a + i, ctx->last.feq + i);
         }
     }
 }
@@ -244,18 +227,19 @@ void tribo_clusters_feq(tribo_context *ctx, const double *a)
 /* Forces by the law of scalar contacts in the problem, from their f_eq, all of which are found before any force changes. */
 static void scalar_laws(tribo_context *ctx, const struct cluster *g, const double *v, const double *a)
 {
-    const size_t *member = ctx->planar->member + g->member, n = ctx->plane.problem.size;
+    const size_t *near = ctx->plane.near, n = ctx->plane.problem.size;
     for (size_t e = 0; e < n; e++) {
-        const size_t i = member[ctx->plane.near[e]];
-        if (ctx->planar->role[i] == ROLE_SCALAR) {
-            const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
-            ctx->last.feq[i] = scalar_feq(ctx, g, ctx->plane.near[e], a[i]);
-            ctx->set.law->force(&c, 1, v + i, ctx->last.feq + i, ctx->plane.v + i);
+        const size_t i = g->member[near[e]];
+        if (tribo_is_scalar(ctx, i)) {
+            contact_feq(ctx, g, near[e], 1, a + i, ctx->last.feq + i);
         }
     }
     for (size_t e = 0; e < n; e++) {
-        const size_t i = member[ctx->plane.near[e]];
-        ctx->last.f[i] = ctx->planar->role[i] == ROLE_SCALAR ? ctx->plane.v[i] : ctx->last.f[i];
+        const size_t i = g->member[near[e]];
+        if (tribo_is_scalar(ctx, i)) {
+            const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
+            ctx->set.law->force(&c, 1, v + i, ctx->last.feq + i, ctx->last.f + i);
+        }
     }
 }
 
@@ -291,7 +275,7 @@ int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a)
 
 int tribo_clusters_step(tribo_context *ctx, double dt, const double *v, const signed char *known)
 {
-    const double *limit = ctx->set.limit, none[2] = {0.0, 0.0};
+    const double none[2] = {0.0, 0.0};
     int status = TRIBO_OK;
     if (!ctx->planar) {
         return status;
@@ -300,13 +284,14 @@ int tribo_clusters_step(tribo_context *ctx, double dt, const double *v, const si
     for (size_t q = 0; !status && q < ctx->planar->clusters; q++) {
         const struct cluster *g = &ctx->planar->cluster[q];
         ctx->plane.problem.size = 0;
-        for (size_t k = 0; k < g->size; k++) {
-            const size_t i = ctx->planar->member[g->member + k];
-            ctx->plane.a[i] = quotient(v[i], dt);
-            if (ctx->planar->role[i] == ROLE_FIRST) {
-                take_pair(ctx, k, i, none);
-            } else if (ctx->planar->role[i] == ROLE_SCALAR && limit[i] > 0.0 && !(known && known[i])) {
-                take_direction(ctx, k, 1, 0.0);
+        for (size_t k = 0, directions; k < g->size; k += directions) {
+            const size_t i = g->member[k];
+            directions = tribo_directions(ctx, i);
+            for (size_t d = i; d < i + directions; d++) {
+                ctx->plane.a[d] = quotient(v[d], dt);
+            }
+            if (directions == 2 || !(known && known[i])) {
+                take_contact(ctx, k, i, directions, none);
             }
         }
         if (ctx->plane.problem.size) {
@@ -319,13 +304,11 @@ int tribo_clusters_step(tribo_context *ctx, double dt, const double *v, const si
 
 void tribo_clusters_feel(const tribo_context *ctx, double *feels)
 {
-    const struct planar *c = ctx->planar;
-    for (size_t q = 0; c && q < c->clusters; q++) {
-        const struct cluster *g = &c->cluster[q];
+    for (size_t q = 0; ctx->planar && q < ctx->planar->clusters; q++) {
+        const struct cluster *g = &ctx->planar->cluster[q];
         for (size_t k = 0; k < g->size; k++) {
-            const size_t i = c->member[g->member + k];
-            if (c->role[i] == ROLE_SCALAR) {
-                feels[i] = tribo_planar_others(ctx, g, k, k, 1, 0.0);
+            if (tribo_is_scalar(ctx, g->member[k])) {
+                feels[g->member[k]] = tribo_planar_others(ctx, g, k, k, 1, 0.0);
             }
         }
     }
@@ -365,7 +348,7 @@ size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const
     for (size_t q = 0; c && q < c->clusters; q++) {
         const struct cluster *g = &c->cluster[q];
         for (size_t k = 0; k < g->size; k++) {
-            const size_t i = c->member[g->member + k];
+            const size_t i = g->member[k];
             if (c->role[i] == ROLE_FIRST && reaches_limits(ctx, i)) {
                 double forward = 0.0; /* v_end'v */
                 for (size_t d = 0; d < 2; d++) {
@@ -403,11 +386,11 @@ static int is_beyond(const double *limit, const double *feq)
 void tribo_planar_given(const tribo_context *ctx, size_t k, const double *v, const double *feq, struct given *g)
 {
     const size_t i = ctx->planar->first[k];
-    g->c = tribo_planar_view(ctx, i, g->limit);
-    g->s = tribo_planar_slide(&g->c, 0, v);
+    g->c = tribo_planar_view(ctx, i, 2, g->limit);
+    g->s = tribo_planar_slide(&g->c, 0, 2, v);
     g->near = tribo_planar_near(ctx->set.law, &g->s);
     if (ctx->set.breaking) {
-        tribo_planar_limits(ctx, i, g->near && !is_beyond(g->limit, feq), v, g->limit);
+        tribo_planar_limits(ctx, i, 2, g->near && !is_beyond(g->limit, feq), v, g->limit);
     }
 }
 
@@ -440,8 +423,8 @@ int tribo_plane_check_feq(const tribo_context *ctx, tribo_context *note, const d
     for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
         double limit[2];
         const size_t i = ctx->planar->first[k];
-        const struct contacts c = tribo_planar_view(ctx, i, limit);
-        const struct slide s = tribo_planar_slide(&c, 0, v + i);
+        const struct contacts c = tribo_planar_view(ctx, i, 2, limit);
+        const struct slide s = tribo_planar_slide(&c, 0, 2, v + i);
         for (size_t j = i; tribo_planar_near(ctx->set.law, &s) && j < i + 2; j++) {
             if (!isfinite(feq[j])) {
                 return tribo_fail(note, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", j, feq[j]);
@@ -479,9 +462,9 @@ double tribo_plane_rate(const tribo_context *ctx)
     double rate = 0.0;
     for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
         double limit[2];
-        const struct contacts c = tribo_planar_view(ctx, ctx->planar->first[k], limit);
+        const struct contacts c = tribo_planar_view(ctx, ctx->planar->first[k], 2, limit);
         const double *own = ctx->planar->own[k];
-        const struct slide s = tribo_planar_slide(&c, 0, none);
+        const struct slide s = tribo_planar_slide(&c, 0, 2, none);
         const double weighed[3] = {product(s.part[0], product(s.part[0], own[0])), product(s.part[0], product(s.part[1], own[1])),
                                    product(s.part[1], product(s.part[1], own[2]))};
         const double far = s.part[0] == 1.0 ? c.bound[0] : c.bound[1];

@@ -4,40 +4,37 @@
 /* Contacts nearer to the edge of their band have lenses whose inside is rounding. */
 #define EDGE (1.0 - 16.0 * DBL_EPSILON)
 
-struct slide tribo_planar_slide(const struct contacts *c, size_t i, const double *v)
+struct slide tribo_planar_slide(const struct contacts *c, size_t i, size_t directions, const double *v)
 {
-    const double reach[2] = {product(c->bound[i], tribo_epsilon_of(c, i)), product(c->bound[i + 1], tribo_epsilon_of(c, i + 1))};
-    const size_t far = reach[1] > reach[0] || (reach[1] == reach[0] && c->bound[i + 1] > c->bound[i]) ? i + 1 : i;
-    struct slide s = {.open = !(c->bound[i] > 0.0 || c->bound[i + 1] > 0.0), .far = far - i, .epsilon = tribo_epsilon_of(c, far)};
-    for (size_t k = 0; k < 2 && !s.open; k++) {
-        s.part[k] = c->bound[i + k] == c->bound[far] ? 1.0 : quotient(c->bound[i + k], c->bound[far]);
+    struct slide s = {.directions = directions, .open = 1};
+    double longest = -1.0;
+    for (size_t k = 0; k < directions; k++) {
+        const double way = product(c->bound[i + k], tribo_epsilon_of(c, i + k));
+        s.far = way > longest || (way == longest && c->bound[i + k] > c->bound[i]) ? k : s.far;
+        longest = greater(longest, way);
+        s.open &= !(c->bound[i + k] > 0.0);
+    }
+    const double bound = c->bound[i + s.far];
+    for (size_t k = 0; k < directions && !s.open; k++) {
+        s.part[k] = c->bound[i + k] == bound ? 1.0 : quotient(c->bound[i + k], bound);
         s.x[k] = product(s.part[k], v[k]);
     }
     s.length = tribo_length(2, s.x);
-    for (size_t k = 0; k < 2 && s.length > 0.0; k++) {
+    for (size_t k = 0; k < directions && s.length > 0.0; k++) {
         s.n[k] = s.x[k] / s.length;
     }
+    s.epsilon = tribo_epsilon_of(c, i + s.far);
     s.speed = quotient(s.length, s.epsilon);
     return s;
 }
 
-/* speed: |v|/epsilon; rests: v = 0. */
-static int is_near(const struct law *law, double speed, int rests)
-{
-    return law->uses_feq && (!law->sticks_in_band ? rests : law->relaxes ? speed < EDGE : speed <= 1.0);
-}
-
 int tribo_planar_near(const struct law *law, const struct slide *s)
 {
-    return !s->open && is_near(law, s->speed, s->length == 0.0);
+    const int near = !law->sticks_in_band ? s->length == 0.0 : law->relaxes ? s->speed < EDGE : s->speed <= 1.0;
+    return !s->open && law->uses_feq && near;
 }
 
-int tribo_scalar_near(const struct law *law, const struct contacts *c, size_t i, double v)
-{
-    return c->limit[i] > 0.0 && is_near(law, quotient(fabs(v), tribo_epsilon_of(c, i)), v == 0.0);
-}
-
-/* Laws that do not use f_eq are those of a scalar contact, along the direction of motion. */
+/* Laws that do not use f_eq have the force of a scalar contact with limit and epsilon 1, along the direction of motion. */
 double tribo_planar_carried(const struct law *law, double speed, double *slope)
 {
     const double one = 1.0, two = 2.0, none = 0.0;
@@ -56,21 +53,26 @@ void tribo_planar_slide_force(const struct law *law, const struct slide *s, cons
 {
     double ignored;
     const double carried = tribo_planar_carried(law, s->speed, &ignored);
-    for (size_t k = 0; k < 2; k++) {
+    for (size_t k = 0; k < s->directions; k++) {
         f[k] = carried * s->n[k] * limit[k];
     }
 }
 
 double tribo_planar_others(const tribo_context *ctx, const struct cluster *g, size_t k, size_t from, size_t directions, double a)
 {
-    const size_t *member = ctx->planar->member + g->member;
-    const double *row = ctx->planar->r + g->r + k * g->size;
+    const double *row = g->r + k * g->size;
     double sum = cut(a);
     for (size_t j = 0; j < g->size; j++) {
-        const double bound = ctx->follow.contacts.bound[member[j]];
-        sum += j - from < directions ? 0.0 : row[j] * clamp(tribo_force_of(ctx, member[j]), -bound, bound);
+        const double bound = ctx->follow.contacts.bound[g->member[j]];
+        sum += j - from < directions ? 0.0 : row[j] * clamp(tribo_force_of(ctx, g->member[j]), -bound, bound);
     }
     return sum;
+}
+
+struct block tribo_block_at(const double *r, size_t size, size_t k, size_t directions)
+{
+    const double *row = r + k * (size + 1), own[3] = {row[0], directions == 2 ? row[1] : 0.0, row[(directions - 1) * (size + 1)]};
+    return tribo_block_of(own);
 }
 
 struct block tribo_block_of(const double *own)

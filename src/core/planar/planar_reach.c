@@ -28,13 +28,13 @@ struct reach_place {
 static inline struct reach_place reach_at(const tribo_context *ctx, const struct cluster *g, size_t e)
 {
     const size_t k = ctx->plane.near[e];
-    return (struct reach_place){ctx->planar->r[g->r + k * (g->size + 1)], ctx->planar->member[g->member + k]};
+    return (struct reach_place){g->r[k * (g->size + 1)], g->member[k]};
 }
 
 void tribo_planar_arrange(tribo_context *ctx, const struct cluster *g)
 {
     struct disc_qp *p = &ctx->plane.problem;
-    const size_t *member = ctx->planar->member + g->member;
+    const size_t *member = g->member;
     const double *bound = ctx->follow.contacts.bound, *radius = ctx->plane.radius;
     const unsigned char *directions = ctx->plane.directions;
     ctx->plane.cuts = 0;
@@ -58,7 +58,7 @@ void tribo_planar_arrange(tribo_context *ctx, const struct cluster *g)
 /* Gives the contact at e of the problem the reaches wanted [directions], as far as its limits exceed them. */
 static void set_radius(tribo_context *ctx, const struct cluster *g, size_t e, size_t directions, const double *wanted)
 {
-    const size_t i = ctx->planar->member[g->member + ctx->plane.near[e]];
+    const size_t i = g->member[ctx->plane.near[e]];
     const double *bound = ctx->follow.contacts.bound + i;
     const int pair = directions == 2, apart = pair && (wanted[0] < BESIDE * bound[0] || wanted[1] < BESIDE * bound[1]);
     for (size_t k = 0; k < directions; k++) {
@@ -93,11 +93,11 @@ static void find_asks(const tribo_context *ctx, const struct cluster *g, double 
     for (size_t round = 0; grown && round < n; round++) {
         grown = 0;
         for (size_t k = 0; k < n; k++) {
-            const double *row = ctx->planar->r + g->r + near[k] * g->size, before = ask[k];
+            const double *row = g->r + near[k] * g->size, before = ask[k];
             for (size_t j = 0; j < n; j++) {
                 ask[k] = j == k ? ask[k] : greater(ask[k], quotient(product(fabs(row[near[j]]), ask[j]), row[near[k]]));
             }
-            ask[k] = lesser(ask[k], bound[ctx->planar->member[g->member + near[k]]]);
+            ask[k] = lesser(ask[k], bound[g->member[near[k]]]);
             grown |= ask[k] > before;
         }
     }
@@ -146,7 +146,7 @@ void tribo_planar_estimate(tribo_context *ctx, const struct cluster *g)
 static int planar_reach_bends(const tribo_context *ctx, const struct cluster *g, size_t e, size_t other)
 {
     const struct disc_qp *p = &ctx->plane.problem;
-    const size_t *member = ctx->planar->member + g->member, i = member[ctx->plane.near[e]], j = member[ctx->plane.near[other]];
+    const size_t *member = g->member, i = member[ctx->plane.near[e]], j = member[ctx->plane.near[other]];
     const double part = quotient(tribo_planar_reach(ctx, j), ctx->follow.contacts.bound[j]);
     return p->place[e] != LENS_INSIDE && !tribo_planar_cut(ctx, i) && tribo_planar_cut(ctx, j) &&
            fabs(p->gradient[e]) * part * part > STRAIGHT * p->s[other * (p->size + 1)];
@@ -155,7 +155,7 @@ static int planar_reach_bends(const tribo_context *ctx, const struct cluster *g,
 size_t tribo_planar_widen(tribo_context *ctx, const struct cluster *g)
 {
     const struct disc_qp *p = &ctx->plane.problem;
-    const size_t *member = ctx->planar->member + g->member;
+    const size_t *member = g->member;
     size_t widened = 0;
     for (size_t e = 0; e < p->size; e += ctx->plane.directions[e]) {
         const size_t count = ctx->plane.directions[e];

@@ -4,19 +4,19 @@
 #include "core/static.h"
 #include "parts.h"
 
-void tribo_planar_limits(const tribo_context *ctx, size_t i, int holds, const double *v, double *limit)
+void tribo_planar_limits(const tribo_context *ctx, size_t i, size_t directions, int holds, const double *v, double *limit)
 {
-    const double speed = tribo_length(2, v);
-    for (size_t k = 0; k < 2; k++) {
+    const double speed = tribo_length((int)directions, v);
+    for (size_t k = 0; k < directions; k++) {
         limit[k] = holds && ctx->set.breaking == DROPS ? ctx->follow.hold[i + k] : tribo_limit_at(ctx, i + k, speed);
     }
 }
 
-struct contacts tribo_planar_view(const tribo_context *ctx, size_t i, double *limit)
+struct contacts tribo_planar_view(const tribo_context *ctx, size_t i, size_t directions, double *limit)
 {
     struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
     if (ctx->set.breaking) {
-        tribo_copy(limit, ctx->follow.hold + i, 2);
+        tribo_copy(limit, ctx->follow.hold + i, directions);
         c.limit = c.bound = limit;
     }
     return c;
@@ -24,20 +24,13 @@ struct contacts tribo_planar_view(const tribo_context *ctx, size_t i, double *li
 
 void tribo_planar_hold(tribo_context *ctx, const struct cluster *g, const double *v)
 {
-    const size_t *member = ctx->planar->member + g->member;
-    for (size_t k = 0; k < g->size; k++) {
-        const size_t i = member[k];
-        double *now = ctx->follow.now + i, limit[2];
-        if (ctx->planar->role[i] == ROLE_FIRST) {
-            const struct contacts c = tribo_planar_view(ctx, i, limit);
-            const struct slide s = tribo_planar_slide(&c, 0, v + i);
-            tribo_planar_limits(ctx, i, tribo_planar_near(ctx->set.law, &s), v + i, now);
-        } else if (ctx->planar->role[i] == ROLE_SCALAR) {
-            *now = ctx->follow.hold[i];
-            if (ctx->set.breaking == FALLS || !tribo_scalar_near(ctx->set.law, &ctx->follow.contacts, i, v[i])) {
-                *now = tribo_limit_at(ctx, i, fabs(v[i]));
-            }
-        }
+    for (size_t k = 0, directions; k < g->size; k += directions) {
+        const size_t i = g->member[k];
+        double limit[2];
+        directions = tribo_directions(ctx, i);
+        const struct contacts c = tribo_planar_view(ctx, i, directions, limit);
+        const struct slide s = tribo_planar_slide(&c, 0, directions, v + i);
+        tribo_planar_limits(ctx, i, directions, tribo_planar_near(ctx->set.law, &s), v + i, ctx->follow.now + i);
     }
 }
 
@@ -48,10 +41,8 @@ void tribo_planar_hold(tribo_context *ctx, const struct cluster *g, const double
  * gradient. */
 static int is_pulled_beyond(const struct disc_qp *p, size_t e)
 {
-    const int plane = p->wide[e] == 2;
-    const double *s = p->s + e * (p->size + 1), own[3] = {s[0], plane ? s[1] : 0.0, plane ? s[p->size + 1] : s[0]};
-    const struct block b = tribo_block_of(own);
-    double feq[2] = {p->gradient[e], plane ? p->gradient[e + 1] : 0.0};
+    const struct block b = tribo_block_at(p->s, p->size, e, p->wide[e]);
+    double feq[2] = {p->gradient[e], p->wide[e] == 2 ? p->gradient[e + 1] : 0.0};
     tribo_planar_push(&b, feq);
     for (size_t k = 0; k < p->wide[e]; k++) {
         feq[k] += p->y[e + k] + p->shift[e + k];
@@ -67,7 +58,7 @@ static int is_pulled_beyond(const struct disc_qp *p, size_t e)
 size_t tribo_planar_break(tribo_context *ctx, const struct cluster *g, double dt, const double *a)
 {
     const struct disc_qp *p = &ctx->plane.problem;
-    const size_t *member = ctx->planar->member + g->member;
+    const size_t *member = g->member;
     double *now = ctx->follow.now, *end = ctx->plane.v; /* velocities at the end */
     size_t broken = 0;
     for (size_t k = 0; k < g->size; k++) {

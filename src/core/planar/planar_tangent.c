@@ -24,55 +24,54 @@ static void resume(tribo_context *ctx, const struct cluster *g)
     }
 }
 
-/* along [2] = v/|v|; at rest, where |v| has a kink, along/|along|, the direction in which a contact begins to slide, or 0. */
-static void heading(const double *v, double *along)
+/* along [directions] = v/|v|; at rest, where |v| has a kink, along/|along|, the direction in which a contact begins to slide,
+ * or 0. Returns |v|. */
+static double heading(size_t directions, const double *v, double *along)
 {
-    const int moves = tribo_length(2, v) > 0.0;
-    for (size_t k = 0; k < 2; k++) {
-        along[k] = moves ? v[k] : along[k];
+    const double speed = tribo_length((int)directions, v);
+    for (size_t k = 0; k < directions; k++) {
+        along[k] = speed > 0.0 ? v[k] : along[k];
     }
-    const double length = tribo_length(2, along);
-    for (size_t k = 0; k < 2; k++) {
+    const double length = tribo_length((int)directions, along);
+    for (size_t k = 0; k < directions; k++) {
         along[k] = length > 0.0 ? along[k] / length : 0.0;
     }
-}
-
-/* Returns d|v| of the planar contact that begins with direction i. */
-static double faster_by(const tribo_context *ctx, const struct cluster *g, size_t i, const double *dv)
-{
-    const struct disc_qp *p = &ctx->plane.problem;
-    const size_t *member = ctx->planar->member + g->member;
-    double along[2] = {0.0, 0.0};
-    for (size_t e = 0; e < p->size; e += p->wide[e]) {
-        for (size_t k = e; k < e + p->wide[e] && p->place[e] == LENS_ON_DISC; k++) {
-            const size_t at = member[ctx->plane.near[k]];
-            if (at - i < 2) {
-                along[at - i] = quotient(p->gradient[k], tribo_planar_reach(ctx, at));
-            }
-        }
-    }
-    heading(ctx->plane.v + i, along);
-    return along[0] * tribo_entry(dv, i) + along[1] * tribo_entry(dv, i + 1);
+    return speed;
 }
 
 /* Returns d with the limits of a cluster, which change with |v| if they fall with speed. */
 static struct change with_limits(tribo_context *ctx, const struct cluster *g, const struct change *d)
 {
-    const size_t *member = ctx->planar->member + g->member;
+    const struct disc_qp *p = &ctx->plane.problem;
     double *dlimit = ctx->plane.dlimit;
     if (ctx->set.breaking != FALLS) {
         return *d;
     }
     for (size_t k = 0; k < g->size; k++) {
-        const size_t i = member[k], first = i - (ctx->planar->role[i] == ROLE_SECOND), directions = tribo_directions(ctx, i);
-        const double speed = tribo_length((int)directions, ctx->plane.v + first), rate = tribo_limit_rate(ctx, i, speed);
-        const double alone = ctx->plane.v[i] < 0.0 ? -tribo_entry(d->v, i) : tribo_entry(d->v, i);
-        dlimit[i] = tribo_entry(d->limit, i) + product(rate, directions == 1 ? alone : faster_by(ctx, g, first, d->v));
+        dlimit[g->member[k]] = 0.0;
+    }
+    for (size_t e = 0; e < p->size; e += p->wide[e]) {
+        for (size_t k = e; k < e + p->wide[e] && p->place[e] == LENS_ON_DISC; k++) {
+            const size_t i = g->member[ctx->plane.near[k]];
+            dlimit[i] = quotient(p->gradient[k], tribo_planar_reach(ctx, i));
+        }
+    }
+    for (size_t k = 0, directions; k < g->size; k += directions) {
+        const size_t i = g->member[k];
+        directions = tribo_directions(ctx, i);
+        double along[2] = {dlimit[i], directions == 2 ? dlimit[i + 1] : 0.0}, faster = 0.0;
+        const double speed = heading(directions, ctx->plane.v + i, along);
+        for (size_t j = 0; j < directions; j++) {
+            faster += along[j] * tribo_entry(d->v, i + j);
+        }
+        for (size_t j = i; j < i + directions; j++) {
+            dlimit[j] = tribo_entry(d->limit, j) + product(tribo_limit_rate(ctx, j, speed), faster);
+        }
     }
     return (struct change){d->v, d->a, dlimit};
 }
 
-/* Changes of one planar contact; epsilon: d(epsilon)/epsilon. */
+/* Changes of one contact; epsilon: d(epsilon)/epsilon. */
 struct turn {
     double v[2], limit[2], epsilon;
 };
@@ -80,9 +79,11 @@ struct turn {
 static struct turn planar_tangent_turn_of(const tribo_context *ctx, size_t i, const struct slide *s, const struct change *d)
 {
     const struct contacts *c = &ctx->follow.contacts;
-    struct turn t = {{tribo_entry(d->v, i), tribo_entry(d->v, i + 1)},
-                     {tribo_limit_change(ctx, d, i), tribo_limit_change(ctx, d, i + 1)},
-                     0.0};
+    struct turn t = {{0.0, 0.0}, {0.0, 0.0}, 0.0};
+    for (size_t k = 0; k < s->directions; k++) {
+        t.v[k] = tribo_entry(d->v, i + k);
+        t.limit[k] = tribo_limit_change(ctx, d, i + k);
+    }
     t.epsilon = s->open || !c->follows ? 0.0 : quotient(t.limit[s->far], c->limit[i + s->far]);
     return t;
 }
@@ -90,22 +91,22 @@ static struct turn planar_tangent_turn_of(const tribo_context *ctx, size_t i, co
 /* dx [2] = the change of part v of a slide. */
 static void turn_slide(const struct slide *s, const double *limit, const double *v, const struct turn *t, double *dx)
 {
-    for (size_t k = 0; k < 2; k++) {
+    for (size_t k = 0; k < s->directions; k++) {
         const double wider = t->limit[k] - product(s->part[k], t->limit[s->far]);
         const double part = s->open || k == s->far ? 0.0 : quotient(wider, limit[s->far]);
         dx[k] = product(s->part[k], t->v[k]) + product(part, v[k]);
     }
 }
 
-/* df [2] of a planar contact that is not near stick. */
+/* df [directions] of a contact that is not near stick. */
 static void turn_force(const struct law *law, const struct slide *s, const double *limit, const double *v, const struct turn *t,
                        double *df)
 {
-    double slope, dx[2];
+    double slope, dx[2] = {0.0, 0.0};
     const double carried = tribo_planar_carried(law, s->speed, &slope);
     turn_slide(s, limit, v, t, dx);
     const double along = s->n[0] * dx[0] + s->n[1] * dx[1];
-    for (size_t k = 0; k < 2; k++) {
+    for (size_t k = 0; k < s->directions; k++) {
         const double turn = s->length > 0.0 ? carried * quotient(dx[k] - s->n[k] * along, s->length) : 0.0;
         const double faster = quotient(s->length > 0.0 ? s->n[k] * along : dx[k], s->epsilon);
         const double grow = slope * (faster - product(product(s->speed, t->epsilon), s->n[k]));
@@ -119,33 +120,25 @@ static void turn_shift(const struct slide *s, const double *limit, const double 
 {
     double dx[2];
     turn_slide(s, limit, v, t, dx);
-    for (size_t k = 0; k < 2; k++) {
+    for (size_t k = 0; k < s->directions; k++) {
         dshift[k] = 2.0 * quotient(dx[k], s->epsilon);
     }
 }
 
-/* df of the contacts of a cluster that are not near stick; of the others its part that follows limits. by_v: d with_limits; the
- * derivatives of scalar laws have that part already. */
-static void products_of_slips(const tribo_context *ctx, const struct cluster *g, const struct change *d,
-                              const struct change *by_v, double *df)
+/* df of the contacts of a cluster that are not near stick; of the others its part that follows limits. */
+static void products_of_slips(const tribo_context *ctx, const struct cluster *g, const struct change *d, double *df)
 {
-    const size_t *member = ctx->planar->member + g->member;
     const struct disc_qp *p = &ctx->plane.problem;
-    for (size_t k = 0; k < g->size; k++) {
-        const size_t i = member[k];
-        if (ctx->planar->role[i] == ROLE_FIRST) {
-            const struct contacts *c = &ctx->follow.contacts;
-            const struct slide s = tribo_planar_slide(c, i, ctx->plane.v + i);
-            const struct turn t = planar_tangent_turn_of(ctx, i, &s, by_v);
-            turn_force(ctx->set.law, &s, c->limit + i, ctx->plane.v + i, &t, df + i);
-        } else if (ctx->planar->role[i] == ROLE_SCALAR) {
-            const struct tangent *law = &ctx->last.tangent[i];
-            df[i] = product(law->dv, tribo_entry(d->v, i)) + product(law->dlimit, tribo_limit_change(ctx, d, i));
-        }
+    const struct contacts *c = &ctx->follow.contacts;
+    for (size_t k = 0; k < g->size; k += tribo_directions(ctx, g->member[k])) {
+        const size_t i = g->member[k];
+        const struct slide s = tribo_planar_slide(c, i, tribo_directions(ctx, i), ctx->plane.v + i);
+        const struct turn t = planar_tangent_turn_of(ctx, i, &s, d);
+        turn_force(ctx->set.law, &s, c->limit + i, ctx->plane.v + i, &t, df + i);
     }
     for (size_t e = 0; e < p->size; e++) {
-        const size_t i = member[ctx->plane.near[e]];
-        df[i] = tribo_planar_cut(ctx, i) ? 0.0 : product(p->y[e], tribo_limit_change(ctx, by_v, i));
+        const size_t i = g->member[ctx->plane.near[e]];
+        df[i] = tribo_planar_cut(ctx, i) ? 0.0 : product(p->y[e], tribo_limit_change(ctx, d, i));
     }
 }
 
@@ -153,20 +146,17 @@ static void products_of_slips(const tribo_context *ctx, const struct cluster *g,
 #define STEEPEST 1e150
 
 /* dshift = the change of the shift of the contact at e of the problem. */
-static void shift_change(const tribo_context *ctx, const size_t *member, size_t e, const struct change *d, double *dshift)
+static void shift_change(const tribo_context *ctx, const struct cluster *g, size_t e, const struct change *d, double *dshift)
 {
     const struct contacts *c = &ctx->follow.contacts;
     const struct disc_qp *p = &ctx->plane.problem;
-    const size_t i = member[ctx->plane.near[e]], first = i - (ctx->planar->role[i] == ROLE_SECOND);
+    const size_t i = g->member[ctx->plane.near[e]], first = i - (ctx->planar->role[i] == ROLE_SECOND);
     double change[2] = {0.0, 0.0}, epsilon = 0.0;
-    if (ctx->set.law->relaxes && ctx->planar->role[i] != ROLE_SCALAR) {
-        const struct slide s = tribo_planar_slide(c, first, ctx->plane.v + first);
+    if (ctx->set.law->relaxes) {
+        const struct slide s = tribo_planar_slide(c, first, tribo_directions(ctx, first), ctx->plane.v + first);
         const struct turn t = planar_tangent_turn_of(ctx, first, &s, d);
         turn_shift(&s, c->limit + first, ctx->plane.v + first, &t, change);
         epsilon = t.epsilon;
-    } else if (ctx->set.law->relaxes) {
-        epsilon = c->follows ? tribo_limit_growth(ctx, d, i) : 0.0;
-        change[0] = product(2.0 * quotient(1.0, tribo_epsilon_of(c, i)), tribo_entry(d->v, i));
     }
     for (size_t k = 0; k < p->wide[e]; k++) {
         const double by_v = change[i + k - first], part = tribo_planar_cut(ctx, i + k) ? ctx->plane.radius[i + k] : 0.0;
@@ -182,9 +172,9 @@ static void find_rhs(const tribo_context *ctx, const struct cluster *g, const st
     const struct disc_qp *p = &ctx->plane.problem;
     double *turn = p->slide;
     const struct unit u = tribo_planar_units(ctx, g);
-    const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near, n = p->size;
+    const size_t *member = g->member, *near = ctx->plane.near, n = p->size;
     for (size_t e = 0; e < n; e++) {
-        const double *row = ctx->planar->r + g->r + near[e] * g->size;
+        const double *row = g->r + near[e] * g->size;
         double sum = cut(tribo_entry(d->a, member[near[e]]));
         for (size_t j = 0; j < g->size; j++) {
             sum += product(row[j], df[member[j]]);
@@ -202,20 +192,20 @@ static void find_rhs(const tribo_context *ctx, const struct cluster *g, const st
 /* Laws with a memory have another derivative where |f_eq| exceeds the limit: corrects df of scalar contacts, from f_eq. */
 static void apply_laws(tribo_context *ctx, const struct cluster *g, const struct change *d, double *df)
 {
-    const size_t *member = ctx->planar->member + g->member;
+    const size_t *member = g->member;
     double *before = ctx->plane.other;
     for (size_t k = 0; k < g->size; k++) {
         before[member[k]] = df[member[k]];
     }
     for (size_t e = 0; e < ctx->plane.problem.size; e++) {
         const size_t k = ctx->plane.near[e], i = member[k];
-        const double *row = ctx->planar->r + g->r + k * g->size;
+        const double *row = g->r + k * g->size;
         const struct tangent *law = &ctx->last.tangent[i];
         double sum = divisible(tribo_entry(d->a, i), row[k]);
         for (size_t j = 0; j < g->size; j++) {
             sum += j == k ? 0.0 : product(row[j], before[member[j]]);
         }
-        if (ctx->planar->role[i] == ROLE_SCALAR) {
+        if (tribo_is_scalar(ctx, i)) {
             df[i] = product(law->dv, tribo_entry(d->v, i)) + product(law->dlimit, tribo_limit_change(ctx, d, i)) -
                     product(law->dfeq, quotient(cut(sum), row[k]));
         }
@@ -226,12 +216,12 @@ static void apply_laws(tribo_context *ctx, const struct cluster *g, const struct
 static void cluster_product(tribo_context *ctx, const struct cluster *g, const struct change *d, double *df)
 {
     struct disc_qp *p = &ctx->plane.problem;
-    const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
+    const size_t *member = g->member, *near = ctx->plane.near;
     double *dshift = p->from, *dy = p->best, *rhs = p->noise, *move = p->aim;
     const struct change by_v = with_limits(ctx, g, d);
-    products_of_slips(ctx, g, d, &by_v, df);
+    products_of_slips(ctx, g, &by_v, df);
     for (size_t e = 0; e < p->size; e += p->wide[e]) {
-        shift_change(ctx, member, e, &by_v, dshift + e);
+        shift_change(ctx, g, e, &by_v, dshift + e);
         tribo_disc_drag(p, e, dshift + e, dy + e);
     }
     find_rhs(ctx, g, &by_v, df, dshift, dy, rhs);
@@ -252,7 +242,7 @@ void tribo_clusters_columns(tribo_context *ctx, double *df_dv, double *df_da)
     const struct change by[2] = {{unit, NULL, NULL}, {NULL, unit, NULL}};
     for (size_t q = 0; ctx->planar && q < ctx->planar->clusters; q++) {
         const struct cluster *g = &ctx->planar->cluster[q];
-        const size_t *member = ctx->planar->member + g->member;
+        const size_t *member = g->member;
         resume(ctx, g);
         for (size_t k = 0; k < g->size; k++) {
             unit[member[k]] = 1.0;
@@ -310,12 +300,12 @@ static void turn_near(struct disc_qp *p, const struct given *g, const double *v,
 static struct turn turn_limits(const tribo_context *ctx, size_t i, const struct given *g, const struct disc_qp *p,
                                const double *v, struct turn t)
 {
-    const double *set = ctx->set.breaking ? ctx->follow.cut_limit + i : g->c.limit, speed = tribo_length(2, v);
+    const double *set = ctx->set.breaking ? ctx->follow.cut_limit + i : g->c.limit;
     double along[2] = {0.0, 0.0};
     for (size_t k = 0; p && p->place[0] == LENS_ON_DISC && k < 2; k++) {
         along[k] = g->c.bound[k] > 0.0 ? quotient(p->gradient[k], g->c.bound[k]) : 0.0;
     }
-    heading(v, along);
+    const double speed = heading(2, v, along);
     const double faster = along[0] * t.v[0] + along[1] * t.v[1];
     t.epsilon = g->c.scales && !g->s.open ? quotient(t.limit[g->s.far], set[g->s.far]) : 0.0;
     for (size_t k = 0; k < 2 && ctx->set.breaking; k++) {
