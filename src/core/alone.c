@@ -26,15 +26,11 @@ static inline signed char alone_slip_of(double f, double edge)
     return (signed char)(int)(forth - back); /* doubles, as wide as f: vectors of them stay whole */
 }
 
-/* slip [n] by forces f [n]; a contact slides at holds times its limit; alike: all have the first limit. */
-TRIBO_SIMD static void alone_find_slips(size_t n, double holds, int alike, const double *restrict limit, const double *restrict f,
+/* slip [n] by forces f [n]; a contact slides at holds times its limit. */
+TRIBO_SIMD static void alone_find_slips(size_t n, double holds, const double *restrict limit, const double *restrict f,
                                         signed char *restrict slip)
 {
-    const double edge = holds * *limit;
-    for (size_t i = 0; alike && i < n; i++) {
-        slip[i] = alone_slip_of(f[i], edge);
-    }
-    for (size_t i = 0; !alike && i < n; i++) {
+    for (size_t i = 0; i < n; i++) {
         slip[i] = alone_slip_of(f[i], holds * limit[i]);
     }
 }
@@ -75,7 +71,7 @@ static void alone_find_all(tribo_context *ctx, const struct call *call, double *
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const struct chunk *chunk = &ctx->follow.chunk[k];
         const size_t n = tribo_chunk_size(ctx, i);
-        const double *limit = ctx->follow.contacts.limit + i;
+        const double *limit = tribo_chunk_contacts(ctx, i).limit;
         double *force = few ? ctx->last.f + i : tribo_stream_room(&to);
         signed char *slip = ctx->last.did.of + i;
         const int slide = call->find(ctx, call, k, force);
@@ -86,7 +82,7 @@ static void alone_find_all(tribo_context *ctx, const struct call *call, double *
         if (slide && chunk->least > 0.0) {
             tribo_find_directions(n, call->v + i, slip);
         } else {
-            alone_find_slips(n, call->holds, chunk->alike, limit, force, slip);
+            alone_find_slips(n, call->holds, limit, force, slip);
         }
         for (size_t j = 0; chunk->least == 0.0 && j < n; j++) {
             slip[j] = (signed char)(limit[j] > 0.0 ? slip[j] : TRIBO_SLIP_OPEN);
@@ -150,25 +146,18 @@ int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, do
 
 /* ----------------------------------------------------------------------------------------------------------------- step */
 
-/* f = -scale v/R_ii within bounds; lower NULL: -upper; alike: all have the first upper bound. */
+/* f = -scale v/R_ii within limits. */
 TRIBO_SIMD static void alone_stop(size_t n, double scale, const double *restrict v, const double *restrict inverse,
-                                  const double *lower, const double *upper, int alike, double *restrict f)
+                                  const double *restrict limit, double *restrict f)
 {
-    const double one = *upper;
-    for (size_t i = 0; alike && i < n; i++) {
-        f[i] = clamp(tribo_alone(v[i] * scale, inverse[i]), -one, one);
-    }
-    for (size_t i = 0; lower && i < n; i++) {
-        f[i] = clamp(tribo_alone(v[i] * scale, inverse[i]), lower[i], upper[i]);
-    }
-    for (size_t i = 0; !lower && !alike && i < n; i++) {
-        f[i] = clamp(tribo_alone(v[i] * scale, inverse[i]), -upper[i], upper[i]);
+    for (size_t i = 0; i < n; i++) {
+        f[i] = clamp(tribo_alone(v[i] * scale, inverse[i]), -limit[i], limit[i]);
     }
 }
 
 #define LEAST_STEP (1.0 / TRIBO_PLAIN)
 
-/* The same where products might overflow, or 1/dt. */
+/* The same within any bounds, and where products might overflow, or 1/dt. */
 static void stop_far(size_t n, double dt, const double *v, const double *inverse, const struct bounds *b, double *f)
 {
     const double scale = quotient(1.0, dt);
@@ -182,21 +171,16 @@ void tribo_stop_alone(const tribo_context *ctx, size_t k, double dt, const doubl
 {
     const size_t n = tribo_chunk_size(ctx, k * TRIBO_CHUNK);
     const struct chunk *chunk = &ctx->follow.chunk[k];
-    if (!chunk->plain || dt < LEAST_STEP || !tribo_all_plain(v, n)) {
+    if (b.lower || !chunk->plain || dt < LEAST_STEP || !tribo_all_plain(v, n)) {
         stop_far(n, dt, v, tribo_inverses(ctx, k), &b, f);
     } else {
-        const int alike = chunk->alike && !b.lower && b.upper == ctx->follow.contacts.limit + k * TRIBO_CHUNK;
-        alone_stop(n, quotient(1.0, dt), v, tribo_inverses(ctx, k), b.lower, b.upper, alike, f);
+        alone_stop(n, quotient(1.0, dt), v, tribo_inverses(ctx, k), b.upper, f);
     }
 }
 
-TRIBO_SIMD static void alone_slide(const struct contacts *c, size_t n, const double *restrict v, double *restrict f)
+TRIBO_SIMD static void alone_slide(size_t n, const double *restrict v, const double *restrict limit, double *restrict f)
 {
-    const double *limit = c->limit, one = *limit;
-    for (size_t i = 0; c->alike && i < n; i++) {
-        f[i] = sliding(v[i], one);
-    }
-    for (size_t i = 0; !c->alike && i < n; i++) {
+    for (size_t i = 0; i < n; i++) {
         f[i] = sliding(v[i], limit[i]);
     }
 }
@@ -205,15 +189,15 @@ static int step_chunk(const tribo_context *ctx, const struct call *call, size_t 
 {
     const size_t i = k * TRIBO_CHUNK, n = tribo_chunk_size(ctx, i);
     const struct chunk *chunk = &ctx->follow.chunk[k];
-    const struct contacts c = tribo_chunk_contacts(ctx, i);
+    const double *limit = tribo_chunk_contacts(ctx, i).limit;
     /* Contacts that are faster than reach, none of them open, slide on over dt, by a margin for rounding. */
     const double far = product(1.0000001 * greater(product(chunk->quickest, call->dt), DBL_MIN), chunk->largest);
     const double *v = call->v + i, reach = chunk->least > 0.0 && far < TRIBO_FAR ? far : DBL_MAX;
     if (fabs(*v) <= reach || tribo_any_in_band(n, v, reach)) {
-        tribo_stop_alone(ctx, k, call->dt, v, (struct bounds){NULL, ctx->follow.contacts.limit + i}, f);
+        tribo_stop_alone(ctx, k, call->dt, v, (struct bounds){NULL, limit}, f);
         return 0;
     }
-    alone_slide(&c, n, v, f);
+    alone_slide(n, v, limit, f);
     return 1;
 }
 

@@ -21,16 +21,12 @@ TRIBO_SIMD void tribo_find_directions(size_t n, const double *restrict v, signed
     }
 }
 
-/* did [n]: STORED where limit > 0 and |v| <= band, or v = 0 if band is NULL; else the direction of v. */
+/* did [n]: STORED where limit > 0 and |v| <= band; else the direction of v. */
 TRIBO_SIMD static void find_states(size_t n, const double *restrict v, const double *restrict band, const double *restrict limit,
                                    signed char *restrict did)
 {
-    for (size_t i = 0; band && i < n; i++) {
+    for (size_t i = 0; i < n; i++) {
         const int near = (fabs(v[i]) <= band[i]) & (limit[i] > 0.0);
-        did[i] = (signed char)(near ? STORED : v[i] > 0.0 ? TRIBO_SLIP_FORTH : TRIBO_SLIP_BACK);
-    }
-    for (size_t i = 0; !band && i < n; i++) {
-        const int near = (v[i] == 0.0) & (limit[i] > 0.0);
         did[i] = (signed char)(near ? STORED : v[i] > 0.0 ? TRIBO_SLIP_FORTH : TRIBO_SLIP_BACK);
     }
 }
@@ -68,15 +64,11 @@ TRIBO_SIMD static void forces_of_states(size_t n, const signed char *restrict di
     }
 }
 
-/* f [n] of contacts that slide; same: all have the first limit. */
-TRIBO_SIMD static void forces_of_slips(size_t n, const signed char *restrict did, const double *restrict limit, int same,
+/* f [n] of contacts that slide. */
+TRIBO_SIMD static void forces_of_slips(size_t n, const signed char *restrict did, const double *restrict limit,
                                        double *restrict f)
 {
-    const double one = *limit;
-    for (size_t i = 0; same && i < n; i++) {
-        f[i] = did[i] == TRIBO_SLIP_FORTH ? -one : one;
-    }
-    for (size_t i = 0; !same && i < n; i++) {
+    for (size_t i = 0; i < n; i++) {
         f[i] = did[i] == TRIBO_SLIP_FORTH ? -limit[i] : limit[i];
     }
 }
@@ -97,10 +89,12 @@ TRIBO_SIMD static void find_epsilons(size_t n, const double *restrict width, con
     }
 }
 
-const double *tribo_epsilons(const struct contacts *c, size_t i, size_t n, double *room)
+const double *tribo_bands(const tribo_context *ctx, size_t i, size_t n, double *room)
 {
-    if (!c->follows) {
-        return c->width + i;
+    static const double none[TRIBO_CHUNK];
+    const struct contacts *c = &ctx->follow.contacts;
+    if (!ctx->set.law->sticks_in_band || !c->follows) {
+        return ctx->set.law->sticks_in_band ? c->width + i : none;
     }
     find_epsilons(n, c->width + i, c->bound + i, room);
     return room;
@@ -152,8 +146,7 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a)
             memset(now.of + i, STORED, n); /* the law finds which of them slide */
         } else if (now.stored[k] == SOME_STORED) {
             double room[TRIBO_CHUNK];
-            const double *own = ctx->set.law->sticks_in_band ? tribo_epsilons(&ctx->follow.contacts, i, n, room) : NULL;
-            find_states(n, v + i, own, ctx->follow.contacts.limit + i, now.of + i);
+            find_states(n, v + i, tribo_bands(ctx, i, n, room), ctx->follow.contacts.limit + i, now.of + i);
         } else {
             tribo_find_directions(n, v + i, now.of + i);
         }
@@ -191,17 +184,16 @@ void tribo_forces(const tribo_context *ctx, double *f)
         return;
     }
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        const struct chunk *chunk = &ctx->follow.chunk[k];
         const size_t n = tribo_chunk_size(ctx, i);
         const signed char *did = ctx->last.did.of + i;
-        const double *limit = ctx->follow.contacts.limit + i, *kept = ctx->last.f + i;
+        const double *limit = tribo_chunk_contacts(ctx, i).limit, *kept = ctx->last.f + i;
         classify_expect(ctx, f, i, 1);
         if (ctx->last.did.stored[k] == ALL_STORED) {
             memcpy(f + i, kept, n * sizeof *f);
         } else if (ctx->last.did.stored[k] == SOME_STORED) {
             forces_of_states(n, did, limit, kept, f + i);
         } else {
-            forces_of_slips(n, did, limit, !(chunk->least < chunk->largest), f + i);
+            forces_of_slips(n, did, limit, f + i);
         }
     }
 }

@@ -46,8 +46,9 @@ int tribo_any_in_band(size_t n, const double *v, double band);
 /* did [n] = the direction of v. */
 void tribo_find_directions(size_t n, const double *v, signed char *did);
 
-/* Returns epsilon of the n <= TRIBO_CHUNK contacts from i on; room [n] is workspace. */
-const double *tribo_epsilons(const struct contacts *c, size_t i, size_t n, double *room);
+/* Returns the |v| up to which the law reads f_eq, of the n <= TRIBO_CHUNK contacts from i on: epsilon, or 0; room [n] is
+ * workspace. */
+const double *tribo_bands(const tribo_context *ctx, size_t i, size_t n, double *room);
 
 /* ---- alone.c */
 

@@ -108,8 +108,8 @@ struct tribo_context {
     int fixed; /* the operator cannot be changed */
     struct settings set;
     struct following follow;
-    struct delassus *op;  /* shared by clones */
-    struct memory memory; /* of groups, from call to call */
+    struct delassus *op;   /* shared by clones */
+    struct memory memory;  /* of groups, from call to call */
     struct planar *planar; /* NULL: all contacts are scalar */
     struct plane plane;
     const size_t *group_of; /* [n] the group whose box problem has the contact, or TRIBO_ALONE */

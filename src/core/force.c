@@ -6,15 +6,12 @@
 #include "clusters.h"
 #include "static.h"
 
-/* used [n] = feq where |v| <= band, or v = 0 if band is NULL; else 0. */
+/* used [n] = feq where |v| <= band, else 0. */
 TRIBO_SIMD static void select_feq(size_t n, const double *restrict v, const double *restrict band, const double *restrict feq,
                                   double *restrict used)
 {
-    for (size_t i = 0; band && i < n; i++) {
+    for (size_t i = 0; i < n; i++) {
         used[i] = fabs(v[i]) <= band[i] ? feq[i] : 0.0;
-    }
-    for (size_t i = 0; !band && i < n; i++) {
-        used[i] = v[i] == 0.0 ? feq[i] : 0.0;
     }
 }
 
@@ -23,8 +20,7 @@ TRIBO_SIMD static void select_feq(size_t n, const double *restrict v, const doub
 static void used_feq(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *used)
 {
     double room[TRIBO_CHUNK];
-    const double *band = ctx->set.law->sticks_in_band ? tribo_epsilons(&ctx->follow.contacts, i, n, room) : NULL;
-    select_feq(n, v + i, band, feq + i, used);
+    select_feq(n, v + i, tribo_bands(ctx, i, n, room), feq + i, used);
     for (size_t k = 0; tribo_plane_count(ctx) && k < n; k++) {
         used[k] = tribo_is_scalar(ctx, i + k) ? used[k] : 0.0;
     }

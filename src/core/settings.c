@@ -77,8 +77,8 @@ void tribo_refresh_limits(tribo_context *ctx)
         ctx->follow.largest = greater(ctx->follow.largest, chunk->largest);
         chunk->band = chunk->largest == 0.0 ? -1.0 : widest < TRIBO_FAR ? widest : DBL_MAX;
         chunk->alike = fixed && chunk->even && chunk->least == chunk->largest && chunk->largest > 0.0;
-        const int goes_on = fixed && chunk->even == EVEN_AS_BEFORE &&
-                            (!chunk->alike || (chunk[-1].alike && chunk->largest == chunk[-1].largest));
+        const int goes_on =
+            fixed && chunk->even == EVEN_AS_BEFORE && (!chunk->alike || (chunk[-1].alike && chunk->largest == chunk[-1].largest));
         chunk->model = goes_on ? chunk[-1].model : k * TRIBO_CHUNK;
     }
     if (fixed && ctx->follow.largest > lesser(ctx->op->most, TRIBO_FAR / ctx->follow.steepest)) {
@@ -157,59 +157,29 @@ int tribo_get_law(const tribo_context *ctx, int *law)
 
 /* ------------------------------------------------------------------------------------------------------------ limits */
 
-/* least and largest [half] of these and the other half. */
-static inline void fold(size_t half, double *least, double *largest)
+/* Sets least and largest of x [n] >= 0, n > 0, as integers, which compare alike: vectors do that in any order. */
+TRIBO_SIMD static void find_least_and_largest(size_t n, const double *restrict x, struct chunk *chunk)
 {
-    for (size_t k = 0; k < half; k++) {
-        least[k] = lesser(least[k], least[k + half]);
-        largest[k] = greater(largest[k], largest[k + half]);
+    int64_t least = INT64_MAX, largest = INT64_MIN;
+    TRIBO_UNROLLED
+    for (size_t i = 0; i < n; i++) {
+        int64_t bits;
+        memcpy(&bits, x + i, sizeof bits);
+        least = bits < least ? bits : least;
+        largest = bits > largest ? bits : largest;
     }
-}
-
-/* Sets least and largest of a whole chunk, half upon half: vectors can do that, not one after the other. */
-TRIBO_SIMD static void find_least_and_largest(const double *x, struct chunk *chunk)
-{
-    enum { HALF = TRIBO_CHUNK / 2, FEW = 8 };
-    double least[HALF], largest[HALF];
-    for (size_t k = 0; k < HALF; k++) {
-        least[k] = lesser(x[k], x[k + HALF]);
-        largest[k] = greater(x[k], x[k + HALF]);
-    }
-    fold(HALF / 2, least, largest);
-    fold(HALF / 4, least, largest);
-    fold(FEW, least, largest);
-    for (size_t k = 1; k < FEW; k++) {
-        least[0] = lesser(least[0], least[k]);
-        largest[0] = greater(largest[0], largest[k]);
-    }
-    chunk->least = least[0];
-    chunk->largest = largest[0];
+    memcpy(&chunk->least, &least, sizeof least);
+    memcpy(&chunk->largest, &largest, sizeof largest);
 }
 
 void tribo_take_limits(tribo_context *ctx, const double *limit)
 {
-    enum { FEW = 16 };
-    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        struct chunk *chunk = &ctx->follow.chunk[k];
+    for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
         const size_t n = tribo_chunk_size(ctx, i);
-        double whole[TRIBO_CHUNK];
         if (limit != ctx->set.limit) {
             memcpy(ctx->set.limit + i, limit + i, n * sizeof *limit);
         }
-        if (n < FEW) {
-            chunk->least = chunk->largest = limit[i];
-            for (size_t j = i + 1; j < i + n; j++) {
-                chunk->least = lesser(chunk->least, limit[j]);
-                chunk->largest = greater(chunk->largest, limit[j]);
-            }
-        } else if (n < TRIBO_CHUNK) {
-            for (size_t j = 0; j < TRIBO_CHUNK; j++) {
-                whole[j] = limit[i + (j < n ? j : 0)];
-            }
-            find_least_and_largest(whole, chunk);
-        } else {
-            find_least_and_largest(limit + i, chunk);
-        }
+        find_least_and_largest(n, limit + i, &ctx->follow.chunk[i / TRIBO_CHUNK]);
     }
     tribo_refresh_limits(ctx);
 }

@@ -20,9 +20,9 @@ struct call {
     struct pull pull;
     const double *v;
     const size_t *group_of; /* [n] */
-    int all;       /* all contacts take part, also those pulled harder than friction can hold */
-    int breaks;    /* limits are static */
-    int estimates; /* sums of R's rows times limits are numbers: they bound what friction can hold */
+    int all;                /* all contacts take part, also those pulled harder than friction can hold */
+    int breaks;             /* limits are static */
+    int estimates;          /* sums of R's rows times limits are numbers: they bound what friction can hold */
 };
 
 /* Sums of rows and limits up to this have numbers as products. */

@@ -14,8 +14,8 @@
 struct step {
     double dt;
     const double *v, *vfree;
-    signed char *reverses;  /* [n] direction of slip at the end, or 0 */
-    double *lower, *upper;  /* [n] bounds of the second problem; before, upper: R f without the contact's own force */
+    signed char *reverses; /* [n] direction of slip at the end, or 0 */
+    double *lower, *upper; /* [n] bounds of the second problem; before, upper: R f without the contact's own force */
     size_t changes;
 };
 
