@@ -20,7 +20,6 @@ struct call {
     struct pull pull;
     const double *v;
     const size_t *group_of; /* [n] */
-    int all;                /* all contacts take part, also those pulled harder than friction can hold */
     int breaks;             /* limits are static */
     int estimates;          /* sums of R's rows times limits are numbers: they bound what friction can hold */
 };
@@ -73,50 +72,29 @@ static void find_candidates(tribo_context *ctx, const struct call *c)
     }
 }
 
-/* Limits of a group, by place, the least and the largest. */
-struct limits {
-    double least, largest;
-    double *of;
-};
-
-static struct limits limits_of(const tribo_context *ctx, const struct box_qp *p)
+/* 1 if friction could hold the contact at place k by limits [size]. */
+static int within_reach(const struct box_qp *p, size_t k, const struct call *c, const double *limit)
 {
-    struct limits l = {TRIBO_FAR, 0.0, p->step};
-    for (size_t k = 0; k < p->group->size; k++) {
-        l.of[k] = ctx->follow.contacts.bound[p->member[k]];
-        l.least = lesser(l.least, l.of[k]);
-        l.largest = greater(l.largest, l.of[k]);
-    }
-    return l;
-}
-
-/* 1 if friction could hold the contact at place k. The row is read only if the least and the largest limit disagree. */
-static int within_reach(const tribo_context *ctx, const struct box_qp *p, size_t k, const struct call *c, const struct limits *l)
-{
-    const double v = c->v[p->member[k]], row_sum = c->estimates ? ctx->op->row_sum[p->member[k]] : 0.0;
-    const int may = !c->estimates | !out_of_reach(c->pull, v, row_sum, l->largest);
-    const int sure = c->estimates & !out_of_reach(c->pull, v, row_sum, l->least);
     double reach;
-    if (may == sure) {
-        return may;
-    }
-    tribo_row_dot(p, k, l->of, &reach);
-    return !(fabs(step_pull_of(c->pull, v)) > reach);
+    tribo_row_dot(p, k, limit, &reach);
+    return !(fabs(step_pull_of(c->pull, c->v[p->member[k]])) > reach);
 }
 
 /* Sets the problem of group g. Contacts whose bounds are equal, or that are out of reach, do not take part. */
 static struct box_qp *pose(tribo_context *ctx, size_t g, const struct call *c)
 {
     struct box_qp *p = tribo_problem(ctx, g);
-    const int all = c->all || p->group->small;
-    const struct limits l = all ? (struct limits){0.0, 0.0, NULL} : limits_of(ctx, p);
+    const int all = !c->estimates || p->group->small;
     size_t behind = p->group->size;
     p->count = 0;
     p->far = ctx->last.far;
+    for (size_t k = 0; !all && k < p->group->size; k++) {
+        p->step[k] = ctx->follow.contacts.bound[p->member[k]];
+    }
     for (size_t k = 0; k < p->group->size; k++) {
         const size_t i = p->member[k];
         const double lo = tribo_lower(&c->b, i), hi = c->b.upper[i];
-        if (lo < hi && (all || within_reach(ctx, p, k, c, &l))) {
+        if (lo < hi && (all || within_reach(p, k, c, p->step))) {
             p->near[p->count++] = k;
             p->lo[k] = ctx->last.far ? tribo_cut(p, k, lo) : lo;
             p->hi[k] = ctx->last.far ? tribo_cut(p, k, hi) : hi;
@@ -169,10 +147,10 @@ static int solve_for(tribo_context *ctx, size_t g, const struct call *c, unsigne
 static int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bounds b, const size_t *group_of)
 {
     const struct delassus *op = ctx->op;
-    const int breaks = !b.lower && ctx->set.breaking, all = b.lower || breaks;
-    const int estimates = !all && ctx->follow.largest < ESTIMATED && op->largest_sum < ESTIMATED;
+    const int breaks = !b.lower && ctx->set.breaking;
+    const int estimates = !b.lower && !breaks && ctx->follow.largest < ESTIMATED && op->largest_sum < ESTIMATED;
     const double times = op->groups ? quotient(1.0, dt) : 0.0;
-    const struct call c = {b, dt, {times, TRIBO_FAR / greater(times, 1.0)}, v, group_of, all, breaks, estimates};
+    const struct call c = {b, dt, {times, TRIBO_FAR / greater(times, 1.0)}, v, group_of, breaks, estimates};
     /* A small group of all contacts is solved as fast as it is found to slide. */
     const int one = op->groups == 1 && op->group->small && op->group->size == ctx->n && *group_of == 0;
     struct memory *m = &ctx->memory;
