@@ -23,6 +23,11 @@ static inline size_t tribo_islands(const tribo_context *ctx)
     return ctx->planar && ctx->op->diagonal ? ctx->planar->islands : ctx->op->islands;
 }
 
+static inline size_t tribo_cluster_count(const tribo_context *ctx)
+{
+    return ctx->planar ? ctx->planar->clusters : 0;
+}
+
 static inline size_t tribo_plane_count(const tribo_context *ctx)
 {
     return ctx->planar ? ctx->planar->count : 0;
@@ -94,9 +99,15 @@ signed char tribo_plane_slip(const tribo_context *ctx, size_t i);
 /* The largest rate at which a planar contact relaxes. */
 double tribo_plane_rate(const tribo_context *ctx);
 
-/* ---- planar_tangent.c: derivatives of the forces of clusters at the last tribo_balance_tangent, at v and a. */
-void tribo_clusters_linearize(tribo_context *ctx, const double *v, const double *a);
-void tribo_clusters_columns(tribo_context *ctx, double *df_dv, double *df_da);
-void tribo_clusters_product(tribo_context *ctx, const struct change *d, double *df);
+/* ---- planar_tangent.c: derivatives of the forces of clusters */
+
+/* Keeps a of tribo_balance_tangent. */
+void tribo_clusters_linearize(tribo_context *ctx, const double *a);
+
+/* Linearizes cluster q at the last tribo_balance_tangent. Returns its contacts [size]. */
+const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size);
+
+/* Returns df [size] of cluster q, which was resumed last. */
+const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct change *d);
 
 #endif

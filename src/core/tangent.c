@@ -21,7 +21,7 @@ static void linearize_laws(tribo_context *ctx, const double *v, const double *a)
         }
     }
     tribo_copy(ctx->last.v, v, ctx->n);
-    tribo_clusters_linearize(ctx, v, a);
+    tribo_clusters_linearize(ctx, a);
     ctx->last.linearized = 1;
 }
 
@@ -87,13 +87,16 @@ static void follow_free(struct box_qp *p, size_t vectors, const double *rhs, dou
     }
 }
 
-/* Sets gradient [size] of a solved group to df for the changes lo (of v) and hi (of a), all by place, and d->limit. */
-static void group_product(const tribo_context *ctx, struct box_qp *p, size_t vectors, const struct change *d)
+/* Returns df [size] of a solved group. */
+static const double *group_product(const tribo_context *ctx, struct box_qp *p, size_t vectors, const struct change *d)
 {
     const int partition = ctx->set.coupling == TRIBO_PARTITION;
     const size_t *member = p->member, size = p->group->size;
-    const double *dv = p->lo, *da = p->hi;
-    double *df = p->gradient, *rhs = p->noise;
+    double *df = p->gradient, *rhs = p->noise, *dv = p->lo, *da = p->hi;
+    for (size_t k = 0; k < size; k++) {
+        dv[k] = tribo_entry(d->v, member[k]);
+        da[k] = tribo_entry(d->a, member[k]);
+    }
     p->far = 1; /* derivatives are of any size */
     for (size_t k = 0; k < size; k++) {
         const size_t i = member[k];
@@ -123,6 +126,41 @@ static void group_product(const tribo_context *ctx, struct box_qp *p, size_t vec
             df[k] = own - (ctx->last.did.of[i] == STORED ? ctx->last.tangent[i].dfeq * quotient(sum, r) : 0.0);
         }
     }
+    return df;
+}
+
+/* A solved group, or a cluster. */
+struct part {
+    struct box_qp *p; /* NULL: it is the cluster */
+    size_t vectors, cluster;
+    const size_t *member; /* [size] */
+    size_t size;
+};
+
+static size_t parts_of(const tribo_context *ctx)
+{
+    return ctx->memory.nsolved + tribo_cluster_count(ctx);
+}
+
+/* Returns part k as the last balance left it. */
+static struct part part_resume(tribo_context *ctx, size_t k)
+{
+    struct part s = {NULL, 0, k - ctx->memory.nsolved, NULL, 0};
+    if (k < ctx->memory.nsolved) {
+        s.p = tribo_collect(ctx, ctx->memory.solved_list[k]);
+        s.vectors = tribo_null_basis(s.p);
+        s.member = s.p->member;
+        s.size = s.p->group->size;
+    } else {
+        s.member = tribo_cluster_resume(ctx, s.cluster, &s.size);
+    }
+    return s;
+}
+
+/* Returns df [size]. */
+static const double *part_product(tribo_context *ctx, const struct part *s, const struct change *d)
+{
+    return s->p ? group_product(ctx, s->p, s->vectors, d) : tribo_cluster_product(ctx, s->cluster, d);
 }
 
 /* Returns df of a contact in no solved group. Where friction moves nothing, the force jumps as a changes its sign. */
@@ -134,28 +172,6 @@ static double alone_product(const tribo_context *ctx, size_t i, double dv, doubl
     return law_change(ctx, i, dv, dlimit) - (follows ? quotient(product(ctx->last.tangent[i].dfeq, da), r) : 0.0);
 }
 
-/* Columns of the contacts of a solved group, in df_dv and df_da, each of which may be NULL. */
-static void solved_columns(tribo_context *ctx, struct box_qp *p, double *df_dv, double *df_da)
-{
-    const size_t *member = p->member, size = p->group->size, vectors = tribo_null_basis(p);
-    const struct change none = {NULL, NULL, NULL};
-    memset(p->lo, 0, size * sizeof *p->lo);
-    memset(p->hi, 0, size * sizeof *p->hi);
-    for (size_t c = 0; c < size; c++) {
-        for (int by_v = 0; by_v < 2; by_v++) {
-            double *out = by_v ? df_dv : df_da, *unit = by_v ? p->lo : p->hi;
-            unit[c] = 1.0;
-            if (out) {
-                group_product(ctx, p, vectors, &none);
-            }
-            for (size_t k = 0; out && k < size; k++) {
-                out[member[k] * ctx->n + member[c]] = p->gradient[k];
-            }
-            unit[c] = 0.0;
-        }
-    }
-}
-
 int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
                           double *df_da)
 {
@@ -165,19 +181,30 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
     }
     const size_t n = ctx->n;
     linearize_laws(ctx, v, a);
-    for (int by_v = 0; by_v < 2; by_v++) {
-        double *out = by_v ? df_dv : df_da;
-        for (size_t k = 0; out && k < n * n; k++) {
-            out[k] = 0.0;
+    double *const out[2] = {df_dv, df_da}, *unit = ctx->last.feq;
+    const struct change by[2] = {{unit, NULL, NULL}, {NULL, unit, NULL}};
+    for (int w = 0; w < 2; w++) {
+        for (size_t k = 0; out[w] && k < n * n; k++) {
+            out[w][k] = 0.0;
         }
-        for (size_t i = 0; out && i < n; i++) {
-            out[i * n + i] = alone_product(ctx, i, by_v ? 1.0 : 0.0, by_v ? 0.0 : 1.0, 0.0);
+        for (size_t i = 0; out[w] && i < n; i++) {
+            out[w][i * n + i] = alone_product(ctx, i, w ? 0.0 : 1.0, w ? 1.0 : 0.0, 0.0);
         }
     }
-    for (size_t k = 0; (df_dv || df_da) && k < ctx->memory.nsolved; k++) {
-        solved_columns(ctx, tribo_collect(ctx, ctx->memory.solved_list[k]), df_dv, df_da);
+    memset(unit, 0, n * sizeof *unit);
+    for (size_t q = 0; (df_dv || df_da) && q < parts_of(ctx); q++) {
+        const struct part s = part_resume(ctx, q);
+        for (size_t k = 0; k < s.size; k++) {
+            unit[s.member[k]] = 1.0;
+            for (int w = 0; w < 2; w++) {
+                const double *df = out[w] ? part_product(ctx, &s, &by[w]) : NULL;
+                for (size_t j = 0; df && j < s.size; j++) {
+                    out[w][s.member[j] * n + s.member[k]] = df[j];
+                }
+            }
+            unit[s.member[k]] = 0.0;
+        }
     }
-    tribo_clusters_columns(ctx, df_dv, df_da);
     return TRIBO_OK;
 }
 
@@ -194,18 +221,13 @@ static int tangent_product_of(tribo_context *ctx, const struct change *d, double
     for (size_t i = 0; i < ctx->n; i++) {
         df[i] = alone_product(ctx, i, tribo_entry(d->v, i), tribo_entry(d->a, i), tribo_limit_change(ctx, d, i));
     }
-    for (size_t g = 0; g < ctx->memory.nsolved; g++) {
-        struct box_qp *p = tribo_collect(ctx, ctx->memory.solved_list[g]);
-        for (size_t k = 0; k < p->group->size; k++) {
-            p->lo[k] = tribo_entry(d->v, p->member[k]);
-            p->hi[k] = tribo_entry(d->a, p->member[k]);
-        }
-        group_product(ctx, p, tribo_null_basis(p), d);
-        for (size_t k = 0; k < p->group->size; k++) {
-            df[p->member[k]] = p->gradient[k];
+    for (size_t q = 0; q < parts_of(ctx); q++) {
+        const struct part s = part_resume(ctx, q);
+        const double *own = part_product(ctx, &s, d);
+        for (size_t k = 0; k < s.size; k++) {
+            df[s.member[k]] = own[k];
         }
     }
-    tribo_clusters_product(ctx, d, df);
     return TRIBO_OK;
 }
 

@@ -17,15 +17,15 @@ static void release(struct planar *planar)
 /* Returns 1, or 0 if out of memory: then tribo_plane_free still applies. */
 static int plane_create(struct plane *plane, const struct planar *planar, size_t n)
 {
-    enum { VECTORS = 10 };
+    enum { VECTORS = 9 };
     *plane = (struct plane){0};
     if (!planar) {
         return 1;
     }
     plane->near = malloc((planar->largest + 1) * sizeof *plane->near);
     plane->y = calloc(VECTORS * (n + 1), sizeof *plane->y);
-    double **const vector[VECTORS] = {&plane->y,     &plane->v,      &plane->a,      &plane->unit, &plane->df,
-                                      &plane->other, &plane->dlimit, &plane->radius, &plane->pull, &plane->shift};
+    double **const vector[VECTORS] = {&plane->y,      &plane->v,      &plane->a,    &plane->df,   &plane->other,
+                                      &plane->dlimit, &plane->radius, &plane->pull, &plane->shift};
     for (size_t k = 1; plane->y && k < VECTORS; k++) {
         *vector[k] = plane->y + k * (n + 1);
     }

@@ -46,10 +46,10 @@ struct plane {
     size_t cuts;               /* directions of the problem with a reach below their limit */
     double *y;                 /* [n] solutions, in parts of the reach */
     double *radius;            /* [n] reach = min(limit, radius) */
-    double *v, *a;             /* [n] of the last tribo_balance_tangent; workspace of steps */
+    double *a;                 /* [n] of the last tribo_balance_tangent, or step */
     double *shift;             /* [largest] c of the problem's lenses, in parts of limits */
     double *pull;              /* [largest] R f + a without the forces of the problem */
-    double *unit, *df, *other; /* [n] workspace; unit is zero between calls */
+    double *v, *df, *other;    /* [n] workspace */
     double *dlimit;            /* [n] changes of limits that depend on v */
     size_t solved;             /* clusters, in the last call */
 };

@@ -3,25 +3,24 @@
 #include "core/static.h"
 #include "parts.h"
 
-void tribo_clusters_linearize(tribo_context *ctx, const double *v, const double *a)
+void tribo_clusters_linearize(tribo_context *ctx, const double *a)
 {
-    if (ctx->planar) {
-        tribo_copy(ctx->plane.v, v, ctx->n);
-        tribo_copy(ctx->plane.a, a, ctx->n);
-    }
+    tribo_copy(ctx->plane.a, a, ctx->planar ? ctx->n : 0);
 }
 
-/* Sets and linearizes the problem of a cluster at the last balance. */
-static void resume(tribo_context *ctx, const struct cluster *g)
+const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
 {
     struct disc_qp *p = &ctx->plane.problem;
-    if (tribo_planar_collect(ctx, g, ctx->plane.v)) {
+    const struct cluster *g = &ctx->planar->cluster[q];
+    *size = g->size;
+    if (tribo_planar_collect(ctx, g, ctx->last.v)) {
         tribo_planar_resume(ctx, g, ctx->plane.a);
         tribo_disc_gains(p);
         tribo_disc_gradients(p);
         tribo_disc_places(p);
         tribo_disc_linearize(p);
     }
+    return g->member;
 }
 
 /* along [directions] = v/|v|; at rest, where |v| has a kink, along/|along|, the direction in which a contact begins to slide,
@@ -60,7 +59,7 @@ static struct change with_limits(tribo_context *ctx, const struct cluster *g, co
         const size_t i = g->member[k];
         directions = tribo_directions(ctx, i);
         double along[2] = {dlimit[i], directions == 2 ? dlimit[i + 1] : 0.0}, faster = 0.0;
-        const double speed = heading(directions, ctx->plane.v + i, along);
+        const double speed = heading(directions, ctx->last.v + i, along);
         for (size_t j = 0; j < directions; j++) {
             faster += along[j] * tribo_entry(d->v, i + j);
         }
@@ -125,20 +124,20 @@ static void turn_shift(const struct slide *s, const double *limit, const double 
     }
 }
 
-/* df of the contacts of a cluster that are not near stick; of the others its part that follows limits. */
+/* df [size] of the contacts of a cluster that are not near stick; of the others its part that follows limits. */
 static void products_of_slips(const tribo_context *ctx, const struct cluster *g, const struct change *d, double *df)
 {
     const struct disc_qp *p = &ctx->plane.problem;
     const struct contacts *c = &ctx->follow.contacts;
     for (size_t k = 0; k < g->size; k += tribo_directions(ctx, g->member[k])) {
         const size_t i = g->member[k];
-        const struct slide s = tribo_planar_slide(c, i, tribo_directions(ctx, i), ctx->plane.v + i);
+        const struct slide s = tribo_planar_slide(c, i, tribo_directions(ctx, i), ctx->last.v + i);
         const struct turn t = planar_tangent_turn_of(ctx, i, &s, d);
-        turn_force(ctx->set.law, &s, c->limit + i, ctx->plane.v + i, &t, df + i);
+        turn_force(ctx->set.law, &s, c->limit + i, ctx->last.v + i, &t, df + k);
     }
     for (size_t e = 0; e < p->size; e++) {
         const size_t i = g->member[ctx->plane.near[e]];
-        df[i] = tribo_planar_cut(ctx, i) ? 0.0 : product(p->y[e], tribo_limit_change(ctx, d, i));
+        df[ctx->plane.near[e]] = tribo_planar_cut(ctx, i) ? 0.0 : product(p->y[e], tribo_limit_change(ctx, d, i));
     }
 }
 
@@ -153,9 +152,9 @@ static void shift_change(const tribo_context *ctx, const struct cluster *g, size
     const size_t i = g->member[ctx->plane.near[e]], first = i - (ctx->planar->role[i] == ROLE_SECOND);
     double change[2] = {0.0, 0.0}, epsilon = 0.0;
     if (ctx->set.law->relaxes) {
-        const struct slide s = tribo_planar_slide(c, first, tribo_directions(ctx, first), ctx->plane.v + first);
+        const struct slide s = tribo_planar_slide(c, first, tribo_directions(ctx, first), ctx->last.v + first);
         const struct turn t = planar_tangent_turn_of(ctx, first, &s, d);
-        turn_shift(&s, c->limit + first, ctx->plane.v + first, &t, change);
+        turn_shift(&s, c->limit + first, ctx->last.v + first, &t, change);
         epsilon = t.epsilon;
     }
     for (size_t k = 0; k < p->wide[e]; k++) {
@@ -177,7 +176,7 @@ static void find_rhs(const tribo_context *ctx, const struct cluster *g, const st
         const double *row = g->r + near[e] * g->size;
         double sum = cut(tribo_entry(d->a, member[near[e]]));
         for (size_t j = 0; j < g->size; j++) {
-            sum += product(row[j], df[member[j]]);
+            sum += product(row[j], df[j]);
         }
         rhs[e] = p->weight[e] * quotient(quotient(cut(sum), u.r), u.force);
         rhs[e] += d->limit ? product(tribo_limit_growth(ctx, d, member[near[e]]), p->gradient[e]) : 0.0;
@@ -192,32 +191,29 @@ static void find_rhs(const tribo_context *ctx, const struct cluster *g, const st
 /* Laws with a memory have another derivative where |f_eq| exceeds the limit: corrects df of scalar contacts, from f_eq. */
 static void apply_laws(tribo_context *ctx, const struct cluster *g, const struct change *d, double *df)
 {
-    const size_t *member = g->member;
     double *before = ctx->plane.other;
-    for (size_t k = 0; k < g->size; k++) {
-        before[member[k]] = df[member[k]];
-    }
+    memcpy(before, df, g->size * sizeof *df);
     for (size_t e = 0; e < ctx->plane.problem.size; e++) {
-        const size_t k = ctx->plane.near[e], i = member[k];
+        const size_t k = ctx->plane.near[e], i = g->member[k];
         const double *row = g->r + k * g->size;
         const struct tangent *law = &ctx->last.tangent[i];
         double sum = divisible(tribo_entry(d->a, i), row[k]);
         for (size_t j = 0; j < g->size; j++) {
-            sum += j == k ? 0.0 : product(row[j], before[member[j]]);
+            sum += j == k ? 0.0 : product(row[j], before[j]);
         }
         if (tribo_is_scalar(ctx, i)) {
-            df[i] = product(law->dv, tribo_entry(d->v, i)) + product(law->dlimit, tribo_limit_change(ctx, d, i)) -
+            df[k] = product(law->dv, tribo_entry(d->v, i)) + product(law->dlimit, tribo_limit_change(ctx, d, i)) -
                     product(law->dfeq, quotient(cut(sum), row[k]));
         }
     }
 }
 
-/* df [n] of a cluster that was resumed. */
-static void cluster_product(tribo_context *ctx, const struct cluster *g, const struct change *d, double *df)
+const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct change *d)
 {
     struct disc_qp *p = &ctx->plane.problem;
-    const size_t *member = g->member, *near = ctx->plane.near;
-    double *dshift = p->from, *dy = p->best, *rhs = p->noise, *move = p->aim;
+    const struct cluster *g = &ctx->planar->cluster[q];
+    const size_t *near = ctx->plane.near;
+    double *dshift = p->from, *dy = p->best, *rhs = p->noise, *move = p->aim, *df = ctx->plane.df;
     const struct change by_v = with_limits(ctx, g, d);
     products_of_slips(ctx, g, &by_v, df);
     for (size_t e = 0; e < p->size; e += p->wide[e]) {
@@ -229,43 +225,12 @@ static void cluster_product(tribo_context *ctx, const struct cluster *g, const s
         tribo_disc_follow(p, rhs, move);
     }
     for (size_t e = 0; e < p->size; e++) {
-        df[member[near[e]]] += product(tribo_planar_reach(ctx, member[near[e]]), dy[e] + move[e]);
+        df[near[e]] += product(tribo_planar_reach(ctx, g->member[near[e]]), dy[e] + move[e]);
     }
     if (ctx->set.law->remembers) {
         apply_laws(ctx, g, d, df);
     }
-}
-
-void tribo_clusters_columns(tribo_context *ctx, double *df_dv, double *df_da)
-{
-    double *unit = ctx->plane.unit, *df = ctx->plane.df, *const out[2] = {df_dv, df_da};
-    const struct change by[2] = {{unit, NULL, NULL}, {NULL, unit, NULL}};
-    for (size_t q = 0; ctx->planar && q < ctx->planar->clusters; q++) {
-        const struct cluster *g = &ctx->planar->cluster[q];
-        const size_t *member = g->member;
-        resume(ctx, g);
-        for (size_t k = 0; k < g->size; k++) {
-            unit[member[k]] = 1.0;
-            for (int w = 0; w < 2; w++) {
-                if (out[w]) {
-                    cluster_product(ctx, g, &by[w], df);
-                }
-                for (size_t j = 0; out[w] && j < g->size; j++) {
-                    out[w][member[j] * ctx->n + member[k]] = df[member[j]];
-                }
-            }
-            unit[member[k]] = 0.0;
-        }
-    }
-}
-
-void tribo_clusters_product(tribo_context *ctx, const struct change *d, double *df)
-{
-    for (size_t q = 0; ctx->planar && q < ctx->planar->clusters; q++) {
-        const struct cluster *g = &ctx->planar->cluster[q];
-        resume(ctx, g);
-        cluster_product(ctx, g, d, df);
-    }
+    return df;
 }
 
 /* ------------------------------------------------------------------------------------------------ f_eq that is given */
