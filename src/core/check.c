@@ -32,21 +32,7 @@ TRIBO_SIMD int tribo_two_within(const double *x, double most_x, const double *y,
     return (room_x >= 0 ? 1 : 0) | (room_y >= 0 ? 2 : 0);
 }
 
-int tribo_fail_not_finite(tribo_context *ctx, const char *name, const double *x, size_t n)
-{
-    if (!x && n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "%s is NULL", name);
-    }
-    for (size_t i = 0; i < n; i++) {
-        if (!isfinite(x[i])) {
-            return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "%s[%zu] = %g is not finite", name, i, x[i]);
-        }
-    }
-    return TRIBO_OK;
-}
-
-/* 1 if all x_i are finite and have no sign. */
-TRIBO_SIMD static int check_all_positive(const double *x, size_t n)
+TRIBO_SIMD int tribo_all_unsigned(const double *x, size_t n)
 {
     const double most = DBL_MAX;
     const uint64_t limit = (uint64_t)check_size_of(&most), sign = (uint64_t)1 << 63;
@@ -60,38 +46,27 @@ TRIBO_SIMD static int check_all_positive(const double *x, size_t n)
     return !(beyond & sign);
 }
 
-/* -0 is not negative. */
-int tribo_check_nonnegative(tribo_context *ctx, const char *name, const double *x, size_t n)
+int tribo_check_slowly(tribo_context *ctx, const char *name, const double *x, size_t n, int range)
 {
-    if (x && check_all_positive(x, n)) {
-        return TRIBO_OK;
+    static const int status[] = {
+        [FINITE] = TRIBO_ERR_NOT_FINITE, [NONNEGATIVE] = TRIBO_ERR_NEGATIVE, [POSITIVE] = TRIBO_ERR_NOT_POSITIVE};
+    static const char *const text[] = {[FINITE] = "not finite", [NONNEGATIVE] = "negative", [POSITIVE] = "not positive"};
+    if (!x && n) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "%s is NULL", name);
     }
-    const int status = tribo_fail_not_finite(ctx, name, x, n);
-    for (size_t i = 0; !status && i < n; i++) {
-        if (x[i] < 0.0) {
-            return tribo_fail(ctx, TRIBO_ERR_NEGATIVE, "%s[%zu] = %g is negative", name, i, x[i]);
+    const int finite = range == FINITE ? TRIBO_OK : tribo_check_slowly(ctx, name, x, n, FINITE);
+    for (size_t i = 0; !finite && i < (n == TRIBO_NUMBER ? 1 : n); i++) {
+        const int good = range == FINITE        ? isfinite(x[i])
+                         : range == NONNEGATIVE ? x[i] >= 0.0
+                                                : x[i] > 0.0; /* -0 is not negative */
+        if (!good && n == TRIBO_NUMBER) {
+            return tribo_fail(ctx, status[range], "%s = %g is %s", name, x[i], text[range]);
+        }
+        if (!good) {
+            return tribo_fail(ctx, status[range], "%s[%zu] = %g is %s", name, i, x[i], text[range]);
         }
     }
-    return status;
-}
-
-int tribo_check_positive(tribo_context *ctx, const char *name, const double *x, size_t n)
-{
-    const int status = tribo_check_finite(ctx, name, x, n);
-    for (size_t i = 0; !status && i < n; i++) {
-        if (x[i] <= 0.0) {
-            return tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "%s[%zu] = %g is not positive", name, i, x[i]);
-        }
-    }
-    return status;
-}
-
-int tribo_check_one_positive(tribo_context *ctx, const char *name, double x)
-{
-    if (!isfinite(x)) {
-        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "%s = %g is not finite", name, x);
-    }
-    return x > 0.0 ? TRIBO_OK : tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "%s = %g is not positive", name, x);
+    return finite;
 }
 
 int tribo_fail_without_operator(tribo_context *ctx)

@@ -15,12 +15,13 @@ int tribo_all_within(const double *x, size_t n, double most);
 /* The same of two arrays, which are read together: 1 for x plus 2 for y. */
 int tribo_two_within(const double *x, double most_x, const double *y, double most_y, size_t n);
 
-int tribo_fail_not_finite(tribo_context *ctx, const char *name, const double *x, size_t n);
-int tribo_check_nonnegative(tribo_context *ctx, const char *name, const double *x, size_t n);
-int tribo_check_positive(tribo_context *ctx, const char *name, const double *x, size_t n);
+/* 1 if all x_i are finite and have no sign. */
+int tribo_all_unsigned(const double *x, size_t n);
 
-/* The same of one number. */
-int tribo_check_one_positive(tribo_context *ctx, const char *name, double x);
+/* Checks that all x_i are finite, and within range; n = TRIBO_NUMBER: x is one number, of which the message has no index. */
+enum { FINITE, NONNEGATIVE, POSITIVE };
+#define TRIBO_NUMBER SIZE_MAX
+int tribo_check_slowly(tribo_context *ctx, const char *name, const double *x, size_t n, int range);
 
 int tribo_fail_without_operator(tribo_context *ctx);
 
@@ -48,7 +49,12 @@ static inline int tribo_motion_within(const double *v, const double *y, double m
 
 static inline int tribo_check_finite(tribo_context *ctx, const char *name, const double *x, size_t n)
 {
-    return x && tribo_all_finite(x, n) ? TRIBO_OK : tribo_fail_not_finite(ctx, name, x, n);
+    return x && tribo_all_finite(x, n) ? TRIBO_OK : tribo_check_slowly(ctx, name, x, n, FINITE);
+}
+
+static inline int tribo_check_nonnegative(tribo_context *ctx, const char *name, const double *x, size_t n)
+{
+    return x && tribo_all_unsigned(x, n) ? TRIBO_OK : tribo_check_slowly(ctx, name, x, n, NONNEGATIVE);
 }
 
 static inline int tribo_has_operator(const tribo_context *ctx)
@@ -75,7 +81,7 @@ static inline int tribo_check_output(tribo_context *ctx, const char *name, const
 /* The arguments of a step. */
 static inline int tribo_check_step(tribo_context *ctx, double dt, const double *vfree, const double *f)
 {
-    int status = isfinite(dt) && dt > 0.0 ? TRIBO_OK : tribo_check_one_positive(ctx, "dt", dt);
+    int status = isfinite(dt) && dt > 0.0 ? TRIBO_OK : tribo_check_slowly(ctx, "dt", &dt, TRIBO_NUMBER, POSITIVE);
     status = status ? status : tribo_need_operator(ctx);
     status = status ? status : tribo_check_finite(ctx, "vfree", vfree, ctx->n);
     return status ? status : tribo_check_output(ctx, "f", f);

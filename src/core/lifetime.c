@@ -82,7 +82,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     if (!ctx || !copy) {
         return TRIBO_ERR_NULL;
     }
-    const size_t n = ctx->n, breaking = ctx->set.breaking ? n : 0;
+    const size_t n = ctx->n;
     tribo_context *c = context_allocate(n, ctx);
     if (!c) {
         return TRIBO_ERR_MEMORY;
@@ -94,19 +94,14 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
         tribo_destroy(c);
         return TRIBO_ERR_MEMORY;
     }
-    tribo_copy(c->set.limit, ctx->set.limit, n);
-    tribo_copy(c->set.width, ctx->set.width, n);
-    tribo_copy(c->set.rate, ctx->set.rate, n);
-    tribo_copy(c->set.ratio, ctx->set.ratio, breaking);
-    tribo_copy(c->set.stribeck, ctx->set.stribeck, breaking);
+    tribo_take_settings(c, ctx);
     tribo_copy(c->last.feq, ctx->last.feq, n);
     tribo_copy(c->last.f, ctx->last.f, n);
     memcpy(c->moving, ctx->moving, n);
-    memcpy(c->follow.chunk, ctx->follow.chunk, tribo_chunks(n) * sizeof *c->follow.chunk);
     memcpy(c->last.did.of, ctx->last.did.of, n);
     memcpy(c->last.did.stored, ctx->last.did.stored, tribo_chunks(n));
     tribo_refresh_limits(c);
-    tribo_copy(c->follow.now, ctx->follow.now, breaking);
+    tribo_copy(c->follow.now, ctx->follow.now, ctx->set.breaking ? n : 0);
     c->revision = ctx->revision;
     *copy = c;
     return TRIBO_OK;

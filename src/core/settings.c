@@ -126,6 +126,16 @@ static void settings_changed(tribo_context *ctx)
     ctx->revision++;
 }
 
+/* Sets *to = *from; a status. */
+static int settings_answer(const int *from, int *to)
+{
+    if (!from || !to) {
+        return TRIBO_ERR_NULL;
+    }
+    *to = *from;
+    return TRIBO_OK;
+}
+
 /* --------------------------------------------------------------------------------------------------------------- law */
 
 int tribo_set_law(tribo_context *ctx, int law)
@@ -148,11 +158,7 @@ int tribo_set_law(tribo_context *ctx, int law)
 
 int tribo_get_law(const tribo_context *ctx, int *law)
 {
-    if (!ctx || !law) {
-        return TRIBO_ERR_NULL;
-    }
-    *law = ctx->set.law->id;
-    return TRIBO_OK;
+    return settings_answer(ctx ? &ctx->set.law->id : NULL, law);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ limits */
@@ -211,21 +217,15 @@ int tribo_set_normal_load(tribo_context *ctx, const double *mu, const double *lo
 
 int tribo_set_limit_all(tribo_context *ctx, double limit)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
+    const int status = ctx ? tribo_check_slowly(ctx, "limit", &limit, TRIBO_NUMBER, NONNEGATIVE) : TRIBO_ERR_NULL;
+    if (!status) {
+        tribo_write_slips(ctx);
+        for (size_t i = 0; i < ctx->n; i++) {
+            ctx->set.limit[i] = limit;
+        }
+        tribo_take_limits(ctx, ctx->set.limit);
     }
-    if (!isfinite(limit)) {
-        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "limit = %g is not finite", limit);
-    }
-    if (limit < 0.0) {
-        return tribo_fail(ctx, TRIBO_ERR_NEGATIVE, "limit = %g is negative", limit);
-    }
-    tribo_write_slips(ctx);
-    for (size_t i = 0; i < ctx->n; i++) {
-        ctx->set.limit[i] = limit;
-    }
-    tribo_take_limits(ctx, ctx->set.limit);
-    return TRIBO_OK;
+    return status;
 }
 
 int tribo_get_limit(const tribo_context *ctx, double *limit)
@@ -269,7 +269,7 @@ static void put_epsilon(tribo_context *ctx, const double *epsilon, size_t stride
 
 int tribo_set_epsilon(tribo_context *ctx, const double *epsilon)
 {
-    const int status = ctx ? tribo_check_positive(ctx, "epsilon", epsilon, ctx->n) : TRIBO_ERR_NULL;
+    const int status = ctx ? tribo_check_slowly(ctx, "epsilon", epsilon, ctx->n, POSITIVE) : TRIBO_ERR_NULL;
     if (!status) {
         put_epsilon(ctx, epsilon, 1);
     }
@@ -278,7 +278,7 @@ int tribo_set_epsilon(tribo_context *ctx, const double *epsilon)
 
 int tribo_set_epsilon_all(tribo_context *ctx, double epsilon)
 {
-    const int status = ctx ? tribo_check_one_positive(ctx, "epsilon", epsilon) : TRIBO_ERR_NULL;
+    const int status = ctx ? tribo_check_slowly(ctx, "epsilon", &epsilon, TRIBO_NUMBER, POSITIVE) : TRIBO_ERR_NULL;
     if (!status) {
         put_epsilon(ctx, &epsilon, 0);
     }
@@ -287,8 +287,8 @@ int tribo_set_epsilon_all(tribo_context *ctx, double epsilon)
 
 int tribo_set_epsilon_step(tribo_context *ctx, double dt, double lambda_dt)
 {
-    int status = ctx ? tribo_check_one_positive(ctx, "dt", dt) : TRIBO_ERR_NULL;
-    status = status ? status : tribo_check_one_positive(ctx, "lambda_dt", lambda_dt);
+    int status = ctx ? tribo_check_slowly(ctx, "dt", &dt, TRIBO_NUMBER, POSITIVE) : TRIBO_ERR_NULL;
+    status = status ? status : tribo_check_slowly(ctx, "lambda_dt", &lambda_dt, TRIBO_NUMBER, POSITIVE);
     if (!status) {
         ctx->set.step = dt;
         ctx->set.lambda_dt = lambda_dt;
@@ -317,11 +317,7 @@ int tribo_set_coupling(tribo_context *ctx, int coupling)
 
 int tribo_get_coupling(const tribo_context *ctx, int *coupling)
 {
-    if (!ctx || !coupling) {
-        return TRIBO_ERR_NULL;
-    }
-    *coupling = ctx->set.coupling;
-    return TRIBO_OK;
+    return settings_answer(ctx ? &ctx->set.coupling : NULL, coupling);
 }
 
 int tribo_set_sharing(tribo_context *ctx, int sharing)
@@ -340,14 +336,24 @@ int tribo_set_sharing(tribo_context *ctx, int sharing)
 
 int tribo_get_sharing(const tribo_context *ctx, int *sharing)
 {
-    if (!ctx || !sharing) {
-        return TRIBO_ERR_NULL;
-    }
-    *sharing = ctx->set.sharing;
-    return TRIBO_OK;
+    return settings_answer(ctx ? &ctx->set.sharing : NULL, sharing);
 }
 
 /* --------------------------------------------------------------------------------------------------------- all of them */
+
+void tribo_take_settings(tribo_context *ctx, const tribo_context *from)
+{
+    const struct settings own = ctx->set, *s = &from->set;
+    const size_t n = ctx->n, breaking = s->breaking ? n : 0;
+    tribo_copy(own.limit, s->limit, n);
+    tribo_copy(own.width, s->width, n);
+    tribo_copy(own.rate, s->rate, n);
+    tribo_copy(own.ratio, s->ratio, breaking);
+    tribo_copy(own.stribeck, s->stribeck, breaking);
+    memcpy(ctx->follow.chunk, from->follow.chunk, tribo_chunks(n) * sizeof *ctx->follow.chunk);
+    ctx->set = (struct settings){s->law,    s->coupling, s->sharing,  s->step,   s->lambda_dt, own.limit,
+                                 own.width, own.rate,    s->breaking, own.ratio, own.stribeck};
+}
 
 int tribo_copy_settings(tribo_context *ctx, const tribo_context *from)
 {
@@ -369,23 +375,7 @@ int tribo_copy_settings(tribo_context *ctx, const tribo_context *from)
     if (ctx->set.law != from->set.law) {
         memset(ctx->moving, 0, ctx->n);
     }
-    const struct settings own = ctx->set;
-    const size_t breaking = from->set.breaking ? ctx->n : 0;
-    tribo_copy(own.limit, from->set.limit, ctx->n);
-    tribo_copy(own.width, from->set.width, ctx->n);
-    tribo_copy(own.rate, from->set.rate, ctx->n);
-    tribo_copy(own.ratio, from->set.ratio, breaking);
-    tribo_copy(own.stribeck, from->set.stribeck, breaking);
-    for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
-        ctx->follow.chunk[k].least = from->follow.chunk[k].least;
-        ctx->follow.chunk[k].largest = from->follow.chunk[k].largest;
-    }
-    ctx->set = from->set;
-    ctx->set.limit = own.limit;
-    ctx->set.width = own.width;
-    ctx->set.rate = own.rate;
-    ctx->set.ratio = own.ratio;
-    ctx->set.stribeck = own.stribeck;
+    tribo_take_settings(ctx, from);
     tribo_refresh(ctx);
     return TRIBO_OK;
 }

@@ -220,7 +220,7 @@ int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velo
         return TRIBO_ERR_NULL;
     }
     int above = 0, status = ratio ? tribo_check_finite(ctx, "ratio", ratio, ctx->n) : TRIBO_OK;
-    status = status || !velocity ? status : tribo_check_positive(ctx, "velocity", velocity, ctx->n);
+    status = status || !velocity ? status : tribo_check_slowly(ctx, "velocity", velocity, ctx->n, POSITIVE);
     for (size_t i = 0; !status && ratio && i < ctx->n; i++) {
         if (ratio[i] < 1.0) {
             return tribo_fail(ctx, TRIBO_ERR_RANGE, "ratio[%zu] = %g is below 1", i, ratio[i]);
