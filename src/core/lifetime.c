@@ -6,49 +6,38 @@
 
 #define DEFAULT_EPSILON 1e-6
 
-/* Lays out all arrays, with room for one contact more, so that none is empty. */
-static void context_lay_out(tribo_context *ctx, struct layout *b, size_t n)
-{
-    const size_t m = n + 1, chunks = tribo_chunks(m);
-    /* Each array of n doubles begins a line of cache, an odd number of lines behind the one before: of arrays at distances of a
-     * power of two few would stay in cache. */
-    double **const array[] = {&ctx->set.limit,    &ctx->set.width,         &ctx->set.rate,   &ctx->set.ratio,
-                              &ctx->set.stribeck, &ctx->follow.cut_limit,  &ctx->follow.now, &ctx->follow.cut_factor,
-                              &ctx->follow.hold,  &ctx->follow.hold_width, &ctx->last.f,     &ctx->last.feq,
-                              &ctx->last.v};
-    enum { ARRAYS = sizeof array / sizeof *array };
-    const size_t room = TRIBO_LINE * ((n / TRIBO_LINE + 1) | 1);
-    double *numbers = tribo_aligned(tribo_layout_array(b, ARRAYS * room + TRIBO_LINE, sizeof *numbers));
-    for (size_t k = 0; numbers && k < ARRAYS; k++) {
-        *array[k] = numbers + k * room;
-    }
-    ctx->message = tribo_layout_array(b, 1, tribo_message_size());
-    ctx->follow.chunk = tribo_layout_array(b, chunks, sizeof *ctx->follow.chunk);
-    ctx->last.tangent = tribo_layout_array(b, m, sizeof *ctx->last.tangent);
-    ctx->moving = tribo_layout_array(b, m, 1);
-    ctx->last.did.of = tribo_layout_array(b, m, 1);
-    ctx->last.did.stored = tribo_layout_array(b, chunks, 1);
-    ctx->spare.of = tribo_layout_array(b, m, 1);
-    ctx->spare.stored = tribo_layout_array(b, chunks, 1);
-}
-
-/* Returns a context with arrays of zeros, and all else as in like; NULL if out of memory. */
+/* Returns a context with arrays of zeros, with room for one contact more, so that none is empty, and all else as in like; NULL if
+ * out of memory. */
 static tribo_context *context_allocate(size_t n, const tribo_context *like)
 {
+    const size_t m = n + 1, chunks = tribo_chunks(m);
     struct layout b = {0};
-    tribo_context measured, *ctx = tribo_layout_array(&b, 1, sizeof *ctx);
-    const size_t begin = b.used;
-    context_lay_out(&measured, &b, n);
-    const size_t end = b.used;
-    if (!tribo_layout_create(&b)) {
-        return NULL;
-    }
-    ctx = tribo_layout_array(&b, 1, sizeof *ctx);
-    memcpy(ctx, like, sizeof *ctx);
-    memset(b.memory + begin, 0, end - begin);
-    context_lay_out(ctx, &b, n);
-    ctx->n = n;
-    return ctx;
+    tribo_context *ctx, at = *like;
+    double **const array[] = {&at.set.limit,    &at.set.width,         &at.set.rate,   &at.set.ratio,
+                              &at.set.stribeck, &at.follow.cut_limit,  &at.follow.now, &at.follow.cut_factor,
+                              &at.follow.hold,  &at.follow.hold_width, &at.last.f,     &at.last.feq,
+                              &at.last.v};
+    enum { ARRAYS = sizeof array / sizeof *array };
+    /* Each array of n doubles begins a line of cache, an odd number of lines behind the one before: of arrays at distances of a
+     * power of two few would stay in cache. */
+    const size_t room = TRIBO_LINE * ((n / TRIBO_LINE + 1) | 1);
+    do {
+        ctx = tribo_layout_array(&b, 1, sizeof *ctx);
+        double *numbers = tribo_aligned(tribo_layout_array(&b, ARRAYS * room + TRIBO_LINE, sizeof *numbers));
+        for (size_t k = 0; numbers && k < ARRAYS; k++) {
+            *array[k] = numbers + k * room;
+        }
+        at.message = tribo_layout_array(&b, 1, tribo_message_size());
+        at.follow.chunk = tribo_layout_array(&b, chunks, sizeof *at.follow.chunk);
+        at.last.tangent = tribo_layout_array(&b, m, sizeof *at.last.tangent);
+        at.moving = tribo_layout_array(&b, m, 1);
+        at.last.did.of = tribo_layout_array(&b, m, 1);
+        at.last.did.stored = tribo_layout_array(&b, chunks, 1);
+        at.spare.of = tribo_layout_array(&b, m, 1);
+        at.spare.stored = tribo_layout_array(&b, chunks, 1);
+    } while (!b.memory && tribo_layout_zeros(&b));
+    at.n = n;
+    return ctx ? memcpy(ctx, &at, sizeof at) : NULL;
 }
 
 int tribo_create(tribo_context **ctx, size_t ncontact)

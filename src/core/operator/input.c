@@ -143,6 +143,32 @@ static int install_rows(tribo_context *ctx, struct csr *a, const struct inertia 
 
 /* -------------------------------------------------------------------------------------------------- forms of input */
 
+/* Appends row [n] as row i of a, whose room for entries grows as needed. Returns 0 if out of memory. */
+static int append_row(struct csr *a, size_t *room, size_t i, const double *row)
+{
+    const size_t n = a->n;
+    if (*room - a->first[i] < n) {
+        struct csr more;
+        *room = 2 * *room + n;
+        if (!tribo_csr_create(&more, n, *room)) {
+            return 0;
+        }
+        memcpy(more.first, a->first, (i + 1) * sizeof *more.first);
+        memcpy(more.col, a->col, a->first[i] * sizeof *more.col);
+        memcpy(more.val, a->val, a->first[i] * sizeof *more.val);
+        tribo_csr_free(a);
+        *a = more;
+    }
+    a->first[i + 1] = a->first[i];
+    for (size_t j = 0; j < n; j++) {
+        if (row[j] != 0.0) {
+            a->col[a->first[i + 1]] = j;
+            a->val[a->first[i + 1]++] = row[j];
+        }
+    }
+    return 1;
+}
+
 int tribo_set_operator_dense(tribo_context *ctx, const double *r)
 {
     const int status = check_fixed(ctx);
@@ -153,28 +179,22 @@ int tribo_set_operator_dense(tribo_context *ctx, const double *r)
     if (!r && n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "r is NULL");
     }
-    size_t entries = 0;
-    for (size_t i = 0; i < n; i++) {
-        for (size_t j = 0; j < n; j++) {
-            if (!isfinite(r[i * n + j])) {
-                return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "r[%zu][%zu] = %g is not finite", i, j, r[i * n + j]);
-            }
-            entries += r[i * n + j] != 0.0;
+    for (size_t k = 0; k < n * n; k++) {
+        if (!isfinite(r[k])) {
+            return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "r[%zu][%zu] = %g is not finite", k / n, k % n, r[k]);
         }
     }
     struct csr a;
-    if (!tribo_csr_create(&a, n, entries)) {
+    size_t room = n, i = 0;
+    if (!tribo_csr_create(&a, n, room)) {
         return input_out_of_memory(ctx);
     }
-    size_t k = 0;
-    for (size_t i = 0; i < n; i++) {
-        for (size_t j = 0; j < n; j++) {
-            if (r[i * n + j] != 0.0) {
-                a.col[k] = j;
-                a.val[k++] = r[i * n + j];
-            }
-        }
-        a.first[i + 1] = k;
+    while (i < n && append_row(&a, &room, i, r + i * n)) {
+        i++;
+    }
+    if (i < n) {
+        tribo_csr_free(&a);
+        return input_out_of_memory(ctx);
     }
     return install_rows(ctx, &a, NULL);
 }
@@ -301,32 +321,6 @@ static int find_column(tribo_context *ctx, const struct solver *m, size_t j, con
     return TRIBO_OK;
 }
 
-/* Appends the entries of column j to a, whose room grows as needed. Returns 0 if out of memory. */
-static int append_column(struct csr *a, size_t *room, size_t j, const double *column)
-{
-    const size_t n = a->n;
-    if (*room - a->first[j] < n) {
-        struct csr more;
-        *room = 2 * *room + n;
-        if (!tribo_csr_create(&more, n, *room)) {
-            return 0;
-        }
-        memcpy(more.first, a->first, (j + 1) * sizeof *more.first);
-        memcpy(more.col, a->col, a->first[j] * sizeof *more.col);
-        memcpy(more.val, a->val, a->first[j] * sizeof *more.val);
-        tribo_csr_free(a);
-        *a = more;
-    }
-    a->first[j + 1] = a->first[j];
-    for (size_t i = 0; i < n; i++) {
-        if (column[i] != 0.0) {
-            a->col[a->first[j + 1]] = i;
-            a->val[a->first[j + 1]++] = column[i];
-        }
-    }
-    return 1;
-}
-
 /* Removes entries that are rounding beside the diagonal; diagonal [n] = |r_ii|. */
 static void drop_negligible(struct csr *a, double *diagonal)
 {
@@ -377,7 +371,7 @@ int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
     const struct solver m = {ndof, apply, data, work, work + ndof};
     for (size_t j = 0; !status && j < ctx->n; j++) {
         status = find_column(ctx, &m, j, rowptr, col, val, column);
-        if (!status && !append_column(&a, &room, j, column)) {
+        if (!status && !append_row(&a, &room, j, column)) {
             status = input_out_of_memory(ctx);
         }
     }

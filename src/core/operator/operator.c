@@ -51,34 +51,24 @@ void tribo_memory_free(struct memory *m)
     *m = (struct memory){0};
 }
 
-/* given: with room for the diagonal of n contacts and its inverse. */
-static struct delassus *lay_out_operator(struct layout *l, size_t n, int given)
-{
-    struct delassus *op = tribo_layout_array(l, 1, sizeof *op);
-    double *diagonal = given ? tribo_layout_array(l, 2 * n + TRIBO_LINE, sizeof *diagonal) : NULL;
-    if (op) {
-        *op =
-            (struct delassus){.references = 1, .most = TRIBO_FAR, .growth = 1.0, .islands = given ? n : 0, .diagonal = diagonal};
-    }
-    return op;
-}
-
 int tribo_operator_diagonal(struct delassus **op, size_t n, const double *r)
 {
     struct layout l = {0};
-    lay_out_operator(&l, n, r != NULL);
-    if (!tribo_layout_create(&l)) {
-        *op = NULL;
+    struct delassus *o;
+    double *diagonal;
+    do {
+        o = tribo_layout_array(&l, 1, sizeof *o);
+        diagonal = r ? tribo_layout_array(&l, 2 * n + TRIBO_LINE, sizeof *diagonal) : NULL;
+    } while (!l.memory && tribo_layout_create(&l));
+    *op = o;
+    if (!o) {
         return 0;
     }
-    struct delassus *o = *op = lay_out_operator(&l, n, r != NULL);
-    if (!r) {
-        return 1;
-    }
-    o->inverse = tribo_aligned(o->diagonal + n);
-    for (size_t i = 0; i < n; i++) {
-        o->diagonal[i] = greater(r[i], TRIBO_IMMOVABLE);
-        o->inverse[i] = 1.0 / o->diagonal[i];
+    *o = (struct delassus){.references = 1, .most = TRIBO_FAR, .growth = 1.0, .islands = r ? n : 0, .diagonal = diagonal};
+    o->inverse = r ? tribo_aligned(diagonal + n) : NULL;
+    for (size_t i = 0; r && i < n; i++) {
+        diagonal[i] = greater(r[i], TRIBO_IMMOVABLE);
+        o->inverse[i] = 1.0 / diagonal[i];
     }
     return 1;
 }
@@ -131,62 +121,36 @@ void tribo_memory_expect(const struct delassus *op, const struct memory *m, size
     tribo_expect(m->store + op->group[k].kept, kept < MOST ? kept : MOST, 0);
 }
 
-static void lay_out_memory(struct memory *m, struct layout *b, const struct delassus *op)
-{
-    m->store = tribo_layout_array(b, op->kept_size + 1, sizeof *m->store);
-    m->sets = tribo_layout_array(b, op->groups, sizeof *m->sets);
-    m->solved_list = tribo_layout_array(b, op->groups, sizeof *m->solved_list);
-    m->solved = tribo_layout_array(b, op->groups, 1);
-    double **const vector[] = {&m->problem.q,        &m->problem.lo,       &m->problem.hi,             &m->problem.gradient,
-                               &m->problem.noise,    &m->problem.low.x,    &m->problem.rounding.terms, &m->problem.rounding.unit,
-                               &m->problem.step,     &m->problem.low.step, &m->problem.row,            &m->problem.spare[0],
-                               &m->problem.spare[1]};
-    enum { VECTORS = sizeof vector / sizeof *vector };
-    const size_t s = op->largest + 1;
-    double *numbers = tribo_layout_array(b, VECTORS * s, sizeof *numbers);
-    for (size_t k = 0; numbers && k < VECTORS; k++) {
-        *vector[k] = numbers + k * s;
-    }
-    m->problem.near = tribo_layout_array(b, s, sizeof *m->problem.near);
-    m->problem.null.held = tribo_layout_array(b, s, sizeof *m->problem.null.held);
-    m->problem.to = tribo_layout_array(b, s, 1);
-}
-
 /* Allocates a memory of zeros without its basis, whose size follows from ranks. Returns 0 if out of memory. */
 static int allocate_memory(struct memory *m, const struct delassus *op)
 {
     struct layout b = {0};
-    lay_out_memory(m, &b, op);
-    const int done = tribo_layout_zeros(&b);
-    if (done) {
-        lay_out_memory(m, &b, op);
-    }
-    return done;
+    struct box_qp *p = &m->problem;
+    double **const vector[] = {
+        &p->q,    &p->lo,       &p->hi,  &p->gradient, &p->noise,   &p->low.x, &p->rounding.terms, &p->rounding.unit,
+        &p->step, &p->low.step, &p->row, &p->spare[0], &p->spare[1]};
+    enum { VECTORS = sizeof vector / sizeof *vector };
+    const size_t s = op->largest + 1;
+    do {
+        m->store = tribo_layout_array(&b, op->kept_size + 1, sizeof *m->store);
+        m->sets = tribo_layout_array(&b, op->groups, sizeof *m->sets);
+        m->solved_list = tribo_layout_array(&b, op->groups, sizeof *m->solved_list);
+        m->solved = tribo_layout_array(&b, op->groups, 1);
+        double *numbers = tribo_layout_array(&b, VECTORS * s, sizeof *numbers);
+        for (size_t k = 0; numbers && k < VECTORS; k++) {
+            *vector[k] = numbers + k * s;
+        }
+        p->near = tribo_layout_array(&b, s, sizeof *p->near);
+        p->null.held = tribo_layout_array(&b, s, sizeof *p->null.held);
+        p->to = tribo_layout_array(&b, s, 1);
+    } while (!b.memory && tribo_layout_zeros(&b));
+    return b.memory != NULL;
 }
 
 static int allocate_basis(struct memory *m, const struct delassus *op)
 {
     m->problem.null.basis = op->basis ? malloc(op->basis * sizeof *m->problem.null.basis) : NULL;
     return m->problem.null.basis || !op->basis;
-}
-
-static void lay_out_groups(struct delassus *op, struct layout *b, size_t n, size_t groups)
-{
-    op->group_of = tribo_layout_array(b, n, sizeof *op->group_of);
-    op->member = tribo_layout_array(b, n, sizeof *op->member);
-    op->row_sum = tribo_layout_array(b, n, sizeof *op->row_sum);
-    op->group = tribo_layout_array(b, groups, sizeof *op->group);
-}
-
-static int allocate_groups(struct delassus *op, size_t n, size_t groups)
-{
-    struct layout b = {0};
-    lay_out_groups(op, &b, n, groups);
-    const int done = tribo_layout_zeros(&b);
-    if (done) {
-        lay_out_groups(op, &b, n, groups);
-    }
-    return done;
 }
 
 int tribo_memory_copy(struct memory *to, const struct memory *from, const struct delassus *op)
@@ -209,39 +173,49 @@ int tribo_memory_copy(struct memory *to, const struct memory *from, const struct
 
 /* ------------------------------------------------------------------------------------------------------ finding them */
 
-/* Makes groups of the islands label [n] of more than one contact. place [n] = the place of a contact in its group; count
- * [islands] is workspace. Returns 0 if out of memory. */
-static int find_groups(struct delassus *op, size_t n, const size_t *label, size_t *place, size_t *count)
+/* Makes groups of the islands of more than one contact. place [n] = the place of a contact in its group; work [3 n + 1] is
+ * workspace. Returns 0 if out of memory. */
+static int find_groups(struct delassus *op, const struct csr *a, size_t *place, size_t *work)
 {
-    size_t members = 0;
-    if (!allocate_groups(op, n, op->islands)) {
+    const size_t n = a->n;
+    size_t *parent = work, *count = work + n, *first = work + 2 * n;
+    struct layout b = {0};
+    for (size_t i = 0; i < n; i++) {
+        parent[i] = i;
+        count[i] = 0;
+    }
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            if (a->val[k] != 0.0) {
+                tribo_join(parent, i, a->col[k]);
+            }
+        }
+    }
+    op->islands = 0;
+    for (size_t i = 0; i < n; i++) {
+        op->islands += parent[i] == i;
+        op->groups += ++count[tribo_root(parent, i)] == 2;
+    }
+    if (!op->groups) {
+        return 1;
+    }
+    do {
+        op->group_of = tribo_layout_array(&b, n, sizeof *op->group_of);
+        op->member = tribo_layout_array(&b, n, sizeof *op->member);
+        op->row_sum = tribo_layout_array(&b, n, sizeof *op->row_sum);
+        op->group = tribo_layout_array(&b, op->groups, sizeof *op->group);
+    } while (!b.memory && tribo_layout_zeros(&b));
+    if (!b.memory) {
         return 0;
     }
-    memset(count, 0, op->islands * sizeof *count);
+    tribo_list_sets(n, parent, count, op->group_of, place, first, op->member);
     for (size_t i = 0; i < n; i++) {
-        op->group_of[i] = TRIBO_ALONE;
         op->row_sum[i] = -1.0;
-        place[i] = count[label[i]]++;
-    }
-    for (size_t i = 0; i < n; i++) {
-        if (count[label[i]] > 1 && place[i] == 0) {
-            op->group[op->groups].size = count[label[i]];
-            op->group_of[i] = op->groups++;
-            /* for the other contacts of the island */
-            count[label[i]] = op->group_of[i];
-        } else if (place[i] > 0) {
-            op->group_of[i] = count[label[i]];
-        }
     }
     for (size_t k = 0; k < op->groups; k++) {
-        op->group[k].first = members;
-        members += op->group[k].size;
+        op->group[k].first = first[k];
+        op->group[k].size = first[k + 1] - first[k];
         op->largest = op->group[k].size > op->largest ? op->group[k].size : op->largest;
-    }
-    for (size_t i = 0; i < n; i++) {
-        if (op->group_of[i] != TRIBO_ALONE) {
-            op->member[op->group[op->group_of[i]].first + place[i]] = i;
-        }
     }
     return 1;
 }
@@ -477,31 +451,11 @@ int tribo_operator_create(struct delassus **created, struct memory *m, const str
 {
     const size_t n = a->n;
     int status = TRIBO_ERR_MEMORY;
-    size_t *label = malloc((3 * n + 1) * sizeof *label), *count = label ? label + n : NULL, *place = label ? count + n : NULL;
+    size_t *place = malloc((4 * n + 1) * sizeof *place);
     struct delassus *op = NULL;
     *m = (struct memory){0};
-    if (label && tribo_operator_diagonal(&op, n, diagonal)) {
-        /* label [n]: numbers of islands, in the order of their first contacts; place [n]: parents in a forest of islands. */
-        for (size_t i = 0; i < a->n; i++) {
-            place[i] = i;
-        }
-        for (size_t i = 0; i < a->n; i++) {
-            for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-                if (a->val[k] != 0.0) {
-                    tribo_join(place, i, a->col[k]);
-                }
-            }
-        }
-        size_t islands = 0;
-        for (size_t i = 0; i < a->n; i++) {
-            label[i] = place[i] == i ? islands++ : label[tribo_root(place, i)];
-        }
-        op->islands = islands;
-        if (op->islands == n) {
-            status = TRIBO_OK;
-        } else if (find_growth(op, a) && find_groups(op, n, label, place, count)) {
-            status = create_groups(op, m, a, from, place, flaw);
-        }
+    if (place && tribo_operator_diagonal(&op, n, diagonal) && find_groups(op, a, place, place + n)) {
+        status = !op->groups ? TRIBO_OK : find_growth(op, a) ? create_groups(op, m, a, from, place, flaw) : TRIBO_ERR_MEMORY;
     }
     if (status) {
         tribo_operator_release(op);
@@ -509,6 +463,6 @@ int tribo_operator_create(struct delassus **created, struct memory *m, const str
         op = NULL;
     }
     *created = op;
-    free(label);
+    free(place);
     return status;
 }

@@ -164,34 +164,28 @@ static int find_clusters(struct planar *c, size_t n, const struct delassus *op, 
     return status || r ? status : TRIBO_ERR_MEMORY;
 }
 
-static struct planar *lay_out_planar(struct layout *b, size_t n, size_t count)
-{
-    struct planar *c = tribo_layout_array(b, 1, sizeof *c), at = {0};
-    at.first = tribo_layout_array(b, count, sizeof *at.first);
-    at.role = tribo_layout_array(b, n, 1);
-    at.own = tribo_layout_array(b, count, sizeof *at.own);
-    at.group_of = tribo_layout_array(b, n, sizeof *at.group_of);
-    at.cluster = tribo_layout_array(b, count, sizeof *at.cluster);
-    size_t *member = tribo_layout_array(b, n, sizeof *member);
-    if (c) {
-        *c = at;
-        c->cluster->member = member;
-    }
-    return c;
-}
-
 /* Makes count planar contacts of n directions, with clusters if op has an operator; a status. *planar is to be released. */
 static int planar_create(struct planar **planar, size_t n, size_t count, const size_t *first, const struct delassus *op,
                          struct memory *m)
 {
     struct layout b = {0};
-    lay_out_planar(&b, n, count);
-    if (!tribo_layout_zeros(&b)) {
+    struct planar *c, at = {.references = 1, .count = count};
+    size_t *member;
+    do {
+        c = tribo_layout_array(&b, 1, sizeof *c);
+        at.first = tribo_layout_array(&b, count, sizeof *at.first);
+        at.role = tribo_layout_array(&b, n, 1);
+        at.own = tribo_layout_array(&b, count, sizeof *at.own);
+        at.group_of = tribo_layout_array(&b, n, sizeof *at.group_of);
+        at.cluster = tribo_layout_array(&b, count, sizeof *at.cluster);
+        member = tribo_layout_array(&b, n, sizeof *member);
+    } while (!b.memory && tribo_layout_zeros(&b));
+    *planar = c;
+    if (!c) {
         return TRIBO_ERR_MEMORY;
     }
-    struct planar *c = *planar = lay_out_planar(&b, n, count);
-    c->references = 1;
-    c->count = count;
+    *c = at;
+    c->cluster->member = member;
     memcpy(c->first, first, count * sizeof *first);
     for (size_t k = 0; k < count; k++) {
         c->role[first[k]] = ROLE_FIRST;
