@@ -73,14 +73,6 @@ TRIBO_SIMD static void forces_of_slips(size_t n, const signed char *restrict did
     }
 }
 
-/* Prefetches the chunk after next of x. */
-static void classify_expect(const tribo_context *ctx, const double *x, size_t i, int written)
-{
-    if (ctx->n - i > 2 * TRIBO_CHUNK) {
-        tribo_expect(x + i + 2 * TRIBO_CHUNK, tribo_chunk_size(ctx, i + 2 * TRIBO_CHUNK) * sizeof *x, written);
-    }
-}
-
 TRIBO_SIMD static void find_epsilons(size_t n, const double *restrict width, const double *restrict bound,
                                      double *restrict epsilon)
 {
@@ -135,8 +127,6 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a)
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
         const double band = tribo_widest_band(ctx, k);
-        classify_expect(ctx, v, i, 0);
-        classify_expect(ctx, a, i, 0);
         if (tribo_motion_within(v + i, a + i, DBL_MAX, n) != 3) {
             return check_motion(ctx, v, a);
         }
@@ -187,7 +177,6 @@ void tribo_forces(const tribo_context *ctx, double *f)
         const size_t n = tribo_chunk_size(ctx, i);
         const signed char *did = ctx->last.did.of + i;
         const double *limit = tribo_chunk_contacts(ctx, i).limit, *kept = ctx->last.f + i;
-        classify_expect(ctx, f, i, 1);
         if (ctx->last.did.stored[k] == ALL_STORED) {
             memcpy(f + i, kept, n * sizeof *f);
         } else if (ctx->last.did.stored[k] == SOME_STORED) {

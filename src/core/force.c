@@ -78,23 +78,6 @@ static const double *legible_feq(const tribo_context *ctx, int plain, size_t i, 
     return room;
 }
 
-/* Prefetches what is read of the contacts four chunks behind i. */
-static void expect_inputs(const tribo_context *ctx, size_t i, const double *v, const double *feq)
-{
-    enum { AHEAD = 4 * TRIBO_CHUNK };
-    if (ctx->n < TRIBO_MANY || ctx->n - i < AHEAD + TRIBO_CHUNK) {
-        return;
-    }
-    const struct chunk *chunk = &ctx->follow.chunk[(i + AHEAD) / TRIBO_CHUNK];
-    const struct contacts *c = &ctx->follow.contacts;
-    const double *array[] = {v, feq, chunk->alike ? NULL : c->limit, chunk->even ? NULL : c->width, chunk->even ? NULL : c->rate};
-    for (size_t k = 0; k < sizeof array / sizeof *array; k++) {
-        if (array[k]) {
-            tribo_expect(array[k] + i + AHEAD, TRIBO_CHUNK * sizeof *v, 0);
-        }
-    }
-}
-
 /* Finds forces chunk by chunk. Chunks that are alike are one loop: the first memory of a loop takes long to arrive. */
 static void forces_by_law(const tribo_context *ctx, const double *v, const double *feq, double *f)
 {
@@ -141,7 +124,6 @@ static void find_outputs(const tribo_context *ctx, int plain, const double *v, c
         for (int k = 0; k < OUTPUTS; k++) {
             tribo_stream_put(&stream[k], n);
         }
-        expect_inputs(ctx, i, v, plain ? feq : NULL);
     }
     for (int k = 0; k < OUTPUTS; k++) {
         tribo_stream_end(&stream[k]);
