@@ -78,35 +78,23 @@ static const double *legible_feq(const tribo_context *ctx, int plain, size_t i, 
     return room;
 }
 
-/* Finds forces chunk by chunk. Chunks that are alike are one loop: the first memory of a loop takes long to arrive. */
-static void forces_by_law(const tribo_context *ctx, const double *v, const double *feq, double *f)
-{
-    for (size_t i = 0, n; i < ctx->n; i += n) {
-        const struct contacts c = tribo_chunk_contacts(ctx, i);
-        const struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
-        n = tribo_chunk_size(ctx, i);
-        while (i + n < ctx->n && chunk->alike && chunk[1].alike && chunk[1].model == chunk->model) {
-            n += tribo_chunk_size(ctx, i + n);
-            chunk++;
-        }
-        ctx->set.law->force(&c, n, v + i, (ctx->set.law->uses_feq ? feq : v) + i, f + i);
-    }
-}
-
 static void find_outputs(const tribo_context *ctx, int plain, const double *v, const double *feq, double *const *out)
 {
     const int derivatives = out[BY_V] || out[BY_FEQ] || out[BY_LIMIT];
-    if (out[FORCES] && !derivatives && plain && !ctx->set.breaking && ctx->n < TRIBO_MANY) {
-        forces_by_law(ctx, v, feq, out[FORCES]);
-        return;
-    }
+    const int far = ctx->n >= TRIBO_MANY, whole = plain && !ctx->set.breaking && !far && !derivatives;
     struct stream stream[OUTPUTS];
     for (int k = 0; k < OUTPUTS; k++) {
-        tribo_stream_begin(&stream[k], out[k], ctx->n >= TRIBO_MANY);
+        tribo_stream_begin(&stream[k], out[k], far);
     }
-    for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
+    for (size_t i = 0, n; i < ctx->n; i += n) {
         double room[TRIBO_CHUNK], limit[TRIBO_CHUNK], *to[OUTPUTS];
-        const size_t n = tribo_chunk_size(ctx, i);
+        const struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
+        n = tribo_chunk_size(ctx, i);
+        /* Forces of chunks that are alike are one loop: the first memory of a loop takes long to arrive. */
+        while (whole && i + n < ctx->n && chunk->alike && chunk[1].alike && chunk[1].model == chunk->model) {
+            n += tribo_chunk_size(ctx, i + n);
+            chunk++;
+        }
         const double *used = legible_feq(ctx, plain, i, n, v, feq, room);
         struct contacts c = tribo_chunk_contacts(ctx, i);
         if (ctx->set.breaking) {
