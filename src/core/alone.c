@@ -19,19 +19,11 @@ struct call {
     int plain;   /* |a_i| <= TRIBO_PLAIN */
 };
 
-/* The direction of slip of a contact whose force reaches edge. */
-static inline signed char alone_slip_of(double f, double edge)
-{
-    const double forth = f <= -edge ? TRIBO_SLIP_FORTH : 0.0, back = f >= edge ? -TRIBO_SLIP_BACK : 0.0;
-    return (signed char)(int)(forth - back); /* doubles, as wide as f: vectors of them stay whole */
-}
-
-/* slip [n] by forces f [n]; a contact slides at holds times its limit. */
-TRIBO_SIMD static void alone_find_slips(size_t n, double holds, const double *restrict limit, const double *restrict f,
+TRIBO_SIMD static void alone_find_slips(size_t n, const double *restrict f, const double *restrict limit, double holds,
                                         signed char *restrict slip)
 {
     for (size_t i = 0; i < n; i++) {
-        slip[i] = alone_slip_of(f[i], holds * limit[i]);
+        slip[i] = tribo_slip_by_force(STORED, f[i], limit[i], holds);
     }
 }
 
@@ -82,10 +74,7 @@ static void alone_find_all(tribo_context *ctx, const struct call *call, double *
         if (slide && chunk->least > 0.0) {
             tribo_find_directions(n, call->v + i, slip);
         } else {
-            alone_find_slips(n, call->holds, limit, force, slip);
-        }
-        for (size_t j = 0; chunk->least == 0.0 && j < n; j++) {
-            slip[j] = (signed char)(limit[j] > 0.0 ? slip[j] : TRIBO_SLIP_OPEN);
+            alone_find_slips(n, force, limit, call->holds, slip);
         }
         tribo_stream_put(&to, n);
     }

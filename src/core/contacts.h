@@ -19,6 +19,16 @@ static inline struct bounds tribo_bounds_from(const struct bounds *b, size_t i)
     return (struct bounds){b->lower ? b->lower + i : NULL, b->upper + i};
 }
 
+/* Returns the slip of a contact by its state did and force f: it is stuck if |f| < holds limit. (The smooth law never reaches the
+ * limit; it holds where |v| < epsilon.) */
+static inline signed char tribo_slip_by_force(signed char did, double f, double limit, double holds)
+{
+    const double edge = holds * limit;
+    const double forth = f <= -edge ? TRIBO_SLIP_FORTH : 0.0, back = f >= edge ? -TRIBO_SLIP_BACK : 0.0;
+    const double slip = did == STORED ? forth - back : did; /* doubles, as wide as f: vectors of them stay whole */
+    return (signed char)(int)(limit > 0.0 ? slip : TRIBO_SLIP_OPEN);
+}
+
 /* ---- classify.c */
 
 /* Sets all contacts STORED. */

@@ -14,21 +14,12 @@ int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
 
 /* -------------------------------------------------------------------------------------------------------------- slips */
 
-/* Returns the slip of a contact by its state did and force f: it is stuck if |f| < holds limit. (The smooth law never reaches the
- * limit; it holds where |v| < epsilon.) */
-static inline signed char slip_by_force(signed char did, double f, double limit, double holds)
-{
-    const double edge = holds * limit;
-    const int open = !(limit > 0.0), stored = (f <= -edge) - (f >= edge), slip = did + (did == STORED) * stored;
-    return (signed char)(slip * !open + TRIBO_SLIP_OPEN * open); /* without branches, for vectors */
-}
-
 /* Slips of n contacts take the place of their states. */
 TRIBO_SIMD static void queries_find_slips(size_t n, const double *restrict f, const double *restrict limit, double holds,
                                           signed char *restrict did)
 {
     for (size_t i = 0; i < n; i++) {
-        did[i] = slip_by_force(did[i], f[i], limit[i], holds);
+        did[i] = tribo_slip_by_force(did[i], f[i], limit[i], holds);
     }
 }
 
@@ -77,8 +68,9 @@ static size_t count_stuck(const tribo_context *ctx)
     for (size_t i = 0; last->slips != NO_SLIPS && i < ctx->n; i++) {
         const signed char did = last->did.of[i];
         const int slip = last->slips == SLIPS_WRITTEN ? did
-                         : tribo_is_scalar(ctx, i)    ? slip_by_force(did, last->f[i], ctx->follow.contacts.limit[i], last->holds)
-                                                      : tribo_plane_slip(ctx, i);
+                         : tribo_is_scalar(ctx, i)
+                             ? tribo_slip_by_force(did, last->f[i], ctx->follow.contacts.limit[i], last->holds)
+                             : tribo_plane_slip(ctx, i);
         stuck += slip == TRIBO_SLIP_STUCK;
     }
     return stuck;
