@@ -15,32 +15,21 @@
 #include "check.h"
 #include "clusters.h"
 
-/* Returns N(|v|), and its derivative by |v|. */
-static double limit_at(const tribo_context *ctx, size_t i, double speed, double *rate)
+/* The part of the limit that falls with speed. */
+static double falling(const tribo_context *ctx, size_t i, double speed)
 {
-    const double slide = ctx->follow.cut_limit[i], hold = ctx->follow.hold[i], scale = ctx->set.stribeck[i];
-    if (ctx->set.breaking != FALLS) {
-        *rate = 0.0;
-        return slide;
-    }
-    const double more = (hold - slide) * exp(-quotient(speed, scale));
-    *rate = quotient(-more, scale);
-    return slide + more;
+    const double all = ctx->follow.hold[i] - ctx->follow.cut_limit[i];
+    return all * exp(-quotient(speed, ctx->set.stribeck[i]));
 }
 
 double tribo_limit_at(const tribo_context *ctx, size_t i, double speed)
 {
-    double ignored;
-    return limit_at(ctx, i, speed, &ignored);
+    return ctx->follow.cut_limit[i] + (ctx->set.breaking == FALLS ? falling(ctx, i, speed) : 0.0);
 }
 
 double tribo_limit_rate(const tribo_context *ctx, size_t i, double v)
 {
-    double rate = 0.0;
-    if (ctx->set.breaking) {
-        limit_at(ctx, i, fabs(v), &rate);
-    }
-    return copysign(1.0, v) * rate;
+    return ctx->set.breaking == FALLS ? copysign(quotient(falling(ctx, i, fabs(v)), ctx->set.stribeck[i]), -v) : 0.0;
 }
 
 void tribo_find_limits(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *limit)
@@ -76,26 +65,20 @@ static int turns(const tribo_context *ctx, size_t i, const double *v, const doub
     return !(power < 0.0);
 }
 
-int tribo_any_turns(const tribo_context *ctx, double dt, const double *v, const double *f)
+int tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, const double *f)
 {
     int any = 0;
-    for (size_t i = 0; !any && i < ctx->n; i += tribo_directions(ctx, i)) {
-        any = comes_sliding(ctx, dt, i, v) && turns(ctx, i, v, f);
-    }
-    return any;
-}
-
-void tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, const double *f)
-{
     tribo_copy(ctx->follow.now, ctx->follow.hold, ctx->n);
     for (size_t i = 0, directions; v && i < ctx->n; i += directions) {
         directions = tribo_directions(ctx, i);
-        const int slides = comes_sliding(ctx, dt, i, v) && !(f && turns(ctx, i, v, f));
+        const int comes = comes_sliding(ctx, dt, i, v), back = comes && f && turns(ctx, i, v, f);
         const double speed = tribo_length((int)directions, v + i);
-        for (size_t k = i; slides && k < i + directions; k++) {
+        for (size_t k = i; comes && !back && k < i + directions; k++) {
             ctx->follow.now[k] = tribo_limit_at(ctx, k, speed);
         }
+        any |= back;
     }
+    return any;
 }
 
 void tribo_hold(const tribo_context *ctx, const struct box_qp *p)

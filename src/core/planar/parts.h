@@ -102,7 +102,7 @@ void tribo_planar_given(const tribo_context *ctx, size_t k, const double *v, con
  * Returns 1, or 0 without convergence. */
 int tribo_planar_given_near(const tribo_context *ctx, size_t k, const struct given *g, const double *feq, struct disc_alone *x);
 
-/* ---- planar_static.c, where limits are static */
+/* ---- planar_parts.c, where limits are static */
 
 /* limit [directions] of the contact at i: static ones if it holds, or those by which it slides at v. */
 void tribo_planar_limits(const tribo_context *ctx, size_t i, size_t directions, int holds, const double *v, double *limit);

@@ -214,11 +214,6 @@ static int check_spread(tribo_context *ctx, const struct planar *c, const struct
     return TRIBO_OK;
 }
 
-static int out_of_memory(tribo_context *ctx, size_t count)
-{
-    return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s in the plane", count, plural(count));
-}
-
 int tribo_clusters_prepare(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m,
                            struct clusters *c)
 {
@@ -229,7 +224,7 @@ int tribo_clusters_prepare(tribo_context *ctx, size_t count, const size_t *first
         tribo_fail(ctx, status, "planar contacts couple %zu direction%s with each other, and not more than %d can be", large,
                    plural(large), TRIBO_CLUSTER_MOST);
     } else if (status || !plane_create(&c->plane, c->planar, ctx->n)) {
-        status = out_of_memory(ctx, count);
+        status = tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s in the plane", count, plural(count));
     } else if (c->planar) {
         status = check_spread(ctx, c->planar, op);
     }
@@ -284,25 +279,28 @@ int tribo_plane_check_coupling(tribo_context *ctx, int coupling, size_t count, c
                : TRIBO_OK;
 }
 
-/* Checks that first [count] are pairs of contacts, none in two of them; owner [n] is workspace. */
-static int check_first(tribo_context *ctx, size_t count, const size_t *first, size_t *owner)
+/* Checks that first [count] are pairs of contacts, none in two of them; a status. */
+static int check_first(tribo_context *ctx, size_t count, const size_t *first)
 {
-    for (size_t i = 0; i < ctx->n; i++) {
-        owner[i] = SIZE_MAX;
-    }
+    signed char *taken = ctx->spare.of;
+    memset(taken, 0, ctx->n);
     for (size_t k = 0; k < count; k++) {
-        if (ctx->n < 2 || first[k] > ctx->n - 2) {
+        const size_t i = first[k];
+        if (ctx->n < 2 || i > ctx->n - 2) {
             return tribo_fail(ctx, TRIBO_ERR_RANGE,
-                              "first[%zu] is contact %zu of %zu contact%s; a planar contact needs first and first + 1", k,
-                              first[k], ctx->n, plural(ctx->n));
+                              "first[%zu] is contact %zu of %zu contact%s; a planar contact needs first and first + 1", k, i,
+                              ctx->n, plural(ctx->n));
         }
-        for (size_t i = first[k]; i < first[k] + 2; i++) {
-            if (owner[i] != SIZE_MAX) {
-                return tribo_fail(ctx, TRIBO_ERR_DUPLICATE, "first[%zu] takes contact %zu, which first[%zu] has taken", k, i,
-                                  owner[i]);
+        if (taken[i] || taken[i + 1]) {
+            const size_t twice = taken[i] ? i : i + 1;
+            size_t owner = 0;
+            while (twice - first[owner] > 1) {
+                owner++;
             }
-            owner[i] = k;
+            return tribo_fail(ctx, TRIBO_ERR_DUPLICATE, "first[%zu] takes contact %zu, which first[%zu] has taken", k, twice,
+                              owner);
         }
+        taken[i] = taken[i + 1] = 1;
     }
     return TRIBO_OK;
 }
@@ -319,10 +317,8 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
     if (status || (!count && !ctx->planar)) {
         return status;
     }
-    size_t *owner = malloc((ctx->n + 1) * sizeof *owner);
     struct clusters c;
-    status = owner ? check_first(ctx, count, first, owner) : out_of_memory(ctx, count);
-    free(owner);
+    status = check_first(ctx, count, first);
     if (!status && ctx->set.breaking) {
         status = tribo_check_one_ratio(ctx, ctx->set.ratio, ctx->set.stribeck, count, first);
     }

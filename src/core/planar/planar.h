@@ -1,10 +1,9 @@
 /* Data of planar contacts: which directions they are, and their clusters.
  *
  *   planar.c          life, settings: clusters, from the operator's groups and the contacts that join them
- *   planar_parts.c    sliding, nearness to stick, blocks of R
+ *   planar_parts.c    sliding, nearness to stick, blocks of R, static limits
  *   planar_reach.c    reaches: stand-ins for limits that are far beyond forces
  *   planar_force.c    forces
- *   planar_static.c   static limits
  *   planar_tangent.c  derivatives
  *
  * clusters.h declares what the rest of core calls, parts.h what these files share. */

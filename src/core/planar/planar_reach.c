@@ -71,19 +71,6 @@ static void set_radius(tribo_context *ctx, const struct cluster *g, size_t e, si
     }
 }
 
-/* 1 if the pulls at all contacts are so large that no limit is far, and no contact has a reach below its limit. */
-static int no_limit_is_far(const tribo_context *ctx, const struct cluster *g)
-{
-    size_t k = 0, n = ctx->plane.problem.size;
-    for (; k < n; k++) {
-        const struct reach_place p = reach_at(ctx, g, k);
-        if (!(product(ctx->follow.contacts.bound[p.i], p.r) <= AMPLE * fabs(ctx->plane.pull[k])) || tribo_planar_cut(ctx, p.i)) {
-            break;
-        }
-    }
-    return k == n;
-}
-
 /* ask [size]: the force of each direction alone becomes the largest that balances the asks of the others, up to its limit. */
 static void find_asks(const tribo_context *ctx, const struct cluster *g, double *ask)
 {
@@ -109,9 +96,6 @@ void tribo_planar_estimate(tribo_context *ctx, const struct cluster *g)
     const double *bound = ctx->follow.contacts.bound;
     double *ask = ctx->plane.problem.spare, most = 0.0; /* the largest ask sqrt(R_ii): in these units asks of contacts compare */
     int far = 0;
-    if (no_limit_is_far(ctx, g)) {
-        return;
-    }
     for (size_t k = 0; k < n; k++) {
         const struct reach_place p = reach_at(ctx, g, k);
         ask[k] = lesser(quotient(fabs(ctx->plane.pull[k]), p.r) + product(fabs(ctx->plane.shift[k]), bound[p.i]), bound[p.i]);
