@@ -84,14 +84,6 @@ void tribo_clusters_feel(const tribo_context *ctx, double *feels);
 size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const double *vfree, signed char *reverses,
                            const double **free);
 
-/* f_eq given, which has to be finite where forces of planar contacts depend on it; a status. */
-int tribo_plane_check_feq(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq);
-
-/* f of planar contacts from v and f_eq; their derivatives [n][2], each of which may be NULL; a status. */
-int tribo_plane_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
-int tribo_plane_blocks(const tribo_context *ctx, const double *v, const double *feq, double *df_dv, double *df_dfeq,
-                       double *df_dlimit);
-
 /* slip of the directions of planar contacts in the last call; all, or direction i alone. */
 void tribo_plane_slips(const tribo_context *ctx, signed char *slip);
 signed char tribo_plane_slip(const tribo_context *ctx, size_t i);
@@ -99,15 +91,23 @@ signed char tribo_plane_slip(const tribo_context *ctx, size_t i);
 /* The largest rate at which a planar contact relaxes. */
 double tribo_plane_rate(const tribo_context *ctx);
 
-/* ---- planar_tangent.c: derivatives of the forces of clusters */
+/* Linearizes cluster q at the last tribo_balance_tangent. Returns its contacts [size]. */
+const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size);
+
+/* ---- planar_tangent.c */
 
 /* Keeps a of tribo_balance_tangent. */
 void tribo_clusters_linearize(tribo_context *ctx, const double *a);
 
-/* Linearizes cluster q at the last tribo_balance_tangent. Returns its contacts [size]. */
-const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size);
-
 /* Returns df [size] of cluster q, which was resumed last. */
 const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct change *d);
+
+/* f_eq given, which has to be finite where forces of planar contacts depend on it; a status. */
+int tribo_plane_check_feq(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq);
+
+/* f of planar contacts from v and f_eq; their derivatives [n][2], each of which may be NULL; a status. */
+int tribo_plane_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
+int tribo_plane_blocks(const tribo_context *ctx, const double *v, const double *feq, double *df_dv, double *df_dfeq,
+                       double *df_dlimit);
 
 #endif

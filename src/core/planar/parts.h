@@ -32,6 +32,9 @@ void tribo_planar_slide_force(const struct law *law, const struct slide *s, cons
 /* R_ii = 0 is the limit of R_ii from above: in parts of the largest R_ii it is this. */
 #define NEXT_TO_IMMOVABLE 1e-200
 
+/* Harder pulls, in units of what friction can hold, count by their direction only. */
+#define HARDEST 1e100
+
 /* A symmetric block 11, 12, 22 by its eigenvalues, at least 0, and the direction of the greater one. */
 struct block {
     double great, small;
@@ -47,6 +50,12 @@ void tribo_planar_push(const struct block *b, double *x);
 
 /* Returns R f + a at place k of a cluster, without the forces of the directions from place from on. */
 double tribo_planar_others(const tribo_context *ctx, const struct cluster *g, size_t k, size_t from, size_t directions, double a);
+
+/* limit [directions] of the contact at i: static ones if it holds, or those by which it slides at v. */
+void tribo_planar_limits(const tribo_context *ctx, size_t i, size_t directions, int holds, const double *v, double *limit);
+
+/* Returns the contact at i as laws see it with static limits, which are copied to limit [directions]. */
+struct contacts tribo_planar_view(const tribo_context *ctx, size_t i, size_t directions, double *limit);
 
 /* ---- planar_reach.c */
 
@@ -72,12 +81,6 @@ size_t tribo_planar_widen(tribo_context *ctx, const struct cluster *g);
 
 /* ---- planar_force.c */
 
-/* Sets the directions of a cluster's problem, the contacts near stick at v. Returns 1 if there are any. */
-int tribo_planar_collect(tribo_context *ctx, const struct cluster *g, const double *v);
-
-/* Sets the problem of the last call, at a. */
-void tribo_planar_resume(tribo_context *ctx, const struct cluster *g, const double *a);
-
 /* Units of force and R in the problem. */
 struct unit {
     double force, r;
@@ -86,42 +89,5 @@ struct unit tribo_planar_units(const tribo_context *ctx, const struct cluster *g
 
 /* pull [size] += (own blocks of s) shift. */
 void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pull);
-
-/* A planar contact with f_eq given: limits, law and motion. */
-struct given {
-    double limit[2];
-    struct contacts c; /* of its two directions */
-    struct slide s;
-    int near;
-};
-
-/* Sets what is given of planar contact k at v [2], feq [2]. */
-void tribo_planar_given(const tribo_context *ctx, size_t k, const double *v, const double *feq, struct given *g);
-
-/* Near stick: x->p.y = the point of the lens nearest to feq - kappa in the norm of the contact's block, in parts of limits.
- * Returns 1, or 0 without convergence. */
-int tribo_planar_given_near(const tribo_context *ctx, size_t k, const struct given *g, const double *feq, struct disc_alone *x);
-
-/* ---- planar_parts.c, where limits are static */
-
-/* limit [directions] of the contact at i: static ones if it holds, or those by which it slides at v. */
-void tribo_planar_limits(const tribo_context *ctx, size_t i, size_t directions, int holds, const double *v, double *limit);
-
-/* Returns the contact at i as laws see it with static limits, which are copied to limit [directions]. */
-struct contacts tribo_planar_view(const tribo_context *ctx, size_t i, size_t directions, double *limit);
-
-/* Gives contacts of a cluster near stick at v their static limits, the others those by which they slide. */
-void tribo_planar_hold(tribo_context *ctx, const struct cluster *g, const double *v);
-
-/* Gives contacts that the solution cannot hold the limits by which they slide at the end of a step of dt, or (0) from rest.
- * Returns their number. a [n]: accelerations without friction. */
-size_t tribo_planar_break(tribo_context *ctx, const struct cluster *g, double dt, const double *a);
-
-/* The change of the limit of direction i in parts of the limit. */
-static inline double tribo_limit_growth(const tribo_context *ctx, const struct change *d, size_t i)
-{
-    const double limit = ctx->follow.contacts.limit[i];
-    return limit > 0.0 ? quotient(tribo_entry(d->limit, i), limit) : 0.0;
-}
 
 #endif

@@ -31,7 +31,8 @@ static void take_contact(tribo_context *ctx, size_t k, size_t i, size_t directio
     }
 }
 
-int tribo_planar_collect(tribo_context *ctx, const struct cluster *g, const double *v)
+/* Sets the directions of a cluster's problem, the contacts near stick at v. Returns 1 if there are any. */
+static int planar_collect(tribo_context *ctx, const struct cluster *g, const double *v)
 {
     const struct law *law = ctx->set.law;
     const struct contacts *c = &ctx->follow.contacts;
@@ -60,9 +61,6 @@ struct unit tribo_planar_units(const tribo_context *ctx, const struct cluster *g
     }
     return u;
 }
-
-/* Harder pulls, in units of what friction can hold, count by their direction only. */
-#define HARDEST 1e100
 
 void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pull)
 {
@@ -127,11 +125,21 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
     }
 }
 
-void tribo_planar_resume(tribo_context *ctx, const struct cluster *g, const double *a)
+const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
 {
-    find_pulls(ctx, g, a);
-    tribo_planar_arrange(ctx, g);
-    pose_cluster(ctx, g);
+    struct disc_qp *p = &ctx->plane.problem;
+    const struct cluster *g = &ctx->planar->cluster[q];
+    *size = g->size;
+    if (planar_collect(ctx, g, ctx->last.v)) {
+        find_pulls(ctx, g, ctx->plane.a);
+        tribo_planar_arrange(ctx, g);
+        pose_cluster(ctx, g);
+        tribo_disc_gains(p);
+        tribo_disc_gradients(p);
+        tribo_disc_places(p);
+        tribo_disc_linearize(p);
+    }
+    return g->member;
 }
 
 /* Where a force is far within its reach, distances of this part of the reach are 0. */
@@ -168,6 +176,75 @@ static int solve_once(tribo_context *ctx, const struct cluster *g)
     return TRIBO_OK;
 }
 
+/* ------------------------------------------------------------------------------------------------------- static limits
+ * Both static limits of a planar contact are the same multiple of those by which it slides, so that only a factor changes as it
+ * breaks away: it holds while f_eq is within the ellipse of the static limits. Scalar contacts of a cluster follow the rule of
+ * static.c. */
+
+/* Gives contacts of a cluster near stick at v their static limits, the others those by which they slide. */
+static void planar_hold(tribo_context *ctx, const struct cluster *g, const double *v)
+{
+    for (size_t k = 0, directions; k < g->size; k += directions) {
+        const size_t i = g->member[k];
+        double limit[2];
+        directions = tribo_directions(ctx, i);
+        const struct contacts c = tribo_planar_view(ctx, i, directions, limit);
+        const struct slide s = tribo_planar_slide(&c, 0, directions, v + i);
+        tribo_planar_limits(ctx, i, directions, tribo_planar_near(ctx->set.law, &s), v + i, ctx->follow.now + i);
+    }
+}
+
+/* The forces of redundant contacts are known to this part of their limits. */
+#define DISAGREEMENT 1e-12
+
+/* 1 if |f_eq| of the contact at e of the problem exceeds its limits by more than rounding; f_eq = y + shift - block^-1
+ * gradient. */
+static int is_pulled_beyond(const struct disc_qp *p, size_t e)
+{
+    const struct block b = tribo_block_at(p->s, p->size, e, p->wide[e]);
+    double feq[2] = {p->gradient[e], p->wide[e] == 2 ? p->gradient[e + 1] : 0.0};
+    tribo_planar_push(&b, feq);
+    for (size_t k = 0; k < p->wide[e]; k++) {
+        feq[k] += p->y[e + k] + p->shift[e + k];
+    }
+    const double size = tribo_length(2, feq), noise = tribo_length(p->wide[e], p->noise + e);
+    const double n[2] = {quotient(feq[0], greater(size, DBL_MIN)), quotient(feq[1], greater(size, DBL_MIN))};
+    const double weak = b.small > 16.0 * DBL_EPSILON * b.great ? b.small : b.great;
+    const double doubt = fabs(n[0] * b.e[0] + n[1] * b.e[1]) * quotient(noise, b.great) +
+                         fabs(n[1] * b.e[0] - n[0] * b.e[1]) * quotient(noise, weak);
+    return size - 1.0 > doubt + (p->factor.sets.dependents ? DISAGREEMENT : 8.0 * DBL_EPSILON);
+}
+
+/* Gives contacts that the solution cannot hold the limits by which they slide at the end of a step of dt, or (0) from rest.
+ * Returns their number. a [n]: accelerations without friction. */
+static size_t planar_break(tribo_context *ctx, const struct cluster *g, double dt, const double *a)
+{
+    const struct disc_qp *p = &ctx->plane.problem;
+    const size_t *member = g->member;
+    double *now = ctx->follow.now, *end = ctx->plane.v; /* velocities at the end */
+    size_t broken = 0;
+    for (size_t k = 0; k < g->size; k++) {
+        end[member[k]] = product(tribo_planar_others(ctx, g, k, k, 0, a[member[k]]), dt);
+    }
+    for (size_t e = 0; e < p->size; e += p->wide[e]) {
+        const size_t k = member[ctx->plane.near[e]], first = k - (ctx->planar->role[k] == ROLE_SECOND);
+        const size_t directions = tribo_directions(ctx, first);
+        int holds = 1, falls = 0;
+        for (size_t i = first; i < first + directions; i++) {
+            holds &= now[i] == ctx->follow.hold[i];
+        }
+        if (p->place[e] != LENS_INSIDE && holds && is_pulled_beyond(p, e)) {
+            const double speed = tribo_length((int)directions, end + first);
+            for (size_t i = first; i < first + directions; i++) {
+                now[i] = tribo_limit_at(ctx, i, speed);
+                falls |= now[i] < ctx->follow.hold[i];
+            }
+            broken += (size_t)falls;
+        }
+    }
+    return broken;
+}
+
 /* Solves until all forces are within their reach, and no static limit breaks; a status. */
 static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt, const double *a)
 {
@@ -180,7 +257,7 @@ static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt,
             pose_cluster(ctx, g);
             status = solve_once(ctx, g);
         } while (!status && ctx->plane.cuts && tribo_planar_widen(ctx, g));
-    } while (!status && ctx->set.breaking && tribo_planar_break(ctx, g, dt, a));
+    } while (!status && ctx->set.breaking && planar_break(ctx, g, dt, a));
     ctx->plane.solved++;
     ctx->last.rank += status ? 0 : ctx->plane.problem.factor.sets.rank;
     return status;
@@ -260,9 +337,9 @@ int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a)
     for (size_t k = 0; !status && k < ctx->planar->clusters; k++) {
         const struct cluster *g = &ctx->planar->cluster[k];
         if (ctx->set.breaking) {
-            tribo_planar_hold(ctx, g, v);
+            planar_hold(ctx, g, v);
         }
-        if (tribo_planar_collect(ctx, g, v)) {
+        if (planar_collect(ctx, g, v)) {
             status = solve_cluster(ctx, g, 0.0, a);
             if (ctx->set.law->remembers) {
                 scalar_laws(ctx, g, v, a);
@@ -369,91 +446,6 @@ size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const
         }
     }
     return changes;
-}
-
-/* ------------------------------------------------------------------------------------------------ f_eq that is given */
-
-/* 1 if f_eq is beyond the limits. */
-static int is_beyond(const double *limit, const double *feq)
-{
-    double y[2];
-    for (int d = 0; d < 2; d++) {
-        y[d] = limit[d] > 0.0 ? quotient(cut(feq[d]), limit[d]) : 0.0;
-    }
-    return tribo_length(2, y) > 1.0;
-}
-
-void tribo_planar_given(const tribo_context *ctx, size_t k, const double *v, const double *feq, struct given *g)
-{
-    const size_t i = ctx->planar->first[k];
-    g->c = tribo_planar_view(ctx, i, 2, g->limit);
-    g->s = tribo_planar_slide(&g->c, 0, 2, v);
-    g->near = tribo_planar_near(ctx->set.law, &g->s);
-    if (ctx->set.breaking) {
-        tribo_planar_limits(ctx, i, 2, g->near && !is_beyond(g->limit, feq), v, g->limit);
-    }
-}
-
-int tribo_planar_given_near(const tribo_context *ctx, size_t k, const struct given *g, const double *feq, struct disc_alone *x)
-{
-    const double *own = ctx->planar->own[k], r = greater(own[0], own[2]), turn = ctx->set.law->relaxes ? 2.0 * g->s.speed : 0.0;
-    const double *bound = g->c.bound, force = greater(bound[0], bound[1]);
-    const double weight[2] = {bound[0] / force, bound[1] / force}, across = weight[0] * weight[1] * (own[1] / r);
-    const double m[4] = {weight[0] * weight[0] * greater(own[0] / r, NEXT_TO_IMMOVABLE), across, across,
-                         weight[1] * weight[1] * greater(own[2] / r, NEXT_TO_IMMOVABLE)};
-    const double shift[2] = {turn * g->s.n[0], turn * g->s.n[1]};
-    double aim[2], pull[2];
-    for (int d = 0; d < 2; d++) {
-        aim[d] = bound[d] > 0.0 ? quotient(cut(feq[d]), bound[d]) : 0.0;
-    }
-    const double length = tribo_length(2, aim);
-    for (int d = 0; d < 2; d++) {
-        aim[d] = (length > HARDEST ? aim[d] / length * HARDEST : aim[d]) - shift[d];
-    }
-    for (int d = 0; d < 2; d++) {
-        pull[d] = -(m[2 * d] * aim[0] + m[2 * d + 1] * aim[1]);
-    }
-    tribo_disc_alone(x, m, pull, shift);
-    memcpy(x->p.y, aim, sizeof aim);
-    return tribo_disc_solve(&x->p);
-}
-
-int tribo_plane_check_feq(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq)
-{
-    for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
-        double limit[2];
-        const size_t i = ctx->planar->first[k];
-        const struct contacts c = tribo_planar_view(ctx, i, 2, limit);
-        const struct slide s = tribo_planar_slide(&c, 0, 2, v + i);
-        for (size_t j = i; tribo_planar_near(ctx->set.law, &s) && j < i + 2; j++) {
-            if (!isfinite(feq[j])) {
-                return tribo_fail(note, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", j, feq[j]);
-            }
-        }
-    }
-    return TRIBO_OK;
-}
-
-int tribo_plane_force(const tribo_context *ctx, const double *v, const double *feq, double *f)
-{
-    const double none[2] = {0.0, 0.0};
-    for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
-        const size_t i = ctx->planar->first[k];
-        struct given g;
-        struct disc_alone x;
-        tribo_planar_given(ctx, k, v + i, feq ? feq + i : none, &g);
-        if (!g.near) {
-            tribo_planar_slide_force(ctx->set.law, &g.s, g.c.limit, f + i);
-        } else if (!tribo_planar_given_near(ctx, k, &g, feq + i, &x)) {
-            return TRIBO_ERR_NO_CONVERGENCE;
-        } else {
-            for (size_t d = 0; d < 2; d++) {
-                const double held = cut(feq[i + d]) - x.p.shift[d] * g.c.bound[d];
-                f[i + d] = x.p.place[0] == LENS_INSIDE && g.c.bound[d] > 0.0 ? held : x.p.y[d] * g.c.bound[d];
-            }
-        }
-    }
-    return TRIBO_OK;
 }
 
 double tribo_plane_rate(const tribo_context *ctx)

@@ -8,21 +8,6 @@ void tribo_clusters_linearize(tribo_context *ctx, const double *a)
     tribo_copy(ctx->plane.a, a, ctx->planar ? ctx->n : 0);
 }
 
-const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
-{
-    struct disc_qp *p = &ctx->plane.problem;
-    const struct cluster *g = &ctx->planar->cluster[q];
-    *size = g->size;
-    if (tribo_planar_collect(ctx, g, ctx->last.v)) {
-        tribo_planar_resume(ctx, g, ctx->plane.a);
-        tribo_disc_gains(p);
-        tribo_disc_gradients(p);
-        tribo_disc_places(p);
-        tribo_disc_linearize(p);
-    }
-    return g->member;
-}
-
 /* along [directions] = v/|v|; at rest, where |v| has a kink, along/|along|, the direction in which a contact begins to slide,
  * or 0. Returns |v|. */
 static double heading(size_t directions, const double *v, double *along)
@@ -75,7 +60,7 @@ struct turn {
     double v[2], limit[2], epsilon;
 };
 
-static struct turn planar_tangent_turn_of(const tribo_context *ctx, size_t i, const struct slide *s, const struct change *d)
+static struct turn planar_turn(const tribo_context *ctx, size_t i, const struct slide *s, const struct change *d)
 {
     const struct contacts *c = &ctx->follow.contacts;
     struct turn t = {{0.0, 0.0}, {0.0, 0.0}, 0.0};
@@ -124,43 +109,40 @@ static void turn_shift(const struct slide *s, const double *limit, const double 
     }
 }
 
-/* df [size] of the contacts of a cluster that are not near stick; of the others its part that follows limits. */
-static void products_of_slips(const tribo_context *ctx, const struct cluster *g, const struct change *d, double *df)
+/* The change of the limit of direction i in parts of the limit. */
+static double limit_growth(const tribo_context *ctx, const struct change *d, size_t i)
 {
-    const struct disc_qp *p = &ctx->plane.problem;
-    const struct contacts *c = &ctx->follow.contacts;
-    for (size_t k = 0; k < g->size; k += tribo_directions(ctx, g->member[k])) {
-        const size_t i = g->member[k];
-        const struct slide s = tribo_planar_slide(c, i, tribo_directions(ctx, i), ctx->last.v + i);
-        const struct turn t = planar_tangent_turn_of(ctx, i, &s, d);
-        turn_force(ctx->set.law, &s, c->limit + i, ctx->last.v + i, &t, df + k);
-    }
-    for (size_t e = 0; e < p->size; e++) {
-        const size_t i = g->member[ctx->plane.near[e]];
-        df[ctx->plane.near[e]] = tribo_planar_cut(ctx, i) ? 0.0 : product(p->y[e], tribo_limit_change(ctx, d, i));
-    }
+    const double limit = ctx->follow.contacts.limit[i];
+    return limit > 0.0 ? quotient(tribo_entry(d->limit, i), limit) : 0.0;
 }
 
 /* Derivatives of shifts are cut to this. */
 #define STEEPEST 1e150
 
-/* dshift = the change of the shift of the contact at e of the problem. */
-static void shift_change(const tribo_context *ctx, const struct cluster *g, size_t e, const struct change *d, double *dshift)
+/* df [size] of the contacts of a cluster that are not near stick; of those in the problem, the part of df that follows limits,
+ * and dshift, the change of their shift. */
+static void own_changes(const tribo_context *ctx, const struct cluster *g, const struct change *d, double *df, double *dshift)
 {
     const struct contacts *c = &ctx->follow.contacts;
     const struct disc_qp *p = &ctx->plane.problem;
-    const size_t i = g->member[ctx->plane.near[e]], first = i - (ctx->planar->role[i] == ROLE_SECOND);
-    double change[2] = {0.0, 0.0}, epsilon = 0.0;
-    if (ctx->set.law->relaxes) {
-        const struct slide s = tribo_planar_slide(c, first, tribo_directions(ctx, first), ctx->last.v + first);
-        const struct turn t = planar_tangent_turn_of(ctx, first, &s, d);
-        turn_shift(&s, c->limit + first, ctx->last.v + first, &t, change);
-        epsilon = t.epsilon;
-    }
-    for (size_t k = 0; k < p->wide[e]; k++) {
-        const double by_v = change[i + k - first], part = tribo_planar_cut(ctx, i + k) ? ctx->plane.radius[i + k] : 0.0;
-        const double larger = part > 0.0 ? product(quotient(c->bound[i + k], part), by_v) : by_v;
-        dshift[k] = clamp(larger - product(p->shift[e + k], epsilon), -STEEPEST, STEEPEST);
+    const double *v = ctx->last.v;
+    for (size_t k = 0, e = 0, directions; k < g->size; k += directions) {
+        const size_t i = g->member[k];
+        directions = tribo_directions(ctx, i);
+        const struct slide s = tribo_planar_slide(c, i, directions, v + i);
+        const struct turn t = planar_turn(ctx, i, &s, d);
+        double change[2] = {0.0, 0.0};
+        turn_force(ctx->set.law, &s, c->limit + i, v + i, &t, df + k);
+        if (ctx->set.law->relaxes) {
+            turn_shift(&s, c->limit + i, v + i, &t, change);
+        }
+        for (; e < p->size && ctx->plane.near[e] < k + directions; e++) {
+            const size_t j = ctx->plane.near[e] - k;
+            const int far = tribo_planar_cut(ctx, i + j);
+            const double part = far ? quotient(c->bound[i + j], ctx->plane.radius[i + j]) : 1.0;
+            dshift[e] = clamp(product(part, change[j]) - product(p->shift[e], t.epsilon), -STEEPEST, STEEPEST);
+            df[k + j] = far ? 0.0 : product(p->y[e], t.limit[j]);
+        }
     }
 }
 
@@ -179,8 +161,8 @@ static void find_rhs(const tribo_context *ctx, const struct cluster *g, const st
             sum += product(row[j], df[j]);
         }
         rhs[e] = p->weight[e] * quotient(quotient(cut(sum), u.r), u.force);
-        rhs[e] += d->limit ? product(tribo_limit_growth(ctx, d, member[near[e]]), p->gradient[e]) : 0.0;
-        turn[e] = dshift[e] + (d->limit ? product(p->shift[e], tribo_limit_growth(ctx, d, member[near[e]])) : 0.0);
+        rhs[e] += d->limit ? product(limit_growth(ctx, d, member[near[e]]), p->gradient[e]) : 0.0;
+        turn[e] = dshift[e] + (d->limit ? product(p->shift[e], limit_growth(ctx, d, member[near[e]])) : 0.0);
         for (size_t j = 0; j < n; j++) {
             rhs[e] += p->s[e * n + j] * dy[j];
         }
@@ -215,9 +197,8 @@ const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct c
     const size_t *near = ctx->plane.near;
     double *dshift = p->from, *dy = p->best, *rhs = p->noise, *move = p->aim, *df = ctx->plane.df;
     const struct change by_v = with_limits(ctx, g, d);
-    products_of_slips(ctx, g, &by_v, df);
+    own_changes(ctx, g, &by_v, df, dshift);
     for (size_t e = 0; e < p->size; e += p->wide[e]) {
-        shift_change(ctx, g, e, &by_v, dshift + e);
         tribo_disc_drag(p, e, dshift + e, dy + e);
     }
     find_rhs(ctx, g, &by_v, df, dshift, dy, rhs);
@@ -234,6 +215,97 @@ const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct c
 }
 
 /* ------------------------------------------------------------------------------------------------ f_eq that is given */
+
+/* A planar contact with f_eq given: limits, law and motion. */
+struct given {
+    double limit[2];
+    struct contacts c; /* of its two directions */
+    struct slide s;
+    int near;
+};
+
+/* y [2] = f_eq in parts of limits. Returns |y|. */
+static double feq_parts(const double *limit, const double *feq, double *y)
+{
+    for (int d = 0; d < 2; d++) {
+        y[d] = limit[d] > 0.0 ? quotient(cut(feq[d]), limit[d]) : 0.0;
+    }
+    return tribo_length(2, y);
+}
+
+/* Sets what is given of planar contact k at v [2], feq [2]. */
+static void planar_given(const tribo_context *ctx, size_t k, const double *v, const double *feq, struct given *g)
+{
+    const size_t i = ctx->planar->first[k];
+    g->c = tribo_planar_view(ctx, i, 2, g->limit);
+    g->s = tribo_planar_slide(&g->c, 0, 2, v);
+    g->near = tribo_planar_near(ctx->set.law, &g->s);
+    if (ctx->set.breaking) {
+        double y[2];
+        tribo_planar_limits(ctx, i, 2, g->near && feq_parts(g->limit, feq, y) <= 1.0, v, g->limit);
+    }
+}
+
+/* Near stick: x->p.y = the point of the lens nearest to feq - kappa in the norm of the contact's block, in parts of limits.
+ * Returns 1, or 0 without convergence. */
+static int given_near(const tribo_context *ctx, size_t k, const struct given *g, const double *feq, struct disc_alone *x)
+{
+    const double *own = ctx->planar->own[k], r = greater(own[0], own[2]), turn = ctx->set.law->relaxes ? 2.0 * g->s.speed : 0.0;
+    const double *bound = g->c.bound, force = greater(bound[0], bound[1]);
+    const double weight[2] = {bound[0] / force, bound[1] / force}, across = weight[0] * weight[1] * (own[1] / r);
+    const double m[4] = {weight[0] * weight[0] * greater(own[0] / r, NEXT_TO_IMMOVABLE), across, across,
+                         weight[1] * weight[1] * greater(own[2] / r, NEXT_TO_IMMOVABLE)};
+    const double shift[2] = {turn * g->s.n[0], turn * g->s.n[1]};
+    double aim[2], pull[2];
+    const double length = feq_parts(bound, feq, aim);
+    for (int d = 0; d < 2; d++) {
+        aim[d] = (length > HARDEST ? aim[d] / length * HARDEST : aim[d]) - shift[d];
+    }
+    for (int d = 0; d < 2; d++) {
+        pull[d] = -(m[2 * d] * aim[0] + m[2 * d + 1] * aim[1]);
+    }
+    tribo_disc_alone(x, m, pull, shift);
+    memcpy(x->p.y, aim, sizeof aim);
+    return tribo_disc_solve(&x->p);
+}
+
+int tribo_plane_check_feq(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq)
+{
+    const double none[2] = {0.0, 0.0};
+    for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
+        const size_t i = ctx->planar->first[k];
+        struct given g;
+        planar_given(ctx, k, v + i, none, &g);
+        for (size_t j = i; g.near && j < i + 2; j++) {
+            if (!isfinite(feq[j])) {
+                return tribo_fail(note, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", j, feq[j]);
+            }
+        }
+    }
+    return TRIBO_OK;
+}
+
+int tribo_plane_force(const tribo_context *ctx, const double *v, const double *feq, double *f)
+{
+    const double none[2] = {0.0, 0.0};
+    for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
+        const size_t i = ctx->planar->first[k];
+        struct given g;
+        struct disc_alone x;
+        planar_given(ctx, k, v + i, feq ? feq + i : none, &g);
+        if (!g.near) {
+            tribo_planar_slide_force(ctx->set.law, &g.s, g.c.limit, f + i);
+        } else if (!given_near(ctx, k, &g, feq + i, &x)) {
+            return TRIBO_ERR_NO_CONVERGENCE;
+        } else {
+            for (size_t d = 0; d < 2; d++) {
+                const double held = cut(feq[i + d]) - x.p.shift[d] * g.c.bound[d];
+                f[i + d] = x.p.place[0] == LENS_INSIDE && g.c.bound[d] > 0.0 ? held : x.p.y[d] * g.c.bound[d];
+            }
+        }
+    }
+    return TRIBO_OK;
+}
 
 /* df [2] of a contact near stick by t and dfeq [2]; its problem is solved and linearized. */
 static void turn_near(struct disc_qp *p, const struct given *g, const double *v, int relaxes, const struct turn *t,
@@ -289,8 +361,8 @@ int tribo_plane_blocks(const tribo_context *ctx, const double *v, const double *
         const size_t i = ctx->planar->first[q];
         struct given g;
         struct disc_alone x;
-        tribo_planar_given(ctx, q, v + i, feq ? feq + i : none, &g);
-        if (g.near && !tribo_planar_given_near(ctx, q, &g, feq + i, &x)) {
+        planar_given(ctx, q, v + i, feq ? feq + i : none, &g);
+        if (g.near && !given_near(ctx, q, &g, feq + i, &x)) {
             return TRIBO_ERR_NO_CONVERGENCE;
         }
         if (g.near) {
