@@ -121,7 +121,8 @@ int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, do
         const struct contacts *c = &ctx->follow.contacts;
         const double inverse = *ctx->op->inverse;
         const double balance = plain && ctx->follow.chunk->plain ? tribo_alone(*a, inverse) : tribo_alone_far(*a, inverse);
-        const double force = ctx->set.law->force_of_one(c, *v, balance);
+        double force;
+        ctx->set.law->force(c, 1, v, &balance, &force);
         if (feq) {
             *feq = *c->limit > 0.0 ? balance : 0.0;
         }

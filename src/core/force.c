@@ -129,7 +129,7 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
         return TRIBO_ERR_NULL;
     }
     if (ctx->n == 1 && plain && !ctx->set.breaking) {
-        *f = ctx->set.law->force_of_one(&ctx->follow.contacts, *v, ctx->set.law->uses_feq ? *feq : 0.0);
+        ctx->set.law->force(&ctx->follow.contacts, 1, v, ctx->set.law->uses_feq ? feq : v, f);
         return TRIBO_OK;
     }
     find_outputs(ctx, plain, v, feq, (double *const[OUTPUTS]){f, NULL, NULL, NULL});

@@ -184,11 +184,11 @@ static int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bo
     return status;
 }
 
-/* Ends a call with forces f [n], unless it has failed. */
-static int hand_out(tribo_context *ctx, int status, double *f)
+/* Ends a call with forces f [n] of a number of islands, unless it has failed. */
+static int hand_out(tribo_context *ctx, size_t islands, int status, double *f)
 {
     if (!status) {
-        ctx->count.skipped += ctx->op->islands - ctx->memory.nsolved;
+        ctx->count.skipped += islands - ctx->memory.nsolved - ctx->plane.solved;
         tribo_remember_forces(ctx);
         tribo_copy(f, ctx->last.f, ctx->n);
     }
@@ -198,7 +198,7 @@ static int hand_out(tribo_context *ctx, int status, double *f)
 int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known, double *f)
 {
     const int status = solve_boxes(ctx, dt, v, b, ctx->group_of);
-    return hand_out(ctx, status ? status : tribo_clusters_step(ctx, dt, v, known), f);
+    return hand_out(ctx, tribo_islands(ctx), status ? status : tribo_clusters_step(ctx, dt, v, known), f);
 }
 
 static int step_once(tribo_context *ctx, double dt, const double *vfree, double *f)
@@ -259,5 +259,5 @@ int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, co
     }
     tribo_begin_call(ctx);
     ctx->last.far = most > TRIBO_ROOM * ctx->op->most;
-    return hand_out(ctx, solve_boxes(ctx, 1.0, a, (struct bounds){lower, upper}, ctx->op->group_of), f);
+    return hand_out(ctx, ctx->op->islands, solve_boxes(ctx, 1.0, a, (struct bounds){lower, upper}, ctx->op->group_of), f);
 }

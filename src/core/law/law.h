@@ -89,7 +89,6 @@ struct law {
     /* f [n] with feq = tribo_alone(a, inverse); |a| and 1/R_ii are at most TRIBO_PLAIN */
     void (*balance)(const struct contacts *c, size_t n, const double *v, const double *a, const double *inverse, double *f);
     void (*tangent)(const struct contacts *c, size_t n, const double *v, const double *feq, const struct tangents *d);
-    double (*force_of_one)(const struct contacts *c, double v, double feq); /* of the first contact */
 };
 
 extern const struct law tribo_law_coulomb, tribo_law_velocity_limited, tribo_law_smooth, tribo_law_karnopp, tribo_law_quinn,
@@ -149,11 +148,10 @@ static inline struct tangent dry_tangent(int slides, double v, double feq, doubl
 }
 
 /* The calls in the record of a law. */
-#define TRIBO_LAW_CALLS(name)                                                                                                    \
-    .force = name##_force_all, .balance = name##_balance_all, .tangent = name##_tangent_all, .force_of_one = name##_force_of_one
+#define TRIBO_LAW_CALLS(name) .force = name##_force_all, .balance = name##_balance_all, .tangent = name##_tangent_all
 
-/* Defines <name>_force_all, <name>_balance_all, <name>_tangent_all and <name>_force_of_one from the law's functions of one
- * contact, <name>_force and <name>_tangent. */
+/* Defines <name>_force_all, <name>_balance_all and <name>_tangent_all from the law's functions of one contact, <name>_force and
+ * <name>_tangent. */
 #define TRIBO_FORCE_EACH(name, limit, epsilon, slope, rate)                                                                      \
     for (size_t i = 0; i < n; i++) {                                                                                             \
         f[i] = name##_force(v[i], feq[i], limit, epsilon, slope);                                                                \
@@ -186,10 +184,6 @@ static inline struct tangent dry_tangent(int slides, double v, double feq, doubl
     }
 
 #define TRIBO_LAW_LOOPS(name)                                                                                                    \
-    static double name##_force_of_one(const struct contacts *c, double v, double feq)                                            \
-    {                                                                                                                            \
-        return name##_force(v, feq, *c->limit, tribo_epsilon_of(c, 0), tribo_slope_of(c, 0));                                    \
-    }                                                                                                                            \
     TRIBO_SIMD static void name##_force_all(const struct contacts *c, size_t n, const double *restrict v,                        \
                                             const double *restrict feq, double *restrict f)                                      \
     {                                                                                                                            \

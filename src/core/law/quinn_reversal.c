@@ -51,13 +51,6 @@ static void reversal_force_all(const struct contacts *c, size_t n, const double 
     }
 }
 
-static double reversal_force_of_one(const struct contacts *c, double v, double feq)
-{
-    double f = tribo_law_quinn.force_of_one(c, v, feq);
-    cross(c, 0, v, feq, &f);
-    return f;
-}
-
 static void reversal_balance_all(const struct contacts *c, size_t n, const double *v, const double *a, const double *inverse,
                                  double *f)
 {

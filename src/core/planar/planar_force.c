@@ -263,13 +263,6 @@ static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt,
     return status;
 }
 
-/* Corrects the islands skipped: planar contacts join some, and clusters that are solved are not skipped. */
-static void count_skipped(tribo_context *ctx)
-{
-    ctx->count.skipped += ctx->planar->islands;
-    ctx->count.skipped -= ctx->op->islands + ctx->plane.solved;
-}
-
 /* ------------------------------------------------------------------------------------------------------------- f_eq */
 
 /* feq [directions] of the contact at place k of a cluster, with a [directions]; 0 if it is open. */
@@ -333,7 +326,6 @@ int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a)
             *stored = *stored == NONE_STORED ? SOME_STORED : *stored;
         }
     }
-    ctx->plane.solved = 0;
     for (size_t k = 0; !status && k < ctx->planar->clusters; k++) {
         const struct cluster *g = &ctx->planar->cluster[k];
         if (ctx->set.breaking) {
@@ -346,7 +338,6 @@ int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a)
             }
         }
     }
-    count_skipped(ctx);
     return status;
 }
 
@@ -357,7 +348,6 @@ int tribo_clusters_step(tribo_context *ctx, double dt, const double *v, const si
     if (!ctx->planar) {
         return status;
     }
-    ctx->plane.solved = 0;
     for (size_t q = 0; !status && q < ctx->planar->clusters; q++) {
         const struct cluster *g = &ctx->planar->cluster[q];
         ctx->plane.problem.size = 0;
@@ -375,7 +365,6 @@ int tribo_clusters_step(tribo_context *ctx, double dt, const double *v, const si
             status = solve_cluster(ctx, g, dt, ctx->plane.a);
         }
     }
-    count_skipped(ctx);
     return status;
 }
 
