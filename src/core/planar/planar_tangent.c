@@ -55,40 +55,39 @@ static struct change with_limits(tribo_context *ctx, const struct cluster *g, co
     return (struct change){d->v, d->a, dlimit};
 }
 
-/* Changes of one contact; epsilon: d(epsilon)/epsilon. */
+/* Changes of one contact; x: of part v of a slide; epsilon: d(epsilon)/epsilon. */
 struct turn {
-    double v[2], limit[2], epsilon;
+    double v[2], limit[2], x[2], epsilon;
 };
+
+/* Sets t->x from the other changes. */
+static void turn_slide(const struct slide *s, const double *limit, const double *v, struct turn *t)
+{
+    for (size_t k = 0; k < s->directions; k++) {
+        const double wider = t->limit[k] - product(s->part[k], t->limit[s->far]);
+        const double part = s->open || k == s->far ? 0.0 : quotient(wider, limit[s->far]);
+        t->x[k] = product(s->part[k], t->v[k]) + product(part, v[k]);
+    }
+}
 
 static struct turn planar_turn(const tribo_context *ctx, size_t i, const struct slide *s, const struct change *d)
 {
     const struct contacts *c = &ctx->follow.contacts;
-    struct turn t = {{0.0, 0.0}, {0.0, 0.0}, 0.0};
+    struct turn t = {{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}, 0.0};
     for (size_t k = 0; k < s->directions; k++) {
         t.v[k] = tribo_entry(d->v, i + k);
         t.limit[k] = tribo_limit_change(ctx, d, i + k);
     }
     t.epsilon = s->open || !c->follows ? 0.0 : quotient(t.limit[s->far], c->limit[i + s->far]);
+    turn_slide(s, c->limit + i, ctx->last.v + i, &t);
     return t;
 }
 
-/* dx [2] = the change of part v of a slide. */
-static void turn_slide(const struct slide *s, const double *limit, const double *v, const struct turn *t, double *dx)
-{
-    for (size_t k = 0; k < s->directions; k++) {
-        const double wider = t->limit[k] - product(s->part[k], t->limit[s->far]);
-        const double part = s->open || k == s->far ? 0.0 : quotient(wider, limit[s->far]);
-        dx[k] = product(s->part[k], t->v[k]) + product(part, v[k]);
-    }
-}
-
 /* df [directions] of a contact that is not near stick. */
-static void turn_force(const struct law *law, const struct slide *s, const double *limit, const double *v, const struct turn *t,
-                       double *df)
+static void turn_force(const struct law *law, const struct slide *s, const double *limit, const struct turn *t, double *df)
 {
-    double slope, dx[2] = {0.0, 0.0};
-    const double carried = tribo_planar_carried(law, s->speed, &slope);
-    turn_slide(s, limit, v, t, dx);
+    double slope;
+    const double *dx = t->x, carried = tribo_planar_carried(law, s->speed, &slope);
     const double along = s->n[0] * dx[0] + s->n[1] * dx[1];
     for (size_t k = 0; k < s->directions; k++) {
         const double turn = s->length > 0.0 ? carried * quotient(dx[k] - s->n[k] * along, s->length) : 0.0;
@@ -96,16 +95,6 @@ static void turn_force(const struct law *law, const struct slide *s, const doubl
         const double grow = slope * (faster - product(product(s->speed, t->epsilon), s->n[k]));
         const double own = product(carried * s->n[k], t->limit[k]);
         df[k] = s->open ? 0.0 : product(limit[k], turn + grow) + own;
-    }
-}
-
-/* dshift [2] = the change of the shift of a lens, epsilon fixed. */
-static void turn_shift(const struct slide *s, const double *limit, const double *v, const struct turn *t, double *dshift)
-{
-    double dx[2];
-    turn_slide(s, limit, v, t, dx);
-    for (size_t k = 0; k < s->directions; k++) {
-        dshift[k] = 2.0 * quotient(dx[k], s->epsilon);
     }
 }
 
@@ -119,28 +108,30 @@ static double limit_growth(const tribo_context *ctx, const struct change *d, siz
 /* Derivatives of shifts are cut to this. */
 #define STEEPEST 1e150
 
+/* Returns the change of direction k of a shift, which is part of those in parts of limits. */
+static double turn_shift(const struct law *law, const struct slide *s, const struct turn *t, size_t k, double part, double shift)
+{
+    const double change = law->relaxes ? 2.0 * quotient(t->x[k], s->epsilon) : 0.0;
+    return clamp(product(part, change) - product(shift, t->epsilon), -STEEPEST, STEEPEST);
+}
+
 /* df [size] of the contacts of a cluster that are not near stick; of those in the problem, the part of df that follows limits,
  * and dshift, the change of their shift. */
 static void own_changes(const tribo_context *ctx, const struct cluster *g, const struct change *d, double *df, double *dshift)
 {
     const struct contacts *c = &ctx->follow.contacts;
     const struct disc_qp *p = &ctx->plane.problem;
-    const double *v = ctx->last.v;
     for (size_t k = 0, e = 0, directions; k < g->size; k += directions) {
         const size_t i = g->member[k];
         directions = tribo_directions(ctx, i);
-        const struct slide s = tribo_planar_slide(c, i, directions, v + i);
+        const struct slide s = tribo_planar_slide(c, i, directions, ctx->last.v + i);
         const struct turn t = planar_turn(ctx, i, &s, d);
-        double change[2] = {0.0, 0.0};
-        turn_force(ctx->set.law, &s, c->limit + i, v + i, &t, df + k);
-        if (ctx->set.law->relaxes) {
-            turn_shift(&s, c->limit + i, v + i, &t, change);
-        }
+        turn_force(ctx->set.law, &s, c->limit + i, &t, df + k);
         for (; e < p->size && ctx->plane.near[e] < k + directions; e++) {
             const size_t j = ctx->plane.near[e] - k;
             const int far = tribo_planar_cut(ctx, i + j);
             const double part = far ? quotient(c->bound[i + j], ctx->plane.radius[i + j]) : 1.0;
-            dshift[e] = clamp(product(part, change[j]) - product(p->shift[e], t.epsilon), -STEEPEST, STEEPEST);
+            dshift[e] = turn_shift(ctx->set.law, &s, &t, j, part, p->shift[e]);
             df[k + j] = far ? 0.0 : product(p->y[e], t.limit[j]);
         }
     }
@@ -161,8 +152,9 @@ static void find_rhs(const tribo_context *ctx, const struct cluster *g, const st
             sum += product(row[j], df[j]);
         }
         rhs[e] = p->weight[e] * quotient(quotient(cut(sum), u.r), u.force);
-        rhs[e] += d->limit ? product(limit_growth(ctx, d, member[near[e]]), p->gradient[e]) : 0.0;
-        turn[e] = dshift[e] + (d->limit ? product(p->shift[e], limit_growth(ctx, d, member[near[e]])) : 0.0);
+        const double growth = limit_growth(ctx, d, member[near[e]]);
+        rhs[e] += product(growth, p->gradient[e]);
+        turn[e] = dshift[e] + product(p->shift[e], growth);
         for (size_t j = 0; j < n; j++) {
             rhs[e] += p->s[e * n + j] * dy[j];
         }
@@ -308,16 +300,13 @@ int tribo_plane_force(const tribo_context *ctx, const double *v, const double *f
 }
 
 /* df [2] of a contact near stick by t and dfeq [2]; its problem is solved and linearized. */
-static void turn_near(struct disc_qp *p, const struct given *g, const double *v, int relaxes, const struct turn *t,
-                      const double *dfeq, double *df)
+static void turn_near(struct disc_qp *p, const struct given *g, const struct law *law, const struct turn *t, const double *dfeq,
+                      double *df)
 {
     const double *bound = g->c.bound;
-    double dshift[2] = {0.0, 0.0}, dy[2], off[2], growth[2], rhs[2], move[2];
-    if (relaxes) {
-        turn_shift(&g->s, g->c.limit, v, t, dshift);
-    }
+    double dshift[2], dy[2], off[2], growth[2], rhs[2], move[2];
     for (size_t k = 0; k < 2; k++) {
-        dshift[k] = clamp(dshift[k] - product(p->shift[k], t->epsilon), -STEEPEST, STEEPEST);
+        dshift[k] = turn_shift(law, &g->s, t, k, 1.0, p->shift[k]);
     }
     tribo_disc_drag(p, 0, dshift, dy);
     for (size_t k = 0; k < 2; k++) {
@@ -333,10 +322,12 @@ static void turn_near(struct disc_qp *p, const struct given *g, const double *v,
     }
 }
 
-/* Returns t with d(epsilon), and with the changes of static limits, which follow those of the caller, and |v|. */
-static struct turn turn_limits(const tribo_context *ctx, size_t i, const struct given *g, const struct disc_qp *p,
-                               const double *v, struct turn t)
+/* Returns the changes that follow dv [2] and dlimit [2] of the caller; static limits follow |v|, too. p: the problem near stick, or
+ * NULL. */
+static struct turn given_turn(const tribo_context *ctx, size_t i, const struct given *g, const struct disc_qp *p, const double *v,
+                              const double *dv, const double *dlimit)
 {
+    struct turn t = {{dv[0], dv[1]}, {dlimit[0], dlimit[1]}, {0.0, 0.0}, 0.0};
     const double *set = ctx->set.breaking ? ctx->follow.cut_limit + i : g->c.limit;
     double along[2] = {0.0, 0.0};
     for (size_t k = 0; p && p->place[0] == LENS_ON_DISC && k < 2; k++) {
@@ -349,6 +340,7 @@ static struct turn turn_limits(const tribo_context *ctx, size_t i, const struct 
         const double part = set[k] > 0.0 ? quotient(g->c.limit[k], set[k]) : 0.0;
         t.limit[k] = product(part, t.limit[k]) + product(tribo_limit_rate(ctx, i + k, speed), faster);
     }
+    turn_slide(&g->s, g->c.limit, v, &t);
     return t;
 }
 
@@ -373,12 +365,11 @@ int tribo_plane_blocks(const tribo_context *ctx, const double *v, const double *
         for (size_t column = 0; column < 6; column++) {
             double unit[6] = {0.0}, df[2] = {0.0, 0.0};
             unit[column] = column < 4 || ctx->set.limit[i + column - 4] > 0.0;
-            const struct turn by = {{unit[0], unit[1]}, {unit[4], unit[5]}, 0.0};
-            const struct turn t = turn_limits(ctx, i, &g, g.near ? &x.p : NULL, v + i, by);
+            const struct turn t = given_turn(ctx, i, &g, g.near ? &x.p : NULL, v + i, unit, unit + 4);
             if (g.near) {
-                turn_near(&x.p, &g, v + i, ctx->set.law->relaxes, &t, unit + 2, df);
+                turn_near(&x.p, &g, ctx->set.law, &t, unit + 2, df);
             } else {
-                turn_force(ctx->set.law, &g.s, g.c.limit, v + i, &t, df);
+                turn_force(ctx->set.law, &g.s, g.c.limit, &t, df);
             }
             for (size_t k = 0; out[column / 2] && k < 2; k++) {
                 out[column / 2][2 * (i + k) + column % 2] = df[k];
