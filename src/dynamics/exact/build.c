@@ -1,4 +1,6 @@
+/* Builds structures with contacts held: modes, damping, and what the modes do at contacts. */
 #include "parts.h"
+#include "common/layout.h"
 #include "common/real.h"
 #include "dynamics/reduce/normal_modes.h"
 
@@ -18,33 +20,93 @@
 /* Largest part of a mode in another mode that counts as rounding. */
 #define TINY 1e-6
 
-/* Up to FEW modes a dense product does not pay. */
-#define FEW 4
+/* ------------------------------------------------------------------------------------------------------------------ memory */
+
+/* Arrays are many and short: a block holds several. The first block has BLOCK bytes, a size that allocators serve without a
+ * search; each next block is at least twice as large as the block before. */
+#define BLOCK 992
+
+struct modal_block {
+    struct modal_block *next;
+    size_t used, room; /* units */
+    union layout_unit unit[];
+};
+
+void *tribo_modal_take(struct modal_store *store, size_t count, size_t size)
+{
+    struct modal_block *block = store->last;
+    const size_t units = (count * size + sizeof *block->unit - 1) / sizeof *block->unit;
+    if (!block || block->room - block->used < units) {
+        const size_t least = block ? 2 * block->room : BLOCK / sizeof *block->unit, room = units > least ? units : least;
+        struct modal_block *more = malloc(sizeof *more + room * sizeof *more->unit);
+        if (!more) {
+            return NULL;
+        }
+        *more = (struct modal_block){block, 0, room};
+        store->bytes += sizeof *more + room * sizeof *more->unit;
+        store->last = block = more;
+    }
+    block->used += units;
+    return memset(block->unit + block->used - units, 0, units * sizeof *block->unit);
+}
+
+void tribo_modal_give_back(struct modal_store *store)
+{
+    while (store->last) {
+        struct modal_block *next = store->last->next;
+        free(store->last);
+        store->last = next;
+    }
+}
+
+int tribo_modal_keep_all(struct modal_build *b, size_t arrays, double **const *array, const size_t *count)
+{
+    for (size_t k = 0; k < arrays; k++) {
+        *array[k] = tribo_modal_take(&b->h->store, count[k], sizeof(double));
+        if (!*array[k]) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+size_t *tribo_modal_keep_indices(struct modal_build *b, size_t count)
+{
+    return tribo_modal_take(&b->h->store, count, sizeof(size_t));
+}
+
+double *tribo_modal_scratch(struct modal_build *b, size_t count)
+{
+    return tribo_modal_take(&b->scratch, count, sizeof(double));
+}
+
+size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count)
+{
+    return tribo_modal_take(&b->scratch, count, sizeof(size_t));
+}
 
 /* ------------------------------------------------------------------------------------------------- the contacts that hold */
 
+/* Sets key, rest, springs and ties. Returns 0 if out of memory, or on another failure, with b->status set. */
 static int list_rest(struct modal_build *b, const unsigned char *holds)
 {
+    struct modal *h = b->h;
     tribo_system *sys = b->shared->sys;
-    const struct compliance *g = &sys->compliance;
-    b->rest = tribo_modal_scratch_indices(b, sys->ncontact);
-    for (size_t i = 0; b->rest && i < sys->ncontact; i++) {
-        if (holds[i] && !tribo_is_compliant(g, i)) {
-            b->rest[b->rests++] = i;
-        }
+    h->key = tribo_modal_take(&h->store, sys->ncontact, 1);
+    h->rest = tribo_modal_keep_indices(b, sys->ncontact);
+    for (size_t i = 0; h->key && h->rest && i < sys->ncontact; i++) {
+        const int compliant = tribo_is_compliant(&sys->compliance, i);
+        h->key[i] = (signed char)((b->slip[i] == TRIBO_SLIP_STUCK) + holds[i]);
+        h->rest[h->rests] = i;
+        h->rests += holds[i] && !compliant;
+        h->springs += holds[i] && compliant;
     }
-    for (size_t k = 0; b->rest && k < g->count; k++) {
-        if (holds[g->contact[k]]) {
-            b->rest[b->rests + b->springs++] = g->contact[k];
-        }
-    }
-    b->rates = b->springs ? sys->ncontact : 0;
-    if (!b->rest || !tribo_constraints_create(&b->ties, &sys->direction, &sys->mass, b->rest, b->rests, NULL)) {
+    if (!h->key || !h->rest || !tribo_constraints_create(&h->ties, &sys->direction, &sys->mass, h->rest, h->rests, NULL)) {
         return 0;
     }
-    if (b->ties.rank < b->rests) {
+    if (h->ties.rank < h->rests) {
         b->status = tribo_system_fail(sys, TRIBO_ERR_INDEFINITE, "contact %zu cannot hold: the others that do leave it no motion",
-                                      b->rest[b->ties.order[b->ties.rank]]);
+                                      h->rest[h->ties.order[h->ties.rank]]);
         return 0;
     }
     return 1;
@@ -54,9 +116,9 @@ static int list_rest(struct modal_build *b, const unsigned char *holds)
 static int find_stiffness(struct modal_build *b)
 {
     const tribo_system *sys = b->shared->sys;
-    const size_t n = b->n, c = sys->ncontact;
+    const size_t n = b->h->n, c = sys->ncontact;
     b->stiffness = b->shared->stiffness;
-    if (!b->springs) {
+    if (!b->h->springs) {
         return 1;
     }
     const int whole = sys->compliance.shared != NULL;
@@ -78,6 +140,14 @@ static int find_stiffness(struct modal_build *b)
     return done;
 }
 
+void tribo_modal_react(const struct modal *h, double *force, double *f, double *work)
+{
+    memset(work, 0, h->modes * sizeof *work);
+    tribo_multiply_add(h->modes, h->n, 1, 1.0, h->phi, force, work);
+    tribo_multiply_add(h->n, h->modes, 1, -1.0, h->psi, work, force);
+    tribo_constraints_react(&h->ties, force, f);
+}
+
 /* ------------------------------------------------------------------------------------------------- modes of vibration */
 
 /* *c = Cholesky factor of Z'MZ. Returns a status. */
@@ -89,9 +159,8 @@ static int factorize_mass(struct modal_build *b, const struct matrix *z, struct 
     size_t where = 0;
     int status = TRIBO_ERR_MEMORY;
     if (mass && tribo_matrix_congruent(&b->shared->sys->mass, z, mass) && tribo_matrix_from_dense(&w, m, m, mass)) {
-        status = tribo_cholesky_create(c, &w, &where, &pivot);
+        status = tribo_cholesky_consume(c, &w, &where, &pivot);
     }
-    tribo_matrix_free(&w);
     if (status == TRIBO_ERR_INDEFINITE) {
         tribo_system_fail(b->shared->sys, status, "mass of what is not held is not positive definite: pivot %g", pivot);
     }
@@ -120,23 +189,23 @@ static int build_modes_failed(const struct modal_build *b, int status, const str
 
 static int find_modes(struct modal_build *b)
 {
+    struct modal *h = b->h;
+    const tribo_system *sys = b->shared->sys;
     struct matrix z = {0};
     struct cholesky own = {0};
     struct doubt doubt = {0};
-    const int all_free = b->rests == 0;
-    int status = all_free || tribo_constraints_basis(&b->ties, b->n, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    int status = h->rests == 0 || tribo_constraints_basis(&h->ties, h->n, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     const int held = z.rows > 0;
-    b->h->modes = held ? z.cols : b->n;
-    b->h->omega2 = tribo_modal_keep(b, b->h->modes);
-    b->phi = b->h->phi = tribo_modal_keep(b, b->h->modes * b->n);
-    status = status || (b->h->omega2 && b->phi) ? status : TRIBO_ERR_MEMORY;
-    if (!status && b->h->modes > 0) {
+    h->modes = held ? z.cols : h->n;
+    double **const kept[] = {&h->omega2, &h->damping, &h->phi, &h->psi};
+    const size_t count[] = {h->modes, h->modes, h->modes * h->n, h->modes * h->n};
+    status = status || tribo_modal_keep_all(b, 4, kept, count) ? status : TRIBO_ERR_MEMORY;
+    if (!status && h->modes > 0) {
         status = held ? factorize_mass(b, &z, &own) : TRIBO_OK;
         status = status ? status
                         : build_modes_failed(b,
-                                             tribo_normal_modes(b->stiffness, b->shared->sys->expansion.terms, &z,
-                                                                held ? &own : &b->shared->sys->factor, b->h->modes, b->h->omega2,
-                                                                b->phi, &doubt),
+                                             tribo_normal_modes(b->stiffness, sys->expansion.terms, &z,
+                                                                held ? &own : &sys->factor, h->modes, h->omega2, h->phi, &doubt),
                                              &doubt);
     }
     tribo_matrix_free(&z);
@@ -148,29 +217,32 @@ static int find_modes(struct modal_build *b)
 /* Sets psi = M phi, k_phi = stiffness phi and c_phi = C phi. Returns 0 if out of memory. */
 static int multiply_modes(struct modal_build *b)
 {
-    const size_t n = b->n, m = b->h->modes;
-    b->psi = tribo_modal_scratch(b, (b->shared->damping ? 3 : 2) * m * n);
+    const size_t n = b->h->n, m = b->h->modes;
+    const struct matrix *damping = b->shared->damping;
+    b->psi = tribo_modal_scratch(b, (damping ? 3 : 2) * m * n);
     if (!b->psi) {
         return 0;
     }
     b->k_phi = b->psi + m * n;
-    b->c_phi = b->shared->damping ? b->k_phi + m * n : NULL;
+    b->c_phi = damping ? b->k_phi + m * n : NULL;
     for (size_t k = 0; k < m; k++) {
-        const double *phi = b->phi + k * n;
+        const double *phi = b->h->phi + k * n;
         tribo_system_add_mass(b->shared->sys, 1.0, phi, b->psi + k * n);
         tribo_matrix_multiply_add(b->stiffness, 1.0, phi, b->k_phi + k * n);
-        if (b->shared->damping) {
-            tribo_matrix_multiply_add(b->shared->damping, 1.0, phi, b->c_phi + k * n);
+        if (damping) {
+            tribo_matrix_multiply_add(damping, 1.0, phi, b->c_phi + k * n);
         }
     }
+    tribo_transpose(m, n, b->psi, b->h->psi);
     return 1;
 }
 
 /* Returns the part of mode l in mode k by rounding of K: noise of phi_k'K phi_l over |omega_k^2 - omega_l^2|; 0 if above TINY. */
 static double mixed(const struct modal_build *b, const double *root, size_t k, size_t l)
 {
-    const double distance = fabs(b->h->omega2[k] - b->h->omega2[l]);
-    const double noise = tribo_matrix_noise(b->stiffness, root, b->phi + k * b->n, b->phi + l * b->n);
+    const struct modal *h = b->h;
+    const double distance = fabs(h->omega2[k] - h->omega2[l]);
+    const double noise = tribo_matrix_noise(b->stiffness, root, h->phi + k * h->n, h->phi + l * h->n);
     return noise <= TINY * distance ? noise / distance : 0.0;
 }
 
@@ -178,13 +250,14 @@ static double mixed(const struct modal_build *b, const double *root, size_t k, s
  * modes. root, stiff_root [n]: square roots of the sizes of the terms of C_ii and K_ii. */
 static int damping_couples(const struct modal_build *b, const double *c, const double *root, const double *stiff_root)
 {
-    const size_t n = b->n, m = b->h->modes;
+    const struct modal *h = b->h;
+    const size_t n = h->n, m = h->modes;
     for (size_t k = 0; k < m; k++) {
         for (size_t l = 0; l < m; l++) {
             const double shared = fabs(c[k * m + l]), own = sqrt(fabs(c[k * m + k] * c[l * m + l]));
             const double larger = greater(fabs(c[k * m + k]), fabs(c[l * m + l]));
             if (k != l && shared > greater(NEGLIGIBLE * own, IMPURITY * larger) &&
-                shared > ROUNDING * (tribo_matrix_noise(b->shared->damping, root, b->phi + k * n, b->phi + l * n) +
+                shared > ROUNDING * (tribo_matrix_noise(b->shared->damping, root, h->phi + k * n, h->phi + l * n) +
                                      mixed(b, stiff_root, k, l) * larger)) {
                 return 1;
             }
@@ -193,31 +266,36 @@ static int damping_couples(const struct modal_build *b, const double *c, const d
     return 0;
 }
 
-/* Sets h->damping = diagonal of C~, 0 where only rounding; h->coupling = C~ if not diagonal. Returns 0 if out of memory. */
+/* Sets damping = diagonal of C~, 0 where only rounding; coupling = C~ if not diagonal; drifts. Returns 0 if out of memory. */
 static int find_damping(struct modal_build *b)
 {
     struct modal *h = b->h;
-    const size_t n = b->n, m = h->modes;
-    h->damping = tribo_modal_keep(b, m);
-    double *c = b->shared->damping ? tribo_modal_scratch(b, m * m + 2 * n) : NULL, *root = c ? c + m * m : NULL;
-    if (!h->damping || !c) {
-        return h->damping && !b->shared->damping;
+    const struct matrix *damping = b->shared->damping;
+    const size_t n = h->n, m = h->modes;
+    double *c = damping ? tribo_modal_scratch(b, m * m + 2 * n) : NULL, *root = c ? c + m * m : NULL, most = 0.0;
+    h->drifts = tribo_modal_take(&h->store, m, 1);
+    if (!h->drifts || (damping && !c)) {
+        return 0;
     }
-    tribo_matrix_roots(b->shared->damping, NULL, root);
-    tribo_matrix_roots(b->stiffness, b->shared->sys->expansion.terms, root + n);
-    double most = 0.0;
-    for (size_t k = 0; k < m; k++) {
+    for (size_t k = 0; c && k < m; k++) {
         for (size_t l = 0; l < m; l++) {
-            c[k * m + l] = tribo_dot(b->phi + k * n, b->c_phi + l * n, n);
+            c[k * m + l] = tribo_dot(h->phi + k * n, b->c_phi + l * n, n);
         }
         most = greater(most, fabs(c[k * m + k]));
     }
-    for (size_t k = 0; k < m; k++) {
-        const double own = c[k * m + k], noise = tribo_matrix_noise(b->shared->damping, root, b->phi + k * n, b->phi + k * n);
-        h->damping[k] = fabs(own) > greater(ROUNDING * noise, IMPURITY * IMPURITY * most) ? own : 0.0;
+    if (c) {
+        tribo_matrix_roots(damping, NULL, root);
+        tribo_matrix_roots(b->stiffness, b->shared->sys->expansion.terms, root + n);
     }
-    if (damping_couples(b, c, root, root + n)) {
-        h->coupling = tribo_modal_keep(b, m * m);
+    for (size_t k = 0; k < m; k++) {
+        if (c) {
+            const double own = c[k * m + k], noise = tribo_matrix_noise(damping, root, h->phi + k * n, h->phi + k * n);
+            h->damping[k] = fabs(own) > greater(ROUNDING * noise, IMPURITY * IMPURITY * most) ? own : 0.0;
+        }
+        h->drifts[k] = h->omega2[k] == 0.0 && h->damping[k] == 0.0;
+    }
+    if (c && damping_couples(b, c, root, root + n)) {
+        h->coupling = tribo_modal_take(&h->store, m * m, sizeof *c);
         if (!h->coupling) {
             return 0;
         }
@@ -226,165 +304,132 @@ static int find_damping(struct modal_build *b)
     return 1;
 }
 
-static int find_drifts(struct modal_build *b)
+/* Sets on and by_u of rigid contacts that hold: J_I'f = (stiffness - omega_k^2 M) phi_k; J_I'f = C phi_k - M Phi C~_k. work [n +
+ * rests]; drag [modes][n]: M Phi C~ if coupled. */
+static void find_reactions(const struct modal_build *b, size_t k, const double *drag, double *work)
 {
     struct modal *h = b->h;
-    h->drifts = tribo_modal_keep_bytes(b, h->modes);
-    for (size_t k = 0; h->drifts && k < h->modes; k++) {
-        h->drifts[k] = h->omega2[k] == 0.0 && h->damping[k] == 0.0;
+    const size_t n = h->n, m = h->modes;
+    double *f = work + n;
+    memcpy(work, b->k_phi + k * n, n * sizeof *work);
+    tribo_add(work, -h->omega2[k], b->psi + k * n, n);
+    tribo_constraints_react(&h->ties, work, f);
+    for (size_t p = 0; p < h->rests; p++) {
+        h->on[h->rest[p] * m + k] = f[p];
     }
-    return h->drifts != NULL;
+    if (h->by_u) {
+        memcpy(work, b->c_phi + k * n, n * sizeof *work);
+        tribo_add(work, h->coupling ? -1.0 : -h->damping[k], h->coupling ? drag + k * n : b->psi + k * n, n);
+        tribo_constraints_react(&h->ties, work, f);
+        for (size_t p = 0; p < h->rests; p++) {
+            h->by_u[h->rest[p] * m + k] = f[p];
+        }
+    }
 }
 
-/* ------------------------------------------------------------------------------------------------------- structures */
-
-/* Sets h->dof, and keeps phi, psi, yr, yi and y0 of the degrees of freedom h->dof. Returns 0 if out of memory. */
-static int build_compress(struct modal_build *b)
+/* Sets on and by_u. With compliant contacts A that hold, f_A = -G_AA^-1 J_A phi_k. Returns 0 if out of memory. */
+static int find_effects(struct modal_build *b)
 {
     struct modal *h = b->h;
-    const size_t n = b->n, m = h->modes, s = h->given;
-    h->dof = tribo_modal_keep_indices(b, n);
-    for (size_t d = 0; h->dof && d < n; d++) {
-        int moves = b->y0[d] != 0.0;
-        for (size_t k = 0; k < m; k++) {
-            moves |= b->phi[k * n + d] != 0.0 || b->psi[k * n + d] != 0.0;
-        }
-        for (size_t w = 0; w < s; w++) {
-            moves |= b->yr[w * n + d] != 0.0 || b->yi[w * n + d] != 0.0;
-        }
-        if (moves) {
-            h->dof[h->moving++] = d;
-        }
-    }
-    double **const kept[] = {&h->phi, &h->psi, &h->yr, &h->yi, &h->y0};
-    const size_t count[] = {m * h->moving, m * h->moving, s * h->moving, s * h->moving, h->moving};
-    h->begin = tribo_modal_keep_indices(b, m);
-    h->end = tribo_modal_keep_indices(b, m);
-    if (!h->dof || !h->begin || !h->end || !tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count)) {
+    const tribo_system *sys = b->shared->sys;
+    const size_t n = h->n, m = h->modes, c = sys->ncontact;
+    double *v = tribo_modal_scratch(b, 3 * c + n), *rate = v ? v + c : NULL, *work = v ? rate + c : NULL;
+    double *drag = tribo_modal_scratch(b, h->coupling ? m * n : 0);
+    double **const kept[] = {&h->on, &h->by_u};
+    const size_t count[] = {m * c, m * c};
+    if (!v || !drag || !tribo_modal_keep_all(b, b->shared->damping ? 2 : 1, kept, count)) {
         return 0;
     }
-    size_t entries = 0;
+    if (h->coupling) {
+        tribo_multiply_transposed_add(m, m, n, h->coupling, b->psi, drag);
+    }
     for (size_t k = 0; k < m; k++) {
-        double *phi = h->phi + k * h->moving, *psi = h->psi + k * h->moving;
-        for (size_t i = 0; i < h->moving; i++) {
-            phi[i] = b->phi[k * n + h->dof[i]];
-            psi[i] = b->psi[k * n + h->dof[i]];
-            if (phi[i] != 0.0 || psi[i] != 0.0) {
-                h->begin[k] = h->end[k] ? h->begin[k] : i;
-                h->end[k] = i + 1;
-            }
+        tribo_matrix_multiply(&sys->direction, h->phi + k * n, v);
+        if (h->springs) {
+            tribo_compliance_rates(sys, b->slip, v, rate);
         }
-        entries += h->end[k] - h->begin[k];
-    }
-    for (size_t i = 0; i < h->moving; i++) {
-        const size_t d = h->dof[i];
-        for (size_t w = 0; w < s; w++) {
-            h->yr[w * h->moving + i] = b->yr[w * n + d];
-            h->yi[w * h->moving + i] = b->yi[w * n + d];
+        for (size_t i = 0; i < c; i++) {
+            h->on[i * m + k] = h->key[i] == 2 ? rate[i] : h->key[i] == 0 ? v[i] : 0.0;
         }
-        h->y0[i] = b->y0[d];
+        if (h->rests > 0) {
+            find_reactions(b, k, drag, work);
+        }
     }
-    const int dense = m > FEW && 4 * entries >= m * h->moving;
-    h->columns = dense ? tribo_modal_keep(b, m * h->moving) : NULL;
-    if (h->columns) {
-        tribo_transpose(m, h->moving, h->psi, h->columns);
-    }
-    return h->columns || !dense;
+    return 1;
 }
 
-/* Sets the parts of b->h that do not depend on loads. Returns a status; TRIBO_ERR_MEMORY for a failure with b->status 0. */
-static int find_structure(struct modal_build *b)
+int tribo_modal_create(struct modal **modal, const struct modal_shared *shared, const signed char *slip,
+                       const unsigned char *holds)
 {
-    if (!find_modes(b) || !multiply_modes(b) || !find_damping(b) || !find_drifts(b) || !tribo_modal_hold(b)) {
-        return b->status ? b->status : TRIBO_ERR_MEMORY;
+    struct modal_store store = {0};
+    struct modal_build b = {.shared = shared, .h = tribo_modal_take(&store, 1, sizeof *b.h), .slip = slip};
+    int status = TRIBO_ERR_MEMORY;
+    if (b.h) {
+        b.h->store = store;
+        b.h->n = shared->sys->ndof;
+        status = list_rest(&b, holds) && find_stiffness(&b) && find_modes(&b) && multiply_modes(&b) && find_damping(&b) &&
+                         find_effects(&b)
+                     ? tribo_modal_exponents(&b)
+                 : b.status ? b.status
+                            : status;
     }
-    return tribo_modal_exponents(b);
-}
-
-struct modal_piece {
-    struct modal_piece *next;
-    struct modal *modal;
-    size_t rests, springs, rest[]; /* [rests + springs] as in struct modal_build */
-};
-
-void tribo_modal_forget(struct modal_known *known)
-{
-    for (struct modal_piece *p = known->first; p;) {
-        struct modal_piece *next = p->next;
-        tribo_modal_free(p->modal);
-        free(p);
-        p = next;
-    }
-    *known = (struct modal_known){NULL, 0};
-}
-
-/* Adds a piece with the parts of find_structure to known. Returns a status. */
-static int build_learn(struct modal_build *b, struct modal_known *known)
-{
-    const size_t list = (b->rests + b->springs) * sizeof *b->rest, bytes = sizeof(struct modal_piece) + list;
-    struct modal_piece *p = malloc(bytes);
-    struct modal *h = b->h, *found = b->h = p ? tribo_modal_alloc() : NULL;
-    const int status = found ? find_structure(b) : TRIBO_ERR_MEMORY;
-    b->h = h;
+    tribo_modal_give_back(&b.scratch);
+    tribo_matrix_free(&b.own_stiffness);
     if (status) {
-        tribo_modal_free(found);
-        free(p);
-        return status;
+        tribo_modal_free(b.h);
+        return status == TRIBO_ERR_MEMORY
+                   ? tribo_system_fail(shared->sys, status, "out of memory for the modes of a held structure")
+                   : status;
     }
-    p->modal = found;
-    p->rests = b->rests;
-    p->springs = b->springs;
-    memcpy(p->rest, b->rest, list);
-    p->next = known->first;
-    known->first = p;
-    known->bytes += bytes + found->bytes;
+    *modal = b.h;
     return TRIBO_OK;
 }
 
-/* Sets the parts of find_structure in b->h from known, adds a missing piece; valid for one sys->structure. Returns a status. */
-static int recall_structure(struct modal_build *b, struct modal_known *known)
+void tribo_modal_free(struct modal *h)
 {
-    const struct modal_piece *p = known->first;
-    const size_t list = (b->rests + b->springs) * sizeof *b->rest;
-    while (p && (p->rests != b->rests || p->springs != b->springs || memcmp(p->rest, b->rest, list) != 0)) {
-        p = p->next;
+    if (h && h->users-- == 0) {
+        struct modal_store store = h->store;
+        tribo_constraints_free(&h->ties);
+        tribo_modal_give_back(&store);
     }
-    const int status = p ? TRIBO_OK : build_learn(b, known);
-    if (status) {
-        return status;
-    }
-    p = p ? p : known->first;
-    struct modal *h = b->h;
-    const struct modal own = *h;
-    *h = *p->modal;
-    h->key = own.key;
-    h->memory = own.memory;
-    h->bytes = own.bytes;
-    h->users = own.users;
-    h->base = tribo_modal_share(p->modal);
-    b->phi = h->phi;
-    return b->psi || multiply_modes(b) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
-/* Builds all of b->h. Returns a status; TRIBO_ERR_MEMORY for a failure with b->status 0. */
-static int build_find_all(struct modal_build *b, const unsigned char *holds)
+/* ------------------------------------------------------------------------------------------------------- K and C */
+
+void tribo_modal_shared_free(struct modal_shared *shared)
 {
-    if (!list_rest(b, holds) || !find_stiffness(b)) {
-        return b->status ? b->status : TRIBO_ERR_MEMORY;
-    }
-    const int status = b->shared->known ? recall_structure(b, b->shared->known) : find_structure(b);
-    if (status) {
-        return status;
-    }
-    return tribo_modal_forcing(b) && tribo_modal_response(b) && tribo_modal_outputs(b) && build_compress(b) ? TRIBO_OK
-           : b->status                                                                                      ? b->status
-                                                                                                            : TRIBO_ERR_MEMORY;
+    tribo_matrix_free(&shared->own_stiffness);
+    tribo_matrix_free(&shared->own_damping);
+    memset(shared, 0, sizeof *shared);
 }
 
-int tribo_modal_build(struct modal_build *b, const unsigned char *holds)
+/* Returns K or C: given, if given has rows; else accelerates, if M = 1; else own = M accelerates. NULL if out of memory. */
+static const struct matrix *force_matrix(const tribo_system *sys, const struct matrix *given, const struct matrix *accelerates,
+                                         struct matrix *own)
 {
-    const int status = build_find_all(b, holds);
-    tribo_constraints_free(&b->ties);
-    tribo_matrix_free(&b->own_stiffness);
-    return status;
+    if (given->rows || !sys->mass.rows) {
+        return given->rows ? given : accelerates;
+    }
+    double *mass = malloc(sys->ndof * sizeof *mass);
+    for (size_t d = 0; mass && d < sys->ndof; d++) {
+        mass[d] = tribo_matrix_get(&sys->mass, d, d);
+    }
+    const int done = mass && tribo_matrix_copy(own, accelerates);
+    if (done) {
+        tribo_matrix_scale_rows(own, mass);
+    }
+    free(mass);
+    return done ? own : NULL;
+}
+
+int tribo_modal_shared_create(struct modal_shared *shared, tribo_system *sys)
+{
+    *shared = (struct modal_shared){.sys = sys};
+    shared->stiffness = force_matrix(sys, &sys->k, &sys->stiffness, &shared->own_stiffness);
+    shared->damping = sys->damping.rows ? force_matrix(sys, &sys->c, &sys->damping, &shared->own_damping) : NULL;
+    if (shared->stiffness && (shared->damping || !sys->damping.rows)) {
+        return TRIBO_OK;
+    }
+    tribo_modal_shared_free(shared);
+    return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrices of a structure to be held");
 }

@@ -57,29 +57,6 @@ TRIBO_SIMD_OF_FOUR static void sum_terms(const struct modal_motion *x, const str
     }
 }
 
-/* sum [3][T] += Re(c lambda w''), Re(c lambda^2 w''), Re(c lambda^3 w'') of one lot: third to fifth derivative. */
-static inline void add_further(const double *restrict lr, const double *restrict li, const double *restrict cr,
-                               const double *restrict ci, const struct lot *restrict lot, double *restrict sum)
-{
-    for (size_t k = 0; k < T; k++) {
-        const double r3 = lr[k] * lot->w2r[k] - li[k] * lot->w2i[k], i3 = lr[k] * lot->w2i[k] + li[k] * lot->w2r[k];
-        const double r4 = lr[k] * r3 - li[k] * i3, i4 = lr[k] * i3 + li[k] * r3;
-        const double r5 = lr[k] * r4 - li[k] * i4, i5 = lr[k] * i4 + li[k] * r4;
-        sum[k] += cr[k] * r3 - ci[k] * i3;
-        sum[T + k] += cr[k] * r4 - ci[k] * i4;
-        sum[2 * T + k] += cr[k] * r5 - ci[k] * i5;
-    }
-}
-
-TRIBO_SIMD_OF_FOUR static void sum_further(const struct modal_motion *x, const struct output *c, double *restrict sum)
-{
-    const struct modal *h = x->h;
-    const struct lot *lot = x->lot;
-    for (size_t p = 0; p < h->terms; p += T) {
-        add_further(h->lr + p, h->li + p, c->cr + p, c->ci + p, lot++, sum);
-    }
-}
-
 /* sum [2][T] = sums of |c| growth and |c| growth6 over lots: bounds of the output and of the sixth derivative. */
 TRIBO_SIMD_OF_FOUR static void sum_bounds(const struct modal_motion *x, const struct output *c, double *restrict sum)
 {
@@ -107,19 +84,6 @@ void tribo_course_look(const struct modal_motion *x, struct course *c)
     c->at.e = total(sum + 2 * T);
 }
 
-int tribo_course_look_further(const struct modal_motion *x, const struct course *c, double *to)
-{
-    double sum[3 * T] = {0.0};
-    if (x->h->any_resonant) {
-        return 0;
-    }
-    sum_further(x, c->output, sum);
-    for (size_t k = 0; k < 3; k++) {
-        to[k] = total(sum + k * T);
-    }
-    return 1;
-}
-
 void tribo_course_bound(const struct modal_motion *x, struct course *c)
 {
     double sum[2 * T];
@@ -132,7 +96,7 @@ void tribo_course_begin(const struct modal_motion *x, struct course *c, int of_v
 {
     const struct output *w = c->output;
     c->line.start = 0.0;
-    c->line.ramp = w->ramp + (x->runs ? tribo_dot(w->on_rate, of_velocity ? x->acc : x->vel, x->h->modes) : 0.0);
+    c->line.ramp = x->runs ? tribo_dot(w->on_rate, of_velocity ? x->acc : x->vel, x->h->shapes) : 0.0;
     tribo_course_look(x, c);
     c->line.start = value - c->at.g;
     c->at.g = value;

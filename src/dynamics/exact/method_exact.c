@@ -4,111 +4,82 @@
  * difference to a quintic. At an event stick_slip.h decides which contacts stick. The energy integral is closed, too
  * (energy.c). */
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dynamics/events/events.h"
 #include "motion.h"
 #include "terms.h"
-#include "transition.h"
 #include "common/real.h"
 #include "common/zeros.h"
 
 /* Bytes of structures above which all structures are dropped. */
 #define CACHE_BYTES ((size_t)256 << 20)
 
-/* A structure with contacts held; print: hash of all bytes of modal->key. Structures of different print have different keys. */
-struct held {
-    struct modal *modal;
-    uint64_t print;
-};
-
 struct exact {
     tribo_system *sys;
     struct events events;
     struct modal_shared shared; /* data of all held structures; zeros until the first structure is created */
-    struct held *held;
-    size_t helds, room, bytes, revision;
-    struct modal_known known; /* parts of structures that do not depend on loads */
-    size_t structure;         /* sys->structure that known belongs to */
+    struct modal *held;         /* list of structures, in order of last use */
+    size_t bytes;               /* of all structures */
+    size_t revision, structure; /* of the system: when the forced structures were created; when the others were */
 
     struct modal_motion motion; /* of the phase */
-    struct course *course;      /* [ncontact] courses of the outputs of the structure */
-    double *work;               /* workspace of transitions; NULL before the first one */
-    size_t columns;             /* number of columns that work has room for */
 };
 
 /* ---------------------------------------------------------------------------------------------- structures that are held */
 
+static void drop_loads(struct exact *x)
+{
+    for (struct modal *h = x->held; h; h = h->next) {
+        x->bytes -= h->forced ? h->forced->store.bytes : 0;
+        tribo_forced_free(h);
+    }
+}
+
 static void drop_helds(struct exact *x)
 {
-    for (size_t i = 0; i < x->helds; i++) {
-        tribo_modal_free(x->held[i].modal);
+    while (x->held) {
+        struct modal *next = x->held->next;
+        tribo_forced_free(x->held);
+        tribo_modal_free(x->held);
+        x->held = next;
     }
     tribo_modal_shared_free(&x->shared);
-    x->helds = 0;
     x->bytes = 0;
 }
 
-/* Returns a hash of key [n], with zeros after key up to a multiple of 8 bytes. */
-static uint64_t print_of(size_t n, const signed char *key)
+/* *found = structure with the contacts at rest held, under the loads. Returns a status. */
+static int find_held(struct exact *x, const struct forced **found)
 {
-    uint64_t print = 0, part;
-    for (size_t i = 0; i < n; i += sizeof part) {
-        memcpy(&part, key + i, sizeof part);
-        print = (print ^ part) * 0x9e3779b97f4a7c15;
-    }
-    return print;
-}
-
-/* Returns 1 if held has the key [n] with this print. Up to 8 contacts different keys have different prints. */
-static int has_key(struct held held, uint64_t print, size_t n, const signed char *key)
-{
-    return held.print == print && (n <= sizeof print || memcmp(held.modal->key, key, n) == 0);
-}
-
-/* *found = structure with the contacts at rest held. held[] is in order of last use, searched from the end. Returns a status. */
-static int find_held(struct exact *x, const struct modal **found)
-{
-    tribo_system *sys = x->sys;
     const struct stick_slip *m = &x->events.stick_slip;
-    const uint64_t print = print_of(m->constant.contacts, m->state.key);
-    for (size_t i = x->helds; i-- > 0;) {
-        const struct held held = x->held[i];
-        if (has_key(held, print, m->constant.contacts, m->state.key)) {
-            for (; i + 1 < x->helds; i++) {
-                x->held[i] = x->held[i + 1];
-            }
-            x->held[i] = held;
-            *found = held.modal;
-            return TRIBO_OK;
+    int status = TRIBO_OK;
+    struct modal **at = &x->held;
+    while (*at && memcmp((*at)->key, m->state.key, m->constant.contacts) != 0) {
+        at = &(*at)->next;
+    }
+    struct modal *h = *at;
+    if (h) {
+        *at = h->next;
+    } else {
+        if (x->bytes > CACHE_BYTES) {
+            drop_helds(x);
         }
-    }
-    if (x->bytes + x->known.bytes > CACHE_BYTES) {
-        drop_helds(x);
-        tribo_modal_forget(&x->known);
-    }
-    if (x->helds == x->room) {
-        const size_t room = 2 * x->room + 16;
-        struct held *more = realloc(x->held, room * sizeof *more);
-        if (!more) {
-            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu held structure%s", room, plural(room));
+        status = x->shared.sys ? TRIBO_OK : tribo_modal_shared_create(&x->shared, x->sys);
+        status = status ? status : tribo_modal_create(&h, &x->shared, m->state.slip, m->state.holds);
+        if (status) {
+            return status;
         }
-        x->held = more;
-        x->room = room;
+        x->bytes += h->store.bytes;
     }
-    struct modal *h;
-    int status = x->shared.sys ? TRIBO_OK : tribo_modal_shared_create(&x->shared, sys);
-    x->shared.known = &x->known;
-    status = status ? status : tribo_modal_create(&h, &x->shared, m->state.slip, m->state.holds);
-    if (status) {
-        return status;
+    h->next = x->held;
+    x->held = h;
+    if (!h->forced) {
+        status = tribo_forced_create(h, &x->shared, m->state.slip);
+        x->bytes += status ? 0 : h->forced->store.bytes;
     }
-    x->held[x->helds++] = (struct held){h, print};
-    x->bytes += h->bytes;
-    *found = h;
-    return TRIBO_OK;
+    *found = h->forced;
+    return status;
 }
 
 /* --------------------------------------------------------------------------------------------------------------------- guards */
@@ -141,24 +112,6 @@ static void method_exact_look(void *own, double tau, size_t guards, struct guard
     }
 }
 
-/* to [3] = third to fifth derivative of guard g. Returns 1; 0, to not set, for a varying limit, a resonance, or no output. */
-static int look_further(void *own, double tau, const struct guard *g, double *to)
-{
-    struct modal_motion *x = &((struct exact *)own)->motion;
-    const struct course *c = g->output;
-    if (!c || g->limit != 0.0) {
-        return 0;
-    }
-    tribo_modal_motion_go(x, tau);
-    if (!tribo_course_look_further(x, c, to)) {
-        return 0;
-    }
-    for (int k = 0; k < 3; k++) {
-        to[k] *= g->side;
-    }
-    return 1;
-}
-
 static void move_to(void *own, double tau, const double *from, double *to)
 {
     tribo_modal_motion_state(&((struct exact *)own)->motion, tau, from, to);
@@ -186,7 +139,7 @@ static double method_exact_bound(void *own, double tau)
     if (tau > 0.0) {
         tribo_modal_motion_bound(&x->motion, tau);
         for (size_t k = 0; k < x->motion.h->outputs; k++) {
-            tribo_course_bound(&x->motion, &x->course[k]);
+            tribo_course_bound(&x->motion, &x->motion.course[k]);
         }
     }
     for (size_t k = 0; k < x->events.search.guards; k++) {
@@ -220,21 +173,20 @@ static struct watch watch_of(const struct exact *x, size_t i, struct course *c)
 static int method_exact_begin(void *own, double t, const double *y, double *reach)
 {
     struct exact *x = own;
-    const struct modal *h = NULL;
+    const struct forced *h = NULL;
     const int status = find_held(x, &h);
     if (status) {
         return status;
     }
-    if (!tribo_modal_motion_reserve(&x->motion, h->terms)) {
+    if (!tribo_modal_motion_start(&x->motion, h, t, y, reach)) {
         return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu term%s", h->terms, plural(h->terms));
     }
-    *reach = tribo_modal_motion_start(&x->motion, h, t, y, *reach);
     tribo_events_clear_guards(&x->events);
-    for (size_t k = 0; k < x->motion.h->outputs; k++) {
-        struct course *c = &x->course[k];
+    for (size_t k = 0; k < h->outputs; k++) {
+        struct course *c = &x->motion.course[k];
         const struct stick_slip *m = &x->events.stick_slip;
-        const int of_velocity = k < x->motion.h->sliding;
-        c->output = &x->motion.h->output[k];
+        const int of_velocity = k < h->sliding;
+        c->output = &h->output[k];
         const size_t i = c->output->contact;
         const double value = of_velocity ? tribo_stick_slip_first_velocity(m, x->sys, i, y) : m->state.force[i];
         tribo_course_begin(&x->motion, c, of_velocity, value);
@@ -250,28 +202,16 @@ static int method_exact_begin(void *own, double t, const double *y, double *reac
 
 static void *keep_phase(void *own, double tau)
 {
-    return tribo_modal_phase_create(((struct exact *)own)->motion.h, tau);
-}
-
-static void release_phase(void *phase)
-{
-    tribo_modal_phase_free(phase);
+    return tribo_modal_phase_create(((struct exact *)own)->motion.h->modal, tau);
 }
 
 static int method_exact_transition(void *own, const void *phase, double tau, size_t columns, double *v)
 {
     (void)tau;
-    struct exact *x = own;
-    if (columns > x->columns) {
-        double *more = realloc(x->work, tribo_modal_transition_room(x->sys, columns) * sizeof *more);
-        if (!more) {
-            return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
-        }
-        x->work = more;
-        x->columns = columns;
-    }
-    tribo_modal_transition(phase, x->sys, columns, v, x->work);
-    return TRIBO_OK;
+    tribo_system *sys = ((struct exact *)own)->sys;
+    return tribo_modal_transition(phase, sys, columns, v)
+               ? TRIBO_OK
+               : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
 }
 
 static int method_exact_combine(void *own, const double *c, double tau, const double *end, struct signal *to)
@@ -279,22 +219,26 @@ static int method_exact_combine(void *own, const double *c, double tau, const do
     return tribo_modal_motion_signal(&((struct exact *)own)->motion, c, tau, end, to);
 }
 
-static double closed_work(void *own, size_t i, double tau)
+static double work_of(void *own, size_t i, double tau)
 {
-    return tribo_modal_motion_work(&((struct exact *)own)->motion, i, tau);
+    struct modal_motion *x = &((struct exact *)own)->motion;
+    const struct course *c = x->course;
+    while (c->output->contact != i) {
+        c++;
+    }
+    return tribo_modal_motion_work(x, c, tau);
 }
 
 static const struct motion motion_closed = {.begin = method_exact_begin,
                                             .look = method_exact_look,
-                                            .further = look_further,
                                             .bound = method_exact_bound,
                                             .state = move_to,
                                             .arrive = arrive,
                                             .keep = keep_phase,
-                                            .release = release_phase,
+                                            .release = tribo_modal_phase_free,
                                             .transition = method_exact_transition,
                                             .signal = method_exact_combine,
-                                            .work = closed_work};
+                                            .work = work_of};
 
 /* --------------------------------------------------------------------------------------------------------- the driver */
 
@@ -303,12 +247,8 @@ static void method_exact_destroy(tribo_driver *drv)
     struct exact *x = drv->own;
     if (x) {
         drop_helds(x);
-        tribo_modal_forget(&x->known);
-        free(x->held);
         tribo_events_free(&x->events);
         tribo_modal_motion_free(&x->motion);
-        free(x->course);
-        free(x->work);
         free(x);
     }
 }
@@ -343,12 +283,11 @@ static int method_exact_create(tribo_driver *drv)
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     x->sys = drv->sys;
-    x->course = malloc((drv->sys->ncontact + 1) * sizeof *x->course);
     const int status = tribo_events_create(&x->events, drv, &motion_closed, x);
     if (status) {
         return status;
     }
-    if (!x->course || !tribo_modal_motion_create(&x->motion, drv->sys, &x->events.stick_slip)) {
+    if (!tribo_modal_motion_create(&x->motion, drv->sys, &x->events.stick_slip)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     return TRIBO_OK;
@@ -361,13 +300,13 @@ static int method_exact_open_events(tribo_driver *drv, struct events **events)
     if (check_system(sys) || tribo_compliance_check(sys)) {
         return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "%s", tribo_system_message(sys));
     }
-    if (x->revision != sys->revision) {
-        drop_helds(x);
-        x->revision = sys->revision;
-    }
     if (x->structure != sys->structure) {
-        tribo_modal_forget(&x->known);
+        drop_helds(x);
         x->structure = sys->structure;
+    }
+    if (x->revision != sys->revision) {
+        drop_loads(x);
+        x->revision = sys->revision;
     }
     *events = &x->events;
     return TRIBO_OK;

@@ -1,28 +1,66 @@
 /* A structure with a set I of contacts held: its modes of vibration, and from the modes the velocities and forces of contacts.
  *
- * J_I q' = b_I. Then q = Phi eta + the displacements by the bases of I, with free amplitudes eta: eta'' + C~ eta' +
- * diag(omega^2) eta = constant + ramp t + harmonics. eta is the response to the right-hand side plus a sum of damped complex
- * exponentials, Re(r z), z_p' = lambda_p z_p. Velocities of sliding contacts and forces of held contacts are sums of the same
- * terms. Structures depend on I, and not on the directions in which the other contacts slide: structures are kept for later
- * phases with the same I. */
+ * J_I q' = b_I. Then q = Phi eta, with the mode shapes, eta'' + C~ eta' + diag(omega^2) eta = constant + ramp t + harmonics, and
+ * with further shapes, the displacements by the bases of I, of known eta. eta of a mode is the response to the right-hand side
+ * plus a sum of damped complex exponentials, Re(r z), z_p' = lambda_p z_p. Velocities of sliding contacts and forces of held
+ * contacts are sums of the same terms. struct modal depends on I alone, struct forced on loads and limits, too; neither depends on
+ * the directions in which the other contacts slide: both are kept for later phases with the same I. */
 #ifndef TRIBO_MODAL_H
 #define TRIBO_MODAL_H
 
 #include <math.h>
 
+#include "common/imaginary.h"
 #include "dynamics/system/system.h"
+#include "numerics/constraint.h"
 
 /* Number of terms computed side by side. The number of terms of a structure is a multiple of TRIBO_TERMS. */
 enum { TRIBO_TERMS = 4 };
+
+/* Blocks of memory with arrays, freed together. */
+struct modal_store {
+    struct modal_block *last;
+    size_t bytes;
+};
+
+/* Returns a zeroed array of elements; NULL if out of memory. */
+void *tribo_modal_take(struct modal_store *store, size_t count, size_t size);
+void tribo_modal_give_back(struct modal_store *store);
+
+/* The structure without loads; forced: under the loads; NULL: not created since the loads changed. key [contacts]: 1: at rest; 2: at rest and holds; 0: else. */
+struct modal {
+    struct modal_store store; /* memory of all arrays */
+    size_t users;             /* number of users besides the first; the last tribo_modal_free frees */
+    struct modal *next;       /* of the caller's list */
+    struct forced *forced;
+    size_t n; /* degrees of freedom */
+    signed char *key;
+    size_t rests, *rest;     /* [rests] rigid contacts that hold */
+    size_t springs;          /* number of compliant contacts that hold */
+    struct constraints ties; /* constraints between degrees of freedom by the rigid contacts that hold */
+
+    size_t modes;
+    double *phi; /* [modes][n] mode shapes */
+    double *psi; /* [n][modes] M times the mode shapes, as columns */
+    double *omega2, *damping;
+    double *coupling;      /* [modes][modes] C~; NULL if C~ is diagonal */
+    unsigned char *drifts; /* [modes] 1: omega = 0 and no damping */
+    double *on;            /* [contacts][modes] contact that holds: force per eta; else: velocity per eta' */
+    double *by_u;          /* [contacts][modes] rigid contact that holds: force per eta'; else 0; NULL without damping */
+
+    size_t exponents;
+    double *lr, *li;           /* [exponents] lambda */
+    double *ar, *ai, *br, *bi; /* z = a eta + b eta': [exponents]; coupled: b [modes][exponents], a = -b omega^2/lambda */
+    double *rr, *ri;           /* [exponents][modes] coupled: eta = Re(r z) */
+    size_t *owner;             /* [exponents] mode of an exponent, with r = 1; NULL if coupled */
+};
 
 /* Velocity of a sliding contact or force of a held contact: Re(sum c_p z_p) + constant + ramp t. First the terms z_p of the
  * exponents, then the terms of the harmonics: z = e^{i Omega t}, c = response. */
 struct output {
     size_t contact;
     double *cr, *ci, *size; /* [terms] c_p, |c_p| */
-    double *rr, *ri, *wave; /* [harmonics] the tail of cr, ci, size that belongs to harmonics */
-    double *on_rate; /* [modes] held: force per eta, ramp per eta'; sliding: velocity per eta', ramp per eta'' */
-    double ramp;     /* rate of a held contact's force by bases of constant speed */
+    const double *on_rate;  /* [shapes] held: force per eta, ramp per eta'; sliding: velocity per eta', ramp per eta'' */
 };
 
 /* Forcing of the modes: a harmonic of the system; or a harmonic of the limit of one contact that does not hold, for the force
@@ -32,52 +70,34 @@ struct forcing {
     size_t harmonic, contact; /* harmonic: index in the system; contact: of the limit, else ncontact */
 };
 
-/* Forces of the contacts that hold, first of rigid contacts, then of compliant contacts. */
-struct held_forces {
-    double *by_q, *by_u;  /* [modes][contacts that hold] force per eta; per eta' */
-    size_t springs;       /* number of compliant contacts at rest: the contacts of the last `springs` outputs */
-    double *fr, *fi, *f0; /* fr, fi [given][springs] f' by harmonics of bases; f0 [springs] by bases of constant speed */
-};
+/* The structure under the loads of the system. Shapes: the modes, then a shape for each part, cosine or sine, of a harmonic of
+ * bases: the velocities of the structure, with Phi'M y = 0, for eta' = e^{i Omega t} or i e^{i Omega t}; at last, if steady, a shape
+ * for bases of constant speed: eta' = 1. */
+struct forced {
+    struct modal *modal;
+    struct modal_store store;
+    size_t shapes;
+    int steady;
+    double *phi, *on, *by_u; /* of the modal, with further rows, or columns, [shapes] */
+    size_t *begin, *end;     /* [shapes] shape k and column k of psi are 0 outside [begin[k], end[k]) */
+    int sparse;              /* 1: products within these bounds are faster than dense ones */
 
-struct modal {
-    signed char *key; /* [ncontact] 1: at rest; 2: at rest and holds; 0: else */
-
-    size_t moving, *dof; /* [moving] degrees of freedom that move */
-    size_t modes;
-    double *phi, *psi;   /* [modes][moving] mode shapes; M phi */
-    double *columns;     /* [moving][modes] transpose of psi; NULL if modes are few, or phi and psi mostly 0 */
-    size_t *begin, *end; /* [modes] phi and psi of mode k are 0 outside the places begin[k] to end[k] - 1 of dof */
-    double *omega2, *damping;
-    double *coupling;      /* [modes][modes] C~; NULL if C~ is diagonal */
-    unsigned char *drifts; /* [modes] 1: omega = 0 and no damping */
-    struct held_forces held;
-
-    size_t exponents, terms;   /* terms: exponents, harmonics, and zeros up to a multiple of TRIBO_TERMS; not 0 */
-    double *lr, *li, *size;    /* [terms] lambda (harmonics: i Omega); |lambda| */
-    double *sixth;             /* [terms] |lambda|^6 */
-    double *ar, *ai, *br, *bi; /* z = a eta + b eta': [exponents]; coupled: b [modes][exponents], a = -b omega^2/lambda */
-    double *rr, *ri;           /* [exponents][modes] coupled: eta = Re(r z) */
-    size_t *owner;             /* [exponents] mode of an exponent, with r = 1; NULL if coupled */
-
-    size_t given, harmonics;   /* given: harmonics of the system, in order; harmonics: given, then harmonics of limits */
-    struct forcing *forcing;   /* [harmonics] */
-    double *gr, *gi, *xr, *xi; /* [harmonics][modes] g: forcing of eta; x: response of eta */
-    double *yr, *yi;           /* [given][moving] velocities by harmonics of the bases of contacts that hold */
-    double *y0;                /* [moving] velocities by bases of constant speed */
-    double
-        *constant; /* [modes] constant forcing: by constant loads, by damping of y0, and by damping of eta' = ramp/omega^2 */
-    double *ramp;  /* [modes] rate of the forcing by bases of constant speed */
+    size_t given, harmonics; /* given: harmonics of the system, in order; harmonics: given, then harmonics of limits */
+    struct forcing *forcing; /* [harmonics] */
+    double complex *g, *x;   /* [harmonics][modes] forcing of eta; [harmonics][shapes] response eta */
+    double *constant; /* [modes] constant forcing: by constant loads, by damping of y0, by damping of eta' = ramp/omega^2 */
+    double *ramp;     /* [modes] rate of the forcing by bases of constant speed */
     int any_resonant;
     unsigned char *resonant; /* [harmonics][modes] 1: the response is not in x, since the divisor is close to 0 */
 
+    size_t exponents, terms; /* terms: exponents, harmonics, and zeros up to a multiple of TRIBO_TERMS; not 0 */
+    double *lr, *li, *size;  /* [terms] lambda (harmonics: i Omega); |lambda| */
+    double *sixth;           /* [terms] |lambda|^6 */
     size_t outputs, sliding; /* output [0, sliding): velocities; [sliding, outputs): forces of contacts that hold */
     struct output *output;
     double fastest;       /* largest |lambda| of exponents */
     double quickest;      /* largest |lambda| of exponents and harmonics */
     double decay, growth; /* largest -Re lambda; largest Re lambda; at least 0 */
-    void *memory;         /* blocks of memory: the structure and all arrays */
-    size_t bytes, *users; /* bytes: of memory; users: number of users besides the first; the last tribo_modal_free frees */
-    const struct modal *base; /* structure whose arrays this one uses; NULL: none */
 };
 
 /* Returns |re + i im|, without hypot where the square is safe: hypot takes ten times as long. */
@@ -87,21 +107,11 @@ static inline double tribo_modal_magnitude(double re, double im)
     return square > 1e-280 && square < 1e300 ? sqrt(square) : hypot(re, im);
 }
 
-/* The parts of structures that do not depend on loads and limits, listed by the contacts that hold. */
-struct modal_known {
-    struct modal_piece *first;
-    size_t bytes; /* of all pieces */
-};
-
-void tribo_modal_forget(struct modal_known *known);
-
 /* Data that all structures of one system share. */
 struct modal_shared {
     tribo_system *sys;
     const struct matrix *stiffness, *damping; /* K; C, or NULL without damping */
     struct matrix own_stiffness, own_damping; /* memory of K and C where the system has only M^-1 K and M^-1 C */
-    struct modal_known *known;                /* the caller's; NULL: none */
-    void *scratch;                            /* blocks of workspace, kept for the next structure */
 };
 
 /* Sets K and C. Returns a status, message on the system's context. tribo_modal_shared_free also takes zeros. */
@@ -109,17 +119,58 @@ int tribo_modal_shared_create(struct modal_shared *shared, tribo_system *sys);
 void tribo_modal_shared_free(struct modal_shared *shared);
 
 /* Creates the structure with all contacts at rest, slip[i] = 0, held. holds[i] = 1: contact i holds (set H of stick_slip.h);
- * other contacts at rest depend on H. Returns a status, message on the system's context. */
-int tribo_modal_create(struct modal **modal, struct modal_shared *shared, const signed char *slip, const unsigned char *holds);
-void tribo_modal_free(const struct modal *h);
+ * other contacts at rest depend on H. Returns a status, message on the system's context. Every user of the structure besides the
+ * first one adds 1 to users. tribo_modal_free takes NULL. */
+int tribo_modal_create(struct modal **modal, const struct modal_shared *shared, const signed char *slip,
+                       const unsigned char *holds);
+void tribo_modal_free(struct modal *h);
 
-/* Adds one user; every user calls tribo_modal_free in the end. Returns h. */
-const struct modal *tribo_modal_share(const struct modal *h);
+/* Creates h->forced, with the slip of tribo_modal_create. Returns a status, likewise. tribo_forced_free also takes an h without. */
+int tribo_forced_create(struct modal *h, const struct modal_shared *shared, const signed char *slip);
+void tribo_forced_free(struct modal *h);
 
-/* v [ndof][columns]: displacements; v + block: velocities. amplitudes: eta [modes][columns] = Phi'M v, eta + next = Phi'M (v +
- * block). add: v += Phi eta, v + block += Phi (eta + next). work [2][moving][columns]. */
-void tribo_modal_amplitudes(const struct modal *h, size_t columns, const double *v, size_t block, double *eta, size_t next,
-                            double *work);
-void tribo_modal_add(const struct modal *h, size_t columns, const double *eta, size_t next, double *v, size_t block, double *work);
+/* A phase of length tau: structure h, and re + i im = e^{lambda tau} for all perturbations. */
+struct modal_phase {
+    struct modal *h;
+    double tau, *im; /* [exponents] */
+    double re[];     /* [exponents] */
+};
+
+/* Returns NULL if out of memory. tribo_modal_phase_free takes NULL. */
+struct modal_phase *tribo_modal_phase_create(struct modal *h, double tau);
+void tribo_modal_phase_free(void *phase);
+
+/* Moves perturbations v [2 ndof + compliance.count][columns] of the state from the start of the phase to the end. Returns 0 if out
+ * of memory. */
+int tribo_modal_transition(const struct modal_phase *phase, const tribo_system *sys, size_t columns, double *v);
+
+/* Returns c of the part Re(c z) of exponent p in place'eta + speed'eta', place, speed [modes]. */
+static inline double complex tribo_modal_weight(const struct modal *h, size_t p, const double *place, const double *speed)
+{
+    double re = 0.0, im = 0.0;
+    if (h->owner) {
+        return place[h->owner[p]] + speed[h->owner[p]] * h->lr[p] + speed[h->owner[p]] * h->li[p] * I;
+    }
+    for (size_t k = 0; k < h->modes; k++) {
+        const double rr = h->rr[p * h->modes + k], ri = h->ri[p * h->modes + k];
+        const double fr = place[k] + speed[k] * h->lr[p], fi = speed[k] * h->li[p];
+        re += fr * rr - fi * ri;
+        im += fr * ri + fi * rr;
+    }
+    return re + im * I;
+}
+
+/* Returns c of the part Re(c e^{i Omega t}) of harmonic s in place'eta + speed'eta', over shapes from `first` on. */
+static inline double complex tribo_forced_weight(const struct forced *f, size_t s, size_t first, const double *place,
+                                                 const double *speed)
+{
+    double re = 0.0, im = 0.0;
+    for (size_t k = first; k < f->shapes; k++) {
+        const double xr = creal(f->x[s * f->shapes + k]), xi = cimag(f->x[s * f->shapes + k]), u = f->forcing[s].omega * speed[k];
+        re += place[k] * xr - u * xi;
+        im += place[k] * xi + u * xr;
+    }
+    return re + im * I;
+}
 
 #endif

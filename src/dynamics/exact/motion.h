@@ -21,42 +21,38 @@ struct course {
     struct sample at;  /* output at tau, with two derivatives */
 };
 
-/* A phase from t0: eta = constant + vel tau + acc tau^2/2 + harmonics + (Re(r z), or drift_rate tau if the mode drifts). */
+/* A phase from t0. A mode: eta = constant + vel tau + acc tau^2/2 + harmonics + (Re(r z), or drift_rate tau if the mode drifts). A
+ * shape by bases: eta = harmonics, or tau. */
 struct modal_motion {
     tribo_system *sys;
     const struct stick_slip *contacts; /* the caller's */
-    const struct modal *h;
-    double t0, tau;             /* tau: time after t0 that the terms w are for */
-    double *vel, *acc;          /* [modes] eta = ... + vel tau + acc tau^2/2 */
-    int runs;                   /* 1: some mode drifts, or has vel or acc not 0 */
-    double *drift, *drift_rate; /* [modes] eta, eta' at t0 minus harmonics; of modes without drift, minus constant and vel */
-    size_t room;                /* number of terms that lot and arrays [terms] have room for */
+    const struct forced *h;
+    double t0, tau, longest;    /* tau: time after t0 that the terms w are for; longest: the bounds hold until t0 + longest */
+    int runs;                   /* 1: some shape has vel, acc or drift_rate tau not 0 */
+    size_t room;                /* number of terms, and of shapes, that the arrays have room for */
+    double *vel, *acc;          /* [shapes] */
+    double *drift, *drift_rate; /* [shapes] eta, eta' at t0 minus harmonics; of modes without drift, minus constant and vel */
+    double *place, *rate;       /* [shapes] eta - eta(t0) at tau; eta' at tau, or eta' - eta'(t0) if brief (tau short) */
     struct lot *lot;            /* [terms/TRIBO_TERMS] terms: exponents, then harmonics; harmonics of limits times side */
     int looked;                 /* 1: far is set, in this phase */
     double far;                 /* time after t0 of the last look with e^{lambda tau} computed in full */
     double *far_r, *far_i;      /* [terms] e^{lambda far} */
     double *er, *ei;            /* [terms] workspace: w - z, the change since t0 */
     double *growth, *growth6;   /* [terms] bounds of |w| and of the sixth derivative */
-    double *side;               /* [harmonics] factor of the limit in the force of the contact; 1 for given harmonics */
-    double *push;               /* [outputs] constant force on mode k: sum of push on_rate[k] */
-    double *dq, *du;            /* [ndof] dq: q - q(t0) at tau; du: q' at tau, or q' - q'(t0) if brief (tau short) */
-    double *df, *way;           /* [ncontact] df: change of forces of compliant contacts since t0; way: workspace */
-    double *work;               /* [10 ndof] workspace */
-    const double *steady;       /* [ncontact] force of a sliding contact without harmonics of the limit */
-    struct line *line;          /* [ncontact] linear part of the velocity of a sliding contact; only if limits have harmonics */
-    double *room_for_steady;    /* [ncontact] memory of steady if limits have harmonics */
-    double longest;             /* time from t0 for which the bounds hold */
+    double *work;               /* [10 max(ndof, shapes)] workspace */
+    double *way;                /* [ncontact] workspace */
+    double *steady;             /* [ncontact] force of a sliding contact without harmonics of the limit */
+    struct course *course;      /* [ncontact] courses of the outputs of h */
+    struct signal velocity;     /* workspace */
 };
 
 /* Returns 1, or 0 if out of memory. tribo_modal_motion_free also takes an x that failed. */
 int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const struct stick_slip *contacts);
 void tribo_modal_motion_free(struct modal_motion *x);
 
-/* Makes room for terms. Returns 1, or 0 if out of memory. */
-int tribo_modal_motion_reserve(struct modal_motion *x, size_t terms);
-
-/* Starts a phase at (t, y) with structure h, for a time of at most longest. Returns the time for which the bounds hold. */
-double tribo_modal_motion_start(struct modal_motion *x, const struct modal *h, double t, const double *y, double longest);
+/* Starts a phase at (t, y) with structure h, for a time of at most *longest; sets *longest to the time for which the bounds hold.
+ * Returns 1, or 0 if out of memory. */
+int tribo_modal_motion_start(struct modal_motion *x, const struct forced *h, double t, const double *y, double *longest);
 
 /* Goes to t0 + tau: sets w, w' and w'' of all terms. */
 void tribo_modal_motion_go(struct modal_motion *x, double tau);
@@ -65,8 +61,9 @@ void tribo_modal_motion_go(struct modal_motion *x, double tau);
 struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i);
 double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i);
 
-/* Return the energy dissipated until t0 + tau, x and dq being there: by contact i, which slides, counted once; by all. */
-double tribo_modal_motion_work(struct modal_motion *x, size_t i, double tau);
+/* Return the energy dissipated until t0 + tau, x and x->place being there: by the contact of course c, which slides, counted once;
+ * by all. */
+double tribo_modal_motion_work(struct modal_motion *x, const struct course *c, double tau);
 double tribo_modal_motion_dissipated(struct modal_motion *x, double tau);
 
 /* Goes to t0 + tau: to = state there, from = state at t0. to may be from. */
@@ -83,8 +80,5 @@ int tribo_modal_motion_signal(const struct modal_motion *x, const double *c, dou
 void tribo_course_begin(const struct modal_motion *x, struct course *c, int of_velocity, double value);
 void tribo_course_look(const struct modal_motion *x, struct course *c);
 void tribo_course_bound(const struct modal_motion *x, struct course *c);
-
-/* to [3] = third to fifth derivative of c->output at x->tau. Returns 1; 0 if a load resonates: to is not set. */
-int tribo_course_look_further(const struct modal_motion *x, const struct course *c, double *to);
 
 #endif

@@ -1,6 +1,5 @@
-/* Harmonics: forcing of the modes, and response of the modes. */
+/* A structure under loads: shapes by bases, forcing of the modes, and response of the modes. */
 #include "parts.h"
-#include "common/imaginary.h"
 
 #include <math.h>
 #include <string.h>
@@ -12,319 +11,330 @@
 /* |lambda - i Omega|/Omega down to which the response of coupled modes keeps enough digits. */
 #define UNDAMPED 1e-9
 
-/* y [ndof], zero before, = velocities with J_I y = x, x [rests] = b_I, and Phi'M y = 0. */
-static void belt_velocities(struct modal_build *b, const double *x, double *y)
-{
-    tribo_constraints_follow(&b->ties, x, y);
-    for (size_t k = 0; k < b->h->modes; k++) {
-        tribo_add(y, -tribo_dot(b->psi + k * b->n, y, b->n), b->phi + k * b->n, b->n);
-    }
-}
+/* Velocity of a contact by its base and the structure that follows bases, relative to its terms, up to which it is rounding. */
+#define NO_MOTION 1e-14
 
-/* x [rests] = a part of harmonic w of b_I = Re((c - i s) e^{i Omega t}): c for part 0, -s for part 1. Returns 1 if x is not 0. */
-static int base_part(const struct modal_build *b, const struct harmonic *w, int part, double *x)
-{
-    int moves = 0;
-    for (size_t p = 0; p < b->rests; p++) {
-        x[p] = 0.0;
-        for (size_t i = 0; i < w->count; i++) {
-            if (w->index[i] == b->rest[p]) {
-                x[p] = part ? -w->sine[i] : w->cosine[i];
-                moves |= x[p] != 0.0;
-            }
-        }
-    }
-    return moves;
-}
-
-/* rate [ncontact] = the same part of f' of compliant contacts at rest, for velocities y [ndof]. work [ncontact] is workspace.
- * Returns 1 if rate is not 0. */
-static int spring_part(const struct modal_build *b, const struct harmonic *w, int part, const double *y, double *work,
-                       double *rate)
-{
-    const tribo_system *sys = b->shared->sys;
-    int moves = 0;
-    if (!b->springs) {
-        return 0;
-    }
-    tribo_matrix_multiply(&sys->direction, y, work);
-    for (size_t e = 0; e < w->count; e++) {
-        work[w->index[e]] -= part ? -w->sine[e] : w->cosine[e];
-    }
-    tribo_compliance_rates(sys, b->slip, work, rate);
-    for (size_t p = b->rests; p < b->rests + b->springs; p++) {
-        moves |= rate[b->rest[p]] != 0.0;
-    }
-    return moves;
-}
-
-void tribo_modal_add_springs(const struct modal_build *b, double by, const double *rate, double *pull)
-{
-    const struct matrix *j = &b->shared->sys->direction;
-    for (size_t p = b->rests; p < b->rests + b->springs; p++) {
-        const size_t i = b->rest[p];
-        for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
-            pull[j->col[e]] += by * rate[i] * j->val[e];
-        }
-    }
-}
+/* Up to FEW modes a dense product does not pay. */
+#define FEW 4
 
 static int list_forcing(struct modal_build *b)
 {
-    struct modal *h = b->h;
+    struct forced *f = b->forced;
     const tribo_system *sys = b->shared->sys;
     const size_t c = sys->ncontact;
-    h->given = h->harmonics = sys->harmonics;
-    h->forcing = tribo_modal_keep_forcing(b, sys->harmonics + sys->limit_harmonics * (c - b->rests));
-    if (!h->forcing) {
+    f->given = f->harmonics = sys->harmonics;
+    f->forcing = tribo_modal_take(&f->store, sys->harmonics + sys->limit_harmonics * (c - b->h->rests), sizeof *f->forcing);
+    if (!f->forcing) {
         return 0;
     }
     for (size_t k = 0; k < sys->harmonics; k++) {
         const struct harmonic *w = &sys->harmonic[k];
-        h->forcing[k] = (struct forcing){w->omega, k, c};
+        f->forcing[k] = (struct forcing){w->omega, k, c};
         for (size_t i = 0; w->drives == DRIVES_LIMIT && w->omega != 0.0 && i < c; i++) {
             if (b->h->key[i] != 2 && (w->cosine[i] != 0.0 || w->sine[i] != 0.0)) {
-                h->forcing[h->harmonics++] = (struct forcing){w->omega, k, i};
+                f->forcing[f->harmonics++] = (struct forcing){w->omega, k, i};
             }
         }
     }
     return 1;
 }
 
-/* pull [ndof] = -by K y, drag [ndof] = -C y: forces of stiffness and of damping for velocities y [ndof]. */
-static void resist(const struct modal_build *b, const double *y, double by, double *pull, double *drag)
+/* ------------------------------------------------------------------------------------------------------- shapes by bases */
+
+/* base [ncontact] += c for part 0 and -s for part 1 of the harmonic b = Re((c - i s) e^{i Omega t}). Returns 1 if it is not 0. */
+static int base_part(const struct harmonic *w, int part, double *base)
 {
-    memset(pull, 0, b->n * sizeof *pull);
-    memset(drag, 0, b->n * sizeof *drag);
-    tribo_matrix_multiply_add(b->shared->stiffness, -by, y, pull);
-    if (b->shared->damping) {
-        tribo_matrix_multiply_add(b->shared->damping, -1.0, y, drag);
+    int moves = 0;
+    for (size_t e = 0; w->drives == DRIVES_BASE && e < w->count; e++) {
+        const double value = part ? -w->sine[e] : w->cosine[e];
+        base[w->index[e]] += value;
+        moves |= value != 0.0;
     }
+    return moves;
 }
 
-/* Adds the forcing of eta by harmonic w of bases, Phi'((J'f' - K y)/(i Omega) - C y), y: velocities by held contacts, f': rates
- * of compliant contacts at rest; 1/i turns the real part into minus the imaginary part. Omega = 0: adds y to y0 and f' to rate_0.
- * x [rests + ncontact], pull and drag [ndof] are workspace. */
-static void force_by_base(struct modal_build *b, size_t w, double *x, double *pull, double *drag)
+/* Makes room for shapes: one for each part of a harmonic of bases that is not 0, and one for bases of constant speed. Without such
+ * shapes phi, on and by_u are arrays of the modal. Returns 0 if out of memory. */
+static int make_shapes(struct modal_build *b, double *base)
 {
-    struct modal *h = b->h;
-    const size_t n = b->n, m = h->modes, c = b->rates;
-    const struct harmonic *wave = &b->shared->sys->harmonic[w];
-    double *const g[] = {h->gr + w * m, h->gi + w * m}, *const y[] = {b->yr + w * n, b->yi + w * n};
-    double *const rate[] = {b->rate_r + w * c, b->rate_i + w * c};
-    int moves[2];
-    for (int part = 0; part < 2; part++) {
-        moves[part] = base_part(b, wave, part, x);
-        if (moves[part]) {
-            belt_velocities(b, x, y[part]);
-        }
-        moves[part] |= spring_part(b, wave, part, y[part], x + b->rests, rate[part]);
-    }
-    if (wave->omega == 0.0) {
-        tribo_add(b->y0, 1.0, y[0], n);
-        tribo_add(b->rate_0, 1.0, rate[0], c);
-        b->steady |= moves[0];
-        memset(y[0], 0, n * sizeof **y);
-        memset(y[1], 0, n * sizeof **y);
-        memset(rate[0], 0, c * sizeof **rate);
-        memset(rate[1], 0, c * sizeof **rate);
-        return;
-    }
-    for (int part = 0; part < 2; part++) {
-        if (!moves[part]) {
-            continue;
-        }
-        const double by = (part ? 1.0 : -1.0) / wave->omega;
-        resist(b, y[part], by, pull, drag);
-        tribo_modal_add_springs(b, by, rate[part], pull);
-        for (size_t k = 0; k < m; k++) {
-            g[1 - part][k] += tribo_dot(b->phi + k * n, pull, n);
-            g[part][k] += tribo_dot(b->phi + k * n, drag, n);
+    struct forced *f = b->forced;
+    const struct modal *h = b->h;
+    const size_t n = h->n, m = h->modes, c = b->shared->sys->ncontact;
+    f->shapes = m;
+    for (size_t s = 0; s < f->given; s++) {
+        const struct harmonic *w = &b->shared->sys->harmonic[s];
+        f->steady |= w->drives == DRIVES_BASE && w->omega == 0.0;
+        for (int part = 0; part < 2 && w->omega != 0.0; part++) {
+            f->shapes += (size_t)base_part(w, part, base);
         }
     }
-}
-
-/* Sets h->ramp and h->constant by constant loads and bases of constant speed. */
-static void force_by_constants(struct modal_build *b, double *pull, double *drag)
-{
-    struct modal *h = b->h;
-    if (b->steady) {
-        resist(b, b->y0, 1.0, pull, drag);
-        tribo_modal_add_springs(b, 1.0, b->rate_0, pull);
+    f->shapes += f->steady != 0;
+    f->phi = h->phi;
+    f->on = h->on;
+    f->by_u = h->by_u;
+    if (f->shapes == m) {
+        return 1;
     }
-    for (size_t k = 0; k < h->modes; k++) {
-        h->ramp[k] = b->steady ? tribo_dot(b->phi + k * b->n, pull, b->n) : 0.0;
-        h->constant[k] = b->steady ? tribo_dot(b->phi + k * b->n, drag, b->n) : 0.0;
-        for (size_t w = 0; w < b->shared->sys->harmonics; w++) {
-            h->constant[k] += h->forcing[w].omega == 0.0 ? h->gr[w * h->modes + k] : 0.0;
-        }
-    }
-}
-
-static int create_forcing(struct modal_build *b)
-{
-    struct modal *h = b->h;
-    const size_t m = h->modes, velocities = b->shared->sys->harmonics * b->n;
-    const size_t rates = b->shared->sys->harmonics * b->rates;
-    double **const kept[] = {&h->gr, &h->gi, &h->ramp, &h->constant};
-    const size_t count[] = {h->harmonics * m, h->harmonics * m, m, m};
-    double *y = tribo_modal_scratch(b, 2 * velocities + b->n + 2 * rates + b->rates);
-    if (!y || !tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count)) {
+    f->phi = tribo_modal_take(&f->store, f->shapes * n, sizeof *f->phi);
+    f->on = tribo_modal_take(&f->store, f->shapes * c, sizeof *f->on);
+    f->by_u = h->by_u ? tribo_modal_take(&f->store, f->shapes * c, sizeof *f->by_u) : NULL;
+    if (!f->phi || !f->on || (h->by_u && !f->by_u)) {
         return 0;
     }
-    b->yr = y;
-    b->yi = y + velocities;
-    b->y0 = y + 2 * velocities;
-    b->rate_r = b->y0 + b->n;
-    b->rate_i = b->rate_r + rates;
-    b->rate_0 = b->rate_i + rates;
+    memcpy(f->phi, h->phi, m * n * sizeof *f->phi);
+    for (size_t i = 0; i < c; i++) {
+        memcpy(f->on + i * f->shapes, h->on + i * m, m * sizeof *f->on);
+        memcpy(f->by_u ? f->by_u + i * f->shapes : f->on, h->by_u ? h->by_u + i * m : f->on, h->by_u ? m * sizeof *f->by_u : 0);
+    }
     return 1;
 }
 
-/* Sets the forcing of eta by each harmonic, and the velocities y and rates f' by bases. */
-int tribo_modal_forcing(struct modal_build *b)
+/* Workspace of a shape by bases. */
+struct following {
+    double *base, *v, *rate; /* [ncontact] b; J y + G f' - b; f' of compliant contacts that hold */
+    double *x, *react;       /* [rests] b_I; forces of rigid contacts that hold */
+    double *force, *work;    /* [n], [modes] */
+    double *stiff, *drag;    /* [modes] forcing of eta per displacement, and per velocity of the shape */
+};
+
+/* Sets shape k, velocities y with J_I y = b_I and Phi'M y = 0, its column of on and by_u, and stiff and drag. By Maxwell and Betti,
+ * phi'(K y - J'f') is the sum of b_i times the force of contact i per eta over the contacts that hold. */
+static void follow_base(struct modal_build *b, size_t k, double omega, struct following *w)
 {
-    if (!list_forcing(b) || !create_forcing(b)) {
-        return 0;
-    }
-    struct modal *h = b->h;
+    struct forced *f = b->forced;
+    const struct modal *h = b->h;
     const tribo_system *sys = b->shared->sys;
+    const struct matrix *j = &sys->direction;
+    const size_t n = h->n, m = h->modes, c = sys->ncontact;
+    double *y = f->phi + k * n;
+    for (size_t p = 0; p < h->rests; p++) {
+        w->x[p] = w->base[h->rest[p]];
+    }
+    tribo_constraints_follow(&h->ties, w->x, y);
+    memset(w->work, 0, m * sizeof *w->work);
+    tribo_multiply_transposed_add(n, m, 1, h->psi, y, w->work);
+    for (size_t l = 0; l < m; l++) {
+        tribo_add(y, -w->work[l], h->phi + l * n, n);
+    }
+    tribo_matrix_multiply(j, y, w->v);
+    tribo_add(w->v, -1.0, w->base, c);
+    if (h->springs) {
+        tribo_compliance_rates(sys, b->slip, w->v, w->rate);
+    }
+    const double most = tribo_largest(y, n);
+    memset(w->stiff, 0, m * sizeof *w->stiff);
+    memset(w->force, 0, n * sizeof *w->force);
+    for (size_t i = 0; i < c; i++) {
+        double size = fabs(w->base[i]);
+        for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+            size += fabs(j->val[e]) * most;
+            w->force[j->col[e]] -= h->key[i] == 2 ? j->val[e] * w->rate[i] : 0.0;
+        }
+        f->on[i * f->shapes + k] = h->key[i] == 2 ? w->rate[i] : fabs(w->v[i]) > NO_MOTION * size ? w->v[i] : 0.0;
+        tribo_add(w->stiff, h->key[i] == 2 ? -w->base[i] : 0.0, h->on + i * m, m);
+    }
+    tribo_matrix_multiply_add(b->shared->stiffness, 1.0, y, w->force);
+    tribo_system_add_mass(sys, -omega * omega, y, w->force);
+    tribo_modal_react(h, w->force, w->react, w->work);
+    for (size_t p = 0; p < h->rests; p++) {
+        f->on[h->rest[p] * f->shapes + k] = w->react[p];
+    }
+    memset(w->drag, 0, m * sizeof *w->drag);
+    if (f->by_u) {
+        memset(w->force, 0, n * sizeof *w->force);
+        tribo_matrix_multiply_add(b->shared->damping, -1.0, y, w->force);
+        tribo_multiply_add(m, n, 1, 1.0, h->phi, w->force, w->drag);
+        tribo_modal_react(h, w->force, w->react, w->work);
+        for (size_t p = 0; p < h->rests; p++) {
+            f->by_u[h->rest[p] * f->shapes + k] = -w->react[p];
+        }
+    }
+}
+
+/* Sets the shapes by bases, the forcing of the modes by these, and eta of these. Returns 0 if out of memory. */
+static int follow_bases(struct modal_build *b)
+{
+    struct forced *f = b->forced;
+    const struct modal *h = b->h;
+    const tribo_system *sys = b->shared->sys;
+    const size_t m = h->modes, c = sys->ncontact;
+    double *room = tribo_modal_scratch(b, 3 * c + 2 * h->rests + h->n + 3 * m);
+    if (!room) {
+        return 0;
+    }
+    struct following w = {.base = room, .v = room + c, .rate = room + 2 * c, .x = room + 3 * c};
+    w.react = w.x + h->rests;
+    w.force = w.react + h->rests;
+    w.work = w.force + h->n;
+    w.stiff = w.work + m;
+    w.drag = w.stiff + m;
+    if (!make_shapes(b, w.base)) {
+        return 0;
+    }
+    f->x = tribo_modal_take(&f->store, f->harmonics * f->shapes, sizeof *f->x);
+    size_t k = m;
+    for (size_t s = 0; f->x && f->shapes > m && s < f->given; s++) {
+        const double omega = f->forcing[s].omega;
+        for (int part = 0; part < 2 && omega != 0.0; part++) {
+            memset(w.base, 0, c * sizeof *w.base);
+            if (!base_part(&sys->harmonic[s], part, w.base)) {
+                continue;
+            }
+            const double complex rate = part ? I : 1.0, place = rate / (omega * I);
+            follow_base(b, k, omega, &w);
+            f->x[s * f->shapes + k++] = place;
+            for (size_t l = 0; l < m; l++) {
+                f->g[s * m + l] += place * w.stiff[l] + rate * w.drag[l];
+            }
+        }
+    }
+    if (f->x && f->steady) {
+        memset(w.base, 0, c * sizeof *w.base);
+        for (size_t s = 0; s < f->given; s++) {
+            if (f->forcing[s].omega == 0.0) {
+                base_part(&sys->harmonic[s], 0, w.base);
+            }
+        }
+        follow_base(b, k, 0.0, &w);
+        memcpy(f->ramp, w.stiff, m * sizeof *f->ramp);
+        memcpy(f->constant, w.drag, m * sizeof *f->constant);
+    }
+    return f->x != NULL;
+}
+
+/* Sets begin, end and sparse. Returns 0 if out of memory. */
+static int find_extents(struct modal_build *b)
+{
+    struct forced *f = b->forced;
+    const size_t n = b->h->n, m = b->h->modes;
+    size_t entries = 0;
+    f->begin = tribo_modal_take(&f->store, 2 * f->shapes, sizeof *f->begin);
+    f->end = f->begin ? f->begin + f->shapes : NULL;
+    for (size_t k = 0; f->begin && k < f->shapes; k++) {
+        for (size_t d = 0; d < n; d++) {
+            if (f->phi[k * n + d] != 0.0 || (k < m && b->h->psi[d * m + k] != 0.0)) {
+                f->begin[k] = f->end[k] ? f->begin[k] : d;
+                f->end[k] = d + 1;
+            }
+        }
+        entries += f->end[k] - f->begin[k];
+    }
+    f->sparse = f->shapes <= FEW || 4 * entries < f->shapes * n;
+    return f->begin != NULL;
+}
+
+/* ------------------------------------------------------------------------------------------------- forcing and response */
+
+/* Adds the forcing of eta by loads, and by limits as forces f = limit. */
+static void force_modes(struct modal_build *b)
+{
+    struct forced *f = b->forced;
+    const struct modal *h = b->h;
     const size_t m = h->modes;
-    double *pull = tribo_modal_scratch(b, 2 * b->n + b->rests + sys->ncontact), *drag = pull ? pull + b->n : NULL;
-    double *x = pull ? drag + b->n : NULL;
-    const int done = pull != NULL;
-    for (size_t w = 0; done && w < sys->harmonics; w++) {
-        const enum drives drives = sys->harmonic[w].drives;
-        if (drives == DRIVES_LOAD) {
-            /* Forcing of eta by a load. */
-            const struct harmonic *load = &sys->harmonic[w];
+    for (size_t s = 0; s < f->harmonics; s++) {
+        const struct forcing *forcing = &f->forcing[s];
+        const struct harmonic *w = &b->shared->sys->harmonic[forcing->harmonic];
+        const int load = w->drives == DRIVES_LOAD, limit = s >= f->given;
+        for (size_t e = limit ? forcing->contact : 0; e < (limit ? forcing->contact + 1 : load ? w->count : 0); e++) {
+            const double *by = limit ? h->on + e * m : h->psi + w->index[e] * m;
             for (size_t k = 0; k < m; k++) {
-                const double *psi = b->psi + k * b->n;
-                for (size_t i = 0; i < load->count; i++) {
-                    h->gr[w * m + k] += load->cosine[i] * psi[load->index[i]];
-                    h->gi[w * m + k] += -load->sine[i] * psi[load->index[i]];
-                }
-            }
-        } else if (drives == DRIVES_BASE) {
-            force_by_base(b, w, x, pull, drag);
-        }
-    }
-    for (size_t w = sys->harmonics; done && w < h->harmonics; w++) {
-        /* Forcing of eta by a harmonic of a limit, f = limit. */
-        const size_t i = h->forcing[w].contact;
-        const struct harmonic *limit = &sys->harmonic[h->forcing[w].harmonic];
-        for (size_t k = 0; k < m; k++) {
-            const double push = tribo_modal_shape(b, i, k);
-            h->gr[w * m + k] = push * limit->cosine[i];
-            h->gi[w * m + k] = -push * limit->sine[i];
-        }
-    }
-    if (done) {
-        force_by_constants(b, pull, drag);
-        /* With bases of constant speed modes of omega != 0 have eta' = ramp/omega^2; damping of eta' is a constant force. Modes
-         * that damping couples all have omega != 0. */
-        for (size_t k = 0; k < m; k++) {
-            for (size_t l = h->coupling ? 0 : k; l < (h->coupling ? m : k + 1) && h->omega2[l] != 0.0; l++) {
-                h->constant[k] -= (h->coupling ? h->coupling[k * m + l] : h->damping[k]) * (h->ramp[l] / h->omega2[l]);
+                f->g[s * m + k] += (w->cosine[e] - w->sine[e] * I) * by[k];
             }
         }
-    }
-    return done;
-}
-
-/* Sets the response to harmonic w, and resonant, of modes without coupling. */
-static void respond_alone(struct modal_build *b, size_t w)
-{
-    struct modal *h = b->h;
-    const double omega = b->h->forcing[w].omega;
-    for (size_t k = 0; k < h->modes; k++) {
-        const size_t at = w * h->modes + k;
-        const double gr = h->gr[at], gi = h->gi[at];
-        const double re = h->omega2[k] - omega * omega, im = omega * h->damping[k], square = re * re + im * im;
-        h->resonant[at] = sqrt(square) < RESONANCE * fabs(h->omega2[k]) && (gr != 0.0 || gi != 0.0);
-        h->any_resonant |= h->resonant[at];
-        if (!h->resonant[at] && (gr != 0.0 || gi != 0.0)) {
-            h->xr[at] = (gr * re + gi * im) / square;
-            h->xi[at] = (gi * re - gr * im) / square;
+        for (size_t k = 0; k < m; k++) {
+            f->constant[k] += s < f->given && forcing->omega == 0.0 ? creal(f->g[s * m + k]) : 0.0;
         }
     }
-}
-
-/* x [modes] += response to Re(g e^{i Omega t}), g [modes], by exponents: z' = lambda z + b Re(g e^{i Omega t}) has a solution
- * with parts e^{i Omega t} and e^{-i Omega t}; eta = Re(r z). push [2][exponents] is workspace. */
-static void add_resolvent(const struct modal *h, double omega, const double complex *g, double complex *push, double complex *x)
-{
-    const size_t m = h->modes, e = h->exponents;
-    double complex *back = push + e;
-    memset(push, 0, 2 * e * sizeof *push);
+    /* With bases of constant speed modes of omega != 0 have eta' = ramp/omega^2; damping of eta' is a constant force. Modes that
+     * damping couples all have omega != 0. */
     for (size_t k = 0; k < m; k++) {
-        for (size_t p = 0; p < e; p++) {
-            push[p] += (h->br[k * e + p] + h->bi[k * e + p] * I) * g[k];
-            back[p] += (h->br[k * e + p] - h->bi[k * e + p] * I) * g[k];
-        }
-    }
-    for (size_t p = 0; p < e; p++) {
-        const double complex lambda = h->lr[p] + h->li[p] * I;
-        const double complex one = 0.5 * push[p] / (omega * I - lambda), other = 0.5 * back[p] / (omega * I - conj(lambda));
-        for (size_t k = 0; k < m; k++) {
-            x[k] += (one + other) * h->rr[p * m + k] + (one - other) * I * h->ri[p * m + k];
+        for (size_t l = h->coupling ? 0 : k; l < (h->coupling ? m : k + 1) && h->omega2[l] != 0.0; l++) {
+            f->constant[k] -= (h->coupling ? h->coupling[k * m + l] : h->damping[k]) * (f->ramp[l] / h->omega2[l]);
         }
     }
 }
 
-/* Sets the response to harmonic w of coupled modes, refined once. x [7 modes] is workspace. Returns 0 on failure. */
-static int respond_together(struct modal_build *b, size_t w, double complex *x)
+/* Sets the response to harmonic s, and resonant, of modes without coupling. */
+static void respond_alone(struct modal_build *b, size_t s)
 {
-    struct modal *h = b->h;
-    const size_t m = h->modes;
-    const double omega = b->h->forcing[w].omega;
-    double complex *g = x + m, *missed = g + m, *push = missed + m;
-    for (size_t p = 0; p < h->exponents; p++) {
-        if (!(hypot(h->lr[p], fabs(h->li[p]) - fabs(omega)) > UNDAMPED * fabs(omega))) {
-            b->status = tribo_system_fail(b->shared->sys, TRIBO_ERR_UNSUPPORTED,
-                                          "the harmonic of omega = %g is in resonance with an undamped mode, while damping couples "
-                                          "others: take method event",
-                                          omega);
+    struct forced *f = b->forced;
+    const struct modal *h = b->h;
+    const double omega = f->forcing[s].omega;
+    for (size_t k = 0; k < h->modes; k++) {
+        const size_t at = s * h->modes + k;
+        const double gr = creal(f->g[at]), gi = cimag(f->g[at]);
+        const double re = h->omega2[k] - omega * omega, im = omega * h->damping[k], square = re * re + im * im;
+        const int forced = gr != 0.0 || gi != 0.0;
+        f->resonant[at] = sqrt(square) < RESONANCE * fabs(h->omega2[k]) && forced;
+        f->any_resonant |= f->resonant[at];
+        if (!f->resonant[at] && forced) {
+            f->x[s * f->shapes + k] = (gr * re + gi * im) / square + (gi * re - gr * im) / square * I;
+        }
+    }
+}
+
+/* Sets the response of coupled modes to all harmonics, by LU factors of the real form of their equations. Returns 0 on failure. */
+static int respond_together(struct modal_build *b)
+{
+    struct forced *f = b->forced;
+    const struct modal *h = b->h;
+    const size_t m = h->modes, size = 2 * m;
+    double *a = tribo_modal_scratch(b, size * size), *x = tribo_modal_scratch(b, size);
+    int *pivot = (int *)tribo_modal_scratch_indices(b, size);
+    for (size_t s = 0; a && x && pivot && s < f->harmonics; s++) {
+        const double omega = f->forcing[s].omega;
+        int known = 1;
+        for (size_t p = 0; p < h->exponents; p++) {
+            known &= hypot(h->lr[p], fabs(h->li[p]) - fabs(omega)) > UNDAMPED * fabs(omega) || omega == 0.0;
+        }
+        memset(a, 0, size * size * sizeof *a);
+        for (size_t k = 0; k < m; k++) {
+            x[k] = creal(f->g[s * m + k]);
+            x[m + k] = cimag(f->g[s * m + k]);
+            a[k * size + k] = a[(m + k) * size + m + k] = h->omega2[k] - omega * omega;
+            for (size_t l = 0; l < m; l++) {
+                a[k * size + m + l] = -omega * h->coupling[k * m + l];
+                a[(m + k) * size + l] = omega * h->coupling[k * m + l];
+            }
+        }
+        if (!known || !(tribo_lu_create(a, size, pivot) > 0.0)) {
+            b->status =
+                tribo_system_fail(b->shared->sys, TRIBO_ERR_UNSUPPORTED,
+                                  "the harmonic of omega = %g is in resonance with an undamped mode, while damping couples "
+                                  "others: take method event",
+                                  omega);
             return 0;
         }
-    }
-    for (size_t k = 0; k < m; k++) {
-        x[k] = 0.0;
-        g[k] = h->gr[w * m + k] + h->gi[w * m + k] * I;
-    }
-    add_resolvent(h, omega, g, push, x);
-    for (size_t k = 0; k < m; k++) {
-        double complex drag = 0.0;
-        for (size_t l = 0; l < m; l++) {
-            drag += h->coupling[k * m + l] * x[l];
+        tribo_lu_solve(a, size, pivot, x, omega != 0.0);
+        for (size_t k = 0; k < m; k++) {
+            f->x[s * f->shapes + k] = omega != 0.0 ? x[k] + x[m + k] * I : 0.0;
         }
-        missed[k] = g[k] - (h->omega2[k] - omega * omega) * x[k] - omega * I * drag;
     }
-    add_resolvent(h, omega, missed, push, x);
-    for (size_t k = 0; k < m; k++) {
-        h->xr[w * m + k] = creal(x[k]);
-        h->xi[w * m + k] = cimag(x[k]);
-    }
-    return 1;
+    return a && x && pivot;
 }
 
-/* Sets the response of eta to the harmonics, (diag(omega^2) - Omega^2 + i Omega C~) x = g. */
-int tribo_modal_response(struct modal_build *b)
+int tribo_forced_respond(struct modal_build *b)
 {
-    struct modal *h = b->h;
-    const size_t m = h->modes, count = h->harmonics;
-    double *kept = tribo_modal_keep(b, 2 * count * m);
-    double complex *x = (double complex *)tribo_modal_scratch(b, 14 * m);
-    h->resonant = tribo_modal_keep_bytes(b, count * m);
-    int done = kept && x && h->resonant;
-    h->xr = kept;
-    h->xi = done ? kept + count * m : NULL;
-    for (size_t w = 0; done && w < count; w++) {
-        if (b->h->forcing[w].omega != 0.0 && h->coupling) {
-            done = respond_together(b, w, x);
-        } else if (b->h->forcing[w].omega != 0.0) {
-            respond_alone(b, w);
+    struct forced *f = b->forced;
+    const size_t m = b->h->modes;
+    if (!list_forcing(b)) {
+        return 0;
+    }
+    f->g = tribo_modal_take(&f->store, f->harmonics * m, sizeof *f->g);
+    f->ramp = tribo_modal_take(&f->store, 2 * m, sizeof *f->ramp);
+    f->constant = f->ramp ? f->ramp + m : NULL;
+    f->resonant = tribo_modal_take(&f->store, f->harmonics * m, 1);
+    if (!f->g || !f->ramp || !f->resonant || !follow_bases(b) || !find_extents(b)) {
+        return 0;
+    }
+    force_modes(b);
+    if (b->h->coupling) {
+        return respond_together(b);
+    }
+    for (size_t s = 0; s < f->harmonics; s++) {
+        if (f->forcing[s].omega != 0.0) {
+            respond_alone(b, s);
         }
     }
-    return done;
+    return 1;
 }

@@ -71,6 +71,25 @@ TRIBO_SIMD_OF_FOUR static void move_little(const struct modal_motion *x, double 
     }
 }
 
+/* Below SMALL a series of SERIES terms gives (e^z - 1)/z to rounding. */
+#define SMALL 0.5
+#define SERIES 18
+
+double complex tribo_exp_1(double complex z)
+{
+    if (cabs(z) >= SMALL) {
+        return (cexp(z) - 1.0) / z;
+    }
+    const double x = creal(z), y = cimag(z);
+    double re = 1.0, im = 0.0;
+    for (int k = SERIES - 1; k > 1; k--) { /* sum = 1 + sum z/k */
+        const double old = re;
+        re = 1.0 + (x * old - y * im) / k;
+        im = (x * im + y * old) / k;
+    }
+    return re + im * I;
+}
+
 static inline void clear(double *re, double *im)
 {
     for (size_t k = 0; k < T; k++) {
@@ -96,7 +115,7 @@ void tribo_modal_terms_rest(struct modal_motion *x)
  * start at far: the rounding of w at late times must not vary from look to look. */
 void tribo_modal_terms_go(struct modal_motion *x, double tau)
 {
-    const struct modal *h = x->h;
+    const struct forced *h = x->h;
     x->tau = tau;
     if (x->looked && fabs(tau - x->far) * h->quickest < CLOSE) {
         move_little(x, tau - x->far);

@@ -50,6 +50,9 @@ static inline void tribo_term_begin(struct modal_motion *x, size_t p, double re,
     lot->zi[p % TRIBO_TERMS] = im;
 }
 
+/* Returns (e^z - 1)/z, the integral of e^{z s} over s from 0 to 1, without loss of digits for small z. */
+double complex tribo_exp_1(double complex z);
+
 /* Sets z, growth and growth6 of the last lot to 0, before terms are set: entries after the last term stay 0. */
 void tribo_modal_terms_clear(struct modal_motion *x);
 

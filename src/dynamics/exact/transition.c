@@ -1,6 +1,8 @@
-/* Sliding forces and loads do not depend on the state: perturbations of eta move as without these forces. The forces of contacts
+/* The derivative of the end state of a phase of method "exact" by the start state.
+ *
+ * Sliding forces and loads do not depend on the state: perturbations of eta move as without these forces. The forces of contacts
  * at rest depend on the state: a perturbation of J q + G f of a held contact is a constant force on the modes. */
-#include "transition.h"
+#include "modal.h"
 #include "dynamics/system/cos_sin.h"
 #include "dynamics/periodic/variation.h"
 
@@ -18,13 +20,14 @@ struct transition {
     double *eta, *rate, *pull, *change, *zr, *zi, *row;
 };
 
-struct modal_phase *tribo_modal_phase_create(const struct modal *h, double tau)
+struct modal_phase *tribo_modal_phase_create(struct modal *h, double tau)
 {
     struct modal_phase *phase = malloc(sizeof *phase + 2 * h->exponents * sizeof *phase->re);
     if (!phase) {
         return NULL;
     }
-    phase->h = tribo_modal_share(h);
+    h->users++;
+    phase->h = h;
     phase->tau = tau;
     phase->im = phase->re + h->exponents;
     for (size_t p = 0; p < h->exponents; p++) {
@@ -36,52 +39,34 @@ struct modal_phase *tribo_modal_phase_create(const struct modal *h, double tau)
     return phase;
 }
 
-void tribo_modal_phase_free(struct modal_phase *phase)
+void tribo_modal_phase_free(void *phase)
 {
     if (phase) {
-        tribo_modal_free(phase->h);
+        tribo_modal_free(((struct modal_phase *)phase)->h);
         free(phase);
     }
 }
 
-size_t tribo_modal_transition_room(const tribo_system *sys, size_t columns)
-{
-    return (12 * sys->ndof + 1) * columns;
-}
-
-/* Sets eta and rate from v, and pull = -sum of on_rate (J q + G f) over held contacts. */
+/* Sets eta and rate from v, and pull = -sum of on (J q + G f) over the contacts that hold. */
 static void transition_split(const struct transition *x, const double *v)
 {
     const struct modal *h = x->h;
     const struct compliance *g = &x->sys->compliance;
-    const size_t c = x->columns;
-    memset(x->pull, 0, x->block * sizeof *x->pull);
-    tribo_modal_amplitudes(h, c, v, x->block, x->eta, x->block, x->zr);
-    for (size_t o = h->sliding; o < h->outputs; o++) {
-        const struct output *out = &h->output[o];
-        tribo_contact_row(x->sys, out->contact, v, c, x->row);
-        for (size_t i = 0; tribo_is_compliant(g, out->contact) && i < g->count; i++) {
-            const double entry = tribo_compliance_entry(g, x->sys->ncontact, out->contact, g->contact[i]);
-            tribo_add(x->row, entry, v + 2 * x->block + i * c, c);
+    const size_t c = x->columns, m = h->modes;
+    memset(x->eta, 0, 3 * x->block * sizeof *x->eta);
+    tribo_multiply_transposed_two(h->n, m, c, h->psi, v, x->block, x->eta, x->block);
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        const double *on = h->on + i * m;
+        if (h->key[i] != 2 || tribo_largest(on, m) == 0.0) {
+            continue;
         }
-        for (size_t k = 0; k < h->modes; k++) {
-            tribo_add(x->pull + k * c, -out->on_rate[k], x->row, c);
+        tribo_contact_row(x->sys, i, v, c, x->row);
+        for (size_t k = 0; tribo_is_compliant(g, i) && k < g->count; k++) {
+            const double entry = tribo_compliance_entry(g, x->sys->ncontact, i, g->contact[k]);
+            tribo_add(x->row, entry, v + 2 * x->block + k * c, c);
         }
-    }
-}
-
-/* Adds to the forces of compliant contacts at rest in v: on_rate times the change of amplitudes, x->eta. */
-static void add_springs(const struct transition *x, double *v)
-{
-    const struct modal *h = x->h;
-    const struct compliance *g = &x->sys->compliance;
-    for (size_t o = h->outputs - h->held.springs, i = 0; o < h->outputs; o++) {
-        const struct output *out = &h->output[o];
-        while (g->contact[i] != out->contact) {
-            i++;
-        }
-        for (size_t k = 0; k < h->modes; k++) {
-            tribo_add(v + 2 * x->block + i * x->columns, out->on_rate[k], x->eta + k * x->columns, x->columns);
+        for (size_t k = 0; k < m; k++) {
+            tribo_add(x->pull + k * c, -on[k], x->row, c);
         }
     }
 }
@@ -101,26 +86,16 @@ static void propagator(const struct transition *x, size_t p, size_t end, double 
     }
 }
 
-/* Moves eta and rate of mode k, without coupling, by tau, with t of propagator and pull. */
-static void move_row(const struct transition *x, size_t k, const double *t)
-{
-    const struct modal *h = x->h;
-    double *eta = x->eta + k * x->columns, *rate = x->rate + k * x->columns;
-    const double *pull = x->pull + k * x->columns, tau = x->phase->tau;
-    const double place = h->omega2[k] != 0.0 ? 1.0 / h->omega2[k] : 0.0;
-    const double speed = h->omega2[k] == 0.0 && !h->drifts[k] ? 1.0 / h->damping[k] : 0.0, push = h->drifts[k] ? tau : 0.0;
-    for (size_t j = 0; j < x->columns; j++) {
-        const double off = place * pull[j], vel = speed * pull[j], q = eta[j] - off, u = rate[j] - vel;
-        eta[j] = off + vel * tau + 0.5 * push * tau * pull[j] + t[0] * q + t[1] * u;
-        rate[j] = vel + push * pull[j] + t[2] * q + t[3] * u;
-    }
-}
-
+/* Moves modes without coupling by tau. */
 static void move_alone(const struct transition *x)
 {
     const struct modal *h = x->h;
+    const double tau = x->phase->tau;
     for (size_t k = 0, p = 0; k < h->modes; k++) {
-        double t[] = {1.0, x->phase->tau, 0.0, 1.0};
+        double *eta = x->eta + k * x->columns, *rate = x->rate + k * x->columns, t[] = {1.0, tau, 0.0, 1.0};
+        const double *pull = x->pull + k * x->columns;
+        const double place = h->omega2[k] != 0.0 ? 1.0 / h->omega2[k] : 0.0;
+        const double speed = h->omega2[k] == 0.0 && !h->drifts[k] ? 1.0 / h->damping[k] : 0.0, push = h->drifts[k] ? tau : 0.0;
         size_t end = p;
         while (end < h->exponents && h->owner[end] == k) {
             end++;
@@ -128,7 +103,11 @@ static void move_alone(const struct transition *x)
         if (!h->drifts[k]) {
             propagator(x, p, end, t);
         }
-        move_row(x, k, t);
+        for (size_t j = 0; j < x->columns; j++) {
+            const double off = place * pull[j], vel = speed * pull[j], q = eta[j] - off, u = rate[j] - vel;
+            eta[j] = off + vel * tau + 0.5 * push * tau * pull[j] + t[0] * q + t[1] * u;
+            rate[j] = vel + push * pull[j] + t[2] * q + t[3] * u;
+        }
         p = end;
     }
 }
@@ -141,16 +120,15 @@ static void transition_add_rest(const struct transition *x, double factor)
     }
 }
 
-/* zr - i zi = z at tau, from eta and rate at the start; the same for z'. Overwrites eta. z = a eta + b eta' with
- * a = -b omega^2/lambda, since b is a left eigenvector: only b is read, half as much data. */
-static void move_exponents(const struct transition *x)
+/* Moves modes that damping couples, all with omega > 0: zr - i zi = z at tau, from eta and rate at the start; the same for z'.
+ * z = a eta + b eta' with a = -b omega^2/lambda, since b is a left eigenvector: only b is read, half as much data. */
+static void move_together(const struct transition *x)
 {
     const struct modal *h = x->h;
     const size_t m = h->modes, c = x->columns;
-    memset(x->zr, 0, h->exponents * c * sizeof *x->zr);
-    memset(x->zi, 0, h->exponents * c * sizeof *x->zi);
-    memset(x->zr + x->next, 0, h->exponents * c * sizeof *x->zr);
-    memset(x->zi + x->next, 0, h->exponents * c * sizeof *x->zi);
+    transition_add_rest(x, -1.0);
+    memset(x->zr, 0, 2 * x->next * sizeof *x->zr);
+    memset(x->zi, 0, 2 * x->next * sizeof *x->zi);
     for (size_t k = 0; k < m; k++) {
         for (size_t j = 0; j < c; j++) {
             x->eta[k * c + j] *= h->omega2[k];
@@ -170,24 +148,20 @@ static void move_exponents(const struct transition *x)
             rate_i[j] = -(li * zr[j] - lr * zi[j]);
         }
     }
-}
-
-/* Moves modes that damping couples, all with omega > 0. zi = -Im z. */
-static void move_together(const struct transition *x)
-{
-    const struct modal *h = x->h;
-    transition_add_rest(x, -1.0);
-    move_exponents(x);
     memset(x->eta, 0, 2 * x->block * sizeof *x->eta);
-    tribo_multiply_transposed_two(h->exponents, h->modes, x->columns, h->rr, x->zr, x->next, x->eta, x->block);
-    tribo_multiply_transposed_two(h->exponents, h->modes, x->columns, h->ri, x->zi, x->next, x->eta, x->block);
+    tribo_multiply_transposed_two(h->exponents, m, c, h->rr, x->zr, x->next, x->eta, x->block);
+    tribo_multiply_transposed_two(h->exponents, m, c, h->ri, x->zi, x->next, x->eta, x->block);
     transition_add_rest(x, 1.0);
 }
 
-void tribo_modal_transition(const struct modal_phase *phase, const tribo_system *sys, size_t columns, double *v, double *work)
+int tribo_modal_transition(const struct modal_phase *phase, const tribo_system *sys, size_t columns, double *v)
 {
     const size_t block = sys->ndof * columns;
     const struct modal *h = phase->h;
+    double *work = malloc((12 * block + columns + 1) * sizeof *work);
+    if (!work) {
+        return 0;
+    }
     const struct transition x = {.phase = phase,
                                  .h = h,
                                  .sys = sys,
@@ -210,6 +184,14 @@ void tribo_modal_transition(const struct modal_phase *phase, const tribo_system 
     }
     memset(v + block, 0, block * sizeof *v);
     tribo_add(x.eta, -1.0, x.change, h->modes * columns);
-    tribo_modal_add(h, columns, x.eta, block, v, block, x.zr);
-    add_springs(&x, v);
+    tribo_multiply_transposed_two(h->modes, h->n, columns, h->phi, x.eta, block, v, block);
+    for (size_t k = 0; k < sys->compliance.count; k++) {
+        const size_t i = sys->compliance.contact[k];
+        const double *on = h->on + i * h->modes;
+        for (size_t l = 0; h->key[i] == 2 && l < h->modes; l++) {
+            tribo_add(v + 2 * block + k * columns, on[l], x.eta + l * columns, columns);
+        }
+    }
+    free(work);
+    return 1;
 }
