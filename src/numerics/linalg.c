@@ -377,6 +377,20 @@ int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors)
     return info ? TRIBO_ERR_NO_CONVERGENCE : TRIBO_OK;
 }
 
+int tribo_symmetric_eigen_by(const struct cholesky *b, double *a, size_t n, double *values, double *vectors)
+{
+    tribo_half_solve(b, a, n);
+    tribo_transpose(n, n, a, vectors);
+    tribo_half_solve(b, vectors, n);
+    memcpy(a, vectors, n * n * sizeof *a);
+    if (!tribo_dense_finite(a, n * n)) {
+        return TRIBO_ERR_NOT_FINITE;
+    }
+    const int status = tribo_symmetric_eigen(a, n, values, vectors);
+    tribo_half_solve_back(b, vectors, n);
+    return status;
+}
+
 int tribo_eigen(double *a, size_t n, double *re, double *im, double *x)
 {
     if (n == 0 || !tribo_dense_finite(a, n * n)) {

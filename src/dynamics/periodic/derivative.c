@@ -3,117 +3,87 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct derivative *tribo_derivative_create(struct events *e, const tribo_system *sys)
-{
-    struct derivative *d = calloc(1, sizeof *d);
-    unsigned char *rests = malloc(sys->ncontact + 1);
-    if (!d || !rests) {
-        free(d);
-        free(rests);
-        return NULL;
-    }
-    *d = (struct derivative){.users = 1, .events = e, .sys = sys, .rests = rests};
-    tribo_derivative_clear(d);
-    return d;
-}
-
-void tribo_derivative_clear(struct derivative *d)
+void tribo_derivative_begin(struct derivative *d, struct events *e, const tribo_system *sys)
 {
     for (size_t k = 0; k < d->steps; k++) {
         if (d->step[k].phase) {
             d->events->motion->release(d->step[k].phase);
         }
+        free(d->step[k].slip);
+        free(d->step[k].jump);
     }
-    d->steps = d->numbers = 0;
-    memset(d->rests, 1, d->sys->ncontact);
     free(d->matrix);
     d->matrix = NULL;
+    d->steps = 0;
+    d->events = e;
+    d->sys = sys;
 }
 
 void tribo_derivative_free(struct derivative *d)
 {
-    if (!d || --d->users > 0) {
-        return;
-    }
-    tribo_derivative_clear(d);
+    tribo_derivative_begin(d, NULL, NULL);
     free(d->step);
-    free(d->slip);
-    free(d->number);
-    free(d->rests);
-    free(d);
 }
 
-/* Makes room for one more step. Returns 0 if out of memory. */
-static int reserve_step(struct derivative *d)
+/* Appends an empty step. Returns NULL if out of memory. */
+static struct derivative_step *add_step(struct derivative *d)
 {
-    if (d->steps < d->room) {
-        return 1;
+    if (d->steps == d->room) {
+        const size_t room = 2 * d->room + 16;
+        struct derivative_step *step = realloc(d->step, room * sizeof *step);
+        if (!step) {
+            return NULL;
+        }
+        d->step = step;
+        d->room = room;
     }
-    const size_t room = 2 * d->room + 16;
-    struct derivative_step *step = realloc(d->step, room * sizeof *step);
-    d->step = step ? step : d->step;
-    signed char *slip = step ? realloc(d->slip, room * d->sys->ncontact + 1) : NULL;
-    d->slip = slip ? slip : d->slip;
-    d->room = slip ? room : d->room;
-    return slip != NULL;
+    memset(d->step + d->steps, 0, sizeof *d->step);
+    return d->step + d->steps++;
 }
 
 int tribo_derivative_add_phase(struct derivative *d, double tau, const signed char *slip)
 {
-    if (!reserve_step(d)) {
-        return 0;
+    const struct motion *motion = d->events->motion;
+    struct derivative_step *s = add_step(d);
+    int done = s != NULL;
+    if (s) {
+        s->tau = tau;
+        s->slip = tribo_copy_of(slip, d->sys->ncontact, 1, &done);
+        s->phase = motion->keep ? motion->keep(d->events->own, tau) : NULL;
     }
-    const struct events *e = d->events;
-    memcpy(d->slip + d->steps * d->sys->ncontact, slip, d->sys->ncontact);
-    for (size_t i = 0; i < d->sys->ncontact; i++) {
-        d->rests[i] &= slip[i] == TRIBO_SLIP_STUCK;
-    }
-    void *phase = e->motion->keep ? e->motion->keep(e->own, tau) : NULL;
-    const int kept = phase || !e->motion->keep;
-    d->step[d->steps] = (struct derivative_step){.phase = phase, .tau = tau};
-    d->steps += (size_t)kept;
-    return kept;
+    return done && (s->phase || !motion->keep);
 }
 
-int tribo_derivative_add_jumps(struct derivative *d, size_t jumps, const double *row, const double *column)
+int tribo_derivative_add_jump(struct derivative *d, const double *row, double slope, const double *column)
 {
-    const size_t n = d->sys->ndof, all = tribo_system_energy(d->sys), count = (all + n) * jumps;
-    const size_t room = 2 * d->number_room + count;
-    if (d->numbers + count > d->number_room) {
-        double *more = realloc(d->number, room * sizeof *more);
-        if (!more) {
-            return 0;
-        }
-        d->number = more;
-        d->number_room = room;
+    const size_t n = tribo_system_energy(d->sys);
+    struct derivative_step *s = add_step(d);
+    double *jump = s ? calloc(n + d->sys->ndof, sizeof *jump) : NULL;
+    if (jump) {
+        s->jump = jump;
+        tribo_add(jump, 1.0 / slope, row, n);
+        memcpy(jump + n, column, d->sys->ndof * sizeof *column);
     }
-    if (!reserve_step(d)) {
-        return 0;
-    }
-    d->step[d->steps++] = (struct derivative_step){.first = d->numbers, .jumps = jumps};
-    memcpy(d->number + d->numbers, row, all * jumps * sizeof *row);
-    memcpy(d->number + d->numbers + all * jumps, column, n * jumps * sizeof *column);
-    d->numbers += count;
-    return 1;
+    return jump != NULL;
 }
 
 int tribo_derivative_apply(const struct derivative *d, size_t first, size_t columns, double *v)
 {
-    const size_t n = d->sys->ndof, c = d->sys->ncontact, all = tribo_system_energy(d->sys);
-    double *work = malloc((2 * c * columns + 1) * sizeof *work);
-    int status = work ? TRIBO_OK
-                      : tribo_system_fail(d->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
+    const size_t n = d->sys->ndof, all = tribo_system_energy(d->sys);
+    double *work = malloc((2 * d->sys->ncontact + 1) * columns * sizeof *work);
+    int status =
+        work ? TRIBO_OK
+             : tribo_system_fail(d->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     for (size_t k = first; !status && k < d->steps; k++) {
         const struct derivative_step *s = d->step + k;
-        if (s->jumps) {
-            const double *row = d->number + s->first, *column = row + all * s->jumps;
-            memset(work, 0, s->jumps * columns * sizeof *work);
-            tribo_multiply_add(s->jumps, all, columns, 1.0, row, v, work);
-            tribo_multiply_add(n, s->jumps, columns, 1.0, column, work, v + n * columns);
+        if (s->jump) {
+            memset(work, 0, columns * sizeof *work);
+            tribo_multiply_add(1, all, columns, 1.0, s->jump, v, work);
+            tribo_multiply_add(n, 1, columns, 1.0, s->jump + all, work, v + n * columns);
             continue;
         }
         if (d->sys->compliance.count) {
-            tribo_compliance_perturb(d->sys, d->slip + k * c, columns, v, work);
+            tribo_compliance_perturb(d->sys, s->slip, columns, v, work);
         }
         status = d->events->motion->transition(d->events->own, s->phase, s->tau, columns, v);
     }
@@ -123,5 +93,14 @@ int tribo_derivative_apply(const struct derivative *d, size_t first, size_t colu
 
 int tribo_derivative_rests(const struct derivative *d)
 {
-    return d->sys->ncontact && memchr(d->rests, 1, d->sys->ncontact) != NULL;
+    for (size_t i = 0; i < d->sys->ncontact; i++) {
+        size_t k = 0;
+        while (k < d->steps && (d->step[k].jump || d->step[k].slip[i] == TRIBO_SLIP_STUCK)) {
+            k++;
+        }
+        if (k == d->steps) {
+            return 1;
+        }
+    }
+    return 0;
 }

@@ -5,37 +5,29 @@
 
 #include "dynamics/events/events.h"
 
-/* A phase of length tau; or, with jumps > 0, phase NULL and tau 0, the jumps at an event. */
+/* A phase, or a jump q'' += column (row v)/slope. */
 struct derivative_step {
-    void *phase;
+    void *phase; /* of motion->keep; NULL: not kept */
     double tau;
-    size_t first, jumps; /* first: index in `number` of the rows and columns of the jumps */
+    signed char *slip; /* [ncontact] slip in the phase; NULL: a jump */
+    double *jump;      /* row/slope [n], column [ndof] */
 };
 
 struct derivative {
-    size_t users;
     struct events *events;
     const tribo_system *sys;
     size_t steps, room;
     struct derivative_step *step;
-    signed char *slip; /* [room][ncontact] slip in each phase */
-    size_t numbers, number_room;
-    double *number;      /* for each step of jumps: rows [jumps][n], then columns [ndof][jumps] */
-    unsigned char *rests; /* [ncontact] 1: the contact is at rest in all phases */
-    double *matrix;      /* [n][n] in coordinates of the energy norm (period_map.h); NULL until computed */
+    double *matrix; /* [n][n] in coordinates of the energy norm (period_map.h); NULL until computed */
 };
 
-/* Returns a derivative without steps, users = 1, or NULL if out of memory. tribo_derivative_free: frees d for the last user. */
-struct derivative *tribo_derivative_create(struct events *e, const tribo_system *sys);
+/* Removes all steps and the matrix; the next steps are of a motion of e. free: takes a zeroed d. */
+void tribo_derivative_begin(struct derivative *d, struct events *e, const tribo_system *sys);
 void tribo_derivative_free(struct derivative *d);
 
-/* Removes all steps and the matrix. */
-void tribo_derivative_clear(struct derivative *d);
-
-/* Appends the phase of d->events that lasted tau. Appends jumps of q'' at an event: (velocities of v) += column row v, row
- * [jumps][n], column [ndof][jumps]. Both return 0 if out of memory. */
+/* Append the phase of d->events that lasted tau, and a jump: row [n], column [ndof]. Both return 0 if out of memory. */
 int tribo_derivative_add_phase(struct derivative *d, double tau, const signed char *slip);
-int tribo_derivative_add_jumps(struct derivative *d, size_t jumps, const double *row, const double *column);
+int tribo_derivative_add_jump(struct derivative *d, const double *row, double slope, const double *column);
 
 /* Moves perturbations v [n][columns] by the steps from `first` on. Returns a status, its message on the system's context. */
 int tribo_derivative_apply(const struct derivative *d, size_t first, size_t columns, double *v);

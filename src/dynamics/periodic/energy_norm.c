@@ -5,63 +5,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* k [n][n] = K, made symmetric. Returns 0 if out of memory. */
-static int dense_stiffness(const tribo_system *sys, double *k)
-{
-    const size_t n = sys->ndof;
-    const int scaled = !sys->k.rows && sys->mass.rows;
-    double *entries = tribo_matrix_to_dense(sys->k.rows ? &sys->k : &sys->stiffness);
-    for (size_t i = 0; entries && i < n; i++) {
-        const double mass = scaled ? tribo_matrix_get(&sys->mass, i, i) : 1.0;
-        for (size_t j = 0; j < n; j++) {
-            entries[i * n + j] *= mass;
-        }
-    }
-    for (size_t i = 0; entries && i < n; i++) {
-        for (size_t j = 0; j < n; j++) {
-            k[i * n + j] = 0.5 * (entries[i * n + j] + entries[j * n + i]);
-        }
-    }
-    free(entries);
-    return entries != NULL;
-}
-
-/* Sets psi = phi'M. */
-static void energy_norm_weigh(struct energy_norm *e, const tribo_system *sys)
-{
-    const size_t n = e->n;
-    double *mode = e->omega; /* workspace here: not set yet */
-    tribo_transpose(n, n, e->phi, e->psi);
-    for (size_t k = 0; k < n; k++) {
-        memcpy(mode, e->psi + k * n, n * sizeof *mode);
-        memset(e->psi + k * n, 0, n * sizeof *mode);
-        tribo_system_add_mass(sys, 1.0, mode, e->psi + k * n);
-    }
-}
-
 /* Sets natural, phi and psi by the eigenvectors of S'KS, M^-1 = S S'. k [n][n]: workspace. Returns a status. */
-static int find(struct energy_norm *e, const tribo_system *sys, double *k)
+static int find_free_modes(struct energy_norm *e, const tribo_system *sys, double *k)
 {
     const size_t n = e->n;
-    if (!dense_stiffness(sys, k)) {
-        return TRIBO_ERR_MEMORY;
+    const int scaled = !sys->k.rows && sys->mass.rows; /* the stiffness of the system is M^-1 K, M diagonal */
+    tribo_matrix_spread(sys->k.rows ? &sys->k : &sys->stiffness, k);
+    for (size_t i = 0; scaled && i < n * n; i++) {
+        k[i] *= tribo_matrix_get(&sys->mass, i / n, i / n);
     }
-    tribo_half_solve(&sys->factor, k, n);
-    tribo_transpose(n, n, k, e->psi);
-    tribo_half_solve(&sys->factor, e->psi, n);
-    if (!tribo_dense_finite(e->psi, n * n)) {
-        return TRIBO_ERR_NOT_FINITE;
-    }
-    const int status = tribo_symmetric_eigen(e->psi, n, e->natural, e->phi);
-    if (status) {
-        return status;
-    }
-    tribo_half_solve_back(&sys->factor, e->phi, n);
-    energy_norm_weigh(e, sys);
+    tribo_even_out(n, k);
+    int status = tribo_symmetric_eigen_by(&sys->factor, k, n, e->natural, e->phi);
     for (size_t i = 0; i < n; i++) {
         e->natural[i] = sqrt(fabs(e->natural[i]));
     }
-    return TRIBO_OK;
+    tribo_transpose(n, n, e->phi, k);
+    if (sys->mass.rows) {
+        tribo_matrix_multiply_all(&sys->mass, n, k, e->psi);
+    } else {
+        memcpy(e->psi, k, n * n * sizeof *k);
+    }
+    return status ? tribo_system_fail(sys, status, "modes of the free structure: %s", tribo_strerror(status)) : TRIBO_OK;
 }
 
 /* Sets root, G = root root'. Returns a status. */
@@ -76,30 +40,30 @@ static int find_root(struct energy_norm *e, const tribo_system *sys)
             e->root[i * c + k] = k < i ? sum / e->root[k * c + k] : sqrt(sum);
         }
     }
-    return tribo_dense_finite(e->root, c * c) ? TRIBO_OK : TRIBO_ERR_NOT_FINITE;
+    return tribo_dense_finite(e->root, c * c)
+               ? TRIBO_OK
+               : tribo_system_fail(sys, TRIBO_ERR_INDEFINITE, "the compliance of the contacts is not positive definite");
 }
 
 int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys)
 {
     const size_t n = sys->ndof;
-    *e = (struct energy_norm){.n = n, .springs = sys->compliance.count};
+    *e = (struct energy_norm){.n = n, .springs = sys->compliance.count, .scale = 1.0};
     e->phi = calloc(2 * n * n + 3 * n + e->springs * e->springs + 1, sizeof *e->phi);
     double *work = malloc((n * n + 1) * sizeof *work);
-    int status = TRIBO_ERR_MEMORY;
-    if (e->phi && work) {
+    int status =
+        e->phi && work ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the modes of the free structure");
+    if (!status) {
         e->psi = e->phi + n * n;
         e->omega = e->psi + n * n;
         e->natural = e->omega + n;
         e->damping = e->natural + n;
         e->root = e->damping + n;
-        status = find(e, sys, work);
+        status = find_free_modes(e, sys, work);
         status = status ? status : find_root(e, sys);
     }
     free(work);
-    return status ? tribo_system_fail(sys, status, "%s",
-                                      status == TRIBO_ERR_MEMORY ? "out of memory for the modes of the free structure"
-                                                                 : "stiffness over mass overflows")
-                  : TRIBO_OK;
+    return status;
 }
 
 void tribo_energy_norm_free(struct energy_norm *e)
@@ -139,12 +103,13 @@ void tribo_energy_norm_set_least(struct energy_norm *e, double least)
     }
 }
 
-static void scale_rows(const struct energy_norm *e, size_t columns, int divide, double *rows)
+/* x [n + n + springs][columns] *= scale, its first n rows also *= omega; divide = 1: divided by these. */
+static void scale_rows(const struct energy_norm *e, size_t columns, int divide, double *x)
 {
-    for (size_t k = 0; k < e->n; k++) {
-        const double factor = divide ? 1.0 / e->omega[k] : e->omega[k];
+    for (size_t k = 0; k < 2 * e->n + e->springs; k++) {
+        const double size = e->scale * (k < e->n ? e->omega[k] : 1.0), factor = divide ? 1.0 / size : size;
         for (size_t j = 0; j < columns; j++) {
-            rows[k * columns + j] *= factor;
+            x[k * columns + j] *= factor;
         }
     }
 }
@@ -152,27 +117,19 @@ static void scale_rows(const struct energy_norm *e, size_t columns, int divide, 
 void tribo_energy_norm_of(const struct energy_norm *e, size_t columns, const double *y, double *x)
 {
     const size_t n = e->n, half = n * columns;
-    memset(x, 0, 2 * half * sizeof *x);
+    memset(x, 0, (2 * n + e->springs) * columns * sizeof *x);
     tribo_multiply_add(n, n, columns, 1.0, e->psi, y, x);
     tribo_multiply_add(n, n, columns, 1.0, e->psi, y + half, x + half);
+    tribo_multiply_transposed_add(e->springs, e->springs, columns, e->root, y + 2 * half, x + 2 * half);
     scale_rows(e, columns, 0, x);
-    /* root' f */
-    for (size_t i = 0; i < e->springs; i++) {
-        memset(x + 2 * half + i * columns, 0, columns * sizeof *x);
-        for (size_t k = i; k < e->springs; k++) {
-            tribo_add(x + 2 * half + i * columns, e->root[k * e->springs + i], y + 2 * half + k * columns, columns);
-        }
-    }
 }
 
-void tribo_energy_norm_state(const struct energy_norm *e, size_t columns, const double *x, double *y)
+void tribo_energy_norm_state(const struct energy_norm *e, size_t columns, double *x, double *y)
 {
     const size_t n = e->n, half = n * columns;
+    scale_rows(e, columns, 1, x);
     memset(y, 0, 2 * half * sizeof *y);
-    memcpy(y + half, x, half * sizeof *y);
-    scale_rows(e, columns, 1, y + half);
-    tribo_multiply_add(n, n, columns, 1.0, e->phi, y + half, y);
-    memset(y + half, 0, half * sizeof *y);
+    tribo_multiply_add(n, n, columns, 1.0, e->phi, x, y);
     tribo_multiply_add(n, n, columns, 1.0, e->phi, x + half, y + half);
     for (size_t i = e->springs; i-- > 0;) {
         double *f = y + 2 * half + i * columns;
@@ -184,4 +141,18 @@ void tribo_energy_norm_state(const struct energy_norm *e, size_t columns, const 
             f[j] /= e->root[i * e->springs + i];
         }
     }
+}
+
+double tribo_energy_length(const double *x, size_t n)
+{
+    return sqrt(tribo_dot(x, x, n));
+}
+
+double tribo_energy_distance(const double *a, const double *b, size_t n)
+{
+    double square = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        square += (a[i] - b[i]) * (a[i] - b[i]);
+    }
+    return sqrt(square);
 }

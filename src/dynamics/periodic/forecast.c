@@ -30,15 +30,15 @@ struct forecast {
     struct period_map *m;
     size_t modes, contacts, intervals; /* intervals: N, even */
     double h;
-    double *shape;       /* [modes][contacts] J phi_k */
-    double *move;        /* [modes][4] A */
-    double *give;        /* [contacts][contacts] matrix of compliance, 0 for rigid contacts */
-    double complex *eta; /* [harmonics][modes] modal amplitudes by loads, times e^{i omega t0} */
-    double *wave, *back; /* [N][N] orthogonal: rows cos theta j and sin theta j of each theta; its transpose */
-    double *inverse;     /* [N/2][2 contacts][2 contacts] (1 + rho G)^-1 on cosine and sine parts */
-    double complex *g;   /* [contacts][contacts] workspace */
-    double *scaled;      /* [modes][2 contacts] workspace */
-    double *rho;         /* [contacts] */
+    double *shape;                          /* [modes][contacts] J phi_k */
+    double *move;                           /* [modes][4] A */
+    double *give;                           /* [contacts][contacts] matrix of compliance, 0 for rigid contacts */
+    double complex *eta;                    /* [harmonics][modes] modal amplitudes by loads, times e^{i omega t0} */
+    double *wave, *back;                    /* [N][N] orthogonal: rows cos theta j and sin theta j of each theta; its transpose */
+    double *inverse;                        /* [N/2][2 contacts][2 contacts] (1 + rho G)^-1 on cosine and sine parts */
+    double complex *g;                      /* [contacts][contacts] workspace */
+    double *scaled;                         /* [modes][2 contacts] workspace */
+    double *rho;                            /* [contacts] */
     double *limit, *w, *f, *s, *y, *change; /* [contacts][N] */
     double *part;                           /* [4 contacts] workspace */
 };
@@ -302,7 +302,7 @@ int tribo_forecast(struct period_map *m, double *x, int *done)
         find_inverses(&forecast);
         forecast_forces(&forecast);
         forecast_state(&forecast, x);
-        tribo_period_map_coordinates(m, m->y, x);
+        tribo_energy_norm_of(&m->norm, 1, m->y, x);
         *done = tribo_dense_finite(x, m->n);
     }
     free(memory);

@@ -18,41 +18,7 @@
 /* Sizes in [1/LARGE, LARGE] need no scale: squares of these and of far smaller or larger sizes neither underflow nor overflow. */
 #define LARGE 1e100
 
-static double period_map_turn(void)
-{
-    return 2.0 * acos(-1.0);
-}
-
-static double period_map_length(const double *x, size_t n)
-{
-    return sqrt(tribo_dot(x, x, n));
-}
-
-static double period_map_distance(const double *a, const double *b, size_t n)
-{
-    double square = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        square += (a[i] - b[i]) * (a[i] - b[i]);
-    }
-    return sqrt(square);
-}
-
-void tribo_period_map_coordinates(const struct period_map *m, const double *y, double *x)
-{
-    tribo_energy_norm_of(&m->norm, 1, y, x);
-    for (size_t i = 0; i < m->n; i++) {
-        x[i] *= m->scale;
-    }
-}
-
-/* Sets m->y = the state with the coordinates x [n]. */
-static void set_state(struct period_map *m, const double *x)
-{
-    tribo_energy_norm_state(&m->norm, 1, x, m->y);
-    for (size_t i = 0; i < m->n; i++) {
-        m->y[i] /= m->scale;
-    }
-}
+static const double full_turn = 6.283185307179586;
 
 /* -------------------------------------------------------------------------------------------------------------- integration */
 
@@ -64,15 +30,14 @@ static struct period_map *of_company(struct company *company)
 static int phase_ends(struct company *company, double tau, double t, const double *y)
 {
     struct period_map *m = of_company(company);
-    tribo_period_map_coordinates(m, y, m->x);
-    m->size = greater(m->size, period_map_length(m->x, m->n));
-    return m->variation.company.ends(&m->variation.company, tau, t, y);
+    tribo_energy_norm_of(&m->norm, 1, y, m->x);
+    m->size = greater(m->size, tribo_energy_length(m->x, m->n));
+    return tribo_variation_phase(&m->variation, tau, t, y);
 }
 
 static void event_decided(struct company *company)
 {
-    struct period_map *m = of_company(company);
-    m->variation.company.decided(&m->variation.company);
+    tribo_variation_event(&of_company(company)->variation);
 }
 
 /* Integrates m->y from t to end without the driver's observer; the driver's next run is a new one. Returns a status. */
@@ -111,11 +76,11 @@ int tribo_period_map_replay(struct period_map *m, const double *y, struct compan
 int tribo_period_map_march(struct period_map *m, size_t periods, double *x)
 {
     int status = TRIBO_OK;
-    set_state(m, x);
+    tribo_energy_norm_state(&m->norm, 1, x, m->y);
     for (size_t k = 0; !status && k < periods; k++) {
         status = period_map_integrate(m, m->t, m->t + m->period, NULL);
     }
-    tribo_period_map_coordinates(m, m->y, x);
+    tribo_energy_norm_of(&m->norm, 1, m->y, x);
     return status;
 }
 
@@ -147,20 +112,8 @@ static int on_driver(const struct period_map *m, int status)
     return status ? tribo_driver_fail(m->drv, status, "%s", tribo_system_message(m->sys)) : TRIBO_OK;
 }
 
-/* Sets p->derivative = one without steps and with users = 1. Returns 0 if out of memory. */
-static int renew(struct period_map *m, struct point *p)
-{
-    if (p->derivative && p->derivative->users == 1) {
-        tribo_derivative_clear(p->derivative);
-        return 1;
-    }
-    tribo_derivative_free(p->derivative);
-    p->derivative = tribo_derivative_create(m->events, m->sys);
-    return p->derivative != NULL;
-}
-
-/* Sets p->derivative->matrix from v [n][n], the final perturbations of initial unit coordinates. Returns a status. */
-static int keep_matrix(struct period_map *m, const struct point *p, const double *v)
+/* Sets p->derivative.matrix from v [n][n], the final perturbations of initial unit coordinates. Returns a status. */
+static int keep_matrix(struct period_map *m, struct point *p, const double *v)
 {
     double *matrix = malloc(m->n * m->n * sizeof *matrix);
     if (!matrix) {
@@ -168,26 +121,24 @@ static int keep_matrix(struct period_map *m, const struct point *p, const double
     }
     tribo_energy_norm_of(&m->norm, m->n, v, matrix);
     set_image(p->odd, m->n * m->n, matrix);
-    p->derivative->matrix = matrix;
+    p->derivative.matrix = matrix;
     return TRIBO_OK;
 }
 
 int tribo_period_map_follow(struct period_map *m, struct point *p)
 {
     const size_t n = m->n;
-    if (!renew(m, p)) {
-        return no_room(m);
-    }
-    set_state(m, p->x);
+    tribo_energy_norm_state(&m->norm, 1, p->x, m->y);
     int status = m->moved ? hold_still(m) : TRIBO_OK;
     if (m->sys->compliance.count) {
         tribo_get_limit(m->sys->contacts, m->limit);
         tribo_compliance_enter(m->sys, m->limit, m->limit + m->sys->ncontact, m->y);
     }
     memcpy(p->y, m->y, n * sizeof *p->y);
-    tribo_period_map_coordinates(m, m->y, p->x);
-    tribo_variation_begin(&m->variation, m->probe, p->derivative);
-    m->size = greater(m->least, period_map_length(p->x, n));
+    tribo_energy_norm_of(&m->norm, 1, m->y, p->x);
+    tribo_derivative_begin(&p->derivative, m->events, m->sys);
+    tribo_variation_begin(&m->variation, m->probe, &p->derivative);
+    m->size = greater(m->least, tribo_energy_length(p->x, n));
     status = status ? status : period_map_integrate(m, m->t, m->t + m->span, &m->company);
     status = status ? status : on_driver(m, m->variation.status);
     if (status) {
@@ -195,9 +146,9 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
     }
     m->moved = 1;
     memcpy(p->end, m->y, n * sizeof *p->end);
-    tribo_period_map_coordinates(m, m->y, p->image);
+    tribo_energy_norm_of(&m->norm, 1, m->y, p->image);
     set_image(m->odd, n, p->image);
-    p->residual = period_map_distance(p->image, p->x, n);
+    p->residual = tribo_energy_distance(p->image, p->x, n);
     p->size = m->size;
     p->odd = m->odd;
     p->torn = m->variation.torn;
@@ -208,36 +159,30 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
 int tribo_period_map_apply(struct period_map *m, const struct point *p, double *x)
 {
     tribo_energy_norm_state(&m->norm, 1, x, m->y);
-    const int status = on_driver(m, tribo_derivative_apply(p->derivative, 0, 1, m->y));
+    const int status = on_driver(m, tribo_derivative_apply(&p->derivative, 0, 1, m->y));
     tribo_energy_norm_of(&m->norm, 1, m->y, x);
     set_image(p->odd, m->n, x);
     return status;
 }
 
-/* v [n][n] = states, in columns, with unit vectors as coordinates. work [n][n]. */
-static void set_units(const struct period_map *m, double *work, double *v)
-{
-    memset(work, 0, m->n * m->n * sizeof *work);
-    for (size_t i = 0; i < m->n; i++) {
-        work[i * m->n + i] = 1.0;
-    }
-    tribo_energy_norm_state(&m->norm, m->n, work, v);
-}
-
-int tribo_period_map_matrix(struct period_map *m, const struct point *p, const double **matrix)
+int tribo_period_map_matrix(struct period_map *m, struct point *p, const double **matrix)
 {
     int status = TRIBO_OK;
-    if (!p->derivative->matrix) {
-        double *v = malloc(2 * m->n * m->n * sizeof *v);
+    if (!p->derivative.matrix) {
+        const size_t n = m->n;
+        double *v = malloc(2 * n * n * sizeof *v), *unit = v + n * n;
         if (!v) {
             return no_room(m);
         }
-        set_units(m, v + m->n * m->n, v);
-        status = on_driver(m, tribo_derivative_apply(p->derivative, 0, m->n, v));
+        for (size_t i = 0; i < n * n; i++) {
+            unit[i] = i % (n + 1) == 0;
+        }
+        tribo_energy_norm_state(&m->norm, n, unit, v);
+        status = on_driver(m, tribo_derivative_apply(&p->derivative, 0, n, v));
         status = status ? status : keep_matrix(m, p, v);
         free(v);
     }
-    *matrix = p->derivative->matrix;
+    *matrix = p->derivative.matrix;
     return status;
 }
 
@@ -249,8 +194,8 @@ int tribo_period_map_complete(struct period_map *m, struct point *p, double *res
     }
     memcpy(m->y, p->end, m->n * sizeof *m->y);
     const int status = period_map_integrate(m, m->t + m->span, m->t + m->period, NULL);
-    tribo_period_map_coordinates(m, m->y, m->x);
-    *residual = period_map_distance(m->x, p->x, m->n);
+    tribo_energy_norm_of(&m->norm, 1, m->y, m->x);
+    *residual = tribo_energy_distance(m->x, p->x, m->n);
     return status;
 }
 
@@ -261,7 +206,7 @@ static int is_odd(const tribo_system *sys, double period)
 {
     for (size_t k = 0; k < sys->harmonics; k++) {
         const struct harmonic *w = &sys->harmonic[k];
-        const double order = round(fabs(w->omega) * period / period_map_turn());
+        const double order = round(fabs(w->omega) * period / full_turn);
         if (w->count > 0 && fmod(order, 2.0) != (w->drives == DRIVES_LIMIT ? 0.0 : 1.0)) {
             return 0;
         }
@@ -269,46 +214,29 @@ static int is_odd(const tribo_system *sys, double period)
     return 1;
 }
 
-/* Returns the least motion by a load in the norm: |psi amplitude| with components over max(omega of mode, omega of load). */
-static double size_of_load(struct period_map *m, const struct harmonic *w, const double *amplitude)
-{
-    double size = 0.0;
-    memset(m->x, 0, m->n * sizeof *m->x);
-    /* x += psi amplitude: the load in the modes */
-    for (size_t d = 0; d < m->sys->ndof; d++) {
-        for (size_t k = 0; k < w->count; k++) {
-            m->x[d] += m->norm.psi[d * m->sys->ndof + w->index[k]] * amplitude[k];
-        }
-    }
-    for (size_t d = 0; d < m->sys->ndof; d++) {
-        size = hypot(size, m->x[d] / greater(m->norm.omega[d], fabs(w->omega)));
-    }
-    return size;
-}
-
-/* The same for a base: amplitude/sqrt(R_ii) of bodies that follow the base, amplitude/(omega sqrt(G_ii)) of stretched springs. */
-static double size_of_base(const struct period_map *m, const struct harmonic *w, const double *amplitude)
-{
-    double size = 0.0;
-    for (size_t k = 0; k < w->count; k++) {
-        const double r = tribo_system_delassus(m->sys, w->index[k], w->index[k]);
-        const int elastic = tribo_is_compliant(&m->sys->compliance, w->index[k]) && w->omega != 0.0;
-        size = r > 0.0 ? hypot(size, amplitude[k] / sqrt(r)) : size;
-        size = elastic ? hypot(size, amplitude[k] / (w->omega * sqrt(m->sys->compliance.own[w->index[k]]))) : size;
-    }
-    return size;
-}
-
-/* Returns the least motion by all loads and bases in the norm. */
+/* Returns the least motion by all loads and bases in the norm, from |psi amplitude| with components over max(omega of mode, omega
+ * of load); from amplitude/sqrt(R_ii) of bodies that follow a base, and amplitude/(omega sqrt(G_ii)) of stretched springs. */
 static double least_motion(struct period_map *m)
 {
+    const size_t n = m->sys->ndof;
     double size = 0.0;
-    for (size_t k = 0; k < m->sys->harmonics; k++) {
-        const struct harmonic *w = &m->sys->harmonic[k];
-        if (w->drives == DRIVES_LOAD) {
-            size = hypot(size, hypot(size_of_load(m, w, w->cosine), size_of_load(m, w, w->sine)));
-        } else if (w->drives == DRIVES_BASE) {
-            size = hypot(size, hypot(size_of_base(m, w, w->cosine), size_of_base(m, w, w->sine)));
+    for (size_t s = 0; s < 2 * m->sys->harmonics; s++) {
+        const struct harmonic *w = &m->sys->harmonic[s / 2];
+        const double *amplitude = s % 2 ? w->sine : w->cosine;
+        for (size_t d = 0; w->drives == DRIVES_LOAD && d < n; d++) {
+            double load = 0.0;
+            for (size_t k = 0; k < w->count; k++) {
+                load += m->norm.psi[d * n + w->index[k]] * amplitude[k];
+            }
+            size = hypot(size, load / greater(m->norm.omega[d], fabs(w->omega)));
+        }
+        for (size_t k = 0; w->drives == DRIVES_BASE && k < w->count; k++) {
+            const size_t i = w->index[k];
+            const double r = tribo_system_delassus(m->sys, i, i);
+            size = r > 0.0 ? hypot(size, amplitude[k] / sqrt(r)) : size;
+            if (tribo_is_compliant(&m->sys->compliance, i) && w->omega != 0.0) {
+                size = hypot(size, amplitude[k] / (w->omega * sqrt(m->sys->compliance.own[i])));
+            }
         }
     }
     return size;
@@ -322,27 +250,20 @@ static int prepare_probes(struct period_map *m)
         return no_room(m);
     }
     m->probe = m->probe ? m->probe : malloc(m->n * columns * sizeof *m->probe);
-    double *x = malloc(m->n * m->n * sizeof *x);
-    if (!m->probe || !x) {
-        free(x);
-        return no_room(m);
+    double *x = malloc(m->n * columns * sizeof *x);
+    for (size_t i = 0; x && i < m->n * columns; i++) {
+        x[i] = columns == m->n ? i % (m->n + 1) == 0 : sin(1.0 + (double)(i * i));
     }
-    if (columns == m->n) {
-        set_units(m, x, m->probe);
-    } else {
-        for (size_t i = 0; i < m->n * columns; i++) {
-            x[i] = sin(1.0 + (double)(i * i));
-        }
+    if (m->probe && x) {
         tribo_energy_norm_state(&m->norm, columns, x, m->probe);
     }
     free(x);
-    return TRIBO_OK;
+    return m->probe && x ? TRIBO_OK : no_room(m);
 }
 
 int tribo_period_map_prepare(struct period_map *m, double t, double period, const double *y)
 {
     m->halves = 0;
-    m->moved = 0;
     int status = m->drv->method->open(m->drv, &m->events);
     if (!status && !m->norm.phi) {
         status = on_driver(m, tribo_energy_norm_create(&m->norm, m->sys));
@@ -350,30 +271,25 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period, cons
             tribo_energy_norm_free(&m->norm);
         }
     }
-    if (!status && m->period != period) {
-        tribo_energy_norm_set_least(&m->norm, LEAST_OMEGA * period_map_turn() / period);
-        m->period = period;
-        status = prepare_probes(m);
-    }
     if (status) {
-        m->period = 0.0;
         return status;
     }
-    tribo_energy_norm_set_damping(&m->norm, m->sys);
     m->t = t;
+    m->period = period;
+    m->moved = 0;
     tribo_period_map_choose(m, is_odd(m->sys, period));
+    m->norm.scale = 1.0;
+    tribo_energy_norm_set_least(&m->norm, LEAST_OMEGA * full_turn / period);
+    tribo_energy_norm_set_damping(&m->norm, m->sys);
     /* size of the motion: the larger of least and the guess y */
     const double least = least_motion(m);
-    double size = least;
-    m->scale = 1.0;
-    tribo_period_map_coordinates(m, y, m->x);
-    for (size_t i = 0; i < m->n; i++) {
-        size = greater(size, fabs(m->x[i]));
+    tribo_energy_norm_of(&m->norm, 1, y, m->x);
+    const double size = greater(least, tribo_largest(m->x, m->n));
+    if (size > 0.0 && !(size >= 1.0 / LARGE && size <= LARGE)) {
+        m->norm.scale = ldexp(1.0, -(int)clamp(logb(size), -1000.0, 1000.0));
     }
-    /* scale: a power of two that brings very small and very large motions to ordinary size */
-    m->scale = size > 0.0 && !(size >= 1.0 / LARGE && size <= LARGE) ? ldexp(1.0, -(int)clamp(logb(size), -1000.0, 1000.0)) : 1.0;
-    m->least = LEAST_SIZE * (m->scale * least);
-    return TRIBO_OK;
+    m->least = LEAST_SIZE * (m->norm.scale * least);
+    return prepare_probes(m);
 }
 
 void tribo_period_map_choose(struct period_map *m, int odd)

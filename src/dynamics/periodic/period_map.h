@@ -6,15 +6,15 @@
 #include "energy_norm.h"
 #include "variation.h"
 
-/* The map at one point; arrays [n]. y: initial state; x: coordinates of y in the energy norm, times the map's scale. */
+/* The map at one point; arrays [n]. y: initial state; x: coordinates of y in the energy norm. */
 struct point {
     double *y, *x;
-    double *end, *image; /* end: state after the span; image of x: coordinates of end, or of -end if odd */
-    struct derivative *derivative; /* d end/d y; NULL: not computed yet */
-    double residual;               /* |image - x| */
-    double size;                   /* largest |x| at the start and at the ends of phases */
-    int odd;                       /* 1: image is that of -end */
-    size_t torn, other;            /* two contacts because of which there is no derivative; ncontact: there is one */
+    double *end, *image;          /* end: state after the span; image of x: coordinates of end, or of -end if odd */
+    struct derivative derivative; /* d end/d y */
+    double residual;              /* |image - x| */
+    double size;                  /* largest |x| at the start and at the ends of phases */
+    int odd;                      /* 1: image is that of -end */
+    size_t torn, other;           /* two contacts because of which there is no derivative; ncontact: there is one */
 };
 
 struct period_map {
@@ -23,7 +23,6 @@ struct period_map {
     struct events *events;
     size_t n; /* values of a state with perturbations: tribo_system_energy(sys) */
     struct energy_norm norm;
-    double scale;    /* 1, except for motions so small or large that squares of their sizes underflow or overflow */
     struct company company;
     struct variation variation;
     double *y, *x;          /* [n + 1] a state; [n] coordinates of a state */
@@ -50,10 +49,7 @@ int tribo_period_map_complete(struct period_map *m, struct point *p, double *res
 /* apply: x [n] = D x, D = d image/d x at p. matrix: *matrix [n][n] = D, computed at the first call and kept in p. Both return a
  * status, its message on the driver. */
 int tribo_period_map_apply(struct period_map *m, const struct point *p, double *x);
-int tribo_period_map_matrix(struct period_map *m, const struct point *p, const double **matrix);
-
-/* x [n] = coordinates of the state y [n], times scale. */
-void tribo_period_map_coordinates(const struct period_map *m, const double *y, double *x);
+int tribo_period_map_matrix(struct period_map *m, struct point *p, const double **matrix);
 
 /* x [n] = coordinates of the state `periods` periods after x. Returns a status, its message on the driver. */
 int tribo_period_map_march(struct period_map *m, size_t periods, double *x);

@@ -60,8 +60,8 @@ static int replay(tribo_driver *drv, struct replay *r)
     r->company = (struct company){phase_ends, event_decided};
     r->map = &s->map;
     r->elapsed = 0.0;
-    memcpy(s->map.x, s->best.y, s->map.n * sizeof *s->map.x);
-    const int status = tribo_period_map_replay(&s->map, s->best.y, &r->company);
+    memcpy(s->map.x, s->best->y, s->map.n * sizeof *s->map.x);
+    const int status = tribo_period_map_replay(&s->map, s->best->y, &r->company);
     tribo_signal_free(&r->signal);
     tribo_signal_free(&r->slope);
     return status && s->map.drv != drv ? tribo_driver_fail(drv, status, "%s", s->map.drv->message) : status;

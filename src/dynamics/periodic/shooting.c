@@ -79,15 +79,18 @@
 /* The search starts from the forecast if |guess - forecast| > FAR |forecast|. */
 #define FAR 0.1
 
-static double shooting_length(const double *x, size_t n)
-{
-    return sqrt(tribo_dot(x, x, n));
-}
-
 static int shooting_no_memory(const struct shooting *s)
 {
     return tribo_driver_fail(s->map.drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
                              s->map.sys->ndof, plural(s->map.sys->ndof));
+}
+
+static int no_convergence(const struct shooting *s, double residual)
+{
+    return tribo_driver_fail(
+        s->map.drv, TRIBO_ERR_NO_CONVERGENCE,
+        "no motion of period %.17g was found in %g periods: the nearest misses its beginning by %.3g of its size", s->map.period,
+        0.5 * (double)s->map.halves, residual);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- points */
@@ -103,33 +106,29 @@ static int close_enough(const struct point *p, double part)
     return comes_back(p->residual, p->size, part);
 }
 
-static void shooting_exchange(struct shooting *s)
+/* here = p; there = a point that is neither here nor best. */
+static void go_to(struct shooting *s, struct point *p)
 {
-    const struct point p = s->here;
-    s->here = s->there;
-    s->there = p;
-}
-
-static void copy_point(const struct shooting *s, struct point *to, const struct point *from)
-{
-    const size_t n = s->map.n;
-    memcpy(to->y, from->y, 4 * n * sizeof *to->y); /* y, x, end and image are contiguous */
-    from->derivative->users++;
-    tribo_derivative_free(to->derivative);
-    to->derivative = from->derivative;
-    to->residual = from->residual;
-    to->size = from->size;
-    to->odd = from->odd;
-    to->torn = from->torn;
-    to->other = from->other;
+    s->here = p;
+    s->there = s->point;
+    while (s->there == s->here || s->there == s->best) {
+        s->there++;
+    }
 }
 
 /* Accepts the step: here = best = there, astray = 0. */
 static void shooting_settle(struct shooting *s)
 {
-    shooting_exchange(s);
-    copy_point(s, &s->best, &s->here);
+    s->best = s->there;
     s->astray = 0;
+    go_to(s, s->best);
+}
+
+/* to [n] = image - x of the point p. */
+static void find_gap(const struct shooting *s, const struct point *p, double *to)
+{
+    memcpy(to, p->image, s->map.n * sizeof *to);
+    tribo_add(to, -1.0, p->x, s->map.n);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- steps */
@@ -149,72 +148,35 @@ static void set_matrix(const struct shooting *s, const double *derivative, doubl
     }
 }
 
-/* The matrix (1 + shift) I - D, D = the derivative at the point `at` over 1 or 2 spans; free = 1: times s->free from the right,
- * its inverse for the free structure. */
+/* The matrix (1 + shift) I - D, D = the derivative at the point `at` over 1 or 2 spans. */
 struct equation {
     struct shooting *s;
     const struct point *at;
     double shift;
-    int spans, free;
+    int spans;
 };
-
-/* x = s->free x */
-static void apply_free(const struct shooting *s, double *x)
-{
-    const size_t half = s->map.sys->ndof;
-    for (size_t k = 0; k < half; k++) {
-        const double *t = s->free + 4 * k, q = x[k], u = x[half + k];
-        x[k] = t[0] * q + t[1] * u;
-        x[half + k] = t[2] * q + t[3] * u;
-    }
-}
 
 static int apply_equation(void *data, double *x)
 {
     const struct equation *e = data;
-    struct shooting *s = e->s;
-    double *moved = s->a;
+    double *moved = e->s->a;
     int status = TRIBO_OK;
-    if (e->free) {
-        apply_free(s, x);
-    }
-    memcpy(moved, x, s->map.n * sizeof *x);
+    memcpy(moved, x, e->s->map.n * sizeof *x);
     for (int k = 0; !status && k < e->spans; k++) {
-        status = tribo_period_map_apply(&s->map, e->at, moved);
+        status = tribo_period_map_apply(&e->s->map, e->at, moved);
     }
-    for (size_t i = 0; i < s->map.n; i++) {
+    for (size_t i = 0; i < e->s->map.n; i++) {
         x[i] = (1.0 + e->shift) * x[i] - moved[i];
     }
     return status;
 }
 
 /* Solves in place for x [n], first the right-hand side. *done = 0: no solution, x undefined. If contacts rest all the time, there
- * may be many solutions: the Krylov space, then without s->free, of a map that increases no distance has the shortest. */
-static int solve_in_space(struct shooting *s, const struct point *at, double shift, int spans, double tolerance, double *x,
-                          int *done)
+ * may be many solutions: the Krylov space of a map that increases no distance has the shortest. */
+static int solve_in_space(struct shooting *s, struct equation e, double tolerance, double *x, int *done)
 {
-    const int free = !tribo_derivative_rests(at->derivative) && spans == 1;
-    struct equation e = {s, at, shift, spans, free};
     double part;
-    if (free) {
-        /* s->free = inverse of (1 + shift) I - (flow of the free mode over a span), [4] a mode */
-        const struct energy_norm *norm = &s->map.norm;
-        const double span = s->map.span, sign = s->map.odd ? -1.0 : 1.0;
-        for (size_t k = 0; k < norm->n; k++) {
-            const double omega = norm->natural[k], half = 0.5 * norm->damping[k], square = omega * omega - half * half;
-            const double nu = sqrt(fabs(square)), size = sign * exp(-half * span), c = size * cos(nu * span);
-            const double d = nu > 0.0 ? size * sin(nu * span) / nu : 0.0;
-            const double qq = 1.0 + shift - (c + half * d), qu = -norm->omega[k] * d, uq = omega * omega / norm->omega[k] * d;
-            const double uu = 1.0 + shift - (c - half * d), det = qq * uu - qu * uq;
-            const double inverse[] = {uu / det, -qu / det, -uq / det, qq / det};
-            static const double unit[] = {1.0, 0.0, 0.0, 1.0};
-            memcpy(s->free + 4 * k, square > 0.0 && fabs(det) > NEARLY_SINGULAR ? inverse : unit, sizeof unit);
-        }
-    }
     const int status = tribo_gmres(s->map.n, apply_equation, &e, tolerance, s->map.n, x, &part, s->space);
-    if (free) {
-        apply_free(s, x);
-    }
     *done = part <= tolerance;
     return status;
 }
@@ -229,20 +191,20 @@ static int is_matrix_free(const struct shooting *s)
 static int newton_step(struct shooting *s, double shift)
 {
     const size_t n = s->map.n;
-    const double *derivative = NULL, near = s->here.residual / s->here.size;
-    const double fell = s->before > 0.0 && near > LEAST_INEXACT ? lesser(s->here.residual / s->before, 1.0) : 0.0;
-    const double part = clamp(greater(near, 0.9 * fell * fell), LEAST_INEXACT, MOST_INEXACT);
+    const double *derivative = NULL;
     int done = 0, status = TRIBO_OK;
-    for (int large = is_matrix_free(s); large >= 0 && !status && !done; large--) {
-        for (size_t i = 0; i < n; i++) {
-            s->step[i] = s->here.image[i] - s->here.x[i];
-        }
-        status = large ? solve_in_space(s, &s->here, shift, 1, part, s->step, &done) : TRIBO_OK;
+    if (is_matrix_free(s)) {
+        const double near = s->here->residual / s->here->size;
+        const double fell = s->before > 0.0 && near > LEAST_INEXACT ? lesser(s->here->residual / s->before, 1.0) : 0.0;
+        const double part = clamp(greater(near, 0.9 * fell * fell), LEAST_INEXACT, MOST_INEXACT);
+        find_gap(s, s->here, s->step);
+        status = solve_in_space(s, (struct equation){s, s->here, shift, 1}, part, s->step, &done);
     }
-    status = status || done ? status : tribo_period_map_matrix(&s->map, &s->here, &derivative);
+    status = status || done ? status : tribo_period_map_matrix(&s->map, s->here, &derivative);
     if (status || done) {
         return status;
     }
+    find_gap(s, s->here, s->step);
     set_matrix(s, derivative, shift);
     if (tribo_lu_create(s->a, n, s->pivot) > SINGULAR) {
         tribo_lu_solve(s->a, n, s->pivot, s->step, 1);
@@ -255,35 +217,28 @@ static int newton_step(struct shooting *s, double shift)
 /* Sets s->there from there.x = here.x + part step, s->ratio and s->nearest. Returns a status. */
 static int try_step(struct shooting *s, double part)
 {
-    memcpy(s->there.x, s->here.x, s->map.n * sizeof *s->there.x);
-    tribo_add(s->there.x, part, s->step, s->map.n);
-    const int status = tribo_period_map_follow(&s->map, &s->there);
+    memcpy(s->there->x, s->here->x, s->map.n * sizeof *s->there->x);
+    tribo_add(s->there->x, part, s->step, s->map.n);
+    const int status = tribo_period_map_follow(&s->map, s->there);
     if (!status) {
-        s->ratio = left_along(s, &s->there) / left_along(s, &s->here);
-        s->nearest = lesser(s->nearest, s->there.residual / s->there.size);
+        s->ratio = left_along(s, s->there) / left_along(s, s->here);
+        s->nearest = lesser(s->nearest, s->there->residual / s->there->size);
     }
     return status;
 }
 
-/* Sets s->there from there.x = here.x + stride (image - x), stride = 1, 4, 16, ... spans, where no step changes the residual, as
- * on a slow belt that carries a body for many periods. Returns a status. */
-static int stride(struct shooting *s)
-{
-    const size_t n = s->map.n;
-    memcpy(s->step, s->here.image, n * sizeof *s->step);
-    tribo_add(s->step, -1.0, s->here.x, n);
-    s->stride = s->stride > 0.0 ? lesser(4.0 * s->stride, LONGEST) : 1.0;
-    return try_step(s, s->stride);
-}
-
+/* Takes Newton's step; or, where no step changes the residual, as on a slow belt that carries a body for many periods, extrapolates
+ * 1, 4, 16, ... spans. Returns a status. */
 static int newton(struct shooting *s)
 {
     const int to_double = s->rate > DOUBLE_FROM && s->rate < DOUBLE_TO;
     const int status = newton_step(s, 0.0);
     s->map.drv->newton++;
-    s->before = s->here.residual;
-    if (!status && shooting_length(s->step, s->map.n) < FLAT * s->here.residual) {
-        return stride(s);
+    s->before = s->here->residual;
+    if (!status && tribo_energy_length(s->step, s->map.n) < FLAT * s->here->residual) {
+        find_gap(s, s->here, s->step);
+        s->stride = s->stride > 0.0 ? lesser(4.0 * s->stride, LONGEST) : 1.0;
+        return try_step(s, s->stride);
     }
     s->stride = 0.0;
     return status ? status : try_step(s, to_double ? BEYOND / (1.0 - sqrt(s->rate)) : 1.0);
@@ -292,15 +247,15 @@ static int newton(struct shooting *s)
 /* Tries shorter steps, part in (low, high); ratio = s->first at part 1. shifted = 1: steps by a shifted matrix. */
 static int shorten(struct shooting *s, int shifted)
 {
-    const double whole = shooting_length(s->step, s->map.n);
+    const double whole = tribo_energy_length(s->step, s->map.n);
     double low = 0.0, high = 1.0, at_low = 1.0, at_high = s->first;
     int status = TRIBO_OK;
-    for (int k = 0; !status && k < MOST_TRIALS; k++) {
+    for (int k = 0; !status && whole > 0.0 && k < MOST_TRIALS; k++) {
         const double secant = low + (high - low) * at_low / (at_low - at_high), least = low > 0.0 ? sqrt(low * high) : 0.1 * high;
         const double part = at_high < 0.0 ? lesser(greater(secant, least), 0.9 * high) : 0.5 * high;
-        status = shifted ? newton_step(s, s->here.residual / (part * whole)) : TRIBO_OK;
+        status = shifted ? newton_step(s, s->here->residual / (part * whole)) : TRIBO_OK;
         status = status ? status : try_step(s, shifted ? 1.0 : part);
-        if (status || s->there.residual < PAYS * s->here.residual || fabs(s->ratio) < LEFT) {
+        if (status || s->there->residual < PAYS * s->here->residual || fabs(s->ratio) < LEFT) {
             return status;
         }
         *(s->ratio > 0.0 ? &low : &high) = part;
@@ -314,32 +269,25 @@ static int shorten(struct shooting *s, int shifted)
 /* Accepts or rejects s->there after a step. Returns a status. */
 static int proceed(struct shooting *s)
 {
-    s->rate = 0.0;
-    if (s->there.residual < PAYS * s->best.residual) {
-        shooting_settle(s);
-        s->rate = s->stride > 0.0 ? 0.0 : s->ratio;
-        return TRIBO_OK;
-    }
-    if (s->stride > 0.0 && s->ratio > 0.0) {
+    const int pays = s->there->residual < PAYS * s->best->residual;
+    s->rate = pays && s->stride == 0.0 ? s->ratio : 0.0;
+    if (pays || (s->stride > 0.0 && s->ratio > 0.0)) {
         shooting_settle(s);
         return TRIBO_OK;
     }
     s->first = s->astray ? s->first : s->ratio;
     if (s->astray < MOST_ASTRAY && s->ratio > -TOO_FAR) {
         s->astray++;
-        shooting_exchange(s);
+        go_to(s, s->there);
         return TRIBO_OK;
     }
     const int shifted = s->setbacks++ % 2 == 0;
-    copy_point(s, &s->here, &s->best);
+    go_to(s, s->best);
     int status = newton_step(s, 0.0);
-    if (!status && shooting_length(s->step, s->map.n) > 0.0) {
-        status = shorten(s, shifted);
-    }
-    if (!status && shifted && !(s->there.residual < PAYS * s->best.residual)) {
-        /* there = the image of here */
-        memcpy(s->there.x, s->here.image, s->map.n * sizeof *s->there.x);
-        status = tribo_period_map_follow(&s->map, &s->there);
+    status = status ? status : shorten(s, shifted);
+    if (!status && shifted && !(s->there->residual < PAYS * s->best->residual)) {
+        memcpy(s->there->x, s->here->image, s->map.n * sizeof *s->there->x);
+        status = tribo_period_map_follow(&s->map, s->there);
     }
     if (!status) {
         shooting_settle(s);
@@ -351,17 +299,17 @@ static int proceed(struct shooting *s)
 static int search(struct shooting *s, size_t halves)
 {
     const size_t most = s->map.halves + halves;
-    int status = tribo_period_map_follow(&s->map, &s->here);
+    int status = tribo_period_map_follow(&s->map, s->here);
     if (status) {
         return status;
     }
-    copy_point(s, &s->best, &s->here);
+    s->best = s->here;
     s->astray = s->setbacks = 0;
     s->rate = s->stride = s->before = 0.0;
-    s->nearest = s->here.residual / s->here.size;
-    while (!status && !close_enough(&s->best, AIM) && s->map.halves < most) {
+    s->nearest = s->here->residual / s->here->size;
+    while (!status && !close_enough(s->best, AIM) && s->map.halves < most) {
         status = newton(s);
-        if (!status && close_enough(&s->best, TOLERANCE) && !(s->there.residual < PAYS * s->best.residual)) {
+        if (!status && close_enough(s->best, TOLERANCE) && !(s->there->residual < PAYS * s->best->residual)) {
             break; /* limit of rounding */
         }
         status = status ? status : proceed(s);
@@ -369,58 +317,44 @@ static int search(struct shooting *s, size_t halves)
     return status;
 }
 
-/* Searches from the state `periods` periods after the guess: where contacts hardly slip, or static limits make motions diverge,
- * Newton's steps may fail. Returns a status. */
-static int search_again(struct shooting *s, size_t periods)
-{
-    memcpy(s->here.x, s->guess, s->map.n * sizeof *s->guess);
-    const int status = tribo_period_map_march(&s->map, periods, s->here.x);
-    return status ? status : search(s, MOST);
-}
-
 /* Searches from the forecast, unless the guess is near it. *done = 0: not found, also after a failed integration. */
 static int search_from_forecast(struct shooting *s, int *done)
 {
     const size_t n = s->map.n;
-    const int may = s->map.odd && !s->map.events->stick_slip.breakaway.some && s->map.scale == 1.0;
-    int status = may ? tribo_forecast(&s->map, s->here.x, done) : TRIBO_OK;
-    if (!status && *done) {
-        memcpy(s->step, s->guess, n * sizeof *s->step);
-        tribo_add(s->step, -1.0, s->here.x, n);
-        *done = shooting_length(s->step, n) > FAR * shooting_length(s->here.x, n);
-    }
-    if (!status && *done) {
+    const int may = s->map.odd && !s->map.events->stick_slip.breakaway.some && s->map.norm.scale == 1.0;
+    int status = may ? tribo_forecast(&s->map, s->here->x, done) : TRIBO_OK;
+    if (!status && *done && tribo_energy_distance(s->guess, s->here->x, n) > FAR * tribo_energy_length(s->here->x, n)) {
         status = search(s, FIRST);
-        *done = !status && close_enough(&s->best, TOLERANCE);
-        status = status == TRIBO_ERR_MEMORY ? status : TRIBO_OK;
+        *done = !status && close_enough(s->best, TOLERANCE);
+        return status == TRIBO_ERR_MEMORY ? status : TRIBO_OK;
     }
+    *done = 0;
     return status;
 }
 
+/* Searches from the forecast; then from the guess, and from the state some periods after it: where contacts hardly slip, or static
+ * limits make motions diverge, Newton's steps may fail. With static limits a stable motion may be not odd, although all drives are
+ * odd. Returns a status. */
 static int search_all(struct shooting *s)
 {
+    static const struct {
+        size_t marched, halves;
+        int odd, only_static;
+    } start[] = {
+        {0, FIRST, 1, 0}, {MARCHED, MOST, 1, 0}, {MARCHED_STATIC, MOST, 1, 1}, {0, FIRST, 0, 1}, {MARCHED_STATIC, MOST, 0, 1}};
+    const int was_odd = s->map.odd;
     int done = 0, status = search_from_forecast(s, &done);
-    if (status || done) {
-        return status;
-    }
-    memcpy(s->here.x, s->guess, s->map.n * sizeof *s->guess);
-    status = search(s, FIRST);
-    if (!status && !close_enough(&s->best, TOLERANCE)) {
-        status = search_again(s, MARCHED);
-    }
-    if (!status && !close_enough(&s->best, TOLERANCE) && s->map.events->stick_slip.breakaway.some) {
-        status = search_again(s, MARCHED_STATIC);
-    }
-    /* With static limits a stable motion may be not odd, although all drives are odd. */
-    if (!status && !close_enough(&s->best, TOLERANCE) && s->map.odd && s->map.events->stick_slip.breakaway.some) {
-        tribo_period_map_choose(&s->map, 0);
-        memcpy(s->here.x, s->guess, s->map.n * sizeof *s->guess);
-        status = search(s, FIRST);
-        if (!status && !close_enough(&s->best, TOLERANCE)) {
-            status = search_again(s, MARCHED_STATIC);
+    for (size_t k = 0; k < sizeof start / sizeof *start && !status && !done; k++) {
+        if ((start[k].only_static && !s->map.events->stick_slip.breakaway.some) || (!start[k].odd && !was_odd)) {
+            continue;
         }
+        tribo_period_map_choose(&s->map, was_odd && start[k].odd);
+        memcpy(s->here->x, s->guess, s->map.n * sizeof *s->guess);
+        status = start[k].marched ? tribo_period_map_march(&s->map, start[k].marched, s->here->x) : TRIBO_OK;
+        status = status ? status : search(s, start[k].halves);
+        done = !status && close_enough(s->best, TOLERANCE);
     }
-    return status;
+    return status || done ? status : no_convergence(s, s->nearest);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- the family */
@@ -430,8 +364,8 @@ static int whole_derivative(struct shooting *s)
 {
     const size_t n = s->map.n;
     const double *d = NULL;
-    const int status = tribo_period_map_matrix(&s->map, &s->best, &d);
-    if (!status && s->best.odd) {
+    const int status = tribo_period_map_matrix(&s->map, s->best, &d);
+    if (!status && s->best->odd) {
         memset(s->b, 0, n * n * sizeof *s->b);
         tribo_multiply_add(n, n, n, 1.0, d, d, s->b);
     } else if (!status) {
@@ -472,13 +406,14 @@ static int stay_in_family(struct shooting *s, double *move)
     const size_t n = s->map.n;
     int status = TRIBO_OK, done = 0;
     if (is_matrix_free(s)) {
-        if (tribo_energy_norm_is_damped(&s->map.norm) && !tribo_derivative_rests(s->best.derivative)) {
+        if (tribo_energy_norm_is_damped(&s->map.norm) && !tribo_derivative_rests(&s->best->derivative)) {
             memset(move, 0, n * sizeof *move);
             return TRIBO_OK;
         }
         memcpy(s->step, move, n * sizeof *move);
-        status = apply_equation(&(struct equation){s, &s->best, 0.0, 2, 0}, s->step);
-        status = status ? status : solve_in_space(s, &s->best, 0.0, 2, AIM, s->step, &done);
+        struct equation e = {s, s->best, 0.0, 2};
+        status = apply_equation(&e, s->step);
+        status = status ? status : solve_in_space(s, e, AIM, s->step, &done);
     }
     if (!status && done) {
         tribo_add(move, -1.0, s->step, n);
@@ -490,18 +425,18 @@ static int stay_in_family(struct shooting *s, double *move)
 static int approach_guess(struct shooting *s)
 {
     const size_t n = s->map.n;
-    const int any = s->map.odd && shooting_length(s->guess, n) > 0.0;
-    tribo_add(s->guess, -1.0, s->best.x, n);
-    int status = any && shooting_length(s->guess, n) >= MEANT * s->best.size ? stay_in_family(s, s->guess) : TRIBO_OK;
-    if (status || !any || shooting_length(s->guess, n) < MEANT * s->best.size) {
+    const int any = s->map.odd && tribo_energy_length(s->guess, n) > 0.0;
+    tribo_add(s->guess, -1.0, s->best->x, n);
+    int status = any && tribo_energy_length(s->guess, n) >= MEANT * s->best->size ? stay_in_family(s, s->guess) : TRIBO_OK;
+    if (status || !any || tribo_energy_length(s->guess, n) < MEANT * s->best->size) {
         return status;
     }
     tribo_period_map_choose(&s->map, 0);
-    memcpy(s->here.x, s->best.x, n * sizeof *s->here.x);
-    tribo_add(s->here.x, 1.0, s->guess, n);
-    status = tribo_period_map_follow(&s->map, &s->here);
-    if (!status && close_enough(&s->here, TOLERANCE)) {
-        copy_point(s, &s->best, &s->here);
+    memcpy(s->there->x, s->best->x, n * sizeof *s->best->x);
+    tribo_add(s->there->x, 1.0, s->guess, n);
+    status = tribo_period_map_follow(&s->map, s->there);
+    if (!status && close_enough(s->there, TOLERANCE)) {
+        shooting_settle(s);
     } else {
         tribo_period_map_choose(&s->map, 1);
     }
@@ -556,58 +491,33 @@ int tribo_shooting_multipliers(struct shooting *s, double *re, double *im)
 
 /* -------------------------------------------------------------------------------------------------------------- the whole */
 
-static int no_convergence(const struct shooting *s, double residual)
-{
-    return tribo_driver_fail(
-        s->map.drv, TRIBO_ERR_NO_CONVERGENCE,
-        "no motion of period %.17g was found in %g periods: the nearest misses its beginning by %.3g of its size", s->map.period,
-        0.5 * (double)s->map.halves, residual);
-}
-
-static int shooting_find(struct shooting *s, double *y)
-{
-    double residual = 0.0;
-    tribo_period_map_coordinates(&s->map, y, s->here.x);
-    memcpy(s->guess, s->here.x, s->map.n * sizeof *s->guess);
-    int status = search_all(s);
-    if (!status && !close_enough(&s->best, TOLERANCE)) {
-        return no_convergence(s, s->nearest);
-    }
-    status = status ? status : approach_guess(s);
-    status = status ? status : tribo_period_map_complete(&s->map, &s->best, &residual);
-    if (!status && !comes_back(residual, s->best.size, TOLERANCE)) {
-        return no_convergence(s, residual / s->best.size);
-    }
-    if (!status) {
-        memcpy(y, s->best.y, s->map.n * sizeof *y);
-        y[s->map.n] = 0.0;
-        s->found = 1;
-        s->revision = tribo_system_revision(s->map.sys);
-    }
-    return status;
-}
-
 int tribo_shooting_find(struct shooting *s, double t, double period, double *y)
 {
-    tribo_driver *drv = s->map.drv;
+    const size_t n = s->map.n;
+    double residual = 0.0;
     s->found = 0;
     s->freedom = UNKNOWN;
     int status = tribo_period_map_prepare(&s->map, t, period, y);
-    status = status ? status : shooting_find(s, y);
-    drv->periods += (s->map.halves + 1) / 2;
+    if (!status) {
+        tribo_energy_norm_of(&s->map.norm, 1, y, s->guess);
+        status = search_all(s);
+    }
+    status = status ? status : approach_guess(s);
+    status = status ? status : tribo_period_map_complete(&s->map, s->best, &residual);
+    if (!status && !comes_back(residual, s->best->size, TOLERANCE)) {
+        status = no_convergence(s, residual / s->best->size);
+    }
+    if (!status) {
+        memcpy(y, s->best->y, n * sizeof *y);
+        y[n] = 0.0;
+        s->found = 1;
+        s->revision = tribo_system_revision(s->map.sys);
+    }
+    s->map.drv->periods += (s->map.halves + 1) / 2;
     return status;
 }
 
 /* -------------------------------------------------------------------------------------------------------------- life */
-
-static double *place_point(struct point *p, size_t n, double *at)
-{
-    p->y = at;
-    p->x = at + n;
-    p->end = at + 2 * n;
-    p->image = at + 3 * n;
-    return at + 4 * n;
-}
 
 struct shooting *tribo_shooting_create(tribo_driver *drv)
 {
@@ -616,29 +526,33 @@ struct shooting *tribo_shooting_create(tribo_driver *drv)
     if (!s) {
         return NULL;
     }
-    s->memory = malloc((2 * n * n + 16 * n + tribo_gmres_room(n, n) + 1) * sizeof *s->memory);
+    s->a = malloc((2 * n * n + 14 * n + tribo_gmres_room(n, n) + 1) * sizeof *s->a);
     s->pivot = malloc((n + 1) * sizeof *s->pivot);
-    if (!tribo_period_map_create(&s->map, drv) || !s->memory || !s->pivot) {
+    if (!tribo_period_map_create(&s->map, drv) || !s->a || !s->pivot) {
         tribo_shooting_free(s);
         return NULL;
     }
-    s->step = place_point(&s->best, n, place_point(&s->there, n, place_point(&s->here, n, s->memory)));
-    s->guess = s->step + n;
-    s->free = s->guess + n;
-    s->a = s->free + 2 * n;
     s->b = s->a + n * n;
-    s->space = s->b + n * n;
+    s->step = s->b + n * n;
+    s->guess = s->step + n;
+    s->space = s->guess + n;
+    double *next = s->space + tribo_gmres_room(n, n);
+    for (size_t k = 0; k < 3; k++, next += 4 * n) {
+        s->point[k] = (struct point){.y = next, .x = next + n, .end = next + 2 * n, .image = next + 3 * n};
+    }
+    s->best = s->point;
+    go_to(s, s->best);
     return s;
 }
 
 void tribo_shooting_free(struct shooting *s)
 {
     if (s) {
-        tribo_derivative_free(s->here.derivative);
-        tribo_derivative_free(s->there.derivative);
-        tribo_derivative_free(s->best.derivative);
+        for (size_t k = 0; k < 3; k++) {
+            tribo_derivative_free(&s->point[k].derivative);
+        }
         tribo_period_map_free(&s->map);
-        free(s->memory);
+        free(s->a);
         free(s->pivot);
         free(s);
     }

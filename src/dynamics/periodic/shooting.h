@@ -6,20 +6,19 @@
 
 struct shooting {
     struct period_map map;
-    struct point here, there, best; /* current point; end of the step; point to go back to */
-    double *memory;
-    double *a, *b;        /* [n][n] workspace */
-    double *space;        /* workspace of tribo_gmres */
-    double *free;         /* [ndof][2][2] inverse of (1 + shift) I - derivative of each free mode */
-    double *step, *guess; /* [n] */
-    int *pivot;           /* [n] */
-    double ratio;         /* left_along(there)/left_along(here) of the step */
-    double first, rate;   /* first: ratio of the step from best; rate: ratio of the last step if it was good, else 0 */
-    double stride;        /* spans extrapolated at once; 0: Newton's steps */
-    double before;        /* residual before the last step; 0: no step yet */
-    size_t astray;        /* unsuccessful steps since best */
-    size_t setbacks;      /* number of returns to best */
-    double nearest;       /* least residual/size so far */
+    struct point point[3];
+    struct point *here, *there, *best; /* current point; end of the step, neither here nor best; point to go back to */
+    double *a, *b;                     /* [n][n] workspace; a owns the memory of all arrays */
+    double *space;                     /* workspace of tribo_gmres */
+    double *step, *guess;              /* [n] */
+    int *pivot;                        /* [n] */
+    double ratio;                      /* left_along(there)/left_along(here) of the step */
+    double first, rate; /* first: ratio of the step from best; rate: ratio of the last step if it was good, else 0 */
+    double stride;      /* spans extrapolated at once; 0: Newton's steps */
+    double before;      /* residual before the last step; 0: no step yet */
+    size_t astray;      /* unsuccessful steps since best */
+    size_t setbacks;    /* number of returns to best */
+    double nearest;     /* least residual/size so far */
     int found;
     size_t freedom;  /* dimension of the family of the motion found; UNKNOWN until computed */
     size_t revision; /* of the system when the motion was found */

@@ -52,8 +52,8 @@ static void compare(struct shooting *s, struct random *r)
     for (size_t i = 0; i < STATES; i++) {
         x[i] = applied[i] = uniform(r, -1.0, 1.0);
     }
-    assert_ok(tribo_period_map_apply(&s->map, &s->best, applied));
-    assert_ok(tribo_period_map_matrix(&s->map, &s->best, &matrix));
+    assert_ok(tribo_period_map_apply(&s->map, s->best, applied));
+    assert_ok(tribo_period_map_matrix(&s->map, s->best, &matrix));
     for (size_t i = 0; i < STATES; i++) {
         double sum = 0.0;
         for (size_t k = 0; k < STATES; k++) {
@@ -68,13 +68,13 @@ static void compare_trace(tribo_driver *drv, struct shooting *s)
     double re[STATES], im[STATES], sum = 0.0, trace = 0.0;
     const double *d = NULL;
     assert_ok(tribo_driver_get_multipliers(drv, re, im));
-    assert_ok(tribo_period_map_matrix(&s->map, &s->best, &d));
+    assert_ok(tribo_period_map_matrix(&s->map, s->best, &d));
     for (size_t i = 0; i < STATES; i++) {
         sum += re[i];
-        for (size_t k = 0; s->best.odd && k < STATES; k++) {
+        for (size_t k = 0; s->best->odd && k < STATES; k++) {
             trace += d[i * STATES + k] * d[k * STATES + i];
         }
-        trace += s->best.odd ? 0.0 : d[i * STATES + i];
+        trace += s->best->odd ? 0.0 : d[i * STATES + i];
     }
     assert_close(sum, trace, 1e-9);
 }
@@ -108,8 +108,8 @@ TEST(many_modes)
         assert_ok(tribo_set_limit_all(tribo_system_context(sys), k == LOADS - 1 ? 1e3 : 0.02 * pow(0.5, k)));
         const int status = tribo_driver_find_periodic(drv, 0.0, 2.0 * PI / omega, y);
         require(!status, "load %d: %s", k, status ? tribo_driver_message(drv) : "");
-        ck_assert_ptr_null(drv->shooting->here.derivative->matrix);
-        ck_assert_ptr_null(drv->shooting->best.derivative->matrix);
+        ck_assert_ptr_null(drv->shooting->here->derivative.matrix);
+        ck_assert_ptr_null(drv->shooting->best->derivative.matrix);
         assert_ok(tribo_driver_get_freedom(drv, &freedom));
         ck_assert_uint_eq(freedom, count_resting(drv));
         compare(drv->shooting, &r);
