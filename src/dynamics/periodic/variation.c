@@ -49,12 +49,11 @@ static int find_holding_forces(struct variation *x)
     return status ? tribo_system_fail(x->sys, status, "%s", tribo_message(x->events->stick_slip.constant.hold)) : TRIBO_OK;
 }
 
-/* Sets x->f = f' of holding contacts, and x->limit and x->limit_rate, at the state y. Returns a status. */
+/* Sets x->f = f' of holding contacts at the state y; forces of other contacts follow their limits. Returns a status. */
 static int find_force_rates(struct variation *x, const double *y)
 {
     tribo_system *sys = x->sys;
     double *rate = x->change;
-    tribo_system_limits(sys, x->limit, x->limit_rate);
     for (size_t i = 0; i < sys->ncontact; i++) {
         x->f[i] = x->limit_rate[i] * tribo_stick_slip_follows(&x->events->stick_slip, i);
     }
@@ -86,22 +85,30 @@ static int find_force_row(struct variation *x, size_t i, double *row)
     return status;
 }
 
-/* Lists the crossings of static limits, if that of the guard that ended the phase drops at once. Forces that do not rise only
- * touch their limits. Returns a status. */
+/* Lists the crossings of static limits that drop at once, at the state y: by the guard that ended the phase, and of other contacts
+ * at the same time. Forces that do not rise only touch their limits. Returns a status. */
 static int find_breakaways(struct variation *x, const double *y)
 {
     const struct stick_slip *m = &x->events->stick_slip;
     const struct guard *met = x->events->met;
-    if (!met || met->kind != HOLDS || m->breakaway.falls || !m->state.holds[met->contact] ||
-        !tribo_breakaway_is_sudden(&m->breakaway, met->contact)) {
+    size_t count = 0;
+    if (!m->breakaway.some || m->breakaway.falls) {
         return TRIBO_OK;
     }
-    int status = find_force_rates(x, y);
+    tribo_system_limits(x->sys, x->limit, x->limit_rate);
     for (size_t i = 0; i < x->sys->ncontact; i++) {
-        const double side = x->force[i] > 0.0 ? 1.0 : -1.0, ratio = tribo_breakaway_ratio(&m->breakaway, i);
-        const double slope = x->f[i] - side * ratio * x->limit_rate[i];
-        const int meets = i == met->contact || fabs(x->force[i]) >= (1.0 - TOGETHER) * ratio * x->limit[i];
-        if (m->state.holds[i] && tribo_breakaway_is_sudden(&m->breakaway, i) && meets && side * slope > 0.0) {
+        const double most = tribo_breakaway_ratio(&m->breakaway, i) * x->limit[i];
+        const int meets = (met && met->kind == HOLDS && met->contact == i) || fabs(x->force[i]) >= (1.0 - TOGETHER) * most;
+        if (meets && m->state.holds[i] && tribo_breakaway_is_sudden(&m->breakaway, i)) {
+            x->contact[count++] = i;
+        }
+    }
+    int status = count ? find_force_rates(x, y) : TRIBO_OK;
+    for (size_t k = 0; k < count; k++) {
+        const size_t i = x->contact[k];
+        const double side = x->force[i] > 0.0 ? 1.0 : -1.0;
+        const double slope = x->f[i] - side * tribo_breakaway_ratio(&m->breakaway, i) * x->limit_rate[i];
+        if (side * slope > 0.0) {
             x->slope[x->count] = slope;
             x->contact[x->count++] = i;
         }
