@@ -24,17 +24,19 @@
 #define SAME 1e-5
 #define SAME_SHIFT 1e-3
 
-/* A static response is new if its part orthogonal to the other responses is more than OWN times the response beside the modes,
- * and more than ROUNDING times the whole response, the rounding of the parts removed. */
+/* A force at a contact acts on the modes only, if the rest without their part is at most TAKEN times the force. A response of the
+ * other motions is a new attachment mode if its part orthogonal to the other ones is more than OWN times the response. */
+#define TAKEN 1e-12
 #define OWN 1e-7
-#define ROUNDING (16.0 * DBL_EPSILON)
+
+/* There is no bound of the truncation if left-out modes may have omega^2 <= ABOVE shift: static responses are inexact for these. */
+#define ABOVE 10.0
 
 /* Part of the diagonal added to a flexibility that is singular because displacements of contacts depend on each other. */
 #define RIDGE 1e-12
 
-/* BATCH: responses of contacts solved at a time. CHECKED: modes checked at a time. */
-#define BATCH 16
-#define CHECKED 6
+/* Number of responses of contacts, or of modes to be checked, that are solved at a time. */
+enum { BATCH = 16 };
 
 /* K + shift M and its factor. */
 struct shifted {
@@ -132,32 +134,27 @@ static int factorize_shifted(const struct model *m, struct shifted *s)
     return factor_failed(m, status, "stiffness", where);
 }
 
-/* Returns TRIBO_ERR_INDEFINITE, and *where = i, if |M_ij| > sqrt(M_ii M_jj) for an entry; else TRIBO_OK. */
-static int check_minors(const struct matrix *mass, size_t *where)
+/* Returns TRIBO_ERR_INDEFINITE, and the row *where, if M is not semidefinite. For large M only minors of two rows are checked,
+ * |M_ij| <= sqrt(M_ii M_jj): with a positive definite K the low modes are right whatever M does to the high ones. */
+static int check_mass(const struct model *m, size_t *where)
 {
+    const struct matrix *mass = &m->mass;
+    struct cholesky c;
     for (size_t i = 0; i < mass->rows; i++) {
         const double own = tribo_matrix_get(mass, i, i);
-        *where = i;
         for (size_t k = mass->first[i]; k < mass->first[i + 1]; k++) {
             const double other = tribo_matrix_get(mass, mass->col[k], mass->col[k]);
             if (own < 0.0 || fabs(mass->val[k]) > (1.0 + 1e-9) * sqrt(own) * sqrt(fabs(other))) {
+                *where = i;
                 return TRIBO_ERR_INDEFINITE;
             }
         }
     }
-    return TRIBO_OK;
-}
-
-/* Returns TRIBO_ERR_INDEFINITE, and the row *where, if M is not semidefinite. For large M only minors of two rows are checked:
- * with a positive definite K the low modes are right whatever M does to the high ones. */
-static int check_mass(const struct model *m, size_t *where)
-{
-    struct cholesky c;
-    int status = check_minors(&m->mass, where);
-    if (!status && m->ndof <= DENSE_MOST && !tribo_matrix_is_diagonal(&m->mass)) {
-        status = factorize_sum(m, SLIGHT / mean_square_frequency(m), 1.0, &c, where);
-        tribo_cholesky_free(&c);
+    if (m->ndof > DENSE_MOST || tribo_matrix_is_diagonal(mass)) {
+        return TRIBO_OK;
     }
+    const int status = factorize_sum(m, SLIGHT / mean_square_frequency(m), 1.0, &c, where);
+    tribo_cholesky_free(&c);
     return status;
 }
 
@@ -194,40 +191,6 @@ static int find_among(const struct model *m, size_t count, const double *x, size
     return modes_failed(m, status, &doubt);
 }
 
-static int find_densely(const struct model *m, const struct cholesky *mass, struct reduced *r)
-{
-    const struct matrix whole = {0};
-    struct doubt doubt = {0};
-    const int status = tribo_normal_modes(&m->stiffness, m->terms, &whole, mass, m->nmode, r->omega2, r->phi, &doubt);
-    r->count = m->nmode;
-    r->truncation.above = m->nmode < m->ndof ? r->omega2[m->nmode - 1] : HUGE_VAL;
-    return modes_failed(m, status, &doubt);
-}
-
-/* Sets change [count] = norms in M of (omega^2 + shift) (K + shift M)^-1 M phi - phi, for modes first .. first + count - 1. work
- * [2 count][ndof]. Returns 0 if out of memory. */
-static int find_residuals(const struct model *m, const struct shifted *s, const struct reduced *r, size_t first, size_t count,
-                          double *work, double *change)
-{
-    const size_t n = m->ndof;
-    const double *phi = r->phi + first * n;
-    double *mass = work + count * n;
-    tribo_matrix_multiply_all(&m->mass, count, phi, work);
-    if (!tribo_cholesky_solve(&s->factor, count, work)) {
-        return 0;
-    }
-    for (size_t k = 0; k < count; k++) {
-        for (size_t i = 0; i < n; i++) {
-            work[k * n + i] = (r->omega2[first + k] + s->shift) * work[k * n + i] - phi[k * n + i];
-        }
-    }
-    tribo_matrix_multiply_all(&m->mass, count, work, mass);
-    for (size_t k = 0; k < count; k++) {
-        change[k] = sqrt(fabs(tribo_dot(work + k * n, mass + k * n, n)));
-    }
-    return 1;
-}
-
 /* Checks that rounding moves no mode across low->above, where modes were counted. work [ndof]. Returns a status. */
 static int check_gap(const struct model *m, const struct low_modes *low, const struct reduced *r, double *work)
 {
@@ -243,32 +206,31 @@ static int check_gap(const struct model *m, const struct low_modes *low, const s
     return TRIBO_OK;
 }
 
-/* Checks that each mode is an eigenvector, by SAME and SAME_SHIFT. work [2 CHECKED][ndof]. Returns a status. */
+/* Checks that each mode is an eigenvector, by SAME and SAME_SHIFT: with the norms in M of (omega^2 + shift) (K + shift M)^-1 M phi -
+ * phi. work [2 BATCH][ndof]. Returns a status. */
 static int check_residuals(const struct model *m, const struct shifted *s, const struct reduced *r, double *work)
 {
-    for (size_t first = 0; first < r->count; first += CHECKED) {
-        const size_t count = r->count - first < CHECKED ? r->count - first : CHECKED;
-        double change[CHECKED];
-        if (!find_residuals(m, s, r, first, count, work, change)) {
+    const size_t n = m->ndof;
+    for (size_t first = 0; first < r->count; first += BATCH) {
+        const size_t count = r->count - first < BATCH ? r->count - first : BATCH;
+        const double *phi = r->phi + first * n, *omega2 = r->omega2 + first;
+        double *mass = work + count * n;
+        tribo_matrix_multiply_all(&m->mass, count, phi, work);
+        if (!tribo_cholesky_solve(&s->factor, count, work)) {
             return TRIBO_ERR_MEMORY;
         }
+        for (size_t i = 0; i < count * n; i++) {
+            work[i] = (omega2[i / n] + s->shift) * work[i] - phi[i];
+        }
+        tribo_matrix_multiply_all(&m->mass, count, work, mass);
         for (size_t k = 0; k < count; k++) {
-            const double omega2 = r->omega2[first + k];
-            if (!(change[k] * (omega2 + s->shift) <= SAME * omega2 + SAME_SHIFT * s->shift)) {
+            const double change = sqrt(fabs(tribo_dot(work + k * n, mass + k * n, n)));
+            if (!(change * (omega2[k] + s->shift) <= SAME * omega2[k] + SAME_SHIFT * s->shift)) {
                 return TRIBO_ERR_NO_CONVERGENCE;
             }
         }
     }
     return TRIBO_OK;
-}
-
-static int check_modes(const struct model *m, const struct shifted *s, const struct low_modes *low, const struct reduced *r)
-{
-    double *work = malloc(2 * CHECKED * m->ndof * sizeof *work);
-    int status = work ? check_gap(m, low, r, work) : TRIBO_ERR_MEMORY;
-    status = status ? status : check_residuals(m, s, r, work);
-    free(work);
-    return search_failed(m, status, low);
 }
 
 static int find_sparsely(const struct model *m, const struct shifted *s, struct reduced *r)
@@ -278,16 +240,55 @@ static int find_sparsely(const struct model *m, const struct shifted *s, struct 
     status = status ? status : find_among(m, low.count, low.phi, m->nmode, r);
     free(low.phi);
     r->truncation.above = low.below == m->nmode ? low.above : r->omega2[m->nmode - 1];
-    return status ? status : check_modes(m, s, &low, r);
+    if (status) {
+        return status;
+    }
+    double *work = malloc(2 * BATCH * m->ndof * sizeof *work);
+    status = work ? check_gap(m, &low, r, work) : TRIBO_ERR_MEMORY;
+    status = status ? status : check_residuals(m, s, r, work);
+    free(work);
+    return search_failed(m, status, &low);
 }
 
-/* --------------------------------------------------------------------------------------------------------------- contacts */
+static int find_densely(const struct model *m, struct reduced *r)
+{
+    const struct matrix whole = {0};
+    struct cholesky mass;
+    struct doubt doubt = {0};
+    int status = m->ndof > DENSE_MOST ? tribo_model_too_large(m) : tribo_model_factorize(m, &mass);
+    if (status) {
+        return status;
+    }
+    status = tribo_normal_modes(&m->stiffness, m->terms, &whole, &mass, m->nmode, r->omega2, r->phi, &doubt);
+    tribo_cholesky_free(&mass);
+    r->count = m->nmode;
+    r->truncation.above = m->nmode < m->ndof ? r->omega2[m->nmode - 1] : HUGE_VAL;
+    return modes_failed(m, status, &doubt);
+}
+
+/* Finds the lowest modes: by Lanczos' method for large structures with few modes, and for singular mass. Returns a status. */
+static int find_lowest(const struct model *m, struct shifted *s, struct reduced *r)
+{
+    const int large = m->ndof > DENSE_MOST || (m->ndof >= SPARSE_LEAST && 4 * m->nmode <= m->ndof);
+    size_t where = 0;
+    if (!large || !tribo_sparse_available()) {
+        const int status = find_densely(m, r);
+        if (status != TRIBO_ERR_INDEFINITE || !tribo_sparse_available() || check_mass(m, &where) == TRIBO_ERR_INDEFINITE) {
+            return status || r->omega2[0] < 0.0 ? status : factorize_shifted(m, s);
+        }
+    }
+    int status = check_mass(m, &where);
+    status = factor_failed(m, status, "mass", where);
+    status = status ? status : factorize_shifted(m, s);
+    return status ? status : find_sparsely(m, s, r);
+}
+
+/* ----------------------------------------------------------------------------------------------------------- attachment modes */
 
 /* Sets mx [ndof] = M x. Returns the norm of x in M. */
 static double low_modes_weigh(const struct model *m, const double *x, double *mx)
 {
-    memset(mx, 0, m->ndof * sizeof *mx);
-    tribo_matrix_multiply_add(&m->mass, 1.0, x, mx);
+    tribo_matrix_multiply(&m->mass, x, mx);
     const double square = tribo_dot(x, mx, m->ndof);
     return square > 0.0 ? sqrt(square) : 0.0;
 }
@@ -311,108 +312,103 @@ static int drifts(const struct model *m, const struct shifted *s, const double *
     return *omega2 < 0.5 * s->shift;
 }
 
-/* If x [ndof], orthogonal to the motions, is a drift with a small elastic part, removes the elastic part by inverse iteration.
- * mx [ndof]: workspace. Returns the norm of x in M. */
-static double purify(const struct model *m, const struct shifted *s, const struct reduced *r, double *x, double norm, double *mx)
+/* Appends the part of x [ndof], orthogonal to the modes and with norm `whole` in M, that is orthogonal to the other attachment
+ * modes, unless it is rounding. If that is a drift with a small elastic part, removes the elastic part by inverse iteration. mx
+ * [ndof]: workspace. */
+static void add_attachment(const struct model *m, const struct shifted *s, struct reduced *r, double *x, double whole, double *mx)
 {
-    double omega2, before = HUGE_VAL;
+    const size_t n = m->ndof;
+    double norm = low_modes_separate(m, r->count - m->nmode, r->phi + m->nmode * n, x, mx), omega2, before = HUGE_VAL;
+    if (!(norm > OWN * whole)) {
+        return;
+    }
     while (drifts(m, s, x, norm, &omega2) && omega2 < 0.25 * before) {
         low_modes_weigh(m, x, mx);
-        memset(x, 0, m->ndof * sizeof *x);
-        tribo_add(x, s->shift, mx, m->ndof);
+        memset(x, 0, n * sizeof *x);
+        tribo_add(x, s->shift, mx, n);
         tribo_cholesky_solve(&s->factor, 1, x);
         norm = low_modes_separate(m, r->count, r->phi, x, mx);
         before = omega2;
     }
-    return norm;
+    for (size_t k = 0; k < n; k++) {
+        r->phi[r->count * n + k] = x[k] / norm;
+    }
+    r->count++;
 }
 
-/* x [ndof]: response to a steady force at contact i. Removes its part in the modes, sets row i of missing [ncontact][ncontact] =
- * J x of the rest, and, with TRIBO_STATICS_MASS, appends the new part of the rest to the motions. */
-static void add_static(const struct model *m, const struct shifted *s, struct reduced *r, size_t i, double *x, double *mx,
-                       double *missing)
+/* x [ndof] = the force of contact i without the part that acts on the modes, M Phi Phi'x, removed twice. mx [ndof]: workspace. */
+static void set_force(const struct model *m, const struct reduced *r, size_t i, double *x, double *mx)
 {
-    const double whole = low_modes_weigh(m, x, mx), before = low_modes_separate(m, m->nmode, r->phi, x, mx);
-    for (size_t j = 0; j < m->ncontact; j++) {
-        missing[i * m->ncontact + j] = tribo_matrix_row_dot(&m->direction, j, x);
+    const struct matrix *j = &m->direction;
+    const size_t n = m->ndof;
+    memset(x, 0, n * sizeof *x);
+    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+        x[j->col[k]] = j->val[k];
     }
-    if (r->residual) {
-        memcpy(r->residual + i * m->ndof, x, m->ndof * sizeof *x);
-    }
-    double norm =
-        m->statics == TRIBO_STATICS_MASS ? low_modes_separate(m, r->count - m->nmode, r->phi + m->nmode * m->ndof, x, mx) : 0.0;
-    if (norm > greater(OWN * before, ROUNDING * whole)) {
-        norm = purify(m, s, r, x, norm, mx);
-        for (size_t k = 0; k < m->ndof; k++) {
-            r->phi[r->count * m->ndof + k] = x[k] / norm;
-        }
-        r->count++;
-    }
-}
-
-/* A force at a contact acts on the modes only, if the rest after deflate is at most this part of the force. */
-#define TAKEN 1e-12
-
-/* force [ndof] -= sum of M phi_k (phi_k'force) over the modes, twice; force = 0 if the rest is rounding. mx [ndof]: workspace. */
-static void deflate(const struct model *m, const struct reduced *r, double *force, double *mx)
-{
-    const double whole = tribo_dot(force, force, m->ndof);
+    const double whole = tribo_dot(x, x, n);
     for (int pass = 0; pass < 2; pass++) {
+        memset(mx, 0, n * sizeof *mx);
         for (size_t k = 0; k < m->nmode; k++) {
-            low_modes_weigh(m, r->phi + k * m->ndof, mx);
-            tribo_add(force, -tribo_dot(r->phi + k * m->ndof, force, m->ndof), mx, m->ndof);
+            tribo_add(mx, -tribo_dot(r->phi + k * n, x, n), r->phi + k * n, n);
         }
+        tribo_matrix_multiply_add(&m->mass, 1.0, mx, x);
     }
-    if (!(tribo_dot(force, force, m->ndof) > TAKEN * TAKEN * whole)) {
-        memset(force, 0, m->ndof * sizeof *force);
+    if (!(tribo_dot(x, x, n) > TAKEN * TAKEN * whole)) {
+        memset(x, 0, n * sizeof *x);
     }
 }
 
-/* Removes the effect of shift, except shift^2, from the responses x [count][ndof] of contacts first .. first + count - 1:
- * x += (K + shift M)^-1 shift M x. mx [ndof]: workspace. Returns 0 if out of memory. */
-static int unshift(const struct model *m, const struct shifted *s, struct reduced *r, size_t first, size_t count, double *x,
-                   double *mx)
+/* x [count][ndof] = the static responses, beside the modes, to forces at contacts first .. first + count - 1. A second solution
+ * removes the effect of shift except shift^2: x += (K + shift M)^-1 shift M x. before [count + 1][ndof]: workspace. Returns 0 if out
+ * of memory. */
+static int find_responses(const struct model *m, const struct shifted *s, const struct reduced *r, size_t first, size_t count,
+                          double *x, double *before)
 {
     const size_t n = m->ndof;
-    double *before = r->residual + first * n;
+    double *mx = before + count * n;
+    for (size_t i = 0; i < count; i++) {
+        set_force(m, r, first + i, x + i * n, mx);
+    }
+    if (!tribo_cholesky_solve(&s->factor, count, x)) {
+        return 0;
+    }
     for (size_t i = 0; i < count; i++) {
         low_modes_separate(m, m->nmode, r->phi, x + i * n, mx);
         memcpy(before + i * n, x + i * n, n * sizeof *x);
         memset(x + i * n, 0, n * sizeof *x);
-        tribo_matrix_multiply_add(&m->mass, s->shift, before + i * n, x + i * n);
+        tribo_add(x + i * n, s->shift, mx, n);
     }
     const int done = tribo_cholesky_solve(&s->factor, count, x);
     tribo_add(x, 1.0, before, count * n);
     return done;
 }
 
-static int add_statics(const struct model *m, const struct shifted *s, struct reduced *r, double *missing)
+/* Sets missing [ncontact][ncontact] = J x, x the static responses beside the modes, in rows; keeps these, or adds attachment modes.
+ * Returns a status. */
+static int add_responses(const struct model *m, const struct shifted *s, struct reduced *r, double *missing)
 {
-    const size_t n = m->ndof;
-    double omega2, *x = malloc((BATCH + 1) * n * sizeof *x);
+    const size_t n = m->ndof, c = m->ncontact;
+    double omega2, *x = malloc((2 * BATCH + 1) * n * sizeof *x);
     int done = x != NULL, status = TRIBO_OK;
-    for (size_t first = 0; done && !status && first < m->ncontact; first += BATCH) {
-        const size_t count = m->ncontact - first < BATCH ? m->ncontact - first : BATCH;
-        memset(x, 0, count * n * sizeof *x);
-        for (size_t i = first; i < first + count; i++) {
-            for (size_t k = m->direction.first[i]; k < m->direction.first[i + 1]; k++) {
-                x[(i - first) * n + m->direction.col[k]] = m->direction.val[k];
+    for (size_t first = 0; done && !status && first < c; first += BATCH) {
+        const size_t count = c - first < BATCH ? c - first : BATCH;
+        double *mx = x + count * n;
+        done = find_responses(m, s, r, first, count, x, mx);
+        for (size_t i = 0; done && !status && i < count; i++) {
+            double *y = x + i * n;
+            const double norm = low_modes_separate(m, m->nmode, r->phi, y, mx);
+            for (size_t j = 0; j < c; j++) {
+                missing[(first + i) * c + j] = tribo_matrix_row_dot(&m->direction, j, y);
             }
-            if (r->residual) {
-                deflate(m, r, x + (i - first) * n, x + BATCH * n);
-            }
-        }
-        done = tribo_cholesky_solve(&s->factor, count, x) && (!r->residual || unshift(m, s, r, first, count, x, x + BATCH * n));
-        for (size_t i = first; done && !status && i < first + count; i++) {
-            double *y = x + (i - first) * n;
-            if (r->residual && drifts(m, s, y, low_modes_weigh(m, y, x + BATCH * n), &omega2)) {
-                status =
-                    tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
-                                     "nmode = %zu leaves out a motion that contact %zu moves and no stiffness holds: take more "
-                                     "modes, or TRIBO_STATICS_MASS",
-                                     m->nmode, i);
-            } else {
-                add_static(m, s, r, i, y, x + BATCH * n, missing);
+            if (m->attachments) {
+                add_attachment(m, s, r, y, norm, mx);
+            } else if (r->residual && drifts(m, s, y, norm, &omega2)) {
+                status = tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
+                                          "nmode = %zu leaves out a motion that contact %zu moves and no stiffness holds: take "
+                                          "more modes, or TRIBO_STATICS_MASS",
+                                          m->nmode, first + i);
+            } else if (r->residual) {
+                memcpy(r->residual + (first + i) * n, y, n * sizeof *y);
             }
         }
     }
@@ -420,8 +416,8 @@ static int add_statics(const struct model *m, const struct shifted *s, struct re
     return done ? status : tribo_model_no_memory(m);
 }
 
-/* Makes the motions, with those of add_statics, orthogonal in K. Returns a status. */
-static int finish_statics(const struct model *m, struct reduced *r)
+/* Makes the motions, with those of add_responses, orthogonal in K. Returns a status. */
+static int finish_attachments(const struct model *m, struct reduced *r)
 {
     const size_t count = r->count;
     double *x = malloc(count * m->ndof * sizeof *x);
@@ -434,55 +430,42 @@ static int finish_statics(const struct model *m, struct reduced *r)
     return status;
 }
 
-/* whole [ncontact][ncontact] += the elastic part of the modes, J phi phi'J'/(omega^2 + shift); whole = missing on entry. */
-static void add_modes(const struct model *m, const struct shifted *s, const struct reduced *r, double *whole)
+/* whole [ncontact][ncontact] += the elastic part of the modes, J phi phi'J'/omega^2. shape [ncontact]: workspace. */
+static void add_modes(const struct model *m, const struct reduced *r, double *whole, double *shape)
 {
     const size_t c = m->ncontact;
     for (size_t k = 0; k < m->nmode; k++) {
-        for (size_t i = 0; i < c; i++) {
-            const double part = r->omega2[k] > 0.0
-                                    ? tribo_matrix_row_dot(&m->direction, i, r->phi + k * m->ndof) / (r->omega2[k] + s->shift)
-                                    : 0.0;
-            for (size_t j = 0; j < c; j++) {
-                whole[i * c + j] += part * tribo_matrix_row_dot(&m->direction, j, r->phi + k * m->ndof);
-            }
+        tribo_matrix_multiply(&m->direction, r->phi + k * m->ndof, shape);
+        for (size_t i = 0; r->omega2[k] > 0.0 && i < c; i++) {
+            tribo_add(whole + i * c, shape[i] / r->omega2[k], shape, c);
         }
     }
 }
 
 /* Sets *part = the largest x'Ax/x'Bx, A [n][n] semidefinite and a part of B, to rounding of the diagonal of B; 1 if B is lost in
- * the rounding of a subtraction, as of rigid-body motions. Overwrites a and b. Returns 0 if out of memory. */
-static int largest_part(size_t n, double *a, double *b, double *part)
+ * the rounding of a subtraction, as of rigid-body motions. Overwrites a and b. value [n]: workspace. Returns 0 if out of memory. */
+static int largest_part(size_t n, double *a, double *b, double *value, double *part)
 {
     struct matrix whole = {0};
     struct cholesky c = {0};
     size_t where;
-    double pivot, *value = malloc((n + 1) * sizeof *value);
+    double pivot;
     for (size_t i = 0; i < n; i++) {
         b[i * n + i] += b[i * n + i] > 0.0 ? RIDGE * b[i * n + i] : 1.0;
     }
-    int status =
-        value && tribo_matrix_from_dense(&whole, n, n, b) ? tribo_cholesky_create(&c, &whole, &where, &pivot) : TRIBO_ERR_MEMORY;
-    *part = 1.0;
-    if (!status) {
-        tribo_half_solve(&c, a, n);
-        tribo_transpose(n, n, a, b);
-        tribo_half_solve(&c, b, n);
-        status = tribo_symmetric_eigen(b, n, value, a);
-        *part = status ? 1.0 : clamp(n ? value[n - 1] : 0.0, 0.0, 1.0);
-    }
+    int status = tribo_matrix_from_dense(&whole, n, n, b) ? tribo_cholesky_consume(&c, &whole, &where, &pivot) : TRIBO_ERR_MEMORY;
+    status = status ? status : tribo_symmetric_eigen_by(&c, a, n, value, b);
+    *part = status ? 1.0 : clamp(n ? value[n - 1] : 0.0, 0.0, 1.0);
     tribo_cholesky_free(&c);
-    tribo_matrix_free(&whole);
-    free(value);
     return status != TRIBO_ERR_MEMORY;
 }
 
-/* Sets r->flexibility and r->truncation.missing, and adds static motions to r. Returns a status. */
-static int find_statics(const struct model *m, const struct shifted *s, struct reduced *r)
+/* Sets r->flexibility and r->truncation.missing, and adds attachment modes to r. Returns a status. */
+static int attach(const struct model *m, const struct shifted *s, struct reduced *r)
 {
     const size_t c = m->ncontact;
-    double *missing = calloc(2 * c * c + 1, sizeof *missing), *whole = missing + c * c;
-    int status = missing ? add_statics(m, s, r, missing) : tribo_model_no_memory(m);
+    double *missing = calloc(2 * c * c + c + 1, sizeof *missing), *whole = missing + c * c, *work = whole + c * c;
+    int status = missing ? add_responses(m, s, r, missing) : tribo_model_no_memory(m);
     if (!status && r->flexibility) {
         memcpy(r->flexibility, missing, c * c * sizeof *missing);
         tribo_even_out(c, r->flexibility);
@@ -490,11 +473,11 @@ static int find_statics(const struct model *m, const struct shifted *s, struct r
     r->truncation.missing = c > m->nmode ? 1.0 : 0.0;
     if (!status && c <= m->nmode) {
         memcpy(whole, missing, c * c * sizeof *whole);
-        add_modes(m, s, r, whole);
-        status = largest_part(c, missing, whole, &r->truncation.missing) ? TRIBO_OK : tribo_model_no_memory(m);
+        add_modes(m, r, whole, work);
+        status = largest_part(c, missing, whole, work, &r->truncation.missing) ? TRIBO_OK : tribo_model_no_memory(m);
     }
     free(missing);
-    return status || r->count == m->nmode ? status : finish_statics(m, r);
+    return status || r->count == m->nmode ? status : finish_attachments(m, r);
 }
 
 /* ------------------------------------------------------------------------------------------------------------------ calls */
@@ -506,55 +489,22 @@ void tribo_reduced_free(struct reduced *r)
     free(r->residual);
 }
 
-static int find_lowest_densely(const struct model *m, struct shifted *s, struct reduced *r)
-{
-    struct cholesky mass;
-    int status = m->ndof > DENSE_MOST ? tribo_model_too_large(m) : tribo_model_factorize(m, &mass);
-    if (!status) {
-        status = find_densely(m, &mass, r);
-        tribo_cholesky_free(&mass);
-    }
-    return status || r->omega2[0] < 0.0 ? status : factorize_shifted(m, s);
-}
-
-/* Finds the lowest modes: by Lanczos' method for large structures with few modes, and for singular mass. Returns a status. */
-static int find_lowest(const struct model *m, struct shifted *s, struct reduced *r)
-{
-    const int large = m->ndof > DENSE_MOST || (m->ndof >= SPARSE_LEAST && 4 * m->nmode <= m->ndof);
-    size_t where = 0;
-    if (!large || !tribo_sparse_available()) {
-        const int status = find_lowest_densely(m, s, r);
-        if (status != TRIBO_ERR_INDEFINITE || !tribo_sparse_available() || check_mass(m, &where) == TRIBO_ERR_INDEFINITE) {
-            return status;
-        }
-    }
-    int status = check_mass(m, &where);
-    status = factor_failed(m, status, "mass", where);
-    status = status ? status : factorize_shifted(m, s);
-    return status ? status : find_sparsely(m, s, r);
-}
-
 int tribo_model_find_modes(const struct model *m, struct reduced *r)
 {
-    const size_t n = m->ndof, most = m->nmode + (m->statics == TRIBO_STATICS_MASS ? m->ncontact : 0);
+    const size_t n = m->ndof, most = m->nmode + (m->attachments ? m->ncontact : 0);
     struct shifted s = {0.0, {0}};
-    memset(r, 0, sizeof *r);
+    *r = (struct reduced){.truncation.order = m->attachments ? 2.0 : m->flexible ? 1.0 : 0.0};
     r->omega2 = malloc(most * sizeof *r->omega2);
     r->phi = malloc(most * n * sizeof *r->phi);
-    r->truncation.order = m->statics == TRIBO_STATICS_MASS ? 2.0 : m->statics == TRIBO_STATICS_COMPLIANCE ? 1.0 : 0.0;
-    if (m->statics == TRIBO_STATICS_COMPLIANCE) {
-        r->residual = calloc(m->ncontact * (n + m->ncontact) + 1, sizeof *r->residual);
-        r->flexibility = r->residual ? r->residual + m->ncontact * n : NULL;
-    }
-    const int done = r->omega2 && r->phi && (r->residual || m->statics != TRIBO_STATICS_COMPLIANCE);
-    int status = done ? find_lowest(m, &s, r) : tribo_model_no_memory(m);
+    r->residual = m->flexible ? calloc(m->ncontact * (n + m->ncontact) + 1, sizeof *r->residual) : NULL;
+    r->flexibility = r->residual ? r->residual + m->ncontact * n : NULL;
+    int status = r->omega2 && r->phi && (r->residual || !m->flexible) ? find_lowest(m, &s, r) : tribo_model_no_memory(m);
     if (!status && r->omega2[0] < 0.0) {
         status = tribo_model_fail(m, TRIBO_ERR_INDEFINITE, "stiffness is not positive semidefinite: omega^2 = %g of mode 0",
                                   r->omega2[0]);
     }
-    status = status || m->nmode == n || !m->ncontact ? status : find_statics(m, &s, r);
-    r->truncation.shift = r->residual ? 0.0 : s.shift;
-    r->truncation.above += r->truncation.shift;
+    status = status || m->nmode == n || !m->ncontact ? status : attach(m, &s, r);
+    r->truncation.above = r->truncation.above > ABOVE * s.shift ? r->truncation.above : 0.0;
     tribo_cholesky_free(&s.factor);
     return status;
 }

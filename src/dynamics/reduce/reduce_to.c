@@ -14,7 +14,7 @@ static int refuse(tribo_model *model, int status, const char *name, double value
     return tribo_model_refuse(model, status, message);
 }
 
-int tribo_system_reduce_to(tribo_system **sys, tribo_model *model, double omega, double tolerance, int static_contacts)
+int tribo_system_reduce_to(tribo_system **sys, tribo_model *model, double omega, double tolerance, int statics)
 {
     if (!model) {
         return TRIBO_ERR_NULL;
@@ -37,7 +37,7 @@ int tribo_system_reduce_to(tribo_system **sys, tribo_model *model, double omega,
     while (!status && (enough == 0 || enough - few > 1 + enough / CLOSE)) {
         tribo_system *found = NULL;
         double error = HUGE_VAL;
-        status = tribo_system_reduce(&found, model, nmode, static_contacts);
+        status = tribo_system_reduce(&found, model, nmode, statics);
         status = status ? status : tribo_system_get_truncation(found, omega, &error);
         if (!status && error <= tolerance) {
             tribo_system_destroy(best);

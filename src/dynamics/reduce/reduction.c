@@ -7,55 +7,25 @@
 #include "dynamics/system/model.h"
 #include "common/real.h"
 
-/* Sets sys->modes [given][count] = Phi, sys->omega and sys->truncation. Returns 0 if out of memory. */
-static int take_modes(tribo_system *sys, size_t given, const struct reduced *r)
-{
-    const size_t count = r->count;
-    sys->given = given;
-    sys->modes = malloc(given * count * sizeof *sys->modes);
-    sys->omega = malloc(count * sizeof *sys->omega);
-    sys->truncation = r->truncation;
-    if (!sys->modes || !sys->omega) {
-        return 0;
-    }
-    tribo_transpose(count, given, r->phi, sys->modes);
-    for (size_t k = 0; k < count; k++) {
-        sys->omega[k] = sqrt(r->omega2[k]);
-    }
-    return 1;
-}
-
 /* J_i phi is 0 below this part of the sum of its |terms|, where rounding keeps less than two digits, as where a mode moves both
  * sides of the contact alike. A contact can hold nothing by such a velocity. */
 #define NO_SHAPE (100.0 * DBL_EPSILON)
 
-/* Returns a bound of the rounding of J_i phi: phi has norm 1 in M, and a degree of freedom d that moves alone
- * has phi_d = 1/sqrt(M_dd). */
-static double least_shape(const struct model *m, size_t i)
-{
-    const struct matrix *j = &m->direction;
-    double alone = 0.0;
-    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        const double mass = tribo_matrix_get(&m->mass, j->col[k], j->col[k]);
-        alone += mass > 0.0 ? fabs(j->val[k]) / sqrt(mass) : 0.0;
-    }
-    return DBL_EPSILON * alone;
-}
-
-/* Returns J_i phi, phi [ndof], or 0 if |J_i phi| is rounding: by NO_SHAPE, or not above `least`. */
-static double shape(const struct model *m, size_t i, const double *phi, double least)
-{
-    const double sum = tribo_matrix_row_dot(&m->direction, i, phi);
-    return fabs(sum) > greater(NO_SHAPE * tribo_matrix_row_size(&m->direction, i, phi), least) ? sum : 0.0;
-}
-
-/* Sets shapes [ncontact][count] = J Phi. */
+/* Sets shapes [ncontact][count] = J Phi, 0 where that is rounding: by NO_SHAPE, or because phi has norm 1 in M, and a degree of
+ * freedom d that moves alone has phi_d = 1/sqrt(M_dd). */
 static void find_shapes(const struct model *m, const struct reduced *r, double *shapes)
 {
+    const struct matrix *j = &m->direction;
     for (size_t i = 0; i < m->ncontact; i++) {
-        const double least = least_shape(m, i);
+        double alone = 0.0;
+        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+            const double mass = tribo_matrix_get(&m->mass, j->col[k], j->col[k]);
+            alone += mass > 0.0 ? fabs(j->val[k]) / sqrt(mass) : 0.0;
+        }
         for (size_t k = 0; k < r->count; k++) {
-            shapes[i * r->count + k] = shape(m, i, r->phi + k * m->ndof, least);
+            const double *phi = r->phi + k * m->ndof, sum = tribo_matrix_row_dot(j, i, phi);
+            const double noise = greater(NO_SHAPE * tribo_matrix_row_size(j, i, phi), DBL_EPSILON * alone);
+            shapes[i * r->count + k] = fabs(sum) > noise ? sum : 0.0;
         }
     }
 }
@@ -102,25 +72,24 @@ static int reduction_build(const struct model *m, const struct reduced *r, const
 {
     const size_t count = r->count, c = m->ncontact;
     struct matrix stiffness = {0}, damping = {0}, direction = {0}, response = {0};
+    int status = TRIBO_ERR_MEMORY;
     double *responses = malloc((c * count + 1) * sizeof *responses);
-    int done = responses != NULL;
-    if (done) {
+    if (responses) {
         tribo_transpose(c, count, shapes, responses);
-        done = tribo_matrix_diagonal(&stiffness, count, r->omega2) && tribo_matrix_from_dense(&direction, c, count, shapes) &&
-               tribo_matrix_from_dense(&response, count, c, responses) && project_damping(m, r, count, &damping);
     }
-    if (done) {
-        int status = tribo_system_build(sys, count, c, &stiffness, &damping, &direction, &response);
-        status = status ? tribo_model_no_memory(m) : tribo_model_set_operator(m, *sys, responses, count);
-        free(responses);
-        return status;
+    if (responses && tribo_matrix_diagonal(&stiffness, count, r->omega2) &&
+        tribo_matrix_from_dense(&direction, c, count, shapes) && tribo_matrix_from_dense(&response, count, c, responses) &&
+        project_damping(m, r, count, &damping)) {
+        status = tribo_system_build(sys, count, c, &stiffness, &damping, &direction, &response);
+        status = status ? status : tribo_model_set_operator(m, *sys, responses, count);
+    } else {
+        tribo_matrix_free(&stiffness);
+        tribo_matrix_free(&damping);
+        tribo_matrix_free(&direction);
+        tribo_matrix_free(&response);
     }
     free(responses);
-    tribo_matrix_free(&stiffness);
-    tribo_matrix_free(&damping);
-    tribo_matrix_free(&direction);
-    tribo_matrix_free(&response);
-    return tribo_model_no_memory(m);
+    return status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ compliance */
@@ -128,15 +97,15 @@ static int reduction_build(const struct model *m, const struct reduced *r, const
 /* A contact is rigid if the flexibility that the modes lack is at most this part of its flexibility. */
 #define RIGID 1e-7
 
-/* A structure reduced to modes q and a compliance G at its soft contacts: springs before sliders, and, with
- * TRIBO_STATICS_COMPLIANCE, the flexibility that the modes lack. With w = P q + G f of the soft contacts,
+/* A structure reduced to modes q and a compliance G at its soft contacts: springs before sliders, and residual flexibility, the
+ * flexibility that the modes lack, with which w = P q + G f of the soft contacts moves the structure too:
  *     q'' + Omega^2 q = modes' p + P'f,   displacements = Phi q + residual'f. */
 struct compliant {
     size_t modes, contacts, soft;
-    size_t *contact;          /* [soft] ascending */
-    double *shapes, *rigid;   /* [contacts][modes] P of all contacts; of rigid contacts, 0 of others */
-    double *own, *entries;    /* [contacts] G_ii; [contacts][contacts] G */
-    double *by;               /* [contacts][modes + soft] -f by q and w: G^-1 P and -G^-1 */
+    size_t *contact;        /* [soft] ascending */
+    double *shapes, *rigid; /* [contacts][modes] P of all contacts; of rigid contacts, 0 of others */
+    double *own, *entries;  /* [contacts] G_ii; [contacts][contacts] G */
+    double *by;             /* [contacts][modes + soft] -f by q and w: G^-1 P and -G^-1 */
 };
 
 /* Sets contact, rigid, own and entries. Contacts with springs before their sliders (compliance [contacts] > 0; NULL: no
@@ -145,12 +114,13 @@ static int find_soft(struct compliant *e, const struct reduced *r, const double 
 {
     int shared = 0;
     for (size_t i = 0; i < e->contacts; i++) {
-        const double *shape = e->shapes + i * e->modes, own = r->flexibility[i * e->contacts + i];
+        const double *shape = e->shapes + i * e->modes, spring = compliance ? compliance[i] : 0.0;
+        const double own = spring + (r->flexibility ? r->flexibility[i * e->contacts + i] : 0.0);
         double whole = own;
         for (size_t k = 0; k < e->modes; k++) {
             whole += r->omega2[k] > 0.0 ? shape[k] * shape[k] / r->omega2[k] : 0.0;
         }
-        if ((compliance && compliance[i] > 0.0) || own > RIGID * whole) {
+        if (spring > 0.0 || own > RIGID * whole) {
             e->contact[e->soft++] = i;
             e->own[i] = own;
         } else {
@@ -160,7 +130,7 @@ static int find_soft(struct compliant *e, const struct reduced *r, const double 
     for (size_t a = 0; a < e->soft; a++) {
         for (size_t b = 0; b < e->soft; b++) {
             const size_t at = e->contact[a] * e->contacts + e->contact[b];
-            e->entries[at] = r->flexibility[at];
+            e->entries[at] = a == b ? e->own[e->contact[a]] : r->flexibility ? r->flexibility[at] : 0.0;
             shared |= a != b && e->entries[at] != 0.0;
         }
     }
@@ -192,39 +162,59 @@ static int expand(const struct compliant *e, size_t sliders, tribo_system *sys)
     return done;
 }
 
-/* Sets sys->modes = displacements by q and w, and sys->omega, infinite for w, which has no mass. Returns 0 if out of memory. */
-static int put_all_modes(const struct compliant *e, size_t given, const struct reduced *r, tribo_system *sys)
+/* Sets sys->modes [given][modes + soft] = displacements by q and w, sys->omega, infinite for w, which has no mass, and
+ * sys->truncation. Returns 0 if out of memory. */
+static int set_modes(const struct compliant *e, size_t given, const struct reduced *r, tribo_system *sys)
 {
     const size_t m = e->modes, n = m + e->soft;
-    double *x = calloc(n * given + 1, sizeof *x), *omega2 = malloc((n + 1) * sizeof *omega2);
-    const struct reduced all = {n, omega2, x, r->truncation, NULL, NULL};
-    int done = x && omega2;
+    double *x = calloc(n * given + 1, sizeof *x);
+    sys->given = given;
+    sys->modes = malloc(given * n * sizeof *sys->modes);
+    sys->omega = malloc(n * sizeof *sys->omega);
+    sys->truncation = r->truncation;
     for (size_t a = 0; a < e->soft; a++) {
         double *row = e->by + e->contact[a] * n;
         memcpy(row, e->shapes + e->contact[a] * m, m * sizeof *row);
         row[m + a] = -1.0;
     }
-    tribo_compliance_solve(sys, NULL, n, e->by);
+    if (e->soft) {
+        tribo_compliance_solve(sys, NULL, n, e->by);
+    }
+    const int done = x && sys->modes && sys->omega;
     for (size_t k = 0; done && k < n; k++) {
-        omega2[k] = k < m ? r->omega2[k] : HUGE_VAL;
+        sys->omega[k] = k < m ? sqrt(r->omega2[k]) : HUGE_VAL;
         memcpy(x + k * given, r->phi + k * given, k < m ? given * sizeof *x : 0);
-        for (size_t a = 0; a < e->soft; a++) {
+        for (size_t a = 0; r->residual && a < e->soft; a++) {
             tribo_add(x + k * given, -e->by[e->contact[a] * n + k], r->residual + e->contact[a] * given, given);
         }
     }
-    done = done && take_modes(sys, given, &all);
+    if (done) {
+        tribo_transpose(n, given, x, sys->modes);
+    }
     free(x);
-    free(omega2);
     return done;
 }
 
-static int build_compliant(const struct model *m, const struct reduced *r, tribo_system **sys)
+static int reduction_failed(const struct model *m, int status, size_t modes, size_t contact)
+{
+    return status == TRIBO_ERR_INDEFINITE
+               ? tribo_model_fail(
+                     m, TRIBO_ERR_UNSUPPORTED,
+                     "the flexibility that %zu mode%s to contact %zu is that of other contacts: take other modes, or "
+                     "TRIBO_STATICS_MASS",
+                     modes, modes == 1 ? " leaves" : "s leave", contact)
+           : status == TRIBO_ERR_MEMORY ? tribo_model_no_memory(m)
+                                        : status;
+}
+
+/* Builds the system of the basis r. Returns a status. */
+static int build_reduced(const struct model *m, const struct reduced *r, tribo_system **sys)
 {
     const size_t c = m->ncontact, k = r->count;
     struct compliant e = {.modes = k, .contacts = c};
     struct matrix direction = {0};
     size_t where = 0;
-    int status = TRIBO_ERR_MEMORY, shared = 0;
+    int status = TRIBO_ERR_MEMORY;
     e.contact = malloc((c + 1) * sizeof *e.contact);
     e.shapes = calloc(3 * c * k + 2 * c * c + c + 1, sizeof *e.shapes);
     if (e.contact && e.shapes) {
@@ -233,73 +223,26 @@ static int build_compliant(const struct model *m, const struct reduced *r, tribo
         e.entries = e.by + c * (k + c);
         e.own = e.entries + c * c;
         find_shapes(m, r, e.shapes);
-        shared = find_soft(&e, r, m->compliance);
-        status = tribo_matrix_from_dense(&direction, c, k, e.shapes) ? TRIBO_OK : TRIBO_ERR_MEMORY;
-    }
-    status = status ? status : reduction_build(m, r, e.rigid, sys);
-    if (!status) {
-        status = tribo_compliance_create(*sys, &direction, e.own, shared ? e.entries : NULL, &where);
-    }
-    if (!status) {
-        /* with TRIBO_STATICS_COMPLIANCE, w moves the structure too, and is a degree of freedom */
-        const size_t sliders = m->statics == TRIBO_STATICS_COMPLIANCE ? 0 : e.soft;
-        const int done = !e.soft || expand(&e, sliders, *sys);
-        status = done && put_all_modes(&e, m->ndof, r, *sys) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+        const int shared = find_soft(&e, r, m->compliance);
+        status = reduction_build(m, r, e.rigid, sys);
+        if (!status && e.soft) {
+            status = tribo_matrix_from_dense(&direction, c, k, e.shapes) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+            status = status ? status : tribo_compliance_create(*sys, &direction, e.own, shared ? e.entries : NULL, &where);
+            status = status || expand(&e, m->flexible ? 0 : e.soft, *sys) ? status : TRIBO_ERR_MEMORY;
+        }
+        status = status || set_modes(&e, m->ndof, r, *sys) ? status : TRIBO_ERR_MEMORY;
     }
     tribo_matrix_free(&direction);
-    const size_t contact = status == TRIBO_ERR_INDEFINITE ? where : 0;
     free(e.contact);
     free(e.shapes);
-    return status == TRIBO_ERR_INDEFINITE
-               ? tribo_model_fail(
-                     m, TRIBO_ERR_UNSUPPORTED,
-                     "the flexibility that %zu mode%s to contact %zu is that of other contacts: take other modes, or "
-                     "TRIBO_STATICS_MASS",
-                     k, k == 1 ? " leaves" : "s leave", contact)
-           : status == TRIBO_ERR_MEMORY ? tribo_model_no_memory(m)
-                                        : status;
-}
-
-/* ------------------------------------------------------------------------------------------------------------------- build */
-
-static int build_with_mass(const struct model *m, const struct reduced *r, tribo_system **sys)
-{
-    double *shapes = malloc((m->ncontact * r->count + 1) * sizeof *shapes);
-    int status = TRIBO_ERR_MEMORY;
-    if (shapes) {
-        find_shapes(m, r, shapes);
-        status = reduction_build(m, r, shapes, sys);
-        status = status || take_modes(*sys, m->ndof, r) ? status : TRIBO_ERR_MEMORY;
-    }
-    free(shapes);
-    return status == TRIBO_ERR_MEMORY ? tribo_model_no_memory(m) : status;
-}
-
-/* Adds the compliance of springs before sliders to the flexibility of their contacts. Returns 0 if out of memory. */
-static int add_compliance(const struct model *m, struct reduced *r)
-{
-    const size_t c = m->ncontact;
-    const int any = m->compliance && tribo_largest(m->compliance, c) > 0.0;
-    if (any && !r->residual) {
-        r->residual = calloc(c * (m->ndof + c), sizeof *r->residual);
-        r->flexibility = r->residual ? r->residual + c * m->ndof : NULL;
-    }
-    for (size_t i = 0; any && r->residual && i < c; i++) {
-        r->flexibility[i * c + i] += m->compliance[i];
-    }
-    return !any || r->residual;
+    return reduction_failed(m, status, k, where);
 }
 
 int tribo_model_reduce(struct model *m, tribo_system **sys)
 {
     struct reduced r;
     int status = tribo_model_find_modes(m, &r);
-    if (!status && !add_compliance(m, &r)) {
-        status = tribo_model_no_memory(m);
-    }
-    if (!status) {
-        status = (r.residual ? build_compliant : build_with_mass)(m, &r, sys);
-    }
+    status = status ? status : build_reduced(m, &r, sys);
     tribo_reduced_free(&r);
     return status;
 }
@@ -392,7 +335,7 @@ int tribo_system_get_truncation(const tribo_system *sys, double omega, double *e
         return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
     }
     const struct truncation *t = &sys->truncation;
-    const double square = omega * omega + t->shift, x = square < t->above ? square / t->above : 1.0;
+    const double square = omega * omega, x = square < t->above ? square / t->above : 1.0;
     *error = x < 1.0 ? t->missing * pow(x, t->order) / (1.0 - x) : HUGE_VAL;
     return TRIBO_OK;
 }

@@ -7,7 +7,8 @@
 /* The caller's matrices, and the text of the last error. */
 struct model {
     size_t ndof, ncontact, nmode;
-    int statics; /* TRIBO_STATICS_...: static responses to contact forces in addition to the modes */
+    int attachments; /* 1: attachment modes: static responses to contact forces in addition to the modes */
+    int flexible;    /* 1: residual flexibility: the compliance that the modes lack at contacts */
     struct matrix mass, damping, stiffness, direction;
     const double *terms;      /* [ndof] sum of the sizes of the terms of stiffness_ii; NULL: |stiffness_ii| */
     const double *compliance; /* [ncontact] compliance of springs before sliders; 0: rigid contact; NULL: all rigid */
@@ -58,10 +59,10 @@ struct reduced {
     struct truncation truncation;
     double *residual,
         *flexibility; /* [ncontact][ndof] static displacements by unit contact forces, without the part of the modes;
-                                       [ncontact][ncontact] at contacts. NULL without TRIBO_STATICS_COMPLIANCE */
+                                       [ncontact][ncontact] at contacts. NULL without residual flexibility */
 };
 
-/* low_modes.c: finds the lowest nmode modes, and static responses by m->statics. Allocates r, also after an error. */
+/* low_modes.c: finds the lowest nmode modes, and attachment modes or residual flexibility. Allocates r, also after an error. */
 int tribo_model_find_modes(const struct model *m, struct reduced *r);
 void tribo_reduced_free(struct reduced *r);
 

@@ -294,7 +294,8 @@ static int build_system(tribo_system **sys, tribo_model *model, size_t nmode, in
     struct model whole = {.ndof = g->ndof,
                           .ncontact = g->ncontact,
                           .nmode = nmode,
-                          .statics = statics,
+                          .attachments = statics == TRIBO_STATICS_MASS,
+                          .flexible = statics == TRIBO_STATICS_COMPLIANCE,
                           .compliance = model->compliance,
                           .message = model->text,
                           .size = sizeof model->text};

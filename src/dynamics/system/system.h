@@ -35,10 +35,10 @@ struct table {
     double *pattern; /* [ndof] accelerations, [ncontact] velocities; NULL for limits */
 };
 
-/* Error bound of a reduced system at omega: missing x^order/(1 - x), x = (omega^2 + shift)/above. Left-out modes have omega^2 +
- * shift >= above, and at most the part `missing` of the work of steady contact forces on the elastic structure. */
+/* Error bound of a reduced system at omega: missing x^order/(1 - x), x = omega^2/above. Left-out modes have omega^2 >= above, and at
+ * most the part `missing` of the work of steady contact forces on the elastic structure. */
 struct truncation {
-    double above, shift, missing;
+    double above, missing;
     double order; /* 0, 1, 2 with TRIBO_STATICS_NONE, _COMPLIANCE, _MASS: the static displacements included reduce the error */
 };
 
