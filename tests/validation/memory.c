@@ -373,7 +373,7 @@ TEST(failures)
     ck_assert_uint_gt(fails, 10);
 }
 
-/* The Jacobian's workspace comes with the first call. */
+/* Every call allocates the Jacobian's workspace, in one block. */
 TEST(failing_jacobian)
 {
     double y[DIMENSION] = {0}, dfdy[DIMENSION * DIMENSION], dfdt[DIMENSION];
@@ -381,14 +381,14 @@ TEST(failing_jacobian)
     const struct model m = model_create(&g, 1);
     tribo_system *sys = model_system(&m, 1, 0, 0.1);
     const gsl_odeiv2_system *ode = tribo_gsl_system(sys);
-    for (size_t fails = 1; fails <= 5; fails++) {
-        memory_fail(fails);
+    for (int round = 0; round < 2; round++) {
+        memory_fail(1);
         const int status = ode->jacobian(0.0, y, dfdy, dfdt, ode->params);
         memory_fail(0);
         ck_assert_int_eq(status, GSL_EBADFUNC);
         assert_says(tribo_system_message(sys), "out of memory for the Jacobian");
+        ck_assert_int_eq(ode->jacobian(0.0, y, dfdy, dfdt, ode->params), GSL_SUCCESS);
     }
-    ck_assert_int_eq(ode->jacobian(0.0, y, dfdy, dfdt, ode->params), GSL_SUCCESS);
     tribo_system_destroy(sys);
 }
 

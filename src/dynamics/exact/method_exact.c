@@ -256,12 +256,12 @@ static void method_exact_destroy(tribo_driver *drv)
 /* Returns a status: tables and falling static limits are unsupported. Every advance checks, since the system may change. */
 static int check_system(const tribo_system *sys)
 {
-    if (sys->tables || sys->limits.knots) {
+    if (sys->tables) {
         return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                  "%s follow a table, and method exact takes harmonic ones only: take event or auto",
-                                 sys->tables > sys->base_tables ? "loads"
-                                 : sys->tables                  ? "base motions"
-                                                                : "limits");
+                                 sys->tables > sys->base_tables + sys->limit_tables ? "loads"
+                                 : sys->base_tables                                 ? "base motions"
+                                                                                    : "limits");
     }
     const size_t i = tribo_system_first_falling(sys);
     return i == sys->ncontact ? TRIBO_OK

@@ -31,7 +31,7 @@ static int check_loads(tribo_driver *drv, double period)
     static const char *const kind[] = {[DRIVES_LOAD] = "load", [DRIVES_BASE] = "base motion", [DRIVES_LIMIT] = "limit"};
     const tribo_system *sys = drv->sys;
     size_t of_kind[] = {0, 0, 0};
-    if (sys->tables || sys->limits.knots) {
+    if (sys->tables) {
         return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
                                  "loads, base motions and limits that follow a table are not periodic");
     }

@@ -284,8 +284,6 @@ int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
     sys->damping = damping;
     sys->revision++;
     sys->structure++;
-    free(sys->dense);
-    sys->dense = NULL;
     return TRIBO_OK;
 }
 

@@ -330,7 +330,7 @@ static int method_event_prepare(struct event *e)
     }
     e->cosine = more;
     e->sine = more + room;
-    e->terms = sys->limit_harmonics ? e->most_order + 1 : sys->limits.knots ? 2 : 1;
+    e->terms = sys->limit_harmonics ? e->most_order + 1 : sys->limit_tables ? 2 : 1;
     e->revision = sys->revision;
     return TRIBO_OK;
 }

@@ -21,14 +21,9 @@ void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y
         tribo_matrix_multiply_add(&sys->damping, -1.0, y + n, acceleration);
     }
     if (sys->compliance.count) {
-        tribo_system_add_springs(sys, y, acceleration);
+        tribo_compliance_get(sys, y, sys->put_limit);
+        tribo_matrix_multiply_add(&sys->compliance.pull, 1.0, sys->put_limit, acceleration);
     }
-}
-
-void tribo_system_add_springs(const tribo_system *sys, const double *y, double *acceleration)
-{
-    tribo_compliance_get(sys, y, sys->put_limit);
-    tribo_matrix_multiply_add(&sys->compliance.pull, 1.0, sys->put_limit, acceleration);
 }
 
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a)
@@ -78,39 +73,31 @@ TRIBO_SIMD static double equations_power_of(size_t n, const double *restrict tal
     return sum + (((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7])));
 }
 
-static void add_forces(const tribo_system *sys, const double *v, double *acceleration, double *power)
+/* tribo_system_rates; accepted = 1: (t, y) is an accepted state of the reversal law. */
+static int find_rates(tribo_system *sys, double t, const double *y, int accepted, double *acceleration, double *power)
 {
-    *power = equations_power_of(sys->ncontact, sys->tally, sys->f, v);
-    tribo_matrix_multiply_add(&sys->response, 1.0, sys->f, acceleration);
+    sys->evaluations++;
+    const struct seen seen = see(sys, t, y, acceleration);
+    sys->status = tribo_balance(sys->contacts, seen.v, seen.a, accepted ? sys->feq : NULL, sys->f);
+    if (!sys->status) {
+        /* f stays valid: where a reversal mark changes, both forms of the law give the same force */
+        sys->status = accepted ? tribo_accept(sys->contacts, seen.v, sys->feq) : TRIBO_OK;
+        *power = equations_power_of(sys->ncontact, sys->tally, sys->f, seen.v);
+        tribo_matrix_multiply_add(&sys->response, 1.0, sys->f, acceleration);
+    }
+    return tribo_system_explain(sys, sys->status);
 }
 
 int tribo_system_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power)
 {
-    sys->evaluations++;
-    const struct seen seen = see(sys, t, y, acceleration);
-    sys->status = tribo_balance(sys->contacts, seen.v, seen.a, NULL, sys->f);
-    if (!sys->status) {
-        add_forces(sys, seen.v, acceleration, power);
-    }
-    return tribo_system_explain(sys, sys->status);
+    return find_rates(sys, t, y, 0, acceleration, power);
 }
 
 int tribo_system_begin_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power)
 {
     int law;
     tribo_get_law(sys->contacts, &law);
-    if (law != TRIBO_QUINN_REVERSAL) {
-        return tribo_system_rates(sys, t, y, acceleration, power);
-    }
-    sys->evaluations++;
-    const struct seen seen = see(sys, t, y, acceleration);
-    sys->status = tribo_balance(sys->contacts, seen.v, seen.a, sys->feq, sys->f);
-    if (!sys->status) {
-        /* f stays valid: where a reversal mark changes, both forms of the law give the same force */
-        sys->status = tribo_accept(sys->contacts, seen.v, sys->feq);
-        add_forces(sys, seen.v, acceleration, power);
-    }
-    return tribo_system_explain(sys, sys->status);
+    return find_rates(sys, t, y, law == TRIBO_QUINN_REVERSAL, acceleration, power);
 }
 
 /* Sets the rest of dydt, q' [ndof]. If J is the identity and bases do not move, also sys->v = q' for the driver. */
@@ -136,7 +123,7 @@ int tribo_system_derivative(tribo_system *sys, double t, const double *y, double
         return TRIBO_ERR_NULL;
     }
     const size_t n = sys->ndof;
-    double power;
+    double power = 0.0;
     sys->status = tribo_system_take_settings(sys);
     sys->status = sys->status ? sys->status : tribo_system_check_rates(sys, "the right-hand side");
     if (!sys->status && (!y || !dydt)) {
@@ -196,23 +183,17 @@ static int contacts_at(tribo_system *sys, double t, const double **y)
     return status;
 }
 
-/* to [ncontact], or NULL: sets the forces of compliant contacts from y. */
-static void put_spring_forces(const tribo_system *sys, const double *y, double *to)
-{
-    for (size_t k = 0; to && k < sys->compliance.count; k++) {
-        to[sys->compliance.contact[k]] = y[2 * sys->ndof + k];
-    }
-}
-
 int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *v, double *feq, double *f)
 {
     int status = sys ? contacts_at(sys, t, &y) : TRIBO_ERR_NULL;
     if (!status) {
         status = tribo_system_explain(sys, tribo_balance(sys->contacts, sys->v, sys->a, feq, f));
     }
-    if (!status) {
-        put_spring_forces(sys, y, feq);
-        put_spring_forces(sys, y, f);
+    for (size_t k = 0; !status && k < 2 * sys->compliance.count; k++) { /* of compliant contacts, the forces in y */
+        double *to = k % 2 ? feq : f;
+        if (to) {
+            to[sys->compliance.contact[k / 2]] = y[2 * sys->ndof + k / 2];
+        }
     }
     if (!status && v) {
         memcpy(v, sys->v, sys->ncontact * sizeof *v);
@@ -248,6 +229,11 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
         tribo_matrix_free(response);
         return status ? status : TRIBO_ERR_MEMORY;
     }
+    double **const part[] = {&s->v,           &s->a,         &s->f,     &s->feq,         &s->dv_dt,
+                             &s->given_limit, &s->put_limit, &s->tally, &s->acceleration};
+    for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
+        *part[k] = work + k * (ncontact + 1);
+    }
     s->message = message;
     s->ndof = ndof;
     s->ncontact = ncontact;
@@ -257,15 +243,6 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
     s->direction = *direction;
     s->response = *response;
     s->time = NAN;
-    s->v = work;
-    s->a = work + (ncontact + 1);
-    s->f = work + 2 * (ncontact + 1);
-    s->feq = work + 3 * (ncontact + 1);
-    s->dv_dt = work + 4 * (ncontact + 1);
-    s->given_limit = work + 5 * (ncontact + 1);
-    s->put_limit = work + 6 * (ncontact + 1);
-    s->tally = work + 7 * (ncontact + 1);
-    s->acceleration = work + 8 * (ncontact + 1);
     for (size_t i = 0; i < ncontact; i++) {
         s->tally[i] = 1.0;
     }
@@ -299,9 +276,9 @@ static int copy_rest(tribo_system *to, const tribo_system *sys)
     to->omega = tribo_copy_of(sys->omega, dofs, sizeof *to->omega, &done);
     to->truncation = sys->truncation;
     return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && copy_lent(to, sys) &&
-           tribo_matrix_copy(&to->k, &sys->k) && tribo_matrix_copy(&to->c, &sys->c) &&
-           tribo_matrix_copy(&to->mass, &sys->mass) && tribo_cholesky_copy(&to->factor, &sys->factor) &&
-           tribo_compliance_copy(to, sys) && tribo_expansion_copy(to, sys) && tribo_loads_copy(to, sys);
+           tribo_matrix_copy(&to->k, &sys->k) && tribo_matrix_copy(&to->c, &sys->c) && tribo_matrix_copy(&to->mass, &sys->mass) &&
+           tribo_cholesky_copy(&to->factor, &sys->factor) && tribo_compliance_copy(to, sys) && tribo_expansion_copy(to, sys) &&
+           tribo_loads_copy(to, sys);
 }
 
 int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
@@ -355,7 +332,6 @@ void tribo_system_destroy(tribo_system *sys)
     free(sys->modes);
     free(sys->omega);
     free(sys->v);
-    free(sys->dense);
     free(sys->motion);
     free(sys);
 }

@@ -10,85 +10,53 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void free_harmonic(struct harmonic *h)
+/* Returns the length of a function of time: of accelerations, or of values of contacts. */
+static size_t length_of(const tribo_system *sys, enum drives drives)
 {
-    free(h->index);
+    return drives == DRIVES_LOAD ? sys->ndof : sys->ncontact;
 }
 
-static void lay_out_harmonic(struct harmonic *h, struct layout *l, size_t n)
-{
-    h->index = tribo_layout_array(l, n, sizeof *h->index);
-    h->cosine = tribo_layout_array(l, n, sizeof *h->cosine);
-    h->sine = tribo_layout_array(l, n, sizeof *h->sine);
-}
-
-/* Allocates n entries. Returns 0 if out of memory; then nothing is allocated. */
-static int create_harmonic(struct harmonic *h, size_t n)
+/* Allocates the arrays of h->count entries; copies them from the block `from` of equal arrays (NULL: leaves them unset). Returns
+ * 0 if out of memory. */
+static int create_harmonic(struct harmonic *h, const void *from)
 {
     struct layout l = {0};
-    lay_out_harmonic(h, &l, n);
-    const int done = tribo_layout_create(&l);
-    if (done) {
-        lay_out_harmonic(h, &l, n);
+    do {
+        h->index = tribo_layout_array(&l, h->count, sizeof *h->index);
+        h->cosine = tribo_layout_array(&l, h->count, sizeof *h->cosine);
+        h->sine = tribo_layout_array(&l, h->count, sizeof *h->sine);
+    } while (!l.memory && tribo_layout_create(&l));
+    if (l.memory && from) {
+        memcpy(l.memory, from, l.used);
     }
-    return done;
+    return l.memory != NULL;
 }
 
-static void free_table(struct table *t)
+/* create_harmonic for a table, with t->knots, t->columns and a pattern [n]. */
+static int create_table(struct table *t, size_t n, const void *from)
 {
-    free(t->time);
-    free(t->value);
-    free(t->pattern);
+    struct layout l = {0};
+    do {
+        t->time = tribo_layout_array(&l, t->knots, sizeof *t->time);
+        t->value = tribo_layout_array(&l, t->knots * t->columns, sizeof *t->value);
+        t->pattern = tribo_layout_array(&l, n, sizeof *t->pattern);
+    } while (!l.memory && tribo_layout_create(&l));
+    if (l.memory && from) {
+        memcpy(l.memory, from, l.used);
+    }
+    return l.memory != NULL;
 }
 
 void tribo_loads_free(tribo_system *sys)
 {
     for (size_t k = 0; k < sys->harmonics; k++) {
-        free_harmonic(&sys->harmonic[k]);
+        free(sys->harmonic[k].index);
+    }
+    for (size_t k = 0; k < sys->tables; k++) {
+        free(sys->table[k].time);
     }
     free(sys->harmonic);
-    for (size_t k = 0; k < sys->tables; k++) {
-        free_table(&sys->table[k]);
-    }
     free(sys->table);
-    free_table(&sys->limits);
-}
-
-/* ------------------------------------------------------------------------------------------------------------------- copies */
-
-/* t = table of time [knots] and value [knots][columns]. Returns 0 if out of memory. */
-static int create_table(struct table *t, size_t knots, size_t columns, const double *time, const double *value)
-{
-    int done = 1;
-    t->knots = knots;
-    t->time = tribo_copy_of(time, knots, sizeof *t->time, &done);
-    t->value = tribo_copy_of(value, knots * columns, sizeof *t->value, &done);
-    return done;
-}
-
-static int copy_harmonic(struct harmonic *to, const struct harmonic *from)
-{
-    *to = *from;
-    to->time = NAN;
-    if (!create_harmonic(to, from->count)) {
-        return 0;
-    }
-    memcpy(to->index, from->index, from->count * sizeof *to->index);
-    memcpy(to->cosine, from->cosine, from->count * sizeof *to->cosine);
-    memcpy(to->sine, from->sine, from->count * sizeof *to->sine);
-    return 1;
-}
-
-/* to = from, with value [knots][columns] and pattern [n] or NULL. Returns 0 if out of memory. */
-static int copy_table(struct table *to, const struct table *from, size_t columns, size_t n)
-{
-    int done = 1;
-    *to = (struct table){.drives = from->drives};
-    if (from->knots) {
-        done = create_table(to, from->knots, columns, from->time, from->value);
-        to->pattern = tribo_copy_of(from->pattern, n, sizeof *to->pattern, &done);
-    }
-    return done;
 }
 
 int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
@@ -96,17 +64,22 @@ int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
     sys->harmonic = malloc((from->harmonics + 1) * sizeof *sys->harmonic);
     sys->table = malloc((from->tables + 1) * sizeof *sys->table);
     int done = sys->harmonic && sys->table;
-    for (size_t k = 0; done && k < from->harmonics; k++) {
-        done = copy_harmonic(&sys->harmonic[sys->harmonics++], &from->harmonic[k]);
+    for (; done && sys->harmonics < from->harmonics; sys->harmonics++) {
+        struct harmonic *h = &sys->harmonic[sys->harmonics];
+        *h = from->harmonic[sys->harmonics];
+        h->time = NAN;
+        done = create_harmonic(h, h->index);
     }
-    for (size_t k = 0; done && k < from->tables; k++) {
-        const size_t n = from->table[k].drives == DRIVES_BASE ? sys->ncontact : sys->ndof;
-        done = copy_table(&sys->table[sys->tables++], &from->table[k], 1, n);
+    for (; done && sys->tables < from->tables; sys->tables++) {
+        struct table *t = &sys->table[sys->tables];
+        *t = from->table[sys->tables];
+        done = create_table(t, length_of(sys, t->drives), t->time);
     }
-    sys->base_tables = from->base_tables;
     sys->base_harmonics = from->base_harmonics;
     sys->limit_harmonics = from->limit_harmonics;
-    return done && copy_table(&sys->limits, &from->limits, sys->ncontact, 0);
+    sys->base_tables = from->base_tables;
+    sys->limit_tables = from->limit_tables;
+    return done;
 }
 
 /* ------------------------------------------------------------------------------------------------------------------ at a time */
@@ -149,16 +122,15 @@ static size_t knot_at(const struct table *table, double t)
     return lo;
 }
 
-/* Returns value (order 0) or slope (order 1) of column i of a table at the set time. */
-static double look_up(const tribo_system *sys, const struct table *table, size_t columns, size_t i, int order)
+/* Returns value (order 0) or slope (order 1) of column i of a table at t + low; k: the last knot at or before t. */
+static double look_up(const struct table *table, size_t k, double t, double low, size_t i, int order)
 {
-    const size_t k = table->at;
-    const double *v = table->value + k * columns + i;
-    if (k + 1 == table->knots || sys->time < table->time[0]) {
+    const double *v = table->value + k * table->columns + i;
+    if (k + 1 == table->knots || t < table->time[0]) {
         return order ? 0.0 : *v;
     }
-    const double slope = (v[columns] - v[0]) / (table->time[k + 1] - table->time[k]);
-    return order ? slope : v[0] + slope * (sys->time - table->time[k] + sys->low);
+    const double slope = (v[table->columns] - v[0]) / (table->time[k + 1] - table->time[k]);
+    return order ? slope : v[0] + slope * (t - table->time[k] + low);
 }
 
 void tribo_system_put_limits(tribo_system *sys, double later)
@@ -188,7 +160,6 @@ void tribo_system_set_time(tribo_system *sys, double t)
         sys->table[k].at = knot_at(&sys->table[k], t);
     }
     if (tribo_system_limits_vary(sys)) {
-        sys->limits.at = knot_at(&sys->limits, sys->time);
         tribo_system_put_limits(sys, 0.0);
     }
 }
@@ -196,17 +167,13 @@ void tribo_system_set_time(tribo_system *sys, double t)
 double tribo_system_next_kink(const tribo_system *sys, double t)
 {
     double next = HUGE_VAL;
-    if (sys->tables == 0 && sys->limits.knots == 0) {
-        return next;
-    }
-    for (size_t k = 0; k <= sys->tables; k++) {
-        const struct table *table = k < sys->tables ? &sys->table[k] : &sys->limits;
-        for (size_t i = table->knots ? knot_at(table, t) : 0; i < table->knots; i++) {
-            if (table->time[i] > t || (table->time[i] == t && sys->low < 0.0)) {
-                next = lesser(next, table->time[i]);
-                break;
-            }
+    for (size_t k = 0; k < sys->tables; k++) {
+        const struct table *table = &sys->table[k];
+        size_t i = knot_at(table, t);
+        while (i < table->knots && !(table->time[i] > t || (table->time[i] == t && sys->low < 0.0))) {
+            i++;
         }
+        next = i < table->knots ? lesser(next, table->time[i]) : next;
     }
     return next;
 }
@@ -216,8 +183,14 @@ void tribo_system_tables(const tribo_system *sys, enum drives drives, int order,
 {
     for (size_t k = 0; order < 2 && k < sys->tables; k++) {
         const struct table *table = &sys->table[k];
-        const double value = factor * look_up(sys, table, 1, 0, order);
-        for (size_t i = begin; table->drives == drives && i < end; i++) {
+        if (table->drives != drives) {
+            continue;
+        }
+        double value = 0.0;
+        for (size_t i = begin; i < end; i++) {
+            if (i == begin || table->columns > 1) {
+                value = factor * look_up(table, table->at, sys->time, sys->low, table->columns > 1 ? i : 0, order);
+            }
             to[i] += value * table->pattern[i];
         }
     }
@@ -249,8 +222,25 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
             to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
         }
     }
-    if (sys->tables && drives != DRIVES_LIMIT) {
-        tribo_system_tables(sys, drives, order, factor, 0, drives == DRIVES_BASE ? sys->ncontact : sys->ndof, to);
+    if (sys->tables) {
+        tribo_system_tables(sys, drives, order, factor, 0, length_of(sys, drives), to);
+    }
+}
+
+void tribo_system_add_base_at(const tribo_system *sys, double t, double factor, double *to)
+{
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        const struct harmonic *h = &sys->harmonic[k];
+        const double c = factor * cos(h->omega * t), s = factor * sin(h->omega * t);
+        for (size_t e = 0; h->drives == DRIVES_BASE && e < h->count; e++) {
+            to[h->index[e]] += c * h->cosine[e] + s * h->sine[e];
+        }
+    }
+    for (size_t k = 0; k < sys->tables; k++) {
+        const struct table *table = &sys->table[k];
+        if (table->drives == DRIVES_BASE) {
+            tribo_add(to, factor * look_up(table, knot_at(table, t), t, 0.0, 0, 0), table->pattern, sys->ncontact);
+        }
     }
 }
 
@@ -259,22 +249,23 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
 /* Returns the order-th derivative of the limit of contact i without harmonics. */
 static double loads_steady_limit(const tribo_system *sys, size_t i, int order)
 {
-    if (sys->limits.knots) {
-        return order < 2 ? look_up(sys, &sys->limits, sys->ncontact, i, order) : 0.0;
+    double limit = sys->limit_tables || order ? 0.0 : sys->given_limit[i];
+    for (size_t k = 0; sys->limit_tables && order < 2 && k < sys->tables; k++) {
+        const struct table *table = &sys->table[k];
+        limit = table->drives == DRIVES_LIMIT ? look_up(table, table->at, sys->time, sys->low, i, order) : limit;
     }
-    return order ? 0.0 : sys->given_limit[i];
+    return limit;
 }
 
 void tribo_system_limits(const tribo_system *sys, double *limit, double *rate)
 {
+    memset(rate, 0, sys->ncontact * sizeof *rate);
     if (!tribo_system_limits_vary(sys)) {
         tribo_get_limit(sys->contacts, limit);
-        memset(rate, 0, sys->ncontact * sizeof *rate);
         return;
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
-        limit[i] = loads_steady_limit(sys, i, 0);
-        rate[i] = loads_steady_limit(sys, i, 1);
+        limit[i] = sys->limit_tables ? 0.0 : sys->given_limit[i];
     }
     tribo_system_loads(sys, DRIVES_LIMIT, 0, 1.0, limit);
     tribo_system_loads(sys, DRIVES_LIMIT, 1, 1.0, rate);
@@ -297,9 +288,12 @@ void tribo_system_most_limits(const tribo_system *sys, double *most)
         return;
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
-        most[i] = sys->limits.knots ? 0.0 : sys->given_limit[i];
-        for (size_t k = 0; k < sys->limits.knots; k++) {
-            most[i] = greater(most[i], sys->limits.value[k * sys->ncontact + i]);
+        most[i] = sys->limit_tables ? 0.0 : sys->given_limit[i];
+        for (size_t k = 0; k < sys->tables; k++) {
+            const struct table *table = &sys->table[k];
+            for (size_t p = 0; table->drives == DRIVES_LIMIT && p < table->knots; p++) {
+                most[i] = greater(most[i], table->value[p * table->columns + i]);
+            }
         }
         most[i] += tribo_system_swing(sys, i);
     }
@@ -329,26 +323,9 @@ int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
     return 0;
 }
 
-/* ------------------------------------------------------------------------------------------------------------------ harmonics */
+/* ------------------------------------------------------------------------------------------------------------------- checks */
 
-/* h = entries of cosine, sine [n] that are not both 0; all entries for limits, where the index is the contact. Returns 0 if out
- * of memory. */
-static int loads_compress(struct harmonic *h, size_t n, const double *cosine, const double *sine)
-{
-    if (!create_harmonic(h, n)) {
-        return 0;
-    }
-    for (size_t i = 0; i < n; i++) {
-        if (cosine[i] != 0.0 || sine[i] != 0.0 || h->drives == DRIVES_LIMIT) {
-            h->index[h->count] = i;
-            h->cosine[h->count] = cosine[i];
-            h->sine[h->count++] = sine[i];
-        }
-    }
-    return 1;
-}
-
-static int check_amplitudes(const tribo_system *sys, const char *name, const double *x, size_t n)
+static int check_finite(const tribo_system *sys, const char *name, const double *x, size_t n)
 {
     for (size_t i = 0; x && i < n; i++) {
         if (!isfinite(x[i])) {
@@ -358,14 +335,14 @@ static int check_amplitudes(const tribo_system *sys, const char *name, const dou
     return TRIBO_OK;
 }
 
-/* Returns TRIBO_ERR_UNSUPPORTED for a load on a degree of freedom without mass, or a varying limit of a compliant contact. */
-static int check_place(const tribo_system *sys, enum drives drives, const char *name, const double *x)
+/* Checks x, amplitudes of loads, bases or limits in the caller's coordinates, or NULL. Returns TRIBO_ERR_UNSUPPORTED for a load
+ * on a degree of freedom without mass, or a varying limit of a compliant contact. */
+static int check_pattern(const tribo_system *sys, enum drives drives, const char *name, const double *x)
 {
-    const size_t *place = sys->expansion.place;
-    const int of_load = drives == DRIVES_LOAD;
-    const size_t n = !x || !place || (of_load && sys->modes) ? 0 : of_load ? sys->given : sys->ncontact;
-    for (size_t i = 0; i < n; i++) {
-        if (x[i] != 0.0 && of_load && place[i] >= sys->ndof) {
+    const size_t *place = sys->expansion.place, n = drives == DRIVES_LOAD ? sys->given : sys->ncontact;
+    const int status = check_finite(sys, name, x, n);
+    for (size_t i = 0; x && place && !status && i < n; i++) {
+        if (x[i] != 0.0 && drives == DRIVES_LOAD && !sys->modes && place[i] >= sys->ndof) {
             return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                      "%s[%zu] = %g, but degree of freedom %zu has no mass, and takes no load", name, i, x[i], i);
         }
@@ -375,7 +352,7 @@ static int check_place(const tribo_system *sys, enum drives drives, const char *
                                      i);
         }
     }
-    return TRIBO_OK;
+    return status;
 }
 
 /* Largest limit; keeps results computed from limits finite. */
@@ -394,128 +371,6 @@ static int loads_check_limits(const tribo_system *sys, const double *cosine, con
     return TRIBO_OK;
 }
 
-/* Appends a harmonic, parts [2][n] cosine and sine. Returns 0 if out of memory. */
-static int append_harmonic(tribo_system *sys, enum drives drives, double omega, size_t n, const double *parts)
-{
-    struct harmonic h = {.omega = omega, .drives = drives, .time = NAN};
-    struct harmonic *all = realloc(sys->harmonic, (sys->harmonics + 1) * sizeof *all);
-    sys->harmonic = all ? all : sys->harmonic;
-    if (!all || !loads_compress(&h, n, parts, parts + n)) {
-        return 0;
-    }
-    sys->harmonic[sys->harmonics++] = h;
-    sys->base_harmonics += drives == DRIVES_BASE;
-    sys->limit_harmonics += drives == DRIVES_LIMIT;
-    sys->revision++;
-    tribo_system_forget_time(sys);
-    return 1;
-}
-
-/* Appends the base motion b = -d(way)/dt, way [2][ncontact] cosine and sine: displacements of compliant contacts by the last
- * load, so that v includes d(way)/dt. Returns 0 if out of memory; then the load is removed. */
-static int append_bend(tribo_system *sys, double omega, double *way)
-{
-    const size_t c = sys->ncontact;
-    for (size_t i = 0; i < c; i++) {
-        const double cosine = way[i], sine = way[c + i];
-        way[i] = -omega * sine;
-        way[c + i] = omega * cosine;
-    }
-    if (tribo_largest(way, 2 * c) == 0.0) {
-        return 1;
-    }
-    if (!append_harmonic(sys, DRIVES_BASE, omega, c, way)) {
-        free_harmonic(&sys->harmonic[--sys->harmonics]);
-        return 0;
-    }
-    sys->harmonic[sys->harmonics - 1].by_load = 1;
-    return 1;
-}
-
-static int loads_add_harmonic(tribo_system *sys, enum drives drives, double omega, const double *cosine, const double *sine)
-{
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    const int of_contacts = drives != DRIVES_LOAD;
-    const size_t given = of_contacts ? sys->ncontact : sys->given, n = of_contacts ? sys->ncontact : sys->ndof;
-    if (!isfinite(omega)) {
-        return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
-    }
-    int status = check_amplitudes(sys, "cosine", cosine, given);
-    status = status ? status : check_amplitudes(sys, "sine", sine, given);
-    status = status ? status : check_place(sys, drives, "cosine", cosine);
-    status = status ? status : check_place(sys, drives, "sine", sine);
-    status = status || drives != DRIVES_LIMIT ? status : loads_check_limits(sys, cosine, sine);
-    if (status) {
-        return status;
-    }
-    double *parts = tribo_zeros(2 * n + 1, sizeof *parts), *way = tribo_zeros(2 * sys->ncontact + 1, sizeof *way);
-    for (int part = 0; parts && way && part < 2; part++) {
-        const double *from = part ? sine : cosine;
-        if (from && of_contacts) {
-            memcpy(parts + (size_t)part * n, from, n * sizeof *parts);
-        } else if (from) {
-            tribo_system_accelerate(sys, from, parts + (size_t)part * n, way + (size_t)part * sys->ncontact);
-        }
-    }
-    const int done =
-        parts && way && append_harmonic(sys, drives, omega, n, parts) && (of_contacts || append_bend(sys, omega, way));
-    free(parts);
-    free(way);
-    return done ? TRIBO_OK
-                : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a harmonic of %zu value%s", n, plural(n));
-}
-
-int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine)
-{
-    return loads_add_harmonic(sys, DRIVES_LOAD, omega, cosine, sine);
-}
-
-/* Removes the harmonics of loads, bases or limits, and the tables of loads or bases. */
-static void remove_driven(tribo_system *sys, enum drives drives)
-{
-    size_t kept = 0;
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        const struct harmonic *h = &sys->harmonic[k];
-        const enum drives of = h->by_load ? DRIVES_LOAD : h->drives;
-        if (of != drives) {
-            sys->harmonic[kept++] = *h;
-        } else {
-            sys->base_harmonics -= h->drives == DRIVES_BASE;
-            sys->limit_harmonics -= h->drives == DRIVES_LIMIT;
-            free_harmonic(&sys->harmonic[k]);
-        }
-    }
-    sys->harmonics = kept;
-    kept = 0;
-    for (size_t k = 0; k < sys->tables; k++) {
-        if (sys->table[k].drives != drives) {
-            sys->table[kept++] = sys->table[k];
-        } else {
-            free_table(&sys->table[k]);
-        }
-    }
-    sys->tables = kept;
-    sys->base_tables = drives == DRIVES_BASE ? 0 : sys->base_tables;
-    sys->revision++;
-    tribo_system_forget_time(sys);
-}
-
-int tribo_system_clear_loads(tribo_system *sys)
-{
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    remove_driven(sys, DRIVES_LOAD);
-    return TRIBO_OK;
-}
-
-int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *cosine, const double *sine)
-{
-    return loads_add_harmonic(sys, DRIVES_BASE, omega, cosine, sine);
-}
-
 /* Takes the settings; if limits are still constant, copies the limits of the context to given_limit. Returns a status. */
 static int loads_begin_limits(tribo_system *sys)
 {
@@ -526,30 +381,22 @@ static int loads_begin_limits(tribo_system *sys)
     return status;
 }
 
-int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine, const double *sine)
-{
-    const int status = sys ? loads_begin_limits(sys) : TRIBO_ERR_NULL;
-    return status ? status : loads_add_harmonic(sys, DRIVES_LIMIT, omega, cosine, sine);
-}
-
-/* --------------------------------------------------------------------------------------------------------------------- tables */
-
-/* Returns TRIBO_OK if time [knots] ascends and is finite, and value is not NULL; name: of value, for the message. */
+/* Returns TRIBO_OK if there are knots, time [knots] ascends and is finite, and value is not NULL; name: of value, for the
+ * message. */
 static int check_knots(const tribo_system *sys, size_t knots, const double *time, const char *name, const double *value)
 {
-    if (!time || !value) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", time ? name : "time");
+    if (knots == 0 || !time || !value) {
+        return knots ? tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", time ? name : "time")
+                     : tribo_system_fail(sys, TRIBO_ERR_SIZE, "knots = 0");
     }
-    for (size_t k = 0; k < knots; k++) {
-        if (!isfinite(time[k])) {
-            return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "time[%zu] = %g is not finite", k, time[k]);
-        }
-        if (k && time[k] <= time[k - 1]) {
+    const int status = check_finite(sys, "time", time, knots);
+    for (size_t k = 1; !status && k < knots; k++) {
+        if (time[k] <= time[k - 1]) {
             return tribo_system_fail(sys, TRIBO_ERR_RANGE, "time[%zu] = %.17g is not after time[%zu] = %.17g", k, time[k], k - 1,
                                      time[k - 1]);
         }
     }
-    return TRIBO_OK;
+    return status;
 }
 
 /* Returns TRIBO_OK if limit [knots][ncontact] is finite, not negative, and 0 at elastic contacts. */
@@ -558,18 +405,143 @@ static int check_limit_table(const tribo_system *sys, size_t knots, const double
     const size_t n = sys->ncontact;
     int status = TRIBO_OK;
     for (size_t k = 0; !status && k < knots * n; k++) {
-        if (!isfinite(limit[k])) {
-            status = tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "limit[%zu] = %g of contact %zu is not finite", k / n, limit[k],
-                                       k % n);
-        } else if (limit[k] < 0.0) {
+        if (!isfinite(limit[k]) || limit[k] < 0.0) {
+            const int finite = isfinite(limit[k]);
             status =
-                tribo_system_fail(sys, TRIBO_ERR_NEGATIVE, "limit[%zu] = %g of contact %zu is negative", k / n, limit[k], k % n);
+                tribo_system_fail(sys, finite ? TRIBO_ERR_NEGATIVE : TRIBO_ERR_NOT_FINITE, "limit[%zu] = %g of contact %zu is %s",
+                                  k / n, limit[k], k % n, finite ? "negative" : "not finite");
         }
     }
     for (size_t k = 0; !status && k < knots; k++) {
-        status = check_place(sys, DRIVES_LIMIT, "limit", limit + k * n);
+        status = check_pattern(sys, DRIVES_LIMIT, "limit", limit + k * n);
     }
     return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ add and remove */
+
+/* Notes a change of the functions of time that drive loads, bases or limits. */
+static int loads_changed(tribo_system *sys)
+{
+    sys->revision++;
+    tribo_system_forget_time(sys);
+    return TRIBO_OK;
+}
+
+/* Appends a harmonic, parts [2][n] cosine and sine: entries that are not both 0; all entries for limits, where the index is the
+ * contact. Returns 0 if out of memory. */
+static int append_harmonic(tribo_system *sys, enum drives drives, double omega, const double *parts, int by_load)
+{
+    const size_t n = length_of(sys, drives);
+    struct harmonic h = {.omega = omega, .drives = drives, .time = NAN, .by_load = by_load};
+    struct harmonic *all = realloc(sys->harmonic, (sys->harmonics + 1) * sizeof *all);
+    for (size_t i = 0; i < n; i++) {
+        h.count += parts[i] != 0.0 || parts[n + i] != 0.0 || drives == DRIVES_LIMIT;
+    }
+    sys->harmonic = all ? all : sys->harmonic;
+    if (!all || !create_harmonic(&h, NULL)) {
+        return 0;
+    }
+    for (size_t i = 0, e = 0; e < h.count; i++) {
+        if (parts[i] != 0.0 || parts[n + i] != 0.0 || drives == DRIVES_LIMIT) {
+            h.index[e] = i;
+            h.cosine[e] = parts[i];
+            h.sine[e++] = parts[n + i];
+        }
+    }
+    sys->harmonic[sys->harmonics++] = h;
+    sys->base_harmonics += drives == DRIVES_BASE;
+    sys->limit_harmonics += drives == DRIVES_LIMIT;
+    loads_changed(sys);
+    return 1;
+}
+
+/* Adds a harmonic. Displacements of compliant contacts by a load, way [2][ncontact], become a base motion b = -d(way)/dt, so that
+ * v includes d(way)/dt. Returns a status. */
+static int add_harmonic(tribo_system *sys, enum drives drives, double omega, const double *cosine, const double *sine)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    const size_t n = length_of(sys, drives), c = sys->ncontact;
+    int status = drives == DRIVES_LIMIT ? loads_begin_limits(sys) : TRIBO_OK;
+    status = status || isfinite(omega) ? status : tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
+    status = status ? status : check_pattern(sys, drives, "cosine", cosine);
+    status = status ? status : check_pattern(sys, drives, "sine", sine);
+    status = status || drives != DRIVES_LIMIT ? status : loads_check_limits(sys, cosine, sine);
+    if (status) {
+        return status;
+    }
+    double *parts = tribo_zeros(2 * (n + c) + 1, sizeof *parts), *way = parts ? parts + 2 * n : NULL;
+    for (size_t part = 0; parts && part < 2; part++) {
+        const double *from = part ? sine : cosine;
+        if (from && drives != DRIVES_LOAD) {
+            memcpy(parts + part * n, from, n * sizeof *parts);
+        } else if (from) {
+            tribo_system_accelerate(sys, from, parts + part * n, way + part * c);
+        }
+    }
+    int done = parts && append_harmonic(sys, drives, omega, parts, 0);
+    if (done && tribo_largest(way, 2 * c) * fabs(omega) > 0.0) {
+        for (size_t i = 0; i < c; i++) {
+            parts[i] = -omega * way[c + i];
+            parts[c + i] = omega * way[i];
+        }
+        done = append_harmonic(sys, DRIVES_BASE, omega, parts, 1);
+        if (!done) {
+            free(sys->harmonic[--sys->harmonics].index);
+        }
+    }
+    free(parts);
+    return done ? TRIBO_OK
+                : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a harmonic of %zu value%s", n, plural(n));
+}
+
+/* Appends a table, value [knots][columns]; pattern: forces [given], base velocities [ncontact], or NULL: ones. Returns a status. */
+static int append_table(tribo_system *sys, enum drives drives, size_t knots, size_t columns, const double *time,
+                        const double *value, const double *pattern)
+{
+    struct table t = {.drives = drives, .knots = knots, .columns = columns};
+    struct table *all = realloc(sys->table, (sys->tables + 1) * sizeof *all);
+    double *way = sys->feq;
+    sys->table = all ? all : sys->table;
+    if (!all || !create_table(&t, length_of(sys, drives), NULL)) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knot%s", knots, plural(knots));
+    }
+    memcpy(t.time, time, knots * sizeof *time);
+    memcpy(t.value, value, knots * columns * sizeof *value);
+    memset(way, 0, sys->ncontact * sizeof *way);
+    if (drives == DRIVES_LOAD) {
+        tribo_system_accelerate(sys, pattern, t.pattern, way);
+    }
+    for (size_t i = 0; drives != DRIVES_LOAD && i < sys->ncontact; i++) {
+        t.pattern[i] = pattern ? pattern[i] : 1.0;
+    }
+    if (tribo_largest(way, sys->ncontact) > 0.0) {
+        free(t.time);
+        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                 "the load of a table bends what is reduced to compliance: take TRIBO_STATICS_MASS");
+    }
+    sys->table[sys->tables++] = t;
+    sys->base_tables += drives == DRIVES_BASE;
+    sys->limit_tables += drives == DRIVES_LIMIT;
+    return loads_changed(sys);
+}
+
+/* Removes the tables before `last` that drive loads, bases or limits. */
+static void remove_tables(tribo_system *sys, enum drives drives, size_t last)
+{
+    size_t kept = 0;
+    for (size_t k = 0; k < sys->tables; k++) {
+        if (sys->table[k].drives != drives || k >= last) {
+            sys->table[kept++] = sys->table[k];
+            continue;
+        }
+        free(sys->table[k].time);
+        sys->base_tables -= drives == DRIVES_BASE;
+        sys->limit_tables -= drives == DRIVES_LIMIT;
+    }
+    sys->tables = kept;
 }
 
 /* Adds the table value [knots] times pattern: forces [given], or base velocities [ncontact]. Returns a status. */
@@ -579,44 +551,48 @@ static int add_table(tribo_system *sys, enum drives drives, size_t knots, const 
     if (!sys) {
         return TRIBO_ERR_NULL;
     }
-    if (knots == 0 || !pattern) {
-        return knots ? tribo_system_fail(sys, TRIBO_ERR_NULL, "pattern is NULL")
-                     : tribo_system_fail(sys, TRIBO_ERR_SIZE, "knots = 0");
+    int status = knots == 0 || pattern ? check_knots(sys, knots, time, "value", value)
+                                       : tribo_system_fail(sys, TRIBO_ERR_NULL, "pattern is NULL");
+    status = status ? status : check_finite(sys, "value", value, knots);
+    status = status ? status : check_pattern(sys, drives, "pattern", pattern);
+    return status ? status : append_table(sys, drives, knots, 1, time, value, pattern);
+}
+
+/* Removes the harmonics and tables that drive loads, bases or limits. Returns a status. */
+static int remove_driven(tribo_system *sys, enum drives drives)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
     }
-    const int of_bases = drives == DRIVES_BASE;
-    int status = check_knots(sys, knots, time, "value", value);
-    status = status ? status : check_amplitudes(sys, "value", value, knots);
-    status = status ? status : check_amplitudes(sys, "pattern", pattern, of_bases ? sys->ncontact : sys->given);
-    status = status ? status : check_place(sys, drives, "pattern", pattern);
-    if (status) {
-        return status;
+    size_t kept = 0;
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        const struct harmonic *h = &sys->harmonic[k];
+        if ((h->by_load ? DRIVES_LOAD : h->drives) != drives) {
+            sys->harmonic[kept++] = *h;
+            continue;
+        }
+        sys->base_harmonics -= h->drives == DRIVES_BASE;
+        sys->limit_harmonics -= h->drives == DRIVES_LIMIT;
+        free(h->index);
     }
-    struct table t = {.drives = drives};
-    struct table *all = realloc(sys->table, (sys->tables + 1) * sizeof *all);
-    sys->table = all ? all : sys->table;
-    if (all && create_table(&t, knots, 1, time, value)) {
-        t.pattern = malloc(((of_bases ? sys->ncontact : sys->ndof) + 1) * sizeof *t.pattern);
-    }
-    if (!t.pattern) {
-        free_table(&t);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knot%s", knots, plural(knots));
-    }
-    if (of_bases) {
-        memcpy(t.pattern, pattern, sys->ncontact * sizeof *pattern);
-    } else {
-        memset(sys->feq, 0, sys->ncontact * sizeof *sys->feq);
-        tribo_system_accelerate(sys, pattern, t.pattern, sys->feq);
-    }
-    if (!of_bases && tribo_largest(sys->feq, sys->ncontact) > 0.0) {
-        free_table(&t);
-        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                 "the load of a table bends what is reduced to compliance: take TRIBO_STATICS_MASS");
-    }
-    sys->table[sys->tables++] = t;
-    sys->base_tables += (size_t)of_bases;
-    sys->revision++;
-    tribo_system_forget_time(sys);
-    return TRIBO_OK;
+    sys->harmonics = kept;
+    remove_tables(sys, drives, sys->tables);
+    return loads_changed(sys);
+}
+
+int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine)
+{
+    return add_harmonic(sys, DRIVES_LOAD, omega, cosine, sine);
+}
+
+int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *cosine, const double *sine)
+{
+    return add_harmonic(sys, DRIVES_BASE, omega, cosine, sine);
+}
+
+int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine, const double *sine)
+{
+    return add_harmonic(sys, DRIVES_LIMIT, omega, cosine, sine);
 }
 
 int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value, const double *pattern)
@@ -631,47 +607,30 @@ int tribo_system_add_base_table(tribo_system *sys, size_t knots, const double *t
 
 int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    struct table t = {0};
-    int status = knots ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_SIZE, "knots = 0");
-    status = status ? status : check_knots(sys, knots, time, "limit", limit);
+    int status = sys ? check_knots(sys, knots, time, "limit", limit) : TRIBO_ERR_NULL;
     status = status ? status : check_limit_table(sys, knots, limit);
     status = status ? status : loads_begin_limits(sys);
-    if (status) {
-        return status;
+    status = status ? status : append_table(sys, DRIVES_LIMIT, knots, sys->ncontact, time, limit, NULL);
+    if (!status) {
+        remove_tables(sys, DRIVES_LIMIT, sys->tables - 1);
     }
-    if (!create_table(&t, knots, sys->ncontact, time, limit)) {
-        free_table(&t);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knot%s", knots, plural(knots));
-    }
-    free_table(&sys->limits);
-    sys->limits = t;
-    sys->revision++;
-    tribo_system_forget_time(sys);
-    return TRIBO_OK;
+    return status;
 }
 
-int tribo_system_clear_limits(tribo_system *sys)
+int tribo_system_clear_loads(tribo_system *sys)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    if (tribo_system_limits_vary(sys)) {
-        tribo_set_limit(sys->contacts, sys->given_limit);
-    }
-    free_table(&sys->limits);
-    sys->limits = (struct table){0};
-    remove_driven(sys, DRIVES_LIMIT);
-    return TRIBO_OK;
+    return remove_driven(sys, DRIVES_LOAD);
 }
 
 int tribo_system_clear_base_motion(tribo_system *sys)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
+    return remove_driven(sys, DRIVES_BASE);
+}
+
+int tribo_system_clear_limits(tribo_system *sys)
+{
+    if (sys && tribo_system_limits_vary(sys)) {
+        tribo_set_limit(sys->contacts, sys->given_limit);
     }
-    remove_driven(sys, DRIVES_BASE);
-    return TRIBO_OK;
+    return remove_driven(sys, DRIVES_LIMIT);
 }

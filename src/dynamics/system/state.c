@@ -13,8 +13,8 @@ int tribo_expansion_create(tribo_system *sys, size_t sliders, const size_t *plac
     size_t *copy = malloc((dofs + 1) * sizeof *copy);
     int done = 1;
     sys->motion = malloc((tribo_system_size(sys) + follow->rows + 2 * sys->ncontact) * sizeof *sys->motion);
-    sys->expansion = (struct expansion){dofs,  sliders, copy, *follow, *give, *touch,
-                                        tribo_copy_of(terms, sys->ndof, sizeof *terms, &done)};
+    sys->expansion =
+        (struct expansion){dofs, sliders, copy, *follow, *give, *touch, tribo_copy_of(terms, sys->ndof, sizeof *terms, &done)};
     *follow = *give = *touch = (struct matrix){0};
     if (copy) {
         memcpy(copy, place, dofs * sizeof *copy);
@@ -93,39 +93,6 @@ void tribo_system_add_velocities(const tribo_system *sys, const double *y, doubl
     tribo_matrix_multiply_add(&x->touch, 1.0, off, v);
 }
 
-void tribo_system_add_base_at(const tribo_system *sys, double t, double factor, double *to)
-{
-    for (size_t s = 0; s < sys->harmonics; s++) {
-        const struct harmonic *w = &sys->harmonic[s];
-        const double c = factor * cos(w->omega * t), d = factor * sin(w->omega * t);
-        for (size_t e = 0; w->drives == DRIVES_BASE && e < w->count; e++) {
-            to[w->index[e]] += c * w->cosine[e] + d * w->sine[e];
-        }
-    }
-    for (size_t s = 0; s < sys->tables; s++) {
-        const struct table *table = &sys->table[s];
-        size_t k = 0;
-        while (k + 1 < table->knots && table->time[k + 1] <= t) {
-            k++;
-        }
-        const int last = k + 1 == table->knots || t <= table->time[k];
-        const double part = last ? 0.0 : (t - table->time[k]) / (table->time[k + 1] - table->time[k]);
-        const double value = table->value[k] + (last ? 0.0 : part * (table->value[k + 1] - table->value[k]));
-        for (size_t i = 0; table->drives == DRIVES_BASE && i < sys->ncontact; i++) {
-            to[i] += factor * value * table->pattern[i];
-        }
-    }
-}
-
-/* rate [ncontact] = f' at time t. v [ncontact] is workspace. */
-static void state_find_rates(const tribo_system *sys, double t, const double *y, double *v, double *rate)
-{
-    memset(v, 0, sys->ncontact * sizeof *v);
-    tribo_system_add_base_at(sys, t, -1.0, v);
-    tribo_matrix_multiply_add(&sys->direction, 1.0, y + sys->ndof, v);
-    tribo_compliance_move(sys, y, v, rate);
-}
-
 /* A displacement w is a rounded 0 if at most ROUNDING times the sum of the sizes of its terms. */
 #define ROUNDING (16.0 * DBL_EPSILON)
 
@@ -142,7 +109,10 @@ void tribo_system_write_state(const tribo_system *sys, double t, const double *f
     }
     for (int rate = 0; rate < (without > x->sliders ? 2 : 1); rate++) {
         if (rate) {
-            state_find_rates(sys, t, from, v, force);
+            memset(v, 0, sys->ncontact * sizeof *v);
+            tribo_system_add_base_at(sys, t, -1.0, v);
+            tribo_matrix_multiply_add(&sys->direction, 1.0, from + n, v);
+            tribo_compliance_move(sys, from, v, force); /* force: f' */
         } else {
             tribo_compliance_get(sys, from, force);
         }

@@ -21,18 +21,18 @@ struct harmonic {
     enum drives drives;
     int by_load;           /* 1: base motion that a load causes (tribo_system_add_load), removed with the loads */
     size_t count;          /* entries: limits have all contacts; else those with cosine or sine not 0 */
-    size_t *index;         /* [count] degree of freedom, or contact */
+    size_t *index;         /* [count] degree of freedom, or contact; owns the memory of cosine and sine */
     double *cosine, *sine; /* [count] */
 };
 
-/* A function of time, linear between knots, constant outside. Load or base: adds value(t) pattern to the load or to b(t). Limits:
- * value(t) [ncontact] is the limit of the contacts. */
+/* A function of time, linear between knots, constant outside: adds value(t) pattern to the load or to b(t). A table of limits
+ * has a column for each contact, and stands in the place of given_limit. */
 struct table {
     enum drives drives;
-    size_t knots, at; /* at: last knot at or before sys->time, or 0 */
-    double *time;
-    double *value;   /* [knots], or [knots][ncontact] for limits */
-    double *pattern; /* [ndof] accelerations, [ncontact] velocities; NULL for limits */
+    size_t knots, columns, at; /* at: last knot at or before sys->time, or 0 */
+    double *time;              /* [knots]; owns the memory of value and pattern */
+    double *value;             /* [knots][columns] */
+    double *pattern;           /* [ndof] accelerations, [ncontact] velocities; limits: [ncontact] ones */
 };
 
 /* Error bound of a reduced system at omega: missing x^order/(1 - x), x = omega^2/above. Left-out modes have omega^2 >= above, and at
@@ -44,15 +44,15 @@ struct truncation {
 
 /* The caller's x: with k = place[d], x_d = q_k if k < ndof, else w_(k - ndof), without mass, w = follow q + give f. */
 struct expansion {
-    size_t dofs, sliders; /* sliders: the last of dofs; the caller's state has no velocities of sliders */
-    size_t *place;        /* [dofs]; NULL: x = q, and all other members are empty */
+    size_t dofs, sliders;       /* sliders: the last of dofs; the caller's state has no velocities of sliders */
+    size_t *place;              /* [dofs]; NULL: x = q, and all other members are empty */
     struct matrix follow, give; /* [dofs - ndof][ndof], [dofs - ndof][ncontact] */
     struct matrix touch;        /* [ncontact][dofs - ndof] J_w: f = G^-1 J_w (w - follow q) */
     double *terms;              /* [ndof] sum of the sizes of the terms of K_ii; NULL if reduced */
 };
 
 struct tribo_system {
-    size_t ndof, ncontact; /* ndof: number of degrees of freedom with mass */
+    size_t ndof, ncontact;                                 /* ndof: number of degrees of freedom with mass */
     struct matrix stiffness, damping, direction, response; /* AK, AC, J, B */
     tribo_context *contacts; /* computes forces, with the settings of `lent` and the limits at the set time */
     tribo_context *lent;     /* the caller's context of tribo_system_context; NULL before the first call */
@@ -61,13 +61,12 @@ struct tribo_system {
 
     size_t harmonics, base_harmonics, limit_harmonics; /* numbers: all; of b(t); of limits */
     struct harmonic *harmonic;
-    size_t tables, base_tables; /* numbers: all; of b(t) */
+    size_t tables, base_tables, limit_tables; /* numbers: all; of b(t); of limits, at most 1 */
     struct table *table;
-    struct table limits;         /* knots 0: the limits are given_limit, plus harmonics */
-    double *given_limit;         /* [ncontact] limits set by the caller; valid while limits vary */
-    double *put_limit;           /* [ncontact] workspace: limits at the set time */
-    size_t revision, structure;  /* number of changes of loads, tables and damping; of damping */
-    double time, low;            /* the set time (NaN: none) and its part below the last digit (tribo_system_set_low) */
+    double *given_limit;        /* [ncontact] limits set by the caller; valid while limits vary */
+    double *put_limit;          /* [ncontact] workspace: limits at the set time */
+    size_t revision, structure; /* number of changes of loads, tables and damping; of damping */
+    double time, low;           /* the set time (NaN: none) and its part below the last digit (tribo_system_set_low) */
 
     /* K and C, if the mass matrix is not diagonal: rounding in M^-1 K has destroyed the low modes. Otherwise no rows: M AK = K
      * and M AC = C up to rounding of every entry. */
@@ -95,7 +94,6 @@ struct tribo_system {
     double *acceleration;            /* [ndof] workspace */
     double *motion;                  /* [tribo_system_size + dofs - ndof + 2 ncontact] workspace; NULL without an expansion */
     int snaps_in_order;              /* 1: any set of resting contacts can be snapped in the order of contacts */
-    double *dense;                   /* workspace of the Jacobian, allocated by the first tribo_system_jacobian */
 };
 
 /* Creates a system with M = identity. Takes the matrices, also after an error. damping without rows: 0. Returns a status. */
@@ -162,10 +160,10 @@ void tribo_harmonic_take(const tribo_system *sys, struct harmonic *h, double c, 
 void tribo_system_set_low(tribo_system *sys, double low);
 
 /* to += factor times the order-th derivative, at the set time, of the accelerations by the load [ndof], of b(t) [ncontact], or of
- * the harmonics of the limits [ncontact]. */
+ * what the limits [ncontact] have beside given_limit. */
 void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, double factor, double *to);
 
-/* to[i] += factor times the order-th derivative of the tables' part of the load or of b(t), begin <= i < end. */
+/* to[i] += factor times the order-th derivative of the tables' part of load, b(t) or limits, begin <= i < end. */
 void tribo_system_tables(const tribo_system *sys, enum drives drives, int order, double factor, size_t begin, size_t end,
                          double *to);
 
@@ -181,7 +179,7 @@ static inline int tribo_system_bases_move(const tribo_system *sys)
 /* Returns 1 if limits change with time, by a table or harmonics. */
 static inline int tribo_system_limits_vary(const tribo_system *sys)
 {
-    return sys->limits.knots || sys->limit_harmonics;
+    return sys->limit_tables || sys->limit_harmonics;
 }
 
 /* Returns 1 if t is the set time and limits are constant: tribo_system_set_time would change nothing. */
@@ -222,9 +220,6 @@ double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 
 /* acceleration [ndof] = q'' without the forces of rigid contacts, at t and y. */
 void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration);
-
-/* acceleration [ndof] += pull f, with the forces f of compliant contacts in y. */
-void tribo_system_add_springs(const tribo_system *sys, const double *y, double *acceleration);
 
 /* acceleration [ndof] = q'' without the forces of rigid contacts; v, a [ncontact] = J q' - b and J q'' - b'. */
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a);
