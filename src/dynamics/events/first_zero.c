@@ -23,12 +23,6 @@
  * changes the guard by a tenth of noise. */
 #define SHORT 1.9e-6
 
-/* Reach of five derivatives, in parts of a first length: the bound of the sixth changes the guard by a tenth of noise. */
-#define FAR 2.2e-3
-
-/* The part of an interval over which five derivatives are as exact as the quintic in its middle. */
-#define AHEAD 0.5
-
 /* The part of an interval within which two derivatives foresee a zero to a thousandth; from just before, it is in their
  * reach. */
 #define SOON 0.1
@@ -66,7 +60,7 @@ static double sixth_root(double x)
 
 static void watch_all(struct first_zero *s)
 {
-    s->watching = s->asked;
+    s->watching = s->guards;
 }
 
 static void exchange(struct guard **watched, size_t i, size_t k)
@@ -236,100 +230,17 @@ static struct guard *first_in_sight(const struct first_zero *s, double span, dou
     return first;
 }
 
-/* Taylor series p [6] of a guard at its left sample in units of span; *end = its sum. Returns 0 if the motion does not know
- * it. */
-static int series(const struct first_zero *s, const struct guard *g, double span, double *p, double *end)
-{
-    double d[3];
-    if (!s->motion->further || !s->motion->further(s->own, s->a, g, d)) {
-        return 0;
-    }
-    p[0] = g->left.g;
-    p[1] = span * g->left.d;
-    p[2] = 0.5 * span * (span * g->left.e);
-    p[3] = span * (span * (span * d[0])) * (1 / 6.);
-    p[4] = span * (span * (span * (span * d[1]))) * (1 / 24.);
-    p[5] = span * (span * (span * (span * (span * d[2])))) * (1 / 120.);
-    *end = p[0] + p[1] + p[2] + p[3] + p[4] + p[5];
-    return 1;
-}
-
-/* Bound of the difference between a guard and its Taylor series a span on. */
-static double remainder_of(const struct guard *g, double span)
-{
-    const double cube = span * span * span;
-    return g->bend * cube * cube * (1 / 720.);
-}
-
-/* 1 if a guard, whose parabola is zero a step on in the far reach, falls monotonically to twice the step; *step = its zero by
- * five derivatives. */
-static int lands(const struct first_zero *s, const struct guard *g, double *step)
-{
-    const double span = 2.0 * *step;
-    double p[6], end;
-    if (g->allowance > 0.0 || !series(s, g, span, p, &end)) {
-        return 0;
-    }
-    const double later = 3.0 * fabs(p[3]) + 4.0 * fabs(p[4]) + 5.0 * fabs(p[5]) + 6.0 * remainder_of(g, span);
-    if (!(end < 0.0 && p[1] + 2.0 * greater(p[2], 0.0) + later < 0.0)) {
-        return 0;
-    }
-    *step = span * tribo_taylor_zero(p, 0.5);
-    return remainder_of(g, *step) <= FINE * noise(g);
-}
-
 /* Foresees zeros by derivatives at a within SOON h. Returns the guard if it is certain to be the first; else sets expected. */
 static const struct guard *foresee(struct first_zero *s, double h, double longest, double *when)
 {
     double step;
-    const struct guard *first = first_in_sight(s, greater(SOON * h, s->far_reach), &step);
+    const struct guard *first = first_in_sight(s, SOON * h, &step);
     if (!first) {
         return NULL;
     }
-    const int reached = step <= s->reach || (step <= s->far_reach && lands(s, first, &step));
     *when = s->a + step;
     s->expected = *when;
-    s->early = 0.0;
-    return reached && *when <= lesser(longest, s->positive_until) && is_first(s, first, step) ? first : NULL;
-}
-
-/* The time to look before a foreseen zero, which may be earlier by `early`, so that it is in reach from there. */
-static double margin(const struct first_zero *s, double early)
-{
-    return greater(0.5 * s->reach, lesser(early, 0.5 * s->far_reach));
-}
-
-/* The time in which a guard of this slope falls by `much`. */
-static double time_of(double much, double slope)
-{
-    return slope < 0.0 ? -much / slope : HUGE_VAL;
-}
-
-/* All left samples are at a. If the guard that falls first by two derivatives has a zero by five, expects it, and asks only
- * guards that two derivatives do not prove positive until after it. */
-static void predict(struct first_zero *s)
-{
-    const double span = lesser(AHEAD * s->h, s->longest - s->a);
-    double p[6], end, seen;
-    const struct guard *g = first_in_sight(s, span, &seen);
-    if (!g || !series(s, g, span, p, &end) || !(end < 0.0)) {
-        return;
-    }
-    const double x = tribo_taylor_zero(p, seen / span), step = x * span, until = step + 0.5 * s->far_reach;
-    const double slope = p[1] + x * (2.0 * p[2] + x * (3.0 * p[3] + x * (4.0 * p[4] + x * 5.0 * p[5])));
-    if (!(step > s->reach)) {
-        return;
-    }
-    s->expected = s->a + step;
-    s->early = lesser(span * time_of(remainder_of(g, step), slope), 0.5 * step);
-    s->asked = 0;
-    for (size_t k = 0; k < s->guards; k++) {
-        struct guard *other = s->watched[k];
-        if (other == g || !clears(other, until, cubic(other, until))) {
-            exchange(s->watched, s->asked++, k);
-        }
-    }
-    s->positive_until = s->asked < s->guards ? s->a + until : HUGE_VAL;
+    return step <= s->reach && *when <= longest && is_first(s, first, step) ? first : NULL;
 }
 
 /* A guard is not positive at *b. Narrows [a, *b] to the first zero of all guards and returns that guard, with *when; NULL if
@@ -349,7 +260,7 @@ static const struct guard *narrow(struct first_zero *s, double *b, double *when)
         if (error <= FINE * noise(falls) && *when > s->a && *when < *b && all_positive_until(s, at, h)) {
             return falls;
         }
-        at = greater(at - margin(s, h * time_of(error, falls->right.g - falls->left.g)), 0.5 * at);
+        at = greater(at - 0.5 * s->reach, 0.5 * at);
         *when = s->a + at;
         if (!(*when > s->a && *when < *b)) {
             return NULL;
@@ -393,7 +304,7 @@ static int divide(struct first_zero *s, double *b)
         keep_right(s);
         return first == FALLS ? FALLS : IN_DOUBT;
     }
-    for (size_t k = 0; k < s->asked; k++) {
+    for (size_t k = 0; k < s->guards; k++) {
         s->watched[k]->middle = s->watched[k]->right;
     }
     return CLEAR;
@@ -410,22 +321,15 @@ static void find_bounds(struct first_zero *s)
     }
     const double length = lesser(sixth_root(400.0 * ratio), s->longest);
     s->reach = SHORT * length;
-    s->far_reach = FAR * length;
     s->h = greater(s->h, length);
 }
 
 /* The time to look at next: just before an expected zero, unless that is too far. */
 static double next_look(const struct first_zero *s)
 {
-    const double before = s->expected - margin(s, s->early);
+    const double before = s->expected - greater(0.5 * s->reach, s->early);
     const int sensible = before > s->a && before < lesser(s->a + s->most, s->longest);
-    return lesser(sensible ? before : lesser(s->a + s->h, s->longest), s->positive_until);
-}
-
-static void ask_all(struct first_zero *s)
-{
-    s->asked = s->guards;
-    s->positive_until = HUGE_VAL;
+    return sensible ? before : lesser(s->a + s->h, s->longest);
 }
 
 /* The velocity that is first to fall to zero within reach of the derivatives at the start, with *when; NULL if there is none.
@@ -457,7 +361,6 @@ static const struct guard *stops_at_once(struct first_zero *s, double *when)
 /* Looks at the start; returns a guard that is zero there, or at once, or NULL. */
 static const struct guard *start(struct first_zero *s, double *when)
 {
-    ask_all(s);
     watch_all(s);
     for (size_t k = 0; k < s->guards; k++) {
         s->watched[k] = &s->guard[k];
@@ -483,7 +386,6 @@ static const struct guard *start(struct first_zero *s, double *when)
 /* Samples all guards at a, where only some have left samples. */
 static void come_to(struct first_zero *s)
 {
-    ask_all(s);
     watch_all(s);
     sample(s, s->a);
     keep_left(s);
@@ -499,12 +401,6 @@ static const struct guard *pass_interval(struct first_zero *s, double b, double 
     s->a = b;
     keep_left(s);
     const struct guard *first = foresee(s, s->h, s->longest, when);
-    if (!first && s->asked < s->guards) {
-        come_to(s);
-    }
-    if (!first && s->expected <= b) {
-        predict(s);
-    }
     return first;
 }
 
@@ -544,8 +440,6 @@ static int settle_interval(struct first_zero *s, int known, double *b, const str
         *first = fallen(s, *b, when);
     } else if (s->a > begun) {
         come_to(s);
-    } else {
-        ask_all(s);
     }
     return known;
 }
@@ -564,9 +458,6 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
     s->most = STRETCH * s->h;
     s->lost = (double)MOST_LOOKS * s->h < HOPELESS * lesser(s->better, longest);
     *first = start(s, when);
-    if (!*first && !(s->expected > 0.0)) {
-        predict(s);
-    }
     while (!*first && s->a < longest) {
         if (s->lost || !(s->h > 0.0)) {
             return 0;

@@ -29,17 +29,14 @@ struct guard {
 /* The search, from time 0 on. */
 struct first_zero {
     size_t guards;
-    struct guard *guard;    /* [guards] */
-    struct guard **watched; /* [guards] first the guards that are sampled, then others of [asked], then the rest */
-    size_t watching;        /* number of guards that are sampled */
-    size_t asked;           /* guards [asked, guards) of watched are positive until positive_until */
-    double positive_until;
+    struct guard *guard;         /* [guards] */
+    struct guard **watched;      /* [guards] first the guards that are sampled */
+    size_t watching;             /* number of guards that are sampled */
     const struct motion *motion; /* look, further, bound */
     void *own;                   /* the motion's */
     double expected;             /* time of an expected zero; 0: unknown */
     double early;                /* how much earlier it may be; 0: unknown */
     double reach;                /* time over which two derivatives give a guard to rounding */
-    double far_reach;            /* time over which five derivatives do */
     double resolution;           /* times closer than this are the same */
     size_t looks;
     double a;       /* no guard is below zero until a */

@@ -14,9 +14,6 @@ struct motion {
     int (*begin)(void *own, double t, const double *y, double *reach);
     /* Sets the middle samples of guards [count] at tau into the phase. */
     void (*look)(void *own, double tau, size_t count, struct guard *const *guard);
-    /* Sets to [3] = the third to fifth derivative of a guard at tau; 1, or 0 if unknown. If known, the guard is a sum of
-     * exponentials, sines and what is linear in time. NULL: never known. */
-    int (*further)(void *own, double tau, const struct guard *g, double *to);
     /* Sets size and bend of all guards from tau on; returns the time from which smaller bounds are worth finding. */
     double (*bound)(void *own, double tau);
     /* Sets to = the state at tau into the phase that began with from; to may be from. */

@@ -2,7 +2,6 @@
 #include "common/real.h"
 
 #include <math.h>
-#include <string.h>
 
 /* In Bernstein's basis, and in powers. */
 enum { COEFFICIENTS = 7, POWERS = 6 };
@@ -125,11 +124,4 @@ double tribo_quintic_zero(const struct sample *a, const struct sample *b, double
     const struct sample end = {-b->g, b->d, -b->e}, start = {-a->g, a->d, -a->e};
     quintic_powers(&end, &start, h, p);
     return h - zero(p, 1.0 - s) * h;
-}
-
-double tribo_taylor_zero(const double *p, double guess)
-{
-    double own[POWERS + ROOTS] = {0.0};
-    memcpy(own, p, POWERS * sizeof *own);
-    return zero(own, guess);
 }

@@ -1,5 +1,4 @@
-/* Zeros of a function, and intervals without one, from its values and two derivatives at both ends of an interval, or from five
- * derivatives at one end. */
+/* Zeros of a function, and intervals without one, from its values and two derivatives at both ends of an interval. */
 #ifndef TRIBO_QUINTIC_H
 #define TRIBO_QUINTIC_H
 
@@ -14,9 +13,6 @@ double tribo_quintic_least(const struct sample *a, const struct sample *b, doubl
 
 /* The first zero in (0, h) of the quintic through both samples; a.g > 0 >= b.g. */
 double tribo_quintic_zero(const struct sample *a, const struct sample *b, double h);
-
-/* The first zero of sum p_k s^k, k < 6, 0 <= s <= 1, which is positive at 0 and not at 1, from a guess on. */
-double tribo_taylor_zero(const double *p, double guess);
 
 /* Bound of the difference between quintic and function at `at`. */
 double tribo_quintic_error(double at, double h, double bend);

@@ -1,5 +1,5 @@
 /* The search for the first of many functions that falls to zero, of sums of sines that decay, whose zeros are known or looked for
- * point by point. Each is looked for without and with derivatives beyond the second, and with whatever is expected. */
+ * point by point, with whatever is expected. */
 #include <math.h>
 
 #include "support.h"
@@ -51,18 +51,6 @@ static void look(void *own, double tau, size_t guards, struct guard *const *guar
     }
 }
 
-static int further(void *own, double tau, const struct guard *g, double *to)
-{
-    const struct scene *s = own;
-    for (int k = 0; k < 3; k++) {
-        to[k] = s->scale * derivative(&s->course[g->contact], tau / s->unit, k + 3);
-        for (int j = 0; j < k + 3; j++) {
-            to[k] /= s->unit;
-        }
-    }
-    return 1;
-}
-
 static double bound(void *own, double tau)
 {
     struct scene *s = own;
@@ -82,15 +70,14 @@ static double bound(void *own, double tau)
 }
 
 /* What is found: when, in units; longest if nothing is. */
-static double find(struct scene *s, double expected, int knows_further, const struct guard **first)
+static double find(struct scene *s, double expected, const struct guard **first)
 {
     double when;
     static const struct motion motion = {.look = look, .bound = bound};
-    static const struct motion motion_further = {.look = look, .further = further, .bound = bound};
     s->search = (struct first_zero){.guards = s->guards,
                                     .guard = s->guard,
                                     .watched = s->watched,
-                                    .motion = knows_further ? &motion_further : &motion,
+                                    .motion = &motion,
                                     .own = s,
                                     .expected = expected * s->unit,
                                     .resolution = 1e-30 * s->unit};
@@ -107,15 +94,15 @@ static struct scene cosine(double offset, double size)
     return (struct scene){1, {{offset, 0.0, {{size, 0.0, 1.0, 0.0}}}}, 1.0, 1.0, 20.0, 0, {0}, {{0}}, {NULL}};
 }
 
-/* Whatever is expected, and however much is known, a zero is found there, or none. */
+/* Whatever is expected, a zero is found there, or none. */
 static void finds(struct scene *s, int any, double when, double within)
 {
     const double expected[] = {0.0, 0.5, when, when + 1e-3, when - 1e-5, 3.0 * when};
-    for (size_t k = 0; k < 2 * COUNT(expected); k++) {
+    for (size_t k = 0; k < COUNT(expected); k++) {
         const struct guard *first;
-        const double at = find(s, expected[k / 2], (int)(k % 2), &first);
-        require(any == (first != NULL), "expected %g: %s at %.17g", expected[k / 2], first ? "found" : "nothing", at);
-        require(!any || fabs(at - when) <= within, "expected %g, scale %g, unit %g: %.17g, not %.17g", expected[k / 2], s->scale,
+        const double at = find(s, expected[k], &first);
+        require(any == (first != NULL), "expected %g: %s at %.17g", expected[k], first ? "found" : "nothing", at);
+        require(!any || fabs(at - when) <= within, "expected %g, scale %g, unit %g: %.17g, not %.17g", expected[k], s->scale,
                 s->unit, at, when);
     }
 }
@@ -224,10 +211,10 @@ static double lowest_until(const struct scene *s, double end)
 }
 
 /* Nobody is below zero before what is found, point by point, and the guard found is zero there. */
-static int find_rightly(struct scene *s, double expected, int knows_further)
+static int find_rightly(struct scene *s, double expected)
 {
     const struct guard *first;
-    const double at = find(s, expected, knows_further, &first), least = lowest_until(s, at);
+    const double at = find(s, expected, &first), least = lowest_until(s, at);
     require(least >= -1e-13, "%g before %.17g", least, at);
     require(!first || fabs(derivative(&s->course[first->contact], at, 0)) <= 1e-13, "not zero at %.17g", at);
     return first != NULL;
@@ -240,7 +227,7 @@ TEST(none_is_missed)
     for (int n = 0; n < CASES; n++) {
         struct scene s;
         draw(&r, &s);
-        found += find_rightly(&s, n % 3 == 0 ? uniform(&r, 0.0, 20.0) : 0.0, n % 2);
+        found += find_rightly(&s, n % 3 == 0 ? uniform(&r, 0.0, 20.0) : 0.0);
     }
     require(found > CASES / 4 && found < CASES, "%d found", found);
 }
@@ -258,7 +245,7 @@ TEST(near_touch)
             s.course[k].offset += lift;
         }
         if (lowest_at(&s, 0.0) > 0.0) {
-            found += find_rightly(&s, 0.0, n % 2);
+            found += find_rightly(&s, 0.0);
         }
     }
     require(found > CASES / 4 && found < CASES, "%d found", found);
@@ -271,7 +258,7 @@ TEST(not_finite)
     double when;
     s.broken = 1;
     s.longest = 0.5;
-    (void)find(&s, 0.0, 1, &first);
+    (void)find(&s, 0.0, &first);
     require(tribo_first_zero(&s.search, 20.0, &first, &when) == 0, "found");
 }
 
