@@ -138,8 +138,7 @@ static void expect(struct events *e, const struct guard *event, double when)
         *e->begun = (struct lasted){when, fabs(when - e->begun->time)};
     }
     e->begun = event ? e->lasted + SLIPS * event->contact + (e->stick_slip.state.slip[event->contact] + 1) : NULL;
-    e->search.early = e->begun ? e->begun->change : 0.0;
-    e->search.expected = e->begun && e->search.early <= ALIKE * e->begun->time ? e->begun->time : 0.0;
+    e->search.expected = e->begun && e->begun->change <= ALIKE * e->begun->time ? e->begun->time : 0.0;
 }
 
 /* Begins a run: one that does not continue must not depend on the run before, not even in rounding; for one that continues

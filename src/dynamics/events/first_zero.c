@@ -1,11 +1,10 @@
-/* Walks intervals [a, b] from left to right. Where all guards are positive at both ends, quintics through both samples and the
- * bound of the sixth derivative decide whether they are positive between; if that is open, or a guard is not positive at b,
- * the interval becomes shorter: up to the first zero of the quintics, or by a part. Then only guards are sampled that the
- * longer interval leaves open. Ends of intervals are guesses: when a zero came last time, or what derivatives at a foresee.
- * What is certain comes from the bounds. Close to a zero derivatives alone find it. */
+/* Walks intervals [a, b] from left to right. An interval is clear of a guard if the quintic through the guard's samples at both
+ * ends and the bound of its sixth derivative prove that the guard is not below zero between. Guards that are not clear are
+ * doubtful: only these are sampled inside the interval, where the first quintic falls to zero, or in the middle, until the
+ * interval is clear, or its first zero is that of a quintic to rounding. Ends of intervals are guesses: the length that bounds
+ * allow, where parabolas at a fall to zero, or when a zero came last time. What is certain comes from the bounds. */
 #include "first_zero.h"
 #include "common/real.h"
-#include "parabola.h"
 
 #include <float.h>
 #include <math.h>
@@ -18,20 +17,26 @@
 /* Give up at the start if MOST_LOOKS first intervals do not cover this part of the time that bounds hold. */
 #define HOPELESS 1e-6
 
-/* Reach of two derivatives, in parts of a first length. The third derivative of a sum of exponentials and sines is at most
- * sqrt(size bend) (Cauchy, Schwarz), that of powers of time at most 4.5 times this and 60 size/longest^3: over SHORT it
+/* Reach of two derivatives at the start, in parts of a first length. The third derivative of a sum of exponentials and sines is
+ * at most sqrt(size bend) (Cauchy, Schwarz), that of powers of time at most 4.5 times this and 60 size/longest^3: over SHORT it
  * changes the guard by a tenth of noise. */
 #define SHORT 1.9e-6
 
-/* The part of an interval within which two derivatives foresee a zero to a thousandth; from just before, it is in their
- * reach. */
+/* The part of an interval within which parabolas foresee a zero. */
 #define SOON 0.1
 
 /* A zero of the quintic is that of the guard if both differ there by at most this part of noise. */
 #define FINE 0.1
 
-/* After an interval that stays open, this part of it is tried. */
+/* A zero within this last part of an interval is not looked at once more, but the middle. */
+#define CLOSE 0.999
+
+/* After an interval that needed further looks, this part of it is tried. */
 #define SHRINK 0.7
+
+/* Growth of the length of intervals that are clear: near the first length that bounds allow, and beyond. */
+#define GROWS 1.7
+#define GROWS_ON 1.15
 
 /* An interval that ends at an expected zero may be longer by this factor. */
 #define STRETCH 1.5
@@ -58,114 +63,60 @@ static double sixth_root(double x)
     return x > 0.0 && x <= DBL_MAX ? root : x;
 }
 
-static void watch_all(struct first_zero *s)
+/* Least value, until a step on, of the parabola with the value and two derivatives of sample m. */
+static double parabola_least(const struct sample *m, double step)
 {
-    s->watching = s->guards;
+    const double end = m->g + step * (m->d + 0.5 * step * m->e);
+    const int turns = m->d < 0.0 && m->d + step * m->e > 0.0;
+    return turns ? lesser(end, m->g - 0.5 * m->d * m->d / m->e) : end;
 }
 
-static void exchange(struct guard **watched, size_t i, size_t k)
+/* First zero of this parabola within most; HUGE_VAL if there is none. No quotient overflows that most does not make large. */
+static double parabola_fall(const struct sample *m, double most)
 {
-    struct guard *g = watched[i];
-    watched[i] = watched[k];
-    watched[k] = g;
+    double when = HUGE_VAL;
+    if (m->d < 0.0 && m->g + 2.0 * most * m->d < 0.0) {
+        const double line = -m->g / m->d, square = 1.0 + 2.0 * line * (m->e / m->d);
+        when = square >= 0.0 ? 2.0 * line / (1.0 + sqrt(square)) : HUGE_VAL;
+    } else if (m->g + most * (m->d + 0.5 * most * m->e) < 0.0) {
+        const double top = -m->d / m->e;
+        when = top + sqrt(greater(top * top - 2.0 * m->g / m->e, 0.0));
+    }
+    return when <= most ? when : HUGE_VAL;
 }
 
-/* Sets the middle samples of watched guards; falls = 1 if one is not above zero. */
+/* Finds bounds from a on, and a length of interval to try. */
+static void find_bounds(struct first_zero *s)
+{
+    s->better = s->motion->bound(s->own, s->a);
+    double ratio = HUGE_VAL;
+    for (size_t k = 0; k < s->guards; k++) {
+        const struct guard *g = &s->guard[k];
+        ratio = lesser(ratio, g->bend > 0.0 ? g->size / g->bend : HUGE_VAL);
+    }
+    s->length = lesser(sixth_root(400.0 * ratio), s->longest);
+    s->h = greater(s->h, s->length);
+}
+
+/* Sets the middle samples of watched guards. */
 static void sample(struct first_zero *s, double tau)
 {
     double all = 0.0;
-    s->falls = 0;
     s->motion->look(s->own, tau, s->watching, s->watched);
     for (size_t k = 0; k < s->watching; k++) {
-        struct guard *g = s->watched[k];
-        struct sample *m = &g->middle;
+        struct sample *m = &s->watched[k]->middle;
         all += 0.0 * (m->g + m->d + m->e);
-        m->g += g->allowance;
-        s->falls |= !(m->g > noise(g));
+        m->g += s->watched[k]->allowance;
     }
     s->looks++;
     s->lost |= all != 0.0 || s->looks >= MOST_LOOKS;
 }
 
-/* 1 if least >= enough; then updates lowest. */
-static int note_least(struct guard *g, double least, double enough)
+/* Samples all guards. */
+static void sample_all(struct first_zero *s, double tau)
 {
-    if (!(least >= enough)) {
-        return 0;
-    }
-    g->lowest = greater(g->lowest, g->allowance - least);
-    return 1;
-}
-
-/* 1 if a guard with samples from and to, h apart, is not below zero from the first one until `until` later; then updates
- * lowest. */
-static int positive(struct guard *g, const struct sample *from, const struct sample *to, double h, double until)
-{
-    const double enough = -noise(g);
-    return note_least(g, tribo_quintic_least(from, to, h, g->bend, until, enough), enough);
-}
-
-/* 1 if all watched guards are positive between the left and the middle sample, h later. */
-static int all_positive(struct first_zero *s, double h)
-{
-    for (size_t k = 0; k < s->watching; k++) {
-        struct guard *g = s->watched[k];
-        if (!positive(g, &g->left, &g->middle, h, h)) {
-            return 0;
-        }
-    }
-    return 1;
-}
-
-/* The same from the left sample until `until` later; the right sample is h later. */
-static int all_positive_until(struct first_zero *s, double until, double h)
-{
-    for (size_t k = 0; k < s->watching; k++) {
-        struct guard *g = s->watched[k];
-        if (!positive(g, &g->left, &g->right, h, until)) {
-            return 0;
-        }
-    }
-    return 1;
-}
-
-/* Watches only guards that may be negative between the left and right samples, h apart. */
-static void watch_doubtful(struct first_zero *s, double h)
-{
-    size_t left = 0;
-    for (size_t k = 0; k < s->watching; k++) {
-        struct guard *g = s->watched[k];
-        if (!(g->right.g > noise(g)) || !positive(g, &g->left, &g->right, h, h)) {
-            exchange(s->watched, left++, k);
-        }
-    }
-    s->watching = left;
-}
-
-/* State of an interval that ends at the middle samples: no guard is below zero in it; one is not positive at its end; open. */
-enum { CLEAR, FALLS, IN_DOUBT };
-
-static int judge(struct first_zero *s, double h)
-{
-    return s->falls ? FALLS : all_positive(s, h) ? CLEAR : IN_DOUBT;
-}
-
-/* The guard not positive at the right end of the interval of length h whose quintic is the first to be zero; *when = its
- * zero. */
-static struct guard *first_to_fall(const struct first_zero *s, double h, double *when)
-{
-    struct guard *first = NULL;
-    for (size_t k = 0; k < s->watching; k++) {
-        struct guard *g = s->watched[k];
-        if (g->right.g <= noise(g)) {
-            const double guess = g->right.g >= -noise(g) ? h : tribo_quintic_zero(&g->left, &g->right, h);
-            if (!first || guess < *when) {
-                first = g;
-                *when = guess;
-            }
-        }
-    }
-    return first;
+    s->watching = s->guards;
+    sample(s, tau);
 }
 
 /* Makes the middle samples the left ones; drops the allowance of guards that have left zero. */
@@ -189,147 +140,174 @@ static void keep_right(struct first_zero *s)
     }
 }
 
-/* Bound of the third derivative's part in a guard a step on: sqrt(size bend) step^3/6. */
-static double cubic(const struct guard *g, double step)
+/* 1 if least >= -noise; then updates lowest. */
+static int is_clear(struct guard *g, double least)
 {
-    return sqrt(g->size) * sqrt(g->bend) * step * step * step * (1 / 6.);
+    if (!(least >= -noise(g))) {
+        return 0;
+    }
+    g->lowest = greater(g->lowest, g->allowance - least);
+    return 1;
 }
 
-/* 1 if the parabola at the left sample, less doubt, is not below zero until a step on. */
-static int clears(struct guard *g, double step, double doubt)
+/* 1 if the guard is not below zero from the left sample until `until` later; sample b is h after the left one. */
+static int positive(struct guard *g, const struct sample *b, double h, double until)
 {
-    return note_least(g, parabola_least(&g->left, step) - doubt, -noise(g));
+    return is_clear(g, tribo_quintic_least(&g->left, b, h, g->bend, until, -noise(g)));
 }
 
-/* 1 if no other watched guard is below zero until a step after the left samples, where g is zero. */
-static int is_first(const struct first_zero *s, const struct guard *g, double step)
+/* Drops the allowance of a guard if the quintic proves that it has left zero in the middle between left and right samples, h
+ * apart. */
+static void drop_allowance(struct guard *g, double h)
+{
+    const double middle = tribo_quintic_middle(&g->left, &g->right, h) - tribo_quintic_error(0.5 * h, h, g->bend);
+    if (middle > 4.0 * g->allowance) {
+        g->left.g = greater(g->left.g - g->allowance, 0.0);
+        g->right.g -= g->allowance;
+        g->allowance = 0.0;
+    }
+}
+
+/* Watches only the doubtful guards of the interval between left and right samples, h apart. */
+static void watch_doubtful(struct first_zero *s, double h)
+{
+    size_t left = 0;
+    for (size_t k = 0; k < s->watching; k++) {
+        struct guard *g = s->watched[k];
+        const int falls = !(g->right.g > noise(g));
+        if (falls && g->allowance > 0.0) {
+            drop_allowance(g, h);
+        }
+        if (falls || !positive(g, &g->right, h, h)) {
+            s->watched[k] = s->watched[left];
+            s->watched[left++] = g;
+        }
+    }
+    s->watching = left;
+}
+
+/* The watched guard not positive at the right end, h after a, whose quintic is the first to be zero; *when = its zero after a. */
+static struct guard *first_to_fall(const struct first_zero *s, double h, double *when)
+{
+    struct guard *first = NULL;
+    for (size_t k = 0; k < s->watching; k++) {
+        struct guard *g = s->watched[k];
+        if (g->right.g <= noise(g)) {
+            const double guess = g->right.g >= 0.0 ? h : tribo_quintic_zero(&g->left, &g->right, h);
+            if (!first || guess < *when) {
+                first = g;
+                *when = guess;
+            }
+        }
+    }
+    return first;
+}
+
+/* 1 if no watched guard is below zero between the left and middle samples, h apart. */
+static int all_clear(const struct first_zero *s, double h)
 {
     for (size_t k = 0; k < s->watching; k++) {
-        struct guard *other = s->watched[k];
-        if (other != g && !clears(other, step, step <= s->reach ? 0.0 : cubic(other, step))) {
+        struct guard *g = s->watched[k];
+        if (g->middle.g < -noise(g) || !positive(g, &g->middle, h, h)) {
             return 0;
         }
     }
     return 1;
 }
 
-/* The watched guard whose parabola at its left sample is the first to be zero within span; *step = when. NULL if there is
- * none. */
-static struct guard *first_in_sight(const struct first_zero *s, double span, double *step)
+/* 1 if no watched guard is below zero from a until `until` later; the right samples are h after a. */
+static int all_positive_until(const struct first_zero *s, double until, double h)
 {
-    struct guard *first = NULL;
-    *step = span;
     for (size_t k = 0; k < s->watching; k++) {
         struct guard *g = s->watched[k];
-        const double own = parabola_fall(&g->left, *step);
-        if (own <= *step) {
-            first = g;
-            *step = own;
+        if (!positive(g, &g->right, h, until)) {
+            return 0;
         }
     }
-    return first;
+    return 1;
 }
 
-/* Foresees zeros by derivatives at a within SOON h. Returns the guard if it is certain to be the first; else sets expected. */
-static const struct guard *foresee(struct first_zero *s, double h, double longest, double *when)
+/* Sets expected to the first zero of parabolas at a within SOON h, if there is one. */
+static void foresee(struct first_zero *s)
 {
-    double step;
-    const struct guard *first = first_in_sight(s, SOON * h, &step);
-    if (!first) {
-        return NULL;
+    double step = SOON * s->h;
+    for (size_t k = 0; k < s->guards; k++) {
+        const double own = parabola_fall(&s->guard[k].left, step);
+        if (own <= step) {
+            step = own;
+            s->expected = s->a + step;
+        }
     }
-    *when = s->a + step;
-    s->expected = *when;
-    return step <= s->reach && *when <= longest && is_first(s, first, step) ? first : NULL;
 }
 
-/* A guard is not positive at *b. Narrows [a, *b] to the first zero of all guards and returns that guard, with *when; NULL if
- * [a, *b] must be divided. */
-static const struct guard *narrow(struct first_zero *s, double *b, double *when)
+/* Moves a to b, where all guards have been sampled, and foresees. */
+static void come_to(struct first_zero *s, double b)
 {
-    const struct guard *first = NULL;
-    watch_doubtful(s, *b - s->a);
-    while (!first && !s->lost) {
+    s->a = b;
+    keep_left(s);
+    foresee(s);
+}
+
+/* Searches [a, b]. Returns the first guard to be zero there, with *when; or NULL: no guard is below zero until a, which has moved
+ * to b, or towards it. A doubt about an interval too short to be divided is rounding. */
+static const struct guard *search_interval(struct first_zero *s, double b, double *when)
+{
+    const double begun = s->a, end = b;
+    const size_t looks = s->looks;
+    sample_all(s, b);
+    keep_right(s);
+    watch_doubtful(s, b - s->a);
+    while (s->watching && !s->lost) {
+        const double h = b - s->a;
         double at = 0.0;
-        const struct guard *falls = first_to_fall(s, *b - s->a, &at);
-        const double h = *b - s->a, error = tribo_quintic_error(at, h, falls->bend);
-        *when = s->a + at;
-        if (falls->right.g >= -noise(falls)) {
-            return all_positive_until(s, h, h) ? falls : NULL;
-        }
-        if (error <= FINE * noise(falls) && *when > s->a && *when < *b && all_positive_until(s, at, h)) {
+        const struct guard *falls = first_to_fall(s, h, &at);
+        const int fine = falls && (at == h || tribo_quintic_error(at, h, falls->bend) <= FINE * noise(falls));
+        const int begins = falls && falls->allowance > 0.0 && s->a == begun;
+        if (fine && !begins && all_positive_until(s, at, h)) {
+            *when = s->a + at;
             return falls;
         }
-        at = greater(at - 0.5 * s->reach, 0.5 * at);
-        *when = s->a + at;
-        if (!(*when > s->a && *when < *b)) {
-            return NULL;
-        }
-        sample(s, *when);
-        int below = 0;
-        for (size_t k = 0; k < s->watching; k++) {
-            below |= s->watched[k]->middle.g < -noise(s->watched[k]);
-        }
-        if (below || !all_positive(s, at)) {
-            *b = *when;
-            keep_right(s);
-            if (!below) {
-                return NULL;
+        const double next = s->a + (begins ? 0.5 * at : falls && !(fine && at > CLOSE * h) ? at : 0.5 * h);
+        if (!(next > s->a && next < b && h > s->resolution)) {
+            *when = b;
+            if (falls && falls->right.g < -noise(falls)) {
+                return falls;
             }
-        } else if (falls->middle.g <= noise(falls)) {
-            return falls;
-        } else {
-            s->a = *when;
+            break;
+        }
+        sample(s, next);
+        if (all_clear(s, next - s->a)) {
+            s->a = next;
             keep_left(s);
-            first = foresee(s, *b - s->a, *b, when);
+        } else {
+            b = next;
+            keep_right(s);
+        }
+        watch_doubtful(s, b - s->a);
+    }
+    const double length = b - begun;
+    if (s->looks > looks + 1) {
+        s->h = greater(SHRINK * length, greater(s->resolution, DBL_EPSILON * b));
+    } else {
+        s->h = greater(s->h, (length < 0.5 * s->length ? GROWS : GROWS_ON) * length);
+    }
+    if (b < end) {
+        sample_all(s, b);
+    } else {
+        s->watching = s->guards;
+        for (size_t k = 0; k < s->guards; k++) {
+            s->guard[k].middle = s->guard[k].right;
         }
     }
-    return first;
+    come_to(s, b);
+    return NULL;
 }
 
-/* Looks in the middle of an open interval [a, *b]. Returns the state of it, or of its first half, to which *b moves back. */
-static int divide(struct first_zero *s, double *b)
-{
-    const double half = 0.5 * (*b - s->a);
-    watch_doubtful(s, *b - s->a);
-    sample(s, s->a + half);
-    const int first = judge(s, half);
-    int clear = first == CLEAR;
-    for (size_t k = 0; clear && k < s->watching; k++) {
-        struct guard *g = s->watched[k];
-        clear = positive(g, &g->middle, &g->right, half, half);
-    }
-    if (!clear) {
-        *b = s->a + half;
-        keep_right(s);
-        return first == FALLS ? FALLS : IN_DOUBT;
-    }
-    for (size_t k = 0; k < s->guards; k++) {
-        s->watched[k]->middle = s->watched[k]->right;
-    }
-    return CLEAR;
-}
-
-/* Finds bounds from a on, the reach of derivatives by them, and a length of interval to try. */
-static void find_bounds(struct first_zero *s)
-{
-    s->better = s->motion->bound(s->own, s->a);
-    double ratio = HUGE_VAL;
-    for (size_t k = 0; k < s->guards; k++) {
-        const struct guard *g = &s->guard[k];
-        ratio = lesser(ratio, g->bend > 0.0 ? g->size / g->bend : HUGE_VAL);
-    }
-    const double length = lesser(sixth_root(400.0 * ratio), s->longest);
-    s->reach = SHORT * length;
-    s->h = greater(s->h, length);
-}
-
-/* The time to look at next: just before an expected zero, unless that is too far. */
+/* The time to look at next: just after an expected zero, unless that is too far. */
 static double next_look(const struct first_zero *s)
 {
-    const double before = s->expected - greater(0.5 * s->reach, s->early);
-    const int sensible = before > s->a && before < lesser(s->a + s->most, s->longest);
-    return sensible ? before : lesser(s->a + s->h, s->longest);
+    const double after = s->expected + SHORT * s->length;
+    return s->expected > s->a && after < s->a + STRETCH * s->h ? lesser(after, s->longest) : lesser(s->a + s->h, s->longest);
 }
 
 /* The velocity that is first to fall to zero within reach of the derivatives at the start, with *when; NULL if there is none.
@@ -338,7 +316,7 @@ static double next_look(const struct first_zero *s)
 static const struct guard *stops_at_once(struct first_zero *s, double *when)
 {
     const struct guard *first = NULL;
-    double step = lesser(s->reach, s->longest), fastest = 0.0;
+    double step = lesser(SHORT * s->length, s->longest), fastest = 0.0;
     for (size_t k = 0; k < s->guards; k++) {
         const struct guard *g = &s->guard[k];
         fastest = g->kind == SLIDES ? greater(fastest, g->left.g - g->allowance) : fastest;
@@ -353,23 +331,26 @@ static const struct guard *stops_at_once(struct first_zero *s, double *when)
             step = own;
         }
     }
-    s->at_once = first && is_first(s, first, step);
-    *when = s->at_once ? step : *when;
-    return s->at_once ? first : NULL;
+    for (size_t k = 0; first && k < s->guards; k++) {
+        struct guard *g = &s->guard[k];
+        first = g == first || is_clear(g, parabola_least(&g->left, step)) ? first : NULL;
+    }
+    *when = first ? step : *when;
+    return first;
 }
 
 /* Looks at the start; returns a guard that is zero there, or at once, or NULL. */
 static const struct guard *start(struct first_zero *s, double *when)
 {
-    watch_all(s);
     for (size_t k = 0; k < s->guards; k++) {
         s->watched[k] = &s->guard[k];
     }
-    sample(s, 0.0);
+    sample_all(s, 0.0);
     for (size_t k = 0; k < s->guards; k++) {
         s->guard[k].left = s->guard[k].middle;
     }
     const struct guard *first = stops_at_once(s, when);
+    s->at_once = first != NULL;
     for (size_t k = 0; !first && k < s->guards; k++) {
         struct guard *g = &s->guard[k];
         const double more = greater(greater(ALLOWED * g->size, DBL_MIN) - g->allowance, 0.0);
@@ -378,70 +359,9 @@ static const struct guard *start(struct first_zero *s, double *when)
         first = g->middle.g <= 0.0 ? g : NULL;
     }
     if (!first) {
-        keep_left(s);
+        come_to(s, 0.0);
     }
     return first;
-}
-
-/* Samples all guards at a, where only some have left samples. */
-static void come_to(struct first_zero *s)
-{
-    watch_all(s);
-    sample(s, s->a);
-    keep_left(s);
-}
-
-/* No guard is zero until b, where the middle samples are: moves a there; returns a guard if its zero is in reach. */
-static const struct guard *pass_interval(struct first_zero *s, double b, double *when)
-{
-    watch_all(s);
-    /* with care near the length that bounds allow */
-    s->h = greater(s->h, (SHORT * (b - s->a) < 0.5 * s->reach ? 1.7 : 1.15) * (b - s->a));
-    s->most = STRETCH * s->h;
-    s->a = b;
-    keep_left(s);
-    const struct guard *first = foresee(s, s->h, s->longest, when);
-    return first;
-}
-
-/* In an interval up to b too short to be divided: returns the guard below zero at b, if there is one. Else the doubt is
- * rounding, and a moves to b. */
-static const struct guard *fallen(struct first_zero *s, double b, double *when)
-{
-    double at;
-    watch_all(s);
-    const struct guard *below = first_to_fall(s, b - s->a, &at);
-    *when = s->a = b;
-    if (below && below->right.g < -noise(below)) {
-        return below;
-    }
-    come_to(s);
-    s->h = greater(s->h, s->resolution);
-    return NULL;
-}
-
-/* The interval up to *b, where the middle samples are, is not clear: returns CLEAR if another look makes it so; or finds the
- * first guard in it; or shortens it. */
-static int settle_interval(struct first_zero *s, int known, double *b, const struct guard **first, double *when)
-{
-    const double begun = s->a;
-    keep_right(s);
-    if (known == IN_DOUBT) {
-        known = divide(s, b);
-    }
-    if (known == FALLS) {
-        *first = narrow(s, b, when);
-    }
-    if (known == CLEAR || *first) {
-        return known;
-    }
-    s->most = s->h = SHRINK * (*b - s->a);
-    if (!(s->a + s->h > s->a && s->a + s->h < *b && s->h > s->resolution)) {
-        *first = fallen(s, *b, when);
-    } else if (s->a > begun) {
-        come_to(s);
-    }
-    return known;
 }
 
 int tribo_first_zero(struct first_zero *s, double longest, const struct guard **first, double *when)
@@ -455,7 +375,6 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
     s->a = s->h = 0.0;
     s->longest = longest;
     find_bounds(s);
-    s->most = STRETCH * s->h;
     s->lost = (double)MOST_LOOKS * s->h < HOPELESS * lesser(s->better, longest);
     *first = start(s, when);
     while (!*first && s->a < longest) {
@@ -465,16 +384,7 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
         if (s->a >= s->better) {
             find_bounds(s);
         }
-        double b = next_look(s);
-        watch_all(s);
-        sample(s, b);
-        int known = judge(s, b - s->a);
-        if (known != CLEAR) {
-            known = settle_interval(s, known, &b, first, when);
-        }
-        if (known == CLEAR) {
-            *first = pass_interval(s, b, when);
-        }
+        *first = search_interval(s, next_look(s), when);
     }
     return 1;
 }

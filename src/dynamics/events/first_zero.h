@@ -32,19 +32,16 @@ struct first_zero {
     struct guard *guard;         /* [guards] */
     struct guard **watched;      /* [guards] first the guards that are sampled */
     size_t watching;             /* number of guards that are sampled */
-    const struct motion *motion; /* look, further, bound */
+    const struct motion *motion; /* look, bound */
     void *own;                   /* the motion's */
     double expected;             /* time of an expected zero; 0: unknown */
-    double early;                /* how much earlier it may be; 0: unknown */
-    double reach;                /* time over which two derivatives give a guard to rounding */
     double resolution;           /* times closer than this are the same */
     size_t looks;
     double a;       /* no guard is below zero until a */
     double h;       /* length of the next interval */
-    double most;    /* its largest length, if it ends at an expected zero */
+    double length;  /* length of an interval by the last bounds */
     double longest; /* end of the search */
     double better;  /* time from which smaller bounds are worth finding */
-    int falls;      /* 1: a guard was not positive at the last look */
     int at_once;    /* 1: the zero is in reach of derivatives at the start */
     int lost;       /* 1: too many looks, or samples that are not finite */
 };

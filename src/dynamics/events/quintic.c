@@ -67,6 +67,11 @@ double tribo_quintic_least(const struct sample *a, const struct sample *b, doubl
     return least(until < h ? from : c, enough, HALVINGS);
 }
 
+double tribo_quintic_middle(const struct sample *a, const struct sample *b, double h)
+{
+    return 0.5 * (a->g + b->g) + h * (5 / 32.) * (a->d - b->d) + h * (h * (1 / 64.)) * (a->e + b->e);
+}
+
 double tribo_quintic_error(double at, double h, double bend)
 {
     const double x = at * (h - at);
@@ -112,16 +117,20 @@ static double zero(const double *p, double s)
     return s;
 }
 
-/* A zero near the end is found from the end, which has less rounding there. */
+/* A zero in the second half is found from the end, which has less rounding there; at once if a step of Newton's method from the
+ * end leads there. */
 double tribo_quintic_zero(const struct sample *a, const struct sample *b, double h)
 {
-    double p[POWERS + ROOTS] = {0.0};
-    quintic_powers(a, b, h, p);
-    const double s = zero(p, a->g / (a->g - b->g));
-    if (s <= 0.5 || !(b->g < 0.0)) {
-        return s * h;
+    double p[POWERS + ROOTS] = {0.0}, back = b->d < 0.0 ? b->g / (h * b->d) : 1.0;
+    if (!(back > 0.0 && back < 0.5)) {
+        quintic_powers(a, b, h, p);
+        const double s = zero(p, a->g / (a->g - b->g));
+        if (s <= 0.5 || !(b->g < 0.0)) {
+            return s * h;
+        }
+        back = 1.0 - s;
     }
     const struct sample end = {-b->g, b->d, -b->e}, start = {-a->g, a->d, -a->e};
     quintic_powers(&end, &start, h, p);
-    return h - zero(p, 1.0 - s) * h;
+    return h - zero(p, back) * h;
 }
