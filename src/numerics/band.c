@@ -4,25 +4,19 @@
 #include <math.h>
 #include <string.h>
 
-void tribo_band_add(double *band, size_t width, const struct matrix *a, double factor, const double *row)
+size_t tribo_band_factorize(const struct matrix *a, size_t width, const signed char *held, double *l)
 {
     for (size_t i = 0; i < a->rows; i++) {
-        double *to = band + i * (width + 1) + width - i;
-        for (size_t k = a->first[i]; k < a->first[i + 1] && a->col[k] <= i; k++) {
-            to[a->col[k]] += factor * (row ? row[i] : 1.0) * a->val[k];
-        }
-    }
-}
-
-size_t tribo_band_factorize(size_t n, size_t width, const double *band, const signed char *held, double *l)
-{
-    for (size_t i = 0; i < n; i++) {
         const int holds = held && held[i];
-        double *own = l + i * (width + 1) + width - i, pivot = holds ? 1.0 : band[i * (width + 1) + width]; /* own[j] = l_ij */
-        memset(l + i * (width + 1), 0, width * sizeof *l);
+        double *own = l + i * (width + 1) + width - i; /* own[j] = l_ij */
+        memset(l + i * (width + 1), 0, (width + 1) * sizeof *l);
+        for (size_t k = a->first[i]; k < a->first[i + 1] && a->col[k] <= i; k++) {
+            own[a->col[k]] = holds || (held && held[a->col[k]]) ? 0.0 : a->val[k];
+        }
+        double pivot = holds ? 1.0 : own[i];
         for (size_t j = i > width ? i - width : 0; !holds && j < i; j++) {
             const double *other = l + j * (width + 1) + width - j;
-            double x = held && held[j] ? 0.0 : band[i * (width + 1) + width - i + j];
+            double x = own[j];
             for (size_t k = i > width ? i - width : 0; k < j; k++) {
                 x -= own[k] * other[k];
             }
@@ -34,7 +28,7 @@ size_t tribo_band_factorize(size_t n, size_t width, const double *band, const si
         }
         own[i] = sqrt(pivot);
     }
-    return n;
+    return a->rows;
 }
 
 /* x = L^-1 x, or x = L'^-1 x: LAPACK's upper band, by columns, is L by rows. */

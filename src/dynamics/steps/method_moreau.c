@@ -1,10 +1,10 @@
 /* Method "moreau/fixed": implicit midpoint rule for the structure, Coulomb's law over the step, mean of the loads at both ends
  * (Jean and Moreau 1992, theta = 1/2). The matrix of the structure is factorized once for each step length. Stable for any dt. */
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "dynamics/decide/breakaway.h"
 #include "dynamics/system/delassus.h"
 #include "dynamics/system/hidden.h"
 #include "step_band.h"
@@ -22,21 +22,19 @@ struct moreau {
     struct step_form common;
     double h;              /* prepared step length; 0: none */
     struct step_band held; /* solver of bands; n = 0: not for this system. With n > 0 the rest is made at first need */
-    int whole;             /* 1: matrix, response and contacts are ready */
+    int whole;             /* 1: factor, response and contacts are ready */
     struct step_matrix matrix;
-    double *response;         /* [ncontact][ndof] S^-1 J'; NULL: each step solves with S twice */
-    double *push;             /* [ndof] workspace of the second solution */
-    double *limit;            /* [ncontact] limits in a step; limit/2 for compliant contacts */
-    double *ratio, *velocity; /* [ncontact] static limits */
-    int taken, tell, breaks;  /* 1: limit, ratio, velocity are set; not yet copied to contacts; a ratio is > 1 */
-    size_t settings_taken;    /* tribo_system_settings at the last update of limit */
-    double *load;             /* [ndof] load at the end of the last step */
-    double *spring, *give;    /* [ncontact] forces f0 of compliant contacts; workspace, as G f0 */
-    double *change;           /* [ncontact] f1 - f0 */
-    double *work;             /* [ndof] workspace */
-    signed char *loose;       /* [ncontact] slip; 1 for compliant contacts, which are not snapped */
-    tribo_context *contacts;  /* contacts with the operator of a step */
-    size_t settings;          /* sys->changes at the creation of contacts */
+    double *response;        /* [ncontact][ndof] S^-1 J'; NULL: each step solves with S twice */
+    double *push;            /* [ndof] workspace */
+    double *limit;           /* [ncontact] limits in a step; limit/2 for compliant contacts */
+    size_t settings_taken;   /* tribo_system_settings at the last update of limit; SIZE_MAX: none */
+    int tell;                /* 1: limit is not yet copied to contacts */
+    double *load;            /* [ndof] load at the end of the last step */
+    double *spring, *give;   /* [ncontact] forces f0 of compliant contacts; workspace, as G f0 */
+    double *change;          /* [ncontact] f1 - f0; workspace */
+    signed char *loose;      /* [ncontact] slip; 1 for compliant contacts, which are not snapped */
+    tribo_context *contacts; /* contacts with the operator of a step */
+    size_t settings;         /* sys->changes at the creation of contacts */
 };
 
 static void moreau_destroy(tribo_driver *drv)
@@ -60,62 +58,48 @@ static int moreau_create(tribo_driver *drv)
     struct moreau *m = calloc(1, sizeof *m);
     drv->own = m;
     if (m) {
-        m->limit = calloc(6 * c + 3 * n + 1, sizeof *m->limit);
+        m->settings_taken = SIZE_MAX;
+        m->limit = calloc(4 * c + 2 * n + 1, sizeof *m->limit);
         m->loose = malloc(c + 1);
     }
     if (!m || !m->limit || !m->loose || !tribo_step_form_create(&m->common, drv->sys)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
-    m->ratio = m->limit + c;
-    m->velocity = m->limit + 2 * c;
-    m->spring = m->limit + 3 * c;
-    m->give = m->limit + 4 * c;
-    m->change = m->limit + 5 * c;
-    m->load = m->limit + 6 * c;
-    m->work = m->load + n;
-    m->push = m->work + n;
+    m->spring = m->limit + c;
+    m->give = m->spring + c;
+    m->change = m->give + c;
+    m->load = m->change + c;
+    m->push = m->load + n;
     return TRIBO_OK;
 }
 
-/* For diagonal S: sets the operator of separate bodies, from own. Returns a status. */
-static int set_bodies(struct moreau *m, const tribo_system *sys, const double *own)
-{
-    const struct matrix *j = &sys->direction;
-    double *inverse = calloc(sys->ndof, sizeof *inverse);
-    if (!inverse) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
-    }
-    for (size_t i = 0; i < j->rows; i++) {
-        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-            const size_t d = j->col[k];
-            inverse[d] = j->val[k] != 0.0 ? own[k] / j->val[k] : inverse[d];
-        }
-    }
-    const int status = tribo_set_operator_mass(m->contacts, sys->ndof, inverse, j->first, j->col, j->val);
-    free(inverse);
-    return status ? tribo_system_fail(sys, status, "in a step, %s", tribo_message(m->contacts)) : TRIBO_OK;
-}
-
-/* Sets the operator r. If r has lost light bodies to rounding, sets the operator of separate bodies or refuses. own: see
- * hidden.h. Returns a status. */
+/* Sets the operator r. If r has lost light bodies to rounding, sets the operator of separate bodies, of a diagonal S, or refuses.
+ * own: see hidden.h. Returns a status. */
 static int set_operator(struct moreau *m, const tribo_system *sys, const double *r, const double *own, double h)
 {
+    const struct matrix *j = &sys->direction;
     struct hidden where;
-    switch (tribo_hidden(&sys->direction, &sys->mass, own, r, &where)) {
+    int status;
+    switch (tribo_hidden(j, &sys->mass, own, r, &where)) {
     case 0:
+        status = tribo_set_operator_dense(m->contacts, r);
         break;
     case 1:
-        return !tribo_step_matrix_is_diagonal(&m->matrix) || sys->compliance.count
-                   ? tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                       "contact %zu touches bodies of which one gives way %g times as much as the other in steps "
-                                       "of %g: %s",
-                                       where.contact, where.spread, h,
-                                       sys->unsolved ? "reduce the system" : "take central/fixed, event or exact")
-                   : set_bodies(m, sys, own);
+        if (m->matrix.below || m->matrix.above || sys->compliance.count) {
+            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                     "contact %zu touches bodies of which one gives way %g times as much as the other in steps "
+                                     "of %g: %s",
+                                     where.contact, where.spread, h,
+                                     sys->unsolved ? "reduce the system" : "take central/fixed, event or exact");
+        }
+        for (size_t d = 0; d < sys->ndof; d++) {
+            m->push[d] = 1.0 / tribo_matrix_get(&m->matrix.s, d, d);
+        }
+        status = tribo_set_operator_mass(m->contacts, sys->ndof, m->push, j->first, j->col, j->val);
+        break;
     default:
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
     }
-    const int status = tribo_set_operator_dense(m->contacts, r);
     return status ? tribo_system_fail(sys, status, "in steps of %g, %s", h, tribo_message(m->contacts)) : TRIBO_OK;
 }
 
@@ -125,7 +109,7 @@ static size_t planar_of(const tribo_context *contacts)
     return contacts && !tribo_get_count(contacts, TRIBO_COUNT_PLANAR, &planar) ? planar : 0;
 }
 
-/* Returns 1 if planar contacts may have changed since the creation of m->contacts. */
+/* Returns 1 if m->contacts, or one of the system, may have other planar contacts than at the last call of make_contacts. */
 static int planar_changed(const struct moreau *m, const tribo_system *sys)
 {
     return m->settings != sys->changes && (planar_of(sys->contacts) || planar_of(m->contacts));
@@ -134,17 +118,18 @@ static int planar_changed(const struct moreau *m, const tribo_system *sys)
 /* Creates m->contacts, with the planar contacts of the system. Returns 0 if out of memory. */
 static int make_contacts(struct moreau *m, const tribo_system *sys)
 {
-    if (m->contacts && !planar_of(sys->contacts) && !planar_of(m->contacts)) {
-        return 1;
+    if (!m->contacts || planar_of(sys->contacts) || planar_of(m->contacts)) {
+        tribo_destroy(m->contacts);
+        m->contacts = NULL;
+        m->settings = sys->changes;
+        m->tell = 1;
+        if (planar_of(sys->contacts)) {
+            tribo_clone(sys->contacts, &m->contacts);
+        } else {
+            tribo_create(&m->contacts, sys->ncontact);
+        }
     }
-    tribo_destroy(m->contacts);
-    m->contacts = NULL;
-    m->settings = sys->changes;
-    m->tell = 1;
-    const int status =
-        planar_of(sys->contacts) ? tribo_clone(sys->contacts, &m->contacts) : tribo_create(&m->contacts, sys->ncontact);
-    m->contacts = status ? NULL : m->contacts;
-    return !status;
+    return m->contacts != NULL;
 }
 
 static int solve_steps(const void *matrix, size_t count, double *x)
@@ -155,20 +140,20 @@ static int solve_steps(const void *matrix, size_t count, double *x)
 /* r [ncontact][ncontact] = J S^-1 J'; own as in hidden.h. Returns 0 if out of memory. */
 static int find_operator(const struct moreau *m, const tribo_system *sys, double *r, double *own)
 {
-    const int symmetric = tribo_step_matrix_has_halves(&m->matrix);
+    const int symmetric = !m->matrix.pivot;
     if (symmetric && m->response) {
         /* r = W'W, W = H^-1 J', S = H H': symmetric, and semidefinite up to rounding; x [ncontact][ndof] = S^-1 J'. */
         double *x = m->response;
         const size_t n = sys->ndof, c = sys->ncontact;
         for (size_t i = 0; i < c; i++) {
             tribo_delassus_put_row(&sys->direction, i, x + i * n);
-            tribo_step_matrix_half_solve(&m->matrix, x + i * n);
+            tribo_step_matrix_half_solve(&m->matrix, 0, x + i * n);
             for (size_t k = 0; k <= i; k++) {
                 r[i * c + k] = r[k * c + i] = tribo_dot(x + i * n, x + k * n, n);
             }
         }
         for (size_t i = 0; i < c; i++) {
-            tribo_step_matrix_half_solve_back(&m->matrix, x + i * n);
+            tribo_step_matrix_half_solve(&m->matrix, 1, x + i * n);
             tribo_delassus_note_own(&sys->direction, i, x + i * n, own);
         }
         return 1;
@@ -184,7 +169,7 @@ static int find_operator(const struct moreau *m, const tribo_system *sys, double
 static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
 {
     const size_t c = sys->ncontact;
-    int status = tribo_step_matrix_factorize(&m->matrix, sys, h);
+    int status = tribo_step_matrix_factorize(&m->matrix, sys, h, !m->held.n);
     if (status) {
         return status;
     }
@@ -213,21 +198,20 @@ static void push(struct moreau *m, const tribo_system *sys, double h, const doub
 {
     const size_t n = sys->ndof;
     const struct matrix *j = &sys->direction;
-    for (size_t i = 0; m->response && i < sys->ncontact; i++) {
-        for (size_t d = 0; d < n; d++) {
-            u[d] += h * f[i] * m->response[i * n + d];
-        }
-    }
-    if (!m->response) {
-        memset(m->push, 0, n * sizeof *m->push);
+    if (m->response) {
         for (size_t i = 0; i < sys->ncontact; i++) {
-            for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-                m->push[j->col[k]] += h * f[i] * j->val[k];
-            }
+            tribo_add(u, h * f[i], m->response + i * n, n);
         }
-        tribo_step_matrix_solve(&m->matrix, 1, m->push);
-        tribo_add(u, 1.0, m->push, n);
+        return;
     }
+    memset(m->push, 0, n * sizeof *m->push);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+            m->push[j->col[k]] += h * f[i] * j->val[k];
+        }
+    }
+    tribo_step_matrix_solve(&m->matrix, 1, m->push);
+    tribo_add(u, 1.0, m->push, n);
 }
 
 /* Prepares steps of length h: the band solver, or all of prepare_whole. Returns a status. */
@@ -237,11 +221,11 @@ static int moreau_prepare(struct moreau *m, const tribo_system *sys, double h)
     m->h = 0.0;
     m->whole = 0;
     m->held.n = 0;
-    int status = planar_of(sys->contacts) ? TRIBO_OK : tribo_step_band_create(&m->held, sys, h, &where);
-    status = status == TRIBO_ERR_INDEFINITE ? tribo_step_matrix_indefinite(sys, h, where)
-             : status                       ? tribo_step_matrix_no_memory(sys)
-             : m->held.n                    ? TRIBO_OK
-                                            : prepare_whole(m, sys, h);
+    int status = tribo_step_matrix_create(&m->matrix, sys, h);
+    if (!status && !planar_of(sys->contacts)) {
+        status = tribo_step_matrix_fail(sys, tribo_step_band_create(&m->held, sys, &m->matrix, &where), h, where);
+    }
+    status = status || m->held.n ? status : prepare_whole(m, sys, h);
     if (!status) {
         m->h = h;
         m->common.revision = sys->revision;
@@ -249,6 +233,7 @@ static int moreau_prepare(struct moreau *m, const tribo_system *sys, double h)
     return status;
 }
 
+/* load = the accelerations, or forces, of loads at t. */
 static void find_load(struct moreau *m, tribo_system *sys, double t)
 {
     tribo_system_set_time(sys, t);
@@ -256,37 +241,22 @@ static void find_load(struct moreau *m, tribo_system *sys, double t)
     tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, m->load);
 }
 
-/* Updates limit, ratio and velocity after a change of settings or limits. */
+/* Updates limit after a change of settings or limits. */
 static void moreau_take_limits(struct moreau *m, const tribo_system *sys)
 {
     const size_t revision = tribo_system_settings(sys);
-    if (m->taken && m->settings_taken == revision) {
+    if (m->settings_taken == revision) {
         return;
     }
-    m->taken = m->tell = 1;
+    m->tell = 1;
     m->settings_taken = revision;
-    m->breaks = 0;
     tribo_get_limit(sys->contacts, m->limit);
-    tribo_get_static(sys->contacts, m->ratio, m->velocity);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->limit[i] *= tribo_is_compliant(&sys->compliance, i) ? 0.5 : 1.0;
-        m->breaks |= m->ratio[i] > 1.0;
+    for (size_t k = 0; k < sys->compliance.count; k++) {
+        m->limit[sys->compliance.contact[k]] *= 0.5;
     }
 }
 
 /* ------------------------------------------------------------------------------------------------------------ a step */
-
-/* p -= h (K q + C u), only the terms with this value of `weighed`. */
-static void pull_back(const tribo_system *sys, int weighed, double h, const double *q, const double *u, double *p)
-{
-    const struct step_part k = tribo_step_stiffness(sys), c = tribo_step_damping(sys);
-    if (k.weighed == weighed) {
-        tribo_matrix_multiply_add(k.of, -h, q, p);
-    }
-    if (c.weighed == weighed && c.of->rows) {
-        tribo_matrix_multiply_add(c.of, -h, u, p);
-    }
-}
 
 /* p = impulse of loads and structure in a step; s->u = displacements in the middle of the step at constant velocity. */
 static void find_push(struct moreau *m, tribo_system *sys, double t, double next, const double *from, double *p)
@@ -305,12 +275,14 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
     for (size_t i = 0; i < n; i++) {
         p[i] += 0.5 * h * m->load[i];
     }
-    pull_back(sys, 1, h, s->u, u, p);
     if (sys->mass.rows && !sys->mass.identity && !sys->unsolved) {
-        tribo_matrix_multiply(&sys->mass, p, m->work);
-        memcpy(p, m->work, n * sizeof *p);
+        tribo_matrix_multiply(&sys->mass, p, m->push);
+        memcpy(p, m->push, n * sizeof *p);
     }
-    pull_back(sys, 0, h, s->u, u, p);
+    tribo_matrix_multiply_add(m->matrix.k, -h, s->u, p);
+    if (m->matrix.c->rows) {
+        tribo_matrix_multiply_add(m->matrix.c, -h, u, p);
+    }
     sys->evaluations++;
 }
 
@@ -320,6 +292,13 @@ static int respond_whole(struct moreau *m, const tribo_system *sys, double h, co
     struct step_form *s = &m->common;
     const struct compliance *g = &sys->compliance;
     const size_t n = sys->ndof;
+    if (m->tell) {
+        double *ratio = m->give, *velocity = m->change;
+        tribo_get_static(sys->contacts, ratio, velocity);
+        tribo_set_limit(m->contacts, m->limit);
+        tribo_set_static(m->contacts, ratio, tribo_system_falls(sys) ? velocity : NULL);
+        m->tell = 0;
+    }
     tribo_step_matrix_solve(&m->matrix, 1, du);
     for (size_t i = 0; i < n; i++) {
         s->u[i] = u[i] + du[i];
@@ -335,11 +314,6 @@ static int respond_whole(struct moreau *m, const tribo_system *sys, double h, co
     for (size_t k = 0; k < g->count; k++) {
         const size_t i = g->contact[k];
         s->end[i] += s->v[i] - 2.0 / h * m->give[i];
-    }
-    if (m->tell) {
-        tribo_set_limit(m->contacts, m->limit);
-        tribo_set_static(m->contacts, m->ratio, tribo_system_falls(sys) ? m->velocity : NULL);
-        m->tell = 0;
     }
     const int status = tribo_step_form_force(s, sys, m->contacts, h);
     if (status) {
@@ -358,7 +332,7 @@ static int respond_in_band(struct moreau *m, const tribo_system *sys, double h, 
 {
     struct step_form *s = &m->common;
     const struct band_step step = {h, m->limit, s->base, u, du, s->f};
-    if (!m->held.n || m->breaks || !tribo_step_band_solve(&m->held, &step)) {
+    if (!m->held.n || !tribo_step_form_is_plain(s, sys) || !tribo_step_band_solve(&m->held, &step)) {
         return 0;
     }
     for (size_t i = 0; i < sys->ndof; i++) {

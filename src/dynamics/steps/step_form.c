@@ -14,6 +14,25 @@ int tribo_step_form_plain(const tribo_system *sys)
     return plain;
 }
 
+int tribo_step_form_bodies(const struct matrix *j, size_t *body, double *lever, signed char *seen)
+{
+    for (size_t i = 0; i < j->rows; i++) {
+        size_t entries = 0;
+        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+            if (j->val[k] != 0.0) {
+                body[i] = j->col[k];
+                lever[i] = j->val[k];
+                entries++;
+            }
+        }
+        if (entries != 1 || seen[body[i]]) {
+            return 0;
+        }
+        seen[body[i]] = 1;
+    }
+    return 1;
+}
+
 int tribo_step_form_create(struct step_form *s, const tribo_system *sys)
 {
     const size_t n = sys->ndof, c = sys->ncontact;
@@ -41,6 +60,14 @@ void tribo_step_form_start(struct step_form *s, const tribo_system *sys)
     s->settings = tribo_system_revision(sys);
     s->plain = tribo_step_form_plain(sys);
     memset(s->base, 0, sys->ncontact * sizeof *s->base); /* in case that bases no longer move */
+}
+
+int tribo_step_form_is_plain(struct step_form *s, const tribo_system *sys)
+{
+    if (s->settings != tribo_system_revision(sys)) {
+        tribo_step_form_start(s, sys);
+    }
+    return s->plain;
 }
 
 void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t)
@@ -79,10 +106,8 @@ void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, con
 
 int tribo_step_form_force(struct step_form *s, const tribo_system *sys, tribo_context *contacts, double h)
 {
-    if (s->settings != tribo_system_revision(sys)) {
-        tribo_step_form_start(s, sys);
-    }
-    return s->plain ? tribo_step_force(contacts, h, s->end, s->f) : tribo_step_force_mean(contacts, h, s->v, s->end, s->f);
+    return tribo_step_form_is_plain(s, sys) ? tribo_step_force(contacts, h, s->end, s->f)
+                                            : tribo_step_force_mean(contacts, h, s->v, s->end, s->f);
 }
 
 double tribo_step_form_power(const tribo_system *sys, const double *f, const double *before, const double *after)

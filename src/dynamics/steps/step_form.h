@@ -19,12 +19,19 @@ struct step_form {
 /* 1 if all contacts are scalar and none has a static limit above its limit. Uses sys->feq. */
 int tribo_step_form_plain(const tribo_system *sys);
 
+/* body [j->rows] = the degree of freedom on which contact i acts, lever [j->rows] = its entry of J. Returns 0 if a contact has none
+ * or several, or shares it. seen [j->cols]: workspace, all 0. */
+int tribo_step_form_bodies(const struct matrix *j, size_t *body, double *lever, signed char *seen);
+
 /* 1, or 0 if out of memory. tribo_step_form_free frees what failed, too. */
 int tribo_step_form_create(struct step_form *s, const tribo_system *sys);
 void tribo_step_form_free(struct step_form *s);
 
 /* Takes the settings of the system, at the beginning of an advance. */
 void tribo_step_form_start(struct step_form *s, const tribo_system *sys);
+
+/* tribo_step_form_plain, found once for the settings of the system. */
+int tribo_step_form_is_plain(struct step_form *s, const tribo_system *sys);
 
 /* base = b(t), if bases move. */
 void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t);

@@ -5,15 +5,13 @@
 #include "numerics/band.h"
 #include "numerics/lapack.h"
 
-int tribo_step_matrix_indefinite(const tribo_system *sys, double h, size_t where)
+int tribo_step_matrix_fail(const tribo_system *sys, int status, double h, size_t where)
 {
-    return tribo_system_fail(sys, TRIBO_ERR_INDEFINITE,
-                             "the matrix of a step of length %g is not positive definite at degree of freedom %zu", h, where);
-}
-
-int tribo_step_matrix_no_memory(const tribo_system *sys)
-{
-    return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrix of a step");
+    return status == TRIBO_ERR_INDEFINITE
+               ? tribo_system_fail(
+                     sys, status, "the matrix of a step of length %g is not positive definite at degree of freedom %zu", h, where)
+           : status ? tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrix of a step")
+                    : TRIBO_OK;
 }
 
 void tribo_step_matrix_free(struct step_matrix *m)
@@ -21,97 +19,68 @@ void tribo_step_matrix_free(struct step_matrix *m)
     free(m->band);
     free(m->pivot);
     tribo_cholesky_free(&m->sparse);
+    tribo_matrix_free(&m->s);
+    tribo_matrix_free(&m->own[0]);
+    tribo_matrix_free(&m->own[1]);
     *m = (struct step_matrix){0};
-}
-
-int tribo_step_matrix_is_diagonal(const struct step_matrix *m)
-{
-    return !m->below && !m->above && !m->sparse.n;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- the matrix */
 
-struct step_part tribo_step_stiffness(const tribo_system *sys)
+/* Returns a matrix of forces: `forces` of the system, or M rates; with a diagonal M that is not 1 that is a product in *own. NULL
+ * if out of memory. */
+static const struct matrix *find_part(const tribo_system *sys, const struct matrix *forces, const struct matrix *rates,
+                                      struct matrix *own)
 {
-    return sys->k.rows ? (struct step_part){&sys->k, 0} : (struct step_part){&sys->stiffness, !sys->unsolved};
+    if (forces->rows || sys->unsolved || !sys->mass.rows || !rates->rows) {
+        return forces->rows ? forces : rates;
+    }
+    double *mass = malloc(sys->ndof * sizeof *mass);
+    const int done = mass && tribo_matrix_copy(own, rates);
+    for (size_t i = 0; done && i < sys->ndof; i++) {
+        mass[i] = tribo_matrix_get(&sys->mass, i, i);
+    }
+    if (done) {
+        tribo_matrix_scale_rows(own, mass);
+    }
+    free(mass);
+    return done ? own : NULL;
 }
 
-struct step_part tribo_step_damping(const tribo_system *sys)
+int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, double h)
 {
-    return sys->c.rows ? (struct step_part){&sys->c, 0} : (struct step_part){&sys->damping, !sys->unsolved};
-}
-
-/* a += factor b. Returns 0 if out of memory. */
-static int add(struct matrix *a, double factor, const struct matrix *b)
-{
-    struct matrix sum;
-    if (b->rows == 0) {
-        return 1;
+    tribo_step_matrix_free(m);
+    m->n = sys->ndof;
+    m->k = find_part(sys, &sys->k, &sys->stiffness, &m->own[0]);
+    m->c = find_part(sys, &sys->c, &sys->damping, &m->own[1]);
+    const struct matrix *const part[] = {m->k, m->c};
+    const double factor[] = {0.25 * h * h, 0.5 * h};
+    int done = m->k && m->c;
+    done = done && (sys->mass.rows ? tribo_matrix_copy(&m->s, &sys->mass) : tribo_matrix_diagonal(&m->s, m->n, NULL));
+    for (int p = 0; done && p < 2; p++) {
+        struct matrix sum = m->s;
+        if (part[p]->rows) {
+            done = tribo_matrix_sum(&m->s, 1.0, &sum, factor[p], part[p]);
+            tribo_matrix_free(&sum);
+        }
     }
-    const int done = tribo_matrix_sum(&sum, 1.0, a, factor, b);
-    tribo_matrix_free(a);
-    *a = sum;
-    return done;
-}
-
-/* a = M a for diagonal M. Returns 0 if out of memory. */
-static int step_matrix_weigh(struct matrix *a, const struct matrix *mass)
-{
-    double *factor = malloc((a->rows + 1) * sizeof *factor);
-    for (size_t i = 0; factor && i < a->rows; i++) {
-        factor[i] = tribo_matrix_get(mass, i, i);
-    }
-    if (factor) {
-        tribo_matrix_scale_rows(a, factor);
-    }
-    free(factor);
-    return factor != NULL;
-}
-
-/* a = S. Adds weighed parts to the identity, multiplies by M, then adds the other parts. Returns 0 if out of memory; then a is
- * zeroed. */
-static int step_matrix_sum_up(const tribo_system *sys, double h, struct matrix *a)
-{
-    const struct step_part k = tribo_step_stiffness(sys), c = tribo_step_damping(sys);
-    const double of_k = 0.25 * h * h, of_c = 0.5 * h;
-    const int weighed = !sys->mass.rows || (k.weighed && k.of->rows) || (c.weighed && c.of->rows);
-    int done = weighed ? tribo_matrix_diagonal(a, sys->ndof, NULL) : tribo_matrix_copy(a, &sys->mass);
-    done = done && (!k.weighed || add(a, of_k, k.of)) && (!c.weighed || add(a, of_c, c.of));
-    done = done && (!weighed || !sys->mass.rows || step_matrix_weigh(a, &sys->mass));
-    done = done && (k.weighed || add(a, of_k, k.of)) && (c.weighed || add(a, of_c, c.of));
-    if (!done) {
-        tribo_matrix_free(a);
-    }
-    return done;
+    tribo_matrix_widen(&m->s, &m->below, &m->above);
+    return tribo_step_matrix_fail(sys, done ? TRIBO_OK : TRIBO_ERR_MEMORY, h, 0);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ its factor */
 
-/* Returns 1 if a sparse factor costs less than the band: the band has far more entries than a, or is almost the whole matrix. */
-static int suits_sparse(const struct step_matrix *m, const struct matrix *a)
+/* Returns 1 if a sparse factor costs less than the band: the band has far more entries than S, or is almost the whole matrix. */
+static int suits_sparse(const struct step_matrix *m)
 {
     const size_t width = m->below > m->above ? m->below : m->above;
-    return tribo_sparse_available() && m->n >= SPARSE_LEAST && (width > 5 * (a->first[m->n] / m->n + 1) || 2 * width > m->n);
+    return tribo_sparse_available() && m->n >= SPARSE_LEAST && (width > 5 * (m->s.first[m->n] / m->n + 1) || 2 * width > m->n);
 }
 
-static int factorize_band(struct step_matrix *m, const struct matrix *a, size_t *where)
+/* Factorizes with exchanges of rows, by LAPACK: S must be regular, but need not be definite. Returns a status. */
+static int factorize_lopsided(struct step_matrix *m, size_t *where)
 {
-    const size_t n = m->n, width = m->below;
-    double *band = calloc(n * (width + 1), sizeof *band);
-    m->band = malloc(n * (width + 1) * sizeof *m->band);
-    int status = band && m->band ? TRIBO_OK : TRIBO_ERR_MEMORY;
-    if (!status) {
-        tribo_band_add(band, width, a, 1.0, NULL);
-        *where = tribo_band_factorize(n, width, band, NULL, m->band);
-        status = *where < n ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
-    }
-    free(band);
-    return status;
-}
-
-/* Factorizes with exchanges of rows, by LAPACK: a must be regular, but need not be definite. Returns a status. */
-static int factorize_lopsided(struct step_matrix *m, const struct matrix *a, size_t *where)
-{
+    const struct matrix *s = &m->s;
     const size_t n = m->n, width = 2 * m->below + m->above + 1, middle = m->below + m->above;
     m->band = n < INT_MAX && width < INT_MAX ? calloc(n * width, sizeof *m->band) : NULL;
     m->pivot = malloc(n * sizeof *m->pivot);
@@ -119,8 +88,8 @@ static int factorize_lopsided(struct step_matrix *m, const struct matrix *a, siz
         return TRIBO_ERR_MEMORY;
     }
     for (size_t i = 0; i < n; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            m->band[a->col[k] * width + middle + i - a->col[k]] = a->val[k];
+        for (size_t k = s->first[i]; k < s->first[i + 1]; k++) {
+            m->band[s->col[k] * width + middle + i - s->col[k]] = s->val[k];
         }
     }
     const int rows = (int)n, below = (int)m->below, above = (int)m->above, stride = (int)width;
@@ -130,25 +99,22 @@ static int factorize_lopsided(struct step_matrix *m, const struct matrix *a, siz
     return info > 0 ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
 }
 
-int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, double h)
+int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, double h, int consumes)
 {
-    struct matrix a;
     size_t where = 0, j;
     double x, y;
-    tribo_step_matrix_free(m);
-    if (!step_matrix_sum_up(sys, h, &a)) {
-        return tribo_step_matrix_no_memory(sys);
+    int status;
+    if (m->c->rows && tribo_matrix_flaw(&m->s, 1, &where, &j, &x, &y)) {
+        status = factorize_lopsided(m, &where);
+    } else if (suits_sparse(m)) {
+        status = (consumes ? tribo_cholesky_consume(&m->sparse, &m->s, &where, &x)
+                           : tribo_cholesky_create(&m->sparse, &m->s, &where, &x));
+    } else {
+        m->band = malloc(m->n * (m->below + 1) * sizeof *m->band);
+        where = m->band ? tribo_band_factorize(&m->s, m->below, NULL, m->band) : 0;
+        status = !m->band ? TRIBO_ERR_MEMORY : where < m->n ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
     }
-    m->n = sys->ndof;
-    tribo_matrix_widen(&a, &m->below, &m->above);
-    const int lopsided = tribo_step_damping(sys).of->rows && tribo_matrix_flaw(&a, 1, &where, &j, &x, &y);
-    const int status = lopsided              ? factorize_lopsided(m, &a, &where)
-                       : suits_sparse(m, &a) ? tribo_cholesky_consume(&m->sparse, &a, &where, &x)
-                                             : factorize_band(m, &a, &where);
-    tribo_matrix_free(&a);
-    return status == TRIBO_ERR_INDEFINITE ? tribo_step_matrix_indefinite(sys, h, where)
-           : status                       ? tribo_step_matrix_no_memory(sys)
-                                          : TRIBO_OK;
+    return tribo_step_matrix_fail(sys, status, h, where);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- solutions */
@@ -170,25 +136,11 @@ int tribo_step_matrix_solve(const struct step_matrix *m, size_t count, double *x
     return 1;
 }
 
-int tribo_step_matrix_has_halves(const struct step_matrix *m)
-{
-    return !m->pivot;
-}
-
-void tribo_step_matrix_half_solve(const struct step_matrix *m, double *x)
+void tribo_step_matrix_half_solve(const struct step_matrix *m, int back, double *x)
 {
     if (m->sparse.n) {
-        tribo_half_solve(&m->sparse, x, 1);
+        (back ? tribo_half_solve_back : tribo_half_solve)(&m->sparse, x, 1);
     } else {
-        tribo_band_half_solve(m->n, m->below, m->band, x);
-    }
-}
-
-void tribo_step_matrix_half_solve_back(const struct step_matrix *m, double *x)
-{
-    if (m->sparse.n) {
-        tribo_half_solve_back(&m->sparse, x, 1);
-    } else {
-        tribo_band_half_solve_back(m->n, m->below, m->band, x);
+        (back ? tribo_band_half_solve_back : tribo_band_half_solve)(m->n, m->below, m->band, x);
     }
 }

@@ -1,44 +1,35 @@
-/* Factors of the matrix S = M + h/2 C + h^2/4 K of a midpoint step of length h. Degrees of freedom without mass enter S only by
- * the stiffness of the other ones (condense.c). */
+/* The matrix S = M + h/2 C + h^2/4 K of a midpoint step of length h, and its factors. Degrees of freedom without mass enter S only
+ * by the stiffness of the other ones (condense.c). */
 #ifndef TRIBO_STEP_MATRIX_H
 #define TRIBO_STEP_MATRIX_H
 
 #include "dynamics/system/system.h"
 
-/* of = K or C; with weighed = 1, M^-1 K or M^-1 C. */
-struct step_part {
-    const struct matrix *of; /* no rows: zero */
-    int weighed;
-};
-
-struct step_part tribo_step_stiffness(const tribo_system *sys);
-struct step_part tribo_step_damping(const tribo_system *sys);
-
-/* A factor of S: a band as in band.h; for S not symmetric, a band in LAPACK's format; or a sparse factor. */
 struct step_matrix {
+    const struct matrix *k, *c; /* K and C, of forces: of the system, or in own; no rows: zero */
+    struct matrix own[2];
+    struct matrix s; /* S; no rows once a sparse factor has taken its memory */
     size_t n, below, above;
+
+    /* The factor: a band as in band.h; for S not symmetric, a band in LAPACK's format; or a sparse factor. */
     double *band;
     int *pivot; /* NULL: symmetric band */
     struct cholesky sparse;
 };
 
-/* Factorizes S. Returns a status, with a message in the system. Call tribo_step_matrix_free also after an error. */
-int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, double h);
+/* create: sets k, c and s. factorize: computes the factor; may free s if consumes = 1. Each returns a status, with a message in
+ * the system. Call tribo_step_matrix_free also after an error. */
+int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, double h);
+int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, double h, int consumes);
 void tribo_step_matrix_free(struct step_matrix *m);
 
 /* x [count][n] = S^-1 x. Returns 1, or 0 if out of memory, which cannot happen for count = 1. */
 int tribo_step_matrix_solve(const struct step_matrix *m, size_t count, double *x);
 
-/* has_halves: returns 1 if S = H H' with the H of half_solve: x [n] = H^-1 x, and of half_solve_back: x [n] = H'^-1 x. */
-int tribo_step_matrix_has_halves(const struct step_matrix *m);
-void tribo_step_matrix_half_solve(const struct step_matrix *m, double *x);
-void tribo_step_matrix_half_solve_back(const struct step_matrix *m, double *x);
+/* With the H of S = H H', of a symmetric S (pivot = NULL): x [n] = H^-1 x; back = 1: x = H'^-1 x. */
+void tribo_step_matrix_half_solve(const struct step_matrix *m, int back, double *x);
 
-/* Returns 1 if S is diagonal. */
-int tribo_step_matrix_is_diagonal(const struct step_matrix *m);
-
-/* Returns TRIBO_ERR_INDEFINITE, or TRIBO_ERR_MEMORY, with a message in the system. */
-int tribo_step_matrix_indefinite(const tribo_system *sys, double h, size_t where);
-int tribo_step_matrix_no_memory(const tribo_system *sys);
+/* Returns status, with a message in the system: TRIBO_ERR_INDEFINITE at degree of freedom `where`, or TRIBO_ERR_MEMORY. */
+int tribo_step_matrix_fail(const tribo_system *sys, int status, double h, size_t where);
 
 #endif
