@@ -9,19 +9,23 @@
 int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f)
 {
     const struct slip_constant *c = &m->constant;
-    int status = TRIBO_OK;
-    for (size_t i = 0; c->uncoupled && i < c->contacts; i++) {
-        f[i] = tribo_stick_slip_balance_alone(m, i, a[i]);
-    }
-    if (m->state.hold_differs && !c->uncoupled) {
-        /* constant.hold knows H by limits 1 (holds) and 0 */
+    const signed char *loose = m->state.loose;
+    if (c->uncoupled) {
         for (size_t i = 0; i < c->contacts; i++) {
-            f[i] = m->state.loose[i] ? 0.0 : 1.0;
+            f[i] = loose[i] ? 0.0 : -a[i] / c->diagonal[i];
+        }
+        return TRIBO_OK;
+    }
+    int status = TRIBO_OK;
+    if (m->state.hold_differs) { /* constant.hold knows H by limits 1 (holds) and 0 */
+        for (size_t i = 0; i < c->contacts; i++) {
+            f[i] = loose[i] ? 0.0 : 1.0;
         }
         m->state.hold_differs = 0;
         status = tribo_set_limit(c->hold, f);
     }
-    return status || c->uncoupled ? status : tribo_balance(c->hold, c->still, a, f, NULL);
+    status = status ? status : tribo_balance(c->hold, c->still, a, f, NULL);
+    return status ? tribo_system_fail(c->sys, status, "%s", tribo_message(c->hold)) : TRIBO_OK;
 }
 
 /* Reduces holds[] to an independent set: first contacts inside their limits, then those that go back inside, then those at their
@@ -49,27 +53,35 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
 {
     const struct slip_constant *c = &m->constant;
     struct slip_state *s = &m->state;
+    const size_t n = c->contacts;
     if (!c->independent) {
-        s->fresh |= memcmp(s->before, s->tied, c->contacts) != 0;
-        memcpy(s->before, s->tied, c->contacts);
+        s->fresh |= memcmp(s->before, s->tied, n) != 0;
+        memcpy(s->before, s->tied, n);
     }
     if (!s->fresh) {
         return TRIBO_OK;
     }
     s->fresh = 0;
-    for (size_t i = 0; i < c->contacts; i++) {
+    for (size_t i = 0; i < n; i++) {
         s->holds[i] = (s->slip[i] == TRIBO_SLIP_STUCK) & c->can_hold[i];
     }
     const int status = c->independent ? TRIBO_OK : choose_holds(m, sys);
+    size_t hold = 0;
+    int differs = 0;
     s->dependents = 0;
-    for (size_t i = 0; i < c->contacts; i++) {
-        const signed char loose = (signed char)(!s->holds[i] || c->elastic[i]);
-        s->unlisted |= loose != s->loose[i];
-        s->dependents += tribo_stick_slip_depends(m, i);
-        s->loose[i] = loose;
-        s->key[i] = (signed char)((s->slip[i] == TRIBO_SLIP_STUCK) + s->holds[i]);
+    for (size_t i = 0; i < n; i++) {
+        const int rests = s->slip[i] == TRIBO_SLIP_STUCK, loose = !s->holds[i] || c->elastic[i];
+        s->dependents += rests & !s->holds[i];
+        hold += (size_t)!loose;
+        differs |= s->loose[i] != loose;
+        s->loose[i] = (signed char)loose;
+        s->key[i] = (signed char)(rests + s->holds[i]);
     }
-    s->hold_differs |= s->unlisted;
+    s->hold_differs |= differs;
+    if (differs && !sys->snaps_in_order) {
+        s->snaps = tribo_system_list_snaps(sys, s->loose, s->snap);
+        s->simple = s->snaps == hold;
+    }
     return status;
 }
 
@@ -93,51 +105,33 @@ static int moves(const struct stick_slip *m, const tribo_system *sys, const doub
 /* x -= B_H R_HH^-1 (J_H x - base), twice: the second time removes the rounding of the first. */
 int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
 {
-    for (int pass = 0; pass < 2; pass++) {
-        for (size_t i = 0; i < m->constant.contacts; i++) {
-            m->work.lo[i] = -base[i];
+    int status = TRIBO_OK;
+    for (int pass = 0; !status && pass < 2; pass++) {
+        tribo_matrix_multiply(&sys->direction, x, m->work.lo);
+        tribo_add(m->work.lo, -1.0, base, m->constant.contacts);
+        status = tribo_stick_slip_balance(m, m->work.lo, m->work.f);
+        if (!status) {
+            tribo_matrix_multiply_add(&sys->response, 1.0, m->work.f, x);
         }
-        tribo_matrix_multiply_add(&sys->direction, 1.0, x, m->work.lo);
-        const int status = tribo_stick_slip_balance(m, m->work.lo, m->work.f);
-        if (status) {
-            return tribo_system_fail(sys, status, "%s", tribo_message(m->constant.hold));
-        }
-        tribo_matrix_multiply_add(&sys->response, 1.0, m->work.f, x);
     }
-    return TRIBO_OK;
+    return status;
 }
 
-void tribo_stick_slip_list_snaps(struct stick_slip *m, const tribo_system *sys)
+static void apply_snaps(const struct slip_state *s, const double *base, double *x)
 {
-    size_t hold = 0;
-    for (size_t i = 0; i < m->constant.contacts; i++) {
-        hold += !m->state.loose[i];
-    }
-    m->state.snaps = tribo_system_list_snaps(sys, m->state.loose, m->state.snap);
-    m->state.simple = m->state.snaps == hold;
-    m->state.unlisted = 0;
-}
-
-static void apply_snaps(const struct slip_state *state, const double *base, double *x)
-{
-    for (const struct snap *s = state->snap; s < state->snap + state->snaps; s++) {
-        if (!state->loose[s->contact]) {
-            tribo_snap(s, base, x);
+    for (size_t k = 0; k < s->snaps; k++) {
+        if (!s->loose[s->snap[k].contact]) {
+            tribo_snap(&s->snap[k], base, x);
         }
     }
 }
 
 int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
 {
-    if (m->state.unlisted && !sys->snaps_in_order) {
-        tribo_stick_slip_list_snaps(m, sys);
-    }
+    int status = TRIBO_OK;
     apply_snaps(&m->state, base, x);
-    if (m->state.simple || !moves(m, sys, base, x)) {
-        return TRIBO_OK;
-    }
-    const int status = tribo_stick_slip_project(m, sys, base, x);
-    if (!status) {
+    if (!m->state.simple && moves(m, sys, base, x)) {
+        status = tribo_stick_slip_project(m, sys, base, x);
         apply_snaps(&m->state, base, x);
     }
     return status;

@@ -9,16 +9,16 @@
  *         a contact that held by a static limit does not slide yet: in the next round its bound is the limit to slide, and all
  *         contacts that began to slide are at rest again
  *     until no contact begins to slide
- *     an independent set of the contacts at rest holds: it keeps all of them where they are
- *
- * Where R is diagonal, each contact is decided about alone, and from the second step on only contacts close to their limits are
- * looked at. The single contact at rest of a coupled system is decided about alone too: the forces of the others are known, and
- * do not change if it slides. */
+ *     an independent set of the contacts at rest holds: it keeps all of them where they are */
 #include "stick_slip.h"
 #include "common/real.h"
 
 #include <math.h>
 #include <string.h>
+
+/* A force this close to its limit, in parts of it, may exceed it by rounding, or in a moment as other contacts begin to
+ * slide. */
+#define CLOSE 0.1
 
 /* The solver's error for redundant contacts, in units of the noise of accelerations. */
 #define CERTAIN 1e3
@@ -29,71 +29,124 @@
 /* The moment later: largest change of a limit, in parts of the largest force. */
 #define CHANGES 1e-4
 
+/* A force beyond a static limit is an event at the allowance of its phase, which may be smaller than that of the end of the
+ * phase: the decision takes this part of the latter. */
+#define AT_THE_EVENT 0.125
+
+/* ------------------------------------------------------------------------------------------------------------- forces */
+
+/* clamp(-a/R_ii, lo, hi); for R_ii = 0 the bound against a. */
+static inline double force_alone(double r, double a, double lo, double hi)
+{
+    const double far = a > 0.0 ? HUGE_VAL : a < 0.0 ? -HUGE_VAL : 0.0;
+    return clamp(-(r > 0.0 ? a / r : far), lo, hi);
+}
+
+/* Finds f [ncontact] within work.lo and hi at accelerations a without f. Returns a status. */
+static int solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
+{
+    const struct slip_constant *c = &m->constant;
+    const struct matrix *j = &sys->direction;
+    const double *lo = m->work.lo, *hi = m->work.hi;
+    size_t unknown = 0, i = 0;
+    for (size_t k = 0; k < c->contacts; k++) {
+        i = lo[k] < hi[k] ? k : i;
+        unknown += lo[k] < hi[k];
+        f[k] = c->uncoupled ? force_alone(c->diagonal[k], a[k], lo[k], hi[k]) : lo[k];
+    }
+    if (c->uncoupled || !unknown) {
+        return TRIBO_OK;
+    }
+    if (unknown > 1 || !c->independent) {
+        const int status = tribo_solve_box(c->box, a, lo, hi, f);
+        return status ? tribo_system_fail(sys, status, "at t = %.17g: %s", sys->time, tribo_message(c->box)) : TRIBO_OK;
+    }
+    double own = a[i];
+    f[i] = 0.0;
+    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+        own += j->val[k] * tribo_matrix_row_dot(&sys->response, j->col[k], f);
+    }
+    f[i] = force_alone(c->diagonal[i], own, lo[i], hi[i]);
+    return TRIBO_OK;
+}
+
+/* Finds state.force. Returns a status. */
+static int find_forces(struct stick_slip *m, const tribo_system *sys)
+{
+    const struct slip_state *s = &m->state;
+    for (size_t i = 0; i < m->constant.contacts; i++) {
+        const double given = m->constant.elastic[i] ? s->spring[i] : -s->slip[i] * s->limit[i];
+        const int searches = tribo_stick_slip_searches(m, i);
+        m->work.hi[i] = searches ? s->stick[i] : given;
+        m->work.lo[i] = searches ? -s->stick[i] : given;
+    }
+    return solve(m, sys, m->work.a, s->force);
+}
+
 /* --------------------------------------------------------------------------------------------------------- letting go */
 
-/* 1 if acceleration a, in the direction of the slip that the force at its limit resists, exceeds rounding. */
-static inline int breaks_away(const struct stick_slip *m, size_t i, signed char direction, double a)
-{
-    return direction * a > m->noise.acceleration[i];
-}
-
-/* Lets contact i slide, or hold by its limit to slide. Returns 1 if another round is needed; 0 if the contact was decided about
- * alone and slides, which changes no other force. */
+/* Lets contact i slide; if it held by a static limit, lowers that instead, and the next round decides about it. Returns 1 if another
+ * round is needed; 0 if the contact slides, and R is diagonal: that changes no other force. */
 static size_t let_go(struct stick_slip *m, size_t i, signed char direction)
 {
-    tribo_stick_slip_let_go(m, i, direction);
-    if (m->state.slip[i] == TRIBO_SLIP_STUCK || !tribo_stick_slip_alone(m, i)) {
-        return 1;
-    }
-    m->state.force[i] = -direction * m->state.limit[i];
-    return 0;
+    struct slip_state *s = &m->state;
+    const int again = m->breakaway.some && tribo_breakaway_lets_go(&m->breakaway, i);
+    tribo_stick_slip_set(m, i, again ? TRIBO_SLIP_STUCK : direction);
+    s->force[i] = again ? s->force[i] : -direction * s->limit[i];
+    s->tied[i] = 0;
+    m->work.limit_lost |= again;
+    return again || !m->constant.uncoupled;
 }
 
-/* The direction in which a contact at its limit slides: against its force; if that is 0, along its acceleration work.v. */
-static signed char slip_direction(const struct stick_slip *m, size_t i, double force)
+/* 1 if contact i would lose a static limit and forces at rest are not unique. */
+static int must_be_sure(const struct stick_slip *m, size_t i)
 {
-    const double against = force != 0.0 ? -force : m->work.v[i];
-    return against < 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH;
+    return m->state.dependents && tribo_breakaway_is_sudden(&m->breakaway, i);
 }
 
-/* Sets work.v = a + R f for contacts of list [n] that were searched for, f being found last. */
-static void find_left(struct stick_slip *m, const tribo_system *sys, size_t n, const size_t *list, const double *a,
-                      const double *f)
+/* The direction in which contact i slides that is at its limit by `force`, and by `part` of its acceleration work.v leaves that by
+ * more than rounding: against the force; if that is 0, along the acceleration. 0 if it stays. */
+static signed char leaves(const struct stick_slip *m, size_t i, double force, double part)
 {
-    if (!m->constant.uncoupled && m->work.single == m->constant.contacts) {
-        tribo_stick_slip_accelerate(m, sys, a, f, m->work.v);
-        return;
-    }
-    for (size_t k = 0; k < n; k++) {
-        const size_t i = list[k];
-        m->work.v[i] = (m->constant.uncoupled ? a[i] : m->work.single_a) + m->constant.diagonal[i] * f[i];
-    }
+    const double a = part * m->work.v[i], against = force != 0.0 ? -force : a;
+    const signed char direction = against < 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH;
+    return (signed char)(direction * a > m->noise.acceleration[i] ? direction : 0);
+}
+
+/* 1 if the force of contact i, at rest, is close to its limit, or has reached it. */
+static int is_close(const struct slip_state *s, size_t i)
+{
+    return fabs(s->force[i]) >= (1.0 - CLOSE) * s->stick[i] || i == s->reached;
+}
+
+/* 1 if contact i is at rest, and may be at its limit now or a moment later: each of those whose forces depend on each other. */
+static int may_slide(const struct stick_slip *m, size_t i)
+{
+    return tribo_stick_slip_searches(m, i) && (!m->constant.uncoupled || !m->constant.can_hold[i] || is_close(&m->state, i));
 }
 
 /* Lets contacts slide by the forces found, and ties those at their limits. Returns the number of contacts that need another
- * round; *ties = number of tied contacts. */
-static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y, size_t *ties)
+ * round; *ties = number of tied contacts. If no contact is close to its limit, none is at it. */
+static size_t let_slide(struct stick_slip *m, const tribo_system *sys, const double *y, size_t *ties)
 {
     struct slip_state *s = &m->state;
-    struct slip_work *w = &m->work;
+    const size_t n = m->constant.contacts;
     size_t changes = 0;
+    int close = 0;
     *ties = 0;
-    if (m->constant.uncoupled && !(s->dependents && m->constant.base_moves)) {
-        w->undecided = w->close;
-        w->undecided_count = w->close_count;
+    for (size_t i = 0; i < n; i++) {
+        close |= tribo_stick_slip_searches(m, i) && is_close(s, i);
     }
-    if (w->close_count > 0) {
-        find_left(m, sys, w->close_count, w->close, w->a, s->force);
+    if (close) {
+        tribo_stick_slip_accelerate(m, sys, m->work.a, s->force, m->work.v);
     }
-    for (size_t k = 0; k < w->close_count; k++) {
-        const size_t i = w->close[k];
-        const double room = s->stick[i] - fabs(s->force[i]);
-        tribo_stick_slip_find_gain(m, sys, y, i);
-        if (room <= (i == s->reached ? TRIBO_CLOSE * s->stick[i] : m->noise.allowance[i] / TRIBO_ALLOWED)) {
-            const signed char direction = slip_direction(m, i, s->force[i]);
-            const double sure = tribo_stick_slip_must_be_sure(m, i) ? CERTAIN : 1.0;
-            s->tied[i] = 1;
-            if (room <= 0.0 && breaks_away(m, i, direction, w->v[i] / sure)) {
+    for (size_t i = 0; close && i < n; i++) {
+        if (may_slide(m, i)) {
+            const double room = s->stick[i] - fabs(s->force[i]);
+            tribo_stick_slip_find_gain(m, sys, y, i);
+            s->tied[i] = room <= (i == s->reached ? CLOSE * s->stick[i] : m->noise.allowance[i] / TRIBO_ALLOWED);
+            const signed char direction = leaves(m, i, s->force[i], must_be_sure(m, i) ? 1.0 / CERTAIN : 1.0);
+            if (s->tied[i] && room <= 0.0 && direction) {
                 changes += let_go(m, i, direction);
             }
             *ties += s->tied[i] != 0;
@@ -123,15 +176,12 @@ static double limit_ahead(const struct slip_state *s, size_t i, double moment)
 static double find_moment(const struct stick_slip *m)
 {
     const struct slip_state *s = &m->state;
-    const struct slip_work *w = &m->work;
     const double horizon = m->constant.horizon;
     double moment = horizon, force = 0.0, rate;
-    for (size_t k = 0; k < w->undecided_count; k++) {
-        const size_t i = w->undecided[k];
-        force = greater(force, greater(fabs(s->force[i]), m->constant.inertia[i] * fabs(w->a[i])));
+    for (size_t i = 0; i < m->constant.contacts; i++) {
+        force = greater(force, greater(fabs(s->force[i]), m->constant.inertia[i] * fabs(m->work.a[i])));
     }
-    for (size_t k = 0; force > 0.0 && k < w->undecided_count; k++) {
-        const size_t i = w->undecided[k];
+    for (size_t i = 0; force > 0.0 && i < m->constant.contacts; i++) {
         const double now = limit_now(s, i, &rate);
         if (s->slip[i] != TRIBO_SLIP_OPEN && now <= fabs(s->force[i]) + horizon * fabs(rate) &&
             moment * fabs(rate) > CHANGES * force) {
@@ -156,37 +206,34 @@ static void find_static(struct stick_slip *m, const tribo_system *sys, const dou
 static void set_bounds_ahead(struct stick_slip *m, double moment)
 {
     const struct slip_state *s = &m->state;
-    for (size_t k = 0; k < m->work.undecided_count; k++) {
-        const size_t i = m->work.undecided[k];
-        const double limit = limit_ahead(s, i, moment), now = s->stick[i], wider = WIDER * now;
+    for (size_t i = 0; i < m->constant.contacts; i++) {
+        const double limit = limit_ahead(s, i, moment), now = s->stick[i], wider = s->tied[i] ? 0.0 : WIDER * now;
         double *lo = &m->work.lo[i], *hi = &m->work.hi[i];
-        if (m->constant.elastic[i]) {
-            *lo = *hi = s->spring[i] + moment * s->spring_rate[i];
-        } else if (s->slip[i] != TRIBO_SLIP_STUCK) {
-            *lo = *hi = s->slip[i] == TRIBO_SLIP_OPEN ? 0.0 : -s->slip[i] * limit;
+        if (tribo_stick_slip_searches(m, i)) {
+            *hi = limit + (now - s->force[i] < wider ? wider : 0.0);
+            *lo = -limit - (now + s->force[i] < wider ? wider : 0.0);
         } else {
-            *hi = limit + (!s->tied[i] && now - s->force[i] < wider ? wider : 0.0);
-            *lo = -limit - (!s->tied[i] && now + s->force[i] < wider ? wider : 0.0);
+            *lo = *hi = m->constant.elastic[i] ? s->spring[i] + moment * s->spring_rate[i] : -s->slip[i] * limit;
         }
     }
 }
 
 /* Lets contacts slide by the forces of a moment later. A contact that stays tied is marked 1, or 2 if it goes back inside; one
  * that would lose a static limit is marked in work.pulled instead. */
-static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *ties, size_t *changes)
+static int look_ahead(struct stick_slip *m, const tribo_system *sys, const double *y, size_t *ties, size_t *changes)
 {
     struct slip_state *s = &m->state;
     struct slip_work *w = &m->work;
-    for (size_t k = 0; k < w->undecided_count; k++) {
-        if (tribo_stick_slip_searches(m, w->undecided[k])) {
-            tribo_stick_slip_find_gain(m, sys, y, w->undecided[k]);
+    const size_t n = m->constant.contacts;
+    for (size_t i = 0; i < n; i++) {
+        if (may_slide(m, i)) {
+            tribo_stick_slip_find_gain(m, sys, y, i);
         }
     }
     if (m->breakaway.falls) { /* rates of limits, as sliding contacts gain speed */
         find_static(m, sys, y);
         tribo_stick_slip_accelerate(m, sys, w->a, s->force, w->v);
-        for (size_t k = 0; k < w->undecided_count; k++) {
-            const size_t i = w->undecided[k];
+        for (size_t i = 0; i < n; i++) {
             const double v = s->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
             s->limit_rate[i] +=
                 s->slip[i] == TRIBO_SLIP_OPEN ? 0.0 : s->slip[i] * w->v[i] * tribo_breakaway_slope(&m->breakaway, i, v);
@@ -195,26 +242,23 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     const double moment = find_moment(m);
     tribo_stick_slip_find_rate(m, sys, y);
     tribo_stick_slip_contact_accelerations(sys, w->rate, 2, w->v);
-    for (size_t k = 0; k < w->undecided_count; k++) {
-        const size_t i = w->undecided[k];
+    for (size_t i = 0; i < n; i++) {
         w->v[i] = w->a[i] + moment * w->v[i];
     }
     set_bounds_ahead(m, moment);
-    const int status = tribo_stick_slip_solve(m, sys, w->v, w->f);
+    const int status = solve(m, sys, w->v, w->f);
     if (status) {
         return status;
     }
-    find_left(m, sys, w->undecided_count, w->undecided, w->v, w->f);
-    for (size_t k = 0; k < w->undecided_count; k++) {
-        const size_t i = w->undecided[k];
+    tribo_stick_slip_accelerate(m, sys, w->v, w->f, w->v);
+    for (size_t i = 0; i < n; i++) {
         const double room = limit_ahead(s, i, moment) - fabs(w->f[i]);
         w->pulled[i] = 0;
-        if (tribo_stick_slip_searches(m, i) && room >= 0.0) {
-            const signed char direction = slip_direction(m, i, w->f[i]);
-            const int may = !tribo_breakaway_is_sudden(&m->breakaway, i);
-            const int goes = room <= 0.0 && breaks_away(m, i, direction, w->v[i]);
-            w->pulled[i] = (signed char)(goes && !may && s->tied[i] ? direction : 0);
-            if (goes && may) {
+        if (may_slide(m, i) && room >= 0.0) {
+            const signed char direction = (signed char)(room <= 0.0 ? leaves(m, i, w->f[i], 1.0) : 0);
+            const int sudden = tribo_breakaway_is_sudden(&m->breakaway, i);
+            w->pulled[i] = (signed char)(sudden && s->tied[i] ? direction : 0);
+            if (direction && !sudden) {
                 *ties -= s->tied[i] != 0;
                 *changes += let_go(m, i, direction);
             }
@@ -224,24 +268,110 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     return TRIBO_OK;
 }
 
+/* --------------------------------------------------------------------------------------------------------------- relief
+ * Contacts at rest just at their limits, decided about by the forces that hold all contacts at rest:
+ *
+ *     contacts that reached their limits keep their forces, and an independent set of the others holds
+ *     if a static limit is exceeded: the forces of all by least norm, which leave room wherever there is some
+ *     if it is exceeded by these too: all contacts in work.pulled break away together
+ *
+ * A static limit that is lost does not come back. So no static limit is lost as long as any forces within the limits hold all
+ * contacts where they are; the solver's own rounding, which may exceed that of the forces, does not decide. */
+
+/* Finds work.f = the forces that hold all contacts at rest, those that do not hold having state.force. Returns a status. */
+static int find_holding_forces(struct stick_slip *m, const tribo_system *sys)
+{
+    double *f = m->work.f;
+    const int status = tribo_stick_slip_find_holds(m, sys);
+    for (size_t i = 0; i < m->constant.contacts; i++) {
+        f[i] = m->state.loose[i] ? m->state.force[i] : 0.0;
+    }
+    tribo_stick_slip_accelerate(m, sys, m->work.a, f, m->work.v);
+    return status ? status : tribo_stick_slip_balance(m, m->work.v, f);
+}
+
+/* The contact that work.f takes most beyond its limit; ncontact if none. */
+static size_t most_overloaded(const struct stick_slip *m)
+{
+    const struct slip_state *s = &m->state;
+    size_t worst = m->constant.contacts;
+    double most = 1.0;
+    for (size_t i = 0; i < m->constant.contacts; i++) {
+        const int sure = must_be_sure(m, i);
+        const double excess = fabs(m->work.f[i]) - s->stick[i], allowance = (sure ? AT_THE_EVENT : 1.0) * m->noise.allowance[i];
+        if ((sure || s->tied[i]) && s->holds[i] && excess > most * allowance) {
+            worst = i;
+            most = excess / allowance;
+        }
+    }
+    return worst;
+}
+
+/* Finds the forces by least norm, ties contacts by these, and finds work.f. Returns a status. */
+static int share_anew(struct stick_slip *m, const tribo_system *sys)
+{
+    tribo_set_sharing(m->constant.box, TRIBO_SHARE_LEAST_NORM);
+    const int status = find_forces(m, sys);
+    tribo_set_sharing(m->constant.box, TRIBO_SHARE_PREVIOUS);
+    for (size_t i = 0; i < m->constant.contacts; i++) {
+        const double room = m->state.stick[i] - fabs(m->state.force[i]);
+        m->state.tied[i] = tribo_stick_slip_searches(m, i) && room <= m->noise.allowance[i];
+    }
+    return status ? status : find_holding_forces(m, sys);
+}
+
+/* Takes the forces that hold all contacts at rest, or lets contacts slide and sets *changes = 1. Returns a status. */
+static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *changes)
+{
+    struct slip_state *s = &m->state;
+    const struct slip_work *w = &m->work;
+    const size_t none = m->constant.contacts;
+    int status = find_holding_forces(m, sys), gone = 0;
+    size_t worst = most_overloaded(m);
+    const signed char direction = worst < none && w->f[worst] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH;
+    if (!status && worst < none && must_be_sure(m, worst)) {
+        status = share_anew(m, sys);
+        worst = most_overloaded(m) < none ? worst : none;
+    }
+    if (status) {
+        return status;
+    }
+    const int sudden = worst < none && tribo_breakaway_is_sudden(&m->breakaway, worst);
+    for (size_t i = 0; i < none; i++) {
+        if (worst == none) { /* work.f are the forces */
+            const double force = s->loose[i] ? s->force[i] : clamp(w->f[i], -s->stick[i], s->stick[i]);
+            m->noise.excess[i] = s->loose[i] ? 0.0 : fabs(w->f[i] - force);
+            s->force[i] = force;
+        } else if (sudden && w->pulled[i]) {
+            let_go(m, i, w->pulled[i]);
+            gone = 1;
+        }
+    }
+    if (worst < none && !gone) {
+        let_go(m, worst, direction);
+    }
+    *changes = worst < none ? 1 : *changes;
+    return TRIBO_OK;
+}
+
 /* ------------------------------------------------------------------------------------------------------------ decision */
 
-/* One round; *changes = the number of contacts that need another one. */
-static int go_round(struct stick_slip *m, tribo_system *sys, const double *y, size_t *changes)
+/* One round; *changes = the number of contacts that need another one. Returns a status. */
+static int go_round(struct stick_slip *m, const tribo_system *sys, const double *y, size_t *changes)
 {
     struct slip_state *s = &m->state;
     size_t ties;
-    int status = tribo_stick_slip_find_forces(m, sys);
+    int status = find_forces(m, sys);
     *changes = status ? 0 : let_slide(m, sys, y, &ties);
     if (!status && !*changes && (ties || (s->dependents && m->constant.base_moves))) {
         status = look_ahead(m, sys, y, &ties, changes);
     }
     if (!status && !*changes && ties) {
-        status = tribo_stick_slip_relieve(m, sys, changes);
+        status = relieve(m, sys, changes);
     }
     if (*changes) {
         memset(s->tied, 0, m->constant.contacts);
-        for (size_t i = 0; m->work.limit_lost && !m->constant.uncoupled && i < m->constant.contacts; i++) {
+        for (size_t i = 0; m->work.limit_lost && i < m->constant.contacts; i++) {
             tribo_stick_slip_set(m, i, s->rested[i] ? TRIBO_SLIP_STUCK : s->slip[i]); /* slips while the lost limits held */
         }
         m->work.limit_lost = 0;
@@ -260,8 +390,6 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
         tribo_elastic_move(m, sys, y);
         tribo_stick_slip_find_free(m, sys, t, y);
         tribo_stick_slip_forget_gains(m);
-        m->work.undecided = m->constant.all;
-        m->work.undecided_count = m->constant.contacts;
     }
     for (size_t changes = 1; !status && changes;) {
         status = go_round(m, sys, y, &changes);
@@ -277,5 +405,5 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     if (!status) {
         tribo_elastic_finish(m, sys);
     }
-    return status || tribo_stick_slip_knows_holds(m) ? status : tribo_stick_slip_find_holds(m, sys);
+    return status ? status : tribo_stick_slip_find_holds(m, sys);
 }

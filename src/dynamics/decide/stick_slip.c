@@ -1,10 +1,14 @@
-/* Velocities and accelerations of contacts, and bounds of their rounding. Decisions are made in scalar_slip.c and
- * planar_slip.c. */
+/* What contacts do at an instant: limits and bases, which contacts are at rest, velocities and accelerations, and bounds of their
+ * rounding. Decisions are made in scalar_slip.c and planar_slip.c. */
+#include "numerics/constraint.h"
 #include "stick_slip.h"
+#include "common/layout.h"
 #include "common/real.h"
 
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Rounding of an acceleration, in parts of the sum of the sizes of its terms. */
@@ -14,7 +18,136 @@
  * noise. */
 #define LOOK_AHEAD 1e-4
 
-/* ---------------------------------------------------------------------------------------------------------- rounding */
+/* ------------------------------------------------------------------------------------------------------------ constants */
+
+/* Sets every pointer of p [count] to an array of n doubles, one after the other. */
+static void lay_out_doubles(struct layout *l, double **const *p, size_t count, size_t n)
+{
+    double *work = tribo_layout_array(l, count * n, sizeof *work);
+    for (size_t k = 0; work && k < count; k++) {
+        *p[k] = work + k * n;
+    }
+}
+
+static void lay_out_arrays(struct stick_slip *m, struct layout *l, size_t contacts, size_t dofs)
+{
+    struct slip_constant *c = &m->constant;
+    struct slip_state *s = &m->state;
+    struct slip_noise *r = &m->noise;
+    struct slip_work *w = &m->work;
+    double **const by_contact[] = {&c->diagonal, &c->inertia,     &c->still,
+                                   &c->swing,    &c->base_size,   &c->base_rate_size,
+                                   &s->limit,    &s->limit_rate,  &s->force,
+                                   &s->spring,   &s->spring_rate, &s->base,
+                                   &s->glide,    &r->velocity,    &r->velocity_scale,
+                                   &r->spring,   &r->parting,     &w->own_a,
+                                   &w->v,        &w->lo,          &w->hi,
+                                   &w->f};
+    double **const by_dof[] = {&c->load_size, &w->acceleration, &w->free, &w->rate};
+    signed char **const sign[] = {&s->slip, &s->tied, &s->before, &s->loose, &s->slid, &w->pulled, &s->key};
+    unsigned char **const mark[] = {&s->holds, &s->rested, &c->can_hold, &c->elastic, &w->last};
+    const size_t signs = sizeof sign / sizeof *sign, marks = sizeof mark / sizeof *mark;
+    c->memory = tribo_layout_array(l, 0, 1);
+    lay_out_doubles(l, by_contact, sizeof by_contact / sizeof *by_contact, contacts);
+    lay_out_doubles(l, by_dof, sizeof by_dof / sizeof *by_dof, dofs);
+    r->founds = 3 * contacts + dofs;
+    r->found = tribo_layout_array(l, r->founds, sizeof *r->found);
+    w->at = tribo_layout_array(l, contacts, sizeof *w->at);
+    s->snap = tribo_layout_array(l, contacts, sizeof *s->snap);
+    signed char *bytes = tribo_layout_array(l, (signs + marks) * contacts + sizeof(uint64_t), 1);
+    if (bytes) {
+        r->acceleration = r->found;
+        r->allowance = r->found + contacts;
+        r->excess = r->found + 2 * contacts;
+        r->size = r->found + 3 * contacts;
+    }
+    for (size_t k = 0; bytes && k < marks; k++) {
+        *mark[k] = (unsigned char *)bytes + k * contacts;
+    }
+    for (size_t k = 0; bytes && k < signs; k++) { /* key last: zeros follow it */
+        *sign[k] = bytes + (marks + k) * contacts;
+    }
+}
+
+/* Contexts that know J and M only. Where R is diagonal forces are found without them, and there is no constant.hold. */
+static int create_contexts(struct slip_constant *c, const tribo_context *contacts)
+{
+    size_t islands;
+    if (tribo_clone(contacts, &c->box)) {
+        return 0;
+    }
+    tribo_set_planar(c->box, 0, NULL);
+    tribo_get_count(c->box, TRIBO_COUNT_ISLANDS, &islands);
+    c->uncoupled = islands == c->contacts;
+    if (c->uncoupled) {
+        return 1;
+    }
+    tribo_set_static(c->box, NULL, NULL);
+    if (tribo_clone(c->box, &c->hold)) {
+        return 0;
+    }
+    /* a contact that has reached its limit stays there while others take over */
+    tribo_set_sharing(c->box, TRIBO_SHARE_PREVIOUS);
+    tribo_set_law(c->hold, TRIBO_COULOMB);
+    tribo_set_coupling(c->hold, TRIBO_PARTITION);
+    return 1;
+}
+
+/* Fills R_ii, 1/R_ii, elastic[] and can_hold[]; sets independent; lists the snaps of all rigid contacts, none of which is loose. Returns 0 if out of memory. */
+static int find_constants(struct stick_slip *m, const tribo_system *sys)
+{
+    struct slip_constant *c = &m->constant;
+    struct constraints ties = {0};
+    size_t *rigid = m->work.at, count = 0;
+    int in_order = sys->snaps_in_order; /* row by row, J has a degree of freedom that no row before has, with no loss of digits */
+    for (size_t i = 0; i < c->contacts; i++) {
+        c->diagonal[i] = tribo_system_delassus(sys, i, i);
+        c->inertia[i] = c->diagonal[i] > 0.0 ? quotient(1.0, c->diagonal[i]) : 0.0;
+        c->elastic[i] = (unsigned char)tribo_is_compliant(&sys->compliance, i);
+        c->can_hold[i] = c->diagonal[i] > 0.0 || c->elastic[i];
+        m->state.loose[i] = (signed char)c->elastic[i];
+        rigid[count] = i;
+        count += !c->elastic[i];
+        in_order &= c->diagonal[i] > 0.0;
+    }
+    m->state.snaps = tribo_system_list_snaps(sys, m->state.loose, m->state.snap);
+    m->state.simple = m->state.snaps == count;
+    if (c->uncoupled || (in_order && m->state.simple)) {
+        c->independent = 1;
+        return 1;
+    }
+    const int done = tribo_constraints_create(&ties, &sys->direction, &sys->mass, rigid, count, m->work.last);
+    c->independent = done && ties.rank == count;
+    tribo_constraints_free(&ties);
+    return done;
+}
+
+int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
+{
+    const size_t c = sys->ncontact + 1;
+    struct layout l = {0};
+    *m = (struct stick_slip){.constant = {.sys = sys, .contacts = sys->ncontact}, .noise.factor = 1.0};
+    lay_out_arrays(m, &l, c, sys->ndof);
+    if (create_contexts(&m->constant, sys->contacts) && tribo_layout_zeros(&l)) {
+        lay_out_arrays(m, &l, c, sys->ndof);
+        if (tribo_breakaway_create(&m->breakaway, sys->ncontact) && find_constants(m, sys)) {
+            return TRIBO_OK;
+        }
+    }
+    tribo_stick_slip_free(m);
+    return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", sys->ncontact, plural(sys->ncontact));
+}
+
+void tribo_stick_slip_free(struct stick_slip *m)
+{
+    tribo_destroy(m->constant.box);
+    tribo_destroy(m->constant.hold);
+    tribo_breakaway_free(&m->breakaway);
+    free(m->constant.memory);
+    memset(m, 0, sizeof *m);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ rounding */
 
 /* y += amplitudes of the harmonics that drive loads or bases, or (order 1) of their rates. */
 static void add_amplitudes(const tribo_system *sys, enum drives drives, int order, double *y)
@@ -46,7 +179,8 @@ static void add_base_tables(const tribo_system *sys, double *y, double *rate)
     }
 }
 
-void tribo_stick_slip_find_scales(struct stick_slip *m, const tribo_system *sys)
+/* Sets horizon, base_size, base_rate_size and load_size. */
+static void find_scales(struct stick_slip *m, const tribo_system *sys)
 {
     struct slip_constant *k = &m->constant;
     const size_t c = sys->ncontact;
@@ -126,13 +260,6 @@ void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, c
     }
 }
 
-int tribo_stick_slip_is_faint(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i)
-{
-    tribo_stick_slip_find_gain(m, sys, y, i);
-    return fabs(tribo_stick_slip_velocity(m, sys, i, y)) <=
-           TRIBO_VELOCITY_NOISE * m->noise.acceleration[i] * m->constant.horizon / LOOK_AHEAD;
-}
-
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     for (size_t i = 0; i < sys->ncontact; i++) {
@@ -156,7 +283,7 @@ double tribo_stick_slip_margin(const struct stick_slip *m, size_t i)
     return tribo_breakaway_is_sudden(&m->breakaway, i) ? m->noise.allowance[i] : 0.0;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ motion */
+/* -------------------------------------------------------------------------------------------------------------- motion */
 
 void tribo_stick_slip_find_free(struct stick_slip *m, tribo_system *sys, double t, const double *y)
 {
@@ -193,5 +320,212 @@ void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, c
     }
     if (sys->compliance.count) {
         tribo_matrix_multiply_add(&sys->compliance.pull, 1.0, m->state.spring_rate, m->work.rate);
+    }
+}
+
+void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v)
+{
+    /* J (M^-1 J' f) in the place of R f: rounding of R may hide a heavy body, that of its factors does not */
+    tribo_matrix_multiply(&sys->response, f, m->work.rate);
+    memmove(v, a, m->constant.contacts * sizeof *v);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, m->work.rate, v);
+}
+
+int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration,
+                                  double *force)
+{
+    const struct slip_state *s = &m->state;
+    const size_t c = sys->ncontact;
+    double *limit = m->work.lo; /* those of (t, y): they swing, or fall with the speed */
+    tribo_system_free_motion(sys, t, y, acceleration, m->work.v, m->work.own_a);
+    if (sys->compliance.count) {
+        tribo_elastic_find(m, sys, y);
+    }
+    tribo_system_limits(sys, limit, m->work.hi);
+    for (size_t i = 0; i < c; i++) {
+        limit[i] = greater(limit[i], 0.0);
+    }
+    if (m->breakaway.some) {
+        tribo_breakaway_take(&m->breakaway, c, limit, m->work.hi);
+        tribo_breakaway_limits(&m->breakaway, c, s->slip, m->work.v, limit, m->work.hi);
+    }
+    for (size_t i = 0; i < c; i++) {
+        const double follows = m->constant.swing[i] > 0.0 ? tribo_stick_slip_follows(m, i) : 0.0;
+        force[i] = !s->loose[i]                     ? 0.0
+                   : s->slip[i] == TRIBO_SLIP_OPEN  ? 0.0
+                   : s->slip[i] != TRIBO_SLIP_STUCK ? -s->slip[i] * limit[i]
+                   : follows != 0.0                 ? follows * (m->breakaway.some ? m->breakaway.kinetic[i] : limit[i])
+                   : m->constant.elastic[i]         ? s->spring[i]
+                                                    : s->force[i];
+    }
+    tribo_matrix_multiply_add(&sys->response, 1.0, force, acceleration);
+    tribo_stick_slip_contact_accelerations(sys, acceleration, 1, m->work.v);
+    const int status = tribo_stick_slip_balance(m, m->work.v, m->work.f);
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->work.f, acceleration);
+    for (size_t i = 0; i < c; i++) {
+        force[i] += m->work.f[i];
+    }
+    return status;
+}
+
+/* ---------------------------------------------------------------------------------------------------------------- rest */
+
+/* The slip of contact i by its velocity in y. */
+static signed char slip_of(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
+{
+    const double v = tribo_stick_slip_find_velocity(m, sys, i, y), noise = m->noise.factor * m->noise.velocity[i];
+    return (signed char)(fabs(v) <= noise ? TRIBO_SLIP_STUCK : v > 0.0 ? TRIBO_SLIP_FORTH : TRIBO_SLIP_BACK);
+}
+
+void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    struct slip_state *s = &m->state;
+    if (s->steady) {
+        return;
+    }
+    const int varies = tribo_system_limits_vary(sys) || m->breakaway.some;
+    if (varies) {
+        tribo_system_limits(sys, s->limit, s->limit_rate);
+    }
+    s->steady = !varies;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const int presses = m->constant.swing[i] > 0.0 ? tribo_system_presses(sys, i, m->noise.factor)
+                                                       : s->limit[i] != 0.0 || s->limit_rate[i] != 0.0;
+        if (!presses) {
+            s->limit[i] = s->limit_rate[i] = 0.0;
+            tribo_stick_slip_set(m, i, TRIBO_SLIP_OPEN);
+        } else if (s->slip[i] == TRIBO_SLIP_OPEN) {
+            tribo_stick_slip_set(m, i, slip_of(m, sys, i, y));
+        }
+        s->limit[i] = greater(s->limit[i], 0.0);
+    }
+    if (m->breakaway.some) {
+        tribo_breakaway_take(&m->breakaway, sys->ncontact, s->limit, s->limit_rate);
+    }
+}
+
+/* Brings to rest contacts with no velocity left in the direction of their slip; returns their number. */
+static size_t stop_slips(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    const size_t n = m->constant.contacts;
+    const signed char *const slip = m->state.slip;
+    size_t found = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (tribo_slides(slip[i]) && !m->constant.elastic[i] &&
+            slip[i] * tribo_stick_slip_find_velocity(m, sys, i, y) <= m->noise.factor * m->noise.velocity[i]) {
+            tribo_stick_slip_set(m, i, TRIBO_SLIP_STUCK);
+            found++;
+        }
+    }
+    return found;
+}
+
+/* Where bases part, a contact at rest that does not hold slides by its velocity. An error if that loses a static limit: the loss
+ * is irreversible, so it must not depend on the choice of H. */
+static int part(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        if (m->state.slip[i] == TRIBO_SLIP_STUCK && !m->state.holds[i]) {
+            const int loses = m->state.rested[i] && !m->breakaway.falls && tribo_breakaway_is_sudden(&m->breakaway, i);
+            tribo_stick_slip_set(m, i, slip_of(m, sys, i, y));
+            if (m->state.slip[i] && loses) {
+                return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                         "contact %zu has a static limit and is tied to others that stop beside it: which of "
+                                         "them rest is not unique; take central/fixed or moreau/fixed",
+                                         i);
+            }
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* Contacts that a holding contact keeps at rest come to rest too. */
+int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
+{
+    int status = TRIBO_OK;
+    for (size_t found = 1; !status && found;) {
+        status = tribo_stick_slip_find_holds(m, sys);
+        status = status ? status : tribo_stick_slip_hold(m, sys, m->state.base, y + sys->ndof);
+        found = status ? 0 : stop_slips(m, sys, y);
+    }
+    if (!status && m->state.dependents && m->constant.base_moves) {
+        status = part(m, sys, y);
+    }
+    const size_t n = m->constant.contacts;
+    const signed char *restrict slip = m->state.slip;
+    unsigned char *restrict rested = m->state.rested;
+    for (size_t i = 0; i < n; i++) {
+        rested[i] = slip[i] == TRIBO_SLIP_STUCK;
+    }
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- instant */
+
+/* Sets state.base = b(t). It stays zero if no base moves. */
+static void find_base(struct stick_slip *m, const tribo_system *sys)
+{
+    if (tribo_system_bases_move(sys)) {
+        memset(m->state.base, 0, sys->ncontact * sizeof *m->state.base);
+        tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->state.base);
+    }
+}
+
+void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t)
+{
+    if (!tribo_system_is_at(sys, t)) {
+        tribo_system_set_time(sys, t);
+    }
+    find_base(m, sys);
+    memset(m->state.tied, 0, sys->ncontact);
+}
+
+void tribo_stick_slip_forget_shares(struct stick_slip *m)
+{
+    const double *still = m->constant.still;
+    if (!m->constant.independent && !m->constant.uncoupled) {
+        tribo_solve_box(m->constant.box, still, still, still, m->work.f);
+    }
+}
+
+void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues)
+{
+    struct slip_constant *k = &m->constant;
+    struct slip_state *s = &m->state;
+    const size_t c = sys->ncontact;
+    tribo_system_set_time(sys, t);
+    tribo_system_limits(sys, s->limit, s->limit_rate);
+    tribo_breakaway_start(&m->breakaway, sys, m->work.rate, m->work.v);
+    s->stick = m->breakaway.some ? m->breakaway.stick : s->limit;
+    s->stick_rate = m->breakaway.some ? m->breakaway.stick_rate : s->limit_rate;
+    memset(s->base, 0, c * sizeof *s->base);
+    find_base(m, sys);
+    find_scales(m, sys);
+    memset(m->noise.velocity_scale, 0, c * sizeof *m->noise.velocity_scale);
+    m->noise.factor = 1.0;
+    for (size_t i = 0; i < c; i++) {
+        k->swing[i] = tribo_system_swing(sys, i);
+    }
+    if (!continues) {
+        memset(s->force, 0, c * sizeof *s->force);
+        tribo_stick_slip_forget_gains(m);
+        for (size_t i = 0; i < c; i++) {
+            const signed char slip = slip_of(m, sys, i, y);
+            /* several contacts that hold a body together leave what rounding of accelerations makes of v_i */
+            tribo_stick_slip_find_gain(m, sys, y, i);
+            const double faint = TRIBO_VELOCITY_NOISE * m->noise.acceleration[i] * k->horizon / LOOK_AHEAD;
+            const int rests = slip == 0 || fabs(tribo_stick_slip_velocity(m, sys, i, y)) <= faint;
+            tribo_stick_slip_set(m, i, (signed char)(s->limit[i] == 0.0 ? TRIBO_SLIP_OPEN : rests ? TRIBO_SLIP_STUCK : slip));
+            s->rested[i] = 0;
+        }
+        tribo_stick_slip_forget_shares(m);
+        tribo_elastic_start(m, sys, y);
+    }
+    s->fresh = s->hold_differs = 1;
+    s->steady = 0;
+    s->reached = c;
+    k->base_moves = sys->base_tables > 0;
+    for (size_t i = 0; i < sys->harmonics; i++) {
+        k->base_moves |= sys->harmonic[i].drives == DRIVES_BASE && sys->harmonic[i].count > 0;
     }
 }
