@@ -1,32 +1,7 @@
 #include "breakaway.h"
-#include "common/zeros.h"
 
 #include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
-
-int tribo_breakaway_create(struct breakaway *b, size_t contacts)
-{
-    const size_t c = contacts + 1;
-    memset(b, 0, sizeof *b);
-    b->revision = SIZE_MAX;
-    b->ratio = tribo_zeros(6 * c, sizeof *b->ratio);
-    if (!b->ratio) {
-        return 0;
-    }
-    b->velocity = b->ratio + c;
-    b->kinetic = b->ratio + 2 * c;
-    b->kinetic_rate = b->ratio + 3 * c;
-    b->stick = b->ratio + 4 * c;
-    b->stick_rate = b->ratio + 5 * c;
-    return 1;
-}
-
-void tribo_breakaway_free(struct breakaway *b)
-{
-    free(b->ratio);
-}
 
 /* The largest row sum of |J| |B| diag(slopes at rest), with the largest limits of all times. */
 static double steepest(struct breakaway *b, const tribo_system *sys, double *dof, double *contact)

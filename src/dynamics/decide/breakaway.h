@@ -19,12 +19,8 @@ struct breakaway {
     double *stick;        /* [ncontact] limit at rest */
     double *stick_rate;   /* [ncontact] its rate */
     double steepest;      /* bound of the growth rate of perturbations by limits that fall */
-    size_t revision;      /* of the system that steepest is of */
+    size_t revision;      /* of the system that steepest is of; SIZE_MAX: none */
 };
-
-/* 1, or 0 if out of memory. tribo_breakaway_free takes what failed too. */
-int tribo_breakaway_create(struct breakaway *b, size_t contacts);
-void tribo_breakaway_free(struct breakaway *b);
 
 /* Takes ratio and velocity from the system's context; finds steepest. dof [ndof], contact [ncontact]: workspace. */
 void tribo_breakaway_start(struct breakaway *b, tribo_system *sys, double *dof, double *contact);

@@ -37,54 +37,9 @@ void tribo_planar_slip_free(struct planar_slip *p)
 
 /* --------------------------------------------------------------------------------------------------------- contacts */
 
-static int create_plane(struct stick_slip *m, const tribo_system *sys)
+static double length(const double *x)
 {
-    const size_t c = sys->ncontact;
-    struct planar_slip *p = m->plane = m->plane ? m->plane : calloc(1, sizeof *p);
-    signed char *slip = malloc(c);
-    if (p && !p->rate) {
-        p->contact = malloc((c / 2) * sizeof *p->contact);
-        p->in_plane = malloc(c);
-        p->rate = malloc(3 * c * sizeof *p->rate);
-    }
-    const int room = p && slip && p->contact && p->in_plane && p->rate;
-    int status = TRIBO_ERR_MEMORY;
-    if (room) {
-        tribo_destroy(p->disc);
-        p->disc = NULL;
-        p->count = 0;
-        memset(p->in_plane, 0, c);
-        status = tribo_clone(sys->contacts, &p->disc);
-    } else {
-        tribo_planar_slip_free(p);
-        m->plane = NULL;
-    }
-    if (!status) {
-        p->ahead = p->rate + c;
-        p->error = p->rate + 2 * c;
-        tribo_set_law(p->disc, TRIBO_COULOMB);
-        tribo_set_sharing(p->disc, TRIBO_SHARE_PREVIOUS);
-        /* slip[i] = TRIBO_SLIP_PLANE for directions of planar contacts: the slip of contacts that all slide */
-        double *one = p->rate;
-        for (size_t i = 0; i < c; i++) {
-            one[i] = 1.0;
-        }
-        status = tribo_set_limit(p->disc, one);
-        status = status ? status : tribo_balance(p->disc, one, one, NULL, one);
-        status = status ? status : tribo_get_slip(p->disc, slip);
-    }
-    for (size_t i = 0; !status && i + 1 < c; i++) {
-        /* directions of planar contacts stand in pairs; one without both limits is scalar, or open */
-        const double *limit = m->state.limit + i;
-        if (slip[i] == TRIBO_SLIP_PLANE && limit[0] > 0.0 && limit[1] > 0.0) {
-            p->contact[p->count++] = (struct planar_contact){.at = i, .limit = {limit[0], limit[1]}};
-            p->in_plane[i] = 1;
-            p->in_plane[i + 1] = 2;
-        }
-        i += slip[i] == TRIBO_SLIP_PLANE;
-    }
-    free(slip);
-    return status ? tribo_system_fail(sys, status, "%s, of planar contacts", tribo_strerror(status)) : TRIBO_OK;
+    return hypot(x[0], x[1]);
 }
 
 static int slides_in_plane(const struct stick_slip *m, const struct planar_contact *p)
@@ -92,23 +47,53 @@ static int slides_in_plane(const struct stick_slip *m, const struct planar_conta
     return m->state.slip[p->at] == TRIBO_SLIP_PLANE;
 }
 
-static double length(const double *x)
-{
-    return hypot(x[0], x[1]);
-}
-
-/* 1 if the speed of a contact is rounding, or below NOTHING of the tolerance and not growing: a contact that begins to slide
- * beside one that creeps may be slow for many steps. */
-static int rests(const struct stick_slip *m, const struct planar_contact *p)
-{
-    const double noise = greater(m->noise.factor * (m->noise.velocity[p->at] + m->noise.velocity[p->at + 1]), ROUNDING * p->most);
-    return p->now <= noise || (p->now <= NOTHING * (m->constant.abstol + m->constant.reltol * p->most) && p->now <= p->before);
-}
-
 static void set_slip(struct stick_slip *m, const struct planar_contact *p, signed char slip)
 {
     tribo_stick_slip_set(m, p->at, slip);
     tribo_stick_slip_set(m, p->at + 1, slip);
+}
+
+/* Finds the planar contacts, which slide at first: whether they are at rest is seen by their speed alone. Returns a status. */
+static int create_plane(struct stick_slip *m, const tribo_system *sys)
+{
+    const size_t c = sys->ncontact;
+    struct planar_slip *p = m->plane = calloc(1, sizeof *p);
+    if (!p || !(p->contact = malloc((c / 2) * sizeof *p->contact)) || !(p->in_plane = malloc(c)) ||
+        !(p->rate = malloc(3 * c * sizeof *p->rate))) {
+        return TRIBO_ERR_MEMORY;
+    }
+    p->ahead = p->rate + c;
+    p->error = p->rate + 2 * c;
+    int status = tribo_clone(sys->contacts, &p->disc);
+    if (status) {
+        return status;
+    }
+    tribo_set_law(p->disc, TRIBO_COULOMB);
+    tribo_set_sharing(p->disc, TRIBO_SHARE_PREVIOUS);
+    /* slip[i] = TRIBO_SLIP_PLANE for directions of planar contacts: the slip of contacts that all slide */
+    double *one = p->rate;
+    signed char *slip = (signed char *)p->in_plane;
+    for (size_t i = 0; i < c; i++) {
+        one[i] = 1.0;
+    }
+    status = tribo_set_limit(p->disc, one);
+    status = status ? status : tribo_balance(p->disc, one, one, NULL, one);
+    status = status ? status : tribo_get_slip(p->disc, slip);
+    for (size_t i = 0; !status && i < c; i++) {
+        /* directions of planar contacts stand in pairs; one without both limits is scalar, or open */
+        const double *limit = m->state.limit + i;
+        const int pair = slip[i] == TRIBO_SLIP_PLANE, slides = pair && limit[0] > 0.0 && limit[1] > 0.0;
+        p->in_plane[i] = (unsigned char)slides;
+        if (pair) {
+            p->in_plane[i + 1] = slides ? 2 : 0;
+        }
+        if (slides) {
+            p->contact[p->count++] = (struct planar_contact){.at = i, .limit = {limit[0], limit[1]}, .now = HUGE_VAL};
+            set_slip(m, &p->contact[p->count - 1], TRIBO_SLIP_PLANE);
+        }
+        i += (size_t)pair;
+    }
+    return status;
 }
 
 /* Forces of planar contacts are known for limits that are the same at all times and speeds, at rest and not. */
@@ -133,23 +118,28 @@ static int check_limits(const struct stick_slip *m, const tribo_system *sys, siz
 int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int continues)
 {
     const size_t planar = tribo_system_planar(sys);
-    if (!planar) {
-        tribo_planar_slip_free(m->plane);
-        m->plane = NULL;
-    }
-    if (!planar || continues) {
+    if (planar && continues) {
         return TRIBO_OK;
     }
-    int status = check_limits(m, sys, planar);
-    status = status ? status : create_plane(m, sys);
-    for (size_t k = 0; !status && k < m->plane->count; k++) {
-        set_slip(m, &m->plane->contact[k], TRIBO_SLIP_PLANE); /* whether it is at rest is seen by its speed alone */
-        m->plane->contact[k].now = HUGE_VAL;
+    tribo_planar_slip_free(m->plane);
+    m->plane = NULL;
+    int status = planar ? check_limits(m, sys, planar) : TRIBO_OK;
+    if (planar && !status) {
+        status = create_plane(m, sys);
+        status = status ? tribo_system_fail(sys, status, "%s, of planar contacts", tribo_strerror(status)) : TRIBO_OK;
     }
     return status;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- at rest */
+
+/* 1 if the speed of a contact is rounding, or below NOTHING of the tolerance and not growing: a contact that begins to slide
+ * beside one that creeps may be slow for many steps. */
+static int rests(const struct stick_slip *m, const struct planar_contact *p)
+{
+    const double noise = greater(m->noise.factor * (m->noise.velocity[p->at] + m->noise.velocity[p->at + 1]), ROUNDING * p->most);
+    return p->now <= noise || (p->now <= NOTHING * (m->constant.abstol + m->constant.reltol * p->most) && p->now <= p->before);
+}
 
 /* Brings contacts without speed to rest; returns their number. */
 static size_t stop_in_plane(struct stick_slip *m, const tribo_system *sys, const double *y)
@@ -232,129 +222,110 @@ static double given_forces(struct stick_slip *m, const tribo_system *sys, const 
  * for the others. Sets work.v = a + R f. */
 static int solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
 {
-    memset(m->work.rate, 0, sys->ndof * sizeof *m->work.rate);
-    memcpy(m->work.v, a, m->constant.contacts * sizeof *a);
-    tribo_matrix_multiply_add(&sys->response, 1.0, m->work.lo, m->work.rate);
-    tribo_matrix_multiply_add(&sys->direction, 1.0, m->work.rate, m->work.v);
+    tribo_stick_slip_accelerate(m, sys, a, m->work.lo, m->work.v);
     int status = tribo_set_limit(m->plane->disc, m->work.hi);
     status = status ? status : tribo_balance(m->plane->disc, m->constant.still, m->work.v, NULL, f);
     if (status) {
         return tribo_system_fail(sys, status, "at t = %.17g: %s", sys->time, tribo_message(m->plane->disc));
     }
     tribo_add(f, 1.0, m->work.lo, m->constant.contacts);
-    memset(m->work.rate, 0, sys->ndof * sizeof *m->work.rate);
-    memcpy(m->work.v, a, m->constant.contacts * sizeof *a);
-    tribo_matrix_multiply_add(&sys->response, 1.0, f, m->work.rate);
-    tribo_matrix_multiply_add(&sys->direction, 1.0, m->work.rate, m->work.v);
+    tribo_stick_slip_accelerate(m, sys, a, f, m->work.v);
     return TRIBO_OK;
 }
 
-static int find_forces(struct stick_slip *m, const tribo_system *sys, const double *y)
+/* ------------------------------------------------------------------------------------------------------- letting go
+ * A contact, scalar or planar, is its first direction i, its number of directions, and p if there are two. */
+
+struct face {
+    size_t i, size;
+    struct planar_contact *p;
+};
+
+/* The contact after f; the first one after {0}. Its size is 0 if there is none. */
+static struct face next_face(const struct stick_slip *m, struct face f)
 {
-    given_forces(m, sys, y, m->constant.still);
-    for (size_t i = 0; i < m->constant.contacts; i++) {
-        m->work.hi[i] = m->state.slip[i] == TRIBO_SLIP_STUCK ? m->state.limit[i] : 0.0;
+    const size_t i = f.i + f.size;
+    struct planar_contact *p = f.p ? f.p : m->plane->contact;
+    p += f.size == 2;
+    return (struct face){i, i == m->constant.contacts ? 0 : m->plane->in_plane[i] ? 2 : 1, p};
+}
+
+/* |f/limit|; *noise = its rounding. */
+static double share(const struct stick_slip *m, const struct face *c, const double *f, double *noise)
+{
+    double sum = 0.0, allowance = 0.0, least = HUGE_VAL;
+    for (size_t i = c->i; i < c->i + c->size; i++) {
+        sum = hypot(sum, f[i] / m->state.limit[i]);
+        allowance = greater(allowance, m->noise.allowance[i]);
+        least = lesser(least, m->state.limit[i]);
     }
-    return solve(m, sys, m->work.a, m->state.force);
+    *noise = allowance / least;
+    return sum;
 }
 
-/* ------------------------------------------------------------------------------------------------------- letting go */
-
-/* |f/limit| of a planar contact; *noise = its rounding. */
-static double share(const struct stick_slip *m, const struct planar_contact *p, const double *f, double *noise)
-{
-    const double part[2] = {f[p->at] / p->limit[0], f[p->at + 1] / p->limit[1]};
-    *noise = greater(m->noise.allowance[p->at], m->noise.allowance[p->at + 1]) / lesser(p->limit[0], p->limit[1]);
-    return length(part);
-}
-
-/* 1 if a planar contact accelerates, by work.v, against force f by more than rounding. */
-static int leaves(const struct stick_slip *m, const struct planar_contact *p, const double *f)
+/* 1 if a contact accelerates, by work.v, against force f by more than rounding. */
+static int leaves(const struct stick_slip *m, const struct face *c, const double *f)
 {
     double against = 0.0, size = 0.0, noise = 0.0;
-    for (size_t d = 0; d < 2; d++) {
-        against -= f[p->at + d] * m->work.v[p->at + d];
-        noise += fabs(f[p->at + d]) * m->noise.acceleration[p->at + d];
-        size += fabs(f[p->at + d]);
+    for (size_t i = c->i; i < c->i + c->size; i++) {
+        against -= f[i] * m->work.v[i];
+        noise += fabs(f[i]) * m->noise.acceleration[i];
+        size += fabs(f[i]);
     }
     return size > 0.0 && against > noise;
 }
 
-/* Lets contact p slide against its force. */
-static void let_go_in_plane(struct stick_slip *m, struct planar_contact *p, int begins)
+/* Lets a contact slide against its force. */
+static void let_go(struct stick_slip *m, const struct face *c, int begins)
 {
-    double part[2] = {m->state.force[p->at] / p->limit[0], m->state.force[p->at + 1] / p->limit[1]};
-    const double size = length(part);
+    double *f = m->state.force + c->i;
+    struct planar_contact *p = c->p;
+    if (c->size == 1) {
+        tribo_stick_slip_set(m, c->i, f[0] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH);
+        f[0] = -m->state.slip[c->i] * m->state.limit[c->i];
+        return;
+    }
+    const double part[2] = {f[0] / p->limit[0], f[1] / p->limit[1]}, size = length(part);
     set_slip(m, p, TRIBO_SLIP_PLANE);
     p->begins = begins;
     p->now = 0.0;
     for (size_t d = 0; d < 2; d++) {
         p->direction[d] = -part[d] / size;
-        m->state.force[p->at + d] = -p->limit[d] * p->direction[d];
+        f[d] = -p->limit[d] * p->direction[d];
     }
-}
-
-/* 1 if scalar contact i accelerates against force f by more than rounding. */
-static int leaves_line(const struct stick_slip *m, size_t i, const double *f)
-{
-    return f[i] != 0.0 && (f[i] > 0.0 ? -m->work.v[i] : m->work.v[i]) > m->noise.acceleration[i];
-}
-
-static void let_go_line(struct stick_slip *m, size_t i)
-{
-    tribo_stick_slip_set(m, i, m->state.force[i] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH);
-    m->state.force[i] = -m->state.slip[i] * m->state.limit[i];
-}
-
-static int on_line(const struct stick_slip *m, size_t i)
-{
-    return !m->plane->in_plane[i] && m->state.slip[i] == TRIBO_SLIP_STUCK;
 }
 
 /* Lets contacts at rest slide whose force is at its limit and that accelerate; marks those in state.tied that do not
  * accelerate, and returns their number. */
 static size_t break_away(struct stick_slip *m)
 {
+    struct slip_state *s = &m->state;
     size_t ties = 0;
-    for (size_t i = 0; i < m->constant.contacts; i++) {
-        const double room = m->state.limit[i] - fabs(m->state.force[i]);
-        m->state.tied[i] = (signed char)(on_line(m, i) && (room <= m->noise.allowance[i] || i == m->state.reached));
-        if (m->state.tied[i] && leaves_line(m, i, m->state.force)) {
-            m->state.tied[i] = 0;
-            let_go_line(m, i);
-        }
-        ties += (size_t)m->state.tied[i];
-    }
-    for (size_t k = 0; k < m->plane->count; k++) {
-        struct planar_contact *p = &m->plane->contact[k];
+    for (struct face c = next_face(m, (struct face){0}); c.size; c = next_face(m, c)) {
         double noise;
-        const double part = share(m, p, m->state.force, &noise);
-        m->state.tied[p->at] =
-            (signed char)(m->state.slip[p->at] == TRIBO_SLIP_STUCK && (part >= 1.0 - noise || p->at == m->state.reached));
-        if (m->state.tied[p->at] && leaves(m, p, m->state.force)) {
-            m->state.tied[p->at] = 0;
-            let_go_in_plane(m, p, BY_ACCELERATION);
+        if (s->slip[c.i] == TRIBO_SLIP_STUCK && (share(m, &c, s->force, &noise) >= 1.0 - noise || c.i == s->reached)) {
+            s->tied[c.i] = 1;
+            if (leaves(m, &c, s->force)) {
+                s->tied[c.i] = 0;
+                let_go(m, &c, BY_ACCELERATION);
+            }
+            ties += (size_t)s->tied[c.i];
         }
-        ties += (size_t)m->state.tied[p->at];
     }
     return ties;
 }
 
-/* Sets work.hi = limits of a moment later: for tied contacts at most their forces; full ones for contacts that begin to
- * slide. */
+/* Sets work.hi = limits of a moment later: for tied contacts at most their forces; full ones for contacts that begin to slide in a
+ * plane. */
 static void set_limits_ahead(struct stick_slip *m)
 {
-    for (size_t i = 0; i < m->constant.contacts; i++) {
-        m->work.hi[i] = m->state.slip[i] != TRIBO_SLIP_STUCK ? 0.0
-                        : m->state.tied[i]                   ? lesser(m->state.limit[i], fabs(m->state.force[i]))
-                                                             : m->state.limit[i];
-    }
-    for (size_t k = 0; k < m->plane->count; k++) {
-        const struct planar_contact *p = &m->plane->contact[k];
+    const struct slip_state *s = &m->state;
+    for (struct face c = next_face(m, (struct face){0}); c.size; c = next_face(m, c)) {
+        const int counts = s->slip[c.i] == TRIBO_SLIP_STUCK || (c.size == 2 && c.p->begins != SLIDES_ON);
         double noise;
-        const double part = m->state.tied[p->at] ? lesser(share(m, p, m->state.force, &noise), 1.0) : 1.0;
-        for (size_t d = 0; d < 2 && (m->state.slip[p->at] == TRIBO_SLIP_STUCK || p->begins != SLIDES_ON); d++) {
-            m->work.hi[p->at + d] = part * p->limit[d];
+        const double part = !counts ? 0.0 : s->tied[c.i] ? lesser(share(m, &c, s->force, &noise), 1.0) : 1.0;
+        for (size_t i = c.i; i < c.i + c.size; i++) {
+            m->work.hi[i] = part * s->limit[i];
         }
     }
 }
@@ -363,13 +334,10 @@ static void set_limits_ahead(struct stick_slip *m)
  * limit curve at its present force. A force that turns along the curve is not: curvature is of second order. */
 static int goes_beyond(const struct stick_slip *m, const tribo_system *sys, const struct planar_contact *p, const double *f)
 {
-    double r[2][2] = {{0.0}}, beyond = 0.0, noise = 0.0;
-    const struct matrix *j = &sys->direction;
+    double r[2][2], beyond = 0.0, noise = 0.0;
     for (size_t d = 0; d < 2; d++) {
-        for (size_t e = j->first[p->at + d]; e < j->first[p->at + d + 1]; e++) {
-            r[d][0] += j->val[e] * tribo_matrix_get(&sys->response, j->col[e], p->at);
-            r[d][1] += j->val[e] * tribo_matrix_get(&sys->response, j->col[e], p->at + 1);
-        }
+        r[d][0] = tribo_system_delassus(sys, p->at + d, p->at);
+        r[d][1] = tribo_system_delassus(sys, p->at + d, p->at + 1);
     }
     const double *v = m->work.v + p->at, determinant = r[0][0] * r[1][1] - r[0][1] * r[1][0];
     const double lacks[2] = {(r[0][1] * v[1] - r[1][1] * v[0]) / determinant, (r[1][0] * v[0] - r[0][0] * v[1]) / determinant};
@@ -381,8 +349,8 @@ static int goes_beyond(const struct stick_slip *m, const tribo_system *sys, cons
     return beyond > noise;
 }
 
-/* Lets tied contacts slide by the forces of a moment later. */
-static int look_ahead_in_plane(struct stick_slip *m, tribo_system *sys, const double *y)
+/* Lets tied contacts slide by the forces of a moment later. Returns a status. */
+static int look_ahead_in_plane(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     tribo_stick_slip_contact_accelerations(sys, tribo_stick_slip_find_acceleration(m, sys), 1, m->work.f);
     const double turn = given_forces(m, sys, y, m->work.f),
@@ -395,15 +363,9 @@ static int look_ahead_in_plane(struct stick_slip *m, tribo_system *sys, const do
     }
     set_limits_ahead(m);
     const int status = solve(m, sys, m->plane->ahead, m->work.f);
-    for (size_t i = 0; !status && i < m->constant.contacts; i++) {
-        if (m->state.tied[i] && on_line(m, i) && leaves_line(m, i, m->work.f)) {
-            let_go_line(m, i);
-        }
-    }
-    for (size_t k = 0; !status && k < m->plane->count; k++) {
-        struct planar_contact *p = &m->plane->contact[k];
-        if (m->state.tied[p->at] && leaves(m, p, m->work.f) && goes_beyond(m, sys, p, m->work.f)) {
-            let_go_in_plane(m, p, BY_FORCE);
+    for (struct face c = next_face(m, (struct face){0}); !status && c.size; c = next_face(m, c)) {
+        if (m->state.tied[c.i] && leaves(m, &c, m->work.f) && (c.size == 1 || goes_beyond(m, sys, c.p, m->work.f))) {
+            let_go(m, &c, BY_FORCE);
         }
     }
     return status;
@@ -418,15 +380,18 @@ int tribo_planar_slip_decide(struct stick_slip *m, tribo_system *sys, double t, 
     int status = find_resting(m, sys, y);
     if (!status) {
         tribo_stick_slip_find_free(m, sys, t, y);
-        status = find_forces(m, sys, y);
+        given_forces(m, sys, y, m->constant.still);
+        for (size_t i = 0; i < m->constant.contacts; i++) {
+            m->work.hi[i] = m->state.slip[i] == TRIBO_SLIP_STUCK ? m->state.limit[i] : 0.0;
+        }
+        status = solve(m, sys, m->work.a, m->state.force);
     }
     if (status) {
         return status;
     }
     tribo_stick_slip_forget_gains(m);
     tribo_stick_slip_find_gains(m, sys, y);
-    const size_t ties = break_away(m);
-    status = ties ? look_ahead_in_plane(m, sys, y) : TRIBO_OK;
+    status = break_away(m) ? look_ahead_in_plane(m, sys, y) : TRIBO_OK;
     m->state.reached = m->constant.contacts;
     memset(m->state.tied, 0, m->constant.contacts);
     status = status ? status : tribo_stick_slip_find_holds(m, sys);

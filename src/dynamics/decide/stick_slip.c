@@ -20,53 +20,48 @@
 
 /* ------------------------------------------------------------------------------------------------------------ constants */
 
-/* Sets every pointer of p [count] to an array of n doubles, one after the other. */
-static void lay_out_doubles(struct layout *l, double **const *p, size_t count, size_t n)
-{
-    double *work = tribo_layout_array(l, count * n, sizeof *work);
-    for (size_t k = 0; work && k < count; k++) {
-        *p[k] = work + k * n;
-    }
-}
-
 static void lay_out_arrays(struct stick_slip *m, struct layout *l, size_t contacts, size_t dofs)
 {
     struct slip_constant *c = &m->constant;
     struct slip_state *s = &m->state;
     struct slip_noise *r = &m->noise;
     struct slip_work *w = &m->work;
-    double **const by_contact[] = {&c->diagonal, &c->inertia,     &c->still,
-                                   &c->swing,    &c->base_size,   &c->base_rate_size,
-                                   &s->limit,    &s->limit_rate,  &s->force,
-                                   &s->spring,   &s->spring_rate, &s->base,
-                                   &s->glide,    &r->velocity,    &r->velocity_scale,
-                                   &r->spring,   &r->parting,     &w->own_a,
-                                   &w->v,        &w->lo,          &w->hi,
-                                   &w->f};
-    double **const by_dof[] = {&c->load_size, &w->acceleration, &w->free, &w->rate};
+    struct breakaway *b = &m->breakaway;
+    /* the three last ones and the first one below are zeroed together */
+    double **const by_contact[] = {&c->diagonal,   &c->inertia,      &c->still,
+                                   &c->swing,      &c->base_size,    &c->base_rate_size,
+                                   &s->limit,      &s->limit_rate,   &s->force,
+                                   &s->spring,     &s->spring_rate,  &s->base,
+                                   &s->glide,      &r->velocity,     &r->velocity_scale,
+                                   &r->spring,     &r->parting,      &w->own_a,
+                                   &w->v,          &w->lo,           &w->hi,
+                                   &w->f,          &b->ratio,        &b->velocity,
+                                   &b->kinetic,    &b->kinetic_rate, &b->stick,
+                                   &b->stick_rate, &r->acceleration, &r->allowance,
+                                   &r->excess};
+    double **const by_dof[] = {&r->size, &c->load_size, &w->acceleration, &w->free, &w->rate};
     signed char **const sign[] = {&s->slip, &s->tied, &s->before, &s->loose, &s->slid, &w->pulled, &s->key};
     unsigned char **const mark[] = {&s->holds, &s->rested, &c->can_hold, &c->elastic, &w->last};
-    const size_t signs = sizeof sign / sizeof *sign, marks = sizeof mark / sizeof *mark;
+    enum { CONTACTS = sizeof by_contact / sizeof *by_contact, DOFS = sizeof by_dof / sizeof *by_dof };
+    enum { SIGNS = sizeof sign / sizeof *sign, MARKS = sizeof mark / sizeof *mark };
     c->memory = tribo_layout_array(l, 0, 1);
-    lay_out_doubles(l, by_contact, sizeof by_contact / sizeof *by_contact, contacts);
-    lay_out_doubles(l, by_dof, sizeof by_dof / sizeof *by_dof, dofs);
-    r->founds = 3 * contacts + dofs;
-    r->found = tribo_layout_array(l, r->founds, sizeof *r->found);
+    double *work = tribo_layout_array(l, CONTACTS * contacts + DOFS * dofs, sizeof *work);
     w->at = tribo_layout_array(l, contacts, sizeof *w->at);
     s->snap = tribo_layout_array(l, contacts, sizeof *s->snap);
-    signed char *bytes = tribo_layout_array(l, (signs + marks) * contacts + sizeof(uint64_t), 1);
-    if (bytes) {
-        r->acceleration = r->found;
-        r->allowance = r->found + contacts;
-        r->excess = r->found + 2 * contacts;
-        r->size = r->found + 3 * contacts;
+    signed char *bytes = tribo_layout_array(l, (SIGNS + MARKS) * contacts + sizeof(uint64_t), 1);
+    for (size_t k = 0; work && k < CONTACTS; k++) {
+        *by_contact[k] = work + k * contacts;
     }
-    for (size_t k = 0; bytes && k < marks; k++) {
+    for (size_t k = 0; work && k < DOFS; k++) {
+        *by_dof[k] = work + CONTACTS * contacts + k * dofs;
+    }
+    for (size_t k = 0; bytes && k < MARKS; k++) {
         *mark[k] = (unsigned char *)bytes + k * contacts;
     }
-    for (size_t k = 0; bytes && k < signs; k++) { /* key last: zeros follow it */
-        *sign[k] = bytes + (marks + k) * contacts;
+    for (size_t k = 0; bytes && k < SIGNS; k++) { /* key last: zeros follow it */
+        *sign[k] = bytes + (MARKS + k) * contacts;
     }
+    r->founds = 3 * contacts + dofs;
 }
 
 /* Contexts that know J and M only. Where R is diagonal forces are found without them, and there is no constant.hold. */
@@ -126,11 +121,12 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
 {
     const size_t c = sys->ncontact + 1;
     struct layout l = {0};
-    *m = (struct stick_slip){.constant = {.sys = sys, .contacts = sys->ncontact}, .noise.factor = 1.0};
+    *m = (struct stick_slip){
+        .constant = {.sys = sys, .contacts = sys->ncontact}, .noise.factor = 1.0, .breakaway.revision = SIZE_MAX};
     lay_out_arrays(m, &l, c, sys->ndof);
     if (create_contexts(&m->constant, sys->contacts) && tribo_layout_zeros(&l)) {
         lay_out_arrays(m, &l, c, sys->ndof);
-        if (tribo_breakaway_create(&m->breakaway, sys->ncontact) && find_constants(m, sys)) {
+        if (find_constants(m, sys)) {
             return TRIBO_OK;
         }
     }
@@ -142,7 +138,6 @@ void tribo_stick_slip_free(struct stick_slip *m)
 {
     tribo_destroy(m->constant.box);
     tribo_destroy(m->constant.hold);
-    tribo_breakaway_free(&m->breakaway);
     free(m->constant.memory);
     memset(m, 0, sizeof *m);
 }
@@ -207,7 +202,7 @@ static void find_scales(struct stick_slip *m, const tribo_system *sys)
 
 void tribo_stick_slip_forget_gains(struct stick_slip *m)
 {
-    memset(m->noise.found, 0, m->noise.founds * sizeof *m->noise.found);
+    memset(m->noise.acceleration, 0, m->noise.founds * sizeof *m->noise.acceleration);
 }
 
 /* Returns noise.size[d], the size of the terms of q''_d; finds it first if it is 0. */

@@ -75,12 +75,11 @@ struct slip_noise {
     double *velocity_scale; /* [ncontact] size of the terms of v_i in the phase before; 0: unknown */
     double *spring;         /* [ncontact] of the force of an elastic contact */
     double *parting;        /* [ncontact] of v_i of a contact at rest that does not hold, on a base that moves */
-    double *found;          /* [founds] the four arrays below, one after the other; zeroed as a decision begins */
-    size_t founds;
-    double *acceleration; /* [ncontact] of v_i' */
-    double *allowance;    /* [ncontact] excess of |f_i| over the limit that is no event */
-    double *excess;       /* [ncontact] excess of |f_i| over the limit at the beginning of the phase */
-    double *size;         /* [ndof] size of the terms of q'' */
+    size_t founds;          /* doubles of the four arrays below, one after the other; zeroed as a decision begins */
+    double *acceleration;   /* [ncontact] of v_i' */
+    double *allowance;      /* [ncontact] excess of |f_i| over the limit that is no event */
+    double *excess;         /* [ncontact] excess of |f_i| over the limit at the beginning of the phase */
+    double *size;           /* [ndof] size of the terms of q'' */
 };
 
 /* Workspace of a decision. */
@@ -218,13 +217,14 @@ static inline double tribo_stick_slip_velocity_noise(const struct stick_slip *m,
 /* v_i in y, with b at the time of the last decision; find_velocity also sets noise.velocity[i]. */
 static inline double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
 {
-    const struct matrix *j = &sys->direction;
-    const double *u = y + sys->ndof;
-    double v = -m->state.base[i];
-    for (size_t k = j->first[i], end = j->first[i + 1]; k < end; k++) {
-        v += j->val[k] * u[j->col[k]];
-    }
-    return v;
+    return tribo_matrix_row_dot(&sys->direction, i, y + sys->ndof) - m->state.base[i];
+}
+
+static inline double tribo_stick_slip_find_velocity(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
+{
+    const double size = tribo_matrix_row_size(&sys->direction, i, y + sys->ndof);
+    m->noise.velocity[i] = tribo_stick_slip_velocity_noise(m, i, size);
+    return tribo_stick_slip_velocity(m, sys, i, y);
 }
 
 /* The velocity of contact i as the motion after the decision at y begins. */
@@ -233,20 +233,6 @@ static inline double tribo_stick_slip_first_velocity(const struct stick_slip *m,
 {
     const double v = m->constant.elastic[i] ? m->state.glide[i] : tribo_stick_slip_velocity(m, sys, i, y);
     return m->state.rested[i] ? 0.0 : v;
-}
-
-static inline double tribo_stick_slip_find_velocity(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
-{
-    const struct matrix *j = &sys->direction;
-    const double *u = y + sys->ndof;
-    double v = -m->state.base[i], size = 0.0;
-    for (size_t k = j->first[i], end = j->first[i + 1]; k < end; k++) {
-        const double part = j->val[k] * u[j->col[k]];
-        v += part;
-        size += fabs(part);
-    }
-    m->noise.velocity[i] = tribo_stick_slip_velocity_noise(m, i, size);
-    return v;
 }
 
 #endif
