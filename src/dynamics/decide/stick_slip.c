@@ -233,16 +233,14 @@ double tribo_stick_slip_acceleration_size(struct stick_slip *m, const tribo_syst
 void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i)
 {
     const struct matrix *j = &sys->direction;
-    double size = 0.0, speed = 0.0;
+    double size = 0.0;
     if (m->noise.acceleration[i] > 0.0) {
         return;
     }
     for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        const size_t d = j->col[k];
-        size += fabs(j->val[k] * find_size(m, sys, y, d));
-        speed += fabs(j->val[k] * y[sys->ndof + d]);
+        size += fabs(j->val[k] * find_size(m, sys, y, j->col[k]));
     }
-    m->noise.velocity[i] = tribo_stick_slip_velocity_noise(m, i, speed);
+    m->noise.velocity[i] = tribo_stick_slip_velocity_noise(m, i, tribo_matrix_row_size(j, i, y + sys->ndof));
     m->noise.acceleration[i] = NOISE * m->noise.factor * (m->constant.base_rate_size[i] + size);
     m->noise.allowance[i] = TRIBO_ALLOWED * m->noise.acceleration[i] * m->constant.inertia[i];
     if (m->constant.swing[i] > 0.0) {
@@ -375,14 +373,9 @@ static signed char slip_of(struct stick_slip *m, const tribo_system *sys, size_t
 void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     struct slip_state *s = &m->state;
-    if (s->steady) {
-        return;
-    }
-    const int varies = tribo_system_limits_vary(sys) || m->breakaway.some;
-    if (varies) {
+    if (tribo_system_limits_vary(sys) || m->breakaway.some) {
         tribo_system_limits(sys, s->limit, s->limit_rate);
     }
-    s->steady = !varies;
     for (size_t i = 0; i < sys->ncontact; i++) {
         const int presses = m->constant.swing[i] > 0.0 ? tribo_system_presses(sys, i, m->noise.factor)
                                                        : s->limit[i] != 0.0 || s->limit_rate[i] != 0.0;
@@ -397,22 +390,6 @@ void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sy
     if (m->breakaway.some) {
         tribo_breakaway_take(&m->breakaway, sys->ncontact, s->limit, s->limit_rate);
     }
-}
-
-/* Brings to rest contacts with no velocity left in the direction of their slip; returns their number. */
-static size_t stop_slips(struct stick_slip *m, const tribo_system *sys, const double *y)
-{
-    const size_t n = m->constant.contacts;
-    const signed char *const slip = m->state.slip;
-    size_t found = 0;
-    for (size_t i = 0; i < n; i++) {
-        if (tribo_slides(slip[i]) && !m->constant.elastic[i] &&
-            slip[i] * tribo_stick_slip_find_velocity(m, sys, i, y) <= m->noise.factor * m->noise.velocity[i]) {
-            tribo_stick_slip_set(m, i, TRIBO_SLIP_STUCK);
-            found++;
-        }
-    }
-    return found;
 }
 
 /* Where bases part, a contact at rest that does not hold slides by its velocity. An error if that loses a static limit: the loss
@@ -434,23 +411,29 @@ static int part(struct stick_slip *m, const tribo_system *sys, const double *y)
     return TRIBO_OK;
 }
 
-/* Contacts that a holding contact keeps at rest come to rest too. */
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
 {
+    const struct slip_state *s = &m->state;
+    const size_t n = m->constant.contacts;
     int status = TRIBO_OK;
+    /* contacts that a holding contact keeps at rest come to rest too */
     for (size_t found = 1; !status && found;) {
         status = tribo_stick_slip_find_holds(m, sys);
-        status = status ? status : tribo_stick_slip_hold(m, sys, m->state.base, y + sys->ndof);
-        found = status ? 0 : stop_slips(m, sys, y);
+        status = status ? status : tribo_stick_slip_hold(m, sys, s->base, y + sys->ndof);
+        found = 0;
+        for (size_t i = 0; !status && i < n; i++) {
+            if (tribo_slides(s->slip[i]) && !m->constant.elastic[i] &&
+                s->slip[i] * tribo_stick_slip_find_velocity(m, sys, i, y) <= m->noise.factor * m->noise.velocity[i]) {
+                tribo_stick_slip_set(m, i, TRIBO_SLIP_STUCK);
+                found++;
+            }
+        }
     }
-    if (!status && m->state.dependents && m->constant.base_moves) {
+    if (!status && s->dependents && m->constant.base_moves) {
         status = part(m, sys, y);
     }
-    const size_t n = m->constant.contacts;
-    const signed char *restrict slip = m->state.slip;
-    unsigned char *restrict rested = m->state.rested;
     for (size_t i = 0; i < n; i++) {
-        rested[i] = slip[i] == TRIBO_SLIP_STUCK;
+        s->rested[i] = s->slip[i] == TRIBO_SLIP_STUCK;
     }
     return status;
 }
@@ -517,7 +500,6 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
         tribo_elastic_start(m, sys, y);
     }
     s->fresh = s->hold_differs = 1;
-    s->steady = 0;
     s->reached = c;
     k->base_moves = sys->base_tables > 0;
     for (size_t i = 0; i < sys->harmonics; i++) {

@@ -55,7 +55,6 @@ struct slip_state {
     size_t snaps;
     int simple;          /* 1: snap has a correction for every contact of H */
     signed char *tied;   /* [ncontact] at rest and at the limit: 1: stays there; 2: goes back inside */
-    int steady;          /* 1: limits do not change after those that update_limits took */
     size_t reached;      /* the contact whose force just met its limit, by the event; ncontact if none */
     double *limit;       /* [ncontact] limit while sliding */
     double *limit_rate;  /* [ncontact] its rate */

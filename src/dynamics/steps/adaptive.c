@@ -2,11 +2,11 @@
  * lengths. */
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/real.h"
-#include "common/zeros.h"
 #include "dynamics/driver.h"
 #include "dynamics/reduce/spectrum.h"
 
@@ -35,11 +35,9 @@ struct adaptive {
     double span;          /* of the advance */
     double since;         /* time from which `rejected` counts */
     size_t rejected;
-    double *memory;                 /* all arrays */
     double *to, *error, *tolerance; /* [dimension] end of a step; its error; tolerance */
 
-    /* found from the system of revisions structure and revision, if prepared */
-    int prepared;
+    /* found from the system of revisions structure and revision; SIZE_MAX: not found */
     size_t structure, revision;
     double largest;      /* step, unless the caller sets it */
     double *cap;         /* [ndof] most tolerance of velocities */
@@ -53,7 +51,6 @@ static void adaptive_destroy(tribo_driver *drv)
         if (a->stepper.destroy) {
             a->stepper.destroy(a->data);
         }
-        free(a->memory);
         free(a);
     }
 }
@@ -115,7 +112,7 @@ static int adaptive_prepare(struct adaptive *a, tribo_driver *drv)
 {
     tribo_system *sys = drv->sys;
     const size_t revision = tribo_system_revision(sys);
-    if (!a->prepared || a->structure != sys->revision) {
+    if (a->structure != sys->revision) {
         double fastest;
         const int status = tribo_system_top_frequency(sys, &fastest);
         if (status) {
@@ -123,12 +120,11 @@ static int adaptive_prepare(struct adaptive *a, tribo_driver *drv)
         }
         a->largest = fastest > 0.0 ? LARGEST_STEP / fastest : HUGE_VAL;
     }
-    if (!a->prepared || a->revision != revision) {
+    if (a->revision != revision) {
         find_bands(a, sys);
     }
     a->structure = sys->revision;
     a->revision = revision;
-    a->prepared = 1;
     return TRIBO_OK;
 }
 
@@ -137,10 +133,8 @@ static double adaptive_size_of(const struct adaptive *a, size_t n)
 {
     double most = 0.0;
     for (size_t i = 0; i < n; i++) {
-        if (!isfinite(a->to[i]) || !isfinite(a->error[i])) {
-            return HUGE_VAL;
-        }
-        most = greater(most, fabs(a->error[i]) / a->tolerance[i]);
+        const int finite = isfinite(a->to[i]) && isfinite(a->error[i]);
+        most = greater(most, finite ? fabs(a->error[i]) / a->tolerance[i] : HUGE_VAL);
     }
     return most;
 }
@@ -148,9 +142,9 @@ static double adaptive_size_of(const struct adaptive *a, size_t n)
 /* Keeps the message of a step of h from t that failed with status, in the stepper or in an evaluation of the system. */
 static int say_why(tribo_driver *drv, int status, double t, double h)
 {
-    return drv->sys->status == status ? tribo_driver_explain(drv, t, h)
-                                      : tribo_driver_fail(drv, status, "at t = %.17g, in a step of %g: %s", t, h,
-                                                          tribo_strerror(status));
+    return drv->sys->status == status
+               ? tribo_driver_explain(drv, t, h)
+               : tribo_driver_fail(drv, status, "at t = %.17g, in a step of %g: %s", t, h, tribo_strerror(status));
 }
 
 /* Keeps the message of steps that failed at any length: with status, or with errors of size tolerances. */
@@ -300,29 +294,24 @@ int tribo_driver_create_stepper(tribo_driver **drv, tribo_system *sys, const tri
         return tribo_system_fail(sys, TRIBO_ERR_NULL, "stepper->%s is NULL", missing);
     }
     const size_t n = tribo_system_dimension(sys), c = sys->ncontact;
-    struct adaptive *a = tribo_zeros(1, sizeof *a);
-    double *memory = a ? malloc((4 * n + 2 * c) * sizeof *memory) : NULL;
-    if (!memory) {
-        free(a);
+    struct adaptive *a = malloc(sizeof *a + (4 * n + 2 * c) * sizeof *a->to); /* and all arrays */
+    if (!a) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for stepper %.20s", stepper->name);
     }
-    a->stepper = *stepper;
-    a->data = data;
+    *a = (struct adaptive){.stepper = *stepper, .data = data, .structure = SIZE_MAX, .revision = SIZE_MAX};
     a->method = (struct method){.name = stepper->name,
                                 .takes = TAKES_ALL,
                                 .create = adaptive_create,
                                 .destroy = adaptive_destroy,
                                 .advance = adaptive_advance};
-    a->memory = memory;
-    a->to = memory;
-    a->error = memory + n;
-    a->tolerance = memory + 2 * n;
-    a->cap = memory + 3 * n;
-    a->band = memory + 4 * n;
+    a->to = (double *)(a + 1);
+    a->error = a->to + n;
+    a->tolerance = a->error + n;
+    a->cap = a->tolerance + n;
+    a->band = a->cap + n;
     a->rate = a->band + c;
     const int status = tribo_driver_create_method(drv, sys, &a->method);
     if (status) {
-        free(memory);
         free(a);
         return status;
     }

@@ -13,58 +13,35 @@
 /* ----------------------------------------------------------------------------------------------------------------- life */
 
 /* Finds the bodies. Returns 0 if a contact has none of its own, on which alone its force acts. taken [ndof]: workspace, all 0. */
-static int find_bodies(struct blockwise *b, const tribo_system *sys, unsigned char *taken)
+static int find_bodies(struct blockwise *b, const tribo_system *sys, signed char *taken)
 {
-    const struct matrix *j = &sys->direction, *response = &sys->response;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        size_t entries = 0, d = 0;
-        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-            if (j->val[k] != 0.0) {
-                d = j->col[k];
-                b->turn[i] = j->val[k];
-                entries++;
-            }
-        }
-        const double mobility = entries == 1 && !taken[d] ? tribo_matrix_get(response, d, i) : 0.0;
-        if (fabs(mobility) < DBL_MIN) {
-            return 0;
-        }
-        taken[d] = 1;
-        b->body[i] = d;
-        b->mass[d] = sys->tally[i] * b->turn[i] / mobility;
-        if (!(b->mass[d] > 0.0 && isfinite(b->mass[d]))) {
-            return 0;
-        }
+    int alone = sys->response.first[sys->response.rows] == sys->ncontact &&
+                tribo_step_form_bodies(&sys->direction, b->body, b->turn, taken);
+    for (size_t i = 0; alone && i < sys->ncontact; i++) {
+        const double mobility = tribo_matrix_get(&sys->response, b->body[i], i), mass = sys->tally[i] * b->turn[i] / mobility;
+        b->mass[b->body[i]] = mass;
+        alone = fabs(mobility) >= DBL_MIN && mass > 0.0 && isfinite(mass);
     }
-    return response->first[response->rows] == sys->ncontact;
+    return alone;
 }
 
-/* Block `from` accelerates block `to`: counts that in at[from], or lists it there if b->pulled is allocated, once for each pair.
- * mark [blocks]: the last `to` of each block. */
-static void note_pull(const struct blockwise *b, size_t *at, size_t *mark, size_t from, size_t to)
+/* Counts in at[k], or lists in pulled (not NULL) from at[k] on, the blocks whose rows of K or C have entries in the columns of block
+ * k. mark [blocks]: workspace, the last block noted for each. */
+static void note_pulls(const tribo_system *sys, size_t blocks, size_t *at, size_t *pulled, size_t *mark)
 {
-    if (mark[from] != to) {
-        mark[from] = to;
-        if (b->pulled) {
-            b->pulled[at[from]] = to;
-        }
-        at[from]++;
-    }
-}
-
-/* Blocks accelerate themselves, since damping that is set later is diagonal, and blocks whose rows of K or C have entries in
- * their columns. */
-static void note_pulls(const struct blockwise *b, const tribo_system *sys, size_t *at, size_t *mark)
-{
-    const struct matrix *of[] = {&sys->stiffness, &sys->damping};
-    memset(mark, -1, b->blocks * sizeof *mark);
-    for (size_t to = 0; to < b->blocks; to++) {
-        note_pull(b, at, mark, to, to);
-        for (size_t i = 0; i < 2 * MATRIX_BLOCK; i++) {
-            const struct matrix *a = of[i / MATRIX_BLOCK];
-            const size_t row = to * MATRIX_BLOCK + i % MATRIX_BLOCK;
-            for (size_t e = row < a->rows ? a->first[row] : 0; row < a->rows && e < a->first[row + 1]; e++) {
-                note_pull(b, at, mark, a->col[e] / MATRIX_BLOCK, to);
+    const struct matrix *const of[] = {&sys->stiffness, &sys->damping};
+    memset(mark, -1, blocks * sizeof *mark);
+    for (size_t i = 0; i < 2 * sys->ndof; i++) {
+        const struct matrix *a = of[i % 2];
+        const size_t row = i / 2, to = row / MATRIX_BLOCK;
+        for (size_t e = row < a->rows ? a->first[row] : 0; row < a->rows && e < a->first[row + 1]; e++) {
+            const size_t from = a->col[e] / MATRIX_BLOCK;
+            if (mark[from] != to) {
+                mark[from] = to;
+                if (pulled) {
+                    pulled[at[from]] = to;
+                }
+                at[from]++;
             }
         }
     }
@@ -78,13 +55,13 @@ static int map_pulls(struct blockwise *b, const tribo_system *sys)
     if (!mark) {
         return 0;
     }
-    note_pulls(b, sys, b->first + 2, mark);
+    note_pulls(sys, b->blocks, b->first + 2, NULL, mark);
     for (size_t k = 0; k < b->blocks; k++) {
         b->first[k + 2] += b->first[k + 1];
     }
     b->pulled = malloc((b->first[b->blocks + 1] + 1) * sizeof *b->pulled);
     if (b->pulled) {
-        note_pulls(b, sys, b->first + 1, mark);
+        note_pulls(sys, b->blocks, b->first + 1, b->pulled, mark);
     }
     free(mark);
     return b->pulled != NULL;
@@ -109,7 +86,7 @@ int tribo_blockwise_create(struct blockwise *b, const tribo_system *sys)
     b->mass = calloc(7 * n + 2 * c + 1, sizeof *b->mass);
     b->first = calloc(2 * blocks + 2, sizeof *b->first);
     b->driven = calloc(4 * blocks, 1);
-    unsigned char *taken = calloc(n, 1);
+    signed char *taken = calloc(n, 1);
     int done = b->body && b->mass && b->first && b->driven && taken;
     if (done) {
         b->brake = b->mass + n;
@@ -388,6 +365,7 @@ int tribo_blockwise_step(struct blockwise *b, tribo_system *sys, const struct bo
         left -= n;
         b->awake[k] = 0;
         if (did & STIRS) {
+            b->wakes[k] = 1; /* also by damping that is set later, which is diagonal */
             for (size_t e = b->first[k]; e < b->first[k + 1]; e++) {
                 b->wakes[b->pulled[e]] = 1;
             }

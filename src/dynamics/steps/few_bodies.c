@@ -1,8 +1,6 @@
 #include "few_bodies.h"
 
-#include <float.h>
 #include <math.h>
-#include <stdint.h>
 #include <string.h>
 
 #include "common/real.h"
@@ -10,50 +8,6 @@
 #include "step_form.h"
 
 /* ------------------------------------------------------------------------------------------------------------- settings */
-
-static void take_matrix(const struct matrix *a, double to[FEW][FEW])
-{
-    memset(to, 0, FEW * sizeof *to);
-    for (size_t i = 0; i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            to[i][a->col[k]] += a->val[k];
-        }
-    }
-}
-
-/* R, and what its small problems need. 0 if R is out of range, or nearly singular. */
-static int take_operator(struct few_bodies *b, const tribo_system *sys)
-{
-    for (size_t i = 0; i < b->c; i++) {
-        for (size_t j = 0; j < b->c; j++) {
-            b->r[i * b->c + j] = tribo_system_delassus(sys, i, j);
-        }
-        b->at[i] = FREE;
-        b->part[i] = tribo_resolution(b->c);
-    }
-    b->inverse_of = 0;
-    return tribo_small_fits(b->c, b->r, b->inverse);
-}
-
-/* The snaps of each set of holding contacts. */
-static void take_snaps(struct few_bodies *b, const tribo_system *sys)
-{
-    for (unsigned set = 0; set < 1u << b->c; set++) {
-        struct snap list[FEW];
-        signed char loose[FEW];
-        for (size_t i = 0; i < b->c; i++) {
-            loose[i] = !(set >> i & 1u);
-        }
-        b->snaps[set] = tribo_system_list_snaps(sys, loose, list);
-        for (size_t k = 0; k < b->snaps[set]; k++) {
-            struct few_snap x = {.contact = list[k].contact, .to = list[k].to};
-            memcpy(x.rest, b->direction[x.contact], sizeof x.rest);
-            x.turn = x.rest[x.to];
-            x.rest[x.to] = 0.0;
-            b->snap[set][k] = x;
-        }
-    }
-}
 
 int tribo_few_take(struct few_bodies *b, tribo_system *sys)
 {
@@ -65,15 +19,31 @@ int tribo_few_take(struct few_bodies *b, tribo_system *sys)
     b->n = sys->ndof;
     b->c = sys->ncontact;
     b->fits = b->n <= FEW && b->c <= FEW && !sys->unsolved && tribo_step_form_plain(sys);
-    if (b->fits) {
-        take_matrix(&sys->stiffness, b->stiffness);
-        take_matrix(&sys->damping, b->damping);
-        take_matrix(&sys->direction, b->direction);
-        take_matrix(&sys->response, b->response);
-        take_snaps(b, sys);
-        memcpy(b->tally, sys->tally, b->c * sizeof *b->tally);
-        b->fits = take_operator(b, sys);
+    if (!b->fits) {
+        return 0;
     }
+    memset(b->damping, 0, sizeof b->damping);
+    tribo_matrix_spread(&sys->stiffness, b->stiffness);
+    tribo_matrix_spread(&sys->damping, b->damping);
+    tribo_matrix_spread(&sys->direction, b->direction);
+    tribo_matrix_spread(&sys->response, b->response);
+    for (unsigned set = 0; set < 1u << b->c; set++) { /* the snaps of each set of holding contacts */
+        signed char loose[FEW];
+        for (size_t i = 0; i < b->c; i++) {
+            loose[i] = !(set >> i & 1u);
+        }
+        b->snaps[set] = tribo_system_list_snaps(sys, loose, b->snap[set]);
+    }
+    for (size_t i = 0; i < b->c; i++) {
+        for (size_t j = 0; j < b->c; j++) {
+            b->r[i * b->c + j] = tribo_system_delassus(sys, i, j);
+        }
+        b->part[i] = tribo_resolution(b->c);
+        b->tally[i] = sys->tally[i];
+    }
+    memset(b->at, FREE, sizeof b->at);
+    b->inverse_of = 0;
+    b->fits = tribo_small_fits(b->c, b->r, b->inverse); /* 0 if R is out of range, or nearly singular */
     return b->fits;
 }
 
@@ -139,29 +109,13 @@ static int few_find_all(struct few_bodies *b, tribo_system *sys, size_t count, c
 /* ---------------------------------------------------------------------------------------------------------------- steps */
 
 /* Row a [m] times x. */
-static inline double row_times(size_t m, const double a[FEW], const double *x)
+static inline double row_times(size_t m, const double *a, const double *x)
 {
     double sum = a[0] * x[0];
     for (size_t j = 1; j < m; j++) {
         sum += a[j] * x[j];
     }
     return sum;
-}
-
-/* Makes the velocities u of holding contacts exact, but of those at their bounds. */
-static inline void few_snap_all(const struct few_bodies *b, size_t n, size_t c, size_t s, const struct small *x, double *u)
-{
-    unsigned set = 0;
-    for (size_t i = 0; i < c; i++) {
-        set |= (unsigned)(x->at[i] == FREE && fabs(x->x[i]) < x->hi[i]) << i;
-    }
-    for (size_t k = 0; k < c && k < b->snaps[set]; k++) {
-        const struct few_snap *to = &b->snap[set][k];
-        const double value = (b->base[to->contact][s] - row_times(n, to->rest, u)) / to->turn;
-        for (size_t d = 0; d < n; d++) {
-            u[d] = to->to == d ? value : u[d];
-        }
-    }
 }
 
 /* The motion of a run, in local memory: compilers keep it in registers. */
@@ -174,14 +128,15 @@ struct few_state {
 static inline int few_step(struct few_bodies *b, size_t n, size_t c, size_t s, struct few_state *m)
 {
     static const double least[FEW] = {0.0};
-    double u[FEW] = {0.0}, v[FEW], less[FEW], most[FEW], p[FEW] = {0.0}, end[FEW], work = 0.0;
+    double u[FEW] = {0.0}, v[FEW], less[FEW], most[FEW], base[FEW], p[FEW] = {0.0}, end[FEW], work = 0.0;
     const struct small x = {b->r, b->inverse, &b->inverse_of, b->part, least, v, less, most, m->at, p, end};
     for (size_t d = 0; d < n; d++) {
-        const double a = b->load[d][s] - row_times(n, b->damping[d], m->u); /* q is known later than u */
-        u[d] = m->u[d] + b->time[s] * (a - row_times(n, b->stiffness[d], m->q));
+        const double a = b->load[d][s] - row_times(n, b->damping + d * n, m->u); /* q is known later than u */
+        u[d] = m->u[d] + b->time[s] * (a - row_times(n, b->stiffness + d * n, m->q));
     }
     for (size_t i = 0; i < c; i++) {
-        v[i] = row_times(n, b->direction[i], u) - b->base[i][s];
+        base[i] = b->base[i][s];
+        v[i] = row_times(n, b->direction + i * n, u) - base[i];
         most[i] = b->time[s] * b->limit[i][s];
         less[i] = -most[i];
     }
@@ -189,10 +144,15 @@ static inline int few_step(struct few_bodies *b, size_t n, size_t c, size_t s, s
         return 0;
     }
     for (size_t d = 0; d < n; d++) {
-        u[d] += row_times(c, b->response[d], p);
+        u[d] += row_times(c, b->response + d * c, p);
     }
-    if (b->inverse_of) {
-        few_snap_all(b, n, c, s, &x, u);
+    /* makes the velocities of holding contacts exact, but of those at their bounds */
+    unsigned set = 0;
+    for (size_t i = 0; b->inverse_of && i < c; i++) {
+        set |= (unsigned)(m->at[i] == FREE && fabs(p[i]) < most[i]) << i;
+    }
+    for (size_t k = 0; k < b->snaps[set]; k++) {
+        tribo_snap(&b->snap[set][k], base, u);
     }
     for (size_t i = 0; i < c; i++) {
         const double to = m->at[i] == FREE ? 0.0 : end[i];
@@ -219,16 +179,6 @@ static inline size_t few_steps(struct few_bodies *b, size_t n, size_t c, size_t 
     return s;
 }
 
-/* 1 if the motion is finite: numbers that are not come back in every step that follows. */
-static int few_finite(size_t n, const struct few_state *m)
-{
-    int finite = isfinite(m->energy) != 0;
-    for (size_t d = 0; d < n; d++) {
-        finite &= fabs(m->q[d]) + fabs(m->u[d]) <= DBL_MAX;
-    }
-    return finite;
-}
-
 size_t tribo_few_run(struct few_bodies *b, tribo_system *sys, size_t count, const double *t, struct few_motion *m)
 {
     const size_t n = b->n, c = b->c;
@@ -246,7 +196,8 @@ size_t tribo_few_run(struct few_bodies *b, tribo_system *sys, size_t count, cons
                          : n == 2 ? few_steps(b, 2, 2, count, &x)
                          : n == 3 ? few_steps(b, 3, 3, count, &x)
                                   : few_steps(b, FEW, FEW, count, &x);
-    if (taken == 0 || !few_finite(n, &x)) {
+    /* numbers that are not finite come back in every step that follows */
+    if (taken == 0 || !isfinite(x.energy) || !tribo_dense_finite(x.q, n) || !tribo_dense_finite(x.u, n)) {
         return 0;
     }
     memcpy(m->q, x.q, n * sizeof *x.q);

@@ -14,21 +14,15 @@
 /* The most degrees of freedom, and the most contacts. */
 enum { FEW = SMALL };
 
-/* u[to] = (base - rest u)/turn while the contact holds, without rounding. */
-struct few_snap {
-    size_t contact, to;
-    double turn, rest[FEW];
-};
-
 struct few_bodies {
     int fits;        /* 1: runs can be taken with the settings */
     size_t revision; /* of the system to which all of this belongs; SIZE_MAX: none */
     size_t n, c;     /* degrees of freedom, contacts */
-    double stiffness[FEW][FEW], damping[FEW][FEW], direction[FEW][FEW], response[FEW][FEW];
+    double stiffness[FEW * FEW], damping[FEW * FEW], direction[FEW * FEW], response[FEW * FEW]; /* [n][n], [c][n], [n][c] */
     double r[FEW * FEW], inverse[FEW * FEW], part[FEW]; /* see numerics/box/small.h; of r and inverse [c][c] */
     unsigned inverse_of;
     double tally[FEW];
-    struct few_snap snap[1 << FEW][FEW]; /* [set that holds][snaps] in the order in which they are applied */
+    struct snap snap[1 << FEW][FEW]; /* [set that holds][snaps] in the order in which they are applied */
     size_t snaps[1 << FEW];
     signed char at[FEW]; /* in the step before: FREE: holds; AT_LOWER, AT_UPPER: slides, with friction -limit, limit */
     /* of the steps of a run: durations over which forces act; lengths, that of the step before the run first; and what acts */

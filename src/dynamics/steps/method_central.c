@@ -104,39 +104,6 @@ static int synchronise(tribo_driver *drv, double t, double *y)
     return status;
 }
 
-/* A step by one problem of all contacts. */
-static int step_all(tribo_driver *drv, const struct body_step *k, double *y)
-{
-    struct central *x = drv->own;
-    const size_t n = drv->sys->ndof;
-    const int status = kick(drv, k, &x->energy);
-    x->common.goes_on = 1;
-    if (status) {
-        return status;
-    }
-    for (size_t i = 0; i < n; i++) {
-        k->q_to[i] = k->q[i] + k->h * k->u_to[i];
-    }
-    memcpy(y + n, k->u_to, n * sizeof *y);
-    y[2 * n] = x->energy;
-    return tribo_driver_check(drv, y);
-}
-
-/* A step block by block. Velocities of y are set by synchronise. */
-static int step_alone(tribo_driver *drv, const struct body_step *k, double *y)
-{
-    struct central *x = drv->own;
-    double energy = x->energy;
-    x->common.goes_on = 0;
-    drv->sys->evaluations++;
-    if (!tribo_blockwise_step(&x->alone, drv->sys, k, &energy) || !isfinite(energy)) {
-        return tribo_step_form_grew(drv, k->t);
-    }
-    drv->rested = x->alone.skipped;
-    y[2 * drv->sys->ndof] = x->energy = energy;
-    return TRIBO_OK;
-}
-
 /* A run of the motion in y and u, if the system is small: velocities of y are set by synchronise. */
 static size_t central_run(tribo_driver *drv, size_t count, const double *t, double *y)
 {
@@ -166,25 +133,45 @@ static void take_settings(struct central *x, tribo_system *sys)
     }
 }
 
+/* A step by few_bodies.c, block by block, or by one problem of all contacts. The first two leave velocities of y to synchronise. */
 static int central_step(tribo_driver *drv, double t, double next, const double *from, double *y)
 {
     struct central *x = drv->own;
     struct step_form *s = &x->common;
+    const size_t n = drv->sys->ndof;
     const double times[] = {t, next}, h = next - t;
     if (drv->seen && x->few.revision != tribo_system_revision(drv->sys)) {
         take_settings(x, drv->sys); /* the observer has changed them */
     }
     if (drv->seen && x->few.fits) {
-        memcpy(y, from, drv->sys->ndof * sizeof *y);
+        memcpy(y, from, n * sizeof *y);
         if (central_run(drv, 1, times, y)) {
             return synchronise(drv, next, y);
         }
     }
     const struct body_step k = {t - 0.5 * x->last, t, t + 0.5 * h, 0.5 * (x->last + h), h, from, s->u, y, x->next};
-    const int status = x->few.fits || !x->alone.fits ? step_all(drv, &k, y) : step_alone(drv, &k, y);
+    const int alone = !x->few.fits && x->alone.fits;
+    double energy = x->energy;
+    int status = TRIBO_OK;
+    if (alone) {
+        drv->sys->evaluations++;
+        if (!tribo_blockwise_step(&x->alone, drv->sys, &k, &energy) || !isfinite(energy)) {
+            return tribo_step_form_grew(drv, t);
+        }
+        drv->rested = x->alone.skipped;
+    } else {
+        status = kick(drv, &k, &energy);
+        for (size_t i = 0; !status && i < n; i++) {
+            y[i] = from[i] + h * k.u_to[i];
+            y[n + i] = k.u_to[i];
+        }
+    }
+    y[2 * n] = x->energy = energy;
+    status = status || alone ? status : tribo_driver_check(drv, y);
     if (status) {
         return status;
     }
+    s->goes_on = !alone;
     x->next = s->u;
     s->u = k.u_to;
     x->last = h;

@@ -109,16 +109,16 @@ static size_t planar_of(const tribo_context *contacts)
     return contacts && !tribo_get_count(contacts, TRIBO_COUNT_PLANAR, &planar) ? planar : 0;
 }
 
-/* Returns 1 if m->contacts, or one of the system, may have other planar contacts than at the last call of make_contacts. */
-static int planar_changed(const struct moreau *m, const tribo_system *sys)
+/* Returns 1 if the system or m->contacts has planar contacts. */
+static int any_planar(const struct moreau *m, const tribo_system *sys)
 {
-    return m->settings != sys->changes && (planar_of(sys->contacts) || planar_of(m->contacts));
+    return planar_of(sys->contacts) || planar_of(m->contacts);
 }
 
 /* Creates m->contacts, with the planar contacts of the system. Returns 0 if out of memory. */
 static int make_contacts(struct moreau *m, const tribo_system *sys)
 {
-    if (!m->contacts || planar_of(sys->contacts) || planar_of(m->contacts)) {
+    if (!m->contacts || any_planar(m, sys)) {
         tribo_destroy(m->contacts);
         m->contacts = NULL;
         m->settings = sys->changes;
@@ -291,7 +291,6 @@ static int respond_whole(struct moreau *m, const tribo_system *sys, double h, co
 {
     struct step_form *s = &m->common;
     const struct compliance *g = &sys->compliance;
-    const size_t n = sys->ndof;
     if (m->tell) {
         double *ratio = m->give, *velocity = m->change;
         tribo_get_static(sys->contacts, ratio, velocity);
@@ -300,9 +299,8 @@ static int respond_whole(struct moreau *m, const tribo_system *sys, double h, co
         m->tell = 0;
     }
     tribo_step_matrix_solve(&m->matrix, 1, du);
-    for (size_t i = 0; i < n; i++) {
-        s->u[i] = u[i] + du[i];
-    }
+    memcpy(s->u, u, sys->ndof * sizeof *u);
+    tribo_add(s->u, 1.0, du, sys->ndof);
     if (g->count) {
         for (size_t i = 0; i < sys->ncontact; i++) {
             s->f[i] = 0.5 * m->spring[i];
@@ -320,36 +318,29 @@ static int respond_whole(struct moreau *m, const tribo_system *sys, double h, co
         return status;
     }
     push(m, sys, h, s->f, s->u);
-    tribo_get_slip(m->contacts, m->common.mode);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->loose[i] = (signed char)(tribo_is_compliant(g, i) ? 1 : m->common.mode[i]);
+    tribo_get_slip(m->contacts, s->mode);
+    memcpy(m->loose, s->mode, sys->ncontact);
+    for (size_t k = 0; k < g->count; k++) {
+        m->loose[g->contact[k]] = 1;
     }
     return TRIBO_OK;
 }
 
-/* respond_whole by the band solver. Returns 0 without a band, with static limits, or if no solution is found. */
-static int respond_in_band(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
+/* The response of a step by the band solver, or, without a band, with static limits, or if it finds none, by respond_whole. Returns
+ * a status. */
+static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
 {
     struct step_form *s = &m->common;
     const struct band_step step = {h, m->limit, s->base, u, du, s->f};
     if (!m->held.n || !tribo_step_form_is_plain(s, sys) || !tribo_step_band_solve(&m->held, &step)) {
-        return 0;
+        const int status = m->whole ? TRIBO_OK : prepare_whole(m, sys, h);
+        return status ? status : respond_whole(m, sys, h, u, du);
     }
-    for (size_t i = 0; i < sys->ndof; i++) {
-        s->u[i] = u[i] + du[i];
-    }
+    memcpy(s->u, u, sys->ndof * sizeof *u);
+    tribo_add(s->u, 1.0, du, sys->ndof);
     memcpy(s->mode, m->held.at, sys->ncontact);
     memcpy(m->loose, m->held.at, sys->ncontact);
-    return 1;
-}
-
-static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
-{
-    if (respond_in_band(m, sys, h, u, du)) {
-        return tribo_dense_finite(m->common.f, sys->ncontact) ? TRIBO_OK : TRIBO_ERR_NOT_FINITE;
-    }
-    const int status = m->whole ? TRIBO_OK : prepare_whole(m, sys, h);
-    return status ? status : respond_whole(m, sys, h, u, du);
+    return tribo_dense_finite(s->f, sys->ncontact) ? TRIBO_OK : TRIBO_ERR_NOT_FINITE;
 }
 
 /* For compliant contacts: m->spring = f1 = 2 s->f, then s->f = 0. Returns the energy dissipated. */
@@ -380,7 +371,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     const size_t n = sys->ndof, energy = tribo_system_energy(sys);
     const double h = next - t, *u = from + n;
     /* steps of equal length differ only by rounding of times */
-    if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision || planar_changed(m, sys)) {
+    if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision || (m->settings != sys->changes && any_planar(m, sys))) {
         const int status = moreau_prepare(m, sys, h);
         if (status) {
             return tribo_driver_fail(drv, status, "%s", tribo_system_message(sys));

@@ -47,21 +47,8 @@ static int rk4_create(tribo_driver *drv)
     return TRIBO_OK;
 }
 
-/* The second state from q and u, by the accelerations a, with which the sum begins. */
-TRIBO_SIMD static void first_stage(size_t n, double h, const double *restrict from, const double *restrict a,
-                                   double *restrict sum, double *restrict to)
-{
-    const double *restrict u = from + n;
-    double *restrict to_u = to + n;
-    for (size_t i = 0; i < n; i++) {
-        to[i] = from[i] + h * u[i];
-        to_u[i] = u[i] + h * a[i];
-        sum[i] = a[i];
-    }
-}
-
-/* The third or fourth state from q and u, by velocities v and accelerations a of the one before. */
-TRIBO_SIMD static void next_stage(size_t n, double h, const double *restrict from, const double *restrict v,
+/* The next state from q and u, by velocities v and accelerations a of the one before. The sum begins with a at the first state. */
+TRIBO_SIMD static void next_stage(size_t n, double h, int first, const double *restrict from, const double *v,
                                   const double *restrict a, double *restrict sum, double *restrict to)
 {
     const double *restrict u = from + n;
@@ -69,7 +56,7 @@ TRIBO_SIMD static void next_stage(size_t n, double h, const double *restrict fro
     for (size_t i = 0; i < n; i++) {
         to[i] = from[i] + h * v[i];
         to_u[i] = u[i] + h * a[i];
-        sum[i] += 2.0 * a[i];
+        sum[i] = first ? a[i] : sum[i] + 2.0 * a[i];
     }
 }
 
@@ -105,10 +92,8 @@ static int take_step(tribo_driver *drv, double t, double h, const double *from, 
         if (status) {
             return tribo_driver_explain(drv, t, h);
         }
-        if (s == 0) {
-            first_stage(n, part[s + 1] * h, from, r->k, r->sum, r->stage[s]);
-        } else if (s + 1 < STAGES) {
-            next_stage(n, part[s + 1] * h, from, at + n, r->k, r->sum, r->stage[s]);
+        if (s + 1 < STAGES) {
+            next_stage(n, part[s + 1] * h, s == 0, from, at + n, r->k, r->sum, r->stage[s]);
         } else {
             last_stage(n, h / 6.0, from, r->stage, r->k, r->sum, y);
         }
