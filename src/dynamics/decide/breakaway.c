@@ -1,4 +1,4 @@
-#include "breakaway.h"
+#include "stick_slip.h"
 
 #include <math.h>
 #include <string.h>

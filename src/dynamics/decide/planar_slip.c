@@ -7,7 +7,6 @@
  *     an independent set of those at rest holds
  *
  * The problem is convex: each solution decides about all contacts together. */
-#include "planar_slip.h"
 #include "stick_slip.h"
 #include "common/real.h"
 

@@ -8,8 +8,7 @@
 #define TRIBO_STICK_SLIP_H
 
 #include "dynamics/driver.h"
-#include "breakaway.h"
-#include "planar_slip.h"
+#include "common/real.h"
 
 /* Excess of a force over its limit that is an event, in units of its noise. */
 #define TRIBO_ALLOWED 8.0
@@ -98,13 +97,56 @@ struct slip_work {
     unsigned char *last;  /* [ncontact] order of choice of these */
 };
 
+/* Static limits above the limits to slide (tribo_set_static), for methods with events. A contact at rest holds up to its static
+ * limit; one that cannot breaks away: its bound is the limit to slide, and all contacts are decided about again. A limit that
+ * falls with the speed (Stribeck) is
+ *     N(|v|) = limit + (ratio - 1) limit exp(-|v|/velocity),
+ * whose last part is smooth while the contact slides, and belongs to the equations of its motion. */
+struct breakaway {
+    int some;             /* 1: there are static limits */
+    int falls;            /* 1: with velocities by which they fall */
+    double *ratio;        /* [ncontact] static limit over the limit at high speed */
+    double *velocity;     /* [ncontact] */
+    double *kinetic;      /* [ncontact] limit at high speed */
+    double *kinetic_rate; /* [ncontact] its rate */
+    double *stick;        /* [ncontact] limit at rest */
+    double *stick_rate;   /* [ncontact] its rate */
+    double steepest;      /* bound of the growth rate of perturbations by limits that fall */
+    size_t revision;      /* of the system that steepest is of; SIZE_MAX: none */
+};
+
+/* Planar contacts. How a contact slides: with a velocity; without one, by its acceleration; or by its force alone, which is about to reach
+ * beyond the limit. The value is the power of time with which the velocity begins. */
+enum { SLIDES_ON = 0, BY_ACCELERATION = 1, BY_FORCE = 2 };
+
+struct planar_contact {
+    size_t at;           /* index of its first direction; the second one is at + 1 */
+    double limit[2];     /* both > 0 */
+    double most;         /* the largest speed so far */
+    double now;          /* speed at this decision; 0 where it begins to slide */
+    double before;       /* speed at the decision before */
+    int begins;          /* SLIDES_ON, BY_ACCELERATION or BY_FORCE */
+    double direction[2]; /* if not SLIDES_ON: direction of limit v, against that of force/limit; length 1 */
+};
+
+struct planar_slip {
+    tribo_context *disc;            /* forces of contacts at rest, as f_eq by Coulomb's law for v = 0 */
+    size_t count;                   /* number of planar contacts */
+    struct planar_contact *contact; /* [count] */
+    size_t stopped;                 /* a contact that the last decision brought to rest; ncontact if none */
+    unsigned char *in_plane;        /* [ncontact] 1: first direction of a planar contact; 2: second direction; 0: scalar */
+    double *error;                  /* [ncontact] errors that velocities may have in a step */
+    double *rate;                   /* [ncontact] workspace: rates of sliding forces */
+    double *ahead;                  /* [ncontact] workspace: accelerations a moment later */
+};
+
 struct stick_slip {
     struct slip_constant constant;
     struct slip_state state;
     struct slip_noise noise;
     struct slip_work work;
-    struct breakaway breakaway; /* static limits */
-    struct planar_slip *plane;  /* planar contacts; NULL if there are none */
+    struct breakaway breakaway;
+    struct planar_slip *plane; /* NULL if there are no planar contacts */
 };
 
 /* stick_slip.c: create returns a status, its message on the system's context. start begins an advance: takes limits; unless it
@@ -203,6 +245,67 @@ double tribo_stick_slip_follows(const struct stick_slip *m, size_t i);
 
 /* Force beyond its limit with which contact i holds: the allowance, if its limit drops as it breaks away. */
 double tribo_stick_slip_margin(const struct stick_slip *m, size_t i);
+
+/* ------------------------------------------------------------------------------------------ breakaway.c: static limits */
+
+/* Takes ratio and velocity from the system's context; finds steepest. dof [ndof], contact [ncontact]: workspace. */
+void tribo_breakaway_start(struct breakaway *b, tribo_system *sys, double *dof, double *contact);
+
+/* Takes limits at high speed, 0 for open contacts, and their rates; both [contacts]. */
+void tribo_breakaway_take(struct breakaway *b, size_t contacts, const double *limit, const double *limit_rate);
+
+/* Sets stick, and limit [contacts] of contacts with this slip and v, and their rates without the part of v'. */
+void tribo_breakaway_limits(struct breakaway *b, size_t contacts, const signed char *slip, const double *v, double *limit,
+                            double *limit_rate);
+
+/* dN/d|v| of contact i. */
+double tribo_breakaway_slope(const struct breakaway *b, size_t i, double v);
+
+/* Static limit of contact i over its limit at high speed. */
+static inline double tribo_breakaway_ratio(const struct breakaway *b, size_t i)
+{
+    return b->some ? b->ratio[i] : 1.0;
+}
+
+/* The static limit of contact i. */
+static inline double tribo_breakaway_most(const struct breakaway *b, size_t i)
+{
+    return product(b->ratio[i], b->kinetic[i]);
+}
+
+/* 1 if the limit of contact i drops as it breaks away, which must be certain then. */
+static inline int tribo_breakaway_is_sudden(const struct breakaway *b, size_t i)
+{
+    return b->some && b->stick[i] > b->kinetic[i];
+}
+
+/* Lowers stick to the limit to slide. Returns 0 if limits fall with the speed, or stick is not above that. */
+int tribo_breakaway_lets_go(struct breakaway *b, size_t i);
+
+/* Sets stick to the static limit again. Returns 1 if it was lower: the contact broke away, and others hold it after all. */
+int tribo_breakaway_restore(struct breakaway *b, size_t i);
+
+/* Coefficient k of exp(-|v|/velocity) in powers of time, from those before in part and from v [k + 1] = side |v|; both stride
+ * doubles apart. */
+double tribo_breakaway_part(const struct breakaway *b, size_t i, int side, size_t k, size_t stride, const double *v,
+                            const double *part);
+
+/* Coefficient k of N(|v|), from those of the limit at high speed, limit [terms], and from part [k + 1]. */
+double tribo_breakaway_series(const struct breakaway *b, size_t i, size_t k, size_t stride, size_t terms, const double *limit,
+                              const double *part);
+
+/* ---------------------------------------------------------------------------------------- planar_slip.c: planar contacts */
+
+void tribo_planar_slip_free(struct planar_slip *p); /* NULL is fine */
+
+/* After tribo_stick_slip_start: takes the planar contacts from the system, unless it continues. Returns a status, its message
+ * on the system's context. */
+int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int continues);
+
+/* In the place of tribo_stick_slip_decide where there are planar contacts. */
+int tribo_planar_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
+
+/* ---------------------------------------------------------------------------------------------------------- velocities */
 
 /* Rounding of a velocity, in parts of the sum of the sizes of its terms. */
 #define TRIBO_VELOCITY_NOISE 2e-14

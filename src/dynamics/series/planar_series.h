@@ -1,7 +1,7 @@
 /* Taylor series of the forces of sliding planar contacts, found coefficient by coefficient with those of the motion.
  *
  * In units of its limits a contact has the velocity x = limit v, which is tau^s times a series, with s = 0 where it slides
- * already, and 1 or 2 where it begins to (planar_slip.h); and the direction u = x/|x|, which makes the force -limit u. Both are
+ * already, and 1 or 2 where it begins to (stick_slip.h); and the direction u = x/|x|, which makes the force -limit u. Both are
  * taken along the first direction n and its normal t:
  *     |u| = 1   gives the n-part of each coefficient of u from those before,
  *     x = |x| u gives its t-part, if x is known; and the next one of |x|.
