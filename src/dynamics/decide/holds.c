@@ -88,15 +88,12 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
 /* 1 if J x - base of a holding contact exceeds the rounding of x. */
 static int moves(const struct stick_slip *m, const tribo_system *sys, const double *base, const double *x)
 {
-    const struct matrix *j = &sys->direction;
     for (size_t i = 0; i < m->constant.contacts; i++) {
-        double sum = -base[i], size = fabs(base[i]);
-        for (size_t k = m->state.loose[i] ? j->first[i + 1] : j->first[i]; k < j->first[i + 1]; k++) {
-            sum += j->val[k] * x[j->col[k]];
-            size += fabs(j->val[k] * x[j->col[k]]);
-        }
-        if (!m->state.loose[i] && fabs(sum) > 4.0 * DBL_EPSILON * size) {
-            return 1;
+        if (!m->state.loose[i]) {
+            const double size = tribo_matrix_row_size(&sys->direction, i, x) + fabs(base[i]);
+            if (fabs(tribo_matrix_row_dot(&sys->direction, i, x) - base[i]) > 4.0 * DBL_EPSILON * size) {
+                return 1;
+            }
         }
     }
     return 0;

@@ -219,7 +219,7 @@ static double given_forces(struct stick_slip *m, const tribo_system *sys, const 
 
 /* Finds forces f [ncontact] at accelerations a without friction: work.lo of sliding contacts, Coulomb's law with limits work.hi
  * for the others. Sets work.v = a + R f. */
-static int solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
+static int solve_discs(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
 {
     tribo_stick_slip_accelerate(m, sys, a, m->work.lo, m->work.v);
     int status = tribo_set_limit(m->plane->disc, m->work.hi);
@@ -263,7 +263,7 @@ static double share(const struct stick_slip *m, const struct face *c, const doub
 }
 
 /* 1 if a contact accelerates, by work.v, against force f by more than rounding. */
-static int leaves(const struct stick_slip *m, const struct face *c, const double *f)
+static int face_leaves(const struct stick_slip *m, const struct face *c, const double *f)
 {
     double against = 0.0, size = 0.0, noise = 0.0;
     for (size_t i = c->i; i < c->i + c->size; i++) {
@@ -275,7 +275,7 @@ static int leaves(const struct stick_slip *m, const struct face *c, const double
 }
 
 /* Lets a contact slide against its force. */
-static void let_go(struct stick_slip *m, const struct face *c, int begins)
+static void let_face_go(struct stick_slip *m, const struct face *c, int begins)
 {
     double *f = m->state.force + c->i;
     struct planar_contact *p = c->p;
@@ -304,9 +304,9 @@ static size_t break_away(struct stick_slip *m)
         double noise;
         if (s->slip[c.i] == TRIBO_SLIP_STUCK && (share(m, &c, s->force, &noise) >= 1.0 - noise || c.i == s->reached)) {
             s->tied[c.i] = 1;
-            if (leaves(m, &c, s->force)) {
+            if (face_leaves(m, &c, s->force)) {
                 s->tied[c.i] = 0;
-                let_go(m, &c, BY_ACCELERATION);
+                let_face_go(m, &c, BY_ACCELERATION);
             }
             ties += (size_t)s->tied[c.i];
         }
@@ -361,10 +361,10 @@ static int look_ahead_in_plane(struct stick_slip *m, const tribo_system *sys, co
         m->work.lo[i] += h * m->plane->rate[i];
     }
     set_limits_ahead(m);
-    const int status = solve(m, sys, m->plane->ahead, m->work.f);
+    const int status = solve_discs(m, sys, m->plane->ahead, m->work.f);
     for (struct face c = next_face(m, (struct face){0}); !status && c.size; c = next_face(m, c)) {
-        if (m->state.tied[c.i] && leaves(m, &c, m->work.f) && (c.size == 1 || goes_beyond(m, sys, c.p, m->work.f))) {
-            let_go(m, &c, BY_FORCE);
+        if (m->state.tied[c.i] && face_leaves(m, &c, m->work.f) && (c.size == 1 || goes_beyond(m, sys, c.p, m->work.f))) {
+            let_face_go(m, &c, BY_FORCE);
         }
     }
     return status;
@@ -383,7 +383,7 @@ int tribo_planar_slip_decide(struct stick_slip *m, tribo_system *sys, double t, 
         for (size_t i = 0; i < m->constant.contacts; i++) {
             m->work.hi[i] = m->state.slip[i] == TRIBO_SLIP_STUCK ? m->state.limit[i] : 0.0;
         }
-        status = solve(m, sys, m->work.a, m->state.force);
+        status = solve_discs(m, sys, m->work.a, m->state.force);
     }
     if (status) {
         return status;

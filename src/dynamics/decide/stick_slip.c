@@ -33,7 +33,7 @@ static void lay_out_arrays(struct stick_slip *m, struct layout *l, size_t contac
                                    &s->limit,      &s->limit_rate,   &s->force,
                                    &s->spring,     &s->spring_rate,  &s->base,
                                    &s->glide,      &r->velocity,     &r->velocity_scale,
-                                   &r->spring,     &r->parting,      &w->own_a,
+                                   &r->spring,     &r->parting,      &w->a,
                                    &w->v,          &w->lo,           &w->hi,
                                    &w->f,          &b->ratio,        &b->velocity,
                                    &b->kinetic,    &b->kinetic_rate, &b->stick,
@@ -281,11 +281,7 @@ double tribo_stick_slip_margin(const struct stick_slip *m, size_t i)
 void tribo_stick_slip_find_free(struct stick_slip *m, tribo_system *sys, double t, const double *y)
 {
     tribo_system_free_acceleration(sys, t, y, m->work.free);
-    m->work.a = m->work.free;
-    if (!sys->direction.identity || tribo_system_bases_move(sys)) {
-        tribo_stick_slip_contact_accelerations(sys, m->work.free, 1, m->work.own_a);
-        m->work.a = m->work.own_a;
-    }
+    tribo_stick_slip_contact_accelerations(sys, m->work.free, 1, m->work.a);
 }
 
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
@@ -330,7 +326,7 @@ int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, doubl
     const struct slip_state *s = &m->state;
     const size_t c = sys->ncontact;
     double *limit = m->work.lo; /* those of (t, y): they swing, or fall with the speed */
-    tribo_system_free_motion(sys, t, y, acceleration, m->work.v, m->work.own_a);
+    tribo_system_free_motion(sys, t, y, acceleration, m->work.v, m->work.a);
     if (sys->compliance.count) {
         tribo_elastic_find(m, sys, y);
     }

@@ -83,8 +83,7 @@ struct slip_noise {
 /* Workspace of a decision. */
 struct slip_work {
     int limit_lost;       /* 1: a static limit was lost in this round */
-    const double *a;      /* [ncontact] J q'' - b' without friction: own_a, or free if J = 1 */
-    double *own_a;        /* [ncontact] */
+    double *a;            /* [ncontact] J q'' - b' without friction */
     double *v;            /* [ncontact] velocities or accelerations */
     double *lo;           /* [ncontact] lower bounds of forces */
     double *hi;           /* [ncontact] upper bounds of forces */

@@ -57,7 +57,6 @@ static void central_destroy(tribo_driver *drv)
     if (x) {
         tribo_step_form_free(&x->common);
         tribo_blockwise_free(&x->alone);
-        free(x->next);
         free(x);
     }
 }
@@ -66,13 +65,11 @@ static int central_create(tribo_driver *drv)
 {
     struct central *x = tribo_zeros(1, sizeof *x);
     drv->own = x;
-    if (x) {
-        x->few.revision = SIZE_MAX;
-        x->next = tribo_zeros(drv->sys->ndof, sizeof *x->next);
-    }
-    if (!x || !x->next || !tribo_step_form_create(&x->common, drv->sys) || !tribo_blockwise_create(&x->alone, drv->sys)) {
+    if (!x || !tribo_step_form_create(&x->common, drv->sys, drv->sys->ndof) || !tribo_blockwise_create(&x->alone, drv->sys)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
+    x->few.revision = SIZE_MAX;
+    x->next = x->common.more;
     return TRIBO_OK;
 }
 
@@ -111,7 +108,7 @@ static int kick(tribo_driver *drv, const struct body_step *k, double *energy)
     tribo_get_slip(sys->contacts, s->mode);
     tribo_system_snap(sys, s->mode, s->base, k->u_to);
     tribo_step_form_relative(s, sys, k->u_to, s->end);
-    *energy += k->time * tribo_step_form_power(sys, s->f, s->v, s->end);
+    *energy += k->time * tribo_step_form_power(s, sys);
     return TRIBO_OK;
 }
 
@@ -445,7 +442,6 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
         s->goes_on = 0;
     }
     take_settings(x, drv->sys);
-    tribo_step_form_start(s, drv->sys);
     status = tribo_driver_fixed_steps(drv, t, t1, y, &method);
     if (status && *t > begin && !drv->seen) {
         memcpy(drv->state + n, s->u, n * sizeof *y);

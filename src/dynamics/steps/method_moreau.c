@@ -45,8 +45,6 @@ static void moreau_destroy(tribo_driver *drv)
         tribo_step_form_free(&m->common);
         tribo_step_band_free(&m->held);
         tribo_step_matrix_free(&m->matrix);
-        free(m->limit);
-        free(m->loose);
         free(m->response);
         free(m);
     }
@@ -57,14 +55,12 @@ static int moreau_create(tribo_driver *drv)
     const size_t n = drv->sys->ndof, c = drv->sys->ncontact;
     struct moreau *m = calloc(1, sizeof *m);
     drv->own = m;
-    if (m) {
-        m->settings_taken = SIZE_MAX;
-        m->limit = calloc(4 * c + 2 * n + 1, sizeof *m->limit);
-        m->loose = malloc(c + 1);
-    }
-    if (!m || !m->limit || !m->loose || !tribo_step_form_create(&m->common, drv->sys)) {
+    if (!m || !tribo_step_form_create(&m->common, drv->sys, 4 * c + 2 * n)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
+    m->settings_taken = SIZE_MAX;
+    m->loose = m->common.mode + c;
+    m->limit = m->common.more;
     m->spring = m->limit + c;
     m->give = m->spring + c;
     m->change = m->give + c;
@@ -408,17 +404,15 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     }
     const double slid = sys->compliance.count ? end_springs(m, sys, h) : 0.0;
     tribo_compliance_put(sys, m->spring, y);
-    y[energy] = from[energy] + h * tribo_step_form_power(sys, s->f, s->v, s->end) + slid;
+    y[energy] = from[energy] + h * tribo_step_form_power(s, sys) + slid;
     return tribo_driver_check(drv, y);
 }
 
 static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
-    struct moreau *m = drv->own;
-    struct step_form *s = &m->common;
     static const struct fixed_method method = {moreau_step, NULL};
-    s->goes_on = continues && s->goes_on;
-    tribo_step_form_start(s, drv->sys);
+    struct moreau *m = drv->own;
+    m->common.goes_on = continues && m->common.goes_on;
     return tribo_driver_fixed_steps(drv, t, t1, y, &method);
 }
 

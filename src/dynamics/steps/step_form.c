@@ -1,5 +1,6 @@
 #include "step_form.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,48 +34,44 @@ int tribo_step_form_bodies(const struct matrix *j, size_t *body, double *lever, 
     return 1;
 }
 
-int tribo_step_form_create(struct step_form *s, const tribo_system *sys)
+int tribo_step_form_create(struct step_form *s, const tribo_system *sys, size_t more)
 {
     const size_t n = sys->ndof, c = sys->ncontact;
-    s->u = calloc(2 * n + 4 * c + 1, sizeof *s->u);
-    s->mode = malloc(c + 1);
+    s->settings = SIZE_MAX;
+    s->memory = s->u = calloc(2 * n + 4 * c + more + 1, sizeof *s->u);
+    s->mode = malloc(2 * c + 1);
     if (!s->u || !s->mode) {
         return 0;
     }
     s->a = s->u + n;
-    s->v = s->u + 2 * n;
+    s->v = s->a + n;
     s->end = s->v + c;
     s->f = s->end + c;
     s->base = s->f + c;
+    s->more = s->base + c;
     return 1;
 }
 
 void tribo_step_form_free(struct step_form *s)
 {
-    free(s->u);
+    free(s->memory);
     free(s->mode);
-}
-
-void tribo_step_form_start(struct step_form *s, const tribo_system *sys)
-{
-    s->settings = tribo_system_revision(sys);
-    s->plain = tribo_step_form_plain(sys);
-    memset(s->base, 0, sys->ncontact * sizeof *s->base); /* in case that bases no longer move */
 }
 
 int tribo_step_form_is_plain(struct step_form *s, const tribo_system *sys)
 {
     if (s->settings != tribo_system_revision(sys)) {
-        tribo_step_form_start(s, sys);
+        s->settings = tribo_system_revision(sys);
+        s->plain = tribo_step_form_plain(sys);
     }
     return s->plain;
 }
 
 void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t)
 {
+    memset(s->base, 0, sys->ncontact * sizeof *s->base);
     if (tribo_system_bases_move(sys)) {
         tribo_system_set_time(sys, t);
-        memset(s->base, 0, sys->ncontact * sizeof *s->base);
         tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, s->base);
     }
 }
@@ -110,11 +107,11 @@ int tribo_step_form_force(struct step_form *s, const tribo_system *sys, tribo_co
                                             : tribo_step_force_mean(contacts, h, s->v, s->end, s->f);
 }
 
-double tribo_step_form_power(const tribo_system *sys, const double *f, const double *before, const double *after)
+double tribo_step_form_power(const struct step_form *s, const tribo_system *sys)
 {
     double sum = 0.0;
     for (size_t i = 0; i < sys->ncontact; i++) {
-        sum -= sys->tally[i] * f[i] * (before[i] + after[i]);
+        sum -= sys->tally[i] * s->f[i] * (s->v[i] + s->end[i]);
     }
     return 0.5 * sum;
 }

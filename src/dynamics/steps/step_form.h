@@ -6,14 +6,16 @@
 #include "dynamics/driver.h"
 
 struct step_form {
+    double *memory;      /* all arrays but mode: methods exchange some */
     double *u, *a;       /* [ndof] velocity (central: half a step back); acceleration, or what a step adds to u */
     double *v, *end, *f; /* [ncontact] velocity at the beginning and at the end of a step, force */
     double *base;        /* [ncontact] b at the end */
+    double *more;        /* [more] arrays of the method, zeros at first */
+    signed char *mode;   /* [2 ncontact] slip; and as many bytes of the method */
     int plain;           /* tribo_step_form_plain with the settings of revision `settings` */
-    size_t settings;
-    int goes_on;       /* 1: `end` is the velocity with which the next step begins */
-    signed char *mode; /* [ncontact] slip */
-    size_t revision;   /* of the system for which a method has prepared */
+    size_t settings;     /* SIZE_MAX: none */
+    int goes_on;         /* 1: `end` is the velocity with which the next step begins */
+    size_t revision;     /* of the system for which a method has prepared */
 };
 
 /* 1 if all contacts are scalar and none has a static limit above its limit. Uses sys->feq. */
@@ -24,16 +26,13 @@ int tribo_step_form_plain(const tribo_system *sys);
 int tribo_step_form_bodies(const struct matrix *j, size_t *body, double *lever, signed char *seen);
 
 /* 1, or 0 if out of memory. tribo_step_form_free frees what failed, too. */
-int tribo_step_form_create(struct step_form *s, const tribo_system *sys);
+int tribo_step_form_create(struct step_form *s, const tribo_system *sys, size_t more);
 void tribo_step_form_free(struct step_form *s);
-
-/* Takes the settings of the system, at the beginning of an advance. */
-void tribo_step_form_start(struct step_form *s, const tribo_system *sys);
 
 /* tribo_step_form_plain, found once for the settings of the system. */
 int tribo_step_form_is_plain(struct step_form *s, const tribo_system *sys);
 
-/* base = b(t), if bases move. */
+/* base = b(t). */
 void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t);
 
 /* v = J u - base. */
@@ -50,8 +49,8 @@ void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, con
  * limits: with it, light bodies between heavy ones come out worse. Returns a status. */
 int tribo_step_form_force(struct step_form *s, const tribo_system *sys, tribo_context *contacts, double h);
 
-/* The power that f dissipates at the mean of two velocities. */
-double tribo_step_form_power(const tribo_system *sys, const double *f, const double *before, const double *after);
+/* The power that f dissipates at the mean of v and end. */
+double tribo_step_form_power(const struct step_form *s, const tribo_system *sys);
 
 /* TRIBO_ERR_NOT_FINITE with its message. */
 int tribo_step_form_grew(tribo_driver *drv, double t);
