@@ -35,6 +35,12 @@ size_t tribo_band_factorize(const struct matrix *a, size_t width, const signed c
 static void band_solve_triangle(size_t n, size_t width, const double *l, int transposed, double *x)
 {
     const int rows = (int)n, below = (int)width, stride = below + 1, one = 1;
+    if (!width) {
+        for (size_t i = 0; i < n; i++) {
+            x[i] /= l[i];
+        }
+        return;
+    }
     dtbsv_("U", transposed ? "N" : "T", "N", &rows, &below, l, &stride, x, &one, 1, 1, 1);
 }
 

@@ -55,51 +55,39 @@ static signed char against(const struct stick_slip *m, size_t i)
                : (signed char)(m->state.spring[i] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH);
 }
 
-/* Force and slip of contact i, whose velocity is v if it slides. */
-static void place_elastic(struct stick_slip *m, size_t i, double v)
-{
-    const enum stand stand = stand_of(m, i);
-    const signed char direction = against(m, i);
-    const int slides = stand == AT_LIMIT && fabs(v) > m->noise.factor * m->noise.velocity[i] && direction * v > 0.0;
-    if (stand == OPEN) {
-        m->state.spring[i] = 0.0;
-        return;
-    }
-    m->state.spring[i] = stand == INSIDE ? m->state.spring[i] : -direction * m->state.limit[i];
-    tribo_stick_slip_set(m, i, (signed char)(slides ? direction : TRIBO_SLIP_STUCK));
-}
-
-/* Velocities v [ncontact] become those with the rates of forces of a shared G; 0 of contacts that rest. */
-static void share_rates(struct stick_slip *m, struct definite *c, double *v)
-{
-    for (size_t i = 0; i < c->n; i++) {
-        const enum stand stand = m->constant.elastic[i] ? stand_of(m, i) : OPEN;
-        const signed char direction = against(m, i);
-        v[i] = m->constant.elastic[i] ? v[i] : 0.0;
-        c->lo[i] = stand == OPEN || (stand == AT_LIMIT && direction > 0) ? 0.0 : -HUGE_VAL;
-        c->hi[i] = stand == OPEN || (stand == AT_LIMIT && direction < 0) ? 0.0 : HUGE_VAL;
-    }
-    tribo_compliance_share(c, v);
-}
-
 void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *y)
 {
+    const unsigned char *elastic = m->constant.elastic;
+    struct slip_state *s = &m->state;
+    struct definite *g = sys->compliance.shared;
+    double *v = m->work.v; /* velocities of the contacts that slide */
     if (sys->compliance.count == 0) {
         return;
     }
     tribo_elastic_find(m, sys, y);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->work.v[i] = m->constant.elastic[i] ? tribo_stick_slip_find_velocity(m, sys, i, y) : 0.0;
-    }
-    if (sys->compliance.shared) {
-        share_rates(m, sys->compliance.shared, m->work.v);
-    }
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        if (m->constant.elastic[i]) {
-            place_elastic(m, i, m->work.v[i]);
+        const enum stand stand = elastic[i] ? stand_of(m, i) : OPEN;
+        v[i] = elastic[i] ? tribo_stick_slip_find_velocity(m, sys, i, y) : 0.0;
+        if (g) {
+            g->lo[i] = stand == OPEN || (stand == AT_LIMIT && against(m, i) > 0) ? 0.0 : -HUGE_VAL;
+            g->hi[i] = stand == OPEN || (stand == AT_LIMIT && against(m, i) < 0) ? 0.0 : HUGE_VAL;
         }
     }
-    tribo_compliance_put(sys, m->state.spring, y);
+    if (g) {
+        tribo_compliance_share(g, v);
+    }
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const enum stand stand = elastic[i] ? stand_of(m, i) : OPEN;
+        const signed char direction = against(m, i);
+        if (stand != OPEN) {
+            const int slides = fabs(v[i]) > m->noise.factor * m->noise.velocity[i] && direction * v[i] > 0.0;
+            s->spring[i] = stand == INSIDE ? s->spring[i] : -direction * s->limit[i];
+            tribo_stick_slip_set(m, i, (signed char)(stand == AT_LIMIT && slides ? direction : TRIBO_SLIP_STUCK));
+        } else if (elastic[i]) {
+            s->spring[i] = 0.0;
+        }
+    }
+    tribo_compliance_put(sys, s->spring, y);
 }
 
 void tribo_elastic_move(struct stick_slip *m, const tribo_system *sys, const double *y)

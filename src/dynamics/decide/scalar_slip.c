@@ -54,10 +54,10 @@ static int solve(struct stick_slip *m, const tribo_system *sys, const double *a,
         unknown += lo[k] < hi[k];
         f[k] = c->uncoupled ? force_alone(c->diagonal[k], a[k], lo[k], hi[k]) : lo[k];
     }
-    if (c->uncoupled || !unknown) {
+    if (c->uncoupled || (c->independent && !unknown)) {
         return TRIBO_OK;
     }
-    if (unknown > 1 || !c->independent) {
+    if (!c->independent || unknown > 1) { /* contacts that depend on each other start from these forces next time */
         const int status = tribo_solve_box(c->box, a, lo, hi, f);
         return status ? tribo_system_fail(sys, status, "at t = %.17g: %s", sys->time, tribo_message(c->box)) : TRIBO_OK;
     }
@@ -157,18 +157,10 @@ static size_t let_slide(struct stick_slip *m, const tribo_system *sys, const dou
 
 /* ---------------------------------------------------------------------------------------------------------- look ahead */
 
-/* The limit of contact i now, and its rate. */
-static double limit_now(const struct slip_state *s, size_t i, double *rate)
-{
-    *rate = s->slip[i] ? s->limit_rate[i] : s->stick_rate[i];
-    return s->slip[i] ? s->limit[i] : s->stick[i];
-}
-
+/* The limit of contact i a moment later. */
 static double limit_ahead(const struct slip_state *s, size_t i, double moment)
 {
-    double rate;
-    const double now = limit_now(s, i, &rate);
-    return s->slip[i] == TRIBO_SLIP_OPEN ? 0.0 : greater(now + moment * rate, 0.0);
+    return greater(s->slip[i] ? s->limit[i] + moment * s->limit_rate[i] : s->stick[i] + moment * s->stick_rate[i], 0.0);
 }
 
 /* The time to look ahead: the horizon, or less where a limit that is close to a force changes by more than CHANGES of the
@@ -177,16 +169,14 @@ static double find_moment(const struct stick_slip *m)
 {
     const struct slip_state *s = &m->state;
     const double horizon = m->constant.horizon;
-    double moment = horizon, force = 0.0, rate;
+    double moment = horizon, force = 0.0;
     for (size_t i = 0; i < m->constant.contacts; i++) {
         force = greater(force, greater(fabs(s->force[i]), m->constant.inertia[i] * fabs(m->work.a[i])));
     }
     for (size_t i = 0; force > 0.0 && i < m->constant.contacts; i++) {
-        const double now = limit_now(s, i, &rate);
-        if (s->slip[i] != TRIBO_SLIP_OPEN && now <= fabs(s->force[i]) + horizon * fabs(rate) &&
-            moment * fabs(rate) > CHANGES * force) {
-            moment = CHANGES * force / fabs(rate);
-        }
+        const double rate = fabs(s->slip[i] ? s->limit_rate[i] : s->stick_rate[i]);
+        const int close = (s->slip[i] ? s->limit[i] : s->stick[i]) <= fabs(s->force[i]) + horizon * rate;
+        moment = close && moment * rate > CHANGES * force ? CHANGES * force / rate : moment;
     }
     return moment;
 }

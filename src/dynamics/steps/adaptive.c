@@ -72,20 +72,16 @@ static void restart(const struct adaptive *a)
 /* cap, band and rate, from the limits at the time set. */
 static void find_bands(struct adaptive *a, tribo_system *sys)
 {
-    double *limit = a->rate, *ratio = sys->feq, most = 0.0, fastest = 0.0, bound;
+    double *limit = a->rate, fastest = 0.0, bound;
     int law;
     tribo_get_law(sys->contacts, &law);
-    tribo_get_limit(sys->contacts, limit);
+    tribo_system_rest_limits(sys, limit);
     tribo_get_epsilon(sys->contacts, a->band);
     tribo_get_real(sys->contacts, TRIBO_REAL_MAX_RATE, &bound);
     for (size_t d = 0; d < sys->ndof; d++) {
         a->cap[d] = HUGE_VAL;
     }
-    tribo_get_static(sys->contacts, ratio, NULL);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        limit[i] *= ratio[i];
-        most = greater(most, limit[i]);
-    }
+    const double most = tribo_largest(limit, sys->ncontact);
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (limit[i] > 0.0) {
             /* the force changes by 2 limit_i over epsilon_i: this error of v_i changes it by a small part of the largest limit */
@@ -105,38 +101,6 @@ static void find_bands(struct adaptive *a, tribo_system *sys)
     for (size_t i = 0; i < sys->ncontact; i++) {
         a->rate[i] *= fastest > 0.0 ? bound / fastest : 0.0;
     }
-}
-
-/* Finds anew what follows from the system, where that has changed. Returns a status. */
-static int adaptive_prepare(struct adaptive *a, tribo_driver *drv)
-{
-    tribo_system *sys = drv->sys;
-    const size_t revision = tribo_system_revision(sys);
-    if (a->structure != sys->revision) {
-        double fastest;
-        const int status = tribo_system_top_frequency(sys, &fastest);
-        if (status) {
-            return tribo_driver_fail(drv, status, "%s", tribo_system_message(sys));
-        }
-        a->largest = fastest > 0.0 ? LARGEST_STEP / fastest : HUGE_VAL;
-    }
-    if (a->revision != revision) {
-        find_bands(a, sys);
-    }
-    a->structure = sys->revision;
-    a->revision = revision;
-    return TRIBO_OK;
-}
-
-/* The largest error divided by its tolerance; HUGE_VAL if a value is not finite. */
-static double adaptive_size_of(const struct adaptive *a, size_t n)
-{
-    double most = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        const int finite = isfinite(a->to[i]) && isfinite(a->error[i]);
-        most = greater(most, finite ? fabs(a->error[i]) / a->tolerance[i] : HUGE_VAL);
-    }
-    return most;
 }
 
 /* Keeps the message of a step of h from t that failed with status, in the stepper or in an evaluation of the system. */
@@ -196,7 +160,11 @@ static int advance_step(tribo_driver *drv, double *t, double end, double *y)
         if (status && !shorter) {
             return say_why(drv, status, *t, h);
         }
-        const double size = status ? HUGE_VAL : adaptive_size_of(a, n);
+        double size = status ? HUGE_VAL : 0.0; /* the largest error divided by its tolerance */
+        for (size_t i = 0; !status && i < n; i++) {
+            const int finite = isfinite(a->to[i]) && isfinite(a->error[i]);
+            size = greater(size, finite ? fabs(a->error[i]) / a->tolerance[i] : HUGE_VAL);
+        }
         if (size <= 1.0) {
             const double next = next_step(a, size) * h;
             a->h = h == a->h ? next : greater(a->h, next);
@@ -253,7 +221,21 @@ static int begin_step(tribo_driver *drv, double t, const double *y)
 static int adaptive_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
     struct adaptive *a = drv->own;
-    int status = adaptive_prepare(a, drv);
+    tribo_system *sys = drv->sys;
+    int status = TRIBO_OK;
+    if (a->structure != sys->revision) {
+        double fastest;
+        status = tribo_system_top_frequency(sys, &fastest);
+        if (status) {
+            return tribo_driver_fail(drv, status, "%s", tribo_system_message(sys));
+        }
+        a->largest = fastest > 0.0 ? LARGEST_STEP / fastest : HUGE_VAL;
+        a->structure = sys->revision;
+    }
+    if (a->revision != tribo_system_revision(sys)) {
+        find_bands(a, sys);
+        a->revision = tribo_system_revision(sys);
+    }
     if (!continues) {
         restart(a);
         a->h = drv->dt > 0.0 ? drv->dt : FIRST_STEP * lesser(a->largest, t1 - *t);
@@ -262,7 +244,7 @@ static int adaptive_advance(tribo_driver *drv, double *t, double t1, double *y, 
     a->span = t1 - *t;
     a->rejected = 0;
     while (!status && *t < t1) {
-        const double kink = tribo_system_next_kink(drv->sys, *t);
+        const double kink = tribo_system_next_kink(sys, *t);
         status = begin_step(drv, *t, y);
         status = status ? status : advance_step(drv, t, lesser(t1, kink), y);
         if (*t == kink) {

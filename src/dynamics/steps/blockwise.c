@@ -133,7 +133,7 @@ static void note_drive(struct blockwise *b, enum drives drives, size_t i, int va
 int tribo_blockwise_take(struct blockwise *b, tribo_system *sys)
 {
     b->revision = tribo_system_revision(sys);
-    b->fits = b->body && tribo_step_form_plain(sys);
+    b->fits = b->body && tribo_system_is_plain(sys);
     if (!b->fits) {
         return 0;
     }

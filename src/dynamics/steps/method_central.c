@@ -140,7 +140,7 @@ static int few_take(struct few_bodies *b, tribo_system *sys)
     b->revision = revision;
     b->n = sys->ndof;
     b->c = sys->ncontact;
-    b->fits = b->n <= FEW && b->c <= FEW && !sys->unsolved && tribo_step_form_plain(sys);
+    b->fits = b->n <= FEW && b->c <= FEW && !sys->unsolved && tribo_system_is_plain(sys);
     if (!b->fits) {
         return 0;
     }

@@ -136,29 +136,29 @@ static int solve_steps(const void *matrix, size_t count, double *x)
 /* r [ncontact][ncontact] = J S^-1 J'; own as in hidden.h. Returns 0 if out of memory. */
 static int find_operator(const struct moreau *m, const tribo_system *sys, double *r, double *own)
 {
-    const int symmetric = !m->matrix.pivot;
-    if (symmetric && m->response) {
-        /* r = W'W, W = H^-1 J', S = H H': symmetric, and semidefinite up to rounding; x [ncontact][ndof] = S^-1 J'. */
-        double *x = m->response;
-        const size_t n = sys->ndof, c = sys->ncontact;
-        for (size_t i = 0; i < c; i++) {
-            tribo_delassus_put_row(&sys->direction, i, x + i * n);
-            tribo_step_matrix_half_solve(&m->matrix, 0, x + i * n);
-            for (size_t k = 0; k <= i; k++) {
-                r[i * c + k] = r[k * c + i] = tribo_dot(x + i * n, x + k * n, n);
-            }
+    const struct matrix *j = &sys->direction;
+    const size_t n = sys->ndof, c = sys->ncontact;
+    double *x = m->response;
+    if (m->matrix.pivot || !x) {
+        const int done = tribo_delassus_by_columns(j, solve_steps, &m->matrix, x, r, own);
+        if (!m->matrix.pivot) {
+            tribo_even_out(c, r);
         }
-        for (size_t i = 0; i < c; i++) {
-            tribo_step_matrix_half_solve(&m->matrix, 1, x + i * n);
-            tribo_delassus_note_own(&sys->direction, i, x + i * n, own);
+        return done;
+    }
+    /* r = W'W, W = H^-1 J', S = H H': symmetric, and semidefinite up to rounding; x [ncontact][ndof] = S^-1 J'. */
+    for (size_t i = 0; i < c; i++) {
+        tribo_delassus_put_row(j, i, x + i * n);
+        tribo_step_matrix_half_solve(&m->matrix, 0, x + i * n);
+        for (size_t k = 0; k <= i; k++) {
+            r[i * c + k] = r[k * c + i] = tribo_dot(x + i * n, x + k * n, n);
         }
-        return 1;
     }
-    const int done = tribo_delassus_by_columns(&sys->direction, solve_steps, &m->matrix, m->response, r, own);
-    if (symmetric) {
-        tribo_even_out(sys->ncontact, r);
+    for (size_t i = 0; i < c; i++) {
+        tribo_step_matrix_half_solve(&m->matrix, 1, x + i * n);
+        tribo_delassus_note_own(j, i, x + i * n, own);
     }
-    return done;
+    return 1;
 }
 
 /* Computes the factor, S^-1 J', and contacts with the operator J S^-1 J'. Returns a status. */
@@ -237,21 +237,6 @@ static void find_load(struct moreau *m, tribo_system *sys, double t)
     tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, m->load);
 }
 
-/* Updates limit after a change of settings or limits. */
-static void moreau_take_limits(struct moreau *m, const tribo_system *sys)
-{
-    const size_t revision = tribo_system_settings(sys);
-    if (m->settings_taken == revision) {
-        return;
-    }
-    m->tell = 1;
-    m->settings_taken = revision;
-    tribo_get_limit(sys->contacts, m->limit);
-    for (size_t k = 0; k < sys->compliance.count; k++) {
-        m->limit[sys->compliance.contact[k]] *= 0.5;
-    }
-}
-
 /* ------------------------------------------------------------------------------------------------------------ a step */
 
 /* p = impulse of loads and structure in a step; s->u = displacements in the middle of the step at constant velocity. */
@@ -268,9 +253,7 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
         p[i] = 0.5 * h * m->load[i];
     }
     find_load(m, sys, next);
-    for (size_t i = 0; i < n; i++) {
-        p[i] += 0.5 * h * m->load[i];
-    }
+    tribo_add(p, 0.5 * h, m->load, n);
     if (sys->mass.rows && !sys->mass.identity && !sys->unsolved) {
         tribo_matrix_multiply(&sys->mass, p, m->push);
         memcpy(p, m->push, n * sizeof *p);
@@ -386,7 +369,14 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     if (tribo_system_limits_vary(sys)) {
         tribo_system_set_time(sys, t + 0.5 * h);
     }
-    moreau_take_limits(m, sys);
+    if (m->settings_taken != tribo_system_settings(sys)) {
+        m->tell = 1;
+        m->settings_taken = tribo_system_settings(sys);
+        tribo_get_limit(sys->contacts, m->limit);
+        for (size_t k = 0; k < sys->compliance.count; k++) {
+            m->limit[sys->compliance.contact[k]] *= 0.5;
+        }
+    }
     const int status = moreau_respond(m, sys, h, u, s->a);
     if (status == TRIBO_ERR_NOT_FINITE) {
         return tribo_step_form_grew(drv, t);

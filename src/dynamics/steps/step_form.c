@@ -4,17 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-int tribo_step_form_plain(const tribo_system *sys)
-{
-    double *ratio = sys->feq;
-    int plain = !tribo_system_planar(sys);
-    tribo_get_static(sys->contacts, ratio, NULL);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        plain &= ratio[i] <= 1.0;
-    }
-    return plain;
-}
-
 int tribo_step_form_bodies(const struct matrix *j, size_t *body, double *lever, signed char *seen)
 {
     for (size_t i = 0; i < j->rows; i++) {
@@ -62,7 +51,7 @@ int tribo_step_form_is_plain(struct step_form *s, const tribo_system *sys)
 {
     if (s->settings != tribo_system_revision(sys)) {
         s->settings = tribo_system_revision(sys);
-        s->plain = tribo_step_form_plain(sys);
+        s->plain = tribo_system_is_plain(sys);
     }
     return s->plain;
 }

@@ -12,14 +12,11 @@ struct step_form {
     double *base;        /* [ncontact] b at the end */
     double *more;        /* [more] arrays of the method, zeros at first */
     signed char *mode;   /* [2 ncontact] slip; and as many bytes of the method */
-    int plain;           /* tribo_step_form_plain with the settings of revision `settings` */
+    int plain;           /* tribo_system_is_plain with the settings of revision `settings` */
     size_t settings;     /* SIZE_MAX: none */
     int goes_on;         /* 1: `end` is the velocity with which the next step begins */
     size_t revision;     /* of the system for which a method has prepared */
 };
-
-/* 1 if all contacts are scalar and none has a static limit above its limit. Uses sys->feq. */
-int tribo_step_form_plain(const tribo_system *sys);
 
 /* body [j->rows] = the degree of freedom on which contact i acts, lever [j->rows] = its entry of J. Returns 0 if a contact has none
  * or several, or shares it. seen [j->cols]: workspace, all 0. */
@@ -29,7 +26,7 @@ int tribo_step_form_bodies(const struct matrix *j, size_t *body, double *lever, 
 int tribo_step_form_create(struct step_form *s, const tribo_system *sys, size_t more);
 void tribo_step_form_free(struct step_form *s);
 
-/* tribo_step_form_plain, found once for the settings of the system. */
+/* tribo_system_is_plain, found once for the settings of the system. */
 int tribo_step_form_is_plain(struct step_form *s, const tribo_system *sys);
 
 /* base = b(t). */

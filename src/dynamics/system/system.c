@@ -266,19 +266,35 @@ double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j)
     return sum;
 }
 
-size_t tribo_system_first_falling(const tribo_system *sys)
+/* Returns the first contact with ratio > 1 in tribo_set_static, or ncontact. */
+static size_t first_dropping(const tribo_system *sys)
 {
-    double *x = sys->feq;
     size_t i = 0;
-    tribo_get_static(sys->contacts, NULL, x);
-    if (!sys->ncontact || !(x[0] > 0.0)) {
-        return sys->ncontact;
-    }
-    tribo_get_static(sys->contacts, x, NULL);
-    while (i < sys->ncontact && !(x[i] > 1.0)) {
+    tribo_get_static(sys->contacts, sys->feq, NULL);
+    while (i < sys->ncontact && !(sys->feq[i] > 1.0)) {
         i++;
     }
     return i;
+}
+
+int tribo_system_is_plain(const tribo_system *sys)
+{
+    return !tribo_system_planar(sys) && first_dropping(sys) == sys->ncontact;
+}
+
+void tribo_system_rest_limits(const tribo_system *sys, double *limit)
+{
+    tribo_get_limit(sys->contacts, limit);
+    tribo_get_static(sys->contacts, sys->feq, NULL);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        limit[i] *= sys->feq[i];
+    }
+}
+
+size_t tribo_system_first_falling(const tribo_system *sys)
+{
+    tribo_get_static(sys->contacts, NULL, sys->feq);
+    return sys->ncontact && sys->feq[0] > 0.0 ? first_dropping(sys) : sys->ncontact;
 }
 
 int tribo_system_falls(const tribo_system *sys)

@@ -123,6 +123,12 @@ size_t tribo_system_planar(const tribo_system *sys);
 size_t tribo_system_first_falling(const tribo_system *sys);
 int tribo_system_falls(const tribo_system *sys);
 
+/* Returns 1 if all contacts are scalar and none has a static limit above its limit. */
+int tribo_system_is_plain(const tribo_system *sys);
+
+/* limit [ncontact] = limits at rest, at the set time. */
+void tribo_system_rest_limits(const tribo_system *sys, double *limit);
+
 /* ---- loads.c */
 
 void tribo_loads_free(tribo_system *sys);
