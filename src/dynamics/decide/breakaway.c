@@ -3,20 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-/* The largest row sum of |J| |B| diag(slopes at rest), with the largest limits of all times. */
-static double steepest(struct breakaway *b, const tribo_system *sys, double *dof, double *contact)
-{
-    memset(dof, 0, sys->ndof * sizeof *dof);
-    tribo_system_most_limits(sys, b->kinetic);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        contact[i] = -tribo_breakaway_slope(b, i, 0.0);
-    }
-    tribo_matrix_add_sizes(&sys->response, contact, dof);
-    memset(contact, 0, sys->ncontact * sizeof *contact);
-    tribo_matrix_add_sizes(&sys->direction, dof, contact);
-    return tribo_largest(contact, sys->ncontact);
-}
-
 void tribo_breakaway_start(struct breakaway *b, tribo_system *sys, double *dof, double *contact)
 {
     b->some = 0;
@@ -25,9 +11,22 @@ void tribo_breakaway_start(struct breakaway *b, tribo_system *sys, double *dof, 
     for (size_t i = 0; i < sys->ncontact; i++) {
         b->some |= b->ratio[i] > 1.0;
     }
-    if (b->revision != tribo_system_revision(sys)) {
-        b->steepest = b->falls ? steepest(b, sys, dof, contact) : 0.0;
-        b->revision = tribo_system_revision(sys);
+    if (b->revision == tribo_system_revision(sys)) {
+        return;
+    }
+    b->revision = tribo_system_revision(sys);
+    b->steepest = 0.0;
+    if (b->falls) {
+        /* the largest row sum of |J| |B| diag(slopes at rest), with the largest limits of all times */
+        memset(dof, 0, sys->ndof * sizeof *dof);
+        tribo_system_most_limits(sys, b->kinetic);
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            contact[i] = -tribo_breakaway_slope(b, i, 0.0);
+        }
+        tribo_matrix_add_sizes(&sys->response, contact, dof);
+        memset(contact, 0, sys->ncontact * sizeof *contact);
+        tribo_matrix_add_sizes(&sys->direction, dof, contact);
+        b->steepest = tribo_largest(contact, sys->ncontact);
     }
 }
 

@@ -28,27 +28,6 @@ int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f)
     return status ? tribo_system_fail(c->sys, status, "%s", tribo_message(c->hold)) : TRIBO_OK;
 }
 
-/* Reduces holds[] to an independent set: first contacts inside their limits, then those that go back inside, then those at their
- * limits. */
-static int choose_holds(struct stick_slip *m, const tribo_system *sys)
-{
-    struct constraints c = {0};
-    size_t rest = 0, *at = m->work.at;
-    for (size_t i = 0; i < m->constant.contacts; i++) {
-        const signed char tied = m->state.tied[i];
-        at[rest] = i;
-        m->work.last[rest] = (unsigned char)(tied == 0 ? 0 : tied == 2 ? 1 : 2);
-        rest += tribo_stick_slip_searches(m, i) && m->constant.can_hold[i];
-    }
-    const int done = rest < 2 || tribo_constraints_create(&c, &sys->direction, &sys->mass, at, rest, m->work.last);
-    for (size_t k = done && rest > 1 ? c.rank : rest; k < rest; k++) {
-        m->state.holds[at[c.order[k]]] = 0;
-    }
-    tribo_constraints_free(&c);
-    return done ? TRIBO_OK
-                : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s at rest", rest, plural(rest));
-}
-
 int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
 {
     const struct slip_constant *c = &m->constant;
@@ -62,12 +41,28 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
         return TRIBO_OK;
     }
     s->fresh = 0;
+    struct constraints ties = {0};
+    size_t rest = 0, hold = 0, *at = m->work.at;
+    int differs = 0;
     for (size_t i = 0; i < n; i++) {
         s->holds[i] = (s->slip[i] == TRIBO_SLIP_STUCK) & c->can_hold[i];
     }
-    const int status = c->independent ? TRIBO_OK : choose_holds(m, sys);
-    size_t hold = 0;
-    int differs = 0;
+    for (size_t i = 0; !c->independent && i < n; i++) {
+        at[rest] = i;
+        m->work.last[rest] = (unsigned char)(s->tied[i] == 1 ? 2 : s->tied[i] == 2);
+        rest += s->holds[i] && !c->elastic[i];
+    }
+    if (rest > 1) {
+        /* an independent set: first contacts inside their limits, then those that go back inside, then those at their limits */
+        if (!tribo_constraints_create(&ties, &sys->direction, &sys->mass, at, rest, m->work.last)) {
+            tribo_constraints_free(&ties);
+            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s at rest", rest, plural(rest));
+        }
+        for (size_t k = ties.rank; k < rest; k++) {
+            s->holds[at[ties.order[k]]] = 0;
+        }
+        tribo_constraints_free(&ties);
+    }
     s->dependents = 0;
     for (size_t i = 0; i < n; i++) {
         const int rests = s->slip[i] == TRIBO_SLIP_STUCK, loose = !s->holds[i] || c->elastic[i];
@@ -82,7 +77,7 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
         s->snaps = tribo_system_list_snaps(sys, s->loose, s->snap);
         s->simple = s->snaps == hold;
     }
-    return status;
+    return TRIBO_OK;
 }
 
 /* 1 if J x - base of a holding contact exceeds the rounding of x. */

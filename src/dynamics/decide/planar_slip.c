@@ -95,25 +95,6 @@ static int create_plane(struct stick_slip *m, const tribo_system *sys)
     return status;
 }
 
-/* Forces of planar contacts are known for limits that are the same at all times and speeds, at rest and not. */
-static int check_limits(const struct stick_slip *m, const tribo_system *sys, size_t planar)
-{
-    for (size_t i = 0; i < m->constant.contacts; i++) {
-        if (tribo_breakaway_ratio(&m->breakaway, i) > 1.0) {
-            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                     "method event knows no static limits beside planar contacts: contact %zu has ratio[%zu] = "
-                                     "%g: take moreau/fixed",
-                                     i, i, m->breakaway.ratio[i]);
-        }
-    }
-    return !tribo_system_limits_vary(sys)
-               ? TRIBO_OK
-               : tribo_system_fail(
-                     sys, TRIBO_ERR_UNSUPPORTED,
-                     "method event knows no limits that change with time beside planar contacts, of which the system has %zu",
-                     planar);
-}
-
 int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int continues)
 {
     const size_t planar = tribo_system_planar(sys);
@@ -122,12 +103,25 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
     }
     tribo_planar_slip_free(m->plane);
     m->plane = NULL;
-    int status = planar ? check_limits(m, sys, planar) : TRIBO_OK;
-    if (planar && !status) {
-        status = create_plane(m, sys);
-        status = status ? tribo_system_fail(sys, status, "%s, of planar contacts", tribo_strerror(status)) : TRIBO_OK;
+    if (!planar) {
+        return TRIBO_OK;
     }
-    return status;
+    /* forces of planar contacts are known for limits that are the same at all times and speeds, at rest and not */
+    for (size_t i = 0; i < m->constant.contacts; i++) {
+        if (tribo_breakaway_ratio(&m->breakaway, i) > 1.0) {
+            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                     "method event knows no static limits beside planar contacts: contact %zu has ratio[%zu] = "
+                                     "%g: take moreau/fixed",
+                                     i, i, m->breakaway.ratio[i]);
+        }
+    }
+    if (tribo_system_limits_vary(sys)) {
+        return tribo_system_fail(
+            sys, TRIBO_ERR_UNSUPPORTED,
+            "method event knows no limits that change with time beside planar contacts, of which the system has %zu", planar);
+    }
+    const int status = create_plane(m, sys);
+    return status ? tribo_system_fail(sys, status, "%s, of planar contacts", tribo_strerror(status)) : TRIBO_OK;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- at rest */

@@ -297,19 +297,6 @@ static size_t most_overloaded(const struct stick_slip *m)
     return worst;
 }
 
-/* Finds the forces by least norm, ties contacts by these, and finds work.f. Returns a status. */
-static int share_anew(struct stick_slip *m, const tribo_system *sys)
-{
-    tribo_set_sharing(m->constant.box, TRIBO_SHARE_LEAST_NORM);
-    const int status = find_forces(m, sys);
-    tribo_set_sharing(m->constant.box, TRIBO_SHARE_PREVIOUS);
-    for (size_t i = 0; i < m->constant.contacts; i++) {
-        const double room = m->state.stick[i] - fabs(m->state.force[i]);
-        m->state.tied[i] = tribo_stick_slip_searches(m, i) && room <= m->noise.allowance[i];
-    }
-    return status ? status : find_holding_forces(m, sys);
-}
-
 /* Takes the forces that hold all contacts at rest, or lets contacts slide and sets *changes = 1. Returns a status. */
 static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *changes)
 {
@@ -319,8 +306,14 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
     int status = find_holding_forces(m, sys), gone = 0;
     size_t worst = most_overloaded(m);
     const signed char direction = worst < none && w->f[worst] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH;
-    if (!status && worst < none && must_be_sure(m, worst)) {
-        status = share_anew(m, sys);
+    if (!status && worst < none && must_be_sure(m, worst)) { /* by least norm, which ties contacts anew */
+        tribo_set_sharing(m->constant.box, TRIBO_SHARE_LEAST_NORM);
+        status = find_forces(m, sys);
+        tribo_set_sharing(m->constant.box, TRIBO_SHARE_PREVIOUS);
+        for (size_t i = 0; i < none; i++) {
+            s->tied[i] = tribo_stick_slip_searches(m, i) && s->stick[i] - fabs(s->force[i]) <= m->noise.allowance[i];
+        }
+        status = status ? status : find_holding_forces(m, sys);
         worst = most_overloaded(m) < none ? worst : none;
     }
     if (status) {
@@ -346,31 +339,10 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
 
 /* ------------------------------------------------------------------------------------------------------------ decision */
 
-/* One round; *changes = the number of contacts that need another one. Returns a status. */
-static int go_round(struct stick_slip *m, const tribo_system *sys, const double *y, size_t *changes)
-{
-    struct slip_state *s = &m->state;
-    size_t ties;
-    int status = find_forces(m, sys);
-    *changes = status ? 0 : let_slide(m, sys, y, &ties);
-    if (!status && !*changes && (ties || (s->dependents && m->constant.base_moves))) {
-        status = look_ahead(m, sys, y, &ties, changes);
-    }
-    if (!status && !*changes && ties) {
-        status = relieve(m, sys, changes);
-    }
-    if (*changes) {
-        memset(s->tied, 0, m->constant.contacts);
-        for (size_t i = 0; m->work.limit_lost && i < m->constant.contacts; i++) {
-            tribo_stick_slip_set(m, i, s->rested[i] ? TRIBO_SLIP_STUCK : s->slip[i]); /* slips while the lost limits held */
-        }
-        m->work.limit_lost = 0;
-    }
-    return status;
-}
-
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
+    struct slip_state *s = &m->state;
+    const size_t n = m->constant.contacts;
     tribo_stick_slip_begin_decision(m, sys, t);
     tribo_stick_slip_update_limits(m, sys, y);
     tribo_elastic_place(m, sys, y);
@@ -381,16 +353,30 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
         tribo_stick_slip_find_free(m, sys, t, y);
         tribo_stick_slip_forget_gains(m);
     }
-    for (size_t changes = 1; !status && changes;) {
-        status = go_round(m, sys, y, &changes);
+    for (size_t changes = 1, ties; !status && changes;) {
+        status = find_forces(m, sys);
+        changes = status ? 0 : let_slide(m, sys, y, &ties);
+        if (!status && !changes && (ties || (s->dependents && m->constant.base_moves))) {
+            status = look_ahead(m, sys, y, &ties, &changes);
+        }
+        if (!status && !changes && ties) {
+            status = relieve(m, sys, &changes);
+        }
+        if (changes) {
+            memset(s->tied, 0, n);
+            for (size_t i = 0; m->work.limit_lost && i < n; i++) {
+                tribo_stick_slip_set(m, i, s->rested[i] ? TRIBO_SLIP_STUCK : s->slip[i]); /* slips while the lost limits held */
+            }
+            m->work.limit_lost = 0;
+        }
     }
-    m->state.reached = m->constant.contacts;
+    s->reached = n;
     if (m->breakaway.some && !status) {
         tribo_stick_slip_find_gains(m, sys, y);
     }
-    for (size_t i = 0; m->breakaway.some && i < m->constant.contacts; i++) {
+    for (size_t i = 0; m->breakaway.some && i < n; i++) {
         /* a contact that broke away, and is held by others after all, has its static limit again */
-        m->state.tied[i] = (signed char)(tribo_breakaway_restore(&m->breakaway, i) ? 0 : m->state.tied[i]);
+        s->tied[i] = (signed char)(tribo_breakaway_restore(&m->breakaway, i) ? 0 : s->tied[i]);
     }
     if (!status) {
         tribo_elastic_finish(m, sys);

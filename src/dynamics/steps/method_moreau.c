@@ -29,7 +29,6 @@ struct moreau {
     double *limit;           /* [ncontact] limits in a step; limit/2 for compliant contacts */
     size_t settings_taken;   /* tribo_system_settings at the last update of limit; SIZE_MAX: none */
     int tell;                /* 1: limit is not yet copied to contacts */
-    double *load;            /* [ndof] load at the end of the last step */
     double *spring, *give;   /* [ncontact] forces f0 of compliant contacts; workspace, as G f0 */
     double *change;          /* [ncontact] f1 - f0; workspace */
     signed char *loose;      /* [ncontact] slip; 1 for compliant contacts, which are not snapped */
@@ -64,8 +63,7 @@ static int moreau_create(tribo_driver *drv)
     m->spring = m->limit + c;
     m->give = m->spring + c;
     m->change = m->give + c;
-    m->load = m->change + c;
-    m->push = m->load + n;
+    m->push = m->change + c;
     return TRIBO_OK;
 }
 
@@ -119,11 +117,7 @@ static int make_contacts(struct moreau *m, const tribo_system *sys)
         m->contacts = NULL;
         m->settings = sys->changes;
         m->tell = 1;
-        if (planar_of(sys->contacts)) {
-            tribo_clone(sys->contacts, &m->contacts);
-        } else {
-            tribo_create(&m->contacts, sys->ncontact);
-        }
+        tribo_clone(sys->contacts, &m->contacts);
     }
     return m->contacts != NULL;
 }
@@ -229,14 +223,6 @@ static int moreau_prepare(struct moreau *m, const tribo_system *sys, double h)
     return status;
 }
 
-/* load = the accelerations, or forces, of loads at t. */
-static void find_load(struct moreau *m, tribo_system *sys, double t)
-{
-    tribo_system_set_time(sys, t);
-    memset(m->load, 0, sys->ndof * sizeof *m->load);
-    tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, m->load);
-}
-
 /* ------------------------------------------------------------------------------------------------------------ a step */
 
 /* p = impulse of loads and structure in a step; s->u = displacements in the middle of the step at constant velocity. */
@@ -245,15 +231,14 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
     struct step_form *s = &m->common;
     const size_t n = sys->ndof;
     const double h = next - t, *u = from + n;
-    if (!s->goes_on) {
-        find_load(m, sys, t);
-    }
+    memset(p, 0, n * sizeof *p);
+    tribo_system_set_time(sys, t);
+    tribo_system_loads(sys, DRIVES_LOAD, 0, 0.5 * h, p);
+    tribo_system_set_time(sys, next);
+    tribo_system_loads(sys, DRIVES_LOAD, 0, 0.5 * h, p);
     for (size_t i = 0; i < n; i++) {
         s->u[i] = from[i] + 0.5 * h * u[i];
-        p[i] = 0.5 * h * m->load[i];
     }
-    find_load(m, sys, next);
-    tribo_add(p, 0.5 * h, m->load, n);
     if (sys->mass.rows && !sys->mass.identity && !sys->unsolved) {
         tribo_matrix_multiply(&sys->mass, p, m->push);
         memcpy(p, m->push, n * sizeof *p);
@@ -265,11 +250,28 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
     sys->evaluations++;
 }
 
-/* Sets s->f, s->mode, and s->u = velocity at the end of the step, with the operator of contacts. Returns a status. */
-static int respond_whole(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
+/* Sets s->f, s->mode, and s->u = velocity at the end of the step: by the band solver, or, without a band, with static limits, or if
+ * it finds none, with the operator of contacts. Returns a status. */
+static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
 {
     struct step_form *s = &m->common;
     const struct compliance *g = &sys->compliance;
+    const struct band_step step = {h, m->limit, s->base, u, du, s->f};
+    const int in_band = m->held.n && tribo_step_form_is_plain(s, sys) && tribo_step_band_solve(&m->held, &step);
+    int status = in_band || m->whole ? TRIBO_OK : prepare_whole(m, sys, h);
+    if (status) {
+        return status;
+    }
+    if (!in_band) {
+        tribo_step_matrix_solve(&m->matrix, 1, du);
+    }
+    memcpy(s->u, u, sys->ndof * sizeof *u);
+    tribo_add(s->u, 1.0, du, sys->ndof);
+    if (in_band) {
+        memcpy(s->mode, m->held.at, sys->ncontact);
+        memcpy(m->loose, m->held.at, sys->ncontact);
+        return tribo_dense_finite(s->f, sys->ncontact) ? TRIBO_OK : TRIBO_ERR_NOT_FINITE;
+    }
     if (m->tell) {
         double *ratio = m->give, *velocity = m->change;
         tribo_get_static(sys->contacts, ratio, velocity);
@@ -277,9 +279,6 @@ static int respond_whole(struct moreau *m, const tribo_system *sys, double h, co
         tribo_set_static(m->contacts, ratio, tribo_system_falls(sys) ? velocity : NULL);
         m->tell = 0;
     }
-    tribo_step_matrix_solve(&m->matrix, 1, du);
-    memcpy(s->u, u, sys->ndof * sizeof *u);
-    tribo_add(s->u, 1.0, du, sys->ndof);
     if (g->count) {
         for (size_t i = 0; i < sys->ncontact; i++) {
             s->f[i] = 0.5 * m->spring[i];
@@ -292,7 +291,7 @@ static int respond_whole(struct moreau *m, const tribo_system *sys, double h, co
         const size_t i = g->contact[k];
         s->end[i] += s->v[i] - 2.0 / h * m->give[i];
     }
-    const int status = tribo_step_form_force(s, sys, m->contacts, h);
+    status = tribo_step_form_force(s, sys, m->contacts, h);
     if (status) {
         return status;
     }
@@ -303,23 +302,6 @@ static int respond_whole(struct moreau *m, const tribo_system *sys, double h, co
         m->loose[g->contact[k]] = 1;
     }
     return TRIBO_OK;
-}
-
-/* The response of a step by the band solver, or, without a band, with static limits, or if it finds none, by respond_whole. Returns
- * a status. */
-static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
-{
-    struct step_form *s = &m->common;
-    const struct band_step step = {h, m->limit, s->base, u, du, s->f};
-    if (!m->held.n || !tribo_step_form_is_plain(s, sys) || !tribo_step_band_solve(&m->held, &step)) {
-        const int status = m->whole ? TRIBO_OK : prepare_whole(m, sys, h);
-        return status ? status : respond_whole(m, sys, h, u, du);
-    }
-    memcpy(s->u, u, sys->ndof * sizeof *u);
-    tribo_add(s->u, 1.0, du, sys->ndof);
-    memcpy(s->mode, m->held.at, sys->ncontact);
-    memcpy(m->loose, m->held.at, sys->ncontact);
-    return tribo_dense_finite(s->f, sys->ncontact) ? TRIBO_OK : TRIBO_ERR_NOT_FINITE;
 }
 
 /* For compliant contacts: m->spring = f1 = 2 s->f, then s->f = 0. Returns the energy dissipated. */

@@ -32,27 +32,6 @@ void tribo_step_band_free(struct step_band *b)
     *b = (struct step_band){0};
 }
 
-static int band_allocate(struct step_band *b, size_t n, size_t count)
-{
-    if (b->body) {
-        return 1;
-    }
-    b->body = malloc((count + n + 1) * sizeof *b->body);
-    b->lever = calloc(3 * count + 2 * n + 1, sizeof *b->lever);
-    b->at = calloc(count + n + 1, 1);
-    if (!b->body || !b->lever || !b->at) {
-        tribo_step_band_free(b);
-        return 0;
-    }
-    b->contact = b->body + count;
-    b->own = b->lever + count;
-    b->noise = b->own + count;
-    b->push = b->noise + count;
-    b->move = b->push + n;
-    b->held = b->at + count;
-    return 1;
-}
-
 /* 1 if contacts have bodies of their own, and S is symmetric and narrow enough to save work. Sets body and lever. */
 static int applies(struct step_band *b, const tribo_system *sys, const struct step_matrix *m)
 {
@@ -75,22 +54,32 @@ static size_t band_factorize(struct step_band *b)
 
 int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const struct step_matrix *m, size_t *where)
 {
+    const size_t n = m->n, count = sys->ncontact;
     b->n = 0;
-    if (!band_allocate(b, m->n, sys->ncontact)) {
+    b->body = b->body ? b->body : malloc((count + n + 1) * sizeof *b->body);
+    b->lever = b->lever ? b->lever : calloc(3 * count + 2 * n + 1, sizeof *b->lever);
+    b->at = b->at ? b->at : calloc(count + n + 1, 1);
+    if (!b->body || !b->lever || !b->at) {
         return TRIBO_ERR_MEMORY;
     }
+    b->contact = b->body + count;
+    b->own = b->lever + count;
+    b->noise = b->own + count;
+    b->push = b->noise + count;
+    b->move = b->push + n;
+    b->held = b->at + count;
     if (!applies(b, sys, m)) {
         return TRIBO_OK;
     }
     free(b->l);
-    b->l = malloc(m->n * (m->below + 1) * sizeof *b->l);
+    b->l = malloc(n * (m->below + 1) * sizeof *b->l);
     if (!b->l) {
         return TRIBO_ERR_MEMORY;
     }
     b->s = &m->s;
-    b->n = m->n;
+    b->n = n;
     b->width = m->below;
-    b->count = sys->ncontact;
+    b->count = count;
     for (size_t d = 0; d < b->n; d++) {
         b->contact[d] = b->count;
     }
@@ -105,9 +94,11 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const s
 
 /* --------------------------------------------------------------------------------------------------------------- the step */
 
-/* Sets held[]; the factor is kept if it does not change. */
-static void hold_bodies(struct step_band *b)
+/* du, f and noise with the contacts as they are in at[]; the factor is kept if held[] does not change. */
+static void solve_sets(struct step_band *b, const struct band_step *s)
 {
+    const double doubt = 8.0 * DBL_EPSILON;
+    double *x = s->du, *f = s->f;
     for (size_t i = 0; i < b->count; i++) {
         const signed char holds = b->at[i] ? FREE : HOLDS;
         b->factored &= b->held[b->body[i]] == holds;
@@ -116,14 +107,6 @@ static void hold_bodies(struct step_band *b)
     if (!b->factored) {
         band_factorize(b);
     }
-}
-
-/* du, f and noise with the contacts as they are in at[]. */
-static void solve_sets(struct step_band *b, const struct band_step *s)
-{
-    const double doubt = 8.0 * DBL_EPSILON;
-    double *x = s->du, *f = s->f;
-    hold_bodies(b);
     memcpy(x, b->push, b->n * sizeof *x);
     memset(b->move, 0, b->n * sizeof *x);
     for (size_t i = 0; i < b->count; i++) {
