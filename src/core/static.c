@@ -65,20 +65,26 @@ static int turns(const tribo_context *ctx, size_t i, const double *v, const doub
     return !(power < 0.0);
 }
 
-int tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, const double *f)
+int tribo_any_turns(const tribo_context *ctx, double dt, const double *v, const double *f)
 {
     int any = 0;
+    for (size_t i = 0; !any && i < ctx->n; i += tribo_directions(ctx, i)) {
+        any = comes_sliding(ctx, dt, i, v) && turns(ctx, i, v, f);
+    }
+    return any;
+}
+
+void tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, const double *f)
+{
     tribo_copy(ctx->follow.now, ctx->follow.hold, ctx->n);
     for (size_t i = 0, directions; v && i < ctx->n; i += directions) {
         directions = tribo_directions(ctx, i);
-        const int comes = comes_sliding(ctx, dt, i, v), back = comes && f && turns(ctx, i, v, f);
+        const int slides = comes_sliding(ctx, dt, i, v) && !(f && turns(ctx, i, v, f));
         const double speed = tribo_length((int)directions, v + i);
-        for (size_t k = i; comes && !back && k < i + directions; k++) {
+        for (size_t k = i; slides && k < i + directions; k++) {
             ctx->follow.now[k] = tribo_limit_at(ctx, k, speed);
         }
-        any |= back;
     }
-    return any;
 }
 
 void tribo_hold(const tribo_context *ctx, const struct box_qp *p)

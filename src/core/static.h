@@ -30,8 +30,11 @@ void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size
                         const double *feq, const struct tangents *d);
 
 /* Sets limits over a step of dt: static, but those to slide of contacts that come in sliding at v [n], or NULL, and do not come
- * to a stop: f [n], or NULL, acts against v. Returns 1 if a contact that comes in sliding comes to a stop. */
-int tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, const double *f);
+ * to a stop: f [n], or NULL, acts against v. */
+void tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, const double *f);
+
+/* 1 if a contact that comes in sliding has a force that does not act against v. */
+int tribo_any_turns(const tribo_context *ctx, double dt, const double *v, const double *f);
 
 /* Gives the near contacts of a problem their static limits. */
 void tribo_hold(const tribo_context *ctx, const struct box_qp *p);

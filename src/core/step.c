@@ -213,7 +213,8 @@ static int step_from(tribo_context *ctx, double dt, const double *v, const doubl
     double *first = ctx->last.v;
     tribo_hold_for_step(ctx, dt, v, NULL);
     int status = step_once(ctx, dt, vfree, v ? first : f);
-    if (!status && v && tribo_hold_for_step(ctx, dt, v, first)) {
+    if (!status && v && tribo_any_turns(ctx, dt, v, first)) {
+        tribo_hold_for_step(ctx, dt, v, first);
         status = step_once(ctx, dt, vfree, f);
     } else if (!status && v) {
         tribo_copy(f, first, ctx->n);
