@@ -18,9 +18,10 @@ static int find_bodies(struct blockwise *b, const tribo_system *sys, signed char
     int alone = sys->response.first[sys->response.rows] == sys->ncontact &&
                 tribo_step_form_bodies(&sys->direction, b->body, b->turn, taken);
     for (size_t i = 0; alone && i < sys->ncontact; i++) {
-        const double mobility = tribo_matrix_get(&sys->response, b->body[i], i), mass = sys->tally[i] * b->turn[i] / mobility;
+        const double mobility = tribo_matrix_get(&sys->response, b->body[i], i);
+        const double mass = fabs(mobility) < DBL_MIN ? 0.0 : sys->tally[i] * b->turn[i] / mobility;
         b->mass[b->body[i]] = mass;
-        alone = fabs(mobility) >= DBL_MIN && mass > 0.0 && isfinite(mass);
+        alone = mass > 0.0 && isfinite(mass);
     }
     return alone;
 }

@@ -98,11 +98,10 @@ static int kick(tribo_driver *drv, const struct body_step *k, double *energy)
         tribo_system_set_time(sys, k->t);
     }
     const int status = tribo_step_form_force(s, sys, sys->contacts, k->time);
-    if (status == TRIBO_ERR_NOT_FINITE) {
-        return tribo_step_form_grew(drv, k->t);
-    }
     if (status) {
-        return tribo_driver_fail(drv, status, "at t = %.17g: %s", k->t, tribo_message(sys->contacts));
+        return status == TRIBO_ERR_NOT_FINITE
+                   ? tribo_step_form_grew(drv, k->t)
+                   : tribo_driver_fail(drv, status, "at t = %.17g: %s", k->t, tribo_message(sys->contacts));
     }
     tribo_matrix_multiply_add(&sys->response, k->time, s->f, k->u_to);
     tribo_get_slip(sys->contacts, s->mode);

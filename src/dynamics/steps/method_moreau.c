@@ -117,7 +117,11 @@ static int make_contacts(struct moreau *m, const tribo_system *sys)
         m->contacts = NULL;
         m->settings = sys->changes;
         m->tell = 1;
-        tribo_clone(sys->contacts, &m->contacts);
+        if (planar_of(sys->contacts)) { /* made anew where settings change; others keep a law that takes any */
+            tribo_clone(sys->contacts, &m->contacts);
+        } else {
+            tribo_create(&m->contacts, sys->ncontact);
+        }
     }
     return m->contacts != NULL;
 }
@@ -360,12 +364,10 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
         }
     }
     const int status = moreau_respond(m, sys, h, u, s->a);
-    if (status == TRIBO_ERR_NOT_FINITE) {
-        return tribo_step_form_grew(drv, t);
-    }
     if (status) {
-        return tribo_driver_fail(drv, status, "at t = %.17g: %s", t,
-                                 m->whole ? tribo_message(m->contacts) : tribo_system_message(sys));
+        const char *message = m->whole ? tribo_message(m->contacts) : tribo_system_message(sys);
+        return status == TRIBO_ERR_NOT_FINITE ? tribo_step_form_grew(drv, t)
+                                              : tribo_driver_fail(drv, status, "at t = %.17g: %s", t, message);
     }
     tribo_system_snap(sys, m->loose, s->base, s->u);
     tribo_step_form_relative(s, sys, s->u, s->end);
