@@ -160,7 +160,7 @@ static size_t find_pivot(const struct elimination *e)
 }
 
 /* Exchanges count elements of x and y, at distances of stride. */
-static void exchange(double *x, double *y, size_t count, size_t stride)
+static void constraint_exchange(double *x, double *y, size_t count, size_t stride)
 {
     for (size_t i = 0; i < count; i++) {
         const double z = x[i * stride];
@@ -231,13 +231,13 @@ static void eliminate_tie(struct elimination *e)
         while (!(weighted(e, p, column) >= e->most[p])) {
             column++;
         }
-        exchange(tie->entry + to * t, tie->entry + p * t, t, 1);
-        exchange(e->size + to * t, e->size + p * t, t, 1);
-        exchange(tie->entry + to, tie->entry + column, tie->rows, t);
-        exchange(e->size + to, e->size + column, tie->rows, t);
-        exchange(e->weight + to, e->weight + column, 1, 1);
-        exchange(e->scale + to, e->scale + p, 1, 1);
-        exchange(e->most + to, e->most + p, 1, 1);
+        constraint_exchange(tie->entry + to * t, tie->entry + p * t, t, 1);
+        constraint_exchange(e->size + to * t, e->size + p * t, t, 1);
+        constraint_exchange(tie->entry + to, tie->entry + column, tie->rows, t);
+        constraint_exchange(e->size + to, e->size + column, tie->rows, t);
+        constraint_exchange(e->weight + to, e->weight + column, 1, 1);
+        constraint_exchange(e->scale + to, e->scale + p, 1, 1);
+        constraint_exchange(e->most + to, e->most + p, 1, 1);
         exchange_indices(tie->order, to, p);
         exchange_indices(tie->dof, to, column);
         const double *from = tie->entry + to * t;
