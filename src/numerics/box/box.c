@@ -19,6 +19,177 @@
 #include <stdint.h>
 #include <string.h>
 
+/* --------------------------------------------------------------------------- Newton's method with the sets as they are */
+
+/* Rounding of the terms of a graded group, in parts of that of doubles. */
+#define GRADED_PART 0x1p-50
+
+/* Sets noise_i from the size of the terms of gradient_i that are rounded, and the largest force, by which forces underflow. */
+static inline void set_noise(struct box_qp *p, size_t i, double rounded, double most)
+{
+    p->noise[i] = p->rounding.part[i] * (rounded + p->rounding.least[i] * most);
+}
+
+/* Forces and R of a graded group are as good as exact: only q is rounded. */
+void tribo_box_gradients(struct box_qp *p)
+{
+    double most = 1.0, size, low;
+    for (size_t i = 0; p->far && i < p->group->size; i++) {
+        most = greater(most, fabs(p->x[i]));
+    }
+    most = lesser(most, TRIBO_FAR);
+    for (size_t e = 0; !p->twofold && e < p->count; e++) {
+        const size_t i = p->near[e];
+        p->gradient[i] = tribo_row_dot(p, i, p->x, &size) + p->q[i];
+        set_noise(p, i, size + fabs(p->q[i]), most);
+    }
+    for (size_t e = 0; p->twofold && e < p->count; e++) {
+        const size_t i = p->near[e];
+        p->gradient[i] = tribo_graded_gradient(p, i, &low, &size);
+        set_noise(p, i, fabs(p->q[i]) + GRADED_PART * size, most);
+    }
+}
+
+static void rest_dependents(struct box_qp *p)
+{
+    for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
+        p->step[p->order[k]] = p->low.step[p->order[k]] = 0.0;
+    }
+}
+
+void tribo_box_downhill(struct box_qp *p)
+{
+    for (size_t k = 0; k < p->sets->rank; k++) {
+        p->step[p->order[k]] = -p->gradient[p->order[k]];
+        p->low.step[p->order[k]] = 0.0;
+    }
+    tribo_factor_solve(p, p->step);
+    rest_dependents(p);
+}
+
+void tribo_box_newton(struct box_qp *p)
+{
+    if (p->twofold) {
+        tribo_graded_newton(p);
+        rest_dependents(p);
+    } else {
+        tribo_box_downhill(p);
+    }
+}
+
+void tribo_box_begin(struct box_qp *p, int bounded)
+{
+    p->twofold = p->group->graded && tribo_graded_fits(p, bounded);
+    if (p->group->nullity && !p->twofold) {
+        /* Sizes of the gradient's terms at x_i = clamp(-q_i/R_ii, lo_i, hi_i): independent of earlier calls. */
+        double *alone = p->step, size;
+        for (size_t e = 0; e < p->group->size; e++) {
+            const size_t i = p->near[e];
+            const double stops = -product(p->q[i], p->scale[i] * p->scale[i]);
+            alone[i] = e >= p->count ? p->x[i] : bounded ? clamp(stops, p->lo[i], p->hi[i]) : stops;
+        }
+        for (size_t e = 0; e < p->count; e++) {
+            const size_t i = p->near[e];
+            tribo_row_dot(p, i, alone, &size);
+            p->rounding.terms[i] = size + fabs(p->q[i]);
+        }
+    }
+}
+
+double tribo_box_moved(struct box_qp *p, size_t i)
+{
+    const double x = p->twofold ? tribo_graded_move(p, i, 1.0) : p->x[i] + p->step[i];
+    return p->far ? tribo_cut(p, i, x) : cut(x);
+}
+
+/* ---------------------------------------------------------------------------------------------------------------- sets */
+
+/* A contact begins free if its bound exceeds its last force by this factor. */
+#define FAR_AWAY 1e3
+
+void tribo_box_change(struct box_qp *p, size_t i, signed char to)
+{
+    const signed char from = p->at[i];
+    p->at[i] = to;
+    if ((from == FREE) != (to == FREE)) {
+        p->work.updates++;
+        tribo_factor_change(p, i);
+    }
+}
+
+/* at = to, and the factor accordingly. Returns the number of contacts that became free or not free. */
+static size_t box_change_all(struct box_qp *p)
+{
+    const size_t n = p->group->size;
+    size_t changes = 0, free = 0;
+    for (size_t i = 0; i < n; i++) {
+        changes += (p->at[i] == FREE) != (p->to[i] == FREE);
+        free += p->to[i] == FREE;
+    }
+    /* Where contacts depend on others, a change may factorize anew, over at as it is then: several changes factorize once. */
+    if (changes > 0 && (tribo_factor_many(p, changes, free) || (p->sets->dependents && changes > 1))) {
+        p->work.updates += changes;
+        memcpy(p->at, p->to, n);
+        tribo_factor_rebuild(p, NULL);
+        return changes;
+    }
+    for (int entering = 0; entering < 2; entering++) {
+        for (size_t i = 0; i < n; i++) {
+            if (p->at[i] != p->to[i] && (p->to[i] == FREE) == entering) {
+                tribo_box_change(p, i, p->to[i]);
+            }
+        }
+    }
+    return changes;
+}
+
+size_t tribo_box_advance(struct box_qp *p, double longest)
+{
+    const size_t all = p->sets->rank + p->sets->dependents;
+    double length = longest;
+    size_t hit = p->group->size;
+    for (size_t k = 0; k < all; k++) {
+        const size_t i = p->order[k];
+        const double s = p->step[i], room = s > 0.0 ? p->hi[i] - p->x[i] : p->x[i] - p->lo[i];
+        const double time = quotient(greater(room, 0.0), greater(fabs(s), DBL_MIN));
+        if (s != 0.0 && time < length) {
+            length = time;
+            hit = i;
+        }
+    }
+    for (size_t k = 0; k < all; k++) {
+        const size_t i = p->order[k];
+        const double x = p->twofold ? tribo_graded_move(p, i, length) : p->x[i] + length * p->step[i];
+        p->x[i] = clamp(x, p->lo[i], p->hi[i]);
+        p->low.x[i] = p->x[i] == x ? p->low.x[i] : 0.0;
+    }
+    if (hit < p->group->size) {
+        p->x[hit] = p->step[hit] > 0.0 ? p->hi[hit] : p->lo[hit];
+        p->low.x[hit] = 0.0;
+    }
+    return hit;
+}
+
+void tribo_box_enter(struct box_qp *p, int keep_bounds)
+{
+    for (size_t e = 0; e < p->group->size; e++) {
+        const size_t i = p->near[e];
+        const signed char at = p->at[i];
+        if (e >= p->count) {
+            p->to[i] = AWAY;
+        } else if (keep_bounds && !(p->lo[i] < p->hi[i])) {
+            p->to[i] = AT_LOWER;
+        } else if (keep_bounds && (at == AT_LOWER || at == AT_UPPER)) {
+            p->to[i] = fabs(at == AT_LOWER ? p->lo[i] : p->hi[i]) <= FAR_AWAY * fabs(p->x[i]) ? at : FREE;
+        } else {
+            p->to[i] = FREE;
+        }
+    }
+    box_change_all(p);
+}
+
+/* --------------------------------------------------------------------------------------------------------- the problem */
+
 /* Takes the gradient of the independent x, which is up to date, to its rounding. */
 static void box_refine(struct box_qp *p)
 {
@@ -116,7 +287,7 @@ static int box_primal_dual(struct box_qp *p)
         if (box_hides(p)) {
             return 0;
         }
-        const size_t changes = tribo_box_change_all(p);
+        const size_t changes = box_change_all(p);
         if (changes < least) {
             least = changes;
             patience = 11;
@@ -218,7 +389,7 @@ static int box_primal(struct box_qp *p)
         p->x[i] = clamp(p->x[i], p->lo[i], p->hi[i]);
         p->to[i] = p->x[i] <= p->lo[i] ? AT_LOWER : p->x[i] >= p->hi[i] ? AT_UPPER : FREE;
     }
-    tribo_box_change_all(p);
+    box_change_all(p);
     for (size_t round = 0; round < 100 + 20 * p->count; round++) {
         if (box_descend(p)) {
             continue;
@@ -257,8 +428,8 @@ static void box_restore(struct box_qp *p, const double *x)
 int tribo_box_small(struct box_qp *p)
 {
     const size_t n = p->group->size;
-    const struct small s = {p->r, p->inverse, &p->sets->inverse_of, p->rounding.part, p->rounding.least, p->q,
-                            p->lo, p->hi, p->to, p->x, p->gradient};
+    const struct small s = {p->r,  p->inverse, &p->sets->inverse_of, p->rounding.part, p->rounding.least, p->q, p->lo, p->hi,
+                            p->to, p->x,       p->gradient};
     double most = 0.0;
     for (size_t e = 0; e < n; e++) {
         const size_t i = p->near[e];
@@ -278,7 +449,7 @@ int tribo_box_small(struct box_qp *p)
         p->sets->far = 0;
         p->twofold = 0;
         if (memcmp(p->to, p->at, n) != 0) {
-            tribo_box_change_all(p);
+            box_change_all(p);
         }
     }
     return done;

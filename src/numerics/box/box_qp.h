@@ -1,16 +1,13 @@
 /* A group of contacts that R couples, and the box-constrained quadratic program over its contacts near stick. Arrays are indexed
  * by place in the group. Nothing here allocates, unless it says so.
  *
- *   factor.c          rows of R, and its factor over the free contacts, of one of three kinds:
- *   factor_dense.c    a square block, kept from call to call and changed row by row
+ *   factor.c          rows of R, and its factor over the free contacts: a square block, kept from call to call and changed row by
+ *                     row, or
  *   factor_sparse.c   the same for large groups with few entries
  *   factor_graded.c   with twice as many digits, for light bodies between heavy ones
- *   sets.c            the sets of free contacts and of contacts at a bound, and their changes
- *   newton.c          the gradient, its rounding, and the step that takes it to zero
  *   small.h           solves the problem of up to 4 contacts
  *   least_norm.c      shares forces among redundant contacts, and solves the linear system of the partition coupling
- *   box.c             solves the problem
- * Each calls those above it only. */
+ *   box.c             the sets of free contacts and of contacts at a bound, Newton's method, and the solution of the problem */
 #ifndef TRIBO_BOX_H
 #define TRIBO_BOX_H
 
@@ -111,7 +108,7 @@ struct box_qp {
     double *x;                   /* [size] */
     size_t *order;               /* [size] rank independent free contacts, in the order of the factor, then the dependents */
     signed char *at;             /* [size] places */
-    double *l;                   /* [size][size] Cholesky factor of the scaled R over order[0 .. rank); see factor_dense.c */
+    double *l;                   /* [size][size] Cholesky factor of the scaled R over order[0 .. rank); see factor.c */
     struct low_parts low;        /* of r, l, x and step */
     struct sparse_factor sparse; /* in the place of l, if R is sparse */
     double *inverse;             /* [size][size] small groups: see small.h */
@@ -174,8 +171,6 @@ void tribo_factor_solve(const struct box_qp *p, double *step);
 /* Returns 1 if changes towards `free` free contacts cost more than a new factor. */
 int tribo_factor_many(const struct box_qp *p, size_t changes, size_t free);
 
-void tribo_dense_add(struct box_qp *p, size_t i);
-void tribo_dense_remove(struct box_qp *p, size_t i);
 double tribo_dense_rebuild(struct box_qp *p, size_t *where);
 void tribo_dense_solve(const struct box_qp *p, double *step);
 
@@ -214,7 +209,6 @@ void tribo_sparse_add(struct box_qp *p, size_t i);
 void tribo_sparse_remove(struct box_qp *p, size_t i);
 double tribo_sparse_rebuild(struct box_qp *p, size_t *where);
 void tribo_sparse_solve(const struct box_qp *p, double *step);
-int tribo_sparse_many(const struct box_qp *p, size_t changes);
 double tribo_sparse_dot(const struct box_qp *p, size_t i, const double *x, double *size);
 void tribo_sparse_spread(const struct box_qp *p, size_t i, double factor, double *y);
 
@@ -241,9 +235,6 @@ void tribo_row_spread(const struct box_qp *p, size_t i, double factor, double *y
 
 /* at_i = to, and the factor accordingly. */
 void tribo_box_change(struct box_qp *p, size_t i, signed char to);
-
-/* at = to, and the factor accordingly. Returns the number of contacts that became free or not free. */
-size_t tribo_box_change_all(struct box_qp *p);
 
 /* Takes the near contacts into the problem, free, and the others out of it. keep_bounds: contacts at a bound stay there, unless
  * the bound went far away. */

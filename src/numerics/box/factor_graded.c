@@ -3,7 +3,7 @@
  * and the forces of the free contacts are therefore kept to twice as many digits, which are enough for masses that differ by
  * 1e18.
  *
- * A change of the stick set factorizes anew. Row k of l holds l_k0, ... l_k,k-1 and 1/l_kk, as in factor_dense.c. */
+ * A change of the stick set factorizes anew. Row k of l holds l_k0, ... l_k,k-1 and 1/l_kk, as in factor.c. */
 #include "box_qp.h"
 
 #include <math.h>

@@ -59,9 +59,9 @@ static void sparse_walk(struct sparse *s, size_t *parent, size_t *seen, size_t *
     }
 }
 
-/* Finds the pattern of L by columns and rows, and the costs. path [size]: workspace, costs of the ways to the root; parent, seen,
- * count [size]: workspace, count 0. Returns 1; 0 if a dense factor is better; -1 if out of memory. */
-static int find_pattern(struct sparse *s, double *path, size_t *parent, size_t *seen, size_t *count)
+/* Finds the pattern of L by columns and rows. parent, seen, count [size]: workspace, count 0. Returns 1; 0 if a dense factor is
+ * better; -1 if out of memory. */
+static int find_pattern(struct sparse *s, size_t *parent, size_t *seen, size_t *count)
 {
     const size_t size = s->r.n;
     memset(parent, 0xff, size * sizeof *parent);
@@ -95,15 +95,6 @@ static int find_pattern(struct sparse *s, double *path, size_t *parent, size_t *
             s->slot[t] = q;
         }
     }
-    /* Nanoseconds of a change, which goes from its column to the root, and of a factor, as measured on carpets and chains of 400
-     * to 100,000 contacts; only their ratio counts. */
-    for (size_t j = size; j-- > 0;) {
-        const double entries = (double)(s->column[j + 1] - s->column[j] + 1);
-        path[j] = 1.25 * entries + (parent[j] == NONE ? 0.0 : path[parent[j]]);
-        s->change += path[j] / (double)size;
-        s->rebuild += (0.5 * entries + 4.0) * entries + 6.0;
-    }
-    s->change += 150.0;
     return 1;
 }
 
@@ -375,13 +366,6 @@ void tribo_sparse_remove(struct box_qp *p, size_t i)
     }
 }
 
-int tribo_sparse_many(const struct box_qp *p, size_t changes)
-{
-    const struct sparse *s = p->group->sparse;
-    const double search = p->group->nullity ? 2.0 * (double)s->column[s->r.n] : 0.0;
-    return (double)changes * (s->change + search) > s->rebuild;
-}
-
 /* ---------------------------------------------------------------------------------------------------------- creation */
 
 /* Returns 1 if all pivots of R are well above zero, 0 if not, -1 if out of memory. */
@@ -420,7 +404,7 @@ int tribo_sparse_create(struct sparse **created, const struct csr *r)
         return 1;
     }
     struct sparse *s = calloc(1, sizeof *s);
-    double *work = calloc(4 * size + 1, sizeof *work);
+    size_t *work = calloc(3 * size + 1, sizeof *work);
     int good = -1;
     if (s && work && tribo_csr_transpose(&s->r, size, size, r->first, r->col, r->val)) { /* r is symmetric */
         s->position = malloc(2 * size * sizeof *s->position);
@@ -433,8 +417,7 @@ int tribo_sparse_create(struct sparse **created, const struct csr *r)
         s->position[s->place[k]] = k;
     }
     if (good > 0) {
-        size_t *index = (size_t *)(work + size);
-        good = find_pattern(s, work, index, index + size, index + 2 * size);
+        good = find_pattern(s, work, work + size, work + 2 * size);
     }
     if (good > 0 && size <= DENSE_UP_TO) {
         good = well_conditioned(s);

@@ -18,8 +18,6 @@ struct sparse {
     size_t *row;       /* [size + 1] row k of L has the entries row[k] to row[k + 1] - 1 of: */
     size_t *column_of; /* [slots] columns, ascending in a row */
     size_t *slot;      /* [slots] slots */
-    double change;     /* average cost of a change */
-    double rebuild;    /* cost of a new factor */
 };
 
 /* place [size] = an order of elimination that keeps L sparse. Returns 1, or 0 if out of memory. */

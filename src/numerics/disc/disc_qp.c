@@ -124,7 +124,7 @@ static void step_down(struct disc_qp *p)
 /* Repeats step until y is the solution up to rounding, at most rounds times. Returns 0 without convergence. */
 static int disc_settle(struct disc_qp *p, int rounds, void (*step)(struct disc_qp *p))
 {
-    for (int round = 0; disc_look(p) > SETTLED; round++) {
+    for (int round = 0; !(disc_look(p) <= SETTLED); round++) {
         if (round == rounds) {
             return 0;
         }
