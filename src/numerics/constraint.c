@@ -88,10 +88,11 @@ static int create_ties(const struct source *s, struct constraints *c, struct eli
         for (struct tie *tie = c->tie; tie < c->tie + c->ties; tie++) {
             tie->order = tribo_layout_array(&l, tie->rows, sizeof *tie->order);
             tie->dof = tribo_layout_array(&l, tie->touched, sizeof *tie->dof);
-            tie->entry = tribo_layout_array(&l, tie->rows * tie->touched, sizeof *tie->entry);
+            tie->stride = tie->touched + (s->last ? 0 : tie->rows);
+            tie->entry = tribo_layout_array(&l, tie->rows * tie->stride, sizeof *tie->entry);
             rows = tie->rows > rows ? tie->rows : rows;
             touched = tie->touched > touched ? tie->touched : touched;
-            area = tie->rows * tie->touched > area ? tie->rows * tie->touched : area;
+            area = tie->rows * tie->stride > area ? tie->rows * tie->stride : area;
         }
         e->size = tribo_layout_array(&l, area, sizeof *e->size);
         e->weight = tribo_layout_array(&l, touched, sizeof *e->weight);
@@ -116,7 +117,7 @@ static int create_ties(const struct source *s, struct constraints *c, struct eli
 /* Returns the weighted size of an entry, 0 if the entry counts as 0. */
 static inline double weighted(const struct elimination *e, size_t i, size_t column)
 {
-    const size_t at = i * e->tie->touched + column;
+    const size_t at = i * e->tie->stride + column;
     const double x = fabs(e->tie->entry[at]), y = x * e->weight[column];
     return x > e->zero * e->size[at] ? y : 0.0;
 }
@@ -194,8 +195,7 @@ static void fill(struct elimination *e, const struct source *s)
     const struct matrix *j = s->direction;
     const size_t t = tie->touched;
     double lightest = DBL_MIN;
-    memset(tie->entry, 0, tie->rows * t * sizeof *tie->entry);
-    memset(e->size, 0, tie->rows * t * sizeof *e->size);
+    memset(tie->entry, 0, tie->rows * tie->stride * sizeof *tie->entry);
     for (size_t l = 0; l < t; l++) {
         const double mass = s->mass->rows ? tribo_matrix_get(s->mass, tie->dof[l], tie->dof[l]) : 1.0;
         e->weight[l] = mass > 0.0 ? 1.0 / sqrt(mass) : 0.0;
@@ -206,70 +206,68 @@ static void fill(struct elimination *e, const struct source *s)
     }
     for (size_t p = 0; p < tie->rows; p++) {
         const size_t row = s->row[tie->order[p]];
-        double most = 0.0;
+        double most = 0.0, *entry = tie->entry + p * tie->stride;
         for (size_t k = j->first[row]; k < j->first[row + 1]; k++) {
             const size_t l = s->place[j->col[k]] - 1;
-            tie->entry[p * t + l] = j->val[k];
-            e->size[p * t + l] = fabs(j->val[k]);
-            most = greater(most, e->size[p * t + l] * e->weight[l]);
+            entry[l] = j->val[k];
+            most = greater(most, fabs(entry[l]) * e->weight[l]);
+        }
+        if (t < tie->stride) {
+            entry[t + p] = 1.0;
         }
         e->scale[p] = most > 0.0 ? 1.0 / most : 0.0; /* a row of zeros has no pivot */
     }
+    for (size_t k = 0; k < tie->rows * tie->stride; k++) {
+        e->size[k] = fabs(tie->entry[k]);
+    }
 }
 
-/* L U of the tie by complete pivoting: multipliers take the place of eliminated entries. */
+/* Eliminates the slaves by complete pivoting from the rows below their pivots; for W also, backwards, from the rows above. Leaves
+ * the eliminated entries. */
 static void eliminate_tie(struct elimination *e)
 {
     struct tie *tie = e->tie;
-    const size_t t = tie->touched;
+    const size_t t = tie->touched, stride = tie->stride;
+    const int inverts = t < stride;
     for (size_t i = 0; i < tie->rows; i++) {
         e->most[i] = find_most(e, i);
     }
     for (size_t p = find_pivot(e); p < tie->rows; p = find_pivot(e)) {
-        const size_t to = tie->rank;
+        const size_t to = tie->rank++;
         size_t column = to;
         while (!(weighted(e, p, column) >= e->most[p])) {
             column++;
         }
-        constraint_exchange(tie->entry + to * t, tie->entry + p * t, t, 1);
-        constraint_exchange(e->size + to * t, e->size + p * t, t, 1);
-        constraint_exchange(tie->entry + to, tie->entry + column, tie->rows, t);
-        constraint_exchange(e->size + to, e->size + column, tie->rows, t);
+        double *const array[] = {tie->entry, e->size};
+        for (size_t k = 0; k < 2; k++) {
+            constraint_exchange(array[k] + to * stride, array[k] + p * stride, stride, 1);
+            constraint_exchange(array[k] + to, array[k] + column, tie->rows, stride);
+            constraint_exchange(array[k] + t + to, array[k] + t + p, inverts ? tie->rows : 0, stride);
+        }
         constraint_exchange(e->weight + to, e->weight + column, 1, 1);
         constraint_exchange(e->scale + to, e->scale + p, 1, 1);
         constraint_exchange(e->most + to, e->most + p, 1, 1);
         exchange_indices(tie->order, to, p);
         exchange_indices(tie->dof, to, column);
-        const double *from = tie->entry + to * t;
-        for (size_t i = ++tie->rank; i < tie->rows; i++) {
-            double *row = tie->entry + i * t;
+        const double *from = tie->entry + to * stride;
+        for (size_t i = tie->rank; i < tie->rows; i++) {
+            double *row = tie->entry + i * stride;
             if (row[to] != 0.0) {
-                row[to] /= from[to];
-                eliminate(row, e->size + i * t, from, row[to], tie->rank, t);
+                eliminate(row, e->size + i * stride, from, row[to] / from[to], tie->rank, stride);
                 e->most[i] = find_most(e, i);
             }
         }
     }
-}
-
-/* Multiplies the columns beside the slaves of the independent rows by U^-1. size [touched] is workspace. */
-static void solve_rest(const struct tie *tie, double *size)
-{
-    const size_t t = tie->touched, s = tie->rank;
-    for (size_t p = s; p-- > 0;) {
-        double *row = tie->entry + p * t;
-        for (size_t l = s; l < t; l++) {
-            size[l] = fabs(row[l]);
+    for (size_t p = tie->rank; inverts && p-- > 0;) {
+        double *from = tie->entry + p * stride;
+        for (size_t l = p + 1; l < stride; l++) {
+            from[l] /= from[p];
         }
-        for (size_t q = p + 1; q < s; q++) {
-            for (size_t l = s; row[q] != 0.0 && l < t; l++) {
-                const double term = row[q] * tie->entry[q * t + l];
-                row[l] -= term;
-                size[l] += fabs(term);
+        for (size_t i = 0; i < p; i++) {
+            double *row = tie->entry + i * stride;
+            if (row[p] != 0.0) {
+                eliminate(row, e->size + i * stride, from, row[p], tie->rank, stride);
             }
-        }
-        for (size_t l = s; l < t; l++) {
-            row[l] = fabs(row[l]) > ROUNDING * size[l] ? row[l] / row[p] : 0.0;
         }
     }
 }
@@ -289,7 +287,6 @@ int tribo_constraints_create(struct constraints *c, const struct matrix *directi
     do {
         c->memory[0] = tribo_layout_array(&l, 0, 1);
         c->tie = tribo_layout_array(&l, count, sizeof *c->tie);
-        c->work = tribo_layout_array(&l, count, sizeof *c->work);
         c->order = tribo_layout_array(&l, count, sizeof *c->order);
         s.member = tribo_layout_array(&l, count, sizeof *s.member);
         s.parent = tribo_layout_array(&l, n, sizeof *s.parent);
@@ -308,9 +305,6 @@ int tribo_constraints_create(struct constraints *c, const struct matrix *directi
         e.zero = last ? sqrt(4.0 * (double)(e.tie->rows + 4) * DBL_EPSILON) : ROUNDING;
         fill(&e, &s);
         eliminate_tie(&e);
-        if (!last) {
-            solve_rest(e.tie, e.weight);
-        }
         c->rank += e.tie->rank;
     }
     size_t other = c->rank;
@@ -368,7 +362,7 @@ int tribo_constraints_basis(const struct constraints *c, size_t ndof, struct mat
     for (const struct tie *tie = c->tie; tie < c->tie + c->ties; tie++) {
         for (size_t p = 0; p < tie->rank; p++) {
             for (size_t k = tie->rank; k < tie->touched; k++) {
-                const double x = tie->entry[p * tie->touched + k];
+                const double x = tie->entry[p * tie->stride + k];
                 if (x != 0.0) {
                     i[count] = tie->dof[p];
                     j[count] = number[tie->dof[k]];
@@ -385,20 +379,11 @@ int tribo_constraints_basis(const struct constraints *c, size_t ndof, struct mat
 void tribo_constraints_follow(const struct constraints *c, const double *b, double *q)
 {
     for (const struct tie *tie = c->tie; tie < c->tie + c->ties; tie++) {
-        const size_t t = tie->touched, s = tie->rank;
-        double *x = c->work;
-        for (size_t p = 0; p < s; p++) {
-            x[p] = b[tie->order[p]];
-            for (size_t k = 0; k < p; k++) {
-                x[p] -= tie->entry[p * t + k] * x[k];
+        for (size_t p = 0; p < tie->rank; p++) {
+            const double *inverse = tie->entry + p * tie->stride + tie->touched;
+            for (size_t k = 0; k < tie->rank; k++) {
+                q[tie->dof[p]] += inverse[k] * b[tie->order[k]];
             }
-        }
-        for (size_t p = s; p-- > 0;) {
-            for (size_t k = p + 1; k < s; k++) {
-                x[p] -= tie->entry[p * t + k] * x[k];
-            }
-            x[p] /= tie->entry[p * t + p];
-            q[tie->dof[p]] += x[p];
         }
     }
 }
@@ -406,22 +391,12 @@ void tribo_constraints_follow(const struct constraints *c, const double *b, doub
 void tribo_constraints_react(const struct constraints *c, const double *force, double *f)
 {
     for (const struct tie *tie = c->tie; tie < c->tie + c->ties; tie++) {
-        const size_t t = tie->touched, s = tie->rank;
-        double *x = c->work;
-        for (size_t p = 0; p < s; p++) {
-            x[p] = force[tie->dof[p]];
-        }
-        for (size_t p = 0; p < s; p++) {
-            x[p] /= tie->entry[p * t + p];
-            for (size_t k = p + 1; k < s; k++) {
-                x[k] -= tie->entry[p * t + k] * x[p];
+        for (size_t k = 0; k < tie->rank; k++) {
+            const double *inverse = tie->entry + tie->touched + k;
+            f[tie->order[k]] = 0.0;
+            for (size_t p = 0; p < tie->rank; p++) {
+                f[tie->order[k]] += inverse[p * tie->stride] * force[tie->dof[p]];
             }
-        }
-        for (size_t p = s; p-- > 0;) {
-            for (size_t k = 0; k < p; k++) {
-                x[k] -= tie->entry[p * t + k] * x[p];
-            }
-            f[tie->order[p]] = x[p];
         }
     }
 }

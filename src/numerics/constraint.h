@@ -16,7 +16,8 @@ struct tie {
     size_t touched; /* degrees of freedom */
     size_t *order;  /* [rows] places in the caller's list: independent rows, in the order of their pivots, then the others */
     size_t *dof;    /* [touched] the slave of each independent row, in order, then the others */
-    double *entry;  /* [rows][touched] in these orders: L and U of the slaves; U^-1 L^-1 times the other columns */
+    size_t stride;  /* touched + rows; touched if only the rank is wanted */
+    double *entry;  /* [rows][stride] W J_I beside the slaves, W = (J_I of the slaves)^-1; W from column touched on */
 };
 
 struct constraints {
@@ -24,7 +25,6 @@ struct constraints {
     size_t *order;      /* [count] places in the list of rows: rank independent ones, then the others */
     size_t ties;
     struct tie *tie; /* [ties] */
-    double *work;    /* [count] */
     void *memory[2]; /* of these arrays, and of the arrays of the ties */
 };
 

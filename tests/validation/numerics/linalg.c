@@ -52,13 +52,13 @@ TEST(light_between)
     for (int choose = 0; choose < 2; choose++) {
         struct constraints c = constrain(2, 2, j, mass, choose ? last : NULL);
         ck_assert_uint_eq(c.rank, 2);
-        /* the heavy one is pushed by the second contact alone, the light one by both */
-        tribo_constraints_react(&c, force, f);
-        assert_exact(f[1], 5.0);
-        assert_exact(f[0], 8.0);
         tribo_constraints_free(&c);
     }
     struct constraints c = constrain(2, 2, j, mass, NULL);
+    /* the heavy one is pushed by the second contact alone, the light one by both */
+    tribo_constraints_react(&c, force, f);
+    assert_exact(f[1], 5.0);
+    assert_exact(f[0], 8.0);
     tribo_constraints_follow(&c, b, q);
     assert_exact(q[0], 7.0);
     assert_exact(q[1], 7.25);
