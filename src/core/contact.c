@@ -2,8 +2,8 @@
  * force of a normal spring that lifts off. */
 #include "elastic.h"
 
-static int contact_check(size_t n, const double *dz, const double *depth, const double *tangential, const double *normal,
-                         const double *mu, const double *f)
+int tribo_contact_force(size_t n, const double *dz, const double *depth, const double *tangential, const double *normal,
+                        const double *mu, double *f, double *df)
 {
     int status = elastic_check_size(n);
     status = status ? status : tribo_check_finite(NULL, "dz", dz, 2 * n);
@@ -11,13 +11,7 @@ static int contact_check(size_t n, const double *dz, const double *depth, const 
     status = status ? status : tribo_check_nonnegative(NULL, "tangential", tangential, n);
     status = status ? status : tribo_check_nonnegative(NULL, "normal", normal, n);
     status = status ? status : tribo_check_nonnegative(NULL, "mu", mu, n);
-    return status ? status : tribo_check_finite(NULL, "f", f, 3 * n);
-}
-
-int tribo_contact_force(size_t n, const double *dz, const double *depth, const double *tangential, const double *normal,
-                        const double *mu, double *f, double *df)
-{
-    const int status = contact_check(n, dz, depth, tangential, normal, mu, f);
+    status = status ? status : tribo_check_finite(NULL, "f", f, 3 * n);
     for (size_t i = 0; !status && i < n; i++) {
         /* An open element is one of limit 0, without a normal spring. */
         const double spring = depth[i] > 0.0 ? normal[i] : 0.0, load = product(spring, greater(depth[i], 0.0));

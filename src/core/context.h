@@ -70,8 +70,8 @@ struct settings {
     double *limit;          /* [n] */
     double *width, *rate;   /* [n] of epsilon, see law.h */
     int breaking;           /* NEVER, ... */
-    double *ratio;          /* [n] static limit / limit; valid unless NEVER */
-    double *stribeck;       /* [n] velocity scale; valid if FALLS */
+    double *ratio;          /* [n] static limit / limit */
+    double *stribeck;       /* [n] velocity scale; 0 unless FALLS */
 };
 
 /* What follows from settings and operator. */

@@ -60,6 +60,7 @@ int tribo_create(tribo_context **ctx, size_t ncontact)
     for (size_t i = 0; i < ncontact; i++) {
         c->set.width[i] = DEFAULT_EPSILON;
         c->set.rate[i] = tribo_rate(DEFAULT_EPSILON);
+        c->set.ratio[i] = 1.0;
     }
     tribo_refresh(c);
     *ctx = c;

@@ -344,12 +344,12 @@ int tribo_get_sharing(const tribo_context *ctx, int *sharing)
 void tribo_take_settings(tribo_context *ctx, const tribo_context *from)
 {
     const struct settings own = ctx->set, *s = &from->set;
-    const size_t n = ctx->n, breaking = s->breaking ? n : 0;
+    const size_t n = ctx->n;
     tribo_copy(own.limit, s->limit, n);
     tribo_copy(own.width, s->width, n);
     tribo_copy(own.rate, s->rate, n);
-    tribo_copy(own.ratio, s->ratio, breaking);
-    tribo_copy(own.stribeck, s->stribeck, breaking);
+    tribo_copy(own.ratio, s->ratio, n);
+    tribo_copy(own.stribeck, s->stribeck, n);
     memcpy(ctx->follow.chunk, from->follow.chunk, tribo_chunks(n) * sizeof *ctx->follow.chunk);
     ctx->set = (struct settings){s->law,    s->coupling, s->sharing,  s->step,   s->lambda_dt, own.limit,
                                  own.width, own.rate,    s->breaking, own.ratio, own.stribeck};

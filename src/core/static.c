@@ -166,7 +166,7 @@ void tribo_refresh_static(tribo_context *ctx)
 
 int tribo_refuse_static(tribo_context *ctx, const char *who)
 {
-    for (size_t i = 0; ctx->set.breaking && i < ctx->n; i++) {
+    for (size_t i = 0; i < ctx->n; i++) {
         if (ctx->set.ratio[i] > 1.0) {
             return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "%s static limits, and ratio[%zu] = %g", who, i, ctx->set.ratio[i]);
         }
@@ -178,14 +178,12 @@ int tribo_check_one_ratio(tribo_context *ctx, const double *ratio, const double 
 {
     for (size_t k = 0; k < count; k++) {
         const size_t i = first[k], j = i + 1;
-        if (ratio[i] < ratio[j] || ratio[i] > ratio[j]) {
-            return tribo_fail(ctx, TRIBO_ERR_RANGE, "ratio[%zu] = %g and ratio[%zu] = %g are of one planar contact, and differ",
-                              i, ratio[i], j, ratio[j]);
-        }
-        if (velocity && (velocity[i] < velocity[j] || velocity[i] > velocity[j])) {
-            return tribo_fail(ctx, TRIBO_ERR_RANGE,
-                              "velocity[%zu] = %g and velocity[%zu] = %g are of one planar contact, and differ", i, velocity[i],
-                              j, velocity[j]);
+        const int same = ratio[i] >= ratio[j] && ratio[i] <= ratio[j];
+        const double *x = same ? velocity : ratio;
+        if (x && (x[i] < x[j] || x[i] > x[j])) {
+            const char *name = same ? "velocity" : "ratio";
+            return tribo_fail(ctx, TRIBO_ERR_RANGE, "%s[%zu] = %g and %s[%zu] = %g are of one planar contact, and differ", name,
+                              i, x[i], name, j, x[j]);
         }
     }
     return TRIBO_OK;
@@ -239,11 +237,7 @@ int tribo_get_static(const tribo_context *ctx, double *ratio, double *velocity)
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    for (size_t i = 0; ratio && i < ctx->n; i++) {
-        ratio[i] = ctx->set.breaking ? ctx->set.ratio[i] : 1.0;
-    }
-    for (size_t i = 0; velocity && i < ctx->n; i++) {
-        velocity[i] = ctx->set.breaking == FALLS ? ctx->set.stribeck[i] : 0.0;
-    }
+    tribo_copy(ratio, ctx->set.ratio, ratio ? ctx->n : 0);
+    tribo_copy(velocity, ctx->set.stribeck, velocity ? ctx->n : 0);
     return TRIBO_OK;
 }

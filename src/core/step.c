@@ -197,34 +197,26 @@ static int hand_out(tribo_context *ctx, size_t islands, int status, double *f)
 
 int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known, double *f)
 {
+    tribo_begin_call(ctx);
     const int status = solve_boxes(ctx, dt, v, b, ctx->group_of);
     return hand_out(ctx, tribo_islands(ctx), status ? status : tribo_clusters_step(ctx, dt, v, known), f);
 }
 
-static int step_once(tribo_context *ctx, double dt, const double *vfree, double *f)
-{
-    tribo_begin_call(ctx);
-    return tribo_solve_step(ctx, dt, vfree, (struct bounds){NULL, ctx->follow.contacts.limit}, NULL, f);
-}
-
-/* Static limits: a contact that comes in sliding does so until it comes to a stop, and holds there if it can. */
-static int step_from(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f)
-{
-    double *first = ctx->last.v;
-    tribo_hold_for_step(ctx, dt, v, NULL);
-    int status = step_once(ctx, dt, vfree, v ? first : f);
-    if (!status && v && tribo_any_turns(ctx, dt, v, first)) {
-        tribo_hold_for_step(ctx, dt, v, first);
-        status = step_once(ctx, dt, vfree, f);
-    } else if (!status && v) {
-        tribo_copy(f, first, ctx->n);
-    }
-    return status;
-}
-
 int tribo_step_at_end(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f)
 {
-    const int status = ctx->set.breaking ? step_from(ctx, dt, v, vfree, f) : step_once(ctx, dt, vfree, f);
+    const struct bounds b = {NULL, ctx->follow.contacts.limit};
+    double *first = ctx->set.breaking && v ? ctx->last.v : f;
+    if (ctx->set.breaking) {
+        tribo_hold_for_step(ctx, dt, v, NULL);
+    }
+    int status = tribo_solve_step(ctx, dt, vfree, b, NULL, first);
+    if (!status && first != f && tribo_any_turns(ctx, dt, v, first)) {
+        /* A contact that comes in sliding does so until it comes to a stop, and holds there if it can. */
+        tribo_hold_for_step(ctx, dt, v, first);
+        status = tribo_solve_step(ctx, dt, vfree, b, NULL, f);
+    } else if (!status && first != f) {
+        tribo_copy(f, first, ctx->n);
+    }
     if (!status) {
         ctx->last.slips = SLIPS_IN_FORCES;
         ctx->last.holds = 1.0;

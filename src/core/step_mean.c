@@ -19,21 +19,6 @@ struct step {
     size_t changes;
 };
 
-/* Looks at scalar contact i, which feels R f without its own force. */
-static void look_at(tribo_context *ctx, struct step *s, size_t i, double feels)
-{
-    const double limit = ctx->set.limit[i], hold = product(ctx->op->diagonal[i], limit), forth = sign(s->v[i]);
-    const double free = quotient(0.5 * s->vfree[i] - 0.5 * s->v[i], 0.5 * s->dt), against = -forth * (free + feels);
-    if (limit > 0.0 && against > hold) {
-        const double part = quotient(quotient(fabs(s->v[i]), 0.5 * against + 0.5 * hold), 2.0 * s->dt);
-        if (part < 1.0) {
-            s->lower[i] = s->upper[i] = forth * limit * (1.0 - 2.0 * part);
-            s->reverses[i] = (signed char)-forth;
-            s->changes++;
-        }
-    }
-}
-
 /* Finds the second problem. */
 static void look_at_all(tribo_context *ctx, struct step *s)
 {
@@ -51,13 +36,15 @@ static void look_at_all(tribo_context *ctx, struct step *s)
     }
     tribo_clusters_feel(ctx, s->upper);
     for (size_t i = 0; i < ctx->n; i++) {
-        const double feels = s->upper[i];
-        s->upper[i] = ctx->set.limit[i];
-        s->lower[i] = -s->upper[i];
-        s->reverses[i] = 0;
-        if (tribo_is_scalar(ctx, i)) {
-            look_at(ctx, s, i, feels);
-        }
+        const double limit = ctx->set.limit[i], hold = product(ctx->op->diagonal[i], limit), forth = sign(s->v[i]);
+        const double free = quotient(0.5 * s->vfree[i] - 0.5 * s->v[i], 0.5 * s->dt), against = -forth * (free + s->upper[i]);
+        const int over = tribo_is_scalar(ctx, i) && limit > 0.0 && against > hold;
+        const double stop = over ? quotient(fabs(s->v[i]), 0.5 * against + 0.5 * hold) : 0.0, part = quotient(stop, 2.0 * s->dt);
+        const int back = over && part < 1.0;
+        s->upper[i] = back ? forth * limit * (1.0 - 2.0 * part) : limit;
+        s->lower[i] = back ? s->upper[i] : -limit;
+        s->reverses[i] = (signed char)(back ? -forth : 0.0);
+        s->changes += (size_t)back;
     }
 }
 
@@ -81,7 +68,6 @@ int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const 
     const int plane = tribo_plane_count(ctx) > 0;
     const double *free = vfree;
     struct step s = {dt, v, vfree, ctx->spare.of, ctx->last.v, ctx->last.feq, 0};
-    tribo_begin_call(ctx);
     status = tribo_solve_step(ctx, dt, vfree, (struct bounds){NULL, ctx->set.limit}, NULL, s.lower);
     if (status) {
         return status;
@@ -94,7 +80,6 @@ int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const 
     if (!s.changes) {
         tribo_copy(f, ctx->last.f, ctx->n);
     } else {
-        tribo_begin_call(ctx);
         status = tribo_solve_step(ctx, dt, free, (struct bounds){s.lower, s.upper}, s.reverses, f);
     }
     if (!status) {

@@ -319,9 +319,7 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
     }
     struct clusters c;
     status = check_first(ctx, count, first);
-    if (!status && ctx->set.breaking) {
-        status = tribo_check_one_ratio(ctx, ctx->set.ratio, ctx->set.stribeck, count, first);
-    }
+    status = status ? status : tribo_check_one_ratio(ctx, ctx->set.ratio, ctx->set.stribeck, count, first);
     status = status ? status : tribo_clusters_prepare(ctx, count, first, ctx->op, &ctx->memory, &c);
     if (!status) {
         tribo_write_slips(ctx);
