@@ -299,15 +299,19 @@ int tribo_set_epsilon_step(tribo_context *ctx, double dt, double lambda_dt)
 
 /* ------------------------------------------------------------------------------------------------------------ choices */
 
-int tribo_set_coupling(tribo_context *ctx, int coupling)
+/* Fails unless choice is 0 or 1, which have these names; a status. */
+static int check_choice(tribo_context *ctx, const char *name, int choice, const char *names)
 {
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    if (coupling != TRIBO_CONSISTENT && coupling != TRIBO_PARTITION) {
-        return tribo_fail(ctx, TRIBO_ERR_RANGE, "coupling = %d is neither TRIBO_CONSISTENT nor TRIBO_PARTITION", coupling);
-    }
-    const int status = tribo_plane_check_coupling(ctx, coupling, tribo_plane_count(ctx), tribo_plane_first(ctx));
+    return choice == 0 || choice == 1 ? TRIBO_OK : tribo_fail(ctx, TRIBO_ERR_RANGE, "%s = %d is neither %s", name, choice, names);
+}
+
+int tribo_set_coupling(tribo_context *ctx, int coupling)
+{
+    int status = check_choice(ctx, "coupling", coupling, "TRIBO_CONSISTENT nor TRIBO_PARTITION");
+    status = status ? status : tribo_plane_check_coupling(ctx, coupling, tribo_plane_count(ctx), tribo_plane_first(ctx));
     if (!status) {
         ctx->set.coupling = coupling;
         settings_changed(ctx);
@@ -322,16 +326,12 @@ int tribo_get_coupling(const tribo_context *ctx, int *coupling)
 
 int tribo_set_sharing(tribo_context *ctx, int sharing)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
+    const int status = check_choice(ctx, "sharing", sharing, "TRIBO_SHARE_LEAST_NORM nor TRIBO_SHARE_PREVIOUS");
+    if (!status) {
+        ctx->set.sharing = sharing;
+        settings_changed(ctx);
     }
-    if (sharing != TRIBO_SHARE_LEAST_NORM && sharing != TRIBO_SHARE_PREVIOUS) {
-        return tribo_fail(ctx, TRIBO_ERR_RANGE, "sharing = %d is neither TRIBO_SHARE_LEAST_NORM nor TRIBO_SHARE_PREVIOUS",
-                          sharing);
-    }
-    ctx->set.sharing = sharing;
-    settings_changed(ctx);
-    return TRIBO_OK;
+    return status;
 }
 
 int tribo_get_sharing(const tribo_context *ctx, int *sharing)

@@ -42,22 +42,18 @@ static char registry_lower(char c)
     return found ? lower_case[found - upper_case] : c;
 }
 
-static int registry_same_name(const char *x, const char *y)
-{
-    while (*x && registry_lower(*x) == registry_lower(*y)) {
-        x++;
-        y++;
-    }
-    return !*x && !*y;
-}
-
 int tribo_law_find(const char *name, int *law)
 {
     if (!name || !law) {
         return TRIBO_ERR_NULL;
     }
     for (int i = 0; i < tribo_law_count(); i++) {
-        if (registry_same_name(laws[i]->name, name)) {
+        const char *own = laws[i]->name;
+        size_t same = 0;
+        while (own[same] && own[same] == registry_lower(name[same])) {
+            same++;
+        }
+        if (!own[same] && !name[same]) {
             *law = i;
             return TRIBO_OK;
         }

@@ -312,16 +312,6 @@ static double factorize_all(struct box_qp *p, size_t *where)
     return tribo_factor_rebuild(p, where);
 }
 
-/* 1 if R in doubles has a pivot so small that its rounding counts. */
-static int loses_digits(struct box_qp *p)
-{
-    const struct group *g = p->group;
-    size_t where;
-    factorize_all(p, &where);
-    const double last = p->sets->rank ? p->l[(p->sets->rank - 1) * (g->size + 1)] : 1.0; /* the root of its inverse */
-    return p->sets->rank < g->size || 1.0 < GRADED_PIVOT * last * last;
-}
-
 /* r + r_low = R of a graded group to twice as many digits. */
 static void fill_graded(const struct box_qp *p, double *r, double *r_low, const struct inertia *from, const size_t *member,
                         const size_t *place)
@@ -376,8 +366,12 @@ static void fill_group(struct delassus *op, struct memory *m, size_t k, const st
         least[c] = DBL_MIN + quotient(DBL_MIN, scale[c] * g->lightest);
     }
     if (g->graded) {
+        /* R in doubles may have a pivot so small that its rounding counts. */
+        size_t where;
         g->graded = 0;
-        g->graded = loses_digits(p);
+        factorize_all(p, &where);
+        const double last = p->sets->rank ? p->l[(p->sets->rank - 1) * (g->size + 1)] : 1.0; /* the root of its inverse */
+        g->graded = p->sets->rank < g->size || 1.0 < GRADED_PIVOT * last * last;
         if (g->graded) {
             fill_graded(p, r, r + g->size * g->size, from, p->member, place);
         }

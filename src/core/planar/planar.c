@@ -200,20 +200,6 @@ static int planar_create(struct planar **planar, size_t n, size_t count, const s
 /* Light bodies between heavy ones come out right to this ratio in doubles, which clusters use. */
 #define SPREAD_MOST 1e10
 
-static int check_spread(tribo_context *ctx, const struct planar *c, const struct delassus *op)
-{
-    for (size_t k = 0; op->diagonal && k < op->groups; k++) {
-        const struct group *g = &op->group[k];
-        if (g->graded && g->spread > SPREAD_MOST && c->group_of[op->member[g->first]] == TRIBO_ALONE) {
-            return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
-                              "contact %zu touches bodies of which one is %g times as heavy as the other, and in a group with "
-                              "planar contacts not more than %g can be told",
-                              g->uneven, g->spread, SPREAD_MOST);
-        }
-    }
-    return TRIBO_OK;
-}
-
 int tribo_clusters_prepare(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m,
                            struct clusters *c)
 {
@@ -225,8 +211,15 @@ int tribo_clusters_prepare(tribo_context *ctx, size_t count, const size_t *first
                    plural(large), TRIBO_CLUSTER_MOST);
     } else if (status || !plane_create(&c->plane, c->planar, ctx->n)) {
         status = tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s in the plane", count, plural(count));
-    } else if (c->planar) {
-        status = check_spread(ctx, c->planar, op);
+    }
+    for (size_t k = 0; !status && c->planar && op->diagonal && k < op->groups; k++) {
+        const struct group *g = &op->group[k];
+        if (g->graded && g->spread > SPREAD_MOST && c->planar->group_of[op->member[g->first]] == TRIBO_ALONE) {
+            status = tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
+                                "contact %zu touches bodies of which one is %g times as heavy as the other, and in a group with "
+                                "planar contacts not more than %g can be told",
+                                g->uneven, g->spread, SPREAD_MOST);
+        }
     }
     if (status) {
         plane_free(&c->plane);
