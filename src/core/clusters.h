@@ -105,9 +105,7 @@ const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct c
 /* f_eq given, which has to be finite where forces of planar contacts depend on it; a status. */
 int tribo_plane_check_feq(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq);
 
-/* f of planar contacts from v and f_eq; their derivatives [n][2], each of which may be NULL; a status. */
-int tribo_plane_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
-int tribo_plane_blocks(const tribo_context *ctx, const double *v, const double *feq, double *df_dv, double *df_dfeq,
-                       double *df_dlimit);
+/* out [4] = f of planar contacts from v and f_eq, and its derivatives by v, f_eq and limit, [n][2]; each may be NULL; a status. */
+int tribo_plane_force(const tribo_context *ctx, const double *v, const double *feq, double *const *out);
 
 #endif

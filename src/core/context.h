@@ -16,8 +16,6 @@
 #include "common/real.h"
 #include "common/simd.h"
 
-struct message;
-
 /* From this number of contacts on, an output does not stay in any cache. */
 #define TRIBO_MANY ((size_t)1 << 22)
 
@@ -118,16 +116,15 @@ struct tribo_context {
     struct deeds spare; /* the next call's, until it succeeds */
     struct counters count;
     size_t revision; /* changes of settings and operator */
-    struct message *message;
+    char message[240];
 };
 
-/* message.c: keeps the text for tribo_message, unless ctx is NULL, and returns status. */
+/* status.c: keeps the text for tribo_message, unless ctx is NULL, and returns status. */
 int tribo_fail(tribo_context *ctx, int status, const char *format, ...)
 #if defined(TRIBO_GNU_C)
     __attribute__((format(printf, 3, 4)))
 #endif
     ;
-size_t tribo_message_size(void);
 
 /* settings.c: updates what follows from limits; from all settings and the operator. */
 void tribo_refresh_limits(tribo_context *ctx);

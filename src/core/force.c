@@ -122,55 +122,51 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
 {
     int plain;
     const int status = ctx ? check_force(ctx, NULL, v, feq, &plain) : TRIBO_ERR_NULL;
-    if (status) {
-        return status;
-    }
-    if (!f && ctx->n) {
-        return TRIBO_ERR_NULL;
+    if (status || (!f && ctx->n)) {
+        return status ? status : TRIBO_ERR_NULL;
     }
     if (ctx->n == 1 && plain && !ctx->set.breaking) {
         ctx->set.law->force(&ctx->follow.contacts, 1, v, ctx->set.law->uses_feq ? feq : v, f);
         return TRIBO_OK;
     }
-    find_outputs(ctx, plain, v, feq, (double *const[OUTPUTS]){f, NULL, NULL, NULL});
-    return tribo_plane_force(ctx, v, feq, f);
+    double *const out[OUTPUTS] = {f, NULL, NULL, NULL};
+    find_outputs(ctx, plain, v, feq, out);
+    return tribo_plane_force(ctx, v, feq, out);
 }
 
-int tribo_force_tangent(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv, double *df_dfeq,
-                        double *df_dlimit)
+/* Finds out, whose derivatives are [n], or [n][2] if planar contacts have any; a status. */
+static int tangents_of(const tribo_context *ctx, int pairs, const double *v, const double *feq, double *const *out)
 {
     int plain;
     const int status = ctx ? check_force(ctx, NULL, v, feq, &plain) : TRIBO_ERR_NULL;
     if (status) {
         return status;
     }
-    if (tribo_plane_count(ctx) && (df_dv || df_dfeq || df_dlimit)) {
+    if (!pairs && tribo_plane_count(ctx) && (out[BY_V] || out[BY_FEQ] || out[BY_LIMIT])) {
         return TRIBO_ERR_UNSUPPORTED;
-    }
-    find_outputs(ctx, plain, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
-    return f ? tribo_plane_force(ctx, v, feq, f) : TRIBO_OK;
-}
-
-int tribo_force_tangent_planar(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
-                               double *df_dfeq, double *df_dlimit)
-{
-    double *const out[OUTPUTS] = {f, df_dv, df_dfeq, df_dlimit};
-    int plain;
-    int status = ctx ? check_force(ctx, NULL, v, feq, &plain) : TRIBO_ERR_NULL;
-    if (status) {
-        return status;
     }
     find_outputs(ctx, plain, v, feq, out);
     /* [n] become [n][2]: scalar contacts have nothing beside their own derivative. */
-    for (int k = BY_V; k < OUTPUTS; k++) {
+    for (int k = BY_V; pairs && k < OUTPUTS; k++) {
         for (size_t i = out[k] ? ctx->n : 0; i-- > 0;) {
             const double own = out[k][i];
             out[k][2 * i] = own;
             out[k][2 * i + 1] = 0.0;
         }
     }
-    status = f ? tribo_plane_force(ctx, v, feq, f) : TRIBO_OK;
-    return status ? status : tribo_plane_blocks(ctx, v, feq, df_dv, df_dfeq, df_dlimit);
+    return tribo_plane_force(ctx, v, feq, out);
+}
+
+int tribo_force_tangent(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv, double *df_dfeq,
+                        double *df_dlimit)
+{
+    return tangents_of(ctx, 0, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
+}
+
+int tribo_force_tangent_planar(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
+                               double *df_dfeq, double *df_dlimit)
+{
+    return tangents_of(ctx, 1, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
 }
 
 int tribo_accept(tribo_context *ctx, const double *v, const double *feq)

@@ -27,7 +27,6 @@ static tribo_context *context_allocate(size_t n, const tribo_context *like)
         for (size_t k = 0; numbers && k < ARRAYS; k++) {
             *array[k] = numbers + k * room;
         }
-        at.message = tribo_layout_array(&b, 1, tribo_message_size());
         at.follow.chunk = tribo_layout_array(&b, chunks, sizeof *at.follow.chunk);
         at.last.tangent = tribo_layout_array(&b, m, sizeof *at.last.tangent);
         at.moving = tribo_layout_array(&b, m, 1);
@@ -37,6 +36,7 @@ static tribo_context *context_allocate(size_t n, const tribo_context *like)
         at.spare.stored = tribo_layout_array(&b, chunks, 1);
     } while (!b.memory && tribo_layout_zeros(&b));
     at.n = n;
+    at.message[0] = 0;
     return ctx ? memcpy(ctx, &at, sizeof at) : NULL;
 }
 

@@ -1,7 +1,9 @@
-/* Version and texts of status codes. */
-#include <stddef.h>
+/* Version, texts of status codes, and the text of the last failure on a context. Calls on a const context, which threads may
+ * share, keep none. */
+#include <stdarg.h>
+#include <stdio.h>
 
-#include "tribo/tribo.h"
+#include "context.h"
 
 #define TEXT_(x) #x
 #define TEXT(x) TEXT_(x)
@@ -42,4 +44,20 @@ const char *tribo_strerror(int status)
     };
     const int known = status >= 0 && (size_t)status < sizeof text / sizeof *text && text[status];
     return known ? text[status] : "not a tribo status";
+}
+
+int tribo_fail(tribo_context *ctx, int status, const char *format, ...)
+{
+    if (ctx) {
+        va_list args;
+        va_start(args, format);
+        vsnprintf(ctx->message, sizeof ctx->message, format, args);
+        va_end(args);
+    }
+    return status;
+}
+
+const char *tribo_message(const tribo_context *ctx)
+{
+    return ctx ? ctx->message : "ctx is NULL";
 }

@@ -277,28 +277,6 @@ int tribo_plane_check_feq(const tribo_context *ctx, tribo_context *note, const d
     return TRIBO_OK;
 }
 
-int tribo_plane_force(const tribo_context *ctx, const double *v, const double *feq, double *f)
-{
-    const double none[2] = {0.0, 0.0};
-    for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
-        const size_t i = ctx->planar->first[k];
-        struct given g;
-        struct disc_alone x;
-        planar_given(ctx, k, v + i, feq ? feq + i : none, &g);
-        if (!g.near) {
-            tribo_planar_slide_force(ctx->set.law, &g.s, g.c.limit, f + i);
-        } else if (!given_near(ctx, k, &g, feq + i, &x)) {
-            return TRIBO_ERR_NO_CONVERGENCE;
-        } else {
-            for (size_t d = 0; d < 2; d++) {
-                const double held = cut(feq[i + d]) - x.p.shift[d] * g.c.bound[d];
-                f[i + d] = x.p.place[0] == LENS_INSIDE && g.c.bound[d] > 0.0 ? held : x.p.y[d] * g.c.bound[d];
-            }
-        }
-    }
-    return TRIBO_OK;
-}
-
 /* df [2] of a contact near stick by t and dfeq [2]; its problem is solved and linearized. */
 static void turn_near(struct disc_qp *p, const struct given *g, const struct law *law, const struct turn *t, const double *dfeq,
                       double *df)
@@ -344,37 +322,53 @@ static struct turn given_turn(const tribo_context *ctx, size_t i, const struct g
     return t;
 }
 
-int tribo_plane_blocks(const tribo_context *ctx, const double *v, const double *feq, double *df_dv, double *df_dfeq,
-                       double *df_dlimit)
+/* Columns of the derivatives out [3] of planar contact k, [2] each, whose problem x is solved if it is near stick. */
+static void given_columns(const tribo_context *ctx, size_t k, const struct given *g, struct disc_qp *p, const double *v,
+                          double *const *out)
 {
-    double *const out[3] = {df_dv, df_dfeq, df_dlimit};
+    const size_t i = ctx->planar->first[k];
+    if (p) {
+        tribo_disc_gradients(p);
+        tribo_disc_places(p);
+        tribo_disc_linearize(p);
+    }
+    for (size_t column = 0; column < 6; column++) {
+        double unit[6] = {0.0}, df[2] = {0.0, 0.0};
+        unit[column] = column < 4 || ctx->set.limit[i + column - 4] > 0.0;
+        const struct turn t = given_turn(ctx, i, g, p, v, unit, unit + 4);
+        if (p) {
+            turn_near(p, g, ctx->set.law, &t, unit + 2, df);
+        } else {
+            turn_force(ctx->set.law, &g->s, g->c.limit, &t, df);
+        }
+        for (size_t d = 0; out[column / 2] && d < 2; d++) {
+            out[column / 2][2 * (i + d) + column % 2] = df[d];
+        }
+    }
+}
+
+int tribo_plane_force(const tribo_context *ctx, const double *v, const double *feq, double *const *out)
+{
     const double none[2] = {0.0, 0.0};
-    for (size_t q = 0; q < tribo_plane_count(ctx); q++) {
-        const size_t i = ctx->planar->first[q];
+    for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
+        const size_t i = ctx->planar->first[k];
+        double f[2];
         struct given g;
         struct disc_alone x;
-        planar_given(ctx, q, v + i, feq ? feq + i : none, &g);
-        if (g.near && !given_near(ctx, q, &g, feq + i, &x)) {
+        planar_given(ctx, k, v + i, feq ? feq + i : none, &g);
+        if (!g.near) {
+            tribo_planar_slide_force(ctx->set.law, &g.s, g.c.limit, f);
+        } else if (!given_near(ctx, k, &g, feq + i, &x)) {
             return TRIBO_ERR_NO_CONVERGENCE;
         }
-        if (g.near) {
-            tribo_disc_gradients(&x.p);
-            tribo_disc_places(&x.p);
-            tribo_disc_linearize(&x.p);
+        for (size_t d = 0; g.near && d < 2; d++) {
+            const double held = cut(feq[i + d]) - x.p.shift[d] * g.c.bound[d];
+            f[d] = x.p.place[0] == LENS_INSIDE && g.c.bound[d] > 0.0 ? held : x.p.y[d] * g.c.bound[d];
         }
-        for (size_t column = 0; column < 6; column++) {
-            double unit[6] = {0.0}, df[2] = {0.0, 0.0};
-            unit[column] = column < 4 || ctx->set.limit[i + column - 4] > 0.0;
-            const struct turn t = given_turn(ctx, i, &g, g.near ? &x.p : NULL, v + i, unit, unit + 4);
-            if (g.near) {
-                turn_near(&x.p, &g, ctx->set.law, &t, unit + 2, df);
-            } else {
-                turn_force(ctx->set.law, &g.s, g.c.limit, &t, df);
-            }
-            for (size_t k = 0; out[column / 2] && k < 2; k++) {
-                out[column / 2][2 * (i + k) + column % 2] = df[k];
-            }
+        if (out[1] || out[2] || out[3]) {
+            given_columns(ctx, k, &g, g.near ? &x.p : NULL, v + i, out + 1);
         }
+        tribo_copy(out[0] ? out[0] + i : NULL, f, out[0] ? 2 : 0);
     }
     return TRIBO_OK;
 }
