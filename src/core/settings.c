@@ -12,23 +12,25 @@ static int epsilon_follows(const tribo_context *ctx)
     return ctx->set.step > 0.0 && ctx->op->diagonal;
 }
 
-static double largest_of(size_t n, const double *x)
-{
-    double largest = x[0];
-    for (size_t i = 1; i < n; i++) {
-        largest = greater(largest, x[i]);
-    }
-    return largest;
-}
+struct range {
+    double least, largest;
+};
 
-/* 1 if all x_i are equal. */
-static int all_equal(size_t n, const double *x)
+/* Returns the range of x [n] >= 0, n > 0. Finds it by integers, which compare alike: vectors do that in any order. */
+TRIBO_SIMD static struct range range_of(size_t n, const double *restrict x)
 {
-    int differ = 0;
-    for (size_t i = 1; i < n; i++) {
-        differ |= x[i] != x[0];
+    int64_t least = INT64_MAX, largest = INT64_MIN;
+    struct range r;
+    TRIBO_UNROLLED
+    for (size_t i = 0; i < n; i++) {
+        int64_t bits;
+        memcpy(&bits, x + i, sizeof bits);
+        least = bits < least ? bits : least;
+        largest = bits > largest ? bits : largest;
     }
-    return !differ;
+    memcpy(&r.least, &least, sizeof least);
+    memcpy(&r.largest, &largest, sizeof largest);
+    return r;
 }
 
 void tribo_cut_limits(tribo_context *ctx, double *limit)
@@ -106,14 +108,15 @@ void tribo_refresh(tribo_context *ctx)
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         struct chunk *chunk = &ctx->follow.chunk[k];
         const size_t n = tribo_chunk_size(ctx, i), before = k > 0 ? chunk[-1].like : 0;
-        const int even = all_equal(n, width + i) && all_equal(n, rate + i);
+        const struct range w = range_of(n, width + i), r = range_of(n, rate + i);
+        const int even = w.least == w.largest && r.least == r.largest;
         const int as_before = even && k > 0 && chunk[-1].even && width[i - 1] == width[i] && rate[i - 1] == rate[i];
-        chunk->widest = largest_of(n, width + i);
+        chunk->widest = w.largest;
         chunk->even = as_before ? EVEN_AS_BEFORE : even ? EVEN : UNEVEN;
-        ctx->follow.steepest = greater(ctx->follow.steepest, largest_of(n, (follows ? width : rate) + i));
+        ctx->follow.steepest = greater(ctx->follow.steepest, follows ? w.largest : r.largest);
         if (op->diagonal) {
-            chunk->quickest = largest_of(n, op->diagonal + i);
-            chunk->plain = largest_of(n, op->inverse + i) <= TRIBO_PLAIN;
+            chunk->quickest = range_of(n, op->diagonal + i).largest;
+            chunk->plain = range_of(n, op->inverse + i).largest <= TRIBO_PLAIN;
             chunk->like = memcmp(op->inverse + before, op->inverse + i, n * sizeof *op->inverse) == 0 ? before : i;
         }
     }
@@ -163,21 +166,6 @@ int tribo_get_law(const tribo_context *ctx, int *law)
 
 /* ------------------------------------------------------------------------------------------------------------ limits */
 
-/* Sets least and largest of x [n] >= 0, n > 0, as integers, which compare alike: vectors do that in any order. */
-TRIBO_SIMD static void find_least_and_largest(size_t n, const double *restrict x, struct chunk *chunk)
-{
-    int64_t least = INT64_MAX, largest = INT64_MIN;
-    TRIBO_UNROLLED
-    for (size_t i = 0; i < n; i++) {
-        int64_t bits;
-        memcpy(&bits, x + i, sizeof bits);
-        least = bits < least ? bits : least;
-        largest = bits > largest ? bits : largest;
-    }
-    memcpy(&chunk->least, &least, sizeof least);
-    memcpy(&chunk->largest, &largest, sizeof largest);
-}
-
 void tribo_take_limits(tribo_context *ctx, const double *limit)
 {
     for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
@@ -185,7 +173,9 @@ void tribo_take_limits(tribo_context *ctx, const double *limit)
         if (limit != ctx->set.limit) {
             memcpy(ctx->set.limit + i, limit + i, n * sizeof *limit);
         }
-        find_least_and_largest(n, limit + i, &ctx->follow.chunk[i / TRIBO_CHUNK]);
+        const struct range r = range_of(n, limit + i);
+        ctx->follow.chunk[i / TRIBO_CHUNK].least = r.least;
+        ctx->follow.chunk[i / TRIBO_CHUNK].largest = r.largest;
     }
     tribo_refresh_limits(ctx);
 }
