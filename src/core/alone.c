@@ -27,16 +27,16 @@ TRIBO_SIMD static void alone_find_slips(size_t n, const double *restrict f, cons
     }
 }
 
-/* Ends a call whose forces are in last.f. */
-static void alone_keep_forces(tribo_context *ctx, double holds)
+/* Ends a call whose forces are in last.f; kept 0: whose slips are in deeds. */
+static void alone_finish(tribo_context *ctx, int kept, double holds)
 {
-    tribo_store_all(ctx);
-    ctx->last.slips = SLIPS_IN_FORCES;
+    if (kept) {
+        tribo_store_all(ctx);
+    } else {
+        ctx->last.did.all_stored = 0;
+    }
+    ctx->last.slips = kept ? SLIPS_IN_FORCES : SLIPS_WRITTEN;
     ctx->last.holds = holds;
-}
-
-static void alone_finish(tribo_context *ctx)
-{
     ctx->last.rank = 0;
     ctx->last.linearized = 0;
     ctx->count.skipped += ctx->op->islands;
@@ -49,8 +49,7 @@ static void put_one(tribo_context *ctx, double force, double holds, double *f)
     if (f) {
         *f = force;
     }
-    alone_keep_forces(ctx, holds);
-    alone_finish(ctx);
+    alone_finish(ctx, 1, holds);
 }
 
 /* Finds the forces of all contacts. Those of few are kept. Of many, slips are kept, found while forces are in cache: forces would
@@ -78,14 +77,8 @@ static void alone_find_all(tribo_context *ctx, const struct call *call, double *
         }
         tribo_stream_put(&to, n);
     }
-    if (few) {
-        alone_keep_forces(ctx, call->holds);
-    } else {
-        tribo_stream_end(&to);
-        ctx->last.did.all_stored = 0;
-        ctx->last.slips = SLIPS_WRITTEN;
-    }
-    alone_finish(ctx);
+    tribo_stream_end(&to);
+    alone_finish(ctx, few, call->holds);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- balance */

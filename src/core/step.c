@@ -151,19 +151,15 @@ static int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bo
     const int estimates = !b.lower && !breaks && ctx->follow.largest < ESTIMATED && op->largest_sum < ESTIMATED;
     const double times = op->groups ? quotient(1.0, dt) : 0.0;
     const struct call c = {b, dt, {times, TRIBO_FAR / greater(times, 1.0)}, v, group_of, breaks, estimates};
-    /* A small group of all contacts is solved as fast as it is found to slide. */
-    const int one = op->groups == 1 && op->group->small && op->group->size == ctx->n && *group_of == 0;
     struct memory *m = &ctx->memory;
     tribo_store_all(ctx);
-    for (size_t i = 0, k = 0; !one && i < ctx->n; i += TRIBO_CHUNK, k++) {
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         tribo_stop_alone(ctx, k, dt, v + i, tribo_bounds_from(&b, i), ctx->last.f + i);
     }
     if (breaks) {
         tribo_break_alone(ctx, dt, v);
     }
-    if (one) {
-        tribo_list_group(ctx, *group_of);
-    } else if (op->groups) {
+    if (op->groups) {
         find_candidates(ctx, &c);
     }
     /* Groups stay in the list if a contact takes part; after a failure none does. */
