@@ -71,13 +71,13 @@ static inline int tribo_planar_cut(const tribo_context *ctx, size_t i)
 }
 
 /* Sets which directions of the problem share a set, and their shift in parts of the reach. */
-void tribo_planar_arrange(tribo_context *ctx, const struct cluster *g);
+void tribo_planar_arrange(tribo_context *ctx);
 
 /* Sets the reach of all contacts of the problem by the pulls at them. */
 void tribo_planar_estimate(tribo_context *ctx, const struct cluster *g);
 
 /* Widens the reach of forces that come up against it. Returns the number of these contacts. */
-size_t tribo_planar_widen(tribo_context *ctx, const struct cluster *g);
+size_t tribo_planar_widen(tribo_context *ctx);
 
 /* ---- planar_force.c */
 
@@ -85,7 +85,7 @@ size_t tribo_planar_widen(tribo_context *ctx, const struct cluster *g);
 struct unit {
     double force, r;
 };
-struct unit tribo_planar_units(const tribo_context *ctx, const struct cluster *g);
+struct unit tribo_planar_units(const tribo_context *ctx);
 
 /* pull [size] += (own blocks of s) shift. */
 void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pull);

@@ -14,36 +14,38 @@ static void release(struct planar *planar)
     }
 }
 
-/* Returns 1, or 0 if out of memory: then tribo_plane_free still applies. */
+/* Returns 1, or 0 if out of memory: then plane_free still applies. */
 static int plane_create(struct plane *plane, const struct planar *planar, size_t n)
 {
-    enum { VECTORS = 9 };
+    struct layout b = {0};
+    double **const vector[] = {&plane->y,      &plane->a,      &plane->v,    &plane->df,   &plane->other,
+                               &plane->dlimit, &plane->radius, &plane->pull, &plane->shift};
+    enum { VECTORS = sizeof vector / sizeof *vector };
     *plane = (struct plane){0};
     if (!planar) {
         return 1;
     }
-    plane->near = malloc((planar->largest + 1) * sizeof *plane->near);
-    plane->y = calloc(VECTORS * (n + 1), sizeof *plane->y);
-    double **const vector[VECTORS] = {&plane->y,      &plane->v,      &plane->a,    &plane->df,   &plane->other,
-                                      &plane->dlimit, &plane->radius, &plane->pull, &plane->shift};
-    for (size_t k = 1; plane->y && k < VECTORS; k++) {
-        *vector[k] = plane->y + k * (n + 1);
-    }
-    for (size_t i = 0; plane->y && i < n; i++) {
+    do {
+        plane->near = tribo_layout_array(&b, planar->largest + 1, sizeof *plane->near);
+        plane->contact = tribo_layout_array(&b, planar->largest, sizeof *plane->contact);
+        plane->directions = tribo_layout_array(&b, planar->largest, 1);
+        double *numbers = tribo_layout_array(&b, VECTORS * n, sizeof *numbers);
+        for (size_t k = 0; numbers && k < VECTORS; k++) {
+            *vector[k] = numbers + k * n;
+        }
+    } while (!b.memory && tribo_layout_zeros(&b));
+    for (size_t i = 0; b.memory && i < n; i++) {
         plane->radius[i] = HUGE_VAL;
     }
-    plane->directions = malloc(planar->largest + 1);
-    return plane->near && plane->y && plane->directions && tribo_disc_create(&plane->problem, planar->largest);
+    return b.memory && tribo_disc_create(&plane->problem, planar->largest);
 }
 
 static void plane_free(struct plane *plane)
 {
-    if (plane->near && plane->y && plane->directions) {
+    if (plane->near) {
         tribo_disc_free(&plane->problem);
+        free(plane->near);
     }
-    free(plane->near);
-    free(plane->directions);
-    free(plane->y);
 }
 
 int tribo_clusters_clone(tribo_context *clone, const tribo_context *from)

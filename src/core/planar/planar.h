@@ -40,7 +40,8 @@ struct planar {
 /* Kept by a context from call to call, and workspace. */
 struct plane {
     struct disc_qp problem;
-    size_t *near;              /* [largest] places in the cluster of the problem's directions */
+    size_t *near;    /* [largest] places in the cluster of the problem's directions; owns all memory but the problem's */
+    size_t *contact; /* [largest] the contacts there */
     unsigned char *directions; /* [largest] of the contact that begins with a direction of the problem: 1, 2; 0: none begins */
     size_t cuts;               /* directions of the problem with a reach below their limit */
     double *y;                 /* [n] solutions, in parts of the reach */

@@ -24,6 +24,7 @@ static void take_contact(tribo_context *ctx, size_t k, size_t i, size_t directio
         if (bound[d] > 0.0) {
             ctx->plane.shift[p->size] = shift[d];
             ctx->plane.directions[p->size] = (unsigned char)(both ? 2 - 2 * d : 1);
+            ctx->plane.contact[p->size] = i + d;
             ctx->plane.near[p->size++] = k + d;
         } else {
             ctx->last.f[i + d] = 0.0;
@@ -51,13 +52,12 @@ static int planar_collect(tribo_context *ctx, const struct cluster *g, const dou
     return ctx->plane.problem.size > 0;
 }
 
-struct unit tribo_planar_units(const tribo_context *ctx, const struct cluster *g)
+struct unit tribo_planar_units(const tribo_context *ctx)
 {
     struct unit u = {0.0, 0.0};
     for (size_t e = 0; e < ctx->plane.problem.size; e++) {
-        const size_t k = ctx->plane.near[e];
-        u.force = greater(u.force, tribo_planar_reach(ctx, g->member[k]));
-        u.r = greater(u.r, g->r[k * (g->size + 1)]);
+        u.force = greater(u.force, tribo_planar_reach(ctx, ctx->plane.contact[e]));
+        u.r = greater(u.r, ctx->op->diagonal[ctx->plane.contact[e]]);
     }
     return u;
 }
@@ -81,7 +81,7 @@ static void find_pulls(tribo_context *ctx, const struct cluster *g, const double
     const size_t n = ctx->plane.problem.size, *near = ctx->plane.near, *member = g->member;
     for (size_t e = 0; e < n; e++) {
         const double *row = g->r + near[e] * g->size;
-        double sum = cut(a[member[near[e]]]);
+        double sum = cut(a[ctx->plane.contact[e]]);
         for (size_t j = 0, other = 0; j < g->size; j++) {
             const double bound = ctx->follow.contacts.bound[member[j]];
             if (other < n && near[other] == j) {
@@ -98,12 +98,12 @@ static void find_pulls(tribo_context *ctx, const struct cluster *g, const double
 static void pose_cluster(tribo_context *ctx, const struct cluster *g)
 {
     struct disc_qp *p = &ctx->plane.problem;
-    const struct unit u = tribo_planar_units(ctx, g);
-    const size_t n = p->size, *member = g->member, *near = ctx->plane.near;
+    const struct unit u = tribo_planar_units(ctx);
+    const size_t n = p->size, *contact = ctx->plane.contact, *near = ctx->plane.near;
     int turned = 0;
     for (size_t e = 0; e < n; e++) {
-        p->weight[e] = tribo_planar_reach(ctx, member[near[e]]) / u.force;
-        p->y[e] = ctx->plane.y[member[near[e]]];
+        p->weight[e] = tribo_planar_reach(ctx, contact[e]) / u.force;
+        p->y[e] = ctx->plane.y[contact[e]];
     }
     for (size_t e = 0; e < n; e++) {
         const double *row = g->r + near[e] * g->size;
@@ -132,7 +132,7 @@ const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
     *size = g->size;
     if (planar_collect(ctx, g, ctx->last.v)) {
         find_pulls(ctx, g, ctx->plane.a);
-        tribo_planar_arrange(ctx, g);
+        tribo_planar_arrange(ctx);
         pose_cluster(ctx, g);
         tribo_disc_gains(p);
         tribo_disc_gradients(p);
@@ -152,7 +152,7 @@ const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
 static int solve_once(tribo_context *ctx, const struct cluster *g)
 {
     struct disc_qp *p = &ctx->plane.problem;
-    const size_t *member = g->member, *near = ctx->plane.near;
+    const size_t *contact = ctx->plane.contact;
     p->factor.qp.work.factorizations = 0;
     p->near_enough = ctx->plane.cuts ? NEAREST : TRIBO_NEAR_ENOUGH;
     int done = tribo_disc_solve(p);
@@ -165,11 +165,11 @@ static int solve_once(tribo_context *ctx, const struct cluster *g)
     if (!done || p->residual > TOO_FAR) {
         return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE,
                           "no forces found for the %zu direction%s near stick around contact %zu: %g of a limit is missing",
-                          p->size, plural(p->size), member[near[0]], p->residual);
+                          p->size, plural(p->size), contact[0], p->residual);
     }
     ctx->last.residual = greater(ctx->last.residual, p->residual);
     for (size_t e = 0; e < p->size; e++) {
-        const size_t i = member[near[e]];
+        const size_t i = contact[e];
         ctx->plane.y[i] = p->y[e];
         ctx->last.f[i] = p->y[e] * tribo_planar_reach(ctx, i);
     }
@@ -227,7 +227,7 @@ static size_t planar_break(tribo_context *ctx, const struct cluster *g, double d
         end[member[k]] = product(tribo_planar_others(ctx, g, k, k, 0, a[member[k]]), dt);
     }
     for (size_t e = 0; e < p->size; e += p->wide[e]) {
-        const size_t k = member[ctx->plane.near[e]], first = k - (ctx->planar->role[k] == ROLE_SECOND);
+        const size_t k = ctx->plane.contact[e], first = k - (ctx->planar->role[k] == ROLE_SECOND);
         const size_t directions = tribo_directions(ctx, first);
         int holds = 1, falls = 0;
         for (size_t i = first; i < first + directions; i++) {
@@ -253,10 +253,10 @@ static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt,
         find_pulls(ctx, g, a);
         tribo_planar_estimate(ctx, g);
         do {
-            tribo_planar_arrange(ctx, g);
+            tribo_planar_arrange(ctx);
             pose_cluster(ctx, g);
             status = solve_once(ctx, g);
-        } while (!status && ctx->plane.cuts && tribo_planar_widen(ctx, g));
+        } while (!status && ctx->plane.cuts && tribo_planar_widen(ctx));
     } while (!status && ctx->set.breaking && planar_break(ctx, g, dt, a));
     ctx->plane.solved++;
     ctx->last.rank += status ? 0 : ctx->plane.problem.factor.sets.rank;
@@ -299,13 +299,13 @@ static void scalar_laws(tribo_context *ctx, const struct cluster *g, const doubl
 {
     const size_t *near = ctx->plane.near, n = ctx->plane.problem.size;
     for (size_t e = 0; e < n; e++) {
-        const size_t i = g->member[near[e]];
+        const size_t i = ctx->plane.contact[e];
         if (tribo_is_scalar(ctx, i)) {
             contact_feq(ctx, g, near[e], 1, a + i, ctx->last.feq + i);
         }
     }
     for (size_t e = 0; e < n; e++) {
-        const size_t i = g->member[near[e]];
+        const size_t i = ctx->plane.contact[e];
         if (tribo_is_scalar(ctx, i)) {
             const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
             ctx->set.law->force(&c, 1, v + i, ctx->last.feq + i, ctx->last.f + i);

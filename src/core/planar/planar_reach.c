@@ -19,27 +19,14 @@
 /* The rim of the other direction adds at most this part to the stiffness of a loose one. */
 #define STRAIGHT 1e-12
 
-/* R_ii and the contact of direction e of the problem. */
-struct reach_place {
-    double r;
-    size_t i;
-};
-
-static inline struct reach_place reach_at(const tribo_context *ctx, const struct cluster *g, size_t e)
-{
-    const size_t k = ctx->plane.near[e];
-    return (struct reach_place){g->r[k * (g->size + 1)], g->member[k]};
-}
-
-void tribo_planar_arrange(tribo_context *ctx, const struct cluster *g)
+void tribo_planar_arrange(tribo_context *ctx)
 {
     struct disc_qp *p = &ctx->plane.problem;
-    const size_t *member = g->member;
     const double *bound = ctx->follow.contacts.bound, *radius = ctx->plane.radius;
     const unsigned char *directions = ctx->plane.directions;
     ctx->plane.cuts = 0;
     for (size_t k = 0; k < p->size; k++) {
-        const size_t i = member[ctx->plane.near[k]];
+        const size_t i = ctx->plane.contact[k];
         p->wide[k] = directions[k];
         p->shift[k] = ctx->plane.shift[k];
         if (tribo_planar_cut(ctx, i)) {
@@ -48,7 +35,7 @@ void tribo_planar_arrange(tribo_context *ctx, const struct cluster *g)
         }
     }
     for (size_t e = 0; ctx->plane.cuts && e < p->size; e += directions[e]) {
-        const size_t i = member[ctx->plane.near[e]];
+        const size_t i = ctx->plane.contact[e];
         if (directions[e] == 2 && (radius[i] < BESIDE * bound[i] || radius[i + 1] < BESIDE * bound[i + 1])) {
             p->wide[e] = p->wide[e + 1] = 1;
         }
@@ -56,9 +43,9 @@ void tribo_planar_arrange(tribo_context *ctx, const struct cluster *g)
 }
 
 /* Gives the contact at e of the problem the reaches wanted [directions], as far as its limits exceed them. */
-static void set_radius(tribo_context *ctx, const struct cluster *g, size_t e, size_t directions, const double *wanted)
+static void set_radius(tribo_context *ctx, size_t e, size_t directions, const double *wanted)
 {
-    const size_t i = g->member[ctx->plane.near[e]];
+    const size_t i = ctx->plane.contact[e];
     const double *bound = ctx->follow.contacts.bound + i;
     const int pair = directions == 2, apart = pair && (wanted[0] < BESIDE * bound[0] || wanted[1] < BESIDE * bound[1]);
     for (size_t k = 0; k < directions; k++) {
@@ -84,7 +71,7 @@ static void find_asks(const tribo_context *ctx, const struct cluster *g, double 
             for (size_t j = 0; j < n; j++) {
                 ask[k] = j == k ? ask[k] : greater(ask[k], quotient(product(fabs(row[near[j]]), ask[j]), row[near[k]]));
             }
-            ask[k] = lesser(ask[k], bound[g->member[near[k]]]);
+            ask[k] = lesser(ask[k], bound[ctx->plane.contact[k]]);
             grown |= ask[k] > before;
         }
     }
@@ -97,18 +84,19 @@ void tribo_planar_estimate(tribo_context *ctx, const struct cluster *g)
     double *ask = ctx->plane.problem.spare, most = 0.0; /* the largest ask sqrt(R_ii): in these units asks of contacts compare */
     int far = 0;
     for (size_t k = 0; k < n; k++) {
-        const struct reach_place p = reach_at(ctx, g, k);
-        ask[k] = lesser(quotient(fabs(ctx->plane.pull[k]), p.r) + product(fabs(ctx->plane.shift[k]), bound[p.i]), bound[p.i]);
-        most = greater(most, product(ask[k], sqrt(p.r)));
+        const size_t i = ctx->plane.contact[k];
+        ask[k] = lesser(quotient(fabs(ctx->plane.pull[k]), ctx->op->diagonal[i]) + product(fabs(ctx->plane.shift[k]), bound[i]),
+                        bound[i]);
+        most = greater(most, product(ask[k], sqrt(ctx->op->diagonal[i])));
     }
     for (size_t k = 0; k < n; k++) {
-        const struct reach_place p = reach_at(ctx, g, k);
-        far |= product(bound[p.i], sqrt(p.r)) > AMPLE * most || tribo_planar_cut(ctx, p.i);
+        const size_t i = ctx->plane.contact[k];
+        far |= product(bound[i], sqrt(ctx->op->diagonal[i])) > AMPLE * most || tribo_planar_cut(ctx, i);
     }
     for (size_t k = 0; far && !(most > 0.0) && k < n; k++) {
-        const struct reach_place p = reach_at(ctx, g, k);
-        ctx->plane.radius[p.i] = HUGE_VAL;
-        ctx->plane.y[p.i] = 0.0;
+        const size_t i = ctx->plane.contact[k];
+        ctx->plane.radius[i] = HUGE_VAL;
+        ctx->plane.y[i] = 0.0;
     }
     if (!far || !(most > 0.0)) {
         return;
@@ -118,45 +106,44 @@ void tribo_planar_estimate(tribo_context *ctx, const struct cluster *g)
         const size_t count = ctx->plane.directions[e];
         double wanted[2];
         for (size_t d = 0; d < count; d++) {
-            const double root = sqrt(reach_at(ctx, g, e + d).r);
+            const double root = sqrt(ctx->op->diagonal[ctx->plane.contact[e + d]]);
             wanted[d] = product(greater(ask[e + d], greater(quotient(LITTLE * most, root), DBL_MIN)), AMPLE);
         }
-        set_radius(ctx, g, e, count, wanted);
+        set_radius(ctx, e, count, wanted);
     }
 }
 
 /* 1 if the direction at e of the problem is on the rim of its limit, which bends so much that the direction at other cannot be
  * loose. */
-static int planar_reach_bends(const tribo_context *ctx, const struct cluster *g, size_t e, size_t other)
+static int planar_reach_bends(const tribo_context *ctx, size_t e, size_t other)
 {
     const struct disc_qp *p = &ctx->plane.problem;
-    const size_t *member = g->member, i = member[ctx->plane.near[e]], j = member[ctx->plane.near[other]];
+    const size_t i = ctx->plane.contact[e], j = ctx->plane.contact[other];
     const double part = quotient(tribo_planar_reach(ctx, j), ctx->follow.contacts.bound[j]);
     return p->place[e] != LENS_INSIDE && !tribo_planar_cut(ctx, i) && tribo_planar_cut(ctx, j) &&
            fabs(p->gradient[e]) * part * part > STRAIGHT * p->s[other * (p->size + 1)];
 }
 
-size_t tribo_planar_widen(tribo_context *ctx, const struct cluster *g)
+size_t tribo_planar_widen(tribo_context *ctx)
 {
     const struct disc_qp *p = &ctx->plane.problem;
-    const size_t *member = g->member;
     size_t widened = 0;
     for (size_t e = 0; e < p->size; e += ctx->plane.directions[e]) {
         const size_t count = ctx->plane.directions[e];
         double wanted[2];
         int out = 0;
         for (size_t d = 0; d < count; d++) {
-            const size_t i = member[ctx->plane.near[e + d]], at = p->wide[e + d] ? e + d : e;
+            const size_t i = ctx->plane.contact[e + d], at = p->wide[e + d] ? e + d : e;
             const int beyond = p->place[at] != LENS_INSIDE && tribo_planar_cut(ctx, i);
             wanted[d] = beyond ? product(AMPLE, ctx->plane.radius[i]) : ctx->plane.radius[i];
             out |= beyond;
         }
-        if (p->wide[e] < count && (planar_reach_bends(ctx, g, e, e + 1) || planar_reach_bends(ctx, g, e + 1, e))) {
+        if (p->wide[e] < count && (planar_reach_bends(ctx, e, e + 1) || planar_reach_bends(ctx, e + 1, e))) {
             wanted[0] = wanted[1] = HUGE_VAL;
             out = 1;
         }
         if (out) {
-            set_radius(ctx, g, e, count, wanted);
+            set_radius(ctx, e, count, wanted);
             widened++;
         }
     }

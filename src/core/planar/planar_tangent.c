@@ -36,7 +36,7 @@ static struct change with_limits(tribo_context *ctx, const struct cluster *g, co
     }
     for (size_t e = 0; e < p->size; e += p->wide[e]) {
         for (size_t k = e; k < e + p->wide[e] && p->place[e] == LENS_ON_DISC; k++) {
-            const size_t i = g->member[ctx->plane.near[k]];
+            const size_t i = ctx->plane.contact[k];
             dlimit[i] = quotient(p->gradient[k], tribo_planar_reach(ctx, i));
         }
     }
@@ -143,16 +143,16 @@ static void find_rhs(const tribo_context *ctx, const struct cluster *g, const st
 {
     const struct disc_qp *p = &ctx->plane.problem;
     double *turn = p->slide;
-    const struct unit u = tribo_planar_units(ctx, g);
-    const size_t *member = g->member, *near = ctx->plane.near, n = p->size;
+    const struct unit u = tribo_planar_units(ctx);
+    const size_t *contact = ctx->plane.contact, n = p->size;
     for (size_t e = 0; e < n; e++) {
-        const double *row = g->r + near[e] * g->size;
-        double sum = cut(tribo_entry(d->a, member[near[e]]));
+        const double *row = g->r + ctx->plane.near[e] * g->size;
+        double sum = cut(tribo_entry(d->a, contact[e]));
         for (size_t j = 0; j < g->size; j++) {
             sum += product(row[j], df[j]);
         }
         rhs[e] = p->weight[e] * quotient(quotient(cut(sum), u.r), u.force);
-        const double growth = limit_growth(ctx, d, member[near[e]]);
+        const double growth = limit_growth(ctx, d, contact[e]);
         rhs[e] += product(growth, p->gradient[e]);
         turn[e] = dshift[e] + product(p->shift[e], growth);
         for (size_t j = 0; j < n; j++) {
@@ -198,7 +198,7 @@ const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct c
         tribo_disc_follow(p, rhs, move);
     }
     for (size_t e = 0; e < p->size; e++) {
-        df[near[e]] += product(tribo_planar_reach(ctx, g->member[near[e]]), dy[e] + move[e]);
+        df[near[e]] += product(tribo_planar_reach(ctx, ctx->plane.contact[e]), dy[e] + move[e]);
     }
     if (ctx->set.law->remembers) {
         apply_laws(ctx, g, d, df);
