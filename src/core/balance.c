@@ -103,8 +103,8 @@ static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *
     const struct contacts *c = &ctx->follow.contacts;
     const int relaxes = ctx->set.law->relaxes;
     int status;
-    if (ctx->set.breaking) {
-        tribo_hold(ctx, p);
+    for (size_t e = 0; ctx->set.breaking == DROPS && e < p->count; e++) {
+        ctx->follow.now[p->member[p->near[e]]] = ctx->follow.hold[p->member[p->near[e]]];
     }
     do {
         for (size_t e = 0; e < p->count; e++) {

@@ -136,9 +136,6 @@ void tribo_take_settings(tribo_context *ctx, const tribo_context *from);
 /* Sets limits to limit [n], which may be those of ctx, and all that follows from them. */
 void tribo_take_limits(tribo_context *ctx, const double *limit);
 
-/* limit [n] of contacts in groups becomes at most what the solver resolves. */
-void tribo_cut_limits(tribo_context *ctx, double *limit);
-
 /* queries.c: writes slips into deeds. Call before limits change. */
 void tribo_write_slips(tribo_context *ctx);
 

@@ -33,7 +33,8 @@ TRIBO_SIMD static struct range range_of(size_t n, const double *restrict x)
     return r;
 }
 
-void tribo_cut_limits(tribo_context *ctx, double *limit)
+/* limit [n] of contacts in groups becomes at most what the solver resolves. */
+static void cut_limits(tribo_context *ctx, double *limit)
 {
     for (size_t g = 0; g < ctx->op->groups; g++) {
         const struct box_qp *p = tribo_problem(ctx, g);
@@ -52,7 +53,7 @@ static void cut_far(tribo_context *ctx)
     for (size_t i = 0; i < ctx->n; i++) {
         limit[i] = lesser(ctx->set.limit[i], TRIBO_FAR);
     }
-    tribo_cut_limits(ctx, limit);
+    cut_limits(ctx, limit);
     for (size_t i = 0; i < ctx->n; i++) {
         ctx->follow.cut_factor[i] = lesser(factor[i], far / greater(limit[i], 1.0));
     }
@@ -64,6 +65,29 @@ static void cut_far(tribo_context *ctx)
     *(c->follows ? &c->width : &c->rate) = ctx->follow.cut_factor;
 }
 
+/* Sets what follows from limits that are static: contacts have those of the last call. */
+static void hold_limits(tribo_context *ctx)
+{
+    struct contacts *c = &ctx->follow.contacts;
+    double *rate = ctx->follow.cut_factor, *now = ctx->follow.now;
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->follow.cut_limit[i] = lesser(ctx->set.limit[i], TRIBO_FAR);
+        ctx->follow.hold[i] = product(ctx->set.ratio[i], ctx->set.limit[i]);
+    }
+    cut_limits(ctx, ctx->follow.cut_limit);
+    cut_limits(ctx, ctx->follow.hold);
+    for (size_t i = 0; i < ctx->n; i++) {
+        struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
+        const double hold = ctx->follow.hold[i];
+        now[i] = hold;
+        ctx->follow.hold_width[i] = c->follows ? greater(product(c->width[i], hold), DBL_MIN) : c->width[i];
+        rate[i] = c->follows ? quotient(c->rate[i], greater(hold, DBL_MIN)) : c->rate[i];
+        rate[i] = lesser(rate[i], 2.0 * TRIBO_FAR / greater(hold, 1.0));
+        chunk->largest = i % TRIBO_CHUNK ? greater(chunk->largest, hold) : hold;
+    }
+    *c = (struct contacts){now, now, ctx->follow.hold_width, rate, ctx->moving, 0, c->scales, 0};
+}
+
 void tribo_refresh_limits(tribo_context *ctx)
 {
     const int follows = epsilon_follows(ctx), fixed = !ctx->set.breaking;
@@ -71,7 +95,7 @@ void tribo_refresh_limits(tribo_context *ctx)
     ctx->follow.contacts =
         (struct contacts){ctx->set.limit, ctx->set.limit, ctx->set.width, ctx->set.rate, ctx->moving, follows, follows, 0};
     if (ctx->set.breaking) {
-        tribo_refresh_static(ctx);
+        hold_limits(ctx);
     }
     for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
         struct chunk *chunk = &ctx->follow.chunk[k];

@@ -87,14 +87,6 @@ void tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, c
     }
 }
 
-void tribo_hold(const tribo_context *ctx, const struct box_qp *p)
-{
-    for (size_t e = 0; ctx->set.breaking == DROPS && e < p->count; e++) {
-        const size_t i = p->member[p->near[e]];
-        ctx->follow.now[i] = ctx->follow.hold[i];
-    }
-}
-
 size_t tribo_break_away(tribo_context *ctx, struct box_qp *p, double dt)
 {
     size_t broken = 0;
@@ -141,38 +133,6 @@ void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size
 }
 
 /* ----------------------------------------------------------------------------------------------------------- settings */
-
-void tribo_refresh_static(tribo_context *ctx)
-{
-    struct contacts *c = &ctx->follow.contacts;
-    double *rate = ctx->follow.cut_factor, *now = ctx->follow.now;
-    for (size_t i = 0; i < ctx->n; i++) {
-        ctx->follow.cut_limit[i] = lesser(ctx->set.limit[i], TRIBO_FAR);
-        ctx->follow.hold[i] = product(ctx->set.ratio[i], ctx->set.limit[i]);
-    }
-    tribo_cut_limits(ctx, ctx->follow.cut_limit);
-    tribo_cut_limits(ctx, ctx->follow.hold);
-    for (size_t i = 0; i < ctx->n; i++) {
-        struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
-        const double hold = ctx->follow.hold[i];
-        now[i] = hold;
-        ctx->follow.hold_width[i] = c->follows ? greater(product(c->width[i], hold), DBL_MIN) : c->width[i];
-        rate[i] = c->follows ? quotient(c->rate[i], greater(hold, DBL_MIN)) : c->rate[i];
-        rate[i] = lesser(rate[i], 2.0 * TRIBO_FAR / greater(hold, 1.0));
-        chunk->largest = i % TRIBO_CHUNK ? greater(chunk->largest, hold) : hold;
-    }
-    *c = (struct contacts){now, now, ctx->follow.hold_width, rate, ctx->moving, 0, c->scales, 0};
-}
-
-int tribo_refuse_static(tribo_context *ctx, const char *who)
-{
-    for (size_t i = 0; i < ctx->n; i++) {
-        if (ctx->set.ratio[i] > 1.0) {
-            return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "%s static limits, and ratio[%zu] = %g", who, i, ctx->set.ratio[i]);
-        }
-    }
-    return TRIBO_OK;
-}
 
 int tribo_check_one_ratio(tribo_context *ctx, const double *ratio, const double *velocity, size_t count, const size_t *first)
 {

@@ -4,17 +4,11 @@
 
 #include "groups.h"
 
-/* Sets what follows from static limits, and contacts->limit to those of the last call. */
-void tribo_refresh_static(tribo_context *ctx);
-
 /* A law without stick needs Stribeck velocities where a ratio exceeds 1; a status. */
 int tribo_check_breaking(tribo_context *ctx, const struct law *law, int breaking, const double *ratio);
 
 /* Both directions of a planar contact have the same ratio and velocity; a status. */
 int tribo_check_one_ratio(tribo_context *ctx, const double *ratio, const double *velocity, size_t count, const size_t *first);
-
-/* Fails if there are static limits: "<who> static limits, ...". */
-int tribo_refuse_static(tribo_context *ctx, const char *who);
 
 /* limit [n] of the contacts from i on at v [n]: static near stick, unless |feq| exceeds it; feq NULL: it does not. */
 void tribo_find_limits(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *limit);
@@ -35,9 +29,6 @@ void tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, c
 
 /* 1 if a contact that comes in sliding has a force that does not act against v. */
 int tribo_any_turns(const tribo_context *ctx, double dt, const double *v, const double *f);
-
-/* Gives the near contacts of a problem their static limits. */
-void tribo_hold(const tribo_context *ctx, const struct box_qp *p);
 
 /* Gives contacts whose f_eq exceeds the static limit that to slide at the end of a step of dt, or (0) from rest. Returns their
  * number. */

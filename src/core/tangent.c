@@ -242,6 +242,11 @@ int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da
 int tribo_limit_product(tribo_context *ctx, const double *dlimit, double *df)
 {
     int status = ctx ? tribo_check_finite(ctx, "dlimit", dlimit, ctx->n) : TRIBO_ERR_NULL;
-    status = status ? status : tribo_refuse_static(ctx, "tribo_limit_product knows no");
+    for (size_t i = 0; !status && i < ctx->n; i++) {
+        if (ctx->set.ratio[i] > 1.0) {
+            return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "tribo_limit_product knows no static limits, and ratio[%zu] = %g", i,
+                              ctx->set.ratio[i]);
+        }
+    }
     return status ? status : tangent_product_of(ctx, &(struct change){NULL, NULL, dlimit}, df);
 }
