@@ -33,9 +33,12 @@ TRIBO_SIMD static struct range range_of(size_t n, const double *restrict x)
     return r;
 }
 
-/* limit [n] of contacts in groups becomes at most what the solver resolves. */
-static void cut_limits(tribo_context *ctx, double *limit)
+/* limit [n] = ratio times the caller's, NULL: 1, but at most what the solver resolves. */
+static void cut_limits(tribo_context *ctx, const double *ratio, double *limit)
 {
+    for (size_t i = 0; i < ctx->n; i++) {
+        limit[i] = product(ratio ? ratio[i] : 1.0, ctx->set.limit[i]);
+    }
     for (size_t g = 0; g < ctx->op->groups; g++) {
         const struct box_qp *p = tribo_problem(ctx, g);
         for (size_t k = 0; k < p->group->size; k++) {
@@ -50,10 +53,7 @@ static void cut_far(tribo_context *ctx)
     struct contacts *c = &ctx->follow.contacts;
     double *limit = ctx->follow.cut_limit;
     const double *factor = c->follows ? ctx->set.width : ctx->set.rate, far = c->follows ? TRIBO_FAR : 2.0 * TRIBO_FAR;
-    for (size_t i = 0; i < ctx->n; i++) {
-        limit[i] = lesser(ctx->set.limit[i], TRIBO_FAR);
-    }
-    cut_limits(ctx, limit);
+    cut_limits(ctx, NULL, limit);
     for (size_t i = 0; i < ctx->n; i++) {
         ctx->follow.cut_factor[i] = lesser(factor[i], far / greater(limit[i], 1.0));
     }
@@ -70,12 +70,8 @@ static void hold_limits(tribo_context *ctx)
 {
     struct contacts *c = &ctx->follow.contacts;
     double *rate = ctx->follow.cut_factor, *now = ctx->follow.now;
-    for (size_t i = 0; i < ctx->n; i++) {
-        ctx->follow.cut_limit[i] = lesser(ctx->set.limit[i], TRIBO_FAR);
-        ctx->follow.hold[i] = product(ctx->set.ratio[i], ctx->set.limit[i]);
-    }
-    cut_limits(ctx, ctx->follow.cut_limit);
-    cut_limits(ctx, ctx->follow.hold);
+    cut_limits(ctx, NULL, ctx->follow.cut_limit);
+    cut_limits(ctx, ctx->set.ratio, ctx->follow.hold);
     for (size_t i = 0; i < ctx->n; i++) {
         struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
         const double hold = ctx->follow.hold[i];
