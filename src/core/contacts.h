@@ -14,11 +14,6 @@ static inline double tribo_lower(const struct bounds *b, size_t i)
     return b->lower ? b->lower[i] : -b->upper[i];
 }
 
-static inline struct bounds tribo_bounds_from(const struct bounds *b, size_t i)
-{
-    return (struct bounds){b->lower ? b->lower + i : NULL, b->upper + i};
-}
-
 /* Returns the slip of a contact by its state did and force f: it is stuck if |f| < holds limit. (The smooth law never reaches the
  * limit; it holds where |v| < epsilon.) */
 static inline signed char tribo_slip_by_force(signed char did, double f, double limit, double holds)

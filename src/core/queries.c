@@ -1,7 +1,6 @@
 /* Answers about a context and its last call. */
 #include "check.h"
 #include "clusters.h"
-#include "static.h"
 
 int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
 {
@@ -105,10 +104,12 @@ int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
  * stick, are at most the largest s_i R_ii times the largest eigenvalue of D^-1 R. */
 static double max_rate(const tribo_context *ctx)
 {
+    const struct contacts *c = &ctx->follow.contacts;
     double rate = tribo_plane_rate(ctx);
     for (size_t i = 0; i < ctx->n; i++) {
-        if (ctx->follow.contacts.limit[i] > 0.0 && tribo_is_scalar(ctx, i)) {
-            rate = greater(rate, product(tribo_steepest_slope(ctx, i), ctx->op->diagonal[i]));
+        if (c->limit[i] > 0.0 && tribo_is_scalar(ctx, i)) {
+            const double steepest = ctx->set.breaking ? c->rate[i] * ctx->follow.hold[i] : tribo_slope_of(c, i);
+            rate = greater(rate, product(steepest, ctx->op->diagonal[i]));
         }
     }
     if (!ctx->set.law->uses_feq) {

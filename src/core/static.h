@@ -37,11 +37,4 @@ size_t tribo_break_away(tribo_context *ctx, struct box_qp *p, double dt);
 /* The same for contacts in no group, by vfree; their forces follow. */
 void tribo_break_alone(tribo_context *ctx, double dt, const double *vfree);
 
-/* The largest slope by which the law of contact i relaxes. */
-static inline double tribo_steepest_slope(const tribo_context *ctx, size_t i)
-{
-    const struct contacts *c = &ctx->follow.contacts;
-    return ctx->set.breaking ? c->rate[i] * ctx->follow.hold[i] : tribo_slope_of(c, i);
-}
-
 #endif

@@ -154,7 +154,7 @@ static int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bo
     struct memory *m = &ctx->memory;
     tribo_store_all(ctx);
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        tribo_stop_alone(ctx, k, dt, v + i, tribo_bounds_from(&b, i), ctx->last.f + i);
+        tribo_stop_alone(ctx, k, dt, v + i, (struct bounds){b.lower ? b.lower + i : NULL, b.upper + i}, ctx->last.f + i);
     }
     if (breaks) {
         tribo_break_alone(ctx, dt, v);

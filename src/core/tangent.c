@@ -25,18 +25,13 @@ static void linearize_laws(tribo_context *ctx, const double *v, const double *a)
     ctx->last.linearized = 1;
 }
 
-/* Returns d kappa/dv, kappa = slope v. */
-static double relaxation_rate(const tribo_context *ctx, size_t i)
+/* Returns the change of kappa = slope v. */
+static double relaxation_change(const tribo_context *ctx, size_t i, double dv, double dlimit)
 {
     const struct contacts *c = &ctx->follow.contacts;
-    const double slope = tribo_slope_of(c, i);
-    return ctx->set.breaking ? slope + product(c->rate[i] * ctx->last.v[i], tribo_limit_rate(ctx, i, ctx->last.v[i])) : slope;
-}
-
-/* Returns the change of kappa with the limit. */
-static double relaxation_turn(const tribo_context *ctx, size_t i, double dlimit)
-{
-    return product(product(tribo_slope_rate_of(&ctx->follow.contacts, i), ctx->last.v[i]), dlimit);
+    const double v = ctx->last.v[i], by_limit = product(c->rate[i], v);
+    const double rate = tribo_slope_of(c, i) + product(by_limit, tribo_limit_rate(ctx, i, v));
+    return product(rate, dv) + product(c->follows ? 0.0 : by_limit, dlimit);
 }
 
 /* Returns the change of a force by its law, f_eq fixed. */
@@ -58,7 +53,7 @@ static double own_change(const tribo_context *ctx, const struct box_qp *p, size_
     const int side = p->at[k] == AT_UPPER ? 1 : -1, shifted = ctx->set.law->relaxes && side * kappa >= 0.0;
     const int moves = shifted && 0.5 * fabs(kappa) < c->limit[i], across = shifted && !moves;
     const double wider = dlimit + product(tribo_limit_rate(ctx, i, v), dv), change = (across ? -side : side) * wider;
-    return moves ? change - product(relaxation_rate(ctx, i), dv) - relaxation_turn(ctx, i, dlimit) : change;
+    return moves ? change - relaxation_change(ctx, i, dv, dlimit) : change;
 }
 
 /* df = R^-1 (-rhs) over the free contacts, the least in norm; df of the others is given. */
@@ -106,7 +101,7 @@ static const double *group_product(const tribo_context *ctx, struct box_qp *p, s
         df[k] = p->at[k] == FREE ? 0.0 : clamp(own_change(ctx, p, k, dv[k], dlimit), -most, most);
         rhs[k] = clamp(da[k], -pull, pull);
         if (!partition && ctx->set.law->relaxes) {
-            rhs[k] += r * clamp(product(relaxation_rate(ctx, i), dv[k]) + relaxation_turn(ctx, i, dlimit), -most, most);
+            rhs[k] += r * clamp(relaxation_change(ctx, i, dv[k], dlimit), -most, most);
         }
     }
     follow_free(p, vectors, rhs, df);

@@ -60,12 +60,6 @@ static inline double tribo_slope_of(const struct contacts *c, size_t i)
     return c->rate[i] * (!c->follows ? c->bound[i] : c->bound[i] > 0.0 ? 1.0 : 0.0);
 }
 
-/* d(slope)/d(limit) */
-static inline double tribo_slope_rate_of(const struct contacts *c, size_t i)
-{
-    return c->follows ? 0.0 : c->rate[i];
-}
-
 /* Derivatives of a force. */
 struct tangent {
     double dv, dfeq, dlimit;
