@@ -76,13 +76,10 @@ int tribo_clusters_step(tribo_context *ctx, double dt, const double *vfree, cons
 /* f_eq of the contacts of clusters, in last.feq. */
 void tribo_clusters_feq(tribo_context *ctx, const double *a);
 
-/* feels [n] = (R f)_i without f_i, of the scalar contacts of clusters. */
-void tribo_clusters_feel(const tribo_context *ctx, double *feels);
-
-/* Sets reverses of planar contacts that slide after a step to TRIBO_SLIP_PLANE. *free [n] = vfree, but v + vfree of those that do
- * not turn back, whose number is returned. */
-size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const double *vfree, signed char *reverses,
-                           const double **free);
+/* After a step: feels [n] = (R f)_i without f_i, of the scalar contacts of clusters. Sets reverses of planar contacts that slide to
+ * TRIBO_SLIP_PLANE, and *vfree to v + vfree of those that do not turn back, whose number is returned. */
+size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const double **vfree, double *feels,
+                           signed char *reverses);
 
 /* slip of the directions of planar contacts in the last call; all, or direction i alone. */
 void tribo_plane_slips(const tribo_context *ctx, signed char *slip);

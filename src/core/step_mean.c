@@ -14,6 +14,7 @@
 struct step {
     double dt;
     const double *v, *vfree;
+    const double *free;    /* [n] vfree of the second problem */
     signed char *reverses; /* [n] direction of slip at the end, or 0 */
     double *lower, *upper; /* [n] bounds of the second problem; before, upper: R f without the contact's own force */
     size_t changes;
@@ -24,6 +25,7 @@ static void look_at_all(tribo_context *ctx, struct step *s)
 {
     for (size_t i = 0; i < ctx->n; i++) {
         s->upper[i] = 0.0;
+        s->reverses[i] = 0;
     }
     for (size_t g = 0; g < ctx->op->groups; g++) {
         struct box_qp *p = tribo_problem(ctx, g);
@@ -34,7 +36,7 @@ static void look_at_all(tribo_context *ctx, struct step *s)
             s->upper[p->member[k]] = tribo_row_others(p, k, p->step);
         }
     }
-    tribo_clusters_feel(ctx, s->upper);
+    s->changes = tribo_clusters_turn(ctx, s->dt, s->v, &s->free, s->upper, s->reverses);
     for (size_t i = 0; i < ctx->n; i++) {
         const double limit = ctx->set.limit[i], hold = product(ctx->op->diagonal[i], limit), forth = sign(s->v[i]);
         const double free = quotient(0.5 * s->vfree[i] - 0.5 * s->v[i], 0.5 * s->dt), against = -forth * (free + s->upper[i]);
@@ -43,7 +45,7 @@ static void look_at_all(tribo_context *ctx, struct step *s)
         const int back = over && part < 1.0;
         s->upper[i] = back ? forth * limit * (1.0 - 2.0 * part) : limit;
         s->lower[i] = back ? s->upper[i] : -limit;
-        s->reverses[i] = (signed char)(back ? -forth : 0.0);
+        s->reverses[i] = (signed char)(back ? -forth : s->reverses[i]);
         s->changes += (size_t)back;
     }
 }
@@ -66,8 +68,7 @@ int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const 
         return status ? status : tribo_step_at_end(ctx, dt, v, vfree, f);
     }
     const int plane = tribo_plane_count(ctx) > 0;
-    const double *free = vfree;
-    struct step s = {dt, v, vfree, ctx->spare.of, ctx->last.v, ctx->last.feq, 0};
+    struct step s = {dt, v, vfree, vfree, ctx->spare.of, ctx->last.v, ctx->last.feq, 0};
     status = tribo_solve_step(ctx, dt, vfree, (struct bounds){NULL, ctx->set.limit}, NULL, s.lower);
     if (status) {
         return status;
@@ -75,12 +76,11 @@ int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const 
     ctx->last.holds = 1.0;
     if (plane || any_slip_ends(ctx->n, v, ctx->last.f, ctx->set.limit)) {
         look_at_all(ctx, &s);
-        s.changes += tribo_clusters_turn(ctx, dt, v, vfree, s.reverses, &free);
     }
     if (!s.changes) {
         tribo_copy(f, ctx->last.f, ctx->n);
     } else {
-        status = tribo_solve_step(ctx, dt, free, (struct bounds){s.lower, s.upper}, s.reverses, f);
+        status = tribo_solve_step(ctx, dt, s.free, (struct bounds){s.lower, s.upper}, s.reverses, f);
     }
     if (!status) {
         ctx->last.slips = SLIPS_IN_FORCES;

@@ -368,18 +368,6 @@ int tribo_clusters_step(tribo_context *ctx, double dt, const double *v, const si
     return status;
 }
 
-void tribo_clusters_feel(const tribo_context *ctx, double *feels)
-{
-    for (size_t q = 0; ctx->planar && q < ctx->planar->clusters; q++) {
-        const struct cluster *g = &ctx->planar->cluster[q];
-        for (size_t k = 0; k < g->size; k++) {
-            if (tribo_is_scalar(ctx, g->member[k])) {
-                feels[g->member[k]] = tribo_planar_others(ctx, g, k, k, 1, 0.0);
-            }
-        }
-    }
-}
-
 /* Rounding of the length of a force in parts of its limit. */
 #define ROUNDING (8.0 * DBL_EPSILON)
 
@@ -405,32 +393,32 @@ void tribo_plane_slips(const tribo_context *ctx, signed char *slip)
     }
 }
 
-size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const double *vfree, signed char *reverses,
-                           const double **free)
+size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const double **vfree, double *feels,
+                           signed char *reverses)
 {
-    const struct planar *c = ctx->planar;
+    double *turned = ctx->plane.v;
+    const double *free = *vfree;
     size_t changes = 0;
-    *free = vfree;
-    for (size_t q = 0; c && q < c->clusters; q++) {
-        const struct cluster *g = &c->cluster[q];
-        for (size_t k = 0; k < g->size; k++) {
+    for (size_t q = 0; ctx->planar && q < ctx->planar->clusters; q++) {
+        const struct cluster *g = &ctx->planar->cluster[q];
+        for (size_t k = 0, directions; k < g->size; k += directions) {
             const size_t i = g->member[k];
-            if (c->role[i] == ROLE_FIRST && reaches_limits(ctx, i)) {
-                double forward = 0.0; /* v_end'v */
-                for (size_t d = 0; d < 2; d++) {
-                    const double end = vfree[i + d] + product(tribo_planar_others(ctx, g, k + d, k, 0, 0.0), dt);
-                    forward += product(end, v[i + d]);
-                }
-                reverses[i] = tribo_plane_slip(ctx, i);
-                reverses[i + 1] = tribo_plane_slip(ctx, i + 1);
-                changes += forward > 0.0;
-                if (changes && *free == vfree) {
-                    tribo_copy(ctx->plane.v, vfree, ctx->n);
-                    *free = ctx->plane.v;
-                }
-                for (size_t d = i; forward > 0.0 && d < i + 2; d++) {
-                    ctx->plane.v[d] = v[d] + vfree[d];
-                }
+            double forward = 0.0; /* v_end'v */
+            directions = tribo_directions(ctx, i);
+            for (size_t d = 0; d < directions; d++) {
+                feels[i + d] = tribo_planar_others(ctx, g, k + d, k, directions == 1 ? 1 : 0, 0.0);
+                forward += product(free[i + d] + product(feels[i + d], dt), v[i + d]);
+            }
+            if (directions == 1 || !reaches_limits(ctx, i)) {
+                continue;
+            }
+            if (forward > 0.0 && changes++ == 0) {
+                tribo_copy(turned, free, ctx->n);
+                *vfree = turned;
+            }
+            for (size_t d = i; d < i + 2; d++) {
+                reverses[d] = tribo_plane_slip(ctx, d);
+                turned[d] = forward > 0.0 ? v[d] + free[d] : turned[d];
             }
         }
     }
