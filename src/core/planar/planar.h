@@ -4,7 +4,7 @@
  *   planar_parts.c    sliding, nearness to stick, blocks of R, static limits
  *   planar_reach.c    reaches: stand-ins for limits that are far beyond forces
  *   planar_force.c    forces
- *   planar_tangent.c  derivatives
+ *   planar_tangent.c  derivatives; forces and derivatives where f_eq is given
  *
  * clusters.h declares what the rest of core calls, parts.h what these files share. */
 #ifndef TRIBO_PLANAR_H

@@ -1,5 +1,6 @@
 /* Derivatives of the forces of a cluster by velocities, accelerations and limits: the contacts near stick stay in their places,
- * and Newton's equations along the freedoms that these leave keep them balanced. */
+ * and Newton's equations along the freedoms that these leave keep them balanced. Forces and derivatives of planar contacts with
+ * f_eq given, each of which is a problem alone. */
 #include "core/static.h"
 #include "parts.h"
 
@@ -322,7 +323,7 @@ static struct turn given_turn(const tribo_context *ctx, size_t i, const struct g
     return t;
 }
 
-/* Columns of the derivatives out [3] of planar contact k, [2] each, whose problem x is solved if it is near stick. */
+/* Sets the derivatives out [3] of planar contact k, [n][2] each, or NULL. p: the solved problem near stick, or NULL. */
 static void given_columns(const tribo_context *ctx, size_t k, const struct given *g, struct disc_qp *p, const double *v,
                           double *const *out)
 {
