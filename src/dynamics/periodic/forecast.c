@@ -1,11 +1,13 @@
-/* Forces and velocities are sums of the N/2 lowest odd harmonics of half a period, w_p = (2 p + 1) pi/span, known by their values at
+/* Approximate state of the odd periodic motion, by Coulomb's law. Damping that couples free modes is neglected.
+ *
+ * Forces and velocities are sums of the N/2 lowest odd harmonics of half a period, w_p = (2 p + 1) pi/span, known by their values at
  * N times. Mode k, eta'' + c eta' + omega^2 eta = J_k'f, has the receptance H_k = 1/(omega^2 - w^2 + i w c), so that velocities are
  *     v = v_0 + i w (G + sum over modes of J_k J_k' H_k) f
  * v_0: velocities by loads and bases; G: matrix of compliance. f'v is the work on the structure, which generates no energy. Therefore,
  * with the limits L, the velocities v_0 + A f, and a rho that is diagonal over the contacts,
  *     f = clamp(s, -L, L),    (1 + rho A) y = 2 f - s - rho v_0,    s += y - f
  * converges to f = clamp(f - rho v, -L, L), Coulomb's law (Douglas and Rachford 1956; Lions and Mercier 1979). */
-#include "forecast.h"
+#include "period_map.h"
 #include "common/imaginary.h"
 #include "common/layout.h"
 #include "common/real.h"

@@ -9,8 +9,8 @@
 struct replay {
     struct company company;
     struct period_map *map;
-    int (*phase)(struct replay *r, double tau, const double *end);
-    const double *c;             /* coefficients of q, q' (and f, f') */
+    int (*phase)(struct replay *r, double tau);
+    const double *c;             /* coefficients of q, q' (and f, f'), or NULL */
     struct signal signal, slope; /* the combination in the phase; workspace */
     double elapsed;              /* time since the start of the period */
     struct extremes extremes;
@@ -18,16 +18,13 @@ struct replay {
     double *sum;          /* [ncontact] sum over the phases */
 };
 
-static int period_quantities_no_memory(const struct replay *r)
-{
-    return tribo_system_fail(r->map->sys, TRIBO_ERR_MEMORY, "out of memory for a phase of the period");
-}
-
 /* map->x: state at the start of the phase. */
 static int phase_ends(struct company *company, double tau, double t, const double *y)
 {
     struct replay *r = (struct replay *)company;
-    const int status = r->phase(r, tau, y);
+    const struct events *e = r->map->events;
+    int status = r->c ? e->motion->signal(e->own, r->c, tau, y, &r->signal) : TRIBO_OK;
+    status = status ? status : r->phase(r, tau);
     (void)t;
     r->elapsed += tau;
     memcpy(r->map->x, y, r->map->n * sizeof *y);
@@ -37,11 +34,6 @@ static int phase_ends(struct company *company, double tau, double t, const doubl
 static void event_decided(struct company *company)
 {
     (void)company;
-}
-
-static int set_signal(struct replay *r, double tau, const double *end)
-{
-    return r->map->events->motion->signal(r->map->events->own, r->c, tau, end, &r->signal);
 }
 
 /* Calls r->phase for each phase of the period. Returns a status. */
@@ -86,12 +78,12 @@ static int take_combination(tribo_driver *drv, struct replay *r, const double *c
 
 /* -------------------------------------------------------------------------------------------------------------- extremes */
 
-static int find_extremes(struct replay *r, double tau, const double *end)
+static int find_extremes(struct replay *r, double tau)
 {
-    const int status = set_signal(r, tau, end);
-    return status || tribo_signal_extremes(&r->signal, &r->slope, r->map->t + r->elapsed, &r->extremes)
-               ? status
-               : period_quantities_no_memory(r);
+    (void)tau;
+    return tribo_signal_extremes(&r->signal, &r->slope, r->map->t + r->elapsed, &r->extremes)
+               ? TRIBO_OK
+               : tribo_system_fail(r->map->sys, TRIBO_ERR_MEMORY, "out of memory for a phase of the period");
 }
 
 int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most, double *at_least,
@@ -122,17 +114,15 @@ int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *lea
 
 /* -------------------------------------------------------------------------------------------------------------- harmonics */
 
-static int integrate(struct replay *r, double tau, const double *end)
+static int integrate(struct replay *r, double tau)
 {
-    const int status = set_signal(r, tau, end);
-    if (!status) {
-        double re = 0.0, im = 0.0;
-        const double angle = r->omega * (r->map->t + r->elapsed), c = cos(angle), d = -sin(angle);
-        tribo_signal_integrate(&r->signal, r->omega, &re, &im);
-        r->re += c * re - d * im;
-        r->im += d * re + c * im;
-    }
-    return status;
+    double re = 0.0, im = 0.0;
+    const double angle = r->omega * (r->map->t + r->elapsed), c = cos(angle), d = -sin(angle);
+    (void)tau;
+    tribo_signal_integrate(&r->signal, r->omega, &re, &im);
+    r->re += c * re - d * im;
+    r->im += d * re + c * im;
+    return TRIBO_OK;
 }
 
 int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, double *cosine, double *sine)
@@ -159,10 +149,9 @@ int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, d
 
 /* -------------------------------------------------------------------------------------------------------------- contacts */
 
-static int add_energy(struct replay *r, double tau, const double *end)
+static int add_energy(struct replay *r, double tau)
 {
     const struct events *e = r->map->events;
-    (void)end;
     for (size_t i = 0; i < r->map->sys->ncontact; i++) {
         if (tribo_slides(e->stick_slip.state.slip[i])) {
             r->sum[i] += r->map->sys->tally[i] * e->motion->work(e->own, i, tau);
@@ -171,9 +160,8 @@ static int add_energy(struct replay *r, double tau, const double *end)
     return TRIBO_OK;
 }
 
-static int period_quantities_add_rest(struct replay *r, double tau, const double *end)
+static int period_quantities_add_rest(struct replay *r, double tau)
 {
-    (void)end;
     for (size_t i = 0; i < r->map->sys->ncontact; i++) {
         r->sum[i] += r->map->events->stick_slip.state.slip[i] == TRIBO_SLIP_STUCK ? tau / r->map->period : 0.0;
     }
@@ -181,7 +169,7 @@ static int period_quantities_add_rest(struct replay *r, double tau, const double
 }
 
 /* to [ncontact] = the sums that `phase` adds to r.sum over the period. Returns a status. */
-static int sum_up(tribo_driver *drv, const char *name, int (*phase)(struct replay *, double, const double *), double *to)
+static int sum_up(tribo_driver *drv, const char *name, int (*phase)(struct replay *, double), double *to)
 {
     if (!drv) {
         return TRIBO_ERR_NULL;

@@ -7,12 +7,6 @@
 /* Largest distance of omega period/(2 pi) from a whole number, beside rounding. */
 #define WHOLE 3e-12
 
-static int unsupported(tribo_driver *drv)
-{
-    return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s finds no periodic motions: take exact, event or auto",
-                             drv->method->name);
-}
-
 static int check_period(tribo_driver *drv, double t, double period)
 {
     if (!isfinite(period)) {
@@ -48,10 +42,12 @@ static int check_loads(tribo_driver *drv, double period)
     return TRIBO_OK;
 }
 
-/* Refuses static limits with massless degrees of freedom: derivatives lack the jumps of forces at massless springs. */
-static int check_static(tribo_driver *drv)
+/* Refuses static limits with massless degrees of freedom: derivatives lack the jumps of forces at massless springs; and planar
+ * contacts: derivatives lack the turning of sliding forces. */
+static int check_friction(tribo_driver *drv)
 {
     double *ratio = drv->sys->feq;
+    const size_t planar = tribo_system_planar(drv->sys);
     tribo_get_static(drv->sys->contacts, ratio, NULL);
     for (size_t i = 0; drv->sys->expansion.place && i < drv->sys->ncontact; i++) {
         if (ratio[i] > 1.0) {
@@ -62,13 +58,6 @@ static int check_static(tribo_driver *drv)
                 i, ratio[i]);
         }
     }
-    return TRIBO_OK;
-}
-
-/* Refuses planar contacts: derivatives lack the turning of sliding forces. */
-static int check_planar(tribo_driver *drv)
-{
-    const size_t planar = tribo_system_planar(drv->sys);
     return planar ? tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
                                       "periodic motions are found without planar contacts, of which the system has %zu", planar)
                   : TRIBO_OK;
@@ -96,11 +85,13 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
     if (!drv) {
         return TRIBO_ERR_NULL;
     }
-    int status = drv->method->find_periodic ? check_state(drv, t, y) : unsupported(drv);
+    int status = drv->method->find_periodic
+                     ? check_state(drv, t, y)
+                     : tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
+                                         "method %s finds no periodic motions: take exact, event or auto", drv->method->name);
     status = status ? status : check_period(drv, t, period);
     status = status ? status : check_loads(drv, period);
-    status = status ? status : check_static(drv);
-    status = status ? status : check_planar(drv);
+    status = status ? status : check_friction(drv);
     if (status || !drv->motion) {
         return status ? status : drv->method->find_periodic(drv, t, period, y);
     }

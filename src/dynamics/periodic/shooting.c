@@ -6,15 +6,12 @@
  *         find Newton's step, and integrate from its end
  *         accept the step if the residual falls
  *         otherwise continue from the end, for a few steps, unless the step has gone much too far
- *         otherwise go back to the best point and shorten its step, in turn by a shift of the matrix, which shortens the
- *             directions first where a small force makes a large motion, or by a factor; if no shifted step is good, take
- *             the image as the next point, because contacts that come to rest forget the initial state
+ *         otherwise go back to the best point and shorten its step
  *
  * If a contact hardly slips, r goes with the square of the distance to states where the contact rests, the border of a family
  * of solutions (a double root): Newton's steps halve each time, and ratio = 1/4. Then the step is made twice as long, and a
  * little more. */
 #include "shooting.h"
-#include "forecast.h"
 #include "common/real.h"
 #include "numerics/linalg.h"
 #include "numerics/krylov.h"
@@ -139,45 +136,34 @@ static double left_along(const struct shooting *s, const struct point *p)
     return tribo_dot(s->step, p->x, n) - tribo_dot(s->step, p->image, n);
 }
 
-/* a [n][n] = (1 + shift) I - derivative */
-static void set_matrix(const struct shooting *s, const double *derivative, double shift)
+/* x [n] = the shortest solution of (I - derivative) y = x, with singular values below cut taken as zero; *kernel = their number.
+ * Returns a status. */
+static int solve_densely(struct shooting *s, const double *derivative, double cut, double *x, size_t *kernel)
 {
     const size_t n = s->map.n;
-    for (size_t i = 0; i < n * n; i++) {
-        s->a[i] = (i % (n + 1) == 0 ? 1.0 + shift : 0.0) - derivative[i];
+    *kernel = 0;
+    for (int singular = 0; singular < 2; singular++) {
+        for (size_t i = 0; i < n * n; i++) {
+            s->a[i] = (i % (n + 1) == 0 ? 1.0 : 0.0) - derivative[i];
+        }
+        if (!singular && tribo_lu_create(s->a, n, s->pivot) > SINGULAR) {
+            tribo_lu_solve(s->a, n, s->pivot, x, 1);
+            return TRIBO_OK;
+        }
     }
+    return tribo_least_norm_solve(s->a, n, cut, x, kernel) ? TRIBO_OK : shooting_no_memory(s);
 }
 
-/* The matrix (1 + shift) I - D, D = the derivative at the point `at` over 1 or 2 spans. */
-struct equation {
-    struct shooting *s;
-    const struct point *at;
-    double shift;
-    int spans;
-};
-
+/* x = (I - D) x, D = the derivative at s->here over s->spans spans. */
 static int apply_equation(void *data, double *x)
 {
-    const struct equation *e = data;
-    double *moved = e->s->a;
+    struct shooting *s = data;
     int status = TRIBO_OK;
-    memcpy(moved, x, e->s->map.n * sizeof *x);
-    for (int k = 0; !status && k < e->spans; k++) {
-        status = tribo_period_map_apply(&e->s->map, e->at, moved);
+    memcpy(s->a, x, s->map.n * sizeof *x);
+    for (int k = 0; !status && k < s->spans; k++) {
+        status = tribo_period_map_apply(&s->map, s->here, s->a);
     }
-    for (size_t i = 0; i < e->s->map.n; i++) {
-        x[i] = (1.0 + e->shift) * x[i] - moved[i];
-    }
-    return status;
-}
-
-/* Solves in place for x [n], first the right-hand side. *done = 0: no solution, x undefined. If contacts rest all the time, there
- * may be many solutions: the Krylov space of a map that increases no distance has the shortest. */
-static int solve_in_space(struct shooting *s, struct equation e, double tolerance, double *x, int *done)
-{
-    double part;
-    const int status = tribo_gmres(s->map.n, apply_equation, &e, tolerance, s->map.n, x, &part, s->space);
-    *done = part <= tolerance;
+    tribo_add(x, -1.0, s->a, s->map.n);
     return status;
 }
 
@@ -187,31 +173,35 @@ static int is_matrix_free(const struct shooting *s)
     return s->map.n > DENSE && s->map.events->motion->keep;
 }
 
-/* Sets s->step, the shortest solution of ((1 + shift) I - derivative) step = image - x. Returns a status. */
-static int newton_step(struct shooting *s, double shift)
+/* Solves (I - D) y = x in place, D over `spans` spans from s->here. *done = 0: no solution, x undefined. If contacts rest all the
+ * time, there may be many solutions: the Krylov space of a map that increases no distance has the shortest. Returns a status. */
+static int solve_in_space(struct shooting *s, int spans, double tolerance, double *x, int *done)
 {
-    const size_t n = s->map.n;
+    double part;
+    s->spans = spans;
+    const int status = tribo_gmres(s->map.n, apply_equation, s, tolerance, s->map.n, x, &part, s->space);
+    *done = part <= tolerance;
+    return status;
+}
+
+/* Sets s->step, the shortest solution of (I - derivative) step = image - x. Returns a status. */
+static int newton_step(struct shooting *s)
+{
     const double *derivative = NULL;
+    size_t kernel;
     int done = 0, status = TRIBO_OK;
     if (is_matrix_free(s)) {
         const double near = s->here->residual / s->here->size;
         const double fell = s->before > 0.0 && near > LEAST_INEXACT ? lesser(s->here->residual / s->before, 1.0) : 0.0;
-        const double part = clamp(greater(near, 0.9 * fell * fell), LEAST_INEXACT, MOST_INEXACT);
         find_gap(s, s->here, s->step);
-        status = solve_in_space(s, (struct equation){s, s->here, shift, 1}, part, s->step, &done);
+        status = solve_in_space(s, 1, clamp(greater(near, 0.9 * fell * fell), LEAST_INEXACT, MOST_INEXACT), s->step, &done);
     }
     status = status || done ? status : tribo_period_map_matrix(&s->map, s->here, &derivative);
     if (status || done) {
         return status;
     }
     find_gap(s, s->here, s->step);
-    set_matrix(s, derivative, shift);
-    if (tribo_lu_create(s->a, n, s->pivot) > SINGULAR) {
-        tribo_lu_solve(s->a, n, s->pivot, s->step, 1);
-        return TRIBO_OK;
-    }
-    set_matrix(s, derivative, shift);
-    return tribo_least_norm_solve(s->a, n, CUT, s->step, NULL) ? TRIBO_OK : shooting_no_memory(s);
+    return solve_densely(s, derivative, CUT, s->step, &kernel);
 }
 
 /* Sets s->there from there.x = here.x + part step, s->ratio and s->nearest. Returns a status. */
@@ -232,7 +222,7 @@ static int try_step(struct shooting *s, double part)
 static int newton(struct shooting *s)
 {
     const int to_double = s->rate > DOUBLE_FROM && s->rate < DOUBLE_TO;
-    const int status = newton_step(s, 0.0);
+    const int status = newton_step(s);
     s->map.drv->newton++;
     s->before = s->here->residual;
     if (!status && tribo_energy_length(s->step, s->map.n) < FLAT * s->here->residual) {
@@ -244,17 +234,15 @@ static int newton(struct shooting *s)
     return status ? status : try_step(s, to_double ? BEYOND / (1.0 - sqrt(s->rate)) : 1.0);
 }
 
-/* Tries shorter steps, part in (low, high); ratio = s->first at part 1. shifted = 1: steps by a shifted matrix. */
-static int shorten(struct shooting *s, int shifted)
+/* Tries shorter steps, part in (low, high); ratio = s->first at part 1. Returns a status. */
+static int shorten(struct shooting *s)
 {
-    const double whole = tribo_energy_length(s->step, s->map.n);
     double low = 0.0, high = 1.0, at_low = 1.0, at_high = s->first;
     int status = TRIBO_OK;
-    for (int k = 0; !status && whole > 0.0 && k < MOST_TRIALS; k++) {
+    for (int k = 0; !status && k < MOST_TRIALS; k++) {
         const double secant = low + (high - low) * at_low / (at_low - at_high), least = low > 0.0 ? sqrt(low * high) : 0.1 * high;
         const double part = at_high < 0.0 ? lesser(greater(secant, least), 0.9 * high) : 0.5 * high;
-        status = shifted ? newton_step(s, s->here->residual / (part * whole)) : TRIBO_OK;
-        status = status ? status : try_step(s, shifted ? 1.0 : part);
+        status = try_step(s, part);
         if (status || s->there->residual < PAYS * s->here->residual || fabs(s->ratio) < LEFT) {
             return status;
         }
@@ -281,14 +269,9 @@ static int proceed(struct shooting *s)
         go_to(s, s->there);
         return TRIBO_OK;
     }
-    const int shifted = s->setbacks++ % 2 == 0;
     go_to(s, s->best);
-    int status = newton_step(s, 0.0);
-    status = status ? status : shorten(s, shifted);
-    if (!status && shifted && !(s->there->residual < PAYS * s->best->residual)) {
-        memcpy(s->there->x, s->here->image, s->map.n * sizeof *s->there->x);
-        status = tribo_period_map_follow(&s->map, s->there);
-    }
+    int status = newton_step(s);
+    status = status ? status : shorten(s);
     if (!status) {
         shooting_settle(s);
     }
@@ -304,7 +287,7 @@ static int search(struct shooting *s, size_t halves)
         return status;
     }
     s->best = s->here;
-    s->astray = s->setbacks = 0;
+    s->astray = 0;
     s->rate = s->stride = s->before = 0.0;
     s->nearest = s->here->residual / s->here->size;
     while (!status && !close_enough(s->best, AIM) && s->map.halves < most) {
@@ -378,25 +361,15 @@ static int whole_derivative(struct shooting *s)
 static int find_family(struct shooting *s, double *move)
 {
     const size_t n = s->map.n;
-    const int status = whole_derivative(s);
-    if (status) {
-        return status;
+    int status = whole_derivative(s);
+    if (!status) {
+        memcpy(s->step, move, n * sizeof *move);
+        tribo_multiply_add(n, n, 1, -1.0, s->b, move, s->step);
+        status = solve_densely(s, s->b, FREE, s->step, &s->freedom);
+        tribo_add(move, -1.0, s->step, n);
     }
-    set_matrix(s, s->b, 0.0);
-    s->freedom = 0;
-    if (tribo_lu_create(s->a, n, s->pivot) > SINGULAR) {
-        memset(move, 0, n * sizeof *move);
-        return TRIBO_OK;
-    }
-    set_matrix(s, s->b, 0.0);
-    memset(s->step, 0, n * sizeof *s->step);
-    tribo_multiply_add(n, n, 1, 1.0, s->a, move, s->step);
-    if (!tribo_least_norm_solve(s->a, n, FREE, s->step, &s->freedom)) {
-        s->freedom = UNKNOWN;
-        return shooting_no_memory(s);
-    }
-    tribo_add(move, -1.0, s->step, n);
-    return TRIBO_OK;
+    s->freedom = status ? UNKNOWN : s->freedom;
+    return status;
 }
 
 /* Projects move [n] on the family of periodic motions. If all modes are damped and no contact rests in all phases, there is no
@@ -405,18 +378,19 @@ static int stay_in_family(struct shooting *s, double *move)
 {
     const size_t n = s->map.n;
     int status = TRIBO_OK, done = 0;
-    if (is_matrix_free(s)) {
-        if (tribo_energy_norm_is_damped(&s->map.norm) && !tribo_derivative_rests(&s->best->derivative)) {
-            memset(move, 0, n * sizeof *move);
-            return TRIBO_OK;
-        }
-        memcpy(s->step, move, n * sizeof *move);
-        struct equation e = {s, s->best, 0.0, 2};
-        status = apply_equation(&e, s->step);
-        status = status ? status : solve_in_space(s, e, AIM, s->step, &done);
+    if (tribo_energy_norm_is_damped(&s->map.norm) && !tribo_derivative_rests(&s->best->derivative)) {
+        memset(move, 0, n * sizeof *move);
+        return TRIBO_OK;
     }
-    if (!status && done) {
-        tribo_add(move, -1.0, s->step, n);
+    if (is_matrix_free(s)) {
+        go_to(s, s->best);
+        memcpy(s->step, move, n * sizeof *move);
+        s->spans = 2;
+        status = apply_equation(s, s->step);
+        status = status ? status : solve_in_space(s, 2, AIM, s->step, &done);
+        if (!status && done) {
+            tribo_add(move, -1.0, s->step, n);
+        }
     }
     return status || done ? status : find_family(s, move);
 }

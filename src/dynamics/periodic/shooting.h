@@ -15,9 +15,9 @@ struct shooting {
     double ratio;                      /* left_along(there)/left_along(here) of the step */
     double first, rate; /* first: ratio of the step from best; rate: ratio of the last step if it was good, else 0 */
     double stride;      /* spans extrapolated at once; 0: Newton's steps */
+    int spans;          /* spans of the equation solved in a Krylov space */
     double before;      /* residual before the last step; 0: no step yet */
     size_t astray;      /* unsuccessful steps since best */
-    size_t setbacks;    /* number of returns to best */
     double nearest;     /* least residual/size so far */
     int found;
     size_t freedom;  /* dimension of the family of the motion found; UNKNOWN until computed */

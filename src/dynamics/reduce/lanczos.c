@@ -2,7 +2,6 @@
 #include "common/real.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -52,11 +51,12 @@ struct lanczos {
 
 /* -------------------------------------------------------------------------------------------------------------- the basis */
 
-static void lanczos_scatter(struct lanczos *l, double *x)
+void tribo_scatter(uint64_t *seed, size_t n, double *x)
 {
-    for (size_t i = 0; i < l->n; i++) {
-        l->seed = l->seed * 6364136223846793005u + 1442695040888963407u;
-        x[i] = (double)(l->seed >> 40) / 8388608.0 - 1.0;
+    for (size_t i = 0; i < n; i++) {
+        *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+        const double part = (double)(*seed >> 40) / 16777216.0;
+        x[i] = part < 0.5 ? part - 1.0 : part;
     }
 }
 
@@ -96,7 +96,7 @@ static void separate(struct lanczos *l, size_t j, size_t count)
 static int draw(struct lanczos *l, size_t j, size_t count)
 {
     for (size_t k = j; k < j + count; k++) {
-        lanczos_scatter(l, l->w + k * l->n);
+        tribo_scatter(&l->seed, l->n, l->w + k * l->n);
     }
     const int done = tribo_cholesky_solve(l->shifted, count, l->w + j * l->n);
     separate(l, j, count);
@@ -140,15 +140,6 @@ static void lanczos_append(struct lanczos *l, size_t j)
     l->complete = 1;
 }
 
-static void find_gram(struct lanczos *l)
-{
-    for (size_t i = 0; i < l->pending; i++) {
-        for (size_t j = 0; j < l->pending; j++) {
-            l->gram[i][j] = tribo_dot(l->w + i * l->n, l->mw + j * l->n, l->n);
-        }
-    }
-}
-
 /* Appends one block to the basis, and updates w, h and gram. Returns 0 if out of memory. */
 static int lanczos_extend(struct lanczos *l)
 {
@@ -167,8 +158,10 @@ static int lanczos_extend(struct lanczos *l)
         for (size_t i = 0; i < l->size; i++) {
             l->h[i * l->room + first + j] = l->h[(first + j) * l->room + i] = l->c[j * l->room + i];
         }
+        for (size_t i = 0; i < l->pending; i++) {
+            l->gram[j][i] = tribo_dot(l->w + j * l->n, l->mw + i * l->n, l->n);
+        }
     }
-    find_gram(l);
     return 1;
 }
 
@@ -285,8 +278,8 @@ static double above_frequency(const struct lanczos *l, size_t wanted)
     return first > 0 ? lesser(above, sqrt(l->theta[first - 1] * l->theta[first])) : above;
 }
 
-/* Sets *between = a theta in the first gap after mode wanted - 1, or, if the basis is complete, below all theta; 0 if there is no
- * gap within FURTHER modes. Finds more modes if needed. Returns a status. */
+/* Sets *between = a theta in the first gap after mode wanted - 1; if there is none, below all theta, or, if the basis is not
+ * complete, above the frequency of mode wanted - 1. Finds more modes if needed. Returns a status. */
 static int find_gap(struct lanczos *l, size_t wanted, double *between)
 {
     for (size_t p = wanted; l->complete ? p < l->size : p <= wanted + FURTHER; p++) {
@@ -300,7 +293,7 @@ static int find_gap(struct lanczos *l, size_t wanted, double *between)
             return TRIBO_OK;
         }
     }
-    *between = l->complete ? 0.5 * l->theta[l->size - 1] : 0.0;
+    *between = l->complete ? 0.5 * l->theta[l->size - 1] : above_frequency(l, wanted);
     return TRIBO_OK;
 }
 
@@ -337,34 +330,6 @@ static size_t count_above(const struct lanczos *l, double theta)
     return k;
 }
 
-/* Finds all `count` modes above theta. Returns a status. */
-static int complete(struct lanczos *l, double theta, size_t count)
-{
-    for (int search = 0; search < MOST_SEARCHES && count_above(l, theta) < count; search++) {
-        int status = search ? lanczos_start_anew(l) : TRIBO_OK;
-        status = status ? status : converge(l, count);
-        if (status) {
-            return status;
-        }
-    }
-    return count_above(l, theta) == count ? TRIBO_OK : TRIBO_ERR_NO_CONVERGENCE;
-}
-
-/* Finds all modes below the frequency of mode wanted - 1, if the modes of this frequency do not fit. Returns a status. */
-static int complete_below(struct lanczos *l, const struct matrix *k, size_t wanted, struct low_modes *found)
-{
-    for (size_t search = 0; search < MOST_SEARCHES + wanted / BLOCK; search++) {
-        int status = search ? lanczos_start_anew(l) : TRIBO_OK;
-        status = status ? status : converge(l, wanted);
-        const double theta = status ? 1.0 : above_frequency(l, wanted);
-        status = status ? status : count_modes(l, k, theta, found);
-        if (status || count_above(l, theta) == found->below) {
-            return status;
-        }
-    }
-    return TRIBO_ERR_NO_CONVERGENCE;
-}
-
 /* ---------------------------------------------------------------------------------------------------------------- calls */
 
 /* Sets found->phi = shift/theta (K + shift M)^-1 M q, q the first `count` modes: removes parts without mass. Returns a status. */
@@ -391,24 +356,32 @@ static int lanczos_take(struct lanczos *l, size_t count, struct low_modes *found
     return done ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
+/* Finds modes until those above a theta are as many as are counted. If the modes of the frequency of mode wanted - 1 do not fit,
+ * theta is above this frequency. Returns a status. */
 static int lanczos_find(struct lanczos *l, const struct matrix *k, size_t wanted, struct low_modes *found)
 {
-    double theta = 0.0;
-    int status = lanczos_start_anew(l);
-    status = status ? status : converge(l, wanted);
-    if (!status && count_found(l) < wanted) {
-        found->count = count_found(l);
-        return TRIBO_ERR_SIZE;
+    size_t target = wanted;
+    for (size_t search = 0; search < MOST_SEARCHES + wanted / BLOCK; search++) {
+        double theta = 0.0;
+        int status = search == 0 || count_found(l) >= target ? lanczos_start_anew(l) : TRIBO_OK;
+        status = status ? status : converge(l, target);
+        if (!status && count_found(l) < wanted) {
+            found->count = count_found(l);
+            return TRIBO_ERR_SIZE;
+        }
+        status = status ? status : find_gap(l, wanted, &theta);
+        status = status ? status : count_modes(l, k, theta, found);
+        const int fits = found->below + 2 * BLOCK <= l->room || l->room == l->n;
+        if (!status && !fits) {
+            theta = above_frequency(l, wanted);
+            status = count_modes(l, k, theta, found);
+        }
+        if (status || count_above(l, theta) == found->below) {
+            return status ? status : lanczos_take(l, found->below > wanted ? found->below : wanted, found);
+        }
+        target = fits && found->below > wanted ? found->below : wanted;
     }
-    status = status ? status : find_gap(l, wanted, &theta);
-    status = status || theta == 0.0 ? status : count_modes(l, k, theta, found);
-    const int fits = found->below + 2 * BLOCK <= l->room || l->room == l->n;
-    if (!status && (theta == 0.0 || !fits)) {
-        status = complete_below(l, k, wanted, found);
-    } else if (!status) {
-        status = complete(l, theta, found->below);
-    }
-    return status ? status : lanczos_take(l, found->below > wanted ? found->below : wanted, found);
+    return TRIBO_ERR_NO_CONVERGENCE;
 }
 
 int tribo_low_modes(const struct matrix *k, const struct matrix *m, double shift, const struct cholesky *shifted, size_t wanted,

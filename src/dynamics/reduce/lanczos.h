@@ -12,6 +12,8 @@
 
 #include "numerics/linalg.h"
 
+#include <stdint.h>
+
 struct low_modes {
     size_t count;  /* modes in phi: the wanted ones, and others close to the last one */
     double *phi;   /* [count][n] ascending omega^2, modal masses 1; freed by the caller */
@@ -28,5 +30,8 @@ struct low_modes {
  * found->count modes exist, because the mass matrix is singular. */
 int tribo_low_modes(const struct matrix *k, const struct matrix *m, double shift, const struct cholesky *shifted, size_t wanted,
                     struct low_modes *found);
+
+/* x [n] = pseudo-random numbers of either sign, 1/2 <= |x_i| <= 1. */
+void tribo_scatter(uint64_t *seed, size_t n, double *x);
 
 #endif

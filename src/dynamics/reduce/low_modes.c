@@ -160,7 +160,7 @@ static int check_mass(const struct model *m, size_t *where)
 
 /* ------------------------------------------------------------------------------------------------------------------ the modes */
 
-/* Finds the `wanted` lowest modes among combinations of x [count][ndof]. Stiffer motions are unknown here: omega^2 is computed
+/* Finds the `wanted` lowest modes among combinations of x [count][ndof], which may be r->phi. Stiffer motions are unknown here: omega^2 is computed
  * without rounding of the largest entries, by tribo_matrix_form. Returns a status. */
 static int find_among(const struct model *m, size_t count, const double *x, size_t wanted, struct reduced *r)
 {
@@ -178,10 +178,9 @@ static int find_among(const struct model *m, size_t count, const double *x, size
     }
     free(columns);
     free(product);
-    int status = done ? tribo_cholesky_create(&c, &mass, &where, &pivot) : TRIBO_ERR_MEMORY;
+    int status = done ? tribo_cholesky_consume(&c, &mass, &where, &pivot) : TRIBO_ERR_MEMORY;
     status = status ? status : tribo_normal_modes(&m->stiffness, m->terms, &z, &c, wanted, r->omega2, r->phi, &doubt);
     tribo_cholesky_free(&c);
-    tribo_matrix_free(&mass);
     tribo_matrix_free(&z);
     for (size_t k = 0; !status && k < wanted; k++) {
         const double *phi = r->phi + k * n;
@@ -416,20 +415,6 @@ static int add_responses(const struct model *m, const struct shifted *s, struct 
     return done ? status : tribo_model_no_memory(m);
 }
 
-/* Makes the motions, with those of add_responses, orthogonal in K. Returns a status. */
-static int finish_attachments(const struct model *m, struct reduced *r)
-{
-    const size_t count = r->count;
-    double *x = malloc(count * m->ndof * sizeof *x);
-    if (!x) {
-        return tribo_model_no_memory(m);
-    }
-    memcpy(x, r->phi, count * m->ndof * sizeof *x);
-    const int status = find_among(m, count, x, count, r);
-    free(x);
-    return status;
-}
-
 /* whole [ncontact][ncontact] += the elastic part of the modes, J phi phi'J'/omega^2. shape [ncontact]: workspace. */
 static void add_modes(const struct model *m, const struct reduced *r, double *whole, double *shape)
 {
@@ -460,7 +445,8 @@ static int largest_part(size_t n, double *a, double *b, double *value, double *p
     return status != TRIBO_ERR_MEMORY;
 }
 
-/* Sets r->flexibility and r->truncation.missing, and adds attachment modes to r. Returns a status. */
+/* Sets r->flexibility and r->truncation.missing; adds attachment modes to r, and makes all motions orthogonal in K. Returns a
+ * status. */
 static int attach(const struct model *m, const struct shifted *s, struct reduced *r)
 {
     const size_t c = m->ncontact;
@@ -477,7 +463,7 @@ static int attach(const struct model *m, const struct shifted *s, struct reduced
         status = largest_part(c, missing, whole, work, &r->truncation.missing) ? TRIBO_OK : tribo_model_no_memory(m);
     }
     free(missing);
-    return status || r->count == m->nmode ? status : finish_attachments(m, r);
+    return status || r->count == m->nmode ? status : find_among(m, r->count, r->phi, r->count, r);
 }
 
 /* ------------------------------------------------------------------------------------------------------------------ calls */

@@ -35,33 +35,16 @@
 #define EXPLAINED 8.0
 
 struct spectrum {
-    size_t n;             /* number of displacements y */
-    double *k;            /* [n][n] Z'KZ */
-    double *y, *value;    /* [n][n] modes in rows, those to find again first; [n] their omega^2 so far */
-    double *ky;           /* [n][n] K y */
-    double *block, *turn; /* [n][n] workspace */
-    double most;          /* largest |omega^2| */
+    const struct matrix *stiffness, *z; /* K; Z, without rows: the identity */
+    size_t n;                           /* number of displacements y */
+    double *k;                          /* [n][n] Z'KZ */
+    double *y, *value;                  /* [n][n] modes in rows, those to find again first; [n] their omega^2 so far */
+    double *ky;                         /* [n][n] K y */
+    double *block, *turn;               /* [n][n] workspace */
+    double most;                        /* largest |omega^2| */
+    double *root;                       /* [rows of K] square roots of the terms of the diagonal */
+    double *force;                      /* [rows of K] workspace */
 };
-
-/* Finds all modes, omega^2 to rounding of the largest. Returns a status. */
-static int find_all(struct spectrum *s, const struct cholesky *mass)
-{
-    const size_t n = s->n;
-    memcpy(s->turn, s->k, n * n * sizeof *s->k);
-    tribo_half_solve(mass, s->turn, n);
-    tribo_transpose(n, n, s->turn, s->block);
-    tribo_half_solve(mass, s->block, n);
-    if (!tribo_dense_finite(s->block, n * n)) {
-        return TRIBO_ERR_NOT_FINITE;
-    }
-    const int status = tribo_symmetric_eigen(s->block, n, s->value, s->turn);
-    if (status) {
-        return status;
-    }
-    tribo_half_solve_back(mass, s->turn, n);
-    tribo_transpose(n, n, s->turn, s->y);
-    return TRIBO_OK;
-}
 
 static void modes_exchange(double *x, double *y, size_t n)
 {
@@ -134,146 +117,89 @@ static void take_out(struct spectrum *s, size_t low, double part)
 }
 
 /* Turns the first `low` modes and the others by block. Half of the first turn before and half after that of the others makes the
- * modes orthonormal except for a quarter of turn^3. Sets ky of the first `low` modes. */
+ * modes orthonormal except for a quarter of turn^3. */
 static void modes_separate(struct spectrum *s, size_t low)
 {
     const size_t n = s->n, others = n - low;
-    const int halves = find_turns(s, low) > TINY, by_others = !halves && low >= others;
+    const int halves = find_turns(s, low) > TINY;
     take_out(s, low, halves ? 0.5 : 1.0);
-    if (by_others) {
-        stress(s, low, others);
-        tribo_multiply_add(low, others, n, -1.0, s->block, s->ky + low * n, s->ky);
-    }
     tribo_transpose(low, others, s->block, s->turn);
     tribo_multiply_add(others, low, n, 1.0, s->turn, s->y, s->y + low * n);
     if (halves) {
         take_out(s, low, 0.5);
     }
-    if (!by_others) {
-        stress(s, 0, low);
-    }
 }
 
-/* Finds the first `low` modes again, from K projected on them alone. Returns a status. */
-static int find_low(struct spectrum *s, size_t low)
-{
-    const size_t n = s->n;
-    modes_share(s, low, 0, low);
-    const int status = tribo_symmetric_eigen(s->block, low, s->value, s->turn);
-    if (status) {
-        return status;
-    }
-    tribo_transpose(low, low, s->turn, s->block);
-    memset(s->ky, 0, low * n * sizeof *s->ky);
-    tribo_multiply_add(low, low, n, 1.0, s->block, s->y, s->ky);
-    memcpy(s->y, s->ky, low * n * sizeof *s->y);
-    return TRIBO_OK;
-}
-
+/* Finds all modes, omega^2 to rounding of the largest; then the low ones again, from K projected on these alone. Returns a status. */
 static int modes_find(struct spectrum *s, const struct cholesky *mass)
 {
-    int status = find_all(s, mass);
-    for (size_t open = s->n, low = 0; !status && (low = set_apart(s, open)) > 0; open = low) {
+    const size_t n = s->n;
+    memcpy(s->turn, s->k, n * n * sizeof *s->k);
+    int status = tribo_symmetric_eigen_by(mass, s->turn, n, s->value, s->block);
+    tribo_transpose(n, n, s->block, s->y);
+    for (size_t open = n, low = 0; !status && (low = set_apart(s, open)) > 0; open = low) {
         if (low == open) {
             return TRIBO_ERR_NO_CONVERGENCE;
         }
         modes_separate(s, low);
-        status = find_low(s, low);
+        stress(s, 0, low);
+        modes_share(s, low, 0, low);
+        status = tribo_symmetric_eigen(s->block, low, s->value, s->turn);
+        tribo_transpose(low, low, s->turn, s->block);
+        memset(s->ky, 0, low * n * sizeof *s->ky);
+        tribo_multiply_add(low, low, n, 1.0, s->block, s->y, s->ky);
+        memcpy(s->y, s->ky, low * n * sizeof *s->y);
     }
     return status;
 }
 
-/* Sets phi [n] = Z y of mode k. */
-static void modes_expand(const struct spectrum *s, const struct matrix *z, size_t k, double *phi)
+/* Sets phi [rows of K] = Z y of mode k. */
+static void modes_expand(const struct spectrum *s, size_t k, double *phi)
 {
-    if (z->rows) {
-        memset(phi, 0, z->rows * sizeof *phi);
-        tribo_matrix_multiply_add(z, 1.0, s->y + k * s->n, phi);
+    if (s->z->rows) {
+        tribo_matrix_multiply(s->z, s->y + k * s->n, phi);
     } else {
         memcpy(phi, s->y + k * s->n, s->n * sizeof *phi);
     }
 }
 
-/* The stiffness, and the sizes that bound its rounding errors. */
-struct entries {
-    const struct matrix *matrix;
-    double *root, *largest; /* [rows] square roots of the terms of the diagonal, and of the largest entry of each row */
-    double *force;          /* [rows] workspace */
-};
-
-/* Sets root and largest; terms as in tribo_normal_modes. */
-static void look_at_entries(struct entries *k, const double *terms)
-{
-    const struct matrix *a = k->matrix;
-    tribo_matrix_roots(a, terms, k->root);
-    for (size_t i = 0; i < a->rows; i++) {
-        double most = terms ? terms[i] : 0.0;
-        for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
-            most = greater(most, fabs(a->val[e]));
-        }
-        k->largest[i] = sqrt(most);
-    }
-}
-
-/* Returns a bound of the error of x'Kx by rounding of the entries. */
-static double noise_bound(const struct entries *k, const double *x)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < k->matrix->rows; i++) {
-        sum += k->largest[i] * fabs(x[i]);
-    }
-    return DBL_EPSILON * sum * sum;
-}
-
-/* Parts of other modes in a mode: their share of phi'K phi; unexplained = 1 if a part is more than rounding. */
-struct impurity {
-    double energy;
-    int unexplained;
-};
-
-static struct impurity find_impurity(struct spectrum *s, const struct entries *stiffness, const struct matrix *z, size_t k,
-                                     const double *phi)
+/* Returns the share of phi'K phi, phi of mode k, of parts of other modes in it; *unexplained = 1 if a part is more than rounding. */
+static double find_impurity(struct spectrum *s, size_t k, const double *phi, int *unexplained)
 {
     const size_t n = s->n;
-    struct impurity found = {0.0, 0};
+    double energy = 0.0;
     stress(s, k, 1);
     const double *ky = s->ky + k * n, own = fabs(tribo_dot(s->y + k * n, ky, n));
     for (size_t j = 0; j < n; j++) {
         const double part = j == k ? 0.0 : fabs(tribo_dot(s->y + j * n, ky, n)), least = greater(own, fabs(s->value[j]));
-        found.energy += part > 0.0 ? part * (part / least) : 0.0;
+        energy += part > 0.0 ? part * (part / least) : 0.0;
         if (part > SHARED * sqrt(own) * sqrt(least)) {
-            modes_expand(s, z, j, stiffness->force);
-            const double noise = tribo_matrix_noise(stiffness->matrix, stiffness->root, phi, stiffness->force);
-            found.unexplained |= !(part <= EXPLAINED * noise);
+            modes_expand(s, j, s->force);
+            *unexplained |= !(part <= EXPLAINED * tribo_matrix_noise(s->stiffness, s->root, phi, s->force));
         }
     }
-    return found;
+    return energy;
 }
 
 /* Sets *omega2 = phi'K phi of mode k, or 0 if that is rounding, and *doubt if in doubt. Returns a status. */
-static int modes_judge(struct spectrum *s, const struct entries *stiffness, const struct matrix *z, size_t k, const double *phi,
-                       double *omega2, struct doubt *doubt)
+static int modes_judge(struct spectrum *s, size_t k, const double *phi, double *omega2, struct doubt *doubt)
 {
-    const size_t n = stiffness->matrix->rows;
-    memset(stiffness->force, 0, n * sizeof *stiffness->force);
-    tribo_matrix_multiply_add(stiffness->matrix, 1.0, phi, stiffness->force);
-    *omega2 = tribo_dot(phi, stiffness->force, n);
-    const double least = ROUNDING * ROUNDING * s->most;
-    if (fabs(*omega2) >= greater(FOUND * s->most, CERTAIN * (noise_bound(stiffness, phi) + least))) {
+    const size_t n = s->stiffness->rows;
+    tribo_matrix_multiply(s->stiffness, phi, s->force);
+    *omega2 = tribo_dot(phi, s->force, n);
+    double noise = tribo_matrix_noise(s->stiffness, s->root, phi, phi) + ROUNDING * ROUNDING * s->most;
+    if (fabs(*omega2) >= greater(FOUND * s->most, CERTAIN * noise)) {
         return TRIBO_OK;
     }
-    const struct impurity impurity = find_impurity(s, stiffness, z, k, phi);
-    const double noise = impurity.energy + tribo_matrix_noise(stiffness->matrix, stiffness->root, phi, phi) + least;
-    *omega2 = tribo_matrix_form(stiffness->matrix, phi, phi);
+    int unexplained = 0;
+    noise += find_impurity(s, k, phi, &unexplained);
+    *omega2 = tribo_matrix_form(s->stiffness, phi, phi);
     *doubt = (struct doubt){k, *omega2, noise};
     if (fabs(*omega2) <= NOTHING * noise) {
         *omega2 = 0.0;
         return TRIBO_OK;
     }
-    if (!(fabs(*omega2) >= CERTAIN * noise)) {
-        return TRIBO_ERR_UNSUPPORTED;
-    }
-    return impurity.unexplained ? TRIBO_ERR_NO_CONVERGENCE : TRIBO_OK;
+    return !(fabs(*omega2) >= CERTAIN * noise) ? TRIBO_ERR_UNSUPPORTED : unexplained ? TRIBO_ERR_NO_CONVERGENCE : TRIBO_OK;
 }
 
 /* Makes the first of the largest |phi_i| positive, because the sign of a mode would be chance. */
@@ -294,20 +220,19 @@ static void turn(double *phi, size_t n)
 }
 
 /* Sets omega2 and phi of the `wanted` lowest modes, ascending. Returns a status. */
-static int finish(struct spectrum *s, const struct entries *k, const struct matrix *z, size_t wanted, double *omega2, double *phi,
-                  struct doubt *doubt)
+static int finish(struct spectrum *s, size_t wanted, double *omega2, double *phi, struct doubt *doubt)
 {
-    const size_t n = k->matrix->rows, m = s->n;
+    const size_t n = s->stiffness->rows;
     for (size_t p = 0; p < wanted; p++) {
         size_t lowest = p;
-        for (size_t q = p + 1; q < m; q++) {
+        for (size_t q = p + 1; q < s->n; q++) {
             lowest = s->value[q] < s->value[lowest] ? q : lowest;
         }
         modes_exchange(&s->value[p], &s->value[lowest], 1);
-        modes_exchange(s->y + p * m, s->y + lowest * m, m);
-        modes_expand(s, z, p, phi + p * n);
+        modes_exchange(s->y + p * s->n, s->y + lowest * s->n, s->n);
+        modes_expand(s, p, phi + p * n);
         turn(phi + p * n, n);
-        const int status = modes_judge(s, k, z, p, phi + p * n, &omega2[p], doubt);
+        const int status = modes_judge(s, p, phi + p * n, &omega2[p], doubt);
         if (status) {
             return status;
         }
@@ -323,22 +248,22 @@ int tribo_normal_modes(const struct matrix *k, const double *terms, const struct
                        size_t wanted, double *omega2, double *phi, struct doubt *doubt)
 {
     const size_t n = k->rows, m = z->rows ? z->cols : n;
-    struct spectrum s = {.n = m};
-    double *memory = malloc((5 * m * m + m + 3 * n + 1) * sizeof *memory);
+    double *memory = malloc((5 * m * m + m + 2 * n + 1) * sizeof *memory);
     if (!memory) {
         return TRIBO_ERR_MEMORY;
     }
-    s.k = memory;
+    struct spectrum s = {.stiffness = k, .z = z, .n = m, .k = memory};
     s.y = s.k + m * m;
     s.ky = s.y + m * m;
     s.block = s.ky + m * m;
     s.turn = s.block + m * m;
     s.value = s.turn + m * m;
-    struct entries entries = {k, s.value + m, s.value + m + n, s.value + m + 2 * n};
-    look_at_entries(&entries, terms);
+    s.root = s.value + m;
+    s.force = s.root + n;
+    tribo_matrix_roots(k, terms, s.root);
     int status = tribo_matrix_congruent(k, z, s.k) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     status = status || m == 0 ? status : modes_find(&s, mass);
-    status = status ? status : finish(&s, &entries, z, wanted, omega2, phi, doubt);
+    status = status ? status : finish(&s, wanted, omega2, phi, doubt);
     free(memory);
     return status;
 }
