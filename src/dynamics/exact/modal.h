@@ -79,6 +79,7 @@ struct forced {
     size_t shapes;
     int steady;
     double *phi, *on, *by_u; /* of the modal, with further rows, or columns, [shapes] */
+    size_t moving, *dof;     /* [moving] degrees of freedom that shapes move */
     size_t *begin, *end;     /* [shapes] shape k and column k of psi are 0 outside [begin[k], end[k]) */
     int sparse;              /* 1: products within these bounds are faster than dense ones */
 

@@ -217,7 +217,8 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     if (!h->sparse) {
         tribo_multiply_transposed_two(h->shapes, n, 1, h->phi, x->place, (size_t)(x->rate - x->place), moves, n);
     }
-    for (size_t d = 0; d < n; d++) {
+    for (size_t k = 0; k < h->moving; k++) {
+        const size_t d = h->dof[k];
         to[d] += moves[d];
         to[n + d] = (brief ? to[n + d] : 0.0) + moves[n + d];
     }
@@ -252,13 +253,14 @@ static void start_harmonics(struct modal_motion *x)
 static void find_steady(struct modal_motion *x)
 {
     const tribo_system *sys = x->sys;
-    for (size_t i = 0; i < sys->ncontact; i++) {
+    memcpy(x->steady, x->contacts->state.force, sys->ncontact * sizeof *x->steady);
+    for (size_t i = 0; sys->limit_harmonics && i < sys->ncontact; i++) {
         double limit = sys->given_limit[i];
-        for (size_t s = 0; sys->limit_harmonics && s < sys->harmonics; s++) {
+        for (size_t s = 0; s < sys->harmonics; s++) {
             const struct harmonic *w = &sys->harmonic[s];
             limit += w->drives == DRIVES_LIMIT && w->omega == 0.0 ? w->cosine[i] : 0.0;
         }
-        x->steady[i] = sys->limit_harmonics ? tribo_stick_slip_follows(x->contacts, i) * limit : x->contacts->state.force[i];
+        x->steady[i] = tribo_stick_slip_follows(x->contacts, i) * limit;
     }
 }
 

@@ -202,25 +202,35 @@ static int follow_bases(struct modal_build *b)
     return f->x != NULL;
 }
 
-/* Sets begin, end and sparse. Returns 0 if out of memory. */
+/* Sets dof, begin, end and sparse. Returns 0 if out of memory. */
 static int find_extents(struct modal_build *b)
 {
     struct forced *f = b->forced;
     const size_t n = b->h->n, m = b->h->modes;
     size_t entries = 0;
-    f->begin = tribo_modal_take(&f->store, 2 * f->shapes, sizeof *f->begin);
-    f->end = f->begin ? f->begin + f->shapes : NULL;
-    for (size_t k = 0; f->begin && k < f->shapes; k++) {
-        for (size_t d = 0; d < n; d++) {
+    f->dof = tribo_modal_take(&f->store, n + 2 * f->shapes, sizeof *f->dof);
+    if (!f->dof) {
+        return 0;
+    }
+    f->begin = f->dof + n;
+    f->end = f->begin + f->shapes;
+    for (size_t d = 0; d < n; d++) {
+        f->dof[f->moving] = d;
+        int moves = 0;
+        for (size_t k = 0; k < f->shapes; k++) {
             if (f->phi[k * n + d] != 0.0 || (k < m && b->h->psi[d * m + k] != 0.0)) {
                 f->begin[k] = f->end[k] ? f->begin[k] : d;
                 f->end[k] = d + 1;
+                moves = 1;
             }
         }
+        f->moving += (size_t)moves;
+    }
+    for (size_t k = 0; k < f->shapes; k++) {
         entries += f->end[k] - f->begin[k];
     }
     f->sparse = f->shapes <= FEW || 4 * entries < f->shapes * n;
-    return f->begin != NULL;
+    return 1;
 }
 
 /* ------------------------------------------------------------------------------------------------- forcing and response */
