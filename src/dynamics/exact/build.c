@@ -20,6 +20,9 @@
 /* Largest part of a mode in another mode that counts as rounding. */
 #define TINY 1e-6
 
+/* Velocity of a contact by its base and the structure that follows bases, relative to its terms, up to which it is rounding. */
+#define NO_MOTION 1e-14
+
 /* ------------------------------------------------------------------------------------------------------------------ memory */
 
 /* Arrays are many and short: a block holds several. The first block has BLOCK bytes, a size that allocators serve without a
@@ -214,36 +217,22 @@ static int find_modes(struct modal_build *b)
     return !status;
 }
 
-/* Sets psi = M phi, k_phi = stiffness phi and c_phi = C phi. Returns 0 if out of memory. */
+/* Sets psi = M phi and c_phi = C phi. Returns 0 if out of memory. */
 static int multiply_modes(struct modal_build *b)
 {
     const size_t n = b->h->n, m = b->h->modes;
-    const struct matrix *damping = b->shared->damping;
-    b->psi = tribo_modal_scratch(b, (damping ? 3 : 2) * m * n);
-    if (!b->psi) {
-        return 0;
-    }
-    b->k_phi = b->psi + m * n;
-    b->c_phi = damping ? b->k_phi + m * n : NULL;
-    for (size_t k = 0; k < m; k++) {
-        const double *phi = b->h->phi + k * n;
-        tribo_system_add_mass(b->shared->sys, 1.0, phi, b->psi + k * n);
-        tribo_matrix_multiply_add(b->stiffness, 1.0, phi, b->k_phi + k * n);
-        if (damping) {
-            tribo_matrix_multiply_add(damping, 1.0, phi, b->c_phi + k * n);
+    double *psi = tribo_modal_scratch(b, m * n);
+    b->c_phi = tribo_modal_scratch(b, b->shared->damping ? m * n : 0);
+    for (size_t k = 0; psi && b->c_phi && k < m; k++) {
+        tribo_system_add_mass(b->shared->sys, 1.0, b->h->phi + k * n, psi + k * n);
+        if (b->shared->damping) {
+            tribo_matrix_multiply_add(b->shared->damping, 1.0, b->h->phi + k * n, b->c_phi + k * n);
         }
     }
-    tribo_transpose(m, n, b->psi, b->h->psi);
-    return 1;
-}
-
-/* Returns the part of mode l in mode k by rounding of K: noise of phi_k'K phi_l over |omega_k^2 - omega_l^2|; 0 if above TINY. */
-static double mixed(const struct modal_build *b, const double *root, size_t k, size_t l)
-{
-    const struct modal *h = b->h;
-    const double distance = fabs(h->omega2[k] - h->omega2[l]);
-    const double noise = tribo_matrix_noise(b->stiffness, root, h->phi + k * h->n, h->phi + l * h->n);
-    return noise <= TINY * distance ? noise / distance : 0.0;
+    if (psi) {
+        tribo_transpose(m, n, psi, b->h->psi);
+    }
+    return psi && b->c_phi;
 }
 
 /* Returns 1 if some c_kl, k != l, of c = C~ [modes][modes] is neither negligible beside c_kk and c_ll nor rounding of C or of the
@@ -252,15 +241,20 @@ static int damping_couples(const struct modal_build *b, const double *c, const d
 {
     const struct modal *h = b->h;
     const size_t n = h->n, m = h->modes;
-    for (size_t k = 0; k < m; k++) {
-        for (size_t l = 0; l < m; l++) {
-            const double shared = fabs(c[k * m + l]), own = sqrt(fabs(c[k * m + k] * c[l * m + l]));
-            const double larger = greater(fabs(c[k * m + k]), fabs(c[l * m + l]));
-            if (k != l && shared > greater(NEGLIGIBLE * own, IMPURITY * larger) &&
-                shared > ROUNDING * (tribo_matrix_noise(b->shared->damping, root, h->phi + k * n, h->phi + l * n) +
-                                     mixed(b, stiff_root, k, l) * larger)) {
-                return 1;
-            }
+    for (size_t kl = 0; kl < m * m; kl++) {
+        const size_t k = kl / m, l = kl % m;
+        const double *one = h->phi + k * n, *other = h->phi + l * n;
+        const double shared = fabs(c[kl]), own = sqrt(fabs(c[k * m + k] * c[l * m + l]));
+        const double larger = greater(fabs(c[k * m + k]), fabs(c[l * m + l]));
+        if (k == l || shared <= greater(NEGLIGIBLE * own, IMPURITY * larger)) {
+            continue;
+        }
+        /* The part of mode l in mode k by rounding of K: noise of phi_k'K phi_l over |omega_k^2 - omega_l^2|; 0 if above TINY. */
+        const double distance = fabs(h->omega2[k] - h->omega2[l]);
+        const double noise = tribo_matrix_noise(b->stiffness, stiff_root, one, other);
+        const double mixed = noise <= TINY * distance ? noise / distance : 0.0;
+        if (shared > ROUNDING * (tribo_matrix_noise(b->shared->damping, root, one, other) + mixed * larger)) {
+            return 1;
         }
     }
     return 0;
@@ -304,58 +298,78 @@ static int find_damping(struct modal_build *b)
     return 1;
 }
 
-/* Sets on and by_u of rigid contacts that hold: J_I'f = (stiffness - omega_k^2 M) phi_k; J_I'f = C phi_k - M Phi C~_k. work [n +
- * rests]; drag [modes][n]: M Phi C~ if coupled. */
-static void find_reactions(const struct modal_build *b, size_t k, const double *drag, double *work)
+int tribo_modal_reserve_effects(struct modal_build *b)
 {
-    struct modal *h = b->h;
-    const size_t n = h->n, m = h->modes;
-    double *f = work + n;
-    memcpy(work, b->k_phi + k * n, n * sizeof *work);
-    tribo_add(work, -h->omega2[k], b->psi + k * n, n);
-    tribo_constraints_react(&h->ties, work, f);
-    for (size_t p = 0; p < h->rests; p++) {
-        h->on[h->rest[p] * m + k] = f[p];
+    b->work = tribo_modal_scratch(b, 2 * b->shared->sys->ncontact + b->h->n + b->h->rests + b->h->modes);
+    return b->work != NULL;
+}
+
+/* to[i stride] = f_i of the rigid contacts i that hold, J_I'f = force, project: without the part of the force that moves the modes.
+ * work [rests + modes]. */
+static void keep_reactions(const struct modal *h, double *force, int project, double *work, double *to, size_t stride)
+{
+    if (project) {
+        tribo_modal_react(h, force, work, work + h->rests);
+    } else {
+        tribo_constraints_react(&h->ties, force, work);
     }
-    if (h->by_u) {
-        memcpy(work, b->c_phi + k * n, n * sizeof *work);
-        tribo_add(work, h->coupling ? -1.0 : -h->damping[k], h->coupling ? drag + k * n : b->psi + k * n, n);
-        tribo_constraints_react(&h->ties, work, f);
-        for (size_t p = 0; p < h->rests; p++) {
-            h->by_u[h->rest[p] * m + k] = f[p];
-        }
+    for (size_t p = 0; p < h->rests; p++) {
+        to[h->rest[p] * stride] = work[p];
     }
 }
 
-/* Sets on and by_u. With compliant contacts A that hold, f_A = -G_AA^-1 J_A phi_k. Returns 0 if out of memory. */
+void tribo_modal_effects(const struct modal_build *b, const double *y, double omega2, const double *base,
+                         const struct effects *to)
+{
+    const struct modal *h = b->h;
+    const tribo_system *sys = b->shared->sys;
+    const struct matrix *j = &sys->direction;
+    const size_t n = h->n, c = sys->ncontact;
+    double *v = b->work, *rate = v + c, *force = rate + c;
+    const double most = base ? tribo_largest(y, n) : 0.0;
+    tribo_matrix_multiply(j, y, v);
+    memset(rate, 0, (c + n) * sizeof *rate);
+    for (size_t i = 0; base && i < c; i++) {
+        double size = fabs(base[i]);
+        for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+            size += fabs(j->val[e]) * most;
+        }
+        v[i] = fabs(v[i] - base[i]) > NO_MOTION * size ? v[i] - base[i] : 0.0;
+    }
+    if (h->springs) {
+        tribo_compliance_rates(sys, b->slip, v, rate);
+    }
+    for (size_t i = 0; i < c; i++) {
+        to->on[i * to->stride] = h->key[i] == 2 ? rate[i] : h->key[i] == 0 || base ? v[i] : 0.0;
+        for (size_t e = j->first[i]; rate[i] != 0.0 && e < j->first[i + 1]; e++) {
+            force[j->col[e]] -= j->val[e] * rate[i];
+        }
+    }
+    if (h->rests > 0) {
+        tribo_matrix_multiply_add(b->shared->stiffness, 1.0, y, force);
+        tribo_system_add_mass(sys, -omega2, y, force);
+        keep_reactions(h, force, base != NULL, force + n, to->on, to->stride);
+    }
+    if (h->rests > 0 && to->by_u) {
+        memset(force, 0, n * sizeof *force);
+        tribo_matrix_multiply_add(b->shared->damping, 1.0, y, force);
+        keep_reactions(h, force, 1, force + n, to->by_u, to->stride);
+    }
+}
+
+/* Sets on and by_u. Returns 0 if out of memory. */
 static int find_effects(struct modal_build *b)
 {
     struct modal *h = b->h;
-    const tribo_system *sys = b->shared->sys;
-    const size_t n = h->n, m = h->modes, c = sys->ncontact;
-    double *v = tribo_modal_scratch(b, 3 * c + n), *rate = v ? v + c : NULL, *work = v ? rate + c : NULL;
-    double *drag = tribo_modal_scratch(b, h->coupling ? m * n : 0);
+    const size_t m = h->modes, c = b->shared->sys->ncontact;
     double **const kept[] = {&h->on, &h->by_u};
     const size_t count[] = {m * c, m * c};
-    if (!v || !drag || !tribo_modal_keep_all(b, b->shared->damping ? 2 : 1, kept, count)) {
-        return 0;
+    const int done = tribo_modal_reserve_effects(b) && tribo_modal_keep_all(b, b->shared->damping ? 2 : 1, kept, count);
+    for (size_t k = 0; done && k < m; k++) {
+        const struct effects to = {h->on + k, h->by_u ? h->by_u + k : NULL, m};
+        tribo_modal_effects(b, h->phi + k * h->n, h->omega2[k], NULL, &to);
     }
-    if (h->coupling) {
-        tribo_multiply_transposed_add(m, m, n, h->coupling, b->psi, drag);
-    }
-    for (size_t k = 0; k < m; k++) {
-        tribo_matrix_multiply(&sys->direction, h->phi + k * n, v);
-        if (h->springs) {
-            tribo_compliance_rates(sys, b->slip, v, rate);
-        }
-        for (size_t i = 0; i < c; i++) {
-            h->on[i * m + k] = h->key[i] == 2 ? rate[i] : h->key[i] == 0 ? v[i] : 0.0;
-        }
-        if (h->rests > 0) {
-            find_reactions(b, k, drag, work);
-        }
-    }
-    return 1;
+    return done;
 }
 
 int tribo_modal_create(struct modal **modal, const struct modal_shared *shared, const signed char *slip,

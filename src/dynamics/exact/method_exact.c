@@ -156,16 +156,11 @@ static double method_exact_bound(void *own, double tau)
     return decay > 0.0 ? greater(2.0 * tau, 1.0 / decay) : HUGE_VAL;
 }
 
-/* Returns the limit of contact i without harmonics. */
-static double steady_limit(const struct exact *x, size_t i)
-{
-    return x->events.stick_slip.constant.swing[i] > 0.0 ? x->sys->given_limit[i] : x->events.stick_slip.state.limit[i];
-}
-
 /* Returns the data for the guards of contact i; c: course of the output of contact i; NULL: none. */
 static struct watch watch_of(const struct exact *x, size_t i, struct course *c)
 {
-    const double steady = steady_limit(x, i), swing = x->events.stick_slip.constant.swing[i];
+    const double swing = x->events.stick_slip.constant.swing[i];
+    const double steady = swing > 0.0 ? x->sys->given_limit[i] : x->events.stick_slip.state.limit[i];
     return (struct watch){
         .output = c, .size = c ? c->size : 0.0, .constant = steady, .least = steady - swing, .varies = swing > 0.0};
 }

@@ -51,38 +51,32 @@ static int motion_reserve(struct modal_motion *x, const struct forced *h)
 
 /* ------------------------------------------------------------------------------------------------------------------- later on */
 
-/* Adds to w of exponent p the part by the resonant harmonic s: z' = lambda z - (i/nu) Re(g e^{i Omega t}), z = 0 at t0. */
-static void add_resonance(struct modal_motion *x, size_t p, size_t s, double tau)
-{
-    const struct forced *h = x->h;
-    const double omega = h->forcing[s].omega, nu = h->li[p];
-    const double complex lambda = h->lr[p] + nu * I, g = h->g[s * h->modal->modes + h->modal->owner[p]];
-    const struct number at = tribo_harmonic(x, s), start = tribo_harmonic_at_start(x, s);
-    const double complex now = g * (at.re + at.im * I), then = 0.5 * g * (start.re + start.im * I);
-    const double complex e = tau * exp(h->lr[p] * tau) * (cos(nu * tau) + sin(nu * tau) * I);
-    const double complex sum =
-        then * tribo_exp_1(tau * (omega * I - lambda)) + conj(then) * tribo_exp_1(tau * (-omega * I - lambda));
-    const double complex z = -I / nu * e * sum, z1 = lambda * z - creal(now) / nu * I;
-    const double complex z2 = lambda * z1 + omega * cimag(now) / nu * I;
-    struct lot *lot = &x->lot[p / TRIBO_TERMS];
-    const size_t k = p % TRIBO_TERMS;
-    lot->wr[k] += creal(z);
-    lot->wi[k] += cimag(z);
-    lot->w1r[k] += creal(z1);
-    lot->w1i[k] += cimag(z1);
-    lot->w2r[k] += creal(z2);
-    lot->w2i[k] += cimag(z2);
-}
-
+/* Adds to w of exponents the parts by resonant harmonics: z' = lambda z - (i/nu) Re(g e^{i Omega t}), z = 0 at t0. */
 static void add_resonances(struct modal_motion *x, double tau)
 {
     const struct forced *h = x->h;
-    for (size_t s = 0; s < h->harmonics; s++) {
-        for (size_t p = 0; p < h->exponents; p++) {
-            if (h->resonant[s * h->modal->modes + h->modal->owner[p]]) {
-                add_resonance(x, p, s, tau);
-            }
+    for (size_t at = 0; at < h->harmonics * h->exponents; at++) {
+        const size_t p = at % h->exponents, s = at / h->exponents, resonance = s * h->modal->modes + h->modal->owner[p];
+        if (!h->resonant[resonance]) {
+            continue;
         }
+        const double omega = h->forcing[s].omega, nu = h->li[p];
+        const double complex lambda = h->lr[p] + nu * I, g = h->g[resonance];
+        const struct number wave = tribo_harmonic(x, s), start = tribo_harmonic_at_start(x, s);
+        const double complex now = g * (wave.re + wave.im * I), then = 0.5 * g * (start.re + start.im * I);
+        const double complex e = tau * exp(h->lr[p] * tau) * (cos(nu * tau) + sin(nu * tau) * I);
+        const double complex sum =
+            then * tribo_exp_1(tau * (omega * I - lambda)) + conj(then) * tribo_exp_1(tau * (-omega * I - lambda));
+        const double complex z = -I / nu * e * sum, z1 = lambda * z - creal(now) / nu * I;
+        const double complex z2 = lambda * z1 + omega * cimag(now) / nu * I;
+        struct lot *lot = &x->lot[p / TRIBO_TERMS];
+        const size_t k = p % TRIBO_TERMS;
+        lot->wr[k] += creal(z);
+        lot->wi[k] += cimag(z);
+        lot->w1r[k] += creal(z1);
+        lot->w1i[k] += cimag(z1);
+        lot->w2r[k] += creal(z2);
+        lot->w2i[k] += cimag(z2);
     }
 }
 

@@ -6,11 +6,6 @@
 
 #include "common/real.h"
 
-static double sixth_power(double x)
-{
-    return x * x * x * x * x * x;
-}
-
 /* Sets the terms: the exponents, then the harmonics. Returns 0 if out of memory. */
 static int find_terms(struct modal_build *b)
 {
@@ -31,7 +26,7 @@ static int find_terms(struct modal_build *b)
     }
     for (size_t k = 0; k < f->terms; k++) {
         f->size[k] = tribo_modal_magnitude(f->lr[k], f->li[k]);
-        f->sixth[k] = sixth_power(f->size[k]);
+        f->sixth[k] = f->size[k] * f->size[k] * f->size[k] * f->size[k] * f->size[k] * f->size[k];
         f->fastest = greater(f->fastest, k < p ? f->size[k] : 0.0);
         f->quickest = greater(f->quickest, f->size[k]);
         f->decay = greater(f->decay, -f->lr[k]);
@@ -113,24 +108,24 @@ static int fill_output(const struct modal_build *b, size_t i, const double compl
     return varies;
 }
 
-/* Appends the outputs of the contacts that hold, or of the others. Contacts that slide and compliant ones have an output in any case,
- * others if velocity, force or limit varies. Returns 0 if out of memory. */
+/* Appends the outputs of the contacts that hold, or of the others: of contacts that slide, and where velocity, force or limit
+ * varies. Returns 0 if out of memory. */
 static int append_outputs(struct modal_build *b, const double complex *direct, int holds)
 {
     struct forced *f = b->forced;
+    const struct modal *h = b->h;
     const tribo_system *sys = b->shared->sys;
     double *c = NULL;
     for (size_t i = 0, p = 0; i < sys->ncontact; i++) {
-        if (holds != (b->h->key[i] == 2)) {
+        if (holds != (h->key[i] == 2)) {
             continue;
         }
-        const int compliant = holds && tribo_is_compliant(&sys->compliance, i);
+        const double complex *own = p < h->rests && h->rest[p] == i ? direct + p++ : NULL;
         c = c ? c : tribo_modal_take(&f->store, 3 * f->terms, sizeof *c);
         if (!c) {
             return 0;
         }
-        const int varies = fill_output(b, i, holds && !compliant ? direct + p++ : NULL, c, &f->output[f->outputs]);
-        if (varies || b->h->key[i] == 0 || compliant || (holds && tribo_system_swing(sys, i) > 0.0)) {
+        if (fill_output(b, i, own, c, &f->output[f->outputs]) || h->key[i] == 0 || (holds && tribo_system_swing(sys, i) > 0.0)) {
             f->outputs++;
             c = NULL;
         }

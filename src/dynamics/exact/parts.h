@@ -12,7 +12,8 @@ struct modal_build {
     struct modal_store scratch;     /* workspace until the structure is built */
     const struct matrix *stiffness; /* K + J_A' G_AA^-1 J_A, A: compliant contacts that hold */
     struct matrix own_stiffness;    /* memory of stiffness if A is not empty */
-    double *psi, *k_phi, *c_phi;    /* [modes][n] M phi; stiffness phi; C phi */
+    double *c_phi;                  /* [modes][n] C phi; with damping */
+    double *work;                   /* workspace of tribo_modal_effects */
     const double *zero;             /* [shapes] zeros */
     int status;                     /* of a failure other than out of memory; else 0 */
 };
@@ -29,6 +30,20 @@ int tribo_modal_exponents(struct modal_build *b);
 
 /* force [n] -= M phi_k (phi_k'force) for all k; then f [rests]: J_I'f = force, I: the rigid contacts that hold. work [modes]. */
 void tribo_modal_react(const struct modal *h, double *force, double *f, double *work);
+
+/* A column of on, and of by_u or NULL, with entries stride apart. */
+struct effects {
+    double *on, *by_u;
+    size_t stride;
+};
+
+/* Sets a column by displacements y [n], with J_I y = b_I: contacts that hold: force per eta, J_I'f = (K - omega2 M) y - J_A'f_A
+ * (A: compliant ones, f_A' = -G_AA^-1 (J_A y - b_A)), and per eta', J_I'f = C y; other contacts: velocity per eta'. base
+ * [ncontact] = b, by which only the rest of the forces beside the modes counts; NULL: y is a mode, 0. After
+ * tribo_modal_reserve_effects, which returns 0 if out of memory. */
+int tribo_modal_reserve_effects(struct modal_build *b);
+void tribo_modal_effects(const struct modal_build *b, const double *y, double omega2, const double *base,
+                         const struct effects *to);
 
 /* Fill b->forced: shapes, forcing and response; then terms and outputs. Return 1; 0 if out of memory, or on another failure, with
  * b->status set. */

@@ -11,9 +11,6 @@
 /* |lambda - i Omega|/Omega down to which the response of coupled modes keeps enough digits. */
 #define UNDAMPED 1e-9
 
-/* Velocity of a contact by its base and the structure that follows bases, relative to its terms, up to which it is rounding. */
-#define NO_MOTION 1e-14
-
 /* Up to FEW modes a dense product does not pay. */
 #define FEW 4
 
@@ -91,63 +88,39 @@ static int make_shapes(struct modal_build *b, double *base)
 
 /* Workspace of a shape by bases. */
 struct following {
-    double *base, *v, *rate; /* [ncontact] b; J y + G f' - b; f' of compliant contacts that hold */
-    double *x, *react;       /* [rests] b_I; forces of rigid contacts that hold */
-    double *force, *work;    /* [n], [modes] */
-    double *stiff, *drag;    /* [modes] forcing of eta per displacement, and per velocity of the shape */
+    double *base;         /* [ncontact] b */
+    double *x, *drag;     /* [rests] b_I; [n] -C y */
+    double *place, *rate; /* [modes] forcing of eta per displacement, and per velocity of the shape */
 };
 
-/* Sets shape k, velocities y with J_I y = b_I and Phi'M y = 0, its column of on and by_u, and stiff and drag. By Maxwell and Betti,
+/* Sets shape k, velocities y with J_I y = b_I and Phi'M y = 0, and what it does at contacts and to the modes. By Maxwell and Betti,
  * phi'(K y - J'f') is the sum of b_i times the force of contact i per eta over the contacts that hold. */
 static void follow_base(struct modal_build *b, size_t k, double omega, struct following *w)
 {
     struct forced *f = b->forced;
     const struct modal *h = b->h;
-    const tribo_system *sys = b->shared->sys;
-    const struct matrix *j = &sys->direction;
-    const size_t n = h->n, m = h->modes, c = sys->ncontact;
+    const size_t n = h->n, m = h->modes;
+    const struct effects to = {f->on + k, f->by_u ? f->by_u + k : NULL, f->shapes};
     double *y = f->phi + k * n;
     for (size_t p = 0; p < h->rests; p++) {
         w->x[p] = w->base[h->rest[p]];
     }
     tribo_constraints_follow(&h->ties, w->x, y);
-    memset(w->work, 0, m * sizeof *w->work);
-    tribo_multiply_transposed_add(n, m, 1, h->psi, y, w->work);
+    memset(w->place, 0, m * sizeof *w->place);
+    memset(w->rate, 0, m * sizeof *w->rate);
+    memset(w->drag, 0, n * sizeof *w->drag);
+    tribo_multiply_transposed_add(n, m, 1, h->psi, y, w->place);
     for (size_t l = 0; l < m; l++) {
-        tribo_add(y, -w->work[l], h->phi + l * n, n);
+        tribo_add(y, -w->place[l], h->phi + l * n, n);
+        w->place[l] = 0.0;
     }
-    tribo_matrix_multiply(j, y, w->v);
-    tribo_add(w->v, -1.0, w->base, c);
-    if (h->springs) {
-        tribo_compliance_rates(sys, b->slip, w->v, w->rate);
+    tribo_modal_effects(b, y, omega * omega, w->base, &to);
+    for (size_t i = 0; i < b->shared->sys->ncontact; i++) {
+        tribo_add(w->place, h->key[i] == 2 ? -w->base[i] : 0.0, h->on + i * m, m);
     }
-    const double most = tribo_largest(y, n);
-    memset(w->stiff, 0, m * sizeof *w->stiff);
-    memset(w->force, 0, n * sizeof *w->force);
-    for (size_t i = 0; i < c; i++) {
-        double size = fabs(w->base[i]);
-        for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
-            size += fabs(j->val[e]) * most;
-            w->force[j->col[e]] -= h->key[i] == 2 ? j->val[e] * w->rate[i] : 0.0;
-        }
-        f->on[i * f->shapes + k] = h->key[i] == 2 ? w->rate[i] : fabs(w->v[i]) > NO_MOTION * size ? w->v[i] : 0.0;
-        tribo_add(w->stiff, h->key[i] == 2 ? -w->base[i] : 0.0, h->on + i * m, m);
-    }
-    tribo_matrix_multiply_add(b->shared->stiffness, 1.0, y, w->force);
-    tribo_system_add_mass(sys, -omega * omega, y, w->force);
-    tribo_modal_react(h, w->force, w->react, w->work);
-    for (size_t p = 0; p < h->rests; p++) {
-        f->on[h->rest[p] * f->shapes + k] = w->react[p];
-    }
-    memset(w->drag, 0, m * sizeof *w->drag);
-    if (f->by_u) {
-        memset(w->force, 0, n * sizeof *w->force);
-        tribo_matrix_multiply_add(b->shared->damping, -1.0, y, w->force);
-        tribo_multiply_add(m, n, 1, 1.0, h->phi, w->force, w->drag);
-        tribo_modal_react(h, w->force, w->react, w->work);
-        for (size_t p = 0; p < h->rests; p++) {
-            f->by_u[h->rest[p] * f->shapes + k] = -w->react[p];
-        }
+    if (b->shared->damping) {
+        tribo_matrix_multiply_add(b->shared->damping, -1.0, y, w->drag);
+        tribo_multiply_add(m, n, 1, 1.0, h->phi, w->drag, w->rate);
     }
 }
 
@@ -158,16 +131,14 @@ static int follow_bases(struct modal_build *b)
     const struct modal *h = b->h;
     const tribo_system *sys = b->shared->sys;
     const size_t m = h->modes, c = sys->ncontact;
-    double *room = tribo_modal_scratch(b, 3 * c + 2 * h->rests + h->n + 3 * m);
-    if (!room) {
+    double *room = tribo_modal_scratch(b, c + h->rests + h->n + 2 * m);
+    if (!room || !tribo_modal_reserve_effects(b)) {
         return 0;
     }
-    struct following w = {.base = room, .v = room + c, .rate = room + 2 * c, .x = room + 3 * c};
-    w.react = w.x + h->rests;
-    w.force = w.react + h->rests;
-    w.work = w.force + h->n;
-    w.stiff = w.work + m;
-    w.drag = w.stiff + m;
+    struct following w = {.base = room, .x = room + c};
+    w.drag = w.x + h->rests;
+    w.place = w.drag + h->n;
+    w.rate = w.place + m;
     if (!make_shapes(b, w.base)) {
         return 0;
     }
@@ -184,7 +155,7 @@ static int follow_bases(struct modal_build *b)
             follow_base(b, k, omega, &w);
             f->x[s * f->shapes + k++] = place;
             for (size_t l = 0; l < m; l++) {
-                f->g[s * m + l] += place * w.stiff[l] + rate * w.drag[l];
+                f->g[s * m + l] += place * w.place[l] + rate * w.rate[l];
             }
         }
     }
@@ -196,8 +167,8 @@ static int follow_bases(struct modal_build *b)
             }
         }
         follow_base(b, k, 0.0, &w);
-        memcpy(f->ramp, w.stiff, m * sizeof *f->ramp);
-        memcpy(f->constant, w.drag, m * sizeof *f->constant);
+        memcpy(f->ramp, w.place, m * sizeof *f->ramp);
+        memcpy(f->constant, w.rate, m * sizeof *f->constant);
     }
     return f->x != NULL;
 }

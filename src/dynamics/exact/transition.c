@@ -71,44 +71,33 @@ static void transition_split(const struct transition *x, const double *v)
     }
 }
 
-/* t [2][2] of (eta, eta')(tau) = t (eta, eta')(0), for a mode with exponents p to end - 1. */
-static void propagator(const struct transition *x, size_t p, size_t end, double *t)
-{
-    const struct modal *h = x->h;
-    memset(t, 0, 4 * sizeof *t);
-    for (; p < end; p++) {
-        const double re = x->phase->re[p], im = x->phase->im[p];
-        const double fr = h->lr[p] * re - h->li[p] * im, fi = h->lr[p] * im + h->li[p] * re;
-        t[0] += re * h->ar[p] - im * h->ai[p];
-        t[1] += re * h->br[p] - im * h->bi[p];
-        t[2] += fr * h->ar[p] - fi * h->ai[p];
-        t[3] += fr * h->br[p] - fi * h->bi[p];
-    }
-}
-
-/* Moves modes without coupling by tau. */
+/* Moves modes without coupling by tau: (eta, eta')(tau) = t (eta, eta')(0), by the exponents of a mode, beside the part by pull. */
 static void move_alone(const struct transition *x)
 {
     const struct modal *h = x->h;
     const double tau = x->phase->tau;
     for (size_t k = 0, p = 0; k < h->modes; k++) {
-        double *eta = x->eta + k * x->columns, *rate = x->rate + k * x->columns, t[] = {1.0, tau, 0.0, 1.0};
+        double *eta = x->eta + k * x->columns, *rate = x->rate + k * x->columns, t[] = {0.0, 0.0, 0.0, 0.0};
         const double *pull = x->pull + k * x->columns;
         const double place = h->omega2[k] != 0.0 ? 1.0 / h->omega2[k] : 0.0;
         const double speed = h->omega2[k] == 0.0 && !h->drifts[k] ? 1.0 / h->damping[k] : 0.0, push = h->drifts[k] ? tau : 0.0;
-        size_t end = p;
-        while (end < h->exponents && h->owner[end] == k) {
-            end++;
+        for (; p < h->exponents && h->owner[p] == k; p++) {
+            const double re = x->phase->re[p], im = x->phase->im[p];
+            const double fr = h->lr[p] * re - h->li[p] * im, fi = h->lr[p] * im + h->li[p] * re;
+            t[0] += re * h->ar[p] - im * h->ai[p];
+            t[1] += re * h->br[p] - im * h->bi[p];
+            t[2] += fr * h->ar[p] - fi * h->ai[p];
+            t[3] += fr * h->br[p] - fi * h->bi[p];
         }
-        if (!h->drifts[k]) {
-            propagator(x, p, end, t);
+        if (h->drifts[k]) {
+            t[0] = t[3] = 1.0;
+            t[1] = tau;
         }
         for (size_t j = 0; j < x->columns; j++) {
             const double off = place * pull[j], vel = speed * pull[j], q = eta[j] - off, u = rate[j] - vel;
             eta[j] = off + vel * tau + 0.5 * push * tau * pull[j] + t[0] * q + t[1] * u;
             rate[j] = vel + push * pull[j] + t[2] * q + t[3] * u;
         }
-        p = end;
     }
 }
 
