@@ -273,8 +273,8 @@ static int show_decided(struct events *e, tribo_driver *drv, const struct guard 
 static int is_brief(const struct events *e, const tribo_system *sys, const struct guard *event, double reach, double when)
 {
     const int simple = !e->stick_slip.plane && !e->stick_slip.breakaway.falls && !sys->compliance.count;
-    const int brief = when * tribo_system_fastest(sys) <= BRIEF && (!sys->tables || when <= BRIEF * reach);
-    return event && e->search.at_once && simple && brief && when * fabs(event->left.e) <= STEADY * fabs(event->left.d);
+    const int even = event && e->search.at_once && when * fabs(event->left.e) <= STEADY * fabs(event->left.d);
+    return simple && even && (!sys->tables || when <= BRIEF * reach) && when * tribo_system_fastest(sys) <= BRIEF;
 }
 
 /* Moves y by a brief phase at constant accelerations, and forgets the shares of redundant contacts: these forces are no guess

@@ -81,7 +81,9 @@ static int make_shapes(struct modal_build *b, double *base)
     memcpy(f->phi, h->phi, m * n * sizeof *f->phi);
     for (size_t i = 0; i < c; i++) {
         memcpy(f->on + i * f->shapes, h->on + i * m, m * sizeof *f->on);
-        memcpy(f->by_u ? f->by_u + i * f->shapes : f->on, h->by_u ? h->by_u + i * m : f->on, h->by_u ? m * sizeof *f->by_u : 0);
+        if (h->by_u) {
+            memcpy(f->by_u + i * f->shapes, h->by_u + i * m, m * sizeof *f->by_u);
+        }
     }
     return 1;
 }
