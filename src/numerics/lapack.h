@@ -24,6 +24,10 @@ void dpotrf_(const char *triangle, const int *n, double *a, const int *stride, i
 /* A = P L U. */
 void dgetrf_(const int *rows, const int *cols, double *a, const int *stride, int *pivot, int *info);
 
+/* Solution of A x = b of complex numbers. */
+void zgesv_(const int *n, const int *count, double _Complex *a, const int *stride, int *pivot, double _Complex *x,
+            const int *next, int *info);
+
 /* Eigenvalues and eigenvectors of a general, and of a symmetric matrix. */
 void dgeev_(const char *left, const char *right, const int *n, double *a, const int *stride, double *re, double *im, double *vl,
             const int *next_l, double *vr, const int *next_r, double *work, const int *size, int *info, size_t one, size_t two);

@@ -295,6 +295,95 @@ TEST(moved_alike)
     assert_all_close(y[0], y[1], 3, 1e-12);
 }
 
+/* ------------------------------------------------------------------------------------------------- damping that couples */
+
+#define COUPLED 48
+
+/* Kinds of structures of COUPLED modes: how far frequencies are apart, and damping ratios. */
+static const struct coupled_kind {
+    double ratio, apart, damping;
+    size_t equal; /* frequencies come in groups of so many equal ones */
+    double tolerance;
+} coupled_kind[] = {
+    {1.06, 0.0, 0.002, 1, 1e-12},  {1.2, 0.0, 0.002, 1, 1e-12},  {1.06, 1e-3, 0.002, 2, 1e-11}, {1.06, 1e-5, 0.002, 2, 1e-11},
+    {1.06, 0.0, 0.002, 2, 1e-11},  {1.06, 0.0, 0.002, 4, 1e-11}, {1.06, 0.0, 0.05, 1, 1e-11},   {1.2, 0.0, 0.5, 1, 1e-10},
+    {1.003, 0.0, 0.002, 1, 1e-10}, {1.06, 1e-9, 1e-7, 2, 1e-7},
+};
+
+/* omega^2 and C of coupled modes; C is G G' with entries that fall off the diagonal by a half. */
+static void coupled_matrices(const struct coupled_kind *kind, double *omega2, double *damping)
+{
+    struct random r = random_of(7);
+    double g[COUPLED * COUPLED], omega = 1.0;
+    for (size_t k = 0; k < COUPLED; k++) {
+        omega *= k % kind->equal ? 1.0 + kind->apart : kind->ratio;
+        omega2[k] = omega * omega;
+        for (size_t l = 0; l < COUPLED; l++) {
+            g[k * COUPLED + l] = sqrt(2.0 * kind->damping * omega) * (k == l ? 1.0 : uniform(&r, -0.1, 0.1));
+        }
+    }
+    for (size_t k = 0; k < COUPLED; k++) {
+        for (size_t l = 0; l < COUPLED; l++) {
+            damping[k * COUPLED + l] = 0.0;
+            for (size_t i = 0; i < COUPLED; i++) {
+                damping[k * COUPLED + l] += g[k * COUPLED + i] * g[l * COUPLED + i];
+            }
+        }
+    }
+}
+
+/* Each exponent and its shape r solve (lambda^2 + lambda C + diag(omega^2)) r = 0; with all of them a displacement and a velocity
+ * at the start come out: sum Re(r b) = 0 and sum Re(lambda r b) = 1. */
+TEST(coupled)
+{
+    static double omega2[COUPLED], damping[COUPLED * COUPLED], mass[COUPLED * COUPLED], stiffness[COUPLED * COUPLED];
+    const struct coupled_kind *kind = &coupled_kind[_i];
+    const double direction[COUPLED] = {1.0};
+    const signed char slip[] = {1};
+    const unsigned char holds[] = {0};
+    coupled_matrices(kind, omega2, damping);
+    for (size_t k = 0; k < COUPLED; k++) {
+        mass[k * (COUPLED + 1)] = 1.0;
+        stiffness[k * (COUPLED + 1)] = omega2[k];
+    }
+    tribo_system *sys;
+    struct modal *h;
+    assert_ok(dense_system(&sys, COUPLED, 1, mass, damping, stiffness, direction, 0, NULL, 0));
+    const int status = decompose(&h, sys, slip, holds);
+    require(status == TRIBO_OK, "%s", tribo_system_message(sys));
+    ck_assert(h->coupling && h->modes == COUPLED);
+    const size_t m = h->modes, e = h->exponents;
+    double worst = 0.0, lack = 0.0;
+    for (size_t p = 0; p < e; p++) {
+        const double complex lambda = h->lr[p] + h->li[p] * I;
+        double size = 0.0, missed = 0.0;
+        for (size_t k = 0; k < m; k++) {
+            const double complex r = h->rr[p * m + k] + h->ri[p * m + k] * I;
+            double complex sum = (lambda * lambda + h->omega2[k]) * r;
+            for (size_t l = 0; l < m; l++) {
+                sum += lambda * h->coupling[k * m + l] * (h->rr[p * m + l] + h->ri[p * m + l] * I);
+            }
+            missed = fmax(missed, cabs(sum) / fmax(cabs(lambda) * cabs(lambda), h->omega2[k]));
+            size = fmax(size, cabs(r));
+        }
+        worst = fmax(worst, missed / size);
+    }
+    for (size_t k = 0; k < m; k++) {
+        for (size_t l = 0; l < m; l++) {
+            double complex at = 0.0, rate = 0.0;
+            for (size_t p = 0; p < e; p++) {
+                const double complex part = (h->rr[p * m + k] + h->ri[p * m + k] * I) * (h->br[l * e + p] + h->bi[l * e + p] * I);
+                at += creal(part);
+                rate += creal((h->lr[p] + h->li[p] * I) * part);
+            }
+            lack = fmax(lack, fmax(cabs(at) * sqrt(h->omega2[k]), cabs(rate - (k == l))));
+        }
+    }
+    require(worst <= kind->tolerance && lack <= kind->tolerance, "residual %.2g, sums %.2g", worst, lack);
+    tribo_modal_free(h);
+    tribo_system_destroy(sys);
+}
+
 /* (e^z - 1)/z on both sides of where its series ends, in eight directions, by functions that lose no digits:
  * e^{a + ib} - 1 = expm1(a) cos b - 2 sin^2(b/2) + i e^a sin b. */
 TEST(exponential_from_one)
@@ -310,4 +399,4 @@ TEST(exponential_from_one)
 }
 
 TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1}, {kept, 10}, {one_sided, 1},
-          {free_motions, 1}, {moved_alike, 1}, {exponential_from_one, 5})
+          {free_motions, 1}, {moved_alike, 1}, {coupled, 10}, {exponential_from_one, 5})
