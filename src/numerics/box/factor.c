@@ -274,8 +274,8 @@ void tribo_factor_solve(const struct box_qp *p, double *step)
 int tribo_factor_many(const struct box_qp *p, size_t changes, size_t free)
 {
     /* A change of a dense factor costs about rank^2, a dense factor free^3/3. As measured on carpets and chains of 400 to 100,000
-     * contacts, a sparse factor costs some size/32 changes, 16 where each is searched for dependents. */
-    const size_t many = p->group->nullity ? 16 : p->group->size / 32;
+     * contacts, a sparse factor costs some size/16 changes, 16 where each is searched for dependents. */
+    const size_t many = p->group->nullity ? 16 : p->group->size / 16;
     return p->group->sparse ? changes > many : p->group->graded || 3 * changes > free;
 }
 
