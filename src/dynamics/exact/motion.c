@@ -195,8 +195,9 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     const size_t n = sys->ndof;
     double *moves = x->work;
     tribo_modal_motion_go(x, tau);
-    /* brief: |lambda| tau is small for all terms; then q', as q, is computed as the value at t0 plus a change */
-    const int brief = x->tau * h->quickest < LITTLE && !h->any_resonant;
+    /* brief: |lambda| tau is small for all terms; then q', as q, is computed as the value at t0 plus a change, but not beside bases,
+     * which it follows to rounding */
+    const int brief = x->tau * h->quickest < LITTLE && !h->any_resonant && h->shapes == h->modal->modes;
     move_shapes(x, brief);
     if (to != from) {
         memcpy(to, from, tribo_system_size(sys) * sizeof *to);

@@ -39,7 +39,7 @@ struct modal_motion {
     double *far_r, *far_i;      /* [terms] e^{lambda far} */
     double *er, *ei;            /* [terms] workspace: w - z, the change since t0 */
     double *growth, *growth6;   /* [terms] bounds of |w| and of the sixth derivative */
-    double *work;               /* [10 max(ndof, shapes)] workspace */
+    double *work;               /* [10 room + 2 ndof] workspace */
     double *way;                /* [ncontact] workspace */
     double *steady;             /* [ncontact] force of a sliding contact without harmonics of the limit */
     struct course *course;      /* [ncontact] courses of the outputs of h */
