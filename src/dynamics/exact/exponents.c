@@ -62,43 +62,24 @@ static int exponents_decoupled(struct modal_build *b)
     return TRIBO_OK;
 }
 
-/* a [2 modes][2 modes], zero before, = A of x' = A x, x = (s eta, eta'), s = omega. */
-static void first_order(const struct modal *h, const double *s, double *a)
-{
-    const size_t m = h->modes, size = 2 * m;
-    for (size_t k = 0; k < m; k++) {
-        a[k * size + m + k] = s[k];
-        a[(m + k) * size + k] = -s[k];
-        for (size_t l = 0; l < m; l++) {
-            a[(m + k) * size + m + l] -= h->coupling[k * m + l];
-        }
-    }
-}
-
-/* Returns |A x - lambda x|/|lambda|, lambda = re + i im, |x| = 1: real part x[0], imaginary part x[1] if im != 0. */
-static double exponents_residual(const struct modal *h, const double *s, double re, double im, const double *const *x)
-{
-    const size_t m = h->modes, parts = im != 0.0 ? 2 : 1;
-    double square = 0.0;
-    for (size_t part = 0; part < parts; part++) {
-        const double *own = x[part], *other = parts > 1 ? x[1 - part] : own, turn = parts == 1 ? 0.0 : part ? im : -im;
-        for (size_t k = 0; k < m; k++) {
-            const double up = s[k] * own[m + k] - re * own[k] - turn * other[k];
-            const double down =
-                -s[k] * own[k] - tribo_dot(h->coupling + k * m, own + m, m) - re * own[m + k] - turn * other[m + k];
-            square += up * up + down * down;
-        }
-    }
-    return sqrt(square) / hypot(re, im);
-}
-
-/* Returns 1 if the residuals of all exponents are at most KNOWN. */
+/* Returns 1 if |A x - lambda x| < KNOWN |lambda| for all eigenvectors x, |x| = 1, see linalg.h. */
 static int all_known(const struct modal *h, const double *s, const double *re, const double *im, const double *x)
 {
-    const size_t size = 2 * h->modes;
+    const size_t m = h->modes, size = 2 * m;
     for (size_t i = 0; i < size; i++) {
-        const double *const parts[] = {x + i * size, im[i] > 0.0 ? x + (i + 1) * size : NULL};
-        if (!(im[i] < 0.0) && !(exponents_residual(h, s, re[i], im[i], parts) <= KNOWN)) {
+        const int parts = im[i] != 0.0 ? 2 : 1;
+        double square = 0.0;
+        for (int part = 0; part < parts && !(im[i] < 0.0); part++) {
+            const double *own = x + (i + (size_t)part) * size, *other = parts > 1 ? x + (i + 1 - (size_t)part) * size : own;
+            const double turn = part ? im[i] : -im[i];
+            for (size_t k = 0; k < m; k++) {
+                const double up = s[k] * own[m + k] - re[i] * own[k] - turn * other[k];
+                const double down =
+                    -s[k] * own[k] - tribo_dot(h->coupling + k * m, own + m, m) - re[i] * own[m + k] - turn * other[m + k];
+                square += up * up + down * down;
+            }
+        }
+        if (!(sqrt(square) < KNOWN * hypot(re[i], im[i]))) {
             return 0;
         }
     }
@@ -415,8 +396,13 @@ static int exponents_coupled(struct modal_build *b)
             return exponents_unsupported(b, "coupled damping, and a mode without stiffness");
         }
         s[k] = sqrt(h->omega2[k]);
+        /* a = A of x' = A x, x = (s eta, eta'), s = omega */
+        a[k * size + m + k] = s[k];
+        a[(m + k) * size + k] = -s[k];
+        for (size_t l = 0; l < m; l++) {
+            a[(m + k) * size + m + l] = -h->coupling[k * m + l];
+        }
     }
-    first_order(h, s, a);
     int status = tribo_eigen(a, size, re, im, x);
     if (status == TRIBO_ERR_NO_CONVERGENCE || status == TRIBO_ERR_NOT_FINITE) {
         return tribo_system_fail(b->shared->sys, status, "method exact: exponents of %zu mode%s that damping couples: %s", m,
