@@ -1,5 +1,6 @@
 /* A structure under loads: shapes by bases, forcing of the modes, and response of the modes. */
 #include "parts.h"
+#include "numerics/lapack.h"
 
 #include <math.h>
 #include <string.h>
@@ -256,31 +257,33 @@ static void respond_alone(struct modal_build *b, size_t s)
     }
 }
 
-/* Sets the response of coupled modes to all harmonics, by LU factors of the real form of their equations. Returns 0 on failure. */
+/* Sets the response of coupled modes to all harmonics, by LU factors. Returns 0 on failure. */
 static int respond_together(struct modal_build *b)
 {
     struct forced *f = b->forced;
     const struct modal *h = b->h;
-    const size_t m = h->modes, size = 2 * m;
-    double *a = tribo_modal_scratch(b, size * size), *x = tribo_modal_scratch(b, size);
-    int *pivot = (int *)tribo_modal_scratch_indices(b, size);
-    for (size_t s = 0; a && x && pivot && s < f->harmonics; s++) {
+    const size_t m = h->modes;
+    const int rows = (int)m, one = 1;
+    double complex *a = (double complex *)tribo_modal_scratch(b, 2 * m * m);
+    int *pivot = (int *)tribo_modal_scratch_indices(b, m), info = 0;
+    for (size_t s = 0; a && pivot && s < f->harmonics; s++) {
         const double omega = f->forcing[s].omega;
+        double complex *x = f->x + s * f->shapes;
         int known = 1;
-        for (size_t p = 0; p < h->exponents; p++) {
-            known &= hypot(h->lr[p], fabs(h->li[p]) - fabs(omega)) > UNDAMPED * fabs(omega) || omega == 0.0;
+        if (omega == 0.0) {
+            continue;
         }
-        memset(a, 0, size * size * sizeof *a);
+        for (size_t p = 0; p < h->exponents; p++) {
+            known &= hypot(h->lr[p], fabs(h->li[p]) - fabs(omega)) > UNDAMPED * fabs(omega);
+        }
         for (size_t k = 0; k < m; k++) {
-            x[k] = creal(f->g[s * m + k]);
-            x[m + k] = cimag(f->g[s * m + k]);
-            a[k * size + k] = a[(m + k) * size + m + k] = h->omega2[k] - omega * omega;
+            x[k] = f->g[s * m + k];
             for (size_t l = 0; l < m; l++) {
-                a[k * size + m + l] = -omega * h->coupling[k * m + l];
-                a[(m + k) * size + l] = omega * h->coupling[k * m + l];
+                a[l * m + k] = (k == l ? h->omega2[k] - omega * omega : 0.0) + omega * h->coupling[k * m + l] * I;
             }
         }
-        if (!known || !(tribo_lu_create(a, size, pivot) > 0.0)) {
+        zgesv_(&rows, &one, a, &rows, pivot, x, &rows, &info);
+        if (!known || info != 0) {
             b->status =
                 tribo_system_fail(b->shared->sys, TRIBO_ERR_UNSUPPORTED,
                                   "the harmonic of omega = %g is in resonance with an undamped mode, while damping couples "
@@ -288,12 +291,8 @@ static int respond_together(struct modal_build *b)
                                   omega);
             return 0;
         }
-        tribo_lu_solve(a, size, pivot, x, omega != 0.0);
-        for (size_t k = 0; k < m; k++) {
-            f->x[s * f->shapes + k] = omega != 0.0 ? x[k] + x[m + k] * I : 0.0;
-        }
     }
-    return a && x && pivot;
+    return a && pivot;
 }
 
 int tribo_forced_respond(struct modal_build *b)
