@@ -252,7 +252,7 @@ static int damping_couples(const struct modal_build *b, const double *c, const d
         /* The part of mode l in mode k by rounding of K: noise of phi_k'K phi_l over |omega_k^2 - omega_l^2|; 0 if above TINY. */
         const double distance = fabs(h->omega2[k] - h->omega2[l]);
         const double noise = tribo_matrix_noise(b->stiffness, stiff_root, one, other);
-        const double mixed = noise <= TINY * distance ? noise / distance : 0.0;
+        const double mixed = noise < TINY * distance ? noise / distance : 0.0;
         if (shared > ROUNDING * (tribo_matrix_noise(b->shared->damping, root, one, other) + mixed * larger)) {
             return 1;
         }

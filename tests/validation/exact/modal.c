@@ -231,6 +231,21 @@ TEST(one_sided)
     tribo_system_destroy(sys);
 }
 
+/* Two bodies on no spring, and a damper between them: the damping couples two modes of one omega, which is 0. */
+TEST(damper_alone)
+{
+    const double mass[] = {1.0, 0.0, 0.0, 2.0}, stiffness[4] = {0.0}, damping[] = {1.0, -1.0, -1.0, 1.0},
+                 direction[] = {1.0, 0.0};
+    const signed char slip[] = {1};
+    const unsigned char holds[] = {0};
+    tribo_system *sys;
+    struct modal *h;
+    assert_ok(dense_system(&sys, 2, 1, mass, damping, stiffness, direction, 0, NULL, 0));
+    assert_status(decompose(&h, sys, slip, holds), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_system_message(sys), "a mode without stiffness");
+    tribo_system_destroy(sys);
+}
+
 /* Free structures of four bodies with a full mass matrix, of which the last is on no spring: two motions have no frequency but
  * rounding, and that says how they mix. They are orthonormal nevertheless: phi'M phi = 1. */
 TEST(free_motions)
@@ -399,4 +414,4 @@ TEST(exponential_from_one)
 }
 
 TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1}, {kept, 10}, {one_sided, 1},
-          {free_motions, 1}, {moved_alike, 1}, {coupled, 10}, {exponential_from_one, 5})
+          {damper_alone, 1}, {free_motions, 1}, {moved_alike, 1}, {coupled, 10}, {exponential_from_one, 5})
