@@ -304,8 +304,8 @@ int tribo_modal_reserve_effects(struct modal_build *b)
     return b->work != NULL;
 }
 
-/* to[i stride] = f_i of the rigid contacts i that hold, J_I'f = force, project: without the part of the force that moves the modes.
- * work [rests + modes]. */
+/* to[i stride] = f_i of the rigid contacts i that hold, J_I'f = force, project: without the part of the force that moves the
+ * modes. work [rests + modes]. */
 static void keep_reactions(const struct modal *h, double *force, int project, double *work, double *to, size_t stride)
 {
     if (project) {

@@ -13,8 +13,8 @@
 /* Largest number of samples in a phase without resonance. */
 #define MOST_SAMPLES 32768.0
 
-/* *work = integral over [0, tau] of the part of the limit of contact c by harmonics times the velocity, closed; *size = estimate of
- * the sizes of its parts and of the work of the steady force. Returns the largest |lambda| or Omega of the terms. */
+/* Sets *work = integral over [0, tau] of the part of the limit of contact c by harmonics times the velocity, closed; *size = an
+ * estimate of the sizes of its parts and of the work of the steady force. Returns the largest |lambda| or Omega of the terms. */
 static double closed_work(struct modal_motion *x, const struct course *c, double tau, double *work, double *size)
 {
     const struct forced *h = x->h;

@@ -1,10 +1,10 @@
 /* A structure with a set I of contacts held: its modes of vibration, and from the modes the velocities and forces of contacts.
  *
- * J_I q' = b_I. Then q = Phi eta, with the mode shapes, eta'' + C~ eta' + diag(omega^2) eta = constant + ramp t + harmonics, and
- * with further shapes, the displacements by the bases of I, of known eta. eta of a mode is the response to the right-hand side
- * plus a sum of damped complex exponentials, Re(r z), z_p' = lambda_p z_p. Velocities of sliding contacts and forces of held
- * contacts are sums of the same terms. struct modal depends on I alone, struct forced on loads and limits, too; neither depends on
- * the directions in which the other contacts slide: both are kept for later phases with the same I. */
+ * J_I q' = b_I. Then q = Phi eta, with the mode shapes, eta'' + C~ eta' + diag(omega^2) eta = constant + ramp t + harmonics,
+ * and with further shapes, the displacements by the bases of I, of known eta. eta of a mode is the response to the right-hand
+ * side plus a sum of damped complex exponentials, Re(r z), z_p' = lambda_p z_p. Velocities of sliding contacts and forces of
+ * held contacts are sums of the same terms. struct modal depends on I alone, struct forced on loads and limits, too; neither
+ * depends on the directions in which the other contacts slide: both are kept for later phases with the same I. */
 #ifndef TRIBO_MODAL_H
 #define TRIBO_MODAL_H
 
@@ -27,17 +27,17 @@ struct modal_store {
 void *tribo_modal_take(struct modal_store *store, size_t count, size_t size);
 void tribo_modal_give_back(struct modal_store *store);
 
-/* The structure without loads; forced: under the loads; NULL: not created since the loads changed. key [contacts]: 1: at rest; 2: at rest and holds; 0: else. */
+/* The structure without loads. */
 struct modal {
     struct modal_store store; /* memory of all arrays */
     size_t users;             /* number of users besides the first; the last tribo_modal_free frees */
     struct modal *next;       /* of the caller's list */
-    struct forced *forced;
-    size_t n; /* degrees of freedom */
-    signed char *key;
-    size_t rests, *rest;     /* [rests] rigid contacts that hold */
-    size_t springs;          /* number of compliant contacts that hold */
-    struct constraints ties; /* constraints between degrees of freedom by the rigid contacts that hold */
+    struct forced *forced;    /* the structure under the loads; NULL: not created since the loads changed */
+    size_t n;                 /* degrees of freedom */
+    signed char *key;         /* [contacts] 1: at rest; 2: at rest and holds; 0: else */
+    size_t rests, *rest;      /* [rests] rigid contacts that hold */
+    size_t springs;           /* number of compliant contacts that hold */
+    struct constraints ties;  /* constraints between degrees of freedom by the rigid contacts that hold */
 
     size_t modes;
     double *phi; /* [modes][n] mode shapes */
@@ -71,8 +71,8 @@ struct forcing {
 };
 
 /* The structure under the loads of the system. Shapes: the modes, then a shape for each part, cosine or sine, of a harmonic of
- * bases: the velocities of the structure, with Phi'M y = 0, for eta' = e^{i Omega t} or i e^{i Omega t}; at last, if steady, a shape
- * for bases of constant speed: eta' = 1. */
+ * bases: the velocities of the structure, with Phi'M y = 0, for eta' = e^{i Omega t} or i e^{i Omega t}; at last, if steady, a
+ * shape for bases of constant speed: eta' = 1. */
 struct forced {
     struct modal *modal;
     struct modal_store store;
@@ -126,7 +126,8 @@ int tribo_modal_create(struct modal **modal, const struct modal_shared *shared, 
                        const unsigned char *holds);
 void tribo_modal_free(struct modal *h);
 
-/* Creates h->forced, with the slip of tribo_modal_create. Returns a status, likewise. tribo_forced_free also takes an h without. */
+/* Creates h->forced, with the slip of tribo_modal_create. Returns a status, likewise. tribo_forced_free also takes an h
+ * without. */
 int tribo_forced_create(struct modal *h, const struct modal_shared *shared, const signed char *slip);
 void tribo_forced_free(struct modal *h);
 
@@ -141,8 +142,8 @@ struct modal_phase {
 struct modal_phase *tribo_modal_phase_create(struct modal *h, double tau);
 void tribo_modal_phase_free(void *phase);
 
-/* Moves perturbations v [2 ndof + compliance.count][columns] of the state from the start of the phase to the end. Returns 0 if out
- * of memory. */
+/* Moves perturbations v [2 ndof + compliance.count][columns] of the state from the start of the phase to the end. Returns 0 if
+ * out of memory. */
 int tribo_modal_transition(const struct modal_phase *phase, const tribo_system *sys, size_t columns, double *v);
 
 /* Returns c of the part Re(c z) of exponent p in place'eta + speed'eta', place, speed [modes]. */

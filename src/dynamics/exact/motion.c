@@ -195,8 +195,8 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     const size_t n = sys->ndof;
     double *moves = x->work;
     tribo_modal_motion_go(x, tau);
-    /* brief: |lambda| tau is small for all terms; then q', as q, is computed as the value at t0 plus a change, but not beside bases,
-     * which it follows to rounding */
+    /* brief: |lambda| tau is small for all terms; then q', as q, is the value at t0 plus a change. With shapes by bases q' is
+     * computed anew: it follows the bases to rounding. */
     const int brief = x->tau * h->quickest < LITTLE && !h->any_resonant && h->shapes == h->modal->modes;
     move_shapes(x, brief);
     if (to != from) {
@@ -259,9 +259,9 @@ static void find_steady(struct modal_motion *x)
     }
 }
 
-/* force [modes] = the constant right-hand side of the modes: constant loads, steady forces of sliding contacts, and, of contacts that
- * hold, -(J q + G f - displacements of bases) times the force per eta. K q is not added: for a rigid-body displacement q, K q would
- * be rounding only. */
+/* force [modes] = the constant right-hand side of the modes: constant loads, steady forces of sliding contacts, and, of
+ * contacts that hold, -(J q + G f - displacements of bases) times the force per eta. K q is not added: for a rigid-body
+ * displacement q, K q would be rounding only. */
 static void find_constant_forces(struct modal_motion *x, const double *y, double *force)
 {
     const struct forced *h = x->h;

@@ -21,8 +21,8 @@ struct course {
     struct sample at;  /* output at tau, with two derivatives */
 };
 
-/* A phase from t0. A mode: eta = constant + vel tau + acc tau^2/2 + harmonics + (Re(r z), or drift_rate tau if the mode drifts). A
- * shape by bases: eta = harmonics, or tau. */
+/* A phase from t0. A mode: eta = constant + vel tau + acc tau^2/2 + harmonics + (Re(r z), or drift_rate tau if the mode
+ * drifts). A shape by bases: eta = harmonics, or tau. */
 struct modal_motion {
     tribo_system *sys;
     const struct stick_slip *contacts; /* the caller's */
@@ -61,8 +61,8 @@ void tribo_modal_motion_go(struct modal_motion *x, double tau);
 struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i);
 double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i);
 
-/* Return the energy dissipated until t0 + tau, x and x->place being there: by the contact of course c, which slides, counted once;
- * by all. */
+/* Return the energy dissipated until t0 + tau, x and x->place being there: by the contact of course c, which slides, counted
+ * once; by all. */
 double tribo_modal_motion_work(struct modal_motion *x, const struct course *c, double tau);
 double tribo_modal_motion_dissipated(struct modal_motion *x, double tau);
 

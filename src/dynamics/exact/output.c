@@ -35,8 +35,8 @@ static int find_terms(struct modal_build *b)
     return 1;
 }
 
-/* force [n] = minus the force by a part, cosine or -sine, of a load, or of a limit as force. load [n] is workspace. Returns 0 if the
- * force is 0, or constant. */
+/* force [n] = minus the force by a part, cosine or -sine, of a load, or of a limit as force. load [n] is workspace. Returns 0
+ * if the force is 0, or constant. */
 static int force_part(const tribo_system *sys, const struct forcing *f, int part, double *load, double *force)
 {
     const struct harmonic *w = &sys->harmonic[f->harmonic];
@@ -59,8 +59,8 @@ static int force_part(const tribo_system *sys, const struct forcing *f, int part
     return acts;
 }
 
-/* Sets direct [harmonics][rests], zero before, = forces of the rigid contacts that hold by loads and limits at fixed eta: J_I'f is the
- * part of the force of force_part that the modes leave. Returns 0 if out of memory. */
+/* Sets direct [harmonics][rests], zero before, = forces of the rigid contacts that hold by loads and limits at fixed eta: J_I'f
+ * is the part of the force of force_part that the modes leave. Returns 0 if out of memory. */
 static int find_direct(struct modal_build *b, double complex *direct)
 {
     const struct forced *f = b->forced;
@@ -80,8 +80,9 @@ static int find_direct(struct modal_build *b, double complex *direct)
     return load != NULL;
 }
 
-/* Sets the output of contact i: the velocity, of a contact at rest that does not hold without modes; or the force, with the rest of
- * the harmonics in direct, `rests` apart; NULL: 0. c [3 terms] is its memory, zero before. Returns 1 if the output varies. */
+/* Sets the output of contact i: the velocity, of a contact at rest that does not hold without modes; or the force, with the
+ * rest of the harmonics in direct, `rests` apart; NULL: 0. c [3 terms] is its memory, zero before. Returns 1 if the output
+ * varies. */
 static int fill_output(const struct modal_build *b, size_t i, const double complex *direct, double *c, struct output *w)
 {
     const struct forced *f = b->forced;

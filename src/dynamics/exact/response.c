@@ -51,8 +51,8 @@ static int base_part(const struct harmonic *w, int part, double *base)
     return moves;
 }
 
-/* Makes room for shapes: one for each part of a harmonic of bases that is not 0, and one for bases of constant speed. Without such
- * shapes phi, on and by_u are arrays of the modal. Returns 0 if out of memory. */
+/* Makes room for shapes: one for each part of a harmonic of bases that is not 0, and one for bases of constant speed. Without
+ * such shapes phi, on and by_u are arrays of the modal. Returns 0 if out of memory. */
 static int make_shapes(struct modal_build *b, double *base)
 {
     struct forced *f = b->forced;
@@ -96,8 +96,8 @@ struct following {
     double *place, *rate; /* [modes] forcing of eta per displacement, and per velocity of the shape */
 };
 
-/* Sets shape k, velocities y with J_I y = b_I and Phi'M y = 0, and what it does at contacts and to the modes. By Maxwell and Betti,
- * phi'(K y - J'f') is the sum of b_i times the force of contact i per eta over the contacts that hold. */
+/* Sets shape k, velocities y with J_I y = b_I and Phi'M y = 0, and what it does at contacts and to the modes. By Maxwell and
+ * Betti, phi'(K y - J'f') is the sum of b_i times the force of contact i per eta over the contacts that hold. */
 static void follow_base(struct modal_build *b, size_t k, double omega, struct following *w)
 {
     struct forced *f = b->forced;

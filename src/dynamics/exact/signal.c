@@ -9,8 +9,8 @@
 #define TOO_CLOSE 5e-8
 
 /* Adds place'eta + speed'eta' without the constant part, place, speed [shapes], to a signal with all terms. Terms of a resonant
- * harmonic s of exponent p: z of p in the motion has the part -i/nu times the sum of a (e^{mu tau} - e^{lambda tau})/(mu - lambda) over
- * mu = i Omega, a = g h/2 with the harmonic h at t0, and over the conjugates of mu and a. */
+ * harmonic s of exponent p: z of p in the motion has the part -i/nu times the sum of a (e^{mu tau} - e^{lambda tau})/(mu -
+ * lambda) over mu = i Omega, a = g h/2 with the harmonic h at t0, and over the conjugates of mu and a. */
 static void add_weights(const struct modal_motion *x, const double *place, const double *speed, struct signal *to)
 {
     const struct forced *h = x->h;

@@ -71,7 +71,8 @@ static void transition_split(const struct transition *x, const double *v)
     }
 }
 
-/* Moves modes without coupling by tau: (eta, eta')(tau) = t (eta, eta')(0), by the exponents of a mode, beside the part by pull. */
+/* Moves modes without coupling by tau: (eta, eta')(tau) = t (eta, eta')(0), by the exponents of a mode, beside the part by
+ * pull. */
 static void move_alone(const struct transition *x)
 {
     const struct modal *h = x->h;
