@@ -403,6 +403,7 @@ void tribo_modal_free(struct modal *h)
 {
     if (h && h->users-- == 0) {
         struct modal_store store = h->store;
+        tribo_forced_free(h);
         tribo_constraints_free(&h->ties);
         tribo_modal_give_back(&store);
     }

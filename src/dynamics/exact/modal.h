@@ -121,7 +121,7 @@ void tribo_modal_shared_free(struct modal_shared *shared);
 
 /* Creates the structure with all contacts at rest, slip[i] = 0, held. holds[i] = 1: contact i holds (set H of stick_slip.h);
  * other contacts at rest depend on H. Returns a status, message on the system's context. Every user of the structure besides the
- * first one adds 1 to users. tribo_modal_free takes NULL. */
+ * first one adds 1 to users. tribo_modal_free frees h->forced, too, and takes NULL. */
 int tribo_modal_create(struct modal **modal, const struct modal_shared *shared, const signed char *slip,
                        const unsigned char *holds);
 void tribo_modal_free(struct modal *h);

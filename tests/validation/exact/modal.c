@@ -19,12 +19,6 @@ static int decompose(struct modal **h, tribo_system *sys, const signed char *sli
     return status;
 }
 
-static void free_both(struct modal *h)
-{
-    tribo_forced_free(h);
-    tribo_modal_free(h);
-}
-
 /* Response of an output to the first harmonic. */
 static double complex response_of(const struct forced *f, const struct output *out)
 {
@@ -66,7 +60,7 @@ TEST(both_hold)
         assert_close(creal(response_of(f, out)), out->contact == 0 ? -3.5 : -3.0, 1e-14);
         assert_close(cimag(response_of(f, out)), 0.0, 1e-14);
     }
-    free_both(h);
+    tribo_modal_free(h);
     tribo_system_destroy(sys);
 }
 
@@ -93,7 +87,7 @@ TEST(upper_holds)
     const double at = 4.0 * (1.0 / whole + 4.0) - 1.0; /* omega^2 - 1 of the stretch, which 3.5/whole shakes */
     const double stretch = -3.5 / whole / at, pull = 4.0 * stretch;
     assert_close(creal(response_of(f, out)), 0.5 - light * (3.5 + pull) / whole, 1e-13);
-    free_both(h);
+    tribo_modal_free(h);
     tribo_system_destroy(sys);
 }
 
@@ -112,7 +106,7 @@ TEST(lever)
     ck_assert_uint_eq(h->modes, 1);
     assert_close(h->omega2[0], omega2, 1e-15);
     assert_close(f->output[0].size[0], fabs((7.0 - 3.0 * omega2) * 2.0 * phi), 1e-14);
-    free_both(h);
+    tribo_modal_free(h);
     tribo_system_destroy(sys);
 }
 
@@ -205,7 +199,7 @@ TEST(kept)
         assert_ok(decompose(&h, sys, slip, holds));
         compare(same->forced, h->forced);
         tribo_forced_free(same);
-        free_both(h);
+        tribo_modal_free(h);
         tribo_modal_shared_free(&shared);
         assert_ok(tribo_system_add_load(sys, 0.4 + k, load, NULL));
     }
@@ -227,7 +221,7 @@ TEST(one_sided)
     ck_assert_uint_eq(h->modes, 1);
     ck_assert_uint_eq(h->forced->outputs, 1);
     assert_close(h->forced->output[0].size[0], 0.25 * 2.0, 1e-14);
-    free_both(h);
+    tribo_modal_free(h);
     tribo_system_destroy(sys);
 }
 
