@@ -273,11 +273,8 @@ static int box_primal_dual(struct box_qp *p)
     size_t least = SIZE_MAX;
     for (int patience = 10; patience > 0; patience--) {
         int found = box_solve_sets(p);
-        if (!found) { /* rounding of many changes in the factor */
+        if (!found) { /* rounding of many changes in the factor, or of large forces of earlier calls */
             tribo_factor_rebuild(p, NULL);
-            found = box_solve_sets(p);
-        }
-        if (!found) {
             box_forget(p);
             found = box_solve_sets(p);
         }
