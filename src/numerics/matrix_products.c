@@ -111,7 +111,7 @@ void tribo_matrix_multiply_all(const struct matrix *a, size_t count, const doubl
 }
 
 /* sum += x y (Ogita, Rump and Oishi 2005, SIAM J. Sci. Comput. 26, 1955, doi:10.1137/030601818). */
-static void add_product(struct twofold *sum, double x, double y)
+static void form_add_product(struct twofold *sum, double x, double y)
 {
     const double product = x * y;
     const struct twofold s = twofold_sum(sum->hi, product);
@@ -125,10 +125,10 @@ double tribo_matrix_form(const struct matrix *a, const double *x, const double *
     for (size_t i = 0; i < a->rows; i++) {
         struct twofold row = {0.0, 0.0};
         for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            add_product(&row, a->val[k], y[a->col[k]]);
+            form_add_product(&row, a->val[k], y[a->col[k]]);
         }
-        add_product(&all, x[i], row.hi);
-        add_product(&all, x[i], row.lo);
+        form_add_product(&all, x[i], row.hi);
+        form_add_product(&all, x[i], row.lo);
     }
     return all.hi + all.lo;
 }
