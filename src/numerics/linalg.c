@@ -200,7 +200,7 @@ static int factorize(struct cholesky *c, const struct matrix *a, struct matrix *
     const int diagonal = tribo_matrix_is_diagonal(a);
     *c = (struct cholesky){.n = a->rows};
     if (!diagonal && tribo_sparse_available() && c->n >= SPARSE_LEAST) {
-        *pivot = NAN;
+        *pivot = (double)NAN;
         return tribo_sparse_factor_create(&c->sparse, a, spent, where);
     }
     if (!diagonal && c->n > DENSE_MOST) {
