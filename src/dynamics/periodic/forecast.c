@@ -16,8 +16,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* N = number of modes, rounded down to even, within these bounds; at most SWEEPS N sweeps. */
-enum { LEAST_TIMES = 32, MOST_TIMES = 96, SWEEPS = 2 };
+/* N = number of modes, rounded down to even, within these bounds; at most N sweeps. */
+enum { LEAST_TIMES = 32, MOST_TIMES = 96 };
 
 /* Sweeps end when |y - f| <= SETTLED |f|. */
 #define SETTLED 2e-3
@@ -207,7 +207,7 @@ static void forecast_forces(struct forecast *x)
 {
     const size_t c = x->contacts, n = x->times * c, two = 2 * c;
     double change = HUGE_VAL, size = 0.0;
-    for (size_t sweep = 0; sweep < SWEEPS * x->times && change > SETTLED * SETTLED * size; sweep++) {
+    for (size_t sweep = 0; sweep < x->times && change > SETTLED * SETTLED * size; sweep++) {
         for (size_t k = 0; k < n; k++) {
             x->f[k] = clamp(x->s[k], -x->limit[k], x->limit[k]);
             x->y[k] = 2.0 * x->f[k] - x->s[k] - x->rho[k / x->times] * x->v[k];

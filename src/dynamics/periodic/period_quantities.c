@@ -19,7 +19,7 @@ struct replay {
 };
 
 /* map->x: state at the start of the phase. */
-static int phase_ends(struct company *company, double tau, double t, const double *y)
+static int replay_phase(struct company *company, double tau, double t, const double *y)
 {
     struct replay *r = (struct replay *)company;
     const struct events *e = r->map->events;
@@ -31,7 +31,7 @@ static int phase_ends(struct company *company, double tau, double t, const doubl
     return status;
 }
 
-static void event_decided(struct company *company)
+static void replay_event(struct company *company)
 {
     (void)company;
 }
@@ -49,7 +49,7 @@ static int replay(tribo_driver *drv, struct replay *r)
                                  s && s->found ? "the system has changed since the periodic motion was found"
                                                : "no periodic motion was found");
     }
-    r->company = (struct company){phase_ends, event_decided};
+    r->company = (struct company){replay_phase, replay_event};
     r->map = &s->map;
     r->elapsed = 0.0;
     memcpy(s->map.x, s->best->y, s->map.n * sizeof *s->map.x);

@@ -122,7 +122,7 @@ static void shooting_settle(struct shooting *s)
 }
 
 /* to [n] = image - x of the point p. */
-static void find_gap(const struct shooting *s, const struct point *p, double *to)
+static void find_misfit(const struct shooting *s, const struct point *p, double *to)
 {
     memcpy(to, p->image, s->map.n * sizeof *to);
     tribo_add(to, -1.0, p->x, s->map.n);
@@ -193,14 +193,14 @@ static int newton_step(struct shooting *s)
     if (is_matrix_free(s)) {
         const double near = s->here->residual / s->here->size;
         const double fell = s->before > 0.0 && near > LEAST_INEXACT ? lesser(s->here->residual / s->before, 1.0) : 0.0;
-        find_gap(s, s->here, s->step);
+        find_misfit(s, s->here, s->step);
         status = solve_in_space(s, 1, clamp(greater(near, 0.9 * fell * fell), LEAST_INEXACT, MOST_INEXACT), s->step, &done);
     }
     status = status || done ? status : tribo_period_map_matrix(&s->map, s->here, &derivative);
     if (status || done) {
         return status;
     }
-    find_gap(s, s->here, s->step);
+    find_misfit(s, s->here, s->step);
     return solve_densely(s, derivative, CUT, s->step, &kernel);
 }
 
@@ -226,7 +226,7 @@ static int newton(struct shooting *s)
     s->map.drv->newton++;
     s->before = s->here->residual;
     if (!status && tribo_energy_length(s->step, s->map.n) < FLAT * s->here->residual) {
-        find_gap(s, s->here, s->step);
+        find_misfit(s, s->here, s->step);
         s->stride = s->stride > 0.0 ? lesser(4.0 * s->stride, LONGEST) : 1.0;
         return try_step(s, s->stride);
     }

@@ -43,7 +43,7 @@ static void add_transposed(const struct matrix *a, double factor, const double *
 }
 
 /* Sets x->f: R_HH f_H = -a_H, a = x->a. Returns a status. */
-static int find_holding_forces(struct variation *x)
+static int solve_holding_forces(struct variation *x)
 {
     const int status = tribo_stick_slip_balance(&x->events->stick_slip, x->a, x->f);
     return status ? tribo_system_fail(x->sys, status, "%s", tribo_message(x->events->stick_slip.constant.hold)) : TRIBO_OK;
@@ -65,7 +65,7 @@ static int find_force_rates(struct variation *x, const double *y)
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, x->f, rate);
     tribo_stick_slip_contact_accelerations(sys, rate, 2, x->a);
-    return find_holding_forces(x);
+    return solve_holding_forces(x);
 }
 
 /* row [n] = df_i/dstate of holding contact i: f_i = e'J (-AK q - AC q'), e = -R_HH^-1 unit_i. Returns a status. */
@@ -74,7 +74,7 @@ static int find_force_row(struct variation *x, size_t i, double *row)
     const tribo_system *sys = x->sys;
     memset(x->a, 0, sys->ncontact * sizeof *x->a);
     x->a[i] = 1.0;
-    const int status = find_holding_forces(x);
+    const int status = solve_holding_forces(x);
     memset(x->change, 0, sys->ndof * sizeof *x->change);
     add_transposed(&sys->direction, 1.0, x->f, x->change);
     memset(row, 0, tribo_system_energy(sys) * sizeof *row);
@@ -260,7 +260,7 @@ static void jump_earlier(struct variation *x, size_t k)
 }
 
 /* Carries perturbations over the crossings of the group of crossing `first`, its first one. */
-static void cross(struct variation *x, size_t first)
+static void carry_over(struct variation *x, size_t first)
 {
     const signed char *now = x->events->stick_slip.state.slip;
     const size_t group = x->group[x->contact[first]];
@@ -296,7 +296,7 @@ void tribo_variation_event(struct variation *x)
     }
     for (size_t k = 0; k < x->count; k++) {
         if (x->group[x->contact[k]] == k + 1) {
-            cross(x, k);
+            carry_over(x, k);
         }
     }
     /* contact i loses its static limit by none of these groups: the order of the crossings matters */

@@ -336,7 +336,7 @@ static void add_attachment(const struct model *m, const struct shifted *s, struc
 }
 
 /* x [ndof] = the force of contact i without the part that acts on the modes, M Phi Phi'x, removed twice. mx [ndof]: workspace. */
-static void set_force(const struct model *m, const struct reduced *r, size_t i, double *x, double *mx)
+static void set_contact_force(const struct model *m, const struct reduced *r, size_t i, double *x, double *mx)
 {
     const struct matrix *j = &m->direction;
     const size_t n = m->ndof;
@@ -366,7 +366,7 @@ static int find_responses(const struct model *m, const struct shifted *s, const 
     const size_t n = m->ndof;
     double *mx = before + count * n;
     for (size_t i = 0; i < count; i++) {
-        set_force(m, r, first + i, x + i * n, mx);
+        set_contact_force(m, r, first + i, x + i * n, mx);
     }
     if (!tribo_cholesky_solve(&s->factor, count, x)) {
         return 0;
