@@ -84,6 +84,11 @@ int tribo_period_map_march(struct period_map *m, size_t periods, double *x)
     return status;
 }
 
+static int on_driver(const struct period_map *m, int status)
+{
+    return status ? tribo_driver_fail(m->drv, status, "%s", tribo_system_message(m->sys)) : TRIBO_OK;
+}
+
 /* Removes rounding of velocities from m->y at contacts that rest since the last integration. Returns a status. */
 static int hold_still(struct period_map *m)
 {
@@ -91,8 +96,7 @@ static int hold_still(struct period_map *m)
     tribo_system_set_time(m->sys, m->t);
     memset(contacts->state.base, 0, m->sys->ncontact * sizeof *contacts->state.base);
     tribo_system_loads(m->sys, DRIVES_BASE, 0, 1.0, contacts->state.base);
-    const int status = tribo_stick_slip_hold(contacts, m->sys, contacts->state.base, m->y + m->sys->ndof);
-    return status ? tribo_driver_fail(m->drv, status, "%s", tribo_system_message(m->sys)) : TRIBO_OK;
+    return on_driver(m, tribo_stick_slip_hold(contacts, m->sys, contacts->state.base, m->y + m->sys->ndof));
 }
 
 static void set_image(int odd, size_t count, double *x)
@@ -105,11 +109,6 @@ static void set_image(int odd, size_t count, double *x)
 static int no_room(const struct period_map *m)
 {
     return tribo_driver_fail(m->drv, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", m->n, plural(m->n));
-}
-
-static int on_driver(const struct period_map *m, int status)
-{
-    return status ? tribo_driver_fail(m->drv, status, "%s", tribo_system_message(m->sys)) : TRIBO_OK;
 }
 
 /* Sets p->derivative.matrix from v [n][n], the final perturbations of initial unit coordinates. Returns a status. */

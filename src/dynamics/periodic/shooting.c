@@ -76,12 +76,6 @@
 /* The search starts from the forecast if |guess - forecast| > FAR |forecast|. */
 #define FAR 0.1
 
-static int shooting_no_memory(const struct shooting *s)
-{
-    return tribo_driver_fail(s->map.drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
-                             s->map.sys->ndof, plural(s->map.sys->ndof));
-}
-
 static int no_convergence(const struct shooting *s, double residual)
 {
     return tribo_driver_fail(
@@ -151,7 +145,10 @@ static int solve_densely(struct shooting *s, const double *derivative, double cu
             return TRIBO_OK;
         }
     }
-    return tribo_least_norm_solve(s->a, n, cut, x, kernel) ? TRIBO_OK : shooting_no_memory(s);
+    return tribo_least_norm_solve(s->a, n, cut, x, kernel)
+               ? TRIBO_OK
+               : tribo_driver_fail(s->map.drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
+                                   s->map.sys->ndof, plural(s->map.sys->ndof));
 }
 
 /* x = (I - D) x, D = the derivative at s->here over s->spans spans. */

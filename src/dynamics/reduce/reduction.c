@@ -249,17 +249,21 @@ int tribo_model_reduce(struct model *m, tribo_system **sys)
 
 /* ---------------------------------------------------------------------------------------------------------------------- calls */
 
-static int only_reduced(const tribo_system *sys)
+/* Checks that sys is reduced, and that its argument of that name is not NULL. */
+static int check_reduced(const tribo_system *sys, const void *argument, const char *name)
 {
     if (!sys) {
         return TRIBO_ERR_NULL;
     }
-    return sys->modes ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED, "the system is not reduced to modes");
+    if (!sys->modes) {
+        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED, "the system is not reduced to modes");
+    }
+    return argument ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", name);
 }
 
 int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
 {
-    const int status = only_reduced(sys);
+    const int status = check_reduced(sys, &zeta, "zeta");
     if (status) {
         return status;
     }
@@ -289,25 +293,18 @@ int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
 
 int tribo_system_get_frequencies(const tribo_system *sys, double *omega)
 {
-    const int status = only_reduced(sys);
-    if (status) {
-        return status;
+    const int status = check_reduced(sys, omega, "omega");
+    if (!status) {
+        memcpy(omega, sys->omega, tribo_system_ndof(sys) * sizeof *omega);
     }
-    if (!omega) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "omega is NULL");
-    }
-    memcpy(omega, sys->omega, tribo_system_ndof(sys) * sizeof *omega);
-    return TRIBO_OK;
+    return status;
 }
 
 int tribo_system_expand(const tribo_system *sys, const double *reduced, double *full)
 {
-    const int status = only_reduced(sys);
+    const int status = reduced ? check_reduced(sys, full, "full") : check_reduced(sys, reduced, "reduced");
     if (status) {
         return status;
-    }
-    if (!reduced || !full) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", reduced ? "full" : "reduced");
     }
     const size_t n = tribo_system_ndof(sys), dofs = sys->expansion.place ? sys->expansion.dofs : n;
     for (size_t i = 0; i < sys->given; i++) {
@@ -322,12 +319,9 @@ int tribo_system_expand(const tribo_system *sys, const double *reduced, double *
 
 int tribo_system_get_truncation(const tribo_system *sys, double omega, double *error)
 {
-    const int status = only_reduced(sys);
+    const int status = check_reduced(sys, error, "error");
     if (status) {
         return status;
-    }
-    if (!error) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "error is NULL");
     }
     if (!isfinite(omega)) {
         return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
