@@ -89,16 +89,6 @@ static int on_driver(const struct period_map *m, int status)
     return status ? tribo_driver_fail(m->drv, status, "%s", tribo_system_message(m->sys)) : TRIBO_OK;
 }
 
-/* Removes rounding of velocities from m->y at contacts that rest since the last integration. Returns a status. */
-static int hold_still(struct period_map *m)
-{
-    struct stick_slip *contacts = &m->events->stick_slip;
-    tribo_system_set_time(m->sys, m->t);
-    memset(contacts->state.base, 0, m->sys->ncontact * sizeof *contacts->state.base);
-    tribo_system_loads(m->sys, DRIVES_BASE, 0, 1.0, contacts->state.base);
-    return on_driver(m, tribo_stick_slip_hold(contacts, m->sys, contacts->state.base, m->y + m->sys->ndof));
-}
-
 static void set_image(int odd, size_t count, double *x)
 {
     for (size_t i = 0; odd && i < count; i++) {
@@ -128,7 +118,14 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
 {
     const size_t n = m->n;
     tribo_energy_norm_state(&m->norm, 1, p->x, m->y);
-    int status = m->moved ? hold_still(m) : TRIBO_OK;
+    int status = TRIBO_OK;
+    if (m->moved) { /* removes rounding of velocities at contacts that rest since the last integration */
+        struct stick_slip *contacts = &m->events->stick_slip;
+        tribo_system_set_time(m->sys, m->t);
+        memset(contacts->state.base, 0, m->sys->ncontact * sizeof *contacts->state.base);
+        tribo_system_loads(m->sys, DRIVES_BASE, 0, 1.0, contacts->state.base);
+        status = on_driver(m, tribo_stick_slip_hold(contacts, m->sys, contacts->state.base, m->y + m->sys->ndof));
+    }
     if (m->sys->compliance.count) {
         tribo_get_limit(m->sys->contacts, m->limit);
         tribo_compliance_enter(m->sys, m->limit, m->limit + m->sys->ncontact, m->y);

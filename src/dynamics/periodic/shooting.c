@@ -423,41 +423,31 @@ int tribo_shooting_freedom(struct shooting *s, size_t *freedom)
 
 /* -------------------------------------------------------------------------------------------------------------- multipliers */
 
-/* Sorts by size, the largest first. The order within pairs, neighbours of equal size, stays. */
-static void sort(size_t n, double *all_re, double *all_im)
-{
-    for (size_t i = 1; i < n; i++) {
-        const double re = all_re[i], im = all_im[i], size = hypot(re, im);
-        size_t k = i;
-        for (; k > 0 && hypot(all_re[k - 1], all_im[k - 1]) < size; k--) {
-            all_re[k] = all_re[k - 1];
-            all_im[k] = all_im[k - 1];
-        }
-        all_re[k] = re;
-        all_im[k] = im;
-    }
-}
-
 int tribo_shooting_multipliers(struct shooting *s, double *re, double *im)
 {
-    const size_t n = s->map.n;
+    const size_t n = s->map.n, all = tribo_system_dimension(s->map.sys) - 1;
     int status = whole_derivative(s);
     if (status) {
         return status;
     }
-    double *all_re = s->step, *all_im = s->guess;
-    status = tribo_eigen(s->b, n, all_re, all_im, s->a);
-    if (!status) { /* further values of a caller's state depend on these: their multipliers are 0 */
-        const size_t more = (tribo_system_dimension(s->map.sys) - 1 - n) * sizeof *re;
-        sort(n, all_re, all_im);
-        memcpy(re, all_re, n * sizeof *re);
-        memcpy(im, all_im, n * sizeof *im);
-        memset(re + n, 0, more);
-        memset(im + n, 0, more);
+    status = tribo_eigen(s->b, n, s->step, s->guess, s->a);
+    if (status) {
+        return tribo_driver_fail(s->map.drv, status, "multipliers of %zu equation%s: %s", n, plural(n), tribo_strerror(status));
     }
-    return status
-               ? tribo_driver_fail(s->map.drv, status, "multipliers of %zu equation%s: %s", n, plural(n), tribo_strerror(status))
-               : TRIBO_OK;
+    for (size_t i = 0; i < n; i++) { /* the largest first; the order within pairs, neighbours of equal size, stays */
+        const double size = hypot(s->step[i], s->guess[i]);
+        size_t k = i;
+        for (; k > 0 && hypot(re[k - 1], im[k - 1]) < size; k--) {
+            re[k] = re[k - 1];
+            im[k] = im[k - 1];
+        }
+        re[k] = s->step[i];
+        im[k] = s->guess[i];
+    }
+    for (size_t i = n; i < all; i++) { /* values of a caller's state that depend on the others */
+        re[i] = im[i] = 0.0;
+    }
+    return TRIBO_OK;
 }
 
 /* -------------------------------------------------------------------------------------------------------------- the whole */

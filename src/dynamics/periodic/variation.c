@@ -68,23 +68,6 @@ static int find_force_rates(struct variation *x, const double *y)
     return solve_holding_forces(x);
 }
 
-/* row [n] = df_i/dstate of holding contact i: f_i = e'J (-AK q - AC q'), e = -R_HH^-1 unit_i. Returns a status. */
-static int find_force_row(struct variation *x, size_t i, double *row)
-{
-    const tribo_system *sys = x->sys;
-    memset(x->a, 0, sys->ncontact * sizeof *x->a);
-    x->a[i] = 1.0;
-    const int status = solve_holding_forces(x);
-    memset(x->change, 0, sys->ndof * sizeof *x->change);
-    add_transposed(&sys->direction, 1.0, x->f, x->change);
-    memset(row, 0, tribo_system_energy(sys) * sizeof *row);
-    add_transposed(&sys->stiffness, -1.0, x->change, row);
-    if (sys->damping.rows) {
-        add_transposed(&sys->damping, -1.0, x->change, row + sys->ndof);
-    }
-    return status;
-}
-
 /* Lists the crossings of static limits that drop at once, at the state y: by the guard that ended the phase, and of other contacts
  * at the same time. Forces that do not rise only touch their limits. Returns a status. */
 static int find_breakaways(struct variation *x, const double *y)
@@ -113,8 +96,19 @@ static int find_breakaways(struct variation *x, const double *y)
             x->contact[x->count++] = i;
         }
     }
+    /* row = df_i/dstate: f_i = e'J (-AK q - AC q'), e = -R_HH^-1 unit_i */
+    const size_t n = tribo_system_energy(x->sys);
+    memset(x->row, 0, x->count * n * sizeof *x->row);
     for (size_t k = 0; !status && k < x->count; k++) {
-        status = find_force_row(x, x->contact[k], x->row + k * tribo_system_energy(x->sys));
+        memset(x->a, 0, x->sys->ncontact * sizeof *x->a);
+        x->a[x->contact[k]] = 1.0;
+        status = solve_holding_forces(x);
+        memset(x->change, 0, x->sys->ndof * sizeof *x->change);
+        add_transposed(&x->sys->direction, 1.0, x->f, x->change);
+        add_transposed(&x->sys->stiffness, -1.0, x->change, x->row + k * n);
+        if (x->sys->damping.rows) {
+            add_transposed(&x->sys->damping, -1.0, x->change, x->row + k * n + x->sys->ndof);
+        }
     }
     return status;
 }
@@ -135,25 +129,21 @@ int tribo_variation_phase(struct variation *x, double tau, double t, const doubl
 
 /* ------------------------------------------------------------------------------------------------------------- velocities */
 
-/* Returns 1 if v_i = 0 ended the phase and a contact at rest begins to slide: the force of contact i makes it slide. Then q''
- * jumps at the stop of contact i, which lasts an instant only. */
-static int pulls_loose(const struct variation *x, size_t i)
-{
-    const struct guard *met = x->events->met;
-    int loose = 0;
-    for (size_t k = 0; k < x->sys->ncontact; k++) {
-        loose |= x->before[k] == 0 && tribo_slides(x->events->stick_slip.state.slip[k]);
-    }
-    return loose && met && met->kind == SLIDES && met->contact == i;
-}
-
-/* Returns 1 if contact i slid and stops or reverses. Returns 0 if v_i only touches 0, where there is no derivative, and for an
- * elastic contact, because its force is continuous. */
+/* Returns 1 if contact i slid and stops or reverses; also for an instant only, where v_i = 0 ended the phase and the force of
+ * contact i makes a contact at rest slide. Returns 0 if v_i only touches 0, where there is no derivative, and for an elastic
+ * contact, because its force is continuous. */
 static int stops(const struct variation *x, size_t i)
 {
-    const signed char before = x->before[i], now = x->events->stick_slip.state.slip[i];
-    const int slid = tribo_slides(before) && !x->events->stick_slip.constant.elastic[i];
-    return slid && now != TRIBO_SLIP_OPEN && before * x->rate[i] < 0.0 && (now != before || pulls_loose(x, i));
+    const signed char before = x->before[i], *now = x->events->stick_slip.state.slip;
+    const struct guard *met = x->events->met;
+    int acts = now[i] != before;
+    if (!tribo_slides(before) || x->events->stick_slip.constant.elastic[i] || now[i] == TRIBO_SLIP_OPEN) {
+        return 0;
+    }
+    for (size_t k = 0; met && met->kind == SLIDES && met->contact == i && k < x->sys->ncontact; k++) {
+        acts |= x->before[k] == 0 && tribo_slides(now[k]);
+    }
+    return acts && before * x->rate[i] < 0.0;
 }
 
 /* Appends the crossings of velocities. */
@@ -175,16 +165,11 @@ static void find_stops(struct variation *x)
 
 /* ----------------------------------------------------------------------------------------------------------------- groups */
 
-/* Returns 1 if the force of contact i may jump when others stop: i stops, or rests before or after, and is not elastic. */
-static int takes_part(const struct variation *x, size_t i)
-{
-    const int rests = x->before[i] == 0 || x->events->stick_slip.state.slip[i] == TRIBO_SLIP_STUCK;
-    return !x->events->stick_slip.constant.elastic[i] && (rests || stops(x, i));
-}
-
-/* Sets x->group = group for contact i and all contacts that its forces reach by shared bodies and contacts that take part. */
+/* Sets x->group = group for contact i and all contacts that its forces reach by shared bodies and contacts whose forces may jump:
+ * these stop, or rest before or after, and are not elastic. */
 static void gather(struct variation *x, size_t i, size_t group)
 {
+    const struct stick_slip *m = &x->events->stick_slip;
     size_t count = 0;
     x->queue[count++] = i;
     x->group[i] = group;
@@ -192,7 +177,8 @@ static void gather(struct variation *x, size_t i, size_t group)
         const size_t one = x->queue[k];
         for (size_t j = 0; j < x->sys->ncontact; j++) {
             const double coupling = x->group[j] ? 0.0 : fabs(tribo_system_delassus(x->sys, one, j));
-            if (coupling > TOGETHER * tribo_system_delassus(x->sys, one, one) && takes_part(x, j)) {
+            if (coupling > TOGETHER * tribo_system_delassus(x->sys, one, one) && !m->constant.elastic[j] &&
+                (x->before[j] == 0 || m->state.slip[j] == TRIBO_SLIP_STUCK || stops(x, j))) {
                 x->group[j] = group;
                 x->queue[count++] = j;
             }

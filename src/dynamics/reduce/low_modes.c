@@ -415,18 +415,6 @@ static int add_responses(const struct model *m, const struct shifted *s, struct 
     return done ? status : tribo_model_no_memory(m);
 }
 
-/* whole [ncontact][ncontact] += the elastic part of the modes, J phi phi'J'/omega^2. shape [ncontact]: workspace. */
-static void add_modes(const struct model *m, const struct reduced *r, double *whole, double *shape)
-{
-    const size_t c = m->ncontact;
-    for (size_t k = 0; k < m->nmode; k++) {
-        tribo_matrix_multiply(&m->direction, r->phi + k * m->ndof, shape);
-        for (size_t i = 0; r->omega2[k] > 0.0 && i < c; i++) {
-            tribo_add(whole + i * c, shape[i] / r->omega2[k], shape, c);
-        }
-    }
-}
-
 /* Sets *part = the largest x'Ax/x'Bx, A [n][n] semidefinite and a part of B, to rounding of the diagonal of B; 1 if B is lost in
  * the rounding of a subtraction, as of rigid-body motions. Overwrites a and b. value [n]: workspace. Returns 0 if out of memory. */
 static int largest_part(size_t n, double *a, double *b, double *value, double *part)
@@ -459,7 +447,12 @@ static int attach(const struct model *m, const struct shifted *s, struct reduced
     r->truncation.missing = c > m->nmode ? 1.0 : 0.0;
     if (!status && c <= m->nmode) {
         memcpy(whole, missing, c * c * sizeof *whole);
-        add_modes(m, r, whole, work);
+        for (size_t k = 0; k < m->nmode; k++) { /* the elastic part of the modes, J phi phi'J'/omega^2 */
+            tribo_matrix_multiply(&m->direction, r->phi + k * m->ndof, work);
+            for (size_t i = 0; r->omega2[k] > 0.0 && i < c; i++) {
+                tribo_add(whole + i * c, work[i] / r->omega2[k], work, c);
+            }
+        }
         status = largest_part(c, missing, whole, work, &r->truncation.missing) ? TRIBO_OK : tribo_model_no_memory(m);
     }
     free(missing);

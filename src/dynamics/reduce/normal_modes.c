@@ -116,20 +116,6 @@ static void take_out(struct spectrum *s, size_t low, double part)
     tribo_multiply_add(low, s->n - low, s->n, -part, s->block, s->y + low * s->n, s->y);
 }
 
-/* Turns the first `low` modes and the others by block. Half of the first turn before and half after that of the others makes the
- * modes orthonormal except for a quarter of turn^3. */
-static void modes_separate(struct spectrum *s, size_t low)
-{
-    const size_t n = s->n, others = n - low;
-    const int halves = find_turns(s, low) > TINY;
-    take_out(s, low, halves ? 0.5 : 1.0);
-    tribo_transpose(low, others, s->block, s->turn);
-    tribo_multiply_add(others, low, n, 1.0, s->turn, s->y, s->y + low * n);
-    if (halves) {
-        take_out(s, low, 0.5);
-    }
-}
-
 /* Finds all modes, omega^2 to rounding of the largest; then the low ones again, from K projected on these alone. Returns a status. */
 static int modes_find(struct spectrum *s, const struct cholesky *mass)
 {
@@ -141,7 +127,15 @@ static int modes_find(struct spectrum *s, const struct cholesky *mass)
         if (low == open) {
             return TRIBO_ERR_NO_CONVERGENCE;
         }
-        modes_separate(s, low);
+        /* Turns the low modes and the others by block. Half of the first turn before and half after that of the others makes the
+         * modes orthonormal except for a quarter of turn^3. */
+        const int halves = find_turns(s, low) > TINY;
+        take_out(s, low, halves ? 0.5 : 1.0);
+        tribo_transpose(low, n - low, s->block, s->turn);
+        tribo_multiply_add(n - low, low, n, 1.0, s->turn, s->y, s->y + low * n);
+        if (halves) {
+            take_out(s, low, 0.5);
+        }
         stress(s, 0, low);
         modes_share(s, low, 0, low);
         status = tribo_symmetric_eigen(s->block, low, s->value, s->turn);

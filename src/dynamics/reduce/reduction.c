@@ -195,18 +195,6 @@ static int set_modes(const struct compliant *e, size_t given, const struct reduc
     return done;
 }
 
-static int reduction_failed(const struct model *m, int status, size_t modes, size_t contact)
-{
-    return status == TRIBO_ERR_INDEFINITE
-               ? tribo_model_fail(
-                     m, TRIBO_ERR_UNSUPPORTED,
-                     "the flexibility that %zu mode%s to contact %zu is that of other contacts: take other modes, or "
-                     "TRIBO_STATICS_MASS",
-                     modes, modes == 1 ? " leaves" : "s leave", contact)
-           : status == TRIBO_ERR_MEMORY ? tribo_model_no_memory(m)
-                                        : status;
-}
-
 /* Builds the system of the basis r. Returns a status. */
 static int build_reduced(const struct model *m, const struct reduced *r, tribo_system **sys)
 {
@@ -235,7 +223,14 @@ static int build_reduced(const struct model *m, const struct reduced *r, tribo_s
     tribo_matrix_free(&direction);
     free(e.contact);
     free(e.shapes);
-    return reduction_failed(m, status, k, where);
+    return status == TRIBO_ERR_INDEFINITE
+               ? tribo_model_fail(
+                     m, TRIBO_ERR_UNSUPPORTED,
+                     "the flexibility that %zu mode%s to contact %zu is that of other contacts: take other modes, or "
+                     "TRIBO_STATICS_MASS",
+                     k, k == 1 ? " leaves" : "s leave", where)
+           : status == TRIBO_ERR_MEMORY ? tribo_model_no_memory(m)
+                                        : status;
 }
 
 int tribo_model_reduce(struct model *m, tribo_system **sys)
