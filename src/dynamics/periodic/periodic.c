@@ -63,13 +63,6 @@ static int check_friction(tribo_driver *drv)
                   : TRIBO_OK;
 }
 
-static int check_state(tribo_driver *drv, double t, const double *y)
-{
-    int status = y ? tribo_system_check_state(drv->sys, t, y) : TRIBO_ERR_NULL;
-    status = status ? status : tribo_system_take_settings(drv->sys);
-    return status ? tribo_driver_fail(drv, status, "%s", y ? tribo_system_message(drv->sys) : "y is NULL") : TRIBO_OK;
-}
-
 int tribo_events_find_periodic(tribo_driver *drv, double t, double period, double *y)
 {
     drv->shooting = drv->shooting ? drv->shooting : tribo_shooting_create(drv);
@@ -85,10 +78,16 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
     if (!drv) {
         return TRIBO_ERR_NULL;
     }
-    int status = drv->method->find_periodic
-                     ? check_state(drv, t, y)
-                     : tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                         "method %s finds no periodic motions: take exact, event or auto", drv->method->name);
+    if (!drv->method->find_periodic) {
+        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s finds no periodic motions: take exact, event or auto",
+                                 drv->method->name);
+    }
+    if (!y) {
+        return tribo_driver_fail(drv, TRIBO_ERR_NULL, "y is NULL");
+    }
+    int status = tribo_system_check_state(drv->sys, t, y);
+    status = status ? status : tribo_system_take_settings(drv->sys);
+    status = status ? tribo_driver_fail(drv, status, "%s", tribo_system_message(drv->sys)) : TRIBO_OK;
     status = status ? status : check_period(drv, t, period);
     status = status ? status : check_loads(drv, period);
     status = status ? status : check_friction(drv);

@@ -369,37 +369,31 @@ static int find_family(struct shooting *s, double *move)
     return status;
 }
 
-/* Projects move [n] on the family of periodic motions. If all modes are damped and no contact rests in all phases, there is no
- * family: move = 0. Returns a status. */
-static int stay_in_family(struct shooting *s, double *move)
-{
-    const size_t n = s->map.n;
-    int status = TRIBO_OK, done = 0;
-    if (tribo_energy_norm_is_damped(&s->map.norm) && !tribo_derivative_rests(&s->best->derivative)) {
-        memset(move, 0, n * sizeof *move);
-        return TRIBO_OK;
-    }
-    if (is_matrix_free(s)) {
-        go_to(s, s->best);
-        memcpy(s->step, move, n * sizeof *move);
-        s->spans = 2;
-        status = apply_equation(s, s->step);
-        status = status ? status : solve_in_space(s, 2, AIM, s->step, &done);
-        if (!status && done) {
-            tribo_add(move, -1.0, s->step, n);
-        }
-    }
-    return status || done ? status : find_family(s, move);
-}
-
-/* Takes the motion nearest to the guess in the family of the odd motion, if that motion comes back. */
+/* Takes the motion nearest to the guess in the family of the odd motion, if that motion comes back. If all modes are damped and no
+ * contact rests in all phases, there is no family. Returns a status. */
 static int approach_guess(struct shooting *s)
 {
     const size_t n = s->map.n;
-    const int any = s->map.odd && tribo_energy_length(s->guess, n) > 0.0;
+    const int alone = tribo_energy_norm_is_damped(&s->map.norm) && !tribo_derivative_rests(&s->best->derivative);
+    int status = TRIBO_OK, done = 0;
+    if (!s->map.odd || alone || !(tribo_energy_length(s->guess, n) > 0.0) ||
+        tribo_energy_distance(s->guess, s->best->x, n) < MEANT * s->best->size) {
+        return TRIBO_OK;
+    }
+    /* guess = the part of guess - x in the family */
     tribo_add(s->guess, -1.0, s->best->x, n);
-    int status = any && tribo_energy_length(s->guess, n) >= MEANT * s->best->size ? stay_in_family(s, s->guess) : TRIBO_OK;
-    if (status || !any || tribo_energy_length(s->guess, n) < MEANT * s->best->size) {
+    if (is_matrix_free(s)) {
+        go_to(s, s->best);
+        memcpy(s->step, s->guess, n * sizeof *s->step);
+        s->spans = 2;
+        status = apply_equation(s, s->step);
+        status = status ? status : solve_in_space(s, 2, AIM, s->step, &done);
+    }
+    if (!status && done) {
+        tribo_add(s->guess, -1.0, s->step, n);
+    }
+    status = status || done ? status : find_family(s, s->guess);
+    if (status || tribo_energy_length(s->guess, n) < MEANT * s->best->size) {
         return status;
     }
     tribo_period_map_choose(&s->map, 0);

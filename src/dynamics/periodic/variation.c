@@ -224,49 +224,44 @@ static int together(struct variation *x, size_t first)
     return 1;
 }
 
-/* Appends the jump of q'' by the forces of the group of crossing k, earlier by that crossing. */
-static void jump_earlier(struct variation *x, size_t k)
-{
-    const size_t n = x->sys->ndof, all = tribo_system_energy(x->sys), group = x->group[x->contact[k]];
-    double *jump = x->change;
-    for (size_t i = 0; i < x->sys->ncontact; i++) {
-        x->f[i] = x->group[i] == group ? x->events->stick_slip.state.force[i] - x->force[i] : 0.0;
-    }
-    memset(jump, 0, n * sizeof *jump);
-    tribo_matrix_multiply_add(&x->sys->response, 1.0, x->f, jump);
-    for (size_t l = 0; l < x->count; l++) {
-        const double change = tribo_dot(x->row + l * all + n, jump, n);
-        if (x->group[x->contact[l]] != group && fabs(change) > TOGETHER * fabs(x->slope[l])) {
-            tear(x, x->contact[k], x->contact[l]);
-        }
-    }
-    if (!tribo_derivative_add_jump(x->to, x->row + k * all, x->slope[k], jump)) {
-        x->status = no_derivative(x);
-    }
-}
-
-/* Carries perturbations over the crossings of the group of crossing `first`, its first one. */
+/* Carries perturbations over the crossings of the group of crossing `first`, its first one: appends the jump of q'' by the forces
+ * of the group, earlier by that crossing. */
 static void carry_over(struct variation *x, size_t first)
 {
-    const signed char *now = x->events->stick_slip.state.slip;
-    const size_t group = x->group[x->contact[first]];
+    const size_t n = x->sys->ndof, all = tribo_system_energy(x->sys), group = x->group[x->contact[first]];
+    const struct slip_state *now = &x->events->stick_slip.state;
     int acts = 0; /* 1: a contact stops, or breaks away */
     for (size_t k = first; k < x->count; k++) {
         const size_t i = x->contact[k];
-        acts |= x->group[i] == group && (x->before[i] != 0 || now[i] != 0);
+        acts |= x->group[i] == group && (x->before[i] != 0 || now->slip[i] != 0);
     }
-    if (acts && together(x, first)) {
-        jump_earlier(x, first);
+    if (!acts) {
         return;
     }
-    for (size_t i = 0; acts && i < x->sys->ncontact; i++) {
-        if (x->group[i] == group && now[i] != TRIBO_SLIP_STUCK) {
+    if (!together(x, first)) {
+        for (size_t i = 0; i < x->sys->ncontact; i++) {
             size_t k = first;
-            while (x->group[x->contact[k]] != group || x->contact[k] == i) {
-                k++;
+            if (x->group[i] == group && now->slip[i] != TRIBO_SLIP_STUCK) {
+                while (x->group[x->contact[k]] != group || x->contact[k] == i) {
+                    k++;
+                }
+                tear(x, i, x->contact[k]);
             }
-            tear(x, i, x->contact[k]);
         }
+        return;
+    }
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        x->f[i] = x->group[i] == group ? now->force[i] - x->force[i] : 0.0;
+    }
+    tribo_matrix_multiply(&x->sys->response, x->f, x->change);
+    for (size_t l = 0; l < x->count; l++) {
+        const double change = tribo_dot(x->row + l * all + n, x->change, n);
+        if (x->group[x->contact[l]] != group && fabs(change) > TOGETHER * fabs(x->slope[l])) {
+            tear(x, x->contact[first], x->contact[l]);
+        }
+    }
+    if (!tribo_derivative_add_jump(x->to, x->row + first * all, x->slope[first], x->change)) {
+        x->status = no_derivative(x);
     }
 }
 

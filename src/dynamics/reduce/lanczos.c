@@ -103,34 +103,28 @@ static int draw(struct lanczos *l, size_t j, size_t count)
     return done;
 }
 
-/* Orthogonalizes vector j of w to vectors 0 .. j - 1 of w, which are the last j of the basis; if little remains, to the whole
- * basis again. Returns the norm of the rest, 0 if it is rounding. */
-static double separate_from_block(struct lanczos *l, size_t j)
-{
-    const size_t n = l->n;
-    const double whole = l->norm[j], before = norm_of(l, j), *q = l->q + (l->size - j) * n;
-    for (size_t i = 0; i < j; i++) {
-        const double part = tribo_dot(q + i * n, l->mw + j * n, n);
-        tribo_add(l->w + j * n, -part, q + i * n, n);
-        tribo_add(l->mw + j * n, -part, l->mw + i * n, n);
-    }
-    if (!(norm_of(l, j) > LITTLE * before)) {
-        separate(l, j, 1);
-    }
-    const double rest = norm_of(l, j);
-    return rest > NOTHING * whole ? rest : 0.0;
-}
-
 /* Appends vector j of w, normalized, to the basis, or a random vector if vector j depends on the basis. The last j vectors of
- * the basis come from w. Sets complete = 1 if no vector is independent. */
+ * the basis come from w: vector j becomes orthogonal to these; if little remains, to the whole basis again. Sets complete = 1 if no
+ * vector is independent. */
 static void lanczos_append(struct lanczos *l, size_t j)
 {
-    for (int attempt = 0; attempt < 3 && l->size < l->n; attempt++) {
-        const double rest = separate_from_block(l, j);
-        if (rest > 0.0) {
-            for (size_t i = 0; i < l->n; i++) {
-                l->q[l->size * l->n + i] = l->w[j * l->n + i] / rest;
-                l->mw[j * l->n + i] /= rest;
+    const size_t n = l->n;
+    double *w = l->w + j * n, *mw = l->mw + j * n;
+    for (int attempt = 0; attempt < 3 && l->size < n; attempt++) {
+        const double whole = l->norm[j], before = norm_of(l, j), *q = l->q + (l->size - j) * n;
+        for (size_t i = 0; i < j; i++) {
+            const double part = tribo_dot(q + i * n, mw, n);
+            tribo_add(w, -part, q + i * n, n);
+            tribo_add(mw, -part, l->mw + i * n, n);
+        }
+        if (!(norm_of(l, j) > LITTLE * before)) {
+            separate(l, j, 1);
+        }
+        const double rest = norm_of(l, j);
+        if (rest > NOTHING * whole) {
+            for (size_t i = 0; i < n; i++) {
+                l->q[l->size * n + i] = w[i] / rest;
+                mw[i] /= rest;
             }
             l->size++;
             return;
