@@ -269,7 +269,7 @@ static int look_ahead(struct stick_slip *m, const tribo_system *sys, const doubl
  * contacts where they are; the solver's own rounding, which may exceed that of the forces, does not decide. */
 
 /* Finds work.f = the forces that hold all contacts at rest, those that do not hold having state.force. Returns a status. */
-static int find_holding_forces(struct stick_slip *m, const tribo_system *sys)
+static int find_forces_at_rest(struct stick_slip *m, const tribo_system *sys)
 {
     double *f = m->work.f;
     const int status = tribo_stick_slip_find_holds(m, sys);
@@ -303,7 +303,7 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
     struct slip_state *s = &m->state;
     const struct slip_work *w = &m->work;
     const size_t none = m->constant.contacts;
-    int status = find_holding_forces(m, sys), gone = 0;
+    int status = find_forces_at_rest(m, sys), gone = 0;
     size_t worst = most_overloaded(m);
     const signed char direction = worst < none && w->f[worst] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH;
     if (!status && worst < none && must_be_sure(m, worst)) { /* by least norm, which ties contacts anew */
@@ -313,7 +313,7 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
         for (size_t i = 0; i < none; i++) {
             s->tied[i] = tribo_stick_slip_searches(m, i) && s->stick[i] - fabs(s->force[i]) <= m->noise.allowance[i];
         }
-        status = status ? status : find_holding_forces(m, sys);
+        status = status ? status : find_forces_at_rest(m, sys);
         worst = most_overloaded(m) < none ? worst : none;
     }
     if (status) {

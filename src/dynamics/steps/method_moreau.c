@@ -54,7 +54,7 @@ static int moreau_create(tribo_driver *drv)
     const size_t n = drv->sys->ndof, c = drv->sys->ncontact;
     struct moreau *m = calloc(1, sizeof *m);
     drv->own = m;
-    if (!m || !tribo_step_form_create(&m->common, drv->sys, 4 * c + 2 * n)) {
+    if (!m || !tribo_step_form_create(&m->common, drv->sys, 4 * c + n)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
     m->settings_taken = SIZE_MAX;
