@@ -170,18 +170,6 @@ static int check_holds(const struct stick_slip *m, const tribo_system *sys)
     return TRIBO_OK;
 }
 
-static int find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
-{
-    int status = TRIBO_OK;
-    m->plane->stopped = m->constant.contacts;
-    do {
-        stop_in_plane(m, sys, y);
-        status = tribo_stick_slip_find_resting(m, sys, y);
-        status = status ? status : check_holds(m, sys);
-    } while (!status && stop_in_plane(m, sys, y));
-    return status;
-}
-
 /* ------------------------------------------------------------------------------------------------------------ forces */
 
 /* Sets work.lo = forces of sliding contacts, 0 of others, and plane->rate = their rates for accelerations acc [ncontact].
@@ -370,7 +358,13 @@ int tribo_planar_slip_decide(struct stick_slip *m, tribo_system *sys, double t, 
         m->plane->contact[k].before = m->plane->contact[k].now;
     }
     tribo_stick_slip_begin_decision(m, sys, t);
-    int status = find_resting(m, sys, y);
+    int status = TRIBO_OK;
+    m->plane->stopped = m->constant.contacts;
+    do {
+        stop_in_plane(m, sys, y);
+        status = tribo_stick_slip_find_resting(m, sys, y);
+        status = status ? status : check_holds(m, sys);
+    } while (!status && stop_in_plane(m, sys, y));
     if (!status) {
         tribo_stick_slip_find_free(m, sys, t, y);
         given_forces(m, sys, y, m->constant.still);

@@ -7,40 +7,6 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Takes `steps` steps of h from drv->time on, the last one up to t1. Begins with the last good state, drv->state; states are
- * written there and in y by turns. Returns the last good one. */
-static double *march(tribo_driver *drv, double h, double steps, double t1, double *y, const struct fixed_method *method,
-                     int *status)
-{
-    const double begin = drv->time;
-    double *from = drv->state, *to = y;
-    *status = TRIBO_OK;
-    for (double k = 0.0; k < steps && !*status;) {
-        const size_t count = steps - k < RUN ? (size_t)(steps - k) : RUN;
-        double t[RUN + 1];
-        t[0] = drv->time;
-        for (size_t s = 1; s <= count; s++) {
-            t[s] = k + (double)s < steps ? begin + (k + (double)s) * h : t1;
-        }
-        size_t taken = method->run && !drv->seen ? method->run(drv, count, t, from) : 0;
-        if (taken == 0) {
-            *status = method->step(drv, t[0], t[1], from, to);
-            if (*status) {
-                return from;
-            }
-            double *last = from;
-            from = to;
-            to = last;
-            taken = 1;
-        }
-        k += (double)taken;
-        drv->time = t[taken];
-        drv->steps += taken;
-        *status = drv->seen ? tribo_driver_show(drv, drv->time, from, TRIBO_MOMENT_STEP, SIZE_MAX) : TRIBO_OK;
-    }
-    return from;
-}
-
 int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, const struct fixed_method *method)
 {
     const double begin = *t, whole = (t1 - begin) / drv->dt, resolution = DBL_EPSILON * greater(fabs(begin), fabs(t1));
@@ -52,9 +18,33 @@ int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y,
     const double rest = greater(1e-6, 4.0 * resolution / drv->dt);
     const double steps = fabs(whole - round(whole)) < rest && whole > 0.5 ? round(whole) : greater(ceil(whole), 1.0);
     const double h = whole > steps ? (t1 - begin) / steps : drv->dt;
-    int status;
-    double *good = march(drv, h, steps, t1, y, method, &status);
-    memcpy(good == y ? drv->state : y, good, tribo_system_size(drv->sys) * sizeof *y);
+    /* begins with the last good state, drv->state; states are written there and in y by turns */
+    double *from = drv->state, *to = y;
+    int status = TRIBO_OK;
+    for (double k = 0.0; k < steps && !status;) {
+        const size_t count = steps - k < RUN ? (size_t)(steps - k) : RUN;
+        double time[RUN + 1];
+        time[0] = drv->time;
+        for (size_t s = 1; s <= count; s++) {
+            time[s] = k + (double)s < steps ? begin + (k + (double)s) * h : t1;
+        }
+        size_t taken = method->run && !drv->seen ? method->run(drv, count, time, from) : 0;
+        if (taken == 0) {
+            status = method->step(drv, time[0], time[1], from, to);
+            if (status) {
+                break;
+            }
+            double *last = from;
+            from = to;
+            to = last;
+            taken = 1;
+        }
+        k += (double)taken;
+        drv->time = time[taken];
+        drv->steps += taken;
+        status = drv->seen ? tribo_driver_show(drv, drv->time, from, TRIBO_MOMENT_STEP, SIZE_MAX) : TRIBO_OK;
+    }
+    memcpy(from == y ? drv->state : y, from, tribo_system_size(drv->sys) * sizeof *y);
     *t = drv->time;
     return status;
 }
