@@ -4,8 +4,8 @@
 
 #include "matrix.h"
 
-/* Factors A [n][n] of at most width entries left of the diagonal, by its lower triangle, with the rows and columns held [n] (NULL:
- * none) replaced by those of the identity. Returns the row of a pivot that is not positive, or n. */
+/* Factors A [n][n] of at most width entries left of the diagonal, by its lower triangle, with the rows and columns held [n]
+ * (NULL: none) replaced by those of the identity. Returns the row of a pivot that is not positive, or n. */
 size_t tribo_band_factorize(const struct matrix *a, size_t width, const signed char *held, double *l);
 
 /* x [n] = A^-1 x. */

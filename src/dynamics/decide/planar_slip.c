@@ -296,8 +296,8 @@ static size_t break_away(struct stick_slip *m)
     return ties;
 }
 
-/* Sets work.hi = limits of a moment later: for tied contacts at most their forces; full ones for contacts that begin to slide in a
- * plane. */
+/* Sets work.hi = limits of a moment later: for tied contacts at most their forces; full ones for contacts that begin to slide
+ * in a plane. */
 static void set_limits_ahead(struct stick_slip *m)
 {
     const struct slip_state *s = &m->state;

@@ -85,8 +85,8 @@ static int find_forces(struct stick_slip *m, const tribo_system *sys)
 
 /* --------------------------------------------------------------------------------------------------------- letting go */
 
-/* Lets contact i slide; if it held by a static limit, lowers that instead, and the next round decides about it. Returns 1 if another
- * round is needed; 0 if the contact slides, and R is diagonal: that changes no other force. */
+/* Lets contact i slide; if it held by a static limit, lowers that instead, and the next round decides about it. Returns 1 if
+ * another round is needed; 0 if the contact slides, and R is diagonal: that changes no other force. */
 static size_t let_go(struct stick_slip *m, size_t i, signed char direction)
 {
     struct slip_state *s = &m->state;
@@ -104,8 +104,8 @@ static int must_be_sure(const struct stick_slip *m, size_t i)
     return m->state.dependents && tribo_breakaway_is_sudden(&m->breakaway, i);
 }
 
-/* The direction in which contact i slides that is at its limit by `force`, and by `part` of its acceleration work.v leaves that by
- * more than rounding: against the force; if that is 0, along the acceleration. 0 if it stays. */
+/* The direction in which contact i slides that is at its limit by `force`, if `part` of its acceleration work.v exceeds
+ * rounding: against the force; if the force is 0, along the acceleration. 0 if the contact stays. */
 static signed char leaves(const struct stick_slip *m, size_t i, double force, double part)
 {
     const double a = part * m->work.v[i], against = force != 0.0 ? -force : a;

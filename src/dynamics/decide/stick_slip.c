@@ -88,7 +88,8 @@ static int create_contexts(struct slip_constant *c, const tribo_context *contact
     return 1;
 }
 
-/* Fills R_ii, 1/R_ii, elastic[] and can_hold[]; sets independent; lists the snaps of all rigid contacts, none of which is loose. Returns 0 if out of memory. */
+/* Fills R_ii, 1/R_ii, elastic[] and can_hold[]; sets independent; lists the snaps of all rigid contacts. Returns 0 if out of
+ * memory. */
 static int find_constants(struct stick_slip *m, const tribo_system *sys)
 {
     struct slip_constant *c = &m->constant;

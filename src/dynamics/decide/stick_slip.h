@@ -114,8 +114,8 @@ struct breakaway {
     size_t revision;      /* of the system that steepest is of; SIZE_MAX: none */
 };
 
-/* Planar contacts. How a contact slides: with a velocity; without one, by its acceleration; or by its force alone, which is about to reach
- * beyond the limit. The value is the power of time with which the velocity begins. */
+/* How a planar contact slides: with a velocity; without one, by its acceleration; or by its force alone, which is about to
+ * reach beyond the limit. The value is the power of time with which the velocity begins. */
 enum { SLIDES_ON = 0, BY_ACCELERATION = 1, BY_FORCE = 2 };
 
 struct planar_contact {
@@ -192,8 +192,8 @@ static inline int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i
 
 /* ------------------------------------------------------------------------------------------------ the steps of a decision */
 
-/* Sets the time and bases; updates limits, and opens and closes contacts by them; brings contacts to rest that have no velocity in
- * the direction of their slip. The last one returns a status. */
+/* Sets the time and bases; updates limits, and opens and closes contacts by them; brings contacts to rest that have no velocity
+ * in the direction of their slip. The last one returns a status. */
 void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t);
 void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y);
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);

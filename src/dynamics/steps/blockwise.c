@@ -26,8 +26,8 @@ static int find_bodies(struct blockwise *b, const tribo_system *sys, signed char
     return alone;
 }
 
-/* Counts in at[k], or lists in pulled (not NULL) from at[k] on, the blocks whose rows of K or C have entries in the columns of block
- * k. mark [blocks]: workspace, the last block noted for each. */
+/* Counts in at[k], or lists in pulled (not NULL) from at[k] on, the blocks whose rows of K or C have entries in the columns of
+ * block k. mark [blocks]: workspace, the last block noted for each. */
 static void note_pulls(const tribo_system *sys, size_t blocks, size_t *at, size_t *pulled, size_t *mark)
 {
     const struct matrix *const of[] = {&sys->stiffness, &sys->damping};

@@ -296,9 +296,9 @@ static inline size_t few_steps(struct few_bodies *b, size_t n, size_t c, size_t 
     return s;
 }
 
-/* Takes steps between the times t [count + 1], count <= RUN, of the motion in y and u, if the system is small. Velocities of y are
- * set by synchronise. Returns the number of steps taken, after which the motion is finite; if it is less than count, the next step
- * is for others. */
+/* Takes steps between the times t [count + 1], count <= RUN, of the motion in y and u, if the system is small. Velocities of y
+ * are set by synchronise. Returns the number of steps taken, after which the motion is finite; if it is less than count, the
+ * next step is for others. */
 static size_t central_run(tribo_driver *drv, size_t count, const double *t, double *y)
 {
     struct central *x = drv->own;

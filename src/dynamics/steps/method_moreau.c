@@ -117,7 +117,8 @@ static int make_contacts(struct moreau *m, const tribo_system *sys)
         m->contacts = NULL;
         m->settings = sys->changes;
         m->tell = 1;
-        if (planar_of(sys->contacts)) { /* made anew where settings change; others keep a law that takes any */
+        /* a clone is made again where settings change; the law of a context by create accepts all static limits */
+        if (planar_of(sys->contacts)) {
             tribo_clone(sys->contacts, &m->contacts);
         } else {
             tribo_create(&m->contacts, sys->ncontact);
@@ -254,8 +255,8 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
     sys->evaluations++;
 }
 
-/* Sets s->f, s->mode, and s->u = velocity at the end of the step: by the band solver, or, without a band, with static limits, or if
- * it finds none, with the operator of contacts. Returns a status. */
+/* Sets s->f, s->mode, and s->u = velocity at the end of the step: by the band solver, or, without a band, with static limits,
+ * or if it finds none, with the operator of contacts. Returns a status. */
 static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
 {
     struct step_form *s = &m->common;

@@ -47,7 +47,8 @@ static int rk4_create(tribo_driver *drv)
     return TRIBO_OK;
 }
 
-/* The next state from q and u, by velocities v and accelerations a of the one before. The sum begins with a at the first state. */
+/* The next state from q and u, by velocities v and accelerations a of the one before. The sum begins with a at the first
+ * state. */
 TRIBO_SIMD static void next_stage(size_t n, double h, int first, const double *restrict from, const double *v,
                                   const double *restrict a, double *restrict sum, double *restrict to)
 {

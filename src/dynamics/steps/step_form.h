@@ -18,8 +18,8 @@ struct step_form {
     size_t revision;     /* of the system for which a method has prepared */
 };
 
-/* body [j->rows] = the degree of freedom on which contact i acts, lever [j->rows] = its entry of J. Returns 0 if a contact has none
- * or several, or shares it. seen [j->cols]: workspace, all 0. */
+/* body [j->rows] = the degree of freedom on which contact i acts, lever [j->rows] = its entry of J. Returns 0 if a contact has
+ * none or several, or shares it. seen [j->cols]: workspace, all 0. */
 int tribo_step_form_bodies(const struct matrix *j, size_t *body, double *lever, signed char *seen);
 
 /* 1, or 0 if out of memory. tribo_step_form_free frees what failed, too. */

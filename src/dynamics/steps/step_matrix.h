@@ -1,5 +1,5 @@
-/* The matrix S = M + h/2 C + h^2/4 K of a midpoint step of length h, and its factors. Degrees of freedom without mass enter S only
- * by the stiffness of the other ones (condense.c). */
+/* The matrix S = M + h/2 C + h^2/4 K of a midpoint step of length h, and its factors. Degrees of freedom without mass enter S
+ * only by the stiffness of the other ones (condense.c). */
 #ifndef TRIBO_STEP_MATRIX_H
 #define TRIBO_STEP_MATRIX_H
 
