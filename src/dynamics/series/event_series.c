@@ -1,40 +1,12 @@
 #include "event_series.h"
 
+#include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-static void expand_harmonics(struct event *e, double t)
-{
-    tribo_system *sys = e->sys;
-    const size_t h = sys->harmonics;
-    tribo_system_set_time(sys, t);
-    for (size_t s = 0; s < h; s++) {
-        tribo_system_turn(sys, s);
-        double c = sys->harmonic[s].cos_t, d = sys->harmonic[s].sin_t;
-        for (size_t k = 0; k < e->order + 2; k++) {
-            const double rate = sys->harmonic[s].omega / (double)(k + 1), next = -rate * d;
-            e->cosine[k * h + s] = c;
-            e->sine[k * h + s] = d;
-            d = rate * c;
-            c = next;
-        }
-    }
-}
-
-/* to += factor times the k-th coefficients of the harmonics that drive loads, bases or limits. */
-static void add_harmonics(const struct event *e, enum drives drives, size_t k, double factor, double *to)
-{
-    for (size_t s = 0; s < e->sys->harmonics; s++) {
-        const struct harmonic *w = &e->sys->harmonic[s];
-        const double c = factor * e->cosine[k * e->sys->harmonics + s], d = factor * e->sine[k * e->sys->harmonics + s];
-        for (size_t i = 0; w->drives == drives && i < w->count; i++) {
-            to[w->index[i]] += c * w->cosine[i] + d * w->sine[i];
-        }
-    }
-}
-
-/* Sets the coefficients of limits at the time of the harmonics' expansion. A coefficient of a limit that falls with the speed
- * needs that of the velocity first. */
+/* Sets the coefficients of limits at the set time. A coefficient of a limit that falls with the speed needs that of the velocity
+ * first. */
 static void expand_limits(struct event *e)
 {
     const tribo_system *sys = e->sys;
@@ -43,9 +15,11 @@ static void expand_limits(struct event *e)
     e->slide = falls ? e->fall : e->limit;
     e->slide_terms = falls || e->events.stick_slip.plane ? e->order + 1 : e->terms;
     tribo_system_limits(sys, e->limit, e->limit + c);
+    double scale = 1.0; /* 1/k! */
     for (size_t k = 2; k < e->slide_terms; k++) {
+        scale /= (double)k;
         memset(e->limit + k * c, 0, c * sizeof *e->limit);
-        add_harmonics(e, DRIVES_LIMIT, k, 1.0, e->limit + k * c);
+        tribo_system_loads(sys, DRIVES_LIMIT, (int)k, scale, e->limit + k * c);
     }
 }
 
@@ -80,14 +54,13 @@ static int find_given(struct event *e, size_t k)
     return some;
 }
 
-/* Sets v = the k-th coefficients of the contacts' velocities. */
-static void find_velocities(const struct event *e, size_t k, double *v)
+/* Sets v = the k-th coefficients of the contacts' velocities, scale = 1/k!. */
+static void find_velocities(const struct event *e, size_t k, double scale, double *v)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const size_t c = e->sys->ncontact;
     memset(v, 0, c * sizeof *v);
-    add_harmonics(e, DRIVES_BASE, k, -1.0, v);
-    tribo_system_tables(e->sys, DRIVES_BASE, (int)k, -1.0, 0, c, v);
+    tribo_system_loads(e->sys, DRIVES_BASE, (int)k, -scale, v);
     tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->u + k * e->sys->ndof, v);
     if (e->sys->compliance.count) {
         tribo_compliance_rates(e->sys, m->state.slip, v, e->room.rate);
@@ -100,21 +73,15 @@ static void find_velocities(const struct event *e, size_t k, double *v)
     }
 }
 
-/* The k-th coefficients of accelerations by stiffness, damping and loads. */
-static void expand_free(struct event *e, size_t k)
+/* acc += accelerations by stiffness, damping, and forces f [ncontact] of compliant contacts. */
+static void add_structure(const tribo_system *sys, const double *q, const double *u, const double *f, double *acc)
 {
-    const tribo_system *sys = e->sys;
-    const size_t n = sys->ndof;
-    double *acc = e->room.acceleration;
-    memset(acc, 0, n * sizeof *acc);
-    add_harmonics(e, DRIVES_LOAD, k, 1.0, acc);
-    tribo_matrix_multiply_add(&sys->stiffness, -1.0, e->q + k * n, acc);
+    tribo_matrix_multiply_add(&sys->stiffness, -1.0, q, acc);
     if (sys->damping.rows) {
-        tribo_matrix_multiply_add(&sys->damping, -1.0, e->u + k * n, acc);
+        tribo_matrix_multiply_add(&sys->damping, -1.0, u, acc);
     }
-    tribo_system_tables(sys, DRIVES_LOAD, (int)k, 1.0, 0, n, acc);
     if (sys->compliance.count) {
-        tribo_matrix_multiply_add(&sys->compliance.pull, 1.0, e->spring + k * sys->ncontact, acc);
+        tribo_matrix_multiply_add(&sys->compliance.pull, 1.0, f, acc);
     }
 }
 
@@ -131,14 +98,17 @@ static void watch_forces(const struct event *e, size_t k, int given, double *wat
     }
 }
 
-/* Sets the k-th coefficients of accelerations and of watch. Returns a status. */
-static int expand_forces(struct event *e, size_t k)
+/* Sets the k-th coefficients of accelerations and of watch, scale = 1/k!. Returns a status. */
+static int expand_forces(struct event *e, size_t k, double scale)
 {
     struct stick_slip *m = &e->events.stick_slip;
     tribo_system *sys = e->sys;
-    double *acc = e->room.acceleration, *watch = e->watch + k * sys->ncontact;
-    expand_free(e, k);
-    find_velocities(e, k, watch);
+    const size_t n = sys->ndof, c = sys->ncontact;
+    double *acc = e->room.acceleration, *watch = e->watch + k * c, *base = e->room.base, *held = e->room.held;
+    memset(acc, 0, n * sizeof *acc);
+    tribo_system_loads(sys, DRIVES_LOAD, (int)k, scale, acc);
+    add_structure(sys, e->q + k * n, e->u + k * n, e->spring + k * c, acc);
+    find_velocities(e, k, scale, watch);
     if (m->breakaway.falls) {
         expand_falling(e, k);
     }
@@ -150,27 +120,25 @@ static int expand_forces(struct event *e, size_t k)
     if (given) {
         tribo_matrix_multiply_add(&sys->response, 1.0, e->room.given, acc);
     }
-    /* k-th coefficients: base = accelerations of the bases, a = accelerations of the contacts against them */
-    const size_t c = e->sys->ncontact;
-    memset(e->room.base, 0, c * sizeof *e->room.base);
-    add_harmonics(e, DRIVES_BASE, k + 1, (double)(k + 1), e->room.base);
-    tribo_system_tables(sys, DRIVES_BASE, (int)k + 1, (double)(k + 1), 0, c, e->room.base);
+    /* base = accelerations of the bases, a = accelerations of the contacts against the bases */
+    memset(base, 0, c * sizeof *base);
+    tribo_system_loads(sys, DRIVES_BASE, (int)k + 1, scale, base);
     for (size_t i = 0; i < c; i++) {
-        e->room.a[i] = -e->room.base[i];
+        e->room.a[i] = -base[i];
     }
-    tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->room.acceleration, e->room.a);
-    status = tribo_stick_slip_balance(m, e->room.a, e->room.held);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, acc, e->room.a);
+    status = tribo_stick_slip_balance(m, e->room.a, held);
     if (status) {
         return tribo_system_fail(sys, status, "%s", tribo_message(m->constant.hold));
     }
-    tribo_matrix_multiply_add(&sys->response, 1.0, e->room.held, acc);
-    status = m->plane ? tribo_planar_series_finish(&e->planar, m, sys, k, e->room.base, acc, e->room.held) : TRIBO_OK;
+    tribo_matrix_multiply_add(&sys->response, 1.0, held, acc);
+    status = m->plane ? tribo_planar_series_finish(&e->planar, m, sys, k, base, acc, held) : TRIBO_OK;
     if (status) {
         return status;
     }
     watch_forces(e, k, given, watch);
     /* contacts at rest must not creep by what rounding leaves in acc */
-    return tribo_stick_slip_hold(m, sys, e->room.base, acc);
+    return tribo_stick_slip_hold(m, sys, base, acc);
 }
 
 int tribo_event_start(struct event *e, double t, const double *y)
@@ -185,7 +153,7 @@ int tribo_event_start(struct event *e, double t, const double *y)
     const int status =
         m->plane ? tribo_planar_series_begin(&e->planar, e->most_order, m, sys, y, e->room.a, e->room.given) : TRIBO_OK;
     e->order = m->plane ? e->planar.order : e->most_order;
-    expand_harmonics(e, t);
+    tribo_system_set_time(sys, t);
     expand_limits(e);
     return status;
 }
@@ -204,12 +172,14 @@ static double power_of(const struct event *e, size_t i, size_t k)
 int tribo_event_series(struct event *e)
 {
     const size_t n = e->sys->ndof;
+    double scale = 1.0;
     for (size_t k = 0; k <= e->order; k++) {
-        const int status = expand_forces(e, k);
+        const int status = expand_forces(e, k, scale);
         if (status) {
             return status;
         }
         const double part = 1.0 / (double)(k + 1);
+        scale *= part;
         for (size_t i = 0; k < e->order && i < n; i++) {
             e->q[(k + 1) * n + i] = part * e->u[k * n + i];
             e->u[(k + 1) * n + i] = part * e->room.acceleration[i];
@@ -233,19 +203,6 @@ int tribo_event_expand(struct event *e, double t, const double *y)
     return status ? status : tribo_event_series(e);
 }
 
-/* N(|v|) = limit + (ratio - 1) limit exp(-|v|/velocity): its slope is (limit - N)/velocity. */
-void tribo_event_slopes(struct event *e)
-{
-    const struct stick_slip *m = &e->events.stick_slip;
-    const size_t c = e->sys->ncontact;
-    for (size_t k = 0; k <= e->order; k++) {
-        for (size_t i = 0; i < c; i++) {
-            const double more = e->fall[k * c + i] - e->limit[k * c + i];
-            e->slope[k * c + i] = tribo_slides(m->state.slip[i]) ? more / m->breakaway.velocity[i] : 0.0;
-        }
-    }
-}
-
 double tribo_event_work(void *own, size_t i, double tau)
 {
     const struct event *e = own;
@@ -254,4 +211,139 @@ double tribo_event_work(void *own, size_t i, double tau)
         work = work * tau + power_of(e, i, k) / (double)(k + 1);
     }
     return work * tau;
+}
+
+/* ------------------------------------------------------------------------------------------------------- perturbations */
+
+/* Terms x^(k) tau^k/k!, of one order k, of perturbations of the state; arrays are [...][columns]. Loads, bases and limits do not
+ * depend on the state. */
+struct perturbed {
+    size_t columns;
+    size_t rows;     /* orders in v: 1, or all that limits that fall need */
+    double *project; /* [ndof][ndof] projection onto accelerations that leave holding contacts at rest */
+    double *q, *u;   /* [ndof] */
+    double *next;    /* [ndof] workspace */
+    double *spring;  /* [ncontact] forces of compliant contacts */
+    double *force;   /* [ncontact] forces by limits that fall */
+    double *v;       /* [rows][ncontact] velocities of contacts, the last orders cyclically */
+};
+
+/* Most terms; a series of exponentials over a step has far less. */
+#define MOST_TERMS 400
+
+/* to [rows of a] += factor a x, for rows of perturbations. */
+static void add_product(const struct perturbed *p, const struct matrix *a, double factor, const double *x, double *to)
+{
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            tribo_add(to + i * p->columns, factor * a->val[k], x + a->col[k] * p->columns, p->columns);
+        }
+    }
+}
+
+/* Sets p->project. Returns a status. */
+static int find_projection(struct event *e, const struct perturbed *p)
+{
+    const size_t n = e->sys->ndof;
+    int status = TRIBO_OK;
+    for (size_t j = 0; !status && j < n; j++) {
+        memset(p->next, 0, n * sizeof *p->next);
+        p->next[j] = 1.0;
+        status = tribo_stick_slip_project(&e->events.stick_slip, e->sys, e->events.stick_slip.constant.still, p->next);
+        for (size_t i = 0; i < n; i++) {
+            p->project[i * n + j] = p->next[i];
+        }
+    }
+    return status;
+}
+
+/* Sets p->force = term k by limits N that fall, from terms of v: dN/d|v| = (limit - N)/velocity. */
+static void find_slope_forces(const struct event *e, size_t k, double tau, const struct perturbed *p)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const size_t c = e->sys->ncontact;
+    double power = 1.0;
+    memset(p->force, 0, c * p->columns * sizeof *p->force);
+    for (size_t j = 0; j <= k && j < p->rows; j++) {
+        const double *fall = e->fall + j * c, *limit = e->limit + j * c, *v = p->v + (k - j) % p->rows * c * p->columns;
+        for (size_t i = 0; i < c; i++) {
+            const double slope = tribo_slides(m->state.slip[i]) ? (fall[i] - limit[i]) / m->breakaway.velocity[i] : 0.0;
+            tribo_add(p->force + i * p->columns, power * slope, v + i * p->columns, p->columns);
+        }
+        power *= tau;
+    }
+}
+
+/* Sets the terms of order k from those before. */
+static void find_term(struct event *e, size_t k, double tau, const struct perturbed *p)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const tribo_system *sys = e->sys;
+    const size_t n = sys->ndof, half = n * p->columns, each = sys->ncontact * p->columns;
+    const double part = tau / (double)k;
+    double *v = p->v + (k - 1) % p->rows * each;
+    memset(p->next, 0, half * sizeof *p->next);
+    add_product(p, &sys->stiffness, -part, p->q, p->next);
+    if (sys->damping.rows) {
+        add_product(p, &sys->damping, -part, p->u, p->next);
+    }
+    memset(v, 0, each * sizeof *v);
+    add_product(p, &sys->direction, 1.0, p->u, v);
+    if (sys->compliance.count) {
+        add_product(p, &sys->compliance.pull, part, p->spring, p->next);
+        memcpy(p->spring, v, each * sizeof *v);
+        tribo_compliance_solve(sys, m->state.slip, p->columns, p->spring);
+        for (size_t i = 0; i < each; i++) {
+            p->spring[i] *= -part;
+        }
+    }
+    if (m->breakaway.falls) {
+        find_slope_forces(e, k - 1, tau, p);
+        add_product(p, &sys->response, part, p->force, p->next);
+    }
+    for (size_t i = 0; i < half; i++) {
+        p->q[i] = part * p->u[i];
+    }
+    memset(p->u, 0, half * sizeof *p->u);
+    tribo_multiply_add(n, n, p->columns, 1.0, p->project, p->next, p->u);
+}
+
+int tribo_event_transition(void *own, const void *phase, double tau, size_t columns, double *v)
+{
+    struct event *e = own;
+    const struct compliance *g = &e->sys->compliance;
+    const size_t n = e->sys->ndof, half = n * columns, each = e->sys->ncontact * columns;
+    struct perturbed p = {.columns = columns, .rows = e->events.stick_slip.breakaway.falls ? e->order + 1 : 1};
+    p.project = malloc((n * n + 3 * half + (2 + p.rows) * each + 1) * sizeof *p.project);
+    if (!p.project) {
+        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
+    }
+    p.q = p.project + n * n;
+    p.u = p.q + half;
+    p.next = p.u + half;
+    p.spring = p.next + half;
+    p.force = p.spring + each;
+    p.v = p.force + each;
+    (void)phase;
+    const int status = find_projection(e, &p);
+    memcpy(p.q, v, half * sizeof *v);
+    memset(p.u, 0, (2 * half + each) * sizeof *v);
+    tribo_multiply_add(n, n, columns, 1.0, p.project, v + half, p.u);
+    memcpy(v + half, p.u, half * sizeof *v);
+    for (size_t k = 0; k < g->count; k++) {
+        memcpy(p.spring + g->contact[k] * columns, v + 2 * half + k * columns, columns * sizeof *v);
+    }
+    for (size_t k = 1, small = 0; !status && small < 2 && k < MOST_TERMS; k++) {
+        find_term(e, k, tau, &p);
+        tribo_add(v, 1.0, p.q, 2 * half); /* q and u */
+        for (size_t i = 0; i < g->count; i++) {
+            tribo_add(v + 2 * half + i * columns, 1.0, p.spring + g->contact[i] * columns, columns);
+        }
+        small = tribo_largest(p.q, half) <= DBL_EPSILON * tribo_largest(v, half) &&
+                        tribo_largest(p.u, half) <= DBL_EPSILON * tribo_largest(v + half, half)
+                    ? small + 1
+                    : 0;
+    }
+    free(p.project);
+    return status;
 }

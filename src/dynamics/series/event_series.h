@@ -6,7 +6,6 @@
 #include "event_creep.h"
 #include "dynamics/events/events.h"
 #include "planar_series.h"
-#include "series_transition.h"
 
 /* Workspace. */
 struct event_room {
@@ -27,30 +26,28 @@ struct event {
     tribo_driver *drv;
     tribo_system *sys;
     struct events events;
-    size_t order;          /* of the series of a phase */
-    size_t most_order;     /* room */
-    double tolerance;      /* relative */
-    double abstol;         /* that of the driver when tolerance was found */
-    double fastest;        /* bound of the frequencies of the motion, without growth by falling friction */
-    size_t revision;       /* of the system that fastest is of */
-    double moves[3];       /* change of q, u and d within the time of the fastest motion; if abstol = 0 */
-    double length;         /* of the step, and of the interval of bounds */
-    double *q, *u;         /* [order + 1][ndof] coefficients of the powers of time of displacements and velocities */
-    double *watch;         /* [order + 1][ncontact] velocities of sliding contacts, forces of contacts at rest */
-    double *limit;         /* [order + 1][ncontact] limits, below 0 where a contact has lifted off */
-    size_t terms;          /* number of rows of limit that are not zero */
-    double *slide;         /* [order + 1][ncontact] limits to slide: limit, or fall */
-    size_t slide_terms;    /* number of rows of slide that are not zero */
-    double *fall, *part;   /* [order + 1][ncontact] limits that fall with the speed; exp(-|v|/velocity) */
-    double *slope;         /* [order + 1][ncontact] derivatives of such limits by the velocity */
-    double *d;             /* [order + 1] dissipated energy */
-    double *spring;        /* [order + 1][ncontact] forces of compliant contacts */
-    double *cosine, *sine; /* [order + 2][harmonics] coefficients of cos(omega t) and sin(omega t) */
+    size_t order;        /* of the series of a phase */
+    size_t most_order;   /* room */
+    double tolerance;    /* relative */
+    double abstol;       /* that of the driver when tolerance was found */
+    double fastest;      /* bound of the frequencies of the motion, without growth by falling friction */
+    size_t revision;     /* of the system that fastest is of */
+    int known;           /* 1: fastest and most_order are those of revision and tolerance */
+    double moves[3];     /* change of q, u and d within the time of the fastest motion; if abstol = 0 */
+    double length;       /* of the step, and of the interval of bounds */
+    double *q, *u;       /* [order + 1][ndof] coefficients of the powers of time of displacements and velocities */
+    double *watch;       /* [order + 1][ncontact] velocities of sliding contacts, forces of contacts at rest */
+    double *limit;       /* [order + 1][ncontact] limits, below 0 where a contact has lifted off */
+    size_t terms;        /* number of rows of limit that are not zero */
+    double *slide;       /* [order + 1][ncontact] limits to slide: limit, or fall */
+    size_t slide_terms;  /* number of rows of slide that are not zero */
+    double *fall, *part; /* [order + 1][ncontact] limits that fall with the speed; exp(-|v|/velocity) */
+    double *d;           /* [order + 1] dissipated energy */
+    double *spring;      /* [order + 1][ncontact] forces of compliant contacts */
     struct event_bound bound;
     struct event_room room;
     struct planar_series planar;
     struct creep creep;
-    struct series_transition perturbed;
 };
 
 /* Finds the coefficients of the motion from (t, y) on: first those known at the start, then the series, which collocation
@@ -59,10 +56,10 @@ int tribo_event_start(struct event *e, double t, const double *y);
 int tribo_event_series(struct event *e);
 int tribo_event_expand(struct event *e, double t, const double *y);
 
-/* Sets slope, of limits that fall, by the series. */
-void tribo_event_slopes(struct event *e);
-
 /* Energy that sliding contact i dissipates until tau; own: struct event. */
 double tribo_event_work(void *own, size_t i, double tau);
+
+/* Moves perturbations v [2 ndof + compliant contacts][columns] of the state by tau in the phase. As transition of struct motion. */
+int tribo_event_transition(void *own, const void *phase, double tau, size_t columns, double *v);
 
 #endif

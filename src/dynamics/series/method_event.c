@@ -239,10 +239,8 @@ static void method_event_destroy(tribo_driver *drv)
     if (e) {
         tribo_events_free(&e->events);
         free(e->q);
-        free(e->cosine);
         tribo_planar_series_free(&e->planar);
         tribo_creep_free(&e->creep);
-        tribo_series_transition_free(&e->perturbed);
         free(e);
     }
 }
@@ -269,23 +267,21 @@ static int take_tolerances(struct event *e)
     }
     const double tolerance = drv->abstol > 0.0 ? clamp(drv->abstol, 1e-16, 1e-2) : USUAL;
     const size_t order = best_order(tolerance, 0.0, MOST_DIGITS), terms = order + 1;
-    double *all = realloc(e->q, (terms * (2 * n + 7 * c + 1) + n + 9 * c + 1) * sizeof *all);
+    double *all = realloc(e->q, (terms * (2 * n + 6 * c + 1) + n + 9 * c + 1) * sizeof *all);
     if (!all) {
         return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for method event");
     }
     e->abstol = drv->abstol;
+    e->known = 0;
     e->tolerance = tolerance;
     e->order = e->most_order = order;
-    free(e->cosine); /* prepare makes room for the new order */
-    e->cosine = NULL;
     e->q = all;
     e->u = e->q + terms * n;
     e->watch = e->u + terms * n;
     e->limit = e->watch + terms * c;
     e->fall = e->limit + terms * c;
     e->part = e->fall + terms * c;
-    e->slope = e->part + terms * c;
-    e->spring = e->slope + terms * c;
+    e->spring = e->part + terms * c;
     e->d = e->spring + terms * c;
     e->room.acceleration = e->d + terms;
     e->room.base = e->room.acceleration + n;
@@ -300,14 +296,14 @@ static int take_tolerances(struct event *e)
     return TRIBO_OK;
 }
 
-/* Takes tolerances, makes room for the harmonics, and finds the highest frequency. */
+/* Takes tolerances, and finds the highest frequency. */
 static int method_event_prepare(struct event *e)
 {
     const tribo_system *sys = e->sys;
     int status = take_tolerances(e);
     e->events.stick_slip.constant.abstol = e->drv->abstol;
     e->events.stick_slip.constant.reltol = e->drv->abstol > 0.0 ? e->drv->reltol : USUAL;
-    if (status || (e->cosine && e->revision == sys->revision)) {
+    if (status || (e->known && e->revision == sys->revision)) {
         return status;
     }
     status = tribo_compliance_check(sys);
@@ -322,16 +318,9 @@ static int method_event_prepare(struct event *e)
         tribo_creep_free(&e->creep);
     }
     e->most_order = order;
-    const size_t room = (e->most_order + 2) * sys->harmonics + 1;
-    double *more = realloc(e->cosine, 2 * room * sizeof *more);
-    if (!more) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonic%s", sys->harmonics,
-                                 plural(sys->harmonics));
-    }
-    e->cosine = more;
-    e->sine = more + room;
     e->terms = sys->limit_harmonics ? e->most_order + 1 : sys->limit_tables ? 2 : 1;
     e->revision = sys->revision;
+    e->known = 1;
     return TRIBO_OK;
 }
 
@@ -501,18 +490,6 @@ static int method_event_begin(void *own, double t, const double *y, double *reac
                                    "at t = %.17g derivatives of the motion overflow: it grows without bound, or is too fast", t);
 }
 
-static int series_transition(void *own, const void *phase, double tau, size_t columns, double *v)
-{
-    (void)phase;
-    struct event *e = own;
-    const int falls = e->events.stick_slip.breakaway.falls;
-    const struct slopes slopes = {falls ? e->order + 1 : 0, e->slope};
-    if (falls) {
-        tribo_event_slopes(e);
-    }
-    return tribo_series_transition(&e->perturbed, &e->events.stick_slip, e->sys, &slopes, tau, columns, v);
-}
-
 static int series_signal(void *own, const double *c, double tau, const double *end, struct signal *to)
 {
     const struct event *e = own;
@@ -537,7 +514,7 @@ static const struct motion motion_in_series = {.begin = method_event_begin,
                                                .look = method_event_look,
                                                .bound = method_event_bound,
                                                .state = series_state,
-                                               .transition = series_transition,
+                                               .transition = tribo_event_transition,
                                                .signal = series_signal,
                                                .work = tribo_event_work};
 
