@@ -17,34 +17,38 @@ struct event_room {
     double *rate;
 };
 
-/* Bounds over [0, length] of watch and limit, and of their sixth derivatives; [ncontact]. */
-struct event_bound {
-    double *size, *bend, *limit_size, *limit_bend;
+/* A polynomial in time, an output of guards: term[k stride], k < terms; bounds, over the phase, of the sum of the sizes of its
+ * terms, and of that of its sixth derivative. */
+struct curve {
+    const double *term;
+    size_t terms, stride;
+    double size, bend;
 };
 
 struct event {
     tribo_driver *drv;
     tribo_system *sys;
     struct events events;
-    size_t order;        /* of the series of a phase */
-    size_t most_order;   /* room */
-    double tolerance;    /* relative */
-    double abstol;       /* that of the driver when tolerance was found */
-    double fastest;      /* bound of the frequencies of the motion, without growth by falling friction */
-    size_t revision;     /* of the system that fastest is of */
-    int known;           /* 1: fastest and most_order are those of revision and tolerance */
-    double moves[3];     /* change of q, u and d within the time of the fastest motion; if abstol = 0 */
-    double length;       /* of the step, and of the interval of bounds */
-    double *q, *u;       /* [order + 1][ndof] coefficients of the powers of time of displacements and velocities */
-    double *watch;       /* [order + 1][ncontact] velocities of sliding contacts, forces of contacts at rest */
-    double *limit;       /* [order + 1][ncontact] limits, below 0 where a contact has lifted off */
-    size_t terms;        /* number of rows of limit that are not zero */
-    double *slide;       /* [order + 1][ncontact] limits to slide: limit, or fall */
-    size_t slide_terms;  /* number of rows of slide that are not zero */
-    double *fall, *part; /* [order + 1][ncontact] limits that fall with the speed; exp(-|v|/velocity) */
-    double *d;           /* [order + 1] dissipated energy */
-    double *spring;      /* [order + 1][ncontact] forces of compliant contacts */
-    struct event_bound bound;
+    size_t order;              /* of the series of a phase */
+    size_t most_order;         /* room */
+    double tolerance;          /* relative */
+    double abstol;             /* that of the driver when tolerance was found */
+    double fastest;            /* bound of the frequencies of the motion, without growth by falling friction */
+    size_t revision;           /* of the system that fastest is of */
+    int known;                 /* 1: fastest and most_order are those of revision and tolerance */
+    double moves[3];           /* change of q, u and d within the time of the fastest motion; if abstol = 0 */
+    double length;             /* of the step, and of the interval of bounds */
+    double *q, *u;             /* [order + 1][ndof] coefficients of the powers of time of displacements and velocities */
+    double *watch;             /* [order + 1][ncontact] velocities of sliding contacts, forces of contacts at rest */
+    double *limit;             /* [order + 1][ncontact] limits, below 0 where a contact has lifted off */
+    size_t terms;              /* number of rows of limit that are not zero */
+    double *slide;             /* [order + 1][ncontact] limits to slide: limit, or fall */
+    size_t slide_terms;        /* number of rows of slide that are not zero */
+    double *fall, *part;       /* [order + 1][ncontact] limits that fall with the speed; exp(-|v|/velocity) */
+    double *d;                 /* [order + 1] dissipated energy */
+    double *spring;            /* [order + 1][ncontact] forces of compliant contacts */
+    struct curve *curve;       /* [ncontact] watch; squares of planar contacts */
+    struct curve *limit_curve; /* [ncontact] limit */
     struct event_room room;
     struct planar_series planar;
     struct creep creep;

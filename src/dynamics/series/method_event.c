@@ -10,8 +10,8 @@
 #include <string.h>
 
 #include "event_series.h"
+#include "common/layout.h"
 #include "common/real.h"
-#include "common/simd.h"
 #include "common/zeros.h"
 
 /* Error of a step of a periodic motion, in parts of the motion: it must not depend on where steps end. */
@@ -96,18 +96,15 @@ static double step_length(const struct event *e)
 
 /* --------------------------------------------------------------------------------------------------------- guards */
 
-/* to += factor times the polynomial with term [terms], c doubles apart, at s, and its derivatives. */
-static void add_polynomial(struct sample *to, double factor, size_t terms, size_t c, const double *term, double s)
+static struct sample value_of(const struct curve *c, double s)
 {
     double v0 = 0.0, v1 = 0.0, v2 = 0.0;
-    for (size_t k = terms; k-- > 0;) {
+    for (size_t k = c->terms; k-- > 0;) {
         v2 = v2 * s + v1;
         v1 = v1 * s + v0;
-        v0 = v0 * s + term[k * c];
+        v0 = v0 * s + c->term[k * c->stride];
     }
-    to->g += factor * v0;
-    to->d += factor * v1;
-    to->e += 2.0 * factor * v2;
+    return (struct sample){v0, v1, 2.0 * v2};
 }
 
 /* The two guards of an output follow one another: its value is computed once. */
@@ -118,39 +115,18 @@ static void method_event_look(void *own, double tau, size_t guards, struct guard
     struct sample v = {0.0, 0.0, 0.0};
     for (size_t k = 0; k < guards; k++) {
         struct guard *g = guard[k];
-        if (g->side != 0.0 && seen != g->output) {
-            const int plane = e->events.stick_slip.plane && e->events.stick_slip.plane->in_plane[g->contact];
-            seen = g->output;
-            v = (struct sample){0.0, 0.0, 0.0};
-            add_polynomial(&v, 1.0, plane ? 2 * e->order + 1 : e->order + 1, plane ? e->planar.room : e->sys->ncontact, seen,
-                           tau);
-        }
         g->middle = (struct sample){g->offset, 0.0, 0.0};
-        if (g->side != 0.0) {
+        if (g->output) {
+            v = seen == g->output ? v : value_of(g->output, tau);
+            seen = g->output;
             g->middle = (struct sample){g->offset + g->side * v.g, g->side * v.d, g->side * v.e};
         }
         if (g->limit != 0.0) {
-            add_polynomial(&g->middle, g->limit, e->terms, e->sys->ncontact, e->limit + g->contact, tau);
+            const struct sample limit = value_of(&e->limit_curve[g->contact], tau);
+            g->middle.g += g->limit * limit.g;
+            g->middle.d += g->limit * limit.d;
+            g->middle.e += g->limit * limit.e;
         }
-    }
-}
-
-/* Bounds over [0, h] of polynomials watch [terms][c], and of their sixth derivatives. */
-TRIBO_SIMD static void method_event_find_bounds(size_t c, size_t terms, double h, const double *restrict watch,
-                                                double *restrict size, double *restrict bend)
-{
-    double power = 1.0, sixth = 1.0; /* of h; the second that of the sixth derivative */
-    memset(size, 0, c * sizeof *size);
-    memset(bend, 0, c * sizeof *bend);
-    for (size_t k = 0; k < terms; k++) {
-        const double six = k < 6 ? 0.0 : (double)(k * (k - 1) * (k - 2)) * (double)((k - 3) * (k - 4) * (k - 5)) * sixth;
-        const double *restrict w = watch + k * c;
-        for (size_t i = 0; i < c; i++) {
-            size[i] += fabs(w[i]) * power;
-            bend[i] += fabs(w[i]) * six;
-        }
-        power = lesser(power * h, DBL_MAX);
-        sixth = k < 6 ? 1.0 : lesser(sixth * h, DBL_MAX);
     }
 }
 
@@ -161,11 +137,30 @@ static double method_event_bound(void *own, double tau)
     (void)tau;
     for (size_t k = 0; k < s->guards; k++) {
         struct guard *g = &s->guard[k];
-        const double side = fabs(g->side), limit = fabs(g->limit);
-        g->size = side * e->bound.size[g->contact] + limit * e->bound.limit_size[g->contact] + fabs(g->offset);
-        g->bend = side * e->bound.bend[g->contact] + limit * e->bound.limit_bend[g->contact];
+        const struct curve *output = g->output, *limit = g->limit != 0.0 ? &e->limit_curve[g->contact] : NULL;
+        g->size = fabs(g->offset) + (output ? fabs(g->side) * output->size : 0.0) + (limit ? fabs(g->limit) * limit->size : 0.0);
+        g->bend = (output ? fabs(g->side) * output->bend : 0.0) + (limit ? fabs(g->limit) * limit->bend : 0.0);
     }
     return HUGE_VAL;
+}
+
+/* Sets curves [count], of neighbouring polynomials from term on, and their bounds over [0, h]. */
+static void set_curves(struct curve *curve, size_t count, size_t terms, size_t stride, const double *term, double h)
+{
+    double power = 1.0, sixth = 1.0; /* of h; the second that of the sixth derivative */
+    for (size_t i = 0; i < count; i++) {
+        curve[i] = (struct curve){.term = term + i, .terms = terms, .stride = stride};
+    }
+    for (size_t k = 0; k < terms; k++) {
+        const double six = k < 6 ? 0.0 : (double)(k * (k - 1) * (k - 2)) * (double)((k - 3) * (k - 4) * (k - 5)) * sixth;
+        for (size_t i = 0; i < count; i++) {
+            const double w = fabs(term[k * stride + i]);
+            curve[i].size += w * power;
+            curve[i].bend += w * six;
+        }
+        power = lesser(power * h, DBL_MAX);
+        sixth = k < 6 ? 1.0 : lesser(sixth * h, DBL_MAX);
+    }
 }
 
 /* A step ends where the speed of a planar contact falls to this part: at a small speed the direction turns fast, and a stop is
@@ -175,60 +170,67 @@ static double method_event_bound(void *own, double tau)
 static void set_planar_guards(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
-    tribo_planar_series_squares(&e->planar, m, e->watch, e->length);
+    tribo_planar_series_squares(&e->planar, m, e->watch);
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
-        const struct planar_line *line = &e->planar.line[k];
         const int moves = m->state.slip[p->at] == TRIBO_SLIP_PLANE;
-        double *square = e->planar.square + k;
-        const double limit = greater(p->limit[0], p->limit[1]);
-        struct guard g = {.contact = p->at, .output = square, .kind = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
+        const double *square = e->planar.line[k].square, limit = greater(p->limit[0], p->limit[1]);
+        struct curve *curve = &e->curve[p->at];
+        struct guard g = {.contact = p->at, .output = curve, .kind = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
+        set_curves(curve, 1, 2 * e->order + 1, 1, square, e->length);
         g.offset = moves ? -SLOWER * SLOWER * square[0] : 0.5 * limit;
         g.allowance = moves ? 0.0 : greater(m->noise.allowance[p->at], m->noise.allowance[p->at + 1]);
-        e->bound.size[p->at] = line->size;
-        e->bound.bend[p->at] = line->bend;
-        if (moves || line->size >= 0.5 * limit) {
+        if (moves || curve->size >= 0.5 * limit) {
             tribo_events_guard(&e->events, &g);
         }
     }
 }
 
-static void set_guards(struct event *e)
+/* Bound of the sum of the sizes of the terms of v_i over the phase. */
+static double size_of_velocity(const struct event *e, size_t i)
+{
+    const struct matrix *j = &e->sys->direction;
+    const size_t n = e->sys->ndof;
+    double size = 0.0, power = 1.0, lever = 0.0;
+    for (size_t d = j->first[i]; d < j->first[i + 1]; d++) {
+        lever += fabs(j->val[d]);
+    }
+    for (size_t k = 0; k <= e->order; k++) {
+        size += lever * tribo_largest(e->u + k * n, n) * power;
+        power = lesser(power * e->length, DBL_MAX);
+    }
+    return size;
+}
+
+/* Returns 0 if bounds overflow. */
+static int set_guards(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
-    const double h = e->length;
+    const size_t c = m->constant.contacts;
     const int varies = e->terms > 1;
+    double all = 0.0;
     tribo_events_clear_guards(&e->events);
-    method_event_find_bounds(m->constant.contacts, e->order + 1, h, e->watch, e->bound.size, e->bound.bend);
-    method_event_find_bounds(m->constant.contacts, e->terms, h, e->limit, e->bound.limit_size, e->bound.limit_bend);
+    set_curves(e->curve, c, e->order + 1, c, e->watch, e->length);
+    set_curves(e->limit_curve, c, e->terms, c, e->limit, e->length);
     if (m->plane) {
         set_planar_guards(e);
     }
-    for (size_t i = 0; i < m->constant.contacts; i++) {
-        if (m->plane && m->plane->in_plane[i]) {
-            continue;
+    for (size_t i = 0; i < c; i++) {
+        struct curve *curve = &e->curve[i];
+        const struct curve *limit = &e->limit_curve[i];
+        if (!(m->plane && m->plane->in_plane[i])) {
+            curve->size = tribo_stick_slip_may_part(m, i) ? size_of_velocity(e, i) : curve->size;
+            const struct watch w = {.output = curve,
+                                    .size = curve->size,
+                                    .constant = varies ? 0.0 : e->limit[i],
+                                    .least = 2.0 * e->limit[i] - limit->size,
+                                    .varies = varies};
+            tribo_events_guard_contact(&e->events, i, &w);
+            tribo_events_guard_limit(&e->events, i, &w);
         }
-        if (tribo_stick_slip_may_part(m, i)) {
-            /* size of the terms of v_i over [0, h] */
-            const struct matrix *j = &e->sys->direction;
-            double size = 0.0, power = 1.0, lever = 0.0;
-            for (size_t d = j->first[i]; d < j->first[i + 1]; d++) {
-                lever += fabs(j->val[d]);
-            }
-            for (size_t k = 0; k <= e->order; k++) {
-                size += lever * tribo_largest(e->u + k * e->sys->ndof, e->sys->ndof) * power;
-                power = lesser(power * h, DBL_MAX);
-            }
-            e->bound.size[i] = size;
-        }
-        const struct watch w = {.output = e->watch + i,
-                                .size = e->bound.size[i],
-                                .constant = varies ? 0.0 : e->limit[i],
-                                .least = 2.0 * e->limit[i] - e->bound.limit_size[i],
-                                .varies = varies};
-        tribo_events_guard_contact(&e->events, i, &w);
-        tribo_events_guard_limit(&e->events, i, &w);
+        all += 0.0 * (curve->size + curve->bend);
     }
+    return all == 0.0;
 }
 
 /* ------------------------------------------------------------------------------------------------------- the driver */
@@ -257,42 +259,45 @@ static size_t best_order(double tolerance, double fastest, double digits)
     return (size_t)(fastest > 0.0 ? greater(lesser(wanted, digits / (1.0 + fabs(log10(fastest)))), LEAST_ORDER) : wanted);
 }
 
+static void lay_out(struct event *e, struct layout *l, size_t terms)
+{
+    const size_t n = e->sys->ndof, c = e->sys->ncontact;
+    double **const series[] = {&e->watch, &e->limit, &e->fall, &e->part, &e->spring};
+    double **const rooms[] = {&e->room.base, &e->room.a, &e->room.given, &e->room.held, &e->room.rate};
+    e->q = tribo_layout_array(l, terms * n, sizeof *e->q);
+    e->u = tribo_layout_array(l, terms * n, sizeof *e->u);
+    e->d = tribo_layout_array(l, terms, sizeof *e->d);
+    e->room.acceleration = tribo_layout_array(l, n, sizeof *e->u);
+    e->curve = tribo_layout_array(l, c, sizeof *e->curve);
+    e->limit_curve = tribo_layout_array(l, c, sizeof *e->limit_curve);
+    for (size_t k = 0; k < 5; k++) {
+        *series[k] = tribo_layout_array(l, terms * c, sizeof **series[k]);
+        *rooms[k] = tribo_layout_array(l, c, sizeof **rooms[k]);
+    }
+}
+
 /* Takes the driver's tolerances, and makes room for the order by these. */
 static int take_tolerances(struct event *e)
 {
     const tribo_driver *drv = e->drv;
-    const size_t n = e->sys->ndof, c = e->sys->ncontact;
     if (e->q && e->abstol == drv->abstol) {
         return TRIBO_OK;
     }
     const double tolerance = drv->abstol > 0.0 ? clamp(drv->abstol, 1e-16, 1e-2) : USUAL;
-    const size_t order = best_order(tolerance, 0.0, MOST_DIGITS), terms = order + 1;
-    double *all = realloc(e->q, (terms * (2 * n + 6 * c + 1) + n + 9 * c + 1) * sizeof *all);
-    if (!all) {
+    const size_t order = best_order(tolerance, 0.0, MOST_DIGITS);
+    struct layout l = {0};
+    double *old = e->q;
+    lay_out(e, &l, order + 1);
+    const int done = tribo_layout_create(&l);
+    lay_out(e, &l, order + 1);
+    free(old);
+    if (!done) {
         return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for method event");
     }
     e->abstol = drv->abstol;
     e->known = 0;
     e->tolerance = tolerance;
     e->order = e->most_order = order;
-    e->q = all;
-    e->u = e->q + terms * n;
-    e->watch = e->u + terms * n;
-    e->limit = e->watch + terms * c;
-    e->fall = e->limit + terms * c;
-    e->part = e->fall + terms * c;
-    e->spring = e->part + terms * c;
-    e->d = e->spring + terms * c;
-    e->room.acceleration = e->d + terms;
-    e->room.base = e->room.acceleration + n;
-    e->room.a = e->room.base + c;
-    e->room.given = e->room.a + c;
-    e->room.held = e->room.given + c;
-    e->bound.size = e->room.held + c;
-    e->bound.bend = e->bound.size + c;
-    e->bound.limit_size = e->bound.bend + c;
-    e->bound.limit_bend = e->bound.limit_size + c;
-    e->room.rate = e->bound.limit_bend + c;
     return TRIBO_OK;
 }
 
@@ -483,8 +488,7 @@ static int method_event_begin(void *own, double t, const double *y, double *reac
     *reach = lesser(length, *reach);
     /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
     e->length = fastest(e) > 0.0 ? greater(*reach, lesser(length, 1.0 / fastest(e))) : *reach;
-    set_guards(e);
-    return tribo_dense_finite(e->bound.size, 2 * e->sys->ncontact)
+    return set_guards(e)
                ? TRIBO_OK
                : tribo_system_fail(e->sys, TRIBO_ERR_NOT_FINITE,
                                    "at t = %.17g derivatives of the motion overflow: it grows without bound, or is too fast", t);

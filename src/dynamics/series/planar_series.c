@@ -36,14 +36,14 @@ static int planar_series_reserve(struct planar_series *s, size_t terms, size_t c
     tribo_planar_series_free(s);
     s->line = malloc(contacts * sizeof *s->line);
     s->work = malloc(7 * terms * contacts * sizeof *s->work);
-    s->square = s->work ? s->work + 5 * terms * contacts : NULL;
     for (size_t k = 0; s->line && s->work && k < contacts; k++) {
         struct planar_line *l = &s->line[k];
-        l->xn = s->work + 5 * terms * k;
+        l->xn = s->work + 7 * terms * k;
         l->xt = l->xn + terms;
         l->un = l->xt + terms;
         l->ut = l->un + terms;
         l->speed = l->ut + terms;
+        l->square = l->speed + terms;
     }
     s->room = s->line && s->work ? contacts : 0;
     return s->room > 0;
@@ -292,46 +292,28 @@ double tribo_planar_series_power(const struct planar_series *s, const struct sti
 
 /* -------------------------------------------------------------------------------------------------------------- guards */
 
-/* Sets x = force/limit, from forces f [order + 1][ncontact]. */
-static void take_forces(struct planar_line *l, const struct planar_contact *p, size_t order, size_t stride, const double *f)
-{
-    for (size_t k = 0; k <= order; k++) {
-        l->xn[k] = f[k * stride + p->at] / p->limit[0];
-        l->xt[k] = f[k * stride + p->at + 1] / p->limit[1];
-    }
-}
-
 /* Coefficient k of x^2, x [terms]. */
 static double square_of(const double *x, size_t terms, size_t k)
 {
     return product_of(x, x, k, k < terms ? 0 : k - terms + 1, k < terms ? k + 1 : terms);
 }
 
-void tribo_planar_series_squares(struct planar_series *s, const struct stick_slip *m, const double *f, double h)
+void tribo_planar_series_squares(struct planar_series *s, const struct stick_slip *m, const double *f)
 {
-    const size_t stride = s->room;
-    for (size_t k = 0; k < (2 * s->order + 1) * stride; k++) {
-        s->square[k] = 0.0;
-    }
     for (size_t c = 0; c < m->plane->count; c++) {
         const struct planar_contact *p = &m->plane->contact[c];
         struct planar_line *l = &s->line[c];
         const int moves = slides(m, p);
         const size_t terms = s->order + 1 - (moves ? (size_t)p->begins : 0);
         const double scale = moves ? 1.0 : 0.5 * greater(p->limit[0], p->limit[1]);
-        if (!moves) {
-            take_forces(l, p, s->order, m->constant.contacts, f);
+        for (size_t k = 0; !moves && k <= s->order; k++) {
+            const double *force = f + k * m->constant.contacts + p->at;
+            l->xn[k] = force[0] / p->limit[0];
+            l->xt[k] = force[1] / p->limit[1];
         }
-        double power = 1.0;
-        l->size = l->bend = 0.0;
-        for (size_t k = 0; k < 2 * terms - 1; k++) {
-            const double w = scale * (square_of(l->xn, terms, k) + square_of(l->xt, terms, k)), x = (double)k;
-            s->square[k * stride + c] = w;
-            l->size += fabs(w) * power;
-            l->bend += k < 6 ? 0.0 : x * (x - 1.0) * (x - 2.0) * (x - 3.0) * (x - 4.0) * (x - 5.0) * fabs(w) * power;
-            power *= h;
+        for (size_t k = 0; k <= 2 * s->order; k++) {
+            l->square[k] = k < 2 * terms - 1 ? scale * (square_of(l->xn, terms, k) + square_of(l->xt, terms, k)) : 0.0;
         }
-        l->bend /= h * h * h * h * h * h;
     }
 }
 

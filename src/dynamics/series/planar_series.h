@@ -21,8 +21,7 @@ struct planar_line {
     double n[2], t[2];
     double *xn, *xt, *un, *ut; /* [order + 1] coefficients of x and u along n and t */
     double *speed;             /* [order + 1] coefficients of |x| */
-    double size;               /* bound of the square */
-    double bend;               /* bound of its sixth derivative */
+    double *square; /* [2 order + 1] |x|^2/time^(2s); of a contact at rest half the larger limit times |force/limit|^2 */
 };
 
 struct planar_series {
@@ -31,7 +30,6 @@ struct planar_series {
     int given;                /* 1: un and ut are given, and all sliding contacts slide already */
     struct planar_line *line; /* [room] */
     double *work;             /* the series of all lines */
-    double *square;           /* [2 order + 1][room] coefficients */
     size_t begins;            /* number of contacts that begin to slide */
     size_t begin_room;        /* for such contacts */
     size_t *begin;            /* [begins] these contacts */
@@ -71,10 +69,9 @@ int tribo_planar_series_finish(struct planar_series *s, const struct stick_slip 
 /* The k-th coefficient of the power that planar contacts dissipate. */
 double tribo_planar_series_power(const struct planar_series *s, const struct stick_slip *m, const tribo_system *sys, size_t k);
 
-/* Sets square, size and bend for guards over [0, h]: |x|^2/tau^2s of sliding contacts; half the larger limit times
- * |force/limit|^2 of contacts at rest, with forces f [order + 1][ncontact]. All terms count: those of the square are not small
- * where those of x end. */
-void tribo_planar_series_squares(struct planar_series *s, const struct stick_slip *m, const double *f, double h);
+/* Sets square of all lines, with forces f [order + 1][ncontact] of contacts at rest. All terms count: those of the square are not
+ * small where those of x end. */
+void tribo_planar_series_squares(struct planar_series *s, const struct stick_slip *m, const double *f);
 
 /* Sets error [ncontact] of velocities, besides that of the driver's tolerance. */
 void tribo_planar_series_errors(const struct planar_series *s, const struct stick_slip *m, double *error);
