@@ -49,7 +49,6 @@ static const double node[NODES] = {0.022479386438712498, 0.11467905316090423, 0.
 void tribo_creep_free(struct creep *c)
 {
     free(c->weight);
-    free(c->slip);
     free(c->slides);
     memset(c, 0, sizeof *c);
 }
@@ -66,9 +65,8 @@ static int reserve(struct event *e, size_t slides)
     tribo_creep_free(c);
     const size_t response = 4 * slides * contacts * terms;
     c->weight = malloc((terms * NODES * NODES + response + unknowns * (unknowns + 1) + contacts * NODES) * sizeof *c->weight);
-    c->slip = malloc(2 * e->sys->ncontact);
     c->slides = malloc((contacts + unknowns) * sizeof *c->slides);
-    if (!c->weight || !c->slip || !c->slides) {
+    if (!c->weight || !c->slides) {
         tribo_creep_free(c);
         return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s that creep", slides, plural(slides));
     }
@@ -76,7 +74,6 @@ static int reserve(struct event *e, size_t slides)
     c->matrix = c->response + response;
     c->rest = c->matrix + unknowns * unknowns;
     c->angle = c->rest + unknowns;
-    c->holds = (unsigned char *)c->slip + e->sys->ncontact;
     c->pivot = (int *)(c->slides + contacts);
     c->contacts = contacts;
     c->room = slides;
@@ -225,24 +222,6 @@ static int find_response(struct event *e, size_t slides)
         l->un[0] = l->ut[0] = 0.0;
         add_series(e, 1.0, c->response + s * c->terms * row);
     }
-    return status;
-}
-
-/* The same, unless c->response is that of this slip, holds and revision. */
-static int learn_response(struct event *e, size_t slides)
-{
-    struct creep *c = &e->creep;
-    const struct stick_slip *m = &e->events.stick_slip;
-    const size_t revision = tribo_system_revision(e->sys), contacts = e->sys->ncontact;
-    if (c->known && c->revision == revision && memcmp(c->slip, m->state.slip, contacts) == 0 &&
-        memcmp(c->holds, m->state.holds, contacts) == 0) {
-        return TRIBO_OK;
-    }
-    const int status = find_response(e, slides);
-    c->known = !status;
-    c->revision = revision;
-    memcpy(c->slip, m->state.slip, contacts);
-    memcpy(c->holds, m->state.holds, contacts);
     return status;
 }
 
@@ -496,20 +475,19 @@ int tribo_creep_expand(struct event *e, double t, const double *y, double h, dou
     }
     e->planar.given = 1;
     status = tribo_event_start(e, t, y);
-    status = status ? status : learn_response(e, slides);
+    status = status ? status : find_response(e, slides);
     status = status ? status : find_angles(e, slides, h, error, &found);
     e->planar.given = 0;
     step->good = 0;
     step->next = SHRINKS * h;
     if (!status && found) {
-        /* Judges the step. A contact that creeps may start in another direction than its equation asks for, at any length of
-         * the step: stray is no reason for shorter steps then. */
+        /* A contact that creeps may start in another direction than its equation asks for, at any length of the step: stray is no
+         * reason for shorter steps then. */
         double defect = 0.0, slow = h, stray = 0.0;
         for (size_t s = 0; s < slides; s++) {
-            const size_t k = e->creep.slides[s];
+            const size_t k = c->slides[s];
             const double begins = find_stray(e, k, h, 0.0, error);
-            const int creeps = h > PAYS * stop_of(e, k, e->planar.line[k].xn[0]);
-            stray = creeps ? greater(stray, begins) : stray;
+            stray = h > PAYS * stop_of(e, k, e->planar.line[k].xn[0]) ? greater(stray, begins) : stray;
             defect = greater(defect, greater(begins, find_defect(e, k, h, error)));
             slow = lesser(slow, find_slow_part(e, k, h));
         }

@@ -26,15 +26,11 @@ struct creep {
     double basis[TRIBO_CREEP_NODES][TRIBO_CREEP_NODES]; /* [node][power] of the polynomial that is 1 there, 0 at other nodes */
     double *weight;   /* [terms][node][node] effect at the first node of a force basis[second] that acts by time^term, in steps */
     double *angle;    /* [contacts][node] of u, from n of its line */
-    double *response; /* [2 room][terms][2 contacts] series of x by u = a unit vector, for slip, holds and revision */
-    signed char *slip;    /* [ncontact] */
-    unsigned char *holds; /* [ncontact] */
-    size_t revision;      /* of the system */
-    int known;            /* 1: response is known */
-    size_t *slides;       /* [contacts] the sliding contacts */
-    int *pivot;           /* [room NODES] */
-    double *matrix;       /* [room NODES][room NODES] Newton's */
-    double *rest;         /* [room NODES] its right-hand side */
+    double *response; /* [2 room][terms][2 contacts] series of x by u = a unit vector */
+    size_t *slides;   /* [contacts] the sliding contacts */
+    int *pivot;       /* [room NODES] */
+    double *matrix;   /* [room NODES][room NODES] Newton's */
+    double *rest;     /* [room NODES] its right-hand side */
 };
 
 void tribo_creep_free(struct creep *c);

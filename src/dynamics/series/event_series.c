@@ -232,7 +232,7 @@ struct perturbed {
 #define MOST_TERMS 400
 
 /* to [rows of a] += factor a x, for rows of perturbations. */
-static void add_product(const struct perturbed *p, const struct matrix *a, double factor, const double *x, double *to)
+static void add_perturbed(const struct perturbed *p, const struct matrix *a, double factor, const double *x, double *to)
 {
     for (size_t i = 0; i < a->rows; i++) {
         for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
@@ -283,14 +283,14 @@ static void find_term(struct event *e, size_t k, double tau, const struct pertur
     const double part = tau / (double)k;
     double *v = p->v + (k - 1) % p->rows * each;
     memset(p->next, 0, half * sizeof *p->next);
-    add_product(p, &sys->stiffness, -part, p->q, p->next);
+    add_perturbed(p, &sys->stiffness, -part, p->q, p->next);
     if (sys->damping.rows) {
-        add_product(p, &sys->damping, -part, p->u, p->next);
+        add_perturbed(p, &sys->damping, -part, p->u, p->next);
     }
     memset(v, 0, each * sizeof *v);
-    add_product(p, &sys->direction, 1.0, p->u, v);
+    add_perturbed(p, &sys->direction, 1.0, p->u, v);
     if (sys->compliance.count) {
-        add_product(p, &sys->compliance.pull, part, p->spring, p->next);
+        add_perturbed(p, &sys->compliance.pull, part, p->spring, p->next);
         memcpy(p->spring, v, each * sizeof *v);
         tribo_compliance_solve(sys, m->state.slip, p->columns, p->spring);
         for (size_t i = 0; i < each; i++) {
@@ -299,7 +299,7 @@ static void find_term(struct event *e, size_t k, double tau, const struct pertur
     }
     if (m->breakaway.falls) {
         find_slope_forces(e, k - 1, tau, p);
-        add_product(p, &sys->response, part, p->force, p->next);
+        add_perturbed(p, &sys->response, part, p->force, p->next);
     }
     for (size_t i = 0; i < half; i++) {
         p->q[i] = part * p->u[i];

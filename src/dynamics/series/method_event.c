@@ -417,7 +417,6 @@ static int try_creep(struct event *e, double t, const double *y, double h, doubl
         step.next = step.good && most < h ? 0.9 * most : step.next;
     }
     e->creep.length = *length > 0.0 ? step.next : 0.0;
-    e->creep.shorter = *length > 0.0 ? 0.0 : step.next;
     return TRIBO_OK;
 }
 
@@ -434,8 +433,7 @@ static double first_trial(struct event *e, const double *y, double least, double
     if (c->waited++ < c->wait) {
         return 0.0;
     }
-    const double from = c->shorter > least ? lesser(c->shorter, most) : FIRST * most;
-    const double first = lesser(from, tribo_creep_settled(e, y, error));
+    const double first = lesser(FIRST * most, tribo_creep_settled(e, y, error));
     return first > least ? first : 0.0;
 }
 
@@ -447,7 +445,7 @@ static int creep(struct event *e, double t, const double *y, double most, double
     const size_t before = e->sys->evaluations;
     c->wait = e->events.anew ? PATIENCE : c->wait;
     if (e->events.anew || !(least < most)) {
-        c->length = c->shorter = 0.0;
+        c->length = 0.0;
         c->waited = 0;
     }
     e->events.anew = 0;
