@@ -203,24 +203,12 @@ static struct guard *first_to_fall(const struct first_zero *s, double h, double 
     return first;
 }
 
-/* 1 if no watched guard is below zero between the left and middle samples, h apart. */
-static int all_clear(const struct first_zero *s, double h)
+/* 1 if no watched guard is below zero from a until `until` later; the middle samples, or the right ones, are h after a. */
+static int all_positive(const struct first_zero *s, int middle, double until, double h)
 {
     for (size_t k = 0; k < s->watching; k++) {
         struct guard *g = s->watched[k];
-        if (g->middle.g < -noise(g) || !positive(g, &g->middle, h, h)) {
-            return 0;
-        }
-    }
-    return 1;
-}
-
-/* 1 if no watched guard is below zero from a until `until` later; the right samples are h after a. */
-static int all_positive_until(const struct first_zero *s, double until, double h)
-{
-    for (size_t k = 0; k < s->watching; k++) {
-        struct guard *g = s->watched[k];
-        if (!positive(g, &g->right, h, until)) {
+        if (!positive(g, middle ? &g->middle : &g->right, h, until)) {
             return 0;
         }
     }
@@ -263,7 +251,7 @@ static const struct guard *search_interval(struct first_zero *s, double b, doubl
         const struct guard *falls = first_to_fall(s, h, &at);
         const int fine = falls && (at == h || tribo_quintic_error(at, h, falls->bend) <= FINE * noise(falls));
         const int begins = falls && falls->allowance > 0.0 && s->a == begun;
-        if (fine && !begins && all_positive_until(s, at, h)) {
+        if (fine && !begins && all_positive(s, 0, at, h)) {
             *when = s->a + at;
             return falls;
         }
@@ -276,7 +264,7 @@ static const struct guard *search_interval(struct first_zero *s, double b, doubl
             break;
         }
         sample(s, next);
-        if (all_clear(s, next - s->a)) {
+        if (all_positive(s, 1, next - s->a, next - s->a)) {
             s->a = next;
             keep_left(s);
         } else {
@@ -301,13 +289,6 @@ static const struct guard *search_interval(struct first_zero *s, double b, doubl
     }
     come_to(s, b);
     return NULL;
-}
-
-/* The time to look at next: just after an expected zero, unless that is too far. */
-static double next_look(const struct first_zero *s)
-{
-    const double after = s->expected + SHORT * s->length;
-    return s->expected > s->a && after < s->a + STRETCH * s->h ? lesser(after, s->longest) : lesser(s->a + s->h, s->longest);
 }
 
 /* The velocity that is first to fall to zero within reach of the derivatives at the start, with *when; NULL if there is none.
@@ -384,7 +365,10 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
         if (s->a >= s->better) {
             find_bounds(s);
         }
-        *first = search_interval(s, next_look(s), when);
+        /* just after an expected zero, unless that is too far */
+        const double after = s->expected + SHORT * s->length;
+        const int near = s->expected > s->a && after < s->a + STRETCH * s->h;
+        *first = search_interval(s, lesser(near ? after : s->a + s->h, longest), when);
     }
     return 1;
 }

@@ -38,7 +38,7 @@
 /* Largest growth of a speed over a step: a small one at its start must not be lost in rounding. */
 #define FASTER 100.0
 
-/* Factors by which lengths of steps change. */
+/* Least and largest factors by which lengths of steps change. */
 #define GROWS 4.0
 #define SHRINKS 0.2
 
@@ -118,21 +118,16 @@ static size_t count_sliding(const struct stick_slip *m)
     return count;
 }
 
-static int one_begins(const struct stick_slip *m)
-{
-    size_t k = 0;
-    while (k < m->plane->count && !(is_sliding(m, k) && m->plane->contact[k].begins != SLIDES_ON)) {
-        k++;
-    }
-    return k < m->plane->count;
-}
-
 double tribo_creep_least(const struct event *e, const double *y)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const size_t count = count_sliding(m);
     const double part = (double)count / FEW_CONTACTS;
-    return count == 0 || count > MOST_CONTACTS || one_begins(m)
+    int begins = 0;
+    for (size_t k = 0; k < m->plane->count; k++) {
+        begins |= is_sliding(m, k) && m->plane->contact[k].begins != SLIDES_ON;
+    }
+    return count == 0 || count > MOST_CONTACTS || begins
                ? HUGE_VAL
                : PAYS * greater(1.0, part * part * part) * tribo_planar_series_first_stop(m, e->sys, y);
 }
@@ -254,21 +249,6 @@ static void add_response(const struct event *e, size_t from, size_t axis, double
     }
 }
 
-/* Sets c->rest = x across u; subtracts x along u from the diagonal of the matrix. */
-static void set_rest(struct event *e, size_t s, double h, size_t unknowns)
-{
-    struct creep *c = &e->creep;
-    const struct planar_line *l = &e->planar.line[c->slides[s]];
-    for (size_t j = 0; j < NODES; j++) {
-        const size_t at = s * NODES + j;
-        const double angle = c->angle[c->slides[s] * NODES + j];
-        const double xn = tribo_planar_series_value(l->xn, e->order, node[j] * h);
-        const double xt = tribo_planar_series_value(l->xt, e->order, node[j] * h);
-        c->rest[at] = xt * cos(angle) - xn * sin(angle);
-        c->matrix[at * unknowns + at] -= xn * cos(angle) + xt * sin(angle);
-    }
-}
-
 /* One step of Newton's method; returns its size, HUGE_VAL if there is none. */
 static double improve(struct event *e, size_t slides, double h)
 {
@@ -294,8 +274,15 @@ static double improve(struct event *e, size_t slides, double h)
             }
         }
     }
-    for (size_t s = 0; s < slides; s++) {
-        set_rest(e, s, h, unknowns);
+    /* rest = x across u; less x along u on the diagonal */
+    for (size_t at = 0; at < unknowns; at++) {
+        const size_t k = c->slides[at / NODES], j = at % NODES;
+        const struct planar_line *l = &e->planar.line[k];
+        const double cosine = cos(c->angle[k * NODES + j]), sine = sin(c->angle[k * NODES + j]);
+        const double xn = tribo_planar_series_value(l->xn, e->order, node[j] * h);
+        const double xt = tribo_planar_series_value(l->xt, e->order, node[j] * h);
+        c->rest[at] = xt * cosine - xn * sine;
+        c->matrix[at * unknowns + at] -= xn * cosine + xt * sine;
     }
     if (!(tribo_lu_create(c->matrix, unknowns, c->pivot) > 0.0)) {
         return HUGE_VAL;
@@ -314,13 +301,6 @@ static double allowed(const struct event *e, size_t k, double h, double error)
     const struct planar_contact *p = &m->plane->contact[k];
     const double r = greater(p->limit[0] * m->constant.diagonal[p->at], p->limit[1] * m->constant.diagonal[p->at + 1]);
     return lesser(MOST_OFF, error * (double)(NODES + 1) / (r * h));
-}
-
-/* Error of directions: the last power between nodes. */
-static double find_off(const struct event *e, size_t k, double h)
-{
-    const struct planar_line *l = &e->planar.line[k];
-    return 2.0 * pow(0.25 * h, NODES - 1) * hypot(l->un[NODES - 1], l->ut[NODES - 1]);
 }
 
 /* A step ends where |x| has fallen to this part (method_event.c): a smaller x need not have the direction of u. */
@@ -380,49 +360,30 @@ static int is_with(const struct event *e, size_t k, double h)
     return along > 0.0 || fabs(across) < 0.5 * LEFT * e->planar.line[k].xn[0];
 }
 
-static double size_at(const struct event *e, size_t k, double tau)
-{
-    const struct planar_line *l = &e->planar.line[k];
-    return hypot(tribo_planar_series_value(l->xn, e->order, tau), tribo_planar_series_value(l->xt, e->order, tau));
-}
-
 /* h, halved until the speed over the step is at most FASTER times that at its start. */
 static double find_slow_part(const struct event *e, size_t k, double h)
 {
-    const double most = FASTER * e->planar.line[k].xn[0];
+    const struct planar_line *l = &e->planar.line[k];
     double part = h;
     for (size_t i = 0; i < NODES; i++) {
-        while (size_at(e, k, node[i] * part) > most) {
+        while (hypot(tribo_planar_series_value(l->xn, e->order, node[i] * part),
+                     tribo_planar_series_value(l->xt, e->order, node[i] * part)) > FASTER * l->xn[0]) {
             part *= 0.5;
         }
     }
     return part;
 }
 
-/* Error of a step, between nodes, in units of that allowed; HUGE_VAL if the contact does not slide along u. */
+/* Error of a step, between nodes, in units of that allowed; HUGE_VAL if the contact does not slide along u. That of directions is
+ * the last power between nodes. */
 static double find_defect(const struct event *e, size_t k, double h, double error)
 {
-    double most = find_off(e, k, h) / allowed(e, k, h, error);
+    const struct planar_line *l = &e->planar.line[k];
+    double most = 2.0 * pow(0.25 * h, NODES - 1) * hypot(l->un[NODES - 1], l->ut[NODES - 1]) / allowed(e, k, h, error);
     for (size_t i = 0; i < NODES; i++) {
         most = greater(most, find_stray(e, k, h, 0.5 * h * (node[i] + (i ? node[i - 1] : 0.0)), error));
     }
     return is_with(e, k, h) ? most : HUGE_VAL;
-}
-
-/* Factor of the length of a step with this defect, with some reserve. */
-static double change(double defect)
-{
-    return lesser(greater(0.8 * pow(defect, -1.0 / NODES), SHRINKS), GROWS);
-}
-
-/* Largest stray at nodes, which Newton's method leaves. */
-static double stray_at_nodes(const struct event *e, size_t slides, double h, double error)
-{
-    double most = 0.0;
-    for (size_t j = 0; j < slides * NODES; j++) {
-        most = greater(most, find_stray(e, e->creep.slides[j / NODES], h, node[j % NODES] * h, error));
-    }
-    return most;
 }
 
 static int find_angles(struct event *e, size_t slides, double h, double error, int *found)
@@ -441,7 +402,11 @@ static int find_angles(struct event *e, size_t slides, double h, double error, i
             return status;
         }
         const double step = improve(e, slides, h);
-        *found = step <= ENOUGH * most && stray_at_nodes(e, slides, h, error) <= STRAY_ENOUGH;
+        double stray = 0.0;
+        for (size_t j = 0; j < slides * NODES; j++) {
+            stray = greater(stray, find_stray(e, c->slides[j / NODES], h, node[j % NODES] * h, error));
+        }
+        *found = step <= ENOUGH * most && stray <= STRAY_ENOUGH;
         if (*found || !(step < before)) {
             return TRIBO_OK;
         }
@@ -493,7 +458,7 @@ int tribo_creep_expand(struct event *e, double t, const double *y, double h, dou
         }
         const int stays = stray > 1.0 && stray > LESS_STRAY * step->stray;
         step->good = defect <= 1.0 && slow == h;
-        step->next = stays ? 0.0 : slow < h ? slow : h * change(defect);
+        step->next = stays ? 0.0 : slow < h ? slow : h * lesser(greater(0.8 * pow(defect, -1.0 / NODES), SHRINKS), GROWS);
         step->stray = stray;
     }
     return status;
