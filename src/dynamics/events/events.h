@@ -60,7 +60,7 @@ int tribo_events_method(tribo_driver *drv, double *t, double t1, double *y, int 
 /* The find_periodic of methods that have an open. */
 int tribo_events_find_periodic(tribo_driver *drv, double t, double period, double *y);
 
-/* guards.c: what guards of contact i are made of by a motion. */
+/* guards.c, for begin of a motion, which sets search.guards = 0 first: what guards of contact i are made of. */
 struct watch {
     void *output;    /* the motion's, velocity or force of the contact */
     double size;     /* bound of |output| */
@@ -68,12 +68,6 @@ struct watch {
     double least;    /* lower bound of the limit */
     int varies;      /* 1: the motion adds a part */
 };
-
-/* For begin. Forgets all guards. */
-void tribo_events_clear_guards(struct events *e);
-
-/* Adds a guard of any kind, all of it set. */
-void tribo_events_guard(struct events *e, const struct guard *guard);
 
 /* Adds the guards of contact i by its slip: that its velocity keeps its sign; that its force, both ways, keeps below its limit,
  * unless size says so; that a contact at rest which does not hold keeps to its base, both ways. */

@@ -5,16 +5,6 @@
 
 #include <math.h>
 
-void tribo_events_clear_guards(struct events *e)
-{
-    e->search.guards = 0;
-}
-
-void tribo_events_guard(struct events *e, const struct guard *guard)
-{
-    e->search.guard[e->search.guards++] = *guard;
-}
-
 /* offset + side w->output + times the part of the limit that the motion adds */
 static void append(struct events *e, size_t i, int kind, double side, double times, double offset, double allowance,
                    const struct watch *w)

@@ -176,7 +176,7 @@ static int method_exact_begin(void *own, double t, const double *y, double *reac
     if (!tribo_modal_motion_start(&x->motion, h, t, y, reach)) {
         return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu term%s", h->terms, plural(h->terms));
     }
-    tribo_events_clear_guards(&x->events);
+    x->events.search.guards = 0;
     for (size_t k = 0; k < h->outputs; k++) {
         struct course *c = &x->motion.course[k];
         const struct stick_slip *m = &x->events.stick_slip;

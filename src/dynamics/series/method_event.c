@@ -20,17 +20,6 @@
 /* Error of a step without tolerances, in parts of how far values move within the time of the fastest motion. */
 #define USUAL 1e-12
 
-/* Bound, by its largest term, of a series [order + 1][n] on a step of this length. */
-static double size_on_step(const struct event *e, const double *series, size_t n, double length)
-{
-    double size = 0.0, power = 1.0;
-    for (size_t k = 0; k <= e->order; k++) {
-        size = greater(size, power * tribo_largest(series + k * n, n));
-        power = lesser(power * length, DBL_MAX);
-    }
-    return size;
-}
-
 static double fastest(const struct event *e)
 {
     return e->fastest + e->events.stick_slip.breakaway.steepest;
@@ -43,12 +32,18 @@ static double tolerated(const struct event *e, double size, double moves)
     return drv->abstol > 0.0 ? drv->abstol + drv->reltol * size : greater(USUAL * moves, DBL_MIN);
 }
 
-/* Error allowed in a series [order + 1][n] on a step of at most `most`; not below the rounding of its first term. */
+/* Error allowed in a series [order + 1][n] on a step of at most `most`; not below the rounding of its first term. Of a sharp motion
+ * relative to the largest term on that step. */
 static double wanted(const struct event *e, const double *series, size_t n, double moves, double most)
 {
-    const double size = tribo_largest(series, n), error = tolerated(e, size, moves);
-    const double sharp = e->events.sharp && most < HUGE_VAL ? SHARP * size_on_step(e, series, n, most) : 0.0;
-    return greater(sharp > 0.0 ? lesser(error, sharp) : error, DBL_EPSILON * size);
+    const double size = tribo_largest(series, n);
+    double error = tolerated(e, size, moves), largest = 0.0, power = 1.0;
+    for (size_t k = 0; k <= e->order && e->events.sharp && most < HUGE_VAL; k++) {
+        largest = greater(largest, power * tribo_largest(series + k * n, n));
+        power = lesser(power * most, DBL_MAX);
+    }
+    error = largest > 0.0 ? lesser(error, SHARP * largest) : error;
+    return greater(error, DBL_EPSILON * size);
 }
 
 /* Sets moves[] of displacements, velocities and energy within the time of the fastest motion, by the velocities in y and the
@@ -181,7 +176,7 @@ static void set_planar_guards(struct event *e)
         g.offset = moves ? -SLOWER * SLOWER * square[0] : 0.5 * limit;
         g.allowance = moves ? 0.0 : greater(m->noise.allowance[p->at], m->noise.allowance[p->at + 1]);
         if (moves || curve->size >= 0.5 * limit) {
-            tribo_events_guard(&e->events, &g);
+            e->events.search.guard[e->events.search.guards++] = g;
         }
     }
 }
@@ -209,7 +204,7 @@ static int set_guards(struct event *e)
     const size_t c = m->constant.contacts;
     const int varies = e->terms > 1;
     double all = 0.0;
-    tribo_events_clear_guards(&e->events);
+    e->events.search.guards = 0;
     set_curves(e->curve, c, e->order + 1, c, e->watch, e->length);
     set_curves(e->limit_curve, c, e->terms, c, e->limit, e->length);
     if (m->plane) {
@@ -420,43 +415,28 @@ static int try_creep(struct event *e, double t, const double *y, double h, doubl
     return TRIBO_OK;
 }
 
-/* Length of the first step to try, in (least, most]; 0: none, until contacts have crept for `wait` steps, or such steps just
- * became shorter than least. */
-static double first_trial(struct event *e, const double *y, double least, double most, double error)
-{
-    struct creep *c = &e->creep;
-    if (c->length > least) {
-        return lesser(c->length, most);
-    }
-    c->wait = c->length > 0.0 ? 0 : c->wait;
-    c->length = 0.0;
-    if (c->waited++ < c->wait) {
-        return 0.0;
-    }
-    const double first = lesser(FIRST * most, tribo_creep_settled(e, y, error));
-    return first > least ? first : 0.0;
-}
-
-/* Tries steps by collocation if contacts creep; *length = 0 if none is good. most: longest step. */
+/* Tries steps by collocation if contacts creep, after `wait` other steps, but at once where such steps just became shorter than
+ * least; *length = 0 if none is good. most: longest step. */
 static int creep(struct event *e, double t, const double *y, double most, double *length)
 {
     struct creep *c = &e->creep;
-    const double least = tribo_creep_least(e, y);
+    const double least = tribo_creep_least(e, y), last = c->length;
     const size_t before = e->sys->evaluations;
-    c->wait = e->events.anew ? PATIENCE : c->wait;
+    c->wait = e->events.anew ? PATIENCE : last > 0.0 && !(last > least) ? 0 : c->wait;
     if (e->events.anew || !(least < most)) {
         c->length = 0.0;
         c->waited = 0;
     }
     e->events.anew = 0;
     *length = 0.0;
-    if (!(least < most)) {
+    if (!(least < most) || (!(c->length > least) && c->waited++ < c->wait)) {
         return TRIBO_OK;
     }
     const double speed = tribo_largest(y + e->sys->ndof, e->sys->ndof);
     const double error = greater(tolerated(e, speed, e->moves[1]), DBL_EPSILON * speed);
-    const double last = c->length, first = first_trial(e, y, least, most, error);
-    if (first == 0.0) {
+    const double first = lesser(most, c->length > least ? c->length : lesser(FIRST * most, tribo_creep_settled(e, y, error)));
+    if (!(first > least)) {
+        c->length = 0.0;
         return TRIBO_OK;
     }
     const int status = try_creep(e, t, y, first, least, error, length);

@@ -126,13 +126,6 @@ double tribo_planar_series_first_stop(const struct stick_slip *m, const tribo_sy
     return least;
 }
 
-/* The order for which coefficients stay within MOST_DIGITS, at most order: their unit of time is that of the first stop. */
-static size_t find_order(size_t order, const struct stick_slip *m, const tribo_system *sys, const double *y)
-{
-    const double most = MOST_DIGITS / greater(-log10(tribo_planar_series_first_stop(m, sys, y)), 1.0);
-    return (size_t)greater(lesser((double)order, most), LEAST_ORDER);
-}
-
 int tribo_planar_series_begin(struct planar_series *s, size_t order, struct stick_slip *m, const tribo_system *sys,
                               const double *y, double *a, double *f)
 {
@@ -145,7 +138,9 @@ int tribo_planar_series_begin(struct planar_series *s, size_t order, struct stic
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for series of %zu contact%s in a plane", plane->count,
                                  plural(plane->count));
     }
-    s->order = s->given ? order : find_order(order, m, sys, y);
+    /* coefficients stay within MOST_DIGITS: their unit of time is that of the first stop */
+    const double most = MOST_DIGITS / greater(-log10(tribo_planar_series_first_stop(m, sys, y)), 1.0);
+    s->order = s->given ? order : (size_t)greater(lesser((double)order, most), LEAST_ORDER);
     s->begins = 0;
     for (size_t k = 0; k < plane->count; k++) {
         const struct planar_contact *p = &plane->contact[k];
