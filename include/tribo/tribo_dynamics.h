@@ -418,7 +418,8 @@ TRIBO_API int tribo_driver_get_freedom(const tribo_driver *drv, size_t *freedom)
  * energy               [ncontact] out   energy dissipated in a period
  * share                [ncontact] out   part of the period, 0 to 1, in which the contact is at rest
  * Return TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE (c), TRIBO_ERR_STATE (no motion found, or the system changed), TRIBO_ERR_MEMORY,
- * TRIBO_ERR_UNSUPPORTED (extremes, harmonic by exact: a load in resonance with a mode of almost no damping). */
+ * TRIBO_ERR_STEP (extremes: a motion too fast to be followed), TRIBO_ERR_UNSUPPORTED (extremes, harmonic by exact: a load in
+ * resonance with a mode of almost no damping). */
 TRIBO_API int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most, double *at_least,
                                            double *at_most);
 TRIBO_API int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, double *cosine, double *sine);

@@ -48,29 +48,32 @@ void tribo_signal_add(struct signal *s, double cr, double ci, double lr, double 
 
 void tribo_signal_at(const struct signal *s, double at, double *to)
 {
-    double v0 = 0.0, v1 = 0.0, v2 = 0.0;
+    double v0 = 0.0, v1 = 0.0, v2 = 0.0, v3 = 0.0;
     for (size_t j = s->degree + 1; j-- > 0;) {
+        v3 = v3 * at + v2;
         v2 = v2 * at + v1;
         v1 = v1 * at + v0;
         v0 = v0 * at + s->a[j];
     }
-    v2 *= 2.0;
-    for (size_t p = 0; p < s->terms; p++) {
-        const double e = exp(s->lr[p] * at), c = e * cos(s->li[p] * at), d = e * sin(s->li[p] * at);
-        const double re = s->cr[p] * c - s->ci[p] * d, im = s->cr[p] * d + s->ci[p] * c;
-        const double re1 = s->lr[p] * re - s->li[p] * im, im1 = s->lr[p] * im + s->li[p] * re;
-        v0 += re;
-        v1 += re1;
-        v2 += s->lr[p] * re1 - s->li[p] * im1;
-    }
     to[0] = v0;
     to[1] = v1;
-    to[2] = v2;
+    to[2] = 2.0 * v2;
+    to[3] = 6.0 * v3;
+    for (size_t p = 0; p < s->terms; p++) {
+        const double e = exp(s->lr[p] * at), c = e * cos(s->li[p] * at), d = e * sin(s->li[p] * at);
+        double re = s->cr[p] * c - s->ci[p] * d, im = s->cr[p] * d + s->ci[p] * c;
+        for (int k = 0; k < 4; k++) {
+            const double next = s->lr[p] * re - s->li[p] * im;
+            to[k] += re;
+            im = s->lr[p] * im + s->li[p] * re;
+            re = next;
+        }
+    }
 }
 
 /* -------------------------------------------------------------------------------------------------------------- extremes */
 
-/* side times a signal, from a time on: must not fall below zero. */
+/* side times the slope of a signal, from a time on: must not fall below zero. */
 struct course {
     const struct signal *s;
     double from, side;
@@ -80,15 +83,10 @@ struct course {
 static void look_at_slope(void *own, double tau, size_t guards, struct guard *const *guard)
 {
     const struct course *c = own;
-    double v[3];
+    double v[4];
     (void)guards;
     tribo_signal_at(c->s, c->from + tau, v);
-    guard[0]->middle = (struct sample){c->side * v[0], c->side * v[1], c->side * v[2]};
-}
-
-static double sixth(double x)
-{
-    return x * x * x * x * x * x;
+    guard[0]->middle = (struct sample){c->side * v[1], c->side * v[2], c->side * v[3]};
 }
 
 static double bound(void *own, double tau)
@@ -96,42 +94,27 @@ static double bound(void *own, double tau)
     const struct course *c = own;
     const struct signal *s = c->s;
     struct guard *g = c->search->guard;
-    double power = 1.0;
+    double power = 1.0; /* tau^(j - 1) */
     (void)tau;
     g->size = g->bend = 0.0;
     for (size_t p = 0; p < s->terms; p++) {
-        const double size = hypot(s->cr[p], s->ci[p]) * exp(s->lr[p] * (s->lr[p] > 0.0 ? s->tau : c->from));
+        const double rate = hypot(s->lr[p], s->li[p]);
+        const double size = hypot(s->cr[p], s->ci[p]) * rate * exp(s->lr[p] * (s->lr[p] > 0.0 ? s->tau : c->from));
         g->size += size;
-        g->bend += size * sixth(hypot(s->lr[p], s->li[p]));
+        g->bend += size * pow(rate, 6.0);
     }
-    for (size_t j = 0; j <= s->degree; j++) {
-        const double size = fabs(s->a[j]) * power, k = (double)j;
+    for (size_t j = 1; j <= s->degree; j++) {
+        const double size = fabs((double)j * s->a[j]) * power, k = (double)j - 1.0;
         g->size += size;
-        g->bend += j < 6 ? 0.0 : size * k * (k - 1) * (k - 2) * (k - 3) * (k - 4) * (k - 5) / sixth(s->tau);
+        g->bend += j < 7 ? 0.0 : size * k * (k - 1) * (k - 2) * (k - 3) * (k - 4) * (k - 5) / pow(s->tau, 6.0);
         power *= s->tau;
     }
     return HUGE_VAL;
 }
 
-static int differentiate(const struct signal *s, struct signal *to)
-{
-    if (!tribo_signal_reserve(to, s->terms, s->degree)) {
-        return 0;
-    }
-    to->tau = s->tau;
-    for (size_t j = 1; j <= s->degree; j++) {
-        to->a[j - 1] = (double)j * s->a[j];
-    }
-    for (size_t p = 0; p < s->terms; p++) {
-        tribo_signal_add(to, s->lr[p] * s->cr[p] - s->li[p] * s->ci[p], s->lr[p] * s->ci[p] + s->li[p] * s->cr[p], s->lr[p],
-                         s->li[p]);
-    }
-    return 1;
-}
-
 static void look(const struct signal *s, double at, double t, struct extremes *e)
 {
-    double v[3];
+    double v[4];
     tribo_signal_at(s, at, v);
     if (v[0] < e->least) {
         e->least = v[0];
@@ -144,23 +127,20 @@ static void look(const struct signal *s, double at, double t, struct extremes *e
 }
 
 /* Goes from one turning point to the next, the first zero of the slope. */
-int tribo_signal_extremes(const struct signal *s, struct signal *slope, double t, struct extremes *e)
+int tribo_signal_extremes(const struct signal *s, double t, struct extremes *e)
 {
-    if (!differentiate(s, slope)) {
-        return 0;
-    }
     struct guard guard = {0}, *watched = &guard;
     static const struct motion motion = {.look = look_at_slope, .bound = bound};
     struct first_zero search = {.guards = 1, .guard = &guard, .watched = &watched, .motion = &motion};
-    struct course course = {.s = slope, .search = &search};
+    struct course course = {.s = s, .search = &search};
     const struct guard *met = &guard;
-    double v[3], when = 0.0;
+    double v[4], when = 0.0;
     search.own = &course;
     search.resolution = 1e-16 * s->tau;
     look(s, 0.0, t, e);
     look(s, s->tau, t, e);
-    tribo_signal_at(slope, 0.0, v);
-    course.side = v[0] > 0.0 || (v[0] == 0.0 && v[1] > 0.0) ? 1.0 : -1.0;
+    tribo_signal_at(s, 0.0, v);
+    course.side = v[1] > 0.0 || (v[1] == 0.0 && v[2] > 0.0) ? 1.0 : -1.0;
     for (int k = 0; met && k < MOST_TURNS && course.from < s->tau; k++) {
         guard = (struct guard){0};
         if (!tribo_first_zero(&search, s->tau - course.from, &met, &when)) {

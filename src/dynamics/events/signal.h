@@ -18,7 +18,7 @@ void tribo_signal_free(struct signal *s);
 
 void tribo_signal_add(struct signal *s, double cr, double ci, double lr, double li);
 
-/* to[3] = the value and its first two derivatives. */
+/* to[4] = the value and its first three derivatives. */
 void tribo_signal_at(const struct signal *s, double at, double *to);
 
 /* Least and largest value of a signal in pieces, and their times. */
@@ -26,8 +26,8 @@ struct extremes {
     double least, most, at_least, at_most;
 };
 
-/* Updates *e by a piece that begins at t. slope: workspace, freed by the caller. Returns 0 if out of memory. */
-int tribo_signal_extremes(const struct signal *s, struct signal *slope, double t, struct extremes *e);
+/* Updates *e by a piece that begins at t. Returns 0 if the piece is too fast to be followed. */
+int tribo_signal_extremes(const struct signal *s, double t, struct extremes *e);
 
 /* *re + i *im += integral of the signal times e^{-i omega s} over [0, tau]. */
 void tribo_signal_integrate(const struct signal *s, double omega, double *re, double *im);

@@ -73,7 +73,7 @@ int tribo_modal_motion_signal(const struct modal_motion *x, const double *c, dou
     const struct compliance *g = &x->sys->compliance;
     const size_t n = x->sys->ndof, m = h->shapes, f = tribo_system_energy(x->sys);
     const size_t resonances = h->any_resonant ? 2 * h->exponents * h->harmonics : 0;
-    double *place = calloc(3 * m + 1, sizeof *place), *speed = place + m, *rate = speed + m, v[3];
+    double *place = calloc(3 * m + 1, sizeof *place), *speed = place + m, *rate = speed + m, v[4];
     if (!place || !tribo_signal_reserve(to, h->exponents + h->harmonics + resonances, 2)) {
         free(place);
         return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu exponent%s", h->exponents,

@@ -10,9 +10,9 @@ struct replay {
     struct company company;
     struct period_map *map;
     int (*phase)(struct replay *r, double tau);
-    const double *c;             /* coefficients of q, q' (and f, f'), or NULL */
-    struct signal signal, slope; /* the combination in the phase; workspace */
-    double elapsed;              /* time since the start of the period */
+    const double *c;      /* coefficients of q, q' (and f, f'), or NULL */
+    struct signal signal; /* the combination in the phase */
+    double elapsed;       /* time since the start of the period */
     struct extremes extremes;
     double omega, re, im; /* integral of signal e^{-i omega t} */
     double *sum;          /* [ncontact] sum over the phases */
@@ -55,7 +55,6 @@ static int replay(tribo_driver *drv, struct replay *r)
     memcpy(s->map.x, s->best->y, s->map.n * sizeof *s->map.x);
     const int status = tribo_period_map_replay(&s->map, s->best->y, &r->company);
     tribo_signal_free(&r->signal);
-    tribo_signal_free(&r->slope);
     return status && s->map.drv != drv ? tribo_driver_fail(drv, status, "%s", s->map.drv->message) : status;
 }
 
@@ -81,9 +80,9 @@ static int take_combination(tribo_driver *drv, struct replay *r, const double *c
 static int find_extremes(struct replay *r, double tau)
 {
     (void)tau;
-    return tribo_signal_extremes(&r->signal, &r->slope, r->map->t + r->elapsed, &r->extremes)
+    return tribo_signal_extremes(&r->signal, r->map->t + r->elapsed, &r->extremes)
                ? TRIBO_OK
-               : tribo_system_fail(r->map->sys, TRIBO_ERR_MEMORY, "out of memory for a phase of the period");
+               : tribo_system_fail(r->map->sys, TRIBO_ERR_STEP, "a phase of the period is too fast to be followed");
 }
 
 int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most, double *at_least,
