@@ -15,23 +15,6 @@ enum { ROOTS = 3 };
 /* A step of Newton's method below this leaves an error of its square. */
 #define CLOSE 1e-8
 
-/* Bernstein coefficients c [7], degree 6, of a lower bound of all functions with samples a, b and sixth derivative up to bend:
- * they differ from the quintic through both samples by at most bend h^6/6! s^3 (1-s)^3, a multiple of the middle element 20
- * s^3 (1-s)^3 of the basis. */
-static void bernstein(const struct sample *a, const struct sample *b, double h, double bend, double *c)
-{
-    const double h_3 = h * h * h, doubt = bend * h_3 * h_3 * (1 / 14400.);
-    const double p0 = a->g, p1 = p0 + 0.2 * h * a->d, p2 = p1 + 0.2 * h * (a->d + 0.25 * h * a->e);
-    const double p5 = b->g, p4 = p5 - 0.2 * h * b->d, p3 = p4 - 0.2 * h * (b->d - 0.25 * h * b->e);
-    c[0] = p0;
-    c[1] = (p0 + 5.0 * p1) * (1 / 6.);
-    c[2] = (p1 + 2.0 * p2) * (1 / 3.);
-    c[3] = 0.5 * (p2 + p3) - doubt;
-    c[4] = (2.0 * p3 + p4) * (1 / 3.);
-    c[5] = (5.0 * p4 + p5) * (1 / 6.);
-    c[6] = p5;
-}
-
 /* Splits at s: from = the coefficients before s, c = those after s. */
 static void split_bernstein(double *c, double s, double *from)
 {
@@ -57,10 +40,22 @@ static double least(double *c, double enough, int halvings)
     return first >= enough ? lesser(first, least(c, enough, halvings - 1)) : first;
 }
 
+/* By Bernstein coefficients c, degree 6, of a lower bound of all functions with samples a, b and sixth derivative up to bend: they
+ * differ from the quintic through both samples by at most bend h^6/6! s^3 (1-s)^3, a multiple of the middle element 20 s^3
+ * (1-s)^3 of the basis. */
 double tribo_quintic_least(const struct sample *a, const struct sample *b, double h, double bend, double until, double enough)
 {
-    double c[COEFFICIENTS], from[COEFFICIENTS];
-    bernstein(a, b, h, bend, c);
+    const double h_3 = h * h * h, doubt = bend * h_3 * h_3 * (1 / 14400.);
+    const double p0 = a->g, p1 = p0 + 0.2 * h * a->d, p2 = p1 + 0.2 * h * (a->d + 0.25 * h * a->e);
+    const double p5 = b->g, p4 = p5 - 0.2 * h * b->d, p3 = p4 - 0.2 * h * (b->d - 0.25 * h * b->e);
+    double from[COEFFICIENTS];
+    double c[COEFFICIENTS] = {p0,
+                              (p0 + 5.0 * p1) * (1 / 6.),
+                              (p1 + 2.0 * p2) * (1 / 3.),
+                              0.5 * (p2 + p3) - doubt,
+                              (2.0 * p3 + p4) * (1 / 3.),
+                              (5.0 * p4 + p5) * (1 / 6.),
+                              p5};
     if (until < h) {
         split_bernstein(c, until / h, from);
     }

@@ -5,24 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Sets the coefficients of limits at the set time. A coefficient of a limit that falls with the speed needs that of the velocity
- * first. */
-static void expand_limits(struct event *e)
-{
-    const tribo_system *sys = e->sys;
-    const size_t c = sys->ncontact;
-    const int falls = e->events.stick_slip.breakaway.falls;
-    e->slide = falls ? e->fall : e->limit;
-    e->slide_terms = falls || e->events.stick_slip.plane ? e->order + 1 : e->terms;
-    tribo_system_limits(sys, e->limit, e->limit + c);
-    double scale = 1.0; /* 1/k! */
-    for (size_t k = 2; k < e->slide_terms; k++) {
-        scale /= (double)k;
-        memset(e->limit + k * c, 0, c * sizeof *e->limit);
-        tribo_system_loads(sys, DRIVES_LIMIT, (int)k, scale, e->limit + k * c);
-    }
-}
-
 /* Sets the k-th coefficients of limits of sliding contacts that fall with the speed. */
 static void expand_falling(struct event *e, size_t k)
 {
@@ -144,7 +126,7 @@ static int expand_forces(struct event *e, size_t k, double scale)
 int tribo_event_start(struct event *e, double t, const double *y)
 {
     tribo_system *sys = e->sys;
-    const size_t n = sys->ndof;
+    const size_t n = sys->ndof, c = sys->ncontact;
     struct stick_slip *m = &e->events.stick_slip;
     memcpy(e->q, y, n * sizeof *y);
     memcpy(e->u, y + n, n * sizeof *y);
@@ -154,7 +136,17 @@ int tribo_event_start(struct event *e, double t, const double *y)
         m->plane ? tribo_planar_series_begin(&e->planar, e->most_order, m, sys, y, e->room.a, e->room.given) : TRIBO_OK;
     e->order = m->plane ? e->planar.order : e->most_order;
     tribo_system_set_time(sys, t);
-    expand_limits(e);
+    /* limits; a coefficient of a limit that falls with the speed needs that of the velocity first */
+    const int falls = m->breakaway.falls;
+    double scale = 1.0; /* 1/k! */
+    e->slide = falls ? e->fall : e->limit;
+    e->slide_terms = falls || m->plane ? e->order + 1 : e->terms;
+    tribo_system_limits(sys, e->limit, e->limit + c);
+    for (size_t k = 2; k < e->slide_terms; k++) {
+        scale /= (double)k;
+        memset(e->limit + k * c, 0, c * sizeof *e->limit);
+        tribo_system_loads(sys, DRIVES_LIMIT, (int)k, scale, e->limit + k * c);
+    }
     return status;
 }
 

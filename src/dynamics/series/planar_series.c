@@ -225,17 +225,6 @@ int tribo_planar_series_forces(struct planar_series *s, const struct stick_slip 
     return TRIBO_OK;
 }
 
-/* Right-hand side of tau_k without accelerations; *shift = D_k. */
-static double asked(const struct planar_line *l, int begins, size_t k, double *shift)
-{
-    const double times = (double)(k + 1);
-    *shift = begins == BY_ACCELERATION ? times * l->xn[0] : 0.0;
-    if (begins == BY_ACCELERATION) {
-        return times * before(l, k);
-    }
-    return k > 1 ? times * (l->ut[k - 1] * l->xn[0] + before(l, k - 1)) : 0.0;
-}
-
 int tribo_planar_series_finish(struct planar_series *s, const struct stick_slip *m, const tribo_system *sys, size_t k,
                                const double *base, double *acc, double *held)
 {
@@ -252,9 +241,13 @@ int tribo_planar_series_finish(struct planar_series *s, const struct stick_slip 
     for (size_t q = 0; q < n; q++) {
         const struct planar_contact *p = &m->plane->contact[s->begin[q]];
         const struct planar_line *l = &s->line[s->begin[q]];
-        double shift;
-        s->tau[q] = planar_series_along(p, l, a) - asked(l, p->begins, k, &shift);
-        s->lu[q * n + q] += shift;
+        const double times = (double)(k + 1);
+        double asked = k > 1 ? l->ut[k - 1] * l->xn[0] + before(l, k - 1) : 0.0;
+        if (p->begins == BY_ACCELERATION) {
+            asked = before(l, k);
+            s->lu[q * n + q] += times * l->xn[0];
+        }
+        s->tau[q] = planar_series_along(p, l, a) - times * asked;
     }
     if (!(tribo_lu_create(s->lu, n, s->pivot) > 0.0)) {
         return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
