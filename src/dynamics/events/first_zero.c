@@ -156,16 +156,19 @@ static int positive(struct guard *g, const struct sample *b, double h, double un
     return is_clear(g, tribo_quintic_least(&g->left, b, h, g->bend, until, -noise(g)));
 }
 
-/* Drops the allowance of a guard if the quintic proves that it has left zero in the middle between left and right samples, h
- * apart. */
-static void drop_allowance(struct guard *g, double h)
+/* 1 if the quintic proves that a guard, which began within its allowance of zero, is above zero in the middle between left and
+ * right samples, h apart; then *at = its zero without the allowance. */
+static int leaves_zero(const struct guard *g, double h, double *at)
 {
     const double middle = tribo_quintic_middle(&g->left, &g->right, h) - tribo_quintic_error(0.5 * h, h, g->bend);
-    if (middle > 4.0 * g->allowance) {
-        g->left.g = greater(g->left.g - g->allowance, 0.0);
-        g->right.g -= g->allowance;
-        g->allowance = 0.0;
+    struct sample left = g->left, right = g->right;
+    if (!(middle > 4.0 * g->allowance)) {
+        return 0;
     }
+    left.g = greater(left.g - g->allowance, 0.0);
+    right.g -= g->allowance;
+    *at = tribo_quintic_zero(&left, &right, h);
+    return 1;
 }
 
 /* Watches only the doubtful guards of the interval between left and right samples, h apart. */
@@ -174,11 +177,7 @@ static void watch_doubtful(struct first_zero *s, double h)
     size_t left = 0;
     for (size_t k = 0; k < s->watching; k++) {
         struct guard *g = s->watched[k];
-        const int falls = !(g->right.g > noise(g));
-        if (falls && g->allowance > 0.0) {
-            drop_allowance(g, h);
-        }
-        if (falls || !positive(g, &g->right, h, h)) {
+        if (!(g->right.g > noise(g)) || !positive(g, &g->right, h, h)) {
             s->watched[k] = s->watched[left];
             s->watched[left++] = g;
         }
@@ -187,11 +186,11 @@ static void watch_doubtful(struct first_zero *s, double h)
 }
 
 /* The watched guard not positive at the right end, h after a, whose quintic is the first to be zero; *when = its zero after a. */
-static struct guard *first_to_fall(const struct first_zero *s, double h, double *when)
+static const struct guard *first_to_fall(const struct first_zero *s, double h, double *when)
 {
-    struct guard *first = NULL;
+    const struct guard *first = NULL;
     for (size_t k = 0; k < s->watching; k++) {
-        struct guard *g = s->watched[k];
+        const struct guard *g = s->watched[k];
         if (g->right.g <= noise(g)) {
             const double guess = g->right.g >= 0.0 ? h : tribo_quintic_zero(&g->left, &g->right, h);
             if (!first || guess < *when) {
@@ -251,7 +250,7 @@ static const struct guard *search_interval(struct first_zero *s, double b, doubl
         const struct guard *falls = first_to_fall(s, h, &at);
         const int fine = falls && (at == h || tribo_quintic_error(at, h, falls->bend) <= FINE * noise(falls));
         const int begins = falls && falls->allowance > 0.0 && s->a == begun;
-        if (fine && !begins && all_positive(s, 0, at, h)) {
+        if (fine && all_positive(s, 0, at, h) && (!begins || leaves_zero(falls, h, &at))) {
             *when = s->a + at;
             return falls;
         }
