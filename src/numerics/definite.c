@@ -23,7 +23,7 @@ static size_t choose_set(struct definite *d, const signed char *skip)
     size_t m = 0;
     int same = 1, info = 0;
     for (size_t i = 0; i < d->n; i++) {
-        if (d->matrix[i * d->n + i] > 0.0 && (!skip || skip[i] == 0)) {
+        if (d->own[i] > 0.0 && (!skip || skip[i] == 0)) {
             same &= m < d->held && d->index[m] == i;
             d->index[m++] = i;
         }
@@ -51,6 +51,15 @@ static size_t choose_set(struct definite *d, const signed char *skip)
 
 void tribo_definite_solve(struct definite *d, const signed char *skip, size_t columns, double *x)
 {
+    for (size_t i = 0; !d->matrix && i < d->n; i++) {
+        const int in = d->own[i] > 0.0 && (!skip || skip[i] == 0);
+        for (size_t k = i * columns; k < (i + 1) * columns; k++) {
+            x[k] = in ? x[k] / d->own[i] : 0.0;
+        }
+    }
+    if (!d->matrix) {
+        return;
+    }
     choose_set(d, skip);
     const struct cholesky factor = {.n = d->held, .factor = d->factor};
     for (size_t k = 0; k < d->held; k++) {
@@ -68,15 +77,17 @@ void tribo_definite_solve(struct definite *d, const signed char *skip, size_t co
     }
 }
 
-int tribo_definite_create(struct definite *d, size_t n, const double *a, size_t *where)
+int tribo_definite_create(struct definite *d, size_t n, const double *own, const double *a, size_t *where)
 {
+    const size_t square = a ? n * n : 0;
     struct layout l = {0};
     *d = (struct definite){.n = n};
     do {
         d->memory = tribo_layout_array(&l, 0, 1);
-        d->matrix = tribo_layout_array(&l, n * n, sizeof *d->matrix);
-        d->inverse = tribo_layout_array(&l, n * n, sizeof *d->inverse);
-        d->factor = tribo_layout_array(&l, n * n, sizeof *d->factor);
+        d->own = tribo_layout_array(&l, n, sizeof *d->own);
+        d->matrix = tribo_layout_array(&l, square, sizeof *d->matrix);
+        d->inverse = tribo_layout_array(&l, square, sizeof *d->inverse);
+        d->factor = tribo_layout_array(&l, square, sizeof *d->factor);
         d->x = tribo_layout_array(&l, n, sizeof *d->x);
         d->q = tribo_layout_array(&l, n, sizeof *d->q);
         d->lo = tribo_layout_array(&l, n, sizeof *d->lo);
@@ -85,9 +96,14 @@ int tribo_definite_create(struct definite *d, size_t n, const double *a, size_t 
         d->index = tribo_layout_array(&l, n, sizeof *d->index);
         d->at = tribo_layout_array(&l, n, sizeof *d->at);
         d->to = tribo_layout_array(&l, n, sizeof *d->to);
-    } while (tribo_lapack_takes(n) && !l.memory && tribo_layout_zeros(&l));
+    } while ((!a || tribo_lapack_takes(n)) && !l.memory && tribo_layout_zeros(&l));
     if (!l.memory) {
         return TRIBO_ERR_MEMORY;
+    }
+    memcpy(d->own, own, n * sizeof *own);
+    if (!a) {
+        d->matrix = NULL;
+        return TRIBO_OK;
     }
     memcpy(d->matrix, a, n * n * sizeof *a);
     const size_t at = choose_set(d, NULL);
@@ -106,6 +122,30 @@ void tribo_definite_free(struct definite *d)
 {
     free(d->memory);
     *d = (struct definite){0};
+}
+
+void tribo_definite_multiply_add(const struct definite *d, size_t columns, const double *x, double *y)
+{
+    if (d->matrix) {
+        tribo_multiply_add(d->n, d->n, columns, 1.0, d->matrix, x, y);
+        return;
+    }
+    for (size_t i = 0; i < d->n; i++) {
+        if (d->own[i] > 0.0) {
+            tribo_add(y + i * columns, d->own[i], x + i * columns, columns);
+        }
+    }
+}
+
+void tribo_definite_solve_sizes(struct definite *d, double *x)
+{
+    memcpy(d->x, x, d->n * sizeof *x);
+    for (size_t i = 0; i < d->n; i++) {
+        x[i] = !d->matrix && d->own[i] > 0.0 ? d->x[i] / d->own[i] : 0.0;
+        for (size_t k = 0; d->matrix && k < d->n; k++) {
+            x[i] += fabs(d->inverse[i * d->n + k]) * d->x[k];
+        }
+    }
 }
 
 /* Returns the place of row i for f as it is: 0 inside the box, -1 at lo, 1 at hi. */
@@ -133,10 +173,13 @@ void tribo_definite_box(struct definite *d)
     const size_t n = d->n;
     double *f = d->f, *x = d->x;
     size_t fewest = n + 1, patience = PATIENCE;
+    for (size_t i = 0; !d->matrix && i < n; i++) {
+        f[i] = d->own[i] > 0.0 ? clamp(-d->q[i] / d->own[i], d->lo[i], d->hi[i]) : 0.0;
+    }
     for (size_t i = 0; i < n; i++) {
         d->at[i] = (signed char)(d->lo[i] < d->hi[i] ? 0 : -1);
     }
-    for (size_t change = 0; change < CHANGES * (n + 1); change++) {
+    for (size_t change = 0; d->matrix && change < CHANGES * (n + 1); change++) {
         size_t wrong = 0, last = 0;
         for (size_t i = 0; i < n; i++) {
             f[i] = d->at[i] < 0 ? d->lo[i] : d->at[i] > 0 ? d->hi[i] : 0.0;

@@ -1,5 +1,5 @@
-/* Elastic contacts, whose forces are part of the state. Their velocities are v + G f', v = J q' - b. With a diagonal G each
- * contact is decided alone; else f' solves the box problem min 1/2 f''G f' + v'f':
+/* Elastic contacts, whose forces are part of the state. Their velocities are v + G f', v = J q' - b; f' solves the box
+ * problem min 1/2 f''G f' + v'f':
  *
  *     inside the limit: the contact rests, and v + G f' = 0
  *     at the limit: it slides if v points against the force, and rests if v takes the force back inside
@@ -59,7 +59,7 @@ void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *
 {
     const unsigned char *elastic = m->constant.elastic;
     struct slip_state *s = &m->state;
-    struct definite *g = sys->compliance.shared;
+    struct definite *g = sys->compliance.g;
     double *v = m->work.v; /* velocities of the contacts that slide */
     if (sys->compliance.count == 0) {
         return;
@@ -68,14 +68,10 @@ void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *
     for (size_t i = 0; i < sys->ncontact; i++) {
         const enum stand stand = elastic[i] ? stand_of(m, i) : OPEN;
         v[i] = elastic[i] ? tribo_stick_slip_find_velocity(m, sys, i, y) : 0.0;
-        if (g) {
-            g->lo[i] = stand == OPEN || (stand == AT_LIMIT && against(m, i) > 0) ? 0.0 : -HUGE_VAL;
-            g->hi[i] = stand == OPEN || (stand == AT_LIMIT && against(m, i) < 0) ? 0.0 : HUGE_VAL;
-        }
+        g->lo[i] = stand == OPEN || (stand == AT_LIMIT && against(m, i) > 0) ? 0.0 : -HUGE_VAL;
+        g->hi[i] = stand == OPEN || (stand == AT_LIMIT && against(m, i) < 0) ? 0.0 : HUGE_VAL;
     }
-    if (g) {
-        tribo_compliance_share(g, v);
-    }
+    tribo_compliance_share(g, v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const enum stand stand = elastic[i] ? stand_of(m, i) : OPEN;
         const signed char direction = against(m, i);

@@ -124,7 +124,7 @@ static int find_stiffness(struct modal_build *b)
     if (!b->h->springs) {
         return 1;
     }
-    const int whole = sys->compliance.shared != NULL;
+    const int whole = sys->compliance.g->matrix != NULL;
     double *inverse = tribo_modal_scratch(b, whole ? c * c : c), *added = tribo_modal_scratch(b, n * n);
     struct matrix g = {0}, k = {0};
     for (size_t i = 0; inverse && i < c; i++) {

@@ -179,7 +179,7 @@ static int find_among(const struct model *m, size_t count, const double *x, size
     free(columns);
     free(product);
     int status = done ? tribo_cholesky_consume(&c, &mass, &where, &pivot) : TRIBO_ERR_MEMORY;
-    status = status ? status : tribo_normal_modes(&m->stiffness, m->terms, &z, &c, wanted, r->omega2, r->phi, &doubt);
+    status = status ? status : tribo_normal_modes(&m->stiffness, NULL, &z, &c, wanted, r->omega2, r->phi, &doubt);
     tribo_cholesky_free(&c);
     tribo_matrix_free(&z);
     for (size_t k = 0; !status && k < wanted; k++) {
@@ -258,7 +258,7 @@ static int find_densely(const struct model *m, struct reduced *r)
     if (status) {
         return status;
     }
-    status = tribo_normal_modes(&m->stiffness, m->terms, &whole, &mass, m->nmode, r->omega2, r->phi, &doubt);
+    status = tribo_normal_modes(&m->stiffness, NULL, &whole, &mass, m->nmode, r->omega2, r->phi, &doubt);
     tribo_cholesky_free(&mass);
     r->count = m->nmode;
     r->truncation.above = m->nmode < m->ndof ? r->omega2[m->nmode - 1] : HUGE_VAL;

@@ -9,15 +9,15 @@
 #include "tribo/tribo_dynamics.h"
 
 struct compliance {
-    size_t count;            /* number of compliant contacts; 0: all other members are empty */
-    size_t *contact;         /* [count] compliant contacts, ascending */
-    double *own;             /* [ncontact] G_ii */
-    struct definite *shared; /* G, if not diagonal; else NULL */
-    struct matrix pull;      /* [ndof][ncontact] M^-1 J' in columns of compliant contacts, else 0 */
-    double stiffest;         /* bound of omega^2, with any contacts at rest */
-    double structure;        /* largest (M^-1 K)_dd */
-    double added;            /* largest contribution of one compliant contact to omega^2 of a degree of freedom */
-    size_t tightest;         /* the contact of `added` */
+    size_t count;       /* number of compliant contacts; 0: all other members are empty */
+    size_t *contact;    /* [count] compliant contacts, ascending */
+    struct definite *g; /* G */
+    const double *own;  /* [ncontact] G_ii, in g */
+    struct matrix pull; /* [ndof][ncontact] M^-1 J' in columns of compliant contacts, else 0 */
+    double stiffest;    /* bound of omega^2, with any contacts at rest */
+    double structure;   /* largest (M^-1 K)_dd */
+    double added;       /* largest contribution of one compliant contact to omega^2 of a degree of freedom */
+    size_t tightest;    /* the contact of `added` */
 };
 
 /* NOISE: rounding error of a force, relative to its terms. ALLOWED: excess of a force over its limit, in rounding errors. */
@@ -32,13 +32,13 @@ static inline int tribo_is_compliant(const struct compliance *g, size_t i)
 /* Returns G_ik; n: number of contacts. */
 static inline double tribo_compliance_entry(const struct compliance *g, size_t n, size_t i, size_t k)
 {
-    return g->shared ? g->shared->matrix[i * n + k] : i == k ? g->own[i] : 0.0;
+    return g->count && g->g->matrix ? g->g->matrix[i * n + k] : g->count && i == k ? g->own[i] : 0.0;
 }
 
 /* Sets J and G of sys; R and M^-1 J' of sys belong to the rigid contacts. direction: J of all contacts, taken; NULL: sys has J.
- * own [ncontact]: G_ii. g [ncontact][ncontact]: G; NULL: diagonal. Returns TRIBO_OK, TRIBO_ERR_MEMORY, or TRIBO_ERR_INDEFINITE
+ * own [ncontact]: G_ii. entries [ncontact][ncontact]: G; NULL: diagonal. Returns TRIBO_OK, TRIBO_ERR_MEMORY, or TRIBO_ERR_INDEFINITE
  * and *where = a contact with a row of G that depends on earlier rows. */
-int tribo_compliance_create(tribo_system *sys, struct matrix *direction, const double *own, const double *g, size_t *where);
+int tribo_compliance_create(tribo_system *sys, struct matrix *direction, const double *own, const double *entries, size_t *where);
 int tribo_compliance_copy(tribo_system *to, const tribo_system *from); /* 1, or 0 if out of memory */
 void tribo_compliance_free(struct compliance *g);
 
@@ -65,10 +65,8 @@ void tribo_compliance_move(const tribo_system *sys, const double *y, double *v, 
 /* noise [ncontact] = TRIBO_SPRING_NOISE |G^-1| |J| |q|, bounds of rounding errors of forces; 0 for rigid contacts. */
 void tribo_compliance_noise(const tribo_system *sys, const double *q, double *noise);
 
-/* Reduces forces to their limits [ncontact]; sliders slide back. Returns the energy dissipated. */
-double tribo_compliance_bound(const tribo_system *sys, const double *limit, double *force);
-
-/* tribo_compliance_bound for the forces in y; adds the energy dissipated to the energy of y. force [ncontact] = f. */
+/* Reduces the forces in y to their limits [ncontact]; sliders slide back. Adds the energy dissipated to the energy of y. force
+ * [ncontact] = f. */
 void tribo_compliance_enter(const tribo_system *sys, const double *limit, double *force, double *y);
 
 /* c->f = rates f' in [c->lo, c->hi]; v [n]: in velocities without f', out v + G f', exactly 0 where f' != 0. */

@@ -10,9 +10,7 @@ struct model {
     int attachments; /* 1: attachment modes: static responses to contact forces in addition to the modes */
     int flexible;    /* 1: residual flexibility: the compliance that the modes lack at contacts */
     struct matrix mass, damping, stiffness, direction;
-    const double *terms;      /* [ndof] sum of the sizes of the terms of stiffness_ii; NULL: |stiffness_ii| */
     const double *compliance; /* [ncontact] compliance of springs before sliders; 0: rigid contact; NULL: all rigid */
-    size_t sliders;           /* number of degrees of freedom of these springs, without mass; the last ones of ndof */
     char *message;
     size_t size;
 };
@@ -36,11 +34,8 @@ int tribo_model_factorize(const struct model *m, struct cholesky *c);
 /* structure.c: builds the system of all degrees of freedom from checked matrices. Returns a status. */
 int tribo_model_build_whole(struct model *m, tribo_system **sys);
 
-/* condense.c: for each contact with compliance adds a degree of freedom w without mass, and a spring 1/compliance between w and
- * the displacement of the contact; the contact force acts on w. Mass and damping have no rows for w. Returns a status. */
-int tribo_model_add_sliders(struct model *m);
-
-/* condense.c: builds a system by build_massive, from the degrees of freedom with mass; the others become its expansion. */
+/* condense.c: builds a system by build_massive, from the degrees of freedom with mass; the others, and the sliders of contacts with
+ * springs, become its expansion. */
 int tribo_model_condense(struct model *m, int (*build_massive)(struct model *, tribo_system **), tribo_system **sys);
 
 /* Sets R = Z'Z in the contacts, Z [n][ncontact]: symmetric, and semidefinite up to rounding. Returns a status. */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "model.h"
+#include "numerics/triplets.h"
 
 /* Sets *sys = made, or destroys made if status is an error. Returns status. */
 static int quinn_finish(tribo_system **sys, tribo_system *made, int status)
@@ -62,21 +63,13 @@ int tribo_system_belt(tribo_system **sys, double kappa, double limit1, double li
 static int chain_stiffness(struct matrix *k, size_t n)
 {
     const double spring = (double)n;
-    size_t *row = malloc(3 * n * sizeof *row), *column = malloc(3 * n * sizeof *column), count = 0;
-    double *value = malloc(3 * n * sizeof *value);
-    int done = row && column && value;
-    for (size_t i = 0; done && i < n; i++) {
+    struct triplets t = {0};
+    for (size_t i = 0; i < n; i++) {
         for (size_t j = i ? i - 1 : 0; j < n && j <= i + 1; j++) {
-            row[count] = i;
-            column[count] = j;
-            value[count++] = j != i ? -spring : i == 0 ? spring : i + 1 < n ? 2.0 * spring : 3.0 * spring;
+            tribo_triplets_put(&t, i, j, j != i ? -spring : i == 0 ? spring : i + 1 < n ? 2.0 * spring : 3.0 * spring);
         }
     }
-    done = done && tribo_matrix_from_triplets(k, n, n, count, row, column, value);
-    free(row);
-    free(column);
-    free(value);
-    return done;
+    return tribo_triplets_finish(&t, n, n, k);
 }
 
 /* each [n] = whole/n, but 3/4 of whole/n for the last block: the paper's last equation is 4/3 times an equation with symmetric

@@ -204,7 +204,6 @@ int tribo_model_build(struct model *m, tribo_system **sys)
 {
     tribo_system *s = NULL;
     int status = structure_check(m);
-    status = status || m->nmode ? status : tribo_model_add_sliders(m);
     if (!status) {
         status = m->nmode ? tribo_model_reduce(m, &s) : tribo_model_build_whole(m, &s);
     }

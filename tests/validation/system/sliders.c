@@ -1,5 +1,6 @@
 /* Systems with compliance beside the same systems with a degree of freedom without mass for each slider: the same motions to the
- * last bit, with the displacements of sliders behind the velocities in the state. */
+ * last bit, with the displacements of sliders behind the velocities in the state. Stiffness and compliance are powers of 2 or sums
+ * of few, so that both ways to the matrices are without rounding. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,8 +10,8 @@
 
 enum { N = 3, E = 2, C = 3, M = N + E, STATE = 2 * N + E + 1, WHOLE = 2 * M + 1 };
 
-static const double mass[N] = {1.0, 2.0, 1.5}, soft[C] = {0.4, 0.0, 1.5}, limit[C] = {0.4, 0.3, 0.25};
-static const double stiffness[N * N] = {3.0, -1.0, 0.0, -1.0, 2.5, -1.5, 0.0, -1.5, 1.7};
+static const double mass[N] = {1.0, 2.0, 1.5}, soft[C] = {0.25, 0.0, 4.0}, limit[C] = {0.4, 0.3, 0.25};
+static const double stiffness[N * N] = {3.0, -1.0, 0.0, -1.0, 2.5, -1.5, 0.0, -1.5, 1.75};
 static const double direction[C * N] = {1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, -1.0, 0.0};
 static const double cosine[M] = {0.0, 0.0, 1.3}, sine[M] = {0.0, 0.9, 0.0}, base[C] = {0.3, 0.0, 0.0};
 
