@@ -246,7 +246,7 @@ contains
     text = found
   end subroutine expect_least
 
-  !> For TRBLSP and TRBRED: gives the matrix called name to the model. Without effect if ierr is an error already.
+  !> Gives the matrix called name to the model. Without effect if ierr is an error already.
   subroutine set_rows(model, name, rows, columns, irow, icol, val, text, ierr)
     type(tribo_model), intent(inout) :: model
     character(len=*), intent(in) :: name
@@ -276,6 +276,24 @@ contains
       call model%set_direction(x, ierr, text)
     end select
   end subroutine set_rows
+
+  !> For TRBLSP, TRBMOD and TRBRED: creates the model, label its ndof, with all matrices but the damping. Without effect if ierr is
+  !> an error already.
+  subroutine create_model(model, label, ndof, n, irm, icm, rm, irk, ick, rk, irj, icj, rj, text, ierr)
+    type(tribo_model), intent(inout) :: model
+    character(len=*), intent(in) :: label
+    integer, intent(in) :: ndof, n, irm(*), icm(*), irk(*), ick(*), irj(*), icj(*)
+    real(dp), intent(in) :: rm(*), rk(*), rj(*)
+    character(len=*), intent(inout) :: text
+    integer, intent(inout) :: ierr
+
+    call expect_least(label, ndof, 0, text, ierr)
+    call expect_least('N', n, 0, text, ierr)
+    if (ierr == TRIBO_OK) call model%create(ndof, n, ierr, text)
+    call set_rows(model, 'mass', ndof, ndof, irm, icm, rm, text, ierr)
+    call set_rows(model, 'stiffness', ndof, ndof, irk, ick, rk, text, ierr)
+    call set_rows(model, 'direction', n, ndof, irj, icj, rj, text, ierr)
+  end subroutine create_model
 
   !> A structure of the model, reduced where nmode is present, and its handle.
   subroutine make_structure(model, ih, text, ierr, nmode, istat)
@@ -334,13 +352,8 @@ subroutine trblsp(ndof, n, irm, icm, rm, irc, icc, c, irk, ick, rk, irj, icj, rj
   type(tribo_model) :: model
 
   ierr = TRIBO_OK
-  call expect_least('NDOF', ndof, 0, text, ierr)
-  call expect_least('N', n, 0, text, ierr)
-  if (ierr == TRIBO_OK) call model%create(ndof, n, ierr, text)
-  call set_rows(model, 'mass', ndof, ndof, irm, icm, rm, text, ierr)
+  call create_model(model, 'NDOF', ndof, n, irm, icm, rm, irk, ick, rk, irj, icj, rj, text, ierr)
   call set_rows(model, 'damping', ndof, ndof, irc, icc, c, text, ierr)
-  call set_rows(model, 'stiffness', ndof, ndof, irk, ick, rk, text, ierr)
-  call set_rows(model, 'direction', n, ndof, irj, icj, rj, text, ierr)
   if (ierr == TRIBO_OK) call make_structure(model, ih, text, ierr)
 end subroutine trblsp
 
@@ -355,14 +368,9 @@ subroutine trbmod(nfull, n, irm, icm, rm, irc, icc, c, irk, ick, rk, irj, icj, r
   type(tribo_model) :: model
 
   ierr = TRIBO_OK
-  call expect_least('NFULL', nfull, 0, text, ierr)
-  call expect_least('N', n, 0, text, ierr)
   call expect_least('NMODE', nmode, 0, text, ierr)
-  if (ierr == TRIBO_OK) call model%create(nfull, n, ierr, text)
-  call set_rows(model, 'mass', nfull, nfull, irm, icm, rm, text, ierr)
+  call create_model(model, 'NFULL', nfull, n, irm, icm, rm, irk, ick, rk, irj, icj, rj, text, ierr)
   call set_rows(model, 'damping', nfull, nfull, irc, icc, c, text, ierr)
-  call set_rows(model, 'stiffness', nfull, nfull, irk, ick, rk, text, ierr)
-  call set_rows(model, 'direction', n, nfull, irj, icj, rj, text, ierr)
   if (ierr == TRIBO_OK) call model%set_compliance(cmp(:n), ierr, text)
   if (ierr /= TRIBO_OK) return
   if (nmode == 0) then
@@ -383,13 +391,8 @@ subroutine trbred(nfull, n, irm, icm, rm, irk, ick, rk, irj, icj, rj, nmode, ist
   type(tribo_model) :: model
 
   ierr = TRIBO_OK
-  call expect_least('NFULL', nfull, 0, text, ierr)
-  call expect_least('N', n, 0, text, ierr)
   call expect_least('NMODE', nmode, 1, text, ierr)
-  if (ierr == TRIBO_OK) call model%create(nfull, n, ierr, text)
-  call set_rows(model, 'mass', nfull, nfull, irm, icm, rm, text, ierr)
-  call set_rows(model, 'stiffness', nfull, nfull, irk, ick, rk, text, ierr)
-  call set_rows(model, 'direction', n, nfull, irj, icj, rj, text, ierr)
+  call create_model(model, 'NFULL', nfull, n, irm, icm, rm, irk, ick, rk, irj, icj, rj, text, ierr)
   if (ierr == TRIBO_OK) call make_structure(model, ih, text, ierr, nmode, istat)
 end subroutine trbred
 

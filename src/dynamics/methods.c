@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/name.h"
 #include "common/real.h"
 #include "common/zeros.h"
 
@@ -26,20 +27,6 @@ const char *tribo_method_name(int method)
     return method >= 0 && method < tribo_method_count() ? methods[method]->name : NULL;
 }
 
-static int driver_lower(char c)
-{
-    return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c;
-}
-
-static int driver_same_name(const char *a, const char *b)
-{
-    while (*a && driver_lower(*a) == driver_lower(*b)) {
-        a++;
-        b++;
-    }
-    return driver_lower(*a) == driver_lower(*b);
-}
-
 int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method)
 {
     if (!sys) {
@@ -52,7 +39,7 @@ int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *metho
     char list[200] = "";
     for (int i = 0; i < tribo_method_count(); i++) {
         const size_t used = strlen(list);
-        m = driver_same_name(methods[i]->name, method) ? methods[i] : m;
+        m = tribo_same_name(methods[i]->name, method) ? methods[i] : m;
         snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", methods[i]->name);
     }
     return m ? tribo_driver_create_method(drv, sys, m)

@@ -3,6 +3,7 @@
  * prepared so that none of that happens. */
 #include "tribo/tribo_gsl.h"
 
+#include "common/name.h"
 #include "common/real.h"
 #include "gsl_system.h"
 
@@ -15,6 +16,7 @@
 #include <string.h>
 
 #include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
 
 /* A pivot of at most this part of the sum of its terms' sizes counts as zero. */
 #define LEAST_PIVOT 1e-13
@@ -57,6 +59,7 @@ struct gsl_step {
     /* implicit kinds */
     double *jacobian;  /* [dimension][dimension] the last one, if known */
     double *matrix;    /* [stages dimension][stages dimension] workspace */
+    size_t *order;     /* [stages dimension] workspace */
     int known;         /* 1: jacobian is set */
     double regular;    /* step length for which all matrices with this Jacobian are regular; 0: none */
     double *end;       /* [dimension] slope at the end, newton kinds */
@@ -197,40 +200,27 @@ static void fill_matrix(const struct gsl_step *g, double h)
     }
 }
 
-/* 1 if elimination of a [n][n], which is overwritten, meets no pivot that may be rounding: each is compared with the sum of
- * the sizes of its terms, so that scales of rows and columns do not matter. */
-static int has_sure_pivots(double *a, size_t n)
+/* 1 if the factors of g->matrix [n][n], which is overwritten, have no pivot that may be rounding: each is compared with the sum
+ * of the sizes of its terms, so that scales of rows and columns do not matter. */
+static int has_sure_pivots(struct gsl_step *g, size_t n)
 {
+    double *a = g->matrix;
+    gsl_matrix_view view = gsl_matrix_view_array(a, n, n);
+    gsl_permutation order = {n, g->order};
+    int sign, sure = 1;
+    gsl_linalg_LU_decomp(&view.matrix, &order, &sign);
     for (size_t k = 0; k < n; k++) {
-        size_t best = k;
-        for (size_t i = k + 1; i < n; i++) {
-            best = fabs(a[i * n + k]) > fabs(a[best * n + k]) ? i : best;
-        }
-        for (size_t j = 0; best != k && j < n; j++) {
-            const double x = a[k * n + j];
-            a[k * n + j] = a[best * n + j];
-            a[best * n + j] = x;
-        }
-        const double *row = a + k * n, size = fabs(row[k]);
+        const double size = fabs(a[k * n + k]);
         double sum = size;
         for (size_t j = 0; j < k; j++) {
-            sum += fabs(row[j] * a[j * n + k]);
+            sum += fabs(a[k * n + j] * a[j * n + k]);
         }
-        if (!(size > LEAST_PIVOT * sum && isfinite(sum))) {
-            return 0;
-        }
-        for (size_t i = k + 1; i < n; i++) {
-            const double factor = a[i * n + k] / row[k];
-            a[i * n + k] = factor;
-            for (size_t j = k + 1; factor != 0.0 && j < n; j++) {
-                a[i * n + j] -= factor * row[j];
-            }
-        }
+        sure &= size > LEAST_PIVOT * sum && isfinite(sum);
     }
-    return 1;
+    return sure;
 }
 
-/* 1 if all matrices of a step are regular. Of msbdf, whose matrix belongs to its order, only those of orders up to the
+/* 1 if all matrices of a step are regular; needs memory_to_factorize. Of msbdf, whose matrix belongs to its order, only those of orders up to the
  * present one: an order grows from one step to the next only. */
 static int is_regular(struct gsl_step *g)
 {
@@ -240,7 +230,7 @@ static int is_regular(struct gsl_step *g)
     const double h = g->trial->h;
     for (size_t i = 0; i < count && h != g->regular; i++) {
         fill_matrix(g, g->kind->c[i] * h);
-        if (!(largest_size(g->matrix, size * size) <= LARGEST_ENTRY) || !has_sure_pivots(g->matrix, size)) {
+        if (!(largest_size(g->matrix, size * size) <= LARGEST_ENTRY) || !has_sure_pivots(g, size)) {
             return 0;
         }
     }
@@ -265,10 +255,10 @@ static int guarded_jacobian(double t, const double y[], double *dfdy, double dfd
     memcpy(g->jacobian, dfdy, n * n * sizeof *dfdy);
     g->known = 1;
     g->regular = 0.0;
-    if (sum != 0.0 || !is_regular(g)) {
-        return GSL_FAILURE;
+    if (!memory_to_factorize(g)) {
+        return gsl_step_out_of_memory(g);
     }
-    return memory_to_factorize(g) ? GSL_SUCCESS : gsl_step_out_of_memory(g);
+    return sum != 0.0 || !is_regular(g) ? GSL_FAILURE : GSL_SUCCESS;
 }
 
 static int tell_tolerance(void *state, const double y, const double dydt, const double h, const size_t i, double *level)
@@ -288,6 +278,7 @@ static void gsl_step_destroy(void *data)
         gsl_odeiv2_step_free(g->step);
         free(g->jacobian);
         free(g->matrix);
+        free(g->order);
         free(g->end);
         free(g->force);
         free(g->mode);
@@ -300,10 +291,11 @@ static int create_workspace(struct gsl_step *g)
     const size_t n = g->dimension, size = n * g->kind->stages;
     g->jacobian = calloc(n, n * sizeof *g->jacobian);
     g->matrix = calloc(size, size * sizeof *g->matrix);
+    g->order = calloc(size, sizeof *g->order);
     g->end = calloc(n, sizeof *g->end);
     g->force = calloc(g->ncontact + 1, sizeof *g->force);
     g->mode = calloc(2 * g->ncontact + 1, sizeof *g->mode);
-    return g->jacobian && g->matrix && g->end && g->force && g->mode;
+    return g->jacobian && g->matrix && g->order && g->end && g->force && g->mode;
 }
 
 /* NULL if out of memory. */
@@ -403,9 +395,14 @@ static const double gauss[] = {0.25, 0.25 - ROOT_3 / 6, 0.25 + ROOT_3 / 6, 0.25}
 static const double sequence[] = {1.0 / 2, 1.0 / 6, 1.0 / 10, 1.0 / 14, 1.0 / 22, 1.0 / 34, 1.0 / 50, 1.0 / 70};
 static const double bdf[] = {1.0, 2.0 / 3, 6.0 / 11, 12.0 / 25, 60.0 / 137};
 
-#define EXPLICIT(id, stable) {#id, &gsl_odeiv2_step_##id, stable, 1, 0, 0, NULL, 1, NULL}
+#define EXPLICIT(id, stable)                                                                                                     \
+    {                                                                                                                            \
+#id, &gsl_odeiv2_step_##id, stable, 1, 0, 0, NULL, 1, NULL                                                               \
+    }
 #define IMPLICIT(id, stable, slope, newton, c, stages, a)                                                                        \
-    {#id, &gsl_odeiv2_step_##id, stable, slope, newton, sizeof c / sizeof *c, c, stages, a}
+    {                                                                                                                            \
+#id, &gsl_odeiv2_step_##id, stable, slope, newton, sizeof c / sizeof *c, c, stages, a                                    \
+    }
 
 static const struct gsl_kind kinds[] = {
     EXPLICIT(rk2, 2.5),
@@ -431,15 +428,6 @@ const char *tribo_gsl_stepper_name(int stepper)
     return stepper >= 0 && stepper < tribo_gsl_stepper_count() ? kinds[stepper].name : NULL;
 }
 
-static int same_name(const char *a, const char *b)
-{
-    size_t i = 0;
-    while (a[i] && (b[i] >= 'A' && b[i] <= 'Z' ? b[i] - 'A' + 'a' : b[i]) == a[i]) {
-        i++;
-    }
-    return a[i] == b[i];
-}
-
 int tribo_gsl_driver_create(tribo_driver **drv, tribo_system *sys, const char *stepper)
 {
     if (!sys) {
@@ -452,7 +440,7 @@ int tribo_gsl_driver_create(tribo_driver **drv, tribo_system *sys, const char *s
     char text[200];
     size_t used = (size_t)snprintf(text, sizeof text, "stepper \"%.20s\" is unknown; GSL has ", stepper);
     for (int i = 0; i < tribo_gsl_stepper_count(); i++) {
-        kind = same_name(kinds[i].name, stepper) ? &kinds[i] : kind;
+        kind = tribo_same_name(kinds[i].name, stepper) ? &kinds[i] : kind;
         used += (size_t)snprintf(text + used, sizeof text - used, "%s%s", i ? ", " : "", kinds[i].name);
     }
     if (!kind) {

@@ -21,6 +21,10 @@ void dgbtrs_(const char *trans, const int *n, const int *below, const int *above
 /* A = L L'. */
 void dpotrf_(const char *triangle, const int *n, double *a, const int *stride, int *info, size_t one);
 
+/* P'A P = L L', largest pivot first, until a pivot is at most least: rank columns of L. */
+void dpstrf_(const char *triangle, const int *n, double *a, const int *stride, int *order, int *rank, const double *least,
+             double *work, int *info, size_t one);
+
 /* A = P L U. */
 void dgetrf_(const int *rows, const int *cols, double *a, const int *stride, int *pivot, int *info);
 

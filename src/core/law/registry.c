@@ -1,10 +1,10 @@
 /* The registry of laws, and a law for one contact. */
 #include <float.h>
-#include <string.h>
 
 #include "tribo/tribo.h"
 
 #include "law.h"
+#include "common/name.h"
 
 static const struct law *const laws[] = {
     [TRIBO_COULOMB] = &tribo_law_coulomb, [TRIBO_VELOCITY_LIMITED] = &tribo_law_velocity_limited,
@@ -34,26 +34,13 @@ const char *tribo_law_reference(int law)
     return l ? l->reference : NULL;
 }
 
-/* tolower without locales. */
-static char registry_lower(char c)
-{
-    static const char upper_case[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZ", lower_case[] = "abcdefghijklmnopqrstuvwxyz";
-    const char *found = c ? strchr(upper_case, c) : NULL;
-    return found ? lower_case[found - upper_case] : c;
-}
-
 int tribo_law_find(const char *name, int *law)
 {
     if (!name || !law) {
         return TRIBO_ERR_NULL;
     }
     for (int i = 0; i < tribo_law_count(); i++) {
-        const char *own = laws[i]->name;
-        size_t same = 0;
-        while (own[same] && own[same] == registry_lower(name[same])) {
-            same++;
-        }
-        if (!own[same] && !name[same]) {
+        if (tribo_same_name(laws[i]->name, name)) {
             *law = i;
             return TRIBO_OK;
         }

@@ -1,6 +1,7 @@
 /* A contact between a light body m and a heavy body M has the entry 1/m + 1/M of R; rounding hides 1/M. If other contacts hold
  * the light body, a pivot of R is as small as m/M although the rows of J are independent. */
 #include "numerics/constraint.h"
+#include "numerics/lapack.h"
 #include "hidden.h"
 #include "common/real.h"
 
@@ -15,10 +16,13 @@
 /* If the shares J^2/m of every contact have smaller ratios, small pivots have another cause. */
 #define APART 1e3
 
-/* Returns the number of pivots > SMALL of the Cholesky factorization of r, scaled to a diagonal of 1, largest pivot first.
- * Overwrites r. */
-static size_t large_pivots(double *r, size_t n)
+/* Returns the number of pivots > SMALL of the Cholesky factorization of r [n][n], scaled to a diagonal of 1, largest pivot first.
+ * Overwrites r; order [n] and work [2 n] are workspace. */
+static size_t large_pivots(double *r, size_t n, int *order, double *work)
 {
+    const int rows = (int)n;
+    const double small = SMALL;
+    int rank = 0, info = 0;
     for (size_t i = 0; i < n; i++) {
         const double root = sqrt(greater(r[i * n + i], DBL_MIN));
         for (size_t k = 0; k < n; k++) {
@@ -26,30 +30,8 @@ static size_t large_pivots(double *r, size_t n)
             r[k * n + i] /= root;
         }
     }
-    size_t left = n;
-    for (; left > 0; left--) {
-        size_t best = 0;
-        for (size_t i = 1; i < left; i++) {
-            best = r[i * n + i] > r[best * n + best] ? i : best;
-        }
-        const double pivot = r[best * n + best];
-        if (pivot <= SMALL) {
-            break;
-        }
-        for (size_t i = 0; i < left; i++) {
-            for (size_t k = 0; i != best && k < left; k++) {
-                r[i * n + k] -= k != best ? r[i * n + best] / pivot * r[best * n + k] : 0.0;
-            }
-        }
-        /* moves the last row and column to the place of the eliminated ones */
-        for (size_t k = 0; k < left; k++) {
-            r[best * n + k] = r[(left - 1) * n + k];
-        }
-        for (size_t k = 0; k < left; k++) {
-            r[k * n + best] = r[k * n + left - 1];
-        }
-    }
-    return n - left;
+    dpstrf_("U", &rows, r, &rows, order, &rank, &small, work, &info, 1);
+    return (size_t)rank;
 }
 
 int tribo_hidden(const struct matrix *direction, const struct matrix *mass, const double *own, const double *r,
@@ -75,13 +57,15 @@ int tribo_hidden(const struct matrix *direction, const struct matrix *mass, cons
     if (where->spread < APART) {
         return 0;
     }
-    double *work = malloc(n * n * sizeof *work);
+    double *work = malloc((n + 2) * n * sizeof *work);
+    int *order = malloc(n * sizeof *order);
     const size_t rank = tribo_constraints_rank(direction, mass);
     int hidden = -1;
-    if (work && rank <= n) {
+    if (work && order && rank <= n && tribo_lapack_takes(n)) {
         memcpy(work, r, n * n * sizeof *work);
-        hidden = large_pivots(work, n) < rank;
+        hidden = large_pivots(work, n, order, work + n * n) < rank;
     }
     free(work);
+    free(order);
     return hidden;
 }

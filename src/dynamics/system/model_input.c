@@ -63,7 +63,9 @@ size_t tribo_model_ncontact(const tribo_model *model)
 
 /* ------------------------------------------------------------------------------------------------------------------- matrices */
 
-/* A matrix `to` of the model; its name for messages; its number of rows. */
+enum which { MASS, DAMPING, STIFFNESS, DIRECTION };
+
+/* A matrix `to` of the model; its name for messages; its number of rows. model NULL: all other members are empty. */
 struct input {
     tribo_model *model;
     struct matrix *to;
@@ -71,24 +73,15 @@ struct input {
     size_t rows;
 };
 
-static struct input mass_of(tribo_model *m)
+static struct input input_of(tribo_model *m, enum which which)
 {
-    return (struct input){m, m ? &m->given.mass : NULL, "mass", m ? m->given.ndof : 0};
-}
-
-static struct input damping_of(tribo_model *m)
-{
-    return (struct input){m, m ? &m->given.damping : NULL, "damping", m ? m->given.ndof : 0};
-}
-
-static struct input stiffness_of(tribo_model *m)
-{
-    return (struct input){m, m ? &m->given.stiffness : NULL, "stiffness", m ? m->given.ndof : 0};
-}
-
-static struct input direction_of(tribo_model *m)
-{
-    return (struct input){m, m ? &m->given.direction : NULL, "direction", m ? m->given.ncontact : 0};
+    static const char *const name[] = {"mass", "damping", "stiffness", "direction"};
+    struct model *g = m ? &m->given : NULL;
+    if (!g) {
+        return (struct input){0};
+    }
+    struct matrix *const to[] = {&g->mass, &g->damping, &g->stiffness, &g->direction};
+    return (struct input){m, to[which], name[which], which == DIRECTION ? g->ncontact : g->ndof};
 }
 
 /* Sets *in->to = a if all entries are finite. done: 0 if there was no memory for a. Returns a status. */
@@ -117,15 +110,17 @@ static int check_input(const struct input *in, const void *numbers, const char *
     return numbers || !count ? TRIBO_OK : tribo_model_fail(&in->model->given, TRIBO_ERR_NULL, "%s%s is NULL", in->name, part);
 }
 
-static int set_dense(struct input in, const double *entries)
+static int set_dense(tribo_model *model, enum which which, const double *entries)
 {
+    const struct input in = input_of(model, which);
     struct matrix a = {0};
     const int status = check_input(&in, entries, "", in.rows);
-    return status ? status : take(&in, &a, tribo_matrix_from_dense(&a, in.rows, in.model->given.ndof, entries));
+    return status ? status : take(&in, &a, tribo_matrix_from_dense(&a, in.rows, model->given.ndof, entries));
 }
 
-static int set_diagonal(struct input in, const double *entries)
+static int set_diagonal(tribo_model *model, enum which which, const double *entries)
 {
+    const struct input in = input_of(model, which);
     struct matrix a = {0};
     const int status = check_input(&in, entries, "", in.rows);
     return status ? status : take(&in, &a, tribo_matrix_diagonal(&a, in.rows, entries));
@@ -156,8 +151,9 @@ static int check_rows(const struct input *in, const size_t *rowptr, const size_t
     return TRIBO_OK;
 }
 
-static int set_csr(struct input in, const size_t *rowptr, const size_t *col, const double *val)
+static int set_csr(tribo_model *model, enum which which, const size_t *rowptr, const size_t *col, const double *val)
 {
+    const struct input in = input_of(model, which);
     struct matrix a = {0};
     int status = check_input(&in, rowptr, ": rowptr", 1);
     const size_t entries = !status && rowptr[0] == 0 ? rowptr[in.rows] : 0;
@@ -173,13 +169,13 @@ static int set_csr(struct input in, const size_t *rowptr, const size_t *col, con
             row[k] = i;
         }
     }
-    const int done = row && tribo_matrix_from_triplets(&a, in.rows, in.model->given.ndof, entries, row, col, val);
+    const int done = row && tribo_matrix_from_triplets(&a, in.rows, model->given.ndof, entries, row, col, val);
     free(row);
     for (size_t i = 0; done && i < in.rows; i++) {
         for (size_t k = a.first[i] + 1; k < a.first[i + 1]; k++) {
             if (a.col[k] == a.col[k - 1]) {
                 status =
-                    tribo_model_fail(&in.model->given, TRIBO_ERR_DUPLICATE, "%s[%zu][%zu] is given twice", in.name, i, a.col[k]);
+                    tribo_model_fail(&model->given, TRIBO_ERR_DUPLICATE, "%s[%zu][%zu] is given twice", in.name, i, a.col[k]);
             }
         }
     }
@@ -191,57 +187,57 @@ static int set_csr(struct input in, const size_t *rowptr, const size_t *col, con
 
 int tribo_model_set_mass(tribo_model *model, const double *m)
 {
-    return set_dense(mass_of(model), m);
+    return set_dense(model, MASS, m);
 }
 
 int tribo_model_set_mass_diagonal(tribo_model *model, const double *m)
 {
-    return set_diagonal(mass_of(model), m);
+    return set_diagonal(model, MASS, m);
 }
 
 int tribo_model_set_mass_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val)
 {
-    return set_csr(mass_of(model), rowptr, col, val);
+    return set_csr(model, MASS, rowptr, col, val);
 }
 
 int tribo_model_set_damping(tribo_model *model, const double *c)
 {
-    return set_dense(damping_of(model), c);
+    return set_dense(model, DAMPING, c);
 }
 
 int tribo_model_set_damping_diagonal(tribo_model *model, const double *c)
 {
-    return set_diagonal(damping_of(model), c);
+    return set_diagonal(model, DAMPING, c);
 }
 
 int tribo_model_set_damping_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val)
 {
-    return set_csr(damping_of(model), rowptr, col, val);
+    return set_csr(model, DAMPING, rowptr, col, val);
 }
 
 int tribo_model_set_stiffness(tribo_model *model, const double *k)
 {
-    return set_dense(stiffness_of(model), k);
+    return set_dense(model, STIFFNESS, k);
 }
 
 int tribo_model_set_stiffness_diagonal(tribo_model *model, const double *k)
 {
-    return set_diagonal(stiffness_of(model), k);
+    return set_diagonal(model, STIFFNESS, k);
 }
 
 int tribo_model_set_stiffness_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val)
 {
-    return set_csr(stiffness_of(model), rowptr, col, val);
+    return set_csr(model, STIFFNESS, rowptr, col, val);
 }
 
 int tribo_model_set_direction(tribo_model *model, const double *j)
 {
-    return set_dense(direction_of(model), j);
+    return set_dense(model, DIRECTION, j);
 }
 
 int tribo_model_set_direction_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val)
 {
-    return set_csr(direction_of(model), rowptr, col, val);
+    return set_csr(model, DIRECTION, rowptr, col, val);
 }
 
 int tribo_model_set_compliance(tribo_model *model, const double *c)
