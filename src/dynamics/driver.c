@@ -83,8 +83,8 @@ void tribo_driver_destroy(tribo_driver *drv)
     if (!drv) {
         return;
     }
-    if (drv->shooting && drv->free_shooting) {
-        drv->free_shooting(drv->shooting);
+    if (drv->shooting) {
+        tribo_shooting_free(drv->shooting);
     }
     drv->method->destroy(drv);
     free(drv);

@@ -34,7 +34,7 @@ struct method {
 
 struct tribo_driver {
     tribo_system *sys;
-    const struct method *method, *at_work; /* at_work: named by tribo_driver_method */
+    const struct method *method, *at_work; /* at_work: the method with the data `own`; differs from method in auto */
 
     /* settings */
     double dt;             /* step, or first step of adaptive methods; 0: not set */
@@ -45,14 +45,14 @@ struct tribo_driver {
     void *data;
 
     /* state */
-    void *own;                 /* data of the method */
+    void *own;                 /* data of the method at work */
+    struct choice *choice;     /* methods.c: data of method auto; NULL in others */
     double *state, *slope;     /* [tribo_system_size] last kept state; workspace */
     double *motion, *shown;    /* [dimension + compliant contacts] methods' state; caller's state. NULL without an expansion */
     double time;               /* time of `state` */
     size_t revision;           /* tribo_system_revision after the last advance; SIZE_MAX: the next starts from scratch */
-    struct shooting *shooting; /* last search of a periodic motion; borrowed if free_shooting is NULL */
-    void (*free_shooting)(struct shooting *s);
-    char *message; /* [TRIBO_MESSAGE] also written for a const driver */
+    struct shooting *shooting; /* last search of a periodic motion, or NULL */
+    char *message;             /* [TRIBO_MESSAGE] also written for a const driver */
 
     /* counters */
     size_t steps, rejected, evaluations, jacobians, events, periods, newton;
@@ -110,6 +110,9 @@ int tribo_driver_advance_motion(tribo_driver *drv, double *t, double t1, double 
 
 /* *drv = new driver with a method that must outlive the driver. Returns what tribo_driver_create returns. */
 int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const struct method *method);
+
+/* periodic/shooting.c */
+void tribo_shooting_free(struct shooting *s);
 
 extern const struct method tribo_method_exact, tribo_method_event, tribo_method_central_fixed, tribo_method_moreau_fixed,
     tribo_method_rk4_fixed;

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "common/name.h"
-#include "common/real.h"
 #include "common/zeros.h"
 
 static const struct method automatic;
@@ -52,9 +51,11 @@ int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *metho
 
 enum { EVENT, EXACT };
 
-/* The two drivers of auto, each created at first use. */
+static const struct method *const choices[] = {&tribo_method_event, &tribo_method_exact};
+
+/* The data of the methods that auto takes, each created at first use. */
 struct choice {
-    tribo_driver *inner[2];
+    void *own[2];
     int refused; /* 1: exact has refused the system of this revision */
     size_t revision;
 };
@@ -63,107 +64,86 @@ struct choice {
 static int driver_choose(const tribo_driver *drv)
 {
     const tribo_system *sys = drv->sys;
-    const struct choice *c = drv->own;
+    const struct choice *c = drv->choice;
     const int refused = c->refused && c->revision == tribo_system_revision(sys);
     const int closed = !sys->tables && !tribo_system_falls(sys) && !tribo_system_planar(sys);
     return sys->ndof <= 200 && closed && !refused ? EXACT : EVENT;
 }
 
-/* Creates inner[which] unless it exists. Returns a status; the message is in the system. */
-static int provide(tribo_driver *drv, int which)
+/* Makes a method the one at work, with its data. Returns a status; the message is in the system. */
+static int set_to_work(tribo_driver *drv, int which)
 {
-    static const struct method *const of[] = {&tribo_method_event, &tribo_method_exact};
-    struct choice *c = drv->own;
-    drv->at_work = of[which];
-    return c->inner[which] ? TRIBO_OK : tribo_driver_create_method(&c->inner[which], drv->sys, of[which]);
+    struct choice *c = drv->choice;
+    drv->at_work = choices[which];
+    drv->own = c->own[which];
+    const double excess = drv->excess, backslip = drv->backslip;
+    const int status = drv->own ? TRIBO_OK : drv->at_work->create(drv);
+    drv->excess = excess; /* create sets 0 */
+    drv->backslip = backslip;
+    if (status) {
+        drv->at_work->destroy(drv);
+        drv->own = NULL;
+        tribo_driver_fail(drv, status, "method %s: %s", drv->at_work->name, tribo_system_message(drv->sys));
+    }
+    c->own[which] = drv->own;
+    return status;
 }
 
 static int create_choice(tribo_driver *drv)
 {
-    drv->own = tribo_zeros(1, sizeof(struct choice));
+    drv->choice = tribo_zeros(1, sizeof *drv->choice);
     drv->excess = drv->backslip = 0.0;
-    return drv->own ? provide(drv, driver_choose(drv))
-                    : tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method auto");
+    return drv->choice ? set_to_work(drv, driver_choose(drv))
+                       : tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method auto");
 }
 
 static void destroy_choice(tribo_driver *drv)
 {
-    struct choice *c = drv->own;
-    if (c) {
-        tribo_driver_destroy(c->inner[EXACT]);
-        tribo_driver_destroy(c->inner[EVENT]);
-        free(c);
+    for (int which = EVENT; drv->choice && which <= EXACT; which++) {
+        drv->own = drv->choice->own[which];
+        choices[which]->destroy(drv);
     }
+    free(drv->choice);
 }
 
-/* An advance from *t to t1; with finds = 1 the search for a periodic motion from *t. */
-struct task {
-    double *t, t1, period, *y;
-    int finds;
-};
-
-/* Runs task x by inner[which] with the settings of drv; adds the counts of inner[which] to drv. Returns a status. */
-static int delegate(tribo_driver *drv, int which, const struct task *x)
+/* Returns 1 if exact, chosen, has refused the system with this status: event is next. */
+static int is_refused(const tribo_driver *drv, int which, int status)
 {
-    const struct choice *c = drv->own;
-    int status = provide(drv, which);
-    if (status) {
-        return tribo_driver_fail(drv, status, "method %s: %s", drv->at_work->name, tribo_system_message(drv->sys));
+    struct choice *c = drv->choice;
+    if (which == EVENT || status != TRIBO_ERR_UNSUPPORTED) {
+        return 0;
     }
-    tribo_driver *inner = c->inner[which];
-    const tribo_driver before = *inner;
-    if (inner->abstol != drv->abstol || inner->reltol != drv->reltol) {
-        inner->revision = SIZE_MAX;
-    }
-    inner->abstol = drv->abstol;
-    inner->reltol = drv->reltol;
-    inner->output = drv->output;
-    inner->seen = drv->seen;
-    inner->data = drv->data;
-    status = x->finds ? inner->method->find_periodic(inner, *x->t, x->period, x->y)
-                      : tribo_driver_advance_motion(inner, x->t, x->t1, x->y);
-    /* evaluations of an advance: counted by tribo_driver_advance_motion for drv */
-    drv->steps += inner->steps - before.steps;
-    drv->rejected += inner->rejected - before.rejected;
-    drv->events += inner->events - before.events;
-    drv->periods += inner->periods - before.periods;
-    drv->newton += inner->newton - before.newton;
-    drv->evaluations += x->finds ? inner->evaluations - before.evaluations : 0;
-    drv->excess = greater(drv->excess, inner->excess);
-    drv->backslip = greater(drv->backslip, inner->backslip);
-    if (x->finds) {
-        drv->shooting = inner->shooting;
-    }
-    const int kept = x->finds ? TRIBO_OK : tribo_driver_keep(drv, *x->t, x->y);
-    if (status && !(which == EXACT && status == TRIBO_ERR_UNSUPPORTED)) {
-        tribo_driver_fail(drv, status, "%s", inner->message);
-    }
-    return status ? status : kept;
-}
-
-static int choose_and_delegate(tribo_driver *drv, const struct task *x)
-{
-    struct choice *c = drv->own;
-    if (driver_choose(drv) == EXACT) {
-        const int status = delegate(drv, EXACT, x);
-        if (status != TRIBO_ERR_UNSUPPORTED) {
-            return status;
-        }
-        c->refused = 1;
-        c->revision = tribo_system_revision(drv->sys);
-    }
-    return delegate(drv, EVENT, x);
+    c->refused = 1;
+    c->revision = tribo_system_revision(drv->sys);
+    drv->message[0] = '\0';
+    return 1;
 }
 
 static int advance_choice(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
-    (void)continues;
-    return choose_and_delegate(drv, &(struct task){.t = t, .t1 = t1, .y = y});
+    const struct method *last = drv->at_work;
+    const int which = driver_choose(drv);
+    int status = set_to_work(drv, which);
+    status = status ? status : drv->at_work->advance(drv, t, t1, y, continues && last == drv->at_work);
+    if (is_refused(drv, which, status)) {
+        *t = drv->time;
+        memcpy(y, drv->state, tribo_system_size(drv->sys) * sizeof *y);
+        status = set_to_work(drv, EVENT);
+        status = status ? status : drv->at_work->advance(drv, t, t1, y, 0);
+    }
+    return status;
 }
 
 static int find_by_choice(tribo_driver *drv, double t, double period, double *y)
 {
-    return choose_and_delegate(drv, &(struct task){.t = &t, .period = period, .y = y, .finds = 1});
+    const int which = driver_choose(drv);
+    int status = set_to_work(drv, which);
+    status = status ? status : drv->at_work->find_periodic(drv, t, period, y);
+    if (is_refused(drv, which, status)) {
+        status = set_to_work(drv, EVENT);
+        status = status ? status : drv->at_work->find_periodic(drv, t, period, y);
+    }
+    return status;
 }
 
 static const struct method automatic = {.name = "auto",

@@ -401,6 +401,6 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
 int tribo_events_method(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
     struct events *e;
-    const int status = drv->method->open(drv, &e);
+    const int status = drv->at_work->open(drv, &e);
     return status ? status : tribo_events_advance(e, drv, t, t1, y, continues);
 }

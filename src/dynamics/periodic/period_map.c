@@ -68,7 +68,7 @@ static int period_map_integrate(struct period_map *m, double t, double end, stru
 
 int tribo_period_map_replay(struct period_map *m, const double *y, struct company *company)
 {
-    const int status = m->drv->method->open(m->drv, &m->events);
+    const int status = m->drv->at_work->open(m->drv, &m->events);
     memcpy(m->y, y, m->n * sizeof *y);
     return status ? status : period_map_integrate(m, m->t, m->t + m->period, company);
 }
@@ -260,7 +260,7 @@ static int prepare_probes(struct period_map *m)
 int tribo_period_map_prepare(struct period_map *m, double t, double period, const double *y)
 {
     m->halves = 0;
-    int status = m->drv->method->open(m->drv, &m->events);
+    int status = m->drv->at_work->open(m->drv, &m->events);
     if (!status && !m->norm.phi) {
         status = on_driver(m, tribo_energy_norm_create(&m->norm, m->sys));
         if (status) {

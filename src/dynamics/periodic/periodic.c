@@ -66,7 +66,6 @@ static int check_friction(tribo_driver *drv)
 int tribo_events_find_periodic(tribo_driver *drv, double t, double period, double *y)
 {
     drv->shooting = drv->shooting ? drv->shooting : tribo_shooting_create(drv);
-    drv->free_shooting = tribo_shooting_free;
     return drv->shooting
                ? tribo_shooting_find(drv->shooting, t, period, y)
                : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",

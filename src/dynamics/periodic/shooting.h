@@ -26,7 +26,6 @@ struct shooting {
 
 /* Returns NULL if out of memory. */
 struct shooting *tribo_shooting_create(tribo_driver *drv);
-void tribo_shooting_free(struct shooting *s);
 
 /* Sets re, im [tribo_system_dimension - 1] = multipliers of the motion found; *freedom = dimension of its family. */
 int tribo_shooting_multipliers(struct shooting *s, double *re, double *im);
