@@ -74,7 +74,7 @@ TRIBO_SIMD static double equations_power_of(size_t n, const double *restrict tal
 }
 
 /* tribo_system_rates; accepted = 1: (t, y) is an accepted state of the reversal law. */
-static int find_rates(tribo_system *sys, double t, const double *y, int accepted, double *acceleration, double *power)
+static int rates_at(tribo_system *sys, double t, const double *y, int accepted, double *acceleration, double *power)
 {
     sys->evaluations++;
     const struct seen seen = see(sys, t, y, acceleration);
@@ -90,14 +90,14 @@ static int find_rates(tribo_system *sys, double t, const double *y, int accepted
 
 int tribo_system_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power)
 {
-    return find_rates(sys, t, y, 0, acceleration, power);
+    return rates_at(sys, t, y, 0, acceleration, power);
 }
 
 int tribo_system_begin_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power)
 {
     int law;
     tribo_get_law(sys->contacts, &law);
-    return find_rates(sys, t, y, law == TRIBO_QUINN_REVERSAL, acceleration, power);
+    return rates_at(sys, t, y, law == TRIBO_QUINN_REVERSAL, acceleration, power);
 }
 
 /* Sets the rest of dydt, q' [ndof]. If J is the identity and bases do not move, also sys->v = q' for the driver. */

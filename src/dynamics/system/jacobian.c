@@ -59,7 +59,7 @@ static void add_row(const struct matrix *a, size_t i, double factor, double *to)
 }
 
 /* to [rows][stride] += factor a b, for a dense a [rows][b->rows]. */
-static void add_product(size_t rows, double factor, const double *a, const struct matrix *b, size_t stride, double *to)
+static void jacobian_add_product(size_t rows, double factor, const double *a, const struct matrix *b, size_t stride, double *to)
 {
     for (size_t k = 0; k < rows * b->rows; k++) {
         if (a[k] != 0.0) {
@@ -73,10 +73,10 @@ static void add_product(size_t rows, double factor, const double *a, const struc
 static void follow_state_and_time(tribo_system *sys, const struct tangents *d)
 {
     const size_t n = sys->ndof, m = sys->ncontact;
-    add_product(m, 1.0, d->df_da, &sys->direction, n, d->pull);
-    add_product(m, -1.0, d->pull, &sys->stiffness, 2 * n, d->df_dy);
-    add_product(m, -1.0, d->pull, &sys->damping, 2 * n, d->df_dy + n);
-    add_product(m, 1.0, d->df_dv, &sys->direction, 2 * n, d->df_dy + n);
+    jacobian_add_product(m, 1.0, d->df_da, &sys->direction, n, d->pull);
+    jacobian_add_product(m, -1.0, d->pull, &sys->stiffness, 2 * n, d->df_dy);
+    jacobian_add_product(m, -1.0, d->pull, &sys->damping, 2 * n, d->df_dy + n);
+    jacobian_add_product(m, 1.0, d->df_dv, &sys->direction, 2 * n, d->df_dy + n);
     memset(d->load, 0, n * sizeof *d->load);
     memset(sys->dv_dt, 0, m * sizeof *sys->dv_dt);
     memset(sys->a, 0, m * sizeof *sys->a);
@@ -110,7 +110,7 @@ static void write_rows(tribo_system *sys, const struct tangents *d, double *dfdy
         sys->f[i] *= -sys->tally[i];
     }
     tribo_multiply_add(1, m, 2 * n, 1.0, sys->v, d->df_dy, energy);
-    add_product(1, 1.0, sys->f, &sys->direction, 0, energy + n);
+    jacobian_add_product(1, 1.0, sys->f, &sys->direction, 0, energy + n);
     if (dfdt) {
         memset(dfdt, 0, size * sizeof *dfdt);
         memcpy(dfdt + n, d->load, n * sizeof *dfdt);

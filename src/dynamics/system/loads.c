@@ -458,7 +458,7 @@ static int append_harmonic(tribo_system *sys, enum drives drives, double omega, 
 
 /* Adds a harmonic. Displacements of compliant contacts by a load, way [2][ncontact], become a base motion b = -d(way)/dt, so that
  * v includes d(way)/dt. Returns a status. */
-static int add_harmonic(tribo_system *sys, enum drives drives, double omega, const double *cosine, const double *sine)
+static int loads_add_harmonic(tribo_system *sys, enum drives drives, double omega, const double *cosine, const double *sine)
 {
     if (!sys) {
         return TRIBO_ERR_NULL;
@@ -582,17 +582,17 @@ static int remove_driven(tribo_system *sys, enum drives drives)
 
 int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine)
 {
-    return add_harmonic(sys, DRIVES_LOAD, omega, cosine, sine);
+    return loads_add_harmonic(sys, DRIVES_LOAD, omega, cosine, sine);
 }
 
 int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *cosine, const double *sine)
 {
-    return add_harmonic(sys, DRIVES_BASE, omega, cosine, sine);
+    return loads_add_harmonic(sys, DRIVES_BASE, omega, cosine, sine);
 }
 
 int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine, const double *sine)
 {
-    return add_harmonic(sys, DRIVES_LIMIT, omega, cosine, sine);
+    return loads_add_harmonic(sys, DRIVES_LIMIT, omega, cosine, sine);
 }
 
 int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value, const double *pattern)

@@ -73,7 +73,7 @@ struct input {
     size_t rows;
 };
 
-static struct input input_of(tribo_model *m, enum which which)
+static struct input model_input_of(tribo_model *m, enum which which)
 {
     static const char *const name[] = {"mass", "damping", "stiffness", "direction"};
     struct model *g = m ? &m->given : NULL;
@@ -112,7 +112,7 @@ static int check_input(const struct input *in, const void *numbers, const char *
 
 static int set_dense(tribo_model *model, enum which which, const double *entries)
 {
-    const struct input in = input_of(model, which);
+    const struct input in = model_input_of(model, which);
     struct matrix a = {0};
     const int status = check_input(&in, entries, "", in.rows);
     return status ? status : take(&in, &a, tribo_matrix_from_dense(&a, in.rows, model->given.ndof, entries));
@@ -120,7 +120,7 @@ static int set_dense(tribo_model *model, enum which which, const double *entries
 
 static int set_diagonal(tribo_model *model, enum which which, const double *entries)
 {
-    const struct input in = input_of(model, which);
+    const struct input in = model_input_of(model, which);
     struct matrix a = {0};
     const int status = check_input(&in, entries, "", in.rows);
     return status ? status : take(&in, &a, tribo_matrix_diagonal(&a, in.rows, entries));
@@ -153,7 +153,7 @@ static int check_rows(const struct input *in, const size_t *rowptr, const size_t
 
 static int set_csr(tribo_model *model, enum which which, const size_t *rowptr, const size_t *col, const double *val)
 {
-    const struct input in = input_of(model, which);
+    const struct input in = model_input_of(model, which);
     struct matrix a = {0};
     int status = check_input(&in, rowptr, ": rowptr", 1);
     const size_t entries = !status && rowptr[0] == 0 ? rowptr[in.rows] : 0;
