@@ -136,18 +136,6 @@ static const struct {
     {"largest step", "GSL's adaptive methods do"},
 };
 
-/* Returns TRIBO_OK if the method of drv accepts the setting, a bit TAKES_... */
-static int check_setting(const tribo_driver *drv, int setting)
-{
-    size_t k = 0;
-    while (setting >> k != 1) {
-        k++;
-    }
-    return drv->method->takes & setting ? TRIBO_OK
-                                        : tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s takes no %s; %s",
-                                                            drv->method->name, settings[k].name, settings[k].taken_by);
-}
-
 static int check_positive(const tribo_driver *drv, const char *name, double value)
 {
     return !isfinite(value) ? tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "%s = %g is not finite", name, value)
@@ -155,13 +143,22 @@ static int check_positive(const tribo_driver *drv, const char *name, double valu
                             : TRIBO_OK;
 }
 
+/* Returns TRIBO_OK if the method of drv accepts the setting, a bit TAKES_..., and value, called name, is positive. */
+static int check_setting(const tribo_driver *drv, int setting, const char *name, double value)
+{
+    size_t k = 0;
+    while (setting >> k != 1) {
+        k++;
+    }
+    return !drv                           ? TRIBO_ERR_NULL
+           : drv->method->takes & setting ? check_positive(drv, name, value)
+                                          : tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s takes no %s; %s",
+                                                              drv->method->name, settings[k].name, settings[k].taken_by);
+}
+
 int tribo_driver_set_step(tribo_driver *drv, double dt)
 {
-    if (!drv) {
-        return TRIBO_ERR_NULL;
-    }
-    int status = check_setting(drv, TAKES_STEP);
-    status = status ? status : check_positive(drv, "dt", dt);
+    const int status = check_setting(drv, TAKES_STEP, "dt", dt);
     if (!status) {
         drv->dt = dt;
         drv->revision = SIZE_MAX;
@@ -171,45 +168,34 @@ int tribo_driver_set_step(tribo_driver *drv, double dt)
 
 int tribo_driver_set_tolerance(tribo_driver *drv, double abstol, double reltol)
 {
-    if (!drv) {
-        return TRIBO_ERR_NULL;
+    int status = check_setting(drv, TAKES_TOLERANCE, "abstol", abstol);
+    if (!status && !(reltol >= 0.0 && isfinite(reltol))) {
+        status = isfinite(reltol) ? tribo_driver_fail(drv, TRIBO_ERR_NEGATIVE, "reltol = %g is negative", reltol)
+                                  : check_positive(drv, "reltol", reltol);
     }
-    int status = check_setting(drv, TAKES_TOLERANCE);
-    status = status ? status : check_positive(drv, "abstol", abstol);
-    if (status) {
-        return status;
+    if (!status) {
+        drv->abstol = abstol;
+        drv->reltol = reltol;
+        drv->revision = SIZE_MAX;
     }
-    if (!isfinite(reltol)) {
-        return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "reltol = %g is not finite", reltol);
-    }
-    if (reltol < 0.0) {
-        return tribo_driver_fail(drv, TRIBO_ERR_NEGATIVE, "reltol = %g is negative", reltol);
-    }
-    drv->abstol = abstol;
-    drv->reltol = reltol;
-    drv->revision = SIZE_MAX;
-    return TRIBO_OK;
+    return status;
 }
 
 int tribo_driver_set_output(tribo_driver *drv, double dt)
 {
-    if (!drv) {
-        return TRIBO_ERR_NULL;
+    const int status = check_setting(drv, TAKES_OUTPUT, "dt", dt);
+    if (!status) {
+        drv->output = dt;
     }
-    int status = check_setting(drv, TAKES_OUTPUT);
-    status = status ? status : check_positive(drv, "dt", dt);
-    drv->output = status ? drv->output : dt;
     return status;
 }
 
 int tribo_driver_set_max_step(tribo_driver *drv, double h)
 {
-    if (!drv) {
-        return TRIBO_ERR_NULL;
+    const int status = check_setting(drv, TAKES_MAX_STEP, "h", h == HUGE_VAL ? 1.0 : h);
+    if (!status) {
+        drv->max_step = h;
     }
-    int status = check_setting(drv, TAKES_MAX_STEP);
-    status = status || h == HUGE_VAL ? status : check_positive(drv, "h", h);
-    drv->max_step = status ? drv->max_step : h;
     return status;
 }
 

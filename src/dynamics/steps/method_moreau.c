@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "dynamics/system/delassus.h"
-#include "dynamics/system/hidden.h"
 #include "step_band.h"
 #include "step_form.h"
 #include "step_matrix.h"
@@ -68,7 +67,7 @@ static int moreau_create(tribo_driver *drv)
 }
 
 /* Sets the operator r. If r has lost light bodies to rounding, sets the operator of separate bodies, of a diagonal S, or refuses.
- * own: see hidden.h. Returns a status. */
+ * own: see tribo_hidden. Returns a status. */
 static int set_operator(struct moreau *m, const tribo_system *sys, const double *r, const double *own, double h)
 {
     const struct matrix *j = &sys->direction;
@@ -132,7 +131,7 @@ static int solve_steps(const void *matrix, size_t count, double *x)
     return tribo_step_matrix_solve(matrix, count, x);
 }
 
-/* r [ncontact][ncontact] = J S^-1 J'; own as in hidden.h. Returns 0 if out of memory. */
+/* r [ncontact][ncontact] = J S^-1 J'; own as in tribo_hidden. Returns 0 if out of memory. */
 static int find_operator(const struct moreau *m, const tribo_system *sys, double *r, double *own)
 {
     const struct matrix *j = &sys->direction;

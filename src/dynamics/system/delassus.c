@@ -1,5 +1,10 @@
 #include "delassus.h"
+#include "numerics/constraint.h"
+#include "numerics/lapack.h"
+#include "common/real.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -41,4 +46,69 @@ int tribo_delassus_by_columns(const struct matrix *j, delassus_solve *solve, con
     }
     free(room);
     return done;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ hidden bodies */
+
+/* A contact between a light body m and a heavy body M has the entry 1/m + 1/M of R; rounding hides 1/M. If other contacts hold
+ * the light body, a pivot of R is as small as m/M although the rows of J are independent. */
+
+/* For pivots up to SMALL, rounding of R changes the motion of a body by more than 1e-7 of the motion. */
+#define SMALL (DBL_EPSILON / 1e-7)
+
+/* If the shares J^2/m of every contact have smaller ratios, small pivots have another cause. */
+#define APART 1e3
+
+/* Returns the number of pivots > SMALL of the Cholesky factorization of r [n][n], scaled to a diagonal of 1, largest pivot first.
+ * Overwrites r; order [n] and work [2 n] are workspace. */
+static size_t large_pivots(double *r, size_t n, int *order, double *work)
+{
+    const int rows = (int)n;
+    const double small = SMALL;
+    int rank = 0, info = 0;
+    for (size_t i = 0; i < n; i++) {
+        const double root = sqrt(greater(r[i * n + i], DBL_MIN));
+        for (size_t k = 0; k < n; k++) {
+            r[i * n + k] /= root;
+            r[k * n + i] /= root;
+        }
+    }
+    dpstrf_("U", &rows, r, &rows, order, &rank, &small, work, &info, 1);
+    return (size_t)rank;
+}
+
+int tribo_hidden(const struct matrix *direction, const struct matrix *mass, const double *own, const double *r,
+                 struct hidden *where)
+{
+    const size_t n = direction->rows;
+    where->spread = 1.0;
+    for (size_t i = 0; i < n; i++) {
+        /* spread = ratio of the largest to the smallest share J^2/m in R_ii */
+        double least = HUGE_VAL, most = 0.0;
+        for (size_t k = direction->first[i]; k < direction->first[i + 1]; k++) {
+            const double share = fabs(product(direction->val[k], own[k]));
+            if (share > 0.0) {
+                least = lesser(least, share);
+                most = greater(most, share);
+            }
+        }
+        const double spread = most > 0.0 ? quotient(most, least) : 1.0;
+        if (spread > where->spread) {
+            *where = (struct hidden){i, spread};
+        }
+    }
+    if (where->spread < APART) {
+        return 0;
+    }
+    double *work = malloc((n + 2) * n * sizeof *work);
+    int *order = malloc(n * sizeof *order);
+    const size_t rank = tribo_constraints_rank(direction, mass);
+    int hidden = -1;
+    if (work && order && rank <= n && tribo_lapack_takes(n)) {
+        memcpy(work, r, n * n * sizeof *work);
+        hidden = large_pivots(work, n, order, work + n * n) < rank;
+    }
+    free(work);
+    free(order);
+    return hidden;
 }

@@ -250,15 +250,6 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
     return TRIBO_OK;
 }
 
-/* Copies the lent context, if there is one. Returns 0 if out of memory. */
-static int copy_lent(tribo_system *to, const tribo_system *sys)
-{
-    if (!sys->lent) {
-        return 1;
-    }
-    return tribo_clone(sys->lent, &to->lent) == TRIBO_OK && tribo_fix_operator(to->lent) == TRIBO_OK;
-}
-
 /* Copies all that tribo_system_build does not set. Returns 1, or 0 if out of memory. */
 static int copy_rest(tribo_system *to, const tribo_system *sys)
 {
@@ -275,7 +266,8 @@ static int copy_rest(tribo_system *to, const tribo_system *sys)
     to->modes = tribo_copy_of(sys->modes, sys->given * dofs, sizeof *to->modes, &done);
     to->omega = tribo_copy_of(sys->omega, dofs, sizeof *to->omega, &done);
     to->truncation = sys->truncation;
-    return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && copy_lent(to, sys) &&
+    done = done && (!sys->lent || (tribo_clone(sys->lent, &to->lent) == TRIBO_OK && tribo_fix_operator(to->lent) == TRIBO_OK));
+    return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK &&
            tribo_matrix_copy(&to->k, &sys->k) && tribo_matrix_copy(&to->c, &sys->c) && tribo_matrix_copy(&to->mass, &sys->mass) &&
            tribo_cholesky_copy(&to->factor, &sys->factor) && tribo_compliance_copy(to, sys) && tribo_expansion_copy(to, sys) &&
            tribo_loads_copy(to, sys);

@@ -325,22 +325,12 @@ int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
 
 /* ------------------------------------------------------------------------------------------------------------------- checks */
 
-static int check_finite(const tribo_system *sys, const char *name, const double *x, size_t n)
-{
-    for (size_t i = 0; x && i < n; i++) {
-        if (!isfinite(x[i])) {
-            return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "%s[%zu] = %g is not finite", name, i, x[i]);
-        }
-    }
-    return TRIBO_OK;
-}
-
 /* Checks x, amplitudes of loads, bases or limits in the caller's coordinates, or NULL. Returns TRIBO_ERR_UNSUPPORTED for a load
  * on a degree of freedom without mass, or a varying limit of a compliant contact. */
 static int check_pattern(const tribo_system *sys, enum drives drives, const char *name, const double *x)
 {
     const size_t *place = sys->expansion.place, n = drives == DRIVES_LOAD ? sys->given : sys->ncontact;
-    const int status = check_finite(sys, name, x, n);
+    const int status = tribo_system_check_finite(sys, name, x, n);
     for (size_t i = 0; x && place && !status && i < n; i++) {
         if (x[i] != 0.0 && drives == DRIVES_LOAD && !sys->modes && place[i] >= sys->ndof) {
             return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
@@ -389,7 +379,7 @@ static int check_knots(const tribo_system *sys, size_t knots, const double *time
         return knots ? tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", time ? name : "time")
                      : tribo_system_fail(sys, TRIBO_ERR_SIZE, "knots = 0");
     }
-    const int status = check_finite(sys, "time", time, knots);
+    const int status = tribo_system_check_finite(sys, "time", time, knots);
     for (size_t k = 1; !status && k < knots; k++) {
         if (time[k] <= time[k - 1]) {
             return tribo_system_fail(sys, TRIBO_ERR_RANGE, "time[%zu] = %.17g is not after time[%zu] = %.17g", k, time[k], k - 1,
@@ -553,7 +543,7 @@ static int add_table(tribo_system *sys, enum drives drives, size_t knots, const 
     }
     int status = knots == 0 || pattern ? check_knots(sys, knots, time, "value", value)
                                        : tribo_system_fail(sys, TRIBO_ERR_NULL, "pattern is NULL");
-    status = status ? status : check_finite(sys, "value", value, knots);
+    status = status ? status : tribo_system_check_finite(sys, "value", value, knots);
     status = status ? status : check_pattern(sys, drives, "pattern", pattern);
     return status ? status : append_table(sys, drives, knots, 1, time, value, pattern);
 }

@@ -1,4 +1,4 @@
-#include "hidden.h"
+#include "delassus.h"
 #include "model.h"
 
 #include <stdarg.h>

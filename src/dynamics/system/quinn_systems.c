@@ -59,19 +59,6 @@ int tribo_system_belt(tribo_system **sys, double kappa, double limit1, double li
 
 /* ----------------------------------------------------------------------------------------------------------------- chain */
 
-/* k = stiffness matrix: springs n between neighbours, 2 n between the last block and the ground. Returns 0 if out of memory. */
-static int chain_stiffness(struct matrix *k, size_t n)
-{
-    const double spring = (double)n;
-    struct triplets t = {0};
-    for (size_t i = 0; i < n; i++) {
-        for (size_t j = i ? i - 1 : 0; j < n && j <= i + 1; j++) {
-            tribo_triplets_put(&t, i, j, j != i ? -spring : i == 0 ? spring : i + 1 < n ? 2.0 * spring : 3.0 * spring);
-        }
-    }
-    return tribo_triplets_finish(&t, n, n, k);
-}
-
 /* each [n] = whole/n, but 3/4 of whole/n for the last block: the paper's last equation is 4/3 times an equation with symmetric
  * stiffness, so the last block has 3/4 of the mass and friction of the others. */
 static void share_out(double *each, size_t n, double whole)
@@ -81,12 +68,21 @@ static void share_out(double *each, size_t n, double whole)
     }
 }
 
+/* Builds the chain without limits and loads: springs n between neighbours, 2 n between the last block and the ground. mass [n] is
+ * workspace. Returns a status. */
 static int build_chain(tribo_system **sys, size_t n, double *mass)
 {
     struct model m = {.ndof = n, .ncontact = n};
+    const double spring = (double)n;
+    struct triplets t = {0};
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = i ? i - 1 : 0; j < n && j <= i + 1; j++) {
+            tribo_triplets_put(&t, i, j, j != i ? -spring : i == 0 ? spring : i + 1 < n ? 2.0 * spring : 3.0 * spring);
+        }
+    }
     share_out(mass, n, 1.0);
-    if (tribo_matrix_diagonal(&m.mass, n, mass) && tribo_matrix_diagonal(&m.direction, n, NULL) &&
-        chain_stiffness(&m.stiffness, n)) {
+    if (tribo_triplets_finish(&t, n, n, &m.stiffness) && tribo_matrix_diagonal(&m.mass, n, mass) &&
+        tribo_matrix_diagonal(&m.direction, n, NULL)) {
         return tribo_model_build(&m, sys);
     }
     tribo_model_free(&m);

@@ -65,26 +65,6 @@ static int knows(const struct snapping *s, size_t entry)
     return s->known[s->sys->direction.col[entry]] != 0.0;
 }
 
-/* Corrects the pair with the heaviest body, of pairs with both ends unknown. Returns 0 if there is none. */
-static size_t snap_heaviest(struct snapping *s)
-{
-    const struct matrix *j = &s->sys->direction;
-    size_t found = s->sys->ncontact;
-    double least = HUGE_VAL;
-    for (size_t i = 0; i < s->sys->ncontact; i++) {
-        const size_t first = j->first[i];
-        if (is_pair(s, i) && !knows(s, first) && !knows(s, first + 1)) {
-            const double yield = lesser(yield_of(s->sys, j->col[first], i), yield_of(s->sys, j->col[first + 1], i));
-            found = yield < least ? i : found;
-            least = lesser(yield, least);
-        }
-    }
-    if (found < s->sys->ncontact) {
-        snap_pair(s, found, j->first[found] + follows(s->sys, found, j->first[found]));
-    }
-    return found < s->sys->ncontact;
-}
-
 /* Sets snaps_in_order = 1 if no rigid contact corrects a degree of freedom in the row of an earlier rigid contact. */
 void tribo_system_order_snaps(tribo_system *sys)
 {
@@ -103,54 +83,57 @@ void tribo_system_order_snaps(tribo_system *sys)
     }
 }
 
-/* Corrects rows of one entry; if snaps_in_order, also pairs. Returns 1 if other resting contacts remain. */
-static int snap_first(struct snapping *s)
+/* Corrects rows of one entry; if snaps_in_order, also pairs. Else then pairs with one known end, and, where there are none, the
+ * pair with the heaviest body of those without. */
+static void snap(struct snapping *s)
 {
-    const size_t *first = s->sys->direction.first;
+    const tribo_system *sys = s->sys;
+    const struct matrix *j = &sys->direction;
+    const size_t n = sys->ncontact;
     int left = 0;
-    for (size_t i = 0, n = s->sys->ncontact; i < n; i++) {
-        if (!s->loose[i] && first[i + 1] - first[i] == 1) {
+    for (size_t i = 0; i < n; i++) {
+        const size_t first = j->first[i];
+        if (!s->loose[i] && j->first[i + 1] - first == 1) {
             /* snap_take for a single entry, inline: every step calls it for many contacts */
-            const size_t to = first[i];
             if (s->list) {
-                snap_take(s, i, to, to);
+                snap_take(s, i, first, first);
             } else {
-                s->x[s->sys->direction.col[to]] = s->base[i] / s->sys->direction.val[to];
+                s->x[j->col[first]] = s->base[i] / j->val[first];
             }
-        } else if (s->sys->snaps_in_order && is_pair(s, i)) {
-            const size_t to = first[i] + follows(s->sys, i, first[i]);
-            snap_take(s, i, to, 2 * first[i] + 1 - to);
+        } else if (sys->snaps_in_order && is_pair(s, i)) {
+            const size_t to = first + follows(sys, i, first);
+            snap_take(s, i, to, 2 * first + 1 - to);
         } else {
             left |= !s->loose[i];
         }
     }
-    return left;
-}
-
-static void snap(struct snapping *s)
-{
-    if (snap_first(s) && !s->sys->snaps_in_order) {
-        /* known = 1 in rows of one entry */
-        const struct matrix *j = &s->sys->direction;
-        memset(s->known, 0, s->sys->ndof * sizeof *s->known);
-        for (size_t i = 0; i < s->sys->ncontact; i++) {
+    if (!left || sys->snaps_in_order) {
+        return;
+    }
+    memset(s->known, 0, sys->ndof * sizeof *s->known);
+    for (size_t i = 0; i < n; i++) {
+        if (!s->loose[i] && j->first[i + 1] - j->first[i] == 1) {
+            s->known[j->col[j->first[i]]] = 1.0;
+        }
+    }
+    for (int some = 1; some;) {
+        size_t heaviest = n;
+        double least = HUGE_VAL;
+        some = 0;
+        for (size_t i = 0; i < n; i++) {
             const size_t first = j->first[i];
-            if (!s->loose[i] && j->first[i + 1] - first == 1) {
-                s->known[j->col[first]] = 1.0;
+            if (is_pair(s, i) && knows(s, first) != knows(s, first + 1)) {
+                snap_pair(s, i, first + (size_t)knows(s, first));
+                some = 1;
+            } else if (is_pair(s, i) && !knows(s, first)) {
+                const double yield = lesser(yield_of(sys, j->col[first], i), yield_of(sys, j->col[first + 1], i));
+                heaviest = yield < least ? i : heaviest;
+                least = lesser(yield, least);
             }
         }
-        for (size_t done = 1; done;) {
-            /* corrects pairs with one known end; found: number of these pairs */
-            size_t found = 0;
-            for (size_t i = 0; i < s->sys->ncontact; i++) {
-                const size_t first = s->sys->direction.first[i];
-                if (is_pair(s, i) && knows(s, first) != knows(s, first + 1)) {
-                    snap_pair(s, i, first + (size_t)knows(s, first));
-                    found++;
-                }
-            }
-            done = found;
-            done = done ? done : snap_heaviest(s);
+        if (!some && heaviest < n) {
+            snap_pair(s, heaviest, j->first[heaviest] + follows(sys, heaviest, j->first[heaviest]));
+            some = 1;
         }
     }
 }

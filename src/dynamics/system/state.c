@@ -52,11 +52,6 @@ static size_t displacement_at(const struct expansion *x, size_t d)
     return d < n ? d : d + n;
 }
 
-static int has_velocity(const struct expansion *x, size_t d)
-{
-    return d < x->dofs - x->sliders;
-}
-
 void tribo_system_read_state(const tribo_system *sys, const double *y, double *to)
 {
     const struct expansion *x = &sys->expansion;
@@ -120,7 +115,7 @@ void tribo_system_write_state(const tribo_system *sys, double t, const double *f
         tribo_matrix_multiply_add(&x->follow, 1.0, from + (rate ? n : 0), w);
         tribo_matrix_multiply_add(&x->give, 1.0, force, w);
         for (size_t d = 0; d < x->dofs; d++) {
-            if (x->place[d] >= n && (!rate || has_velocity(x, d))) {
+            if (x->place[d] >= n && (!rate || d < caller)) {
                 const size_t k = x->place[d] - n;
                 const double size =
                     tribo_matrix_row_size(&x->follow, k, from + (rate ? n : 0)) + tribo_matrix_row_size(&x->give, k, force);
@@ -146,27 +141,35 @@ size_t tribo_system_state_index(const tribo_system *sys, size_t i)
     return i < n || i >= 2 * n ? displacement_at(x, d) : x->dofs - x->sliders + d;
 }
 
-void tribo_system_read_combination(const tribo_system *sys, const double *c, double *to)
+void tribo_system_add_part(const tribo_system *sys, size_t d, double part, double *q, double *f)
 {
     const struct expansion *x = &sys->expansion;
+    const size_t k = x->place ? x->place[d] : d, w = k - sys->ndof;
+    if (k < sys->ndof) {
+        q[k] += part;
+        return;
+    }
+    for (size_t e = x->follow.first[w]; e < x->follow.first[w + 1]; e++) {
+        q[x->follow.col[e]] += x->follow.val[e] * part;
+    }
+    for (size_t e = x->give.first[w]; e < x->give.first[w + 1]; e++) {
+        f[x->give.col[e]] += x->give.val[e] * part;
+    }
+}
+
+void tribo_system_read_combination(const tribo_system *sys, const double *c, double *to)
+{
     const struct compliance *g = &sys->compliance;
     const size_t n = sys->ndof, caller = tribo_system_ndof(sys);
-    memset(to, 0, 2 * (n + g->count) * sizeof *to);
-    for (int rate = 0; rate < 2; rate++) {
-        double *q = to + (rate ? n : 0), *f = to + 2 * n + (rate ? g->count : 0);
+    double *force = sys->put_limit;
+    memset(to, 0, 2 * n * sizeof *to);
+    for (size_t rate = 0; rate < 2; rate++) {
+        memset(force, 0, sys->ncontact * sizeof *force);
         for (size_t d = 0; d < caller; d++) {
-            const size_t k = x->place ? x->place[d] : d;
-            const double part = c[d + (rate ? caller : 0)];
-            if (k < n) {
-                q[k] += part;
-                continue;
-            }
-            for (size_t e = x->follow.first[k - n]; e < x->follow.first[k - n + 1]; e++) {
-                q[x->follow.col[e]] += part * x->follow.val[e];
-            }
-            for (size_t i = 0; i < g->count; i++) {
-                f[i] += part * tribo_matrix_get(&x->give, k - n, g->contact[i]);
-            }
+            tribo_system_add_part(sys, d, c[d + rate * caller], to + rate * n, force);
+        }
+        for (size_t i = 0; i < g->count; i++) {
+            to[2 * n + rate * g->count + i] = force[g->contact[i]];
         }
     }
 }

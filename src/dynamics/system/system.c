@@ -55,6 +55,16 @@ int tribo_system_check_rates(const tribo_system *sys, const char *what)
     return status ? status : tribo_system_check_solved(sys, what);
 }
 
+int tribo_system_check_finite(const tribo_system *sys, const char *name, const double *x, size_t n)
+{
+    for (size_t i = 0; x && i < n; i++) {
+        if (!isfinite(x[i])) {
+            return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "%s[%zu] = %g is not finite", name, i, x[i]);
+        }
+    }
+    return TRIBO_OK;
+}
+
 int tribo_system_check_state(const tribo_system *sys, double t, const double *y)
 {
     if (!isfinite(t)) {
@@ -63,13 +73,7 @@ int tribo_system_check_state(const tribo_system *sys, double t, const double *y)
     if (!y) {
         return tribo_system_fail(sys, TRIBO_ERR_NULL, "y is NULL");
     }
-    const size_t dimension = tribo_system_dimension(sys);
-    for (size_t i = 0; i < dimension; i++) {
-        if (!isfinite(y[i])) {
-            return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "y[%zu] = %g is not finite", i, y[i]);
-        }
-    }
-    return TRIBO_OK;
+    return tribo_system_check_finite(sys, "y", y, tribo_system_dimension(sys));
 }
 
 /* -------------------------------------------------------------------------------------------------------------------- queries */
@@ -214,33 +218,16 @@ void tribo_system_solve_mass(const tribo_system *sys, double *x)
     }
 }
 
-/* Adds a force on degree of freedom k of (q, w). For w: to += follow' force, way += give' force. */
-static void add_force(const tribo_system *sys, size_t k, double force, double *to, double *way)
-{
-    const struct expansion *x = &sys->expansion;
-    const size_t w = k - sys->ndof;
-    if (k < sys->ndof) {
-        to[k] += force;
-        return;
-    }
-    for (size_t e = x->follow.first[w]; e < x->follow.first[w + 1]; e++) {
-        to[x->follow.col[e]] += x->follow.val[e] * force;
-    }
-    for (size_t e = x->give.first[w]; e < x->give.first[w + 1]; e++) {
-        way[x->give.col[e]] += x->give.val[e] * force;
-    }
-}
-
 void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to, double *way)
 {
-    const size_t *place = sys->expansion.place, dofs = place ? sys->expansion.dofs : sys->ndof;
+    const size_t dofs = sys->expansion.place ? sys->expansion.dofs : sys->ndof;
     memset(to, 0, sys->ndof * sizeof *to);
     for (size_t i = 0; i < sys->given; i++) {
         if (!sys->modes) {
-            add_force(sys, place ? place[i] : i, force[i], to, way);
+            tribo_system_add_part(sys, i, force[i], to, way);
         }
         for (size_t j = 0; sys->modes && j < dofs; j++) {
-            add_force(sys, place ? place[j] : j, sys->modes[i * dofs + j] * force[i], to, way);
+            tribo_system_add_part(sys, j, sys->modes[i * dofs + j] * force[i], to, way);
         }
     }
     tribo_system_solve_mass(sys, to);

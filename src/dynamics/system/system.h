@@ -289,6 +289,9 @@ int tribo_system_check_solved(const tribo_system *sys, const char *what);
 /* Both checks, for functions that compute rates of states: neither massless degrees of freedom nor unsolved systems. */
 int tribo_system_check_rates(const tribo_system *sys, const char *what);
 
+/* Returns TRIBO_OK if all x [n] are finite, or x is NULL, else an error with the name of x. */
+int tribo_system_check_finite(const tribo_system *sys, const char *name, const double *x, size_t n);
+
 /* Returns TRIBO_OK if t and the caller's state y are finite, else an error. */
 int tribo_system_check_state(const tribo_system *sys, double t, const double *y);
 
@@ -322,6 +325,9 @@ void tribo_system_add_velocities(const tribo_system *sys, const double *y, doubl
 
 /* Returns the index in the caller's state of value i of the methods' state; for a force, of a massless displacement. */
 size_t tribo_system_state_index(const tribo_system *sys, size_t i);
+
+/* For x_d = q_k adds part to q[k]; for x_d = w_k row k of follow and give, times part, to q [ndof] and f [ncontact]. */
+void tribo_system_add_part(const tribo_system *sys, size_t d, double part, double *q, double *f);
 
 /* to [2 ndof + 2 count] = coefficients of q, q', f, f' in the combination c [2 tribo_system_ndof] of x, x'. */
 void tribo_system_read_combination(const tribo_system *sys, const double *c, double *to);
