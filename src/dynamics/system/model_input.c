@@ -85,7 +85,7 @@ static struct input model_input_of(tribo_model *m, enum which which)
 }
 
 /* Sets *in->to = a if all entries are finite. done: 0 if there was no memory for a. Returns a status. */
-static int take(const struct input *in, struct matrix *a, int done)
+static int model_take(const struct input *in, struct matrix *a, int done)
 {
     size_t i, j;
     double x, y;
@@ -115,7 +115,7 @@ static int set_dense(tribo_model *model, enum which which, const double *entries
     const struct input in = model_input_of(model, which);
     struct matrix a = {0};
     const int status = check_input(&in, entries, "", in.rows);
-    return status ? status : take(&in, &a, tribo_matrix_from_dense(&a, in.rows, model->given.ndof, entries));
+    return status ? status : model_take(&in, &a, tribo_matrix_from_dense(&a, in.rows, model->given.ndof, entries));
 }
 
 static int set_diagonal(tribo_model *model, enum which which, const double *entries)
@@ -123,12 +123,12 @@ static int set_diagonal(tribo_model *model, enum which which, const double *entr
     const struct input in = model_input_of(model, which);
     struct matrix a = {0};
     const int status = check_input(&in, entries, "", in.rows);
-    return status ? status : take(&in, &a, tribo_matrix_diagonal(&a, in.rows, entries));
+    return status ? status : model_take(&in, &a, tribo_matrix_diagonal(&a, in.rows, entries));
 }
 
 /* Returns an error if rowptr does not begin at 0 and ascend, or a column is too large. Checks all of rowptr before reading
  * col. */
-static int check_rows(const struct input *in, const size_t *rowptr, const size_t *col)
+static int check_csr(const struct input *in, const size_t *rowptr, const size_t *col)
 {
     const struct model *m = &in->model->given;
     if (rowptr[0] != 0) {
@@ -159,7 +159,7 @@ static int set_csr(tribo_model *model, enum which which, const size_t *rowptr, c
     const size_t entries = !status && rowptr[0] == 0 ? rowptr[in.rows] : 0;
     status = status ? status : check_input(&in, col, ": col", entries);
     status = status ? status : check_input(&in, val, ": val", entries);
-    status = status ? status : check_rows(&in, rowptr, col);
+    status = status ? status : check_csr(&in, rowptr, col);
     if (status) {
         return status;
     }
@@ -182,7 +182,7 @@ static int set_csr(tribo_model *model, enum which which, const size_t *rowptr, c
     if (status) {
         tribo_matrix_free(&a);
     }
-    return status ? status : take(&in, &a, done);
+    return status ? status : model_take(&in, &a, done);
 }
 
 int tribo_model_set_mass(tribo_model *model, const double *m)
