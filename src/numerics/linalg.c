@@ -11,17 +11,7 @@
 
 #include "tribo/tribo.h"
 
-double tribo_dot(const double *x, const double *y, size_t n)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        sum += x[i] * y[i];
-    }
-    return sum;
-}
-
-/* Returns x'y, summed in eight parts. */
-TRIBO_SIMD static double dot_of_eight(size_t n, const double *restrict x, const double *restrict y)
+TRIBO_SIMD double tribo_dot_of_eight(size_t n, const double *restrict x, const double *restrict y)
 {
     enum { LANES = 8 };
     double part[LANES] = {0.0};
@@ -35,6 +25,34 @@ TRIBO_SIMD static double dot_of_eight(size_t n, const double *restrict x, const 
         part[k] += x[i] * y[i];
     }
     return ((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7]));
+}
+
+TRIBO_SIMD double tribo_size_of_eight(size_t n, const double *restrict x, const double *restrict y)
+{
+    enum { LANES = 8 };
+    double part[LANES] = {0.0};
+    size_t i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        for (size_t k = 0; k < LANES; k++) {
+            part[k] += fabs(x[i + k] * y[i + k]);
+        }
+    }
+    for (size_t k = 0; i < n; i++, k++) {
+        part[k] += fabs(x[i] * y[i]);
+    }
+    return ((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7]));
+}
+
+double tribo_dot(const double *x, const double *y, size_t n)
+{
+    double sum = 0.0;
+    if (n >= MATRIX_WIDE) {
+        return tribo_dot_of_eight(n, x, y);
+    }
+    for (size_t i = 0; i < n; i++) {
+        sum += x[i] * y[i];
+    }
+    return sum;
 }
 
 void tribo_add(double *to, double factor, const double *x, size_t n)
@@ -87,13 +105,42 @@ TRIBO_SIMD static void add_four(double *restrict c, const double *restrict b, si
     }
 }
 
+/* c [4] += factor times the sums of tribo_dot_of_eight for the rows of a [4][n]; four rows side by side, since each sum waits for
+ * itself. */
+TRIBO_SIMD static void add_four_dots(size_t n, double factor, const double *restrict a, const double *restrict x,
+                                     double *restrict c)
+{
+    enum { LANES = 8, ROWS = 4 };
+    double part[ROWS][LANES] = {{0.0}};
+    size_t i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        for (size_t k = 0; k < LANES; k++) {
+            part[0][k] += a[i + k] * x[i + k];
+            part[1][k] += a[n + i + k] * x[i + k];
+            part[2][k] += a[2 * n + i + k] * x[i + k];
+            part[3][k] += a[3 * n + i + k] * x[i + k];
+        }
+    }
+    for (size_t row = 0; row < ROWS; row++) {
+        double *p = part[row];
+        for (size_t k = 0; i + k < n; k++) {
+            p[k] += a[row * n + i + k] * x[i + k];
+        }
+        c[row] += factor * (((p[0] + p[4]) + (p[1] + p[5])) + ((p[2] + p[6]) + (p[3] + p[7])));
+    }
+}
+
 void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c)
 {
-    for (size_t i = 0; i < rows; i++) {
+    size_t i = 0;
+    for (; cols == 1 && i + 4 <= rows; i += 4) {
+        add_four_dots(inner, factor, a + i * inner, b, c + i);
+    }
+    for (; i < rows; i++) {
         const double *row = a + i * inner;
         size_t k = 0;
         if (cols == 1) {
-            c[i] += factor * dot_of_eight(inner, row, b);
+            c[i] += factor * tribo_dot_of_eight(inner, row, b);
             continue;
         }
         for (; k + 4 <= inner; k += 4) {

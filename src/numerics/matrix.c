@@ -271,7 +271,7 @@ void tribo_matrix_scale_rows(struct matrix *a, const double *factor)
 
 double tribo_matrix_get(const struct matrix *a, size_t i, size_t j)
 {
-    const size_t at = tribo_rows_find(a->first, a->col, i, j);
+    const size_t at = a->first[i + 1] - a->first[i] == a->cols ? a->first[i] + j : tribo_rows_find(a->first, a->col, i, j);
     return at == SIZE_MAX ? 0.0 : a->val[at];
 }
 

@@ -1,5 +1,5 @@
 /* Products with real matrices. */
-#include "matrix.h"
+#include "linalg.h"
 #include "common/real.h"
 #include "common/simd.h"
 #include "linalg.h"
@@ -49,7 +49,9 @@ static size_t row_between(ptrdiff_t i, size_t least, size_t most)
 
 void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, double *y)
 {
-    if (!a->diagonals) {
+    if (a->cols >= MATRIX_WIDE && a->first[end] - a->first[begin] == (end - begin) * a->cols) {
+        tribo_multiply_add(end - begin, a->cols, 1, factor, a->val + a->first[begin], x, y);
+    } else if (!a->diagonals) {
         for (size_t i = begin; i < end; i++) {
             y[i - begin] += factor * tribo_matrix_row_dot(a, i, x);
         }

@@ -175,10 +175,11 @@ static void gather(struct variation *x, size_t i, size_t group)
     x->group[i] = group;
     for (size_t k = 0; k < count; k++) {
         const size_t one = x->queue[k];
+        const double least = TOGETHER * tribo_system_delassus(x->sys, one, one);
         for (size_t j = 0; j < x->sys->ncontact; j++) {
-            const double coupling = x->group[j] ? 0.0 : fabs(tribo_system_delassus(x->sys, one, j));
-            if (coupling > TOGETHER * tribo_system_delassus(x->sys, one, one) && !m->constant.elastic[j] &&
-                (x->before[j] == 0 || m->state.slip[j] == TRIBO_SLIP_STUCK || stops(x, j))) {
+            const int passes = !x->group[j] && !m->constant.elastic[j] &&
+                               (x->before[j] == 0 || m->state.slip[j] == TRIBO_SLIP_STUCK || stops(x, j));
+            if (passes && fabs(tribo_system_delassus(x->sys, one, j)) > least) {
                 x->group[j] = group;
                 x->queue[count++] = j;
             }
