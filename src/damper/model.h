@@ -24,13 +24,17 @@ struct point {
     double amplitude; /* relative change */
     double power;     /* change of the power lost to friction, by the input power */
     int compared;     /* 0: not found with both, and changes are 0 */
+    int between;      /* 1: at a limit that the user has not given; not in the model error */
 };
+
+/* The larger of both changes; 0 of a point between. */
+double change_of(const struct point *p);
 
 /* Finds the points with both numbers of modes, unless m is whole. */
 void compare_models(const struct model *m, size_t threads, struct point *point, size_t count);
 
-/* Twice the largest change of the points, and of frequencies and amplitudes with all contacts stuck: bounds the error if each
- * doubling of the modes halves it. NaN if no point was compared. */
+/* Bounds the error: MARGIN times the largest change of the points, and of frequencies and amplitudes with all contacts stuck.
+ * NaN if no point was compared. */
 double model_error(const struct model *m, const struct point *point, size_t count);
 
 /* Prints the number of modes and the bound of missing displacements; prints the model error. */

@@ -68,6 +68,7 @@ void check_extremes(const struct study *s, double hz)
 
 enum { EVEN_POINTS = 8 /* of one curve, the largest and the most sensitive among them */ };
 enum { CURVE_POINTS = 3 /* of each of several curves, the largest among them */ };
+enum { ROUNDS = 4 /* of two more points beside that of the largest change */ };
 
 /* The motion that more modes change most: contacts slip by the least, and friction still takes a good part of the power. */
 static const struct sample *most_sensitive(const struct curve *c)
@@ -83,43 +84,105 @@ static const struct sample *most_sensitive(const struct curve *c)
     return best;
 }
 
-/* point [most] out: points of a curve to be found again. Returns their number. */
-static size_t place_points(const struct curve *c, size_t most, struct point *point)
+/* The places of curves that are found again with twice the modes. */
+struct places {
+    const struct curve *curve; /* [curves] */
+    size_t count;
+    struct place_on {
+        size_t curve, sample;
+    } *at;               /* [count] */
+    struct point *point; /* [count] */
+};
+
+/* Adds a place, unless it is there or its motion was not found. */
+static void add_place(struct places *p, size_t curve, size_t sample)
 {
-    const struct sample *chosen[EVEN_POINTS], *more[] = {largest_of(c), most_sensitive(c)};
+    const struct sample *s = &p->curve[curve].sample[sample];
+    const struct motion *m = &s->motion;
+    int is_there = !m->found;
+    for (size_t k = 0; k < p->count; k++) {
+        is_there = is_there || (p->at[k].curve == curve && p->at[k].sample == sample);
+    }
+    if (!is_there) {
+        p->at[p->count] = (struct place_on){curve, sample};
+        p->point[p->count++] =
+            (struct point){.limit = m->limit, .hz = m->hz, .between = !s->asked && s != largest_of(&p->curve[curve])};
+    }
+}
+
+/* Adds samples spread over curve k, `most` in all, the largest and, on a single curve, the most sensitive among them. */
+static void add_spread(struct places *p, size_t k, size_t most)
+{
+    const struct curve *c = &p->curve[k];
+    const struct sample *chosen[EVEN_POINTS];
     const size_t others = most == EVEN_POINTS ? 2 : 1;
     size_t count = spread_samples(c, most - others, chosen);
-    for (size_t i = 0; i < others; i++) {
-        int is_there = more[i] == NULL;
-        for (size_t k = 0; k < count; k++) {
-            is_there = is_there || chosen[k] == more[i];
-        }
-        if (!is_there) {
-            chosen[count++] = more[i];
+    chosen[count++] = largest_of(c);
+    chosen[count++] = others > 1 ? most_sensitive(c) : NULL;
+    for (size_t i = 0; i < count; i++) {
+        if (chosen[i]) {
+            add_place(p, k, (size_t)(chosen[i] - c->sample));
         }
     }
-    for (size_t k = 0; k < count; k++) {
-        point[k] = (struct point){.limit = chosen[k]->motion.limit, .hz = chosen[k]->motion.hz};
+}
+
+/* Adds the middle one of the samples from begin to end - 1 that the user gave. */
+static void add_middle(struct places *p, size_t curve, size_t begin, size_t end)
+{
+    const struct sample *sample = p->curve[curve].sample;
+    size_t asked = 0, middle = begin;
+    for (size_t i = begin; i < end; i++) {
+        asked += (size_t)sample[i].asked;
     }
-    return count;
+    for (size_t passed = 0; middle < end && (passed += (size_t)sample[middle].asked) <= asked / 2; middle++) {
+    }
+    if (asked > 0) {
+        add_place(p, curve, middle);
+    }
+}
+
+/* Adds samples on both sides of the place of the largest change: errors peak where a curve is steep, as where contacts just stick
+ * for ever. */
+static void add_beside_worst(struct places *p)
+{
+    size_t worst = 0;
+    for (size_t k = 1; k < p->count; k++) {
+        worst = change_of(&p->point[k]) > change_of(&p->point[worst]) ? k : worst;
+    }
+    const struct place_on at = p->at[worst];
+    size_t begin = 0, end = p->curve[at.curve].count;
+    for (size_t k = 0; k < p->count; k++) {
+        const size_t sample = p->at[k].sample;
+        begin = p->at[k].curve == at.curve && sample < at.sample && sample >= begin ? sample + 1 : begin;
+        end = p->at[k].curve == at.curve && sample > at.sample && sample < end ? sample : end;
+    }
+    add_middle(p, at.curve, begin, at.sample);
+    add_middle(p, at.curve, at.sample + 1, end);
 }
 
 double show_model_error(const struct study *s, const struct curve *c, size_t curves)
 {
-    const size_t most = curves > 1 ? CURVE_POINTS : EVEN_POINTS;
-    struct point *point = need_memory(curves * most, sizeof *point);
-    size_t count = 0;
+    const size_t most = curves > 1 ? CURVE_POINTS : EVEN_POINTS, room = curves * most + 2 * ROUNDS;
+    struct places p = {.curve = c, .at = need_memory(room, sizeof *p.at), .point = need_memory(room, sizeof *p.point)};
     for (size_t k = 0; k < curves; k++) {
-        count += place_points(&c[k], most, point + count);
+        add_spread(&p, k, most);
     }
-    compare_models(s->model, s->options->threads, point, count);
+    size_t compared = 0;
+    for (int round = 0; round <= ROUNDS && compared < p.count && !interrupted(); round++) {
+        compare_models(s->model, s->options->threads, p.point + compared, p.count - compared);
+        compared = p.count;
+        if (round < ROUNDS && !s->model->whole) {
+            add_beside_worst(&p);
+        }
+    }
     end_progress();
     if (!interrupted()) {
-        report_error(s->tables, s->model, point, count);
+        report_error(s->tables, s->model, p.point, compared);
     }
     fflush(stdout);
-    const double error = model_error(s->model, point, count);
-    free(point);
+    const double error = model_error(s->model, p.point, compared);
+    free(p.at);
+    free(p.point);
     return error;
 }
 
