@@ -16,34 +16,20 @@ static const double MARGIN = 2.5; /* error over change: up to 2.2 on beams and p
 
 /* -------------------------------------------------------------------------------------------------------------- comparing */
 
-struct comparison {
-    const struct model *model;
-    const struct point *point;
-    struct motion *motion; /* [count][2] */
-};
-
 /* Contacts in a plane are marched with Coulomb's law, all others are exact. */
-static void find_one(void *data, size_t k)
-{
-    const struct comparison *c = data;
-    const struct damper *d = k % 2 ? &c->model->finer : &c->model->damper;
-    struct damper coulomb = *d;
-    coulomb.law = TRIBO_COULOMB;
-    struct worker w = create_worker(&coulomb, coulomb.planar > 0);
-    double *y = need_memory(record_of(w.d), sizeof *y);
-    c->motion[k] = find_motion(&w, c->point[k / 2].limit, c->point[k / 2].hz, NULL, y);
-    free(y);
-    free_worker(&w);
-}
-
 void compare_models(const struct model *m, size_t threads, struct point *point, size_t count)
 {
-    struct comparison c = {m, point, need_memory(2 * count, sizeof *c.motion)};
+    struct damper both[] = {m->damper, m->finer};
+    struct task *task = need_memory(2 * count, sizeof *task);
+    for (size_t k = 0; k < 2 * count; k++) {
+        both[k % 2].law = TRIBO_COULOMB;
+        task[k] = (struct task){&both[k % 2], m->damper.planar > 0, .limit = point[k / 2].limit, .hz = point[k / 2].hz};
+    }
     if (!m->whole) {
-        run_jobs(threads, 2 * count, find_one, &c);
+        run_tasks(threads, task, 2 * count);
     }
     for (size_t k = 0; k < count; k++) {
-        const struct motion *kept = &c.motion[2 * k], *more = kept + 1;
+        const struct motion *kept = &task[2 * k].motion, *more = &task[2 * k + 1].motion;
         point[k].compared = kept->found && more->found;
         if (point[k].compared) {
             const double in = fmax(fabs(kept->friction) + kept->damped, fabs(more->friction) + more->damped);
@@ -51,7 +37,7 @@ void compare_models(const struct model *m, size_t threads, struct point *point, 
             point[k].power = in > 0.0 ? fabs(kept->friction - more->friction) / in : 0.0;
         }
     }
-    free(c.motion);
+    free(task);
 }
 
 /* The largest change with all contacts stuck: of amplitudes at the ends of the band, and of natural frequencies up to the highest
@@ -157,9 +143,8 @@ int take_more_modes(struct model *m, double error)
 
 struct model create_model(const struct options *o, const struct structure *s)
 {
-    struct model m = {.options = o,
-                      .structure = s,
-                      .damper = o->modes ? create_damper(o, s, o->modes) : with_modes(o, s, LEAST_MODES)};
+    struct model m = {
+        .options = o, .structure = s, .damper = o->modes ? create_damper(o, s, o->modes) : with_modes(o, s, LEAST_MODES)};
     check_drives(o, &m.damper);
     while (may_double(&m) && !(missing(&m.damper, o) <= MOST_MISSING)) {
         const size_t kept = 2 * m.damper.kept;
@@ -236,7 +221,9 @@ void report_error(const struct tables *t, const struct model *m, const struct po
         printf("model error: at most %.1e; with %zu modes amplitudes change by %.1e, powers by %.1e (at %zu point%s), all stuck "
                "by %.1e%s\n",
                error, m->finer.kept, amplitude, power, compared, compared == 1 ? "" : "s", stuck,
-               error <= MOST_ERROR ? "" : may_double(m) ? ": again with these" : ": take more --modes");
+               error <= MOST_ERROR ? ""
+               : may_double(m)     ? ": again with these"
+                                   : ": take more --modes");
         report_between(point, count, error);
     }
     if (!isnan(error)) {

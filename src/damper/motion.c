@@ -150,3 +150,18 @@ struct motion find_motion(struct worker *w, double limit, double hz, const doubl
     show_point();
     return m;
 }
+
+static void run_task(void *data, size_t k)
+{
+    struct task *t = (struct task *)data + k;
+    struct worker w = create_worker(t->d, t->march);
+    double *y = need_memory(record_of(t->d), sizeof *y);
+    t->motion = find_motion(&w, t->limit, t->hz, t->guess, y);
+    free(y);
+    free_worker(&w);
+}
+
+void run_tasks(size_t threads, struct task *task, size_t count)
+{
+    run_jobs(threads, count, run_task, task);
+}

@@ -16,9 +16,9 @@ struct motion {
 struct worker {
     const struct damper *d;
     tribo_system *sys;
-    tribo_driver *drv; /* "exact"; NULL with contacts in a plane */
+    tribo_driver *drv;     /* "exact"; NULL with contacts in a plane */
     tribo_driver *marcher; /* of driver_at; NULL: none */
-    int march;         /* steady motions are found by marching */
+    int march;             /* steady motions are found by marching */
     size_t dimension;
     double *limit; /* [contacts] */
     double *c;     /* [2 modes] workspace: coefficients of a signal c'[q, q'] */
@@ -39,5 +39,15 @@ size_t record_of(const struct damper *d);
 
 /* Finds it from the state guess, or from rest if that is NULL. y out, if found: its record. */
 struct motion find_motion(struct worker *w, double limit, double hz, const double *guess, double *y);
+
+/* Motions that are found by themselves, each by a worker of its own; guess as above. Sets motion. */
+struct task {
+    const struct damper *d;
+    int march;
+    double limit, hz;
+    const double *guess;
+    struct motion motion;
+};
+void run_tasks(size_t threads, struct task *task, size_t count);
 
 #endif

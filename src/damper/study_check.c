@@ -50,17 +50,17 @@ void check_extremes(const struct study *s, double hz)
         all.limit[c] = (double)NAN;
         all.mu[c] = 1.0;
     }
-    struct worker w = create_worker(&all, s->options->march);
-    double *y = need_memory(record_of(w.d), sizeof *y);
-    const struct motion open = find_motion(&w, 0.0, hz, NULL, y), stuck = find_motion(&w, 1e6 * d->size, hz, NULL, y);
+    struct task task[] = {{&all, s->options->march, 0.0, hz, .guess = NULL},
+                          {&all, s->options->march, 1e6 * d->size, hz, .guess = NULL}};
+    run_tasks(s->options->threads, task, 2);
     const double omega = TURN * hz;
     end_progress();
-    printf("load at %.7g Hz\n", hz);
-    compare(s, &open, linear_amplitude(&d->open, omega), "free", "without friction");
-    compare(s, &stuck, linear_amplitude(&d->stuck, omega), "stuck", "all contacts stuck");
+    if (!interrupted()) {
+        printf("load at %.7g Hz\n", hz);
+        compare(s, &task[0].motion, linear_amplitude(&d->open, omega), "free", "without friction");
+        compare(s, &task[1].motion, linear_amplitude(&d->stuck, omega), "stuck", "all contacts stuck");
+    }
     fflush(stdout);
-    free(y);
-    free_worker(&w);
     free(each);
 }
 
@@ -84,13 +84,16 @@ static const struct sample *most_sensitive(const struct curve *c)
     return best;
 }
 
+/* Sample `sample` of curve `curve`. */
+struct place_on {
+    size_t curve, sample;
+};
+
 /* The places of curves that are found again with twice the modes. */
 struct places {
     const struct curve *curve; /* [curves] */
     size_t count;
-    struct place_on {
-        size_t curve, sample;
-    } *at;               /* [count] */
+    struct place_on *at; /* [count] */
     struct point *point; /* [count] */
 };
 
@@ -188,25 +191,8 @@ double show_model_error(const struct study *s, const struct curve *c, size_t cur
 
 /* ------------------------------------------------------------------------------------------------------------- marching */
 
-/* Samples of a curve, and the same motions by marching. */
-struct marched {
-    const struct damper *damper;
-    const struct sample **sample;
-    struct motion *motion;
-};
-
-static void march_one(void *data, size_t k)
-{
-    const struct marched *m = data;
-    const struct motion *known = &m->sample[k]->motion;
-    struct worker w = create_worker(m->damper, 1);
-    double *y = need_memory(record_of(w.d), sizeof *y);
-    m->motion[k] = find_motion(&w, known->limit, known->hz, NULL, y);
-    free(y);
-    free_worker(&w);
-}
-
-static void report(const struct study *s, const struct marched *m, size_t count)
+/* task: by marching, of the samples. */
+static void report(const struct study *s, const struct sample *const *sample, const struct task *task, size_t count)
 {
     FILE *table = create_table(s->tables, "check");
     double amplitude = 0.0, power = 0.0, most = 0.0, unbalanced = 0.0;
@@ -214,7 +200,7 @@ static void report(const struct study *s, const struct marched *m, size_t count)
     printf("by marching in time (%s, %s)\n  %12s    frequency    amplitude   difference  periods\n",
            s->options->law == TRIBO_COULOMB ? "midpoint rule" : "rk4", tribo_law_name(s->options->law), s->tables->limit);
     for (size_t k = 0; k < count; k++) {
-        const struct motion *here = &m->motion[k], *known = &m->sample[k]->motion;
+        const struct motion *here = &task[k].motion, *known = &sample[k]->motion;
         write_motion(table, here, NULL, NULL);
         if (!here->found) {
             printf("  %12.5g %12.5g  %s\n", here->limit, here->hz, here->message);
@@ -243,15 +229,19 @@ void check_by_marching(const struct study *s, const struct curve *c)
         printf("--check was not done: all points are by marching already\n");
         return;
     }
-    struct marched m = {s->damper, need_memory(most, sizeof *m.sample), need_memory(most, sizeof *m.motion)};
-    const size_t count = spread_samples(c, most, m.sample);
-    run_jobs(s->options->threads, count, march_one, &m);
+    const struct sample **sample = need_memory(most, sizeof *sample);
+    struct task *task = need_memory(most, sizeof *task);
+    const size_t count = spread_samples(c, most, sample);
+    for (size_t k = 0; k < count; k++) {
+        task[k] = (struct task){s->damper, 1, .limit = sample[k]->motion.limit, .hz = sample[k]->motion.hz};
+    }
+    run_tasks(s->options->threads, task, count);
     end_progress();
     if (count == 0 || interrupted()) {
         printf("--check was not done: %s\n", interrupted() ? "interrupted" : "no motion was found");
     } else {
-        report(s, &m, count);
+        report(s, sample, task, count);
     }
-    free(m.sample);
-    free(m.motion);
+    free(sample);
+    free(task);
 }

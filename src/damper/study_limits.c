@@ -20,31 +20,24 @@ double limit_of(const struct range *limits, size_t k)
 
 /* -------------------------------------------------------------------------------------------------------------- power */
 
-/* Limits at which the dissipated power is found, each from the motion of one sample. */
+/* The dissipated power is found from the motion of one sample. */
 struct trial {
     const struct study *study;
     const struct sample *from;
-    const double *limit;
-    double *value;
 };
-
-static void try_limit(void *data, size_t k)
-{
-    const struct trial *t = data;
-    struct worker w = create_worker(t->study->damper, t->study->options->march);
-    double *y = need_memory(record_of(w.d), sizeof *y);
-    const struct motion m = find_motion(&w, t->limit[k], t->from->motion.hz, t->from->y, y);
-    t->value[k] = m.found ? -m.friction : HUGE_VAL;
-    free(y);
-    free_worker(&w);
-}
 
 static void try_limits(void *data, const double *limit, double *value, size_t count)
 {
-    struct trial *t = data;
-    t->limit = limit;
-    t->value = value;
-    run_jobs(t->study->options->threads, count, try_limit, t);
+    const struct trial *t = data;
+    struct task *task = need_memory(count, sizeof *task);
+    for (size_t k = 0; k < count; k++) {
+        task[k] = (struct task){t->study->damper, t->study->options->march, limit[k], t->from->motion.hz, .guess = t->from->y};
+    }
+    run_tasks(t->study->options->threads, task, count);
+    for (size_t k = 0; k < count; k++) {
+        value[k] = task[k].motion.found ? -task[k].motion.friction : HUGE_VAL;
+    }
+    free(task);
 }
 
 /* The place of the largest dissipated power; count if nothing dissipates. */
