@@ -26,8 +26,9 @@
 /* ------------------------------------------------------------------------------------------------------------------ memory */
 
 /* Arrays are many and short: a block holds several. The first block has BLOCK bytes, a size that allocators serve without a
- * search; each next block is at least twice as large as the block before. */
+ * search; each next block is at least twice as large as the block before, up to MOST_ROOM units. Longer arrays have their own. */
 #define BLOCK 992
+#define MOST_ROOM ((size_t)4096)
 
 struct modal_block {
     struct modal_block *next;
@@ -40,7 +41,8 @@ void *tribo_modal_take(struct modal_store *store, size_t count, size_t size)
     struct modal_block *block = store->last;
     const size_t units = (count * size + sizeof *block->unit - 1) / sizeof *block->unit;
     if (!block || block->room - block->used < units) {
-        const size_t least = block ? 2 * block->room : BLOCK / sizeof *block->unit, room = units > least ? units : least;
+        const size_t twice = block ? 2 * block->room : BLOCK / sizeof *block->unit, least = twice < MOST_ROOM ? twice : MOST_ROOM;
+        const size_t room = units > least ? units : least;
         struct modal_block *more = malloc(sizeof *more + room * sizeof *more->unit);
         if (!more) {
             return NULL;

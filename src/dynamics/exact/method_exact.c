@@ -14,7 +14,7 @@
 #include "common/zeros.h"
 
 /* Bytes of structures above which all structures are dropped. */
-#define CACHE_BYTES ((size_t)256 << 20)
+#define CACHE_BYTES ((size_t)512 << 20)
 
 struct exact {
     tribo_system *sys;
