@@ -151,11 +151,40 @@ static int solve_densely(struct shooting *s, const double *derivative, double cu
                                    s->map.sys->ndof, plural(s->map.sys->ndof));
 }
 
-/* x = (I - D) x, D = the derivative at s->here over s->spans spans. */
+/* x = s->free x, if s->preconditions. */
+static void apply_free(const struct shooting *s, double *x)
+{
+    const size_t half = s->map.sys->ndof;
+    for (size_t k = 0; s->preconditions && k < half; k++) {
+        const double *t = s->free + 4 * k, q = x[k], u = x[half + k];
+        x[k] = t[0] * q + t[1] * u;
+        x[half + k] = t[2] * q + t[3] * u;
+    }
+}
+
+/* Sets s->free; of modes without vibration, and where that is nearly singular, the identity. */
+static void find_free(struct shooting *s)
+{
+    const struct energy_norm *norm = &s->map.norm;
+    const double span = s->map.span, sign = s->map.odd ? -1.0 : 1.0;
+    for (size_t k = 0; k < norm->n; k++) {
+        const double omega = norm->natural[k], half = 0.5 * norm->damping[k], square = omega * omega - half * half;
+        const double nu = sqrt(fabs(square)), size = sign * exp(-half * span), c = size * cos(nu * span);
+        const double d = nu > 0.0 ? size * sin(nu * span) / nu : 0.0;
+        const double qq = 1.0 - (c + half * d), qu = -norm->omega[k] * d, uq = omega * omega / norm->omega[k] * d;
+        const double uu = 1.0 - (c - half * d), det = qq * uu - qu * uq;
+        const double inverse[] = {uu / det, -qu / det, -uq / det, qq / det};
+        static const double unit[] = {1.0, 0.0, 0.0, 1.0};
+        memcpy(s->free + 4 * k, square > 0.0 && fabs(det) > NEARLY_SINGULAR ? inverse : unit, sizeof unit);
+    }
+}
+
+/* x = (I - D) x, D = the derivative at s->here over s->spans spans; x is multiplied by s->free first if s->preconditions. */
 static int apply_equation(void *data, double *x)
 {
     struct shooting *s = data;
     int status = TRIBO_OK;
+    apply_free(s, x);
     memcpy(s->a, x, s->map.n * sizeof *x);
     for (int k = 0; !status && k < s->spans; k++) {
         status = tribo_period_map_apply(&s->map, s->here, s->a);
@@ -171,12 +200,19 @@ static int is_matrix_free(const struct shooting *s)
 }
 
 /* Solves (I - D) y = x in place, D over `spans` spans from s->here. *done = 0: no solution, x undefined. If contacts rest all the
- * time, there may be many solutions: the Krylov space of a map that increases no distance has the shortest. Returns a status. */
+ * time, there may be many solutions: the Krylov space, then without s->free, of a map that increases no distance has the shortest.
+ * Returns a status. */
 static int solve_in_space(struct shooting *s, int spans, double tolerance, double *x, int *done)
 {
     double part;
     s->spans = spans;
+    s->preconditions = spans == 1 && !tribo_derivative_rests(&s->here->derivative);
+    if (s->preconditions) {
+        find_free(s);
+    }
     const int status = tribo_gmres(s->map.n, apply_equation, s, tolerance, s->map.n, x, &part, s->space);
+    apply_free(s, x);
+    s->preconditions = 0;
     *done = part <= tolerance;
     return status;
 }
@@ -481,7 +517,7 @@ struct shooting *tribo_shooting_create(tribo_driver *drv)
     if (!s) {
         return NULL;
     }
-    s->a = malloc((2 * n * n + 14 * n + tribo_gmres_room(n, n) + 1) * sizeof *s->a);
+    s->a = malloc((2 * n * n + 16 * n + tribo_gmres_room(n, n) + 1) * sizeof *s->a);
     s->pivot = malloc((n + 1) * sizeof *s->pivot);
     if (!tribo_period_map_create(&s->map, drv) || !s->a || !s->pivot) {
         tribo_shooting_free(s);
@@ -490,7 +526,8 @@ struct shooting *tribo_shooting_create(tribo_driver *drv)
     s->b = s->a + n * n;
     s->step = s->b + n * n;
     s->guess = s->step + n;
-    s->space = s->guess + n;
+    s->free = s->guess + n;
+    s->space = s->free + 2 * n;
     double *next = s->space + tribo_gmres_room(n, n);
     for (size_t k = 0; k < 3; k++, next += 4 * n) {
         s->point[k] = (struct point){.y = next, .x = next + n, .end = next + 2 * n, .image = next + 3 * n};

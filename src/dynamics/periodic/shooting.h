@@ -16,6 +16,8 @@ struct shooting {
     double first, rate; /* first: ratio of the step from best; rate: ratio of the last step if it was good, else 0 */
     double stride;      /* spans extrapolated at once; 0: Newton's steps */
     int spans;          /* spans of the equation solved in a Krylov space */
+    int preconditions;  /* 1: that equation is I - D times free from the right */
+    double *free;       /* [n/2][4] inverse of I - (flow of a mode of the free structure over a span) */
     double before;      /* residual before the last step; 0: no step yet */
     size_t astray;      /* unsuccessful steps since best */
     double nearest;     /* least residual/size so far */
