@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # sh check.sh RESULTS KEYS PROGRAM: runs a program of run.sh by itself, as a test. RESULTS is a folder for what it writes; its
 # values are compared with those of expected.txt whose keys begin with KEYS and a point.
 set -eu

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # One job of run.sh: sh job.sh BINARIES RESULTS PROGRAM [CASE LAW], or tribo-damper with a file of options and further ones. Its
 # output goes to a log, and its last line to the terminal.
 set -eu

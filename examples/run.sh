@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # Runs the paper's figures and a beam with friction through the library, and leaves tables and pictures in build/results.
 # Complete on a bare Debian 12 machine: installs what is missing, see tests/setup.sh. Takes a minute after the build, on two
 # cores. Its status is 0 only if every quantity of the closing table is within its tolerance (expected.txt).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # awk -f summary.awk results/values-*.txt expected.txt: the closing table. Exits with 1 if a value is missing or off.
 BEGIN { FS = " " }
 FILENAME !~ /expected.txt$/ { value[$1] = $2; next }

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # sh table.sh RESULTS FIGURE: relative error of D of all laws against dt, side by side, and the fitted orders.
 set -eu
 cd "$1"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Pure functions of a system for module tribo_dynamics. */
 #include "dynamics.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* tribo_dynamics.h for Fortran: see dynamics.c and methods.c. */
 #ifndef TRIBO_FORTRAN_DYNAMICS_H
 #define TRIBO_FORTRAN_DYNAMICS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Objects by number, for Fortran.
  *
  * A Fortran object cannot own a pointer. Compilers copy its bits without its assignment (allocate(source=), allocatable

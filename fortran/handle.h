@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Objects by number, for Fortran: see handle.c. */
 #ifndef TRIBO_HANDLE_H
 #define TRIBO_HANDLE_H

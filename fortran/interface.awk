@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Fortran interfaces of the functions of C headers, and their constants:
 #   awk -v name=<name> -f interface.awk <header>...
 # writes a module <name>_constants with the enumerators, if the headers have any, and a module <name>_c with an interface block for

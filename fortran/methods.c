@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Methods of drivers in a build without GSL: those of tribo_dynamics.h. */
 #include "dynamics.h"
 

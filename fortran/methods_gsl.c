@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Methods of drivers in a build with GSL: those of tribo_dynamics.h, followed by GSL's steppers. */
 #include "tribo/tribo_gsl.h"
 

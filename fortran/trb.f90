@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> tribo for fixed-form Fortran: external routines that need no module and no interface block. Those for structures are in
 !> trb_dynamics.f90.
 !>

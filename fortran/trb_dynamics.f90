@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> tribo_dynamics for fixed-form Fortran: linear structures with friction contacts, their integration, and periodic motions.
 !> Arguments as in trb.f90.
 !>

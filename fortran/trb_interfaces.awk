@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Module trb_interfaces: the interfaces of the routines TRB..., from their sources.
 #   awk -f trb_interfaces.awk trb.f90 trb_dynamics.f90
 # Of a routine it takes the first line, and the declarations of arguments: lines with an intent, or of a procedure.

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 ! Written by trb_interfaces.awk from trb.f90 and trb_dynamics.f90, not to be changed by hand: see target fortran-refresh.
 
 !> Interfaces of all routines TRB...: with USE TRB_INTERFACES compilers check the arguments of calls.

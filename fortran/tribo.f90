@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> tribo: dry friction in structural dynamics.
 !>
 !> Quantities. A contact has a relative velocity v = dz/dt and a friction force f along +z. Its limit is mu times the normal

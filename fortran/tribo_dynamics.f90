@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> Mechanical systems with friction, and their integration in time. To be used together with module tribo.
 !>
 !> A system is M q'' + C q' + K q = p(t) + J' f, v = J q' - b(t), with p and b sums of harmonics and tables; f are the friction

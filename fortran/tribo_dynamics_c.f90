@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 ! Written by interface.awk from the headers of C, and not to be changed by hand: see target fortran-refresh.
 
 !> The constants, as in C.

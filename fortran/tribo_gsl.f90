@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> Module tribo_dynamics in a build with GSL, and the names of GSL's steppers, which drivers take beside the methods of
 !> tribo_dynamics: `driver%create(system, 'rkf45')`.
 !>

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> Helpers of the modules tribo and tribo_dynamics and of the fixed-form routines: objects by number, sizes of arrays, texts,
 !> begin and end of calls. Not for programs.
 module tribo_support

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # sh tests/coverage.sh [<argument of ctest>...]: builds without optimization and with counters (preset coverage), runs the suites, and
 # prints for each room of src and for fortran the lines and branches that were reached. What was not is listed by file in
 # build/coverage/lines.txt and branches.txt. A line or branch counts as reached if any of the objects made of its file reaches it.

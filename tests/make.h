@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Systems in one call, for tests. */
 #ifndef TRIBO_TESTS_MAKE_H
 #define TRIBO_TESTS_MAKE_H

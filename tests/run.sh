@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # sh tests/run.sh [--all] [--no-install] [<argument of ctest>...]
 # Builds the project with everything on and runs the tests that a change can break: `sh tests/run.sh -L unit`. --all runs all tests:
 # the matrix of other compilers, machines, libraries and builds, analysis of the sources, and the long suites. See README.md here.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A driver with settings for any method. */
 #ifndef TEST_SET_UP_DRIVER_H
 #define TEST_SET_UP_DRIVER_H

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # For the run scripts, which source it. POSIX sh.
 #   setup <Debian package>...   returns when what the packages bring is there. Installs the missing ones where it may (as root, or
 #                               by sudo without a password), else says what to install and ends the script with status 1.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What the test suites share: the one comparison of floating-point numbers, random numbers, and main. */
 #ifndef TRIBO_TESTS_SUPPORT_H
 #define TRIBO_TESTS_SUPPORT_H

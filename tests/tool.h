@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The tool tribo-damper from outside, for suites that run it. Works in the current folder. */
 #ifndef TRIBO_TESTS_TOOL_H
 #define TRIBO_TESTS_TOOL_H

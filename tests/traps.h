@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Floating-point exceptions, at which programs stop that are compiled with -ffpe-trap=invalid,zero,overflow or the like. */
 #ifndef TRIBO_TESTS_TRAPS_H
 #define TRIBO_TESTS_TRAPS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A joint that slips element by element: springs in series with Coulomb sliders, side by side (Iwan 1966), in your own loop with
  * tribo_elastic_force. Its branches are the first loading curve, doubled (Masing 1926), and a small loop within a large one
  * closes, after which the large one goes on as if nothing had been.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A driven block whose normal load swings so far that it lifts off for a part of each period: the limit opens and closes, and
  * friction with it.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A block on a belt, held by a spring: static friction is above kinetic, so that it sticks, breaks away and sticks again for
  * ever, as brakes, bows and faults do.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A mass on an isotropic spring, driven round in circles on a rough plane. One planar contact lets it run in a circle, whose
  * radius and lag are known; two scalar ones in its place (a friction pyramid) do not. Your own loop, rk4, with tribo_balance.
  *

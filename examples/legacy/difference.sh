@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # sh difference.sh MOST: what tribo changes in newmark_before.f; fails if it is more than MOST lines.
 set -eu
 cd "$(dirname -- "$0")"

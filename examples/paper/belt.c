@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Quinn (2004), Fig. 10 and 11: two blocks, one on the other, on a belt that moves to and fro. The contacts share the lower
  * block, so that f_eq of each depends on the force of the other: in the paper's way (partition) and in the consistent one.
  *

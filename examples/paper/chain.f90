@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> Quinn (2004), Fig. 9, from Fortran: dissipation of the chain of 32 blocks over cycle 4 against the time step, for the paper's
 !> three laws, and exactly.
 !>

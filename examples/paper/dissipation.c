@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Quinn (2004), Fig. 7 and 9: how the dissipation of one cycle converges as the time step shrinks, for one friction law.
  *
  *     paper_dissipation FOLDER CASE LAW

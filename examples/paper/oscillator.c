@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Quinn (2004), Fig. 5 and 6: a mass on a spring slides, comes to rest where the spring is still stretched, and has to stay
  * there. Coulomb's law with fixed steps chatters and drifts, the velocity-limited law creeps, Quinn's law rests.
  *

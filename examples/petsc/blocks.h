@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The blocks of a chain that this rank owns, and their friction. */
 #ifndef EXAMPLES_PETSC_BLOCKS_H
 #define EXAMPLES_PETSC_BLOCKS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 static char help[] =
     "Quinn's chain of blocks on a frictional surface, distributed over the ranks: energy that friction takes in each cycle.\n"
     "  -da_grid_x N    blocks (32)\n"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # sh check.sh CASE RANKS PROGRAMS MPIEXEC: runs one of the PETSc programs as a test, in a folder of its own under PROGRAMS, the
 # folder that they are in. MPIEXEC: how it is started, without the number of ranks ("mpiexec -n").
 set -eu

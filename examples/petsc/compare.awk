@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # awk -v tolerance=T -f compare.awk A B: whether two tables hold the same numbers in the columns that B has, to T times the
 # largest of a column. Words must be the same; lines that begin with # are left out.
 FNR == 1 { file++; rows[file] = 0 }

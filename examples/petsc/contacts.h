@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The contacts of a structure, from their file to the matrix J. Collective, all of it; each rank reads the whole file. */
 #ifndef EXAMPLES_PETSC_CONTACTS_H
 #define EXAMPLES_PETSC_CONTACTS_H

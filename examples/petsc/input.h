@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A structure's files as PETSc's matrices and vectors. Collective, all of them. */
 #ifndef EXAMPLES_PETSC_INPUT_H
 #define EXAMPLES_PETSC_INPUT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Which contacts feel each other, and which rank takes them. */
 #ifndef EXAMPLES_PETSC_ISLANDS_H
 #define EXAMPLES_PETSC_ISLANDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* One point of a study: the steady response of a structure, in its lowest modes, by libtribo_gsl. No rank knows of the others. */
 #ifndef EXAMPLES_PETSC_POINT_H
 #define EXAMPLES_PETSC_POINT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #include "records.h"
 
 /* Reads bytes at a place; fewer where the file ends. */

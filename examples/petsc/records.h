@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A text file of lines of one length, each of which has its place whoever writes it, and when: in order on any number of
  * ranks, and what a run that was ended has left behind is told from what is missing. */
 #ifndef EXAMPLES_PETSC_RECORDS_H

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # Runs the programs on PETSc on 1, 2 and 3 ranks (or on those given: `run.sh 4 8`), compares them with the drivers of libtribo_gsl
 # in one process, and leaves tables and VTK files in build/results/petsc. Complete on a bare Debian 12 machine: installs what is
 # missing. Its status is 0 only if all agree.

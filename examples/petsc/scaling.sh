@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # sh scaling.sh FOLDER [BLOCKS] [STEPS]: how the chain in FOLDER (build/release/examples) scales on 1 and 2 ranks, in motion. A
 # line each: wall time times ranks of a block and step, the best of three runs, how much of it is tribo's, and memory of all ranks
 # a block: PETSc's vectors, contacts, and the 50 MB that a rank begins with.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What chain.c and structure.c do, by the drivers of libtribo_gsl in one process; tests compare them.
  *   single chain METHOD BLOCKS STEPS CYCLES ALPHA
  *   single structure MASS STIFFNESS CONTACTS ROWS LOAD_ROW LOAD OMEGA DAMPING STEP STEPS EVERY

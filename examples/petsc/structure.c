@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 static char help[] =
     "A structure from Matrix Market files with friction contacts, distributed over the ranks: implicit midpoint rule, Coulomb's "
     "law\n"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A structure with friction contacts, distributed over the ranks. */
 #ifndef EXAMPLES_PETSC_STRUCTURE_H
 #define EXAMPLES_PETSC_STRUCTURE_H

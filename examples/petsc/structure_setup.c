@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What is done once: matrices, the solver of a step, and the contacts' condensed operator. */
 #include "structure.h"
 #include "tribo_petsc.h"

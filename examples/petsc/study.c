@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 static char help[] =
     "A study: steady response of a structure with friction over frequency and limit, each point by shooting (libtribo_gsl). "
     "Points are\n"

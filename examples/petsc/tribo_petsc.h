@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Errors of tribo as errors of PETSc: they come with tribo's message and a traceback, and end all ranks, since PETSc aborts MPI
  * when an error of one rank arrives in main. */
 #ifndef EXAMPLES_TRIBO_PETSC_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_PETSC_VTK_H
 #define EXAMPLES_PETSC_VTK_H
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The beam with two contacts near its root: from the free resonance to the stuck one, and the best limit between them.
 name = 'beam-family'; wide = 900; high = 520
 family = 'beam'

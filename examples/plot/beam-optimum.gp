@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The beam on three contacts, at its first resonance: amplitude and dissipated power against the limit, and some by marching.
 name = 'beam-optimum'; wide = 760; high = 460
 load 'style.gp'

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The beam: three periods of the steady motion at the optimum and above it, with stick and slip of each contact.
 name = 'damper-motion'; wide = 1100; high = 720
 load 'style.gp'

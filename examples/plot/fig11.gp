@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Quinn (2004), Fig. 11: two blocks on a belt. Lines: consistent coupling; circles: the paper's partition.
 name = 'fig11'; wide = 900; high = 720
 load 'style.gp'

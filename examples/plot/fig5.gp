@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Quinn (2004), Fig. 5: the free oscillator near its rest point -0.75, and the whole motion.
 name = 'fig5'; wide = 1000; high = 760
 load 'style.gp'

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Quinn (2004), Fig. 6: force and velocity where the oscillator comes to rest, under Quinn's law.
 name = 'fig6'; wide = 720; high = 440
 load 'style.gp'

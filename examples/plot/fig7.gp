@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Quinn (2004), Fig. 7: error of the dissipation over cycle 50 of the forced oscillator, against the time step.
 name = 'fig7'; wide = 1100; high = 560
 load 'style.gp'

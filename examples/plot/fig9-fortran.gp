@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Quinn (2004), Fig. 9, from the table of the Fortran program.
 name = 'fig9-fortran'; wide = 760; high = 560
 load 'style.gp'

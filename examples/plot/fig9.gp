@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Quinn (2004), Fig. 9: dissipation over cycle 4 of the chain, against the time step.
 name = 'fig9'; wide = 760; high = 560
 load 'style.gp'

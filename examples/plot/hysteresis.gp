@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # A joint of 25 elastic contacts: its branches are the first loading doubled, small loops close.
 name = 'hysteresis'; wide = 620; high = 460
 load 'style.gp'

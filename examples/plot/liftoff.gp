@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # A driven block whose normal load lifts off: friction within limits that open and close.
 name = 'liftoff'; wide = 760; high = 420
 load 'style.gp'

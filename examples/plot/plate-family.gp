@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The plate on six contacts: the same.
 name = 'plate-family'; wide = 900; high = 520
 family = 'plate'

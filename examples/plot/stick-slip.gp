@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # A block on a belt whose static friction is above kinetic: sticks, breaks away, sticks again.
 name = 'stick-slip'; wide = 760; high = 400
 load 'style.gp'

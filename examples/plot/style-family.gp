@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # A family of curves of tribo-damper: amplitude over frequency for several limits. Before loading it a script sets family (the
 # tool's --name), wide, high, and the ranges; name of the picture.
 load 'style.gp'

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Common style. Before loading it a script sets name (of the picture), wide, high (pixels); run.sh has set results (a folder)
 # and format.
 if (format eq 'png') {

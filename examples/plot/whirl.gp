@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # A mass driven round on a rough plane: one planar contact, and two scalar ones in its place.
 name = 'whirl'; wide = 560; high = 620
 load 'style.gp'

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A block on a spring and a moving belt, with the caller's own time stepping: friction speeds the block up until it
  * sticks to the belt and rides along. Core library only. Units: kg, m, s, N. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Quinn's chain of blocks with the driver of libtribo_gsl: energy that friction dissipates in each cycle. */
 #include <math.h>
 #include <stdio.h>

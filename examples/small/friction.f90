@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> A block on a spring comes to rest by friction; two blocks, one upon the other, are pulled until one slides.
 program friction
   use tribo

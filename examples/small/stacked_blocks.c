@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Contacts that share a body: a block lies on another one, that lies on the ground, and a force pulls the upper one.
  * Contact 0: ground and lower block, contact 1: lower and upper block; v = (x1', x2' - x1').
  * Core library only. Units: kg, m, s, N. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Friction in an explicit code with fixed steps (central differences): the step form gives the force that leaves the contact in
  * Coulomb's law at the end of the step, so that it needs no epsilon and rests exactly. A mass on a spring, as in Quinn's
  * Fig. 5: from 2.75 it slides once, to -0.75, and stays. Core library only. */

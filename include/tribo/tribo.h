@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* tribo: dry friction in structural dynamics.
  *
  *     tribo_create(&c, n);                        n contacts

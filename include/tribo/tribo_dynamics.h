@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* tribo's dynamics: mechanical systems with friction, and their motion in time.
  *
  * A system is M q'' + C q' + K q = p(t) + J' f,  v = J q' - b(t),  with p and b sums of harmonics and tables; f are the friction

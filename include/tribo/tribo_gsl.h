@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* tribo with GSL: GSL's steppers and types for the systems of tribo_dynamics.h.
  *
  * GSL's error handler is never changed. Singular matrices and a lack of memory return an error of tribo before GSL sees them.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # tribo::cholmod, if CHOLMOD is there: SuiteSparse's own target, or what is found by names. Also read by an installed triboConfig.
 if(NOT TARGET tribo::cholmod)
   find_package(CHOLMOD CONFIG QUIET)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # find_package(tribo) and the uninstall target, once all libraries are known.
 include(CMakePackageConfigHelpers)
 

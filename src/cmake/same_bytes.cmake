@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Builds in two folders give the same bytes: no path of the machine is in what is built. Debug builds keep the paths of the sources,
 # since debuggers look there.
 include(CheckCCompilerFlag)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # TRIBO_HAVE_CHOLMOD: 1 if sparse factors are built in. CHOLMOD's long integers have to be as long as size_t.
 set(TRIBO_HAVE_CHOLMOD OFF)
 if(TRIBO_SPARSE)

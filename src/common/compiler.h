@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* TRIBO_GNU_C: defined if the compiler has GNU C's attributes and built-in functions and TRIBO_PLAIN_C is not defined. Every use
  * has a plain alternative. */
 #ifndef TRIBO_COMPILER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* All arrays of an object in one block of memory. A function lays out the arrays twice: first with memory NULL, to add up the
  * sizes; then in the allocated memory. */
 #ifndef TRIBO_LAYOUT_H

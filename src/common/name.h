@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Names of methods and steppers, which may be given in capitals. */
 #ifndef TRIBO_NAME_H
 #define TRIBO_NAME_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Nouns after numbers in messages: "1 contact", "2 contacts". */
 #ifndef TRIBO_PLURAL_H
 #define TRIBO_PLURAL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Arithmetic without function calls and without floating-point exceptions, at which some programs stop. */
 #ifndef TRIBO_REAL_H
 #define TRIBO_REAL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Loops compiled for several instruction sets, if compiler and system can choose one when the library is loaded. All variants
  * give the same bits: sums are not reordered, products and sums not fused. Call such functions by name only: linkers for 32 bits
  * have no addresses of static functions. */

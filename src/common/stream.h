@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Writes outputs computed in chunks of at most TRIBO_CHUNK numbers. Large outputs bypass the caches, which would read each line
  * before a write: only whole lines are written, the rest waits for the next chunk. */
 #ifndef TRIBO_STREAM_H

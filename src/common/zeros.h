@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Returns zeroed memory, or NULL; not NULL for count 0. Small blocks: malloc reuses memory just freed, calloc of the GNU C
  * library does not. Large blocks: memory from the system is zero already, and calloc does not clear it again. */
 #ifndef TRIBO_ZEROS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Contacts of which no two share a body, without static limits: forces of the balance, and over a step.
  *
  * Outputs stay as they are where a call fails, so v and a are checked before anything is written. Then follow the contacts, chunk

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Forces of contacts that share bodies: f_eq and f from z'' = R f + a.
  *
  * The consistent coupling is a box problem. With kappa = slope v inside the band of a law that relaxes, and 0 for the others, the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Checks of arguments. The functions here are inline, and cost next to nothing where all is well; check.c finds the message. A
  * check returns TRIBO_OK, or a failure that names the argument, its first wrong entry and the value; ctx NULL: keeps no
  * message. */

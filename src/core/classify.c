@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The states of all contacts before groups are solved. In a large scene most contacts slide, and all costs are those of memory:
  * arrays are read once, in chunks that stay in the first-level cache. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Clusters: planar contacts, and the contacts that R couples with them, as the rest of core calls them. Without planar contacts
  * functions have no effect, and return TRIBO_OK or 0. */
 #ifndef TRIBO_CLUSTERS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Contacts one by one, as if no two shared a body. */
 #ifndef TRIBO_CONTACTS_H
 #define TRIBO_CONTACTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The context: what the caller set, what follows from it, what the last call found. */
 #ifndef TRIBO_CONTEXT_H
 #define TRIBO_CONTEXT_H

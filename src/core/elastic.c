@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The friction element of bladed-disc and joint codes: a spring in series with a Coulomb slider (Jenkins 1922; Masing 1926), by
  * return mapping: the spring takes the displacement; where |f| is beyond the limit, the slider moves until it is not. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Forces, and their derivatives, of contacts whose f_eq is given; the reversal memory. */
 #include <math.h>
 

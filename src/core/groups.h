@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Groups of contacts that share bodies: calls that solve box problems. */
 #ifndef TRIBO_GROUPS_H
 #define TRIBO_GROUPS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Answers about a context and its last call. */
 #include "check.h"
 #include "clusters.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What a caller sets: law, limits, epsilon, coupling, sharing; and what follows. Only bounds follow from limits, which change
  * more often than the rest. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Static friction above kinetic. Laws read the limits follow.now, which each call finds.
  *
  * With a Stribeck velocity the limit is a continuous function N(|v|) of the speed, in every law. Without one it drops at once.

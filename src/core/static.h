@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Static limits: static.c. */
 #ifndef TRIBO_STATIC_H
 #define TRIBO_STATIC_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Version, texts of status codes, and the text of the last failure on a context. Calls on a const context, which threads may
  * share, keep none. */
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The force over a time step, and the box problem for laws of the caller's. */
 #include "check.h"
 #include "clusters.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The force over a step to second order. Coulomb's law at the end of a step, as tribo_step_force gives it, has two errors of
  * first order: a planar contact that turns slides in the direction of the end, and a scalar one that is driven through v = 0
  * stops there until the step is over.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Derivatives of the forces of all contacts by velocities, accelerations and limits. With the sets of the last balance they are
  * linear: contacts inside their box (in the partition: all near stick) move so that accelerations, or f_eq, stay balanced; the
  * others follow their law or their bound. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Files that CalculiX writes for *FREQUENCY, SOLVER=MATRIXSTORAGE: matrices name.sti and name.mas, degrees of freedom name.dof;
  * and its input name.inp, which has the coordinates of the nodes. */
 #ifndef DAMPER_CALCULIX_H

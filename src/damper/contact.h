@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #ifndef DAMPER_CONTACT_H
 #define DAMPER_CONTACT_H
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #ifndef DAMPER_CURVE_H
 #define DAMPER_CURVE_H
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #ifndef DAMPER_FIELD_H
 #define DAMPER_FIELD_H
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #ifndef DAMPER_LINES_H
 #define DAMPER_LINES_H
 

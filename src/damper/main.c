@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* tribo-damper: the steady response of a finite-element model with friction contacts to harmonic loads, and the limit of contacts
  * that makes the best friction damper. Options: tribo-damper --help. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The manual page of tribo-damper, from its --help:
 #   cmake -D TOOL=<tribo-damper> -D MANUAL=<file> -P manual.cmake
 # Lines stay as they are; those without indentation that end in a colon, after a blank one, become headings.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #ifndef DAMPER_MATRIX_MARKET_H
 #define DAMPER_MATRIX_MARKET_H
 

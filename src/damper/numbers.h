@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #ifndef DAMPER_NUMBERS_H
 #define DAMPER_NUMBERS_H
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Shared by the tool and the larger examples: errors that end the program, files in the folder of results, and named values, from
  * which run.sh makes its closing table. */
 #ifndef DAMPER_OUTPUT_H

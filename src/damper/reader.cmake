@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # damper_reader(<target>): adds the readers of matrices and degrees of freedom; of compressed files if zlib is there.
 find_package(ZLIB QUIET)
 set(damper_folder "${CMAKE_CURRENT_LIST_DIR}")

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #ifndef DAMPER_STUDY_H
 #define DAMPER_STUDY_H
 

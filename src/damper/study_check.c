@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Checks of steady motions: closed forms, twice the modes, marching. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #ifndef DAMPER_TABLES_H
 #define DAMPER_TABLES_H
 

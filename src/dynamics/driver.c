@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Drivers: settings, queries, and advances that restore the last good state after an error. */
 #include "driver.h"
 

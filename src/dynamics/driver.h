@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The interface of integration methods, and functions shared by all methods. */
 #ifndef TRIBO_DRIVER_H
 #define TRIBO_DRIVER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* GSL's steppers as steppers of tribo_dynamics.h, by its public calls only. GSL's error handler ends the program where
  * memory ends or a matrix of an implicit step is singular, and GSL divides by zero where an estimate is zero: each step is
  * prepared so that none of that happens. */

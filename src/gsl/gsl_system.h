@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Systems as GSL sees them. */
 #ifndef TRIBO_GSL_SYSTEM_H
 #define TRIBO_GSL_SYSTEM_H

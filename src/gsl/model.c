@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Matrices of a model from GSL's sparse ones. */
 #include <stdio.h>
 #include <stdlib.h>

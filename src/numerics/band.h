@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Factors L L' of symmetric band matrices, as the band [n][width + 1] of L: row i begins with column i - width. */
 #ifndef TRIBO_BAND_H
 #define TRIBO_BAND_H

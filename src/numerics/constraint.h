@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Contacts that hold, as constraints between degrees of freedom: by J_I q = 0 some of them, the slaves, follow the others.
  *
  * J_I is eliminated as it stands, without masses: in J M^-1 J' the mass of a heavy body is rounded away beside that of a light

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Matrices in compressed rows: row i has the entries first[i] to first[i + 1] - 1. */
 #ifndef TRIBO_CSR_H
 #define TRIBO_CSR_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A symmetric matrix A, diagonal or dense, positive definite over the rows with a_ii > 0. All other rows are 0, and belong to no
  * set. */
 #ifndef TRIBO_DEFINITE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Linear equations whose matrix is known by its products, by GMRES (Saad and Schultz 1986). */
 #ifndef TRIBO_KRYLOV_H
 #define TRIBO_KRYLOV_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* LAPACK and BLAS by their Fortran symbols: arguments by address, matrices by columns, so that a row-major matrix is passed as
  * its transpose; the lengths of the texts (1) at the end. Callers check sizes and entries: XERBLA prints, or ends the program. */
 #ifndef TRIBO_LAPACK_H

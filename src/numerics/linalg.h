@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Dense matrices and their factors. */
 #ifndef TRIBO_LINALG_H
 #define TRIBO_LINALG_H

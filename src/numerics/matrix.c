@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #include "matrix.h"
 #include "common/layout.h"
 #include "common/real.h"

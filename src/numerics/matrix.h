@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Real matrices in compressed rows, and, for chains and diagonal matrices, the same entries by diagonals, with which products are
  * two to three times as fast. */
 #ifndef TRIBO_MATRIX_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Products with real matrices. */
 #include "linalg.h"
 #include "common/real.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #include "sparse_factor.h"
 #include "common/real.h"
 

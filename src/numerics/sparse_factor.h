@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Factors of sparse symmetric matrices, and their inertia, by CHOLMOD (Chen, Davis, Hager and Rajamanickam 2008, ACM Trans. Math.
  * Softw. 35, 22, doi:10.1145/1391989.1391995). Each factor owns CHOLMOD's state. AMD orders the rows: METIS, CHOLMOD's other
  * choice, ends the program where there is no memory. */

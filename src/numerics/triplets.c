@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #include "triplets.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Entries of a sparse matrix in any order, collected one by one. */
 #ifndef TRIBO_TRIPLETS_H
 #define TRIBO_TRIPLETS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Numbers with twice as many digits, as sums of two doubles: Dekker (1971, Numer. Math. 18, 224, doi:10.1007/BF01397083). Sizes
  * must stay below TWOFOLD_FAR: nothing overflows then. */
 #ifndef TRIBO_TWOFOLD_H

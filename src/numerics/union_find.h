@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Disjoint sets of 0 to n - 1: parent [n] leads from an element to the root of its set; roots are their own parents. */
 #ifndef TRIBO_UNION_FIND_H
 #define TRIBO_UNION_FIND_H

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # The binary interface, in files kept beside this one.
 #   abi.sh check <file> <what>...     compares <file> with what is there now
 #   abi.sh refresh <file> <what>...   writes it anew

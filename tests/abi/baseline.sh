@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # sh tests/abi/baseline.sh [--refresh]: the C libraries, built with debug information, beside what 1.0.0 promises: functions, types and
 # enumerators, lib*.abi in this folder, as abidw writes them. What is removed or changed is an error, what is added is none.
 # --refresh writes the files anew, for another soname only. Needs abigail-tools.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What a call of tribo_balance costs, against everything that it may depend on: one CSV file a picture, and tables. bench_balance
  * --help tells the options; run.sh draws the pictures. */
 #include <float.h>

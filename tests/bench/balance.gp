@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Cost of a call. From run.sh: results (folder of bench_balance's tables), format, name (of the table).
 wide = 760; high = 480
 load '../../examples/plot/style.gp'

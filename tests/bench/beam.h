@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #ifndef TRIBO_BENCH_BEAM_H
 #define TRIBO_BENCH_BEAM_H
 

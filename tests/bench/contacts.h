@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Scenes of contacts whose forces are known, called over and over. */
 #ifndef TRIBO_BENCH_CONTACTS_H
 #define TRIBO_BENCH_CONTACTS_H

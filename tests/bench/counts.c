@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Fixed amounts of work, whose instructions callgrind counts: see run.sh --counts. bench_counts --list names the scenes;
  * bench_counts SCENE runs one, and prints how many units of what its work is. Nothing but counted() is to be counted. */
 #include <math.h>

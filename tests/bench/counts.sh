@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # Counts the instructions of the scenes of bench_counts under callgrind, and compares them with a table of earlier ones.
 #   counts.sh <bench_counts> <counts.txt>              status 1 if a scene takes more than 2% more, or has no line in the table
 #   counts.sh <bench_counts> <counts.txt> --refresh    writes the table

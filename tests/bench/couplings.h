@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Where the paper's partition jumps or fails, beside the consistent coupling. */
 #ifndef TRIBO_BENCH_COUPLINGS_H
 #define TRIBO_BENCH_COUPLINGS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What people do today for steady motion with friction, to compare with: harmonic balance by the alternating frequency-time
  * scheme with a regularized law, f = -limit tanh(v/epsilon) (Cameron and Griffin 1989; Krack and Gross 2019). Free of this
  * library. The structure is linear between its contacts, so that only their velocities are unknown. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Times runs on a machine that others use too: each is compared to a unit, run just before and just after it. For all programs of
  * this folder; knows nothing of friction. */
 #ifndef TRIBO_BENCH_HARNESS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Contacts that share no body, and the calls whose cost a contact is looked at. */
 #ifndef TRIBO_BENCH_KERNEL_SCENE_H
 #define TRIBO_BENCH_KERNEL_SCENE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What calls on contacts that share no body cost, beside a loop over arrays that is compiled the same way, in the same process:
  * the least of many short repetitions of both, since others use the machine too. bench_kernels --help tells the options. */
 #include <stdint.h>

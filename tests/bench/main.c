@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Run time against error of methods for friction, on systems whose answer is known: one CSV file a system. bench --help tells the
  * options; run.sh draws the pictures and prints the tables. */
 #include <math.h>

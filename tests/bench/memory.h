@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What of this process is in memory (Linux; elsewhere 0). */
 #ifndef TRIBO_BENCH_MEMORY_H
 #define TRIBO_BENCH_MEMORY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The drivers of libtribo_gsl. */
 #include "methods.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Methods of the bench: ways to answer a scene's question, each with one setting that trades time for accuracy. */
 #ifndef TRIBO_BENCH_METHODS_H
 #define TRIBO_BENCH_METHODS_H

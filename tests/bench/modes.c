@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The lowest modes of a structure: what finding them takes, and how far frequencies are from others'.
  *   bench_modes mass stiffness dofs modes [frequencies in Hz [tolerance]]
  * Prints values by name; status 1 if a frequency is off by more than the tolerance, 1e-6, of itself. */

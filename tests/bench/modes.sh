@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # sh tests/bench/modes.sh build results [--quick]: plates of 10,680, 41,520 and 163,680 degrees of freedom (--quick: the first
 # two) that CalculiX makes of what TRIBO_PLATES/plate.py writes; 20 modes of each by bench_modes and, where python3 has scipy, by
 # eigsh(sigma=0), in turn, with each BLAS that is installed; frequencies beside those that CalculiX finds. One thread each. Prints

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Accelerations of the models, by hand, without friction. Plain code and other packages share them: their compilers see all of
  * it. State: q and velocities s, each with a stride. The velocities are those of the contacts, v = s, followed for the beam by
  * others (see modal.back); chain and oscillator have J = 1. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* CHOLMOD (SuiteSparse) on the same matrix as a carpet of contacts. */
 #ifndef TRIBO_BENCH_PEER_CHOLMOD_H
 #define TRIBO_BENCH_PEER_CHOLMOD_H

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The lowest modes of what CalculiX writes, by scipy's eigsh (ARPACK, and SuperLU's factor): python3 peer_scipy.py name modes
 # Prints values by name, as bench_modes does.
 import sys

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Siconos: the time stepping of Moreau and Jean, theta = 1/2, with Coulomb's law as a relay between velocity and impulse. Its
  * answers are those of moreau/fixed, to the tolerance of its solver. Systems whose contacts do not move by themselves, J = 1.
  *

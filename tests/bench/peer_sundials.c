@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* SUNDIALS as an expert would use it for Coulomb's law: the contacts' modes are held in the right-hand side, roots of the sliding
  * velocities and of what is left to the limits end a mode, and integration starts again behind each.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Planar contacts of limit 1 by the solvers of Siconos: its contacts have a normal direction too, which here is held at a force
  * of 1 with a friction coefficient of 1, and coupled with nothing. */
 #ifndef BENCH_PEER_TRESCA_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What a steady motion costs: tribo_driver_find_periodic beside what people do, marching to rest and harmonic balance, on the
  * beam of the examples at several frequencies and limits. bench_periodic --help tells the options. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What one writes by hand, without any library: rk4 with Quinn's law, whose time at dt = 0.01 is the unit of the bench, and for
  * one or two contacts the Moreau-Jean rule. */
 #include <math.h>

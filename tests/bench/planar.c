@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What planar contacts cost: the step and the balance at rest, which are one problem, beside projected Gauss-Seidel in plain C;
  * and a balance within the band, which is the lenses'. Where Siconos is installed, a second table of the step by its solvers. */
 #include <math.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # awk -v nx=40 -v ny=12 -v modes=20 -v solver=ARPACK -f plate.awk: CalculiX's input of a steel plate of nx by ny bricks of 20 nodes,
 # 300 x 100 x 4 mm, clamped at x = 0 (tonne, mm, s). The solver MATRIXSTORAGE writes the matrices instead of the modes.
 

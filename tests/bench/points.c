@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What a steady motion costs over the number of modes of the structure and of its contacts.
  *   bench_points [[mass stiffness dofs contacts] modes none|mass|compliance]
  * Without arguments: the beam of the examples on three contacts, driven at frequencies about three times its first one, in 12, 24,

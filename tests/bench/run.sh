@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # Builds the bench, with SUNDIALS, Siconos and CHOLMOD where they are installed (Debian: libsundials-dev, libsiconos-kernel-dev,
 # g++, libsuitesparse-dev), runs it, draws a picture a system, and prints tables: run times aimed at and measured, and the fastest
 # method for each error; then what a call of tribo_balance costs, a step in the plane, a steady motion, and the modes

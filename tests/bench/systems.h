@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What the bench runs: mechanical systems, each with a question whose exact answer is known.
  *
  * A model is a system as plain code and other packages see it, free of this library:

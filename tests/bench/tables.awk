@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # From the bench's tables, in Markdown: run times aimed at and measured, and the fastest method for each error.
 # A method reaches an error if all its finer settings do, too. Times are in units of plain rk4 + Quinn at dt = 0.01.
 BEGIN {

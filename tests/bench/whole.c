@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Steps of moreau/fixed on a structure as it is, and reduced: what they take, and how far the motions are from each other.
  *   bench_whole mass stiffness dofs contacts modes
  * Contacts are spread over the degrees of freedom in direction z, the last of which has the load. modes 0: not reduced alone.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Error against run time, a picture a system. From run.sh: results (folder), format.
 systems = system("cd '".results."' && ls *.csv | sed 's/.csv//'")
 

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> What the tests share: failures are told and counted, and end the program when all is done.
 module check
   use, intrinsic :: iso_c_binding, only: c_int32_t

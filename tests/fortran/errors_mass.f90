@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> For errors.f90.
 module errors_mass
   use tribo

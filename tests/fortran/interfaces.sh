@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # interfaces.sh <root> <folder of module files> <compiler>...: module trb_interfaces fits the calls of all programs in fixed form, and
 # with it a wrong argument is an error at compile time.
 set -eu

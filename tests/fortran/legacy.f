@@ -1,3 +1,4 @@
+C SPDX-License-Identifier: BSD-3-Clause
 C     The fixed-form routines, called as a code of 1978 would: no module,
 C     no interface block, every array a piece of a bigger one.
 C     First everything that can succeed, with each of its results

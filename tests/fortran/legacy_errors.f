@@ -1,3 +1,4 @@
+C SPDX-License-Identifier: BSD-3-Clause
 C     The errors of the fixed-form routines, for legacy.f.
 C
 C     Every routine that takes a handle, with one that is none.

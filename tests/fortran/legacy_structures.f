@@ -1,3 +1,4 @@
+C SPDX-License-Identifier: BSD-3-Clause
 C     Sparse, reduced and copied structures from fixed form, and what
 C     serves their integration: every result compared to that of the C
 C     call (legacy_structures.c), then the errors.

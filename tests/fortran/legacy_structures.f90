@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> For legacy_structures.f: its tape.
 subroutine stplay()
   use tape, only: record

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> For legacy.f: the scene and its tape, see scene.f90, as a program without modules can use them.
 
 !> The scene's data, at the given places of an array that is larger, and matrices with a leading dimension ldr.

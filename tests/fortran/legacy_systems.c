@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What legacy_systems.f does, by the functions of C. */
 #include "../set_up_driver.h"
 #include "structure.h"

@@ -1,3 +1,4 @@
+C SPDX-License-Identifier: BSD-3-Clause
 C     Structures and their periodic motions from fixed form: every result
 C     compared to that of the C call (legacy_systems.c), then the errors.
       PROGRAM LEGSYS

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> For legacy_systems.f: its tape.
 subroutine syplay()
   use tape, only: record

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> Systems from matrices in one call, by a model.
 module making
   use tribo, only: dp, TRIBO_OK

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Fortran finds the indices in the library's messages by the words around them (from_one of tribo_support.f90). So every %zu of a
 # format must be an index in a form that it knows, or a number that is plainly none.
 file(GLOB_RECURSE files "${ROOT}/src/*.c")

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> Models: dense, diagonal and sparse matrices make the same system, errors name what is wrong, and a contact with compliance is a
 !> spring before a slider.
 program models

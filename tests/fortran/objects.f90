@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> Life of contexts as Fortran objects: assignment copies, what goes out of scope is destroyed, and nothing is destroyed twice,
 !> whatever compilers do with objects inside of objects.
 module scopes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # A program of a page, or its output:
 #   awk -v program=<name> -v form=<f or f90> -v what=<code or text> -f page.awk <page>
 # A block ```fortran, ```f77 or ```f90 is a program in fixed form if it begins in column 7; the next block ```text is its output.

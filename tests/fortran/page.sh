@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # page.sh <page> <program> <form> <executable>: the program of the page, see page.awk, prints what the page shows, but for spaces.
 set -eu
 scratch=$(mktemp -d)

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> Every procedure of module tribo that can succeed, with each of its results compared to that of the C call: scene.c plays the
 !> same scene on its tape.
 module results_mass

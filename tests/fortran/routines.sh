@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # Every function of the headers has a routine of fixed form, or a reason for none, and every routine is told of and tested:
 #   routines.sh <root of the sources>
 # compares routines.txt with the headers, trb.f90 and trb_dynamics.f90, their table in fortran/README.md, and the tests in fixed form.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What results.f90 does from Fortran, through the C interface: data that both read, and a tape of results to compare with, see
  * tape.h. */
 #include <string.h>

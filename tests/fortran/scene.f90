@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> The data of scene.c, and what records its tape.
 module scene
   use, intrinsic :: iso_c_binding, only: c_double, c_size_t

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> GSL's steppers: names, settings of their drivers, errors.
 program steppers
   use check, only: alive, report, require, same_bits

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> Ends by an error that no stat takes; the argument says by which. See stop.cmake.
 program stop
   use tribo

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Systems of matrices in one call, for what tests of Fortran are compared with. */
 #ifndef TRIBO_TEST_STRUCTURE_H
 #define TRIBO_TEST_STRUCTURE_H

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> Every error that a procedure of module tribo_dynamics can answer: status, text, outputs left alone; and how systems, drivers and
 !> borrowed contexts end.
 module stoppers

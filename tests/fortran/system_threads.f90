@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> Systems, their contexts and drivers in several threads at once, all of one thread's own: the bits of one thread alone.
 program system_threads
   use check, only: alive, report, require, same_bits

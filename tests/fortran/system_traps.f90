@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> A program that stops at invalid operations, divisions by zero and overflows (-ffpe-trap) runs all methods on all systems, with
 !> a contact that friction cannot move (R = 0) and one that is open.
 program system_traps

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What systems.f90 does from Fortran, through the C interface: see tape.h. */
 #include "../set_up_driver.h"
 #include "structure.h"

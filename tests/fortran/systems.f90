@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> Every procedure of module tribo_dynamics that can succeed, with each of its results compared to that of the C call: systems.c plays
 !> the same on its tape.
 module counting

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> A tape of results of the C interface, which is compared with bit for bit: see tape.h.
 module tape
   use, intrinsic :: iso_c_binding, only: c_double, c_funloc, c_funptr, c_size_t

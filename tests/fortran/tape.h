@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Results of the C interface, one number after the other, for Fortran to compare with: see tape.f90. */
 #ifndef TRIBO_TESTS_TAPE_H
 #define TRIBO_TESTS_TAPE_H

@@ -1,3 +1,4 @@
+C SPDX-License-Identifier: BSD-3-Clause
 C     Several handles at once, one a thread: what threads compute side
 C     by side has the bits of what one thread computes, and each handle
 C     keeps its own message. Handles come and go meanwhile.

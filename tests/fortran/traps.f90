@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> A program that stops at invalid operations, divisions by zero and overflows (-ffpe-trap) runs through all calls that compute,
 !> by the module and by the fixed-form routines: with contacts that friction cannot move (R = 0), open ones, and limits that are
 !> never reached.

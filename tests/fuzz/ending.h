@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Runs code that ends its program by exit, in the process of a fuzzer: the program's end comes back here, and what the code left
  * open or allocated is released. Files are parts of the fuzzer's string. Linked with --wrap for each name in ending.c. */
 #ifndef TRIBO_FUZZ_ENDING_H

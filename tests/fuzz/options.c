@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The command line of tribo-damper: a line a word, and behind a line "=" the file that --read or a list of contacts names. */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The strings of files, for builds without libFuzzer. */
 #include <stdint.h>
 #include <stdio.h>

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # sh tests/fuzz/run.sh [<seconds> [<target>...]]: builds the targets of libFuzzer with sanitizers and lets each search for so many
 # seconds, 300 by default. What is found, and strings that reach what others do not, go to build/fuzz/found/<target>.
 # Targets: core (tribo.h), dynamics (tribo_dynamics.h, tribo_gsl.h), reader (files), options (tribo-damper's), trb (TRB routines).

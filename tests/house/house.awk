@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Measures the sources that are its arguments, and prints a row a measure: name, value, largest example.
 # Relies on .clang-format: a function begins at column 0, its body lies between "{" and "}" at column 0.
 

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # house.sh <awk>: measures src by house.awk, prints each row beside its bound in bounds.txt, and fails where a row is above it.
 # A change that makes a row smaller lowers the bound: `sh tests/house/house.sh awk > rows` shows the values.
 set -eu

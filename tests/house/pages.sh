@@ -1,6 +1,8 @@
 #!/bin/sh
-# pages.sh: pages and headers keep their sizes, and each public function is named in a page or an example.
-#   README.md has at most 150 lines; a comment of a header at most 12, but the one at its head.
+# SPDX-License-Identifier: BSD-3-Clause
+# pages.sh: pages and headers keep their sizes, each public function is named in a page or an example, and each source names its
+# licence.
+#   README.md has at most 150 lines; a comment of a header at most 12, but the one at its head, which follows that of the licence.
 set -eu
 CDPATH= cd -- "$(dirname -- "$0")/../.."
 bad=0
@@ -11,7 +13,7 @@ if [ "$lines" -gt 150 ]; then
 fi
 awk 'FNR == 1 { comments = 0 }
      /^[ \t]*\/\*/ { begin = FNR; comments++ }
-     /\*\/$/ && begin { if (comments > 1 && FNR - begin >= 12) {
+     /\*\/$/ && begin { if (comments > 2 && FNR - begin >= 12) {
                             printf "%s:%d: a comment of %d lines, more than 12\n", FILENAME, begin, FNR - begin + 1
                             bad = 1
                         }
@@ -23,4 +25,11 @@ for name in $(sed -n 's/^TRIBO_API [^(]*\b\(tribo_[a-z0-9_]*\)(.*/\1/p' include/
         bad=1
     }
 done
+without=$(find include src fortran tests examples -name 'corpus*' -prune -o \( -name '*.[chf]' -o -name '*.f90' -o -name '*.cpp' -o \
+    -name '*.sh' -o -name '*.awk' -o -name '*.gp' -o -name '*.py' -o -name '*.cmake' -o -name CMakeLists.txt \) \
+    -exec grep -L 'SPDX-License-Identifier: BSD-3-Clause' {} +)
+if [ "$without" ]; then
+    printf '%s: does not name its licence (SPDX-License-Identifier)\n' $without
+    bad=1
+fi
 exit $bad

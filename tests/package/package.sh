@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # One step of the package's tests; CMakeLists.txt beside it sets the environment. $WORK belongs to one kind of build:
 #   build      the project
 #   prefix     where it is installed to

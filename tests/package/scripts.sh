@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # The run scripts' setup, on machines that are made up: commands in a folder of its own in front of, or instead of, PATH.
 set -eu
 cd "$1"

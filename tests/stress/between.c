@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What may happen between two advances, at random: limits, static ones, some that fall with the speed, loads, tables and bases
  * that change, states and times that are set, advances of no length, of next to none, and in many pieces, calls that are refused,
  * observers that stop a run, memory that ends, periodic motions that are looked for, other drivers of the same system, copies of

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Sequences of calls of tribo.h, legal and illegal ones, on up to three contexts, as a string of bytes tells. After each call:
  * the status is the one that its arguments ask for, outputs are untouched on error and settings as they were, forces are finite
  * and within their limits, and solve the problem that was asked.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What the files of calls_core share: the string that says which calls to make, and the contexts that they are made on. */
 #ifndef CALLS_CORE_H
 #define CALLS_CORE_H

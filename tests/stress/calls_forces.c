@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What calls_core.c asks for: forces, which must be within their limits and solve the problem that was asked. */
 #include <fenv.h>
 #include <float.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A string of bytes as a program for tribo_gsl.h: systems of all kinds are created, loaded, changed and destroyed, drivers of all
  * methods advance them, with legal and illegal arguments in any order that is allowed. What must hold whatever comes: states are
  * finite, and on an error untouched or those of the last good step; errors have a message; outputs of calls that fail stay as

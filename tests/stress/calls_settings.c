@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What calls_core.c sets: law, coupling, sharing, limits, epsilon, and the operator in all its forms. */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Random scenes of contacts between bodies, from a few to hundreds, in rows and in heaps, with repeated ones among them, masses
  * and limits up to six orders of magnitude apart: one context each through many calls, every answer against its equations.
  * TRIBO_SEED and TRIBO_BLOCKS as in random.c. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* tribo-damper from outside: damaged files and wrong options, each of which must end it with status 1 and one line that names
  * file, line and value; and structures as small as can be. Works in the current folder. TRIBO_CASES: how many random damages of
  * each kind. */

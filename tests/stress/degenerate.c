@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Scenes in which everything coincides that can: equal limits, or limits that differ by rounding or little more, in packs and
  * chains from rest and released; contacts that repeat each other, or hold one body to bases that part; loads that just reach a
  * limit; limits that follow a table; light bodies between heavy ones; early and late. The closed form (in one advance and in

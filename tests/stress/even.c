@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Structures of small whole numbers, where everything that may coincide does: events at the same time, forces that touch their
  * limit, or stay at it for good, contacts that repeat each other, loads in resonance. TRIBO_SEED and TRIBO_BLOCKS as in random.c.
  */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Random scenes of planar contacts, on the ground and between bodies, by method "event": a scene that is turned, mirrored, or has
  * bodies and contacts in another order moves as the one it came from does; on a line a planar contact is a scalar one; and what
  * loads give is found in the structure or dissipated. TRIBO_SEED and TRIBO_BLOCKS as in random.c. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Random linear structures with friction: the closed form, the event-driven series and central differences know nothing of each
  * other's integration, and have to agree. TRIBO_SEED is the first seed, TRIBO_BLOCKS how many blocks of them are run. */
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Random linear structures with friction, of every kind that dense_system takes. */
 #ifndef TRIBO_TESTS_STRUCTURE_H
 #define TRIBO_TESTS_STRUCTURE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Allocations of the library counted, and made to fail. The linker puts these functions before malloc and its kin (--wrap), for
  * the objects that it links; the C library and GSL keep their own. */
 #ifndef TRIBO_TESTS_MEMORY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Random problems of coupled contacts, and what their equations say in long double. */
 #ifndef TRIBO_TESTS_PROBLEM_H
 #define TRIBO_TESTS_PROBLEM_H

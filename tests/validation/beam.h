@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The finite-element beam of the examples. */
 #ifndef TRIBO_TESTS_BEAM_H
 #define TRIBO_TESTS_BEAM_H

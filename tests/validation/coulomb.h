@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The reference systems under Coulomb's law itself, for the methods that have no epsilon. */
 #ifndef TRIBO_TESTS_COULOMB_H
 #define TRIBO_TESTS_COULOMB_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What friction dissipates, under limits from far below to far above all other forces: it takes the energy that the structure
  * loses, and never gives any. */
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Drivers: fixed steps, counts, observers, and every way to fail. */
 #include <fenv.h>
 #include <stdint.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Drivers out of memory: an error, nothing leaked, and the driver goes on when there is memory again. GSL is linked statically
  * where there is such a library, so that its allocations fail here too, and none does: GSL would end the program. Memory is
  * bounded, as it is where there is no more, by every bound at which something else fails. */

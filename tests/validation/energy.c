@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Energy: what is dissipated is what loads and moving bases put in, less what the structure keeps. */
 #include <string.h>
 

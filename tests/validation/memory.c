@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Memory of systems and drivers: none is asked for while the chain moves; and when there is none, nothing leaks. GSL allocates
  * for itself only in steppers, which are not among those that fail here; CHOLMOD's allocations fail as the library's own. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Random linear structures with friction. */
 #ifndef TRIBO_TESTS_MODEL_H
 #define TRIBO_TESTS_MODEL_H

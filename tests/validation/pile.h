@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A pile of blocks on a belt, light ones between heavy ones: R is tridiagonal and badly scaled. For the test and for the bench.
  */
 #ifndef TRIBO_TESTS_PILE_H

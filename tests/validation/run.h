@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Runs of the library's systems. */
 #ifndef TRIBO_TESTS_RUN_H
 #define TRIBO_TESTS_RUN_H

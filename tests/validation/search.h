@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Systems and drivers that look for periodic motions. */
 #ifndef TRIBO_TESTS_SEARCH_H
 #define TRIBO_TESTS_SEARCH_H

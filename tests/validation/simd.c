@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Numbers that every kernel of src/common/simd.h has a part in, to the last bit: the same program with the variants for several
  * instruction sets and without any must print the same. */
 #include <stdio.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Runs FIRST and SECOND and compares what they print.
 foreach(which FIRST SECOND)
   execute_process(COMMAND "${${which}}" OUTPUT_VARIABLE out_${which} RESULT_VARIABLE result ERROR_VARIABLE error)

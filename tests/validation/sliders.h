@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Structures with sliders without mass on springs. */
 #ifndef TRIBO_TESTS_SLIDERS_H
 #define TRIBO_TESTS_SLIDERS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Systems and drivers raise no floating-point exceptions. As in unit/traps.c every test runs twice: exceptions are looked for,
  * and they are trapped. */
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Coulomb's law itself, with f_eq at rest: Quinn (2004), Eq. 1 and 2. */
 #include "law.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Karnopp's threshold velocity, below which the contact counts as at rest: Quinn (2004), reference 2 and Fig. 2. */
 #include "law.h"
 

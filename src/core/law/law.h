@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Friction laws. A law is a force of one contact, its derivatives, the loops over contacts that TRIBO_LAW_LOOPS makes of both,
  * and a record. To add a law, write one file like quinn.c; add its record to registry.c and its number to tribo.h. */
 #ifndef TRIBO_LAW_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The paper's law: Quinn (2004), Eq. 4, with half-width epsilon/2 and slope 2N/epsilon. */
 #include "law.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Quinn's law, second order also where a contact is driven through v = 0 without stick: there, for r = |f_eq|/N > 1, the
  * law's xi is scaled by g(r), which makes the time to cross the band exact for constant load. It holds for contacts
  * that came in sliding (moving); contacts that break away from stick keep Quinn's form, which is better for them. */

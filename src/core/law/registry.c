@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The registry of laws, and a law for one contact. */
 #include <float.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The smooth companion of the velocity-limited law; creeps like it. */
 #include "law.h"
 

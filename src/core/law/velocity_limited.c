@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A viscous damper near v = 0: Martins and Oden (1987); Quinn (2004), Eq. 3. Creeps under any load. */
 #include "law.h"
 

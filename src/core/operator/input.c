@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The operator R: forms of input, and their checks. Every form becomes sorted compressed rows. The operator of a context is
  * replaced when all checks are done. */
 #include <stdlib.h>

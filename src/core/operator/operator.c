@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The operator: groups, the connected parts of R's graph; and the memory of a context that goes with it. */
 #include <math.h>
 #include <stdlib.h>

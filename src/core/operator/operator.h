@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The operator R of z'' = R f + a: its diagonal, and groups of contacts that it couples. */
 #ifndef TRIBO_OPERATOR_H
 #define TRIBO_OPERATOR_H

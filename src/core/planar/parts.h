@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What the files of planar share. */
 #ifndef TRIBO_PARTS_H
 #define TRIBO_PARTS_H

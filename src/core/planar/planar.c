@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Life and settings of planar contacts. Clusters are made anew whenever operator or contacts change. */
 #include <stdlib.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Data of planar contacts: which directions they are, and their clusters.
  *
  *   planar.c          life, settings: clusters, from the operator's groups and the contacts that join them

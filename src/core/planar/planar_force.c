@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Forces of planar contacts, and of the scalar ones that R couples with them.
  *
  * In units of its limits, y = f/limit, a planar contact slides with y = -n, n being the direction of limit v. Near stick y is in

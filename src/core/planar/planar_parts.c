@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What forces of planar contacts are made of: sliding, nearness to stick, the own block of R, forces of others. */
 #include "core/static.h"
 #include "parts.h"

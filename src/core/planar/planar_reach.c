@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Reaches of planar contacts and of the scalar ones beside them. In parts of a limit that is far beyond the pull at a contact, a
  * force has no digits. The force is then looked for within a smaller disc, a reach. If it lies inside, it is the solution for the
  * limit, too, since the problem is convex; else the reach grows.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Derivatives of the forces of a cluster by velocities, accelerations and limits: the contacts near stick stay in their places,
  * and Newton's equations along the freedoms that these leave keep them balanced. Forces and derivatives of planar contacts with
  * f_eq given, each of which is a problem alone. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Elastic contacts, whose forces are part of the state. Their velocities are v + G f', v = J q' - b; f' solves the box
  * problem min 1/2 f''G f' + v'f':
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The holding contacts H: an independent set of the contacts at rest that keeps all of them where they are. */
 #include "numerics/constraint.h"
 #include "stick_slip.h"

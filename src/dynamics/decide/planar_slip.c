@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Decides, at an instant, which contacts stick and which slide, if there are planar contacts:
  *
  *     contacts whose velocity is nothing beside the tolerance are at rest

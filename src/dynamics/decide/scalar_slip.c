@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Decides, at an instant, which scalar contacts stick and which slide:
  *
  *     contacts without velocity, or with none left in the direction of their slip, are at rest

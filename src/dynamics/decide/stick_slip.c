@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What contacts do at an instant: limits and bases, which contacts are at rest, velocities and accelerations, and bounds of their
  * rounding. Decisions are made in scalar_slip.c and planar_slip.c. */
 #include "numerics/constraint.h"

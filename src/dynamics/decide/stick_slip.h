@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Coulomb's law for methods with events: the decision, at an instant, which contacts stick, and in which direction others slide.
  *
  * The decision is about the motion just after the instant. Contacts of equal limits may reach them together and let go one after

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The loop over events of the methods "exact" and "event": phase after phase of the method's motion, each until its first
  * event, and the decision there. */
 #ifndef TRIBO_EVENTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Walks intervals [a, b] from left to right. An interval is clear of a guard if the quintic through the guard's samples at both
  * ends and the bound of its sixth derivative prove that the guard is not below zero between. Guards that are not clear are
  * doubtful: only these are sampled inside the interval, where the first quintic falls to zero, or in the middle, until the

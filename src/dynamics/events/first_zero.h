@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The first of many functions to fall to zero. */
 #ifndef TRIBO_FIRST_ZERO_H
 #define TRIBO_FIRST_ZERO_H

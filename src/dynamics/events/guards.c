@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* All that a guard means beside its course in time: which contacts have it, what the decision after its event learns, and what
  * its samples tell of the size of rounding. Another kind of event is added here, and in the enum of first_zero.h. */
 #include "events.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The motion between two events, a phase, as the loop over events and the search for the first event know it: one const table
  * for each method, and `own`, the method's own data, with which all functions are called. */
 #ifndef TRIBO_MOTION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Zeros of a function, and intervals without one, from its values and two derivatives at both ends of an interval. */
 #ifndef TRIBO_QUINTIC_H
 #define TRIBO_QUINTIC_H

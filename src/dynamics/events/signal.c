@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #include "signal.h"
 #include "common/real.h"
 #include "first_zero.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A linear combination of the state in a phase, in closed form: Re(sum c_p e^{lambda_p s}) + sum a_j s^j, 0 <= s <= tau. */
 #ifndef TRIBO_SIGNAL_H
 #define TRIBO_SIGNAL_H

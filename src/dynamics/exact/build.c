@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Builds structures with contacts held: modes, damping, and what the modes do at contacts. */
 #include "parts.h"
 #include "common/layout.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* An output in a phase: sums over terms, TRIBO_TERMS at a time as in terms.c, plus a line. */
 #include "terms.h"
 #include "common/simd.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The energy that friction dissipates in a phase, in closed form. A steady force dissipates |force| times the distance slid. The
  * part of a force by harmonics of the limit is integrated with the velocity, a sum of exponentials (signal.h). If a large limit
  * swings through zero, these parts cancel each other: then the power, of one sign, is integrated by samples; so it is if a load

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Exponents lambda of the free motion of the modes. */
 #include "parts.h"
 #include "common/real.h"

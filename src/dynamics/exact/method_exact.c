@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Method "exact": Coulomb's law without regularization on a linear structure, without time steps. Between events the motion is
  * known in closed form from the modes of the structure with the contacts at rest held (modal.h). No event is skipped
  * (first_zero.h): the sixth derivative of a sum of exponentials is at most the sum of |amplitude| |lambda|^6, which bounds the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A structure with a set I of contacts held: its modes of vibration, and from the modes the velocities and forces of contacts.
  *
  * J_I q' = b_I. Then q = Phi eta, with the mode shapes, eta'' + C~ eta' + diag(omega^2) eta = constant + ramp t + harmonics,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Motion of a structure with contacts held, from a state on, in closed form: a phase of method "exact". */
 #ifndef TRIBO_MODAL_MOTION_H
 #define TRIBO_MODAL_MOTION_H

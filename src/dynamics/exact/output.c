@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Outputs of a structure under loads: velocities and forces of contacts as sums of its terms. */
 #include "parts.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Data and functions for building a structure with contacts held, shared by several files. */
 #ifndef TRIBO_MODAL_PARTS_H
 #define TRIBO_MODAL_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A structure under loads: shapes by bases, forcing of the modes, and response of the modes. */
 #include "parts.h"
 #include "numerics/lapack.h"

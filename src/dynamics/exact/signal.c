@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A linear combination of the state in a phase of method "exact". */
 #include "terms.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Terms are computed TRIBO_TERMS at a time: in a single sum each addition waits for the one before. Arrays are restrict, or
  * compilers would not compute several terms at once. */
 #include "terms.h"

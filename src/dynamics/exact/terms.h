@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The terms of a modal motion: exponentials and harmonics, with two derivatives. */
 #ifndef TRIBO_MODAL_TERMS_H
 #define TRIBO_MODAL_TERMS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The derivative of the end state of a phase of method "exact" by the start state.
  *
  * Sliding forces and loads do not depend on the state: perturbations of eta move as without these forces. The forces of contacts

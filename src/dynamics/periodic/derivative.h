@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Derivative of a motion by its initial state, as steps that move perturbations [n] of the state, n = tribo_system_energy(sys):
  * phases (events.h) and jumps at events. Applied to a few perturbations, or to n units for the matrix. */
 #ifndef TRIBO_DERIVATIVE_H

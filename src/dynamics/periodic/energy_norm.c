@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #include "energy_norm.h"
 #include "common/real.h"
 

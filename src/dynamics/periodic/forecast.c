@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Approximate state of the odd periodic motion, by Coulomb's law. Damping that couples free modes is neglected.
  *
  * Forces and velocities are sums of the N/2 lowest odd harmonics of half a period, w_p = (2 p + 1) pi/span, known by their values at

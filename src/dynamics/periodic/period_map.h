@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The map x -> image over one period, and its derivative. If all drives are odd (loads and bases change sign after half a
  * period), the map to minus the state after half a period replaces it: applied twice it is the map over a period. */
 #ifndef TRIBO_PERIOD_MAP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Quantities of the periodic motion found last. Each call integrates one period again, phase by phase in closed form. */
 #include "shooting.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Periodic motions: the public functions. */
 #include "shooting.h"
 

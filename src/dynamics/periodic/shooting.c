@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Newton's method for r(x) = x - image(x) = 0. The map never increases the distance of two states in the energy norm
  * (energy_norm.h), so r is monotone: step'r(x + part step) rises with part from below zero, and is zero at the right length. This
  * product, and not |r|, measures a step: where contacts begin to slip, |r| may have to rise for some steps.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Shooting: the search for a fixed point x = image(x) of the period map. */
 #ifndef TRIBO_SHOOTING_H
 #define TRIBO_SHOOTING_H

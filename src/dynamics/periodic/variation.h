@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Derivative of a motion by its initial state, along events. The columns of v [n], n = tribo_system_energy(sys), are
  * perturbations of the state.
  *

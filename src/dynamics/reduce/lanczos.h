@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The lowest modes of a large structure, K phi = omega^2 M phi, by Lanczos' method in blocks (Grimes, Lewis and Simon 1994,
  * SIAM J. Matrix Anal. Appl. 15, 228, doi:10.1137/S0895479888151111) for shift (K + shift M)^-1 M. Its eigenvalues
  * theta = shift/(omega^2 + shift) are largest for these modes. All vectors are orthogonal in M. A full basis is replaced by its

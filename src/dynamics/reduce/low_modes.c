@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The motions of a reduced structure: its lowest modes, found densely or by Lanczos' method, and static responses to forces at
  * its contacts. */
 #include <float.h>

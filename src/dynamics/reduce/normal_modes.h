@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Normal modes, K phi = omega^2 M phi, the low ones as accurate as the high ones.
  *
  * QR finds every omega^2 to rounding of the largest: of a stiff frame on soft mounts QR finds the frame and loses the mounts. So

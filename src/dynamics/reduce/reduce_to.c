@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Reduction to a tolerance, by bisection of the number of modes. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Structures reduced to their lowest modes. */
 #include <float.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Lanczos' method for the highest eigenvalue, in the metric of the mass matrix, in which AK is symmetric. Contacts at rest can
  * only lower the eigenvalue. */
 #include "spectrum.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Bounds of the highest frequencies of a structure. */
 #ifndef TRIBO_SPECTRUM_H
 #define TRIBO_SPECTRUM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Steps of method "event" in which planar contacts creep: the direction of the force at a small velocity v relaxes to that of the
  * motion within the time m|v|/limit, and a Taylor series converges over a few such times only.
  *

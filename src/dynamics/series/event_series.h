@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The Taylor series of the motion of method "event". Between events the motion is smooth; its coefficients follow from the
  * equations of motion, by one product with the structure's matrices and one solve for the holding contacts an order. */
 #ifndef TRIBO_EVENT_SERIES_H

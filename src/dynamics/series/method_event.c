@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Method "event": Coulomb's law on any system, by Taylor series of the motion between events (event_series.h); velocities and
  * forces of contacts are polynomials too. The force of a sliding planar contact turns with its velocity (planar_series.h).
  *

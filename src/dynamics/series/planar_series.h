@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Taylor series of the forces of sliding planar contacts, found coefficient by coefficient with those of the motion.
  *
  * In units of its limits a contact has the velocity x = limit v, which is tau^s times a series, with s = 0 where it slides

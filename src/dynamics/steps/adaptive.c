@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Drivers by a stepper of tribo_dynamics.h: the loop that tries steps, accepts them by their errors, and chooses their
  * lengths. */
 #include <float.h>

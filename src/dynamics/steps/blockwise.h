@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Steps and rates of systems whose contacts share no body: each contact acts on a degree of freedom of its own, so that
  * friction needs no solver. Work goes block by block of MATRIX_BLOCK degrees of freedom, whose numbers stay in the nearest
  * cache.

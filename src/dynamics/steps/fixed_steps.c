@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* An advance of the methods that take steps of one length. */
 #include "dynamics/driver.h"
 #include "common/real.h"

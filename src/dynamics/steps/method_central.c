@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Method "central/fixed": central differences, velocities half a step apart from displacements. Explicit; stable for dt
  * below 2/omega_max. Damping acts on the velocity of half a step before. Small systems take runs of steps; blockwise.c
  * takes the steps of others whose contacts share no body. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Method "moreau/fixed": implicit midpoint rule for the structure, Coulomb's law over the step, mean of the loads at both ends
  * (Jean and Moreau 1992, theta = 1/2). The matrix of the structure is factorized once for each step length. Stable for any dt. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Method "rk4/fixed": the classical Runge-Kutta method in steps of a fixed size, four evaluations a step. (GSL's takes twelve: it
  * doubles each step to estimate its error.) */
 #include <math.h>

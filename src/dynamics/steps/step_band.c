@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The box-constrained problem of a step by the method of numerics/box/box.c, for bodies instead of contacts:
  *
  * begin with the contacts that held in the last step repeat  du = solution with these held; contacts whose force is above the

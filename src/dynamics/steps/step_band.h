@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A step of "moreau/fixed" where each contact holds a body of its own to the base, and the matrix S of the step
  * (step_matrix.h) is a band. The operator that contacts see, J S^-1 J', would be dense. Here bodies that contacts hold are
  * rows and columns taken out of S: a step costs as much as the band has entries, and a new factor where other contacts hold. */

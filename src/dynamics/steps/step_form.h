@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What the two methods in step form share: Coulomb's law over a step, without epsilon. Contacts at rest stay at rest
  * exactly, and the energy that friction dissipates is that of the discrete motion, -h f'(v + v_end)/2 a step. */
 #ifndef TRIBO_STEP_FORM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #include "step_matrix.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Compliant contacts: v = J q' + G f' - b. G is symmetric, positive definite over compliant contacts, 0 in rows of rigid
  * contacts. The forces f are part of the state. With the sets A of compliant contacts at rest and S of sliding contacts,
  *     f_A' = -G_AA^-1 (J_A q' - b_A),   f_S' = 0,   v_S = J_S q' - b_S + G_SA f_A'. */

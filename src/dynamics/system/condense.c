@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Eliminates the degrees of freedom w without mass of a model by K_ww w = J_w'f - K_wq q; q: degrees of freedom with mass.
  *     w = follow q + give f,   follow = -K_ww^-1 K_wq,   give = K_ww^-1 J_w'.
  * The system of q has stiffness K_qq + K_qw follow, directions J_q + J_w follow, and compliance G = J_w give. A spring of

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* For many times: omega t is a sum of two doubles. Subtracting whole quarter turns gives an angle up to an eighth of a turn,
  * where eight terms of Taylor's series suffice. In a rounding mode upwards or downwards the angle is up to a quarter turn, where
  * the series have errors of 1e-12. There are no branches, so that loops over times become vectors. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Cosine and sine of an angle, or of omega t, for one time or many. */
 #ifndef TRIBO_COS_SIN_H
 #define TRIBO_COS_SIN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #include "delassus.h"
 #include "numerics/constraint.h"
 #include "numerics/lapack.h"

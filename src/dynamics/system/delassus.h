@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The operator J A^-1 J' of contacts, for any matrix A. */
 #ifndef TRIBO_DELASSUS_H
 #define TRIBO_DELASSUS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The equations of motion of a system; creation and destruction of systems. */
 #include "system.h"
 #include "common/real.h"

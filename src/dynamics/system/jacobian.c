@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The Jacobian of a system's right-hand side, for implicit integrators: dense, with derivatives of the contact forces. */
 #include "system.h"
 #include "common/layout.h"

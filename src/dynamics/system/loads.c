@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Functions of time: loads on the structure, motions of bases, limits. */
 #include "cos_sin.h"
 #include "system.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The matrices of a structure, from which systems are built. */
 #ifndef TRIBO_MODEL_H
 #define TRIBO_MODEL_H

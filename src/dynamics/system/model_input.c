@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* tribo_model: the matrices of a structure as set by the caller, and systems built from them. */
 #include <float.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Quinn's three reference systems. */
 #include <stdint.h>
 #include <stdlib.h>

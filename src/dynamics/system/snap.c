@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Removes rounding errors from velocities of bodies with resting contacts. A contact with one degree of freedom sets its
  * velocity. A contact with the difference of two, one of them set, sets the other; and so on: no velocity is set twice. Of bodies
  * joined to each other and nothing else, the pair with the heaviest body is set first. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* States, and linear combinations of states, in the caller's degrees of freedom and in the methods'. */
 #include "system.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Builds systems from matrices. A diagonal mass matrix is inverted; else accelerations are solved for (M^-1 K, M^-1 C), up to
  * DENSE_MOST degrees of freedom. Larger systems keep their matrices (unsolved). */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A mechanical system with friction, with accelerations solved for:
  *     q'' = load(t) - AK q - AC q' + B f,   v = J q' + G f' - b(t),   AK = M^-1 K, AC = M^-1 C, B = M^-1 J'.
  * `response` holds the columns of B of rigid contacts, compliance.pull the columns of compliant contacts. */

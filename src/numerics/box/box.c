@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The box-constrained quadratic program of a group, min 1/2 x'Rx + q'x with lo <= x <= hi, to which Coulomb's law leads: an x
  * inside its box has no gradient, and the gradient at a bound pushes against the bound.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A group of contacts that R couples, and the box-constrained quadratic program over its contacts near stick. Arrays are indexed
  * by place in the group. Nothing here allocates, unless it says so.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The factor of R over the free contacts of a group, and rows of R, dense, sparse or graded; and the dense factor.
  *
  * Dense: R is a square block. Rows are appended and deleted in O(rank^2). Dependents wait beside the factor. A pivot that is small,

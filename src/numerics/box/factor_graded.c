@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The factor of a graded group, one of whose contacts touches a light body and a heavy one. In R = J M^-1 J' as a double 1/m of
  * the light body hides 1/M of the heavy one but for the last digits, and with them the effect of friction on it. R, its factor,
  * and the forces of the free contacts are therefore kept to twice as many digits, which are enough for masses that differ by

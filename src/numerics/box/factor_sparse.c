@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The factor of a large group with few entries: R = L D L' over the free contacts, for an order of elimination and a pattern of L
  * that are those of R as a whole, found once. Contacts that are not in the factor have zeros there. A contact that enters or
  * leaves changes its row and column of L, and the columns on the way to the root of the elimination tree (Davis and Hager 2005,

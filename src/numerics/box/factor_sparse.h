@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The pattern of a sparse factor, of factor_sparse.c and nested_dissection.c. */
 #ifndef TRIBO_SPARSE_H
 #define TRIBO_SPARSE_H

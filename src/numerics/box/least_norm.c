@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The share of redundant contacts. Where R is singular R x is unique, but x is not: x becomes the solution in the box of least
  * norm, which depends neither on the order of the contacts nor on the way to it.
  *

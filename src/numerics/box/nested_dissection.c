@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Nested dissection (George 1973): a level of a breadth-first search splits the graph of R into two sides, and is eliminated
  * after them; each side is split likewise. */
 #include <stdlib.h>

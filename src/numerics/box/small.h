@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The box problem min 1/2 x'Rx + q'x, lo <= x <= hi, of at most SMALL variables, R far from singular: x follows from sets of free
  * variables and the inverse of R over these. The functions are inline: a caller with a constant n gets straight code. */
 #ifndef TRIBO_SMALL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Solves the problem of discs, lenses and intervals.
  *
  *     Newton's method from the last solution, its steps projected to the set; a problem like the last one ends it at once

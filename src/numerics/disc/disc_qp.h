@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The convex quadratic program of coupled contacts, planar ones among them: min 1/2 y's y + pull'y, where the y of each contact
  * lies in its lens, or interval, in units of its limit. Knows no friction, and allocates in tribo_disc_create only.
  *

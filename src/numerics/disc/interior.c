@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A primal-dual interior-point method (Boyd and Vandenberghe 2004, Convex Optimization, section 11.7): it begins in the middle of
  * all lenses, takes a few dozen factorizations, and ends so near the solution that the place of each contact shows. Each disc is
  * a constraint |y + o|^2 <= 1, o = 0 or c, with room (1 - |y + o|^2)/2 and multiplier press. */

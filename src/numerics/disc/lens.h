@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The set of forces of one contact in units of its limit: the lens of two unit discs D and D - c, |c| < 2, or for one direction
  * the interval that is the same in one dimension. c = 0: the disc itself. */
 #ifndef TRIBO_LENS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Newton's method on the projection equations y = P(y - gain gradient), P the projection onto the lenses. The projection gives
  * the place of each contact, and its derivative there the freedoms: all directions inside; along the rim on a rim, as if on a
  * spring, since the pressure turns with y; none at a corner. Along the freedoms the equations are symmetric. */

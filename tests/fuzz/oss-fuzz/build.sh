@@ -1,4 +1,5 @@
 #!/bin/bash -eu
+# SPDX-License-Identifier: BSD-3-Clause
 # OSS-Fuzz: targets that need no Fortran and no GSL, linked statically, with their corpora. $CC, $CFLAGS, $LIB_FUZZING_ENGINE and $OUT are
 # given; on another machine: OUT=/tmp/out CC=clang CFLAGS="-g -O1 -fsanitize=fuzzer-no-link,address,undefined" bash build.sh
 cd "$(dirname "$0")"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Forces of coupled contacts in all their bits, for comparing builds. Inputs are multiples of 1/64, the same whatever the
  * machine's arithmetic; the smooth law is left out, since it is as good as libm's tanh. */
 #include <stdint.h>

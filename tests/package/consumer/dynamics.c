@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* libtribo_dynamics by itself: no GSL. */
 #include <stdio.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A host in C90: a block on a rough plane, by semi-implicit Euler, comes to rest. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+C SPDX-License-Identifier: BSD-3-Clause
 C     A sliding contact, by the fixed-form routines.
       PROGRAM LEGACY
       INTEGER IH, IERR

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 ! Friction balances the two contacts of core.c by (3, -3).
 program modules
   use tribo

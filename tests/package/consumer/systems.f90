@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 !> The oscillator, driven by the exact method.
 program systems
   use tribo

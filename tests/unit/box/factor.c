@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The sparse factor by itself: a solution with it has the residual of rounding, which the solver around it would otherwise mend
  * by taking more rounds. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Small box problems by themselves: whatever the sets they begin with, the solution has no gradient where x is free, and one that
  * pushes against the bound elsewhere. */
 #include <string.h>

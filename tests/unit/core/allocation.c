@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Memory: none is asked for once a context is set up; and when there is none, nothing leaks and nothing is lost. */
 #include <string.h>
 

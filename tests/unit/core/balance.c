@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Forces of coupled contacts: the consistent balance, the paper's partition, and the step force, against their equations. */
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Calls look at contacts in chunks of 128, and at vectors of them: what they say of a contact does not depend on its place, nor
  * on how many there are, nor on whether all have the same limit and epsilon. */
 #include <stdio.h>

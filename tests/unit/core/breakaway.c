@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Static friction above kinetic: who holds, who breaks away, and by which limit contacts slide. */
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Contact elements with a normal spring: forces against a formula of their own, derivatives against differences, borders between
  * stick, slip and lift-off, numbers of any size, and bad input. */
 #include "traps.h"

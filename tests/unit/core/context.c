@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Contexts: defaults, settings, copies; what epsilon follows; versions and texts. */
 #include <limits.h>
 #include <stdlib.h>

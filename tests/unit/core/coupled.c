@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Forces of coupled contacts against other ways to find them, and against themselves after many changes. */
 #include <string.h>
 

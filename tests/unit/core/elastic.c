@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Elastic contacts: loops against closed forms, planar elements against what a disc does, derivatives against differences. */
 #include "support.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Every way in which a call can fail: its status, its message, that outputs stay untouched, and that the context goes on as
  * before. */
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Masses and limits that are far apart, or near the largest numbers. */
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Piles of bodies that are light and heavy in turn, contact i being between bodies i - 1 and i (the ground for i = 0). What
  * presses on the heavy ones goes through all contacts below, whatever the light ones weigh: everything has a closed form. */
 #include "tribo/tribo.h"

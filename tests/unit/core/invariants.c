@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What must not depend on the choice of directions, numbering and units. */
 #include "problem.h"
 

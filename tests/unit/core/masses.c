@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Coupled contacts of bodies whose masses are far apart, redundant ones among them, against an enumeration of all stick sets in
  * numbers of twice as many digits. */
 #include "tribo/tribo.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What a context tells of the last call: stick and slip of each contact, counts, rates and the largest step. */
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Scenes of many contacts: what of the work on them is skipped, kept and done again. */
 #include <fenv.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* How redundant contacts share. */
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Large groups, whose factor is kept sparse. */
 #include <stdlib.h>
 #include <string.h>

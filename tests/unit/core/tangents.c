@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Derivatives of the coupled balance against differences, in random directions. */
 #include <stdlib.h>
 #include <string.h>

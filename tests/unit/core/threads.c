@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What the header promises to threads: calls on a const context may share it; everything else wants a context a thread, and may
  * then run side by side. */
 #include <pthread.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* No call raises a floating-point exception, and what it answers is finite, also where numbers are far from ordinary: R_ii = 0,
  * limits of 0 or beyond all forces, epsilon next to nothing. Every test runs twice: first exceptions are looked for after each
  * call, which tells the call; then they are trapped. */

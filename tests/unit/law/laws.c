@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Friction laws of one contact: the registry, values, bounds, derivatives, and the reversal law with its memory. */
 #include <limits.h>
 #include <string.h>

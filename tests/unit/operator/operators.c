@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The operator R in all its forms. Entries are small integers over powers of two, so that every form holds the same bits. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Planar contacts: arguments, the law by its closed forms, and coupled problems by what makes their solution. */
 #include <string.h>
 

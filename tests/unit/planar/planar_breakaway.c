@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Static friction above kinetic in the plane: who holds, who breaks away and which way, beside scalar contacts and beside the
  * same rule carried out from outside, round by round. */
 #include "problem.h"

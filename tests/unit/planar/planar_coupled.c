@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Planar contacts that R couples with each other and with scalar ones: what makes their solution, in long double, and another
  * method's. */
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Planar contacts in motion: the order of what is integrated with them, closed forms, and what a pair of scalar contacts would
  * do. */
 #include "support.h"

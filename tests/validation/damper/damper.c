@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* tribo-damper on the beam of the examples: known amplitudes, the same on one and on two threads, and what an interrupted run
  * leaves. Works in the current folder, in which there are folders one and two. */
 #define _POSIX_C_SOURCE 200809L

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # What tribo-damper says of itself: its help has the options that it takes and no others, its version is the library's, and its
 # manual has the lines of its help.
 #   cmake -D TOOL=<tribo-damper> -D SOURCE=<options.c> -D VERSION=<version> -D MANUAL=<page> -P damper_help.cmake

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What tribo-damper reads: Matrix Market, CalculiX's matrices, degrees of freedom and input, compressed or not; and what it
  * refuses, by file and line. Works in the current folder. */
 #define _POSIX_C_SOURCE 200809L

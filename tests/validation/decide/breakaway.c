@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Static friction above kinetic in the drivers: closed forms and a published value, ties, and falling friction against an
  * integration of its own. */
 #include <string.h>

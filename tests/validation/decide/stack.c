@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A pile of 50 blocks, with masses that differ by up to 1e7 from neighbour to neighbour: the event-driven methods and rk4 with
  * Quinn's law and the consistent coupling lead to the same state, whatever the masses. With the partition the error grows with
  * the ratio of masses, since there a contact in S that cannot carry its f_eq leaves the light block between two contacts out of

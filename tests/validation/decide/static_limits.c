@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Static limits, and such that fall with the speed, that follow harmonics, with lift-off: closed forms, an integration of its
  * own, and methods against each other. */
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Methods "exact" and "event" where much happens at once, or next to nothing: contacts of equal limits that reach them together,
  * loads that just exceed a limit; and what cannot be followed ends soon and says so. */
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The search for the first of many functions that falls to zero, of sums of sines that decay, whose zeros are known or looked for
  * point by point, with whatever is expected. */
 #include <math.h>

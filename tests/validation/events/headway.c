@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Motions that get nowhere: by guards, or steps, that no system makes. The loop over events must find out after little work. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Moments that an observer sees: which contact changes, and how, compared with what contacts do before and after. */
 #include <stdint.h>
 #include <string.h>

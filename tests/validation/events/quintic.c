@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Bounds and zeros of functions by samples at the ends of an interval. */
 #include <math.h>
 

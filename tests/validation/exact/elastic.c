@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Elastic contacts: sliders without mass on springs, in method "exact"; and what else has no mass. */
 #include "make.h"
 #include "sliders.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Method "exact": the reference values to 12 digits, what it costs, what it refuses; and what "auto" makes of that. */
 #include <stdlib.h>
 #include <string.h>

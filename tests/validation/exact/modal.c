@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What is known of a structure with contacts held: modes, forces of those that hold, and what cannot be. */
 #include "make.h"
 #include "dynamics/exact/terms.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The methods that choose their steps: their order, what a tolerance means, and that friction does not deceive them. */
 #include <stdlib.h>
 #include <string.h>

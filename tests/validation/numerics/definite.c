@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Definite matrices: solutions for sets of rows, and the box problem, by what makes them solutions. */
 #include "numerics/definite.h"
 #include "support.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* How many eigenvalues are negative, from sparse factors, and how far rounding grows in them, of matrices where both are
  * known. */
 #include <float.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The library's own linear algebra: constraints, normal modes, general eigenvalues, at any ratio of sizes. */
 #include <float.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Periodic motions of structures with many modes: no step makes a matrix, and what steps apply is what the matrix is. */
 #include "make.h"
 #include "dynamics/driver.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Periodic motions against closed forms: Den Hartog's oscillator (1931) and what follows from it. */
 #include "make.h"
 #include "search.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The finite-element beam with a friction damper, at 4 frequencies and 33 limits: every periodic motion is found, from zeros and
  * from its neighbour, with little work, and dissipates what marching to rest does. */
 #include "run.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Periodic motions of random damped structures, 1 to 20 degrees of freedom and 1 to 8 contacts, from zeros: all are found, come
  * back, are where marching leads to; and multipliers are those of the map that tribo_driver_advance is. */
 #include "make.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What may be asked of searches for periodic motions, and of what they found: errors, other methods, static limits, and hard
  * cases. */
 #include "make.h"

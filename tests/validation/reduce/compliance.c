@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Structures reduced to modes and a compliance without mass at contacts: against the whole structure, against static responses
  * with mass, and by all methods. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Structures that are stiff inside and softly mounted, or free: their low modes are as good as their high ones, rigid-body
  * motions are exactly that, and where nobody can tell one from the other there is an error. */
 #include <stdlib.h>

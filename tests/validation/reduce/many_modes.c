@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Lowest modes of structures with more degrees of freedom than dense matrices are made for, where they are known in closed form:
  * simple and repeated frequencies, rigid-body motions, masses that are zero; and what is refused. Without CHOLMOD what is small
  * enough comes out the same, and the rest is refused, too. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Reduction to a tolerance: as many modes as the bound of truncation asks for, and not many more. Damping matrices of reduced
  * structures: beside the same matrices without reduction. */
 #include <math.h>

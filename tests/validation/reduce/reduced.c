@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Reduced structures: how soon their motion with contacts at rest is that of the whole, with static responses and without; what
  * tribo_system_get_truncation says of it; and static responses in structures that are free, or have repeated contacts. */
 #include <stdlib.h>

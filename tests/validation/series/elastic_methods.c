@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Elastic contacts in methods other than "exact": events by series, fixed steps, periodic motions; and what is refused. */
 #include "sliders.h"
 

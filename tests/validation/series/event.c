@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Method "event": errors follow the tolerance, nothing is missed, what rests is at rest. Closed forms beside each case. */
 #include <string.h>
 

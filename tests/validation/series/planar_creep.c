@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Planar contacts that creep in driver "event": motions of closed form, which take no more steps the slower they are. */
 #include "make.h"
 #include "run.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Planar contacts in driver "event": closed forms, values of another code, and other methods as their steps become short. */
 #include "make.h"
 #include "run.h"

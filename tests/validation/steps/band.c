@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* "moreau/fixed" of structures that are a band, with contacts between bodies and the base: the same motion as when the bodies are
  * numbered in a way that leaves no band, so that the contacts are solved for as a dense problem; and what large ones cost. */
 #include <stdlib.h>

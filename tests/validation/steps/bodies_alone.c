@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Methods "central/fixed" and "rk4/fixed" go their own ways where contacts share no body, and the former leaves out what is at
  * rest: the motion is the one of contacts that are solved for together, which a contact that is open ties into one group. */
 #include <math.h>

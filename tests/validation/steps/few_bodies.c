@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Method "central/fixed" takes the steps of small systems in runs of its own: the motion is that of steps which a solver takes,
  * as it does where a contact that is open and has the row of another one in J makes R singular. */
 #include <math.h>

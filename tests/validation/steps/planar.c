@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Planar contacts in the drivers with steps: these ask for forces only, and take them as they come. Exact refuses them. */
 #include "make.h"
 #include "run.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Planar contacts with static friction above kinetic in the drivers: closed forms of the line, along turned axes. */
 #include "make.h"
 #include "run.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The printed values of Quinn (2004), and reference values, with rk4 in fixed steps, and how fast they are met. The reference
  * values are those of an event-driven integration, eps = 0; errors seen in an independent implementation stand
  * beside them, to two digits: hence the 1.05. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Methods "central/fixed" and "moreau/fixed": second order, an energy balance of the discrete motion that closes to rounding,
  * exact stick, and nothing that depends on epsilon. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Structures with a consistent mass matrix that are larger than dense matrices are made for, without reduction: what moreau/fixed
  * makes of them where the motion is known in another way, and what is refused. Without CHOLMOD all is refused. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Bases that follow a table, in every method; and bases that move no more. */
 #include <math.h>
 #include <string.h>

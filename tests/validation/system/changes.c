@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What happens between two advances: loads, tables, limits, settings and states that change, advances of no length and such that
  * fail. A driver must then go on as a new one would. */
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Copies of systems move as the originals do, to the last bit, and know nothing of each other. */
 #include <string.h>
 

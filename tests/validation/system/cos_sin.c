@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Cosine and sine of omega t: right to rounding, and the same bits for one time and for many; and of harmonics that a motion
  * turns on from one time to the next. */
 #include <fenv.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The Jacobian that implicit methods are given, against differences of the right-hand side. */
 #include <stdlib.h>
 #include <string.h>

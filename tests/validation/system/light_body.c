@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A light body between the ground and a heavy one: the heavy one moves as if it stood on the ground itself, with the smaller one
  * of both limits, whatever the light one weighs. */
 #include "make.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Limits that follow harmonics, with lift-off: closed forms beside each case, and all methods against each other. */
 #include <string.h>
 

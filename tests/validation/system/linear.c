@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Structures from their matrices: in every form of input, with any mass, reduced or not; a finite-element beam. */
 #include <stdlib.h>
 #include <string.h>

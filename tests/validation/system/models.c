@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* tribo_model: its forms of input, its errors, and what its systems are. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* A structure without contacts is one like others: every method moves it, and answers for friction that there is none. */
 #include "make.h"
 #include "run.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The reference systems' equations of motion, as the paper writes them; sizes, and errors of everything about systems. */
 #include <stdlib.h>
 #include <string.h>
