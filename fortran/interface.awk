@@ -128,6 +128,7 @@ END {
     if (!functions) fail("no functions")
     gsub(/\n\n$/, "\n", constants)
     gsub(/\n\n$/, "\n", functions)
+    print "! SPDX-License-Identifier: BSD-3-Clause"
     print "! Written by interface.awk from the headers of C, and not to be changed by hand: see target fortran-refresh."
     if (constants) {
         print "\n!> The constants, as in C.\nmodule " name "_constants\n  implicit none\n  private\n"

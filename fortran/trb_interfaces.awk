@@ -3,6 +3,7 @@
 #   awk -f trb_interfaces.awk trb.f90 trb_dynamics.f90
 # Of a routine it takes the first line, and the declarations of arguments: lines with an intent, or of a procedure.
 BEGIN {
+    print "! SPDX-License-Identifier: BSD-3-Clause"
     print "! Written by trb_interfaces.awk from trb.f90 and trb_dynamics.f90, not to be changed by hand: see target fortran-refresh."
     print "\n!> Interfaces of all routines TRB...: with USE TRB_INTERFACES compilers check the arguments of calls."
     print "module trb_interfaces\n  implicit none\n  public\n\n  interface"
