@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Static limits of contacts that tie each other: all hold as long as any forces within their limits do, and not a moment longer.
- * Who breaks away then, and what comes of it, all methods agree about. */
+ * Which contacts break away then, and what motion follows, is the same by all methods. */
 #include <string.h>
 
 #include "make.h"
