@@ -12,33 +12,28 @@
 #include "common/real.h"
 #include "common/zeros.h"
 
-/* Returns TRIBO_ERR_UNSUPPORTED if an elastic contact has a static limit above its limit. */
-static int driver_check_static(const tribo_system *sys)
-{
-    double *ratio = sys->feq;
-    size_t i = 0;
-    tribo_get_static(sys->contacts, ratio, NULL);
-    while (i < sys->ncontact && !(tribo_is_compliant(&sys->compliance, i) && ratio[i] > 1.0)) {
-        i++;
-    }
-    return i == sys->ncontact
-               ? TRIBO_OK
-               : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                   "contact %zu is elastic, and takes no static limit: ratio[%zu] = %g", i, i, ratio[i]);
-}
-
 /* Returns TRIBO_ERR_UNSUPPORTED for planar contacts if m or the system does not allow them, and for static limits of elastic
  * contacts. Every advance calls this function, since contacts may change between advances. */
 static int check_contacts(const tribo_system *sys, const struct method *m)
 {
     const int springs = sys->expansion.place != NULL;
     const size_t planar = m->takes & NEEDS_SCALAR || springs ? tribo_system_planar(sys) : 0;
-    const int status = !planar ? TRIBO_OK
-                               : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                                   "method %s knows no planar contacts%s, of which the system has %zu%s", m->name,
-                                                   springs ? " where degrees of freedom have no mass" : "", planar,
-                                                   springs ? "" : ": take event");
-    return status || !springs ? status : driver_check_static(sys);
+    double *ratio = sys->work.feq;
+    if (planar) {
+        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                 "method %s knows no planar contacts%s, of which the system has %zu%s", m->name,
+                                 springs ? " where degrees of freedom have no mass" : "", planar, springs ? "" : ": take event");
+    }
+    if (springs) {
+        tribo_get_static(sys->contacts, ratio, NULL);
+    }
+    for (size_t i = 0; springs && i < sys->ncontact; i++) {
+        if (tribo_is_compliant(&sys->compliance, i) && ratio[i] > 1.0) {
+            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                     "contact %zu is elastic, and takes no static limit: ratio[%zu] = %g", i, i, ratio[i]);
+        }
+    }
+    return TRIBO_OK;
 }
 
 int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const struct method *m)

@@ -67,7 +67,7 @@ static int driver_choose(const tribo_driver *drv)
     const tribo_system *sys = drv->sys;
     const struct choice *c = drv->choice;
     const int refused = c->refused && c->revision == tribo_system_revision(sys);
-    const int closed = !sys->tables && !tribo_system_falls(sys) && !tribo_system_planar(sys);
+    const int closed = !sys->loads.tables && !tribo_system_falls(sys) && !tribo_system_planar(sys);
     return sys->ndof <= 200 && closed && !refused ? EXACT : EVENT;
 }
 

@@ -165,7 +165,7 @@ static int check_holds(const struct stick_slip *m, const tribo_system *sys)
             return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                      "at t = %.17g contact %zu rests by what others hold: method event knows no redundant "
                                      "contacts at rest where some are planar",
-                                     sys->time, i);
+                                     sys->loads.time, i);
         }
     }
     return TRIBO_OK;
@@ -208,7 +208,7 @@ static int solve_discs(struct stick_slip *m, const tribo_system *sys, const doub
     int status = tribo_set_limit(m->plane->disc, m->work.hi);
     status = status ? status : tribo_balance(m->plane->disc, m->constant.still, m->work.v, NULL, f);
     if (status) {
-        return tribo_system_fail(sys, status, "at t = %.17g: %s", sys->time, tribo_message(m->plane->disc));
+        return tribo_system_fail(sys, status, "at t = %.17g: %s", sys->loads.time, tribo_message(m->plane->disc));
     }
     tribo_add(f, 1.0, m->work.lo, m->constant.contacts);
     tribo_stick_slip_accelerate(m, sys, a, f, m->work.v);

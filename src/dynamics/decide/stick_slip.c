@@ -149,8 +149,8 @@ void tribo_stick_slip_free(struct stick_slip *m)
 /* y += amplitudes of the harmonics that drive loads or bases, or (order 1) of their rates. */
 static void add_amplitudes(const tribo_system *sys, enum drives drives, int order, double *y)
 {
-    for (size_t s = 0; s < sys->harmonics; s++) {
-        const struct harmonic *w = &sys->harmonic[s];
+    for (size_t s = 0; s < sys->loads.harmonics; s++) {
+        const struct harmonic *w = &sys->loads.harmonic[s];
         const double rate = order ? fabs(w->omega) : 1.0;
         for (size_t k = 0; w->drives == drives && k < w->count; k++) {
             y[w->index[k]] += rate * (fabs(w->cosine[k]) + fabs(w->sine[k]));
@@ -161,8 +161,8 @@ static void add_amplitudes(const tribo_system *sys, enum drives drives, int orde
 /* y [ncontact] += largest values of the tables of bases; rate [ncontact] += their steepest slopes. */
 static void add_base_tables(const tribo_system *sys, double *y, double *rate)
 {
-    for (size_t s = 0; s < sys->tables; s++) {
-        const struct table *table = &sys->table[s];
+    for (size_t s = 0; s < sys->loads.tables; s++) {
+        const struct table *table = &sys->loads.table[s];
         double most = 0.0, steepest = 0.0;
         for (size_t k = 0; table->drives == DRIVES_BASE && k < table->knots; k++) {
             const double rise = k ? (table->value[k] - table->value[k - 1]) / (table->time[k] - table->time[k - 1]) : 0.0;
@@ -192,7 +192,7 @@ static void find_scales(struct stick_slip *m, const tribo_system *sys)
     add_amplitudes(sys, DRIVES_LOAD, 0, k->load_size);
     /* t is known to its rounding. Of contacts that depend on each other one follows its base, and the others see its
      * rounding. */
-    const double late = DBL_EPSILON * fabs(sys->time) / TRIBO_VELOCITY_NOISE;
+    const double late = DBL_EPSILON * fabs(sys->loads.time) / TRIBO_VELOCITY_NOISE;
     for (size_t i = 0; i < c; i++) {
         k->base_size[i] += late * k->base_rate_size[i];
     }
@@ -213,7 +213,7 @@ static double find_size(struct stick_slip *m, const tribo_system *sys, const dou
     if (m->noise.size[d] > 0.0) {
         return m->noise.size[d];
     }
-    if (sys->tables) {
+    if (sys->loads.tables) {
         tribo_system_tables(sys, DRIVES_LOAD, 0, 1.0, d, d + 1, m->noise.size);
     }
     double size = m->constant.load_size[d] + fabs(m->noise.size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
@@ -499,8 +499,8 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
     }
     s->fresh = s->hold_differs = 1;
     s->reached = c;
-    k->base_moves = sys->base_tables > 0;
-    for (size_t i = 0; i < sys->harmonics; i++) {
-        k->base_moves |= sys->harmonic[i].drives == DRIVES_BASE && sys->harmonic[i].count > 0;
+    k->base_moves = sys->loads.base_tables > 0;
+    for (size_t i = 0; i < sys->loads.harmonics; i++) {
+        k->base_moves |= sys->loads.harmonic[i].drives == DRIVES_BASE && sys->loads.harmonic[i].count > 0;
     }
 }

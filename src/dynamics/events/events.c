@@ -169,7 +169,7 @@ static int show_between(struct events *e, tribo_driver *drv, double begin, doubl
     int status = TRIBO_OK;
     const int shows = drv->seen && drv->output > 0.0;
     for (double at; shows && !status && (at = begin + *shown * drv->output) < t + tau; *shown += 1.0) {
-        e->motion->state(e->own, greater((at - t) - drv->sys->low, 0.0), y, drv->slope);
+        e->motion->state(e->own, greater((at - t) - drv->sys->loads.low, 0.0), y, drv->slope);
         status = tribo_driver_accept(drv, at, drv->slope);
     }
     return status;
@@ -209,8 +209,8 @@ static int show_changes(struct events *e, tribo_driver *drv, double t, const dou
 /* t + tau, its low part in the system; end if tau reaches it. */
 static double time_after(tribo_system *sys, double t, double tau, double end)
 {
-    const struct twofold next = twofold_sum(t, sys->low + tau);
-    const int there = tau >= (end - t) - sys->low || next.hi > end || (next.hi == end && next.lo > 0.0);
+    const struct twofold next = twofold_sum(t, sys->loads.low + tau);
+    const int there = tau >= (end - t) - sys->loads.low || next.hi > end || (next.hi == end && next.lo > 0.0);
     tribo_system_set_low(sys, there ? 0.0 : next.lo);
     return there ? end : next.hi;
 }
@@ -218,7 +218,7 @@ static double time_after(tribo_system *sys, double t, double tau, double end)
 /* reach, changed by rounding so that t + reach is a double, if reach is long enough for that. */
 static double to_a_number(const tribo_system *sys, double t, double reach, double end)
 {
-    const double next = lesser(t + (sys->low + reach), end), there = (next - t) - sys->low;
+    const double next = lesser(t + (sys->loads.low + reach), end), there = (next - t) - sys->loads.low;
     return fabs(there - reach) <= 1e-3 * reach ? there : reach;
 }
 
@@ -260,7 +260,7 @@ static int show_decided(struct events *e, tribo_driver *drv, const struct guard 
         e->shown[p->at] = turns ? TURNS : e->shown[p->at];
     }
     status = show_changes(e, drv, t, y, &some);
-    const int seen = !some && (event || stops || (t >= t1 && drv->sys->low == 0.0));
+    const int seen = !some && (event || stops || (t >= t1 && drv->sys->loads.low == 0.0));
     return seen ? tribo_driver_show(drv, t, y, TRIBO_MOMENT_STEP, SIZE_MAX) : status;
 }
 
@@ -275,7 +275,7 @@ static int is_brief(const struct events *e, const tribo_system *sys, const struc
 {
     const int simple = !e->stick_slip.plane && !e->stick_slip.breakaway.falls && !sys->compliance.count;
     const int even = event && e->search.at_once && when * fabs(event->left.e) <= STEADY * fabs(event->left.d);
-    return simple && even && (!sys->tables || when <= BRIEF * reach) && when * tribo_system_fastest(sys) <= BRIEF;
+    return simple && even && (!sys->loads.tables || when <= BRIEF * reach) && when * tribo_system_fastest(sys) <= BRIEF;
 }
 
 /* Moves y by a brief phase at constant accelerations, and forgets the shares of redundant contacts: these forces are no guess
@@ -315,7 +315,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     tribo_system *sys = drv->sys;
     const double end = lesser(t1, tribo_system_next_kink(sys, *t));
     const struct guard *event = NULL;
-    double reach = (end - *t) - sys->low, when = 0.0;
+    double reach = (end - *t) - sys->loads.low, when = 0.0;
     e->decided = 0;
     int status = on_context(drv, e->motion->begin(e->own, *t, y, &reach));
     if (status) {
@@ -391,7 +391,7 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
         status = tribo_driver_keep(drv, *t, y);
         status = status ? status : show_changes(e, drv, *t, y, &some);
     }
-    while (!status && (*t < t1 || drv->sys->low < 0.0)) {
+    while (!status && (*t < t1 || drv->sys->loads.low < 0.0)) {
         status = phase(e, drv, begin, &shown, t, t1, y, fastest);
     }
     tribo_system_set_low(drv->sys, 0.0);

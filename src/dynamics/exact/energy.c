@@ -37,7 +37,7 @@ static double closed_work(struct modal_motion *x, const struct course *c, double
     }
     *work = 0.0;
     for (size_t s = 0; s < h->given; s++) {
-        const struct harmonic *w = &x->sys->harmonic[s];
+        const struct harmonic *w = &x->sys->loads.harmonic[s];
         const struct number z = tribo_harmonic_at_start(x, s);
         double re = 0.0, im = 0.0;
         limits += w->drives == DRIVES_LIMIT ? fabs(w->cosine[i]) + fabs(w->sine[i]) : 0.0;
@@ -64,7 +64,7 @@ static double sampled_work(struct modal_motion *x, const struct course *course, 
         const size_t point = k % 8;
         tribo_modal_motion_go(x, half * ((double)(2 * (k / 8) + 1) + (point % 2 ? at[point / 2] : -at[point / 2])));
         tribo_course_look(x, &c);
-        const double limit = x->sys->given_limit[i] + tribo_modal_motion_limit(x, i).g;
+        const double limit = x->sys->loads.given_limit[i] + tribo_modal_motion_limit(x, i).g;
         work += weight[point / 2] * greater(limit, 0.0) * greater(x->contacts->state.slip[i] * c.at.g, 0.0);
     }
     tribo_modal_motion_go(x, tau);
@@ -75,7 +75,7 @@ double tribo_modal_motion_work(struct modal_motion *x, const struct course *c, d
 {
     const size_t i = c->output->contact;
     const double steady = -x->steady[i] * tribo_dot(c->output->on_rate, x->place, x->h->shapes);
-    if (!x->sys->limit_harmonics || !tribo_slides(x->contacts->state.slip[i])) {
+    if (!x->sys->loads.limit_harmonics || !tribo_slides(x->contacts->state.slip[i])) {
         return steady;
     }
     double closed, size;

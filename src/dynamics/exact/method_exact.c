@@ -127,7 +127,7 @@ static void arrive(void *own, double t)
     tribo_system_set_time(x->sys, t);
     for (size_t s = 0; s < x->h->given; s++) {
         const struct number at = tribo_harmonic(x, s);
-        tribo_harmonic_take(x->sys, &x->sys->harmonic[x->h->forcing[s].harmonic], at.re, at.im);
+        tribo_harmonic_take(x->sys, &x->sys->loads.harmonic[x->h->forcing[s].harmonic], at.re, at.im);
     }
 }
 
@@ -161,7 +161,7 @@ static double method_exact_bound(void *own, double tau)
 static struct watch watch_of(const struct exact *x, size_t i, struct course *c)
 {
     const double swing = x->events.stick_slip.constant.swing[i];
-    const double steady = swing > 0.0 ? x->sys->given_limit[i] : x->events.stick_slip.state.limit[i];
+    const double steady = swing > 0.0 ? x->sys->loads.given_limit[i] : x->events.stick_slip.state.limit[i];
     return (struct watch){
         .output = c, .size = c ? c->size : 0.0, .constant = steady, .least = steady - swing, .varies = swing > 0.0};
 }
@@ -189,7 +189,7 @@ static int method_exact_begin(void *own, double t, const double *y, double *reac
         const struct watch w = watch_of(x, i, c);
         tribo_events_guard_contact(&x->events, i, &w);
     }
-    for (size_t i = 0; x->sys->limit_harmonics && i < x->sys->ncontact; i++) {
+    for (size_t i = 0; x->sys->loads.limit_harmonics && i < x->sys->ncontact; i++) {
         const struct watch w = watch_of(x, i, NULL);
         tribo_events_guard_limit(&x->events, i, &w);
     }
@@ -252,12 +252,12 @@ static void method_exact_destroy(tribo_driver *drv)
 /* Returns a status: tables and falling static limits are unsupported. Every advance checks, since the system may change. */
 static int check_system(const tribo_system *sys)
 {
-    if (sys->tables) {
+    if (sys->loads.tables) {
         return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                  "%s follow a table, and method exact takes harmonic ones only: take event or auto",
-                                 sys->tables > sys->base_tables + sys->limit_tables ? "loads"
-                                 : sys->base_tables                                 ? "base motions"
-                                                                                    : "limits");
+                                 sys->loads.tables > sys->loads.base_tables + sys->loads.limit_tables ? "loads"
+                                 : sys->loads.base_tables                                             ? "base motions"
+                                                                                                      : "limits");
     }
     const size_t i = tribo_system_first_falling(sys);
     return i == sys->ncontact ? TRIBO_OK

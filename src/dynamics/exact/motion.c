@@ -95,7 +95,7 @@ struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i)
 {
     struct sample sum = {0.0, 0.0, 0.0};
     for (size_t s = 0; s < x->h->given; s++) {
-        const struct harmonic *w = &x->sys->harmonic[s];
+        const struct harmonic *w = &x->sys->loads.harmonic[s];
         if (w->drives == DRIVES_LIMIT) {
             const struct number now = tribo_harmonic(x, s);
             const double c = w->cosine[i], d = w->sine[i], value = c * now.re + d * now.im;
@@ -111,7 +111,7 @@ double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i)
 {
     double sum = 0.0;
     for (size_t s = 0; s < x->h->given; s++) {
-        const struct harmonic *w = &x->sys->harmonic[s];
+        const struct harmonic *w = &x->sys->loads.harmonic[s];
         sum += w->drives == DRIVES_LIMIT ? pow(w->omega, 6.0) * hypot(w->cosine[i], w->sine[i]) : 0.0;
     }
     return sum;
@@ -236,7 +236,7 @@ static void start_harmonics(struct modal_motion *x)
     tribo_system_set_time(x->sys, x->t0);
     for (size_t s = 0; s < h->harmonics; s++) {
         const struct forcing *f = &h->forcing[s];
-        const struct harmonic *w = &x->sys->harmonic[f->harmonic];
+        const struct harmonic *w = &x->sys->loads.harmonic[f->harmonic];
         const double side = s < h->given ? 1.0 : tribo_stick_slip_follows(x->contacts, f->contact);
         tribo_system_turn(x->sys, f->harmonic);
         tribo_term_begin(x, e + s, side * w->cos_t, side * w->sin_t);
@@ -250,10 +250,10 @@ static void find_steady(struct modal_motion *x)
 {
     const tribo_system *sys = x->sys;
     memcpy(x->steady, x->contacts->state.force, sys->ncontact * sizeof *x->steady);
-    for (size_t i = 0; sys->limit_harmonics && i < sys->ncontact; i++) {
-        double limit = sys->given_limit[i];
-        for (size_t s = 0; s < sys->harmonics; s++) {
-            const struct harmonic *w = &sys->harmonic[s];
+    for (size_t i = 0; sys->loads.limit_harmonics && i < sys->ncontact; i++) {
+        double limit = sys->loads.given_limit[i];
+        for (size_t s = 0; s < sys->loads.harmonics; s++) {
+            const struct harmonic *w = &sys->loads.harmonic[s];
             limit += w->drives == DRIVES_LIMIT && w->omega == 0.0 ? w->cosine[i] : 0.0;
         }
         x->steady[i] = tribo_stick_slip_follows(x->contacts, i) * limit;
@@ -271,8 +271,8 @@ static void find_constant_forces(struct modal_motion *x, const double *y, double
     memcpy(force, h->constant, m * sizeof *force);
     tribo_compliance_give(sys, 1, x->contacts->state.force, x->way);
     tribo_matrix_multiply_add(&sys->direction, 1.0, y, x->way);
-    for (size_t s = 0; sys->base_harmonics && s < sys->harmonics; s++) {
-        const struct harmonic *w = &sys->harmonic[s];
+    for (size_t s = 0; sys->loads.base_harmonics && s < sys->loads.harmonics; s++) {
+        const struct harmonic *w = &sys->loads.harmonic[s];
         const struct number z = tribo_harmonic_at_start(x, s);
         for (size_t e = 0; w->drives == DRIVES_BASE && w->omega != 0.0 && e < w->count; e++) {
             x->way[w->index[e]] -= (w->cosine[e] * z.im - w->sine[e] * z.re) / w->omega;
@@ -373,7 +373,7 @@ int tribo_modal_motion_start(struct modal_motion *x, const struct forced *h, dou
 {
     const size_t n = x->sys->ndof, m = h->modal->modes;
     if (!motion_reserve(x, h) ||
-        (x->sys->limit_harmonics && !tribo_signal_reserve(&x->velocity, h->exponents + h->harmonics, 1))) {
+        (x->sys->loads.limit_harmonics && !tribo_signal_reserve(&x->velocity, h->exponents + h->harmonics, 1))) {
         return 0;
     }
     x->h = h;

@@ -40,7 +40,7 @@ static int find_terms(struct modal_build *b)
  * if the force is 0, or constant. */
 static int force_part(const tribo_system *sys, const struct forcing *f, int part, double *load, double *force)
 {
-    const struct harmonic *w = &sys->harmonic[f->harmonic];
+    const struct harmonic *w = &sys->loads.harmonic[f->harmonic];
     const struct matrix *j = &sys->direction;
     const double *value = part ? w->sine : w->cosine, side = part ? 1.0 : -1.0;
     const int limit = f->contact < sys->ncontact;

@@ -21,13 +21,14 @@ static int list_forcing(struct modal_build *b)
     struct forced *f = b->forced;
     const tribo_system *sys = b->shared->sys;
     const size_t c = sys->ncontact;
-    f->given = f->harmonics = sys->harmonics;
-    f->forcing = tribo_modal_take(&f->store, sys->harmonics + sys->limit_harmonics * (c - b->h->rests), sizeof *f->forcing);
+    f->given = f->harmonics = sys->loads.harmonics;
+    f->forcing =
+        tribo_modal_take(&f->store, sys->loads.harmonics + sys->loads.limit_harmonics * (c - b->h->rests), sizeof *f->forcing);
     if (!f->forcing) {
         return 0;
     }
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        const struct harmonic *w = &sys->harmonic[k];
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        const struct harmonic *w = &sys->loads.harmonic[k];
         f->forcing[k] = (struct forcing){w->omega, k, c};
         for (size_t i = 0; w->drives == DRIVES_LIMIT && w->omega != 0.0 && i < c; i++) {
             if (b->h->key[i] != 2 && (w->cosine[i] != 0.0 || w->sine[i] != 0.0)) {
@@ -61,7 +62,7 @@ static int make_shapes(struct modal_build *b, double *base)
     const size_t n = h->n, m = h->modes, c = b->shared->sys->ncontact;
     f->shapes = m;
     for (size_t s = 0; s < f->given; s++) {
-        const struct harmonic *w = &b->shared->sys->harmonic[s];
+        const struct harmonic *w = &b->shared->sys->loads.harmonic[s];
         f->steady |= w->drives == DRIVES_BASE && w->omega == 0.0;
         for (int part = 0; part < 2 && w->omega != 0.0; part++) {
             f->shapes += (size_t)base_part(w, part, base);
@@ -152,7 +153,7 @@ static int follow_bases(struct modal_build *b)
         const double omega = f->forcing[s].omega;
         for (int part = 0; part < 2 && omega != 0.0; part++) {
             memset(w.base, 0, c * sizeof *w.base);
-            if (!base_part(&sys->harmonic[s], part, w.base)) {
+            if (!base_part(&sys->loads.harmonic[s], part, w.base)) {
                 continue;
             }
             const double complex rate = part ? I : 1.0, place = rate / (omega * I);
@@ -167,7 +168,7 @@ static int follow_bases(struct modal_build *b)
         memset(w.base, 0, c * sizeof *w.base);
         for (size_t s = 0; s < f->given; s++) {
             if (f->forcing[s].omega == 0.0) {
-                base_part(&sys->harmonic[s], 0, w.base);
+                base_part(&sys->loads.harmonic[s], 0, w.base);
             }
         }
         follow_base(b, k, 0.0, &w);
@@ -218,7 +219,7 @@ static void force_modes(struct modal_build *b)
     const size_t m = h->modes;
     for (size_t s = 0; s < f->harmonics; s++) {
         const struct forcing *forcing = &f->forcing[s];
-        const struct harmonic *w = &b->shared->sys->harmonic[forcing->harmonic];
+        const struct harmonic *w = &b->shared->sys->loads.harmonic[forcing->harmonic];
         const int load = w->drives == DRIVES_LOAD, limit = s >= f->given;
         for (size_t e = limit ? forcing->contact : 0; e < (limit ? forcing->contact + 1 : load ? w->count : 0); e++) {
             const double *by = limit ? h->on + e * m : h->psi + w->index[e] * m;

@@ -132,8 +132,8 @@ static void find_drive(struct forecast *x)
 {
     const struct period_map *m = x->m;
     const size_t c = x->contacts;
-    for (size_t s = 0; s < m->sys->harmonics; s++) {
-        const struct harmonic *p = &m->sys->harmonic[s];
+    for (size_t s = 0; s < m->sys->loads.harmonics; s++) {
+        const struct harmonic *p = &m->sys->loads.harmonic[s];
         const double complex unit = cexp(p->omega * m->t * I), step = cexp(p->omega * x->h * I);
         memset(x->way, 0, c * sizeof *x->way);
         for (size_t k = 0; p->drives == DRIVES_LOAD && k < x->modes; k++) {

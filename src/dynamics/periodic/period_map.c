@@ -201,8 +201,8 @@ int tribo_period_map_complete(struct period_map *m, struct point *p, double *res
 /* Returns 1 if, half a period later, loads and bases have the opposite sign and limits are the same. */
 static int is_odd(const tribo_system *sys, double period)
 {
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        const struct harmonic *w = &sys->harmonic[k];
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        const struct harmonic *w = &sys->loads.harmonic[k];
         const double order = round(fabs(w->omega) * period / full_turn);
         if (w->count > 0 && fmod(order, 2.0) != (w->drives == DRIVES_LIMIT ? 0.0 : 1.0)) {
             return 0;
@@ -217,8 +217,8 @@ static double least_motion(struct period_map *m)
 {
     const size_t n = m->sys->ndof;
     double size = 0.0;
-    for (size_t s = 0; s < 2 * m->sys->harmonics; s++) {
-        const struct harmonic *w = &m->sys->harmonic[s / 2];
+    for (size_t s = 0; s < 2 * m->sys->loads.harmonics; s++) {
+        const struct harmonic *w = &m->sys->loads.harmonic[s / 2];
         const double *amplitude = s % 2 ? w->sine : w->cosine;
         for (size_t d = 0; w->drives == DRIVES_LOAD && d < n; d++) {
             double load = 0.0;

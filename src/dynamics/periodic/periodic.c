@@ -26,12 +26,12 @@ static int check_loads(tribo_driver *drv, double period)
     static const char *const kind[] = {[DRIVES_LOAD] = "load", [DRIVES_BASE] = "base motion", [DRIVES_LIMIT] = "limit"};
     const tribo_system *sys = drv->sys;
     size_t of_kind[] = {0, 0, 0};
-    if (sys->tables) {
+    if (sys->loads.tables) {
         return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
                                  "loads, base motions and limits that follow a table are not periodic");
     }
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        const struct harmonic *w = &sys->harmonic[k];
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        const struct harmonic *w = &sys->loads.harmonic[k];
         const double turns = fabs(w->omega) / (2.0 * acos(-1.0)) * period, whole = fmax(round(turns), w->omega != 0.0);
         if (w->count > 0 && !(fabs(turns - whole) <= WHOLE + 4.0 * DBL_EPSILON * whole)) {
             return tribo_driver_fail(drv, TRIBO_ERR_RANGE,
@@ -47,7 +47,7 @@ static int check_loads(tribo_driver *drv, double period)
  * contacts: derivatives lack the turning of sliding forces. */
 static int check_friction(tribo_driver *drv)
 {
-    double *ratio = drv->sys->feq;
+    double *ratio = drv->sys->work.feq;
     const size_t planar = tribo_system_planar(drv->sys);
     tribo_get_static(drv->sys->contacts, ratio, NULL);
     for (size_t i = 0; drv->sys->expansion.place && i < drv->sys->ncontact; i++) {

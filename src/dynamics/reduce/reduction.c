@@ -163,16 +163,16 @@ static int expand(const struct compliant *e, size_t sliders, tribo_system *sys)
     return done;
 }
 
-/* Sets sys->modes [given][modes + soft] = displacements by q and w, sys->omega, infinite for w, which has no mass, and
- * sys->truncation. Returns 0 if out of memory. */
+/* Sets sys->reduced: modes [given][modes + soft] = displacements by q and w; omega, infinite for w, which has no mass; truncation.
+ * Returns 0 if out of memory. */
 static int set_modes(const struct compliant *e, size_t given, const struct reduced *r, tribo_system *sys)
 {
     const size_t m = e->modes, n = m + e->soft;
     double *x = calloc(n * given + 1, sizeof *x);
     sys->given = given;
-    sys->modes = malloc(given * n * sizeof *sys->modes);
-    sys->omega = malloc(n * sizeof *sys->omega);
-    sys->truncation = r->truncation;
+    sys->reduced.modes = malloc(given * n * sizeof *sys->reduced.modes);
+    sys->reduced.omega = malloc(n * sizeof *sys->reduced.omega);
+    sys->reduced.truncation = r->truncation;
     for (size_t a = 0; a < e->soft; a++) {
         double *row = e->by + e->contact[a] * n;
         memcpy(row, e->shapes + e->contact[a] * m, m * sizeof *row);
@@ -181,16 +181,16 @@ static int set_modes(const struct compliant *e, size_t given, const struct reduc
     if (e->soft) {
         tribo_compliance_solve(sys, NULL, n, e->by);
     }
-    const int done = x && sys->modes && sys->omega;
+    const int done = x && sys->reduced.modes && sys->reduced.omega;
     for (size_t k = 0; done && k < n; k++) {
-        sys->omega[k] = k < m ? sqrt(r->omega2[k]) : HUGE_VAL;
+        sys->reduced.omega[k] = k < m ? sqrt(r->omega2[k]) : HUGE_VAL;
         memcpy(x + k * given, r->phi + k * given, k < m ? given * sizeof *x : 0);
         for (size_t a = 0; r->residual && a < e->soft; a++) {
             tribo_add(x + k * given, -e->by[e->contact[a] * n + k], r->residual + e->contact[a] * given, given);
         }
     }
     if (done) {
-        tribo_transpose(n, given, x, sys->modes);
+        tribo_transpose(n, given, x, sys->reduced.modes);
     }
     free(x);
     return done;
@@ -251,7 +251,7 @@ static int check_reduced(const tribo_system *sys, const void *argument, const ch
     if (!sys) {
         return TRIBO_ERR_NULL;
     }
-    if (!sys->modes) {
+    if (!sys->reduced.modes) {
         return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED, "the system is not reduced to modes");
     }
     return argument ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", name);
@@ -272,7 +272,7 @@ int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
     struct matrix damping = {0};
     double *entries = malloc(sys->ndof * sizeof *entries);
     for (size_t k = 0; entries && k < sys->ndof; k++) {
-        entries[k] = sys->omega[k] < HUGE_VAL ? 2.0 * zeta * sys->omega[k] : 0.0;
+        entries[k] = sys->reduced.omega[k] < HUGE_VAL ? 2.0 * zeta * sys->reduced.omega[k] : 0.0;
     }
     const int done = entries && tribo_matrix_diagonal(&damping, sys->ndof, entries);
     free(entries);
@@ -291,7 +291,7 @@ int tribo_system_get_frequencies(const tribo_system *sys, double *omega)
 {
     const int status = check_reduced(sys, omega, "omega");
     if (!status) {
-        memcpy(omega, sys->omega, tribo_system_ndof(sys) * sizeof *omega);
+        memcpy(omega, sys->reduced.omega, tribo_system_ndof(sys) * sizeof *omega);
     }
     return status;
 }
@@ -306,7 +306,7 @@ int tribo_system_expand(const tribo_system *sys, const double *reduced, double *
     for (size_t i = 0; i < sys->given; i++) {
         double sum = 0.0;
         for (size_t j = 0; j < n; j++) {
-            sum += sys->modes[i * dofs + j] * reduced[j];
+            sum += sys->reduced.modes[i * dofs + j] * reduced[j];
         }
         full[i] = sum;
     }
@@ -322,7 +322,7 @@ int tribo_system_get_truncation(const tribo_system *sys, double omega, double *e
     if (!isfinite(omega)) {
         return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
     }
-    const struct truncation *t = &sys->truncation;
+    const struct truncation *t = &sys->reduced.truncation;
     const double square = omega * omega, x = square < t->above ? square / t->above : 1.0;
     *error = x < 1.0 ? t->missing * pow(x, t->order) / (1.0 - x) : HUGE_VAL;
     return TRIBO_OK;

@@ -154,8 +154,8 @@ int tribo_system_top_frequency(const tribo_system *sys, double *omega)
         return status;
     }
     *omega = sqrt(square);
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        *omega = greater(*omega, fabs(sys->harmonic[k].omega));
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        *omega = greater(*omega, fabs(sys->loads.harmonic[k].omega));
     }
     return TRIBO_OK;
 }

@@ -319,7 +319,7 @@ static int method_event_prepare(struct event *e)
         tribo_creep_free(&e->creep);
     }
     e->most_order = order;
-    e->terms = sys->limit_harmonics ? e->most_order + 1 : sys->limit_tables ? 2 : 1;
+    e->terms = sys->loads.limit_harmonics ? e->most_order + 1 : sys->loads.limit_tables ? 2 : 1;
     e->revision = sys->revision;
     e->known = 1;
     return TRIBO_OK;

@@ -208,7 +208,7 @@ int tribo_planar_series_forces(struct planar_series *s, const struct stick_slip 
         if (k >= shift && !take_velocity(l, p, k - shift, v + p->at)) {
             return tribo_system_fail(sys, TRIBO_ERR_CHATTER,
                                      "at t = %.17g it is not clear in which direction the planar contact %zu begins to slide",
-                                     sys->time, p->at);
+                                     sys->loads.time, p->at);
         }
         if (!s->given) {
             const double both = k > 1 ? product_of(l->un, l->un, k, 1, k) + product_of(l->ut, l->ut, k, 1, k) : 0.0;
@@ -230,7 +230,7 @@ int tribo_planar_series_finish(struct planar_series *s, const struct stick_slip 
                                const double *base, double *acc, double *held)
 {
     const size_t n = s->begins;
-    double *a = sys->a;
+    double *a = sys->work.a;
     if (n == 0 || k == 0) {
         return TRIBO_OK;
     }
@@ -252,8 +252,8 @@ int tribo_planar_series_finish(struct planar_series *s, const struct stick_slip 
     }
     if (!(tribo_lu_create(s->lu, n, s->pivot) > 0.0)) {
         return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                 "at t = %.17g friction cannot turn the planar contact %zu, which begins to slide", sys->time,
-                                 m->plane->contact[s->begin[0]].at);
+                                 "at t = %.17g friction cannot turn the planar contact %zu, which begins to slide",
+                                 sys->loads.time, m->plane->contact[s->begin[0]].at);
     }
     tribo_lu_solve(s->lu, n, s->pivot, s->tau, 1);
     for (size_t q = 0; q < n; q++) {

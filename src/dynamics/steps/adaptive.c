@@ -144,7 +144,7 @@ static int advance_step(tribo_driver *drv, double *t, double end, double *y)
     double longest = drv->max_step > 0.0 ? drv->max_step : a->largest;
     /* inside a band an explicit method oscillates in steps that are longer than stable, and its error may happen to be 0 */
     for (size_t i = 0; a->stepper.stable > 0.0 && i < drv->sys->ncontact; i++) {
-        if (fabs(drv->sys->v[i]) <= a->band[i] && a->rate[i] * longest > a->stepper.stable) {
+        if (fabs(drv->sys->work.v[i]) <= a->band[i] && a->rate[i] * longest > a->stepper.stable) {
             longest = a->stepper.stable / a->rate[i];
         }
     }

@@ -146,14 +146,14 @@ int tribo_blockwise_take(struct blockwise *b, tribo_system *sys)
     memset(b->load, 0, sys->ndof * sizeof *b->load);
     memset(b->driven, tribo_system_limits_vary(sys), b->blocks);
     memset(b->loaded, 0, b->blocks);
-    for (size_t s = 0; s < sys->harmonics; s++) {
-        const struct harmonic *h = &sys->harmonic[s];
+    for (size_t s = 0; s < sys->loads.harmonics; s++) {
+        const struct harmonic *h = &sys->loads.harmonic[s];
         for (size_t k = 0; k < h->count; k++) {
             note_drive(b, h->drives, h->index[k], h->drives == DRIVES_BASE || h->omega != 0.0);
         }
     }
-    for (size_t s = 0; s < sys->tables; s++) {
-        const struct table *t = &sys->table[s];
+    for (size_t s = 0; s < sys->loads.tables; s++) {
+        const struct table *t = &sys->loads.table[s];
         for (size_t i = 0; i < (t->drives == DRIVES_LOAD ? sys->ndof : sys->ncontact); i++) {
             if (t->pattern[i] != 0.0) {
                 note_drive(b, t->drives, i, 1);
@@ -214,8 +214,8 @@ static void set_time(struct blockwise *b, tribo_system *sys, double t)
             tribo_system_tables(sys, DRIVES_LOAD, 0, 1.0, begin, begin + n, b->load);
         }
     }
-    for (size_t s = 0; s < sys->harmonics; s++) {
-        const struct harmonic *h = &sys->harmonic[s];
+    for (size_t s = 0; s < sys->loads.harmonics; s++) {
+        const struct harmonic *h = &sys->loads.harmonic[s];
         if (h->drives == DRIVES_LOAD) {
             tribo_system_turn(sys, s);
             for (size_t k = 0; k < h->count; k++) {

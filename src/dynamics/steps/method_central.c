@@ -174,8 +174,8 @@ static void few_find_drives(tribo_system *sys, enum drives drives, size_t n, siz
 {
     double cosine[RUN], sine[RUN];
     memset(row, 0, n * sizeof *row);
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        const struct harmonic *h = &sys->harmonic[k];
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        const struct harmonic *h = &sys->loads.harmonic[k];
         if (h->drives == drives) {
             tribo_cos_sin_all(h->omega, count, t, cosine, sine);
             for (size_t e = 0; e < h->count; e++) {
@@ -186,7 +186,7 @@ static void few_find_drives(tribo_system *sys, enum drives drives, size_t n, siz
             }
         }
     }
-    for (size_t s = 0; sys->tables && s < count; s++) {
+    for (size_t s = 0; sys->loads.tables && s < count; s++) {
         double x[FEW] = {0.0};
         tribo_system_set_time(sys, t[s]);
         tribo_system_tables(sys, drives, 0, 1.0, 0, n, x);

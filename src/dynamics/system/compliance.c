@@ -106,8 +106,8 @@ int tribo_compliance_check(const tribo_system *sys)
 {
     const struct compliance *g = &sys->compliance;
     double own = g->structure;
-    for (size_t s = 0; s < sys->harmonics; s++) {
-        own = greater(own, sys->harmonic[s].omega * sys->harmonic[s].omega);
+    for (size_t s = 0; s < sys->loads.harmonics; s++) {
+        own = greater(own, sys->loads.harmonic[s].omega * sys->loads.harmonic[s].omega);
     }
     if (!g->count || own == 0.0 || g->added <= MOST_STIFF * own) {
         return TRIBO_OK;
@@ -198,7 +198,7 @@ void tribo_compliance_move(const tribo_system *sys, const double *y, double *v, 
 {
     const struct compliance *g = &sys->compliance;
     struct definite *c = g->g;
-    double *limit = sys->put_limit, *noise = sys->dv_dt;
+    double *limit = sys->work.put_limit, *noise = sys->work.dv_dt;
     tribo_get_limit(sys->contacts, limit);
     tribo_compliance_noise(sys, y, noise);
     memset(rate, 0, sys->ncontact * sizeof *rate);

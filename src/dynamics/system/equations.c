@@ -22,8 +22,8 @@ void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y
         tribo_matrix_multiply_add(&sys->damping, -1.0, y + n, acceleration);
     }
     if (sys->compliance.count) {
-        tribo_compliance_get(sys, y, sys->put_limit);
-        tribo_matrix_multiply_add(&sys->compliance.pull, 1.0, sys->put_limit, acceleration);
+        tribo_compliance_get(sys, y, sys->work.put_limit);
+        tribo_matrix_multiply_add(&sys->compliance.pull, 1.0, sys->work.put_limit, acceleration);
     }
 }
 
@@ -48,12 +48,12 @@ struct seen {
 static struct seen see(tribo_system *sys, double t, const double *y, double *acceleration)
 {
     if (tribo_system_bases_move(sys)) {
-        tribo_system_free_motion(sys, t, y, acceleration, sys->v, sys->a);
-        return (struct seen){sys->v, sys->a};
+        tribo_system_free_motion(sys, t, y, acceleration, sys->work.v, sys->work.a);
+        return (struct seen){sys->work.v, sys->work.a};
     }
     tribo_system_free_acceleration(sys, t, y, acceleration);
-    return (struct seen){tribo_matrix_image(&sys->direction, y + sys->ndof, sys->v),
-                         tribo_matrix_image(&sys->direction, acceleration, sys->a)};
+    return (struct seen){tribo_matrix_image(&sys->direction, y + sys->ndof, sys->work.v),
+                         tribo_matrix_image(&sys->direction, acceleration, sys->work.a)};
 }
 
 enum { LANES = 8 }; /* partial sums: additions to a single sum wait for each other */
@@ -79,12 +79,12 @@ static int rates_at(tribo_system *sys, double t, const double *y, int accepted, 
 {
     sys->evaluations++;
     const struct seen seen = see(sys, t, y, acceleration);
-    sys->status = tribo_balance(sys->contacts, seen.v, seen.a, accepted ? sys->feq : NULL, sys->f);
+    sys->status = tribo_balance(sys->contacts, seen.v, seen.a, accepted ? sys->work.feq : NULL, sys->work.f);
     if (!sys->status) {
         /* f stays valid: where a reversal mark changes, both forms of the law give the same force */
-        sys->status = accepted ? tribo_accept(sys->contacts, seen.v, sys->feq) : TRIBO_OK;
-        *power = equations_power_of(sys->ncontact, sys->tally, sys->f, seen.v);
-        tribo_matrix_multiply_add(&sys->response, 1.0, sys->f, acceleration);
+        sys->status = accepted ? tribo_accept(sys->contacts, seen.v, sys->work.feq) : TRIBO_OK;
+        *power = equations_power_of(sys->ncontact, sys->tally, sys->work.f, seen.v);
+        tribo_matrix_multiply_add(&sys->response, 1.0, sys->work.f, acceleration);
     }
     return tribo_system_explain(sys, sys->status);
 }
@@ -101,13 +101,13 @@ int tribo_system_begin_rates(tribo_system *sys, double t, const double *y, doubl
     return rates_at(sys, t, y, law == TRIBO_QUINN_REVERSAL, acceleration, power);
 }
 
-/* Sets the rest of dydt, q' [ndof]. If J is the identity and bases do not move, also sys->v = q' for the driver. */
+/* Sets the rest of dydt, q' [ndof]. If J is the identity and bases do not move, also sys->work.v = q' for the driver. */
 static void equations_complete(tribo_system *sys, const double *y, double *dydt)
 {
     const double *u = y + sys->ndof;
     memcpy(dydt, u, sys->ndof * sizeof *dydt);
     if (sys->direction.identity && !tribo_system_bases_move(sys)) {
-        memcpy(sys->v, u, sys->ncontact * sizeof *sys->v);
+        memcpy(sys->work.v, u, sys->ncontact * sizeof *sys->work.v);
     }
 }
 
@@ -133,12 +133,12 @@ int tribo_system_derivative(tribo_system *sys, double t, const double *y, double
     if (sys->status) {
         return sys->status;
     }
-    if (tribo_system_rates(sys, t, y, sys->acceleration, &power)) {
+    if (tribo_system_rates(sys, t, y, sys->work.acceleration, &power)) {
         const int status = tribo_system_check_state(sys, t, y); /* names the value of y that is not finite */
         return sys->status = status ? status : sys->status;
     }
     equations_complete(sys, y, dydt);
-    memcpy(dydt + n, sys->acceleration, n * sizeof *dydt);
+    memcpy(dydt + n, sys->work.acceleration, n * sizeof *dydt);
     dydt[2 * n] = power;
     return TRIBO_OK;
 }
@@ -151,13 +151,13 @@ int tribo_system_get_force(const tribo_system *sys, double *f)
     if (!f) {
         return tribo_system_fail(sys, TRIBO_ERR_NULL, "f is NULL");
     }
-    memcpy(f, sys->f, sys->ncontact * sizeof *f);
+    memcpy(f, sys->work.f, sys->ncontact * sizeof *f);
     return TRIBO_OK;
 }
 
 /* --------------------------------------------------------------------------------------------------------------------- states */
 
-/* Checks the caller's state *y; sets sys->v and sys->a, and *y = the methods' state. Returns a status. */
+/* Checks the caller's state *y; sets sys->work.v and sys->work.a, and *y = the methods' state. Returns a status. */
 static int contacts_at(tribo_system *sys, double t, const double **y)
 {
     int status = tribo_system_check_state(sys, t, *y);
@@ -165,22 +165,23 @@ static int contacts_at(tribo_system *sys, double t, const double **y)
     status = status ? status : tribo_system_check_solved(sys, "the force of contacts");
     if (!status && sys->expansion.place) {
         tribo_system_set_time(sys, t);
-        tribo_system_read_state(sys, *y, sys->motion);
-        tribo_get_limit(sys->contacts, sys->a);
-        tribo_compliance_enter(sys, sys->a, sys->feq, sys->motion);
+        tribo_system_read_state(sys, *y, sys->work.motion);
+        tribo_get_limit(sys->contacts, sys->work.a);
+        tribo_compliance_enter(sys, sys->work.a, sys->work.feq, sys->work.motion);
     }
     if (!status) {
-        tribo_system_free_motion(sys, t, sys->expansion.place ? sys->motion : *y, sys->acceleration, sys->v, sys->a);
+        tribo_system_free_motion(sys, t, sys->expansion.place ? sys->work.motion : *y, sys->work.acceleration, sys->work.v,
+                                 sys->work.a);
     }
     if (!status && sys->expansion.sliders) {
-        tribo_compliance_move(sys, sys->motion, sys->v, sys->feq);
+        tribo_compliance_move(sys, sys->work.motion, sys->work.v, sys->work.feq);
     } else if (!status && sys->expansion.place) {
-        tribo_system_add_velocities(sys, *y, sys->v);
+        tribo_system_add_velocities(sys, *y, sys->work.v);
     }
     for (size_t k = 0; !status && k < sys->compliance.count; k++) { /* with R_ii = 0 and a_i = 0 a contact sticks where v_i = 0 */
-        sys->a[sys->compliance.contact[k]] = 0.0;
+        sys->work.a[sys->compliance.contact[k]] = 0.0;
     }
-    *y = sys->expansion.place ? sys->motion : *y;
+    *y = sys->expansion.place ? sys->work.motion : *y;
     return status;
 }
 
@@ -188,7 +189,7 @@ int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *
 {
     int status = sys ? contacts_at(sys, t, &y) : TRIBO_ERR_NULL;
     if (!status) {
-        status = tribo_system_explain(sys, tribo_balance(sys->contacts, sys->v, sys->a, feq, f));
+        status = tribo_system_explain(sys, tribo_balance(sys->contacts, sys->work.v, sys->work.a, feq, f));
     }
     for (size_t k = 0; !status && k < 2 * sys->compliance.count; k++) { /* of compliant contacts, the forces in y */
         double *to = k % 2 ? feq : f;
@@ -197,7 +198,7 @@ int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *
         }
     }
     if (!status && v) {
-        memcpy(v, sys->v, sys->ncontact * sizeof *v);
+        memcpy(v, sys->work.v, sys->ncontact * sizeof *v);
     }
     return status;
 }
@@ -207,9 +208,9 @@ int tribo_system_accept(tribo_system *sys, double t, const double *y)
     int status = sys ? tribo_system_check_mass(sys, "this call") : TRIBO_ERR_NULL;
     status = status ? status : contacts_at(sys, t, &y);
     if (!status) {
-        status = tribo_system_explain(sys, tribo_balance(sys->contacts, sys->v, sys->a, sys->feq, NULL));
+        status = tribo_system_explain(sys, tribo_balance(sys->contacts, sys->work.v, sys->work.a, sys->work.feq, NULL));
     }
-    return status ? status : tribo_system_explain(sys, tribo_accept(sys->contacts, sys->v, sys->feq));
+    return status ? status : tribo_system_explain(sys, tribo_accept(sys->contacts, sys->work.v, sys->work.feq));
 }
 
 /* ----------------------------------------------------------------------------------------------------------------------- life */
@@ -230,8 +231,9 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
         tribo_matrix_free(response);
         return status ? status : TRIBO_ERR_MEMORY;
     }
-    double **const part[] = {&s->v,           &s->a,         &s->f,     &s->feq,         &s->dv_dt,
-                             &s->given_limit, &s->put_limit, &s->tally, &s->acceleration};
+    double **const part[] = {&s->work.v,         &s->work.a,     &s->work.f,
+                             &s->work.feq,       &s->work.dv_dt, &s->loads.given_limit,
+                             &s->work.put_limit, &s->tally,      &s->work.acceleration};
     for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
         *part[k] = work + k * (ncontact + 1);
     }
@@ -243,7 +245,7 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
     s->damping = *damping;
     s->direction = *direction;
     s->response = *response;
-    s->time = NAN;
+    s->loads.time = NAN;
     for (size_t i = 0; i < ncontact; i++) {
         s->tally[i] = 1.0;
     }
@@ -259,17 +261,17 @@ static int copy_rest(tribo_system *to, const tribo_system *sys)
     to->revision = sys->revision;
     to->given = sys->given;
     to->unsolved = sys->unsolved;
-    memcpy(to->given_limit, sys->given_limit, sys->ncontact * sizeof *to->given_limit);
+    memcpy(to->loads.given_limit, sys->loads.given_limit, sys->ncontact * sizeof *to->loads.given_limit);
     to->copied = sys->copied;
     memcpy(to->tally, sys->tally, sys->ncontact * sizeof *to->tally);
     int done = 1;
     const size_t dofs = sys->expansion.place ? sys->expansion.dofs : sys->ndof;
-    to->modes = tribo_copy_of(sys->modes, sys->given * dofs, sizeof *to->modes, &done);
-    to->omega = tribo_copy_of(sys->omega, dofs, sizeof *to->omega, &done);
-    to->truncation = sys->truncation;
+    to->reduced.modes = tribo_copy_of(sys->reduced.modes, sys->given * dofs, sizeof *to->reduced.modes, &done);
+    to->reduced.omega = tribo_copy_of(sys->reduced.omega, dofs, sizeof *to->reduced.omega, &done);
+    to->reduced.truncation = sys->reduced.truncation;
     done = done && (!sys->lent || (tribo_clone(sys->lent, &to->lent) == TRIBO_OK && tribo_fix_operator(to->lent) == TRIBO_OK));
-    return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK &&
-           tribo_matrix_copy(&to->k, &sys->k) && tribo_matrix_copy(&to->c, &sys->c) && tribo_matrix_copy(&to->mass, &sys->mass) &&
+    return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && tribo_matrix_copy(&to->k, &sys->k) &&
+           tribo_matrix_copy(&to->c, &sys->c) && tribo_matrix_copy(&to->mass, &sys->mass) &&
            tribo_cholesky_copy(&to->factor, &sys->factor) && tribo_compliance_copy(to, sys) && tribo_expansion_copy(to, sys) &&
            tribo_loads_copy(to, sys);
 }
@@ -322,9 +324,9 @@ void tribo_system_destroy(tribo_system *sys)
     tribo_cholesky_free(&sys->factor);
     tribo_compliance_free(&sys->compliance);
     tribo_expansion_free(&sys->expansion);
-    free(sys->modes);
-    free(sys->omega);
-    free(sys->v);
-    free(sys->motion);
+    free(sys->reduced.modes);
+    free(sys->reduced.omega);
+    free(sys->work.v);
+    free(sys->work.motion);
     free(sys);
 }

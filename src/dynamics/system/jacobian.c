@@ -42,11 +42,11 @@ static int find_limit_rates(tribo_system *sys, double *df_dt)
         return TRIBO_OK;
     }
     tribo_system_put_limits(sys, later);
-    int status = tribo_balance(sys->contacts, sys->v, sys->a, NULL, sys->dv_dt);
+    int status = tribo_balance(sys->contacts, sys->work.v, sys->work.a, NULL, sys->work.dv_dt);
     tribo_system_put_limits(sys, 0.0);
-    status = status ? status : tribo_balance(sys->contacts, sys->v, sys->a, NULL, sys->f);
+    status = status ? status : tribo_balance(sys->contacts, sys->work.v, sys->work.a, NULL, sys->work.f);
     for (size_t i = 0; !status && i < sys->ncontact; i++) {
-        df_dt[i] = (sys->dv_dt[i] - sys->f[i]) / later;
+        df_dt[i] = (sys->work.dv_dt[i] - sys->work.f[i]) / later;
     }
     return tribo_system_explain(sys, status);
 }
@@ -70,7 +70,7 @@ static void jacobian_add_product(size_t rows, double factor, const double *a, co
 }
 
 /* df/dq = -pull AK,  df/du = (df/dv) J - pull AC, and
- * df_dt += -(df/dv) b' + (df/da) (J load' - b''); df_dt in: (df/dlimit) limit'. Sets sys->dv_dt = -b'. */
+ * df_dt += -(df/dv) b' + (df/da) (J load' - b''); df_dt in: (df/dlimit) limit'. Sets sys->work.dv_dt = -b'. */
 static void follow_state_and_time(tribo_system *sys, const struct tangents *d)
 {
     const size_t n = sys->ndof, m = sys->ncontact;
@@ -79,18 +79,18 @@ static void follow_state_and_time(tribo_system *sys, const struct tangents *d)
     jacobian_add_product(m, -1.0, d->pull, &sys->damping, 2 * n, d->df_dy + n);
     jacobian_add_product(m, 1.0, d->df_dv, &sys->direction, 2 * n, d->df_dy + n);
     memset(d->load, 0, n * sizeof *d->load);
-    memset(sys->dv_dt, 0, m * sizeof *sys->dv_dt);
-    memset(sys->a, 0, m * sizeof *sys->a);
+    memset(sys->work.dv_dt, 0, m * sizeof *sys->work.dv_dt);
+    memset(sys->work.a, 0, m * sizeof *sys->work.a);
     tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, d->load);
-    tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, sys->dv_dt);
-    tribo_system_loads(sys, DRIVES_BASE, 2, -1.0, sys->a);
-    tribo_matrix_multiply_add(&sys->direction, 1.0, d->load, sys->a);
-    tribo_multiply_add(m, m, 1, 1.0, d->df_dv, sys->dv_dt, d->df_dt);
-    tribo_multiply_add(m, m, 1, 1.0, d->df_da, sys->a, d->df_dt);
+    tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, sys->work.dv_dt);
+    tribo_system_loads(sys, DRIVES_BASE, 2, -1.0, sys->work.a);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, d->load, sys->work.a);
+    tribo_multiply_add(m, m, 1, 1.0, d->df_dv, sys->work.dv_dt, d->df_dt);
+    tribo_multiply_add(m, m, 1, 1.0, d->df_da, sys->work.a, d->df_dt);
 }
 
-/* Writes the rows of q' = u, of u' = load - AK q - AC u + B f, and of the energy, of rate -sum tally_i f_i v_i. Overwrites sys->v
- * and sys->f. */
+/* Writes the rows of q' = u, of u' = load - AK q - AC u + B f, and of the energy, of rate -sum tally_i f_i v_i. Overwrites v and f
+ * of sys->work. */
 static void write_rows(tribo_system *sys, const struct tangents *d, double *dfdy, double *dfdt)
 {
     const size_t n = sys->ndof, m = sys->ncontact, size = 2 * n + 1;
@@ -107,16 +107,16 @@ static void write_rows(tribo_system *sys, const struct tangents *d, double *dfdy
         }
     }
     for (size_t i = 0; i < m; i++) {
-        sys->v[i] *= -sys->tally[i];
-        sys->f[i] *= -sys->tally[i];
+        sys->work.v[i] *= -sys->tally[i];
+        sys->work.f[i] *= -sys->tally[i];
     }
-    tribo_multiply_add(1, m, 2 * n, 1.0, sys->v, d->df_dy, energy);
-    jacobian_add_product(1, 1.0, sys->f, &sys->direction, 0, energy + n);
+    tribo_multiply_add(1, m, 2 * n, 1.0, sys->work.v, d->df_dy, energy);
+    jacobian_add_product(1, 1.0, sys->work.f, &sys->direction, 0, energy + n);
     if (dfdt) {
         memset(dfdt, 0, size * sizeof *dfdt);
         memcpy(dfdt + n, d->load, n * sizeof *dfdt);
         tribo_matrix_multiply_add(b, 1.0, d->df_dt, dfdt + n);
-        dfdt[2 * n] = tribo_dot(sys->v, d->df_dt, m) + tribo_dot(sys->f, sys->dv_dt, m);
+        dfdt[2 * n] = tribo_dot(sys->work.v, d->df_dt, m) + tribo_dot(sys->work.f, sys->work.dv_dt, m);
     }
 }
 
@@ -139,10 +139,10 @@ int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *
     if (sys->status) {
         return sys->status;
     }
-    tribo_system_free_motion(sys, t, y, d.load, sys->v, sys->a);
+    tribo_system_free_motion(sys, t, y, d.load, sys->work.v, sys->work.a);
     int status = find_limit_rates(sys, d.df_dt);
     if (!status) {
-        status = tribo_balance_tangent(sys->contacts, sys->v, sys->a, NULL, sys->f, d.df_dv, d.df_da);
+        status = tribo_balance_tangent(sys->contacts, sys->work.v, sys->work.a, NULL, sys->work.f, d.df_dv, d.df_da);
         status = tribo_system_explain(sys, status);
     }
     if (status) {

@@ -50,36 +50,36 @@ static int create_table(struct table *t, size_t n, const void *from)
 
 void tribo_loads_free(tribo_system *sys)
 {
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        free(sys->harmonic[k].index);
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        free(sys->loads.harmonic[k].index);
     }
-    for (size_t k = 0; k < sys->tables; k++) {
-        free(sys->table[k].time);
+    for (size_t k = 0; k < sys->loads.tables; k++) {
+        free(sys->loads.table[k].time);
     }
-    free(sys->harmonic);
-    free(sys->table);
+    free(sys->loads.harmonic);
+    free(sys->loads.table);
 }
 
 int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
 {
-    sys->harmonic = malloc((from->harmonics + 1) * sizeof *sys->harmonic);
-    sys->table = malloc((from->tables + 1) * sizeof *sys->table);
-    int done = sys->harmonic && sys->table;
-    for (; done && sys->harmonics < from->harmonics; sys->harmonics++) {
-        struct harmonic *h = &sys->harmonic[sys->harmonics];
-        *h = from->harmonic[sys->harmonics];
+    sys->loads.harmonic = malloc((from->loads.harmonics + 1) * sizeof *sys->loads.harmonic);
+    sys->loads.table = malloc((from->loads.tables + 1) * sizeof *sys->loads.table);
+    int done = sys->loads.harmonic && sys->loads.table;
+    for (; done && sys->loads.harmonics < from->loads.harmonics; sys->loads.harmonics++) {
+        struct harmonic *h = &sys->loads.harmonic[sys->loads.harmonics];
+        *h = from->loads.harmonic[sys->loads.harmonics];
         h->time = NAN;
         done = create_harmonic(h, h->index);
     }
-    for (; done && sys->tables < from->tables; sys->tables++) {
-        struct table *t = &sys->table[sys->tables];
-        *t = from->table[sys->tables];
+    for (; done && sys->loads.tables < from->loads.tables; sys->loads.tables++) {
+        struct table *t = &sys->loads.table[sys->loads.tables];
+        *t = from->loads.table[sys->loads.tables];
         done = create_table(t, length_of(sys, t->drives), t->time);
     }
-    sys->base_harmonics = from->base_harmonics;
-    sys->limit_harmonics = from->limit_harmonics;
-    sys->base_tables = from->base_tables;
-    sys->limit_tables = from->limit_tables;
+    sys->loads.base_harmonics = from->loads.base_harmonics;
+    sys->loads.limit_harmonics = from->loads.limit_harmonics;
+    sys->loads.base_tables = from->loads.base_tables;
+    sys->loads.limit_tables = from->loads.limit_tables;
     return done;
 }
 
@@ -87,17 +87,17 @@ int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
 
 void tribo_system_forget_time(tribo_system *sys)
 {
-    sys->time = NAN;
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        sys->harmonic[k].time = NAN;
+    sys->loads.time = NAN;
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        sys->loads.harmonic[k].time = NAN;
     }
 }
 
 void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h)
 {
-    h->time = sys->time;
+    h->time = sys->loads.time;
     h->turns = 0;
-    tribo_cos_sin(h->omega, sys->time, sys->low, &h->cos_t, &h->sin_t);
+    tribo_cos_sin(h->omega, sys->loads.time, sys->loads.low, &h->cos_t, &h->sin_t);
 }
 
 enum { MOST_TURNS = 16 };
@@ -106,7 +106,7 @@ void tribo_harmonic_take(const tribo_system *sys, struct harmonic *h, double c, 
 {
     if (h->drives == DRIVES_LOAD && h->turns < MOST_TURNS) {
         h->turns++;
-        h->time = sys->time;
+        h->time = sys->loads.time;
         h->cos_t = c;
         h->sin_t = s;
     }
@@ -136,29 +136,29 @@ static double look_up(const struct table *table, size_t k, double t, double low,
 
 void tribo_system_put_limits(tribo_system *sys, double later)
 {
-    tribo_system_limits(sys, sys->put_limit, sys->feq);
+    tribo_system_limits(sys, sys->work.put_limit, sys->work.feq);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        sys->put_limit[i] = clamp(sys->put_limit[i] + later * sys->feq[i], 0.0, DBL_MAX);
+        sys->work.put_limit[i] = clamp(sys->work.put_limit[i] + later * sys->work.feq[i], 0.0, DBL_MAX);
     }
-    tribo_set_limit(sys->contacts, sys->put_limit);
+    tribo_set_limit(sys->contacts, sys->work.put_limit);
 }
 
 void tribo_system_set_low(tribo_system *sys, double low)
 {
-    if (low != sys->low) {
-        sys->low = low;
+    if (low != sys->loads.low) {
+        sys->loads.low = low;
         tribo_system_forget_time(sys);
     }
 }
 
 void tribo_system_set_time(tribo_system *sys, double t)
 {
-    if (t == sys->time) {
+    if (t == sys->loads.time) {
         return;
     }
-    sys->time = t;
-    for (size_t k = 0; k < sys->tables; k++) {
-        sys->table[k].at = knot_at(&sys->table[k], t);
+    sys->loads.time = t;
+    for (size_t k = 0; k < sys->loads.tables; k++) {
+        sys->loads.table[k].at = knot_at(&sys->loads.table[k], t);
     }
     if (tribo_system_limits_vary(sys)) {
         tribo_system_put_limits(sys, 0.0);
@@ -168,10 +168,10 @@ void tribo_system_set_time(tribo_system *sys, double t)
 double tribo_system_next_kink(const tribo_system *sys, double t)
 {
     double next = HUGE_VAL;
-    for (size_t k = 0; k < sys->tables; k++) {
-        const struct table *table = &sys->table[k];
+    for (size_t k = 0; k < sys->loads.tables; k++) {
+        const struct table *table = &sys->loads.table[k];
         size_t i = knot_at(table, t);
-        while (i < table->knots && !(table->time[i] > t || (table->time[i] == t && sys->low < 0.0))) {
+        while (i < table->knots && !(table->time[i] > t || (table->time[i] == t && sys->loads.low < 0.0))) {
             i++;
         }
         next = i < table->knots ? lesser(next, table->time[i]) : next;
@@ -182,15 +182,15 @@ double tribo_system_next_kink(const tribo_system *sys, double t)
 void tribo_system_tables(const tribo_system *sys, enum drives drives, int order, double factor, size_t begin, size_t end,
                          double *to)
 {
-    for (size_t k = 0; order < 2 && k < sys->tables; k++) {
-        const struct table *table = &sys->table[k];
+    for (size_t k = 0; order < 2 && k < sys->loads.tables; k++) {
+        const struct table *table = &sys->loads.table[k];
         if (table->drives != drives) {
             continue;
         }
         double value = 0.0;
         for (size_t i = begin; i < end; i++) {
             if (i == begin || table->columns > 1) {
-                value = factor * look_up(table, table->at, sys->time, sys->low, table->columns > 1 ? i : 0, order);
+                value = factor * look_up(table, table->at, sys->loads.time, sys->loads.low, table->columns > 1 ? i : 0, order);
             }
             to[i] += value * table->pattern[i];
         }
@@ -211,8 +211,8 @@ static inline void loads_differentiate(const struct harmonic *h, int order, doub
 
 void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, double factor, double *to)
 {
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        struct harmonic *h = &sys->harmonic[k];
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        struct harmonic *h = &sys->loads.harmonic[k];
         if (h->drives != drives) {
             continue;
         }
@@ -223,22 +223,22 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
             to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
         }
     }
-    if (sys->tables) {
+    if (sys->loads.tables) {
         tribo_system_tables(sys, drives, order, factor, 0, length_of(sys, drives), to);
     }
 }
 
 void tribo_system_add_base_at(const tribo_system *sys, double t, double factor, double *to)
 {
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        const struct harmonic *h = &sys->harmonic[k];
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        const struct harmonic *h = &sys->loads.harmonic[k];
         const double c = factor * cos(h->omega * t), s = factor * sin(h->omega * t);
         for (size_t e = 0; h->drives == DRIVES_BASE && e < h->count; e++) {
             to[h->index[e]] += c * h->cosine[e] + s * h->sine[e];
         }
     }
-    for (size_t k = 0; k < sys->tables; k++) {
-        const struct table *table = &sys->table[k];
+    for (size_t k = 0; k < sys->loads.tables; k++) {
+        const struct table *table = &sys->loads.table[k];
         if (table->drives == DRIVES_BASE) {
             tribo_add(to, factor * look_up(table, knot_at(table, t), t, 0.0, 0, 0), table->pattern, sys->ncontact);
         }
@@ -246,17 +246,6 @@ void tribo_system_add_base_at(const tribo_system *sys, double t, double factor, 
 }
 
 /* ------------------------------------------------------------------------------------------------------------------- limits */
-
-/* Returns the order-th derivative of the limit of contact i without harmonics. */
-static double loads_steady_limit(const tribo_system *sys, size_t i, int order)
-{
-    double limit = sys->limit_tables || order ? 0.0 : sys->given_limit[i];
-    for (size_t k = 0; sys->limit_tables && order < 2 && k < sys->tables; k++) {
-        const struct table *table = &sys->table[k];
-        limit = table->drives == DRIVES_LIMIT ? look_up(table, table->at, sys->time, sys->low, i, order) : limit;
-    }
-    return limit;
-}
 
 void tribo_system_limits(const tribo_system *sys, double *limit, double *rate)
 {
@@ -266,7 +255,7 @@ void tribo_system_limits(const tribo_system *sys, double *limit, double *rate)
         return;
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
-        limit[i] = sys->limit_tables ? 0.0 : sys->given_limit[i];
+        limit[i] = sys->loads.limit_tables ? 0.0 : sys->loads.given_limit[i];
     }
     tribo_system_loads(sys, DRIVES_LIMIT, 0, 1.0, limit);
     tribo_system_loads(sys, DRIVES_LIMIT, 1, 1.0, rate);
@@ -275,8 +264,8 @@ void tribo_system_limits(const tribo_system *sys, double *limit, double *rate)
 double tribo_system_swing(const tribo_system *sys, size_t i)
 {
     double sum = 0.0;
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        const struct harmonic *h = &sys->harmonic[k];
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        const struct harmonic *h = &sys->loads.harmonic[k];
         sum += h->drives == DRIVES_LIMIT ? hypot(h->cosine[i], h->sine[i]) : 0.0;
     }
     return sum;
@@ -289,9 +278,9 @@ void tribo_system_most_limits(const tribo_system *sys, double *most)
         return;
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
-        most[i] = sys->limit_tables ? 0.0 : sys->given_limit[i];
-        for (size_t k = 0; k < sys->tables; k++) {
-            const struct table *table = &sys->table[k];
+        most[i] = sys->loads.limit_tables ? 0.0 : sys->loads.given_limit[i];
+        for (size_t k = 0; k < sys->loads.tables; k++) {
+            const struct table *table = &sys->loads.table[k];
             for (size_t p = 0; table->drives == DRIVES_LIMIT && p < table->knots; p++) {
                 most[i] = greater(most[i], table->value[p * table->columns + i]);
             }
@@ -306,9 +295,14 @@ void tribo_system_most_limits(const tribo_system *sys, double *most)
 int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
 {
     for (int order = 0; order < DERIVATIVES; order++) {
-        double sum = loads_steady_limit(sys, i, order), size = fabs(sum);
-        for (size_t k = 0; k < sys->harmonics; k++) {
-            const struct harmonic *h = &sys->harmonic[k];
+        double sum = sys->loads.limit_tables || order ? 0.0 : sys->loads.given_limit[i];
+        for (size_t k = 0; order < 2 && k < sys->loads.tables; k++) {
+            const struct table *table = &sys->loads.table[k];
+            sum += table->drives == DRIVES_LIMIT ? look_up(table, table->at, sys->loads.time, sys->loads.low, i, order) : 0.0;
+        }
+        double size = fabs(sum);
+        for (size_t k = 0; k < sys->loads.harmonics; k++) {
+            const struct harmonic *h = &sys->loads.harmonic[k];
             double c, s;
             if (h->drives == DRIVES_LIMIT) {
                 tribo_system_turn(sys, k);
@@ -333,7 +327,7 @@ static int check_pattern(const tribo_system *sys, enum drives drives, const char
     const size_t *place = sys->expansion.place, n = drives == DRIVES_LOAD ? sys->given : sys->ncontact;
     const int status = tribo_system_check_finite(sys, name, x, n);
     for (size_t i = 0; x && place && !status && i < n; i++) {
-        if (x[i] != 0.0 && drives == DRIVES_LOAD && !sys->modes && place[i] >= sys->ndof) {
+        if (x[i] != 0.0 && drives == DRIVES_LOAD && !sys->reduced.modes && place[i] >= sys->ndof) {
             return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                      "%s[%zu] = %g, but degree of freedom %zu has no mass, and takes no load", name, i, x[i], i);
         }
@@ -353,7 +347,7 @@ static int loads_check_limits(const tribo_system *sys, const double *cosine, con
 {
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double most =
-            sys->given_limit[i] + tribo_system_swing(sys, i) + hypot(cosine ? cosine[i] : 0.0, sine ? sine[i] : 0.0);
+            sys->loads.given_limit[i] + tribo_system_swing(sys, i) + hypot(cosine ? cosine[i] : 0.0, sine ? sine[i] : 0.0);
         if (!(most <= MOST_LIMIT)) {
             return tribo_system_fail(sys, TRIBO_ERR_RANGE, "limit of contact %zu comes to %g, and %g is the most", i, most,
                                      MOST_LIMIT);
@@ -367,7 +361,7 @@ static int loads_begin_limits(tribo_system *sys)
 {
     const int status = tribo_system_take_settings(sys);
     if (!status && !tribo_system_limits_vary(sys)) {
-        tribo_get_limit(sys->contacts, sys->given_limit);
+        tribo_get_limit(sys->contacts, sys->loads.given_limit);
     }
     return status;
 }
@@ -425,11 +419,11 @@ static int append_harmonic(tribo_system *sys, enum drives drives, double omega, 
 {
     const size_t n = length_of(sys, drives);
     struct harmonic h = {.omega = omega, .drives = drives, .time = NAN, .by_load = by_load};
-    struct harmonic *all = realloc(sys->harmonic, (sys->harmonics + 1) * sizeof *all);
+    struct harmonic *all = realloc(sys->loads.harmonic, (sys->loads.harmonics + 1) * sizeof *all);
     for (size_t i = 0; i < n; i++) {
         h.count += parts[i] != 0.0 || parts[n + i] != 0.0 || drives == DRIVES_LIMIT;
     }
-    sys->harmonic = all ? all : sys->harmonic;
+    sys->loads.harmonic = all ? all : sys->loads.harmonic;
     if (!all || !create_harmonic(&h, NULL)) {
         return 0;
     }
@@ -440,9 +434,9 @@ static int append_harmonic(tribo_system *sys, enum drives drives, double omega, 
             h.sine[e++] = parts[n + i];
         }
     }
-    sys->harmonic[sys->harmonics++] = h;
-    sys->base_harmonics += drives == DRIVES_BASE;
-    sys->limit_harmonics += drives == DRIVES_LIMIT;
+    sys->loads.harmonic[sys->loads.harmonics++] = h;
+    sys->loads.base_harmonics += drives == DRIVES_BASE;
+    sys->loads.limit_harmonics += drives == DRIVES_LIMIT;
     loads_changed(sys);
     return 1;
 }
@@ -480,7 +474,7 @@ static int loads_add_harmonic(tribo_system *sys, enum drives drives, double omeg
         }
         done = append_harmonic(sys, DRIVES_BASE, omega, parts, 1);
         if (!done) {
-            free(sys->harmonic[--sys->harmonics].index);
+            free(sys->loads.harmonic[--sys->loads.harmonics].index);
         }
     }
     free(parts);
@@ -493,9 +487,9 @@ static int append_table(tribo_system *sys, enum drives drives, size_t knots, siz
                         const double *value, const double *pattern)
 {
     struct table t = {.drives = drives, .knots = knots, .columns = columns};
-    struct table *all = realloc(sys->table, (sys->tables + 1) * sizeof *all);
-    double *way = sys->feq;
-    sys->table = all ? all : sys->table;
+    struct table *all = realloc(sys->loads.table, (sys->loads.tables + 1) * sizeof *all);
+    double *way = sys->work.feq;
+    sys->loads.table = all ? all : sys->loads.table;
     if (!all || !create_table(&t, length_of(sys, drives), NULL)) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knot%s", knots, plural(knots));
     }
@@ -513,9 +507,9 @@ static int append_table(tribo_system *sys, enum drives drives, size_t knots, siz
         return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                  "the load of a table bends what is reduced to compliance: take TRIBO_STATICS_MASS");
     }
-    sys->table[sys->tables++] = t;
-    sys->base_tables += drives == DRIVES_BASE;
-    sys->limit_tables += drives == DRIVES_LIMIT;
+    sys->loads.table[sys->loads.tables++] = t;
+    sys->loads.base_tables += drives == DRIVES_BASE;
+    sys->loads.limit_tables += drives == DRIVES_LIMIT;
     return loads_changed(sys);
 }
 
@@ -523,16 +517,16 @@ static int append_table(tribo_system *sys, enum drives drives, size_t knots, siz
 static void remove_tables(tribo_system *sys, enum drives drives, size_t last)
 {
     size_t kept = 0;
-    for (size_t k = 0; k < sys->tables; k++) {
-        if (sys->table[k].drives != drives || k >= last) {
-            sys->table[kept++] = sys->table[k];
+    for (size_t k = 0; k < sys->loads.tables; k++) {
+        if (sys->loads.table[k].drives != drives || k >= last) {
+            sys->loads.table[kept++] = sys->loads.table[k];
             continue;
         }
-        free(sys->table[k].time);
-        sys->base_tables -= drives == DRIVES_BASE;
-        sys->limit_tables -= drives == DRIVES_LIMIT;
+        free(sys->loads.table[k].time);
+        sys->loads.base_tables -= drives == DRIVES_BASE;
+        sys->loads.limit_tables -= drives == DRIVES_LIMIT;
     }
-    sys->tables = kept;
+    sys->loads.tables = kept;
 }
 
 /* Adds the table value [knots] times pattern: forces [given], or base velocities [ncontact]. Returns a status. */
@@ -556,18 +550,18 @@ static int remove_driven(tribo_system *sys, enum drives drives)
         return TRIBO_ERR_NULL;
     }
     size_t kept = 0;
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        const struct harmonic *h = &sys->harmonic[k];
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        const struct harmonic *h = &sys->loads.harmonic[k];
         if ((h->by_load ? DRIVES_LOAD : h->drives) != drives) {
-            sys->harmonic[kept++] = *h;
+            sys->loads.harmonic[kept++] = *h;
             continue;
         }
-        sys->base_harmonics -= h->drives == DRIVES_BASE;
-        sys->limit_harmonics -= h->drives == DRIVES_LIMIT;
+        sys->loads.base_harmonics -= h->drives == DRIVES_BASE;
+        sys->loads.limit_harmonics -= h->drives == DRIVES_LIMIT;
         free(h->index);
     }
-    sys->harmonics = kept;
-    remove_tables(sys, drives, sys->tables);
+    sys->loads.harmonics = kept;
+    remove_tables(sys, drives, sys->loads.tables);
     return loads_changed(sys);
 }
 
@@ -603,7 +597,7 @@ int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *
     status = status ? status : loads_begin_limits(sys);
     status = status ? status : append_table(sys, DRIVES_LIMIT, knots, sys->ncontact, time, limit, NULL);
     if (!status) {
-        remove_tables(sys, DRIVES_LIMIT, sys->tables - 1);
+        remove_tables(sys, DRIVES_LIMIT, sys->loads.tables - 1);
     }
     return status;
 }
@@ -621,7 +615,7 @@ int tribo_system_clear_base_motion(tribo_system *sys)
 int tribo_system_clear_limits(tribo_system *sys)
 {
     if (sys && tribo_system_limits_vary(sys)) {
-        tribo_set_limit(sys->contacts, sys->given_limit);
+        tribo_set_limit(sys->contacts, sys->loads.given_limit);
     }
     return remove_driven(sys, DRIVES_LIMIT);
 }

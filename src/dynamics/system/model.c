@@ -48,29 +48,19 @@ int tribo_model_factorize(const struct model *m, struct cholesky *c)
     }
 }
 
-/* Returns TRIBO_ERR_UNSUPPORTED if R, of a mass matrix that is not diagonal, hides a body. */
-static int check_operator(const struct model *m, const tribo_system *sys, const double *r, const double *own)
-{
-    struct hidden where;
-    const int hidden = tribo_hidden(&sys->direction, &sys->mass, own, r, &where);
-    if (hidden < 0) {
-        return tribo_model_no_memory(m);
-    }
-    return hidden ? tribo_model_fail(
-                        m, TRIBO_ERR_UNSUPPORTED,
-                        "mass: contact %zu touches bodies of which one is %g times as light; make the mass matrix diagonal",
-                        where.contact, where.spread)
-                  : TRIBO_OK;
-}
-
 int tribo_model_give_operator(const struct model *m, tribo_system *sys, const double *r, const double *own)
 {
-    int status = own ? check_operator(m, sys, r, own) : TRIBO_OK;
-    if (!status) {
-        status = tribo_set_operator_dense(sys->contacts, r);
-        status = status ? tribo_model_fail(m, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
+    struct hidden where;
+    const int hidden = own ? tribo_hidden(&sys->direction, &sys->mass, own, r, &where) : 0;
+    if (hidden) {
+        return hidden < 0 ? tribo_model_no_memory(m)
+                          : tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
+                                             "mass: contact %zu touches bodies of which one is %g times as light; make the mass "
+                                             "matrix diagonal",
+                                             where.contact, where.spread);
     }
-    return status;
+    const int status = tribo_set_operator_dense(sys->contacts, r);
+    return status ? tribo_model_fail(m, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
 }
 
 /* Returns own [entries of J], own[k] = B_di for entry k in row i, column d of J. NULL if out of memory. */

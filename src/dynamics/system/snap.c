@@ -70,7 +70,7 @@ static int knows(const struct snapping *s, size_t entry)
 void tribo_system_order_snaps(tribo_system *sys)
 {
     const struct matrix *j = &sys->direction;
-    const struct snapping s = {.sys = sys, .loose = NULL, .known = sys->acceleration};
+    const struct snapping s = {.sys = sys, .loose = NULL, .known = sys->work.acceleration};
     memset(s.known, 0, sys->ndof * sizeof *s.known);
     sys->snaps_in_order = 1;
     for (size_t i = 0; i < sys->ncontact; i++) {
@@ -141,12 +141,12 @@ static void snap(struct snapping *s)
 
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x)
 {
-    snap(&(struct snapping){sys, loose, base, x, sys->acceleration, NULL, 0});
+    snap(&(struct snapping){sys, loose, base, x, sys->work.acceleration, NULL, 0});
 }
 
 size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list)
 {
-    struct snapping s = {sys, loose, NULL, NULL, sys->acceleration, list, 0};
+    struct snapping s = {sys, loose, NULL, NULL, sys->work.acceleration, list, 0};
     snap(&s);
     return s.listed;
 }

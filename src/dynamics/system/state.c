@@ -13,14 +13,14 @@ int tribo_expansion_create(tribo_system *sys, size_t sliders, const size_t *plac
     const size_t dofs = sys->ndof + follow->rows;
     size_t *copy = malloc((dofs + 1) * sizeof *copy);
     int done = 1;
-    sys->motion = malloc((tribo_system_size(sys) + follow->rows + 2 * sys->ncontact) * sizeof *sys->motion);
+    sys->work.motion = malloc((tribo_system_size(sys) + follow->rows + 2 * sys->ncontact) * sizeof *sys->work.motion);
     sys->expansion =
         (struct expansion){dofs, sliders, copy, *follow, *give, *touch, tribo_copy_of(terms, sys->ndof, sizeof *terms, &done)};
     *follow = *give = *touch = (struct matrix){0};
     if (copy) {
         memcpy(copy, place, dofs * sizeof *copy);
     }
-    return copy && sys->motion && done;
+    return copy && sys->work.motion && done;
 }
 
 int tribo_expansion_copy(tribo_system *to, const tribo_system *from)
@@ -57,7 +57,7 @@ void tribo_system_read_state(const tribo_system *sys, const double *y, double *t
 {
     const struct expansion *x = &sys->expansion;
     const size_t n = sys->ndof, caller = x->dofs - x->sliders;
-    double *off = sys->motion + tribo_system_size(sys), *force = off + (x->dofs - n);
+    double *off = sys->work.motion + tribo_system_size(sys), *force = off + (x->dofs - n);
     for (size_t d = 0; d < x->dofs; d++) {
         const size_t k = x->place[d];
         if (k < n) {
@@ -79,13 +79,13 @@ void tribo_system_add_velocities(const tribo_system *sys, const double *y, doubl
 {
     const struct expansion *x = &sys->expansion;
     const size_t n = sys->ndof, caller = x->dofs - x->sliders;
-    double *off = sys->motion + tribo_system_size(sys);
+    double *off = sys->work.motion + tribo_system_size(sys);
     for (size_t d = 0; d < caller; d++) {
         if (x->place[d] >= n) {
             off[x->place[d] - n] = y[caller + d];
         }
     }
-    tribo_matrix_multiply_add(&x->follow, -1.0, sys->motion + n, off);
+    tribo_matrix_multiply_add(&x->follow, -1.0, sys->work.motion + n, off);
     tribo_matrix_multiply_add(&x->touch, 1.0, off, v);
 }
 
@@ -96,7 +96,7 @@ void tribo_system_write_state(const tribo_system *sys, double t, const double *f
 {
     const struct expansion *x = &sys->expansion;
     const size_t n = sys->ndof, caller = x->dofs - x->sliders, without = x->dofs - n;
-    double *w = sys->motion + tribo_system_size(sys), *force = w + without, *v = force + sys->ncontact;
+    double *w = sys->work.motion + tribo_system_size(sys), *force = w + without, *v = force + sys->ncontact;
     for (size_t d = 0; d < x->dofs; d++) {
         if (x->place[d] < n) {
             y[d] = from[x->place[d]];
@@ -162,7 +162,7 @@ void tribo_system_read_combination(const tribo_system *sys, const double *c, dou
 {
     const struct compliance *g = &sys->compliance;
     const size_t n = sys->ndof, caller = tribo_system_ndof(sys);
-    double *force = sys->put_limit;
+    double *force = sys->work.put_limit;
     memset(to, 0, 2 * n * sizeof *to);
     for (size_t rate = 0; rate < 2; rate++) {
         memset(force, 0, sys->ncontact * sizeof *force);

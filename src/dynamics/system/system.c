@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 int tribo_system_fail(const tribo_system *sys, int status, const char *format, ...)
@@ -128,7 +129,7 @@ tribo_context *tribo_system_context(tribo_system *sys)
     if (sys && !sys->lent && tribo_clone(sys->contacts, &sys->lent) == TRIBO_OK) {
         tribo_fix_operator(sys->lent);
         if (tribo_system_limits_vary(sys)) {
-            tribo_set_limit(sys->lent, sys->given_limit);
+            tribo_set_limit(sys->lent, sys->loads.given_limit);
         }
         tribo_get_count(sys->lent, TRIBO_COUNT_SETTINGS, &sys->copied);
     }
@@ -143,7 +144,7 @@ int tribo_system_take_settings(tribo_system *sys)
     }
     const int status = tribo_copy_settings(sys->contacts, sys->lent);
     if (!status) {
-        tribo_get_limit(sys->lent, sys->given_limit);
+        tribo_get_limit(sys->lent, sys->loads.given_limit);
         sys->copied = now;
         sys->changes++;
         tribo_system_forget_time(sys);
@@ -224,11 +225,11 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
     const size_t dofs = sys->expansion.place ? sys->expansion.dofs : sys->ndof;
     memset(to, 0, sys->ndof * sizeof *to);
     for (size_t i = 0; i < sys->given; i++) {
-        if (!sys->modes) {
+        if (!sys->reduced.modes) {
             tribo_system_add_part(sys, i, force[i], to, way);
         }
-        for (size_t j = 0; sys->modes && j < dofs; j++) {
-            tribo_system_add_part(sys, j, sys->modes[i * dofs + j] * force[i], to, way);
+        for (size_t j = 0; sys->reduced.modes && j < dofs; j++) {
+            tribo_system_add_part(sys, j, sys->reduced.modes[i * dofs + j] * force[i], to, way);
         }
     }
     tribo_system_solve_mass(sys, to);
@@ -238,8 +239,8 @@ double tribo_system_fastest(const tribo_system *sys)
 {
     const double stiffest = sys->compliance.count ? sys->compliance.stiffest : tribo_matrix_row_sum(&sys->stiffness);
     double most = greater(sqrt(stiffest), tribo_matrix_row_sum(&sys->damping));
-    for (size_t s = 0; s < sys->harmonics; s++) {
-        most = greater(most, fabs(sys->harmonic[s].omega));
+    for (size_t s = 0; s < sys->loads.harmonics; s++) {
+        most = greater(most, fabs(sys->loads.harmonic[s].omega));
     }
     return most;
 }
@@ -258,8 +259,8 @@ double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j)
 static size_t first_dropping(const tribo_system *sys)
 {
     size_t i = 0;
-    tribo_get_static(sys->contacts, sys->feq, NULL);
-    while (i < sys->ncontact && !(sys->feq[i] > 1.0)) {
+    tribo_get_static(sys->contacts, sys->work.feq, NULL);
+    while (i < sys->ncontact && !(sys->work.feq[i] > 1.0)) {
         i++;
     }
     return i;
@@ -273,19 +274,75 @@ int tribo_system_is_plain(const tribo_system *sys)
 void tribo_system_rest_limits(const tribo_system *sys, double *limit)
 {
     tribo_get_limit(sys->contacts, limit);
-    tribo_get_static(sys->contacts, sys->feq, NULL);
+    tribo_get_static(sys->contacts, sys->work.feq, NULL);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        limit[i] *= sys->feq[i];
+        limit[i] *= sys->work.feq[i];
     }
 }
 
 size_t tribo_system_first_falling(const tribo_system *sys)
 {
-    tribo_get_static(sys->contacts, NULL, sys->feq);
-    return sys->ncontact && sys->feq[0] > 0.0 ? first_dropping(sys) : sys->ncontact;
+    tribo_get_static(sys->contacts, NULL, sys->work.feq);
+    return sys->ncontact && sys->work.feq[0] > 0.0 ? first_dropping(sys) : sys->ncontact;
 }
 
 int tribo_system_falls(const tribo_system *sys)
 {
     return tribo_system_first_falling(sys) < sys->ncontact;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- attached data */
+
+struct attached {
+    const void *key;
+    void *data;
+    void (*destroy)(void *data);
+    struct attached *next;
+};
+
+static const struct attached *attached_find(const tribo_system *sys, const void *key)
+{
+    const struct attached *a = sys ? sys->attached : NULL;
+    while (a && a->key != key) {
+        a = a->next;
+    }
+    return a;
+}
+
+int tribo_system_attach(tribo_system *sys, const void *key, void *data, void (*destroy)(void *data))
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!key) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "key is NULL");
+    }
+    if (attached_find(sys, key)) {
+        return tribo_system_fail(sys, TRIBO_ERR_STATE, "data of this key is attached to the system already");
+    }
+    struct attached *a = malloc(sizeof *a);
+    if (!a) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for data attached to the system");
+    }
+    *a = (struct attached){key, data, destroy, sys->attached};
+    sys->attached = a;
+    return TRIBO_OK;
+}
+
+void *tribo_system_attached(const tribo_system *sys, const void *key)
+{
+    const struct attached *a = attached_find(sys, key);
+    return a ? a->data : NULL;
+}
+
+void tribo_system_detach(tribo_system *sys)
+{
+    for (struct attached *a = sys->attached, *next; a; a = next) {
+        next = a->next;
+        if (a->destroy) {
+            a->destroy(a->data);
+        }
+        free(a);
+    }
+    sys->attached = NULL;
 }

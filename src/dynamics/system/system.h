@@ -30,7 +30,7 @@ struct harmonic {
  * has a column for each contact, and stands in the place of given_limit. */
 struct table {
     enum drives drives;
-    size_t knots, columns, at; /* at: last knot at or before sys->time, or 0 */
+    size_t knots, columns, at; /* at: last knot at or before sys->loads.time, or 0 */
     double *time;              /* [knots]; owns the memory of value and pattern */
     double *value;             /* [knots][columns] */
     double *pattern;           /* [ndof] accelerations, [ncontact] velocities; limits: [ncontact] ones */
@@ -52,22 +52,40 @@ struct expansion {
     double *terms;              /* [ndof] sum of the sizes of the terms of K_ii; NULL if reduced */
 };
 
+/* The functions of time, and the time that is set. */
+struct loads {
+    size_t harmonics, base_harmonics, limit_harmonics; /* numbers: all; of b(t); of limits */
+    struct harmonic *harmonic;
+    size_t tables, base_tables, limit_tables; /* numbers: all; of b(t); of limits, at most 1 */
+    struct table *table;
+    double *given_limit; /* [ncontact] limits set by the caller; valid while limits vary */
+    double time, low;    /* the set time (NaN: none) and its part below the last digit (tribo_system_set_low) */
+};
+
+/* A reduced system. The modes convert loads to accelerations. */
+struct reduction {
+    double *modes, *omega; /* [given][dofs] modes, [dofs] frequencies; NULL if not reduced */
+    struct truncation truncation;
+};
+
+/* Workspace. */
+struct workspace {
+    double *v, *a, *f, *feq, *dv_dt; /* [ncontact] */
+    double *put_limit;               /* [ncontact] limits at the set time */
+    double *acceleration;            /* [ndof] */
+    double *motion;                  /* [tribo_system_size + dofs - ndof + 2 ncontact]; NULL without an expansion */
+};
+
 struct tribo_system {
     size_t ndof, ncontact;                                 /* ndof: number of degrees of freedom with mass */
+    size_t given;                                          /* length of the caller's loads; of accelerations, if not reduced */
     struct matrix stiffness, damping, direction, response; /* AK, AC, J, B */
     tribo_context *contacts; /* computes forces, with the settings of `lent` and the limits at the set time */
     tribo_context *lent;     /* the caller's context of tribo_system_context; NULL before the first call */
     size_t copied, changes;  /* TRIBO_COUNT_SETTINGS of lent at the last copy; number of copies */
     char *message;           /* [TRIBO_MESSAGE] also written for a const system */
-
-    size_t harmonics, base_harmonics, limit_harmonics; /* numbers: all; of b(t); of limits */
-    struct harmonic *harmonic;
-    size_t tables, base_tables, limit_tables; /* numbers: all; of b(t); of limits, at most 1 */
-    struct table *table;
-    double *given_limit;        /* [ncontact] limits set by the caller; valid while limits vary */
-    double *put_limit;          /* [ncontact] workspace: limits at the set time */
+    struct loads loads;
     size_t revision, structure; /* number of changes of loads, tables and damping; of damping */
-    double time, low;           /* the set time (NaN: none) and its part below the last digit (tribo_system_set_low) */
 
     /* K and C, if the mass matrix is not diagonal: rounding in M^-1 K has destroyed the low modes. Otherwise no rows: M AK = K
      * and M AC = C up to rounding of every entry. */
@@ -81,20 +99,13 @@ struct tribo_system {
     struct cholesky factor; /* Cholesky factor of mass */
     struct compliance compliance;
     struct expansion expansion;
-
-    /* Length of the caller's loads. The modes convert loads to accelerations; the mass matrix, if modes is NULL. */
-    size_t given;
-    double *modes, *omega; /* [given][dofs] modes, [dofs] frequencies; NULL if not reduced */
-    struct truncation truncation;
-
+    struct reduction reduced;
     struct attached *attached; /* list of the data of tribo_system_attach */
     size_t evaluations, jacobians;
-    int status;                      /* status of the last evaluation */
-    double *tally;                   /* [ncontact] weight of f_i v_i in the energy of y: 1; 4/3 at a chain's last contact */
-    double *v, *a, *f, *feq, *dv_dt; /* [ncontact] workspace */
-    double *acceleration;            /* [ndof] workspace */
-    double *motion;                  /* [tribo_system_size + dofs - ndof + 2 ncontact] workspace; NULL without an expansion */
-    int snaps_in_order;              /* 1: any set of resting contacts can be snapped in the order of contacts */
+    int status;         /* status of the last evaluation */
+    double *tally;      /* [ncontact] weight of f_i v_i in the energy of y: 1; 4/3 at a chain's last contact */
+    int snaps_in_order; /* 1: any set of resting contacts can be snapped in the order of contacts */
+    struct workspace work;
 };
 
 /* Creates a system with M = identity. Takes the matrices, also after an error. damping without rows: 0. Returns a status. */
@@ -140,7 +151,7 @@ int tribo_loads_copy(tribo_system *sys, const tribo_system *from);
 /* Sets time t and the tables' knots at t. If limits vary, sets the limits of the contacts at t. */
 void tribo_system_set_time(tribo_system *sys, double t);
 
-/* Sets sys->time and the time of all harmonics to NaN: the next use computes everything again. */
+/* Sets sys->loads.time and the time of all harmonics to NaN: the next use computes everything again. */
 void tribo_system_forget_time(tribo_system *sys);
 
 /* Sets cos_t and sin_t of h at the set time. */
@@ -149,14 +160,14 @@ void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h);
 /* Calls tribo_harmonic_turn if h->time is not the set time. Call before reading cos_t and sin_t. */
 static inline void tribo_system_turn_to(const tribo_system *sys, struct harmonic *h)
 {
-    if (h->time != sys->time) {
+    if (h->time != sys->loads.time) {
         tribo_harmonic_turn(sys, h);
     }
 }
 
 static inline void tribo_system_turn(const tribo_system *sys, size_t k)
 {
-    tribo_system_turn_to(sys, &sys->harmonic[k]);
+    tribo_system_turn_to(sys, &sys->loads.harmonic[k]);
 }
 
 /* Sets cos_t = c and sin_t = s of a load at the set time, as computed by the motion. Does nothing after 16 calls in a row, since
@@ -180,19 +191,19 @@ void tribo_system_add_base_at(const tribo_system *sys, double t, double factor, 
 /* Returns 1 if a base moves. */
 static inline int tribo_system_bases_move(const tribo_system *sys)
 {
-    return sys->base_harmonics || sys->base_tables;
+    return sys->loads.base_harmonics || sys->loads.base_tables;
 }
 
 /* Returns 1 if limits change with time, by a table or harmonics. */
 static inline int tribo_system_limits_vary(const tribo_system *sys)
 {
-    return sys->limit_tables || sys->limit_harmonics;
+    return sys->loads.limit_tables || sys->loads.limit_harmonics;
 }
 
 /* Returns 1 if t is the set time and limits are constant: tribo_system_set_time would change nothing. */
 static inline int tribo_system_is_at(const tribo_system *sys, double t)
 {
-    return t == sys->time && !tribo_system_limits_vary(sys);
+    return t == sys->loads.time && !tribo_system_limits_vary(sys);
 }
 
 /* limit, rate [ncontact] = limits and derivatives at the set time. With harmonics limit < 0 where a contact has lifted off. */
@@ -250,7 +261,7 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
 /* ---- snap.c */
 
 /* Removes the rounding error from J_i x = base_i for contacts with loose 0 and a row J_i of one entry, or of two of equal size.
- * Overwrites sys->acceleration. */
+ * Overwrites sys->work.acceleration. */
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x);
 
 /* Sets snaps_in_order. Call before tribo_system_snap and tribo_system_list_snaps. */
@@ -271,7 +282,7 @@ static inline void tribo_snap(const struct snap *s, const double *base, double *
 /* list [ncontact] = corrections of tribo_system_snap in their order; no correction undoes another. Returns their number. */
 size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list);
 
-/* attached.c */
+/* Destroys all data of tribo_system_attach. */
 void tribo_system_detach(tribo_system *sys);
 
 /* Writes the message of the system and returns status. */

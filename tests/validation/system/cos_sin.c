@@ -91,7 +91,7 @@ TEST(one_by_one)
 /* The largest error at many times, where each turn from one to the next is off by this. */
 static double worst_of_turns(tribo_system *sys, double each)
 {
-    struct harmonic *h = &sys->harmonic[0];
+    struct harmonic *h = &sys->loads.harmonic[0];
     const double step = 0.1, angle = h->omega * step + each;
     double worst = 0.0;
     for (int k = 0; k < 200; k++) {
@@ -112,11 +112,11 @@ TEST(turned_on)
     tribo_driver *drv;
     double t = 0.0, y[3] = {0};
     assert_ok(tribo_system_oscillator(&sys, 1.0, 2.0, omega));
-    sys->harmonic[0].turns = 16;
+    sys->loads.harmonic[0].turns = 16;
     assert_close(worst_of_turns(sys, each), 16.0 * each, 1e-3 * each);
     assert_ok(set_up_driver(&drv, sys, "exact", 0.1, 0.0, 0.0));
     assert_ok(tribo_driver_advance(drv, &t, 30.0, y));
-    ck_assert(isnan(sys->harmonic[0].time));
+    ck_assert(isnan(sys->loads.harmonic[0].time));
     tribo_driver_destroy(drv);
     tribo_system_destroy(sys);
     assert_ok(tribo_system_oscillator(&sys, 1.0, 2.0, omega));
@@ -131,9 +131,12 @@ TEST(rounding_modes)
 {
     const int modes[] = {
 #if defined(FE_UPWARD) && defined(FE_DOWNWARD) && defined(FE_TOWARDZERO)
-        FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO,
+        FE_UPWARD,
+        FE_DOWNWARD,
+        FE_TOWARDZERO,
 #endif
-        FE_TONEAREST};
+        FE_TONEAREST
+    };
     uint32_t state = 3;
     for (int k = 0; k < 20000; k++) {
         const double omega = exp(6.0 * next(&state) - 3.0), t = 200.0 * next(&state) - 100.0;
@@ -148,4 +151,5 @@ TEST(rounding_modes)
     }
 }
 
-TEST_MAIN("cos_sin", {rounding_modes, 1}, {right_to_rounding, 1}, {late_times, 1}, {quarter_turns, 1}, {one_by_one, 1}, {turned_on, 1})
+TEST_MAIN("cos_sin", {rounding_modes, 1}, {right_to_rounding, 1}, {late_times, 1}, {quarter_turns, 1}, {one_by_one, 1},
+          {turned_on, 1})
