@@ -26,7 +26,7 @@
 #define TRIBO_SIMD_OF_FOUR
 #endif
 
-/* Before a loop whose counter costs as much as its body. clang unrolls such loops by itself. */
+/* Stands before a loop with a short body: GCC unrolls the loop 4 times. Clang unrolls such loops without it. */
 #if defined(TRIBO_GNU_C) && !defined(__clang__)
 #define TRIBO_UNROLLED _Pragma("GCC unroll 4")
 #else

@@ -28,7 +28,7 @@ TRIBO_SIMD static void alone_find_slips(size_t n, const double *restrict f, cons
     }
 }
 
-/* Ends a call whose forces are in last.f; kept 0: whose slips are in deeds. */
+/* Ends a call. kept = 1: last.f holds the forces, and slips follow from forces; 0: the deeds hold the slips. */
 static void alone_finish(tribo_context *ctx, int kept, double holds)
 {
     if (kept) {

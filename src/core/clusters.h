@@ -77,8 +77,8 @@ int tribo_clusters_step(tribo_context *ctx, double dt, const double *vfree, cons
 /* f_eq of the contacts of clusters, in last.feq. */
 void tribo_clusters_feq(tribo_context *ctx, const double *a);
 
-/* After a step: feels [n] = (R f)_i without f_i, of the scalar contacts of clusters. Sets reverses of planar contacts that slide to
- * TRIBO_SLIP_PLANE, and *vfree to v + vfree of those that do not turn back, whose number is returned. */
+/* After a step: sets feels [n] = (R f)_i without the term of f_i, for contacts of clusters. Of planar contacts that slide: sets
+ * reverses = TRIBO_SLIP_PLANE, and *vfree = an array with v + vfree where v'(v at the end) > 0. Returns the number of the latter. */
 size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const double **vfree, double *feels,
                            signed char *reverses);
 

@@ -75,8 +75,8 @@ int tribo_elastic_force_planar(size_t n, const double *dz, const double *stiffne
     return status;
 }
 
-/* The contact element of bladed-disc and joint codes (Yang and Menq 1998): a planar elastic element whose limit is mu times the
- * force of a normal spring that lifts off. */
+/* The contact element of bladed-disc and joint codes (Yang and Menq 1998): a planar elastic element with limit mu N; the normal
+ * spring gives N >= 0, and N = 0 after lift-off. */
 int tribo_contact_force(size_t n, const double *dz, const double *depth, const double *tangential, const double *normal,
                         const double *mu, double *f, double *df)
 {

@@ -135,7 +135,7 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
     return tribo_plane_force(ctx, v, feq, out);
 }
 
-/* Finds out, whose derivatives are [n], or [n][2] if planar contacts have any; a status. */
+/* Finds the arrays of out: derivatives are [n]; pairs = 1: [n][2]. Returns a status. */
 static int tangents_of(const tribo_context *ctx, int pairs, const double *v, const double *feq, double *const *out)
 {
     int plain;

@@ -12,36 +12,39 @@
 
 #include "tribo/tribo.h"
 
-TRIBO_SIMD double tribo_dot_of_eight(size_t n, const double *restrict x, const double *restrict y)
+enum { LANES = 8 };
+
+/* The sum of part [LANES]. */
+static inline double sum_of_eight(const double *part)
 {
-    enum { LANES = 8 };
-    double part[LANES] = {0.0};
-    size_t i = 0;
-    for (; i + LANES <= n; i += LANES) {
-        for (size_t k = 0; k < LANES; k++) {
-            part[k] += x[i + k] * y[i + k];
-        }
-    }
-    for (size_t k = 0; i < n; i++, k++) {
-        part[k] += x[i] * y[i];
-    }
     return ((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7]));
 }
 
-TRIBO_SIMD double tribo_size_of_eight(size_t n, const double *restrict x, const double *restrict y)
+/* x'y; sizes = 1: |x|'|y|. */
+static inline double product_of_eight(size_t n, const double *restrict x, const double *restrict y, int sizes)
 {
-    enum { LANES = 8 };
     double part[LANES] = {0.0};
     size_t i = 0;
     for (; i + LANES <= n; i += LANES) {
         for (size_t k = 0; k < LANES; k++) {
-            part[k] += fabs(x[i + k] * y[i + k]);
+            const double term = x[i + k] * y[i + k];
+            part[k] += sizes ? fabs(term) : term;
         }
     }
     for (size_t k = 0; i < n; i++, k++) {
-        part[k] += fabs(x[i] * y[i]);
+        part[k] += sizes ? fabs(x[i] * y[i]) : x[i] * y[i];
     }
-    return ((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7]));
+    return sum_of_eight(part);
+}
+
+TRIBO_SIMD double tribo_dot_of_eight(size_t n, const double *x, const double *y)
+{
+    return product_of_eight(n, x, y, 0);
+}
+
+TRIBO_SIMD double tribo_size_of_eight(size_t n, const double *x, const double *y)
+{
+    return product_of_eight(n, x, y, 1);
 }
 
 double tribo_dot(const double *x, const double *y, size_t n)
@@ -111,7 +114,7 @@ TRIBO_SIMD static void add_four(double *restrict c, const double *restrict b, si
 TRIBO_SIMD static void add_four_dots(size_t n, double factor, const double *restrict a, const double *restrict x,
                                      double *restrict c)
 {
-    enum { LANES = 8, ROWS = 4 };
+    enum { ROWS = 4 };
     double part[ROWS][LANES] = {{0.0}};
     size_t i = 0;
     for (; i + LANES <= n; i += LANES) {
@@ -127,7 +130,7 @@ TRIBO_SIMD static void add_four_dots(size_t n, double factor, const double *rest
         for (size_t k = 0; i + k < n; k++) {
             p[k] += a[row * n + i + k] * x[i + k];
         }
-        c[row] += factor * (((p[0] + p[4]) + (p[1] + p[5])) + ((p[2] + p[6]) + (p[3] + p[7])));
+        c[row] += factor * sum_of_eight(p);
     }
 }
 

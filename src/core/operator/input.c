@@ -144,7 +144,7 @@ static int install_rows(tribo_context *ctx, struct csr *a, const struct inertia 
 
 /* -------------------------------------------------------------------------------------------------- forms of input */
 
-/* Appends row [n] as row i of a, whose room for entries grows as needed. Returns 0 if out of memory. */
+/* Appends row [n] as row i of a. *room: entries that a has memory for, enlarged if needed. Returns 0 if out of memory. */
 static int append_row(struct csr *a, size_t *room, size_t i, const double *row)
 {
     const size_t n = a->n;

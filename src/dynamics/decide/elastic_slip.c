@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Elastic contacts, whose forces are part of the state. Their velocities are v + G f', v = J q' - b; f' solves the box
+/* Elastic contacts: the state contains their forces f. The velocity of the slider is v + G f', v = J q' - b; f' solves the box
  * problem min 1/2 f''G f' + v'f':
  *
  *     inside the limit: the contact rests, and v + G f' = 0
  *     at the limit: it slides if v points against the force, and rests if v takes the force back inside
- *     at the limit, without velocity: it rests; if v comes to point against the force, that leaves the limit, which is an event
+ *     at the limit, without velocity: it rests; where v begins to point against the force, the force leaves the limit: an event
  */
 #include "stick_slip.h"
 

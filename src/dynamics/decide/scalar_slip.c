@@ -120,7 +120,8 @@ static int is_close(const struct slip_state *s, size_t i)
     return fabs(s->force[i]) >= (1.0 - CLOSE) * s->stick[i] || i == s->reached;
 }
 
-/* 1 if contact i is at rest, and may be at its limit now or a moment later: each of those whose forces depend on each other. */
+/* 1 if contact i is at rest, and its force may be at the limit now or a moment later. If R is diagonal, only a force close to the
+ * limit may be; else any force, since it changes with the others. */
 static int may_slide(const struct stick_slip *m, size_t i)
 {
     return tribo_stick_slip_searches(m, i) && (!m->constant.uncoupled || !m->constant.can_hold[i] || is_close(&m->state, i));

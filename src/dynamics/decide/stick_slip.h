@@ -100,8 +100,8 @@ struct slip_work {
 /* Static limits above the limits to slide (tribo_set_static), for methods with events. A contact at rest holds up to its static
  * limit; one that cannot breaks away: its bound is the limit to slide, and all contacts are decided about again. A limit that
  * falls with the speed (Stribeck) is
- *     N(|v|) = limit + (ratio - 1) limit exp(-|v|/velocity),
- * whose last part is smooth while the contact slides, and belongs to the equations of its motion. */
+ *     N(|v|) = limit + (ratio - 1) limit exp(-|v|/velocity).
+ * The exponential is smooth while the contact slides: the equations of motion contain it. */
 struct breakaway {
     int some;             /* 1: there are static limits */
     int falls;            /* 1: with velocities by which they fall */
@@ -149,8 +149,8 @@ struct stick_slip {
     struct planar_slip *plane; /* NULL if there are no planar contacts */
 };
 
-/* stick_slip.c: create returns a status, its message on the system's context. start begins an advance: takes limits; unless it
- * continues, contacts whose velocity is rounding are at rest. A decision must follow. */
+/* stick_slip.c: create returns a status, its message on the system's context. start begins an advance: reads the
+ * limits; continues = 0: contacts with velocities of rounding size are at rest. Call the decision next. */
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_free(struct stick_slip *m);
 void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues);
@@ -217,8 +217,8 @@ void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, c
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to);
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v);
 
-/* elastic_slip.c: elastic contacts, whose forces are part of the state. find sets state.spring and noise.spring; start
- * takes forces beyond limits back in y, and dissipates their energy. A decision calls place (sets slip, and forces, also in y),
+/* elastic_slip.c: elastic contacts; the state contains their forces. find sets state.spring and noise.spring; start
+ * sets forces in y that exceed limits to these limits, and counts the lost energy as dissipated. A decision calls place (sets slip, and forces, also in y),
  * move (sets rates of forces, and velocities of those that slide), and finish (keeps slip for the next decision). */
 void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *y);

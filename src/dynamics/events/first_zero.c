@@ -186,7 +186,8 @@ static void watch_doubtful(struct first_zero *s, double h)
     s->watching = left;
 }
 
-/* The watched guard not positive at the right end, h after a, whose quintic is the first to be zero; *when = its zero after a. */
+/* Among the watched guards that are not positive at the right end, h after a: the guard with the earliest zero of its quintic;
+ * *when = that zero, as time after a. NULL: all are positive. */
 static const struct guard *first_to_fall(const struct first_zero *s, double h, double *when)
 {
     const struct guard *first = NULL;
