@@ -105,8 +105,8 @@ static double probe_error(const struct model *m)
     struct point probe[PROBES * PROBES];
     for (size_t k = 0; k < limits * bands; k++) {
         const size_t middle = (2 * (k % limits) + 1) * o->limits.points / (2 * limits);
-        probe[k].limit = limit_of(&o->limits, middle);
-        probe[k].hz = low + (double)(k / limits) / (PROBES - 1) * (high - low);
+        const double hz = low + (double)(k / limits) / (PROBES - 1) * (high - low);
+        probe[k] = (struct point){.limit = limit_of(&o->limits, middle), .hz = hz};
     }
     compare_models(m, o->threads, probe, limits * bands);
     return model_error(m, probe, limits * bands);
