@@ -218,7 +218,8 @@ static int moreau_prepare(struct moreau *m, const tribo_system *sys, double h)
     m->held.n = 0;
     int status = tribo_step_matrix_create(&m->matrix, sys, h);
     if (!status && !planar_of(sys->contacts)) {
-        status = tribo_step_matrix_fail(sys, tribo_step_band_create(&m->held, sys, &m->matrix, &where), h, where);
+        status = tribo_step_band_create(&m->held, sys, &m->matrix, &where);
+        status = tribo_step_matrix_fail(sys, status, h, where);
     }
     status = status || m->held.n ? status : prepare_whole(m, sys, h);
     if (!status) {
