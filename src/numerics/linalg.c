@@ -68,7 +68,6 @@ void tribo_add(double *to, double factor, const double *x, size_t n)
 
 TRIBO_SIMD double tribo_sum(size_t n, const double *x)
 {
-    enum { LANES = 8 };
     double part[LANES] = {0.0}, sum = 0.0;
     size_t i = 0;
     for (; i + LANES <= n; i += LANES) {
@@ -79,7 +78,7 @@ TRIBO_SIMD double tribo_sum(size_t n, const double *x)
     for (; i < n; i++) {
         sum += x[i];
     }
-    return sum + (((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7])));
+    return sum + sum_of_eight(part);
 }
 
 double tribo_largest(const double *x, size_t n)
