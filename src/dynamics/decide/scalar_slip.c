@@ -134,22 +134,23 @@ static size_t let_slide(struct stick_slip *m, const tribo_system *sys, const dou
     struct slip_state *s = &m->state;
     const size_t n = m->constant.contacts;
     size_t changes = 0;
-    int close = 0;
+    int close = 0, found = 0; /* found: work.v are the accelerations by the forces */
     *ties = 0;
     for (size_t i = 0; i < n; i++) {
         close |= tribo_stick_slip_searches(m, i) && is_close(s, i);
-    }
-    if (close) {
-        tribo_stick_slip_accelerate(m, sys, m->work.a, s->force, m->work.v);
     }
     for (size_t i = 0; close && i < n; i++) {
         if (may_slide(m, i)) {
             const double room = s->stick[i] - fabs(s->force[i]);
             tribo_stick_slip_find_gain(m, sys, y, i);
             s->tied[i] = room <= (i == s->reached ? CLOSE * s->stick[i] : m->noise.allowance[i] / TRIBO_ALLOWED);
-            const signed char direction = leaves(m, i, s->force[i], must_be_sure(m, i) ? 1.0 / CERTAIN : 1.0);
-            if (s->tied[i] && room <= 0.0 && direction) {
-                changes += let_go(m, i, direction);
+            if (s->tied[i] && room <= 0.0) {
+                if (!found) { /* before any contact of this round lets go */
+                    tribo_stick_slip_accelerate(m, sys, m->work.a, s->force, m->work.v);
+                    found = 1;
+                }
+                const signed char direction = leaves(m, i, s->force[i], must_be_sure(m, i) ? 1.0 / CERTAIN : 1.0);
+                changes += direction ? let_go(m, i, direction) : 0;
             }
             *ties += s->tied[i] != 0;
         }
