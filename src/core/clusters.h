@@ -78,7 +78,8 @@ int tribo_clusters_step(tribo_context *ctx, double dt, const double *vfree, cons
 void tribo_clusters_feq(tribo_context *ctx, const double *a);
 
 /* After a step: sets feels [n] = (R f)_i without the term of f_i, for contacts of clusters. Of planar contacts that slide: sets
- * reverses = TRIBO_SLIP_PLANE, and *vfree = an array with v + vfree where v'(v at the end) > 0. Returns the number of the latter. */
+ * reverses = TRIBO_SLIP_PLANE, and *vfree = an array with v + vfree where v'(v at the end) > 0. Returns the number of these
+ * contacts. */
 size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const double **vfree, double *feels,
                            signed char *reverses);
 

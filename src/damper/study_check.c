@@ -134,14 +134,14 @@ static void add_spread(struct places *p, size_t k, size_t most)
 static void add_middle(struct places *p, size_t curve, size_t begin, size_t end)
 {
     const struct sample *sample = p->curve[curve].sample;
-    size_t asked = 0, middle = begin;
+    size_t asked = 0, passed = 0;
     for (size_t i = begin; i < end; i++) {
         asked += (size_t)sample[i].asked;
     }
-    for (size_t passed = 0; middle < end && (passed += (size_t)sample[middle].asked) <= asked / 2; middle++) {
-    }
-    if (asked > 0) {
-        add_place(p, curve, middle);
+    for (size_t i = begin; i < end; i++) {
+        if (sample[i].asked && passed++ == asked / 2) {
+            add_place(p, curve, i);
+        }
     }
 }
 

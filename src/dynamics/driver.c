@@ -105,6 +105,11 @@ int tribo_driver_fail(const tribo_driver *drv, int status, const char *format, .
     return status;
 }
 
+int tribo_driver_pass(const tribo_driver *drv, int status)
+{
+    return status ? tribo_driver_fail(drv, status, "%s", tribo_system_message(drv->sys)) : TRIBO_OK;
+}
+
 int tribo_driver_explain(tribo_driver *drv, double t, double h)
 {
     return tribo_driver_fail(drv, drv->sys->status, "at t = %.17g, in a step of %g: %s", t, h, tribo_system_message(drv->sys));
@@ -302,7 +307,7 @@ static int check_times(tribo_driver *drv, const double *t, double t1, const doub
     }
     const int status = tribo_system_check_state(drv->sys, *t, y);
     if (status) {
-        return tribo_driver_fail(drv, status, "%s", tribo_system_message(drv->sys));
+        return tribo_driver_pass(drv, status);
     }
     if (!isfinite(t1)) {
         return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "t1 = %g is not finite", t1);
@@ -318,16 +323,17 @@ static int check_settings(tribo_driver *drv)
 {
     const int status = tribo_system_take_settings(drv->sys);
     if (status) {
-        return tribo_driver_fail(drv, status, "%s", tribo_system_message(drv->sys));
+        return tribo_driver_pass(drv, status);
     }
     if ((drv->method->takes & (TAKES_STEP | TAKES_TOLERANCE)) == TAKES_STEP && drv->dt == 0.0) {
         return tribo_driver_fail(drv, TRIBO_ERR_STATE, "method %s has no step: call tribo_driver_set_step", drv->method->name);
     }
     const int unfit = check_contacts(drv->sys, drv->method);
-    return unfit ? tribo_driver_fail(drv, unfit, "%s", tribo_system_message(drv->sys)) : TRIBO_OK;
+    return tribo_driver_pass(drv, unfit);
 }
 
-int tribo_driver_advance_motion(tribo_driver *drv, double *t, double t1, double *y)
+/* tribo_driver_advance for a methods' state y [tribo_system_size]. */
+static int advance_motion(tribo_driver *drv, double *t, double t1, double *y)
 {
     int status = check_settings(drv);
     if (status || t1 == *t) {
@@ -355,7 +361,7 @@ int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)
     }
     int status = check_times(drv, t, t1, y);
     if (status || !drv->motion) {
-        return status ? status : tribo_driver_advance_motion(drv, t, t1, y);
+        return status ? status : advance_motion(drv, t, t1, y);
     }
     tribo_system_write_state(drv->sys, drv->time, drv->state, drv->shown);
     if (memcmp(y, drv->shown, tribo_system_dimension(drv->sys) * sizeof *y) == 0) { /* an unchanged y keeps f */
@@ -363,7 +369,7 @@ int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)
     } else {
         tribo_system_read_state(drv->sys, y, drv->motion);
     }
-    status = tribo_driver_advance_motion(drv, t, t1, drv->motion);
+    status = advance_motion(drv, t, t1, drv->motion);
     tribo_system_write_state(drv->sys, *t, drv->motion, y);
     return status;
 }

@@ -71,6 +71,9 @@ int tribo_driver_fail(const tribo_driver *drv, int status, const char *format, .
 /* tribo_driver_fail with status and message of the system, for a failed evaluation in a step h from t. */
 int tribo_driver_explain(tribo_driver *drv, double t, double h);
 
+/* Returns status; if it is an error, the message of the system becomes that of the driver. */
+int tribo_driver_pass(const tribo_driver *drv, int status);
+
 /* Returns TRIBO_ERR_NOT_FINITE if a value of y is not finite. States y here and in methods are methods' states,
  * [tribo_system_size], see system.h. */
 int tribo_driver_check(tribo_driver *drv, const double *y);
@@ -105,9 +108,6 @@ struct fixed_method {
 /* Takes steps drv->dt from the last good state y at *t to t1; the last step may be shorter. Keeps states as tribo_driver_keep
  * does, without copies. Returns a status. */
 int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, const struct fixed_method *method);
-
-/* tribo_driver_advance for a methods' state y [tribo_system_size]. */
-int tribo_driver_advance_motion(tribo_driver *drv, double *t, double t1, double *y);
 
 /* *drv = new driver with a method that must outlive the driver. Returns what tribo_driver_create returns. */
 int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const struct method *method);

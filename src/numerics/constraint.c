@@ -4,6 +4,7 @@
 #include "common/real.h"
 #include "common/simd.h"
 #include "common/zeros.h"
+#include "triplets.h"
 #include "union_find.h"
 
 #include <float.h>
@@ -336,17 +337,11 @@ size_t tribo_constraints_rank(const struct matrix *direction, const struct matri
 
 int tribo_constraints_basis(const struct constraints *c, size_t ndof, struct matrix *z)
 {
-    size_t room = ndof + 1, masters = 0, count = 0;
-    for (size_t k = 0; k < c->ties; k++) {
-        room += c->tie[k].rank * (c->tie[k].touched - c->tie[k].rank);
-    }
-    double *v = malloc(room * sizeof *v + (ndof + 2 * room) * sizeof(size_t));
-    if (!v) {
+    struct triplets t = {0};
+    size_t masters = 0, *number = calloc(ndof + 1, sizeof *number); /* [ndof] the column of a master, ndof of a slave */
+    if (!number) {
         return 0;
     }
-    /* number [ndof]: the column of a master, ndof of a slave; i, j, v [count]: the entries of z */
-    size_t *number = (size_t *)(v + room), *i = number + ndof, *j = i + room;
-    memset(number, 0, ndof * sizeof *number);
     for (size_t k = 0; k < c->ties; k++) {
         for (size_t p = 0; p < c->tie[k].rank; p++) {
             number[c->tie[k].dof[p]] = ndof;
@@ -355,26 +350,18 @@ int tribo_constraints_basis(const struct constraints *c, size_t ndof, struct mat
     for (size_t d = 0; d < ndof; d++) {
         if (number[d] == 0) {
             number[d] = masters++;
-            i[count] = d;
-            j[count] = number[d];
-            v[count++] = 1.0;
+            tribo_triplets_put(&t, d, number[d], 1.0);
         }
     }
     for (const struct tie *tie = c->tie; tie < c->tie + c->ties; tie++) {
         for (size_t p = 0; p < tie->rank; p++) {
             for (size_t k = tie->rank; k < tie->touched; k++) {
-                const double x = tie->entry[p * tie->stride + k];
-                if (x != 0.0) {
-                    i[count] = tie->dof[p];
-                    j[count] = number[tie->dof[k]];
-                    v[count++] = -x;
-                }
+                tribo_triplets_put(&t, tie->dof[p], number[tie->dof[k]], -tie->entry[p * tie->stride + k]);
             }
         }
     }
-    const int done = tribo_matrix_from_triplets(z, ndof, masters, count, i, j, v);
-    free(v);
-    return done;
+    free(number);
+    return tribo_triplets_finish(&t, ndof, masters, z);
 }
 
 void tribo_constraints_follow(const struct constraints *c, const double *b, double *q)

@@ -148,6 +148,14 @@ int tribo_matrix_diagonal(struct matrix *a, size_t n, const double *entries)
     return matrix_finish(a);
 }
 
+void tribo_matrix_get_row(const struct matrix *a, size_t i, double *x)
+{
+    memset(x, 0, a->cols * sizeof *x);
+    for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+        x[a->col[k]] = a->val[k];
+    }
+}
+
 void *tribo_copy_of(const void *from, size_t count, size_t size, int *done)
 {
     void *to = from ? malloc(count * size + 1) : NULL;

@@ -81,6 +81,9 @@ static inline double tribo_matrix_row_size(const struct matrix *a, size_t i, con
     return sum;
 }
 
+/* Sets x [cols] = row i of A. */
+void tribo_matrix_get_row(const struct matrix *a, size_t i, double *x);
+
 /* y [end - begin] += factor times rows begin to end - 1 of A x. The rows lie in one block. */
 void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, double *y);
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The registry of laws, and a law for one contact. */
-#include <float.h>
 
 #include "tribo/tribo.h"
 

@@ -42,11 +42,6 @@ static double length(const double *x)
     return hypot(x[0], x[1]);
 }
 
-static int slides_in_plane(const struct stick_slip *m, const struct planar_contact *p)
-{
-    return m->state.slip[p->at] == TRIBO_SLIP_PLANE;
-}
-
 static void set_slip(struct stick_slip *m, const struct planar_contact *p, signed char slip)
 {
     tribo_stick_slip_set(m, p->at, slip);
@@ -148,7 +143,7 @@ static size_t stop_in_plane(struct stick_slip *m, const tribo_system *sys, const
         p->now = length(v);
         p->most = greater(p->most, p->now);
         p->begins = SLIDES_ON;
-        if (slides_in_plane(m, p) && rests(m, p)) {
+        if (tribo_slides_in_plane(m, p) && rests(m, p)) {
             set_slip(m, p, TRIBO_SLIP_STUCK);
             m->plane->stopped = p->at;
             found++;
@@ -184,7 +179,7 @@ static double given_forces(struct stick_slip *m, const tribo_system *sys, const 
     }
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
-        if (slides_in_plane(m, p) && p->begins == SLIDES_ON) {
+        if (tribo_slides_in_plane(m, p) && p->begins == SLIDES_ON) {
             const double *limit = p->limit, *a = acc + p->at;
             const double x[2] = {limit[0] * tribo_stick_slip_velocity(m, sys, p->at, y),
                                  limit[1] * tribo_stick_slip_velocity(m, sys, p->at + 1, y)};

@@ -179,6 +179,12 @@ static inline int tribo_slides(signed char slip)
     return slip == TRIBO_SLIP_FORTH || slip == TRIBO_SLIP_BACK;
 }
 
+/* 1 if planar contact p slides. */
+static inline int tribo_slides_in_plane(const struct stick_slip *m, const struct planar_contact *p)
+{
+    return m->state.slip[p->at] == TRIBO_SLIP_PLANE;
+}
+
 /* 1 if contact i is rigid and at rest: its force is unknown. */
 static inline int tribo_stick_slip_searches(const struct stick_slip *m, size_t i)
 {
@@ -218,8 +224,9 @@ void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const doubl
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v);
 
 /* elastic_slip.c: elastic contacts; the state contains their forces. find sets state.spring and noise.spring; start
- * sets forces in y that exceed limits to these limits, and counts the lost energy as dissipated. A decision calls place (sets slip, and forces, also in y),
- * move (sets rates of forces, and velocities of those that slide), and finish (keeps slip for the next decision). */
+ * sets forces in y that exceed limits to these limits, and counts the lost energy as dissipated. A decision calls place (sets
+ * slip, and forces, also in y), move (sets rates of forces, and velocities of those that slide), and finish (keeps slip for the
+ * next decision). */
 void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *y);
 void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *y);

@@ -158,11 +158,6 @@ static void forget(struct events *e, double t, int continues)
     }
 }
 
-static int on_context(tribo_driver *drv, int status)
-{
-    return status ? tribo_driver_fail(drv, status, "%s", tribo_system_message(drv->sys)) : TRIBO_OK;
-}
-
 /* Shows the observer the states at begin + k output, between t and t + tau. */
 static int show_between(struct events *e, tribo_driver *drv, double begin, double *shown, double t, double tau, const double *y)
 {
@@ -303,7 +298,7 @@ static int go_brief(struct stick_slip *m, tribo_system *sys, double t, double ta
 static int go(struct events *e, tribo_driver *drv, int brief, double t, double when, double *y)
 {
     e->motion->state(e->own, when, y, brief ? drv->slope : y);
-    const int status = brief ? on_context(drv, go_brief(&e->stick_slip, drv->sys, t, when, y)) : TRIBO_OK;
+    const int status = brief ? tribo_driver_pass(drv, go_brief(&e->stick_slip, drv->sys, t, when, y)) : TRIBO_OK;
     return status ? status : tribo_driver_check(drv, y);
 }
 
@@ -317,7 +312,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     const struct guard *event = NULL;
     double reach = (end - *t) - sys->loads.low, when = 0.0;
     e->decided = 0;
-    int status = on_context(drv, e->motion->begin(e->own, *t, y, &reach));
+    int status = tribo_driver_pass(drv, e->motion->begin(e->own, *t, y, &reach));
     if (status) {
         return status;
     }
@@ -344,7 +339,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
         e->motion->arrive(e->own, *t);
     }
     e->met = event;
-    status = e->company ? on_context(drv, e->company->ends(e->company, when, *t, y)) : TRIBO_OK;
+    status = e->company ? tribo_driver_pass(drv, e->company->ends(e->company, when, *t, y)) : TRIBO_OK;
     if (status) {
         return status;
     }
@@ -357,7 +352,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     } else if (*t < end) {
         status = count_step(e, drv, *t, when, fastest);
     }
-    status = status ? status : on_context(drv, decide(e, sys, *t, y));
+    status = status ? status : tribo_driver_pass(drv, decide(e, sys, *t, y));
     expect(e, event, when);
     if (!status && event && e->company) {
         e->company->decided(e->company);
@@ -382,7 +377,7 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
     if (!status && !(continues && e->decided)) {
         status = decide(e, drv->sys, *t, y);
     }
-    status = on_context(drv, status);
+    status = tribo_driver_pass(drv, status);
     forget(e, *t, continues);
     if (!continues) {
         memcpy(e->shown, e->stick_slip.state.slip, drv->sys->ncontact);

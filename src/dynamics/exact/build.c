@@ -421,30 +421,11 @@ void tribo_modal_shared_free(struct modal_shared *shared)
     memset(shared, 0, sizeof *shared);
 }
 
-/* Returns K or C: given, if given has rows; else accelerates, if M = 1; else own = M accelerates. NULL if out of memory. */
-static const struct matrix *force_matrix(const tribo_system *sys, const struct matrix *given, const struct matrix *accelerates,
-                                         struct matrix *own)
-{
-    if (given->rows || !sys->mass.rows) {
-        return given->rows ? given : accelerates;
-    }
-    double *mass = malloc(sys->ndof * sizeof *mass);
-    for (size_t d = 0; mass && d < sys->ndof; d++) {
-        mass[d] = tribo_matrix_get(&sys->mass, d, d);
-    }
-    const int done = mass && tribo_matrix_copy(own, accelerates);
-    if (done) {
-        tribo_matrix_scale_rows(own, mass);
-    }
-    free(mass);
-    return done ? own : NULL;
-}
-
 int tribo_modal_shared_create(struct modal_shared *shared, tribo_system *sys)
 {
     *shared = (struct modal_shared){.sys = sys};
-    shared->stiffness = force_matrix(sys, &sys->k, &sys->stiffness, &shared->own_stiffness);
-    shared->damping = sys->damping.rows ? force_matrix(sys, &sys->c, &sys->damping, &shared->own_damping) : NULL;
+    shared->stiffness = tribo_system_force_matrix(sys, &sys->k, &sys->stiffness, &shared->own_stiffness);
+    shared->damping = sys->damping.rows ? tribo_system_force_matrix(sys, &sys->c, &sys->damping, &shared->own_damping) : NULL;
     if (shared->stiffness && (shared->damping || !sys->damping.rows)) {
         return TRIBO_OK;
     }

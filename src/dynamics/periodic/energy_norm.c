@@ -10,11 +10,13 @@
 static int find_free_modes(struct energy_norm *e, const tribo_system *sys, double *k)
 {
     const size_t n = e->n;
-    const int scaled = !sys->k.rows && sys->mass.rows; /* the stiffness of the system is M^-1 K, M diagonal */
-    tribo_matrix_spread(sys->k.rows ? &sys->k : &sys->stiffness, k);
-    for (size_t i = 0; scaled && i < n * n; i++) {
-        k[i] *= tribo_matrix_get(&sys->mass, i / n, i / n);
+    struct matrix own = {0};
+    const struct matrix *stiffness = tribo_system_force_matrix(sys, &sys->k, &sys->stiffness, &own);
+    if (!stiffness) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the modes of the free structure");
     }
+    tribo_matrix_spread(stiffness, k);
+    tribo_matrix_free(&own);
     tribo_even_out(n, k);
     int status = tribo_symmetric_eigen_by(&sys->factor, k, n, e->natural, e->phi);
     for (size_t i = 0; i < n; i++) {

@@ -85,11 +85,6 @@ int tribo_period_map_march(struct period_map *m, size_t periods, double *x)
     return status;
 }
 
-static int on_driver(const struct period_map *m, int status)
-{
-    return status ? tribo_driver_fail(m->drv, status, "%s", tribo_system_message(m->sys)) : TRIBO_OK;
-}
-
 static void set_image(int odd, size_t count, double *x)
 {
     for (size_t i = 0; odd && i < count; i++) {
@@ -125,7 +120,7 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
         tribo_system_set_time(m->sys, m->t);
         memset(contacts->state.base, 0, m->sys->ncontact * sizeof *contacts->state.base);
         tribo_system_loads(m->sys, DRIVES_BASE, 0, 1.0, contacts->state.base);
-        status = on_driver(m, tribo_stick_slip_hold(contacts, m->sys, contacts->state.base, m->y + m->sys->ndof));
+        status = tribo_driver_pass(m->drv, tribo_stick_slip_hold(contacts, m->sys, contacts->state.base, m->y + m->sys->ndof));
     }
     if (m->sys->compliance.count) {
         tribo_get_limit(m->sys->contacts, m->limit);
@@ -137,7 +132,7 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
     tribo_variation_begin(&m->variation, m->probe, &p->derivative);
     m->size = greater(m->least, tribo_energy_length(p->x, n));
     status = status ? status : period_map_integrate(m, m->t, m->t + m->span, &m->company);
-    status = status ? status : on_driver(m, m->variation.status);
+    status = status ? status : tribo_driver_pass(m->drv, m->variation.status);
     if (status) {
         return status;
     }
@@ -156,7 +151,7 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
 int tribo_period_map_apply(struct period_map *m, const struct point *p, double *x)
 {
     tribo_energy_norm_state(&m->norm, 1, x, m->y);
-    const int status = on_driver(m, tribo_derivative_apply(&p->derivative, 0, 1, m->y));
+    const int status = tribo_driver_pass(m->drv, tribo_derivative_apply(&p->derivative, 0, 1, m->y));
     tribo_energy_norm_of(&m->norm, 1, m->y, x);
     set_image(p->odd, m->n, x);
     return status;
@@ -175,7 +170,7 @@ int tribo_period_map_matrix(struct period_map *m, struct point *p, const double 
             unit[i] = i % (n + 1) == 0;
         }
         tribo_energy_norm_state(&m->norm, n, unit, v);
-        status = on_driver(m, tribo_derivative_apply(&p->derivative, 0, n, v));
+        status = tribo_driver_pass(m->drv, tribo_derivative_apply(&p->derivative, 0, n, v));
         status = status ? status : keep_matrix(m, p, v);
         free(v);
     }
@@ -263,7 +258,7 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period, cons
     m->halves = 0;
     int status = m->drv->at_work->open(m->drv, &m->events);
     if (!status && !m->norm.phi) {
-        status = on_driver(m, tribo_energy_norm_create(&m->norm, m->sys));
+        status = tribo_driver_pass(m->drv, tribo_energy_norm_create(&m->norm, m->sys));
         if (status) {
             tribo_energy_norm_free(&m->norm);
         }

@@ -19,7 +19,6 @@ struct replay {
     double *sum;          /* [ncontact] sum over the phases */
 };
 
-/* map->x: state at the start of the phase. */
 static int replay_phase(struct company *company, double tau, double t, const double *y)
 {
     struct replay *r = (struct replay *)company;
@@ -28,7 +27,6 @@ static int replay_phase(struct company *company, double tau, double t, const dou
     status = status ? status : r->phase(r, tau);
     (void)t;
     r->elapsed += tau;
-    memcpy(r->map->x, y, r->map->n * sizeof *y);
     return status;
 }
 
@@ -43,7 +41,7 @@ static int replay(tribo_driver *drv, struct replay *r)
     struct shooting *s = drv->shooting;
     const int unset = tribo_system_take_settings(drv->sys);
     if (unset) {
-        return tribo_driver_fail(drv, unset, "%s", tribo_system_message(drv->sys));
+        return tribo_driver_pass(drv, unset);
     }
     if (!s || !s->found || s->revision != tribo_system_revision(drv->sys)) {
         return tribo_driver_fail(drv, TRIBO_ERR_STATE, "%s: call tribo_driver_find_periodic first",
@@ -53,7 +51,6 @@ static int replay(tribo_driver *drv, struct replay *r)
     r->company = (struct company){replay_phase, replay_event};
     r->map = &s->map;
     r->elapsed = 0.0;
-    memcpy(s->map.x, s->best->y, s->map.n * sizeof *s->map.x);
     const int status = tribo_period_map_replay(&s->map, s->best->y, &r->company);
     tribo_signal_free(&r->signal);
     return status && s->map.drv != drv ? tribo_driver_fail(drv, status, "%s", s->map.drv->message) : status;

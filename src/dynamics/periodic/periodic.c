@@ -87,7 +87,7 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
     }
     int status = tribo_system_check_state(drv->sys, t, y);
     status = status ? status : tribo_system_take_settings(drv->sys);
-    status = status ? tribo_driver_fail(drv, status, "%s", tribo_system_message(drv->sys)) : TRIBO_OK;
+    status = tribo_driver_pass(drv, status);
     status = status ? status : check_period(drv, t, period);
     status = status ? status : check_loads(drv, period);
     status = status ? status : check_friction(drv);

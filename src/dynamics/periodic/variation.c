@@ -46,8 +46,7 @@ static void add_transposed(const struct matrix *a, double factor, const double *
 /* Sets x->f: R_HH f_H = -a_H, a = x->a. Returns a status. */
 static int solve_holding_forces(struct variation *x)
 {
-    const int status = tribo_stick_slip_balance(&x->events->stick_slip, x->a, x->f);
-    return status ? tribo_system_fail(x->sys, status, "%s", tribo_message(x->events->stick_slip.constant.hold)) : TRIBO_OK;
+    return tribo_stick_slip_balance(&x->events->stick_slip, x->a, x->f);
 }
 
 /* Sets x->f = f' of holding contacts at the state y; forces of other contacts follow their limits. Returns a status. */

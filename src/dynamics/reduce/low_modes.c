@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The motions of a reduced structure: its lowest modes, found densely or by Lanczos' method, and static responses to forces at
  * its contacts. */
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -239,10 +238,10 @@ static int find_sparsely(const struct model *m, const struct shifted *s, struct 
     int status = search_failed(m, tribo_low_modes(&m->stiffness, &m->mass, s->shift, &s->factor, m->nmode, &low), &low);
     status = status ? status : find_among(m, low.count, low.phi, m->nmode, r);
     free(low.phi);
-    r->truncation.above = low.below == m->nmode ? low.above : r->omega2[m->nmode - 1];
     if (status) {
         return status;
     }
+    r->truncation.above = low.below == m->nmode ? low.above : r->omega2[m->nmode - 1];
     double *work = malloc(2 * BATCH * m->ndof * sizeof *work);
     status = work ? check_gap(m, &low, r, work) : TRIBO_ERR_MEMORY;
     status = status ? status : check_residuals(m, s, r, work);
@@ -262,7 +261,7 @@ static int find_densely(const struct model *m, struct reduced *r)
     status = tribo_normal_modes(&m->stiffness, NULL, &whole, &mass, m->nmode, r->omega2, r->phi, &doubt);
     tribo_cholesky_free(&mass);
     r->count = m->nmode;
-    r->truncation.above = m->nmode < m->ndof ? r->omega2[m->nmode - 1] : HUGE_VAL;
+    r->truncation.above = m->nmode == m->ndof ? HUGE_VAL : status ? 0.0 : r->omega2[m->nmode - 1];
     return modes_failed(m, status, &doubt);
 }
 
@@ -323,8 +322,7 @@ static void add_attachment(const struct model *m, const struct shifted *s, struc
         return;
     }
     while (drifts(m, s, x, norm, &omega2) && omega2 < 0.25 * before) {
-        low_modes_weigh(m, x, mx);
-        memset(x, 0, n * sizeof *x);
+        memset(x, 0, n * sizeof *x); /* mx = M x, by low_modes_separate */
         tribo_add(x, s->shift, mx, n);
         tribo_cholesky_solve(&s->factor, 1, x);
         norm = low_modes_separate(m, r->count, r->phi, x, mx);
@@ -339,12 +337,8 @@ static void add_attachment(const struct model *m, const struct shifted *s, struc
 /* x [ndof] = the force of contact i without the part that acts on the modes, M Phi Phi'x, removed twice. mx [ndof]: workspace. */
 static void set_contact_force(const struct model *m, const struct reduced *r, size_t i, double *x, double *mx)
 {
-    const struct matrix *j = &m->direction;
     const size_t n = m->ndof;
-    memset(x, 0, n * sizeof *x);
-    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        x[j->col[k]] = j->val[k];
-    }
+    tribo_matrix_get_row(&m->direction, i, x);
     const double whole = tribo_dot(x, x, n);
     for (int pass = 0; pass < 2; pass++) {
         memset(mx, 0, n * sizeof *mx);

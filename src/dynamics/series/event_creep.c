@@ -105,16 +105,11 @@ static int reserve(struct event *e, size_t slides)
     return TRIBO_OK;
 }
 
-static int is_sliding(const struct stick_slip *m, size_t k)
-{
-    return m->state.slip[m->plane->contact[k].at] == TRIBO_SLIP_PLANE;
-}
-
 static size_t count_sliding(const struct stick_slip *m)
 {
     size_t count = 0;
     for (size_t k = 0; k < m->plane->count; k++) {
-        count += (size_t)is_sliding(m, k);
+        count += (size_t)tribo_slides_in_plane(m, &m->plane->contact[k]);
     }
     return count;
 }
@@ -126,7 +121,7 @@ double tribo_creep_least(const struct event *e, const double *y)
     const double part = (double)count / FEW_CONTACTS;
     int begins = 0;
     for (size_t k = 0; k < m->plane->count; k++) {
-        begins |= is_sliding(m, k) && m->plane->contact[k].begins != SLIDES_ON;
+        begins |= tribo_slides_in_plane(m, &m->plane->contact[k]) && m->plane->contact[k].begins != SLIDES_ON;
     }
     return count == 0 || count > MOST_CONTACTS || begins
                ? HUGE_VAL
@@ -175,7 +170,7 @@ double tribo_creep_settled(const struct event *e, const double *y, double error)
         const double v =
             hypot(tribo_stick_slip_velocity(m, e->sys, p->at, y), tribo_stick_slip_velocity(m, e->sys, p->at + 1, y));
         const double stop = tribo_planar_series_stop(m, e->sys, p, y);
-        const double turn = is_sliding(m, k) ? fabs(event_creep_turn_of(e, k)) : 0.0;
+        const double turn = tribo_slides_in_plane(m, p) ? fabs(event_creep_turn_of(e, k)) : 0.0;
         const int follows = turn <= TURNS * e->fastest || turn * stop <= lesser(MOST_STRAY, error / v);
         length = follows ? length : lesser(length, stop);
     }
@@ -427,7 +422,7 @@ int tribo_creep_expand(struct event *e, double t, const double *y, double h, dou
     /* slides: the planar contacts that slide */
     const struct stick_slip *m = &e->events.stick_slip;
     for (size_t k = 0, count = 0; k < m->plane->count; k++) {
-        if (is_sliding(m, k)) {
+        if (tribo_slides_in_plane(m, &m->plane->contact[k])) {
             e->creep.slides[count++] = k;
         }
     }

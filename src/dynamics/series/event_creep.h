@@ -19,7 +19,6 @@ struct event;
 
 struct creep {
     double length;                                      /* of the next such step; 0: unknown */
-    double shorter;                                     /* longest step to try after trials that failed; 0: unknown */
     size_t waited, wait;                                /* steps since contacts creep, and number of steps to wait */
     size_t contacts;                                    /* room for planar contacts */
     size_t room;                                        /* room for sliding ones */

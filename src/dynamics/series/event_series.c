@@ -112,7 +112,7 @@ static int expand_forces(struct event *e, size_t k, double scale)
     tribo_matrix_multiply_add(&sys->direction, 1.0, acc, e->room.a);
     status = tribo_stick_slip_balance(m, e->room.a, held);
     if (status) {
-        return tribo_system_fail(sys, status, "%s", tribo_message(m->constant.hold));
+        return status;
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, held, acc);
     status = m->plane ? tribo_planar_series_finish(&e->planar, m, sys, k, base, acc, held) : TRIBO_OK;

@@ -134,8 +134,8 @@ static double method_event_bound(void *own, double tau)
     for (size_t k = 0; k < s->guards; k++) {
         struct guard *g = &s->guard[k];
         const struct curve *output = g->output, *limit = g->limit != 0.0 ? &e->limit_curve[g->contact] : NULL;
-        g->size = fabs(g->offset) + (output ? fabs(g->side) * output->size : 0.0) + (limit ? fabs(g->limit) * limit->size : 0.0);
-        g->bend = (output ? fabs(g->side) * output->bend : 0.0) + (limit ? fabs(g->limit) * limit->bend : 0.0);
+        g->size = fabs(g->offset) + (output ? output->size : 0.0) + (limit ? fabs(g->limit) * limit->size : 0.0);
+        g->bend = (output ? output->bend : 0.0) + (limit ? fabs(g->limit) * limit->bend : 0.0);
     }
     return HUGE_VAL;
 }
@@ -169,7 +169,7 @@ static void set_planar_guards(struct event *e)
     tribo_planar_series_squares(&e->planar, m, e->watch);
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
-        const int moves = m->state.slip[p->at] == TRIBO_SLIP_PLANE;
+        const int moves = tribo_slides_in_plane(m, p);
         const double *square = e->planar.line[k].square, limit = greater(p->limit[0], p->limit[1]);
         struct curve *curve = &e->curve[p->at];
         struct guard g = {.contact = p->at, .output = curve, .kind = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
@@ -369,7 +369,7 @@ static int speeds_tell(const struct event *e, double h)
         for (size_t k = last + 1; k-- > 0;) {
             sum = sum * h + fabs(l->xn[k]) + fabs(l->xt[k]);
         }
-        tell &= e->events.stick_slip.state.slip[plane->contact[c].at] != TRIBO_SLIP_PLANE || sum <= FASTER * l->xn[0];
+        tell &= !tribo_slides_in_plane(&e->events.stick_slip, &plane->contact[c]) || sum <= FASTER * l->xn[0];
     }
     return tell;
 }
@@ -520,7 +520,7 @@ static int open_events(tribo_driver *drv, struct events **events)
     struct event *e = drv->own;
     const int status = method_event_prepare(e);
     *events = &e->events;
-    return status ? tribo_driver_fail(drv, status, "%s", tribo_system_message(drv->sys)) : TRIBO_OK;
+    return tribo_driver_pass(drv, status);
 }
 
 const struct method tribo_method_event = {

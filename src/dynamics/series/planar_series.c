@@ -24,11 +24,6 @@ void tribo_planar_series_free(struct planar_series *s)
     memset(s, 0, sizeof *s);
 }
 
-static int slides(const struct stick_slip *m, const struct planar_contact *p)
-{
-    return m->state.slip[p->at] == TRIBO_SLIP_PLANE;
-}
-
 static int planar_series_reserve(struct planar_series *s, size_t terms, size_t contacts)
 {
     if (s->line && s->room >= contacts) {
@@ -96,7 +91,7 @@ static int planar_series_answer(struct planar_series *s, size_t q, struct stick_
     tribo_matrix_multiply_add(&sys->direction, 1.0, acc, a);
     const int status = tribo_stick_slip_balance(m, a, held);
     if (status) {
-        return tribo_system_fail(sys, status, "%s", tribo_message(m->constant.hold));
+        return status;
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, held, acc);
     memset(a, 0, c * sizeof *a);
@@ -122,7 +117,9 @@ double tribo_planar_series_first_stop(const struct stick_slip *m, const tribo_sy
     double least = HUGE_VAL;
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
-        least = slides(m, p) && p->begins == SLIDES_ON ? lesser(least, tribo_planar_series_stop(m, sys, p, y)) : least;
+        if (tribo_slides_in_plane(m, p) && p->begins == SLIDES_ON) {
+            least = lesser(least, tribo_planar_series_stop(m, sys, p, y));
+        }
     }
     return least;
 }
@@ -133,7 +130,7 @@ int tribo_planar_series_begin(struct planar_series *s, size_t order, struct stic
     const struct planar_slip *plane = m->plane;
     size_t begins = 0;
     for (size_t k = 0; k < plane->count; k++) {
-        begins += slides(m, &plane->contact[k]) && plane->contact[k].begins != SLIDES_ON;
+        begins += tribo_slides_in_plane(m, &plane->contact[k]) && plane->contact[k].begins != SLIDES_ON;
     }
     if ((plane->count && !planar_series_reserve(s, order + 1, plane->count)) || (begins && !reserve_begins(s, sys, begins))) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for series of %zu contact%s in a plane", plane->count,
@@ -146,7 +143,7 @@ int tribo_planar_series_begin(struct planar_series *s, size_t order, struct stic
     for (size_t k = 0; k < plane->count; k++) {
         const struct planar_contact *p = &plane->contact[k];
         struct planar_line *l = &s->line[k];
-        if (slides(m, p) && p->begins != SLIDES_ON) {
+        if (tribo_slides_in_plane(m, p) && p->begins != SLIDES_ON) {
             memcpy(l->n, p->direction, sizeof l->n);
             l->t[0] = -l->n[1];
             l->t[1] = l->n[0];
@@ -202,7 +199,7 @@ int tribo_planar_series_forces(struct planar_series *s, const struct stick_slip 
         const struct planar_contact *p = &m->plane->contact[c];
         struct planar_line *l = &s->line[c];
         const size_t shift = (size_t)p->begins;
-        if (!slides(m, p)) {
+        if (!tribo_slides_in_plane(m, p)) {
             continue;
         }
         if (k >= shift && !take_velocity(l, p, k - shift, v + p->at)) {
@@ -271,7 +268,7 @@ double tribo_planar_series_power(const struct planar_series *s, const struct sti
         const struct planar_contact *p = &m->plane->contact[c];
         const struct planar_line *l = &s->line[c];
         const size_t shift = (size_t)p->begins;
-        if (slides(m, p) && k >= shift) {
+        if (tribo_slides_in_plane(m, p) && k >= shift) {
             const size_t j = k - shift;
             power += sys->tally[p->at] * (product_of(l->un, l->xn, j, 0, j + 1) + product_of(l->ut, l->xt, j, 0, j + 1));
         }
@@ -292,7 +289,7 @@ void tribo_planar_series_squares(struct planar_series *s, const struct stick_sli
     for (size_t c = 0; c < m->plane->count; c++) {
         const struct planar_contact *p = &m->plane->contact[c];
         struct planar_line *l = &s->line[c];
-        const int moves = slides(m, p);
+        const int moves = tribo_slides_in_plane(m, p);
         const size_t terms = s->order + 1 - (moves ? (size_t)p->begins : 0);
         const double scale = moves ? 1.0 : 0.5 * greater(p->limit[0], p->limit[1]);
         for (size_t k = 0; !moves && k <= s->order; k++) {
@@ -322,7 +319,7 @@ void tribo_planar_series_errors(const struct planar_series *s, const struct stic
     }
     for (size_t c = 0; c < m->plane->count; c++) {
         const struct planar_contact *p = &m->plane->contact[c];
-        if (slides(m, p) && p->begins == SLIDES_ON) {
+        if (tribo_slides_in_plane(m, p) && p->begins == SLIDES_ON) {
             error[p->at] = error[p->at + 1] = PART * s->line[c].xn[0] / greater(p->limit[0], p->limit[1]);
         }
     }
@@ -335,7 +332,7 @@ double tribo_planar_series_defect(const struct planar_series *s, const struct st
         const struct planar_contact *p = &m->plane->contact[c];
         const struct planar_line *l = &s->line[c];
         const size_t last = s->order - (size_t)p->begins;
-        if (slides(m, p)) {
+        if (tribo_slides_in_plane(m, p)) {
             const double xn = tribo_planar_series_value(l->xn, last, h), xt = tribo_planar_series_value(l->xt, last, h),
                          size = hypot(xn, xt);
             const double off = hypot(tribo_planar_series_value(l->un, s->order, h) - xn / size,

@@ -30,7 +30,6 @@
 struct adaptive {
     tribo_stepper stepper;
     void *data;           /* of the stepper */
-    int owned;            /* 1: the driver destroys the stepper */
     struct method method; /* of the stepper's name */
     double h;             /* length of the next step */
     double span;          /* of the advance */
@@ -48,7 +47,7 @@ struct adaptive {
 static void adaptive_destroy(tribo_driver *drv)
 {
     struct adaptive *a = drv->own;
-    if (a && a->owned) {
+    if (a) {
         if (a->stepper.destroy) {
             a->stepper.destroy(a->data);
         }
@@ -228,7 +227,7 @@ static int adaptive_advance(tribo_driver *drv, double *t, double t1, double *y, 
         double fastest;
         status = tribo_system_top_frequency(sys, &fastest);
         if (status) {
-            return tribo_driver_fail(drv, status, "%s", tribo_system_message(sys));
+            return tribo_driver_pass(drv, status);
         }
         a->largest = fastest > 0.0 ? LARGEST_STEP / fastest : HUGE_VAL;
         a->structure = sys->revision;
@@ -298,7 +297,6 @@ int tribo_driver_create_stepper(tribo_driver **drv, tribo_system *sys, const tri
         free(a);
         return status;
     }
-    a->owned = 1;
     (*drv)->own = a;
     return TRIBO_OK;
 }

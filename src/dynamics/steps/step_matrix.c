@@ -28,32 +28,12 @@ void tribo_step_matrix_free(struct step_matrix *m)
 
 /* ------------------------------------------------------------------------------------------------------------- the matrix */
 
-/* Returns a matrix of forces: `forces` of the system, or M rates; with a diagonal M that is not 1 that is a product in *own. NULL
- * if out of memory. */
-static const struct matrix *find_part(const tribo_system *sys, const struct matrix *forces, const struct matrix *rates,
-                                      struct matrix *own)
-{
-    if (forces->rows || sys->unsolved || !sys->mass.rows || !rates->rows) {
-        return forces->rows ? forces : rates;
-    }
-    double *mass = malloc(sys->ndof * sizeof *mass);
-    const int done = mass && tribo_matrix_copy(own, rates);
-    for (size_t i = 0; done && i < sys->ndof; i++) {
-        mass[i] = tribo_matrix_get(&sys->mass, i, i);
-    }
-    if (done) {
-        tribo_matrix_scale_rows(own, mass);
-    }
-    free(mass);
-    return done ? own : NULL;
-}
-
 int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, double h)
 {
     tribo_step_matrix_free(m);
     m->n = sys->ndof;
-    m->k = find_part(sys, &sys->k, &sys->stiffness, &m->own[0]);
-    m->c = find_part(sys, &sys->c, &sys->damping, &m->own[1]);
+    m->k = tribo_system_force_matrix(sys, &sys->k, &sys->stiffness, &m->own[0]);
+    m->c = tribo_system_force_matrix(sys, &sys->c, &sys->damping, &m->own[1]);
     const struct matrix *const part[] = {m->k, m->c};
     const double factor[] = {0.25 * h * h, 0.5 * h};
     int done = m->k && m->c;

@@ -28,7 +28,7 @@ static int compliance_find_pull(tribo_system *sys)
     struct triplets pull = {0};
     double *x = malloc((sys->ndof + 1) * sizeof *x);
     for (size_t k = 0; x && k < g->count; k++) {
-        tribo_delassus_put_row(&sys->direction, g->contact[k], x);
+        tribo_matrix_get_row(&sys->direction, g->contact[k], x);
         tribo_system_solve_mass(sys, x);
         for (size_t d = 0; d < sys->ndof; d++) {
             tribo_triplets_put(&pull, d, g->contact[k], x[d]);

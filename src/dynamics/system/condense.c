@@ -139,10 +139,7 @@ static int factorize_without(const struct model *m, struct condensed *s)
 /* s->x = K_ww^-1 (row i of a)', a [..][without]. Returns 1, or 0 if the row is empty. */
 static int solve_row(struct condensed *s, const struct matrix *a, size_t i)
 {
-    memset(s->x, 0, s->without * sizeof *s->x);
-    for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
-        s->x[a->col[e]] = a->val[e];
-    }
+    tribo_matrix_get_row(a, i, s->x);
     if (a->first[i] < a->first[i + 1]) {
         tribo_cholesky_solve(&s->factor, 1, s->x);
     }
@@ -276,7 +273,7 @@ static int replace_matrices(struct model *m, struct condensed *s)
     return done;
 }
 
-int tribo_model_condense(struct model *m, int (*build_massive)(struct model *, tribo_system **), tribo_system **sys)
+int tribo_model_condense(struct model *m, tribo_system **sys)
 {
     struct condensed s = {0};
     const struct matrix *k = &m->stiffness, *j = &m->direction;
@@ -285,7 +282,7 @@ int tribo_model_condense(struct model *m, int (*build_massive)(struct model *, t
     int status = condense_number(m, &s) ? TRIBO_OK : tribo_model_no_memory(m);
     if (status || s.without + s.sliders == 0 || s.with == 0) {
         condensed_free(&s);
-        return status ? status : build_massive(m, sys);
+        return status ? status : tribo_model_build_massive(m, sys);
     }
     int done = take_block(&s, k, Q, Q, &s.kqq) && take_block(&s, k, Q, W, &s.kqw) && take_block(&s, k, W, W, &s.kww) &&
                take_block(&s, j, ALL, Q, &s.jq) && take_block(&s, j, ALL, W, &s.touch);
@@ -294,7 +291,7 @@ int tribo_model_condense(struct model *m, int (*build_massive)(struct model *, t
     if (!status) {
         done = find_compliance(m, &s) && find_follow(&s) && condense_combine(&s, &s.jq, &s.touch, NULL, NULL, &s.direction) &&
                replace_matrices(m, &s) && append_sliders(m, &s);
-        status = done ? build_massive(m, sys) : tribo_model_no_memory(m);
+        status = done ? tribo_model_build_massive(m, sys) : tribo_model_no_memory(m);
     }
     if (!status) {
         (*sys)->given = given;

@@ -12,14 +12,6 @@
 /* Rows of J solved at a time: one pass through the factor serves BATCH rows. */
 enum { BATCH = 16 };
 
-void tribo_delassus_put_row(const struct matrix *j, size_t i, double *x)
-{
-    memset(x, 0, j->cols * sizeof *x);
-    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        x[j->col[k]] = j->val[k];
-    }
-}
-
 void tribo_delassus_note_own(const struct matrix *j, size_t i, const double *x, double *own)
 {
     for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
@@ -37,7 +29,7 @@ int tribo_delassus_by_columns(const struct matrix *j, delassus_solve *solve, con
         const size_t count = c - first < BATCH ? c - first : BATCH;
         double *some = x ? x + first * n : room;
         for (size_t i = 0; i < count; i++) {
-            tribo_delassus_put_row(j, first + i, some + i * n);
+            tribo_matrix_get_row(j, first + i, some + i * n);
         }
         done = solve(a, count, some);
         for (size_t i = 0; done && i < count; i++) {

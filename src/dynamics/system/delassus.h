@@ -5,8 +5,7 @@
 
 #include "numerics/matrix.h"
 
-/* put_row: x [j->cols] = row i of J. note_own: own = x at the entries of row i, see tribo_hidden. */
-void tribo_delassus_put_row(const struct matrix *j, size_t i, double *x);
+/* own = x at the entries of row i, see tribo_hidden. */
 void tribo_delassus_note_own(const struct matrix *j, size_t i, const double *x, double *own);
 
 /* x [count][j->cols] = A^-1 x for count vectors. Returns 1, or 0 if out of memory. */

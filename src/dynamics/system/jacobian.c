@@ -37,10 +37,10 @@ static int create_tangents(struct tangents *d, size_t n, size_t m)
 /* df_dt [ncontact] = (df/dlimit) limit', by a difference over a short time; 0 if limits are constant. Returns a status. */
 static int find_limit_rates(tribo_system *sys, double *df_dt)
 {
-    const double fastest = tribo_system_fastest(sys), later = SHORT / (fastest > 0.0 ? fastest : 1.0);
     if (!tribo_system_limits_vary(sys)) {
         return TRIBO_OK;
     }
+    const double fastest = tribo_system_fastest(sys), later = SHORT / (fastest > 0.0 ? fastest : 1.0);
     tribo_system_put_limits(sys, later);
     int status = tribo_balance(sys->contacts, sys->work.v, sys->work.a, NULL, sys->work.dv_dt);
     tribo_system_put_limits(sys, 0.0);

@@ -232,8 +232,11 @@ void tribo_system_add_base_at(const tribo_system *sys, double t, double factor, 
 {
     for (size_t k = 0; k < sys->loads.harmonics; k++) {
         const struct harmonic *h = &sys->loads.harmonic[k];
+        if (h->drives != DRIVES_BASE) {
+            continue;
+        }
         const double c = factor * cos(h->omega * t), s = factor * sin(h->omega * t);
-        for (size_t e = 0; h->drives == DRIVES_BASE && e < h->count; e++) {
+        for (size_t e = 0; e < h->count; e++) {
             to[h->index[e]] += c * h->cosine[e] + s * h->sine[e];
         }
     }

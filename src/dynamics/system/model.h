@@ -32,12 +32,12 @@ void tribo_model_free(struct model *m);
 /* c = Cholesky factor of the mass matrix. Returns a status. */
 int tribo_model_factorize(const struct model *m, struct cholesky *c);
 
-/* structure.c: builds the system of all degrees of freedom from checked matrices. Returns a status. */
-int tribo_model_build_whole(struct model *m, tribo_system **sys);
+/* structure.c: builds a system of degrees of freedom that have mass, from checked matrices. Returns a status. */
+int tribo_model_build_massive(struct model *m, tribo_system **sys);
 
-/* condense.c: builds a system by build_massive, from the degrees of freedom with mass; the others, and the sliders of contacts with
- * springs, become its expansion. */
-int tribo_model_condense(struct model *m, int (*build_massive)(struct model *, tribo_system **), tribo_system **sys);
+/* condense.c: builds the system of the degrees of freedom with mass, from checked matrices; the others, and the sliders of
+ * contacts with springs, become its expansion. Returns a status. */
+int tribo_model_condense(struct model *m, tribo_system **sys);
 
 /* Sets R = Z'Z in the contacts, Z [n][ncontact]: symmetric, and semidefinite up to rounding. Returns a status. */
 int tribo_model_set_operator(const struct model *m, tribo_system *sys, const double *z, size_t n);

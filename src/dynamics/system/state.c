@@ -11,16 +11,13 @@ int tribo_expansion_create(tribo_system *sys, size_t sliders, const size_t *plac
                            struct matrix *give, struct matrix *touch)
 {
     const size_t dofs = sys->ndof + follow->rows;
-    size_t *copy = malloc((dofs + 1) * sizeof *copy);
     int done = 1;
+    size_t *copy = tribo_copy_of(place, dofs, sizeof *copy, &done);
     sys->work.motion = malloc((tribo_system_size(sys) + follow->rows + 2 * sys->ncontact) * sizeof *sys->work.motion);
     sys->expansion =
         (struct expansion){dofs, sliders, copy, *follow, *give, *touch, tribo_copy_of(terms, sys->ndof, sizeof *terms, &done)};
     *follow = *give = *touch = (struct matrix){0};
-    if (copy) {
-        memcpy(copy, place, dofs * sizeof *copy);
-    }
-    return copy && sys->work.motion && done;
+    return sys->work.motion && done;
 }
 
 int tribo_expansion_copy(tribo_system *to, const tribo_system *from)

@@ -189,16 +189,11 @@ void tribo_model_free(struct model *m)
     tribo_matrix_free(&m->direction);
 }
 
-static int build_massive(struct model *m, tribo_system **sys)
+int tribo_model_build_massive(struct model *m, tribo_system **sys)
 {
     return tribo_matrix_is_diagonal(&m->mass) ? build_diagonal(m, sys)
            : m->ndof <= DENSE_MOST            ? build_solved(m, sys)
                                               : build_unsolved(m, sys);
-}
-
-int tribo_model_build_whole(struct model *m, tribo_system **sys)
-{
-    return tribo_model_condense(m, build_massive, sys);
 }
 
 int tribo_model_build(struct model *m, tribo_system **sys)
@@ -206,7 +201,7 @@ int tribo_model_build(struct model *m, tribo_system **sys)
     tribo_system *s = NULL;
     int status = structure_check(m);
     if (!status) {
-        status = m->nmode ? tribo_model_reduce(m, &s) : tribo_model_build_whole(m, &s);
+        status = m->nmode ? tribo_model_reduce(m, &s) : tribo_model_condense(m, &s);
     }
     tribo_model_free(m);
     if (status) {

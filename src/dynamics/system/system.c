@@ -245,6 +245,24 @@ double tribo_system_fastest(const tribo_system *sys)
     return most;
 }
 
+const struct matrix *tribo_system_force_matrix(const tribo_system *sys, const struct matrix *forces, const struct matrix *rates,
+                                               struct matrix *own)
+{
+    if (forces->rows || sys->unsolved || !sys->mass.rows || !rates->rows) {
+        return forces->rows ? forces : rates;
+    }
+    double *mass = malloc(sys->ndof * sizeof *mass);
+    const int done = mass && tribo_matrix_copy(own, rates);
+    for (size_t d = 0; done && d < sys->ndof; d++) {
+        mass[d] = tribo_matrix_get(&sys->mass, d, d);
+    }
+    if (done) {
+        tribo_matrix_scale_rows(own, mass);
+    }
+    free(mass);
+    return done ? own : NULL;
+}
+
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j)
 {
     const struct matrix *a = &sys->direction;

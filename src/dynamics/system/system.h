@@ -233,6 +233,11 @@ double tribo_system_next_kink(const tribo_system *sys, double t);
 /* Returns a bound of all frequencies: of |exponents| of the structure, with any contacts held, and of loads. */
 double tribo_system_fastest(const tribo_system *sys);
 
+/* Returns K or C: forces, if it has rows; rates, if these are forces (unsolved, or M = 1) or have no rows; else *own = M rates, for
+ * a diagonal M. The caller frees *own. NULL if out of memory. */
+const struct matrix *tribo_system_force_matrix(const tribo_system *sys, const struct matrix *forces, const struct matrix *rates,
+                                               struct matrix *own);
+
 /* Returns R_ij. */
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 

@@ -6,7 +6,6 @@
  * l_k0, ... l_k,k-1 and 1/l_kk. */
 #include "box_qp.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 

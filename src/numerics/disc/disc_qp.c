@@ -7,7 +7,6 @@
  * Either ends only if y is, up to rounding, the point of the set nearest to y - gain gradient: the solution. */
 #include "disc_qp.h"
 
-#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 

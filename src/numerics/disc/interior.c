@@ -4,7 +4,6 @@
  * a constraint |y + o|^2 <= 1, o = 0 or c, with room (1 - |y + o|^2)/2 and multiplier press. */
 #include "disc_qp.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 

@@ -85,16 +85,17 @@ int tribo_lens_minimize(const double *c, const double *weight, const double *q, 
 {
     const double shifted[2] = {q[0] + weight[0] * c[0], q[1] + weight[1] * c[1]}, square = c[0] * c[0] + c[1] * c[1];
     double n[2], m[2];
-    const int beyond = minimize_on_disc(weight, q, n), far = minimize_on_disc(weight, shifted, m);
-    if (!beyond && !far) {
-        y[0] = n[0];
-        y[1] = n[1];
-        return LENS_INSIDE;
-    }
+    const int beyond = minimize_on_disc(weight, q, n);
     if (beyond && 2.0 * (n[0] * c[0] + n[1] * c[1]) + square <= 0.0) { /* |n + c| <= 1 */
         y[0] = n[0];
         y[1] = n[1];
         return LENS_ON_DISC;
+    }
+    const int far = minimize_on_disc(weight, shifted, m);
+    if (!beyond && !far) {
+        y[0] = n[0];
+        y[1] = n[1];
+        return LENS_INSIDE;
     }
     if (far && square <= 2.0 * (m[0] * c[0] + m[1] * c[1])) { /* |m - c| <= 1 */
         y[0] = m[0] - c[0];
