@@ -73,11 +73,12 @@ static void at_contacts(const struct scene *s, const double *x, int of_force, do
  * acceleration. */
 static int can_hold(const struct scene *s, tribo_context *box, double times)
 {
-    double a[CONTACTS], lower[CONTACTS], upper[CONTACTS], f[CONTACTS], sum[BODIES] = {0.0};
+    double a[CONTACTS], lower[CONTACTS], upper[CONTACTS], f[CONTACTS];
+    struct scene pulled = *s;
     for (size_t b = 0; b < s->bodies; b++) {
-        sum[b] = times * s->pull[b];
+        pulled.pull[b] *= times;
     }
-    at_contacts(s, sum, 1, a);
+    at_contacts(s, pulled.pull, 1, a);
     for (size_t i = 0; i < s->contacts; i++) {
         upper[i] = s->ratio[i] * s->limit[i];
         lower[i] = -upper[i];
@@ -85,10 +86,10 @@ static int can_hold(const struct scene *s, tribo_context *box, double times)
     assert_ok(tribo_solve_box(box, a, lower, upper, f));
     for (size_t i = 0; i < s->contacts; i++) {
         for (size_t b = 0; b < s->bodies; b++) {
-            sum[b] += s->direction[i * s->bodies + b] * f[i];
+            pulled.pull[b] += s->direction[i * s->bodies + b] * f[i];
         }
     }
-    at_contacts(s, sum, 1, a);
+    at_contacts(s, pulled.pull, 1, a);
     double most = 0.0;
     for (size_t i = 0; i < s->contacts; i++) {
         most = fmax(most, fabs(a[i]));
