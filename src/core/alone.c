@@ -1,138 +1,74 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Contacts of which no two share a body, without static limits: forces of the balance, and over a step.
+/* Forces of all contacts as if no two shared a body, of the balance and over a step: all there is to a call if no two do, else its
+ * first part.
  *
  * Outputs stay as they are where a call fails, so v and a are checked before anything is written. Then follow the contacts, chunk
  * by chunk. Arrays of a large scene are far away: kernels do not read 1/R_ii or limits that are equal for all, nor a where all
  * contacts slide. */
 #include "common/stream.h"
 #include "check.h"
-#include "contacts.h"
+#include "groups.h"
+#include "static.h"
 
 enum { FEW = 8 * TRIBO_CHUNK }; /* forces of that many contacts stay in the first-level cache */
 
 /* Inputs of a call. find sets the forces f [n] of chunk k, and returns 1 if all its contacts slide. */
 struct call {
-    int (*find)(const tribo_context *ctx, const struct call *call, size_t k, double *f);
-    double holds; /* see struct last */
+    int (*find)(tribo_context *ctx, const struct call *call, size_t k, double *f);
     const double *v, *a;
-    double *feq; /* or NULL */
-    double dt;   /* of a step */
-    int plain;   /* |a_i| <= TRIBO_PLAIN */
+    double *feq;     /* of a balance; NULL: f_eq is not kept */
+    int wanted;      /* f_eq of contacts that slide, too */
+    int plain;       /* |a_i| <= TRIBO_PLAIN */
+    double dt;       /* of a step */
+    struct bounds b; /* of a step */
 };
 
-TRIBO_SIMD static void alone_find_slips(size_t n, const double *restrict f, const double *restrict limit, double holds,
-                                        signed char *restrict slip)
+/* ------------------------------------------------------------------------------------------------------------- kernels */
+
+TRIBO_SIMD static int any_in_band(size_t n, const double *v, double band)
+{
+    int64_t any = 0; /* as wide as a double, for vectors */
+    TRIBO_UNROLLED
+    for (size_t i = 0; i < n; i++) {
+        any |= fabs(v[i]) <= band ? -1 : 0;
+    }
+    return any != 0;
+}
+
+/* near [n] = 1 where limit > 0 and |v| <= band. */
+TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const double *restrict band, const double *restrict limit,
+                                 unsigned char *restrict near)
 {
     for (size_t i = 0; i < n; i++) {
-        slip[i] = tribo_slip_by_force(STORED, f[i], limit[i], holds);
+        near[i] = (fabs(v[i]) <= band[i]) & (limit[i] > 0.0);
     }
 }
 
-/* Ends a call. kept = 1: last.f holds the forces, and slips follow from forces; 0: the deeds hold the slips. */
-static void alone_finish(tribo_context *ctx, int kept, double holds)
+TRIBO_SIMD static void find_directions(size_t n, const double *restrict v, signed char *restrict slip)
 {
-    if (kept) {
-        tribo_store_all(ctx);
-    } else {
-        ctx->last.did.all_stored = 0;
+    for (size_t i = 0; i < n; i++) {
+        slip[i] = v[i] > 0.0 ? TRIBO_SLIP_FORTH : TRIBO_SLIP_BACK;
     }
-    ctx->last.slips = kept ? SLIPS_IN_FORCES : SLIPS_WRITTEN;
-    ctx->last.holds = holds;
-    ctx->last.rank = 0;
-    ctx->last.linearized = 0;
-    ctx->count.skipped += ctx->op->islands;
 }
 
-/* Ends a call for the only contact. */
-static void put_one(tribo_context *ctx, double force, double holds, double *f)
+TRIBO_SIMD void tribo_find_slips(size_t n, const double *restrict f, const double *restrict limit, double holds,
+                                 signed char *restrict slip)
 {
-    *ctx->last.f = force;
-    if (f) {
-        *f = force;
+    for (size_t i = 0; i < n; i++) {
+        slip[i] = tribo_slip_by_force(f[i], limit[i], holds);
     }
-    alone_finish(ctx, 1, holds);
 }
 
-/* Finds the forces of all contacts. Those of few are kept. Of many, slips are kept, found while forces are in cache: forces would
- * have to be written to memory, and read again. */
-static void alone_find_all(tribo_context *ctx, const struct call *call, double *f)
+TRIBO_SIMD static void slide(size_t n, const double *restrict v, const double *restrict limit, double *restrict f)
 {
-    const int few = ctx->n <= FEW;
-    struct stream to;
-    tribo_stream_begin(&to, f, ctx->n >= TRIBO_MANY);
-    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        const struct chunk *chunk = &ctx->follow.chunk[k];
-        const size_t n = tribo_chunk_size(ctx, i);
-        const double *limit = tribo_chunk_contacts(ctx, i).limit;
-        double *force = few ? ctx->last.f + i : tribo_stream_room(&to);
-        signed char *slip = ctx->last.did.of + i;
-        const int slide = call->find(ctx, call, k, force);
-        if (few) {
-            tribo_copy(f ? f + i : NULL, force, f ? n : 0);
-            continue;
-        }
-        if (slide && chunk->least > 0.0) {
-            tribo_find_directions(n, call->v + i, slip);
-        } else {
-            alone_find_slips(n, force, limit, call->holds, slip);
-        }
-        tribo_stream_put(&to, n);
+    for (size_t i = 0; i < n; i++) {
+        f[i] = sliding(v[i], limit[i]);
     }
-    tribo_stream_end(&to);
-    alone_finish(ctx, few, call->holds);
 }
-
-/* -------------------------------------------------------------------------------------------------------------- balance */
-
-static int balance_chunk(const tribo_context *ctx, const struct call *call, size_t k, double *f)
-{
-    const size_t i = k * TRIBO_CHUNK, n = tribo_chunk_size(ctx, i);
-    const struct contacts c = tribo_chunk_contacts(ctx, i);
-    const double *v = call->v + i, band = tribo_widest_band(ctx, k);
-    double room[TRIBO_CHUNK], *feq = call->feq ? call->feq + i : room;
-    const int reads = ctx->set.law->uses_feq && (fabs(*v) <= band || tribo_any_in_band(n, v, band)); /* the law reads f_eq */
-    if (reads && !call->feq && call->plain && ctx->follow.chunk[k].plain) {
-        ctx->set.law->balance(&c, n, v, call->a + i, tribo_inverses(ctx, k), f);
-        return 0;
-    }
-    if (reads || call->feq) {
-        tribo_find_feq(ctx, i, n, call->a, feq);
-    }
-    ctx->set.law->force(&c, n, v, reads ? feq : v, f);
-    return ctx->set.law->uses_feq && !reads;
-}
-
-int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
-{
-    const int within = v && a ? tribo_motion_within(v, a, TRIBO_PLAIN, ctx->n) : 0, plain = within & 2;
-    int status = within & 1 ? TRIBO_OK : tribo_check_finite(ctx, "v", v, ctx->n);
-    status = status || plain ? status : tribo_check_finite(ctx, "a", a, ctx->n);
-    if (status) {
-        return status;
-    }
-    const double holds = ctx->set.law->holds;
-    if (ctx->n == 1) {
-        const struct contacts *c = &ctx->follow.contacts;
-        const double inverse = *ctx->op->inverse;
-        const double balance = plain && ctx->follow.chunk->plain ? tribo_alone(*a, inverse) : tribo_alone_far(*a, inverse);
-        double force;
-        ctx->set.law->force(c, 1, v, &balance, &force);
-        if (feq) {
-            *feq = *c->limit > 0.0 ? balance : 0.0;
-        }
-        put_one(ctx, force, holds, f);
-    } else {
-        alone_find_all(ctx, &(const struct call){balance_chunk, holds, v, a, feq, 0.0, plain}, f);
-    }
-    ctx->last.residual = 0.0;
-    return TRIBO_OK;
-}
-
-/* ----------------------------------------------------------------------------------------------------------------- step */
 
 /* f = -scale v/R_ii within limits. */
-TRIBO_SIMD static void alone_stop(size_t n, double scale, const double *restrict v, const double *restrict inverse,
-                                  const double *restrict limit, double *restrict f)
+TRIBO_SIMD static void stop(size_t n, double scale, const double *restrict v, const double *restrict inverse,
+                            const double *restrict limit, double *restrict f)
 {
     for (size_t i = 0; i < n; i++) {
         f[i] = clamp(tribo_alone(v[i] * scale, inverse[i]), -limit[i], limit[i]);
@@ -151,44 +87,222 @@ static void stop_far(size_t n, double dt, const double *v, const double *inverse
     }
 }
 
-void tribo_stop_alone(const tribo_context *ctx, size_t k, double dt, const double *v, struct bounds b, double *f)
-{
-    const size_t n = tribo_chunk_size(ctx, k * TRIBO_CHUNK);
-    const struct chunk *chunk = &ctx->follow.chunk[k];
-    if (b.lower || !chunk->plain || dt < LEAST_STEP || !tribo_all_plain(v, n)) {
-        stop_far(n, dt, v, tribo_inverses(ctx, k), &b, f);
-    } else {
-        alone_stop(n, quotient(1.0, dt), v, tribo_inverses(ctx, k), b.upper, f);
-    }
-}
-
-TRIBO_SIMD static void alone_slide(size_t n, const double *restrict v, const double *restrict limit, double *restrict f)
+TRIBO_SIMD static void feq_alone(size_t n, const double *restrict inverse, const double *restrict a, double *restrict feq)
 {
     for (size_t i = 0; i < n; i++) {
-        f[i] = sliding(v[i], limit[i]);
+        feq[i] = tribo_alone(a[i], inverse[i]);
     }
 }
 
-static int step_chunk(const tribo_context *ctx, const struct call *call, size_t k, double *f)
+void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq)
+{
+    const struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
+    const double *inverse = ctx->op->inverse + chunk->like, *limit = ctx->follow.contacts.limit + i;
+    if (chunk->plain && tribo_all_plain(a + i, n)) {
+        feq_alone(n, inverse, a + i, feq);
+    } else {
+        for (size_t k = 0; k < n; k++) {
+            feq[k] = tribo_alone_far(a[i + k], inverse[k]);
+        }
+    }
+    for (size_t k = 0; chunk->least == 0.0 && k < n; k++) {
+        feq[k] = limit[k] > 0.0 ? feq[k] : 0.0;
+    }
+}
+
+TRIBO_SIMD static void find_epsilons(size_t n, const double *restrict width, const double *restrict bound,
+                                     double *restrict epsilon)
+{
+    for (size_t i = 0; i < n; i++) {
+        epsilon[i] = tribo_epsilon(1, width[i], bound[i]);
+    }
+}
+
+const double *tribo_bands(const tribo_context *ctx, size_t i, size_t n, double *room)
+{
+    static const double none[TRIBO_CHUNK];
+    const struct contacts *c = &ctx->follow.contacts;
+    if (!ctx->set.law->sticks_in_band || !c->follows) {
+        return ctx->set.law->sticks_in_band ? c->width + i : none;
+    }
+    find_epsilons(n, c->width + i, c->bound + i, room);
+    return room;
+}
+
+/* --------------------------------------------------------------------------------------------------------------- calls */
+
+/* Ends a call in which all contacts are alone. */
+static void alone_finish(tribo_context *ctx, int slips, double holds)
+{
+    ctx->last.slips = slips;
+    ctx->last.holds = holds;
+    ctx->last.rank = 0;
+    ctx->last.linearized = 0;
+    ctx->count.skipped += ctx->op->islands;
+}
+
+/* Ends a call for the only contact. */
+static void put_one(tribo_context *ctx, double force, double holds, double *f)
+{
+    *ctx->last.f = force;
+    if (f) {
+        *f = force;
+    }
+    alone_finish(ctx, SLIPS_IN_FORCES, holds);
+}
+
+/* Finds and keeps the forces of all contacts; f may be NULL. */
+static void find_each(tribo_context *ctx, const struct call *call, double *f)
+{
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        call->find(ctx, call, k, ctx->last.f + i);
+        tribo_copy(f ? f + i : NULL, ctx->last.f + i, f ? tribo_chunk_size(ctx, i) : 0);
+    }
+}
+
+/* Finds the forces of all contacts, which are alone. Those of few are kept. Of many, slips are kept, found while forces are in
+ * cache: forces would have to be written to memory, and read again. */
+static void find_all(tribo_context *ctx, const struct call *call, double holds, double *f)
+{
+    struct stream to;
+    if (ctx->n <= FEW) {
+        find_each(ctx, call, f);
+        alone_finish(ctx, SLIPS_IN_FORCES, holds);
+        return;
+    }
+    tribo_stream_begin(&to, f, ctx->n >= TRIBO_MANY);
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        const size_t n = tribo_chunk_size(ctx, i);
+        double *force = tribo_stream_room(&to);
+        const int slides = call->find(ctx, call, k, force);
+        if (slides && ctx->follow.chunk[k].least > 0.0) {
+            find_directions(n, call->v + i, ctx->last.slip + i);
+        } else {
+            tribo_find_slips(n, force, tribo_chunk_contacts(ctx, i).limit, holds, ctx->last.slip + i);
+        }
+        tribo_stream_put(&to, n);
+    }
+    tribo_stream_end(&to);
+    alone_finish(ctx, SLIPS_WRITTEN, holds);
+}
+
+/* -------------------------------------------------------------------------------------------------------------- balance */
+
+int tribo_check_motion(tribo_context *ctx, const double *v, const double *a, int *plain)
+{
+    const int within = v && a ? tribo_motion_within(v, a, TRIBO_PLAIN, ctx->n) : 0;
+    const int status = within & 1 ? TRIBO_OK : tribo_check_finite(ctx, "v", v, ctx->n);
+    *plain = within & 2;
+    return status || *plain ? status : tribo_check_finite(ctx, "a", a, ctx->n);
+}
+
+/* Where the law uses f_eq, contacts that are not near stick slide with their limits. */
+static int balance_chunk(tribo_context *ctx, const struct call *call, size_t k, double *f)
+{
+    const size_t i = k * TRIBO_CHUNK, n = tribo_chunk_size(ctx, i);
+    const struct law *law = ctx->set.law;
+    const struct contacts c = tribo_chunk_contacts(ctx, i);
+    const struct delassus *op = ctx->op;
+    const int alone = op->islands > op->groups; /* there are contacts in no group */
+    const double *v = call->v + i, widest = ctx->follow.chunk[k].band, band = law->sticks_in_band ? widest : lesser(widest, 0.0);
+    const int near = law->uses_feq && (fabs(*v) <= band || any_in_band(n, v, band)), reads = near && alone;
+    double room[TRIBO_CHUNK], *feq = call->feq ? call->feq + i : room;
+    if (reads && !call->feq && call->plain && ctx->follow.chunk[k].plain) {
+        law->balance(&c, n, v, call->a + i, tribo_inverses(ctx, k), f);
+        return 0;
+    }
+    if (reads || (call->wanted && alone)) {
+        tribo_find_feq(ctx, i, n, call->a, feq);
+    }
+    if (ctx->set.breaking) {
+        tribo_find_limits(ctx, i, n, v, reads ? feq : NULL, ctx->follow.now + i);
+    }
+    if (reads || !law->uses_feq) {
+        law->force(&c, n, v, reads ? feq : v, f);
+    } else {
+        slide(n, v, c.limit, f);
+    }
+    if (op->groups) {
+        unsigned char *is_near = ctx->last.near + i;
+        memset(is_near, 0, n);
+        if (near) {
+            find_near(n, v, tribo_bands(ctx, i, n, room), ctx->follow.contacts.limit + i, is_near);
+        }
+        for (size_t j = 0; near && j < n; j++) {
+            if (is_near[j]) {
+                tribo_list_group(ctx, ctx->group_of[i + j]);
+            }
+        }
+    }
+    return law->uses_feq && !near;
+}
+
+void tribo_balance_each(tribo_context *ctx, const double *v, const double *a, int wanted)
+{
+    find_each(ctx, &(const struct call){.find = balance_chunk, .v = v, .a = a, .feq = ctx->last.feq, .wanted = wanted}, NULL);
+}
+
+int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
+{
+    int plain;
+    const int status = tribo_check_motion(ctx, v, a, &plain);
+    const double holds = ctx->set.law->holds;
+    if (status) {
+        return status;
+    }
+    if (ctx->n == 1) {
+        const struct contacts *c = &ctx->follow.contacts;
+        const double inverse = *ctx->op->inverse;
+        const double balance = plain && ctx->follow.chunk->plain ? tribo_alone(*a, inverse) : tribo_alone_far(*a, inverse);
+        double force;
+        ctx->set.law->force(c, 1, v, &balance, &force);
+        if (feq) {
+            *feq = *c->limit > 0.0 ? balance : 0.0;
+        }
+        put_one(ctx, force, holds, f);
+    } else {
+        const struct call call = {.find = balance_chunk, .v = v, .a = a, .feq = feq, .wanted = feq != NULL, .plain = plain};
+        find_all(ctx, &call, holds, f);
+    }
+    ctx->last.residual = 0.0;
+    return TRIBO_OK;
+}
+
+/* ----------------------------------------------------------------------------------------------------------------- step */
+
+static int step_chunk(tribo_context *ctx, const struct call *call, size_t k, double *f)
 {
     const size_t i = k * TRIBO_CHUNK, n = tribo_chunk_size(ctx, i);
     const struct chunk *chunk = &ctx->follow.chunk[k];
-    const double *limit = tribo_chunk_contacts(ctx, i).limit;
-    /* Contacts that are faster than reach, none of them open, slide on over dt, by a margin for rounding. */
-    const double far = product(1.0000001 * greater(product(chunk->quickest, call->dt), DBL_MIN), chunk->largest);
-    const double *v = call->v + i, reach = chunk->least > 0.0 && far < TRIBO_FAR ? far : DBL_MAX;
-    if (fabs(*v) <= reach || tribo_any_in_band(n, v, reach)) {
-        tribo_stop_alone(ctx, k, call->dt, v, (struct bounds){NULL, limit}, f);
+    const double *v = call->v + i, dt = call->dt;
+    if (call->b.lower) {
+        stop_far(n, dt, v, tribo_inverses(ctx, k), &(struct bounds){call->b.lower + i, call->b.upper + i}, f);
         return 0;
     }
-    alone_slide(n, v, limit, f);
-    return 1;
+    const double *limit = tribo_chunk_contacts(ctx, i).limit;
+    /* Contacts that are faster than reach, none of them open, slide on over dt, by a margin for rounding. */
+    const double far = product(1.0000001 * greater(product(chunk->quickest, dt), DBL_MIN), chunk->largest);
+    const double reach = chunk->least > 0.0 && far < TRIBO_FAR ? far : DBL_MAX;
+    const int slides = !(fabs(*v) <= reach || any_in_band(n, v, reach));
+    if (slides) {
+        slide(n, v, limit, f);
+    } else if (!chunk->plain || dt < LEAST_STEP || !tribo_all_plain(v, n)) {
+        stop_far(n, dt, v, tribo_inverses(ctx, k), &(struct bounds){NULL, limit}, f);
+    } else {
+        stop(n, quotient(1.0, dt), v, tribo_inverses(ctx, k), limit, f);
+    }
+    return slides;
+}
+
+void tribo_step_each(tribo_context *ctx, double dt, const double *v, struct bounds b)
+{
+    find_each(ctx, &(const struct call){.find = step_chunk, .v = v, .dt = dt, .b = b}, NULL);
 }
 
 int tribo_step_alone(tribo_context *ctx, double dt, const double *v, double *f)
 {
+    const struct bounds b = {NULL, ctx->follow.contacts.limit};
     if (ctx->n == 1) {
-        const struct bounds b = {NULL, ctx->follow.contacts.limit};
         double force;
         if (ctx->follow.chunk->plain && dt >= LEAST_STEP && tribo_within(*v, TRIBO_PLAIN)) {
             force = clamp(tribo_alone(*v * quotient(1.0, dt), *ctx->op->inverse), -*b.upper, *b.upper);
@@ -197,7 +311,7 @@ int tribo_step_alone(tribo_context *ctx, double dt, const double *v, double *f)
         }
         put_one(ctx, force, 1.0, f);
     } else {
-        alone_find_all(ctx, &(const struct call){.find = step_chunk, .holds = 1.0, .v = v, .dt = dt}, f);
+        find_all(ctx, &(const struct call){.find = step_chunk, .v = v, .dt = dt, .b = b}, 1.0, f);
     }
     return TRIBO_OK;
 }

@@ -44,7 +44,7 @@ struct box_qp *tribo_collect(tribo_context *ctx, size_t g)
     p->count = 0;
     p->far = ctx->last.far;
     for (size_t k = 0; k < p->group->size; k++) {
-        if (ctx->last.did.of[member[k]] == STORED) {
+        if (ctx->last.near[member[k]]) {
             p->near[p->count++] = k;
         } else {
             p->near[--behind] = k;
@@ -168,7 +168,7 @@ static void find_other_feq(tribo_context *ctx, struct box_qp *p, const double *a
     }
     for (size_t k = 0; k < size; k++) {
         const size_t i = p->member[k];
-        if (!(solved && ctx->last.did.of[i] == STORED)) {
+        if (!(solved && ctx->last.near[i])) {
             const double feq = quotient(-(cut(a[i]) + tribo_row_others(p, k, p->step)), ctx->op->diagonal[i]);
             ctx->last.feq[i] = ctx->follow.contacts.limit[i] > 0.0 ? feq : 0.0;
         }
@@ -180,15 +180,7 @@ static int balance_all(tribo_context *ctx, const double *v, const double *a, int
 {
     int status = TRIBO_OK;
     tribo_begin_call(ctx);
-    tribo_forces_alone(ctx, v, a, wanted);
-    for (size_t i = 0; i < ctx->n; i += tribo_chunk_size(ctx, i)) {
-        const size_t end = ctx->last.did.stored[i / TRIBO_CHUNK] == SOME_STORED ? i + tribo_chunk_size(ctx, i) : i;
-        for (size_t k = i; k < end; k++) {
-            if (ctx->last.did.of[k] == STORED) {
-                tribo_list_group(ctx, ctx->group_of[k]);
-            }
-        }
-    }
+    tribo_balance_each(ctx, v, a, wanted);
     for (size_t k = 0; k < ctx->memory.nsolved; k++) {
         if (k + 2 < ctx->memory.nsolved) {
             tribo_memory_expect(ctx->op, &ctx->memory, ctx->memory.solved_list[k + 2]);
@@ -224,7 +216,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     if (tribo_all_alone(ctx)) {
         return tribo_balance_alone(ctx, v, a, feq, f);
     }
-    status = tribo_classify(ctx, v, a);
+    status = tribo_check_motion(ctx, v, a, &(int){0});
     status = status ? status : balance_all(ctx, v, a, feq != NULL);
     if (status && status != TRIBO_ERR_INCONSISTENT) {
         return status;
@@ -242,8 +234,6 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
         tribo_clusters_feq(ctx, a);
         tribo_copy(feq, ctx->last.feq, ctx->n);
     }
-    if (f) {
-        tribo_forces(ctx, f);
-    }
+    tribo_copy(f, ctx->last.f, f ? ctx->n : 0);
     return status;
 }

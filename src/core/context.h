@@ -41,21 +41,7 @@ static inline size_t tribo_chunks(size_t n)
     return (n + TRIBO_CHUNK - 1) / TRIBO_CHUNK;
 }
 
-/* State of a contact in the last call that found forces: TRIBO_SLIP_FORTH, TRIBO_SLIP_BACK: it slides, and its force is its
- * limit; STORED: its force is in last.f. Once slips are written (see tribo_write_slips): TRIBO_SLIP_STUCK, ...
- * TRIBO_SLIP_OPEN. */
-enum { STORED = TRIBO_SLIP_STUCK };
-
-/* How many contacts of a chunk are STORED; ALL_STORED is set only where it is known. */
-enum { NONE_STORED, SOME_STORED, ALL_STORED };
-
-struct deeds {
-    signed char *of;       /* [n] */
-    unsigned char *stored; /* [chunks] */
-    int all_stored;        /* all chunks are ALL_STORED */
-};
-
-/* Slips of the last call: unknown; to be found from forces and limits; in deeds. */
+/* Slips of the last call: unknown; to be found from forces and limits; in last.slip. */
 enum { NO_SLIPS, SLIPS_IN_FORCES, SLIPS_WRITTEN };
 
 /* Static limits: there are none; they drop to the limit as slip begins; they fall with speed. */
@@ -85,8 +71,9 @@ struct following {
 
 /* What the last call found. */
 struct last {
-    struct deeds did;
-    double *feq, *f;         /* [n] f: where STORED */
+    double *feq, *f;         /* [n] f: unless calls of many contacts that are all alone write slips in its place */
+    signed char *slip;       /* [n] TRIBO_SLIP_... of SLIPS_WRITTEN */
+    unsigned char *near;     /* [n] 1: the last tribo_balance found contacts of groups near stick */
     double *v;               /* [n] velocities of the last tribo_balance_tangent */
     struct tangent *tangent; /* [n] derivatives of the law there */
     int slips;               /* NO_SLIPS, ... */
@@ -114,7 +101,7 @@ struct tribo_context {
     const size_t *group_of; /* [n] the group whose box problem has the contact, or TRIBO_ALONE */
     unsigned char *moving;  /* [n] reversal memory */
     struct last last;
-    struct deeds spare; /* the next call's, until it succeeds */
+    signed char *spare; /* [n] workspace */
     struct counters count;
     size_t revision; /* changes of settings and operator */
     char message[240];
@@ -137,7 +124,7 @@ void tribo_take_settings(tribo_context *ctx, const tribo_context *from);
 /* Sets limits to limit [n], which may be those of ctx, and all that follows from them. */
 void tribo_take_limits(tribo_context *ctx, const double *limit);
 
-/* queries.c: writes slips into deeds. Call before limits change. */
+/* queries.c: writes slips. Call before limits change. */
 void tribo_write_slips(tribo_context *ctx);
 
 /* Contacts of the chunk that begins with contact i. */
@@ -161,14 +148,6 @@ static inline struct contacts tribo_chunk_contacts(const tribo_context *ctx, siz
 static inline const double *tribo_inverses(const tribo_context *ctx, size_t k)
 {
     return ctx->op->inverse + ctx->follow.chunk[k].like;
-}
-
-/* The force of contact i in the last call, while its limit is that of the call. */
-static inline double tribo_force_of(const tribo_context *ctx, size_t i)
-{
-    const int did = ctx->last.did.of[i];
-    const double limit = ctx->follow.contacts.limit[i];
-    return did == STORED ? ctx->last.f[i] : did == TRIBO_SLIP_FORTH ? -limit : limit;
 }
 
 /* 1 if no contact is coupled, planar or has a static limit. */

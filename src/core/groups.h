@@ -14,7 +14,7 @@ static inline struct box_qp *tribo_problem(tribo_context *ctx, size_t g)
 /* The force of the contact at place k of a group, as far as the solver resolves it. */
 static inline double tribo_carried(const tribo_context *ctx, const struct box_qp *p, size_t k)
 {
-    const double f = tribo_force_of(ctx, p->member[k]);
+    const double f = ctx->last.f[p->member[k]];
     return ctx->last.far ? tribo_cut(p, k, f) : f;
 }
 
@@ -33,7 +33,7 @@ static inline void tribo_list_group(tribo_context *ctx, size_t g)
     }
 }
 
-/* Puts the contacts of group g in the problem's order, STORED ones first; x of the others is set. */
+/* Puts the contacts of group g in the problem's order, those near stick first; x of the others is set. */
 struct box_qp *tribo_collect(tribo_context *ctx, size_t g);
 
 /* Solves the problem of a group, of which near, q, lo and hi are set; a status. */

@@ -31,10 +31,9 @@ static tribo_context *context_allocate(size_t n, const tribo_context *like)
         at.follow.chunk = tribo_layout_array(&b, chunks, sizeof *at.follow.chunk);
         at.last.tangent = tribo_layout_array(&b, m, sizeof *at.last.tangent);
         at.moving = tribo_layout_array(&b, m, 1);
-        at.last.did.of = tribo_layout_array(&b, m, 1);
-        at.last.did.stored = tribo_layout_array(&b, chunks, 1);
-        at.spare.of = tribo_layout_array(&b, m, 1);
-        at.spare.stored = tribo_layout_array(&b, chunks, 1);
+        at.last.slip = tribo_layout_array(&b, m, 1);
+        at.last.near = tribo_layout_array(&b, m, 1);
+        at.spare = tribo_layout_array(&b, m, 1);
     } while (!b.memory && tribo_layout_zeros(&b));
     at.n = n;
     at.message[0] = 0;
@@ -89,8 +88,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     tribo_copy(c->last.feq, ctx->last.feq, n);
     tribo_copy(c->last.f, ctx->last.f, n);
     memcpy(c->moving, ctx->moving, n);
-    memcpy(c->last.did.of, ctx->last.did.of, n);
-    memcpy(c->last.did.stored, ctx->last.did.stored, tribo_chunks(n));
+    memcpy(c->last.slip, ctx->last.slip, n);
     tribo_refresh_limits(c);
     tribo_copy(c->follow.now, ctx->follow.now, ctx->set.breaking ? n : 0);
     c->revision = ctx->revision;

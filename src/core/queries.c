@@ -14,31 +14,23 @@ int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
 
 /* -------------------------------------------------------------------------------------------------------------- slips */
 
-/* Slips of n contacts take the place of their states. */
-TRIBO_SIMD static void queries_find_slips(size_t n, const double *restrict f, const double *restrict limit, double holds,
-                                          signed char *restrict did)
+/* slip [n] of the last call, which has slips. */
+static void put_slips(const tribo_context *ctx, signed char *slip)
 {
-    for (size_t i = 0; i < n; i++) {
-        did[i] = tribo_slip_by_force(did[i], f[i], limit[i], holds);
+    if (ctx->last.slips == SLIPS_IN_FORCES) {
+        tribo_find_slips(ctx->n, ctx->last.f, ctx->follow.contacts.limit, ctx->last.holds, slip);
+        tribo_plane_slips(ctx, slip);
+    } else if (ctx->n) {
+        memcpy(slip, ctx->last.slip, ctx->n);
     }
 }
 
 void tribo_write_slips(tribo_context *ctx)
 {
-    struct deeds *did = &ctx->last.did;
-    if (ctx->last.slips != SLIPS_IN_FORCES) {
-        return;
+    if (ctx->last.slips == SLIPS_IN_FORCES) {
+        put_slips(ctx, ctx->last.slip);
+        ctx->last.slips = SLIPS_WRITTEN;
     }
-    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        if (did->stored[k] != NONE_STORED || ctx->follow.chunk[k].least == 0.0) {
-            queries_find_slips(tribo_chunk_size(ctx, i), ctx->last.f + i, ctx->follow.contacts.limit + i, ctx->last.holds,
-                               did->of + i);
-            did->stored[k] = SOME_STORED;
-            did->all_stored = 0;
-        }
-    }
-    tribo_plane_slips(ctx, did->of);
-    ctx->last.slips = SLIPS_WRITTEN;
 }
 
 int tribo_get_slip(const tribo_context *ctx, signed char *slip)
@@ -49,13 +41,7 @@ int tribo_get_slip(const tribo_context *ctx, signed char *slip)
     if (ctx->last.slips == NO_SLIPS) {
         return TRIBO_ERR_STATE;
     }
-    if (ctx->n) {
-        memcpy(slip, ctx->last.did.of, ctx->n);
-    }
-    if (ctx->last.slips == SLIPS_IN_FORCES) {
-        queries_find_slips(ctx->n, ctx->last.f, ctx->follow.contacts.limit, ctx->last.holds, slip);
-        tribo_plane_slips(ctx, slip);
-    }
+    put_slips(ctx, slip);
     return TRIBO_OK;
 }
 
@@ -66,11 +52,9 @@ static size_t count_stuck(const tribo_context *ctx)
     const struct last *last = &ctx->last;
     size_t stuck = 0;
     for (size_t i = 0; last->slips != NO_SLIPS && i < ctx->n; i++) {
-        const signed char did = last->did.of[i];
-        const int slip = last->slips == SLIPS_WRITTEN ? did
-                         : tribo_is_scalar(ctx, i)
-                             ? tribo_slip_by_force(did, last->f[i], ctx->follow.contacts.limit[i], last->holds)
-                             : tribo_plane_slip(ctx, i);
+        const int slip = last->slips == SLIPS_WRITTEN ? last->slip[i]
+                         : tribo_is_scalar(ctx, i) ? tribo_slip_by_force(last->f[i], ctx->follow.contacts.limit[i], last->holds)
+                                                   : tribo_plane_slip(ctx, i);
         stuck += slip == TRIBO_SLIP_STUCK;
     }
     return stuck;

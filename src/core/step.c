@@ -153,10 +153,7 @@ static int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bo
     const double times = op->groups ? quotient(1.0, dt) : 0.0;
     const struct call c = {b, dt, {times, TRIBO_FAR / greater(times, 1.0)}, v, group_of, breaks, estimates};
     struct memory *m = &ctx->memory;
-    tribo_store_all(ctx);
-    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        tribo_stop_alone(ctx, k, dt, v + i, (struct bounds){b.lower ? b.lower + i : NULL, b.upper + i}, ctx->last.f + i);
-    }
+    tribo_step_each(ctx, dt, v, b);
     if (breaks) {
         tribo_break_alone(ctx, dt, v);
     }

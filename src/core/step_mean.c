@@ -69,7 +69,7 @@ int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const 
         return status ? status : tribo_step_at_end(ctx, dt, v, vfree, f);
     }
     const int plane = tribo_plane_count(ctx) > 0;
-    struct step s = {dt, v, vfree, vfree, ctx->spare.of, ctx->last.v, ctx->last.feq, 0};
+    struct step s = {dt, v, vfree, vfree, ctx->spare, ctx->last.v, ctx->last.feq, 0};
     status = tribo_solve_step(ctx, dt, vfree, (struct bounds){NULL, ctx->set.limit}, NULL, s.lower);
     if (status) {
         return status;
@@ -90,7 +90,7 @@ int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const 
         /* Forces do not show the slip of contacts that reverse. */
         tribo_write_slips(ctx);
         for (size_t i = 0; i < ctx->n; i++) {
-            ctx->last.did.of[i] = s.reverses[i] ? s.reverses[i] : ctx->last.did.of[i];
+            ctx->last.slip[i] = s.reverses[i] ? s.reverses[i] : ctx->last.slip[i];
         }
     }
     return status;

@@ -45,7 +45,7 @@ static double law_change(const tribo_context *ctx, size_t i, double dv, double d
 static double own_change(const tribo_context *ctx, const struct box_qp *p, size_t k, double dv, double dlimit)
 {
     const size_t i = p->member[k];
-    if (ctx->last.did.of[i] != STORED) {
+    if (!ctx->last.near[i]) {
         return law_change(ctx, i, dv, dlimit);
     }
     /* The bound of a law that relaxes moves with kappa, unless it is the other limit. */
@@ -119,7 +119,7 @@ static const double *group_product(const tribo_context *ctx, struct box_qp *p, s
             const size_t i = member[k];
             const double r = ctx->op->diagonal[i], sum = divisible(da[k], r) + tribo_row_others(p, k, p->step);
             const double own = law_change(ctx, i, dv[k], tribo_limit_change(ctx, d, i));
-            df[k] = own - (ctx->last.did.of[i] == STORED ? ctx->last.tangent[i].dfeq * quotient(sum, r) : 0.0);
+            df[k] = own - (ctx->last.near[i] ? ctx->last.tangent[i].dfeq * quotient(sum, r) : 0.0);
         }
     }
     return df;

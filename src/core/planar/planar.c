@@ -278,7 +278,7 @@ int tribo_plane_check_coupling(tribo_context *ctx, int coupling, size_t count, c
 /* Checks that first [count] are pairs of contacts, none in two of them; a status. */
 static int check_first(tribo_context *ctx, size_t count, const size_t *first)
 {
-    signed char *taken = ctx->spare.of;
+    signed char *taken = ctx->spare;
     memset(taken, 0, ctx->n);
     for (size_t k = 0; k < count; k++) {
         const size_t i = first[k];

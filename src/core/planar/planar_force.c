@@ -88,7 +88,7 @@ static void find_pulls(tribo_context *ctx, const struct cluster *g, const double
             if (other < n && near[other] == j) {
                 other++;
             } else if (row[j] != 0.0) {
-                sum += row[j] * clamp(tribo_force_of(ctx, member[j]), -bound, bound);
+                sum += row[j] * clamp(ctx->last.f[member[j]], -bound, bound);
             }
         }
         ctx->plane.pull[e] = sum;
@@ -319,13 +319,6 @@ int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a)
     int status = TRIBO_OK;
     if (!ctx->planar) {
         return status;
-    }
-    for (size_t i = 0; i < ctx->n; i++) {
-        unsigned char *stored = &ctx->last.did.stored[i / TRIBO_CHUNK];
-        if (!tribo_is_scalar(ctx, i)) {
-            ctx->last.did.of[i] = STORED;
-            *stored = *stored == NONE_STORED ? SOME_STORED : *stored;
-        }
     }
     for (size_t k = 0; !status && k < ctx->planar->clusters; k++) {
         const struct cluster *g = &ctx->planar->cluster[k];

@@ -66,7 +66,7 @@ double tribo_planar_others(const tribo_context *ctx, const struct cluster *g, si
     double sum = cut(a);
     for (size_t j = 0; j < g->size; j++) {
         const double bound = ctx->follow.contacts.bound[g->member[j]];
-        sum += j - from < directions ? 0.0 : row[j] * clamp(tribo_force_of(ctx, g->member[j]), -bound, bound);
+        sum += j - from < directions ? 0.0 : row[j] * clamp(ctx->last.f[g->member[j]], -bound, bound);
     }
     return sum;
 }
