@@ -44,9 +44,9 @@ void tribo_remember_forces(tribo_context *ctx);
 
 /* ---- step.c */
 
-/* Finds forces f [n] within bounds with v + dt R f = 0, or pushed against a bound. known [n] or NULL: not 0 for scalar contacts
+/* Finds last.f within bounds with v + dt R f = 0, or pushed against a bound; a status. known [n] or NULL: not 0 for scalar contacts
  * of clusters whose force is in last.f. */
-int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known, double *f);
+int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known);
 
 /* tribo_step_force without checks. v [n]: velocities at the begin, or NULL; read where limits are static. */
 int tribo_step_at_end(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f);

@@ -66,17 +66,15 @@ static int turns(const tribo_context *ctx, size_t i, const double *v, const doub
     return !(power < 0.0);
 }
 
-int tribo_any_turns(const tribo_context *ctx, double dt, const double *v, const double *f)
+int tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, const double *f)
 {
-    int any = 0;
+    int any = !f;
     for (size_t i = 0; !any && i < ctx->n; i += tribo_directions(ctx, i)) {
         any = comes_sliding(ctx, dt, i, v) && turns(ctx, i, v, f);
     }
-    return any;
-}
-
-void tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, const double *f)
-{
+    if (!any) {
+        return 0;
+    }
     tribo_copy(ctx->follow.now, ctx->follow.hold, ctx->n);
     for (size_t i = 0, directions; v && i < ctx->n; i += directions) {
         directions = tribo_directions(ctx, i);
@@ -86,6 +84,7 @@ void tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, c
             ctx->follow.now[k] = tribo_limit_at(ctx, k, speed);
         }
     }
+    return 1;
 }
 
 size_t tribo_break_away(tribo_context *ctx, struct box_qp *p, double dt)

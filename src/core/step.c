@@ -22,7 +22,6 @@ struct call {
     const double *v;
     const size_t *group_of; /* [n] */
     int breaks;             /* limits are static */
-    int estimates;          /* sums of R's rows times limits are numbers: they bound what friction can hold */
 };
 
 /* Sums of rows and limits up to this have numbers as products. */
@@ -44,99 +43,71 @@ TRIBO_SIMD static int any_within_reach(size_t n, struct pull pull, const double 
     return any != 0;
 }
 
-/* Returns at least the largest limit in any group with a contact in chunk k. */
-static double largest_around(const tribo_context *ctx, size_t k)
-{
-    if (ctx->op->span >= TRIBO_CHUNK) {
-        return ctx->follow.largest;
-    }
-    const double before = k > 0 ? ctx->follow.chunk[k - 1].largest : 0.0;
-    const double behind = k + 1 < tribo_chunks(ctx->n) ? ctx->follow.chunk[k + 1].largest : 0.0;
-    return greater(ctx->follow.chunk[k].largest, greater(before, behind));
-}
-
-/* Lists the groups with a contact that may take part, chunk by chunk: in a large scene most chunks have none. */
+/* Lists the groups with a contact that friction could hold, chunk by chunk: in a large scene most chunks have none. */
 static void find_candidates(tribo_context *ctx, const struct call *c)
 {
     const double *row_sum = ctx->op->row_sum;
+    const struct chunk *chunk = ctx->follow.chunk;
+    /* sums of R's rows times limits are numbers: they bound what friction can hold */
+    const int estimates = !c->b.lower && !c->breaks && ctx->follow.largest < ESTIMATED && ctx->op->largest_sum < ESTIMATED;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
-        const double largest = largest_around(ctx, k);
-        if (c->estimates && (largest == 0.0 || !any_within_reach(n, c->pull, c->v + i, row_sum + i, largest))) {
+        /* at least the largest limit in any group with a contact in the chunk */
+        const double before = k > 0 ? chunk[k - 1].largest : 0.0,
+                     behind = k + 1 < tribo_chunks(ctx->n) ? chunk[k + 1].largest : 0.0;
+        const double around = greater(chunk[k].largest, greater(before, behind));
+        const double largest = ctx->op->span < TRIBO_CHUNK ? around : ctx->follow.largest;
+        if (estimates && (largest == 0.0 || !any_within_reach(n, c->pull, c->v + i, row_sum + i, largest))) {
             continue;
         }
         for (size_t j = i; j < i + n; j++) {
-            if (!(c->estimates && out_of_reach(c->pull, c->v[j], row_sum[j], largest))) {
+            if (!(estimates && out_of_reach(c->pull, c->v[j], row_sum[j], largest))) {
                 tribo_list_group(ctx, c->group_of[j]);
             }
         }
     }
 }
 
-/* 1 if friction could hold the contact at place k by limits [size]. */
-static int within_reach(const struct box_qp *p, size_t k, const struct call *c, const double *limit)
-{
-    double reach;
-    tribo_row_dot(p, k, limit, &reach);
-    return !(fabs(step_pull_of(c->pull, c->v[p->member[k]])) > reach);
-}
-
-/* Sets the problem of group g. Contacts whose bounds are equal, or that are out of reach, do not take part. */
-static struct box_qp *pose(tribo_context *ctx, size_t g, const struct call *c)
+/* Solves group g, again while static limits break. Contacts whose bounds are equal do not take part. Returns a status; *takes_part
+ * = 0 if no contact does. */
+static int solve_for(tribo_context *ctx, size_t g, const struct call *c, unsigned char *takes_part)
 {
     struct box_qp *p = tribo_problem(ctx, g);
-    const int all = !c->estimates || p->group->small;
-    size_t behind = p->group->size;
+    size_t behind = p->group->size, broken = 0;
+    int status = TRIBO_OK;
     p->count = 0;
     p->far = ctx->last.far;
-    for (size_t k = 0; !all && k < p->group->size; k++) {
-        p->step[k] = ctx->follow.contacts.bound[p->member[k]];
-    }
     for (size_t k = 0; k < p->group->size; k++) {
         const size_t i = p->member[k];
         const double lo = tribo_lower(&c->b, i), hi = c->b.upper[i];
-        if (lo < hi && (all || within_reach(p, k, c, p->step))) {
+        if (lo < hi) {
             p->near[p->count++] = k;
             p->lo[k] = ctx->last.far ? tribo_cut(p, k, lo) : lo;
             p->hi[k] = ctx->last.far ? tribo_cut(p, k, hi) : hi;
             p->q[k] = step_pull_of(c->pull, c->v[i]);
         } else {
             p->near[--behind] = k;
-            ctx->last.f[i] = lo < hi ? ctx->last.f[i] : hi;
+            ctx->last.f[i] = hi;
             p->x[k] = tribo_carried(ctx, p, k);
         }
     }
-    return p;
-}
-
-/* Static limits: returns how many contacts of a group break away, and sets their bounds. */
-static size_t step_let_go(tribo_context *ctx, struct box_qp *p, double dt)
-{
-    for (size_t e = 0; e < p->count; e++) {
-        const size_t k = p->near[e], i = p->member[k];
-        ctx->last.feq[i] = cut(p->x[k] - quotient(p->gradient[k], ctx->op->diagonal[i]));
-    }
-    const size_t broken = tribo_break_away(ctx, p, dt);
-    for (size_t e = 0; broken && e < p->count; e++) {
-        const size_t k = p->near[e];
-        p->hi[k] = ctx->follow.now[p->member[k]];
-        p->lo[k] = -p->hi[k];
-    }
-    return broken;
-}
-
-/* Solves group g. Returns a status; *takes_part = 0 if no contact does. */
-static int solve_for(tribo_context *ctx, size_t g, const struct call *c, unsigned char *takes_part)
-{
-    struct box_qp *p = pose(ctx, g, c);
-    int status = TRIBO_OK;
     *takes_part = p->count > 0;
     if (!*takes_part) {
         return status;
     }
     do {
         status = tribo_solve_group(ctx, p);
-    } while (!status && c->breaks && step_let_go(ctx, p, c->dt));
+        for (size_t e = 0; !status && c->breaks && e < p->count; e++) {
+            const size_t k = p->near[e], i = p->member[k];
+            ctx->last.feq[i] = cut(p->x[k] - quotient(p->gradient[k], ctx->op->diagonal[i]));
+        }
+        broken = !status && c->breaks ? tribo_break_away(ctx, p, c->dt) : 0;
+        for (size_t e = 0; broken && e < p->count; e++) {
+            const size_t k = p->near[e];
+            p->hi[k] = ctx->follow.now[p->member[k]];
+            p->lo[k] = -p->hi[k];
+        }
+    } while (broken);
     for (size_t e = 0; !status && e < p->count; e++) {
         const size_t k = p->near[e], i = p->member[k];
         ctx->last.f[i] = clamp(p->x[k], tribo_lower(&c->b, i), c->b.upper[i]);
@@ -148,13 +119,11 @@ static int solve_for(tribo_context *ctx, size_t g, const struct call *c, unsigne
 static int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bounds b, const size_t *group_of)
 {
     const struct delassus *op = ctx->op;
-    const int breaks = !b.lower && ctx->set.breaking;
-    const int estimates = !b.lower && !breaks && ctx->follow.largest < ESTIMATED && op->largest_sum < ESTIMATED;
     const double times = op->groups ? quotient(1.0, dt) : 0.0;
-    const struct call c = {b, dt, {times, TRIBO_FAR / greater(times, 1.0)}, v, group_of, breaks, estimates};
+    const struct call c = {b, dt, {times, TRIBO_FAR / greater(times, 1.0)}, v, group_of, !b.lower && ctx->set.breaking};
     struct memory *m = &ctx->memory;
     tribo_step_each(ctx, dt, v, b);
-    if (breaks) {
+    if (c.breaks) {
         tribo_break_alone(ctx, dt, v);
     }
     if (op->groups) {
@@ -178,42 +147,38 @@ static int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bo
     return status;
 }
 
-/* Ends a call with forces f [n] of a number of islands, unless it has failed. */
-static int hand_out(tribo_context *ctx, size_t islands, int status, double *f)
+/* Ends a problem of a number of islands; a status. */
+static int end_problem(tribo_context *ctx, size_t islands, int status)
 {
     if (!status) {
         ctx->count.skipped += islands - ctx->memory.nsolved - ctx->plane.solved;
         tribo_remember_forces(ctx);
-        tribo_copy(f, ctx->last.f, ctx->n);
     }
     return status;
 }
 
-int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known, double *f)
+int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known)
 {
     tribo_begin_call(ctx);
+    ctx->last.holds = 1.0;
     const int status = solve_boxes(ctx, dt, v, b, ctx->group_of);
-    return hand_out(ctx, tribo_islands(ctx), status ? status : tribo_clusters_step(ctx, dt, v, known), f);
+    return end_problem(ctx, tribo_islands(ctx), status ? status : tribo_clusters_step(ctx, dt, v, known));
 }
 
 int tribo_step_at_end(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f)
 {
     const struct bounds b = {NULL, ctx->follow.contacts.limit};
-    double *first = ctx->set.breaking && v ? ctx->last.v : f;
     if (ctx->set.breaking) {
         tribo_hold_for_step(ctx, dt, v, NULL);
     }
-    int status = tribo_solve_step(ctx, dt, vfree, b, NULL, first);
-    if (!status && first != f && tribo_any_turns(ctx, dt, v, first)) {
-        /* A contact that comes in sliding does so until it comes to a stop, and holds there if it can. */
-        tribo_hold_for_step(ctx, dt, v, first);
-        status = tribo_solve_step(ctx, dt, vfree, b, NULL, f);
-    } else if (!status && first != f) {
-        tribo_copy(f, first, ctx->n);
+    int status = tribo_solve_step(ctx, dt, vfree, b, NULL);
+    /* A contact that comes in sliding does so until it comes to a stop, and holds there if it can. */
+    if (!status && ctx->set.breaking && v && tribo_hold_for_step(ctx, dt, v, ctx->last.f)) {
+        status = tribo_solve_step(ctx, dt, vfree, b, NULL);
     }
     if (!status) {
+        tribo_copy(f, ctx->last.f, ctx->n);
         ctx->last.slips = SLIPS_IN_FORCES;
-        ctx->last.holds = 1.0;
     }
     return status;
 }
@@ -246,5 +211,7 @@ int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, co
     }
     tribo_begin_call(ctx);
     ctx->last.far = most > TRIBO_ROOM * ctx->op->most;
-    return hand_out(ctx, ctx->op->islands, solve_boxes(ctx, 1.0, a, (struct bounds){lower, upper}, ctx->op->group_of), f);
+    status = end_problem(ctx, ctx->op->islands, solve_boxes(ctx, 1.0, a, (struct bounds){lower, upper}, ctx->op->group_of));
+    tribo_copy(f, ctx->last.f, status ? 0 : ctx->n);
+    return status;
 }

@@ -70,28 +70,27 @@ int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const 
     }
     const int plane = tribo_plane_count(ctx) > 0;
     struct step s = {dt, v, vfree, vfree, ctx->spare, ctx->last.v, ctx->last.feq, 0};
-    status = tribo_solve_step(ctx, dt, vfree, (struct bounds){NULL, ctx->set.limit}, NULL, s.lower);
+    status = tribo_solve_step(ctx, dt, vfree, (struct bounds){NULL, ctx->set.limit}, NULL);
     if (status) {
         return status;
     }
-    ctx->last.holds = 1.0;
     if (plane || any_slip_ends(ctx->n, v, ctx->last.f, ctx->set.limit)) {
         look_at_all(ctx, &s);
     }
-    if (!s.changes) {
-        tribo_copy(f, ctx->last.f, ctx->n);
-    } else {
-        status = tribo_solve_step(ctx, dt, s.free, (struct bounds){s.lower, s.upper}, s.reverses, f);
+    if (s.changes) {
+        status = tribo_solve_step(ctx, dt, s.free, (struct bounds){s.lower, s.upper}, s.reverses);
     }
-    if (!status) {
-        ctx->last.slips = SLIPS_IN_FORCES;
+    if (status) {
+        return status;
     }
-    if (!status && (s.changes || plane)) {
+    tribo_copy(f, ctx->last.f, ctx->n);
+    ctx->last.slips = SLIPS_IN_FORCES;
+    if (s.changes || plane) {
         /* Forces do not show the slip of contacts that reverse. */
         tribo_write_slips(ctx);
         for (size_t i = 0; i < ctx->n; i++) {
             ctx->last.slip[i] = s.reverses[i] ? s.reverses[i] : ctx->last.slip[i];
         }
     }
-    return status;
+    return TRIBO_OK;
 }
