@@ -17,7 +17,7 @@ void tribo_begin_call(tribo_context *ctx)
         ctx->memory.solved[ctx->memory.solved_list[k]] = 0;
     }
     ctx->memory.nsolved = 0;
-    ctx->plane.solved = 0;
+    ctx->last.clusters = 0;
     ctx->last.far = ctx->follow.largest > TRIBO_ROOM * ctx->op->most;
     ctx->last.rank = 0;
     ctx->last.residual = 0.0;
@@ -221,7 +221,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     if (status && status != TRIBO_ERR_INCONSISTENT) {
         return status;
     }
-    ctx->count.skipped += tribo_islands(ctx) - ctx->memory.nsolved - ctx->plane.solved;
+    ctx->count.skipped += tribo_islands(ctx) - ctx->memory.nsolved - ctx->last.clusters;
     tribo_remember_forces(ctx);
     ctx->last.slips = SLIPS_IN_FORCES;
     ctx->last.holds = ctx->set.law->holds;

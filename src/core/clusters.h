@@ -42,24 +42,18 @@ static inline const size_t *tribo_plane_first(const tribo_context *ctx)
 
 /* ---- planar.c */
 
-/* Planar contacts that are to become those of a context. */
-struct clusters {
-    struct planar *planar;
-    struct plane plane;
-};
-
-/* Makes c of these planar contacts for an operator and the memory that goes with it; a status. Then c takes the place of what ctx
- * has. */
+/* Makes *c of these planar contacts for an operator and the memory that goes with it; a status. Then *c, which may be NULL, takes
+ * the place of what ctx has. */
 int tribo_clusters_prepare(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m,
-                           struct clusters *c);
-void tribo_clusters_install(tribo_context *ctx, const struct clusters *c);
+                           struct planar **c);
+void tribo_clusters_install(tribo_context *ctx, struct planar *c);
+void tribo_clusters_free(struct planar *c);
 
 /* The planar contacts of from, if ctx has others; a status. */
 int tribo_clusters_copy(tribo_context *ctx, const tribo_context *from);
 
-/* Those of from for its clone; 1, or 0 if out of memory. */
+/* Those of from, and their last solutions, for its clone with the same operator and memory; a status. */
 int tribo_clusters_clone(tribo_context *clone, const tribo_context *from);
-void tribo_clusters_free(tribo_context *ctx);
 
 /* Fails if coupling is TRIBO_PARTITION, and count > 0; a status. */
 int tribo_plane_check_coupling(tribo_context *ctx, int coupling, size_t count, const size_t *first);

@@ -82,6 +82,7 @@ struct last {
     int far;                 /* limits or bounds are so large that solutions may exceed op->most */
     double residual;
     size_t rank;
+    size_t clusters; /* solved */
 };
 
 /* Sums since tribo_create. */
@@ -94,10 +95,9 @@ struct tribo_context {
     int fixed; /* the operator cannot be changed */
     struct settings set;
     struct following follow;
-    struct delassus *op;   /* shared by clones */
-    struct memory memory;  /* of groups, from call to call */
-    struct planar *planar; /* NULL: all contacts are scalar */
-    struct plane plane;
+    struct delassus *op;    /* shared by clones */
+    struct memory memory;   /* of groups, from call to call */
+    struct planar *planar;  /* NULL: all contacts are scalar */
     const size_t *group_of; /* [n] the group whose box problem has the contact, or TRIBO_ALONE */
     unsigned char *moving;  /* [n] reversal memory */
     struct last last;

@@ -151,7 +151,7 @@ static int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bo
 static int end_problem(tribo_context *ctx, size_t islands, int status)
 {
     if (!status) {
-        ctx->count.skipped += islands - ctx->memory.nsolved - ctx->plane.solved;
+        ctx->count.skipped += islands - ctx->memory.nsolved - ctx->last.clusters;
         tribo_remember_forces(ctx);
     }
     return status;

@@ -64,11 +64,11 @@ struct contacts tribo_planar_view(const tribo_context *ctx, size_t i, size_t dir
  * within it. */
 static inline double tribo_planar_reach(const tribo_context *ctx, size_t i)
 {
-    return lesser(ctx->follow.contacts.bound[i], ctx->plane.radius[i]);
+    return lesser(ctx->follow.contacts.bound[i], ctx->planar->radius[i]);
 }
 static inline int tribo_planar_cut(const tribo_context *ctx, size_t i)
 {
-    return ctx->plane.radius[i] < ctx->follow.contacts.bound[i];
+    return ctx->planar->radius[i] < ctx->follow.contacts.bound[i];
 }
 
 /* Sets which directions of the problem share a set, and their shift in parts of the reach. */

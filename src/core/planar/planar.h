@@ -27,32 +27,26 @@ struct cluster {
     int redundant;  /* R is singular */
 };
 
-/* Shared by clones, and constant. Without an operator there are no clusters. */
+/* Planar contacts of a context; what it keeps of them from call to call; workspace. Without an operator there are no clusters. */
 struct planar {
-    size_t references;
     size_t count, *first; /* [count] first directions */
     unsigned char *role;  /* [n] */
     double (*own)[3];     /* [count] R of the contact alone: 11, 12, 22 */
     size_t clusters, islands, largest;
-    struct cluster *cluster; /* [clusters]; the first has the memory of R of all */
+    struct cluster *cluster; /* [clusters]; the first has the memory of R and of the members of all */
     size_t *group_of;        /* [n] that of the operator; TRIBO_ALONE for members of clusters */
-};
-
-/* Kept by a context from call to call, and workspace. */
-struct plane {
     struct disc_qp problem;
-    size_t *near;    /* [largest] places in the cluster of the problem's directions; owns all memory but the problem's */
-    size_t *contact; /* [largest] the contacts there */
-    unsigned char *directions; /* [largest] of the contact that begins with a direction of the problem: 1, 2; 0: none begins */
+    size_t *near;              /* [n + 1] places in the cluster of the problem's directions */
+    size_t *contact;           /* [n] the contacts there */
+    unsigned char *directions; /* [n] of the contact that begins with a direction of the problem: 1, 2; 0: none begins */
     size_t cuts;               /* directions of the problem with a reach below their limit */
     double *y;                 /* [n] solutions, in parts of the reach */
     double *radius;            /* [n] reach = min(limit, radius) */
     double *a;                 /* [n] of the last tribo_balance_tangent, or step */
-    double *shift;             /* [largest] c of the problem's lenses, in parts of limits */
-    double *pull;              /* [largest] R f + a without the forces of the problem */
+    double *shift;             /* [n] c of the problem's lenses, in parts of limits */
+    double *pull;              /* [n] R f + a without the forces of the problem */
     double *v, *df, *other;    /* [n] workspace */
     double *dlimit;            /* [n] changes of limits that depend on v */
-    size_t solved;             /* clusters, in the last call */
 };
 
 /* The most directions of a cluster: its matrix is kept. */

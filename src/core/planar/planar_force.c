@@ -21,12 +21,12 @@ static void take_contact(tribo_context *ctx, size_t k, size_t i, size_t directio
     const double *bound = ctx->follow.contacts.bound + i;
     const int both = directions == 2 && bound[0] > 0.0 && bound[1] > 0.0;
     for (size_t d = 0; d < directions; d++) {
-        struct disc_qp *p = &ctx->plane.problem;
+        struct disc_qp *p = &ctx->planar->problem;
         if (bound[d] > 0.0) {
-            ctx->plane.shift[p->size] = shift[d];
-            ctx->plane.directions[p->size] = (unsigned char)(both ? 2 - 2 * d : 1);
-            ctx->plane.contact[p->size] = i + d;
-            ctx->plane.near[p->size++] = k + d;
+            ctx->planar->shift[p->size] = shift[d];
+            ctx->planar->directions[p->size] = (unsigned char)(both ? 2 - 2 * d : 1);
+            ctx->planar->contact[p->size] = i + d;
+            ctx->planar->near[p->size++] = k + d;
         } else {
             ctx->last.f[i + d] = 0.0;
         }
@@ -38,7 +38,7 @@ static int planar_collect(tribo_context *ctx, const struct cluster *g, const dou
 {
     const struct law *law = ctx->set.law;
     const struct contacts *c = &ctx->follow.contacts;
-    ctx->plane.problem.size = 0;
+    ctx->planar->problem.size = 0;
     for (size_t k = 0, directions; k < g->size; k += directions) {
         const size_t i = g->member[k];
         directions = tribo_directions(ctx, i);
@@ -50,23 +50,23 @@ static int planar_collect(tribo_context *ctx, const struct cluster *g, const dou
             tribo_planar_slide_force(law, &s, c->limit + i, ctx->last.f + i);
         }
     }
-    return ctx->plane.problem.size > 0;
+    return ctx->planar->problem.size > 0;
 }
 
 struct unit tribo_planar_units(const tribo_context *ctx)
 {
     struct unit u = {0.0, 0.0};
-    for (size_t e = 0; e < ctx->plane.problem.size; e++) {
-        u.force = greater(u.force, tribo_planar_reach(ctx, ctx->plane.contact[e]));
-        u.r = greater(u.r, ctx->op->diagonal[ctx->plane.contact[e]]);
+    for (size_t e = 0; e < ctx->planar->problem.size; e++) {
+        u.force = greater(u.force, tribo_planar_reach(ctx, ctx->planar->contact[e]));
+        u.r = greater(u.r, ctx->op->diagonal[ctx->planar->contact[e]]);
     }
     return u;
 }
 
 void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pull)
 {
-    const struct disc_qp *p = &ctx->plane.problem;
-    const unsigned char *directions = ctx->plane.directions;
+    const struct disc_qp *p = &ctx->planar->problem;
+    const unsigned char *directions = ctx->planar->directions;
     for (size_t e = 0; e < p->size; e += directions[e]) {
         for (size_t k = e; k < e + directions[e]; k++) {
             for (size_t j = e; j < e + directions[e]; j++) {
@@ -76,13 +76,13 @@ void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pu
     }
 }
 
-/* plane.pull = R f + a of the problem's directions, with the forces of all others. */
+/* pull = R f + a of the problem's directions, with the forces of all others. */
 static void find_pulls(tribo_context *ctx, const struct cluster *g, const double *a)
 {
-    const size_t n = ctx->plane.problem.size, *near = ctx->plane.near, *member = g->member;
+    const size_t n = ctx->planar->problem.size, *near = ctx->planar->near, *member = g->member;
     for (size_t e = 0; e < n; e++) {
         const double *row = g->r + near[e] * g->size;
-        double sum = cut(a[ctx->plane.contact[e]]);
+        double sum = cut(a[ctx->planar->contact[e]]);
         for (size_t j = 0, other = 0; j < g->size; j++) {
             const double bound = ctx->follow.contacts.bound[member[j]];
             if (other < n && near[other] == j) {
@@ -91,20 +91,20 @@ static void find_pulls(tribo_context *ctx, const struct cluster *g, const double
                 sum += row[j] * clamp(ctx->last.f[member[j]], -bound, bound);
             }
         }
-        ctx->plane.pull[e] = sum;
+        ctx->planar->pull[e] = sum;
     }
 }
 
-/* Sets the problem of forces in parts of their reach, from plane.pull. */
+/* Sets the problem of forces in parts of their reach, from pull. */
 static void pose_cluster(tribo_context *ctx, const struct cluster *g)
 {
-    struct disc_qp *p = &ctx->plane.problem;
+    struct disc_qp *p = &ctx->planar->problem;
     const struct unit u = tribo_planar_units(ctx);
-    const size_t n = p->size, *contact = ctx->plane.contact, *near = ctx->plane.near;
+    const size_t n = p->size, *contact = ctx->planar->contact, *near = ctx->planar->near;
     int turned = 0;
     for (size_t e = 0; e < n; e++) {
         p->weight[e] = tribo_planar_reach(ctx, contact[e]) / u.force;
-        p->y[e] = ctx->plane.y[contact[e]];
+        p->y[e] = ctx->planar->y[contact[e]];
     }
     for (size_t e = 0; e < n; e++) {
         const double *row = g->r + near[e] * g->size;
@@ -114,10 +114,10 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
         }
     }
     for (size_t e = 0; e < n; e += p->wide[e]) {
-        const double length = tribo_length(p->wide[e], ctx->plane.pull + e);
+        const double length = tribo_length(p->wide[e], ctx->planar->pull + e);
         const double size = lesser(quotient(quotient(length, u.r), u.force), HARDEST);
         for (size_t k = e; k < e + p->wide[e]; k++) {
-            p->pull[k] = length > 0.0 ? p->weight[k] * (ctx->plane.pull[k] / length) * size : 0.0;
+            p->pull[k] = length > 0.0 ? p->weight[k] * (ctx->planar->pull[k] / length) * size : 0.0;
             turned |= p->shift[k] != 0.0;
         }
     }
@@ -128,11 +128,11 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
 
 const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
 {
-    struct disc_qp *p = &ctx->plane.problem;
+    struct disc_qp *p = &ctx->planar->problem;
     const struct cluster *g = &ctx->planar->cluster[q];
     *size = g->size;
     if (planar_collect(ctx, g, ctx->last.v)) {
-        find_pulls(ctx, g, ctx->plane.a);
+        find_pulls(ctx, g, ctx->planar->a);
         tribo_planar_arrange(ctx);
         pose_cluster(ctx, g);
         tribo_disc_gains(p);
@@ -152,10 +152,10 @@ const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
 /* Solves the problem as it is set; a status. */
 static int solve_once(tribo_context *ctx, const struct cluster *g)
 {
-    struct disc_qp *p = &ctx->plane.problem;
-    const size_t *contact = ctx->plane.contact;
+    struct disc_qp *p = &ctx->planar->problem;
+    const size_t *contact = ctx->planar->contact;
     p->factor.qp.work.factorizations = 0;
-    p->near_enough = ctx->plane.cuts ? NEAREST : TRIBO_NEAR_ENOUGH;
+    p->near_enough = ctx->planar->cuts ? NEAREST : TRIBO_NEAR_ENOUGH;
     int done = tribo_disc_solve(p);
     if (done && g->redundant && ctx->set.sharing == TRIBO_SHARE_LEAST_NORM) {
         done = tribo_disc_share(p);
@@ -171,7 +171,7 @@ static int solve_once(tribo_context *ctx, const struct cluster *g)
     ctx->last.residual = greater(ctx->last.residual, p->residual);
     for (size_t e = 0; e < p->size; e++) {
         const size_t i = contact[e];
-        ctx->plane.y[i] = p->y[e];
+        ctx->planar->y[i] = p->y[e];
         ctx->last.f[i] = p->y[e] * tribo_planar_reach(ctx, i);
     }
     return TRIBO_OK;
@@ -220,15 +220,15 @@ static int is_pulled_beyond(const struct disc_qp *p, size_t e)
  * Returns their number. a [n]: accelerations without friction. */
 static size_t planar_break(tribo_context *ctx, const struct cluster *g, double dt, const double *a)
 {
-    const struct disc_qp *p = &ctx->plane.problem;
+    const struct disc_qp *p = &ctx->planar->problem;
     const size_t *member = g->member;
-    double *now = ctx->follow.now, *end = ctx->plane.v; /* velocities at the end */
+    double *now = ctx->follow.now, *end = ctx->planar->v; /* velocities at the end */
     size_t broken = 0;
     for (size_t k = 0; k < g->size; k++) {
         end[member[k]] = product(tribo_planar_others(ctx, g, k, k, 0, a[member[k]]), dt);
     }
     for (size_t e = 0; e < p->size; e += p->wide[e]) {
-        const size_t k = ctx->plane.contact[e], first = k - (ctx->planar->role[k] == ROLE_SECOND);
+        const size_t k = ctx->planar->contact[e], first = k - (ctx->planar->role[k] == ROLE_SECOND);
         const size_t directions = tribo_directions(ctx, first);
         int holds = 1, falls = 0;
         for (size_t i = first; i < first + directions; i++) {
@@ -257,10 +257,10 @@ static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt,
             tribo_planar_arrange(ctx);
             pose_cluster(ctx, g);
             status = solve_once(ctx, g);
-        } while (!status && ctx->plane.cuts && tribo_planar_widen(ctx));
+        } while (!status && ctx->planar->cuts && tribo_planar_widen(ctx));
     } while (!status && ctx->set.breaking && planar_break(ctx, g, dt, a));
-    ctx->plane.solved++;
-    ctx->last.rank += status ? 0 : ctx->plane.problem.factor.sets.rank;
+    ctx->last.clusters++;
+    ctx->last.rank += status ? 0 : ctx->planar->problem.factor.sets.rank;
     return status;
 }
 
@@ -298,15 +298,15 @@ void tribo_clusters_feq(tribo_context *ctx, const double *a)
 /* Forces by the law of scalar contacts in the problem, from their f_eq, all of which are found before any force changes. */
 static void scalar_laws(tribo_context *ctx, const struct cluster *g, const double *v, const double *a)
 {
-    const size_t *near = ctx->plane.near, n = ctx->plane.problem.size;
+    const size_t *near = ctx->planar->near, n = ctx->planar->problem.size;
     for (size_t e = 0; e < n; e++) {
-        const size_t i = ctx->plane.contact[e];
+        const size_t i = ctx->planar->contact[e];
         if (tribo_is_scalar(ctx, i)) {
             contact_feq(ctx, g, near[e], 1, a + i, ctx->last.feq + i);
         }
     }
     for (size_t e = 0; e < n; e++) {
-        const size_t i = ctx->plane.contact[e];
+        const size_t i = ctx->planar->contact[e];
         if (tribo_is_scalar(ctx, i)) {
             const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
             ctx->set.law->force(&c, 1, v + i, ctx->last.feq + i, ctx->last.f + i);
@@ -344,19 +344,19 @@ int tribo_clusters_step(tribo_context *ctx, double dt, const double *v, const si
     }
     for (size_t q = 0; !status && q < ctx->planar->clusters; q++) {
         const struct cluster *g = &ctx->planar->cluster[q];
-        ctx->plane.problem.size = 0;
+        ctx->planar->problem.size = 0;
         for (size_t k = 0, directions; k < g->size; k += directions) {
             const size_t i = g->member[k];
             directions = tribo_directions(ctx, i);
             for (size_t d = i; d < i + directions; d++) {
-                ctx->plane.a[d] = quotient(v[d], dt);
+                ctx->planar->a[d] = quotient(v[d], dt);
             }
             if (directions == 2 || !(known && known[i])) {
                 take_contact(ctx, k, i, directions, none);
             }
         }
-        if (ctx->plane.problem.size) {
-            status = solve_cluster(ctx, g, dt, ctx->plane.a);
+        if (ctx->planar->problem.size) {
+            status = solve_cluster(ctx, g, dt, ctx->planar->a);
         }
     }
     return status;
@@ -390,7 +390,7 @@ void tribo_plane_slips(const tribo_context *ctx, signed char *slip)
 size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const double **vfree, double *feels,
                            signed char *reverses)
 {
-    double *turned = ctx->plane.v;
+    double *turned = ctx->planar ? ctx->planar->v : NULL;
     const double *free = *vfree;
     size_t changes = 0;
     for (size_t q = 0; ctx->planar && q < ctx->planar->clusters; q++) {

@@ -7,7 +7,9 @@
 
 void tribo_clusters_linearize(tribo_context *ctx, const double *a)
 {
-    tribo_copy(ctx->plane.a, a, ctx->planar ? ctx->n : 0);
+    if (ctx->planar) {
+        memcpy(ctx->planar->a, a, ctx->n * sizeof *a);
+    }
 }
 
 /* along [directions] = v/|v|; at rest, where |v| has a kink, along/|along|, the direction in which a contact begins to slide,
@@ -28,8 +30,8 @@ static double heading(size_t directions, const double *v, double *along)
 /* Returns d with the limits of a cluster, which change with |v| if they fall with speed. */
 static struct change with_limits(tribo_context *ctx, const struct cluster *g, const struct change *d)
 {
-    const struct disc_qp *p = &ctx->plane.problem;
-    double *dlimit = ctx->plane.dlimit;
+    const struct disc_qp *p = &ctx->planar->problem;
+    double *dlimit = ctx->planar->dlimit;
     if (ctx->set.breaking != FALLS) {
         return *d;
     }
@@ -38,7 +40,7 @@ static struct change with_limits(tribo_context *ctx, const struct cluster *g, co
     }
     for (size_t e = 0; e < p->size; e += p->wide[e]) {
         for (size_t k = e; k < e + p->wide[e] && p->place[e] == LENS_ON_DISC; k++) {
-            const size_t i = ctx->plane.contact[k];
+            const size_t i = ctx->planar->contact[k];
             dlimit[i] = quotient(p->gradient[k], tribo_planar_reach(ctx, i));
         }
     }
@@ -122,17 +124,17 @@ static double turn_shift(const struct law *law, const struct slide *s, const str
 static void own_changes(const tribo_context *ctx, const struct cluster *g, const struct change *d, double *df, double *dshift)
 {
     const struct contacts *c = &ctx->follow.contacts;
-    const struct disc_qp *p = &ctx->plane.problem;
+    const struct disc_qp *p = &ctx->planar->problem;
     for (size_t k = 0, e = 0, directions; k < g->size; k += directions) {
         const size_t i = g->member[k];
         directions = tribo_directions(ctx, i);
         const struct slide s = tribo_planar_slide(c, i, directions, ctx->last.v + i);
         const struct turn t = planar_turn(ctx, i, &s, d);
         turn_force(ctx->set.law, &s, c->limit + i, &t, df + k);
-        for (; e < p->size && ctx->plane.near[e] < k + directions; e++) {
-            const size_t j = ctx->plane.near[e] - k;
+        for (; e < p->size && ctx->planar->near[e] < k + directions; e++) {
+            const size_t j = ctx->planar->near[e] - k;
             const int far = tribo_planar_cut(ctx, i + j);
-            const double part = far ? quotient(c->bound[i + j], ctx->plane.radius[i + j]) : 1.0;
+            const double part = far ? quotient(c->bound[i + j], ctx->planar->radius[i + j]) : 1.0;
             dshift[e] = turn_shift(ctx->set.law, &s, &t, j, part, p->shift[e]);
             df[k + j] = far ? 0.0 : product(p->y[e], t.limit[j]);
         }
@@ -143,12 +145,12 @@ static void own_changes(const tribo_context *ctx, const struct cluster *g, const
 static void find_rhs(const tribo_context *ctx, const struct cluster *g, const struct change *d, const double *df,
                      const double *dshift, const double *dy, double *rhs)
 {
-    const struct disc_qp *p = &ctx->plane.problem;
+    const struct disc_qp *p = &ctx->planar->problem;
     double *turn = p->slide;
     const struct unit u = tribo_planar_units(ctx);
-    const size_t *contact = ctx->plane.contact, n = p->size;
+    const size_t *contact = ctx->planar->contact, n = p->size;
     for (size_t e = 0; e < n; e++) {
-        const double *row = g->r + ctx->plane.near[e] * g->size;
+        const double *row = g->r + ctx->planar->near[e] * g->size;
         double sum = cut(tribo_entry(d->a, contact[e]));
         for (size_t j = 0; j < g->size; j++) {
             sum += product(row[j], df[j]);
@@ -167,10 +169,10 @@ static void find_rhs(const tribo_context *ctx, const struct cluster *g, const st
 /* Laws with a memory have another derivative where |f_eq| exceeds the limit: corrects df of scalar contacts, from f_eq. */
 static void apply_laws(tribo_context *ctx, const struct cluster *g, const struct change *d, double *df)
 {
-    double *before = ctx->plane.other;
+    double *before = ctx->planar->other;
     memcpy(before, df, g->size * sizeof *df);
-    for (size_t e = 0; e < ctx->plane.problem.size; e++) {
-        const size_t k = ctx->plane.near[e], i = g->member[k];
+    for (size_t e = 0; e < ctx->planar->problem.size; e++) {
+        const size_t k = ctx->planar->near[e], i = g->member[k];
         const double *row = g->r + k * g->size;
         const struct tangent *law = &ctx->last.tangent[i];
         double sum = divisible(tribo_entry(d->a, i), row[k]);
@@ -186,10 +188,10 @@ static void apply_laws(tribo_context *ctx, const struct cluster *g, const struct
 
 const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct change *d)
 {
-    struct disc_qp *p = &ctx->plane.problem;
+    struct disc_qp *p = &ctx->planar->problem;
     const struct cluster *g = &ctx->planar->cluster[q];
-    const size_t *near = ctx->plane.near;
-    double *dshift = p->from, *dy = p->best, *rhs = p->noise, *move = p->aim, *df = ctx->plane.df;
+    const size_t *near = ctx->planar->near;
+    double *dshift = p->from, *dy = p->best, *rhs = p->noise, *move = p->aim, *df = ctx->planar->df;
     const struct change by_v = with_limits(ctx, g, d);
     own_changes(ctx, g, &by_v, df, dshift);
     for (size_t e = 0; e < p->size; e += p->wide[e]) {
@@ -200,7 +202,7 @@ const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct c
         tribo_disc_follow(p, rhs, move);
     }
     for (size_t e = 0; e < p->size; e++) {
-        df[near[e]] += product(tribo_planar_reach(ctx, ctx->plane.contact[e]), dy[e] + move[e]);
+        df[near[e]] += product(tribo_planar_reach(ctx, ctx->planar->contact[e]), dy[e] + move[e]);
     }
     if (ctx->set.law->remembers) {
         apply_laws(ctx, g, d, df);
