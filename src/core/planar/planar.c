@@ -1,11 +1,118 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Life and settings of planar contacts. Clusters are made anew whenever operator or contacts change. */
+/* Planar contacts: one alone, its motion and limits; life and settings of all. Clusters are made anew whenever operator or contacts
+ * change. */
 #include <stdlib.h>
 
 #include "common/layout.h"
 #include "core/static.h"
 #include "numerics/union_find.h"
-#include "parts.h"
+#include "core/clusters.h"
+
+/* ---------------------------------------------------------------------------------------------------- one contact alone */
+
+/* Contacts nearer to the edge of their band have lenses whose inside is rounding. */
+#define EDGE (1.0 - 16.0 * DBL_EPSILON)
+
+struct slide tribo_planar_slide(const struct contacts *c, size_t i, size_t directions, const double *v)
+{
+    struct slide s = {.directions = directions, .open = 1};
+    double longest = -1.0;
+    for (size_t k = 0; k < directions; k++) {
+        const double way = product(c->bound[i + k], tribo_epsilon_of(c, i + k));
+        s.far = way > longest || (way == longest && c->bound[i + k] > c->bound[i]) ? k : s.far;
+        longest = greater(longest, way);
+        s.open &= !(c->bound[i + k] > 0.0);
+    }
+    const double bound = c->bound[i + s.far];
+    for (size_t k = 0; k < directions && !s.open; k++) {
+        s.part[k] = c->bound[i + k] == bound ? 1.0 : quotient(c->bound[i + k], bound);
+        s.x[k] = product(s.part[k], v[k]);
+    }
+    s.length = tribo_length(2, s.x);
+    for (size_t k = 0; k < directions && s.length > 0.0; k++) {
+        s.n[k] = s.x[k] / s.length;
+    }
+    s.epsilon = tribo_epsilon_of(c, i + s.far);
+    s.speed = quotient(s.length, s.epsilon);
+    return s;
+}
+
+int tribo_planar_near(const struct law *law, const struct slide *s)
+{
+    const int near = !law->sticks_in_band ? s->length == 0.0 : law->relaxes ? s->speed < EDGE : s->speed <= 1.0;
+    return !s->open && law->uses_feq && near;
+}
+
+/* Laws that do not use f_eq have the force of a scalar contact with limit and epsilon 1, along the direction of motion. */
+double tribo_planar_carried(const struct law *law, double speed, double *slope)
+{
+    const double one = 1.0, two = 2.0, none = 0.0;
+    const unsigned char moving = 0;
+    const struct contacts c = {&one, &one, &one, &two, &moving, 0, 0, 0};
+    double f = -1.0;
+    struct tangent d = {0.0, 0.0, 0.0};
+    if (!law->uses_feq) {
+        law->tangent(&c, 1, &speed, &none, &(struct tangents){&f, &d.dv, &d.dfeq, &d.dlimit});
+    }
+    *slope = d.dv;
+    return f;
+}
+
+void tribo_planar_slide_force(const struct law *law, const struct slide *s, const double *limit, double *f)
+{
+    double ignored;
+    const double carried = tribo_planar_carried(law, s->speed, &ignored);
+    for (size_t k = 0; k < s->directions; k++) {
+        f[k] = carried * s->n[k] * limit[k];
+    }
+}
+
+void tribo_planar_limits(const tribo_context *ctx, size_t i, size_t directions, int holds, const double *v, double *limit)
+{
+    const double speed = tribo_length((int)directions, v);
+    for (size_t k = 0; k < directions; k++) {
+        limit[k] = holds && ctx->set.breaking == DROPS ? ctx->follow.hold[i + k] : tribo_limit_at(ctx, i + k, speed);
+    }
+}
+
+struct contacts tribo_planar_view(const tribo_context *ctx, size_t i, size_t directions, double *limit)
+{
+    struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
+    if (ctx->set.breaking) {
+        tribo_copy(limit, ctx->follow.hold + i, directions);
+        c.limit = c.bound = limit;
+    }
+    return c;
+}
+
+struct block tribo_block_of(const double *own)
+{
+    const double mean = 0.5 * own[0] + 0.5 * own[2], half = 0.5 * own[0] - 0.5 * own[2];
+    const double turned[2] = {half, own[1]}, spread = tribo_length(2, turned);
+    const double raw[2] = {half >= 0.0 ? spread + half : own[1], half >= 0.0 ? own[1] : spread - half},
+                 length = tribo_length(2, raw);
+    return (struct block){
+        mean + spread, greater(mean - spread, 0.0), {length > 0.0 ? raw[0] / length : 1.0, length > 0.0 ? raw[1] / length : 0.0}};
+}
+
+double tribo_plane_rate(const tribo_context *ctx)
+{
+    const double none[2] = {0.0, 0.0};
+    double rate = 0.0;
+    for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
+        double limit[2];
+        const struct contacts c = tribo_planar_view(ctx, ctx->planar->first[k], 2, limit);
+        const double *own = ctx->planar->own[k];
+        const struct slide s = tribo_planar_slide(&c, 0, 2, none);
+        const double weighed[3] = {product(s.part[0], product(s.part[0], own[0])), product(s.part[0], product(s.part[1], own[1])),
+                                   product(s.part[1], product(s.part[1], own[2]))};
+        const double far = s.part[0] == 1.0 ? c.bound[0] : c.bound[1];
+        if (!s.open) {
+            rate = greater(rate, product(2.0 * quotient(far, s.epsilon), tribo_block_of(weighed).great));
+        }
+    }
+    return rate;
+}
 
 /* -------------------------------------------------------------------------------------------------------------- life */
 

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Data of planar contacts: which directions they are, and their clusters.
  *
- *   planar.c          life, settings: clusters, from the operator's groups and the contacts that join them
- *   planar_parts.c    sliding, nearness to stick, blocks of R, static limits
- *   planar_reach.c    reaches: stand-ins for limits that are far beyond forces
+ *   planar.c          one contact alone; life, settings: clusters, from the operator's groups and the contacts that join them
  *   planar_force.c    forces
  *   planar_tangent.c  derivatives; forces and derivatives where f_eq is given
  *
- * clusters.h declares what the rest of core calls, parts.h what these files share. */
+ * clusters.h declares what the rest of core calls. */
 #ifndef TRIBO_PLANAR_H
 #define TRIBO_PLANAR_H
 
@@ -51,5 +49,65 @@ struct planar {
 
 /* The most directions of a cluster: its matrix is kept. */
 #define TRIBO_CLUSTER_MOST 2048
+
+/* ---- planar.c */
+
+/* A contact of a cluster in motion, in units in which the direction with the longer way to the edge of its band has limit 1. */
+struct slide {
+    size_t directions;
+    int open;
+    size_t far;     /* that direction, 0 or 1 */
+    double part[2]; /* limits; of a scalar contact, the second is 0 */
+    double x[2];    /* part v */
+    double n[2];    /* x/|x|, or 0 */
+    double length;  /* |x| */
+    double epsilon; /* |x| from which the contact slides */
+    double speed;   /* length/epsilon */
+};
+struct slide tribo_planar_slide(const struct contacts *c, size_t i, size_t directions, const double *v);
+
+/* 1 if the force of a contact depends on f_eq. */
+int tribo_planar_near(const struct law *law, const struct slide *s);
+
+/* Returns the part of its limit that a contact carries which is not near stick, along n; slope: its derivative by speed. */
+double tribo_planar_carried(const struct law *law, double speed, double *slope);
+
+/* f [directions] of a contact that is not near stick. */
+void tribo_planar_slide_force(const struct law *law, const struct slide *s, const double *limit, double *f);
+
+/* R_ii = 0 is the limit of R_ii from above: in parts of the largest R_ii it is this. */
+#define NEXT_TO_IMMOVABLE 1e-200
+
+/* Harder pulls, in units of what friction can hold, count by their direction only. */
+#define HARDEST 1e100
+
+/* A symmetric block 11, 12, 22 by its eigenvalues, at least 0, and the direction of the greater one. */
+struct block {
+    double great, small;
+    double e[2];
+};
+struct block tribo_block_of(const double *own);
+
+/* limit [directions] of the contact at i: static ones if it holds, or those by which it slides at v. */
+void tribo_planar_limits(const tribo_context *ctx, size_t i, size_t directions, int holds, const double *v, double *limit);
+
+/* Returns the contact at i as laws see it with static limits, which are copied to limit [directions]. */
+struct contacts tribo_planar_view(const tribo_context *ctx, size_t i, size_t directions, double *limit);
+
+/* ---- planar_force.c */
+
+/* The stand-in for the limit of direction i in the problem: at most the limit. cut: 1 where it is less; then the force is within
+ * it. */
+double tribo_planar_reach(const tribo_context *ctx, size_t i);
+int tribo_planar_cut(const tribo_context *ctx, size_t i);
+
+/* Units of force and R in the problem. */
+struct unit {
+    double force, r;
+};
+struct unit tribo_planar_units(const tribo_context *ctx);
+
+/* pull [size] += (own blocks of s) shift. */
+void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pull);
 
 #endif

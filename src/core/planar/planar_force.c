@@ -8,10 +8,30 @@
  * it slides.
  *
  * In S, limits and R are parts of the largest ones near stick in the cluster. A reach stands in for a limit that is far beyond
- * the force, see planar_reach.c; c is then kappa/reach. */
+ * the force, see below; c is then kappa/reach. */
 #include "core/check.h"
 #include "core/static.h"
-#include "parts.h"
+#include "core/clusters.h"
+
+/* -------------------------------------------------------------------------------------------------------- parts of R */
+
+/* The block of the contact at place k of a matrix r [size][size]. */
+static struct block block_at(const double *r, size_t size, size_t k, size_t directions)
+{
+    const double *row = r + k * (size + 1), own[3] = {row[0], directions == 2 ? row[1] : 0.0, row[(directions - 1) * (size + 1)]};
+    return tribo_block_of(own);
+}
+
+/* x = -block^-1 x, far away where friction moves nothing, or the block is singular. */
+static void push_back(const struct block *b, double *x)
+{
+    const double *e = b->e, along = e[0] * x[0] + e[1] * x[1], across = e[0] * x[1] - e[1] * x[0];
+    const int lost = b->small <= 16.0 * DBL_EPSILON * b->great && fabs(across) <= 1e-12 * (fabs(x[0]) + fabs(x[1]));
+    const double first = quotient(-along, greater(b->great, TRIBO_IMMOVABLE));
+    const double second = lost ? 0.0 : quotient(-across, greater(b->small, TRIBO_IMMOVABLE));
+    x[0] = cut(e[0] * first - e[1] * second);
+    x[1] = cut(e[1] * first + e[0] * second);
+}
 
 /* ---------------------------------------------------------------------------------------------------------- problems */
 
@@ -33,8 +53,9 @@ static void take_contact(tribo_context *ctx, size_t k, size_t i, size_t directio
     }
 }
 
-/* Sets the directions of a cluster's problem, the contacts near stick at v. Returns 1 if there are any. */
-static int planar_collect(tribo_context *ctx, const struct cluster *g, const double *v)
+/* Sets the directions of a cluster's problem, the contacts near stick at v, and the forces of the others. begins: static limits are
+ * those of the contacts near stick, and the others have the limits by which they slide. Returns 1 if there are any near stick. */
+static int planar_collect(tribo_context *ctx, const struct cluster *g, const double *v, int begins)
 {
     const struct law *law = ctx->set.law;
     const struct contacts *c = &ctx->follow.contacts;
@@ -42,6 +63,12 @@ static int planar_collect(tribo_context *ctx, const struct cluster *g, const dou
     for (size_t k = 0, directions; k < g->size; k += directions) {
         const size_t i = g->member[k];
         directions = tribo_directions(ctx, i);
+        if (begins && ctx->set.breaking) {
+            double limit[2];
+            const struct contacts held = tribo_planar_view(ctx, i, directions, limit);
+            const struct slide s = tribo_planar_slide(&held, 0, directions, v + i);
+            tribo_planar_limits(ctx, i, directions, tribo_planar_near(law, &s), v + i, ctx->follow.now + i);
+        }
         const struct slide s = tribo_planar_slide(c, i, directions, v + i);
         const double turn = law->relaxes ? 2.0 * s.speed : 0.0, shift[2] = {turn * s.n[0], turn * s.n[1]};
         if (tribo_planar_near(law, &s)) {
@@ -76,124 +103,221 @@ void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pu
     }
 }
 
+/* Returns R f + a at place k of a cluster, without the forces at places skip [count], ascending. */
+static double pull_at(const tribo_context *ctx, const struct cluster *g, size_t k, const size_t *skip, size_t count, double a)
+{
+    const double *row = g->r + k * g->size;
+    double sum = cut(a);
+    for (size_t j = 0, other = 0; j < g->size; j++) {
+        const double bound = ctx->follow.contacts.bound[g->member[j]];
+        if (other < count && skip[other] == j) {
+            other++;
+        } else {
+            sum += row[j] * clamp(ctx->last.f[g->member[j]], -bound, bound);
+        }
+    }
+    return sum;
+}
+
 /* pull = R f + a of the problem's directions, with the forces of all others. */
 static void find_pulls(tribo_context *ctx, const struct cluster *g, const double *a)
 {
-    const size_t n = ctx->planar->problem.size, *near = ctx->planar->near, *member = g->member;
-    for (size_t e = 0; e < n; e++) {
-        const double *row = g->r + near[e] * g->size;
-        double sum = cut(a[ctx->planar->contact[e]]);
-        for (size_t j = 0, other = 0; j < g->size; j++) {
-            const double bound = ctx->follow.contacts.bound[member[j]];
-            if (other < n && near[other] == j) {
-                other++;
-            } else if (row[j] != 0.0) {
-                sum += row[j] * clamp(ctx->last.f[member[j]], -bound, bound);
-            }
-        }
-        ctx->planar->pull[e] = sum;
+    const struct planar *c = ctx->planar;
+    for (size_t e = 0; e < c->problem.size; e++) {
+        c->pull[e] = pull_at(ctx, g, c->near[e], c->near, c->problem.size, a[c->contact[e]]);
     }
 }
 
-/* Sets the problem of forces in parts of their reach, from pull. */
+/* ------------------------------------------------------------------------------------------------------------ reaches
+ * Reaches of planar contacts and of the scalar ones beside them. In parts of a limit that is far beyond the pull at a contact, a
+ * force has no digits. The force is then looked for within a smaller disc, a reach. If it lies inside, it is the solution for the
+ * limit, too, since the problem is convex; else the reach grows.
+ *
+ * A direction of a planar contact is loose if its force is such a small part of its limit that the other direction has its whole
+ * limit, to the last digit. Then both are intervals, each with a reach. Else both have one reach, if both limits exceed it, or
+ * none. */
+
+/* A reach is this factor times what the pull at a contact would make of its force. */
+#define AMPLE 1e3
+
+/* A reach is at least this part of the largest force that any contact could carry. */
+#define LITTLE 1e-50
+
+/* A direction whose reach is less than this part of its limit is loose. */
+#define BESIDE 1e-8
+
+/* The rim of the other direction adds at most this part to the stiffness of a loose one. */
+#define STRAIGHT 1e-12
+
+double tribo_planar_reach(const tribo_context *ctx, size_t i)
+{
+    return lesser(ctx->follow.contacts.bound[i], ctx->planar->radius[i]);
+}
+
+int tribo_planar_cut(const tribo_context *ctx, size_t i)
+{
+    return ctx->planar->radius[i] < ctx->follow.contacts.bound[i];
+}
+
+/* Sets the problem of forces in parts of their reach, from pull: which directions share a set, its shift, and all else. */
 static void pose_cluster(tribo_context *ctx, const struct cluster *g)
 {
-    struct disc_qp *p = &ctx->planar->problem;
+    struct planar *c = ctx->planar;
+    struct disc_qp *p = &c->problem;
     const struct unit u = tribo_planar_units(ctx);
-    const size_t n = p->size, *contact = ctx->planar->contact, *near = ctx->planar->near;
-    int turned = 0;
+    const size_t n = p->size, *contact = c->contact;
+    const double *bound = ctx->follow.contacts.bound, *radius = c->radius;
+    c->cuts = 0;
     for (size_t e = 0; e < n; e++) {
-        p->weight[e] = tribo_planar_reach(ctx, contact[e]) / u.force;
-        p->y[e] = ctx->planar->y[contact[e]];
+        const size_t i = contact[e];
+        p->wide[e] = c->directions[e];
+        p->shift[e] = c->shift[e];
+        p->weight[e] = tribo_planar_reach(ctx, i) / u.force;
+        p->y[e] = c->y[i];
+        if (tribo_planar_cut(ctx, i)) {
+            p->shift[e] = product(quotient(bound[i], radius[i]), p->shift[e]);
+            c->cuts++;
+        }
+    }
+    for (size_t e = 0; c->cuts && e < n; e += c->directions[e]) {
+        const size_t i = contact[e];
+        if (c->directions[e] == 2 && (radius[i] < BESIDE * bound[i] || radius[i + 1] < BESIDE * bound[i + 1])) {
+            p->wide[e] = p->wide[e + 1] = 1;
+        }
     }
     for (size_t e = 0; e < n; e++) {
-        const double *row = g->r + near[e] * g->size;
+        const double *row = g->r + c->near[e] * g->size;
         for (size_t j = 0; j < n; j++) {
-            const double r = row[near[j]] / u.r;
+            const double r = row[c->near[j]] / u.r;
             p->s[e * n + j] = p->weight[e] * p->weight[j] * (j == e ? greater(r, NEXT_TO_IMMOVABLE) : r);
         }
     }
     for (size_t e = 0; e < n; e += p->wide[e]) {
-        const double length = tribo_length(p->wide[e], ctx->planar->pull + e);
+        const double length = tribo_length(p->wide[e], c->pull + e);
         const double size = lesser(quotient(quotient(length, u.r), u.force), HARDEST);
         for (size_t k = e; k < e + p->wide[e]; k++) {
-            p->pull[k] = length > 0.0 ? p->weight[k] * (ctx->planar->pull[k] / length) * size : 0.0;
-            turned |= p->shift[k] != 0.0;
+            p->pull[k] = length > 0.0 ? p->weight[k] * (c->pull[k] / length) * size : 0.0;
         }
     }
-    if (turned) {
-        tribo_planar_turn(ctx, p->shift, p->pull);
+    tribo_planar_turn(ctx, p->shift, p->pull);
+}
+
+/* Gives the contact at e of the problem the reaches wanted [directions], as far as its limits exceed them. */
+static void set_radius(tribo_context *ctx, size_t e, size_t directions, const double *wanted)
+{
+    const size_t i = ctx->planar->contact[e];
+    const double *bound = ctx->follow.contacts.bound + i;
+    const int pair = directions == 2, apart = pair && (wanted[0] < BESIDE * bound[0] || wanted[1] < BESIDE * bound[1]);
+    for (size_t k = 0; k < directions; k++) {
+        const double before = tribo_planar_reach(ctx, i + k);
+        const double radius = pair && !apart ? greater(wanted[0], wanted[1]) : wanted[k];
+        const double least = pair && !apart ? lesser(bound[0], bound[1]) : bound[k];
+        ctx->planar->radius[i + k] = radius < least ? radius : HUGE_VAL;
+        const double reach = tribo_planar_reach(ctx, i + k);
+        ctx->planar->y[i + k] = reach == before ? ctx->planar->y[i + k] : product(quotient(before, reach), ctx->planar->y[i + k]);
     }
 }
 
-const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
+/* ask [size]: the force of each direction alone becomes the largest that balances the asks of the others, up to its limit. */
+static void find_asks(const tribo_context *ctx, const struct cluster *g, double *ask)
 {
-    struct disc_qp *p = &ctx->planar->problem;
-    const struct cluster *g = &ctx->planar->cluster[q];
-    *size = g->size;
-    if (planar_collect(ctx, g, ctx->last.v)) {
-        find_pulls(ctx, g, ctx->planar->a);
-        tribo_planar_arrange(ctx);
-        pose_cluster(ctx, g);
-        tribo_disc_gains(p);
-        tribo_disc_gradients(p);
-        tribo_disc_places(p);
-        tribo_disc_linearize(p);
+    const size_t n = ctx->planar->problem.size, *near = ctx->planar->near;
+    const double *bound = ctx->follow.contacts.bound;
+    int grown = 1;
+    for (size_t round = 0; grown && round < n; round++) {
+        grown = 0;
+        for (size_t k = 0; k < n; k++) {
+            const double *row = g->r + near[k] * g->size, before = ask[k];
+            for (size_t j = 0; j < n; j++) {
+                ask[k] = j == k ? ask[k] : greater(ask[k], quotient(product(fabs(row[near[j]]), ask[j]), row[near[k]]));
+            }
+            ask[k] = lesser(ask[k], bound[ctx->planar->contact[k]]);
+            grown |= ask[k] > before;
+        }
     }
-    return g->member;
 }
 
-/* Where a force is far within its reach, distances of this part of the reach are 0. */
-#define NEAREST 1e-20
-
-/* No forces are found if one misses its balance by more than this part of its reach. */
-#define TOO_FAR 1e-6
-
-/* Solves the problem as it is set; a status. */
-static int solve_once(tribo_context *ctx, const struct cluster *g)
+/* Sets the reach of all contacts of the problem by the pulls at them. */
+static void estimate_reaches(tribo_context *ctx, const struct cluster *g)
 {
-    struct disc_qp *p = &ctx->planar->problem;
-    const size_t *contact = ctx->planar->contact;
-    p->factor.qp.work.factorizations = 0;
-    p->near_enough = ctx->planar->cuts ? NEAREST : TRIBO_NEAR_ENOUGH;
-    int done = tribo_disc_solve(p);
-    if (done && g->redundant && ctx->set.sharing == TRIBO_SHARE_LEAST_NORM) {
-        done = tribo_disc_share(p);
+    const size_t n = ctx->planar->problem.size;
+    const double *bound = ctx->follow.contacts.bound;
+    double *ask = ctx->planar->problem.spare;
+    double most = 0.0; /* the largest ask sqrt(R_ii): in these units asks of contacts compare */
+    int far = 0;
+    for (size_t k = 0; k < n; k++) {
+        const size_t i = ctx->planar->contact[k];
+        ask[k] =
+            lesser(quotient(fabs(ctx->planar->pull[k]), ctx->op->diagonal[i]) + product(fabs(ctx->planar->shift[k]), bound[i]),
+                   bound[i]);
+        most = greater(most, product(ask[k], sqrt(ctx->op->diagonal[i])));
     }
-    ctx->count.solves++;
-    ctx->count.reused += p->factor.qp.work.factorizations == 0;
-    ctx->memory.problem.work.factorizations += p->factor.qp.work.factorizations;
-    if (!done || p->residual > TOO_FAR) {
-        return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE,
-                          "no forces found for the %zu direction%s near stick around contact %zu: %g of a limit is missing",
-                          p->size, plural(p->size), contact[0], p->residual);
+    for (size_t k = 0; k < n; k++) {
+        const size_t i = ctx->planar->contact[k];
+        far |= product(bound[i], sqrt(ctx->op->diagonal[i])) > AMPLE * most || tribo_planar_cut(ctx, i);
     }
-    ctx->last.residual = greater(ctx->last.residual, p->residual);
-    for (size_t e = 0; e < p->size; e++) {
-        const size_t i = contact[e];
-        ctx->planar->y[i] = p->y[e];
-        ctx->last.f[i] = p->y[e] * tribo_planar_reach(ctx, i);
+    for (size_t k = 0; far && !(most > 0.0) && k < n; k++) {
+        const size_t i = ctx->planar->contact[k];
+        ctx->planar->radius[i] = HUGE_VAL;
+        ctx->planar->y[i] = 0.0;
     }
-    return TRIBO_OK;
+    if (!far || !(most > 0.0)) {
+        return;
+    }
+    find_asks(ctx, g, ask);
+    for (size_t e = 0; e < n; e += ctx->planar->directions[e]) {
+        const size_t count = ctx->planar->directions[e];
+        double wanted[2];
+        for (size_t d = 0; d < count; d++) {
+            const double root = sqrt(ctx->op->diagonal[ctx->planar->contact[e + d]]);
+            wanted[d] = product(greater(ask[e + d], greater(quotient(LITTLE * most, root), DBL_MIN)), AMPLE);
+        }
+        set_radius(ctx, e, count, wanted);
+    }
+}
+
+/* 1 if the direction at e of the problem is on the rim of its limit, which bends so much that the direction at other cannot be
+ * loose. */
+static int rim_bends(const tribo_context *ctx, size_t e, size_t other)
+{
+    const struct disc_qp *p = &ctx->planar->problem;
+    const size_t i = ctx->planar->contact[e], j = ctx->planar->contact[other];
+    const double part = quotient(tribo_planar_reach(ctx, j), ctx->follow.contacts.bound[j]);
+    return p->place[e] != LENS_INSIDE && !tribo_planar_cut(ctx, i) && tribo_planar_cut(ctx, j) &&
+           fabs(p->gradient[e]) * part * part > STRAIGHT * p->s[other * (p->size + 1)];
+}
+
+/* Widens the reach of forces that come up against it. Returns the number of these contacts. */
+static size_t widen_reaches(tribo_context *ctx)
+{
+    const struct disc_qp *p = &ctx->planar->problem;
+    size_t widened = 0;
+    for (size_t e = 0; e < p->size; e += ctx->planar->directions[e]) {
+        const size_t count = ctx->planar->directions[e];
+        double wanted[2];
+        int out = 0;
+        for (size_t d = 0; d < count; d++) {
+            const size_t i = ctx->planar->contact[e + d], at = p->wide[e + d] ? e + d : e;
+            const int beyond = p->place[at] != LENS_INSIDE && tribo_planar_cut(ctx, i);
+            wanted[d] = beyond ? product(AMPLE, ctx->planar->radius[i]) : ctx->planar->radius[i];
+            out |= beyond;
+        }
+        if (p->wide[e] < count && (rim_bends(ctx, e, e + 1) || rim_bends(ctx, e + 1, e))) {
+            wanted[0] = wanted[1] = HUGE_VAL;
+            out = 1;
+        }
+        if (out) {
+            set_radius(ctx, e, count, wanted);
+            widened++;
+        }
+    }
+    return widened;
 }
 
 /* ------------------------------------------------------------------------------------------------------- static limits
  * Both static limits of a planar contact are the same multiple of those by which it slides, so that only a factor changes as it
  * breaks away: it holds while f_eq is within the ellipse of the static limits. Scalar contacts of a cluster follow the rule of
  * static.c. */
-
-/* Gives contacts of a cluster near stick at v their static limits, the others those by which they slide. */
-static void planar_hold(tribo_context *ctx, const struct cluster *g, const double *v)
-{
-    for (size_t k = 0, directions; k < g->size; k += directions) {
-        const size_t i = g->member[k];
-        double limit[2];
-        directions = tribo_directions(ctx, i);
-        const struct contacts c = tribo_planar_view(ctx, i, directions, limit);
-        const struct slide s = tribo_planar_slide(&c, 0, directions, v + i);
-        tribo_planar_limits(ctx, i, directions, tribo_planar_near(ctx->set.law, &s), v + i, ctx->follow.now + i);
-    }
-}
 
 /* The forces of redundant contacts are known to this part of their limits. */
 #define DISAGREEMENT 1e-12
@@ -202,9 +326,9 @@ static void planar_hold(tribo_context *ctx, const struct cluster *g, const doubl
  * gradient. */
 static int is_pulled_beyond(const struct disc_qp *p, size_t e)
 {
-    const struct block b = tribo_block_at(p->s, p->size, e, p->wide[e]);
+    const struct block b = block_at(p->s, p->size, e, p->wide[e]);
     double feq[2] = {p->gradient[e], p->wide[e] == 2 ? p->gradient[e + 1] : 0.0};
-    tribo_planar_push(&b, feq);
+    push_back(&b, feq);
     for (size_t k = 0; k < p->wide[e]; k++) {
         feq[k] += p->y[e + k] + p->shift[e + k];
     }
@@ -225,7 +349,7 @@ static size_t planar_break(tribo_context *ctx, const struct cluster *g, double d
     double *now = ctx->follow.now, *end = ctx->planar->v; /* velocities at the end */
     size_t broken = 0;
     for (size_t k = 0; k < g->size; k++) {
-        end[member[k]] = product(tribo_planar_others(ctx, g, k, k, 0, a[member[k]]), dt);
+        end[member[k]] = product(pull_at(ctx, g, k, NULL, 0, a[member[k]]), dt);
     }
     for (size_t e = 0; e < p->size; e += p->wide[e]) {
         const size_t k = ctx->planar->contact[e], first = k - (ctx->planar->role[k] == ROLE_SECOND);
@@ -246,22 +370,65 @@ static size_t planar_break(tribo_context *ctx, const struct cluster *g, double d
     return broken;
 }
 
+/* Where a force is far within its reach, distances of this part of the reach are 0. */
+#define NEAREST 1e-20
+
+/* No forces are found if one misses its balance by more than this part of its reach. */
+#define TOO_FAR 1e-6
+
 /* Solves until all forces are within their reach, and no static limit breaks; a status. */
 static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt, const double *a)
 {
-    int status;
+    struct planar *c = ctx->planar;
+    struct disc_qp *p = &c->problem;
+    const struct work *work = &p->factor.qp.work;
+    ctx->last.clusters++;
     do {
         find_pulls(ctx, g, a);
-        tribo_planar_estimate(ctx, g);
+        estimate_reaches(ctx, g);
         do {
-            tribo_planar_arrange(ctx);
             pose_cluster(ctx, g);
-            status = solve_once(ctx, g);
-        } while (!status && ctx->planar->cuts && tribo_planar_widen(ctx));
-    } while (!status && ctx->set.breaking && planar_break(ctx, g, dt, a));
-    ctx->last.clusters++;
-    ctx->last.rank += status ? 0 : ctx->planar->problem.factor.sets.rank;
-    return status;
+            p->factor.qp.work.factorizations = 0;
+            p->near_enough = c->cuts ? NEAREST : TRIBO_NEAR_ENOUGH;
+            int done = tribo_disc_solve(p);
+            if (done && g->redundant && ctx->set.sharing == TRIBO_SHARE_LEAST_NORM) {
+                done = tribo_disc_share(p);
+            }
+            ctx->count.solves++;
+            ctx->count.reused += work->factorizations == 0;
+            ctx->memory.problem.work.factorizations += work->factorizations;
+            if (!done || p->residual > TOO_FAR) {
+                return tribo_fail(
+                    ctx, TRIBO_ERR_NO_CONVERGENCE,
+                    "no forces found for the %zu direction%s near stick around contact %zu: %g of a limit is missing", p->size,
+                    plural(p->size), c->contact[0], p->residual);
+            }
+            ctx->last.residual = greater(ctx->last.residual, p->residual);
+            for (size_t e = 0; e < p->size; e++) {
+                const size_t i = c->contact[e];
+                c->y[i] = p->y[e];
+                ctx->last.f[i] = p->y[e] * tribo_planar_reach(ctx, i);
+            }
+        } while (c->cuts && widen_reaches(ctx));
+    } while (ctx->set.breaking && planar_break(ctx, g, dt, a));
+    ctx->last.rank += p->factor.sets.rank;
+    return TRIBO_OK;
+}
+
+const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
+{
+    struct disc_qp *p = &ctx->planar->problem;
+    const struct cluster *g = &ctx->planar->cluster[q];
+    *size = g->size;
+    if (planar_collect(ctx, g, ctx->last.v, 0)) {
+        find_pulls(ctx, g, ctx->planar->a);
+        pose_cluster(ctx, g);
+        tribo_disc_gains(p);
+        tribo_disc_gradients(p);
+        tribo_disc_places(p);
+        tribo_disc_linearize(p);
+    }
+    return g->member;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- f_eq */
@@ -270,13 +437,14 @@ static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt,
 static void contact_feq(const tribo_context *ctx, const struct cluster *g, size_t k, size_t directions, const double *a,
                         double *feq)
 {
-    const struct block block = tribo_block_at(g->r, g->size, k, directions);
+    const struct block block = block_at(g->r, g->size, k, directions);
+    const size_t own[2] = {k, k + 1};
     double x[2] = {0.0, 0.0}, most = 0.0;
     for (size_t d = 0; d < directions; d++) {
-        x[d] = tribo_planar_others(ctx, g, k + d, k, directions, a[d]);
+        x[d] = pull_at(ctx, g, k + d, own, directions, a[d]);
         most = greater(most, ctx->set.limit[g->member[k + d]]);
     }
-    tribo_planar_push(&block, x);
+    push_back(&block, x);
     for (size_t d = 0; d < directions; d++) {
         feq[d] = most > 0.0 ? x[d] : 0.0;
     }
@@ -284,7 +452,7 @@ static void contact_feq(const tribo_context *ctx, const struct cluster *g, size_
 
 void tribo_clusters_feq(tribo_context *ctx, const double *a)
 {
-    for (size_t q = 0; ctx->planar && q < ctx->planar->clusters; q++) {
+    for (size_t q = 0; q < tribo_cluster_count(ctx); q++) {
         const struct cluster *g = &ctx->planar->cluster[q];
         for (size_t k = 0; k < g->size; k += tribo_directions(ctx, g->member[k])) {
             const size_t i = g->member[k];
@@ -295,40 +463,28 @@ void tribo_clusters_feq(tribo_context *ctx, const double *a)
 
 /* ------------------------------------------------------------------------------------------------------------ calls */
 
-/* Forces by the law of scalar contacts in the problem, from their f_eq, all of which are found before any force changes. */
-static void scalar_laws(tribo_context *ctx, const struct cluster *g, const double *v, const double *a)
-{
-    const size_t *near = ctx->planar->near, n = ctx->planar->problem.size;
-    for (size_t e = 0; e < n; e++) {
-        const size_t i = ctx->planar->contact[e];
-        if (tribo_is_scalar(ctx, i)) {
-            contact_feq(ctx, g, near[e], 1, a + i, ctx->last.feq + i);
-        }
-    }
-    for (size_t e = 0; e < n; e++) {
-        const size_t i = ctx->planar->contact[e];
-        if (tribo_is_scalar(ctx, i)) {
-            const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
-            ctx->set.law->force(&c, 1, v + i, ctx->last.feq + i, ctx->last.f + i);
-        }
-    }
-}
-
 int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a)
 {
     int status = TRIBO_OK;
-    if (!ctx->planar) {
-        return status;
-    }
-    for (size_t k = 0; !status && k < ctx->planar->clusters; k++) {
-        const struct cluster *g = &ctx->planar->cluster[k];
-        if (ctx->set.breaking) {
-            planar_hold(ctx, g, v);
+    for (size_t q = 0; !status && q < tribo_cluster_count(ctx); q++) {
+        const struct cluster *g = &ctx->planar->cluster[q];
+        const struct planar *c = ctx->planar;
+        if (!planar_collect(ctx, g, v, 1)) {
+            continue;
         }
-        if (planar_collect(ctx, g, v)) {
-            status = solve_cluster(ctx, g, 0.0, a);
-            if (ctx->set.law->remembers) {
-                scalar_laws(ctx, g, v, a);
+        status = solve_cluster(ctx, g, 0.0, a);
+        /* Laws with a memory set the forces of scalar contacts from f_eq, all of which are found before any force changes. */
+        for (size_t e = 0; ctx->set.law->remembers && e < c->problem.size; e++) {
+            const size_t i = c->contact[e];
+            if (tribo_is_scalar(ctx, i)) {
+                contact_feq(ctx, g, c->near[e], 1, a + i, ctx->last.feq + i);
+            }
+        }
+        for (size_t e = 0; ctx->set.law->remembers && e < c->problem.size; e++) {
+            const size_t i = c->contact[e];
+            if (tribo_is_scalar(ctx, i)) {
+                const struct contacts at = tribo_contacts_from(&ctx->follow.contacts, i);
+                ctx->set.law->force(&at, 1, v + i, ctx->last.feq + i, ctx->last.f + i);
             }
         }
     }
@@ -339,10 +495,7 @@ int tribo_clusters_step(tribo_context *ctx, double dt, const double *v, const si
 {
     const double none[2] = {0.0, 0.0};
     int status = TRIBO_OK;
-    if (!ctx->planar) {
-        return status;
-    }
-    for (size_t q = 0; !status && q < ctx->planar->clusters; q++) {
+    for (size_t q = 0; !status && q < tribo_cluster_count(ctx); q++) {
         const struct cluster *g = &ctx->planar->cluster[q];
         ctx->planar->problem.size = 0;
         for (size_t k = 0, directions; k < g->size; k += directions) {
@@ -393,14 +546,14 @@ size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const
     double *turned = ctx->planar ? ctx->planar->v : NULL;
     const double *free = *vfree;
     size_t changes = 0;
-    for (size_t q = 0; ctx->planar && q < ctx->planar->clusters; q++) {
+    for (size_t q = 0; q < tribo_cluster_count(ctx); q++) {
         const struct cluster *g = &ctx->planar->cluster[q];
         for (size_t k = 0, directions; k < g->size; k += directions) {
             const size_t i = g->member[k];
             double forward = 0.0; /* v_end'v */
             directions = tribo_directions(ctx, i);
             for (size_t d = 0; d < directions; d++) {
-                feels[i + d] = tribo_planar_others(ctx, g, k + d, k, directions == 1 ? 1 : 0, 0.0);
+                feels[i + d] = pull_at(ctx, g, k + d, &k, directions == 1 ? 1 : 0, 0.0);
                 forward += product(free[i + d] + product(feels[i + d], dt), v[i + d]);
             }
             if (directions == 1 || !reaches_limits(ctx, i)) {
@@ -417,23 +570,4 @@ size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const
         }
     }
     return changes;
-}
-
-double tribo_plane_rate(const tribo_context *ctx)
-{
-    const double none[2] = {0.0, 0.0};
-    double rate = 0.0;
-    for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
-        double limit[2];
-        const struct contacts c = tribo_planar_view(ctx, ctx->planar->first[k], 2, limit);
-        const double *own = ctx->planar->own[k];
-        const struct slide s = tribo_planar_slide(&c, 0, 2, none);
-        const double weighed[3] = {product(s.part[0], product(s.part[0], own[0])), product(s.part[0], product(s.part[1], own[1])),
-                                   product(s.part[1], product(s.part[1], own[2]))};
-        const double far = s.part[0] == 1.0 ? c.bound[0] : c.bound[1];
-        if (!s.open) {
-            rate = greater(rate, product(2.0 * quotient(far, s.epsilon), tribo_block_of(weighed).great));
-        }
-    }
-    return rate;
 }

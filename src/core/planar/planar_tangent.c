@@ -3,7 +3,7 @@
  * and Newton's equations along the freedoms that these leave keep them balanced. Forces and derivatives of planar contacts with
  * f_eq given, each of which is a problem alone. */
 #include "core/static.h"
-#include "parts.h"
+#include "core/clusters.h"
 
 void tribo_clusters_linearize(tribo_context *ctx, const double *a)
 {
