@@ -74,19 +74,6 @@ static void turn_slide(const struct slide *s, const double *limit, const double 
     }
 }
 
-static struct turn planar_turn(const tribo_context *ctx, size_t i, const struct slide *s, const struct change *d)
-{
-    const struct contacts *c = &ctx->follow.contacts;
-    struct turn t = {{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}, 0.0};
-    for (size_t k = 0; k < s->directions; k++) {
-        t.v[k] = tribo_entry(d->v, i + k);
-        t.limit[k] = tribo_limit_change(ctx, d, i + k);
-    }
-    t.epsilon = s->open || !c->follows ? 0.0 : quotient(t.limit[s->far], c->limit[i + s->far]);
-    turn_slide(s, c->limit + i, ctx->last.v + i, &t);
-    return t;
-}
-
 /* df [directions] of a contact that is not near stick. */
 static void turn_force(const struct law *law, const struct slide *s, const double *limit, const struct turn *t, double *df)
 {
@@ -100,13 +87,6 @@ static void turn_force(const struct law *law, const struct slide *s, const doubl
         const double own = product(carried * s->n[k], t->limit[k]);
         df[k] = s->open ? 0.0 : product(limit[k], turn + grow) + own;
     }
-}
-
-/* The change of the limit of direction i in parts of the limit. */
-static double limit_growth(const tribo_context *ctx, const struct change *d, size_t i)
-{
-    const double limit = ctx->follow.contacts.limit[i];
-    return limit > 0.0 ? quotient(tribo_entry(d->limit, i), limit) : 0.0;
 }
 
 /* Derivatives of shifts are cut to this. */
@@ -129,7 +109,13 @@ static void own_changes(const tribo_context *ctx, const struct cluster *g, const
         const size_t i = g->member[k];
         directions = tribo_directions(ctx, i);
         const struct slide s = tribo_planar_slide(c, i, directions, ctx->last.v + i);
-        const struct turn t = planar_turn(ctx, i, &s, d);
+        struct turn t = {{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}, 0.0};
+        for (size_t j = 0; j < directions; j++) {
+            t.v[j] = tribo_entry(d->v, i + j);
+            t.limit[j] = tribo_limit_change(ctx, d, i + j);
+        }
+        t.epsilon = s.open || !c->follows ? 0.0 : quotient(t.limit[s.far], c->limit[i + s.far]);
+        turn_slide(&s, c->limit + i, ctx->last.v + i, &t);
         turn_force(ctx->set.law, &s, c->limit + i, &t, df + k);
         for (; e < p->size && ctx->planar->near[e] < k + directions; e++) {
             const size_t j = ctx->planar->near[e] - k;
@@ -139,31 +125,6 @@ static void own_changes(const tribo_context *ctx, const struct cluster *g, const
             df[k + j] = far ? 0.0 : product(p->y[e], t.limit[j]);
         }
     }
-}
-
-/* rhs [size] = the change of the gradient by df, d, dshift and dy. dy [size]: the part of the change of y that follows shifts. */
-static void find_rhs(const tribo_context *ctx, const struct cluster *g, const struct change *d, const double *df,
-                     const double *dshift, const double *dy, double *rhs)
-{
-    const struct disc_qp *p = &ctx->planar->problem;
-    double *turn = p->slide;
-    const struct unit u = tribo_planar_units(ctx);
-    const size_t *contact = ctx->planar->contact, n = p->size;
-    for (size_t e = 0; e < n; e++) {
-        const double *row = g->r + ctx->planar->near[e] * g->size;
-        double sum = cut(tribo_entry(d->a, contact[e]));
-        for (size_t j = 0; j < g->size; j++) {
-            sum += product(row[j], df[j]);
-        }
-        rhs[e] = p->weight[e] * quotient(quotient(cut(sum), u.r), u.force);
-        const double growth = limit_growth(ctx, d, contact[e]);
-        rhs[e] += product(growth, p->gradient[e]);
-        turn[e] = dshift[e] + product(p->shift[e], growth);
-        for (size_t j = 0; j < n; j++) {
-            rhs[e] += p->s[e * n + j] * dy[j];
-        }
-    }
-    tribo_planar_turn(ctx, turn, rhs);
 }
 
 /* Laws with a memory have another derivative where |f_eq| exceeds the limit: corrects df of scalar contacts, from f_eq. */
@@ -186,26 +147,43 @@ static void apply_laws(tribo_context *ctx, const struct cluster *g, const struct
     }
 }
 
-const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct change *d)
+const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct change *change)
 {
     struct disc_qp *p = &ctx->planar->problem;
     const struct cluster *g = &ctx->planar->cluster[q];
-    const size_t *near = ctx->planar->near;
-    double *dshift = p->from, *dy = p->best, *rhs = p->noise, *move = p->aim, *df = ctx->planar->df;
-    const struct change by_v = with_limits(ctx, g, d);
-    own_changes(ctx, g, &by_v, df, dshift);
-    for (size_t e = 0; e < p->size; e += p->wide[e]) {
+    const struct unit u = tribo_planar_units(ctx);
+    const size_t *near = ctx->planar->near, *contact = ctx->planar->contact, n = p->size;
+    double *df = ctx->planar->df, *dshift = p->from, *turn = p->slide;
+    double *dy = p->best; /* the part of the change of y that follows shifts */
+    double *rhs = p->noise, *move = p->aim;
+    const struct change d = with_limits(ctx, g, change);
+    own_changes(ctx, g, &d, df, dshift);
+    for (size_t e = 0; e < n; e += p->wide[e]) {
         tribo_disc_drag(p, e, dshift + e, dy + e);
     }
-    find_rhs(ctx, g, &by_v, df, dshift, dy, rhs);
-    if (p->size) {
+    /* rhs = the change of the gradient by df, d, dshift and dy. */
+    for (size_t e = 0; e < n; e++) {
+        const double *row = g->r + near[e] * g->size, limit = ctx->follow.contacts.limit[contact[e]];
+        const double growth = limit > 0.0 ? quotient(tribo_entry(d.limit, contact[e]), limit) : 0.0;
+        double sum = cut(tribo_entry(d.a, contact[e]));
+        for (size_t j = 0; j < g->size; j++) {
+            sum += product(row[j], df[j]);
+        }
+        rhs[e] = p->weight[e] * quotient(quotient(cut(sum), u.r), u.force) + product(growth, p->gradient[e]);
+        turn[e] = dshift[e] + product(p->shift[e], growth);
+        for (size_t j = 0; j < n; j++) {
+            rhs[e] += p->s[e * n + j] * dy[j];
+        }
+    }
+    tribo_planar_turn(ctx, turn, rhs);
+    if (n) {
         tribo_disc_follow(p, rhs, move);
     }
-    for (size_t e = 0; e < p->size; e++) {
-        df[near[e]] += product(tribo_planar_reach(ctx, ctx->planar->contact[e]), dy[e] + move[e]);
+    for (size_t e = 0; e < n; e++) {
+        df[near[e]] += product(tribo_planar_reach(ctx, contact[e]), dy[e] + move[e]);
     }
     if (ctx->set.law->remembers) {
-        apply_laws(ctx, g, d, df);
+        apply_laws(ctx, g, change, df);
     }
     return df;
 }
@@ -304,42 +282,34 @@ static void turn_near(struct disc_qp *p, const struct given *g, const struct law
     }
 }
 
-/* Returns the changes that follow dv [2] and dlimit [2] of the caller; static limits follow |v|, too. p: the problem near stick, or
- * NULL. */
-static struct turn given_turn(const tribo_context *ctx, size_t i, const struct given *g, const struct disc_qp *p, const double *v,
-                              const double *dv, const double *dlimit)
-{
-    struct turn t = {{dv[0], dv[1]}, {dlimit[0], dlimit[1]}, {0.0, 0.0}, 0.0};
-    const double *set = ctx->set.breaking ? ctx->follow.cut_limit + i : g->c.limit;
-    double along[2] = {0.0, 0.0};
-    for (size_t k = 0; p && p->place[0] == LENS_ON_DISC && k < 2; k++) {
-        along[k] = g->c.bound[k] > 0.0 ? quotient(p->gradient[k], g->c.bound[k]) : 0.0;
-    }
-    const double speed = heading(2, v, along);
-    const double faster = along[0] * t.v[0] + along[1] * t.v[1];
-    t.epsilon = g->c.scales && !g->s.open ? quotient(t.limit[g->s.far], set[g->s.far]) : 0.0;
-    for (size_t k = 0; k < 2 && ctx->set.breaking; k++) {
-        const double part = set[k] > 0.0 ? quotient(g->c.limit[k], set[k]) : 0.0;
-        t.limit[k] = product(part, t.limit[k]) + product(tribo_limit_rate(ctx, i + k, speed), faster);
-    }
-    turn_slide(&g->s, g->c.limit, v, &t);
-    return t;
-}
-
-/* Sets the derivatives out [3] of planar contact k, [n][2] each, or NULL. p: the solved problem near stick, or NULL. */
+/* Sets the derivatives out [3] of planar contact k by v, f_eq and the limits of the caller, [n][2] each, or NULL; static limits follow
+ * |v|, too. p: the solved problem near stick, or NULL. */
 static void given_columns(const tribo_context *ctx, size_t k, const struct given *g, struct disc_qp *p, const double *v,
                           double *const *out)
 {
     const size_t i = ctx->planar->first[k];
+    const double *set = ctx->set.breaking ? ctx->follow.cut_limit + i : g->c.limit;
+    double along[2] = {0.0, 0.0};
     if (p) {
         tribo_disc_gradients(p);
         tribo_disc_places(p);
         tribo_disc_linearize(p);
     }
+    for (size_t d = 0; p && p->place[0] == LENS_ON_DISC && d < 2; d++) {
+        along[d] = g->c.bound[d] > 0.0 ? quotient(p->gradient[d], g->c.bound[d]) : 0.0;
+    }
+    const double speed = heading(2, v, along);
     for (size_t column = 0; column < 6; column++) {
         double unit[6] = {0.0}, df[2] = {0.0, 0.0};
         unit[column] = column < 4 || ctx->set.limit[i + column - 4] > 0.0;
-        const struct turn t = given_turn(ctx, i, g, p, v, unit, unit + 4);
+        struct turn t = {{unit[0], unit[1]}, {unit[4], unit[5]}, {0.0, 0.0}, 0.0};
+        const double faster = along[0] * t.v[0] + along[1] * t.v[1];
+        t.epsilon = g->c.scales && !g->s.open ? quotient(t.limit[g->s.far], set[g->s.far]) : 0.0;
+        for (size_t d = 0; d < 2 && ctx->set.breaking; d++) {
+            const double part = set[d] > 0.0 ? quotient(g->c.limit[d], set[d]) : 0.0;
+            t.limit[d] = product(part, t.limit[d]) + product(tribo_limit_rate(ctx, i + d, speed), faster);
+        }
+        turn_slide(&g->s, g->c.limit, v, &t);
         if (p) {
             turn_near(p, g, ctx->set.law, &t, unit + 2, df);
         } else {
