@@ -121,25 +121,12 @@ static int install_rows(tribo_context *ctx, struct csr *a, const struct inertia 
 {
     struct delassus *op;
     struct memory m;
-    struct flaw flaw;
     double *diagonal = malloc((ctx->n + 1) * sizeof *diagonal);
-    int status = diagonal ? symmetrize(ctx, a, diagonal) : input_out_of_memory(ctx);
-    if (!status) {
-        status = tribo_operator_create(&op, &m, a, diagonal, from, &flaw);
-        if (status == TRIBO_ERR_UNSUPPORTED) {
-            tribo_fail(ctx, status,
-                       "inverse_mass: contact %zu touches bodies whose masses differ by %g, in a group of %zu coupled contact%s",
-                       flaw.contact, flaw.pivot, flaw.group, plural(flaw.group));
-        } else if (status == TRIBO_ERR_INDEFINITE) {
-            tribo_fail(ctx, status, "r is indefinite: relative pivot %g at contact %zu, in a group of %zu coupled contact%s",
-                       flaw.pivot, flaw.contact, flaw.group, plural(flaw.group));
-        } else {
-            status = status ? input_out_of_memory(ctx) : install(ctx, op, &m);
-        }
-    }
+    int status = diagonal ? symmetrize(ctx, a, diagonal) : TRIBO_ERR_MEMORY;
+    status = status ? status : tribo_operator_create(&op, &m, a, diagonal, from, ctx);
     free(diagonal);
     tribo_csr_free(a);
-    return status;
+    return status == TRIBO_ERR_MEMORY ? input_out_of_memory(ctx) : status ? status : install(ctx, op, &m);
 }
 
 /* -------------------------------------------------------------------------------------------------- forms of input */

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "operator.h"
+#include "core/context.h"
 #include "common/layout.h"
 #include "numerics/box/small.h"
 #include "numerics/csr.h"
@@ -263,24 +263,8 @@ static double operator_grow(const struct delassus *op, const struct csr *a, cons
     return most;
 }
 
-/* Sets growth. Returns 0 if out of memory. */
-static int find_growth(struct delassus *op, const struct csr *a)
-{
-    enum { FEW = 4, MANY = 8 }; /* for the largest eigenvalue of contacts in a row, to 2% whatever the masses */
-    double before = HUGE_VAL, *x = malloc((2 * a->n + 1) * sizeof *x);
-    for (size_t i = 0; x && i < a->n; i++) {
-        x[i] = 1.0 / sqrt(op->diagonal[i]);
-    }
-    for (int k = 0; x && (k < FEW || (k < MANY && op->growth < 0.999 * before)); k++) {
-        before = op->growth;
-        op->growth = k % 2 ? operator_grow(op, a, x + a->n, x) : operator_grow(op, a, x, x + a->n);
-    }
-    free(x);
-    return x != NULL;
-}
-
-/* Sets spread: the largest ratio of shares J_ik^2 w_k of bodies in one R_ii. Returns 0 if it is too large: flaw is set. */
-static int find_grading(struct group *g, const struct inertia *from, const size_t *member, struct flaw *flaw)
+/* Sets spread: the largest ratio of shares J_ik^2 w_k of bodies in one R_ii; fails if it is too large; a status. */
+static int find_grading(struct group *g, const struct inertia *from, const size_t *member, tribo_context *note)
 {
     g->spread = 1.0;
     for (size_t c = 0; from && c < g->size; c++) {
@@ -295,11 +279,15 @@ static int find_grading(struct group *g, const struct inertia *from, const size_
         if (spread > g->spread) {
             g->spread = spread;
             g->uneven = i;
-            *flaw = (struct flaw){i, g->size, spread};
         }
     }
     g->graded = g->spread > GRADED_FROM && g->size <= GRADED_TO;
-    return g->spread <= (g->graded ? GRADED_MOST : GRADED_MOST_LARGE);
+    return g->spread <= (g->graded ? GRADED_MOST : GRADED_MOST_LARGE)
+               ? TRIBO_OK
+               : tribo_fail(
+                     note, TRIBO_ERR_UNSUPPORTED,
+                     "inverse_mass: contact %zu touches bodies whose masses differ by %g, in a group of %zu coupled contact%s",
+                     g->uneven, g->spread, g->size, plural(g->size));
 }
 
 /* Factorizes R over all contacts of a group. Returns what tribo_factor_rebuild does. */
@@ -384,7 +372,7 @@ static void fill_group(struct delassus *op, struct memory *m, size_t k, const st
 }
 
 /* Sets the ranks of all groups; a status: R may be indefinite. */
-static int check_definite(struct delassus *op, struct memory *m, struct flaw *flaw)
+static int check_definite(struct delassus *op, struct memory *m, tribo_context *note)
 {
     for (size_t k = 0; k < op->groups; k++) {
         struct box_qp *p = tribo_memory_problem(op, m, k);
@@ -393,8 +381,9 @@ static int check_definite(struct delassus *op, struct memory *m, struct flaw *fl
         const double left = factorize_all(p, &where);
         const double zero = g->sparse ? TRIBO_SPARSE_ZERO : g->graded ? TRIBO_GRADED_ZERO : tribo_resolution(g->size);
         if (fabs(left) > 16.0 * zero) {
-            *flaw = (struct flaw){p->member[where], g->size, left};
-            return TRIBO_ERR_INDEFINITE;
+            return tribo_fail(note, TRIBO_ERR_INDEFINITE,
+                              "r is indefinite: relative pivot %g at contact %zu, in a group of %zu coupled contact%s", left,
+                              p->member[where], g->size, plural(g->size));
         }
         g->nullity = p->sets->dependents;
         g->small = g->size <= SMALL && !g->nullity && !g->graded && tribo_small_fits(g->size, p->r, p->inverse);
@@ -414,13 +403,14 @@ static int check_definite(struct delassus *op, struct memory *m, struct flaw *fl
 }
 
 static int create_groups(struct delassus *op, struct memory *m, const struct csr *a, const struct inertia *from,
-                         const size_t *place, struct flaw *flaw)
+                         const size_t *place, tribo_context *note)
 {
     for (size_t k = 0; k < op->groups; k++) {
         struct group *g = &op->group[k];
         const size_t *member = op->member + g->first;
-        if (!find_grading(g, from, member, flaw)) {
-            return TRIBO_ERR_UNSUPPORTED;
+        const int status = find_grading(g, from, member, note);
+        if (status) {
+            return status;
         }
         if (!g->graded && g->size > SPARSE_FROM && !make_sparse(g, a, member, place)) {
             return TRIBO_ERR_MEMORY;
@@ -437,20 +427,29 @@ static int create_groups(struct delassus *op, struct memory *m, const struct csr
     for (size_t k = 0; k < op->groups; k++) {
         fill_group(op, m, k, a, from, place);
     }
-    const int status = check_definite(op, m, flaw);
+    const int status = check_definite(op, m, note);
     return status || allocate_basis(m, op) ? status : TRIBO_ERR_MEMORY;
 }
 
 int tribo_operator_create(struct delassus **created, struct memory *m, const struct csr *a, const double *diagonal,
-                          const struct inertia *from, struct flaw *flaw)
+                          const struct inertia *from, tribo_context *note)
 {
+    enum { FEW = 4, MANY = 8 }; /* for the largest eigenvalue of contacts in a row, to 2% whatever the masses */
     const size_t n = a->n;
     int status = TRIBO_ERR_MEMORY;
     size_t *place = malloc((4 * n + 1) * sizeof *place);
+    double before = HUGE_VAL, *x = malloc((2 * n + 1) * sizeof *x);
     struct delassus *op = NULL;
     *m = (struct memory){0};
-    if (place && tribo_operator_diagonal(&op, n, diagonal) && find_groups(op, a, place, place + n)) {
-        status = !op->groups ? TRIBO_OK : find_growth(op, a) ? create_groups(op, m, a, from, place, flaw) : TRIBO_ERR_MEMORY;
+    if (place && x && tribo_operator_diagonal(&op, n, diagonal) && find_groups(op, a, place, place + n)) {
+        for (size_t i = 0; i < n; i++) {
+            x[i] = 1.0 / sqrt(op->diagonal[i]);
+        }
+        for (int k = 0; op->groups && (k < FEW || (k < MANY && op->growth < 0.999 * before)); k++) {
+            before = op->growth;
+            op->growth = k % 2 ? operator_grow(op, a, x + n, x) : operator_grow(op, a, x, x + n);
+        }
+        status = op->groups ? create_groups(op, m, a, from, place, note) : TRIBO_OK;
     }
     if (status) {
         tribo_operator_release(op);
@@ -458,6 +457,7 @@ int tribo_operator_create(struct delassus **created, struct memory *m, const str
         op = NULL;
     }
     *created = op;
+    free(x);
     free(place);
     return status;
 }

@@ -49,12 +49,6 @@ struct memory {
 
 struct csr;
 
-/* Where an operator is refused: a pivot relative to the diagonal, or a ratio of masses. */
-struct flaw {
-    size_t contact, group; /* size of the group */
-    double pivot;
-};
-
 /* R = J diag(w) J' by rows of J; t = J'. */
 struct inertia {
     const double *w;
@@ -64,9 +58,9 @@ struct inertia {
 };
 
 /* Makes an operator and its memory of rows a, symmetric and finite, columns ascending, and their diagonal [n]; a status. from may
- * be NULL. */
+ * be NULL. note keeps the message of a failure. */
 int tribo_operator_create(struct delassus **op, struct memory *m, const struct csr *a, const double *diagonal,
-                          const struct inertia *from, struct flaw *flaw);
+                          const struct inertia *from, tribo_context *note);
 
 /* Makes an operator without groups; r NULL: not set yet. Returns 1, or 0 if out of memory. */
 int tribo_operator_diagonal(struct delassus **op, size_t n, const double *r);
