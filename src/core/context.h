@@ -118,9 +118,6 @@ int tribo_fail(tribo_context *ctx, int status, const char *format, ...)
 void tribo_refresh_limits(tribo_context *ctx);
 void tribo_refresh(tribo_context *ctx);
 
-/* Copies what from has set to a context of as many contacts. Call tribo_refresh_limits or tribo_refresh next. */
-void tribo_take_settings(tribo_context *ctx, const tribo_context *from);
-
 /* Sets limits to limit [n], which may be those of ctx, and all that follows from them. */
 void tribo_take_limits(tribo_context *ctx, const double *limit);
 

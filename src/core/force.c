@@ -27,22 +27,6 @@ static void used_feq(const tribo_context *ctx, size_t i, size_t n, const double 
     }
 }
 
-/* Checks feq where laws depend on it; a status. */
-static int check_used(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq)
-{
-    for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
-        double used[TRIBO_CHUNK];
-        const size_t n = tribo_chunk_size(ctx, i);
-        used_feq(ctx, i, n, v, feq, used);
-        for (size_t k = 0; !tribo_all_finite(used, n); k++) {
-            if (!isfinite(used[k])) {
-                return tribo_fail(note, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", i + k, used[k]);
-            }
-        }
-    }
-    return TRIBO_OK;
-}
-
 /* Checks v and feq; a status. *plain: laws take feq as it is. note: ctx, or NULL to keep no message. */
 static int check_force(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq, int *plain)
 {
@@ -56,8 +40,17 @@ static int check_force(const tribo_context *ctx, tribo_context *note, const doub
     if (!feq && ctx->n) {
         return tribo_fail(note, TRIBO_ERR_NULL, "feq is NULL");
     }
-    status = *plain ? TRIBO_OK : check_used(ctx, note, v, feq);
-    return status || !tribo_plane_count(ctx) ? status : tribo_plane_check_feq(ctx, note, v, feq);
+    for (size_t i = 0; !*plain && i < ctx->n; i += TRIBO_CHUNK) {
+        double used[TRIBO_CHUNK];
+        const size_t n = tribo_chunk_size(ctx, i);
+        used_feq(ctx, i, n, v, feq, used);
+        for (size_t k = 0; !tribo_all_finite(used, n); k++) {
+            if (!isfinite(used[k])) {
+                return tribo_fail(note, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", i + k, used[k]);
+            }
+        }
+    }
+    return tribo_plane_check_feq(ctx, note, v, feq);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ forces */

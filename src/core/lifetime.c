@@ -7,18 +7,19 @@
 
 #define DEFAULT_EPSILON 1e-6
 
-/* Returns a context with arrays of zeros, with room for one contact more, so that none is empty, and all else as in like; NULL if
- * out of memory. */
+/* Returns a context with all as in like, whose settings, forces and slips, if it has any, are copied; other arrays are zeros. All
+ * have room for one contact more, so that none is empty. NULL if out of memory. */
 static tribo_context *context_allocate(size_t n, const tribo_context *like)
 {
     const size_t m = n + 1, chunks = tribo_chunks(m);
     struct layout b = {0};
+    size_t begin = 0, end = 0; /* of the arrays from chunk to last.slip */
     tribo_context *ctx, at = *like;
-    double **const array[] = {&at.set.limit,    &at.set.width,         &at.set.rate,   &at.set.ratio,
-                              &at.set.stribeck, &at.follow.cut_limit,  &at.follow.now, &at.follow.cut_factor,
-                              &at.follow.hold,  &at.follow.hold_width, &at.last.f,     &at.last.feq,
-                              &at.last.v};
-    enum { ARRAYS = sizeof array / sizeof *array };
+    double **const array[] = {
+        &at.set.limit, &at.set.width,        &at.set.rate,          &at.set.ratio,   &at.set.stribeck,      &at.last.f,
+        &at.last.feq,  &at.follow.cut_limit, &at.follow.cut_factor, &at.follow.hold, &at.follow.hold_width, &at.follow.now,
+        &at.last.v};
+    enum { ARRAYS = sizeof array / sizeof *array, COPIED = 7 };
     /* Each array of n doubles begins a line of cache, an odd number of lines behind the one before: of arrays at distances of a
      * power of two few would stay in cache. */
     const size_t room = TRIBO_LINE * ((n / TRIBO_LINE + 1) | 1);
@@ -28,13 +29,19 @@ static tribo_context *context_allocate(size_t n, const tribo_context *like)
         for (size_t k = 0; numbers && k < ARRAYS; k++) {
             *array[k] = numbers + k * room;
         }
+        begin = b.used;
         at.follow.chunk = tribo_layout_array(&b, chunks, sizeof *at.follow.chunk);
-        at.last.tangent = tribo_layout_array(&b, m, sizeof *at.last.tangent);
         at.moving = tribo_layout_array(&b, m, 1);
         at.last.slip = tribo_layout_array(&b, m, 1);
+        end = b.used;
+        at.last.tangent = tribo_layout_array(&b, m, sizeof *at.last.tangent);
         at.last.near = tribo_layout_array(&b, m, 1);
         at.spare = tribo_layout_array(&b, m, 1);
     } while (!b.memory && tribo_layout_zeros(&b));
+    if (ctx && like->set.limit) {
+        memcpy(at.set.limit, like->set.limit, COPIED * room * sizeof *at.set.limit);
+        memcpy(at.follow.chunk, like->follow.chunk, end - begin);
+    }
     at.n = n;
     at.message[0] = 0;
     return ctx ? memcpy(ctx, &at, sizeof at) : NULL;
@@ -72,8 +79,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     if (!ctx || !copy) {
         return TRIBO_ERR_NULL;
     }
-    const size_t n = ctx->n;
-    tribo_context *c = context_allocate(n, ctx);
+    tribo_context *c = context_allocate(ctx->n, ctx);
     if (!c) {
         return TRIBO_ERR_MEMORY;
     }
@@ -85,13 +91,8 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
         tribo_destroy(c);
         return TRIBO_ERR_MEMORY;
     }
-    tribo_take_settings(c, ctx);
-    tribo_copy(c->last.feq, ctx->last.feq, n);
-    tribo_copy(c->last.f, ctx->last.f, n);
-    memcpy(c->moving, ctx->moving, n);
-    memcpy(c->last.slip, ctx->last.slip, n);
     tribo_refresh_limits(c);
-    tribo_copy(c->follow.now, ctx->follow.now, ctx->set.breaking ? n : 0);
+    tribo_copy(c->follow.now, ctx->follow.now, ctx->n);
     c->revision = ctx->revision;
     *copy = c;
     return TRIBO_OK;

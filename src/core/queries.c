@@ -47,40 +47,34 @@ int tribo_get_slip(const tribo_context *ctx, signed char *slip)
 
 /* ------------------------------------------------------------------------------------------------------------ numbers */
 
-static size_t count_stuck(const tribo_context *ctx)
-{
-    const struct last *last = &ctx->last;
-    size_t stuck = 0;
-    for (size_t i = 0; last->slips != NO_SLIPS && i < ctx->n; i++) {
-        const int slip = last->slips == SLIPS_WRITTEN ? last->slip[i]
-                         : tribo_is_scalar(ctx, i) ? tribo_slip_by_force(last->f[i], ctx->follow.contacts.limit[i], last->holds)
-                                                   : tribo_plane_slip(ctx, i);
-        stuck += slip == TRIBO_SLIP_STUCK;
-    }
-    return stuck;
-}
-
 int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
 {
     if (!ctx || !value) {
         return TRIBO_ERR_NULL;
     }
     const struct work *work = &ctx->memory.problem.work;
-    const size_t values[] = {[TRIBO_COUNT_STUCK] = 0,
-                             [TRIBO_COUNT_RANK] = ctx->last.rank,
-                             [TRIBO_COUNT_ISLANDS] = tribo_islands(ctx),
-                             [TRIBO_COUNT_SOLVES] = ctx->count.solves,
-                             [TRIBO_COUNT_SKIPPED] = ctx->count.skipped,
-                             [TRIBO_COUNT_FACTORIZATIONS] = work->factorizations,
-                             [TRIBO_COUNT_UPDATES] = work->updates,
-                             [TRIBO_COUNT_REVERSALS] = ctx->count.marks,
-                             [TRIBO_COUNT_REUSED] = ctx->count.reused,
-                             [TRIBO_COUNT_PLANAR] = tribo_plane_count(ctx),
-                             [TRIBO_COUNT_SETTINGS] = ctx->revision};
+    const struct last *last = &ctx->last;
+    size_t values[] = {[TRIBO_COUNT_STUCK] = 0,
+                       [TRIBO_COUNT_RANK] = last->rank,
+                       [TRIBO_COUNT_ISLANDS] = tribo_islands(ctx),
+                       [TRIBO_COUNT_SOLVES] = ctx->count.solves,
+                       [TRIBO_COUNT_SKIPPED] = ctx->count.skipped,
+                       [TRIBO_COUNT_FACTORIZATIONS] = work->factorizations,
+                       [TRIBO_COUNT_UPDATES] = work->updates,
+                       [TRIBO_COUNT_REVERSALS] = ctx->count.marks,
+                       [TRIBO_COUNT_REUSED] = ctx->count.reused,
+                       [TRIBO_COUNT_PLANAR] = tribo_plane_count(ctx),
+                       [TRIBO_COUNT_SETTINGS] = ctx->revision};
     if (which < 0 || (size_t)which >= sizeof values / sizeof *values) {
         return TRIBO_ERR_RANGE;
     }
-    *value = which == TRIBO_COUNT_STUCK ? count_stuck(ctx) : values[which];
+    for (size_t i = 0; which == TRIBO_COUNT_STUCK && last->slips != NO_SLIPS && i < ctx->n; i++) {
+        const int slip = last->slips == SLIPS_WRITTEN ? last->slip[i]
+                         : tribo_is_scalar(ctx, i) ? tribo_slip_by_force(last->f[i], ctx->follow.contacts.limit[i], last->holds)
+                                                   : tribo_plane_slip(ctx, i);
+        values[TRIBO_COUNT_STUCK] += slip == TRIBO_SLIP_STUCK;
+    }
+    *value = values[which];
     return TRIBO_OK;
 }
 

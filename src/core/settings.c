@@ -352,20 +352,6 @@ int tribo_get_sharing(const tribo_context *ctx, int *sharing)
 
 /* --------------------------------------------------------------------------------------------------------- all of them */
 
-void tribo_take_settings(tribo_context *ctx, const tribo_context *from)
-{
-    const struct settings own = ctx->set, *s = &from->set;
-    const size_t n = ctx->n;
-    tribo_copy(own.limit, s->limit, n);
-    tribo_copy(own.width, s->width, n);
-    tribo_copy(own.rate, s->rate, n);
-    tribo_copy(own.ratio, s->ratio, n);
-    tribo_copy(own.stribeck, s->stribeck, n);
-    memcpy(ctx->follow.chunk, from->follow.chunk, tribo_chunks(n) * sizeof *ctx->follow.chunk);
-    ctx->set = (struct settings){s->law,    s->coupling, s->sharing,  s->step,   s->lambda_dt, own.limit,
-                                 own.width, own.rate,    s->breaking, own.ratio, own.stribeck};
-}
-
 int tribo_copy_settings(tribo_context *ctx, const tribo_context *from)
 {
     if (!ctx) {
@@ -386,7 +372,16 @@ int tribo_copy_settings(tribo_context *ctx, const tribo_context *from)
     if (ctx->set.law != from->set.law) {
         memset(ctx->moving, 0, ctx->n);
     }
-    tribo_take_settings(ctx, from);
+    const struct settings own = ctx->set, *s = &from->set;
+    const size_t n = ctx->n;
+    tribo_copy(own.limit, s->limit, n);
+    tribo_copy(own.width, s->width, n);
+    tribo_copy(own.rate, s->rate, n);
+    tribo_copy(own.ratio, s->ratio, n);
+    tribo_copy(own.stribeck, s->stribeck, n);
+    memcpy(ctx->follow.chunk, from->follow.chunk, tribo_chunks(n) * sizeof *ctx->follow.chunk);
+    ctx->set = (struct settings){s->law,    s->coupling, s->sharing,  s->step,   s->lambda_dt, own.limit,
+                                 own.width, own.rate,    s->breaking, own.ratio, own.stribeck};
     tribo_refresh(ctx);
     return TRIBO_OK;
 }

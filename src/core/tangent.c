@@ -6,26 +6,6 @@
 #include "clusters.h"
 #include "static.h"
 
-/* Keeps the derivatives of all laws at the last balance, which was at v and a. */
-static void linearize_laws(tribo_context *ctx, const double *v, const double *a)
-{
-    for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
-        double f[TRIBO_CHUNK], dv[TRIBO_CHUNK], dfeq[TRIBO_CHUNK], dlimit[TRIBO_CHUNK];
-        const size_t n = tribo_chunk_size(ctx, i);
-        const struct contacts c = tribo_chunk_contacts(ctx, i);
-        if (tribo_all_alone(ctx)) {
-            tribo_find_feq(ctx, i, n, a, ctx->last.feq + i);
-        }
-        tribo_law_tangents(ctx, &c, i, n, v + i, ctx->last.feq + i, &(struct tangents){f, dv, dfeq, dlimit});
-        for (size_t k = 0; k < n; k++) {
-            ctx->last.tangent[i + k] = (struct tangent){dv[k], dfeq[k], dlimit[k]};
-        }
-    }
-    tribo_copy(ctx->last.v, v, ctx->n);
-    tribo_clusters_linearize(ctx, a);
-    ctx->last.linearized = 1;
-}
-
 /* Returns the change of kappa = slope v. */
 static double relaxation_change(const tribo_context *ctx, size_t i, double dv, double dlimit)
 {
@@ -176,7 +156,22 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
         return status;
     }
     const size_t n = ctx->n;
-    linearize_laws(ctx, v, a);
+    /* The derivatives of all laws at v and a. */
+    for (size_t i = 0; i < n; i += TRIBO_CHUNK) {
+        double ignored[TRIBO_CHUNK], dv[TRIBO_CHUNK], dfeq[TRIBO_CHUNK], dlimit[TRIBO_CHUNK];
+        const size_t count = tribo_chunk_size(ctx, i);
+        const struct contacts c = tribo_chunk_contacts(ctx, i);
+        if (tribo_all_alone(ctx)) {
+            tribo_find_feq(ctx, i, count, a, ctx->last.feq + i);
+        }
+        tribo_law_tangents(ctx, &c, i, count, v + i, ctx->last.feq + i, &(struct tangents){ignored, dv, dfeq, dlimit});
+        for (size_t k = 0; k < count; k++) {
+            ctx->last.tangent[i + k] = (struct tangent){dv[k], dfeq[k], dlimit[k]};
+        }
+    }
+    tribo_copy(ctx->last.v, v, n);
+    tribo_clusters_linearize(ctx, a);
+    ctx->last.linearized = 1;
     double *const out[2] = {df_dv, df_da}, *unit = ctx->last.feq;
     const struct change by[2] = {{unit, NULL, NULL}, {NULL, unit, NULL}};
     for (int w = 0; w < 2; w++) {

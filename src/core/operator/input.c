@@ -187,8 +187,9 @@ int tribo_set_operator_dense(tribo_context *ctx, const double *r)
     return install_rows(ctx, &a, NULL);
 }
 
-/* Checks the compressed rows of an [n][columns] matrix called name. */
-static int input_check_rows(tribo_context *ctx, size_t columns, const size_t *rowptr, const size_t *col, const double *val)
+/* Checks the rows of a matrix [n][columns], t = its transpose, in which equal columns of a row are neighbours; a status. */
+static int input_read(tribo_context *ctx, size_t columns, const size_t *rowptr, const size_t *col, const double *val,
+                      struct csr *t)
 {
     const size_t n = ctx->n;
     if (!rowptr) {
@@ -216,18 +217,7 @@ static int input_check_rows(tribo_context *ctx, size_t columns, const size_t *ro
             }
         }
     }
-    return TRIBO_OK;
-}
-
-/* Checks the rows of a matrix [n][columns], t = its transpose, in which equal columns of a row are neighbours; a status. */
-static int input_read(tribo_context *ctx, size_t columns, const size_t *rowptr, const size_t *col, const double *val,
-                      struct csr *t)
-{
-    const int status = input_check_rows(ctx, columns, rowptr, col, val);
-    if (status) {
-        return status;
-    }
-    if (!tribo_csr_transpose(t, ctx->n, columns, rowptr, col, val)) {
+    if (!tribo_csr_transpose(t, n, columns, rowptr, col, val)) {
         return input_out_of_memory(ctx);
     }
     for (size_t j = 0; j < t->n; j++) {

@@ -333,10 +333,19 @@ int tribo_plane_check_coupling(tribo_context *ctx, int coupling, size_t count, c
                : TRIBO_OK;
 }
 
-/* Checks that first [count] are pairs of contacts, none in two of them; a status. */
-static int check_first(tribo_context *ctx, size_t count, const size_t *first)
+int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
 {
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!first && count) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "first is NULL");
+    }
     signed char *taken = ctx->spare;
+    int status = tribo_plane_check_coupling(ctx, ctx->set.coupling, count, first);
+    if (status || (!count && !ctx->planar)) {
+        return status;
+    }
     memset(taken, 0, ctx->n);
     for (size_t k = 0; k < count; k++) {
         const size_t i = first[k];
@@ -356,24 +365,8 @@ static int check_first(tribo_context *ctx, size_t count, const size_t *first)
         }
         taken[i] = taken[i + 1] = 1;
     }
-    return TRIBO_OK;
-}
-
-int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!first && count) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "first is NULL");
-    }
-    int status = tribo_plane_check_coupling(ctx, ctx->set.coupling, count, first);
-    if (status || (!count && !ctx->planar)) {
-        return status;
-    }
     struct planar *c;
-    status = check_first(ctx, count, first);
-    status = status ? status : tribo_check_one_ratio(ctx, ctx->set.ratio, ctx->set.stribeck, count, first);
+    status = tribo_check_one_ratio(ctx, ctx->set.ratio, ctx->set.stribeck, count, first);
     status = status ? status : tribo_clusters_prepare(ctx, count, first, ctx->op, &ctx->memory, &c);
     if (!status) {
         tribo_write_slips(ctx);
