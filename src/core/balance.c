@@ -231,7 +231,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
                 find_other_feq(ctx, tribo_problem(ctx, g), a, 0);
             }
         }
-        tribo_clusters_feq(ctx, a);
+        tribo_clusters_feq(ctx);
         tribo_copy(feq, ctx->last.feq, ctx->n);
     }
     tribo_copy(f, ctx->last.f, f ? ctx->n : 0);

@@ -68,8 +68,8 @@ void tribo_clusters_refresh(tribo_context *ctx, int follows, double time);
 int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a);
 int tribo_clusters_step(tribo_context *ctx, double dt, const double *vfree, const signed char *known);
 
-/* f_eq of the contacts of clusters, in last.feq. */
-void tribo_clusters_feq(tribo_context *ctx, const double *a);
+/* f_eq of the contacts of clusters in the last balance, in last.feq. */
+void tribo_clusters_feq(tribo_context *ctx);
 
 /* After a step: sets feels [n] = (R f)_i without the term of f_i, for contacts of clusters. Of planar contacts that slide: sets
  * reverses = TRIBO_SLIP_PLANE, and *vfree = an array with v + vfree where v'(v at the end) > 0. Returns the number of these
@@ -89,14 +89,15 @@ const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size);
 
 /* ---- planar_tangent.c */
 
-/* Keeps a of tribo_balance_tangent. */
-void tribo_clusters_linearize(tribo_context *ctx, const double *a);
-
 /* Returns df [size] of cluster q, which was resumed last. */
 const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct change *d);
 
 /* f_eq given, which has to be finite where forces of planar contacts depend on it; a status. */
 int tribo_plane_check_feq(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq);
+
+/* force.c: out [4] = f of all contacts from v and f_eq, and its derivatives by v, f_eq and limit, [n], or if pairs = 1 [n][2]; each
+ * may be NULL; a status. */
+int tribo_find_tangents(const tribo_context *ctx, int pairs, const double *v, const double *feq, double *const *out);
 
 /* out [4] = f of planar contacts from v and f_eq, and its derivatives by v, f_eq and limit, [n][2]; each may be NULL; a status. */
 int tribo_plane_force(const tribo_context *ctx, const double *v, const double *feq, double *const *out);

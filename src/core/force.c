@@ -128,8 +128,7 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
     return tribo_plane_force(ctx, v, feq, out);
 }
 
-/* Finds the arrays of out: derivatives are [n]; pairs = 1: [n][2]. Returns a status. */
-static int tangents_of(const tribo_context *ctx, int pairs, const double *v, const double *feq, double *const *out)
+int tribo_find_tangents(const tribo_context *ctx, int pairs, const double *v, const double *feq, double *const *out)
 {
     int plain;
     const int status = ctx ? check_force(ctx, NULL, v, feq, &plain) : TRIBO_ERR_NULL;
@@ -154,13 +153,7 @@ static int tangents_of(const tribo_context *ctx, int pairs, const double *v, con
 int tribo_force_tangent(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv, double *df_dfeq,
                         double *df_dlimit)
 {
-    return tangents_of(ctx, 0, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
-}
-
-int tribo_force_tangent_planar(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
-                               double *df_dfeq, double *df_dlimit)
-{
-    return tangents_of(ctx, 1, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
+    return tribo_find_tangents(ctx, 0, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
 }
 
 int tribo_accept(tribo_context *ctx, const double *v, const double *feq)

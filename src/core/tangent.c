@@ -170,7 +170,6 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
         }
     }
     tribo_copy(ctx->last.v, v, n);
-    tribo_clusters_linearize(ctx, a);
     ctx->last.linearized = 1;
     double *const out[2] = {df_dv, df_da}, *unit = ctx->last.feq;
     const struct change by[2] = {{unit, NULL, NULL}, {NULL, unit, NULL}};

@@ -25,6 +25,11 @@ struct cluster {
     int redundant;  /* R is singular */
 };
 
+/* Units of force and R in the problem of a cluster. */
+struct unit {
+    double force, r;
+};
+
 /* Planar contacts of a context; what it keeps of them from call to call; workspace. Without an operator there are no clusters. */
 struct planar {
     size_t count, *first; /* [count] first directions */
@@ -37,14 +42,15 @@ struct planar {
     size_t *near;              /* [n + 1] places in the cluster of the problem's directions */
     size_t *contact;           /* [n] the contacts there */
     unsigned char *directions; /* [n] of the contact that begins with a direction of the problem: 1, 2; 0: none begins */
-    size_t cuts;               /* directions of the problem with a reach below their limit */
-    double *y;                 /* [n] solutions, in parts of the reach */
-    double *radius;            /* [n] reach = min(limit, radius) */
-    double *a;                 /* [n] of the last tribo_balance_tangent, or step */
-    double *shift;             /* [n] c of the problem's lenses, in parts of limits */
-    double *pull;              /* [n] R f + a without the forces of the problem */
-    double *v, *df, *other;    /* [n] workspace */
-    double *dlimit;            /* [n] changes of limits that depend on v */
+    struct unit unit;
+    size_t cuts;            /* directions of the problem with a reach below their limit */
+    double *y;              /* [n] solutions, in parts of the reach */
+    double *radius;         /* [n] reach = min(limit, radius) */
+    double *a;              /* [n] of the last balance, or step */
+    double *shift;          /* [n] c of the problem's lenses, in parts of limits */
+    double *pull;           /* [n] R f + a without the forces of the problem */
+    double *v, *df, *other; /* [n] workspace */
+    double *dlimit;         /* [n] changes of limits that depend on v */
 };
 
 /* The most directions of a cluster: its matrix is kept. */
@@ -100,12 +106,6 @@ struct contacts tribo_planar_view(const tribo_context *ctx, size_t i, size_t dir
  * it. */
 double tribo_planar_reach(const tribo_context *ctx, size_t i);
 int tribo_planar_cut(const tribo_context *ctx, size_t i);
-
-/* Units of force and R in the problem. */
-struct unit {
-    double force, r;
-};
-struct unit tribo_planar_units(const tribo_context *ctx);
 
 /* pull [size] += (own blocks of s) shift. */
 void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pull);

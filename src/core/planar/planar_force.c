@@ -80,16 +80,6 @@ static int planar_collect(tribo_context *ctx, const struct cluster *g, const dou
     return ctx->planar->problem.size > 0;
 }
 
-struct unit tribo_planar_units(const tribo_context *ctx)
-{
-    struct unit u = {0.0, 0.0};
-    for (size_t e = 0; e < ctx->planar->problem.size; e++) {
-        u.force = greater(u.force, tribo_planar_reach(ctx, ctx->planar->contact[e]));
-        u.r = greater(u.r, ctx->op->diagonal[ctx->planar->contact[e]]);
-    }
-    return u;
-}
-
 void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pull)
 {
     const struct disc_qp *p = &ctx->planar->problem;
@@ -104,10 +94,10 @@ void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pu
 }
 
 /* Returns R f + a at place k of a cluster, without the forces at places skip [count], ascending. */
-static double pull_at(const tribo_context *ctx, const struct cluster *g, size_t k, const size_t *skip, size_t count, double a)
+static double pull_at(const tribo_context *ctx, const struct cluster *g, size_t k, const size_t *skip, size_t count)
 {
     const double *row = g->r + k * g->size;
-    double sum = cut(a);
+    double sum = cut(ctx->planar->a[g->member[k]]);
     for (size_t j = 0, other = 0; j < g->size; j++) {
         const double bound = ctx->follow.contacts.bound[g->member[j]];
         if (other < count && skip[other] == j) {
@@ -120,11 +110,11 @@ static double pull_at(const tribo_context *ctx, const struct cluster *g, size_t 
 }
 
 /* pull = R f + a of the problem's directions, with the forces of all others. */
-static void find_pulls(tribo_context *ctx, const struct cluster *g, const double *a)
+static void find_pulls(tribo_context *ctx, const struct cluster *g)
 {
     const struct planar *c = ctx->planar;
     for (size_t e = 0; e < c->problem.size; e++) {
-        c->pull[e] = pull_at(ctx, g, c->near[e], c->near, c->problem.size, a[c->contact[e]]);
+        c->pull[e] = pull_at(ctx, g, c->near[e], c->near, c->problem.size);
     }
 }
 
@@ -164,9 +154,14 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
 {
     struct planar *c = ctx->planar;
     struct disc_qp *p = &c->problem;
-    const struct unit u = tribo_planar_units(ctx);
     const size_t n = p->size, *contact = c->contact;
     const double *bound = ctx->follow.contacts.bound, *radius = c->radius;
+    struct unit u = {0.0, 0.0};
+    for (size_t e = 0; e < n; e++) {
+        u.force = greater(u.force, tribo_planar_reach(ctx, contact[e]));
+        u.r = greater(u.r, ctx->op->diagonal[contact[e]]);
+    }
+    c->unit = u;
     c->cuts = 0;
     for (size_t e = 0; e < n; e++) {
         const size_t i = contact[e];
@@ -341,15 +336,15 @@ static int is_pulled_beyond(const struct disc_qp *p, size_t e)
 }
 
 /* Gives contacts that the solution cannot hold the limits by which they slide at the end of a step of dt, or (0) from rest.
- * Returns their number. a [n]: accelerations without friction. */
-static size_t planar_break(tribo_context *ctx, const struct cluster *g, double dt, const double *a)
+ * Returns their number. */
+static size_t planar_break(tribo_context *ctx, const struct cluster *g, double dt)
 {
     const struct disc_qp *p = &ctx->planar->problem;
     const size_t *member = g->member;
     double *now = ctx->follow.now, *end = ctx->planar->v; /* velocities at the end */
     size_t broken = 0;
     for (size_t k = 0; k < g->size; k++) {
-        end[member[k]] = product(pull_at(ctx, g, k, NULL, 0, a[member[k]]), dt);
+        end[member[k]] = product(pull_at(ctx, g, k, NULL, 0), dt);
     }
     for (size_t e = 0; e < p->size; e += p->wide[e]) {
         const size_t k = ctx->planar->contact[e], first = k - (ctx->planar->role[k] == ROLE_SECOND);
@@ -377,14 +372,14 @@ static size_t planar_break(tribo_context *ctx, const struct cluster *g, double d
 #define TOO_FAR 1e-6
 
 /* Solves until all forces are within their reach, and no static limit breaks; a status. */
-static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt, const double *a)
+static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt)
 {
     struct planar *c = ctx->planar;
     struct disc_qp *p = &c->problem;
     const struct work *work = &p->factor.qp.work;
     ctx->last.clusters++;
     do {
-        find_pulls(ctx, g, a);
+        find_pulls(ctx, g);
         estimate_reaches(ctx, g);
         do {
             pose_cluster(ctx, g);
@@ -410,7 +405,7 @@ static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt,
                 ctx->last.f[i] = p->y[e] * tribo_planar_reach(ctx, i);
             }
         } while (c->cuts && widen_reaches(ctx));
-    } while (ctx->set.breaking && planar_break(ctx, g, dt, a));
+    } while (ctx->set.breaking && planar_break(ctx, g, dt));
     ctx->last.rank += p->factor.sets.rank;
     return TRIBO_OK;
 }
@@ -421,7 +416,7 @@ const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
     const struct cluster *g = &ctx->planar->cluster[q];
     *size = g->size;
     if (planar_collect(ctx, g, ctx->last.v, 0)) {
-        find_pulls(ctx, g, ctx->planar->a);
+        find_pulls(ctx, g);
         pose_cluster(ctx, g);
         tribo_disc_gains(p);
         tribo_disc_gradients(p);
@@ -433,15 +428,14 @@ const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
 
 /* ------------------------------------------------------------------------------------------------------------- f_eq */
 
-/* feq [directions] of the contact at place k of a cluster, with a [directions]; 0 if it is open. */
-static void contact_feq(const tribo_context *ctx, const struct cluster *g, size_t k, size_t directions, const double *a,
-                        double *feq)
+/* feq [directions] of the contact at place k of a cluster; 0 if it is open. */
+static void contact_feq(const tribo_context *ctx, const struct cluster *g, size_t k, size_t directions, double *feq)
 {
     const struct block block = block_at(g->r, g->size, k, directions);
     const size_t own[2] = {k, k + 1};
     double x[2] = {0.0, 0.0}, most = 0.0;
     for (size_t d = 0; d < directions; d++) {
-        x[d] = pull_at(ctx, g, k + d, own, directions, a[d]);
+        x[d] = pull_at(ctx, g, k + d, own, directions);
         most = greater(most, ctx->set.limit[g->member[k + d]]);
     }
     push_back(&block, x);
@@ -450,13 +444,13 @@ static void contact_feq(const tribo_context *ctx, const struct cluster *g, size_
     }
 }
 
-void tribo_clusters_feq(tribo_context *ctx, const double *a)
+void tribo_clusters_feq(tribo_context *ctx)
 {
     for (size_t q = 0; q < tribo_cluster_count(ctx); q++) {
         const struct cluster *g = &ctx->planar->cluster[q];
         for (size_t k = 0; k < g->size; k += tribo_directions(ctx, g->member[k])) {
             const size_t i = g->member[k];
-            contact_feq(ctx, g, k, tribo_directions(ctx, i), a + i, ctx->last.feq + i);
+            contact_feq(ctx, g, k, tribo_directions(ctx, i), ctx->last.feq + i);
         }
     }
 }
@@ -465,19 +459,20 @@ void tribo_clusters_feq(tribo_context *ctx, const double *a)
 
 int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a)
 {
+    const struct planar *c = ctx->planar;
     int status = TRIBO_OK;
+    tribo_copy(c ? c->a : NULL, a, c ? ctx->n : 0);
     for (size_t q = 0; !status && q < tribo_cluster_count(ctx); q++) {
-        const struct cluster *g = &ctx->planar->cluster[q];
-        const struct planar *c = ctx->planar;
+        const struct cluster *g = &c->cluster[q];
         if (!planar_collect(ctx, g, v, 1)) {
             continue;
         }
-        status = solve_cluster(ctx, g, 0.0, a);
+        status = solve_cluster(ctx, g, 0.0);
         /* Laws with a memory set the forces of scalar contacts from f_eq, all of which are found before any force changes. */
         for (size_t e = 0; ctx->set.law->remembers && e < c->problem.size; e++) {
             const size_t i = c->contact[e];
             if (tribo_is_scalar(ctx, i)) {
-                contact_feq(ctx, g, c->near[e], 1, a + i, ctx->last.feq + i);
+                contact_feq(ctx, g, c->near[e], 1, ctx->last.feq + i);
             }
         }
         for (size_t e = 0; ctx->set.law->remembers && e < c->problem.size; e++) {
@@ -509,7 +504,7 @@ int tribo_clusters_step(tribo_context *ctx, double dt, const double *v, const si
             }
         }
         if (ctx->planar->problem.size) {
-            status = solve_cluster(ctx, g, dt, ctx->planar->a);
+            status = solve_cluster(ctx, g, dt);
         }
     }
     return status;
@@ -553,7 +548,8 @@ size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const
             double forward = 0.0; /* v_end'v */
             directions = tribo_directions(ctx, i);
             for (size_t d = 0; d < directions; d++) {
-                feels[i + d] = pull_at(ctx, g, k + d, &k, directions == 1 ? 1 : 0, 0.0);
+                ctx->planar->a[i + d] = 0.0;
+                feels[i + d] = pull_at(ctx, g, k + d, &k, directions == 1 ? 1 : 0);
                 forward += product(free[i + d] + product(feels[i + d], dt), v[i + d]);
             }
             if (directions == 1 || !reaches_limits(ctx, i)) {

@@ -5,26 +5,20 @@
 #include "core/static.h"
 #include "core/clusters.h"
 
-void tribo_clusters_linearize(tribo_context *ctx, const double *a)
+/* Static limits at i change with |v|: adds the changes of limits to dlimit [directions] for the change dv of v. At rest, where |v|
+ * has a kink, it grows along `along`, the direction in which the contact begins to slide, or 0. */
+static void add_falls(const tribo_context *ctx, size_t i, size_t directions, const double *v, const double *along,
+                      const double *dv, double *dlimit)
 {
-    if (ctx->planar) {
-        memcpy(ctx->planar->a, a, ctx->n * sizeof *a);
-    }
-}
-
-/* along [directions] = v/|v|; at rest, where |v| has a kink, along/|along|, the direction in which a contact begins to slide,
- * or 0. Returns |v|. */
-static double heading(size_t directions, const double *v, double *along)
-{
-    const double speed = tribo_length((int)directions, v);
+    const double speed = tribo_length((int)directions, v), *way = speed > 0.0 ? v : along;
+    const double length = tribo_length((int)directions, way);
+    double faster = 0.0;
     for (size_t k = 0; k < directions; k++) {
-        along[k] = speed > 0.0 ? v[k] : along[k];
+        faster += (length > 0.0 ? way[k] / length : 0.0) * dv[k];
     }
-    const double length = tribo_length((int)directions, along);
     for (size_t k = 0; k < directions; k++) {
-        along[k] = length > 0.0 ? along[k] / length : 0.0;
+        dlimit[k] += product(tribo_limit_rate(ctx, i + k, speed), faster);
     }
-    return speed;
 }
 
 /* Returns d with the limits of a cluster, which change with |v| if they fall with speed. */
@@ -47,14 +41,12 @@ static struct change with_limits(tribo_context *ctx, const struct cluster *g, co
     for (size_t k = 0, directions; k < g->size; k += directions) {
         const size_t i = g->member[k];
         directions = tribo_directions(ctx, i);
-        double along[2] = {dlimit[i], directions == 2 ? dlimit[i + 1] : 0.0}, faster = 0.0;
-        const double speed = heading(directions, ctx->last.v + i, along);
-        for (size_t j = 0; j < directions; j++) {
-            faster += along[j] * tribo_entry(d->v, i + j);
-        }
+        const double along[2] = {dlimit[i], directions == 2 ? dlimit[i + 1] : 0.0};
+        const double dv[2] = {tribo_entry(d->v, i), directions == 2 ? tribo_entry(d->v, i + 1) : 0.0};
         for (size_t j = i; j < i + directions; j++) {
-            dlimit[j] = tribo_entry(d->limit, j) + product(tribo_limit_rate(ctx, j, speed), faster);
+            dlimit[j] = tribo_entry(d->limit, j);
         }
+        add_falls(ctx, i, directions, ctx->last.v + i, along, dv, dlimit + i);
     }
     return (struct change){d->v, d->a, dlimit};
 }
@@ -151,7 +143,7 @@ const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct c
 {
     struct disc_qp *p = &ctx->planar->problem;
     const struct cluster *g = &ctx->planar->cluster[q];
-    const struct unit u = tribo_planar_units(ctx);
+    const struct unit u = ctx->planar->unit;
     const size_t *near = ctx->planar->near, *contact = ctx->planar->contact, n = p->size;
     double *df = ctx->planar->df, *dshift = p->from, *turn = p->slide;
     double *dy = p->best; /* the part of the change of y that follows shifts */
@@ -298,17 +290,16 @@ static void given_columns(const tribo_context *ctx, size_t k, const struct given
     for (size_t d = 0; p && p->place[0] == LENS_ON_DISC && d < 2; d++) {
         along[d] = g->c.bound[d] > 0.0 ? quotient(p->gradient[d], g->c.bound[d]) : 0.0;
     }
-    const double speed = heading(2, v, along);
     for (size_t column = 0; column < 6; column++) {
         double unit[6] = {0.0}, df[2] = {0.0, 0.0};
         unit[column] = column < 4 || ctx->set.limit[i + column - 4] > 0.0;
         struct turn t = {{unit[0], unit[1]}, {unit[4], unit[5]}, {0.0, 0.0}, 0.0};
-        const double faster = along[0] * t.v[0] + along[1] * t.v[1];
         t.epsilon = g->c.scales && !g->s.open ? quotient(t.limit[g->s.far], set[g->s.far]) : 0.0;
         for (size_t d = 0; d < 2 && ctx->set.breaking; d++) {
             const double part = set[d] > 0.0 ? quotient(g->c.limit[d], set[d]) : 0.0;
-            t.limit[d] = product(part, t.limit[d]) + product(tribo_limit_rate(ctx, i + d, speed), faster);
+            t.limit[d] = product(part, t.limit[d]);
         }
+        add_falls(ctx, i, 2, v, along, t.v, t.limit);
         turn_slide(&g->s, g->c.limit, v, &t);
         if (p) {
             turn_near(p, g, ctx->set.law, &t, unit + 2, df);
@@ -345,4 +336,10 @@ int tribo_plane_force(const tribo_context *ctx, const double *v, const double *f
         tribo_copy(out[0] ? out[0] + i : NULL, f, out[0] ? 2 : 0);
     }
     return TRIBO_OK;
+}
+
+int tribo_force_tangent_planar(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
+                               double *df_dfeq, double *df_dlimit)
+{
+    return tribo_find_tangents(ctx, 1, v, feq, (double *const[4]){f, df_dv, df_dfeq, df_dlimit});
 }
