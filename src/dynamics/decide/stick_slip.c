@@ -303,15 +303,8 @@ const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tri
 
 void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
-    memset(m->work.rate, 0, sys->ndof * sizeof *m->work.rate);
-    tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, m->work.rate);
-    tribo_matrix_multiply_add(&sys->stiffness, -1.0, y + sys->ndof, m->work.rate);
-    if (sys->damping.rows) {
-        tribo_matrix_multiply_add(&sys->damping, -1.0, tribo_stick_slip_find_acceleration(m, sys), m->work.rate);
-    }
-    if (sys->compliance.count) {
-        tribo_matrix_multiply_add(&sys->compliance.pull, 1.0, m->state.spring_rate, m->work.rate);
-    }
+    const double *acceleration = sys->damping.rows ? tribo_stick_slip_find_acceleration(m, sys) : NULL;
+    tribo_system_smooth(sys, 1, 1.0, y + sys->ndof, acceleration, m->state.spring_rate, m->work.rate);
 }
 
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v)

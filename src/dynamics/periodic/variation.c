@@ -57,12 +57,7 @@ static int find_force_rates(struct variation *x, const double *y)
     for (size_t i = 0; i < sys->ncontact; i++) {
         x->f[i] = x->limit_rate[i] * tribo_stick_slip_follows(&x->events->stick_slip, i);
     }
-    memset(rate, 0, sys->ndof * sizeof *rate);
-    tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, rate);
-    tribo_matrix_multiply_add(&sys->stiffness, -1.0, y + sys->ndof, rate);
-    if (sys->damping.rows) {
-        tribo_matrix_multiply_add(&sys->damping, -1.0, x->acceleration, rate);
-    }
+    tribo_system_smooth(sys, 1, 1.0, y + sys->ndof, x->acceleration, x->events->stick_slip.state.spring_rate, rate);
     tribo_matrix_multiply_add(&sys->response, 1.0, x->f, rate);
     tribo_stick_slip_contact_accelerations(sys, rate, 2, x->a);
     return solve_holding_forces(x);

@@ -72,22 +72,15 @@ static int project_damping(const struct model *m, const struct reduced *r, size_
 static int reduction_build(const struct model *m, const struct reduced *r, const double *shapes, tribo_system **sys)
 {
     const size_t count = r->count, c = m->ncontact;
-    struct matrix stiffness = {0}, damping = {0}, direction = {0}, response = {0};
-    int status = TRIBO_ERR_MEMORY;
     double *responses = malloc((c * count + 1) * sizeof *responses);
-    if (responses) {
+    int status = responses ? tribo_system_build(sys, count, c) : TRIBO_ERR_MEMORY;
+    if (!status) {
+        tribo_system *s = *sys;
         tribo_transpose(c, count, shapes, responses);
-    }
-    if (responses && tribo_matrix_diagonal(&stiffness, count, r->omega2) &&
-        tribo_matrix_from_dense(&direction, c, count, shapes) && tribo_matrix_from_dense(&response, count, c, responses) &&
-        project_damping(m, r, count, &damping)) {
-        status = tribo_system_build(sys, count, c, &stiffness, &damping, &direction, &response);
-        status = status ? status : tribo_model_set_operator(m, *sys, responses, count);
-    } else {
-        tribo_matrix_free(&stiffness);
-        tribo_matrix_free(&damping);
-        tribo_matrix_free(&direction);
-        tribo_matrix_free(&response);
+        const int done = tribo_matrix_diagonal(&s->stiffness, count, r->omega2) &&
+                         tribo_matrix_from_dense(&s->direction, c, count, shapes) &&
+                         tribo_matrix_from_dense(&s->response, count, c, responses) && project_damping(m, r, count, &s->damping);
+        status = done ? tribo_model_set_operator(m, s, responses, count) : TRIBO_ERR_MEMORY;
     }
     free(responses);
     return status;

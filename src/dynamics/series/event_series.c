@@ -56,18 +56,6 @@ static void find_velocities(const struct event *e, size_t k, double scale, doubl
     }
 }
 
-/* acc += accelerations by stiffness, damping, and forces f [ncontact] of compliant contacts. */
-static void add_structure(const tribo_system *sys, const double *q, const double *u, const double *f, double *acc)
-{
-    tribo_matrix_multiply_add(&sys->stiffness, -1.0, q, acc);
-    if (sys->damping.rows) {
-        tribo_matrix_multiply_add(&sys->damping, -1.0, u, acc);
-    }
-    if (sys->compliance.count) {
-        tribo_matrix_multiply_add(&sys->compliance.pull, 1.0, f, acc);
-    }
-}
-
 /* Sets watch of contacts at rest to their forces. */
 static void watch_forces(const struct event *e, size_t k, int given, double *watch)
 {
@@ -88,9 +76,7 @@ static int expand_forces(struct event *e, size_t k, double scale)
     tribo_system *sys = e->sys;
     const size_t n = sys->ndof, c = sys->ncontact;
     double *acc = e->room.acceleration, *watch = e->watch + k * c, *base = e->room.base, *held = e->room.held;
-    memset(acc, 0, n * sizeof *acc);
-    tribo_system_loads(sys, DRIVES_LOAD, (int)k, scale, acc);
-    add_structure(sys, e->q + k * n, e->u + k * n, e->spring + k * c, acc);
+    tribo_system_smooth(sys, (int)k, scale, e->q + k * n, e->u + k * n, e->spring + k * c, acc);
     find_velocities(e, k, scale, watch);
     if (m->breakaway.falls) {
         expand_falling(e, k);

@@ -83,12 +83,7 @@ static int kick(tribo_driver *drv, const struct body_step *k, double *energy)
     tribo_step_form_begin(s, sys, k->from, k->u);
     /* velocities without friction, by forces at t and q */
     tribo_system_set_time(sys, k->t);
-    memset(s->a, 0, sys->ndof * sizeof *s->a);
-    tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, s->a);
-    tribo_matrix_multiply_add(&sys->stiffness, -1.0, k->q, s->a);
-    if (sys->damping.rows) {
-        tribo_matrix_multiply_add(&sys->damping, -1.0, k->u, s->a);
-    }
+    tribo_system_smooth(sys, 0, 1.0, k->q, k->u, NULL, s->a);
     for (size_t i = 0; i < sys->ndof; i++) {
         k->u_to[i] = k->u[i] + k->time * s->a[i];
     }

@@ -1,30 +1,32 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The equations of motion of a system; creation and destruction of systems. */
+/* The equations of motion of a system. */
 #include "system.h"
 #include "common/real.h"
 #include "common/simd.h"
-#include "common/zeros.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+void tribo_system_smooth(const tribo_system *sys, int order, double scale, const double *q, const double *u, const double *f,
+                         double *to)
+{
+    memset(to, 0, sys->ndof * sizeof *to);
+    tribo_system_loads(sys, DRIVES_LOAD, order, scale, to);
+    tribo_matrix_multiply_add(&sys->stiffness, -1.0, q, to);
+    tribo_matrix_multiply_add(&sys->damping, -1.0, u, to);
+    tribo_matrix_multiply_add(&sys->compliance.pull, 1.0, f, to);
+}
+
 void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration)
 {
-    const size_t n = sys->ndof;
     if (!tribo_system_is_at(sys, t)) {
         tribo_system_set_time(sys, t);
     }
-    memset(acceleration, 0, n * sizeof *acceleration);
-    tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, acceleration);
-    tribo_matrix_multiply_add(&sys->stiffness, -1.0, y, acceleration);
-    if (sys->damping.rows) {
-        tribo_matrix_multiply_add(&sys->damping, -1.0, y + n, acceleration);
-    }
     if (sys->compliance.count) {
         tribo_compliance_get(sys, y, sys->work.put_limit);
-        tribo_matrix_multiply_add(&sys->compliance.pull, 1.0, sys->work.put_limit, acceleration);
     }
+    tribo_system_smooth(sys, 0, 1.0, y, y + sys->ndof, sys->work.put_limit, acceleration);
 }
 
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a)
@@ -211,122 +213,4 @@ int tribo_system_accept(tribo_system *sys, double t, const double *y)
         status = tribo_system_explain(sys, tribo_balance(sys->contacts, sys->work.v, sys->work.a, sys->work.feq, NULL));
     }
     return status ? status : tribo_system_explain(sys, tribo_accept(sys->contacts, sys->work.v, sys->work.feq));
-}
-
-/* ----------------------------------------------------------------------------------------------------------------------- life */
-
-int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct matrix *stiffness, struct matrix *damping,
-                       struct matrix *direction, struct matrix *response)
-{
-    tribo_system *s = tribo_zeros(1, sizeof *s);
-    int status = s ? tribo_create(&s->contacts, ncontact) : TRIBO_ERR_MEMORY;
-    double *work = status ? NULL : tribo_zeros(8 * (ncontact + 1) + ndof, sizeof *work);
-    char *message = work ? tribo_zeros(TRIBO_MESSAGE, 1) : NULL;
-    if (!message) {
-        free(work);
-        tribo_system_destroy(s);
-        tribo_matrix_free(stiffness);
-        tribo_matrix_free(damping);
-        tribo_matrix_free(direction);
-        tribo_matrix_free(response);
-        return status ? status : TRIBO_ERR_MEMORY;
-    }
-    double **const part[] = {&s->work.v,         &s->work.a,     &s->work.f,
-                             &s->work.feq,       &s->work.dv_dt, &s->loads.given_limit,
-                             &s->work.put_limit, &s->tally,      &s->work.acceleration};
-    for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
-        *part[k] = work + k * (ncontact + 1);
-    }
-    s->message = message;
-    s->ndof = ndof;
-    s->ncontact = ncontact;
-    s->given = ndof;
-    s->stiffness = *stiffness;
-    s->damping = *damping;
-    s->direction = *direction;
-    s->response = *response;
-    s->loads.time = NAN;
-    for (size_t i = 0; i < ncontact; i++) {
-        s->tally[i] = 1.0;
-    }
-    *sys = s;
-    return TRIBO_OK;
-}
-
-/* Copies all that tribo_system_build does not set. Returns 1, or 0 if out of memory. */
-static int copy_rest(tribo_system *to, const tribo_system *sys)
-{
-    tribo_destroy(to->contacts);
-    to->contacts = NULL;
-    to->revision = sys->revision;
-    to->given = sys->given;
-    to->unsolved = sys->unsolved;
-    memcpy(to->loads.given_limit, sys->loads.given_limit, sys->ncontact * sizeof *to->loads.given_limit);
-    to->copied = sys->copied;
-    memcpy(to->tally, sys->tally, sys->ncontact * sizeof *to->tally);
-    int done = 1;
-    const size_t dofs = sys->expansion.place ? sys->expansion.dofs : sys->ndof;
-    to->reduced.modes = tribo_copy_of(sys->reduced.modes, sys->given * dofs, sizeof *to->reduced.modes, &done);
-    to->reduced.omega = tribo_copy_of(sys->reduced.omega, dofs, sizeof *to->reduced.omega, &done);
-    to->reduced.truncation = sys->reduced.truncation;
-    done = done && (!sys->lent || (tribo_clone(sys->lent, &to->lent) == TRIBO_OK && tribo_fix_operator(to->lent) == TRIBO_OK));
-    return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && tribo_matrix_copy(&to->k, &sys->k) &&
-           tribo_matrix_copy(&to->c, &sys->c) && tribo_matrix_copy(&to->mass, &sys->mass) &&
-           tribo_cholesky_copy(&to->factor, &sys->factor) && tribo_compliance_copy(to, sys) && tribo_expansion_copy(to, sys) &&
-           tribo_loads_copy(to, sys);
-}
-
-int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
-{
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!copy) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "copy is NULL");
-    }
-    tribo_system *to = NULL;
-    struct matrix a[4] = {{0}};
-    const struct matrix *from[] = {&sys->stiffness, &sys->damping, &sys->direction, &sys->response};
-    int done = 1;
-    for (size_t k = 0; done && k < 4; k++) {
-        done = tribo_matrix_copy(&a[k], from[k]);
-    }
-    for (size_t k = 0; !done && k < 4; k++) {
-        tribo_matrix_free(&a[k]);
-    }
-    done = done && tribo_system_build(&to, sys->ndof, sys->ncontact, &a[0], &a[1], &a[2], &a[3]) == TRIBO_OK;
-    if (!done || !copy_rest(to, sys)) {
-        tribo_system_destroy(to);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu degree%s of freedom", sys->ndof,
-                                 plural(sys->ndof));
-    }
-    *copy = to;
-    return TRIBO_OK;
-}
-
-void tribo_system_destroy(tribo_system *sys)
-{
-    if (!sys) {
-        return;
-    }
-    tribo_system_detach(sys);
-    tribo_destroy(sys->contacts);
-    tribo_destroy(sys->lent);
-    free(sys->message);
-    tribo_matrix_free(&sys->stiffness);
-    tribo_matrix_free(&sys->damping);
-    tribo_matrix_free(&sys->direction);
-    tribo_matrix_free(&sys->response);
-    tribo_loads_free(sys);
-    tribo_matrix_free(&sys->k);
-    tribo_matrix_free(&sys->c);
-    tribo_matrix_free(&sys->mass);
-    tribo_cholesky_free(&sys->factor);
-    tribo_compliance_free(&sys->compliance);
-    tribo_expansion_free(&sys->expansion);
-    free(sys->reduced.modes);
-    free(sys->reduced.omega);
-    free(sys->work.v);
-    free(sys->work.motion);
-    free(sys);
 }

@@ -32,18 +32,17 @@ void tribo_model_free(struct model *m);
 /* c = Cholesky factor of the mass matrix. Returns a status. */
 int tribo_model_factorize(const struct model *m, struct cholesky *c);
 
-/* structure.c: builds a system of degrees of freedom that have mass, from checked matrices. Returns a status. */
+/* structure.c: builds a system of degrees of freedom that have mass, from checked matrices. Returns a status; after an error
+ * tribo_model_build destroys *sys. */
 int tribo_model_build_massive(struct model *m, tribo_system **sys);
 
 /* condense.c: builds the system of the degrees of freedom with mass, from checked matrices; the others, and the sliders of
  * contacts with springs, become its expansion. Returns a status. */
 int tribo_model_condense(struct model *m, tribo_system **sys);
 
-/* Sets R = Z'Z in the contacts, Z [n][ncontact]: symmetric, and semidefinite up to rounding. Returns a status. */
+/* Sets R in the contacts: Z'Z, Z [n][ncontact], symmetric, and semidefinite up to rounding; z NULL: J M^-1 J' by the factor of
+ * sys. Refuses an R that hides bodies, unless the model is reduced. Returns a status. */
 int tribo_model_set_operator(const struct model *m, tribo_system *sys, const double *z, size_t n);
-
-/* Sets R = r in the contacts. own: see tribo_hidden; NULL: no check for hidden bodies. Returns a status. */
-int tribo_model_give_operator(const struct model *m, tribo_system *sys, const double *r, const double *own);
 
 /* reduction.c: builds the system of the lowest nmode modes. Returns a status. */
 int tribo_model_reduce(struct model *m, tribo_system **sys);

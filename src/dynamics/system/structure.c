@@ -2,11 +2,62 @@
 /* Builds systems from matrices. A diagonal mass matrix is inverted; else accelerations are solved for (M^-1 K, M^-1 C), up to
  * DENSE_MOST degrees of freedom. Larger systems keep their matrices (unsolved). */
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "delassus.h"
 #include "model.h"
+
+int tribo_model_fail(const struct model *m, int status, const char *format, ...)
+{
+    if (m->message && m->size) {
+        va_list args;
+        va_start(args, format);
+        vsnprintf(m->message, m->size, format, args);
+        va_end(args);
+    }
+    return status;
+}
+
+int tribo_model_no_memory(const struct model *m)
+{
+    return tribo_model_fail(m, TRIBO_ERR_MEMORY, "out of memory for %zu degree%s of freedom and %zu contact%s", m->ndof,
+                            plural(m->ndof), m->ncontact, plural(m->ncontact));
+}
+
+int tribo_model_too_large(const struct model *m)
+{
+    return tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
+                            "%zu degree%s of freedom are more than the %d that dense matrices are for: build tribo with "
+                            "TRIBO_SPARSE=ON, which needs CHOLMOD",
+                            m->ndof, plural(m->ndof), DENSE_MOST);
+}
+
+int tribo_model_factorize(const struct model *m, struct cholesky *c)
+{
+    size_t where;
+    double pivot;
+    switch (tribo_cholesky_create(c, &m->mass, &where, &pivot)) {
+    case TRIBO_OK:
+        return TRIBO_OK;
+    case TRIBO_ERR_INDEFINITE:
+        return tribo_model_fail(m, TRIBO_ERR_INDEFINITE, "mass is not positive definite: pivot %g at degree of freedom %zu",
+                                pivot, where);
+    case TRIBO_ERR_SIZE:
+        return tribo_model_too_large(m);
+    default:
+        return tribo_model_no_memory(m);
+    }
+}
+
+void tribo_model_free(struct model *m)
+{
+    tribo_matrix_free(&m->mass);
+    tribo_matrix_free(&m->damping);
+    tribo_matrix_free(&m->stiffness);
+    tribo_matrix_free(&m->direction);
+}
 
 static int structure_check(const struct model *m)
 {
@@ -33,101 +84,6 @@ static int structure_check(const struct model *m)
 
 /* --------------------------------------------------------------------------------------------------------------- builders */
 
-/* Moves the mass matrix and its factor to the system. */
-static void give_mass(struct model *m, tribo_system *sys, struct cholesky *c)
-{
-    sys->mass = m->mass;
-    sys->factor = *c;
-    m->mass = (struct matrix){0};
-    *c = (struct cholesky){0};
-}
-
-static int build_diagonal(struct model *m, tribo_system **sys)
-{
-    const size_t n = m->ndof;
-    struct cholesky c;
-    int status = tribo_model_factorize(m, &c);
-    if (status) {
-        return status;
-    }
-    double *inverse = malloc(n * sizeof *inverse);
-    struct matrix b = {0};
-    status = inverse && tribo_matrix_transpose(&b, &m->direction) ? TRIBO_OK : tribo_model_no_memory(m);
-    if (!status) {
-        for (size_t i = 0; i < n; i++) {
-            inverse[i] = 1.0 / tribo_matrix_get(&m->mass, i, i);
-        }
-        tribo_matrix_scale_rows(&b, inverse);
-        tribo_matrix_scale_rows(&m->stiffness, inverse);
-        tribo_matrix_scale_rows(&m->damping, inverse);
-        status = tribo_system_build(sys, n, m->ncontact, &m->stiffness, &m->damping, &m->direction, &b);
-        m->stiffness = m->damping = m->direction = (struct matrix){0};
-        status = status ? tribo_model_no_memory(m) : TRIBO_OK;
-    }
-    if (!status) {
-        const struct matrix *j = &(*sys)->direction;
-        give_mass(m, *sys, &c);
-        status = tribo_set_operator_mass((*sys)->contacts, n, inverse, j->first, j->col, j->val);
-        status = status ? tribo_model_fail(m, status, "%s", tribo_message((*sys)->contacts)) : TRIBO_OK;
-    }
-    free(inverse);
-    tribo_cholesky_free(&c);
-    return status;
-}
-
-/* solved = M^-1 a. Returns 0 if out of memory. */
-static int solve_matrix(const struct cholesky *c, const struct matrix *a, struct matrix *solved)
-{
-    double *x = tribo_matrix_to_dense(a);
-    if (x) {
-        tribo_half_solve(c, x, a->cols);
-        tribo_half_solve_back(c, x, a->cols);
-    }
-    const int done = x && tribo_matrix_from_dense(solved, a->rows, a->cols, x);
-    free(x);
-    return done;
-}
-
-static int build_solved(struct model *m, tribo_system **sys)
-{
-    struct cholesky c;
-    int status = tribo_model_factorize(m, &c);
-    if (status) {
-        return status;
-    }
-    double *z = tribo_matrix_transpose_to_dense(&m->direction), *x = tribo_matrix_transpose_to_dense(&m->direction);
-    struct matrix b = {0}, ak = {0}, ac = {0};
-    int done = z && x && solve_matrix(&c, &m->stiffness, &ak) && (!m->damping.rows || solve_matrix(&c, &m->damping, &ac));
-    if (done && m->ncontact) {
-        tribo_half_solve(&c, z, m->ncontact);
-        memcpy(x, z, m->ndof * m->ncontact * sizeof *x);
-        tribo_half_solve_back(&c, x, m->ncontact);
-    }
-    done = done && tribo_matrix_from_dense(&b, m->ndof, m->ncontact, x);
-    free(x);
-    if (!done) {
-        free(z);
-        tribo_matrix_free(&ak);
-        tribo_matrix_free(&ac);
-        tribo_cholesky_free(&c);
-        return tribo_model_no_memory(m);
-    }
-    status = tribo_system_build(sys, m->ndof, m->ncontact, &ak, &ac, &m->direction, &b);
-    m->direction = (struct matrix){0};
-    if (status) {
-        free(z);
-        tribo_cholesky_free(&c);
-        return tribo_model_no_memory(m);
-    }
-    give_mass(m, *sys, &c);
-    (*sys)->k = m->stiffness;
-    (*sys)->c = m->damping;
-    m->stiffness = m->damping = (struct matrix){0};
-    status = tribo_model_set_operator(m, *sys, z, m->ndof);
-    free(z);
-    return status;
-}
-
 static int solve_masses(const void *mass, size_t count, double *x)
 {
     return tribo_cholesky_solve(mass, count, x);
@@ -150,50 +106,123 @@ static int check_unsolved(const struct model *m)
     return TRIBO_OK;
 }
 
-/* Keeps the matrices; the factor of the mass matrix exists only while R is computed. Returns a status. */
-static int build_unsolved(struct model *m, tribo_system **sys)
+int tribo_model_set_operator(const struct model *m, tribo_system *sys, const double *z, size_t n)
 {
-    struct cholesky c = {0};
-    struct matrix b = {0};
-    const size_t n = m->ndof, contacts = m->ncontact;
-    int status = check_unsolved(m);
-    status = status ? status : tribo_model_factorize(m, &c);
-    if (status) {
-        return status;
+    const struct matrix *j = &sys->direction;
+    const size_t c = m->ncontact;
+    struct hidden where;
+    double *r = calloc(c * c + 1, sizeof *r), *own = malloc((j->first[c] + 1) * sizeof *own);
+    int hidden = r && own ? 0 : -1;
+    if (!hidden && z) {
+        tribo_multiply_transposed_add(n, c, c, z, z, r);
+        for (size_t i = 0; i < c; i++) {
+            for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+                own[k] = tribo_matrix_get(&sys->response, j->col[k], i);
+            }
+        }
+    } else if (!hidden) {
+        hidden = tribo_delassus_by_columns(j, solve_masses, &sys->factor, NULL, r, own) - 1;
+        tribo_even_out(c, r);
     }
-    double *r = calloc(contacts * contacts + 1, sizeof *r), *own = malloc((m->direction.first[contacts] + 1) * sizeof *own);
-    int done = r && own && tribo_delassus_by_columns(&m->direction, solve_masses, &c, NULL, r, own) &&
-               tribo_matrix_transpose(&b, &m->direction);
-    if (done) {
-        tribo_even_out(contacts, r);
-        done = tribo_system_build(sys, n, contacts, &m->stiffness, &m->damping, &m->direction, &b) == TRIBO_OK;
-        m->stiffness = m->damping = m->direction = (struct matrix){0};
-    }
-    tribo_cholesky_free(&c);
-    status = done ? TRIBO_OK : tribo_model_no_memory(m);
-    if (!status) {
-        (*sys)->unsolved = 1;
-        give_mass(m, *sys, &c);
-        status = tribo_model_give_operator(m, *sys, r, own);
+    hidden = hidden || m->nmode ? hidden : tribo_hidden(j, &sys->mass, own, r, &where);
+    int status;
+    if (hidden > 0) {
+        status =
+            tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
+                             "mass: contact %zu touches bodies of which one is %g times as light; make the mass matrix diagonal",
+                             where.contact, where.spread);
+    } else if (hidden < 0) {
+        status = tribo_model_no_memory(m);
+    } else {
+        status = tribo_set_operator_dense(sys->contacts, r);
+        status = status ? tribo_model_fail(m, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
     }
     free(r);
     free(own);
     return status;
 }
 
-void tribo_model_free(struct model *m)
+/* solved = M^-1 a. Returns 0 if out of memory. */
+static int solve_matrix(const struct cholesky *c, const struct matrix *a, struct matrix *solved)
 {
-    tribo_matrix_free(&m->mass);
-    tribo_matrix_free(&m->damping);
-    tribo_matrix_free(&m->stiffness);
-    tribo_matrix_free(&m->direction);
+    double *x = tribo_matrix_to_dense(a);
+    if (x && a->cols) {
+        tribo_half_solve(c, x, a->cols);
+        tribo_half_solve_back(c, x, a->cols);
+    }
+    const int done = x && tribo_matrix_from_dense(solved, a->rows, a->cols, x);
+    free(x);
+    return done;
+}
+
+/* Divides M^-1 J', K and C of sys, which are J', K and C, by a diagonal mass matrix; sets R. Returns a status. */
+static int divide_by_masses(const struct model *m, tribo_system *sys)
+{
+    const struct matrix *j = &sys->direction;
+    double *inverse = malloc(m->ndof * sizeof *inverse);
+    if (!inverse) {
+        return tribo_model_no_memory(m);
+    }
+    for (size_t i = 0; i < m->ndof; i++) {
+        inverse[i] = 1.0 / tribo_matrix_get(&sys->mass, i, i);
+    }
+    tribo_matrix_scale_rows(&sys->response, inverse);
+    tribo_matrix_scale_rows(&sys->stiffness, inverse);
+    tribo_matrix_scale_rows(&sys->damping, inverse);
+    const int status = tribo_set_operator_mass(sys->contacts, m->ndof, inverse, j->first, j->col, j->val);
+    free(inverse);
+    return status ? tribo_model_fail(m, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
+}
+
+/* Solves for M^-1 J', M^-1 K and M^-1 C in the place of J', K and C of sys; keeps K and C; sets R. Returns a status. */
+static int solve_by_masses(const struct model *m, tribo_system *sys)
+{
+    const struct cholesky *c = &sys->factor;
+    struct matrix turned = sys->response;
+    double *z = tribo_matrix_to_dense(&turned);
+    sys->k = sys->stiffness;
+    sys->c = sys->damping;
+    sys->stiffness = sys->damping = sys->response = (struct matrix){0};
+    const int done = z && solve_matrix(c, &turned, &sys->response) && solve_matrix(c, &sys->k, &sys->stiffness) &&
+                     (!sys->c.rows || solve_matrix(c, &sys->c, &sys->damping));
+    if (done && m->ncontact) {
+        tribo_half_solve(c, z, m->ncontact);
+    }
+    const int status = done ? tribo_model_set_operator(m, sys, z, m->ndof) : tribo_model_no_memory(m);
+    tribo_matrix_free(&turned);
+    free(z);
+    return status;
 }
 
 int tribo_model_build_massive(struct model *m, tribo_system **sys)
 {
-    return tribo_matrix_is_diagonal(&m->mass) ? build_diagonal(m, sys)
-           : m->ndof <= DENSE_MOST            ? build_solved(m, sys)
-                                              : build_unsolved(m, sys);
+    const int diagonal = tribo_matrix_is_diagonal(&m->mass), unsolved = !diagonal && m->ndof > DENSE_MOST;
+    int status = unsolved ? check_unsolved(m) : TRIBO_OK;
+    if (status) {
+        return status;
+    }
+    if (tribo_system_build(sys, m->ndof, m->ncontact)) {
+        return tribo_model_no_memory(m);
+    }
+    tribo_system *s = *sys;
+    status = tribo_model_factorize(m, &s->factor);
+    if (status) {
+        return status;
+    }
+    s->unsolved = unsolved;
+    s->mass = m->mass;
+    s->stiffness = m->stiffness;
+    s->damping = m->damping;
+    s->direction = m->direction;
+    m->mass = m->stiffness = m->damping = m->direction = (struct matrix){0};
+    if (!tribo_matrix_transpose(&s->response, &s->direction)) {
+        return tribo_model_no_memory(m);
+    }
+    status = diagonal ? divide_by_masses(m, s) : unsolved ? tribo_model_set_operator(m, s, NULL, 0) : solve_by_masses(m, s);
+    if (unsolved) {
+        tribo_cholesky_free(&s->factor);
+    }
+    return status;
 }
 
 int tribo_model_build(struct model *m, tribo_system **sys)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "system.h"
 #include "common/real.h"
+#include "common/zeros.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -353,8 +354,87 @@ void *tribo_system_attached(const tribo_system *sys, const void *key)
     return a ? a->data : NULL;
 }
 
-void tribo_system_detach(tribo_system *sys)
+/* ----------------------------------------------------------------------------------------------------------------------- life */
+
+int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact)
 {
+    const size_t each = ncontact + 1, room = 8 * each + ndof;
+    tribo_system *s = tribo_zeros(sizeof *s + room * sizeof *s->tally + TRIBO_MESSAGE, 1);
+    const int status = s ? tribo_create(&s->contacts, ncontact) : TRIBO_ERR_MEMORY;
+    if (status) {
+        free(s);
+        return status;
+    }
+    double *const work = (double *)(s + 1);
+    double **const part[] = {&s->work.v,         &s->work.a,     &s->work.f,
+                             &s->work.feq,       &s->work.dv_dt, &s->loads.given_limit,
+                             &s->work.put_limit, &s->tally,      &s->work.acceleration};
+    for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
+        *part[k] = work + k * each;
+    }
+    s->message = (char *)(work + room);
+    s->ndof = s->given = ndof;
+    s->ncontact = ncontact;
+    s->loads.time = NAN;
+    for (size_t i = 0; i < ncontact; i++) {
+        s->tally[i] = 1.0;
+    }
+    *sys = s;
+    return TRIBO_OK;
+}
+
+int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!copy) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "copy is NULL");
+    }
+    tribo_system *to = NULL;
+    const size_t c = sys->ncontact, dofs = sys->expansion.place ? sys->expansion.dofs : sys->ndof;
+    int done = tribo_system_build(&to, sys->ndof, c) == TRIBO_OK;
+    if (done) {
+        tribo_destroy(to->contacts);
+        to->contacts = NULL;
+        to->revision = sys->revision;
+        to->given = sys->given;
+        to->unsolved = sys->unsolved;
+        to->copied = sys->copied;
+        memcpy(to->loads.given_limit, sys->loads.given_limit, c * sizeof *to->loads.given_limit);
+        memcpy(to->tally, sys->tally, c * sizeof *to->tally);
+        to->reduced.modes = tribo_copy_of(sys->reduced.modes, sys->given * dofs, sizeof *to->reduced.modes, &done);
+        to->reduced.omega = tribo_copy_of(sys->reduced.omega, dofs, sizeof *to->reduced.omega, &done);
+        to->reduced.truncation = sys->reduced.truncation;
+        const struct matrix *const from[] = {&sys->stiffness, &sys->damping, &sys->direction, &sys->response,
+                                             &sys->k,         &sys->c,       &sys->mass};
+        struct matrix *const copies[] = {&to->stiffness, &to->damping, &to->direction, &to->response, &to->k, &to->c, &to->mass};
+        for (size_t k = 0; done && k < sizeof from / sizeof *from; k++) {
+            done = tribo_matrix_copy(copies[k], from[k]);
+        }
+    }
+    done = done && (!sys->lent || (tribo_clone(sys->lent, &to->lent) == TRIBO_OK && tribo_fix_operator(to->lent) == TRIBO_OK));
+    done = done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && tribo_cholesky_copy(&to->factor, &sys->factor) &&
+           tribo_compliance_copy(to, sys) && tribo_expansion_copy(to, sys) && tribo_loads_copy(to, sys);
+    if (!done) {
+        tribo_system_destroy(to);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu degree%s of freedom", sys->ndof,
+                                 plural(sys->ndof));
+    }
+    *copy = to;
+    return TRIBO_OK;
+}
+
+void tribo_system_destroy(tribo_system *sys)
+{
+    if (!sys) {
+        return;
+    }
+    struct matrix *const matrix[] = {&sys->stiffness, &sys->damping, &sys->direction, &sys->response,
+                                     &sys->k,         &sys->c,       &sys->mass};
+    for (size_t k = 0; k < sizeof matrix / sizeof *matrix; k++) {
+        tribo_matrix_free(matrix[k]);
+    }
     for (struct attached *a = sys->attached, *next; a; a = next) {
         next = a->next;
         if (a->destroy) {
@@ -362,5 +442,14 @@ void tribo_system_detach(tribo_system *sys)
         }
         free(a);
     }
-    sys->attached = NULL;
+    tribo_destroy(sys->contacts);
+    tribo_destroy(sys->lent);
+    tribo_loads_free(sys);
+    tribo_cholesky_free(&sys->factor);
+    tribo_compliance_free(&sys->compliance);
+    tribo_expansion_free(&sys->expansion);
+    free(sys->reduced.modes);
+    free(sys->reduced.omega);
+    free(sys->work.motion);
+    free(sys);
 }

@@ -108,9 +108,8 @@ struct tribo_system {
     struct workspace work;
 };
 
-/* Creates a system with M = identity. Takes the matrices, also after an error. damping without rows: 0. Returns a status. */
-int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct matrix *stiffness, struct matrix *damping,
-                       struct matrix *direction, struct matrix *response);
+/* Creates a system whose matrices have no rows: mass without rows is the identity, damping 0. Returns a status. */
+int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact);
 
 enum { TRIBO_MESSAGE = 240 };
 
@@ -241,6 +240,11 @@ const struct matrix *tribo_system_force_matrix(const tribo_system *sys, const st
 /* Returns R_ij. */
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 
+/* to [ndof] = scale times the order-th derivative of the load at the set time, - AK q - AC u + M^-1 J' f over the compliant
+ * contacts; f [ncontact]. u is not read without damping, f not without compliant contacts. */
+void tribo_system_smooth(const tribo_system *sys, int order, double scale, const double *q, const double *u, const double *f,
+                         double *to);
+
 /* acceleration [ndof] = q'' without the forces of rigid contacts, at t and y. */
 void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration);
 
@@ -286,9 +290,6 @@ static inline void tribo_snap(const struct snap *s, const double *base, double *
 
 /* list [ncontact] = corrections of tribo_system_snap in their order; no correction undoes another. Returns their number. */
 size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list);
-
-/* Destroys all data of tribo_system_attach. */
-void tribo_system_detach(tribo_system *sys);
 
 /* Writes the message of the system and returns status. */
 int tribo_system_fail(const tribo_system *sys, int status, const char *format, ...)
