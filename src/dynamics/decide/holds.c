@@ -110,22 +110,14 @@ int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, cons
     return status;
 }
 
-static void apply_snaps(const struct slip_state *s, const double *base, double *x)
-{
-    for (size_t k = 0; k < s->snaps; k++) {
-        if (!s->loose[s->snap[k].contact]) {
-            tribo_snap(&s->snap[k], base, x);
-        }
-    }
-}
-
 int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
 {
+    const struct slip_state *s = &m->state;
     int status = TRIBO_OK;
-    apply_snaps(&m->state, base, x);
-    if (!m->state.simple && moves(m, sys, base, x)) {
+    tribo_snap_all(s->snap, s->snaps, s->loose, base, x);
+    if (!s->simple && moves(m, sys, base, x)) {
         status = tribo_stick_slip_project(m, sys, base, x);
-        apply_snaps(&m->state, base, x);
+        tribo_snap_all(s->snap, s->snaps, s->loose, base, x);
     }
     return status;
 }

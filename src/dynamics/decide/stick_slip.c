@@ -442,9 +442,7 @@ static void find_base(struct stick_slip *m, const tribo_system *sys)
 
 void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t)
 {
-    if (!tribo_system_is_at(sys, t)) {
-        tribo_system_set_time(sys, t);
-    }
+    tribo_system_set_time(sys, t);
     find_base(m, sys);
     memset(m->state.tied, 0, sys->ncontact);
 }

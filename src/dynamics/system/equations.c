@@ -20,9 +20,7 @@ void tribo_system_smooth(const tribo_system *sys, int order, double scale, const
 
 void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration)
 {
-    if (!tribo_system_is_at(sys, t)) {
-        tribo_system_set_time(sys, t);
-    }
+    tribo_system_set_time(sys, t);
     if (sys->compliance.count) {
         tribo_compliance_get(sys, y, sys->work.put_limit);
     }

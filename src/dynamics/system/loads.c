@@ -60,6 +60,21 @@ void tribo_loads_free(tribo_system *sys)
     free(sys->loads.table);
 }
 
+/* Sets the numbers of functions of b(t) and of limits. */
+static void loads_count(tribo_system *sys)
+{
+    struct loads *l = &sys->loads;
+    l->base_harmonics = l->limit_harmonics = l->base_tables = l->limit_tables = 0;
+    for (size_t k = 0; k < l->harmonics; k++) {
+        l->base_harmonics += l->harmonic[k].drives == DRIVES_BASE;
+        l->limit_harmonics += l->harmonic[k].drives == DRIVES_LIMIT;
+    }
+    for (size_t k = 0; k < l->tables; k++) {
+        l->base_tables += l->table[k].drives == DRIVES_BASE;
+        l->limit_tables += l->table[k].drives == DRIVES_LIMIT;
+    }
+}
+
 int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
 {
     sys->loads.harmonic = malloc((from->loads.harmonics + 1) * sizeof *sys->loads.harmonic);
@@ -76,10 +91,7 @@ int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
         *t = from->loads.table[sys->loads.tables];
         done = create_table(t, length_of(sys, t->drives), t->time);
     }
-    sys->loads.base_harmonics = from->loads.base_harmonics;
-    sys->loads.limit_harmonics = from->loads.limit_harmonics;
-    sys->loads.base_tables = from->loads.base_tables;
-    sys->loads.limit_tables = from->loads.limit_tables;
+    loads_count(sys);
     return done;
 }
 
@@ -217,7 +229,7 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
             continue;
         }
         double c, s;
-        tribo_system_turn_to(sys, h);
+        tribo_system_turn(sys, k);
         loads_differentiate(h, order, &c, &s);
         for (size_t i = 0; i < h->count; i++) {
             to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
@@ -225,26 +237,6 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
     }
     if (sys->loads.tables) {
         tribo_system_tables(sys, drives, order, factor, 0, length_of(sys, drives), to);
-    }
-}
-
-void tribo_system_add_base_at(const tribo_system *sys, double t, double factor, double *to)
-{
-    for (size_t k = 0; k < sys->loads.harmonics; k++) {
-        const struct harmonic *h = &sys->loads.harmonic[k];
-        if (h->drives != DRIVES_BASE) {
-            continue;
-        }
-        const double c = factor * cos(h->omega * t), s = factor * sin(h->omega * t);
-        for (size_t e = 0; e < h->count; e++) {
-            to[h->index[e]] += c * h->cosine[e] + s * h->sine[e];
-        }
-    }
-    for (size_t k = 0; k < sys->loads.tables; k++) {
-        const struct table *table = &sys->loads.table[k];
-        if (table->drives == DRIVES_BASE) {
-            tribo_add(to, factor * look_up(table, knot_at(table, t), t, 0.0, 0, 0), table->pattern, sys->ncontact);
-        }
     }
 }
 
@@ -298,11 +290,10 @@ void tribo_system_most_limits(const tribo_system *sys, double *most)
 int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
 {
     for (int order = 0; order < DERIVATIVES; order++) {
-        double sum = sys->loads.limit_tables || order ? 0.0 : sys->loads.given_limit[i];
-        for (size_t k = 0; order < 2 && k < sys->loads.tables; k++) {
-            const struct table *table = &sys->loads.table[k];
-            sum += table->drives == DRIVES_LIMIT ? look_up(table, table->at, sys->loads.time, sys->loads.low, i, order) : 0.0;
-        }
+        double *limit = sys->work.feq, sum;
+        limit[i] = sys->loads.limit_tables || order ? 0.0 : sys->loads.given_limit[i];
+        tribo_system_tables(sys, DRIVES_LIMIT, order, 1.0, i, i + 1, limit);
+        sum = limit[i];
         double size = fabs(sum);
         for (size_t k = 0; k < sys->loads.harmonics; k++) {
             const struct harmonic *h = &sys->loads.harmonic[k];
@@ -408,9 +399,10 @@ static int check_limit_table(const tribo_system *sys, size_t knots, const double
 
 /* ------------------------------------------------------------------------------------------------------------ add and remove */
 
-/* Notes a change of the functions of time that drive loads, bases or limits. */
+/* Notes a change of the functions of time. */
 static int loads_changed(tribo_system *sys)
 {
+    loads_count(sys);
     sys->revision++;
     tribo_system_forget_time(sys);
     return TRIBO_OK;
@@ -438,10 +430,7 @@ static int append_harmonic(tribo_system *sys, enum drives drives, double omega, 
         }
     }
     sys->loads.harmonic[sys->loads.harmonics++] = h;
-    sys->loads.base_harmonics += drives == DRIVES_BASE;
-    sys->loads.limit_harmonics += drives == DRIVES_LIMIT;
-    loads_changed(sys);
-    return 1;
+    return loads_changed(sys) == TRIBO_OK;
 }
 
 /* Adds a harmonic. Displacements of compliant contacts by a load, way [2][ncontact], become a base motion b = -d(way)/dt, so that
@@ -485,7 +474,7 @@ static int loads_add_harmonic(tribo_system *sys, enum drives drives, double omeg
                 : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a harmonic of %zu value%s", n, plural(n));
 }
 
-/* Appends a table, value [knots][columns]; pattern: forces [given], base velocities [ncontact], or NULL: ones. Returns a status. */
+/* Appends a table, or replaces the table of limits, value [knots][columns]; pattern: forces [given], base velocities [ncontact], or NULL: ones. Returns a status. */
 static int append_table(tribo_system *sys, enum drives drives, size_t knots, size_t columns, const double *time,
                         const double *value, const double *pattern)
 {
@@ -510,26 +499,17 @@ static int append_table(tribo_system *sys, enum drives drives, size_t knots, siz
         return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                  "the load of a table bends what is reduced to compliance: take TRIBO_STATICS_MASS");
     }
-    sys->loads.table[sys->loads.tables++] = t;
-    sys->loads.base_tables += drives == DRIVES_BASE;
-    sys->loads.limit_tables += drives == DRIVES_LIMIT;
-    return loads_changed(sys);
-}
-
-/* Removes the tables before `last` that drive loads, bases or limits. */
-static void remove_tables(tribo_system *sys, enum drives drives, size_t last)
-{
-    size_t kept = 0;
-    for (size_t k = 0; k < sys->loads.tables; k++) {
-        if (sys->loads.table[k].drives != drives || k >= last) {
-            sys->loads.table[kept++] = sys->loads.table[k];
-            continue;
-        }
-        free(sys->loads.table[k].time);
-        sys->loads.base_tables -= drives == DRIVES_BASE;
-        sys->loads.limit_tables -= drives == DRIVES_LIMIT;
+    size_t k = drives == DRIVES_LIMIT ? 0 : sys->loads.tables;
+    while (k < sys->loads.tables && sys->loads.table[k].drives != DRIVES_LIMIT) {
+        k++;
     }
-    sys->loads.tables = kept;
+    if (k < sys->loads.tables) {
+        free(sys->loads.table[k].time);
+    } else {
+        sys->loads.tables++;
+    }
+    sys->loads.table[k] = t;
+    return loads_changed(sys);
 }
 
 /* Adds the table value [knots] times pattern: forces [given], or base velocities [ncontact]. Returns a status. */
@@ -552,19 +532,23 @@ static int remove_driven(tribo_system *sys, enum drives drives)
     if (!sys) {
         return TRIBO_ERR_NULL;
     }
-    size_t kept = 0;
-    for (size_t k = 0; k < sys->loads.harmonics; k++) {
-        const struct harmonic *h = &sys->loads.harmonic[k];
-        if ((h->by_load ? DRIVES_LOAD : h->drives) != drives) {
-            sys->loads.harmonic[kept++] = *h;
-            continue;
+    struct loads *l = &sys->loads;
+    const size_t harmonics = l->harmonics, tables = l->tables;
+    l->harmonics = l->tables = 0;
+    for (size_t k = 0; k < harmonics; k++) {
+        if ((l->harmonic[k].by_load ? DRIVES_LOAD : l->harmonic[k].drives) == drives) {
+            free(l->harmonic[k].index);
+        } else {
+            l->harmonic[l->harmonics++] = l->harmonic[k];
         }
-        sys->loads.base_harmonics -= h->drives == DRIVES_BASE;
-        sys->loads.limit_harmonics -= h->drives == DRIVES_LIMIT;
-        free(h->index);
     }
-    sys->loads.harmonics = kept;
-    remove_tables(sys, drives, sys->loads.tables);
+    for (size_t k = 0; k < tables; k++) {
+        if (l->table[k].drives == drives) {
+            free(l->table[k].time);
+        } else {
+            l->table[l->tables++] = l->table[k];
+        }
+    }
     return loads_changed(sys);
 }
 
@@ -598,11 +582,7 @@ int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *
     int status = sys ? check_knots(sys, knots, time, "limit", limit) : TRIBO_ERR_NULL;
     status = status ? status : check_limit_table(sys, knots, limit);
     status = status ? status : loads_begin_limits(sys);
-    status = status ? status : append_table(sys, DRIVES_LIMIT, knots, sys->ncontact, time, limit, NULL);
-    if (!status) {
-        remove_tables(sys, DRIVES_LIMIT, sys->loads.tables - 1);
-    }
-    return status;
+    return status ? status : append_table(sys, DRIVES_LIMIT, knots, sys->ncontact, time, limit, NULL);
 }
 
 int tribo_system_clear_loads(tribo_system *sys)

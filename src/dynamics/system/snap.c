@@ -8,12 +8,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Velocities x [ndof] to correct; or, if list is not NULL, corrections to write to list. */
+/* Corrections written to list. */
 struct snapping {
     const tribo_system *sys;
-    const signed char *loose;
-    const double *base;
-    double *x, *known; /* known [ndof] 1: x is final */
+    double *known; /* [ndof] 1: the velocity is set by a correction in list */
     struct snap *list;
     size_t listed;
 };
@@ -24,129 +22,106 @@ static double yield_of(const tribo_system *sys, size_t d, size_t i)
     return sys->unsolved ? 1.0 / tribo_matrix_get(&sys->mass, d, d) : fabs(tribo_matrix_get(&sys->response, d, i));
 }
 
-/* Returns which entry of row i to correct by the other: 1, the second; 0 if the second is over 1000 times as heavy as the
- * first. */
-static size_t follows(const tribo_system *sys, size_t i, size_t first)
+/* Returns which entry of row i, of two entries, to correct by the other: 1, the second; 0 if the second is over 1000 times as heavy
+ * as the first. */
+static size_t follows(const tribo_system *sys, size_t i)
 {
-    const size_t *dof = sys->direction.col + first;
+    const size_t *dof = sys->direction.col + sys->direction.first[i];
     return yield_of(sys, dof[1], i) >= 1e-3 * yield_of(sys, dof[0], i);
 }
 
+static size_t entries_of(const struct matrix *j, size_t i)
+{
+    return j->first[i + 1] - j->first[i];
+}
+
 /* Returns 1 if contact i rests and its row is the difference or sum of two degrees of freedom, with entries of equal size. */
-static inline int is_pair(const struct snapping *s, size_t i)
+static int is_pair(const struct matrix *j, const signed char *loose, size_t i)
 {
-    const struct matrix *j = &s->sys->direction;
-    const size_t first = j->first[i];
-    return !s->loose[i] && j->first[i + 1] - first == 2 && fabs(j->val[first]) == fabs(j->val[first + 1]);
+    const double *val = j->val + j->first[i];
+    return !loose[i] && entries_of(j, i) == 2 && fabs(val[0]) == fabs(val[1]);
 }
 
-/* Corrects, or lists, entry `to` of row i by entry `from`; to = from: the row has one entry. */
-static void snap_take(struct snapping *s, size_t i, size_t to, size_t from)
+/* Lists the correction of entry `to` of row i, 0 or 1, by the other entry, if there are two. All entries are known then. */
+static void snap_take(struct snapping *s, size_t i, size_t to)
 {
     const struct matrix *j = &s->sys->direction;
-    const struct snap one = {i, j->col[to], j->col[from], j->val[to], to == from ? 0.0 : j->val[from]};
-    if (s->list) {
-        s->list[s->listed++] = one;
-    } else {
-        tribo_snap(&one, s->base, s->x);
-    }
-}
-
-/* Corrects entry `to` of row i, a pair, by the other entry. Both are known then. */
-static void snap_pair(struct snapping *s, size_t i, size_t to)
-{
-    const struct matrix *j = &s->sys->direction;
-    const size_t from = 2 * j->first[i] + 1 - to;
-    snap_take(s, i, to, from);
+    const size_t first = j->first[i], from = first + entries_of(j, i) - 1 - to;
+    to += first;
+    s->list[s->listed++] = (struct snap){i, j->col[to], j->col[from], j->val[to], to == from ? 0.0 : j->val[from]};
     s->known[j->col[to]] = s->known[j->col[from]] = 1.0;
 }
 
-static int knows(const struct snapping *s, size_t entry)
+size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list)
 {
-    return s->known[s->sys->direction.col[entry]] != 0.0;
+    const struct matrix *j = &sys->direction;
+    const size_t n = sys->ncontact;
+    struct snapping s = {sys, sys->work.acceleration, list, 0};
+    memset(s.known, 0, sys->ndof * sizeof *s.known);
+    for (size_t i = 0; i < n; i++) {
+        if (!loose[i] && entries_of(j, i) == 1) {
+            snap_take(&s, i, 0);
+        } else if (sys->snaps_in_order && is_pair(j, loose, i)) {
+            snap_take(&s, i, follows(sys, i));
+        }
+    }
+    /* else the pairs with one known end; where there are none, the pair with the heaviest body */
+    for (int some = !sys->snaps_in_order; some;) {
+        size_t heaviest = n;
+        double least = HUGE_VAL;
+        some = 0;
+        for (size_t i = 0; i < n; i++) {
+            const size_t *dof = j->col + j->first[i];
+            const int pair = is_pair(j, loose, i), known = pair && s.known[dof[0]] != 0.0;
+            if (pair && known != (s.known[dof[1]] != 0.0)) {
+                snap_take(&s, i, (size_t)known);
+                some = 1;
+            } else if (pair && !known) {
+                const double yield = lesser(yield_of(sys, dof[0], i), yield_of(sys, dof[1], i));
+                heaviest = yield < least ? i : heaviest;
+                least = lesser(yield, least);
+            }
+        }
+        if (!some && heaviest < n) {
+            snap_take(&s, heaviest, follows(sys, heaviest));
+            some = 1;
+        }
+    }
+    return s.listed;
 }
 
 /* Sets snaps_in_order = 1 if no rigid contact corrects a degree of freedom in the row of an earlier rigid contact. */
 void tribo_system_order_snaps(tribo_system *sys)
 {
     const struct matrix *j = &sys->direction;
-    const struct snapping s = {.sys = sys, .loose = NULL, .known = sys->work.acceleration};
-    memset(s.known, 0, sys->ndof * sizeof *s.known);
+    double *known = sys->work.acceleration;
+    signed char *loose = (signed char *)sys->work.feq;
+    memset(known, 0, sys->ndof * sizeof *known);
     sys->snaps_in_order = 1;
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const size_t first = j->first[i];
-        const size_t count = tribo_is_compliant(&sys->compliance, i) ? 0 : j->first[i + 1] - first;
-        const size_t moves = first + (count == 2 ? follows(sys, i, first) : 0);
-        sys->snaps_in_order &= count == 0 || count > 2 || !knows(&s, moves);
-        for (size_t k = first; count <= 2 && k < first + count; k++) {
-            s.known[j->col[k]] = 1.0;
+        const size_t *dof = j->col + j->first[i], count = entries_of(j, i);
+        loose[i] = (signed char)tribo_is_compliant(&sys->compliance, i);
+        if (!loose[i] && (count == 1 || count == 2)) {
+            sys->snaps_in_order &= known[dof[count == 2 ? follows(sys, i) : 0]] == 0.0;
+            known[dof[0]] = known[dof[count - 1]] = 1.0;
+        }
+    }
+    sys->snaps = sys->snaps_in_order ? tribo_system_list_snaps(sys, loose, sys->snap) : 0;
+}
+
+void tribo_snap_all(const struct snap *list, size_t count, const signed char *loose, const double *base, double *x)
+{
+    for (size_t k = 0; k < count; k++) {
+        if (!loose[list[k].contact]) {
+            tribo_snap(&list[k], base, x);
         }
     }
 }
 
-/* Corrects rows of one entry; if snaps_in_order, also pairs. Else then pairs with one known end, and, where there are none, the
- * pair with the heaviest body of those without. */
-static void snap(struct snapping *s)
+void tribo_system_snap(tribo_system *sys, const signed char *loose, const double *base, double *x)
 {
-    const tribo_system *sys = s->sys;
-    const struct matrix *j = &sys->direction;
-    const size_t n = sys->ncontact;
-    int left = 0;
-    for (size_t i = 0; i < n; i++) {
-        const size_t first = j->first[i];
-        if (!s->loose[i] && j->first[i + 1] - first == 1) {
-            /* snap_take for a single entry, inline: every step calls it for many contacts */
-            if (s->list) {
-                snap_take(s, i, first, first);
-            } else {
-                s->x[j->col[first]] = s->base[i] / j->val[first];
-            }
-        } else if (sys->snaps_in_order && is_pair(s, i)) {
-            const size_t to = first + follows(sys, i, first);
-            snap_take(s, i, to, 2 * first + 1 - to);
-        } else {
-            left |= !s->loose[i];
-        }
+    if (!sys->snaps_in_order) {
+        sys->snaps = tribo_system_list_snaps(sys, loose, sys->snap);
     }
-    if (!left || sys->snaps_in_order) {
-        return;
-    }
-    memset(s->known, 0, sys->ndof * sizeof *s->known);
-    for (size_t i = 0; i < n; i++) {
-        if (!s->loose[i] && j->first[i + 1] - j->first[i] == 1) {
-            s->known[j->col[j->first[i]]] = 1.0;
-        }
-    }
-    for (int some = 1; some;) {
-        size_t heaviest = n;
-        double least = HUGE_VAL;
-        some = 0;
-        for (size_t i = 0; i < n; i++) {
-            const size_t first = j->first[i];
-            if (is_pair(s, i) && knows(s, first) != knows(s, first + 1)) {
-                snap_pair(s, i, first + (size_t)knows(s, first));
-                some = 1;
-            } else if (is_pair(s, i) && !knows(s, first)) {
-                const double yield = lesser(yield_of(sys, j->col[first], i), yield_of(sys, j->col[first + 1], i));
-                heaviest = yield < least ? i : heaviest;
-                least = lesser(yield, least);
-            }
-        }
-        if (!some && heaviest < n) {
-            snap_pair(s, heaviest, j->first[heaviest] + follows(sys, heaviest, j->first[heaviest]));
-            some = 1;
-        }
-    }
-}
-
-void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x)
-{
-    snap(&(struct snapping){sys, loose, base, x, sys->work.acceleration, NULL, 0});
-}
-
-size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list)
-{
-    struct snapping s = {sys, loose, NULL, NULL, sys->work.acceleration, list, 0};
-    snap(&s);
-    return s.listed;
+    tribo_snap_all(sys->snap, sys->snaps, loose, base, x);
 }

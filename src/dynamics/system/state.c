@@ -89,7 +89,7 @@ void tribo_system_add_velocities(const tribo_system *sys, const double *y, doubl
 /* A displacement w is a rounded 0 if at most ROUNDING times the sum of the sizes of its terms. */
 #define ROUNDING (16.0 * DBL_EPSILON)
 
-void tribo_system_write_state(const tribo_system *sys, double t, const double *from, double *y)
+void tribo_system_write_state(tribo_system *sys, double t, const double *from, double *y)
 {
     const struct expansion *x = &sys->expansion;
     const size_t n = sys->ndof, caller = x->dofs - x->sliders, without = x->dofs - n;
@@ -103,7 +103,8 @@ void tribo_system_write_state(const tribo_system *sys, double t, const double *f
     for (int rate = 0; rate < (without > x->sliders ? 2 : 1); rate++) {
         if (rate) {
             memset(v, 0, sys->ncontact * sizeof *v);
-            tribo_system_add_base_at(sys, t, -1.0, v);
+            tribo_system_set_time(sys, t);
+            tribo_system_loads(sys, DRIVES_BASE, 0, -1.0, v);
             tribo_matrix_multiply_add(&sys->direction, 1.0, from + n, v);
             tribo_compliance_move(sys, from, v, force); /* force: f' */
         } else {

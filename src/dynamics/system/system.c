@@ -359,7 +359,7 @@ void *tribo_system_attached(const tribo_system *sys, const void *key)
 int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact)
 {
     const size_t each = ncontact + 1, room = 8 * each + ndof;
-    tribo_system *s = tribo_zeros(sizeof *s + room * sizeof *s->tally + TRIBO_MESSAGE, 1);
+    tribo_system *s = tribo_zeros(sizeof *s + room * sizeof *s->tally + ncontact * sizeof *s->snap + TRIBO_MESSAGE, 1);
     const int status = s ? tribo_create(&s->contacts, ncontact) : TRIBO_ERR_MEMORY;
     if (status) {
         free(s);
@@ -372,7 +372,8 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact)
     for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
         *part[k] = work + k * each;
     }
-    s->message = (char *)(work + room);
+    s->snap = (struct snap *)(work + room);
+    s->message = (char *)(s->snap + ncontact);
     s->ndof = s->given = ndof;
     s->ncontact = ncontact;
     s->loads.time = NAN;

@@ -105,6 +105,8 @@ struct tribo_system {
     int status;         /* status of the last evaluation */
     double *tally;      /* [ncontact] weight of f_i v_i in the energy of y: 1; 4/3 at a chain's last contact */
     int snaps_in_order; /* 1: any set of resting contacts can be snapped in the order of contacts */
+    size_t snaps;       /* corrections in snap: of all rigid contacts if snaps_in_order, else of the last tribo_system_snap */
+    struct snap *snap;  /* [ncontact] */
     struct workspace work;
 };
 
@@ -156,17 +158,13 @@ void tribo_system_forget_time(tribo_system *sys);
 /* Sets cos_t and sin_t of h at the set time. */
 void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h);
 
-/* Calls tribo_harmonic_turn if h->time is not the set time. Call before reading cos_t and sin_t. */
-static inline void tribo_system_turn_to(const tribo_system *sys, struct harmonic *h)
+/* Sets cos_t and sin_t of harmonic k, unless they are of the set time. Call before reading these. */
+static inline void tribo_system_turn(const tribo_system *sys, size_t k)
 {
+    struct harmonic *h = &sys->loads.harmonic[k];
     if (h->time != sys->loads.time) {
         tribo_harmonic_turn(sys, h);
     }
-}
-
-static inline void tribo_system_turn(const tribo_system *sys, size_t k)
-{
-    tribo_system_turn_to(sys, &sys->loads.harmonic[k]);
 }
 
 /* Sets cos_t = c and sin_t = s of a load at the set time, as computed by the motion. Does nothing after 16 calls in a row, since
@@ -184,9 +182,6 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
 void tribo_system_tables(const tribo_system *sys, enum drives drives, int order, double factor, size_t begin, size_t end,
                          double *to);
 
-/* to [ncontact] += factor b(t), for any t; does not use the set time. */
-void tribo_system_add_base_at(const tribo_system *sys, double t, double factor, double *to);
-
 /* Returns 1 if a base moves. */
 static inline int tribo_system_bases_move(const tribo_system *sys)
 {
@@ -197,12 +192,6 @@ static inline int tribo_system_bases_move(const tribo_system *sys)
 static inline int tribo_system_limits_vary(const tribo_system *sys)
 {
     return sys->loads.limit_tables || sys->loads.limit_harmonics;
-}
-
-/* Returns 1 if t is the set time and limits are constant: tribo_system_set_time would change nothing. */
-static inline int tribo_system_is_at(const tribo_system *sys, double t)
-{
-    return t == sys->loads.time && !tribo_system_limits_vary(sys);
 }
 
 /* limit, rate [ncontact] = limits and derivatives at the set time. With harmonics limit < 0 where a contact has lifted off. */
@@ -271,9 +260,9 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
 
 /* Removes the rounding error from J_i x = base_i for contacts with loose 0 and a row J_i of one entry, or of two of equal size.
  * Overwrites sys->work.acceleration. */
-void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x);
+void tribo_system_snap(tribo_system *sys, const signed char *loose, const double *base, double *x);
 
-/* Sets snaps_in_order. Call before tribo_system_snap and tribo_system_list_snaps. */
+/* Sets snaps_in_order, and the corrections of all rigid contacts. Call before the other functions. */
 void tribo_system_order_snaps(tribo_system *sys);
 
 /* A correction for one contact: x[to] = (base[contact] - other x[from])/value. If other = 0, x[from] is not read. */
@@ -287,6 +276,9 @@ static inline void tribo_snap(const struct snap *s, const double *base, double *
     const double moved = s->other != 0.0 ? s->other * x[s->from] : 0.0;
     x[s->to] = (base[s->contact] - moved) / s->value;
 }
+
+/* Applies those of count corrections that are of contacts with loose 0. */
+void tribo_snap_all(const struct snap *list, size_t count, const signed char *loose, const double *base, double *x);
 
 /* list [ncontact] = corrections of tribo_system_snap in their order; no correction undoes another. Returns their number. */
 size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list);
@@ -334,9 +326,9 @@ int tribo_expansion_create(tribo_system *sys, size_t sliders, const size_t *plac
 int tribo_expansion_copy(tribo_system *to, const tribo_system *from);
 void tribo_expansion_free(struct expansion *x);
 
-/* With an expansion, read: to [tribo_system_size] = y; write: y [tribo_system_dimension] = from, at time t. */
+/* With an expansion, read: to [tribo_system_size] = y; write: sets time t, and y [tribo_system_dimension] = from. */
 void tribo_system_read_state(const tribo_system *sys, const double *y, double *to);
-void tribo_system_write_state(const tribo_system *sys, double t, const double *from, double *y);
+void tribo_system_write_state(tribo_system *sys, double t, const double *from, double *y);
 
 /* v [ncontact] += J_w (w' - follow q') of the caller's state y. Call after tribo_system_read_state for y. */
 void tribo_system_add_velocities(const tribo_system *sys, const double *y, double *v);
