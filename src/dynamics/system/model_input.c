@@ -111,20 +111,18 @@ static int check_input(const struct input *in, const void *numbers, const char *
     return numbers || !count ? TRIBO_OK : tribo_model_fail(&in->model->given, TRIBO_ERR_NULL, "%s%s is NULL", in->name, part);
 }
 
-static int set_dense(tribo_model *model, enum which which, const double *entries)
+/* entries [rows][ndof], or, if diagonal = 1, [rows]. */
+static int set_dense(tribo_model *model, enum which which, int diagonal, const double *entries)
 {
     const struct input in = model_input_of(model, which);
     struct matrix a = {0};
     const int status = check_input(&in, entries, "", in.rows);
-    return status ? status : model_take(&in, &a, tribo_matrix_from_dense(&a, in.rows, model->given.ndof, entries));
-}
-
-static int set_diagonal(tribo_model *model, enum which which, const double *entries)
-{
-    const struct input in = model_input_of(model, which);
-    struct matrix a = {0};
-    const int status = check_input(&in, entries, "", in.rows);
-    return status ? status : model_take(&in, &a, tribo_matrix_diagonal(&a, in.rows, entries));
+    if (status) {
+        return status;
+    }
+    return model_take(&in, &a,
+                      diagonal ? tribo_matrix_diagonal(&a, in.rows, entries)
+                               : tribo_matrix_from_dense(&a, in.rows, model->given.ndof, entries));
 }
 
 /* Returns an error if rowptr does not begin at 0 and ascend, or a column is too large. Checks all of rowptr before reading
@@ -164,14 +162,12 @@ static int set_csr(tribo_model *model, enum which which, const size_t *rowptr, c
     if (status) {
         return status;
     }
-    size_t *row = malloc((entries + 1) * sizeof *row);
-    for (size_t i = 0; row && i < in.rows; i++) {
-        for (size_t k = rowptr[i]; k < rowptr[i + 1]; k++) {
-            row[k] = i;
-        }
-    }
-    const int done = row && tribo_matrix_from_triplets(&a, in.rows, model->given.ndof, entries, row, col, val);
-    free(row);
+    /* a transposed matrix has ascending columns */
+    const struct matrix rows = {
+        .rows = in.rows, .cols = model->given.ndof, .first = (size_t *)rowptr, .col = (size_t *)col, .val = (double *)val};
+    struct matrix turned = {0};
+    const int done = tribo_matrix_transpose(&turned, &rows) && tribo_matrix_transpose(&a, &turned);
+    tribo_matrix_free(&turned);
     for (size_t i = 0; done && i < in.rows; i++) {
         for (size_t k = a.first[i] + 1; k < a.first[i + 1]; k++) {
             if (a.col[k] == a.col[k - 1]) {
@@ -188,12 +184,12 @@ static int set_csr(tribo_model *model, enum which which, const size_t *rowptr, c
 
 int tribo_model_set_mass(tribo_model *model, const double *m)
 {
-    return set_dense(model, MASS, m);
+    return set_dense(model, MASS, 0, m);
 }
 
 int tribo_model_set_mass_diagonal(tribo_model *model, const double *m)
 {
-    return set_diagonal(model, MASS, m);
+    return set_dense(model, MASS, 1, m);
 }
 
 int tribo_model_set_mass_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val)
@@ -203,12 +199,12 @@ int tribo_model_set_mass_csr(tribo_model *model, const size_t *rowptr, const siz
 
 int tribo_model_set_damping(tribo_model *model, const double *c)
 {
-    return set_dense(model, DAMPING, c);
+    return set_dense(model, DAMPING, 0, c);
 }
 
 int tribo_model_set_damping_diagonal(tribo_model *model, const double *c)
 {
-    return set_diagonal(model, DAMPING, c);
+    return set_dense(model, DAMPING, 1, c);
 }
 
 int tribo_model_set_damping_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val)
@@ -218,12 +214,12 @@ int tribo_model_set_damping_csr(tribo_model *model, const size_t *rowptr, const 
 
 int tribo_model_set_stiffness(tribo_model *model, const double *k)
 {
-    return set_dense(model, STIFFNESS, k);
+    return set_dense(model, STIFFNESS, 0, k);
 }
 
 int tribo_model_set_stiffness_diagonal(tribo_model *model, const double *k)
 {
-    return set_diagonal(model, STIFFNESS, k);
+    return set_dense(model, STIFFNESS, 1, k);
 }
 
 int tribo_model_set_stiffness_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val)
@@ -233,7 +229,7 @@ int tribo_model_set_stiffness_csr(tribo_model *model, const size_t *rowptr, cons
 
 int tribo_model_set_direction(tribo_model *model, const double *j)
 {
-    return set_dense(model, DIRECTION, j);
+    return set_dense(model, DIRECTION, 0, j);
 }
 
 int tribo_model_set_direction_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val)
@@ -272,22 +268,39 @@ int tribo_model_set_compliance(tribo_model *model, const double *c)
 
 /* -------------------------------------------------------------------------------------------------------------------- systems */
 
-/* Returns TRIBO_ERR_STATE if a matrix that is required has not been set. */
-static int check_set(const tribo_model *m)
+/* Checks the model, and the arguments of tribo_system_reduce if reduces = 1; builds a system from copies of the model's matrices.
+ * Returns a status. */
+static int build_system(tribo_system **sys, tribo_model *model, int reduces, size_t nmode, int statics)
 {
-    const struct model *g = &m->given;
+    if (!model) {
+        return TRIBO_ERR_NULL;
+    }
+    const struct model *g = &model->given;
     const char *missing = !g->mass.first                       ? "mass"
                           : !g->stiffness.first                ? "stiffness"
                           : !g->direction.first && g->ncontact ? "direction"
                                                                : NULL;
-    return missing ? tribo_model_fail(g, TRIBO_ERR_STATE, "%s has not been set: call tribo_model_set_%s", missing, missing)
-                   : TRIBO_OK;
-}
-
-/* Builds a system from copies of the model's matrices. Returns a status. */
-static int build_system(tribo_system **sys, tribo_model *model, size_t nmode, int statics)
-{
-    const struct model *g = &model->given;
+    if (!sys) {
+        return tribo_model_fail(g, TRIBO_ERR_NULL, "sys is NULL");
+    }
+    if (missing) {
+        return tribo_model_fail(g, TRIBO_ERR_STATE, "%s has not been set: call tribo_model_set_%s", missing, missing);
+    }
+    if (reduces && nmode == 0) {
+        return tribo_model_fail(g, TRIBO_ERR_SIZE, "nmode = 0: a reduced system has a mode at least");
+    }
+    if (nmode > g->ndof) {
+        return tribo_model_fail(g, TRIBO_ERR_SIZE, "nmode = %zu is more than the %zu degree%s of freedom", nmode, g->ndof,
+                                plural(g->ndof));
+    }
+    if (statics < TRIBO_STATICS_NONE || statics > TRIBO_STATICS_COMPLIANCE) {
+        return tribo_model_fail(g, TRIBO_ERR_RANGE, "static_contacts = %d is not TRIBO_STATICS_...", statics);
+    }
+    if (g->damping.first && statics == TRIBO_STATICS_COMPLIANCE) {
+        return tribo_model_fail(g, TRIBO_ERR_UNSUPPORTED,
+                                "TRIBO_STATICS_COMPLIANCE takes no damping matrix: call tribo_system_set_damping_ratio, or take "
+                                "TRIBO_STATICS_MASS");
+    }
     struct model whole = {.ndof = g->ndof,
                           .ncontact = g->ncontact,
                           .nmode = nmode,
@@ -296,10 +309,10 @@ static int build_system(tribo_system **sys, tribo_model *model, size_t nmode, in
                           .compliance = model->compliance,
                           .message = model->text,
                           .size = sizeof model->text};
-    int done = tribo_matrix_copy(&whole.mass, &g->mass) && tribo_matrix_copy(&whole.damping, &g->damping) &&
-               tribo_matrix_copy(&whole.stiffness, &g->stiffness);
-    done = done && (g->direction.first ? tribo_matrix_copy(&whole.direction, &g->direction)
-                                       : tribo_matrix_from_dense(&whole.direction, 0, g->ndof, NULL));
+    const int done = tribo_matrix_copy(&whole.mass, &g->mass) && tribo_matrix_copy(&whole.damping, &g->damping) &&
+                     tribo_matrix_copy(&whole.stiffness, &g->stiffness) &&
+                     (g->direction.first ? tribo_matrix_copy(&whole.direction, &g->direction)
+                                         : tribo_matrix_from_dense(&whole.direction, 0, g->ndof, NULL));
     if (!done) {
         tribo_model_free(&whole);
         return tribo_model_no_memory(g);
@@ -309,37 +322,10 @@ static int build_system(tribo_system **sys, tribo_model *model, size_t nmode, in
 
 int tribo_system_create(tribo_system **sys, tribo_model *model)
 {
-    if (!model) {
-        return TRIBO_ERR_NULL;
-    }
-    int status = sys ? TRIBO_OK : tribo_model_fail(&model->given, TRIBO_ERR_NULL, "sys is NULL");
-    status = status ? status : check_set(model);
-    return status ? status : build_system(sys, model, 0, TRIBO_STATICS_NONE);
+    return build_system(sys, model, 0, 0, TRIBO_STATICS_NONE);
 }
 
 int tribo_system_reduce(tribo_system **sys, tribo_model *model, size_t nmode, int static_contacts)
 {
-    if (!model) {
-        return TRIBO_ERR_NULL;
-    }
-    const struct model *g = &model->given;
-    int status = sys ? TRIBO_OK : tribo_model_fail(g, TRIBO_ERR_NULL, "sys is NULL");
-    status = status ? status : check_set(model);
-    if (!status && nmode == 0) {
-        status = tribo_model_fail(g, TRIBO_ERR_SIZE, "nmode = 0: a reduced system has a mode at least");
-    }
-    if (!status && nmode > g->ndof) {
-        status = tribo_model_fail(g, TRIBO_ERR_SIZE, "nmode = %zu is more than the %zu degree%s of freedom", nmode, g->ndof,
-                                  plural(g->ndof));
-    }
-    if (!status && (static_contacts < TRIBO_STATICS_NONE || static_contacts > TRIBO_STATICS_COMPLIANCE)) {
-        status = tribo_model_fail(g, TRIBO_ERR_RANGE, "static_contacts = %d is not TRIBO_STATICS_...", static_contacts);
-    }
-    if (!status && g->damping.first && static_contacts == TRIBO_STATICS_COMPLIANCE) {
-        status =
-            tribo_model_fail(g, TRIBO_ERR_UNSUPPORTED,
-                             "TRIBO_STATICS_COMPLIANCE takes no damping matrix: call tribo_system_set_damping_ratio, or take "
-                             "TRIBO_STATICS_MASS");
-    }
-    return status ? status : build_system(sys, model, nmode, static_contacts);
+    return build_system(sys, model, 1, nmode, static_contacts);
 }
