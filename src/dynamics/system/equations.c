@@ -14,8 +14,12 @@ void tribo_system_smooth(const tribo_system *sys, int order, double scale, const
     memset(to, 0, sys->ndof * sizeof *to);
     tribo_system_loads(sys, DRIVES_LOAD, order, scale, to);
     tribo_matrix_multiply_add(&sys->stiffness, -1.0, q, to);
-    tribo_matrix_multiply_add(&sys->damping, -1.0, u, to);
-    tribo_matrix_multiply_add(&sys->compliance.pull, 1.0, f, to);
+    if (sys->damping.rows) {
+        tribo_matrix_multiply_add(&sys->damping, -1.0, u, to);
+    }
+    if (sys->compliance.count) {
+        tribo_matrix_multiply_add(&sys->compliance.pull, 1.0, f, to);
+    }
 }
 
 void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration)

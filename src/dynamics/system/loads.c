@@ -212,13 +212,12 @@ void tribo_system_tables(const tribo_system *sys, enum drives drives, int order,
 /* *c, *s = order-th derivatives of cos(omega t), sin(omega t) at the set time. */
 static inline void loads_differentiate(const struct harmonic *h, int order, double *c, double *s)
 {
-    *c = h->cos_t;
-    *s = h->sin_t;
+    double power = order & 2 ? -1.0 : 1.0;
     for (int d = 0; d < order; d++) {
-        const double dc = -h->omega * *s;
-        *s = h->omega * *c;
-        *c = dc;
+        power *= h->omega;
     }
+    *c = power * (order & 1 ? -h->sin_t : h->cos_t);
+    *s = power * (order & 1 ? h->cos_t : h->sin_t);
 }
 
 void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, double factor, double *to)

@@ -109,15 +109,6 @@ void tribo_system_order_snaps(tribo_system *sys)
     sys->snaps = sys->snaps_in_order ? tribo_system_list_snaps(sys, loose, sys->snap) : 0;
 }
 
-void tribo_snap_all(const struct snap *list, size_t count, const signed char *loose, const double *base, double *x)
-{
-    for (size_t k = 0; k < count; k++) {
-        if (!loose[list[k].contact]) {
-            tribo_snap(&list[k], base, x);
-        }
-    }
-}
-
 void tribo_system_snap(tribo_system *sys, const signed char *loose, const double *base, double *x)
 {
     if (!sys->snaps_in_order) {

@@ -278,7 +278,14 @@ static inline void tribo_snap(const struct snap *s, const double *base, double *
 }
 
 /* Applies those of count corrections that are of contacts with loose 0. */
-void tribo_snap_all(const struct snap *list, size_t count, const signed char *loose, const double *base, double *x);
+static inline void tribo_snap_all(const struct snap *list, size_t count, const signed char *loose, const double *base, double *x)
+{
+    for (size_t k = 0; k < count; k++) {
+        if (!loose[list[k].contact]) {
+            tribo_snap(&list[k], base, x);
+        }
+    }
+}
 
 /* list [ncontact] = corrections of tribo_system_snap in their order; no correction undoes another. Returns their number. */
 size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list);
