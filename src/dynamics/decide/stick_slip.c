@@ -4,6 +4,7 @@
 #include "numerics/constraint.h"
 #include "stick_slip.h"
 #include "common/layout.h"
+#include "numerics/csr.h"
 #include "common/real.h"
 
 #include <float.h>
@@ -146,32 +147,18 @@ void tribo_stick_slip_free(struct stick_slip *m)
 
 /* ------------------------------------------------------------------------------------------------------------ rounding */
 
-/* y += amplitudes of the harmonics that drive loads or bases, or (order 1) of their rates. */
+/* y += amplitudes of b(t), or of the harmonics of the load; order 1: of their rates. */
 static void add_amplitudes(const tribo_system *sys, enum drives drives, int order, double *y)
 {
     for (size_t s = 0; s < sys->loads.harmonics; s++) {
         const struct harmonic *w = &sys->loads.harmonic[s];
-        const double rate = order ? fabs(w->omega) : 1.0;
+        double most = w->knots ? 0.0 : order ? fabs(w->omega) : 1.0;
+        for (size_t k = order ? 1 : 0; drives == DRIVES_BASE && k < w->knots; k++) {
+            const double rise = order ? (w->value[k] - w->value[k - 1]) / (w->knot[k] - w->knot[k - 1]) : w->value[k];
+            most = greater(most, fabs(rise));
+        }
         for (size_t k = 0; w->drives == drives && k < w->count; k++) {
-            y[w->index[k]] += rate * (fabs(w->cosine[k]) + fabs(w->sine[k]));
-        }
-    }
-}
-
-/* y [ncontact] += largest values of the tables of bases; rate [ncontact] += their steepest slopes. */
-static void add_base_tables(const tribo_system *sys, double *y, double *rate)
-{
-    for (size_t s = 0; s < sys->loads.tables; s++) {
-        const struct table *table = &sys->loads.table[s];
-        double most = 0.0, steepest = 0.0;
-        for (size_t k = 0; table->drives == DRIVES_BASE && k < table->knots; k++) {
-            const double rise = k ? (table->value[k] - table->value[k - 1]) / (table->time[k] - table->time[k - 1]) : 0.0;
-            most = greater(most, fabs(table->value[k]));
-            steepest = greater(steepest, fabs(rise));
-        }
-        for (size_t i = 0; table->drives == DRIVES_BASE && i < sys->ncontact; i++) {
-            y[i] += most * fabs(table->pattern[i]);
-            rate[i] += steepest * fabs(table->pattern[i]);
+            y[w->index[k]] += most * (fabs(w->cosine[k]) + fabs(w->sine[k]));
         }
     }
 }
@@ -188,7 +175,6 @@ static void find_scales(struct stick_slip *m, const tribo_system *sys)
     memset(k->load_size, 0, sys->ndof * sizeof *k->load_size);
     add_amplitudes(sys, DRIVES_BASE, 0, k->base_size);
     add_amplitudes(sys, DRIVES_BASE, 1, k->base_rate_size);
-    add_base_tables(sys, k->base_size, k->base_rate_size);
     add_amplitudes(sys, DRIVES_LOAD, 0, k->load_size);
     /* t is known to its rounding. Of contacts that depend on each other one follows its base, and the others see its
      * rounding. */
@@ -213,11 +199,14 @@ static double find_size(struct stick_slip *m, const tribo_system *sys, const dou
     if (m->noise.size[d] > 0.0) {
         return m->noise.size[d];
     }
-    if (sys->loads.tables) {
-        tribo_system_tables(sys, DRIVES_LOAD, 0, 1.0, d, d + 1, m->noise.size);
-    }
-    double size = m->constant.load_size[d] + fabs(m->noise.size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
+    double size = m->constant.load_size[d] + tribo_matrix_row_size(&sys->stiffness, d, y) +
                   tribo_matrix_row_size(&sys->response, d, m->state.force);
+    for (size_t s = 0; sys->loads.tables && s < sys->loads.harmonics; s++) {
+        const struct harmonic *w = &sys->loads.harmonic[s];
+        const size_t all[] = {0, w->drives == DRIVES_LOAD && w->knots ? w->count : 0}, at = tribo_rows_find(all, w->index, 0, d);
+        tribo_system_turn(sys, s);
+        size += at < w->count ? fabs(w->cosine[at] * w->cos_t) : 0.0;
+    }
     size += sys->damping.rows ? tribo_matrix_row_size(&sys->damping, d, y + sys->ndof) : 0.0;
     size += sys->compliance.count ? tribo_matrix_row_size(&sys->compliance.pull, d, m->state.spring) : 0.0;
     return m->noise.size[d] = size;
@@ -490,7 +479,7 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
     }
     s->fresh = s->hold_differs = 1;
     s->reached = c;
-    k->base_moves = sys->loads.base_tables > 0;
+    k->base_moves = 0;
     for (size_t i = 0; i < sys->loads.harmonics; i++) {
         k->base_moves |= sys->loads.harmonic[i].drives == DRIVES_BASE && sys->loads.harmonic[i].count > 0;
     }

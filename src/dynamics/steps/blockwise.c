@@ -149,15 +149,7 @@ int tribo_blockwise_take(struct blockwise *b, tribo_system *sys)
     for (size_t s = 0; s < sys->loads.harmonics; s++) {
         const struct harmonic *h = &sys->loads.harmonic[s];
         for (size_t k = 0; k < h->count; k++) {
-            note_drive(b, h->drives, h->index[k], h->drives == DRIVES_BASE || h->omega != 0.0);
-        }
-    }
-    for (size_t s = 0; s < sys->loads.tables; s++) {
-        const struct table *t = &sys->loads.table[s];
-        for (size_t i = 0; i < (t->drives == DRIVES_LOAD ? sys->ndof : sys->ncontact); i++) {
-            if (t->pattern[i] != 0.0) {
-                note_drive(b, t->drives, i, 1);
-            }
+            note_drive(b, h->drives, h->index[k], h->drives == DRIVES_BASE || h->omega != 0.0 || h->knots);
         }
     }
     take_limits(b, sys);
@@ -209,9 +201,7 @@ static void set_time(struct blockwise *b, tribo_system *sys, double t)
     b->time = t;
     for (size_t k = 0; k < b->blocks; k++) {
         if (b->loaded[k]) {
-            const size_t begin = k * MATRIX_BLOCK, n = block_size(sys, k);
-            memset(b->load + begin, 0, n * sizeof *b->load);
-            tribo_system_tables(sys, DRIVES_LOAD, 0, 1.0, begin, begin + n, b->load);
+            memset(b->load + k * MATRIX_BLOCK, 0, block_size(sys, k) * sizeof *b->load);
         }
     }
     for (size_t s = 0; s < sys->loads.harmonics; s++) {

@@ -173,20 +173,17 @@ static void few_find_drives(tribo_system *sys, enum drives drives, size_t n, siz
         const struct harmonic *h = &sys->loads.harmonic[k];
         if (h->drives == drives) {
             tribo_cos_sin_all(h->omega, count, t, cosine, sine);
+            for (size_t s = 0; h->knots && s < count; s++) {
+                tribo_system_set_time(sys, t[s]);
+                tribo_system_turn(sys, k);
+                cosine[s] = h->cos_t;
+            }
             for (size_t e = 0; e < h->count; e++) {
                 double *to = row[h->index[e]];
                 for (size_t s = 0; s < count; s++) {
                     to[s] += h->cosine[e] * cosine[s] + h->sine[e] * sine[s];
                 }
             }
-        }
-    }
-    for (size_t s = 0; sys->loads.tables && s < count; s++) {
-        double x[FEW] = {0.0};
-        tribo_system_set_time(sys, t[s]);
-        tribo_system_tables(sys, drives, 0, 1.0, 0, n, x);
-        for (size_t i = 0; i < n; i++) {
-            row[i][s] += x[i];
         }
     }
 }

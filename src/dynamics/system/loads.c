@@ -17,8 +17,8 @@ static size_t length_of(const tribo_system *sys, enum drives drives)
     return drives == DRIVES_LOAD ? sys->ndof : sys->ncontact;
 }
 
-/* Allocates the arrays of h->count entries; copies them from the block `from` of equal arrays (NULL: leaves them unset). Returns
- * 0 if out of memory. */
+/* Allocates the arrays of h, of h->count entries and h->knots knots; copies them from the block `from` of equal arrays (NULL:
+ * leaves them unset). Returns 0 if out of memory. */
 static int create_harmonic(struct harmonic *h, const void *from)
 {
     struct layout l = {0};
@@ -26,21 +26,8 @@ static int create_harmonic(struct harmonic *h, const void *from)
         h->index = tribo_layout_array(&l, h->count, sizeof *h->index);
         h->cosine = tribo_layout_array(&l, h->count, sizeof *h->cosine);
         h->sine = tribo_layout_array(&l, h->count, sizeof *h->sine);
-    } while (!l.memory && tribo_layout_create(&l));
-    if (l.memory && from) {
-        memcpy(l.memory, from, l.used);
-    }
-    return l.memory != NULL;
-}
-
-/* create_harmonic for a table, with t->knots, t->columns and a pattern [n]. */
-static int create_table(struct table *t, size_t n, const void *from)
-{
-    struct layout l = {0};
-    do {
-        t->time = tribo_layout_array(&l, t->knots, sizeof *t->time);
-        t->value = tribo_layout_array(&l, t->knots * t->columns, sizeof *t->value);
-        t->pattern = tribo_layout_array(&l, n, sizeof *t->pattern);
+        h->knot = tribo_layout_array(&l, h->knots, sizeof *h->knot);
+        h->value = tribo_layout_array(&l, h->knots * h->columns, sizeof *h->value);
     } while (!l.memory && tribo_layout_create(&l));
     if (l.memory && from) {
         memcpy(l.memory, from, l.used);
@@ -53,45 +40,34 @@ void tribo_loads_free(tribo_system *sys)
     for (size_t k = 0; k < sys->loads.harmonics; k++) {
         free(sys->loads.harmonic[k].index);
     }
-    for (size_t k = 0; k < sys->loads.tables; k++) {
-        free(sys->loads.table[k].time);
-    }
     free(sys->loads.harmonic);
-    free(sys->loads.table);
 }
 
-/* Sets the numbers of functions of b(t) and of limits. */
-static void loads_count(tribo_system *sys)
+/* Sets the numbers of tables, and of functions of b(t) and of limits. */
+static void loads_count(struct loads *l)
 {
-    struct loads *l = &sys->loads;
-    l->base_harmonics = l->limit_harmonics = l->base_tables = l->limit_tables = 0;
+    l->tables = l->base_harmonics = l->limit_harmonics = l->base_tables = l->limit_tables = 0;
     for (size_t k = 0; k < l->harmonics; k++) {
-        l->base_harmonics += l->harmonic[k].drives == DRIVES_BASE;
-        l->limit_harmonics += l->harmonic[k].drives == DRIVES_LIMIT;
-    }
-    for (size_t k = 0; k < l->tables; k++) {
-        l->base_tables += l->table[k].drives == DRIVES_BASE;
-        l->limit_tables += l->table[k].drives == DRIVES_LIMIT;
+        const enum drives drives = l->harmonic[k].drives;
+        const int table = l->harmonic[k].knots > 0;
+        l->tables += table ? 1 : 0;
+        *(table ? &l->base_tables : &l->base_harmonics) += drives == DRIVES_BASE;
+        *(table ? &l->limit_tables : &l->limit_harmonics) += drives == DRIVES_LIMIT;
     }
 }
 
 int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
 {
-    sys->loads.harmonic = malloc((from->loads.harmonics + 1) * sizeof *sys->loads.harmonic);
-    sys->loads.table = malloc((from->loads.tables + 1) * sizeof *sys->loads.table);
-    int done = sys->loads.harmonic && sys->loads.table;
-    for (; done && sys->loads.harmonics < from->loads.harmonics; sys->loads.harmonics++) {
-        struct harmonic *h = &sys->loads.harmonic[sys->loads.harmonics];
-        *h = from->loads.harmonic[sys->loads.harmonics];
+    struct loads *l = &sys->loads;
+    l->harmonic = malloc((from->loads.harmonics + 1) * sizeof *l->harmonic);
+    int done = l->harmonic != NULL;
+    for (; done && l->harmonics < from->loads.harmonics; l->harmonics++) {
+        struct harmonic *h = &l->harmonic[l->harmonics];
+        *h = from->loads.harmonic[l->harmonics];
         h->time = NAN;
         done = create_harmonic(h, h->index);
     }
-    for (; done && sys->loads.tables < from->loads.tables; sys->loads.tables++) {
-        struct table *t = &sys->loads.table[sys->loads.tables];
-        *t = from->loads.table[sys->loads.tables];
-        done = create_table(t, length_of(sys, t->drives), t->time);
-    }
-    loads_count(sys);
+    loads_count(l);
     return done;
 }
 
@@ -105,11 +81,40 @@ void tribo_system_forget_time(tribo_system *sys)
     }
 }
 
+/* Returns the last knot of a table at or before t; 0 if there is none. */
+static size_t knot_at(const struct harmonic *h, double t)
+{
+    size_t lo = 0, end = h->knots;
+    while (end > lo + 1) {
+        const size_t mid = lo + (end - lo) / 2;
+        *(h->knot[mid] <= t ? &lo : &end) = mid;
+    }
+    return lo;
+}
+
+/* Returns value (order 0), slope (order 1) or 0 of column i of a table at the set time. h->at: the last knot at or before it. */
+static double look_up(const tribo_system *sys, const struct harmonic *h, size_t i, int order)
+{
+    const size_t k = h->at;
+    const double *v = h->value + k * h->columns + i;
+    if (order > 1 || k + 1 == h->knots || sys->loads.time < h->knot[0]) {
+        return order ? 0.0 : *v;
+    }
+    const double slope = (v[h->columns] - v[0]) / (h->knot[k + 1] - h->knot[k]);
+    return order ? slope : v[0] + slope * (sys->loads.time - h->knot[k] + sys->loads.low);
+}
+
 void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h)
 {
     h->time = sys->loads.time;
     h->turns = 0;
-    tribo_cos_sin(h->omega, sys->loads.time, sys->loads.low, &h->cos_t, &h->sin_t);
+    if (h->knots == 0) {
+        tribo_cos_sin(h->omega, sys->loads.time, sys->loads.low, &h->cos_t, &h->sin_t);
+    } else if (h->count) {
+        h->at = knot_at(h, sys->loads.time);
+        h->cos_t = look_up(sys, h, 0, 0);
+        h->sin_t = look_up(sys, h, 0, 1);
+    }
 }
 
 enum { MOST_TURNS = 16 };
@@ -122,28 +127,6 @@ void tribo_harmonic_take(const tribo_system *sys, struct harmonic *h, double c, 
         h->cos_t = c;
         h->sin_t = s;
     }
-}
-
-/* Returns the last knot at or before t; 0 if there is none. */
-static size_t knot_at(const struct table *table, double t)
-{
-    size_t lo = 0, hi = table->knots;
-    while (hi - lo > 1) {
-        const size_t mid = lo + (hi - lo) / 2;
-        *(table->time[mid] <= t ? &lo : &hi) = mid;
-    }
-    return lo;
-}
-
-/* Returns value (order 0) or slope (order 1) of column i of a table at t + low; k: the last knot at or before t. */
-static double look_up(const struct table *table, size_t k, double t, double low, size_t i, int order)
-{
-    const double *v = table->value + k * table->columns + i;
-    if (k + 1 == table->knots || t < table->time[0]) {
-        return order ? 0.0 : *v;
-    }
-    const double slope = (v[table->columns] - v[0]) / (table->time[k + 1] - table->time[k]);
-    return order ? slope : v[0] + slope * (t - table->time[k] + low);
 }
 
 void tribo_system_put_limits(tribo_system *sys, double later)
@@ -165,77 +148,61 @@ void tribo_system_set_low(tribo_system *sys, double low)
 
 void tribo_system_set_time(tribo_system *sys, double t)
 {
-    if (t == sys->loads.time) {
-        return;
-    }
-    sys->loads.time = t;
-    for (size_t k = 0; k < sys->loads.tables; k++) {
-        sys->loads.table[k].at = knot_at(&sys->loads.table[k], t);
-    }
-    if (tribo_system_limits_vary(sys)) {
-        tribo_system_put_limits(sys, 0.0);
+    if (t != sys->loads.time) {
+        sys->loads.time = t;
+        if (tribo_system_limits_vary(sys)) {
+            tribo_system_put_limits(sys, 0.0);
+        }
     }
 }
 
 double tribo_system_next_kink(const tribo_system *sys, double t)
 {
     double next = HUGE_VAL;
-    for (size_t k = 0; k < sys->loads.tables; k++) {
-        const struct table *table = &sys->loads.table[k];
-        size_t i = knot_at(table, t);
-        while (i < table->knots && !(table->time[i] > t || (table->time[i] == t && sys->loads.low < 0.0))) {
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        const struct harmonic *h = &sys->loads.harmonic[k];
+        size_t i = knot_at(h, t);
+        while (i < h->knots && !(h->knot[i] > t || (h->knot[i] == t && sys->loads.low < 0.0))) {
             i++;
         }
-        next = i < table->knots ? lesser(next, table->time[i]) : next;
+        next = i < h->knots ? lesser(next, h->knot[i]) : next;
     }
     return next;
 }
 
-void tribo_system_tables(const tribo_system *sys, enum drives drives, int order, double factor, size_t begin, size_t end,
-                         double *to)
+/* *c, *s = order-th derivatives at the set time of cos(omega t) and sin(omega t); of a table, *c of its value (column 0), while
+ * *s belongs to a sine of 0. */
+static inline void loads_differentiate(const tribo_system *sys, size_t k, int order, double *c, double *s)
 {
-    for (size_t k = 0; order < 2 && k < sys->loads.tables; k++) {
-        const struct table *table = &sys->loads.table[k];
-        if (table->drives != drives) {
-            continue;
+    const struct harmonic *h = &sys->loads.harmonic[k];
+    tribo_system_turn(sys, k);
+    *c = h->cos_t;
+    *s = h->sin_t;
+    if (order && h->knots) {
+        *c = order == 1 ? h->sin_t : 0.0;
+    } else if (order) {
+        double power = order & 2 ? -1.0 : 1.0;
+        for (int d = 0; d < order; d++) {
+            power *= h->omega;
         }
-        double value = 0.0;
-        for (size_t i = begin; i < end; i++) {
-            if (i == begin || table->columns > 1) {
-                value = factor * look_up(table, table->at, sys->loads.time, sys->loads.low, table->columns > 1 ? i : 0, order);
-            }
-            to[i] += value * table->pattern[i];
-        }
+        *c = power * (order & 1 ? -h->sin_t : h->cos_t);
+        *s = power * (order & 1 ? h->cos_t : h->sin_t);
     }
-}
-
-/* *c, *s = order-th derivatives of cos(omega t), sin(omega t) at the set time. */
-static inline void loads_differentiate(const struct harmonic *h, int order, double *c, double *s)
-{
-    double power = order & 2 ? -1.0 : 1.0;
-    for (int d = 0; d < order; d++) {
-        power *= h->omega;
-    }
-    *c = power * (order & 1 ? -h->sin_t : h->cos_t);
-    *s = power * (order & 1 ? h->cos_t : h->sin_t);
 }
 
 void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, double factor, double *to)
 {
     for (size_t k = 0; k < sys->loads.harmonics; k++) {
-        struct harmonic *h = &sys->loads.harmonic[k];
+        const struct harmonic *h = &sys->loads.harmonic[k];
         if (h->drives != drives) {
             continue;
         }
         double c, s;
-        tribo_system_turn(sys, k);
-        loads_differentiate(h, order, &c, &s);
-        for (size_t i = 0; i < h->count; i++) {
-            to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
+        loads_differentiate(sys, k, order, &c, &s);
+        for (size_t e = 0; e < h->count; e++) {
+            c = h->columns > 1 ? look_up(sys, h, e, order) : c;
+            to[h->index[e]] += factor * (h->cosine[e] * c + h->sine[e] * s);
         }
-    }
-    if (sys->loads.tables) {
-        tribo_system_tables(sys, drives, order, factor, 0, length_of(sys, drives), to);
     }
 }
 
@@ -260,7 +227,7 @@ double tribo_system_swing(const tribo_system *sys, size_t i)
     double sum = 0.0;
     for (size_t k = 0; k < sys->loads.harmonics; k++) {
         const struct harmonic *h = &sys->loads.harmonic[k];
-        sum += h->drives == DRIVES_LIMIT ? hypot(h->cosine[i], h->sine[i]) : 0.0;
+        sum += h->drives == DRIVES_LIMIT && !h->knots ? hypot(h->cosine[i], h->sine[i]) : 0.0;
     }
     return sum;
 }
@@ -273,10 +240,10 @@ void tribo_system_most_limits(const tribo_system *sys, double *most)
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
         most[i] = sys->loads.limit_tables ? 0.0 : sys->loads.given_limit[i];
-        for (size_t k = 0; k < sys->loads.tables; k++) {
-            const struct table *table = &sys->loads.table[k];
-            for (size_t p = 0; table->drives == DRIVES_LIMIT && p < table->knots; p++) {
-                most[i] = greater(most[i], table->value[p * table->columns + i]);
+        for (size_t k = 0; k < sys->loads.harmonics; k++) {
+            const struct harmonic *h = &sys->loads.harmonic[k];
+            for (size_t p = 0; h->drives == DRIVES_LIMIT && p < h->knots; p++) {
+                most[i] = greater(most[i], h->value[p * h->columns + i]);
             }
         }
         most[i] += tribo_system_swing(sys, i);
@@ -289,19 +256,15 @@ void tribo_system_most_limits(const tribo_system *sys, double *most)
 int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
 {
     for (int order = 0; order < DERIVATIVES; order++) {
-        double *limit = sys->work.feq, sum;
-        limit[i] = sys->loads.limit_tables || order ? 0.0 : sys->loads.given_limit[i];
-        tribo_system_tables(sys, DRIVES_LIMIT, order, 1.0, i, i + 1, limit);
-        sum = limit[i];
-        double size = fabs(sum);
+        double sum = sys->loads.limit_tables || order ? 0.0 : sys->loads.given_limit[i], size = fabs(sum);
         for (size_t k = 0; k < sys->loads.harmonics; k++) {
             const struct harmonic *h = &sys->loads.harmonic[k];
             double c, s;
             if (h->drives == DRIVES_LIMIT) {
-                tribo_system_turn(sys, k);
-                loads_differentiate(h, order, &c, &s);
+                loads_differentiate(sys, k, order, &c, &s);
+                c = h->columns > 1 ? look_up(sys, h, i, order) : c;
                 sum += h->cosine[i] * c + h->sine[i] * s;
-                size += hypot(h->cosine[i], h->sine[i]) * hypot(c, s);
+                size += h->knots ? fabs(c) : hypot(h->cosine[i], h->sine[i]) * hypot(c, s);
             }
         }
         if (fabs(sum) > TRIBO_LIMIT_NOISE * doubt * size) {
@@ -367,31 +330,12 @@ static int check_knots(const tribo_system *sys, size_t knots, const double *time
         return knots ? tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", time ? name : "time")
                      : tribo_system_fail(sys, TRIBO_ERR_SIZE, "knots = 0");
     }
-    const int status = tribo_system_check_finite(sys, "time", time, knots);
+    int status = tribo_system_check_finite(sys, "time", time, knots);
     for (size_t k = 1; !status && k < knots; k++) {
         if (time[k] <= time[k - 1]) {
-            return tribo_system_fail(sys, TRIBO_ERR_RANGE, "time[%zu] = %.17g is not after time[%zu] = %.17g", k, time[k], k - 1,
-                                     time[k - 1]);
+            status = tribo_system_fail(sys, TRIBO_ERR_RANGE, "time[%zu] = %.17g is not after time[%zu] = %.17g", k, time[k],
+                                       k - 1, time[k - 1]);
         }
-    }
-    return status;
-}
-
-/* Returns TRIBO_OK if limit [knots][ncontact] is finite, not negative, and 0 at elastic contacts. */
-static int check_limit_table(const tribo_system *sys, size_t knots, const double *limit)
-{
-    const size_t n = sys->ncontact;
-    int status = TRIBO_OK;
-    for (size_t k = 0; !status && k < knots * n; k++) {
-        if (!isfinite(limit[k]) || limit[k] < 0.0) {
-            const int finite = isfinite(limit[k]);
-            status =
-                tribo_system_fail(sys, finite ? TRIBO_ERR_NEGATIVE : TRIBO_ERR_NOT_FINITE, "limit[%zu] = %g of contact %zu is %s",
-                                  k / n, limit[k], k % n, finite ? "negative" : "not finite");
-        }
-    }
-    for (size_t k = 0; !status && k < knots; k++) {
-        status = check_pattern(sys, DRIVES_LIMIT, "limit", limit + k * n);
     }
     return status;
 }
@@ -401,114 +345,101 @@ static int check_limit_table(const tribo_system *sys, size_t knots, const double
 /* Notes a change of the functions of time. */
 static int loads_changed(tribo_system *sys)
 {
-    loads_count(sys);
+    loads_count(&sys->loads);
     sys->revision++;
     tribo_system_forget_time(sys);
     return TRIBO_OK;
 }
 
-/* Appends a harmonic, parts [2][n] cosine and sine: entries that are not both 0; all entries for limits, where the index is the
- * contact. Returns 0 if out of memory. */
-static int append_harmonic(tribo_system *sys, enum drives drives, double omega, const double *parts, int by_load)
+/* Appends a function of time like h, or replaces the table of limits. parts [2][n]: cosine and sine, of which entries that are
+ * both 0 are left out; limits have all entries, so that the index is the contact. time [knots], value [knots][columns]: of a
+ * table. Returns 0 if out of memory. */
+static int append_harmonic(tribo_system *sys, struct harmonic h, const double *parts, const double *time, const double *value)
 {
-    const size_t n = length_of(sys, drives);
-    struct harmonic h = {.omega = omega, .drives = drives, .time = NAN, .by_load = by_load};
-    struct harmonic *all = realloc(sys->loads.harmonic, (sys->loads.harmonics + 1) * sizeof *all);
+    const size_t n = length_of(sys, h.drives);
+    struct loads *l = &sys->loads;
+    struct harmonic *all = realloc(l->harmonic, (l->harmonics + 1) * sizeof *all);
     for (size_t i = 0; i < n; i++) {
-        h.count += parts[i] != 0.0 || parts[n + i] != 0.0 || drives == DRIVES_LIMIT;
+        h.count += parts[i] != 0.0 || parts[n + i] != 0.0 || h.drives == DRIVES_LIMIT;
     }
-    sys->loads.harmonic = all ? all : sys->loads.harmonic;
+    l->harmonic = all ? all : l->harmonic;
     if (!all || !create_harmonic(&h, NULL)) {
         return 0;
     }
     for (size_t i = 0, e = 0; e < h.count; i++) {
-        if (parts[i] != 0.0 || parts[n + i] != 0.0 || drives == DRIVES_LIMIT) {
+        if (parts[i] != 0.0 || parts[n + i] != 0.0 || h.drives == DRIVES_LIMIT) {
             h.index[e] = i;
             h.cosine[e] = parts[i];
             h.sine[e++] = parts[n + i];
         }
     }
-    sys->loads.harmonic[sys->loads.harmonics++] = h;
+    size_t at = h.drives == DRIVES_LIMIT && h.knots ? 0 : l->harmonics;
+    while (at < l->harmonics && !(all[at].drives == DRIVES_LIMIT && all[at].knots)) {
+        at++;
+    }
+    if (h.knots) {
+        memcpy(h.knot, time, h.knots * sizeof *time);
+        memcpy(h.value, value, h.knots * h.columns * sizeof *value);
+    }
+    if (at < l->harmonics) {
+        free(all[at].index);
+    }
+    l->harmonics += at == l->harmonics;
+    all[at] = h;
     return loads_changed(sys) == TRIBO_OK;
 }
 
-/* Adds a harmonic. Displacements of compliant contacts by a load, way [2][ncontact], become a base motion b = -d(way)/dt, so that
- * v includes d(way)/dt. Returns a status. */
-static int loads_add_harmonic(tribo_system *sys, enum drives drives, double omega, const double *cosine, const double *sine)
+/* Adds a function of time like h, cosine and sine in the caller's coordinates, or NULL. Displacements of compliant contacts by a
+ * load, way [2][ncontact], become a base motion b = -d(way)/dt, so that v includes d(way)/dt. Returns a status. */
+static int loads_add(tribo_system *sys, struct harmonic h, const double *cosine, const double *sine, const double *time,
+                     const double *value)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    const size_t n = length_of(sys, drives), c = sys->ncontact;
-    int status = drives == DRIVES_LIMIT ? loads_begin_limits(sys) : TRIBO_OK;
-    status = status || isfinite(omega) ? status : tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
-    status = status ? status : check_pattern(sys, drives, "cosine", cosine);
-    status = status ? status : check_pattern(sys, drives, "sine", sine);
-    status = status || drives != DRIVES_LIMIT ? status : loads_check_limits(sys, cosine, sine);
-    if (status) {
-        return status;
-    }
+    const size_t n = length_of(sys, h.drives), c = sys->ncontact;
     double *parts = tribo_zeros(2 * (n + c) + 1, sizeof *parts), *way = parts ? parts + 2 * n : NULL;
     for (size_t part = 0; parts && part < 2; part++) {
         const double *from = part ? sine : cosine;
-        if (from && drives != DRIVES_LOAD) {
+        if (from && h.drives != DRIVES_LOAD) {
             memcpy(parts + part * n, from, n * sizeof *parts);
         } else if (from) {
             tribo_system_accelerate(sys, from, parts + part * n, way + part * c);
         }
     }
-    int done = parts && append_harmonic(sys, drives, omega, parts, 0);
-    if (done && tribo_largest(way, 2 * c) * fabs(omega) > 0.0) {
+    for (size_t i = 0; parts && h.knots && h.drives == DRIVES_LIMIT && i < n; i++) {
+        parts[i] = 1.0;
+    }
+    if (parts && h.knots && tribo_largest(way, c) > 0.0) {
+        free(parts);
+        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                 "the load of a table bends what is reduced to compliance: take TRIBO_STATICS_MASS");
+    }
+    int done = parts && append_harmonic(sys, h, parts, time, value);
+    if (done && tribo_largest(way, 2 * c) * fabs(h.omega) > 0.0) {
         for (size_t i = 0; i < c; i++) {
-            parts[i] = -omega * way[c + i];
-            parts[c + i] = omega * way[i];
+            parts[i] = -h.omega * way[c + i];
+            parts[c + i] = h.omega * way[i];
         }
-        done = append_harmonic(sys, DRIVES_BASE, omega, parts, 1);
+        done = append_harmonic(sys, (struct harmonic){.drives = DRIVES_BASE, .omega = h.omega, .by_load = 1}, parts, NULL, NULL);
         if (!done) {
             free(sys->loads.harmonic[--sys->loads.harmonics].index);
         }
     }
     free(parts);
     return done ? TRIBO_OK
-                : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a harmonic of %zu value%s", n, plural(n));
+                : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a function of time of %zu value%s", n, plural(n));
 }
 
-/* Appends a table, or replaces the table of limits, value [knots][columns]; pattern: forces [given], base velocities [ncontact], or NULL: ones. Returns a status. */
-static int append_table(tribo_system *sys, enum drives drives, size_t knots, size_t columns, const double *time,
-                        const double *value, const double *pattern)
+/* Adds a harmonic. Returns a status. */
+static int add_harmonic(tribo_system *sys, enum drives drives, double omega, const double *cosine, const double *sine)
 {
-    struct table t = {.drives = drives, .knots = knots, .columns = columns};
-    struct table *all = realloc(sys->loads.table, (sys->loads.tables + 1) * sizeof *all);
-    double *way = sys->work.feq;
-    sys->loads.table = all ? all : sys->loads.table;
-    if (!all || !create_table(&t, length_of(sys, drives), NULL)) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knot%s", knots, plural(knots));
+    if (!sys) {
+        return TRIBO_ERR_NULL;
     }
-    memcpy(t.time, time, knots * sizeof *time);
-    memcpy(t.value, value, knots * columns * sizeof *value);
-    memset(way, 0, sys->ncontact * sizeof *way);
-    if (drives == DRIVES_LOAD) {
-        tribo_system_accelerate(sys, pattern, t.pattern, way);
-    }
-    for (size_t i = 0; drives != DRIVES_LOAD && i < sys->ncontact; i++) {
-        t.pattern[i] = pattern ? pattern[i] : 1.0;
-    }
-    if (tribo_largest(way, sys->ncontact) > 0.0) {
-        free(t.time);
-        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                 "the load of a table bends what is reduced to compliance: take TRIBO_STATICS_MASS");
-    }
-    size_t k = drives == DRIVES_LIMIT ? 0 : sys->loads.tables;
-    while (k < sys->loads.tables && sys->loads.table[k].drives != DRIVES_LIMIT) {
-        k++;
-    }
-    if (k < sys->loads.tables) {
-        free(sys->loads.table[k].time);
-    } else {
-        sys->loads.tables++;
-    }
-    sys->loads.table[k] = t;
-    return loads_changed(sys);
+    int status = drives == DRIVES_LIMIT ? loads_begin_limits(sys) : TRIBO_OK;
+    status = status || isfinite(omega) ? status : tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
+    status = status ? status : check_pattern(sys, drives, "cosine", cosine);
+    status = status ? status : check_pattern(sys, drives, "sine", sine);
+    status = status || drives != DRIVES_LIMIT ? status : loads_check_limits(sys, cosine, sine);
+    return status ? status : loads_add(sys, (struct harmonic){.drives = drives, .omega = omega}, cosine, sine, NULL, NULL);
 }
 
 /* Adds the table value [knots] times pattern: forces [given], or base velocities [ncontact]. Returns a status. */
@@ -522,30 +453,24 @@ static int add_table(tribo_system *sys, enum drives drives, size_t knots, const 
                                        : tribo_system_fail(sys, TRIBO_ERR_NULL, "pattern is NULL");
     status = status ? status : tribo_system_check_finite(sys, "value", value, knots);
     status = status ? status : check_pattern(sys, drives, "pattern", pattern);
-    return status ? status : append_table(sys, drives, knots, 1, time, value, pattern);
+    const struct harmonic h = {.drives = drives, .knots = knots, .columns = 1};
+    return status ? status : loads_add(sys, h, pattern, NULL, time, value);
 }
 
-/* Removes the harmonics and tables that drive loads, bases or limits. Returns a status. */
+/* Removes the functions of time that drive loads, bases or limits. Returns a status. */
 static int remove_driven(tribo_system *sys, enum drives drives)
 {
     if (!sys) {
         return TRIBO_ERR_NULL;
     }
     struct loads *l = &sys->loads;
-    const size_t harmonics = l->harmonics, tables = l->tables;
-    l->harmonics = l->tables = 0;
-    for (size_t k = 0; k < harmonics; k++) {
+    const size_t all = l->harmonics;
+    l->harmonics = 0;
+    for (size_t k = 0; k < all; k++) {
         if ((l->harmonic[k].by_load ? DRIVES_LOAD : l->harmonic[k].drives) == drives) {
             free(l->harmonic[k].index);
         } else {
             l->harmonic[l->harmonics++] = l->harmonic[k];
-        }
-    }
-    for (size_t k = 0; k < tables; k++) {
-        if (l->table[k].drives == drives) {
-            free(l->table[k].time);
-        } else {
-            l->table[l->tables++] = l->table[k];
         }
     }
     return loads_changed(sys);
@@ -553,17 +478,17 @@ static int remove_driven(tribo_system *sys, enum drives drives)
 
 int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine)
 {
-    return loads_add_harmonic(sys, DRIVES_LOAD, omega, cosine, sine);
+    return add_harmonic(sys, DRIVES_LOAD, omega, cosine, sine);
 }
 
 int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *cosine, const double *sine)
 {
-    return loads_add_harmonic(sys, DRIVES_BASE, omega, cosine, sine);
+    return add_harmonic(sys, DRIVES_BASE, omega, cosine, sine);
 }
 
 int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine, const double *sine)
 {
-    return loads_add_harmonic(sys, DRIVES_LIMIT, omega, cosine, sine);
+    return add_harmonic(sys, DRIVES_LIMIT, omega, cosine, sine);
 }
 
 int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value, const double *pattern)
@@ -578,10 +503,22 @@ int tribo_system_add_base_table(tribo_system *sys, size_t knots, const double *t
 
 int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit)
 {
+    const size_t n = sys ? sys->ncontact : 0;
     int status = sys ? check_knots(sys, knots, time, "limit", limit) : TRIBO_ERR_NULL;
-    status = status ? status : check_limit_table(sys, knots, limit);
+    for (size_t k = 0; !status && k < knots * n; k++) {
+        const int finite = isfinite(limit[k]);
+        if (!(finite && limit[k] >= 0.0)) {
+            status =
+                tribo_system_fail(sys, finite ? TRIBO_ERR_NEGATIVE : TRIBO_ERR_NOT_FINITE, "limit[%zu] = %g of contact %zu is %s",
+                                  k / n, limit[k], k % n, finite ? "negative" : "not finite");
+        }
+    }
+    for (size_t k = 0; !status && k < knots; k++) {
+        status = check_pattern(sys, DRIVES_LIMIT, "limit", limit + k * n);
+    }
     status = status ? status : loads_begin_limits(sys);
-    return status ? status : append_table(sys, DRIVES_LIMIT, knots, sys->ncontact, time, limit, NULL);
+    const struct harmonic h = {.drives = DRIVES_LIMIT, .knots = knots, .columns = n};
+    return status ? status : loads_add(sys, h, NULL, NULL, time, limit);
 }
 
 int tribo_system_clear_loads(tribo_system *sys)

@@ -14,26 +14,20 @@
 /* The function of time to which a harmonic or table adds: load, base velocity b(t), or limits. */
 enum drives { DRIVES_LOAD, DRIVES_BASE, DRIVES_LIMIT };
 
-/* cosine[e] cos(omega t) + sine[e] sin(omega t), added to element index[e]. */
+/* A function of time: cosine[e] cos(omega t) + sine[e] sin(omega t) is added to element index[e]. Or, if it has knots, a table,
+ * linear between knots, constant outside: cosine[e] value(t) is added; a table of limits has a column for each contact, and stands
+ * in the place of given_limit. */
 struct harmonic {
-    double omega;
-    double time, cos_t, sin_t; /* cos(omega time), sin(omega time); time NaN: not computed */
+    enum drives drives;
+    int by_load;               /* 1: base motion that a load causes (tribo_system_add_load), removed with the loads */
+    double omega;              /* tables: 0 */
+    double time, cos_t, sin_t; /* cos(omega time), sin(omega time); of a table value, slope; time NaN: not computed */
     size_t turns;              /* calls of tribo_harmonic_take since the last tribo_harmonic_turn */
-    enum drives drives;
-    int by_load;           /* 1: base motion that a load causes (tribo_system_add_load), removed with the loads */
-    size_t count;          /* entries: limits have all contacts; else those with cosine or sine not 0 */
-    size_t *index;         /* [count] degree of freedom, or contact; owns the memory of cosine and sine */
-    double *cosine, *sine; /* [count] */
-};
-
-/* A function of time, linear between knots, constant outside: adds value(t) pattern to the load or to b(t). A table of limits
- * has a column for each contact, and stands in the place of given_limit. */
-struct table {
-    enum drives drives;
-    size_t knots, columns, at; /* at: last knot at or before sys->loads.time, or 0 */
-    double *time;              /* [knots]; owns the memory of value and pattern */
-    double *value;             /* [knots][columns] */
-    double *pattern;           /* [ndof] accelerations, [ncontact] velocities; limits: [ncontact] ones */
+    size_t knots, columns, at; /* at: last knot at or before time, or 0; knots, columns 0: a harmonic */
+    size_t count;              /* entries: limits have all contacts; else those with cosine or sine not 0 */
+    size_t *index;             /* [count] degree of freedom, or contact; owns the memory of all arrays */
+    double *cosine, *sine;     /* [count] accelerations, velocities or limits; tables: 1 for limits; 0 */
+    double *knot, *value;      /* [knots] times, [knots][columns] */
 };
 
 /* Error bound of a reduced system at omega: missing x^order/(1 - x), x = omega^2/above. Left-out modes have omega^2 >= above, and at
@@ -54,12 +48,12 @@ struct expansion {
 
 /* The functions of time, and the time that is set. */
 struct loads {
-    size_t harmonics, base_harmonics, limit_harmonics; /* numbers: all; of b(t); of limits */
-    struct harmonic *harmonic;
-    size_t tables, base_tables, limit_tables; /* numbers: all; of b(t); of limits, at most 1 */
-    struct table *table;
-    double *given_limit; /* [ncontact] limits set by the caller; valid while limits vary */
-    double time, low;    /* the set time (NaN: none) and its part below the last digit (tribo_system_set_low) */
+    size_t harmonics;                         /* number of functions */
+    struct harmonic *harmonic;                /* [harmonics] */
+    size_t base_harmonics, limit_harmonics;   /* numbers of those that are no tables: of b(t); of limits */
+    size_t tables, base_tables, limit_tables; /* numbers of tables: all; of b(t); of limits, at most 1 */
+    double *given_limit;                      /* [ncontact] limits set by the caller; valid while limits vary */
+    double time, low; /* the set time (NaN: none) and its part below the last digit (tribo_system_set_low) */
 };
 
 /* A reduced system. The modes convert loads to accelerations. */
@@ -149,7 +143,7 @@ void tribo_loads_free(tribo_system *sys);
 /* Copies loads, base motions and tables from `from` to sys, which has none. Returns 1, or 0 if out of memory. */
 int tribo_loads_copy(tribo_system *sys, const tribo_system *from);
 
-/* Sets time t and the tables' knots at t. If limits vary, sets the limits of the contacts at t. */
+/* Sets time t. If limits vary, sets the limits of the contacts at t. */
 void tribo_system_set_time(tribo_system *sys, double t);
 
 /* Sets sys->loads.time and the time of all harmonics to NaN: the next use computes everything again. */
@@ -177,10 +171,6 @@ void tribo_system_set_low(tribo_system *sys, double low);
 /* to += factor times the order-th derivative, at the set time, of the accelerations by the load [ndof], of b(t) [ncontact], or of
  * what the limits [ncontact] have beside given_limit. */
 void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, double factor, double *to);
-
-/* to[i] += factor times the order-th derivative of the tables' part of load, b(t) or limits, begin <= i < end. */
-void tribo_system_tables(const tribo_system *sys, enum drives drives, int order, double factor, size_t begin, size_t end,
-                         double *to);
 
 /* Returns 1 if a base moves. */
 static inline int tribo_system_bases_move(const tribo_system *sys)
