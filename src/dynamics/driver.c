@@ -12,34 +12,10 @@
 #include "common/real.h"
 #include "common/zeros.h"
 
-/* Returns TRIBO_ERR_UNSUPPORTED for planar contacts if m or the system does not allow them, and for static limits of elastic
- * contacts. Every advance calls this function, since contacts may change between advances. */
-static int check_contacts(const tribo_system *sys, const struct method *m)
-{
-    const int springs = sys->expansion.place != NULL;
-    const size_t planar = m->takes & NEEDS_SCALAR || springs ? tribo_system_planar(sys) : 0;
-    double *ratio = sys->work.feq;
-    if (planar) {
-        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                 "method %s knows no planar contacts%s, of which the system has %zu%s", m->name,
-                                 springs ? " where degrees of freedom have no mass" : "", planar, springs ? "" : ": take event");
-    }
-    if (springs) {
-        tribo_get_static(sys->contacts, ratio, NULL);
-    }
-    for (size_t i = 0; springs && i < sys->ncontact; i++) {
-        if (tribo_is_compliant(&sys->compliance, i) && ratio[i] > 1.0) {
-            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                     "contact %zu is elastic, and takes no static limit: ratio[%zu] = %g", i, i, ratio[i]);
-        }
-    }
-    return TRIBO_OK;
-}
-
 int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const struct method *m)
 {
     int status = tribo_system_take_settings(sys);
-    status = status ? status : check_contacts(sys, m);
+    status = status ? status : tribo_system_check_contacts(sys, m->name, m->takes & NEEDS_SCALAR);
     if (!status && m->takes & NEEDS_MASS) {
         char who[40];
         snprintf(who, sizeof who, "method %s", m->name);
@@ -49,8 +25,7 @@ int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const stru
     if (status) {
         return status;
     }
-    const size_t size = tribo_system_size(sys), room = tribo_system_dimension(sys) + sys->compliance.count;
-    const size_t shown = sys->expansion.place ? room : 0;
+    const size_t size = tribo_system_size(sys), shown = sys->expansion.place ? tribo_system_dimension(sys) : 0;
     tribo_driver *d = tribo_zeros(sizeof *d + (2 * size + 2 * shown) * sizeof *d->state + TRIBO_MESSAGE, 1);
     if (!d) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a driver of %zu equation%s", size, plural(size));
@@ -328,7 +303,7 @@ static int check_settings(tribo_driver *drv)
     if ((drv->method->takes & (TAKES_STEP | TAKES_TOLERANCE)) == TAKES_STEP && drv->dt == 0.0) {
         return tribo_driver_fail(drv, TRIBO_ERR_STATE, "method %s has no step: call tribo_driver_set_step", drv->method->name);
     }
-    const int unfit = check_contacts(drv->sys, drv->method);
+    const int unfit = tribo_system_check_contacts(drv->sys, drv->method->name, drv->method->takes & NEEDS_SCALAR);
     return tribo_driver_pass(drv, unfit);
 }
 

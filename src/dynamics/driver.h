@@ -49,7 +49,7 @@ struct tribo_driver {
     void *own;                 /* data of the method at work */
     struct choice *choice;     /* methods.c: data of method auto; NULL in others */
     double *state, *slope;     /* [tribo_system_size] last kept state; workspace */
-    double *motion, *shown;    /* [dimension + compliant contacts] methods' state; caller's state. NULL without an expansion */
+    double *motion, *shown;    /* [dimension] methods' state, at most as long; caller's state. NULL without an expansion */
     double time;               /* time of `state` */
     size_t revision;           /* tribo_system_revision after the last advance; SIZE_MAX: the next starts from scratch */
     struct shooting *shooting; /* last search of a periodic motion, or NULL */

@@ -58,6 +58,29 @@ int tribo_system_check_rates(const tribo_system *sys, const char *what)
     return status ? status : tribo_system_check_solved(sys, what);
 }
 
+int tribo_system_check_contacts(const tribo_system *sys, const char *method, int scalar)
+{
+    const int springs = sys->expansion.place != NULL;
+    const size_t planar = scalar || springs ? tribo_system_planar(sys) : 0;
+    if (planar) {
+        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                 "method %s knows no planar contacts%s, of which the system has %zu%s", method,
+                                 springs ? " where degrees of freedom have no mass" : "", planar, springs ? "" : ": take event");
+    }
+    if (springs) {
+        tribo_get_static(sys->contacts, sys->work.feq, NULL);
+    }
+    for (size_t k = 0; k < sys->compliance.count; k++) {
+        const size_t i = sys->compliance.contact[k];
+        if (sys->work.feq[i] > 1.0) {
+            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                     "contact %zu is elastic, and takes no static limit: ratio[%zu] = %g", i, i,
+                                     sys->work.feq[i]);
+        }
+    }
+    return TRIBO_OK;
+}
+
 int tribo_system_check_finite(const tribo_system *sys, const char *name, const double *x, size_t n)
 {
     for (size_t i = 0; x && i < n; i++) {

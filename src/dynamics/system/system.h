@@ -296,6 +296,10 @@ int tribo_system_check_solved(const tribo_system *sys, const char *what);
 /* Both checks, for functions that compute rates of states: neither massless degrees of freedom nor unsolved systems. */
 int tribo_system_check_rates(const tribo_system *sys, const char *what);
 
+/* Returns TRIBO_ERR_UNSUPPORTED for planar contacts if scalar = 1 or the system has massless degrees of freedom, and for static limits
+ * of elastic contacts. */
+int tribo_system_check_contacts(const tribo_system *sys, const char *method, int scalar);
+
 /* Returns TRIBO_OK if all x [n] are finite, or x is NULL, else an error with the name of x. */
 int tribo_system_check_finite(const tribo_system *sys, const char *name, const double *x, size_t n);
 
