@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "energy_norm.h"
+#include "common/layout.h"
 #include "common/real.h"
+#include "numerics/lapack.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-/* Sets natural, phi and psi by the eigenvectors of S'KS, M^-1 = S S'. k [n][n]: workspace. Returns a status. */
-static int find_free_modes(struct energy_norm *e, const tribo_system *sys, double *k)
+/* Sets natural, phi and psi by the eigenvectors of S'KS, M^-1 = S S'. Returns a status. */
+static int find_free_modes(struct energy_norm *e, const tribo_system *sys)
 {
     const size_t n = e->n;
     struct matrix own = {0};
@@ -15,58 +16,49 @@ static int find_free_modes(struct energy_norm *e, const tribo_system *sys, doubl
     if (!stiffness) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the modes of the free structure");
     }
-    tribo_matrix_spread(stiffness, k);
+    tribo_matrix_spread(stiffness, e->phi);
     tribo_matrix_free(&own);
-    tribo_even_out(n, k);
-    int status = tribo_symmetric_eigen_by(&sys->factor, k, n, e->natural, e->phi);
+    tribo_even_out(n, e->phi);
+    const int status = tribo_symmetric_eigen_by(&sys->factor, e->phi, n, e->natural, e->psi);
     for (size_t i = 0; i < n; i++) {
         e->natural[i] = sqrt(fabs(e->natural[i]));
     }
-    tribo_transpose(n, n, e->phi, k);
+    tribo_transpose(n, n, e->psi, e->phi);
     if (sys->mass.rows) {
-        tribo_matrix_multiply_all(&sys->mass, n, k, e->psi);
+        tribo_matrix_multiply_all(&sys->mass, n, e->phi, e->psi);
     } else {
-        memcpy(e->psi, k, n * n * sizeof *k);
+        memcpy(e->psi, e->phi, n * n * sizeof *e->psi);
     }
     return status ? tribo_system_fail(sys, status, "modes of the free structure: %s", tribo_strerror(status)) : TRIBO_OK;
 }
 
-/* Sets root, G = root root'. Returns a status. */
-static int find_root(struct energy_norm *e, const tribo_system *sys)
-{
-    const struct compliance *g = &sys->compliance;
-    const size_t c = g->count;
-    for (size_t i = 0; i < c; i++) {
-        for (size_t k = 0; k <= i; k++) {
-            double sum = tribo_compliance_entry(g, sys->ncontact, g->contact[i], g->contact[k]);
-            sum -= tribo_dot(e->root + i * c, e->root + k * c, k);
-            e->root[i * c + k] = k < i ? sum / e->root[k * c + k] : sqrt(sum);
-        }
-    }
-    return tribo_dense_finite(e->root, c * c)
-               ? TRIBO_OK
-               : tribo_system_fail(sys, TRIBO_ERR_INDEFINITE, "the compliance of the contacts is not positive definite");
-}
-
 int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys)
 {
-    const size_t n = sys->ndof;
-    *e = (struct energy_norm){.n = n, .springs = sys->compliance.count, .scale = 1.0};
-    e->phi = calloc(2 * n * n + 3 * n + e->springs * e->springs + 1, sizeof *e->phi);
-    double *work = malloc((n * n + 1) * sizeof *work);
-    int status =
-        e->phi && work ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the modes of the free structure");
-    if (!status) {
-        e->psi = e->phi + n * n;
-        e->omega = e->psi + n * n;
-        e->natural = e->omega + n;
-        e->damping = e->natural + n;
-        e->root = e->damping + n;
-        status = find_free_modes(e, sys, work);
-        status = status ? status : find_root(e, sys);
+    const struct compliance *g = &sys->compliance;
+    const size_t n = sys->ndof, c = g->count;
+    const int springs = (int)c;
+    int info = 0;
+    struct layout l = {0};
+    *e = (struct energy_norm){.n = n, .springs = c, .scale = 1.0};
+    do {
+        e->phi = tribo_layout_array(&l, n * n, sizeof *e->phi);
+        e->psi = tribo_layout_array(&l, n * n, sizeof *e->psi);
+        e->root = tribo_layout_array(&l, c * c, sizeof *e->root);
+        e->natural = tribo_layout_array(&l, n, sizeof *e->natural);
+        e->damping = tribo_layout_array(&l, n, sizeof *e->damping);
+        e->omega = tribo_layout_array(&l, n, sizeof *e->omega);
+    } while (tribo_lapack_takes(c) && !l.memory && tribo_layout_create(&l));
+    if (!l.memory) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the modes of the free structure");
     }
-    free(work);
-    return status;
+    for (size_t k = 0; k < c * c; k++) {
+        e->root[k] = k % c <= k / c ? tribo_compliance_entry(g, sys->ncontact, g->contact[k / c], g->contact[k % c]) : 0.0;
+    }
+    if (c) {
+        dpotrf_("U", &springs, e->root, &springs, &info, 1);
+    }
+    return info ? tribo_system_fail(sys, TRIBO_ERR_INDEFINITE, "the compliance of the contacts is not positive definite")
+                : find_free_modes(e, sys);
 }
 
 void tribo_energy_norm_free(struct energy_norm *e)
@@ -75,34 +67,18 @@ void tribo_energy_norm_free(struct energy_norm *e)
     memset(e, 0, sizeof *e);
 }
 
-void tribo_energy_norm_set_damping(struct energy_norm *e, const tribo_system *sys)
+void tribo_energy_norm_set(struct energy_norm *e, const tribo_system *sys, double least)
 {
     const size_t n = e->n;
-    memset(e->damping, 0, n * sizeof *e->damping);
-    for (size_t i = 0; sys->damping.rows && i < n; i++) {
-        for (size_t m = sys->damping.first[i]; m < sys->damping.first[i + 1]; m++) {
-            const double *column = e->phi + sys->damping.col[m] * n, c = sys->damping.val[m];
-            for (size_t k = 0; k < n; k++) {
-                e->damping[k] += e->psi[k * n + i] * c * column[k];
-            }
+    e->scale = 1.0;
+    e->damped = 1;
+    for (size_t k = 0; k < n; k++) {
+        e->omega[k] = greater(e->natural[k], least);
+        e->damping[k] = 0.0;
+        for (size_t i = 0; i < sys->damping.rows; i++) {
+            e->damping[k] += e->psi[k * n + i] * tribo_matrix_row_dot(&sys->damping, i, e->phi + k * n);
         }
-    }
-}
-
-int tribo_energy_norm_is_damped(const struct energy_norm *e)
-{
-    for (size_t k = 0; k < e->n; k++) {
-        if (!(e->damping[k] > 0.0)) {
-            return 0;
-        }
-    }
-    return 1;
-}
-
-void tribo_energy_norm_set_least(struct energy_norm *e, double least)
-{
-    for (size_t i = 0; i < e->n; i++) {
-        e->omega[i] = greater(e->natural[i], least);
+        e->damped &= e->damping[k] > 0.0;
     }
 }
 
@@ -132,18 +108,10 @@ void tribo_energy_norm_state(const struct energy_norm *e, size_t columns, double
     const size_t n = e->n, half = n * columns;
     scale_rows(e, columns, 1, x);
     memset(y, 0, 2 * half * sizeof *y);
-    tribo_multiply_add(n, n, columns, 1.0, e->phi, x, y);
-    tribo_multiply_add(n, n, columns, 1.0, e->phi, x + half, y + half);
-    for (size_t i = e->springs; i-- > 0;) {
-        double *f = y + 2 * half + i * columns;
-        memcpy(f, x + 2 * half + i * columns, columns * sizeof *f);
-        for (size_t k = i + 1; k < e->springs; k++) {
-            tribo_add(f, -e->root[k * e->springs + i], y + 2 * half + k * columns, columns);
-        }
-        for (size_t j = 0; j < columns; j++) {
-            f[j] /= e->root[i * e->springs + i];
-        }
-    }
+    tribo_multiply_transposed_add(n, n, columns, e->phi, x, y);
+    tribo_multiply_transposed_add(n, n, columns, e->phi, x + half, y + half);
+    memcpy(y + 2 * half, x + 2 * half, e->springs * columns * sizeof *y);
+    tribo_half_solve_back(&(struct cholesky){.n = e->springs, .factor = e->root}, y + 2 * half, columns);
 }
 
 double tribo_energy_length(const double *x, size_t n)

@@ -10,26 +10,24 @@
 
 struct energy_norm {
     size_t n;
-    double *phi;     /* [n][n] modes in columns */
-    double *psi;     /* [n][n] phi'M, the inverse of phi */
+    double *phi;     /* [n][n] modes in rows */
+    double *psi;     /* [n][n] phi M, psi phi' = 1 */
     size_t springs;  /* number of compliant contacts */
     double *root;    /* [springs][springs] lower triangle, G = root root' */
     double *natural; /* [n] natural frequencies */
-    double *damping; /* [n] modal damping, the diagonal of phi'C phi */
+    double *damping; /* [n] modal damping, the diagonal of phi C phi' */
     double *omega;   /* [n] max(natural, least) */
+    int damped;      /* 1: damping > 0 for every mode */
     double scale;    /* a power of two; 1 except for motions so small or large that squares of their sizes under- or overflow */
 };
 
-/* Sets scale = 1. Returns a status, its message on the system's context. Call tribo_energy_norm_free also after a failure. */
+/* Sets phi, psi, natural, root. Returns a status, its message on the system's context. Call tribo_energy_norm_free also after a
+ * failure. */
 int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys);
 void tribo_energy_norm_free(struct energy_norm *e);
 
-/* Sets damping from the present system. Returns 1 if damping > 0 for every mode. */
-void tribo_energy_norm_set_damping(struct energy_norm *e, const tribo_system *sys);
-int tribo_energy_norm_is_damped(const struct energy_norm *e);
-
-/* Sets omega = max(natural, least), least > 0. */
-void tribo_energy_norm_set_least(struct energy_norm *e, double least);
+/* Sets scale = 1, omega by least > 0, and damping and damped from the present system. */
+void tribo_energy_norm_set(struct energy_norm *e, const tribo_system *sys, double least);
 
 /* x [2n + springs][columns] = coordinates of states y [2n + springs][columns], and back, which overwrites x too. */
 void tribo_energy_norm_of(const struct energy_norm *e, size_t columns, const double *y, double *x);

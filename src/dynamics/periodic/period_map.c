@@ -270,9 +270,7 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period, cons
     m->period = period;
     m->moved = 0;
     tribo_period_map_choose(m, is_odd(m->sys, period));
-    m->norm.scale = 1.0;
-    tribo_energy_norm_set_least(&m->norm, LEAST_OMEGA * full_turn / period);
-    tribo_energy_norm_set_damping(&m->norm, m->sys);
+    tribo_energy_norm_set(&m->norm, m->sys, LEAST_OMEGA * full_turn / period);
     /* size of the motion: the larger of least and the guess y */
     const double least = least_motion(m);
     tribo_energy_norm_of(&m->norm, 1, y, m->x);

@@ -411,7 +411,7 @@ static int find_family(struct shooting *s, double *move)
 static int approach_guess(struct shooting *s)
 {
     const size_t n = s->map.n;
-    const int alone = tribo_energy_norm_is_damped(&s->map.norm) && !tribo_derivative_rests(&s->best->derivative);
+    const int alone = s->map.norm.damped && !tribo_derivative_rests(&s->best->derivative);
     int status = TRIBO_OK, done = 0;
     if (!s->map.odd || alone || !(tribo_energy_length(s->guess, n) > 0.0) ||
         tribo_energy_distance(s->guess, s->best->x, n) < MEANT * s->best->size) {
