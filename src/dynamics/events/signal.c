@@ -3,6 +3,7 @@
 #include "common/real.h"
 #include "first_zero.h"
 
+#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,6 +48,11 @@ void tribo_signal_add(struct signal *s, double cr, double ci, double lr, double 
     s->li[p] = li;
 }
 
+static double complex number(double re, double im)
+{
+    return re + im * (double complex)_Complex_I;
+}
+
 void tribo_signal_at(const struct signal *s, double at, double *to)
 {
     double v0 = 0.0, v1 = 0.0, v2 = 0.0, v3 = 0.0;
@@ -61,13 +67,11 @@ void tribo_signal_at(const struct signal *s, double at, double *to)
     to[2] = 2.0 * v2;
     to[3] = 6.0 * v3;
     for (size_t p = 0; p < s->terms; p++) {
-        const double e = exp(s->lr[p] * at), c = e * cos(s->li[p] * at), d = e * sin(s->li[p] * at);
-        double re = s->cr[p] * c - s->ci[p] * d, im = s->cr[p] * d + s->ci[p] * c;
+        const double complex rate = number(s->lr[p], s->li[p]);
+        double complex term = number(s->cr[p], s->ci[p]) * cexp(rate * at);
         for (int k = 0; k < 4; k++) {
-            const double next = s->lr[p] * re - s->li[p] * im;
-            to[k] += re;
-            im = s->lr[p] * im + s->li[p] * re;
-            re = next;
+            to[k] += creal(term);
+            term *= rate;
         }
     }
 }
@@ -157,65 +161,36 @@ int tribo_signal_extremes(const struct signal *s, double t, struct extremes *e)
 /* -------------------------------------------------------------------------------------------------------------- integrals */
 
 /* The integral of s^j e^{z s}/tau^j from 0 to tau, by the series of the exponential: |z| tau is small, or by parts. */
-static void moment(double zr, double zi, double tau, size_t j, double *re, double *im)
+static double complex moment(double complex z, double tau, size_t j)
 {
-    double tr = tau, ti = 0.0;
-    *re = *im = 0.0;
-    for (size_t k = 0; k < 200; k++) {
-        *re += tr / (double)(j + k + 1);
-        *im += ti / (double)(j + k + 1);
-        const double f = tau / (double)(k + 1), nr = f * (tr * zr - ti * zi), ni = f * (tr * zi + ti * zr);
-        tr = nr;
-        ti = ni;
-        if (fabs(tr) + fabs(ti) <= 1e-18 * tau) {
-            break;
-        }
+    double complex term = tau, sum = 0.0;
+    for (size_t k = 0; k < 200 && cabs(term) > 1e-18 * tau; k++) {
+        sum += term / (double)(j + k + 1);
+        term *= z * tau / (double)(k + 1);
     }
+    return sum;
 }
 
-/* The integral of e^{z s} from 0 to tau. */
-static void exponential(double zr, double zi, double tau, double *re, double *im)
-{
-    if (hypot(zr, zi) * tau < 1.0) {
-        moment(zr, zi, tau, 0, re, im);
-        return;
-    }
-    const double e = exp(zr * tau), er = e * cos(zi * tau) - 1.0, ei = e * sin(zi * tau), square = zr * zr + zi * zi;
-    *re = (er * zr + ei * zi) / square;
-    *im = (ei * zr - er * zi) / square;
-}
-
-/* Adds the integrals of a_j s^j e^{-i omega s}: upwards in j by parts where that loses no digits, else by the series. */
-static void integrate_powers(const struct signal *s, double omega, double *re, double *im)
-{
-    const double tau = s->tau, turn = fabs(omega) * tau, er = cos(omega * tau), ei = -sin(omega * tau);
-    double power = 1.0, mr = 0.0, mi = 0.0;
-    for (size_t j = 0; j <= s->degree; j++) {
-        if (turn < 4.0 + (double)j) {
-            moment(0.0, -omega, tau, j, &mr, &mi);
-        } else {
-            /* M_j = (e^{-i omega tau} - j M_{j-1}/tau)/(-i omega), with M_{-1} j = 1 for j = 0 */
-            const double br = er - (j ? (double)j * mr / tau : 1.0), bi = ei - (j ? (double)j * mi / tau : 0.0);
-            mr = -bi / omega;
-            mi = br / omega;
-        }
-        *re += s->a[j] * power * mr;
-        *im += s->a[j] * power * mi;
-        power *= tau;
-    }
-}
-
+/* The integral of the powers is found upwards in j by parts where that loses no digits, else by the series. */
 void tribo_signal_integrate(const struct signal *s, double omega, double *re, double *im)
 {
-    integrate_powers(s, omega, re, im);
+    const double tau = s->tau, turn = fabs(omega) * tau;
+    const double complex turns = number(0.0, -omega), end = cexp(turns * tau);
+    double complex sum = 0.0, m = 1.0; /* M_j, the moment of turns; for j = 0 by parts: j M_{j-1}/tau = 1 */
+    double power = 1.0;
+    for (size_t j = 0; j <= s->degree; j++) {
+        m = turn < 4.0 + (double)j ? moment(turns, tau, j) : (end - (j ? (double)j * m / tau : 1.0)) / turns;
+        sum += s->a[j] * power * m;
+        power *= tau;
+    }
     for (size_t p = 0; p < s->terms; p++) {
         /* half of c e^{lambda s} and half of its conjugate */
         for (int side = -1; side <= 1; side += 2) {
-            double xr, xi;
-            const double cr = 0.5 * s->cr[p], ci = 0.5 * side * s->ci[p];
-            exponential(s->lr[p], side * s->li[p] - omega, s->tau, &xr, &xi);
-            *re += cr * xr - ci * xi;
-            *im += cr * xi + ci * xr;
+            const double complex z = number(s->lr[p], side * s->li[p] - omega);
+            const double complex integral = cabs(z) * tau < 1.0 ? moment(z, tau, 0) : (cexp(z * tau) - 1.0) / z;
+            sum += 0.5 * number(s->cr[p], side * s->ci[p]) * integral;
         }
     }
+    *re += creal(sum);
+    *im += cimag(sum);
 }
