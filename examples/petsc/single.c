@@ -7,10 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../src/damper/output.h"
-#include "../../src/damper/lines.h"
-#include "../../src/damper/matrix_file.h"
-#include "../../src/damper/structure.h"
+#include "../../src/damper/matrix.h"
+#include "../../src/damper/text.h"
 #include "tribo/tribo_gsl.h"
 
 enum { MAX_CONTACTS = 64 };
@@ -38,27 +36,29 @@ static void chain(char **argument)
     tribo_system_destroy(sys);
 }
 
-/* Contacts "row other limit" a line. */
+/* Contacts "row other limit" a line: directions in compressed rows; other: 0 for the ground. */
 struct row_contacts {
-    size_t count, at[MAX_CONTACTS], to[MAX_CONTACTS]; /* rows from 0; to: as many as there are for the ground */
-    double limit[MAX_CONTACTS];
+    size_t count, first[MAX_CONTACTS + 1], col[2 * MAX_CONTACTS];
+    double val[2 * MAX_CONTACTS], limit[MAX_CONTACTS];
 };
 
 static struct row_contacts read_row_contacts(const char *path, size_t rows)
 {
     struct row_contacts c = {0};
-    struct lines l = open_lines(path);
-    for (; next_data(&l); c.count++) {
+    struct text t = open_text(path);
+    for (size_t k = 0; next_data(&t); c.first[++c.count] = k) {
         if (c.count == MAX_CONTACTS) {
-            die_at(&l, "more than %d contacts", (int)MAX_CONTACTS);
+            die_at(&t, "more than %d contacts", (int)MAX_CONTACTS);
         }
-        c.at[c.count] = next_whole(&l, "row", 1, rows) - 1;
-        const size_t other = next_whole(&l, "other row", 0, rows);
-        c.to[c.count] = other ? other - 1 : rows;
-        c.limit[c.count] = next_real(&l, "limit");
-        expect_end(&l);
+        c.col[k] = next_whole(&t, "row", " ", 1, rows) - 1;
+        c.val[k++] = 1.0;
+        const size_t other = next_whole(&t, "other row", " ", 0, rows);
+        if (other) {
+            c.col[k] = other - 1;
+            c.val[k++] = -1.0;
+        }
+        c.limit[c.count] = next_real(&t, "limit", "");
     }
-    close_lines(&l);
     return c;
 }
 
@@ -66,21 +66,26 @@ static struct row_contacts read_row_contacts(const char *path, size_t rows)
 static tribo_system *read_system(char **file, size_t n, double damping)
 {
     tribo_system *sys;
+    tribo_model *model = NULL;
     const struct rows rows = {n, "the arguments"};
     const struct row_contacts contacts = read_row_contacts(file[2], n);
-    struct structure s = {.ndof = n, .mass = read_matrix(file[0], &rows), .stiffness = read_matrix(file[1], &rows)};
-    tribo_model *model = model_of(&s, contacts.count, contacts.at, contacts.to);
+    struct sparse m = read_matrix(file[0], &rows), k = read_matrix(file[1], &rows);
+    need(tribo_model_create(&model, n, contacts.count), NULL);
+    need(tribo_model_set_mass_csr(model, m.first, m.col, m.val), tribo_model_message(model));
+    need(tribo_model_set_stiffness_csr(model, k.first, k.col, k.val), tribo_model_message(model));
+    need(tribo_model_set_direction_csr(model, contacts.first, contacts.col, contacts.val), tribo_model_message(model));
     if (damping > 0.0) {
-        for (size_t k = 0; k < s.stiffness.first[n]; k++) {
-            s.stiffness.val[k] *= damping;
+        for (size_t i = 0; i < k.first[n]; i++) {
+            k.val[i] *= damping;
         }
-        need(tribo_model_set_damping_csr(model, s.stiffness.first, s.stiffness.col, s.stiffness.val), tribo_model_message(model));
+        need(tribo_model_set_damping_csr(model, k.first, k.col, k.val), tribo_model_message(model));
     }
     need(damping > 0.0 ? tribo_system_create(&sys, model) : tribo_system_reduce(&sys, model, n, TRIBO_STATICS_NONE),
          tribo_model_message(model));
     need(tribo_set_limit(tribo_system_context(sys), contacts.limit), tribo_message(tribo_system_context(sys)));
     tribo_model_destroy(model);
-    free_structure(&s);
+    free_sparse(&m);
+    free_sparse(&k);
     return sys;
 }
 

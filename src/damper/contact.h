@@ -2,7 +2,7 @@
 #ifndef DAMPER_CONTACT_H
 #define DAMPER_CONTACT_H
 
-#include <stddef.h>
+#include "text.h"
 
 /* A degree of freedom as the user names it: a node by its coordinates, and a direction (1, 2, 3 for x, y, z). */
 struct place {
@@ -22,9 +22,6 @@ struct contact {
     int planar;       /* the first direction of two, and the next contact is the other one */
 };
 
-/* "X,Y,Z,DIR" */
-struct place read_place(const char *origin, const char *text);
-
 /* A harmonic load, size sin(omega t + phase): a force at a place; or an acceleration of all supports along a direction. */
 struct load {
     struct place at; /* of the supports: the direction only */
@@ -38,9 +35,12 @@ struct loads {
     size_t count, room;
 };
 
+/* "X,Y,Z,DIR" */
+struct place read_place(struct text *t);
+
 /* "X,Y,Z,DIR" and the words force=FORCE phase=DEGREES, or "DIR" and acceleration=NUMBER phase=DEGREES, parted by colons or
  * blanks: adds the load. */
-void read_load(const char *origin, const char *text, int supports, struct loads *all);
+void read_load(struct text *t, int supports, struct loads *all);
 
 struct contacts {
     struct contact *contact;
@@ -49,7 +49,7 @@ struct contacts {
 
 /* "X,Y,Z,DIR", where DIR may be two directions, and words to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER behind
  * it, parted by colons or blanks: adds the contact, or the two directions of a planar one. */
-void read_contact(const char *origin, const char *text, struct contacts *all);
+void read_contact(struct text *t, struct contacts *all);
 
 /* Adds the contacts of a file, one a line. */
 void read_contacts(const char *path, struct contacts *all);

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "output.h"
-#include "lines.h"
 #include "team.h"
 
 enum { MOST_SAMPLES = 1000, ROUNDS = 12, CLIMBS = 12 };

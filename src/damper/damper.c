@@ -7,6 +7,51 @@
 
 #include "output.h"
 
+/* ------------------------------------------------------------------------------------------------------------- loads */
+
+/* The mass of a row that moves along a direction with the supports. */
+static double mass_along(const struct structure *s, size_t row, int direction)
+{
+    double mass = 0.0;
+    for (size_t k = s->mass.first[row]; k < s->mass.first[row + 1]; k++) {
+        mass += s->dof[s->mass.col[k]].direction == direction ? s->mass.val[k] : 0.0;
+    }
+    return mass;
+}
+
+void complete_options(struct options *o, const struct structure *s)
+{
+    static const double LIMIT_FROM = 1e-3, LIMIT_TO = 10.0; /* times the size of the loads */
+    for (size_t k = 0; k < o->loads.count; k++) {
+        struct load *l = &o->loads.load[k];
+        double mass = l->supports ? 0.0 : 1.0;
+        for (size_t i = 0; l->supports && i < s->ndof; i++) {
+            mass += s->dof[i].direction == l->at.direction ? mass_along(s, i, l->at.direction) : 0.0;
+        }
+        l->size = isnan(l->size) ? o->force : l->size;
+        o->size += l->size * mass;
+    }
+    if (!limits_vary(o)) {
+        o->limits = (struct range){1.0, 1.0, 1};
+    } else if (!o->limits.points) {
+        o->limits = (struct range){LIMIT_FROM * o->size, LIMIT_TO * o->size, o->drive.points > 1 ? 9 : 33};
+    }
+    for (size_t c = 0; c < o->contacts.count; c++) {
+        const struct contact *contact = &o->contacts.contact[c];
+        const char *origin = contact->at.origin;
+        if (!isfinite(isnan(contact->limit) ? contact->mu * o->limits.to : contact->limit)) {
+            die("%s: mu times the normal load, up to %g, is too large a limit", origin, o->limits.to);
+        }
+        if (contact->stiffness > 0.0 && (o->march || o->check) && o->law != TRIBO_COULOMB) {
+            die("%s: with --law %s marching takes rigid contacts only: leave out stiffness=, or --law", origin,
+                tribo_law_name(o->law));
+        }
+        if (contact->planar && !o->march) {
+            die("%s: contacts in a plane are for --method march; method exact knows contacts along one axis only", origin);
+        }
+    }
+}
+
 /* Rows over the degrees of freedom [ndof]: directions of contacts, then loads of size 1, then outputs, then the place where
  * amplitudes are measured. A load of the supports is -M r with r the direction, which is 1 along it. */
 static struct sparse make_rows(const struct options *o, const struct structure *s)
@@ -23,17 +68,13 @@ static struct sparse make_rows(const struct options *o, const struct structure *
         const size_t output = r - contacts - loads;
         if (load && load->supports) {
             for (size_t i = 0; i < s->ndof; i++) {
-                double sum = 0.0;
-                for (size_t k = s->mass.first[i]; k < s->mass.first[i + 1]; k++) {
-                    sum -= s->dof[s->mass.col[k]].direction == load->at.direction ? s->mass.val[k] : 0.0;
-                }
                 j.col[count] = i;
-                j.val[count] = sum;
-                count += sum != 0.0;
+                j.val[count] = -mass_along(s, i, load->at.direction);
+                count += j.val[count] != 0.0;
             }
         } else {
-            const struct place *at = contact       ? &contact->at
-                                     : load        ? &load->at
+            const struct place *at = contact        ? &contact->at
+                                     : load         ? &load->at
                                      : r + 1 < rows ? &o->output[output]
                                                     : measured_place(o);
             j.col[count] = find_degree(s, at);
@@ -127,7 +168,11 @@ static void reduce(struct damper *d, const struct options *o, const struct struc
 {
     /* with statics the loads are contacts, too: their static responses are needed as those of contacts */
     const size_t directions = d->contacts + (o->statics ? o->loads.count : 0);
-    tribo_model *model = matrices_of(s, directions);
+    tribo_model *model = NULL;
+    need(tribo_model_create(&model, s->ndof, directions), NULL);
+    need(tribo_model_set_mass_csr(model, s->mass.first, s->mass.col, s->mass.val), tribo_model_message(model));
+    need(tribo_model_set_stiffness_csr(model, s->stiffness.first, s->stiffness.col, s->stiffness.val),
+         tribo_model_message(model));
     need(tribo_model_set_direction_csr(model, rows->first, rows->col, rows->val), tribo_model_message(model));
     if (tribo_system_reduce(&d->reduced, model, d->kept, o->statics ? TRIBO_STATICS_MASS : TRIBO_STATICS_NONE)) {
         const char *message = tribo_model_message(model);

@@ -12,22 +12,25 @@
 /* A structure reduced to its lowest modes and to static responses, with friction contacts. Made once, then only read: each thread
  * has a copy of sys. Static responses are modes, too, orthogonal to all others in mass and stiffness. */
 struct damper {
-    tribo_system *reduced;            /* for truncation, and for displacements of the whole structure */
-    tribo_system *sys;                /* the same with springs, without a load */
-    size_t ndof, kept, modes;         /* of the structure; lowest modes kept; those and static responses */
-    size_t contacts, outputs;         /* numbers of them */
-    size_t harmonics;                 /* of each output, in tables; 0: none */
-    size_t dimension;                 /* of a state */
-    size_t planar;                    /* contacts in a plane, of which contacts counts both directions */
-    struct linear open, stuck;        /* without friction, and with all contacts stuck */
-    double *contact_shape;            /* [contacts][modes] the modes at the contacts */
-    double *output_shape;             /* [outputs][modes] at the places of --output */
-    double *stiffness;                /* [contacts] of springs; 0: rigid */
-    double *limit;                    /* [contacts] NaN: mu times the limit that varies */
-    double *mu;                       /* [contacts] */
-    double size, step;                /* of the loads; of marching */
+    tribo_system *reduced;     /* for truncation, and for displacements of the whole structure */
+    tribo_system *sys;         /* the same with springs, without a load */
+    size_t ndof, kept, modes;  /* of the structure; lowest modes kept; those and static responses */
+    size_t contacts, outputs;  /* numbers of them */
+    size_t harmonics;          /* of each output, in tables; 0: none */
+    size_t dimension;          /* of a state */
+    size_t planar;             /* contacts in a plane, of which contacts counts both directions */
+    struct linear open, stuck; /* without friction, and with all contacts stuck */
+    double *contact_shape;     /* [contacts][modes] the modes at the contacts */
+    double *output_shape;      /* [outputs][modes] at the places of --output */
+    double *stiffness;         /* [contacts] of springs; 0: rigid */
+    double *limit;             /* [contacts] NaN: mu times the limit that varies */
+    double *mu;                /* [contacts] */
+    double size, step;         /* of the loads; of marching */
     int law;
 };
+
+/* Sets values that depend on the structure: the size of loads, and limits that were not given; checks the contacts. */
+void complete_options(struct options *o, const struct structure *s);
 
 /* kept: the lowest modes to keep. */
 struct damper create_damper(const struct options *o, const struct structure *s, size_t kept);

@@ -12,8 +12,8 @@ struct degree {
 };
 
 /* The degrees of freedom, in the order of their rows, which the caller frees. A file name.dof is CalculiX's: a line
- * "node.direction" for each row, and the nodes' places are in name.inp beside it. In others each line is "row node direction x y
- * z". Ends the program, naming file, line and value, if anything is wrong. */
+ * "node.direction" for each row, and the nodes' places are in its input, name.inp beside it. In others each line is "row node
+ * direction x y z". Ends the program, naming file, line and value, if anything is wrong. */
 struct degree *read_degrees(const char *path, size_t *count);
 
 #endif

@@ -3,7 +3,6 @@
  * that makes the best friction damper. Options: tribo-damper --help. */
 #include <stdlib.h>
 
-#include "matrix_file.h"
 #include "output.h"
 #include "plot.h"
 #include "study.h"

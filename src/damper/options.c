@@ -6,285 +6,349 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lines.h"
 #include "tribo/tribo.h"
 
 static const struct options standard = {
-    .out = ".", .name = "damper", .force = 1.0, .statics = 1, .step = 0.25, .law = TRIBO_COULOMB};
-static const double DAMPING = 0.002, LIMIT_FROM = 1e-3, LIMIT_TO = 10.0; /* times the size of the loads */
-enum { CURVE_LIMITS = 33, FAMILY_LIMITS = 9 };
+    .out = ".", .name = "damper", .drive = {0.0, 0.0, 1}, .force = 1.0, .statics = 1, .step = 0.25, .law = TRIBO_COULOMB};
+static const double DAMPING = 0.002;
 
 /* ------------------------------------------------------------------------------------------------------------- setters */
 
-/* Puts the value of an option into o; origin, for messages, is "option NAME VALUE", or file and line. */
-typedef void setter(const char *origin, const char *value, struct options *o);
+/* Puts the value of an option into o. */
+typedef void setter(struct text *value, struct options *o);
 
-static void set_statics(const char *origin, const char *value, struct options *o)
+/* 0 if the value is the first word, 1 if it is the second one. */
+static int choose(const struct text *value, const char *first, const char *second)
 {
-    o->statics = strcmp(value, "on") == 0;
-    if (!o->statics && strcmp(value, "off") != 0) {
-        die("%s: must be on or off", origin);
+    const int choice = strcmp(value->at, second) == 0;
+    if (!choice && strcmp(value->at, first) != 0) {
+        die_at(value, "must be %s or %s", first, second);
     }
+    return choice;
 }
 
-static void check_ratio(const char *origin, double ratio)
+static void set_statics(struct text *value, struct options *o)
+{
+    o->statics = choose(value, "off", "on");
+}
+
+static void set_method(struct text *value, struct options *o)
+{
+    o->march = choose(value, "exact", "march");
+}
+
+static void set_plot(struct text *value, struct options *o)
+{
+    o->plot = choose(value, "png", "svg") ? "svg" : "png";
+}
+
+static void check_ratio(const struct text *t, double ratio)
 {
     if (!(ratio > 0.0 && ratio < 1.0)) {
-        die("%s: must be above 0 and below 1", origin);
+        die_at(t, "%g: must be above 0 and below 1", ratio);
     }
 }
 
-static void set_damping(const char *origin, const char *value, struct options *o)
+static void set_damping(struct text *value, struct options *o)
 {
     o->damping.count = 0;
-    read_list(origin, value, &o->damping);
+    read_list(value, &o->damping);
     for (size_t k = 0; k < o->damping.count; k++) {
-        check_ratio(origin, o->damping.value[k]);
+        check_ratio(value, o->damping.value[k]);
     }
 }
 
-static void set_damping_ratios(const char *origin, const char *value, struct options *o)
+static void set_damping_ratios(struct text *value, struct options *o)
 {
-    struct lines l = open_lines(value);
+    struct text t = open_text(value->at);
     o->damping.count = 0;
-    while (next_data(&l)) {
-        add_number(&o->damping, next_real(&l, "damping ratio"));
-        expect_end(&l);
-        check_ratio(new_text("%s:%zu: %g", value, l.line, o->damping.value[o->damping.count - 1]),
-                    o->damping.value[o->damping.count - 1]);
+    while (next_data(&t)) {
+        const double ratio = next_real(&t, "damping ratio", "");
+        check_ratio(&t, ratio);
+        add_number(&o->damping, ratio);
     }
-    close_lines(&l);
     if (o->damping.count == 0) {
-        die("%s: there is no damping ratio in it", origin);
+        die_at(value, "there is no damping ratio in it");
     }
 }
 
-static void set_contact(const char *origin, const char *value, struct options *o)
+static void set_contact(struct text *value, struct options *o)
 {
-    read_contact(origin, value, &o->contacts);
+    read_contact(value, &o->contacts);
 }
 
-static void set_contacts(const char *origin, const char *value, struct options *o)
+static void set_contacts(struct text *value, struct options *o)
 {
-    (void)origin;
-    read_contacts(value, &o->contacts);
+    read_contacts(value->at, &o->contacts);
 }
 
-static void set_load(const char *origin, const char *value, struct options *o)
+static void set_load(struct text *value, struct options *o)
 {
-    read_load(origin, value, 0, &o->loads);
+    read_load(value, 0, &o->loads);
 }
 
-static void set_base(const char *origin, const char *value, struct options *o)
+static void set_base(struct text *value, struct options *o)
 {
-    read_load(origin, value, 1, &o->loads);
+    read_load(value, 1, &o->loads);
 }
 
-static void set_output(const char *origin, const char *value, struct options *o)
+static void set_output(struct text *value, struct options *o)
 {
     o->output = need_room(o->output, o->outputs, &o->output_room, sizeof *o->output);
-    o->output[o->outputs++] = read_place(origin, value);
+    o->output[o->outputs++] = read_place(value);
 }
 
-static void set_field(const char *origin, const char *value, struct options *o)
+static void set_field(struct text *value, struct options *o)
 {
     o->field.count = 0;
-    read_list(origin, value, &o->field);
+    read_list(value, &o->field);
     for (size_t k = 0; k < o->field.count; k++) {
         if (!(o->field.value[k] >= 0.0 && o->field.value[k] <= 360.0)) {
-            die("%s: a phase must be from 0 to 360 degrees", origin);
+            die_at(value, "%g: a phase must be from 0 to 360 degrees", o->field.value[k]);
         }
     }
 }
 
-static void set_limits(const char *origin, const char *value, struct options *o)
+static void set_limits(struct text *value, struct options *o)
 {
-    o->limits = read_range(origin, value);
+    o->limits = read_range(value);
 }
 
-static void set_force(const char *origin, const char *value, struct options *o)
+static void set_force(struct text *value, struct options *o)
 {
-    o->force = read_real(origin, value, 0.0, 0);
+    o->force = next_positive(value, "force", "");
 }
 
-static void set_drive(const char *origin, const char *value, struct options *o)
+static void set_drive(struct text *value, struct options *o)
 {
-    const int first = strcmp(value, "0") == 0;
-    o->drive = first ? (struct range){0.0, 0.0, 1} : read_range(origin, value);
+    o->drive = strcmp(value->at, "0") == 0 ? standard.drive : read_range(value);
 }
 
-static void set_method(const char *origin, const char *value, struct options *o)
+static void set_step(struct text *value, struct options *o)
 {
-    o->march = strcmp(value, "march") == 0;
-    if (!o->march && strcmp(value, "exact") != 0) {
-        die("%s: methods are exact and march", origin);
-    }
-}
-
-static void set_step(const char *origin, const char *value, struct options *o)
-{
-    o->step = read_real(origin, value, 0.0, 0);
+    o->step = next_positive(value, "step", "");
     if (o->step > 1.0) {
-        die("%s: at most 1, for the highest mode kept to be followed", origin);
+        die_at(value, "at most 1, for the highest mode kept to be followed");
     }
 }
 
-static void set_law(const char *origin, const char *value, struct options *o)
+static void set_law(struct text *value, struct options *o)
 {
     char names[200] = "";
-    if (tribo_law_find(value, &o->law)) {
+    if (tribo_law_find(value->at, &o->law)) {
         for (int i = 0; i < tribo_law_count(); i++) {
-            const size_t length = strlen(names);
-            snprintf(names + length, sizeof names - length, " %s", tribo_law_name(i));
+            strcat(strcat(names, " "), tribo_law_name(i));
         }
-        die("%s: no law has this name; there are%s", origin, names);
+        die_at(value, "no law has this name; there are%s", names);
     }
     /* nothing holds a velocity at 0 in rk4, whose four stages meet forces of either sign that may cancel */
     if (o->law == TRIBO_KARNOPP) {
-        die("%s: the contacts of this law rest at velocities that are exactly zero, which marching does not make: take coulomb, "
-            "quinn, quinn-reversal, velocity-limited or smooth",
-            origin);
+        die_at(value, "the contacts of this law rest at velocities that are exactly zero, which marching does not make: take "
+                      "coulomb, quinn, quinn-reversal, velocity-limited or smooth");
     }
 }
 
-static void set_plot(const char *origin, const char *value, struct options *o)
+static void set_name(struct text *value, struct options *o)
 {
-    if (strcmp(value, "png") != 0 && strcmp(value, "svg") != 0) {
-        die("%s: must be png or svg", origin);
+    if (strcspn(value->at, "/ \t") != strlen(value->at)) {
+        die_at(value, "files cannot be named so");
     }
-    o->plot = value;
+    o->name = value->at;
 }
 
-static void set_name(const char *origin, const char *value, struct options *o)
-{
-    if (*value == '\0' || strcspn(value, "/ \t") != strlen(value)) {
-        die("%s: files cannot be named so", origin);
-    }
-    o->name = value;
-}
+static setter read_option_file;
 
 /* --------------------------------------------------------------------------------------------------------------- table */
 
-#define FILE_OPTION(name) "--" #name, NULL, offsetof(struct options, name), 1, 0, 0
-#define COUNT_OPTION(name, least) "--" #name, NULL, offsetof(struct options, name), 0, 1, least
-#define OPTION(name) "--" #name, set_##name, 0, 0, 0, 0
+#define SET(function) function, 0, 0
+#define COUNT(member, least) NULL, least, offsetof(struct options, member)
+#define PATH(member) NULL, -1, offsetof(struct options, member)
+#define TEXT NULL, 0, 0
 
+/* Help, and options in it: name and argument are the first words of the help. Of FILE and FOLDER, a relative path in a file of
+ * options is relative to the folder of that file. */
 static const struct option {
-    const char *name;
-    setter *set;   /* NULL: the value itself is kept, or the count */
-    size_t offset; /* of the member that keeps it */
-    int is_path, is_count;
-    size_t least; /* of a count */
+    setter *set;
+    int least;     /* of a count; -1: a path */
+    size_t offset; /* of the member that keeps the count or the path; 0: none does */
+    const char *help;
 } table[] = {
-    {FILE_OPTION(mass)},
-    {FILE_OPTION(stiffness)},
-    {FILE_OPTION(dofs)},
-    {FILE_OPTION(frequencies)},
-    {FILE_OPTION(out)},
-    {OPTION(name)},
-    {COUNT_OPTION(modes, 1)},
-    {OPTION(statics)},
-    {OPTION(damping)},
-    {"--damping-ratios", set_damping_ratios, 0, 1, 0, 0},
-    {"--damping-matrix", NULL, offsetof(struct options, damping_matrix), 1, 0, 0},
-    {OPTION(contact)},
-    {"--contacts", set_contacts, 0, 1, 0, 0},
-    {OPTION(load)},
-    {OPTION(base)},
-    {OPTION(output)},
-    {COUNT_OPTION(harmonics, 1)},
-    {OPTION(field)},
-    {OPTION(force)},
-    {OPTION(drive)},
-    {OPTION(limits)},
-    {OPTION(method)},
-    {COUNT_OPTION(check, 0)},
-    {OPTION(step)},
-    {OPTION(law)},
-    {COUNT_OPTION(threads, 1)},
-    {OPTION(plot)},
+    {TEXT,
+     "tribo-damper: steady response of a structure with friction contacts to a harmonic load.\n"
+     "\n"
+     "Reads mass and stiffness, keeps the lowest modes and the static responses to forces at contacts and loads, and finds the\n"
+     "motion that repeats itself with every period of the load, to 1e-10 within the modes kept, under Coulomb friction itself:\n"
+     "contacts slide, stick for a part of the period, or stick for ever. The model error is that of the modes left out:\n"
+     "some points, more of them where changes are large, are computed again with twice the modes; 2.5 times the largest\n"
+     "change is printed.\n"
+     "  one frequency (--drive HZ):       response over the limits of the contacts, the limit at which friction dissipates\n"
+     "                                    most, and the motion there; with one limit (--limits FORCE) the motion at that limit\n"
+     "  a band (--drive FROM:TO:N):       response over frequency for each limit, and the best limit: the one with the smallest\n"
+     "                                    of the largest amplitudes\n"
+     "Points are added where curves bend. A motion that is not found leaves a gap in the table, with a message.\n"},
+    {TEXT, "\n"
+           "The structure:\n"},
+    {PATH(mass), "  --mass FILE          Matrix Market, symmetric (lower triangle) or general\n"},
+    {PATH(stiffness), "  --stiffness FILE     the same\n"},
+    {PATH(dofs),
+     "  --dofs FILE          for each row of the matrices: row node direction x y z; direction 1, 2, 3 is x, y, z; x y z is the\n"
+     "                       place of the node, lengths\n"},
+    {SET(set_contact),
+     "  --contact CONTACT    X,Y,Z,DIR: a contact to ground at the node with these coordinates, sliding along DIR (x, y or z);\n"
+     "                       or in a plane, xy, xz or yz (--method march). A contact in a plane has two columns in the tables,\n"
+     "                       one for each direction. Words may follow, separated by colons or blanks:\n"
+     "                         to=X,Y,Z      the contact is not to ground but to this node\n"
+     "                         limit=FORCE   its limit, in a plane in any direction; without, the limit is that of --limits\n"
+     "                         mu=NUMBER     its limit is mu times the normal load, and --limits gives normal loads\n"
+     "                         mu=NUMBER load=FORCE   its limit is the product\n"
+     "                         stiffness=NUMBER   a spring before the slider, force over length: the contact gives way while it\n"
+     "                                            sticks; with --law coulomb only\n"},
+    {SET(set_contacts), "  --contacts FILE      contacts, one a line, in the same words\n"},
+    {TEXT, "\n"
+           "The loads, at least one --load or --base; each may be given several times:\n"},
+    {SET(set_load), "  --load LOAD          X,Y,Z,DIR: a force F sin(omega t + phase) at this node along DIR. Words may follow:\n"
+                    "                         force=FORCE     F; without, that of --force\n"
+                    "                         phase=DEGREES   0\n"},
+    {SET(set_base),
+     "  --base BASE          DIR:acceleration=NUMBER, phase=DEGREES may follow: all supports move along DIR with acceleration\n"
+     "                       A sin(omega t + phase), and the ground of contacts moves with the supports. The loads are -M r A,\n"
+     "                       r being 1 for direction DIR; all displacements are relative to the supports\n"},
+    {TEXT, "Amplitudes are measured at the first --load; without --load at the first --output.\n"
+           "\n"
+           "Optional:\n"},
+    {SET(set_drive),
+     "  --drive HZ           frequency of the loads, or a band FROM:TO:N that begins with N frequencies; 0 (the default): the\n"
+     "                       first natural frequency\n"},
+    {SET(set_limits),
+     "  --limits FROM:TO:N   N limits of contacts (forces), geometric from FROM to TO; or one limit. Default: 0.001 to 10 times\n"
+     "                       the sum of the forces (of --base: moving mass times acceleration), 33 limits, or 9 for a band\n"},
+    {SET(set_output), "  --output X,Y,Z,DIR   a further place: amplitude and phase there; may be given several times\n"},
+    {COUNT(harmonics, 1), "  --harmonics N        of each --output also the harmonics 1 to N\n"},
+    {SET(set_field),
+     "  --field DEG,DEG,...  displacements of the whole structure at these phases of the loads' period, 0 to 360, of each\n"
+     "                       motion written (history, sticking, loop below): damper-loop.vtk, legacy format of VTK, for "
+     "ParaView\n"},
+    {SET(set_force), "  --force AMPLITUDE    of loads without force=; 1\n"},
+    {COUNT(modes, 1),
+     "  --modes COUNT        the number of lowest modes. Default: 12 or more, up to 200, until the model error is below 1%\n"},
+    {SET(set_statics),
+     "  --statics on|off     static responses beside the modes; on. Without them contacts that stick are too stiff\n"},
+    {SET(set_damping),
+     "  --damping RATIOS     damping ratios of mode 1, 2, ..., separated by commas, above 0 and below 1; the last one holds for\n"
+     "                       all further modes and static responses; 0.002\n"},
+    {SET(set_damping_ratios), "  --damping-ratios FILE   the same from a file, one a line\n"},
+    {PATH(damping_matrix), "  --damping-matrix FILE   viscous damping of the structure as a matrix, in the place of ratios\n"},
+    {PATH(frequencies),
+     "  --frequencies FILE   natural frequencies in Hz from elsewhere, shown beside the natural frequencies found; \"none\"\n"},
+    {SET(set_method),
+     "  --method NAME        exact; or march: time steps until the motion repeats itself, slow, also for contacts in a plane\n"},
+    {COUNT(check, 0),
+     "  --check N            computes N points also by marching, and shows the differences: another method, the same modes; 0\n"},
+    {SET(set_law),
+     "  --law NAME           friction law for marching: coulomb (the default), by the implicit midpoint rule; or by rk4 quinn,\n"
+     "                       quinn-reversal, velocity-limited, smooth; the last two never stick\n"},
+    {SET(set_step),
+     "  --step NUMBER        time step for marching, at most 1: with 0.25 (the default) a period has 4000 steps; with rk4 the\n"
+     "                       step is NUMBER by the highest natural frequency kept, and a period has at least 400 steps\n"},
+    {COUNT(threads, 1), "  --threads COUNT      default: one a core. Results do not depend on it\n"},
+    {PATH(out), "  --out FOLDER         folder of the tables, which must exist; \".\"\n"},
+    {SET(set_name), "  --name WORD          first part of the names of tables; \"damper\"\n"},
+    {SET(set_plot),
+     "  --plot png|svg       draws the tables by gnuplot: damper-family or damper-curve, and the loops of contacts; the script\n"
+     "                       damper-plot.gp stays beside them\n"},
+    {SET(read_option_file),
+     "  --read FILE          options from a file, one a line, without hyphens; names of files are relative to its folder; lines\n"
+     "                       that begin with # are comments\n"},
+    {TEXT,
+     "  --help, -h           prints this text\n"
+     "  --version            prints the name of the tool and the version of the library\n"
+     "Values may also follow an equals sign: --limits=0.1:10:9.\n"
+     "\n"
+     "Any consistent units: N, m, kg, s; or N, mm, tonne, s. Frequencies are in Hz if time is in s, else in cycles a unit of\n"
+     "time; powers in force times length over time (N mm/s = mW).\n"
+     "\n"
+     "Tables (comma-separated, in the folder of --out, damper being --name):\n"
+     "  damper-frequencies.csv   mode, its natural frequency, that of --frequencies, relative difference, frequency with all\n"
+     "                           contacts stuck\n"
+     "  damper-curve.csv         one frequency: the response over the limit\n"
+     "  damper-history.csv       one frequency: three periods at the limit of most power; cycle, time, displacement where\n"
+     "                           amplitudes are measured; of each contact velocity (with a spring, of the slider), force,\n"
+     "                           and slip (0 sticks, 1 and -1 slides, 2 open, 3 slides in a plane); then of each contact the\n"
+     "                           displacement, over which the force makes its hysteresis loop\n"
+     "  damper-sticking.csv      the same at three times that limit\n"
+     "  damper-loop.csv          one frequency and one limit: the same there\n"
+     "  damper-history.vtk, damper-sticking.vtk, damper-loop.vtk   with --field: nodes, and vectors displacement_DEG\n"
+     "  damper-family.csv        a band: the response over frequency, a blank line between curves\n"
+     "  damper-best.csv          a band: the curve of the best limit\n"
+     "  damper-linear.csv        a band: frequency, amplitude without friction, amplitude with all contacts stuck for ever\n"
+     "  damper-check.csv         the points of --check, by marching\n"
+     "  values-damper.txt        all single results, with all digits\n"
+     "Columns of responses: limit (1 if every contact has its own); frequency; amplitude (half of the way from the smallest to\n"
+     "the largest displacement); mean powers over a period, lost to friction, lost to damping, put in by the loads; periods\n"
+     "that were integrated; message, empty if the motion was found; for each contact, in the order given, the power that it\n"
+     "dissipates and the share of the period for which it sticks, both blank by marching; for each --output amplitude, phase of\n"
+     "the first harmonic, and with --harmonics the amplitude of harmonic 1, amplitude and phase of harmonics 2 to N; harmonic h\n"
+     "is a sin(h omega t + phase), phase in degrees.\n"
+     "If a contact that follows --limits has mu=, the column, the texts, and best.load and band.load in values-damper.txt are\n"
+     "normal loads, else limits: a contact slides at mu times the normal load.\n"
+     "Sweeps up and down agree: with a linear structure and constant limits the motion is unique, except for the places of\n"
+     "contacts that never slip, since friction takes energy from the difference of two motions.\n"},
+    {TEXT,
+     "\n"
+     "Status 0; 1 with a message if something is wrong; 130 after Ctrl-C, the tables then hold the points found until then.\n"},
 };
 
-/* name has length characters, and no hyphens in front. */
-static const struct option *find_option(const char *name, size_t length)
+/* name: without hyphens in front. */
+static const struct option *find_option(const char *name)
 {
     for (size_t k = 0; k < sizeof table / sizeof *table; k++) {
-        if (strlen(table[k].name) == length + 2 && strncmp(name, table[k].name + 2, length) == 0) {
-            return &table[k];
+        const struct option *t = &table[k];
+        const size_t length = t->set || t->least || t->offset ? strcspn(t->help + 4, " ") : 0;
+        if (length == strlen(name) && strncmp(t->help + 4, name, length) == 0) {
+            return t;
         }
     }
     return NULL;
 }
 
-static void apply(const struct option *option, const char *origin, const char *value, struct options *o)
+static void apply(const struct option *option, struct text value, struct options *o)
 {
+    void *member = (char *)o + option->offset;
     if (option->set) {
-        option->set(origin, value, o);
-    } else if (option->is_count) {
-        const size_t count = read_whole(origin, value, option->least);
-        memcpy((char *)o + option->offset, &count, sizeof count);
+        option->set(&value, o);
+    } else if (option->least < 0) {
+        *(const char **)member = value.at;
     } else {
-        memcpy((char *)o + option->offset, &value, sizeof value);
+        *(size_t *)member = next_whole(&value, "number", "", (size_t)option->least, MOST_COUNT);
     }
-}
-
-/* ---------------------------------------------------------------------------------------------------- files of options */
-
-/* A relative path is relative to the folder of the file that holds the option. */
-static const char *path_beside(const char *file, const char *path)
-{
-    const char *slash = strrchr(file, '/');
-    const int as_it_is = path[0] == '/' || !slash || strcmp(path, "none") == 0;
-    return as_it_is ? new_text("%s", path) : new_text("%.*s/%s", (int)(slash - file), file, path);
 }
 
 /* An option a line: its name without hyphens, a blank or an equals sign, and its value up to the end of the line. */
-static void read_option_file(const char *path, struct options *o)
+static void read_option_file(struct text *path, struct options *o)
 {
-    struct lines l = open_lines(path);
-    while (next_data(&l)) {
-        const size_t length = strcspn(l.at, "= \t\r");
-        const struct option *option = find_option(l.at, length);
-        char *value = l.at + length + (l.at[length] == '='), *end = l.at + strlen(l.at);
-        value += strspn(value, " \t\r");
-        while (end > value && strchr(" \t\r", end[-1])) {
-            *--end = '\0';
-        }
-        if (!option) {
-            die_at(&l, "there is no option \"%.*s\"; see --help", (int)length, l.at);
+    struct text t = open_text(path->at);
+    const char *slash = strrchr(path->at, '/');
+    while (next_data(&t)) {
+        const char *name = next_word(&t, "an option", "= ");
+        const struct option *option = find_option(name);
+        char *value = new_text("%s", rest_of(&t));
+        if (!option || option->set == read_option_file) {
+            die_at(&t, "there is no option \"%s\"; see --help", name);
         }
         if (*value == '\0') {
-            die_at(&l, "option %s needs a value", option->name + 2);
+            die_at(&t, "option %s needs a value", name);
         }
-        apply(option, make_printable(new_text("%s:%zu: %s %s", path, l.line, option->name + 2, value)),
-              option->is_path ? path_beside(path, value) : new_text("%s", value), o);
+        const char *argument = option->help + 5 + strlen(name);
+        struct text text = text_of(make_printable(new_text("%s:%zu: %s %s", path->at, t.line, name, value)), value);
+        if (slash && *value != '/' && strcmp(value, "none") != 0 &&
+            (strncmp(argument, "FILE ", 5) == 0 || strncmp(argument, "FOLDER ", 7) == 0)) {
+            text.at = new_text("%.*s/%s", (int)(slash - path->at), path->at, value);
+        }
+        apply(option, text, o);
     }
-    close_lines(&l);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- the whole */
-
-static void need_structure(const struct options *o)
-{
-    const struct {
-        const char *name;
-        int given;
-    } part[] = {{"--mass", o->mass != NULL},
-                {"--stiffness", o->stiffness != NULL},
-                {"--dofs", o->dofs != NULL},
-                {"--contact", o->contacts.count > 0},
-                {"--load", o->loads.count > 0}};
-    char missing[80] = "";
-    for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
-        if (!part[k].given) {
-            strcat(strcat(missing, " "), part[k].name);
-        }
-    }
-    if (missing[0]) {
-        die("what is missing:%s; see --help", missing);
-    }
-}
-
 int limits_vary(const struct options *o)
 {
     int vary = 0;
@@ -313,9 +377,26 @@ const struct place *measured_place(const struct options *o)
     return o->outputs ? &o->output[0] : NULL;
 }
 
-/* Options that need others, or exclude them. */
-static void check_together(const struct options *o)
+/* Ends the program where options are missing, need others, or exclude them. */
+static void check_options(const struct options *o)
 {
+    const struct {
+        const char *name;
+        int given;
+    } part[] = {{"--mass", o->mass != NULL},
+                {"--stiffness", o->stiffness != NULL},
+                {"--dofs", o->dofs != NULL},
+                {"--contact", o->contacts.count > 0},
+                {"--load", o->loads.count > 0}};
+    char missing[80] = "";
+    for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
+        if (!part[k].given) {
+            strcat(strcat(missing, " "), part[k].name);
+        }
+    }
+    if (missing[0]) {
+        die("what is missing:%s; see --help", missing);
+    }
     if (!measured_place(o)) {
         die("%s: --output is missing, the place where amplitudes are measured", o->loads.load[0].at.origin);
     }
@@ -328,94 +409,39 @@ static void check_together(const struct options *o)
     if (o->field.count && o->drive.points > 1) {
         die("option --field: displacement fields are for one frequency: --drive HZ");
     }
-    for (size_t c = 0; c < o->contacts.count; c++) {
-        if (o->contacts.contact[c].stiffness > 0.0 && (o->march || o->check) && o->law != TRIBO_COULOMB) {
-            die("%s: with --law %s marching takes rigid contacts only: leave out stiffness=, or --law",
-                o->contacts.contact[c].at.origin, tribo_law_name(o->law));
-        }
-        if (o->contacts.contact[c].planar && !o->march) {
-            die("%s: contacts in a plane are for --method march; method exact knows contacts along one axis only",
-                o->contacts.contact[c].at.origin);
-        }
+    if (o->limits.points && !limits_vary(o)) {
+        die("option --limits: every contact has a limit of its own, and none follows");
     }
-}
-
-/* The mass that moves along a direction with the supports. */
-static double mass_along(const struct structure *s, int direction)
-{
-    double mass = 0.0;
-    for (size_t i = 0; i < s->ndof; i++) {
-        for (size_t k = s->mass.first[i]; s->dof[i].direction == direction && k < s->mass.first[i + 1]; k++) {
-            mass += s->dof[s->mass.col[k]].direction == direction ? s->mass.val[k] : 0.0;
-        }
-    }
-    return mass;
-}
-
-void complete_options(struct options *o, const struct structure *s)
-{
-    for (size_t k = 0; k < o->loads.count; k++) {
-        struct load *l = &o->loads.load[k];
-        l->size = isnan(l->size) ? o->force : l->size;
-        o->size += l->supports ? l->size * mass_along(s, l->at.direction) : l->size;
-    }
-    if (!limits_vary(o)) {
-        o->limits = (struct range){1.0, 1.0, 1};
-    } else if (!o->limits.points) {
-        o->limits =
-            (struct range){LIMIT_FROM * o->size, LIMIT_TO * o->size, o->drive.points > 1 ? FAMILY_LIMITS : CURVE_LIMITS};
-    }
-    for (size_t c = 0; c < o->contacts.count; c++) {
-        const struct contact *contact = &o->contacts.contact[c];
-        const double most = isnan(contact->limit) ? contact->mu * o->limits.to : contact->limit;
-        if (!isfinite(most)) {
-            die("%s: mu times the normal load, up to %g, is too large a limit", contact->at.origin, o->limits.to);
-        }
-    }
-}
-
-/* --help and --version: prints, and ends the program. */
-static void answer(const char *name)
-{
-    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
-        print_help();
-    } else if (strcmp(name, "--version") == 0) {
-        printf("%s %s\n", program, tribo_version_string());
-    } else {
-        return;
-    }
-    close_file(stdout, "standard output");
-    exit(EXIT_SUCCESS);
 }
 
 struct options read_options(int argc, char **argv)
 {
     struct options o = standard;
-    o.drive.points = 1;
     for (int i = 1; i < argc; i++) {
-        const size_t length = strcspn(argv[i], "=");
-        const char *name = new_text("%.*s", (int)length, argv[i]);
-        const struct option *option = strncmp(name, "--", 2) == 0 ? find_option(name + 2, length - 2) : NULL;
-        const int read = strcmp(name, "--read") == 0;
-        answer(argv[i]);
-        if (!option && !read) {
+        const int help = strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0;
+        if (help || strcmp(argv[i], "--version") == 0) {
+            for (size_t k = 0; help && k < sizeof table / sizeof *table; k++) {
+                fputs(table[k].help, stdout);
+            }
+            printf(help ? "" : "%s %s\n", program, tribo_version_string());
+            close_file(stdout, "standard output");
+            exit(EXIT_SUCCESS);
+        }
+        char *name = argv[i], *equals = strchr(name, '=');
+        if (equals) {
+            *equals = '\0';
+        }
+        const struct option *option = strncmp(name, "--", 2) == 0 ? find_option(name + 2) : NULL;
+        if (!option) {
             die("there is no option \"%s\"; see --help", name);
         }
-        const char *value = argv[i][length] ? argv[i] + length + 1 : argv[++i];
+        char *value = equals ? equals + 1 : argv[++i];
         if (!value || !*value) {
             die("option %s needs a value; see --help", name);
         }
-        if (read) {
-            read_option_file(value, &o);
-        } else {
-            apply(option, new_text("option %s %s", name, value), value, &o);
-        }
+        apply(option, text_of(new_text("option %s %s", name, value), value), &o);
     }
-    need_structure(&o);
-    check_together(&o);
-    if (!limits_vary(&o) && o.limits.points) {
-        die("option --limits: every contact has a limit of its own, and none follows");
-    }
+    check_options(&o);
     if (!o.damping.count && !o.damping_matrix) {
         add_number(&o.damping, DAMPING);
     }

@@ -3,8 +3,6 @@
 #define DAMPER_OPTIONS_H
 
 #include "contact.h"
-#include "numbers.h"
-#include "structure.h"
 
 enum { DEFAULT_MODES = 12 /* kept by default */ };
 
@@ -37,9 +35,6 @@ struct options {
 /* Reads the command line; prints help or version, or ends the program with a message, where that is due. */
 struct options read_options(int argc, char **argv);
 
-/* Sets values that depend on the structure: the size of loads, and limits that were not given. */
-void complete_options(struct options *o, const struct structure *s);
-
 /* 1 if the limit of a contact follows the option --limits. */
 int limits_vary(const struct options *o);
 
@@ -48,7 +43,5 @@ const char *word_for_limit(const struct options *o);
 
 /* Where amplitudes are measured: at the first force, without forces at the first output. */
 const struct place *measured_place(const struct options *o);
-
-void print_help(void);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -39,6 +40,19 @@ void *need_memory(size_t count, size_t size)
         die("out of memory for %zu times %zu bytes", count, size);
     }
     return memory;
+}
+
+void *need_room(void *array, size_t count, size_t *room, size_t size)
+{
+    if (count < *room) {
+        return array;
+    }
+    *room = 2 * *room + 256;
+    void *more = *room <= SIZE_MAX / size ? realloc(array, *room * size) : NULL;
+    if (!more) {
+        die("out of memory for %zu times %zu bytes", *room, size);
+    }
+    return more;
 }
 
 char *new_text(const char *format, ...)

@@ -3,7 +3,7 @@
 find_package(ZLIB QUIET)
 set(damper_folder "${CMAKE_CURRENT_LIST_DIR}")
 function(damper_reader target)
-  foreach(file source lines entries matrix_market calculix matrix_file degrees output)
+  foreach(file source text matrix degrees output)
     target_sources(${target} PRIVATE "${damper_folder}/${file}.c")
   endforeach()
   target_include_directories(${target} PRIVATE "${damper_folder}")

@@ -6,121 +6,64 @@
 #include <stdlib.h>
 #include <string.h>
 
+#if defined(DAMPER_ZLIB)
+#include <zlib.h>
+#endif
+
 #include "output.h"
 
 enum { BLOCK = 1 << 16 };
 
 struct source {
-    void *file; /* FILE or struct packed */
-    size_t (*read)(struct source *s);
-    void (*close)(void *file);
+    FILE *file;
     size_t at, end;
     const char *error;
     unsigned char byte[BLOCK];
+#if defined(DAMPER_ZLIB)
+    int packed;  /* members of gzip's format, one behind the other */
+    int between; /* members */
+    z_stream stream;
+    unsigned char unread[BLOCK];
+#endif
 };
 
-/* ------------------------------------------------------------------------------------------------------------- as it is */
-
-static size_t read_plain(struct source *s)
+static size_t fill(struct source *s, unsigned char *byte)
 {
-    const size_t count = fread(s->byte, 1, BLOCK, s->file);
-    s->error = ferror((FILE *)s->file) ? strerror(errno) : NULL;
+    const size_t count = fread(byte, 1, BLOCK, s->file);
+    s->error = ferror(s->file) ? strerror(errno) : s->error;
     return count;
 }
 
-static void close_plain(void *file)
-{
-    fclose(file);
-}
-
-static void open_plain(struct source *s, const char *path)
-{
-    s->file = fopen(path, "rb");
-    s->read = read_plain;
-    s->close = close_plain;
-}
-
-/* ------------------------------------------------------------------------------------------------------------ compressed */
-
 #if defined(DAMPER_ZLIB)
-#include <zlib.h>
 
-/* Members of gzip's format, one behind the other; or a file that is not compressed in spite of its name. */
-struct packed {
-    FILE *file;
-    z_stream stream;
-    int between; /* members */
-    unsigned char byte[BLOCK];
-};
-
-static int refill(struct packed *p)
+static int refill(struct source *s)
 {
-    p->stream.next_in = p->byte;
-    p->stream.avail_in = (uInt)fread(p->byte, 1, BLOCK, p->file);
-    return p->stream.avail_in > 0;
+    s->stream.next_in = s->unread;
+    s->stream.avail_in = (uInt)fill(s, s->unread);
+    return s->stream.avail_in > 0;
 }
 
 /* Of a file that is cut off, or has other bytes behind its members, reads the bytes that are there, and sets the error. */
-static size_t read_packed(struct source *s)
+static size_t unpack(struct source *s)
 {
-    struct packed *p = s->file;
-    p->stream.next_out = s->byte;
-    p->stream.avail_out = BLOCK;
-    while (!s->error && p->stream.avail_out == BLOCK && (p->stream.avail_in > 0 || refill(p))) {
-        if (p->between) {
-            inflateReset(&p->stream);
+    s->stream.next_out = s->byte;
+    s->stream.avail_out = BLOCK;
+    while (!s->error && s->stream.avail_out == BLOCK && (s->stream.avail_in > 0 || refill(s))) {
+        if (s->between) {
+            inflateReset(&s->stream);
         }
-        const int status = inflate(&p->stream, Z_NO_FLUSH);
+        const int status = inflate(&s->stream, Z_NO_FLUSH);
         if (status != Z_OK && status != Z_STREAM_END) {
-            s->error = p->between ? "other bytes behind its compressed ones" : p->stream.msg ? p->stream.msg : zError(status);
+            s->error = s->between ? "other bytes behind its compressed ones" : s->stream.msg ? s->stream.msg : zError(status);
         }
-        p->between = status == Z_STREAM_END;
+        s->between = status == Z_STREAM_END;
     }
-    const size_t count = BLOCK - p->stream.avail_out;
-    if (!s->error && count == 0) {
-        s->error = ferror(p->file) ? strerror(errno) : p->between ? NULL : "unexpected end of file";
-    }
+    const size_t count = BLOCK - s->stream.avail_out;
+    s->error = !s->error && count == 0 && !s->between ? "unexpected end of file" : s->error;
     return count;
 }
 
-static void close_packed(void *file)
-{
-    struct packed *p = file;
-    inflateEnd(&p->stream);
-    fclose(p->file);
-    free(p);
-}
-
-static void open_packed(struct source *s, const char *path)
-{
-    open_plain(s, path);
-    if (!s->file) {
-        return;
-    }
-    const int first = getc(s->file), second = getc(s->file);
-    rewind(s->file);
-    if (first == 0x1f && second == 0x8b) {
-        struct packed *p = need_memory(1, sizeof *p);
-        memset(p, 0, sizeof *p);
-        p->file = s->file;
-        if (inflateInit2(&p->stream, 16 + MAX_WBITS) != Z_OK) {
-            die("%s: out of memory", path);
-        }
-        s->file = p;
-        s->read = read_packed;
-        s->close = close_packed;
-    }
-}
-#else
-static void open_packed(struct source *s, const char *path)
-{
-    (void)s;
-    die("%s is compressed, and this program has been built without zlib (Debian: zlib1g-dev): gunzip the file, or build again",
-        path);
-}
 #endif
-
-/* ----------------------------------------------------------------------------------------------------------------- calls */
 
 static int ends_with(const char *path, size_t length, const char *ending)
 {
@@ -137,16 +80,35 @@ int is_named(const char *path, const char *ending)
 struct source *open_source(const char *path)
 {
     struct source *s = need_memory(1, sizeof *s);
-    (ends_with(path, strlen(path), ".gz") ? open_packed : open_plain)(s, path);
+    s->file = fopen(path, "rb");
     if (!s->file) {
         die("cannot open %s: %s", path, strerror(errno));
+    }
+    if (ends_with(path, strlen(path), ".gz")) {
+#if defined(DAMPER_ZLIB)
+        const int first = getc(s->file), second = getc(s->file);
+        rewind(s->file);
+        s->packed = first == 0x1f && second == 0x8b;
+        if (s->packed && inflateInit2(&s->stream, 16 + MAX_WBITS) != Z_OK) {
+            die("%s: out of memory", path);
+        }
+#else
+        die("%s is compressed, and this program has been built without zlib (Debian: zlib1g-dev): gunzip the file, or build "
+            "again",
+            path);
+#endif
     }
     return s;
 }
 
 void close_source(struct source *s)
 {
-    s->close(s->file);
+#if defined(DAMPER_ZLIB)
+    if (s->packed) {
+        inflateEnd(&s->stream);
+    }
+#endif
+    fclose(s->file);
     free(s);
 }
 
@@ -154,7 +116,11 @@ int next_byte(struct source *s, const char **error)
 {
     if (s->at == s->end) {
         s->at = 0;
-        s->end = s->error ? 0 : s->read(s);
+#if defined(DAMPER_ZLIB)
+        s->end = s->error ? 0 : s->packed ? unpack(s) : fill(s, s->byte);
+#else
+        s->end = s->error ? 0 : fill(s, s->byte);
+#endif
     }
     *error = s->at < s->end ? NULL : s->error;
     return s->at < s->end ? s->byte[s->at++] : -1;

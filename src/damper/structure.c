@@ -6,8 +6,7 @@
 #include <stdlib.h>
 
 #include "output.h"
-#include "lines.h"
-#include "matrix_file.h"
+#include "text.h"
 
 struct structure read_structure(const char *mass, const char *stiffness, const char *dofs)
 {
@@ -80,51 +79,18 @@ size_t find_degree(const struct structure *s, const struct place *p)
     return found;
 }
 
-tribo_model *matrices_of(const struct structure *s, size_t rows)
-{
-    tribo_model *model = NULL;
-    need(tribo_model_create(&model, s->ndof, rows), NULL);
-    need(tribo_model_set_mass_csr(model, s->mass.first, s->mass.col, s->mass.val), tribo_model_message(model));
-    need(tribo_model_set_stiffness_csr(model, s->stiffness.first, s->stiffness.col, s->stiffness.val),
-         tribo_model_message(model));
-    return model;
-}
-
-tribo_model *model_of(const struct structure *s, size_t contacts, const size_t *at, const size_t *to)
-{
-    tribo_model *model = matrices_of(s, contacts);
-    size_t *first = need_memory(contacts + 1, sizeof *first), *col = need_memory(2 * contacts + 1, sizeof *col), count = 0;
-    double *val = need_memory(2 * contacts + 1, sizeof *val);
-    for (size_t c = 0; c < contacts; c++) {
-        col[count] = at[c];
-        val[count++] = 1.0;
-        if (to && to[c] < s->ndof) {
-            col[count] = to[c];
-            val[count++] = -1.0;
-        }
-        first[c + 1] = count;
-    }
-    need(tribo_model_set_direction_csr(model, first, col, val), tribo_model_message(model));
-    free(first);
-    free(col);
-    free(val);
-    return model;
-}
-
 size_t read_frequencies(const char *path, double *hz, size_t room)
 {
-    struct lines l = open_lines(path);
+    struct text t = open_text(path);
     size_t count = 0;
-    while (next_data(&l)) {
-        const double value = next_real(&l, "frequency");
-        expect_end(&l);
+    while (next_data(&t)) {
+        const double value = next_real(&t, "frequency", "");
         if (value <= 0.0) {
-            die_at(&l, "frequency %g is not positive", value);
+            die_at(&t, "frequency %g is not positive", value);
         }
         if (count < room) {
             hz[count++] = value;
         }
     }
-    close_lines(&l);
     return count;
 }

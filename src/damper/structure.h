@@ -6,14 +6,13 @@
 
 #include "contact.h"
 #include "degrees.h"
-#include "entries.h"
-#include "tribo/tribo_dynamics.h"
+#include "matrix.h"
 
 /* A structure from a finite-element program. */
 struct structure {
     size_t ndof;
     struct sparse mass, stiffness, damping; /* damping: no rows if there is none */
-    struct degree *dof; /* [ndof] in the order of the rows */
+    struct degree *dof;                     /* [ndof] in the order of the rows */
 };
 
 /* Reads matrices and degrees of freedom; ends the program, naming file, line and value, if anything is wrong with them. */
@@ -25,13 +24,6 @@ void report_loose_rows(const struct structure *s, const char *stiffness);
 
 /* The row of a place; ends the program if the structure has none there. */
 size_t find_degree(const struct structure *s, const struct place *p);
-
-/* A model of the structure without contacts; rows: that are to be set. */
-tribo_model *matrices_of(const struct structure *s, size_t rows);
-
-/* A model of the structure: contact i is at row at[i], and slides against row to[i], or the ground where that is ndof or `to` is
- * NULL. */
-tribo_model *model_of(const struct structure *s, size_t contacts, const size_t *at, const size_t *to);
 
 /* Frequencies in Hz from a file, at most room of them, into hz; returns their number. */
 size_t read_frequencies(const char *path, double *hz, size_t room);

@@ -8,7 +8,7 @@
 
 #include "degrees.h"
 #include "ending.h"
-#include "matrix_file.h"
+#include "matrix.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# What tribo-damper says of itself: its help has the options that it takes and no others, its version is the library's, and its
-# manual has the lines of its help.
-#   cmake -D TOOL=<tribo-damper> -D SOURCE=<options.c> -D VERSION=<version> -D MANUAL=<page> -P damper_help.cmake
+# What tribo-damper says of itself: it takes the options of its help, its version is the library's, and its manual has the lines
+# of its help.
+#   cmake -D TOOL=<tribo-damper> -D VERSION=<version> -D MANUAL=<page> -P help.cmake
 function(say option wanted result)
   execute_process(COMMAND "${TOOL}" ${option} OUTPUT_VARIABLE out ERROR_VARIABLE err RESULT_VARIABLE status)
   if(NOT status STREQUAL "0" OR NOT err STREQUAL "" OR NOT out MATCHES "${wanted}")
@@ -18,19 +18,18 @@ if(NOT short STREQUAL help)
   message(SEND_ERROR "-h and --help differ")
 endif()
 
-file(READ "${SOURCE}" source)
-string(REGEX MATCHALL "\\{(FILE_|COUNT_)?OPTION\\([a-z]+(, [0-9])?\\)|\"--[a-z-]+\"" taken "${source}")
-list(TRANSFORM taken REPLACE "^.*\\(([a-z]+)(, [0-9])?\\)$" "--\\1")
-list(TRANSFORM taken REPLACE "\"" "")
-string(REGEX MATCHALL "\n  --[a-z-]+" told "${help}")
+string(REGEX MATCHALL "\n  --[a-z-]+ " told "${help}")
 list(TRANSFORM told STRIP)
-foreach(list taken told)
-  list(REMOVE_DUPLICATES ${list})
-  list(SORT ${list})
-endforeach()
+list(REMOVE_ITEM told --version)
 list(LENGTH told count)
-if(NOT taken STREQUAL told OR count LESS 20)
-  message(SEND_ERROR "options taken: ${taken}\ntold by --help: ${told}")
+foreach(option IN LISTS told)
+  execute_process(COMMAND "${TOOL}" ${option} ERROR_VARIABLE err RESULT_VARIABLE status)
+  if(NOT status EQUAL 1 OR NOT err STREQUAL "tribo-damper: option ${option} needs a value; see --help\n")
+    message(SEND_ERROR "${option}: status ${status}: ${err}")
+  endif()
+endforeach()
+if(count LESS 20)
+  message(SEND_ERROR "options told by --help: ${told}")
 endif()
 
 file(READ "${MANUAL}" manual)

@@ -13,7 +13,7 @@
 #endif
 
 #include "degrees.h"
-#include "matrix_file.h"
+#include "matrix.h"
 #include "support.h"
 
 enum { ROWS = 4, TEXT = 2000 };
@@ -235,7 +235,7 @@ TEST(inputs)
         const char *text, *message;
     } bad[] = {
         {"*NODE\n11,1\n11,2\n", "p.inp:3: node 11 has been given in line 2"},
-        {"*NODE\n11,1,,2\n", "p.inp:2: an empty word between commas"},
+        {"*NODE\n11,1,,2\n", "p.inp:2: coordinate y is missing before"},
         {"*NODE\n11,1,2,3,4\n", "p.inp:2: \"4\" is too much"},
         {"*NODE\n11,1,x\n", "p.inp:2: coordinate y \"x\" is no finite number"},
         {"*NODE\n11,1\n*TRANSFORM, NSET=a\n1,0,0,0,1,0\n", "p.inp:3: *TRANSFORM turns directions"},

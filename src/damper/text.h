@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#ifndef DAMPER_TEXT_H
+#define DAMPER_TEXT_H
+
+#include <stddef.h>
+
+#include "output.h"
+#include "source.h"
+
+/* Text that is read word by word: a value that the user gives, or the lines of a file. An error in it ends the program, with place
+ * and value. */
+struct text {
+    const char *place; /* of the value, e.g. "option --force 1N"; or the path of the file */
+    char *at;          /* the rest of the value or line, not read yet */
+    char end;          /* behind the word read last: a separator; a blank; '\0': the text ends there */
+    size_t line;       /* of the file, counted from 1; 0: a value */
+    struct source *source;
+    char bytes[1025]; /* the line, as long as Matrix Market allows */
+};
+
+struct text text_of(const char *place, char *value);
+struct text open_text(const char *path);
+
+/* The next line; 0 at the end of the file, which is closed then. */
+int next_line(struct text *t);
+
+/* The next line that is neither blank nor begins with #, or % as in Matrix Market; 0 at the end of the file. */
+int next_data(struct text *t);
+
+enum { MOST_COUNT = 1000000 /* of anything that the user may choose */ };
+
+/* The next word, which ends before a blank or one of the separators; t->at is behind that. Without a blank among the separators,
+ * blanks may stand beside separators and at the end only; "": the word is the last one. what: its name in messages. */
+char *next_word(struct text *t, const char *what, const char *separators);
+
+/* The same as a finite number, as one above 0, or as a whole one from least to most; exponents also as Fortran writes them: 1.1D+03. */
+double next_real(struct text *t, const char *what, const char *separators);
+double next_positive(struct text *t, const char *what, const char *separators);
+size_t next_whole(struct text *t, const char *what, const char *separators, size_t least, size_t most);
+
+/* Three coordinates, or at least so many, the others being 0; separators as above, and those behind the third one. */
+void next_coordinates(struct text *t, const char *separators, const char *last, int least, double *at);
+
+/* Nothing but blanks may follow. */
+void expect_end(struct text *t);
+
+/* The rest of the text, without blanks at its ends. */
+char *rest_of(const struct text *t);
+
+/* For messages: characters that do not print become question marks. Returns text. */
+char *make_printable(char *text);
+
+/* Ends the program: "place: ..." or "path:line: ..." */
+void die_at(const struct text *t, const char *format, ...) PRINTF_LIKE(2);
+
+/* "NUMBER,NUMBER,...": adds them to list. */
+struct list {
+    double *value;
+    size_t count, room;
+};
+void add_number(struct list *list, double value);
+void read_list(struct text *t, struct list *list);
+
+/* FROM:TO:N, or FROM alone with N = 1. FROM > 0, and ascending. */
+struct range {
+    double from, to;
+    size_t points;
+};
+struct range read_range(struct text *t);
+
+#endif
