@@ -246,14 +246,15 @@ static void build(struct damper *d, const struct options *o)
     tribo_model_destroy(model);
     free(mass);
     tribo_context *context = tribo_system_context(d->sys);
-    size_t *first = need_memory(d->contacts, sizeof *first);
+    size_t *first = need_memory(d->contacts, sizeof *first), planar = 0;
     for (size_t c = 0; c < d->contacts; c++) {
         if (o->contacts.contact[c].planar) {
-            first[d->planar++] = c;
+            first[planar++] = c;
         }
     }
+    d->marched = planar > 0;
     need(tribo_set_law(context, o->law), tribo_message(context));
-    need(tribo_set_planar(context, d->planar, first), tribo_message(context));
+    need(tribo_set_planar(context, planar, first), tribo_message(context));
     free(first);
 }
 

@@ -24,7 +24,7 @@ void compare_models(const struct model *m, size_t threads, struct point *point, 
     struct task *task = need_memory(2 * count, sizeof *task);
     for (size_t k = 0; k < 2 * count; k++) {
         both[k % 2].law = TRIBO_COULOMB;
-        task[k] = (struct task){&both[k % 2], m->damper.planar > 0, .limit = point[k / 2].limit, .hz = point[k / 2].hz};
+        task[k] = (struct task){&both[k % 2], m->damper.marched, .limit = point[k / 2].limit, .hz = point[k / 2].hz};
     }
     if (!m->whole) {
         run_tasks(threads, task, 2 * count);

@@ -14,7 +14,7 @@ struct worker create_worker(const struct damper *d, int march)
 {
     struct worker w = {.d = d, .march = march, .dimension = d->dimension};
     need(tribo_system_clone(d->sys, &w.sys), NULL);
-    if (!d->planar) {
+    if (!d->marched) {
         need(tribo_driver_create(&w.drv, w.sys, "exact"), tribo_system_message(w.sys));
     }
     w.limit = need_memory(d->contacts, sizeof *w.limit);

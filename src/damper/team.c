@@ -30,6 +30,18 @@ int interrupted(void)
     return stop;
 }
 
+/* Without threads of POSIX this thread does all jobs, and shows no progress. */
+#if defined(TEAM_POSIX)
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+#define BEGIN_ALONE() pthread_mutex_lock(&lock)
+#define END_ALONE() pthread_mutex_unlock(&lock)
+#define ON_TERMINAL() isatty(STDERR_FILENO)
+#else
+#define BEGIN_ALONE() (void)0
+#define END_ALONE() (void)0
+#define ON_TERMINAL() 0
+#endif
+
 /* ---------------------------------------------------------------------------------------------------------------- jobs */
 
 /* Jobs to do: next to jobs - 1. */
@@ -39,94 +51,42 @@ struct queue {
     void *data;
 };
 
-#if defined(TEAM_POSIX)
-
-static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-
-static void begin_alone(void)
-{
-    pthread_mutex_lock(&lock);
-}
-
-static void end_alone(void)
-{
-    pthread_mutex_unlock(&lock);
-}
-
-static int on_terminal(void)
-{
-    return isatty(STDERR_FILENO);
-}
-
-#else
-
-static void begin_alone(void)
-{
-}
-
-static void end_alone(void)
-{
-}
-
-static int on_terminal(void)
-{
-    return 0;
-}
-
-#endif
-
-static size_t take(struct queue *q)
-{
-    begin_alone();
-    const size_t k = q->next < q->jobs && !stop ? q->next++ : q->jobs;
-    end_alone();
-    return k;
-}
-
 static void *work(void *data)
 {
     struct queue *q = data;
-    for (size_t k = take(q); k < q->jobs; k = take(q)) {
+    for (;;) {
+        BEGIN_ALONE();
+        const size_t k = q->next < q->jobs && !stop ? q->next++ : q->jobs;
+        END_ALONE();
+        if (k == q->jobs) {
+            return NULL;
+        }
         q->run(q->data, k);
     }
-    return NULL;
 }
 
-#if defined(TEAM_POSIX)
-
-enum { MOST_THREADS = 64 };
-
 /* This thread works too, alone if no other can be created. */
-static void run_team(size_t threads, struct queue *q)
+void run_jobs(size_t threads, size_t jobs, job *run, void *data)
 {
+    struct queue q = {.jobs = jobs, .run = run, .data = data};
+#if defined(TEAM_POSIX)
+    enum { MOST_THREADS = 64 };
     pthread_t helper[MOST_THREADS];
     const long cores = sysconf(_SC_NPROCESSORS_ONLN);
     size_t helpers = 0;
     threads = threads ? threads : cores > 1 ? (size_t)cores : 1;
-    while (helpers + 1 < threads && helpers + 1 < q->jobs && helpers < MOST_THREADS &&
-           pthread_create(&helper[helpers], NULL, work, q) == 0) {
+    while (helpers + 1 < threads && helpers + 1 < jobs && helpers < MOST_THREADS &&
+           pthread_create(&helper[helpers], NULL, work, &q) == 0) {
         helpers++;
     }
-    work(q);
+    work(&q);
     while (helpers > 0) {
         pthread_join(helper[--helpers], NULL);
     }
-}
-
 #else
-
-static void run_team(size_t threads, struct queue *q)
-{
     (void)threads;
-    work(q);
-}
-
+    work(&q);
 #endif
-
-void run_jobs(size_t threads, size_t jobs, job *run, void *data)
-{
-    struct queue q = {.jobs = jobs, .run = run, .data = data};
-    run_team(threads, &q);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- progress */
@@ -136,27 +96,27 @@ static const char blank[] = "                                                   
 
 void show_point(void)
 {
-    begin_alone();
+    BEGIN_ALONE();
     points++;
-    if (on_terminal()) {
+    if (ON_TERMINAL()) {
         fprintf(stderr, "\r%s\r%s: %zu points", blank, program, points);
     }
-    end_alone();
+    END_ALONE();
 }
 
 void show_march(double limit, double hz, size_t periods, double change)
 {
-    begin_alone();
-    if (on_terminal()) {
+    BEGIN_ALONE();
+    if (ON_TERMINAL()) {
         fprintf(stderr, "\r%s\r%s: %zu points; marching at %.4g, %.5g Hz: %zu periods, changing by %.1e", blank, program, points,
                 limit, hz, periods, change);
     }
-    end_alone();
+    END_ALONE();
 }
 
 void end_progress(void)
 {
-    if (on_terminal()) {
+    if (ON_TERMINAL()) {
         fprintf(stderr, "\r%s\r", blank);
     }
 }
