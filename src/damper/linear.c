@@ -8,11 +8,10 @@
 #include "output.h"
 #include "tribo/tribo.h"
 
-/* LAPACK: A P = Q R, columns of Q, eigenvectors of a symmetric matrix, and a complex linear system. Matrices column by column. */
-void dgeqp3_(const int *rows, const int *cols, double *a, const int *stride, int *pivot, double *tau, double *work,
-             const int *size, int *info);
-void dorgqr_(const int *rows, const int *cols, const int *count, double *a, const int *stride, const double *tau, double *work,
-             const int *size, int *info);
+/* LAPACK: A = U S V', eigenvectors of a symmetric matrix, and a complex linear system. Matrices column by column. */
+void dgesvd_(const char *u_columns, const char *v_rows, const int *rows, const int *cols, double *a, const int *stride,
+             double *singular, double *u, const int *u_stride, double *v, const int *v_stride, double *work, const int *size,
+             int *info, size_t one, size_t two);
 void dsyev_(const char *vectors, const char *triangle, const int *n, double *a, const int *stride, double *values, double *work,
             const int *size, int *info, size_t one, size_t two);
 void zgesv_(const int *n, const int *cols, double *a, const int *stride, int *pivot, double *b, const int *next, int *info);
@@ -47,38 +46,6 @@ void find_coupling(struct linear *l)
 
 /* ---------------------------------------------------------------------------------------------------------- all stuck */
 
-/* Orthonormal motions [returned][n] that move no rigid contact, in basis [n][n] from *first on. */
-static size_t held_motions(size_t n, size_t contacts, const double *shape, const double *stiffness, double *basis, double **first)
-{
-    enum { BLOCK = 32 };
-    const int rows = (int)n, size = BLOCK * ((int)n + 1);
-    double *tau = need_memory(n + (size_t)size, sizeof *tau), *work = tau + n;
-    double *column = need_memory(n * contacts, sizeof *column);
-    int *pivot = need_memory(contacts, sizeof *pivot), cols = 0, info = 0, least = 0, rank = 0;
-    for (size_t c = 0; c < contacts; c++) {
-        if (stiffness[c] == 0.0) {
-            memcpy(column + n * (size_t)cols++, shape + c * n, n * sizeof *column);
-        }
-    }
-    if (cols > 0) {
-        const int room = 3 * cols + 1 + BLOCK * (cols + 1);
-        double *more = need_memory((size_t)room, sizeof *more);
-        dgeqp3_(&rows, &cols, column, &rows, pivot, tau, more, &room, &info);
-        free(more);
-        least = rows < cols ? rows : cols;
-        while (rank < least && fabs(column[(size_t)rank * (n + 1)]) > 1e-10 * fabs(column[0])) {
-            rank++;
-        }
-        memcpy(basis, column, (size_t)least * n * sizeof *basis);
-    }
-    dorgqr_(&rows, &rows, &least, basis, &rows, tau, work, &size, &info);
-    free(tau);
-    free(column);
-    free(pivot);
-    *first = basis + (size_t)rank * n;
-    return n - (size_t)rank;
-}
-
 static double dot(const double *a, const double *b, size_t n)
 {
     double sum = 0.0;
@@ -88,75 +55,77 @@ static double dot(const double *a, const double *b, size_t n)
     return sum;
 }
 
-/* Stiffness [count][count] of motions [count][n], of the structure and of the springs: LAPACK's lower triangle. */
-static void project_stiffness(const struct linear *open, size_t contacts, const double *shape, const double *stiffness,
-                              const double *motion, size_t count, double *to)
+/* to [count][count] = B A B' with A [n][n] symmetric and B [count][n]. */
+static void project(const double *a, size_t n, const double *b, size_t count, double *to)
 {
-    const size_t n = open->count;
     double *force = need_memory(n, sizeof *force);
     for (size_t i = 0; i < count; i++) {
         for (size_t k = 0; k < n; k++) {
-            force[k] = open->omega[k] * open->omega[k] * motion[i * n + k];
+            force[k] = dot(a + k * n, b + i * n, n);
         }
-        for (size_t c = 0; c < contacts; c++) {
-            const double spring = stiffness[c] > 0.0 ? stiffness[c] * dot(shape + c * n, motion + i * n, n) : 0.0;
-            for (size_t k = 0; spring != 0.0 && k < n; k++) {
-                force[k] += spring * shape[c * n + k];
-            }
-        }
-        for (size_t j = 0; j <= i; j++) {
-            to[j * count + i] = dot(force, motion + j * n, n);
+        for (size_t j = 0; j < count; j++) {
+            to[j * count + i] = dot(force, b + j * n, n);
         }
     }
     free(force);
-}
-
-/* Damping, loads and measured place of the modes mode [l->count][open->count]. */
-static void project_linear(const struct linear *open, const double *mode, struct linear *l)
-{
-    const size_t n = open->count;
-    double *force = need_memory(n, sizeof *force);
-    for (size_t i = 0; i < l->count; i++) {
-        l->cosine[i] = dot(open->cosine, mode + i * n, n);
-        l->sine[i] = dot(open->sine, mode + i * n, n);
-        l->measured[i] = dot(open->measured, mode + i * n, n);
-        for (size_t k = 0; k < n; k++) {
-            force[k] = dot(open->damping + k * n, mode + i * n, n);
-        }
-        for (size_t j = 0; j < l->count; j++) {
-            l->damping[j * l->count + i] = dot(force, mode + j * n, n);
-        }
-    }
-    free(force);
-    find_coupling(l);
 }
 
 struct linear stick(const struct linear *open, size_t contacts, const double *shape, const double *stiffness)
 {
     const size_t n = open->count;
-    double *basis = need_memory(n * n, sizeof *basis), *held;
-    const size_t count = held_motions(n, contacts, shape, stiffness, basis, &held);
-    const int rows = (int)count, size = 34 * (rows + 1);
-    struct linear l = create_linear(count);
-    double *vector = need_memory(count * count, sizeof *vector), *mode = need_memory(count * n, sizeof *mode);
+    const int rows = (int)n, cols = (int)contacts, size = 40 * (rows + cols);
+    double *k = need_memory(n * n, sizeof *k), *column = need_memory(n * contacts, sizeof *column);
+    double *basis = need_memory(n * n, sizeof *basis), *singular = need_memory(contacts + n, sizeof *singular);
     double *work = need_memory((size_t)size, sizeof *work);
     int info = 0;
-    project_stiffness(open, contacts, shape, stiffness, held, count, vector);
+    size_t rank = 0;
+    for (size_t i = 0; i < n; i++) {
+        k[i * (n + 1)] = open->omega[i] * open->omega[i];
+    }
+    for (size_t c = 0; c < contacts; c++) {
+        const double *row = shape + c * n;
+        if (stiffness[c] == 0.0) {
+            memcpy(column + c * n, row, n * sizeof *column);
+        }
+        for (size_t i = 0; stiffness[c] > 0.0 && i < n * n; i++) {
+            k[i] += stiffness[c] * row[i / n] * row[i % n];
+        }
+    }
+    /* motions that move no rigid contact: columns of U behind the rank */
+    dgesvd_("A", "N", &rows, &cols, column, &rows, singular, basis, &rows, column, &rows, work, &size, &info, 1, 1);
+    need(info ? TRIBO_ERR_NO_CONVERGENCE : TRIBO_OK, "motions with all contacts stuck");
+    while (rank < contacts && rank < n && singular[rank] > 1e-10 * singular[0]) {
+        rank++;
+    }
+    const size_t count = n - rank;
+    const double *held = basis + rank * n;
+    struct linear l = create_linear(count);
+    double *vector = need_memory(count * count, sizeof *vector), *mode = need_memory(count * n, sizeof *mode);
+    const int left = (int)count;
+    project(k, n, held, count, vector);
     if (count > 0) {
-        dsyev_("V", "L", &rows, vector, &rows, l.omega, work, &size, &info, 1, 1);
+        dsyev_("V", "L", &left, vector, &left, l.omega, work, &size, &info, 1, 1);
     }
     need(info ? TRIBO_ERR_NO_CONVERGENCE : TRIBO_OK, "modes with all contacts stuck");
     for (size_t i = 0; i < count; i++) {
-        l.omega[i] = sqrt(fmax(l.omega[i], 0.0));
-        for (size_t k = 0; k < count * n; k++) {
-            mode[i * n + k % n] += vector[i * count + k / n] * held[k];
+        double *m = mode + i * n;
+        for (size_t j = 0; j < count * n; j++) {
+            m[j % n] += vector[i * count + j / n] * held[j];
         }
+        l.omega[i] = sqrt(fmax(l.omega[i], 0.0));
+        l.cosine[i] = dot(open->cosine, m, n);
+        l.sine[i] = dot(open->sine, m, n);
+        l.measured[i] = dot(open->measured, m, n);
     }
-    project_linear(open, mode, &l);
+    project(open->damping, n, mode, count, l.damping);
+    find_coupling(&l);
+    free(k);
+    free(column);
     free(basis);
+    free(singular);
+    free(work);
     free(vector);
     free(mode);
-    free(work);
     return l;
 }
 
