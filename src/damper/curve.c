@@ -154,7 +154,7 @@ static size_t refine(struct curve *c, struct worker *w, double tolerance)
     size_t added = 0;
     for (size_t k = 0; k + 1 < c->count; k++) {
         more[k] = c->sample[k + 1].x - c->sample[k].x > LEAST_WIDTH * whole &&
-                    (found(c, k) != found(c, k + 1) || bends(c, k, &h, tolerance) || bends(c, k + 1, &h, tolerance));
+                  (found(c, k) != found(c, k + 1) || bends(c, k, &h, tolerance) || bends(c, k + 1, &h, tolerance));
     }
     for (size_t k = c->count - 1; k-- > 0;) {
         if (more[k] && c->count < MOST_SAMPLES && !interrupted()) {

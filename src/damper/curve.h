@@ -17,7 +17,7 @@ struct curve {
     double fixed;   /* the other one */
     struct sample *sample;
     size_t count, room; /* ascending in x */
-    size_t record; /* numbers in the record of a motion */
+    size_t record;      /* numbers in the record of a motion */
 };
 
 struct curve create_curve(int over_limit, double fixed, size_t record);

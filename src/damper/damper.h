@@ -18,7 +18,7 @@ struct damper {
     size_t contacts, outputs;  /* numbers of them */
     size_t harmonics;          /* of each output, in tables; 0: none */
     size_t dimension;          /* of a state */
-    int marched;                      /* 1: motions are found by marching only, since contacts slide in a plane */
+    int marched;               /* 1: motions are found by marching only, since contacts slide in a plane */
     struct linear open, stuck; /* without friction, and with all contacts stuck */
     double *contact_shape;     /* [contacts][modes] the modes at the contacts */
     double *output_shape;      /* [outputs][modes] at the places of --output */

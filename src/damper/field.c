@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "field.h"
+#include "tables.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -26,8 +26,7 @@ void write_field(const struct tables *t, const struct structure *s, const struct
     for (size_t i = 0; i < n; i++) {
         nodes += i == 0 || row[i]->node != row[i - 1]->node;
     }
-    char *name = new_text("%s-%s.vtk", t->name, what);
-    FILE *file = create_file(t->out, name);
+    FILE *file = create_table(t, what, "vtk");
     fprintf(file, "# vtk DataFile Version 3.0\n%s: %s %.6g, %.8g Hz\nASCII\nDATASET POLYDATA\nPOINTS %zu double\n", program,
             t->limit, m->limit, m->hz, nodes);
     for (size_t i = 0; i < n; i++) {
@@ -55,8 +54,7 @@ void write_field(const struct tables *t, const struct structure *s, const struct
             }
         }
     }
-    close_file(file, name);
-    free(name);
+    close_table(t, file, what, "vtk");
     free(row);
     free(state);
     free(full);

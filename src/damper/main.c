@@ -4,7 +4,6 @@
 #include <stdlib.h>
 
 #include "output.h"
-#include "plot.h"
 #include "study.h"
 #include "team.h"
 
@@ -24,7 +23,7 @@ int main(int argc, char **argv)
     struct model model = create_model(&options, &structure);
     struct tables tables = open_tables(&options);
     struct study study = {&options, &model, &model.damper, &tables, 0};
-    (options.drive.points > 1 ? study_band : study_limits)(&study);
+    run_study(&study);
     write_result(&tables, "gaps", (double)study.gaps);
     if (study.gaps) {
         printf("%zu point%s not found: gaps in the tables, with messages\n", study.gaps, study.gaps == 1 ? " was" : "s were");

@@ -24,7 +24,7 @@ struct run {
     const struct damper *d;
     tribo_driver *drv;
     double limit, period, omega; /* of the load */
-    size_t steps;         /* a period */
+    size_t steps;                /* a period */
     struct scale free;
     double *output;  /* [outputs][output_size] of the last cycle: amplitude, then cosine and sine of each harmonic */
     double *extreme; /* [outputs][2] least and most */
@@ -201,8 +201,7 @@ static struct motion settle_motion(const struct run *r, double *const *state)
         if (last > NOTHING * r->free.norm) {
             extrapolate(d, state + BLOCK - (keep + 1), keep, ahead);
         }
-        steady = quiet(&r->free, m) &&
-                 distance(d, ahead, state[BLOCK]) < fmax(TOLERANCE * size, NOTHING * r->free.norm);
+        steady = quiet(&r->free, m) && distance(d, ahead, state[BLOCK]) < fmax(TOLERANCE * size, NOTHING * r->free.norm);
         /* contacts may begin or cease to stick on the way to where the extrapolation leads: then rather wait, longer each time */
         if (wait == 0 && last > 0.5 * change) {
             pause = 2 * pause + 1;

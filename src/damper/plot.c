@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "plot.h"
+#include "tables.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "output.h"
-#include "study.h"
 
 /* Blue to red, as dark as lines on white must be. */
 static const char palette[] = "set palette defined (0 '#1d4f91', 1 '#0072b2', 2 '#2a9d8f', 3 '#8ab17d', 4 '#d9a528', "
@@ -36,27 +34,24 @@ static char *file_of(const struct tables *t, const char *what, const char *endin
     return text;
 }
 
-FILE *open_plots(const struct options *o)
+void open_plots(struct tables *t)
 {
-    if (!o->plot) {
-        return NULL;
+    if (!t->plot) {
+        return;
     }
     if (system("gnuplot --version >/dev/null 2>&1") != 0) {
-        die("option --plot %s: gnuplot cannot be run: is it installed?", o->plot);
+        die("option --plot %s: gnuplot cannot be run: is it installed?", t->plot);
     }
-    char *name = new_text("%s-plot.gp", o->name);
-    FILE *script = create_file(o->out, name);
-    const int png = strcmp(o->plot, "png") == 0;
-    fprintf(script, "# Pictures of tribo-damper's tables: gnuplot %s, in this folder.\n", name);
-    fprintf(script, "set terminal %s font 'DejaVu Sans,%d' linewidth 1.4 noenhanced%s\n",
+    const int png = strcmp(t->plot, "png") == 0;
+    t->script = create_table(t, "plot", "gp");
+    fprintf(t->script, "# Pictures of tribo-damper's tables: gnuplot %s-plot.gp, in this folder.\n", t->name);
+    fprintf(t->script, "set terminal %s font 'DejaVu Sans,%d' linewidth 1.4 noenhanced%s\n",
             png ? "pngcairo size 900,540" : "svg size 900,540 dynamic", png ? 11 : 13, png ? "" : " background 'white'");
-    fprintf(script,
+    fprintf(t->script,
             "set datafile separator ','\nset encoding utf8\nset border linewidth 0.8 linecolor '#404040'\n"
             "set tics nomirror\nset grid linetype 1 linecolor '#e4e4e4' linewidth 0.6\n"
             "set key noautotitle outside right top Left reverse spacing 1.25 samplen 2.2\n%s",
             palette);
-    free(name);
-    return script;
 }
 
 /* Begins a picture NAME-what. */
@@ -126,8 +121,8 @@ void draw_plots(const struct tables *t)
 {
     if (t->script) {
         char *name = new_text("%s-plot.gp", t->name), *script = quoted(name, "'\\''"), *folder = quoted(t->out, "'\\''");
-        close_file(t->script, name);
         char *command = new_text("cd %s && gnuplot %s", folder, script);
+        close_table(t, t->script, "plot", "gp");
         if (system(command) != 0) {
             die("gnuplot could not draw %s/%s", t->out, name);
         }

@@ -13,20 +13,31 @@ struct study {
     size_t gaps; /* points that were not found */
 };
 
-/* If the model error is too large, takes twice the modes and empties the tables. Returns 1 if it did. */
-int begin_again(struct study *s, double error);
+/* At one frequency: the response over the limits, the limit of most power, and the motion there. Over a band of frequencies: the
+ * response for every limit, and the limit with the least of the largest amplitudes. With more modes where the model error is too
+ * large. */
+void run_study(struct study *s);
 
-/* Modes and model, before a study: to be shown again where there are more of them. */
-void show_model(const struct study *s);
+/* Curves at these fixed values, over the limits at a frequency, or over the band at a limit; [count], freed by free_curves. */
+struct curve *run_curves(const struct study *s, int over_limit, const double *fixed, size_t count);
+void free_curves(struct curve *c, size_t count);
 
-/* The response over the limits at one frequency, the limit of most power, and the motion there. */
-void study_limits(struct study *s);
-
-/* The response over a band of frequencies for every limit, and the limit with the least of the largest amplitudes. */
-void study_band(struct study *s);
+/* The limit between low and high where the value is least, to that part of it, for a value that falls and then rises; *least is
+ * the value. values: value [count] out, of limit [count]; a few at a time, for those to share the work. */
+double find_least(double low, double high, double part,
+                  void (*values)(void *data, const double *limit, double *value, size_t count), void *data, double *least);
 
 /* Limit k of the geometric series. */
 double limit_of(const struct range *limits, size_t k);
+
+/* Of the curve over the limits: its table on the terminal; then the limit of most power, or the motion at the only limit, and the
+ * table of the curve. */
+void print_limits(struct study *s, const struct curve *c);
+void study_limits(struct study *s, struct curve *c);
+
+/* Of the curves over the band [count]: their table; then the best limit. */
+void write_family(struct study *s, const struct curve *c, size_t count);
+void study_band(struct study *s, const struct curve *c, size_t count);
 
 /* The motions without friction and with all contacts stuck, beside their closed forms. */
 void check_extremes(const struct study *s, double hz);

@@ -20,23 +20,6 @@ static void compare(const struct study *s, const struct motion *m, double known,
     free(analytic);
 }
 
-int begin_again(struct study *s, double error)
-{
-    const int again = take_more_modes(s->model, error);
-    if (again) {
-        close_tables(s->tables);
-        *s->tables = open_tables(s->options);
-        s->gaps = 0;
-    }
-    return again;
-}
-
-void show_model(const struct study *s)
-{
-    write_frequencies(s->tables, s->damper, s->options->frequencies);
-    report_model(s->tables, s->model);
-}
-
 void check_extremes(const struct study *s, double hz)
 {
     const struct damper *d = s->damper;
@@ -195,7 +178,7 @@ double show_model_error(const struct study *s, const struct curve *c, size_t cur
 /* task: by marching, of the samples. */
 static void report(const struct study *s, const struct sample *const *sample, const struct task *task, size_t count)
 {
-    FILE *table = create_table(s->tables, "check");
+    FILE *table = create_table(s->tables, "check", "csv");
     double amplitude = 0.0, power = 0.0, most = 0.0, unbalanced = 0.0;
     write_motion_head(s->tables, table, NULL);
     printf("by marching in time (%s, %s)\n  %12s    frequency    amplitude   difference  periods\n",
@@ -217,7 +200,7 @@ static void report(const struct study *s, const struct sample *const *sample, co
     write_result(s->tables, "check.amplitude", amplitude);
     write_result(s->tables, "check.power", power > 0.0 ? power / most : 0.0);
     write_result(s->tables, "check.balance", unbalanced);
-    close_table(s->tables, table, "check");
+    close_table(s->tables, table, "check", "csv");
 }
 
 void check_by_marching(const struct study *s, const struct curve *c)

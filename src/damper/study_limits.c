@@ -3,21 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "field.h"
 #include "output.h"
-#include "plot.h"
-#include "search.h"
 #include "study.h"
 #include "team.h"
 
-static const double BEND = 0.02;       /* tolerance of the curve */
 static const double LEAST_PART = 1e-6; /* tolerance of the limit of most power */
-
-double limit_of(const struct range *limits, size_t k)
-{
-    const double part = k ? (double)k / (double)(limits->points - 1) : 0.0;
-    return pow(limits->from, 1.0 - part) * pow(limits->to, part);
-}
 
 /* -------------------------------------------------------------------------------------------------------------- power */
 
@@ -146,21 +136,8 @@ static void find_most_power(struct study *s, struct curve *c)
 
 /* --------------------------------------------------------------------------------------------------------------- curve */
 
-/* The curve c over the limits; returns the model error. */
-static double follow_limits(struct study *s, struct curve *c)
+void print_limits(struct study *s, const struct curve *c)
 {
-    const struct range *limits = &s->options->limits;
-    const double hz = lowest_drive(s->options, s->damper);
-    *c = create_curve(1, hz, record_of(s->damper));
-    show_model(s);
-    check_extremes(s, hz);
-    for (size_t k = 0; k < limits->points; k++) {
-        ask_sample(c, log(limit_of(limits, k)), 1);
-    }
-    struct worker w = create_worker(s->damper, s->options->march);
-    find_curve(c, &w, BEND);
-    free_worker(&w);
-    end_progress();
     printf("  %12s    amplitude friction power  damping power  periods\n", s->tables->limit);
     for (size_t k = 0; k < c->count; k++) {
         const struct motion *m = &c->sample[k].motion;
@@ -170,27 +147,18 @@ static double follow_limits(struct study *s, struct curve *c)
             printf("  %12.5g  not found: %s\n", m->limit, m->message);
         }
     }
-    return show_model_error(s, c, 1);
 }
 
-void study_limits(struct study *s)
+void study_limits(struct study *s, struct curve *c)
 {
-    struct curve c;
-    while (begin_again(s, follow_limits(s, &c))) {
-        free_curve(&c);
-    }
-    check_by_marching(s, &c);
+    check_by_marching(s, c);
     if (!interrupted() && s->options->limits.points > 1) {
-        find_most_power(s, &c);
+        find_most_power(s, c);
     } else if (!interrupted()) {
-        show_motion(s, &c, s->options->limits.from, "loop");
+        show_motion(s, c, s->options->limits.from, "loop");
         end_progress();
     }
-    FILE *table = create_table(s->tables, "curve");
-    write_motion_head(s->tables, table, s->damper);
-    write_curve(s->tables, table, &c, s->damper);
-    close_table(s->tables, table, "curve");
+    write_curves(s->tables, "curve", c, 1, s->damper);
     plot_curve(s->tables);
-    s->gaps += gaps_of(&c);
-    free_curve(&c);
+    s->gaps += gaps_of(c);
 }

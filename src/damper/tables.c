@@ -6,12 +6,12 @@
 #include <string.h>
 
 #include "output.h"
-#include "plot.h"
 
 struct tables open_tables(const struct options *o)
 {
-    struct tables t = {.out = o->out, .name = o->name, .limit = word_for_limit(o), .plot = o->plot, .script = open_plots(o)};
+    struct tables t = {.out = o->out, .name = o->name, .limit = word_for_limit(o), .plot = o->plot};
     char *name = new_text("values-%s.txt", t.name);
+    open_plots(&t);
     t.values = create_file(t.out, name);
     free(name);
     return t;
@@ -24,17 +24,17 @@ void close_tables(struct tables *t)
     free(name);
 }
 
-FILE *create_table(const struct tables *t, const char *what)
+FILE *create_table(const struct tables *t, const char *what, const char *ending)
 {
-    char *name = new_text("%s-%s.csv", t->name, what);
+    char *name = new_text("%s-%s.%s", t->name, what, ending);
     FILE *file = create_file(t->out, name);
     free(name);
     return file;
 }
 
-void close_table(const struct tables *t, FILE *file, const char *what)
+void close_table(const struct tables *t, FILE *file, const char *what, const char *ending)
 {
-    char *name = new_text("%s/%s-%s.csv", t->out, t->name, what);
+    char *name = new_text("%s/%s-%s.%s", t->out, t->name, what, ending);
     close_file(file, name);
     free(name);
 }
@@ -61,57 +61,57 @@ void write_motion_head(const struct tables *t, FILE *file, const struct damper *
     fprintf(file, "\n");
 }
 
-static void write_message(FILE *file, const char *message)
+/* Blank if the motion was not found, or for NaN. */
+static void write_number(FILE *file, const struct motion *m, double value)
 {
-    fputc('"', file);
-    for (; *message; message++) {
-        fputc(*message == '"' ? '\'' : *message, file);
-    }
-    fputc('"', file);
-}
-
-/* Blank for NaN. */
-static void write_number(FILE *file, double value)
-{
-    fprintf(file, isnan(value) ? "," : ",%.10g", value);
+    fprintf(file, !m->found || isnan(value) ? "," : ",%.10g", value);
 }
 
 void write_motion(FILE *file, const struct motion *m, const double *y, const struct damper *d)
 {
-    const double none = (double)NAN;
     fprintf(file, "%.10g,%.10g", m->limit, m->hz);
-    if (m->found) {
-        fprintf(file, ",%.10g,%.10g,%.10g,%.10g,%zu,", m->amplitude, m->friction, m->damped, m->input, m->periods);
-    } else {
-        fprintf(file, ",,,,,%zu,", m->periods);
-        write_message(file, m->message);
+    write_number(file, m, m->amplitude);
+    write_number(file, m, m->friction);
+    write_number(file, m, m->damped);
+    write_number(file, m, m->input);
+    fprintf(file, ",%zu,%s", m->periods, m->found ? "" : "\"");
+    for (const char *c = m->found ? "" : m->message; *c; c++) {
+        fputc(*c == '"' ? '\'' : *c, file);
     }
+    fprintf(file, m->found ? "" : "\"");
     for (size_t c = 0; d && c < d->contacts; c++) {
-        write_number(file, m->found ? y[d->dimension + c] : none);
-        write_number(file, m->found ? y[d->dimension + d->contacts + c] : none);
+        write_number(file, m, y[d->dimension + c]);
+        write_number(file, m, y[d->dimension + d->contacts + c]);
     }
     for (size_t k = 0; d && k < d->outputs; k++) {
         const double *o = y + d->dimension + 2 * d->contacts + k * output_size(d);
-        write_number(file, m->found ? o[0] : none);
-        write_number(file, m->found ? o[2] : none);
+        write_number(file, m, o[0]);
+        write_number(file, m, o[2]);
         for (size_t h = 1; h <= d->harmonics; h++) {
-            write_number(file, m->found ? o[2 * h - 1] : none);
+            write_number(file, m, o[2 * h - 1]);
             if (h > 1) {
-                write_number(file, m->found ? o[2 * h] : none);
+                write_number(file, m, o[2 * h]);
             }
         }
     }
     fprintf(file, "\n");
 }
 
-void write_curve(struct tables *t, FILE *file, const struct curve *c, const struct damper *d)
+void write_curves(struct tables *t, const char *what, const struct curve *c, size_t count, const struct damper *d)
 {
-    for (size_t k = 0; k < c->count; k++) {
-        if (searched(&c->sample[k])) {
-            write_motion(file, &c->sample[k].motion, c->sample[k].y, d);
-            t->motions += (size_t)c->sample[k].motion.found;
+    FILE *file = create_table(t, what, "csv");
+    write_motion_head(t, file, d);
+    for (size_t i = 0; i < count; i++) {
+        for (size_t k = 0; k < c[i].count; k++) {
+            const struct sample *s = &c[i].sample[k];
+            if (searched(s)) {
+                write_motion(file, &s->motion, s->y, d);
+                t->motions += (size_t)s->motion.found;
+            }
         }
+        fprintf(file, i + 1 < count && c[i].count ? "\n" : "");
     }
+    close_table(t, file, what, "csv");
 }
 
 /* -------------------------------------------------------------------------------------------------------------- modes */
@@ -120,7 +120,7 @@ void write_frequencies(const struct tables *t, const struct damper *d, const cha
 {
     double *hz = need_memory(d->kept, sizeof *hz), worst = 0.0;
     const size_t known = given ? read_frequencies(given, hz, d->kept) : 0;
-    FILE *table = create_table(t, "frequencies");
+    FILE *table = create_table(t, "frequencies", "csv");
     fprintf(table, "mode,frequency,given,relative difference,stuck\n");
     printf("natural frequencies, Hz; the last with all contacts stuck\n  mode         here%s        stuck\n",
            known ? "        given  relative difference" : "");
@@ -140,7 +140,7 @@ void write_frequencies(const struct tables *t, const struct damper *d, const cha
     if (known) {
         write_result(t, "frequency.error", worst);
     }
-    close_table(t, table, "frequencies");
+    close_table(t, table, "frequencies", "csv");
     fflush(stdout);
     free(hz);
 }
@@ -156,7 +156,7 @@ void write_linear(const struct tables *t, const struct damper *d, const struct r
     enum { EVEN = 2001 };
     double *omega = need_memory(EVEN + 2 * d->modes, sizeof *omega);
     size_t count = 0;
-    FILE *table = create_table(t, "linear");
+    FILE *table = create_table(t, "linear", "csv");
     for (size_t k = 0; k < d->kept + d->stuck.count; k++) {
         const double resonance = k < d->kept ? d->open.omega[k] : d->stuck.omega[k - d->kept];
         if (resonance > TURN * band->from && resonance < TURN * band->to) {
@@ -172,7 +172,7 @@ void write_linear(const struct tables *t, const struct damper *d, const struct r
         fprintf(table, "%.10g,%.10g,%.10g\n", omega[k] / TURN, linear_amplitude(&d->open, omega[k]),
                 linear_amplitude(&d->stuck, omega[k]));
     }
-    close_table(t, table, "linear");
+    close_table(t, table, "linear", "csv");
     free(omega);
 }
 
@@ -187,7 +187,7 @@ void write_history(const struct tables *t, struct worker *w, const struct motion
     double *v = need_memory(2 * d->contacts, sizeof *v), *f = v + d->contacts, now = 0.0;
     double *state = need_memory(w->dimension, sizeof *state);
     signed char *slip = need_memory(d->contacts, sizeof *slip);
-    FILE *table = create_table(t, what);
+    FILE *table = create_table(t, what, "csv");
     tribo_driver *drv = driver_at(w, m->limit, m->hz);
     if (drv == w->drv) {
         /* contacts that stick have velocities of rounding size: a law with a band around v = 0 sees them stick */
@@ -218,7 +218,7 @@ void write_history(const struct tables *t, struct worker *w, const struct motion
         }
         fprintf(table, "\n");
     }
-    close_table(t, table, what);
+    close_table(t, table, what, "csv");
     plot_loops(t, d->contacts, m->limit, what);
     free(v);
     free(state);
