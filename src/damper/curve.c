@@ -42,22 +42,17 @@ static size_t index_of(const struct curve *c, double x)
     return low;
 }
 
-static void insert_sample(struct curve *c, size_t k, double x, int asked)
-{
-    c->sample = need_room(c->sample, c->count, &c->room, sizeof *c->sample);
-    memmove(&c->sample[k + 1], &c->sample[k], (c->count - k) * sizeof *c->sample);
-    c->sample[k] = (struct sample){.x = x, .asked = asked, .y = need_memory(c->record, sizeof(double))};
-    c->count++;
-}
-
 void ask_sample(struct curve *c, double x, int asked)
 {
     const size_t k = index_of(c, x);
     if (k < c->count && c->sample[k].x == x) {
         c->sample[k].asked |= asked;
-    } else {
-        insert_sample(c, k, x, asked);
+        return;
     }
+    c->sample = need_room(c->sample, c->count, &c->room, sizeof *c->sample);
+    memmove(&c->sample[k + 1], &c->sample[k], (c->count - k) * sizeof *c->sample);
+    c->sample[k] = (struct sample){.x = x, .asked = asked, .y = need_memory(c->record, sizeof(double))};
+    c->count++;
 }
 
 static int found(const struct curve *c, size_t k)
@@ -94,23 +89,26 @@ static void find_sample(struct curve *c, struct worker *w, size_t k, int tries)
     }
 }
 
+/* Finds the motion at x, in a sample that is there or added; returns its place. */
+static size_t find_at(struct curve *c, struct worker *w, double x)
+{
+    ask_sample(c, x, 0);
+    find_sample(c, w, index_of(c, x), ALL);
+    return index_of(c, x);
+}
+
 /* ------------------------------------------------------------------------------------------------------------ refinement */
 
-/* The largest amplitude and power of a curve. */
-struct height {
-    double amplitude, power;
-};
-
-static struct height height_of(const struct curve *c)
+const struct sample *largest_of(const struct curve *c, enum quantity of)
 {
-    struct height h = {0.0, 0.0};
+    const struct sample *best = NULL;
     for (size_t k = 0; k < c->count; k++) {
-        if (found(c, k)) {
-            h.amplitude = fmax(h.amplitude, c->sample[k].motion.amplitude);
-            h.power = fmax(h.power, c->sample[k].motion.friction);
+        const struct motion *m = &c->sample[k].motion, *b = best ? &best->motion : NULL;
+        if (m->found && (!b || (of == POWER ? m->friction > b->friction : m->amplitude > b->amplitude))) {
+            best = &c->sample[k];
         }
     }
-    return h;
+    return best;
 }
 
 static double off_chord(const struct sample *s, double left, double middle, double right)
@@ -119,7 +117,7 @@ static double off_chord(const struct sample *s, double left, double middle, doub
 }
 
 /* 1 if the curve bends at sample k: the logarithm of the amplitude, or the power. */
-static int bends(const struct curve *c, size_t k, const struct height *h, double tolerance)
+static int bends(const struct curve *c, size_t k, double amplitude, double power, double tolerance)
 {
     if (k == 0 || k + 1 >= c->count || !found(c, k - 1) || !found(c, k) || !found(c, k + 1)) {
         return 0;
@@ -127,17 +125,16 @@ static int bends(const struct curve *c, size_t k, const struct height *h, double
     const struct sample *s = &c->sample[k];
     double x[3], p[3];
     for (int i = 0; i < 3; i++) {
-        x[i] = log(fmax(s[i - 1].motion.amplitude, LEAST_AMPLITUDE * h->amplitude));
+        x[i] = log(fmax(s[i - 1].motion.amplitude, LEAST_AMPLITUDE * amplitude));
         p[i] = s[i - 1].motion.friction;
     }
-    return off_chord(s, x[0], x[1], x[2]) > tolerance || off_chord(s, p[0], p[1], p[2]) > tolerance * h->power;
+    return off_chord(s, x[0], x[1], x[2]) > tolerance || off_chord(s, p[0], p[1], p[2]) > tolerance * power;
 }
 
 /* Adds a sample between k and k + 1; from its motion, motions beside it that were not found are tried again. */
 static void split_gap(struct curve *c, struct worker *w, size_t k)
 {
-    insert_sample(c, k + 1, 0.5 * (c->sample[k].x + c->sample[k + 1].x), 0);
-    find_sample(c, w, k + 1, ALL);
+    find_at(c, w, 0.5 * (c->sample[k].x + c->sample[k + 1].x));
     if (found(c, k + 1)) {
         find_sample(c, w, k, NEARER);
         find_sample(c, w, k + 2, NEARER);
@@ -148,13 +145,15 @@ static void split_gap(struct curve *c, struct worker *w, size_t k)
  * places then. Returns the number of samples added. */
 static size_t refine(struct curve *c, struct worker *w, double tolerance)
 {
-    const struct height h = height_of(c);
+    const struct sample *largest = largest_of(c, AMPLITUDE), *most = largest_of(c, POWER);
+    const double amplitude = largest ? largest->motion.amplitude : 0.0, power = most ? fmax(most->motion.friction, 0.0) : 0.0;
     const double whole = c->sample[c->count - 1].x - c->sample[0].x;
     char *more = need_memory(c->count, 1);
     size_t added = 0;
     for (size_t k = 0; k + 1 < c->count; k++) {
         more[k] = c->sample[k + 1].x - c->sample[k].x > LEAST_WIDTH * whole &&
-                  (found(c, k) != found(c, k + 1) || bends(c, k, &h, tolerance) || bends(c, k + 1, &h, tolerance));
+                  (found(c, k) != found(c, k + 1) || bends(c, k, amplitude, power, tolerance) ||
+                   bends(c, k + 1, amplitude, power, tolerance));
     }
     for (size_t k = c->count - 1; k-- > 0;) {
         if (more[k] && c->count < MOST_SAMPLES && !interrupted()) {
@@ -180,32 +179,19 @@ void find_curve(struct curve *c, struct worker *w, double tolerance)
 
 const struct sample *reach_sample(struct curve *c, struct worker *w, double x)
 {
-    ask_sample(c, x, 0);
-    find_sample(c, w, index_of(c, x), ALL);
-    for (int i = 0; i < ROUNDS && !found(c, index_of(c, x)) && !interrupted(); i++) {
-        const size_t k = index_of(c, x);
+    size_t k = find_at(c, w, x);
+    for (int i = 0; i < ROUNDS && !found(c, k) && !interrupted(); i++) {
         if (k > 0 && found(c, k - 1)) {
             split_gap(c, w, k - 1);
         } else if (k + 1 < c->count && found(c, k + 1)) {
             split_gap(c, w, k);
         }
+        k = index_of(c, x);
     }
-    const size_t k = index_of(c, x);
     return found(c, k) ? &c->sample[k] : NULL;
 }
 
 /* --------------------------------------------------------------------------------------------------------------- largest */
-
-const struct sample *largest_of(const struct curve *c)
-{
-    const struct sample *best = NULL;
-    for (size_t k = 0; k < c->count; k++) {
-        if (found(c, k) && (!best || c->sample[k].motion.amplitude > best->motion.amplitude)) {
-            best = &c->sample[k];
-        }
-    }
-    return best;
-}
 
 /* The top of the parabola through a sample and its neighbours. */
 static double top_of(const struct sample *s)
@@ -234,16 +220,14 @@ static void climb(struct curve *c, struct worker *w, double x)
         if (!(is_top(c, k) && fabs(top - x) > 1e-8 * whole)) {
             return;
         }
-        ask_sample(c, top, 0);
-        find_sample(c, w, index_of(c, top), ALL);
-        const struct motion *there = &c->sample[index_of(c, top)].motion;
+        const struct motion *there = &c->sample[find_at(c, w, top)].motion;
         x = there->found && there->amplitude > reached ? top : x;
     }
 }
 
 void find_largest(struct curve *c, struct worker *w, double tolerance)
 {
-    const struct sample *largest = largest_of(c);
+    const struct sample *largest = largest_of(c, AMPLITUDE);
     double *x = need_memory(c->count, sizeof *x);
     size_t tops = 0;
     for (size_t k = 0; k < c->count; k++) {

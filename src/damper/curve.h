@@ -34,8 +34,9 @@ void find_curve(struct curve *c, struct worker *w, double tolerance);
  * address until the next one is added. */
 const struct sample *reach_sample(struct curve *c, struct worker *w, double x);
 
-/* The sample with the largest amplitude; NULL if none was found. */
-const struct sample *largest_of(const struct curve *c);
+/* The sample with the largest amplitude, or the largest power lost to friction; NULL if none was found. */
+enum quantity { AMPLITUDE, POWER };
+const struct sample *largest_of(const struct curve *c, enum quantity of);
 
 /* Finds the largest amplitude to rounding, by more samples at each top that is within the tolerance of the largest. */
 void find_largest(struct curve *c, struct worker *w, double tolerance);

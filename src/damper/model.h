@@ -19,9 +19,11 @@ struct model create_model(const struct options *o, const struct structure *s);
 int take_more_modes(struct model *m, double error);
 void free_model(struct model *m);
 
-/* A point of a curve, and its changes with twice the modes. */
+/* A point, and its changes with twice the modes. */
 struct point {
     double limit, hz;
+    const struct curve *curve; /* NULL: of none */
+    size_t sample;             /* of the curve */
     double amplitude; /* relative change */
     double power;     /* change of the power lost to friction, by the input power */
     int compared;     /* 0: not found with both, and changes are 0 */

@@ -13,7 +13,7 @@ static void largest_amplitudes(void *data, const double *limit, double *value, s
 {
     struct curve *c = run_curves(data, 0, limit, count);
     for (size_t k = 0; k < count; k++) {
-        const struct sample *top = largest_of(&c[k]);
+        const struct sample *top = largest_of(&c[k], AMPLITUDE);
         value[k] = top ? top->motion.amplitude : HUGE_VAL;
     }
     free_curves(c, count);
@@ -58,7 +58,7 @@ void write_family(struct study *s, const struct curve *c, size_t count)
     write_curves(s->tables, "family", c, count, s->damper);
     printf("  %12s   points    not found  largest amplitude  at frequency\n", s->tables->limit);
     for (size_t k = 0; k < count; k++) {
-        const struct sample *top = largest_of(&c[k]);
+        const struct sample *top = largest_of(&c[k], AMPLITUDE);
         if (top) {
             printf("  %12.5g %8zu %12zu %18.8g %13.7g\n", c[k].fixed, c[k].count, gaps_of(&c[k]), top->motion.amplitude,
                    top->motion.hz);
@@ -73,7 +73,7 @@ void study_band(struct study *s, const struct curve *c, size_t count)
     struct curve *best = NULL;
     write_linear(s->tables, s->damper, &s->options->drive);
     for (size_t k = 0; k < count; k++) {
-        const struct sample *top = largest_of(&c[k]);
+        const struct sample *top = largest_of(&c[k], AMPLITUDE);
         limit[k] = c[k].fixed;
         value[k] = top ? top->motion.amplitude : HUGE_VAL;
         least = fmin(least, value[k]);
@@ -88,7 +88,7 @@ void study_band(struct study *s, const struct curve *c, size_t count)
             printf("no %s within the range is better than its ends: widen --limits to find the best\n", s->tables->limit);
         }
     }
-    const struct sample *top = best ? largest_of(best) : NULL;
+    const struct sample *top = best ? largest_of(best, AMPLITUDE) : NULL;
     const int shown = top && !interrupted();
     check_by_marching(s, best ? best : c);
     if (shown) {

@@ -68,91 +68,75 @@ static const struct sample *most_sensitive(const struct curve *c)
     return best;
 }
 
-/* Sample `sample` of curve `curve`. */
-struct place_on {
-    size_t curve, sample;
-};
-
-/* The places of curves that are found again with twice the modes. */
-struct places {
-    const struct curve *curve; /* [curves] */
+struct points {
     size_t count;
-    struct place_on *at; /* [count] */
-    struct point *point; /* [count] */
+    struct point *point;
 };
 
-/* Adds a place, unless it is there or its motion was not found. */
-static void add_place(struct places *p, size_t curve, size_t sample)
+/* Adds the sample of a curve, unless it is there or its motion was not found. */
+static void add_point(struct points *p, const struct curve *c, size_t sample)
 {
-    const struct sample *s = &p->curve[curve].sample[sample];
+    const struct sample *s = &c->sample[sample];
     const struct motion *m = &s->motion;
     int is_there = !m->found;
     for (size_t k = 0; k < p->count; k++) {
-        is_there = is_there || (p->at[k].curve == curve && p->at[k].sample == sample);
+        is_there = is_there || (p->point[k].curve == c && p->point[k].sample == sample);
     }
     if (!is_there) {
-        p->at[p->count] = (struct place_on){curve, sample};
-        p->point[p->count++] =
-            (struct point){.limit = m->limit, .hz = m->hz, .between = !s->asked && s != largest_of(&p->curve[curve])};
-    }
-}
-
-/* Adds samples spread over curve k, `most` in all, the largest and, on a single curve, the most sensitive among them. */
-static void add_spread(struct places *p, size_t k, size_t most)
-{
-    const struct curve *c = &p->curve[k];
-    const struct sample *chosen[EVEN_POINTS];
-    const size_t others = most == EVEN_POINTS ? 2 : 1;
-    size_t count = spread_samples(c, most - others, chosen);
-    chosen[count++] = largest_of(c);
-    chosen[count++] = others > 1 ? most_sensitive(c) : NULL;
-    for (size_t i = 0; i < count; i++) {
-        if (chosen[i]) {
-            add_place(p, k, (size_t)(chosen[i] - c->sample));
-        }
+        const int between = !s->asked && s != largest_of(c, AMPLITUDE);
+        p->point[p->count++] = (struct point){.limit = m->limit, .hz = m->hz, .curve = c, .sample = sample, .between = between};
     }
 }
 
 /* Adds the middle one of the samples from begin to end - 1 that the user gave. */
-static void add_middle(struct places *p, size_t curve, size_t begin, size_t end)
+static void add_middle(struct points *p, const struct curve *c, size_t begin, size_t end)
 {
-    const struct sample *sample = p->curve[curve].sample;
     size_t asked = 0, passed = 0;
     for (size_t i = begin; i < end; i++) {
-        asked += (size_t)sample[i].asked;
+        asked += (size_t)c->sample[i].asked;
     }
     for (size_t i = begin; i < end; i++) {
-        if (sample[i].asked && passed++ == asked / 2) {
-            add_place(p, curve, i);
+        if (c->sample[i].asked && passed++ == asked / 2) {
+            add_point(p, c, i);
         }
     }
 }
 
-/* Adds samples on both sides of the place of the largest change: errors peak where a curve is steep, as where contacts just stick
+/* Adds samples on both sides of the point of the largest change: errors peak where a curve is steep, as where contacts just stick
  * for ever. */
-static void add_beside_worst(struct places *p)
+static void add_beside_worst(struct points *p)
 {
-    size_t worst = 0;
+    const struct point *worst = p->point;
     for (size_t k = 1; k < p->count; k++) {
-        worst = change_of(&p->point[k]) > change_of(&p->point[worst]) ? k : worst;
+        worst = change_of(&p->point[k]) > change_of(worst) ? &p->point[k] : worst;
     }
-    const struct place_on at = p->at[worst];
-    size_t begin = 0, end = p->curve[at.curve].count;
+    const struct curve *c = worst->curve;
+    const size_t at = worst->sample;
+    size_t begin = 0, end = c->count;
     for (size_t k = 0; k < p->count; k++) {
-        const size_t sample = p->at[k].sample;
-        begin = p->at[k].curve == at.curve && sample < at.sample && sample >= begin ? sample + 1 : begin;
-        end = p->at[k].curve == at.curve && sample > at.sample && sample < end ? sample : end;
+        const size_t sample = p->point[k].curve == c ? p->point[k].sample : at;
+        begin = sample < at && sample >= begin ? sample + 1 : begin;
+        end = sample > at && sample < end ? sample : end;
     }
-    add_middle(p, at.curve, begin, at.sample);
-    add_middle(p, at.curve, at.sample + 1, end);
+    add_middle(p, c, begin, at);
+    add_middle(p, c, at + 1, end);
 }
 
+/* Points spread over each curve, the largest and, on a single curve, the most sensitive among them. */
 double show_model_error(const struct study *s, const struct curve *c, size_t curves)
 {
-    const size_t most = curves > 1 ? CURVE_POINTS : EVEN_POINTS, room = curves * most + 2 * ROUNDS;
-    struct places p = {.curve = c, .at = need_memory(room, sizeof *p.at), .point = need_memory(room, sizeof *p.point)};
+    const size_t most = curves > 1 ? CURVE_POINTS : EVEN_POINTS, others = curves > 1 ? 1 : 2;
+    struct points p = {0, need_memory(curves * most + 2 * ROUNDS, sizeof *p.point)};
     for (size_t k = 0; k < curves; k++) {
-        add_spread(&p, k, most);
+        const struct sample *chosen[EVEN_POINTS];
+        size_t count = spread_samples(&c[k], most - others, chosen);
+        chosen[count++] = largest_of(&c[k], AMPLITUDE);
+        chosen[count++] = others > 1 ? most_sensitive(&c[k]) : NULL;
+        for (size_t i = 0; i < count; i++) {
+            if (chosen[i]) {
+                add_point(&p, &c[k], (size_t)(chosen[i] - c[k].sample));
+            }
+        }
     }
     size_t compared = 0;
     for (int round = 0; round <= ROUNDS && compared < p.count && !interrupted(); round++) {
@@ -168,7 +152,6 @@ double show_model_error(const struct study *s, const struct curve *c, size_t cur
     }
     fflush(stdout);
     const double error = model_error(s->model, p.point, compared);
-    free(p.at);
     free(p.point);
     return error;
 }

@@ -31,20 +31,6 @@ static void try_limits(void *data, const double *limit, double *value, size_t co
     free(task);
 }
 
-/* The place of the largest dissipated power; count if nothing dissipates. */
-static size_t most_power(const struct curve *c)
-{
-    size_t best = c->count;
-    double most = 0.0;
-    for (size_t k = 0; k < c->count; k++) {
-        if (c->sample[k].motion.found && c->sample[k].motion.friction > most) {
-            most = c->sample[k].motion.friction;
-            best = k;
-        }
-    }
-    return best;
-}
-
 struct optimum {
     double limit, power, amplitude;
 };
@@ -109,7 +95,8 @@ static struct motion show_motion(struct study *s, struct curve *c, double limit,
 
 static void find_most_power(struct study *s, struct curve *c)
 {
-    const size_t at = most_power(c);
+    const struct sample *most = largest_of(c, POWER);
+    const size_t at = most && most->motion.friction > 0.0 ? (size_t)(most - c->sample) : c->count;
     if (at == c->count) {
         printf("friction dissipates nothing at any of these limits: nothing slips, or the contacts are where nothing moves\n");
         return;
