@@ -104,44 +104,13 @@ static double row_product(const struct sparse *m, size_t row, const double *x)
     return sum;
 }
 
-/* The loads, and all places, in the modes. */
-static void read_shapes(struct damper *d, const struct options *o, const struct sparse *rows, const double *full)
-{
-    const double degree = TURN / 360.0;
-    const size_t loads = o->loads.count;
-    for (size_t k = 0; k < d->modes; k++) {
-        const double *mode = full + k * d->ndof;
-        for (size_t c = 0; c < d->contacts; c++) {
-            d->contact_shape[c * d->modes + k] = row_product(rows, c, mode);
-        }
-        for (size_t i = 0; i < loads; i++) {
-            const struct load *load = &o->loads.load[i];
-            const double force = load->size * row_product(rows, d->contacts + i, mode);
-            d->open.cosine[k] += load->phase != 0.0 ? force * sin(degree * load->phase) : 0.0;
-            d->open.sine[k] += load->phase != 0.0 ? force * cos(degree * load->phase) : force;
-        }
-        for (size_t i = 0; i < d->outputs; i++) {
-            d->output_shape[i * d->modes + k] = row_product(rows, d->contacts + loads + i, mode);
-        }
-        d->open.measured[k] = row_product(rows, rows->rows - 1, mode);
-    }
-    for (size_t c = 0; c < d->contacts; c++) {
-        double *shape = d->contact_shape + c * d->modes, most = 0.0;
-        for (size_t k = 0; k < d->modes; k++) {
-            most = fmax(most, fabs(shape[k]));
-        }
-        for (size_t k = 0; k < d->modes; k++) {
-            shape[k] = fabs(shape[k]) < UNMOVED * most ? 0.0 : shape[k];
-        }
-    }
-}
-
 /* An entry of the modal damping matrix below this part of the largest sum of its terms is rounding. */
 static const double UNDAMPED = 1e-13;
 
 /* Modal damping: of ratios, or Phi' C Phi. */
-static void put_damping(struct damper *d, const struct options *o, const struct structure *s, const double *full)
+static void put_damping(struct damper *d, const struct structure *s, const double *full)
 {
+    const struct options *o = d->options;
     double *c = d->open.damping, *force = need_memory(d->ndof, sizeof *force);
     for (size_t k = 0; k < d->modes; k++) {
         const size_t last = o->damping.count ? o->damping.count - 1 : 0;
@@ -164,35 +133,58 @@ static void put_damping(struct damper *d, const struct options *o, const struct 
     free(force);
 }
 
-static void reduce(struct damper *d, const struct options *o, const struct structure *s, const struct sparse *rows)
+/* Finds the modes; and contacts, loads, outputs and damping in them. */
+static void reduce(struct damper *d, const struct structure *s)
 {
+    const struct options *o = d->options;
     /* with statics the loads are contacts, too: their static responses are needed as those of contacts */
-    const size_t directions = d->contacts + (o->statics ? o->loads.count : 0);
+    const size_t loads = o->loads.count, directions = d->contacts + (o->statics ? loads : 0);
+    struct sparse rows = make_rows(o, s);
     tribo_model *model = NULL;
     need(tribo_model_create(&model, s->ndof, directions), NULL);
     need(tribo_model_set_mass_csr(model, s->mass.first, s->mass.col, s->mass.val), tribo_model_message(model));
     need(tribo_model_set_stiffness_csr(model, s->stiffness.first, s->stiffness.col, s->stiffness.val),
          tribo_model_message(model));
-    need(tribo_model_set_direction_csr(model, rows->first, rows->col, rows->val), tribo_model_message(model));
+    need(tribo_model_set_direction_csr(model, rows.first, rows.col, rows.val), tribo_model_message(model));
     if (tribo_system_reduce(&d->reduced, model, d->kept, o->statics ? TRIBO_STATICS_MASS : TRIBO_STATICS_NONE)) {
         const char *message = tribo_model_message(model);
         const int counts = strchr(message, '[') || strstr(message, "degree of freedom ");
         die("%s and %s: %s%s", o->mass, o->stiffness, message, counts ? " (counted from 0)" : "");
     }
     tribo_model_destroy(model);
-    d->modes = tribo_system_ndof(d->reduced);
-    d->open = create_linear(d->modes);
-    d->contact_shape = need_memory(d->contacts * d->modes, sizeof *d->contact_shape);
-    d->output_shape = need_memory(d->outputs * d->modes, sizeof *d->output_shape);
+    const size_t n = d->modes = tribo_system_ndof(d->reduced);
+    double *unit = need_memory(n, sizeof *unit), *full = need_memory(n * d->ndof, sizeof *full);
+    double *shape = need_memory(rows.rows * n, sizeof *shape);
+    d->open = create_linear(n);
+    d->contact_shape = shape;
+    d->output_shape = shape + (d->contacts + loads) * n;
     need(tribo_system_get_frequencies(d->reduced, d->open.omega), tribo_system_message(d->reduced));
-    double *unit = need_memory(d->modes, sizeof *unit), *full = need_memory(d->modes * d->ndof, sizeof *full);
-    for (size_t k = 0; k < d->modes; k++) {
+    for (size_t k = 0; k < n; k++) {
         unit[k] = 1.0;
         need(tribo_system_expand(d->reduced, unit, full + k * d->ndof), NULL);
         unit[k] = 0.0;
+        for (size_t r = 0; r < rows.rows; r++) {
+            shape[r * n + k] = row_product(&rows, r, full + k * d->ndof);
+        }
+        d->open.measured[k] = d->output_shape[o->outputs * n + k];
     }
-    read_shapes(d, o, rows, full);
-    put_damping(d, o, s, full);
+    for (size_t i = 0; i < loads * n; i++) {
+        const struct load *load = &o->loads.load[i / n];
+        const double force = load->size * shape[d->contacts * n + i], phase = TURN / 360.0 * load->phase;
+        d->open.cosine[i % n] += phase != 0.0 ? force * sin(phase) : 0.0;
+        d->open.sine[i % n] += phase != 0.0 ? force * cos(phase) : force;
+    }
+    for (size_t c = 0; c < d->contacts; c++, shape += n) {
+        double most = 0.0;
+        for (size_t k = 0; k < n; k++) {
+            most = fmax(most, fabs(shape[k]));
+        }
+        for (size_t k = 0; k < n; k++) {
+            shape[k] = fabs(shape[k]) < UNMOVED * most ? 0.0 : shape[k];
+        }
+    }
+    put_damping(d, s, full);
+    free_sparse(&rows);
     free(unit);
     free(full);
 }
@@ -200,97 +192,82 @@ static void reduce(struct damper *d, const struct options *o, const struct struc
 /* The largest stiffness of a spring, times that of the lowest elastic mode: below, that mode's frequency keeps digits. */
 static const double MOST_STIFF = 1e9;
 
-static void check_spring(const struct damper *d, size_t c, const char *origin)
+static void check_spring(const struct damper *d, size_t c)
 {
+    const double stiffness = d->contact[c].stiffness;
     double lowest = HUGE_VAL, spring = 0.0;
     for (size_t k = 0; k < d->modes; k++) {
         const double shape = d->contact_shape[c * d->modes + k];
-        spring += d->stiffness[c] * shape * shape;
+        spring += stiffness * shape * shape;
         lowest = d->open.omega[k] > 1e-6 * d->open.omega[d->modes - 1] ? fmin(lowest, d->open.omega[k]) : lowest;
     }
     if (!(spring <= MOST_STIFF * lowest * lowest)) {
-        die("%s: stiffness=%g is more than %g times that of the structure there: leave it out for a rigid contact", origin,
-            d->stiffness[c], MOST_STIFF);
+        die("%s: stiffness=%g is more than %g times that of the structure there: leave it out for a rigid contact",
+            d->contact[c].at.origin, stiffness, MOST_STIFF);
     }
 }
 
 /* The system of modes, with the springs of contacts. */
-static void build(struct damper *d, const struct options *o)
+static void build(struct damper *d)
 {
-    double *mass = need_memory(2 * d->modes + d->contacts, sizeof *mass);
-    double *stiffness = mass + d->modes, *compliance = stiffness + d->modes;
+    const size_t n = d->modes;
+    double *mass = need_memory(3 * n + d->contacts, sizeof *mass);
+    double *stiffness = mass + n, *damping = stiffness + n, *compliance = damping + n;
+    size_t *first = need_memory(d->contacts, sizeof *first), planar = 0;
     tribo_model *model = NULL;
-    for (size_t k = 0; k < d->modes; k++) {
+    for (size_t k = 0; k < n; k++) {
         mass[k] = 1.0;
         stiffness[k] = d->open.omega[k] * d->open.omega[k];
+        damping[k] = d->open.damping[k * (n + 1)];
     }
     for (size_t c = 0; c < d->contacts; c++) {
-        if (d->stiffness[c] > 0.0) {
-            check_spring(d, c, o->contacts.contact[c].at.origin);
-            compliance[c] = 1.0 / d->stiffness[c];
+        if (d->contact[c].stiffness > 0.0) {
+            check_spring(d, c);
+            compliance[c] = 1.0 / d->contact[c].stiffness;
+        }
+        if (d->contact[c].planar) {
+            first[planar++] = c;
         }
     }
-    need(tribo_model_create(&model, d->modes, d->contacts), NULL);
+    need(tribo_model_create(&model, n, d->contacts), NULL);
     need(tribo_model_set_mass_diagonal(model, mass), tribo_model_message(model));
     need(tribo_model_set_stiffness_diagonal(model, stiffness), tribo_model_message(model));
-    for (size_t k = 0; k < d->modes; k++) {
-        mass[k] = d->open.damping[k * (d->modes + 1)];
-    }
-    need(d->open.coupled ? tribo_model_set_damping(model, d->open.damping) : tribo_model_set_damping_diagonal(model, mass),
+    need(d->open.coupled ? tribo_model_set_damping(model, d->open.damping) : tribo_model_set_damping_diagonal(model, damping),
          tribo_model_message(model));
     need(tribo_model_set_direction(model, d->contact_shape), tribo_model_message(model));
     need(tribo_model_set_compliance(model, compliance), tribo_model_message(model));
     if (tribo_system_create(&d->sys, model)) {
         die("modes and springs: %s", tribo_model_message(model));
     }
+    tribo_context *context = tribo_system_context(d->sys);
+    need(tribo_set_law(context, d->law), tribo_message(context));
+    need(tribo_set_planar(context, planar, first), tribo_message(context));
+    d->marched = planar > 0;
+    d->dimension = tribo_system_dimension(d->sys);
     tribo_model_destroy(model);
     free(mass);
-    tribo_context *context = tribo_system_context(d->sys);
-    size_t *first = need_memory(d->contacts, sizeof *first), planar = 0;
-    for (size_t c = 0; c < d->contacts; c++) {
-        if (o->contacts.contact[c].planar) {
-            first[planar++] = c;
-        }
-    }
-    d->marched = planar > 0;
-    need(tribo_set_law(context, o->law), tribo_message(context));
-    need(tribo_set_planar(context, planar, first), tribo_message(context));
     free(first);
 }
 
 struct damper create_damper(const struct options *o, const struct structure *s, size_t kept)
 {
-    struct damper d = {.ndof = s->ndof,
+    struct damper d = {.options = o,
+                       .ndof = s->ndof,
                        .kept = kept,
                        .contacts = o->contacts.count,
-                       .outputs = o->outputs,
-                       .harmonics = o->harmonics,
-                       .size = o->size,
-                       .step = o->step,
+                       .contact = o->contacts.contact,
                        .law = o->law};
     if (o->modes > s->ndof) {
         die("option --modes %zu: the structure has %zu degrees of freedom", o->modes, s->ndof);
     }
-    struct sparse rows = make_rows(o, s);
-    d.limit = need_memory(d.contacts, sizeof *d.limit);
-    d.mu = need_memory(d.contacts, sizeof *d.mu);
-    d.stiffness = need_memory(d.contacts, sizeof *d.stiffness);
-    reduce(&d, o, s, &rows);
-    free_sparse(&rows);
-    d.dimension = 2 * d.modes + 1;
-    for (size_t c = 0; c < d.contacts; c++) {
-        d.limit[c] = o->contacts.contact[c].limit;
-        d.mu[c] = o->contacts.contact[c].mu;
-        d.stiffness[c] = o->contacts.contact[c].stiffness;
-        d.dimension += d.stiffness[c] > 0.0;
-    }
-    d.stuck = stick(&d.open, d.contacts, d.contact_shape, d.stiffness);
+    reduce(&d, s);
+    d.stuck = stick(&d.open, d.contact, d.contacts, d.contact_shape);
     /* rigid contacts must not hold all motions of the modes, unless they hold the structure itself */
     if (d.modes < d.ndof && d.stuck.count == 0) {
         die("the contacts, if they stick, hold all that the %zu mode%s of the reduced structure let%s move: keep more --modes",
             d.modes, d.modes == 1 ? "" : "s", d.modes == 1 ? "s" : "");
     }
-    build(&d, o);
+    build(&d);
     return d;
 }
 
@@ -301,20 +278,16 @@ void free_damper(struct damper *d)
     free_linear(&d->open);
     free_linear(&d->stuck);
     free(d->contact_shape);
-    free(d->output_shape);
-    free(d->limit);
-    free(d->mu);
-    free(d->stiffness);
 }
 
-double lowest_drive(const struct options *o, const struct damper *d)
+double lowest_drive(const struct damper *d)
 {
-    return o->drive.from > 0.0 ? o->drive.from : d->open.omega[0] / TURN;
+    return d->options->drive.from > 0.0 ? d->options->drive.from : d->open.omega[0] / TURN;
 }
 
-double highest_drive(const struct options *o, const struct damper *d)
+double highest_drive(const struct damper *d)
 {
-    return o->drive.from > 0.0 ? o->drive.to : d->open.omega[0] / TURN;
+    return d->options->drive.from > 0.0 ? d->options->drive.to : d->open.omega[0] / TURN;
 }
 
 void check_drive(const struct damper *d, double hz)
@@ -335,16 +308,7 @@ void check_drive(const struct damper *d, double hz)
     }
 }
 
-double displacement(const struct damper *d, const double *shape, const double *q)
-{
-    double x = 0.0;
-    for (size_t k = 0; k < d->modes; k++) {
-        x += shape[k] * q[k];
-    }
-    return x;
-}
-
 size_t output_size(const struct damper *d)
 {
-    return 1 + 2 * (d->harmonics ? d->harmonics : 1);
+    return 1 + 2 * (d->options->harmonics ? d->options->harmonics : 1);
 }

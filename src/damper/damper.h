@@ -12,39 +12,33 @@
 /* A structure reduced to its lowest modes and to static responses, with friction contacts. Made once, then only read: each thread
  * has a copy of sys. Static responses are modes, too, orthogonal to all others in mass and stiffness. */
 struct damper {
-    tribo_system *reduced;     /* for truncation, and for displacements of the whole structure */
-    tribo_system *sys;         /* the same with springs, without a load */
-    size_t ndof, kept, modes;  /* of the structure; lowest modes kept; those and static responses */
-    size_t contacts, outputs;  /* numbers of them */
-    size_t harmonics;          /* of each output, in tables; 0: none */
-    size_t dimension;          /* of a state */
-    int marched;               /* 1: motions are found by marching only, since contacts slide in a plane */
-    struct linear open, stuck; /* without friction, and with all contacts stuck */
-    double *contact_shape;     /* [contacts][modes] the modes at the contacts */
-    double *output_shape;      /* [outputs][modes] at the places of --output */
-    double *stiffness;         /* [contacts] of springs; 0: rigid */
-    double *limit;             /* [contacts] NaN: mu times the limit that varies */
-    double *mu;                /* [contacts] */
-    double size, step;         /* of the loads; of marching */
+    const struct options *options;
+    tribo_system *reduced;         /* for truncation, and for displacements of the whole structure */
+    tribo_system *sys;             /* the same with springs, without a load */
+    size_t ndof, kept, modes;      /* of the structure; lowest modes kept; those and static responses */
+    size_t contacts;               /* number of them, of a contact in a plane both directions */
+    const struct contact *contact; /* [contacts] */
+    size_t dimension;              /* of a state */
+    int marched;                   /* 1: motions are found by marching only, since contacts slide in a plane */
+    struct linear open, stuck;     /* without friction, and with all contacts stuck */
+    double *contact_shape;         /* [contacts][modes] the modes at the contacts */
+    const double *output_shape;    /* [outputs][modes] at the places of --output */
     int law;
 };
 
 /* Sets values that depend on the structure: the size of loads, and limits that were not given; checks the contacts. */
 void complete_options(struct options *o, const struct structure *s);
 
-/* kept: the lowest modes to keep. */
+/* kept: the lowest modes to keep. The options must stay. */
 struct damper create_damper(const struct options *o, const struct structure *s, size_t kept);
 void free_damper(struct damper *d);
 
 /* The ends of the band of the load, Hz. */
-double lowest_drive(const struct options *o, const struct damper *d);
-double highest_drive(const struct options *o, const struct damper *d);
+double lowest_drive(const struct damper *d);
+double highest_drive(const struct damper *d);
 
 /* Ends the program if at this frequency of the load there is nothing to compute with. */
 void check_drive(const struct damper *d, double hz);
-
-/* shape'q, both [modes]. */
-double displacement(const struct damper *d, const double *shape, const double *q);
 
 /* Numbers in the record of an output: amplitude, and amplitude and phase of each harmonic, of the first one always. */
 size_t output_size(const struct damper *d);

@@ -46,7 +46,7 @@ void find_coupling(struct linear *l)
 
 /* ---------------------------------------------------------------------------------------------------------- all stuck */
 
-static double dot(const double *a, const double *b, size_t n)
+double dot(const double *a, const double *b, size_t n)
 {
     double sum = 0.0;
     for (size_t i = 0; i < n; i++) {
@@ -70,7 +70,7 @@ static void project(const double *a, size_t n, const double *b, size_t count, do
     free(force);
 }
 
-struct linear stick(const struct linear *open, size_t contacts, const double *shape, const double *stiffness)
+struct linear stick(const struct linear *open, const struct contact *contact, size_t contacts, const double *shape)
 {
     const size_t n = open->count;
     const int rows = (int)n, cols = (int)contacts, size = 40 * (rows + cols);
@@ -83,12 +83,12 @@ struct linear stick(const struct linear *open, size_t contacts, const double *sh
         k[i * (n + 1)] = open->omega[i] * open->omega[i];
     }
     for (size_t c = 0; c < contacts; c++) {
-        const double *row = shape + c * n;
-        if (stiffness[c] == 0.0) {
+        const double *row = shape + c * n, stiffness = contact[c].stiffness;
+        if (stiffness == 0.0) {
             memcpy(column + c * n, row, n * sizeof *column);
         }
-        for (size_t i = 0; stiffness[c] > 0.0 && i < n * n; i++) {
-            k[i] += stiffness[c] * row[i / n] * row[i % n];
+        for (size_t i = 0; stiffness > 0.0 && i < n * n; i++) {
+            k[i] += stiffness * row[i / n] * row[i % n];
         }
     }
     /* motions that move no rigid contact: columns of U behind the rank */

@@ -2,7 +2,7 @@
 #ifndef DAMPER_LINEAR_H
 #define DAMPER_LINEAR_H
 
-#include <stddef.h>
+#include "contact.h"
 
 /* A linear structure in its modes, of modal mass 1: without friction, or with all contacts stuck. The modal loads are
  * cosine cos(omega t) + sine sin(omega t). */
@@ -22,9 +22,8 @@ void free_linear(struct linear *l);
 void find_coupling(struct linear *l);
 
 /* The modes of `open` with all contacts stuck; none if the contacts leave no freedom.
- * shape      [contacts][open->count] in   the modes at the contacts
- * stiffness  [contacts] in                of the spring of each contact; 0: rigid */
-struct linear stick(const struct linear *open, size_t contacts, const double *shape, const double *stiffness);
+ * shape  [contacts][open->count] in   the modes at the contacts */
+struct linear stick(const struct linear *open, const struct contact *contact, size_t contacts, const double *shape);
 
 /* Amplitude at the measured place under loads of frequency omega, rad/time; NaN if it has no finite one. */
 double linear_amplitude(const struct linear *l, double omega);
@@ -36,6 +35,8 @@ struct scale {
 };
 struct scale scale_of(const struct linear *l, double omega);
 #define NOTHING 1e-13
+
+double dot(const double *a, const double *b, size_t n);
 
 /* |a - b| by the larger of both; 0 between zeros. */
 double relative_difference(double a, double b);

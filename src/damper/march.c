@@ -38,7 +38,7 @@ static double steps_of(const struct damper *d, double hz)
 {
     const double highest = fmax(d->open.omega[d->modes - 1], TURN * hz);
     const double radians = d->law == TRIBO_COULOMB ? COULOMB_STEPS : highest / hz;
-    return fmax(LEAST_STEPS, ceil(radians / d->step));
+    return fmax(LEAST_STEPS, ceil(radians / d->options->step));
 }
 
 void check_steps(const struct damper *d, double hz)
@@ -69,8 +69,8 @@ static void sample_outputs(const struct run *r, const double *y, double t, size_
 {
     const struct damper *d = r->d;
     double *o = r->output;
-    for (size_t k = 0; k < d->outputs; k++) {
-        const double x = displacement(d, d->output_shape + k * d->modes, y);
+    for (size_t k = 0; k < d->options->outputs; k++) {
+        const double x = dot(d->output_shape + k * d->modes, y, d->modes);
         double *extreme = r->extreme + 2 * k;
         extreme[0] = step == 1 ? x : fmin(extreme[0], x);
         extreme[1] = step == 1 ? x : fmax(extreme[1], x);
@@ -105,12 +105,12 @@ static struct motion run_cycle(const struct run *r, double *y)
     y[d->dimension - 1] = 0.0;
     for (size_t i = 1; i <= r->steps; i++) {
         need(tribo_driver_advance(r->drv, &t, r->period * (double)i / (double)r->steps, y), tribo_driver_message(r->drv));
-        const double x = displacement(d, d->open.measured, y);
+        const double x = dot(d->open.measured, y, d->modes);
         least = fmin(least, x);
         most = fmax(most, x);
         m.damped += share * damping_power(&d->open, v);
-        m.input += share * cos(r->omega * t) * displacement(d, d->open.cosine, v);
-        m.input += share * sin(r->omega * t) * displacement(d, d->open.sine, v);
+        m.input += share * cos(r->omega * t) * dot(d->open.cosine, v, d->modes);
+        m.input += share * sin(r->omega * t) * dot(d->open.sine, v, d->modes);
         sample_outputs(r, y, t, i);
     }
     m.amplitude = 0.5 * (most - least);
@@ -228,8 +228,8 @@ struct motion march(struct worker *w, double limit, double hz, double *y)
     const struct damper *d = w->d;
     struct run r = {.d = d, .limit = limit, .period = 1.0 / hz, .omega = TURN * hz, .steps = (size_t)steps_of(d, hz)};
     r.free = scale_of(&d->open, r.omega);
-    r.output = need_memory(d->outputs * output_size(d), sizeof *r.output);
-    r.extreme = need_memory(2 * d->outputs, sizeof *r.extreme);
+    r.output = need_memory(d->options->outputs * output_size(d), sizeof *r.output);
+    r.extreme = need_memory(2 * d->options->outputs, sizeof *r.extreme);
     r.drv = create_marcher(w, limit, hz);
     struct motion m = settle_motion(&r, state);
     m.limit = limit;
@@ -242,7 +242,7 @@ struct motion march(struct worker *w, double limit, double hz, double *y)
     for (size_t c = 0; c < 2 * d->contacts; c++) {
         *record++ = (double)NAN;
     }
-    for (size_t k = 0; k < output_size(d) * d->outputs; k++) {
+    for (size_t k = 0; k < output_size(d) * d->options->outputs; k++) {
         const size_t h = k % output_size(d);
         const double *o = &r.output[k];
         *record++ = h == 0 ? o[0] : h % 2 ? hypot(o[0], o[1]) : atan2(o[-1], o[0]) * 360.0 / TURN;

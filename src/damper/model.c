@@ -46,7 +46,7 @@ void compare_models(const struct model *m, size_t threads, struct point *point, 
 static double stuck_change(const struct model *m)
 {
     const struct linear *kept = &m->damper.stuck, *more = &m->finer.stuck;
-    const double end[] = {TURN * lowest_drive(m->options, &m->damper), TURN * highest_drive(m->options, &m->damper)};
+    const double end[] = {TURN * lowest_drive(&m->damper), TURN * highest_drive(&m->damper)};
     double change = 0.0;
     for (int k = 0; k < 2; k++) {
         change = fmax(change, relative_difference(linear_amplitude(kept, end[k]), linear_amplitude(more, end[k])));
@@ -80,9 +80,9 @@ static struct damper with_modes(const struct options *o, const struct structure 
 }
 
 /* A bound of the part of the displacements at contacts and loads that is missing, up to harmonic HARMONICS. */
-static double missing(const struct damper *d, const struct options *o)
+static double missing(const struct damper *d)
 {
-    const double hz = highest_drive(o, d);
+    const double hz = highest_drive(d);
     double error;
     need(tribo_system_get_truncation(d->reduced, HARMONICS * TURN * hz, &error), "truncation");
     return d->kept < d->ndof ? error : 0.0;
@@ -100,7 +100,7 @@ enum { PROBES = 3 };
 static double probe_error(const struct model *m)
 {
     const struct options *o = m->options;
-    const double low = lowest_drive(o, &m->damper), high = highest_drive(o, &m->damper);
+    const double low = lowest_drive(&m->damper), high = highest_drive(&m->damper);
     const size_t limits = o->limits.points < PROBES ? o->limits.points : PROBES, bands = o->drive.points > 1 ? PROBES : 1;
     struct point probe[PROBES * PROBES];
     for (size_t k = 0; k < limits * bands; k++) {
@@ -112,12 +112,12 @@ static double probe_error(const struct model *m)
     return model_error(m, probe, limits * bands);
 }
 
-static void check_drives(const struct options *o, const struct damper *d)
+static void check_drives(const struct damper *d)
 {
-    const double end[] = {lowest_drive(o, d), highest_drive(o, d)};
+    const double end[] = {lowest_drive(d), highest_drive(d)};
     for (int k = 0; k < 2; k++) {
         check_drive(d, end[k]);
-        if (o->march || o->check) {
+        if (d->options->march || d->options->check) {
             check_steps(d, end[k]);
         }
     }
@@ -146,8 +146,8 @@ struct model create_model(const struct options *o, const struct structure *s)
 {
     struct model m = {
         .options = o, .structure = s, .damper = o->modes ? create_damper(o, s, o->modes) : with_modes(o, s, LEAST_MODES)};
-    check_drives(o, &m.damper);
-    while (may_double(&m) && !(missing(&m.damper, o) <= MOST_MISSING)) {
+    check_drives(&m.damper);
+    while (may_double(&m) && !(missing(&m.damper) <= MOST_MISSING)) {
         const size_t kept = 2 * m.damper.kept;
         free_damper(&m.damper);
         m.damper = with_modes(o, s, kept);
@@ -156,7 +156,7 @@ struct model create_model(const struct options *o, const struct structure *s)
     while (may_double(&m) && take_more_modes(&m, probe_error(&m))) {
     }
     end_progress();
-    check_drives(o, &m.damper);
+    check_drives(&m.damper);
     return m;
 }
 
@@ -173,7 +173,7 @@ void free_model(struct model *m)
 void report_model(const struct tables *t, const struct model *m)
 {
     const struct damper *d = &m->damper;
-    const double error = missing(d, m->options);
+    const double error = missing(d);
     if (m->whole) {
         printf("model: all %zu modes\n", d->kept);
     } else {

@@ -24,10 +24,10 @@ struct point {
     double limit, hz;
     const struct curve *curve; /* NULL: of none */
     size_t sample;             /* of the curve */
-    double amplitude; /* relative change */
-    double power;     /* change of the power lost to friction, by the input power */
-    int compared;     /* 0: not found with both, and changes are 0 */
-    int between;      /* 1: at a limit that the user has not given; not in the model error */
+    double amplitude;          /* relative change */
+    double power;              /* change of the power lost to friction, by the input power */
+    int compared;              /* 0: not found with both, and changes are 0 */
+    int between;               /* 1: at a limit that the user has not given; not in the model error */
 };
 
 /* The larger of both changes; 0 of a point between. */

@@ -24,7 +24,7 @@ struct worker create_worker(const struct damper *d, int march)
 
 size_t record_of(const struct damper *d)
 {
-    return d->dimension + 2 * d->contacts + output_size(d) * d->outputs;
+    return d->dimension + 2 * d->contacts + output_size(d) * d->options->outputs;
 }
 
 void free_worker(struct worker *w)
@@ -41,7 +41,7 @@ void set_point(struct worker *w, double limit, double hz)
     const struct damper *d = w->d;
     tribo_context *contacts = tribo_system_context(w->sys);
     for (size_t c = 0; c < d->contacts; c++) {
-        w->limit[c] = isnan(d->limit[c]) ? d->mu[c] * limit : d->limit[c];
+        w->limit[c] = isnan(d->contact[c].limit) ? d->contact[c].mu * limit : d->contact[c].limit;
     }
     need(tribo_set_limit(contacts, w->limit), tribo_message(contacts));
     need(tribo_system_clear_loads(w->sys), tribo_system_message(w->sys));
@@ -66,7 +66,7 @@ static int measure_outputs(struct worker *w, double *output)
 {
     const struct damper *d = w->d;
     int status = TRIBO_OK;
-    for (size_t k = 0; k < d->outputs && !status; k++) {
+    for (size_t k = 0; k < d->options->outputs && !status; k++) {
         double least = 0.0, most = 0.0, cosine = 0.0, sine = 0.0;
         memcpy(w->c, d->output_shape + k * d->modes, d->modes * sizeof *w->c);
         status = tribo_driver_period_extremes(w->drv, w->c, &least, &most, NULL, NULL);

@@ -26,16 +26,16 @@ void check_extremes(const struct study *s, double hz)
     if (!limits_vary(s->options)) {
         return;
     }
-    double *each = need_memory(2 * d->contacts, sizeof *each);
+    struct contact *each = need_memory(d->contacts, sizeof *each);
     struct damper all = *d;
-    all.limit = each;
-    all.mu = each + d->contacts;
+    all.contact = each;
     for (size_t c = 0; c < d->contacts; c++) { /* limits of their own are left out: all contacts are open, or all stuck */
-        all.limit[c] = (double)NAN;
-        all.mu[c] = 1.0;
+        each[c] = d->contact[c];
+        each[c].limit = (double)NAN;
+        each[c].mu = 1.0;
     }
     struct task task[] = {{&all, s->options->march, 0.0, hz, .guess = NULL},
-                          {&all, s->options->march, 1e6 * d->size, hz, .guess = NULL}};
+                          {&all, s->options->march, 1e6 * s->options->size, hz, .guess = NULL}};
     run_tasks(s->options->threads, task, 2);
     const double omega = TURN * hz;
     end_progress();

@@ -51,7 +51,8 @@ static struct optimum balance_mode(const struct damper *d, double drive)
     }
     const double damping = l->damping[k * (d->modes + 1)], load = hypot(l->cosine[k], l->sine[k]);
     for (size_t c = 0; c < d->contacts; c++) {
-        one = one && isnan(d->limit[c]) && d->mu[c] == 1.0 && d->stiffness[c] == 0.0;
+        const struct contact *contact = &d->contact[c];
+        one = one && isnan(contact->limit) && contact->mu == 1.0 && contact->stiffness == 0.0;
         sum += fabs(d->contact_shape[c * d->modes + k]);
     }
     if (!one || fabs(l->omega[k] - drive) > 0.05 * damping) {

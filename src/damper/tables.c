@@ -52,9 +52,9 @@ void write_motion_head(const struct tables *t, FILE *file, const struct damper *
     for (size_t c = 1; d && c <= d->contacts; c++) {
         fprintf(file, ",power%zu,stick%zu", c, c);
     }
-    for (size_t k = 1; d && k <= d->outputs; k++) {
+    for (size_t k = 1; d && k <= d->options->outputs; k++) {
         fprintf(file, ",amplitude%zu,phase%zu", k, k);
-        for (size_t h = 1; h <= d->harmonics; h++) {
+        for (size_t h = 1; h <= d->options->harmonics; h++) {
             fprintf(file, h > 1 ? ",harmonic%zu.%zu,phase%zu.%zu" : ",harmonic%zu.%zu", k, h, k, h);
         }
     }
@@ -83,11 +83,11 @@ void write_motion(FILE *file, const struct motion *m, const double *y, const str
         write_number(file, m, y[d->dimension + c]);
         write_number(file, m, y[d->dimension + d->contacts + c]);
     }
-    for (size_t k = 0; d && k < d->outputs; k++) {
+    for (size_t k = 0; d && k < d->options->outputs; k++) {
         const double *o = y + d->dimension + 2 * d->contacts + k * output_size(d);
         write_number(file, m, o[0]);
         write_number(file, m, o[2]);
-        for (size_t h = 1; h <= d->harmonics; h++) {
+        for (size_t h = 1; h <= d->options->harmonics; h++) {
             write_number(file, m, o[2 * h - 1]);
             if (h > 1) {
                 write_number(file, m, o[2 * h]);
@@ -209,12 +209,12 @@ void write_history(const struct tables *t, struct worker *w, const struct motion
         need(tribo_driver_advance(drv, &now, cycle / m->hz, state), tribo_driver_message(drv));
         need(tribo_system_contacts(w->sys, now, state, v, NULL, f), tribo_system_message(w->sys));
         need(tribo_system_get_slip(w->sys, slip), tribo_system_message(w->sys));
-        fprintf(table, "%.8g,%.10g,%.10g", cycle, now, displacement(d, d->open.measured, state));
+        fprintf(table, "%.8g,%.10g,%.10g", cycle, now, dot(d->open.measured, state, d->modes));
         for (size_t c = 0; c < d->contacts; c++) {
             fprintf(table, ",%.8g,%.8g,%d", v[c], f[c], slip[c]);
         }
         for (size_t c = 0; c < d->contacts; c++) {
-            fprintf(table, ",%.8g", displacement(d, d->contact_shape + c * d->modes, state));
+            fprintf(table, ",%.8g", dot(d->contact_shape + c * d->modes, state, d->modes));
         }
         fprintf(table, "\n");
     }
