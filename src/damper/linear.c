@@ -56,7 +56,7 @@ double dot(const double *a, const double *b, size_t n)
 }
 
 /* to [count][count] = B A B' with A [n][n] symmetric and B [count][n]. */
-static void project(const double *a, size_t n, const double *b, size_t count, double *to)
+static void project_matrix(const double *a, size_t n, const double *b, size_t count, double *to)
 {
     double *force = need_memory(n, sizeof *force);
     for (size_t i = 0; i < count; i++) {
@@ -74,9 +74,9 @@ struct linear stick(const struct linear *open, const struct contact *contact, si
 {
     const size_t n = open->count;
     const int rows = (int)n, cols = (int)contacts, size = 40 * (rows + cols);
-    double *k = need_memory(n * n, sizeof *k), *column = need_memory(n * contacts, sizeof *column);
-    double *basis = need_memory(n * n, sizeof *basis), *singular = need_memory(contacts + n, sizeof *singular);
-    double *work = need_memory((size_t)size, sizeof *work);
+    double *k = need_memory((4 * n + contacts + 1) * n + contacts + (size_t)size, sizeof *k), *basis = k + n * n;
+    double *vector = basis + n * n, *mode = vector + n * n, *column = mode + n * n, *singular = column + contacts * n;
+    double *work = singular + n + contacts;
     int info = 0;
     size_t rank = 0;
     for (size_t i = 0; i < n; i++) {
@@ -100,9 +100,8 @@ struct linear stick(const struct linear *open, const struct contact *contact, si
     const size_t count = n - rank;
     const double *held = basis + rank * n;
     struct linear l = create_linear(count);
-    double *vector = need_memory(count * count, sizeof *vector), *mode = need_memory(count * n, sizeof *mode);
     const int left = (int)count;
-    project(k, n, held, count, vector);
+    project_matrix(k, n, held, count, vector);
     if (count > 0) {
         dsyev_("V", "L", &left, vector, &left, l.omega, work, &size, &info, 1, 1);
     }
@@ -117,15 +116,9 @@ struct linear stick(const struct linear *open, const struct contact *contact, si
         l.sine[i] = dot(open->sine, m, n);
         l.measured[i] = dot(open->measured, m, n);
     }
-    project(open->damping, n, mode, count, l.damping);
+    project_matrix(open->damping, n, mode, count, l.damping);
     find_coupling(&l);
     free(k);
-    free(column);
-    free(basis);
-    free(singular);
-    free(work);
-    free(vector);
-    free(mode);
     return l;
 }
 

@@ -27,7 +27,7 @@ struct source {
 #endif
 };
 
-static size_t fill(struct source *s, unsigned char *byte)
+static size_t read_block(struct source *s, unsigned char *byte)
 {
     const size_t count = fread(byte, 1, BLOCK, s->file);
     s->error = ferror(s->file) ? strerror(errno) : s->error;
@@ -39,7 +39,7 @@ static size_t fill(struct source *s, unsigned char *byte)
 static int refill(struct source *s)
 {
     s->stream.next_in = s->unread;
-    s->stream.avail_in = (uInt)fill(s, s->unread);
+    s->stream.avail_in = (uInt)read_block(s, s->unread);
     return s->stream.avail_in > 0;
 }
 
@@ -117,9 +117,9 @@ int next_byte(struct source *s, const char **error)
     if (s->at == s->end) {
         s->at = 0;
 #if defined(DAMPER_ZLIB)
-        s->end = s->error ? 0 : s->packed ? unpack(s) : fill(s, s->byte);
+        s->end = s->error ? 0 : s->packed ? unpack(s) : read_block(s, s->byte);
 #else
-        s->end = s->error ? 0 : fill(s, s->byte);
+        s->end = s->error ? 0 : read_block(s, s->byte);
 #endif
     }
     *error = s->at < s->end ? NULL : s->error;
