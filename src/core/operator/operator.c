@@ -128,8 +128,8 @@ static int allocate_memory(struct memory *m, const struct delassus *op)
     struct layout b = {0};
     struct box_qp *p = &m->problem;
     double **const vector[] = {
-        &p->q,    &p->lo,       &p->hi,  &p->gradient, &p->noise,   &p->low.x, &p->rounding.terms, &p->rounding.unit,
-        &p->step, &p->low.step, &p->row, &p->spare[0], &p->spare[1]};
+        &p->q,    &p->lo,       &p->hi,           &p->gradient, &p->noise,    &p->low.x,   &p->rounding.terms, &p->rounding.unit,
+        &p->step, &p->low.step, &p->low.gradient, &p->row,      &p->spare[0], &p->spare[1]};
     enum { VECTORS = sizeof vector / sizeof *vector };
     const size_t s = op->largest + 1;
     do {

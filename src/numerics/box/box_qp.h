@@ -3,9 +3,8 @@
  * by place in the group. Nothing here allocates, unless it says so.
  *
  *   factor.c          rows of R, and its factor over the free contacts: a square block, kept from call to call and changed row by
- *                     row, or
+ *                     row, or with twice as many digits, for light bodies between heavy ones
  *   factor_sparse.c   the same for large groups with few entries
- *   factor_graded.c   with twice as many digits, for light bodies between heavy ones
  *   small.h           solves the problem of up to 4 contacts
  *   least_norm.c      shares forces among redundant contacts, and solves the linear system of the partition coupling
  *   box.c             the sets of free contacts and of contacts at a bound, Newton's method, and the solution of the problem */
@@ -83,10 +82,10 @@ struct rounding {
 
 /* Low parts of numbers with twice as many digits, of graded groups. */
 struct low_parts {
-    const double *r; /* [size][size] */
-    double *l;       /* [size][size] */
-    double *x;       /* [size] */
-    double *step;    /* [size] workspace */
+    const double *r;         /* [size][size] */
+    double *l;               /* [size][size] */
+    double *x;               /* [size] */
+    double *gradient, *step; /* [size] workspace */
 };
 
 /* Null vectors of R. */
@@ -110,7 +109,7 @@ struct box_qp {
     size_t *order;               /* [size] rank independent free contacts, in the order of the factor, then the dependents */
     signed char *at;             /* [size] places */
     double *l;                   /* [size][size] Cholesky factor of the scaled R over order[0 .. rank); see factor.c */
-    struct low_parts low;        /* of r, l, x and step */
+    struct low_parts low;        /* of r, l, x, gradient and step */
     struct sparse_factor sparse; /* in the place of l, if R is sparse */
     double *inverse;             /* [size][size] small groups: see small.h */
     /* the problem: min 1/2 x'Rx + q'x, lo <= x <= hi, over the near contacts; the x of the others is given */
@@ -159,8 +158,8 @@ static inline double tribo_scale(double diagonal)
 
 /* ---- factor */
 
-/* Takes contact i into the factor or the dependents if it is FREE, and out of them if not; it was not, or was, FREE before. */
-void tribo_factor_change(struct box_qp *p, size_t i);
+/* at_i = to; takes contact i into the factor or the dependents, or out of them, if that changes. */
+void tribo_box_change(struct box_qp *p, size_t i, signed char to);
 
 /* Factorizes anew over all FREE contacts, which are near. where not NULL: returns the largest entry left after elimination of the
  * independent contacts, rounding unless R is indefinite, negative if a pivot is, and its contact *where; else 0. */
@@ -169,22 +168,7 @@ double tribo_factor_rebuild(struct box_qp *p, size_t *where);
 /* step = R^-1 step over the independent contacts. Leaves the other entries. */
 void tribo_factor_solve(const struct box_qp *p, double *step);
 
-/* Returns 1 if changes towards `free` free contacts cost more than a new factor. */
-int tribo_factor_many(const struct box_qp *p, size_t changes, size_t free);
-
-double tribo_dense_rebuild(struct box_qp *p, size_t *where);
-void tribo_dense_solve(const struct box_qp *p, double *step);
-
-/* Shared by factorizations that choose their pivots. order = the free contacts; returns their number. */
-size_t tribo_dense_order(struct box_qp *p);
-
-/* Exchanges the largest pivot of rows k to all - 1 into row k of l, low.l if graded, and order. Returns 0 if it is <= zero. */
-int tribo_dense_pivot(struct box_qp *p, size_t k, size_t all, double zero);
-
-/* Sets rank, and the other contacts as dependents. Returns as tribo_factor_rebuild. */
-double tribo_dense_end(struct box_qp *p, size_t rank, size_t all, size_t *where);
-
-double tribo_graded_rebuild(struct box_qp *p, size_t *where);
+/* Of a graded group: step + low = R^-1 (step + low). */
 void tribo_graded_solve(const struct box_qp *p, double *step, double *low);
 
 /* Returns 1 if q and x have sizes that twice as many digits allow. bounded: x is within lo and hi. */
@@ -192,12 +176,6 @@ int tribo_graded_fits(const struct box_qp *p, int bounded);
 
 /* Returns (R x + q)_i, its low part *low, and *size = sum_j |R_ij x_j|. */
 double tribo_graded_gradient(const struct box_qp *p, size_t i, double *low, double *size);
-
-/* step and low.step = the move of the independent x that takes their gradient to zero. */
-void tribo_graded_newton(struct box_qp *p);
-
-/* tribo_null_vector without the y of the dependents. */
-void tribo_graded_null_vector(const struct box_qp *p, size_t d, double *y);
 
 /* Returns |q_i| + sum_j |y_j q_j| over the independent j, y = R^-1 R_.i: relative errors of q move gradient_i by at most this
  * times them. Uses low.step. */
@@ -229,13 +207,10 @@ double tribo_row_dot(const struct box_qp *p, size_t i, const double *x, double *
 /* Returns the sum without j = i. Leaves x as it was. */
 double tribo_row_others(const struct box_qp *p, size_t i, double *x);
 
-/* y_j = factor R_ij at the free contacts j. Leaves the other entries. */
-void tribo_row_spread(const struct box_qp *p, size_t i, double factor, double *y);
+/* y [size] = the null vector of R over the free contacts with y_d = 1, d a dependent. Leaves the entries of other contacts. */
+void tribo_null_vector(const struct box_qp *p, size_t d, double *y);
 
 /* ---- sets: which contacts are free */
-
-/* at_i = to, and the factor accordingly. */
-void tribo_box_change(struct box_qp *p, size_t i, signed char to);
 
 /* Takes the near contacts into the problem, free, and the others out of it. keep_bounds: contacts at a bound stay there, unless
  * the bound went far away. */
@@ -282,11 +257,8 @@ void tribo_box_begin(struct box_qp *p, int bounded);
 /* Finds gradient and noise at x. */
 void tribo_box_gradients(struct box_qp *p);
 
-/* step = the move of the independent x that takes their gradient to zero; 0 for the dependents. */
+/* step = the move of the independent x that takes gradient to zero; 0 for the dependents. */
 void tribo_box_newton(struct box_qp *p);
-
-/* tribo_box_newton for gradient as it is, with the digits of a double. */
-void tribo_box_downhill(struct box_qp *p);
 
 /* Returns x_i + step_i. */
 double tribo_box_moved(struct box_qp *p, size_t i);
@@ -334,9 +306,6 @@ void tribo_box_share(struct box_qp *p);
 int tribo_box_linear(struct box_qp *p);
 
 /* ---- least norm */
-
-/* y [size] = the null vector of R over the free contacts with y_d = 1, d a dependent. Leaves the entries of other contacts. */
-void tribo_null_vector(const struct box_qp *p, size_t d, double *y);
 
 /* basis = orthonormal null vectors of R over the free contacts. Returns their number: dependents, or 0 if there is no room. */
 size_t tribo_null_basis(struct box_qp *p);

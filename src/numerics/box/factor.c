@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The factor of R over the free contacts of a group, and rows of R, dense, sparse or graded; and the dense factor.
+/* The factor of R over the free contacts of a group, and rows of R, dense, graded or sparse; and the dense and graded factors.
  *
- * Dense: R is a square block. Rows are appended and deleted in O(rank^2). Dependents wait beside the factor. A pivot that is small,
- * but not zero to rounding, leads to a new factor with the largest pivots first, which decides the rank. Row k of l holds
- * l_k0, ... l_k,k-1 and 1/l_kk. */
+ * Dense: R is a square block. Rows are appended and deleted in O(rank^2). Dependents wait beside the factor. A pivot that is
+ * small, but not zero to rounding, leads to a new factor with the largest pivots first, which decides the rank. Row k of l holds
+ * l_k0, ... l_k,k-1 and 1/l_kk.
+ *
+ * Graded: a contact of the group touches a light body and a heavy one. In R = J M^-1 J' as a double 1/m of the light body hides
+ * 1/M of the heavy one but for the last digits, and with them the effect of friction on it. R, its factor, and the forces of the
+ * free contacts are therefore kept to twice as many digits, which are enough for masses that differ by 1e18. Each change of the
+ * stick set factorizes anew. */
 #include "box_qp.h"
 
 #include <math.h>
@@ -11,39 +16,155 @@
 
 #include "common/real.h"
 #include "common/simd.h"
+#include "numerics/twofold.h"
+
+/* Largest numbers of a graded solve: its results stay below TWOFOLD_FAR. */
+#define FITS 1e100
+
+/* Sums side by side, since one sum waits for itself. */
+enum { SUMS = 4 };
+
+static inline double sum_of_four(const double *sum)
+{
+    return sum[0] + sum[1] + (sum[2] + sum[3]);
+}
 
 /* ---------------------------------------------------------------------------------------------------- the dense factor */
 
-static double dense_entry(const struct box_qp *p, size_t i, size_t j)
-{
-    return p->scale[i] * p->r[i * p->group->size + j] * p->scale[j];
-}
-
-/* Returns x'y: four sums side by side, since one sum waits for itself. */
+/* Returns x'y. */
 static double dense_row_dot(const double *x, const double *y, size_t n)
 {
-    double sum[4] = {0.0};
+    double sum[SUMS] = {0.0};
     size_t i = 0;
-    for (; i + 4 <= n; i += 4) {
-        for (size_t k = 0; k < 4; k++) {
+    for (; i + SUMS <= n; i += SUMS) {
+        for (size_t k = 0; k < SUMS; k++) {
             sum[k] += x[i + k] * y[i + k];
         }
     }
     for (; i < n; i++) {
         sum[0] += x[i] * y[i];
     }
-    return sum[0] + sum[1] + (sum[2] + sum[3]);
+    return sum_of_four(sum);
+}
+
+/* Returns the scaled R_ij; its low part is 0 unless R is graded. */
+static inline struct twofold scaled_entry(const struct box_qp *p, int graded, size_t i, size_t j)
+{
+    const size_t at = i * p->group->size + j;
+    return graded ? twofold_scale((struct twofold){p->r[at], p->low.r[at]}, p->scale[i] * p->scale[j])
+                  : (struct twofold){p->scale[i] * p->r[at] * p->scale[j], 0.0};
+}
+
+static inline struct twofold factor_entry(const struct box_qp *p, int graded, size_t i, size_t j)
+{
+    const size_t at = i * p->group->size + j;
+    return (struct twofold){p->l[at], graded ? p->low.l[at] : 0.0};
+}
+
+static inline void set_factor(const struct box_qp *p, int graded, size_t i, size_t j, struct twofold x)
+{
+    const size_t at = i * p->group->size + j;
+    p->l[at] = x.hi;
+    if (graded) {
+        p->low.l[at] = x.lo;
+    }
+}
+
+static inline struct twofold factor_times(int graded, struct twofold x, struct twofold y)
+{
+    return graded ? twofold_times(x, y) : (struct twofold){x.hi * y.hi, 0.0};
+}
+
+static inline struct twofold factor_minus(int graded, struct twofold x, struct twofold y)
+{
+    return graded ? twofold_minus(x, y) : (struct twofold){x.hi - y.hi, 0.0};
+}
+
+/* Returns what the first k columns of l leave of the scaled entry of contacts order[i] and order[j]. All entries come from one
+ * triangle of R and are sums in one order, so that those of equal contacts are equal to the last digit. */
+static inline struct twofold entry_left(const struct box_qp *p, int graded, size_t i, size_t j, size_t k)
+{
+    const size_t a = p->order[i], b = p->order[j];
+    struct twofold x = scaled_entry(p, graded, a > b ? a : b, a > b ? b : a);
+    for (size_t m = 0; m < k; m++) {
+        x = factor_minus(graded, x, factor_times(graded, factor_entry(p, graded, i, m), factor_entry(p, graded, j, m)));
+    }
+    return x;
+}
+
+static void exchange(double *x, double *y, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        const double z = x[i];
+        x[i] = y[i];
+        y[i] = z;
+    }
+}
+
+/* Cholesky factorization, column by column, with the largest pivot next; pivots wait on the diagonal. */
+static inline double dense_rebuild(struct box_qp *p, int graded, size_t *where)
+{
+    const size_t size = p->group->size;
+    size_t all = 0, k = 0;
+    double most = 0.0;
+    p->work.factorizations++;
+    for (size_t e = 0; e < p->count; e++) {
+        if (p->at[p->near[e]] == FREE) {
+            p->order[all++] = p->near[e];
+        }
+    }
+    const double zero = graded ? TRIBO_GRADED_ZERO : tribo_resolution(all);
+    for (size_t i = 0; i < all; i++) {
+        set_factor(p, graded, i, i, entry_left(p, graded, i, i, 0));
+    }
+    for (; k < all; k++) {
+        size_t best = k;
+        for (size_t i = k + 1; i < all; i++) {
+            best = p->l[i * (size + 1)] > p->l[best * (size + 1)] ? i : best;
+        }
+        if (p->l[best * (size + 1)] <= zero) {
+            break;
+        }
+        double *const array[] = {p->l, p->low.l};
+        for (int a = 0; a < 1 + graded && best != k; a++) {
+            exchange(array[a] + k * size, array[a] + best * size, k);
+            exchange(array[a] + k * (size + 1), array[a] + best * (size + 1), 1);
+        }
+        const size_t first = p->order[k];
+        p->order[k] = p->order[best];
+        p->order[best] = first;
+        const struct twofold pivot = factor_entry(p, graded, k, k);
+        const struct twofold inverse = graded ? twofold_inverse_root(pivot) : (struct twofold){1.0 / sqrt(pivot.hi), 0.0};
+        set_factor(p, graded, k, k, inverse);
+        for (size_t i = k + 1; i < all; i++) {
+            const struct twofold x = factor_times(graded, entry_left(p, graded, i, k, k), inverse);
+            set_factor(p, graded, i, k, x);
+            set_factor(p, graded, i, i, factor_minus(graded, factor_entry(p, graded, i, i), factor_times(graded, x, x)));
+        }
+    }
+    p->sets->rank = k;
+    p->sets->dependents = all - k;
+    for (size_t i = k; where && i < all; i++) {
+        for (size_t j = k; j <= i; j++) {
+            const double x = i == j ? p->l[i * (size + 1)] : entry_left(p, graded, i, j, k).hi;
+            if (fabs(x) > fabs(most)) {
+                most = i == j ? x : -fabs(x);
+                *where = p->order[i];
+            }
+        }
+    }
+    return most;
 }
 
 /* Appends i to the independent contacts or to the dependents. Returns 0 if the pivot is doubtful. */
 static int dense_append(struct box_qp *p, size_t i)
 {
     const size_t rank = p->sets->rank, size = p->group->size;
-    const double diagonal = dense_entry(p, i, i);
+    const double diagonal = scaled_entry(p, 0, i, i).hi;
     double *row = p->l + rank * size, pivot = diagonal;
     for (size_t k = 0; k < rank; k++) {
         const double *l = p->l + k * size;
-        row[k] = (dense_entry(p, i, p->order[k]) - dense_row_dot(l, row, k)) * l[k];
+        row[k] = (scaled_entry(p, 0, i, p->order[k]).hi - dense_row_dot(l, row, k)) * l[k];
         pivot -= row[k] * row[k];
     }
     const double relative = pivot / diagonal;
@@ -96,108 +217,13 @@ static void dense_remove(struct box_qp *p, size_t i)
     p->sets->dependents = 0;
     for (size_t d = 0; d < waiting; d++) {
         if (!dense_append(p, p->order[p->sets->rank + p->sets->dependents])) {
-            tribo_dense_rebuild(p, NULL);
+            dense_rebuild(p, 0, NULL);
             return;
         }
     }
 }
 
-size_t tribo_dense_order(struct box_qp *p)
-{
-    size_t all = 0;
-    p->work.factorizations++;
-    for (size_t e = 0; e < p->count; e++) {
-        if (p->at[p->near[e]] == FREE) {
-            p->order[all++] = p->near[e];
-        }
-    }
-    return all;
-}
-
-/* Exchanges rows and columns k and other > k of the lower triangle l [all][size], columns before k included. */
-static void dense_exchange(double *l, size_t size, size_t all, size_t k, size_t other)
-{
-    for (size_t j = 0; j < all; j++) {
-        if (j != k && j != other) {
-            double *a = j < k ? &l[k * size + j] : &l[j * size + k];
-            double *b = j < other ? &l[other * size + j] : &l[j * size + other];
-            const double x = *a;
-            *a = *b;
-            *b = x;
-        }
-    }
-    const double x = l[k * size + k];
-    l[k * size + k] = l[other * size + other];
-    l[other * size + other] = x;
-}
-
-int tribo_dense_pivot(struct box_qp *p, size_t k, size_t all, double zero)
-{
-    const size_t size = p->group->size;
-    size_t best = k;
-    for (size_t i = k + 1; i < all; i++) {
-        best = p->l[i * size + i] > p->l[best * size + best] ? i : best;
-    }
-    if (k == all || p->l[best * size + best] <= zero) {
-        return 0;
-    }
-    if (best != k) {
-        dense_exchange(p->l, size, all, k, best);
-        if (p->group->graded) {
-            dense_exchange(p->low.l, size, all, k, best);
-        }
-        const size_t i = p->order[k];
-        p->order[k] = p->order[best];
-        p->order[best] = i;
-    }
-    return 1;
-}
-
-double tribo_dense_end(struct box_qp *p, size_t rank, size_t all, size_t *where)
-{
-    const size_t size = p->group->size;
-    double most = 0.0;
-    p->sets->rank = rank;
-    p->sets->dependents = all - rank;
-    for (size_t i = rank; where && i < all; i++) {
-        for (size_t j = rank; j <= i; j++) {
-            const double x = p->l[i * size + j];
-            if (fabs(x) > fabs(most)) {
-                most = i == j ? x : -fabs(x);
-                *where = p->order[i];
-            }
-        }
-    }
-    return most;
-}
-
-/* Cholesky factorization with the largest pivot next. */
-double tribo_dense_rebuild(struct box_qp *p, size_t *where)
-{
-    const size_t size = p->group->size, all = tribo_dense_order(p);
-    size_t k = 0;
-    for (size_t i = 0; i < all; i++) {
-        for (size_t j = 0; j <= i; j++) {
-            p->l[i * size + j] = dense_entry(p, p->order[i], p->order[j]);
-        }
-    }
-    for (; tribo_dense_pivot(p, k, all, tribo_resolution(all)); k++) {
-        const double inverse = 1.0 / sqrt(p->l[k * size + k]);
-        p->l[k * size + k] = inverse;
-        for (size_t i = k + 1; i < all; i++) {
-            p->l[i * size + k] *= inverse;
-        }
-        for (size_t i = k + 1; i < all; i++) {
-            const double x = p->l[i * size + k];
-            for (size_t j = k + 1; x != 0.0 && j <= i; j++) {
-                p->l[i * size + j] -= x * p->l[j * size + k];
-            }
-        }
-    }
-    return tribo_dense_end(p, k, all, where);
-}
-
-void tribo_dense_solve(const struct box_qp *p, double *step)
+static void dense_solve(const struct box_qp *p, double *step)
 {
     const size_t rank = p->sets->rank, size = p->group->size;
     double *y = p->row;
@@ -215,11 +241,108 @@ void tribo_dense_solve(const struct box_qp *p, double *step)
     }
 }
 
+/* --------------------------------------------------------------------------------------------------- the graded factor */
+
+/* y -= l_kj x */
+static struct twofold graded_subtract(const struct box_qp *p, struct twofold y, size_t k, size_t j, struct twofold x)
+{
+    return twofold_minus(y, twofold_times(factor_entry(p, 1, k, j), x));
+}
+
+void tribo_graded_solve(const struct box_qp *p, double *step, double *low)
+{
+    const size_t rank = p->sets->rank;
+    double most = 1.0;
+    int e;
+    for (size_t k = 0; k < p->sets->rank; k++) {
+        const size_t i = p->order[k];
+        most = greater(most, product(fabs(step[i]), greater(p->scale[i], 1.0)));
+    }
+    frexp(most, &e);
+    const double unit = most > FITS ? ldexp(1.0, -e) : 1.0; /* brings step to at most FITS */
+    for (size_t k = 0; k < rank; k++) {
+        const size_t i = p->order[k];
+        struct twofold y = twofold_scale((struct twofold){unit * step[i], unit * low[i]}, p->scale[i]);
+        for (size_t j = 0; j < k; j++) {
+            y = graded_subtract(p, y, k, j, (struct twofold){step[p->order[j]], low[p->order[j]]});
+        }
+        y = twofold_times(y, factor_entry(p, 1, k, k));
+        step[i] = y.hi;
+        low[i] = y.lo;
+    }
+    for (size_t k = rank; k-- > 0;) {
+        const size_t i = p->order[k];
+        struct twofold y = {step[i], low[i]};
+        for (size_t j = k + 1; j < rank; j++) {
+            y = graded_subtract(p, y, j, k, (struct twofold){step[p->order[j]], low[p->order[j]]});
+        }
+        y = twofold_times(y, factor_entry(p, 1, k, k));
+        step[i] = y.hi;
+        low[i] = y.lo;
+    }
+    for (size_t k = 0; k < rank; k++) {
+        const size_t i = p->order[k];
+        step[i] = quotient(p->scale[i] * step[i], unit);
+        low[i] = quotient(p->scale[i] * low[i], unit);
+    }
+}
+
+int tribo_graded_fits(const struct box_qp *p, int bounded)
+{
+    double most = 0.0;
+    for (size_t e = 0; e < p->group->size; e++) {
+        const size_t i = p->near[e];
+        const int near = e < p->count;
+        const double x = !near ? fabs(p->x[i]) : bounded ? greater(fabs(p->lo[i]), fabs(p->hi[i])) : 0.0;
+        most = greater(most, greater(quotient(x, p->scale[i]), near ? product(fabs(p->q[i]), p->scale[i]) : 0.0));
+    }
+    return most <= FITS;
+}
+
+double tribo_graded_gradient(const struct box_qp *p, size_t i, double *low, double *size)
+{
+    const double own = 1.0 / p->scale[i];
+    struct twofold sum = {p->scale[i] * p->q[i], 0.0};
+    *size = 0.0;
+    for (size_t j = 0; j < p->group->size; j++) {
+        const struct twofold x = twofold_scale((struct twofold){p->x[j], p->low.x[j]}, 1.0 / p->scale[j]),
+                             term = twofold_times(scaled_entry(p, 1, i, j), x);
+        sum = twofold_add(sum, term);
+        *size += fabs(term.hi);
+    }
+    *size *= own;
+    *low = own * sum.lo;
+    return own * sum.hi;
+}
+
+double tribo_graded_terms(const struct box_qp *p, size_t i)
+{
+    double *y = p->low.step, sum = fabs(p->q[i]);
+    tribo_null_vector(p, i, y);
+    for (size_t k = 0; k < p->sets->rank; k++) {
+        sum += fabs(y[p->order[k]] * p->q[p->order[k]]);
+    }
+    return sum;
+}
+
+double tribo_graded_move(struct box_qp *p, size_t i, double length)
+{
+    const struct twofold step = twofold_times((struct twofold){p->step[i], p->low.step[i]}, (struct twofold){length, 0.0}),
+                         x = twofold_add((struct twofold){p->x[i], p->low.x[i]}, step);
+    p->low.x[i] = x.lo;
+    return x.hi;
+}
+
 /* ---------------------------------------------------------------------------------------------------------- the factor */
 
-void tribo_factor_change(struct box_qp *p, size_t i)
+void tribo_box_change(struct box_qp *p, size_t i, signed char to)
 {
-    const int enters = p->at[i] == FREE;
+    const int entered = p->at[i] == FREE, enters = to == FREE;
+    p->at[i] = to;
+    if (entered == enters) {
+        return;
+    }
+    p->work.updates++;
     if (p->group->graded) {
         tribo_factor_rebuild(p, NULL);
     } else if (p->group->sparse) {
@@ -227,18 +350,18 @@ void tribo_factor_change(struct box_qp *p, size_t i)
     } else if (!enters) {
         dense_remove(p, i);
     } else if (!dense_append(p, i)) {
-        tribo_dense_rebuild(p, NULL);
+        tribo_factor_rebuild(p, NULL);
     }
 }
 
 double tribo_factor_rebuild(struct box_qp *p, size_t *where)
 {
-    if (p->group->graded) {
-        return tribo_graded_rebuild(p, where);
-    }
-    return p->group->sparse ? tribo_sparse_rebuild(p, where) : tribo_dense_rebuild(p, where);
+    return p->group->sparse   ? tribo_sparse_rebuild(p, where)
+           : p->group->graded ? dense_rebuild(p, 1, where)
+                              : dense_rebuild(p, 0, where);
 }
 
+/* step = R^-1 step; row [size] = the low part of step of a graded group, and 0 on return. */
 static void factor_solve(const struct box_qp *p, double *step)
 {
     if (p->group->graded) {
@@ -247,7 +370,7 @@ static void factor_solve(const struct box_qp *p, double *step)
     } else if (p->group->sparse) {
         tribo_sparse_solve(p, step);
     } else {
-        tribo_dense_solve(p, step);
+        dense_solve(p, step);
     }
 }
 
@@ -271,20 +394,11 @@ void tribo_factor_solve(const struct box_qp *p, double *step)
     }
 }
 
-int tribo_factor_many(const struct box_qp *p, size_t changes, size_t free)
-{
-    /* A change of a dense factor costs about rank^2, a dense factor free^3/3. As measured on carpets and chains of 400 to 100,000
-     * contacts, a sparse factor costs some size/16 changes, 16 where each is searched for dependents. */
-    const size_t many = p->group->nullity ? 16 : p->group->size / 16;
-    return p->group->sparse ? changes > many : p->group->graded || 3 * changes > free;
-}
-
 /* ----------------------------------------------------------------------------------------------------------- rows of R */
 
-/* Returns row'x, and *size = |row|'|x|: four sums side by side, since one sum waits for itself. */
+/* Returns row'x, and *size = |row|'|x|. */
 TRIBO_SIMD static double factor_dense_dot(const double *restrict row, const double *restrict x, size_t n, double *size)
 {
-    enum { SUMS = 4 };
     double sum[SUMS] = {0.0}, all[SUMS] = {0.0};
     size_t j = 0;
     for (; j + SUMS <= n; j += SUMS) {
@@ -298,8 +412,8 @@ TRIBO_SIMD static double factor_dense_dot(const double *restrict row, const doub
         sum[0] += row[j] * x[j];
         all[0] += fabs(row[j] * x[j]);
     }
-    *size = all[0] + all[1] + (all[2] + all[3]);
-    return sum[0] + sum[1] + (sum[2] + sum[3]);
+    *size = sum_of_four(all);
+    return sum_of_four(sum);
 }
 
 double tribo_row_dot(const struct box_qp *p, size_t i, const double *x, double *size)
@@ -320,14 +434,20 @@ double tribo_row_others(const struct box_qp *p, size_t i, double *x)
     return sum;
 }
 
-void tribo_row_spread(const struct box_qp *p, size_t i, double factor, double *y)
+void tribo_null_vector(const struct box_qp *p, size_t d, double *y)
 {
-    if (p->group->sparse) {
-        tribo_sparse_spread(p, i, factor, y);
-        return;
+    const struct group *g = p->group;
+    const double *row = p->r + d * g->size;
+    if (g->sparse) {
+        tribo_sparse_spread(p, d, -1.0, y);
     }
-    const size_t all = p->sets->rank + p->sets->dependents;
-    for (size_t k = 0; k < all; k++) {
-        y[p->order[k]] = factor * p->r[i * p->group->size + p->order[k]];
+    for (size_t k = 0; k < p->sets->rank && !g->sparse; k++) {
+        const size_t i = p->order[k];
+        y[i] = -row[i];
+        p->row[i] = g->graded ? -p->low.r[d * g->size + i] : 0.0;
+    }
+    (g->graded ? factor_solve : tribo_factor_solve)(p, y);
+    for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
+        y[p->order[k]] = p->order[k] == d ? 1.0 : 0.0;
     }
 }

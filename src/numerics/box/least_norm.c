@@ -13,20 +13,6 @@
 /* Rounding of null vectors, which come from a factor, in parts of that of a sum. */
 #define NULL_NOISE 64.0
 
-void tribo_null_vector(const struct box_qp *p, size_t d, double *y)
-{
-    const struct group *g = p->group;
-    if (g->graded) {
-        tribo_graded_null_vector(p, d, y);
-    } else {
-        tribo_row_spread(p, d, -1.0, y);
-        tribo_factor_solve(p, y);
-    }
-    for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
-        y[p->order[k]] = p->order[k] == d ? 1.0 : 0.0;
-    }
-}
-
 static double free_dot(const struct box_qp *p, const double *x, const double *y)
 {
     double sum = 0.0;
@@ -198,6 +184,7 @@ static int minimum_norm(struct box_qp *p)
             double rounding = DBL_MIN;
             for (size_t e = 0; e < p->count; e++) {
                 p->step[p->near[e]] = p->gradient[p->near[e]];
+                p->low.gradient[p->near[e]] = 0.0;
                 rounding = greater(rounding, 16.0 * p->noise[p->near[e]]);
             }
             tribo_null_project(p, vectors, p->gradient);
@@ -208,8 +195,11 @@ static int minimum_norm(struct box_qp *p)
         } else if (pass > 0 && tribo_box_settled(p, 1.0)) {
             break;
         }
-        (vectors ? tribo_box_downhill : tribo_box_newton)(p);
-        tribo_null_project(p, vectors, p->step);
+        tribo_box_newton(p);
+        if (vectors) { /* projections have the digits of a double */
+            tribo_null_project(p, vectors, p->step);
+            memset(p->low.step, 0, p->group->size * sizeof *p->low.step);
+        }
         for (size_t e = 0; e < p->count; e++) {
             const size_t i = p->near[e];
             p->x[i] = tribo_box_moved(p, i);

@@ -160,7 +160,7 @@ void tribo_disc_factorize(struct disc_qp *p, size_t size)
         f->near[k] = k;
         f->at[k] = FREE;
     }
-    tribo_dense_rebuild(f, NULL);
+    tribo_factor_rebuild(f, NULL);
     f->null.redundant = size;
     p->factor.redundant = tribo_null_basis(f);
 }
@@ -183,7 +183,7 @@ void tribo_disc_backsolve(struct disc_qp *p)
         p->step[k] = p->step[k] * inverse * (1.0 / ROOM);
     }
     tribo_null_project(&p->factor.qp, p->factor.redundant, p->step);
-    tribo_dense_solve(&p->factor.qp, p->step);
+    tribo_factor_solve(&p->factor.qp, p->step);
     for (size_t d = 0; d < p->factor.sets.dependents; d++) {
         p->step[p->factor.qp.order[p->factor.sets.rank + d]] = 0.0;
     }
