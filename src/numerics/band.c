@@ -32,8 +32,8 @@ size_t tribo_band_factorize(const struct matrix *a, size_t width, const signed c
     return a->rows;
 }
 
-/* x = L^-1 x, or x = L'^-1 x: LAPACK's upper band, by columns, is L by rows. */
-static void band_solve_triangle(size_t n, size_t width, const double *l, int transposed, double *x)
+/* LAPACK's upper band, by columns, is L by rows. */
+void tribo_band_half_solve(size_t n, size_t width, const double *l, int back, double *x)
 {
     const int rows = (int)n, below = (int)width, stride = below + 1, one = 1;
     if (!width) {
@@ -42,21 +42,5 @@ static void band_solve_triangle(size_t n, size_t width, const double *l, int tra
         }
         return;
     }
-    dtbsv_("U", transposed ? "N" : "T", "N", &rows, &below, l, &stride, x, &one, 1, 1, 1);
-}
-
-void tribo_band_half_solve(size_t n, size_t width, const double *l, double *x)
-{
-    band_solve_triangle(n, width, l, 0, x);
-}
-
-void tribo_band_half_solve_back(size_t n, size_t width, const double *l, double *x)
-{
-    band_solve_triangle(n, width, l, 1, x);
-}
-
-void tribo_band_solve(size_t n, size_t width, const double *l, double *x)
-{
-    band_solve_triangle(n, width, l, 0, x);
-    band_solve_triangle(n, width, l, 1, x);
+    dtbsv_("U", back ? "N" : "T", "N", &rows, &below, l, &stride, x, &one, 1, 1, 1);
 }

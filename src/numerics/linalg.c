@@ -303,15 +303,16 @@ int tribo_cholesky_solve(const struct cholesky *c, size_t count, double *x)
     return 1;
 }
 
-/* x [n][cols] = L^-1 x or L'^-1 x. */
-static void solve_triangle(const struct cholesky *c, int transposed, double *x, size_t cols)
+static void half_solve(const struct cholesky *c, int back, double *x, size_t cols)
 {
     const double one = 1.0;
     const int n = (int)c->n, count = (int)cols;
-    if (c->factor && c->n && cols) {
-        dtrsm_("R", "U", transposed ? "T" : "N", "N", &count, &n, &one, c->factor, &n, x, &count, 1, 1, 1, 1);
+    if (c->sparse) {
+        tribo_sparse_factor_half_solve(c->sparse, back, x, cols);
+    } else if (c->factor && c->n && cols) {
+        dtrsm_("R", "U", back ? "T" : "N", "N", &count, &n, &one, c->factor, &n, x, &count, 1, 1, 1, 1);
     }
-    for (size_t i = 0; !c->factor && i < c->n; i++) {
+    for (size_t i = 0; c->root && !c->factor && i < c->n; i++) {
         for (size_t j = 0; j < cols; j++) {
             x[i * cols + j] /= c->root[i];
         }
@@ -320,20 +321,12 @@ static void solve_triangle(const struct cholesky *c, int transposed, double *x, 
 
 void tribo_half_solve(const struct cholesky *c, double *x, size_t cols)
 {
-    if (c->sparse) {
-        tribo_sparse_factor_half_solve(c->sparse, 0, x, cols);
-    } else {
-        solve_triangle(c, 0, x, cols);
-    }
+    half_solve(c, 0, x, cols);
 }
 
 void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols)
 {
-    if (c->sparse) {
-        tribo_sparse_factor_half_solve(c->sparse, 1, x, cols);
-    } else {
-        solve_triangle(c, 1, x, cols);
-    }
+    half_solve(c, 1, x, cols);
 }
 
 double tribo_lu_create(double *a, size_t n, int *pivot)
@@ -374,36 +367,12 @@ void tribo_lu_solve(const double *lu, size_t n, const int *pivot, double *x, siz
     }
 }
 
-/* Eigenvalues and eigenvectors of a [2][2] by one Jacobi rotation (Golub and Van Loan, Matrix Computations, 8.5.2): small
- * eigenvalues of a graded a are exact to their own rounding. */
-static void rotate_two(const double *a, double *values, double *vectors)
-{
-    const double gap = 0.5 * a[3] - 0.5 * a[0], shared = fabs(a[1]), cot = shared > 0.0 ? quotient(fabs(gap), shared) : 0.0;
-    const double size = shared > 0.0 ? 1.0 / (cot + hypot(1.0, cot)) : 0.0, t = (gap >= 0.0) == (a[1] >= 0.0) ? size : -size;
-    const double c = 1.0 / hypot(1.0, t);
-    const double first = a[0] - t * a[1], second = a[3] + t * a[1];
-    const size_t low = first <= second ? 0 : 1, high = 1 - low;
-    values[low] = first;
-    values[high] = second;
-    vectors[low] = vectors[2 + high] = c;
-    vectors[high] = t * c;
-    vectors[2 + low] = -t * c;
-}
-
 int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors)
 {
-    if (n == 2) {
-        rotate_two(a, values, vectors);
-        return TRIBO_OK;
-    }
-    if (n == 1) {
-        values[0] = a[0];
-        vectors[0] = 1.0;
-    }
-    if (n <= 1) {
-        return TRIBO_OK;
-    }
     enum { BLOCK = 32 };
+    if (n == 0) {
+        return TRIBO_OK;
+    }
     const int rows = (int)n, size = (2 + BLOCK) * rows;
     double *work = tribo_lapack_takes(n) ? malloc((size_t)size * sizeof *work) : NULL;
     int info;

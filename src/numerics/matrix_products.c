@@ -3,7 +3,6 @@
 #include "linalg.h"
 #include "common/real.h"
 #include "common/simd.h"
-#include "linalg.h"
 #include "twofold.h"
 
 #include <float.h>
@@ -156,44 +155,24 @@ double tribo_matrix_noise(const struct matrix *a, const double *root, const doub
     return DBL_EPSILON * sum;
 }
 
-/* Row i has the entries row_begin to row_end - 1; row i of the identity (no rows) has entry i. */
-static size_t row_begin(const struct matrix *a, size_t i)
-{
-    return a->rows ? a->first[i] : i;
-}
-
-static size_t row_end(const struct matrix *a, size_t i)
-{
-    return a->rows ? a->first[i + 1] : i + 1;
-}
-
 int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, double *to)
 {
-    const size_t n = z->rows ? z->rows : a->rows, m = z->rows ? z->cols : n;
-    double *row = malloc((m + 1) * sizeof *row);
-    if (!row) {
-        return 0;
+    struct matrix turned;
+    if (!z->rows) {
+        tribo_matrix_spread(a, to);
+        tribo_even_out(a->rows, to);
+        return 1;
     }
-    memset(to, 0, m * m * sizeof *to);
-    for (size_t i = 0; i < n; i++) {
-        memset(row, 0, m * sizeof *row);
-        /* row = row i of A Z */
-        for (size_t k = row_begin(a, i); k < row_end(a, i); k++) {
-            const size_t j = a->rows ? a->col[k] : i;
-            const double x = a->rows ? a->val[k] : 1.0;
-            for (size_t e = row_begin(z, j); e < row_end(z, j); e++) {
-                row[z->rows ? z->col[e] : j] += z->rows ? x * z->val[e] : x;
-            }
-        }
-        for (size_t e = row_begin(z, i); e < row_end(z, i); e++) {
-            double *at = to + (z->rows ? z->col[e] : i) * m;
-            const double x = z->rows ? z->val[e] : 1.0;
-            for (size_t j = 0; j < m; j++) {
-                at[j] += x * row[j];
-            }
-        }
+    double *x = malloc(2 * z->rows * sizeof *x);
+    const int done = x && tribo_matrix_transpose(&turned, z);
+    for (size_t k = 0; done && k < z->cols; k++) {
+        tribo_matrix_get_row(&turned, k, x);
+        tribo_matrix_multiply(&turned, a->rows ? tribo_matrix_image(a, x, x + z->rows) : x, to + k * z->cols);
     }
-    tribo_even_out(m, to);
-    free(row);
-    return 1;
+    if (done) {
+        tribo_even_out(z->cols, to);
+        tribo_matrix_free(&turned);
+    }
+    free(x);
+    return done;
 }

@@ -112,7 +112,8 @@ int tribo_step_matrix_solve(const struct step_matrix *m, size_t count, double *x
         return 1;
     }
     for (size_t k = 0; k < count; k++) {
-        tribo_band_solve(m->n, m->below, m->band, x + k * m->n);
+        tribo_band_half_solve(m->n, m->below, m->band, 0, x + k * m->n);
+        tribo_band_half_solve(m->n, m->below, m->band, 1, x + k * m->n);
     }
     return 1;
 }
@@ -122,6 +123,6 @@ void tribo_step_matrix_half_solve(const struct step_matrix *m, int back, double 
     if (m->sparse.n) {
         (back ? tribo_half_solve_back : tribo_half_solve)(&m->sparse, x, 1);
     } else {
-        (back ? tribo_band_half_solve_back : tribo_band_half_solve)(m->n, m->below, m->band, x);
+        tribo_band_half_solve(m->n, m->below, m->band, back, x);
     }
 }
