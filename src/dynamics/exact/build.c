@@ -26,34 +26,23 @@
 
 /* ------------------------------------------------------------------------------------------------------------------ memory */
 
-/* Arrays are many and short: a block holds several. The first block has BLOCK bytes, a size that allocators serve without a
- * search; each next block is at least twice as large as the block before, up to MOST_ROOM units. Longer arrays have their own. */
-#define BLOCK 992
-#define MOST_ROOM ((size_t)4096)
-
+/* An array. */
 struct modal_block {
     struct modal_block *next;
-    size_t used, room; /* units */
     union layout_unit unit[];
 };
 
 void *tribo_modal_take(struct modal_store *store, size_t count, size_t size)
 {
-    struct modal_block *block = store->last;
-    const size_t units = (count * size + sizeof *block->unit - 1) / sizeof *block->unit;
-    if (!block || block->room - block->used < units) {
-        const size_t twice = block ? 2 * block->room : BLOCK / sizeof *block->unit, least = twice < MOST_ROOM ? twice : MOST_ROOM;
-        const size_t room = units > least ? units : least;
-        struct modal_block *more = malloc(sizeof *more + room * sizeof *more->unit);
-        if (!more) {
-            return NULL;
-        }
-        *more = (struct modal_block){block, 0, room};
-        store->bytes += sizeof *more + room * sizeof *more->unit;
-        store->last = block = more;
+    struct modal_block *block = tribo_zeros(1, sizeof *block + count * size);
+    if (!block) {
+        store->failed = 1;
+        return NULL;
     }
-    block->used += units;
-    return memset(block->unit + block->used - units, 0, units * sizeof *block->unit);
+    store->bytes += sizeof *block + count * size;
+    block->next = store->last;
+    store->last = block;
+    return block->unit;
 }
 
 void tribo_modal_give_back(struct modal_store *store)
@@ -65,32 +54,6 @@ void tribo_modal_give_back(struct modal_store *store)
     }
 }
 
-int tribo_modal_keep_all(struct modal_build *b, size_t arrays, double **const *array, const size_t *count)
-{
-    for (size_t k = 0; k < arrays; k++) {
-        *array[k] = tribo_modal_take(&b->h->store, count[k], sizeof(double));
-        if (!*array[k]) {
-            return 0;
-        }
-    }
-    return 1;
-}
-
-size_t *tribo_modal_keep_indices(struct modal_build *b, size_t count)
-{
-    return tribo_modal_take(&b->h->store, count, sizeof(size_t));
-}
-
-double *tribo_modal_scratch(struct modal_build *b, size_t count)
-{
-    return tribo_modal_take(&b->scratch, count, sizeof(double));
-}
-
-size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count)
-{
-    return tribo_modal_take(&b->scratch, count, sizeof(size_t));
-}
-
 /* ------------------------------------------------------------------------------------------------- the contacts that hold */
 
 /* Sets key, rest, springs and ties. Returns 0 if out of memory, or on another failure, with b->status set. */
@@ -99,15 +62,15 @@ static int list_rest(struct modal_build *b, const unsigned char *holds)
     struct modal *h = b->h;
     tribo_system *sys = b->shared->sys;
     h->key = tribo_modal_take(&h->store, sys->ncontact, 1);
-    h->rest = tribo_modal_keep_indices(b, sys->ncontact);
-    for (size_t i = 0; h->key && h->rest && i < sys->ncontact; i++) {
+    h->rest = tribo_modal_take(&h->store, sys->ncontact, sizeof *h->rest);
+    for (size_t i = 0; !h->store.failed && i < sys->ncontact; i++) {
         const int compliant = tribo_is_compliant(&sys->compliance, i);
         h->key[i] = (signed char)((b->slip[i] == TRIBO_SLIP_STUCK) + holds[i]);
         h->rest[h->rests] = i;
         h->rests += holds[i] && !compliant;
         h->springs += holds[i] && compliant;
     }
-    if (!h->key || !h->rest || !tribo_constraints_create(&h->ties, &sys->direction, &sys->mass, h->rest, h->rests, NULL)) {
+    if (h->store.failed || !tribo_constraints_create(&h->ties, &sys->direction, &sys->mass, h->rest, h->rests, NULL)) {
         return 0;
     }
     if (h->ties.rank < h->rests) {
@@ -128,16 +91,17 @@ static int find_stiffness(struct modal_build *b)
         return 1;
     }
     const int whole = sys->compliance.g->matrix != NULL;
-    double *inverse = tribo_modal_scratch(b, whole ? c * c : c), *added = tribo_modal_scratch(b, n * n);
+    const size_t columns = whole ? c : 1;
+    double *added = tribo_modal_take(&b->scratch, n * n + columns * c, sizeof *added), *inverse = added ? added + n * n : NULL;
     struct matrix g = {0}, k = {0};
-    for (size_t i = 0; inverse && i < c; i++) {
+    if (!added) {
+        return 0;
+    }
+    for (size_t i = 0; i < c; i++) {
         inverse[whole ? i * c + i : i] = 1.0;
     }
-    if (inverse) {
-        tribo_compliance_solve(sys, b->slip, whole ? c : 1, inverse);
-    }
-    const int done = inverse && added &&
-                     (whole ? tribo_matrix_from_dense(&g, c, c, inverse) : tribo_matrix_diagonal(&g, c, inverse)) &&
+    tribo_compliance_solve(sys, b->slip, columns, inverse);
+    const int done = (whole ? tribo_matrix_from_dense(&g, c, c, inverse) : tribo_matrix_diagonal(&g, c, inverse)) &&
                      tribo_matrix_congruent(&g, &sys->direction, added) && tribo_matrix_from_dense(&k, n, n, added) &&
                      tribo_matrix_sum(&b->own_stiffness, 1.0, b->shared->stiffness, 1.0, &k);
     tribo_matrix_free(&g);
@@ -149,8 +113,8 @@ static int find_stiffness(struct modal_build *b)
 void tribo_modal_react(const struct modal *h, double *force, double *f, double *work)
 {
     memset(work, 0, h->modes * sizeof *work);
-    tribo_multiply_add(h->modes, h->n, 1, 1.0, h->phi, force, work);
-    tribo_multiply_add(h->n, h->modes, 1, -1.0, h->psi, work, force);
+    tribo_multiply_add(h->modes, h->n, 1, -1.0, h->phi, force, work);
+    tribo_multiply_transposed_add(h->modes, h->n, 1, h->psi, work, force);
     tribo_constraints_react(&h->ties, force, f);
 }
 
@@ -160,7 +124,7 @@ void tribo_modal_react(const struct modal *h, double *force, double *f, double *
 static int factorize_mass(struct modal_build *b, const struct matrix *z, struct cholesky *c)
 {
     const size_t m = z->cols;
-    double *mass = tribo_modal_scratch(b, m * m), pivot = 0.0;
+    double *mass = tribo_modal_take(&b->scratch, m * m, sizeof *mass), pivot = 0.0;
     struct matrix w = {0};
     size_t where = 0;
     int status = TRIBO_ERR_MEMORY;
@@ -193,6 +157,7 @@ static int build_modes_failed(const struct modal_build *b, int status, const str
     }
 }
 
+/* Sets modes, omega2, phi, psi, and damping to zeros. Returns 0 on failure, with b->status set unless out of memory. */
 static int find_modes(struct modal_build *b)
 {
     struct modal *h = b->h;
@@ -202,40 +167,26 @@ static int find_modes(struct modal_build *b)
     struct doubt doubt = {0};
     int status = h->rests == 0 || tribo_constraints_basis(&h->ties, h->n, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     const int held = z.rows > 0;
-    h->modes = held ? z.cols : h->n;
-    double **const kept[] = {&h->omega2, &h->damping, &h->phi, &h->psi};
-    const size_t count[] = {h->modes, h->modes, h->modes * h->n, h->modes * h->n};
-    status = status || tribo_modal_keep_all(b, 4, kept, count) ? status : TRIBO_ERR_MEMORY;
-    if (!status && h->modes > 0) {
-        status = held ? factorize_mass(b, &z, &own) : TRIBO_OK;
-        status = status ? status
-                        : build_modes_failed(b,
-                                             tribo_normal_modes(b->stiffness, sys->expansion.terms, &z,
-                                                                held ? &own : &sys->factor, h->modes, h->omega2, h->phi, &doubt),
-                                             &doubt);
+    const size_t n = h->n, m = h->modes = held ? z.cols : n;
+    h->omega2 = tribo_modal_take(&h->store, m * (2 + 2 * n), sizeof *h->omega2);
+    if (!status && h->omega2) {
+        h->damping = h->omega2 + m;
+        h->phi = h->damping + m;
+        h->psi = h->phi + m * n;
+        status = held && m > 0 ? factorize_mass(b, &z, &own) : TRIBO_OK;
+    }
+    if (!status && h->omega2 && m > 0) {
+        status =
+            tribo_normal_modes(b->stiffness, sys->expansion.terms, &z, held ? &own : &sys->factor, m, h->omega2, h->phi, &doubt);
+        status = build_modes_failed(b, status, &doubt);
+    }
+    for (size_t k = 0; !status && h->omega2 && k < m; k++) {
+        tribo_system_add_mass(sys, 1.0, h->phi + k * n, h->psi + k * n);
     }
     tribo_matrix_free(&z);
     tribo_cholesky_free(&own);
     b->status = status;
-    return !status;
-}
-
-/* Sets psi = M phi and c_phi = C phi. Returns 0 if out of memory. */
-static int multiply_modes(struct modal_build *b)
-{
-    const size_t n = b->h->n, m = b->h->modes;
-    double *psi = tribo_modal_scratch(b, m * n);
-    b->c_phi = tribo_modal_scratch(b, b->shared->damping ? m * n : 0);
-    for (size_t k = 0; psi && b->c_phi && k < m; k++) {
-        tribo_system_add_mass(b->shared->sys, 1.0, b->h->phi + k * n, psi + k * n);
-        if (b->shared->damping) {
-            tribo_matrix_multiply_add(b->shared->damping, 1.0, b->h->phi + k * n, b->c_phi + k * n);
-        }
-    }
-    if (psi) {
-        tribo_transpose(m, n, psi, b->h->psi);
-    }
-    return psi && b->c_phi;
+    return !status && h->omega2;
 }
 
 /* Returns 1 if some c_kl, k != l, of c = C~ [modes][modes] is neither negligible beside c_kk and c_ll nor rounding of C or of the
@@ -269,16 +220,18 @@ static int find_damping(struct modal_build *b)
     struct modal *h = b->h;
     const struct matrix *damping = b->shared->damping;
     const size_t n = h->n, m = h->modes;
-    double *c = damping ? tribo_modal_scratch(b, m * m + 2 * n) : NULL, *root = c ? c + m * m : NULL, most = 0.0;
+    double *c = damping ? tribo_modal_take(&b->scratch, m * m + 2 * n, sizeof *c) : NULL, *root = c ? c + m * m : NULL,
+           most = 0.0;
     h->drifts = tribo_modal_take(&h->store, m, 1);
     if (!h->drifts || (damping && !c)) {
         return 0;
     }
-    for (size_t k = 0; c && k < m; k++) {
-        for (size_t l = 0; l < m; l++) {
-            c[k * m + l] = tribo_dot(h->phi + k * n, b->c_phi + l * n, n);
+    for (size_t l = 0; c && l < m; l++) {
+        tribo_matrix_multiply(damping, h->phi + l * n, root);
+        for (size_t k = 0; k < m; k++) {
+            c[k * m + l] = tribo_dot(h->phi + k * n, root, n);
         }
-        most = greater(most, fabs(c[k * m + k]));
+        most = greater(most, fabs(c[l * m + l]));
     }
     if (c) {
         tribo_matrix_roots(damping, NULL, root);
@@ -303,7 +256,7 @@ static int find_damping(struct modal_build *b)
 
 int tribo_modal_reserve_effects(struct modal_build *b)
 {
-    b->work = tribo_modal_scratch(b, 2 * b->shared->sys->ncontact + b->h->n + b->h->rests + b->h->modes);
+    b->work = tribo_modal_take(&b->scratch, 2 * b->shared->sys->ncontact + b->h->n + b->h->rests + b->h->modes, sizeof *b->work);
     return b->work != NULL;
 }
 
@@ -365,14 +318,16 @@ static int find_effects(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t m = h->modes, c = b->shared->sys->ncontact;
-    double **const kept[] = {&h->on, &h->by_u};
-    const size_t count[] = {m * c, m * c};
-    const int done = tribo_modal_reserve_effects(b) && tribo_modal_keep_all(b, b->shared->damping ? 2 : 1, kept, count);
-    for (size_t k = 0; done && k < m; k++) {
+    h->on = tribo_modal_take(&h->store, (b->shared->damping ? 2 : 1) * m * c, sizeof *h->on);
+    if (!h->on || !tribo_modal_reserve_effects(b)) {
+        return 0;
+    }
+    h->by_u = b->shared->damping ? h->on + m * c : NULL;
+    for (size_t k = 0; k < m; k++) {
         const struct effects to = {h->on + k, h->by_u ? h->by_u + k : NULL, m};
         tribo_modal_effects(b, h->phi + k * h->n, h->omega2[k], NULL, &to);
     }
-    return done;
+    return 1;
 }
 
 int tribo_modal_create(struct modal **modal, const struct modal_shared *shared, const signed char *slip,
@@ -384,8 +339,7 @@ int tribo_modal_create(struct modal **modal, const struct modal_shared *shared, 
     if (b.h) {
         b.h->store = store;
         b.h->n = shared->sys->ndof;
-        status = list_rest(&b, holds) && find_stiffness(&b) && find_modes(&b) && multiply_modes(&b) && find_damping(&b) &&
-                         find_effects(&b)
+        status = list_rest(&b, holds) && find_stiffness(&b) && find_modes(&b) && find_damping(&b) && find_effects(&b)
                      ? tribo_modal_exponents(&b)
                  : b.status ? b.status
                             : status;

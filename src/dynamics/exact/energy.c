@@ -3,7 +3,7 @@
  * part of a force by harmonics of the limit is integrated with the velocity, a sum of exponentials (signal.h). If a large limit
  * swings through zero, these parts cancel each other: then the power, of one sign, is integrated by samples; so it is if a load
  * resonates. */
-#include "terms.h"
+#include "motion.h"
 #include "common/real.h"
 
 #include <math.h>
@@ -16,34 +16,33 @@
 
 /* Sets *work = integral over [0, tau] of the part of the limit of contact c by harmonics times the velocity, closed; *size = an
  * estimate of the sizes of its parts and of the work of the steady force. Returns the largest |lambda| or Omega of the terms. */
-static double closed_work(struct modal_motion *x, const struct course *c, double tau, double *work, double *size)
+static double closed_work(struct exact *x, const struct course *c, double tau, double *work, double *size)
 {
     const struct forced *h = x->h;
     const struct output *v = c->output;
-    const size_t i = v->contact;
+    const size_t i = v->contact, e = h->modal->exponents;
     double velocity = fabs(c->line.start) + fabs(c->line.ramp) * tau, limits = fabs(x->steady[i]), fastest = 0.0;
-    tribo_signal_reserve(&x->velocity, h->exponents + h->harmonics, 1); /* cannot fail: tribo_modal_motion_start has made room */
+    tribo_signal_reserve(&x->velocity, e + h->harmonics, 1); /* cannot fail: tribo_modal_motion_start has made room */
     x->velocity.tau = tau;
     x->velocity.a[0] = c->line.start;
     x->velocity.a[1] = c->line.ramp;
-    for (size_t p = 0; p < h->exponents + h->harmonics; p++) {
-        const struct number z = tribo_term_at_start(x, p);
+    for (size_t p = 0; p < e + h->harmonics; p++) {
+        const double re = x->z.re[p], im = x->z.im[p];
         if (v->size[p] > 0.0) {
-            tribo_signal_add(&x->velocity, v->cr[p] * z.re - v->ci[p] * z.im, v->cr[p] * z.im + v->ci[p] * z.re, h->lr[p],
-                             h->li[p]);
+            tribo_signal_add(&x->velocity, v->cr[p] * re - v->ci[p] * im, v->cr[p] * im + v->ci[p] * re, h->lr[p], h->li[p]);
         }
-        velocity += v->size[p] * (fabs(z.re) + fabs(z.im));
-        fastest = greater(fastest, v->size[p] > 0.0 || p >= h->exponents ? h->size[p] : 0.0);
+        velocity += v->size[p] * (fabs(re) + fabs(im));
+        fastest = greater(fastest, v->size[p] > 0.0 || p >= e ? h->size[p] : 0.0);
     }
     *work = 0.0;
-    for (size_t s = 0; s < h->given; s++) {
+    for (size_t s = 0; s < x->sys->loads.harmonics; s++) {
         const struct harmonic *w = &x->sys->loads.harmonic[s];
-        const struct number z = tribo_harmonic_at_start(x, s);
+        const double cosine = x->z.re[e + s], sine = x->z.im[e + s];
         double re = 0.0, im = 0.0;
         limits += w->drives == DRIVES_LIMIT ? fabs(w->cosine[i]) + fabs(w->sine[i]) : 0.0;
         if (w->drives == DRIVES_LIMIT && w->omega != 0.0 && (w->cosine[i] != 0.0 || w->sine[i] != 0.0)) {
             tribo_signal_integrate(&x->velocity, -w->omega, &re, &im);
-            *work += w->cosine[i] * (z.re * re - z.im * im) + w->sine[i] * (z.im * re + z.re * im);
+            *work += w->cosine[i] * (cosine * re - sine * im) + w->sine[i] * (sine * re + cosine * im);
         }
     }
     *size = tau * limits * velocity;
@@ -52,7 +51,7 @@ static double closed_work(struct modal_motion *x, const struct course *c, double
 
 /* Returns the work of the contact by Gauss's rule with 8 points in each interval. The caller chooses intervals in which no term
  * turns by more than 1 rad. Goes through the phase and back to tau. */
-static double sampled_work(struct modal_motion *x, const struct course *course, double tau, size_t intervals)
+static double sampled_work(struct exact *x, const struct course *course, double tau, size_t intervals)
 {
     static const double at[] = {0.18343464249564980, 0.52553240991632899, 0.79666647741362674, 0.96028985649753623},
                         weight[] = {0.36268378337836198, 0.31370664587788729, 0.22238103445337447, 0.10122853629037626};
@@ -65,32 +64,44 @@ static double sampled_work(struct modal_motion *x, const struct course *course, 
         tribo_modal_motion_go(x, half * ((double)(2 * (k / 8) + 1) + (point % 2 ? at[point / 2] : -at[point / 2])));
         tribo_course_look(x, &c);
         const double limit = x->sys->loads.given_limit[i] + tribo_modal_motion_limit(x, i).g;
-        work += weight[point / 2] * greater(limit, 0.0) * greater(x->contacts->state.slip[i] * c.at.g, 0.0);
+        work += weight[point / 2] * greater(limit, 0.0) * greater(x->events.stick_slip.state.slip[i] * c.at.g, 0.0);
     }
     tribo_modal_motion_go(x, tau);
     return half * work;
 }
 
-double tribo_modal_motion_work(struct modal_motion *x, const struct course *c, double tau)
+/* Returns the energy that the contact of course c, which slides, dissipates until tau, its force counted once. */
+static double work_of(struct exact *x, const struct course *c, double tau)
 {
     const size_t i = c->output->contact;
+    const signed char slip = x->events.stick_slip.state.slip[i];
     const double steady = -x->steady[i] * tribo_dot(c->output->on_rate, x->place, x->h->shapes);
-    if (!x->sys->loads.limit_harmonics || !tribo_slides(x->contacts->state.slip[i])) {
+    if (!x->sys->loads.limit_harmonics || !tribo_slides(slip)) {
         return steady;
     }
     double closed, size;
     const double intervals = ceil(closed_work(x, c, tau, &closed, &size) * tau) + 1.0;
-    const double work = steady + x->contacts->state.slip[i] * closed;
-    const int samples = x->h->any_resonant || (fabs(work) < CANCELS * size && 8.0 * intervals <= MOST_SAMPLES);
+    const double work = steady + slip * closed;
+    const int samples = x->h->resonant || (fabs(work) < CANCELS * size && 8.0 * intervals <= MOST_SAMPLES);
     return samples ? sampled_work(x, c, tau, (size_t)intervals) : work;
 }
 
-double tribo_modal_motion_dissipated(struct modal_motion *x, double tau)
+double tribo_modal_motion_work(void *own, size_t i, double tau)
+{
+    struct exact *x = own;
+    const struct course *c = x->course;
+    while (c->output->contact != i) {
+        c++;
+    }
+    return work_of(x, c, tau);
+}
+
+double tribo_modal_motion_dissipated(struct exact *x, double tau)
 {
     double energy = 0.0;
     for (size_t o = 0; o < x->h->sliding; o++) {
         const size_t i = x->course[o].output->contact;
-        energy += x->contacts->state.slip[i] ? x->sys->tally[i] * tribo_modal_motion_work(x, &x->course[o], tau) : 0.0;
+        energy += x->events.stick_slip.state.slip[i] ? x->sys->tally[i] * work_of(x, &x->course[o], tau) : 0.0;
     }
     return energy;
 }

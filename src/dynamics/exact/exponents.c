@@ -5,7 +5,6 @@
 #include "numerics/lapack.h"
 #include "numerics/linalg.h"
 
-#include <complex.h>
 #include <math.h>
 #include <string.h>
 
@@ -26,13 +25,17 @@ static int exponents_unsupported(const struct modal_build *b, const char *why)
 static int exponents_decoupled(struct modal_build *b)
 {
     struct modal *h = b->h;
-    const size_t m = h->modes;
-    double **const kept[] = {&h->lr, &h->li, &h->ar, &h->ai, &h->br, &h->bi};
-    const size_t count[] = {2 * m, 2 * m, 2 * m, 2 * m, 2 * m, 2 * m};
-    h->owner = tribo_modal_keep_indices(b, 2 * m);
-    if (!tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count) || !h->owner) {
+    const size_t m = h->modes, most = 2 * m;
+    h->owner = tribo_modal_take(&h->store, most, sizeof *h->owner);
+    h->lr = tribo_modal_take(&h->store, 6 * most, sizeof *h->lr);
+    if (h->store.failed) {
         return TRIBO_ERR_MEMORY;
     }
+    h->li = h->lr + most;
+    h->ar = h->li + most;
+    h->ai = h->ar + most;
+    h->br = h->ai + most;
+    h->bi = h->br + most;
     size_t p = 0;
     for (size_t k = 0; k < m; k++) {
         const double half = 0.5 * h->damping[k], square = h->omega2[k] - half * half, root = sqrt(fabs(square));
@@ -63,80 +66,107 @@ static int exponents_decoupled(struct modal_build *b)
     return TRIBO_OK;
 }
 
-/* Returns 1 if |A x - lambda x| < KNOWN |lambda| for all eigenvectors x, |x| = 1, see linalg.h. */
-static int all_known(const struct modal *h, const double *s, const double *re, const double *im, const double *x)
+/* Makes room for e exponents of coupled modes. Returns 0 if out of memory. */
+static int reserve_coupled(struct modal *h, size_t e)
 {
-    const size_t m = h->modes, size = 2 * m;
-    for (size_t i = 0; i < size; i++) {
-        const int parts = im[i] != 0.0 ? 2 : 1;
-        double square = 0.0;
-        for (int part = 0; part < parts && !(im[i] < 0.0); part++) {
-            const double *own = x + (i + (size_t)part) * size, *other = parts > 1 ? x + (i + 1 - (size_t)part) * size : own;
-            const double turn = part ? im[i] : -im[i];
-            for (size_t k = 0; k < m; k++) {
-                const double up = s[k] * own[m + k] - re[i] * own[k] - turn * other[k];
-                const double down =
-                    -s[k] * own[k] - tribo_dot(h->coupling + k * m, own + m, m) - re[i] * own[m + k] - turn * other[m + k];
-                square += up * up + down * down;
-            }
-        }
-        if (!(sqrt(square) < KNOWN * hypot(re[i], im[i]))) {
-            return 0;
-        }
+    h->exponents = e;
+    h->lr = tribo_modal_take(&h->store, e * (2 + 6 * h->modes), sizeof *h->lr);
+    if (h->lr) {
+        h->li = h->lr + e;
+        h->ar = h->li + e;
+        h->ai = h->ar + e * h->modes;
+        h->br = h->ai + e * h->modes;
+        h->bi = h->br + e * h->modes;
+        h->rr = h->bi + e * h->modes;
+        h->ri = h->rr + e * h->modes;
     }
-    return 1;
+    return h->lr != NULL;
 }
 
-/* Sets lr, li, b (eta' to z) and r (z to eta) from eigenvectors x (see linalg.h) and inverse, of the matrix with eigenvectors as
- * columns. Returns a status. */
-static int keep_exponents(struct modal_build *b, const double *s, const double *re, const double *im, const double *x,
-                          const double *inverse)
+/* Sets exponent p, with b and r of mode k, and a = -b omega^2/lambda, since b is a left eigenvector. */
+static void keep_coupled(struct modal *h, size_t p, size_t k, double complex lambda, double complex b, double complex r)
+{
+    const size_t at = k * h->exponents + p;
+    const double complex a = -h->omega2[k] * b / lambda;
+    h->lr[p] = creal(lambda);
+    h->li[p] = cimag(lambda);
+    h->ar[at] = creal(a);
+    h->ai[at] = cimag(a);
+    h->br[at] = creal(b);
+    h->bi[at] = cimag(b);
+    h->rr[p * h->modes + k] = creal(r);
+    h->ri[p * h->modes + k] = -cimag(r);
+}
+
+/* Returns 1 if |A x - lambda x| < KNOWN |lambda| for the eigenvector x = v + i w, |x| = 1, of exponents_coupled. */
+static int is_known(const struct modal *h, const double *s, double complex lambda, const double *v, const double *w)
+{
+    const size_t m = h->modes;
+    double square = 0.0;
+    for (size_t k = 0; k < m; k++) {
+        const double *c = h->coupling + k * m;
+        const double complex place = v[k] + w[k] * I, rate = v[m + k] + w[m + k] * I;
+        const double complex up = s[k] * rate - lambda * place;
+        const double complex down = s[k] * place + tribo_dot(c, v + m, m) + tribo_dot(c, w + m, m) * I + lambda * rate;
+        square += creal(up * conj(up) + down * conj(down));
+    }
+    return sqrt(square) < KNOWN * cabs(lambda);
+}
+
+/* All eigenvectors by QR, the left ones as the inverse of the right ones. */
+static int exponents_coupled(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t m = h->modes, size = 2 * m;
-    for (size_t i = 0; i < size; i++) {
-        h->exponents += !(im[i] < 0.0);
+    double *a = tribo_modal_take(&b->scratch, 3 * size * size + 7 * m, sizeof *a);
+    int *pivot = tribo_modal_take(&b->scratch, size, sizeof *pivot);
+    if (!a || !pivot) {
+        return TRIBO_ERR_MEMORY;
     }
-    const size_t e = h->exponents;
-    double **const kept[] = {&h->lr, &h->li, &h->br, &h->bi, &h->rr, &h->ri};
-    const size_t count[] = {e, e, e * m, e * m, e * m, e * m};
-    const int done = tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count);
-    for (size_t i = 0, p = 0; done && i < size; i++) {
-        if (im[i] < 0.0) {
-            continue;
+    double *x = a + size * size, *inverse = x + size * size, *s = inverse + size * size, *re = s + m, *im = re + size;
+    const double *zero = im + size;
+    size_t exponents = 0;
+    for (size_t k = 0; k < m; k++) {
+        if (!(h->omega2[k] > 0.0)) {
+            return exponents_unsupported(b, "coupled damping, and a mode without stiffness");
         }
-        const int pair = im[i] > 0.0;
-        const double half = pair ? 0.5 : 1.0, twice = pair ? 2.0 : 1.0;
-        h->lr[p] = re[i];
-        h->li[p] = im[i];
-        for (size_t k = 0; k < m; k++) {
-            /* x = (v + i w) z + conjugate = 2 (v Re z - w Im z) */
-            h->br[k * e + p] = half * inverse[i * size + m + k];
-            h->rr[p * m + k] = twice * x[i * size + k] / s[k];
-            if (pair) {
-                h->bi[k * e + p] = -half * inverse[(i + 1) * size + m + k];
-                h->ri[p * m + k] = twice * x[(i + 1) * size + k] / s[k];
-            }
-        }
-        p++;
+        s[k] = sqrt(h->omega2[k]);
+        /* a = A of x' = A x, x = (s eta, eta'), s = omega */
+        a[k * size + m + k] = s[k];
+        a[(m + k) * size + k] = -s[k];
+        tribo_add(a + (m + k) * size + m, -1.0, h->coupling + k * m, m);
     }
-    return done ? TRIBO_OK : TRIBO_ERR_MEMORY;
-}
-
-/* inverse, zero before, = inverse of the matrix with the vectors x as columns. Returns a status. */
-static int invert(const struct modal_build *b, const double *x, double *lu, int *pivot, double *inverse)
-{
-    const size_t size = 2 * b->h->modes;
-    for (size_t i = 0; i < size; i++) {
-        for (size_t j = 0; j < size; j++) {
-            lu[i * size + j] = x[j * size + i];
-        }
-        inverse[i * size + i] = 1.0;
+    const int status = tribo_eigen(a, size, re, im, x);
+    if (status == TRIBO_ERR_NO_CONVERGENCE || status == TRIBO_ERR_NOT_FINITE) {
+        return tribo_system_fail(b->shared->sys, status, "method exact: exponents of %zu mode%s that damping couples: %s", m,
+                                 plural(m), tribo_strerror(status));
     }
-    if (!(tribo_lu_create(lu, size, pivot) >= ALIKE)) {
+    tribo_transpose(size, size, x, a);
+    for (size_t i = 0; !status && i < size; i++) {
+        inverse[i * (size + 1)] = 1.0;
+        exponents += !(im[i] < 0.0);
+    }
+    if (status || !reserve_coupled(h, exponents)) {
+        return TRIBO_ERR_MEMORY;
+    }
+    if (!(tribo_lu_create(a, size, pivot) >= ALIKE)) {
         return exponents_unsupported(b, "two modes have nearly the same exponent and shape");
     }
-    tribo_lu_solve(lu, size, pivot, inverse, size);
+    tribo_lu_solve(a, size, pivot, inverse, size);
+    for (size_t i = 0, p = 0; i < size; i++) {
+        const int pair = im[i] > 0.0;
+        const double complex lambda = re[i] + im[i] * I;
+        const double *v = x + i * size, *w = pair ? v + size : zero, *y = inverse + i * size, *z = pair ? y + size : zero;
+        if (!(im[i] < 0.0) && !is_known(h, s, lambda, v, w)) {
+            return exponents_unsupported(b, "damping couples modes of too different frequencies");
+        }
+        /* x = (v + i w) z + conjugate = 2 (v Re z - w Im z) */
+        const double half = pair ? 0.5 : 1.0;
+        for (size_t k = 0; !(im[i] < 0.0) && k < m; k++) {
+            keep_coupled(h, p, k, lambda, half * (y[m + k] - z[m + k] * I), (v[k] + w[k] * I) / (half * s[k]));
+        }
+        p += !(im[i] < 0.0);
+    }
     return TRIBO_OK;
 }
 
@@ -168,189 +198,118 @@ enum { NEAR_MOST = 24, STEPS = 40 };
 /* Largest error of the sums over all modes, sum 2 Re lambda u u'w/d = w and sum 2 Re u u'w/d = 0. */
 #define COMPLETE 1e-11
 
-/* Eigenvectors in work: rows 2 i and 2 i + 1 of u and cu are u and C~ u of mode[i], real and imaginary part. */
+/* The eigenvector of mode k. */
 struct weak {
-    const struct modal *h;
-    size_t *mode;           /* [modes] those that are not final first */
-    double complex *lambda; /* [modes] by mode */
-    double *change;         /* [modes] by mode */
-    double *u, *cu;         /* [2 modes][modes] */
-    double complex *near;   /* [NEAR_MOST][NEAR_MOST] columns, and the right-hand side [NEAR_MOST] */
+    struct modal *h;
+    size_t k;
+    double complex lambda;
+    double *u, *cu;       /* [2][modes] u and C~ u, real and imaginary part */
+    double complex *near; /* [NEAR_MOST][NEAR_MOST] columns, and the right-hand side [NEAR_MOST] */
+    double *sum, *w;      /* [2][modes] the sums of COMPLETE; [modes] w without zeros */
 };
 
-/* Sets lambda of modes without coupling. Returns 0 if a mode is not weakly damped, or C~ is not symmetric. */
-static int weak_begin(struct weak *x)
+/* Returns 1 if all modes are weakly damped, and C~ is symmetric. */
+static int is_weak(const struct modal *h)
 {
-    const struct modal *h = x->h;
     const size_t m = h->modes;
     for (size_t k = 0; k < m; k++) {
-        const double half = 0.5 * h->coupling[k * m + k], square = h->omega2[k] - half * half;
-        if (!(fabs(half) < WEAK * sqrt(h->omega2[k]))) {
+        const double own = h->coupling[k * m + k];
+        if (!(fabs(0.5 * own) < WEAK * sqrt(h->omega2[k]))) {
             return 0;
         }
         for (size_t l = 0; l < k; l++) {
             const double there = h->coupling[k * m + l], back = h->coupling[l * m + k];
-            if (!(fabs(there - back) <= ASYMMETRY * sqrt(fabs(half * h->coupling[l * m + l])))) {
+            if (!(fabs(there - back) <= ASYMMETRY * sqrt(fabs(0.5 * own * h->coupling[l * m + l])))) {
                 return 0;
             }
         }
-        x->mode[k] = k;
-        x->lambda[k] = -half + (double complex)_Complex_I * sqrt(square);
-        x->change[k] = HUGE_VAL;
-        x->u[2 * k * m + k] = 1.0;
     }
     return 1;
 }
 
-/* Solves the step of the near modes, at[count], column `own` for the exponent. Returns 0 if there is none. */
-static int weak_solve_near(struct weak *x, size_t i, size_t count, const size_t *at, size_t own)
+/* One step of lambda and u, with C~ u in cu. Returns the size of the change, HUGE_VAL on failure. */
+static double weak_step(struct weak *x)
 {
     const struct modal *h = x->h;
     const size_t m = h->modes;
-    const double *re = x->u + 2 * i * m, *im = re + m, *cr = x->cu + 2 * i * m, *ci = cr + m;
-    const double complex lambda = x->lambda[x->mode[i]];
+    double *re = x->u, *im = re + m;
+    const double *cr = x->cu, *ci = cr + m;
+    const double complex lambda = x->lambda, square = lambda * lambda;
     double complex *right = x->near + NEAR_MOST * NEAR_MOST;
-    for (size_t a = 0; a < count; a++) {
-        const size_t j = at[a];
-        const double complex u = re[j] + im[j] * (double complex)_Complex_I, cu = cr[j] + ci[j] * (double complex)_Complex_I;
-        right[a] = -((lambda * lambda + h->omega2[j]) * u + lambda * cu);
-        for (size_t b = 0; b < count; b++) {
-            x->near[b * count + a] = b == own
-                                         ? 2.0 * lambda * u + cu
-                                         : lambda * h->coupling[j * m + at[b]] + (a == b ? lambda * lambda + h->omega2[j] : 0.0);
-        }
-    }
-    int rows = (int)count, one = 1, pivot[NEAR_MOST], info = 0;
-    zgesv_(&rows, &one, x->near, &rows, pivot, right, &rows, &info);
-    return info == 0;
-}
-
-/* One step of the eigenvector in rows 2 i and 2 i + 1. Sets change. Returns 0 on failure. */
-static int weak_step(struct weak *x, size_t i)
-{
-    const struct modal *h = x->h;
-    const size_t m = h->modes, k = x->mode[i];
-    double *re = x->u + 2 * i * m, *im = re + m;
-    const double *cr = x->cu + 2 * i * m, *ci = cr + m;
-    const double complex lambda = x->lambda[k], square = lambda * lambda;
-    const double size = cabs(lambda);
     size_t at[NEAR_MOST], count = 0, own = 0;
+    const double size = cabs(lambda);
     double most = 0.0;
     for (size_t j = 0; j < m; j++) {
         const double c = h->coupling[j * m + j];
         const double complex stiff = square + h->omega2[j], divisor = stiff + lambda * c;
-        if (j == k || size * fabs(c) > NEAR * (fabs(creal(divisor)) + fabs(cimag(divisor)))) {
-            if (count == NEAR_MOST) {
-                return 0;
-            }
-            own = j == k ? count : own;
-            at[count++] = j;
+        const double complex rest = stiff * (re[j] + im[j] * I) + lambda * (cr[j] + ci[j] * I), by = rest / divisor;
+        if (j != x->k && size * fabs(c) <= NEAR * (fabs(creal(divisor)) + fabs(cimag(divisor)))) {
+            re[j] -= creal(by);
+            im[j] -= cimag(by);
+            most = greater(most, fabs(creal(by)) + fabs(cimag(by)));
             continue;
         }
-        const double complex u = re[j] + im[j] * (double complex)_Complex_I;
-        const double complex by = (stiff * u + lambda * (cr[j] + ci[j] * (double complex)_Complex_I)) / divisor;
-        re[j] -= creal(by);
-        im[j] -= cimag(by);
-        most = greater(most, fabs(creal(by)) + fabs(cimag(by)));
+        if (count == NEAR_MOST) {
+            return HUGE_VAL;
+        }
+        own = j == x->k ? count : own;
+        right[count] = -rest;
+        at[count++] = j;
     }
-    if (!weak_solve_near(x, i, count, at, own)) {
+    for (size_t a = 0; a < count; a++) {
+        const size_t j = at[a];
+        for (size_t b = 0; b < count; b++) {
+            x->near[b * count + a] = b == own ? 2.0 * lambda * (re[j] + im[j] * I) + (cr[j] + ci[j] * I)
+                                              : lambda * h->coupling[j * m + at[b]] + (a == b ? square + h->omega2[j] : 0.0);
+        }
+    }
+    int rows = (int)count, one = 1, pivot[NEAR_MOST], info = 0;
+    zgesv_(&rows, &one, x->near, &rows, pivot, right, &rows, &info);
+    for (size_t a = 0; a < count; a++) {
+        re[at[a]] += a == own ? 0.0 : creal(right[a]);
+        im[at[a]] += a == own ? 0.0 : cimag(right[a]);
+        most = greater(most, cabs(right[a]) / (a == own ? size : 1.0));
+    }
+    x->lambda += right[own];
+    return info == 0 && most < 1e3 ? most : HUGE_VAL;
+}
+
+/* Finds the eigenvector of mode k, keeps it, and adds to the sums. Returns 0 if it does not converge, or is close to another. */
+static int weak_find(struct weak *x, size_t k)
+{
+    struct modal *h = x->h;
+    const size_t m = h->modes;
+    const double half = 0.5 * h->coupling[k * m + k], *re = x->u, *im = re + m, *cr = x->cu, *ci = cr + m;
+    double before, change = HUGE_VAL, size = 0.0;
+    double complex d = 0.0, part = 0.0;
+    int step = 0;
+    memset(x->u, 0, 2 * m * sizeof *x->u);
+    x->u[k] = 1.0;
+    x->k = k;
+    x->lambda = -half + sqrt(h->omega2[k] - half * half) * I;
+    do {
+        before = change;
+        memset(x->cu, 0, 2 * m * sizeof *x->cu);
+        tribo_multiply_add(2, m, m, 1.0, x->u, h->coupling, x->cu);
+        change = weak_step(x);
+    } while (change > FINAL && !(change <= STILL && change >= 0.5 * before) && change < HUGE_VAL && ++step < STEPS);
+    for (size_t j = 0; j < m; j++) {
+        const double complex u = re[j] + im[j] * I;
+        size += re[j] * re[j] + im[j] * im[j];
+        d += u * (2.0 * x->lambda * u + (cr[j] + ci[j] * I));
+        part += u * x->w[j];
+    }
+    if (!(change < HUGE_VAL) || step == STEPS || !(cabs(d) >= APART * cabs(2.0 * x->lambda) * size) ||
+        !(cimag(x->lambda) > 0.0)) {
         return 0;
     }
-    const double complex *by = x->near + NEAR_MOST * NEAR_MOST;
-    for (size_t a = 0; a < count; a++) {
-        if (a == own) {
-            x->lambda[k] += by[a];
-            most = greater(most, cabs(by[a]) / size);
-        } else {
-            re[at[a]] += creal(by[a]);
-            im[at[a]] += cimag(by[a]);
-            most = greater(most, cabs(by[a]));
-        }
+    for (size_t j = 0; j < m; j++) {
+        const double complex u = re[j] + im[j] * I, sum = 2.0 * u * part / d;
+        keep_coupled(h, k, j, x->lambda, u / d, 2.0 * u);
+        x->sum[j] += creal(sum);
+        x->sum[m + j] += creal(x->lambda * sum);
     }
-    const double before = x->change[k];
-    x->change[k] = most <= FINAL || (most <= STILL && most >= 0.5 * before) ? 0.0 : most;
-    return most < 1e3;
-}
-
-/* Exchanges eigenvectors i and j, in mode, u and cu. */
-static void weak_exchange(struct weak *x, size_t i, size_t j)
-{
-    const size_t m = x->h->modes, mode = x->mode[i];
-    x->mode[i] = x->mode[j];
-    x->mode[j] = mode;
-    for (size_t e = 0; e < 2 * m; e++) {
-        const double u = x->u[2 * i * m + e], cu = x->cu[2 * i * m + e];
-        x->u[2 * i * m + e] = x->u[2 * j * m + e];
-        x->cu[2 * i * m + e] = x->cu[2 * j * m + e];
-        x->u[2 * j * m + e] = u;
-        x->cu[2 * j * m + e] = cu;
-    }
-}
-
-/* Sets lambda, u and cu. Returns 0 if an eigenvector does not converge. */
-static int weak_find(struct weak *x)
-{
-    const size_t m = x->h->modes;
-    size_t open = m;
-    for (int step = 0; step < STEPS && open > 0; step++) {
-        memset(x->cu, 0, 2 * open * m * sizeof *x->cu);
-        tribo_multiply_add(2 * open, m, m, 1.0, x->u, x->h->coupling, x->cu);
-        for (size_t i = open; i-- > 0;) {
-            if (!weak_step(x, i)) {
-                return 0;
-            }
-            if (x->change[x->mode[i]] == 0.0) {
-                weak_exchange(x, i, --open);
-            }
-        }
-    }
-    return open == 0;
-}
-
-/* Returns x'y, x = re + i im, of y = yr + i yi, without conjugate; yi NULL: 0. */
-static double complex weak_dot(size_t n, const double *re, const double *yr, const double *yi)
-{
-    const double *im = re + n;
-    const double real = tribo_dot(re, yr, n) - (yi ? tribo_dot(im, yi, n) : 0.0);
-    return real + (double complex)_Complex_I * (tribo_dot(im, yr, n) + (yi ? tribo_dot(re, yi, n) : 0.0));
-}
-
-/* Sets the kept arrays from lambda and u. Returns 0 if an eigenvector is close to another one, or one is missing: the sums of
- * COMPLETE then lack a part of a w without zeros. sum [3 modes] is workspace. */
-static int weak_keep(struct weak *x, struct modal *h, double *sum)
-{
-    const size_t m = h->modes;
-    double *w = sum + 2 * m, most = 0.0;
-    memset(sum, 0, 2 * m * sizeof *sum);
-    for (size_t k = 0; k < m; k++) {
-        w[k] = 1.0 + cos((double)((k + 1) * (k + 1)));
-    }
-    for (size_t i = 0; i < m; i++) {
-        const size_t p = x->mode[i];
-        const double *re = x->u + 2 * i * m, *im = re + m;
-        const double complex lambda = x->lambda[p], twice = 2.0 * lambda;
-        const double square = tribo_dot(re, re, m) + tribo_dot(im, im, m);
-        const double complex d = twice * weak_dot(m, re, re, im) + weak_dot(m, re, x->cu + 2 * i * m, x->cu + (2 * i + 1) * m);
-        const double complex part = weak_dot(m, re, w, NULL) / d;
-        if (!(cabs(d) >= APART * cabs(twice) * square) || !(cimag(lambda) > 0.0)) {
-            return 0;
-        }
-        h->lr[p] = creal(lambda);
-        h->li[p] = cimag(lambda);
-        for (size_t k = 0; k < m; k++) {
-            const double complex u = re[k] + im[k] * (double complex)_Complex_I, b = u / d;
-            h->br[k * m + p] = creal(b);
-            h->bi[k * m + p] = cimag(b);
-            h->rr[p * m + k] = 2.0 * re[k];
-            h->ri[p * m + k] = 2.0 * im[k];
-            sum[k] += 2.0 * creal(u * part);
-            sum[m + k] += 2.0 * creal(lambda * u * part);
-        }
-    }
-    for (size_t k = 0; k < m; k++) {
-        most = greater(most, greater(fabs(sum[k]) * sqrt(h->omega2[k]), fabs(sum[m + k] - w[k])));
-    }
-    return most <= COMPLETE * (double)m;
+    return 1;
 }
 
 /* Sets the exponents of weakly coupled modes; *found = 0 if the modes are not. Returns a status. */
@@ -358,62 +317,26 @@ static int exponents_weak(struct modal_build *b, int *found)
 {
     struct modal *h = b->h;
     const size_t m = h->modes;
-    struct weak x = {.h = h};
-    x.mode = tribo_modal_scratch_indices(b, m);
-    x.lambda = (double complex *)tribo_modal_scratch(b, 2 * (m + (NEAR_MOST + 1) * NEAR_MOST));
-    x.change = tribo_modal_scratch(b, 4 * m);
-    x.u = tribo_modal_scratch(b, 2 * m * m);
-    x.cu = tribo_modal_scratch(b, 2 * m * m);
-    double **const kept[] = {&h->lr, &h->li, &h->br, &h->bi, &h->rr, &h->ri};
-    const size_t count[] = {m, m, m * m, m * m, m * m, m * m};
-    if (!x.mode || !x.lambda || !x.change || !x.u || !x.cu) {
+    struct weak x = {.h = h, .u = tribo_modal_take(&b->scratch, 7 * m, sizeof *x.u)};
+    x.near = tribo_modal_take(&b->scratch, (NEAR_MOST + 1) * NEAR_MOST, sizeof *x.near);
+    if (!x.u || !x.near || !reserve_coupled(h, m)) {
         return TRIBO_ERR_MEMORY;
     }
-    x.near = x.lambda + m;
-    *found = weak_begin(&x) && weak_find(&x);
-    if (*found) {
-        if (!tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count)) {
-            return TRIBO_ERR_MEMORY;
-        }
-        *found = weak_keep(&x, h, x.change + m);
-        h->exponents = *found ? m : 0;
+    x.cu = x.u + 2 * m;
+    x.sum = x.cu + 2 * m;
+    x.w = x.sum + 2 * m;
+    for (size_t k = 0; k < m; k++) {
+        x.w[k] = 1.0 + cos((double)((k + 1) * (k + 1)));
+    }
+    *found = 1;
+    for (size_t k = 0; *found && k < m; k++) {
+        *found = weak_find(&x, k);
+    }
+    for (size_t k = 0; *found && k < m; k++) {
+        /* One eigenvector twice, and another one missing: the sums lack a part of w. */
+        *found = greater(fabs(x.sum[k]) * sqrt(h->omega2[k]), fabs(x.sum[m + k] - x.w[k])) <= COMPLETE * (double)m;
     }
     return TRIBO_OK;
-}
-
-static int exponents_coupled(struct modal_build *b)
-{
-    struct modal *h = b->h;
-    const size_t m = h->modes, size = 2 * m;
-    double *a = tribo_modal_scratch(b, size * size), *s = tribo_modal_scratch(b, m), *re = tribo_modal_scratch(b, size);
-    double *im = tribo_modal_scratch(b, size), *x = tribo_modal_scratch(b, size * size);
-    double *inverse = tribo_modal_scratch(b, size * size);
-    int *pivot = (int *)tribo_modal_scratch_indices(b, size);
-    if (!a || !s || !re || !im || !x || !inverse || !pivot) {
-        return TRIBO_ERR_MEMORY;
-    }
-    for (size_t k = 0; k < m; k++) {
-        if (!(h->omega2[k] > 0.0)) {
-            return exponents_unsupported(b, "coupled damping, and a mode without stiffness");
-        }
-        s[k] = sqrt(h->omega2[k]);
-        /* a = A of x' = A x, x = (s eta, eta'), s = omega */
-        a[k * size + m + k] = s[k];
-        a[(m + k) * size + k] = -s[k];
-        for (size_t l = 0; l < m; l++) {
-            a[(m + k) * size + m + l] = -h->coupling[k * m + l];
-        }
-    }
-    int status = tribo_eigen(a, size, re, im, x);
-    if (status == TRIBO_ERR_NO_CONVERGENCE || status == TRIBO_ERR_NOT_FINITE) {
-        return tribo_system_fail(b->shared->sys, status, "method exact: exponents of %zu mode%s that damping couples: %s", m,
-                                 plural(m), tribo_strerror(status));
-    }
-    status = status ? status : invert(b, x, a, pivot, inverse);
-    if (!status && !all_known(h, s, re, im, x)) {
-        return exponents_unsupported(b, "damping couples modes of too different frequencies");
-    }
-    return status ? status : keep_exponents(b, s, re, im, x, inverse);
 }
 
 int tribo_modal_exponents(struct modal_build *b)
@@ -422,6 +345,6 @@ int tribo_modal_exponents(struct modal_build *b)
         return exponents_decoupled(b);
     }
     int found = 0;
-    const int status = exponents_weak(b, &found);
+    const int status = is_weak(b->h) ? exponents_weak(b, &found) : TRIBO_OK;
     return status || found ? status : exponents_coupled(b);
 }

@@ -10,52 +10,40 @@
 
 #include "dynamics/events/events.h"
 #include "motion.h"
-#include "terms.h"
 #include "common/real.h"
 #include "common/zeros.h"
 
 /* Bytes of structures above which all structures are dropped. */
 #define CACHE_BYTES ((size_t)512 << 20)
 
-struct exact {
-    tribo_system *sys;
-    struct events events;
-    struct modal_shared shared; /* data of all held structures; zeros until the first structure is created */
-    struct modal *held;         /* list of structures, in order of last use */
-    size_t bytes;               /* of all structures */
-    size_t revision, structure; /* of the system: when the forced structures were created; when the others were */
-
-    struct modal_motion motion; /* of the phase */
-};
-
 /* ---------------------------------------------------------------------------------------------- structures that are held */
 
 static void drop_loads(struct exact *x)
 {
-    for (struct modal *h = x->held; h; h = h->next) {
-        x->bytes -= h->forced ? h->forced->store.bytes : 0;
+    for (struct modal *h = x->held.last; h; h = h->next) {
+        x->held.bytes -= h->forced ? h->forced->store.bytes : 0;
         tribo_forced_free(h);
     }
 }
 
 static void drop_helds(struct exact *x)
 {
-    while (x->held) {
-        struct modal *next = x->held->next;
-        tribo_forced_free(x->held);
-        tribo_modal_free(x->held);
-        x->held = next;
+    while (x->held.last) {
+        struct modal *next = x->held.last->next;
+        tribo_forced_free(x->held.last);
+        tribo_modal_free(x->held.last);
+        x->held.last = next;
     }
-    tribo_modal_shared_free(&x->shared);
-    x->bytes = 0;
+    tribo_modal_shared_free(&x->held.shared);
+    x->held.bytes = 0;
 }
 
-/* *found = structure with the contacts at rest held, under the loads. Returns a status. */
-static int find_held(struct exact *x, const struct forced **found)
+/* Sets x->h, the structure with the contacts at rest held, under the loads. Returns a status. */
+static int find_held(struct exact *x)
 {
     const struct stick_slip *m = &x->events.stick_slip;
     int status = TRIBO_OK;
-    struct modal **at = &x->held;
+    struct modal **at = &x->held.last;
     while (*at && memcmp((*at)->key, m->state.key, m->constant.contacts) != 0) {
         at = &(*at)->next;
     }
@@ -63,23 +51,23 @@ static int find_held(struct exact *x, const struct forced **found)
     if (h) {
         *at = h->next;
     } else {
-        if (x->bytes > CACHE_BYTES) {
+        if (x->held.bytes > CACHE_BYTES) {
             drop_helds(x);
         }
-        status = x->shared.sys ? TRIBO_OK : tribo_modal_shared_create(&x->shared, x->sys);
-        status = status ? status : tribo_modal_create(&h, &x->shared, m->state.slip, m->state.holds);
+        status = x->held.shared.sys ? TRIBO_OK : tribo_modal_shared_create(&x->held.shared, x->sys);
+        status = status ? status : tribo_modal_create(&h, &x->held.shared, m->state.slip, m->state.holds);
         if (status) {
             return status;
         }
-        x->bytes += h->store.bytes;
+        x->held.bytes += h->store.bytes;
     }
-    h->next = x->held;
-    x->held = h;
+    h->next = x->held.last;
+    x->held.last = h;
     if (!h->forced) {
-        status = tribo_forced_create(h, &x->shared, m->state.slip);
-        x->bytes += status ? 0 : h->forced->store.bytes;
+        status = tribo_forced_create(h, &x->held.shared, m->state.slip);
+        x->held.bytes += status ? 0 : h->forced->store.bytes;
     }
-    *found = h->forced;
+    x->h = h->forced;
     return status;
 }
 
@@ -87,7 +75,7 @@ static int find_held(struct exact *x, const struct forced **found)
 
 static void method_exact_look(void *own, double tau, size_t guards, struct guard *const *guard)
 {
-    struct modal_motion *x = &((struct exact *)own)->motion;
+    struct exact *x = own;
     tribo_modal_motion_go(x, tau);
     for (size_t k = 0; k < guards; k++) {
         struct guard *g = guard[k];
@@ -113,21 +101,15 @@ static void method_exact_look(void *own, double tau, size_t guards, struct guard
     }
 }
 
-static void move_to(void *own, double tau, const double *from, double *to)
-{
-    tribo_modal_motion_state(&((struct exact *)own)->motion, tau, from, to);
-}
-
 /* Sets the time t of the system, and cosine and sine of each harmonic from the terms at the end of the phase. */
 static void arrive(void *own, double t)
 {
-    const struct exact *exact = own;
-    const struct modal_motion *x = &exact->motion;
-    x->sys->evaluations += exact->events.search.looks;
+    const struct exact *x = own;
+    x->sys->evaluations += x->events.search.looks;
     tribo_system_set_time(x->sys, t);
-    for (size_t s = 0; s < x->h->given; s++) {
-        const struct number at = tribo_harmonic(x, s);
-        tribo_harmonic_take(x->sys, &x->sys->loads.harmonic[x->h->forcing[s].harmonic], at.re, at.im);
+    for (size_t s = 0; s < x->sys->loads.harmonics; s++) {
+        const double complex at = tribo_now(x, x->h->modal->exponents + s, 0);
+        tribo_harmonic_take(x->sys, &x->sys->loads.harmonic[s], creal(at), cimag(at));
     }
 }
 
@@ -136,11 +118,11 @@ static void arrive(void *own, double t)
 static double method_exact_bound(void *own, double tau)
 {
     struct exact *x = own;
-    const double decay = x->motion.h->decay;
+    const double decay = x->h->decay;
     if (tau > 0.0) {
-        tribo_modal_motion_bound(&x->motion, tau);
-        for (size_t k = 0; k < x->motion.h->outputs; k++) {
-            tribo_course_bound(&x->motion, &x->motion.course[k]);
+        tribo_modal_motion_bound(x, tau);
+        for (size_t k = 0; k < x->h->outputs; k++) {
+            tribo_course_bound(x, &x->course[k]);
         }
     }
     for (size_t k = 0; k < x->events.search.guards; k++) {
@@ -151,7 +133,7 @@ static double method_exact_bound(void *own, double tau)
         g->bend = c ? c->bend : 0.0;
         if (g->limit != 0.0) {
             g->size += fabs(g->limit) * x->events.stick_slip.constant.swing[g->contact];
-            g->bend += fabs(g->limit) * tribo_modal_motion_limit_bend(&x->motion, g->contact);
+            g->bend += fabs(g->limit) * tribo_modal_motion_limit_bend(x, g->contact);
         }
     }
     return decay > 0.0 ? greater(2.0 * tau, 1.0 / decay) : HUGE_VAL;
@@ -169,23 +151,23 @@ static struct watch watch_of(const struct exact *x, size_t i, struct course *c)
 static int method_exact_begin(void *own, double t, const double *y, double *reach)
 {
     struct exact *x = own;
-    const struct forced *h = NULL;
-    const int status = find_held(x, &h);
+    const int status = find_held(x);
+    const struct forced *h = x->h;
     if (status) {
         return status;
     }
-    if (!tribo_modal_motion_start(&x->motion, h, t, y, reach)) {
+    if (!tribo_modal_motion_start(x, t, y, reach)) {
         return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu term%s", h->terms, plural(h->terms));
     }
     x->events.search.guards = 0;
     for (size_t k = 0; k < h->outputs; k++) {
-        struct course *c = &x->motion.course[k];
+        struct course *c = &x->course[k];
         const struct stick_slip *m = &x->events.stick_slip;
         const int of_velocity = k < h->sliding;
         c->output = &h->output[k];
         const size_t i = c->output->contact;
         const double value = of_velocity ? tribo_stick_slip_first_velocity(m, x->sys, i, y) : m->state.force[i];
-        tribo_course_begin(&x->motion, c, of_velocity, value);
+        tribo_course_begin(x, c, of_velocity, value);
         const struct watch w = watch_of(x, i, c);
         tribo_events_guard_contact(&x->events, i, &w);
     }
@@ -196,45 +178,16 @@ static int method_exact_begin(void *own, double t, const double *y, double *reac
     return TRIBO_OK;
 }
 
-static void *keep_phase(void *own, double tau)
-{
-    return tribo_modal_phase_create(((struct exact *)own)->motion.h->modal, tau);
-}
-
-static int method_exact_transition(void *own, const void *phase, double tau, size_t columns, double *v)
-{
-    (void)tau;
-    tribo_system *sys = ((struct exact *)own)->sys;
-    return tribo_modal_transition(phase, sys, columns, v)
-               ? TRIBO_OK
-               : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
-}
-
-static int method_exact_combine(void *own, const double *c, double tau, const double *end, struct signal *to)
-{
-    return tribo_modal_motion_signal(&((struct exact *)own)->motion, c, tau, end, to);
-}
-
-static double work_of(void *own, size_t i, double tau)
-{
-    struct modal_motion *x = &((struct exact *)own)->motion;
-    const struct course *c = x->course;
-    while (c->output->contact != i) {
-        c++;
-    }
-    return tribo_modal_motion_work(x, c, tau);
-}
-
 static const struct motion motion_closed = {.begin = method_exact_begin,
                                             .look = method_exact_look,
                                             .bound = method_exact_bound,
-                                            .state = move_to,
+                                            .state = tribo_modal_motion_state,
                                             .arrive = arrive,
-                                            .keep = keep_phase,
+                                            .keep = tribo_modal_phase_create,
                                             .release = tribo_modal_phase_free,
-                                            .transition = method_exact_transition,
-                                            .signal = method_exact_combine,
-                                            .work = work_of};
+                                            .transition = tribo_modal_transition,
+                                            .signal = tribo_modal_motion_signal,
+                                            .work = tribo_modal_motion_work};
 
 /* --------------------------------------------------------------------------------------------------------- the driver */
 
@@ -244,7 +197,10 @@ static void method_exact_destroy(tribo_driver *drv)
     if (x) {
         drop_helds(x);
         tribo_events_free(&x->events);
-        tribo_modal_motion_free(&x->motion);
+        tribo_signal_free(&x->velocity);
+        free(x->lot);
+        free(x->way);
+        free(x->course);
         free(x);
     }
 }
@@ -283,7 +239,10 @@ static int method_exact_create(tribo_driver *drv)
     if (status) {
         return status;
     }
-    if (!tribo_modal_motion_create(&x->motion, drv->sys, &x->events.stick_slip)) {
+    x->way = malloc((2 * x->sys->ncontact + 1) * sizeof *x->way);
+    x->steady = x->way ? x->way + x->sys->ncontact : NULL;
+    x->course = malloc((x->sys->ncontact + 1) * sizeof *x->course);
+    if (!x->way || !x->course) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     return TRIBO_OK;
@@ -296,13 +255,13 @@ static int method_exact_open_events(tribo_driver *drv, struct events **events)
     if (check_system(sys) || tribo_compliance_check(sys)) {
         return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "%s", tribo_system_message(sys));
     }
-    if (x->structure != sys->structure) {
+    if (x->held.structure != sys->structure) {
         drop_helds(x);
-        x->structure = sys->structure;
+        x->held.structure = sys->structure;
     }
-    if (x->revision != sys->revision) {
+    if (x->held.revision != sys->revision) {
         drop_loads(x);
-        x->revision = sys->revision;
+        x->held.revision = sys->revision;
     }
     *events = &x->events;
     return TRIBO_OK;

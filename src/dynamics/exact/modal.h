@@ -18,13 +18,14 @@
 /* Number of terms computed side by side. The number of terms of a structure is a multiple of TRIBO_TERMS. */
 enum { TRIBO_TERMS = 4 };
 
-/* Blocks of memory with arrays, freed together. */
+/* Arrays that are freed together. */
 struct modal_store {
     struct modal_block *last;
     size_t bytes;
+    int failed; /* 1: an array is NULL */
 };
 
-/* Returns a zeroed array of elements; NULL if out of memory. */
+/* Returns a zeroed array of elements; NULL, with failed = 1, if out of memory. */
 void *tribo_modal_take(struct modal_store *store, size_t count, size_t size);
 void tribo_modal_give_back(struct modal_store *store);
 
@@ -42,7 +43,7 @@ struct modal {
 
     size_t modes;
     double *phi; /* [modes][n] mode shapes */
-    double *psi; /* [n][modes] M times the mode shapes, as columns */
+    double *psi; /* [modes][n] M times the mode shapes */
     double *omega2, *damping;
     double *coupling;      /* [modes][modes] C~; NULL if C~ is diagonal */
     unsigned char *drifts; /* [modes] 1: omega = 0 and no damping */
@@ -51,9 +52,9 @@ struct modal {
 
     size_t exponents;
     double *lr, *li;           /* [exponents] lambda */
-    double *ar, *ai, *br, *bi; /* z = a eta + b eta': [exponents]; coupled: b [modes][exponents], a = -b omega^2/lambda */
-    double *rr, *ri;           /* [exponents][modes] coupled: eta = Re(r z) */
-    size_t *owner;             /* [exponents] mode of an exponent, with r = 1; NULL if coupled */
+    double *ar, *ai, *br, *bi; /* z = a eta + b eta': [exponents], eta of the owner; coupled: [modes][exponents] */
+    double *rr, *ri;           /* [exponents][modes] coupled: eta = rr Re z + ri Im z */
+    size_t *owner;             /* [exponents] mode of an exponent: eta = sum of Re z; NULL if coupled */
 };
 
 /* Velocity of a sliding contact or force of a held contact: Re(sum c_p z_p) + constant + ramp t. First the terms z_p of the
@@ -71,6 +72,11 @@ struct forcing {
     size_t harmonic, contact; /* harmonic: index in the system; contact: of the limit, else ncontact */
 };
 
+/* Degrees of freedom that a shape moves, or that move a mode: begin <= d < end. */
+struct extent {
+    size_t begin, end;
+};
+
 /* The structure under the loads of the system. Shapes: the modes, then a shape for each part, cosine or sine, of a harmonic of
  * bases: the velocities of the structure, with Phi'M y = 0, for eta' = e^{i Omega t} or i e^{i Omega t}; at last, if steady, a
  * shape for bases of constant speed: eta' = 1. */
@@ -80,19 +86,16 @@ struct forced {
     size_t shapes;
     int steady;
     double *phi, *on, *by_u; /* of the modal, with further rows, or columns, [shapes] */
-    size_t moving, *dof;     /* [moving] degrees of freedom that shapes move */
-    size_t *begin, *end;     /* [shapes] shape k and column k of psi are 0 outside [begin[k], end[k]) */
-    int sparse;              /* 1: products within these bounds are faster than dense ones */
+    struct extent *extent;   /* [shapes] */
 
-    size_t given, harmonics; /* given: harmonics of the system, in order; harmonics: given, then harmonics of limits */
+    size_t harmonics;        /* the harmonics of the system, in order, then harmonics of limits */
     struct forcing *forcing; /* [harmonics] */
     double complex *g, *x;   /* [harmonics][modes] forcing of eta; [harmonics][shapes] response eta */
     double *constant; /* [modes] constant forcing: by constant loads, by damping of y0, by damping of eta' = ramp/omega^2 */
     double *ramp;     /* [modes] rate of the forcing by bases of constant speed */
-    int any_resonant;
-    unsigned char *resonant; /* [harmonics][modes] 1: the response is not in x, since the divisor is close to 0 */
+    unsigned char *resonant; /* [harmonics][modes] 1: the response is not in x, since the divisor is close to 0; NULL: none */
 
-    size_t exponents, terms; /* terms: exponents, harmonics, and zeros up to a multiple of TRIBO_TERMS; not 0 */
+    size_t terms;            /* exponents, harmonics, and zeros up to a multiple of TRIBO_TERMS; not 0 */
     double *lr, *li, *size;  /* [terms] lambda (harmonics: i Omega); |lambda| */
     double *sixth;           /* [terms] |lambda|^6 */
     size_t outputs, sliding; /* output [0, sliding): velocities; [sliding, outputs): forces of contacts that hold */
@@ -132,21 +135,6 @@ void tribo_modal_free(struct modal *h);
 int tribo_forced_create(struct modal *h, const struct modal_shared *shared, const signed char *slip);
 void tribo_forced_free(struct modal *h);
 
-/* A phase of length tau: structure h, and re + i im = e^{lambda tau} for all perturbations. */
-struct modal_phase {
-    struct modal *h;
-    double tau, *im; /* [exponents] */
-    double re[];     /* [exponents] */
-};
-
-/* Returns NULL if out of memory. tribo_modal_phase_free takes NULL. */
-struct modal_phase *tribo_modal_phase_create(struct modal *h, double tau);
-void tribo_modal_phase_free(void *phase);
-
-/* Moves perturbations v [2 ndof + compliance.count][columns] of the state from the start of the phase to the end. Returns 0 if
- * out of memory. */
-int tribo_modal_transition(const struct modal_phase *phase, const tribo_system *sys, size_t columns, double *v);
-
 /* Returns c of the part Re(c z) of exponent p in place'eta + speed'eta', place, speed [modes]. */
 static inline double complex tribo_modal_weight(const struct modal *h, size_t p, const double *place, const double *speed)
 {
@@ -157,8 +145,8 @@ static inline double complex tribo_modal_weight(const struct modal *h, size_t p,
     for (size_t k = 0; k < h->modes; k++) {
         const double rr = h->rr[p * h->modes + k], ri = h->ri[p * h->modes + k];
         const double fr = place[k] + speed[k] * h->lr[p], fi = speed[k] * h->li[p];
-        re += fr * rr - fi * ri;
-        im += fr * ri + fi * rr;
+        re += fr * rr + fi * ri;
+        im += fi * rr - fr * ri;
     }
     return re + im * I;
 }

@@ -4,9 +4,7 @@
 #define TRIBO_MODAL_MOTION_H
 
 #include "modal.h"
-#include "dynamics/events/quintic.h"
-#include "dynamics/decide/stick_slip.h"
-#include "dynamics/events/signal.h"
+#include "dynamics/events/events.h"
 
 /* The linear part of an output, start + ramp tau. */
 struct line {
@@ -22,64 +20,113 @@ struct course {
     struct sample at;  /* output at tau, with two derivatives */
 };
 
-/* A phase from t0. A mode: eta = constant + vel tau + acc tau^2/2 + harmonics + (Re(r z), or drift_rate tau if the mode
- * drifts). A shape by bases: eta = harmonics, or tau. */
-struct modal_motion {
-    tribo_system *sys;
-    const struct stick_slip *contacts; /* the caller's */
-    const struct forced *h;
-    double t0, tau, longest;    /* tau: time after t0 that the terms w are for; longest: the bounds hold until t0 + longest */
-    int runs;                   /* 1: some shape has vel, acc or drift_rate tau not 0 */
-    size_t room;                /* number of terms, and of shapes, that the arrays have room for */
-    double *vel, *acc;          /* [shapes] */
-    double *drift, *drift_rate; /* [shapes] eta, eta' at t0 minus harmonics; of modes without drift, minus constant and vel */
-    double *place, *rate;       /* [shapes] eta - eta(t0) at tau; eta' at tau, or eta' - eta'(t0) if brief (tau short) */
-    struct lot *lot;            /* [terms/TRIBO_TERMS] terms: exponents, then harmonics; harmonics of limits times side */
-    int looked;                 /* 1: far is set, in this phase */
-    double far;                 /* time after t0 of the last look with e^{lambda tau} computed in full */
-    double *far_r, *far_i;      /* [terms] e^{lambda far} */
-    double *er, *ei;            /* [terms] workspace: w - z, the change since t0 */
-    double *growth, *growth6;   /* [terms] bounds of |w| and of the sixth derivative */
-    double *work;               /* [10 room + 2 ndof] workspace */
-    double *way;                /* [ncontact] workspace */
-    double *steady;             /* [ncontact] force of a sliding contact without harmonics of the limit */
-    struct course *course;      /* [ncontact] courses of the outputs of h */
-    struct signal velocity;     /* workspace */
+/* TRIBO_TERMS terms side by side, with two derivatives. */
+struct lot {
+    double re[3][TRIBO_TERMS], im[3][TRIBO_TERMS];
 };
 
-/* Returns 1, or 0 if out of memory. tribo_modal_motion_free also takes an x that failed. */
-int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const struct stick_slip *contacts);
-void tribo_modal_motion_free(struct modal_motion *x);
+/* [terms] real and imaginary parts, modal_motion's room apart. */
+struct parts {
+    double *re, *im;
+};
 
-/* Starts a phase at (t, y) with structure h, for a time of at most *longest; sets *longest to the time for which the bounds hold.
+/* The structures so far. */
+struct held {
+    struct modal_shared shared; /* data of all structures; zeros until the first structure is created */
+    struct modal *last;         /* list of structures, in order of last use */
+    size_t bytes;               /* of all structures */
+    size_t revision, structure; /* of the system: when the forced structures were created; when the others were */
+};
+
+/* The driver's own data, and a phase from t0. A mode: eta = constant + vel tau + acc tau^2/2 + harmonics + (Re(r z), or eta' tau if the mode drifts). A
+ * shape by bases: eta = harmonics, or tau. Terms: exponents, then harmonics; harmonics of limits times side. */
+struct exact {
+    tribo_system *sys;
+    struct events events;
+    struct held held;
+    const struct forced *h;
+    double t0, tau, longest;      /* tau: time after t0 of w; longest: the bounds hold until t0 + longest */
+    int runs;                     /* 1: some shape has drift or acc not 0 */
+    size_t room;                  /* number of terms, and of shapes, that the arrays have room for */
+    struct lot *lot;              /* [terms/TRIBO_TERMS] w, the terms at tau; owns the memory of all arrays of terms and shapes */
+    struct parts z;               /* terms at t0 */
+    double far;                   /* time after t0 of the last look with e^{lambda tau} computed in full */
+    struct parts far_e;           /* e^{lambda far} */
+    struct parts move, rate_move; /* w - z; w', or w' - z' if brief: tau is short for all terms */
+    double *growth, *growth6;     /* [terms] bounds of |w| and of the sixth derivative */
+    double *vel, *acc;            /* [shapes] */
+    double *drift;                /* [shapes] vel, and of modes that drift also eta' at t0 */
+    double *place, *rate;         /* [shapes] eta - eta(t0) at tau; eta' at tau, or eta' - eta'(t0) if brief */
+    double *work;                 /* [room + 2 ndof] workspace */
+    double *way;                  /* [ncontact] workspace */
+    double *steady;               /* [ncontact] force of a sliding contact without harmonics of the limit */
+    struct course *course;        /* [ncontact] courses of the outputs of h */
+    struct signal velocity;       /* workspace */
+};
+
+/* Starts a phase at (t, y) with structure x->h, for a time of at most *longest; sets *longest to the time for which the bounds hold.
  * Returns 1, or 0 if out of memory. */
-int tribo_modal_motion_start(struct modal_motion *x, const struct forced *h, double t, const double *y, double *longest);
+int tribo_modal_motion_start(struct exact *x, double t, const double *y, double *longest);
 
 /* Goes to t0 + tau: sets w, w' and w'' of all terms. */
-void tribo_modal_motion_go(struct modal_motion *x, double tau);
+void tribo_modal_motion_go(struct exact *x, double tau);
 
 /* Return the part of limit i by harmonics, with two derivatives, at x->tau; a bound of the sixth derivative of this part. */
-struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i);
-double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i);
+struct sample tribo_modal_motion_limit(const struct exact *x, size_t i);
+double tribo_modal_motion_limit_bend(const struct exact *x, size_t i);
 
-/* Return the energy dissipated until t0 + tau, x and x->place being there: by the contact of course c, which slides, counted
- * once; by all. */
-double tribo_modal_motion_work(struct modal_motion *x, const struct course *c, double tau);
-double tribo_modal_motion_dissipated(struct modal_motion *x, double tau);
-
-/* Goes to t0 + tau: to = state there, from = state at t0. to may be from. */
-void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *from, double *to);
+/* Returns the energy dissipated by all contacts until t0 + tau, x and x->place being there. */
+double tribo_modal_motion_dissipated(struct exact *x, double tau);
 
 /* Sets growth and growth6 for times from tau to longest. */
-void tribo_modal_motion_bound(struct modal_motion *x, double tau);
+void tribo_modal_motion_bound(struct exact *x, double tau);
 
-/* *to = c'[q, q', f, f'], f: of compliant contacts, in the phase of length tau that ends in the state end. Returns a status. */
-int tribo_modal_motion_signal(const struct modal_motion *x, const double *c, double tau, const double *end, struct signal *to);
+/* Of columns of eta and eta' [modes][columns]. settle: force [modes][columns], constant, has the response constant + vel tau +
+ * acc tau^2/2; subtracts it at tau = 0 from eta and eta'. split: z = a eta + b eta' [exponents][columns]. join: eta += that of
+ * z. */
+void tribo_modal_settle(const struct modal *h, size_t columns, const double *force, double *eta, double *rate, double *vel,
+                        double *acc);
+void tribo_modal_split(const struct modal *h, size_t columns, const double *eta, const double *rate, double *zr, double *zi);
+void tribo_modal_join(const struct modal *h, size_t columns, const double *zr, const double *zi, double *eta);
 
-/* course.c. begin: starts the course of c->output, value at t0; x is at t0; of_velocity 1: a velocity, 0: a force. look: sets
+/* Functions of struct motion. The state of a signal is [q, q', f], f: forces of compliant contacts. The data of a phase is a
+ * struct modal_phase. */
+void tribo_modal_motion_state(void *own, double tau, const double *from, double *to);
+double tribo_modal_motion_work(void *own, size_t i, double tau);
+int tribo_modal_motion_signal(void *own, const double *c, double tau, const double *end, struct signal *to);
+void *tribo_modal_phase_create(void *own, double tau);
+void tribo_modal_phase_free(void *phase);
+int tribo_modal_transition(void *own, const void *phase, double tau, size_t columns, double *v);
+
+/* terms.c. rest: sets w to z, at t0. go: sets w for t0 + tau, without resonances. spread: moves [2][ndof] += displacements by
+ * place and velocities by rate. tribo_exp_1 returns (e^z - 1)/z, the integral of e^{z s} over s from 0 to 1, without loss of
+ * digits for small z. */
+void tribo_modal_terms_rest(struct exact *x);
+void tribo_modal_terms_go(struct exact *x, double tau);
+void tribo_modal_terms_spread(const struct exact *x, double *moves);
+double complex tribo_exp_1(double complex z);
+
+/* terms.c. begin: starts the course of c->output, value at t0; x is at t0; of_velocity 1: a velocity, 0: a force. look: sets
  * c->at for x->tau. bound: sets c->size and c->bend from growth and growth6. */
-void tribo_course_begin(const struct modal_motion *x, struct course *c, int of_velocity, double value);
-void tribo_course_look(const struct modal_motion *x, struct course *c);
-void tribo_course_bound(const struct modal_motion *x, struct course *c);
+void tribo_course_begin(const struct exact *x, struct course *c, int of_velocity, double value);
+void tribo_course_look(const struct exact *x, struct course *c);
+void tribo_course_bound(const struct exact *x, struct course *c);
+
+/* Return term p at t0, or an array like it; the lot of term p; w of term p, or its derivative, at tau. */
+static inline double complex tribo_part(const struct parts *z, size_t p)
+{
+    return z->re[p] + z->im[p] * I;
+}
+
+static inline struct lot *tribo_lot(const struct exact *x, size_t p)
+{
+    return &x->lot[p / TRIBO_TERMS];
+}
+
+static inline double complex tribo_now(const struct exact *x, size_t p, size_t order)
+{
+    const struct lot *lot = tribo_lot(x, p);
+    return lot->re[order][p % TRIBO_TERMS] + lot->im[order][p % TRIBO_TERMS] * I;
+}
 
 #endif

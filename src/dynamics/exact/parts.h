@@ -13,23 +13,15 @@ struct modal_build {
     struct modal_store scratch;     /* workspace until the structure is built */
     const struct matrix *stiffness; /* K + J_A' G_AA^-1 J_A, A: compliant contacts that hold */
     struct matrix own_stiffness;    /* memory of stiffness if A is not empty */
-    double *c_phi;                  /* [modes][n] C phi; with damping */
     double *work;                   /* workspace of tribo_modal_effects */
-    const double *zero;             /* [shapes] zeros */
-    int status;                     /* of a failure other than out of memory; else 0 */
+    double complex *direct; /* [harmonics][rests] forces of the rigid contacts that hold, by loads and limits at fixed eta */
+    int status;             /* of a failure other than out of memory; else 0 */
 };
-
-/* Return zeroed arrays: ..._keep: part of b->h; ..._scratch: workspace until the structure is built. NULL if out of memory.
- * tribo_modal_keep_all sets *array[k] to an array [count[k]], k < arrays; returns 0 if out of memory. */
-int tribo_modal_keep_all(struct modal_build *b, size_t arrays, double **const *array, const size_t *count);
-size_t *tribo_modal_keep_indices(struct modal_build *b, size_t count);
-double *tribo_modal_scratch(struct modal_build *b, size_t count);
-size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count);
 
 /* Sets the exponents of eta, and a, b, r, owner. Returns a status. */
 int tribo_modal_exponents(struct modal_build *b);
 
-/* force [n] -= M phi_k (phi_k'force) for all k; then f [rests]: J_I'f = force, I: the rigid contacts that hold. work [modes]. */
+/* work [modes] = -Phi'force, force [n] += M Phi work; then f [rests]: J_I'f = force, I: the rigid contacts that hold. */
 void tribo_modal_react(const struct modal *h, double *force, double *f, double *work);
 
 /* A column of on, and of by_u or NULL, with entries stride apart. */

@@ -13,15 +13,12 @@
 /* |lambda - i Omega|/Omega down to which the response of coupled modes keeps enough digits. */
 #define UNDAMPED 1e-9
 
-/* Up to FEW modes a dense product does not pay. */
-#define FEW 4
-
 static int list_forcing(struct modal_build *b)
 {
     struct forced *f = b->forced;
     const tribo_system *sys = b->shared->sys;
     const size_t c = sys->ncontact;
-    f->given = f->harmonics = sys->loads.harmonics;
+    f->harmonics = sys->loads.harmonics;
     f->forcing =
         tribo_modal_take(&f->store, sys->loads.harmonics + sys->loads.limit_harmonics * (c - b->h->rests), sizeof *f->forcing);
     if (!f->forcing) {
@@ -41,32 +38,27 @@ static int list_forcing(struct modal_build *b)
 
 /* ------------------------------------------------------------------------------------------------------- shapes by bases */
 
-/* base [ncontact] += c for part 0 and -s for part 1 of the harmonic b = Re((c - i s) e^{i Omega t}). Returns 1 if it is not 0. */
-static int base_part(const struct harmonic *w, int part, double *base)
+/* base [ncontact] += c for part 0 and -s for part 1 of the harmonic b = Re((c - i s) e^{i Omega t}). */
+static void base_part(const struct harmonic *w, int part, double *base)
 {
-    int moves = 0;
-    for (size_t e = 0; w->drives == DRIVES_BASE && e < w->count; e++) {
-        const double value = part ? -w->sine[e] : w->cosine[e];
-        base[w->index[e]] += value;
-        moves |= value != 0.0;
+    for (size_t e = 0; e < w->count; e++) {
+        base[w->index[e]] += part ? -w->sine[e] : w->cosine[e];
     }
-    return moves;
 }
 
-/* Makes room for shapes: one for each part of a harmonic of bases that is not 0, and one for bases of constant speed. Without
- * such shapes phi, on and by_u are arrays of the modal. Returns 0 if out of memory. */
-static int make_shapes(struct modal_build *b, double *base)
+/* Makes room for shapes: one for each part of a harmonic of bases, and one for bases of constant speed. Without such shapes phi,
+ * on and by_u are arrays of the modal. Returns 0 if out of memory. */
+static int make_shapes(struct modal_build *b)
 {
     struct forced *f = b->forced;
     const struct modal *h = b->h;
-    const size_t n = h->n, m = h->modes, c = b->shared->sys->ncontact;
+    const tribo_system *sys = b->shared->sys;
+    const size_t n = h->n, m = h->modes, c = sys->ncontact;
     f->shapes = m;
-    for (size_t s = 0; s < f->given; s++) {
-        const struct harmonic *w = &b->shared->sys->loads.harmonic[s];
+    for (size_t s = 0; s < sys->loads.harmonics; s++) {
+        const struct harmonic *w = &sys->loads.harmonic[s];
         f->steady |= w->drives == DRIVES_BASE && w->omega == 0.0;
-        for (int part = 0; part < 2 && w->omega != 0.0; part++) {
-            f->shapes += (size_t)base_part(w, part, base);
-        }
+        f->shapes += w->drives == DRIVES_BASE && w->omega != 0.0 ? 2 : 0;
     }
     f->shapes += f->steady != 0;
     f->phi = h->phi;
@@ -114,7 +106,7 @@ static void follow_base(struct modal_build *b, size_t k, double omega, struct fo
     memset(w->place, 0, m * sizeof *w->place);
     memset(w->rate, 0, m * sizeof *w->rate);
     memset(w->drag, 0, n * sizeof *w->drag);
-    tribo_multiply_transposed_add(n, m, 1, h->psi, y, w->place);
+    tribo_multiply_add(m, n, 1, 1.0, h->psi, y, w->place);
     for (size_t l = 0; l < m; l++) {
         tribo_add(y, -w->place[l], h->phi + l * n, n);
         w->place[l] = 0.0;
@@ -136,7 +128,7 @@ static int follow_bases(struct modal_build *b)
     const struct modal *h = b->h;
     const tribo_system *sys = b->shared->sys;
     const size_t m = h->modes, c = sys->ncontact;
-    double *room = tribo_modal_scratch(b, c + h->rests + h->n + 2 * m);
+    double *room = tribo_modal_take(&b->scratch, c + h->rests + h->n + 2 * m, sizeof *room);
     if (!room || !tribo_modal_reserve_effects(b)) {
         return 0;
     }
@@ -144,19 +136,19 @@ static int follow_bases(struct modal_build *b)
     w.drag = w.x + h->rests;
     w.place = w.drag + h->n;
     w.rate = w.place + m;
-    if (!make_shapes(b, w.base)) {
+    if (!make_shapes(b)) {
         return 0;
     }
     f->x = tribo_modal_take(&f->store, f->harmonics * f->shapes, sizeof *f->x);
     size_t k = m;
-    for (size_t s = 0; f->x && f->shapes > m && s < f->given; s++) {
+    for (size_t at = 0; f->x && at < 2 * sys->loads.harmonics; at++) {
+        const size_t s = at / 2, part = at % 2;
         const double omega = f->forcing[s].omega;
-        for (int part = 0; part < 2 && omega != 0.0; part++) {
+        const double complex rate = part ? I : 1.0;
+        if (sys->loads.harmonic[s].drives == DRIVES_BASE && omega != 0.0) {
+            const double complex place = rate / (omega * I);
             memset(w.base, 0, c * sizeof *w.base);
-            if (!base_part(&sys->loads.harmonic[s], part, w.base)) {
-                continue;
-            }
-            const double complex rate = part ? I : 1.0, place = rate / (omega * I);
+            base_part(&sys->loads.harmonic[s], (int)part, w.base);
             follow_base(b, k, omega, &w);
             f->x[s * f->shapes + k++] = place;
             for (size_t l = 0; l < m; l++) {
@@ -166,8 +158,8 @@ static int follow_bases(struct modal_build *b)
     }
     if (f->x && f->steady) {
         memset(w.base, 0, c * sizeof *w.base);
-        for (size_t s = 0; s < f->given; s++) {
-            if (f->forcing[s].omega == 0.0) {
+        for (size_t s = 0; s < sys->loads.harmonics; s++) {
+            if (sys->loads.harmonic[s].drives == DRIVES_BASE && f->forcing[s].omega == 0.0) {
                 base_part(&sys->loads.harmonic[s], 0, w.base);
             }
         }
@@ -178,85 +170,100 @@ static int follow_bases(struct modal_build *b)
     return f->x != NULL;
 }
 
-/* Sets dof, begin, end and sparse. Returns 0 if out of memory. */
+/* Sets the extents. Returns 0 if out of memory. */
 static int find_extents(struct modal_build *b)
 {
     struct forced *f = b->forced;
     const size_t n = b->h->n, m = b->h->modes;
-    size_t entries = 0;
-    f->dof = tribo_modal_take(&f->store, n + 2 * f->shapes, sizeof *f->dof);
-    if (!f->dof) {
-        return 0;
-    }
-    f->begin = f->dof + n;
-    f->end = f->begin + f->shapes;
-    for (size_t d = 0; d < n; d++) {
-        f->dof[f->moving] = d;
-        int moves = 0;
-        for (size_t k = 0; k < f->shapes; k++) {
-            if (f->phi[k * n + d] != 0.0 || (k < m && b->h->psi[d * m + k] != 0.0)) {
-                f->begin[k] = f->end[k] ? f->begin[k] : d;
-                f->end[k] = d + 1;
-                moves = 1;
-            }
+    f->extent = tribo_modal_take(&f->store, f->shapes, sizeof *f->extent);
+    for (size_t at = 0; f->extent && at < f->shapes * n; at++) {
+        if (f->phi[at] != 0.0 || (at < m * n && b->h->psi[at] != 0.0)) {
+            struct extent *own = &f->extent[at / n];
+            own->begin = own->end ? own->begin : at % n;
+            own->end = at % n + 1;
         }
-        f->moving += (size_t)moves;
     }
-    for (size_t k = 0; k < f->shapes; k++) {
-        entries += f->end[k] - f->begin[k];
-    }
-    f->sparse = f->shapes <= FEW || 4 * entries < f->shapes * n;
-    return 1;
+    return f->extent != NULL;
 }
 
 /* ------------------------------------------------------------------------------------------------- forcing and response */
 
-/* Adds the forcing of eta by loads, and by limits as forces f = limit. */
-static void force_modes(struct modal_build *b)
+/* Adds the forcing of eta by harmonic s of a load, or of a limit as force f = limit, to g; to direct the forces of contacts that
+ * hold by what the modes leave of the load. work [2 n + modes + rests]. */
+static void force_modes(struct modal_build *b, size_t s, double *work)
+{
+    struct forced *f = b->forced;
+    const struct modal *h = b->h;
+    const tribo_system *sys = b->shared->sys;
+    const struct matrix *j = &sys->direction;
+    const size_t n = h->n, m = h->modes, i = f->forcing[s].contact;
+    const struct harmonic *w = &sys->loads.harmonic[f->forcing[s].harmonic];
+    double *load = work, *force = load + n, *by = force + n, *react = by + m;
+    for (int part = 0; part < 2; part++) {
+        const double *value = part ? w->sine : w->cosine;
+        const double complex unit = part ? -I : 1.0;
+        memset(work, 0, 2 * n * sizeof *work);
+        if (i < sys->ncontact) {
+            for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+                force[j->col[e]] = -j->val[e] * value[i];
+            }
+        } else {
+            for (size_t e = 0; w->drives == DRIVES_LOAD && e < w->count; e++) {
+                load[w->index[e]] = -value[e];
+            }
+            tribo_system_add_mass(sys, 1.0, load, force);
+        }
+        if (tribo_largest(force, n) == 0.0) {
+            continue;
+        }
+        tribo_modal_react(h, force, react, by);
+        for (size_t k = 0; k < m; k++) {
+            f->g[s * m + k] += unit * by[k];
+        }
+        for (size_t p = 0; w->omega != 0.0 && p < h->rests; p++) {
+            b->direct[s * h->rests + p] += unit * react[p];
+        }
+    }
+}
+
+/* Sets constant from forcing of omega = 0 and from bases of constant speed: with these modes of omega != 0 have eta' =
+ * ramp/omega^2, and damping of eta' is a constant force. Modes that damping couples all have omega != 0. */
+static void force_constantly(struct modal_build *b)
 {
     struct forced *f = b->forced;
     const struct modal *h = b->h;
     const size_t m = h->modes;
-    for (size_t s = 0; s < f->harmonics; s++) {
-        const struct forcing *forcing = &f->forcing[s];
-        const struct harmonic *w = &b->shared->sys->loads.harmonic[forcing->harmonic];
-        const int load = w->drives == DRIVES_LOAD, limit = s >= f->given;
-        for (size_t e = limit ? forcing->contact : 0; e < (limit ? forcing->contact + 1 : load ? w->count : 0); e++) {
-            const double *by = limit ? h->on + e * m : h->psi + w->index[e] * m;
-            for (size_t k = 0; k < m; k++) {
-                f->g[s * m + k] += (w->cosine[e] - w->sine[e] * I) * by[k];
-            }
-        }
-        for (size_t k = 0; k < m; k++) {
-            f->constant[k] += s < f->given && forcing->omega == 0.0 ? creal(f->g[s * m + k]) : 0.0;
-        }
-    }
-    /* With bases of constant speed modes of omega != 0 have eta' = ramp/omega^2; damping of eta' is a constant force. Modes that
-     * damping couples all have omega != 0. */
     for (size_t k = 0; k < m; k++) {
+        for (size_t s = 0; s < b->shared->sys->loads.harmonics; s++) {
+            f->constant[k] += f->forcing[s].omega == 0.0 ? creal(f->g[s * m + k]) : 0.0;
+        }
         for (size_t l = h->coupling ? 0 : k; l < (h->coupling ? m : k + 1) && h->omega2[l] != 0.0; l++) {
             f->constant[k] -= (h->coupling ? h->coupling[k * m + l] : h->damping[k]) * (f->ramp[l] / h->omega2[l]);
         }
     }
 }
 
-/* Sets the response to harmonic s, and resonant, of modes without coupling. */
-static void respond_alone(struct modal_build *b, size_t s)
+/* Sets the response of modes without coupling, and resonant. */
+static int respond_alone(struct modal_build *b)
 {
     struct forced *f = b->forced;
     const struct modal *h = b->h;
-    const double omega = f->forcing[s].omega;
-    for (size_t k = 0; k < h->modes; k++) {
-        const size_t at = s * h->modes + k;
-        const double gr = creal(f->g[at]), gi = cimag(f->g[at]);
+    int any = 0;
+    f->resonant = tribo_modal_take(&f->store, f->harmonics * h->modes, 1);
+    for (size_t at = 0; f->resonant && at < f->harmonics * h->modes; at++) {
+        const size_t s = at / h->modes, k = at % h->modes;
+        const double omega = f->forcing[s].omega, gr = creal(f->g[at]), gi = cimag(f->g[at]);
         const double re = h->omega2[k] - omega * omega, im = omega * h->damping[k], square = re * re + im * im;
-        const int forced = gr != 0.0 || gi != 0.0;
-        f->resonant[at] = sqrt(square) < RESONANCE * fabs(h->omega2[k]) && forced;
-        f->any_resonant |= f->resonant[at];
+        const int forced = omega != 0.0 && (gr != 0.0 || gi != 0.0);
+        f->resonant[at] = forced && sqrt(square) < RESONANCE * fabs(h->omega2[k]);
+        any |= f->resonant[at];
         if (!f->resonant[at] && forced) {
             f->x[s * f->shapes + k] = (gr * re + gi * im) / square + (gi * re - gr * im) / square * I;
         }
     }
+    const int done = f->resonant != NULL;
+    f->resonant = any ? f->resonant : NULL;
+    return done;
 }
 
 /* Sets the response of coupled modes to all harmonics, by LU factors. Returns 0 on failure. */
@@ -266,8 +273,8 @@ static int respond_together(struct modal_build *b)
     const struct modal *h = b->h;
     const size_t m = h->modes;
     const int rows = (int)m, one = 1;
-    double complex *a = (double complex *)tribo_modal_scratch(b, 2 * m * m);
-    int *pivot = (int *)tribo_modal_scratch_indices(b, m), info = 0;
+    double complex *a = tribo_modal_take(&b->scratch, m * m, sizeof *a);
+    int *pivot = tribo_modal_take(&b->scratch, m, sizeof *pivot), info = 0;
     for (size_t s = 0; a && pivot && s < f->harmonics; s++) {
         const double omega = f->forcing[s].omega;
         double complex *x = f->x + s * f->shapes;
@@ -307,18 +314,14 @@ int tribo_forced_respond(struct modal_build *b)
     f->g = tribo_modal_take(&f->store, f->harmonics * m, sizeof *f->g);
     f->ramp = tribo_modal_take(&f->store, 2 * m, sizeof *f->ramp);
     f->constant = f->ramp ? f->ramp + m : NULL;
-    f->resonant = tribo_modal_take(&f->store, f->harmonics * m, 1);
-    if (!f->g || !f->ramp || !f->resonant || !follow_bases(b) || !find_extents(b)) {
+    b->direct = tribo_modal_take(&b->scratch, f->harmonics * b->h->rests, sizeof *b->direct);
+    double *work = tribo_modal_take(&b->scratch, 2 * b->h->n + m + b->h->rests, sizeof *work);
+    if (f->store.failed || b->scratch.failed || !follow_bases(b) || !find_extents(b)) {
         return 0;
     }
-    force_modes(b);
-    if (b->h->coupling) {
-        return respond_together(b);
-    }
     for (size_t s = 0; s < f->harmonics; s++) {
-        if (f->forcing[s].omega != 0.0) {
-            respond_alone(b, s);
-        }
+        force_modes(b, s, work);
     }
-    return 1;
+    force_constantly(b);
+    return b->h->coupling ? respond_together(b) : respond_alone(b);
 }

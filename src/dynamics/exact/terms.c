@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Terms are computed TRIBO_TERMS at a time: in a single sum each addition waits for the one before. Arrays are restrict, or
- * compilers would not compute several terms at once. */
-#include "terms.h"
-#include "dynamics/system/cos_sin.h"
+/* Terms of a motion, sums over terms, and sums over shapes. Terms are computed TRIBO_TERMS at a time: in a single sum each
+ * addition waits for the one before. */
+#include "motion.h"
 #include "common/simd.h"
+#include "dynamics/system/cos_sin.h"
 
 #include <math.h>
 
@@ -12,7 +12,7 @@ enum { T = TRIBO_TERMS };
 /* |lambda delta| up to which the series up to (lambda delta)^4 gives e^{lambda delta} to rounding. */
 #define CLOSE 1e-3
 
-/* re + i im = a b */
+/* re + i im = a b of four terms. restrict, or compilers would not compute several terms at once. */
 static inline void multiply(const double *restrict ar, const double *restrict ai, const double *restrict br,
                             const double *restrict bi, double *restrict re, double *restrict im)
 {
@@ -22,15 +22,19 @@ static inline void multiply(const double *restrict ar, const double *restrict ai
     }
 }
 
-/* Sets w = e z, w' = lambda w and w'' = lambda w' of a lot. */
-static inline void terms_turn(struct lot *lot, const double *lr, const double *li, const double *er, const double *ei)
+/* Sets w = e z, w' = lambda w and w'' = lambda w'. Imaginary parts stand n numbers after real parts of lambda, else `next`. */
+TRIBO_SIMD_OF_FOUR static void turn(size_t n, size_t next, const double *lambda, const double *e, const double *z,
+                                    struct lot *lot)
 {
-    multiply(er, ei, lot->zr, lot->zi, lot->wr, lot->wi);
-    multiply(lr, li, lot->wr, lot->wi, lot->w1r, lot->w1i);
-    multiply(lr, li, lot->w1r, lot->w1i, lot->w2r, lot->w2i);
+    TRIBO_APART
+    for (size_t p = 0; p < n; p += T, lot++) {
+        multiply(e + p, e + next + p, z + p, z + next + p, lot->re[0], lot->im[0]);
+        multiply(lambda + p, lambda + n + p, lot->re[0], lot->im[0], lot->re[1], lot->im[1]);
+        multiply(lambda + p, lambda + n + p, lot->re[1], lot->im[1], lot->re[2], lot->im[2]);
+    }
 }
 
-/* re + i im = e^{lambda delta}, for small lambda delta. */
+/* re + i im = e^{lambda delta} of four terms, for small lambda delta. */
 static inline void grow_little(const double *restrict lr, const double *restrict li, double delta, double *restrict re,
                                double *restrict im)
 {
@@ -42,33 +46,14 @@ static inline void grow_little(const double *restrict lr, const double *restrict
     }
 }
 
-/* Set w, w', w'' of all lots. move_nowhere: at t0. move_far: w = e z, e = e^{lambda far}. move_little: at far + delta. */
-TRIBO_SIMD_OF_FOUR static void move_nowhere(size_t n, const double *lr, const double *li, struct lot *lot)
-{
-    static const double one[T] = {1.0, 1.0, 1.0, 1.0}, nothing[T];
-    for (size_t p = 0; p < n; p += T) {
-        terms_turn(lot++, lr + p, li + p, one, nothing);
-    }
-}
-
-TRIBO_SIMD_OF_FOUR static void move_far(size_t n, const double *lr, const double *li, const double *er, const double *ei,
-                                        struct lot *lot)
+/* to = e^{lambda delta} e. */
+TRIBO_SIMD_OF_FOUR static void turn_little(size_t n, size_t next, double delta, const double *restrict lambda,
+                                           const double *restrict e, double *restrict to)
 {
     for (size_t p = 0; p < n; p += T) {
-        terms_turn(lot++, lr + p, li + p, er + p, ei + p);
-    }
-}
-
-TRIBO_SIMD_OF_FOUR static void move_little(const struct modal_motion *x, double delta)
-{
-    const size_t n = x->h->terms;
-    const double *lr = x->h->lr, *li = x->h->li;
-    struct lot *lot = x->lot;
-    for (size_t p = 0; p < n; p += T) {
-        double re[T], im[T], er[T], ei[T];
-        grow_little(lr + p, li + p, delta, re, im);
-        multiply(re, im, x->far_r + p, x->far_i + p, er, ei);
-        terms_turn(lot++, lr + p, li + p, er, ei);
+        double re[T], im[T];
+        grow_little(lambda + p, lambda + n + p, delta, re, im);
+        multiply(re, im, e + p, e + next + p, to + p, to + next + p);
     }
 }
 
@@ -91,49 +76,136 @@ double complex tribo_exp_1(double complex z)
     return re + im * I;
 }
 
-static inline void clear(double *re, double *im)
+void tribo_modal_terms_rest(struct exact *x)
 {
-    for (size_t k = 0; k < T; k++) {
-        re[k] = im[k] = 0.0;
+    x->tau = x->far = 0.0;
+    for (size_t p = 0; p < x->h->terms; p++) {
+        x->far_e.re[p] = 1.0;
+        x->far_e.im[p] = 0.0;
     }
-}
-
-void tribo_modal_terms_clear(struct modal_motion *x)
-{
-    const size_t last = x->h->terms - T;
-    clear(x->lot[last / T].zr, x->lot[last / T].zi);
-    clear(x->growth + last, x->growth6 + last);
-}
-
-void tribo_modal_terms_rest(struct modal_motion *x)
-{
-    x->looked = 0;
-    x->tau = 0.0;
-    move_nowhere(x->h->terms, x->h->lr, x->h->li, x->lot);
+    turn(x->h->terms, x->room, x->h->lr, x->far_e.re, x->z.re, x->lot);
 }
 
 /* w = e^{lambda tau} z. e^{lambda tau} is computed from tau, or from e^{lambda far} if tau is close to far. Other looks do not
  * start at far: the rounding of w at late times must not vary from look to look. */
-void tribo_modal_terms_go(struct modal_motion *x, double tau)
+void tribo_modal_terms_go(struct exact *x, double tau)
 {
     const struct forced *h = x->h;
+    const double *e = x->far_e.re;
     x->tau = tau;
-    if (x->looked && fabs(tau - x->far) * h->quickest < CLOSE) {
-        move_little(x, tau - x->far);
+    if (fabs(tau - x->far) * h->quickest < CLOSE) {
+        turn_little(h->terms, x->room, tau - x->far, h->lr, x->far_e.re, x->move.re);
+        e = x->move.re;
     } else {
-        x->looked = 1;
         x->far = tau;
-        /* re + i im = e^{lambda tau} of all terms */
-        double *re = x->far_r;
-        double *im = x->far_i;
-        tribo_cos_sin_all(tau, h->terms, h->li, re, im);
-        for (size_t p = 0; (h->decay > 0.0 || h->growth > 0.0) && p < h->exponents; p++) {
+        tribo_cos_sin_all(tau, h->terms, h->li, x->far_e.re, x->far_e.im);
+        for (size_t p = 0; (h->decay > 0.0 || h->growth > 0.0) && p < h->modal->exponents; p++) {
             if (h->lr[p] != 0.0) {
                 const double size = exp(h->lr[p] * tau);
-                re[p] *= size;
-                im[p] *= size;
+                x->far_e.re[p] *= size;
+                x->far_e.im[p] *= size;
             }
         }
-        move_far(h->terms, h->lr, h->li, x->far_r, x->far_i, x->lot);
     }
+    turn(h->terms, x->room, h->lr, e, x->z.re, x->lot);
+}
+
+/* to [ndof] += place phi, and rates [ndof] += rate phi, within an extent. */
+TRIBO_SIMD static void add_shape(struct extent own, const double *restrict phi, double place, double rate, double *restrict to,
+                                 double *restrict rates)
+{
+    for (size_t d = own.begin; d < own.end; d++) {
+        to[d] += phi[d] * place;
+        rates[d] += phi[d] * rate;
+    }
+}
+
+void tribo_modal_terms_spread(const struct exact *x, double *moves)
+{
+    const size_t n = x->sys->ndof;
+    for (size_t k = 0; k < x->h->shapes; k++) {
+        add_shape(x->h->extent[k], x->h->phi + k * n, x->place[k], x->rate[k], moves, moves + n);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------- outputs in a phase */
+
+/* to = from + Re(a b) of four terms. */
+static inline void add_real_parts(const double *from, const double *restrict ar, const double *restrict ai,
+                                  const double *restrict br, const double *restrict bi, double *to)
+{
+    for (size_t k = 0; k < T; k++) {
+        to[k] = from[k] + (ar[k] * br[k] - ai[k] * bi[k]);
+    }
+}
+
+/* to = from + a b of four terms. */
+static inline void add_products(const double *from, const double *restrict a, const double *restrict b, double *to)
+{
+    for (size_t k = 0; k < T; k++) {
+        to[k] = from[k] + a[k] * b[k];
+    }
+}
+
+static const double nothing[T];
+
+/* sum [3][T] = sums of Re(c w), Re(c w'), Re(c w''), c [2][n]. sum is an array of the caller: with a local array compilers take
+ * several fours at once, and reorder them first. */
+TRIBO_SIMD_OF_FOUR static void sum_terms(size_t n, const double *c, const struct lot *lot, double *restrict sum)
+{
+    add_real_parts(nothing, c, c + n, lot->re[0], lot->im[0], sum);
+    add_real_parts(nothing, c, c + n, lot->re[1], lot->im[1], sum + T);
+    add_real_parts(nothing, c, c + n, lot->re[2], lot->im[2], sum + 2 * T);
+    for (size_t p = T; p < n; p += T) {
+        lot++;
+        add_real_parts(sum, c + p, c + n + p, lot->re[0], lot->im[0], sum);
+        add_real_parts(sum + T, c + p, c + n + p, lot->re[1], lot->im[1], sum + T);
+        add_real_parts(sum + 2 * T, c + p, c + n + p, lot->re[2], lot->im[2], sum + 2 * T);
+    }
+}
+
+/* sum [2][T] = sums of |c| growth and |c| growth6: bounds of the output and of the sixth derivative. */
+TRIBO_SIMD_OF_FOUR static void sum_bounds(size_t n, const double *size, const double *growth, const double *growth6,
+                                          double *restrict sum)
+{
+    add_products(nothing, size, growth, sum);
+    add_products(nothing, size, growth6, sum + T);
+    for (size_t p = T; p < n; p += T) {
+        add_products(sum, size + p, growth + p, sum);
+        add_products(sum + T, size + p, growth6 + p, sum + T);
+    }
+}
+
+static double total(const double *sum)
+{
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
+}
+
+void tribo_course_look(const struct exact *x, struct course *c)
+{
+    double sum[3 * T];
+    sum_terms(x->h->terms, c->output->cr, x->lot, sum);
+    c->tau = x->tau;
+    c->at.g = total(sum) + (c->line.start + c->line.ramp * x->tau);
+    c->at.d = total(sum + T) + c->line.ramp;
+    c->at.e = total(sum + 2 * T);
+}
+
+void tribo_course_bound(const struct exact *x, struct course *c)
+{
+    double sum[2 * T];
+    sum_bounds(x->h->terms, c->output->size, x->growth, x->growth6, sum);
+    c->size = total(sum) + fabs(c->line.start) + fabs(c->line.ramp) * x->longest;
+    c->bend = total(sum + T);
+}
+
+void tribo_course_begin(const struct exact *x, struct course *c, int of_velocity, double value)
+{
+    const struct output *w = c->output;
+    c->line.start = 0.0;
+    c->line.ramp = x->runs ? tribo_dot(w->on_rate, of_velocity ? x->acc : x->vel, x->h->shapes) : 0.0;
+    tribo_course_look(x, c);
+    c->line.start = value - c->at.g;
+    c->at.g = value;
+    tribo_course_bound(x, c);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What is known of a structure with contacts held: modes, forces of those that hold, and what cannot be. */
 #include "make.h"
-#include "dynamics/exact/terms.h"
+#include "dynamics/exact/motion.h"
 #include "dynamics/exact/modal.h"
 #include "support.h"
 #include "../../set_up_driver.h"
@@ -23,7 +23,7 @@ static int decompose(struct modal **h, tribo_system *sys, const signed char *sli
 /* Response of an output to the first harmonic. */
 static double complex response_of(const struct forced *f, const struct output *out)
 {
-    return out->cr[f->exponents] + out->ci[f->exponents] * I;
+    return out->cr[f->modal->exponents] + out->ci[f->modal->exponents] * I;
 }
 
 /* Body 2 on a spring of 4 to body 1, which is heavy; contacts between the ground and the light body 0, and between 0 and 1. */
@@ -368,10 +368,10 @@ TEST(coupled)
         const double complex lambda = h->lr[p] + h->li[p] * I;
         double size = 0.0, missed = 0.0;
         for (size_t k = 0; k < m; k++) {
-            const double complex r = h->rr[p * m + k] + h->ri[p * m + k] * I;
+            const double complex r = h->rr[p * m + k] - h->ri[p * m + k] * I;
             double complex sum = (lambda * lambda + h->omega2[k]) * r;
             for (size_t l = 0; l < m; l++) {
-                sum += lambda * h->coupling[k * m + l] * (h->rr[p * m + l] + h->ri[p * m + l] * I);
+                sum += lambda * h->coupling[k * m + l] * (h->rr[p * m + l] - h->ri[p * m + l] * I);
             }
             missed = fmax(missed, cabs(sum) / fmax(cabs(lambda) * cabs(lambda), h->omega2[k]));
             size = fmax(size, cabs(r));
@@ -382,7 +382,7 @@ TEST(coupled)
         for (size_t l = 0; l < m; l++) {
             double complex at = 0.0, rate = 0.0;
             for (size_t p = 0; p < e; p++) {
-                const double complex part = (h->rr[p * m + k] + h->ri[p * m + k] * I) * (h->br[l * e + p] + h->bi[l * e + p] * I);
+                const double complex part = (h->rr[p * m + k] - h->ri[p * m + k] * I) * (h->br[l * e + p] + h->bi[l * e + p] * I);
                 at += creal(part);
                 rate += creal((h->lr[p] + h->li[p] * I) * part);
             }
