@@ -154,14 +154,13 @@ static int exponents_coupled(struct modal_build *b)
     }
     tribo_lu_solve(a, size, pivot, inverse, size);
     for (size_t i = 0, p = 0; i < size; i++) {
-        const int pair = im[i] > 0.0;
         const double complex lambda = re[i] + im[i] * I;
-        const double *v = x + i * size, *w = pair ? v + size : zero, *y = inverse + i * size, *z = pair ? y + size : zero;
+        const double half = im[i] > 0.0 ? 0.5 : 1.0, *v = x + i * size, *w = im[i] > 0.0 ? v + size : zero;
+        const double *y = inverse + i * size, *z = im[i] > 0.0 ? y + size : zero;
         if (!(im[i] < 0.0) && !is_known(h, s, lambda, v, w)) {
             return exponents_unsupported(b, "damping couples modes of too different frequencies");
         }
         /* x = (v + i w) z + conjugate = 2 (v Re z - w Im z) */
-        const double half = pair ? 0.5 : 1.0;
         for (size_t k = 0; !(im[i] < 0.0) && k < m; k++) {
             keep_coupled(h, p, k, lambda, half * (y[m + k] - z[m + k] * I), (v[k] + w[k] * I) / (half * s[k]));
         }

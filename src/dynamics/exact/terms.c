@@ -23,8 +23,8 @@ static inline void multiply(const double *restrict ar, const double *restrict ai
 }
 
 /* Sets w = e z, w' = lambda w and w'' = lambda w'. Imaginary parts stand n numbers after real parts of lambda, else `next`. */
-TRIBO_SIMD_OF_FOUR static void turn(size_t n, size_t next, const double *lambda, const double *e, const double *z,
-                                    struct lot *lot)
+TRIBO_SIMD_OF_FOUR static void turn_terms(size_t n, size_t next, const double *lambda, const double *e, const double *z,
+                                          struct lot *lot)
 {
     TRIBO_APART
     for (size_t p = 0; p < n; p += T, lot++) {
@@ -83,7 +83,7 @@ void tribo_modal_terms_rest(struct exact *x)
         x->far_e.re[p] = 1.0;
         x->far_e.im[p] = 0.0;
     }
-    turn(x->h->terms, x->room, x->h->lr, x->far_e.re, x->z.re, x->lot);
+    turn_terms(x->h->terms, x->room, x->h->lr, x->far_e.re, x->z.re, x->lot);
 }
 
 /* w = e^{lambda tau} z. e^{lambda tau} is computed from tau, or from e^{lambda far} if tau is close to far. Other looks do not
@@ -107,7 +107,7 @@ void tribo_modal_terms_go(struct exact *x, double tau)
             }
         }
     }
-    turn(h->terms, x->room, h->lr, e, x->z.re, x->lot);
+    turn_terms(h->terms, x->room, h->lr, e, x->z.re, x->lot);
 }
 
 /* to [ndof] += place phi, and rates [ndof] += rate phi, within an extent. */
