@@ -8,7 +8,7 @@
 #include <gsl/gsl_linalg.h>
 
 #include "../../src/damper/output.h"
-#include "../../src/damper/structure.h"
+#include "structure_model.h"
 
 static const struct place contact_place[CONTACTS] = {
     {{200.0, 0.0, 5.0}, 3, "contact 1"}, {{300.0, 0.0, 5.0}, 3, "contact 2"}, {{400.0, 0.0, 5.0}, 3, "contact 3"}};
@@ -36,7 +36,7 @@ static void read_shapes(struct modal *b, const tribo_system *sys, size_t ndof, s
 static tribo_system *reduce(const struct structure *s, const size_t *row, size_t load, struct model *m)
 {
     struct modal *b = &m->beam;
-    tribo_model *model = model_of(s, CONTACTS, row, NULL);
+    tribo_model *model = model_of(s, CONTACTS, row);
     tribo_system *sys;
     need(tribo_system_reduce(&sys, model, MODES, TRIBO_STATICS_NONE), tribo_model_message(model));
     tribo_model_destroy(model);

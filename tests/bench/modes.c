@@ -9,7 +9,7 @@
 #include <gsl/gsl_errno.h>
 
 #include "../../src/damper/output.h"
-#include "../../src/damper/structure.h"
+#include "structure_model.h"
 #include "harness.h"
 #include "memory.h"
 #include "tribo/tribo_gsl.h"
@@ -22,7 +22,7 @@ enum { MOST = 1000 };
 static tribo_system *find_modes(const struct structure *s, size_t modes)
 {
     tribo_system *sys;
-    tribo_model *model = model_of(s, 0, NULL, NULL);
+    tribo_model *model = model_of(s, 0, NULL);
     need(tribo_system_reduce(&sys, model, modes, TRIBO_STATICS_NONE), tribo_model_message(model));
     tribo_model_destroy(model);
     return sys;

@@ -14,7 +14,7 @@
 #include <gsl/gsl_errno.h>
 
 #include "../../src/damper/output.h"
-#include "../../src/damper/structure.h"
+#include "structure_model.h"
 #include "harness.h"
 #include "tribo/tribo_gsl.h"
 #include "../set_up_driver.h"
@@ -79,7 +79,7 @@ static void spread_contacts(struct scene *x)
 static tribo_system *create(const struct scene *x, size_t modes, int statics, double *first)
 {
     tribo_system *sys;
-    tribo_model *model = model_of(&x->s, x->contacts, x->at, NULL);
+    tribo_model *model = model_of(&x->s, x->contacts, x->at);
     need(tribo_system_reduce(&sys, model, modes, statics), tribo_model_message(model));
     tribo_model_destroy(model);
     double *frequency = need_memory(tribo_system_dimension(sys), sizeof *frequency);

@@ -10,7 +10,7 @@
 #include <gsl/gsl_errno.h>
 
 #include "../../src/damper/output.h"
-#include "../../src/damper/structure.h"
+#include "structure_model.h"
 #include "harness.h"
 #include "memory.h"
 #include "tribo/tribo_gsl.h"
@@ -59,7 +59,7 @@ static void spread_contacts(struct scene *x)
 static tribo_system *create(const struct scene *x, size_t modes)
 {
     tribo_system *sys;
-    tribo_model *model = model_of(&x->s, x->contacts + 1, x->at, NULL);
+    tribo_model *model = model_of(&x->s, x->contacts + 1, x->at);
     double *limit = need_memory(x->contacts + 1, sizeof *limit), *force = need_memory(x->s.ndof, sizeof *force);
     need(modes ? tribo_system_reduce(&sys, model, modes, TRIBO_STATICS_MASS) : tribo_system_create(&sys, model),
          tribo_model_message(model));
