@@ -168,7 +168,7 @@ static signed char place_of_row(const struct definite *d, size_t i)
 }
 
 /* Block principal pivoting: all wrong rows change at once while their number falls, else the last one alone, which ends for
- * definite matrices. */
+ * definite matrices. Begins at the places of the last call, which differ in few rows from one event to the next. */
 void tribo_definite_box(struct definite *d)
 {
     const size_t n = d->n;
@@ -178,7 +178,8 @@ void tribo_definite_box(struct definite *d)
         f[i] = d->own[i] > 0.0 ? clamp(-d->q[i] / d->own[i], d->lo[i], d->hi[i]) : 0.0;
     }
     for (size_t i = 0; i < n; i++) {
-        d->at[i] = (signed char)(d->lo[i] < d->hi[i] ? 0 : -1);
+        const double bound = d->at[i] < 0 ? d->lo[i] : d->at[i] > 0 ? d->hi[i] : 0.0;
+        d->at[i] = (signed char)(!(d->lo[i] < d->hi[i]) ? -1 : fabs(bound) < HUGE_VAL ? d->at[i] : 0);
     }
     for (size_t change = 0; d->matrix && change < CHANGES * (n + 1); change++) {
         size_t wrong = 0, last = 0;

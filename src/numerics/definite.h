@@ -18,7 +18,7 @@ struct definite {
     double *q;       /* [n] see tribo_definite_box; lo, hi, f alike */
     double *lo, *hi; /* [n] */
     double *f;       /* [n] */
-    signed char *at; /* [n] workspace */
+    signed char *at; /* [n] places of the rows found last by tribo_definite_box: 0 inside, -1 at lo, 1 at hi */
     signed char *to; /* [n] workspace */
     void *memory;    /* of all arrays */
 };
