@@ -29,26 +29,31 @@ int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f)
     return status ? tribo_system_fail(c->sys, status, "%s", tribo_message(c->hold)) : TRIBO_OK;
 }
 
+void tribo_stick_slip_set_hold(struct stick_slip *m, size_t i, int holds)
+{
+    struct slip_state *s = &m->state;
+    const int rests = s->slip[i] == TRIBO_SLIP_STUCK, loose = !holds || m->constant.elastic[i];
+    s->dependents += (size_t)(rests && !holds);
+    s->dependents -= (size_t)(s->key[i] == 1);
+    s->hold_differs |= loose != s->loose[i];
+    s->snaps_differ |= loose != s->loose[i];
+    s->holds[i] = (unsigned char)holds;
+    s->loose[i] = (signed char)loose;
+    s->key[i] = (signed char)(rests + holds);
+}
+
 int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
 {
     const struct slip_constant *c = &m->constant;
     struct slip_state *s = &m->state;
     const size_t n = c->contacts;
-    if (!c->independent) {
-        s->fresh |= memcmp(s->before, s->tied, n) != 0;
-        memcpy(s->before, s->tied, n);
-    }
-    if (!s->fresh) {
+    if (c->independent || (!s->fresh && memcmp(s->before, s->tied, n) == 0)) {
         return TRIBO_OK;
     }
-    s->fresh = 0;
     struct constraints ties = {0};
-    size_t rest = 0, hold = 0, *at = m->work.at;
-    int differs = 0;
+    size_t rest = 0, *at = m->work.at;
     for (size_t i = 0; i < n; i++) {
-        s->holds[i] = (s->slip[i] == TRIBO_SLIP_STUCK) & c->can_hold[i];
-    }
-    for (size_t i = 0; !c->independent && i < n; i++) {
+        s->holds[i] = s->slip[i] == TRIBO_SLIP_STUCK && c->can_hold[i];
         at[rest] = i;
         m->work.last[rest] = (unsigned char)(s->tied[i] == 1 ? 2 : s->tied[i] == 2);
         rest += s->holds[i] && !c->elastic[i];
@@ -64,20 +69,11 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
         }
         tribo_constraints_free(&ties);
     }
-    s->dependents = 0;
     for (size_t i = 0; i < n; i++) {
-        const int rests = s->slip[i] == TRIBO_SLIP_STUCK, loose = !s->holds[i] || c->elastic[i];
-        s->dependents += rests & !s->holds[i];
-        hold += (size_t)!loose;
-        differs |= s->loose[i] != loose;
-        s->loose[i] = (signed char)loose;
-        s->key[i] = (signed char)(rests + s->holds[i]);
+        tribo_stick_slip_set_hold(m, i, s->holds[i]);
     }
-    s->hold_differs |= differs;
-    if (differs && !sys->snaps_in_order) {
-        s->snaps = tribo_system_list_snaps(sys, s->loose, s->snap);
-        s->simple = s->snaps == hold;
-    }
+    memcpy(s->before, s->tied, n);
+    s->fresh = 0;
     return TRIBO_OK;
 }
 
@@ -112,8 +108,17 @@ int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, cons
 
 int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
 {
-    const struct slip_state *s = &m->state;
+    struct slip_state *s = &m->state;
     int status = TRIBO_OK;
+    if (s->snaps_differ && !sys->snaps_in_order) {
+        size_t holding = 0;
+        for (size_t i = 0; i < m->constant.contacts; i++) {
+            holding += !s->loose[i];
+        }
+        s->snaps = tribo_system_list_snaps(sys, s->loose, s->snap);
+        s->simple = s->snaps == holding;
+    }
+    s->snaps_differ = 0;
     tribo_snap_all(s->snap, s->snaps, s->loose, base, x);
     if (!s->simple && moves(m, sys, base, x)) {
         status = tribo_stick_slip_project(m, sys, base, x);

@@ -166,6 +166,21 @@ static int check_holds(const struct stick_slip *m, const tribo_system *sys)
     return TRIBO_OK;
 }
 
+int tribo_planar_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
+{
+    int status;
+    for (size_t k = 0; k < m->plane->count; k++) {
+        m->plane->contact[k].before = m->plane->contact[k].now;
+    }
+    m->plane->stopped = m->constant.contacts;
+    do {
+        stop_in_plane(m, sys, y);
+        status = tribo_stick_slip_find_resting(m, sys, y);
+        status = status ? status : check_holds(m, sys);
+    } while (!status && stop_in_plane(m, sys, y));
+    return status;
+}
+
 /* ------------------------------------------------------------------------------------------------------------ forces */
 
 /* Sets work.lo = forces of sliding contacts, 0 of others, and plane->rate = their rates for accelerations acc [ncontact].
@@ -348,34 +363,17 @@ static int look_ahead_in_plane(struct stick_slip *m, const tribo_system *sys, co
     return status;
 }
 
-int tribo_planar_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
+int tribo_planar_slip_settle(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
-    for (size_t k = 0; k < m->plane->count; k++) {
-        m->plane->contact[k].before = m->plane->contact[k].now;
+    given_forces(m, sys, y, m->constant.still);
+    for (size_t i = 0; i < m->constant.contacts; i++) {
+        m->work.hi[i] = m->state.slip[i] == TRIBO_SLIP_STUCK ? m->state.limit[i] : 0.0;
     }
-    tribo_stick_slip_begin_decision(m, sys, t);
-    int status = TRIBO_OK;
-    m->plane->stopped = m->constant.contacts;
-    do {
-        stop_in_plane(m, sys, y);
-        status = tribo_stick_slip_find_resting(m, sys, y);
-        status = status ? status : check_holds(m, sys);
-    } while (!status && stop_in_plane(m, sys, y));
+    int status = solve_discs(m, sys, m->work.a, m->state.force);
     if (!status) {
-        tribo_stick_slip_find_free(m, sys, t, y);
-        given_forces(m, sys, y, m->constant.still);
-        for (size_t i = 0; i < m->constant.contacts; i++) {
-            m->work.hi[i] = m->state.slip[i] == TRIBO_SLIP_STUCK ? m->state.limit[i] : 0.0;
-        }
-        status = solve_discs(m, sys, m->work.a, m->state.force);
+        tribo_stick_slip_find_gains(m, sys, y);
+        status = break_away(m) ? look_ahead_in_plane(m, sys, y) : TRIBO_OK;
     }
-    if (status) {
-        return status;
-    }
-    tribo_stick_slip_forget_gains(m);
-    tribo_stick_slip_find_gains(m, sys, y);
-    status = break_away(m) ? look_ahead_in_plane(m, sys, y) : TRIBO_OK;
-    m->state.reached = m->constant.contacts;
     memset(m->state.tied, 0, m->constant.contacts);
     status = status ? status : tribo_stick_slip_find_holds(m, sys);
     return status ? status : check_holds(m, sys);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Decides, at an instant, which scalar contacts stick and which slide:
  *
- *     contacts without velocity, or with none left in the direction of their slip, are at rest
  *     repeat
  *         find the forces: min 1/2 f'Rf + a'f, with |f| <= limit at rest, and f at its limit where a contact slides
  *         a contact at rest slides if its force is at the limit and its acceleration exceeds rounding
@@ -9,8 +8,7 @@
  *         if still none does: of the forces that hold all contacts at rest, the one most beyond its limit makes its contact slide
  *         a contact that held by a static limit does not slide yet: in the next round its bound is the limit to slide, and all
  *         contacts that began to slide are at rest again
- *     until no contact begins to slide
- *     an independent set of the contacts at rest holds: it keeps all of them where they are */
+ *     until no contact begins to slide */
 #include "stick_slip.h"
 #include "common/real.h"
 
@@ -36,14 +34,14 @@
 
 /* ------------------------------------------------------------------------------------------------------------- forces */
 
-/* clamp(-a/R_ii, lo, hi); for R_ii = 0 the bound against a. */
-static inline double force_alone(double r, double a, double lo, double hi)
+/* The force of contact i alone within work.lo and hi: clamp(-a_i/R_ii, lo, hi); for R_ii = 0 the bound against a. */
+static inline double force_alone(const struct stick_slip *m, size_t i, double a)
 {
-    const double far = a > 0.0 ? HUGE_VAL : a < 0.0 ? -HUGE_VAL : 0.0;
-    return clamp(-(r > 0.0 ? a / r : far), lo, hi);
+    const double r = m->constant.diagonal[i], lo = m->work.lo[i], hi = m->work.hi[i];
+    return r > 0.0 ? clamp(-a / r, lo, hi) : a > 0.0 ? lo : a < 0.0 ? hi : clamp(0.0, lo, hi);
 }
 
-/* Finds f [ncontact] within work.lo and hi at accelerations a without f. Returns a status. */
+/* Finds f [ncontact] within work.lo and hi at accelerations a without f, where R is not diagonal. Returns a status. */
 static int solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
 {
     const struct slip_constant *c = &m->constant;
@@ -53,9 +51,9 @@ static int solve(struct stick_slip *m, const tribo_system *sys, const double *a,
     for (size_t k = 0; k < c->contacts; k++) {
         i = lo[k] < hi[k] ? k : i;
         unknown += lo[k] < hi[k];
-        f[k] = c->uncoupled ? force_alone(c->diagonal[k], a[k], lo[k], hi[k]) : lo[k];
+        f[k] = lo[k];
     }
-    if (c->uncoupled || (c->independent && !unknown)) {
+    if (c->independent && !unknown) {
         return TRIBO_OK;
     }
     if (!c->independent || unknown > 1) { /* contacts that depend on each other start from these forces next time */
@@ -67,21 +65,52 @@ static int solve(struct stick_slip *m, const tribo_system *sys, const double *a,
     for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
         own += j->val[k] * tribo_matrix_row_dot(&sys->response, j->col[k], f);
     }
-    f[i] = force_alone(c->diagonal[i], own, lo[i], hi[i]);
+    f[i] = force_alone(m, i, own);
     return TRIBO_OK;
 }
 
-/* Finds state.force. Returns a status. */
+/* Finds state.force and lists work.doubt: the contacts that others or their own limits may change in this decision. If R is
+ * diagonal these are the contacts at rest close to their limits; else all, or none if none is close. Returns a status. */
 static int find_forces(struct stick_slip *m, const tribo_system *sys)
 {
-    const struct slip_state *s = &m->state;
-    for (size_t i = 0; i < m->constant.contacts; i++) {
-        const double given = m->constant.elastic[i] ? s->spring[i] : -s->slip[i] * s->limit[i];
-        const int searches = tribo_stick_slip_searches(m, i);
-        m->work.hi[i] = searches ? s->stick[i] : given;
-        m->work.lo[i] = searches ? -s->stick[i] : given;
+    const struct slip_constant *c = &m->constant;
+    struct slip_state *s = &m->state;
+    struct slip_work *w = &m->work;
+    int status = TRIBO_OK, close = s->dependents && c->base_moves;
+    w->doubts = 0;
+    for (size_t i = 0; i < c->contacts; i++) {
+        if (tribo_stick_slip_searches(m, i)) {
+            w->hi[i] = s->stick[i];
+            w->lo[i] = -s->stick[i];
+            s->force[i] = force_alone(m, i, w->a[i]);
+        } else {
+            s->force[i] = w->lo[i] = w->hi[i] = c->elastic[i] ? s->spring[i] : -s->slip[i] * s->limit[i];
+        }
     }
-    return solve(m, sys, m->work.a, s->force);
+    if (!c->uncoupled) {
+        status = solve(m, sys, w->a, s->force);
+    }
+    for (size_t i = 0; i < c->contacts; i++) {
+        const int near = tribo_stick_slip_searches(m, i) && (fabs(s->force[i]) >= (1.0 - CLOSE) * s->stick[i] || i == s->reached);
+        close |= near;
+        w->doubt[w->doubts] = i;
+        w->doubts += !c->uncoupled || near || !c->can_hold[i];
+    }
+    w->doubts = close ? w->doubts : 0;
+    return status;
+}
+
+/* Sets work.v of the contacts in doubt = their accelerations a + R f. */
+static void accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f)
+{
+    if (!m->constant.uncoupled) {
+        tribo_stick_slip_accelerate(m, sys, a, f, m->work.v);
+        return;
+    }
+    for (size_t k = 0; k < m->work.doubts; k++) {
+        const size_t i = m->work.doubt[k];
+        m->work.v[i] = a[i] + m->constant.diagonal[i] * f[i];
+    }
 }
 
 /* --------------------------------------------------------------------------------------------------------- letting go */
@@ -114,39 +143,23 @@ static signed char leaves(const struct stick_slip *m, size_t i, double force, do
     return (signed char)(direction * a > m->noise.acceleration[i] ? direction : 0);
 }
 
-/* 1 if the force of contact i, at rest, is close to its limit, or has reached it. */
-static int is_close(const struct slip_state *s, size_t i)
-{
-    return fabs(s->force[i]) >= (1.0 - CLOSE) * s->stick[i] || i == s->reached;
-}
-
-/* 1 if contact i is at rest, and its force may be at the limit now or a moment later. If R is diagonal, only a force close to the
- * limit may be; else any force, since it changes with the others. */
-static int may_slide(const struct stick_slip *m, size_t i)
-{
-    return tribo_stick_slip_searches(m, i) && (!m->constant.uncoupled || !m->constant.can_hold[i] || is_close(&m->state, i));
-}
-
 /* Lets contacts slide by the forces found, and ties those at their limits. Returns the number of contacts that need another
- * round; *ties = number of tied contacts. If no contact is close to its limit, none is at it. */
+ * round; *ties = number of tied contacts. */
 static size_t let_slide(struct stick_slip *m, const tribo_system *sys, const double *y, size_t *ties)
 {
     struct slip_state *s = &m->state;
-    const size_t n = m->constant.contacts;
     size_t changes = 0;
-    int close = 0, found = 0; /* found: work.v are the accelerations by the forces */
+    int found = 0; /* 1: work.v are the accelerations by the forces */
     *ties = 0;
-    for (size_t i = 0; i < n; i++) {
-        close |= tribo_stick_slip_searches(m, i) && is_close(s, i);
-    }
-    for (size_t i = 0; close && i < n; i++) {
-        if (may_slide(m, i)) {
+    for (size_t k = 0; k < m->work.doubts; k++) {
+        const size_t i = m->work.doubt[k];
+        if (tribo_stick_slip_searches(m, i)) {
             const double room = s->stick[i] - fabs(s->force[i]);
             tribo_stick_slip_find_gain(m, sys, y, i);
             s->tied[i] = room <= (i == s->reached ? CLOSE * s->stick[i] : m->noise.allowance[i] / TRIBO_ALLOWED);
             if (s->tied[i] && room <= 0.0) {
                 if (!found) { /* before any contact of this round lets go */
-                    tribo_stick_slip_accelerate(m, sys, m->work.a, s->force, m->work.v);
+                    accelerate(m, sys, m->work.a, s->force);
                     found = 1;
                 }
                 const signed char direction = leaves(m, i, s->force[i], must_be_sure(m, i) ? 1.0 / CERTAIN : 1.0);
@@ -173,6 +186,9 @@ static double find_moment(const struct stick_slip *m)
     const struct slip_state *s = &m->state;
     const double horizon = m->constant.horizon;
     double moment = horizon, force = 0.0;
+    if (!tribo_system_limits_vary(m->constant.sys) && !m->breakaway.falls) {
+        return horizon;
+    }
     for (size_t i = 0; i < m->constant.contacts; i++) {
         force = greater(force, greater(fabs(s->force[i]), m->constant.inertia[i] * fabs(m->work.a[i])));
     }
@@ -184,49 +200,16 @@ static double find_moment(const struct stick_slip *m)
     return moment;
 }
 
-/* Sets the limits at the velocities of y, if there are static limits. */
-static void find_static(struct stick_slip *m, const tribo_system *sys, const double *y)
-{
-    if (m->breakaway.some) {
-        for (size_t i = 0; i < sys->ncontact; i++) {
-            m->work.v[i] = m->state.rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
-        }
-        tribo_breakaway_limits(&m->breakaway, sys->ncontact, m->state.slip, m->work.v, m->state.limit, m->state.limit_rate);
-    }
-}
-
-/* Sets the bounds of forces a moment later. */
-static void set_bounds_ahead(struct stick_slip *m, double moment)
-{
-    const struct slip_state *s = &m->state;
-    for (size_t i = 0; i < m->constant.contacts; i++) {
-        const double limit = limit_ahead(s, i, moment), now = s->stick[i], wider = s->tied[i] ? 0.0 : WIDER * now;
-        double *lo = &m->work.lo[i], *hi = &m->work.hi[i];
-        if (tribo_stick_slip_searches(m, i)) {
-            *hi = limit + (now - s->force[i] < wider ? wider : 0.0);
-            *lo = -limit - (now + s->force[i] < wider ? wider : 0.0);
-        } else {
-            *lo = *hi = m->constant.elastic[i] ? s->spring[i] + moment * s->spring_rate[i] : -s->slip[i] * limit;
-        }
-    }
-}
-
 /* Lets contacts slide by the forces of a moment later. A contact that stays tied is marked 1, or 2 if it goes back inside; one
  * that would lose a static limit is marked in work.pulled instead. */
 static int look_ahead(struct stick_slip *m, const tribo_system *sys, const double *y, size_t *ties, size_t *changes)
 {
     struct slip_state *s = &m->state;
     struct slip_work *w = &m->work;
-    const size_t n = m->constant.contacts;
-    for (size_t i = 0; i < n; i++) {
-        if (may_slide(m, i)) {
-            tribo_stick_slip_find_gain(m, sys, y, i);
-        }
-    }
     if (m->breakaway.falls) { /* rates of limits, as sliding contacts gain speed */
-        find_static(m, sys, y);
+        tribo_stick_slip_find_static(m, sys, y);
         tribo_stick_slip_accelerate(m, sys, w->a, s->force, w->v);
-        for (size_t i = 0; i < n; i++) {
+        for (size_t i = 0; i < m->constant.contacts; i++) {
             const double v = s->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
             s->limit_rate[i] +=
                 s->slip[i] == TRIBO_SLIP_OPEN ? 0.0 : s->slip[i] * w->v[i] * tribo_breakaway_slope(&m->breakaway, i, v);
@@ -235,19 +218,28 @@ static int look_ahead(struct stick_slip *m, const tribo_system *sys, const doubl
     const double moment = find_moment(m);
     tribo_stick_slip_find_rate(m, sys, y);
     tribo_stick_slip_contact_accelerations(sys, w->rate, 2, w->v);
-    for (size_t i = 0; i < n; i++) {
+    memset(w->pulled, 0, m->constant.contacts);
+    for (size_t k = 0; k < w->doubts; k++) {
+        const size_t i = w->doubt[k];
+        const double limit = limit_ahead(s, i, moment), now = s->stick[i], wider = s->tied[i] ? 0.0 : WIDER * now;
+        if (tribo_stick_slip_searches(m, i)) {
+            w->hi[i] = limit + (now - s->force[i] < wider ? wider : 0.0);
+            w->lo[i] = -limit - (now + s->force[i] < wider ? wider : 0.0);
+        } else {
+            w->lo[i] = w->hi[i] = m->constant.elastic[i] ? s->spring[i] + moment * s->spring_rate[i] : -s->slip[i] * limit;
+        }
         w->v[i] = w->a[i] + moment * w->v[i];
+        w->f[i] = force_alone(m, i, w->v[i]);
     }
-    set_bounds_ahead(m, moment);
-    const int status = solve(m, sys, w->v, w->f);
+    const int status = m->constant.uncoupled ? TRIBO_OK : solve(m, sys, w->v, w->f);
     if (status) {
         return status;
     }
-    tribo_stick_slip_accelerate(m, sys, w->v, w->f, w->v);
-    for (size_t i = 0; i < n; i++) {
+    accelerate(m, sys, w->v, w->f);
+    for (size_t k = 0; k < w->doubts; k++) {
+        const size_t i = w->doubt[k];
         const double room = limit_ahead(s, i, moment) - fabs(w->f[i]);
-        w->pulled[i] = 0;
-        if (may_slide(m, i) && room >= 0.0) {
+        if (tribo_stick_slip_searches(m, i) && room >= 0.0) {
             const signed char direction = (signed char)(room <= 0.0 ? leaves(m, i, w->f[i], 1.0) : 0);
             const int sudden = tribo_breakaway_is_sudden(&m->breakaway, i);
             w->pulled[i] = (signed char)(sudden && s->tied[i] ? direction : 0);
@@ -342,20 +334,10 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
 
 /* ------------------------------------------------------------------------------------------------------------ decision */
 
-int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
+int tribo_scalar_slip_settle(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     struct slip_state *s = &m->state;
-    const size_t n = m->constant.contacts;
-    tribo_stick_slip_begin_decision(m, sys, t);
-    tribo_stick_slip_update_limits(m, sys, y);
-    tribo_elastic_place(m, sys, y);
-    int status = tribo_stick_slip_find_resting(m, sys, y);
-    find_static(m, sys, y);
-    if (!status) {
-        tribo_elastic_move(m, sys, y);
-        tribo_stick_slip_find_free(m, sys, t, y);
-        tribo_stick_slip_forget_gains(m);
-    }
+    int status = TRIBO_OK;
     for (size_t changes = 1, ties; !status && changes;) {
         status = find_forces(m, sys);
         changes = status ? 0 : let_slide(m, sys, y, &ties);
@@ -366,23 +348,19 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
             status = relieve(m, sys, &changes);
         }
         if (changes) {
-            memset(s->tied, 0, n);
-            for (size_t i = 0; m->work.limit_lost && i < n; i++) {
+            memset(s->tied, 0, m->constant.contacts);
+            for (size_t i = 0; m->work.limit_lost && i < m->constant.contacts; i++) {
                 tribo_stick_slip_set(m, i, s->rested[i] ? TRIBO_SLIP_STUCK : s->slip[i]); /* slips while the lost limits held */
             }
             m->work.limit_lost = 0;
         }
     }
-    s->reached = n;
     if (m->breakaway.some && !status) {
         tribo_stick_slip_find_gains(m, sys, y);
+        for (size_t i = 0; i < m->constant.contacts; i++) {
+            /* a contact that broke away, and is held by others after all, has its static limit again */
+            s->tied[i] = (signed char)(tribo_breakaway_restore(&m->breakaway, i) ? 0 : s->tied[i]);
+        }
     }
-    for (size_t i = 0; m->breakaway.some && i < n; i++) {
-        /* a contact that broke away, and is held by others after all, has its static limit again */
-        s->tied[i] = (signed char)(tribo_breakaway_restore(&m->breakaway, i) ? 0 : s->tied[i]);
-    }
-    if (!status) {
-        tribo_elastic_finish(m, sys);
-    }
-    return status ? status : tribo_stick_slip_find_holds(m, sys);
+    return status;
 }

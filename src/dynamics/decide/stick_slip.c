@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What contacts do at an instant: limits and bases, which contacts are at rest, velocities and accelerations, and bounds of their
- * rounding. Decisions are made in scalar_slip.c and planar_slip.c. */
+ * rounding. The decision:
+ *
+ *     contacts without velocity, or with none left in the direction of their slip, are at rest
+ *     the forces decide which of them slide (scalar_slip.c; planar_slip.c if there are planar contacts)
+ *     an independent set of the contacts at rest holds: it keeps all of them where they are */
 #include "numerics/constraint.h"
 #include "stick_slip.h"
 #include "common/layout.h"
@@ -49,6 +53,7 @@ static void lay_out_arrays(struct stick_slip *m, struct layout *l, size_t contac
     c->memory = tribo_layout_array(l, 0, 1);
     double *work = tribo_layout_array(l, CONTACTS * contacts + DOFS * dofs, sizeof *work);
     w->at = tribo_layout_array(l, contacts, sizeof *w->at);
+    w->doubt = tribo_layout_array(l, contacts, sizeof *w->doubt);
     s->snap = tribo_layout_array(l, contacts, sizeof *s->snap);
     signed char *bytes = tribo_layout_array(l, (SIGNS + MARKS) * contacts + sizeof(uint64_t), 1);
     for (size_t k = 0; work && k < CONTACTS; k++) {
@@ -112,12 +117,17 @@ static int find_constants(struct stick_slip *m, const tribo_system *sys)
     m->state.simple = m->state.snaps == count;
     if (c->uncoupled || (in_order && m->state.simple)) {
         c->independent = 1;
-        return 1;
+    } else if (tribo_constraints_create(&ties, &sys->direction, &sys->mass, rigid, count, m->work.last)) {
+        c->independent = ties.rank == count;
+    } else {
+        tribo_constraints_free(&ties);
+        return 0;
     }
-    const int done = tribo_constraints_create(&ties, &sys->direction, &sys->mass, rigid, count, m->work.last);
-    c->independent = done && ties.rank == count;
     tribo_constraints_free(&ties);
-    return done;
+    for (size_t i = 0; c->independent && i < c->contacts; i++) {
+        tribo_stick_slip_set_hold(m, i, c->can_hold[i]);
+    }
+    return 1;
 }
 
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
@@ -188,7 +198,7 @@ static void find_scales(struct stick_slip *m, const tribo_system *sys)
     }
 }
 
-void tribo_stick_slip_forget_gains(struct stick_slip *m)
+static void forget_gains(struct stick_slip *m)
 {
     memset(m->noise.acceleration, 0, m->noise.founds * sizeof *m->noise.acceleration);
 }
@@ -269,12 +279,6 @@ double tribo_stick_slip_margin(const struct stick_slip *m, size_t i)
 
 /* -------------------------------------------------------------------------------------------------------------- motion */
 
-void tribo_stick_slip_find_free(struct stick_slip *m, tribo_system *sys, double t, const double *y)
-{
-    tribo_system_free_acceleration(sys, t, y, m->work.free);
-    tribo_stick_slip_contact_accelerations(sys, m->work.free, 1, m->work.a);
-}
-
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
 {
     tribo_matrix_multiply(&sys->direction, acceleration, to);
@@ -350,12 +354,14 @@ static signed char slip_of(struct stick_slip *m, const tribo_system *sys, size_t
     return (signed char)(fabs(v) <= noise ? TRIBO_SLIP_STUCK : v > 0.0 ? TRIBO_SLIP_FORTH : TRIBO_SLIP_BACK);
 }
 
-void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y)
+/* Updates limits, and opens and closes contacts by them. */
+static void update_limits(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     struct slip_state *s = &m->state;
-    if (tribo_system_limits_vary(sys) || m->breakaway.some) {
-        tribo_system_limits(sys, s->limit, s->limit_rate);
+    if (!tribo_system_limits_vary(sys) && !m->breakaway.some) {
+        return;
     }
+    tribo_system_limits(sys, s->limit, s->limit_rate);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const int presses = m->constant.swing[i] > 0.0 ? tribo_system_presses(sys, i, m->noise.factor)
                                                        : s->limit[i] != 0.0 || s->limit_rate[i] != 0.0;
@@ -412,8 +418,10 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
     if (!status && s->dependents && m->constant.base_moves) {
         status = part(m, sys, y);
     }
+    const signed char *restrict slip = s->slip;
+    unsigned char *restrict rested = s->rested;
     for (size_t i = 0; i < n; i++) {
-        s->rested[i] = s->slip[i] == TRIBO_SLIP_STUCK;
+        rested[i] = slip[i] == TRIBO_SLIP_STUCK;
     }
     return status;
 }
@@ -429,11 +437,38 @@ static void find_base(struct stick_slip *m, const tribo_system *sys)
     }
 }
 
-void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t)
+void tribo_stick_slip_find_static(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    if (m->breakaway.some) {
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            m->work.v[i] = m->state.rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
+        }
+        tribo_breakaway_limits(&m->breakaway, sys->ncontact, m->state.slip, m->work.v, m->state.limit, m->state.limit_rate);
+    }
+}
+
+int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
     tribo_system_set_time(sys, t);
     find_base(m, sys);
     memset(m->state.tied, 0, sys->ncontact);
+    update_limits(m, sys, y);
+    tribo_elastic_place(m, sys, y);
+    int status = m->plane ? tribo_planar_slip_find_resting(m, sys, y) : tribo_stick_slip_find_resting(m, sys, y);
+    if (!status) {
+        tribo_stick_slip_find_static(m, sys, y);
+        tribo_elastic_move(m, sys, y);
+        tribo_system_free_acceleration(sys, t, y, m->work.free);
+        tribo_stick_slip_contact_accelerations(sys, m->work.free, 1, m->work.a);
+        forget_gains(m);
+        status = m->plane ? tribo_planar_slip_settle(m, sys, y) : tribo_scalar_slip_settle(m, sys, y);
+    }
+    m->state.reached = sys->ncontact;
+    if (status) {
+        return status;
+    }
+    tribo_elastic_finish(m, sys);
+    return tribo_stick_slip_find_holds(m, sys);
 }
 
 void tribo_stick_slip_forget_shares(struct stick_slip *m)
@@ -464,7 +499,7 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
     }
     if (!continues) {
         memset(s->force, 0, c * sizeof *s->force);
-        tribo_stick_slip_forget_gains(m);
+        forget_gains(m);
         for (size_t i = 0; i < c; i++) {
             const signed char slip = slip_of(m, sys, i, y);
             /* several contacts that hold a body together leave what rounding of accelerations makes of v_i */

@@ -43,14 +43,16 @@ struct slip_state {
     signed char *slip;     /* [ncontact] TRIBO_SLIP_...; written by tribo_stick_slip_set */
     unsigned char *rested; /* [ncontact] 1: at rest at the last decision, so that v_i = 0 there */
     signed char *slid;     /* [ncontact] slip by the last decision; elastic contacts */
-    int fresh;             /* 1: slip changed since the last choice of H: the members from holds to snaps are of that choice */
+    int fresh;             /* 1: slip changed since the last choice of H: the members from holds to simple are of that choice. If
+                              all contacts at rest hold (constant.independent) H changes with slip */
     unsigned char *holds;  /* [ncontact] 1: at rest, in the independent set H that keeps all contacts at rest where they are; the
                               other contacts at rest keep their forces */
     signed char *loose;    /* [ncontact] 0: rigid and holds */
     signed char *key;      /* [ncontact, and zeros up to whole words of 8] 1: at rest; 2: at rest and holds */
-    int dependents;        /* number of contacts at rest that do not hold */
+    size_t dependents;     /* number of contacts at rest that do not hold */
     signed char *before;   /* [ncontact] tied as of the last choice of H; contacts that depend on each other */
     int hold_differs;      /* 1: H changed since constant.hold took it */
+    int snaps_differ;      /* 1: H changed since snap was listed for it */
     struct snap *snap;     /* [snaps] corrections that make J x = base exact: of all contacts if sys->snaps_in_order, else of H */
     size_t snaps;
     int simple;          /* 1: snap has a correction for every contact of H */
@@ -95,6 +97,8 @@ struct slip_work {
     signed char *pulled;  /* [ncontact] direction in which a contact at its static limit slides a moment later; 0: none */
     size_t *at;           /* [ncontact] contacts at rest, as H is chosen */
     unsigned char *last;  /* [ncontact] order of choice of these */
+    size_t *doubt;        /* [doubts] contacts that others or their own limits may change in this decision */
+    size_t doubts;
 };
 
 /* Static limits above the limits to slide (tribo_set_static), for methods with events. A contact at rest holds up to its static
@@ -155,22 +159,31 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_free(struct stick_slip *m);
 void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues);
 
-/* scalar_slip.c: the decision at (t, y); sets slip, holds, force and allowance, and removes rounding of velocities at rest
- * from y. Returns a status. */
+/* The decision at (t, y); sets slip, holds, force and allowance, and removes rounding of velocities at rest from y. Returns a
+ * status. */
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
 
-/* stick_slip.c: finds q'' [ndof] and all forces [ncontact] at (t, y) for the slip of the last decision. Returns a status. */
+/* Finds q'' [ndof] and all forces [ncontact] at (t, y) for the slip of the last decision. Returns a status. */
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration,
                                   double *force);
 
 /* Redundant forces start from those found last; this makes them start from zero. */
 void tribo_stick_slip_forget_shares(struct stick_slip *m);
 
-/* Sets the slip of contact i; the only function that writes slip. H follows by find_holds. */
+/* holds.c: sets what follows from slip[i] and from holds, 1 if contact i is at rest and in H. */
+void tribo_stick_slip_set_hold(struct stick_slip *m, size_t i, int holds);
+
+/* Sets the slip of contact i; the only function that writes slip. H follows at once or, if contacts at rest may depend on each
+ * other, by find_holds. */
 static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed char slip)
 {
-    m->state.fresh |= slip != m->state.slip[i];
-    m->state.slip[i] = slip;
+    if (m->state.slip[i] != slip) {
+        m->state.slip[i] = slip;
+        m->state.fresh = 1;
+        if (m->constant.independent) {
+            tribo_stick_slip_set_hold(m, i, slip == TRIBO_SLIP_STUCK && m->constant.can_hold[i]);
+        }
+    }
 }
 
 /* 1 for a slip along the contact's direction, forth or back. */
@@ -199,22 +212,21 @@ static inline int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i
 
 /* ------------------------------------------------------------------------------------------------ the steps of a decision */
 
-/* Sets the time and bases; updates limits, and opens and closes contacts by them; brings contacts to rest that have no velocity
- * in the direction of their slip. The last one returns a status. */
-void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t);
-void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y);
+/* Brings contacts to rest that have no velocity in the direction of their slip. Returns a status. */
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);
 
-/* noise.acceleration and allowance: zeroed; found of contact i, unless known; found of all. */
-void tribo_stick_slip_forget_gains(struct stick_slip *m);
+/* Sets the limits at the velocities of y, if there are static limits. */
+void tribo_stick_slip_find_static(struct stick_slip *m, const tribo_system *sys, const double *y);
+
+/* scalar_slip.c: lets contacts at rest slide by the forces; sets slip, tied, force and allowance. Returns a status. */
+int tribo_scalar_slip_settle(struct stick_slip *m, const tribo_system *sys, const double *y);
+
+/* noise.acceleration and allowance: found of contact i, unless known; found of all. */
 void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i);
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y);
 
 /* The largest of noise.size. */
 double tribo_stick_slip_acceleration_size(struct stick_slip *m, const tribo_system *sys, const double *y);
-
-/* Sets work.free and work.a at (t, y). */
-void tribo_stick_slip_find_free(struct stick_slip *m, tribo_system *sys, double t, const double *y);
 
 /* Returns q'' [ndof] with state.force, also after a decision; sets work.rate = its rate at constant forces; sets to [ncontact]
  * = J acceleration - the order-th derivative of b; sets v [ncontact] = a + R f, where v may be a. */
@@ -309,8 +321,9 @@ void tribo_planar_slip_free(struct planar_slip *p); /* NULL is fine */
  * on the system's context. */
 int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int continues);
 
-/* In the place of tribo_stick_slip_decide where there are planar contacts. */
-int tribo_planar_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
+/* In the place of tribo_stick_slip_find_resting and tribo_scalar_slip_settle where there are planar contacts. */
+int tribo_planar_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);
+int tribo_planar_slip_settle(struct stick_slip *m, const tribo_system *sys, const double *y);
 
 /* ---------------------------------------------------------------------------------------------------------- velocities */
 

@@ -220,7 +220,7 @@ static double to_a_number(const tribo_system *sys, double t, double reach, doubl
 static int decide(struct events *e, tribo_system *sys, double t, double *y)
 {
     struct stick_slip *m = &e->stick_slip;
-    const int status = m->plane ? tribo_planar_slip_decide(m, sys, t, y) : tribo_stick_slip_decide(m, sys, t, y);
+    const int status = tribo_stick_slip_decide(m, sys, t, y);
     memset(m->noise.velocity_scale, 0, m->constant.contacts * sizeof *m->noise.velocity_scale);
     e->decided = status == TRIBO_OK;
     return status;
