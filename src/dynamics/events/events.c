@@ -83,11 +83,11 @@ static void refill_credit(struct events *e, double t)
 }
 
 /* Counts an event of a contact against the credit, which grows with time; an error if events make no headway. */
-static int count_event(struct events *e, tribo_driver *drv, size_t contact, double t, double fastest)
+static int count_event(struct events *e, tribo_driver *drv, size_t contact, double t)
 {
     const double most = most_credit(e);
     drv->events++;
-    e->credit += 16.0 * most * fastest * (t - e->paid);
+    e->credit += 16.0 * most * e->fastest * (t - e->paid);
     e->paid = t;
     e->stick_slip.noise.factor = 1.0;
     if (e->credit >= most) {
@@ -104,7 +104,7 @@ static int count_event(struct events *e, tribo_driver *drv, size_t contact, doub
     e->credit -= 1.0;
     if (e->credit < 0.0) {
         e->stick_slip.noise.factor = DOUBT;
-        e->stuck = 16.0 * fastest * (t - e->since) < HEADWAY ? e->stuck + most : 0.0;
+        e->stuck = 16.0 * e->fastest * (t - e->since) < HEADWAY ? e->stuck + most : 0.0;
         refill_credit(e, t);
     }
     if (!(e->stuck > MOST_STUCK)) {
@@ -120,50 +120,34 @@ static int count_event(struct events *e, tribo_driver *drv, size_t contact, doub
 }
 
 /* Counts a step that no event ended. */
-static int count_step(struct events *e, tribo_driver *drv, double t, double tau, double fastest)
+static int count_step(struct events *e, tribo_driver *drv, double t)
 {
-    if (16.0 * fastest * (t - e->rested) >= 1.0) {
+    if (16.0 * e->fastest * (t - e->rested) >= 1.0) {
         e->rested = t;
         e->idle = 0;
     }
     return ++e->idle <= MOST_IDLE
                ? TRIBO_OK
                : tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g, and %d such steps lead nowhere%s",
-                                   t, tau, MOST_IDLE, e->stick_slip.plane ? ": take moreau/fixed" : "");
+                                   t, e->when, MOST_IDLE, e->stick_slip.plane ? ": take moreau/fixed" : "");
 }
 
 /* Sets search.expected by the phases that began as this one does, if the last two were alike. */
-static void expect(struct events *e, const struct guard *event, double when)
+static void expect(struct events *e, const struct guard *event)
 {
     if (e->begun && event) {
-        *e->begun = (struct lasted){when, fabs(when - e->begun->time)};
+        *e->begun = (struct lasted){e->when, fabs(e->when - e->begun->time)};
     }
     e->begun = event ? e->lasted + SLIPS * event->contact + (e->stick_slip.state.slip[event->contact] + 1) : NULL;
     e->search.expected = e->begun && e->begun->change <= ALIKE * e->begun->time ? e->begun->time : 0.0;
 }
 
-/* Begins a run: one that does not continue must not depend on the run before, not even in rounding; for one that continues
- * events are counted on. */
-static void forget(struct events *e, double t, int continues)
-{
-    e->begun = NULL;
-    e->search.expected = 0.0;
-    e->anew = !continues;
-    if (!continues) {
-        e->paid = e->rested = t;
-        e->idle = e->suspects = 0;
-        e->stuck = 0.0;
-        refill_credit(e, t);
-        memset(e->lasted, 0, SLIPS * e->stick_slip.constant.contacts * sizeof *e->lasted);
-    }
-}
-
-/* Shows the observer the states at begin + k output, between t and t + tau. */
-static int show_between(struct events *e, tribo_driver *drv, double begin, double *shown, double t, double tau, const double *y)
+/* Shows the observer the states at begin + k output, within the phase from t on. */
+static int show_between(struct events *e, tribo_driver *drv, double t, const double *y)
 {
     int status = TRIBO_OK;
     const int shows = drv->seen && drv->output > 0.0;
-    for (double at; shows && !status && (at = begin + *shown * drv->output) < t + tau; *shown += 1.0) {
+    for (double at; shows && !status && (at = e->begin + e->outputs * drv->output) < t + e->when; e->outputs += 1.0) {
         e->motion->state(e->own, greater((at - t) - drv->sys->loads.low, 0.0), y, drv->slope);
         status = tribo_driver_accept(drv, at, drv->slope);
     }
@@ -173,16 +157,6 @@ static int show_between(struct events *e, tribo_driver *drv, double begin, doubl
 /* In shown[]: a planar contact that stopped and slides again at one instant. */
 #define TURNS (-TRIBO_SLIP_PLANE)
 
-/* The moment at which the slip of a contact changes. */
-static int kind_of(signed char from, signed char to)
-{
-    return to == TRIBO_SLIP_OPEN      ? TRIBO_MOMENT_LIFT
-           : from == TRIBO_SLIP_OPEN  ? TRIBO_MOMENT_TOUCH
-           : to == TRIBO_SLIP_STUCK   ? TRIBO_MOMENT_STICK
-           : from == TRIBO_SLIP_STUCK ? TRIBO_MOMENT_SLIP
-                                      : TRIBO_MOMENT_REVERSE;
-}
-
 /* Shows the observer each contact whose slip differs from shown[], in ascending order, until it answers anything but 0; the
  * next advance shows the others if it continues. Sets *some = 1 if a contact is shown. Returns a status. */
 static int show_changes(struct events *e, tribo_driver *drv, double t, const double *y, int *some)
@@ -190,31 +164,20 @@ static int show_changes(struct events *e, tribo_driver *drv, double t, const dou
     const struct stick_slip *m = &e->stick_slip;
     int status = TRIBO_OK;
     for (size_t i = 0; i < m->constant.contacts && !status; i++) {
-        const signed char from = e->shown[i];
+        const signed char from = e->shown[i], to = m->state.slip[i];
         const int second = m->plane && m->plane->in_plane[i] == 2;
-        e->shown[i] = m->state.slip[i];
-        if (!second && from != m->state.slip[i]) {
+        e->shown[i] = to;
+        if (!second && from != to) {
+            const int moment = to == TRIBO_SLIP_OPEN      ? TRIBO_MOMENT_LIFT
+                               : from == TRIBO_SLIP_OPEN  ? TRIBO_MOMENT_TOUCH
+                               : to == TRIBO_SLIP_STUCK   ? TRIBO_MOMENT_STICK
+                               : from == TRIBO_SLIP_STUCK ? TRIBO_MOMENT_SLIP
+                                                          : TRIBO_MOMENT_REVERSE;
             *some = 1;
-            status = tribo_driver_show(drv, t, y, kind_of(from, m->state.slip[i]), i);
+            status = tribo_driver_show(drv, t, y, moment, i);
         }
     }
     return status;
-}
-
-/* t + tau, its low part in the system; end if tau reaches it. */
-static double time_after(tribo_system *sys, double t, double tau, double end)
-{
-    const struct twofold next = twofold_sum(t, sys->loads.low + tau);
-    const int there = tau >= (end - t) - sys->loads.low || next.hi > end || (next.hi == end && next.lo > 0.0);
-    tribo_system_set_low(sys, there ? 0.0 : next.lo);
-    return there ? end : next.hi;
-}
-
-/* reach, changed by rounding so that t + reach is a double, if reach is long enough for that. */
-static double to_a_number(const tribo_system *sys, double t, double reach, double end)
-{
-    const double next = lesser(t + (sys->loads.low + reach), end), there = (next - t) - sys->loads.low;
-    return fabs(there - reach) <= 1e-3 * reach ? there : reach;
 }
 
 static int decide(struct events *e, tribo_system *sys, double t, double *y)
@@ -226,39 +189,6 @@ static int decide(struct events *e, tribo_system *sys, double t, double *y)
     return status;
 }
 
-/* The error of a search given up from (t, y) on: y, the state at t + reach, overflows, or the motion is too fast. */
-static int cannot_follow(struct events *e, tribo_driver *drv, double t, double reach, double *y)
-{
-    e->motion->state(e->own, reach, y, y);
-    const int status = tribo_driver_check(drv, y);
-    return status ? status
-                  : tribo_driver_fail(drv, TRIBO_ERR_STEP,
-                                      "from t = %.17g on the motion is too fast to be followed: given up after %zu look%s", t,
-                                      e->search.looks, plural(e->search.looks));
-}
-
-/* Counts a planar contact that the decision at t has stopped; keeps the state; shows contacts whose slip changed, or the state
- * alone at other events and at the end of the advance. */
-static int show_decided(struct events *e, tribo_driver *drv, const struct guard *event, double t, double t1, const double *y,
-                        double fastest)
-{
-    const struct planar_slip *plane = e->stick_slip.plane;
-    const int stops = plane && plane->stopped < e->stick_slip.constant.contacts;
-    int status = stops ? count_event(e, drv, plane->stopped, t, fastest) : TRIBO_OK, some = 0;
-    status = status ? status : tribo_driver_keep(drv, t, y);
-    if (status || !drv->seen) {
-        return status;
-    }
-    for (size_t k = 0; plane && k < plane->count; k++) {
-        const struct planar_contact *p = &plane->contact[k];
-        const int turns = p->begins != SLIDES_ON && e->shown[p->at] == TRIBO_SLIP_PLANE;
-        e->shown[p->at] = turns ? TURNS : e->shown[p->at];
-    }
-    status = show_changes(e, drv, t, y, &some);
-    const int seen = !some && (event || stops || (t >= t1 && drv->sys->loads.low == 0.0));
-    return seen ? tribo_driver_show(drv, t, y, TRIBO_MOMENT_STEP, SIZE_MAX) : status;
-}
-
 /* Accelerations are constant over BRIEF of the time of the fastest motion, if the second derivative of the velocity changes
  * the first one by at most STEADY. */
 #define BRIEF 1e-9
@@ -266,11 +196,11 @@ static int show_decided(struct events *e, tribo_driver *drv, const struct guard 
 
 /* 1 if a contact stops in such a time, by a limit far above all other forces: the closed motion, which becomes large later,
  * loses that in its rounding. */
-static int is_brief(const struct events *e, const tribo_system *sys, const struct guard *event, double reach, double when)
+static int is_brief(const struct events *e, const tribo_system *sys, double reach)
 {
     const int simple = !e->stick_slip.plane && !e->stick_slip.breakaway.falls && !sys->compliance.count;
-    const int even = event && e->search.at_once && when * fabs(event->left.e) <= STEADY * fabs(event->left.d);
-    return simple && even && (!sys->loads.tables || when <= BRIEF * reach) && when * tribo_system_fastest(sys) <= BRIEF;
+    const int even = e->met && e->search.at_once && e->when * fabs(e->met->left.e) <= STEADY * fabs(e->met->left.d);
+    return simple && even && (!sys->loads.tables || e->when <= BRIEF * reach) && e->when * tribo_system_fastest(sys) <= BRIEF;
 }
 
 /* Moves y by a brief phase at constant accelerations, and forgets the shares of redundant contacts: these forces are no guess
@@ -294,100 +224,132 @@ static int go_brief(struct stick_slip *m, tribo_system *sys, double t, double ta
     return status;
 }
 
-/* Moves y to the end of a phase, and the method's motion too. Returns a status. */
-static int go(struct events *e, tribo_driver *drv, int brief, double t, double when, double *y)
-{
-    e->motion->state(e->own, when, y, brief ? drv->slope : y);
-    const int status = brief ? tribo_driver_pass(drv, go_brief(&e->stick_slip, drv->sys, t, when, y)) : TRIBO_OK;
-    return status ? status : tribo_driver_check(drv, y);
-}
-
-/* One phase, from (t, y) to its end and the decision there. After an error y is undefined: the driver has kept the state
- * before. */
-static int phase(struct events *e, tribo_driver *drv, double begin, double *shown, double *t, double t1, double *y,
-                 double fastest)
+/* Moves (t, y) to the end of a phase: until e->met, or, with e->met = NULL, `end` or the end that the method sets. Returns a
+ * status. */
+static int travel(struct events *e, tribo_driver *drv, double *t, double end, double *y)
 {
     tribo_system *sys = drv->sys;
-    const double end = lesser(t1, tribo_system_next_kink(sys, *t));
-    const struct guard *event = NULL;
-    double reach = (end - *t) - sys->loads.low, when = 0.0;
-    e->decided = 0;
+    double reach = (end - *t) - sys->loads.low;
     int status = tribo_driver_pass(drv, e->motion->begin(e->own, *t, y, &reach));
     if (status) {
         return status;
     }
-    reach = to_a_number(sys, *t, reach, end);
+    /* rounded so that t + reach is a double, if reach is long enough for that */
+    const double even = (lesser(*t + (sys->loads.low + reach), end) - *t) - sys->loads.low;
+    reach = fabs(even - reach) <= 1e-3 * reach ? even : reach;
     e->search.resolution = DBL_EPSILON * DBL_EPSILON * greater(fabs(*t), reach);
     if (!(reach > e->search.resolution)) {
         return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", *t, reach);
     }
-    if (!tribo_first_zero(&e->search, reach, &event, &when)) {
-        return cannot_follow(e, drv, *t, reach, y);
+    if (!tribo_first_zero(&e->search, reach, &e->met, &e->when)) {
+        e->motion->state(e->own, reach, y, y);
+        status = tribo_driver_check(drv, y); /* an error if y overflows */
+        return status ? status
+                      : tribo_driver_fail(drv, TRIBO_ERR_STEP,
+                                          "from t = %.17g on the motion is too fast to be followed: given up after %zu look%s",
+                                          *t, e->search.looks, plural(e->search.looks));
     }
-    when = event ? lesser(when, reach) : reach;
-    status = show_between(e, drv, begin, shown, *t, when, y);
+    e->when = e->met ? lesser(e->when, reach) : reach;
+    status = show_between(e, drv, *t, y);
     if (status) {
         return status;
     }
-    const int brief = is_brief(e, sys, event, reach, when);
-    status = go(e, drv, brief, *t, when, y);
+    e->brief = is_brief(e, sys, reach);
+    e->motion->state(e->own, e->when, y, e->brief ? drv->slope : y);
+    status = e->brief ? tribo_driver_pass(drv, go_brief(&e->stick_slip, sys, *t, e->when, y)) : TRIBO_OK;
+    status = status ? status : tribo_driver_check(drv, y);
     if (status) {
         return status;
     }
-    *t = time_after(sys, *t, when, end);
+    const struct twofold next = twofold_sum(*t, sys->loads.low + e->when);
+    const int there = e->when >= (end - *t) - sys->loads.low || next.hi > end || (next.hi == end && next.lo > 0.0);
+    *t = there ? end : next.hi;
+    tribo_system_set_low(sys, there ? 0.0 : next.lo);
     if (e->motion->arrive) {
         e->motion->arrive(e->own, *t);
     }
-    e->met = event;
-    status = e->company ? tribo_driver_pass(drv, e->company->ends(e->company, when, *t, y)) : TRIBO_OK;
+    return TRIBO_OK;
+}
+
+/* One phase, from (t, y) to its end and the decision there. Shows contacts whose slip changed, or the state alone at other events
+ * and at the end of the advance. After an error y is undefined: the driver has kept the state before. */
+static int phase(struct events *e, tribo_driver *drv, double *t, double t1, double *y)
+{
+    struct stick_slip *m = &e->stick_slip;
+    const double end = lesser(t1, tribo_system_next_kink(drv->sys, *t));
+    e->decided = 0;
+    int status = travel(e, drv, t, end, y), some = 0, stops = 0;
+    status = status || !e->company ? status : tribo_driver_pass(drv, e->company->ends(e->company, e->when, *t, y));
     if (status) {
         return status;
     }
+    const struct guard *event = e->met && e->met->kind != SLOWS ? e->met : NULL;
     drv->steps++;
-    tribo_events_learn(e, drv, brief, when);
-    event = event && event->kind != SLOWS ? event : NULL;
+    tribo_events_learn(e, drv);
     if (event) {
-        status = count_event(e, drv, event->contact, *t, fastest);
-        tribo_events_mark(&e->stick_slip, event);
+        status = count_event(e, drv, event->contact, *t);
+        tribo_events_mark(m, event);
     } else if (*t < end) {
-        status = count_step(e, drv, *t, when, fastest);
+        status = count_step(e, drv, *t);
     }
-    status = status ? status : tribo_driver_pass(drv, decide(e, sys, *t, y));
-    expect(e, event, when);
+    status = status ? status : tribo_driver_pass(drv, decide(e, drv->sys, *t, y));
+    expect(e, event);
     if (!status && event && e->company) {
         e->company->decided(e->company);
     }
-    return status ? status : show_decided(e, drv, event, *t, t1, y, fastest);
+    if (!status && m->plane) {
+        stops = m->plane->stopped < m->constant.contacts;
+        status = stops ? count_event(e, drv, m->plane->stopped, *t) : TRIBO_OK;
+        for (size_t k = 0; drv->seen && k < m->plane->count; k++) {
+            const struct planar_contact *p = &m->plane->contact[k];
+            const int turns = p->begins != SLIDES_ON && e->shown[p->at] == TRIBO_SLIP_PLANE;
+            e->shown[p->at] = turns ? TURNS : e->shown[p->at];
+        }
+    }
+    status = status ? status : tribo_driver_keep(drv, *t, y);
+    status = status || !drv->seen ? status : show_changes(e, drv, *t, y, &some);
+    const int seen = drv->seen && !some && (event || stops || (*t >= t1 && drv->sys->loads.low == 0.0));
+    return seen && !status ? tribo_driver_show(drv, *t, y, TRIBO_MOMENT_STEP, SIZE_MAX) : status;
 }
 
 int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
-    const double begin = *t, own = tribo_system_fastest(drv->sys), fastest = own > 0.0 ? own : 1.0 / (t1 - begin);
-    double shown = 1.0;
-    if (drv->seen && drv->output > 0.0 && !(begin + drv->output > begin && t1 - drv->output < t1)) {
+    struct stick_slip *m = &e->stick_slip;
+    const size_t contacts = m->constant.contacts;
+    const double fastest = tribo_system_fastest(drv->sys);
+    e->fastest = fastest > 0.0 ? fastest : 1.0 / (t1 - *t);
+    e->begin = *t;
+    e->outputs = 1.0;
+    if (drv->seen && drv->output > 0.0 && !(*t + drv->output > *t && t1 - drv->output < t1)) {
         return tribo_driver_fail(drv, TRIBO_ERR_STEP, "output every %g is below what time resolves at t = %.17g", drv->output,
                                  t1);
     }
     if (!e->watched) {
-        memcpy(e->shown, e->stick_slip.state.slip, drv->sys->ncontact);
+        memcpy(e->shown, m->state.slip, contacts);
     }
     e->watched = drv->seen != NULL;
-    tribo_stick_slip_start(&e->stick_slip, drv->sys, *t, y, continues);
-    int status = tribo_planar_slip_start(&e->stick_slip, drv->sys, continues);
+    tribo_stick_slip_start(m, drv->sys, *t, y, continues);
+    int status = tribo_planar_slip_start(m, drv->sys, continues), some;
     if (!status && !(continues && e->decided)) {
         status = decide(e, drv->sys, *t, y);
     }
     status = tribo_driver_pass(drv, status);
-    forget(e, *t, continues);
-    if (!continues) {
-        memcpy(e->shown, e->stick_slip.state.slip, drv->sys->ncontact);
+    e->begun = NULL;
+    e->search.expected = 0.0;
+    e->anew = !continues;
+    if (!continues) { /* nothing depends on the run before, not even in rounding */
+        e->paid = e->rested = *t;
+        e->idle = e->suspects = 0;
+        e->stuck = 0.0;
+        refill_credit(e, *t);
+        memset(e->lasted, 0, SLIPS * contacts * sizeof *e->lasted);
+        memcpy(e->shown, m->state.slip, contacts);
     } else if (!status && drv->seen) {
-        int some;
         status = tribo_driver_keep(drv, *t, y);
         status = status ? status : show_changes(e, drv, *t, y, &some);
     }
     while (!status && (*t < t1 || drv->sys->loads.low < 0.0)) {
-        status = phase(e, drv, begin, &shown, t, t1, y, fastest);
+        status = phase(e, drv, t, t1, y);
     }
     tribo_system_set_low(drv->sys, 0.0);
     tribo_system_forget_time(drv->sys); /* others find harmonics anew */

@@ -32,12 +32,18 @@ struct events {
     int watched;             /* 1: the last advance had an observer, and kept shown up to date */
     struct company *company; /* NULL: none */
     const struct guard *met; /* the guard that ended the phase; NULL: none */
+    double when;             /* length of the phase */
+    int brief;               /* 1: the phase had constant accelerations */
     int decided;             /* 1: no motion since the last decision */
     int anew;                /* 1: the run does not continue another one; read and cleared by the method */
     int sharp;               /* 1: the motion is followed to rounding, regardless of tolerances */
 
     struct lasted *lasted; /* [ncontact][5] phases that began as contact i turned to this slip */
     struct lasted *begun;  /* the entry of this phase; NULL if it began otherwise */
+
+    double fastest; /* highest frequency; 1/(length of the advance) if there is none */
+    double begin;   /* time at the start of the advance; the next output is at begin + outputs drv->output */
+    double outputs;
 
     double credit;                  /* number of events that may follow at once */
     double paid;                    /* time of the last event */
@@ -81,7 +87,7 @@ void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *w)
 /* Marks for the decision which contact stops, or has reached its limit, by an event. */
 void tribo_events_mark(struct stick_slip *m, const struct guard *event);
 
-/* Takes the size of velocities, and excess and backslip of the driver, from the guards of a phase that lasted `when`. */
-void tribo_events_learn(struct events *e, tribo_driver *drv, int brief, double when);
+/* Takes the size of velocities, and excess and backslip of the driver, from the guards of the phase that ended. */
+void tribo_events_learn(struct events *e, tribo_driver *drv);
 
 #endif

@@ -65,13 +65,13 @@ void tribo_events_mark(struct stick_slip *m, const struct guard *event)
     }
 }
 
-void tribo_events_learn(struct events *e, tribo_driver *drv, int brief, double when)
+void tribo_events_learn(struct events *e, tribo_driver *drv)
 {
     struct stick_slip *m = &e->stick_slip;
     for (size_t k = 0; k < e->search.guards; k++) {
         const struct guard *g = &e->search.guard[k];
         if (g->kind == SLIDES) {
-            m->noise.velocity_scale[g->contact] = brief ? fabs(g->left.g) + when * fabs(g->left.d) : g->size;
+            m->noise.velocity_scale[g->contact] = e->brief ? fabs(g->left.g) + e->when * fabs(g->left.d) : g->size;
             drv->backslip = greater(drv->backslip, g->lowest);
         } else if (g->kind == HOLDS) {
             drv->excess = greater(drv->excess, g->lowest + m->noise.excess[g->contact]);
