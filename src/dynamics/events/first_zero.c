@@ -157,21 +157,6 @@ static int positive(struct guard *g, const struct sample *b, double h, double un
     return is_clear(g, tribo_quintic_least(&g->left, b, h, g->bend, until, -noise(g)));
 }
 
-/* 1 if the quintic proves that a guard, which began within its allowance of zero, is above zero in the middle between left and
- * right samples, h apart; then *at = its zero without the allowance. */
-static int leaves_zero(const struct guard *g, double h, double *at)
-{
-    const double middle = tribo_quintic_middle(&g->left, &g->right, h) - tribo_quintic_error(0.5 * h, h, g->bend);
-    struct sample left = g->left, right = g->right;
-    if (!(middle > 4.0 * g->allowance)) {
-        return 0;
-    }
-    left.g = greater(left.g - g->allowance, 0.0);
-    right.g -= g->allowance;
-    *at = tribo_quintic_zero(&left, &right, h);
-    return 1;
-}
-
 /* Watches only the doubtful guards of the interval between left and right samples, h apart. */
 static void watch_doubtful(struct first_zero *s, double h)
 {
@@ -187,17 +172,28 @@ static void watch_doubtful(struct first_zero *s, double h)
 }
 
 /* Among the watched guards that are not positive at the right end, h after a: the guard with the earliest zero of its quintic;
- * *when = that zero, as time after a. NULL: all are positive. */
-static const struct guard *first_to_fall(const struct first_zero *s, double h, double *when)
+ * *when = that zero, as time after a. NULL: all are positive. begins = 1: a is where guards with an allowance began within that of
+ * zero. If the quintic proves that such a guard is above zero in the middle, its zero is that without the allowance. *fine = 1 if
+ * that is so for the guard, or need not be, and its zero is that of the quintic to rounding. */
+static const struct guard *first_to_fall(const struct first_zero *s, double h, int begins, double *when, int *fine)
 {
     const struct guard *first = NULL;
     for (size_t k = 0; k < s->watching; k++) {
         const struct guard *g = s->watched[k];
         if (g->right.g <= noise(g)) {
-            const double guess = g->right.g >= 0.0 ? h : tribo_quintic_zero(&g->left, &g->right, h);
+            struct sample left = g->left, right = g->right;
+            int certain = 1;
+            if (begins && g->allowance > 0.0) {
+                const double middle = tribo_quintic_middle(&left, &right, h) - tribo_quintic_error(0.5 * h, h, g->bend);
+                certain = middle > 4.0 * g->allowance;
+                left.g = certain ? greater(left.g - g->allowance, 0.0) : left.g;
+                right.g -= certain ? g->allowance : 0.0;
+            }
+            const double guess = right.g >= 0.0 ? h : tribo_quintic_zero(&left, &right, h);
             if (!first || guess < *when) {
                 first = g;
                 *when = guess;
+                *fine = certain && (guess == h || tribo_quintic_error(guess, h, g->bend) <= FINE * noise(g));
             }
         }
     }
@@ -249,10 +245,10 @@ static const struct guard *search_interval(struct first_zero *s, double b, doubl
     while (s->watching && !s->lost) {
         const double h = b - s->a;
         double at = 0.0;
-        const struct guard *falls = first_to_fall(s, h, &at);
-        const int fine = falls && (at == h || tribo_quintic_error(at, h, falls->bend) <= FINE * noise(falls));
+        int fine = 0;
+        const struct guard *falls = first_to_fall(s, h, s->a == begun, &at, &fine);
         const int begins = falls && falls->allowance > 0.0 && s->a == begun;
-        if (fine && all_positive(s, 0, at, h) && (!begins || leaves_zero(falls, h, &at))) {
+        if (fine && all_positive(s, 0, at, h)) {
             *when = s->a + at;
             return falls;
         }
@@ -292,15 +288,20 @@ static const struct guard *search_interval(struct first_zero *s, double b, doubl
     return NULL;
 }
 
-/* The velocity that is first to fall to zero within reach of the derivatives at the start, with *when; NULL if there is none.
- * A motion that becomes large until longest hides this zero in its rounding. A velocity that is rounding beside others does
- * not count. */
-static const struct guard *stops_at_once(struct first_zero *s, double *when)
+/* Looks at the start. Returns a guard that is zero there; or the velocity that is first to fall to zero within reach of the
+ * derivatives, with *when: a motion that becomes large until longest hides this zero in its rounding; or NULL. A velocity that
+ * is rounding beside others does not count. */
+static const struct guard *start(struct first_zero *s, double *when)
 {
     const struct guard *first = NULL;
     double step = lesser(SHORT * s->length, s->longest), fastest = 0.0;
     for (size_t k = 0; k < s->guards; k++) {
-        const struct guard *g = &s->guard[k];
+        s->watched[k] = &s->guard[k];
+    }
+    sample_all(s, 0.0);
+    for (size_t k = 0; k < s->guards; k++) {
+        struct guard *g = &s->guard[k];
+        g->left = g->middle;
         fastest = g->kind == SLIDES ? greater(fastest, g->left.g - g->allowance) : fastest;
     }
     for (size_t k = 0; k < s->guards; k++) {
@@ -317,22 +318,11 @@ static const struct guard *stops_at_once(struct first_zero *s, double *when)
         struct guard *g = &s->guard[k];
         first = g == first || is_clear(g, parabola_least(&g->left, step)) ? first : NULL;
     }
-    *when = first ? step : *when;
-    return first;
-}
-
-/* Looks at the start; returns a guard that is zero there, or at once, or NULL. */
-static const struct guard *start(struct first_zero *s, double *when)
-{
-    for (size_t k = 0; k < s->guards; k++) {
-        s->watched[k] = &s->guard[k];
-    }
-    sample_all(s, 0.0);
-    for (size_t k = 0; k < s->guards; k++) {
-        s->guard[k].left = s->guard[k].middle;
-    }
-    const struct guard *first = stops_at_once(s, when);
     s->at_once = first != NULL;
+    if (first) {
+        *when = step;
+        return first;
+    }
     for (size_t k = 0; !first && k < s->guards; k++) {
         struct guard *g = &s->guard[k];
         const double more = greater(greater(ALLOWED * g->size, DBL_MIN) - g->allowance, 0.0);
