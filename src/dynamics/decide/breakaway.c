@@ -50,8 +50,7 @@ void tribo_breakaway_limits(struct breakaway *b, size_t contacts, const signed c
         const double more = (b->ratio[i] - 1.0) * part_at(b, i, slip[i] ? v[i] : 0.0);
         limit[i] = product(1.0 + more, b->kinetic[i]);
         limit_rate[i] = product(1.0 + more, b->kinetic_rate[i]);
-        b->stick[i] = tribo_breakaway_most(b, i);
-        b->stick_rate[i] = product(b->ratio[i], b->kinetic_rate[i]);
+        tribo_breakaway_stick(b, i, b->ratio[i]);
     }
 }
 
@@ -60,22 +59,10 @@ double tribo_breakaway_slope(const struct breakaway *b, size_t i, double v)
     return b->falls ? quotient(product(1.0 - b->ratio[i], b->kinetic[i]) * part_at(b, i, v), b->velocity[i]) : 0.0;
 }
 
-int tribo_breakaway_lets_go(struct breakaway *b, size_t i)
+void tribo_breakaway_stick(struct breakaway *b, size_t i, double ratio)
 {
-    if (b->falls || !(b->stick[i] > b->kinetic[i])) {
-        return 0;
-    }
-    b->stick[i] = b->kinetic[i];
-    b->stick_rate[i] = b->kinetic_rate[i];
-    return 1;
-}
-
-int tribo_breakaway_restore(struct breakaway *b, size_t i)
-{
-    const int less = b->stick[i] < tribo_breakaway_most(b, i);
-    b->stick[i] = tribo_breakaway_most(b, i);
-    b->stick_rate[i] = product(b->ratio[i], b->kinetic_rate[i]);
-    return less;
+    b->stick[i] = product(ratio, b->kinetic[i]);
+    b->stick_rate[i] = product(ratio, b->kinetic_rate[i]);
 }
 
 double tribo_breakaway_part(const struct breakaway *b, size_t i, int side, size_t k, size_t stride, const double *v,

@@ -287,41 +287,6 @@ static void let_face_go(struct stick_slip *m, const struct face *c, int begins)
     }
 }
 
-/* Lets contacts at rest slide whose force is at its limit and that accelerate; marks those in state.tied that do not
- * accelerate, and returns their number. */
-static size_t break_away(struct stick_slip *m)
-{
-    struct slip_state *s = &m->state;
-    size_t ties = 0;
-    for (struct face c = next_face(m, (struct face){0}); c.size; c = next_face(m, c)) {
-        double noise;
-        if (s->slip[c.i] == TRIBO_SLIP_STUCK && (share(m, &c, s->force, &noise) >= 1.0 - noise || c.i == s->reached)) {
-            s->tied[c.i] = 1;
-            if (face_leaves(m, &c, s->force)) {
-                s->tied[c.i] = 0;
-                let_face_go(m, &c, BY_ACCELERATION);
-            }
-            ties += (size_t)s->tied[c.i];
-        }
-    }
-    return ties;
-}
-
-/* Sets work.hi = limits of a moment later: for tied contacts at most their forces; full ones for contacts that begin to slide
- * in a plane. */
-static void set_limits_ahead(struct stick_slip *m)
-{
-    const struct slip_state *s = &m->state;
-    for (struct face c = next_face(m, (struct face){0}); c.size; c = next_face(m, c)) {
-        const int counts = s->slip[c.i] == TRIBO_SLIP_STUCK || (c.size == 2 && c.p->begins != SLIDES_ON);
-        double noise;
-        const double part = !counts ? 0.0 : s->tied[c.i] ? lesser(share(m, &c, s->force, &noise), 1.0) : 1.0;
-        for (size_t i = c.i; i < c.i + c.size; i++) {
-            m->work.hi[i] = part * s->limit[i];
-        }
-    }
-}
-
 /* 1 if the force that holds planar contact p a moment later, at forces f and accelerations work.v, is beyond the tangent to the
  * limit curve at its present force. A force that turns along the curve is not: curvature is of second order. */
 static int goes_beyond(const struct stick_slip *m, const tribo_system *sys, const struct planar_contact *p, const double *f)
@@ -353,7 +318,15 @@ static int look_ahead_in_plane(struct stick_slip *m, const tribo_system *sys, co
         m->plane->ahead[i] = m->work.a[i] + h * m->work.v[i];
         m->work.lo[i] += h * m->plane->rate[i];
     }
-    set_limits_ahead(m);
+    for (struct face c = next_face(m, (struct face){0}); c.size; c = next_face(m, c)) {
+        /* limits of a moment later: of tied contacts at most their forces; the full limit where sliding in a plane begins */
+        const int counts = m->state.slip[c.i] == TRIBO_SLIP_STUCK || (c.size == 2 && c.p->begins != SLIDES_ON);
+        double noise;
+        const double part = !counts ? 0.0 : m->state.tied[c.i] ? lesser(share(m, &c, m->state.force, &noise), 1.0) : 1.0;
+        for (size_t i = c.i; i < c.i + c.size; i++) {
+            m->work.hi[i] = part * m->state.limit[i];
+        }
+    }
     const int status = solve_discs(m, sys, m->plane->ahead, m->work.f);
     for (struct face c = next_face(m, (struct face){0}); !status && c.size; c = next_face(m, c)) {
         if (m->state.tied[c.i] && face_leaves(m, &c, m->work.f) && (c.size == 1 || goes_beyond(m, sys, c.p, m->work.f))) {
@@ -365,16 +338,30 @@ static int look_ahead_in_plane(struct stick_slip *m, const tribo_system *sys, co
 
 int tribo_planar_slip_settle(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
+    struct slip_state *s = &m->state;
+    size_t ties = 0;
     given_forces(m, sys, y, m->constant.still);
     for (size_t i = 0; i < m->constant.contacts; i++) {
-        m->work.hi[i] = m->state.slip[i] == TRIBO_SLIP_STUCK ? m->state.limit[i] : 0.0;
+        m->work.hi[i] = s->slip[i] == TRIBO_SLIP_STUCK ? s->limit[i] : 0.0;
     }
-    int status = solve_discs(m, sys, m->work.a, m->state.force);
-    if (!status) {
-        tribo_stick_slip_find_gains(m, sys, y);
-        status = break_away(m) ? look_ahead_in_plane(m, sys, y) : TRIBO_OK;
+    int status = solve_discs(m, sys, m->work.a, s->force);
+    if (status) {
+        return status;
     }
-    memset(m->state.tied, 0, m->constant.contacts);
+    tribo_stick_slip_find_gains(m, sys, y);
+    for (struct face c = next_face(m, (struct face){0}); c.size; c = next_face(m, c)) {
+        /* at its limit; slides if it accelerates, else is tied */
+        double noise;
+        if (s->slip[c.i] == TRIBO_SLIP_STUCK && (share(m, &c, s->force, &noise) >= 1.0 - noise || c.i == s->reached)) {
+            s->tied[c.i] = !face_leaves(m, &c, s->force);
+            ties += (size_t)s->tied[c.i];
+            if (!s->tied[c.i]) {
+                let_face_go(m, &c, BY_ACCELERATION);
+            }
+        }
+    }
+    status = ties ? look_ahead_in_plane(m, sys, y) : TRIBO_OK;
+    memset(s->tied, 0, m->constant.contacts);
     status = status ? status : tribo_stick_slip_find_holds(m, sys);
     return status ? status : check_holds(m, sys);
 }

@@ -77,7 +77,7 @@ static int find_forces(struct stick_slip *m, const tribo_system *sys)
     struct slip_state *s = &m->state;
     struct slip_work *w = &m->work;
     int status = TRIBO_OK, close = s->dependents && c->base_moves;
-    w->doubts = 0;
+    size_t count = 0;
     for (size_t i = 0; i < c->contacts; i++) {
         if (tribo_stick_slip_searches(m, i)) {
             w->hi[i] = s->stick[i];
@@ -91,12 +91,14 @@ static int find_forces(struct stick_slip *m, const tribo_system *sys)
         status = solve(m, sys, w->a, s->force);
     }
     for (size_t i = 0; i < c->contacts; i++) {
-        const int near = tribo_stick_slip_searches(m, i) && (fabs(s->force[i]) >= (1.0 - CLOSE) * s->stick[i] || i == s->reached);
+        const int at_limit = fabs(s->force[i]) >= (1.0 - CLOSE) * s->stick[i] || i == s->reached;
+        const int near = at_limit && tribo_stick_slip_searches(m, i);
         close |= near;
-        w->doubt[w->doubts] = i;
-        w->doubts += !c->uncoupled || near || !c->can_hold[i];
+        if (near || !c->uncoupled || !c->can_hold[i]) {
+            w->doubt[count++] = i;
+        }
     }
-    w->doubts = close ? w->doubts : 0;
+    w->doubts = close ? count : 0;
     return status;
 }
 
@@ -120,7 +122,10 @@ static void accelerate(struct stick_slip *m, const tribo_system *sys, const doub
 static size_t let_go(struct stick_slip *m, size_t i, signed char direction)
 {
     struct slip_state *s = &m->state;
-    const int again = m->breakaway.some && tribo_breakaway_lets_go(&m->breakaway, i);
+    const int again = tribo_breakaway_is_sudden(&m->breakaway, i) && !m->breakaway.falls;
+    if (again) {
+        tribo_breakaway_stick(&m->breakaway, i, 1.0);
+    }
     tribo_stick_slip_set(m, i, again ? TRIBO_SLIP_STUCK : direction);
     s->force[i] = again ? s->force[i] : -direction * s->limit[i];
     s->tied[i] = 0;
@@ -359,7 +364,9 @@ int tribo_scalar_slip_settle(struct stick_slip *m, const tribo_system *sys, cons
         tribo_stick_slip_find_gains(m, sys, y);
         for (size_t i = 0; i < m->constant.contacts; i++) {
             /* a contact that broke away, and is held by others after all, has its static limit again */
-            s->tied[i] = (signed char)(tribo_breakaway_restore(&m->breakaway, i) ? 0 : s->tied[i]);
+            const double lowered = s->stick[i];
+            tribo_breakaway_stick(&m->breakaway, i, m->breakaway.ratio[i]);
+            s->tied[i] = (signed char)(lowered < s->stick[i] ? 0 : s->tied[i]);
         }
     }
     return status;

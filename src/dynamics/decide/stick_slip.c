@@ -272,11 +272,6 @@ double tribo_stick_slip_follows(const struct stick_slip *m, size_t i)
     return m->state.slip[i] == TRIBO_SLIP_OPEN ? 0.0 : -m->state.slip[i];
 }
 
-double tribo_stick_slip_margin(const struct stick_slip *m, size_t i)
-{
-    return tribo_breakaway_is_sudden(&m->breakaway, i) ? m->noise.allowance[i] : 0.0;
-}
-
 /* -------------------------------------------------------------------------------------------------------------- motion */
 
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)

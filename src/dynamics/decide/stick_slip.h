@@ -262,9 +262,6 @@ int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const d
  * does not hold; else 0. */
 double tribo_stick_slip_follows(const struct stick_slip *m, size_t i);
 
-/* Force beyond its limit with which contact i holds: the allowance, if its limit drops as it breaks away. */
-double tribo_stick_slip_margin(const struct stick_slip *m, size_t i);
-
 /* ------------------------------------------------------------------------------------------ breakaway.c: static limits */
 
 /* Takes ratio and velocity from the system's context; finds steepest. dof [ndof], contact [ncontact]: workspace. */
@@ -286,23 +283,14 @@ static inline double tribo_breakaway_ratio(const struct breakaway *b, size_t i)
     return b->some ? b->ratio[i] : 1.0;
 }
 
-/* The static limit of contact i. */
-static inline double tribo_breakaway_most(const struct breakaway *b, size_t i)
-{
-    return product(b->ratio[i], b->kinetic[i]);
-}
-
 /* 1 if the limit of contact i drops as it breaks away, which must be certain then. */
 static inline int tribo_breakaway_is_sudden(const struct breakaway *b, size_t i)
 {
     return b->some && b->stick[i] > b->kinetic[i];
 }
 
-/* Lowers stick to the limit to slide. Returns 0 if limits fall with the speed, or stick is not above that. */
-int tribo_breakaway_lets_go(struct breakaway *b, size_t i);
-
-/* Sets stick to the static limit again. Returns 1 if it was lower: the contact broke away, and others hold it after all. */
-int tribo_breakaway_restore(struct breakaway *b, size_t i);
+/* Sets stick to ratio times the limit at high speed, and its rate. */
+void tribo_breakaway_stick(struct breakaway *b, size_t i, double ratio);
 
 /* Coefficient k of exp(-|v|/velocity) in powers of time, from those before in part and from v [k + 1] = side |v|; both stride
  * doubles apart. */

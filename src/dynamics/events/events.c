@@ -55,13 +55,12 @@ int tribo_events_create(struct events *e, tribo_driver *drv, const struct motion
     }
     struct layout l = {0};
     lay_out_events(e, &l, sys);
-    const int done = tribo_layout_create(&l);
+    const int done = tribo_layout_zeros(&l);
     lay_out_events(e, &l, sys);
     if (!done) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contact%s", sys->ncontact,
                                  plural(sys->ncontact));
     }
-    memset(e->lasted, 0, SLIPS * sys->ncontact * sizeof *e->lasted);
     drv->excess = drv->backslip = 0.0;
     return TRIBO_OK;
 }

@@ -21,10 +21,16 @@ static void append(struct events *e, size_t i, int kind, double side, double tim
     g->lowest = g->right.g = 0.0;
 }
 
+/* Force beyond its limit with which contact i holds: the allowance, if its limit drops as it breaks away. */
+static double margin_of(const struct stick_slip *m, size_t i)
+{
+    return tribo_breakaway_is_sudden(&m->breakaway, i) ? m->noise.allowance[i] : 0.0;
+}
+
 void tribo_events_guard_contact(struct events *e, size_t i, const struct watch *w)
 {
     struct stick_slip *m = &e->stick_slip;
-    const double ratio = tribo_breakaway_ratio(&m->breakaway, i), margin = tribo_stick_slip_margin(m, i);
+    const double ratio = tribo_breakaway_ratio(&m->breakaway, i), margin = margin_of(m, i);
     if (m->state.slip[i] == TRIBO_SLIP_OPEN) {
         m->noise.velocity_scale[i] = w->size; /* for the decision when it touches down */
     } else if (tribo_slides(m->state.slip[i])) {
@@ -48,8 +54,8 @@ void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *w)
         return;
     }
     if (keeps) {
-        append(e, i, HOLDS, 0.0, ratio, ratio * w->constant + (tribo_stick_slip_margin(m, i) - fabs(m->state.force[i])),
-               m->noise.allowance[i], w);
+        append(e, i, HOLDS, 0.0, ratio, ratio * w->constant + (margin_of(m, i) - fabs(m->state.force[i])), m->noise.allowance[i],
+               w);
     } else {
         const double side = m->state.slip[i] == TRIBO_SLIP_OPEN ? -1.0 : 1.0;
         append(e, i, HOLDS, 0.0, side, side * w->constant, 2.0 * TRIBO_LIMIT_NOISE * m->noise.factor * swing, w);
