@@ -77,20 +77,6 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
     return TRIBO_OK;
 }
 
-/* 1 if J x - base of a holding contact exceeds the rounding of x. */
-static int moves(const struct stick_slip *m, const tribo_system *sys, const double *base, const double *x)
-{
-    for (size_t i = 0; i < m->constant.contacts; i++) {
-        if (!m->state.loose[i]) {
-            const double size = tribo_matrix_row_size(&sys->direction, i, x) + fabs(base[i]);
-            if (fabs(tribo_matrix_row_dot(&sys->direction, i, x) - base[i]) > 4.0 * DBL_EPSILON * size) {
-                return 1;
-            }
-        }
-    }
-    return 0;
-}
-
 /* x -= B_H R_HH^-1 (J_H x - base), twice: the second time removes the rounding of the first. */
 int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
 {
@@ -120,7 +106,13 @@ int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const d
     }
     s->snaps_differ = 0;
     tribo_snap_all(s->snap, s->snaps, s->loose, base, x);
-    if (!s->simple && moves(m, sys, base, x)) {
+    int moves = 0; /* 1: J x - base of a holding contact exceeds the rounding of x */
+    for (size_t i = 0; !s->simple && i < m->constant.contacts; i++) {
+        const double size = tribo_matrix_row_size(&sys->direction, i, x) + fabs(base[i]);
+        const double rest = fabs(tribo_matrix_row_dot(&sys->direction, i, x) - base[i]);
+        moves |= !s->loose[i] && rest > 4.0 * DBL_EPSILON * size;
+    }
+    if (moves) {
         status = tribo_stick_slip_project(m, sys, base, x);
         tribo_snap_all(s->snap, s->snaps, s->loose, base, x);
     }

@@ -122,15 +122,8 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
 
 /* ----------------------------------------------------------------------------------------------------------- at rest */
 
-/* 1 if the speed of a contact is rounding, or below NOTHING of the tolerance and not growing: a contact that begins to slide
- * beside one that creeps may be slow for many steps. */
-static int rests(const struct stick_slip *m, const struct planar_contact *p)
-{
-    const double noise = greater(m->noise.factor * (m->noise.velocity[p->at] + m->noise.velocity[p->at + 1]), ROUNDING * p->most);
-    return p->now <= noise || (p->now <= NOTHING * (m->constant.abstol + m->constant.reltol * p->most) && p->now <= p->before);
-}
-
-/* Brings contacts without speed to rest; returns their number. */
+/* Brings contacts to rest whose speed is rounding, or below NOTHING of the tolerance and not growing: a contact that begins to
+ * slide beside one that creeps may be slow for many steps. Returns their number. */
 static size_t stop_in_plane(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     size_t found = 0;
@@ -143,7 +136,10 @@ static size_t stop_in_plane(struct stick_slip *m, const tribo_system *sys, const
         p->now = length(v);
         p->most = greater(p->most, p->now);
         p->begins = SLIDES_ON;
-        if (tribo_slides_in_plane(m, p) && rests(m, p)) {
+        const double noise =
+            greater(m->noise.factor * (m->noise.velocity[p->at] + m->noise.velocity[p->at + 1]), ROUNDING * p->most);
+        const double nothing = NOTHING * (m->constant.abstol + m->constant.reltol * p->most);
+        if (tribo_slides_in_plane(m, p) && (p->now <= noise || (p->now <= nothing && p->now <= p->before))) {
             set_slip(m, p, TRIBO_SLIP_STUCK);
             m->plane->stopped = p->at;
             found++;

@@ -373,25 +373,6 @@ static void update_limits(struct stick_slip *m, const tribo_system *sys, const d
     }
 }
 
-/* Where bases part, a contact at rest that does not hold slides by its velocity. An error if that loses a static limit: the loss
- * is irreversible, so it must not depend on the choice of H. */
-static int part(struct stick_slip *m, const tribo_system *sys, const double *y)
-{
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        if (m->state.slip[i] == TRIBO_SLIP_STUCK && !m->state.holds[i]) {
-            const int loses = m->state.rested[i] && !m->breakaway.falls && tribo_breakaway_is_sudden(&m->breakaway, i);
-            tribo_stick_slip_set(m, i, slip_of(m, sys, i, y));
-            if (m->state.slip[i] && loses) {
-                return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                         "contact %zu has a static limit and is tied to others that stop beside it: which of "
-                                         "them rest is not unique; take central/fixed or moreau/fixed",
-                                         i);
-            }
-        }
-    }
-    return TRIBO_OK;
-}
-
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
 {
     const struct slip_state *s = &m->state;
@@ -410,8 +391,18 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
             }
         }
     }
-    if (!status && s->dependents && m->constant.base_moves) {
-        status = part(m, sys, y);
+    /* where bases part, a contact at rest that does not hold slides by its velocity */
+    for (size_t i = 0; !status && s->dependents && m->constant.base_moves && i < n; i++) {
+        if (s->slip[i] == TRIBO_SLIP_STUCK && !s->holds[i]) {
+            const int loses = s->rested[i] && !m->breakaway.falls && tribo_breakaway_is_sudden(&m->breakaway, i);
+            tribo_stick_slip_set(m, i, slip_of(m, sys, i, y));
+            if (s->slip[i] && loses) { /* irreversible, so it must not depend on the choice of H */
+                status = tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                           "contact %zu has a static limit and is tied to others that stop beside it: which of "
+                                           "them rest is not unique; take central/fixed or moreau/fixed",
+                                           i);
+            }
+        }
     }
     const signed char *restrict slip = s->slip;
     unsigned char *restrict rested = s->rested;
