@@ -103,7 +103,7 @@ static int find_forces(struct stick_slip *m, const tribo_system *sys)
 }
 
 /* Sets work.v of the contacts in doubt = their accelerations a + R f. */
-static void accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f)
+static void accelerate_doubtful(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f)
 {
     if (!m->constant.uncoupled) {
         tribo_stick_slip_accelerate(m, sys, a, f, m->work.v);
@@ -164,7 +164,7 @@ static size_t let_slide(struct stick_slip *m, const tribo_system *sys, const dou
             s->tied[i] = room <= (i == s->reached ? CLOSE * s->stick[i] : m->noise.allowance[i] / TRIBO_ALLOWED);
             if (s->tied[i] && room <= 0.0) {
                 if (!found) { /* before any contact of this round lets go */
-                    accelerate(m, sys, m->work.a, s->force);
+                    accelerate_doubtful(m, sys, m->work.a, s->force);
                     found = 1;
                 }
                 const signed char direction = leaves(m, i, s->force[i], must_be_sure(m, i) ? 1.0 / CERTAIN : 1.0);
@@ -240,7 +240,7 @@ static int look_ahead(struct stick_slip *m, const tribo_system *sys, const doubl
     if (status) {
         return status;
     }
-    accelerate(m, sys, w->v, w->f);
+    accelerate_doubtful(m, sys, w->v, w->f);
     for (size_t k = 0; k < w->doubts; k++) {
         const size_t i = w->doubt[k];
         const double room = limit_ahead(s, i, moment) - fabs(w->f[i]);
