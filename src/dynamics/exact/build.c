@@ -26,23 +26,31 @@
 
 /* ------------------------------------------------------------------------------------------------------------------ memory */
 
-/* An array. */
+/* Units of a block, which holds several short arrays; a longer array has a block of its own. */
+#define BLOCK ((size_t)512)
+
 struct modal_block {
     struct modal_block *next;
+    size_t used, room; /* units */
     union layout_unit unit[];
 };
 
 void *tribo_modal_take(struct modal_store *store, size_t count, size_t size)
 {
-    struct modal_block *block = tribo_zeros(1, sizeof *block + count * size);
-    if (!block) {
-        store->failed = 1;
-        return NULL;
+    struct modal_block *block = store->last;
+    const size_t units = (count * size + sizeof *block->unit - 1) / sizeof *block->unit, room = units > BLOCK ? units : BLOCK;
+    if (!block || block->room - block->used < units) {
+        block = malloc(sizeof *block + room * sizeof *block->unit);
+        if (!block) {
+            store->failed = 1;
+            return NULL;
+        }
+        *block = (struct modal_block){store->last, 0, room};
+        store->last = block;
+        store->bytes += sizeof *block + room * sizeof *block->unit;
     }
-    store->bytes += sizeof *block + count * size;
-    block->next = store->last;
-    store->last = block;
-    return block->unit;
+    block->used += units;
+    return memset(block->unit + block->used - units, 0, units * sizeof *block->unit);
 }
 
 void tribo_modal_give_back(struct modal_store *store)
@@ -90,19 +98,17 @@ static int find_stiffness(struct modal_build *b)
     if (!b->h->springs) {
         return 1;
     }
-    const int whole = sys->compliance.g->matrix != NULL;
-    const size_t columns = whole ? c : 1;
-    double *added = tribo_modal_take(&b->scratch, n * n + columns * c, sizeof *added), *inverse = added ? added + n * n : NULL;
+    double *added = tribo_modal_take(&b->scratch, n * n + c * c, sizeof *added), *inverse = added ? added + n * n : NULL;
     struct matrix g = {0}, k = {0};
     if (!added) {
         return 0;
     }
     for (size_t i = 0; i < c; i++) {
-        inverse[whole ? i * c + i : i] = 1.0;
+        inverse[i * (c + 1)] = 1.0;
     }
-    tribo_compliance_solve(sys, b->slip, columns, inverse);
-    const int done = (whole ? tribo_matrix_from_dense(&g, c, c, inverse) : tribo_matrix_diagonal(&g, c, inverse)) &&
-                     tribo_matrix_congruent(&g, &sys->direction, added) && tribo_matrix_from_dense(&k, n, n, added) &&
+    tribo_compliance_solve(sys, b->slip, c, inverse);
+    const int done = tribo_matrix_from_dense(&g, c, c, inverse) && tribo_matrix_congruent(&g, &sys->direction, added) &&
+                     tribo_matrix_from_dense(&k, n, n, added) &&
                      tribo_matrix_sum(&b->own_stiffness, 1.0, b->shared->stiffness, 1.0, &k);
     tribo_matrix_free(&g);
     tribo_matrix_free(&k);
@@ -220,10 +226,10 @@ static int find_damping(struct modal_build *b)
     struct modal *h = b->h;
     const struct matrix *damping = b->shared->damping;
     const size_t n = h->n, m = h->modes;
-    double *c = damping ? tribo_modal_take(&b->scratch, m * m + 2 * n, sizeof *c) : NULL, *root = c ? c + m * m : NULL,
-           most = 0.0;
+    double *c = damping ? tribo_modal_take(&h->store, m * m, sizeof *c) : NULL, most = 0.0;
+    double *root = damping ? tribo_modal_take(&b->scratch, 2 * n, sizeof *root) : NULL;
     h->drifts = tribo_modal_take(&h->store, m, 1);
-    if (!h->drifts || (damping && !c)) {
+    if (h->store.failed || b->scratch.failed) {
         return 0;
     }
     for (size_t l = 0; c && l < m; l++) {
@@ -244,20 +250,8 @@ static int find_damping(struct modal_build *b)
         }
         h->drifts[k] = h->omega2[k] == 0.0 && h->damping[k] == 0.0;
     }
-    if (c && damping_couples(b, c, root, root + n)) {
-        h->coupling = tribo_modal_take(&h->store, m * m, sizeof *c);
-        if (!h->coupling) {
-            return 0;
-        }
-        memcpy(h->coupling, c, m * m * sizeof *c);
-    }
+    h->coupling = c && damping_couples(b, c, root, root + n) ? c : NULL;
     return 1;
-}
-
-int tribo_modal_reserve_effects(struct modal_build *b)
-{
-    b->work = tribo_modal_take(&b->scratch, 2 * b->shared->sys->ncontact + b->h->n + b->h->rests + b->h->modes, sizeof *b->work);
-    return b->work != NULL;
 }
 
 /* to[i stride] = f_i of the rigid contacts i that hold, J_I'f = force, project: without the part of the force that moves the
@@ -274,8 +268,8 @@ static void keep_reactions(const struct modal *h, double *force, int project, do
     }
 }
 
-void tribo_modal_effects(const struct modal_build *b, const double *y, double omega2, const double *base,
-                         const struct effects *to)
+void tribo_modal_effects(const struct modal_build *b, const double *y, double omega2, const double *base, double *on,
+                         double *by_u, size_t stride)
 {
     const struct modal *h = b->h;
     const tribo_system *sys = b->shared->sys;
@@ -296,7 +290,7 @@ void tribo_modal_effects(const struct modal_build *b, const double *y, double om
         tribo_compliance_rates(sys, b->slip, v, rate);
     }
     for (size_t i = 0; i < c; i++) {
-        to->on[i * to->stride] = h->key[i] == 2 ? rate[i] : h->key[i] == 0 || base ? v[i] : 0.0;
+        on[i * stride] = h->key[i] == 2 ? rate[i] : h->key[i] == 0 || base ? v[i] : 0.0;
         for (size_t e = j->first[i]; rate[i] != 0.0 && e < j->first[i + 1]; e++) {
             force[j->col[e]] -= j->val[e] * rate[i];
         }
@@ -304,12 +298,12 @@ void tribo_modal_effects(const struct modal_build *b, const double *y, double om
     if (h->rests > 0) {
         tribo_matrix_multiply_add(b->shared->stiffness, 1.0, y, force);
         tribo_system_add_mass(sys, -omega2, y, force);
-        keep_reactions(h, force, base != NULL, force + n, to->on, to->stride);
+        keep_reactions(h, force, base != NULL, force + n, on, stride);
     }
-    if (h->rests > 0 && to->by_u) {
+    if (h->rests > 0 && by_u) {
         memset(force, 0, n * sizeof *force);
         tribo_matrix_multiply_add(b->shared->damping, 1.0, y, force);
-        keep_reactions(h, force, 1, force + n, to->by_u, to->stride);
+        keep_reactions(h, force, 1, force + n, by_u, stride);
     }
 }
 
@@ -319,13 +313,13 @@ static int find_effects(struct modal_build *b)
     struct modal *h = b->h;
     const size_t m = h->modes, c = b->shared->sys->ncontact;
     h->on = tribo_modal_take(&h->store, (b->shared->damping ? 2 : 1) * m * c, sizeof *h->on);
-    if (!h->on || !tribo_modal_reserve_effects(b)) {
+    b->work = tribo_modal_take(&b->scratch, 2 * c + h->n + h->rests + m, sizeof *b->work);
+    if (!h->on || !b->work) {
         return 0;
     }
     h->by_u = b->shared->damping ? h->on + m * c : NULL;
     for (size_t k = 0; k < m; k++) {
-        const struct effects to = {h->on + k, h->by_u ? h->by_u + k : NULL, m};
-        tribo_modal_effects(b, h->phi + k * h->n, h->omega2[k], NULL, &to);
+        tribo_modal_effects(b, h->phi + k * h->n, h->omega2[k], NULL, h->on + k, h->by_u ? h->by_u + k : NULL, m);
     }
     return 1;
 }

@@ -21,11 +21,11 @@ static double closed_work(struct exact *x, const struct course *c, double tau, d
     const struct forced *h = x->h;
     const struct output *v = c->output;
     const size_t i = v->contact, e = h->modal->exponents;
-    double velocity = fabs(c->line.start) + fabs(c->line.ramp) * tau, limits = fabs(x->steady[i]), fastest = 0.0;
+    double velocity = fabs(c->start) + fabs(c->ramp) * tau, limits = fabs(x->steady[i]), fastest = 0.0;
     tribo_signal_reserve(&x->velocity, e + h->harmonics, 1); /* cannot fail: tribo_modal_motion_start has made room */
     x->velocity.tau = tau;
-    x->velocity.a[0] = c->line.start;
-    x->velocity.a[1] = c->line.ramp;
+    x->velocity.a[0] = c->start;
+    x->velocity.a[1] = c->ramp;
     for (size_t p = 0; p < e + h->harmonics; p++) {
         const double re = x->z.re[p], im = x->z.im[p];
         if (v->size[p] > 0.0) {

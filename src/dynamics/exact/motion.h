@@ -6,18 +6,13 @@
 #include "modal.h"
 #include "dynamics/events/events.h"
 
-/* The linear part of an output, start + ramp tau. */
-struct line {
-    double start, ramp;
-};
-
 /* An output in a phase. */
 struct course {
     const struct output *output;
-    struct line line;
-    double size, bend; /* bounds of |output| and of the sixth derivative */
-    double tau;        /* time of the last look */
-    struct sample at;  /* output at tau, with two derivatives */
+    double start, ramp; /* the linear part is start + ramp tau */
+    double size, bend;  /* bounds of |output| and of the sixth derivative */
+    double tau;         /* time of the last look */
+    struct sample at;   /* output at tau, with two derivatives */
 };
 
 /* TRIBO_TERMS terms side by side, with two derivatives. */

@@ -13,7 +13,7 @@ struct modal_build {
     struct modal_store scratch;     /* workspace until the structure is built */
     const struct matrix *stiffness; /* K + J_A' G_AA^-1 J_A, A: compliant contacts that hold */
     struct matrix own_stiffness;    /* memory of stiffness if A is not empty */
-    double *work;                   /* workspace of tribo_modal_effects */
+    double *work;                   /* [2 ncontact + n + rests + modes] workspace of functions of build.c and response.c */
     double complex *direct; /* [harmonics][rests] forces of the rigid contacts that hold, by loads and limits at fixed eta */
     int status;             /* of a failure other than out of memory; else 0 */
 };
@@ -24,19 +24,12 @@ int tribo_modal_exponents(struct modal_build *b);
 /* work [modes] = -Phi'force, force [n] += M Phi work; then f [rests]: J_I'f = force, I: the rigid contacts that hold. */
 void tribo_modal_react(const struct modal *h, double *force, double *f, double *work);
 
-/* A column of on, and of by_u or NULL, with entries stride apart. */
-struct effects {
-    double *on, *by_u;
-    size_t stride;
-};
-
-/* Sets a column by displacements y [n], with J_I y = b_I: contacts that hold: force per eta, J_I'f = (K - omega2 M) y - J_A'f_A
- * (A: compliant ones, f_A' = -G_AA^-1 (J_A y - b_A)), and per eta', J_I'f = C y; other contacts: velocity per eta'. base
- * [ncontact] = b, by which only the rest of the forces beside the modes counts; NULL: y is a mode, 0. After
- * tribo_modal_reserve_effects, which returns 0 if out of memory. */
-int tribo_modal_reserve_effects(struct modal_build *b);
-void tribo_modal_effects(const struct modal_build *b, const double *y, double omega2, const double *base,
-                         const struct effects *to);
+/* Sets a column of on, and of by_u or NULL, entries stride apart, by displacements y [n], with J_I y = b_I: contacts that hold:
+ * force per eta, J_I'f = (K - omega2 M) y - J_A'f_A (A: compliant ones, f_A' = -G_AA^-1 (J_A y - b_A)), and per eta', J_I'f = C y;
+ * other contacts: velocity per eta'. base [ncontact] = b, by which only the rest of the forces beside the modes counts; NULL: y is
+ * a mode, 0. */
+void tribo_modal_effects(const struct modal_build *b, const double *y, double omega2, const double *base, double *on,
+                         double *by_u, size_t stride);
 
 /* Fill b->forced: shapes, forcing and response; then terms and outputs. Return 1; 0 if out of memory, or on another failure, with
  * b->status set. */

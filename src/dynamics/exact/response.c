@@ -83,41 +83,34 @@ static int make_shapes(struct modal_build *b)
     return 1;
 }
 
-/* Workspace of a shape by bases. */
-struct following {
-    double *base;         /* [ncontact] b */
-    double *x, *drag;     /* [rests] b_I; [n] -C y */
-    double *place, *rate; /* [modes] forcing of eta per displacement, and per velocity of the shape */
-};
-
-/* Sets shape k, velocities y with J_I y = b_I and Phi'M y = 0, and what it does at contacts and to the modes. By Maxwell and
- * Betti, phi'(K y - J'f') is the sum of b_i times the force of contact i per eta over the contacts that hold. */
-static void follow_base(struct modal_build *b, size_t k, double omega, struct following *w)
+/* Sets shape k, velocities y with J_I y = b_I, b = base [ncontact], and Phi'M y = 0, and what it does at contacts and to the
+ * modes: place, rate [modes], forcing of eta per displacement, and per velocity of the shape. By Maxwell and Betti, phi'(K y -
+ * J'f') is the sum of b_i times the force of contact i per eta over the contacts that hold. */
+static void follow_base(struct modal_build *b, size_t k, double omega, const double *base, double *place, double *rate)
 {
     struct forced *f = b->forced;
     const struct modal *h = b->h;
     const size_t n = h->n, m = h->modes;
-    const struct effects to = {f->on + k, f->by_u ? f->by_u + k : NULL, f->shapes};
-    double *y = f->phi + k * n;
+    double *y = f->phi + k * n, *x = b->work, *drag = b->work;
     for (size_t p = 0; p < h->rests; p++) {
-        w->x[p] = w->base[h->rest[p]];
+        x[p] = base[h->rest[p]];
     }
-    tribo_constraints_follow(&h->ties, w->x, y);
-    memset(w->place, 0, m * sizeof *w->place);
-    memset(w->rate, 0, m * sizeof *w->rate);
-    memset(w->drag, 0, n * sizeof *w->drag);
-    tribo_multiply_add(m, n, 1, 1.0, h->psi, y, w->place);
+    tribo_constraints_follow(&h->ties, x, y);
+    memset(place, 0, m * sizeof *place);
+    memset(rate, 0, m * sizeof *rate);
+    tribo_multiply_add(m, n, 1, 1.0, h->psi, y, place);
     for (size_t l = 0; l < m; l++) {
-        tribo_add(y, -w->place[l], h->phi + l * n, n);
-        w->place[l] = 0.0;
+        tribo_add(y, -place[l], h->phi + l * n, n);
+        place[l] = 0.0;
     }
-    tribo_modal_effects(b, y, omega * omega, w->base, &to);
+    tribo_modal_effects(b, y, omega * omega, base, f->on + k, f->by_u ? f->by_u + k : NULL, f->shapes);
     for (size_t i = 0; i < b->shared->sys->ncontact; i++) {
-        tribo_add(w->place, h->key[i] == 2 ? -w->base[i] : 0.0, h->on + i * m, m);
+        tribo_add(place, h->key[i] == 2 ? -base[i] : 0.0, h->on + i * m, m);
     }
     if (b->shared->damping) {
-        tribo_matrix_multiply_add(b->shared->damping, -1.0, y, w->drag);
-        tribo_multiply_add(m, n, 1, 1.0, h->phi, w->drag, w->rate);
+        memset(drag, 0, n * sizeof *drag);
+        tribo_matrix_multiply_add(b->shared->damping, -1.0, y, drag);
+        tribo_multiply_add(m, n, 1, 1.0, h->phi, drag, rate);
     }
 }
 
@@ -128,44 +121,38 @@ static int follow_bases(struct modal_build *b)
     const struct modal *h = b->h;
     const tribo_system *sys = b->shared->sys;
     const size_t m = h->modes, c = sys->ncontact;
-    double *room = tribo_modal_take(&b->scratch, c + h->rests + h->n + 2 * m, sizeof *room);
-    if (!room || !tribo_modal_reserve_effects(b)) {
+    double *base = tribo_modal_take(&b->scratch, c + 2 * m, sizeof *base), *place = base ? base + c : NULL;
+    b->work = tribo_modal_take(&b->scratch, 2 * c + h->n + h->rests + m, sizeof *b->work);
+    if (!base || !b->work || !make_shapes(b)) {
         return 0;
     }
-    struct following w = {.base = room, .x = room + c};
-    w.drag = w.x + h->rests;
-    w.place = w.drag + h->n;
-    w.rate = w.place + m;
-    if (!make_shapes(b)) {
-        return 0;
-    }
+    double *rate = place + m;
     f->x = tribo_modal_take(&f->store, f->harmonics * f->shapes, sizeof *f->x);
     size_t k = m;
     for (size_t at = 0; f->x && at < 2 * sys->loads.harmonics; at++) {
         const size_t s = at / 2, part = at % 2;
         const double omega = f->forcing[s].omega;
-        const double complex rate = part ? I : 1.0;
+        const double complex unit = part ? I : 1.0;
         if (sys->loads.harmonic[s].drives == DRIVES_BASE && omega != 0.0) {
-            const double complex place = rate / (omega * I);
-            memset(w.base, 0, c * sizeof *w.base);
-            base_part(&sys->loads.harmonic[s], (int)part, w.base);
-            follow_base(b, k, omega, &w);
-            f->x[s * f->shapes + k++] = place;
+            memset(base, 0, c * sizeof *base);
+            base_part(&sys->loads.harmonic[s], (int)part, base);
+            follow_base(b, k, omega, base, place, rate);
+            f->x[s * f->shapes + k++] = unit / (omega * I);
             for (size_t l = 0; l < m; l++) {
-                f->g[s * m + l] += place * w.place[l] + rate * w.rate[l];
+                f->g[s * m + l] += unit * (place[l] / (omega * I) + rate[l]);
             }
         }
     }
     if (f->x && f->steady) {
-        memset(w.base, 0, c * sizeof *w.base);
+        memset(base, 0, c * sizeof *base);
         for (size_t s = 0; s < sys->loads.harmonics; s++) {
             if (sys->loads.harmonic[s].drives == DRIVES_BASE && f->forcing[s].omega == 0.0) {
-                base_part(&sys->loads.harmonic[s], 0, w.base);
+                base_part(&sys->loads.harmonic[s], 0, base);
             }
         }
-        follow_base(b, k, 0.0, &w);
-        memcpy(f->ramp, w.place, m * sizeof *f->ramp);
-        memcpy(f->constant, w.rate, m * sizeof *f->constant);
+        follow_base(b, k, 0.0, base, place, rate);
+        memcpy(f->ramp, place, m * sizeof *f->ramp);
+        memcpy(f->constant, rate, m * sizeof *f->constant);
     }
     return f->x != NULL;
 }

@@ -186,8 +186,8 @@ void tribo_course_look(const struct exact *x, struct course *c)
     double sum[3 * T];
     sum_terms(x->h->terms, c->output->cr, x->lot, sum);
     c->tau = x->tau;
-    c->at.g = total(sum) + (c->line.start + c->line.ramp * x->tau);
-    c->at.d = total(sum + T) + c->line.ramp;
+    c->at.g = total(sum) + (c->start + c->ramp * x->tau);
+    c->at.d = total(sum + T) + c->ramp;
     c->at.e = total(sum + 2 * T);
 }
 
@@ -195,17 +195,17 @@ void tribo_course_bound(const struct exact *x, struct course *c)
 {
     double sum[2 * T];
     sum_bounds(x->h->terms, c->output->size, x->growth, x->growth6, sum);
-    c->size = total(sum) + fabs(c->line.start) + fabs(c->line.ramp) * x->longest;
+    c->size = total(sum) + fabs(c->start) + fabs(c->ramp) * x->longest;
     c->bend = total(sum + T);
 }
 
 void tribo_course_begin(const struct exact *x, struct course *c, int of_velocity, double value)
 {
     const struct output *w = c->output;
-    c->line.start = 0.0;
-    c->line.ramp = x->runs ? tribo_dot(w->on_rate, of_velocity ? x->acc : x->vel, x->h->shapes) : 0.0;
+    c->start = 0.0;
+    c->ramp = x->runs ? tribo_dot(w->on_rate, of_velocity ? x->acc : x->vel, x->h->shapes) : 0.0;
     tribo_course_look(x, c);
-    c->line.start = value - c->at.g;
+    c->start = value - c->at.g;
     c->at.g = value;
     tribo_course_bound(x, c);
 }
