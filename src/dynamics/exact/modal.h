@@ -135,33 +135,7 @@ void tribo_modal_free(struct modal *h);
 int tribo_forced_create(struct modal *h, const struct modal_shared *shared, const signed char *slip);
 void tribo_forced_free(struct modal *h);
 
-/* Returns c of the part Re(c z) of exponent p in place'eta + speed'eta', place, speed [modes]. */
-static inline double complex tribo_modal_weight(const struct modal *h, size_t p, const double *place, const double *speed)
-{
-    double re = 0.0, im = 0.0;
-    if (h->owner) {
-        return place[h->owner[p]] + speed[h->owner[p]] * h->lr[p] + speed[h->owner[p]] * h->li[p] * I;
-    }
-    for (size_t k = 0; k < h->modes; k++) {
-        const double rr = h->rr[p * h->modes + k], ri = h->ri[p * h->modes + k];
-        const double fr = place[k] + speed[k] * h->lr[p], fi = speed[k] * h->li[p];
-        re += fr * rr + fi * ri;
-        im += fi * rr - fr * ri;
-    }
-    return re + im * I;
-}
-
-/* Returns c of the part Re(c e^{i Omega t}) of harmonic s in place'eta + speed'eta', over shapes from `first` on. */
-static inline double complex tribo_forced_weight(const struct forced *f, size_t s, size_t first, const double *place,
-                                                 const double *speed)
-{
-    double re = 0.0, im = 0.0;
-    for (size_t k = first; k < f->shapes; k++) {
-        const double xr = creal(f->x[s * f->shapes + k]), xi = cimag(f->x[s * f->shapes + k]), u = f->forcing[s].omega * speed[k];
-        re += place[k] * xr - u * xi;
-        im += place[k] * xi + u * xr;
-    }
-    return re + im * I;
-}
+/* Returns c of the part Re(c z) of term p in place'eta + speed'eta', place, speed [shapes]. */
+double complex tribo_forced_weight(const struct forced *f, size_t p, const double *place, const double *speed);
 
 #endif

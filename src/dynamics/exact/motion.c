@@ -213,7 +213,7 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
         memcpy(to, from, tribo_system_size(sys) * sizeof *to);
     }
     memset(moves, 0, 2 * n * sizeof *moves);
-    tribo_modal_terms_spread(x, moves);
+    tribo_modal_terms_spread(x, moves, moves + n);
     for (size_t d = 0; d < n; d++) {
         to[d] += moves[d];
         to[n + d] = (brief ? to[n + d] : 0.0) + moves[n + d];

@@ -20,7 +20,7 @@ struct lot {
     double re[3][TRIBO_TERMS], im[3][TRIBO_TERMS];
 };
 
-/* [terms] real and imaginary parts, modal_motion's room apart. */
+/* [terms] real and imaginary parts, room of struct exact apart. */
 struct parts {
     double *re, *im;
 };
@@ -93,12 +93,12 @@ void *tribo_modal_phase_create(void *own, double tau);
 void tribo_modal_phase_free(void *phase);
 int tribo_modal_transition(void *own, const void *phase, double tau, size_t columns, double *v);
 
-/* terms.c. rest: sets w to z, at t0. go: sets w for t0 + tau, without resonances. spread: moves [2][ndof] += displacements by
- * place and velocities by rate. tribo_exp_1 returns (e^z - 1)/z, the integral of e^{z s} over s from 0 to 1, without loss of
+/* terms.c. rest: sets w to z, at t0. go: sets w for t0 + tau, without resonances. spread: moves, rates [ndof] +=
+ * displacements by place and velocities by rate. tribo_exp_1 returns (e^z - 1)/z, the integral of e^{z s} over s from 0 to 1, without loss of
  * digits for small z. */
 void tribo_modal_terms_rest(struct exact *x);
 void tribo_modal_terms_go(struct exact *x, double tau);
-void tribo_modal_terms_spread(const struct exact *x, double *moves);
+void tribo_modal_terms_spread(const struct exact *x, double *moves, double *rates);
 double complex tribo_exp_1(double complex z);
 
 /* terms.c. begin: starts the course of c->output, value at t0; x is at t0; of_velocity 1: a velocity, 0: a force. look: sets

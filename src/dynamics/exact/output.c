@@ -36,26 +36,42 @@ static int find_terms(struct modal_build *b)
     return 1;
 }
 
-/* Sets the output of contact i: the velocity, of a contact at rest that does not hold without modes; or the force, with the
- * rest of the harmonics in direct, `rests` apart; NULL: 0. c [3 terms] is its memory, zero before; zero [shapes] are zeros.
- * Returns 1 if the output varies. */
+double complex tribo_forced_weight(const struct forced *f, size_t p, const double *place, const double *speed)
+{
+    const struct modal *h = f->modal;
+    const size_t e = h->exponents, m = h->modes;
+    double re = 0.0, im = 0.0;
+    if (p < e && h->owner) {
+        return place[h->owner[p]] + speed[h->owner[p]] * f->lr[p] + speed[h->owner[p]] * f->li[p] * I;
+    }
+    for (size_t k = 0; k < (p < e ? m : f->shapes); k++) {
+        const double rr = p < e ? h->rr[p * m + k] : creal(f->x[(p - e) * f->shapes + k]);
+        const double ri = p < e ? -h->ri[p * m + k] : cimag(f->x[(p - e) * f->shapes + k]);
+        const double fr = place[k] + speed[k] * f->lr[p], fi = speed[k] * f->li[p];
+        re += fr * rr - fi * ri;
+        im += fr * ri + fi * rr;
+    }
+    return re + im * I;
+}
+
+/* Sets the output of contact i: the velocity, of a contact at rest that does not hold by bases only (on of modes is 0); or the
+ * force, with the rest of the harmonics in direct, `rests` apart; NULL: 0. c [3 terms] is its memory, zero before; zero [shapes]
+ * are zeros. Returns 1 if the output varies. */
 static int fill_output(const struct modal_build *b, size_t i, const double complex *direct, const double *zero, double *c,
                        struct output *w)
 {
     const struct forced *f = b->forced;
     const size_t terms = f->terms, e = b->h->exponents;
-    const int holds = b->h->key[i] == 2, parts = b->h->key[i] == 1;
+    const int holds = b->h->key[i] == 2;
     const double *own = f->on + i * f->shapes, *by_u = holds && f->by_u ? f->by_u + i * f->shapes : zero;
-    const double *place = holds ? own : zero, *speed = holds ? by_u : own;
     int varies = tribo_largest(own, f->shapes) > 0.0 || tribo_largest(by_u, f->shapes) > 0.0;
     *w = (struct output){i, c, c + terms, c + 2 * terms, own};
     for (size_t s = 0; direct && s < f->harmonics; s++) {
         varies |= direct[s * b->h->rests] != 0.0;
     }
     for (size_t p = 0; varies && p < e + f->harmonics; p++) {
-        double complex z = p < e ? (parts ? 0.0 : tribo_modal_weight(b->h, p, place, speed))
-                                 : tribo_forced_weight(f, p - e, parts ? b->h->modes : 0, place, speed);
-        z += direct && p >= e ? direct[(p - e) * b->h->rests] : 0.0;
+        const double complex z = tribo_forced_weight(f, p, holds ? own : zero, holds ? by_u : own) +
+                                 (direct && p >= e ? direct[(p - e) * b->h->rests] : 0.0);
         w->cr[p] = creal(z);
         w->ci[p] = cimag(z);
         w->size[p] = z != 0.0 ? tribo_modal_magnitude(creal(z), cimag(z)) : 0.0;

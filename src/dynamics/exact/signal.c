@@ -27,7 +27,7 @@ static void add_weights(const struct exact *x, const double *place, const double
     const size_t e = own->exponents;
     for (size_t p = 0; p < e + h->harmonics; p++) {
         double complex z = tribo_part(&x->z, p);
-        double complex c = p < e ? tribo_modal_weight(own, p, place, speed) : tribo_forced_weight(h, p - e, 0, place, speed);
+        double complex c = tribo_forced_weight(h, p, place, speed);
         for (size_t s = 0; h->resonant && p < e && s < h->harmonics; s++) {
             const double complex w = resonance(h, s, own->owner[p]) * tribo_part(&x->z, e + s);
             z -= (own->ar[p] + own->ai[p] * I) * creal(w) - (own->br[p] + own->bi[p] * I) * h->forcing[s].omega * cimag(w);

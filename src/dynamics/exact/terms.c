@@ -110,21 +110,17 @@ void tribo_modal_terms_go(struct exact *x, double tau)
     turn_terms(h->terms, x->room, h->lr, e, x->z.re, x->lot);
 }
 
-/* to [ndof] += place phi, and rates [ndof] += rate phi, within an extent. */
-TRIBO_SIMD static void add_shape(struct extent own, const double *restrict phi, double place, double rate, double *restrict to,
-                                 double *restrict rates)
+TRIBO_SIMD void tribo_modal_terms_spread(const struct exact *x, double *restrict moves, double *restrict rates)
 {
-    for (size_t d = own.begin; d < own.end; d++) {
-        to[d] += phi[d] * place;
-        rates[d] += phi[d] * rate;
-    }
-}
-
-void tribo_modal_terms_spread(const struct exact *x, double *moves)
-{
-    const size_t n = x->sys->ndof;
-    for (size_t k = 0; k < x->h->shapes; k++) {
-        add_shape(x->h->extent[k], x->h->phi + k * n, x->place[k], x->rate[k], moves, moves + n);
+    const size_t n = x->sys->ndof, shapes = x->h->shapes;
+    for (size_t k = 0; k < shapes; k++) {
+        const struct extent own = x->h->extent[k];
+        const double *phi = x->h->phi + k * n, place = x->place[k], rate = x->rate[k];
+        TRIBO_APART
+        for (size_t d = own.begin; d < own.end; d++) {
+            moves[d] += phi[d] * place;
+            rates[d] += phi[d] * rate;
+        }
     }
 }
 
