@@ -72,21 +72,23 @@ struct forcing {
     size_t harmonic, contact; /* harmonic: index in the system; contact: of the limit, else ncontact */
 };
 
-/* Degrees of freedom that a shape moves, or that move a mode: begin <= d < end. */
-struct extent {
+/* A shape moves, or a mode is moved by, degrees of freedom d, begin <= d < end. speed: eta' of a shape for bases of constant
+ * speed, 1; else 0. */
+struct shape {
     size_t begin, end;
+    double speed;
 };
 
 /* The structure under the loads of the system. Shapes: the modes, then a shape for each part, cosine or sine, of a harmonic of
- * bases: the velocities of the structure, with Phi'M y = 0, for eta' = e^{i Omega t} or i e^{i Omega t}; at last, if steady, a
- * shape for bases of constant speed: eta' = 1. */
+ * bases: the velocities of the structure, with Phi'M y = 0, for eta' = e^{i Omega t} or i e^{i Omega t}; or for bases of
+ * constant speed, if steady: eta' = 1. */
 struct forced {
     struct modal *modal;
     struct modal_store store;
     size_t shapes;
     int steady;
     double *phi, *on, *by_u; /* of the modal, with further rows, or columns, [shapes] */
-    struct extent *extent;   /* [shapes] */
+    struct shape *shape;     /* [shapes] */
 
     size_t harmonics;        /* the harmonics of the system, in order, then harmonics of limits */
     struct forcing *forcing; /* [harmonics] */

@@ -315,7 +315,7 @@ static void split_amplitudes(struct exact *x, const double *force)
     }
     for (size_t k = own->modes; k < h->shapes; k++) {
         x->acc[k] = 0.0;
-        x->vel[k] = x->drift[k] = h->steady && k + 1 == h->shapes ? 1.0 : 0.0;
+        x->vel[k] = x->drift[k] = h->shape[k].speed;
     }
 }
 
@@ -350,7 +350,7 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
     find_steady(x);
     find_constant_forces(x, y, x->work);
     for (size_t k = 0; k < own->modes; k++) {
-        const size_t begin = h->extent[k].begin, moved = h->extent[k].end - begin;
+        const size_t begin = h->shape[k].begin, moved = h->shape[k].end - begin;
         x->place[k] = tribo_dot(own->psi + k * n + begin, y + begin, moved);
         x->rate[k] = tribo_dot(own->psi + k * n + begin, y + n + begin, moved);
     }

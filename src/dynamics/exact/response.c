@@ -13,38 +13,7 @@
 /* |lambda - i Omega|/Omega down to which the response of coupled modes keeps enough digits. */
 #define UNDAMPED 1e-9
 
-static int list_forcing(struct modal_build *b)
-{
-    struct forced *f = b->forced;
-    const tribo_system *sys = b->shared->sys;
-    const size_t c = sys->ncontact;
-    f->harmonics = sys->loads.harmonics;
-    f->forcing =
-        tribo_modal_take(&f->store, sys->loads.harmonics + sys->loads.limit_harmonics * (c - b->h->rests), sizeof *f->forcing);
-    if (!f->forcing) {
-        return 0;
-    }
-    for (size_t k = 0; k < sys->loads.harmonics; k++) {
-        const struct harmonic *w = &sys->loads.harmonic[k];
-        f->forcing[k] = (struct forcing){w->omega, k, c};
-        for (size_t i = 0; w->drives == DRIVES_LIMIT && w->omega != 0.0 && i < c; i++) {
-            if (b->h->key[i] != 2 && (w->cosine[i] != 0.0 || w->sine[i] != 0.0)) {
-                f->forcing[f->harmonics++] = (struct forcing){w->omega, k, i};
-            }
-        }
-    }
-    return 1;
-}
-
 /* ------------------------------------------------------------------------------------------------------- shapes by bases */
-
-/* base [ncontact] += c for part 0 and -s for part 1 of the harmonic b = Re((c - i s) e^{i Omega t}). */
-static void base_part(const struct harmonic *w, int part, double *base)
-{
-    for (size_t e = 0; e < w->count; e++) {
-        base[w->index[e]] += part ? -w->sine[e] : w->cosine[e];
-    }
-}
 
 /* Makes room for shapes: one for each part of a harmonic of bases, and one for bases of constant speed. Without such shapes phi,
  * on and by_u are arrays of the modal. Returns 0 if out of memory. */
@@ -57,20 +26,20 @@ static int make_shapes(struct modal_build *b)
     f->shapes = m;
     for (size_t s = 0; s < sys->loads.harmonics; s++) {
         const struct harmonic *w = &sys->loads.harmonic[s];
-        f->steady |= w->drives == DRIVES_BASE && w->omega == 0.0;
-        f->shapes += w->drives == DRIVES_BASE && w->omega != 0.0 ? 2 : 0;
+        f->shapes += w->drives != DRIVES_BASE ? 0 : w->omega != 0.0 ? 2 : 1;
     }
-    f->shapes += f->steady != 0;
+    f->shape = tribo_modal_take(&f->store, f->shapes, sizeof *f->shape);
+    f->x = tribo_modal_take(&f->store, f->harmonics * f->shapes, sizeof *f->x);
     f->phi = h->phi;
     f->on = h->on;
     f->by_u = h->by_u;
-    if (f->shapes == m) {
-        return 1;
+    if (f->shapes == m || f->store.failed) {
+        return !f->store.failed;
     }
     f->phi = tribo_modal_take(&f->store, f->shapes * n, sizeof *f->phi);
     f->on = tribo_modal_take(&f->store, f->shapes * c, sizeof *f->on);
     f->by_u = h->by_u ? tribo_modal_take(&f->store, f->shapes * c, sizeof *f->by_u) : NULL;
-    if (!f->phi || !f->on || (h->by_u && !f->by_u)) {
+    if (f->store.failed) {
         return 0;
     }
     memcpy(f->phi, h->phi, m * n * sizeof *f->phi);
@@ -114,7 +83,8 @@ static void follow_base(struct modal_build *b, size_t k, double omega, const dou
     }
 }
 
-/* Sets the shapes by bases, the forcing of the modes by these, and eta of these. Returns 0 if out of memory. */
+/* Sets the shapes, of bases Re((c - i s) e^{i Omega t}) by c and by -s, with the forcing of the modes by these, and eta of these.
+ * Returns 0 if out of memory. */
 static int follow_bases(struct modal_build *b)
 {
     struct forced *f = b->forced;
@@ -127,50 +97,39 @@ static int follow_bases(struct modal_build *b)
         return 0;
     }
     double *rate = place + m;
-    f->x = tribo_modal_take(&f->store, f->harmonics * f->shapes, sizeof *f->x);
-    size_t k = m;
-    for (size_t at = 0; f->x && at < 2 * sys->loads.harmonics; at++) {
-        const size_t s = at / 2, part = at % 2;
-        const double omega = f->forcing[s].omega;
+    for (size_t at = 0, k = m; at < 2 * sys->loads.harmonics; at++) {
+        const struct harmonic *w = &sys->loads.harmonic[at / 2];
+        const int part = at % 2;
         const double complex unit = part ? I : 1.0;
-        if (sys->loads.harmonic[s].drives == DRIVES_BASE && omega != 0.0) {
-            memset(base, 0, c * sizeof *base);
-            base_part(&sys->loads.harmonic[s], (int)part, base);
-            follow_base(b, k, omega, base, place, rate);
-            f->x[s * f->shapes + k++] = unit / (omega * I);
-            for (size_t l = 0; l < m; l++) {
-                f->g[s * m + l] += unit * (place[l] / (omega * I) + rate[l]);
-            }
+        if (w->drives != DRIVES_BASE || (part && w->omega == 0.0)) {
+            continue;
         }
-    }
-    if (f->x && f->steady) {
         memset(base, 0, c * sizeof *base);
-        for (size_t s = 0; s < sys->loads.harmonics; s++) {
-            if (sys->loads.harmonic[s].drives == DRIVES_BASE && f->forcing[s].omega == 0.0) {
-                base_part(&sys->loads.harmonic[s], 0, base);
+        for (size_t e = 0; e < w->count; e++) {
+            base[w->index[e]] = part ? -w->sine[e] : w->cosine[e];
+        }
+        follow_base(b, k, w->omega, base, place, rate);
+        if (w->omega == 0.0) {
+            f->steady = 1;
+            f->shape[k].speed = 1.0;
+            tribo_add(f->ramp, 1.0, place, m);
+            tribo_add(f->constant, 1.0, rate, m);
+        } else {
+            f->x[at / 2 * f->shapes + k] = unit / (w->omega * I);
+            for (size_t l = 0; l < m; l++) {
+                f->g[at / 2 * m + l] += unit * (place[l] / (w->omega * I) + rate[l]);
             }
         }
-        follow_base(b, k, 0.0, base, place, rate);
-        memcpy(f->ramp, place, m * sizeof *f->ramp);
-        memcpy(f->constant, rate, m * sizeof *f->constant);
+        k++;
     }
-    return f->x != NULL;
-}
-
-/* Sets the extents. Returns 0 if out of memory. */
-static int find_extents(struct modal_build *b)
-{
-    struct forced *f = b->forced;
-    const size_t n = b->h->n, m = b->h->modes;
-    f->extent = tribo_modal_take(&f->store, f->shapes, sizeof *f->extent);
-    for (size_t at = 0; f->extent && at < f->shapes * n; at++) {
-        if (f->phi[at] != 0.0 || (at < m * n && b->h->psi[at] != 0.0)) {
-            struct extent *own = &f->extent[at / n];
-            own->begin = own->end ? own->begin : at % n;
-            own->end = at % n + 1;
+    for (size_t at = 0; at < f->shapes * h->n; at++) {
+        if (f->phi[at] != 0.0 || (at < m * h->n && h->psi[at] != 0.0)) {
+            struct shape *own = &f->shape[at / h->n];
+            own->begin = own->end ? own->begin : at % h->n;
+            own->end = at % h->n + 1;
         }
     }
-    return f->extent != NULL;
+    return 1;
 }
 
 /* ------------------------------------------------------------------------------------------------- forcing and response */
@@ -294,21 +253,31 @@ static int respond_together(struct modal_build *b)
 int tribo_forced_respond(struct modal_build *b)
 {
     struct forced *f = b->forced;
-    const size_t m = b->h->modes;
-    if (!list_forcing(b)) {
-        return 0;
+    const struct modal *h = b->h;
+    const tribo_system *sys = b->shared->sys;
+    const size_t m = h->modes, c = sys->ncontact;
+    f->harmonics = sys->loads.harmonics;
+    f->forcing = tribo_modal_take(&f->store, f->harmonics + sys->loads.limit_harmonics * (c - h->rests), sizeof *f->forcing);
+    for (size_t k = 0; f->forcing && k < sys->loads.harmonics; k++) {
+        const struct harmonic *w = &sys->loads.harmonic[k];
+        f->forcing[k] = (struct forcing){w->omega, k, c};
+        for (size_t i = 0; w->drives == DRIVES_LIMIT && w->omega != 0.0 && i < c; i++) {
+            if (h->key[i] != 2 && (w->cosine[i] != 0.0 || w->sine[i] != 0.0)) {
+                f->forcing[f->harmonics++] = (struct forcing){w->omega, k, i};
+            }
+        }
     }
     f->g = tribo_modal_take(&f->store, f->harmonics * m, sizeof *f->g);
     f->ramp = tribo_modal_take(&f->store, 2 * m, sizeof *f->ramp);
     f->constant = f->ramp ? f->ramp + m : NULL;
-    b->direct = tribo_modal_take(&b->scratch, f->harmonics * b->h->rests, sizeof *b->direct);
-    double *work = tribo_modal_take(&b->scratch, 2 * b->h->n + m + b->h->rests, sizeof *work);
-    if (f->store.failed || b->scratch.failed || !follow_bases(b) || !find_extents(b)) {
+    b->direct = tribo_modal_take(&b->scratch, f->harmonics * h->rests, sizeof *b->direct);
+    double *work = tribo_modal_take(&b->scratch, 2 * h->n + m + h->rests, sizeof *work);
+    if (f->store.failed || b->scratch.failed || !follow_bases(b)) {
         return 0;
     }
     for (size_t s = 0; s < f->harmonics; s++) {
         force_modes(b, s, work);
     }
     force_constantly(b);
-    return b->h->coupling ? respond_together(b) : respond_alone(b);
+    return h->coupling ? respond_together(b) : respond_alone(b);
 }

@@ -114,7 +114,7 @@ TRIBO_SIMD void tribo_modal_terms_spread(const struct exact *x, double *restrict
 {
     const size_t n = x->sys->ndof, shapes = x->h->shapes;
     for (size_t k = 0; k < shapes; k++) {
-        const struct extent own = x->h->extent[k];
+        const struct shape own = x->h->shape[k];
         const double *phi = x->h->phi + k * n, place = x->place[k], rate = x->rate[k];
         TRIBO_APART
         for (size_t d = own.begin; d < own.end; d++) {
