@@ -18,14 +18,6 @@
 
 /* ---------------------------------------------------------------------------------------------- structures that are held */
 
-static void drop_loads(struct exact *x)
-{
-    for (struct modal *h = x->held.last; h; h = h->next) {
-        x->held.bytes -= h->forced ? h->forced->store.bytes : 0;
-        tribo_forced_free(h);
-    }
-}
-
 static void drop_helds(struct exact *x)
 {
     while (x->held.last) {
@@ -259,10 +251,11 @@ static int method_exact_open_events(tribo_driver *drv, struct events **events)
         drop_helds(x);
         x->held.structure = sys->structure;
     }
-    if (x->held.revision != sys->revision) {
-        drop_loads(x);
-        x->held.revision = sys->revision;
+    for (struct modal *h = x->held.last; h && x->held.revision != sys->revision; h = h->next) {
+        x->held.bytes -= h->forced ? h->forced->store.bytes : 0;
+        tribo_forced_free(h);
     }
+    x->held.revision = sys->revision;
     *events = &x->events;
     return TRIBO_OK;
 }

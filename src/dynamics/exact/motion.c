@@ -150,36 +150,26 @@ double tribo_modal_motion_limit_bend(const struct exact *x, size_t i)
     return sum;
 }
 
-/* Sets move and rate_move. */
-static void find_moves(struct exact *x, int brief)
-{
-    const struct forced *h = x->h;
-    const size_t e = h->modal->exponents, terms = e + h->harmonics;
-    for (size_t p = 0; p < terms; p++) {
-        const double complex rate = tribo_now(x, p, 1);
-        double er = creal(tribo_now(x, p, 0)) - x->z.re[p], ei = cimag(tribo_now(x, p, 0)) - x->z.im[p];
-        if (x->tau * h->size[p] < LITTLE && !(h->resonant && p < e)) {
-            /* With a load far above the frequency of exponent p, or in a short slip under a limit far above all other forces,
-             * this small change of z is the whole motion: a difference would lose digits. */
-            const double complex lambda_tau = x->tau * (h->lr[p] + h->li[p] * I);
-            const double complex move = tribo_part(&x->z, p) * lambda_tau * tribo_exp_1(lambda_tau);
-            er = creal(move);
-            ei = cimag(move);
-        }
-        x->move.re[p] = er;
-        x->move.im[p] = ei;
-        x->rate_move.re[p] = brief ? h->lr[p] * er - h->li[p] * ei : creal(rate);
-        x->rate_move.im[p] = brief ? h->lr[p] * ei + h->li[p] * er : cimag(rate);
-    }
-}
-
-/* Sets x->place and x->rate of all shapes. */
+/* Sets move, rate_move, and place and rate of all shapes. */
 static void move_shapes(struct exact *x, int brief)
 {
     const struct forced *h = x->h;
     const struct modal *own = h->modal;
     const size_t e = own->exponents, shapes = h->shapes;
-    find_moves(x, brief);
+    for (size_t p = 0; p < e + h->harmonics; p++) {
+        const double complex lambda = h->lr[p] + h->li[p] * I;
+        double complex move = tribo_now(x, p, 0) - tribo_part(&x->z, p);
+        if (x->tau * h->size[p] < LITTLE && !(h->resonant && p < e)) {
+            /* With a load far above the frequency of exponent p, or in a short slip under a limit far above all other forces,
+             * this small change of z is the whole motion: a difference would lose digits. */
+            move = tribo_part(&x->z, p) * x->tau * lambda * tribo_exp_1(x->tau * lambda);
+        }
+        const double complex rate = brief ? lambda * move : tribo_now(x, p, 1);
+        x->move.re[p] = creal(move);
+        x->move.im[p] = cimag(move);
+        x->rate_move.re[p] = creal(rate);
+        x->rate_move.im[p] = cimag(rate);
+    }
     for (size_t k = 0; k < shapes; k++) {
         x->place[k] = x->runs ? x->tau * (x->drift[k] + 0.5 * x->acc[k] * x->tau) : 0.0;
         x->rate[k] = x->runs ? (brief ? 0.0 : x->drift[k]) + x->acc[k] * x->tau : 0.0;
@@ -248,10 +238,15 @@ static void start_harmonics(struct exact *x)
     }
 }
 
-/* Sets x->steady: the forces of contacts without harmonics of limits. */
-static void find_steady(struct exact *x)
+/* force [modes] = the constant right-hand side of the modes: constant loads, steady forces of sliding contacts, and, of
+ * contacts that hold, -(J q + G f - displacements of bases) times the force per eta. K q is not added: for a rigid-body
+ * displacement q, K q would be rounding only. Sets x->steady: the forces of contacts without harmonics of limits. */
+static void find_constant_forces(struct exact *x, const double *y, double *force)
 {
+    const struct forced *h = x->h;
     const tribo_system *sys = x->sys;
+    const int holds = h->outputs > h->sliding;
+    const size_t m = h->modal->modes;
     memcpy(x->steady, x->events.stick_slip.state.force, sys->ncontact * sizeof *x->steady);
     for (size_t i = 0; sys->loads.limit_harmonics && i < sys->ncontact; i++) {
         double limit = sys->loads.given_limit[i];
@@ -261,22 +256,12 @@ static void find_steady(struct exact *x)
         }
         x->steady[i] = tribo_stick_slip_follows(&x->events.stick_slip, i) * limit;
     }
-}
-
-/* force [modes] = the constant right-hand side of the modes: constant loads, steady forces of sliding contacts, and, of
- * contacts that hold, -(J q + G f - displacements of bases) times the force per eta. K q is not added: for a rigid-body
- * displacement q, K q would be rounding only. */
-static void find_constant_forces(struct exact *x, const double *y, double *force)
-{
-    const struct forced *h = x->h;
-    const tribo_system *sys = x->sys;
-    const size_t m = h->modal->modes;
     memcpy(force, h->constant, m * sizeof *force);
-    if (h->outputs > h->sliding) {
+    if (holds) {
         tribo_compliance_give(sys, 1, x->events.stick_slip.state.force, x->way);
         tribo_matrix_multiply_add(&sys->direction, 1.0, y, x->way);
     }
-    for (size_t s = 0; sys->loads.base_harmonics && s < sys->loads.harmonics; s++) {
+    for (size_t s = 0; holds && sys->loads.base_harmonics && s < sys->loads.harmonics; s++) {
         const struct harmonic *w = &sys->loads.harmonic[s];
         for (size_t e = 0; w->drives == DRIVES_BASE && w->omega != 0.0 && e < w->count; e++) {
             x->way[w->index[e]] -= (w->cosine[e] * w->sin_t - w->sine[e] * w->cos_t) / w->omega;
@@ -347,7 +332,6 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
     }
     x->t0 = t;
     start_harmonics(x);
-    find_steady(x);
     find_constant_forces(x, y, x->work);
     for (size_t k = 0; k < own->modes; k++) {
         const size_t begin = h->shape[k].begin, moved = h->shape[k].end - begin;

@@ -172,23 +172,6 @@ static void force_modes(struct modal_build *b, size_t s, double *work)
     }
 }
 
-/* Sets constant from forcing of omega = 0 and from bases of constant speed: with these modes of omega != 0 have eta' =
- * ramp/omega^2, and damping of eta' is a constant force. Modes that damping couples all have omega != 0. */
-static void force_constantly(struct modal_build *b)
-{
-    struct forced *f = b->forced;
-    const struct modal *h = b->h;
-    const size_t m = h->modes;
-    for (size_t k = 0; k < m; k++) {
-        for (size_t s = 0; s < b->shared->sys->loads.harmonics; s++) {
-            f->constant[k] += f->forcing[s].omega == 0.0 ? creal(f->g[s * m + k]) : 0.0;
-        }
-        for (size_t l = h->coupling ? 0 : k; l < (h->coupling ? m : k + 1) && h->omega2[l] != 0.0; l++) {
-            f->constant[k] -= (h->coupling ? h->coupling[k * m + l] : h->damping[k]) * (f->ramp[l] / h->omega2[l]);
-        }
-    }
-}
-
 /* Sets the response of modes without coupling, and resonant. */
 static int respond_alone(struct modal_build *b)
 {
@@ -278,6 +261,15 @@ int tribo_forced_respond(struct modal_build *b)
     for (size_t s = 0; s < f->harmonics; s++) {
         force_modes(b, s, work);
     }
-    force_constantly(b);
+    /* With bases of constant speed modes of omega != 0 have eta' = ramp/omega^2; damping of eta' is a constant force. Modes that
+     * damping couples all have omega != 0. */
+    for (size_t k = 0; k < m; k++) {
+        for (size_t s = 0; s < sys->loads.harmonics; s++) {
+            f->constant[k] += f->forcing[s].omega == 0.0 ? creal(f->g[s * m + k]) : 0.0;
+        }
+        for (size_t l = h->coupling ? 0 : k; l < (h->coupling ? m : k + 1) && h->omega2[l] != 0.0; l++) {
+            f->constant[k] -= (h->coupling ? h->coupling[k * m + l] : h->damping[k]) * (f->ramp[l] / h->omega2[l]);
+        }
+    }
     return h->coupling ? respond_together(b) : respond_alone(b);
 }
