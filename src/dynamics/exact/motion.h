@@ -84,13 +84,13 @@ void tribo_modal_settle(const struct modal *h, size_t columns, const double *for
 void tribo_modal_split(const struct modal *h, size_t columns, const double *eta, const double *rate, double *zr, double *zi);
 void tribo_modal_join(const struct modal *h, size_t columns, const double *zr, const double *zi, double *eta);
 
-/* Functions of struct motion. The state of a signal is [q, q', f], f: forces of compliant contacts. The data of a phase is a
- * struct modal_phase. */
+/* Functions of struct motion. The state of a signal is [q, q', f], f: forces of compliant contacts. The data of a phase is
+ * its structure, with one user more. */
 void tribo_modal_motion_state(void *own, double tau, const double *from, double *to);
 double tribo_modal_motion_work(void *own, size_t i, double tau);
 int tribo_modal_motion_signal(void *own, const double *c, double tau, const double *end, struct signal *to);
-void *tribo_modal_phase_create(void *own, double tau);
-void tribo_modal_phase_free(void *phase);
+void *tribo_modal_phase_keep(void *own, double tau);
+void tribo_modal_phase_release(void *phase);
 int tribo_modal_transition(void *own, const void *phase, double tau, size_t columns, double *v);
 
 /* terms.c. rest: sets w to z, at t0. go: sets w for t0 + tau, without resonances. spread: moves, rates [ndof] +=

@@ -11,39 +11,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A phase of length tau: structure h, and re + i im = e^{lambda tau} for all perturbations. */
-struct modal_phase {
-    struct modal *h;
-    double tau, *im; /* [exponents] */
-    double re[];     /* [exponents] */
-};
-
-void *tribo_modal_phase_create(void *own, double tau)
+void *tribo_modal_phase_keep(void *own, double tau)
 {
     struct modal *h = ((struct exact *)own)->h->modal;
-    struct modal_phase *phase = malloc(sizeof *phase + 2 * h->exponents * sizeof *phase->re);
-    if (!phase) {
-        return NULL;
-    }
+    (void)tau;
     h->users++;
-    phase->h = h;
-    phase->tau = tau;
-    phase->im = phase->re + h->exponents;
-    for (size_t p = 0; p < h->exponents; p++) {
-        const double size = h->lr[p] != 0.0 ? exp(h->lr[p] * tau) : 1.0;
-        tribo_turn(h->li[p] * tau, &phase->re[p], &phase->im[p]);
-        phase->re[p] *= size;
-        phase->im[p] *= size;
-    }
-    return phase;
+    return h;
 }
 
-void tribo_modal_phase_free(void *phase)
+void tribo_modal_phase_release(void *phase)
 {
-    if (phase) {
-        tribo_modal_free(((struct modal_phase *)phase)->h);
-        free(phase);
-    }
+    tribo_modal_free(phase);
 }
 
 /* pull [modes][columns] = -sum of on (J q + G f) over the contacts that hold: constant forces on the modes. row [columns] is
@@ -68,30 +46,33 @@ static void find_pull(const struct modal *h, const tribo_system *sys, size_t col
     }
 }
 
-int tribo_modal_transition(void *own, const void *data, double tau, size_t columns, double *v)
+int tribo_modal_transition(void *own, const void *phase, double tau, size_t columns, double *v)
 {
-    const struct modal_phase *phase = data;
-    const struct modal *h = phase->h;
+    const struct modal *h = phase;
     tribo_system *sys = ((struct exact *)own)->sys;
     const size_t n = h->n, m = h->modes, c = columns, block = n * c;
-    double *eta = calloc(13 * block + c + 1, sizeof *eta), *rate = eta + block, *pull = rate + block, *vel = pull + block;
-    double *acc = vel + block, *zr = acc + block, *zi = zr + 2 * block, *wr = zi + 2 * block, *wi = wr + 2 * block;
+    double *eta = calloc(13 * block + c + 4 * n + 1, sizeof *eta), *rate = eta + block, *pull = rate + block, *vel = pull + block;
+    double *acc = vel + block, *zr = acc + block, *zi = zr + 2 * block, *wr = zi + 2 * block, *wi = wr + 2 * block,
+           *turn = wi + 2 * block;
     if (!eta) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     }
     tribo_multiply_add(m, n, c, 1.0, h->psi, v, eta);
     tribo_multiply_add(m, n, c, 1.0, h->psi, v + block, rate);
-    find_pull(h, sys, c, v, pull, wi + 2 * block);
+    find_pull(h, sys, c, v, pull, turn + 4 * n);
     tribo_modal_settle(h, c, pull, eta, rate, vel, acc);
     tribo_modal_split(h, c, eta, rate, zr, zi);
-    for (size_t at = 0; at < h->exponents * c; at++) {
-        /* z becomes w - z, w that at tau, beside w'. */
-        const size_t p = at / c;
-        const double re = phase->re[p], im = phase->im[p], r = re * zr[at] - im * zi[at], i = re * zi[at] + im * zr[at];
-        wr[at] = h->lr[p] * r - h->li[p] * i;
-        wi[at] = h->lr[p] * i + h->li[p] * r;
-        zr[at] = r - zr[at];
-        zi[at] = i - zi[at];
+    tribo_cos_sin_all(tau, h->exponents, h->li, turn, turn + 2 * n);
+    for (size_t p = 0, at = 0; p < h->exponents; p++) {
+        const double size = h->lr[p] != 0.0 ? exp(h->lr[p] * tau) : 1.0, re = size * turn[p], im = size * turn[2 * n + p];
+        for (size_t j = 0; j < c; j++, at++) {
+            /* z becomes w - z, w that at tau, beside w'. */
+            const double r = re * zr[at] - im * zi[at], i = re * zi[at] + im * zr[at];
+            wr[at] = h->lr[p] * r - h->li[p] * i;
+            wi[at] = h->lr[p] * i + h->li[p] * r;
+            zr[at] = r - zr[at];
+            zi[at] = i - zi[at];
+        }
     }
     for (size_t at = 0; at < m * c; at++) {
         const double drift = vel[at] + (h->drifts[at / c] ? rate[at] : 0.0);
