@@ -68,7 +68,7 @@ void tribo_modal_give_back(struct modal_store *store)
 static int list_rest(struct modal_build *b, const unsigned char *holds)
 {
     struct modal *h = b->h;
-    tribo_system *sys = b->shared->sys;
+    tribo_system *sys = b->sys;
     h->key = tribo_modal_take(&h->store, sys->ncontact, 1);
     h->rest = tribo_modal_take(&h->store, sys->ncontact, sizeof *h->rest);
     for (size_t i = 0; !h->store.failed && i < sys->ncontact; i++) {
@@ -92,9 +92,9 @@ static int list_rest(struct modal_build *b, const unsigned char *holds)
 /* Sets b->stiffness. Returns 0 if out of memory. */
 static int find_stiffness(struct modal_build *b)
 {
-    const tribo_system *sys = b->shared->sys;
+    const tribo_system *sys = b->sys;
     const size_t n = b->h->n, c = sys->ncontact;
-    b->stiffness = b->shared->stiffness;
+    b->stiffness = b->k;
     if (!b->h->springs) {
         return 1;
     }
@@ -108,8 +108,7 @@ static int find_stiffness(struct modal_build *b)
     }
     tribo_compliance_solve(sys, b->slip, c, inverse);
     const int done = tribo_matrix_from_dense(&g, c, c, inverse) && tribo_matrix_congruent(&g, &sys->direction, added) &&
-                     tribo_matrix_from_dense(&k, n, n, added) &&
-                     tribo_matrix_sum(&b->own_stiffness, 1.0, b->shared->stiffness, 1.0, &k);
+                     tribo_matrix_from_dense(&k, n, n, added) && tribo_matrix_sum(&b->own_stiffness, 1.0, b->k, 1.0, &k);
     tribo_matrix_free(&g);
     tribo_matrix_free(&k);
     b->stiffness = &b->own_stiffness;
@@ -134,11 +133,11 @@ static int factorize_mass(struct modal_build *b, const struct matrix *z, struct 
     struct matrix w = {0};
     size_t where = 0;
     int status = TRIBO_ERR_MEMORY;
-    if (mass && tribo_matrix_congruent(&b->shared->sys->mass, z, mass) && tribo_matrix_from_dense(&w, m, m, mass)) {
+    if (mass && tribo_matrix_congruent(&b->sys->mass, z, mass) && tribo_matrix_from_dense(&w, m, m, mass)) {
         status = tribo_cholesky_consume(c, &w, &where, &pivot);
     }
     if (status == TRIBO_ERR_INDEFINITE) {
-        tribo_system_fail(b->shared->sys, status, "mass of what is not held is not positive definite: pivot %g", pivot);
+        tribo_system_fail(b->sys, status, "mass of what is not held is not positive definite: pivot %g", pivot);
     }
     return status;
 }
@@ -148,14 +147,14 @@ static int build_modes_failed(const struct modal_build *b, int status, const str
 {
     switch (status) {
     case TRIBO_ERR_NOT_FINITE:
-        return tribo_system_fail(b->shared->sys, status, "stiffness over mass overflows");
+        return tribo_system_fail(b->sys, status, "stiffness over mass overflows");
     case TRIBO_ERR_UNSUPPORTED:
-        return tribo_system_fail(b->shared->sys, status,
+        return tribo_system_fail(b->sys, status,
                                  "with contacts at rest held, omega^2 = %g of mode %zu is hardly more than rounding of the "
                                  "stiffness, which comes to %g: make the stiffest parts softer, or rigid",
                                  doubt->omega2, doubt->mode, doubt->noise);
     case TRIBO_ERR_NO_CONVERGENCE:
-        return tribo_system_fail(b->shared->sys, status,
+        return tribo_system_fail(b->sys, status,
                                  "with contacts at rest held, omega^2 = %g of mode %zu does not come out pure: take method event",
                                  doubt->omega2, doubt->mode);
     default:
@@ -167,7 +166,7 @@ static int build_modes_failed(const struct modal_build *b, int status, const str
 static int find_modes(struct modal_build *b)
 {
     struct modal *h = b->h;
-    const tribo_system *sys = b->shared->sys;
+    const tribo_system *sys = b->sys;
     struct matrix z = {0};
     struct cholesky own = {0};
     struct doubt doubt = {0};
@@ -213,7 +212,7 @@ static int damping_couples(const struct modal_build *b, const double *c, const d
         const double distance = fabs(h->omega2[k] - h->omega2[l]);
         const double noise = tribo_matrix_noise(b->stiffness, stiff_root, one, other);
         const double mixed = noise < TINY * distance ? noise / distance : 0.0;
-        if (shared > ROUNDING * (tribo_matrix_noise(b->shared->damping, root, one, other) + mixed * larger)) {
+        if (shared > ROUNDING * (tribo_matrix_noise(b->c, root, one, other) + mixed * larger)) {
             return 1;
         }
     }
@@ -224,7 +223,7 @@ static int damping_couples(const struct modal_build *b, const double *c, const d
 static int find_damping(struct modal_build *b)
 {
     struct modal *h = b->h;
-    const struct matrix *damping = b->shared->damping;
+    const struct matrix *damping = b->c;
     const size_t n = h->n, m = h->modes;
     double *c = damping ? tribo_modal_take(&h->store, m * m, sizeof *c) : NULL, most = 0.0;
     double *root = damping ? tribo_modal_take(&b->scratch, 2 * n, sizeof *root) : NULL;
@@ -241,7 +240,7 @@ static int find_damping(struct modal_build *b)
     }
     if (c) {
         tribo_matrix_roots(damping, NULL, root);
-        tribo_matrix_roots(b->stiffness, b->shared->sys->expansion.terms, root + n);
+        tribo_matrix_roots(b->stiffness, b->sys->expansion.terms, root + n);
     }
     for (size_t k = 0; k < m; k++) {
         if (c) {
@@ -272,7 +271,7 @@ void tribo_modal_effects(const struct modal_build *b, const double *y, double om
                          double *by_u, size_t stride)
 {
     const struct modal *h = b->h;
-    const tribo_system *sys = b->shared->sys;
+    const tribo_system *sys = b->sys;
     const struct matrix *j = &sys->direction;
     const size_t n = h->n, c = sys->ncontact;
     double *v = b->work, *rate = v + c, *force = rate + c;
@@ -296,13 +295,13 @@ void tribo_modal_effects(const struct modal_build *b, const double *y, double om
         }
     }
     if (h->rests > 0) {
-        tribo_matrix_multiply_add(b->shared->stiffness, 1.0, y, force);
+        tribo_matrix_multiply_add(b->k, 1.0, y, force);
         tribo_system_add_mass(sys, -omega2, y, force);
         keep_reactions(h, force, base != NULL, force + n, on, stride);
     }
     if (h->rests > 0 && by_u) {
         memset(force, 0, n * sizeof *force);
-        tribo_matrix_multiply_add(b->shared->damping, 1.0, y, force);
+        tribo_matrix_multiply_add(b->c, 1.0, y, force);
         keep_reactions(h, force, 1, force + n, by_u, stride);
     }
 }
@@ -311,43 +310,53 @@ void tribo_modal_effects(const struct modal_build *b, const double *y, double om
 static int find_effects(struct modal_build *b)
 {
     struct modal *h = b->h;
-    const size_t m = h->modes, c = b->shared->sys->ncontact;
-    h->on = tribo_modal_take(&h->store, (b->shared->damping ? 2 : 1) * m * c, sizeof *h->on);
+    const size_t m = h->modes, c = b->sys->ncontact;
+    h->on = tribo_modal_take(&h->store, (b->c ? 2 : 1) * m * c, sizeof *h->on);
     b->work = tribo_modal_take(&b->scratch, 2 * c + h->n + h->rests + m, sizeof *b->work);
     if (!h->on || !b->work) {
         return 0;
     }
-    h->by_u = b->shared->damping ? h->on + m * c : NULL;
+    h->by_u = b->c ? h->on + m * c : NULL;
     for (size_t k = 0; k < m; k++) {
         tribo_modal_effects(b, h->phi + k * h->n, h->omega2[k], NULL, h->on + k, h->by_u ? h->by_u + k : NULL, m);
     }
     return 1;
 }
 
-int tribo_modal_create(struct modal **modal, const struct modal_shared *shared, const signed char *slip,
+int tribo_modal_create(struct modal **modal, struct modal_matrices *m, tribo_system *sys, const signed char *slip,
                        const unsigned char *holds)
 {
     struct modal_store store = {0};
-    struct modal_build b = {.shared = shared, .h = tribo_modal_take(&store, 1, sizeof *b.h), .slip = slip};
-    int status = TRIBO_ERR_MEMORY;
-    if (b.h) {
+    m->k = m->k ? m->k : tribo_system_force_matrix(sys, &sys->k, &sys->stiffness, &m->own[0]);
+    m->c = m->c || !sys->damping.rows ? m->c : tribo_system_force_matrix(sys, &sys->c, &sys->damping, &m->own[1]);
+    struct modal_build b = {.sys = sys, .h = *modal, .slip = slip, .k = m->k, .c = m->c};
+    int done = b.k && (b.c || !sys->damping.rows);
+    if (done && !b.h && (b.h = tribo_modal_take(&store, 1, sizeof *b.h)) != NULL) {
         b.h->store = store;
-        b.h->n = shared->sys->ndof;
-        status = list_rest(&b, holds) && find_stiffness(&b) && find_modes(&b) && find_damping(&b) && find_effects(&b)
-                     ? tribo_modal_exponents(&b)
-                 : b.status ? b.status
-                            : status;
+        b.h->n = sys->ndof;
+        done = list_rest(&b, holds) && find_stiffness(&b) && find_modes(&b) && find_damping(&b) && find_effects(&b);
+        b.status = done ? tribo_modal_exponents(&b) : b.status;
     }
+    store = (struct modal_store){0};
+    if (done && b.h && !b.status && (b.forced = tribo_modal_take(&store, 1, sizeof *b.forced)) != NULL) {
+        *b.forced = (struct forced){.modal = b.h, .store = store};
+        b.h->forced = b.forced;
+    }
+    done = b.forced && tribo_forced_respond(&b) && tribo_forced_outputs(&b);
     tribo_modal_give_back(&b.scratch);
     tribo_matrix_free(&b.own_stiffness);
-    if (status) {
-        tribo_modal_free(b.h);
-        return status == TRIBO_ERR_MEMORY
-                   ? tribo_system_fail(shared->sys, status, "out of memory for the modes of a held structure")
-                   : status;
+    if (done) {
+        *modal = b.h;
+        return TRIBO_OK;
     }
-    *modal = b.h;
-    return TRIBO_OK;
+    if (*modal) {
+        tribo_forced_free(*modal);
+    } else {
+        tribo_modal_free(b.h);
+    }
+    return b.status && b.status != TRIBO_ERR_MEMORY
+               ? b.status
+               : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the modes of a held structure");
 }
 
 void tribo_modal_free(struct modal *h)
@@ -360,23 +369,18 @@ void tribo_modal_free(struct modal *h)
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------- K and C */
-
-void tribo_modal_shared_free(struct modal_shared *shared)
+void tribo_forced_free(struct modal *h)
 {
-    tribo_matrix_free(&shared->own_stiffness);
-    tribo_matrix_free(&shared->own_damping);
-    memset(shared, 0, sizeof *shared);
+    if (h->forced) {
+        struct modal_store store = h->forced->store;
+        tribo_modal_give_back(&store);
+        h->forced = NULL;
+    }
 }
 
-int tribo_modal_shared_create(struct modal_shared *shared, tribo_system *sys)
+void tribo_modal_matrices_free(struct modal_matrices *m)
 {
-    *shared = (struct modal_shared){.sys = sys};
-    shared->stiffness = tribo_system_force_matrix(sys, &sys->k, &sys->stiffness, &shared->own_stiffness);
-    shared->damping = sys->damping.rows ? tribo_system_force_matrix(sys, &sys->c, &sys->damping, &shared->own_damping) : NULL;
-    if (shared->stiffness && (shared->damping || !sys->damping.rows)) {
-        return TRIBO_OK;
-    }
-    tribo_modal_shared_free(shared);
-    return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrices of a structure to be held");
+    tribo_matrix_free(&m->own[0]);
+    tribo_matrix_free(&m->own[1]);
+    memset(m, 0, sizeof *m);
 }

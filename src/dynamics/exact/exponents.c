@@ -19,7 +19,7 @@
 
 static int exponents_unsupported(const struct modal_build *b, const char *why)
 {
-    return tribo_system_fail(b->shared->sys, TRIBO_ERR_UNSUPPORTED, "method exact: %s; method event can do it", why);
+    return tribo_system_fail(b->sys, TRIBO_ERR_UNSUPPORTED, "method exact: %s; method event can do it", why);
 }
 
 static int exponents_decoupled(struct modal_build *b)
@@ -138,8 +138,8 @@ static int exponents_coupled(struct modal_build *b)
     }
     const int status = tribo_eigen(a, size, re, im, x);
     if (status == TRIBO_ERR_NO_CONVERGENCE || status == TRIBO_ERR_NOT_FINITE) {
-        return tribo_system_fail(b->shared->sys, status, "method exact: exponents of %zu mode%s that damping couples: %s", m,
-                                 plural(m), tribo_strerror(status));
+        return tribo_system_fail(b->sys, status, "method exact: exponents of %zu mode%s that damping couples: %s", m, plural(m),
+                                 tribo_strerror(status));
     }
     tribo_transpose(size, size, x, a);
     for (size_t i = 0; !status && i < size; i++) {

@@ -26,7 +26,7 @@ static void drop_helds(struct exact *x)
         tribo_modal_free(x->held.last);
         x->held.last = next;
     }
-    tribo_modal_shared_free(&x->held.shared);
+    tribo_modal_matrices_free(&x->held.matrices);
     x->held.bytes = 0;
 }
 
@@ -34,33 +34,29 @@ static void drop_helds(struct exact *x)
 static int find_held(struct exact *x)
 {
     const struct stick_slip *m = &x->events.stick_slip;
-    int status = TRIBO_OK;
     struct modal **at = &x->held.last;
     while (*at && memcmp((*at)->key, m->state.key, m->constant.contacts) != 0) {
         at = &(*at)->next;
     }
     struct modal *h = *at;
-    if (h) {
-        *at = h->next;
-    } else {
-        if (x->held.bytes > CACHE_BYTES) {
-            drop_helds(x);
-        }
-        status = x->held.shared.sys ? TRIBO_OK : tribo_modal_shared_create(&x->held.shared, x->sys);
-        status = status ? status : tribo_modal_create(&h, &x->held.shared, m->state.slip, m->state.holds);
+    const int known = h != NULL;
+    if (!known && x->held.bytes > CACHE_BYTES) {
+        drop_helds(x);
+    }
+    if (!known || !h->forced) {
+        const int status = tribo_modal_create(&h, &x->held.matrices, x->sys, m->state.slip, m->state.holds);
         if (status) {
             return status;
         }
-        x->held.bytes += h->store.bytes;
+        x->held.bytes += (known ? 0 : h->store.bytes) + h->forced->store.bytes;
+    }
+    if (known) {
+        *at = h->next;
     }
     h->next = x->held.last;
     x->held.last = h;
-    if (!h->forced) {
-        status = tribo_forced_create(h, &x->held.shared, m->state.slip);
-        x->held.bytes += status ? 0 : h->forced->store.bytes;
-    }
     x->h = h->forced;
-    return status;
+    return TRIBO_OK;
 }
 
 /* --------------------------------------------------------------------------------------------------------------------- guards */

@@ -114,27 +114,21 @@ static inline double tribo_modal_magnitude(double re, double im)
     return square > 1e-280 && square < 1e300 ? sqrt(square) : hypot(re, im);
 }
 
-/* Data that all structures of one system share. */
-struct modal_shared {
-    tribo_system *sys;
-    const struct matrix *stiffness, *damping; /* K; C, or NULL without damping */
-    struct matrix own_stiffness, own_damping; /* memory of K and C where the system has only M^-1 K and M^-1 C */
+/* K; C, or NULL without damping; memory of K and C where the system has only M^-1 K and M^-1 C. Zeros: not found. */
+struct modal_matrices {
+    const struct matrix *k, *c;
+    struct matrix own[2];
 };
 
-/* Sets K and C. Returns a status, message on the system's context. tribo_modal_shared_free also takes zeros. */
-int tribo_modal_shared_create(struct modal_shared *shared, tribo_system *sys);
-void tribo_modal_shared_free(struct modal_shared *shared);
-
-/* Creates the structure with all contacts at rest, slip[i] = 0, held. holds[i] = 1: contact i holds (set H of stick_slip.h);
- * other contacts at rest depend on H. Returns a status, message on the system's context. Every user of the structure besides the
- * first one adds 1 to users. tribo_modal_free frees h->forced, too, and takes NULL. */
-int tribo_modal_create(struct modal **modal, const struct modal_shared *shared, const signed char *slip,
+/* Creates *modal, if it is NULL, the structure with all contacts at rest, slip[i] = 0, held; and forced, if it is NULL, by the loads. Finds
+ * K and C if m is zero.
+ * holds[i] = 1: contact i holds (set H of stick_slip.h); other contacts at rest depend on H. Returns a status, message on the system's
+ * context; after an error *modal and forced stay NULL. Every user of the structure besides the first one adds 1 to users.
+ * tribo_modal_free frees h->forced, too, and takes NULL; tribo_forced_free frees h->forced, which may be NULL. */
+int tribo_modal_create(struct modal **modal, struct modal_matrices *m, tribo_system *sys, const signed char *slip,
                        const unsigned char *holds);
+void tribo_modal_matrices_free(struct modal_matrices *m);
 void tribo_modal_free(struct modal *h);
-
-/* Creates h->forced, with the slip of tribo_modal_create. Returns a status, likewise. tribo_forced_free also takes an h
- * without. */
-int tribo_forced_create(struct modal *h, const struct modal_shared *shared, const signed char *slip);
 void tribo_forced_free(struct modal *h);
 
 /* Returns c of the part Re(c z) of term p in place'eta + speed'eta', place, speed [shapes]. */

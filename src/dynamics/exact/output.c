@@ -84,7 +84,7 @@ int tribo_forced_outputs(struct modal_build *b)
 {
     struct forced *f = b->forced;
     const struct modal *h = b->h;
-    const tribo_system *sys = b->shared->sys;
+    const tribo_system *sys = b->sys;
     const double *zero = tribo_modal_take(&b->scratch, f->shapes, sizeof *zero);
     f->output = tribo_modal_take(&f->store, sys->ncontact, sizeof *f->output);
     if (!zero || !f->output || !find_terms(b)) {
@@ -103,31 +103,4 @@ int tribo_forced_outputs(struct modal_build *b)
         }
     }
     return c != NULL;
-}
-
-int tribo_forced_create(struct modal *h, const struct modal_shared *shared, const signed char *slip)
-{
-    struct modal_store store = {0};
-    struct modal_build b = {.shared = shared, .h = h, .forced = tribo_modal_take(&store, 1, sizeof *b.forced), .slip = slip};
-    if (b.forced) {
-        *b.forced = (struct forced){.modal = h, .store = store};
-        h->forced = b.forced;
-    }
-    const int done = b.forced && tribo_forced_respond(&b) && tribo_forced_outputs(&b);
-    tribo_modal_give_back(&b.scratch);
-    if (done) {
-        return TRIBO_OK;
-    }
-    tribo_forced_free(h);
-    return b.status ? b.status
-                    : tribo_system_fail(shared->sys, TRIBO_ERR_MEMORY, "out of memory for the modes of a held structure");
-}
-
-void tribo_forced_free(struct modal *h)
-{
-    if (h->forced) {
-        struct modal_store store = h->forced->store;
-        tribo_modal_give_back(&store);
-        h->forced = NULL;
-    }
 }

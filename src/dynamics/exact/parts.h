@@ -6,11 +6,12 @@
 #include "modal.h"
 
 struct modal_build {
-    const struct modal_shared *shared;
+    tribo_system *sys;
     struct modal *h;
     struct forced *forced;
     const signed char *slip;        /* [ncontact] */
     struct modal_store scratch;     /* workspace until the structure is built */
+    const struct matrix *k, *c;     /* K; C, or NULL without damping */
     const struct matrix *stiffness; /* K + J_A' G_AA^-1 J_A, A: compliant contacts that hold */
     struct matrix own_stiffness;    /* memory of stiffness if A is not empty */
     double *work;                   /* [2 ncontact + n + rests + modes] workspace of functions of build.c and response.c */

@@ -21,7 +21,7 @@ static int make_shapes(struct modal_build *b)
 {
     struct forced *f = b->forced;
     const struct modal *h = b->h;
-    const tribo_system *sys = b->shared->sys;
+    const tribo_system *sys = b->sys;
     const size_t n = h->n, m = h->modes, c = sys->ncontact;
     f->shapes = m;
     for (size_t s = 0; s < sys->loads.harmonics; s++) {
@@ -73,12 +73,12 @@ static void follow_base(struct modal_build *b, size_t k, double omega, const dou
         place[l] = 0.0;
     }
     tribo_modal_effects(b, y, omega * omega, base, f->on + k, f->by_u ? f->by_u + k : NULL, f->shapes);
-    for (size_t i = 0; i < b->shared->sys->ncontact; i++) {
+    for (size_t i = 0; i < b->sys->ncontact; i++) {
         tribo_add(place, h->key[i] == 2 ? -base[i] : 0.0, h->on + i * m, m);
     }
-    if (b->shared->damping) {
+    if (b->c) {
         memset(drag, 0, n * sizeof *drag);
-        tribo_matrix_multiply_add(b->shared->damping, -1.0, y, drag);
+        tribo_matrix_multiply_add(b->c, -1.0, y, drag);
         tribo_multiply_add(m, n, 1, 1.0, h->phi, drag, rate);
     }
 }
@@ -89,7 +89,7 @@ static int follow_bases(struct modal_build *b)
 {
     struct forced *f = b->forced;
     const struct modal *h = b->h;
-    const tribo_system *sys = b->shared->sys;
+    const tribo_system *sys = b->sys;
     const size_t m = h->modes, c = sys->ncontact;
     double *base = tribo_modal_take(&b->scratch, c + 2 * m, sizeof *base), *place = base ? base + c : NULL;
     b->work = tribo_modal_take(&b->scratch, 2 * c + h->n + h->rests + m, sizeof *b->work);
@@ -140,7 +140,7 @@ static void force_modes(struct modal_build *b, size_t s, double *work)
 {
     struct forced *f = b->forced;
     const struct modal *h = b->h;
-    const tribo_system *sys = b->shared->sys;
+    const tribo_system *sys = b->sys;
     const struct matrix *j = &sys->direction;
     const size_t n = h->n, m = h->modes, i = f->forcing[s].contact;
     const struct harmonic *w = &sys->loads.harmonic[f->forcing[s].harmonic];
@@ -223,7 +223,7 @@ static int respond_together(struct modal_build *b)
         zgesv_(&rows, &one, a, &rows, pivot, x, &rows, &info);
         if (!known || info != 0) {
             b->status =
-                tribo_system_fail(b->shared->sys, TRIBO_ERR_UNSUPPORTED,
+                tribo_system_fail(b->sys, TRIBO_ERR_UNSUPPORTED,
                                   "the harmonic of omega = %g is in resonance with an undamped mode, while damping couples "
                                   "others: take method event",
                                   omega);
@@ -237,7 +237,7 @@ int tribo_forced_respond(struct modal_build *b)
 {
     struct forced *f = b->forced;
     const struct modal *h = b->h;
-    const tribo_system *sys = b->shared->sys;
+    const tribo_system *sys = b->sys;
     const size_t m = h->modes, c = sys->ncontact;
     f->harmonics = sys->loads.harmonics;
     f->forcing = tribo_modal_take(&f->store, f->harmonics + sys->loads.limit_harmonics * (c - h->rests), sizeof *f->forcing);

@@ -8,15 +8,13 @@
 
 static int decompose(struct modal **h, tribo_system *sys, const signed char *slip, const unsigned char *holds)
 {
-    struct modal_shared shared;
     struct modal *found = NULL;
-    int status = tribo_modal_shared_create(&shared, sys);
-    status = status ? status : tribo_modal_create(&found, &shared, slip, holds);
-    status = status ? status : tribo_forced_create(found, &shared, slip);
+    struct modal_matrices matrices = {0};
+    const int status = tribo_modal_create(&found, &matrices, sys, slip, holds);
     if (!status) {
         *h = found;
     }
-    tribo_modal_shared_free(&shared);
+    tribo_modal_matrices_free(&matrices);
     return status;
 }
 
@@ -182,29 +180,25 @@ TEST(kept)
     struct random r = random_of(_i);
     tribo_system *sys = row_of_bodies(&r, _i % 2 ? 0.05 : 0.0);
     struct modal *same = NULL;
+    struct modal_matrices matrices = {0};
     for (int k = 0; k < 3; k++) {
         const double load[BODIES] = {0.0, 1.0, 0.0, -0.3};
         signed char slip[CONTACTS];
         unsigned char holds[CONTACTS];
-        struct modal_shared shared;
         struct modal *h;
         for (size_t i = 0; i < CONTACTS; i++) {
             holds[i] = i == BODIES; /* the one between two bodies */
             slip[i] = !holds[i];
         }
-        assert_ok(tribo_modal_shared_create(&shared, sys));
-        if (!same) {
-            assert_ok(tribo_modal_create(&same, &shared, slip, holds));
-        }
-        assert_ok(tribo_forced_create(same, &shared, slip));
+        assert_ok(tribo_modal_create(&same, &matrices, sys, slip, holds));
         assert_ok(decompose(&h, sys, slip, holds));
         compare(same->forced, h->forced);
         tribo_forced_free(same);
         tribo_modal_free(h);
-        tribo_modal_shared_free(&shared);
         assert_ok(tribo_system_add_load(sys, 0.4 + k, load, NULL));
     }
     tribo_modal_free(same);
+    tribo_modal_matrices_free(&matrices);
     tribo_system_destroy(sys);
 }
 
