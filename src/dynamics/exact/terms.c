@@ -12,9 +12,8 @@ enum { T = TRIBO_TERMS };
 /* |lambda delta| up to which the series up to (lambda delta)^4 gives e^{lambda delta} to rounding. */
 #define CLOSE 1e-3
 
-/* re + i im = a b of four terms. restrict, or compilers would not compute several terms at once. */
-static inline void multiply(const double *restrict ar, const double *restrict ai, const double *restrict br,
-                            const double *restrict bi, double *restrict re, double *restrict im)
+/* re + i im = a b of four terms. Callers' arrays are restrict, or compilers would not compute several terms at once. */
+static inline void multiply(const double *ar, const double *ai, const double *br, const double *bi, double *re, double *im)
 {
     for (size_t k = 0; k < T; k++) {
         re[k] = ar[k] * br[k] - ai[k] * bi[k];
@@ -23,10 +22,9 @@ static inline void multiply(const double *restrict ar, const double *restrict ai
 }
 
 /* Sets w = e z, w' = lambda w and w'' = lambda w'. Imaginary parts stand n numbers after real parts of lambda, else `next`. */
-TRIBO_SIMD_OF_FOUR static void turn_terms(size_t n, size_t next, const double *lambda, const double *e, const double *z,
-                                          struct lot *lot)
+TRIBO_SIMD_OF_FOUR static void turn_terms(size_t n, size_t next, const double *restrict lambda, const double *restrict e,
+                                          const double *restrict z, struct lot *restrict lot)
 {
-    TRIBO_APART
     for (size_t p = 0; p < n; p += T, lot++) {
         multiply(e + p, e + next + p, z + p, z + next + p, lot->re[0], lot->im[0]);
         multiply(lambda + p, lambda + n + p, lot->re[0], lot->im[0], lot->re[1], lot->im[1]);
@@ -116,7 +114,6 @@ TRIBO_SIMD void tribo_modal_terms_spread(const struct exact *x, double *restrict
     for (size_t k = 0; k < shapes; k++) {
         const struct shape own = x->h->shape[k];
         const double *phi = x->h->phi + k * n, place = x->place[k], rate = x->rate[k];
-        TRIBO_APART
         for (size_t d = own.begin; d < own.end; d++) {
             moves[d] += phi[d] * place;
             rates[d] += phi[d] * rate;
