@@ -10,7 +10,7 @@
 struct tangents {
     double *df_dv, *df_da; /* [ncontact][ncontact] */
     double *pull;          /* [ncontact][ndof] (df/da) J */
-    double *df_dy;         /* [ncontact][2 ndof] df/dq and df/du */
+    double *df_dy;         /* [ncontact][2 ndof + 1] derivatives of f by the state */
     double *df_dt;         /* [ncontact] */
     double *load;          /* [ndof] derivative of the accelerations by the load */
     void *memory;
@@ -24,7 +24,7 @@ static int create_tangents(struct tangents *d, size_t n, size_t m)
         d->df_dv = tribo_layout_array(&l, m * m, sizeof *d->df_dv);
         d->df_da = tribo_layout_array(&l, m * m, sizeof *d->df_da);
         d->pull = tribo_layout_array(&l, m * n, sizeof *d->pull);
-        d->df_dy = tribo_layout_array(&l, 2 * m * n, sizeof *d->df_dy);
+        d->df_dy = tribo_layout_array(&l, m * (2 * n + 1), sizeof *d->df_dy);
         d->df_dt = tribo_layout_array(&l, m, sizeof *d->df_dt);
         d->load = tribo_layout_array(&l, n, sizeof *d->load);
     } while (!l.memory && tribo_layout_zeros(&l));
@@ -69,54 +69,48 @@ static void jacobian_add_product(size_t rows, double factor, const double *a, co
     }
 }
 
-/* df/dq = -pull AK,  df/du = (df/dv) J - pull AC, and
- * df_dt += -(df/dv) b' + (df/da) (J load' - b''); df_dt in: (df/dlimit) limit'. Sets sys->work.dv_dt = -b'. */
-static void follow_state_and_time(tribo_system *sys, const struct tangents *d)
-{
-    const size_t n = sys->ndof, m = sys->ncontact;
-    jacobian_add_product(m, 1.0, d->df_da, &sys->direction, n, d->pull);
-    jacobian_add_product(m, -1.0, d->pull, &sys->stiffness, 2 * n, d->df_dy);
-    jacobian_add_product(m, -1.0, d->pull, &sys->damping, 2 * n, d->df_dy + n);
-    jacobian_add_product(m, 1.0, d->df_dv, &sys->direction, 2 * n, d->df_dy + n);
-    memset(d->load, 0, n * sizeof *d->load);
-    memset(sys->work.dv_dt, 0, m * sizeof *sys->work.dv_dt);
-    memset(sys->work.a, 0, m * sizeof *sys->work.a);
-    tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, d->load);
-    tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, sys->work.dv_dt);
-    tribo_system_loads(sys, DRIVES_BASE, 2, -1.0, sys->work.a);
-    tribo_matrix_multiply_add(&sys->direction, 1.0, d->load, sys->work.a);
-    tribo_multiply_add(m, m, 1, 1.0, d->df_dv, sys->work.dv_dt, d->df_dt);
-    tribo_multiply_add(m, m, 1, 1.0, d->df_da, sys->work.a, d->df_dt);
-}
-
-/* Writes the rows of q' = u, of u' = load - AK q - AC u + B f, and of the energy, of rate -sum tally_i f_i v_i. Overwrites v and f
- * of sys->work. */
+/* Writes the rows of q' = u, of u' = load - AK q - AC u + B f, and of the energy, of rate -sum tally_i f_i v_i:
+ *     df/dy = (df/da) J [-AK, -AC, 0] + (df/dv) [0, J, 0],
+ *     df/dt = (df/dlimit) limit' - (df/dv) b' + (df/da) (J load' - b''); df_dt in: the first term.
+ * Overwrites v, a, f and dv_dt of sys->work. */
 static void write_rows(tribo_system *sys, const struct tangents *d, double *dfdy, double *dfdt)
 {
     const size_t n = sys->ndof, m = sys->ncontact, size = 2 * n + 1;
-    const struct matrix *b = &sys->response;
-    double *energy = dfdy + 2 * n * size;
+    const struct matrix *b = &sys->response, *j = &sys->direction;
+    double *rates = dfdy + n * size, *energy = dfdy + 2 * n * size, *dv_dt = sys->work.dv_dt;
     memset(dfdy, 0, size * size * sizeof *dfdy);
     for (size_t i = 0; i < n; i++) {
-        double *row = dfdy + (n + i) * size;
         dfdy[i * size + n + i] = 1.0;
-        add_row(&sys->stiffness, i, -1.0, row);
-        add_row(&sys->damping, i, -1.0, row + n);
+        add_row(&sys->stiffness, i, -1.0, rates + i * size);
+        add_row(&sys->damping, i, -1.0, rates + i * size + n);
+    }
+    jacobian_add_product(m, 1.0, d->df_da, j, n, d->pull);
+    tribo_multiply_add(m, n, size, 1.0, d->pull, rates, d->df_dy);
+    jacobian_add_product(m, 1.0, d->df_dv, j, size, d->df_dy + n);
+    for (size_t i = 0; i < n; i++) {
         for (size_t e = b->first[i]; e < b->first[i + 1]; e++) {
-            tribo_add(row, b->val[e], d->df_dy + 2 * n * b->col[e], 2 * n);
+            tribo_add(rates + i * size, b->val[e], d->df_dy + size * b->col[e], size);
         }
     }
     for (size_t i = 0; i < m; i++) {
         sys->work.v[i] *= -sys->tally[i];
         sys->work.f[i] *= -sys->tally[i];
+        dv_dt[i] = sys->work.a[i] = 0.0;
     }
-    tribo_multiply_add(1, m, 2 * n, 1.0, sys->work.v, d->df_dy, energy);
-    jacobian_add_product(1, 1.0, sys->work.f, &sys->direction, 0, energy + n);
+    tribo_multiply_add(1, m, size, 1.0, sys->work.v, d->df_dy, energy);
+    jacobian_add_product(1, 1.0, sys->work.f, j, 0, energy + n);
     if (dfdt) {
+        memset(d->load, 0, n * sizeof *d->load);
+        tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, d->load);
+        tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, dv_dt);
+        tribo_system_loads(sys, DRIVES_BASE, 2, -1.0, sys->work.a);
+        tribo_matrix_multiply_add(j, 1.0, d->load, sys->work.a);
+        tribo_multiply_add(m, m, 1, 1.0, d->df_dv, dv_dt, d->df_dt);
+        tribo_multiply_add(m, m, 1, 1.0, d->df_da, sys->work.a, d->df_dt);
         memset(dfdt, 0, size * sizeof *dfdt);
         memcpy(dfdt + n, d->load, n * sizeof *dfdt);
         tribo_matrix_multiply_add(b, 1.0, d->df_dt, dfdt + n);
-        dfdt[2 * n] = tribo_dot(sys->work.v, d->df_dt, m) + tribo_dot(sys->work.f, sys->work.dv_dt, m);
+        dfdt[2 * n] = tribo_dot(sys->work.v, d->df_dt, m) + tribo_dot(sys->work.f, dv_dt, m);
     }
 }
 
@@ -149,7 +143,6 @@ int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *
         const int found = tribo_system_check_state(sys, t, y); /* names the value of y that is not finite */
         sys->status = found ? found : status;
     } else {
-        follow_state_and_time(sys, &d);
         write_rows(sys, &d, dfdy, dfdt);
     }
     free(d.memory);
