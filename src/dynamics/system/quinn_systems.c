@@ -58,8 +58,6 @@ int tribo_system_belt(tribo_system **sys, double kappa, double limit1, double li
     return quinn_finish(sys, s, status);
 }
 
-/* ----------------------------------------------------------------------------------------------------------------- chain */
-
 /* each [n] = whole/n, but 3/4 of whole/n for the last block: the paper's last equation is 4/3 times an equation with symmetric
  * stiffness, so the last block has 3/4 of the mass and friction of the others. */
 static void share_out(double *each, size_t n, double whole)
@@ -69,27 +67,7 @@ static void share_out(double *each, size_t n, double whole)
     }
 }
 
-/* Builds the chain without limits and loads: springs n between neighbours, 2 n between the last block and the ground. mass [n] is
- * workspace. Returns a status. */
-static int build_chain(tribo_system **sys, size_t n, double *mass)
-{
-    struct model m = {.ndof = n, .ncontact = n};
-    const double spring = (double)n;
-    struct triplets t = {0};
-    for (size_t i = 0; i < n; i++) {
-        for (size_t j = i ? i - 1 : 0; j < n && j <= i + 1; j++) {
-            tribo_triplets_put(&t, i, j, j != i ? -spring : i == 0 ? spring : i + 1 < n ? 2.0 * spring : 3.0 * spring);
-        }
-    }
-    share_out(mass, n, 1.0);
-    if (tribo_triplets_finish(&t, n, n, &m.stiffness) && tribo_matrix_diagonal(&m.mass, n, mass) &&
-        tribo_matrix_diagonal(&m.direction, n, NULL)) {
-        return tribo_model_build(&m, sys);
-    }
-    tribo_model_free(&m);
-    return TRIBO_ERR_MEMORY;
-}
-
+/* Springs n between neighbours, 2 n between the last block and the ground. */
 int tribo_system_chain(tribo_system **sys, size_t n, double limit, double alpha, double omega)
 {
     if (!sys) {
@@ -99,8 +77,23 @@ int tribo_system_chain(tribo_system **sys, size_t n, double limit, double alpha,
         return TRIBO_ERR_SIZE;
     }
     tribo_system *s = NULL;
+    struct model m = {.ndof = n, .ncontact = n};
+    struct triplets t = {0};
+    const double spring = (double)n;
     double *each = malloc(n * sizeof *each); /* [n] masses, then limits, then loads */
-    int status = each ? build_chain(&s, n, each) : TRIBO_ERR_MEMORY;
+    for (size_t i = 0; each && i < n; i++) {
+        for (size_t j = i ? i - 1 : 0; j < n && j <= i + 1; j++) {
+            tribo_triplets_put(&t, i, j, j != i ? -spring : i == 0 ? spring : i + 1 < n ? 2.0 * spring : 3.0 * spring);
+        }
+    }
+    if (each) {
+        share_out(each, n, 1.0);
+    }
+    int status = each && tribo_triplets_finish(&t, n, n, &m.stiffness) && tribo_matrix_diagonal(&m.mass, n, each) &&
+                         tribo_matrix_diagonal(&m.direction, n, NULL)
+                     ? tribo_model_build(&m, &s)
+                     : TRIBO_ERR_MEMORY;
+    tribo_model_free(&m);
     if (!status) {
         s->tally[n - 1] = 4.0 / 3.0; /* the paper counts the friction of every block in full */
         share_out(each, n, limit);
