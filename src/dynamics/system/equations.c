@@ -34,30 +34,12 @@ void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a)
 {
     tribo_system_free_acceleration(sys, t, y, acceleration);
-    memset(v, 0, sys->ncontact * sizeof *v);
-    memset(a, 0, sys->ncontact * sizeof *a);
+    tribo_matrix_multiply(&sys->direction, y + sys->ndof, v);
+    tribo_matrix_multiply(&sys->direction, acceleration, a);
     if (tribo_system_bases_move(sys)) {
         tribo_system_loads(sys, DRIVES_BASE, 0, -1.0, v);
         tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, a);
     }
-    tribo_matrix_multiply_add(&sys->direction, 1.0, y + sys->ndof, v);
-    tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, a);
-}
-
-/* v and a of the contacts: arrays of the system, or, if J is the identity and bases do not move, of the motion. */
-struct seen {
-    const double *v, *a;
-};
-
-static struct seen see(tribo_system *sys, double t, const double *y, double *acceleration)
-{
-    if (tribo_system_bases_move(sys)) {
-        tribo_system_free_motion(sys, t, y, acceleration, sys->work.v, sys->work.a);
-        return (struct seen){sys->work.v, sys->work.a};
-    }
-    tribo_system_free_acceleration(sys, t, y, acceleration);
-    return (struct seen){tribo_matrix_image(&sys->direction, y + sys->ndof, sys->work.v),
-                         tribo_matrix_image(&sys->direction, acceleration, sys->work.a)};
 }
 
 enum { LANES = 8 }; /* partial sums: additions to a single sum wait for each other */
@@ -82,12 +64,12 @@ TRIBO_SIMD static double equations_power_of(size_t n, const double *restrict tal
 static int rates_at(tribo_system *sys, double t, const double *y, int accepted, double *acceleration, double *power)
 {
     sys->evaluations++;
-    const struct seen seen = see(sys, t, y, acceleration);
-    sys->status = tribo_balance(sys->contacts, seen.v, seen.a, accepted ? sys->work.feq : NULL, sys->work.f);
+    tribo_system_free_motion(sys, t, y, acceleration, sys->work.v, sys->work.a);
+    sys->status = tribo_balance(sys->contacts, sys->work.v, sys->work.a, accepted ? sys->work.feq : NULL, sys->work.f);
     if (!sys->status) {
         /* f stays valid: where a reversal mark changes, both forms of the law give the same force */
-        sys->status = accepted ? tribo_accept(sys->contacts, seen.v, sys->work.feq) : TRIBO_OK;
-        *power = equations_power_of(sys->ncontact, sys->tally, sys->work.f, seen.v);
+        sys->status = accepted ? tribo_accept(sys->contacts, sys->work.v, sys->work.feq) : TRIBO_OK;
+        *power = equations_power_of(sys->ncontact, sys->tally, sys->work.f, sys->work.v);
         tribo_matrix_multiply_add(&sys->response, 1.0, sys->work.f, acceleration);
     }
     return tribo_system_explain(sys, sys->status);
@@ -105,20 +87,10 @@ int tribo_system_begin_rates(tribo_system *sys, double t, const double *y, doubl
     return rates_at(sys, t, y, law == TRIBO_QUINN_REVERSAL, acceleration, power);
 }
 
-/* Sets the rest of dydt, q' [ndof]. If J is the identity and bases do not move, also sys->work.v = q' for the driver. */
-static void equations_complete(tribo_system *sys, const double *y, double *dydt)
-{
-    const double *u = y + sys->ndof;
-    memcpy(dydt, u, sys->ndof * sizeof *dydt);
-    if (sys->direction.identity && !tribo_system_bases_move(sys)) {
-        memcpy(sys->work.v, u, sys->ncontact * sizeof *sys->work.v);
-    }
-}
-
 int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double *dydt)
 {
     const size_t n = sys->ndof;
-    equations_complete(sys, y, dydt);
+    memcpy(dydt, y + n, n * sizeof *dydt);
     return tribo_system_begin_rates(sys, t, y, dydt + n, dydt + 2 * n);
 }
 
@@ -141,7 +113,7 @@ int tribo_system_derivative(tribo_system *sys, double t, const double *y, double
         const int status = tribo_system_check_state(sys, t, y); /* names the value of y that is not finite */
         return sys->status = status ? status : sys->status;
     }
-    equations_complete(sys, y, dydt);
+    memcpy(dydt, y + n, n * sizeof *dydt);
     memcpy(dydt + n, sys->work.acceleration, n * sizeof *dydt);
     dydt[2 * n] = power;
     return TRIBO_OK;
@@ -164,29 +136,31 @@ int tribo_system_get_force(const tribo_system *sys, double *f)
 /* Checks the caller's state *y; sets sys->work.v and sys->work.a, and *y = the methods' state. Returns a status. */
 static int contacts_at(tribo_system *sys, double t, const double **y)
 {
+    const struct expansion *x = &sys->expansion;
+    const double *own = x->place ? sys->work.motion : *y;
     int status = tribo_system_check_state(sys, t, *y);
     status = status ? status : tribo_system_take_settings(sys);
     status = status ? status : tribo_system_check_solved(sys, "the force of contacts");
-    if (!status && sys->expansion.place) {
+    if (status) {
+        return status;
+    }
+    if (x->place) {
         tribo_system_set_time(sys, t);
         tribo_system_read_state(sys, *y, sys->work.motion);
         tribo_get_limit(sys->contacts, sys->work.a);
         tribo_compliance_enter(sys, sys->work.a, sys->work.feq, sys->work.motion);
     }
-    if (!status) {
-        tribo_system_free_motion(sys, t, sys->expansion.place ? sys->work.motion : *y, sys->work.acceleration, sys->work.v,
-                                 sys->work.a);
-    }
-    if (!status && sys->expansion.sliders) {
-        tribo_compliance_move(sys, sys->work.motion, sys->work.v, sys->work.feq);
-    } else if (!status && sys->expansion.place) {
+    tribo_system_free_motion(sys, t, own, sys->work.acceleration, sys->work.v, sys->work.a);
+    if (x->sliders) {
+        tribo_compliance_move(sys, own, sys->work.v, sys->work.feq);
+    } else if (x->place) {
         tribo_system_add_velocities(sys, *y, sys->work.v);
     }
-    for (size_t k = 0; !status && k < sys->compliance.count; k++) { /* with R_ii = 0 and a_i = 0 a contact sticks where v_i = 0 */
+    for (size_t k = 0; k < sys->compliance.count; k++) { /* with R_ii = 0 and a_i = 0 a contact sticks where v_i = 0 */
         sys->work.a[sys->compliance.contact[k]] = 0.0;
     }
-    *y = sys->expansion.place ? sys->work.motion : *y;
-    return status;
+    *y = own;
+    return TRIBO_OK;
 }
 
 int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *v, double *feq, double *f)
