@@ -219,17 +219,18 @@ static void lay_out_disc(struct disc_qp *p, struct layout *l, size_t most)
     double **const vector[] = {&p->pull,     &p->shift,   &p->y,         &p->gradient,    &p->noise,         &p->gain,
                                &p->to,       &p->outward, &p->curvature, &p->step,        &p->spare,         &p->best,
                                &p->from,     &p->aim,     &p->slide,     &p->factor.qp.q, &p->factor.qp.row, &p->weight,
-                               &p->diagonal, &p->share,   &p->press};
+                               &p->diagonal, &p->share};
     double **const square[] = {&p->s, &p->factor.matrix, &p->factor.qp.l, &p->factor.qp.null.basis};
     enum { VECTORS = sizeof vector / sizeof *vector, SQUARES = sizeof square / sizeof *square };
     const size_t s = most + 1;
     for (size_t k = 0; k < VECTORS; k++) {
-        *vector[k] = tribo_layout_array(l, vector[k] == &p->press ? 2 * s : s, sizeof **vector[k]);
+        *vector[k] = tribo_layout_array(l, s, sizeof **vector[k]);
     }
     for (size_t k = 0; k < SQUARES; k++) {
         *square[k] = tribo_layout_array(l, s * s, sizeof **square[k]);
     }
     p->freedom = tribo_layout_array(l, s, sizeof *p->freedom);
+    p->disc = tribo_layout_array(l, 2 * s, sizeof *p->disc);
     p->factor.qp.near = tribo_layout_array(l, s, sizeof *p->factor.qp.near);
     p->factor.qp.order = tribo_layout_array(l, s, sizeof *p->factor.qp.order);
     p->wide = tribo_layout_array(l, s, 1);

@@ -20,6 +20,14 @@ struct freedom {
     double curvature;  /* of the rim, times the pressure on it */
 };
 
+/* One of the two discs of a contact, as a constraint of interior.c. */
+struct disc {
+    size_t at;                  /* first direction of the contact */
+    int shifted;                /* 0: D; 1: D - c */
+    double x[2];                /* y from its centre */
+    double room, press, change; /* (1 - |x|^2)/2, the multiplier, and its change with a step */
+};
+
 #define TRIBO_NEAR_ENOUGH 1e-13
 
 /* The factor of Newton's matrix. */
@@ -52,10 +60,12 @@ struct disc_qp {
     double *curvature;    /* [size] of the rim, times the pressure on it; at the first direction of the contact */
     unsigned char *place; /* [size] LENS_..., likewise */
     /* workspace */
-    struct freedom *freedom;                                  /* [size] */
-    size_t freedoms;                                          /* of Newton's matrix */
-    double *step, *spare, *best, *from, *aim, *slide, *press; /* [size]; press [2 size] */
-    double *diagonal, *share;                                 /* [size] */
+    struct freedom *freedom;                          /* [size] */
+    size_t freedoms;                                  /* of Newton's matrix */
+    double *step, *spare, *best, *from, *aim, *slide; /* [size] */
+    double *diagonal, *share;                         /* [size] */
+    struct disc *disc;                                /* [discs], at most 2 size */
+    size_t discs;
     struct disc_factor factor;
     void *memory; /* of all arrays; NULL: the caller's */
 };
@@ -66,7 +76,7 @@ void tribo_disc_free(struct disc_qp *p);
 
 /* Room for the problem of one planar contact. */
 struct disc_alone {
-    double store[160];
+    double store[168];
     struct disc_qp p;
 };
 

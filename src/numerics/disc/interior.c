@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A primal-dual interior-point method (Boyd and Vandenberghe 2004, Convex Optimization, section 11.7): it begins in the middle of
  * all lenses, takes a few dozen factorizations, and ends so near the solution that the place of each contact shows. Each disc is
- * a constraint |y + o|^2 <= 1, o = 0 or c, with room (1 - |y + o|^2)/2 and multiplier press. */
+ * a constraint |x|^2 <= 1, x = y or y + c, with room (1 - |x|^2)/2 and multiplier press. */
 #include "disc_qp.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "common/real.h"
 
-enum { DISCS = 2, ROUNDS = 100 };
+enum { ROUNDS = 100 };
 
 /* press and aim/room differ by this factor at most. */
 #define FAR_OFF 100.0
@@ -23,34 +22,20 @@ enum { DISCS = 2, ROUNDS = 100 };
 /* The least room: less may be rounding. */
 #define NO_ROOM 1e-20
 
-/* Returns y_k + o_k of disc d of the contact at i. */
-static double offset(const struct disc_qp *p, size_t i, size_t k, int d)
+/* Finds x and room of all discs at y. Returns the average of room times press. */
+static double find_rooms(struct disc_qp *p)
 {
-    return p->y[i + k] + (d ? p->shift[i + k] : 0.0);
-}
-
-/* Returns the room of disc d, as (1 - |x|)(1 + |x|)/2, without cancellation where y is near the rim in one direction only. */
-static double room_of(const struct disc_qp *p, size_t i, int d)
-{
-    double x[2];
-    for (size_t k = 0; k < p->wide[i]; k++) {
-        x[k] = offset(p, i, k, d);
-    }
-    const double length = tribo_length(p->wide[i], x);
-    return greater(0.5 * (1.0 - length) * (1.0 + length), NO_ROOM);
-}
-
-/* Returns the average of room times press. */
-static double average(const struct disc_qp *p)
-{
-    double sum = 0.0, count = 0.0;
-    for (size_t i = 0; i < p->size; i += p->wide[i]) {
-        for (int d = 0; d < DISCS; d++) {
-            sum += room_of(p, i, d) * p->press[DISCS * i + (size_t)d];
-            count += 1.0;
+    double sum = 0.0;
+    for (struct disc *d = p->disc; d < p->disc + p->discs; d++) {
+        for (size_t k = 0; k < p->wide[d->at]; k++) {
+            d->x[k] = p->y[d->at + k] + (d->shifted ? p->shift[d->at + k] : 0.0);
         }
+        /* without cancellation where y is near the rim in one direction only */
+        const double length = tribo_length(p->wide[d->at], d->x);
+        d->room = greater(0.5 * (1.0 - length) * (1.0 + length), NO_ROOM);
+        sum += d->room * d->press;
     }
-    return sum / count;
+    return sum / (double)p->discs;
 }
 
 /* step = the change of y towards room times press = aim. */
@@ -59,15 +44,13 @@ static void find_step(struct disc_qp *p, double aim)
     const size_t n = p->size;
     tribo_disc_gradients(p);
     memcpy(p->factor.matrix, p->s, n * n * sizeof *p->factor.matrix);
-    for (size_t i = 0; i < n; i += p->wide[i]) {
-        for (int d = 0; d < DISCS; d++) {
-            const double press = p->press[DISCS * i + (size_t)d], room = room_of(p, i, d);
-            for (size_t k = 0; k < p->wide[i]; k++) {
-                p->gradient[i + k] += aim / room * offset(p, i, k, d);
-                p->factor.matrix[(i + k) * (n + 1)] += press;
-                for (size_t j = 0; j < p->wide[i]; j++) {
-                    p->factor.matrix[(i + k) * n + i + j] += press / room * offset(p, i, k, d) * offset(p, i, j, d);
-                }
+    for (const struct disc *d = p->disc; d < p->disc + p->discs; d++) {
+        double *block = p->factor.matrix + d->at * (n + 1);
+        for (size_t k = 0; k < p->wide[d->at]; k++) {
+            p->gradient[d->at + k] += aim / d->room * d->x[k];
+            block[k * (n + 1)] += d->press;
+            for (size_t j = 0; j < p->wide[d->at]; j++) {
+                block[k * n + j] += d->press / d->room * d->x[k] * d->x[j];
             }
         }
     }
@@ -78,38 +61,26 @@ static void find_step(struct disc_qp *p, double aim)
     tribo_disc_backsolve(p);
 }
 
-/* Returns the change of the press of disc d with step. */
-static double press_step(const struct disc_qp *p, size_t i, int d, double aim)
-{
-    const double press = p->press[DISCS * i + (size_t)d], room = room_of(p, i, d);
-    double turn = 0.0;
-    for (size_t k = 0; k < p->wide[i]; k++) {
-        turn += offset(p, i, k, d) * p->step[i + k];
-    }
-    return aim / room - press + product(press / room, turn);
-}
-
-/* Returns the part of step, and of the changes of press, that a step takes. */
-static double longest_step(const struct disc_qp *p, double aim)
+/* Finds the changes of press with step. Returns the part of step, and of these changes, that a step takes. */
+static double longest_step(struct disc_qp *p, double aim)
 {
     double length = 1.0 / NEARLY;
-    for (size_t i = 0; i < p->size; i += p->wide[i]) {
-        for (int d = 0; d < DISCS; d++) {
-            const double change = press_step(p, i, d, aim);
-            double x[2];
-            for (size_t k = 0; k < p->wide[i]; k++) {
-                x[k] = offset(p, i, k, d);
-            }
-            length = lesser(length, tribo_way_to_rim(p->wide[i], x, p->step + i));
-            length = change < 0.0 ? lesser(length, quotient(p->press[DISCS * i + (size_t)d], -change)) : length;
+    for (struct disc *d = p->disc; d < p->disc + p->discs; d++) {
+        double turn = 0.0;
+        for (size_t k = 0; k < p->wide[d->at]; k++) {
+            turn += d->x[k] * p->step[d->at + k];
         }
+        d->change = aim / d->room - d->press + product(d->press / d->room, turn);
+        length = lesser(length, tribo_way_to_rim(p->wide[d->at], d->x, p->step + d->at));
+        length = d->change < 0.0 ? lesser(length, quotient(d->press, -d->change)) : length;
     }
     return NEARLY * length;
 }
 
 void tribo_disc_interior(struct disc_qp *p)
 {
-    double most = 0.0, stiffest = 0.0;
+    double most = 0.0, stiffest = 0.0, length = 1.0;
+    p->discs = 0;
     for (size_t i = 0; i < p->size; i++) {
         p->y[i] = -0.5 * p->shift[i];
     }
@@ -117,17 +88,16 @@ void tribo_disc_interior(struct disc_qp *p)
     for (size_t i = 0; i < p->size; i += p->wide[i]) {
         stiffest = greater(stiffest, 1.0 / lesser(p->gain[i], p->gain[i + p->wide[i] - 1]));
         most = greater(most, greater(stiffest, tribo_length(p->wide[i], p->gradient + i)));
+        p->disc[p->discs++] = (struct disc){.at = i};
+        p->disc[p->discs++] = (struct disc){.at = i, .shifted = 1};
     }
-    for (size_t i = 0; i < p->size; i += p->wide[i]) {
-        for (int d = 0; d < DISCS; d++) {
-            p->press[DISCS * i + (size_t)d] = most / room_of(p, i, d);
-        }
+    find_rooms(p);
+    for (struct disc *d = p->disc; d < p->disc + p->discs; d++) {
+        d->press = most / d->room;
     }
-    const double enough = NEXT_TO_NOTHING * stiffest;
-    double length = 1.0;
     for (int round = 0; round < ROUNDS; round++) {
-        const double product = average(p), aim = (length > 0.9 ? 0.1 : length > 0.2 ? 0.5 : 1.0) * product;
-        if (!(product > enough)) {
+        const double average = find_rooms(p), aim = (length > 0.9 ? 0.1 : length > 0.2 ? 0.5 : 1.0) * average;
+        if (!(average > NEXT_TO_NOTHING * stiffest)) {
             break;
         }
         find_step(p, aim);
@@ -136,17 +106,12 @@ void tribo_disc_interior(struct disc_qp *p)
             break;
         }
         /* y and press go by length along their steps. A press far from aim/room would let y cross the disc again and again. */
-        for (size_t i = 0; i < p->size; i += p->wide[i]) {
-            for (int d = 0; d < DISCS; d++) {
-                p->press[DISCS * i + (size_t)d] += length * press_step(p, i, d, aim);
-            }
-            for (size_t k = i; k < i + p->wide[i]; k++) {
-                p->y[k] += length * p->step[k];
-            }
-            for (int d = 0; d < DISCS; d++) {
-                const double press = aim / room_of(p, i, d);
-                p->press[DISCS * i + (size_t)d] = clamp(p->press[DISCS * i + (size_t)d], press / FAR_OFF, FAR_OFF * press);
-            }
+        for (size_t i = 0; i < p->size; i++) {
+            p->y[i] += length * p->step[i];
+        }
+        find_rooms(p);
+        for (struct disc *d = p->disc; d < p->disc + p->discs; d++) {
+            d->press = clamp(d->press + length * d->change, aim / d->room / FAR_OFF, FAR_OFF * (aim / d->room));
         }
     }
 }

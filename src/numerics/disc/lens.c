@@ -43,16 +43,6 @@ struct corner tribo_lens_corner(const double *c, const double *z)
         {along[0], along[1]}, half, sqrt(greater((1.0 - half) * (1.0 + half), 0.0)), across < 0.0 ? -1.0 : 1.0};
 }
 
-static int project_interval(double c, double z, double *y)
-{
-    const double lo = greater(-1.0, -1.0 - c), hi = lesser(1.0, 1.0 - c);
-    *y = clamp(z, lo, hi);
-    if (z > hi) {
-        return c > 0.0 ? LENS_ON_SHIFTED : LENS_ON_DISC;
-    }
-    return z >= lo ? LENS_INSIDE : c < 0.0 ? LENS_ON_SHIFTED : LENS_ON_DISC;
-}
-
 static void corner_at(struct corner k, double *y)
 {
     y[0] = -k.half * k.along[0] - k.side * k.height * k.along[1];
@@ -121,5 +111,12 @@ int tribo_lens_minimize(const double *c, const double *weight, const double *q, 
 int tribo_lens_project(int directions, const double *c, const double *z, double *y)
 {
     const double even[2] = {1.0, 1.0};
-    return directions == 1 ? project_interval(c[0], z[0], y) : tribo_lens_minimize(c, even, z, y);
+    if (directions == 2) {
+        return tribo_lens_minimize(c, even, z, y);
+    }
+    const double lo = greater(-1.0, -1.0 - c[0]), hi = lesser(1.0, 1.0 - c[0]);
+    *y = clamp(z[0], lo, hi);
+    return z[0] > hi    ? (c[0] > 0.0 ? LENS_ON_SHIFTED : LENS_ON_DISC)
+           : z[0] >= lo ? LENS_INSIDE
+                        : (c[0] < 0.0 ? LENS_ON_SHIFTED : LENS_ON_DISC);
 }

@@ -42,12 +42,6 @@ void tribo_disc_gains(struct disc_qp *p)
     }
 }
 
-/* Returns 1 if the contact at i has a gain for each direction. */
-static int is_skew(const struct disc_qp *p, size_t i)
-{
-    return p->wide[i] == 2 && p->gain[i] != p->gain[i + 1];
-}
-
 int tribo_disc_descend(const struct disc_qp *p, size_t i, const double *gradient, double *to)
 {
     const double *y = p->y + i;
@@ -116,7 +110,7 @@ double tribo_disc_places(struct disc_qp *p)
         p->curvature[i] = greater(sum, 0.0);
         double distance = tribo_length(p->wide[i], off);
         p->residual = greater(p->residual, distance);
-        if (is_skew(p, i)) {
+        if (p->gain[i] != p->gain[i + p->wide[i] - 1]) { /* skew */
             const size_t stiff = p->gain[i] > p->gain[i + 1];
             const double finer = lesser(sqrt(p->gain[i + 1 - stiff] / p->gain[i + stiff]), FINEST);
             off[stiff] *= finer;
@@ -244,7 +238,7 @@ void tribo_disc_follow(struct disc_qp *p, const double *rhs, double *move)
 
 void tribo_disc_slide(struct disc_qp *p, const double *rhs, double *move)
 {
-    double *pull = p->spare, *balanced = p->press, most = 0.0;
+    double *pull = p->spare, *balanced = p->step, most = 0.0;
     int apart = 0;
     for (size_t k = 0; k < p->freedoms; k++) {
         pull[k] = balanced[k] = -tangent_qp_along(&p->freedom[k], rhs);
