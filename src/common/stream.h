@@ -31,25 +31,9 @@ static inline double *tribo_stream_room(struct stream *s)
     return s->to && !s->past ? s->to : tribo_aligned(s->room) + s->kept;
 }
 
-/* Writes one cache line with each store. */
-#if defined(TRIBO_STREAMS) && defined(TRIBO_CLONES_512)
-__attribute__((target("avx512f"))) static void tribo_stream_wide(double *to, const double *from, size_t n)
-{
-    for (size_t i = 0; i < n; i += TRIBO_LINE) {
-        _mm512_stream_pd(to + i, _mm512_loadu_pd(from + i));
-    }
-}
-#endif
-
 /* Writes n numbers; n is a multiple of TRIBO_LINE. */
 static inline void tribo_stream_lines(double *to, const double *from, size_t n)
 {
-#if defined(TRIBO_STREAMS) && defined(TRIBO_CLONES_512)
-    if (__builtin_cpu_supports("avx512f")) {
-        tribo_stream_wide(to, from, n);
-        return;
-    }
-#endif
 #if defined(TRIBO_STREAMS)
     for (size_t i = 0; i < n; i += 2) {
         _mm_stream_pd(to + i, _mm_loadu_pd(from + i));
