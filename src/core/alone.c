@@ -98,7 +98,7 @@ void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *
 {
     const struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
     const double *inverse = ctx->op->inverse + chunk->like, *limit = ctx->follow.contacts.limit + i;
-    if (chunk->plain && tribo_all_plain(a + i, n)) {
+    if (chunk->plain && tribo_is_within(a + i, n, TRIBO_PLAIN)) {
         feq_alone(n, inverse, a + i, feq);
     } else {
         for (size_t k = 0; k < n; k++) {
@@ -190,9 +190,8 @@ static void find_all(tribo_context *ctx, const struct call *call, double holds, 
 
 int tribo_check_motion(tribo_context *ctx, const double *v, const double *a, int *plain)
 {
-    const int within = v && a ? tribo_motion_within(v, a, TRIBO_PLAIN, ctx->n) : 0;
-    const int status = within & 1 ? TRIBO_OK : tribo_check_finite(ctx, "v", v, ctx->n);
-    *plain = within & 2;
+    const int status = tribo_check_finite(ctx, "v", v, ctx->n);
+    *plain = tribo_is_within(a, ctx->n, TRIBO_PLAIN);
     return status || *plain ? status : tribo_check_finite(ctx, "a", a, ctx->n);
 }
 
@@ -286,7 +285,7 @@ static int step_chunk(tribo_context *ctx, const struct call *call, size_t k, dou
     const int slides = !(fabs(*v) <= reach || any_in_band(n, v, reach));
     if (slides) {
         slide(n, v, limit, f);
-    } else if (!chunk->plain || dt < LEAST_STEP || !tribo_all_plain(v, n)) {
+    } else if (!chunk->plain || dt < LEAST_STEP || !tribo_is_within(v, n, TRIBO_PLAIN)) {
         stop_far(n, dt, v, tribo_inverses(ctx, k), &(struct bounds){NULL, limit}, f);
     } else {
         stop(n, quotient(1.0, dt), v, tribo_inverses(ctx, k), limit, f);

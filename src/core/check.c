@@ -21,18 +21,6 @@ TRIBO_SIMD int tribo_all_within(const double *x, size_t n, double most)
     return room >= 0;
 }
 
-TRIBO_SIMD int tribo_two_within(const double *x, double most_x, const double *y, double most_y, size_t n)
-{
-    const int64_t limit_x = check_size_of(&most_x), limit_y = check_size_of(&most_y);
-    int64_t room_x = 0, room_y = 0;
-    TRIBO_UNROLLED
-    for (size_t i = 0; i < n; i++) {
-        room_x |= limit_x - check_size_of(x + i);
-        room_y |= limit_y - check_size_of(y + i);
-    }
-    return (room_x >= 0 ? 1 : 0) | (room_y >= 0 ? 2 : 0);
-}
-
 TRIBO_SIMD int tribo_all_unsigned(const double *x, size_t n)
 {
     const double most = DBL_MAX;

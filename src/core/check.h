@@ -13,9 +13,6 @@
 /* 1 if all |x_i| <= most, which is finite. Raises no floating-point exception, whatever x is. */
 int tribo_all_within(const double *x, size_t n, double most);
 
-/* The same of two arrays, which are read together: 1 for x plus 2 for y. */
-int tribo_two_within(const double *x, double most_x, const double *y, double most_y, size_t n);
-
 /* 1 if all x_i are finite and have no sign. */
 int tribo_all_unsigned(const double *x, size_t n);
 
@@ -36,16 +33,10 @@ static inline int tribo_all_finite(const double *x, size_t n)
     return n == 1 ? isfinite(*x) : tribo_all_within(x, n, DBL_MAX);
 }
 
-/* 1 if all |x_i| <= TRIBO_PLAIN. */
-static inline int tribo_all_plain(const double *x, size_t n)
+/* 1 if x is no NULL, and all |x_i| <= most. */
+static inline int tribo_is_within(const double *x, size_t n, double most)
 {
-    return n == 1 ? tribo_within(*x, TRIBO_PLAIN) : tribo_all_within(x, n, TRIBO_PLAIN);
-}
-
-/* 1 if all v_i are finite, plus 2 if all |y_i| <= most. */
-static inline int tribo_motion_within(const double *v, const double *y, double most, size_t n)
-{
-    return n == 1 ? (isfinite(*v) ? 1 : 0) | (tribo_within(*y, most) ? 2 : 0) : tribo_two_within(v, DBL_MAX, y, most, n);
+    return x && (n == 1 ? tribo_within(*x, most) : tribo_all_within(x, n, most));
 }
 
 static inline int tribo_check_finite(tribo_context *ctx, const char *name, const double *x, size_t n)

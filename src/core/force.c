@@ -27,20 +27,10 @@ static void used_feq(const tribo_context *ctx, size_t i, size_t n, const double 
     }
 }
 
-/* Checks v and feq; a status. *plain: laws take feq as it is. note: ctx, or NULL to keep no message. */
-static int check_force(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq, int *plain)
+/* Checks feq where laws depend on it; a status. */
+static int check_used(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq)
 {
-    const int reads = ctx->set.law->uses_feq, within = v && feq && reads ? tribo_motion_within(v, feq, TRIBO_FAR, ctx->n) : 0;
-    int status = tribo_has_epsilon(ctx) ? TRIBO_OK : tribo_fail_without_operator(note);
-    status = status || (within & 1) ? status : tribo_check_finite(note, "v", v, ctx->n);
-    *plain = !reads || (within & 2);
-    if (status || !reads) {
-        return status;
-    }
-    if (!feq && ctx->n) {
-        return tribo_fail(note, TRIBO_ERR_NULL, "feq is NULL");
-    }
-    for (size_t i = 0; !*plain && i < ctx->n; i += TRIBO_CHUNK) {
+    for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
         double used[TRIBO_CHUNK];
         const size_t n = tribo_chunk_size(ctx, i);
         used_feq(ctx, i, n, v, feq, used);
@@ -50,7 +40,24 @@ static int check_force(const tribo_context *ctx, tribo_context *note, const doub
             }
         }
     }
-    return tribo_plane_check_feq(ctx, note, v, feq);
+    return TRIBO_OK;
+}
+
+/* Checks v and feq; a status. *plain: laws take feq as it is. note: ctx, or NULL to keep no message. */
+static int check_force(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq, int *plain)
+{
+    const int reads = ctx->set.law->uses_feq;
+    int status = tribo_has_epsilon(ctx) ? TRIBO_OK : tribo_fail_without_operator(note);
+    status = status ? status : tribo_check_finite(note, "v", v, ctx->n);
+    *plain = !reads || tribo_is_within(feq, ctx->n, TRIBO_FAR);
+    if (status || !reads) {
+        return status;
+    }
+    if (!feq && ctx->n) {
+        return tribo_fail(note, TRIBO_ERR_NULL, "feq is NULL");
+    }
+    status = *plain ? TRIBO_OK : check_used(ctx, note, v, feq);
+    return status || !tribo_plane_count(ctx) ? status : tribo_plane_check_feq(ctx, note, v, feq);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ forces */
