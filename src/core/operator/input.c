@@ -131,62 +131,6 @@ static int install_rows(tribo_context *ctx, struct csr *a, const struct inertia 
 
 /* -------------------------------------------------------------------------------------------------- forms of input */
 
-/* Appends row [n] as row i of a. *room: entries that a has memory for, enlarged if needed. Returns 0 if out of memory. */
-static int append_row(struct csr *a, size_t *room, size_t i, const double *row)
-{
-    const size_t n = a->n;
-    if (*room - a->first[i] < n) {
-        struct csr more;
-        *room = 2 * *room + n;
-        if (!tribo_csr_create(&more, n, *room)) {
-            return 0;
-        }
-        memcpy(more.first, a->first, (i + 1) * sizeof *more.first);
-        memcpy(more.col, a->col, a->first[i] * sizeof *more.col);
-        memcpy(more.val, a->val, a->first[i] * sizeof *more.val);
-        tribo_csr_free(a);
-        *a = more;
-    }
-    a->first[i + 1] = a->first[i];
-    for (size_t j = 0; j < n; j++) {
-        if (row[j] != 0.0) {
-            a->col[a->first[i + 1]] = j;
-            a->val[a->first[i + 1]++] = row[j];
-        }
-    }
-    return 1;
-}
-
-int tribo_set_operator_dense(tribo_context *ctx, const double *r)
-{
-    const int status = check_fixed(ctx);
-    if (status) {
-        return status;
-    }
-    const size_t n = ctx->n;
-    if (!r && n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "r is NULL");
-    }
-    for (size_t k = 0; k < n * n; k++) {
-        if (!isfinite(r[k])) {
-            return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "r[%zu][%zu] = %g is not finite", k / n, k % n, r[k]);
-        }
-    }
-    struct csr a;
-    size_t room = n, i = 0;
-    if (!tribo_csr_create(&a, n, room)) {
-        return input_out_of_memory(ctx);
-    }
-    while (i < n && append_row(&a, &room, i, r + i * n)) {
-        i++;
-    }
-    if (i < n) {
-        tribo_csr_free(&a);
-        return input_out_of_memory(ctx);
-    }
-    return install_rows(ctx, &a, NULL);
-}
-
 /* Checks the rows of a matrix [n][columns], t = its transpose, in which equal columns of a row are neighbours; a status. */
 static int input_read(tribo_context *ctx, size_t columns, const size_t *rowptr, const size_t *col, const double *val,
                       struct csr *t)
@@ -265,32 +209,34 @@ int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inver
     return status;
 }
 
-/* The caller's mass matrix. */
-struct solver {
+/* R e_j, columns of which are given, or found by the caller's mass matrix. */
+struct columns {
+    const double *dense; /* [n][n] R; NULL: by J and apply */
+    const size_t *rowptr, *col;
+    const double *val;
     size_t ndof;
     int (*apply)(size_t ndof, const double *force, double *acceleration, void *data);
     void *data;
-    double *force, *acceleration; /* [ndof] force is zero between calls */
 };
 
-/* column [n] = R e_j. */
-static int find_column(tribo_context *ctx, const struct solver *m, size_t j, const size_t *rowptr, const size_t *col,
-                       const double *val, double *column)
+/* column [n] = R e_j, where apply finds it; a status. work [2 ndof] is zero between calls, but its second half. */
+static int find_column(tribo_context *ctx, const struct columns *m, size_t j, double *work, double *column)
 {
-    for (size_t k = rowptr[j]; k < rowptr[j + 1]; k++) {
-        m->force[col[k]] = val[k];
+    double *acceleration = work + m->ndof;
+    for (size_t k = m->rowptr[j]; k < m->rowptr[j + 1]; k++) {
+        work[m->col[k]] = m->val[k];
     }
-    const int answer = m->apply(m->ndof, m->force, m->acceleration, m->data);
-    for (size_t k = rowptr[j]; k < rowptr[j + 1]; k++) {
-        m->force[col[k]] = 0.0;
+    const int answer = m->apply(m->ndof, work, acceleration, m->data);
+    for (size_t k = m->rowptr[j]; k < m->rowptr[j + 1]; k++) {
+        work[m->col[k]] = 0.0;
     }
     if (answer) {
         return tribo_fail(ctx, TRIBO_ERR_CALLBACK, "apply answered %d for contact %zu", answer, j);
     }
     for (size_t i = 0; i < ctx->n; i++) {
         column[i] = 0.0;
-        for (size_t k = rowptr[i]; k < rowptr[i + 1]; k++) {
-            column[i] += val[k] * m->acceleration[col[k]];
+        for (size_t k = m->rowptr[i]; k < m->rowptr[i + 1]; k++) {
+            column[i] += m->val[k] * acceleration[m->col[k]];
         }
         if (!isfinite(column[i])) {
             return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "apply makes r of contacts %zu, %zu %g", i, j, column[i]);
@@ -319,10 +265,70 @@ static void drop_negligible(struct csr *a, double *diagonal)
     }
 }
 
+/* Takes the entries of columns, which are rows, that are not 0 as the operator; a status. */
+static int install_columns(tribo_context *ctx, const struct columns *m)
+{
+    const size_t n = ctx->n;
+    struct csr a, more;
+    size_t room = n;
+    double *work = calloc(2 * m->ndof + n + 1, sizeof *work), *column = work ? work + 2 * m->ndof : NULL;
+    int done = work && tribo_csr_create(&a, n, room), status = done ? TRIBO_OK : input_out_of_memory(ctx);
+    for (size_t j = 0; !status && j < n; j++) {
+        const double *row = m->dense ? m->dense + j * n : column;
+        status = m->dense ? TRIBO_OK : find_column(ctx, m, j, work, column);
+        if (!status && room - a.first[j] < n) {
+            room = 2 * room + n;
+            if (tribo_csr_create(&more, n, room)) {
+                memcpy(more.first, a.first, (j + 1) * sizeof *more.first);
+                memcpy(more.col, a.col, a.first[j] * sizeof *more.col);
+                memcpy(more.val, a.val, a.first[j] * sizeof *more.val);
+                tribo_csr_free(&a);
+                a = more;
+            } else {
+                status = input_out_of_memory(ctx);
+            }
+        }
+        a.first[j + 1] = a.first[j];
+        for (size_t i = 0; !status && i < n; i++) {
+            if (row[i] != 0.0) {
+                a.col[a.first[j + 1]] = i;
+                a.val[a.first[j + 1]++] = row[i];
+            }
+        }
+    }
+    if (!status && !m->dense) {
+        drop_negligible(&a, column);
+    }
+    if (done && status) {
+        tribo_csr_free(&a);
+    }
+    free(work);
+    return status ? status : install_rows(ctx, &a, NULL);
+}
+
+int tribo_set_operator_dense(tribo_context *ctx, const double *r)
+{
+    const int status = check_fixed(ctx);
+    if (status) {
+        return status;
+    }
+    const size_t n = ctx->n;
+    if (!r && n) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "r is NULL");
+    }
+    for (size_t k = 0; k < n * n; k++) {
+        if (!isfinite(r[k])) {
+            return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "r[%zu][%zu] = %g is not finite", k / n, k % n, r[k]);
+        }
+    }
+    return install_columns(ctx, &(const struct columns){.dense = r});
+}
+
 int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
                                 int (*apply)(size_t ndof, const double *force, double *acceleration, void *data), void *data,
                                 const size_t *rowptr, const size_t *col, const double *val)
 {
+    struct csr t;
     int status = check_fixed(ctx);
     if (status) {
         return status;
@@ -333,32 +339,10 @@ int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
     if (ndof >= SIZE_MAX / 64) {
         return tribo_fail(ctx, TRIBO_ERR_SIZE, "ndof = %zu is too large", ndof);
     }
-    struct csr t, a;
     status = input_read(ctx, ndof, rowptr, col, val, &t);
     if (status) {
         return status;
     }
     tribo_csr_free(&t);
-    size_t room = ctx->n;
-    double *work = calloc(2 * ndof + ctx->n + 1, sizeof *work);
-    if (!work || !tribo_csr_create(&a, ctx->n, room)) {
-        free(work);
-        return input_out_of_memory(ctx);
-    }
-    double *column = work + 2 * ndof;
-    const struct solver m = {ndof, apply, data, work, work + ndof};
-    for (size_t j = 0; !status && j < ctx->n; j++) {
-        status = find_column(ctx, &m, j, rowptr, col, val, column);
-        if (!status && !append_row(&a, &room, j, column)) {
-            status = input_out_of_memory(ctx);
-        }
-    }
-    if (status) {
-        tribo_csr_free(&a);
-    } else {
-        drop_negligible(&a, column);
-        status = install_rows(ctx, &a, NULL);
-    }
-    free(work);
-    return status;
+    return install_columns(ctx, &(const struct columns){NULL, rowptr, col, val, ndof, apply, data});
 }

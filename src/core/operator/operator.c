@@ -324,8 +324,7 @@ static void fill_graded(const struct box_qp *p, double *r, double *r_low, const 
 }
 
 /* Sets what is constant of group k. */
-static void fill_group(struct delassus *op, struct memory *m, size_t k, const struct csr *a, const struct inertia *from,
-                       const size_t *place)
+static void fill_group(struct delassus *op, struct memory *m, size_t k, const struct csr *a, const size_t *place)
 {
     struct box_qp *p = tribo_memory_problem(op, m, k);
     struct group *g = &op->group[k];
@@ -354,51 +353,43 @@ static void fill_group(struct delassus *op, struct memory *m, size_t k, const st
     for (size_t c = 0; c < g->size; c++) {
         least[c] = DBL_MIN + quotient(DBL_MIN, scale[c] * g->lightest);
     }
-    if (g->graded) {
-        /* R in doubles may have a pivot so small that its rounding counts. */
-        size_t where;
-        g->graded = 0;
-        factorize_all(p, &where);
-        const double last = p->sets->rank ? p->l[(p->sets->rank - 1) * (g->size + 1)] : 1.0; /* the root of its inverse */
-        g->graded = p->sets->rank < g->size || 1.0 < GRADED_PIVOT * last * last;
-        if (g->graded) {
-            fill_graded(p, r, r + g->size * g->size, from, p->member, place);
-        }
-    }
     for (size_t c = 0; c < g->size; c++) {
         op->largest_sum = greater(op->largest_sum, op->row_sum[p->member[c]]);
         op->most = lesser(op->most, tribo_most(p, c));
     }
 }
 
-/* Sets the ranks of all groups; a status: R may be indefinite. */
-static int check_definite(struct delassus *op, struct memory *m, tribo_context *note)
+/* Sets what follows from the rank of group k, whose masses may be graded; a status: R may be indefinite. */
+static int judge_group(struct delassus *op, struct memory *m, size_t k, const struct inertia *from, const size_t *place,
+                       tribo_context *note)
 {
-    for (size_t k = 0; k < op->groups; k++) {
-        struct box_qp *p = tribo_memory_problem(op, m, k);
-        struct group *g = &op->group[k];
-        size_t where = 0;
-        const double left = factorize_all(p, &where);
-        const double zero = g->sparse ? TRIBO_SPARSE_ZERO : g->graded ? TRIBO_GRADED_ZERO : tribo_resolution(g->size);
-        if (fabs(left) > 16.0 * zero) {
-            return tribo_fail(note, TRIBO_ERR_INDEFINITE,
-                              "r is indefinite: relative pivot %g at contact %zu, in a group of %zu coupled contact%s", left,
-                              p->member[where], g->size, plural(g->size));
-        }
-        g->nullity = p->sets->dependents;
-        g->small = g->size <= SMALL && !g->nullity && !g->graded && tribo_small_fits(g->size, p->r, p->inverse);
-        memset(p->at, AWAY, g->size);
-        tribo_factor_rebuild(p, NULL);
+    struct group *g = &op->group[k];
+    const int uneven = g->graded;
+    size_t where = 0;
+    g->graded = 0;
+    struct box_qp *p = tribo_memory_problem(op, m, k);
+    double left = factorize_all(p, &where);
+    const double last = uneven && p->sets->rank ? p->l[(p->sets->rank - 1) * (g->size + 1)] : 1.0; /* the root of its inverse */
+    if (uneven && (p->sets->rank < g->size || 1.0 < GRADED_PIVOT * last * last)) {
+        /* R in doubles may have a pivot so small that its rounding counts. */
+        double *r = op->fixed + g->fixed + 3 * g->size;
+        fill_graded(p, r, r + g->size * g->size, from, p->member, place);
+        g->graded = 1;
+        p = tribo_memory_problem(op, m, k);
+        left = factorize_all(p, &where);
     }
-    m->problem.work.factorizations = 0;
-    for (size_t k = 0; k < op->groups; k++) {
-        const struct group *g = &op->group[k];
-        size_t redundant = g->nullity;
-        if (g->sparse && redundant > TRIBO_SPARSE_REDUNDANT) {
-            redundant = TRIBO_SPARSE_REDUNDANT;
-        }
-        op->basis = redundant * g->size > op->basis ? redundant * g->size : op->basis;
+    const double zero = g->sparse ? TRIBO_SPARSE_ZERO : g->graded ? TRIBO_GRADED_ZERO : tribo_resolution(g->size);
+    if (fabs(left) > 16.0 * zero) {
+        return tribo_fail(note, TRIBO_ERR_INDEFINITE,
+                          "r is indefinite: relative pivot %g at contact %zu, in a group of %zu coupled contact%s", left,
+                          p->member[where], g->size, plural(g->size));
     }
+    g->nullity = p->sets->dependents;
+    g->small = g->size <= SMALL && !g->nullity && !g->graded && tribo_small_fits(g->size, p->r, p->inverse);
+    memset(p->at, AWAY, g->size);
+    tribo_factor_rebuild(p, NULL);
+    const size_t redundant = g->sparse && g->nullity > TRIBO_SPARSE_REDUNDANT ? TRIBO_SPARSE_REDUNDANT : g->nullity;
+    op->basis = redundant * g->size > op->basis ? redundant * g->size : op->basis;
     return TRIBO_OK;
 }
 
@@ -424,10 +415,12 @@ static int create_groups(struct delassus *op, struct memory *m, const struct csr
     if (!op->fixed || !allocate_memory(m, op)) {
         return TRIBO_ERR_MEMORY;
     }
-    for (size_t k = 0; k < op->groups; k++) {
-        fill_group(op, m, k, a, from, place);
+    int status = TRIBO_OK;
+    for (size_t k = 0; !status && k < op->groups; k++) {
+        fill_group(op, m, k, a, place);
+        status = judge_group(op, m, k, from, place, note);
     }
-    const int status = check_definite(op, m, note);
+    m->problem.work.factorizations = 0;
     return status || allocate_basis(m, op) ? status : TRIBO_ERR_MEMORY;
 }
 
