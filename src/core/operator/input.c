@@ -209,10 +209,10 @@ int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inver
     return status;
 }
 
-/* R e_j, columns of which are given, or found by the caller's mass matrix. */
+/* Columns R e_j: given, or J M^-1 J' e_j by the caller's mass matrix. */
 struct columns {
-    const double *dense; /* [n][n] R; NULL: by J and apply */
-    const size_t *rowptr, *col;
+    const double *dense;        /* [n][n] R; NULL: by apply, f -> M^-1 f */
+    const size_t *rowptr, *col; /* J */
     const double *val;
     size_t ndof;
     int (*apply)(size_t ndof, const double *force, double *acceleration, void *data);
@@ -265,7 +265,7 @@ static void drop_negligible(struct csr *a, double *diagonal)
     }
 }
 
-/* Takes the entries of columns, which are rows, that are not 0 as the operator; a status. */
+/* Takes columns, which are rows since R is symmetric, without their zeros as the operator; a status. */
 static int install_columns(tribo_context *ctx, const struct columns *m)
 {
     const size_t n = ctx->n;

@@ -13,19 +13,21 @@
 /* Contacts nearer to the edge of their band have lenses whose inside is rounding. */
 #define EDGE (1.0 - 16.0 * DBL_EPSILON)
 
-struct slide tribo_planar_slide(const struct contacts *c, size_t i, size_t directions, const double *v)
+struct slide tribo_planar_slide(const tribo_context *ctx, size_t i, size_t directions, const double *v)
 {
+    const struct contacts *c = &ctx->follow.contacts;
+    const double *bound = (ctx->set.breaking ? ctx->follow.hold : c->bound) + i;
     struct slide s = {.directions = directions, .open = 1};
     double longest = -1.0;
     for (size_t k = 0; k < directions; k++) {
-        const double way = product(c->bound[i + k], tribo_epsilon_of(c, i + k));
-        s.far = way > longest || (way == longest && c->bound[i + k] > c->bound[i]) ? k : s.far;
+        const double way = product(bound[k], tribo_epsilon_of(c, i + k));
+        s.far = way > longest || (way == longest && bound[k] > bound[0]) ? k : s.far;
         longest = greater(longest, way);
-        s.open &= !(c->bound[i + k] > 0.0);
+        s.open &= !(bound[k] > 0.0);
     }
-    const double bound = c->bound[i + s.far];
+    s.bound = bound[s.far];
     for (size_t k = 0; k < directions && !s.open; k++) {
-        s.part[k] = c->bound[i + k] == bound ? 1.0 : quotient(c->bound[i + k], bound);
+        s.part[k] = bound[k] == s.bound ? 1.0 : quotient(bound[k], s.bound);
         s.x[k] = product(s.part[k], v[k]);
     }
     s.length = tribo_length(2, s.x);
@@ -75,16 +77,6 @@ void tribo_planar_limits(const tribo_context *ctx, size_t i, size_t directions, 
     }
 }
 
-struct contacts tribo_planar_view(const tribo_context *ctx, size_t i, size_t directions, double *limit)
-{
-    struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
-    if (ctx->set.breaking) {
-        tribo_copy(limit, ctx->follow.hold + i, directions);
-        c.limit = c.bound = limit;
-    }
-    return c;
-}
-
 struct block tribo_block_of(const double *own)
 {
     const double mean = 0.5 * own[0] + 0.5 * own[2], half = 0.5 * own[0] - 0.5 * own[2];
@@ -100,15 +92,12 @@ double tribo_plane_rate(const tribo_context *ctx)
     const double none[2] = {0.0, 0.0};
     double rate = 0.0;
     for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
-        double limit[2];
-        const struct contacts c = tribo_planar_view(ctx, ctx->planar->first[k], 2, limit);
         const double *own = ctx->planar->own[k];
-        const struct slide s = tribo_planar_slide(&c, 0, 2, none);
+        const struct slide s = tribo_planar_slide(ctx, ctx->planar->first[k], 2, none);
         const double weighed[3] = {product(s.part[0], product(s.part[0], own[0])), product(s.part[0], product(s.part[1], own[1])),
                                    product(s.part[1], product(s.part[1], own[2]))};
-        const double far = s.part[0] == 1.0 ? c.bound[0] : c.bound[1];
         if (!s.open) {
-            rate = greater(rate, product(2.0 * quotient(far, s.epsilon), tribo_block_of(weighed).great));
+            rate = greater(rate, product(2.0 * quotient(s.bound, s.epsilon), tribo_block_of(weighed).great));
         }
     }
     return rate;

@@ -63,6 +63,7 @@ struct slide {
     size_t directions;
     int open;
     size_t far;     /* that direction, 0 or 1 */
+    double bound;   /* its limit; where limits are static, the largest */
     double part[2]; /* limits; of a scalar contact, the second is 0 */
     double x[2];    /* part v */
     double n[2];    /* x/|x|, or 0 */
@@ -70,7 +71,9 @@ struct slide {
     double epsilon; /* |x| from which the contact slides */
     double speed;   /* length/epsilon */
 };
-struct slide tribo_planar_slide(const struct contacts *c, size_t i, size_t directions, const double *v);
+/* The contact at i, at v [directions]. Its static limits are the same multiple of those by which it slides, so that only bound
+ * depends on which of both it has. */
+struct slide tribo_planar_slide(const tribo_context *ctx, size_t i, size_t directions, const double *v);
 
 /* 1 if the force of a contact depends on f_eq. */
 int tribo_planar_near(const struct law *law, const struct slide *s);
@@ -96,9 +99,6 @@ struct block tribo_block_of(const double *own);
 
 /* limit [directions] of the contact at i: static ones if it holds, or those by which it slides at v. */
 void tribo_planar_limits(const tribo_context *ctx, size_t i, size_t directions, int holds, const double *v, double *limit);
-
-/* Returns the contact at i as laws see it with static limits, which are copied to limit [directions]. */
-struct contacts tribo_planar_view(const tribo_context *ctx, size_t i, size_t directions, double *limit);
 
 /* ---- planar_force.c */
 

@@ -58,23 +58,20 @@ static void take_contact(tribo_context *ctx, size_t k, size_t i, size_t directio
 static int planar_collect(tribo_context *ctx, const struct cluster *g, const double *v, int begins)
 {
     const struct law *law = ctx->set.law;
-    const struct contacts *c = &ctx->follow.contacts;
     ctx->planar->problem.size = 0;
     for (size_t k = 0, directions; k < g->size; k += directions) {
         const size_t i = g->member[k];
         directions = tribo_directions(ctx, i);
+        const struct slide s = tribo_planar_slide(ctx, i, directions, v + i);
+        const int near = tribo_planar_near(law, &s);
         if (begins && ctx->set.breaking) {
-            double limit[2];
-            const struct contacts held = tribo_planar_view(ctx, i, directions, limit);
-            const struct slide s = tribo_planar_slide(&held, 0, directions, v + i);
-            tribo_planar_limits(ctx, i, directions, tribo_planar_near(law, &s), v + i, ctx->follow.now + i);
+            tribo_planar_limits(ctx, i, directions, near, v + i, ctx->follow.now + i);
         }
-        const struct slide s = tribo_planar_slide(c, i, directions, v + i);
         const double turn = law->relaxes ? 2.0 * s.speed : 0.0, shift[2] = {turn * s.n[0], turn * s.n[1]};
-        if (tribo_planar_near(law, &s)) {
+        if (near) {
             take_contact(ctx, k, i, directions, shift);
         } else {
-            tribo_planar_slide_force(law, &s, c->limit + i, ctx->last.f + i);
+            tribo_planar_slide_force(law, &s, ctx->follow.contacts.limit + i, ctx->last.f + i);
         }
     }
     return ctx->planar->problem.size > 0;

@@ -100,7 +100,7 @@ static void own_changes(const tribo_context *ctx, const struct cluster *g, const
     for (size_t k = 0, e = 0, directions; k < g->size; k += directions) {
         const size_t i = g->member[k];
         directions = tribo_directions(ctx, i);
-        const struct slide s = tribo_planar_slide(c, i, directions, ctx->last.v + i);
+        const struct slide s = tribo_planar_slide(ctx, i, directions, ctx->last.v + i);
         struct turn t = {{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}, 0.0};
         for (size_t j = 0; j < directions; j++) {
             t.v[j] = tribo_entry(d->v, i + j);
@@ -203,12 +203,13 @@ static double feq_parts(const double *limit, const double *feq, double *y)
 static void planar_given(const tribo_context *ctx, size_t k, const double *v, const double *feq, struct given *g)
 {
     const size_t i = ctx->planar->first[k];
-    g->c = tribo_planar_view(ctx, i, 2, g->limit);
-    g->s = tribo_planar_slide(&g->c, 0, 2, v);
+    g->c = tribo_contacts_from(&ctx->follow.contacts, i);
+    g->s = tribo_planar_slide(ctx, i, 2, v);
     g->near = tribo_planar_near(ctx->set.law, &g->s);
     if (ctx->set.breaking) {
         double y[2];
-        tribo_planar_limits(ctx, i, 2, g->near && feq_parts(g->limit, feq, y) <= 1.0, v, g->limit);
+        tribo_planar_limits(ctx, i, 2, g->near && feq_parts(ctx->follow.hold + i, feq, y) <= 1.0, v, g->limit);
+        g->c.limit = g->c.bound = g->limit;
     }
 }
 
