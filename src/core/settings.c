@@ -85,6 +85,12 @@ static void hold_limits(tribo_context *ctx)
     *c = (struct contacts){now, now, ctx->follow.hold_width, rate, ctx->moving, 0, c->scales, 0};
 }
 
+static void settings_changed(tribo_context *ctx)
+{
+    ctx->last.linearized = 0;
+    ctx->revision++;
+}
+
 void tribo_refresh_limits(tribo_context *ctx)
 {
     const int follows = epsilon_follows(ctx), fixed = !ctx->set.breaking;
@@ -107,8 +113,7 @@ void tribo_refresh_limits(tribo_context *ctx)
     if (fixed && ctx->follow.largest > lesser(ctx->op->most, TRIBO_FAR / ctx->follow.steepest)) {
         cut_far(ctx);
     }
-    ctx->last.linearized = 0;
-    ctx->revision++;
+    settings_changed(ctx);
 }
 
 void tribo_refresh(tribo_context *ctx)
@@ -142,12 +147,6 @@ void tribo_refresh(tribo_context *ctx)
         }
     }
     tribo_refresh_limits(ctx);
-}
-
-static void settings_changed(tribo_context *ctx)
-{
-    ctx->last.linearized = 0;
-    ctx->revision++;
 }
 
 /* Sets *to = *from; a status. */

@@ -46,31 +46,24 @@ void tribo_find_limits(const tribo_context *ctx, size_t i, size_t n, const doubl
  * little that stopping it is no load for other contacts. */
 #define RESTS 1e-4
 
-static int comes_sliding(const tribo_context *ctx, double dt, size_t i, const double *v)
+/* How the contact at i comes into a step: at rest; sliding, with a force f, or NULL, that acts against v; with another force. */
+enum { COMES_AT_REST, SLIDES, TURNS };
+static int comes_in(const tribo_context *ctx, double dt, size_t i, const double *v, const double *f)
 {
     const size_t directions = tribo_directions(ctx, i);
-    double stops = 0.0;
+    double stops = 0.0, power = f ? 0.0 : -1.0;
     for (size_t k = i; k < i + directions; k++) {
         stops = greater(stops, product(product(ctx->op->diagonal[k], dt), ctx->follow.hold[k]));
+        power += f ? product(f[k], v[k]) : 0.0;
     }
-    return tribo_length((int)directions, v + i) > RESTS * stops;
-}
-
-/* 1 if the force f of the contact at i does not act against v. */
-static int turns(const tribo_context *ctx, size_t i, const double *v, const double *f)
-{
-    double power = 0.0;
-    for (size_t k = i; k < i + tribo_directions(ctx, i); k++) {
-        power += product(f[k], v[k]);
-    }
-    return !(power < 0.0);
+    return !(tribo_length((int)directions, v + i) > RESTS * stops) ? COMES_AT_REST : power < 0.0 ? SLIDES : TURNS;
 }
 
 int tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, const double *f)
 {
     int any = !f;
     for (size_t i = 0; !any && i < ctx->n; i += tribo_directions(ctx, i)) {
-        any = comes_sliding(ctx, dt, i, v) && turns(ctx, i, v, f);
+        any = comes_in(ctx, dt, i, v, f) == TURNS;
     }
     if (!any) {
         return 0;
@@ -78,9 +71,8 @@ int tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, co
     tribo_copy(ctx->follow.now, ctx->follow.hold, ctx->n);
     for (size_t i = 0, directions; v && i < ctx->n; i += directions) {
         directions = tribo_directions(ctx, i);
-        const int slides = comes_sliding(ctx, dt, i, v) && !(f && turns(ctx, i, v, f));
         const double speed = tribo_length((int)directions, v + i);
-        for (size_t k = i; slides && k < i + directions; k++) {
+        for (size_t k = i; comes_in(ctx, dt, i, v, f) == SLIDES && k < i + directions; k++) {
             ctx->follow.now[k] = tribo_limit_at(ctx, k, speed);
         }
     }
