@@ -28,11 +28,6 @@ static inline int tribo_within(double x, double most)
     return isfinite(x) && fabs(x) <= most;
 }
 
-static inline int tribo_all_finite(const double *x, size_t n)
-{
-    return n == 1 ? isfinite(*x) : tribo_all_within(x, n, DBL_MAX);
-}
-
 /* 1 if x is no NULL, and all |x_i| <= most. */
 static inline int tribo_is_within(const double *x, size_t n, double most)
 {
@@ -41,7 +36,7 @@ static inline int tribo_is_within(const double *x, size_t n, double most)
 
 static inline int tribo_check_finite(tribo_context *ctx, const char *name, const double *x, size_t n)
 {
-    return x && tribo_all_finite(x, n) ? TRIBO_OK : tribo_check_slowly(ctx, name, x, n, FINITE);
+    return tribo_is_within(x, n, DBL_MAX) ? TRIBO_OK : tribo_check_slowly(ctx, name, x, n, FINITE);
 }
 
 static inline int tribo_check_nonnegative(tribo_context *ctx, const char *name, const double *x, size_t n)
