@@ -42,18 +42,20 @@ static inline const size_t *tribo_plane_first(const tribo_context *ctx)
 
 /* ---- planar.c */
 
-/* Makes *c of these planar contacts for an operator and the memory that goes with it; a status. Then *c, which may be NULL, takes
- * the place of what ctx has. */
-int tribo_clusters_prepare(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m,
-                           struct planar **c);
-void tribo_clusters_install(tribo_context *ctx, struct planar *c);
-void tribo_clusters_free(struct planar *c);
-
-/* The planar contacts of from, if ctx has others; a status. */
+/* Clusters for an operator that ctx is to have, and the memory that goes with it; for the planar contacts of from; for those of from
+ * and their last solutions, clone having the operator and memory, and no clusters. A status; after a failure ctx has what it had. */
+int tribo_clusters_renew(tribo_context *ctx, const struct delassus *op, struct memory *m);
 int tribo_clusters_copy(tribo_context *ctx, const tribo_context *from);
-
-/* Those of from, and their last solutions, for its clone with the same operator and memory; a status. */
 int tribo_clusters_clone(tribo_context *clone, const tribo_context *from);
+
+/* Frees clusters. */
+void tribo_clusters_free(tribo_context *ctx);
+
+/* Forgets clusters, which are those of the context that ctx is a copy of. */
+static inline void tribo_clusters_none(tribo_context *ctx)
+{
+    ctx->planar = NULL;
+}
 
 /* Fails if coupling is TRIBO_PARTITION, and count > 0; a status. */
 int tribo_plane_check_coupling(tribo_context *ctx, int coupling, size_t count, const size_t *first);

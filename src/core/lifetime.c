@@ -86,7 +86,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     c->fixed = 0;
     c->op = tribo_operator_share(ctx->op);
     c->memory = (struct memory){0};
-    c->planar = NULL;
+    tribo_clusters_none(c);
     if (!tribo_memory_copy(&c->memory, &ctx->memory, ctx->op) || tribo_clusters_clone(c, ctx)) {
         tribo_destroy(c);
         return TRIBO_ERR_MEMORY;
@@ -103,7 +103,7 @@ void tribo_destroy(tribo_context *ctx)
     if (ctx) {
         tribo_operator_release(ctx->op);
         tribo_memory_free(&ctx->memory);
-        tribo_clusters_free(ctx->planar);
+        tribo_clusters_free(ctx);
         free(ctx);
     }
 }

@@ -60,14 +60,12 @@ static int input_out_of_memory(tribo_context *ctx)
 /* Replaces the operator and its memory; if there is no memory for clusters of op, the old ones stay. */
 static int install(tribo_context *ctx, struct delassus *op, struct memory *m)
 {
-    struct planar *c;
-    const int status = tribo_clusters_prepare(ctx, tribo_plane_count(ctx), tribo_plane_first(ctx), op, m, &c);
+    const int status = tribo_clusters_renew(ctx, op, m);
     if (status) {
         tribo_operator_release(op);
         tribo_memory_free(m);
         return status;
     }
-    tribo_clusters_install(ctx, c);
     m->problem.work.factorizations += ctx->memory.problem.work.factorizations;
     m->problem.work.updates += ctx->memory.problem.work.updates;
     tribo_operator_release(ctx->op);

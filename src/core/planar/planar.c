@@ -105,13 +105,18 @@ double tribo_plane_rate(const tribo_context *ctx)
 
 /* -------------------------------------------------------------------------------------------------------------- life */
 
-void tribo_clusters_free(struct planar *c)
+static void free_clusters(struct planar *c)
 {
     if (c) {
         tribo_disc_free(&c->problem);
         free(c->cluster->r);
         free(c);
     }
+}
+
+void tribo_clusters_free(tribo_context *ctx)
+{
+    free_clusters(ctx->planar);
 }
 
 /* Returns count planar contacts of n directions, without clusters; NULL if out of memory. */
@@ -242,8 +247,9 @@ static int find_clusters(struct planar *c, size_t n, const struct delassus *op, 
 /* Light bodies between heavy ones come out right to this ratio in doubles, which clusters use. */
 #define SPREAD_MOST 1e10
 
-int tribo_clusters_prepare(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m,
-                           struct planar **to)
+/* Gives ctx these planar contacts in the place of those it has, with clusters of an operator and the memory that goes with it; a
+ * status. After a failure ctx has what it had. */
+static int replace_clusters(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m)
 {
     struct planar *c = count ? planar_create(ctx->n, count, first) : NULL;
     int status = count && !c ? TRIBO_ERR_MEMORY : c && op->diagonal ? find_clusters(c, ctx->n, op, m) : TRIBO_OK;
@@ -263,30 +269,26 @@ int tribo_clusters_prepare(tribo_context *ctx, size_t count, const size_t *first
         }
     }
     if (status) {
-        tribo_clusters_free(c);
+        free_clusters(c);
+    } else {
+        free_clusters(ctx->planar);
+        ctx->planar = c;
     }
-    *to = status ? NULL : c;
     return status;
 }
 
-void tribo_clusters_install(tribo_context *ctx, struct planar *c)
+int tribo_clusters_renew(tribo_context *ctx, const struct delassus *op, struct memory *m)
 {
-    tribo_clusters_free(ctx->planar);
-    ctx->planar = c;
+    return replace_clusters(ctx, tribo_plane_count(ctx), tribo_plane_first(ctx), op, m);
 }
 
 int tribo_clusters_copy(tribo_context *ctx, const tribo_context *from)
 {
     const size_t count = tribo_plane_count(from), *first = tribo_plane_first(from);
-    struct planar *c;
     if (count == tribo_plane_count(ctx) && (!count || memcmp(first, ctx->planar->first, count * sizeof *first) == 0)) {
         return TRIBO_OK;
     }
-    const int status = tribo_clusters_prepare(ctx, count, first, ctx->op, &ctx->memory, &c);
-    if (!status) {
-        tribo_clusters_install(ctx, c);
-    }
-    return status;
+    return replace_clusters(ctx, count, first, ctx->op, &ctx->memory);
 }
 
 int tribo_clusters_clone(tribo_context *clone, const tribo_context *from)
@@ -354,12 +356,12 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
         }
         taken[i] = taken[i + 1] = 1;
     }
-    struct planar *c;
     status = tribo_check_one_ratio(ctx, ctx->set.ratio, ctx->set.stribeck, count, first);
-    status = status ? status : tribo_clusters_prepare(ctx, count, first, ctx->op, &ctx->memory, &c);
     if (!status) {
         tribo_write_slips(ctx);
-        tribo_clusters_install(ctx, c);
+        status = replace_clusters(ctx, count, first, ctx->op, &ctx->memory);
+    }
+    if (!status) {
         tribo_refresh(ctx);
     }
     return status;
