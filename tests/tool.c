@@ -129,3 +129,15 @@ double value_of(const char *key)
     require(at && at[strlen(key)] == ' ', "no value %s", key);
     return strtod(at + strlen(key), NULL);
 }
+
+double column_of(const char *name, int k)
+{
+    char table[TEXT], *at = table;
+    read_text(name, table);
+    at = strchr(table, '\n');
+    for (int column = 1; column < k && at; column++) {
+        at = strchr(at + 1, ',');
+    }
+    require(at, "%s: no column %d: %s", name, k, table);
+    return strtod(at + 1, NULL);
+}

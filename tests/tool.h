@@ -36,4 +36,7 @@ struct outcome assert_runs(const char *options);
 /* A value of values-damper.txt. */
 double value_of(const char *key);
 
+/* Column k, from 1, of the first line of a table. */
+double column_of(const char *name, int k);
+
 #endif

@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* tribo-damper on structures of a few masses, the motions of which are known. Works in the current folder. */
+#include <complex.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "support.h"
+#include "tool.h"
+
+#undef I
+#define I ((double complex)_Complex_I) /* _Complex_I is of float */
+
+/* What the force of the only contact takes along its displacement, over the three periods of a table. */
+static double loop_power(const char *name, double hz)
+{
+    char line[500];
+    double z, f, before[2] = {0.0, 0.0}, work = 0.0;
+    size_t lines = 0;
+    FILE *file = fopen(name, "r");
+    require(file && fgets(line, sizeof line, file), "there is no %s", name);
+    for (; fgets(line, sizeof line, file); lines++) {
+        require(sscanf(line, "%*f,%*f,%*f,%*f,%lf,%*d,%lf", &f, &z) == 2, "%s", line);
+        work -= lines ? 0.5 * (f + before[0]) * (z - before[1]) : 0.0;
+        before[0] = f;
+        before[1] = z;
+    }
+    fclose(file);
+    return work * hz / 3.0;
+}
+
+/* x'' + 0.1 x' + x + f = cos 1.1 t, f of a slider of limit 0.5 on a spring of 1. */
+TEST(spring)
+{
+    static const char structure[] = "--mass spring.mtx --stiffness spring.mtx --dofs spring.txt --load 1,0,0,x --damping 0.05 "
+                                    "--drive 0.17507043740108488 --contact 1,0,0,x:stiffness=";
+    char options[400];
+    write_text("spring.mtx", "%%MatrixMarket matrix coordinate real symmetric\n1 1 1\n1 1 1.0\n");
+    write_text("spring.txt", "1 1 1 1 0 0\n");
+    snprintf(options, sizeof options, "%s1 --limits 0.25:1:3", structure);
+    const struct outcome o = assert_runs(options);
+    require(strstr(o.out, "           0.5       3.3866 ") != NULL, "%s", o.out);
+    assert_close(value_of("damper.free"), 1.0 / hypot(1.0 - 1.21, 0.11), 1e-9);
+    assert_close(value_of("damper.stuck"), 1.0 / hypot(2.0 - 1.21, 0.11), 1e-9);
+    assert_close(value_of("damper.stuck.analytic"), 1.0 / hypot(2.0 - 1.21, 0.11), 1e-12);
+    /* at the limit of most power it has its loop: 4 N (X - N/k) a period */
+    const double limit = value_of("damper.best.limit");
+    const double loop = 4.0 * limit * (value_of("damper.best.amplitude") - limit) * 0.17507043740108488;
+    assert_close(value_of("damper.best.power"), loop, 1e-8);
+    assert_exact(value_of("damper.gaps"), 0.0);
+    snprintf(options, sizeof options, "%s0", structure);
+    assert_refused(options, options, "stiffness=0: must be above 0");
+    snprintf(options, sizeof options, "%s1e300", structure);
+    assert_refused(options, options, "more than 1e+09 times that of the structure");
+    for (int k = 0; k < 2; k++) {
+        snprintf(options, sizeof options, "%s1 --limits 0.5%s", structure, k ? " --method march" : " --check 1");
+        const struct outcome marched = assert_runs(options);
+        require(says(marched.out, "           0.5       3.3866 "), "%s", marched.out);
+        assert_close(k ? 0.0 : value_of("damper.check.amplitude"), 0.0, 1e-4);
+    }
+    /* its loop at one limit takes the power; stuck, it lags by what damping makes of it */
+    snprintf(options, sizeof options, "%s1 --limits 0.5 --output 1,0,0,x", structure);
+    assert_runs(options);
+    assert_close(loop_power("damper-loop.csv", 0.17507043740108488), column_of("damper-curve.csv", 4), 1e-4);
+    snprintf(options, sizeof options, "%s1 --limits 1000 --output 1,0,0,x --output=1,0,0,x", structure);
+    assert_runs(options);
+    assert_close(column_of("damper-curve.csv", 11), 1.0 / hypot(0.79, 0.11), 1e-8);
+    assert_close(column_of("damper-curve.csv", 12), -atan2(0.11, 0.79) * 180.0 / PI, 1e-6);
+    assert_exact(column_of("damper-curve.csv", 14), column_of("damper-curve.csv", 12));
+    snprintf(options, sizeof options, "%s1 --limits 1000 --output 1,0,0,x --method march --harmonics 2", structure);
+    assert_runs(options);
+    assert_close(column_of("damper-curve.csv", 11), 1.0 / hypot(0.79, 0.11), 1e-4);
+    assert_close(column_of("damper-curve.csv", 12), -atan2(0.11, 0.79) * 180.0 / PI, 0.1);
+    assert_close(column_of("damper-curve.csv", 13), 1.0 / hypot(0.79, 0.11), 1e-4);
+    assert_close(column_of("damper-curve.csv", 14), 0.0, 1e-6);
+    snprintf(options, sizeof options, "%s1 --output 2,0,0,x", structure);
+    assert_refused(options, options, "option --output 2,0,0,x");
+    snprintf(options, sizeof options, "%s1 --check 1 --law quinn", structure);
+    assert_refused(options, options, "with --law quinn marching takes rigid contacts only");
+}
+END_TEST
+
+/* Two masses, 1 and 2, on springs: 3 from the ground to mass 1, 2 between them; damping 0.05 K and a dashpot 0.1 of mass 2; along
+ * x and y alike. A contact at mass 1. */
+#define PAIR "--mass pair-m.mtx --stiffness pair-k.mtx --dofs pair.txt --contact 1,0,0,x --drive 0.2 --limits 1e6 "
+
+static void write_pair(void)
+{
+#define HEAD "%%MatrixMarket matrix coordinate real symmetric\n"
+    write_text("pair-m.mtx", HEAD "4 4 4\n1 1 1\n2 2 1\n3 3 2\n4 4 2\n");
+    write_text("pair-k.mtx", HEAD "4 4 6\n1 1 5\n2 2 5\n3 1 -2\n4 2 -2\n3 3 2\n4 4 2\n");
+    write_text("pair-c.mtx", HEAD "4 4 6\n1 1 0.25\n2 2 0.25\n3 1 -0.1\n4 2 -0.1\n3 3 0.2\n4 4 0.2\n");
+    write_text("pair.txt", "1 1 1 1 0 0\n2 1 2 1 0 0\n3 2 1 2 0 0\n4 2 2 2 0 0\n");
+}
+
+/* The complex amplitude of mass 2 under forces p1, p2. */
+static double complex pair_motion(int stuck, double complex p1, double complex p2)
+{
+    const double w = 2.0 * PI * 0.2;
+    const double complex i = (double complex)I, a = 5.0 - w * w + 0.25 * w * i, b = -2.0 - 0.1 * w * i,
+                         d = 2.0 - 2.0 * w * w + 0.2 * w * i;
+    return stuck ? p2 / d : (a * p2 - b * p1) / (a * d - b * b);
+}
+
+static double degrees_of(double complex x)
+{
+    return atan2(cimag(x), creal(x)) * 180.0 / PI;
+}
+
+/* Several loads with phases, supports that move, and a damping matrix: free and stuck as the whole structure has them, also by
+ * marching; amplitude and phase of an output are those of a sine. */
+TEST(loads)
+{
+    static const char *const given[] = {"--load 2,0,0,x --load=1,0,0,x:force=3:phase=60 --output 2,0,0,x",
+                                        "--base x:acceleration=0.5:phase=-90 --output 2,0,0,x"};
+    const double complex i = (double complex)I, turn = 0.5 + 0.5 * sqrt(3.0) * i;
+    const double complex force[2][2] = {{3.0 * turn, 1.0}, {0.5 * i, i}};
+    write_pair();
+    for (int k = 0; k < 2; k++) {
+        char options[400];
+        const double complex stuck = pair_motion(1, force[k][0], force[k][1]);
+        for (int march = 0; march < 2; march++) {
+            snprintf(options, sizeof options, PAIR "--damping-matrix pair-c.mtx %s --method %s", given[k],
+                     march ? "march" : "exact");
+            assert_runs(options);
+            assert_close(value_of("damper.free"), cabs(pair_motion(0, force[k][0], force[k][1])), march ? 1e-4 : 1e-9);
+            assert_close(value_of("damper.stuck"), cabs(stuck), march ? 1e-4 : 1e-9);
+            assert_close(value_of("damper.free"), value_of("damper.free.analytic"), march ? 1e-4 : 1e-9);
+            assert_close(value_of("damper.stuck"), value_of("damper.stuck.analytic"), march ? 1e-4 : 1e-9);
+            assert_close(column_of("damper-curve.csv", 11), cabs(stuck), march ? 1e-4 : 1e-9);
+            assert_close(column_of("damper-curve.csv", 12), degrees_of(stuck), march ? 0.2 : 1e-6);
+        }
+        /* what the loads put in, damping and friction take: both powers found apart from each other */
+        snprintf(options, sizeof options, PAIR "--damping-matrix pair-c.mtx %s --limits 0.1 --check 1", given[k]);
+        assert_runs(options);
+        assert_close(value_of("damper.check.amplitude"), 0.0, 1e-4);
+        assert_close(value_of("damper.check.balance"), 0.0, 1e-4);
+    }
+    assert_refused(PAIR "--base x:acceleration=1", "no place", "option --base x:acceleration=1: --output is missing");
+    assert_refused(PAIR "--load 2,0,0,x --damping-matrix pair-c.mtx --damping 0.1", "both dampings",
+                   "option --damping-matrix pair-c.mtx");
+    assert_refused(PAIR "--load 2,0,0,x --damping-matrix pair.txt", "no matrix", "pair.txt:1");
+    assert_refused(PAIR "--load 2,0,0,x --harmonics 3", "no place", "option --harmonics 3: --output is missing");
+}
+END_TEST
+
+/* Ratios of the modes, the last one of all others, as a list and from a file: the same as their matrix. */
+TEST(damping_by_mode)
+{
+    /* at the first frequency the free amplitude is nearly that of mode 1, with half the damping twice as large */
+    double amplitude[3];
+    write_pair();
+    write_text("ratios.txt", "# of mode\n0.01\n0.02\n");
+    static const char *const way[] = {"--damping 0.01,0.02", "--damping-ratios ratios.txt", "--damping 0.02"};
+    for (int k = 0; k < 3; k++) {
+        char options[400];
+        snprintf(options, sizeof options, PAIR "--drive 0 --load 2,0,0,x %s", way[k]);
+        assert_runs(options);
+        amplitude[k] = value_of("damper.free");
+        assert_close(amplitude[k], value_of("damper.free.analytic"), 1e-9 * amplitude[k]);
+    }
+    assert_exact(amplitude[1], amplitude[0]);
+    assert_close(amplitude[0] / amplitude[2], 2.0, 1e-2);
+    write_text("ratios.txt", "0.01\n1.5\n");
+    assert_refused(PAIR "--load 2,0,0,x --damping-ratios ratios.txt", "a ratio", "ratios.txt:2: 1.5");
+    write_text("ratios.txt", "# none\n");
+    assert_refused(PAIR "--load 2,0,0,x --damping-ratios ratios.txt", "no ratio", "ratios.txt");
+    assert_refused(PAIR "--load 2,0,0,x --damping-ratios nowhere.txt", "no file", "nowhere.txt");
+}
+END_TEST
+
+/* Displacement fields: nodes once each, and the displacement at the measured place as the table of the motion has it. */
+TEST(field)
+{
+    char text[TEXT], *at;
+    double x, y, u[3][6];
+    write_pair();
+    assert_runs(PAIR "--load 2,0,0,x --damping 0.05 --limits 0.2 --field 0,18,360");
+    read_text("damper-loop.vtk", text);
+    require(strncmp(text, "# vtk DataFile Version 3.0\n", 27) == 0, "%s", text);
+    require(says(text, "DATASET POLYDATA\nPOINTS 2 double\n1 0 0\n2 0 0\n"), "%s", text);
+    for (int k = 0; k < 3; k++) {
+        static const char *const name[] = {"displacement_0 double\n", "displacement_18 double\n", "displacement_360 double\n"};
+        at = strstr(text, name[k]);
+        require(at && sscanf(at + strlen(name[k]), "%lf %lf %lf %lf %lf %lf", &u[k][0], &u[k][1], &u[k][2], &u[k][3], &u[k][4],
+                             &u[k][5]) == 6,
+                "%s", text);
+        assert_exact(u[k][1], 0.0);
+        assert_exact(u[k][5], 0.0);
+    }
+    read_text("damper-loop.csv", text);
+    for (int k = 0; k < 2; k++) {
+        at = strstr(text, k ? "\n0.05," : "\n0,");
+        require(at && sscanf(at + 1, "%*f,%*f,%lf,%*f,%*f,%*d,%lf", &x, &y) == 2, "%.400s", text);
+        assert_close(u[k][3], x, 1e-7);
+        assert_close(u[k][0], y, 1e-7);
+    }
+    assert_close(u[2][3], u[0][3], 1e-7);
+    assert_refused(PAIR "--load 2,0,0,x --drive 0.1:0.2:3 --field 0", "a band", "option --field: displacement fields are");
+}
+END_TEST
+
+/* With mu= tables and texts speak of normal loads. */
+TEST(normal_load)
+{
+    char text[TEXT];
+    write_pair();
+    const struct outcome o = assert_runs("--mass pair-m.mtx --stiffness pair-k.mtx --dofs pair.txt --contact 1,0,0,x:mu=0.5 "
+                                         "--load 2,0,0,x --drive 0.05:0.4:9 --limits 0.02:200:5 --damping 0.01");
+    require(says(o.out, "best normal load of the band"), "%s", o.out);
+    require(value_of("damper.band.load") > 0.02, "%g", value_of("damper.band.load"));
+    read_text("damper-family.csv", text);
+    require(strncmp(text, "normal load,frequency,", 22) == 0, "%s", text);
+    assert_runs(PAIR "--load 2,0,0,x");
+    read_text("damper-curve.csv", text);
+    require(strncmp(text, "limit,frequency,", 16) == 0, "%s", text);
+}
+END_TEST
+
+/* Masses that hang together, the last of which has no spring: said, with the reason why no motion is found. */
+TEST(loose_row)
+{
+#define MATRIX "%%MatrixMarket matrix coordinate real symmetric\n4 4 "
+#define STRUCTURE " --stiffness loose.mtx --dofs loose.txt --load 2,0,0,x --contact 1,0,0,x"
+    write_text("loose.mtx", MATRIX "4\n1 1 1.0\n2 2 2.0\n3 3 7.0\n4 4 0.0\n");
+    write_text("together.mtx", MATRIX "10\n1 1 2\n2 1 1\n3 1 0.5\n4 1 0.7\n2 2 3\n3 2 0.4\n4 2 1\n3 3 2\n4 3 0.6\n4 4 2\n");
+    write_text("minus.mtx", MATRIX "4\n1 1 1.0\n2 2 -1.0\n3 3 1.0\n4 4 1.0\n");
+    write_text("loose.txt", "1 1 1 1 0 0\n2 2 1 2 0 0\n3 3 1 3 0 0\n4 7 3 4 0 0\n");
+    const struct outcome o = assert_runs("--mass together.mtx" STRUCTURE " --damping 0.05 --drive 0.1:0.2:3 --limits 0.1:1:3");
+    require(strstr(o.out, "loose.mtx: no stiffness holds row 4 (node 7, direction z)\n") != NULL, "%s", o.out);
+    require(strstr(o.out, "no motion was found at any of these limits: not available here") != NULL, "%s", o.out);
+    const struct outcome minus = run_tool("--mass minus.mtx" STRUCTURE);
+    ck_assert_int_eq(minus.status, 1);
+    require(strstr(minus.err, "at degree of freedom 1 (counted from 0)") != NULL, "%s", minus.err);
+}
+END_TEST
+
+/* Without friction and stuck are those that closed forms know, also where a contact has its own limit, or none. */
+TEST(own_limit)
+{
+    static const char *const own[] = {"limit=3", "limit=0"};
+    char options[400];
+    write_text("own-m.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1.0\n2 2 1.0\n");
+    write_text("own-k.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 3\n1 1 2.0\n2 1 -1.0\n2 2 2.0\n");
+    write_text("own.txt", "1 1 1 0 0 0\n2 2 1 1 0 0\n");
+    for (size_t k = 0; k < 2; k++) {
+        snprintf(options, sizeof options,
+                 "--mass own-m.mtx --stiffness own-k.mtx --dofs own.txt --load 1,0,0,x --damping 0.05 --contact 0,0,0,x:%s "
+                 "--contact 1,0,0,x --limits 0.1:1:3",
+                 own[k]);
+        assert_runs(options);
+        assert_close(value_of("damper.free"), value_of("damper.free.analytic"), 1e-9);
+        assert_close(value_of("damper.stuck"), value_of("damper.stuck.analytic"), 1e-12);
+    }
+}
+END_TEST
+
+TEST_MAIN("damper_small", {spring, 1}, {loads, 1}, {damping_by_mode, 1}, {field, 1}, {normal_load, 1}, {loose_row, 1},
+          {own_limit, 1})
