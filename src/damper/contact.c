@@ -78,14 +78,9 @@ static void read_words(struct text *t, const struct word *known, size_t count, s
     }
 }
 
-static void add_contact(struct contacts *all, const struct contact *c)
+void read_contact(struct text *t, void *contacts)
 {
-    all->contact = need_room(all->contact, all->count, &all->room, sizeof *all->contact);
-    all->contact[all->count++] = *c;
-}
-
-void read_contact(struct text *t, struct contacts *all)
-{
+    struct contacts *all = contacts;
     struct contact c = {.mu = (double)NAN, .limit = (double)NAN, .stiffness = (double)NAN};
     double load = (double)NAN;
     const struct word known[] = {{"limit", &c.limit, NOT_NEGATIVE},
@@ -108,15 +103,15 @@ void read_contact(struct text *t, struct contacts *all)
     c.to.direction = c.at.direction;
     c.to.origin = t->place;
     c.planar = second != 0;
-    add_contact(all, &c);
-    if (second) {
+    for (int k = 0; k < (second ? 2 : 1); k++) {
+        all->contact = need_room(all->contact, all->count, &all->room, sizeof *all->contact);
+        all->contact[all->count++] = c;
         c.planar = 0;
         c.at.direction = c.to.direction = second;
-        add_contact(all, &c);
     }
 }
 
-void read_load(struct text *t, int supports, struct loads *all)
+static void add_load(struct text *t, int supports, struct loads *all)
 {
     struct load l = {.supports = supports, .size = (double)NAN, .phase = (double)NAN};
     const struct word known[] = {{supports ? "acceleration" : "force", &l.size, POSITIVE}, {"phase", &l.phase, ANY}};
@@ -135,16 +130,27 @@ void read_load(struct text *t, int supports, struct loads *all)
     all->load[all->count++] = l;
 }
 
-void read_contacts(const char *path, struct contacts *all)
+void read_load(struct text *t, void *loads)
 {
-    struct text t = open_text(path);
+    add_load(t, 0, loads);
+}
+
+void read_base(struct text *t, void *loads)
+{
+    add_load(t, 1, loads);
+}
+
+void read_contacts(struct text *path, void *contacts)
+{
+    struct text t = open_text(path->at);
+    const struct contacts *all = contacts;
     const size_t before = all->count;
     while (next_data(&t)) {
         char *value = make_printable(rest_of(&t));
-        struct text contact = text_of(new_text("%s:%zu: contact %s", path, t.line, value), value);
-        read_contact(&contact, all);
+        struct text contact = text_of(new_text("%s:%zu: contact %s", path->at, t.line, value), value);
+        read_contact(&contact, contacts);
     }
     if (all->count == before) {
-        die("%s: there is no contact in it", path);
+        die("%s: there is no contact in it", path->at);
     }
 }

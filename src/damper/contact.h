@@ -39,19 +39,17 @@ struct loads {
 struct place read_place(struct text *t);
 
 /* "X,Y,Z,DIR" and the words force=FORCE phase=DEGREES, or "DIR" and acceleration=NUMBER phase=DEGREES, parted by colons or
- * blanks: adds the load. */
-void read_load(struct text *t, int supports, struct loads *all);
+ * blanks: add the load to a struct loads. */
+reader read_load, read_base;
 
 struct contacts {
     struct contact *contact;
     size_t count, room;
 };
 
-/* "X,Y,Z,DIR", where DIR may be two directions, and words to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER behind
- * it, parted by colons or blanks: adds the contact, or the two directions of a planar one. */
-void read_contact(struct text *t, struct contacts *all);
-
-/* Adds the contacts of a file, one a line. */
-void read_contacts(const char *path, struct contacts *all);
+/* "X,Y,Z,DIR", where DIR may be two directions, and words to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER behind it,
+ * parted by colons or blanks: adds the contact, or the two directions of a planar one, to a struct contacts. The other one adds
+ * the contacts of a file, one a line. */
+reader read_contact, read_contacts;
 
 #endif

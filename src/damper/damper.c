@@ -56,7 +56,7 @@ void complete_options(struct options *o, const struct structure *s)
  * amplitudes are measured. A load of the supports is -M r with r the direction, which is 1 along it. */
 static struct sparse make_rows(const struct options *o, const struct structure *s)
 {
-    const size_t contacts = o->contacts.count, loads = o->loads.count, rows = contacts + loads + o->outputs + 1;
+    const size_t contacts = o->contacts.count, loads = o->loads.count, rows = contacts + loads + o->outputs.count + 1;
     struct sparse j = {.rows = rows, .first = need_memory(rows + 1, sizeof *j.first)};
     const size_t most = 2 * rows + loads * s->ndof;
     size_t count = 0;
@@ -75,7 +75,7 @@ static struct sparse make_rows(const struct options *o, const struct structure *
         } else {
             const struct place *at = contact        ? &contact->at
                                      : load         ? &load->at
-                                     : r + 1 < rows ? &o->output[output]
+                                     : r + 1 < rows ? &o->outputs.place[output]
                                                     : measured_place(o);
             j.col[count] = find_degree(s, at);
             j.val[count++] = 1.0;
@@ -166,7 +166,7 @@ static void reduce(struct damper *d, const struct structure *s)
         for (size_t r = 0; r < rows.rows; r++) {
             shape[r * n + k] = row_product(&rows, r, full + k * d->ndof);
         }
-        d->open.measured[k] = d->output_shape[o->outputs * n + k];
+        d->open.measured[k] = d->output_shape[o->outputs.count * n + k];
     }
     for (size_t i = 0; i < loads * n; i++) {
         const struct load *load = &o->loads.load[i / n];
@@ -261,6 +261,8 @@ struct damper create_damper(const struct options *o, const struct structure *s, 
         die("option --modes %zu: the structure has %zu degrees of freedom", o->modes, s->ndof);
     }
     reduce(&d, s);
+    d.lowest = o->drive.from > 0.0 ? o->drive.from : d.open.omega[0] / TURN;
+    d.highest = o->drive.from > 0.0 ? o->drive.to : d.lowest;
     d.stuck = stick(&d.open, d.contact, d.contacts, d.contact_shape);
     /* rigid contacts must not hold all motions of the modes, unless they hold the structure itself */
     if (d.modes < d.ndof && d.stuck.count == 0) {
@@ -278,16 +280,6 @@ void free_damper(struct damper *d)
     free_linear(&d->open);
     free_linear(&d->stuck);
     free(d->contact_shape);
-}
-
-double lowest_drive(const struct damper *d)
-{
-    return d->options->drive.from > 0.0 ? d->options->drive.from : d->open.omega[0] / TURN;
-}
-
-double highest_drive(const struct damper *d)
-{
-    return d->options->drive.from > 0.0 ? d->options->drive.to : d->open.omega[0] / TURN;
 }
 
 void check_drive(const struct damper *d, double hz)

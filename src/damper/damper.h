@@ -21,6 +21,7 @@ struct damper {
     size_t dimension;              /* of a state */
     int marched;                   /* 1: motions are found by marching only, since contacts slide in a plane */
     struct linear open, stuck;     /* without friction, and with all contacts stuck */
+    double lowest, highest;        /* ends of the band of the load, Hz */
     double *contact_shape;         /* [contacts][modes] the modes at the contacts */
     const double *output_shape;    /* [outputs][modes] at the places of --output */
     int law;
@@ -32,10 +33,6 @@ void complete_options(struct options *o, const struct structure *s);
 /* kept: the lowest modes to keep. The options must stay. */
 struct damper create_damper(const struct options *o, const struct structure *s, size_t kept);
 void free_damper(struct damper *d);
-
-/* The ends of the band of the load, Hz. */
-double lowest_drive(const struct damper *d);
-double highest_drive(const struct damper *d);
 
 /* Ends the program if at this frequency of the load there is nothing to compute with. */
 void check_drive(const struct damper *d, double hz);

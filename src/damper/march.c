@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "march.h"
+#include "motion.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -69,7 +69,7 @@ static void sample_outputs(const struct run *r, const double *y, double t, size_
 {
     const struct damper *d = r->d;
     double *o = r->output;
-    for (size_t k = 0; k < d->options->outputs; k++) {
+    for (size_t k = 0; k < d->options->outputs.count; k++) {
         const double x = dot(d->output_shape + k * d->modes, y, d->modes);
         double *extreme = r->extreme + 2 * k;
         extreme[0] = step == 1 ? x : fmin(extreme[0], x);
@@ -82,24 +82,12 @@ static void sample_outputs(const struct run *r, const double *y, double t, size_
     }
 }
 
-/* Power lost to damping at velocities v. */
-static double damping_power(const struct linear *l, const double *v)
-{
-    double power = 0.0;
-    for (size_t k = 0; k < l->count; k++) {
-        const size_t first = l->coupled ? 0 : k, end = l->coupled ? l->count : k + 1;
-        for (size_t j = first; j < end; j++) {
-            power += v[k] * l->damping[k * l->count + j] * v[j];
-        }
-    }
-    return power;
-}
-
 /* Runs y through one period and measures it. The loads are the same in every period, so that time may begin at 0 again. */
 static struct motion run_cycle(const struct run *r, double *y)
 {
     const struct damper *d = r->d;
-    const double *v = y + d->modes, share = 1.0 / (double)r->steps;
+    const size_t n = d->modes;
+    const double *v = y + n, share = 1.0 / (double)r->steps;
     struct motion m = {.hz = 1.0 / r->period};
     double t = 0.0, least = HUGE_VAL, most = -HUGE_VAL;
     y[d->dimension - 1] = 0.0;
@@ -108,7 +96,10 @@ static struct motion run_cycle(const struct run *r, double *y)
         const double x = dot(d->open.measured, y, d->modes);
         least = fmin(least, x);
         most = fmax(most, x);
-        m.damped += share * damping_power(&d->open, v);
+        for (size_t k = 0; k < n; k++) {
+            const double *row = d->open.damping + k * n;
+            m.damped += share * v[k] * (d->open.coupled ? dot(row, v, n) : row[k] * v[k]);
+        }
         m.input += share * cos(r->omega * t) * dot(d->open.cosine, v, d->modes);
         m.input += share * sin(r->omega * t) * dot(d->open.sine, v, d->modes);
         sample_outputs(r, y, t, i);
@@ -228,8 +219,8 @@ struct motion march(struct worker *w, double limit, double hz, double *y)
     const struct damper *d = w->d;
     struct run r = {.d = d, .limit = limit, .period = 1.0 / hz, .omega = TURN * hz, .steps = (size_t)steps_of(d, hz)};
     r.free = scale_of(&d->open, r.omega);
-    r.output = need_memory(d->options->outputs * output_size(d), sizeof *r.output);
-    r.extreme = need_memory(2 * d->options->outputs, sizeof *r.extreme);
+    r.output = need_memory(d->options->outputs.count * output_size(d), sizeof *r.output);
+    r.extreme = need_memory(2 * d->options->outputs.count, sizeof *r.extreme);
     r.drv = create_marcher(w, limit, hz);
     struct motion m = settle_motion(&r, state);
     m.limit = limit;
@@ -242,7 +233,7 @@ struct motion march(struct worker *w, double limit, double hz, double *y)
     for (size_t c = 0; c < 2 * d->contacts; c++) {
         *record++ = (double)NAN;
     }
-    for (size_t k = 0; k < output_size(d) * d->options->outputs; k++) {
+    for (size_t k = 0; k < output_size(d) * d->options->outputs.count; k++) {
         const size_t h = k % output_size(d);
         const double *o = &r.output[k];
         *record++ = h == 0 ? o[0] : h % 2 ? hypot(o[0], o[1]) : atan2(o[-1], o[0]) * 360.0 / TURN;

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "model.h"
+#include "study.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "march.h"
 #include "output.h"
-#include "study.h"
 #include "team.h"
 
 enum { LEAST_MODES = 12, MOST_MODES = 200 /* kept by default */ };
@@ -46,10 +44,10 @@ void compare_models(const struct model *m, size_t threads, struct point *point, 
 static double stuck_change(const struct model *m)
 {
     const struct linear *kept = &m->damper.stuck, *more = &m->finer.stuck;
-    const double end[] = {TURN * lowest_drive(&m->damper), TURN * highest_drive(&m->damper)};
+    const double end[] = {TURN * m->damper.lowest, TURN * m->damper.highest};
     double change = 0.0;
     for (int k = 0; k < 2; k++) {
-        change = fmax(change, relative_difference(linear_amplitude(kept, end[k]), linear_amplitude(more, end[k])));
+        change = fmax(change, relative_difference(scale_of(kept, end[k]).amplitude, scale_of(more, end[k]).amplitude));
     }
     for (size_t k = 0; k < kept->count && k < more->count && (k == 0 || more->omega[k] <= end[1]); k++) {
         change = fmax(change, relative_difference(kept->omega[k], more->omega[k]));
@@ -82,9 +80,8 @@ static struct damper with_modes(const struct options *o, const struct structure 
 /* A bound of the part of the displacements at contacts and loads that is missing, up to harmonic HARMONICS. */
 static double missing(const struct damper *d)
 {
-    const double hz = highest_drive(d);
     double error;
-    need(tribo_system_get_truncation(d->reduced, HARMONICS * TURN * hz, &error), "truncation");
+    need(tribo_system_get_truncation(d->reduced, HARMONICS * TURN * d->highest, &error), "truncation");
     return d->kept < d->ndof ? error : 0.0;
 }
 
@@ -100,7 +97,7 @@ enum { PROBES = 3 };
 static double probe_error(const struct model *m)
 {
     const struct options *o = m->options;
-    const double low = lowest_drive(&m->damper), high = highest_drive(&m->damper);
+    const double low = m->damper.lowest, high = m->damper.highest;
     const size_t limits = o->limits.points < PROBES ? o->limits.points : PROBES, bands = o->drive.points > 1 ? PROBES : 1;
     struct point probe[PROBES * PROBES];
     for (size_t k = 0; k < limits * bands; k++) {
@@ -114,7 +111,7 @@ static double probe_error(const struct model *m)
 
 static void check_drives(const struct damper *d)
 {
-    const double end[] = {lowest_drive(d), highest_drive(d)};
+    const double end[] = {d->lowest, d->highest};
     for (int k = 0; k < 2; k++) {
         check_drive(d, end[k]);
         if (d->options->march || d->options->check) {
@@ -191,18 +188,6 @@ void report_model(const struct tables *t, const struct model *m)
     }
 }
 
-/* Prints the changes at points between the limits given, where they are larger than the model error. */
-static void report_between(const struct point *point, size_t count, double error)
-{
-    for (size_t k = 0; k < count; k++) {
-        const struct point *p = &point[k];
-        if (p->between && p->compared && fmax(p->amplitude, p->power) > error) {
-            printf("  more where contacts just begin to slip: at %.5g the amplitude changes by %.1e, the power by %.1e\n",
-                   p->limit, p->amplitude, p->power);
-        }
-    }
-}
-
 void report_error(const struct tables *t, const struct model *m, const struct point *point, size_t count)
 {
     const double error = model_error(m, point, count), stuck = m->whole ? 0.0 : stuck_change(m);
@@ -225,7 +210,13 @@ void report_error(const struct tables *t, const struct model *m, const struct po
                error <= MOST_ERROR ? ""
                : may_double(m)     ? ": again with these"
                                    : ": take more --modes");
-        report_between(point, count, error);
+    }
+    for (size_t k = 0; !m->whole && compared > 0 && k < count; k++) {
+        const struct point *p = &point[k];
+        if (p->between && p->compared && fmax(p->amplitude, p->power) > error) {
+            printf("  more where contacts just begin to slip: at %.5g the amplitude changes by %.1e, the power by %.1e\n",
+                   p->limit, p->amplitude, p->power);
+        }
     }
     if (!isnan(error)) {
         write_result(t, "model.error", error);

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "output.h"
-#include "march.h"
 #include "team.h"
 
 struct worker create_worker(const struct damper *d, int march)
@@ -24,7 +23,7 @@ struct worker create_worker(const struct damper *d, int march)
 
 size_t record_of(const struct damper *d)
 {
-    return d->dimension + 2 * d->contacts + output_size(d) * d->options->outputs;
+    return d->dimension + 2 * d->contacts + output_size(d) * d->options->outputs.count;
 }
 
 void free_worker(struct worker *w)
@@ -66,7 +65,7 @@ static int measure_outputs(struct worker *w, double *output)
 {
     const struct damper *d = w->d;
     int status = TRIBO_OK;
-    for (size_t k = 0; k < d->options->outputs && !status; k++) {
+    for (size_t k = 0; k < d->options->outputs.count && !status; k++) {
         double least = 0.0, most = 0.0, cosine = 0.0, sine = 0.0;
         memcpy(w->c, d->output_shape + k * d->modes, d->modes * sizeof *w->c);
         status = tribo_driver_period_extremes(w->drv, w->c, &least, &most, NULL, NULL);

@@ -51,4 +51,15 @@ struct task {
 };
 void run_tasks(size_t threads, struct task *task, size_t count);
 
+/* By time integration, the law being that of the context (march.c). */
+
+/* Ends the program if a period of this frequency would take too many steps. */
+void check_steps(const struct damper *d, double hz);
+
+/* Runs from y until the motion repeats itself. y [record] out: the record of the motion. */
+struct motion march(struct worker *w, double limit, double hz, double *y);
+
+/* The driver that does: set to this limit and frequency. */
+tribo_driver *create_marcher(struct worker *w, double limit, double hz);
+
 #endif

@@ -12,10 +12,7 @@ static const struct options standard = {
     .out = ".", .name = "damper", .drive = {0.0, 0.0, 1}, .force = 1.0, .statics = 1, .step = 0.25, .law = TRIBO_COULOMB};
 static const double DAMPING = 0.002;
 
-/* ------------------------------------------------------------------------------------------------------------- setters */
-
-/* Puts the value of an option into o. */
-typedef void setter(struct text *value, struct options *o);
+/* ------------------------------------------------------------------------------------------------------------- readers */
 
 /* 0 if the value is the first word, 1 if it is the second one. */
 static int choose(const struct text *value, const char *first, const char *second)
@@ -27,19 +24,34 @@ static int choose(const struct text *value, const char *first, const char *secon
     return choice;
 }
 
-static void set_statics(struct text *value, struct options *o)
+static void read_statics(struct text *value, void *statics)
 {
-    o->statics = choose(value, "off", "on");
+    *(int *)statics = choose(value, "off", "on");
 }
 
-static void set_method(struct text *value, struct options *o)
+static void read_method(struct text *value, void *march)
 {
-    o->march = choose(value, "exact", "march");
+    *(int *)march = choose(value, "exact", "march");
 }
 
-static void set_plot(struct text *value, struct options *o)
+static void read_plot(struct text *value, void *plot)
 {
-    o->plot = choose(value, "png", "svg") ? "svg" : "png";
+    *(const char **)plot = choose(value, "png", "svg") ? "svg" : "png";
+}
+
+static void read_path(struct text *value, void *path)
+{
+    *(const char **)path = value->at;
+}
+
+static void read_count(struct text *value, void *count)
+{
+    *(size_t *)count = next_whole(value, "number", "", 1, MOST_COUNT);
+}
+
+static void read_check(struct text *value, void *count)
+{
+    *(size_t *)count = next_whole(value, "number", "", 0, MOST_COUNT);
 }
 
 static void check_ratio(const struct text *t, double ratio)
@@ -49,128 +61,108 @@ static void check_ratio(const struct text *t, double ratio)
     }
 }
 
-static void set_damping(struct text *value, struct options *o)
+static void read_damping(struct text *value, void *to)
 {
-    o->damping.count = 0;
-    read_list(value, &o->damping);
-    for (size_t k = 0; k < o->damping.count; k++) {
-        check_ratio(value, o->damping.value[k]);
+    struct list *ratios = to;
+    read_list(value, ratios);
+    for (size_t k = 0; k < ratios->count; k++) {
+        check_ratio(value, ratios->value[k]);
     }
 }
 
-static void set_damping_ratios(struct text *value, struct options *o)
+static void read_damping_file(struct text *value, void *to)
 {
+    struct list *ratios = to;
     struct text t = open_text(value->at);
-    o->damping.count = 0;
+    ratios->count = 0;
     while (next_data(&t)) {
         const double ratio = next_real(&t, "damping ratio", "");
         check_ratio(&t, ratio);
-        add_number(&o->damping, ratio);
+        add_number(ratios, ratio);
     }
-    if (o->damping.count == 0) {
+    if (ratios->count == 0) {
         die_at(value, "there is no damping ratio in it");
     }
 }
 
-static void set_contact(struct text *value, struct options *o)
+static void read_output(struct text *value, void *to)
 {
-    read_contact(value, &o->contacts);
+    struct outputs *all = to;
+    all->place = need_room(all->place, all->count, &all->room, sizeof *all->place);
+    all->place[all->count++] = read_place(value);
 }
 
-static void set_contacts(struct text *value, struct options *o)
+static void read_field(struct text *value, void *to)
 {
-    read_contacts(value->at, &o->contacts);
-}
-
-static void set_load(struct text *value, struct options *o)
-{
-    read_load(value, 0, &o->loads);
-}
-
-static void set_base(struct text *value, struct options *o)
-{
-    read_load(value, 1, &o->loads);
-}
-
-static void set_output(struct text *value, struct options *o)
-{
-    o->output = need_room(o->output, o->outputs, &o->output_room, sizeof *o->output);
-    o->output[o->outputs++] = read_place(value);
-}
-
-static void set_field(struct text *value, struct options *o)
-{
-    o->field.count = 0;
-    read_list(value, &o->field);
-    for (size_t k = 0; k < o->field.count; k++) {
-        if (!(o->field.value[k] >= 0.0 && o->field.value[k] <= 360.0)) {
-            die_at(value, "%g: a phase must be from 0 to 360 degrees", o->field.value[k]);
+    struct list *phases = to;
+    read_list(value, phases);
+    for (size_t k = 0; k < phases->count; k++) {
+        if (!(phases->value[k] >= 0.0 && phases->value[k] <= 360.0)) {
+            die_at(value, "%g: a phase must be from 0 to 360 degrees", phases->value[k]);
         }
     }
 }
 
-static void set_limits(struct text *value, struct options *o)
+static void read_force(struct text *value, void *force)
 {
-    o->limits = read_range(value);
+    *(double *)force = next_positive(value, "force", "");
 }
 
-static void set_force(struct text *value, struct options *o)
+static void read_drive(struct text *value, void *drive)
 {
-    o->force = next_positive(value, "force", "");
-}
-
-static void set_drive(struct text *value, struct options *o)
-{
-    o->drive = strcmp(value->at, "0") == 0 ? standard.drive : read_range(value);
-}
-
-static void set_step(struct text *value, struct options *o)
-{
-    o->step = next_positive(value, "step", "");
-    if (o->step > 1.0) {
-        die_at(value, "at most 1, for the highest mode kept to be followed");
+    if (strcmp(value->at, "0") == 0) {
+        *(struct range *)drive = standard.drive;
+    } else {
+        read_range(value, drive);
     }
 }
 
-static void set_law(struct text *value, struct options *o)
+static void read_step(struct text *value, void *to)
 {
+    const double step = next_positive(value, "step", "");
+    if (step > 1.0) {
+        die_at(value, "at most 1, for the highest mode kept to be followed");
+    }
+    *(double *)to = step;
+}
+
+static void read_law(struct text *value, void *to)
+{
+    int *law = to;
     char names[200] = "";
-    if (tribo_law_find(value->at, &o->law)) {
+    if (tribo_law_find(value->at, law)) {
         for (int i = 0; i < tribo_law_count(); i++) {
             strcat(strcat(names, " "), tribo_law_name(i));
         }
         die_at(value, "no law has this name; there are%s", names);
     }
     /* nothing holds a velocity at 0 in rk4, whose four stages meet forces of either sign that may cancel */
-    if (o->law == TRIBO_KARNOPP) {
+    if (*law == TRIBO_KARNOPP) {
         die_at(value, "the contacts of this law rest at velocities that are exactly zero, which marching does not make: take "
                       "coulomb, quinn, quinn-reversal, velocity-limited or smooth");
     }
 }
 
-static void set_name(struct text *value, struct options *o)
+static void read_name(struct text *value, void *name)
 {
     if (strcspn(value->at, "/ \t") != strlen(value->at)) {
         die_at(value, "files cannot be named so");
     }
-    o->name = value->at;
+    *(const char **)name = value->at;
 }
 
-static setter read_option_file;
+static reader read_option_file;
 
 /* --------------------------------------------------------------------------------------------------------------- table */
 
-#define SET(function) function, 0, 0
-#define COUNT(member, least) NULL, least, offsetof(struct options, member)
-#define PATH(member) NULL, -1, offsetof(struct options, member)
-#define TEXT NULL, 0, 0
+#define OPTION(function, member) function, offsetof(struct options, member)
+#define TEXT NULL, 0
 
 /* Help, and options in it: name and argument are the first words of the help. Of FILE and FOLDER, a relative path in a file of
  * options is relative to the folder of that file. */
 static const struct option {
-    setter *set;
-    int least;     /* of a count; -1: a path */
-    size_t offset; /* of the member that keeps the count or the path; 0: none does */
+    reader *read;  /* of the value, into */
+    size_t offset; /* the member there */
     const char *help;
 } table[] = {
     {TEXT,
@@ -188,12 +180,12 @@ static const struct option {
      "Points are added where curves bend. A motion that is not found leaves a gap in the table, with a message.\n"},
     {TEXT, "\n"
            "The structure:\n"},
-    {PATH(mass), "  --mass FILE          Matrix Market, symmetric (lower triangle) or general\n"},
-    {PATH(stiffness), "  --stiffness FILE     the same\n"},
-    {PATH(dofs),
+    {OPTION(read_path, mass), "  --mass FILE          Matrix Market, symmetric (lower triangle) or general\n"},
+    {OPTION(read_path, stiffness), "  --stiffness FILE     the same\n"},
+    {OPTION(read_path, dofs),
      "  --dofs FILE          for each row of the matrices: row node direction x y z; direction 1, 2, 3 is x, y, z; x y z is the\n"
      "                       place of the node, lengths\n"},
-    {SET(set_contact),
+    {OPTION(read_contact, contacts),
      "  --contact CONTACT    X,Y,Z,DIR: a contact to ground at the node with these coordinates, sliding along DIR (x, y or z);\n"
      "                       or in a plane, xy, xz or yz (--method march). A contact in a plane has two columns in the tables,\n"
      "                       one for each direction. Words may follow, separated by colons or blanks:\n"
@@ -203,60 +195,63 @@ static const struct option {
      "                         mu=NUMBER load=FORCE   its limit is the product\n"
      "                         stiffness=NUMBER   a spring before the slider, force over length: the contact gives way while it\n"
      "                                            sticks; with --law coulomb only\n"},
-    {SET(set_contacts), "  --contacts FILE      contacts, one a line, in the same words\n"},
+    {OPTION(read_contacts, contacts), "  --contacts FILE      contacts, one a line, in the same words\n"},
     {TEXT, "\n"
            "The loads, at least one --load or --base; each may be given several times:\n"},
-    {SET(set_load), "  --load LOAD          X,Y,Z,DIR: a force F sin(omega t + phase) at this node along DIR. Words may follow:\n"
-                    "                         force=FORCE     F; without, that of --force\n"
-                    "                         phase=DEGREES   0\n"},
-    {SET(set_base),
+    {OPTION(read_load, loads),
+     "  --load LOAD          X,Y,Z,DIR: a force F sin(omega t + phase) at this node along DIR. Words may follow:\n"
+     "                         force=FORCE     F; without, that of --force\n"
+     "                         phase=DEGREES   0\n"},
+    {OPTION(read_base, loads),
      "  --base BASE          DIR:acceleration=NUMBER, phase=DEGREES may follow: all supports move along DIR with acceleration\n"
      "                       A sin(omega t + phase), and the ground of contacts moves with the supports. The loads are -M r A,\n"
      "                       r being 1 for direction DIR; all displacements are relative to the supports\n"},
     {TEXT, "Amplitudes are measured at the first --load; without --load at the first --output.\n"
            "\n"
            "Optional:\n"},
-    {SET(set_drive),
+    {OPTION(read_drive, drive),
      "  --drive HZ           frequency of the loads, or a band FROM:TO:N that begins with N frequencies; 0 (the default): the\n"
      "                       first natural frequency\n"},
-    {SET(set_limits),
+    {OPTION(read_range, limits),
      "  --limits FROM:TO:N   N limits of contacts (forces), geometric from FROM to TO; or one limit. Default: 0.001 to 10 times\n"
      "                       the sum of the forces (of --base: moving mass times acceleration), 33 limits, or 9 for a band\n"},
-    {SET(set_output), "  --output X,Y,Z,DIR   a further place: amplitude and phase there; may be given several times\n"},
-    {COUNT(harmonics, 1), "  --harmonics N        of each --output also the harmonics 1 to N\n"},
-    {SET(set_field),
+    {OPTION(read_output, outputs),
+     "  --output X,Y,Z,DIR   a further place: amplitude and phase there; may be given several times\n"},
+    {OPTION(read_count, harmonics), "  --harmonics N        of each --output also the harmonics 1 to N\n"},
+    {OPTION(read_field, field),
      "  --field DEG,DEG,...  displacements of the whole structure at these phases of the loads' period, 0 to 360, of each\n"
      "                       motion written (history, sticking, loop below): damper-loop.vtk, legacy format of VTK, for "
      "ParaView\n"},
-    {SET(set_force), "  --force AMPLITUDE    of loads without force=; 1\n"},
-    {COUNT(modes, 1),
+    {OPTION(read_force, force), "  --force AMPLITUDE    of loads without force=; 1\n"},
+    {OPTION(read_count, modes),
      "  --modes COUNT        the number of lowest modes. Default: 12 or more, up to 200, until the model error is below 1%\n"},
-    {SET(set_statics),
+    {OPTION(read_statics, statics),
      "  --statics on|off     static responses beside the modes; on. Without them contacts that stick are too stiff\n"},
-    {SET(set_damping),
+    {OPTION(read_damping, damping),
      "  --damping RATIOS     damping ratios of mode 1, 2, ..., separated by commas, above 0 and below 1; the last one holds for\n"
      "                       all further modes and static responses; 0.002\n"},
-    {SET(set_damping_ratios), "  --damping-ratios FILE   the same from a file, one a line\n"},
-    {PATH(damping_matrix), "  --damping-matrix FILE   viscous damping of the structure as a matrix, in the place of ratios\n"},
-    {PATH(frequencies),
+    {OPTION(read_damping_file, damping), "  --damping-ratios FILE   the same from a file, one a line\n"},
+    {OPTION(read_path, damping_matrix),
+     "  --damping-matrix FILE   viscous damping of the structure as a matrix, in the place of ratios\n"},
+    {OPTION(read_path, frequencies),
      "  --frequencies FILE   natural frequencies in Hz from elsewhere, shown beside the natural frequencies found; \"none\"\n"},
-    {SET(set_method),
+    {OPTION(read_method, march),
      "  --method NAME        exact; or march: time steps until the motion repeats itself, slow, also for contacts in a plane\n"},
-    {COUNT(check, 0),
+    {OPTION(read_check, check),
      "  --check N            computes N points also by marching, and shows the differences: another method, the same modes; 0\n"},
-    {SET(set_law),
+    {OPTION(read_law, law),
      "  --law NAME           friction law for marching: coulomb (the default), by the implicit midpoint rule; or by rk4 quinn,\n"
      "                       quinn-reversal, velocity-limited, smooth; the last two never stick\n"},
-    {SET(set_step),
+    {OPTION(read_step, step),
      "  --step NUMBER        time step for marching, at most 1: with 0.25 (the default) a period has 4000 steps; with rk4 the\n"
      "                       step is NUMBER by the highest natural frequency kept, and a period has at least 400 steps\n"},
-    {COUNT(threads, 1), "  --threads COUNT      default: one a core. Results do not depend on it\n"},
-    {PATH(out), "  --out FOLDER         folder of the tables, which must exist; \".\"\n"},
-    {SET(set_name), "  --name WORD          first part of the names of tables; \"damper\"\n"},
-    {SET(set_plot),
+    {OPTION(read_count, threads), "  --threads COUNT      default: one a core. Results do not depend on it\n"},
+    {OPTION(read_path, out), "  --out FOLDER         folder of the tables, which must exist; \".\"\n"},
+    {OPTION(read_name, name), "  --name WORD          first part of the names of tables; \"damper\"\n"},
+    {OPTION(read_plot, plot),
      "  --plot png|svg       draws the tables by gnuplot: damper-family or damper-curve, and the loops of contacts; the script\n"
      "                       damper-plot.gp stays beside them\n"},
-    {SET(read_option_file),
+    {read_option_file, 0,
      "  --read FILE          options from a file, one a line, without hyphens; names of files are relative to its folder; lines\n"
      "                       that begin with # are comments\n"},
     {TEXT,
@@ -303,7 +298,7 @@ static const struct option *find_option(const char *name)
 {
     for (size_t k = 0; k < sizeof table / sizeof *table; k++) {
         const struct option *t = &table[k];
-        const size_t length = t->set || t->least || t->offset ? strcspn(t->help + 4, " ") : 0;
+        const size_t length = t->read ? strcspn(t->help + 4, " ") : 0;
         if (length == strlen(name) && strncmp(t->help + 4, name, length) == 0) {
             return t;
         }
@@ -311,20 +306,8 @@ static const struct option *find_option(const char *name)
     return NULL;
 }
 
-static void apply(const struct option *option, struct text value, struct options *o)
-{
-    void *member = (char *)o + option->offset;
-    if (option->set) {
-        option->set(&value, o);
-    } else if (option->least < 0) {
-        *(const char **)member = value.at;
-    } else {
-        *(size_t *)member = next_whole(&value, "number", "", (size_t)option->least, MOST_COUNT);
-    }
-}
-
 /* An option a line: its name without hyphens, a blank or an equals sign, and its value up to the end of the line. */
-static void read_option_file(struct text *path, struct options *o)
+static void read_option_file(struct text *path, void *options)
 {
     struct text t = open_text(path->at);
     const char *slash = strrchr(path->at, '/');
@@ -332,7 +315,7 @@ static void read_option_file(struct text *path, struct options *o)
         const char *name = next_word(&t, "an option", "= ");
         const struct option *option = find_option(name);
         char *value = new_text("%s", rest_of(&t));
-        if (!option || option->set == read_option_file) {
+        if (!option || option->read == read_option_file) {
             die_at(&t, "there is no option \"%s\"; see --help", name);
         }
         if (*value == '\0') {
@@ -344,7 +327,7 @@ static void read_option_file(struct text *path, struct options *o)
             (strncmp(argument, "FILE ", 5) == 0 || strncmp(argument, "FOLDER ", 7) == 0)) {
             text.at = new_text("%.*s/%s", (int)(slash - path->at), path->at, value);
         }
-        apply(option, text, o);
+        option->read(&text, (char *)options + option->offset);
     }
 }
 
@@ -374,7 +357,7 @@ const struct place *measured_place(const struct options *o)
             return &o->loads.load[k].at;
         }
     }
-    return o->outputs ? &o->output[0] : NULL;
+    return o->outputs.count ? &o->outputs.place[0] : NULL;
 }
 
 /* Ends the program where options are missing, need others, or exclude them. */
@@ -403,7 +386,7 @@ static void check_options(const struct options *o)
     if (o->damping_matrix && o->damping.count) {
         die("option --damping-matrix %s: either a matrix or damping ratios, not both", o->damping_matrix);
     }
-    if (o->harmonics && !o->outputs) {
+    if (o->harmonics && !o->outputs.count) {
         die("option --harmonics %zu: --output is missing, a place where they are wanted", o->harmonics);
     }
     if (o->field.count && o->drive.points > 1) {
@@ -439,7 +422,8 @@ struct options read_options(int argc, char **argv)
         if (!value || !*value) {
             die("option %s needs a value; see --help", name);
         }
-        apply(option, text_of(new_text("option %s %s", name, value), value), &o);
+        struct text text = text_of(new_text("option %s %s", name, value), value);
+        option->read(&text, (char *)&o + option->offset);
     }
     check_options(&o);
     if (!o.damping.count && !o.damping_matrix) {

@@ -17,8 +17,10 @@ struct options {
     struct list damping;        /* ratios of mode 1, 2, ...; the last one is that of all others */
     struct contacts contacts;
     struct loads loads;
-    struct place *output; /* [outputs] */
-    size_t outputs, output_room;
+    struct outputs {
+        struct place *place; /* [count] */
+        size_t count, room;
+    } outputs;
     size_t harmonics;    /* of each output */
     struct list field;   /* phases of displacement fields, degrees */
     double force;        /* of loads without one */

@@ -105,7 +105,7 @@ void run_study(struct study *s)
     double *fixed = need_memory(count, sizeof *fixed);
     struct curve *c = NULL;
     for (int again = 1; again;) {
-        const double hz = lowest_drive(s->damper);
+        const double hz = s->damper->lowest;
         write_frequencies(s->tables, s->damper, o->frequencies);
         report_model(s->tables, s->model);
         check_extremes(s, hz);

@@ -41,8 +41,8 @@ void check_extremes(const struct study *s, double hz)
     end_progress();
     if (!interrupted()) {
         printf("load at %.7g Hz\n", hz);
-        compare(s, &task[0].motion, linear_amplitude(&d->open, omega), "free", "without friction");
-        compare(s, &task[1].motion, linear_amplitude(&d->stuck, omega), "stuck", "all contacts stuck");
+        compare(s, &task[0].motion, scale_of(&d->open, omega).amplitude, "free", "without friction");
+        compare(s, &task[1].motion, scale_of(&d->stuck, omega).amplitude, "stuck", "all contacts stuck");
     }
     fflush(stdout);
     free(each);

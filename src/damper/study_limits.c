@@ -62,22 +62,6 @@ static struct optimum balance_mode(const struct damper *d, double drive)
     return (struct optimum){pi * load / (8.0 * sum), 0.25 * drive * load * half, fabs(l->measured[k]) * half};
 }
 
-static void report_optimum(const struct study *s, const struct motion *best)
-{
-    const struct optimum simple = balance_mode(s->damper, TURN * best->hz);
-    printf("most power: %s %.8g dissipates %.8g, amplitude %.8g\n", s->tables->limit, best->limit, best->friction,
-           best->amplitude);
-    write_result(s->tables, strcmp(s->tables->limit, "limit") == 0 ? "best.limit" : "best.load", best->limit);
-    write_result(s->tables, "best.power", best->friction);
-    write_result(s->tables, "best.amplitude", best->amplitude);
-    if (isfinite(simple.limit)) {
-        printf("by harmonic balance of the driven mode: limit %.5g, power %.6g\n", simple.limit, simple.power);
-        write_result(s->tables, "best.limit.balance", simple.limit);
-        write_result(s->tables, "best.power.balance", simple.power);
-        write_result(s->tables, "best.amplitude.balance", simple.amplitude);
-    }
-}
-
 /* Three periods of the motion at a limit of the curve; returns that motion. */
 static struct motion show_motion(struct study *s, struct curve *c, double limit, const char *what)
 {
@@ -117,7 +101,18 @@ static void find_most_power(struct study *s, struct curve *c)
         show_motion(s, c, 3.0 * limit, "sticking");
         end_progress();
         if (best.found) {
-            report_optimum(s, &best);
+            const struct optimum simple = balance_mode(s->damper, TURN * best.hz);
+            printf("most power: %s %.8g dissipates %.8g, amplitude %.8g\n", s->tables->limit, best.limit, best.friction,
+                   best.amplitude);
+            write_result(s->tables, strcmp(s->tables->limit, "limit") == 0 ? "best.limit" : "best.load", best.limit);
+            write_result(s->tables, "best.power", best.friction);
+            write_result(s->tables, "best.amplitude", best.amplitude);
+            if (isfinite(simple.limit)) {
+                printf("by harmonic balance of the driven mode: limit %.5g, power %.6g\n", simple.limit, simple.power);
+                write_result(s->tables, "best.limit.balance", simple.limit);
+                write_result(s->tables, "best.power.balance", simple.power);
+                write_result(s->tables, "best.amplitude.balance", simple.amplitude);
+            }
         }
     }
 }

@@ -52,7 +52,7 @@ void write_motion_head(const struct tables *t, FILE *file, const struct damper *
     for (size_t c = 1; d && c <= d->contacts; c++) {
         fprintf(file, ",power%zu,stick%zu", c, c);
     }
-    for (size_t k = 1; d && k <= d->options->outputs; k++) {
+    for (size_t k = 1; d && k <= d->options->outputs.count; k++) {
         fprintf(file, ",amplitude%zu,phase%zu", k, k);
         for (size_t h = 1; h <= d->options->harmonics; h++) {
             fprintf(file, h > 1 ? ",harmonic%zu.%zu,phase%zu.%zu" : ",harmonic%zu.%zu", k, h, k, h);
@@ -83,7 +83,7 @@ void write_motion(FILE *file, const struct motion *m, const double *y, const str
         write_number(file, m, y[d->dimension + c]);
         write_number(file, m, y[d->dimension + d->contacts + c]);
     }
-    for (size_t k = 0; d && k < d->options->outputs; k++) {
+    for (size_t k = 0; d && k < d->options->outputs.count; k++) {
         const double *o = y + d->dimension + 2 * d->contacts + k * output_size(d);
         write_number(file, m, o[0]);
         write_number(file, m, o[2]);
@@ -127,14 +127,14 @@ void write_frequencies(const struct tables *t, const struct damper *d, const cha
     for (size_t k = 0; k < d->kept; k++) {
         const double here = d->open.omega[k] / TURN, off = k < known ? here / hz[k] - 1.0 : 0.0;
         char *seen = k < known ? new_text("%12.7g  %19.1e", hz[k], off) : new_text("%*s", known ? 33 : 0, "");
-        char *kept = k < known ? new_text("%.10g,%.3g", hz[k], off) : new_text(",");
         char *still = k < d->stuck.count ? new_text("%.10g", d->stuck.omega[k] / TURN) : new_text("%s", "");
         printf("  %4zu %12.7g %s %12.8s\n", k + 1, here, seen, still);
-        fprintf(table, "%zu,%.10g,%s,%s\n", k + 1, here, kept, still);
+        fprintf(table, "%zu,%.10g,", k + 1, here);
+        fprintf(table, k < known ? "%.10g,%.3g" : ",", hz[k], off);
+        fprintf(table, ",%s\n", still);
         worst = fmax(worst, fabs(off));
         write_value(t->values, here, "%s.frequency%zu", t->name, k + 1);
         free(seen);
-        free(kept);
         free(still);
     }
     if (known) {
@@ -169,8 +169,8 @@ void write_linear(const struct tables *t, const struct damper *d, const struct r
     qsort(omega, count, sizeof *omega, compare_numbers);
     fprintf(table, "frequency,without friction,stuck\n");
     for (size_t k = 0; k < count; k++) {
-        fprintf(table, "%.10g,%.10g,%.10g\n", omega[k] / TURN, linear_amplitude(&d->open, omega[k]),
-                linear_amplitude(&d->stuck, omega[k]));
+        fprintf(table, "%.10g,%.10g,%.10g\n", omega[k] / TURN, scale_of(&d->open, omega[k]).amplitude,
+                scale_of(&d->stuck, omega[k]).amplitude);
     }
     close_table(t, table, "linear", "csv");
     free(omega);
@@ -191,7 +191,7 @@ void write_history(const struct tables *t, struct worker *w, const struct motion
     tribo_driver *drv = driver_at(w, m->limit, m->hz);
     if (drv == w->drv) {
         /* contacts that stick have velocities of rounding size: a law with a band around v = 0 sees them stick */
-        const double size = fmax(m->amplitude, 1e-6 * linear_amplitude(&d->open, TURN * m->hz));
+        const double size = fmax(m->amplitude, 1e-6 * scale_of(&d->open, TURN * m->hz).amplitude);
         need(tribo_set_law(contacts, TRIBO_QUINN), tribo_message(contacts));
         need(tribo_set_epsilon_all(contacts, 1e-8 * TURN * m->hz * size), tribo_message(contacts));
     }

@@ -184,14 +184,15 @@ void add_number(struct list *list, double value)
     list->value[list->count++] = value;
 }
 
-void read_list(struct text *t, struct list *list)
+void read_list(struct text *t, void *list)
 {
+    ((struct list *)list)->count = 0;
     do {
         add_number(list, next_real(t, "number", ","));
     } while (t->end);
 }
 
-struct range read_range(struct text *t)
+void read_range(struct text *t, void *range)
 {
     struct range r = {.points = 1};
     r.from = r.to = next_positive(t, "number", ":");
@@ -202,5 +203,5 @@ struct range read_range(struct text *t)
     if (r.to < r.from || (r.to == r.from) != (r.points == 1)) {
         die_at(t, "a range must be positive and ascend");
     }
-    return r;
+    *(struct range *)range = r;
 }

@@ -53,19 +53,22 @@ char *make_printable(char *text);
 /* Ends the program: "place: ..." or "path:line: ..." */
 void die_at(const struct text *t, const char *format, ...) PRINTF_LIKE(2);
 
-/* "NUMBER,NUMBER,...": adds them to list. */
+/* Reads a value into the object at to. */
+typedef void reader(struct text *value, void *to);
+
+/* "NUMBER,NUMBER,...", into a struct list. */
 struct list {
     double *value;
     size_t count, room;
 };
+reader read_list;
 void add_number(struct list *list, double value);
-void read_list(struct text *t, struct list *list);
 
-/* FROM:TO:N, or FROM alone with N = 1. FROM > 0, and ascending. */
+/* FROM:TO:N, or FROM alone with N = 1, into a struct range. FROM > 0, and ascending. */
 struct range {
     double from, to;
     size_t points;
 };
-struct range read_range(struct text *t);
+reader read_range;
 
 #endif
