@@ -125,7 +125,7 @@ struct linear stick(const struct linear *open, const struct contact *contact, si
 /* ------------------------------------------------------------------------------------------------------------ response */
 
 /* x [count][2]: complex amplitudes of the modes; NaN where the dynamic stiffness is singular. */
-static void find_response(const struct linear *l, double omega, double *x)
+static void linear_response(const struct linear *l, double omega, double *x)
 {
     const size_t n = l->count;
     for (size_t k = 0; k < n; k++) {
@@ -160,7 +160,7 @@ struct scale scale_of(const struct linear *l, double omega)
 {
     struct scale s = {0.0, 0.0, 0.0};
     double *x = need_memory(2 * l->count, sizeof *x), re = 0.0, im = 0.0;
-    find_response(l, omega, x);
+    linear_response(l, omega, x);
     for (size_t k = 0; k < l->count; k++) {
         const double q = hypot(x[2 * k], x[2 * k + 1]);
         re += l->measured[k] * x[2 * k];
