@@ -38,7 +38,7 @@ double next_real(struct text *t, const char *what, const char *separators);
 double next_positive(struct text *t, const char *what, const char *separators);
 size_t next_whole(struct text *t, const char *what, const char *separators, size_t least, size_t most);
 
-/* Three coordinates, or at least so many, the others being 0; separators as above, and those behind the third one. */
+/* at [3] out: at least `least` coordinates; those that are not given are 0. separators behind the first two, last behind the third. */
 void next_coordinates(struct text *t, const char *separators, const char *last, int least, double *at);
 
 /* Nothing but blanks may follow. */
