@@ -64,23 +64,3 @@ void tribo_breakaway_stick(struct breakaway *b, size_t i, double ratio)
     b->stick[i] = product(ratio, b->kinetic[i]);
     b->stick_rate[i] = product(ratio, b->kinetic_rate[i]);
 }
-
-double tribo_breakaway_part(const struct breakaway *b, size_t i, int side, size_t k, size_t stride, const double *v,
-                            const double *part)
-{
-    double sum = 0.0;
-    for (size_t j = 1; j <= k; j++) {
-        sum += (double)j * v[j * stride] * part[(k - j) * stride];
-    }
-    return k ? -side * sum / ((double)k * b->velocity[i]) : part_at(b, i, v[0]);
-}
-
-double tribo_breakaway_series(const struct breakaway *b, size_t i, size_t k, size_t stride, size_t terms, const double *limit,
-                              const double *part)
-{
-    double sum = 0.0;
-    for (size_t j = 0; j <= k && j < terms; j++) {
-        sum += limit[j * stride] * part[(k - j) * stride];
-    }
-    return (k < terms ? limit[k * stride] : 0.0) + (b->ratio[i] - 1.0) * sum;
-}

@@ -292,15 +292,6 @@ static inline int tribo_breakaway_is_sudden(const struct breakaway *b, size_t i)
 /* Sets stick to ratio times the limit at high speed, and its rate. */
 void tribo_breakaway_stick(struct breakaway *b, size_t i, double ratio);
 
-/* Coefficient k of exp(-|v|/velocity) in powers of time, from those before in part and from v [k + 1] = side |v|; both stride
- * doubles apart. */
-double tribo_breakaway_part(const struct breakaway *b, size_t i, int side, size_t k, size_t stride, const double *v,
-                            const double *part);
-
-/* Coefficient k of N(|v|), from those of the limit at high speed, limit [terms], and from part [k + 1]. */
-double tribo_breakaway_series(const struct breakaway *b, size_t i, size_t k, size_t stride, size_t terms, const double *limit,
-                              const double *part);
-
 /* ---------------------------------------------------------------------------------------- planar_slip.c: planar contacts */
 
 void tribo_planar_slip_free(struct planar_slip *p); /* NULL is fine */

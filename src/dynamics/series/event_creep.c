@@ -1,15 +1,31 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+/* Steps of method "event" in which planar contacts creep: the direction of the force at a small velocity v relaxes to that of the
+ * motion within the time m|v|/limit, and a Taylor series converges over a few such times only.
+ *
+ * There the directions u = x/|x|, x = limit v, are polynomials of degree NODES - 1, by collocation at the nodes of Radau's
+ * formula, the last of which is the end of the step. For |v| -> 0 this damps errors at once (Hairer and Wanner, Solving Ordinary
+ * Differential Equations II, IV.5). With u given the motion is that of a linear structure under a load, and its series converges.
+ *
+ * The unknowns are the angles of u at the nodes; Newton's method solves that x has no part across u, which is regular for v = 0.
+ * The derivative follows from the response of x to a constant force. */
 #include "event_series.h"
-#include "common/real.h"
+#include "common/layout.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define NODES TRIBO_CREEP_NODES
 
 /* Most sliding planar contacts for steps by collocation: Newton's matrices are dense. */
 #define MOST_CONTACTS 128
+
+/* Steps by series before longer ones by collocation are tried; after trials that failed, steps of DEAR times their work;
+ * trials at once. */
+#define PATIENCE 16
+#define DEAR 8
+#define MOST_TRIALS 3
+
+/* First step tried, in parts of the longest one. */
+#define FIRST 0.25
 
 /* A step pays if it is longer than PAYS times the time in which friction would stop a contact, and for more than FEW_CONTACTS
  * contacts, whose matrices are most of the work, times the cube of their ratio. */
@@ -43,43 +59,52 @@
 #define GROWS 4.0
 #define SHRINKS 0.2
 
+/* A step ends where |x| has fallen to this part (method_event.c): a smaller x need not have the direction of u. */
+#define LEFT 1e-2
+
 /* Zeros of P_8 - P_7, Legendre's polynomials, on [0, 1]. */
 static const double node[NODES] = {0.022479386438712498, 0.11467905316090423, 0.26578982278458947, 0.45284637366944461,
                                    0.64737528288683036,  0.81975930826310764, 0.94373743946307788, 1.0};
 
+/* A step that was tried. */
+struct creep_step {
+    int good;     /* 1: velocities are right to e->error */
+    double next;  /* how long another one may be, after this one or in its place; 0: none can be good */
+    double stray; /* how far directions were off where it began; HUGE_VAL: unknown */
+};
+
 void tribo_creep_free(struct creep *c)
 {
     free(c->weight);
-    free(c->slides);
     memset(c, 0, sizeof *c);
 }
 
 /* --------------------------------------------------------------------------------------------------------- what it takes */
 
+/* Makes room for sliding contacts; finds basis and weight. Returns 0 if out of memory. */
 static int reserve(struct event *e, size_t slides)
 {
     struct creep *c = &e->creep;
-    const size_t contacts = e->events.stick_slip.plane->count, terms = e->most_order + 1, unknowns = slides * NODES;
-    if (c->weight && c->contacts >= contacts && c->room >= slides) {
-        return TRIBO_OK;
+    const size_t terms = e->most_order + 1, unknowns = slides * NODES;
+    struct layout l = {0};
+    if (c->room >= slides) {
+        return 1;
     }
     tribo_creep_free(c);
-    const size_t response = 4 * slides * contacts * terms;
-    c->weight = malloc((terms * NODES * NODES + response + unknowns * (unknowns + 1) + contacts * NODES) * sizeof *c->weight);
-    c->slides = malloc((contacts + unknowns) * sizeof *c->slides);
-    if (!c->weight || !c->slides) {
-        tribo_creep_free(c);
-        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s that creep", slides, plural(slides));
+    do {
+        c->weight = tribo_layout_array(&l, terms * NODES * NODES, sizeof *c->weight);
+        c->response = tribo_layout_array(&l, 4 * slides * slides * terms, sizeof *c->response);
+        c->matrix = tribo_layout_array(&l, unknowns * unknowns, sizeof *c->matrix);
+        c->rest = tribo_layout_array(&l, unknowns, sizeof *c->rest);
+        c->angle = tribo_layout_array(&l, unknowns, sizeof *c->angle);
+        c->u = tribo_layout_array(&l, 2 * unknowns, sizeof *c->u);
+        c->slides = tribo_layout_array(&l, slides, sizeof *c->slides);
+        c->pivot = tribo_layout_array(&l, unknowns, sizeof *c->pivot);
+    } while (!l.memory && tribo_layout_create(&l));
+    if (!l.memory) {
+        return 0;
     }
-    c->response = c->weight + terms * NODES * NODES;
-    c->matrix = c->response + response;
-    c->rest = c->matrix + unknowns * unknowns;
-    c->angle = c->rest + unknowns;
-    c->pivot = (int *)(c->slides + contacts);
-    c->contacts = contacts;
     c->room = slides;
-    c->terms = terms;
-    memset(c->basis, 0, sizeof c->basis);
     for (size_t i = 0; i < NODES; i++) {
         double *b = c->basis[i];
         b[0] = 1.0;
@@ -90,7 +115,7 @@ static int reserve(struct event *e, size_t slides)
         }
     }
     /* a force time^k acts as a constant one does, with m! k!/(m + k)! time^(m + k) for time^m */
-    for (size_t m = 0; m < c->terms; m++) {
+    for (size_t m = 0; m < terms; m++) {
         for (size_t j = 0; j < NODES; j++) {
             double *w = c->weight + (m * NODES + j) * NODES, part = pow(node[j], (double)m);
             memset(w, 0, NODES * sizeof *w);
@@ -102,53 +127,38 @@ static int reserve(struct event *e, size_t slides)
             }
         }
     }
-    return TRIBO_OK;
+    return 1;
 }
 
-static size_t count_sliding(const struct stick_slip *m)
+/* Returns the number of planar contacts that slide; *begins = 1 if one of them begins to. */
+static size_t count_sliding(const struct stick_slip *m, int *begins)
 {
     size_t count = 0;
+    *begins = 0;
     for (size_t k = 0; k < m->plane->count; k++) {
-        count += (size_t)tribo_slides_in_plane(m, &m->plane->contact[k]);
+        const struct planar_contact *p = &m->plane->contact[k];
+        count += (size_t)tribo_slides_in_plane(m, p);
+        *begins |= tribo_slides_in_plane(m, p) && p->begins != SLIDES_ON;
     }
     return count;
 }
 
-double tribo_creep_least(const struct event *e, const double *y)
+/* Least length of a step that pays: much longer than the time in which friction would stop a contact; HUGE_VAL if none can
+ * pay. */
+static double find_least(const struct event *e, const double *y)
 {
-    const struct stick_slip *m = &e->events.stick_slip;
-    const size_t count = count_sliding(m);
+    int begins;
+    const size_t count = count_sliding(&e->events.stick_slip, &begins);
     const double part = (double)count / FEW_CONTACTS;
-    int begins = 0;
-    for (size_t k = 0; k < m->plane->count; k++) {
-        begins |= tribo_slides_in_plane(m, &m->plane->contact[k]) && m->plane->contact[k].begins != SLIDES_ON;
-    }
     return count == 0 || count > MOST_CONTACTS || begins
                ? HUGE_VAL
-               : PAYS * greater(1.0, part * part * part) * tribo_planar_series_first_stop(m, e->sys, y);
+               : PAYS * greater(1.0, part * part * part) * tribo_planar_series_first_stop(e, y);
 }
 
 /* --------------------------------------------------------------------------------------------------------- directions */
 
-/* Fits the polynomial u of contact k through c->angle at the nodes. */
-static void fit(struct event *e, size_t k, double h)
-{
-    const struct creep *c = &e->creep;
-    struct planar_line *l = &e->planar.line[k];
-    double power = 1.0;
-    memset(l->un, 0, (e->order + 1) * sizeof *l->un);
-    memset(l->ut, 0, (e->order + 1) * sizeof *l->ut);
-    for (size_t p = 0; p < NODES; p++) {
-        for (size_t i = 0; i < NODES; i++) {
-            l->un[p] += power * c->basis[i][p] * cos(c->angle[k * NODES + i]);
-            l->ut[p] += power * c->basis[i][p] * sin(c->angle[k * NODES + i]);
-        }
-        power /= h;
-    }
-}
-
 /* Rate of turn of the direction of contact k at the end of the last step. */
-static double event_creep_turn_of(const struct event *e, size_t k)
+static double find_turn(const struct event *e, size_t k)
 {
     const struct planar_line *l = &e->planar.line[k];
     double un = 0.0, ut = 0.0, dn = 0.0, dt = 0.0;
@@ -161,7 +171,9 @@ static double event_creep_turn_of(const struct event *e, size_t k)
     return un * dt - ut * dn;
 }
 
-double tribo_creep_settled(const struct event *e, const double *y, double error)
+/* The longest step in which no contact creeps whose direction, at the end y of the last step, has not relaxed yet to what keeps
+ * velocities to e->error; HUGE_VAL if all have. */
+static double find_settled(const struct event *e, const double *y)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     double length = HUGE_VAL;
@@ -169,24 +181,51 @@ double tribo_creep_settled(const struct event *e, const double *y, double error)
         const struct planar_contact *p = &m->plane->contact[k];
         const double v =
             hypot(tribo_stick_slip_velocity(m, e->sys, p->at, y), tribo_stick_slip_velocity(m, e->sys, p->at + 1, y));
-        const double stop = tribo_planar_series_stop(m, e->sys, p, y);
-        const double turn = tribo_slides_in_plane(m, p) ? fabs(event_creep_turn_of(e, k)) : 0.0;
-        const int follows = turn <= TURNS * e->fastest || turn * stop <= lesser(MOST_STRAY, error / v);
+        const double stop = tribo_planar_series_stop(e, p, y);
+        const double turn = tribo_slides_in_plane(m, p) ? fabs(find_turn(e, k)) : 0.0;
+        const int follows = turn <= TURNS * e->fastest || turn * stop <= lesser(MOST_STRAY, e->error / v);
         length = follows ? length : lesser(length, stop);
     }
     return length;
 }
 
+/* Sets u at the nodes by angle; fits un and ut of the s-th sliding contact to that. */
+static void fit(struct event *e, size_t s, double h)
+{
+    struct creep *c = &e->creep;
+    struct planar_line *l = &e->planar.line[c->slides[s]];
+    double power = 1.0;
+    memset(l->un, 0, (e->order + 1) * sizeof *l->un);
+    memset(l->ut, 0, (e->order + 1) * sizeof *l->ut);
+    for (size_t p = 0; p < NODES; p++) {
+        for (size_t i = 0; i < NODES; i++) {
+            double *u = c->u + 2 * (s * NODES + i);
+            u[0] = cos(c->angle[s * NODES + i]);
+            u[1] = sin(c->angle[s * NODES + i]);
+            l->un[p] += power * c->basis[i][p] * u[0];
+            l->ut[p] += power * c->basis[i][p] * u[1];
+        }
+        power /= h;
+    }
+}
+
+/* x along n and along t at tau. */
+static void find_velocity(const struct event *e, size_t k, double tau, double *x)
+{
+    x[0] = tribo_series_value(e->planar.line[k].xn, e->order, tau);
+    x[1] = tribo_series_value(e->planar.line[k].xt, e->order, tau);
+}
+
 /* ------------------------------------------------------------------------------------------------------------ response */
 
-/* to [terms][2 contacts] += factor times the series of x. */
-static void add_series(const struct event *e, double factor, double *to)
+/* to [terms][2 slides] += factor times the series of x. */
+static void add_series(const struct event *e, size_t slides, double factor, double *to)
 {
-    const struct planar_slip *plane = e->events.stick_slip.plane;
-    for (size_t k = 0; k <= e->order; k++) {
-        for (size_t i = 0; i < 2 * plane->count; i++) {
-            const struct planar_contact *p = &plane->contact[i / 2];
-            to[k * 2 * plane->count + i] += factor * p->limit[i % 2] * e->watch[k * e->sys->ncontact + p->at + i % 2];
+    for (size_t s = 0; s < slides; s++) {
+        const struct planar_line *l = &e->planar.line[e->creep.slides[s]];
+        for (size_t k = 0; k <= e->order; k++) {
+            to[2 * (k * slides + s)] += factor * l->xn[k];
+            to[2 * (k * slides + s) + 1] += factor * l->xt[k];
         }
     }
 }
@@ -195,55 +234,28 @@ static void add_series(const struct event *e, double factor, double *to)
 static int find_response(struct event *e, size_t slides)
 {
     struct creep *c = &e->creep;
-    const size_t row = 2 * e->events.stick_slip.plane->count, bytes = (e->order + 1) * sizeof(double);
+    const size_t terms = e->order + 1, each = 2 * slides * terms;
     for (size_t s = 0; s < slides; s++) {
-        memset(e->planar.line[c->slides[s]].un, 0, bytes);
-        memset(e->planar.line[c->slides[s]].ut, 0, bytes);
+        memset(e->planar.line[c->slides[s]].un, 0, terms * sizeof(double));
+        memset(e->planar.line[c->slides[s]].ut, 0, terms * sizeof(double));
     }
+    memset(c->response, 0, 2 * slides * each * sizeof *c->response);
     int status = tribo_event_series(e);
-    memset(c->response, 0, 2 * slides * c->terms * row * sizeof *c->response);
     for (size_t s = 0; !status && s < 2 * slides; s++) {
-        add_series(e, -1.0, c->response + s * c->terms * row);
+        add_series(e, slides, -1.0, c->response + s * each);
     }
     for (size_t s = 0; !status && s < 2 * slides; s++) {
-        struct planar_line *l = &e->planar.line[c->slides[s / 2]];
-        l->un[0] = l->n[s % 2];
-        l->ut[0] = l->t[s % 2];
+        const struct planar_line *l = &e->planar.line[c->slides[s / 2]];
+        double *u = s % 2 ? l->ut : l->un;
+        u[0] = 1.0;
         status = tribo_event_series(e);
-        l->un[0] = l->ut[0] = 0.0;
-        add_series(e, 1.0, c->response + s * c->terms * row);
+        u[0] = 0.0;
+        add_series(e, slides, 1.0, c->response + s * each);
     }
     return status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- Newton */
-
-/* w = u turned by a right angle, along the axes, at node i of the s-th sliding contact. */
-static void across(const struct event *e, size_t s, size_t i, double *w)
-{
-    const size_t k = e->creep.slides[s];
-    const struct planar_line *l = &e->planar.line[k];
-    const double cosine = cos(e->creep.angle[k * NODES + i]), sine = sin(e->creep.angle[k * NODES + i]);
-    for (size_t d = 0; d < 2; d++) {
-        w[d] = cosine * l->t[d] - sine * l->n[d];
-    }
-}
-
-/* to [NODES][NODES] = response of x along `axis` of all contacts to a force along axis `from` of the sliding ones. */
-static void add_response(const struct event *e, size_t from, size_t axis, double h, double (*to)[NODES])
-{
-    const struct creep *c = &e->creep;
-    const size_t row = 2 * e->events.stick_slip.plane->count;
-    double power = 1.0;
-    memset(to, 0, NODES * sizeof *to);
-    for (size_t m = 0; m <= e->order; m++) {
-        const double r = power * c->response[(from * c->terms + m) * row + axis];
-        for (size_t j = 0; r != 0.0 && j < NODES * NODES; j++) {
-            to[j / NODES][j % NODES] += r * c->weight[m * NODES * NODES + j];
-        }
-        power *= h;
-    }
-}
 
 /* One step of Newton's method; returns its size, HUGE_VAL if there is none. */
 static double improve(struct event *e, size_t slides, double h)
@@ -251,65 +263,61 @@ static double improve(struct event *e, size_t slides, double h)
     struct creep *c = &e->creep;
     const size_t unknowns = slides * NODES;
     for (size_t s = 0; s < slides * slides; s++) {
-        /* block (a, b): derivative of the part of x_a across u_a by the angles of contact b */
-        const size_t a = s / slides;
-        const size_t b = s % slides;
-        double from[NODES][2], to[NODES][2], part[NODES][NODES];
-        for (size_t i = 0; i < NODES; i++) {
-            across(e, b, i, from[i]);
-            across(e, a, i, to[i]);
-            memset(e->creep.matrix + (a * NODES + i) * unknowns + b * NODES, 0, NODES * sizeof *e->creep.matrix);
-        }
-        for (size_t d = 0; d < 4; d++) {
-            add_response(e, 2 * b + d / 2, 2 * e->creep.slides[a] + d % 2, h, part);
-            for (size_t j = 0; j < NODES; j++) {
-                double *row = e->creep.matrix + (a * NODES + j) * unknowns + b * NODES;
-                for (size_t i = 0; i < NODES; i++) {
-                    row[i] += to[j][d % 2] * part[j][i] * from[i][d / 2];
+        /* block (a, b): derivative of the part of x_a across u_a by the angles of contact b; part: of x_a along n and t to a force
+         * along n, then along t, of contact b */
+        const size_t a = s / slides, b = s % slides;
+        double part[4][NODES * NODES] = {{0.0}}, power = 1.0;
+        for (size_t m = 0; m <= e->order; m++) {
+            const double *weight = c->weight + m * NODES * NODES;
+            for (size_t d = 0; d < 4; d++) {
+                const double r = power * c->response[2 * (((2 * b + d / 2) * (e->order + 1) + m) * slides + a) + d % 2];
+                for (size_t j = 0; r != 0.0 && j < NODES * NODES; j++) {
+                    part[d][j] += r * weight[j];
                 }
             }
+            power *= h;
+        }
+        for (size_t j = 0; j < NODES * NODES; j++) {
+            const size_t row = a * NODES + j / NODES, column = b * NODES + j % NODES;
+            const double *to = c->u + 2 * row, *from = c->u + 2 * column;
+            c->matrix[row * unknowns + column] =
+                from[1] * (to[1] * part[0][j] - to[0] * part[1][j]) - from[0] * (to[1] * part[2][j] - to[0] * part[3][j]);
         }
     }
     /* rest = x across u; less x along u on the diagonal */
     for (size_t at = 0; at < unknowns; at++) {
-        const size_t k = c->slides[at / NODES], j = at % NODES;
-        const struct planar_line *l = &e->planar.line[k];
-        const double cosine = cos(c->angle[k * NODES + j]), sine = sin(c->angle[k * NODES + j]);
-        const double xn = tribo_planar_series_value(l->xn, e->order, node[j] * h);
-        const double xt = tribo_planar_series_value(l->xt, e->order, node[j] * h);
-        c->rest[at] = xt * cosine - xn * sine;
-        c->matrix[at * unknowns + at] -= xn * cosine + xt * sine;
+        const double *u = c->u + 2 * at;
+        double x[2];
+        find_velocity(e, c->slides[at / NODES], node[at % NODES] * h, x);
+        c->rest[at] = x[1] * u[0] - x[0] * u[1];
+        c->matrix[at * unknowns + at] -= x[0] * u[0] + x[1] * u[1];
     }
     if (!(tribo_lu_create(c->matrix, unknowns, c->pivot) > 0.0)) {
         return HUGE_VAL;
     }
     tribo_lu_solve(c->matrix, unknowns, c->pivot, c->rest, 1);
-    for (size_t s = 0; s < unknowns; s++) {
-        c->angle[c->slides[s / NODES] * NODES + s % NODES] -= c->rest[s];
-    }
+    tribo_add(c->angle, -1.0, c->rest, unknowns);
     return tribo_largest(c->rest, unknowns);
 }
 
 /* Error of directions allowed over a step, by the error of velocities that forces make of it. */
-static double allowed(const struct event *e, size_t k, double h, double error)
+static double allowed(const struct event *e, size_t k, double h)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const struct planar_contact *p = &m->plane->contact[k];
     const double r = greater(p->limit[0] * m->constant.diagonal[p->at], p->limit[1] * m->constant.diagonal[p->at + 1]);
-    return lesser(MOST_OFF, error * (double)(NODES + 1) / (r * h));
+    return lesser(MOST_OFF, e->error * (double)(NODES + 1) / (r * h));
 }
-
-/* A step ends where |x| has fallen to this part (method_event.c): a smaller x need not have the direction of u. */
-#define LEFT 1e-2
 
 /* x along u and across u at tau. */
 static void take_parts(const struct event *e, size_t k, double tau, double *along, double *across)
 {
     const struct planar_line *l = &e->planar.line[k];
-    const double xn = tribo_planar_series_value(l->xn, e->order, tau), xt = tribo_planar_series_value(l->xt, e->order, tau);
-    const double un = tribo_planar_series_value(l->un, NODES - 1, tau), ut = tribo_planar_series_value(l->ut, NODES - 1, tau);
-    *along = un * xn + ut * xt;
-    *across = un * xt - ut * xn;
+    const double un = tribo_series_value(l->un, NODES - 1, tau), ut = tribo_series_value(l->ut, NODES - 1, tau);
+    double x[2];
+    find_velocity(e, k, tau, x);
+    *along = un * x[0] + ut * x[1];
+    *across = un * x[1] - ut * x[0];
 }
 
 /* The time in which friction would stop contact k, |x| being size. */
@@ -324,14 +332,14 @@ static double stop_of(const struct event *e, size_t k, double size)
 
 /* Stray: velocity across u at tau in a step of length h, in units of its error allowed. Friction takes it away at once, or the
  * part of it that it can take in such a step. */
-static double find_stray(const struct event *e, size_t k, double h, double tau, double error)
+static double find_stray(const struct event *e, size_t k, double h, double tau)
 {
     const struct planar_contact *p = &e->events.stick_slip.plane->contact[k];
     double along, across;
     take_parts(e, k, tau, &along, &across);
     const double size = greater(hypot(along, across), LEFT * e->planar.line[k].xn[0]);
     const double gone = fabs(across) / size * lesser(1.0, h / stop_of(e, k, size));
-    return gone / lesser(MOST_STRAY, error * lesser(p->limit[0], p->limit[1]) / size);
+    return gone / lesser(MOST_STRAY, e->error * lesser(p->limit[0], p->limit[1]) / size);
 }
 
 /* 1 if the contact slides along u, or stops before it does not. */
@@ -356,42 +364,17 @@ static int is_with(const struct event *e, size_t k, double h)
     return along > 0.0 || fabs(across) < 0.5 * LEFT * e->planar.line[k].xn[0];
 }
 
-/* h, halved until the speed over the step is at most FASTER times that at its start. */
-static double find_slow_part(const struct event *e, size_t k, double h)
-{
-    const struct planar_line *l = &e->planar.line[k];
-    double part = h;
-    for (size_t i = 0; i < NODES; i++) {
-        while (hypot(tribo_planar_series_value(l->xn, e->order, node[i] * part),
-                     tribo_planar_series_value(l->xt, e->order, node[i] * part)) > FASTER * l->xn[0]) {
-            part *= 0.5;
-        }
-    }
-    return part;
-}
-
-/* Error of a step, between nodes, in units of that allowed; HUGE_VAL if the contact does not slide along u. That of directions is
- * the last power between nodes. */
-static double find_defect(const struct event *e, size_t k, double h, double error)
-{
-    const struct planar_line *l = &e->planar.line[k];
-    double most = 2.0 * pow(0.25 * h, NODES - 1) * hypot(l->un[NODES - 1], l->ut[NODES - 1]) / allowed(e, k, h, error);
-    for (size_t i = 0; i < NODES; i++) {
-        most = greater(most, find_stray(e, k, h, 0.5 * h * (node[i] + (i ? node[i - 1] : 0.0)), error));
-    }
-    return is_with(e, k, h) ? most : HUGE_VAL;
-}
-
-static int find_angles(struct event *e, size_t slides, double h, double error, int *found)
+/* Finds the series whose directions are right at the nodes of a step of length h from (t, y). *found = 1 if there is one. */
+static int find_angles(struct event *e, size_t slides, double h, int *found)
 {
     struct creep *c = &e->creep;
     double most = MOST_OFF, before = TOO_FAR;
     for (size_t s = 0; s < slides; s++) {
-        most = lesser(most, allowed(e, c->slides[s], h, error));
+        most = lesser(most, allowed(e, c->slides[s], h));
     }
     for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
         for (size_t s = 0; s < slides; s++) {
-            fit(e, c->slides[s], h);
+            fit(e, s, h);
         }
         const int status = tribo_event_series(e);
         if (status) {
@@ -400,7 +383,7 @@ static int find_angles(struct event *e, size_t slides, double h, double error, i
         const double step = improve(e, slides, h);
         double stray = 0.0;
         for (size_t j = 0; j < slides * NODES; j++) {
-            stray = greater(stray, find_stray(e, c->slides[j / NODES], h, node[j % NODES] * h, error));
+            stray = greater(stray, find_stray(e, c->slides[j / NODES], h, node[j % NODES] * h));
         }
         *found = step <= ENOUGH * most && stray <= STRAY_ENOUGH;
         if (*found || !(step < before)) {
@@ -411,51 +394,100 @@ static int find_angles(struct event *e, size_t slides, double h, double error, i
     return TRIBO_OK;
 }
 
-int tribo_creep_expand(struct event *e, double t, const double *y, double h, double error, struct creep_step *step)
+/* Judges the step of length h whose series is found. */
+static void judge(const struct event *e, size_t slides, double h, struct creep_step *step)
 {
-    struct creep *c = &e->creep;
-    const size_t slides = count_sliding(&e->events.stick_slip);
-    int status = reserve(e, slides), found = 0;
-    if (status) {
-        return status;
-    }
-    /* slides: the planar contacts that slide */
-    const struct stick_slip *m = &e->events.stick_slip;
-    for (size_t k = 0, count = 0; k < m->plane->count; k++) {
-        if (tribo_slides_in_plane(m, &m->plane->contact[k])) {
-            e->creep.slides[count++] = k;
+    double defect = 0.0, slow = h, stray = 0.0;
+    for (size_t s = 0; s < slides; s++) {
+        const size_t k = e->creep.slides[s];
+        const struct planar_line *l = &e->planar.line[k];
+        const double begins = find_stray(e, k, h, 0.0);
+        /* A contact that creeps may start in another direction than its equation asks for, at any length of the step: stray is no
+         * reason for shorter steps then. */
+        stray = h > PAYS * stop_of(e, k, l->xn[0]) ? greater(stray, begins) : stray;
+        /* the error between nodes, in units of that allowed; that of directions is the last power between nodes */
+        const double last = 2.0 * pow(0.25 * h, NODES - 1) * hypot(l->un[NODES - 1], l->ut[NODES - 1]) / allowed(e, k, h);
+        defect = greater(defect, is_with(e, k, h) ? greater(begins, last) : HUGE_VAL);
+        for (size_t i = 0; i < NODES; i++) {
+            double x[2];
+            defect = greater(defect, find_stray(e, k, h, 0.5 * h * (node[i] + (i ? node[i - 1] : 0.0))));
+            for (find_velocity(e, k, node[i] * slow, x); hypot(x[0], x[1]) > FASTER * l->xn[0];) {
+                slow *= 0.5;
+                find_velocity(e, k, node[i] * slow, x);
+            }
         }
     }
-    for (size_t s = 0; s < slides; s++) {
-        /* guess: directions go on turning at their rate */
-        const size_t k = c->slides[s];
-        const double turn = event_creep_turn_of(e, k);
-        for (size_t i = 0; i < NODES; i++) {
-            e->creep.angle[k * NODES + i] = fabs(turn * h) < 1.0 ? turn * h * node[i] : 0.0;
+    const int stays = stray > 1.0 && stray > LESS_STRAY * step->stray;
+    step->good = defect <= 1.0 && slow == h;
+    step->next = stays ? 0.0 : slow < h ? slow : h * lesser(greater(0.8 * pow(defect, -1.0 / NODES), SHRINKS), GROWS);
+    step->stray = stray;
+}
+
+/* Finds the series of the motion from (t, y) on for a step of length h, and judges it. Returns a status. */
+static int creep_expand(struct event *e, double t, const double *y, double h, struct creep_step *step)
+{
+    struct creep *c = &e->creep;
+    const struct stick_slip *m = &e->events.stick_slip;
+    int begins, found = 0;
+    const size_t slides = count_sliding(m, &begins);
+    if (!reserve(e, slides)) {
+        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s that creep", slides, plural(slides));
+    }
+    for (size_t k = 0, s = 0; s < slides; k++) {
+        if (tribo_slides_in_plane(m, &m->plane->contact[k])) {
+            /* guess: directions go on turning at their rate */
+            const double turn = find_turn(e, k) * h;
+            for (size_t i = 0; i < NODES; i++) {
+                c->angle[s * NODES + i] = fabs(turn) < 1.0 ? turn * node[i] : 0.0;
+            }
+            c->slides[s++] = k;
         }
     }
     e->planar.given = 1;
-    status = tribo_event_start(e, t, y);
+    int status = tribo_event_start(e, t, y);
     status = status ? status : find_response(e, slides);
-    status = status ? status : find_angles(e, slides, h, error, &found);
+    status = status ? status : find_angles(e, slides, h, &found);
     e->planar.given = 0;
     step->good = 0;
     step->next = SHRINKS * h;
     if (!status && found) {
-        /* A contact that creeps may start in another direction than its equation asks for, at any length of the step: stray is no
-         * reason for shorter steps then. */
-        double defect = 0.0, slow = h, stray = 0.0;
-        for (size_t s = 0; s < slides; s++) {
-            const size_t k = c->slides[s];
-            const double begins = find_stray(e, k, h, 0.0, error);
-            stray = h > PAYS * stop_of(e, k, e->planar.line[k].xn[0]) ? greater(stray, begins) : stray;
-            defect = greater(defect, greater(begins, find_defect(e, k, h, error)));
-            slow = lesser(slow, find_slow_part(e, k, h));
-        }
-        const int stays = stray > 1.0 && stray > LESS_STRAY * step->stray;
-        step->good = defect <= 1.0 && slow == h;
-        step->next = stays ? 0.0 : slow < h ? slow : h * lesser(greater(0.8 * pow(defect, -1.0 / NODES), SHRINKS), GROWS);
-        step->stray = stray;
+        judge(e, slides, h, step);
     }
     return status;
+}
+
+int tribo_creep_begin(struct event *e, double t, const double *y, double most, double *length)
+{
+    struct creep *c = &e->creep;
+    const double least = find_least(e, y), last = c->length;
+    const size_t before = e->sys->evaluations;
+    /* at once where such steps just became shorter than least */
+    c->wait = e->events.anew ? PATIENCE : last > 0.0 && !(last > least) ? 0 : c->wait;
+    if (e->events.anew || !(least < most)) {
+        c->length = 0.0;
+        c->waited = 0;
+    }
+    e->events.anew = 0;
+    *length = 0.0;
+    if (!(least < most) || (!(c->length > least) && c->waited++ < c->wait)) {
+        return TRIBO_OK;
+    }
+    const double first = c->length > least ? c->length : lesser(FIRST * most, find_settled(e, y));
+    struct creep_step step = {0, lesser(most, first), HUGE_VAL};
+    for (int trial = 0; *length == 0.0 && step.next > least && trial < MOST_TRIALS; trial++) {
+        const double h = step.next;
+        const int status = creep_expand(e, t, y, h, &step);
+        if (status) {
+            return status;
+        }
+        tribo_planar_series_errors(e);
+        const double right = tribo_event_length(e);
+        *length = step.good && right >= h ? h : 0.0;
+        step.next = step.good && right < h ? 0.9 * right : step.next;
+    }
+    c->length = *length > 0.0 ? step.next : 0.0;
+    c->length = *length == most ? greater(c->length, last) : c->length;
+    c->wait = *length > 0.0 ? PATIENCE : DEAR * (e->sys->evaluations - before) / (e->most_order + 1);
+    c->waited = 0;
+    return TRIBO_OK;
 }

@@ -6,35 +6,38 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Sets the k-th coefficients of limits of sliding contacts that fall with the speed. */
+/* Sets the k-th coefficients of limits N that fall with the speed: N = limit + (ratio - 1) limit part, part = exp(-|v|/velocity),
+ * part' = -|v|' part/velocity. */
 static void expand_falling(struct event *e, size_t k)
 {
     const struct stick_slip *m = &e->events.stick_slip;
+    const struct breakaway *b = &m->breakaway;
     const size_t c = e->sys->ncontact;
     for (size_t i = 0; i < c; i++) {
-        double *part = e->part + i;
+        const double *v = e->watch + i, *limit = e->limit + i;
+        double *part = e->part + i, sum = 0.0;
         if (tribo_slides(m->state.slip[i])) {
-            part[k * c] = tribo_breakaway_part(&m->breakaway, i, m->state.slip[i], k, c, e->watch + i, part);
-            e->fall[k * c + i] = tribo_breakaway_series(&m->breakaway, i, k, c, e->terms, e->limit + i, part);
+            for (size_t j = 1; j <= k; j++) {
+                sum += (double)j * v[j * c] * part[(k - j) * c];
+            }
+            part[k * c] = k ? -m->state.slip[i] * sum / ((double)k * b->velocity[i]) : exp(-quotient(fabs(v[0]), b->velocity[i]));
+            sum = tribo_series_product(limit, part, c, k, 0, k < e->terms ? k + 1 : e->terms);
+            e->fall[k * c + i] = (k < e->terms ? limit[k * c] : 0.0) + (b->ratio[i] - 1.0) * sum;
         }
     }
 }
 
-/* Sets the k-th coefficients of given forces; 0 if all of them are 0. */
-static int find_given(struct event *e, size_t k)
+/* Sets the k-th coefficients of given forces, if a row of slide is not zero. Rigid contacts: one that slides, or is just at its
+ * limit, follows the limit; others keep their force. */
+static void find_given(struct event *e, size_t k)
 {
-    const int some = k < e->slide_terms;
-    if (some) {
-        /* rigid contacts: one that slides, or is just at its limit, follows the limit; others keep their force */
-        const struct stick_slip *m = &e->events.stick_slip;
-        for (size_t i = 0; i < e->sys->ncontact; i++) {
-            const int keeps = k == 0 && m->state.slip[i] == TRIBO_SLIP_STUCK && !m->state.holds[i];
-            const double *limit = (m->state.slip[i] ? e->slide : e->limit) + k * e->sys->ncontact,
-                         side = tribo_stick_slip_follows(m, i);
-            e->room.given[i] = keeps ? m->state.force[i] : side != 0.0 ? side * limit[i] : 0.0;
-        }
+    const struct stick_slip *m = &e->events.stick_slip;
+    const size_t c = e->sys->ncontact;
+    for (size_t i = 0; i < c; i++) {
+        const int keeps = k == 0 && m->state.slip[i] == TRIBO_SLIP_STUCK && !m->state.holds[i];
+        const double *limit = (m->state.slip[i] ? e->slide : e->limit) + k * c, side = tribo_stick_slip_follows(m, i);
+        e->room.given[i] = keeps ? m->state.force[i] : side != 0.0 ? side * limit[i] : 0.0;
     }
-    return some;
 }
 
 /* Sets v = the k-th coefficients of the contacts' velocities, scale = 1/k!. */
@@ -56,17 +59,12 @@ static void find_velocities(const struct event *e, size_t k, double scale, doubl
     }
 }
 
-/* Sets watch of contacts at rest to their forces. */
-static void watch_forces(const struct event *e, size_t k, int given, double *watch)
+void tribo_event_relative(const struct event *e, double *a)
 {
-    const struct stick_slip *m = &e->events.stick_slip;
     for (size_t i = 0; i < e->sys->ncontact; i++) {
-        if (m->state.slip[i] == TRIBO_SLIP_STUCK && !tribo_stick_slip_may_part(m, i)) {
-            const double spring = e->spring[k * e->sys->ncontact + i], own = e->room.held[i] + (given ? e->room.given[i] : 0.0);
-            const double found = m->constant.elastic[i] ? spring : own;
-            watch[i] = k == 0 ? m->state.force[i] : found;
-        }
+        a[i] = -e->room.base[i];
     }
+    tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->room.acceleration, a);
 }
 
 /* Sets the k-th coefficients of accelerations and of watch, scale = 1/k!. Returns a status. */
@@ -76,36 +74,36 @@ static int expand_forces(struct event *e, size_t k, double scale)
     tribo_system *sys = e->sys;
     const size_t n = sys->ndof, c = sys->ncontact;
     double *acc = e->room.acceleration, *watch = e->watch + k * c, *base = e->room.base, *held = e->room.held;
+    const int given = k < e->slide_terms;
     tribo_system_smooth(sys, (int)k, scale, e->q + k * n, e->u + k * n, e->spring + k * c, acc);
     find_velocities(e, k, scale, watch);
     if (m->breakaway.falls) {
         expand_falling(e, k);
     }
-    const int given = find_given(e, k);
-    int status = given && m->plane ? tribo_planar_series_forces(&e->planar, m, sys, k, watch, e->room.given) : TRIBO_OK;
-    if (status) {
-        return status;
-    }
+    int status = TRIBO_OK;
     if (given) {
+        find_given(e, k);
+        status = m->plane ? tribo_planar_series_forces(e, k, watch) : TRIBO_OK;
         tribo_matrix_multiply_add(&sys->response, 1.0, e->room.given, acc);
     }
-    /* base = accelerations of the bases, a = accelerations of the contacts against the bases */
     memset(base, 0, c * sizeof *base);
     tribo_system_loads(sys, DRIVES_BASE, (int)k + 1, scale, base);
-    for (size_t i = 0; i < c; i++) {
-        e->room.a[i] = -base[i];
-    }
-    tribo_matrix_multiply_add(&sys->direction, 1.0, acc, e->room.a);
-    status = tribo_stick_slip_balance(m, e->room.a, held);
+    tribo_event_relative(e, e->room.a);
+    status = status ? status : tribo_stick_slip_balance(m, e->room.a, held);
     if (status) {
         return status;
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, held, acc);
-    status = m->plane ? tribo_planar_series_finish(&e->planar, m, sys, k, base, acc, held) : TRIBO_OK;
+    status = m->plane ? tribo_planar_series_finish(e, k) : TRIBO_OK;
     if (status) {
         return status;
     }
-    watch_forces(e, k, given, watch);
+    for (size_t i = 0; i < c; i++) {
+        if (m->state.slip[i] == TRIBO_SLIP_STUCK && !tribo_stick_slip_may_part(m, i)) {
+            const double own = held[i] + (given ? e->room.given[i] : 0.0);
+            watch[i] = k == 0 ? m->state.force[i] : m->constant.elastic[i] ? e->spring[k * c + i] : own;
+        }
+    }
     /* contacts at rest must not creep by what rounding leaves in acc */
     return tribo_stick_slip_hold(m, sys, base, acc);
 }
@@ -119,9 +117,8 @@ int tribo_event_start(struct event *e, double t, const double *y)
     memcpy(e->u, y + n, n * sizeof *y);
     e->d[0] = y[tribo_system_energy(sys)];
     tribo_compliance_get(sys, y, e->spring);
-    const int status =
-        m->plane ? tribo_planar_series_begin(&e->planar, e->most_order, m, sys, y, e->room.a, e->room.given) : TRIBO_OK;
-    e->order = m->plane ? e->planar.order : e->most_order;
+    e->order = e->most_order;
+    const int status = m->plane ? tribo_planar_series_begin(e, y) : TRIBO_OK;
     tribo_system_set_time(sys, t);
     /* limits; a coefficient of a limit that falls with the speed needs that of the velocity first */
     const int falls = m->breakaway.falls;
@@ -140,12 +137,8 @@ int tribo_event_start(struct event *e, double t, const double *y)
 /* The k-th coefficient of the power of sliding contact i, limit times velocity. */
 static double power_of(const struct event *e, size_t i, size_t k)
 {
-    const size_t c = e->sys->ncontact;
-    double power = 0.0;
-    for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
-        power += e->slide[j * c + i] * e->watch[(k - j) * c + i];
-    }
-    return e->events.stick_slip.state.slip[i] * power;
+    const size_t to = k < e->slide_terms ? k + 1 : e->slide_terms;
+    return e->events.stick_slip.state.slip[i] * tribo_series_product(e->slide + i, e->watch + i, e->sys->ncontact, k, 0, to);
 }
 
 int tribo_event_series(struct event *e)
@@ -167,7 +160,7 @@ int tribo_event_series(struct event *e)
     e->sys->evaluations += e->order + 1;
     const struct stick_slip *m = &e->events.stick_slip;
     for (size_t k = 0; k < e->order; k++) {
-        double power = m->plane ? tribo_planar_series_power(&e->planar, m, e->sys, k) : 0.0;
+        double power = m->plane ? tribo_planar_series_power(e, k) : 0.0;
         for (size_t i = 0; i < e->sys->ncontact; i++) {
             power += tribo_slides(m->state.slip[i]) ? e->sys->tally[i] * power_of(e, i, k) : 0.0;
         }

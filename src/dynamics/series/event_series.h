@@ -4,9 +4,7 @@
 #ifndef TRIBO_EVENT_SERIES_H
 #define TRIBO_EVENT_SERIES_H
 
-#include "event_creep.h"
 #include "dynamics/events/events.h"
-#include "planar_series.h"
 
 /* Workspace. */
 struct event_room {
@@ -26,6 +24,46 @@ struct curve {
     double size, bend;
 };
 
+/* Series of a planar contact, along the first direction n of its velocity and the normal t. */
+struct planar_line {
+    double n[2], t[2];
+    double *xn, *xt, *un, *ut; /* [order + 1] coefficients of x and u along n and t */
+    double *speed;             /* [order + 1] coefficients of |x| */
+    double *square; /* [2 order + 1] |x|^2/time^(2s); of a contact at rest half the larger limit times |force/limit|^2 */
+};
+
+struct planar_series {
+    size_t room;              /* for contacts */
+    int given;                /* 1: un and ut are given, and all sliding contacts slide already */
+    struct planar_line *line; /* [room]; owns the memory of the series */
+    size_t begins;            /* number of contacts that begin to slide */
+    size_t begin_room;        /* for such contacts */
+    size_t *begin;            /* [begins] these contacts; owns the memory of the members below */
+    int *pivot;               /* [begins] */
+    double *s, *lu;           /* [begins][begins] S, S + D */
+    double *tau;              /* [begins] */
+    double *answer;           /* [begins][ndof] q'' by unit t-parts */
+    double *held;             /* [begins][ncontact] holding forces by unit t-parts */
+};
+
+#define TRIBO_CREEP_NODES 8
+
+struct creep {
+    double length;                                      /* of the next such step; 0: unknown */
+    size_t waited, wait;                                /* steps since contacts creep, and number of steps to wait */
+    size_t room;                                        /* room for sliding ones */
+    double basis[TRIBO_CREEP_NODES][TRIBO_CREEP_NODES]; /* [node][power] of the polynomial that is 1 there, 0 at other nodes */
+    double *weight;   /* [terms][node][node] effect at the first node of a force basis[second] that acts by time^term, in steps;
+                         owns the memory of the members below */
+    double *angle;    /* [room][node] of u, from n of its line */
+    double *u;        /* [room][node][2] cosine and sine of angle */
+    double *response; /* [2 slides][terms][2 slides] series of x along n and t by u = n or t */
+    size_t *slides;   /* [room] the sliding contacts */
+    int *pivot;       /* [room NODES] */
+    double *matrix;   /* [room NODES][room NODES] Newton's */
+    double *rest;     /* [room NODES] its right-hand side */
+};
+
 struct event {
     tribo_driver *drv;
     tribo_system *sys;
@@ -36,10 +74,11 @@ struct event {
     double abstol;             /* that of the driver when tolerance was found */
     double fastest;            /* bound of the frequencies of the motion, without growth by falling friction */
     size_t revision;           /* of the system that fastest is of */
-    int known;                 /* 1: fastest and most_order are those of revision and tolerance */
     double moves[3];           /* change of q, u and d within the time of the fastest motion; if abstol = 0 */
+    double error;              /* allowed in velocities where planar contacts slide */
     double length;             /* of the step, and of the interval of bounds */
-    double *q, *u;             /* [order + 1][ndof] coefficients of the powers of time of displacements and velocities */
+    double *q, *u;             /* [order + 1][ndof] coefficients of the powers of time of displacements and velocities; q owns the
+                                  memory of the arrays below; NULL: revision, abstol and what follows from them are not set */
     double *watch;             /* [order + 1][ncontact] velocities of sliding contacts, forces of contacts at rest */
     double *limit;             /* [order + 1][ncontact] limits, below 0 where a contact has lifted off */
     size_t terms;              /* number of rows of limit that are not zero */
@@ -55,16 +94,85 @@ struct event {
     struct creep creep;
 };
 
+/* Coefficient k of a product of series, the sum of x_j y_(k - j) for from <= j < to; coefficients are stride doubles apart. */
+static inline double tribo_series_product(const double *x, const double *y, size_t stride, size_t k, size_t from, size_t to)
+{
+    double sum = 0.0;
+    for (size_t j = from; j < to; j++) {
+        sum += x[j * stride] * y[(k - j) * stride];
+    }
+    return sum;
+}
+
+/* Returns the value at h of a series x [powers + 1]. */
+static inline double tribo_series_value(const double *x, size_t powers, double h)
+{
+    double sum = 0.0;
+    for (size_t k = powers + 1; k-- > 0;) {
+        sum = sum * h + x[k];
+    }
+    return sum;
+}
+
 /* Finds the coefficients of the motion from (t, y) on: first those known at the start, then the series, which collocation
  * repeats with other directions of sliding forces; or both. Returns a status. */
 int tribo_event_start(struct event *e, double t, const double *y);
 int tribo_event_series(struct event *e);
 int tribo_event_expand(struct event *e, double t, const double *y);
 
+/* a [ncontact] = J room.acceleration - room.base. */
+void tribo_event_relative(const struct event *e, double *a);
+
 /* Energy that sliding contact i dissipates until tau; own: struct event. */
 double tribo_event_work(void *own, size_t i, double tau);
 
 /* Moves perturbations v [2 ndof + compliant contacts][columns] of the state by tau in the phase. As transition of struct motion. */
 int tribo_event_transition(void *own, const void *phase, double tau, size_t columns, double *v);
+
+/* method_event.c: returns the length of the step on which the last two terms of all series are below the tolerance. */
+double tribo_event_length(const struct event *e);
+
+/* ------------------------------------------------------------------------------------------------------ planar_series.c */
+
+void tribo_planar_series_free(struct planar_series *s);
+
+/* The time in which friction would stop planar contact p; and the least such time of contacts that slide already, HUGE_VAL if
+ * there is none. */
+double tribo_planar_series_stop(const struct event *e, const struct planar_contact *p, const double *y);
+double tribo_planar_series_first_stop(const struct event *e, const double *y);
+
+/* Sets the order for a phase that begins with y; makes room; finds S for contacts that begin to slide. Returns a status, its
+ * message on the system's context, as the functions below. */
+int tribo_planar_series_begin(struct event *e, const double *y);
+
+/* Takes the k-th coefficients v [ncontact] of velocities; sets those of sliding forces room.given, without the t-parts of
+ * contacts that begin to slide. */
+int tribo_planar_series_forces(struct event *e, size_t k, const double *v);
+
+/* Finds these t-parts, and adds their effect to the k-th coefficients room.acceleration and room.held. room.base: those of
+ * accelerations of bases. */
+int tribo_planar_series_finish(struct event *e, size_t k);
+
+/* The k-th coefficient of the power that planar contacts dissipate. */
+double tribo_planar_series_power(const struct event *e, size_t k);
+
+/* Sets square of all lines, with the forces in watch of contacts at rest. All terms count: those of the square are not small where
+ * those of x end. */
+void tribo_planar_series_squares(struct event *e);
+
+/* Sets plane->error [ncontact]: error of velocities, at most e->error. */
+void tribo_planar_series_errors(struct event *e);
+
+/* Returns h, shortened until the velocities of contacts at h are right to plane->error, by the difference between the series of u
+ * and x/|x|, and no speed grows so much that it is lost in rounding. */
+double tribo_planar_series_shorten(const struct event *e, double h);
+
+/* -------------------------------------------------------------------------------------------------------- event_creep.c */
+
+void tribo_creep_free(struct creep *c);
+
+/* Where planar contacts creep, tries steps from (t, y) of at most `most` with directions by collocation. *length = length of the
+ * step whose series is found; 0: there is none. Returns a status. */
+int tribo_creep_begin(struct event *e, double t, const double *y, double most, double *length);
 
 #endif

@@ -47,24 +47,7 @@ static double wanted(const struct event *e, const double *series, size_t n, doub
     return greater(error, DBL_EPSILON * size);
 }
 
-/* Sets moves[] of displacements, velocities and energy within the time of the fastest motion, by the velocities in y and the
- * sizes of the terms of accelerations; not needed with tolerances. */
-static void event_find_moves(struct event *e, const double *y)
-{
-    struct stick_slip *m = &e->events.stick_slip;
-    const size_t n = e->sys->ndof;
-    const double radian = fastest(e) > 0.0 ? 1.0 / fastest(e) : 1.0;
-    if (e->drv->abstol > 0.0) {
-        return;
-    }
-    e->moves[1] = tribo_largest(y + n, n) + radian * tribo_stick_slip_acceleration_size(m, e->sys, y);
-    e->moves[0] = tribo_largest(y, n) + radian * e->moves[1];
-    e->moves[2] =
-        fabs(y[tribo_system_energy(e->sys)]) + radian * tribo_largest(m->state.force, m->constant.contacts) * e->moves[1];
-}
-
-/* Length of the step on which the last two terms of all series are below the tolerance. */
-static double step_length(const struct event *e)
+double tribo_event_length(const struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const size_t n = e->sys->ndof, c = e->sys->ncontact;
@@ -80,7 +63,7 @@ static double step_length(const struct event *e)
             const double rise = e->terms > 1 ? fabs(e->limit[c + i]) * lesser(most, DBL_MAX) : 0.0;
             const double force = tolerance * (greater(e->limit[i], 0.0) + m->constant.swing[i] + rise);
             const double stick = tribo_breakaway_ratio(&m->breakaway, i) * force;
-            const double speed = m->plane ? lesser(u, m->plane->error[i]) : u;
+            const double speed = m->plane ? m->plane->error[i] : u;
             const double scale = m->state.slip[i] == TRIBO_SLIP_STUCK && !tribo_stick_slip_may_part(m, i) ? stick : speed;
             term = m->state.slip[i] == TRIBO_SLIP_OPEN ? term : greater(term, fabs(e->watch[k * c + i]) / scale);
             term = k < e->terms && m->constant.swing[i] > 0.0 ? greater(term, fabs(e->limit[k * c + i]) / force) : term;
@@ -166,7 +149,7 @@ static void set_curves(struct curve *curve, size_t count, size_t terms, size_t s
 static void set_planar_guards(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
-    tribo_planar_series_squares(&e->planar, m, e->watch);
+    tribo_planar_series_squares(e);
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
         const int moves = tribo_slides_in_plane(m, p);
@@ -231,14 +214,19 @@ static int set_guards(struct event *e)
 
 /* ------------------------------------------------------------------------------------------------------- the driver */
 
+static void free_series(struct event *e)
+{
+    free(e->q);
+    tribo_planar_series_free(&e->planar);
+    tribo_creep_free(&e->creep);
+}
+
 static void method_event_destroy(tribo_driver *drv)
 {
     struct event *e = drv->own;
     if (e) {
         tribo_events_free(&e->events);
-        free(e->q);
-        tribo_planar_series_free(&e->planar);
-        tribo_creep_free(&e->creep);
+        free_series(e);
         free(e);
     }
 }
@@ -255,74 +243,45 @@ static size_t best_order(double tolerance, double fastest, double digits)
     return (size_t)(fastest > 0.0 ? greater(lesser(wanted, digits / (1.0 + fabs(log10(fastest)))), LEAST_ORDER) : wanted);
 }
 
-static void lay_out(struct event *e, struct layout *l, size_t terms)
-{
-    const size_t n = e->sys->ndof, c = e->sys->ncontact;
-    double **const series[] = {&e->watch, &e->limit, &e->fall, &e->part, &e->spring};
-    double **const rooms[] = {&e->room.base, &e->room.a, &e->room.given, &e->room.held, &e->room.rate};
-    e->q = tribo_layout_array(l, terms * n, sizeof *e->q);
-    e->u = tribo_layout_array(l, terms * n, sizeof *e->u);
-    e->d = tribo_layout_array(l, terms, sizeof *e->d);
-    e->room.acceleration = tribo_layout_array(l, n, sizeof *e->u);
-    e->curve = tribo_layout_array(l, c, sizeof *e->curve);
-    e->limit_curve = tribo_layout_array(l, c, sizeof *e->limit_curve);
-    for (size_t k = 0; k < 5; k++) {
-        *series[k] = tribo_layout_array(l, terms * c, sizeof **series[k]);
-        *rooms[k] = tribo_layout_array(l, c, sizeof **rooms[k]);
-    }
-}
-
-/* Takes the driver's tolerances, and makes room for the order by these. */
-static int take_tolerances(struct event *e)
-{
-    const tribo_driver *drv = e->drv;
-    if (e->q && e->abstol == drv->abstol) {
-        return TRIBO_OK;
-    }
-    const double tolerance = drv->abstol > 0.0 ? clamp(drv->abstol, 1e-16, 1e-2) : USUAL;
-    const size_t order = best_order(tolerance, 0.0, MOST_DIGITS);
-    struct layout l = {0};
-    double *old = e->q;
-    lay_out(e, &l, order + 1);
-    const int done = tribo_layout_create(&l);
-    lay_out(e, &l, order + 1);
-    free(old);
-    if (!done) {
-        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for method event");
-    }
-    e->abstol = drv->abstol;
-    e->known = 0;
-    e->tolerance = tolerance;
-    e->order = e->most_order = order;
-    return TRIBO_OK;
-}
-
-/* Takes tolerances, and finds the highest frequency. */
+/* Takes the driver's tolerances; finds the highest frequency; makes room for the order that follows. */
 static int method_event_prepare(struct event *e)
 {
     const tribo_system *sys = e->sys;
-    int status = take_tolerances(e);
-    e->events.stick_slip.constant.abstol = e->drv->abstol;
-    e->events.stick_slip.constant.reltol = e->drv->abstol > 0.0 ? e->drv->reltol : USUAL;
-    if (status || (e->known && e->revision == sys->revision)) {
-        return status;
+    const double abstol = e->drv->abstol;
+    const size_t n = sys->ndof, c = sys->ncontact;
+    double **const series[] = {&e->watch, &e->limit, &e->fall, &e->part, &e->spring};
+    double **const rooms[] = {&e->room.base, &e->room.a, &e->room.given, &e->room.held, &e->room.rate};
+    e->events.stick_slip.constant.abstol = abstol;
+    e->events.stick_slip.constant.reltol = abstol > 0.0 ? e->drv->reltol : USUAL;
+    if (e->q && e->abstol == abstol && e->revision == sys->revision) {
+        return TRIBO_OK;
     }
-    status = tribo_compliance_check(sys);
+    const int status = tribo_compliance_check(sys);
     if (status) {
         return status;
     }
-    e->fastest = tribo_system_fastest(sys);
-    /* planar series and creep need memory for as many terms */
-    const size_t order = best_order(e->tolerance, e->fastest, tribo_system_planar(sys) ? 0.5 * MOST_DIGITS : MOST_DIGITS);
-    if (order != e->most_order) {
-        tribo_planar_series_free(&e->planar);
-        tribo_creep_free(&e->creep);
-    }
-    e->most_order = order;
-    e->terms = sys->loads.limit_harmonics ? e->most_order + 1 : sys->loads.limit_tables ? 2 : 1;
+    e->abstol = abstol;
     e->revision = sys->revision;
-    e->known = 1;
-    return TRIBO_OK;
+    e->tolerance = abstol > 0.0 ? clamp(abstol, 1e-16, 1e-2) : USUAL;
+    e->fastest = tribo_system_fastest(sys);
+    e->order = e->most_order = best_order(e->tolerance, e->fastest, tribo_system_planar(sys) ? 0.5 * MOST_DIGITS : MOST_DIGITS);
+    e->terms = sys->loads.limit_harmonics ? e->order + 1 : sys->loads.limit_tables ? 2 : 1;
+    free_series(e);
+    const size_t terms = e->order + 1;
+    struct layout l = {0};
+    do {
+        e->q = tribo_layout_array(&l, terms * n, sizeof *e->q);
+        e->u = tribo_layout_array(&l, terms * n, sizeof *e->u);
+        e->d = tribo_layout_array(&l, terms, sizeof *e->d);
+        e->room.acceleration = tribo_layout_array(&l, n, sizeof *e->u);
+        e->curve = tribo_layout_array(&l, c, sizeof *e->curve);
+        e->limit_curve = tribo_layout_array(&l, c, sizeof *e->limit_curve);
+        for (size_t k = 0; k < 5; k++) {
+            *series[k] = tribo_layout_array(&l, terms * c, sizeof **series[k]);
+            *rooms[k] = tribo_layout_array(&l, c, sizeof **rooms[k]);
+        }
+    } while (!l.memory && tribo_layout_create(&l));
+    return l.memory ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
 }
 
 static void series_state(void *own, double tau, const double *from, double *to)
@@ -348,115 +307,31 @@ static void series_state(void *own, double tau, const double *from, double *to)
 /* Longest step with planar series, over the highest frequency: squares do not cancel. */
 #define LONGEST 3.0
 
-static double longest(const struct event *e, double most)
-{
-    return fastest(e) > 0.0 ? lesser(most, LONGEST / fastest(e)) : most;
-}
-
-/* Largest sum of the terms of a speed over a step, in units of the speed at its start: else the square of a small speed is
- * lost in rounding, and with it a zero. */
-#define FASTER 1e4
-
-/* 1 if no speed exceeds that on a step of length h. */
-static int speeds_tell(const struct event *e, double h)
-{
-    const struct planar_slip *plane = e->events.stick_slip.plane;
-    int tell = 1;
-    for (size_t c = 0; c < plane->count; c++) {
-        const struct planar_line *l = &e->planar.line[c];
-        const size_t last = e->order - (size_t)plane->contact[c].begins;
-        double sum = 0.0;
-        for (size_t k = last + 1; k-- > 0;) {
-            sum = sum * h + fabs(l->xn[k]) + fabs(l->xt[k]);
-        }
-        tell &= !tribo_slides_in_plane(&e->events.stick_slip, &plane->contact[c]) || sum <= FASTER * l->xn[0];
-    }
-    return tell;
-}
-
-static double planar_length(struct event *e, double most)
-{
-    const struct stick_slip *m = &e->events.stick_slip;
-    const double error = wanted(e, e->u, e->sys->ndof, e->moves[1], HUGE_VAL);
-    tribo_planar_series_errors(&e->planar, m, m->plane->error);
-    double h = lesser(step_length(e), longest(e, most));
-    while ((!(tribo_planar_series_defect(&e->planar, m, h, error) <= 1.0) || !speeds_tell(e, h)) && h > 0.0) {
-        h *= 0.8;
-    }
-    return h;
-}
-
-/* Steps by series before longer ones by collocation are tried; after trials that failed, steps of DEAR times their work;
- * trials at once. */
-#define PATIENCE 16
-#define DEAR 8
-#define MOST_TRIALS 3
-
-/* First step tried, in parts of the longest one. */
-#define FIRST 0.25
-
-/* Tries steps with directions by collocation, of length h first, all longer than least. *length = length of the step whose
- * velocities are right to `error`; 0 if none is. */
-static int try_creep(struct event *e, double t, const double *y, double h, double least, double error, double *length)
-{
-    struct stick_slip *m = &e->events.stick_slip;
-    struct creep_step step = {0, h, HUGE_VAL};
-    for (int trial = 0; *length == 0.0 && step.next > least && trial < MOST_TRIALS; trial++) {
-        h = step.next;
-        const int status = tribo_creep_expand(e, t, y, h, error, &step);
-        if (status) {
-            return status;
-        }
-        tribo_planar_series_errors(&e->planar, m, m->plane->error);
-        const double most = step_length(e);
-        *length = step.good && most >= h ? h : 0.0;
-        step.next = step.good && most < h ? 0.9 * most : step.next;
-    }
-    e->creep.length = *length > 0.0 ? step.next : 0.0;
-    return TRIBO_OK;
-}
-
-/* Tries steps by collocation if contacts creep, after `wait` other steps, but at once where such steps just became shorter than
- * least; *length = 0 if none is good. most: longest step. */
-static int creep(struct event *e, double t, const double *y, double most, double *length)
-{
-    struct creep *c = &e->creep;
-    const double least = tribo_creep_least(e, y), last = c->length;
-    const size_t before = e->sys->evaluations;
-    c->wait = e->events.anew ? PATIENCE : last > 0.0 && !(last > least) ? 0 : c->wait;
-    if (e->events.anew || !(least < most)) {
-        c->length = 0.0;
-        c->waited = 0;
-    }
-    e->events.anew = 0;
-    *length = 0.0;
-    if (!(least < most) || (!(c->length > least) && c->waited++ < c->wait)) {
-        return TRIBO_OK;
-    }
-    const double speed = tribo_largest(y + e->sys->ndof, e->sys->ndof);
-    const double error = greater(tolerated(e, speed, e->moves[1]), DBL_EPSILON * speed);
-    const double first = lesser(most, c->length > least ? c->length : lesser(FIRST * most, tribo_creep_settled(e, y, error)));
-    if (!(first > least)) {
-        c->length = 0.0;
-        return TRIBO_OK;
-    }
-    const int status = try_creep(e, t, y, first, least, error, length);
-    c->length = *length == most ? greater(c->length, last) : c->length;
-    c->wait = *length > 0.0 ? PATIENCE : DEAR * (e->sys->evaluations - before) / (e->most_order + 1);
-    c->waited = 0;
-    return status;
-}
-
 static int method_event_begin(void *own, double t, const double *y, double *reach)
 {
     struct event *e = own;
-    const int planar = e->events.stick_slip.plane != NULL;
+    struct stick_slip *m = &e->events.stick_slip;
+    const size_t n = e->sys->ndof;
+    const double most = fastest(e) > 0.0 ? lesser(*reach, LONGEST / fastest(e)) : *reach;
     double length = 0.0;
-    event_find_moves(e, y);
-    int status = planar ? creep(e, t, y, longest(e, *reach), &length) : TRIBO_OK;
+    if (!(e->drv->abstol > 0.0)) {
+        /* by velocities and sizes of the terms of accelerations */
+        const double radian = fastest(e) > 0.0 ? 1.0 / fastest(e) : 1.0;
+        e->moves[1] = tribo_largest(y + n, n) + radian * tribo_stick_slip_acceleration_size(m, e->sys, y);
+        e->moves[0] = tribo_largest(y, n) + radian * e->moves[1];
+        e->moves[2] =
+            fabs(y[tribo_system_energy(e->sys)]) + radian * tribo_largest(m->state.force, m->constant.contacts) * e->moves[1];
+    }
+    e->error = wanted(e, y + n, n, e->moves[1], HUGE_VAL);
+    int status = m->plane ? tribo_creep_begin(e, t, y, most, &length) : TRIBO_OK;
     if (!status && length == 0.0) {
         status = tribo_event_expand(e, t, y);
-        length = status ? 0.0 : planar ? planar_length(e, *reach) : step_length(e);
+        if (!status && m->plane) {
+            tribo_planar_series_errors(e);
+            length = tribo_planar_series_shorten(e, lesser(tribo_event_length(e), most));
+        } else if (!status) {
+            length = tribo_event_length(e);
+        }
     }
     if (status) {
         return status;
@@ -511,8 +386,7 @@ static int method_event_create(tribo_driver *drv)
     }
     e->drv = drv;
     e->sys = sys;
-    const int status = tribo_events_create(&e->events, drv, &motion_in_series, e);
-    return status ? status : take_tolerances(e);
+    return tribo_events_create(&e->events, drv, &motion_in_series, e);
 }
 
 static int open_events(tribo_driver *drv, struct events **events)

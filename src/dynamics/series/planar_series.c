@@ -1,8 +1,21 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "planar_series.h"
-#include "common/real.h"
+/* Taylor series of the forces of sliding planar contacts, found coefficient by coefficient with those of the motion.
+ *
+ * In units of its limits a contact has the velocity x = limit v, which is tau^s times a series, with s = 0 where it slides
+ * already, and 1 or 2 where it begins to (stick_slip.h); and the direction u = x/|x|, which makes the force -limit u. Both are
+ * taken along the first direction n and its normal t:
+ *     |u| = 1   gives the n-part of each coefficient of u from those before,
+ *     x = |x| u gives its t-part, if x is known; and the next one of |x|.
+ * Where the contact begins to slide x follows from the acceleration, and so from the force itself: then t-parts, tau_k, solve
+ *     (S + D_k) tau_k = acceleration along limit t without t-parts - terms of the coefficients before,
+ * with S the response of such accelerations to t-parts while contacts at rest are held;
+ * D_k = (k + 1)|x_0| for s = 1, and 0 for s = 2.
+ * For s = 1 the series converges; for s = 2 it is asymptotic: as good as its last terms, which are what a step is chosen by.
+ *
+ * Or u is given, a polynomial, and only what follows from it is found (event_creep.c). */
+#include "event_series.h"
+#include "common/layout.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Decimal digits of the largest coefficient; squares have twice as many. At a small speed time is short, and its inverse
@@ -15,56 +28,51 @@
 /* Least order. */
 #define LEAST_ORDER 4.0
 
+/* Largest sum of the terms of a speed over a step, in units of the speed at its start: else the square of a small speed is
+ * lost in rounding, and with it a zero. */
+#define FASTER 1e4
+
 void tribo_planar_series_free(struct planar_series *s)
 {
     free(s->line);
-    free(s->work);
     free(s->begin);
-    free(s->s);
     memset(s, 0, sizeof *s);
 }
 
-static int planar_series_reserve(struct planar_series *s, size_t terms, size_t contacts)
+/* Makes room for all planar contacts, and for those that begin to slide. Returns 0 if out of memory. */
+static int reserve_lines(struct event *e, size_t begins)
 {
-    if (s->line && s->room >= contacts) {
-        return 1;
+    struct planar_series *s = &e->planar;
+    const size_t terms = e->most_order + 1, count = e->events.stick_slip.plane->count;
+    if (!s->line || s->room < count) {
+        free(s->line);
+        s->line = malloc(count * (sizeof *s->line + 7 * terms * sizeof *s->line->xn));
+        for (size_t k = 0; s->line && k < count; k++) {
+            struct planar_line *l = &s->line[k];
+            l->xn = (double *)(s->line + count) + 7 * terms * k;
+            l->xt = l->xn + terms;
+            l->un = l->xt + terms;
+            l->ut = l->un + terms;
+            l->speed = l->ut + terms;
+            l->square = l->speed + terms;
+        }
+        s->room = count;
     }
-    tribo_planar_series_free(s);
-    s->line = malloc(contacts * sizeof *s->line);
-    s->work = malloc(7 * terms * contacts * sizeof *s->work);
-    for (size_t k = 0; s->line && s->work && k < contacts; k++) {
-        struct planar_line *l = &s->line[k];
-        l->xn = s->work + 7 * terms * k;
-        l->xt = l->xn + terms;
-        l->un = l->xt + terms;
-        l->ut = l->un + terms;
-        l->speed = l->ut + terms;
-        l->square = l->speed + terms;
+    if (begins > s->begin_room) {
+        struct layout l = {0};
+        free(s->begin);
+        do {
+            s->begin = tribo_layout_array(&l, begins, sizeof *s->begin);
+            s->pivot = tribo_layout_array(&l, begins, sizeof *s->pivot);
+            s->s = tribo_layout_array(&l, begins * begins, sizeof *s->s);
+            s->lu = tribo_layout_array(&l, begins * begins, sizeof *s->lu);
+            s->tau = tribo_layout_array(&l, begins, sizeof *s->tau);
+            s->answer = tribo_layout_array(&l, begins * e->sys->ndof, sizeof *s->answer);
+            s->held = tribo_layout_array(&l, begins * e->sys->ncontact, sizeof *s->held);
+        } while (!l.memory && tribo_layout_create(&l));
+        s->begin_room = s->begin ? begins : 0;
     }
-    s->room = s->line && s->work ? contacts : 0;
-    return s->room > 0;
-}
-
-static int reserve_begins(struct planar_series *s, const tribo_system *sys, size_t begins)
-{
-    if (s->s && s->begin_room >= begins) {
-        return 1;
-    }
-    free(s->begin);
-    free(s->s);
-    s->begin_room = 0;
-    s->begin = malloc(2 * begins * sizeof *s->begin);
-    s->s = malloc(begins * (2 * begins + 1 + sys->ndof + sys->ncontact) * sizeof *s->s);
-    if (!s->begin || !s->s) {
-        return 0;
-    }
-    s->pivot = (int *)(s->begin + begins);
-    s->lu = s->s + begins * begins;
-    s->tau = s->lu + begins * begins;
-    s->answer = s->tau + begins;
-    s->held = s->answer + begins * sys->ndof;
-    s->begin_room = begins;
-    return 1;
+    return s->line && begins <= s->begin_room;
 }
 
 /* (limit t)'J acc, acc [ncontact] being J acc. */
@@ -73,173 +81,155 @@ static double planar_series_along(const struct planar_contact *p, const struct p
     return p->limit[0] * l->t[0] * acc[p->at] + p->limit[1] * l->t[1] * acc[p->at + 1];
 }
 
-/* Fills answer, held and a column of S: what a unit t-part of beginning contact q does to q'', to holding forces, to
- * accelerations along all t. */
-static int planar_series_answer(struct planar_series *s, size_t q, struct stick_slip *m, const tribo_system *sys, double *a,
-                                double *f)
+double tribo_planar_series_stop(const struct event *e, const struct planar_contact *p, const double *y)
 {
-    const size_t c = sys->ncontact, n = sys->ndof;
-    const struct planar_contact *all = m->plane->contact, *p = &all[s->begin[q]];
-    const struct planar_line *l = &s->line[s->begin[q]];
-    double *acc = s->answer + q * n, *held = s->held + q * c;
-    memset(acc, 0, n * sizeof *acc);
-    memset(f, 0, c * sizeof *f);
-    memset(a, 0, c * sizeof *a);
-    f[p->at] = -p->limit[0] * l->t[0];
-    f[p->at + 1] = -p->limit[1] * l->t[1];
-    tribo_matrix_multiply_add(&sys->response, 1.0, f, acc);
-    tribo_matrix_multiply_add(&sys->direction, 1.0, acc, a);
-    const int status = tribo_stick_slip_balance(m, a, held);
-    if (status) {
-        return status;
-    }
-    tribo_matrix_multiply_add(&sys->response, 1.0, held, acc);
-    memset(a, 0, c * sizeof *a);
-    tribo_matrix_multiply_add(&sys->direction, 1.0, acc, a);
-    for (size_t r = 0; r < s->begins; r++) {
-        s->s[r * s->begins + q] = -planar_series_along(&all[s->begin[r]], &s->line[s->begin[r]], a);
-    }
-    return TRIBO_OK;
-}
-
-double tribo_planar_series_stop(const struct stick_slip *m, const tribo_system *sys, const struct planar_contact *p,
-                                const double *y)
-{
-    double time[2];
+    const struct stick_slip *m = &e->events.stick_slip;
+    double most = 0.0;
     for (size_t d = 0; d < 2; d++) {
-        time[d] = fabs(tribo_stick_slip_velocity(m, sys, p->at + d, y)) / (p->limit[d] * m->constant.diagonal[p->at + d]);
+        const double v = tribo_stick_slip_velocity(m, e->sys, p->at + d, y);
+        most = greater(most, fabs(v) / (p->limit[d] * m->constant.diagonal[p->at + d]));
     }
-    return greater(time[0], time[1]);
+    return most;
 }
 
-double tribo_planar_series_first_stop(const struct stick_slip *m, const tribo_system *sys, const double *y)
+double tribo_planar_series_first_stop(const struct event *e, const double *y)
 {
+    const struct planar_slip *plane = e->events.stick_slip.plane;
     double least = HUGE_VAL;
-    for (size_t k = 0; k < m->plane->count; k++) {
-        const struct planar_contact *p = &m->plane->contact[k];
-        if (tribo_slides_in_plane(m, p) && p->begins == SLIDES_ON) {
-            least = lesser(least, tribo_planar_series_stop(m, sys, p, y));
+    for (size_t k = 0; k < plane->count; k++) {
+        const struct planar_contact *p = &plane->contact[k];
+        if (tribo_slides_in_plane(&e->events.stick_slip, p) && p->begins == SLIDES_ON) {
+            least = lesser(least, tribo_planar_series_stop(e, p, y));
         }
     }
     return least;
 }
 
-int tribo_planar_series_begin(struct planar_series *s, size_t order, struct stick_slip *m, const tribo_system *sys,
-                              const double *y, double *a, double *f)
+/* Sets n and the normal t of a line. */
+static void set_direction(struct planar_line *l, double x, double y)
 {
-    const struct planar_slip *plane = m->plane;
+    l->n[0] = l->t[1] = x;
+    l->n[1] = y;
+    l->t[0] = -y;
+}
+
+int tribo_planar_series_begin(struct event *e, const double *y)
+{
+    struct stick_slip *m = &e->events.stick_slip;
+    struct planar_series *s = &e->planar;
+    const tribo_system *sys = e->sys;
+    const struct planar_contact *all = m->plane->contact;
+    const size_t count = m->plane->count, c = sys->ncontact;
     size_t begins = 0;
-    for (size_t k = 0; k < plane->count; k++) {
-        begins += tribo_slides_in_plane(m, &plane->contact[k]) && plane->contact[k].begins != SLIDES_ON;
+    for (size_t k = 0; k < count; k++) {
+        begins += tribo_slides_in_plane(m, &all[k]) && all[k].begins != SLIDES_ON;
     }
-    if ((plane->count && !planar_series_reserve(s, order + 1, plane->count)) || (begins && !reserve_begins(s, sys, begins))) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for series of %zu contact%s in a plane", plane->count,
-                                 plural(plane->count));
+    if (!reserve_lines(e, begins)) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for series of %zu contact%s in a plane", count,
+                                 plural(count));
     }
     /* coefficients stay within MOST_DIGITS: their unit of time is that of the first stop */
-    const double most = MOST_DIGITS / greater(-log10(tribo_planar_series_first_stop(m, sys, y)), 1.0);
-    s->order = s->given ? order : (size_t)greater(lesser((double)order, most), LEAST_ORDER);
-    s->begins = 0;
-    for (size_t k = 0; k < plane->count; k++) {
-        const struct planar_contact *p = &plane->contact[k];
-        struct planar_line *l = &s->line[k];
-        if (tribo_slides_in_plane(m, p) && p->begins != SLIDES_ON) {
-            memcpy(l->n, p->direction, sizeof l->n);
-            l->t[0] = -l->n[1];
-            l->t[1] = l->n[0];
-            s->begin[s->begins++] = k;
+    const double most = MOST_DIGITS / greater(-log10(tribo_planar_series_first_stop(e, y)), 1.0);
+    e->order = s->given ? e->most_order : (size_t)greater(lesser((double)e->most_order, most), LEAST_ORDER);
+    s->begins = begins;
+    for (size_t k = 0, q = 0; q < begins; k++) {
+        if (tribo_slides_in_plane(m, &all[k]) && all[k].begins != SLIDES_ON) {
+            set_direction(&s->line[k], all[k].direction[0], all[k].direction[1]);
+            s->begin[q++] = k;
         }
     }
-    int status = TRIBO_OK;
-    for (size_t q = 0; !status && q < s->begins; q++) {
-        status = planar_series_answer(s, q, m, sys, a, f);
-    }
-    return status;
-}
-
-/* ------------------------------------------------------------------------------------------------------- coefficients */
-
-/* Sum of x_j y_{k - j}, from <= j < to. */
-static double product_of(const double *x, const double *y, size_t k, size_t from, size_t to)
-{
-    double sum = 0.0;
-    for (size_t j = from; j < to; j++) {
-        sum += x[j] * y[k - j];
-    }
-    return sum;
-}
-
-/* Sets coefficient m of x = limit v; the first one gives n, or has to be along n. Returns 0 if it is against n. */
-static int take_velocity(struct planar_line *l, const struct planar_contact *p, size_t m, const double *v)
-{
-    const double x[2] = {p->limit[0] * v[0], p->limit[1] * v[1]};
-    if (m == 0 && p->begins == SLIDES_ON) {
-        l->xn[0] = hypot(x[0], x[1]);
-        l->n[0] = x[0] / l->xn[0];
-        l->n[1] = x[1] / l->xn[0];
-        l->t[0] = -l->n[1];
-        l->t[1] = l->n[0];
-    } else {
-        l->xn[m] = l->n[0] * x[0] + l->n[1] * x[1];
-    }
-    l->xt[m] = m ? l->t[0] * x[0] + l->t[1] * x[1] : 0.0;
-    return m > 0 || l->xn[0] > 0.0;
-}
-
-/* Part of coefficient k of |x| u along t that does not have the last coefficients of u and |x|. */
-static double before(const struct planar_line *l, size_t k)
-{
-    return k > 1 ? product_of(l->speed, l->ut, k, 1, k) : 0.0;
-}
-
-int tribo_planar_series_forces(struct planar_series *s, const struct stick_slip *m, const tribo_system *sys, size_t k,
-                               const double *v, double *f)
-{
-    for (size_t c = 0; c < m->plane->count; c++) {
-        const struct planar_contact *p = &m->plane->contact[c];
-        struct planar_line *l = &s->line[c];
-        const size_t shift = (size_t)p->begins;
-        if (!tribo_slides_in_plane(m, p)) {
-            continue;
+    /* answer, held and a column of S: what a unit t-part of beginning contact q does to q'', to holding forces, to accelerations
+     * along all t */
+    for (size_t q = 0; q < begins; q++) {
+        const struct planar_contact *p = &all[s->begin[q]];
+        const struct planar_line *l = &s->line[s->begin[q]];
+        double *acc = s->answer + q * sys->ndof, *a = e->room.a, *f = e->room.given;
+        memset(acc, 0, sys->ndof * sizeof *acc);
+        memset(f, 0, c * sizeof *f);
+        f[p->at] = -p->limit[0] * l->t[0];
+        f[p->at + 1] = -p->limit[1] * l->t[1];
+        tribo_matrix_multiply_add(&sys->response, 1.0, f, acc);
+        tribo_matrix_multiply(&sys->direction, acc, a);
+        const int status = tribo_stick_slip_balance(m, a, s->held + q * c);
+        if (status) {
+            return status;
         }
-        if (k >= shift && !take_velocity(l, p, k - shift, v + p->at)) {
-            return tribo_system_fail(sys, TRIBO_ERR_CHATTER,
-                                     "at t = %.17g it is not clear in which direction the planar contact %zu begins to slide",
-                                     sys->loads.time, p->at);
-        }
-        if (!s->given) {
-            const double both = k > 1 ? product_of(l->un, l->un, k, 1, k) + product_of(l->ut, l->ut, k, 1, k) : 0.0;
-            l->un[k] = k ? -0.5 * both : 1.0;
-            l->ut[k] = k && p->begins == SLIDES_ON ? (l->xt[k] - before(l, k)) / l->xn[0] : 0.0;
-        }
-        if (!s->given && k >= shift) {
-            const size_t j = k - shift;
-            l->speed[j] = l->xn[j] - product_of(l->speed, l->un, j, 0, j);
-        }
-        for (size_t d = 0; d < 2; d++) {
-            f[p->at + d] = -p->limit[d] * (l->n[d] * l->un[k] + l->t[d] * l->ut[k]);
+        tribo_matrix_multiply_add(&sys->response, 1.0, s->held + q * c, acc);
+        tribo_matrix_multiply(&sys->direction, acc, a);
+        for (size_t r = 0; r < begins; r++) {
+            s->s[r * begins + q] = -planar_series_along(&all[s->begin[r]], &s->line[s->begin[r]], a);
         }
     }
     return TRIBO_OK;
 }
 
-int tribo_planar_series_finish(struct planar_series *s, const struct stick_slip *m, const tribo_system *sys, size_t k,
-                               const double *base, double *acc, double *held)
+/* ------------------------------------------------------------------------------------------------------- coefficients */
+
+static double product_of(const double *x, const double *y, size_t k, size_t from, size_t to)
 {
+    return tribo_series_product(x, y, 1, k, from, to);
+}
+
+/* Part of coefficient k of |x| u along t that does not have the last coefficients of u and |x|. */
+static double before(const struct planar_line *l, size_t k)
+{
+    return product_of(l->speed, l->ut, k, 1, k);
+}
+
+int tribo_planar_series_forces(struct event *e, size_t k, const double *v)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    for (size_t c = 0; c < m->plane->count; c++) {
+        const struct planar_contact *p = &m->plane->contact[c];
+        struct planar_line *l = &e->planar.line[c];
+        const size_t shift = (size_t)p->begins, j = k - shift;
+        const double x[2] = {p->limit[0] * v[p->at], p->limit[1] * v[p->at + 1]};
+        if (!tribo_slides_in_plane(m, p)) {
+            continue;
+        }
+        if (k == 0 && shift == 0) {
+            l->xn[0] = hypot(x[0], x[1]);
+            set_direction(l, x[0] / l->xn[0], x[1] / l->xn[0]);
+            l->xt[0] = 0.0;
+        } else if (k >= shift) {
+            l->xn[j] = l->n[0] * x[0] + l->n[1] * x[1];
+            l->xt[j] = j ? l->t[0] * x[0] + l->t[1] * x[1] : 0.0;
+        }
+        if (k == shift && !(l->xn[0] > 0.0)) {
+            return tribo_system_fail(e->sys, TRIBO_ERR_CHATTER,
+                                     "at t = %.17g it is not clear in which direction the planar contact %zu begins to slide",
+                                     e->sys->loads.time, p->at);
+        }
+        if (!e->planar.given) {
+            l->un[k] = k ? -0.5 * (product_of(l->un, l->un, k, 1, k) + product_of(l->ut, l->ut, k, 1, k)) : 1.0;
+            l->ut[k] = k && shift == 0 ? (l->xt[k] - before(l, k)) / l->xn[0] : 0.0;
+        }
+        if (!e->planar.given && k >= shift) {
+            l->speed[j] = l->xn[j] - product_of(l->speed, l->un, j, 0, j);
+        }
+        for (size_t d = 0; d < 2; d++) {
+            e->room.given[p->at + d] = -p->limit[d] * (l->n[d] * l->un[k] + l->t[d] * l->ut[k]);
+        }
+    }
+    return TRIBO_OK;
+}
+
+int tribo_planar_series_finish(struct event *e, size_t k)
+{
+    const tribo_system *sys = e->sys;
+    const struct planar_contact *all = e->events.stick_slip.plane->contact;
+    struct planar_series *s = &e->planar;
     const size_t n = s->begins;
-    double *a = sys->work.a;
+    const double times = (double)(k + 1);
+    double *a = e->room.a;
     if (n == 0 || k == 0) {
         return TRIBO_OK;
     }
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        a[i] = -base[i];
-    }
-    tribo_matrix_multiply_add(&sys->direction, 1.0, acc, a);
+    tribo_event_relative(e, a);
     memcpy(s->lu, s->s, n * n * sizeof *s->s);
     for (size_t q = 0; q < n; q++) {
-        const struct planar_contact *p = &m->plane->contact[s->begin[q]];
+        const struct planar_contact *p = &all[s->begin[q]];
         const struct planar_line *l = &s->line[s->begin[q]];
-        const double times = (double)(k + 1);
         double asked = k > 1 ? l->ut[k - 1] * l->xn[0] + before(l, k - 1) : 0.0;
         if (p->begins == BY_ACCELERATION) {
             asked = before(l, k);
@@ -250,27 +240,27 @@ int tribo_planar_series_finish(struct planar_series *s, const struct stick_slip 
     if (!(tribo_lu_create(s->lu, n, s->pivot) > 0.0)) {
         return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                  "at t = %.17g friction cannot turn the planar contact %zu, which begins to slide",
-                                 sys->loads.time, m->plane->contact[s->begin[0]].at);
+                                 sys->loads.time, all[s->begin[0]].at);
     }
     tribo_lu_solve(s->lu, n, s->pivot, s->tau, 1);
     for (size_t q = 0; q < n; q++) {
         s->line[s->begin[q]].ut[k] = s->tau[q];
-        tribo_add(acc, s->tau[q], s->answer + q * sys->ndof, sys->ndof);
-        tribo_add(held, s->tau[q], s->held + q * sys->ncontact, sys->ncontact);
+        tribo_add(e->room.acceleration, s->tau[q], s->answer + q * sys->ndof, sys->ndof);
+        tribo_add(e->room.held, s->tau[q], s->held + q * sys->ncontact, sys->ncontact);
     }
     return TRIBO_OK;
 }
 
-double tribo_planar_series_power(const struct planar_series *s, const struct stick_slip *m, const tribo_system *sys, size_t k)
+double tribo_planar_series_power(const struct event *e, size_t k)
 {
+    const struct stick_slip *m = &e->events.stick_slip;
     double power = 0.0;
     for (size_t c = 0; c < m->plane->count; c++) {
         const struct planar_contact *p = &m->plane->contact[c];
-        const struct planar_line *l = &s->line[c];
-        const size_t shift = (size_t)p->begins;
-        if (tribo_slides_in_plane(m, p) && k >= shift) {
-            const size_t j = k - shift;
-            power += sys->tally[p->at] * (product_of(l->un, l->xn, j, 0, j + 1) + product_of(l->ut, l->xt, j, 0, j + 1));
+        const struct planar_line *l = &e->planar.line[c];
+        const size_t j = k - (size_t)p->begins;
+        if (tribo_slides_in_plane(m, p) && k >= (size_t)p->begins) {
+            power += e->sys->tally[p->at] * (product_of(l->un, l->xn, j, 0, j + 1) + product_of(l->ut, l->xt, j, 0, j + 1));
         }
     }
     return power;
@@ -278,70 +268,70 @@ double tribo_planar_series_power(const struct planar_series *s, const struct sti
 
 /* -------------------------------------------------------------------------------------------------------------- guards */
 
-/* Coefficient k of x^2, x [terms]. */
-static double square_of(const double *x, size_t terms, size_t k)
+void tribo_planar_series_squares(struct event *e)
 {
-    return product_of(x, x, k, k < terms ? 0 : k - terms + 1, k < terms ? k + 1 : terms);
-}
-
-void tribo_planar_series_squares(struct planar_series *s, const struct stick_slip *m, const double *f)
-{
+    const struct stick_slip *m = &e->events.stick_slip;
     for (size_t c = 0; c < m->plane->count; c++) {
         const struct planar_contact *p = &m->plane->contact[c];
-        struct planar_line *l = &s->line[c];
+        struct planar_line *l = &e->planar.line[c];
         const int moves = tribo_slides_in_plane(m, p);
-        const size_t terms = s->order + 1 - (moves ? (size_t)p->begins : 0);
+        const size_t last = e->order - (moves ? (size_t)p->begins : 0);
         const double scale = moves ? 1.0 : 0.5 * greater(p->limit[0], p->limit[1]);
-        for (size_t k = 0; !moves && k <= s->order; k++) {
-            const double *force = f + k * m->constant.contacts + p->at;
+        for (size_t k = 0; !moves && k <= e->order; k++) {
+            const double *force = e->watch + k * m->constant.contacts + p->at;
             l->xn[k] = force[0] / p->limit[0];
             l->xt[k] = force[1] / p->limit[1];
         }
-        for (size_t k = 0; k <= 2 * s->order; k++) {
-            l->square[k] = k < 2 * terms - 1 ? scale * (square_of(l->xn, terms, k) + square_of(l->xt, terms, k)) : 0.0;
+        for (size_t k = 0; k <= 2 * e->order; k++) {
+            const size_t from = k < last ? 0 : k - last, to = k < last ? k + 1 : last + 1;
+            l->square[k] = scale * (product_of(l->xn, l->xn, k, from, to) + product_of(l->xt, l->xt, k, from, to));
         }
     }
 }
 
-double tribo_planar_series_value(const double *x, size_t powers, double h)
+void tribo_planar_series_errors(struct event *e)
 {
+    const struct planar_slip *plane = e->events.stick_slip.plane;
+    for (size_t i = 0; i < e->sys->ncontact; i++) {
+        plane->error[i] = e->error;
+    }
+    for (size_t c = 0; c < plane->count; c++) {
+        const struct planar_contact *p = &plane->contact[c];
+        if (tribo_slides_in_plane(&e->events.stick_slip, p) && p->begins == SLIDES_ON) {
+            const double own = PART * e->planar.line[c].xn[0] / greater(p->limit[0], p->limit[1]);
+            plane->error[p->at] = plane->error[p->at + 1] = lesser(e->error, own);
+        }
+    }
+}
+
+/* 1 if the direction of sliding contact c at h is right to plane->error, and its speed remains below FASTER times the first one. */
+static int is_right(const struct event *e, size_t c, double h)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const struct planar_contact *p = &m->plane->contact[c];
+    const struct planar_line *l = &e->planar.line[c];
+    const size_t last = e->order - (size_t)p->begins;
+    const double xn = tribo_series_value(l->xn, last, h), xt = tribo_series_value(l->xt, last, h), size = hypot(xn, xt);
+    const double off =
+        hypot(tribo_series_value(l->un, e->order, h) - xn / size, tribo_series_value(l->ut, e->order, h) - xt / size);
+    const double most_r = greater(p->limit[0] * m->constant.diagonal[p->at], p->limit[1] * m->constant.diagonal[p->at + 1]);
     double sum = 0.0;
-    for (size_t k = powers + 1; k-- > 0;) {
-        sum = sum * h + x[k];
+    for (size_t k = last + 1; k-- > 0;) {
+        sum = sum * h + fabs(l->xn[k]) + fabs(l->xt[k]);
     }
-    return sum;
+    return off * most_r * h / (double)(e->order + 1) <= m->plane->error[p->at] && sum <= FASTER * l->xn[0];
 }
 
-void tribo_planar_series_errors(const struct planar_series *s, const struct stick_slip *m, double *error)
+double tribo_planar_series_shorten(const struct event *e, double h)
 {
-    for (size_t i = 0; i < m->constant.contacts; i++) {
-        error[i] = HUGE_VAL;
-    }
-    for (size_t c = 0; c < m->plane->count; c++) {
-        const struct planar_contact *p = &m->plane->contact[c];
-        if (tribo_slides_in_plane(m, p) && p->begins == SLIDES_ON) {
-            error[p->at] = error[p->at + 1] = PART * s->line[c].xn[0] / greater(p->limit[0], p->limit[1]);
+    const struct stick_slip *m = &e->events.stick_slip;
+    for (size_t c = 0; c < m->plane->count && h > 0.0;) {
+        if (!tribo_slides_in_plane(m, &m->plane->contact[c]) || is_right(e, c, h)) {
+            c++;
+        } else {
+            h *= 0.8;
+            c = 0;
         }
     }
-}
-
-double tribo_planar_series_defect(const struct planar_series *s, const struct stick_slip *m, double h, double error)
-{
-    double most = 0.0;
-    for (size_t c = 0; c < m->plane->count; c++) {
-        const struct planar_contact *p = &m->plane->contact[c];
-        const struct planar_line *l = &s->line[c];
-        const size_t last = s->order - (size_t)p->begins;
-        if (tribo_slides_in_plane(m, p)) {
-            const double xn = tribo_planar_series_value(l->xn, last, h), xt = tribo_planar_series_value(l->xt, last, h),
-                         size = hypot(xn, xt);
-            const double off = hypot(tribo_planar_series_value(l->un, s->order, h) - xn / size,
-                                     tribo_planar_series_value(l->ut, s->order, h) - xt / size);
-            const double most_r =
-                greater(p->limit[0] * m->constant.diagonal[p->at], p->limit[1] * m->constant.diagonal[p->at + 1]);
-            const double defect = off * most_r * h / (double)(s->order + 1);
-            most = greater(most, defect / lesser(error, m->plane->error[p->at]));
-        }
-    }
-    return most;
+    return h;
 }
