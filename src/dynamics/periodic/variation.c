@@ -43,67 +43,36 @@ static void add_transposed(const struct matrix *a, double factor, const double *
     }
 }
 
-/* Sets x->f: R_HH f_H = -a_H, a = x->a. Returns a status. */
-static int solve_holding_forces(struct variation *x)
+/* Lists the crossings of static limits that drop at once, at tau into the phase: by the guard that ended the phase, and of other
+ * contacts at the same time. Forces that do not rise only touch their limits. Sets row = df_i/dstate: f_i = e'J (-AK q - AC q'),
+ * e = -R_HH^-1 unit_i. Returns a status. */
+static int find_breakaways(struct variation *x, double tau)
 {
-    return tribo_stick_slip_balance(&x->events->stick_slip, x->a, x->f);
-}
-
-/* Sets x->f = f' of holding contacts at the state y; forces of other contacts follow their limits. Returns a status. */
-static int find_force_rates(struct variation *x, const double *y)
-{
-    tribo_system *sys = x->sys;
-    double *rate = x->change;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        x->f[i] = x->limit_rate[i] * tribo_stick_slip_follows(&x->events->stick_slip, i);
-    }
-    tribo_system_smooth(sys, 1, 1.0, y + sys->ndof, x->acceleration, x->events->stick_slip.state.spring_rate, rate);
-    tribo_matrix_multiply_add(&sys->response, 1.0, x->f, rate);
-    tribo_stick_slip_contact_accelerations(sys, rate, 2, x->a);
-    return solve_holding_forces(x);
-}
-
-/* Lists the crossings of static limits that drop at once, at the state y: by the guard that ended the phase, and of other contacts
- * at the same time. Forces that do not rise only touch their limits. Returns a status. */
-static int find_breakaways(struct variation *x, const double *y)
-{
-    const struct stick_slip *m = &x->events->stick_slip;
-    const struct guard *met = x->events->met;
-    size_t count = 0;
-    if (!m->breakaway.some || m->breakaway.falls) {
-        return TRIBO_OK;
-    }
-    tribo_system_limits(x->sys, x->limit, x->limit_rate);
-    for (size_t i = 0; i < x->sys->ncontact; i++) {
-        const double most = tribo_breakaway_ratio(&m->breakaway, i) * x->limit[i];
-        const int meets = (met && met->kind == HOLDS && met->contact == i) || fabs(x->force[i]) >= (1.0 - TOGETHER) * most;
-        if (meets && m->state.holds[i] && tribo_breakaway_is_sudden(&m->breakaway, i)) {
-            x->contact[count++] = i;
-        }
-    }
-    int status = count ? find_force_rates(x, y) : TRIBO_OK;
-    for (size_t k = 0; k < count; k++) {
-        const size_t i = x->contact[k];
-        const double side = x->force[i] > 0.0 ? 1.0 : -1.0;
-        const double slope = x->f[i] - side * tribo_breakaway_ratio(&m->breakaway, i) * x->limit_rate[i];
-        if (side * slope > 0.0) {
-            x->slope[x->count] = slope;
-            x->contact[x->count++] = i;
-        }
-    }
-    /* row = df_i/dstate: f_i = e'J (-AK q - AC q'), e = -R_HH^-1 unit_i */
+    struct events *e = x->events;
+    struct stick_slip *m = &e->stick_slip;
     const size_t n = tribo_system_energy(x->sys);
-    memset(x->row, 0, x->count * n * sizeof *x->row);
-    for (size_t k = 0; !status && k < x->count; k++) {
-        memset(x->a, 0, x->sys->ncontact * sizeof *x->a);
-        x->a[x->contact[k]] = 1.0;
-        status = solve_holding_forces(x);
-        memset(x->change, 0, x->sys->ndof * sizeof *x->change);
-        add_transposed(&x->sys->direction, 1.0, x->f, x->change);
-        add_transposed(&x->sys->stiffness, -1.0, x->change, x->row + k * n);
-        if (x->sys->damping.rows) {
-            add_transposed(&x->sys->damping, -1.0, x->change, x->row + k * n + x->sys->ndof);
+    int status = TRIBO_OK;
+    for (size_t k = 0; m->breakaway.some && !m->breakaway.falls && !status && k < e->search.guards; k++) {
+        struct guard *g = &e->search.guard[k];
+        const size_t i = g->contact;
+        if (g->kind != HOLDS || !g->output || !m->state.holds[i] || !tribo_breakaway_is_sudden(&m->breakaway, i)) {
+            continue;
         }
+        e->motion->look(e->own, tau, 1, &g);
+        if (!(g->middle.d < 0.0) || (g != e->met && !(g->middle.g <= TOGETHER * m->breakaway.stick[i]))) {
+            continue;
+        }
+        double *row = x->row + x->count * n;
+        memset(row, 0, n * sizeof *row);
+        memset(x->a, 0, x->sys->ncontact * sizeof *x->a);
+        memset(x->change, 0, x->sys->ndof * sizeof *x->change);
+        x->a[i] = 1.0;
+        status = tribo_stick_slip_balance(m, x->a, x->f);
+        add_transposed(&x->sys->direction, 1.0, x->f, x->change);
+        add_transposed(&x->sys->stiffness, -1.0, x->change, row);
+        add_transposed(&x->sys->damping, -1.0, x->change, row + x->sys->ndof);
+        x->slope[x->count] = g->side * g->middle.d;
+        x->contact[x->count++] = i;
     }
     return status;
 }
@@ -119,7 +88,7 @@ int tribo_variation_phase(struct variation *x, double tau, double t, const doubl
         status = no_derivative(x);
     }
     status = status || x->events->motion->keep ? status : catch_up(x);
-    return status ? status : find_breakaways(x, y);
+    return status ? status : find_breakaways(x, tau);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- velocities */
@@ -144,14 +113,12 @@ static int stops(const struct variation *x, size_t i)
 /* Appends the crossings of velocities. */
 static void find_stops(struct variation *x)
 {
-    const struct matrix *j = &x->sys->direction;
+    const size_t n = tribo_system_energy(x->sys);
     for (size_t i = 0; i < x->sys->ncontact; i++) {
         if (stops(x, i)) {
-            double *row = x->row + x->count * tribo_system_energy(x->sys);
-            memset(row, 0, tribo_system_energy(x->sys) * sizeof *row);
-            for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-                row[x->sys->ndof + j->col[k]] += j->val[k];
-            }
+            double *row = x->row + x->count * n;
+            memset(row, 0, n * sizeof *row);
+            tribo_matrix_get_row(&x->sys->direction, i, row + x->sys->ndof);
             x->slope[x->count] = x->rate[i];
             x->contact[x->count++] = i;
         }
@@ -189,35 +156,25 @@ static void tear(struct variation *x, size_t i, size_t j)
     x->other = i < j ? j : i;
 }
 
-/* delay [columns] = the times by which perturbed motions make crossing k earlier. */
-static void find_delay(const struct variation *x, size_t k, double *delay)
+/* Returns the first crossing of the group of crossing `first` that perturbed motions do not make at the same time, tied together
+ * by holding contacts; count if there is none. */
+static size_t find_apart(struct variation *x, size_t first)
 {
-    const size_t n = tribo_system_energy(x->sys);
-    memset(delay, 0, x->columns * sizeof *delay);
-    tribo_multiply_add(1, n, x->columns, 1.0 / x->slope[k], x->row + k * n, x->v, delay);
-}
-
-/* Returns 1 if perturbed motions make all crossings of the group of crossing `first` at one time too, tied together by holding
- * contacts. */
-static int together(struct variation *x, size_t first)
-{
-    const size_t group = x->group[x->contact[first]];
-    double *delay = x->delay, *other = delay + x->columns;
+    const size_t n = tribo_system_energy(x->sys), group = x->group[x->contact[first]];
+    double *delay = x->delay, *difference = delay + x->columns;
     for (size_t k = first + 1; k < x->count; k++) {
-        if (x->group[x->contact[k]] != group) {
-            continue;
-        }
-        x->status = x->status ? x->status : catch_up(x);
-        find_delay(x, first, delay);
-        find_delay(x, k, other);
-        const double size = tribo_largest(delay, x->columns);
-        for (size_t j = 0; j < x->columns; j++) {
-            if (fabs(other[j] - delay[j]) > TOGETHER * size) {
-                return 0;
+        if (x->group[x->contact[k]] == group) {
+            x->status = x->status ? x->status : catch_up(x);
+            memset(delay, 0, x->columns * sizeof *delay);
+            tribo_multiply_add(1, n, x->columns, 1.0 / x->slope[first], x->row + first * n, x->v, delay);
+            memcpy(difference, delay, x->columns * sizeof *delay);
+            tribo_multiply_add(1, n, x->columns, -1.0 / x->slope[k], x->row + k * n, x->v, difference);
+            if (tribo_largest(difference, x->columns) > TOGETHER * tribo_largest(delay, x->columns)) {
+                return k;
             }
         }
     }
-    return 1;
+    return x->count;
 }
 
 /* Carries perturbations over the crossings of the group of crossing `first`, its first one: appends the jump of q'' by the forces
@@ -226,7 +183,7 @@ static void carry_over(struct variation *x, size_t first)
 {
     const size_t n = x->sys->ndof, all = tribo_system_energy(x->sys), group = x->group[x->contact[first]];
     const struct slip_state *now = &x->events->stick_slip.state;
-    int acts = 0; /* 1: a contact stops, or breaks away */
+    int acts = 0, slides = 0; /* 1: a contact stops, or breaks away; slides afterwards */
     for (size_t k = first; k < x->count; k++) {
         const size_t i = x->contact[k];
         acts |= x->group[i] == group && (x->before[i] != 0 || now->slip[i] != 0);
@@ -234,20 +191,16 @@ static void carry_over(struct variation *x, size_t first)
     if (!acts) {
         return;
     }
-    if (!together(x, first)) {
-        for (size_t i = 0; i < x->sys->ncontact; i++) {
-            size_t k = first;
-            if (x->group[i] == group && now->slip[i] != TRIBO_SLIP_STUCK) {
-                while (x->group[x->contact[k]] != group || x->contact[k] == i) {
-                    k++;
-                }
-                tear(x, i, x->contact[k]);
-            }
+    const size_t apart = find_apart(x, first);
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        slides |= x->group[i] == group && now->slip[i] != TRIBO_SLIP_STUCK;
+        x->f[i] = x->group[i] == group ? now->force[i] - x->force[i] : 0.0;
+    }
+    if (apart < x->count) {
+        if (slides) {
+            tear(x, x->contact[first], x->contact[apart]);
         }
         return;
-    }
-    for (size_t i = 0; i < x->sys->ncontact; i++) {
-        x->f[i] = x->group[i] == group ? now->force[i] - x->force[i] : 0.0;
     }
     tribo_matrix_multiply(&x->sys->response, x->f, x->change);
     for (size_t l = 0; l < x->count; l++) {
@@ -298,37 +251,28 @@ void tribo_variation_begin(struct variation *x, const double *v, struct derivati
     x->torn = x->other = x->sys->ncontact;
 }
 
-static void lay_out_variation(struct variation *x, struct layout *l)
-{
-    const size_t n = x->sys->ndof, c = x->sys->ncontact, all = tribo_system_energy(x->sys);
-    x->v = tribo_layout_array(l, all * x->columns, sizeof *x->v);
-    x->acceleration = tribo_layout_array(l, n, sizeof *x->acceleration);
-    x->force = tribo_layout_array(l, c, sizeof *x->force);
-    x->rate = tribo_layout_array(l, c, sizeof *x->rate);
-    x->slope = tribo_layout_array(l, c, sizeof *x->slope);
-    x->row = tribo_layout_array(l, c * all, sizeof *x->row);
-    x->limit = tribo_layout_array(l, c, sizeof *x->limit);
-    x->limit_rate = tribo_layout_array(l, c, sizeof *x->limit_rate);
-    x->a = tribo_layout_array(l, c, sizeof *x->a);
-    x->f = tribo_layout_array(l, c, sizeof *x->f);
-    x->change = tribo_layout_array(l, n, sizeof *x->change);
-    x->delay = tribo_layout_array(l, 2 * x->columns, sizeof *x->delay);
-    x->contact = tribo_layout_array(l, c, sizeof *x->contact);
-    x->group = tribo_layout_array(l, c, sizeof *x->group);
-    x->queue = tribo_layout_array(l, c, sizeof *x->queue);
-    x->before = tribo_layout_array(l, c, sizeof *x->before);
-}
-
 int tribo_variation_create(struct variation *x, struct events *e, tribo_system *sys, size_t columns)
 {
+    const size_t n = sys->ndof, c = sys->ncontact, all = tribo_system_energy(sys);
     struct layout l = {0};
     *x = (struct variation){.events = e, .sys = sys, .columns = columns};
-    lay_out_variation(x, &l);
-    if (!tribo_layout_create(&l)) {
-        return 0;
-    }
-    lay_out_variation(x, &l);
-    return 1;
+    do {
+        x->v = tribo_layout_array(&l, all * columns, sizeof *x->v);
+        x->acceleration = tribo_layout_array(&l, n, sizeof *x->acceleration);
+        x->force = tribo_layout_array(&l, c, sizeof *x->force);
+        x->rate = tribo_layout_array(&l, c, sizeof *x->rate);
+        x->slope = tribo_layout_array(&l, c, sizeof *x->slope);
+        x->row = tribo_layout_array(&l, c * all, sizeof *x->row);
+        x->a = tribo_layout_array(&l, c, sizeof *x->a);
+        x->f = tribo_layout_array(&l, c, sizeof *x->f);
+        x->change = tribo_layout_array(&l, n, sizeof *x->change);
+        x->delay = tribo_layout_array(&l, 2 * columns, sizeof *x->delay);
+        x->contact = tribo_layout_array(&l, c, sizeof *x->contact);
+        x->group = tribo_layout_array(&l, c, sizeof *x->group);
+        x->queue = tribo_layout_array(&l, c, sizeof *x->queue);
+        x->before = tribo_layout_array(&l, c, sizeof *x->before);
+    } while (!l.memory && tribo_layout_create(&l));
+    return l.memory != NULL;
 }
 
 void tribo_variation_free(struct variation *x)

@@ -40,9 +40,9 @@ struct variation {
     double *row;     /* [ncontact][n] dg/dstate */
     size_t *group;   /* [ncontact] 1, 2, ...: groups of contacts; 0: none */
 
-    size_t *queue;                      /* [ncontact] workspace */
-    double *limit, *limit_rate, *a, *f; /* [ncontact] workspace */
-    double *change, *delay;             /* [ndof], [2 columns] workspace */
+    size_t *queue;          /* [ncontact] workspace */
+    double *a, *f;          /* [ncontact] workspace */
+    double *change, *delay; /* [ndof], [2 columns] workspace */
 };
 
 /* Returns 1, or 0 if out of memory. Call tribo_variation_free also after a failure. */
