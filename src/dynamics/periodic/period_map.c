@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "period_map.h"
+#include "common/layout.h"
 #include "common/real.h"
 
 #include <math.h>
@@ -85,9 +86,11 @@ int tribo_period_map_march(struct period_map *m, size_t periods, double *x)
     return status;
 }
 
-static void set_image(int odd, size_t count, double *x)
+/* x [n][columns] = coordinates of states y, or of -y if odd. */
+static void find_image(const struct period_map *m, int odd, size_t columns, const double *y, double *x)
 {
-    for (size_t i = 0; odd && i < count; i++) {
+    tribo_energy_norm_of(&m->norm, columns, y, x);
+    for (size_t i = 0; odd && i < m->n * columns; i++) {
         x[i] = -x[i];
     }
 }
@@ -97,16 +100,28 @@ static int no_room(const struct period_map *m)
     return tribo_driver_fail(m->drv, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", m->n, plural(m->n));
 }
 
-/* Sets p->derivative.matrix from v [n][n], the final perturbations of initial unit coordinates. Returns a status. */
-static int keep_matrix(struct period_map *m, struct point *p, const double *v)
+/* v [n][columns] = perturbations of the state: n of unit coordinates, or fewer, without any symmetry. Returns a status. */
+static int perturb(const struct period_map *m, size_t columns, double *v)
 {
-    double *matrix = malloc(m->n * m->n * sizeof *matrix);
-    if (!matrix) {
+    double *x = malloc(m->n * columns * sizeof *x);
+    for (size_t i = 0; x && i < m->n * columns; i++) {
+        x[i] = columns == m->n ? i % (m->n + 1) == 0 : sin(1.0 + (double)(i * i));
+    }
+    if (x) {
+        tribo_energy_norm_state(&m->norm, columns, x, v);
+    }
+    free(x);
+    return x ? TRIBO_OK : no_room(m);
+}
+
+/* Sets p->derivative.matrix from v [n][n], the final perturbations of initial unit coordinates. Returns a status. */
+static int keep_matrix(const struct period_map *m, struct point *p, const double *v)
+{
+    p->derivative.matrix = malloc(m->n * m->n * sizeof *v);
+    if (!p->derivative.matrix) {
         return no_room(m);
     }
-    tribo_energy_norm_of(&m->norm, m->n, v, matrix);
-    set_image(p->odd, m->n * m->n, matrix);
-    p->derivative.matrix = matrix;
+    find_image(m, p->odd, m->n, v, p->derivative.matrix);
     return TRIBO_OK;
 }
 
@@ -138,8 +153,7 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
     }
     m->moved = 1;
     memcpy(p->end, m->y, n * sizeof *p->end);
-    tribo_energy_norm_of(&m->norm, 1, m->y, p->image);
-    set_image(m->odd, n, p->image);
+    find_image(m, m->odd, 1, m->y, p->image);
     p->residual = tribo_energy_distance(p->image, p->x, n);
     p->size = m->size;
     p->odd = m->odd;
@@ -150,10 +164,15 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
 
 int tribo_period_map_apply(struct period_map *m, const struct point *p, double *x)
 {
+    if (p->derivative.matrix) {
+        memcpy(m->x, x, m->n * sizeof *x);
+        memset(x, 0, m->n * sizeof *x);
+        tribo_multiply_add(m->n, m->n, 1, 1.0, p->derivative.matrix, m->x, x);
+        return TRIBO_OK;
+    }
     tribo_energy_norm_state(&m->norm, 1, x, m->y);
     const int status = tribo_driver_pass(m->drv, tribo_derivative_apply(&p->derivative, 0, 1, m->y));
-    tribo_energy_norm_of(&m->norm, 1, m->y, x);
-    set_image(p->odd, m->n, x);
+    find_image(m, p->odd, 1, m->y, x);
     return status;
 }
 
@@ -161,16 +180,9 @@ int tribo_period_map_matrix(struct period_map *m, struct point *p, const double 
 {
     int status = TRIBO_OK;
     if (!p->derivative.matrix) {
-        const size_t n = m->n;
-        double *v = malloc(2 * n * n * sizeof *v), *unit = v + n * n;
-        if (!v) {
-            return no_room(m);
-        }
-        for (size_t i = 0; i < n * n; i++) {
-            unit[i] = i % (n + 1) == 0;
-        }
-        tribo_energy_norm_state(&m->norm, n, unit, v);
-        status = tribo_driver_pass(m->drv, tribo_derivative_apply(&p->derivative, 0, n, v));
+        double *v = malloc(m->n * m->n * sizeof *v);
+        status = v ? perturb(m, m->n, v) : no_room(m);
+        status = status ? status : tribo_driver_pass(m->drv, tribo_derivative_apply(&p->derivative, 0, m->n, v));
         status = status ? status : keep_matrix(m, p, v);
         free(v);
     }
@@ -234,25 +246,6 @@ static double least_motion(struct period_map *m)
     return size;
 }
 
-/* Sets m->probe: all n unit perturbations, or, if phases are kept, at most PROBES without any symmetry. Returns a status. */
-static int prepare_probes(struct period_map *m)
-{
-    const size_t columns = m->events->motion->keep && m->n > PROBES ? PROBES : m->n;
-    if (!m->variation.v && !tribo_variation_create(&m->variation, m->events, m->sys, columns)) {
-        return no_room(m);
-    }
-    m->probe = m->probe ? m->probe : malloc(m->n * columns * sizeof *m->probe);
-    double *x = malloc(m->n * columns * sizeof *x);
-    for (size_t i = 0; x && i < m->n * columns; i++) {
-        x[i] = columns == m->n ? i % (m->n + 1) == 0 : sin(1.0 + (double)(i * i));
-    }
-    if (m->probe && x) {
-        tribo_energy_norm_state(&m->norm, columns, x, m->probe);
-    }
-    free(x);
-    return m->probe && x ? TRIBO_OK : no_room(m);
-}
-
 int tribo_period_map_prepare(struct period_map *m, double t, double period, const double *y)
 {
     m->halves = 0;
@@ -279,7 +272,13 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period, cons
         m->norm.scale = ldexp(1.0, -(int)clamp(logb(size), -1000.0, 1000.0));
     }
     m->least = LEAST_SIZE * (m->norm.scale * least);
-    return prepare_probes(m);
+    /* probes: all n unit perturbations, or a few if phases are kept */
+    const size_t columns = m->events->motion->keep && m->n > PROBES ? PROBES : m->n;
+    m->probe = m->probe ? m->probe : malloc(m->n * columns * sizeof *m->probe);
+    if (!m->probe || (!m->variation.v && !tribo_variation_create(&m->variation, m->events, m->sys, columns))) {
+        return no_room(m);
+    }
+    return perturb(m, columns, m->probe);
 }
 
 void tribo_period_map_choose(struct period_map *m, int odd)
@@ -294,12 +293,13 @@ int tribo_period_map_create(struct period_map *m, tribo_driver *drv)
 {
     const size_t n = tribo_system_energy(drv->sys);
     *m = (struct period_map){.drv = drv, .sys = drv->sys, .n = n, .company = {phase_ends, event_decided}};
-    m->y = malloc((2 * n + 2 * drv->sys->ncontact + 2) * sizeof *m->y);
-    if (m->y) {
-        m->x = m->y + n + 1;
-        m->limit = m->x + n + 1;
-    }
-    return m->y != NULL;
+    struct layout l = {0};
+    do {
+        m->y = tribo_layout_array(&l, n + 1, sizeof *m->y);
+        m->x = tribo_layout_array(&l, n, sizeof *m->x);
+        m->limit = tribo_layout_array(&l, 2 * drv->sys->ncontact, sizeof *m->limit);
+    } while (!l.memory && tribo_layout_create(&l));
+    return l.memory != NULL;
 }
 
 void tribo_period_map_free(struct period_map *m)

@@ -13,6 +13,7 @@
  * of solutions (a double root): Newton's steps halve each time, and ratio = 1/4. Then the step is made twice as long, and a
  * little more. */
 #include "shooting.h"
+#include "common/layout.h"
 #include "common/real.h"
 #include "numerics/linalg.h"
 #include "numerics/krylov.h"
@@ -131,27 +132,6 @@ static double left_along(const struct shooting *s, const struct point *p)
     return tribo_dot(s->step, p->x, n) - tribo_dot(s->step, p->image, n);
 }
 
-/* x [n] = the shortest solution of (I - derivative) y = x, with singular values below cut taken as zero; *kernel = their number.
- * Returns a status. */
-static int solve_densely(struct shooting *s, const double *derivative, double cut, double *x, size_t *kernel)
-{
-    const size_t n = s->map.n;
-    *kernel = 0;
-    for (int singular = 0; singular < 2; singular++) {
-        for (size_t i = 0; i < n * n; i++) {
-            s->a[i] = (i % (n + 1) == 0 ? 1.0 : 0.0) - derivative[i];
-        }
-        if (!singular && tribo_lu_create(s->a, n, s->pivot) > SINGULAR) {
-            tribo_lu_solve(s->a, n, s->pivot, x, 1);
-            return TRIBO_OK;
-        }
-    }
-    return tribo_least_norm_solve(s->a, n, cut, x, kernel)
-               ? TRIBO_OK
-               : tribo_driver_fail(s->map.drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
-                                   s->map.sys->ndof, plural(s->map.sys->ndof));
-}
-
 /* x = s->free x, if s->preconditions. */
 static void apply_free(const struct shooting *s, double *x)
 {
@@ -194,48 +174,69 @@ static int apply_equation(void *data, double *x)
     return status;
 }
 
-/* Returns 1 if n > DENSE and phases are kept: then steps are solved without a matrix. */
-static int is_matrix_free(const struct shooting *s)
+/* Sets s->b = D, the derivative at s->here over `spans` spans, 1 or 2. Returns a status. */
+static int find_derivative(struct shooting *s, int spans)
 {
-    return s->map.n > DENSE && s->map.events->motion->keep;
+    const size_t n = s->map.n;
+    const double *d = NULL;
+    const int status = tribo_period_map_matrix(&s->map, s->here, &d);
+    if (!status && spans == 2) {
+        memset(s->b, 0, n * n * sizeof *s->b);
+        tribo_multiply_add(n, n, n, 1.0, d, d, s->b);
+    } else if (!status) {
+        memcpy(s->b, d, n * n * sizeof *s->b);
+    }
+    return status;
 }
 
-/* Solves (I - D) y = x in place, D over `spans` spans from s->here. *done = 0: no solution, x undefined. If contacts rest all the
- * time, there may be many solutions: the Krylov space, then without s->free, of a map that increases no distance has the shortest.
- * Returns a status. */
-static int solve_in_space(struct shooting *s, int spans, double tolerance, double *x, int *done)
+/* x [n] = the shortest solution of (I - D) y = x, D over `spans` spans from s->here. With n > DENSE and phases that are kept, by
+ * GMRES to `tolerance`, if kernel is NULL: if contacts rest all the time, there may be many solutions; the Krylov space, then
+ * without s->free, of a map that increases no distance has the shortest. Otherwise, and if that fails, by a matrix, with singular
+ * values below cut taken as zero; *kernel = their number. Returns a status. */
+static int solve(struct shooting *s, int spans, double tolerance, double cut, double *x, size_t *kernel)
 {
-    double part;
-    s->spans = spans;
-    s->preconditions = spans == 1 && !tribo_derivative_rests(&s->here->derivative);
-    if (s->preconditions) {
-        find_free(s);
+    const size_t n = s->map.n;
+    if (!kernel && n > DENSE && s->map.events->motion->keep) {
+        double part;
+        memcpy(s->b, x, n * sizeof *x);
+        s->spans = spans;
+        s->preconditions = spans == 1 && !tribo_derivative_rests(&s->here->derivative);
+        if (s->preconditions) {
+            find_free(s);
+        }
+        const int status = tribo_gmres(n, apply_equation, s, tolerance, n, x, &part, s->space);
+        apply_free(s, x);
+        s->preconditions = 0;
+        if (status || part <= tolerance) {
+            return status;
+        }
+        memcpy(x, s->b, n * sizeof *x);
     }
-    const int status = tribo_gmres(s->map.n, apply_equation, s, tolerance, s->map.n, x, &part, s->space);
-    apply_free(s, x);
-    s->preconditions = 0;
-    *done = part <= tolerance;
-    return status;
+    size_t zeros = 0, *const count = kernel ? kernel : &zeros;
+    const int status = find_derivative(s, spans);
+    *count = 0;
+    for (int singular = 0; !status && singular < 2; singular++) {
+        for (size_t i = 0; i < n * n; i++) {
+            s->a[i] = (i % (n + 1) == 0 ? 1.0 : 0.0) - s->b[i];
+        }
+        if (!singular && tribo_lu_create(s->a, n, s->pivot) > SINGULAR) {
+            tribo_lu_solve(s->a, n, s->pivot, x, 1);
+            return TRIBO_OK;
+        }
+    }
+    return status || tribo_least_norm_solve(s->a, n, cut, x, count)
+               ? status
+               : tribo_driver_fail(s->map.drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
+                                   s->map.sys->ndof, plural(s->map.sys->ndof));
 }
 
 /* Sets s->step, the shortest solution of (I - derivative) step = image - x. Returns a status. */
 static int newton_step(struct shooting *s)
 {
-    const double *derivative = NULL;
-    size_t kernel;
-    int done = 0, status = TRIBO_OK;
-    if (is_matrix_free(s)) {
-        const double near = s->here->residual / s->here->size;
-        const double fell = s->before > 0.0 && near > LEAST_INEXACT ? lesser(s->here->residual / s->before, 1.0) : 0.0;
-        find_misfit(s, s->here, s->step);
-        status = solve_in_space(s, 1, clamp(greater(near, 0.9 * fell * fell), LEAST_INEXACT, MOST_INEXACT), s->step, &done);
-    }
-    status = status || done ? status : tribo_period_map_matrix(&s->map, s->here, &derivative);
-    if (status || done) {
-        return status;
-    }
+    const double near = s->here->residual / s->here->size;
+    const double fell = s->before > 0.0 && near > LEAST_INEXACT ? lesser(s->here->residual / s->before, 1.0) : 0.0;
     find_misfit(s, s->here, s->step);
-    return solve_densely(s, derivative, CUT, s->step, &kernel);
+    return solve(s, 1, clamp(greater(near, 0.9 * fell * fell), LEAST_INEXACT, MOST_INEXACT), CUT, s->step, NULL);
 }
 
 /* Sets s->there from there.x = here.x + part step, s->ratio and s->nearest. Returns a status. */
@@ -334,75 +335,50 @@ static int search(struct shooting *s, size_t halves)
     return status;
 }
 
-/* Searches from the forecast, unless the guess is near it. *done = 0: not found, also after a failed integration. */
-static int search_from_forecast(struct shooting *s, int *done)
-{
-    const size_t n = s->map.n;
-    const int may = s->map.odd && !s->map.events->stick_slip.breakaway.some && s->map.norm.scale == 1.0;
-    int status = may ? tribo_forecast(&s->map, s->here->x, done) : TRIBO_OK;
-    if (!status && *done && tribo_energy_distance(s->guess, s->here->x, n) > FAR * tribo_energy_length(s->here->x, n)) {
-        status = search(s, FIRST);
-        *done = !status && close_enough(s->best, TOLERANCE);
-        return status == TRIBO_ERR_MEMORY ? status : TRIBO_OK;
-    }
-    *done = 0;
-    return status;
-}
-
-/* Searches from the forecast; then from the guess, and from the state some periods after it: where contacts hardly slip, or static
- * limits make motions diverge, Newton's steps may fail. With static limits a stable motion may be not odd, although all drives are
- * odd. Returns a status. */
+/* Searches from the forecast, unless the guess is near it; then from the guess, and from states some periods after it: where contacts
+ * hardly slip, or static limits make motions diverge, Newton's steps may fail. With static limits a stable motion may be not odd,
+ * although all drives are odd. Returns a status. */
 static int search_all(struct shooting *s)
 {
-    static const struct {
-        size_t marched, halves;
-        int odd, only_static;
-    } start[] = {
-        {0, FIRST, 1, 0}, {MARCHED, MOST, 1, 0}, {MARCHED_STATIC, MOST, 1, 1}, {0, FIRST, 0, 1}, {MARCHED_STATIC, MOST, 0, 1}};
+    static const size_t marched[] = {0, MARCHED, MARCHED_STATIC};
+    const size_t n = s->map.n, statics = !tribo_system_is_plain(s->map.sys);
     const int was_odd = s->map.odd;
-    int done = 0, status = search_from_forecast(s, &done);
-    for (size_t k = 0; k < sizeof start / sizeof *start && !status && !done; k++) {
-        if ((start[k].only_static && !s->map.events->stick_slip.breakaway.some) || (!start[k].odd && !was_odd)) {
-            continue;
+    int done = 0, status = TRIBO_OK;
+    if (was_odd && !statics && s->map.norm.scale == 1.0) {
+        status = tribo_forecast(&s->map, s->here->x, &done);
+        if (!status && done && tribo_energy_distance(s->guess, s->here->x, n) > FAR * tribo_energy_length(s->here->x, n)) {
+            status = search(s, FIRST);
+            done = !status && close_enough(s->best, TOLERANCE);
+            status = status == TRIBO_ERR_MEMORY ? status : TRIBO_OK;
+        } else {
+            done = 0;
         }
-        tribo_period_map_choose(&s->map, was_odd && start[k].odd);
-        memcpy(s->here->x, s->guess, s->map.n * sizeof *s->guess);
-        status = start[k].marched ? tribo_period_map_march(&s->map, start[k].marched, s->here->x) : TRIBO_OK;
-        status = status ? status : search(s, start[k].halves);
-        done = !status && close_enough(s->best, TOLERANCE);
+    }
+    for (int odd = was_odd; odd >= (statics ? 0 : was_odd); odd--) {
+        for (size_t k = 0; !status && !done && k < 2 + statics; k++) {
+            tribo_period_map_choose(&s->map, odd);
+            memcpy(s->here->x, s->guess, n * sizeof *s->guess);
+            status = k ? tribo_period_map_march(&s->map, marched[k], s->here->x) : TRIBO_OK;
+            status = status ? status : search(s, k ? MOST : FIRST);
+            done = !status && close_enough(s->best, TOLERANCE);
+        }
     }
     return status || done ? status : no_convergence(s, s->nearest);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- the family */
 
-/* Sets s->b = the derivative over the whole period. Returns a status. */
-static int whole_derivative(struct shooting *s)
+/* Projects move [n] on the family of s->best, the kernel of I - derivative over the period; sets s->step. kernel: of solve. Returns
+ * a status. */
+static int project_on_family(struct shooting *s, double *move, size_t *kernel)
 {
     const size_t n = s->map.n;
-    const double *d = NULL;
-    const int status = tribo_period_map_matrix(&s->map, s->best, &d);
-    if (!status && s->best->odd) {
-        memset(s->b, 0, n * n * sizeof *s->b);
-        tribo_multiply_add(n, n, n, 1.0, d, d, s->b);
-    } else if (!status) {
-        memcpy(s->b, d, n * n * sizeof *s->b);
-    }
-    return status;
-}
-
-/* Sets s->freedom = dimension of the kernel of I - derivative, and projects move [n] on the kernel. Returns a status. */
-static int find_family(struct shooting *s, double *move)
-{
-    const size_t n = s->map.n;
-    int status = whole_derivative(s);
-    if (!status) {
-        memcpy(s->step, move, n * sizeof *move);
-        tribo_multiply_add(n, n, 1, -1.0, s->b, move, s->step);
-        status = solve_densely(s, s->b, FREE, s->step, &s->freedom);
-        tribo_add(move, -1.0, s->step, n);
-    }
-    s->freedom = status ? UNKNOWN : s->freedom;
+    go_to(s, s->best);
+    s->spans = s->best->odd ? 2 : 1;
+    memcpy(s->step, move, n * sizeof *move);
+    int status = apply_equation(s, s->step);
+    status = status ? status : solve(s, s->spans, AIM, FREE, s->step, kernel);
+    tribo_add(move, -1.0, s->step, n);
     return status;
 }
 
@@ -412,24 +388,13 @@ static int approach_guess(struct shooting *s)
 {
     const size_t n = s->map.n;
     const int alone = s->map.norm.damped && !tribo_derivative_rests(&s->best->derivative);
-    int status = TRIBO_OK, done = 0;
     if (!s->map.odd || alone || !(tribo_energy_length(s->guess, n) > 0.0) ||
         tribo_energy_distance(s->guess, s->best->x, n) < MEANT * s->best->size) {
         return TRIBO_OK;
     }
     /* guess = the part of guess - x in the family */
     tribo_add(s->guess, -1.0, s->best->x, n);
-    if (is_matrix_free(s)) {
-        go_to(s, s->best);
-        memcpy(s->step, s->guess, n * sizeof *s->step);
-        s->spans = 2;
-        status = apply_equation(s, s->step);
-        status = status ? status : solve_in_space(s, 2, AIM, s->step, &done);
-    }
-    if (!status && done) {
-        tribo_add(s->guess, -1.0, s->step, n);
-    }
-    status = status || done ? status : find_family(s, s->guess);
+    int status = project_on_family(s, s->guess, NULL);
     if (status || tribo_energy_length(s->guess, n) < MEANT * s->best->size) {
         return status;
     }
@@ -447,7 +412,8 @@ static int approach_guess(struct shooting *s)
 
 int tribo_shooting_freedom(struct shooting *s, size_t *freedom)
 {
-    const int status = s->freedom == UNKNOWN ? find_family(s, s->guess) : TRIBO_OK;
+    const int status = s->freedom == UNKNOWN ? project_on_family(s, s->guess, &s->freedom) : TRIBO_OK;
+    s->freedom = status ? UNKNOWN : s->freedom;
     *freedom = status ? *freedom : s->freedom;
     return status;
 }
@@ -457,7 +423,8 @@ int tribo_shooting_freedom(struct shooting *s, size_t *freedom)
 int tribo_shooting_multipliers(struct shooting *s, double *re, double *im)
 {
     const size_t n = s->map.n, all = tribo_system_dimension(s->map.sys) - 1;
-    int status = whole_derivative(s);
+    go_to(s, s->best);
+    int status = find_derivative(s, s->best->odd ? 2 : 1);
     if (status) {
         return status;
     }
@@ -514,24 +481,29 @@ int tribo_shooting_find(struct shooting *s, double t, double period, double *y)
 struct shooting *tribo_shooting_create(tribo_driver *drv)
 {
     const size_t n = tribo_system_energy(drv->sys);
+    struct layout l = {0};
     struct shooting *s = calloc(1, sizeof *s);
     if (!s) {
         return NULL;
     }
-    s->a = malloc((2 * n * n + 16 * n + tribo_gmres_room(n, n) + 1) * sizeof *s->a);
-    s->pivot = malloc((n + 1) * sizeof *s->pivot);
-    if (!tribo_period_map_create(&s->map, drv) || !s->a || !s->pivot) {
+    do {
+        s->a = tribo_layout_array(&l, n * n, sizeof *s->a);
+        s->b = tribo_layout_array(&l, n * n, sizeof *s->b);
+        s->step = tribo_layout_array(&l, n, sizeof *s->step);
+        s->guess = tribo_layout_array(&l, n, sizeof *s->guess);
+        s->free = tribo_layout_array(&l, 2 * n, sizeof *s->free);
+        s->space = tribo_layout_array(&l, tribo_gmres_room(n, n), sizeof *s->space);
+        s->pivot = tribo_layout_array(&l, n, sizeof *s->pivot);
+        for (struct point *p = s->point; p < s->point + 3; p++) {
+            p->y = tribo_layout_array(&l, n, sizeof *p->y);
+            p->x = tribo_layout_array(&l, n, sizeof *p->x);
+            p->end = tribo_layout_array(&l, n, sizeof *p->end);
+            p->image = tribo_layout_array(&l, n, sizeof *p->image);
+        }
+    } while (!l.memory && tribo_layout_create(&l));
+    if (!l.memory || !tribo_period_map_create(&s->map, drv)) {
         tribo_shooting_free(s);
         return NULL;
-    }
-    s->b = s->a + n * n;
-    s->step = s->b + n * n;
-    s->guess = s->step + n;
-    s->free = s->guess + n;
-    s->space = s->free + 2 * n;
-    double *next = s->space + tribo_gmres_room(n, n);
-    for (size_t k = 0; k < 3; k++, next += 4 * n) {
-        s->point[k] = (struct point){.y = next, .x = next + n, .end = next + 2 * n, .image = next + 3 * n};
     }
     s->best = s->point;
     go_to(s, s->best);
@@ -546,7 +518,6 @@ void tribo_shooting_free(struct shooting *s)
         }
         tribo_period_map_free(&s->map);
         free(s->a);
-        free(s->pivot);
         free(s);
     }
 }
