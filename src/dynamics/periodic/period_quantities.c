@@ -6,26 +6,50 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Observer of one period: calls `phase` for each phase. */
+/* Observer of one period: quantities of a combination c, or of contacts. */
 struct replay {
     struct company company;
     struct period_map *map;
-    int (*phase)(struct replay *r, double tau);
-    const double *c;      /* coefficients of q, q' (and f, f'), or NULL */
-    struct signal signal; /* the combination in the phase */
-    double elapsed;       /* time since the start of the period */
+    const double *c; /* coefficients of q, q' (and f, f'), or NULL */
+    double elapsed;  /* time since the start of the period */
+    int seeks;       /* 1: extremes of the combination; 0: its integral */
     struct extremes extremes;
-    double omega, re, im; /* integral of signal e^{-i omega t} */
-    double *sum;          /* [ncontact] sum over the phases */
+    double omega, re, im;  /* integral of the combination times e^{-i omega t} */
+    double *energy, *rest; /* [ncontact] dissipated energy; part of the period at rest; or NULL */
 };
+
+/* Adds the integral over the phase that begins at t. */
+static void integrate(struct replay *r, const struct signal *signal, double t)
+{
+    double re = 0.0, im = 0.0;
+    const double c = cos(r->omega * t), d = -sin(r->omega * t);
+    tribo_signal_integrate(signal, r->omega, &re, &im);
+    r->re += c * re - d * im;
+    r->im += d * re + c * im;
+}
 
 static int replay_phase(struct company *company, double tau, double t, const double *y)
 {
     struct replay *r = (struct replay *)company;
     const struct events *e = r->map->events;
-    int status = r->c ? e->motion->signal(e->own, r->c, tau, y, &r->signal) : TRIBO_OK;
-    status = status ? status : r->phase(r, tau);
+    const double begin = r->map->t + r->elapsed;
+    struct signal signal = {0};
+    int status = r->c ? e->motion->signal(e->own, r->c, tau, y, &signal) : TRIBO_OK;
     (void)t;
+    if (!status && r->c && !r->seeks) {
+        integrate(r, &signal, begin);
+    } else if (!status && r->c && !tribo_signal_extremes(&signal, begin, &r->extremes)) {
+        status = tribo_system_fail(r->map->sys, TRIBO_ERR_STEP, "a phase of the period is too fast to be followed");
+    }
+    for (size_t i = 0; !r->c && i < r->map->sys->ncontact; i++) {
+        const signed char slip = e->stick_slip.state.slip[i];
+        if (r->energy && tribo_slides(slip)) {
+            r->energy[i] += r->map->sys->tally[i] * e->motion->work(e->own, i, tau);
+        } else if (r->rest && slip == TRIBO_SLIP_STUCK) {
+            r->rest[i] += tau / r->map->period;
+        }
+    }
+    tribo_signal_free(&signal);
     r->elapsed += tau;
     return status;
 }
@@ -35,7 +59,7 @@ static void replay_event(struct company *company)
     (void)company;
 }
 
-/* Calls r->phase for each phase of the period. Returns a status. */
+/* Observes the period of the motion found. Returns a status. */
 static int replay(tribo_driver *drv, struct replay *r)
 {
     struct shooting *s = drv->shooting;
@@ -50,9 +74,7 @@ static int replay(tribo_driver *drv, struct replay *r)
     }
     r->company = (struct company){replay_phase, replay_event};
     r->map = &s->map;
-    r->elapsed = 0.0;
     const int status = tribo_period_map_replay(&s->map, s->best->y, &r->company);
-    tribo_signal_free(&r->signal);
     return status && s->map.drv != drv ? tribo_driver_fail(drv, status, "%s", s->map.drv->message) : status;
 }
 
@@ -73,16 +95,6 @@ static int take_combination(tribo_driver *drv, struct replay *r, const double *c
     return TRIBO_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- extremes */
-
-static int find_extremes(struct replay *r, double tau)
-{
-    (void)tau;
-    return tribo_signal_extremes(&r->signal, r->map->t + r->elapsed, &r->extremes)
-               ? TRIBO_OK
-               : tribo_system_fail(r->map->sys, TRIBO_ERR_STEP, "a phase of the period is too fast to be followed");
-}
-
 int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most, double *at_least,
                                  double *at_most)
 {
@@ -92,7 +104,7 @@ int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *lea
     if (!c || !least || !most) {
         return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", !c ? "c" : !least ? "least" : "most");
     }
-    struct replay r = {.phase = find_extremes, .extremes = {HUGE_VAL, -HUGE_VAL, 0.0, 0.0}};
+    struct replay r = {.seeks = 1, .extremes = {HUGE_VAL, -HUGE_VAL, 0.0, 0.0}};
     int status = take_combination(drv, &r, c);
     status = status ? status : replay(drv, &r);
     if (status) {
@@ -109,19 +121,6 @@ int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *lea
     return TRIBO_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- harmonics */
-
-static int integrate(struct replay *r, double tau)
-{
-    double re = 0.0, im = 0.0;
-    const double angle = r->omega * (r->map->t + r->elapsed), c = cos(angle), d = -sin(angle);
-    (void)tau;
-    tribo_signal_integrate(&r->signal, r->omega, &re, &im);
-    r->re += c * re - d * im;
-    r->im += d * re + c * im;
-    return TRIBO_OK;
-}
-
 int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, double *cosine, double *sine)
 {
     if (!drv) {
@@ -130,7 +129,7 @@ int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, d
     if (!c || !cosine || !sine) {
         return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", !c ? "c" : !cosine ? "cosine" : "sine");
     }
-    struct replay r = {.phase = integrate};
+    struct replay r = {0};
     int status = take_combination(drv, &r, c);
     if (!status && drv->shooting) {
         r.omega = 2.0 * acos(-1.0) * (double)k / drv->shooting->map.period;
@@ -144,29 +143,8 @@ int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, d
     return status;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- contacts */
-
-static int add_energy(struct replay *r, double tau)
-{
-    const struct events *e = r->map->events;
-    for (size_t i = 0; i < r->map->sys->ncontact; i++) {
-        if (tribo_slides(e->stick_slip.state.slip[i])) {
-            r->sum[i] += r->map->sys->tally[i] * e->motion->work(e->own, i, tau);
-        }
-    }
-    return TRIBO_OK;
-}
-
-static int period_quantities_add_rest(struct replay *r, double tau)
-{
-    for (size_t i = 0; i < r->map->sys->ncontact; i++) {
-        r->sum[i] += r->map->events->stick_slip.state.slip[i] == TRIBO_SLIP_STUCK ? tau / r->map->period : 0.0;
-    }
-    return TRIBO_OK;
-}
-
-/* to [ncontact] = the sums that `phase` adds to r.sum over the period. Returns a status. */
-static int sum_up(tribo_driver *drv, const char *name, int (*phase)(struct replay *, double), double *to)
+/* to [ncontact] = the quantity of contacts, of r->energy or r->rest, *sum. Returns a status. */
+static int sum_up(tribo_driver *drv, struct replay *r, const char *name, double **sum, double *to)
 {
     if (!drv) {
         return TRIBO_ERR_NULL;
@@ -175,22 +153,24 @@ static int sum_up(tribo_driver *drv, const char *name, int (*phase)(struct repla
         return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", name);
     }
     const size_t count = drv->sys->ncontact;
-    struct replay r = {.phase = phase, .sum = calloc(count + 1, sizeof *to)};
-    const int status = r.sum ? replay(drv, &r)
-                             : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", count, plural(count));
+    *sum = calloc(count + 1, sizeof *to);
+    const int status =
+        *sum ? replay(drv, r) : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", count, plural(count));
     if (!status) {
-        memcpy(to, r.sum, count * sizeof *to);
+        memcpy(to, *sum, count * sizeof *to);
     }
-    free(r.sum);
+    free(*sum);
     return status;
 }
 
 int tribo_driver_period_dissipation(tribo_driver *drv, double *energy)
 {
-    return sum_up(drv, "energy", add_energy, energy);
+    struct replay r = {0};
+    return sum_up(drv, &r, "energy", &r.energy, energy);
 }
 
 int tribo_driver_period_stick(tribo_driver *drv, double *share)
 {
-    return sum_up(drv, "share", period_quantities_add_rest, share);
+    struct replay r = {0};
+    return sum_up(drv, &r, "share", &r.rest, share);
 }
