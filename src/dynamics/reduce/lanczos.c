@@ -68,28 +68,35 @@ static double norm_of(const struct lanczos *l, size_t j)
     return square > 0.0 ? sqrt(square) : 0.0;
 }
 
-/* Orthogonalizes vectors j .. j + count - 1 of w to the basis, twice, because one pass is not exact. Sets c [count][room] = the
- * coefficients of the parts removed, norm, and mw = M W. */
-static void separate(struct lanczos *l, size_t j, size_t count)
+void tribo_separate(const struct matrix *mass, size_t size, const double *q, size_t count, double *w, double *mw, size_t stride,
+                    double *c)
 {
-    const size_t n = l->n;
-    double *w = l->w + j * n, *mw = l->mw + j * n;
+    const size_t n = mass->cols;
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t i = 0; i < size; i++) {
+            for (size_t k = 0; k < count; k++) {
+                const double part = tribo_dot(q + i * n, mw + k * n, n);
+                tribo_add(w + k * n, -part, q + i * n, n);
+                if (c) {
+                    c[k * stride + i] += part;
+                }
+            }
+        }
+        tribo_matrix_multiply_all(mass, count, w, mw);
+    }
+}
+
+/* Makes vectors j .. j + count - 1 of w orthogonal to the basis. Sets c [count][room] = the coefficients of the parts removed, norm,
+ * and mw = M W. */
+static void lanczos_separate(struct lanczos *l, size_t j, size_t count)
+{
+    double *w = l->w + j * l->n, *mw = l->mw + j * l->n;
     memset(l->c, 0, count * l->room * sizeof *l->c);
     tribo_matrix_multiply_all(l->mass, count, w, mw);
     for (size_t k = j; k < j + count; k++) {
         l->norm[k] = norm_of(l, k);
     }
-    for (int pass = 0; pass < 2; pass++) {
-        for (size_t i = 0; i < l->size; i++) {
-            const double *q = l->q + i * n;
-            for (size_t k = 0; k < count; k++) {
-                const double part = tribo_dot(q, mw + k * n, n);
-                tribo_add(w + k * n, -part, q, n);
-                l->c[k * l->room + i] += part;
-            }
-        }
-        tribo_matrix_multiply_all(l->mass, count, w, mw);
-    }
+    tribo_separate(l->mass, l->size, l->q, count, w, mw, l->room, l->c);
 }
 
 /* Sets vectors j .. j + count - 1 of w = (K + shift M)^-1 (random forces), orthogonal to the basis. Returns 0 if out of memory,
@@ -100,7 +107,7 @@ static int draw(struct lanczos *l, size_t j, size_t count)
         tribo_scatter(&l->seed, l->n, l->w + k * l->n);
     }
     const int done = tribo_cholesky_solve(l->shifted, count, l->w + j * l->n);
-    separate(l, j, count);
+    lanczos_separate(l, j, count);
     return done;
 }
 
@@ -119,7 +126,7 @@ static void lanczos_append(struct lanczos *l, size_t j)
             tribo_add(mw, -part, l->mw + i * n, n);
         }
         if (!(norm_of(l, j) > LITTLE * before)) {
-            separate(l, j, 1);
+            lanczos_separate(l, j, 1);
         }
         const double rest = norm_of(l, j);
         if (rest > NOTHING * whole) {
@@ -148,7 +155,7 @@ static int lanczos_extend(struct lanczos *l)
     if (l->pending && !tribo_cholesky_solve(l->shifted, l->pending, l->w)) {
         return 0;
     }
-    separate(l, 0, l->pending);
+    lanczos_separate(l, 0, l->pending);
     for (size_t j = 0; j < l->pending; j++) {
         for (size_t i = 0; i < l->size; i++) {
             l->h[i * l->room + first + j] = l->h[(first + j) * l->room + i] = l->c[j * l->room + i];

@@ -35,9 +35,6 @@
 /* Part of the diagonal added to a flexibility that is singular because displacements of contacts depend on each other. */
 #define RIDGE 1e-12
 
-/* Number of responses of contacts, or of modes to be checked, that are solved at a time. */
-enum { BATCH = 16 };
-
 /* K + shift M and its factor. */
 struct shifted {
     double shift;
@@ -46,8 +43,9 @@ struct shifted {
 
 /* ------------------------------------------------------------------------------------------------------------------- messages */
 
-/* Writes the message for a status of tribo_normal_modes, and returns the status. */
-static int modes_failed(const struct model *m, int status, const struct doubt *doubt)
+/* Writes the message for a status of tribo_normal_modes, or, without a doubt, of a search that found `count` modes. Returns the
+ * status. */
+static int modes_failed(const struct model *m, int status, const struct doubt *doubt, size_t count)
 {
     switch (status) {
     case TRIBO_OK:
@@ -56,6 +54,9 @@ static int modes_failed(const struct model *m, int status, const struct doubt *d
         return tribo_model_no_memory(m);
     case TRIBO_ERR_NOT_FINITE:
         return tribo_model_fail(m, status, "stiffness over mass overflows");
+    case TRIBO_ERR_SIZE:
+        return tribo_model_fail(m, status, "nmode = %zu, but the mass matrix lets the structure have %zu mode%s only", m->nmode,
+                                count, plural(count));
     case TRIBO_ERR_UNSUPPORTED:
         return tribo_model_fail(
             m, status,
@@ -63,24 +64,13 @@ static int modes_failed(const struct model *m, int status, const struct doubt *d
             "parts softer, or rigid",
             doubt->omega2, doubt->mode, doubt->noise);
     default:
-        return tribo_model_fail(m, status, "omega^2 = %g of mode %zu does not come out pure: reduce the system to fewer modes",
-                                doubt->omega2, doubt->mode);
-    }
-}
-
-static int search_failed(const struct model *m, int status, const struct low_modes *low)
-{
-    switch (status) {
-    case TRIBO_OK:
-        return TRIBO_OK;
-    case TRIBO_ERR_MEMORY:
-        return tribo_model_no_memory(m);
-    case TRIBO_ERR_SIZE:
-        return tribo_model_fail(m, status, "nmode = %zu, but the mass matrix lets the structure have %zu mode%s only", m->nmode,
-                                low->count, plural(low->count));
-    default:
-        return tribo_model_fail(
-            m, status, "nmode = %zu: these modes are not found, or not counted; reduce the system to fewer or more", m->nmode);
+        return doubt
+                   ? tribo_model_fail(m, status,
+                                      "omega^2 = %g of mode %zu does not come out pure: reduce the system to fewer modes",
+                                      doubt->omega2, doubt->mode)
+                   : tribo_model_fail(
+                         m, status, "nmode = %zu: these modes are not found, or not counted; reduce the system to fewer or more",
+                         m->nmode);
     }
 }
 
@@ -165,18 +155,14 @@ static int check_mass(const struct model *m, size_t *where)
 static int find_among(const struct model *m, size_t count, const double *x, size_t wanted, struct reduced *r)
 {
     const size_t n = m->ndof;
-    struct matrix z = {0}, mass = {0};
+    struct matrix rows = {0}, z = {0}, mass = {0};
     struct cholesky c = {0};
     struct doubt doubt = {0};
     size_t where;
-    double pivot, *columns = malloc(count * n * sizeof *columns), *product = malloc(count * count * sizeof *product);
-    int done = columns && product;
-    if (done) {
-        tribo_transpose(count, n, x, columns);
-        done = tribo_matrix_from_dense(&z, n, count, columns) && tribo_matrix_congruent(&m->mass, &z, product) &&
-               tribo_matrix_from_dense(&mass, count, count, product);
-    }
-    free(columns);
+    double pivot, *product = malloc(count * count * sizeof *product);
+    const int done = product && tribo_matrix_from_dense(&rows, count, n, x) && tribo_matrix_transpose(&z, &rows) &&
+                     tribo_matrix_congruent(&m->mass, &z, product) && tribo_matrix_from_dense(&mass, count, count, product);
+    tribo_matrix_free(&rows);
     free(product);
     int status = done ? tribo_cholesky_consume(&c, &mass, &where, &pivot) : TRIBO_ERR_MEMORY;
     status = status ? status : tribo_normal_modes(&m->stiffness, NULL, &z, &c, wanted, r->omega2, r->phi, &doubt);
@@ -187,66 +173,36 @@ static int find_among(const struct model *m, size_t count, const double *x, size
         r->omega2[k] = r->omega2[k] != 0.0 ? tribo_matrix_form(&m->stiffness, phi, phi) : 0.0;
     }
     r->count = wanted;
-    return modes_failed(m, status, &doubt);
+    return modes_failed(m, status, &doubt, 0);
 }
 
-/* Checks that rounding moves no mode across low->above, where modes were counted. work [ndof]. Returns a status. */
-static int check_gap(const struct model *m, const struct low_modes *low, const struct reduced *r, double *work)
+/* Checks that rounding moves no mode across low->above, where modes were counted; and that each mode is an eigenvector, by SAME and
+ * SAME_SHIFT: with the norms in M of (omega^2 + shift) (K + shift M)^-1 M phi - phi. Returns a status. */
+static int check_modes(const struct model *m, const struct shifted *s, const struct low_modes *low, const struct reduced *r)
 {
-    const size_t below = low->below < r->count ? low->below : r->count;
-    tribo_matrix_roots(&m->stiffness, NULL, work);
-    for (size_t k = below ? below - 1 : 0; k <= below && k < r->count; k++) {
-        const double *phi = r->phi + k * m->ndof, distance = low->above - r->omega2[k];
-        const double noise = low->growth * tribo_matrix_noise(&m->stiffness, work, phi, phi);
-        if (!((k < below ? distance : -distance) > noise)) {
-            return TRIBO_ERR_NO_CONVERGENCE;
-        }
+    const size_t n = m->ndof, below = low->below < r->count ? low->below : r->count;
+    double *root = malloc(3 * n * sizeof *root), *x = root + n, *mx = x + n;
+    int right = 1;
+    if (!root) {
+        return TRIBO_ERR_MEMORY;
     }
-    return TRIBO_OK;
-}
-
-/* Checks that each mode is an eigenvector, by SAME and SAME_SHIFT: with the norms in M of (omega^2 + shift) (K + shift M)^-1 M phi -
- * phi. work [2 BATCH][ndof]. Returns a status. */
-static int check_residuals(const struct model *m, const struct shifted *s, const struct reduced *r, double *work)
-{
-    const size_t n = m->ndof;
-    for (size_t first = 0; first < r->count; first += BATCH) {
-        const size_t count = r->count - first < BATCH ? r->count - first : BATCH;
-        const double *phi = r->phi + first * n, *omega2 = r->omega2 + first;
-        double *mass = work + count * n;
-        tribo_matrix_multiply_all(&m->mass, count, phi, work);
-        if (!tribo_cholesky_solve(&s->factor, count, work)) {
-            return TRIBO_ERR_MEMORY;
+    tribo_matrix_roots(&m->stiffness, NULL, root);
+    for (size_t k = 0; right && k < r->count; k++) {
+        const double *phi = r->phi + k * n, omega2 = r->omega2[k],
+                     distance = k < below ? low->above - omega2 : omega2 - low->above;
+        if (k <= below && k + 1 >= below) {
+            right = distance > low->growth * tribo_matrix_noise(&m->stiffness, root, phi, phi);
         }
-        for (size_t i = 0; i < count * n; i++) {
-            work[i] = (omega2[i / n] + s->shift) * work[i] - phi[i];
+        tribo_matrix_multiply(&m->mass, phi, x);
+        tribo_cholesky_solve(&s->factor, 1, x);
+        for (size_t i = 0; i < n; i++) {
+            x[i] = (omega2 + s->shift) * x[i] - phi[i];
         }
-        tribo_matrix_multiply_all(&m->mass, count, work, mass);
-        for (size_t k = 0; k < count; k++) {
-            const double change = sqrt(fabs(tribo_dot(work + k * n, mass + k * n, n)));
-            if (!(change * (omega2[k] + s->shift) <= SAME * omega2[k] + SAME_SHIFT * s->shift)) {
-                return TRIBO_ERR_NO_CONVERGENCE;
-            }
-        }
+        tribo_matrix_multiply(&m->mass, x, mx);
+        right &= sqrt(fabs(tribo_dot(x, mx, n))) * (omega2 + s->shift) <= SAME * omega2 + SAME_SHIFT * s->shift;
     }
-    return TRIBO_OK;
-}
-
-static int find_sparsely(const struct model *m, const struct shifted *s, struct reduced *r)
-{
-    struct low_modes low;
-    int status = search_failed(m, tribo_low_modes(&m->stiffness, &m->mass, s->shift, &s->factor, m->nmode, &low), &low);
-    status = status ? status : find_among(m, low.count, low.phi, m->nmode, r);
-    free(low.phi);
-    if (status) {
-        return status;
-    }
-    r->truncation.above = low.below == m->nmode ? low.above : r->omega2[m->nmode - 1];
-    double *work = malloc(2 * BATCH * m->ndof * sizeof *work);
-    status = work ? check_gap(m, &low, r, work) : TRIBO_ERR_MEMORY;
-    status = status ? status : check_residuals(m, s, r, work);
-    free(work);
-    return search_failed(m, status, &low);
+    free(root);
+    return right ? TRIBO_OK : TRIBO_ERR_NO_CONVERGENCE;
 }
 
 static int find_densely(const struct model *m, struct reduced *r)
@@ -262,7 +218,7 @@ static int find_densely(const struct model *m, struct reduced *r)
     tribo_cholesky_free(&mass);
     r->count = m->nmode;
     r->truncation.above = m->nmode == m->ndof ? HUGE_VAL : status ? 0.0 : r->omega2[m->nmode - 1];
-    return modes_failed(m, status, &doubt);
+    return modes_failed(m, status, &doubt, 0);
 }
 
 /* Finds the lowest modes: by Lanczos' method for large structures with few modes, and for singular mass. Returns a status. */
@@ -276,32 +232,32 @@ static int find_lowest(const struct model *m, struct shifted *s, struct reduced 
             return status || r->omega2[0] < 0.0 ? status : factorize_shifted(m, s);
         }
     }
+    struct low_modes low;
     int status = check_mass(m, &where);
     status = factor_failed(m, status, "mass", where);
     status = status ? status : factorize_shifted(m, s);
-    return status ? status : find_sparsely(m, s, r);
+    if (status) {
+        return status;
+    }
+    status = tribo_low_modes(&m->stiffness, &m->mass, s->shift, &s->factor, m->nmode, &low);
+    status = status ? modes_failed(m, status, NULL, low.count) : find_among(m, low.count, low.phi, m->nmode, r);
+    free(low.phi);
+    if (status) {
+        return status;
+    }
+    r->truncation.above = low.below == m->nmode ? low.above : r->omega2[m->nmode - 1];
+    return modes_failed(m, check_modes(m, s, &low, r), NULL, 0);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- attachment modes */
 
-/* Sets mx [ndof] = M x. Returns the norm of x in M. */
-static double low_modes_weigh(const struct model *m, const double *x, double *mx)
-{
-    tribo_matrix_multiply(&m->mass, x, mx);
-    const double square = tribo_dot(x, mx, m->ndof);
-    return square > 0.0 ? sqrt(square) : 0.0;
-}
-
-/* x -= sum of phi_k (phi_k'M x), count phi_k orthonormal in M, twice. Sets mx [ndof] = M x. Returns the norm of x in M. */
+/* Makes x orthogonal in M to `count` phi_k, orthonormal in M. Sets mx [ndof] = M x. Returns the norm of x in M. */
 static double low_modes_separate(const struct model *m, size_t count, const double *phi, double *x, double *mx)
 {
-    for (int pass = 0; pass < 2; pass++) {
-        low_modes_weigh(m, x, mx);
-        for (size_t k = 0; k < count; k++) {
-            tribo_add(x, -tribo_dot(phi + k * m->ndof, mx, m->ndof), phi + k * m->ndof, m->ndof);
-        }
-    }
-    return low_modes_weigh(m, x, mx);
+    tribo_matrix_multiply(&m->mass, x, mx);
+    tribo_separate(&m->mass, count, phi, 1, x, mx, 0, NULL);
+    const double square = tribo_dot(x, mx, m->ndof);
+    return square > 0.0 ? sqrt(square) : 0.0;
 }
 
 /* Sets *omega2 = |x'Kx|/norm^2. Returns 1 if *omega2 < shift/2: no stiffness holds x, a static response does not exist. */
@@ -334,8 +290,11 @@ static void add_attachment(const struct model *m, const struct shifted *s, struc
     r->count++;
 }
 
-/* x [ndof] = the force of contact i without the part that acts on the modes, M Phi Phi'x, removed twice. mx [ndof]: workspace. */
-static void set_contact_force(const struct model *m, const struct reduced *r, size_t i, double *x, double *mx)
+/* x [ndof] = the static response, beside the modes, to a force at contact i. The force is taken without the part that acts on the
+ * modes, M Phi Phi'force. A second solution removes the effect of shift except shift^2: x += (K + shift M)^-1 shift M x. before, mx
+ * [ndof]: workspace. Returns the norm of x in M. */
+static double find_response(const struct model *m, const struct shifted *s, const struct reduced *r, size_t i, double *x,
+                            double *before, double *mx)
 {
     const size_t n = m->ndof;
     tribo_matrix_get_row(&m->direction, i, x);
@@ -347,67 +306,19 @@ static void set_contact_force(const struct model *m, const struct reduced *r, si
         }
         tribo_matrix_multiply_add(&m->mass, 1.0, mx, x);
     }
-    if (!(tribo_dot(x, x, n) > TAKEN * TAKEN * whole)) {
+    const int taken = !(tribo_dot(x, x, n) > TAKEN * TAKEN * whole);
+    memset(before, 0, n * sizeof *before);
+    memset(x, 0, taken ? n * sizeof *x : 0);
+    for (int solution = 0; !taken && solution < 2; solution++) {
+        tribo_cholesky_solve(&s->factor, 1, x);
+        tribo_add(x, 1.0, before, n);
+        low_modes_separate(m, m->nmode, r->phi, x, mx);
+        memcpy(before, x, n * sizeof *x);
         memset(x, 0, n * sizeof *x);
+        tribo_add(x, s->shift, mx, n);
     }
-}
-
-/* x [count][ndof] = the static responses, beside the modes, to forces at contacts first .. first + count - 1. A second solution
- * removes the effect of shift except shift^2: x += (K + shift M)^-1 shift M x. before [count + 1][ndof]: workspace. Returns 0 if out
- * of memory. */
-static int find_responses(const struct model *m, const struct shifted *s, const struct reduced *r, size_t first, size_t count,
-                          double *x, double *before)
-{
-    const size_t n = m->ndof;
-    double *mx = before + count * n;
-    for (size_t i = 0; i < count; i++) {
-        set_contact_force(m, r, first + i, x + i * n, mx);
-    }
-    if (!tribo_cholesky_solve(&s->factor, count, x)) {
-        return 0;
-    }
-    for (size_t i = 0; i < count; i++) {
-        low_modes_separate(m, m->nmode, r->phi, x + i * n, mx);
-        memcpy(before + i * n, x + i * n, n * sizeof *x);
-        memset(x + i * n, 0, n * sizeof *x);
-        tribo_add(x + i * n, s->shift, mx, n);
-    }
-    const int done = tribo_cholesky_solve(&s->factor, count, x);
-    tribo_add(x, 1.0, before, count * n);
-    return done;
-}
-
-/* Sets missing [ncontact][ncontact] = J x, x the static responses beside the modes, in rows; keeps these, or adds attachment modes.
- * Returns a status. */
-static int add_responses(const struct model *m, const struct shifted *s, struct reduced *r, double *missing)
-{
-    const size_t n = m->ndof, c = m->ncontact;
-    double omega2, *x = malloc((2 * BATCH + 1) * n * sizeof *x);
-    int done = x != NULL, status = TRIBO_OK;
-    for (size_t first = 0; done && !status && first < c; first += BATCH) {
-        const size_t count = c - first < BATCH ? c - first : BATCH;
-        double *mx = x + count * n;
-        done = find_responses(m, s, r, first, count, x, mx);
-        for (size_t i = 0; done && !status && i < count; i++) {
-            double *y = x + i * n;
-            const double norm = low_modes_separate(m, m->nmode, r->phi, y, mx);
-            for (size_t j = 0; j < c; j++) {
-                missing[(first + i) * c + j] = tribo_matrix_row_dot(&m->direction, j, y);
-            }
-            if (m->attachments) {
-                add_attachment(m, s, r, y, norm, mx);
-            } else if (r->residual && drifts(m, s, y, norm, &omega2)) {
-                status = tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
-                                          "nmode = %zu leaves out a motion that contact %zu moves and no stiffness holds: take "
-                                          "more modes, or TRIBO_STATICS_MASS",
-                                          m->nmode, first + i);
-            } else if (r->residual) {
-                memcpy(r->residual + (first + i) * n, y, n * sizeof *y);
-            }
-        }
-    }
-    free(x);
-    return done ? status : tribo_model_no_memory(m);
+    memcpy(x, before, n * sizeof *x);
+    return low_modes_separate(m, 0, r->phi, x, mx);
 }
 
 /* Sets *part = the largest x'Ax/x'Bx, A [n][n] semidefinite and a part of B, to rounding of the diagonal of B; 1 if B is lost in
@@ -428,13 +339,28 @@ static int largest_part(size_t n, double *a, double *b, double *value, double *p
     return status != TRIBO_ERR_MEMORY;
 }
 
-/* Sets r->flexibility and r->truncation.missing; adds attachment modes to r, and makes all motions orthogonal in K. Returns a
- * status. */
+/* Keeps the static responses of contacts beside the modes, or adds attachment modes to r, and makes all motions orthogonal in K.
+ * Sets r->flexibility and r->truncation.missing. Returns a status. */
 static int attach(const struct model *m, const struct shifted *s, struct reduced *r)
 {
-    const size_t c = m->ncontact;
-    double *missing = calloc(2 * c * c + c + 1, sizeof *missing), *whole = missing + c * c, *work = whole + c * c;
-    int status = missing ? add_responses(m, s, r, missing) : tribo_model_no_memory(m);
+    const size_t n = m->ndof, c = m->ncontact;
+    double omega2, *x = malloc((3 * n + 2 * c * c + c) * sizeof *x);
+    double *mx = x + n, *missing = mx + 2 * n, *whole = missing + c * c, *work = whole + c * c; /* missing: J x in rows */
+    int status = x ? TRIBO_OK : tribo_model_no_memory(m);
+    for (size_t i = 0; !status && i < c; i++) {
+        const double norm = find_response(m, s, r, i, x, mx + n, mx);
+        tribo_matrix_multiply(&m->direction, x, missing + i * c);
+        if (r->residual && drifts(m, s, x, norm, &omega2)) {
+            status = tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
+                                      "nmode = %zu leaves out a motion that contact %zu moves and no stiffness holds: take "
+                                      "more modes, or TRIBO_STATICS_MASS",
+                                      m->nmode, i);
+        } else if (r->residual) {
+            memcpy(r->residual + i * n, x, n * sizeof *x);
+        } else if (m->attachments) {
+            add_attachment(m, s, r, x, norm, mx);
+        }
+    }
     if (!status && r->flexibility) {
         memcpy(r->flexibility, missing, c * c * sizeof *missing);
         tribo_even_out(c, r->flexibility);
@@ -443,14 +369,14 @@ static int attach(const struct model *m, const struct shifted *s, struct reduced
     if (!status && c <= m->nmode) {
         memcpy(whole, missing, c * c * sizeof *whole);
         for (size_t k = 0; k < m->nmode; k++) { /* the elastic part of the modes, J phi phi'J'/omega^2 */
-            tribo_matrix_multiply(&m->direction, r->phi + k * m->ndof, work);
+            tribo_matrix_multiply(&m->direction, r->phi + k * n, work);
             for (size_t i = 0; r->omega2[k] > 0.0 && i < c; i++) {
                 tribo_add(whole + i * c, work[i] / r->omega2[k], work, c);
             }
         }
         status = largest_part(c, missing, whole, work, &r->truncation.missing) ? TRIBO_OK : tribo_model_no_memory(m);
     }
-    free(missing);
+    free(x);
     return status || r->count == m->nmode ? status : find_among(m, r->count, r->phi, r->count, r);
 }
 
