@@ -5,8 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dynamics/system/model.h"
+#include "common/layout.h"
 #include "common/real.h"
+#include "dynamics/system/model.h"
+#include "numerics/triplets.h"
 
 /* J_i phi is 0 below this part of the sum of its |terms|, where rounding keeps less than two digits, as where a mode moves both
  * sides of the contact alike. A contact can hold nothing by such a velocity. */
@@ -34,52 +36,45 @@ static void find_shapes(const struct model *m, const struct reduced *r, double *
 /* An entry of Phi'C Phi is 0 below this part of the sum of its |terms|: rounding, as between modes of proportional damping. */
 #define NO_DAMPING (256.0 * DBL_EPSILON)
 
-/* Sets the first r->count rows and columns of `to` [n][n] = Phi'C Phi, n >= r->count; without damping `to` stays without rows.
- * Returns 0 if out of memory. */
-static int project_damping(const struct model *m, const struct reduced *r, size_t n, struct matrix *to)
+/* Sets `to` [count][count] = Phi'C Phi; without damping `to` stays without rows. Returns 0 if out of memory. */
+static int project_damping(const struct model *m, const struct reduced *r, struct matrix *to)
 {
-    const size_t whole = m->ndof;
+    const size_t whole = m->ndof, n = r->count;
     if (!m->damping.first || m->damping.first[whole] == 0) {
         return 1;
     }
-    double *c = calloc(n * n, sizeof *c), *force = malloc(2 * whole * sizeof *force), *size = force + whole;
-    for (size_t k = 0; c && force && k < r->count; k++) {
-        const double *phi = r->phi + k * whole;
-        for (size_t d = 0; d < whole; d++) {
-            force[d] = tribo_matrix_row_dot(&m->damping, d, phi);
-            size[d] = tribo_matrix_row_size(&m->damping, d, phi);
-        }
-        for (size_t i = 0; i < r->count; i++) {
-            double sum = 0.0, terms = 0.0;
-            for (size_t d = 0; d < whole; d++) {
-                sum += r->phi[i * whole + d] * force[d];
-                terms += fabs(r->phi[i * whole + d]) * size[d];
-            }
-            c[i * n + k] = fabs(sum) > NO_DAMPING * terms ? sum : 0.0;
+    double *c = malloc((n * n + 2 * whole) * sizeof *c), *force = c + n * n, *size = force + whole;
+    for (size_t k = 0; c && k < n; k++) {
+        tribo_matrix_multiply(&m->damping, r->phi + k * whole, force);
+        memset(size, 0, whole * sizeof *size);
+        tribo_matrix_add_sizes(&m->damping, r->phi + k * whole, size);
+        for (size_t i = 0; i < n; i++) {
+            const double *phi = r->phi + i * whole, sum = tribo_dot(phi, force, whole);
+            c[i * n + k] = fabs(sum) > NO_DAMPING * tribo_size_of_eight(whole, phi, size) ? sum : 0.0;
         }
     }
-    if (c && force) {
+    if (c) {
         tribo_even_out(n, c);
     }
-    const int done = c && force && tribo_matrix_from_dense(to, n, n, c);
+    const int done = c && tribo_matrix_from_dense(to, n, n, c);
     free(c);
-    free(force);
     return done;
 }
 
-/* Builds q'' + Phi'C Phi q' + diag(omega^2) q = modes' p + shapes' f, shapes [ncontact][count] of the rigid contacts, 0 of
- * others; and sets the operator R = shapes shapes'. Returns a status. */
-static int reduction_build(const struct model *m, const struct reduced *r, const double *shapes, tribo_system **sys)
+/* Builds q'' + Phi'C Phi q' + diag(omega^2) q = modes' p + rigid' f with J = shapes, both [ncontact][count], rigid 0 in rows of
+ * other contacts; and sets the operator R = rigid rigid'. Returns a status. */
+static int reduction_build(const struct model *m, const struct reduced *r, const double *shapes, const double *rigid,
+                           tribo_system **sys)
 {
     const size_t count = r->count, c = m->ncontact;
     double *responses = malloc((c * count + 1) * sizeof *responses);
     int status = responses ? tribo_system_build(sys, count, c) : TRIBO_ERR_MEMORY;
     if (!status) {
         tribo_system *s = *sys;
-        tribo_transpose(c, count, shapes, responses);
+        tribo_transpose(c, count, rigid, responses);
         const int done = tribo_matrix_diagonal(&s->stiffness, count, r->omega2) &&
                          tribo_matrix_from_dense(&s->direction, c, count, shapes) &&
-                         tribo_matrix_from_dense(&s->response, count, c, responses) && project_damping(m, r, count, &s->damping);
+                         tribo_matrix_from_dense(&s->response, count, c, responses) && project_damping(m, r, &s->damping);
         status = done ? tribo_model_set_operator(m, s, responses, count) : TRIBO_ERR_MEMORY;
     }
     free(responses);
@@ -97,6 +92,7 @@ static int reduction_build(const struct model *m, const struct reduced *r, const
 struct compliant {
     size_t modes, contacts, soft;
     size_t *contact;        /* [soft] ascending */
+    size_t *place;          /* [modes + soft] 0, 1, 2, ... */
     double *shapes, *rigid; /* [contacts][modes] P of all contacts; of rigid contacts, 0 of others */
     double *own, *entries;  /* [contacts] G_ii; [contacts][contacts] G */
     double *by;             /* [contacts][modes + soft] -f by q and w: G^-1 P and -G^-1 */
@@ -134,26 +130,21 @@ static int find_soft(struct compliant *e, const struct reduced *r, const double 
 /* Sets the expansion: a caller's degrees of freedom are q and w = P q + G f. Returns 0 if out of memory. */
 static int expand(const struct compliant *e, size_t sliders, tribo_system *sys)
 {
+    const size_t c = e->contacts;
+    struct triplets entries[3] = {{0}};
     struct matrix follow = {0}, give = {0}, touch = {0};
-    const size_t m = e->modes, c = e->contacts;
-    size_t *place = malloc((m + e->soft) * sizeof *place);
-    double *p = calloc(e->soft * (m + 2 * c) + 1, sizeof *p), *g = p + e->soft * m, *j = g + e->soft * c;
-    for (size_t d = 0; place && d < m + e->soft; d++) {
-        place[d] = d;
+    for (size_t a = 0; a < e->soft; a++) {
+        const size_t i = e->contact[a];
+        tribo_triplets_put_row(&entries[0], a, &sys->direction, i);
+        for (size_t k = 0; k < c; k++) {
+            tribo_triplets_put(&entries[1], a, k, e->entries[i * c + k]);
+        }
+        tribo_triplets_put(&entries[2], i, a, 1.0);
     }
-    for (size_t a = 0; p && a < e->soft; a++) {
-        memcpy(p + a * m, e->shapes + e->contact[a] * m, m * sizeof *p);
-        memcpy(g + a * c, e->entries + e->contact[a] * c, c * sizeof *g);
-        j[e->contact[a] * e->soft + a] = 1.0;
-    }
-    int done = place && p && tribo_matrix_from_dense(&follow, e->soft, m, p) && tribo_matrix_from_dense(&give, e->soft, c, g) &&
-               tribo_matrix_from_dense(&touch, c, e->soft, j);
-    done = done && tribo_expansion_create(sys, sliders, place, NULL, &follow, &give, &touch);
-    tribo_matrix_free(&follow);
-    tribo_matrix_free(&give);
-    free(place);
-    free(p);
-    return done;
+    int done = tribo_triplets_finish(&entries[0], e->soft, e->modes, &follow);
+    done &= tribo_triplets_finish(&entries[1], e->soft, c, &give);
+    done &= tribo_triplets_finish(&entries[2], c, e->soft, &touch);
+    return tribo_expansion_create(sys, sliders, e->place, NULL, &follow, &give, &touch) && done;
 }
 
 /* Sets sys->reduced: modes [given][modes + soft] = displacements by q and w; omega, infinite for w, which has no mass; truncation.
@@ -161,11 +152,8 @@ static int expand(const struct compliant *e, size_t sliders, tribo_system *sys)
 static int set_modes(const struct compliant *e, size_t given, const struct reduced *r, tribo_system *sys)
 {
     const size_t m = e->modes, n = m + e->soft;
-    double *x = calloc(n * given + 1, sizeof *x);
     sys->given = given;
-    sys->reduced.modes = malloc(given * n * sizeof *sys->reduced.modes);
-    sys->reduced.omega = malloc(n * sizeof *sys->reduced.omega);
-    sys->reduced.truncation = r->truncation;
+    sys->reduced = (struct reduction){malloc(given * n * sizeof(double)), malloc(n * sizeof(double)), r->truncation};
     for (size_t a = 0; a < e->soft; a++) {
         double *row = e->by + e->contact[a] * n;
         memcpy(row, e->shapes + e->contact[a] * m, m * sizeof *row);
@@ -174,19 +162,20 @@ static int set_modes(const struct compliant *e, size_t given, const struct reduc
     if (e->soft) {
         tribo_compliance_solve(sys, NULL, n, e->by);
     }
-    const int done = x && sys->reduced.modes && sys->reduced.omega;
-    for (size_t k = 0; done && k < n; k++) {
+    if (!sys->reduced.modes || !sys->reduced.omega) {
+        return 0;
+    }
+    for (size_t k = 0; k < n; k++) {
         sys->reduced.omega[k] = k < m ? sqrt(r->omega2[k]) : HUGE_VAL;
-        memcpy(x + k * given, r->phi + k * given, k < m ? given * sizeof *x : 0);
-        for (size_t a = 0; r->residual && a < e->soft; a++) {
-            tribo_add(x + k * given, -e->by[e->contact[a] * n + k], r->residual + e->contact[a] * given, given);
+        for (size_t i = 0; i < given; i++) {
+            double *x = sys->reduced.modes + i * n + k;
+            *x = k < m ? r->phi[k * given + i] : 0.0;
+            for (size_t a = 0; r->residual && a < e->soft; a++) {
+                *x -= e->by[e->contact[a] * n + k] * r->residual[e->contact[a] * given + i];
+            }
         }
     }
-    if (done) {
-        tribo_transpose(n, given, x, sys->reduced.modes);
-    }
-    free(x);
-    return done;
+    return 1;
 }
 
 /* Builds the system of the basis r. Returns a status. */
@@ -194,29 +183,32 @@ static int build_reduced(const struct model *m, const struct reduced *r, tribo_s
 {
     const size_t c = m->ncontact, k = r->count;
     struct compliant e = {.modes = k, .contacts = c};
-    struct matrix direction = {0};
+    struct layout l = {0};
     size_t where = 0;
-    int status = TRIBO_ERR_MEMORY;
-    e.contact = malloc((c + 1) * sizeof *e.contact);
-    e.shapes = calloc(3 * c * k + 2 * c * c + c + 1, sizeof *e.shapes);
-    if (e.contact && e.shapes) {
-        e.rigid = e.shapes + c * k;
-        e.by = e.rigid + c * k;
-        e.entries = e.by + c * (k + c);
-        e.own = e.entries + c * c;
-        find_shapes(m, r, e.shapes);
-        const int shared = find_soft(&e, r, m->compliance);
-        status = reduction_build(m, r, e.rigid, sys);
-        if (!status && e.soft) {
-            status = tribo_matrix_from_dense(&direction, c, k, e.shapes) ? TRIBO_OK : TRIBO_ERR_MEMORY;
-            status = status ? status : tribo_compliance_create(*sys, &direction, e.own, shared ? e.entries : NULL, &where);
-            status = status || expand(&e, m->flexible ? 0 : e.soft, *sys) ? status : TRIBO_ERR_MEMORY;
-        }
-        status = status || set_modes(&e, m->ndof, r, *sys) ? status : TRIBO_ERR_MEMORY;
+    do {
+        e.contact = tribo_layout_array(&l, c, sizeof *e.contact);
+        e.place = tribo_layout_array(&l, k + c, sizeof *e.place);
+        e.shapes = tribo_layout_array(&l, c * k, sizeof *e.shapes);
+        e.rigid = tribo_layout_array(&l, c * k, sizeof *e.rigid);
+        e.own = tribo_layout_array(&l, c, sizeof *e.own);
+        e.entries = tribo_layout_array(&l, c * c, sizeof *e.entries);
+        e.by = tribo_layout_array(&l, c * (k + c), sizeof *e.by);
+    } while (!l.memory && tribo_layout_zeros(&l));
+    if (!l.memory) {
+        return tribo_model_no_memory(m);
     }
-    tribo_matrix_free(&direction);
-    free(e.contact);
-    free(e.shapes);
+    for (size_t d = 0; d < k + c; d++) {
+        e.place[d] = d;
+    }
+    find_shapes(m, r, e.shapes);
+    const int shared = find_soft(&e, r, m->compliance);
+    int status = reduction_build(m, r, e.shapes, e.rigid, sys);
+    if (!status && e.soft) {
+        status = tribo_compliance_create(*sys, NULL, e.own, shared ? e.entries : NULL, &where);
+        status = status || expand(&e, m->flexible ? 0 : e.soft, *sys) ? status : TRIBO_ERR_MEMORY;
+    }
+    status = status || set_modes(&e, m->ndof, r, *sys) ? status : TRIBO_ERR_MEMORY;
+    free(l.memory);
     return status == TRIBO_ERR_INDEFINITE
                ? tribo_model_fail(
                      m, TRIBO_ERR_UNSUPPORTED,
