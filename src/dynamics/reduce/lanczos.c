@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "lanczos.h"
+#include "common/layout.h"
 #include "common/real.h"
 
 #include <math.h>
@@ -42,7 +43,7 @@ struct lanczos {
     double *q;                 /* [room][n] basis */
     double *w, *mw;            /* [BLOCK][n]; [BLOCK][n] M W */
     double norm[BLOCK];        /* norms in M of w before orthogonalization */
-    double *c;                 /* [BLOCK][room] workspace */
+    double *c, *terms;         /* [BLOCK][room], [n] workspace */
     double *h;                 /* [room][room] Q'M shift (K + shift M)^-1 M Q */
     double *theta;             /* [size] eigenvalues of h, shift/(omega^2 + shift), descending */
     double *s, *work;          /* [size][size] eigenvectors of h, in rows; [room][room] workspace */
@@ -142,7 +143,7 @@ static void lanczos_append(struct lanczos *l, size_t j)
     l->complete = 1;
 }
 
-/* Appends one block to the basis, and updates w, h and gram. Returns 0 if out of memory. */
+/* Appends one block to the basis, and updates w, h and gram, and theta and s, the modes of h. Returns 0 if out of memory. */
 static int lanczos_extend(struct lanczos *l)
 {
     const size_t first = l->size;
@@ -164,30 +165,21 @@ static int lanczos_extend(struct lanczos *l)
             l->gram[j][i] = tribo_dot(l->w + j * l->n, l->mw + i * l->n, l->n);
         }
     }
-    return 1;
-}
-
-/* ------------------------------------------------------------------------------------------------------ modes of the basis */
-
-/* Sets theta and s from h. Returns 0 if out of memory. */
-static int project(struct lanczos *l)
-{
     const size_t m = l->size;
-    for (size_t i = 0; i < m; i++) {
-        for (size_t j = 0; j < m; j++) {
-            l->work[i * m + j] = -l->h[i * l->room + j];
-        }
+    for (size_t i = 0; i < m * m; i++) {
+        l->s[i] = -l->h[i / m * l->room + i % m];
     }
-    if (tribo_symmetric_eigen(l->work, m, l->theta, l->s)) {
+    if (tribo_symmetric_eigen(l->s, m, l->theta, l->work)) {
         return 0;
     }
-    tribo_transpose(m, m, l->s, l->work);
-    memcpy(l->s, l->work, m * m * sizeof *l->s);
+    tribo_transpose(m, m, l->work, l->s);
     for (size_t k = 0; k < m; k++) {
         l->theta[k] = -l->theta[k];
     }
     return 1;
 }
+
+/* ------------------------------------------------------------------------------------------------------ modes of the basis */
 
 /* Returns the norm in M of shift (K + shift M)^-1 M x - theta x for mode k. */
 static double residual(const struct lanczos *l, size_t k)
@@ -211,20 +203,16 @@ static size_t count_found(const struct lanczos *l)
     return k;
 }
 
-/* Replaces the basis by the first `keep` combinations s; in strips, without more memory. */
+/* Replaces the basis by the first `keep` combinations s. */
 static void compress(struct lanczos *l, size_t keep)
 {
-    enum { STRIP = 32 };
     const size_t m = l->size;
-    for (size_t at = 0; at < l->n; at += STRIP) {
-        const size_t width = l->n - at < STRIP ? l->n - at : STRIP;
-        for (size_t j = 0; j < width; j++) {
-            for (size_t i = 0; i < m; i++) {
-                l->c[i] = l->q[i * l->n + at + j];
-            }
-            for (size_t k = 0; k < keep; k++) {
-                l->q[k * l->n + at + j] = tribo_dot(l->s + k * m, l->c, m);
-            }
+    for (size_t d = 0; d < l->n; d++) {
+        for (size_t i = 0; i < m; i++) {
+            l->c[i] = l->q[i * l->n + d];
+        }
+        for (size_t k = 0; k < keep; k++) {
+            l->q[k * l->n + d] = tribo_dot(l->s + k * m, l->c, m);
         }
     }
     for (size_t i = 0; i < keep; i++) {
@@ -249,7 +237,7 @@ static int converge(struct lanczos *l, size_t target)
             const size_t found = count_found(l);
             lanczos_make_room(l, found + (l->size - found) / 2);
         }
-        if (!lanczos_extend(l) || !project(l)) {
+        if (!lanczos_extend(l)) {
             return TRIBO_ERR_MEMORY;
         }
         if (l->complete || count_found(l) >= target) {
@@ -257,13 +245,6 @@ static int converge(struct lanczos *l, size_t target)
         }
     }
     return TRIBO_ERR_NO_CONVERGENCE;
-}
-
-/* Restarts: the modes found become the basis, w = random vectors orthogonal to these. Returns a status. */
-static int lanczos_start_anew(struct lanczos *l)
-{
-    lanczos_make_room(l, count_found(l));
-    return draw(l, 0, BLOCK) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
 /* --------------------------------------------------------------------------------------------------------- completeness */
@@ -306,30 +287,18 @@ static int count_modes(const struct lanczos *l, const struct matrix *k, double t
     const double sigma = l->shift / theta - l->shift;
     struct inertia inertia = {0, 0.0};
     struct matrix shifted;
-    double *size = malloc((k->rows + 1) * sizeof *size);
-    int status = size && tribo_matrix_sum(&shifted, 1.0, k, -sigma, m) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    int status = tribo_matrix_sum(&shifted, 1.0, k, -sigma, m) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     if (!status) {
         for (size_t i = 0; i < k->rows; i++) {
-            size[i] = tribo_matrix_get(k, i, i) + fabs(sigma) * tribo_matrix_get(m, i, i);
+            l->terms[i] = tribo_matrix_get(k, i, i) + fabs(sigma) * tribo_matrix_get(m, i, i);
         }
-        status = tribo_sparse_inertia(l->shifted->sparse, &shifted, &shifted, size, &inertia);
+        status = tribo_sparse_inertia(l->shifted->sparse, &shifted, &shifted, l->terms, &inertia);
         tribo_matrix_free(&shifted);
     }
-    free(size);
     found->above = sigma;
     found->below = inertia.negative;
     found->growth = inertia.growth;
     return status == TRIBO_ERR_INDEFINITE ? TRIBO_ERR_NO_CONVERGENCE : status;
-}
-
-static size_t count_above(const struct lanczos *l, double theta)
-{
-    const size_t found = count_found(l);
-    size_t k = 0;
-    while (k < found && l->theta[k] > theta) {
-        k++;
-    }
-    return k;
 }
 
 /* ---------------------------------------------------------------------------------------------------------------- calls */
@@ -365,7 +334,12 @@ static int lanczos_find(struct lanczos *l, const struct matrix *k, size_t wanted
     size_t target = wanted;
     for (size_t search = 0; search < MOST_SEARCHES + wanted / BLOCK; search++) {
         double theta = 0.0;
-        int status = search == 0 || count_found(l) >= target ? lanczos_start_anew(l) : TRIBO_OK;
+        int status = TRIBO_OK;
+        size_t above = 0;
+        if (search == 0 || count_found(l) >= target) { /* restarts with the modes found and random vectors orthogonal to these */
+            lanczos_make_room(l, count_found(l));
+            status = draw(l, 0, BLOCK) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+        }
         status = status ? status : converge(l, target);
         if (!status && count_found(l) < wanted) {
             found->count = count_found(l);
@@ -378,7 +352,10 @@ static int lanczos_find(struct lanczos *l, const struct matrix *k, size_t wanted
             theta = above_frequency(l, wanted);
             status = count_modes(l, k, theta, found);
         }
-        if (status || count_above(l, theta) == found->below) {
+        while (above < count_found(l) && l->theta[above] > theta) {
+            above++;
+        }
+        if (status || above == found->below) {
             return status ? status : lanczos_take(l, found->below > wanted ? found->below : wanted, found);
         }
         target = fits && found->below > wanted ? found->below : wanted;
@@ -392,19 +369,22 @@ int tribo_low_modes(const struct matrix *k, const struct matrix *m, double shift
     const size_t n = k->rows, most = 2 * wanted + 20 * BLOCK, room = most < n ? most : n;
     struct lanczos l = {.mass = m, .shifted = shifted, .shift = shift, .n = n, .room = room, .seed = 1};
     memset(found, 0, sizeof *found);
-    double *memory = malloc(((room + 2 * BLOCK) * n + 3 * room * room + (BLOCK + 1) * room) * sizeof *memory);
-    if (!memory) {
+    struct layout memory = {0};
+    do {
+        l.q = tribo_layout_array(&memory, room * n, sizeof *l.q);
+        l.w = tribo_layout_array(&memory, BLOCK * n, sizeof *l.w);
+        l.mw = tribo_layout_array(&memory, BLOCK * n, sizeof *l.mw);
+        l.c = tribo_layout_array(&memory, BLOCK * room, sizeof *l.c);
+        l.terms = tribo_layout_array(&memory, n, sizeof *l.terms);
+        l.theta = tribo_layout_array(&memory, room, sizeof *l.theta);
+        l.h = tribo_layout_array(&memory, room * room, sizeof *l.h);
+        l.s = tribo_layout_array(&memory, room * room, sizeof *l.s);
+        l.work = tribo_layout_array(&memory, room * room, sizeof *l.work);
+    } while (!memory.memory && tribo_layout_create(&memory));
+    if (!memory.memory) {
         return TRIBO_ERR_MEMORY;
     }
-    l.q = memory;
-    l.w = l.q + room * n;
-    l.mw = l.w + BLOCK * n;
-    l.c = l.mw + BLOCK * n;
-    l.theta = l.c + BLOCK * room;
-    l.h = l.theta + room;
-    l.s = l.h + room * room;
-    l.work = l.s + room * room;
     const int status = lanczos_find(&l, k, wanted, found);
-    free(memory);
+    free(l.q);
     return status;
 }
