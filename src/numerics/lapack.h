@@ -39,6 +39,9 @@ void dgeev_(const char *left, const char *right, const int *n, double *a, const 
 void dsyev_(const char *vectors, const char *triangle, const int *n, double *a, const int *stride, double *values, double *work,
             const int *size, int *info, size_t one, size_t two);
 
+/* Eigenvalues, ascending, of a symmetric tridiagonal matrix; overwrites both diagonals. */
+void dsterf_(const int *n, double *values, double *beside, int *info);
+
 /* Singular values, and left and right singular vectors. */
 void dgesvd_(const char *left, const char *right, const int *rows, const int *cols, double *a, const int *stride, double *values,
              double *u, const int *next_u, double *v, const int *next_v, double *work, const int *size, int *info, size_t one,

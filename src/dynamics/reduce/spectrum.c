@@ -4,6 +4,7 @@
 #include "spectrum.h"
 #include "lanczos.h"
 #include "common/real.h"
+#include "numerics/lapack.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,8 +19,8 @@ struct highest {
     double stiffness, damping;
     size_t n;
     double *v, *mv, *before, *next, *m_next; /* [n] vector k; M v; vector k - 1; vector k + 1; M next */
-    double *alpha, *beta;                    /* [MOST] diagonals */
-    double *matrix, *vectors, *values;       /* [MOST][MOST], [MOST][MOST], [MOST] workspace */
+    double alpha[MOST], beta[MOST];          /* diagonals of the tridiagonal matrix */
+    double values[MOST], work[MOST];         /* workspace */
 };
 
 static void apply_mass(const struct highest *l, const double *x, double *y)
@@ -44,21 +45,6 @@ static int symmetric_damping(struct highest *l)
         }
     }
     return fabs(sum[0] - sum[1]) <= 1e-10 * size;
-}
-
-/* Sets *value = the highest eigenvalue of the tridiagonal matrix of k rows. Returns a status. */
-static int tridiagonal(struct highest *l, size_t k, double *value)
-{
-    memset(l->matrix, 0, k * k * sizeof *l->matrix);
-    for (size_t i = 0; i < k; i++) {
-        l->matrix[i * k + i] = l->alpha[i];
-        if (i + 1 < k) {
-            l->matrix[i * k + i + 1] = l->matrix[(i + 1) * k + i] = l->beta[i];
-        }
-    }
-    const int status = tribo_symmetric_eigen(l->matrix, k, l->values, l->vectors);
-    *value = l->values[k - 1];
-    return status;
 }
 
 /* Sets v, mv = next, m_next, normalized, and before = v. Returns the norm of next in M, 0 if it is at most `least`. */
@@ -99,7 +85,13 @@ static int iterate(struct highest *l, double *value)
         size = greater(size, fabs(l->alpha[k - 1]) + l->beta[k - 1]);
         const int exhausted = l->beta[k - 1] == 0.0 || k == n;
         if (exhausted || k == most || k == check) {
-            status = tridiagonal(l, k, value);
+            const int rows = (int)k;
+            int info = 0;
+            memcpy(l->values, l->alpha, k * sizeof *l->values);
+            memcpy(l->work, l->beta, k * sizeof *l->work);
+            dsterf_(&rows, l->values, l->work, &info);
+            status = info ? TRIBO_ERR_NO_CONVERGENCE : TRIBO_OK;
+            *value = l->values[k - 1];
             const double change = exhausted ? 0.0 : *value - last;
             if (change <= CLOSE * fabs(*value)) {
                 *value += change;
@@ -123,17 +115,12 @@ int tribo_system_highest(const tribo_system *sys, double stiffness, double dampi
     }
     struct highest l = {.sys = sys, .stiffness = stiffness / bound, .damping = damping / bound, .n = n};
     int status = TRIBO_ERR_MEMORY;
-    l.v = malloc((5 * n + 3 * MOST + 2 * MOST * MOST) * sizeof *l.v);
+    l.v = malloc(5 * n * sizeof *l.v);
     if (l.v) {
         l.mv = l.v + n;
         l.before = l.mv + n;
         l.next = l.before + n;
         l.m_next = l.next + n;
-        l.alpha = l.m_next + n;
-        l.beta = l.alpha + MOST;
-        l.values = l.beta + MOST;
-        l.matrix = l.values + MOST;
-        l.vectors = l.matrix + (size_t)MOST * MOST;
         if (sys->damping.rows == 0 || !symmetric_damping(&l)) {
             l.damping = 0.0;
         }
