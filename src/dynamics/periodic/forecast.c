@@ -97,7 +97,7 @@ static double complex stiffness(const struct forecast *x, size_t k, double w)
 }
 
 /* Harmonic p of mode k by x->force, of its displacement. */
-static double complex respond(const struct forecast *x, size_t k, size_t p)
+static double complex harmonic_of(const struct forecast *x, size_t k, size_t p)
 {
     const double *part = x->force + k * x->times + 2 * p;
     return (part[0] - part[1] * I) / stiffness(x, k, harmonic(x, p));
@@ -185,7 +185,7 @@ static void find_drive(struct forecast *x)
     transform(x, n, x->back, x->motion, x->force);
     for (size_t k = 0; k < n; k++) {
         for (size_t p = 0; p < times / 2; p++) {
-            const double complex rate = harmonic(x, p) * respond(x, k, p) * I;
+            const double complex rate = harmonic(x, p) * harmonic_of(x, k, p) * I;
             x->motion[k * times + 2 * p] = creal(rate);
             x->motion[k * times + 2 * p + 1] = -cimag(rate);
         }
@@ -235,7 +235,7 @@ static void forecast_state(struct forecast *x)
     for (size_t k = 0; k < n; k++) {
         double complex eta = 0.0, rate = 0.0;
         for (size_t p = 0; p < times / 2; p++) {
-            const double complex part = respond(x, k, p);
+            const double complex part = harmonic_of(x, k, p);
             eta += part;
             rate += harmonic(x, p) * part * I;
         }

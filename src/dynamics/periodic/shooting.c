@@ -193,7 +193,7 @@ static int find_derivative(struct shooting *s, int spans)
  * GMRES to `tolerance`, if kernel is NULL: if contacts rest all the time, there may be many solutions; the Krylov space, then
  * without s->free, of a map that increases no distance has the shortest. Otherwise, and if that fails, by a matrix, with singular
  * values below cut taken as zero; *kernel = their number. Returns a status. */
-static int solve(struct shooting *s, int spans, double tolerance, double cut, double *x, size_t *kernel)
+static int solve_equation(struct shooting *s, int spans, double tolerance, double cut, double *x, size_t *kernel)
 {
     const size_t n = s->map.n;
     if (!kernel && n > DENSE && s->map.events->motion->keep) {
@@ -236,7 +236,7 @@ static int newton_step(struct shooting *s)
     const double near = s->here->residual / s->here->size;
     const double fell = s->before > 0.0 && near > LEAST_INEXACT ? lesser(s->here->residual / s->before, 1.0) : 0.0;
     find_misfit(s, s->here, s->step);
-    return solve(s, 1, clamp(greater(near, 0.9 * fell * fell), LEAST_INEXACT, MOST_INEXACT), CUT, s->step, NULL);
+    return solve_equation(s, 1, clamp(greater(near, 0.9 * fell * fell), LEAST_INEXACT, MOST_INEXACT), CUT, s->step, NULL);
 }
 
 /* Sets s->there from there.x = here.x + part step, s->ratio and s->nearest. Returns a status. */
@@ -368,7 +368,7 @@ static int search_all(struct shooting *s)
 
 /* -------------------------------------------------------------------------------------------------------------- the family */
 
-/* Projects move [n] on the family of s->best, the kernel of I - derivative over the period; sets s->step. kernel: of solve. Returns
+/* Projects move [n] on the family of s->best, the kernel of I - derivative over the period; sets s->step. kernel: of solve_equation. Returns
  * a status. */
 static int project_on_family(struct shooting *s, double *move, size_t *kernel)
 {
@@ -377,7 +377,7 @@ static int project_on_family(struct shooting *s, double *move, size_t *kernel)
     s->spans = s->best->odd ? 2 : 1;
     memcpy(s->step, move, n * sizeof *move);
     int status = apply_equation(s, s->step);
-    status = status ? status : solve(s, s->spans, AIM, FREE, s->step, kernel);
+    status = status ? status : solve_equation(s, s->spans, AIM, FREE, s->step, kernel);
     tribo_add(move, -1.0, s->step, n);
     return status;
 }

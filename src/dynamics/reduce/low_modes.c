@@ -293,8 +293,8 @@ static void add_attachment(const struct model *m, const struct shifted *s, struc
 /* x [ndof] = the static response, beside the modes, to a force at contact i. The force is taken without the part that acts on the
  * modes, M Phi Phi'force. A second solution removes the effect of shift except shift^2: x += (K + shift M)^-1 shift M x. before, mx
  * [ndof]: workspace. Returns the norm of x in M. */
-static double find_response(const struct model *m, const struct shifted *s, const struct reduced *r, size_t i, double *x,
-                            double *before, double *mx)
+static double find_static_response(const struct model *m, const struct shifted *s, const struct reduced *r, size_t i, double *x,
+                                   double *before, double *mx)
 {
     const size_t n = m->ndof;
     tribo_matrix_get_row(&m->direction, i, x);
@@ -348,7 +348,7 @@ static int attach(const struct model *m, const struct shifted *s, struct reduced
     double *mx = x + n, *missing = mx + 2 * n, *whole = missing + c * c, *work = whole + c * c; /* missing: J x in rows */
     int status = x ? TRIBO_OK : tribo_model_no_memory(m);
     for (size_t i = 0; !status && i < c; i++) {
-        const double norm = find_response(m, s, r, i, x, mx + n, mx);
+        const double norm = find_static_response(m, s, r, i, x, mx + n, mx);
         tribo_matrix_multiply(&m->direction, x, missing + i * c);
         if (r->residual && drifts(m, s, x, norm, &omega2)) {
             status = tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
