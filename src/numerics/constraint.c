@@ -4,6 +4,7 @@
 #include "common/real.h"
 #include "common/simd.h"
 #include "common/zeros.h"
+#include "linalg.h"
 #include "triplets.h"
 #include "union_find.h"
 
@@ -162,16 +163,6 @@ static size_t find_pivot(const struct elimination *e)
     return found;
 }
 
-/* Exchanges count elements of x and y, at distances of stride. */
-static void constraint_exchange(double *x, double *y, size_t count, size_t stride)
-{
-    for (size_t i = 0; i < count; i++) {
-        const double z = x[i * stride];
-        x[i * stride] = y[i * stride];
-        y[i * stride] = z;
-    }
-}
-
 static void exchange_indices(size_t *list, size_t i, size_t k)
 {
     const size_t x = list[i];
@@ -242,13 +233,13 @@ static void eliminate_tie(struct elimination *e)
         }
         double *const array[] = {tie->entry, e->size};
         for (size_t k = 0; k < 2; k++) {
-            constraint_exchange(array[k] + to * stride, array[k] + p * stride, stride, 1);
-            constraint_exchange(array[k] + to, array[k] + column, tie->rows, stride);
-            constraint_exchange(array[k] + t + to, array[k] + t + p, inverts ? tie->rows : 0, stride);
+            tribo_exchange(array[k] + to * stride, array[k] + p * stride, stride, 1);
+            tribo_exchange(array[k] + to, array[k] + column, tie->rows, stride);
+            tribo_exchange(array[k] + t + to, array[k] + t + p, inverts ? tie->rows : 0, stride);
         }
-        constraint_exchange(e->weight + to, e->weight + column, 1, 1);
-        constraint_exchange(e->scale + to, e->scale + p, 1, 1);
-        constraint_exchange(e->most + to, e->most + p, 1, 1);
+        tribo_exchange(e->weight + to, e->weight + column, 1, 1);
+        tribo_exchange(e->scale + to, e->scale + p, 1, 1);
+        tribo_exchange(e->most + to, e->most + p, 1, 1);
         exchange_indices(tie->order, to, p);
         exchange_indices(tie->dof, to, column);
         const double *from = tie->entry + to * stride;

@@ -66,6 +66,15 @@ void tribo_add(double *to, double factor, const double *x, size_t n)
     }
 }
 
+void tribo_exchange(double *x, double *y, size_t count, size_t stride)
+{
+    for (size_t i = 0; i < count; i++) {
+        const double z = x[i * stride];
+        x[i * stride] = y[i * stride];
+        y[i * stride] = z;
+    }
+}
+
 TRIBO_SIMD double tribo_sum(size_t n, const double *x)
 {
     double part[LANES] = {0.0}, sum = 0.0;

@@ -15,6 +15,9 @@ double tribo_largest(const double *x, size_t n);
 /* to += factor x. */
 void tribo_add(double *to, double factor, const double *x, size_t n);
 
+/* Exchanges count elements of x and y, at distances of stride. */
+void tribo_exchange(double *x, double *y, size_t count, size_t stride);
+
 /* Returns 1 if no x_i is an infinity or a NaN. */
 int tribo_dense_finite(const double *x, size_t n);
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "normal_modes.h"
+#include "common/layout.h"
 #include "common/real.h"
 
 #include <float.h>
@@ -47,15 +48,6 @@ struct spectrum {
     double *force;                      /* [rows of K] workspace */
 };
 
-static void modes_exchange(double *x, double *y, size_t n)
-{
-    for (size_t i = 0; i < n; i++) {
-        const double t = x[i];
-        x[i] = y[i];
-        y[i] = t;
-    }
-}
-
 /* Moves those of the first `open` modes with |omega^2| < FOUND max |omega^2| to the front. Returns their number. */
 static size_t set_apart(struct spectrum *s, size_t open)
 {
@@ -66,8 +58,8 @@ static size_t set_apart(struct spectrum *s, size_t open)
     }
     for (size_t k = 0; k < open; k++) {
         if (!(fabs(s->value[k]) >= FOUND * most)) {
-            modes_exchange(&s->value[k], &s->value[low], 1);
-            modes_exchange(s->y + k * s->n, s->y + low * s->n, s->n);
+            tribo_exchange(&s->value[k], &s->value[low], 1, 1);
+            tribo_exchange(s->y + k * s->n, s->y + low * s->n, s->n, 1);
             low++;
         }
     }
@@ -214,51 +206,42 @@ static void turn(double *phi, size_t n)
     }
 }
 
-/* Sets omega2 and phi of the `wanted` lowest modes, ascending. Returns a status. */
-static int finish(struct spectrum *s, size_t wanted, double *omega2, double *phi, struct doubt *doubt)
-{
-    const size_t n = s->stiffness->rows;
-    for (size_t p = 0; p < wanted; p++) {
-        size_t lowest = p;
-        for (size_t q = p + 1; q < s->n; q++) {
-            lowest = s->value[q] < s->value[lowest] ? q : lowest;
-        }
-        modes_exchange(&s->value[p], &s->value[lowest], 1);
-        modes_exchange(s->y + p * s->n, s->y + lowest * s->n, s->n);
-        modes_expand(s, p, phi + p * n);
-        turn(phi + p * n, n);
-        const int status = modes_judge(s, p, phi + p * n, &omega2[p], doubt);
-        if (status) {
-            return status;
-        }
-        for (size_t q = p; q > 0 && omega2[q] < omega2[q - 1]; q--) {
-            modes_exchange(&omega2[q], &omega2[q - 1], 1);
-            modes_exchange(phi + q * n, phi + (q - 1) * n, n);
-        }
-    }
-    return TRIBO_OK;
-}
-
 int tribo_normal_modes(const struct matrix *k, const double *terms, const struct matrix *z, const struct cholesky *mass,
                        size_t wanted, double *omega2, double *phi, struct doubt *doubt)
 {
     const size_t n = k->rows, m = z->rows ? z->cols : n;
-    double *memory = malloc((5 * m * m + m + 2 * n + 1) * sizeof *memory);
-    if (!memory) {
-        return TRIBO_ERR_MEMORY;
+    struct spectrum s = {.stiffness = k, .z = z, .n = m};
+    struct layout l = {0};
+    do {
+        s.k = tribo_layout_array(&l, m * m, sizeof *s.k);
+        s.y = tribo_layout_array(&l, m * m, sizeof *s.y);
+        s.ky = tribo_layout_array(&l, m * m, sizeof *s.ky);
+        s.block = tribo_layout_array(&l, m * m, sizeof *s.block);
+        s.turn = tribo_layout_array(&l, m * m, sizeof *s.turn);
+        s.value = tribo_layout_array(&l, m, sizeof *s.value);
+        s.root = tribo_layout_array(&l, n, sizeof *s.root);
+        s.force = tribo_layout_array(&l, n, sizeof *s.force);
+    } while (!l.memory && tribo_layout_create(&l));
+    int status = l.memory && tribo_matrix_congruent(k, z, s.k) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    if (!status) {
+        tribo_matrix_roots(k, terms, s.root);
+        status = m ? modes_find(&s, mass) : TRIBO_OK;
     }
-    struct spectrum s = {.stiffness = k, .z = z, .n = m, .k = memory};
-    s.y = s.k + m * m;
-    s.ky = s.y + m * m;
-    s.block = s.ky + m * m;
-    s.turn = s.block + m * m;
-    s.value = s.turn + m * m;
-    s.root = s.value + m;
-    s.force = s.root + n;
-    tribo_matrix_roots(k, terms, s.root);
-    int status = tribo_matrix_congruent(k, z, s.k) ? TRIBO_OK : TRIBO_ERR_MEMORY;
-    status = status || m == 0 ? status : modes_find(&s, mass);
-    status = status ? status : finish(&s, wanted, omega2, phi, doubt);
-    free(memory);
+    for (size_t p = 0; !status && p < wanted; p++) {
+        size_t lowest = p;
+        for (size_t q = p + 1; q < m; q++) {
+            lowest = s.value[q] < s.value[lowest] ? q : lowest;
+        }
+        tribo_exchange(&s.value[p], &s.value[lowest], 1, 1);
+        tribo_exchange(s.y + p * m, s.y + lowest * m, m, 1);
+        modes_expand(&s, p, phi + p * n);
+        turn(phi + p * n, n);
+        status = modes_judge(&s, p, phi + p * n, &omega2[p], doubt);
+        for (size_t q = p; !status && q > 0 && omega2[q] < omega2[q - 1]; q--) {
+            tribo_exchange(&omega2[q], &omega2[q - 1], 1, 1);
+            tribo_exchange(phi + q * n, phi + (q - 1) * n, n, 1);
+        }
+    }
+    free(s.k);
     return status;
 }
