@@ -19,9 +19,6 @@
 /* Largest turn, a small correction: larger ones are between modes with omega^2 of rounding, and would mix them at random. */
 #define SLIGHT 1e-5
 
-/* Modes with smaller turns stay orthonormal to rounding without correction of second order. */
-#define TINY 1e-8
-
 /* Accepted |y_j'K y_k| over omega_j omega_k, the roots of the energies of modes j and k. */
 #define SHARED 1e-6
 
@@ -51,11 +48,8 @@ struct spectrum {
 /* Moves those of the first `open` modes with |omega^2| < FOUND max |omega^2| to the front. Returns their number. */
 static size_t set_apart(struct spectrum *s, size_t open)
 {
-    double most = 0.0;
+    const double most = tribo_largest(s->value, open);
     size_t low = 0;
-    for (size_t k = 0; k < open; k++) {
-        most = greater(most, fabs(s->value[k]));
-    }
     for (size_t k = 0; k < open; k++) {
         if (!(fabs(s->value[k]) >= FOUND * most)) {
             tribo_exchange(&s->value[k], &s->value[low], 1, 1);
@@ -82,31 +76,10 @@ static void modes_share(struct spectrum *s, size_t low, size_t first, size_t cou
     tribo_multiply_add(low, s->n, count, 1.0, s->ky, s->turn, s->block);
 }
 
-/* Sets block [low][others] = the turns of modes k < low and j >= low after which y_j'K y_k = 0, to first order:
- * (y_j'K y_k)/(omega_j^2 - omega_k^2), or 0 by CLOSE and SLIGHT. Returns the largest |turn|. */
-static double find_turns(struct spectrum *s, size_t low)
+/* Subtracts half of block (y of the others) from the first `low` modes. */
+static void take_out(struct spectrum *s, size_t low)
 {
-    const size_t n = s->n, others = n - low;
-    double most = 0.0;
-    stress(s, 0, low);
-    modes_share(s, low, low, others);
-    for (size_t k = 0; k < low; k++) {
-        const double value = tribo_dot(s->y + k * n, s->ky + k * n, n);
-        for (size_t j = 0; j < others; j++) {
-            const double gap = s->value[low + j] - value, least = CLOSE * greater(fabs(s->value[low + j]), fabs(value));
-            const double shared = s->block[k * others + j];
-            const double by = fabs(gap) > least && fabs(shared) <= SLIGHT * fabs(gap) ? shared / gap : 0.0;
-            s->block[k * others + j] = by;
-            most = greater(most, fabs(by));
-        }
-    }
-    return most;
-}
-
-/* Subtracts part block (y of the others) from the first `low` modes. */
-static void take_out(struct spectrum *s, size_t low, double part)
-{
-    tribo_multiply_add(low, s->n - low, s->n, -part, s->block, s->y + low * s->n, s->y);
+    tribo_multiply_add(low, s->n - low, s->n, -0.5, s->block, s->y + low * s->n, s->y);
 }
 
 /* Finds all modes, omega^2 to rounding of the largest; then the low ones again, from K projected on these alone. Returns a status. */
@@ -117,18 +90,28 @@ static int modes_find(struct spectrum *s, const struct cholesky *mass)
     int status = tribo_symmetric_eigen_by(mass, s->turn, n, s->value, s->block);
     tribo_transpose(n, n, s->block, s->y);
     for (size_t open = n, low = 0; !status && (low = set_apart(s, open)) > 0; open = low) {
+        const size_t others = n - low;
         if (low == open) {
             return TRIBO_ERR_NO_CONVERGENCE;
         }
-        /* Turns the low modes and the others by block. Half of the first turn before and half after that of the others makes the
-         * modes orthonormal except for a quarter of turn^3. */
-        const int halves = find_turns(s, low) > TINY;
-        take_out(s, low, halves ? 0.5 : 1.0);
-        tribo_transpose(low, n - low, s->block, s->turn);
-        tribo_multiply_add(n - low, low, n, 1.0, s->turn, s->y, s->y + low * n);
-        if (halves) {
-            take_out(s, low, 0.5);
+        /* Sets block [low][others] = the turns of modes k and low + j after which y_j'K y_k = 0, to first order:
+         * (y_j'K y_k)/(omega_j^2 - omega_k^2), or 0 by CLOSE and SLIGHT. */
+        stress(s, 0, low);
+        modes_share(s, low, low, others);
+        for (size_t k = 0; k < low; k++) {
+            const double value = tribo_dot(s->y + k * n, s->ky + k * n, n);
+            for (size_t j = 0; j < others; j++) {
+                const double gap = s->value[low + j] - value, least = CLOSE * greater(fabs(s->value[low + j]), fabs(value));
+                double *turn = s->block + k * others + j;
+                *turn = fabs(gap) > least && fabs(*turn) <= SLIGHT * fabs(gap) ? *turn / gap : 0.0;
+            }
         }
+        /* Half of the turn of the low modes before and half after that of the others makes the modes orthonormal except for a
+         * quarter of turn^3. */
+        take_out(s, low);
+        tribo_transpose(low, others, s->block, s->turn);
+        tribo_multiply_add(others, low, n, 1.0, s->turn, s->y, s->y + low * n);
+        take_out(s, low);
         stress(s, 0, low);
         modes_share(s, low, 0, low);
         status = tribo_symmetric_eigen(s->block, low, s->value, s->turn);
@@ -190,13 +173,10 @@ static int modes_judge(struct spectrum *s, size_t k, const double *phi, double *
 }
 
 /* Makes the first of the largest |phi_i| positive, because the sign of a mode would be chance. */
-static void turn(double *phi, size_t n)
+static void turn_positive(double *phi, size_t n)
 {
-    double most = 0.0;
+    const double most = tribo_largest(phi, n);
     size_t first = 0;
-    for (size_t i = 0; i < n; i++) {
-        most = greater(most, fabs(phi[i]));
-    }
     while (first < n && fabs(phi[first]) < 0.999 * most) {
         first++;
     }
@@ -235,7 +215,7 @@ int tribo_normal_modes(const struct matrix *k, const double *terms, const struct
         tribo_exchange(&s.value[p], &s.value[lowest], 1, 1);
         tribo_exchange(s.y + p * m, s.y + lowest * m, m, 1);
         modes_expand(&s, p, phi + p * n);
-        turn(phi + p * n, n);
+        turn_positive(phi + p * n, n);
         status = modes_judge(&s, p, phi + p * n, &omega2[p], doubt);
         for (size_t q = p; !status && q > 0 && omega2[q] < omega2[q - 1]; q--) {
             tribo_exchange(&omega2[q], &omega2[q - 1], 1, 1);
