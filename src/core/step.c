@@ -22,6 +22,7 @@ struct call {
     const double *v;
     const size_t *group_of; /* [n] */
     int breaks;             /* limits are static */
+    int estimates;          /* sums of R's rows times limits are numbers: they bound what friction can hold */
 };
 
 /* Sums of rows and limits up to this have numbers as products. */
@@ -48,8 +49,6 @@ static void find_candidates(tribo_context *ctx, const struct call *c)
 {
     const double *row_sum = ctx->op->row_sum;
     const struct chunk *chunk = ctx->follow.chunk;
-    /* sums of R's rows times limits are numbers: they bound what friction can hold */
-    const int estimates = !c->b.lower && !c->breaks && ctx->follow.largest < ESTIMATED && ctx->op->largest_sum < ESTIMATED;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
         /* at least the largest limit in any group with a contact in the chunk */
@@ -57,37 +56,49 @@ static void find_candidates(tribo_context *ctx, const struct call *c)
                      behind = k + 1 < tribo_chunks(ctx->n) ? chunk[k + 1].largest : 0.0;
         const double around = greater(chunk[k].largest, greater(before, behind));
         const double largest = ctx->op->span < TRIBO_CHUNK ? around : ctx->follow.largest;
-        if (estimates && (largest == 0.0 || !any_within_reach(n, c->pull, c->v + i, row_sum + i, largest))) {
+        if (c->estimates && (largest == 0.0 || !any_within_reach(n, c->pull, c->v + i, row_sum + i, largest))) {
             continue;
         }
         for (size_t j = i; j < i + n; j++) {
-            if (!(estimates && out_of_reach(c->pull, c->v[j], row_sum[j], largest))) {
+            if (!(c->estimates && out_of_reach(c->pull, c->v[j], row_sum[j], largest))) {
                 tribo_list_group(ctx, c->group_of[j]);
             }
         }
     }
 }
 
-/* Solves group g, again while static limits break. Contacts whose bounds are equal do not take part. Returns a status; *takes_part
- * = 0 if no contact does. */
+/* 1 if friction could hold the contact at place k by limits [size]. */
+static int within_reach(const struct box_qp *p, size_t k, const struct call *c, const double *limit)
+{
+    double reach;
+    tribo_row_dot(p, k, limit, &reach);
+    return !(fabs(step_pull_of(c->pull, c->v[p->member[k]])) > reach);
+}
+
+/* Solves group g, again while static limits break. Contacts whose bounds are equal, or whose pull no friction can hold, keep f.
+ * Returns a status; *takes_part = 0 if all contacts of the group do. */
 static int solve_for(tribo_context *ctx, size_t g, const struct call *c, unsigned char *takes_part)
 {
     struct box_qp *p = tribo_problem(ctx, g);
+    const int all = !c->estimates || p->group->small;
     size_t behind = p->group->size, broken = 0;
     int status = TRIBO_OK;
     p->count = 0;
     p->far = ctx->last.far;
+    for (size_t k = 0; !all && k < p->group->size; k++) {
+        p->step[k] = ctx->follow.contacts.bound[p->member[k]];
+    }
     for (size_t k = 0; k < p->group->size; k++) {
         const size_t i = p->member[k];
         const double lo = tribo_lower(&c->b, i), hi = c->b.upper[i];
-        if (lo < hi) {
+        if (lo < hi && (all || within_reach(p, k, c, p->step))) {
             p->near[p->count++] = k;
             p->lo[k] = ctx->last.far ? tribo_cut(p, k, lo) : lo;
             p->hi[k] = ctx->last.far ? tribo_cut(p, k, hi) : hi;
             p->q[k] = step_pull_of(c->pull, c->v[i]);
         } else {
             p->near[--behind] = k;
-            ctx->last.f[i] = hi;
+            ctx->last.f[i] = lo < hi ? ctx->last.f[i] : hi;
             p->x[k] = tribo_carried(ctx, p, k);
         }
     }
@@ -119,11 +130,13 @@ static int solve_for(tribo_context *ctx, size_t g, const struct call *c, unsigne
 static int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bounds b, const size_t *group_of)
 {
     const struct delassus *op = ctx->op;
+    const int breaks = !b.lower && ctx->set.breaking;
+    const int estimates = !b.lower && !breaks && ctx->follow.largest < ESTIMATED && op->largest_sum < ESTIMATED;
     const double times = op->groups ? quotient(1.0, dt) : 0.0;
-    const struct call c = {b, dt, {times, TRIBO_FAR / greater(times, 1.0)}, v, group_of, !b.lower && ctx->set.breaking};
+    const struct call c = {b, dt, {times, TRIBO_FAR / greater(times, 1.0)}, v, group_of, breaks, estimates};
     struct memory *m = &ctx->memory;
     tribo_step_each(ctx, dt, v, b);
-    if (c.breaks) {
+    if (breaks) {
         tribo_break_alone(ctx, dt, v);
     }
     if (op->groups) {
