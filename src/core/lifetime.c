@@ -7,8 +7,8 @@
 
 #define DEFAULT_EPSILON 1e-6
 
-/* Returns a context with all as in like, whose settings, forces and slips, if it has any, are copied; other arrays are zeros. All
- * have room for one contact more, so that none is empty. NULL if out of memory. */
+/* Returns a context of n contacts with the members of like, and copies of its settings, forces and slips if like has arrays; all
+ * other arrays are zeros. Each array has room for n + 1 contacts, so that no array is empty. Returns NULL if out of memory. */
 static tribo_context *context_allocate(size_t n, const tribo_context *like)
 {
     const size_t m = n + 1, chunks = tribo_chunks(m);

@@ -75,8 +75,8 @@ static int within_reach(const struct box_qp *p, size_t k, const struct call *c, 
     return !(fabs(step_pull_of(c->pull, c->v[p->member[k]])) > reach);
 }
 
-/* Solves group g, again while static limits break. Contacts whose bounds are equal, or whose pull no friction can hold, keep f.
- * Returns a status; *takes_part = 0 if all contacts of the group do. */
+/* Solves the box problem of group g, again while static limits break. A contact with equal bounds has f = bound; a contact with a
+ * pull that no friction can hold keeps f. Sets *takes_part = 0 if no other contact is in the group. Returns a status. */
 static int solve_for(tribo_context *ctx, size_t g, const struct call *c, unsigned char *takes_part)
 {
     struct box_qp *p = tribo_problem(ctx, g);

@@ -254,17 +254,6 @@ double *tribo_matrix_to_dense(const struct matrix *a)
     return dense;
 }
 
-double *tribo_matrix_transpose_to_dense(const struct matrix *a)
-{
-    double *dense = calloc(a->rows * a->cols + 1, sizeof *dense);
-    for (size_t i = 0; dense && i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            dense[a->col[k] * a->rows + i] = a->val[k];
-        }
-    }
-    return dense;
-}
-
 void tribo_matrix_scale_rows(struct matrix *a, const double *factor)
 {
     a->identity = 0;

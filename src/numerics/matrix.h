@@ -116,9 +116,8 @@ int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, doubl
 /* dense [rows][cols] = A. */
 void tribo_matrix_spread(const struct matrix *a, double *dense);
 
-/* Return A [rows][cols], and A' [cols][rows], in memory of the caller's, or NULL if out of memory. */
+/* Returns A [rows][cols] in memory of the caller's, or NULL if out of memory. */
 double *tribo_matrix_to_dense(const struct matrix *a);
-double *tribo_matrix_transpose_to_dense(const struct matrix *a);
 
 /* Multiplies row i by factor[i]. */
 void tribo_matrix_scale_rows(struct matrix *a, const double *factor);

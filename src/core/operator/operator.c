@@ -359,7 +359,8 @@ static void fill_group(struct delassus *op, struct memory *m, size_t k, const st
     }
 }
 
-/* Sets what follows from the rank of group k, whose masses may be graded; a status: R may be indefinite. */
+/* Factors R of group k, graded if g->graded and a pivot is small; sets nullity, small and the room for null vectors from the
+ * rank. Returns TRIBO_OK, or TRIBO_ERR_INDEFINITE if a pivot is below zero by more than rounding. */
 static int judge_group(struct delassus *op, struct memory *m, size_t k, const struct inertia *from, const size_t *place,
                        tribo_context *note)
 {

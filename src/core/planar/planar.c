@@ -10,7 +10,7 @@
 
 /* ---------------------------------------------------------------------------------------------------- one contact alone */
 
-/* Contacts nearer to the edge of their band have lenses whose inside is rounding. */
+/* A contact with a speed above EDGE epsilon has a lens whose width is rounding: it counts as sliding. */
 #define EDGE (1.0 - 16.0 * DBL_EPSILON)
 
 struct slide tribo_planar_slide(const tribo_context *ctx, size_t i, size_t directions, const double *v)

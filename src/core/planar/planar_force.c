@@ -130,10 +130,10 @@ static void find_pulls(tribo_context *ctx, const struct cluster *g)
 /* A reach is at least this part of the largest force that any contact could carry. */
 #define LITTLE 1e-50
 
-/* A direction whose reach is less than this part of its limit is loose. */
+/* A direction is loose if its reach is below BESIDE times its limit. */
 #define BESIDE 1e-8
 
-/* The rim of the other direction adds at most this part to the stiffness of a loose one. */
+/* Largest part that the curved limit of the other direction adds to the stiffness of a loose direction. */
 #define STRAIGHT 1e-12
 
 double tribo_planar_reach(const tribo_context *ctx, size_t i)
@@ -210,7 +210,8 @@ static void set_radius(tribo_context *ctx, size_t e, size_t directions, const do
     }
 }
 
-/* ask [size]: the force of each direction alone becomes the largest that balances the asks of the others, up to its limit. */
+/* Raises ask_k [size] to max_j |R_kj| ask_j/R_kk, at most the limit of direction k, until no ask_k changes: a force of direction
+ * k alone that balances the pull of any other direction. */
 static void find_asks(const tribo_context *ctx, const struct cluster *g, double *ask)
 {
     const size_t n = ctx->planar->problem.size, *near = ctx->planar->near;
@@ -235,7 +236,7 @@ static void estimate_reaches(tribo_context *ctx, const struct cluster *g)
     const size_t n = ctx->planar->problem.size;
     const double *bound = ctx->follow.contacts.bound;
     double *ask = ctx->planar->problem.spare;
-    double most = 0.0; /* the largest ask sqrt(R_ii): in these units asks of contacts compare */
+    double most = 0.0; /* max_k ask_k sqrt(R_kk), independent of the units of contacts */
     int far = 0;
     for (size_t k = 0; k < n; k++) {
         const size_t i = ctx->planar->contact[k];

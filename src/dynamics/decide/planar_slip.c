@@ -122,8 +122,8 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
 
 /* ----------------------------------------------------------------------------------------------------------- at rest */
 
-/* Brings contacts to rest whose speed is rounding, or below NOTHING of the tolerance and not growing: a contact that begins to
- * slide beside one that creeps may be slow for many steps. Returns their number. */
+/* Sets contacts at rest that slide with a speed within rounding, or below NOTHING times the tolerance and not growing. A speed
+ * that grows is kept: beside a creeping contact the first steps of a slide are slow. Returns the number set. */
 static size_t stop_in_plane(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     size_t found = 0;

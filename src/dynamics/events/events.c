@@ -270,8 +270,8 @@ static int travel(struct events *e, tribo_driver *drv, double *t, double end, do
     return TRIBO_OK;
 }
 
-/* One phase, from (t, y) to its end and the decision there. Shows contacts whose slip changed, or the state alone at other events
- * and at the end of the advance. After an error y is undefined: the driver has kept the state before. */
+/* Moves (t, y) to the end of one phase, and decides there. Shows the observer each contact with another slip than before, or the
+ * state alone if there is none. After an error y is undefined: the driver keeps the state before the advance. */
 static int phase(struct events *e, tribo_driver *drv, double *t, double t1, double *y)
 {
     struct stick_slip *m = &e->stick_slip;

@@ -171,8 +171,8 @@ static double find_turn(const struct event *e, size_t k)
     return un * dt - ut * dn;
 }
 
-/* The longest step in which no contact creeps whose direction, at the end y of the last step, has not relaxed yet to what keeps
- * velocities to e->error; HUGE_VAL if all have. */
+/* Returns the shortest time to a stop over the contacts with a direction at y that still turns too fast for an error of velocities
+ * below e->error; HUGE_VAL if there is none. */
 static double find_settled(const struct event *e, const double *y)
 {
     const struct stick_slip *m = &e->events.stick_slip;
@@ -364,7 +364,8 @@ static int is_with(const struct event *e, size_t k, double h)
     return along > 0.0 || fabs(across) < 0.5 * LEFT * e->planar.line[k].xn[0];
 }
 
-/* Finds the series whose directions are right at the nodes of a step of length h from (t, y). *found = 1 if there is one. */
+/* Iterates directions of sliding contacts at the nodes of a step of length h until their series satisfies the equation of
+ * directions there; sets *found = 1 if it does. Returns a status. */
 static int find_angles(struct event *e, size_t slides, double h, int *found)
 {
     struct creep *c = &e->creep;
@@ -394,7 +395,7 @@ static int find_angles(struct event *e, size_t slides, double h, int *found)
     return TRIBO_OK;
 }
 
-/* Judges the step of length h whose series is found. */
+/* Sets step->good if the series of a step of length h is within the allowed error, and the length of the next step. */
 static void judge(const struct event *e, size_t slides, double h, struct creep_step *step)
 {
     double defect = 0.0, slow = h, stray = 0.0;
