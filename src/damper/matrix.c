@@ -28,7 +28,8 @@ static int read_head(struct text *t, const struct rows *expected, size_t *entrie
         die("%s is empty", t->place);
     }
     const int words = sscanf(t->at, "%20s %20s %20s %20s %20s", word[0], word[1], word[2], word[3], word[4]);
-    for (char *c = word[0]; c < word[5]; c++) {
+    for (size_t i = 0; i < sizeof word; i++) {
+        char *const c = &word[i / sizeof *word][i % sizeof *word];
         *c = (char)tolower((unsigned char)*c);
     }
     if (words != 5 || strcmp(word[0], "%%matrixmarket") != 0 || strcmp(word[1], "matrix") != 0 ||

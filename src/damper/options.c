@@ -406,7 +406,9 @@ struct options read_options(int argc, char **argv)
             for (size_t k = 0; help && k < sizeof table / sizeof *table; k++) {
                 fputs(table[k].help, stdout);
             }
-            printf(help ? "" : "%s %s\n", program, tribo_version_string());
+            if (!help) {
+                printf("%s %s\n", program, tribo_version_string());
+            }
             close_file(stdout, "standard output");
             exit(EXIT_SUCCESS);
         }
