@@ -333,7 +333,7 @@ TEST(methods_agree)
         const char *method;
         double dt, tolerance, apart;
     } cases[] = {{"event", 1.0, 1e-13, 1e-9},
-                 {"rk4/fixed", 2e-4, 0.0, 2e-3},
+                 {"rk4/fixed", 1e-4, 0.0, 2e-3},
                  {"central/fixed", 5e-4, 0.0, 2e-3},
                  {"moreau/fixed", 5e-4, 0.0, 2e-3}};
     follow(_i, "exact", 1.0, 0.0, want);
