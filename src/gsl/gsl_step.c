@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* GSL's steppers as steppers of tribo_dynamics.h, by its public calls only. GSL's error handler ends the program where
- * memory ends or a matrix of an implicit step is singular, and GSL divides by zero where an estimate is zero: each step is
- * prepared so that none of that happens. */
+/* Systems as GSL sees them, and GSL's steppers as steppers of tribo_dynamics.h, by its public calls only. GSL's error handler
+ * ends the program where memory ends or a matrix of an implicit step is singular, and GSL divides by zero where an estimate is
+ * zero: each step is prepared so that none of that happens. */
 #include "tribo/tribo_gsl.h"
 
+#include "common/layout.h"
 #include "common/name.h"
 #include "common/real.h"
-#include "gsl_system.h"
 
 #include <fenv.h>
 #include <float.h>
@@ -49,7 +49,7 @@ struct gsl_kind {
 struct gsl_step {
     const struct gsl_kind *kind;
     tribo_system *sys;
-    size_t dimension, ndof, ncontact;
+    size_t dimension, ncontact;
     int status; /* of the last evaluation */
     gsl_odeiv2_step *step;
     gsl_odeiv2_system guarded;  /* the system with callbacks of this file */
@@ -68,56 +68,73 @@ struct gsl_step {
     signed char *mode; /* [2][ncontact] slip at the beginning of a step; workspace */
 };
 
+/* ------------------------------------------------------------------------------------------------------------- systems */
+
+/* The status for GSL of an evaluation with this status of tribo: GSL_FAILURE if a shorter step may succeed. */
+static int gsl_status(int status)
+{
+    return !status ? GSL_SUCCESS : status == TRIBO_ERR_NOT_FINITE ? GSL_FAILURE : GSL_EBADFUNC;
+}
+
+static int right_hand_side(double t, const double y[], double dydt[], void *params)
+{
+    return gsl_status(tribo_system_derivative(params, t, y, dydt));
+}
+
+static int jacobian(double t, const double y[], double *dfdy, double dfdt[], void *params)
+{
+    return gsl_status(tribo_system_jacobian(params, t, y, dfdy, dfdt));
+}
+
+const gsl_odeiv2_system *tribo_gsl_system(tribo_system *sys)
+{
+    static const char key;
+    gsl_odeiv2_system *s = tribo_system_attached(sys, &key);
+    if (s || !sys) {
+        return s;
+    }
+    s = malloc(sizeof *s);
+    if (s) {
+        *s = (gsl_odeiv2_system){
+            .function = right_hand_side, .jacobian = jacobian, .dimension = tribo_system_dimension(sys), .params = sys};
+    }
+    if (!s || tribo_system_attach(sys, &key, s, free)) {
+        free(s);
+        tribo_system_set_message(sys, TRIBO_ERR_MEMORY, "out of memory for GSL's view of the system");
+        return NULL;
+    }
+    return s;
+}
+
 /* ------------------------------------------------------------------------------------------------------------- memory */
 
-struct request {
-    size_t blocks, bytes;
-};
+/* Bytes of a header of GSL's: of a vector, a permutation, a state. */
+#define HEADER ((size_t)512)
 
-/* 1 if malloc has memory for all requests at once. */
-static int memory_for(const struct request *r, size_t count)
+/* 1 if malloc has blocks of bytes [count] at once. volatile: compilers leave out blocks that nothing reads. */
+static int has_memory(const size_t *bytes, size_t count)
 {
-    int enough = 1;
-    void **last = NULL;
-    for (size_t i = 0; i < count; i++) {
-        for (size_t k = 0; enough && k < r[i].blocks; k++) {
-            void **block = malloc(r[i].bytes);
-            enough = block != NULL;
-            if (block) {
-                *block = last;
-                last = block;
-            }
-        }
-    }
-    while (last) {
-        void **next = *last;
-        free(last);
-        last = next;
-    }
+    void *volatile block = malloc(bytes[0]);
+    const int enough = block && (count == 1 || has_memory(bytes + 1, count - 1));
+    free(block);
     return enough;
 }
 
 /* 1 if there is memory for a stepper of GSL: headers, vectors, histories of up to 13 vectors, and matrices. */
 static int memory_to_create(const struct gsl_kind *kind, size_t n)
 {
-    const size_t size = n * kind->stages, header = 512, vector = header + size * sizeof(double);
-    if (size > SIZE_MAX / sizeof(double) / (16 + size)) {
-        return 0;
+    const size_t size = n * kind->stages, vector = HEADER + size * sizeof(double);
+    const size_t bytes[] = {24 * HEADER, 40 * vector, 48 * vector, 3 * size * vector};
+    return size <= SIZE_MAX / sizeof(double) / (100 + 3 * size) && has_memory(bytes, kind->matrices ? 4 : 3);
+}
+
+/* Returns GSL_SUCCESS if there is memory for a factorization, which allocates a vector of integers. */
+static int reserve_factor(struct gsl_step *g)
+{
+    const size_t bytes = 3 * HEADER + g->dimension * g->kind->stages * sizeof(size_t);
+    if (has_memory(&bytes, 1)) {
+        return GSL_SUCCESS;
     }
-    const struct request all[] = {{24, header}, {40, vector}, {3, 16 * vector}, {kind->matrices ? 3 : 0, size * vector}};
-    return memory_for(all, sizeof all / sizeof *all);
-}
-
-/* 1 if there is memory for a factorization, which allocates a vector of integers. */
-static int memory_to_factorize(const struct gsl_step *g)
-{
-    const size_t header = 512;
-    const struct request all[] = {{2, header}, {1, header + g->dimension * g->kind->stages * sizeof(size_t)}};
-    return memory_for(all, sizeof all / sizeof *all);
-}
-
-static int gsl_step_out_of_memory(struct gsl_step *g)
-{
     g->status = tribo_system_set_message(g->sys, TRIBO_ERR_MEMORY, "out of memory for an implicit step");
     return GSL_EBADFUNC;
 }
@@ -163,7 +180,7 @@ static int guarded_function(double t, const double y[], double dydt[], void *par
     struct gsl_step *g = params;
     g->status = tribo_system_derivative(g->sys, t, y, dydt);
     if (g->status || g->kind->matrices == 0) {
-        return tribo_gsl_status(g->status);
+        return gsl_status(g->status);
     }
     if (g->kind->stable < HUGE_VAL && passes_a_change(g, g->kind->stable)) {
         return GSL_FAILURE;
@@ -171,7 +188,7 @@ static int guarded_function(double t, const double y[], double dydt[], void *par
     if (g->kind->newton) {
         /* Slopes that change a value by less than NEGLIGIBLE of its tolerance are 0 for Newton's method: GSL's takes
          * rounding that does not decrease for divergence. */
-        const size_t n = g->ndof;
+        const size_t n = g->dimension / 2;
         const double h = g->trial->h, way = largest_size(y, n) + h * largest_size(y + n, n);
         tribo_system_get_force(g->sys, g->force);
         const double size[] = {way, way / h, fabs(y[2 * n]) + way * largest_size(g->force, g->ncontact)};
@@ -180,7 +197,7 @@ static int guarded_function(double t, const double y[], double dydt[], void *par
             dydt[i] = fabs(dydt[i]) * h < least ? 0.0 : dydt[i];
         }
     }
-    return memory_to_factorize(g) ? GSL_SUCCESS : gsl_step_out_of_memory(g);
+    return reserve_factor(g);
 }
 
 /* matrix = I - h A x J, by rows. */
@@ -221,8 +238,8 @@ static int has_sure_pivots(struct gsl_step *g, size_t n)
     return sure;
 }
 
-/* 1 if all matrices of a step are regular; needs memory_to_factorize. Of msbdf, whose matrix belongs to its order, only those of orders up to the
- * present one: an order grows from one step to the next only. */
+/* 1 if all matrices of a step are regular; needs reserve_factor. Of msbdf, whose matrix belongs to its order, only those of
+ * orders up to the present one: an order grows from one step to the next only. */
 static int is_regular(struct gsl_step *g)
 {
     const size_t size = g->dimension * g->kind->stages;
@@ -247,7 +264,7 @@ static int guarded_jacobian(double t, const double y[], double *dfdy, double dfd
     double sum = 0.0;
     g->status = tribo_system_jacobian(g->sys, t, y, dfdy, dfdt);
     if (g->status) {
-        return tribo_gsl_status(g->status);
+        return gsl_status(g->status);
     }
     for (size_t i = 0; i < n; i++) {
         sum += dfdt[i] - dfdt[i];
@@ -256,10 +273,8 @@ static int guarded_jacobian(double t, const double y[], double *dfdy, double dfd
     memcpy(g->jacobian, dfdy, n * n * sizeof *dfdy);
     g->known = 1;
     g->regular = 0.0;
-    if (!memory_to_factorize(g)) {
-        return gsl_step_out_of_memory(g);
-    }
-    return sum != 0.0 || !is_regular(g) ? GSL_FAILURE : GSL_SUCCESS;
+    const int status = reserve_factor(g);
+    return status ? status : sum != 0.0 || !is_regular(g) ? GSL_FAILURE : GSL_SUCCESS;
 }
 
 static int tell_tolerance(void *state, const double y, const double dydt, const double h, const size_t i, double *level)
@@ -275,55 +290,36 @@ static int tell_tolerance(void *state, const double y, const double dydt, const 
 static void gsl_step_destroy(void *data)
 {
     struct gsl_step *g = data;
-    if (g) {
-        gsl_odeiv2_step_free(g->step);
-        free(g->jacobian);
-        free(g->matrix);
-        free(g->order);
-        free(g->end);
-        free(g->force);
-        free(g->mode);
-        free(g);
-    }
-}
-
-static int create_workspace(struct gsl_step *g)
-{
-    const size_t n = g->dimension, size = n * g->kind->stages;
-    g->jacobian = calloc(n, n * sizeof *g->jacobian);
-    g->matrix = calloc(size, size * sizeof *g->matrix);
-    g->order = calloc(size, sizeof *g->order);
-    g->end = calloc(n, sizeof *g->end);
-    g->force = calloc(g->ncontact + 1, sizeof *g->force);
-    g->mode = calloc(2 * g->ncontact + 1, sizeof *g->mode);
-    return g->jacobian && g->matrix && g->order && g->end && g->force && g->mode;
+    gsl_odeiv2_step_free(g->step);
+    free(g);
 }
 
 /* NULL if out of memory. */
 static struct gsl_step *gsl_step_create(const struct gsl_kind *kind, tribo_system *sys)
 {
     static const gsl_odeiv2_control_type tolerance = {.name = "tribo", .errlevel = tell_tolerance};
-    struct gsl_step *g = calloc(1, sizeof *g);
-    if (!g) {
+    const size_t n = tribo_system_dimension(sys), c = tribo_system_ncontact(sys), size = kind->matrices ? n * kind->stages : 0;
+    struct gsl_step *g, first = {.kind = kind, .sys = sys, .dimension = n, .ncontact = c};
+    struct layout l = {0};
+    do {
+        g = tribo_layout_array(&l, 1, sizeof *g);
+        first.jacobian = tribo_layout_array(&l, size ? n * n : 0, sizeof *g->jacobian);
+        first.matrix = tribo_layout_array(&l, size * size, sizeof *g->matrix);
+        first.order = tribo_layout_array(&l, size, sizeof *g->order);
+        first.end = tribo_layout_array(&l, n, sizeof *g->end);
+        first.force = tribo_layout_array(&l, c, sizeof *g->force);
+        first.mode = tribo_layout_array(&l, 2 * c, sizeof *g->mode);
+    } while (!l.memory && tribo_layout_zeros(&l));
+    if (!l.memory || !memory_to_create(kind, n)) {
+        free(l.memory);
         return NULL;
     }
-    g->kind = kind;
-    g->sys = sys;
-    g->dimension = tribo_system_dimension(sys);
-    g->ndof = tribo_system_ndof(sys);
-    g->ncontact = tribo_system_ncontact(sys);
-    g->guarded.function = guarded_function;
-    g->guarded.jacobian = guarded_jacobian;
-    g->guarded.dimension = g->dimension;
-    g->guarded.params = g;
-    g->control.type = &tolerance;
-    g->control.state = g;
+    *g = first;
+    g->guarded =
+        (gsl_odeiv2_system){.function = guarded_function, .jacobian = guarded_jacobian, .dimension = n, .params = g};
+    g->control = (gsl_odeiv2_control){.type = &tolerance, .state = g};
     g->driver.c = &g->control;
-    if ((kind->matrices && !create_workspace(g)) || !memory_to_create(kind, g->dimension)) {
-        gsl_step_destroy(g);
-        return NULL;
-    }
-    g->step = gsl_odeiv2_step_alloc(*kind->type, g->dimension);
+    g->step = gsl_odeiv2_step_alloc(*kind->type, n);
     gsl_odeiv2_step_set_driver(g->step, &g->driver);
     return g;
 }
@@ -351,8 +347,8 @@ static int has_stuck(const struct gsl_step *g)
 static int gsl_step_apply(struct gsl_step *g)
 {
     const tribo_trial *x = g->trial;
-    if (g->kind->matrices && !memory_to_factorize(g)) {
-        return gsl_step_out_of_memory(g);
+    if (g->kind->matrices && reserve_factor(g)) {
+        return GSL_EBADFUNC;
     }
     if (g->known && !is_regular(g)) {
         gsl_step_restart(g); /* GSL then asks for a Jacobian before it factorizes */
@@ -458,7 +454,7 @@ int tribo_gsl_driver_create(tribo_driver **drv, tribo_system *sys, const char *s
                                  .destroy = gsl_step_destroy};
     const int status = g ? tribo_driver_create_stepper(drv, sys, &table, g)
                          : tribo_system_set_message(sys, TRIBO_ERR_MEMORY, "out of memory for a stepper of GSL");
-    if (status) {
+    if (g && status) {
         gsl_step_destroy(g);
     }
     return status;
