@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/layout.h"
 #include "common/real.h"
 #include "common/simd.h"
 #include "step_form.h"
@@ -27,90 +28,63 @@ static int find_bodies(struct blockwise *b, const tribo_system *sys, signed char
     return alone;
 }
 
-/* Counts in at[k], or lists in pulled (not NULL) from at[k] on, the blocks whose rows of K or C have entries in the columns of
- * block k. mark [blocks]: workspace, the last block noted for each. */
-static void note_pulls(const tribo_system *sys, size_t blocks, size_t *at, size_t *pulled, size_t *mark)
+/* Sets first and last, by the entries of K and C. */
+static void find_reach(struct blockwise *b, const tribo_system *sys)
 {
     const struct matrix *const of[] = {&sys->stiffness, &sys->damping};
-    memset(mark, -1, blocks * sizeof *mark);
-    for (size_t i = 0; i < 2 * sys->ndof; i++) {
-        const struct matrix *a = of[i % 2];
-        const size_t row = i / 2, to = row / MATRIX_BLOCK;
-        for (size_t e = row < a->rows ? a->first[row] : 0; row < a->rows && e < a->first[row + 1]; e++) {
-            const size_t from = a->col[e] / MATRIX_BLOCK;
-            if (mark[from] != to) {
-                mark[from] = to;
-                if (pulled) {
-                    pulled[at[from]] = to;
-                }
-                at[from]++;
+    for (size_t k = 0; k < b->blocks; k++) {
+        b->first[k] = b->last[k] = k;
+    }
+    for (size_t row = 0; row < sys->ndof; row++) {
+        const size_t to = row / MATRIX_BLOCK;
+        for (int m = 0; m < 2; m++) {
+            for (size_t e = of[m]->rows ? of[m]->first[row] : 0; of[m]->rows && e < of[m]->first[row + 1]; e++) {
+                const size_t from = of[m]->col[e] / MATRIX_BLOCK;
+                b->first[from] = to < b->first[from] ? to : b->first[from];
+                b->last[from] = to > b->last[from] ? to : b->last[from];
             }
         }
     }
 }
 
-/* Sets first and pulled. In the first pass first[k + 2] counts blocks that block k accelerates, in the second one first[k +
- * 1] is the place of the next of them. Returns 0 if out of memory. */
-static int map_pulls(struct blockwise *b, const tribo_system *sys)
-{
-    size_t *mark = malloc(b->blocks * sizeof *mark);
-    if (!mark) {
-        return 0;
-    }
-    note_pulls(sys, b->blocks, b->first + 2, NULL, mark);
-    for (size_t k = 0; k < b->blocks; k++) {
-        b->first[k + 2] += b->first[k + 1];
-    }
-    b->pulled = malloc((b->first[b->blocks + 1] + 1) * sizeof *b->pulled);
-    if (b->pulled) {
-        note_pulls(sys, b->blocks, b->first + 1, b->pulled, mark);
-    }
-    free(mark);
-    return b->pulled != NULL;
-}
-
 void tribo_blockwise_free(struct blockwise *b)
 {
     free(b->body);
-    free(b->mass);
-    free(b->first);
-    free(b->pulled);
-    free(b->driven);
     memset(b, 0, sizeof *b);
 }
 
 int tribo_blockwise_create(struct blockwise *b, const tribo_system *sys)
 {
     const size_t n = sys->ndof, c = sys->ncontact, blocks = (n + MATRIX_BLOCK - 1) / MATRIX_BLOCK;
+    struct layout l = {0};
+    signed char *taken;
     memset(b, 0, sizeof *b);
     b->blocks = blocks;
-    b->body = malloc((c + 1) * sizeof *b->body);
-    b->mass = calloc(7 * n + 2 * c + 1, sizeof *b->mass);
-    b->first = calloc(2 * blocks + 2, sizeof *b->first);
-    b->driven = calloc(4 * blocks, 1);
-    signed char *taken = calloc(n, 1);
-    int done = b->body && b->mass && b->first && b->driven && taken;
-    if (done) {
-        b->brake = b->mass + n;
-        b->band = b->brake + n;
-        b->rate = b->band + n;
-        b->before = b->rate + n;
-        b->after = b->before + n;
-        b->load = b->after + n;
-        b->turn = b->load + n;
-        b->room = b->turn + c;
-        b->still = b->first + blocks + 2;
-        b->loaded = b->driven + blocks;
-        b->awake = b->loaded + blocks;
-        b->wakes = b->awake + blocks;
-        if (find_bodies(b, sys, taken)) {
-            done = map_pulls(b, sys);
-        } else {
-            tribo_blockwise_free(b);
+    do {
+        double **const of_dof[] = {&b->mass, &b->brake, &b->band, &b->rate, &b->before, &b->after, &b->load};
+        b->body = tribo_layout_array(&l, c, sizeof *b->body);
+        for (size_t k = 0; k < sizeof of_dof / sizeof *of_dof; k++) {
+            *of_dof[k] = tribo_layout_array(&l, n, sizeof **of_dof[k]);
         }
+        b->turn = tribo_layout_array(&l, c, sizeof *b->turn);
+        b->room = tribo_layout_array(&l, c, sizeof *b->room);
+        b->first = tribo_layout_array(&l, blocks, sizeof *b->first);
+        b->last = tribo_layout_array(&l, blocks, sizeof *b->last);
+        b->still = tribo_layout_array(&l, blocks, sizeof *b->still);
+        b->driven = tribo_layout_array(&l, blocks, 1);
+        b->awake = tribo_layout_array(&l, blocks, 1);
+        b->wakes = tribo_layout_array(&l, blocks, 1);
+        taken = tribo_layout_array(&l, n, 1);
+    } while (!l.memory && tribo_layout_zeros(&l));
+    if (!l.memory) {
+        return 0;
     }
-    free(taken);
-    return done;
+    if (find_bodies(b, sys, taken)) {
+        find_reach(b, sys);
+    } else {
+        tribo_blockwise_free(b);
+    }
+    return 1;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- settings */
@@ -122,14 +96,6 @@ static void take_limits(struct blockwise *b, const tribo_system *sys)
         const size_t d = b->body[i];
         b->brake[d] = product(fabs(tribo_matrix_get(&sys->response, d, i)), lesser(b->room[i], TRIBO_FAR));
     }
-}
-
-/* Notes that a load or another function, varying with time or not, acts on a degree of freedom, or on the body of a contact. */
-static void note_drive(struct blockwise *b, enum drives drives, size_t i, int varies)
-{
-    const size_t k = (drives == DRIVES_LOAD ? i : b->body[i]) / MATRIX_BLOCK;
-    b->driven[k] |= (unsigned char)varies;
-    b->loaded[k] |= drives == DRIVES_LOAD;
 }
 
 int tribo_blockwise_take(struct blockwise *b, tribo_system *sys)
@@ -145,11 +111,11 @@ int tribo_blockwise_take(struct blockwise *b, tribo_system *sys)
     memset(b->wakes, 0, b->blocks);
     memset(b->load, 0, sys->ndof * sizeof *b->load);
     memset(b->driven, tribo_system_limits_vary(sys), b->blocks);
-    memset(b->loaded, 0, b->blocks);
     for (size_t s = 0; s < sys->loads.harmonics; s++) {
         const struct harmonic *h = &sys->loads.harmonic[s];
         for (size_t k = 0; k < h->count; k++) {
-            note_drive(b, h->drives, h->index[k], h->drives == DRIVES_BASE || h->omega != 0.0 || h->knots);
+            const size_t d = h->drives == DRIVES_LOAD ? h->index[k] : b->body[h->index[k]];
+            b->driven[d / MATRIX_BLOCK] |= h->drives == DRIVES_BASE || h->omega != 0.0 || h->knots;
         }
     }
     take_limits(b, sys);
@@ -191,21 +157,23 @@ static size_t block_size(const tribo_system *sys, size_t k)
     return left < MATRIX_BLOCK ? left : MATRIX_BLOCK;
 }
 
-/* Sets the system's time, and the loads of blocks that have any. */
+/* Sets the system's time, and load. */
 static void set_time(struct blockwise *b, tribo_system *sys, double t)
 {
+    const struct loads *all = &sys->loads;
     tribo_system_set_time(sys, t);
     if (b->time == t) {
         return;
     }
     b->time = t;
-    for (size_t k = 0; k < b->blocks; k++) {
-        if (b->loaded[k]) {
-            memset(b->load + k * MATRIX_BLOCK, 0, block_size(sys, k) * sizeof *b->load);
+    for (size_t s = 0; s < all->harmonics; s++) {
+        const struct harmonic *h = &all->harmonic[s];
+        for (size_t k = 0; h->drives == DRIVES_LOAD && k < h->count; k++) {
+            b->load[h->index[k]] = 0.0;
         }
     }
-    for (size_t s = 0; s < sys->loads.harmonics; s++) {
-        const struct harmonic *h = &sys->loads.harmonic[s];
+    for (size_t s = 0; s < all->harmonics; s++) {
+        const struct harmonic *h = &all->harmonic[s];
         if (h->drives == DRIVES_LOAD) {
             tribo_system_turn(sys, s);
             for (size_t k = 0; k < h->count; k++) {
@@ -357,10 +325,7 @@ int tribo_blockwise_step(struct blockwise *b, tribo_system *sys, const struct bo
         left -= n;
         b->awake[k] = 0;
         if (did & STIRS) {
-            b->wakes[k] = 1; /* also by damping that is set later, which is diagonal */
-            for (size_t e = b->first[k]; e < b->first[k + 1]; e++) {
-                b->wakes[b->pulled[e]] = 1;
-            }
+            memset(b->wakes + b->first[k], 1, b->last[k] - b->first[k] + 1);
         } else if (b->driven[k]) {
             b->wakes[k] = 1;
         } else {

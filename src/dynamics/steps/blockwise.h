@@ -5,8 +5,8 @@
  *
  * A step of central differences looks only at blocks that are awake. Awake are: all blocks at the first step and after a change
  * of settings; in every step, blocks with a load, a base or a limit that depends on time; after a step in which block k moved,
- * all blocks that the displacements or velocities of block k accelerate. Blocks are taken in their order, so that the energy is
- * the same sum.
+ * all blocks from the first to the last one that displacements or velocities of block k accelerate. Blocks are taken in their
+ * order, so that the energy is the same sum.
  *
  * A block that is left out cannot move. In the step before it was left out it began and ended with velocity 0, and at its
  * end |a| <= |B| limit held for each of its rows. None of the blocks that accelerate it has moved in that step or since, its
@@ -20,7 +20,7 @@
 #include "dynamics/system/system.h"
 
 struct blockwise {
-    size_t *body;           /* [ncontact] degree of freedom of each contact; NULL: contacts share bodies */
+    size_t *body;           /* [ncontact] degree of freedom of each contact; owns all memory; NULL: contacts share bodies */
     double *turn;           /* [ncontact] entry of J there */
     double *mass;           /* [ndof] tally J/B: the power of friction is mass a u; 0 without contact */
     double *brake;          /* [ndof] |B| limit: the largest acceleration by friction */
@@ -32,9 +32,8 @@ struct blockwise {
     double *room; /* [ncontact] workspace */
     size_t blocks;
     size_t skipped;               /* degrees of freedom left out, summed over steps */
-    size_t *first, *pulled;       /* block k accelerates blocks pulled[first[k]] to pulled[first[k + 1] - 1] */
+    size_t *first, *last;         /* [blocks] block k accelerates no blocks before first[k] or after last[k] */
     unsigned char *driven;        /* [blocks] 1: a load, base or limit depends on time */
-    unsigned char *loaded;        /* [blocks] 1: there is a load */
     unsigned char *awake, *wakes; /* [blocks] 1: awake in this step, not yet done; in the next step */
     size_t *still;                /* [blocks] workspace: blocks that did not move in this step */
     int goes_on;                  /* 1: `after` is what the next step begins with */
