@@ -6,9 +6,7 @@
  * by chunk. Arrays of a large scene are far away: kernels do not read 1/R_ii or limits that are equal for all, nor a where all
  * contacts slide. */
 #include "common/stream.h"
-#include "check.h"
-#include "groups.h"
-#include "static.h"
+#include "clusters.h"
 
 enum { FEW = 8 * TRIBO_CHUNK }; /* forces of that many contacts stay in the first-level cache */
 
@@ -229,7 +227,7 @@ static int balance_chunk(tribo_context *ctx, const struct call *call, size_t k, 
         }
         for (size_t j = 0; near && j < n; j++) {
             if (is_near[j]) {
-                tribo_list_group(ctx, ctx->group_of[i + j]);
+                tribo_list_group(ctx, tribo_group_of(ctx)[i + j]);
             }
         }
     }

@@ -7,9 +7,7 @@
  *
  * A call first finds forces of contacts as if each was alone, which is right for those in no group, and for open and sliding
  * ones; then it solves the groups with a contact near stick. */
-#include "check.h"
 #include "clusters.h"
-#include "static.h"
 
 void tribo_begin_call(tribo_context *ctx)
 {
@@ -25,8 +23,9 @@ void tribo_begin_call(tribo_context *ctx)
     ctx->last.linearized = 0;
 }
 
-void tribo_remember_forces(tribo_context *ctx)
+void tribo_end_call(tribo_context *ctx, size_t islands)
 {
+    ctx->count.skipped += islands - ctx->memory.nsolved - ctx->last.clusters;
     for (size_t g = 0; ctx->set.sharing == TRIBO_SHARE_PREVIOUS && g < ctx->op->groups; g++) {
         struct box_qp *p = tribo_problem(ctx, g);
         for (size_t k = 0; !ctx->memory.solved[g] && k < p->group->size; k++) {
@@ -129,10 +128,9 @@ static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *
 
 static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *v, const double *a)
 {
-    const size_t *member = p->member;
     const struct work before = p->work;
     for (size_t e = 0; e < p->count; e++) {
-        const size_t k = p->near[e], i = member[k];
+        const size_t k = p->near[e], i = p->member[k];
         p->q[k] = cut(a[i]);
         p->rounding.unit[k] = ctx->op->diagonal[i] * ctx->follow.contacts.bound[i];
     }
@@ -140,7 +138,7 @@ static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *v
     int consistent = tribo_box_linear(p);
     ctx->count.reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
     for (size_t e = 0; e < p->count; e++) {
-        const size_t k = p->near[e], i = member[k];
+        const size_t k = p->near[e], i = p->member[k];
         const double off = fabs(quotient(p->gradient[k], ctx->op->diagonal[i]));
         ctx->last.residual = greater(ctx->last.residual, quotient(off, greater(ctx->follow.contacts.limit[i], DBL_MIN)));
         p->hi[k] = ctx->follow.contacts.limit[i];
@@ -156,7 +154,7 @@ static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *v
                       : tribo_fail(ctx, TRIBO_ERR_INCONSISTENT,
                                    "no f_eq balances the %zu contact%s near stick around contact %zu: rank %zu, and a is outside "
                                    "its range",
-                                   p->count, plural(p->count), member[p->near[0]], p->sets->rank);
+                                   p->count, plural(p->count), p->member[p->near[0]], p->sets->rank);
 }
 
 /* f_eq of the contacts of a group; if it was solved, of those that were not near stick. 0 for open ones. */
@@ -221,8 +219,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     if (status && status != TRIBO_ERR_INCONSISTENT) {
         return status;
     }
-    ctx->count.skipped += tribo_islands(ctx) - ctx->memory.nsolved - ctx->last.clusters;
-    tribo_remember_forces(ctx);
+    tribo_end_call(ctx, tribo_islands(ctx));
     ctx->last.slips = SLIPS_IN_FORCES;
     ctx->last.holds = ctx->set.law->holds;
     if (feq) {

@@ -65,13 +65,4 @@ static inline int tribo_check_output(tribo_context *ctx, const char *name, const
     return !x && ctx->n ? tribo_fail(ctx, TRIBO_ERR_NULL, "%s is NULL", name) : TRIBO_OK;
 }
 
-/* The arguments of a step. */
-static inline int tribo_check_step(tribo_context *ctx, double dt, const double *vfree, const double *f)
-{
-    int status = isfinite(dt) && dt > 0.0 ? TRIBO_OK : tribo_check_slowly(ctx, "dt", &dt, TRIBO_NUMBER, POSITIVE);
-    status = status ? status : tribo_need_operator(ctx);
-    status = status ? status : tribo_check_finite(ctx, "vfree", vfree, ctx->n);
-    return status ? status : tribo_check_output(ctx, "f", f);
-}
-
 #endif

@@ -9,7 +9,7 @@
 /* 1 if contact i is no direction of a planar contact. */
 static inline int tribo_is_scalar(const tribo_context *ctx, size_t i)
 {
-    return !ctx->planar || ctx->planar->role[i] == ROLE_SCALAR;
+    return !ctx->clusters || ctx->clusters->role[i] == ROLE_SCALAR;
 }
 
 /* Directions of the contact that begins with direction i. */
@@ -18,26 +18,32 @@ static inline size_t tribo_directions(const tribo_context *ctx, size_t i)
     return tribo_is_scalar(ctx, i) ? 1 : 2;
 }
 
+/* [n] the group whose box problem has the contact, or TRIBO_ALONE; for an operator with groups. */
+static inline const size_t *tribo_group_of(const tribo_context *ctx)
+{
+    return ctx->clusters ? ctx->clusters->group_of : ctx->op->group_of;
+}
+
 /* Single contacts, and connected ones counted as one, joined by R or by planar contacts. */
 static inline size_t tribo_islands(const tribo_context *ctx)
 {
-    return ctx->planar && ctx->op->diagonal ? ctx->planar->islands : ctx->op->islands;
+    return ctx->clusters && ctx->op->diagonal ? ctx->clusters->islands : ctx->op->islands;
 }
 
 static inline size_t tribo_cluster_count(const tribo_context *ctx)
 {
-    return ctx->planar ? ctx->planar->clusters : 0;
+    return ctx->clusters ? ctx->clusters->clusters : 0;
 }
 
 static inline size_t tribo_plane_count(const tribo_context *ctx)
 {
-    return ctx->planar ? ctx->planar->count : 0;
+    return ctx->clusters ? ctx->clusters->count : 0;
 }
 
 /* First directions of planar contacts, [count]. */
 static inline const size_t *tribo_plane_first(const tribo_context *ctx)
 {
-    return ctx->planar ? ctx->planar->first : NULL;
+    return ctx->clusters ? ctx->clusters->first : NULL;
 }
 
 /* ---- planar.c */
@@ -51,22 +57,16 @@ int tribo_clusters_clone(tribo_context *clone, const tribo_context *from);
 /* Frees clusters. */
 void tribo_clusters_free(tribo_context *ctx);
 
-/* Forgets clusters, which are those of the context that ctx is a copy of. */
-static inline void tribo_clusters_none(tribo_context *ctx)
-{
-    ctx->planar = NULL;
-}
-
 /* Fails if coupling is TRIBO_PARTITION, and count > 0; a status. */
 int tribo_plane_check_coupling(tribo_context *ctx, int coupling, size_t count, const size_t *first);
 
-/* Sets group_of; widths and rates of planar contacts if epsilon follows the operator: time as in tribo_refresh. */
+/* If epsilon follows the operator: sets widths and rates of planar contacts; time as in tribo_refresh. */
 void tribo_clusters_refresh(tribo_context *ctx, int follows, double time);
 
 /* ---- planar_force.c */
 
-/* Forces of clusters in last.f, where those of all others are known; of the balance, and over a step (see tribo_solve_step); a
- * status. */
+/* Forces of clusters in last.f, where those of all others are known; of the balance, and over a step; a status.
+ * known [n] or NULL: not 0 for scalar contacts whose force is in last.f. */
 int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a);
 int tribo_clusters_step(tribo_context *ctx, double dt, const double *vfree, const signed char *known);
 

@@ -3,9 +3,7 @@
 #include <math.h>
 
 #include "common/stream.h"
-#include "check.h"
 #include "clusters.h"
-#include "static.h"
 
 /* used [n] = feq where |v| <= band, else 0. */
 TRIBO_SIMD static void select_feq(size_t n, const double *restrict v, const double *restrict band, const double *restrict feq,

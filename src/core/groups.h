@@ -1,9 +1,29 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Groups of contacts that share bodies: calls that solve box problems. */
+/* Calls of core: contacts one by one, groups of contacts that share bodies, static limits. */
 #ifndef TRIBO_GROUPS_H
 #define TRIBO_GROUPS_H
 
-#include "contacts.h"
+#include "check.h"
+
+/* Bounds of forces; lower NULL: -upper. */
+struct bounds {
+    const double *lower, *upper;
+};
+
+static inline double tribo_lower(const struct bounds *b, size_t i)
+{
+    return b->lower ? b->lower[i] : -b->upper[i];
+}
+
+/* Returns the slip of a contact by its force f: it is stuck if |f| < holds limit. (The smooth law never reaches the limit; it
+ * holds where |v| < epsilon.) */
+static inline signed char tribo_slip_by_force(double f, double limit, double holds)
+{
+    const double edge = holds * limit;
+    const double forth = f <= -edge ? TRIBO_SLIP_FORTH : 0.0, back = f >= edge ? -TRIBO_SLIP_BACK : 0.0;
+    return (signed char)(int)(limit > 0.0 ? forth - back
+                                          : TRIBO_SLIP_OPEN); /* doubles, as wide as f: vectors of them stay whole */
+}
 
 /* Group g in the workspace. */
 static inline struct box_qp *tribo_problem(tribo_context *ctx, size_t g)
@@ -17,6 +37,32 @@ static inline double tribo_carried(const tribo_context *ctx, const struct box_qp
     const double f = ctx->last.f[p->member[k]];
     return ctx->last.far ? tribo_cut(p, k, f) : f;
 }
+
+/* ---- alone.c: contacts as if no two shared a body */
+
+/* slip [n] by forces. */
+void tribo_find_slips(size_t n, const double *f, const double *limit, double holds, signed char *slip);
+
+/* feq [n] = -a/R_ii of the contacts of the chunk that begins with contact i; 0 for open ones. */
+void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq);
+
+/* Returns the |v| up to which the law reads f_eq, of the n <= TRIBO_CHUNK contacts from i on: epsilon, or 0; room [n] is
+ * workspace. */
+const double *tribo_bands(const tribo_context *ctx, size_t i, size_t n, double *room);
+
+/* Checks that v and a are finite; a status. *plain: |a_i| <= TRIBO_PLAIN. */
+int tribo_check_motion(tribo_context *ctx, const double *v, const double *a, int *plain);
+
+/* tribo_balance and tribo_step_force where tribo_all_alone. feq and f of the balance may be NULL. */
+int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
+int tribo_step_alone(tribo_context *ctx, double dt, const double *v, double *f);
+
+/* The first part of a balance: last.f of contacts that need no solver, and f_eq where the law reads it, or of all such contacts if
+ * wanted. Finds which contacts of groups are near stick, and lists their groups. */
+void tribo_balance_each(tribo_context *ctx, const double *v, const double *a, int wanted);
+
+/* The first part of a step: last.f = -v/(dt R_ii) within bounds. */
+void tribo_step_each(tribo_context *ctx, double dt, const double *v, struct bounds b);
 
 /* ---- balance.c */
 
@@ -39,17 +85,41 @@ struct box_qp *tribo_collect(tribo_context *ctx, size_t g);
 /* Solves the problem of a group, of which near, q, lo and hi are set; a status. */
 int tribo_solve_group(tribo_context *ctx, struct box_qp *p);
 
-/* With sharing by previous forces: keeps those of groups that were not solved. */
-void tribo_remember_forces(tribo_context *ctx);
+/* Ends a call on islands without failure: counts those that were not solved, and, with sharing by previous forces, keeps their
+ * forces. */
+void tribo_end_call(tribo_context *ctx, size_t islands);
 
-/* ---- step.c */
+/* ---- static.c */
 
-/* Finds last.f within bounds with v + dt R f = 0, or pushed against a bound; a status. known [n] or NULL: not 0 for scalar contacts
- * of clusters whose force is in last.f. */
-int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known);
+/* A law without stick needs Stribeck velocities where a ratio exceeds 1; a status. */
+int tribo_check_breaking(tribo_context *ctx, const struct law *law, int breaking, const double *ratio);
 
-/* tribo_step_force without checks. v [n]: velocities at the begin, or NULL; read where limits are static. */
-int tribo_step_at_end(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f);
+/* Both directions of a planar contact have the same ratio and velocity; a status. */
+int tribo_check_one_ratio(tribo_context *ctx, const double *ratio, const double *velocity, size_t count, const size_t *first);
+
+/* limit [n] of the contacts from i on at v [n]: static near stick, unless |feq| exceeds it; feq NULL: it does not. */
+void tribo_find_limits(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *limit);
+
+/* The limit by which contact i slides at this speed. */
+double tribo_limit_at(const tribo_context *ctx, size_t i, double speed);
+
+/* d(limit)/dv of contact i; 0 without static limits. */
+double tribo_limit_rate(const tribo_context *ctx, size_t i, double v);
+
+/* The law's derivatives d [n] of the contacts from i on, of which c is a view, by v, f_eq and the caller's limit. */
+void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size_t i, size_t n, const double *v,
+                        const double *feq, const struct tangents *d);
+
+/* Sets limits over a step of dt: static, but those to slide of contacts that come in sliding at v [n], or NULL, and do not come
+ * to a stop: f [n], or NULL, acts against v. Returns 0, and leaves all limits, if f acts against v at all that come in sliding. */
+int tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, const double *f);
+
+/* Gives contacts whose f_eq exceeds the static limit that to slide at the end of a step of dt, or (0) from rest. Returns their
+ * number. */
+size_t tribo_break_away(tribo_context *ctx, struct box_qp *p, double dt);
+
+/* The same for contacts in no group, by vfree; their forces follow. */
+void tribo_break_alone(tribo_context *ctx, double dt, const double *vfree);
 
 /* ---- tangent.c */
 

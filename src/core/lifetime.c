@@ -86,7 +86,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     c->fixed = 0;
     c->op = tribo_operator_share(ctx->op);
     c->memory = (struct memory){0};
-    tribo_clusters_none(c);
+    c->clusters = NULL;
     if (!tribo_memory_copy(&c->memory, &ctx->memory, ctx->op) || tribo_clusters_clone(c, ctx)) {
         tribo_destroy(c);
         return TRIBO_ERR_MEMORY;

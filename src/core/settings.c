@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What a caller sets: law, limits, epsilon, coupling, sharing; and what follows. Only bounds follow from limits, which change
  * more often than the rest. */
-#include "check.h"
 #include "clusters.h"
-#include "static.h"
 
 /* ------------------------------------------------------------------------------------------------------- what follows */
 
@@ -128,7 +126,6 @@ void tribo_refresh(tribo_context *ctx)
         width[i] = 2.0 * half;
         rate[i] = op->diagonal[i] > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
     }
-    ctx->group_of = op->group_of;
     tribo_clusters_refresh(ctx, follows, time);
     ctx->follow.steepest = 1.0;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {

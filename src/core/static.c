@@ -11,9 +11,7 @@
  *
  * All limits change together, so that the order of contacts has no effect. Limits only fall, so that the loop ends. A contact
  * that broke away, and is then held by others, rests with less than the kinetic limit. */
-#include "static.h"
 
-#include "check.h"
 #include "clusters.h"
 
 /* The part of the limit that falls with speed. */

@@ -1,24 +1,22 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The force over a time step, and the box problem for laws of the caller's. */
-#include "check.h"
+/* The force over a time step, and the box problem for laws of the caller's.
+ *
+ * Coulomb's law at the end of a step, as tribo_step_force gives it, has two errors of first order: a planar contact that turns
+ * slides in the direction of the end, and a scalar one that is driven through v = 0 stops there until the step is over.
+ * tribo_step_force_mean removes both:
+ *
+ *     solve at the end of the step: which contacts stick, and R f
+ *     planar contacts that slide: in the direction of v + v_end, which is the same problem with v + vfree in the place of vfree
+ *     scalar ones that are driven through zero: their limit one way until then, and the other way after
+ *     solve again, if there are any
+ *
+ * A contact is driven through zero if the acceleration at v = 0 without its own force exceeds what its limit can hold. */
 #include "clusters.h"
-#include "static.h"
-
-/* The acceleration 1/dt v, cut to a number: times clamp(v, -most, most). */
-struct pull {
-    double times, most;
-};
-
-static inline double step_pull_of(struct pull p, double v)
-{
-    return p.times * clamp(v, -p.most, p.most);
-}
 
 /* Inputs of a call. */
 struct call {
     struct bounds b;
-    double dt;
-    struct pull pull;
+    double dt, times; /* times: 1/dt; 0 without groups */
     const double *v;
     const size_t *group_of; /* [n] */
     int breaks;             /* limits are static */
@@ -28,18 +26,18 @@ struct call {
 /* Sums of rows and limits up to this have numbers as products. */
 #define ESTIMATED 1e150
 
-/* 1 if forces up to limit cannot hold a contact, through a row of R with this sum. */
-static inline int out_of_reach(struct pull pull, double v, double row_sum, double limit)
+/* 1 if forces up to limit cannot hold a contact at v, through a row of R with this sum. */
+static inline int out_of_reach(double times, double v, double row_sum, double limit)
 {
-    return fabs(step_pull_of(pull, v)) > row_sum * limit;
+    return fabs(product(v, times)) > row_sum * limit;
 }
 
-TRIBO_SIMD static int any_within_reach(size_t n, struct pull pull, const double *restrict v, const double *restrict row_sum,
+TRIBO_SIMD static int any_within_reach(size_t n, double times, const double *restrict v, const double *restrict row_sum,
                                        double largest)
 {
     int64_t any = 0; /* as wide as a double, for vectors */
     for (size_t i = 0; i < n; i++) {
-        any |= out_of_reach(pull, v[i], row_sum[i], largest) ? 0 : -1;
+        any |= out_of_reach(times, v[i], row_sum[i], largest) ? 0 : -1;
     }
     return any != 0;
 }
@@ -56,23 +54,15 @@ static void find_candidates(tribo_context *ctx, const struct call *c)
                      behind = k + 1 < tribo_chunks(ctx->n) ? chunk[k + 1].largest : 0.0;
         const double around = greater(chunk[k].largest, greater(before, behind));
         const double largest = ctx->op->span < TRIBO_CHUNK ? around : ctx->follow.largest;
-        if (c->estimates && (largest == 0.0 || !any_within_reach(n, c->pull, c->v + i, row_sum + i, largest))) {
+        if (c->estimates && (largest == 0.0 || !any_within_reach(n, c->times, c->v + i, row_sum + i, largest))) {
             continue;
         }
         for (size_t j = i; j < i + n; j++) {
-            if (!(c->estimates && out_of_reach(c->pull, c->v[j], row_sum[j], largest))) {
+            if (!(c->estimates && out_of_reach(c->times, c->v[j], row_sum[j], largest))) {
                 tribo_list_group(ctx, c->group_of[j]);
             }
         }
     }
-}
-
-/* 1 if friction could hold the contact at place k by limits [size]. */
-static int within_reach(const struct box_qp *p, size_t k, const struct call *c, const double *limit)
-{
-    double reach;
-    tribo_row_dot(p, k, limit, &reach);
-    return !(fabs(step_pull_of(c->pull, c->v[p->member[k]])) > reach);
 }
 
 /* Solves the box problem of group g, again while static limits break. A contact with equal bounds has f = bound; a contact with a
@@ -90,12 +80,16 @@ static int solve_for(tribo_context *ctx, size_t g, const struct call *c, unsigne
     }
     for (size_t k = 0; k < p->group->size; k++) {
         const size_t i = p->member[k];
-        const double lo = tribo_lower(&c->b, i), hi = c->b.upper[i];
-        if (lo < hi && (all || within_reach(p, k, c, p->step))) {
+        const double lo = tribo_lower(&c->b, i), hi = c->b.upper[i], pull = product(c->v[i], c->times);
+        double reach = HUGE_VAL;
+        if (!all && lo < hi) {
+            tribo_row_dot(p, k, p->step, &reach);
+        }
+        if (lo < hi && !(fabs(pull) > reach)) {
             p->near[p->count++] = k;
             p->lo[k] = ctx->last.far ? tribo_cut(p, k, lo) : lo;
             p->hi[k] = ctx->last.far ? tribo_cut(p, k, hi) : hi;
-            p->q[k] = step_pull_of(c->pull, c->v[i]);
+            p->q[k] = pull;
         } else {
             p->near[--behind] = k;
             ctx->last.f[i] = lo < hi ? ctx->last.f[i] : hi;
@@ -132,8 +126,7 @@ static int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bo
     const struct delassus *op = ctx->op;
     const int breaks = !b.lower && ctx->set.breaking;
     const int estimates = !b.lower && !breaks && ctx->follow.largest < ESTIMATED && op->largest_sum < ESTIMATED;
-    const double times = op->groups ? quotient(1.0, dt) : 0.0;
-    const struct call c = {b, dt, {times, TRIBO_FAR / greater(times, 1.0)}, v, group_of, breaks, estimates};
+    const struct call c = {b, dt, op->groups ? quotient(1.0, dt) : 0.0, v, group_of, breaks, estimates};
     struct memory *m = &ctx->memory;
     tribo_step_each(ctx, dt, v, b);
     if (breaks) {
@@ -160,50 +153,138 @@ static int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bo
     return status;
 }
 
-/* Ends a problem of a number of islands; a status. */
-static int end_problem(tribo_context *ctx, size_t islands, int status)
-{
-    if (!status) {
-        ctx->count.skipped += islands - ctx->memory.nsolved - ctx->last.clusters;
-        tribo_remember_forces(ctx);
-    }
-    return status;
-}
-
-int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known)
+/* Finds last.f within bounds with v + dt R f = 0, or pushed against a bound; a status. known: see tribo_clusters_step. */
+static int solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known)
 {
     tribo_begin_call(ctx);
     ctx->last.holds = 1.0;
-    const int status = solve_boxes(ctx, dt, v, b, ctx->group_of);
-    return end_problem(ctx, tribo_islands(ctx), status ? status : tribo_clusters_step(ctx, dt, v, known));
-}
-
-int tribo_step_at_end(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f)
-{
-    const struct bounds b = {NULL, ctx->follow.contacts.limit};
-    if (ctx->set.breaking) {
-        tribo_hold_for_step(ctx, dt, v, NULL);
-    }
-    int status = tribo_solve_step(ctx, dt, vfree, b, NULL);
-    /* A contact that comes in sliding does so until it comes to a stop, and holds there if it can. */
-    if (!status && ctx->set.breaking && v && tribo_hold_for_step(ctx, dt, v, ctx->last.f)) {
-        status = tribo_solve_step(ctx, dt, vfree, b, NULL);
-    }
+    int status = solve_boxes(ctx, dt, v, b, tribo_group_of(ctx));
+    status = status ? status : tribo_clusters_step(ctx, dt, v, known);
     if (!status) {
-        tribo_copy(f, ctx->last.f, ctx->n);
+        tribo_end_call(ctx, tribo_islands(ctx));
         ctx->last.slips = SLIPS_IN_FORCES;
     }
     return status;
 }
 
+/* The force of Coulomb's law at the end of a step. v [n]: velocities at the begin, or NULL; read where limits are static. */
+static int step_at_end(tribo_context *ctx, double dt, const double *v, const double *vfree)
+{
+    const struct bounds b = {NULL, ctx->follow.contacts.limit};
+    if (ctx->set.breaking) {
+        tribo_hold_for_step(ctx, dt, v, NULL);
+    }
+    const int status = solve_step(ctx, dt, vfree, b, NULL);
+    /* A contact that comes in sliding does so until it comes to a stop, and holds there if it can. */
+    const int again = !status && ctx->set.breaking && v && tribo_hold_for_step(ctx, dt, v, ctx->last.f);
+    return again ? solve_step(ctx, dt, vfree, b, NULL) : status;
+}
+
+/* Checks the arguments of a step; a status. */
+static int step_check(tribo_context *ctx, double dt, const double *vfree, const double *f)
+{
+    int status = isfinite(dt) && dt > 0.0 ? TRIBO_OK : tribo_check_slowly(ctx, "dt", &dt, TRIBO_NUMBER, POSITIVE);
+    status = status ? status : tribo_need_operator(ctx);
+    status = status ? status : tribo_check_finite(ctx, "vfree", vfree, ctx->n);
+    return status ? status : tribo_check_output(ctx, "f", f);
+}
+
 int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f)
 {
-    const int status = ctx ? tribo_check_step(ctx, dt, vfree, f) : TRIBO_ERR_NULL;
+    int status = ctx ? step_check(ctx, dt, vfree, f) : TRIBO_ERR_NULL;
     if (!status && tribo_all_alone(ctx)) {
         return tribo_step_alone(ctx, dt, vfree, f);
     }
-    return status ? status : tribo_step_at_end(ctx, dt, NULL, vfree, f);
+    status = status ? status : step_at_end(ctx, dt, NULL, vfree);
+    tribo_copy(f, status ? NULL : ctx->last.f, status ? 0 : ctx->n);
+    return status;
 }
+
+/* ------------------------------------------------------------------------------------------------------- second order */
+
+/* The second problem of a step. */
+struct step {
+    double dt;
+    const double *v, *vfree;
+    const double *free;    /* [n] vfree of the second problem */
+    signed char *reverses; /* [n] direction of slip at the end, or 0 */
+    double *lower, *upper; /* [n] bounds of the second problem; before, upper: R f without the contact's own force */
+};
+
+/* Finds the second problem. Returns the number of contacts that make it another one. */
+static size_t find_reversals(tribo_context *ctx, struct step *s)
+{
+    for (size_t i = 0; i < ctx->n; i++) {
+        s->upper[i] = 0.0;
+        s->reverses[i] = 0;
+    }
+    for (size_t g = 0; g < ctx->op->groups; g++) {
+        struct box_qp *p = tribo_problem(ctx, g);
+        for (size_t k = 0; k < p->group->size; k++) {
+            p->step[k] = tribo_carried(ctx, p, k);
+        }
+        for (size_t k = 0; k < p->group->size; k++) {
+            s->upper[p->member[k]] = tribo_row_others(p, k, p->step);
+        }
+    }
+    size_t changes = tribo_clusters_turn(ctx, s->dt, s->v, &s->free, s->upper, s->reverses);
+    for (size_t i = 0; i < ctx->n; i++) {
+        const double limit = ctx->set.limit[i], hold = product(ctx->op->diagonal[i], limit), forth = sign(s->v[i]);
+        const double free = quotient(0.5 * s->vfree[i] - 0.5 * s->v[i], 0.5 * s->dt), against = -forth * (free + s->upper[i]);
+        const int over = tribo_is_scalar(ctx, i) && limit > 0.0 && against > hold;
+        const double stop = over ? quotient(fabs(s->v[i]), 0.5 * against + 0.5 * hold) : 0.0, part = quotient(stop, 2.0 * s->dt);
+        const int back = over && part < 1.0;
+        s->upper[i] = back ? forth * limit * (1.0 - 2.0 * part) : limit;
+        s->lower[i] = back ? s->upper[i] : -limit;
+        s->reverses[i] = (signed char)(back ? -forth : s->reverses[i]);
+        changes += (size_t)back;
+    }
+    return changes;
+}
+
+/* 1 if a contact that came in sliding does not go on that way. */
+TRIBO_SIMD static int any_slip_ends(size_t n, const double *restrict v, const double *restrict f, const double *restrict limit)
+{
+    int64_t any = 0; /* as wide as a double, for vectors */
+    for (size_t i = 0; i < n; i++) {
+        any |= ((v[i] != 0.0) & (f[i] != sliding(v[i], limit[i]))) ? -1 : 0;
+    }
+    return any != 0;
+}
+
+/* tribo_step_force_mean where no limit is static. */
+static int step_mean(tribo_context *ctx, double dt, const double *v, const double *vfree)
+{
+    struct step s = {dt, v, vfree, vfree, ctx->spare, ctx->last.v, ctx->last.feq};
+    int status = solve_step(ctx, dt, vfree, (struct bounds){NULL, ctx->set.limit}, NULL);
+    if (status || !(tribo_plane_count(ctx) || any_slip_ends(ctx->n, v, ctx->last.f, ctx->set.limit))) {
+        return status;
+    }
+    if (find_reversals(ctx, &s)) {
+        status = solve_step(ctx, dt, s.free, (struct bounds){s.lower, s.upper}, s.reverses);
+    }
+    if (!status) {
+        /* Forces do not show the slip of contacts that reverse. */
+        tribo_write_slips(ctx);
+    }
+    for (size_t i = 0; !status && i < ctx->n; i++) {
+        ctx->last.slip[i] = s.reverses[i] ? s.reverses[i] : ctx->last.slip[i];
+    }
+    return status;
+}
+
+int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f)
+{
+    int status = ctx ? step_check(ctx, dt, vfree, f) : TRIBO_ERR_NULL;
+    status = status ? status : tribo_check_finite(ctx, "v", v, ctx->n);
+    if (!status) {
+        status = ctx->set.breaking ? step_at_end(ctx, dt, v, vfree) : step_mean(ctx, dt, v, vfree);
+    }
+    tribo_copy(f, status ? NULL : ctx->last.f, status ? 0 : ctx->n);
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ the box */
 
 int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, const double *upper, double *f)
 {
@@ -224,7 +305,10 @@ int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, co
     }
     tribo_begin_call(ctx);
     ctx->last.far = most > TRIBO_ROOM * ctx->op->most;
-    status = end_problem(ctx, ctx->op->islands, solve_boxes(ctx, 1.0, a, (struct bounds){lower, upper}, ctx->op->group_of));
-    tribo_copy(f, ctx->last.f, status ? 0 : ctx->n);
+    status = solve_boxes(ctx, 1.0, a, (struct bounds){lower, upper}, ctx->op->group_of);
+    if (!status) {
+        tribo_end_call(ctx, ctx->op->islands);
+        tribo_copy(f, ctx->last.f, ctx->n);
+    }
     return status;
 }

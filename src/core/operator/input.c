@@ -3,7 +3,6 @@
  * replaced when all checks are done. */
 #include <stdlib.h>
 
-#include "core/check.h"
 #include "core/clusters.h"
 #include "numerics/csr.h"
 

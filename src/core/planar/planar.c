@@ -4,7 +4,6 @@
 #include <stdlib.h>
 
 #include "common/layout.h"
-#include "core/static.h"
 #include "numerics/union_find.h"
 #include "core/clusters.h"
 
@@ -92,8 +91,8 @@ double tribo_plane_rate(const tribo_context *ctx)
     const double none[2] = {0.0, 0.0};
     double rate = 0.0;
     for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
-        const double *own = ctx->planar->own[k];
-        const struct slide s = tribo_planar_slide(ctx, ctx->planar->first[k], 2, none);
+        const double *own = ctx->clusters->own[k];
+        const struct slide s = tribo_planar_slide(ctx, ctx->clusters->first[k], 2, none);
         const double weighed[3] = {product(s.part[0], product(s.part[0], own[0])), product(s.part[0], product(s.part[1], own[1])),
                                    product(s.part[1], product(s.part[1], own[2]))};
         if (!s.open) {
@@ -105,7 +104,7 @@ double tribo_plane_rate(const tribo_context *ctx)
 
 /* -------------------------------------------------------------------------------------------------------------- life */
 
-static void free_clusters(struct planar *c)
+static void free_clusters(struct clusters *c)
 {
     if (c) {
         tribo_disc_free(&c->problem);
@@ -116,14 +115,14 @@ static void free_clusters(struct planar *c)
 
 void tribo_clusters_free(tribo_context *ctx)
 {
-    free_clusters(ctx->planar);
+    free_clusters(ctx->clusters);
 }
 
 /* Returns count planar contacts of n directions, without clusters; NULL if out of memory. */
-static struct planar *planar_create(size_t n, size_t count, const size_t *first)
+static struct clusters *planar_create(size_t n, size_t count, const size_t *first)
 {
     struct layout b = {0};
-    struct planar *c, at = {.count = count};
+    struct clusters *c, at = {.count = count};
     double **const vector[] = {&at.y, &at.a, &at.v, &at.df, &at.other, &at.dlimit, &at.radius, &at.pull, &at.shift};
     enum { VECTORS = sizeof vector / sizeof *vector };
     size_t *member;
@@ -162,7 +161,7 @@ static struct planar *planar_create(size_t n, size_t count, const size_t *first)
 /* --------------------------------------------------------------------------------------------------------- clusters */
 
 /* Sets R of all clusters, which is 0, group_of and own. of, place [n]: see tribo_list_sets. */
-static void fill_clusters(struct planar *c, const struct delassus *op, struct memory *m, size_t n, const size_t *of,
+static void fill_clusters(struct clusters *c, const struct delassus *op, struct memory *m, size_t n, const size_t *of,
                           const size_t *place)
 {
     for (size_t i = 0; i < n; i++) {
@@ -196,7 +195,7 @@ static void fill_clusters(struct planar *c, const struct delassus *op, struct me
 }
 
 /* Makes clusters of the operator's groups and the contacts that join them; a status. m: memory of op. */
-static int find_clusters(struct planar *c, size_t n, const struct delassus *op, struct memory *m)
+static int find_clusters(struct clusters *c, size_t n, const struct delassus *op, struct memory *m)
 {
     enum { LISTS = 5 };
     size_t *parent = malloc(LISTS * (n + 1) * sizeof *parent), entries = 0;
@@ -251,7 +250,7 @@ static int find_clusters(struct planar *c, size_t n, const struct delassus *op, 
  * status. After a failure ctx has what it had. */
 static int replace_clusters(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m)
 {
-    struct planar *c = count ? planar_create(ctx->n, count, first) : NULL;
+    struct clusters *c = count ? planar_create(ctx->n, count, first) : NULL;
     int status = count && !c ? TRIBO_ERR_MEMORY : c && op->diagonal ? find_clusters(c, ctx->n, op, m) : TRIBO_OK;
     if (status == TRIBO_ERR_UNSUPPORTED) {
         tribo_fail(ctx, status, "planar contacts couple %zu direction%s with each other, and not more than %d can be", c->largest,
@@ -271,8 +270,8 @@ static int replace_clusters(tribo_context *ctx, size_t count, const size_t *firs
     if (status) {
         free_clusters(c);
     } else {
-        free_clusters(ctx->planar);
-        ctx->planar = c;
+        free_clusters(ctx->clusters);
+        ctx->clusters = c;
     }
     return status;
 }
@@ -285,7 +284,7 @@ int tribo_clusters_renew(tribo_context *ctx, const struct delassus *op, struct m
 int tribo_clusters_copy(tribo_context *ctx, const tribo_context *from)
 {
     const size_t count = tribo_plane_count(from), *first = tribo_plane_first(from);
-    if (count == tribo_plane_count(ctx) && (!count || memcmp(first, ctx->planar->first, count * sizeof *first) == 0)) {
+    if (count == tribo_plane_count(ctx) && (!count || memcmp(first, ctx->clusters->first, count * sizeof *first) == 0)) {
         return TRIBO_OK;
     }
     return replace_clusters(ctx, count, first, ctx->op, &ctx->memory);
@@ -294,9 +293,9 @@ int tribo_clusters_copy(tribo_context *ctx, const tribo_context *from)
 int tribo_clusters_clone(tribo_context *clone, const tribo_context *from)
 {
     const int status = tribo_clusters_copy(clone, from);
-    if (!status && from->planar) {
-        tribo_copy(clone->planar->y, from->planar->y, from->n);
-        tribo_copy(clone->planar->radius, from->planar->radius, from->n);
+    if (!status && from->clusters) {
+        tribo_copy(clone->clusters->y, from->clusters->y, from->n);
+        tribo_copy(clone->clusters->radius, from->clusters->radius, from->n);
     }
     return status;
 }
@@ -304,12 +303,9 @@ int tribo_clusters_clone(tribo_context *clone, const tribo_context *from)
 /* A planar contact has one epsilon for all directions: for R_ii stands the largest eigenvalue of its block. */
 void tribo_clusters_refresh(tribo_context *ctx, int follows, double time)
 {
-    if (ctx->planar && ctx->op->diagonal) {
-        ctx->group_of = ctx->planar->group_of;
-    }
     for (size_t k = 0; follows && k < tribo_plane_count(ctx); k++) {
-        const double largest = tribo_block_of(ctx->planar->own[k]).great, half = greater(product(largest, time), DBL_MIN);
-        for (size_t i = ctx->planar->first[k]; i < ctx->planar->first[k] + 2; i++) {
+        const double largest = tribo_block_of(ctx->clusters->own[k]).great, half = greater(product(largest, time), DBL_MIN);
+        for (size_t i = ctx->clusters->first[k]; i < ctx->clusters->first[k] + 2; i++) {
             ctx->set.width[i] = 2.0 * half;
             ctx->set.rate[i] = largest > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
         }
@@ -334,7 +330,7 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
     }
     signed char *taken = ctx->spare;
     int status = tribo_plane_check_coupling(ctx, ctx->set.coupling, count, first);
-    if (status || (!count && !ctx->planar)) {
+    if (status || (!count && !ctx->clusters)) {
         return status;
     }
     memset(taken, 0, ctx->n);

@@ -31,7 +31,7 @@ struct unit {
 };
 
 /* Planar contacts of a context; what it keeps of them from call to call; workspace. Without an operator there are no clusters. */
-struct planar {
+struct clusters {
     size_t count, *first; /* [count] first directions */
     unsigned char *role;  /* [n] */
     double (*own)[3];     /* [count] R of the contact alone: 11, 12, 22 */

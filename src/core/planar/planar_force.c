@@ -9,8 +9,6 @@
  *
  * In S, limits and R are parts of the largest ones near stick in the cluster. A reach stands in for a limit that is far beyond
  * the force, see below; c is then kappa/reach. */
-#include "core/check.h"
-#include "core/static.h"
 #include "core/clusters.h"
 
 /* -------------------------------------------------------------------------------------------------------- parts of R */
@@ -41,12 +39,12 @@ static void take_contact(tribo_context *ctx, size_t k, size_t i, size_t directio
     const double *bound = ctx->follow.contacts.bound + i;
     const int both = directions == 2 && bound[0] > 0.0 && bound[1] > 0.0;
     for (size_t d = 0; d < directions; d++) {
-        struct disc_qp *p = &ctx->planar->problem;
+        struct disc_qp *p = &ctx->clusters->problem;
         if (bound[d] > 0.0) {
-            ctx->planar->shift[p->size] = shift[d];
-            ctx->planar->directions[p->size] = (unsigned char)(both ? 2 - 2 * d : 1);
-            ctx->planar->contact[p->size] = i + d;
-            ctx->planar->near[p->size++] = k + d;
+            ctx->clusters->shift[p->size] = shift[d];
+            ctx->clusters->directions[p->size] = (unsigned char)(both ? 2 - 2 * d : 1);
+            ctx->clusters->contact[p->size] = i + d;
+            ctx->clusters->near[p->size++] = k + d;
         } else {
             ctx->last.f[i + d] = 0.0;
         }
@@ -58,7 +56,7 @@ static void take_contact(tribo_context *ctx, size_t k, size_t i, size_t directio
 static int planar_collect(tribo_context *ctx, const struct cluster *g, const double *v, int begins)
 {
     const struct law *law = ctx->set.law;
-    ctx->planar->problem.size = 0;
+    ctx->clusters->problem.size = 0;
     for (size_t k = 0, directions; k < g->size; k += directions) {
         const size_t i = g->member[k];
         directions = tribo_directions(ctx, i);
@@ -74,13 +72,13 @@ static int planar_collect(tribo_context *ctx, const struct cluster *g, const dou
             tribo_planar_slide_force(law, &s, ctx->follow.contacts.limit + i, ctx->last.f + i);
         }
     }
-    return ctx->planar->problem.size > 0;
+    return ctx->clusters->problem.size > 0;
 }
 
 void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pull)
 {
-    const struct disc_qp *p = &ctx->planar->problem;
-    const unsigned char *directions = ctx->planar->directions;
+    const struct disc_qp *p = &ctx->clusters->problem;
+    const unsigned char *directions = ctx->clusters->directions;
     for (size_t e = 0; e < p->size; e += directions[e]) {
         for (size_t k = e; k < e + directions[e]; k++) {
             for (size_t j = e; j < e + directions[e]; j++) {
@@ -94,7 +92,7 @@ void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pu
 static double pull_at(const tribo_context *ctx, const struct cluster *g, size_t k, const size_t *skip, size_t count)
 {
     const double *row = g->r + k * g->size;
-    double sum = cut(ctx->planar->a[g->member[k]]);
+    double sum = cut(ctx->clusters->a[g->member[k]]);
     for (size_t j = 0, other = 0; j < g->size; j++) {
         const double bound = ctx->follow.contacts.bound[g->member[j]];
         if (other < count && skip[other] == j) {
@@ -109,7 +107,7 @@ static double pull_at(const tribo_context *ctx, const struct cluster *g, size_t 
 /* pull = R f + a of the problem's directions, with the forces of all others. */
 static void find_pulls(tribo_context *ctx, const struct cluster *g)
 {
-    const struct planar *c = ctx->planar;
+    const struct clusters *c = ctx->clusters;
     for (size_t e = 0; e < c->problem.size; e++) {
         c->pull[e] = pull_at(ctx, g, c->near[e], c->near, c->problem.size);
     }
@@ -138,18 +136,18 @@ static void find_pulls(tribo_context *ctx, const struct cluster *g)
 
 double tribo_planar_reach(const tribo_context *ctx, size_t i)
 {
-    return lesser(ctx->follow.contacts.bound[i], ctx->planar->radius[i]);
+    return lesser(ctx->follow.contacts.bound[i], ctx->clusters->radius[i]);
 }
 
 int tribo_planar_cut(const tribo_context *ctx, size_t i)
 {
-    return ctx->planar->radius[i] < ctx->follow.contacts.bound[i];
+    return ctx->clusters->radius[i] < ctx->follow.contacts.bound[i];
 }
 
 /* Sets the problem of forces in parts of their reach, from pull: which directions share a set, its shift, and all else. */
 static void pose_cluster(tribo_context *ctx, const struct cluster *g)
 {
-    struct planar *c = ctx->planar;
+    struct clusters *c = ctx->clusters;
     struct disc_qp *p = &c->problem;
     const size_t n = p->size, *contact = c->contact;
     const double *bound = ctx->follow.contacts.bound, *radius = c->radius;
@@ -197,16 +195,17 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
 /* Gives the contact at e of the problem the reaches wanted [directions], as far as its limits exceed them. */
 static void set_radius(tribo_context *ctx, size_t e, size_t directions, const double *wanted)
 {
-    const size_t i = ctx->planar->contact[e];
+    const size_t i = ctx->clusters->contact[e];
     const double *bound = ctx->follow.contacts.bound + i;
     const int pair = directions == 2, apart = pair && (wanted[0] < BESIDE * bound[0] || wanted[1] < BESIDE * bound[1]);
     for (size_t k = 0; k < directions; k++) {
         const double before = tribo_planar_reach(ctx, i + k);
         const double radius = pair && !apart ? greater(wanted[0], wanted[1]) : wanted[k];
         const double least = pair && !apart ? lesser(bound[0], bound[1]) : bound[k];
-        ctx->planar->radius[i + k] = radius < least ? radius : HUGE_VAL;
+        ctx->clusters->radius[i + k] = radius < least ? radius : HUGE_VAL;
         const double reach = tribo_planar_reach(ctx, i + k);
-        ctx->planar->y[i + k] = reach == before ? ctx->planar->y[i + k] : product(quotient(before, reach), ctx->planar->y[i + k]);
+        ctx->clusters->y[i + k] =
+            reach == before ? ctx->clusters->y[i + k] : product(quotient(before, reach), ctx->clusters->y[i + k]);
     }
 }
 
@@ -214,7 +213,7 @@ static void set_radius(tribo_context *ctx, size_t e, size_t directions, const do
  * k alone that balances the pull of any other direction. */
 static void find_asks(const tribo_context *ctx, const struct cluster *g, double *ask)
 {
-    const size_t n = ctx->planar->problem.size, *near = ctx->planar->near;
+    const size_t n = ctx->clusters->problem.size, *near = ctx->clusters->near;
     const double *bound = ctx->follow.contacts.bound;
     int grown = 1;
     for (size_t round = 0; grown && round < n; round++) {
@@ -224,7 +223,7 @@ static void find_asks(const tribo_context *ctx, const struct cluster *g, double 
             for (size_t j = 0; j < n; j++) {
                 ask[k] = j == k ? ask[k] : greater(ask[k], quotient(product(fabs(row[near[j]]), ask[j]), row[near[k]]));
             }
-            ask[k] = lesser(ask[k], bound[ctx->planar->contact[k]]);
+            ask[k] = lesser(ask[k], bound[ctx->clusters->contact[k]]);
             grown |= ask[k] > before;
         }
     }
@@ -233,36 +232,36 @@ static void find_asks(const tribo_context *ctx, const struct cluster *g, double 
 /* Sets the reach of all contacts of the problem by the pulls at them. */
 static void estimate_reaches(tribo_context *ctx, const struct cluster *g)
 {
-    const size_t n = ctx->planar->problem.size;
+    const size_t n = ctx->clusters->problem.size;
     const double *bound = ctx->follow.contacts.bound;
-    double *ask = ctx->planar->problem.spare;
+    double *ask = ctx->clusters->problem.spare;
     double most = 0.0; /* max_k ask_k sqrt(R_kk), independent of the units of contacts */
     int far = 0;
     for (size_t k = 0; k < n; k++) {
-        const size_t i = ctx->planar->contact[k];
-        ask[k] =
-            lesser(quotient(fabs(ctx->planar->pull[k]), ctx->op->diagonal[i]) + product(fabs(ctx->planar->shift[k]), bound[i]),
-                   bound[i]);
+        const size_t i = ctx->clusters->contact[k];
+        ask[k] = lesser(quotient(fabs(ctx->clusters->pull[k]), ctx->op->diagonal[i]) +
+                            product(fabs(ctx->clusters->shift[k]), bound[i]),
+                        bound[i]);
         most = greater(most, product(ask[k], sqrt(ctx->op->diagonal[i])));
     }
     for (size_t k = 0; k < n; k++) {
-        const size_t i = ctx->planar->contact[k];
+        const size_t i = ctx->clusters->contact[k];
         far |= product(bound[i], sqrt(ctx->op->diagonal[i])) > AMPLE * most || tribo_planar_cut(ctx, i);
     }
     for (size_t k = 0; far && !(most > 0.0) && k < n; k++) {
-        const size_t i = ctx->planar->contact[k];
-        ctx->planar->radius[i] = HUGE_VAL;
-        ctx->planar->y[i] = 0.0;
+        const size_t i = ctx->clusters->contact[k];
+        ctx->clusters->radius[i] = HUGE_VAL;
+        ctx->clusters->y[i] = 0.0;
     }
     if (!far || !(most > 0.0)) {
         return;
     }
     find_asks(ctx, g, ask);
-    for (size_t e = 0; e < n; e += ctx->planar->directions[e]) {
-        const size_t count = ctx->planar->directions[e];
+    for (size_t e = 0; e < n; e += ctx->clusters->directions[e]) {
+        const size_t count = ctx->clusters->directions[e];
         double wanted[2];
         for (size_t d = 0; d < count; d++) {
-            const double root = sqrt(ctx->op->diagonal[ctx->planar->contact[e + d]]);
+            const double root = sqrt(ctx->op->diagonal[ctx->clusters->contact[e + d]]);
             wanted[d] = product(greater(ask[e + d], greater(quotient(LITTLE * most, root), DBL_MIN)), AMPLE);
         }
         set_radius(ctx, e, count, wanted);
@@ -273,8 +272,8 @@ static void estimate_reaches(tribo_context *ctx, const struct cluster *g)
  * loose. */
 static int rim_bends(const tribo_context *ctx, size_t e, size_t other)
 {
-    const struct disc_qp *p = &ctx->planar->problem;
-    const size_t i = ctx->planar->contact[e], j = ctx->planar->contact[other];
+    const struct disc_qp *p = &ctx->clusters->problem;
+    const size_t i = ctx->clusters->contact[e], j = ctx->clusters->contact[other];
     const double part = quotient(tribo_planar_reach(ctx, j), ctx->follow.contacts.bound[j]);
     return p->place[e] != LENS_INSIDE && !tribo_planar_cut(ctx, i) && tribo_planar_cut(ctx, j) &&
            fabs(p->gradient[e]) * part * part > STRAIGHT * p->s[other * (p->size + 1)];
@@ -283,16 +282,16 @@ static int rim_bends(const tribo_context *ctx, size_t e, size_t other)
 /* Widens the reach of forces that come up against it. Returns the number of these contacts. */
 static size_t widen_reaches(tribo_context *ctx)
 {
-    const struct disc_qp *p = &ctx->planar->problem;
+    const struct disc_qp *p = &ctx->clusters->problem;
     size_t widened = 0;
-    for (size_t e = 0; e < p->size; e += ctx->planar->directions[e]) {
-        const size_t count = ctx->planar->directions[e];
+    for (size_t e = 0; e < p->size; e += ctx->clusters->directions[e]) {
+        const size_t count = ctx->clusters->directions[e];
         double wanted[2];
         int out = 0;
         for (size_t d = 0; d < count; d++) {
-            const size_t i = ctx->planar->contact[e + d], at = p->wide[e + d] ? e + d : e;
+            const size_t i = ctx->clusters->contact[e + d], at = p->wide[e + d] ? e + d : e;
             const int beyond = p->place[at] != LENS_INSIDE && tribo_planar_cut(ctx, i);
-            wanted[d] = beyond ? product(AMPLE, ctx->planar->radius[i]) : ctx->planar->radius[i];
+            wanted[d] = beyond ? product(AMPLE, ctx->clusters->radius[i]) : ctx->clusters->radius[i];
             out |= beyond;
         }
         if (p->wide[e] < count && (rim_bends(ctx, e, e + 1) || rim_bends(ctx, e + 1, e))) {
@@ -337,15 +336,15 @@ static int is_pulled_beyond(const struct disc_qp *p, size_t e)
  * Returns their number. */
 static size_t planar_break(tribo_context *ctx, const struct cluster *g, double dt)
 {
-    const struct disc_qp *p = &ctx->planar->problem;
+    const struct disc_qp *p = &ctx->clusters->problem;
     const size_t *member = g->member;
-    double *now = ctx->follow.now, *end = ctx->planar->v; /* velocities at the end */
+    double *now = ctx->follow.now, *end = ctx->clusters->v; /* velocities at the end */
     size_t broken = 0;
     for (size_t k = 0; k < g->size; k++) {
         end[member[k]] = product(pull_at(ctx, g, k, NULL, 0), dt);
     }
     for (size_t e = 0; e < p->size; e += p->wide[e]) {
-        const size_t k = ctx->planar->contact[e], first = k - (ctx->planar->role[k] == ROLE_SECOND);
+        const size_t k = ctx->clusters->contact[e], first = k - (ctx->clusters->role[k] == ROLE_SECOND);
         const size_t directions = tribo_directions(ctx, first);
         int holds = 1, falls = 0;
         for (size_t i = first; i < first + directions; i++) {
@@ -372,7 +371,7 @@ static size_t planar_break(tribo_context *ctx, const struct cluster *g, double d
 /* Solves until all forces are within their reach, and no static limit breaks; a status. */
 static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt)
 {
-    struct planar *c = ctx->planar;
+    struct clusters *c = ctx->clusters;
     struct disc_qp *p = &c->problem;
     const struct work *work = &p->factor.qp.work;
     ctx->last.clusters++;
@@ -410,8 +409,8 @@ static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt)
 
 const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
 {
-    struct disc_qp *p = &ctx->planar->problem;
-    const struct cluster *g = &ctx->planar->cluster[q];
+    struct disc_qp *p = &ctx->clusters->problem;
+    const struct cluster *g = &ctx->clusters->cluster[q];
     *size = g->size;
     if (planar_collect(ctx, g, ctx->last.v, 0)) {
         find_pulls(ctx, g);
@@ -445,7 +444,7 @@ static void contact_feq(const tribo_context *ctx, const struct cluster *g, size_
 void tribo_clusters_feq(tribo_context *ctx)
 {
     for (size_t q = 0; q < tribo_cluster_count(ctx); q++) {
-        const struct cluster *g = &ctx->planar->cluster[q];
+        const struct cluster *g = &ctx->clusters->cluster[q];
         for (size_t k = 0; k < g->size; k += tribo_directions(ctx, g->member[k])) {
             const size_t i = g->member[k];
             contact_feq(ctx, g, k, tribo_directions(ctx, i), ctx->last.feq + i);
@@ -457,7 +456,7 @@ void tribo_clusters_feq(tribo_context *ctx)
 
 int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a)
 {
-    const struct planar *c = ctx->planar;
+    const struct clusters *c = ctx->clusters;
     int status = TRIBO_OK;
     tribo_copy(c ? c->a : NULL, a, c ? ctx->n : 0);
     for (size_t q = 0; !status && q < tribo_cluster_count(ctx); q++) {
@@ -489,19 +488,19 @@ int tribo_clusters_step(tribo_context *ctx, double dt, const double *v, const si
     const double none[2] = {0.0, 0.0};
     int status = TRIBO_OK;
     for (size_t q = 0; !status && q < tribo_cluster_count(ctx); q++) {
-        const struct cluster *g = &ctx->planar->cluster[q];
-        ctx->planar->problem.size = 0;
+        const struct cluster *g = &ctx->clusters->cluster[q];
+        ctx->clusters->problem.size = 0;
         for (size_t k = 0, directions; k < g->size; k += directions) {
             const size_t i = g->member[k];
             directions = tribo_directions(ctx, i);
             for (size_t d = i; d < i + directions; d++) {
-                ctx->planar->a[d] = quotient(v[d], dt);
+                ctx->clusters->a[d] = quotient(v[d], dt);
             }
             if (directions == 2 || !(known && known[i])) {
                 take_contact(ctx, k, i, directions, none);
             }
         }
-        if (ctx->planar->problem.size) {
+        if (ctx->clusters->problem.size) {
             status = solve_cluster(ctx, g, dt);
         }
     }
@@ -521,7 +520,7 @@ static int reaches_limits(const tribo_context *ctx, size_t i)
 
 signed char tribo_plane_slip(const tribo_context *ctx, size_t i)
 {
-    const size_t first = i - (ctx->planar->role[i] == ROLE_SECOND);
+    const size_t first = i - (ctx->clusters->role[i] == ROLE_SECOND);
     const int open = !(ctx->follow.contacts.limit[i] > 0.0);
     return open ? TRIBO_SLIP_OPEN : reaches_limits(ctx, first) ? TRIBO_SLIP_PLANE : TRIBO_SLIP_STUCK;
 }
@@ -536,17 +535,17 @@ void tribo_plane_slips(const tribo_context *ctx, signed char *slip)
 size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const double **vfree, double *feels,
                            signed char *reverses)
 {
-    double *turned = ctx->planar ? ctx->planar->v : NULL;
+    double *turned = ctx->clusters ? ctx->clusters->v : NULL;
     const double *free = *vfree;
     size_t changes = 0;
     for (size_t q = 0; q < tribo_cluster_count(ctx); q++) {
-        const struct cluster *g = &ctx->planar->cluster[q];
+        const struct cluster *g = &ctx->clusters->cluster[q];
         for (size_t k = 0, directions; k < g->size; k += directions) {
             const size_t i = g->member[k];
             double forward = 0.0; /* v_end'v */
             directions = tribo_directions(ctx, i);
             for (size_t d = 0; d < directions; d++) {
-                ctx->planar->a[i + d] = 0.0;
+                ctx->clusters->a[i + d] = 0.0;
                 feels[i + d] = pull_at(ctx, g, k + d, &k, directions == 1 ? 1 : 0);
                 forward += product(free[i + d] + product(feels[i + d], dt), v[i + d]);
             }

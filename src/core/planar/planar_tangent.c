@@ -2,7 +2,6 @@
 /* Derivatives of the forces of a cluster by velocities, accelerations and limits: the contacts near stick stay in their places,
  * and Newton's equations along the freedoms that these leave keep them balanced. Forces and derivatives of planar contacts with
  * f_eq given, each of which is a problem alone. */
-#include "core/static.h"
 #include "core/clusters.h"
 
 /* Static limits at i change with |v|: adds the changes of limits to dlimit [directions] for the change dv of v. At rest, where |v|
@@ -24,8 +23,8 @@ static void add_falls(const tribo_context *ctx, size_t i, size_t directions, con
 /* Returns d with the limits of a cluster, which change with |v| if they fall with speed. */
 static struct change with_limits(tribo_context *ctx, const struct cluster *g, const struct change *d)
 {
-    const struct disc_qp *p = &ctx->planar->problem;
-    double *dlimit = ctx->planar->dlimit;
+    const struct disc_qp *p = &ctx->clusters->problem;
+    double *dlimit = ctx->clusters->dlimit;
     if (ctx->set.breaking != FALLS) {
         return *d;
     }
@@ -34,7 +33,7 @@ static struct change with_limits(tribo_context *ctx, const struct cluster *g, co
     }
     for (size_t e = 0; e < p->size; e += p->wide[e]) {
         for (size_t k = e; k < e + p->wide[e] && p->place[e] == LENS_ON_DISC; k++) {
-            const size_t i = ctx->planar->contact[k];
+            const size_t i = ctx->clusters->contact[k];
             dlimit[i] = quotient(p->gradient[k], tribo_planar_reach(ctx, i));
         }
     }
@@ -96,7 +95,7 @@ static double turn_shift(const struct law *law, const struct slide *s, const str
 static void own_changes(const tribo_context *ctx, const struct cluster *g, const struct change *d, double *df, double *dshift)
 {
     const struct contacts *c = &ctx->follow.contacts;
-    const struct disc_qp *p = &ctx->planar->problem;
+    const struct disc_qp *p = &ctx->clusters->problem;
     for (size_t k = 0, e = 0, directions; k < g->size; k += directions) {
         const size_t i = g->member[k];
         directions = tribo_directions(ctx, i);
@@ -109,10 +108,10 @@ static void own_changes(const tribo_context *ctx, const struct cluster *g, const
         t.epsilon = s.open || !c->follows ? 0.0 : quotient(t.limit[s.far], c->limit[i + s.far]);
         turn_slide(&s, c->limit + i, ctx->last.v + i, &t);
         turn_force(ctx->set.law, &s, c->limit + i, &t, df + k);
-        for (; e < p->size && ctx->planar->near[e] < k + directions; e++) {
-            const size_t j = ctx->planar->near[e] - k;
+        for (; e < p->size && ctx->clusters->near[e] < k + directions; e++) {
+            const size_t j = ctx->clusters->near[e] - k;
             const int far = tribo_planar_cut(ctx, i + j);
-            const double part = far ? quotient(c->bound[i + j], ctx->planar->radius[i + j]) : 1.0;
+            const double part = far ? quotient(c->bound[i + j], ctx->clusters->radius[i + j]) : 1.0;
             dshift[e] = turn_shift(ctx->set.law, &s, &t, j, part, p->shift[e]);
             df[k + j] = far ? 0.0 : product(p->y[e], t.limit[j]);
         }
@@ -122,10 +121,10 @@ static void own_changes(const tribo_context *ctx, const struct cluster *g, const
 /* Laws with a memory have another derivative where |f_eq| exceeds the limit: corrects df of scalar contacts, from f_eq. */
 static void apply_laws(tribo_context *ctx, const struct cluster *g, const struct change *d, double *df)
 {
-    double *before = ctx->planar->other;
+    double *before = ctx->clusters->other;
     memcpy(before, df, g->size * sizeof *df);
-    for (size_t e = 0; e < ctx->planar->problem.size; e++) {
-        const size_t k = ctx->planar->near[e], i = g->member[k];
+    for (size_t e = 0; e < ctx->clusters->problem.size; e++) {
+        const size_t k = ctx->clusters->near[e], i = g->member[k];
         const double *row = g->r + k * g->size;
         const struct tangent *law = &ctx->last.tangent[i];
         double sum = divisible(tribo_entry(d->a, i), row[k]);
@@ -141,11 +140,11 @@ static void apply_laws(tribo_context *ctx, const struct cluster *g, const struct
 
 const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct change *change)
 {
-    struct disc_qp *p = &ctx->planar->problem;
-    const struct cluster *g = &ctx->planar->cluster[q];
-    const struct unit u = ctx->planar->unit;
-    const size_t *near = ctx->planar->near, *contact = ctx->planar->contact, n = p->size;
-    double *df = ctx->planar->df, *dshift = p->from, *turn = p->slide;
+    struct disc_qp *p = &ctx->clusters->problem;
+    const struct cluster *g = &ctx->clusters->cluster[q];
+    const struct unit u = ctx->clusters->unit;
+    const size_t *near = ctx->clusters->near, *contact = ctx->clusters->contact, n = p->size;
+    double *df = ctx->clusters->df, *dshift = p->from, *turn = p->slide;
     double *dy = p->best; /* the part of the change of y that follows shifts */
     double *rhs = p->noise, *move = p->aim;
     const struct change d = with_limits(ctx, g, change);
@@ -202,7 +201,7 @@ static double feq_parts(const double *limit, const double *feq, double *y)
 /* Sets what is given of planar contact k at v [2], feq [2]. */
 static void planar_given(const tribo_context *ctx, size_t k, const double *v, const double *feq, struct given *g)
 {
-    const size_t i = ctx->planar->first[k];
+    const size_t i = ctx->clusters->first[k];
     g->c = tribo_contacts_from(&ctx->follow.contacts, i);
     g->s = tribo_planar_slide(ctx, i, 2, v);
     g->near = tribo_planar_near(ctx->set.law, &g->s);
@@ -217,7 +216,7 @@ static void planar_given(const tribo_context *ctx, size_t k, const double *v, co
  * Returns 1, or 0 without convergence. */
 static int given_near(const tribo_context *ctx, size_t k, const struct given *g, const double *feq, struct disc_alone *x)
 {
-    const double *own = ctx->planar->own[k], r = greater(own[0], own[2]), turn = ctx->set.law->relaxes ? 2.0 * g->s.speed : 0.0;
+    const double *own = ctx->clusters->own[k], r = greater(own[0], own[2]), turn = ctx->set.law->relaxes ? 2.0 * g->s.speed : 0.0;
     const double *bound = g->c.bound, force = greater(bound[0], bound[1]);
     const double weight[2] = {bound[0] / force, bound[1] / force}, across = weight[0] * weight[1] * (own[1] / r);
     const double m[4] = {weight[0] * weight[0] * greater(own[0] / r, NEXT_TO_IMMOVABLE), across, across,
@@ -240,7 +239,7 @@ int tribo_plane_check_feq(const tribo_context *ctx, tribo_context *note, const d
 {
     const double none[2] = {0.0, 0.0};
     for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
-        const size_t i = ctx->planar->first[k];
+        const size_t i = ctx->clusters->first[k];
         struct given g;
         planar_given(ctx, k, v + i, none, &g);
         for (size_t j = i; g.near && j < i + 2; j++) {
@@ -280,7 +279,7 @@ static void turn_near(struct disc_qp *p, const struct given *g, const struct law
 static void given_columns(const tribo_context *ctx, size_t k, const struct given *g, struct disc_qp *p, const double *v,
                           double *const *out)
 {
-    const size_t i = ctx->planar->first[k];
+    const size_t i = ctx->clusters->first[k];
     const double *set = ctx->set.breaking ? ctx->follow.cut_limit + i : g->c.limit;
     double along[2] = {0.0, 0.0};
     if (p) {
@@ -317,7 +316,7 @@ int tribo_plane_force(const tribo_context *ctx, const double *v, const double *f
 {
     const double none[2] = {0.0, 0.0};
     for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
-        const size_t i = ctx->planar->first[k];
+        const size_t i = ctx->clusters->first[k];
         double f[2];
         struct given g;
         struct disc_alone x;

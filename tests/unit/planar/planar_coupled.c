@@ -475,5 +475,29 @@ TEST(least_norm)
     require(apart > 3, "%zu of 20 shares differ", apart);
 }
 
+/* A clone solves the groups of its own contacts, whatever becomes of the context that it is a copy of, and of its memory. */
+TEST(clones)
+{
+    enum { N = 4 };
+    const double r[N * N] = {2.0, 1.0, 0.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 2.0, 1.0, 0.0, 0.0, 1.0, 2.0};
+    const double v[N] = {0.0}, a[N] = {0.5, -0.2, 0.3, 0.4}, limit[N] = {1.0, 1.0, 1.0, 1.0};
+    const size_t first[] = {2, 0};
+    double f[N], want[N];
+    tribo_context *c, *copy, *other;
+    assert_ok(tribo_create(&c, N));
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_ok(tribo_clone(c, &other));
+    assert_ok(tribo_set_planar(c, 1, first));
+    assert_ok(tribo_balance(c, v, a, NULL, want));
+    assert_ok(tribo_clone(c, &copy));
+    tribo_destroy(c);
+    assert_ok(tribo_set_planar(other, 1, first + 1));
+    assert_ok(tribo_balance(copy, v, a, NULL, f));
+    assert_all_close(f, want, N, 1e-14);
+    tribo_destroy(copy);
+    tribo_destroy(other);
+}
+
 TEST_MAIN("planar_coupled", {identical_contacts_share, 20}, {least_norm, 5}, {random_problems, 5}, {steps, 5}, {turned, 3},
-          {tangents, 3}, {limits, 12})
+          {tangents, 3}, {limits, 12}, {clones, 1})
