@@ -4,6 +4,7 @@
 #define TRIBO_REAL_H
 
 #include <math.h>
+#include <stddef.h>
 
 /* Bound of forces and accelerations. Sums of such numbers stay finite. */
 #define TRIBO_FAR 1e300
@@ -54,6 +55,16 @@ static inline double product(double x, double y)
 static inline double scaled(double x, double y)
 {
     return y > 1.0 ? product(x, y) : cut(x * y);
+}
+
+/* Exchanges count elements of x and y, at distances of stride. */
+static inline void tribo_exchange(double *x, double *y, size_t count, size_t stride)
+{
+    for (size_t i = 0; i < count; i++) {
+        const double z = x[i * stride];
+        x[i * stride] = y[i * stride];
+        y[i * stride] = z;
+    }
 }
 
 #endif

@@ -66,8 +66,8 @@ void tribo_definite_solve(struct definite *d, const signed char *skip, size_t co
     for (size_t k = 0; k < d->held; k++) {
         memmove(x + k * columns, x + d->index[k] * columns, columns * sizeof *x);
     }
-    tribo_half_solve(&factor, x, columns);
-    tribo_half_solve_back(&factor, x, columns);
+    tribo_half_solve(&factor, 0, x, columns);
+    tribo_half_solve(&factor, 1, x, columns);
     for (size_t i = d->n, k = d->held; i-- > 0;) {
         if (k > 0 && d->index[k - 1] == i) {
             k--;

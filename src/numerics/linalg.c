@@ -14,37 +14,52 @@
 
 enum { LANES = 8 };
 
-/* The sum of part [LANES]. */
 static inline double sum_of_eight(const double *part)
 {
     return ((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7]));
 }
 
-/* x'y; sizes = 1: |x|'|y|. */
-static inline double product_of_eight(size_t n, const double *restrict x, const double *restrict y, int sizes)
+/* Returns x_i y_i z_i, or its size; y and z may be NULL. */
+static inline double term_of(size_t i, const double *x, const double *y, const double *z, int size)
+{
+    const double one = y ? x[i] * y[i] : x[i], term = z ? one * z[i] : one;
+    return size ? fabs(term) : term;
+}
+
+static inline double terms_of_eight(size_t n, const double *restrict x, const double *restrict y, const double *restrict z,
+                                    int sizes)
 {
     double part[LANES] = {0.0};
     size_t i = 0;
     for (; i + LANES <= n; i += LANES) {
         for (size_t k = 0; k < LANES; k++) {
-            const double term = x[i + k] * y[i + k];
-            part[k] += sizes ? fabs(term) : term;
+            part[k] += term_of(i + k, x, y, z, sizes);
         }
     }
     for (size_t k = 0; i < n; i++, k++) {
-        part[k] += sizes ? fabs(x[i] * y[i]) : x[i] * y[i];
+        part[k] += term_of(i, x, y, z, sizes);
     }
     return sum_of_eight(part);
 }
 
 TRIBO_SIMD double tribo_dot_of_eight(size_t n, const double *x, const double *y)
 {
-    return product_of_eight(n, x, y, 0);
+    return terms_of_eight(n, x, y, NULL, 0);
 }
 
 TRIBO_SIMD double tribo_size_of_eight(size_t n, const double *x, const double *y)
 {
-    return product_of_eight(n, x, y, 1);
+    return terms_of_eight(n, x, y, NULL, 1);
+}
+
+TRIBO_SIMD double tribo_sum(size_t n, const double *x)
+{
+    return terms_of_eight(n, x, NULL, NULL, 0);
+}
+
+TRIBO_SIMD double tribo_dot_of_three(size_t n, const double *x, const double *y, const double *z)
+{
+    return terms_of_eight(n, x, y, z, 0);
 }
 
 double tribo_dot(const double *x, const double *y, size_t n)
@@ -64,30 +79,6 @@ void tribo_add(double *to, double factor, const double *x, size_t n)
     for (size_t i = 0; i < n; i++) {
         to[i] += factor * x[i];
     }
-}
-
-void tribo_exchange(double *x, double *y, size_t count, size_t stride)
-{
-    for (size_t i = 0; i < count; i++) {
-        const double z = x[i * stride];
-        x[i * stride] = y[i * stride];
-        y[i * stride] = z;
-    }
-}
-
-TRIBO_SIMD double tribo_sum(size_t n, const double *x)
-{
-    double part[LANES] = {0.0}, sum = 0.0;
-    size_t i = 0;
-    for (; i + LANES <= n; i += LANES) {
-        for (size_t k = 0; k < LANES; k++) {
-            part[k] += x[i + k];
-        }
-    }
-    for (; i < n; i++) {
-        sum += x[i];
-    }
-    return sum + sum_of_eight(part);
 }
 
 double tribo_largest(const double *x, size_t n)
@@ -191,14 +182,6 @@ void tribo_multiply_transposed_add(size_t rows, size_t inner, size_t cols, const
     }
 }
 
-void tribo_multiply_transposed_two(size_t rows, size_t inner, size_t cols, const double *a, const double *b, size_t next_b,
-                                   double *c, size_t next_c)
-{
-    for (size_t k = 0; k < 2; k++) {
-        tribo_multiply_transposed_add(rows, inner, cols, a, b + k * next_b, c + k * next_c);
-    }
-}
-
 void tribo_transpose(size_t rows, size_t cols, const double *a, double *to)
 {
     for (size_t i = 0; i < rows; i++) {
@@ -253,50 +236,37 @@ int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from)
     return 1;
 }
 
-/* As tribo_cholesky_create; spent: see tribo_sparse_factor_create. */
-static int factorize(struct cholesky *c, const struct matrix *a, struct matrix *spent, size_t *where, double *pivot)
+int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, struct matrix *spent, size_t *where, double *pivot)
 {
-    const int diagonal = tribo_matrix_is_diagonal(a);
+    const int diagonal = tribo_matrix_is_diagonal(a), rows = (int)a->rows;
+    int status = TRIBO_OK, info = 0; /* the row of a pivot that is not positive, plus 1: the pivot stands on the diagonal */
     *c = (struct cholesky){.n = a->rows};
     if (!diagonal && tribo_sparse_available() && c->n >= SPARSE_LEAST) {
         *pivot = (double)NAN;
-        return tribo_sparse_factor_create(&c->sparse, a, spent, where);
-    }
-    if (!diagonal && c->n > DENSE_MOST) {
-        return TRIBO_ERR_SIZE;
-    }
-    if (!create_cholesky(c, a->rows, diagonal)) {
-        return TRIBO_ERR_MEMORY;
-    }
-    int info = 0; /* the row of a pivot that is not positive, plus 1: the pivot stands on the diagonal */
-    if (!diagonal) {
-        const int rows = (int)c->n;
+        status = tribo_sparse_factor_create(&c->sparse, a, spent, where);
+    } else if (!diagonal && c->n > DENSE_MOST) {
+        status = TRIBO_ERR_SIZE;
+    } else if (!create_cholesky(c, c->n, diagonal)) {
+        status = TRIBO_ERR_MEMORY;
+    } else if (!diagonal) {
         tribo_matrix_spread(a, c->factor);
         dpotrf_("U", &rows, c->factor, &rows, &info, 1);
     }
-    for (size_t i = 0; i < c->n; i++) {
+    for (size_t i = 0; c->root && i < c->n; i++) {
         const double own = diagonal ? tribo_matrix_get(a, i, i) : c->factor[i * (c->n + 1)];
         const double d = diagonal || i + 1 == (size_t)info ? own : own * own;
-        if (!(d > 1.0 / DBL_MAX)) {
+        if (d > 1.0 / DBL_MAX) {
+            c->root[i] = sqrt(d);
+        } else {
             *where = i;
             *pivot = d;
             tribo_cholesky_free(c);
-            return TRIBO_ERR_INDEFINITE;
+            status = TRIBO_ERR_INDEFINITE;
         }
-        c->root[i] = sqrt(d);
     }
-    return TRIBO_OK;
-}
-
-int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *where, double *pivot)
-{
-    return factorize(c, a, NULL, where, pivot);
-}
-
-int tribo_cholesky_consume(struct cholesky *c, struct matrix *a, size_t *where, double *pivot)
-{
-    const int status = factorize(c, a, a, where, pivot);
-    tribo_matrix_free(a);
+    if (spent) {
+        tribo_matrix_free(spent);
+    }
     return status;
 }
 
@@ -306,13 +276,13 @@ int tribo_cholesky_solve(const struct cholesky *c, size_t count, double *x)
         return tribo_sparse_factor_solve(c->sparse, count, x);
     }
     for (size_t k = 0; k < count; k++) {
-        tribo_half_solve(c, x + k * c->n, 1);
-        tribo_half_solve_back(c, x + k * c->n, 1);
+        tribo_half_solve(c, 0, x + k * c->n, 1);
+        tribo_half_solve(c, 1, x + k * c->n, 1);
     }
     return 1;
 }
 
-static void half_solve(const struct cholesky *c, int back, double *x, size_t cols)
+void tribo_half_solve(const struct cholesky *c, int back, double *x, size_t cols)
 {
     const double one = 1.0;
     const int n = (int)c->n, count = (int)cols;
@@ -326,16 +296,6 @@ static void half_solve(const struct cholesky *c, int back, double *x, size_t col
             x[i * cols + j] /= c->root[i];
         }
     }
-}
-
-void tribo_half_solve(const struct cholesky *c, double *x, size_t cols)
-{
-    half_solve(c, 0, x, cols);
-}
-
-void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols)
-{
-    half_solve(c, 1, x, cols);
 }
 
 double tribo_lu_create(double *a, size_t n, int *pivot)
@@ -367,12 +327,7 @@ void tribo_lu_solve(const double *lu, size_t n, const int *pivot, double *x, siz
     dtrsm_("R", "U", "N", "N", &count, &rows, &one, lu, &rows, x, &count, 1, 1, 1, 1);
     dtrsm_("R", "L", "N", "U", &count, &rows, &one, lu, &rows, x, &count, 1, 1, 1, 1);
     for (size_t k = n; k-- > 0;) {
-        double *row = x + k * cols, *other = x + (size_t)(pivot[k] - 1) * cols;
-        for (size_t j = 0; j < cols; j++) {
-            const double own = row[j];
-            row[j] = other[j];
-            other[j] = own;
-        }
+        tribo_exchange(x + k * cols, x + (size_t)(pivot[k] - 1) * cols, cols, 1);
     }
 }
 
@@ -407,15 +362,15 @@ int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors)
 
 int tribo_symmetric_eigen_by(const struct cholesky *b, double *a, size_t n, double *values, double *vectors)
 {
-    tribo_half_solve(b, a, n);
+    tribo_half_solve(b, 0, a, n);
     tribo_transpose(n, n, a, vectors);
-    tribo_half_solve(b, vectors, n);
+    tribo_half_solve(b, 0, vectors, n);
     memcpy(a, vectors, n * n * sizeof *a);
     if (!tribo_dense_finite(a, n * n)) {
         return TRIBO_ERR_NOT_FINITE;
     }
     const int status = tribo_symmetric_eigen(a, n, values, vectors);
-    tribo_half_solve_back(b, vectors, n);
+    tribo_half_solve(b, 1, vectors, n);
     return status;
 }
 

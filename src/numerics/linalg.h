@@ -15,14 +15,12 @@ double tribo_largest(const double *x, size_t n);
 /* to += factor x. */
 void tribo_add(double *to, double factor, const double *x, size_t n);
 
-/* Exchanges count elements of x and y, at distances of stride. */
-void tribo_exchange(double *x, double *y, size_t count, size_t stride);
-
 /* Returns 1 if no x_i is an infinity or a NaN. */
 int tribo_dense_finite(const double *x, size_t n);
 
-/* Returns sum x_i, summed in eight parts. */
+/* Return sum x_i and sum x_i y_i z_i, summed in eight parts. */
 double tribo_sum(size_t n, const double *x);
+double tribo_dot_of_three(size_t n, const double *x, const double *y, const double *z);
 
 /* c [rows][cols] += factor a b, for a [rows][inner] and b [inner][cols]. Skips groups of four zeros in a. */
 void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c);
@@ -32,10 +30,6 @@ void tribo_multiply_transposed_add(size_t rows, size_t inner, size_t cols, const
 
 /* to [cols][rows] = a', for a [rows][cols]. */
 void tribo_transpose(size_t rows, size_t cols, const double *a, double *to);
-
-/* c += a'b and (c + next_c) += a'(b + next_b). */
-void tribo_multiply_transposed_two(size_t rows, size_t inner, size_t cols, const double *a, const double *b, size_t next_b,
-                                   double *c, size_t next_c);
 
 /* a [n][n] = (a + a')/2. */
 void tribo_even_out(size_t n, double *a);
@@ -53,12 +47,10 @@ struct cholesky {
     struct sparse_factor *sparse;
 };
 
-/* Factors A. Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_SIZE (dense, more than DENSE_MOST rows), or TRIBO_ERR_INDEFINITE with
- * the row *where and the value *pivot of a pivot that is not positive; NaN if the value is unknown. */
-int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *where, double *pivot);
-
-/* tribo_cholesky_create; frees a, also after an error. */
-int tribo_cholesky_consume(struct cholesky *c, struct matrix *a, size_t *where, double *pivot);
+/* Factors A. spent: NULL, or a, which is freed, also after an error. Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_SIZE (dense,
+ * more than DENSE_MOST rows), or TRIBO_ERR_INDEFINITE with the row *where and the value *pivot of a pivot that is not positive;
+ * NaN if the value is unknown. */
+int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, struct matrix *spent, size_t *where, double *pivot);
 
 /* Returns 1, or 0 if out of memory. */
 int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from);
@@ -67,11 +59,8 @@ void tribo_cholesky_free(struct cholesky *c);
 /* x [count][n] = A^-1 x of count vectors. Returns 1, or 0 if out of memory, which cannot happen for count = 1. */
 int tribo_cholesky_solve(const struct cholesky *c, size_t count, double *x);
 
-/* x [n][cols] = S' x. */
-void tribo_half_solve(const struct cholesky *c, double *x, size_t cols);
-
-/* x [n][cols] = S x. */
-void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols);
+/* x [n][cols] = S' x; back = 1: x = S x. */
+void tribo_half_solve(const struct cholesky *c, int back, double *x, size_t cols);
 
 /* Factors a [n][n] in place with exchanges pivot [n]. Returns the smallest |pivot|; 0 if a is singular or not finite: then there
  * are no factors. */

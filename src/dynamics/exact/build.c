@@ -134,7 +134,7 @@ static int factorize_mass(struct modal_build *b, const struct matrix *z, struct 
     size_t where = 0;
     int status = TRIBO_ERR_MEMORY;
     if (mass && tribo_matrix_congruent(&b->sys->mass, z, mass) && tribo_matrix_from_dense(&w, m, m, mass)) {
-        status = tribo_cholesky_consume(c, &w, &where, &pivot);
+        status = tribo_cholesky_create(c, &w, &w, &where, &pivot);
     }
     if (status == TRIBO_ERR_INDEFINITE) {
         tribo_system_fail(b->sys, status, "mass of what is not held is not positive definite: pivot %g", pivot);

@@ -82,7 +82,8 @@ int tribo_modal_transition(void *own, const void *phase, double tau, size_t colu
     tribo_modal_join(h, c, zr, zi, eta);
     tribo_modal_join(h, c, wr, wi, rate);
     memset(v + block, 0, block * sizeof *v);
-    tribo_multiply_transposed_two(m, n, c, h->phi, eta, block, v, block);
+    tribo_multiply_transposed_add(m, n, c, h->phi, eta, v);
+    tribo_multiply_transposed_add(m, n, c, h->phi, rate, v + block);
     for (size_t k = 0; k < sys->compliance.count; k++) {
         const size_t i = sys->compliance.contact[k];
         for (size_t l = 0; h->key[i] == 2 && l < m; l++) {

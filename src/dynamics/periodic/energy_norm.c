@@ -111,7 +111,7 @@ void tribo_energy_norm_state(const struct energy_norm *e, size_t columns, double
     tribo_multiply_transposed_add(n, n, columns, e->phi, x, y);
     tribo_multiply_transposed_add(n, n, columns, e->phi, x + half, y + half);
     memcpy(y + 2 * half, x + 2 * half, e->springs * columns * sizeof *y);
-    tribo_half_solve_back(&(struct cholesky){.n = e->springs, .factor = e->root}, y + 2 * half, columns);
+    tribo_half_solve(&(struct cholesky){.n = e->springs, .factor = e->root}, 1, y + 2 * half, columns);
 }
 
 double tribo_energy_length(const double *x, size_t n)

@@ -96,7 +96,7 @@ static int factorize_sum(const struct model *m, double factor, double other, str
     if (!tribo_matrix_sum(&sum, factor, &m->stiffness, other, &m->mass)) {
         return TRIBO_ERR_MEMORY;
     }
-    return tribo_cholesky_consume(c, &sum, where, &pivot);
+    return tribo_cholesky_create(c, &sum, &sum, where, &pivot);
 }
 
 static int factor_failed(const struct model *m, int status, const char *what, size_t where)
@@ -164,7 +164,7 @@ static int find_among(const struct model *m, size_t count, const double *x, size
                      tribo_matrix_congruent(&m->mass, &z, product) && tribo_matrix_from_dense(&mass, count, count, product);
     tribo_matrix_free(&rows);
     free(product);
-    int status = done ? tribo_cholesky_consume(&c, &mass, &where, &pivot) : TRIBO_ERR_MEMORY;
+    int status = done ? tribo_cholesky_create(&c, &mass, &mass, &where, &pivot) : TRIBO_ERR_MEMORY;
     status = status ? status : tribo_normal_modes(&m->stiffness, NULL, &z, &c, wanted, r->omega2, r->phi, &doubt);
     tribo_cholesky_free(&c);
     tribo_matrix_free(&z);
@@ -332,7 +332,7 @@ static int largest_part(size_t n, double *a, double *b, double *value, double *p
     for (size_t i = 0; i < n; i++) {
         b[i * n + i] += b[i * n + i] > 0.0 ? RIDGE * b[i * n + i] : 1.0;
     }
-    int status = tribo_matrix_from_dense(&whole, n, n, b) ? tribo_cholesky_consume(&c, &whole, &where, &pivot) : TRIBO_ERR_MEMORY;
+    int status = tribo_matrix_from_dense(&whole, n, n, b) ? tribo_cholesky_create(&c, &whole, &whole, &where, &pivot) : TRIBO_ERR_MEMORY;
     status = status ? status : tribo_symmetric_eigen_by(&c, a, n, value, b);
     *part = status ? 1.0 : clamp(n ? value[n - 1] : 0.0, 0.0, 1.0);
     tribo_cholesky_free(&c);

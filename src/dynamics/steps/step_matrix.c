@@ -88,8 +88,7 @@ int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, 
     if (m->c->rows && tribo_matrix_flaw(&m->s, 1, &where, &j, &x, &y)) {
         status = factorize_lopsided(m, &where);
     } else if (suits_sparse(m)) {
-        status = (consumes ? tribo_cholesky_consume(&m->sparse, &m->s, &where, &x)
-                           : tribo_cholesky_create(&m->sparse, &m->s, &where, &x));
+        status = tribo_cholesky_create(&m->sparse, &m->s, consumes ? &m->s : NULL, &where, &x);
     } else {
         m->band = malloc(m->n * (m->below + 1) * sizeof *m->band);
         where = m->band ? tribo_band_factorize(&m->s, m->below, NULL, m->band) : 0;
@@ -121,7 +120,7 @@ int tribo_step_matrix_solve(const struct step_matrix *m, size_t count, double *x
 void tribo_step_matrix_half_solve(const struct step_matrix *m, int back, double *x)
 {
     if (m->sparse.n) {
-        (back ? tribo_half_solve_back : tribo_half_solve)(&m->sparse, x, 1);
+        tribo_half_solve(&m->sparse, back, x, 1);
     } else {
         tribo_band_half_solve(m->n, m->below, m->band, back, x);
     }

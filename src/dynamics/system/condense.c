@@ -117,7 +117,7 @@ static int factorize_without(const struct model *m, struct condensed *s)
 {
     size_t where = 0, dof = 0;
     double pivot = 0.0;
-    int status = s->without ? tribo_cholesky_create(&s->factor, &s->kww, &where, &pivot) : TRIBO_OK;
+    int status = s->without ? tribo_cholesky_create(&s->factor, &s->kww, NULL, &where, &pivot) : TRIBO_OK;
     for (size_t k = 0; !status && s->factor.root && k < s->without; k++) {
         where = k;
         pivot = s->factor.root[k] * s->factor.root[k];

@@ -2,7 +2,6 @@
 /* The equations of motion of a system. */
 #include "system.h"
 #include "common/real.h"
-#include "common/simd.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -42,24 +41,6 @@ void tribo_system_free_motion(tribo_system *sys, double t, const double *y, doub
     }
 }
 
-enum { LANES = 8 }; /* partial sums: additions to a single sum wait for each other */
-
-TRIBO_SIMD static double equations_power_of(size_t n, const double *restrict tally, const double *restrict f,
-                                            const double *restrict v)
-{
-    double part[LANES] = {0.0}, sum = 0.0;
-    size_t i = 0;
-    for (; i + LANES <= n; i += LANES) {
-        for (size_t k = 0; k < LANES; k++) {
-            part[k] -= tally[i + k] * f[i + k] * v[i + k];
-        }
-    }
-    for (; i < n; i++) {
-        sum -= tally[i] * f[i] * v[i];
-    }
-    return sum + (((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7])));
-}
-
 /* tribo_system_rates; accepted = 1: (t, y) is an accepted state of the reversal law. */
 static int rates_at(tribo_system *sys, double t, const double *y, int accepted, double *acceleration, double *power)
 {
@@ -69,7 +50,7 @@ static int rates_at(tribo_system *sys, double t, const double *y, int accepted, 
     if (!sys->status) {
         /* f stays valid: where a reversal mark changes, both forms of the law give the same force */
         sys->status = accepted ? tribo_accept(sys->contacts, sys->work.v, sys->work.feq) : TRIBO_OK;
-        *power = equations_power_of(sys->ncontact, sys->tally, sys->work.f, sys->work.v);
+        *power = -tribo_dot_of_three(sys->ncontact, sys->tally, sys->work.f, sys->work.v);
         tribo_matrix_multiply_add(&sys->response, 1.0, sys->work.f, acceleration);
     }
     return tribo_system_explain(sys, sys->status);

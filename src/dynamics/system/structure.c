@@ -38,7 +38,7 @@ int tribo_model_factorize(const struct model *m, struct cholesky *c)
 {
     size_t where;
     double pivot;
-    switch (tribo_cholesky_create(c, &m->mass, &where, &pivot)) {
+    switch (tribo_cholesky_create(c, &m->mass, NULL, &where, &pivot)) {
     case TRIBO_OK:
         return TRIBO_OK;
     case TRIBO_ERR_INDEFINITE:
@@ -147,8 +147,8 @@ static int solve_matrix(const struct cholesky *c, const struct matrix *a, struct
 {
     double *x = tribo_matrix_to_dense(a);
     if (x && a->cols) {
-        tribo_half_solve(c, x, a->cols);
-        tribo_half_solve_back(c, x, a->cols);
+        tribo_half_solve(c, 0, x, a->cols);
+        tribo_half_solve(c, 1, x, a->cols);
     }
     const int done = x && tribo_matrix_from_dense(solved, a->rows, a->cols, x);
     free(x);
@@ -186,7 +186,7 @@ static int solve_by_masses(const struct model *m, tribo_system *sys)
     const int done = z && solve_matrix(c, &turned, &sys->response) && solve_matrix(c, &sys->k, &sys->stiffness) &&
                      (!sys->c.rows || solve_matrix(c, &sys->c, &sys->damping));
     if (done && m->ncontact) {
-        tribo_half_solve(c, z, m->ncontact);
+        tribo_half_solve(c, 0, z, m->ncontact);
     }
     const int status = done ? tribo_model_set_operator(m, sys, z, m->ndof) : tribo_model_no_memory(m);
     tribo_matrix_free(&turned);

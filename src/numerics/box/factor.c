@@ -92,15 +92,6 @@ static inline struct twofold entry_left(const struct box_qp *p, int graded, size
     return x;
 }
 
-static void exchange(double *x, double *y, size_t n)
-{
-    for (size_t i = 0; i < n; i++) {
-        const double z = x[i];
-        x[i] = y[i];
-        y[i] = z;
-    }
-}
-
 /* Cholesky factorization, column by column, with the largest pivot next; pivots wait on the diagonal. */
 static inline double dense_rebuild(struct box_qp *p, int graded, size_t *where)
 {
@@ -127,8 +118,8 @@ static inline double dense_rebuild(struct box_qp *p, int graded, size_t *where)
         }
         double *const array[] = {p->l, p->low.l};
         for (int a = 0; a < 1 + graded && best != k; a++) {
-            exchange(array[a] + k * size, array[a] + best * size, k);
-            exchange(array[a] + k * (size + 1), array[a] + best * (size + 1), 1);
+            tribo_exchange(array[a] + k * size, array[a] + best * size, k, 1);
+            tribo_exchange(array[a] + k * (size + 1), array[a] + best * (size + 1), 1, 1);
         }
         const size_t first = p->order[k];
         p->order[k] = p->order[best];

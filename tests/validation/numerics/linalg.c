@@ -325,7 +325,7 @@ TEST(overflowing_stiffness)
     struct cholesky c;
     struct doubt doubt;
     struct matrix a = dense(2, 2, k), mass = diagonal(2, m);
-    assert_ok(tribo_cholesky_create(&c, &mass, &where, &pivot));
+    assert_ok(tribo_cholesky_create(&c, &mass, NULL, &where, &pivot));
     assert_status(tribo_normal_modes(&a, NULL, &whole, &c, 2, omega2, phi, &doubt), TRIBO_ERR_NOT_FINITE);
     tribo_cholesky_free(&c);
     tribo_matrix_free(&mass);
@@ -474,7 +474,7 @@ TEST(definite_factor)
     for (size_t i = 0; i < N; i++) {
         x[i] = rest[i] = uniform(&g, -1.0, 1.0);
     }
-    assert_ok(tribo_cholesky_create(&c, &m, &where, &pivot));
+    assert_ok(tribo_cholesky_create(&c, &m, NULL, &where, &pivot));
     ck_assert(tribo_cholesky_solve(&c, 1, x));
     for (size_t i = 0; i < N; i++) {
         for (size_t k = 0; k < N; k++) {
@@ -487,7 +487,7 @@ TEST(definite_factor)
     const size_t bad = below(&g, N);
     a[bad * N + bad] = -1e-3;
     m = dense(N, N, a);
-    assert_status(tribo_cholesky_create(&c, &m, &where, &pivot), TRIBO_ERR_INDEFINITE);
+    assert_status(tribo_cholesky_create(&c, &m, NULL, &where, &pivot), TRIBO_ERR_INDEFINITE);
     ck_assert_uint_eq(where, bad);
     require(pivot < 0.0, "pivot %g", pivot);
     tribo_matrix_free(&m);
