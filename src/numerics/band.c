@@ -33,14 +33,14 @@ size_t tribo_band_factorize(const struct matrix *a, size_t width, const signed c
 }
 
 /* LAPACK's upper band, by columns, is L by rows. */
-void tribo_band_half_solve(size_t n, size_t width, const double *l, int back, double *x)
+void tribo_band_solve(size_t n, size_t width, const double *l, double *x)
 {
     const int rows = (int)n, below = (int)width, stride = below + 1, one = 1;
-    if (!width) {
-        for (size_t i = 0; i < n; i++) {
-            x[i] /= l[i];
-        }
-        return;
+    for (size_t i = 0; !width && i < n; i++) {
+        x[i] = x[i] / l[i] / l[i];
     }
-    dtbsv_("U", back ? "N" : "T", "N", &rows, &below, l, &stride, x, &one, 1, 1, 1);
+    if (width) {
+        dtbsv_("U", "T", "N", &rows, &below, l, &stride, x, &one, 1, 1, 1);
+        dtbsv_("U", "N", "N", &rows, &below, l, &stride, x, &one, 1, 1, 1);
+    }
 }

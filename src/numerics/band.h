@@ -9,7 +9,7 @@
  * (NULL: none) replaced by those of the identity. Returns the row of a pivot that is not positive, or n. */
 size_t tribo_band_factorize(const struct matrix *a, size_t width, const signed char *held, double *l);
 
-/* x [n] = L^-1 x; back = 1: x = L'^-1 x. One after the other they are A^-1 x. */
-void tribo_band_half_solve(size_t n, size_t width, const double *l, int back, double *x);
+/* x [n] = A^-1 x. */
+void tribo_band_solve(size_t n, size_t width, const double *l, double *x);
 
 #endif

@@ -56,7 +56,7 @@ static void central_destroy(tribo_driver *drv)
 {
     struct central *x = drv->own;
     if (x) {
-        tribo_step_form_free(&x->common);
+        free(x->common.memory);
         tribo_blockwise_free(&x->alone);
         free(x);
     }
@@ -95,9 +95,7 @@ static int kick(tribo_driver *drv, const struct body_step *k, double *energy)
     }
     const int status = tribo_step_form_force(s, sys, sys->contacts, k->time);
     if (status) {
-        return status == TRIBO_ERR_NOT_FINITE
-                   ? tribo_step_form_grew(drv, k->t)
-                   : tribo_driver_fail(drv, status, "at t = %.17g: %s", k->t, tribo_message(sys->contacts));
+        return tribo_step_form_fail(drv, status, k->t, tribo_message(sys->contacts));
     }
     tribo_matrix_multiply_add(&sys->response, k->time, s->f, k->u_to);
     tribo_get_slip(sys->contacts, s->mode);
@@ -367,7 +365,7 @@ static int central_step(tribo_driver *drv, double t, double next, const double *
     if (alone) {
         drv->sys->evaluations++;
         if (!tribo_blockwise_step(&x->alone, drv->sys, &k, &energy) || !isfinite(energy)) {
-            return tribo_step_form_grew(drv, t);
+            return tribo_step_form_fail(drv, TRIBO_ERR_NOT_FINITE, t, NULL);
         }
         drv->rested = x->alone.skipped;
     } else {

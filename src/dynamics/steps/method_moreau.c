@@ -31,7 +31,6 @@ struct moreau {
     int tell;                /* 1: limit is not yet copied to contacts */
     double *spring, *give;   /* [ncontact] forces f0 of compliant contacts; workspace, as G f0 */
     double *change;          /* [ncontact] f1 - f0; workspace */
-    signed char *loose;      /* [ncontact] slip; 1 for compliant contacts, which are not snapped */
     tribo_context *contacts; /* contacts with the operator of a step */
     size_t settings;         /* sys->changes at the creation of contacts */
 };
@@ -41,7 +40,7 @@ static void moreau_destroy(tribo_driver *drv)
     struct moreau *m = drv->own;
     if (m) {
         tribo_destroy(m->contacts);
-        tribo_step_form_free(&m->common);
+        free(m->common.memory);
         tribo_step_band_free(&m->held);
         tribo_step_matrix_free(&m->matrix);
         free(m->response);
@@ -58,7 +57,6 @@ static int moreau_create(tribo_driver *drv)
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
     m->settings_taken = SIZE_MAX;
-    m->loose = m->common.mode + c;
     m->limit = m->common.more;
     m->spring = m->limit + c;
     m->give = m->spring + c;
@@ -127,39 +125,6 @@ static int make_contacts(struct moreau *m, const tribo_system *sys)
     return m->contacts != NULL;
 }
 
-static int solve_steps(const void *matrix, size_t count, double *x)
-{
-    return tribo_step_matrix_solve(matrix, count, x);
-}
-
-/* r [ncontact][ncontact] = J S^-1 J'; own as in tribo_hidden. Returns 0 if out of memory. */
-static int find_operator(const struct moreau *m, const tribo_system *sys, double *r, double *own)
-{
-    const struct matrix *j = &sys->direction;
-    const size_t n = sys->ndof, c = sys->ncontact;
-    double *x = m->response;
-    if (m->matrix.pivot || !x) {
-        const int done = tribo_delassus_by_columns(j, solve_steps, &m->matrix, x, r, own);
-        if (!m->matrix.pivot) {
-            tribo_even_out(c, r);
-        }
-        return done;
-    }
-    /* r = W'W, W = H^-1 J', S = H H': symmetric, and semidefinite up to rounding; x [ncontact][ndof] = S^-1 J'. */
-    for (size_t i = 0; i < c; i++) {
-        tribo_matrix_get_row(j, i, x + i * n);
-        tribo_step_matrix_half_solve(&m->matrix, 0, x + i * n);
-        for (size_t k = 0; k <= i; k++) {
-            r[i * c + k] = r[k * c + i] = tribo_dot(x + i * n, x + k * n, n);
-        }
-    }
-    for (size_t i = 0; i < c; i++) {
-        tribo_step_matrix_half_solve(&m->matrix, 1, x + i * n);
-        tribo_delassus_note_own(j, i, x + i * n, own);
-    }
-    return 1;
-}
-
 /* Computes the factor, S^-1 J', and contacts with the operator J S^-1 J'. Returns a status. */
 static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
 {
@@ -174,7 +139,11 @@ static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
     free(m->response);
     m->response = keeps ? malloc((c * sys->ndof + 1) * sizeof *m->response) : NULL;
     double *r = calloc(c * c + 1, sizeof *r), *own = malloc((sys->direction.first[c] + 1) * sizeof *own);
-    const int done = r && own && (m->response || !keeps) && make_contacts(m, sys) && find_operator(m, sys, r, own);
+    const int done = r && own && (m->response || !keeps) && make_contacts(m, sys) &&
+                     tribo_delassus_by_columns(&sys->direction, tribo_step_matrix_solve, &m->matrix, m->response, r, own);
+    if (done && !m->matrix.pivot) {
+        tribo_even_out(c, r);
+    }
     for (size_t k = 0; done && k < c * c; k++) {
         const size_t i = k / c, j = k % c;
         const int both = tribo_is_compliant(&sys->compliance, i) && tribo_is_compliant(&sys->compliance, j);
@@ -263,7 +232,7 @@ static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, c
     struct step_form *s = &m->common;
     const struct compliance *g = &sys->compliance;
     const struct band_step step = {h, m->limit, s->base, u, du, s->f};
-    const int in_band = m->held.n && tribo_step_form_is_plain(s, sys) && tribo_step_band_solve(&m->held, &step);
+    const int in_band = m->held.n && tribo_system_is_plain(sys) && tribo_step_band_solve(&m->held, &step);
     int status = in_band || m->whole ? TRIBO_OK : prepare_whole(m, sys, h);
     if (status) {
         return status;
@@ -275,7 +244,6 @@ static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, c
     tribo_add(s->u, 1.0, du, sys->ndof);
     if (in_band) {
         memcpy(s->mode, m->held.at, sys->ncontact);
-        memcpy(m->loose, m->held.at, sys->ncontact);
         return tribo_dense_finite(s->f, sys->ncontact) ? TRIBO_OK : TRIBO_ERR_NOT_FINITE;
     }
     if (m->tell) {
@@ -303,10 +271,6 @@ static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, c
     }
     push(m, sys, h, s->f, s->u);
     tribo_get_slip(m->contacts, s->mode);
-    memcpy(m->loose, s->mode, sys->ncontact);
-    for (size_t k = 0; k < g->count; k++) {
-        m->loose[g->contact[k]] = 1;
-    }
     return TRIBO_OK;
 }
 
@@ -367,11 +331,9 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     }
     const int status = moreau_respond(m, sys, h, u, s->a);
     if (status) {
-        const char *message = m->whole ? tribo_message(m->contacts) : tribo_system_message(sys);
-        return status == TRIBO_ERR_NOT_FINITE ? tribo_step_form_grew(drv, t)
-                                              : tribo_driver_fail(drv, status, "at t = %.17g: %s", t, message);
+        return tribo_step_form_fail(drv, status, t, m->whole ? tribo_message(m->contacts) : tribo_system_message(sys));
     }
-    tribo_system_snap(sys, m->loose, s->base, s->u);
+    tribo_system_snap(sys, s->mode, s->base, s->u);
     tribo_step_form_relative(s, sys, s->u, s->end);
     s->goes_on = 1;
     for (size_t i = 0; i < n; i++) {

@@ -2,6 +2,7 @@
 /* Method "rk4/fixed": the classical Runge-Kutta method in steps of a fixed size, four evaluations a step. (GSL's takes twelve: it
  * doubles each step to estimate its error.) */
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 
 #include "blockwise.h"
@@ -44,7 +45,7 @@ static int rk4_create(tribo_driver *drv)
     for (size_t s = 0; s < STAGES - 1; s++) {
         r->stage[s] = r->sum + n + s * 2 * n;
     }
-    tribo_blockwise_take_law(&r->alone, drv->sys);
+    r->alone.revision = SIZE_MAX;
     return TRIBO_OK;
 }
 
@@ -115,34 +116,25 @@ static int tell_contacts(tribo_driver *drv, double t, double h)
     return status ? tribo_driver_explain(drv, t, h) : TRIBO_OK;
 }
 
-static int settings_are_taken(const struct rk4 *r, const tribo_system *sys)
-{
-    return r->alone.has_law && r->alone.revision == tribo_system_revision(sys);
-}
-
 static int rk4_step(tribo_driver *drv, double t, double next, const double *from, double *y)
 {
     struct rk4 *r = drv->own;
     const double h = next - t;
-    r->blockwise = drv->seen ? settings_are_taken(r, drv->sys) : r->blockwise;
+    r->blockwise = r->alone.has_law && r->alone.revision == tribo_system_revision(drv->sys); /* an observer may change that */
     /* the system says what is wrong with a motion that is not finite */
     const int done = r->blockwise && take_step(drv, t, h, from, y, 1) == TRIBO_OK;
     const int status = done ? TRIBO_OK : take_step(drv, t, h, from, y, 0);
     return status || !drv->seen ? status : tell_contacts(drv, t, h);
 }
 
-/* An advance of more steps than this is worth taking changed settings. */
-enum { MANY = 20 };
-
 static int rk4_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
     static const struct fixed_method method = {rk4_step, NULL};
     struct rk4 *r = drv->own;
     (void)continues;
-    if (t1 - *t > MANY * drv->dt && !settings_are_taken(r, drv->sys)) {
+    if (r->alone.revision != tribo_system_revision(drv->sys)) {
         tribo_blockwise_take_law(&r->alone, drv->sys);
     }
-    r->blockwise = settings_are_taken(r, drv->sys);
     const int status = tribo_driver_fixed_steps(drv, t, t1, y, &method);
     return status || drv->seen ? status : tell_contacts(drv, *t, drv->dt);
 }

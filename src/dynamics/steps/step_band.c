@@ -121,8 +121,7 @@ static void solve_sets(struct step_band *b, const struct band_step *s)
     for (size_t d = 0; d < b->n; d++) {
         x[d] = b->held[d] ? 0.0 : x[d];
     }
-    tribo_band_half_solve(b->n, b->width, b->l, 0, x);
-    tribo_band_half_solve(b->n, b->width, b->l, 1, x);
+    tribo_band_solve(b->n, b->width, b->l, x);
     for (size_t d = 0; d < b->n; d++) {
         x[d] = b->held[d] ? b->move[d] : x[d];
     }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "step_form.h"
 
-#include <stdint.h>
-#include <stdlib.h>
+#include "common/layout.h"
+
 #include <string.h>
 
 int tribo_step_form_bodies(const struct matrix *j, size_t *body, double *lever, signed char *seen)
@@ -27,34 +27,18 @@ int tribo_step_form_bodies(const struct matrix *j, size_t *body, double *lever, 
 int tribo_step_form_create(struct step_form *s, const tribo_system *sys, size_t more)
 {
     const size_t n = sys->ndof, c = sys->ncontact;
-    s->settings = SIZE_MAX;
-    s->memory = s->u = calloc(2 * n + 4 * c + more + 1, sizeof *s->u);
-    s->mode = malloc(2 * c + 1);
-    if (!s->u || !s->mode) {
-        return 0;
-    }
-    s->a = s->u + n;
-    s->v = s->a + n;
-    s->end = s->v + c;
-    s->f = s->end + c;
-    s->base = s->f + c;
-    s->more = s->base + c;
-    return 1;
-}
-
-void tribo_step_form_free(struct step_form *s)
-{
-    free(s->memory);
-    free(s->mode);
-}
-
-int tribo_step_form_is_plain(struct step_form *s, const tribo_system *sys)
-{
-    if (s->settings != tribo_system_revision(sys)) {
-        s->settings = tribo_system_revision(sys);
-        s->plain = tribo_system_is_plain(sys);
-    }
-    return s->plain;
+    struct layout l = {0};
+    do {
+        double **const of_contact[] = {&s->v, &s->end, &s->f, &s->base};
+        s->memory = s->u = tribo_layout_array(&l, n, sizeof *s->u);
+        s->a = tribo_layout_array(&l, n, sizeof *s->a);
+        for (size_t k = 0; k < sizeof of_contact / sizeof *of_contact; k++) {
+            *of_contact[k] = tribo_layout_array(&l, c, sizeof **of_contact[k]);
+        }
+        s->more = tribo_layout_array(&l, more, sizeof *s->more);
+        s->mode = tribo_layout_array(&l, c, sizeof *s->mode);
+    } while (!l.memory && tribo_layout_zeros(&l));
+    return l.memory != NULL;
 }
 
 void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t)
@@ -93,8 +77,8 @@ void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, con
 
 int tribo_step_form_force(struct step_form *s, const tribo_system *sys, tribo_context *contacts, double h)
 {
-    return tribo_step_form_is_plain(s, sys) ? tribo_step_force(contacts, h, s->end, s->f)
-                                            : tribo_step_force_mean(contacts, h, s->v, s->end, s->f);
+    return tribo_system_is_plain(sys) ? tribo_step_force(contacts, h, s->end, s->f)
+                                      : tribo_step_force_mean(contacts, h, s->v, s->end, s->f);
 }
 
 double tribo_step_form_power(const struct step_form *s, const tribo_system *sys)
@@ -106,9 +90,11 @@ double tribo_step_form_power(const struct step_form *s, const tribo_system *sys)
     return 0.5 * sum;
 }
 
-int tribo_step_form_grew(tribo_driver *drv, double t)
+int tribo_step_form_fail(tribo_driver *drv, int status, double t, const char *message)
 {
-    return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE,
-                             "at t = %.17g forces are too large: the motion grew without bound, or dt = %g is too long", t,
-                             drv->dt);
+    return status != TRIBO_ERR_NOT_FINITE
+               ? tribo_driver_fail(drv, status, "at t = %.17g: %s", t, message)
+               : tribo_driver_fail(
+                     drv, status, "at t = %.17g forces are too large: the motion grew without bound, or dt = %g is too long", t,
+                     drv->dt);
 }

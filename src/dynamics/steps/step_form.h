@@ -7,14 +7,12 @@
 #include "dynamics/driver.h"
 
 struct step_form {
-    double *memory;      /* all arrays but mode: methods exchange some */
+    double *memory;      /* all arrays, of which methods exchange some; freed by the method */
     double *u, *a;       /* [ndof] velocity (central: half a step back); acceleration, or what a step adds to u */
     double *v, *end, *f; /* [ncontact] velocity at the beginning and at the end of a step, force */
     double *base;        /* [ncontact] b at the end */
     double *more;        /* [more] arrays of the method, zeros at first */
-    signed char *mode;   /* [2 ncontact] slip; and as many bytes of the method */
-    int plain;           /* tribo_system_is_plain with the settings of revision `settings` */
-    size_t settings;     /* SIZE_MAX: none */
+    signed char *mode;   /* [ncontact] slip */
     int goes_on;         /* 1: `end` is the velocity with which the next step begins */
     size_t revision;     /* of the system for which a method has prepared */
 };
@@ -23,12 +21,8 @@ struct step_form {
  * none or several, or shares it. seen [j->cols]: workspace, all 0. */
 int tribo_step_form_bodies(const struct matrix *j, size_t *body, double *lever, signed char *seen);
 
-/* 1, or 0 if out of memory. tribo_step_form_free frees what failed, too. */
+/* 1, or 0 if out of memory. */
 int tribo_step_form_create(struct step_form *s, const tribo_system *sys, size_t more);
-void tribo_step_form_free(struct step_form *s);
-
-/* tribo_system_is_plain, found once for the settings of the system. */
-int tribo_step_form_is_plain(struct step_form *s, const tribo_system *sys);
 
 /* base = b(t). */
 void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t);
@@ -50,7 +44,7 @@ int tribo_step_form_force(struct step_form *s, const tribo_system *sys, tribo_co
 /* The power that f dissipates at the mean of v and end. */
 double tribo_step_form_power(const struct step_form *s, const tribo_system *sys);
 
-/* TRIBO_ERR_NOT_FINITE with its message. */
-int tribo_step_form_grew(tribo_driver *drv, double t);
+/* Returns status, with the message of a motion that grew for TRIBO_ERR_NOT_FINITE, else with message. */
+int tribo_step_form_fail(tribo_driver *drv, int status, double t, const char *message);
 
 #endif

@@ -99,8 +99,9 @@ int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, 
 
 /* ------------------------------------------------------------------------------------------------------------- solutions */
 
-int tribo_step_matrix_solve(const struct step_matrix *m, size_t count, double *x)
+int tribo_step_matrix_solve(const void *matrix, size_t count, double *x)
 {
+    const struct step_matrix *m = matrix;
     if (m->sparse.n) {
         return tribo_cholesky_solve(&m->sparse, count, x);
     }
@@ -111,17 +112,7 @@ int tribo_step_matrix_solve(const struct step_matrix *m, size_t count, double *x
         return 1;
     }
     for (size_t k = 0; k < count; k++) {
-        tribo_band_half_solve(m->n, m->below, m->band, 0, x + k * m->n);
-        tribo_band_half_solve(m->n, m->below, m->band, 1, x + k * m->n);
+        tribo_band_solve(m->n, m->below, m->band, x + k * m->n);
     }
     return 1;
-}
-
-void tribo_step_matrix_half_solve(const struct step_matrix *m, int back, double *x)
-{
-    if (m->sparse.n) {
-        tribo_half_solve(&m->sparse, back, x, 1);
-    } else {
-        tribo_band_half_solve(m->n, m->below, m->band, back, x);
-    }
 }

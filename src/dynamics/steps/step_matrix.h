@@ -24,11 +24,8 @@ int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, dou
 int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, double h, int consumes);
 void tribo_step_matrix_free(struct step_matrix *m);
 
-/* x [count][n] = S^-1 x. Returns 1, or 0 if out of memory, which cannot happen for count = 1. */
-int tribo_step_matrix_solve(const struct step_matrix *m, size_t count, double *x);
-
-/* With the H of S = H H', of a symmetric S (pivot = NULL): x [n] = H^-1 x; back = 1: x = H'^-1 x. */
-void tribo_step_matrix_half_solve(const struct step_matrix *m, int back, double *x);
+/* x [count][n] = S^-1 x, matrix: struct step_matrix. Returns 1, or 0 if out of memory, which cannot happen for count = 1. */
+int tribo_step_matrix_solve(const void *matrix, size_t count, double *x);
 
 /* Returns status, with a message in the system: TRIBO_ERR_INDEFINITE at degree of freedom `where`, or TRIBO_ERR_MEMORY. */
 int tribo_step_matrix_fail(const tribo_system *sys, int status, double h, size_t where);

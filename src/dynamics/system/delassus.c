@@ -12,13 +12,6 @@
 /* Rows of J solved at a time: one pass through the factor serves BATCH rows. */
 enum { BATCH = 16 };
 
-void tribo_delassus_note_own(const struct matrix *j, size_t i, const double *x, double *own)
-{
-    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        own[k] = x[j->col[k]];
-    }
-}
-
 int tribo_delassus_by_columns(const struct matrix *j, delassus_solve *solve, const void *a, double *x, double *r, double *own)
 {
     const size_t n = j->cols, c = j->rows;
@@ -34,7 +27,9 @@ int tribo_delassus_by_columns(const struct matrix *j, delassus_solve *solve, con
         done = solve(a, count, some);
         for (size_t i = 0; done && i < count; i++) {
             tribo_matrix_multiply_add(j, 1.0, some + i * n, r + (first + i) * c);
-            tribo_delassus_note_own(j, first + i, some + i * n, own);
+            for (size_t k = j->first[first + i]; k < j->first[first + i + 1]; k++) {
+                own[k] = some[i * n + j->col[k]];
+            }
         }
     }
     free(room);

@@ -5,9 +5,6 @@
 
 #include "numerics/matrix.h"
 
-/* own = x at the entries of row i, see tribo_hidden. */
-void tribo_delassus_note_own(const struct matrix *j, size_t i, const double *x, double *own);
-
 /* x [count][j->cols] = A^-1 x for count vectors. Returns 1, or 0 if out of memory. */
 typedef int delassus_solve(const void *a, size_t count, double *x);
 

@@ -35,11 +35,14 @@ static size_t entries_of(const struct matrix *j, size_t i)
     return j->first[i + 1] - j->first[i];
 }
 
-/* Returns 1 if contact i rests and its row is the difference or sum of two degrees of freedom, with entries of equal size. */
-static int is_pair(const struct matrix *j, const signed char *loose, size_t i)
+/* Returns 1 if contact i is rigid, rests, and its row has one entry, or two of equal size. */
+static int can_snap(const tribo_system *sys, const signed char *loose, size_t i)
 {
+    const struct matrix *j = &sys->direction;
     const double *val = j->val + j->first[i];
-    return !loose[i] && entries_of(j, i) == 2 && fabs(val[0]) == fabs(val[1]);
+    const size_t entries = entries_of(j, i);
+    return !loose[i] && !tribo_is_compliant(&sys->compliance, i) &&
+           (entries == 1 || (entries == 2 && fabs(val[0]) == fabs(val[1])));
 }
 
 /* Lists the correction of entry `to` of row i, 0 or 1, by the other entry, if there are two. All entries are known then. */
@@ -59,10 +62,9 @@ size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose
     struct snapping s = {sys, sys->work.acceleration, list, 0};
     memset(s.known, 0, sys->ndof * sizeof *s.known);
     for (size_t i = 0; i < n; i++) {
-        if (!loose[i] && entries_of(j, i) == 1) {
-            snap_take(&s, i, 0);
-        } else if (sys->snaps_in_order && is_pair(j, loose, i)) {
-            snap_take(&s, i, follows(sys, i));
+        const size_t entries = entries_of(j, i);
+        if ((entries == 1 || sys->snaps_in_order) && can_snap(sys, loose, i)) {
+            snap_take(&s, i, entries == 1 ? 0 : follows(sys, i));
         }
     }
     /* else the pairs with one known end; where there are none, the pair with the heaviest body */
@@ -72,7 +74,7 @@ size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose
         some = 0;
         for (size_t i = 0; i < n; i++) {
             const size_t *dof = j->col + j->first[i];
-            const int pair = is_pair(j, loose, i), known = pair && s.known[dof[0]] != 0.0;
+            const int pair = entries_of(j, i) == 2 && can_snap(sys, loose, i), known = pair && s.known[dof[0]] != 0.0;
             if (pair && known != (s.known[dof[1]] != 0.0)) {
                 snap_take(&s, i, (size_t)known);
                 some = 1;
