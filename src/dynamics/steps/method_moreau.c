@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "dynamics/system/delassus.h"
-#include "step_band.h"
 #include "step_form.h"
 #include "step_matrix.h"
 #include "common/real.h"
@@ -21,7 +20,7 @@
 struct moreau {
     struct step_form common;
     double h;              /* prepared step length; 0: none */
-    struct step_band held; /* solver of bands; n = 0: not for this system. With n > 0 the rest is made at first need */
+    struct step_band held; /* solver of bands; matrix NULL: not for this system. Else the rest is made at first need */
     int whole;             /* 1: factor, response and contacts are ready */
     struct step_matrix matrix;
     double *response;        /* [ncontact][ndof] S^-1 J'; NULL: each step solves with S twice */
@@ -129,7 +128,7 @@ static int make_contacts(struct moreau *m, const tribo_system *sys)
 static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
 {
     const size_t c = sys->ncontact;
-    int status = tribo_step_matrix_factorize(&m->matrix, sys, h, !m->held.n);
+    int status = tribo_step_matrix_factorize(&m->matrix, sys, h, !m->held.matrix);
     if (status) {
         return status;
     }
@@ -184,13 +183,13 @@ static int moreau_prepare(struct moreau *m, const tribo_system *sys, double h)
     size_t where = 0;
     m->h = 0.0;
     m->whole = 0;
-    m->held.n = 0;
+    m->held.matrix = NULL;
     int status = tribo_step_matrix_create(&m->matrix, sys, h);
     if (!status && !planar_of(sys->contacts)) {
         status = tribo_step_band_create(&m->held, sys, &m->matrix, &where);
         status = tribo_step_matrix_fail(sys, status, h, where);
     }
-    status = status || m->held.n ? status : prepare_whole(m, sys, h);
+    status = status || m->held.matrix ? status : prepare_whole(m, sys, h);
     if (!status) {
         m->h = h;
         m->common.revision = sys->revision;
@@ -232,7 +231,7 @@ static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, c
     struct step_form *s = &m->common;
     const struct compliance *g = &sys->compliance;
     const struct band_step step = {h, m->limit, s->base, u, du, s->f};
-    const int in_band = m->held.n && tribo_system_is_plain(sys) && tribo_step_band_solve(&m->held, &step);
+    const int in_band = m->held.matrix && tribo_system_is_plain(sys) && tribo_step_band_solve(&m->held, &step);
     int status = in_band || m->whole ? TRIBO_OK : prepare_whole(m, sys, h);
     if (status) {
         return status;

@@ -7,7 +7,7 @@
  * Where the band is stiff, the slip of a body overloads its neighbours within the step, and each round would reach the next
  * neighbour only. So in rounds in which contacts only begin to slide, neighbours within `reach` slide along, and reach
  * doubles from round to round; a contact that slides too early moves along its force, and holds again. */
-#include "step_band.h"
+#include "step_matrix.h"
 #include "numerics/band.h"
 #include "step_form.h"
 
@@ -16,6 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/layout.h"
 #include "common/real.h"
 
 /* held[]: the contact on a body slides, holds, or held until neighbours began to slide. */
@@ -28,8 +29,6 @@ void tribo_step_band_free(struct step_band *b)
 {
     free(b->l);
     free(b->body);
-    free(b->lever);
-    free(b->at);
     *b = (struct step_band){0};
 }
 
@@ -43,32 +42,35 @@ static int applies(struct step_band *b, const tribo_system *sys, const struct st
            tribo_step_form_bodies(&sys->direction, b->body, b->lever, b->held) && !tribo_matrix_flaw(&m->s, 1, &i, &j, &x, &y);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ the factor */
-
 /* Factorizes S without held bodies. Returns the place of a pivot that is not positive, or n. */
 static size_t band_factorize(struct step_band *b)
 {
-    const size_t where = tribo_band_factorize(b->s, b->width, b->held, b->l);
-    b->factored = where == b->n;
+    const size_t where = tribo_band_factorize(&b->matrix->s, b->matrix->below, b->held, b->l);
+    b->factored = where == b->matrix->n;
     return where;
 }
 
 int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const struct step_matrix *m, size_t *where)
 {
-    const size_t n = m->n, count = sys->ncontact;
-    b->n = 0;
-    b->body = b->body ? b->body : malloc((count + n + 1) * sizeof *b->body);
-    b->lever = b->lever ? b->lever : calloc(3 * count + 2 * n + 1, sizeof *b->lever);
-    b->at = b->at ? b->at : calloc(count + n + 1, 1);
-    if (!b->body || !b->lever || !b->at) {
+    const size_t n = m->n, count = b->count = sys->ncontact;
+    struct layout l = {0};
+    b->matrix = NULL;
+    if (!b->body) { /* at is kept where the length of steps changes */
+        do {
+            b->body = tribo_layout_array(&l, count, sizeof *b->body);
+            b->contact = tribo_layout_array(&l, n, sizeof *b->contact);
+            b->lever = tribo_layout_array(&l, count, sizeof *b->lever);
+            b->own = tribo_layout_array(&l, count, sizeof *b->own);
+            b->noise = tribo_layout_array(&l, count, sizeof *b->noise);
+            b->push = tribo_layout_array(&l, n, sizeof *b->push);
+            b->move = tribo_layout_array(&l, n, sizeof *b->move);
+            b->at = tribo_layout_array(&l, count, 1);
+            b->held = tribo_layout_array(&l, n, 1);
+        } while (!l.memory && tribo_layout_zeros(&l));
+    }
+    if (!b->body) {
         return TRIBO_ERR_MEMORY;
     }
-    b->contact = b->body + count;
-    b->own = b->lever + count;
-    b->noise = b->own + count;
-    b->push = b->noise + count;
-    b->move = b->push + n;
-    b->held = b->at + count;
     if (!applies(b, sys, m)) {
         return TRIBO_OK;
     }
@@ -77,20 +79,17 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const s
     if (!b->l) {
         return TRIBO_ERR_MEMORY;
     }
-    b->s = &m->s;
-    b->n = n;
-    b->width = m->below;
-    b->count = count;
-    for (size_t d = 0; d < b->n; d++) {
-        b->contact[d] = b->count;
+    b->matrix = m;
+    for (size_t d = 0; d < n; d++) {
+        b->contact[d] = count;
     }
-    for (size_t i = 0; i < b->count; i++) {
+    for (size_t i = 0; i < count; i++) {
         b->contact[b->body[i]] = i;
-        b->own[i] = tribo_matrix_get(b->s, b->body[i], b->body[i]);
+        b->own[i] = tribo_matrix_get(&m->s, b->body[i], b->body[i]);
     }
-    memset(b->held, 0, b->n);
+    memset(b->held, 0, n);
     *where = band_factorize(b); /* with no body held: S is definite if and only if all these pivots are positive */
-    return *where < b->n ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
+    return *where < n ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
 }
 
 /* --------------------------------------------------------------------------------------------------------------- the step */
@@ -99,6 +98,8 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const s
 static void solve_sets(struct step_band *b, const struct band_step *s)
 {
     const double doubt = 8.0 * DBL_EPSILON;
+    const struct matrix *matrix = &b->matrix->s;
+    const size_t n = matrix->rows;
     double *x = s->du, *f = s->f;
     for (size_t i = 0; i < b->count; i++) {
         const signed char holds = b->at[i] ? FREE : HOLDS;
@@ -108,8 +109,8 @@ static void solve_sets(struct step_band *b, const struct band_step *s)
     if (!b->factored) {
         band_factorize(b);
     }
-    memcpy(x, b->push, b->n * sizeof *x);
-    memset(b->move, 0, b->n * sizeof *x);
+    memcpy(x, b->push, n * sizeof *x);
+    memset(b->move, 0, n * sizeof *x);
     for (size_t i = 0; i < b->count; i++) {
         const size_t d = b->body[i];
         f[i] = b->at[i] * s->limit[i];
@@ -117,20 +118,20 @@ static void solve_sets(struct step_band *b, const struct band_step *s)
         b->move[d] = b->at[i] ? 0.0 : s->base[i] / b->lever[i] - s->u[d];
     }
     /* columns of held bodies that move with their bases go to the right-hand side */
-    tribo_matrix_multiply_add(b->s, -1.0, b->move, x);
-    for (size_t d = 0; d < b->n; d++) {
+    tribo_matrix_multiply_add(matrix, -1.0, b->move, x);
+    for (size_t d = 0; d < n; d++) {
         x[d] = b->held[d] ? 0.0 : x[d];
     }
-    tribo_band_solve(b->n, b->width, b->l, x);
-    for (size_t d = 0; d < b->n; d++) {
+    tribo_band_solve(n, b->matrix->below, b->l, x);
+    for (size_t d = 0; d < n; d++) {
         x[d] = b->held[d] ? b->move[d] : x[d];
     }
     for (size_t i = 0; i < b->count; i++) {
         const size_t d = b->body[i];
-        const double size = tribo_matrix_row_size(b->s, d, x) + fabs(b->push[d]) + fabs(b->own[i] * s->u[d]);
+        const double size = tribo_matrix_row_size(matrix, d, x) + fabs(b->push[d]) + fabs(b->own[i] * s->u[d]);
         const double unit = 1.0 / (s->h * b->lever[i]);
         b->noise[i] = doubt * fabs(unit) * size;
-        f[i] = b->at[i] ? f[i] : unit * (tribo_matrix_row_dot(b->s, d, x) - b->push[d]);
+        f[i] = b->at[i] ? f[i] : unit * (tribo_matrix_row_dot(matrix, d, x) - b->push[d]);
     }
 }
 
@@ -162,10 +163,11 @@ static void band_revise(struct step_band *b, const struct band_step *s, size_t *
  * along. */
 static void band_sweep(struct step_band *b, size_t reach, int upwards)
 {
+    const size_t n = b->matrix->n;
     size_t left = 0;
     double way = 0.0;
-    for (size_t k = 0; k < b->n; k++) {
-        const size_t d = upwards ? k : b->n - 1 - k, i = b->contact[d];
+    for (size_t k = 0; k < n; k++) {
+        const size_t d = upwards ? k : n - 1 - k, i = b->contact[d];
         const int contact = i < b->count;
         if (contact && b->held[d] == HOLDS && b->at[i]) {
             left = reach;
@@ -183,7 +185,7 @@ static void band_sweep(struct step_band *b, size_t reach, int upwards)
 int tribo_step_band_solve(struct step_band *b, const struct band_step *s)
 {
     size_t reach = 0, freed, caught;
-    memcpy(b->push, s->du, b->n * sizeof *s->du);
+    memcpy(b->push, s->du, b->matrix->n * sizeof *s->du);
     for (int round = 0; round < ROUNDS; round++) {
         solve_sets(b, s);
         band_revise(b, s, &freed, &caught);
@@ -199,6 +201,6 @@ int tribo_step_band_solve(struct step_band *b, const struct band_step *s)
             band_sweep(b, reach, 0);
         }
     }
-    memcpy(s->du, b->push, b->n * sizeof *s->du);
+    memcpy(s->du, b->push, b->matrix->n * sizeof *s->du);
     return 0;
 }

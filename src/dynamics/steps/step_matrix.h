@@ -30,4 +30,40 @@ int tribo_step_matrix_solve(const void *matrix, size_t count, double *x);
 /* Returns status, with a message in the system: TRIBO_ERR_INDEFINITE at degree of freedom `where`, or TRIBO_ERR_MEMORY. */
 int tribo_step_matrix_fail(const tribo_system *sys, int status, double h, size_t where);
 
+/* ------------------------------------------------------------------------------------------------------- step_band.c */
+
+/* A step of "moreau/fixed" where each contact holds a body of its own to the base, and S is a band. The operator that contacts
+ * see, J S^-1 J', would be dense. Here bodies that contacts hold are rows and columns taken out of S: a step costs as much as
+ * the band has entries, and a new factor where other contacts hold. */
+struct step_band {
+    const struct step_matrix *matrix; /* S; NULL: the system is not of that kind */
+    size_t count;                     /* contacts */
+    double *l;                        /* [n][below + 1] factor of S without held bodies (band.h) */
+    int factored;                     /* 1: l belongs to held */
+    size_t *body;                     /* [count] the body of a contact; owns the memory of the arrays below */
+    size_t *contact;                  /* [n] the contact on a body; count: none */
+    double *lever;                    /* [count] its entry of J */
+    double *push, *move; /* [n] impulses without friction; displacements of held bodies with their bases, in velocities */
+    double *own;         /* [count] S_dd of the body */
+    double *noise;       /* [count] error bound of forces by rounding */
+    signed char *at;     /* [count] 0: holds; else the sign of its force */
+    signed char *held;   /* [n] 1: a contact holds the body, in the factor */
+};
+
+/* A step of length h from velocities u: limits, velocities of bases at its end; changes of velocities, forces. */
+struct band_step {
+    double h;
+    const double *limit, *base, *u;
+    double *du, *f;
+};
+
+/* Prepares steps with the S of m, which must outlive b. TRIBO_OK, also if the system is not of that kind (matrix NULL);
+ * TRIBO_ERR_MEMORY; TRIBO_ERR_INDEFINITE with the place of a pivot that is not positive. Keeps `at`. */
+int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const struct step_matrix *m, size_t *where);
+void tribo_step_band_free(struct step_band *b);
+
+/* du: in, impulses of loads and structure; out, changes of velocities, with forces |f| <= limit for which v = J (u + du) -
+ * base is 0 or against f. Returns 1; 0 if that is not found: then du is as before. */
+int tribo_step_band_solve(struct step_band *b, const struct band_step *s);
+
 #endif
