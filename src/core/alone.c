@@ -116,7 +116,9 @@ TRIBO_SIMD static void find_epsilons(size_t n, const double *restrict width, con
     }
 }
 
-const double *tribo_bands(const tribo_context *ctx, size_t i, size_t n, double *room)
+/* Returns the |v| up to which the law reads f_eq, of the n <= TRIBO_CHUNK contacts from i on: epsilon, or 0; room [n] is
+ * workspace. */
+static const double *bands_of(const tribo_context *ctx, size_t i, size_t n, double *room)
 {
     static const double none[TRIBO_CHUNK];
     const struct contacts *c = &ctx->follow.contacts;
@@ -223,7 +225,7 @@ static int balance_chunk(tribo_context *ctx, const struct call *call, size_t k, 
         unsigned char *is_near = ctx->last.near + i;
         memset(is_near, 0, n);
         if (near) {
-            find_near(n, v, tribo_bands(ctx, i, n, room), ctx->follow.contacts.limit + i, is_near);
+            find_near(n, v, bands_of(ctx, i, n, room), ctx->follow.contacts.limit + i, is_near);
         }
         for (size_t j = 0; near && j < n; j++) {
             if (is_near[j]) {

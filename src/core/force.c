@@ -5,40 +5,11 @@
 #include "common/stream.h"
 #include "clusters.h"
 
-/* used [n] = feq where |v| <= band, else 0. */
-TRIBO_SIMD static void select_feq(size_t n, const double *restrict v, const double *restrict band, const double *restrict feq,
-                                  double *restrict used)
+/* 1 if the force of scalar contact i, at v, depends on f_eq: elsewhere feq need not be finite, nor set. */
+static int reads_feq(const tribo_context *ctx, size_t i, double v)
 {
-    for (size_t i = 0; i < n; i++) {
-        used[i] = fabs(v[i]) <= band[i] ? feq[i] : 0.0;
-    }
-}
-
-/* used [n] = f_eq of the contacts from i on where laws depend on it, else 0: there feq need not be finite, nor set. Planar
- * contacts have checks of their own. */
-static void used_feq(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *used)
-{
-    double room[TRIBO_CHUNK];
-    select_feq(n, v + i, tribo_bands(ctx, i, n, room), feq + i, used);
-    for (size_t k = 0; tribo_plane_count(ctx) && k < n; k++) {
-        used[k] = tribo_is_scalar(ctx, i + k) ? used[k] : 0.0;
-    }
-}
-
-/* Checks feq where laws depend on it; a status. */
-static int check_used(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq)
-{
-    for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
-        double used[TRIBO_CHUNK];
-        const size_t n = tribo_chunk_size(ctx, i);
-        used_feq(ctx, i, n, v, feq, used);
-        for (size_t k = 0; !tribo_is_within(used, n, DBL_MAX); k++) {
-            if (!isfinite(used[k])) {
-                return tribo_fail(note, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", i + k, used[k]);
-            }
-        }
-    }
-    return TRIBO_OK;
+    const double band = ctx->set.law->sticks_in_band ? tribo_epsilon_of(&ctx->follow.contacts, i) : 0.0;
+    return tribo_is_scalar(ctx, i) && fabs(v) <= band;
 }
 
 /* Checks v and feq; a status. *plain: laws take feq as it is. note: ctx, or NULL to keep no message. */
@@ -54,8 +25,12 @@ static int check_force(const tribo_context *ctx, tribo_context *note, const doub
     if (!feq && ctx->n) {
         return tribo_fail(note, TRIBO_ERR_NULL, "feq is NULL");
     }
-    status = *plain ? TRIBO_OK : check_used(ctx, note, v, feq);
-    return status || !tribo_plane_count(ctx) ? status : tribo_plane_check_feq(ctx, note, v, feq);
+    for (size_t i = 0; !*plain && i < ctx->n; i++) {
+        if (!isfinite(feq[i]) && reads_feq(ctx, i, v[i])) {
+            return tribo_fail(note, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", i, feq[i]);
+        }
+    }
+    return tribo_plane_check_feq(ctx, note, v, feq);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ forces */
@@ -63,25 +38,17 @@ static int check_force(const tribo_context *ctx, tribo_context *note, const doub
 /* Outputs, each of which may be NULL. */
 enum { FORCES, BY_V, BY_FEQ, BY_LIMIT, OUTPUTS };
 
-/* Returns f_eq [n] of the contacts from i on as laws read it; room [n] is workspace. Laws that do not use f_eq get velocities. */
-static const double *legible_feq(const tribo_context *ctx, int plain, size_t i, size_t n, const double *v, const double *feq,
-                                 double *room)
-{
-    if (!ctx->set.law->uses_feq || plain) {
-        return (ctx->set.law->uses_feq ? feq : v) + i;
-    }
-    used_feq(ctx, i, n, v, feq, room);
-    for (size_t k = 0; k < n; k++) {
-        room[k] = cut(room[k]);
-    }
-    return room;
-}
-
+/* Sets the outputs of contacts, all as if they were scalar. Laws that do not use f_eq get velocities. */
 static void find_outputs(const tribo_context *ctx, int plain, const double *v, const double *feq, double *const *out)
 {
     const int derivatives = out[BY_V] || out[BY_FEQ] || out[BY_LIMIT];
     const int far = ctx->n >= TRIBO_MANY, whole = plain && !ctx->set.breaking && !far && !derivatives;
+    const double *given = ctx->set.law->uses_feq ? feq : v;
     struct stream stream[OUTPUTS];
+    if (whole && out[FORCES] && ctx->n == 1) {
+        ctx->set.law->force(&ctx->follow.contacts, 1, v, given, out[FORCES]);
+        return;
+    }
     for (int k = 0; k < OUTPUTS; k++) {
         tribo_stream_begin(&stream[k], out[k], far);
     }
@@ -94,7 +61,10 @@ static void find_outputs(const tribo_context *ctx, int plain, const double *v, c
             n += tribo_chunk_size(ctx, i + n);
             chunk++;
         }
-        const double *used = legible_feq(ctx, plain, i, n, v, feq, room);
+        for (size_t k = 0; !plain && k < n; k++) {
+            room[k] = reads_feq(ctx, i + k, v[i + k]) ? cut(feq[i + k]) : 0.0;
+        }
+        const double *used = plain ? given + i : room;
         struct contacts c = tribo_chunk_contacts(ctx, i);
         if (ctx->set.breaking) {
             tribo_find_limits(ctx, i, n, v + i, used, limit);
@@ -119,18 +89,8 @@ static void find_outputs(const tribo_context *ctx, int plain, const double *v, c
 
 int tribo_force(const tribo_context *ctx, const double *v, const double *feq, double *f)
 {
-    int plain;
-    const int status = ctx ? check_force(ctx, NULL, v, feq, &plain) : TRIBO_ERR_NULL;
-    if (status || (!f && ctx->n)) {
-        return status ? status : TRIBO_ERR_NULL;
-    }
-    if (ctx->n == 1 && plain && !ctx->set.breaking) {
-        ctx->set.law->force(&ctx->follow.contacts, 1, v, ctx->set.law->uses_feq ? feq : v, f);
-        return TRIBO_OK;
-    }
-    double *const out[OUTPUTS] = {f, NULL, NULL, NULL};
-    find_outputs(ctx, plain, v, feq, out);
-    return tribo_plane_force(ctx, v, feq, out);
+    const int missing = !ctx || (!f && ctx->n);
+    return missing ? TRIBO_ERR_NULL : tribo_find_tangents(ctx, 0, v, feq, (double *const[OUTPUTS]){f, NULL, NULL, NULL});
 }
 
 int tribo_find_tangents(const tribo_context *ctx, int pairs, const double *v, const double *feq, double *const *out)

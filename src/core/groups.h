@@ -46,10 +46,6 @@ void tribo_find_slips(size_t n, const double *f, const double *limit, double hol
 /* feq [n] = -a/R_ii of the contacts of the chunk that begins with contact i; 0 for open ones. */
 void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq);
 
-/* Returns the |v| up to which the law reads f_eq, of the n <= TRIBO_CHUNK contacts from i on: epsilon, or 0; room [n] is
- * workspace. */
-const double *tribo_bands(const tribo_context *ctx, size_t i, size_t n, double *room);
-
 /* Checks that v and a are finite; a status. *plain: |a_i| <= TRIBO_PLAIN. */
 int tribo_check_motion(tribo_context *ctx, const double *v, const double *a, int *plain);
 

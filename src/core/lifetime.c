@@ -84,7 +84,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
         return TRIBO_ERR_MEMORY;
     }
     c->fixed = 0;
-    c->op = tribo_operator_share(ctx->op);
+    TRIBO_SHARED_ADD(c->op->references, (size_t)1);
     c->memory = (struct memory){0};
     c->clusters = NULL;
     if (!tribo_memory_copy(&c->memory, &ctx->memory, ctx->op) || tribo_clusters_clone(c, ctx)) {

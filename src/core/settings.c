@@ -370,11 +370,7 @@ int tribo_copy_settings(tribo_context *ctx, const tribo_context *from)
     }
     const struct settings own = ctx->set, *s = &from->set;
     const size_t n = ctx->n;
-    tribo_copy(own.limit, s->limit, n);
-    tribo_copy(own.width, s->width, n);
-    tribo_copy(own.rate, s->rate, n);
-    tribo_copy(own.ratio, s->ratio, n);
-    tribo_copy(own.stribeck, s->stribeck, n);
+    tribo_copy(own.limit, s->limit, (size_t)(own.stribeck - own.limit) + n); /* and the arrays between these two */
     memcpy(ctx->follow.chunk, from->follow.chunk, tribo_chunks(n) * sizeof *ctx->follow.chunk);
     ctx->set = (struct settings){s->law,    s->coupling, s->sharing,  s->step,   s->lambda_dt, own.limit,
                                  own.width, own.rate,    s->breaking, own.ratio, own.stribeck};

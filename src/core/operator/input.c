@@ -12,8 +12,8 @@
 /* Entries up to this part of the diagonal are rounding of an inverse. */
 #define NEGLIGIBLE 1e-17
 
-/* Makes a exactly symmetric; diagonal [n] = its diagonal; a status. */
-static int symmetrize(tribo_context *ctx, const struct csr *a, double *diagonal)
+/* Makes a exactly symmetric, diagonal [n] = its diagonal; a status. Entries up to this part of the diagonal become 0. */
+static int symmetrize(tribo_context *ctx, const struct csr *a, double negligible, double *diagonal)
 {
     for (size_t i = 0; i < a->n; i++) {
         const double *r = tribo_csr_entry(a, i, i);
@@ -40,9 +40,8 @@ static int symmetrize(tribo_context *ctx, const struct csr *a, double *diagonal)
                                   "r of contacts %zu, %zu is %g, more than the root of their diagonal entries' product, %g", i, j,
                                   x, size);
             }
-            if (j != i) {
-                a->val[k] = other ? x + 0.5 * (y - x) : 0.0;
-            }
+            const int counts = j == i || lesser(fabs(x), fabs(y)) > negligible * size;
+            a->val[k] = counts ? x + 0.5 * (y - x) : 0.0;
             if (other) {
                 *other = a->val[k];
             }
@@ -76,11 +75,14 @@ static int install(tribo_context *ctx, struct delassus *op, struct memory *m)
     return TRIBO_OK;
 }
 
-/* Fails if the caller must not change the operator; a status. */
-static int check_fixed(tribo_context *ctx)
+/* Fails if the caller must not change the operator, or for too many degrees of freedom; a status. */
+static int check_change(tribo_context *ctx, size_t ndof)
 {
     if (!ctx) {
         return TRIBO_ERR_NULL;
+    }
+    if (ndof >= SIZE_MAX / 64) {
+        return tribo_fail(ctx, TRIBO_ERR_SIZE, "ndof = %zu is too large", ndof);
     }
     return ctx->fixed ? tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
                                    "the operator is fixed, as that of a tribo_system is: set that of a copy (tribo_clone)")
@@ -98,7 +100,7 @@ int tribo_fix_operator(tribo_context *ctx)
 
 int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
 {
-    int status = check_fixed(ctx);
+    int status = check_change(ctx, 0);
     status = status ? status : tribo_check_nonnegative(ctx, "r", r, ctx->n);
     const double none = 0.0;
     struct delassus *op;
@@ -113,13 +115,14 @@ int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
     return install(ctx, op, &m);
 }
 
-/* Takes rows a, columns ascending, as the operator, and frees them; a status. from: see tribo_operator_create. */
-static int install_rows(tribo_context *ctx, struct csr *a, const struct inertia *from)
+/* Takes rows a, columns ascending, as the operator, and frees them; a status. negligible: see symmetrize; from: see
+ * tribo_operator_create. */
+static int install_rows(tribo_context *ctx, struct csr *a, double negligible, const struct inertia *from)
 {
     struct delassus *op;
     struct memory m;
     double *diagonal = malloc((ctx->n + 1) * sizeof *diagonal);
-    int status = diagonal ? symmetrize(ctx, a, diagonal) : TRIBO_ERR_MEMORY;
+    int status = diagonal ? symmetrize(ctx, a, negligible, diagonal) : TRIBO_ERR_MEMORY;
     status = status ? status : tribo_operator_create(&op, &m, a, diagonal, from, ctx);
     free(diagonal);
     tribo_csr_free(a);
@@ -176,24 +179,21 @@ static int input_read(tribo_context *ctx, size_t columns, const size_t *rowptr, 
 int tribo_set_operator_csr(tribo_context *ctx, const size_t *rowptr, const size_t *col, const double *val)
 {
     struct csr t, a;
-    int status = check_fixed(ctx);
+    int status = check_change(ctx, 0);
     status = status ? status : input_read(ctx, ctx->n, rowptr, col, val, &t);
     if (status) {
         return status;
     }
     const int done = tribo_csr_transpose(&a, t.n, t.n, t.first, t.col, t.val);
     tribo_csr_free(&t);
-    return done ? install_rows(ctx, &a, NULL) : input_out_of_memory(ctx);
+    return done ? install_rows(ctx, &a, 0.0, NULL) : input_out_of_memory(ctx);
 }
 
 int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inverse_mass, const size_t *rowptr, const size_t *col,
                             const double *val)
 {
     struct csr t, a;
-    int status = check_fixed(ctx);
-    if (!status && ndof >= SIZE_MAX / 64) {
-        return tribo_fail(ctx, TRIBO_ERR_SIZE, "ndof = %zu is too large", ndof);
-    }
+    int status = check_change(ctx, ndof);
     status = status ? status : tribo_check_nonnegative(ctx, "inverse_mass", inverse_mass, ndof);
     status = status ? status : input_read(ctx, ndof, rowptr, col, val, &t);
     if (status) {
@@ -201,7 +201,7 @@ int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inver
     }
     const struct inertia from = {inverse_mass, rowptr, col, val, &t};
     const int done = tribo_csr_product(&a, ctx->n, &t, inverse_mass, rowptr, col, val);
-    status = done ? install_rows(ctx, &a, &from) : input_out_of_memory(ctx);
+    status = done ? install_rows(ctx, &a, 0.0, &from) : input_out_of_memory(ctx);
     tribo_csr_free(&t);
     return status;
 }
@@ -242,70 +242,45 @@ static int find_column(tribo_context *ctx, const struct columns *m, size_t j, do
     return TRIBO_OK;
 }
 
-/* Removes entries that are rounding beside the diagonal; diagonal [n] = |r_ii|. */
-static void drop_negligible(struct csr *a, double *diagonal)
-{
-    size_t kept = 0, k = 0;
-    for (size_t i = 0; i < a->n; i++) {
-        const double *r = tribo_csr_entry(a, i, i);
-        diagonal[i] = r ? fabs(*r) : 0.0;
-    }
-    for (size_t i = 0; i < a->n; i++) {
-        for (; k < a->first[i + 1]; k++) {
-            const size_t j = a->col[k];
-            if (fabs(a->val[k]) > NEGLIGIBLE * sqrt(diagonal[i]) * sqrt(diagonal[j])) {
-                a->col[kept] = j;
-                a->val[kept++] = a->val[k];
-            }
-        }
-        a->first[i + 1] = kept;
-    }
-}
-
 /* Takes columns, which are rows since R is symmetric, without their zeros as the operator; a status. */
 static int install_columns(tribo_context *ctx, const struct columns *m)
 {
     const size_t n = ctx->n;
-    struct csr a, more;
+    struct csr a = {0};
     size_t room = n;
     double *work = calloc(2 * m->ndof + n + 1, sizeof *work), *column = work ? work + 2 * m->ndof : NULL;
-    int done = work && tribo_csr_create(&a, n, room), status = done ? TRIBO_OK : input_out_of_memory(ctx);
+    int status = work && tribo_csr_create(&a, n, room) ? TRIBO_OK : input_out_of_memory(ctx);
     for (size_t j = 0; !status && j < n; j++) {
         const double *row = m->dense ? m->dense + j * n : column;
         status = m->dense ? TRIBO_OK : find_column(ctx, m, j, work, column);
         if (!status && room - a.first[j] < n) {
+            const struct csr less = a;
             room = 2 * room + n;
-            if (tribo_csr_create(&more, n, room)) {
-                memcpy(more.first, a.first, (j + 1) * sizeof *more.first);
-                memcpy(more.col, a.col, a.first[j] * sizeof *more.col);
-                memcpy(more.val, a.val, a.first[j] * sizeof *more.val);
-                tribo_csr_free(&a);
-                a = more;
-            } else {
-                status = input_out_of_memory(ctx);
+            status = tribo_csr_create(&a, n, room) ? TRIBO_OK : input_out_of_memory(ctx);
+            if (!status) {
+                memcpy(a.first, less.first, (j + 1) * sizeof *a.first);
+                memcpy(a.col, less.col, less.first[j] * sizeof *a.col);
+                memcpy(a.val, less.val, less.first[j] * sizeof *a.val);
             }
+            free(less.first);
         }
-        a.first[j + 1] = a.first[j];
-        for (size_t i = 0; !status && i < n; i++) {
-            if (row[i] != 0.0) {
-                a.col[a.first[j + 1]] = i;
-                a.val[a.first[j + 1]++] = row[i];
-            }
+        for (size_t i = 0, end = status ? 0 : a.first[j]; !status && i < n; i++) {
+            a.col[end] = i;
+            a.val[end] = row[i];
+            end += row[i] != 0.0;
+            a.first[j + 1] = end;
         }
-    }
-    if (!status && !m->dense) {
-        drop_negligible(&a, column);
-    }
-    if (done && status) {
-        tribo_csr_free(&a);
     }
     free(work);
-    return status ? status : install_rows(ctx, &a, NULL);
+    if (status) {
+        tribo_csr_free(&a);
+    }
+    return status ? status : install_rows(ctx, &a, m->dense ? 0.0 : NEGLIGIBLE, NULL);
 }
 
 int tribo_set_operator_dense(tribo_context *ctx, const double *r)
 {
-    const int status = check_fixed(ctx);
+    const int status = check_change(ctx, 0);
     if (status) {
         return status;
     }
@@ -326,17 +301,11 @@ int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
                                 const size_t *rowptr, const size_t *col, const double *val)
 {
     struct csr t;
-    int status = check_fixed(ctx);
-    if (status) {
-        return status;
-    }
-    if (!apply) {
+    int status = check_change(ctx, ndof);
+    if (!status && !apply) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "apply is NULL");
     }
-    if (ndof >= SIZE_MAX / 64) {
-        return tribo_fail(ctx, TRIBO_ERR_SIZE, "ndof = %zu is too large", ndof);
-    }
-    status = input_read(ctx, ndof, rowptr, col, val, &t);
+    status = status ? status : input_read(ctx, ndof, rowptr, col, val, &t);
     if (status) {
         return status;
     }

@@ -25,12 +25,6 @@
 #define GRADED_MOST 1e18
 #define GRADED_MOST_LARGE 1e10
 
-struct delassus *tribo_operator_share(struct delassus *op)
-{
-    TRIBO_SHARED_ADD(op->references, (size_t)1);
-    return op;
-}
-
 void tribo_operator_release(struct delassus *op)
 {
     if (!op || TRIBO_SHARED_ADD(op->references, SIZE_MAX) > 0) { /* one less */

@@ -65,8 +65,7 @@ int tribo_operator_create(struct delassus **op, struct memory *m, const struct c
 /* Makes an operator without groups; r NULL: not set yet. Returns 1, or 0 if out of memory. */
 int tribo_operator_diagonal(struct delassus **op, size_t n, const double *r);
 
-/* Counts a context more; a context less, the last of which frees the operator. release: NULL is fine. */
-struct delassus *tribo_operator_share(struct delassus *op);
+/* Counts a context less, the last of which frees the operator; NULL is fine. */
 void tribo_operator_release(struct delassus *op);
 
 /* Copies a memory. Returns 1, or 0 if out of memory. */
