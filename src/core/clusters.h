@@ -24,6 +24,12 @@ static inline const size_t *tribo_group_of(const tribo_context *ctx)
     return ctx->clusters ? ctx->clusters->group_of : ctx->op->group_of;
 }
 
+/* The first direction of the contact with direction i. */
+static inline size_t tribo_first_direction(const tribo_context *ctx, size_t i)
+{
+    return i - (ctx->clusters->role[i] == ROLE_SECOND);
+}
+
 /* Single contacts, and connected ones counted as one, joined by R or by planar contacts. */
 static inline size_t tribo_islands(const tribo_context *ctx)
 {
@@ -48,14 +54,15 @@ static inline const size_t *tribo_plane_first(const tribo_context *ctx)
 
 /* ---- planar.c */
 
-/* Clusters for an operator that ctx is to have, and the memory that goes with it; for the planar contacts of from; for those of from
- * and their last solutions, clone having the operator and memory, and no clusters. A status; after a failure ctx has what it had. */
-int tribo_clusters_renew(tribo_context *ctx, const struct delassus *op, struct memory *m);
+/* Gives ctx these planar contacts in the place of those it has, with clusters of an operator and the memory that goes with it; the
+ * planar contacts of from; these and their last solutions, clone having the operator and memory, and no clusters. A status; after a
+ * failure ctx has what it had. */
+int tribo_clusters_renew(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m);
 int tribo_clusters_copy(tribo_context *ctx, const tribo_context *from);
 int tribo_clusters_clone(tribo_context *clone, const tribo_context *from);
 
-/* Frees clusters. */
-void tribo_clusters_free(tribo_context *ctx);
+/* Frees clusters; NULL is fine. */
+void tribo_clusters_free(struct clusters *c);
 
 /* Fails if coupling is TRIBO_PARTITION, and count > 0; a status. */
 int tribo_plane_check_coupling(tribo_context *ctx, int coupling, size_t count, const size_t *first);
@@ -79,8 +86,7 @@ void tribo_clusters_feq(tribo_context *ctx);
 size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const double **vfree, double *feels,
                            signed char *reverses);
 
-/* slip of the directions of planar contacts in the last call; all, or direction i alone. */
-void tribo_plane_slips(const tribo_context *ctx, signed char *slip);
+/* slip of direction i of a planar contact in the last call. */
 signed char tribo_plane_slip(const tribo_context *ctx, size_t i);
 
 /* The largest rate at which a planar contact relaxes. */
@@ -94,8 +100,8 @@ const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size);
 /* Returns df [size] of cluster q, which was resumed last. */
 const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct change *d);
 
-/* f_eq given, which has to be finite where forces of planar contacts depend on it; a status. */
-int tribo_plane_check_feq(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq);
+/* 1 if the force of the planar contact with direction i depends on f_eq, at v [n]. */
+int tribo_plane_reads_feq(const tribo_context *ctx, size_t i, const double *v);
 
 /* force.c: out [4] = f of all contacts from v and f_eq, and its derivatives by v, f_eq and limit, [n], or if pairs = 1 [n][2]; each
  * may be NULL; a status. */

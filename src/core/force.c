@@ -5,11 +5,11 @@
 #include "common/stream.h"
 #include "clusters.h"
 
-/* 1 if the force of scalar contact i, at v, depends on f_eq: elsewhere feq need not be finite, nor set. */
-static int reads_feq(const tribo_context *ctx, size_t i, double v)
+/* 1 if the force of contact i, at v [n], depends on f_eq: elsewhere feq need not be finite, nor set. */
+static int reads_feq(const tribo_context *ctx, size_t i, const double *v)
 {
     const double band = ctx->set.law->sticks_in_band ? tribo_epsilon_of(&ctx->follow.contacts, i) : 0.0;
-    return tribo_is_scalar(ctx, i) && fabs(v) <= band;
+    return tribo_is_scalar(ctx, i) ? fabs(v[i]) <= band : tribo_plane_reads_feq(ctx, i, v);
 }
 
 /* Checks v and feq; a status. *plain: laws take feq as it is. note: ctx, or NULL to keep no message. */
@@ -26,11 +26,11 @@ static int check_force(const tribo_context *ctx, tribo_context *note, const doub
         return tribo_fail(note, TRIBO_ERR_NULL, "feq is NULL");
     }
     for (size_t i = 0; !*plain && i < ctx->n; i++) {
-        if (!isfinite(feq[i]) && reads_feq(ctx, i, v[i])) {
+        if (!isfinite(feq[i]) && reads_feq(ctx, i, v)) {
             return tribo_fail(note, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", i, feq[i]);
         }
     }
-    return tribo_plane_check_feq(ctx, note, v, feq);
+    return TRIBO_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ forces */
@@ -62,7 +62,7 @@ static void find_outputs(const tribo_context *ctx, int plain, const double *v, c
             chunk++;
         }
         for (size_t k = 0; !plain && k < n; k++) {
-            room[k] = reads_feq(ctx, i + k, v[i + k]) ? cut(feq[i + k]) : 0.0;
+            room[k] = reads_feq(ctx, i + k, v) ? cut(feq[i + k]) : 0.0;
         }
         const double *used = plain ? given + i : room;
         struct contacts c = tribo_chunk_contacts(ctx, i);

@@ -103,7 +103,7 @@ void tribo_destroy(tribo_context *ctx)
     if (ctx) {
         tribo_operator_release(ctx->op);
         tribo_memory_free(&ctx->memory);
-        tribo_clusters_free(ctx);
+        tribo_clusters_free(ctx->clusters);
         free(ctx);
     }
 }

@@ -18,7 +18,9 @@ static void put_slips(const tribo_context *ctx, signed char *slip)
 {
     if (ctx->last.slips == SLIPS_IN_FORCES) {
         tribo_find_slips(ctx->n, ctx->last.f, ctx->follow.contacts.limit, ctx->last.holds, slip);
-        tribo_plane_slips(ctx, slip);
+        for (size_t i = 0; tribo_plane_count(ctx) && i < ctx->n; i++) {
+            slip[i] = tribo_is_scalar(ctx, i) ? slip[i] : tribo_plane_slip(ctx, i);
+        }
     } else if (ctx->n) {
         memcpy(slip, ctx->last.slip, ctx->n);
     }

@@ -5,34 +5,36 @@
 #include "clusters.h"
 
 /* Returns the change of kappa = slope v. */
-static double relaxation_change(const tribo_context *ctx, size_t i, double dv, double dlimit)
+static double relaxation_change(const tribo_context *ctx, const struct change *d, size_t i)
 {
     const struct contacts *c = &ctx->follow.contacts;
     const double v = ctx->last.v[i], by_limit = product(c->rate[i], v);
     const double rate = tribo_slope_of(c, i) + product(by_limit, tribo_limit_rate(ctx, i, v));
-    return product(rate, dv) + product(c->follows ? 0.0 : by_limit, dlimit);
+    return product(rate, tribo_entry(d->v, i)) + product(c->follows ? 0.0 : by_limit, tribo_limit_change(ctx, d, i));
 }
 
 /* Returns the change of a force by its law, f_eq fixed. */
-static double law_change(const tribo_context *ctx, size_t i, double dv, double dlimit)
+static double law_change(const tribo_context *ctx, const struct change *d, size_t i)
 {
-    return product(ctx->last.tangent[i].dv, dv) + product(ctx->last.tangent[i].dlimit, dlimit);
+    const struct tangent *t = &ctx->last.tangent[i];
+    return product(t->dv, tribo_entry(d->v, i)) + product(t->dlimit, tribo_limit_change(ctx, d, i));
 }
 
 /* Returns the change of the force of contact i at place k, which is not balanced: by its law, or with its bound. */
-static double own_change(const tribo_context *ctx, const struct box_qp *p, size_t k, double dv, double dlimit)
+static double own_change(const tribo_context *ctx, const struct change *d, const struct box_qp *p, size_t k)
 {
     const size_t i = p->member[k];
     if (!ctx->last.near[i]) {
-        return law_change(ctx, i, dv, dlimit);
+        return law_change(ctx, d, i);
     }
     /* The bound of a law that relaxes moves with kappa, unless it is the other limit. */
     const struct contacts *c = &ctx->follow.contacts;
     const double v = ctx->last.v[i], kappa = tribo_slope_of(c, i) * v;
     const int side = p->at[k] == AT_UPPER ? 1 : -1, shifted = ctx->set.law->relaxes && side * kappa >= 0.0;
     const int moves = shifted && 0.5 * fabs(kappa) < c->limit[i], across = shifted && !moves;
-    const double wider = dlimit + product(tribo_limit_rate(ctx, i, v), dv), change = (across ? -side : side) * wider;
-    return moves ? change - relaxation_change(ctx, i, dv, dlimit) : change;
+    const double wider = tribo_limit_change(ctx, d, i) + product(tribo_limit_rate(ctx, i, v), tribo_entry(d->v, i));
+    const double change = (across ? -side : side) * wider;
+    return moves ? change - relaxation_change(ctx, d, i) : change;
 }
 
 /* df = R^-1 (-rhs) over the free contacts, the least in norm; df of the others is given. */
@@ -66,38 +68,27 @@ static const double *group_product(const tribo_context *ctx, struct box_qp *p, s
 {
     const int partition = ctx->set.coupling == TRIBO_PARTITION;
     const size_t *member = p->member, size = p->group->size;
-    double *df = p->gradient, *rhs = p->noise, *dv = p->lo, *da = p->hi;
-    for (size_t k = 0; k < size; k++) {
-        dv[k] = tribo_entry(d->v, member[k]);
-        da[k] = tribo_entry(d->a, member[k]);
-    }
+    double *df = p->gradient, *rhs = p->noise;
     p->far = 1; /* derivatives are of any size */
     for (size_t k = 0; k < size; k++) {
-        const size_t i = member[k];
-        const double r = ctx->op->diagonal[i], most = TRIBO_ROOM * tribo_most(p, k),
+        const double r = ctx->op->diagonal[member[k]], most = TRIBO_ROOM * tribo_most(p, k),
                      pull = TRIBO_ROOM * TRIBO_FAR * lesser(r, 1.0);
-        const double dlimit = tribo_limit_change(ctx, d, i);
-        df[k] = p->at[k] == FREE ? 0.0 : clamp(own_change(ctx, p, k, dv[k], dlimit), -most, most);
-        rhs[k] = clamp(da[k], -pull, pull);
+        df[k] = p->at[k] == FREE ? 0.0 : clamp(own_change(ctx, d, p, k), -most, most);
+        rhs[k] = clamp(tribo_entry(d->a, member[k]), -pull, pull);
         if (!partition && ctx->set.law->relaxes) {
-            rhs[k] += r * clamp(relaxation_change(ctx, i, dv[k], dlimit), -most, most);
+            rhs[k] += r * clamp(relaxation_change(ctx, d, member[k]), -most, most);
         }
     }
     follow_free(p, vectors, rhs, df);
-    if (partition) {
-        for (size_t k = 0; k < size; k++) {
-            const size_t i = member[k];
-            const double own = law_change(ctx, i, dv[k], tribo_limit_change(ctx, d, i));
-            df[k] = p->at[k] == FREE ? ctx->last.tangent[i].dfeq * df[k] + own : df[k];
-        }
-    } else if (ctx->set.law->remembers) {
-        /* So far forces are those that f_eq balances; the law has another derivative where |f_eq| exceeds the limit. */
-        memcpy(p->step, df, size * sizeof *df);
-        for (size_t k = 0; k < size; k++) {
-            const size_t i = member[k];
-            const double r = ctx->op->diagonal[i], sum = divisible(da[k], r) + tribo_row_others(p, k, p->step);
-            const double own = law_change(ctx, i, dv[k], tribo_limit_change(ctx, d, i));
-            df[k] = own - (ctx->last.near[i] ? ctx->last.tangent[i].dfeq * quotient(sum, r) : 0.0);
+    /* So far forces are those that f_eq balances; laws with a memory have another derivative where |f_eq| exceeds the limit. */
+    memcpy(p->step, df, size * sizeof *df);
+    for (size_t k = 0; k < size; k++) {
+        const double r = ctx->op->diagonal[member[k]], dfeq = ctx->last.tangent[member[k]].dfeq;
+        if (partition && p->at[k] == FREE) {
+            df[k] = dfeq * df[k] + law_change(ctx, d, member[k]);
+        } else if (!partition && ctx->set.law->remembers) {
+            const double sum = divisible(tribo_entry(d->a, member[k]), r) + tribo_row_others(p, k, p->step);
+            df[k] = law_change(ctx, d, member[k]) - (ctx->last.near[member[k]] ? dfeq * quotient(sum, r) : 0.0);
         }
     }
     return df;
@@ -138,12 +129,13 @@ static const double *part_product(tribo_context *ctx, const struct part *s, cons
 }
 
 /* Returns df of a contact in no solved group. Where friction moves nothing, the force jumps as a changes its sign. */
-static double alone_product(const tribo_context *ctx, size_t i, double dv, double da, double dlimit)
+static double alone_product(const tribo_context *ctx, const struct change *d, size_t i)
 {
     const double r = ctx->op->diagonal[i];
     const int balanced = !ctx->op->groups || ctx->op->group_of[i] == TRIBO_ALONE;
     const int follows = balanced && ctx->follow.contacts.limit[i] > 0.0 && r > TRIBO_IMMOVABLE;
-    return law_change(ctx, i, dv, dlimit) - (follows ? quotient(product(ctx->last.tangent[i].dfeq, da), r) : 0.0);
+    const double balance = follows ? quotient(product(ctx->last.tangent[i].dfeq, tribo_entry(d->a, i)), r) : 0.0;
+    return law_change(ctx, d, i) - balance;
 }
 
 int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
@@ -176,7 +168,8 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
             out[w][k] = 0.0;
         }
         for (size_t i = 0; out[w] && i < n; i++) {
-            out[w][i * n + i] = alone_product(ctx, i, w ? 0.0 : 1.0, w ? 1.0 : 0.0, 0.0);
+            unit[i] = 1.0;
+            out[w][i * n + i] = alone_product(ctx, &by[w], i);
         }
     }
     memset(unit, 0, n * sizeof *unit);
@@ -207,7 +200,7 @@ static int tangent_product_of(tribo_context *ctx, const struct change *d, double
         return tribo_fail(ctx, TRIBO_ERR_STATE, "no tribo_balance_tangent since the last balance or change");
     }
     for (size_t i = 0; i < ctx->n; i++) {
-        df[i] = alone_product(ctx, i, tribo_entry(d->v, i), tribo_entry(d->a, i), tribo_limit_change(ctx, d, i));
+        df[i] = alone_product(ctx, d, i);
     }
     for (size_t q = 0; q < parts_of(ctx); q++) {
         const struct part s = part_resume(ctx, q);

@@ -12,8 +12,9 @@
 /* A contact with a speed above EDGE epsilon has a lens whose width is rounding: it counts as sliding. */
 #define EDGE (1.0 - 16.0 * DBL_EPSILON)
 
-struct slide tribo_planar_slide(const tribo_context *ctx, size_t i, size_t directions, const double *v)
+struct slide tribo_planar_slide(const tribo_context *ctx, size_t i, const double *v)
 {
+    const size_t directions = tribo_directions(ctx, i);
     const struct contacts *c = &ctx->follow.contacts;
     const double *bound = (ctx->set.breaking ? ctx->follow.hold : c->bound) + i;
     struct slide s = {.directions = directions, .open = 1};
@@ -68,8 +69,9 @@ void tribo_planar_slide_force(const struct law *law, const struct slide *s, cons
     }
 }
 
-void tribo_planar_limits(const tribo_context *ctx, size_t i, size_t directions, int holds, const double *v, double *limit)
+void tribo_planar_limits(const tribo_context *ctx, size_t i, int holds, const double *v, double *limit)
 {
+    const size_t directions = tribo_directions(ctx, i);
     const double speed = tribo_length((int)directions, v);
     for (size_t k = 0; k < directions; k++) {
         limit[k] = holds && ctx->set.breaking == DROPS ? ctx->follow.hold[i + k] : tribo_limit_at(ctx, i + k, speed);
@@ -92,7 +94,7 @@ double tribo_plane_rate(const tribo_context *ctx)
     double rate = 0.0;
     for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
         const double *own = ctx->clusters->own[k];
-        const struct slide s = tribo_planar_slide(ctx, ctx->clusters->first[k], 2, none);
+        const struct slide s = tribo_planar_slide(ctx, ctx->clusters->first[k], none);
         const double weighed[3] = {product(s.part[0], product(s.part[0], own[0])), product(s.part[0], product(s.part[1], own[1])),
                                    product(s.part[1], product(s.part[1], own[2]))};
         if (!s.open) {
@@ -104,18 +106,13 @@ double tribo_plane_rate(const tribo_context *ctx)
 
 /* -------------------------------------------------------------------------------------------------------------- life */
 
-static void free_clusters(struct clusters *c)
+void tribo_clusters_free(struct clusters *c)
 {
     if (c) {
         tribo_disc_free(&c->problem);
         free(c->cluster->r);
         free(c);
     }
-}
-
-void tribo_clusters_free(tribo_context *ctx)
-{
-    free_clusters(ctx->clusters);
 }
 
 /* Returns count planar contacts of n directions, without clusters; NULL if out of memory. */
@@ -178,8 +175,7 @@ static void fill_clusters(struct clusters *c, const struct delassus *op, struct 
         for (size_t j = 0; to && j < p->group->size; j++) {
             unit[j] = 1.0;
             for (size_t i = 0; i < p->group->size; i++) {
-                to->r[place[p->member[i]] * to->size + place[p->member[j]]] =
-                    p->group->sparse ? tribo_row_dot(p, i, unit, &ignored) : p->r[i * p->group->size + j];
+                to->r[place[p->member[i]] * to->size + place[p->member[j]]] = tribo_row_dot(p, i, unit, &ignored);
             }
             unit[j] = 0.0;
             to->redundant |= p->group->nullity > 0;
@@ -246,9 +242,7 @@ static int find_clusters(struct clusters *c, size_t n, const struct delassus *op
 /* Light bodies between heavy ones come out right to this ratio in doubles, which clusters use. */
 #define SPREAD_MOST 1e10
 
-/* Gives ctx these planar contacts in the place of those it has, with clusters of an operator and the memory that goes with it; a
- * status. After a failure ctx has what it had. */
-static int replace_clusters(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m)
+int tribo_clusters_renew(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m)
 {
     struct clusters *c = count ? planar_create(ctx->n, count, first) : NULL;
     int status = count && !c ? TRIBO_ERR_MEMORY : c && op->diagonal ? find_clusters(c, ctx->n, op, m) : TRIBO_OK;
@@ -267,18 +261,9 @@ static int replace_clusters(tribo_context *ctx, size_t count, const size_t *firs
                                 g->uneven, g->spread, SPREAD_MOST);
         }
     }
-    if (status) {
-        free_clusters(c);
-    } else {
-        free_clusters(ctx->clusters);
-        ctx->clusters = c;
-    }
+    tribo_clusters_free(status ? c : ctx->clusters);
+    ctx->clusters = status ? ctx->clusters : c;
     return status;
-}
-
-int tribo_clusters_renew(tribo_context *ctx, const struct delassus *op, struct memory *m)
-{
-    return replace_clusters(ctx, tribo_plane_count(ctx), tribo_plane_first(ctx), op, m);
 }
 
 int tribo_clusters_copy(tribo_context *ctx, const tribo_context *from)
@@ -287,7 +272,7 @@ int tribo_clusters_copy(tribo_context *ctx, const tribo_context *from)
     if (count == tribo_plane_count(ctx) && (!count || memcmp(first, ctx->clusters->first, count * sizeof *first) == 0)) {
         return TRIBO_OK;
     }
-    return replace_clusters(ctx, count, first, ctx->op, &ctx->memory);
+    return tribo_clusters_renew(ctx, count, first, ctx->op, &ctx->memory);
 }
 
 int tribo_clusters_clone(tribo_context *clone, const tribo_context *from)
@@ -355,7 +340,7 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
     status = tribo_check_one_ratio(ctx, ctx->set.ratio, ctx->set.stribeck, count, first);
     if (!status) {
         tribo_write_slips(ctx);
-        status = replace_clusters(ctx, count, first, ctx->op, &ctx->memory);
+        status = tribo_clusters_renew(ctx, count, first, ctx->op, &ctx->memory);
     }
     if (!status) {
         tribo_refresh(ctx);

@@ -73,7 +73,7 @@ struct slide {
 };
 /* The contact at i, at v [directions]. Its static limits are the same multiple of those by which it slides, so that only bound
  * depends on which of both it has. */
-struct slide tribo_planar_slide(const tribo_context *ctx, size_t i, size_t directions, const double *v);
+struct slide tribo_planar_slide(const tribo_context *ctx, size_t i, const double *v);
 
 /* 1 if the force of a contact depends on f_eq. */
 int tribo_planar_near(const struct law *law, const struct slide *s);
@@ -98,7 +98,7 @@ struct block {
 struct block tribo_block_of(const double *own);
 
 /* limit [directions] of the contact at i: static ones if it holds, or those by which it slides at v. */
-void tribo_planar_limits(const tribo_context *ctx, size_t i, size_t directions, int holds, const double *v, double *limit);
+void tribo_planar_limits(const tribo_context *ctx, size_t i, int holds, const double *v, double *limit);
 
 /* ---- planar_force.c */
 

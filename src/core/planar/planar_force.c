@@ -34,17 +34,18 @@ static void push_back(const struct block *b, double *x)
 /* ---------------------------------------------------------------------------------------------------------- problems */
 
 /* Takes the directions of contact i, at place k of its cluster, that have a limit into the problem. */
-static void take_contact(tribo_context *ctx, size_t k, size_t i, size_t directions, const double *shift)
+static void take_contact(tribo_context *ctx, size_t k, size_t i, const double *shift)
 {
+    struct clusters *c = ctx->clusters;
     const double *bound = ctx->follow.contacts.bound + i;
+    const size_t directions = tribo_directions(ctx, i);
     const int both = directions == 2 && bound[0] > 0.0 && bound[1] > 0.0;
     for (size_t d = 0; d < directions; d++) {
-        struct disc_qp *p = &ctx->clusters->problem;
         if (bound[d] > 0.0) {
-            ctx->clusters->shift[p->size] = shift[d];
-            ctx->clusters->directions[p->size] = (unsigned char)(both ? 2 - 2 * d : 1);
-            ctx->clusters->contact[p->size] = i + d;
-            ctx->clusters->near[p->size++] = k + d;
+            c->shift[c->problem.size] = shift[d];
+            c->directions[c->problem.size] = (unsigned char)(both ? 2 - 2 * d : 1);
+            c->contact[c->problem.size] = i + d;
+            c->near[c->problem.size++] = k + d;
         } else {
             ctx->last.f[i + d] = 0.0;
         }
@@ -57,17 +58,16 @@ static int planar_collect(tribo_context *ctx, const struct cluster *g, const dou
 {
     const struct law *law = ctx->set.law;
     ctx->clusters->problem.size = 0;
-    for (size_t k = 0, directions; k < g->size; k += directions) {
+    for (size_t k = 0; k < g->size; k += tribo_directions(ctx, g->member[k])) {
         const size_t i = g->member[k];
-        directions = tribo_directions(ctx, i);
-        const struct slide s = tribo_planar_slide(ctx, i, directions, v + i);
+        const struct slide s = tribo_planar_slide(ctx, i, v + i);
         const int near = tribo_planar_near(law, &s);
         if (begins && ctx->set.breaking) {
-            tribo_planar_limits(ctx, i, directions, near, v + i, ctx->follow.now + i);
+            tribo_planar_limits(ctx, i, near, v + i, ctx->follow.now + i);
         }
         const double turn = law->relaxes ? 2.0 * s.speed : 0.0, shift[2] = {turn * s.n[0], turn * s.n[1]};
         if (near) {
-            take_contact(ctx, k, i, directions, shift);
+            take_contact(ctx, k, i, shift);
         } else {
             tribo_planar_slide_force(law, &s, ctx->follow.contacts.limit + i, ctx->last.f + i);
         }
@@ -144,6 +144,12 @@ int tribo_planar_cut(const tribo_context *ctx, size_t i)
     return ctx->clusters->radius[i] < ctx->follow.contacts.bound[i];
 }
 
+/* 1 if a direction of a planar contact is loose, of limits bound and reaches radius. */
+static int is_apart(const double *bound, const double *radius)
+{
+    return radius[0] < BESIDE * bound[0] || radius[1] < BESIDE * bound[1];
+}
+
 /* Sets the problem of forces in parts of their reach, from pull: which directions share a set, its shift, and all else. */
 static void pose_cluster(tribo_context *ctx, const struct cluster *g)
 {
@@ -159,21 +165,13 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
     c->unit = u;
     c->cuts = 0;
     for (size_t e = 0; e < n; e++) {
-        const size_t i = contact[e];
-        p->wide[e] = c->directions[e];
-        p->shift[e] = c->shift[e];
+        const size_t i = contact[e], first = i - (c->directions[e] == 0);
+        const int cut_off = tribo_planar_cut(ctx, i), single = c->directions[e] == 1 || is_apart(bound + first, radius + first);
+        p->wide[e] = single ? 1 : c->directions[e];
+        p->shift[e] = cut_off ? product(quotient(bound[i], radius[i]), c->shift[e]) : c->shift[e];
         p->weight[e] = tribo_planar_reach(ctx, i) / u.force;
         p->y[e] = c->y[i];
-        if (tribo_planar_cut(ctx, i)) {
-            p->shift[e] = product(quotient(bound[i], radius[i]), p->shift[e]);
-            c->cuts++;
-        }
-    }
-    for (size_t e = 0; c->cuts && e < n; e += c->directions[e]) {
-        const size_t i = contact[e];
-        if (c->directions[e] == 2 && (radius[i] < BESIDE * bound[i] || radius[i + 1] < BESIDE * bound[i + 1])) {
-            p->wide[e] = p->wide[e + 1] = 1;
-        }
+        c->cuts += (size_t)cut_off;
     }
     for (size_t e = 0; e < n; e++) {
         const double *row = g->r + c->near[e] * g->size;
@@ -193,19 +191,19 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
 }
 
 /* Gives the contact at e of the problem the reaches wanted [directions], as far as its limits exceed them. */
-static void set_radius(tribo_context *ctx, size_t e, size_t directions, const double *wanted)
+static void set_radius(tribo_context *ctx, size_t e, const double *wanted)
 {
-    const size_t i = ctx->clusters->contact[e];
+    struct clusters *c = ctx->clusters;
+    const size_t i = c->contact[e], directions = c->directions[e];
     const double *bound = ctx->follow.contacts.bound + i;
-    const int pair = directions == 2, apart = pair && (wanted[0] < BESIDE * bound[0] || wanted[1] < BESIDE * bound[1]);
+    const int pair = directions == 2 && !is_apart(bound, wanted);
     for (size_t k = 0; k < directions; k++) {
         const double before = tribo_planar_reach(ctx, i + k);
-        const double radius = pair && !apart ? greater(wanted[0], wanted[1]) : wanted[k];
-        const double least = pair && !apart ? lesser(bound[0], bound[1]) : bound[k];
-        ctx->clusters->radius[i + k] = radius < least ? radius : HUGE_VAL;
+        const double radius = pair ? greater(wanted[0], wanted[1]) : wanted[k];
+        const double least = pair ? lesser(bound[0], bound[1]) : bound[k];
+        c->radius[i + k] = radius < least ? radius : HUGE_VAL;
         const double reach = tribo_planar_reach(ctx, i + k);
-        ctx->clusters->y[i + k] =
-            reach == before ? ctx->clusters->y[i + k] : product(quotient(before, reach), ctx->clusters->y[i + k]);
+        c->y[i + k] = reach == before ? c->y[i + k] : product(quotient(before, reach), c->y[i + k]);
     }
 }
 
@@ -232,39 +230,35 @@ static void find_asks(const tribo_context *ctx, const struct cluster *g, double 
 /* Sets the reach of all contacts of the problem by the pulls at them. */
 static void estimate_reaches(tribo_context *ctx, const struct cluster *g)
 {
-    const size_t n = ctx->clusters->problem.size;
-    const double *bound = ctx->follow.contacts.bound;
-    double *ask = ctx->clusters->problem.spare;
-    double most = 0.0; /* max_k ask_k sqrt(R_kk), independent of the units of contacts */
+    struct clusters *c = ctx->clusters;
+    const double *bound = ctx->follow.contacts.bound, *r = ctx->op->diagonal;
+    double *ask = c->problem.spare, most = 0.0; /* most: max_k ask_k sqrt(R_kk), independent of the units of contacts */
+    const size_t n = c->problem.size;
     int far = 0;
     for (size_t k = 0; k < n; k++) {
-        const size_t i = ctx->clusters->contact[k];
-        ask[k] = lesser(quotient(fabs(ctx->clusters->pull[k]), ctx->op->diagonal[i]) +
-                            product(fabs(ctx->clusters->shift[k]), bound[i]),
-                        bound[i]);
-        most = greater(most, product(ask[k], sqrt(ctx->op->diagonal[i])));
+        const size_t i = c->contact[k];
+        ask[k] = lesser(quotient(fabs(c->pull[k]), r[i]) + product(fabs(c->shift[k]), bound[i]), bound[i]);
+        most = greater(most, product(ask[k], sqrt(r[i])));
     }
     for (size_t k = 0; k < n; k++) {
-        const size_t i = ctx->clusters->contact[k];
-        far |= product(bound[i], sqrt(ctx->op->diagonal[i])) > AMPLE * most || tribo_planar_cut(ctx, i);
+        const size_t i = c->contact[k];
+        far |= product(bound[i], sqrt(r[i])) > AMPLE * most || tribo_planar_cut(ctx, i);
     }
     for (size_t k = 0; far && !(most > 0.0) && k < n; k++) {
-        const size_t i = ctx->clusters->contact[k];
-        ctx->clusters->radius[i] = HUGE_VAL;
-        ctx->clusters->y[i] = 0.0;
+        c->radius[c->contact[k]] = HUGE_VAL;
+        c->y[c->contact[k]] = 0.0;
     }
     if (!far || !(most > 0.0)) {
         return;
     }
     find_asks(ctx, g, ask);
-    for (size_t e = 0; e < n; e += ctx->clusters->directions[e]) {
-        const size_t count = ctx->clusters->directions[e];
+    for (size_t e = 0; e < n; e += c->directions[e]) {
         double wanted[2];
-        for (size_t d = 0; d < count; d++) {
-            const double root = sqrt(ctx->op->diagonal[ctx->clusters->contact[e + d]]);
-            wanted[d] = product(greater(ask[e + d], greater(quotient(LITTLE * most, root), DBL_MIN)), AMPLE);
+        for (size_t k = e; k < e + c->directions[e]; k++) {
+            const double little = quotient(LITTLE * most, sqrt(r[c->contact[k]]));
+            wanted[k - e] = product(greater(ask[k], greater(little, DBL_MIN)), AMPLE);
         }
-        set_radius(ctx, e, count, wanted);
+        set_radius(ctx, e, wanted);
     }
 }
 
@@ -282,24 +276,21 @@ static int rim_bends(const tribo_context *ctx, size_t e, size_t other)
 /* Widens the reach of forces that come up against it. Returns the number of these contacts. */
 static size_t widen_reaches(tribo_context *ctx)
 {
-    const struct disc_qp *p = &ctx->clusters->problem;
+    const struct clusters *c = ctx->clusters;
+    const struct disc_qp *p = &c->problem;
     size_t widened = 0;
-    for (size_t e = 0; e < p->size; e += ctx->clusters->directions[e]) {
-        const size_t count = ctx->clusters->directions[e];
+    for (size_t e = 0, count; e < p->size; e += count) {
+        count = c->directions[e];
         double wanted[2];
-        int out = 0;
-        for (size_t d = 0; d < count; d++) {
-            const size_t i = ctx->clusters->contact[e + d], at = p->wide[e + d] ? e + d : e;
+        int out = p->wide[e] < count && (rim_bends(ctx, e, e + 1) || rim_bends(ctx, e + 1, e));
+        for (size_t d = 0, bends = (size_t)out; d < count; d++) {
+            const size_t i = c->contact[e + d], at = p->wide[e + d] ? e + d : e;
             const int beyond = p->place[at] != LENS_INSIDE && tribo_planar_cut(ctx, i);
-            wanted[d] = beyond ? product(AMPLE, ctx->clusters->radius[i]) : ctx->clusters->radius[i];
+            wanted[d] = bends ? HUGE_VAL : beyond ? product(AMPLE, c->radius[i]) : c->radius[i];
             out |= beyond;
         }
-        if (p->wide[e] < count && (rim_bends(ctx, e, e + 1) || rim_bends(ctx, e + 1, e))) {
-            wanted[0] = wanted[1] = HUGE_VAL;
-            out = 1;
-        }
         if (out) {
-            set_radius(ctx, e, count, wanted);
+            set_radius(ctx, e, wanted);
             widened++;
         }
     }
@@ -337,27 +328,23 @@ static int is_pulled_beyond(const struct disc_qp *p, size_t e)
 static size_t planar_break(tribo_context *ctx, const struct cluster *g, double dt)
 {
     const struct disc_qp *p = &ctx->clusters->problem;
-    const size_t *member = g->member;
     double *now = ctx->follow.now, *end = ctx->clusters->v; /* velocities at the end */
     size_t broken = 0;
     for (size_t k = 0; k < g->size; k++) {
-        end[member[k]] = product(pull_at(ctx, g, k, NULL, 0), dt);
+        end[g->member[k]] = product(pull_at(ctx, g, k, NULL, 0), dt);
     }
     for (size_t e = 0; e < p->size; e += p->wide[e]) {
-        const size_t k = ctx->clusters->contact[e], first = k - (ctx->clusters->role[k] == ROLE_SECOND);
-        const size_t directions = tribo_directions(ctx, first);
-        int holds = 1, falls = 0;
-        for (size_t i = first; i < first + directions; i++) {
+        const size_t first = tribo_first_direction(ctx, ctx->clusters->contact[e]), behind = first + tribo_directions(ctx, first);
+        int holds = p->place[e] != LENS_INSIDE, falls = 0;
+        for (size_t i = first; i < behind; i++) {
             holds &= now[i] == ctx->follow.hold[i];
         }
-        if (p->place[e] != LENS_INSIDE && holds && is_pulled_beyond(p, e)) {
-            const double speed = tribo_length((int)directions, end + first);
-            for (size_t i = first; i < first + directions; i++) {
-                now[i] = tribo_limit_at(ctx, i, speed);
-                falls |= now[i] < ctx->follow.hold[i];
-            }
-            broken += (size_t)falls;
+        holds = holds && is_pulled_beyond(p, e);
+        for (size_t i = first; holds && i < behind; i++) {
+            now[i] = tribo_limit_at(ctx, i, tribo_length((int)(behind - first), end + first));
+            falls |= now[i] < ctx->follow.hold[i];
         }
+        broken += (size_t)falls;
     }
     return broken;
 }
@@ -426,10 +413,10 @@ const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
 /* ------------------------------------------------------------------------------------------------------------- f_eq */
 
 /* feq [directions] of the contact at place k of a cluster; 0 if it is open. */
-static void contact_feq(const tribo_context *ctx, const struct cluster *g, size_t k, size_t directions, double *feq)
+static void contact_feq(const tribo_context *ctx, const struct cluster *g, size_t k, double *feq)
 {
+    const size_t own[2] = {k, k + 1}, directions = tribo_directions(ctx, g->member[k]);
     const struct block block = block_at(g->r, g->size, k, directions);
-    const size_t own[2] = {k, k + 1};
     double x[2] = {0.0, 0.0}, most = 0.0;
     for (size_t d = 0; d < directions; d++) {
         x[d] = pull_at(ctx, g, k + d, own, directions);
@@ -446,8 +433,7 @@ void tribo_clusters_feq(tribo_context *ctx)
     for (size_t q = 0; q < tribo_cluster_count(ctx); q++) {
         const struct cluster *g = &ctx->clusters->cluster[q];
         for (size_t k = 0; k < g->size; k += tribo_directions(ctx, g->member[k])) {
-            const size_t i = g->member[k];
-            contact_feq(ctx, g, k, tribo_directions(ctx, i), ctx->last.feq + i);
+            contact_feq(ctx, g, k, ctx->last.feq + g->member[k]);
         }
     }
 }
@@ -469,7 +455,7 @@ int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a)
         for (size_t e = 0; ctx->set.law->remembers && e < c->problem.size; e++) {
             const size_t i = c->contact[e];
             if (tribo_is_scalar(ctx, i)) {
-                contact_feq(ctx, g, c->near[e], 1, ctx->last.feq + i);
+                contact_feq(ctx, g, c->near[e], ctx->last.feq + i);
             }
         }
         for (size_t e = 0; ctx->set.law->remembers && e < c->problem.size; e++) {
@@ -497,7 +483,7 @@ int tribo_clusters_step(tribo_context *ctx, double dt, const double *v, const si
                 ctx->clusters->a[d] = quotient(v[d], dt);
             }
             if (directions == 2 || !(known && known[i])) {
-                take_contact(ctx, k, i, directions, none);
+                take_contact(ctx, k, i, none);
             }
         }
         if (ctx->clusters->problem.size) {
@@ -520,16 +506,9 @@ static int reaches_limits(const tribo_context *ctx, size_t i)
 
 signed char tribo_plane_slip(const tribo_context *ctx, size_t i)
 {
-    const size_t first = i - (ctx->clusters->role[i] == ROLE_SECOND);
+    const size_t first = tribo_first_direction(ctx, i);
     const int open = !(ctx->follow.contacts.limit[i] > 0.0);
     return open ? TRIBO_SLIP_OPEN : reaches_limits(ctx, first) ? TRIBO_SLIP_PLANE : TRIBO_SLIP_STUCK;
-}
-
-void tribo_plane_slips(const tribo_context *ctx, signed char *slip)
-{
-    for (size_t i = 0; tribo_plane_count(ctx) && i < ctx->n; i++) {
-        slip[i] = tribo_is_scalar(ctx, i) ? slip[i] : tribo_plane_slip(ctx, i);
-    }
 }
 
 size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const double **vfree, double *feels,

@@ -6,9 +6,9 @@
 
 /* Static limits at i change with |v|: adds the changes of limits to dlimit [directions] for the change dv of v. At rest, where |v|
  * has a kink, it grows along `along`, the direction in which the contact begins to slide, or 0. */
-static void add_falls(const tribo_context *ctx, size_t i, size_t directions, const double *v, const double *along,
-                      const double *dv, double *dlimit)
+static void add_falls(const tribo_context *ctx, size_t i, const double *v, const double *along, const double *dv, double *dlimit)
 {
+    const size_t directions = tribo_directions(ctx, i);
     const double speed = tribo_length((int)directions, v), *way = speed > 0.0 ? v : along;
     const double length = tribo_length((int)directions, way);
     double faster = 0.0;
@@ -18,36 +18,6 @@ static void add_falls(const tribo_context *ctx, size_t i, size_t directions, con
     for (size_t k = 0; k < directions; k++) {
         dlimit[k] += product(tribo_limit_rate(ctx, i + k, speed), faster);
     }
-}
-
-/* Returns d with the limits of a cluster, which change with |v| if they fall with speed. */
-static struct change with_limits(tribo_context *ctx, const struct cluster *g, const struct change *d)
-{
-    const struct disc_qp *p = &ctx->clusters->problem;
-    double *dlimit = ctx->clusters->dlimit;
-    if (ctx->set.breaking != FALLS) {
-        return *d;
-    }
-    for (size_t k = 0; k < g->size; k++) {
-        dlimit[g->member[k]] = 0.0;
-    }
-    for (size_t e = 0; e < p->size; e += p->wide[e]) {
-        for (size_t k = e; k < e + p->wide[e] && p->place[e] == LENS_ON_DISC; k++) {
-            const size_t i = ctx->clusters->contact[k];
-            dlimit[i] = quotient(p->gradient[k], tribo_planar_reach(ctx, i));
-        }
-    }
-    for (size_t k = 0, directions; k < g->size; k += directions) {
-        const size_t i = g->member[k];
-        directions = tribo_directions(ctx, i);
-        const double along[2] = {dlimit[i], directions == 2 ? dlimit[i + 1] : 0.0};
-        const double dv[2] = {tribo_entry(d->v, i), directions == 2 ? tribo_entry(d->v, i + 1) : 0.0};
-        for (size_t j = i; j < i + directions; j++) {
-            dlimit[j] = tribo_entry(d->limit, j);
-        }
-        add_falls(ctx, i, directions, ctx->last.v + i, along, dv, dlimit + i);
-    }
-    return (struct change){d->v, d->a, dlimit};
 }
 
 /* Changes of one contact; x: of part v of a slide; epsilon: d(epsilon)/epsilon. */
@@ -91,25 +61,35 @@ static double turn_shift(const struct law *law, const struct slide *s, const str
 }
 
 /* df [size] of the contacts of a cluster that are not near stick; of those in the problem, the part of df that follows limits,
- * and dshift, the change of their shift. */
-static void own_changes(const tribo_context *ctx, const struct cluster *g, const struct change *d, double *df, double *dshift)
+ * and dshift, the change of their shift. dlimit [n] = changes of limits, which may fall with speed. */
+static void own_changes(const tribo_context *ctx, const struct cluster *g, const struct change *d, double *df, double *dshift,
+                        double *dlimit)
 {
     const struct contacts *c = &ctx->follow.contacts;
     const struct disc_qp *p = &ctx->clusters->problem;
-    for (size_t k = 0, e = 0, directions; k < g->size; k += directions) {
+    const size_t *near = ctx->clusters->near;
+    for (size_t k = 0, e = 0, behind = 0, directions; k < g->size; k += directions) {
         const size_t i = g->member[k];
-        directions = tribo_directions(ctx, i);
-        const struct slide s = tribo_planar_slide(ctx, i, directions, ctx->last.v + i);
+        const struct slide s = tribo_planar_slide(ctx, i, ctx->last.v + i);
         struct turn t = {{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}, 0.0};
+        double along[2] = {0.0, 0.0};
+        directions = s.directions;
+        for (; behind < p->size && near[behind] < k + directions; behind++) {
+            const int slips = p->place[behind - (p->wide[behind] == 0)] == LENS_ON_DISC;
+            const size_t j = near[behind] - k;
+            along[j] = slips ? quotient(p->gradient[behind], tribo_planar_reach(ctx, i + j)) : 0.0;
+        }
         for (size_t j = 0; j < directions; j++) {
             t.v[j] = tribo_entry(d->v, i + j);
             t.limit[j] = tribo_limit_change(ctx, d, i + j);
         }
+        add_falls(ctx, i, ctx->last.v + i, along, t.v, t.limit);
+        memcpy(dlimit + i, t.limit, directions * sizeof *dlimit);
         t.epsilon = s.open || !c->follows ? 0.0 : quotient(t.limit[s.far], c->limit[i + s.far]);
         turn_slide(&s, c->limit + i, ctx->last.v + i, &t);
         turn_force(ctx->set.law, &s, c->limit + i, &t, df + k);
-        for (; e < p->size && ctx->clusters->near[e] < k + directions; e++) {
-            const size_t j = ctx->clusters->near[e] - k;
+        for (; e < behind; e++) {
+            const size_t j = near[e] - k;
             const int far = tribo_planar_cut(ctx, i + j);
             const double part = far ? quotient(c->bound[i + j], ctx->clusters->radius[i + j]) : 1.0;
             dshift[e] = turn_shift(ctx->set.law, &s, &t, j, part, p->shift[e]);
@@ -138,25 +118,24 @@ static void apply_laws(tribo_context *ctx, const struct cluster *g, const struct
     }
 }
 
-const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct change *change)
+const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct change *d)
 {
     struct disc_qp *p = &ctx->clusters->problem;
     const struct cluster *g = &ctx->clusters->cluster[q];
     const struct unit u = ctx->clusters->unit;
     const size_t *near = ctx->clusters->near, *contact = ctx->clusters->contact, n = p->size;
-    double *df = ctx->clusters->df, *dshift = p->from, *turn = p->slide;
+    double *df = ctx->clusters->df, *dlimit = ctx->clusters->dlimit, *dshift = p->from, *turn = p->slide;
     double *dy = p->best; /* the part of the change of y that follows shifts */
     double *rhs = p->noise, *move = p->aim;
-    const struct change d = with_limits(ctx, g, change);
-    own_changes(ctx, g, &d, df, dshift);
+    own_changes(ctx, g, d, df, dshift, dlimit);
     for (size_t e = 0; e < n; e += p->wide[e]) {
         tribo_disc_drag(p, e, dshift + e, dy + e);
     }
-    /* rhs = the change of the gradient by df, d, dshift and dy. */
+    /* rhs = the change of the gradient by df, d, dlimit, dshift and dy. */
     for (size_t e = 0; e < n; e++) {
         const double *row = g->r + near[e] * g->size, limit = ctx->follow.contacts.limit[contact[e]];
-        const double growth = limit > 0.0 ? quotient(tribo_entry(d.limit, contact[e]), limit) : 0.0;
-        double sum = cut(tribo_entry(d.a, contact[e]));
+        const double growth = limit > 0.0 ? quotient(dlimit[contact[e]], limit) : 0.0;
+        double sum = cut(tribo_entry(d->a, contact[e]));
         for (size_t j = 0; j < g->size; j++) {
             sum += product(row[j], df[j]);
         }
@@ -174,7 +153,7 @@ const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct c
         df[near[e]] += product(tribo_planar_reach(ctx, contact[e]), dy[e] + move[e]);
     }
     if (ctx->set.law->remembers) {
-        apply_laws(ctx, g, change, df);
+        apply_laws(ctx, g, d, df);
     }
     return df;
 }
@@ -203,11 +182,11 @@ static void planar_given(const tribo_context *ctx, size_t k, const double *v, co
 {
     const size_t i = ctx->clusters->first[k];
     g->c = tribo_contacts_from(&ctx->follow.contacts, i);
-    g->s = tribo_planar_slide(ctx, i, 2, v);
+    g->s = tribo_planar_slide(ctx, i, v);
     g->near = tribo_planar_near(ctx->set.law, &g->s);
     if (ctx->set.breaking) {
         double y[2];
-        tribo_planar_limits(ctx, i, 2, g->near && feq_parts(ctx->follow.hold + i, feq, y) <= 1.0, v, g->limit);
+        tribo_planar_limits(ctx, i, g->near && feq_parts(ctx->follow.hold + i, feq, y) <= 1.0, v, g->limit);
         g->c.limit = g->c.bound = g->limit;
     }
 }
@@ -235,20 +214,11 @@ static int given_near(const tribo_context *ctx, size_t k, const struct given *g,
     return tribo_disc_solve(&x->p);
 }
 
-int tribo_plane_check_feq(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq)
+int tribo_plane_reads_feq(const tribo_context *ctx, size_t i, const double *v)
 {
-    const double none[2] = {0.0, 0.0};
-    for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
-        const size_t i = ctx->clusters->first[k];
-        struct given g;
-        planar_given(ctx, k, v + i, none, &g);
-        for (size_t j = i; g.near && j < i + 2; j++) {
-            if (!isfinite(feq[j])) {
-                return tribo_fail(note, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", j, feq[j]);
-            }
-        }
-    }
-    return TRIBO_OK;
+    const size_t first = tribo_first_direction(ctx, i);
+    const struct slide s = tribo_planar_slide(ctx, first, v + first);
+    return tribo_planar_near(ctx->set.law, &s);
 }
 
 /* df [2] of a contact near stick by t and dfeq [2]; its problem is solved and linearized. */
@@ -299,7 +269,7 @@ static void given_columns(const tribo_context *ctx, size_t k, const struct given
             const double part = set[d] > 0.0 ? quotient(g->c.limit[d], set[d]) : 0.0;
             t.limit[d] = product(part, t.limit[d]);
         }
-        add_falls(ctx, i, 2, v, along, t.v, t.limit);
+        add_falls(ctx, i, v, along, t.v, t.limit);
         turn_slide(&g->s, g->c.limit, v, &t);
         if (p) {
             turn_near(p, g, ctx->set.law, &t, unit + 2, df);
