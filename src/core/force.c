@@ -45,10 +45,6 @@ static void find_outputs(const tribo_context *ctx, int plain, const double *v, c
     const int far = ctx->n >= TRIBO_MANY, whole = plain && !ctx->set.breaking && !far && !derivatives;
     const double *given = ctx->set.law->uses_feq ? feq : v;
     struct stream stream[OUTPUTS];
-    if (whole && out[FORCES] && ctx->n == 1) {
-        ctx->set.law->force(&ctx->follow.contacts, 1, v, given, out[FORCES]);
-        return;
-    }
     for (int k = 0; k < OUTPUTS; k++) {
         tribo_stream_begin(&stream[k], out[k], far);
     }
@@ -89,8 +85,18 @@ static void find_outputs(const tribo_context *ctx, int plain, const double *v, c
 
 int tribo_force(const tribo_context *ctx, const double *v, const double *feq, double *f)
 {
-    const int missing = !ctx || (!f && ctx->n);
-    return missing ? TRIBO_ERR_NULL : tribo_find_tangents(ctx, 0, v, feq, (double *const[OUTPUTS]){f, NULL, NULL, NULL});
+    int plain;
+    const int status = ctx ? check_force(ctx, NULL, v, feq, &plain) : TRIBO_ERR_NULL;
+    if (status || (!f && ctx->n)) {
+        return status ? status : TRIBO_ERR_NULL;
+    }
+    if (ctx->n == 1 && plain && !ctx->set.breaking) {
+        ctx->set.law->force(&ctx->follow.contacts, 1, v, ctx->set.law->uses_feq ? feq : v, f);
+        return TRIBO_OK;
+    }
+    double *const out[OUTPUTS] = {f, NULL, NULL, NULL};
+    find_outputs(ctx, plain, v, feq, out);
+    return tribo_plane_force(ctx, v, feq, out);
 }
 
 int tribo_find_tangents(const tribo_context *ctx, int pairs, const double *v, const double *feq, double *const *out)
