@@ -12,25 +12,27 @@ static int reads_feq(const tribo_context *ctx, size_t i, const double *v)
     return tribo_is_scalar(ctx, i) ? fabs(v[i]) <= band : tribo_plane_reads_feq(ctx, i, v);
 }
 
-/* Checks v and feq; a status. *plain: laws take feq as it is. note: ctx, or NULL to keep no message. */
-static int check_force(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq, int *plain)
+/* Checks feq where forces depend on it; a status. note: ctx, or NULL to keep no message. */
+static int check_feq(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq)
 {
-    const int reads = ctx->set.law->uses_feq;
-    int status = tribo_has_epsilon(ctx) ? TRIBO_OK : tribo_fail_without_operator(note);
-    status = status ? status : tribo_check_finite(note, "v", v, ctx->n);
-    *plain = !reads || tribo_is_within(feq, ctx->n, TRIBO_FAR);
-    if (status || !reads) {
-        return status;
-    }
     if (!feq && ctx->n) {
         return tribo_fail(note, TRIBO_ERR_NULL, "feq is NULL");
     }
-    for (size_t i = 0; !*plain && i < ctx->n; i++) {
+    for (size_t i = 0; i < ctx->n; i++) {
         if (!isfinite(feq[i]) && reads_feq(ctx, i, v)) {
             return tribo_fail(note, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", i, feq[i]);
         }
     }
     return TRIBO_OK;
+}
+
+/* Checks v and feq; a status. *plain: laws take feq as it is. note: see check_feq. */
+static int check_force(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq, int *plain)
+{
+    int status = tribo_has_epsilon(ctx) ? TRIBO_OK : tribo_fail_without_operator(note);
+    status = status ? status : tribo_check_finite(note, "v", v, ctx->n);
+    *plain = !ctx->set.law->uses_feq || tribo_is_within(feq, ctx->n, TRIBO_FAR);
+    return status || *plain ? status : check_feq(ctx, note, v, feq);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ forces */
