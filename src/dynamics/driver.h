@@ -99,15 +99,9 @@ typedef size_t tribo_fixed_run(tribo_driver *drv, size_t count, const double *t,
 /* Largest number of steps of a run. */
 enum { RUN = 16 };
 
-/* step: one step. run: several steps without an observer, or NULL. */
-struct fixed_method {
-    tribo_fixed_step *step;
-    tribo_fixed_run *run;
-};
-
-/* Takes steps drv->dt from the last good state y at *t to t1; the last step may be shorter. Keeps states as tribo_driver_keep
- * does, without copies. Returns a status. */
-int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, const struct fixed_method *method);
+/* Takes steps drv->dt from the last good state y at *t to t1, several by run (NULL: none) without an observer; the last step may be
+ * shorter. Keeps states as tribo_driver_keep does, without copies. Returns a status. */
+int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, tribo_fixed_step *step, tribo_fixed_run *run);
 
 /* *drv = new driver with a method that must outlive the driver. Returns what tribo_driver_create returns. */
 int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const struct method *method);

@@ -103,26 +103,21 @@ static void find_bands(struct adaptive *a, tribo_system *sys)
     }
 }
 
-/* Keeps the message of a step of h from t that failed with status, in the stepper or in an evaluation of the system. */
-static int say_why(tribo_driver *drv, int status, double t, double h)
+/* Keeps the message of a step of h from t that failed with status, in the stepper or in an evaluation of the system; or that
+ * failed at any length, with errors of size tolerances if status is TRIBO_OK. */
+static int adaptive_fail(tribo_driver *drv, int status, double t, double h, double size)
 {
-    return drv->sys->status == status
-               ? tribo_driver_explain(drv, t, h)
-               : tribo_driver_fail(drv, status, "at t = %.17g, in a step of %g: %s", t, h, tribo_strerror(status));
-}
-
-/* Keeps the message of steps that failed at any length: with status, or with errors of size tolerances. */
-static int adaptive_give_up(tribo_driver *drv, int status, double t, double h, double size)
-{
-    if (status == TRIBO_ERR_NOT_FINITE) {
-        return say_why(drv, status, t, h);
+    if (!status) {
+        return tribo_driver_fail(
+            drv, TRIBO_ERR_STEP, "step from t = %.17g failed down to %g: the error is %g times the tolerance", t, h, size);
     }
-    if (status) {
+    if (status == TRIBO_ERR_STEP || status == TRIBO_ERR_NO_CONVERGENCE) {
         return tribo_driver_fail(drv, TRIBO_ERR_STEP,
                                  "step from t = %.17g failed down to %g: the implicit equations have no solution", t, h);
     }
-    return tribo_driver_fail(drv, TRIBO_ERR_STEP, "step from t = %.17g failed down to %g: the error is %g times the tolerance", t,
-                             h, size);
+    return drv->sys->status == status
+               ? tribo_driver_explain(drv, t, h)
+               : tribo_driver_fail(drv, status, "at t = %.17g, in a step of %g: %s", t, h, tribo_strerror(status));
 }
 
 /* The next length of steps, divided by the last one: as in GSL's control, small changes are not made. */
@@ -158,7 +153,7 @@ static int advance_step(tribo_driver *drv, double *t, double end, double *y)
         const int status = a->stepper.step(&trial, a->data);
         const int shorter = status == TRIBO_ERR_STEP || status == TRIBO_ERR_NO_CONVERGENCE || status == TRIBO_ERR_NOT_FINITE;
         if (status && !shorter) {
-            return say_why(drv, status, *t, h);
+            return adaptive_fail(drv, status, *t, h, 0.0);
         }
         double size = status ? HUGE_VAL : 0.0; /* the largest error divided by its tolerance */
         for (size_t i = 0; !status && i < n; i++) {
@@ -182,7 +177,7 @@ static int advance_step(tribo_driver *drv, double *t, double end, double *y)
         }
         a->h = h * (isfinite(size) ? next_step(a, size) : 0.25);
         if (a->h < DBL_EPSILON * greater(fabs(*t), a->span)) {
-            return adaptive_give_up(drv, status, *t, a->h, size);
+            return adaptive_fail(drv, status, *t, a->h, size);
         }
     }
 }

@@ -237,14 +237,6 @@ static void find_bases(struct blockwise *b, tribo_system *sys, double t, double 
     }
 }
 
-/* The bits of x: all 0 but the sign if x is 0. */
-static inline int64_t bits_of(double x)
-{
-    int64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return bits;
-}
-
 enum { STIRS = 1, GROWS = 2 };
 
 /* Takes the step for n degrees of freedom from i on. a [n]: in, accelerations without friction; out, minus twice the work of
@@ -266,23 +258,13 @@ TRIBO_SIMD static int move(const struct blockwise *b, const struct body_step *s,
         const int rests = fabs(v) < most;
         const double end = (rests ? after[d] : free) + (rests ? 0.0 : change); /* no choice of sums: loops are faster */
         const double to = q[d] + h * end;
-        speeds |= bits_of(u[d]) | bits_of(end);
+        speeds |= fabs(u[d]) + fabs(end) > 0.0 ? -1 : 0;
         grows |= fabs(end) + fabs(to) <= DBL_MAX ? 0 : -1;
         a[d] = mass[d] * change * ((u[d] - before[d]) + (end - after[d]));
         u_to[d] = end;
         q_to[d] = to;
     }
-    return (speeds & INT64_MAX ? STIRS : 0) | (grows ? GROWS : 0);
-}
-
-/* The first block from k on that is awake; b->blocks if there is none. */
-static inline size_t next_awake(const struct blockwise *b, size_t k)
-{
-    if (k >= b->blocks || b->awake[k]) {
-        return k;
-    }
-    const unsigned char *found = memchr(b->awake + k, 1, b->blocks - k);
-    return found ? (size_t)(found - b->awake) : b->blocks;
+    return (speeds ? STIRS : 0) | (grows ? GROWS : 0);
 }
 
 /* 1 if contacts hold all of block k, which is at rest, in steps of any length. */
@@ -316,14 +298,14 @@ int tribo_blockwise_step(struct blockwise *b, tribo_system *sys, const struct bo
         find_bases(b, sys, s->to, b->after);
     }
     b->goes_on = 1;
-    for (size_t k = next_awake(b, 0); k < b->blocks; k = next_awake(b, k + 1)) {
-        const size_t n = block_size(sys, k);
+    for (unsigned char *next = b->awake; (next = memchr(next, 1, (size_t)(b->awake + b->blocks - next))) != NULL;) {
+        const size_t k = (size_t)(next - b->awake), n = block_size(sys, k);
         double a[MATRIX_BLOCK];
         accelerate(b, sys, k, s->q, s->u, a);
         all |= did = move(b, s, k * MATRIX_BLOCK, n, moves, a);
         *energy -= 0.5 * tribo_sum(n, a);
         left -= n;
-        b->awake[k] = 0;
+        *next = 0;
         if (did & STIRS) {
             memset(b->wakes + b->first[k], 1, b->last[k] - b->first[k] + 1);
         } else if (b->driven[k]) {

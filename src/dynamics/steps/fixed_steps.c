@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <string.h>
 
-int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, const struct fixed_method *method)
+int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, tribo_fixed_step *step, tribo_fixed_run *run)
 {
     const double begin = *t, whole = (t1 - begin) / drv->dt, resolution = DBL_EPSILON * greater(fabs(begin), fabs(t1));
     if (drv->dt < 16.0 * resolution) {
@@ -29,9 +29,9 @@ int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y,
         for (size_t s = 1; s <= count; s++) {
             time[s] = k + (double)s < steps ? begin + (k + (double)s) * h : t1;
         }
-        size_t taken = method->run && !drv->seen ? method->run(drv, count, time, from) : 0;
+        size_t taken = run && !drv->seen ? run(drv, count, time, from) : 0;
         if (taken == 0) {
-            status = method->step(drv, time[0], time[1], from, to);
+            status = step(drv, time[0], time[1], from, to);
             if (status) {
                 break;
             }

@@ -416,7 +416,6 @@ static int check_step(tribo_driver *drv, double h)
 
 static int central_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
-    static const struct fixed_method method = {central_step, central_run};
     struct central *x = drv->own;
     struct step_form *s = &x->common;
     const size_t n = drv->sys->ndof;
@@ -432,7 +431,7 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
         s->goes_on = 0;
     }
     take_settings(x, drv->sys);
-    status = tribo_driver_fixed_steps(drv, t, t1, y, &method);
+    status = tribo_driver_fixed_steps(drv, t, t1, y, central_step, central_run);
     if (status && *t > begin && !drv->seen) {
         memcpy(drv->state + n, s->u, n * sizeof *y);
     }

@@ -100,26 +100,18 @@ static size_t planar_of(const tribo_context *contacts)
     return contacts && !tribo_get_count(contacts, TRIBO_COUNT_PLANAR, &planar) ? planar : 0;
 }
 
-/* Returns 1 if the system or m->contacts has planar contacts. */
-static int any_planar(const struct moreau *m, const tribo_system *sys)
-{
-    return planar_of(sys->contacts) || planar_of(m->contacts);
-}
-
 /* Creates m->contacts, with the planar contacts of the system. Returns 0 if out of memory. */
 static int make_contacts(struct moreau *m, const tribo_system *sys)
 {
-    if (!m->contacts || any_planar(m, sys)) {
-        tribo_destroy(m->contacts);
-        m->contacts = NULL;
-        m->settings = sys->changes;
-        m->tell = 1;
-        /* a clone is made again where settings change; the law of a context by create accepts all static limits */
-        if (planar_of(sys->contacts)) {
-            tribo_clone(sys->contacts, &m->contacts);
-        } else {
-            tribo_create(&m->contacts, sys->ncontact);
-        }
+    tribo_destroy(m->contacts);
+    m->contacts = NULL;
+    m->settings = sys->changes;
+    m->tell = 1;
+    /* a clone is made again where settings change; the law of a context by create accepts all static limits */
+    if (planar_of(sys->contacts)) {
+        tribo_clone(sys->contacts, &m->contacts);
+    } else {
+        tribo_create(&m->contacts, sys->ncontact);
     }
     return m->contacts != NULL;
 }
@@ -301,7 +293,8 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     const size_t n = sys->ndof, energy = tribo_system_energy(sys);
     const double h = next - t, *u = from + n;
     /* steps of equal length differ only by rounding of times */
-    if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision || (m->settings != sys->changes && any_planar(m, sys))) {
+    if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision ||
+        (m->settings != sys->changes && (planar_of(sys->contacts) || planar_of(m->contacts)))) {
         const int status = moreau_prepare(m, sys, h);
         if (status) {
             return tribo_driver_pass(drv, status);
@@ -347,10 +340,9 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
 
 static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
-    static const struct fixed_method method = {moreau_step, NULL};
     struct moreau *m = drv->own;
     m->common.goes_on = continues && m->common.goes_on;
-    return tribo_driver_fixed_steps(drv, t, t1, y, &method);
+    return tribo_driver_fixed_steps(drv, t, t1, y, moreau_step, NULL);
 }
 
 const struct method tribo_method_moreau_fixed = {.name = "moreau/fixed",

@@ -129,13 +129,12 @@ static int rk4_step(tribo_driver *drv, double t, double next, const double *from
 
 static int rk4_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
-    static const struct fixed_method method = {rk4_step, NULL};
     struct rk4 *r = drv->own;
     (void)continues;
     if (r->alone.revision != tribo_system_revision(drv->sys)) {
         tribo_blockwise_take_law(&r->alone, drv->sys);
     }
-    const int status = tribo_driver_fixed_steps(drv, t, t1, y, &method);
+    const int status = tribo_driver_fixed_steps(drv, t, t1, y, rk4_step, NULL);
     return status || drv->seen ? status : tell_contacts(drv, *t, drv->dt);
 }
 
