@@ -123,28 +123,27 @@ static int is_refused(const tribo_driver *drv, int which, int status)
 static int advance_choice(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
     const struct method *last = drv->at_work;
-    const int which = driver_choose(drv);
-    int status = set_to_work(drv, which);
-    status = status ? status : drv->at_work->advance(drv, t, t1, y, continues && last == drv->at_work);
-    if (is_refused(drv, which, status)) {
+    for (int which = driver_choose(drv);; which = EVENT) {
+        int status = set_to_work(drv, which);
+        status = status ? status : drv->at_work->advance(drv, t, t1, y, continues && last == drv->at_work);
+        if (!is_refused(drv, which, status)) {
+            return status;
+        }
         *t = drv->time;
         memcpy(y, drv->state, tribo_system_size(drv->sys) * sizeof *y);
-        status = set_to_work(drv, EVENT);
-        status = status ? status : drv->at_work->advance(drv, t, t1, y, 0);
+        continues = 0;
     }
-    return status;
 }
 
 static int find_by_choice(tribo_driver *drv, double t, double period, double *y)
 {
-    const int which = driver_choose(drv);
-    int status = set_to_work(drv, which);
-    status = status ? status : drv->at_work->find_periodic(drv, t, period, y);
-    if (is_refused(drv, which, status)) {
-        status = set_to_work(drv, EVENT);
+    for (int which = driver_choose(drv);; which = EVENT) {
+        int status = set_to_work(drv, which);
         status = status ? status : drv->at_work->find_periodic(drv, t, period, y);
+        if (!is_refused(drv, which, status)) {
+            return status;
+        }
     }
-    return status;
 }
 
 static const struct method automatic = {.name = "auto",

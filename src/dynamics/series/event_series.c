@@ -59,12 +59,22 @@ static void find_velocities(const struct event *e, size_t k, double scale, doubl
     }
 }
 
-void tribo_event_relative(const struct event *e, double *a)
+void tribo_event_relative(const struct event *e, const double *acc, double *a)
 {
     for (size_t i = 0; i < e->sys->ncontact; i++) {
         a[i] = -e->room.base[i];
     }
-    tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->room.acceleration, a);
+    tribo_matrix_multiply_add(&e->sys->direction, 1.0, acc, a);
+}
+
+int tribo_event_hold(struct event *e, double *acc, double *held)
+{
+    tribo_event_relative(e, acc, e->room.a);
+    const int status = tribo_stick_slip_balance(&e->events.stick_slip, e->room.a, held);
+    if (!status) {
+        tribo_matrix_multiply_add(&e->sys->response, 1.0, held, acc);
+    }
+    return status;
 }
 
 /* Sets the k-th coefficients of accelerations and of watch, scale = 1/k!. Returns a status. */
@@ -88,13 +98,8 @@ static int expand_forces(struct event *e, size_t k, double scale)
     }
     memset(base, 0, c * sizeof *base);
     tribo_system_loads(sys, DRIVES_BASE, (int)k + 1, scale, base);
-    tribo_event_relative(e, e->room.a);
-    status = status ? status : tribo_stick_slip_balance(m, e->room.a, held);
-    if (status) {
-        return status;
-    }
-    tribo_matrix_multiply_add(&sys->response, 1.0, held, acc);
-    status = m->plane ? tribo_planar_series_finish(e, k) : TRIBO_OK;
+    status = status ? status : tribo_event_hold(e, acc, held);
+    status = status || !m->plane ? status : tribo_planar_series_finish(e, k);
     if (status) {
         return status;
     }
@@ -167,12 +172,6 @@ int tribo_event_series(struct event *e)
         e->d[k + 1] = power / (double)(k + 1);
     }
     return TRIBO_OK;
-}
-
-int tribo_event_expand(struct event *e, double t, const double *y)
-{
-    const int status = tribo_event_start(e, t, y);
-    return status ? status : tribo_event_series(e);
 }
 
 double tribo_event_work(void *own, size_t i, double tau)
@@ -311,10 +310,9 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
         for (size_t i = 0; i < g->count; i++) {
             tribo_add(v + 2 * half + i * columns, 1.0, p.spring + g->contact[i] * columns, columns);
         }
-        small = tribo_largest(p.q, half) <= DBL_EPSILON * tribo_largest(v, half) &&
-                        tribo_largest(p.u, half) <= DBL_EPSILON * tribo_largest(v + half, half)
-                    ? small + 1
-                    : 0;
+        const int adds = tribo_largest(p.q, half) > DBL_EPSILON * tribo_largest(v, half) ||
+                         tribo_largest(p.u, half) > DBL_EPSILON * tribo_largest(v + half, half);
+        small = adds ? 0 : small + 1;
     }
     free(p.project);
     return status;

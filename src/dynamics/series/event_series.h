@@ -35,10 +35,10 @@ struct planar_line {
 struct planar_series {
     size_t room;              /* for contacts */
     int given;                /* 1: un and ut are given, and all sliding contacts slide already */
-    struct planar_line *line; /* [room]; owns the memory of the series */
+    struct planar_line *line; /* [room]; owns the memory of all */
     size_t begins;            /* number of contacts that begin to slide */
     size_t begin_room;        /* for such contacts */
-    size_t *begin;            /* [begins] these contacts; owns the memory of the members below */
+    size_t *begin;            /* [begins] these contacts */
     int *pivot;               /* [begins] */
     double *s, *lu;           /* [begins][begins] S, S + D */
     double *tau;              /* [begins] */
@@ -115,13 +115,14 @@ static inline double tribo_series_value(const double *x, size_t powers, double h
 }
 
 /* Finds the coefficients of the motion from (t, y) on: first those known at the start, then the series, which collocation
- * repeats with other directions of sliding forces; or both. Returns a status. */
+ * repeats with other directions of sliding forces. Returns a status. */
 int tribo_event_start(struct event *e, double t, const double *y);
 int tribo_event_series(struct event *e);
-int tribo_event_expand(struct event *e, double t, const double *y);
 
-/* a [ncontact] = J room.acceleration - room.base. */
-void tribo_event_relative(const struct event *e, double *a);
+/* a [ncontact] = J acc - room.base. hold: finds the forces held [ncontact] for which a = 0 where contacts hold, and adds their
+ * effect to acc [ndof]. Returns a status. */
+void tribo_event_relative(const struct event *e, const double *acc, double *a);
+int tribo_event_hold(struct event *e, double *acc, double *held);
 
 /* Energy that sliding contact i dissipates until tau; own: struct event. */
 double tribo_event_work(void *own, size_t i, double tau);

@@ -26,19 +26,14 @@ static double fastest(const struct event *e)
     return e->fastest + e->events.stick_slip.breakaway.steepest;
 }
 
-/* Error allowed in values of this size, which move by `moves` within the time of the fastest motion. */
-static double tolerated(const struct event *e, double size, double moves)
-{
-    const tribo_driver *drv = e->drv;
-    return drv->abstol > 0.0 ? drv->abstol + drv->reltol * size : greater(USUAL * moves, DBL_MIN);
-}
-
-/* Error allowed in a series [order + 1][n] on a step of at most `most`; not below the rounding of its first term. Of a sharp motion
- * relative to the largest term on that step. */
+/* Error allowed in a series [order + 1][n] that moves by `moves` within the time of the fastest motion, on a step of at most `most`;
+ * not below the rounding of its first term. Of a sharp motion relative to the largest term on that step. */
 static double wanted(const struct event *e, const double *series, size_t n, double moves, double most)
 {
+    const tribo_driver *drv = e->drv;
     const double size = tribo_largest(series, n);
-    double error = tolerated(e, size, moves), largest = 0.0, power = 1.0;
+    double error = drv->abstol > 0.0 ? drv->abstol + drv->reltol * size : greater(USUAL * moves, DBL_MIN);
+    double largest = 0.0, power = 1.0;
     for (size_t k = 0; k <= e->order && e->events.sharp && most < HUGE_VAL; k++) {
         largest = greater(largest, power * tribo_largest(series + k * n, n));
         power = lesser(power * most, DBL_MAX);
@@ -231,17 +226,10 @@ static void method_event_destroy(tribo_driver *drv)
     }
 }
 
-/* Powers of frequencies and of steps stay within MOST_DIGITS decimal digits, half of that with squares of planar series; there
- * are at least LEAST_ORDER terms. */
+/* The order grows with the digits of the tolerance. Powers of frequencies and of steps stay within MOST_DIGITS decimal digits, half
+ * of that with squares of planar series; there are at least LEAST_ORDER terms. */
 #define MOST_DIGITS 240.0
 #define LEAST_ORDER 4.0
-
-/* The order grows with the digits of the tolerance. */
-static size_t best_order(double tolerance, double fastest, double digits)
-{
-    const double wanted = 10.0 - 1.5 * log10(tolerance);
-    return (size_t)(fastest > 0.0 ? greater(lesser(wanted, digits / (1.0 + fabs(log10(fastest)))), LEAST_ORDER) : wanted);
-}
 
 /* Takes the driver's tolerances; finds the highest frequency; makes room for the order that follows. */
 static int method_event_prepare(struct event *e)
@@ -264,7 +252,9 @@ static int method_event_prepare(struct event *e)
     e->revision = sys->revision;
     e->tolerance = abstol > 0.0 ? clamp(abstol, 1e-16, 1e-2) : USUAL;
     e->fastest = tribo_system_fastest(sys);
-    e->order = e->most_order = best_order(e->tolerance, e->fastest, tribo_system_planar(sys) ? 0.5 * MOST_DIGITS : MOST_DIGITS);
+    const double digits = tribo_system_planar(sys) ? 0.5 * MOST_DIGITS : MOST_DIGITS, best = 10.0 - 1.5 * log10(e->tolerance);
+    const double most = e->fastest > 0.0 ? greater(digits / (1.0 + fabs(log10(e->fastest))), LEAST_ORDER) : HUGE_VAL;
+    e->order = e->most_order = (size_t)lesser(best, most);
     e->terms = sys->loads.limit_harmonics ? e->order + 1 : sys->loads.limit_tables ? 2 : 1;
     free_series(e);
     const size_t terms = e->order + 1;
@@ -325,7 +315,8 @@ static int method_event_begin(void *own, double t, const double *y, double *reac
     e->error = wanted(e, y + n, n, e->moves[1], HUGE_VAL);
     int status = m->plane ? tribo_creep_begin(e, t, y, most, &length) : TRIBO_OK;
     if (!status && length == 0.0) {
-        status = tribo_event_expand(e, t, y);
+        status = tribo_event_start(e, t, y);
+        status = status ? status : tribo_event_series(e);
         if (!status && m->plane) {
             tribo_planar_series_errors(e);
             length = tribo_planar_series_shorten(e, lesser(tribo_event_length(e), most));

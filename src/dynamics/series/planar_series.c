@@ -35,7 +35,6 @@
 void tribo_planar_series_free(struct planar_series *s)
 {
     free(s->line);
-    free(s->begin);
     memset(s, 0, sizeof *s);
 }
 
@@ -44,35 +43,34 @@ static int reserve_lines(struct event *e, size_t begins)
 {
     struct planar_series *s = &e->planar;
     const size_t terms = e->most_order + 1, count = e->events.stick_slip.plane->count;
-    if (!s->line || s->room < count) {
-        free(s->line);
-        s->line = malloc(count * (sizeof *s->line + 7 * terms * sizeof *s->line->xn));
-        for (size_t k = 0; s->line && k < count; k++) {
-            struct planar_line *l = &s->line[k];
-            l->xn = (double *)(s->line + count) + 7 * terms * k;
-            l->xt = l->xn + terms;
-            l->un = l->xt + terms;
-            l->ut = l->un + terms;
-            l->speed = l->ut + terms;
-            l->square = l->speed + terms;
-        }
-        s->room = count;
+    struct layout l = {0};
+    double *series;
+    if (s->line && s->room >= count && s->begin_room >= begins) {
+        return 1;
     }
-    if (begins > s->begin_room) {
-        struct layout l = {0};
-        free(s->begin);
-        do {
-            s->begin = tribo_layout_array(&l, begins, sizeof *s->begin);
-            s->pivot = tribo_layout_array(&l, begins, sizeof *s->pivot);
-            s->s = tribo_layout_array(&l, begins * begins, sizeof *s->s);
-            s->lu = tribo_layout_array(&l, begins * begins, sizeof *s->lu);
-            s->tau = tribo_layout_array(&l, begins, sizeof *s->tau);
-            s->answer = tribo_layout_array(&l, begins * e->sys->ndof, sizeof *s->answer);
-            s->held = tribo_layout_array(&l, begins * e->sys->ncontact, sizeof *s->held);
-        } while (!l.memory && tribo_layout_create(&l));
-        s->begin_room = s->begin ? begins : 0;
+    free(s->line);
+    do {
+        s->line = tribo_layout_array(&l, count, sizeof *s->line);
+        series = tribo_layout_array(&l, 7 * terms * count, sizeof *series);
+        s->begin = tribo_layout_array(&l, begins, sizeof *s->begin);
+        s->pivot = tribo_layout_array(&l, begins, sizeof *s->pivot);
+        s->s = tribo_layout_array(&l, begins * begins, sizeof *s->s);
+        s->lu = tribo_layout_array(&l, begins * begins, sizeof *s->lu);
+        s->tau = tribo_layout_array(&l, begins, sizeof *s->tau);
+        s->answer = tribo_layout_array(&l, begins * e->sys->ndof, sizeof *s->answer);
+        s->held = tribo_layout_array(&l, begins * e->sys->ncontact, sizeof *s->held);
+    } while (!l.memory && tribo_layout_zeros(&l));
+    for (size_t k = 0; l.memory && k < count; k++, series += 7 * terms) {
+        s->line[k] = (struct planar_line){.xn = series,
+                                          .xt = series + terms,
+                                          .un = series + 2 * terms,
+                                          .ut = series + 3 * terms,
+                                          .speed = series + 4 * terms,
+                                          .square = series + 5 * terms};
     }
-    return s->line && begins <= s->begin_room;
+    s->room = count;
+    s->begin_room = begins;
+    return l.memory != NULL;
 }
 
 /* (limit t)'J acc, acc [ncontact] being J acc. */
@@ -146,16 +144,15 @@ int tribo_planar_series_begin(struct event *e, const double *y)
         double *acc = s->answer + q * sys->ndof, *a = e->room.a, *f = e->room.given;
         memset(acc, 0, sys->ndof * sizeof *acc);
         memset(f, 0, c * sizeof *f);
+        memset(e->room.base, 0, c * sizeof *f);
         f[p->at] = -p->limit[0] * l->t[0];
         f[p->at + 1] = -p->limit[1] * l->t[1];
         tribo_matrix_multiply_add(&sys->response, 1.0, f, acc);
-        tribo_matrix_multiply(&sys->direction, acc, a);
-        const int status = tribo_stick_slip_balance(m, a, s->held + q * c);
+        const int status = tribo_event_hold(e, acc, s->held + q * c);
         if (status) {
             return status;
         }
-        tribo_matrix_multiply_add(&sys->response, 1.0, s->held + q * c, acc);
-        tribo_matrix_multiply(&sys->direction, acc, a);
+        tribo_event_relative(e, acc, a);
         for (size_t r = 0; r < begins; r++) {
             s->s[r * begins + q] = -planar_series_along(&all[s->begin[r]], &s->line[s->begin[r]], a);
         }
@@ -225,7 +222,7 @@ int tribo_planar_series_finish(struct event *e, size_t k)
     if (n == 0 || k == 0) {
         return TRIBO_OK;
     }
-    tribo_event_relative(e, a);
+    tribo_event_relative(e, e->room.acceleration, a);
     memcpy(s->lu, s->s, n * n * sizeof *s->s);
     for (size_t q = 0; q < n; q++) {
         const struct planar_contact *p = &all[s->begin[q]];
