@@ -89,20 +89,6 @@ int tribo_driver_show(tribo_driver *drv, double t, const double *y, int kind, si
 /* Keeps (t, y), and calls the observer for a step. Returns a status. */
 int tribo_driver_accept(tribo_driver *drv, double t, const double *y);
 
-/* Computes y, all values, at time next from the state `from` at t. Returns a status, an error if y is not finite. */
-typedef int tribo_fixed_step(tribo_driver *drv, double t, double next, const double *from, double *y);
-
-/* Advances y from t[0] over the times t [count + 1], count <= RUN. Returns the number of steps taken; if less than count, the
- * next step needs tribo_fixed_step. */
-typedef size_t tribo_fixed_run(tribo_driver *drv, size_t count, const double *t, double *y);
-
-/* Largest number of steps of a run. */
-enum { RUN = 16 };
-
-/* Takes steps drv->dt from the last good state y at *t to t1, several by run (NULL: none) without an observer; the last step may be
- * shorter. Keeps states as tribo_driver_keep does, without copies. Returns a status. */
-int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, tribo_fixed_step *step, tribo_fixed_run *run);
-
 /* *drv = new driver with a method that must outlive the driver. Returns what tribo_driver_create returns. */
 int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const struct method *method);
 

@@ -10,7 +10,7 @@
 #include "common/layout.h"
 #include "common/real.h"
 #include "common/simd.h"
-#include "step_form.h"
+#include "fixed_steps.h"
 
 /* ----------------------------------------------------------------------------------------------------------------- life */
 

@@ -12,7 +12,7 @@
 #include "numerics/box/small.h"
 #include "dynamics/reduce/spectrum.h"
 #include "dynamics/system/cos_sin.h"
-#include "step_form.h"
+#include "fixed_steps.h"
 #include "common/real.h"
 #include "common/zeros.h"
 

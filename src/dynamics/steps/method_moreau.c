@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "dynamics/system/delassus.h"
-#include "step_form.h"
+#include "fixed_steps.h"
 #include "step_matrix.h"
 #include "common/real.h"
 

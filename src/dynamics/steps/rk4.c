@@ -7,7 +7,7 @@
 
 #include "blockwise.h"
 #include "common/simd.h"
-#include "dynamics/driver.h"
+#include "fixed_steps.h"
 #include "numerics/linalg.h"
 
 enum { STAGES = 4 };

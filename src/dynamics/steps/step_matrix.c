@@ -1,8 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "step_matrix.h"
+#include "fixed_steps.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "common/layout.h"
+#include "common/real.h"
 #include "numerics/band.h"
 #include "numerics/lapack.h"
 
@@ -115,4 +121,200 @@ int tribo_step_matrix_solve(const void *matrix, size_t count, double *x)
         tribo_band_solve(m->n, m->below, m->band, x + k * m->n);
     }
     return 1;
+}
+
+/* ------------------------------------------------------------------------------------------------------ bodies held */
+
+/* The box-constrained problem of a step by the method of numerics/box/box.c, for bodies instead of contacts: begin
+ * with the contacts that held in the last step; repeat: du = solution with these held; contacts whose force is above the limit
+ * slide, contacts that move along their force hold; until no contact changes, or rounds end.
+ *
+ * Where the band is stiff, the slip of a body overloads its neighbours within the step, and each round would reach the next
+ * neighbour only. So in rounds in which contacts only begin to slide, neighbours within `reach` slide along, and reach
+ * doubles from round to round; a contact that slides too early moves along its force, and holds again. */
+
+/* held[]: the contact on a body slides, holds, or held until neighbours began to slide. */
+enum { FREE, HOLDS, FOLLOWS };
+
+/* A round costs as much as the band has entries, and a step hardly ever takes more than 10. */
+enum { ROUNDS = 100 };
+
+void tribo_step_band_free(struct step_band *b)
+{
+    free(b->l);
+    free(b->body);
+    *b = (struct step_band){0};
+}
+
+/* 1 if contacts have bodies of their own, and S is symmetric and narrow enough to save work. Sets body and lever. */
+static int applies(struct step_band *b, const tribo_system *sys, const struct step_matrix *m)
+{
+    size_t i, j;
+    double x, y;
+    memset(b->held, 0, m->n);
+    return sys->ncontact && !sys->compliance.count && m->below == m->above && 2 * m->below <= sys->ncontact &&
+           tribo_step_form_bodies(&sys->direction, b->body, b->lever, b->held) && !tribo_matrix_flaw(&m->s, 1, &i, &j, &x, &y);
+}
+
+/* Factorizes S without held bodies. Returns the place of a pivot that is not positive, or n. */
+static size_t band_factorize(struct step_band *b)
+{
+    const size_t where = tribo_band_factorize(&b->matrix->s, b->matrix->below, b->held, b->l);
+    b->factored = where == b->matrix->n;
+    return where;
+}
+
+int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const struct step_matrix *m, size_t *where)
+{
+    const size_t n = m->n, count = b->count = sys->ncontact;
+    struct layout l = {0};
+    b->matrix = NULL;
+    if (!b->body) { /* at is kept where the length of steps changes */
+        do {
+            b->body = tribo_layout_array(&l, count, sizeof *b->body);
+            b->contact = tribo_layout_array(&l, n, sizeof *b->contact);
+            b->lever = tribo_layout_array(&l, count, sizeof *b->lever);
+            b->own = tribo_layout_array(&l, count, sizeof *b->own);
+            b->noise = tribo_layout_array(&l, count, sizeof *b->noise);
+            b->push = tribo_layout_array(&l, n, sizeof *b->push);
+            b->move = tribo_layout_array(&l, n, sizeof *b->move);
+            b->at = tribo_layout_array(&l, count, 1);
+            b->held = tribo_layout_array(&l, n, 1);
+        } while (!l.memory && tribo_layout_zeros(&l));
+    }
+    if (!b->body) {
+        return TRIBO_ERR_MEMORY;
+    }
+    if (!applies(b, sys, m)) {
+        return TRIBO_OK;
+    }
+    free(b->l);
+    b->l = malloc(n * (m->below + 1) * sizeof *b->l);
+    if (!b->l) {
+        return TRIBO_ERR_MEMORY;
+    }
+    b->matrix = m;
+    for (size_t d = 0; d < n; d++) {
+        b->contact[d] = count;
+    }
+    for (size_t i = 0; i < count; i++) {
+        b->contact[b->body[i]] = i;
+        b->own[i] = tribo_matrix_get(&m->s, b->body[i], b->body[i]);
+    }
+    memset(b->held, 0, n);
+    *where = band_factorize(b); /* with no body held: S is definite if and only if all these pivots are positive */
+    return *where < n ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------------------- the step */
+
+/* du, f and noise with the contacts as they are in at[]; the factor is kept if held[] does not change. */
+static void solve_sets(struct step_band *b, const struct band_step *s)
+{
+    const double doubt = 8.0 * DBL_EPSILON;
+    const struct matrix *matrix = &b->matrix->s;
+    const size_t n = matrix->rows;
+    double *x = s->du, *f = s->f;
+    for (size_t i = 0; i < b->count; i++) {
+        const signed char holds = b->at[i] ? FREE : HOLDS;
+        b->factored &= b->held[b->body[i]] == holds;
+        b->held[b->body[i]] = holds;
+    }
+    if (!b->factored) {
+        band_factorize(b);
+    }
+    memcpy(x, b->push, n * sizeof *x);
+    memset(b->move, 0, n * sizeof *x);
+    for (size_t i = 0; i < b->count; i++) {
+        const size_t d = b->body[i];
+        f[i] = b->at[i] * s->limit[i];
+        x[d] += s->h * b->lever[i] * f[i];
+        b->move[d] = b->at[i] ? 0.0 : s->base[i] / b->lever[i] - s->u[d];
+    }
+    /* columns of held bodies that move with their bases go to the right-hand side */
+    tribo_matrix_multiply_add(matrix, -1.0, b->move, x);
+    for (size_t d = 0; d < n; d++) {
+        x[d] = b->held[d] ? 0.0 : x[d];
+    }
+    tribo_band_solve(n, b->matrix->below, b->l, x);
+    for (size_t d = 0; d < n; d++) {
+        x[d] = b->held[d] ? b->move[d] : x[d];
+    }
+    for (size_t i = 0; i < b->count; i++) {
+        const size_t d = b->body[i];
+        const double size = tribo_matrix_row_size(matrix, d, x) + fabs(b->push[d]) + fabs(b->own[i] * s->u[d]);
+        const double unit = 1.0 / (s->h * b->lever[i]);
+        b->noise[i] = doubt * fabs(unit) * size;
+        f[i] = b->at[i] ? f[i] : unit * (tribo_matrix_row_dot(matrix, d, x) - b->push[d]);
+    }
+}
+
+/* Revises at[] by forces and velocities: *freed contacts begin to slide, *caught contacts begin to hold. */
+static void band_revise(struct step_band *b, const struct band_step *s, size_t *freed, size_t *caught)
+{
+    *freed = *caught = 0;
+    for (size_t i = 0; i < b->count; i++) {
+        const size_t d = b->body[i];
+        const double noise = b->noise[i], most = s->limit[i] + noise;
+        const signed char at = b->at[i];
+        if (at == 0) {
+            const int side = (s->f[i] > most) - (s->f[i] < -most);
+            b->at[i] = (signed char)side;
+            *freed += side != 0;
+        } else {
+            /* the force that would take the velocity away within the step */
+            const double v = b->lever[i] * (s->u[d] + s->du[d]) - s->base[i];
+            const double pull = v * b->own[i] / (s->h * b->lever[i] * b->lever[i]);
+            if (pull * at > noise) {
+                b->at[i] = 0;
+                ++*caught;
+            }
+        }
+    }
+}
+
+/* Passes over the bodies upwards or downwards: a holding contact within `reach` bodies after one that begins to slide slides
+ * along. */
+static void band_sweep(struct step_band *b, size_t reach, int upwards)
+{
+    const size_t n = b->matrix->n;
+    size_t left = 0;
+    double way = 0.0;
+    for (size_t k = 0; k < n; k++) {
+        const size_t d = upwards ? k : n - 1 - k, i = b->contact[d];
+        const int contact = i < b->count;
+        if (contact && b->held[d] == HOLDS && b->at[i]) {
+            left = reach;
+            way = b->lever[i] * b->at[i];
+        } else if (left > 0) {
+            left--;
+            if (contact && !b->at[i]) {
+                b->at[i] = b->lever[i] * way > 0.0 ? 1 : -1;
+                b->held[d] = FOLLOWS;
+            }
+        }
+    }
+}
+
+int tribo_step_band_solve(struct step_band *b, const struct band_step *s)
+{
+    size_t reach = 0, freed, caught;
+    memcpy(b->push, s->du, b->matrix->n * sizeof *s->du);
+    for (int round = 0; round < ROUNDS; round++) {
+        solve_sets(b, s);
+        band_revise(b, s, &freed, &caught);
+        if (freed + caught == 0) {
+            for (size_t i = 0; i < b->count; i++) {
+                s->f[i] = clamp(s->f[i], -s->limit[i], s->limit[i]);
+            }
+            return 1;
+        }
+        reach = caught ? 0 : 2 * reach + 1;
+        if (reach > 1) {
+            band_sweep(b, reach, 1);
+            band_sweep(b, reach, 0);
+        }
+    }
+    memcpy(s->du, b->push, b->matrix->n * sizeof *s->du);
+    return 0;
 }

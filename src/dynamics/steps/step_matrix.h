@@ -30,8 +30,6 @@ int tribo_step_matrix_solve(const void *matrix, size_t count, double *x);
 /* Returns status, with a message in the system: TRIBO_ERR_INDEFINITE at degree of freedom `where`, or TRIBO_ERR_MEMORY. */
 int tribo_step_matrix_fail(const tribo_system *sys, int status, double h, size_t where);
 
-/* ------------------------------------------------------------------------------------------------------- step_band.c */
-
 /* A step of "moreau/fixed" where each contact holds a body of its own to the base, and S is a band. The operator that contacts
  * see, J S^-1 J', would be dense. Here bodies that contacts hold are rows and columns taken out of S: a step costs as much as
  * the band has entries, and a new factor where other contacts hold. */

@@ -1,11 +1,26 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What the two methods in step form share: Coulomb's law over a step, without epsilon. Contacts at rest stay at rest
- * exactly, and the energy that friction dissipates is that of the discrete motion, -h f'(v + v_end)/2 a step. */
-#ifndef TRIBO_STEP_FORM_H
-#define TRIBO_STEP_FORM_H
+/* What methods with steps of one length share. */
+#ifndef TRIBO_FIXED_STEPS_H
+#define TRIBO_FIXED_STEPS_H
 
 #include "dynamics/driver.h"
 
+/* Computes y, all values, at time next from the state `from` at t. Returns a status, an error if y is not finite. */
+typedef int tribo_fixed_step(tribo_driver *drv, double t, double next, const double *from, double *y);
+
+/* Advances y from t[0] over the times t [count + 1], count <= RUN. Returns the number of steps taken; if less than count, the
+ * next step needs tribo_fixed_step. */
+typedef size_t tribo_fixed_run(tribo_driver *drv, size_t count, const double *t, double *y);
+
+/* Largest number of steps of a run. */
+enum { RUN = 16 };
+
+/* Takes steps drv->dt from the last good state y at *t to t1, several by run (NULL: none) without an observer; the last step may be
+ * shorter. Keeps states as tribo_driver_keep does, without copies. Returns a status. */
+int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, tribo_fixed_step *step, tribo_fixed_run *run);
+
+/* Of the two methods in step form: Coulomb's law over a step, without epsilon. Contacts at rest stay at rest
+ * exactly, and the energy that friction dissipates is that of the discrete motion, -h f'(v + v_end)/2 a step. */
 struct step_form {
     double *memory;      /* all arrays, of which methods exchange some; freed by the method */
     double *u, *a;       /* [ndof] velocity (central: half a step back); acceleration, or what a step adds to u */
