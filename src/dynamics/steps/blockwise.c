@@ -105,7 +105,6 @@ int tribo_blockwise_take(struct blockwise *b, tribo_system *sys)
     if (!b->fits) {
         return 0;
     }
-    b->goes_on = 0;
     b->time = NAN;
     memset(b->awake, 1, b->blocks);
     memset(b->wakes, 0, b->blocks);
@@ -289,15 +288,9 @@ int tribo_blockwise_step(struct blockwise *b, tribo_system *sys, const struct bo
         take_limits(b, sys);
     }
     if (moves) {
-        double *last = b->before;
-        b->before = b->after;
-        b->after = last;
-        if (!b->goes_on) {
-            find_bases(b, sys, s->from, b->before);
-        }
+        find_bases(b, sys, s->from, b->before);
         find_bases(b, sys, s->to, b->after);
     }
-    b->goes_on = 1;
     for (unsigned char *next = b->awake; (next = memchr(next, 1, (size_t)(b->awake + b->blocks - next))) != NULL;) {
         const size_t k = (size_t)(next - b->awake), n = block_size(sys, k);
         double a[MATRIX_BLOCK];

@@ -36,7 +36,6 @@ struct blockwise {
     unsigned char *driven;        /* [blocks] 1: a load, base or limit depends on time */
     unsigned char *awake, *wakes; /* [blocks] 1: awake in this step, not yet done; in the next step */
     size_t *still;                /* [blocks] workspace: blocks that did not move in this step */
-    int goes_on;                  /* 1: `after` is what the next step begins with */
     int fits, has_law;            /* 1: steps, rates can be taken with the settings */
     size_t revision;              /* of the system to which settings, fits and has_law belong */
 };

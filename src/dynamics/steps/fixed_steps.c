@@ -105,21 +105,10 @@ void tribo_step_form_relative(const struct step_form *s, const tribo_system *sys
     }
 }
 
-void tribo_step_form_turn(struct step_form *s)
+void tribo_step_form_velocity(struct step_form *s, tribo_system *sys, double t, const double *u, double *v)
 {
-    double *v = s->v;
-    s->v = s->end;
-    s->end = v;
-}
-
-void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, const double *u)
-{
-    if (s->goes_on) {
-        tribo_step_form_turn(s);
-    } else {
-        tribo_step_form_find_base(s, sys, t);
-        tribo_step_form_relative(s, sys, u, s->v);
-    }
+    tribo_step_form_find_base(s, sys, t);
+    tribo_step_form_relative(s, sys, u, v);
 }
 
 int tribo_step_form_force(struct step_form *s, const tribo_system *sys, tribo_context *contacts, double h)

@@ -22,13 +22,12 @@ int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y,
 /* Of the two methods in step form: Coulomb's law over a step, without epsilon. Contacts at rest stay at rest
  * exactly, and the energy that friction dissipates is that of the discrete motion, -h f'(v + v_end)/2 a step. */
 struct step_form {
-    double *memory;      /* all arrays, of which methods exchange some; freed by the method */
+    double *memory;      /* all arrays; freed by the method */
     double *u, *a;       /* [ndof] velocity (central: half a step back); acceleration, or what a step adds to u */
     double *v, *end, *f; /* [ncontact] velocity at the beginning and at the end of a step, force */
     double *base;        /* [ncontact] b at the end */
     double *more;        /* [more] arrays of the method, zeros at first */
     signed char *mode;   /* [ncontact] slip */
-    int goes_on;         /* 1: `end` is the velocity with which the next step begins */
     size_t revision;     /* of the system for which a method has prepared */
 };
 
@@ -39,17 +38,12 @@ int tribo_step_form_bodies(const struct matrix *j, size_t *body, double *lever, 
 /* 1, or 0 if out of memory. */
 int tribo_step_form_create(struct step_form *s, const tribo_system *sys, size_t more);
 
-/* base = b(t). */
+/* base = b(t); v = J u - base. */
 void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t);
+void tribo_step_form_velocity(struct step_form *s, tribo_system *sys, double t, const double *u, double *v);
 
 /* v = J u - base. */
 void tribo_step_form_relative(const struct step_form *s, const tribo_system *sys, const double *u, double *v);
-
-/* Exchanges v and end. */
-void tribo_step_form_turn(struct step_form *s);
-
-/* v = velocity with which the step from t begins: `end` of the step before, or J u - b(t). */
-void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, const double *u);
 
 /* f = forces over a step of h, from v and end, with the limits of its middle. By tribo_step_force, which stops contacts
  * where they reverse, if contacts are plain; else by tribo_step_force_mean, which knows planar contacts and lost static

@@ -49,6 +49,7 @@ struct central {
     double *next;  /* [ndof] u at the end of a step in progress */
     double energy; /* dissipated up to u */
     double last;   /* length of the step before; 0: u is the velocity at t */
+    double when;   /* time of u */
     double stable; /* a step length known to be stable; 0: none */
 };
 
@@ -80,7 +81,7 @@ static int kick(tribo_driver *drv, const struct body_step *k, double *energy)
     struct central *x = drv->own;
     struct step_form *s = &x->common;
     tribo_system *sys = drv->sys;
-    tribo_step_form_begin(s, sys, k->from, k->u);
+    tribo_step_form_velocity(s, sys, k->from, k->u, s->v);
     /* velocities without friction, by forces at t and q */
     tribo_system_set_time(sys, k->t);
     tribo_system_smooth(sys, 0, 1.0, k->q, k->u, NULL, s->a);
@@ -88,8 +89,7 @@ static int kick(tribo_driver *drv, const struct body_step *k, double *energy)
         k->u_to[i] = k->u[i] + k->time * s->a[i];
     }
     sys->evaluations++;
-    tribo_step_form_find_base(s, sys, k->to);
-    tribo_step_form_relative(s, sys, k->u_to, s->end);
+    tribo_step_form_velocity(s, sys, k->to, k->u_to, s->end);
     if (tribo_system_limits_vary(sys)) {
         tribo_system_set_time(sys, k->t);
     }
@@ -112,13 +112,9 @@ static int synchronise(tribo_driver *drv, double t, double *y)
     struct step_form *s = &x->common;
     const size_t n = drv->sys->ndof;
     const double half = 0.5 * x->last;
-    const struct body_step back = {.from = t - half, .t = t, .to = t, .time = half, .q = y, .u = s->u, .u_to = y + n};
+    const struct body_step back = {.from = x->when, .t = t, .to = t, .time = half, .q = y, .u = s->u, .u_to = y + n};
     y[2 * n] = x->energy;
-    const int status = kick(drv, &back, y + 2 * n);
-    if (s->goes_on) {
-        tribo_step_form_turn(s);
-    }
-    return status;
+    return kick(drv, &back, y + 2 * n);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ few bodies */
@@ -300,11 +296,7 @@ static size_t central_run(tribo_driver *drv, size_t count, const double *t, doub
     if (!b->fits) {
         return 0;
     }
-    if (!s->goes_on) {
-        tribo_step_form_find_base(s, sys, t[0] - 0.5 * x->last);
-        tribo_step_form_relative(s, sys, s->u, s->end);
-        s->goes_on = 1;
-    }
+    tribo_step_form_velocity(s, sys, x->when, s->u, s->end);
     if (!few_find_all(b, sys, count, t, x->last)) {
         return 0;
     }
@@ -325,9 +317,9 @@ static size_t central_run(tribo_driver *drv, size_t count, const double *t, doub
     }
     memcpy(y, m.q, n * sizeof *y);
     memcpy(s->u, m.u, n * sizeof *y);
-    memcpy(s->end, m.v, c * sizeof *y);
     memcpy(b->at, m.at, sizeof m.at);
     x->last = b->h[taken];
+    x->when = t[taken - 1] + 0.5 * x->last;
     y[2 * n] = x->energy = m.energy;
     sys->evaluations += taken;
     return taken;
@@ -358,7 +350,7 @@ static int central_step(tribo_driver *drv, double t, double next, const double *
             return synchronise(drv, next, y);
         }
     }
-    const struct body_step k = {t - 0.5 * x->last, t, t + 0.5 * h, 0.5 * (x->last + h), h, from, s->u, y, x->next};
+    const struct body_step k = {x->when, t, t + 0.5 * h, 0.5 * (x->last + h), h, from, s->u, y, x->next};
     const int alone = !x->few.fits && x->alone.fits;
     double energy = x->energy;
     int status = TRIBO_OK;
@@ -380,10 +372,10 @@ static int central_step(tribo_driver *drv, double t, double next, const double *
     if (status) {
         return status;
     }
-    s->goes_on = !alone;
     x->next = s->u;
     s->u = k.u_to;
     x->last = h;
+    x->when = k.to;
     return drv->seen ? synchronise(drv, next, y) : TRIBO_OK;
 }
 
@@ -428,7 +420,7 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
         memcpy(s->u, y + n, n * sizeof *y);
         x->energy = y[2 * n];
         x->last = 0.0;
-        s->goes_on = 0;
+        x->when = *t;
     }
     take_settings(x, drv->sys);
     status = tribo_driver_fixed_steps(drv, t, t1, y, central_step, central_run);

@@ -28,6 +28,7 @@ struct moreau {
     double *limit;           /* [ncontact] limits in a step; limit/2 for compliant contacts */
     size_t settings_taken;   /* tribo_system_settings at the last update of limit; SIZE_MAX: none */
     int tell;                /* 1: limit is not yet copied to contacts */
+    int goes_on;             /* 1: spring is of the state */
     double *spring, *give;   /* [ncontact] forces f0 of compliant contacts; workspace, as G f0 */
     double *change;          /* [ncontact] f1 - f0; workspace */
     tribo_context *contacts; /* contacts with the operator of a step */
@@ -300,14 +301,14 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
             return tribo_driver_pass(drv, status);
         }
     }
-    if (sys->compliance.count && !s->goes_on) {
+    if (sys->compliance.count && !m->goes_on) {
         memcpy(y, from, tribo_system_size(sys) * sizeof *y);
         tribo_get_limit(sys->contacts, m->give);
         tribo_compliance_enter(sys, m->give, m->spring, y);
         from = y;
         u = from + n;
     }
-    tribo_step_form_begin(s, sys, t, u);
+    tribo_step_form_velocity(s, sys, t, u, s->v);
     find_push(m, sys, t, next, from, s->a);
     tribo_step_form_find_base(s, sys, next);
     if (tribo_system_limits_vary(sys)) {
@@ -327,7 +328,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     }
     tribo_system_snap(sys, s->mode, s->base, s->u);
     tribo_step_form_relative(s, sys, s->u, s->end);
-    s->goes_on = 1;
+    m->goes_on = 1;
     for (size_t i = 0; i < n; i++) {
         y[i] = from[i] + 0.5 * h * (u[i] + s->u[i]);
         y[n + i] = s->u[i];
@@ -341,7 +342,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
 static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
     struct moreau *m = drv->own;
-    m->common.goes_on = continues && m->common.goes_on;
+    m->goes_on = continues && m->goes_on;
     return tribo_driver_fixed_steps(drv, t, t1, y, moreau_step, NULL);
 }
 
