@@ -344,28 +344,25 @@ static int has_stuck(const struct gsl_step *g)
     return found;
 }
 
-static int gsl_step_apply(struct gsl_step *g)
-{
-    const tribo_trial *x = g->trial;
-    if (g->kind->matrices && reserve_factor(g)) {
-        return GSL_EBADFUNC;
-    }
-    if (g->known && !is_regular(g)) {
-        gsl_step_restart(g); /* GSL then asks for a Jacobian before it factorizes */
-    }
-    return gsl_odeiv2_step_apply(g->step, x->t, x->h, x->to, x->error, g->kind->takes_slope ? x->slope : NULL,
-                                 g->kind->newton ? g->end : NULL, &g->guarded);
-}
-
 static int gsl_step_try(const tribo_trial *x, void *data)
 {
     struct gsl_step *g = data;
     fenv_t callers;
+    int status = GSL_SUCCESS;
     memcpy(x->to, x->y, g->dimension * sizeof *x->to);
     g->trial = x;
     g->status = TRIBO_OK;
     feholdexcept(&callers);
-    const int status = gsl_step_apply(g);
+    if (g->kind->matrices) {
+        status = reserve_factor(g);
+        if (!status && g->known && !is_regular(g)) {
+            gsl_step_restart(g); /* GSL then asks for a Jacobian before it factorizes */
+        }
+    }
+    if (!status) {
+        status = gsl_odeiv2_step_apply(g->step, x->t, x->h, x->to, x->error, g->kind->takes_slope ? x->slope : NULL,
+                                       g->kind->newton ? g->end : NULL, &g->guarded);
+    }
     if (!status && g->kind->newton) {
         /* The estimate by half steps misses a force that jumps before or after all stages, and a contact that breaks away
          * after them: adds the difference to the trapezoidal rule by slopes at both ends. */
@@ -387,32 +384,23 @@ static double gsl_step_order(void *data)
 /* ---------------------------------------------------------------------------------------------------------------- kinds */
 
 #define ROOT_3 1.7320508075688772935
-static const double halves[] = {1.0, 0.5}, middle[] = {0.5, 0.25};
-static const double gauss[] = {0.25, 0.25 - ROOT_3 / 6, 0.25 + ROOT_3 / 6, 0.25};
-static const double sequence[] = {1.0 / 2, 1.0 / 6, 1.0 / 10, 1.0 / 14, 1.0 / 22, 1.0 / 34, 1.0 / 50, 1.0 / 70};
-static const double bdf[] = {1.0, 2.0 / 3, 6.0 / 11, 12.0 / 25, 60.0 / 137};
-
-#define EXPLICIT(id, stable)                                                                                                     \
-    {                                                                                                                            \
-#id, &gsl_odeiv2_step_##id, stable, 1, 0, 0, NULL, 1, NULL                                                               \
-    }
-#define IMPLICIT(id, stable, slope, newton, c, stages, a)                                                                        \
-    {                                                                                                                            \
-#id, &gsl_odeiv2_step_##id, stable, slope, newton, sizeof c / sizeof *c, c, stages, a                                    \
-    }
+static const double halves[2] = {1.0, 0.5}, middle[2] = {0.5, 0.25};
+static const double gauss[4] = {0.25, 0.25 - ROOT_3 / 6, 0.25 + ROOT_3 / 6, 0.25};
+static const double sequence[8] = {1.0 / 2, 1.0 / 6, 1.0 / 10, 1.0 / 14, 1.0 / 22, 1.0 / 34, 1.0 / 50, 1.0 / 70};
+static const double bdf[5] = {1.0, 2.0 / 3, 6.0 / 11, 12.0 / 25, 60.0 / 137};
 
 static const struct gsl_kind kinds[] = {
-    EXPLICIT(rk2, 2.5),
-    EXPLICIT(rk4, 5.5),
-    EXPLICIT(rkf45, 3.6),
-    EXPLICIT(rkck, 3.7),
-    EXPLICIT(rk8pd, 5.1),
-    IMPLICIT(rk1imp, HUGE_VAL, 1, 1, halves, 1, NULL),
-    IMPLICIT(rk2imp, HUGE_VAL, 1, 1, middle, 1, NULL),
-    IMPLICIT(rk4imp, HUGE_VAL, 1, 1, halves, 2, gauss),
-    IMPLICIT(bsimp, 0.1, 1, 0, sequence, 1, NULL),
-    EXPLICIT(msadams, 0.5),
-    IMPLICIT(msbdf, HUGE_VAL, 0, 0, bdf, 1, NULL),
+    {"rk2", &gsl_odeiv2_step_rk2, .stable = 2.5, .takes_slope = 1, .stages = 1},
+    {"rk4", &gsl_odeiv2_step_rk4, .stable = 5.5, .takes_slope = 1, .stages = 1},
+    {"rkf45", &gsl_odeiv2_step_rkf45, .stable = 3.6, .takes_slope = 1, .stages = 1},
+    {"rkck", &gsl_odeiv2_step_rkck, .stable = 3.7, .takes_slope = 1, .stages = 1},
+    {"rk8pd", &gsl_odeiv2_step_rk8pd, .stable = 5.1, .takes_slope = 1, .stages = 1},
+    {"rk1imp", &gsl_odeiv2_step_rk1imp, HUGE_VAL, 1, 1, 2, halves, 1, NULL},
+    {"rk2imp", &gsl_odeiv2_step_rk2imp, HUGE_VAL, 1, 1, 2, middle, 1, NULL},
+    {"rk4imp", &gsl_odeiv2_step_rk4imp, HUGE_VAL, 1, 1, 2, halves, 2, gauss},
+    {"bsimp", &gsl_odeiv2_step_bsimp, 0.1, 1, 0, 8, sequence, 1, NULL},
+    {"msadams", &gsl_odeiv2_step_msadams, .stable = 0.5, .takes_slope = 1, .stages = 1},
+    {"msbdf", &gsl_odeiv2_step_msbdf, HUGE_VAL, 0, 0, 5, bdf, 1, NULL},
 };
 
 int tribo_gsl_stepper_count(void)
