@@ -27,19 +27,6 @@ static void expand_falling(struct event *e, size_t k)
     }
 }
 
-/* Sets the k-th coefficients of given forces, if a row of slide is not zero. Rigid contacts: one that slides, or is just at its
- * limit, follows the limit; others keep their force. */
-static void find_given(struct event *e, size_t k)
-{
-    const struct stick_slip *m = &e->events.stick_slip;
-    const size_t c = e->sys->ncontact;
-    for (size_t i = 0; i < c; i++) {
-        const int keeps = k == 0 && m->state.slip[i] == TRIBO_SLIP_STUCK && !m->state.holds[i];
-        const double *limit = (m->state.slip[i] ? e->slide : e->limit) + k * c, side = tribo_stick_slip_follows(m, i);
-        e->room.given[i] = keeps ? m->state.force[i] : side != 0.0 ? side * limit[i] : 0.0;
-    }
-}
-
 /* Sets v = the k-th coefficients of the contacts' velocities, scale = 1/k!. */
 static void find_velocities(const struct event *e, size_t k, double scale, double *v)
 {
@@ -92,7 +79,12 @@ static int expand_forces(struct event *e, size_t k, double scale)
     }
     int status = TRIBO_OK;
     if (given) {
-        find_given(e, k);
+        /* rigid contacts: one that slides, or is just at its limit, follows the limit; others keep their force */
+        for (size_t i = 0; i < c; i++) {
+            const int keeps = k == 0 && m->state.slip[i] == TRIBO_SLIP_STUCK && !m->state.holds[i];
+            const double *limit = (m->state.slip[i] ? e->slide : e->limit) + k * c, side = tribo_stick_slip_follows(m, i);
+            e->room.given[i] = keeps ? m->state.force[i] : side != 0.0 ? side * limit[i] : 0.0;
+        }
         status = m->plane ? tribo_planar_series_forces(e, k, watch) : TRIBO_OK;
         tribo_matrix_multiply_add(&sys->response, 1.0, e->room.given, acc);
     }
@@ -212,22 +204,6 @@ static void add_perturbed(const struct perturbed *p, const struct matrix *a, dou
     }
 }
 
-/* Sets p->project. Returns a status. */
-static int find_projection(struct event *e, const struct perturbed *p)
-{
-    const size_t n = e->sys->ndof;
-    int status = TRIBO_OK;
-    for (size_t j = 0; !status && j < n; j++) {
-        memset(p->next, 0, n * sizeof *p->next);
-        p->next[j] = 1.0;
-        status = tribo_stick_slip_project(&e->events.stick_slip, e->sys, e->events.stick_slip.constant.still, p->next);
-        for (size_t i = 0; i < n; i++) {
-            p->project[i * n + j] = p->next[i];
-        }
-    }
-    return status;
-}
-
 /* Sets p->force = term k by limits N that fall, from terms of v: dN/d|v| = (limit - N)/velocity. */
 static void find_slope_forces(const struct event *e, size_t k, double tau, const struct perturbed *p)
 {
@@ -282,9 +258,10 @@ static void find_term(struct event *e, size_t k, double tau, const struct pertur
 int tribo_event_transition(void *own, const void *phase, double tau, size_t columns, double *v)
 {
     struct event *e = own;
+    struct stick_slip *m = &e->events.stick_slip;
     const struct compliance *g = &e->sys->compliance;
     const size_t n = e->sys->ndof, half = n * columns, each = e->sys->ncontact * columns;
-    struct perturbed p = {.columns = columns, .rows = e->events.stick_slip.breakaway.falls ? e->order + 1 : 1};
+    struct perturbed p = {.columns = columns, .rows = m->breakaway.falls ? e->order + 1 : 1};
     p.project = malloc((n * n + 3 * half + (2 + p.rows) * each + 1) * sizeof *p.project);
     if (!p.project) {
         return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
@@ -296,7 +273,15 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
     p.force = p.spring + each;
     p.v = p.force + each;
     (void)phase;
-    const int status = find_projection(e, &p);
+    int status = TRIBO_OK;
+    for (size_t j = 0; !status && j < n; j++) {
+        memset(p.next, 0, n * sizeof *p.next);
+        p.next[j] = 1.0;
+        status = tribo_stick_slip_project(m, e->sys, m->constant.still, p.next);
+        for (size_t i = 0; i < n; i++) {
+            p.project[i * n + j] = p.next[i];
+        }
+    }
     memcpy(p.q, v, half * sizeof *v);
     memset(p.u, 0, (2 * half + each) * sizeof *v);
     tribo_multiply_add(n, n, columns, 1.0, p.project, v + half, p.u);

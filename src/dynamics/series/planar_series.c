@@ -73,7 +73,7 @@ static int reserve_lines(struct event *e, size_t begins)
     return l.memory != NULL;
 }
 
-/* (limit t)'J acc, acc [ncontact] being J acc. */
+/* (limit t)'J acc, acc [ncontact] = J acc. */
 static double planar_series_along(const struct planar_contact *p, const struct planar_line *l, const double *acc)
 {
     return p->limit[0] * l->t[0] * acc[p->at] + p->limit[1] * l->t[1] * acc[p->at + 1];

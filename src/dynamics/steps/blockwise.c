@@ -266,18 +266,6 @@ TRIBO_SIMD static int move(const struct blockwise *b, const struct body_step *s,
     return (speeds ? STIRS : 0) | (grows ? GROWS : 0);
 }
 
-/* 1 if contacts hold all of block k, which is at rest, in steps of any length. */
-static int block_rests(const struct blockwise *b, const tribo_system *sys, size_t k, const double *q, const double *u)
-{
-    double a[MATRIX_BLOCK];
-    int all = 1;
-    accelerate(b, sys, k, q, u, a);
-    for (size_t i = 0; i < block_size(sys, k); i++) {
-        all &= fabs(a[i]) <= b->brake[k * MATRIX_BLOCK + i];
-    }
-    return all;
-}
-
 int tribo_blockwise_step(struct blockwise *b, tribo_system *sys, const struct body_step *s, double *energy)
 {
     const int moves = tribo_system_bases_move(sys);
@@ -310,8 +298,13 @@ int tribo_blockwise_step(struct blockwise *b, tribo_system *sys, const struct bo
     b->skipped += left;
     while (stills > 0) {
         const size_t k = b->still[--stills];
-        if (!b->wakes[k] && !block_rests(b, sys, k, s->q_to, s->u_to)) {
-            b->wakes[k] = 1;
+        double a[MATRIX_BLOCK];
+        if (b->wakes[k]) {
+            continue;
+        }
+        accelerate(b, sys, k, s->q_to, s->u_to, a);
+        for (size_t i = 0; !b->wakes[k] && i < block_size(sys, k); i++) { /* contacts hold blocks at rest in steps of any length */
+            b->wakes[k] = !(fabs(a[i]) <= b->brake[k * MATRIX_BLOCK + i]);
         }
     }
     unsigned char *last = b->awake;

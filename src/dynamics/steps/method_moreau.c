@@ -101,22 +101,6 @@ static size_t planar_of(const tribo_context *contacts)
     return contacts && !tribo_get_count(contacts, TRIBO_COUNT_PLANAR, &planar) ? planar : 0;
 }
 
-/* Creates m->contacts, with the planar contacts of the system. Returns 0 if out of memory. */
-static int make_contacts(struct moreau *m, const tribo_system *sys)
-{
-    tribo_destroy(m->contacts);
-    m->contacts = NULL;
-    m->settings = sys->changes;
-    m->tell = 1;
-    /* a clone is made again where settings change; the law of a context by create accepts all static limits */
-    if (planar_of(sys->contacts)) {
-        tribo_clone(sys->contacts, &m->contacts);
-    } else {
-        tribo_create(&m->contacts, sys->ncontact);
-    }
-    return m->contacts != NULL;
-}
-
 /* Computes the factor, S^-1 J', and contacts with the operator J S^-1 J'. Returns a status. */
 static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
 {
@@ -128,10 +112,20 @@ static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
     /* S^-1 J' is kept up to 1/5 of the entries of a sparse factor: a step then solves with S once instead of twice. */
     const int keeps =
         !m->matrix.sparse.sparse || sys->ncontact * sys->ndof <= tribo_sparse_factor_entries(m->matrix.sparse.sparse) / 5;
+    tribo_destroy(m->contacts);
+    m->contacts = NULL;
+    m->settings = sys->changes;
+    m->tell = 1;
+    /* a clone is made again where settings change; the law of a context by create accepts all static limits */
+    if (planar_of(sys->contacts)) {
+        tribo_clone(sys->contacts, &m->contacts);
+    } else {
+        tribo_create(&m->contacts, c);
+    }
     free(m->response);
     m->response = keeps ? malloc((c * sys->ndof + 1) * sizeof *m->response) : NULL;
     double *r = calloc(c * c + 1, sizeof *r), *own = malloc((sys->direction.first[c] + 1) * sizeof *own);
-    const int done = r && own && (m->response || !keeps) && make_contacts(m, sys) &&
+    const int done = r && own && m->contacts && (m->response || !keeps) &&
                      tribo_delassus_by_columns(&sys->direction, tribo_step_matrix_solve, &m->matrix, m->response, r, own);
     if (done && !m->matrix.pivot) {
         tribo_even_out(c, r);

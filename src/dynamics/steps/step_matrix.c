@@ -146,16 +146,6 @@ void tribo_step_band_free(struct step_band *b)
     *b = (struct step_band){0};
 }
 
-/* 1 if contacts have bodies of their own, and S is symmetric and narrow enough to save work. Sets body and lever. */
-static int applies(struct step_band *b, const tribo_system *sys, const struct step_matrix *m)
-{
-    size_t i, j;
-    double x, y;
-    memset(b->held, 0, m->n);
-    return sys->ncontact && !sys->compliance.count && m->below == m->above && 2 * m->below <= sys->ncontact &&
-           tribo_step_form_bodies(&sys->direction, b->body, b->lever, b->held) && !tribo_matrix_flaw(&m->s, 1, &i, &j, &x, &y);
-}
-
 /* Factorizes S without held bodies. Returns the place of a pivot that is not positive, or n. */
 static size_t band_factorize(struct step_band *b)
 {
@@ -185,7 +175,12 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const s
     if (!b->body) {
         return TRIBO_ERR_MEMORY;
     }
-    if (!applies(b, sys, m)) {
+    /* contacts must have bodies of their own, and S be symmetric and narrow enough to save work */
+    size_t i, j;
+    double x, y;
+    memset(b->held, 0, n);
+    if (!count || sys->compliance.count || m->below != m->above || 2 * m->below > count ||
+        !tribo_step_form_bodies(&sys->direction, b->body, b->lever, b->held) || tribo_matrix_flaw(&m->s, 1, &i, &j, &x, &y)) {
         return TRIBO_OK;
     }
     free(b->l);
@@ -197,7 +192,7 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const s
     for (size_t d = 0; d < n; d++) {
         b->contact[d] = count;
     }
-    for (size_t i = 0; i < count; i++) {
+    for (i = 0; i < count; i++) {
         b->contact[b->body[i]] = i;
         b->own[i] = tribo_matrix_get(&m->s, b->body[i], b->body[i]);
     }
