@@ -5,7 +5,6 @@
 #include "common/simd.h"
 #include "common/zeros.h"
 #include "linalg.h"
-#include "triplets.h"
 #include "union_find.h"
 
 #include <float.h>

@@ -87,7 +87,7 @@ static size_t find_diagonals(const struct matrix *a, ptrdiff_t *offset)
     return count * a->rows <= 2 * a->first[a->rows] ? count : 0;
 }
 
-/* Adds the diagonals to complete rows, and sets identity. Returns 1, or 0 with a freed if out of memory. */
+/* Adds the diagonals to complete rows. Returns 1, or 0 with a freed if out of memory. */
 static int matrix_finish(struct matrix *a)
 {
     ptrdiff_t offset[MOST_DIAGONALS];
@@ -105,10 +105,6 @@ static int matrix_finish(struct matrix *a)
         }
         memcpy(a->offset, offset, a->diagonals * sizeof *offset);
         fill_blocks(a);
-    }
-    a->identity = a->rows == a->cols && a->diagonals == 1;
-    for (size_t i = 0; a->identity && i < a->rows; i++) {
-        a->identity = a->first[i + 1] == i + 1 && a->col[i] == i && a->val[i] == 1.0;
     }
     return 1;
 }
@@ -151,9 +147,7 @@ int tribo_matrix_diagonal(struct matrix *a, size_t n, const double *entries)
 void tribo_matrix_get_row(const struct matrix *a, size_t i, double *x)
 {
     memset(x, 0, a->cols * sizeof *x);
-    for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-        x[a->col[k]] = a->val[k];
-    }
+    tribo_matrix_add_row(a, i, 1.0, x);
 }
 
 void *tribo_copy_of(const void *from, size_t count, size_t size, int *done)
@@ -211,37 +205,56 @@ int tribo_matrix_transpose(struct matrix *a, const struct matrix *from)
     return matrix_finish(a);
 }
 
-int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_t n, const size_t *i, const size_t *j,
-                               const double *v)
+void tribo_triplets_put(struct triplets *t, size_t i, size_t j, double v)
 {
-    struct matrix by_column;
-    *a = (struct matrix){0};
-    if (!matrix_create(&by_column, cols, rows, n)) {
-        return 0;
+    if (v != 0.0 && t->count == t->room && !t->failed) {
+        const size_t room = 2 * t->room + 64;
+        struct triplet *more = realloc(t->entry, room * sizeof *more);
+        t->failed = !more;
+        t->entry = more ? more : t->entry;
+        t->room = more ? room : t->room;
     }
-    size_t *next = by_column.first + 1; /* next[c]: place of the next entry of column c */
-    for (size_t k = 0; k < n; k++) {
-        next[j[k] + 1]++;
+    if (v != 0.0 && !t->failed) {
+        t->entry[t->count++] = (struct triplet){i, j, v};
     }
-    for (size_t c = 0; c < cols; c++) {
-        next[c + 1] += next[c];
+}
+
+void tribo_triplets_put_row(struct triplets *t, size_t row, const struct matrix *a, size_t i)
+{
+    for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
+        tribo_triplets_put(t, row, a->col[e], a->val[e]);
     }
-    for (size_t k = 0; k < n; k++) {
-        by_column.col[next[j[k]]] = i[k];
-        by_column.val[next[j[k]]++] = v[k];
+}
+
+int tribo_triplets_finish(struct triplets *t, size_t rows, size_t cols, struct matrix *to)
+{
+    struct matrix by_column = {0};
+    int done = !t->failed && matrix_create(&by_column, cols, rows, t->count);
+    if (done) {
+        size_t *next = by_column.first + 1; /* next[c]: place of the next entry of column c */
+        for (size_t k = 0; k < t->count; k++) {
+            next[t->entry[k].col + 1]++;
+        }
+        for (size_t c = 0; c < cols; c++) {
+            next[c + 1] += next[c];
+        }
+        for (size_t k = 0; k < t->count; k++) {
+            const size_t at = next[t->entry[k].col]++;
+            by_column.col[at] = t->entry[k].row;
+            by_column.val[at] = t->entry[k].value;
+        }
+        done = tribo_matrix_transpose(to, &by_column);
     }
-    const int done = tribo_matrix_transpose(a, &by_column);
     tribo_matrix_free(&by_column);
+    free(t->entry);
+    *t = (struct triplets){0};
     return done;
 }
 
 void tribo_matrix_spread(const struct matrix *a, double *dense)
 {
-    memset(dense, 0, a->rows * a->cols * sizeof *dense);
     for (size_t i = 0; i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            dense[i * a->cols + a->col[k]] = a->val[k];
-        }
+        tribo_matrix_get_row(a, i, dense + i * a->cols);
     }
 }
 
@@ -256,7 +269,6 @@ double *tribo_matrix_to_dense(const struct matrix *a)
 
 void tribo_matrix_scale_rows(struct matrix *a, const double *factor)
 {
-    a->identity = 0;
     for (size_t i = 0; i < a->rows; i++) {
         for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
             a->val[k] *= factor[i];

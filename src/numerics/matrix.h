@@ -22,13 +22,29 @@ struct matrix {
     ptrdiff_t *offset; /* [diagonals] j - i, ascending; NULL if rows are few; owns the memory of block and fast */
     size_t *block;     /* [blocks] places in fast; equal neighbouring blocks share one place */
     double *fast;      /* [places][diagonals][MATRIX_BLOCK] entries by diagonals */
-    int identity;      /* 1: A x = x */
 };
+
+/* Entries in any order, collected one by one. */
+struct triplets {
+    size_t count, room;
+    struct triplet {
+        size_t row, col;
+        double value;
+    } *entry;
+    int failed; /* 1: out of memory */
+};
+
+/* Appends the entry (i, j), unless v is 0. */
+void tribo_triplets_put(struct triplets *t, size_t i, size_t j, double v);
+
+/* Appends row i of a as a part of row `row`. */
+void tribo_triplets_put_row(struct triplets *t, size_t row, const struct matrix *a, size_t i);
+
+/* to [rows][cols] = the matrix of the entries; frees t. Returns 1, or 0 if out of memory, also in an earlier call. */
+int tribo_triplets_finish(struct triplets *t, size_t rows, size_t cols, struct matrix *to);
 
 /* Each returns 1, or 0 with a zeroed if out of memory. tribo_matrix_free takes a zeroed a. */
 int tribo_matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const double *entries);
-int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_t n, const size_t *i, const size_t *j,
-                               const double *v);
 int tribo_matrix_diagonal(struct matrix *a, size_t n, const double *entries); /* NULL: ones */
 int tribo_matrix_copy(struct matrix *a, const struct matrix *from);
 int tribo_matrix_transpose(struct matrix *a, const struct matrix *from);
@@ -81,6 +97,14 @@ static inline double tribo_matrix_row_size(const struct matrix *a, size_t i, con
     return sum;
 }
 
+/* x [cols] += factor times row i of A. */
+static inline void tribo_matrix_add_row(const struct matrix *a, size_t i, double factor, double *x)
+{
+    for (size_t k = a->first[i], end = a->first[i + 1]; k < end; k++) {
+        x[a->col[k]] += factor * a->val[k];
+    }
+}
+
 /* Sets x [cols] = row i of A. */
 void tribo_matrix_get_row(const struct matrix *a, size_t i, double *x);
 
@@ -89,9 +113,6 @@ void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, dou
 
 /* y = A x. */
 void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y);
-
-/* Returns A x: x if A is the identity, room [rows] otherwise. */
-const double *tribo_matrix_image(const struct matrix *a, const double *x, double *room);
 
 /* y += factor A x. */
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y);

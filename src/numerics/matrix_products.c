@@ -88,21 +88,8 @@ void tribo_matrix_multiply_add(const struct matrix *a, double factor, const doub
 
 void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y)
 {
-    if (a->identity) {
-        memmove(y, x, a->rows * sizeof *y);
-        return;
-    }
     memset(y, 0, a->rows * sizeof *y);
     tribo_matrix_multiply_add(a, 1.0, x, y);
-}
-
-const double *tribo_matrix_image(const struct matrix *a, const double *x, double *room)
-{
-    if (a->identity) {
-        return x;
-    }
-    tribo_matrix_multiply(a, x, room);
-    return room;
 }
 
 void tribo_matrix_multiply_all(const struct matrix *a, size_t count, const double *x, double *y)
@@ -163,11 +150,14 @@ int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, doubl
         tribo_even_out(a->rows, to);
         return 1;
     }
-    double *x = malloc(2 * z->rows * sizeof *x);
+    double *x = malloc(2 * z->rows * sizeof *x), *image = x && a->rows ? x + z->rows : x;
     const int done = x && tribo_matrix_transpose(&turned, z);
     for (size_t k = 0; done && k < z->cols; k++) {
         tribo_matrix_get_row(&turned, k, x);
-        tribo_matrix_multiply(&turned, a->rows ? tribo_matrix_image(a, x, x + z->rows) : x, to + k * z->cols);
+        if (a->rows) {
+            tribo_matrix_multiply(a, x, image);
+        }
+        tribo_matrix_multiply(&turned, image, to + k * z->cols);
     }
     if (done) {
         tribo_even_out(z->cols, to);

@@ -290,8 +290,8 @@ void tribo_modal_effects(const struct modal_build *b, const double *y, double om
     }
     for (size_t i = 0; i < c; i++) {
         on[i * stride] = h->key[i] == 2 ? rate[i] : h->key[i] == 0 || base ? v[i] : 0.0;
-        for (size_t e = j->first[i]; rate[i] != 0.0 && e < j->first[i + 1]; e++) {
-            force[j->col[e]] -= j->val[e] * rate[i];
+        if (rate[i] != 0.0) {
+            tribo_matrix_add_row(j, i, -rate[i], force);
         }
     }
     if (h->rests > 0) {

@@ -150,9 +150,7 @@ static void force_modes(struct modal_build *b, size_t s, double *work)
         const double complex unit = part ? -I : 1.0;
         memset(work, 0, 2 * n * sizeof *work);
         if (i < sys->ncontact) {
-            for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
-                force[j->col[e]] = -j->val[e] * value[i];
-            }
+            tribo_matrix_add_row(j, i, -value[i], force);
         } else {
             for (size_t e = 0; w->drives == DRIVES_LOAD && e < w->count; e++) {
                 load[w->index[e]] = -value[e];

@@ -37,9 +37,7 @@ static int catch_up(struct variation *x)
 static void add_transposed(const struct matrix *a, double factor, const double *x, double *to)
 {
     for (size_t i = 0; i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            to[a->col[k]] += factor * a->val[k] * x[i];
-        }
+        tribo_matrix_add_row(a, i, factor * x[i], to);
     }
 }
 
@@ -118,7 +116,7 @@ static void find_stops(struct variation *x)
         if (stops(x, i)) {
             double *row = x->row + x->count * n;
             memset(row, 0, n * sizeof *row);
-            tribo_matrix_get_row(&x->sys->direction, i, row + x->sys->ndof);
+            tribo_matrix_add_row(&x->sys->direction, i, 1.0, row + x->sys->ndof);
             x->slope[x->count] = x->rate[i];
             x->contact[x->count++] = i;
         }

@@ -8,7 +8,6 @@
 #include "common/layout.h"
 #include "common/real.h"
 #include "dynamics/system/model.h"
-#include "numerics/triplets.h"
 
 /* J_i phi is 0 below this part of the sum of its |terms|, where rounding keeps less than two digits, as where a mode moves both
  * sides of the contact alike. A contact can hold nothing by such a velocity. */

@@ -156,9 +156,7 @@ static void push(struct moreau *m, const tribo_system *sys, double h, const doub
     }
     memset(m->push, 0, n * sizeof *m->push);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-            m->push[j->col[k]] += h * f[i] * j->val[k];
-        }
+        tribo_matrix_add_row(j, i, h * f[i], m->push);
     }
     tribo_step_matrix_solve(&m->matrix, 1, m->push);
     tribo_add(u, 1.0, m->push, n);
@@ -200,7 +198,7 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
     for (size_t i = 0; i < n; i++) {
         s->u[i] = from[i] + 0.5 * h * u[i];
     }
-    if (sys->mass.rows && !sys->mass.identity && !sys->unsolved) {
+    if (sys->mass.rows && !sys->unsolved) {
         tribo_matrix_multiply(&sys->mass, p, m->push);
         memcpy(p, m->push, n * sizeof *p);
     }

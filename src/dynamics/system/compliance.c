@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "delassus.h"
 #include "system.h"
-#include "numerics/triplets.h"
 #include "common/real.h"
 
 #include <math.h>

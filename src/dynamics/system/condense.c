@@ -10,7 +10,6 @@
 #include <string.h>
 
 #include "model.h"
-#include "numerics/triplets.h"
 #include "common/layout.h"
 #include "common/real.h"
 

@@ -51,20 +51,12 @@ static int find_limit_rates(tribo_system *sys, double *df_dt)
     return tribo_system_explain(sys, status);
 }
 
-/* to [a->cols] += factor times row i of a; nothing without rows. */
-static void add_row(const struct matrix *a, size_t i, double factor, double *to)
-{
-    for (size_t e = a->rows ? a->first[i] : 0, end = a->rows ? a->first[i + 1] : 0; e < end; e++) {
-        to[a->col[e]] += factor * a->val[e];
-    }
-}
-
 /* to [rows][stride] += factor a b, for a dense a [rows][b->rows]. */
 static void jacobian_add_product(size_t rows, double factor, const double *a, const struct matrix *b, size_t stride, double *to)
 {
     for (size_t k = 0; k < rows * b->rows; k++) {
         if (a[k] != 0.0) {
-            add_row(b, k % b->rows, factor * a[k], to + k / b->rows * stride);
+            tribo_matrix_add_row(b, k % b->rows, factor * a[k], to + k / b->rows * stride);
         }
     }
 }
@@ -81,8 +73,10 @@ static void write_rows(tribo_system *sys, const struct tangents *d, double *dfdy
     memset(dfdy, 0, size * size * sizeof *dfdy);
     for (size_t i = 0; i < n; i++) {
         dfdy[i * size + n + i] = 1.0;
-        add_row(&sys->stiffness, i, -1.0, rates + i * size);
-        add_row(&sys->damping, i, -1.0, rates + i * size + n);
+        tribo_matrix_add_row(&sys->stiffness, i, -1.0, rates + i * size);
+        if (sys->damping.rows) {
+            tribo_matrix_add_row(&sys->damping, i, -1.0, rates + i * size + n);
+        }
     }
     jacobian_add_product(m, 1.0, d->df_da, j, n, d->pull);
     tribo_multiply_add(m, n, size, 1.0, d->pull, rates, d->df_dy);

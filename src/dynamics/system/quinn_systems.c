@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "model.h"
-#include "numerics/triplets.h"
 
 /* Sets *sys = made, or destroys made if status is an error. Returns status. */
 static int quinn_finish(tribo_system **sys, tribo_system *made, int status)

@@ -148,12 +148,8 @@ void tribo_system_add_part(const tribo_system *sys, size_t d, double part, doubl
         q[k] += part;
         return;
     }
-    for (size_t e = x->follow.first[w]; e < x->follow.first[w + 1]; e++) {
-        q[x->follow.col[e]] += x->follow.val[e] * part;
-    }
-    for (size_t e = x->give.first[w]; e < x->give.first[w + 1]; e++) {
-        f[x->give.col[e]] += x->give.val[e] * part;
-    }
+    tribo_matrix_add_row(&x->follow, w, part, q);
+    tribo_matrix_add_row(&x->give, w, part, f);
 }
 
 void tribo_system_read_combination(const tribo_system *sys, const double *c, double *to)
