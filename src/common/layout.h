@@ -7,8 +7,19 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "zeros.h"
+/* Returns zeroed memory, or NULL; not NULL for count 0. Small blocks: malloc reuses memory just freed, calloc of the GNU C
+ * library does not. Large blocks: memory from the system is zero already, and calloc does not clear it again. */
+static inline void *tribo_zeros(size_t count, size_t size)
+{
+    enum { FRESH = 1024 };
+    if (count > FRESH / size) {
+        return calloc(count, size);
+    }
+    void *memory = malloc(count * size + 1);
+    return memory ? memset(memory, 0, count * size) : NULL;
+}
 
 struct layout {
     char *memory; /* NULL in the first pass */

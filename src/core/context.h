@@ -13,7 +13,7 @@
 #include "core/operator/operator.h"
 #include "core/law/law.h"
 #include "core/planar/planar.h"
-#include "common/plural.h"
+#include "common/text.h"
 #include "common/real.h"
 #include "common/simd.h"
 

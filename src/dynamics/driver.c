@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "common/real.h"
-#include "common/zeros.h"
+#include "common/layout.h"
 
 int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const struct method *m)
 {

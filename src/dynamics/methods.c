@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/name.h"
-#include "common/zeros.h"
+#include "common/text.h"
+#include "common/layout.h"
 
 static const struct method automatic;
 

@@ -5,7 +5,7 @@
 #include "tribo/tribo_gsl.h"
 
 #include "common/layout.h"
-#include "common/name.h"
+#include "common/text.h"
 #include "common/real.h"
 
 #include <fenv.h>

@@ -3,7 +3,6 @@
 #include "common/layout.h"
 #include "common/real.h"
 #include "common/simd.h"
-#include "common/zeros.h"
 #include "linalg.h"
 #include "union_find.h"
 
@@ -124,23 +123,12 @@ static inline double weighted(const struct elimination *e, size_t i, size_t colu
     return x > e->zero * e->size[at] ? y : 0.0;
 }
 
-/* Returns the largest weighted entry of row i beside the pivots: eight maxima side by side, since one waits for itself. */
-TRIBO_SIMD static double find_most(const struct elimination *e, size_t i)
+/* Returns the largest weighted entry of row i beside the pivots. */
+static double find_most(const struct elimination *e, size_t i)
 {
-    enum { LANES = 8 };
-    const size_t t = e->tie->touched;
-    double part[LANES] = {0.0}, most = 0.0;
-    size_t l = e->tie->rank;
-    for (; l + LANES <= t; l += LANES) {
-        for (size_t k = 0; k < LANES; k++) {
-            part[k] = greater(part[k], weighted(e, i, l + k));
-        }
-    }
-    for (; l < t; l++) {
+    double most = 0.0;
+    for (size_t l = e->tie->rank; l < e->tie->touched; l++) {
         most = greater(most, weighted(e, i, l));
-    }
-    for (size_t k = 0; k < LANES; k++) {
-        most = greater(most, part[k]);
     }
     return most;
 }

@@ -15,7 +15,7 @@ foreach(file IN LISTS files)
     string(REGEX REPLACE "\\[%zu\\]" "" rest "${rest}")
     string(REGEX REPLACE "contacts %zu, %zu" "" rest "${rest}")
     string(REGEX REPLACE "(contact|column|degree of freedom|of mode) %zu" "" rest "${rest}")
-    # numbers of things (of one, too: plural.h), sizes of matrices, ranks, and values of a name
+    # numbers of things (of one, too: text.h), sizes of matrices, ranks, and values of a name
     string(REGEX REPLACE "%zu (coupled |held )?[a-z]+%s( |\"|,|:)" "" rest "${rest}")
     string(REGEX REPLACE "the system has %zu" "" rest "${rest}")
     string(REGEX REPLACE "%zu x %zu" "" rest "${rest}")

@@ -4,7 +4,7 @@
 #include "tribo/tribo.h"
 
 #include "law.h"
-#include "common/name.h"
+#include "common/text.h"
 
 static const struct law *const laws[] = {
     [TRIBO_COULOMB] = &tribo_law_coulomb, [TRIBO_VELOCITY_LIMITED] = &tribo_law_velocity_limited,

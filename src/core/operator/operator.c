@@ -11,7 +11,6 @@
 #include "common/simd.h"
 #include "numerics/twofold.h"
 #include "numerics/union_find.h"
-#include "common/zeros.h"
 
 /* Smaller groups are dense, whatever their entries. */
 #define SPARSE_FROM 128

@@ -11,7 +11,7 @@
 #include "dynamics/events/events.h"
 #include "motion.h"
 #include "common/real.h"
-#include "common/zeros.h"
+#include "common/layout.h"
 
 /* Bytes of structures above which all structures are dropped. */
 #define CACHE_BYTES ((size_t)512 << 20)

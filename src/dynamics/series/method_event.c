@@ -13,7 +13,6 @@
 #include "event_series.h"
 #include "common/layout.h"
 #include "common/real.h"
-#include "common/zeros.h"
 
 /* Error of a step of a periodic motion, in parts of the motion: it must not depend on where steps end. */
 #define SHARP 1e-13

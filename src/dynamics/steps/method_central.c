@@ -14,7 +14,7 @@
 #include "dynamics/system/cos_sin.h"
 #include "fixed_steps.h"
 #include "common/real.h"
-#include "common/zeros.h"
+#include "common/layout.h"
 
 /* Runs of steps of at most 4 degrees of freedom and 4 contacts, which may share bodies: all matrices are
  * small squares, and loads, bases and limits are found for all steps of a run at once.

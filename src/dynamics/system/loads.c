@@ -4,7 +4,6 @@
 #include "system.h"
 #include "common/layout.h"
 #include "common/real.h"
-#include "common/zeros.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "system.h"
 #include "common/real.h"
-#include "common/zeros.h"
+#include "common/layout.h"
 
 #include <math.h>
 #include <stdarg.h>

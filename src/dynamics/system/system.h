@@ -9,7 +9,7 @@
 
 #include "numerics/linalg.h"
 #include "compliance.h"
-#include "common/plural.h"
+#include "common/text.h"
 
 /* The function of time to which a harmonic or table adds: load, base velocity b(t), or limits. */
 enum drives { DRIVES_LOAD, DRIVES_BASE, DRIVES_LIMIT };
