@@ -7,7 +7,6 @@
 
 #include <stddef.h>
 #include <stdint.h>
-#include <string.h>
 
 #include "compiler.h"
 
@@ -52,23 +51,6 @@ static inline double *tribo_aligned(double *x)
 {
     enum { BYTES = TRIBO_LINE * sizeof *x };
     return x ? x + (BYTES - (uintptr_t)x % BYTES) % BYTES / sizeof *x : NULL;
-}
-
-/* Prefetches memory that is read in irregular order. */
-static inline void tribo_expect(const void *from, size_t bytes, int written)
-{
-#if defined(TRIBO_GNU_C)
-    enum { LINE = 64 };
-    for (size_t i = 0; i < bytes; i += LINE) {
-        if (written) {
-            __builtin_prefetch((const char *)from + i, 1);
-        } else {
-            __builtin_prefetch((const char *)from + i, 0);
-        }
-    }
-#else
-    (void)from, (void)bytes, (void)written;
-#endif
 }
 
 #endif

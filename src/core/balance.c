@@ -180,9 +180,6 @@ static int balance_all(tribo_context *ctx, const double *v, const double *a, int
     tribo_begin_call(ctx);
     tribo_balance_each(ctx, v, a, wanted);
     for (size_t k = 0; k < ctx->memory.nsolved; k++) {
-        if (k + 2 < ctx->memory.nsolved) {
-            tribo_memory_expect(ctx->op, &ctx->memory, ctx->memory.solved_list[k + 2]);
-        }
         struct box_qp *p = tribo_collect(ctx, ctx->memory.solved_list[k]);
         const int one = ctx->set.coupling == TRIBO_PARTITION ? solve_partition(ctx, p, v, a) : solve_consistent(ctx, p, v, a);
         if (one == TRIBO_ERR_NO_CONVERGENCE) {

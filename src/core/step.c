@@ -141,9 +141,6 @@ static int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bo
     m->nsolved = 0;
     for (size_t k = 0; k < candidates; k++) {
         const size_t g = m->solved_list[k];
-        if (k + 2 < candidates) {
-            tribo_memory_expect(op, m, m->solved_list[k + 2]);
-        }
         m->solved[g] = 0;
         status = status ? status : solve_for(ctx, g, &c, &m->solved[g]);
         if (m->solved[g]) {

@@ -107,14 +107,6 @@ struct box_qp *tribo_memory_problem(const struct delassus *op, struct memory *m,
     return p;
 }
 
-void tribo_memory_expect(const struct delassus *op, const struct memory *m, size_t k)
-{
-    enum { MOST = 1024 }; /* bytes behind these follow by themselves */
-    const size_t fixed = fixed_by(&op->group[k]) * sizeof *op->fixed, kept = kept_by(&op->group[k]) * sizeof *m->store;
-    tribo_expect(op->fixed + op->group[k].fixed, fixed < MOST ? fixed : MOST, 0);
-    tribo_expect(m->store + op->group[k].kept, kept < MOST ? kept : MOST, 0);
-}
-
 /* Allocates a memory of zeros without its basis, whose size follows from ranks. Returns 0 if out of memory. */
 static int allocate_memory(struct memory *m, const struct delassus *op)
 {

@@ -75,7 +75,4 @@ void tribo_memory_free(struct memory *m);
 /* Returns the problem with views of group k. */
 struct box_qp *tribo_memory_problem(const struct delassus *op, struct memory *m, size_t k);
 
-/* Prefetches group k. */
-void tribo_memory_expect(const struct delassus *op, const struct memory *m, size_t k);
-
 #endif
