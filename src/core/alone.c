@@ -5,7 +5,6 @@
  * Outputs stay as they are where a call fails, so v and a are checked before anything is written. Then follow the contacts, chunk
  * by chunk. Arrays of a large scene are far away: kernels do not read 1/R_ii or limits that are equal for all, nor a where all
  * contacts slide. */
-#include "common/stream.h"
 #include "clusters.h"
 
 enum { FEW = 8 * TRIBO_CHUNK }; /* forces of that many contacts stay in the first-level cache */
@@ -164,25 +163,22 @@ static void find_each(tribo_context *ctx, const struct call *call, double *f)
  * cache: forces would have to be written to memory, and read again. */
 static void find_all(tribo_context *ctx, const struct call *call, double holds, double *f)
 {
-    struct stream to;
+    double room[TRIBO_CHUNK];
     if (ctx->n <= FEW) {
         find_each(ctx, call, f);
         alone_finish(ctx, SLIPS_IN_FORCES, holds);
         return;
     }
-    tribo_stream_begin(&to, f, ctx->n >= TRIBO_MANY);
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
-        double *force = tribo_stream_room(&to);
+        double *force = f ? f + i : room;
         const int slides = call->find(ctx, call, k, force);
         if (slides && ctx->follow.chunk[k].least > 0.0) {
             find_directions(n, call->v + i, ctx->last.slip + i);
         } else {
             tribo_find_slips(n, force, tribo_chunk_contacts(ctx, i).limit, holds, ctx->last.slip + i);
         }
-        tribo_stream_put(&to, n);
     }
-    tribo_stream_end(&to);
     alone_finish(ctx, SLIPS_WRITTEN, holds);
 }
 

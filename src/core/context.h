@@ -17,9 +17,6 @@
 #include "common/real.h"
 #include "common/simd.h"
 
-/* From this number of contacts on, an output does not stay in any cache. */
-#define TRIBO_MANY ((size_t)1 << 22)
-
 /* Widths and rates of a chunk's contacts: different; equal; equal to those of the chunk before. */
 enum { UNEVEN, EVEN, EVEN_AS_BEFORE };
 

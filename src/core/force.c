@@ -2,7 +2,6 @@
 /* Forces, and their derivatives, of contacts whose f_eq is given; the reversal memory. */
 #include <math.h>
 
-#include "common/stream.h"
 #include "clusters.h"
 
 /* 1 if the force of contact i, at v [n], depends on f_eq: elsewhere feq need not be finite, nor set. */
@@ -44,12 +43,9 @@ enum { FORCES, BY_V, BY_FEQ, BY_LIMIT, OUTPUTS };
 static void find_outputs(const tribo_context *ctx, int plain, const double *v, const double *feq, double *const *out)
 {
     const int derivatives = out[BY_V] || out[BY_FEQ] || out[BY_LIMIT];
-    const int far = ctx->n >= TRIBO_MANY, whole = plain && !ctx->set.breaking && !far && !derivatives;
+    const int whole = plain && !ctx->set.breaking && !derivatives;
     const double *given = ctx->set.law->uses_feq ? feq : v;
-    struct stream stream[OUTPUTS];
-    for (int k = 0; k < OUTPUTS; k++) {
-        tribo_stream_begin(&stream[k], out[k], far);
-    }
+    double spare[OUTPUTS][TRIBO_CHUNK];
     for (size_t i = 0, n; i < ctx->n; i += n) {
         double room[TRIBO_CHUNK], limit[TRIBO_CHUNK], *to[OUTPUTS];
         const struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
@@ -69,19 +65,13 @@ static void find_outputs(const tribo_context *ctx, int plain, const double *v, c
             c.limit = c.bound = limit;
         }
         for (int k = 0; k < OUTPUTS; k++) {
-            to[k] = tribo_stream_room(&stream[k]);
+            to[k] = out[k] ? out[k] + i : spare[k];
         }
         if (derivatives) {
             tribo_law_tangents(ctx, &c, i, n, v + i, used, &(struct tangents){to[FORCES], to[BY_V], to[BY_FEQ], to[BY_LIMIT]});
         } else if (out[FORCES]) {
             ctx->set.law->force(&c, n, v + i, used, to[FORCES]);
         }
-        for (int k = 0; k < OUTPUTS; k++) {
-            tribo_stream_put(&stream[k], n);
-        }
-    }
-    for (int k = 0; k < OUTPUTS; k++) {
-        tribo_stream_end(&stream[k]);
     }
 }
 

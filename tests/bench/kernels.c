@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "../../src/damper/output.h"
-#include "../../src/common/stream.h"
+#include "../../src/common/simd.h"
 #include "harness.h"
 #include "kernel_scene.h"
 
@@ -37,12 +37,12 @@ static void run_arrays(void *data)
 }
 
 /* The memory that a call has to pass over: what it is given is looked at as a whole before anything is written; then it is read
- * again, with what the context knows of each contact, while outputs go past the caches if they are long. */
+ * again, with what the context knows of each contact, while outputs are written. */
 struct traffic {
     size_t n, read, written;
     const double *in[8];
     double *out[4];
-    int past, odd;
+    int odd;
 };
 
 TRIBO_SIMD static int any_odd(size_t n, const double *x, const double *y)
@@ -68,10 +68,6 @@ TRIBO_SIMD static void add_to(size_t n, double *restrict sum, const double *rest
 static void run_traffic(void *data)
 {
     struct traffic *t = data;
-    struct stream to[4];
-    for (size_t k = 0; k < t->written; k++) {
-        tribo_stream_begin(&to[k], t->out[k], t->past);
-    }
     t->odd += any_odd(t->n, t->in[0], t->in[1]);
     for (size_t i = 0; i < t->n; i += TRIBO_CHUNK) {
         double sum[TRIBO_CHUNK] = {0};
@@ -80,12 +76,8 @@ static void run_traffic(void *data)
             add_to(n, sum, t->in[k] + i);
         }
         for (size_t k = 0; k < t->written; k++) {
-            memcpy(tribo_stream_room(&to[k]), sum, n * sizeof *sum);
-            tribo_stream_put(&to[k], n);
+            memcpy(t->out[k] + i, sum, n * sizeof *sum);
         }
-    }
-    for (size_t k = 0; k < t->written; k++) {
-        tribo_stream_end(&to[k]);
     }
 }
 
@@ -102,8 +94,7 @@ static struct traffic traffic_of(const struct kernel_scene *s, enum likeness lik
     const struct passes *p = &passes[s->kernel];
     struct traffic t = {s->n,       p->given + p->known + (like < ALL ? p->limits : 0) + (like == NOTHING ? p->widths : 0),
                         p->written, {s->v, p->given > 1 ? s->a : s->v},
-                        {NULL},     s->n > 4000000 && s->kernel != SET_LIMIT,
-                        0};
+                        {NULL},     0};
     for (size_t k = p->given; k < t.read; k++) {
         t.in[k] = known + (k - p->given) * s->n;
     }
