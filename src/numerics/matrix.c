@@ -62,36 +62,27 @@ static void fill_blocks(struct matrix *a)
     }
 }
 
-/* offset [MOST_DIAGONALS] = the diagonals j - i that a has entries on, ascending. Returns their number, or 0 if they are too
- * many, or more than half empty. */
-static size_t find_diagonals(const struct matrix *a, ptrdiff_t *offset)
+/* Adds the diagonals to complete rows, unless they are too many, or more than half empty. Returns 1, or 0 with a freed if out of
+ * memory. */
+static int matrix_finish(struct matrix *a)
 {
+    ptrdiff_t offset[MOST_DIAGONALS + 1];
     size_t count = 0;
     for (size_t i = 0; i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+        for (size_t k = a->first[i]; count <= MOST_DIAGONALS && k < a->first[i + 1]; k++) {
             const ptrdiff_t d = (ptrdiff_t)a->col[k] - (ptrdiff_t)i;
             size_t at = 0;
             while (at < count && offset[at] < d) {
                 at++;
             }
             if (at == count || offset[at] != d) {
-                if (count == MOST_DIAGONALS) {
-                    return 0;
-                }
                 memmove(offset + at + 1, offset + at, (count - at) * sizeof *offset);
                 offset[at] = d;
                 count++;
             }
         }
     }
-    return count * a->rows <= 2 * a->first[a->rows] ? count : 0;
-}
-
-/* Adds the diagonals to complete rows. Returns 1, or 0 with a freed if out of memory. */
-static int matrix_finish(struct matrix *a)
-{
-    ptrdiff_t offset[MOST_DIAGONALS];
-    a->diagonals = find_diagonals(a, offset);
+    a->diagonals = count <= MOST_DIAGONALS && count * a->rows <= 2 * a->first[a->rows] ? count : 0;
     if (a->diagonals && a->rows > MATRIX_FEW) {
         struct layout l = {0};
         do {

@@ -190,40 +190,13 @@ void tribo_sparse_factor_half_solve(struct sparse_factor *f, int back, double *x
     }
 }
 
-/* Finds the inertia of L D L', a column of which begins with its entry of D. Returns a status. */
-static int find_inertia(const cholmod_factor *l, const double *size, struct inertia *found)
-{
-    const SuiteSparse_long *first = l->p, *count = l->nz, *row = l->i, *order = l->Perm;
-    const double *x = l->x;
-    double *sum = calloc(l->n + 1, sizeof *sum); /* [n] sum_k |L_ik|^2 |D_k| */
-    struct inertia all = {0, 0.0};
-    int finite = 1;
-    if (!sum) {
-        return TRIBO_ERR_MEMORY;
-    }
-    for (size_t k = 0; k < l->n; k++) {
-        const double *column = x + first[k], d = column[0];
-        finite &= isfinite(d);
-        all.negative += d < 0.0;
-        sum[k] += fabs(d);
-        for (SuiteSparse_long e = 1; e < count[k]; e++) {
-            sum[row[first[k] + e]] += column[e] * column[e] * fabs(d);
-        }
-    }
-    for (size_t k = 0; k < l->n; k++) {
-        all.growth = greater(all.growth, sum[k] / fabs(size[order[k]]));
-    }
-    free(sum);
-    *found = finite ? all : *found;
-    return finite ? TRIBO_OK : TRIBO_ERR_INDEFINITE;
-}
-
 int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *a, struct matrix *spent, const double *size,
                          struct inertia *found)
 {
     cholmod_common common;
-    double nothing[2] = {0.0, 0.0};
+    double nothing[2] = {0.0, 0.0}, *sum = calloc(a->rows + 1, sizeof *sum); /* [n] sum_k |L_ik|^2 |D_k| */
     cholmod_sparse view = view_of(a);
+    struct inertia all = {0, 0.0};
     sparse_factor_start(&common);
     common.supernodal = CHOLMOD_SIMPLICIAL; /* the only one of CHOLMOD's factors that may be indefinite */
     common.final_ll = 0;
@@ -235,8 +208,22 @@ int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *
     if (upper) {
         cholmod_l_rowfac(upper, NULL, nothing, 0, l->n, l, &common);
     }
-    int status = status_of(&common);
-    status = status ? status : l && l->minor < l->n ? TRIBO_ERR_INDEFINITE : find_inertia(l, size, found);
+    int status = sum ? status_of(&common) : TRIBO_ERR_MEMORY;
+    status = !status && l->minor < l->n ? TRIBO_ERR_INDEFINITE : status;
+    for (size_t k = 0; !status && k < l->n; k++) { /* a column of L begins with its entry of D */
+        const SuiteSparse_long *first = l->p, *count = l->nz, *row = l->i, *order = l->Perm;
+        const double *column = (const double *)l->x + first[k], d = column[0];
+        status = isfinite(d) ? TRIBO_OK : TRIBO_ERR_INDEFINITE;
+        all.negative += d < 0.0;
+        sum[k] += fabs(d);
+        for (SuiteSparse_long e = 1; e < count[k]; e++) {
+            sum[row[first[k] + e]] += column[e] * column[e] * fabs(d);
+        }
+        /* row k is complete: columns behind k begin below it */
+        all.growth = greater(all.growth, sum[k] / fabs(size[order[k]]));
+    }
+    *found = status ? *found : all;
+    free(sum);
     cholmod_l_free_sparse(&upper, &common);
     cholmod_l_free_factor(&l, &common);
     cholmod_l_finish(&common);

@@ -230,18 +230,6 @@ static int box_solve_sets(struct box_qp *p)
     return tribo_box_settled(p, TRIBO_SETTLED);
 }
 
-/* Returns 1 if a dependent is to go to a bound so far away that its pull is rounding beside its force there. */
-static int box_hides(const struct box_qp *p)
-{
-    int hides = 0;
-    for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
-        const size_t i = p->order[k];
-        const double bound = p->to[i] == AT_LOWER ? p->lo[i] : p->to[i] == AT_UPPER ? p->hi[i] : 0.0;
-        hides |= p->rounding.part[i] * fabs(bound) > product(fabs(p->gradient[i]), p->scale[i] * p->scale[i]);
-    }
-    return hides;
-}
-
 /* Patience as with block pivoting (Judice and Pires 1994, Comput. Oper. Res. 21, 587): it ends when the number of changes has
  * reached no new low for a while. */
 static int box_primal_dual(struct box_qp *p)
@@ -257,7 +245,14 @@ static int box_primal_dual(struct box_qp *p)
         if (box_revise(p)) {
             return found;
         }
-        if (box_hides(p)) {
+        /* A dependent that is to go to a bound so far away that its pull is rounding beside its force there. */
+        int hides = 0;
+        for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
+            const size_t i = p->order[k];
+            const double bound = p->to[i] == AT_LOWER ? p->lo[i] : p->to[i] == AT_UPPER ? p->hi[i] : 0.0;
+            hides |= p->rounding.part[i] * fabs(bound) > product(fabs(p->gradient[i]), p->scale[i] * p->scale[i]);
+        }
+        if (hides) {
             return 0;
         }
         const size_t changes = box_change_all(p);

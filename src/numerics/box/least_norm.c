@@ -57,8 +57,9 @@ size_t tribo_null_basis(struct box_qp *p)
     return vectors;
 }
 
-/* Reflects the first vectors so that only the last of them moves contact i. */
-static void hold_contact(struct box_qp *p, size_t vectors, size_t i)
+/* Reflects the first vectors so that only the last of them moves contact i. Returns 1, or 0 if they move it by rounding only: then
+ * makes these moves 0, since to hold i would take away a vector along which others share. */
+static int hold_contact(struct box_qp *p, size_t vectors, size_t i)
 {
     const size_t size = p->group->size, last = vectors - 1;
     double *u = p->row, square = 0.0;
@@ -67,9 +68,10 @@ static void hold_contact(struct box_qp *p, size_t vectors, size_t i)
         square += u[j] * u[j];
     }
     const double length = sqrt(square);
+    const int moves = length > NULL_NOISE * tribo_resolution(size);
     u[last] += u[last] < 0.0 ? -length : length;
     const double scale = length * fabs(u[last]); /* u'u/2 */
-    for (size_t k = 0; scale > 0.0 && k < p->sets->rank + p->sets->dependents; k++) {
+    for (size_t k = 0; moves && k < p->sets->rank + p->sets->dependents; k++) {
         double *column = p->null.basis + p->order[k], sum = 0.0;
         for (size_t j = 0; j < vectors; j++) {
             sum += u[j] * column[j * size];
@@ -78,25 +80,11 @@ static void hold_contact(struct box_qp *p, size_t vectors, size_t i)
             column[j * size] -= sum / scale * u[j];
         }
     }
-    for (size_t j = 0; j < last; j++) {
+    for (size_t j = 0; j < (moves ? last : vectors); j++) {
         p->null.basis[j * size + i] = 0.0;
     }
     memset(u, 0, vectors * sizeof *u);
-}
-
-/* Returns 1 if the first vectors move contact i by more than rounding. If not, makes these moves 0: to hold i would take away a
- * vector along which others share. */
-static int can_move(struct box_qp *p, size_t vectors, size_t i)
-{
-    double square = 0.0;
-    for (size_t j = 0; j < vectors; j++) {
-        square += p->null.basis[j * p->group->size + i] * p->null.basis[j * p->group->size + i];
-    }
-    const int can = sqrt(square) > NULL_NOISE * tribo_resolution(p->group->size);
-    for (size_t j = 0; !can && j < vectors; j++) {
-        p->null.basis[j * p->group->size + i] = 0.0;
-    }
-    return can;
+    return moves;
 }
 
 /* step = the move of x to the least norm along the first vectors. */
@@ -156,10 +144,8 @@ int tribo_least_norm(struct box_qp *p)
         aim_at_least(p, vectors - held);
         const size_t hit = tribo_box_advance(p, 1.0);
         if (hit < size && held < vectors) {
-            if (can_move(p, vectors - held, hit)) {
-                hold_contact(p, vectors - held, hit);
-                p->null.held[held++] = hit;
-            }
+            p->null.held[held] = hit;
+            held += (size_t)hold_contact(p, vectors - held, hit);
         } else if (!release_contact(p, vectors, &held)) {
             break;
         }
