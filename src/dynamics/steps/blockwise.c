@@ -98,12 +98,12 @@ static void take_limits(struct blockwise *b, const tribo_system *sys)
     }
 }
 
-int tribo_blockwise_take(struct blockwise *b, tribo_system *sys)
+void tribo_blockwise_take(struct blockwise *b, tribo_system *sys)
 {
     b->revision = tribo_system_revision(sys);
     b->fits = b->body && tribo_system_is_plain(sys);
     if (!b->fits) {
-        return 0;
+        return;
     }
     b->time = NAN;
     memset(b->awake, 1, b->blocks);
@@ -118,21 +118,21 @@ int tribo_blockwise_take(struct blockwise *b, tribo_system *sys)
         }
     }
     take_limits(b, sys);
-    return 1;
 }
 
 /* Sums of accelerations and products with masses up to this size are numbers. */
 #define MOST 1e100
 
-int tribo_blockwise_take_law(struct blockwise *b, tribo_system *sys)
+void tribo_blockwise_take_law(struct blockwise *b, tribo_system *sys)
 {
     int law;
     tribo_get_law(sys->contacts, &law);
     const int relaxes = law == TRIBO_QUINN, creeps = law == TRIBO_VELOCITY_LIMITED;
-    b->has_law = tribo_blockwise_take(b, sys) && (relaxes || creeps || law == TRIBO_KARNOPP || law == TRIBO_COULOMB) &&
-                 !tribo_system_bases_move(sys) && !tribo_system_limits_vary(sys);
-    if (!b->has_law) {
-        return 0;
+    tribo_blockwise_take(b, sys);
+    b->fits = b->fits && (relaxes || creeps || law == TRIBO_KARNOPP || law == TRIBO_COULOMB) && !tribo_system_bases_move(sys) &&
+              !tribo_system_limits_vary(sys);
+    if (!b->fits) {
+        return;
     }
     /* at the edge of the band Quinn's law opposes the velocity by 2 limit before it is cut to the limit, the limited one by
      * limit */
@@ -143,9 +143,8 @@ int tribo_blockwise_take_law(struct blockwise *b, tribo_system *sys)
         const size_t d = b->body[i];
         b->band[d] = law == TRIBO_COULOMB ? 0.0 : quotient(b->room[i], fabs(b->turn[i]));
         b->rate[d] = edge > 0.0 ? edge * quotient(b->brake[d], b->band[d]) : 0.0;
-        b->has_law &= b->mass[d] <= MOST && b->brake[d] <= MOST;
+        b->fits &= b->mass[d] <= MOST && b->brake[d] <= MOST;
     }
-    return b->has_law;
 }
 
 /* -------------------------------------------------------------------------------------------------------- accelerations */

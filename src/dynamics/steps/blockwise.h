@@ -8,12 +8,11 @@
  * all blocks from the first to the last one that displacements or velocities of block k accelerate. Blocks are taken in their
  * order, so that the energy is the same sum.
  *
- * A block that is left out cannot move. In the step before it was left out it began and ended with velocity 0, and at its
- * end |a| <= |B| limit held for each of its rows. None of the blocks that accelerate it has moved in that step or since, its
- * load and its limits are constant, and bases stand still: a is the same to the last bit. A step begins with u = 0, which
- * becomes h a without friction and 0 with it: |h a| <= h |B| limit for every h, since rounding is monotonic. So the step
- * adds 0 to displacement and energy, and both arrays of states, which steps write by turns, hold the same displacement. It
- * is not enough that a step of one length did not move the block: lengths differ by rounding. */
+ * A block that is left out cannot move. In the step before, it began and ended with velocity 0, and at its end |a| <= |B| limit
+ * held for each of its rows. None of the blocks that accelerate it has moved since; load, limits and bases are constant: a is the
+ * same to the last bit. A step begins with u = 0, which becomes h a without friction and 0 with it: |h a| <= h |B| limit for every
+ * h, since rounding is monotonic. Both arrays of states, which steps write by turns, hold the same displacement. It is not enough
+ * that a step of one length did not move the block: lengths differ by rounding. */
 #ifndef TRIBO_BLOCKWISE_H
 #define TRIBO_BLOCKWISE_H
 
@@ -36,8 +35,8 @@ struct blockwise {
     unsigned char *driven;        /* [blocks] 1: a load, base or limit depends on time */
     unsigned char *awake, *wakes; /* [blocks] 1: awake in this step, not yet done; in the next step */
     size_t *still;                /* [blocks] workspace: blocks that did not move in this step */
-    int fits, has_law;            /* 1: steps, rates can be taken with the settings */
-    size_t revision;              /* of the system to which settings, fits and has_law belong */
+    int fits;                     /* 1: steps, or rates, can be taken with the settings */
+    size_t revision;              /* of the system to which settings and fits belong */
 };
 
 /* A step of central differences: velocities u at the time `from` become u_to at the time `to`, by the forces at t and q over the
@@ -52,12 +51,12 @@ struct body_step {
 int tribo_blockwise_create(struct blockwise *b, const tribo_system *sys);
 void tribo_blockwise_free(struct blockwise *b);
 
-/* Takes the system's settings for steps, and wakes all blocks. Returns fits. */
-int tribo_blockwise_take(struct blockwise *b, tribo_system *sys);
+/* Takes the system's settings for steps, and wakes all blocks. */
+void tribo_blockwise_take(struct blockwise *b, tribo_system *sys);
 
-/* Takes the system's settings for rates. Returns has_law: 1 if bases and limits are constant and the law is none of the
- * smooth ones. It costs as much as an evaluation. */
-int tribo_blockwise_take_law(struct blockwise *b, tribo_system *sys);
+/* Takes the system's settings for rates; they fit if bases and limits are constant and the law is none of the smooth ones. Costs
+ * as much as an evaluation. */
+void tribo_blockwise_take_law(struct blockwise *b, tribo_system *sys);
 
 /* Adds the work of friction to *energy. Returns 0 if the motion is not finite. */
 int tribo_blockwise_step(struct blockwise *b, tribo_system *sys, const struct body_step *s, double *energy);

@@ -165,15 +165,11 @@ static void push(struct moreau *m, const tribo_system *sys, double h, const doub
 /* Prepares steps of length h: the band solver, or all of prepare_whole. Returns a status. */
 static int moreau_prepare(struct moreau *m, const tribo_system *sys, double h)
 {
-    size_t where = 0;
     m->h = 0.0;
     m->whole = 0;
     m->held.matrix = NULL;
     int status = tribo_step_matrix_create(&m->matrix, sys, h);
-    if (!status && !planar_of(sys->contacts)) {
-        status = tribo_step_band_create(&m->held, sys, &m->matrix, &where);
-        status = tribo_step_matrix_fail(sys, status, h, where);
-    }
+    status = status || planar_of(sys->contacts) ? status : tribo_step_band_create(&m->held, sys, &m->matrix, h);
     status = status || m->held.matrix ? status : prepare_whole(m, sys, h);
     if (!status) {
         m->h = h;

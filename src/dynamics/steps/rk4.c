@@ -120,7 +120,7 @@ static int rk4_step(tribo_driver *drv, double t, double next, const double *from
 {
     struct rk4 *r = drv->own;
     const double h = next - t;
-    r->blockwise = r->alone.has_law && r->alone.revision == tribo_system_revision(drv->sys); /* an observer may change that */
+    r->blockwise = r->alone.fits && r->alone.revision == tribo_system_revision(drv->sys); /* an observer may change that */
     /* the system says what is wrong with a motion that is not finite */
     const int done = r->blockwise && take_step(drv, t, h, from, y, 1) == TRIBO_OK;
     const int status = done ? TRIBO_OK : take_step(drv, t, h, from, y, 0);

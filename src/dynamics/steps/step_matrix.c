@@ -9,10 +9,10 @@
 
 #include "common/layout.h"
 #include "common/real.h"
-#include "numerics/band.h"
 #include "numerics/lapack.h"
 
-int tribo_step_matrix_fail(const tribo_system *sys, int status, double h, size_t where)
+/* Returns status, with a message in the system: TRIBO_ERR_INDEFINITE at degree of freedom `where`, or TRIBO_ERR_MEMORY. */
+static int step_matrix_fail(const tribo_system *sys, int status, double h, size_t where)
 {
     return status == TRIBO_ERR_INDEFINITE
                ? tribo_system_fail(
@@ -52,10 +52,54 @@ int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, dou
         }
     }
     tribo_matrix_widen(&m->s, &m->below, &m->above);
-    return tribo_step_matrix_fail(sys, done ? TRIBO_OK : TRIBO_ERR_MEMORY, h, 0);
+    return step_matrix_fail(sys, done ? TRIBO_OK : TRIBO_ERR_MEMORY, h, 0);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ its factor */
+
+/* Sets the band l [n][below + 1] of L, S = L L', by the lower triangle of S: row i begins with column i - below. Rows and columns held
+ * [n] (NULL: none) are replaced by those of the identity. Returns the row of a pivot that is not positive, or n. */
+static size_t band_factorize(const struct step_matrix *m, const signed char *held, double *l)
+{
+    const struct matrix *s = &m->s;
+    const size_t width = m->below;
+    for (size_t i = 0; i < m->n; i++) {
+        const int holds = held && held[i];
+        double *own = l + i * (width + 1) + width - i; /* own[j] = l_ij */
+        memset(l + i * (width + 1), 0, (width + 1) * sizeof *l);
+        for (size_t k = s->first[i]; k < s->first[i + 1] && s->col[k] <= i; k++) {
+            own[s->col[k]] = holds || (held && held[s->col[k]]) ? 0.0 : s->val[k];
+        }
+        double pivot = holds ? 1.0 : own[i];
+        for (size_t j = i > width ? i - width : 0; !holds && j < i; j++) {
+            const double *other = l + j * (width + 1) + width - j;
+            double x = own[j];
+            for (size_t k = i > width ? i - width : 0; k < j; k++) {
+                x -= own[k] * other[k];
+            }
+            own[j] = x / other[j];
+            pivot -= own[j] * own[j];
+        }
+        if (!(pivot > 0.0)) {
+            return i;
+        }
+        own[i] = sqrt(pivot);
+    }
+    return m->n;
+}
+
+/* x [n] = (L L')^-1 x. LAPACK's upper band, by columns, is L by rows. */
+static void band_solve(const struct step_matrix *m, const double *l, double *x)
+{
+    const int rows = (int)m->n, below = (int)m->below, stride = below + 1, one = 1;
+    for (size_t i = 0; !below && i < m->n; i++) {
+        x[i] = x[i] / l[i] / l[i];
+    }
+    if (below) {
+        dtbsv_("U", "T", "N", &rows, &below, l, &stride, x, &one, 1, 1, 1);
+        dtbsv_("U", "N", "N", &rows, &below, l, &stride, x, &one, 1, 1, 1);
+    }
+}
 
 /* Returns 1 if a sparse factor costs less than the band: the band has far more entries than S, or is almost the whole matrix. */
 static int suits_sparse(const struct step_matrix *m)
@@ -97,10 +141,10 @@ int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, 
         status = tribo_cholesky_create(&m->sparse, &m->s, consumes ? &m->s : NULL, &where, &x);
     } else {
         m->band = malloc(m->n * (m->below + 1) * sizeof *m->band);
-        where = m->band ? tribo_band_factorize(&m->s, m->below, NULL, m->band) : 0;
+        where = m->band ? band_factorize(m, NULL, m->band) : 0;
         status = !m->band ? TRIBO_ERR_MEMORY : where < m->n ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
     }
-    return tribo_step_matrix_fail(sys, status, h, where);
+    return step_matrix_fail(sys, status, h, where);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- solutions */
@@ -118,7 +162,7 @@ int tribo_step_matrix_solve(const void *matrix, size_t count, double *x)
         return 1;
     }
     for (size_t k = 0; k < count; k++) {
-        tribo_band_solve(m->n, m->below, m->band, x + k * m->n);
+        band_solve(m, m->band, x + k * m->n);
     }
     return 1;
 }
@@ -146,15 +190,7 @@ void tribo_step_band_free(struct step_band *b)
     *b = (struct step_band){0};
 }
 
-/* Factorizes S without held bodies. Returns the place of a pivot that is not positive, or n. */
-static size_t band_factorize(struct step_band *b)
-{
-    const size_t where = tribo_band_factorize(&b->matrix->s, b->matrix->below, b->held, b->l);
-    b->factored = where == b->matrix->n;
-    return where;
-}
-
-int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const struct step_matrix *m, size_t *where)
+int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const struct step_matrix *m, double h)
 {
     const size_t n = m->n, count = b->count = sys->ncontact;
     struct layout l = {0};
@@ -173,7 +209,7 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const s
         } while (!l.memory && tribo_layout_zeros(&l));
     }
     if (!b->body) {
-        return TRIBO_ERR_MEMORY;
+        return step_matrix_fail(sys, TRIBO_ERR_MEMORY, h, 0);
     }
     /* contacts must have bodies of their own, and S be symmetric and narrow enough to save work */
     size_t i, j;
@@ -186,7 +222,7 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const s
     free(b->l);
     b->l = malloc(n * (m->below + 1) * sizeof *b->l);
     if (!b->l) {
-        return TRIBO_ERR_MEMORY;
+        return step_matrix_fail(sys, TRIBO_ERR_MEMORY, h, 0);
     }
     b->matrix = m;
     for (size_t d = 0; d < n; d++) {
@@ -197,8 +233,9 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const s
         b->own[i] = tribo_matrix_get(&m->s, b->body[i], b->body[i]);
     }
     memset(b->held, 0, n);
-    *where = band_factorize(b); /* with no body held: S is definite if and only if all these pivots are positive */
-    return *where < n ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
+    b->factored = 0;
+    const size_t where = band_factorize(m, NULL, b->l); /* S is definite if and only if all these pivots are positive */
+    return step_matrix_fail(sys, where < n ? TRIBO_ERR_INDEFINITE : TRIBO_OK, h, where);
 }
 
 /* --------------------------------------------------------------------------------------------------------------- the step */
@@ -216,7 +253,7 @@ static void solve_sets(struct step_band *b, const struct band_step *s)
         b->held[b->body[i]] = holds;
     }
     if (!b->factored) {
-        band_factorize(b);
+        b->factored = band_factorize(b->matrix, b->held, b->l) == n;
     }
     memcpy(x, b->push, n * sizeof *x);
     memset(b->move, 0, n * sizeof *x);
@@ -231,7 +268,7 @@ static void solve_sets(struct step_band *b, const struct band_step *s)
     for (size_t d = 0; d < n; d++) {
         x[d] = b->held[d] ? 0.0 : x[d];
     }
-    tribo_band_solve(n, b->matrix->below, b->l, x);
+    band_solve(b->matrix, b->l, x);
     for (size_t d = 0; d < n; d++) {
         x[d] = b->held[d] ? b->move[d] : x[d];
     }

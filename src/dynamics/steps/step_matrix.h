@@ -12,7 +12,7 @@ struct step_matrix {
     struct matrix s; /* S; no rows once a sparse factor has taken its memory */
     size_t n, below, above;
 
-    /* The factor: a band as in band.h; for S not symmetric, a band in LAPACK's format; or a sparse factor. */
+    /* The factor: a band of rows; for S not symmetric, a band in LAPACK's format; or a sparse factor. */
     double *band;
     int *pivot; /* NULL: symmetric band */
     struct cholesky sparse;
@@ -27,16 +27,13 @@ void tribo_step_matrix_free(struct step_matrix *m);
 /* x [count][n] = S^-1 x, matrix: struct step_matrix. Returns 1, or 0 if out of memory, which cannot happen for count = 1. */
 int tribo_step_matrix_solve(const void *matrix, size_t count, double *x);
 
-/* Returns status, with a message in the system: TRIBO_ERR_INDEFINITE at degree of freedom `where`, or TRIBO_ERR_MEMORY. */
-int tribo_step_matrix_fail(const tribo_system *sys, int status, double h, size_t where);
-
 /* A step of "moreau/fixed" where each contact holds a body of its own to the base, and S is a band. The operator that contacts
  * see, J S^-1 J', would be dense. Here bodies that contacts hold are rows and columns taken out of S: a step costs as much as
  * the band has entries, and a new factor where other contacts hold. */
 struct step_band {
     const struct step_matrix *matrix; /* S; NULL: the system is not of that kind */
     size_t count;                     /* contacts */
-    double *l;                        /* [n][below + 1] factor of S without held bodies (band.h) */
+    double *l;                        /* [n][below + 1] factor of S without held bodies */
     int factored;                     /* 1: l belongs to held */
     size_t *body;                     /* [count] the body of a contact; owns the memory of the arrays below */
     size_t *contact;                  /* [n] the contact on a body; count: none */
@@ -55,9 +52,9 @@ struct band_step {
     double *du, *f;
 };
 
-/* Prepares steps with the S of m, which must outlive b. TRIBO_OK, also if the system is not of that kind (matrix NULL);
- * TRIBO_ERR_MEMORY; TRIBO_ERR_INDEFINITE with the place of a pivot that is not positive. Keeps `at`. */
-int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const struct step_matrix *m, size_t *where);
+/* Prepares steps of length h with the S of m, which must outlive b. Returns a status, with a message in the system; TRIBO_OK also if
+ * the system is not of that kind (matrix NULL). Keeps `at`. */
+int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const struct step_matrix *m, double h);
 void tribo_step_band_free(struct step_band *b);
 
 /* du: in, impulses of loads and structure; out, changes of velocities, with forces |f| <= limit for which v = J (u + du) -
