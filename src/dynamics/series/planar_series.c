@@ -16,6 +16,7 @@
 #include "event_series.h"
 #include "common/layout.h"
 
+#include <stdint.h>
 #include <string.h>
 
 /* Decimal digits of the largest coefficient; squares have twice as many. At a small speed time is short, and its inverse
@@ -301,33 +302,27 @@ void tribo_planar_series_errors(struct event *e)
     }
 }
 
-/* 1 if the direction of sliding contact c at h is right to plane->error, and its speed remains below FASTER times the first one. */
-static int is_right(const struct event *e, size_t c, double h)
-{
-    const struct stick_slip *m = &e->events.stick_slip;
-    const struct planar_contact *p = &m->plane->contact[c];
-    const struct planar_line *l = &e->planar.line[c];
-    const size_t last = e->order - (size_t)p->begins;
-    const double xn = tribo_series_value(l->xn, last, h), xt = tribo_series_value(l->xt, last, h), size = hypot(xn, xt);
-    const double off =
-        hypot(tribo_series_value(l->un, e->order, h) - xn / size, tribo_series_value(l->ut, e->order, h) - xt / size);
-    const double most_r = greater(p->limit[0] * m->constant.diagonal[p->at], p->limit[1] * m->constant.diagonal[p->at + 1]);
-    double sum = 0.0;
-    for (size_t k = last + 1; k-- > 0;) {
-        sum = sum * h + fabs(l->xn[k]) + fabs(l->xt[k]);
-    }
-    return off * most_r * h / (double)(e->order + 1) <= m->plane->error[p->at] && sum <= FASTER * l->xn[0];
-}
-
 double tribo_planar_series_shorten(const struct event *e, double h)
 {
     const struct stick_slip *m = &e->events.stick_slip;
-    for (size_t c = 0; c < m->plane->count && h > 0.0;) {
-        if (!tribo_slides_in_plane(m, &m->plane->contact[c]) || is_right(e, c, h)) {
-            c++;
-        } else {
+    for (size_t c = 0; c < m->plane->count && h > 0.0; c++) {
+        const struct planar_contact *p = &m->plane->contact[c];
+        const struct planar_line *l = &e->planar.line[c];
+        if (!tribo_slides_in_plane(m, p)) {
+            continue;
+        }
+        const size_t last = e->order - (size_t)p->begins;
+        const double xn = tribo_series_value(l->xn, last, h), xt = tribo_series_value(l->xt, last, h), size = hypot(xn, xt);
+        const double off =
+            hypot(tribo_series_value(l->un, e->order, h) - xn / size, tribo_series_value(l->ut, e->order, h) - xt / size);
+        const double most_r = greater(p->limit[0] * m->constant.diagonal[p->at], p->limit[1] * m->constant.diagonal[p->at + 1]);
+        double sum = 0.0;
+        for (size_t k = last + 1; k-- > 0;) {
+            sum = sum * h + fabs(l->xn[k]) + fabs(l->xt[k]);
+        }
+        if (!(off * most_r * h / (double)(e->order + 1) <= m->plane->error[p->at] && sum <= FASTER * l->xn[0])) {
             h *= 0.8;
-            c = 0;
+            c = SIZE_MAX; /* from the first contact on */
         }
     }
     return h;

@@ -101,13 +101,6 @@ static void band_solve(const struct step_matrix *m, const double *l, double *x)
     }
 }
 
-/* Returns 1 if a sparse factor costs less than the band: the band has far more entries than S, or is almost the whole matrix. */
-static int suits_sparse(const struct step_matrix *m)
-{
-    const size_t width = m->below > m->above ? m->below : m->above;
-    return tribo_sparse_available() && m->n >= SPARSE_LEAST && (width > 5 * (m->s.first[m->n] / m->n + 1) || 2 * width > m->n);
-}
-
 /* Factorizes with exchanges of rows, by LAPACK: S must be regular, but need not be definite. Returns a status. */
 static int factorize_lopsided(struct step_matrix *m, size_t *where)
 {
@@ -132,12 +125,15 @@ static int factorize_lopsided(struct step_matrix *m, size_t *where)
 
 int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, double h, int consumes)
 {
+    /* a sparse factor costs less than the band if that has far more entries than S, or is almost the whole matrix */
+    const size_t width = m->below > m->above ? m->below : m->above;
+    const int sparse = m->n >= SPARSE_LEAST && (width > 5 * (m->s.first[m->n] / m->n + 1) || 2 * width > m->n);
     size_t where = 0, j;
     double x, y;
     int status;
     if (m->c->rows && tribo_matrix_flaw(&m->s, 1, &where, &j, &x, &y)) {
         status = factorize_lopsided(m, &where);
-    } else if (suits_sparse(m)) {
+    } else if (sparse && tribo_sparse_available()) {
         status = tribo_cholesky_create(&m->sparse, &m->s, consumes ? &m->s : NULL, &where, &x);
     } else {
         m->band = malloc(m->n * (m->below + 1) * sizeof *m->band);
