@@ -33,6 +33,13 @@ struct method {
     int (*find_periodic)(tribo_driver *drv, double t, double period, double *y);
 };
 
+/* The data of the methods that auto takes, event and exact, each created at first use. */
+struct choice {
+    void *own[2];
+    int refused; /* 1: exact has refused the system of this revision */
+    size_t revision;
+};
+
 struct tribo_driver {
     tribo_system *sys;
     const struct method *method, *at_work; /* at_work: the method with the data `own`; differs from method in auto */
@@ -47,7 +54,7 @@ struct tribo_driver {
 
     /* state */
     void *own;                 /* data of the method at work */
-    struct choice *choice;     /* methods.c: data of method auto; NULL in others */
+    struct choice choice;      /* of method auto */
     double *state, *slope;     /* [tribo_system_size] last kept state; workspace */
     double *motion, *shown;    /* [dimension] methods' state, at most as long; caller's state. NULL without an expansion */
     double time;               /* time of `state` */

@@ -2,13 +2,10 @@
 /* The table of methods, and method "auto". */
 #include "driver.h"
 
-#include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "common/text.h"
-#include "common/layout.h"
 
 static const struct method automatic;
 
@@ -54,19 +51,11 @@ enum { EVENT, EXACT };
 
 static const struct method *const choices[] = {&tribo_method_event, &tribo_method_exact};
 
-/* The data of the methods that auto takes, each created at first use. */
-struct choice {
-    void *own[2];
-    int refused; /* 1: exact has refused the system of this revision */
-    size_t revision;
-};
-
 /* Returns EXACT for up to 200 degrees of freedom, where modes are cheap, if exact supports the system; else EVENT. */
 static int driver_choose(const tribo_driver *drv)
 {
     const tribo_system *sys = drv->sys;
-    const struct choice *c = drv->choice;
-    const int refused = c->refused && c->revision == tribo_system_revision(sys);
+    const int refused = drv->choice.refused && drv->choice.revision == tribo_system_revision(sys);
     const int closed = !sys->loads.tables && !tribo_system_falls(sys) && !tribo_system_planar(sys);
     return sys->ndof <= 200 && closed && !refused ? EXACT : EVENT;
 }
@@ -74,9 +63,8 @@ static int driver_choose(const tribo_driver *drv)
 /* Makes a method the one at work, with its data. Returns a status; the message is in the system. */
 static int set_to_work(tribo_driver *drv, int which)
 {
-    struct choice *c = drv->choice;
     drv->at_work = choices[which];
-    drv->own = c->own[which];
+    drv->own = drv->choice.own[which];
     const double excess = drv->excess, backslip = drv->backslip;
     const int status = drv->own ? TRIBO_OK : drv->at_work->create(drv);
     drv->excess = excess; /* create sets 0 */
@@ -86,36 +74,32 @@ static int set_to_work(tribo_driver *drv, int which)
         drv->own = NULL;
         tribo_driver_fail(drv, status, "method %s: %s", drv->at_work->name, tribo_system_message(drv->sys));
     }
-    c->own[which] = drv->own;
+    drv->choice.own[which] = drv->own;
     return status;
 }
 
 static int create_choice(tribo_driver *drv)
 {
-    drv->choice = tribo_zeros(1, sizeof *drv->choice);
     drv->excess = drv->backslip = 0.0;
-    return drv->choice ? set_to_work(drv, driver_choose(drv))
-                       : tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method auto");
+    return set_to_work(drv, driver_choose(drv));
 }
 
 static void destroy_choice(tribo_driver *drv)
 {
-    for (int which = EVENT; drv->choice && which <= EXACT; which++) {
-        drv->own = drv->choice->own[which];
+    for (int which = EVENT; which <= EXACT; which++) {
+        drv->own = drv->choice.own[which];
         choices[which]->destroy(drv);
     }
-    free(drv->choice);
 }
 
 /* Returns 1 if exact, chosen, has refused the system with this status: event is next. */
-static int is_refused(const tribo_driver *drv, int which, int status)
+static int is_refused(tribo_driver *drv, int which, int status)
 {
-    struct choice *c = drv->choice;
     if (which == EVENT || status != TRIBO_ERR_UNSUPPORTED) {
         return 0;
     }
-    c->refused = 1;
-    c->revision = tribo_system_revision(drv->sys);
+    drv->choice.refused = 1;
+    drv->choice.revision = tribo_system_revision(drv->sys);
     drv->message[0] = '\0';
     return 1;
 }

@@ -34,8 +34,6 @@ struct few_bodies {
     double r[FEW * FEW], inverse[FEW * FEW], part[FEW]; /* see numerics/box/small.h; of r and inverse [c][c] */
     unsigned inverse_of;
     double tally[FEW];
-    struct snap snap[1 << FEW][FEW]; /* [set that holds][snaps] in the order in which they are applied */
-    size_t snaps[1 << FEW];
     signed char at[FEW]; /* in the step before: FREE: holds; AT_LOWER, AT_UPPER: slides, with friction -limit, limit */
     /* of the steps of a run: durations over which forces act; lengths, that of the step before the run first; and what acts */
     double time[RUN], h[RUN + 1];
@@ -138,13 +136,6 @@ static int few_take(struct few_bodies *b, tribo_system *sys)
     tribo_matrix_spread(&sys->damping, b->damping);
     tribo_matrix_spread(&sys->direction, b->direction);
     tribo_matrix_spread(&sys->response, b->response);
-    for (unsigned set = 0; set < 1u << b->c; set++) { /* the snaps of each set of holding contacts */
-        signed char loose[FEW];
-        for (size_t i = 0; i < b->c; i++) {
-            loose[i] = !(set >> i & 1u);
-        }
-        b->snaps[set] = tribo_system_list_snaps(sys, loose, b->snap[set]);
-    }
     for (size_t i = 0; i < b->c; i++) {
         for (size_t j = 0; j < b->c; j++) {
             b->r[i * b->c + j] = tribo_system_delassus(sys, i, j);
@@ -229,7 +220,7 @@ struct few_state {
 };
 
 /* Step s of a run. 0 if it has to be left to others: then only m->at has changed. */
-static inline int few_step(struct few_bodies *b, size_t n, size_t c, size_t s, struct few_state *m)
+static inline int few_step(struct few_bodies *b, tribo_system *sys, size_t n, size_t c, size_t s, struct few_state *m)
 {
     static const double least[FEW] = {0.0};
     double u[FEW] = {0.0}, v[FEW], less[FEW], most[FEW], base[FEW], p[FEW] = {0.0}, end[FEW], work = 0.0;
@@ -251,12 +242,12 @@ static inline int few_step(struct few_bodies *b, size_t n, size_t c, size_t s, s
         u[d] += row_times(c, b->response + d * c, p);
     }
     /* makes the velocities of holding contacts exact, but of those at their bounds */
-    unsigned set = 0;
-    for (size_t i = 0; b->inverse_of && i < c; i++) {
-        set |= (unsigned)(m->at[i] == FREE && fabs(p[i]) < most[i]) << i;
-    }
-    for (size_t k = 0; k < b->snaps[set]; k++) {
-        tribo_snap(&b->snap[set][k], base, u);
+    if (b->inverse_of) {
+        signed char loose[FEW];
+        for (size_t i = 0; i < c; i++) {
+            loose[i] = !(m->at[i] == FREE && fabs(p[i]) < most[i]);
+        }
+        tribo_system_snap(sys, loose, base, u);
     }
     for (size_t i = 0; i < c; i++) {
         const double to = m->at[i] == FREE ? 0.0 : end[i];
@@ -272,11 +263,12 @@ static inline int few_step(struct few_bodies *b, size_t n, size_t c, size_t s, s
 }
 
 /* The first steps of a run. Returns how many of count could be taken. */
-static inline size_t few_steps(struct few_bodies *b, size_t n, size_t c, size_t count, struct few_state *motion)
+static inline size_t few_steps(struct few_bodies *b, tribo_system *sys, size_t n, size_t c, size_t count,
+                               struct few_state *motion)
 {
     struct few_state m = *motion;
     size_t s = 0;
-    while (s < count && few_step(b, n, c, s, &m)) {
+    while (s < count && few_step(b, sys, n, c, s, &m)) {
         s++;
     }
     *motion = m;
@@ -306,11 +298,11 @@ static size_t central_run(tribo_driver *drv, size_t count, const double *t, doub
     memcpy(m.v, s->end, c * sizeof *y);
     memcpy(m.at, b->at, sizeof m.at);
     /* sizes as constants make loops straight: a step then takes half the time */
-    const size_t taken = n != c   ? few_steps(b, n, c, count, &m)
-                         : n == 1 ? few_steps(b, 1, 1, count, &m)
-                         : n == 2 ? few_steps(b, 2, 2, count, &m)
-                         : n == 3 ? few_steps(b, 3, 3, count, &m)
-                                  : few_steps(b, FEW, FEW, count, &m);
+    const size_t taken = n != c   ? few_steps(b, sys, n, c, count, &m)
+                         : n == 1 ? few_steps(b, sys, 1, 1, count, &m)
+                         : n == 2 ? few_steps(b, sys, 2, 2, count, &m)
+                         : n == 3 ? few_steps(b, sys, 3, 3, count, &m)
+                                  : few_steps(b, sys, FEW, FEW, count, &m);
     /* numbers that are not finite come back in every step that follows */
     if (taken == 0 || !isfinite(m.energy) || !tribo_dense_finite(m.q, n) || !tribo_dense_finite(m.u, n)) {
         return 0;
