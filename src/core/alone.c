@@ -9,9 +9,9 @@
 
 enum { FEW = 8 * TRIBO_CHUNK }; /* forces of that many contacts stay in the first-level cache */
 
-/* Inputs of a call. find sets the forces f [n] of chunk k, and returns 1 if all its contacts slide. */
+/* Inputs of a call. find sets the forces f [n] of chunk k. */
 struct call {
-    int (*find)(tribo_context *ctx, const struct call *call, size_t k, double *f);
+    void (*find)(tribo_context *ctx, const struct call *call, size_t k, double *f);
     const double *v, *a;
     double *feq;     /* of a balance; NULL: f_eq is not kept */
     int wanted;      /* f_eq of contacts that slide, too */
@@ -38,13 +38,6 @@ TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const doubl
 {
     for (size_t i = 0; i < n; i++) {
         near[i] = (fabs(v[i]) <= band[i]) & (limit[i] > 0.0);
-    }
-}
-
-TRIBO_SIMD static void find_directions(size_t n, const double *restrict v, signed char *restrict slip)
-{
-    for (size_t i = 0; i < n; i++) {
-        slip[i] = v[i] > 0.0 ? TRIBO_SLIP_FORTH : TRIBO_SLIP_BACK;
     }
 }
 
@@ -171,13 +164,10 @@ static void find_all(tribo_context *ctx, const struct call *call, double holds, 
     }
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
-        double *force = f ? f + i : room;
-        const int slides = call->find(ctx, call, k, force);
-        if (slides && ctx->follow.chunk[k].least > 0.0) {
-            find_directions(n, call->v + i, ctx->last.slip + i);
-        } else {
-            tribo_find_slips(n, force, tribo_chunk_contacts(ctx, i).limit, holds, ctx->last.slip + i);
-        }
+        double *force = tribo_stream_room(&to);
+        call->find(ctx, call, k, force);
+        tribo_find_slips(n, force, tribo_chunk_contacts(ctx, i).limit, holds, ctx->last.slip + i);
+        tribo_stream_put(&to, n);
     }
     alone_finish(ctx, SLIPS_WRITTEN, holds);
 }
@@ -192,7 +182,7 @@ int tribo_check_motion(tribo_context *ctx, const double *v, const double *a, int
 }
 
 /* Where the law uses f_eq, contacts that are not near stick slide with their limits. */
-static int balance_chunk(tribo_context *ctx, const struct call *call, size_t k, double *f)
+static void balance_chunk(tribo_context *ctx, const struct call *call, size_t k, double *f)
 {
     const size_t i = k * TRIBO_CHUNK, n = tribo_chunk_size(ctx, i);
     const struct law *law = ctx->set.law;
@@ -204,7 +194,7 @@ static int balance_chunk(tribo_context *ctx, const struct call *call, size_t k, 
     double room[TRIBO_CHUNK], *feq = call->feq ? call->feq + i : room;
     if (reads && !call->feq && call->plain && ctx->follow.chunk[k].plain) {
         law->balance(&c, n, v, call->a + i, tribo_inverses(ctx, k), f);
-        return 0;
+        return;
     }
     if (reads || (call->wanted && alone)) {
         tribo_find_feq(ctx, i, n, call->a, feq);
@@ -229,7 +219,6 @@ static int balance_chunk(tribo_context *ctx, const struct call *call, size_t k, 
             }
         }
     }
-    return law->uses_feq && !near;
 }
 
 void tribo_balance_each(tribo_context *ctx, const double *v, const double *a, int wanted)
@@ -265,28 +254,26 @@ int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, do
 
 /* ----------------------------------------------------------------------------------------------------------------- step */
 
-static int step_chunk(tribo_context *ctx, const struct call *call, size_t k, double *f)
+static void step_chunk(tribo_context *ctx, const struct call *call, size_t k, double *f)
 {
     const size_t i = k * TRIBO_CHUNK, n = tribo_chunk_size(ctx, i);
     const struct chunk *chunk = &ctx->follow.chunk[k];
     const double *v = call->v + i, dt = call->dt;
     if (call->b.lower) {
         stop_far(n, dt, v, tribo_inverses(ctx, k), &(struct bounds){call->b.lower + i, call->b.upper + i}, f);
-        return 0;
+        return;
     }
     const double *limit = tribo_chunk_contacts(ctx, i).limit;
     /* Contacts that are faster than reach, none of them open, slide on over dt, by a margin for rounding. */
     const double far = product(1.0000001 * greater(product(chunk->quickest, dt), DBL_MIN), chunk->largest);
     const double reach = chunk->least > 0.0 && far < TRIBO_FAR ? far : DBL_MAX;
-    const int slides = !(fabs(*v) <= reach || any_in_band(n, v, reach));
-    if (slides) {
+    if (!(fabs(*v) <= reach || any_in_band(n, v, reach))) {
         slide(n, v, limit, f);
     } else if (!chunk->plain || dt < LEAST_STEP || !tribo_is_within(v, n, TRIBO_PLAIN)) {
         stop_far(n, dt, v, tribo_inverses(ctx, k), &(struct bounds){NULL, limit}, f);
     } else {
         stop(n, quotient(1.0, dt), v, tribo_inverses(ctx, k), limit, f);
     }
-    return slides;
 }
 
 void tribo_step_each(tribo_context *ctx, double dt, const double *v, struct bounds b)

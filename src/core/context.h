@@ -17,8 +17,8 @@
 #include "common/real.h"
 #include "common/simd.h"
 
-/* Widths and rates of a chunk's contacts: different; equal; equal to those of the chunk before. */
-enum { UNEVEN, EVEN, EVEN_AS_BEFORE };
+/* From this number of contacts on, an output does not stay in any cache. */
+#define TRIBO_MANY ((size_t)1 << 22)
 
 /* Properties of the contacts of a chunk that change with settings only. */
 struct chunk {
@@ -28,8 +28,8 @@ struct chunk {
     double quickest;       /* R_ii */
     size_t like;           /* first contact of the first chunk with the same 1/R_ii: kernels read these, which are in cache */
     int plain;             /* 1/R_ii <= TRIBO_PLAIN */
-    int even;              /* UNEVEN, ... */
-    int alike;             /* all have the same width, rate and limit > 0 */
+    int even;              /* all have the same width and rate */
+    int alike;             /* and the same limit > 0 */
     size_t model;          /* first contact of the first chunk with the same widths and rates, and limits if alike; see like */
 };
 

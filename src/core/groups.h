@@ -107,8 +107,9 @@ void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size
                         const double *feq, const struct tangents *d);
 
 /* Sets limits over a step of dt: static, but those to slide of contacts that come in sliding at v [n], or NULL, and do not come
- * to a stop: f [n], or NULL, acts against v. Returns 0, and leaves all limits, if f acts against v at all that come in sliding. */
-int tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, const double *f);
+ * to a stop: f [n], or NULL, acts against v. Returns 0, and leaves all limits, if f acts against v at all that come in sliding.
+ * Overwrites last.v. */
+int tribo_hold_for_step(tribo_context *ctx, double dt, const double *v, const double *f);
 
 /* Gives contacts whose f_eq exceeds the static limit that to slide at the end of a step of dt, or (0) from rest. Returns their
  * number. */

@@ -100,12 +100,13 @@ void tribo_refresh_limits(tribo_context *ctx)
     }
     for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
         struct chunk *chunk = &ctx->follow.chunk[k];
+        const double *width = ctx->set.width + k * TRIBO_CHUNK, *rate = ctx->set.rate + k * TRIBO_CHUNK;
         const double widest = follows ? greater(product(chunk->widest, chunk->largest), DBL_MIN) : chunk->widest;
         ctx->follow.largest = greater(ctx->follow.largest, chunk->largest);
         chunk->band = chunk->largest == 0.0 ? -1.0 : widest < TRIBO_FAR ? widest : DBL_MAX;
         chunk->alike = fixed && chunk->even && chunk->least == chunk->largest && chunk->largest > 0.0;
-        const int goes_on =
-            fixed && chunk->even == EVEN_AS_BEFORE && (!chunk->alike || (chunk[-1].alike && chunk->largest == chunk[-1].largest));
+        const int even = fixed && k > 0 && chunk->even && chunk[-1].even && width[0] == width[-1] && rate[0] == rate[-1];
+        const int goes_on = even && (!chunk->alike || (chunk[-1].alike && chunk->largest == chunk[-1].largest));
         chunk->model = goes_on ? chunk[-1].model : k * TRIBO_CHUNK;
     }
     if (fixed && ctx->follow.largest > lesser(ctx->op->most, TRIBO_FAR / ctx->follow.steepest)) {
@@ -132,10 +133,8 @@ void tribo_refresh(tribo_context *ctx)
         struct chunk *chunk = &ctx->follow.chunk[k];
         const size_t n = tribo_chunk_size(ctx, i), before = k > 0 ? chunk[-1].like : 0;
         const struct range w = range_of(n, width + i), r = range_of(n, rate + i);
-        const int even = w.least == w.largest && r.least == r.largest;
-        const int as_before = even && k > 0 && chunk[-1].even && width[i - 1] == width[i] && rate[i - 1] == rate[i];
         chunk->widest = w.largest;
-        chunk->even = as_before ? EVEN_AS_BEFORE : even ? EVEN : UNEVEN;
+        chunk->even = w.least == w.largest && r.least == r.largest;
         ctx->follow.steepest = greater(ctx->follow.steepest, follows ? w.largest : r.largest);
         if (op->diagonal) {
             chunk->quickest = range_of(n, op->diagonal + i).largest;

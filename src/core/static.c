@@ -44,37 +44,26 @@ void tribo_find_limits(const tribo_context *ctx, size_t i, size_t n, const doubl
  * little that stopping it is no load for other contacts. */
 #define RESTS 1e-4
 
-/* How the contact at i comes into a step: at rest; sliding, with a force f, or NULL, that acts against v; with another force. */
-enum { COMES_AT_REST, SLIDES, TURNS };
-static int comes_in(const tribo_context *ctx, double dt, size_t i, const double *v, const double *f)
+int tribo_hold_for_step(tribo_context *ctx, double dt, const double *v, const double *f)
 {
-    const size_t directions = tribo_directions(ctx, i);
-    double stops = 0.0, power = f ? 0.0 : -1.0;
-    for (size_t k = i; k < i + directions; k++) {
-        stops = greater(stops, product(product(ctx->op->diagonal[k], dt), ctx->follow.hold[k]));
-        power += f ? product(f[k], v[k]) : 0.0;
-    }
-    return !(tribo_length((int)directions, v + i) > RESTS * stops) ? COMES_AT_REST : power < 0.0 ? SLIDES : TURNS;
-}
-
-int tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, const double *f)
-{
-    int any = !f;
-    for (size_t i = 0; !any && i < ctx->n; i += tribo_directions(ctx, i)) {
-        any = comes_in(ctx, dt, i, v, f) == TURNS;
-    }
-    if (!any) {
-        return 0;
-    }
-    tribo_copy(ctx->follow.now, ctx->follow.hold, ctx->n);
-    for (size_t i = 0, directions; v && i < ctx->n; i += directions) {
+    double *limit = ctx->last.v; /* workspace */
+    int changes = !f;
+    for (size_t i = 0, directions; i < ctx->n; i += directions) {
+        double stops = 0.0, power = f ? 0.0 : -1.0;
         directions = tribo_directions(ctx, i);
-        const double speed = tribo_length((int)directions, v + i);
-        for (size_t k = i; comes_in(ctx, dt, i, v, f) == SLIDES && k < i + directions; k++) {
-            ctx->follow.now[k] = tribo_limit_at(ctx, k, speed);
+        for (size_t k = i; k < i + directions; k++) {
+            stops = greater(stops, product(product(ctx->op->diagonal[k], dt), ctx->follow.hold[k]));
+            power += f ? product(f[k], v[k]) : 0.0;
         }
+        const double speed = v ? tribo_length((int)directions, v + i) : 0.0;
+        const int comes_in = speed > RESTS * stops, slides = comes_in && power < 0.0;
+        for (size_t k = i; k < i + directions; k++) {
+            limit[k] = slides ? tribo_limit_at(ctx, k, speed) : ctx->follow.hold[k];
+        }
+        changes |= comes_in && !slides;
     }
-    return 1;
+    tribo_copy(ctx->follow.now, limit, changes ? ctx->n : 0);
+    return changes;
 }
 
 size_t tribo_break_away(tribo_context *ctx, struct box_qp *p, double dt)

@@ -149,11 +149,9 @@ int tribo_memory_copy(struct memory *to, const struct memory *from, const struct
     if (!allocate_memory(to, op) || !allocate_basis(to, op)) {
         return 0;
     }
-    memcpy(to->solved, from->solved, op->groups);
-    memcpy(to->solved_list, from->solved_list, from->nsolved * sizeof *to->solved_list);
+    /* all from store to solved */
+    memcpy(to->store, from->store, (size_t)((char *)(to->solved + op->groups) - (char *)to->store));
     to->nsolved = from->nsolved;
-    memcpy(to->sets, from->sets, op->groups * sizeof *to->sets);
-    memcpy(to->store, from->store, op->kept_size * sizeof *to->store);
     return 1;
 }
 
