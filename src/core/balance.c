@@ -173,7 +173,7 @@ static void find_other_feq(tribo_context *ctx, struct box_qp *p, const double *a
     }
 }
 
-/* Finds the forces of all contacts; wanted: and f_eq of the contacts of solved groups. */
+/* Finds the forces of all contacts, and f_eq where laws read it; wanted: of all contacts in no group. */
 static int balance_all(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
     int status = TRIBO_OK;
@@ -194,9 +194,6 @@ static int balance_all(tribo_context *ctx, const double *v, const double *a, int
                 run++;
             }
             ctx->set.law->force(&c, run, v + i, ctx->last.feq + i, ctx->last.f + i);
-        }
-        if (wanted && p->count < p->group->size) {
-            find_other_feq(ctx, p, a, 1);
         }
     }
     return status ? status : tribo_clusters_balance(ctx, v, a);
@@ -221,9 +218,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     ctx->last.holds = ctx->set.law->holds;
     if (feq) {
         for (size_t g = 0; g < ctx->op->groups; g++) {
-            if (!ctx->memory.solved[g]) {
-                find_other_feq(ctx, tribo_problem(ctx, g), a, 0);
-            }
+            find_other_feq(ctx, tribo_problem(ctx, g), a, ctx->memory.solved[g]);
         }
         tribo_clusters_feq(ctx);
         tribo_copy(feq, ctx->last.feq, ctx->n);

@@ -138,6 +138,31 @@ static double alone_product(const tribo_context *ctx, const struct change *d, si
     return law_change(ctx, d, i) - balance;
 }
 
+/* out [n][n] = the changes of all forces, columns by unit changes d of each contact, in unit [n], which is 0; NULL is fine. */
+static void find_columns(tribo_context *ctx, const struct change *d, double *unit, double *out)
+{
+    const size_t n = ctx->n;
+    for (size_t k = 0; out && k < n * n; k++) {
+        out[k] = 0.0;
+    }
+    for (size_t i = 0; out && i < n; i++) {
+        unit[i] = 1.0;
+        out[i * n + i] = alone_product(ctx, d, i);
+        unit[i] = 0.0;
+    }
+    for (size_t q = 0; out && q < parts_of(ctx); q++) {
+        const struct part s = part_resume(ctx, q);
+        for (size_t k = 0; k < s.size; k++) {
+            unit[s.member[k]] = 1.0;
+            const double *df = part_product(ctx, &s, d);
+            for (size_t j = 0; j < s.size; j++) {
+                out[s.member[j] * n + s.member[k]] = df[j];
+            }
+            unit[s.member[k]] = 0.0;
+        }
+    }
+}
+
 int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
                           double *df_da)
 {
@@ -161,31 +186,9 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
     }
     tribo_copy(ctx->last.v, v, n);
     ctx->last.linearized = 1;
-    double *const out[2] = {df_dv, df_da}, *unit = ctx->last.feq;
-    const struct change by[2] = {{unit, NULL, NULL}, {NULL, unit, NULL}};
-    for (int w = 0; w < 2; w++) {
-        for (size_t k = 0; out[w] && k < n * n; k++) {
-            out[w][k] = 0.0;
-        }
-        for (size_t i = 0; out[w] && i < n; i++) {
-            unit[i] = 1.0;
-            out[w][i * n + i] = alone_product(ctx, &by[w], i);
-        }
-    }
-    memset(unit, 0, n * sizeof *unit);
-    for (size_t q = 0; (df_dv || df_da) && q < parts_of(ctx); q++) {
-        const struct part s = part_resume(ctx, q);
-        for (size_t k = 0; k < s.size; k++) {
-            unit[s.member[k]] = 1.0;
-            for (int w = 0; w < 2; w++) {
-                const double *df = out[w] ? part_product(ctx, &s, &by[w]) : NULL;
-                for (size_t j = 0; df && j < s.size; j++) {
-                    out[w][s.member[j] * n + s.member[k]] = df[j];
-                }
-            }
-            unit[s.member[k]] = 0.0;
-        }
-    }
+    memset(ctx->last.feq, 0, n * sizeof *v);
+    find_columns(ctx, &(struct change){ctx->last.feq, NULL, NULL}, ctx->last.feq, df_dv);
+    find_columns(ctx, &(struct change){NULL, ctx->last.feq, NULL}, ctx->last.feq, df_da);
     return TRIBO_OK;
 }
 

@@ -78,11 +78,12 @@ void tribo_planar_limits(const tribo_context *ctx, size_t i, int holds, const do
     }
 }
 
-struct block tribo_block_of(const double *own)
+struct block tribo_block_of(const double *r, size_t size, size_t directions)
 {
-    const double mean = 0.5 * own[0] + 0.5 * own[2], half = 0.5 * own[0] - 0.5 * own[2];
-    const double turned[2] = {half, own[1]}, spread = tribo_length(2, turned);
-    const double raw[2] = {half >= 0.0 ? spread + half : own[1], half >= 0.0 ? own[1] : spread - half},
+    const double second = r[(directions - 1) * (size + 1)], across = directions == 2 ? r[1] : 0.0;
+    const double mean = 0.5 * r[0] + 0.5 * second, half = 0.5 * r[0] - 0.5 * second;
+    const double turned[2] = {half, across}, spread = tribo_length(2, turned);
+    const double raw[2] = {half >= 0.0 ? spread + half : across, half >= 0.0 ? across : spread - half},
                  length = tribo_length(2, raw);
     return (struct block){
         mean + spread, greater(mean - spread, 0.0), {length > 0.0 ? raw[0] / length : 1.0, length > 0.0 ? raw[1] / length : 0.0}};
@@ -95,10 +96,12 @@ double tribo_plane_rate(const tribo_context *ctx)
     for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
         const double *own = ctx->clusters->own[k];
         const struct slide s = tribo_planar_slide(ctx, ctx->clusters->first[k], none);
-        const double weighed[3] = {product(s.part[0], product(s.part[0], own[0])), product(s.part[0], product(s.part[1], own[1])),
-                                   product(s.part[1], product(s.part[1], own[2]))};
+        double weighed[4];
+        for (size_t e = 0; e < 4; e++) {
+            weighed[e] = product(s.part[e / 2], product(s.part[e % 2], own[e]));
+        }
         if (!s.open) {
-            rate = greater(rate, product(2.0 * quotient(s.bound, s.epsilon), tribo_block_of(weighed).great));
+            rate = greater(rate, product(2.0 * quotient(s.bound, s.epsilon), tribo_block_of(weighed, 2, 2).great));
         }
     }
     return rate;
@@ -147,7 +150,7 @@ static struct clusters *planar_create(size_t n, size_t count, const size_t *firs
     for (size_t k = 0; c && k < count; k++) {
         c->role[first[k]] = ROLE_FIRST;
         c->role[first[k] + 1] = ROLE_SECOND;
-        c->own[k][0] = c->own[k][2] = 1.0;
+        c->own[k][0] = c->own[k][3] = 1.0;
     }
     for (size_t i = 0; c && i < n; i++) {
         c->radius[i] = HUGE_VAL;
@@ -185,8 +188,8 @@ static void fill_clusters(struct clusters *c, const struct delassus *op, struct 
         const struct cluster *g = &c->cluster[of[c->first[k]]];
         const double *row = g->r + place[c->first[k]] * (g->size + 1);
         c->own[k][0] = row[0];
-        c->own[k][1] = row[1];
-        c->own[k][2] = row[g->size + 1];
+        c->own[k][1] = c->own[k][2] = row[1];
+        c->own[k][3] = row[g->size + 1];
     }
 }
 
@@ -289,7 +292,7 @@ int tribo_clusters_clone(tribo_context *clone, const tribo_context *from)
 void tribo_clusters_refresh(tribo_context *ctx, int follows, double time)
 {
     for (size_t k = 0; follows && k < tribo_plane_count(ctx); k++) {
-        const double largest = tribo_block_of(ctx->clusters->own[k]).great, half = greater(product(largest, time), DBL_MIN);
+        const double largest = tribo_block_of(ctx->clusters->own[k], 2, 2).great, half = greater(product(largest, time), DBL_MIN);
         for (size_t i = ctx->clusters->first[k]; i < ctx->clusters->first[k] + 2; i++) {
             ctx->set.width[i] = 2.0 * half;
             ctx->set.rate[i] = largest > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;

@@ -34,7 +34,7 @@ struct unit {
 struct clusters {
     size_t count, *first; /* [count] first directions */
     unsigned char *role;  /* [n] */
-    double (*own)[3];     /* [count] R of the contact alone: 11, 12, 22 */
+    double (*own)[4];     /* [count] R of the contact alone, [2][2] */
     size_t clusters, islands, largest;
     struct cluster *cluster; /* [clusters]; the first has the memory of R and of the members of all */
     size_t *group_of;        /* [n] that of the operator; TRIBO_ALONE for members of clusters */
@@ -90,12 +90,14 @@ void tribo_planar_slide_force(const struct law *law, const struct slide *s, cons
 /* Harder pulls, in units of what friction can hold, count by their direction only. */
 #define HARDEST 1e100
 
-/* A symmetric block 11, 12, 22 by its eigenvalues, at least 0, and the direction of the greater one. */
+/* The block of a contact, on the diagonal of a symmetric matrix, by its eigenvalues, at least 0, and the direction of the greater
+ * one. */
 struct block {
     double great, small;
     double e[2];
 };
-struct block tribo_block_of(const double *own);
+/* The block that begins at r, of rows [size]. */
+struct block tribo_block_of(const double *r, size_t size, size_t directions);
 
 /* limit [directions] of the contact at i: static ones if it holds, or those by which it slides at v. */
 void tribo_planar_limits(const tribo_context *ctx, size_t i, int holds, const double *v, double *limit);

@@ -13,13 +13,6 @@
 
 /* -------------------------------------------------------------------------------------------------------- parts of R */
 
-/* The block of the contact at place k of a matrix r [size][size]. */
-static struct block block_at(const double *r, size_t size, size_t k, size_t directions)
-{
-    const double *row = r + k * (size + 1), own[3] = {row[0], directions == 2 ? row[1] : 0.0, row[(directions - 1) * (size + 1)]};
-    return tribo_block_of(own);
-}
-
 /* x = -block^-1 x, far away where friction moves nothing, or the block is singular. */
 static void push_back(const struct block *b, double *x)
 {
@@ -309,7 +302,7 @@ static size_t widen_reaches(tribo_context *ctx)
  * gradient. */
 static int is_pulled_beyond(const struct disc_qp *p, size_t e)
 {
-    const struct block b = block_at(p->s, p->size, e, p->wide[e]);
+    const struct block b = tribo_block_of(p->s + e * (p->size + 1), p->size, p->wide[e]);
     double feq[2] = {p->gradient[e], p->wide[e] == 2 ? p->gradient[e + 1] : 0.0};
     push_back(&b, feq);
     for (size_t k = 0; k < p->wide[e]; k++) {
@@ -416,7 +409,7 @@ const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
 static void contact_feq(const tribo_context *ctx, const struct cluster *g, size_t k, double *feq)
 {
     const size_t own[2] = {k, k + 1}, directions = tribo_directions(ctx, g->member[k]);
-    const struct block block = block_at(g->r, g->size, k, directions);
+    const struct block block = tribo_block_of(g->r + k * (g->size + 1), g->size, directions);
     double x[2] = {0.0, 0.0}, most = 0.0;
     for (size_t d = 0; d < directions; d++) {
         x[d] = pull_at(ctx, g, k + d, own, directions);

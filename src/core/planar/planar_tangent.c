@@ -195,11 +195,11 @@ static void planar_given(const tribo_context *ctx, size_t k, const double *v, co
  * Returns 1, or 0 without convergence. */
 static int given_near(const tribo_context *ctx, size_t k, const struct given *g, const double *feq, struct disc_alone *x)
 {
-    const double *own = ctx->clusters->own[k], r = greater(own[0], own[2]), turn = ctx->set.law->relaxes ? 2.0 * g->s.speed : 0.0;
+    const double *own = ctx->clusters->own[k], r = greater(own[0], own[3]), turn = ctx->set.law->relaxes ? 2.0 * g->s.speed : 0.0;
     const double *bound = g->c.bound, force = greater(bound[0], bound[1]);
     const double weight[2] = {bound[0] / force, bound[1] / force}, across = weight[0] * weight[1] * (own[1] / r);
     const double m[4] = {weight[0] * weight[0] * greater(own[0] / r, NEXT_TO_IMMOVABLE), across, across,
-                         weight[1] * weight[1] * greater(own[2] / r, NEXT_TO_IMMOVABLE)};
+                         weight[1] * weight[1] * greater(own[3] / r, NEXT_TO_IMMOVABLE)};
     const double shift[2] = {turn * g->s.n[0], turn * g->s.n[1]};
     double aim[2], pull[2];
     const double length = feq_parts(bound, feq, aim);
