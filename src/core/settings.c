@@ -262,33 +262,29 @@ int tribo_get_epsilon(const tribo_context *ctx, double *epsilon)
     return TRIBO_OK;
 }
 
-/* Sets epsilon [n]; stride 0: all have the first. */
-static void put_epsilon(tribo_context *ctx, const double *epsilon, size_t stride)
+/* Sets epsilon [n]; count TRIBO_NUMBER: all have the first; a status. */
+static int put_epsilon(tribo_context *ctx, const double *epsilon, size_t count)
 {
-    for (size_t i = 0; i < ctx->n; i++) {
-        ctx->set.width[i] = epsilon[i * stride];
-        ctx->set.rate[i] = tribo_rate(epsilon[i * stride]);
+    const int status = tribo_check_slowly(ctx, "epsilon", epsilon, count, POSITIVE);
+    for (size_t i = 0; !status && i < ctx->n; i++) {
+        ctx->set.width[i] = epsilon[count == TRIBO_NUMBER ? 0 : i];
+        ctx->set.rate[i] = tribo_rate(ctx->set.width[i]);
     }
-    ctx->set.step = 0.0;
-    tribo_refresh(ctx);
+    if (!status) {
+        ctx->set.step = 0.0;
+        tribo_refresh(ctx);
+    }
+    return status;
 }
 
 int tribo_set_epsilon(tribo_context *ctx, const double *epsilon)
 {
-    const int status = ctx ? tribo_check_slowly(ctx, "epsilon", epsilon, ctx->n, POSITIVE) : TRIBO_ERR_NULL;
-    if (!status) {
-        put_epsilon(ctx, epsilon, 1);
-    }
-    return status;
+    return ctx ? put_epsilon(ctx, epsilon, ctx->n) : TRIBO_ERR_NULL;
 }
 
 int tribo_set_epsilon_all(tribo_context *ctx, double epsilon)
 {
-    const int status = ctx ? tribo_check_slowly(ctx, "epsilon", &epsilon, TRIBO_NUMBER, POSITIVE) : TRIBO_ERR_NULL;
-    if (!status) {
-        put_epsilon(ctx, &epsilon, 0);
-    }
-    return status;
+    return ctx ? put_epsilon(ctx, &epsilon, TRIBO_NUMBER) : TRIBO_ERR_NULL;
 }
 
 int tribo_set_epsilon_step(tribo_context *ctx, double dt, double lambda_dt)

@@ -28,19 +28,20 @@ static void crossing(double r, double *g, double *dg)
     }
 }
 
-static int reverses(const struct contacts *c, size_t i, double v, double feq)
+/* Sets the force of contact i, and its derivatives d, or NULL, where they are not those of Quinn's law. */
+static void cross(const struct contacts *c, size_t i, double v, double feq, double *f, struct tangent *d)
 {
-    return c->moving[i] && fabs(feq) > c->limit[i] && c->limit[i] > 0.0 && fabs(v) <= tribo_epsilon_of(c, i);
-}
-
-/* The force of contact i where it is not Quinn's. */
-static void cross(const struct contacts *c, size_t i, double v, double feq, double *f)
-{
-    if (reverses(c, i, v, feq)) {
-        const double limit = c->limit[i];
+    const double limit = c->limit[i], follows = c->scales;
+    if (c->moving[i] && fabs(feq) > limit && limit > 0.0 && fabs(v) <= tribo_epsilon_of(c, i)) {
+        const double slope = tribo_slope_of(c, i), r = quotient(fabs(feq), limit);
         double g, dg;
-        crossing(quotient(fabs(feq), limit), &g, &dg);
-        *f = clamp(sign(feq) * g * limit - tribo_slope_of(c, i) * v, -limit, limit);
+        crossing(r, &g, &dg);
+        const double x = sign(feq) * g * limit - slope * v, turned = 2.0 * quotient(v, tribo_epsilon_of(c, i));
+        *f = clamp(x, -limit, limit);
+        if (d) {
+            *d = fabs(x) > limit ? (struct tangent){0.0, 0.0, sign(x)}
+                                 : (struct tangent){-slope, dg, sign(feq) * (g - r * dg) - (1.0 - follows) * turned};
+        }
     }
 }
 
@@ -48,7 +49,7 @@ static void reversal_force_all(const struct contacts *c, size_t n, const double 
 {
     tribo_law_quinn.force(c, n, v, feq, f);
     for (size_t i = 0; i < n; i++) {
-        cross(c, i, v[i], feq[i], f + i);
+        cross(c, i, v[i], feq[i], f + i, NULL);
     }
 }
 
@@ -57,33 +58,19 @@ static void reversal_balance_all(const struct contacts *c, size_t n, const doubl
 {
     tribo_law_quinn.balance(c, n, v, a, inverse, f);
     for (size_t i = 0; i < n; i++) {
-        if (c->moving[i]) {
-            cross(c, i, v[i], tribo_alone(a[i], inverse[i]), f + i);
-        }
+        cross(c, i, v[i], tribo_alone(a[i], inverse[i]), f + i, NULL);
     }
-}
-
-static struct tangent reversal_tangent(const struct contacts *c, size_t i, double v, double feq)
-{
-    const double limit = c->limit[i], slope = tribo_slope_of(c, i), r = quotient(fabs(feq), limit), follows = c->scales;
-    double g, dg;
-    crossing(r, &g, &dg);
-    const double x = sign(feq) * g * limit - slope * v, turned = 2.0 * quotient(v, tribo_epsilon_of(c, i));
-    return fabs(x) > limit ? (struct tangent){0.0, 0.0, sign(x)}
-                           : (struct tangent){-slope, dg, sign(feq) * (g - r * dg) - (1.0 - follows) * turned};
 }
 
 static void reversal_tangent_all(const struct contacts *c, size_t n, const double *v, const double *feq, const struct tangents *d)
 {
     tribo_law_quinn.tangent(c, n, v, feq, d);
     for (size_t i = 0; i < n; i++) {
-        if (reverses(c, i, v[i], feq[i])) {
-            const struct tangent one = reversal_tangent(c, i, v[i], feq[i]);
-            cross(c, i, v[i], feq[i], d->f + i);
-            d->dv[i] = one.dv;
-            d->dfeq[i] = one.dfeq;
-            d->dlimit[i] = one.dlimit;
-        }
+        struct tangent one = {d->dv[i], d->dfeq[i], d->dlimit[i]};
+        cross(c, i, v[i], feq[i], d->f + i, &one);
+        d->dv[i] = one.dv;
+        d->dfeq[i] = one.dfeq;
+        d->dlimit[i] = one.dlimit;
     }
 }
 
