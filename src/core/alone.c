@@ -7,8 +7,6 @@
  * contacts slide. */
 #include "clusters.h"
 
-enum { FEW = 8 * TRIBO_CHUNK }; /* forces of that many contacts stay in the first-level cache */
-
 /* Inputs of a call. find sets the forces f [n] of chunk k. */
 struct call {
     void (*find)(tribo_context *ctx, const struct call *call, size_t k, double *f);
@@ -38,14 +36,6 @@ TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const doubl
 {
     for (size_t i = 0; i < n; i++) {
         near[i] = (fabs(v[i]) <= band[i]) & (limit[i] > 0.0);
-    }
-}
-
-TRIBO_SIMD void tribo_find_slips(size_t n, const double *restrict f, const double *restrict limit, double holds,
-                                 signed char *restrict slip)
-{
-    for (size_t i = 0; i < n; i++) {
-        slip[i] = tribo_slip_by_force(f[i], limit[i], holds);
     }
 }
 
@@ -124,9 +114,9 @@ static const double *bands_of(const tribo_context *ctx, size_t i, size_t n, doub
 /* --------------------------------------------------------------------------------------------------------------- calls */
 
 /* Ends a call in which all contacts are alone. */
-static void alone_finish(tribo_context *ctx, int slips, double holds)
+static void alone_finish(tribo_context *ctx, double holds)
 {
-    ctx->last.slips = slips;
+    ctx->last.slips = SLIPS_IN_FORCES;
     ctx->last.holds = holds;
     ctx->last.rank = 0;
     ctx->last.linearized = 0;
@@ -140,7 +130,7 @@ static void put_one(tribo_context *ctx, double force, double holds, double *f)
     if (f) {
         *f = force;
     }
-    alone_finish(ctx, SLIPS_IN_FORCES, holds);
+    alone_finish(ctx, holds);
 }
 
 /* Finds and keeps the forces of all contacts; f may be NULL. */
@@ -152,34 +142,7 @@ static void find_each(tribo_context *ctx, const struct call *call, double *f)
     }
 }
 
-/* Finds the forces of all contacts, which are alone. Those of few are kept. Of many, slips are kept, found while forces are in
- * cache: forces would have to be written to memory, and read again. */
-static void find_all(tribo_context *ctx, const struct call *call, double holds, double *f)
-{
-    double room[TRIBO_CHUNK];
-    if (ctx->n <= FEW) {
-        find_each(ctx, call, f);
-        alone_finish(ctx, SLIPS_IN_FORCES, holds);
-        return;
-    }
-    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        const size_t n = tribo_chunk_size(ctx, i);
-        double *force = tribo_stream_room(&to);
-        call->find(ctx, call, k, force);
-        tribo_find_slips(n, force, tribo_chunk_contacts(ctx, i).limit, holds, ctx->last.slip + i);
-        tribo_stream_put(&to, n);
-    }
-    alone_finish(ctx, SLIPS_WRITTEN, holds);
-}
-
 /* -------------------------------------------------------------------------------------------------------------- balance */
-
-int tribo_check_motion(tribo_context *ctx, const double *v, const double *a, int *plain)
-{
-    const int status = tribo_check_finite(ctx, "v", v, ctx->n);
-    *plain = tribo_is_within(a, ctx->n, TRIBO_PLAIN);
-    return status || *plain ? status : tribo_check_finite(ctx, "a", a, ctx->n);
-}
 
 /* Where the law uses f_eq, contacts that are not near stick slide with their limits. */
 static void balance_chunk(tribo_context *ctx, const struct call *call, size_t k, double *f)
@@ -246,7 +209,8 @@ int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, do
         put_one(ctx, force, holds, f);
     } else {
         const struct call call = {.find = balance_chunk, .v = v, .a = a, .feq = feq, .wanted = feq != NULL, .plain = plain};
-        find_all(ctx, &call, holds, f);
+        find_each(ctx, &call, f);
+        alone_finish(ctx, holds);
     }
     ctx->last.residual = 0.0;
     return TRIBO_OK;
@@ -293,7 +257,8 @@ int tribo_step_alone(tribo_context *ctx, double dt, const double *v, double *f)
         }
         put_one(ctx, force, 1.0, f);
     } else {
-        find_all(ctx, &(const struct call){.find = step_chunk, .v = v, .dt = dt, .b = b}, 1.0, f);
+        find_each(ctx, &(const struct call){.find = step_chunk, .v = v, .dt = dt, .b = b}, f);
+        alone_finish(ctx, 1.0);
     }
     return TRIBO_OK;
 }

@@ -44,6 +44,14 @@ static inline int tribo_check_nonnegative(tribo_context *ctx, const char *name, 
     return x && tribo_all_unsigned(x, n) ? TRIBO_OK : tribo_check_slowly(ctx, name, x, n, NONNEGATIVE);
 }
 
+/* Checks v and a; a status. *plain: |a_i| <= TRIBO_PLAIN. */
+static inline int tribo_check_motion(tribo_context *ctx, const double *v, const double *a, int *plain)
+{
+    const int status = tribo_check_finite(ctx, "v", v, ctx->n);
+    *plain = tribo_is_within(a, ctx->n, TRIBO_PLAIN);
+    return status || *plain ? status : tribo_check_finite(ctx, "a", a, ctx->n);
+}
+
 static inline int tribo_has_operator(const tribo_context *ctx)
 {
     return ctx->op->diagonal || !ctx->n;

@@ -68,7 +68,7 @@ struct following {
 
 /* What the last call found. */
 struct last {
-    double *feq, *f;         /* [n] f: unless calls of many contacts that are all alone write slips in its place */
+    double *feq, *f;         /* [n] */
     signed char *slip;       /* [n] TRIBO_SLIP_... of SLIPS_WRITTEN */
     unsigned char *near;     /* [n] 1: the last tribo_balance found contacts of groups near stick */
     double *v;               /* [n] velocities of the last tribo_balance_tangent */

@@ -15,16 +15,6 @@ static inline double tribo_lower(const struct bounds *b, size_t i)
     return b->lower ? b->lower[i] : -b->upper[i];
 }
 
-/* Returns the slip of a contact by its force f: it is stuck if |f| < holds limit. (The smooth law never reaches the limit; it
- * holds where |v| < epsilon.) */
-static inline signed char tribo_slip_by_force(double f, double limit, double holds)
-{
-    const double edge = holds * limit;
-    const double forth = f <= -edge ? TRIBO_SLIP_FORTH : 0.0, back = f >= edge ? -TRIBO_SLIP_BACK : 0.0;
-    return (signed char)(int)(limit > 0.0 ? forth - back
-                                          : TRIBO_SLIP_OPEN); /* doubles, as wide as f: vectors of them stay whole */
-}
-
 /* Group g in the workspace. */
 static inline struct box_qp *tribo_problem(tribo_context *ctx, size_t g)
 {
@@ -40,14 +30,8 @@ static inline double tribo_carried(const tribo_context *ctx, const struct box_qp
 
 /* ---- alone.c: contacts as if no two shared a body */
 
-/* slip [n] by forces. */
-void tribo_find_slips(size_t n, const double *f, const double *limit, double holds, signed char *slip);
-
 /* feq [n] = -a/R_ii of the contacts of the chunk that begins with contact i; 0 for open ones. */
 void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq);
-
-/* Checks that v and a are finite; a status. *plain: |a_i| <= TRIBO_PLAIN. */
-int tribo_check_motion(tribo_context *ctx, const double *v, const double *a, int *plain);
 
 /* tribo_balance and tribo_step_force where tribo_all_alone. feq and f of the balance may be NULL. */
 int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);

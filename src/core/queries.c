@@ -13,11 +13,29 @@ int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
 
 /* -------------------------------------------------------------------------------------------------------------- slips */
 
+/* Returns the slip of a contact by its force f: it is stuck if |f| < holds limit. (The smooth law never reaches the limit; it
+ * holds where |v| < epsilon.) */
+static inline signed char slip_by_force(double f, double limit, double holds)
+{
+    const double edge = holds * limit;
+    const double forth = f <= -edge ? TRIBO_SLIP_FORTH : 0.0, back = f >= edge ? -TRIBO_SLIP_BACK : 0.0;
+    return (signed char)(int)(limit > 0.0 ? forth - back
+                                          : TRIBO_SLIP_OPEN); /* doubles, as wide as f: vectors of them stay whole */
+}
+
+TRIBO_SIMD static void find_slips(size_t n, const double *restrict f, const double *restrict limit, double holds,
+                                  signed char *restrict slip)
+{
+    for (size_t i = 0; i < n; i++) {
+        slip[i] = slip_by_force(f[i], limit[i], holds);
+    }
+}
+
 /* slip [n] of the last call, which has slips. */
 static void put_slips(const tribo_context *ctx, signed char *slip)
 {
     if (ctx->last.slips == SLIPS_IN_FORCES) {
-        tribo_find_slips(ctx->n, ctx->last.f, ctx->follow.contacts.limit, ctx->last.holds, slip);
+        find_slips(ctx->n, ctx->last.f, ctx->follow.contacts.limit, ctx->last.holds, slip);
         for (size_t i = 0; tribo_plane_count(ctx) && i < ctx->n; i++) {
             slip[i] = tribo_is_scalar(ctx, i) ? slip[i] : tribo_plane_slip(ctx, i);
         }
@@ -71,8 +89,8 @@ int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
     }
     for (size_t i = 0; which == TRIBO_COUNT_STUCK && last->slips != NO_SLIPS && i < ctx->n; i++) {
         const int slip = last->slips == SLIPS_WRITTEN ? last->slip[i]
-                         : tribo_is_scalar(ctx, i) ? tribo_slip_by_force(last->f[i], ctx->follow.contacts.limit[i], last->holds)
-                                                   : tribo_plane_slip(ctx, i);
+                         : tribo_is_scalar(ctx, i)    ? slip_by_force(last->f[i], ctx->follow.contacts.limit[i], last->holds)
+                                                      : tribo_plane_slip(ctx, i);
         values[TRIBO_COUNT_STUCK] += slip == TRIBO_SLIP_STUCK;
     }
     *value = values[which];
