@@ -7,19 +7,18 @@
 
 #define DEFAULT_EPSILON 1e-6
 
-/* Returns a context of n contacts with the members of like, and copies of its settings, forces and slips if like has arrays; all
- * other arrays are zeros. Each array has room for n + 1 contacts, so that no array is empty. Returns NULL if out of memory. */
+/* Returns a context of n contacts with the members of like, and copies of its arrays, or zeros if like has none. Each array has
+ * room for n + 1 contacts, so that no array is empty. Returns NULL if out of memory. */
 static tribo_context *context_allocate(size_t n, const tribo_context *like)
 {
     const size_t m = n + 1, chunks = tribo_chunks(m);
     struct layout b = {0};
-    size_t begin = 0, end = 0; /* of the arrays from chunk to last.slip */
     tribo_context *ctx, at = *like;
     double **const array[] = {
         &at.set.limit, &at.set.width,        &at.set.rate,          &at.set.ratio,   &at.set.stribeck,      &at.last.f,
         &at.last.feq,  &at.follow.cut_limit, &at.follow.cut_factor, &at.follow.hold, &at.follow.hold_width, &at.follow.now,
         &at.last.v};
-    enum { ARRAYS = sizeof array / sizeof *array, COPIED = 7 };
+    enum { ARRAYS = sizeof array / sizeof *array };
     /* Each array of n doubles begins a line of cache, an odd number of lines behind the one before: of arrays at distances of a
      * power of two few would stay in cache. */
     const size_t room = TRIBO_LINE * ((n / TRIBO_LINE + 1) | 1);
@@ -29,18 +28,16 @@ static tribo_context *context_allocate(size_t n, const tribo_context *like)
         for (size_t k = 0; numbers && k < ARRAYS; k++) {
             *array[k] = numbers + k * room;
         }
-        begin = b.used;
         at.follow.chunk = tribo_layout_array(&b, chunks, sizeof *at.follow.chunk);
         at.moving = tribo_layout_array(&b, m, 1);
         at.last.slip = tribo_layout_array(&b, m, 1);
-        end = b.used;
         at.last.tangent = tribo_layout_array(&b, m, sizeof *at.last.tangent);
         at.last.near = tribo_layout_array(&b, m, 1);
         at.spare = tribo_layout_array(&b, m, 1);
     } while (!b.memory && tribo_layout_zeros(&b));
     if (ctx && like->set.limit) {
-        memcpy(at.set.limit, like->set.limit, COPIED * room * sizeof *at.set.limit);
-        memcpy(at.follow.chunk, like->follow.chunk, end - begin);
+        memcpy(at.set.limit, like->set.limit, ARRAYS * room * sizeof *at.set.limit);
+        memcpy(at.follow.chunk, like->follow.chunk, (size_t)((char *)(at.spare + m) - (char *)at.follow.chunk));
     }
     at.n = n;
     at.message[0] = 0;

@@ -199,21 +199,16 @@ int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double 
 
 /* ------------------------------------------------------------------------------------------------------- second order */
 
-/* The second problem of a step. */
-struct step {
-    double dt;
-    const double *v, *vfree;
-    const double *free;    /* [n] vfree of the second problem */
-    signed char *reverses; /* [n] direction of slip at the end, or 0 */
-    double *lower, *upper; /* [n] bounds of the second problem; before, upper: R f without the contact's own force */
-};
-
-/* Finds the second problem. Returns the number of contacts that make it another one. */
-static size_t find_reversals(tribo_context *ctx, struct step *s)
+/* Finds the second problem of a step: *free [n] in the place of vfree, bounds, and in ctx->spare the directions [n] of slip at the
+ * end, or 0. Returns the number of contacts that make it another problem than the first. */
+static size_t find_reversals(tribo_context *ctx, double dt, const double *v, const double *vfree, const double **free,
+                             struct bounds *b)
 {
+    double *lower = ctx->last.v, *upper = ctx->last.feq; /* before, upper: R f without the contact's own force */
+    signed char *reverses = ctx->spare;
     for (size_t i = 0; i < ctx->n; i++) {
-        s->upper[i] = 0.0;
-        s->reverses[i] = 0;
+        upper[i] = 0.0;
+        reverses[i] = 0;
     }
     for (size_t g = 0; g < ctx->op->groups; g++) {
         struct box_qp *p = tribo_problem(ctx, g);
@@ -221,19 +216,21 @@ static size_t find_reversals(tribo_context *ctx, struct step *s)
             p->step[k] = tribo_carried(ctx, p, k);
         }
         for (size_t k = 0; k < p->group->size; k++) {
-            s->upper[p->member[k]] = tribo_row_others(p, k, p->step);
+            upper[p->member[k]] = tribo_row_others(p, k, p->step);
         }
     }
-    size_t changes = tribo_clusters_turn(ctx, s->dt, s->v, &s->free, s->upper, s->reverses);
+    *free = vfree;
+    *b = (struct bounds){lower, upper};
+    size_t changes = tribo_clusters_turn(ctx, dt, v, free, upper, reverses);
     for (size_t i = 0; i < ctx->n; i++) {
-        const double limit = ctx->set.limit[i], hold = product(ctx->op->diagonal[i], limit), forth = sign(s->v[i]);
-        const double free = quotient(0.5 * s->vfree[i] - 0.5 * s->v[i], 0.5 * s->dt), against = -forth * (free + s->upper[i]);
+        const double limit = ctx->set.limit[i], hold = product(ctx->op->diagonal[i], limit), forth = sign(v[i]);
+        const double pull = quotient(0.5 * vfree[i] - 0.5 * v[i], 0.5 * dt), against = -forth * (pull + upper[i]);
         const int over = tribo_is_scalar(ctx, i) && limit > 0.0 && against > hold;
-        const double stop = over ? quotient(fabs(s->v[i]), 0.5 * against + 0.5 * hold) : 0.0, part = quotient(stop, 2.0 * s->dt);
+        const double stop = over ? quotient(fabs(v[i]), 0.5 * against + 0.5 * hold) : 0.0, part = quotient(stop, 2.0 * dt);
         const int back = over && part < 1.0;
-        s->upper[i] = back ? forth * limit * (1.0 - 2.0 * part) : limit;
-        s->lower[i] = back ? s->upper[i] : -limit;
-        s->reverses[i] = (signed char)(back ? -forth : s->reverses[i]);
+        upper[i] = back ? forth * limit * (1.0 - 2.0 * part) : limit;
+        lower[i] = back ? upper[i] : -limit;
+        reverses[i] = (signed char)(back ? -forth : reverses[i]);
         changes += (size_t)back;
     }
     return changes;
@@ -252,20 +249,22 @@ TRIBO_SIMD static int any_slip_ends(size_t n, const double *restrict v, const do
 /* tribo_step_force_mean where no limit is static. */
 static int step_mean(tribo_context *ctx, double dt, const double *v, const double *vfree)
 {
-    struct step s = {dt, v, vfree, vfree, ctx->spare, ctx->last.v, ctx->last.feq};
-    int status = solve_step(ctx, dt, vfree, (struct bounds){NULL, ctx->set.limit}, NULL);
+    const signed char *reverses = ctx->spare;
+    struct bounds b = {NULL, ctx->set.limit};
+    const double *free;
+    int status = solve_step(ctx, dt, vfree, b, NULL);
     if (status || !(tribo_plane_count(ctx) || any_slip_ends(ctx->n, v, ctx->last.f, ctx->set.limit))) {
         return status;
     }
-    if (find_reversals(ctx, &s)) {
-        status = solve_step(ctx, dt, s.free, (struct bounds){s.lower, s.upper}, s.reverses);
+    if (find_reversals(ctx, dt, v, vfree, &free, &b)) {
+        status = solve_step(ctx, dt, free, b, reverses);
     }
     if (!status) {
         /* Forces do not show the slip of contacts that reverse. */
         tribo_write_slips(ctx);
     }
     for (size_t i = 0; !status && i < ctx->n; i++) {
-        ctx->last.slip[i] = s.reverses[i] ? s.reverses[i] : ctx->last.slip[i];
+        ctx->last.slip[i] = reverses[i] ? reverses[i] : ctx->last.slip[i];
     }
     return status;
 }
