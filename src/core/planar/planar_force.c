@@ -405,29 +405,29 @@ const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
 
 /* ------------------------------------------------------------------------------------------------------------- f_eq */
 
-/* feq [directions] of the contact at place k of a cluster; 0 if it is open. */
-static void contact_feq(const tribo_context *ctx, const struct cluster *g, size_t k, double *feq)
+/* Sets last.feq of the contacts of a cluster; 0 of open ones. */
+static void find_cluster_feq(tribo_context *ctx, const struct cluster *g)
 {
-    const size_t own[2] = {k, k + 1}, directions = tribo_directions(ctx, g->member[k]);
-    const struct block block = tribo_block_of(g->r + k * (g->size + 1), g->size, directions);
-    double x[2] = {0.0, 0.0}, most = 0.0;
-    for (size_t d = 0; d < directions; d++) {
-        x[d] = pull_at(ctx, g, k + d, own, directions);
-        most = greater(most, ctx->set.limit[g->member[k + d]]);
-    }
-    push_back(&block, x);
-    for (size_t d = 0; d < directions; d++) {
-        feq[d] = most > 0.0 ? x[d] : 0.0;
+    for (size_t k = 0, directions; k < g->size; k += directions) {
+        const size_t i = g->member[k], own[2] = {k, k + 1};
+        directions = tribo_directions(ctx, i);
+        const struct block block = tribo_block_of(g->r + k * (g->size + 1), g->size, directions);
+        double x[2] = {0.0, 0.0}, most = 0.0;
+        for (size_t d = 0; d < directions; d++) {
+            x[d] = pull_at(ctx, g, k + d, own, directions);
+            most = greater(most, ctx->set.limit[i + d]);
+        }
+        push_back(&block, x);
+        for (size_t d = 0; d < directions; d++) {
+            ctx->last.feq[i + d] = most > 0.0 ? x[d] : 0.0;
+        }
     }
 }
 
 void tribo_clusters_feq(tribo_context *ctx)
 {
     for (size_t q = 0; q < tribo_cluster_count(ctx); q++) {
-        const struct cluster *g = &ctx->clusters->cluster[q];
-        for (size_t k = 0; k < g->size; k += tribo_directions(ctx, g->member[k])) {
-            contact_feq(ctx, g, k, ctx->last.feq + g->member[k]);
-        }
+        find_cluster_feq(ctx, &ctx->clusters->cluster[q]);
     }
 }
 
@@ -444,12 +444,9 @@ int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a)
             continue;
         }
         status = solve_cluster(ctx, g, 0.0);
-        /* Laws with a memory set the forces of scalar contacts from f_eq, all of which are found before any force changes. */
-        for (size_t e = 0; ctx->set.law->remembers && e < c->problem.size; e++) {
-            const size_t i = c->contact[e];
-            if (tribo_is_scalar(ctx, i)) {
-                contact_feq(ctx, g, c->near[e], ctx->last.feq + i);
-            }
+        /* Laws with a memory set the forces of scalar contacts from f_eq. */
+        if (ctx->set.law->remembers) {
+            find_cluster_feq(ctx, g);
         }
         for (size_t e = 0; ctx->set.law->remembers && e < c->problem.size; e++) {
             const size_t i = c->contact[e];
