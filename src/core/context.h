@@ -17,9 +17,6 @@
 #include "common/real.h"
 #include "common/simd.h"
 
-/* From this number of contacts on, an output does not stay in any cache. */
-#define TRIBO_MANY ((size_t)1 << 22)
-
 /* Properties of the contacts of a chunk that change with settings only. */
 struct chunk {
     double least, largest; /* limit */

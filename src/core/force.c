@@ -45,9 +45,8 @@ static void find_outputs(const tribo_context *ctx, int plain, const double *v, c
     const int derivatives = out[BY_V] || out[BY_FEQ] || out[BY_LIMIT];
     const int whole = plain && !ctx->set.breaking && !derivatives;
     const double *given = ctx->set.law->uses_feq ? feq : v;
-    double spare[OUTPUTS][TRIBO_CHUNK];
     for (size_t i = 0, n; i < ctx->n; i += n) {
-        double room[TRIBO_CHUNK], limit[TRIBO_CHUNK], *to[OUTPUTS];
+        double room[TRIBO_CHUNK], limit[TRIBO_CHUNK], unwanted[OUTPUTS][TRIBO_CHUNK], *to[OUTPUTS];
         const struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
         n = tribo_chunk_size(ctx, i);
         /* Forces of chunks that are alike are one loop: the first memory of a loop takes long to arrive. */
@@ -65,7 +64,7 @@ static void find_outputs(const tribo_context *ctx, int plain, const double *v, c
             c.limit = c.bound = limit;
         }
         for (int k = 0; k < OUTPUTS; k++) {
-            to[k] = out[k] ? out[k] + i : spare[k];
+            to[k] = out[k] ? out[k] + i : unwanted[k];
         }
         if (derivatives) {
             tribo_law_tangents(ctx, &c, i, n, v + i, used, &(struct tangents){to[FORCES], to[BY_V], to[BY_FEQ], to[BY_LIMIT]});
