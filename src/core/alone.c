@@ -30,15 +30,6 @@ TRIBO_SIMD static int any_in_band(size_t n, const double *v, double band)
     return any != 0;
 }
 
-/* near [n] = 1 where limit > 0 and |v| <= band. */
-TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const double *restrict band, const double *restrict limit,
-                                 unsigned char *restrict near)
-{
-    for (size_t i = 0; i < n; i++) {
-        near[i] = (fabs(v[i]) <= band[i]) & (limit[i] > 0.0);
-    }
-}
-
 TRIBO_SIMD static void slide(size_t n, const double *restrict v, const double *restrict limit, double *restrict f)
 {
     for (size_t i = 0; i < n; i++) {
@@ -88,27 +79,6 @@ void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *
     for (size_t k = 0; chunk->least == 0.0 && k < n; k++) {
         feq[k] = limit[k] > 0.0 ? feq[k] : 0.0;
     }
-}
-
-TRIBO_SIMD static void find_epsilons(size_t n, const double *restrict width, const double *restrict bound,
-                                     double *restrict epsilon)
-{
-    for (size_t i = 0; i < n; i++) {
-        epsilon[i] = tribo_epsilon(1, width[i], bound[i]);
-    }
-}
-
-/* Returns the |v| up to which the law reads f_eq, of the n <= TRIBO_CHUNK contacts from i on: epsilon, or 0; room [n] is
- * workspace. */
-static const double *bands_of(const tribo_context *ctx, size_t i, size_t n, double *room)
-{
-    static const double none[TRIBO_CHUNK];
-    const struct contacts *c = &ctx->follow.contacts;
-    if (!ctx->set.law->sticks_in_band || !c->follows) {
-        return ctx->set.law->sticks_in_band ? c->width + i : none;
-    }
-    find_epsilons(n, c->width + i, c->bound + i, room);
-    return room;
 }
 
 /* --------------------------------------------------------------------------------------------------------------- calls */
@@ -173,10 +143,9 @@ static void balance_chunk(tribo_context *ctx, const struct call *call, size_t k,
     if (op->groups) {
         unsigned char *is_near = ctx->last.near + i;
         memset(is_near, 0, n);
-        if (near) {
-            find_near(n, v, bands_of(ctx, i, n, room), ctx->follow.contacts.limit + i, is_near);
-        }
         for (size_t j = 0; near && j < n; j++) {
+            const double own = law->sticks_in_band ? tribo_epsilon_of(&ctx->follow.contacts, i + j) : 0.0;
+            is_near[j] = fabs(v[j]) <= own && ctx->follow.contacts.limit[i + j] > 0.0;
             if (is_near[j]) {
                 tribo_list_group(ctx, tribo_group_of(ctx)[i + j]);
             }
