@@ -377,58 +377,48 @@ static int judge_group(struct delassus *op, struct memory *m, size_t k, const st
     return TRIBO_OK;
 }
 
-static int create_groups(struct delassus *op, struct memory *m, const struct csr *a, const struct inertia *from,
-                         const size_t *place, tribo_context *note)
+int tribo_operator_create(struct delassus **created, struct memory *m, const struct csr *a, const double *diagonal,
+                          const struct inertia *from, tribo_context *note)
 {
-    for (size_t k = 0; k < op->groups; k++) {
+    enum { FEW = 4, MANY = 8 }; /* for the largest eigenvalue of contacts in a row, to 2% whatever the masses */
+    const size_t n = a->n;
+    size_t *place = malloc((4 * n + 1) * sizeof *place);
+    double before = HUGE_VAL, *x = malloc((2 * n + 1) * sizeof *x);
+    struct delassus *op = NULL;
+    *m = (struct memory){0};
+    const int made = place && x && tribo_operator_diagonal(&op, n, diagonal) && find_groups(op, a, place, place + n);
+    const size_t groups = made ? op->groups : 0;
+    int status = made ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    for (size_t i = 0; made && i < n; i++) {
+        x[i] = 1.0 / sqrt(op->diagonal[i]);
+    }
+    for (int k = 0; groups && (k < FEW || (k < MANY && op->growth < 0.999 * before)); k++) {
+        before = op->growth;
+        op->growth = k % 2 ? operator_grow(op, a, x + n, x) : operator_grow(op, a, x, x + n);
+    }
+    for (size_t k = 0; !status && k < groups; k++) {
         struct group *g = &op->group[k];
         const size_t *member = op->member + g->first;
-        const int status = find_grading(g, from, member, note);
-        if (status) {
-            return status;
-        }
-        if (!g->graded && g->size > SPARSE_FROM && !make_sparse(g, a, member, place)) {
-            return TRIBO_ERR_MEMORY;
+        status = find_grading(g, from, member, note);
+        if (!status && !g->graded && g->size > SPARSE_FROM && !make_sparse(g, a, member, place)) {
+            status = TRIBO_ERR_MEMORY;
         }
         g->fixed = op->fixed_size;
         g->kept = op->kept_size;
         op->fixed_size += fixed_by(g);
         op->kept_size += kept_by(g);
     }
-    op->fixed = tribo_zeros(op->fixed_size + 1, sizeof *op->fixed);
-    if (!op->fixed || !allocate_memory(m, op)) {
-        return TRIBO_ERR_MEMORY;
+    if (!status && groups) {
+        op->fixed = tribo_zeros(op->fixed_size + 1, sizeof *op->fixed);
+        status = op->fixed && allocate_memory(m, op) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     }
-    int status = TRIBO_OK;
-    for (size_t k = 0; !status && k < op->groups; k++) {
+    for (size_t k = 0; !status && k < groups; k++) {
         fill_group(op, m, k, a, place);
         status = judge_group(op, m, k, from, place, note);
     }
     m->problem.work.factorizations = 0;
-    return status || allocate_basis(m, op) ? status : TRIBO_ERR_MEMORY;
-}
-
-int tribo_operator_create(struct delassus **created, struct memory *m, const struct csr *a, const double *diagonal,
-                          const struct inertia *from, tribo_context *note)
-{
-    enum { FEW = 4, MANY = 8 }; /* for the largest eigenvalue of contacts in a row, to 2% whatever the masses */
-    const size_t n = a->n;
-    int status = TRIBO_ERR_MEMORY;
-    size_t *place = malloc((4 * n + 1) * sizeof *place);
-    double before = HUGE_VAL, *x = malloc((2 * n + 1) * sizeof *x);
-    struct delassus *op = NULL;
-    *m = (struct memory){0};
-    if (place && x && tribo_operator_diagonal(&op, n, diagonal) && find_groups(op, a, place, place + n)) {
-        for (size_t i = 0; i < n; i++) {
-            x[i] = 1.0 / sqrt(op->diagonal[i]);
-        }
-        for (int k = 0; op->groups && (k < FEW || (k < MANY && op->growth < 0.999 * before)); k++) {
-            before = op->growth;
-            op->growth = k % 2 ? operator_grow(op, a, x + n, x) : operator_grow(op, a, x, x + n);
-        }
-        status = op->groups ? create_groups(op, m, a, from, place, note) : TRIBO_OK;
-    }
-    if (status) {
+    if (status || !allocate_basis(m, op)) {
+        status = status ? status : TRIBO_ERR_MEMORY;
         tribo_operator_release(op);
         tribo_memory_free(m);
         op = NULL;
