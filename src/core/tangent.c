@@ -40,7 +40,7 @@ static double own_change(const tribo_context *ctx, const struct change *d, const
 /* df = R^-1 (-rhs) over the free contacts, the least in norm; df of the others is given. */
 static void follow_free(struct box_qp *p, size_t vectors, const double *rhs, double *df)
 {
-    const size_t rank = p->sets->rank, all = rank + p->sets->dependents;
+    const size_t all = p->sets->rank + p->sets->dependents;
     double ignored;
     for (size_t k = 0; k < all; k++) {
         df[p->order[k]] = 0.0;
@@ -51,12 +51,7 @@ static void follow_free(struct box_qp *p, size_t vectors, const double *rhs, dou
             const size_t i = p->order[k];
             p->step[i] = -(tribo_row_dot(p, i, df, &ignored) + rhs[i]);
         }
-        tribo_null_project(p, vectors, p->step);
-        tribo_factor_solve(p, p->step);
-        for (size_t k = rank; k < all; k++) {
-            p->step[p->order[k]] = 0.0;
-        }
-        tribo_null_project(p, vectors, p->step);
+        tribo_null_solve(p, vectors, p->step);
         for (size_t k = 0; k < all; k++) {
             df[p->order[k]] += p->step[p->order[k]];
         }

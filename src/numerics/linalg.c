@@ -161,24 +161,22 @@ void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, c
 void tribo_multiply_transposed_add(size_t rows, size_t inner, size_t cols, const double *a, const double *b, double *c)
 {
     size_t k = 0;
+    if (cols == 1) {
+        tribo_multiply_add(1, rows, inner, 1.0, b, a, c);
+        return;
+    }
     for (; k + 4 <= rows; k += 4) {
-        const double *four = a + k * inner;
-        if (cols == 1) {
-            add_four(c, four, inner, b + k);
-            continue;
-        }
         for (size_t i = 0; i < inner; i++) {
-            const double f[] = {four[i], four[inner + i], four[2 * inner + i], four[3 * inner + i]};
+            const double *four = a + k * inner + i, f[] = {four[0], four[inner], four[2 * inner], four[3 * inner]};
             if (f[0] != 0.0 || f[1] != 0.0 || f[2] != 0.0 || f[3] != 0.0) {
                 add_four(c + i * cols, b + k * cols, cols, f);
             }
         }
     }
     for (; k < rows; k++) {
-        for (size_t i = 0; cols > 1 && i < inner; i++) {
+        for (size_t i = 0; i < inner; i++) {
             tribo_add(c + i * cols, a[k * inner + i], b + k * cols, cols);
         }
-        tribo_add(c, cols == 1 ? b[k] : 0.0, a + k * inner, cols == 1 ? inner : 0);
     }
 }
 

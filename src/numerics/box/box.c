@@ -45,7 +45,7 @@ void tribo_box_gradients(struct box_qp *p)
 
 void tribo_box_newton(struct box_qp *p)
 {
-    for (size_t k = 0; k < p->sets->rank; k++) {
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
         const size_t i = p->order[k];
         p->step[i] = -p->gradient[i];
         p->low.step[i] = p->twofold ? -p->low.gradient[i] : 0.0;
@@ -54,9 +54,6 @@ void tribo_box_newton(struct box_qp *p)
         tribo_graded_solve(p, p->step, p->low.step);
     } else {
         tribo_factor_solve(p, p->step);
-    }
-    for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
-        p->step[p->order[k]] = p->low.step[p->order[k]] = 0.0;
     }
 }
 

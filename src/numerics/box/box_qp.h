@@ -165,10 +165,10 @@ void tribo_box_change(struct box_qp *p, size_t i, signed char to);
  * independent contacts, rounding unless R is indefinite, negative if a pivot is, and its contact *where; else 0. */
 double tribo_factor_rebuild(struct box_qp *p, size_t *where);
 
-/* step = R^-1 step over the independent contacts. Leaves the other entries. */
+/* step = R^-1 step over the independent contacts, 0 for the dependents. Leaves the other entries. */
 void tribo_factor_solve(const struct box_qp *p, double *step);
 
-/* Of a graded group: step + low = R^-1 (step + low). */
+/* Of a graded group: step + low = R^-1 (step + low), 0 for the dependents. */
 void tribo_graded_solve(const struct box_qp *p, double *step, double *low);
 
 /* Returns 1 if q and x have sizes that twice as many digits allow. bounded: x is within lo and hi. */
@@ -184,8 +184,20 @@ double tribo_graded_terms(const struct box_qp *p, size_t i);
 /* Returns x_i + length step_i; its low part goes to low.x. */
 double tribo_graded_move(struct box_qp *p, size_t i, double length);
 
-void tribo_sparse_add(struct box_qp *p, size_t i);
-void tribo_sparse_remove(struct box_qp *p, size_t i);
+/* What a contact is that enters the factor. UNDECIDED: its pivot is small, and the factor invalid. */
+enum { UNDECIDED, DEPENDENT, INDEPENDENT };
+
+/* order_at = i. */
+static inline void tribo_box_order(struct box_qp *p, size_t at, size_t i)
+{
+    p->order[at] = i;
+    if (p->group->sparse) {
+        p->sparse.index[i] = at;
+    }
+}
+
+int tribo_sparse_enter(struct box_qp *p, size_t i);
+void tribo_sparse_leave(struct box_qp *p, size_t i);
 double tribo_sparse_rebuild(struct box_qp *p, size_t *where);
 void tribo_sparse_solve(const struct box_qp *p, double *step);
 double tribo_sparse_dot(const struct box_qp *p, size_t i, const double *x, double *size);
@@ -312,6 +324,9 @@ size_t tribo_null_basis(struct box_qp *p);
 
 /* y [size] -= its projection to the first k vectors of basis. */
 void tribo_null_project(const struct box_qp *p, size_t k, double *y);
+
+/* step = R^-1 step of least norm over the free contacts, for `vectors` of basis. */
+void tribo_null_solve(const struct box_qp *p, size_t vectors, double *step);
 
 /* x = the solution of least norm, up to rounding. Contacts at a bound without gradient become free. Returns 0 if the solution is
  * unique. */

@@ -147,8 +147,8 @@ static inline double dense_rebuild(struct box_qp *p, int graded, size_t *where)
     return most;
 }
 
-/* Appends i to the independent contacts or to the dependents. Returns 0 if the pivot is doubtful. */
-static int dense_append(struct box_qp *p, size_t i)
+/* Computes the row of i as the last one of l. Returns what i is. */
+static int dense_enter(struct box_qp *p, size_t i)
 {
     const size_t rank = p->sets->rank, size = p->group->size;
     const double diagonal = scaled_entry(p, 0, i, i).hi;
@@ -159,21 +159,14 @@ static int dense_append(struct box_qp *p, size_t i)
         pivot -= row[k] * row[k];
     }
     const double relative = pivot / diagonal;
-    p->order[rank + p->sets->dependents] = i;
-    if (relative <= tribo_resolution(rank + 1)) {
-        p->sets->dependents++;
-    } else if (relative <= TRIBO_DOUBTFUL) {
-        return 0;
-    } else {
-        row[rank] = 1.0 / sqrt(pivot);
-        /* The first dependent makes room at the end of the independent contacts. */
-        p->order[rank + p->sets->dependents] = p->order[rank];
-        p->order[p->sets->rank++] = i;
+    if (relative <= TRIBO_DOUBTFUL) {
+        return relative <= tribo_resolution(rank + 1) ? DEPENDENT : UNDECIDED;
     }
-    return 1;
+    row[rank] = 1.0 / sqrt(pivot);
+    return INDEPENDENT;
 }
 
-static void dense_remove(struct box_qp *p, size_t i)
+static void dense_leave(struct box_qp *p, size_t i)
 {
     const size_t all = p->sets->rank + p->sets->dependents;
     size_t at = 0;
@@ -203,15 +196,6 @@ static void dense_remove(struct box_qp *p, size_t i)
             m[k + 1] = c * y - s * x;
         }
     }
-    /* Dependents of the contact that left may be independent. */
-    const size_t waiting = p->sets->dependents;
-    p->sets->dependents = 0;
-    for (size_t d = 0; d < waiting; d++) {
-        if (!dense_append(p, p->order[p->sets->rank + p->sets->dependents])) {
-            dense_rebuild(p, 0, NULL);
-            return;
-        }
-    }
 }
 
 static void dense_solve(const struct box_qp *p, double *step)
@@ -234,12 +218,6 @@ static void dense_solve(const struct box_qp *p, double *step)
 
 /* --------------------------------------------------------------------------------------------------- the graded factor */
 
-/* y -= l_kj x */
-static struct twofold graded_subtract(const struct box_qp *p, struct twofold y, size_t k, size_t j, struct twofold x)
-{
-    return twofold_minus(y, twofold_times(factor_entry(p, 1, k, j), x));
-}
-
 void tribo_graded_solve(const struct box_qp *p, double *step, double *low)
 {
     const size_t rank = p->sets->rank;
@@ -255,7 +233,8 @@ void tribo_graded_solve(const struct box_qp *p, double *step, double *low)
         const size_t i = p->order[k];
         struct twofold y = twofold_scale((struct twofold){unit * step[i], unit * low[i]}, p->scale[i]);
         for (size_t j = 0; j < k; j++) {
-            y = graded_subtract(p, y, k, j, (struct twofold){step[p->order[j]], low[p->order[j]]});
+            const struct twofold x = {step[p->order[j]], low[p->order[j]]};
+            y = twofold_minus(y, twofold_times(factor_entry(p, 1, k, j), x));
         }
         y = twofold_times(y, factor_entry(p, 1, k, k));
         step[i] = y.hi;
@@ -265,16 +244,17 @@ void tribo_graded_solve(const struct box_qp *p, double *step, double *low)
         const size_t i = p->order[k];
         struct twofold y = {step[i], low[i]};
         for (size_t j = k + 1; j < rank; j++) {
-            y = graded_subtract(p, y, j, k, (struct twofold){step[p->order[j]], low[p->order[j]]});
+            const struct twofold x = {step[p->order[j]], low[p->order[j]]};
+            y = twofold_minus(y, twofold_times(factor_entry(p, 1, j, k), x));
         }
         y = twofold_times(y, factor_entry(p, 1, k, k));
         step[i] = y.hi;
         low[i] = y.lo;
     }
-    for (size_t k = 0; k < rank; k++) {
+    for (size_t k = 0; k < rank + p->sets->dependents; k++) {
         const size_t i = p->order[k];
-        step[i] = quotient(p->scale[i] * step[i], unit);
-        low[i] = quotient(p->scale[i] * low[i], unit);
+        step[i] = k < rank ? quotient(p->scale[i] * step[i], unit) : 0.0;
+        low[i] = k < rank ? quotient(p->scale[i] * low[i], unit) : 0.0;
     }
 }
 
@@ -326,22 +306,47 @@ double tribo_graded_move(struct box_qp *p, size_t i, double length)
 
 /* ---------------------------------------------------------------------------------------------------------- the factor */
 
+/* Takes a free contact into the independent contacts or the dependents; factorizes anew if its pivot is doubtful. */
+static void factor_append(struct box_qp *p, size_t i)
+{
+    const struct group *g = p->group;
+    const size_t all = p->sets->rank + p->sets->dependents;
+    const int is = g->graded ? UNDECIDED : g->sparse ? tribo_sparse_enter(p, i) : dense_enter(p, i);
+    if (is == UNDECIDED) {
+        tribo_factor_rebuild(p, NULL);
+    } else if (is == DEPENDENT) {
+        tribo_box_order(p, all, i);
+        p->sets->dependents++;
+    } else {
+        /* The first dependent makes room at the end of the independent contacts. */
+        if (p->sets->dependents) {
+            tribo_box_order(p, all, p->order[p->sets->rank]);
+        }
+        tribo_box_order(p, p->sets->rank++, i);
+    }
+}
+
 void tribo_box_change(struct box_qp *p, size_t i, signed char to)
 {
     const int entered = p->at[i] == FREE, enters = to == FREE;
+    const size_t rank = p->sets->rank, factorizations = p->work.factorizations;
     p->at[i] = to;
     if (entered == enters) {
         return;
     }
     p->work.updates++;
-    if (p->group->graded) {
+    if (enters) {
+        factor_append(p, i);
+    } else if (p->group->graded) {
         tribo_factor_rebuild(p, NULL);
-    } else if (p->group->sparse) {
-        (enters ? tribo_sparse_add : tribo_sparse_remove)(p, i);
-    } else if (!enters) {
-        dense_remove(p, i);
-    } else if (!dense_append(p, i)) {
-        tribo_factor_rebuild(p, NULL);
+    } else {
+        (p->group->sparse ? tribo_sparse_leave : dense_leave)(p, i);
+        /* Dependents of an independent contact that left may be independent. */
+        const size_t waiting = p->sets->rank < rank ? p->sets->dependents : 0;
+        p->sets->dependents -= waiting;
+        for (size_t d = 0; d < waiting && p->work.factorizations == factorizations; d++) {
+            factor_append(p, p->order[p->sets->rank + p->sets->dependents]);
+        }
     }
 }
 
@@ -352,9 +357,12 @@ double tribo_factor_rebuild(struct box_qp *p, size_t *where)
                               : dense_rebuild(p, 0, where);
 }
 
-/* step = R^-1 step; row [size] = the low part of step of a graded group, and 0 on return. */
+/* step = R^-1 step, 0 for dependents; row [size] = the low part of step of a graded group, and 0 on return. */
 static void factor_solve(const struct box_qp *p, double *step)
 {
+    for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
+        step[p->order[k]] = 0.0;
+    }
     if (p->group->graded) {
         tribo_graded_solve(p, step, p->row);
         memset(p->row, 0, p->group->size * sizeof *p->row);
@@ -438,7 +446,5 @@ void tribo_null_vector(const struct box_qp *p, size_t d, double *y)
         p->row[i] = g->graded ? -p->low.r[d * g->size + i] : 0.0;
     }
     (g->graded ? factor_solve : tribo_factor_solve)(p, y);
-    for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
-        y[p->order[k]] = p->order[k] == d ? 1.0 : 0.0;
-    }
+    y[d] = 1.0;
 }

@@ -262,44 +262,6 @@ static int sparse_modify(const struct box_qp *p, size_t k, double alpha)
     return good;
 }
 
-/* Enters the contact at position k into the factor. Returns 0 if a pivot would not be positive: then the factor is invalid. */
-static int sparse_enter(struct box_qp *p, size_t k)
-{
-    const struct sparse *s = p->group->sparse;
-    const size_t i = s->place[k];
-    double ignored = 0.0;
-    const double pivot = sparse_eliminate(p, k, &ignored);
-    if (!(pivot > TRIBO_SPARSE_ZERO)) {
-        return 0;
-    }
-    p->sparse.d[k] = 1.0 / pivot;
-    for (size_t e = s->r.first[i]; e < s->r.first[i + 1]; e++) {
-        const size_t j = s->position[s->r.col[e]];
-        if (j > k) {
-            p->sparse.w[j] = p->scale[i] * s->r.val[e] * p->scale[s->r.col[e]];
-        }
-    }
-    for (size_t t = s->row[k]; t < s->row[k + 1]; t++) {
-        const size_t j = s->column_of[t], slot = s->slot[t];
-        const double x = p->sparse.l[slot] / (p->sparse.d[j] == 0.0 ? 1.0 : p->sparse.d[j]); /* where d is 0 l is, too */
-        for (size_t q = slot + 1; x != 0.0 && q < s->column[j + 1]; q++) {
-            p->sparse.w[s->row_of[q]] -= p->sparse.l[q] * x;
-        }
-    }
-    for (size_t q = s->column[k]; q < s->column[k + 1]; q++) {
-        const size_t j = s->row_of[q];
-        p->sparse.l[q] = p->sparse.d[j] == 0.0 ? 0.0 : p->sparse.w[j] * p->sparse.d[k];
-        p->sparse.w[j] = p->sparse.l[q];
-    }
-    return sparse_modify(p, k, -pivot);
-}
-
-static void sparse_put(struct box_qp *p, size_t at, size_t i)
-{
-    p->order[at] = i;
-    p->sparse.index[i] = at;
-}
-
 /* Returns 1 if contact i depends on the contacts in the factor: its pivot as the last one would be 0 to rounding. */
 static int sparse_depends(struct box_qp *p, size_t i)
 {
@@ -321,36 +283,53 @@ static int sparse_depends(struct box_qp *p, size_t i)
     return own + pivot <= 2.0 * TRIBO_SPARSE_ZERO * (own + size);
 }
 
-void tribo_sparse_add(struct box_qp *p, size_t i)
+int tribo_sparse_enter(struct box_qp *p, size_t i)
 {
-    const struct group *g = p->group;
-    if (g->nullity && sparse_depends(p, i)) {
-        sparse_put(p, p->sets->rank + p->sets->dependents++, i);
-    } else if (sparse_enter(p, g->sparse->position[i])) {
-        /* The first dependent makes room at the end of the independent contacts. */
-        if (p->sets->dependents) {
-            sparse_put(p, p->sets->rank + p->sets->dependents, p->order[p->sets->rank]);
-        }
-        sparse_put(p, p->sets->rank++, i);
-    } else {
-        tribo_sparse_rebuild(p, NULL);
+    const struct sparse *s = p->group->sparse;
+    const size_t k = s->position[i];
+    double ignored = 0.0;
+    if (p->group->nullity && sparse_depends(p, i)) {
+        return DEPENDENT;
     }
+    const double pivot = sparse_eliminate(p, k, &ignored);
+    if (!(pivot > TRIBO_SPARSE_ZERO)) {
+        return UNDECIDED;
+    }
+    p->sparse.d[k] = 1.0 / pivot;
+    for (size_t e = s->r.first[i]; e < s->r.first[i + 1]; e++) {
+        const size_t j = s->position[s->r.col[e]];
+        if (j > k) {
+            p->sparse.w[j] = p->scale[i] * s->r.val[e] * p->scale[s->r.col[e]];
+        }
+    }
+    for (size_t t = s->row[k]; t < s->row[k + 1]; t++) {
+        const size_t j = s->column_of[t], slot = s->slot[t];
+        const double x = p->sparse.l[slot] / (p->sparse.d[j] == 0.0 ? 1.0 : p->sparse.d[j]); /* where d is 0 l is, too */
+        for (size_t q = slot + 1; x != 0.0 && q < s->column[j + 1]; q++) {
+            p->sparse.w[s->row_of[q]] -= p->sparse.l[q] * x;
+        }
+    }
+    for (size_t q = s->column[k]; q < s->column[k + 1]; q++) {
+        const size_t j = s->row_of[q];
+        p->sparse.l[q] = p->sparse.d[j] == 0.0 ? 0.0 : p->sparse.w[j] * p->sparse.d[k];
+        p->sparse.w[j] = p->sparse.l[q];
+    }
+    return sparse_modify(p, k, -pivot) ? INDEPENDENT : UNDECIDED;
 }
 
-void tribo_sparse_remove(struct box_qp *p, size_t i)
+void tribo_sparse_leave(struct box_qp *p, size_t i)
 {
-    const struct group *g = p->group;
-    const struct sparse *s = g->sparse;
-    const size_t k = s->position[i], at = p->sparse.index[i], waiting = p->sets->dependents, work = p->work.factorizations;
+    const struct sparse *s = p->group->sparse;
+    const size_t k = s->position[i], at = p->sparse.index[i], dependents = p->sets->dependents;
     if (at >= p->sets->rank) {
         p->sets->dependents--;
-        sparse_put(p, at, p->order[p->sets->rank + p->sets->dependents]);
+        tribo_box_order(p, at, p->order[p->sets->rank + p->sets->dependents]);
         return;
     }
     p->sets->rank--;
-    sparse_put(p, at, p->order[p->sets->rank]);
-    if (waiting) {
-        sparse_put(p, p->sets->rank, p->order[p->sets->rank + waiting]);
+    tribo_box_order(p, at, p->order[p->sets->rank]);
+    if (dependents) {
+        tribo_box_order(p, p->sets->rank, p->order[p->sets->rank + dependents]);
     }
     sparse_clear_row(p, k);
     for (size_t q = s->column[k]; q < s->column[k + 1]; q++) {
@@ -360,11 +339,6 @@ void tribo_sparse_remove(struct box_qp *p, size_t i)
     const double pivot = 1.0 / p->sparse.d[k];
     p->sparse.d[k] = 0.0;
     sparse_modify(p, k, pivot);
-    /* Dependents of the contact that left may be independent. */
-    p->sets->dependents = 0;
-    for (size_t d = 0; d < waiting && p->work.factorizations == work; d++) {
-        tribo_sparse_add(p, p->order[p->sets->rank + p->sets->dependents]);
-    }
 }
 
 /* ---------------------------------------------------------------------------------------------------------- creation */

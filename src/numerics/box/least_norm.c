@@ -38,6 +38,13 @@ void tribo_null_project(const struct box_qp *p, size_t k, double *y)
     }
 }
 
+void tribo_null_solve(const struct box_qp *p, size_t vectors, double *step)
+{
+    tribo_null_project(p, vectors, step);
+    tribo_factor_solve(p, step);
+    tribo_null_project(p, vectors, step);
+}
+
 size_t tribo_null_basis(struct box_qp *p)
 {
     const size_t vectors = p->sets->dependents;

@@ -176,12 +176,7 @@ void tribo_disc_backsolve(struct disc_qp *p)
     for (size_t k = 0; k < p->factor.group.size; k++) {
         p->step[k] = p->step[k] * inverse * (1.0 / ROOM);
     }
-    tribo_null_project(&p->factor.qp, p->factor.redundant, p->step);
-    tribo_factor_solve(&p->factor.qp, p->step);
-    for (size_t d = 0; d < p->factor.sets.dependents; d++) {
-        p->step[p->factor.qp.order[p->factor.sets.rank + d]] = 0.0;
-    }
-    tribo_null_project(&p->factor.qp, p->factor.redundant, p->step);
+    tribo_null_solve(&p->factor.qp, p->factor.redundant, p->step);
     for (size_t k = 0; k < p->factor.group.size; k++) {
         p->step[k] = product(product(p->step[k], 2.0 * ROOM), unit);
     }
