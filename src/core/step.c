@@ -236,16 +236,6 @@ static size_t find_reversals(tribo_context *ctx, double dt, const double *v, con
     return changes;
 }
 
-/* 1 if a contact that came in sliding does not go on that way. */
-TRIBO_SIMD static int any_slip_ends(size_t n, const double *restrict v, const double *restrict f, const double *restrict limit)
-{
-    int64_t any = 0; /* as wide as a double, for vectors */
-    for (size_t i = 0; i < n; i++) {
-        any |= ((v[i] != 0.0) & (f[i] != sliding(v[i], limit[i]))) ? -1 : 0;
-    }
-    return any != 0;
-}
-
 /* tribo_step_force_mean where no limit is static. */
 static int step_mean(tribo_context *ctx, double dt, const double *v, const double *vfree)
 {
@@ -253,7 +243,11 @@ static int step_mean(tribo_context *ctx, double dt, const double *v, const doubl
     struct bounds b = {NULL, ctx->set.limit};
     const double *free;
     int status = solve_step(ctx, dt, vfree, b, NULL);
-    if (status || !(tribo_plane_count(ctx) || any_slip_ends(ctx->n, v, ctx->last.f, ctx->set.limit))) {
+    int changes = tribo_plane_count(ctx) > 0; /* or a contact that came in sliding does not go on that way */
+    for (size_t i = 0; !status && !changes && i < ctx->n; i++) {
+        changes = v[i] != 0.0 && ctx->last.f[i] != sliding(v[i], ctx->set.limit[i]);
+    }
+    if (status || !changes) {
         return status;
     }
     if (find_reversals(ctx, dt, v, vfree, &free, &b)) {

@@ -4,30 +4,25 @@
  * f_eq given, each of which is a problem alone. */
 #include "core/clusters.h"
 
-/* Static limits at i change with |v|: adds the changes of limits to dlimit [directions] for the change dv of v. At rest, where |v|
- * has a kink, it grows along `along`, the direction in which the contact begins to slide, or 0. */
-static void add_falls(const tribo_context *ctx, size_t i, const double *v, const double *along, const double *dv, double *dlimit)
-{
-    const size_t directions = tribo_directions(ctx, i);
-    const double speed = tribo_length((int)directions, v), *way = speed > 0.0 ? v : along;
-    const double length = tribo_length((int)directions, way);
-    double faster = 0.0;
-    for (size_t k = 0; k < directions; k++) {
-        faster += (length > 0.0 ? way[k] / length : 0.0) * dv[k];
-    }
-    for (size_t k = 0; k < directions; k++) {
-        dlimit[k] += product(tribo_limit_rate(ctx, i + k, speed), faster);
-    }
-}
-
 /* Changes of one contact; x: of part v of a slide; epsilon: d(epsilon)/epsilon. */
 struct turn {
     double v[2], limit[2], x[2], epsilon;
 };
 
-/* Sets t->x from the other changes. */
-static void turn_slide(const struct slide *s, const double *limit, const double *v, struct turn *t)
+/* Of the contact at i, at v: adds to t->limit the changes of static limits with |v|, and sets t->x. At rest, where |v| has a kink, it
+ * grows along `along`, the direction in which the contact begins to slide, or 0. */
+static void turn_slide(const tribo_context *ctx, size_t i, const struct slide *s, const double *limit, const double *v,
+                       const double *along, struct turn *t)
 {
+    const int directions = (int)s->directions;
+    const double speed = tribo_length(directions, v), *way = speed > 0.0 ? v : along, length = tribo_length(directions, way);
+    double faster = 0.0;
+    for (size_t k = 0; k < s->directions; k++) {
+        faster += (length > 0.0 ? way[k] / length : 0.0) * t->v[k];
+    }
+    for (size_t k = 0; k < s->directions; k++) {
+        t->limit[k] += product(tribo_limit_rate(ctx, i + k, speed), faster);
+    }
     for (size_t k = 0; k < s->directions; k++) {
         const double wider = t->limit[k] - product(s->part[k], t->limit[s->far]);
         const double part = s->open || k == s->far ? 0.0 : quotient(wider, limit[s->far]);
@@ -83,10 +78,9 @@ static void own_changes(const tribo_context *ctx, const struct cluster *g, const
             t.v[j] = tribo_entry(d->v, i + j);
             t.limit[j] = tribo_limit_change(ctx, d, i + j);
         }
-        add_falls(ctx, i, ctx->last.v + i, along, t.v, t.limit);
-        memcpy(dlimit + i, t.limit, directions * sizeof *dlimit);
         t.epsilon = s.open || !c->follows ? 0.0 : quotient(t.limit[s.far], c->limit[i + s.far]);
-        turn_slide(&s, c->limit + i, ctx->last.v + i, &t);
+        turn_slide(ctx, i, &s, c->limit + i, ctx->last.v + i, along, &t);
+        memcpy(dlimit + i, t.limit, directions * sizeof *dlimit);
         turn_force(ctx->set.law, &s, c->limit + i, &t, df + k);
         for (; e < behind; e++) {
             const size_t j = near[e] - k;
@@ -269,8 +263,7 @@ static void given_columns(const tribo_context *ctx, size_t k, const struct given
             const double part = set[d] > 0.0 ? quotient(g->c.limit[d], set[d]) : 0.0;
             t.limit[d] = product(part, t.limit[d]);
         }
-        add_falls(ctx, i, v, along, t.v, t.limit);
-        turn_slide(&g->s, g->c.limit, v, &t);
+        turn_slide(ctx, i, &g->s, g->c.limit, v, along, &t);
         if (p) {
             turn_near(p, g, ctx->set.law, &t, unit + 2, df);
         } else {
