@@ -26,17 +26,6 @@ struct contacts {
     int alike;  /* all have the first limit, bound, width and rate */
 };
 
-/* follows is a constant. */
-static inline double tribo_epsilon(int follows, double width, double bound)
-{
-    return follows ? greater(width * bound, DBL_MIN) : width;
-}
-
-static inline double tribo_slope(int follows, double rate, double bound)
-{
-    return follows ? (bound > 0.0 ? rate : 0.0) : rate * bound;
-}
-
 /* Returns rate for a given epsilon. */
 static inline double tribo_rate(double epsilon)
 {
@@ -49,8 +38,7 @@ static inline struct contacts tribo_contacts_from(const struct contacts *c, size
                              c->moving + i, c->follows,   c->scales,    c->alike};
 }
 
-/* epsilon and slope of contact i, follows being no constant: factors are chosen, since a product that is not needed might
- * overflow. */
+/* epsilon and slope of contact i. Factors are chosen, since a product that is not needed might overflow. */
 static inline double tribo_epsilon_of(const struct contacts *c, size_t i)
 {
     return greater(c->width[i] * (c->follows ? c->bound[i] : 1.0), c->follows ? DBL_MIN : 0.0);
@@ -173,9 +161,9 @@ static inline struct tangent dry_tangent(int slides, double v, double feq, doubl
         const double one = *limit, epsilon = tribo_epsilon_of(c, 0), slope = tribo_slope_of(c, 0);                               \
         each(name, one, epsilon, slope, *rate)                                                                                   \
     } else if (c->follows) {                                                                                                     \
-        each(name, limit[i], tribo_epsilon(1, width[i], bound[i]), tribo_slope(1, rate[i], bound[i]), rate[i])                   \
+        each(name, limit[i], greater(width[i] * bound[i], DBL_MIN), (bound[i] > 0.0 ? rate[i] : 0.0), rate[i])                   \
     } else {                                                                                                                     \
-        each(name, limit[i], tribo_epsilon(0, width[i], bound[i]), tribo_slope(0, rate[i], bound[i]), rate[i])                   \
+        each(name, limit[i], width[i], rate[i] * bound[i], rate[i])                                                              \
     }
 
 #define TRIBO_LAW_LOOPS(name)                                                                                                    \

@@ -466,14 +466,12 @@ int tribo_clusters_step(tribo_context *ctx, double dt, const double *v, const si
     for (size_t q = 0; !status && q < tribo_cluster_count(ctx); q++) {
         const struct cluster *g = &ctx->clusters->cluster[q];
         ctx->clusters->problem.size = 0;
-        for (size_t k = 0, directions; k < g->size; k += directions) {
-            const size_t i = g->member[k];
-            directions = tribo_directions(ctx, i);
-            for (size_t d = i; d < i + directions; d++) {
-                ctx->clusters->a[d] = quotient(v[d], dt);
-            }
-            if (directions == 2 || !(known && known[i])) {
-                take_contact(ctx, k, i, none);
+        for (size_t k = 0; k < g->size; k++) {
+            ctx->clusters->a[g->member[k]] = quotient(v[g->member[k]], dt);
+        }
+        for (size_t k = 0; k < g->size; k += tribo_directions(ctx, g->member[k])) {
+            if (!(known && known[g->member[k]] && tribo_is_scalar(ctx, g->member[k]))) {
+                take_contact(ctx, k, g->member[k], none);
             }
         }
         if (ctx->clusters->problem.size) {
