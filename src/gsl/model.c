@@ -22,26 +22,22 @@ static void find_entry(const gsl_spmatrix *a, size_t k, size_t *at, size_t *row,
     *column = GSL_SPMATRIX_ISCSC(a) ? *at : (size_t)a->i[k];
 }
 
-/* Compressed rows of a: rowptr [rows + 1] all 0, col and val [entries]. */
+/* Compressed rows of a: rowptr [rows + 2] all 0, col and val [entries]. */
 static void compress_rows(const gsl_spmatrix *a, size_t *rowptr, size_t *col, double *val)
 {
     size_t row, column;
     for (size_t k = 0, at = 0; k < a->nz; k++) {
         find_entry(a, k, &at, &row, &column);
-        rowptr[row + 1]++;
+        rowptr[row + 2]++;
     }
     for (size_t i = 0; i < a->size1; i++) {
-        rowptr[i + 1] += rowptr[i];
+        rowptr[i + 2] += rowptr[i + 1];
     }
-    for (size_t k = 0, at = 0; k < a->nz; k++) { /* rowptr[i] goes up to the end of row i */
+    for (size_t k = 0, at = 0; k < a->nz; k++) { /* rowptr[i + 1] goes up to the end of row i */
         find_entry(a, k, &at, &row, &column);
-        col[rowptr[row]] = column;
-        val[rowptr[row]++] = a->data[k];
+        col[rowptr[row + 1]] = column;
+        val[rowptr[row + 1]++] = a->data[k];
     }
-    for (size_t i = a->size1; i > 0; i--) {
-        rowptr[i] = rowptr[i - 1];
-    }
-    rowptr[0] = 0;
 }
 
 static int set_spmatrix(tribo_model *model, const gsl_spmatrix *a, const char *name, size_t rows, csr_setter *set)
@@ -59,7 +55,7 @@ static int set_spmatrix(tribo_model *model, const gsl_spmatrix *a, const char *n
         snprintf(text, sizeof text, "%s is %zu x %zu, not %zu x %zu", name, a->size1, a->size2, rows, cols);
         return tribo_model_refuse(model, TRIBO_ERR_SIZE, text);
     }
-    size_t *rowptr = calloc(rows + 1 + a->nz + 1, sizeof *rowptr), *col = rowptr + rows + 1;
+    size_t *rowptr = calloc(rows + 2 + a->nz, sizeof *rowptr), *col = rowptr + rows + 2;
     double *val = malloc((a->nz + 1) * sizeof *val);
     int status = TRIBO_ERR_MEMORY;
     if (rowptr && val) {
