@@ -102,16 +102,6 @@ int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(const tribo_moment 
     return TRIBO_OK;
 }
 
-/* [bit number of TAKES_...] name of a setting; methods that accept the setting. */
-static const struct {
-    const char *name, *taken_by;
-} settings[] = {
-    {"step", "rk4/fixed, central/fixed, moreau/fixed and GSL's adaptive methods do"},
-    {"tolerance", "event, auto and GSL's adaptive methods do"},
-    {"output", "exact, event and auto do"},
-    {"largest step", "GSL's adaptive methods do"},
-};
-
 static int check_positive(const tribo_driver *drv, const char *name, double value)
 {
     return !isfinite(value) ? tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "%s = %g is not finite", name, value)
@@ -119,22 +109,20 @@ static int check_positive(const tribo_driver *drv, const char *name, double valu
                             : TRIBO_OK;
 }
 
-/* Returns TRIBO_OK if the method of drv accepts the setting, a bit TAKES_..., and value, called name, is positive. */
-static int check_setting(const tribo_driver *drv, int setting, const char *name, double value)
+/* Returns TRIBO_OK if the method of drv accepts the setting, a bit TAKES_..., and value, called name, is positive. text: the setting,
+ * and the methods that accept it. */
+static int check_setting(const tribo_driver *drv, int setting, const char *text, const char *name, double value)
 {
-    size_t k = 0;
-    while (setting >> k != 1) {
-        k++;
-    }
     return !drv                           ? TRIBO_ERR_NULL
            : drv->method->takes & setting ? check_positive(drv, name, value)
-                                          : tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s takes no %s; %s",
-                                                              drv->method->name, settings[k].name, settings[k].taken_by);
+                                          : tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s takes no %s do",
+                                                              drv->method->name, text);
 }
 
 int tribo_driver_set_step(tribo_driver *drv, double dt)
 {
-    const int status = check_setting(drv, TAKES_STEP, "dt", dt);
+    const int status = check_setting(
+        drv, TAKES_STEP, "step; rk4/fixed, central/fixed, moreau/fixed and GSL's adaptive methods", "dt", dt);
     if (!status) {
         drv->dt = dt;
         drv->revision = SIZE_MAX;
@@ -144,7 +132,7 @@ int tribo_driver_set_step(tribo_driver *drv, double dt)
 
 int tribo_driver_set_tolerance(tribo_driver *drv, double abstol, double reltol)
 {
-    int status = check_setting(drv, TAKES_TOLERANCE, "abstol", abstol);
+    int status = check_setting(drv, TAKES_TOLERANCE, "tolerance; event, auto and GSL's adaptive methods", "abstol", abstol);
     if (!status && !(reltol >= 0.0 && isfinite(reltol))) {
         status = isfinite(reltol) ? tribo_driver_fail(drv, TRIBO_ERR_NEGATIVE, "reltol = %g is negative", reltol)
                                   : check_positive(drv, "reltol", reltol);
@@ -159,7 +147,7 @@ int tribo_driver_set_tolerance(tribo_driver *drv, double abstol, double reltol)
 
 int tribo_driver_set_output(tribo_driver *drv, double dt)
 {
-    const int status = check_setting(drv, TAKES_OUTPUT, "dt", dt);
+    const int status = check_setting(drv, TAKES_OUTPUT, "output; exact, event and auto", "dt", dt);
     if (!status) {
         drv->output = dt;
     }
@@ -168,7 +156,8 @@ int tribo_driver_set_output(tribo_driver *drv, double dt)
 
 int tribo_driver_set_max_step(tribo_driver *drv, double h)
 {
-    const int status = check_setting(drv, TAKES_MAX_STEP, "h", h == HUGE_VAL ? 1.0 : h);
+    const int status =
+        check_setting(drv, TAKES_MAX_STEP, "largest step; GSL's adaptive methods", "h", h == HUGE_VAL ? 1.0 : h);
     if (!status) {
         drv->max_step = h;
     }
@@ -240,13 +229,12 @@ int tribo_driver_check(tribo_driver *drv, const double *y)
     while (isfinite(y[i])) {
         i++;
     }
-    const size_t place = tribo_system_state_index(drv->sys, i);
-    return drv->dt > 0.0
-               ? tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE,
-                                   "y[%zu] = %g after t = %.17g: the motion grows without bound, or dt = %g is too long", place,
-                                   y[i], drv->time, drv->dt)
-               : tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "y[%zu] = %g after t = %.17g: the motion grows without bound",
-                                   place, y[i], drv->time);
+    char why[60] = "";
+    if (drv->dt > 0.0) {
+        snprintf(why, sizeof why, ", or dt = %g is too long", drv->dt);
+    }
+    return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "y[%zu] = %g after t = %.17g: the motion grows without bound%s",
+                             tribo_system_state_index(drv->sys, i), y[i], drv->time, why);
 }
 
 int tribo_driver_keep(tribo_driver *drv, double t, const double *y)

@@ -231,9 +231,7 @@ static void find_term(struct event *e, size_t k, double tau, const struct pertur
     double *v = p->v + (k - 1) % p->rows * each;
     memset(p->next, 0, half * sizeof *p->next);
     add_perturbed(p, &sys->stiffness, -part, p->q, p->next);
-    if (sys->damping.rows) {
-        add_perturbed(p, &sys->damping, -part, p->u, p->next);
-    }
+    add_perturbed(p, &sys->damping, -part, p->u, p->next);
     memset(v, 0, each * sizeof *v);
     add_perturbed(p, &sys->direction, 1.0, p->u, v);
     if (sys->compliance.count) {

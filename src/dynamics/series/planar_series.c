@@ -186,10 +186,10 @@ int tribo_planar_series_forces(struct event *e, size_t k, const double *v)
             continue;
         }
         if (k == 0 && shift == 0) {
-            l->xn[0] = hypot(x[0], x[1]);
-            set_direction(l, x[0] / l->xn[0], x[1] / l->xn[0]);
-            l->xt[0] = 0.0;
-        } else if (k >= shift) {
+            const double size = hypot(x[0], x[1]);
+            set_direction(l, x[0] / size, x[1] / size);
+        }
+        if (k >= shift) {
             l->xn[j] = l->n[0] * x[0] + l->n[1] * x[1];
             l->xt[j] = j ? l->t[0] * x[0] + l->t[1] * x[1] : 0.0;
         }

@@ -253,8 +253,6 @@ static int adaptive_advance(tribo_driver *drv, double *t, double t1, double *y, 
     return status;
 }
 
-enum { TAKES_ALL = TAKES_STEP | TAKES_TOLERANCE | TAKES_MAX_STEP | NEEDS_MASS };
-
 int tribo_driver_create_stepper(tribo_driver **drv, tribo_system *sys, const tribo_stepper *stepper, void *data)
 {
     if (!sys) {
@@ -277,7 +275,7 @@ int tribo_driver_create_stepper(tribo_driver **drv, tribo_system *sys, const tri
     }
     *a = (struct adaptive){.stepper = *stepper, .data = data, .structure = SIZE_MAX, .revision = SIZE_MAX};
     a->method = (struct method){.name = stepper->name,
-                                .takes = TAKES_ALL,
+                                .takes = TAKES_STEP | TAKES_TOLERANCE | TAKES_MAX_STEP | NEEDS_MASS,
                                 .create = adaptive_create,
                                 .destroy = adaptive_destroy,
                                 .advance = adaptive_advance};

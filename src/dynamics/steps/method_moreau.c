@@ -199,9 +199,7 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
         memcpy(p, m->push, n * sizeof *p);
     }
     tribo_matrix_multiply_add(m->matrix.k, -h, s->u, p);
-    if (m->matrix.c->rows) {
-        tribo_matrix_multiply_add(m->matrix.c, -h, u, p);
-    }
+    tribo_matrix_multiply_add(m->matrix.c, -h, u, p);
     sys->evaluations++;
 }
 
