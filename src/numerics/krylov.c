@@ -25,8 +25,7 @@ static void orthonormalize(size_t n, size_t k, double *v, double *h)
     memset(h, 0, (k + 1) * sizeof *h);
     for (int again = 0; again < 2; again++) {
         for (size_t i = 0; i < k; i++) {
-            double part = 0.0;
-            tribo_multiply_add(1, n, 1, 1.0, v + i * n, last, &part);
+            const double part = tribo_dot(v + i * n, last, n);
             h[i] += part;
             tribo_add(last, -part, v + i * n, n);
         }

@@ -6,9 +6,6 @@
 #include "matrix.h"
 #include "sparse_factor.h"
 
-/* Returns x'y. */
-double tribo_dot(const double *x, const double *y, size_t n);
-
 /* Returns max |x_i|. */
 double tribo_largest(const double *x, size_t n);
 

@@ -62,7 +62,7 @@ void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y);
 enum { MATRIX_WIDE = 32 };
 
 /* Return x'y, and |x|'|y|, summed in eight parts. In linalg.c. */
-double tribo_dot_of_eight(size_t n, const double *x, const double *y);
+double tribo_dot(const double *x, const double *y, size_t n);
 double tribo_size_of_eight(size_t n, const double *x, const double *y);
 
 /* Returns 1 if row i has no zeros, and at least MATRIX_WIDE columns. */
@@ -76,7 +76,7 @@ static inline double tribo_matrix_row_dot(const struct matrix *a, size_t i, cons
 {
     double sum = 0.0;
     if (tribo_matrix_row_is_wide(a, i)) {
-        return tribo_dot_of_eight(a->cols, a->val + a->first[i], x);
+        return tribo_dot(a->val + a->first[i], x, a->cols);
     }
     for (size_t k = a->first[i], end = a->first[i + 1]; k < end; k++) {
         sum += a->val[k] * x[a->col[k]];
