@@ -193,48 +193,25 @@ void tribo_cholesky_free(struct cholesky *c)
     memset(c, 0, sizeof *c);
 }
 
-/* Allocates the arrays of a dense c of n rows, or of a diagonal one. Returns 1, or 0 with c zeroed if out of memory. */
-static int create_cholesky(struct cholesky *c, size_t n, int diagonal)
-{
-    struct layout l = {0};
-    *c = (struct cholesky){.n = n};
-    do {
-        c->root = tribo_layout_array(&l, n, sizeof *c->root);
-        c->factor = diagonal ? NULL : tribo_layout_array(&l, n * n, sizeof *c->factor);
-    } while (!l.memory && tribo_layout_create(&l));
-    c->n = l.memory ? n : 0;
-    return l.memory != NULL;
-}
-
-int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from)
-{
-    if (!from->root) {
-        *c = (struct cholesky){.n = from->n};
-        return tribo_sparse_factor_copy(&c->sparse, from->sparse);
-    }
-    if (!create_cholesky(c, from->n, !from->factor)) {
-        return 0;
-    }
-    memcpy(c->root, from->root, from->n * sizeof *c->root);
-    if (from->factor) {
-        memcpy(c->factor, from->factor, from->n * from->n * sizeof *c->factor);
-    }
-    return 1;
-}
-
 int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, struct matrix *spent, size_t *where, double *pivot)
 {
     const int diagonal = tribo_matrix_is_diagonal(a), rows = (int)a->rows;
     int status = TRIBO_OK, info = 0; /* the row of a pivot that is not positive, plus 1: the pivot stands on the diagonal */
+    struct layout l = {0};
     *c = (struct cholesky){.n = a->rows};
     if (!diagonal && tribo_sparse_available() && c->n >= SPARSE_LEAST) {
         *pivot = (double)NAN;
         status = tribo_sparse_factor_create(&c->sparse, a, spent, where);
     } else if (!diagonal && c->n > DENSE_MOST) {
         status = TRIBO_ERR_SIZE;
-    } else if (!create_cholesky(c, c->n, diagonal)) {
-        status = TRIBO_ERR_MEMORY;
-    } else if (!diagonal) {
+    } else {
+        do {
+            c->root = tribo_layout_array(&l, c->n, sizeof *c->root);
+            c->factor = diagonal ? NULL : tribo_layout_array(&l, c->n * c->n, sizeof *c->factor);
+        } while (!l.memory && tribo_layout_create(&l));
+        status = l.memory ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    }
+    if (c->factor) {
         tribo_matrix_spread(a, c->factor);
         dpotrf_("U", &rows, c->factor, &rows, &info, 1);
     }

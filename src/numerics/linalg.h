@@ -49,8 +49,6 @@ struct cholesky {
  * NaN if the value is unknown. */
 int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, struct matrix *spent, size_t *where, double *pivot);
 
-/* Returns 1, or 0 if out of memory. */
-int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from);
 void tribo_cholesky_free(struct cholesky *c);
 
 /* x [count][n] = A^-1 x of count vectors. Returns 1, or 0 if out of memory, which cannot happen for count = 1. */

@@ -20,7 +20,7 @@ struct room {
 struct sparse_factor {
     cholmod_common common;
     cholmod_factor *l;
-    struct room one, many;
+    struct room room[2]; /* of one vector; of many */
     double *column; /* [n] workspace */
 };
 
@@ -75,7 +75,7 @@ static int sparse_factor_solve(struct sparse_factor *f, int what, size_t count, 
     const size_t n = f->l->n, most = f->l->maxesize;
     cholmod_dense b = {
         .nrow = n, .ncol = count, .nzmax = n * count, .d = n, .x = x, .xtype = CHOLMOD_REAL, .dtype = CHOLMOD_DOUBLE};
-    struct room *room = count == 1 ? &f->one : &f->many;
+    struct room *room = &f->room[count > 1];
     if (!cholmod_l_ensure_dense(&room->solution, n, count, n, CHOLMOD_REAL, &f->common) ||
         !cholmod_l_ensure_dense(&room->work[0], n, count, n, CHOLMOD_REAL, &f->common) ||
         !cholmod_l_ensure_dense(&room->work[1], count, most, count, CHOLMOD_REAL, &f->common) ||
@@ -84,13 +84,6 @@ static int sparse_factor_solve(struct sparse_factor *f, int what, size_t count, 
     }
     memcpy(x, room->solution->x, n * count * sizeof *x);
     return 1;
-}
-
-/* Makes the room of single solves, which cannot fail afterwards. */
-static int sparse_factor_prepare(struct sparse_factor *f)
-{
-    f->column = f->column ? f->column : calloc(f->l->n + 1, sizeof *f->column);
-    return f->column && sparse_factor_solve(f, CHOLMOD_A, 1, f->column);
 }
 
 static int status_of(const cholmod_common *common)
@@ -117,7 +110,9 @@ int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matri
     }
     cholmod_l_free_sparse(&half, &f->common);
     int status = status_of(&f->common);
-    status = status || (f->l && sparse_factor_prepare(f)) ? status : TRIBO_ERR_MEMORY;
+    f->column = f->l ? calloc(f->l->n + 1, sizeof *f->column) : NULL;
+    /* Makes the room of single solves, which cannot fail afterwards. */
+    status = status || (f->column && sparse_factor_solve(f, CHOLMOD_A, 1, f->column)) ? status : TRIBO_ERR_MEMORY;
     if (status) {
         const size_t row = f->l ? f->l->minor : 0; /* of P A P' */
         *where = f->l && row < f->l->n ? (size_t)((const SuiteSparse_long *)f->l->Perm)[row] : 0;
@@ -128,38 +123,15 @@ int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matri
     return TRIBO_OK;
 }
 
-int tribo_sparse_factor_copy(struct sparse_factor **factor, const struct sparse_factor *from)
-{
-    *factor = NULL;
-    if (!from) {
-        return 1;
-    }
-    struct sparse_factor *f = calloc(1, sizeof *f);
-    if (f) {
-        sparse_factor_start(&f->common);
-        f->l = cholmod_l_copy_factor(from->l, &f->common);
-    }
-    if (!f || !f->l || !sparse_factor_prepare(f)) {
-        tribo_sparse_factor_free(f);
-        return 0;
-    }
-    *factor = f;
-    return 1;
-}
-
-static void free_room(struct room *room, cholmod_common *common)
-{
-    cholmod_l_free_dense(&room->solution, common);
-    cholmod_l_free_dense(&room->work[0], common);
-    cholmod_l_free_dense(&room->work[1], common);
-}
-
 void tribo_sparse_factor_free(struct sparse_factor *f)
 {
     if (f) {
         cholmod_l_free_factor(&f->l, &f->common);
-        free_room(&f->one, &f->common);
-        free_room(&f->many, &f->common);
+        for (size_t k = 0; k < 2; k++) {
+            cholmod_l_free_dense(&f->room[k].solution, &f->common);
+            cholmod_l_free_dense(&f->room[k].work[0], &f->common);
+            cholmod_l_free_dense(&f->room[k].work[1], &f->common);
+        }
         cholmod_l_finish(&f->common);
         free(f->column);
         free(f);
@@ -241,12 +213,6 @@ int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matri
 {
     (void)factor, (void)a, (void)spent, (void)where;
     return TRIBO_ERR_UNSUPPORTED;
-}
-
-int tribo_sparse_factor_copy(struct sparse_factor **factor, const struct sparse_factor *from)
-{
-    *factor = NULL;
-    return !from;
 }
 
 void tribo_sparse_factor_free(struct sparse_factor *factor)

@@ -18,8 +18,6 @@ int tribo_sparse_available(void);
  * TRIBO_ERR_UNSUPPORTED, or TRIBO_ERR_INDEFINITE with the row *where of a pivot that is not positive. */
 int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, struct matrix *spent, size_t *where);
 
-/* Returns 1, or 0 if out of memory. NULL is copied to NULL. */
-int tribo_sparse_factor_copy(struct sparse_factor **factor, const struct sparse_factor *from);
 void tribo_sparse_factor_free(struct sparse_factor *factor);
 size_t tribo_sparse_factor_entries(const struct sparse_factor *factor);
 

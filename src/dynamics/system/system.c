@@ -438,8 +438,13 @@ int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
         }
     }
     done = done && (!sys->lent || (tribo_clone(sys->lent, &to->lent) == TRIBO_OK && tribo_fix_operator(to->lent) == TRIBO_OK));
-    done = done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && tribo_cholesky_copy(&to->factor, &sys->factor) &&
-           tribo_compliance_copy(to, sys) && tribo_expansion_copy(to, sys) && tribo_loads_copy(to, sys);
+    if (done && sys->mass.rows && !sys->unsolved) {
+        size_t where;
+        double pivot;
+        done = tribo_cholesky_create(&to->factor, &to->mass, NULL, &where, &pivot) == TRIBO_OK;
+    }
+    done = done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && tribo_compliance_copy(to, sys) &&
+           tribo_expansion_copy(to, sys) && tribo_loads_copy(to, sys);
     if (!done) {
         tribo_system_destroy(to);
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu degree%s of freedom", sys->ndof,

@@ -47,26 +47,6 @@ static size_t search_breadth_first(struct graph *g, struct part part, size_t sta
     return count;
 }
 
-/* list[*from, *to) = a small level that splits the others evenly. Returns 0 if no level has two sides. */
-static int find_level(const struct graph *g, size_t count, size_t *from, size_t *to)
-{
-    const size_t last = g->level[g->list[count - 1]];
-    size_t best = SIZE_MAX;
-    for (size_t k = 0; k < count;) {
-        const size_t level = g->level[g->list[k]], begin = k;
-        while (k < count && g->level[g->list[k]] == level) {
-            k++;
-        }
-        const size_t behind = count - k, cost = 4 * (k - begin) + (begin > behind ? begin - behind : behind - begin);
-        if (level > 0 && level < last && cost < best) {
-            best = cost;
-            *from = begin;
-            *to = k;
-        }
-    }
-    return best < SIZE_MAX;
-}
-
 /* Orders a part, and appends the two sides that are not in order to stack: of a part in pieces, one piece and the others. */
 static void dissect(struct graph *g, struct part part, struct part *stack, size_t *depth)
 {
@@ -85,9 +65,23 @@ static void dissect(struct graph *g, struct part part, struct part *stack, size_
         memcpy(node, g->list, size * sizeof *node);
         from = to = count;
     } else {
-        /* A search from the far end has more and smaller levels. */
+        /* A search from the far end has more and smaller levels. list[from, to) = a small level that splits the others evenly. */
         search_breadth_first(g, part, g->list[size - 1]);
-        if (!find_level(g, size, &from, &to)) {
+        const size_t last = g->level[g->list[size - 1]];
+        size_t best = SIZE_MAX;
+        for (size_t k = 0; k < size;) {
+            const size_t level = g->level[g->list[k]], begin = k;
+            while (k < size && g->level[g->list[k]] == level) {
+                k++;
+            }
+            const size_t behind = size - k, cost = 4 * (k - begin) + (begin > behind ? begin - behind : behind - begin);
+            if (level > 0 && level < last && cost < best) {
+                best = cost;
+                from = begin;
+                to = k;
+            }
+        }
+        if (best == SIZE_MAX) {
             return;
         }
         memcpy(node, g->list, from * sizeof *node);

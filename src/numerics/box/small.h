@@ -142,29 +142,23 @@ static inline int tribo_small_find(size_t n, const struct small *s)
     return 0;
 }
 
-/* Frees variables at a bound whose gradient pulls away from it by more than noise; puts free ones outside their box to the bound.
- * Returns 1 if at changed. */
-static inline int tribo_small_revise(size_t n, const struct small *s)
-{
-    int changed = 0;
-    for (size_t i = 0; i < n; i++) {
-        const signed char at = s->at[i];
-        if (at == FREE) {
-            s->at[i] = (signed char)((s->x[i] > s->hi[i]) - (s->x[i] < s->lo[i]));
-        } else if (at != AWAY && at * s->gradient[i] > 0.0 && s->lo[i] < s->hi[i] &&
-                   at * s->gradient[i] > tribo_small_noise(n, s, i)) {
-            s->at[i] = FREE;
-        }
-        changed |= s->at[i] != at;
-    }
-    return changed;
-}
-
-/* Solves the problem from the sets in at. Returns 0 if the sets do not settle in 2 n + 2 rounds, or rounding is in the way. */
+/* Solves the problem from the sets in at: frees variables at a bound whose gradient pulls away from it by more than noise, and puts
+ * free ones outside their box to the bound. Returns 0 if the sets do not settle in 2 n + 2 rounds, or rounding is in the way. */
 static inline int tribo_small_solve(size_t n, const struct small *s)
 {
     for (size_t round = 0; round < 2 * n + 2 && tribo_small_find(n, s); round++) {
-        if (!tribo_small_revise(n, s)) {
+        int changed = 0;
+        for (size_t i = 0; i < n; i++) {
+            const signed char at = s->at[i];
+            if (at == FREE) {
+                s->at[i] = (signed char)((s->x[i] > s->hi[i]) - (s->x[i] < s->lo[i]));
+            } else if (at != AWAY && at * s->gradient[i] > 0.0 && s->lo[i] < s->hi[i] &&
+                       at * s->gradient[i] > tribo_small_noise(n, s, i)) {
+                s->at[i] = FREE;
+            }
+            changed |= s->at[i] != at;
+        }
+        if (!changed) {
             return 1;
         }
     }
