@@ -69,7 +69,8 @@ double tribo_event_length(const struct event *e)
 
 /* --------------------------------------------------------------------------------------------------------- guards */
 
-static struct sample value_of(const struct curve *c, double s)
+/* to += factor times value and derivatives of the curve at s. */
+static void add_curve(const struct curve *c, double s, double factor, struct sample *to)
 {
     double v0 = 0.0, v1 = 0.0, v2 = 0.0;
     for (size_t k = c->terms; k-- > 0;) {
@@ -77,28 +78,22 @@ static struct sample value_of(const struct curve *c, double s)
         v1 = v1 * s + v0;
         v0 = v0 * s + c->term[k * c->stride];
     }
-    return (struct sample){v0, v1, 2.0 * v2};
+    to->g += factor * v0;
+    to->d += factor * v1;
+    to->e += factor * 2.0 * v2;
 }
 
-/* The two guards of an output follow one another: its value is computed once. */
 static void method_event_look(void *own, double tau, size_t guards, struct guard *const *guard)
 {
     const struct event *e = own;
-    const void *seen = NULL;
-    struct sample v = {0.0, 0.0, 0.0};
     for (size_t k = 0; k < guards; k++) {
         struct guard *g = guard[k];
         g->middle = (struct sample){g->offset, 0.0, 0.0};
         if (g->output) {
-            v = seen == g->output ? v : value_of(g->output, tau);
-            seen = g->output;
-            g->middle = (struct sample){g->offset + g->side * v.g, g->side * v.d, g->side * v.e};
+            add_curve(g->output, tau, g->side, &g->middle);
         }
         if (g->limit != 0.0) {
-            const struct sample limit = value_of(&e->limit_curve[g->contact], tau);
-            g->middle.g += g->limit * limit.g;
-            g->middle.d += g->limit * limit.d;
-            g->middle.e += g->limit * limit.e;
+            add_curve(&e->limit_curve[g->contact], tau, g->limit, &g->middle);
         }
     }
 }
