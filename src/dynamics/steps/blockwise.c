@@ -105,7 +105,6 @@ void tribo_blockwise_take(struct blockwise *b, tribo_system *sys)
     if (!b->fits) {
         return;
     }
-    b->time = NAN;
     memset(b->awake, 1, b->blocks);
     memset(b->wakes, 0, b->blocks);
     memset(b->load, 0, sys->ndof * sizeof *b->load);
@@ -160,10 +159,6 @@ static void set_time(struct blockwise *b, tribo_system *sys, double t)
 {
     const struct loads *all = &sys->loads;
     tribo_system_set_time(sys, t);
-    if (b->time == t) {
-        return;
-    }
-    b->time = t;
     for (size_t s = 0; s < all->harmonics; s++) {
         const struct harmonic *h = &all->harmonic[s];
         for (size_t k = 0; h->drives == DRIVES_LOAD && k < h->count; k++) {

@@ -25,9 +25,8 @@ struct moreau {
     struct step_matrix matrix;
     double *response;        /* [ncontact][ndof] S^-1 J'; NULL: each step solves with S twice */
     double *push;            /* [ndof] workspace */
+    size_t told;             /* tribo_system_settings when contacts took them; SIZE_MAX: never */
     double *limit;           /* [ncontact] limits in a step; limit/2 for compliant contacts */
-    size_t settings_taken;   /* tribo_system_settings at the last update of limit; SIZE_MAX: none */
-    int tell;                /* 1: limit is not yet copied to contacts */
     int goes_on;             /* 1: spring is of the state */
     double *spring, *give;   /* [ncontact] forces f0 of compliant contacts; workspace, as G f0 */
     double *change;          /* [ncontact] f1 - f0; workspace */
@@ -56,7 +55,6 @@ static int moreau_create(tribo_driver *drv)
     if (!m || !tribo_step_form_create(&m->common, drv->sys, 4 * c + n)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
-    m->settings_taken = SIZE_MAX;
     m->limit = m->common.more;
     m->spring = m->limit + c;
     m->give = m->spring + c;
@@ -115,7 +113,7 @@ static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
     tribo_destroy(m->contacts);
     m->contacts = NULL;
     m->settings = sys->changes;
-    m->tell = 1;
+    m->told = SIZE_MAX;
     /* a clone is made again where settings change; the law of a context by create accepts all static limits */
     if (planar_of(sys->contacts)) {
         tribo_clone(sys->contacts, &m->contacts);
@@ -224,12 +222,12 @@ static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, c
         memcpy(s->mode, m->held.at, sys->ncontact);
         return tribo_dense_finite(s->f, sys->ncontact) ? TRIBO_OK : TRIBO_ERR_NOT_FINITE;
     }
-    if (m->tell) {
+    if (m->told != tribo_system_settings(sys)) {
         double *ratio = m->give, *velocity = m->change;
         tribo_get_static(sys->contacts, ratio, velocity);
         tribo_set_limit(m->contacts, m->limit);
         tribo_set_static(m->contacts, ratio, tribo_system_falls(sys) ? velocity : NULL);
-        m->tell = 0;
+        m->told = tribo_system_settings(sys);
     }
     if (g->count) {
         for (size_t i = 0; i < sys->ncontact; i++) {
@@ -300,13 +298,9 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     if (tribo_system_limits_vary(sys)) {
         tribo_system_set_time(sys, t + 0.5 * h);
     }
-    if (m->settings_taken != tribo_system_settings(sys)) {
-        m->tell = 1;
-        m->settings_taken = tribo_system_settings(sys);
-        tribo_get_limit(sys->contacts, m->limit);
-        for (size_t k = 0; k < sys->compliance.count; k++) {
-            m->limit[sys->compliance.contact[k]] *= 0.5;
-        }
+    tribo_get_limit(sys->contacts, m->limit);
+    for (size_t k = 0; k < sys->compliance.count; k++) {
+        m->limit[sys->compliance.contact[k]] *= 0.5;
     }
     const int status = moreau_respond(m, sys, h, u, s->a);
     if (status) {
