@@ -150,28 +150,22 @@ static double largest_size(const double *x, size_t n)
     return most;
 }
 
-/* 1 if the force of a contact jumps between two slip states: open contacts (2) carry nothing, and nearly nothing just before
- * they open and after they close. */
-static int jumps(signed char before, signed char after)
-{
-    return before != after && before != 2 && after != 2;
-}
-
-/* 1 if a contact jumps between the beginning of the step and the last evaluation, and relaxes by more than `part` within the
- * step, or has rate 0: it does not relax. */
+/* 1 if the force of a contact jumps between the beginning of the step and the last evaluation, and relaxes by more than `part`
+ * within the step, or has rate 0: it does not relax. Open contacts carry nothing, and nearly nothing just before they open and after
+ * they close. */
 static int passes_a_change(const struct gsl_step *g, double part)
 {
     const size_t n = g->ncontact;
     const double *rate = g->trial->rate;
-    if (tribo_system_get_slip(g->sys, g->mode + n)) {
-        return 0;
-    }
-    for (size_t i = 0; i < n; i++) {
-        if (jumps(g->mode[i], g->mode[n + i]) && (rate[i] * g->trial->h > part || rate[i] == 0.0)) {
-            return 1;
+    int found = 0;
+    if (!tribo_system_get_slip(g->sys, g->mode + n)) {
+        for (size_t i = 0; i < n; i++) {
+            const signed char before = g->mode[i], after = g->mode[n + i];
+            found |= before != after && before != TRIBO_SLIP_OPEN && after != TRIBO_SLIP_OPEN &&
+                     (rate[i] * g->trial->h > part || rate[i] == 0.0);
         }
     }
-    return 0;
+    return found;
 }
 
 /* GSL factorizes after one of the next two functions, and allocates nothing in between: both end with a check of memory. */
@@ -200,24 +194,6 @@ static int guarded_function(double t, const double y[], double dydt[], void *par
     return reserve_factor(g);
 }
 
-/* matrix = I - h A x J, by rows. */
-static void fill_matrix(const struct gsl_step *g, double h)
-{
-    const size_t n = g->dimension, stages = g->kind->stages, size = n * stages;
-    for (size_t k = 0; k < stages; k++) {
-        for (size_t m = 0; m < stages; m++) {
-            const double factor = -h * (g->kind->a ? g->kind->a[k * stages + m] : 1.0);
-            for (size_t i = 0; i < n; i++) {
-                double *row = g->matrix + (k * n + i) * size + m * n;
-                for (size_t j = 0; j < n; j++) {
-                    row[j] = factor * g->jacobian[i * n + j];
-                }
-                row[i] += k == m ? 1.0 : 0.0;
-            }
-        }
-    }
-}
-
 /* 1 if the factors of g->matrix [n][n], which is overwritten, have no pivot that may be rounding: each is compared with the sum
  * of the sizes of its terms, so that scales of rows and columns do not matter. */
 static int has_sure_pivots(struct gsl_step *g, size_t n)
@@ -242,12 +218,18 @@ static int has_sure_pivots(struct gsl_step *g, size_t n)
  * orders up to the present one: an order grows from one step to the next only. */
 static int is_regular(struct gsl_step *g)
 {
-    const size_t size = g->dimension * g->kind->stages;
+    const size_t n = g->dimension, size = n * g->kind->stages;
     const size_t order = gsl_odeiv2_step_order(g->step);
     const size_t count = g->kind->type == &gsl_odeiv2_step_msbdf && order < g->kind->matrices ? order : g->kind->matrices;
     const double h = g->trial->h;
     for (size_t i = 0; i < count && h != g->regular; i++) {
-        fill_matrix(g, g->kind->c[i] * h);
+        for (size_t row = 0; row < size; row++) { /* matrix = I - c h A x J */
+            for (size_t column = 0; column < size; column++) {
+                const double a = g->kind->a ? g->kind->a[row / n * g->kind->stages + column / n] : 1.0;
+                const double entry = -g->kind->c[i] * h * a * g->jacobian[row % n * n + column % n];
+                g->matrix[row * size + column] = entry + (row == column ? 1.0 : 0.0);
+            }
+        }
         if (!(largest_size(g->matrix, size * size) <= LARGEST_ENTRY) || !has_sure_pivots(g, size)) {
             return 0;
         }

@@ -154,29 +154,18 @@ static void set_planar_guards(struct event *e)
     }
 }
 
-/* Bound of the sum of the sizes of the terms of v_i over the phase. */
-static double size_of_velocity(const struct event *e, size_t i)
-{
-    const struct matrix *j = &e->sys->direction;
-    const size_t n = e->sys->ndof;
-    double size = 0.0, power = 1.0, lever = 0.0;
-    for (size_t d = j->first[i]; d < j->first[i + 1]; d++) {
-        lever += fabs(j->val[d]);
-    }
-    for (size_t k = 0; k <= e->order; k++) {
-        size += lever * tribo_largest(e->u + k * n, n) * power;
-        power = lesser(power * e->length, DBL_MAX);
-    }
-    return size;
-}
-
 /* Returns 0 if bounds overflow. */
 static int set_guards(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const size_t c = m->constant.contacts;
+    const struct matrix *j = &e->sys->direction;
     const int varies = e->terms > 1;
-    double all = 0.0;
+    double all = 0.0, speed = 0.0, power = 1.0; /* speed: sum of the sizes of the terms of u; power: of length */
+    for (size_t k = 0; k <= e->order; k++) {
+        speed += tribo_largest(e->u + k * e->sys->ndof, e->sys->ndof) * power;
+        power = lesser(power * e->length, DBL_MAX);
+    }
     e->events.search.guards = 0;
     set_curves(e->curve, c, e->order + 1, c, e->watch, e->length);
     set_curves(e->limit_curve, c, e->terms, c, e->limit, e->length);
@@ -187,7 +176,12 @@ static int set_guards(struct event *e)
         struct curve *curve = &e->curve[i];
         const struct curve *limit = &e->limit_curve[i];
         if (!(m->plane && m->plane->in_plane[i])) {
-            curve->size = tribo_stick_slip_may_part(m, i) ? size_of_velocity(e, i) : curve->size;
+            if (tribo_stick_slip_may_part(m, i)) { /* bound of the sum of the sizes of the terms of v_i */
+                curve->size = 0.0;
+                for (size_t d = j->first[i]; d < j->first[i + 1]; d++) {
+                    curve->size += fabs(j->val[d]) * speed;
+                }
+            }
             const struct watch w = {.output = curve,
                                     .size = curve->size,
                                     .constant = varies ? 0.0 : e->limit[i],
