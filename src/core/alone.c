@@ -65,7 +65,8 @@ TRIBO_SIMD static void feq_alone(size_t n, const double *restrict inverse, const
     }
 }
 
-void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq)
+/* feq [n] = -a/R_ii of the contacts of the chunk that begins with contact i; 0 for open ones. */
+static void find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq)
 {
     const struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
     const double *inverse = ctx->op->inverse + chunk->like, *limit = ctx->follow.contacts.limit + i;
@@ -130,7 +131,7 @@ static void balance_chunk(tribo_context *ctx, const struct call *call, size_t k,
         return;
     }
     if (reads || (call->wanted && alone)) {
-        tribo_find_feq(ctx, i, n, call->a, feq);
+        find_feq(ctx, i, n, call->a, feq);
     }
     if (ctx->set.breaking) {
         tribo_find_limits(ctx, i, n, v, reads ? feq : NULL, ctx->follow.now + i);

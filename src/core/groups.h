@@ -30,9 +30,6 @@ static inline double tribo_carried(const tribo_context *ctx, const struct box_qp
 
 /* ---- alone.c: contacts as if no two shared a body */
 
-/* feq [n] = -a/R_ii of the contacts of the chunk that begins with contact i; 0 for open ones. */
-void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq);
-
 /* tribo_balance and tribo_step_force where tribo_all_alone. feq and f of the balance may be NULL. */
 int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
 int tribo_step_alone(tribo_context *ctx, double dt, const double *v, double *f);

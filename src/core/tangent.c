@@ -161,19 +161,18 @@ static void find_columns(tribo_context *ctx, const struct change *d, double *uni
 int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
                           double *df_da)
 {
-    const int status = tribo_balance(ctx, v, a, feq, f);
+    /* f_eq of contacts that are all alone is not kept but in an array that is given. */
+    const int alone = ctx && tribo_all_alone(ctx), status = tribo_balance(ctx, v, a, alone ? ctx->last.feq : feq, f);
     if (status) {
         return status;
     }
+    tribo_copy(feq, ctx->last.feq, alone && feq ? ctx->n : 0);
     const size_t n = ctx->n;
     /* The derivatives of all laws at v and a. */
     for (size_t i = 0; i < n; i += TRIBO_CHUNK) {
         double ignored[TRIBO_CHUNK], dv[TRIBO_CHUNK], dfeq[TRIBO_CHUNK], dlimit[TRIBO_CHUNK];
         const size_t count = tribo_chunk_size(ctx, i);
         const struct contacts c = tribo_chunk_contacts(ctx, i);
-        if (tribo_all_alone(ctx)) {
-            tribo_find_feq(ctx, i, count, a, ctx->last.feq + i);
-        }
         tribo_law_tangents(ctx, &c, i, count, v + i, ctx->last.feq + i, &(struct tangents){ignored, dv, dfeq, dlimit});
         for (size_t k = 0; k < count; k++) {
             ctx->last.tangent[i + k] = (struct tangent){dv[k], dfeq[k], dlimit[k]};
