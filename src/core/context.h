@@ -69,7 +69,7 @@ struct last {
     signed char *slip;       /* [n] TRIBO_SLIP_... of SLIPS_WRITTEN */
     unsigned char *near;     /* [n] 1: the last tribo_balance found contacts of groups near stick */
     double *v;               /* [n] velocities of the last tribo_balance_tangent */
-    struct tangent *tangent; /* [n] derivatives of the law there */
+    struct tangents tangent; /* [n] derivatives of the law there; f: NULL */
     int slips;               /* NO_SLIPS, ... */
     double holds;            /* a contact is stuck if |f| < holds limit */
     int linearized;          /* tangent is that of the last call */

@@ -15,9 +15,9 @@ static tribo_context *context_allocate(size_t n, const tribo_context *like)
     struct layout b = {0};
     tribo_context *ctx, at = *like;
     double **const array[] = {
-        &at.set.limit, &at.set.width,        &at.set.rate,          &at.set.ratio,   &at.set.stribeck,      &at.last.f,
-        &at.last.feq,  &at.follow.cut_limit, &at.follow.cut_factor, &at.follow.hold, &at.follow.hold_width, &at.follow.now,
-        &at.last.v};
+        &at.set.limit, &at.set.width,        &at.set.rate,          &at.set.ratio,          &at.set.stribeck,      &at.last.f,
+        &at.last.feq,  &at.follow.cut_limit, &at.follow.cut_factor, &at.follow.hold,        &at.follow.hold_width, &at.follow.now,
+        &at.last.v,    &at.last.tangent.dv,  &at.last.tangent.dfeq, &at.last.tangent.dlimit};
     enum { ARRAYS = sizeof array / sizeof *array };
     /* Each array of n doubles begins a line of cache, an odd number of lines behind the one before: of arrays at distances of a
      * power of two few would stay in cache. */
@@ -31,7 +31,6 @@ static tribo_context *context_allocate(size_t n, const tribo_context *like)
         at.follow.chunk = tribo_layout_array(&b, chunks, sizeof *at.follow.chunk);
         at.moving = tribo_layout_array(&b, m, 1);
         at.last.slip = tribo_layout_array(&b, m, 1);
-        at.last.tangent = tribo_layout_array(&b, m, sizeof *at.last.tangent);
         at.last.near = tribo_layout_array(&b, m, 1);
         at.spare = tribo_layout_array(&b, m, 1);
     } while (!b.memory && tribo_layout_zeros(&b));

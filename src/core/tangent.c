@@ -16,8 +16,8 @@ static double relaxation_change(const tribo_context *ctx, const struct change *d
 /* Returns the change of a force by its law, f_eq fixed. */
 static double law_change(const tribo_context *ctx, const struct change *d, size_t i)
 {
-    const struct tangent *t = &ctx->last.tangent[i];
-    return product(t->dv, tribo_entry(d->v, i)) + product(t->dlimit, tribo_limit_change(ctx, d, i));
+    const struct tangents *t = &ctx->last.tangent;
+    return product(t->dv[i], tribo_entry(d->v, i)) + product(t->dlimit[i], tribo_limit_change(ctx, d, i));
 }
 
 /* Returns the change of the force of contact i at place k, which is not balanced: by its law, or with its bound. */
@@ -78,7 +78,7 @@ static const double *group_product(const tribo_context *ctx, struct box_qp *p, s
     /* So far forces are those that f_eq balances; laws with a memory have another derivative where |f_eq| exceeds the limit. */
     memcpy(p->step, df, size * sizeof *df);
     for (size_t k = 0; k < size; k++) {
-        const double r = ctx->op->diagonal[member[k]], dfeq = ctx->last.tangent[member[k]].dfeq;
+        const double r = ctx->op->diagonal[member[k]], dfeq = ctx->last.tangent.dfeq[member[k]];
         if (partition && p->at[k] == FREE) {
             df[k] = dfeq * df[k] + law_change(ctx, d, member[k]);
         } else if (!partition && ctx->set.law->remembers) {
@@ -129,7 +129,7 @@ static double alone_product(const tribo_context *ctx, const struct change *d, si
     const double r = ctx->op->diagonal[i];
     const int balanced = !ctx->op->groups || ctx->op->group_of[i] == TRIBO_ALONE;
     const int follows = balanced && ctx->follow.contacts.limit[i] > 0.0 && r > TRIBO_IMMOVABLE;
-    const double balance = follows ? quotient(product(ctx->last.tangent[i].dfeq, tribo_entry(d->a, i)), r) : 0.0;
+    const double balance = follows ? quotient(product(ctx->last.tangent.dfeq[i], tribo_entry(d->a, i)), r) : 0.0;
     return law_change(ctx, d, i) - balance;
 }
 
@@ -168,15 +168,14 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
     }
     tribo_copy(feq, ctx->last.feq, alone && feq ? ctx->n : 0);
     const size_t n = ctx->n;
+    const struct tangents *t = &ctx->last.tangent;
     /* The derivatives of all laws at v and a. */
     for (size_t i = 0; i < n; i += TRIBO_CHUNK) {
-        double ignored[TRIBO_CHUNK], dv[TRIBO_CHUNK], dfeq[TRIBO_CHUNK], dlimit[TRIBO_CHUNK];
+        double ignored[TRIBO_CHUNK];
         const size_t count = tribo_chunk_size(ctx, i);
         const struct contacts c = tribo_chunk_contacts(ctx, i);
-        tribo_law_tangents(ctx, &c, i, count, v + i, ctx->last.feq + i, &(struct tangents){ignored, dv, dfeq, dlimit});
-        for (size_t k = 0; k < count; k++) {
-            ctx->last.tangent[i + k] = (struct tangent){dv[k], dfeq[k], dlimit[k]};
-        }
+        tribo_law_tangents(ctx, &c, i, count, v + i, ctx->last.feq + i,
+                           &(struct tangents){ignored, t->dv + i, t->dfeq + i, t->dlimit + i});
     }
     tribo_copy(ctx->last.v, v, n);
     ctx->last.linearized = 1;

@@ -100,14 +100,14 @@ static void apply_laws(tribo_context *ctx, const struct cluster *g, const struct
     for (size_t e = 0; e < ctx->clusters->problem.size; e++) {
         const size_t k = ctx->clusters->near[e], i = g->member[k];
         const double *row = g->r + k * g->size;
-        const struct tangent *law = &ctx->last.tangent[i];
+        const struct tangents *law = &ctx->last.tangent;
         double sum = divisible(tribo_entry(d->a, i), row[k]);
         for (size_t j = 0; j < g->size; j++) {
             sum += j == k ? 0.0 : product(row[j], before[j]);
         }
         if (tribo_is_scalar(ctx, i)) {
-            df[k] = product(law->dv, tribo_entry(d->v, i)) + product(law->dlimit, tribo_limit_change(ctx, d, i)) -
-                    product(law->dfeq, quotient(cut(sum), row[k]));
+            df[k] = product(law->dv[i], tribo_entry(d->v, i)) + product(law->dlimit[i], tribo_limit_change(ctx, d, i)) -
+                    product(law->dfeq[i], quotient(cut(sum), row[k]));
         }
     }
 }
