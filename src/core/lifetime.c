@@ -53,7 +53,10 @@ int tribo_create(tribo_context **ctx, size_t ncontact)
     }
     static const tribo_context blank;
     tribo_context *c = context_allocate(ncontact, &blank);
-    if (!c || !tribo_operator_diagonal(&c->op, ncontact, NULL)) {
+    if (c) {
+        c->op = tribo_operator_diagonal(ncontact, NULL);
+    }
+    if (!c || !c->op) {
         tribo_destroy(c);
         return TRIBO_ERR_MEMORY;
     }

@@ -105,15 +105,12 @@ static size_t parts_of(const tribo_context *ctx)
 /* Returns part k as the last balance left it. */
 static struct part part_resume(tribo_context *ctx, size_t k)
 {
-    struct part s = {NULL, 0, k - ctx->memory.nsolved, NULL, 0};
     if (k < ctx->memory.nsolved) {
-        s.p = tribo_collect(ctx, ctx->memory.solved_list[k]);
-        s.vectors = tribo_null_basis(s.p);
-        s.member = s.p->member;
-        s.size = s.p->group->size;
-    } else {
-        s.member = tribo_cluster_resume(ctx, s.cluster, &s.size);
+        struct box_qp *p = tribo_collect(ctx, ctx->memory.solved_list[k]);
+        return (struct part){p, tribo_null_basis(p), 0, p->member, p->group->size};
     }
+    struct part s = {.cluster = k - ctx->memory.nsolved};
+    s.member = tribo_cluster_resume(ctx, s.cluster, &s.size);
     return s;
 }
 

@@ -103,16 +103,12 @@ int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
     int status = check_change(ctx, 0);
     status = status ? status : tribo_check_nonnegative(ctx, "r", r, ctx->n);
     const double none = 0.0;
-    struct delassus *op;
     struct memory m = {0};
     if (status) {
         return status;
     }
-    if (!tribo_operator_diagonal(&op, ctx->n, r ? r : &none)) {
-        tribo_operator_release(op);
-        return input_out_of_memory(ctx);
-    }
-    return install(ctx, op, &m);
+    struct delassus *op = tribo_operator_diagonal(ctx->n, r ? r : &none);
+    return op ? install(ctx, op, &m) : input_out_of_memory(ctx);
 }
 
 /* Takes rows a, columns ascending, as the operator, and frees them; a status. negligible: see symmetrize; from: see

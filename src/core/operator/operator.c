@@ -45,7 +45,7 @@ void tribo_memory_free(struct memory *m)
     *m = (struct memory){0};
 }
 
-int tribo_operator_diagonal(struct delassus **op, size_t n, const double *r)
+struct delassus *tribo_operator_diagonal(size_t n, const double *r)
 {
     struct layout l = {0};
     struct delassus *o;
@@ -54,9 +54,8 @@ int tribo_operator_diagonal(struct delassus **op, size_t n, const double *r)
         o = tribo_layout_array(&l, 1, sizeof *o);
         diagonal = r ? tribo_layout_array(&l, 2 * n + TRIBO_LINE, sizeof *diagonal) : NULL;
     } while (!l.memory && tribo_layout_create(&l));
-    *op = o;
     if (!o) {
-        return 0;
+        return NULL;
     }
     *o = (struct delassus){.references = 1, .most = TRIBO_FAR, .growth = 1.0, .islands = r ? n : 0, .diagonal = diagonal};
     o->inverse = r ? tribo_aligned(diagonal + n) : NULL;
@@ -64,7 +63,7 @@ int tribo_operator_diagonal(struct delassus **op, size_t n, const double *r)
         diagonal[i] = greater(r[i], TRIBO_IMMOVABLE);
         o->inverse[i] = 1.0 / diagonal[i];
     }
-    return 1;
+    return o;
 }
 
 /* Room for what is constant of a group, and for what a memory keeps of it, in doubles, which are as large as indices. */
@@ -384,9 +383,9 @@ int tribo_operator_create(struct delassus **created, struct memory *m, const str
     const size_t n = a->n;
     size_t *place = malloc((4 * n + 1) * sizeof *place);
     double before = HUGE_VAL, *x = malloc((2 * n + 1) * sizeof *x);
-    struct delassus *op = NULL;
+    struct delassus *op = tribo_operator_diagonal(n, diagonal);
     *m = (struct memory){0};
-    const int made = place && x && tribo_operator_diagonal(&op, n, diagonal) && find_groups(op, a, place, place + n);
+    const int made = place && x && op && find_groups(op, a, place, place + n);
     const size_t groups = made ? op->groups : 0;
     int status = made ? TRIBO_OK : TRIBO_ERR_MEMORY;
     for (size_t i = 0; made && i < n; i++) {

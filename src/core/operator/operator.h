@@ -62,8 +62,8 @@ struct inertia {
 int tribo_operator_create(struct delassus **op, struct memory *m, const struct csr *a, const double *diagonal,
                           const struct inertia *from, tribo_context *note);
 
-/* Makes an operator without groups; r NULL: not set yet. Returns 1, or 0 if out of memory. */
-int tribo_operator_diagonal(struct delassus **op, size_t n, const double *r);
+/* Returns an operator without groups, r NULL: not set yet; NULL if out of memory. */
+struct delassus *tribo_operator_diagonal(size_t n, const double *r);
 
 /* Counts a context less, the last of which frees the operator; NULL is fine. */
 void tribo_operator_release(struct delassus *op);
