@@ -65,23 +65,6 @@ TRIBO_SIMD static void feq_alone(size_t n, const double *restrict inverse, const
     }
 }
 
-/* feq [n] = -a/R_ii of the contacts of the chunk that begins with contact i; 0 for open ones. */
-static void find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq)
-{
-    const struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
-    const double *inverse = ctx->op->inverse + chunk->like, *limit = ctx->follow.contacts.limit + i;
-    if (chunk->plain && tribo_is_within(a + i, n, TRIBO_PLAIN)) {
-        feq_alone(n, inverse, a + i, feq);
-    } else {
-        for (size_t k = 0; k < n; k++) {
-            feq[k] = tribo_alone_far(a[i + k], inverse[k]);
-        }
-    }
-    for (size_t k = 0; chunk->least == 0.0 && k < n; k++) {
-        feq[k] = limit[k] > 0.0 ? feq[k] : 0.0;
-    }
-}
-
 /* --------------------------------------------------------------------------------------------------------------- calls */
 
 /* Ends a call in which all contacts are alone. */
@@ -130,8 +113,16 @@ static void balance_chunk(tribo_context *ctx, const struct call *call, size_t k,
         law->balance(&c, n, v, call->a + i, tribo_inverses(ctx, k), f);
         return;
     }
-    if (reads || (call->wanted && alone)) {
-        find_feq(ctx, i, n, call->a, feq);
+    const int finds = reads || (call->wanted && alone);
+    if (finds && ctx->follow.chunk[k].plain && tribo_is_within(call->a + i, n, TRIBO_PLAIN)) {
+        feq_alone(n, tribo_inverses(ctx, k), call->a + i, feq);
+    } else {
+        for (size_t j = 0; finds && j < n; j++) {
+            feq[j] = tribo_alone_far(call->a[i + j], tribo_inverses(ctx, k)[j]);
+        }
+    }
+    for (size_t j = 0; finds && ctx->follow.chunk[k].least == 0.0 && j < n; j++) {
+        feq[j] = ctx->follow.contacts.limit[i + j] > 0.0 ? feq[j] : 0.0;
     }
     if (ctx->set.breaking) {
         tribo_find_limits(ctx, i, n, v, reads ? feq : NULL, ctx->follow.now + i);
