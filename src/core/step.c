@@ -236,41 +236,34 @@ static size_t find_reversals(tribo_context *ctx, double dt, const double *v, con
     return changes;
 }
 
-/* tribo_step_force_mean where no limit is static. */
-static int step_mean(tribo_context *ctx, double dt, const double *v, const double *vfree)
-{
-    const signed char *reverses = ctx->spare;
-    struct bounds b = {NULL, ctx->set.limit};
-    const double *free;
-    int status = solve_step(ctx, dt, vfree, b, NULL);
-    int changes = tribo_plane_count(ctx) > 0; /* or a contact that came in sliding does not go on that way */
-    for (size_t i = 0; !status && !changes && i < ctx->n; i++) {
-        changes = v[i] != 0.0 && ctx->last.f[i] != sliding(v[i], ctx->set.limit[i]);
-    }
-    if (status || !changes) {
-        return status;
-    }
-    if (find_reversals(ctx, dt, v, vfree, &free, &b)) {
-        status = solve_step(ctx, dt, free, b, reverses);
-    }
-    if (!status) {
-        /* Forces do not show the slip of contacts that reverse. */
-        tribo_write_slips(ctx);
-    }
-    for (size_t i = 0; !status && i < ctx->n; i++) {
-        ctx->last.slip[i] = reverses[i] ? reverses[i] : ctx->last.slip[i];
-    }
-    return status;
-}
-
 int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f)
 {
-    int status = ctx ? step_check(ctx, dt, vfree, f) : TRIBO_ERR_NULL;
+    int status = ctx ? step_check(ctx, dt, vfree, f) : TRIBO_ERR_NULL, changes = 0;
     status = status ? status : tribo_check_finite(ctx, "v", v, ctx->n);
-    if (!status) {
-        status = ctx->set.breaking ? step_at_end(ctx, dt, v, vfree) : step_mean(ctx, dt, v, vfree);
+    if (status) {
+        return status;
     }
-    tribo_copy(f, status ? NULL : ctx->last.f, status ? 0 : ctx->n);
+    status = step_at_end(ctx, dt, v, vfree);
+    /* Another problem follows planar contacts, and contacts that came in sliding and do not go on that way. */
+    const int plane = tribo_plane_count(ctx) > 0;
+    for (size_t i = 0; !status && !ctx->set.breaking && !changes && i < ctx->n; i++) {
+        changes = plane || (v[i] != 0.0 && ctx->last.f[i] != sliding(v[i], ctx->set.limit[i]));
+    }
+    if (changes) {
+        struct bounds b;
+        const double *free;
+        if (find_reversals(ctx, dt, v, vfree, &free, &b)) {
+            status = solve_step(ctx, dt, free, b, ctx->spare);
+        }
+        if (!status) {
+            /* Forces do not show the slip of contacts that reverse. */
+            tribo_write_slips(ctx);
+        }
+        for (size_t i = 0; !status && i < ctx->n; i++) {
+            ctx->last.slip[i] = ctx->spare[i] ? ctx->spare[i] : ctx->last.slip[i];
+        }
+    }
+    tribo_copy(f, ctx->last.f, status ? 0 : ctx->n);
     return status;
 }
 

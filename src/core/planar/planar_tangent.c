@@ -171,20 +171,6 @@ static double feq_parts(const double *limit, const double *feq, double *y)
     return tribo_length(2, y);
 }
 
-/* Sets what is given of planar contact k at v [2], feq [2]. */
-static void planar_given(const tribo_context *ctx, size_t k, const double *v, const double *feq, struct given *g)
-{
-    const size_t i = ctx->clusters->first[k];
-    g->c = tribo_contacts_from(&ctx->follow.contacts, i);
-    g->s = tribo_planar_slide(ctx, i, v);
-    g->near = tribo_planar_near(ctx->set.law, &g->s);
-    if (ctx->set.breaking) {
-        double y[2];
-        tribo_planar_limits(ctx, i, g->near && feq_parts(ctx->follow.hold + i, feq, y) <= 1.0, v, g->limit);
-        g->c.limit = g->c.bound = g->limit;
-    }
-}
-
 /* Near stick: x->p.y = the point of the lens nearest to feq - kappa in the norm of the contact's block, in parts of limits.
  * Returns 1, or 0 without convergence. */
 static int given_near(const tribo_context *ctx, size_t k, const struct given *g, const double *feq, struct disc_alone *x)
@@ -277,13 +263,17 @@ static void given_columns(const tribo_context *ctx, size_t k, const struct given
 
 int tribo_plane_force(const tribo_context *ctx, const double *v, const double *feq, double *const *out)
 {
-    const double none[2] = {0.0, 0.0};
     for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
         const size_t i = ctx->clusters->first[k];
-        double f[2];
-        struct given g;
+        double f[2], y[2];
+        struct given g = {.c = tribo_contacts_from(&ctx->follow.contacts, i), .s = tribo_planar_slide(ctx, i, v + i)};
         struct disc_alone x;
-        planar_given(ctx, k, v + i, feq ? feq + i : none, &g);
+        g.near = tribo_planar_near(ctx->set.law, &g.s);
+        if (ctx->set.breaking) {
+            const int holds = g.near && feq_parts(ctx->follow.hold + i, feq + i, y) <= 1.0;
+            tribo_planar_limits(ctx, i, holds, v + i, g.limit);
+            g.c.limit = g.c.bound = g.limit;
+        }
         if (!g.near) {
             tribo_planar_slide_force(ctx->set.law, &g.s, g.c.limit, f);
         } else if (!given_near(ctx, k, &g, feq + i, &x)) {
