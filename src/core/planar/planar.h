@@ -25,11 +25,6 @@ struct cluster {
     int redundant;  /* R is singular */
 };
 
-/* Units of force and R in the problem of a cluster. */
-struct unit {
-    double force, r;
-};
-
 /* Planar contacts of a context; what it keeps of them from call to call; workspace. Without an operator there are no clusters. */
 struct clusters {
     size_t count, *first; /* [count] first directions */
@@ -42,15 +37,15 @@ struct clusters {
     size_t *near;              /* [n + 1] places in the cluster of the problem's directions */
     size_t *contact;           /* [n] the contacts there */
     unsigned char *directions; /* [n] of the contact that begins with a direction of the problem: 1, 2; 0: none begins */
-    struct unit unit;
-    size_t cuts;            /* directions of the problem with a reach below their limit */
-    double *y;              /* [n] solutions, in parts of the reach */
-    double *radius;         /* [n] reach = min(limit, radius) */
-    double *a;              /* [n] of the last balance, or step */
-    double *shift;          /* [n] c of the problem's lenses, in parts of limits */
-    double *pull;           /* [n] R f + a without the forces of the problem */
-    double *v, *df, *other; /* [n] workspace */
-    double *dlimit;         /* [n] changes of limits that depend on v */
+    double unit_force, unit_r; /* of the problem */
+    size_t cuts;               /* directions of the problem with a reach below their limit */
+    double *y;                 /* [n] solutions, in parts of the reach */
+    double *radius;            /* [n] reach = min(limit, radius) */
+    double *a;                 /* [n] of the last balance, or step */
+    double *shift;             /* [n] c of the problem's lenses, in parts of limits */
+    double *pull;              /* [n] R f + a without the forces of the problem */
+    double *v, *df, *other;    /* [n] workspace */
+    double *dlimit;            /* [n] changes of limits that depend on v */
 };
 
 /* The most directions of a cluster: its matrix is kept. */

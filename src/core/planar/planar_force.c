@@ -150,32 +150,31 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
     struct disc_qp *p = &c->problem;
     const size_t n = p->size, *contact = c->contact;
     const double *bound = ctx->follow.contacts.bound, *radius = c->radius;
-    struct unit u = {0.0, 0.0};
+    c->unit_force = c->unit_r = 0.0;
     for (size_t e = 0; e < n; e++) {
-        u.force = greater(u.force, tribo_planar_reach(ctx, contact[e]));
-        u.r = greater(u.r, ctx->op->diagonal[contact[e]]);
+        c->unit_force = greater(c->unit_force, tribo_planar_reach(ctx, contact[e]));
+        c->unit_r = greater(c->unit_r, ctx->op->diagonal[contact[e]]);
     }
-    c->unit = u;
     c->cuts = 0;
     for (size_t e = 0; e < n; e++) {
         const size_t i = contact[e], first = i - (c->directions[e] == 0);
         const int cut_off = tribo_planar_cut(ctx, i), single = c->directions[e] == 1 || is_apart(bound + first, radius + first);
         p->wide[e] = single ? 1 : c->directions[e];
         p->shift[e] = cut_off ? product(quotient(bound[i], radius[i]), c->shift[e]) : c->shift[e];
-        p->weight[e] = tribo_planar_reach(ctx, i) / u.force;
+        p->weight[e] = tribo_planar_reach(ctx, i) / c->unit_force;
         p->y[e] = c->y[i];
         c->cuts += (size_t)cut_off;
     }
     for (size_t e = 0; e < n; e++) {
         const double *row = g->r + c->near[e] * g->size;
         for (size_t j = 0; j < n; j++) {
-            const double r = row[c->near[j]] / u.r;
+            const double r = row[c->near[j]] / c->unit_r;
             p->s[e * n + j] = p->weight[e] * p->weight[j] * (j == e ? greater(r, NEXT_TO_IMMOVABLE) : r);
         }
     }
     for (size_t e = 0; e < n; e += p->wide[e]) {
         const double length = tribo_length(p->wide[e], c->pull + e);
-        const double size = lesser(quotient(quotient(length, u.r), u.force), HARDEST);
+        const double size = lesser(quotient(quotient(length, c->unit_r), c->unit_force), HARDEST);
         for (size_t k = e; k < e + p->wide[e]; k++) {
             p->pull[k] = length > 0.0 ? p->weight[k] * (c->pull[k] / length) * size : 0.0;
         }

@@ -116,7 +116,6 @@ const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct c
 {
     struct disc_qp *p = &ctx->clusters->problem;
     const struct cluster *g = &ctx->clusters->cluster[q];
-    const struct unit u = ctx->clusters->unit;
     const size_t *near = ctx->clusters->near, *contact = ctx->clusters->contact, n = p->size;
     double *df = ctx->clusters->df, *dlimit = ctx->clusters->dlimit, *dshift = p->from, *turn = p->slide;
     double *dy = p->best; /* the part of the change of y that follows shifts */
@@ -133,7 +132,8 @@ const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct c
         for (size_t j = 0; j < g->size; j++) {
             sum += product(row[j], df[j]);
         }
-        rhs[e] = p->weight[e] * quotient(quotient(cut(sum), u.r), u.force) + product(growth, p->gradient[e]);
+        rhs[e] = p->weight[e] * quotient(quotient(cut(sum), ctx->clusters->unit_r), ctx->clusters->unit_force) +
+                 product(growth, p->gradient[e]);
         turn[e] = dshift[e] + product(p->shift[e], growth);
         for (size_t j = 0; j < n; j++) {
             rhs[e] += p->s[e * n + j] * dy[j];
