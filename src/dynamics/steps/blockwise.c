@@ -14,7 +14,8 @@
 
 /* ----------------------------------------------------------------------------------------------------------------- life */
 
-/* Finds the bodies. Returns 0 if a contact has none of its own, on which alone its force acts. taken [ndof]: workspace, all 0. */
+/* Finds the bodies; first and last, by the entries of K and C. Returns 0 if a contact has no body of its own, on which alone its
+ * force acts. taken [ndof]: workspace, all 0. */
 static int find_bodies(struct blockwise *b, const tribo_system *sys, signed char *taken)
 {
     int alone = sys->response.first[sys->response.rows] == sys->ncontact &&
@@ -25,17 +26,11 @@ static int find_bodies(struct blockwise *b, const tribo_system *sys, signed char
         b->mass[b->body[i]] = mass;
         alone = mass > 0.0 && isfinite(mass);
     }
-    return alone;
-}
-
-/* Sets first and last, by the entries of K and C. */
-static void find_reach(struct blockwise *b, const tribo_system *sys)
-{
     const struct matrix *const of[] = {&sys->stiffness, &sys->damping};
     for (size_t k = 0; k < b->blocks; k++) {
         b->first[k] = b->last[k] = k;
     }
-    for (size_t row = 0; row < sys->ndof; row++) {
+    for (size_t row = 0; alone && row < sys->ndof; row++) {
         const size_t to = row / MATRIX_BLOCK;
         for (int m = 0; m < 2; m++) {
             for (size_t e = of[m]->rows ? of[m]->first[row] : 0; of[m]->rows && e < of[m]->first[row + 1]; e++) {
@@ -45,6 +40,7 @@ static void find_reach(struct blockwise *b, const tribo_system *sys)
             }
         }
     }
+    return alone;
 }
 
 void tribo_blockwise_free(struct blockwise *b)
@@ -79,9 +75,7 @@ int tribo_blockwise_create(struct blockwise *b, const tribo_system *sys)
     if (!l.memory) {
         return 0;
     }
-    if (find_bodies(b, sys, taken)) {
-        find_reach(b, sys);
-    } else {
+    if (!find_bodies(b, sys, taken)) {
         tribo_blockwise_free(b);
     }
     return 1;
@@ -260,11 +254,12 @@ TRIBO_SIMD static int move(const struct blockwise *b, const struct body_step *s,
     return (speeds ? STIRS : 0) | (grows ? GROWS : 0);
 }
 
-int tribo_blockwise_step(struct blockwise *b, tribo_system *sys, const struct body_step *s, double *energy)
+int tribo_blockwise_step(struct blockwise *b, tribo_system *sys, const struct body_step *s, double *energy, size_t *rested)
 {
     const int moves = tribo_system_bases_move(sys);
     int did, all = 0;
-    size_t stills = 0, left = sys->ndof;
+    size_t stills = 0;
+    *rested += sys->ndof;
     set_time(b, sys, s->t);
     if (tribo_system_limits_vary(sys)) {
         take_limits(b, sys);
@@ -279,7 +274,7 @@ int tribo_blockwise_step(struct blockwise *b, tribo_system *sys, const struct bo
         accelerate(b, sys, k, s->q, s->u, a);
         all |= did = move(b, s, k * MATRIX_BLOCK, n, moves, a);
         *energy -= 0.5 * tribo_sum(n, a);
-        left -= n;
+        *rested -= n;
         *next = 0;
         if (did & STIRS) {
             memset(b->wakes + b->first[k], 1, b->last[k] - b->first[k] + 1);
@@ -289,7 +284,6 @@ int tribo_blockwise_step(struct blockwise *b, tribo_system *sys, const struct bo
             b->still[stills++] = k;
         }
     }
-    b->skipped += left;
     while (stills > 0) {
         const size_t k = b->still[--stills];
         double a[MATRIX_BLOCK];

@@ -29,7 +29,6 @@ struct blockwise {
     double *load;           /* [ndof] accelerations by loads */
     double *room; /* [ncontact] workspace */
     size_t blocks;
-    size_t skipped;               /* degrees of freedom left out, summed over steps */
     size_t *first, *last;         /* [blocks] block k accelerates no blocks before first[k] or after last[k] */
     unsigned char *driven;        /* [blocks] 1: a load, base or limit depends on time */
     unsigned char *awake, *wakes; /* [blocks] 1: awake in this step, not yet done; in the next step */
@@ -57,8 +56,9 @@ void tribo_blockwise_take(struct blockwise *b, tribo_system *sys);
  * as much as an evaluation. */
 void tribo_blockwise_take_law(struct blockwise *b, tribo_system *sys);
 
-/* Adds the work of friction to *energy. Returns 0 if the motion is not finite. */
-int tribo_blockwise_step(struct blockwise *b, tribo_system *sys, const struct body_step *s, double *energy);
+/* Adds the work of friction to *energy, the number of degrees of freedom left out to *rested. Returns 0 if the motion is not
+ * finite. */
+int tribo_blockwise_step(struct blockwise *b, tribo_system *sys, const struct body_step *s, double *energy, size_t *rested);
 
 /* a [ndof] = accelerations with friction at t and y, *power = what friction dissipates. Checks nothing: a state that is not
  * finite makes some of a so. */

@@ -348,10 +348,9 @@ static int central_step(tribo_driver *drv, double t, double next, const double *
     int status = TRIBO_OK;
     if (alone) {
         drv->sys->evaluations++;
-        if (!tribo_blockwise_step(&x->alone, drv->sys, &k, &energy) || !isfinite(energy)) {
+        if (!tribo_blockwise_step(&x->alone, drv->sys, &k, &energy, &drv->rested) || !isfinite(energy)) {
             return tribo_step_form_fail(drv, TRIBO_ERR_NOT_FINITE, t, NULL);
         }
-        drv->rested = x->alone.skipped;
     } else {
         status = kick(drv, &k, &energy);
         for (size_t i = 0; !status && i < n; i++) {

@@ -27,7 +27,6 @@ struct moreau {
     double *push;            /* [ndof] workspace */
     size_t told;             /* tribo_system_settings when contacts took them; SIZE_MAX: never */
     double *limit;           /* [ncontact] limits in a step; limit/2 for compliant contacts */
-    int goes_on;             /* 1: spring is of the state */
     double *spring, *give;   /* [ncontact] forces f0 of compliant contacts; workspace, as G f0 */
     double *change;          /* [ncontact] f1 - f0; workspace */
     tribo_context *contacts; /* contacts with the operator of a step */
@@ -285,7 +284,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
             return tribo_driver_pass(drv, status);
         }
     }
-    if (sys->compliance.count && !m->goes_on) {
+    if (sys->compliance.count) {
         memcpy(y, from, tribo_system_size(sys) * sizeof *y);
         tribo_get_limit(sys->contacts, m->give);
         tribo_compliance_enter(sys, m->give, m->spring, y);
@@ -308,7 +307,6 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     }
     tribo_system_snap(sys, s->mode, s->base, s->u);
     tribo_step_form_relative(s, sys, s->u, s->end);
-    m->goes_on = 1;
     for (size_t i = 0; i < n; i++) {
         y[i] = from[i] + 0.5 * h * (u[i] + s->u[i]);
         y[n + i] = s->u[i];
@@ -321,8 +319,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
 
 static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
-    struct moreau *m = drv->own;
-    m->goes_on = continues && m->goes_on;
+    (void)continues;
     return tribo_driver_fixed_steps(drv, t, t1, y, moreau_step, NULL);
 }
 
