@@ -300,16 +300,6 @@ int tribo_matrix_flaw(const struct matrix *a, int symmetric, size_t *row, size_t
     return 0;
 }
 
-void tribo_matrix_widen(const struct matrix *a, size_t *below, size_t *above)
-{
-    for (size_t i = 0; i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            *below = i > a->col[k] && i - a->col[k] > *below ? i - a->col[k] : *below;
-            *above = a->col[k] > i && a->col[k] - i > *above ? a->col[k] - i : *above;
-        }
-    }
-}
-
 int tribo_matrix_is_diagonal(const struct matrix *a)
 {
     for (size_t i = 0; i < a->rows; i++) {

@@ -147,9 +147,6 @@ void tribo_matrix_scale_rows(struct matrix *a, const double *factor);
  * mirror image; 0 if there is none. */
 int tribo_matrix_flaw(const struct matrix *a, int symmetric, size_t *i, size_t *j, double *value, double *mirror);
 
-/* *below = max(*below, i - j), *above = max(*above, j - i) over all entries (i, j). */
-void tribo_matrix_widen(const struct matrix *a, size_t *below, size_t *above);
-
 /* Returns 1 if all entries off the diagonal are 0. */
 int tribo_matrix_is_diagonal(const struct matrix *a);
 

@@ -35,7 +35,7 @@ struct planar_line {
 struct planar_series {
     size_t room;              /* for contacts */
     int given;                /* 1: un and ut are given, and all sliding contacts slide already */
-    struct planar_line *line; /* [room]; owns the memory of all */
+    struct planar_line *line; /* [room]; owns the memory of all; freed by method_event.c */
     size_t begins;            /* number of contacts that begin to slide */
     size_t begin_room;        /* for such contacts */
     size_t *begin;            /* [begins] these contacts */
@@ -134,8 +134,6 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
 double tribo_event_length(const struct event *e);
 
 /* ------------------------------------------------------------------------------------------------------ planar_series.c */
-
-void tribo_planar_series_free(struct planar_series *s);
 
 /* The time in which friction would stop planar contact p; and the least such time of contacts that slide already, HUGE_VAL if
  * there is none. */

@@ -200,7 +200,8 @@ static int set_guards(struct event *e)
 static void free_series(struct event *e)
 {
     free(e->q);
-    tribo_planar_series_free(&e->planar);
+    free(e->planar.line);
+    e->planar = (struct planar_series){0};
     tribo_creep_free(&e->creep);
 }
 

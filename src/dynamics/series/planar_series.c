@@ -33,12 +33,6 @@
  * lost in rounding, and with it a zero. */
 #define FASTER 1e4
 
-void tribo_planar_series_free(struct planar_series *s)
-{
-    free(s->line);
-    memset(s, 0, sizeof *s);
-}
-
 /* Makes room for all planar contacts, and for those that begin to slide. Returns 0 if out of memory. */
 static int reserve_lines(struct event *e, size_t begins)
 {

@@ -25,7 +25,7 @@ struct moreau {
     struct step_matrix matrix;
     double *response;        /* [ncontact][ndof] S^-1 J'; NULL: each step solves with S twice */
     double *push;            /* [ndof] workspace */
-    size_t told;             /* tribo_system_settings when contacts took them; SIZE_MAX: never */
+    size_t told;             /* TRIBO_COUNT_SETTINGS of the system's contacts as contacts took them; SIZE_MAX: never */
     double *limit;           /* [ncontact] limits in a step; limit/2 for compliant contacts */
     double *spring, *give;   /* [ncontact] forces f0 of compliant contacts; workspace, as G f0 */
     double *change;          /* [ncontact] f1 - f0; workspace */
@@ -39,7 +39,8 @@ static void moreau_destroy(tribo_driver *drv)
     if (m) {
         tribo_destroy(m->contacts);
         free(m->common.memory);
-        tribo_step_band_free(&m->held);
+        free(m->held.l);
+        free(m->held.body);
         tribo_step_matrix_free(&m->matrix);
         free(m->response);
         free(m);
@@ -221,12 +222,14 @@ static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, c
         memcpy(s->mode, m->held.at, sys->ncontact);
         return tribo_dense_finite(s->f, sys->ncontact) ? TRIBO_OK : TRIBO_ERR_NOT_FINITE;
     }
-    if (m->told != tribo_system_settings(sys)) {
+    size_t settings = 0;
+    tribo_get_count(sys->contacts, TRIBO_COUNT_SETTINGS, &settings); /* limits that vary with time count */
+    if (m->told != settings) {
         double *ratio = m->give, *velocity = m->change;
         tribo_get_static(sys->contacts, ratio, velocity);
         tribo_set_limit(m->contacts, m->limit);
         tribo_set_static(m->contacts, ratio, tribo_system_falls(sys) ? velocity : NULL);
-        m->told = tribo_system_settings(sys);
+        m->told = settings;
     }
     if (g->count) {
         for (size_t i = 0; i < sys->ncontact; i++) {

@@ -51,7 +51,13 @@ int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, dou
             tribo_matrix_free(&sum);
         }
     }
-    tribo_matrix_widen(&m->s, &m->below, &m->above);
+    for (size_t i = 0; i < m->s.rows; i++) {
+        for (size_t k = m->s.first[i], j; k < m->s.first[i + 1]; k++) {
+            j = m->s.col[k];
+            m->below = i > j && i - j > m->below ? i - j : m->below;
+            m->above = j > i && j - i > m->above ? j - i : m->above;
+        }
+    }
     return step_matrix_fail(sys, done ? TRIBO_OK : TRIBO_ERR_MEMORY, h, 0);
 }
 
@@ -178,13 +184,6 @@ enum { FREE, HOLDS, FOLLOWS };
 
 /* A round costs as much as the band has entries, and a step hardly ever takes more than 10. */
 enum { ROUNDS = 100 };
-
-void tribo_step_band_free(struct step_band *b)
-{
-    free(b->l);
-    free(b->body);
-    *b = (struct step_band){0};
-}
 
 int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const struct step_matrix *m, double h)
 {

@@ -33,7 +33,7 @@ int tribo_step_matrix_solve(const void *matrix, size_t count, double *x);
 struct step_band {
     const struct step_matrix *matrix; /* S; NULL: the system is not of that kind */
     size_t count;                     /* contacts */
-    double *l;                        /* [n][below + 1] factor of S without held bodies */
+    double *l;                        /* [n][below + 1] factor of S without held bodies; l and body are freed by the method */
     int factored;                     /* 1: l belongs to held */
     size_t *body;                     /* [count] the body of a contact; owns the memory of the arrays below */
     size_t *contact;                  /* [n] the contact on a body; count: none */
@@ -55,7 +55,6 @@ struct band_step {
 /* Prepares steps of length h with the S of m, which must outlive b. Returns a status, with a message in the system; TRIBO_OK also if
  * the system is not of that kind (matrix NULL). Keeps `at`. */
 int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const struct step_matrix *m, double h);
-void tribo_step_band_free(struct step_band *b);
 
 /* du: in, impulses of loads and structure; out, changes of velocities, with forces |f| <= limit for which v = J (u + du) -
  * base is 0 or against f. Returns 1; 0 if that is not found: then du is as before. */

@@ -109,13 +109,6 @@ size_t tribo_system_revision(const tribo_system *sys)
     return sys->revision + sys->changes;
 }
 
-size_t tribo_system_settings(const tribo_system *sys)
-{
-    size_t settings = 0;
-    tribo_get_count(sys->contacts, TRIBO_COUNT_SETTINGS, &settings);
-    return settings;
-}
-
 size_t tribo_system_planar(const tribo_system *sys)
 {
     size_t planar = 0;

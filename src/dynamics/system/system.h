@@ -116,9 +116,6 @@ int tribo_system_take_settings(tribo_system *sys);
 /* Returns the number of the caller's changes of loads, tables, damping, and of settings (as copied to the contacts). */
 size_t tribo_system_revision(const tribo_system *sys);
 
-/* Returns the number of changes of the contacts' settings, including changes of limits with time. */
-size_t tribo_system_settings(const tribo_system *sys);
-
 /* Returns status, of a call on sys->contacts. After an error copies the message of the contacts to the system. */
 int tribo_system_explain(const tribo_system *sys, int status);
 
