@@ -17,8 +17,9 @@
 /* sqrt(mass) of a degree of freedom without mass, in parts of the smallest sqrt(mass) of a tie. */
 #define NO_MASS 1e-8
 
-/* The rows of constraints, and their ties. */
-struct source {
+/* The rows of constraints and their ties; and Gaussian elimination of a tie in tie->entry: rows and columns below tie->rank have
+ * pivots. */
+struct elimination {
     const struct matrix *direction, *mass;
     const size_t *row; /* [count] */
     size_t count;
@@ -27,12 +28,7 @@ struct source {
     size_t *parent;            /* [cols] forest of the degrees of freedom that rows join */
     size_t *place;             /* [cols] place in tie->dof, plus 1 */
     size_t *number;            /* [cols] at roots: the tie, plus 1 */
-};
-
-/* Gaussian elimination of a tie in tie->entry: rows and columns below tie->rank have pivots. */
-struct elimination {
     struct tie *tie;
-    const unsigned char *last;
     double *size;   /* [rows][touched] sum of the sizes of an entry's terms */
     double *weight; /* [touched] 1/sqrt(mass) */
     double *scale;  /* [rows] 1/(largest weighted entry of the row at the beginning) */
@@ -51,27 +47,27 @@ void tribo_constraints_free(struct constraints *c)
 
 /* Joins the degrees of freedom of each row, numbers the ties, and counts their rows and degrees of freedom. A row without entries
  * is a tie. */
-static void find_ties(const struct source *s, struct constraints *c)
+static void find_ties(const struct elimination *e, struct constraints *c)
 {
-    const struct matrix *j = s->direction;
+    const struct matrix *j = e->direction;
     for (size_t d = 0; d < j->cols; d++) {
-        s->parent[d] = d;
+        e->parent[d] = d;
     }
-    for (size_t p = 0; p < s->count; p++) {
-        for (size_t k = j->first[s->row[p]]; k < j->first[s->row[p] + 1]; k++) {
-            tribo_join(s->parent, j->col[k], j->col[j->first[s->row[p]]]);
+    for (size_t p = 0; p < e->count; p++) {
+        for (size_t k = j->first[e->row[p]]; k < j->first[e->row[p] + 1]; k++) {
+            tribo_join(e->parent, j->col[k], j->col[j->first[e->row[p]]]);
         }
     }
-    for (size_t p = 0; p < s->count; p++) {
-        const size_t first = j->first[s->row[p]], end = j->first[s->row[p] + 1];
-        size_t none = 0, *number = first < end ? &s->number[tribo_root(s->parent, j->col[first])] : &none;
+    for (size_t p = 0; p < e->count; p++) {
+        const size_t first = j->first[e->row[p]], end = j->first[e->row[p] + 1];
+        size_t none = 0, *number = first < end ? &e->number[tribo_root(e->parent, j->col[first])] : &none;
         *number = *number ? *number : ++c->ties;
-        s->member[p] = *number - 1;
-        struct tie *tie = &c->tie[s->member[p]];
+        e->member[p] = *number - 1;
+        struct tie *tie = &c->tie[e->member[p]];
         tie->rows++;
         for (size_t k = first; k < end; k++) {
-            if (s->place[j->col[k]] == 0) {
-                s->place[j->col[k]] = ++tie->touched;
+            if (e->place[j->col[k]] == 0) {
+                e->place[j->col[k]] = ++tie->touched;
             }
         }
     }
@@ -79,9 +75,9 @@ static void find_ties(const struct source *s, struct constraints *c)
 
 /* Allocates the arrays of the ties, and workspace for the largest tie, and lists the rows and degrees of freedom of each tie.
  * Returns 1, or 0 if out of memory. */
-static int create_ties(const struct source *s, struct constraints *c, struct elimination *e)
+static int create_ties(struct elimination *e, struct constraints *c)
 {
-    const struct matrix *j = s->direction;
+    const struct matrix *j = e->direction;
     struct layout l = {0};
     size_t rows = 0, touched = 0, area = 0;
     do {
@@ -89,7 +85,7 @@ static int create_ties(const struct source *s, struct constraints *c, struct eli
         for (struct tie *tie = c->tie; tie < c->tie + c->ties; tie++) {
             tie->order = tribo_layout_array(&l, tie->rows, sizeof *tie->order);
             tie->dof = tribo_layout_array(&l, tie->touched, sizeof *tie->dof);
-            tie->stride = tie->touched + (s->last ? 0 : tie->rows);
+            tie->stride = tie->touched + (e->last ? 0 : tie->rows);
             tie->entry = tribo_layout_array(&l, tie->rows * tie->stride, sizeof *tie->entry);
             rows = tie->rows > rows ? tie->rows : rows;
             touched = tie->touched > touched ? tie->touched : touched;
@@ -103,11 +99,11 @@ static int create_ties(const struct source *s, struct constraints *c, struct eli
     for (size_t k = 0; k < c->ties; k++) {
         c->tie[k].rows = 0;
     }
-    for (size_t p = 0; l.memory && p < s->count; p++) {
-        struct tie *tie = &c->tie[s->member[p]];
+    for (size_t p = 0; l.memory && p < e->count; p++) {
+        struct tie *tie = &c->tie[e->member[p]];
         tie->order[tie->rows++] = p;
-        for (size_t k = j->first[s->row[p]]; k < j->first[s->row[p] + 1]; k++) {
-            tie->dof[s->place[j->col[k]] - 1] = j->col[k];
+        for (size_t k = j->first[e->row[p]]; k < j->first[e->row[p] + 1]; k++) {
+            tie->dof[e->place[j->col[k]] - 1] = j->col[k];
         }
     }
     return l.memory != NULL;
@@ -169,15 +165,15 @@ TRIBO_SIMD static void eliminate(double *restrict row, double *restrict size, co
 }
 
 /* Fills the entries of the tie, size, weight and scale. */
-static void fill(struct elimination *e, const struct source *s)
+static void fill(struct elimination *e)
 {
     const struct tie *tie = e->tie;
-    const struct matrix *j = s->direction;
+    const struct matrix *j = e->direction;
     const size_t t = tie->touched;
     double lightest = DBL_MIN;
     memset(tie->entry, 0, tie->rows * tie->stride * sizeof *tie->entry);
     for (size_t l = 0; l < t; l++) {
-        const double mass = s->mass->rows ? tribo_matrix_get(s->mass, tie->dof[l], tie->dof[l]) : 1.0;
+        const double mass = e->mass->rows ? tribo_matrix_get(e->mass, tie->dof[l], tie->dof[l]) : 1.0;
         e->weight[l] = mass > 0.0 ? 1.0 / sqrt(mass) : 0.0;
         lightest = greater(lightest, e->weight[l]);
     }
@@ -185,10 +181,10 @@ static void fill(struct elimination *e, const struct source *s)
         e->weight[l] = e->weight[l] > 0.0 ? e->weight[l] : lightest / NO_MASS;
     }
     for (size_t p = 0; p < tie->rows; p++) {
-        const size_t row = s->row[tie->order[p]];
+        const size_t row = e->row[tie->order[p]];
         double most = 0.0, *entry = tie->entry + p * tie->stride;
         for (size_t k = j->first[row]; k < j->first[row + 1]; k++) {
-            const size_t l = s->place[j->col[k]] - 1;
+            const size_t l = e->place[j->col[k]] - 1;
             entry[l] = j->val[k];
             most = greater(most, fabs(entry[l]) * e->weight[l]);
         }
@@ -256,8 +252,7 @@ int tribo_constraints_create(struct constraints *c, const struct matrix *directi
                              size_t count, const unsigned char *last)
 {
     const size_t n = direction->cols;
-    struct source s = {.direction = direction, .mass = mass, .row = row, .count = count, .last = last};
-    struct elimination e = {.last = last};
+    struct elimination e = {.direction = direction, .mass = mass, .row = row, .count = count, .last = last};
     struct layout l = {0};
     size_t independent = 0;
     *c = (struct constraints){.count = count};
@@ -268,22 +263,22 @@ int tribo_constraints_create(struct constraints *c, const struct matrix *directi
         c->memory[0] = tribo_layout_array(&l, 0, 1);
         c->tie = tribo_layout_array(&l, count, sizeof *c->tie);
         c->order = tribo_layout_array(&l, count, sizeof *c->order);
-        s.member = tribo_layout_array(&l, count, sizeof *s.member);
-        s.parent = tribo_layout_array(&l, n, sizeof *s.parent);
-        s.place = tribo_layout_array(&l, n, sizeof *s.place);
-        s.number = tribo_layout_array(&l, n, sizeof *s.number);
+        e.member = tribo_layout_array(&l, count, sizeof *e.member);
+        e.parent = tribo_layout_array(&l, n, sizeof *e.parent);
+        e.place = tribo_layout_array(&l, n, sizeof *e.place);
+        e.number = tribo_layout_array(&l, n, sizeof *e.number);
     } while (!l.memory && tribo_layout_zeros(&l));
     if (!l.memory) {
         return 0;
     }
-    find_ties(&s, c);
-    if (!create_ties(&s, c, &e)) {
+    find_ties(&e, c);
+    if (!create_ties(&e, c)) {
         return 0;
     }
     for (size_t k = 0; k < c->ties; k++) {
         e.tie = &c->tie[k];
         e.zero = last ? sqrt(4.0 * (double)(e.tie->rows + 4) * DBL_EPSILON) : ROUNDING;
-        fill(&e, &s);
+        fill(&e);
         eliminate_tie(&e);
         c->rank += e.tie->rank;
     }

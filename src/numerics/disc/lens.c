@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Projection onto lenses: the nearest point of one disc if it lies in the other disc, else a corner. Nothing subtracts from 1 a
  * number near 1, so that thin lenses are as exact as others. */
-#include "lens.h"
+#include "disc_qp.h"
 
 #include <float.h>
 #include <math.h>
