@@ -31,18 +31,23 @@ static inline double sum_of_four(const double *sum)
 
 /* ---------------------------------------------------------------------------------------------------- the dense factor */
 
-/* Returns x'y. */
-static double dense_row_dot(const double *x, const double *y, size_t n)
+/* Returns x'y, and *size = |x|'|y|, unless size is NULL. */
+static inline double dot_of_four(const double *restrict x, const double *restrict y, size_t n, double *size)
 {
-    double sum[SUMS] = {0.0};
+    double sum[SUMS] = {0.0}, all[SUMS] = {0.0};
     size_t i = 0;
     for (; i + SUMS <= n; i += SUMS) {
         for (size_t k = 0; k < SUMS; k++) {
             sum[k] += x[i + k] * y[i + k];
+            all[k] += size ? fabs(x[i + k] * y[i + k]) : 0.0;
         }
     }
     for (; i < n; i++) {
         sum[0] += x[i] * y[i];
+        all[0] += size ? fabs(x[i] * y[i]) : 0.0;
+    }
+    if (size) {
+        *size = sum_of_four(all);
     }
     return sum_of_four(sum);
 }
@@ -155,7 +160,7 @@ static int dense_enter(struct box_qp *p, size_t i)
     double *row = p->l + rank * size, pivot = diagonal;
     for (size_t k = 0; k < rank; k++) {
         const double *l = p->l + k * size;
-        row[k] = (scaled_entry(p, 0, i, p->order[k]).hi - dense_row_dot(l, row, k)) * l[k];
+        row[k] = (scaled_entry(p, 0, i, p->order[k]).hi - dot_of_four(l, row, k, NULL)) * l[k];
         pivot -= row[k] * row[k];
     }
     const double relative = pivot / diagonal;
@@ -204,7 +209,7 @@ static void dense_solve(const struct box_qp *p, double *step)
     double *y = p->row;
     for (size_t i = 0; i < rank; i++) {
         const double *l = p->l + i * size;
-        y[i] = (p->scale[p->order[i]] * step[p->order[i]] - dense_row_dot(l, y, i)) * l[i];
+        y[i] = (p->scale[p->order[i]] * step[p->order[i]] - dot_of_four(l, y, i, NULL)) * l[i];
     }
     for (size_t i = rank; i-- > 0;) {
         const double *l = p->l + i * size, x = y[i] * l[i];
@@ -395,24 +400,9 @@ void tribo_factor_solve(const struct box_qp *p, double *step)
 
 /* ----------------------------------------------------------------------------------------------------------- rows of R */
 
-/* Returns row'x, and *size = |row|'|x|. */
-TRIBO_SIMD static double factor_dense_dot(const double *restrict row, const double *restrict x, size_t n, double *size)
+TRIBO_SIMD static double factor_dense_dot(const double *row, const double *x, size_t n, double *size)
 {
-    double sum[SUMS] = {0.0}, all[SUMS] = {0.0};
-    size_t j = 0;
-    for (; j + SUMS <= n; j += SUMS) {
-        for (size_t k = 0; k < SUMS; k++) {
-            const double term = row[j + k] * x[j + k];
-            sum[k] += term;
-            all[k] += fabs(term);
-        }
-    }
-    for (; j < n; j++) {
-        sum[0] += row[j] * x[j];
-        all[0] += fabs(row[j] * x[j]);
-    }
-    *size = sum_of_four(all);
-    return sum_of_four(sum);
+    return dot_of_four(row, x, n, size);
 }
 
 double tribo_row_dot(const struct box_qp *p, size_t i, const double *x, double *size)
