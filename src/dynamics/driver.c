@@ -40,7 +40,7 @@ int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const stru
     d->message = (char *)(d->slope + size + 2 * shown);
     d->excess = d->backslip = NAN;
     tribo_system_order_snaps(sys);
-    status = m->create(d);
+    status = m->create ? m->create(d) : TRIBO_OK;
     if (status) {
         tribo_driver_destroy(d);
         return status;

@@ -120,14 +120,6 @@ static int has_memory(const size_t *bytes, size_t count)
     return enough;
 }
 
-/* 1 if there is memory for a stepper of GSL: headers, vectors, histories of up to 13 vectors, and matrices. */
-static int memory_to_create(const struct gsl_kind *kind, size_t n)
-{
-    const size_t size = n * kind->stages, vector = HEADER + size * sizeof(double);
-    const size_t bytes[] = {24 * HEADER, 40 * vector, 48 * vector, 3 * size * vector};
-    return size <= SIZE_MAX / sizeof(double) / (100 + 3 * size) && has_memory(bytes, kind->matrices ? 4 : 3);
-}
-
 /* Returns GSL_SUCCESS if there is memory for a factorization, which allocates a vector of integers. */
 static int reserve_factor(struct gsl_step *g)
 {
@@ -292,7 +284,10 @@ static struct gsl_step *gsl_step_create(const struct gsl_kind *kind, tribo_syste
         first.force = tribo_layout_array(&l, c, sizeof *g->force);
         first.mode = tribo_layout_array(&l, 2 * c, sizeof *g->mode);
     } while (!l.memory && tribo_layout_zeros(&l));
-    if (!l.memory || !memory_to_create(kind, n)) {
+    /* memory of GSL's own: headers, vectors, histories of up to 13 vectors, and matrices */
+    const size_t length = n * kind->stages, vector = HEADER + length * sizeof(double);
+    const size_t bytes[] = {24 * HEADER, 40 * vector, 48 * vector, 3 * length * vector};
+    if (!l.memory || length > SIZE_MAX / sizeof(double) / (100 + 3 * length) || !has_memory(bytes, kind->matrices ? 4 : 3)) {
         free(l.memory);
         return NULL;
     }

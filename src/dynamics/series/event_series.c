@@ -204,29 +204,12 @@ static void add_perturbed(const struct perturbed *p, const struct matrix *a, dou
     }
 }
 
-/* Sets p->force = term k by limits N that fall, from terms of v: dN/d|v| = (limit - N)/velocity. */
-static void find_slope_forces(const struct event *e, size_t k, double tau, const struct perturbed *p)
-{
-    const struct stick_slip *m = &e->events.stick_slip;
-    const size_t c = e->sys->ncontact;
-    double power = 1.0;
-    memset(p->force, 0, c * p->columns * sizeof *p->force);
-    for (size_t j = 0; j <= k && j < p->rows; j++) {
-        const double *fall = e->fall + j * c, *limit = e->limit + j * c, *v = p->v + (k - j) % p->rows * c * p->columns;
-        for (size_t i = 0; i < c; i++) {
-            const double slope = tribo_slides(m->state.slip[i]) ? (fall[i] - limit[i]) / m->breakaway.velocity[i] : 0.0;
-            tribo_add(p->force + i * p->columns, power * slope, v + i * p->columns, p->columns);
-        }
-        power *= tau;
-    }
-}
-
 /* Sets the terms of order k from those before. */
 static void find_term(struct event *e, size_t k, double tau, const struct perturbed *p)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const tribo_system *sys = e->sys;
-    const size_t n = sys->ndof, half = n * p->columns, each = sys->ncontact * p->columns;
+    const size_t n = sys->ndof, c = sys->ncontact, half = n * p->columns, each = c * p->columns;
     const double part = tau / (double)k;
     double *v = p->v + (k - 1) % p->rows * each;
     memset(p->next, 0, half * sizeof *p->next);
@@ -242,8 +225,17 @@ static void find_term(struct event *e, size_t k, double tau, const struct pertur
             p->spring[i] *= -part;
         }
     }
-    if (m->breakaway.falls) {
-        find_slope_forces(e, k - 1, tau, p);
+    if (m->breakaway.falls) { /* forces by limits N that fall, from terms of v: dN/d|v| = (limit - N)/velocity */
+        double power = 1.0;
+        memset(p->force, 0, each * sizeof *p->force);
+        for (size_t j = 0; j < k && j < p->rows; j++) {
+            const double *fall = e->fall + j * c, *limit = e->limit + j * c, *from = p->v + (k - 1 - j) % p->rows * each;
+            for (size_t i = 0; i < c; i++) {
+                const double slope = tribo_slides(m->state.slip[i]) ? (fall[i] - limit[i]) / m->breakaway.velocity[i] : 0.0;
+                tribo_add(p->force + i * p->columns, power * slope, from + i * p->columns, p->columns);
+            }
+            power *= tau;
+        }
         add_perturbed(p, &sys->response, part, p->force, p->next);
     }
     for (size_t i = 0; i < half; i++) {

@@ -55,13 +55,6 @@ static void adaptive_destroy(tribo_driver *drv)
     }
 }
 
-static int adaptive_create(tribo_driver *drv)
-{
-    drv->abstol = ABSTOL;
-    drv->reltol = RELTOL;
-    return TRIBO_OK;
-}
-
 static void restart(const struct adaptive *a)
 {
     if (a->stepper.restart) {
@@ -276,7 +269,6 @@ int tribo_driver_create_stepper(tribo_driver **drv, tribo_system *sys, const tri
     *a = (struct adaptive){.stepper = *stepper, .data = data, .structure = SIZE_MAX, .revision = SIZE_MAX};
     a->method = (struct method){.name = stepper->name,
                                 .takes = TAKES_STEP | TAKES_TOLERANCE | TAKES_MAX_STEP | NEEDS_MASS,
-                                .create = adaptive_create,
                                 .destroy = adaptive_destroy,
                                 .advance = adaptive_advance};
     a->to = (double *)(a + 1);
@@ -291,5 +283,7 @@ int tribo_driver_create_stepper(tribo_driver **drv, tribo_system *sys, const tri
         return status;
     }
     (*drv)->own = a;
+    (*drv)->abstol = ABSTOL;
+    (*drv)->reltol = RELTOL;
     return TRIBO_OK;
 }

@@ -29,11 +29,9 @@ enum { FEW = SMALL };
 struct few_bodies {
     int fits;        /* 1: runs can be taken with the settings */
     size_t revision; /* of the system to which all of this belongs; SIZE_MAX: none */
-    size_t n, c;     /* degrees of freedom, contacts */
     double stiffness[FEW * FEW], damping[FEW * FEW], direction[FEW * FEW], response[FEW * FEW]; /* [n][n], [c][n], [n][c] */
     double r[FEW * FEW], inverse[FEW * FEW], part[FEW]; /* see numerics/box/small.h; of r and inverse [c][c] */
     unsigned inverse_of;
-    double tally[FEW];
     signed char at[FEW]; /* in the step before: FREE: holds; AT_LOWER, AT_UPPER: slides, with friction -limit, limit */
     /* of the steps of a run: durations over which forces act; lengths, that of the step before the run first; and what acts */
     double time[RUN], h[RUN + 1];
@@ -125,9 +123,8 @@ static int few_take(struct few_bodies *b, tribo_system *sys)
         return b->fits;
     }
     b->revision = revision;
-    b->n = sys->ndof;
-    b->c = sys->ncontact;
-    b->fits = b->n <= FEW && b->c <= FEW && !sys->unsolved && tribo_system_is_plain(sys);
+    const size_t c = sys->ncontact;
+    b->fits = sys->ndof <= FEW && c <= FEW && tribo_system_is_plain(sys);
     if (!b->fits) {
         return 0;
     }
@@ -136,16 +133,15 @@ static int few_take(struct few_bodies *b, tribo_system *sys)
     tribo_matrix_spread(&sys->damping, b->damping);
     tribo_matrix_spread(&sys->direction, b->direction);
     tribo_matrix_spread(&sys->response, b->response);
-    for (size_t i = 0; i < b->c; i++) {
-        for (size_t j = 0; j < b->c; j++) {
-            b->r[i * b->c + j] = tribo_system_delassus(sys, i, j);
+    for (size_t i = 0; i < c; i++) {
+        for (size_t j = 0; j < c; j++) {
+            b->r[i * c + j] = tribo_system_delassus(sys, i, j);
         }
-        b->part[i] = tribo_resolution(b->c);
-        b->tally[i] = sys->tally[i];
+        b->part[i] = tribo_resolution(c);
     }
     memset(b->at, FREE, sizeof b->at);
     b->inverse_of = 0;
-    b->fits = tribo_small_fits(b->c, b->r, b->inverse); /* 0 if R is out of range, or nearly singular */
+    b->fits = tribo_small_fits(c, b->r, b->inverse); /* 0 if R is out of range, or nearly singular */
     return b->fits;
 }
 
@@ -185,8 +181,8 @@ static int few_find_all(struct few_bodies *b, tribo_system *sys, size_t count, c
         b->time[s] = 0.5 * (b->h[s] + b->h[s + 1]);
         middle[s] = t[s] + 0.5 * (t[s + 1] - t[s]);
     }
-    few_find_drives(sys, DRIVES_LOAD, b->n, count, t, b->load);
-    few_find_drives(sys, DRIVES_BASE, b->c, count, middle, b->base);
+    few_find_drives(sys, DRIVES_LOAD, sys->ndof, count, t, b->load);
+    few_find_drives(sys, DRIVES_BASE, sys->ncontact, count, middle, b->base);
     const int vary = tribo_system_limits_vary(sys);
     for (size_t s = 0; s < count; s++) {
         if (vary) {
@@ -195,7 +191,7 @@ static int few_find_all(struct few_bodies *b, tribo_system *sys, size_t count, c
         if (vary || s == 0) {
             tribo_get_limit(sys->contacts, limit);
         }
-        for (size_t i = 0; i < b->c; i++) {
+        for (size_t i = 0; i < sys->ncontact; i++) {
             fits &= limit[i] <= TRIBO_SMALL_MOST;
             b->limit[i][s] = limit[i];
         }
@@ -251,7 +247,7 @@ static inline int few_step(struct few_bodies *b, tribo_system *sys, size_t n, si
     }
     for (size_t i = 0; i < c; i++) {
         const double to = m->at[i] == FREE ? 0.0 : end[i];
-        work += b->tally[i] * p[i] * (m->v[i] + to);
+        work += sys->tally[i] * p[i] * (m->v[i] + to);
         m->v[i] = to;
     }
     for (size_t d = 0; d < n; d++) {
@@ -284,7 +280,7 @@ static size_t central_run(tribo_driver *drv, size_t count, const double *t, doub
     struct step_form *s = &x->common;
     struct few_bodies *b = &x->few;
     tribo_system *sys = drv->sys;
-    const size_t n = b->n, c = b->c;
+    const size_t n = sys->ndof, c = sys->ncontact;
     if (!b->fits) {
         return 0;
     }

@@ -69,27 +69,21 @@ static int set_operator(struct moreau *m, const tribo_system *sys, const double 
 {
     const struct matrix *j = &sys->direction;
     struct hidden where;
-    int status;
-    switch (tribo_hidden(j, &sys->mass, own, r, &where)) {
-    case 0:
-        status = tribo_set_operator_dense(m->contacts, r);
-        break;
-    case 1:
-        if (m->matrix.below || m->matrix.above || sys->compliance.count) {
-            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                     "contact %zu touches bodies of which one gives way %g times as much as the other in steps "
-                                     "of %g: %s",
-                                     where.contact, where.spread, h,
-                                     sys->unsolved ? "reduce the system" : "take central/fixed, event or exact");
-        }
-        for (size_t d = 0; d < sys->ndof; d++) {
-            m->push[d] = 1.0 / tribo_matrix_get(&m->matrix.s, d, d);
-        }
-        status = tribo_set_operator_mass(m->contacts, sys->ndof, m->push, j->first, j->col, j->val);
-        break;
-    default:
+    const int hidden = tribo_hidden(j, &sys->mass, own, r, &where);
+    if (hidden < 0) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
     }
+    if (hidden && (m->matrix.below || m->matrix.above || sys->compliance.count)) {
+        return tribo_system_fail(
+            sys, TRIBO_ERR_UNSUPPORTED,
+            "contact %zu touches bodies of which one gives way %g times as much as the other in steps of %g: %s", where.contact,
+            where.spread, h, sys->unsolved ? "reduce the system" : "take central/fixed, event or exact");
+    }
+    for (size_t d = 0; hidden && d < sys->ndof; d++) {
+        m->push[d] = 1.0 / tribo_matrix_get(&m->matrix.s, d, d);
+    }
+    const int status = hidden ? tribo_set_operator_mass(m->contacts, sys->ndof, m->push, j->first, j->col, j->val)
+                              : tribo_set_operator_dense(m->contacts, r);
     return status ? tribo_system_fail(sys, status, "in steps of %g, %s", h, tribo_message(m->contacts)) : TRIBO_OK;
 }
 

@@ -99,11 +99,11 @@ void tribo_system_order_snaps(tribo_system *sys)
     double *known = sys->work.acceleration;
     signed char *loose = (signed char *)sys->work.feq;
     memset(known, 0, sys->ndof * sizeof *known);
+    memset(loose, 0, sys->ncontact);
     sys->snaps_in_order = 1;
     for (size_t i = 0; i < sys->ncontact; i++) {
         const size_t *dof = j->col + j->first[i], count = entries_of(j, i);
-        loose[i] = (signed char)tribo_is_compliant(&sys->compliance, i);
-        if (!loose[i] && (count == 1 || count == 2)) {
+        if (!tribo_is_compliant(&sys->compliance, i) && (count == 1 || count == 2)) {
             sys->snaps_in_order &= known[dof[count == 2 ? follows(sys, i) : 0]] == 0.0;
             known[dof[0]] = known[dof[count - 1]] = 1.0;
         }
