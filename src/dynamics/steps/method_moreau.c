@@ -31,6 +31,7 @@ struct moreau {
     double *change;          /* [ncontact] f1 - f0; workspace */
     tribo_context *contacts; /* contacts with the operator of a step */
     size_t settings;         /* sys->changes at the creation of contacts */
+    size_t planar;           /* planar contacts of contacts */
 };
 
 static void moreau_destroy(tribo_driver *drv)
@@ -87,12 +88,6 @@ static int set_operator(struct moreau *m, const tribo_system *sys, const double 
     return status ? tribo_system_fail(sys, status, "in steps of %g, %s", h, tribo_message(m->contacts)) : TRIBO_OK;
 }
 
-static size_t planar_of(const tribo_context *contacts)
-{
-    size_t planar = 0;
-    return contacts && !tribo_get_count(contacts, TRIBO_COUNT_PLANAR, &planar) ? planar : 0;
-}
-
 /* Computes the factor, S^-1 J', and contacts with the operator J S^-1 J'. Returns a status. */
 static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
 {
@@ -107,9 +102,10 @@ static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
     tribo_destroy(m->contacts);
     m->contacts = NULL;
     m->settings = sys->changes;
+    m->planar = tribo_system_planar(sys);
     m->told = SIZE_MAX;
     /* a clone is made again where settings change; the law of a context by create accepts all static limits */
-    if (planar_of(sys->contacts)) {
+    if (m->planar) {
         tribo_clone(sys->contacts, &m->contacts);
     } else {
         tribo_create(&m->contacts, c);
@@ -161,7 +157,7 @@ static int moreau_prepare(struct moreau *m, const tribo_system *sys, double h)
     m->whole = 0;
     m->held.matrix = NULL;
     int status = tribo_step_matrix_create(&m->matrix, sys, h);
-    status = status || planar_of(sys->contacts) ? status : tribo_step_band_create(&m->held, sys, &m->matrix, h);
+    status = status || tribo_system_planar(sys) ? status : tribo_step_band_create(&m->held, sys, &m->matrix, h);
     status = status || m->held.matrix ? status : prepare_whole(m, sys, h);
     if (!status) {
         m->h = h;
@@ -275,7 +271,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     const double h = next - t, *u = from + n;
     /* steps of equal length differ only by rounding of times */
     if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision ||
-        (m->settings != sys->changes && (planar_of(sys->contacts) || planar_of(m->contacts)))) {
+        (m->settings != sys->changes && (tribo_system_planar(sys) || m->planar))) {
         const int status = moreau_prepare(m, sys, h);
         if (status) {
             return tribo_driver_pass(drv, status);

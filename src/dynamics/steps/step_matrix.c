@@ -107,28 +107,6 @@ static void band_solve(const struct step_matrix *m, const double *l, double *x)
     }
 }
 
-/* Factorizes with exchanges of rows, by LAPACK: S must be regular, but need not be definite. Returns a status. */
-static int factorize_lopsided(struct step_matrix *m, size_t *where)
-{
-    const struct matrix *s = &m->s;
-    const size_t n = m->n, width = 2 * m->below + m->above + 1, middle = m->below + m->above;
-    m->band = n < INT_MAX && width < INT_MAX ? calloc(n * width, sizeof *m->band) : NULL;
-    m->pivot = malloc(n * sizeof *m->pivot);
-    if (!m->band || !m->pivot) {
-        return TRIBO_ERR_MEMORY;
-    }
-    for (size_t i = 0; i < n; i++) {
-        for (size_t k = s->first[i]; k < s->first[i + 1]; k++) {
-            m->band[s->col[k] * width + middle + i - s->col[k]] = s->val[k];
-        }
-    }
-    const int rows = (int)n, below = (int)m->below, above = (int)m->above, stride = (int)width;
-    int info;
-    dgbtrf_(&rows, &rows, &below, &above, m->band, &stride, m->pivot, &info);
-    *where = info > 0 ? (size_t)info - 1 : n;
-    return info > 0 ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
-}
-
 int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, double h, int consumes)
 {
     /* a sparse factor costs less than the band if that has far more entries than S, or is almost the whole matrix */
@@ -138,7 +116,23 @@ int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, 
     double x, y;
     int status;
     if (m->c->rows && tribo_matrix_flaw(&m->s, 1, &where, &j, &x, &y)) {
-        status = factorize_lopsided(m, &where);
+        /* with exchanges of rows, by LAPACK: S must be regular, but need not be definite */
+        const size_t n = m->n, all = 2 * m->below + m->above + 1, middle = m->below + m->above;
+        m->band = n < INT_MAX && all < INT_MAX ? calloc(n * all, sizeof *m->band) : NULL;
+        m->pivot = malloc(n * sizeof *m->pivot);
+        if (!m->band || !m->pivot) {
+            return step_matrix_fail(sys, TRIBO_ERR_MEMORY, h, 0);
+        }
+        for (size_t i = 0; i < n; i++) {
+            for (size_t k = m->s.first[i]; k < m->s.first[i + 1]; k++) {
+                m->band[m->s.col[k] * all + middle + i - m->s.col[k]] = m->s.val[k];
+            }
+        }
+        const int rows = (int)n, below = (int)m->below, above = (int)m->above, stride = (int)all;
+        int info;
+        dgbtrf_(&rows, &rows, &below, &above, m->band, &stride, m->pivot, &info);
+        where = info > 0 ? (size_t)info - 1 : n;
+        status = info > 0 ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
     } else if (sparse && tribo_sparse_available()) {
         status = tribo_cholesky_create(&m->sparse, &m->s, consumes ? &m->s : NULL, &where, &x);
     } else {
