@@ -68,7 +68,7 @@ void tribo_lu_solve(const double *lu, size_t n, const int *pivot, double *x, siz
  * Overwrites a. Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE. */
 int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors);
 
-/* The same of A x = value B x, B by its factor b, vectors orthonormal in B. Returns also TRIBO_ERR_NOT_FINITE: A over B overflows. */
+/* The same of A x = value B x, B by its factor b, vectors orthonormal in B. Returns also TRIBO_ERR_NOT_FINITE: A/B overflows. */
 int tribo_symmetric_eigen_by(const struct cholesky *b, double *a, size_t n, double *values, double *vectors);
 
 /* Eigenvalues and eigenvectors of a general real matrix.

@@ -64,8 +64,8 @@ size_t tribo_null_basis(struct box_qp *p)
     return vectors;
 }
 
-/* Reflects the first vectors so that only the last of them moves contact i. Returns 1, or 0 if they move it by rounding only: then
- * makes these moves 0, since to hold i would take away a vector along which others share. */
+/* Reflects the first vectors so that only the last of them moves contact i. Returns 1, or 0 if they move it by rounding only:
+ * then makes these moves 0, since to hold i would take away a vector along which others share. */
 static int hold_contact(struct box_qp *p, size_t vectors, size_t i)
 {
     const size_t size = p->group->size, last = vectors - 1;
@@ -162,7 +162,7 @@ int tribo_least_norm(struct box_qp *p)
 
 /* ------------------------------------------------------------------------------------------------ the linear system */
 
-/* x = the solution of R x + q = 0 of least norm, or the least-squares one, with the factor as it is. Returns 1 if there is one. */
+/* x = the solution of R x + q = 0 of least norm, or the least-squares one, by the factor as it is. Returns 1 if there is one. */
 static int minimum_norm(struct box_qp *p)
 {
     tribo_box_forget_low(p);

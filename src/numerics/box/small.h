@@ -142,8 +142,8 @@ static inline int tribo_small_find(size_t n, const struct small *s)
     return 0;
 }
 
-/* Solves the problem from the sets in at: frees variables at a bound whose gradient pulls away from it by more than noise, and puts
- * free ones outside their box to the bound. Returns 0 if the sets do not settle in 2 n + 2 rounds, or rounding is in the way. */
+/* Solves the problem from the sets in at: frees variables at a bound whose gradient pulls away from it by more than noise, and
+ * puts free ones outside their box to the bound. Returns 0 if the sets do not settle in 2 n + 2 rounds, or rounding hinders. */
 static inline int tribo_small_solve(size_t n, const struct small *s)
 {
     for (size_t round = 0; round < 2 * n + 2 && tribo_small_find(n, s); round++) {
