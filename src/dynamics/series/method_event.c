@@ -162,7 +162,7 @@ static int set_guards(struct event *e)
     const struct matrix *j = &e->sys->direction;
     const int varies = e->terms > 1;
     double all = 0.0, speed = 0.0, power = 1.0; /* speed: sum of the sizes of the terms of u; power: of length */
-    for (size_t k = 0; k <= e->order; k++) {
+    for (size_t k = 0; m->constant.base_moves && k <= e->order; k++) {
         speed += tribo_largest(e->u + k * e->sys->ndof, e->sys->ndof) * power;
         power = lesser(power * e->length, DBL_MAX);
     }
