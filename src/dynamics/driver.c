@@ -38,7 +38,6 @@ int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const stru
     d->motion = shown ? d->slope + size : NULL;
     d->shown = shown ? d->motion + shown : NULL;
     d->message = (char *)(d->slope + size + 2 * shown);
-    d->excess = d->backslip = NAN;
     tribo_system_order_snaps(sys);
     status = m->create ? m->create(d) : TRIBO_OK;
     if (status) {
@@ -209,12 +208,11 @@ int tribo_driver_real(const tribo_driver *drv, int which, double *value)
     if (which != TRIBO_REAL_EXCESS && which != TRIBO_REAL_BACKSLIP) {
         return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "which = %d is no real quantity of a driver", which);
     }
-    const double found = which == TRIBO_REAL_EXCESS ? drv->excess : drv->backslip;
-    if (isnan(found)) {
+    if (!(drv->method->takes & TAKES_OUTPUT)) {
         return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s does not bound how far the motion strays",
                                  drv->method->name);
     }
-    *value = found;
+    *value = which == TRIBO_REAL_EXCESS ? drv->excess : drv->backslip;
     return TRIBO_OK;
 }
 

@@ -65,7 +65,7 @@ struct tribo_driver {
     /* counters */
     size_t steps, rejected, evaluations, jacobians, events, periods, newton;
     size_t rested;           /* sum over the steps of the degrees of freedom at rest that a step skips */
-    double excess, backslip; /* largest values so far; NaN for methods without these bounds */
+    double excess, backslip; /* largest values so far, of methods with TAKES_OUTPUT */
 };
 
 /* Writes the message of the driver and returns status. */

@@ -65,10 +65,7 @@ static int set_to_work(tribo_driver *drv, int which)
 {
     drv->at_work = choices[which];
     drv->own = drv->choice.own[which];
-    const double excess = drv->excess, backslip = drv->backslip;
     const int status = drv->own ? TRIBO_OK : drv->at_work->create(drv);
-    drv->excess = excess; /* create sets 0 */
-    drv->backslip = backslip;
     if (status) {
         drv->at_work->destroy(drv);
         drv->own = NULL;
@@ -80,7 +77,6 @@ static int set_to_work(tribo_driver *drv, int which)
 
 static int create_choice(tribo_driver *drv)
 {
-    drv->excess = drv->backslip = 0.0;
     return set_to_work(drv, driver_choose(drv));
 }
 

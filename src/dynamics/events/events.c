@@ -61,7 +61,6 @@ int tribo_events_create(struct events *e, tribo_driver *drv, const struct motion
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contact%s", sys->ncontact,
                                  plural(sys->ncontact));
     }
-    drv->excess = drv->backslip = 0.0;
     return TRIBO_OK;
 }
 
