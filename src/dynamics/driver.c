@@ -289,8 +289,8 @@ static int check_settings(tribo_driver *drv)
     if ((drv->method->takes & (TAKES_STEP | TAKES_TOLERANCE)) == TAKES_STEP && drv->dt == 0.0) {
         return tribo_driver_fail(drv, TRIBO_ERR_STATE, "method %s has no step: call tribo_driver_set_step", drv->method->name);
     }
-    const int unfit = tribo_system_check_contacts(drv->sys, drv->method->name, drv->method->takes & NEEDS_SCALAR);
-    return tribo_driver_pass(drv, unfit);
+    return tribo_driver_pass(drv,
+                             tribo_system_check_contacts(drv->sys, drv->method->name, drv->method->takes & NEEDS_SCALAR));
 }
 
 /* tribo_driver_advance for a methods' state y [tribo_system_size]. */

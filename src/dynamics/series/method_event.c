@@ -372,9 +372,8 @@ static int method_event_create(tribo_driver *drv)
 static int open_events(tribo_driver *drv, struct events **events)
 {
     struct event *e = drv->own;
-    const int status = method_event_prepare(e);
     *events = &e->events;
-    return tribo_driver_pass(drv, status);
+    return tribo_driver_pass(drv, method_event_prepare(e));
 }
 
 const struct method tribo_method_event = {

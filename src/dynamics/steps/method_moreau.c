@@ -234,12 +234,11 @@ static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, c
         s->end[i] += s->v[i] - 2.0 / h * m->give[i];
     }
     status = tribo_step_form_force(s, sys, m->contacts, h);
-    if (status) {
-        return status;
+    if (!status) {
+        push(m, sys, h, s->f, s->u);
+        tribo_get_slip(m->contacts, s->mode);
     }
-    push(m, sys, h, s->f, s->u);
-    tribo_get_slip(m->contacts, s->mode);
-    return TRIBO_OK;
+    return status;
 }
 
 /* For compliant contacts: m->spring = f1 = 2 s->f, then s->f = 0. Returns the energy dissipated. */

@@ -85,14 +85,10 @@ static int take_step(tribo_driver *drv, double t, double h, const double *from, 
     double power[STAGES];
     for (size_t s = 0; s < STAGES; s++) {
         const double *at = s ? r->stage[s - 1] : from;
-        int status = TRIBO_OK;
         r->time = t + part[s] * h;
         if (blockwise) {
             tribo_blockwise_rates(&r->alone, sys, r->time, at, r->k, &power[s]);
-        } else {
-            status = (s ? tribo_system_rates : tribo_system_begin_rates)(sys, r->time, at, r->k, &power[s]);
-        }
-        if (status) {
+        } else if ((s ? tribo_system_rates : tribo_system_begin_rates)(sys, r->time, at, r->k, &power[s])) {
             return tribo_driver_explain(drv, t, h);
         }
         if (s + 1 < STAGES) {

@@ -155,9 +155,8 @@ int tribo_step_matrix_solve(const void *matrix, size_t count, double *x)
         const int n = (int)m->n, below = (int)m->below, above = (int)m->above, all = (int)count, stride = 2 * below + above + 1;
         int info;
         dgbtrs_("N", &n, &below, &above, &all, m->band, &stride, m->pivot, x, &n, &info, 1);
-        return 1;
     }
-    for (size_t k = 0; k < count; k++) {
+    for (size_t k = 0; !m->pivot && k < count; k++) {
         band_solve(m, m->band, x + k * m->n);
     }
     return 1;
