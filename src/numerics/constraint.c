@@ -82,7 +82,8 @@ static int create_ties(struct elimination *e, struct constraints *c)
     size_t rows = 0, touched = 0, area = 0;
     do {
         c->memory[1] = tribo_layout_array(&l, 0, 1);
-        for (struct tie *tie = c->tie; tie < c->tie + c->ties; tie++) {
+        for (size_t t = 0; t < c->ties; t++) {
+            struct tie *const tie = &c->tie[t];
             tie->order = tribo_layout_array(&l, tie->rows, sizeof *tie->order);
             tie->dof = tribo_layout_array(&l, tie->touched, sizeof *tie->dof);
             tie->stride = tie->touched + (e->last ? 0 : tie->rows);
@@ -326,7 +327,8 @@ int tribo_constraints_basis(const struct constraints *c, size_t ndof, struct mat
             tribo_triplets_put(&t, d, number[d], 1.0);
         }
     }
-    for (const struct tie *tie = c->tie; tie < c->tie + c->ties; tie++) {
+    for (size_t i = 0; i < c->ties; i++) {
+        const struct tie *const tie = &c->tie[i];
         for (size_t p = 0; p < tie->rank; p++) {
             for (size_t k = tie->rank; k < tie->touched; k++) {
                 tribo_triplets_put(&t, tie->dof[p], number[tie->dof[k]], -tie->entry[p * tie->stride + k]);
@@ -339,7 +341,8 @@ int tribo_constraints_basis(const struct constraints *c, size_t ndof, struct mat
 
 void tribo_constraints_follow(const struct constraints *c, const double *b, double *q)
 {
-    for (const struct tie *tie = c->tie; tie < c->tie + c->ties; tie++) {
+    for (size_t i = 0; i < c->ties; i++) {
+        const struct tie *const tie = &c->tie[i];
         for (size_t p = 0; p < tie->rank; p++) {
             const double *inverse = tie->entry + p * tie->stride + tie->touched;
             for (size_t k = 0; k < tie->rank; k++) {
@@ -351,7 +354,8 @@ void tribo_constraints_follow(const struct constraints *c, const double *b, doub
 
 void tribo_constraints_react(const struct constraints *c, const double *force, double *f)
 {
-    for (const struct tie *tie = c->tie; tie < c->tie + c->ties; tie++) {
+    for (size_t i = 0; i < c->ties; i++) {
+        const struct tie *const tie = &c->tie[i];
         for (size_t k = 0; k < tie->rank; k++) {
             const double *inverse = tie->entry + tie->touched + k;
             f[tie->order[k]] = 0.0;
