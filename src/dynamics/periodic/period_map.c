@@ -272,11 +272,16 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period, cons
         m->norm.scale = ldexp(1.0, -(int)clamp(logb(size), -1000.0, 1000.0));
     }
     m->least = LEAST_SIZE * (m->norm.scale * least);
-    /* probes: all n unit perturbations, or a few if phases are kept */
+    /* probes: all n unit perturbations, or a few if phases are kept; those of another method differ in number */
     const size_t columns = m->events->motion->keep && m->n > PROBES ? PROBES : m->n;
-    m->probe = m->probe ? m->probe : malloc(m->n * columns * sizeof *m->probe);
-    if (!m->probe || (!m->variation.v && !tribo_variation_create(&m->variation, m->events, m->sys, columns))) {
-        return no_room(m);
+    if (m->variation.events != m->events) {
+        tribo_variation_free(&m->variation);
+        free(m->probe);
+        m->probe = malloc(m->n * columns * sizeof *m->probe);
+        if (!m->probe || !tribo_variation_create(&m->variation, m->events, m->sys, columns)) {
+            tribo_variation_free(&m->variation);
+            return no_room(m);
+        }
     }
     return perturb(m, columns, m->probe);
 }

@@ -221,6 +221,34 @@ TEST(automatic)
     require(count[1] == count[0] && count[0] > 0, "%zu periods, not %zu", count[1], count[0]);
 }
 
+/* "auto" finds motions by "exact" until limits fall with the speed, then by "event", and by "exact" again: each as a new driver. */
+TEST(automatic_turns)
+{
+    const double ratio[2] = {1.4, 1.4}, falls[2] = {0.5, 0.5}, force[4] = {1.0, 0.0, 0.5, 0.0};
+    double matrix[3][4][4] = {{{0}}}, direction[2][4] = {{1, 0, 0, 0}, {0, 0, 1, 0}};
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < 4; j++) {
+            matrix[1][i][j] = i == j ? 2.0 : abs(i - j) == 1 ? -1.0 : 0.0;
+            matrix[0][i][j] = 0.05 * matrix[1][i][j];
+            matrix[2][i][j] = i == j;
+        }
+    }
+    struct search s = search_create("auto", 4, 2, *matrix[2], *matrix[0], *matrix[1], *direction, 0.6, force);
+    assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), 0.2));
+    for (int turn = 0; turn < 3; turn++) {
+        struct search fresh = s;
+        double y[MOST_STATES] = {0}, z[MOST_STATES] = {0};
+        assert_ok(tribo_set_static(tribo_system_context(s.sys), turn == 1 ? ratio : NULL, turn == 1 ? falls : NULL));
+        find(&s, 0.0, y);
+        assert_says(tribo_driver_method(s.drv), turn == 1 ? "event" : "exact");
+        assert_ok(tribo_driver_create(&fresh.drv, s.sys, turn == 1 ? "event" : "exact"));
+        find(&fresh, 0.0, z);
+        assert_all_close(y, z, 8, 1e-8);
+        tribo_driver_destroy(fresh.drv);
+    }
+    search_free(&s);
+}
+
 /* Motions of any size: squares of the smallest are 0, and squares of the largest are no numbers. */
 TEST(any_size)
 {
@@ -290,4 +318,5 @@ TEST(not_odd)
 }
 
 TEST_MAIN("periodic_rules", {nothing_left, 2}, {errors, 2}, {other_methods, 4}, {static_limit, 12}, {falling_limit, 12},
-          {nearly_stuck, 1}, {fast_load, 2}, {automatic, 1}, {any_size, 6}, {huge_load, 1}, {not_odd, 4})
+          {nearly_stuck, 1}, {fast_load, 2}, {automatic, 1},
+          {automatic_turns, 1}, {any_size, 6}, {huge_load, 1}, {not_odd, 4})
