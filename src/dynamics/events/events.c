@@ -350,7 +350,6 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
         status = phase(e, drv, t, t1, y);
     }
     tribo_system_set_low(drv->sys, 0.0);
-    tribo_system_forget_time(drv->sys); /* others find harmonics anew */
     return status;
 }
 

@@ -76,7 +76,7 @@ static double work_of(struct exact *x, const struct course *c, double tau)
     const size_t i = c->output->contact;
     const signed char slip = x->events.stick_slip.state.slip[i];
     const double steady = -x->steady[i] * tribo_dot(c->output->on_rate, x->place, x->h->shapes);
-    if (!x->sys->loads.limit_harmonics || !tribo_slides(slip)) {
+    if (!x->sys->loads.limits || !tribo_slides(slip)) {
         return steady;
     }
     double closed, size;

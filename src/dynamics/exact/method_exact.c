@@ -89,16 +89,12 @@ static void method_exact_look(void *own, double tau, size_t guards, struct guard
     }
 }
 
-/* Sets the time t of the system, and cosine and sine of each harmonic from the terms at the end of the phase. */
+/* Sets the time t of the system. */
 static void arrive(void *own, double t)
 {
     const struct exact *x = own;
     x->sys->evaluations += x->events.search.looks;
     tribo_system_set_time(x->sys, t);
-    for (size_t s = 0; s < x->sys->loads.harmonics; s++) {
-        const double complex at = tribo_now(x, x->h->modal->exponents + s, 0);
-        tribo_harmonic_take(x->sys, &x->sys->loads.harmonic[s], creal(at), cimag(at));
-    }
 }
 
 /* Sets size and bend of all guards from tau on. Returns the time from which new bounds are worth finding: max(2 tau, 1/decay),
@@ -159,7 +155,7 @@ static int method_exact_begin(void *own, double t, const double *y, double *reac
         const struct watch w = watch_of(x, i, c);
         tribo_events_guard_contact(&x->events, i, &w);
     }
-    for (size_t i = 0; x->sys->loads.limit_harmonics && i < x->sys->ncontact; i++) {
+    for (size_t i = 0; x->sys->loads.limits && i < x->sys->ncontact; i++) {
         const struct watch w = watch_of(x, i, NULL);
         tribo_events_guard_limit(&x->events, i, &w);
     }
@@ -196,12 +192,16 @@ static void method_exact_destroy(tribo_driver *drv)
 /* Returns a status: tables and falling static limits are unsupported. Every advance checks, since the system may change. */
 static int check_system(const tribo_system *sys)
 {
+    static const char *const kind[] = {[DRIVES_LOAD] = "loads", [DRIVES_BASE] = "base motions", [DRIVES_LIMIT] = "limits"};
+    enum drives drives = DRIVES_LIMIT;
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        const struct harmonic *h = &sys->loads.harmonic[k];
+        drives = h->knots && h->drives < drives ? h->drives : drives;
+    }
     if (sys->loads.tables) {
         return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                  "%s follow a table, and method exact takes harmonic ones only: take event or auto",
-                                 sys->loads.tables > sys->loads.base_tables + sys->loads.limit_tables ? "loads"
-                                 : sys->loads.base_tables                                             ? "base motions"
-                                                                                                      : "limits");
+                                 kind[drives]);
     }
     const size_t i = tribo_system_first_falling(sys);
     return i == sys->ncontact ? TRIBO_OK

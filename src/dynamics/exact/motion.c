@@ -248,7 +248,7 @@ static void find_constant_forces(struct exact *x, const double *y, double *force
     const int holds = h->outputs > h->sliding;
     const size_t m = h->modal->modes;
     memcpy(x->steady, x->events.stick_slip.state.force, sys->ncontact * sizeof *x->steady);
-    for (size_t i = 0; sys->loads.limit_harmonics && i < sys->ncontact; i++) {
+    for (size_t i = 0; sys->loads.limits && i < sys->ncontact; i++) {
         double limit = sys->loads.given_limit[i];
         for (size_t s = 0; s < sys->loads.harmonics; s++) {
             const struct harmonic *w = &sys->loads.harmonic[s];
@@ -261,7 +261,7 @@ static void find_constant_forces(struct exact *x, const double *y, double *force
         tribo_compliance_give(sys, 1, x->events.stick_slip.state.force, x->way);
         tribo_matrix_multiply_add(&sys->direction, 1.0, y, x->way);
     }
-    for (size_t s = 0; holds && sys->loads.base_harmonics && s < sys->loads.harmonics; s++) {
+    for (size_t s = 0; holds && s < sys->loads.harmonics; s++) {
         const struct harmonic *w = &sys->loads.harmonic[s];
         for (size_t e = 0; w->drives == DRIVES_BASE && w->omega != 0.0 && e < w->count; e++) {
             x->way[w->index[e]] -= (w->cosine[e] * w->sin_t - w->sine[e] * w->cos_t) / w->omega;
@@ -327,7 +327,7 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
     const struct modal *own = h->modal;
     const size_t n = own->n;
     if (!motion_reserve(x) ||
-        (x->sys->loads.limit_harmonics && !tribo_signal_reserve(&x->velocity, own->exponents + h->harmonics, 1))) {
+        (x->sys->loads.limits && !tribo_signal_reserve(&x->velocity, own->exponents + h->harmonics, 1))) {
         return 0;
     }
     x->t0 = t;

@@ -238,7 +238,7 @@ int tribo_forced_respond(struct modal_build *b)
     const tribo_system *sys = b->sys;
     const size_t m = h->modes, c = sys->ncontact;
     f->harmonics = sys->loads.harmonics;
-    f->forcing = tribo_modal_take(&f->store, f->harmonics + sys->loads.limit_harmonics * (c - h->rests), sizeof *f->forcing);
+    f->forcing = tribo_modal_take(&f->store, f->harmonics + sys->loads.limits * (c - h->rests), sizeof *f->forcing);
     for (size_t k = 0; f->forcing && k < sys->loads.harmonics; k++) {
         const struct harmonic *w = &sys->loads.harmonic[k];
         f->forcing[k] = (struct forcing){w->omega, k, c};

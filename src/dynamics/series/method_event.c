@@ -244,7 +244,7 @@ static int method_event_prepare(struct event *e)
     const double digits = tribo_system_planar(sys) ? 0.5 * MOST_DIGITS : MOST_DIGITS, best = 10.0 - 1.5 * log10(e->tolerance);
     const double most = e->fastest > 0.0 ? greater(digits / (1.0 + fabs(log10(e->fastest))), LEAST_ORDER) : HUGE_VAL;
     e->order = e->most_order = (size_t)lesser(best, most);
-    e->terms = sys->loads.limit_harmonics ? e->order + 1 : sys->loads.limit_tables ? 2 : 1;
+    e->terms = sys->loads.limits > sys->loads.limit_tables ? e->order + 1 : sys->loads.limits ? 2 : 1;
     free_series(e);
     const size_t terms = e->order + 1;
     struct layout l = {0};

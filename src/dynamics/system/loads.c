@@ -2,7 +2,6 @@
 /* Functions of time: loads on the structure, motions of bases, limits. */
 #include "cos_sin.h"
 #include "system.h"
-#include "common/layout.h"
 #include "common/real.h"
 
 #include <float.h>
@@ -16,42 +15,48 @@ static size_t length_of(const tribo_system *sys, enum drives drives)
     return drives == DRIVES_LOAD ? sys->ndof : sys->ncontact;
 }
 
-/* Allocates the arrays of h, of h->count entries and h->knots knots; copies them from the block `from` of equal arrays (NULL:
- * leaves them unset). Returns 0 if out of memory. */
-static int create_harmonic(struct harmonic *h, const void *from)
+static void free_arrays(struct harmonic *h)
 {
-    struct layout l = {0};
-    do {
-        h->index = tribo_layout_array(&l, h->count, sizeof *h->index);
-        h->cosine = tribo_layout_array(&l, h->count, sizeof *h->cosine);
-        h->sine = tribo_layout_array(&l, h->count, sizeof *h->sine);
-        h->knot = tribo_layout_array(&l, h->knots, sizeof *h->knot);
-        h->value = tribo_layout_array(&l, h->knots * h->columns, sizeof *h->value);
-    } while (!l.memory && tribo_layout_create(&l));
-    if (l.memory && from) {
-        memcpy(l.memory, from, l.used);
+    free(h->index);
+    free(h->cosine);
+    free(h->sine);
+    free(h->knot);
+    free(h->value);
+}
+
+/* Replaces the arrays of h by copies. Returns 0 if out of memory: then h has none. */
+static int copy_arrays(struct harmonic *h)
+{
+    int done = 1;
+    h->time = NAN;
+    h->index = tribo_copy_of(h->index, h->count, sizeof *h->index, &done);
+    h->cosine = tribo_copy_of(h->cosine, h->count, sizeof *h->cosine, &done);
+    h->sine = tribo_copy_of(h->sine, h->count, sizeof *h->sine, &done);
+    h->knot = tribo_copy_of(h->knot, h->knots, sizeof *h->knot, &done);
+    h->value = tribo_copy_of(h->value, h->knots * h->columns, sizeof *h->value, &done);
+    if (!done) {
+        free_arrays(h);
     }
-    return l.memory != NULL;
+    return done;
 }
 
 void tribo_loads_free(tribo_system *sys)
 {
     for (size_t k = 0; k < sys->loads.harmonics; k++) {
-        free(sys->loads.harmonic[k].index);
+        free_arrays(&sys->loads.harmonic[k]);
     }
     free(sys->loads.harmonic);
 }
 
-/* Sets the numbers of tables, and of functions of b(t) and of limits. */
 static void loads_count(struct loads *l)
 {
-    l->tables = l->base_harmonics = l->limit_harmonics = l->base_tables = l->limit_tables = 0;
+    l->tables = l->bases = l->limits = l->limit_tables = 0;
     for (size_t k = 0; k < l->harmonics; k++) {
-        const enum drives drives = l->harmonic[k].drives;
-        const int table = l->harmonic[k].knots > 0;
-        l->tables += table ? 1 : 0;
-        *(table ? &l->base_tables : &l->base_harmonics) += drives == DRIVES_BASE;
-        *(table ? &l->limit_tables : &l->limit_harmonics) += drives == DRIVES_LIMIT;
+        const struct harmonic *h = &l->harmonic[k];
+        l->tables += h->knots > 0;
+        l->bases += h->drives == DRIVES_BASE;
+        l->limits += h->drives == DRIVES_LIMIT;
+        l->limit_tables += h->drives == DRIVES_LIMIT && h->knots > 0;
     }
 }
 
@@ -60,11 +65,10 @@ int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
     struct loads *l = &sys->loads;
     l->harmonic = malloc((from->loads.harmonics + 1) * sizeof *l->harmonic);
     int done = l->harmonic != NULL;
-    for (; done && l->harmonics < from->loads.harmonics; l->harmonics++) {
-        struct harmonic *h = &l->harmonic[l->harmonics];
-        *h = from->loads.harmonic[l->harmonics];
-        h->time = NAN;
-        done = create_harmonic(h, h->index);
+    while (done && l->harmonics < from->loads.harmonics) {
+        l->harmonic[l->harmonics] = from->loads.harmonic[l->harmonics];
+        done = copy_arrays(&l->harmonic[l->harmonics]);
+        l->harmonics += (size_t)done;
     }
     loads_count(l);
     return done;
@@ -106,25 +110,11 @@ static double look_up(const tribo_system *sys, const struct harmonic *h, size_t 
 void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h)
 {
     h->time = sys->loads.time;
-    h->turns = 0;
     if (h->knots == 0) {
         tribo_cos_sin(h->omega, sys->loads.time, sys->loads.low, &h->cos_t, &h->sin_t);
     } else if (h->count) {
         h->at = knot_at(h, sys->loads.time);
         h->cos_t = look_up(sys, h, 0, 0);
-        h->sin_t = look_up(sys, h, 0, 1);
-    }
-}
-
-enum { MOST_TURNS = 16 };
-
-void tribo_harmonic_take(const tribo_system *sys, struct harmonic *h, double c, double s)
-{
-    if (h->drives == DRIVES_LOAD && h->turns < MOST_TURNS) {
-        h->turns++;
-        h->time = sys->loads.time;
-        h->cos_t = c;
-        h->sin_t = s;
     }
 }
 
@@ -169,17 +159,19 @@ double tribo_system_next_kink(const tribo_system *sys, double t)
     return next;
 }
 
-/* *c, *s = order-th derivatives at the set time of cos(omega t) and sin(omega t); of a table, *c of its value (column 0), while
- * *s belongs to a sine of 0. */
-static inline void loads_differentiate(const tribo_system *sys, size_t k, int order, double *c, double *s)
+/* *c, *s = order-th derivatives at the set time of cos(omega t) and sin(omega t); of a table, *c of its value for entry e, *s = 0. */
+static inline void loads_differentiate(const tribo_system *sys, size_t k, size_t e, int order, double *c, double *s)
 {
     const struct harmonic *h = &sys->loads.harmonic[k];
     tribo_system_turn(sys, k);
+    if (h->knots) {
+        *c = h->columns > 1 || order ? look_up(sys, h, h->columns > 1 ? e : 0, order) : h->cos_t;
+        *s = 0.0;
+        return;
+    }
     *c = h->cos_t;
     *s = h->sin_t;
-    if (order && h->knots) {
-        *c = order == 1 ? h->sin_t : 0.0;
-    } else if (order) {
+    if (order) {
         double power = order & 2 ? -1.0 : 1.0;
         for (int d = 0; d < order; d++) {
             power *= h->omega;
@@ -193,11 +185,11 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
 {
     for (size_t k = 0; k < sys->loads.harmonics; k++) {
         const struct harmonic *h = &sys->loads.harmonic[k];
+        double c, s;
         if (h->drives != drives) {
             continue;
         }
-        double c, s;
-        loads_differentiate(sys, k, order, &c, &s);
+        loads_differentiate(sys, k, 0, order, &c, &s);
         for (size_t e = 0; e < h->count; e++) {
             c = h->columns > 1 ? look_up(sys, h, e, order) : c;
             to[h->index[e]] += factor * (h->cosine[e] * c + h->sine[e] * s);
@@ -207,18 +199,23 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
 
 /* ------------------------------------------------------------------------------------------------------------------- limits */
 
+/* Returns the part of limit i that does not vary: 0 with a table. */
+static double steady_limit(const tribo_system *sys, size_t i)
+{
+    return sys->loads.limit_tables ? 0.0 : sys->loads.given_limit[i];
+}
+
 void tribo_system_limits(const tribo_system *sys, double *limit, double *rate)
 {
     memset(rate, 0, sys->ncontact * sizeof *rate);
-    if (!tribo_system_limits_vary(sys)) {
-        tribo_get_limit(sys->contacts, limit);
-        return;
+    tribo_get_limit(sys->contacts, limit);
+    if (tribo_system_limits_vary(sys)) {
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            limit[i] = steady_limit(sys, i);
+        }
+        tribo_system_loads(sys, DRIVES_LIMIT, 0, 1.0, limit);
+        tribo_system_loads(sys, DRIVES_LIMIT, 1, 1.0, rate);
     }
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        limit[i] = sys->loads.limit_tables ? 0.0 : sys->loads.given_limit[i];
-    }
-    tribo_system_loads(sys, DRIVES_LIMIT, 0, 1.0, limit);
-    tribo_system_loads(sys, DRIVES_LIMIT, 1, 1.0, rate);
 }
 
 double tribo_system_swing(const tribo_system *sys, size_t i)
@@ -233,12 +230,9 @@ double tribo_system_swing(const tribo_system *sys, size_t i)
 
 void tribo_system_most_limits(const tribo_system *sys, double *most)
 {
-    if (!tribo_system_limits_vary(sys)) {
-        tribo_get_limit(sys->contacts, most);
-        return;
-    }
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        most[i] = sys->loads.limit_tables ? 0.0 : sys->loads.given_limit[i];
+    tribo_get_limit(sys->contacts, most);
+    for (size_t i = 0; tribo_system_limits_vary(sys) && i < sys->ncontact; i++) {
+        most[i] = steady_limit(sys, i);
         for (size_t k = 0; k < sys->loads.harmonics; k++) {
             const struct harmonic *h = &sys->loads.harmonic[k];
             for (size_t p = 0; h->drives == DRIVES_LIMIT && p < h->knots; p++) {
@@ -255,13 +249,12 @@ void tribo_system_most_limits(const tribo_system *sys, double *most)
 int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
 {
     for (int order = 0; order < DERIVATIVES; order++) {
-        double sum = sys->loads.limit_tables || order ? 0.0 : sys->loads.given_limit[i], size = fabs(sum);
+        double sum = order ? 0.0 : steady_limit(sys, i), size = fabs(sum);
         for (size_t k = 0; k < sys->loads.harmonics; k++) {
             const struct harmonic *h = &sys->loads.harmonic[k];
             double c, s;
             if (h->drives == DRIVES_LIMIT) {
-                loads_differentiate(sys, k, order, &c, &s);
-                c = h->columns > 1 ? look_up(sys, h, i, order) : c;
+                loads_differentiate(sys, k, i, order, &c, &s);
                 sum += h->cosine[i] * c + h->sine[i] * s;
                 size += h->knots ? fabs(c) : hypot(h->cosine[i], h->sine[i]) * hypot(c, s);
             }
@@ -350,51 +343,57 @@ static int loads_changed(tribo_system *sys)
     return TRIBO_OK;
 }
 
+/* Removes the functions before `end` that drive loads, bases or limits; tables = 1: those of tables only. */
+static void remove_driven(struct loads *l, enum drives drives, int tables, size_t end)
+{
+    size_t left = 0;
+    for (size_t k = 0; k < l->harmonics; k++) {
+        struct harmonic *h = &l->harmonic[k];
+        if (k < end && (h->by_load ? DRIVES_LOAD : h->drives) == drives && (h->knots || !tables)) {
+            free_arrays(h);
+        } else {
+            l->harmonic[left++] = *h;
+        }
+    }
+    l->harmonics = left;
+}
+
 /* Appends a function of time like h, or replaces the table of limits. parts [2][n]: cosine and sine, of which entries that are
- * both 0 are left out; limits have all entries, so that the index is the contact. time [knots], value [knots][columns]: of a
- * table. Returns 0 if out of memory. */
-static int append_harmonic(tribo_system *sys, struct harmonic h, const double *parts, const double *time, const double *value)
+ * both 0 are left out; limits have all entries, so that the index is the contact. Overwrites parts. Returns 0 if out of memory. */
+static int append_harmonic(tribo_system *sys, struct harmonic h, double *parts)
 {
     const size_t n = length_of(sys, h.drives);
     struct loads *l = &sys->loads;
     struct harmonic *all = realloc(l->harmonic, (l->harmonics + 1) * sizeof *all);
-    for (size_t i = 0; i < n; i++) {
-        h.count += parts[i] != 0.0 || parts[n + i] != 0.0 || h.drives == DRIVES_LIMIT;
-    }
     l->harmonic = all ? all : l->harmonic;
-    if (!all || !create_harmonic(&h, NULL)) {
-        return 0;
-    }
-    for (size_t i = 0, e = 0; e < h.count; i++) {
+    h.index = malloc((n + 1) * sizeof *h.index);
+    h.cosine = parts;
+    h.sine = parts + n;
+    for (size_t i = 0; h.index && i < n; i++) {
         if (parts[i] != 0.0 || parts[n + i] != 0.0 || h.drives == DRIVES_LIMIT) {
-            h.index[e] = i;
-            h.cosine[e] = parts[i];
-            h.sine[e++] = parts[n + i];
+            h.index[h.count] = i;
+            h.cosine[h.count] = parts[i];
+            h.sine[h.count++] = parts[n + i];
         }
     }
-    size_t at = h.drives == DRIVES_LIMIT && h.knots ? 0 : l->harmonics;
-    while (at < l->harmonics && !(all[at].drives == DRIVES_LIMIT && all[at].knots)) {
-        at++;
+    size_t *index = h.index;
+    const int done = all && index && copy_arrays(&h);
+    if (done) {
+        l->harmonic[l->harmonics++] = h;
+        remove_driven(l, DRIVES_LIMIT, 1, h.drives == DRIVES_LIMIT && h.knots ? l->harmonics - 1 : 0);
+        loads_changed(sys);
     }
-    if (h.knots) {
-        memcpy(h.knot, time, h.knots * sizeof *time);
-        memcpy(h.value, value, h.knots * h.columns * sizeof *value);
-    }
-    if (at < l->harmonics) {
-        free(all[at].index);
-    }
-    l->harmonics += at == l->harmonics;
-    all[at] = h;
-    return loads_changed(sys) == TRIBO_OK;
+    free(index);
+    return done;
 }
 
-/* Adds a function of time like h, cosine and sine in the caller's coordinates, or NULL. Displacements of compliant contacts by a
- * load, way [2][ncontact], become a base motion b = -d(way)/dt, so that v includes d(way)/dt. Returns a status. */
-static int loads_add(tribo_system *sys, struct harmonic h, const double *cosine, const double *sine, const double *time,
-                     const double *value)
+/* Adds a function of time like h, with copies of its knots and values; cosine and sine are in the caller's coordinates, or NULL.
+ * Displacements of compliant contacts by a load, way [2][ncontact], become a base motion b = -d(way)/dt, so that v includes
+ * d(way)/dt. Returns a status. */
+static int loads_add(tribo_system *sys, struct harmonic h, const double *cosine, const double *sine)
 {
     const size_t n = length_of(sys, h.drives), c = sys->ncontact;
-    double *parts = tribo_zeros(2 * (n + c) + 1, sizeof *parts), *way = parts ? parts + 2 * n : NULL;
+    double *parts = tribo_zeros(2 * n + 4 * c + 1, sizeof *parts), *way = parts ? parts + 2 * n : NULL;
     for (size_t part = 0; parts && part < 2; part++) {
         const double *from = part ? sine : cosine;
         if (from && h.drives != DRIVES_LOAD) {
@@ -411,15 +410,16 @@ static int loads_add(tribo_system *sys, struct harmonic h, const double *cosine,
         return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                  "the load of a table bends what is reduced to compliance: take TRIBO_STATICS_MASS");
     }
-    int done = parts && append_harmonic(sys, h, parts, time, value);
+    int done = parts && append_harmonic(sys, h, parts);
     if (done && tribo_largest(way, 2 * c) * fabs(h.omega) > 0.0) {
+        double *base = way + 2 * c;
         for (size_t i = 0; i < c; i++) {
-            parts[i] = -h.omega * way[c + i];
-            parts[c + i] = h.omega * way[i];
+            base[i] = -h.omega * way[c + i];
+            base[c + i] = h.omega * way[i];
         }
-        done = append_harmonic(sys, (struct harmonic){.drives = DRIVES_BASE, .omega = h.omega, .by_load = 1}, parts, NULL, NULL);
+        done = append_harmonic(sys, (struct harmonic){.drives = DRIVES_BASE, .omega = h.omega, .by_load = 1}, base);
         if (!done) {
-            free(sys->loads.harmonic[--sys->loads.harmonics].index);
+            free_arrays(&sys->loads.harmonic[--sys->loads.harmonics]);
         }
     }
     free(parts);
@@ -438,7 +438,7 @@ static int add_harmonic(tribo_system *sys, enum drives drives, double omega, con
     status = status ? status : check_pattern(sys, drives, "cosine", cosine);
     status = status ? status : check_pattern(sys, drives, "sine", sine);
     status = status || drives != DRIVES_LIMIT ? status : loads_check_limits(sys, cosine, sine);
-    return status ? status : loads_add(sys, (struct harmonic){.drives = drives, .omega = omega}, cosine, sine, NULL, NULL);
+    return status ? status : loads_add(sys, (struct harmonic){.drives = drives, .omega = omega}, cosine, sine);
 }
 
 /* Adds the table value [knots] times pattern: forces [given], or base velocities [ncontact]. Returns a status. */
@@ -452,27 +452,9 @@ static int add_table(tribo_system *sys, enum drives drives, size_t knots, const 
                                        : tribo_system_fail(sys, TRIBO_ERR_NULL, "pattern is NULL");
     status = status ? status : tribo_system_check_finite(sys, "value", value, knots);
     status = status ? status : check_pattern(sys, drives, "pattern", pattern);
-    const struct harmonic h = {.drives = drives, .knots = knots, .columns = 1};
-    return status ? status : loads_add(sys, h, pattern, NULL, time, value);
-}
-
-/* Removes the functions of time that drive loads, bases or limits. Returns a status. */
-static int remove_driven(tribo_system *sys, enum drives drives)
-{
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    struct loads *l = &sys->loads;
-    const size_t all = l->harmonics;
-    l->harmonics = 0;
-    for (size_t k = 0; k < all; k++) {
-        if ((l->harmonic[k].by_load ? DRIVES_LOAD : l->harmonic[k].drives) == drives) {
-            free(l->harmonic[k].index);
-        } else {
-            l->harmonic[l->harmonics++] = l->harmonic[k];
-        }
-    }
-    return loads_changed(sys);
+    const struct harmonic h = {
+        .drives = drives, .knots = knots, .columns = 1, .knot = (double *)time, .value = (double *)value};
+    return status ? status : loads_add(sys, h, pattern, NULL);
 }
 
 int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine)
@@ -516,24 +498,34 @@ int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *
         status = check_pattern(sys, DRIVES_LIMIT, "limit", limit + k * n);
     }
     status = status ? status : loads_begin_limits(sys);
-    const struct harmonic h = {.drives = DRIVES_LIMIT, .knots = knots, .columns = n};
-    return status ? status : loads_add(sys, h, NULL, NULL, time, limit);
+    const struct harmonic h = {
+        .drives = DRIVES_LIMIT, .knots = knots, .columns = n, .knot = (double *)time, .value = (double *)limit};
+    return status ? status : loads_add(sys, h, NULL, NULL);
+}
+
+static int loads_clear(tribo_system *sys, enum drives drives)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    if (drives == DRIVES_LIMIT && tribo_system_limits_vary(sys)) {
+        tribo_set_limit(sys->contacts, sys->loads.given_limit);
+    }
+    remove_driven(&sys->loads, drives, 0, sys->loads.harmonics);
+    return loads_changed(sys);
 }
 
 int tribo_system_clear_loads(tribo_system *sys)
 {
-    return remove_driven(sys, DRIVES_LOAD);
+    return loads_clear(sys, DRIVES_LOAD);
 }
 
 int tribo_system_clear_base_motion(tribo_system *sys)
 {
-    return remove_driven(sys, DRIVES_BASE);
+    return loads_clear(sys, DRIVES_BASE);
 }
 
 int tribo_system_clear_limits(tribo_system *sys)
 {
-    if (sys && tribo_system_limits_vary(sys)) {
-        tribo_set_limit(sys->contacts, sys->loads.given_limit);
-    }
-    return remove_driven(sys, DRIVES_LIMIT);
+    return loads_clear(sys, DRIVES_LIMIT);
 }

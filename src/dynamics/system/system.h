@@ -21,11 +21,10 @@ struct harmonic {
     enum drives drives;
     int by_load;               /* 1: base motion that a load causes (tribo_system_add_load), removed with the loads */
     double omega;              /* tables: 0 */
-    double time, cos_t, sin_t; /* cos(omega time), sin(omega time); of a table value, slope; time NaN: not computed */
-    size_t turns;              /* calls of tribo_harmonic_take since the last tribo_harmonic_turn */
+    double time, cos_t, sin_t; /* cos(omega time), sin(omega time); of a table, cos_t: value of column 0. time NaN: not computed */
     size_t knots, columns, at; /* at: last knot at or before time, or 0; knots, columns 0: a harmonic */
     size_t count;              /* entries: limits have all contacts; else those with cosine or sine not 0 */
-    size_t *index;             /* [count] degree of freedom, or contact; owns the memory of all arrays */
+    size_t *index;             /* [count] degree of freedom, or contact */
     double *cosine, *sine;     /* [count] accelerations, velocities or limits; tables: 1 for limits; 0 */
     double *knot, *value;      /* [knots] times, [knots][columns] */
 };
@@ -48,11 +47,12 @@ struct expansion {
 
 /* The functions of time, and the time that is set. */
 struct loads {
-    size_t harmonics;                         /* number of functions */
-    struct harmonic *harmonic;                /* [harmonics] */
-    size_t base_harmonics, limit_harmonics;   /* numbers of those that are no tables: of b(t); of limits */
-    size_t tables, base_tables, limit_tables; /* numbers of tables: all; of b(t); of limits, at most 1 */
-    double *given_limit;                      /* [ncontact] limits set by the caller; valid while limits vary */
+    size_t harmonics;          /* number of functions */
+    struct harmonic *harmonic; /* [harmonics] */
+    size_t bases, limits;      /* numbers of functions of b(t); of limits */
+    size_t tables;             /* number of tables */
+    size_t limit_tables;       /* number of tables of limits, at most 1 */
+    double *given_limit;       /* [ncontact] limits set by the caller; valid while limits vary */
     double time, low; /* the set time (NaN: none) and its part below the last digit (tribo_system_set_low) */
 };
 
@@ -158,10 +158,6 @@ static inline void tribo_system_turn(const tribo_system *sys, size_t k)
     }
 }
 
-/* Sets cos_t = c and sin_t = s of a load at the set time, as computed by the motion. Does nothing after 16 calls in a row, since
- * rounding errors accumulate. */
-void tribo_harmonic_take(const tribo_system *sys, struct harmonic *h, double c, double s);
-
 /* Sets the part of the time below its last digit: all times t mean t + low. An event can lie between two adjacent doubles t. */
 void tribo_system_set_low(tribo_system *sys, double low);
 
@@ -172,13 +168,13 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
 /* Returns 1 if a base moves. */
 static inline int tribo_system_bases_move(const tribo_system *sys)
 {
-    return sys->loads.base_harmonics || sys->loads.base_tables;
+    return sys->loads.bases > 0;
 }
 
 /* Returns 1 if limits change with time, by a table or harmonics. */
 static inline int tribo_system_limits_vary(const tribo_system *sys)
 {
-    return sys->loads.limit_tables || sys->loads.limit_harmonics;
+    return sys->loads.limits > 0;
 }
 
 /* limit, rate [ncontact] = limits and derivatives at the set time. With harmonics limit < 0 where a contact has lifted off. */

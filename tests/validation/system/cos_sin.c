@@ -88,44 +88,6 @@ TEST(one_by_one)
     }
 }
 
-/* The largest error at many times, where each turn from one to the next is off by this. */
-static double worst_of_turns(tribo_system *sys, double each)
-{
-    struct harmonic *h = &sys->loads.harmonic[0];
-    const double step = 0.1, angle = h->omega * step + each;
-    double worst = 0.0;
-    for (int k = 0; k < 200; k++) {
-        const double t = step * k, c = h->cos_t, s = h->sin_t;
-        tribo_system_set_time(sys, t);
-        tribo_harmonic_take(sys, h, c * cos(angle) - s * sin(angle), s * cos(angle) + c * sin(angle));
-        tribo_system_turn(sys, 0);
-        worst = fmax(worst, hypot(h->cos_t - cos(h->omega * t), h->sin_t - sin(h->omega * t)));
-    }
-    return worst;
-}
-
-/* What turns add up to ends with the 16th of them; bases are found anew each time, and all after a run. */
-TEST(turned_on)
-{
-    const double omega = 0.7, one = 1.0, each = 1e-9;
-    tribo_system *sys;
-    tribo_driver *drv;
-    double t = 0.0, y[3] = {0};
-    assert_ok(tribo_system_oscillator(&sys, 1.0, 2.0, omega));
-    sys->loads.harmonic[0].turns = 16;
-    assert_close(worst_of_turns(sys, each), 16.0 * each, 1e-3 * each);
-    assert_ok(set_up_driver(&drv, sys, "exact", 0.1, 0.0, 0.0));
-    assert_ok(tribo_driver_advance(drv, &t, 30.0, y));
-    ck_assert(isnan(sys->loads.harmonic[0].time));
-    tribo_driver_destroy(drv);
-    tribo_system_destroy(sys);
-    assert_ok(tribo_system_oscillator(&sys, 1.0, 2.0, omega));
-    assert_ok(tribo_system_clear_loads(sys));
-    assert_ok(tribo_system_add_base_motion(sys, omega, &one, NULL));
-    assert_close(worst_of_turns(sys, each), 0.0, 1e-15);
-    tribo_system_destroy(sys);
-}
-
 /* Callers that round upwards, downwards or to zero get the same, but for the ends of series. */
 TEST(rounding_modes)
 {
@@ -151,5 +113,4 @@ TEST(rounding_modes)
     }
 }
 
-TEST_MAIN("cos_sin", {rounding_modes, 1}, {right_to_rounding, 1}, {late_times, 1}, {quarter_turns, 1}, {one_by_one, 1},
-          {turned_on, 1})
+TEST_MAIN("cos_sin", {rounding_modes, 1}, {right_to_rounding, 1}, {late_times, 1}, {quarter_turns, 1}, {one_by_one, 1})
