@@ -2,6 +2,7 @@
 /* Functions of time: loads on the structure, motions of bases, limits. */
 #include "cos_sin.h"
 #include "system.h"
+#include "common/layout.h"
 #include "common/real.h"
 
 #include <float.h>
@@ -15,41 +16,36 @@ static size_t length_of(const tribo_system *sys, enum drives drives)
     return drives == DRIVES_LOAD ? sys->ndof : sys->ncontact;
 }
 
-static void free_arrays(struct harmonic *h)
+/* Allocates the arrays of h, of h->count entries and h->knots knots; copies them from the block `from` of equal arrays (NULL:
+ * leaves them unset). Returns 0 if out of memory. */
+static int create_harmonic(struct harmonic *h, const void *from)
 {
-    free(h->index);
-    free(h->cosine);
-    free(h->sine);
-    free(h->knot);
-    free(h->value);
-}
-
-/* Replaces the arrays of h by copies. Returns 0 if out of memory: then h has none. */
-static int copy_arrays(struct harmonic *h)
-{
-    int done = 1;
-    h->time = NAN;
-    h->index = tribo_copy_of(h->index, h->count, sizeof *h->index, &done);
-    h->cosine = tribo_copy_of(h->cosine, h->count, sizeof *h->cosine, &done);
-    h->sine = tribo_copy_of(h->sine, h->count, sizeof *h->sine, &done);
-    h->knot = tribo_copy_of(h->knot, h->knots, sizeof *h->knot, &done);
-    h->value = tribo_copy_of(h->value, h->knots * h->columns, sizeof *h->value, &done);
-    if (!done) {
-        free_arrays(h);
+    struct layout l = {0};
+    do {
+        h->index = tribo_layout_array(&l, h->count, sizeof *h->index);
+        h->cosine = tribo_layout_array(&l, h->count, sizeof *h->cosine);
+        h->sine = tribo_layout_array(&l, h->count, sizeof *h->sine);
+        h->knot = tribo_layout_array(&l, h->knots, sizeof *h->knot);
+        h->value = tribo_layout_array(&l, h->knots * h->columns, sizeof *h->value);
+    } while (!l.memory && tribo_layout_create(&l));
+    if (l.memory && from) {
+        memcpy(l.memory, from, l.used);
     }
-    return done;
+    return l.memory != NULL;
 }
 
 void tribo_loads_free(tribo_system *sys)
 {
     for (size_t k = 0; k < sys->loads.harmonics; k++) {
-        free_arrays(&sys->loads.harmonic[k]);
+        free(sys->loads.harmonic[k].index);
     }
     free(sys->loads.harmonic);
 }
 
-static void loads_count(struct loads *l)
+/* Counts the functions of time, of which some were added or removed. */
+static void loads_changed(tribo_system *sys)
 {
+    struct loads *l = &sys->loads;
     l->tables = l->bases = l->limits = l->limit_tables = 0;
     for (size_t k = 0; k < l->harmonics; k++) {
         const struct harmonic *h = &l->harmonic[k];
@@ -58,6 +54,8 @@ static void loads_count(struct loads *l)
         l->limits += h->drives == DRIVES_LIMIT;
         l->limit_tables += h->drives == DRIVES_LIMIT && h->knots > 0;
     }
+    sys->revision++;
+    tribo_system_forget_time(sys);
 }
 
 int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
@@ -65,12 +63,12 @@ int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
     struct loads *l = &sys->loads;
     l->harmonic = malloc((from->loads.harmonics + 1) * sizeof *l->harmonic);
     int done = l->harmonic != NULL;
-    while (done && l->harmonics < from->loads.harmonics) {
-        l->harmonic[l->harmonics] = from->loads.harmonic[l->harmonics];
-        done = copy_arrays(&l->harmonic[l->harmonics]);
-        l->harmonics += (size_t)done;
+    for (; done && l->harmonics < from->loads.harmonics; l->harmonics++) {
+        struct harmonic *h = &l->harmonic[l->harmonics];
+        *h = from->loads.harmonic[l->harmonics];
+        done = create_harmonic(h, h->index);
     }
-    loads_count(l);
+    loads_changed(sys);
     return done;
 }
 
@@ -159,7 +157,7 @@ double tribo_system_next_kink(const tribo_system *sys, double t)
     return next;
 }
 
-/* *c, *s = order-th derivatives at the set time of cos(omega t) and sin(omega t); of a table, *c of its value for entry e, *s = 0. */
+/* *c, *s = order-th derivatives at the set time of cos(omega t) and sin(omega t); of a table, *c of its value for entry e. */
 static inline void loads_differentiate(const tribo_system *sys, size_t k, size_t e, int order, double *c, double *s)
 {
     const struct harmonic *h = &sys->loads.harmonic[k];
@@ -291,9 +289,15 @@ static int check_pattern(const tribo_system *sys, enum drives drives, const char
 /* Largest limit; keeps results computed from limits finite. */
 #define MOST_LIMIT 1e300
 
-static int loads_check_limits(const tribo_system *sys, const double *cosine, const double *sine)
+/* Takes the settings; if limits are still constant, copies the limits of the context to given_limit. Checks the sum of
+ * given_limit and all amplitudes of harmonics, with those of a new harmonic (NULL: none). */
+static int check_limits(tribo_system *sys, const double *cosine, const double *sine)
 {
-    for (size_t i = 0; i < sys->ncontact; i++) {
+    const int status = tribo_system_take_settings(sys);
+    if (!status && !tribo_system_limits_vary(sys)) {
+        tribo_get_limit(sys->contacts, sys->loads.given_limit);
+    }
+    for (size_t i = 0; !status && (cosine || sine) && i < sys->ncontact; i++) {
         const double most =
             sys->loads.given_limit[i] + tribo_system_swing(sys, i) + hypot(cosine ? cosine[i] : 0.0, sine ? sine[i] : 0.0);
         if (!(most <= MOST_LIMIT)) {
@@ -301,56 +305,52 @@ static int loads_check_limits(const tribo_system *sys, const double *cosine, con
                                      MOST_LIMIT);
         }
     }
-    return TRIBO_OK;
-}
-
-/* Takes the settings; if limits are still constant, copies the limits of the context to given_limit. Returns a status. */
-static int loads_begin_limits(tribo_system *sys)
-{
-    const int status = tribo_system_take_settings(sys);
-    if (!status && !tribo_system_limits_vary(sys)) {
-        tribo_get_limit(sys->contacts, sys->loads.given_limit);
-    }
     return status;
 }
 
-/* Returns TRIBO_OK if there are knots, time [knots] ascends and is finite, and value is not NULL; name: of value, for the
- * message. */
-static int check_knots(const tribo_system *sys, size_t knots, const double *time, const char *name, const double *value)
+/* Returns TRIBO_OK if knots ascend, and the values, called name, are finite; limits >= 0, and 0 of compliant contacts. */
+static int check_table(const tribo_system *sys, const struct harmonic *h, const char *name)
 {
-    if (knots == 0 || !time || !value) {
-        return knots ? tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", time ? name : "time")
-                     : tribo_system_fail(sys, TRIBO_ERR_SIZE, "knots = 0");
+    const double *time = h->knot, *value = h->value;
+    const size_t n = h->columns;
+    if (!h->knots || !time || !value) {
+        return h->knots ? tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", time ? name : "time")
+                        : tribo_system_fail(sys, TRIBO_ERR_SIZE, "knots = 0");
     }
-    int status = tribo_system_check_finite(sys, "time", time, knots);
-    for (size_t k = 1; !status && k < knots; k++) {
+    int status = tribo_system_check_finite(sys, "time", time, h->knots);
+    for (size_t k = 1; !status && k < h->knots; k++) {
         if (time[k] <= time[k - 1]) {
             status = tribo_system_fail(sys, TRIBO_ERR_RANGE, "time[%zu] = %.17g is not after time[%zu] = %.17g", k, time[k],
                                        k - 1, time[k - 1]);
         }
+    }
+    if (status || h->drives != DRIVES_LIMIT) {
+        return status ? status : tribo_system_check_finite(sys, name, value, h->knots);
+    }
+    for (size_t k = 0; k < h->knots * n; k++) {
+        const int finite = isfinite(value[k]);
+        if (!(finite && value[k] >= 0.0)) {
+            return tribo_system_fail(sys, finite ? TRIBO_ERR_NEGATIVE : TRIBO_ERR_NOT_FINITE,
+                                     "limit[%zu] = %g of contact %zu is %s", k / n, value[k], k % n,
+                                     finite ? "negative" : "not finite");
+        }
+    }
+    for (size_t k = 0; !status && k < h->knots; k++) {
+        status = check_pattern(sys, DRIVES_LIMIT, name, value + k * n);
     }
     return status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ add and remove */
 
-/* Notes a change of the functions of time. */
-static int loads_changed(tribo_system *sys)
-{
-    loads_count(&sys->loads);
-    sys->revision++;
-    tribo_system_forget_time(sys);
-    return TRIBO_OK;
-}
-
-/* Removes the functions before `end` that drive loads, bases or limits; tables = 1: those of tables only. */
-static void remove_driven(struct loads *l, enum drives drives, int tables, size_t end)
+/* Removes the functions that drive loads, bases or limits; tables = 1: tables only. */
+static void remove_driven(struct loads *l, enum drives drives, int tables)
 {
     size_t left = 0;
     for (size_t k = 0; k < l->harmonics; k++) {
         struct harmonic *h = &l->harmonic[k];
-        if (k < end && (h->by_load ? DRIVES_LOAD : h->drives) == drives && (h->knots || !tables)) {
-            free_arrays(h);
+        if ((h->by_load ? DRIVES_LOAD : h->drives) == drives && (h->knots || !tables)) {
+            free(h->index);
         } else {
             l->harmonic[left++] = *h;
         }
@@ -359,38 +359,42 @@ static void remove_driven(struct loads *l, enum drives drives, int tables, size_
 }
 
 /* Appends a function of time like h, or replaces the table of limits. parts [2][n]: cosine and sine, of which entries that are
- * both 0 are left out; limits have all entries, so that the index is the contact. Overwrites parts. Returns 0 if out of memory. */
-static int append_harmonic(tribo_system *sys, struct harmonic h, double *parts)
+ * both 0 are left out; limits have all entries, so that the index is the contact. Returns 0 if out of memory. */
+static int append_harmonic(tribo_system *sys, struct harmonic h, const double *parts)
 {
     const size_t n = length_of(sys, h.drives);
+    const double *time = h.knot, *value = h.value;
     struct loads *l = &sys->loads;
     struct harmonic *all = realloc(l->harmonic, (l->harmonics + 1) * sizeof *all);
+    for (size_t i = 0; i < n; i++) {
+        h.count += parts[i] != 0.0 || parts[n + i] != 0.0 || h.drives == DRIVES_LIMIT;
+    }
     l->harmonic = all ? all : l->harmonic;
-    h.index = malloc((n + 1) * sizeof *h.index);
-    h.cosine = parts;
-    h.sine = parts + n;
-    for (size_t i = 0; h.index && i < n; i++) {
+    if (!all || !create_harmonic(&h, NULL)) {
+        return 0;
+    }
+    for (size_t i = 0, e = 0; e < h.count; i++) {
         if (parts[i] != 0.0 || parts[n + i] != 0.0 || h.drives == DRIVES_LIMIT) {
-            h.index[h.count] = i;
-            h.cosine[h.count] = parts[i];
-            h.sine[h.count++] = parts[n + i];
+            h.index[e] = i;
+            h.cosine[e] = parts[i];
+            h.sine[e++] = parts[n + i];
         }
     }
-    size_t *index = h.index;
-    const int done = all && index && copy_arrays(&h);
-    if (done) {
-        l->harmonic[l->harmonics++] = h;
-        remove_driven(l, DRIVES_LIMIT, 1, h.drives == DRIVES_LIMIT && h.knots ? l->harmonics - 1 : 0);
-        loads_changed(sys);
+    if (h.knots) {
+        memcpy(h.knot, time, h.knots * sizeof *time);
+        memcpy(h.value, value, h.knots * h.columns * sizeof *value);
     }
-    free(index);
-    return done;
+    if (h.knots && h.drives == DRIVES_LIMIT) {
+        remove_driven(l, DRIVES_LIMIT, 1);
+    }
+    all[l->harmonics++] = h;
+    loads_changed(sys);
+    return 1;
 }
 
-/* Adds a function of time like h, with copies of its knots and values; cosine and sine are in the caller's coordinates, or NULL.
- * Displacements of compliant contacts by a load, way [2][ncontact], become a base motion b = -d(way)/dt, so that v includes
- * d(way)/dt. Returns a status. */
-static int loads_add(tribo_system *sys, struct harmonic h, const double *cosine, const double *sine)
+/* Adds a function of time like h, cosine and sine in the caller's coordinates, or NULL. Displacements of compliant contacts by a
+ * load, way [2][ncontact], become a base motion b = -d(way)/dt, so that v includes d(way)/dt. Returns a status. */
+static int take_harmonic(tribo_system *sys, struct harmonic h, const double *cosine, const double *sine)
 {
     const size_t n = length_of(sys, h.drives), c = sys->ncontact;
     double *parts = tribo_zeros(2 * n + 4 * c + 1, sizeof *parts), *way = parts ? parts + 2 * n : NULL;
@@ -419,7 +423,7 @@ static int loads_add(tribo_system *sys, struct harmonic h, const double *cosine,
         }
         done = append_harmonic(sys, (struct harmonic){.drives = DRIVES_BASE, .omega = h.omega, .by_load = 1}, base);
         if (!done) {
-            free_arrays(&sys->loads.harmonic[--sys->loads.harmonics]);
+            free(sys->loads.harmonic[--sys->loads.harmonics].index);
         }
     }
     free(parts);
@@ -427,80 +431,61 @@ static int loads_add(tribo_system *sys, struct harmonic h, const double *cosine,
                 : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a function of time of %zu value%s", n, plural(n));
 }
 
-/* Adds a harmonic. Returns a status. */
-static int add_harmonic(tribo_system *sys, enum drives drives, double omega, const double *cosine, const double *sine)
+/* Checks and adds a function of time; table: name of the values of a table, NULL: a harmonic. Returns a status. */
+static int loads_add(tribo_system *sys, struct harmonic h, const char *table, const double *cosine, const double *sine)
 {
     if (!sys) {
         return TRIBO_ERR_NULL;
     }
-    int status = drives == DRIVES_LIMIT ? loads_begin_limits(sys) : TRIBO_OK;
-    status = status || isfinite(omega) ? status : tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
-    status = status ? status : check_pattern(sys, drives, "cosine", cosine);
-    status = status ? status : check_pattern(sys, drives, "sine", sine);
-    status = status || drives != DRIVES_LIMIT ? status : loads_check_limits(sys, cosine, sine);
-    return status ? status : loads_add(sys, (struct harmonic){.drives = drives, .omega = omega}, cosine, sine);
+    int status = table               ? check_table(sys, &h, table)
+                 : isfinite(h.omega) ? TRIBO_OK
+                                     : tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", h.omega);
+    if (!status && table && !cosine && h.drives != DRIVES_LIMIT) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "pattern is NULL");
+    }
+    status = status ? status : check_pattern(sys, h.drives, table ? "pattern" : "cosine", cosine);
+    status = status ? status : check_pattern(sys, h.drives, "sine", sine);
+    status = status || h.drives != DRIVES_LIMIT ? status : check_limits(sys, cosine, sine);
+    return status ? status : take_harmonic(sys, h, cosine, sine);
 }
 
-/* Adds the table value [knots] times pattern: forces [given], or base velocities [ncontact]. Returns a status. */
-static int add_table(tribo_system *sys, enum drives drives, size_t knots, const double *time, const double *value,
-                     const double *pattern)
+/* Adds a table; name: of value, for messages. */
+static int add_table(tribo_system *sys, enum drives drives, size_t columns, size_t knots, const double *time, const char *name,
+                     const double *value, const double *pattern)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    int status = knots == 0 || pattern ? check_knots(sys, knots, time, "value", value)
-                                       : tribo_system_fail(sys, TRIBO_ERR_NULL, "pattern is NULL");
-    status = status ? status : tribo_system_check_finite(sys, "value", value, knots);
-    status = status ? status : check_pattern(sys, drives, "pattern", pattern);
     const struct harmonic h = {
-        .drives = drives, .knots = knots, .columns = 1, .knot = (double *)time, .value = (double *)value};
-    return status ? status : loads_add(sys, h, pattern, NULL);
+        .drives = drives, .knots = knots, .columns = columns, .knot = (double *)time, .value = (double *)value};
+    return loads_add(sys, h, name, pattern, NULL);
 }
 
 int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine)
 {
-    return add_harmonic(sys, DRIVES_LOAD, omega, cosine, sine);
+    return loads_add(sys, (struct harmonic){.drives = DRIVES_LOAD, .omega = omega}, NULL, cosine, sine);
 }
 
 int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *cosine, const double *sine)
 {
-    return add_harmonic(sys, DRIVES_BASE, omega, cosine, sine);
+    return loads_add(sys, (struct harmonic){.drives = DRIVES_BASE, .omega = omega}, NULL, cosine, sine);
 }
 
 int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine, const double *sine)
 {
-    return add_harmonic(sys, DRIVES_LIMIT, omega, cosine, sine);
+    return loads_add(sys, (struct harmonic){.drives = DRIVES_LIMIT, .omega = omega}, NULL, cosine, sine);
 }
 
 int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value, const double *pattern)
 {
-    return add_table(sys, DRIVES_LOAD, knots, time, value, pattern);
+    return add_table(sys, DRIVES_LOAD, 1, knots, time, "value", value, pattern);
 }
 
 int tribo_system_add_base_table(tribo_system *sys, size_t knots, const double *time, const double *value, const double *pattern)
 {
-    return add_table(sys, DRIVES_BASE, knots, time, value, pattern);
+    return add_table(sys, DRIVES_BASE, 1, knots, time, "value", value, pattern);
 }
 
 int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit)
 {
-    const size_t n = sys ? sys->ncontact : 0;
-    int status = sys ? check_knots(sys, knots, time, "limit", limit) : TRIBO_ERR_NULL;
-    for (size_t k = 0; !status && k < knots * n; k++) {
-        const int finite = isfinite(limit[k]);
-        if (!(finite && limit[k] >= 0.0)) {
-            status =
-                tribo_system_fail(sys, finite ? TRIBO_ERR_NEGATIVE : TRIBO_ERR_NOT_FINITE, "limit[%zu] = %g of contact %zu is %s",
-                                  k / n, limit[k], k % n, finite ? "negative" : "not finite");
-        }
-    }
-    for (size_t k = 0; !status && k < knots; k++) {
-        status = check_pattern(sys, DRIVES_LIMIT, "limit", limit + k * n);
-    }
-    status = status ? status : loads_begin_limits(sys);
-    const struct harmonic h = {
-        .drives = DRIVES_LIMIT, .knots = knots, .columns = n, .knot = (double *)time, .value = (double *)limit};
-    return status ? status : loads_add(sys, h, NULL, NULL);
+    return add_table(sys, DRIVES_LIMIT, sys ? sys->ncontact : 0, knots, time, "limit", limit, NULL);
 }
 
 static int loads_clear(tribo_system *sys, enum drives drives)
@@ -511,8 +496,9 @@ static int loads_clear(tribo_system *sys, enum drives drives)
     if (drives == DRIVES_LIMIT && tribo_system_limits_vary(sys)) {
         tribo_set_limit(sys->contacts, sys->loads.given_limit);
     }
-    remove_driven(&sys->loads, drives, 0, sys->loads.harmonics);
-    return loads_changed(sys);
+    remove_driven(&sys->loads, drives, 0);
+    loads_changed(sys);
+    return TRIBO_OK;
 }
 
 int tribo_system_clear_loads(tribo_system *sys)
