@@ -153,31 +153,28 @@ void tribo_compliance_give(const tribo_system *sys, size_t columns, const double
     }
 }
 
-void tribo_compliance_rates(const tribo_system *sys, const signed char *slip, double *v, double *rate)
-{
-    const struct compliance *g = &sys->compliance;
-    memset(rate, 0, sys->ncontact * sizeof *rate);
-    if (!g->count) {
-        return;
-    }
-    for (size_t k = 0; k < g->count; k++) {
-        rate[g->contact[k]] = -v[g->contact[k]];
-    }
-    tribo_definite_solve(g->g, slip, 1, rate);
-    tribo_definite_multiply_add(g->g, 1, rate, v);
-    for (size_t k = 0; k < g->count; k++) {
-        const size_t i = g->contact[k];
-        v[i] = slip[i] == TRIBO_SLIP_STUCK ? 0.0 : v[i];
-    }
-}
-
 void tribo_compliance_share(struct definite *c, double *v)
 {
     memcpy(c->q, v, c->n * sizeof *v);
     tribo_definite_box(c);
     tribo_definite_multiply_add(c, 1, c->f, v);
     for (size_t i = 0; i < c->n; i++) {
-        v[i] = c->f[i] != 0.0 ? 0.0 : v[i];
+        v[i] = c->lo[i] < c->f[i] && c->f[i] < c->hi[i] ? 0.0 : v[i];
+    }
+}
+
+/* Sets lo and hi of all contacts to 0, without bounds for compliant contacts with slip 0. */
+void tribo_compliance_rates(const tribo_system *sys, const signed char *slip, double *v, double *rate)
+{
+    const struct compliance *g = &sys->compliance;
+    memset(rate, 0, sys->ncontact * sizeof *rate);
+    for (size_t i = 0; g->count && i < sys->ncontact; i++) {
+        g->g->hi[i] = tribo_is_compliant(g, i) && slip[i] == TRIBO_SLIP_STUCK ? HUGE_VAL : 0.0;
+        g->g->lo[i] = -g->g->hi[i];
+    }
+    if (g->count) {
+        tribo_compliance_share(g->g, v);
+        memcpy(rate, g->g->f, sys->ncontact * sizeof *rate);
     }
 }
 
@@ -200,57 +197,41 @@ void tribo_compliance_move(const tribo_system *sys, const double *y, double *v, 
     double *limit = sys->work.put_limit, *noise = sys->work.dv_dt;
     tribo_get_limit(sys->contacts, limit);
     tribo_compliance_noise(sys, y, noise);
-    memset(rate, 0, sys->ncontact * sizeof *rate);
+    tribo_compliance_get(sys, y, rate);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        c->lo[i] = c->hi[i] = 0.0;
+        const int at_limit = fabs(rate[i]) >= limit[i] - TRIBO_SPRING_ALLOWED * noise[i];
+        const int open = limit[i] == 0.0 || !tribo_is_compliant(g, i);
+        c->lo[i] = open || (at_limit && rate[i] < 0.0) ? 0.0 : -HUGE_VAL;
+        c->hi[i] = open || (at_limit && rate[i] > 0.0) ? 0.0 : HUGE_VAL;
     }
-    for (size_t k = 0; k < g->count; k++) {
-        const size_t i = g->contact[k];
-        const double force = y[2 * sys->ndof + k];
-        const int at_limit = fabs(force) >= limit[i] - TRIBO_SPRING_ALLOWED * noise[i], open = limit[i] == 0.0;
-        rate[i] = v[i];
-        c->lo[i] = open || (at_limit && force < 0.0) ? 0.0 : -HUGE_VAL;
-        c->hi[i] = open || (at_limit && force > 0.0) ? 0.0 : HUGE_VAL;
-    }
-    tribo_compliance_share(c, rate);
-    for (size_t k = 0; k < g->count; k++) {
-        const size_t i = g->contact[k];
-        v[i] = rate[i];
-        rate[i] = c->f[i];
-    }
+    tribo_compliance_share(c, v);
+    memcpy(rate, c->f, sys->ncontact * sizeof *rate);
 }
 
-/* Reduces forces to their limits [ncontact], by the change f that minimizes f'G f. Returns the energy dissipated. */
-static double bound_forces(const tribo_system *sys, const double *limit, double *force)
+/* The change of the forces to within their limits minimizes f'G f. */
+void tribo_compliance_enter(const tribo_system *sys, const double *limit, double *force, double *y)
 {
     const struct compliance *g = &sys->compliance;
     struct definite *c = g->g;
-    double energy = 0.0;
+    double *way = sys->work.dv_dt;
     int beyond = 0;
+    tribo_compliance_get(sys, y, force);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double most = tribo_is_compliant(g, i) ? limit[i] : 0.0;
         beyond |= most < fabs(force[i]);
-        c->q[i] = 0.0;
         c->lo[i] = -most - force[i];
         c->hi[i] = most - force[i];
+        way[i] = 0.0;
     }
     if (!beyond) {
-        return energy;
+        return;
     }
-    tribo_definite_box(c);
-    tribo_definite_multiply_add(c, 1, c->f, c->q);
+    tribo_compliance_share(c, way);
     for (size_t k = 0; k < g->count; k++) {
         const size_t i = g->contact[k];
         force[i] = c->f[i] == c->hi[i] ? limit[i] : c->f[i] == c->lo[i] ? -limit[i] : force[i] + c->f[i];
-        energy -= sys->tally[i] * force[i] * c->q[i];
+        y[tribo_system_energy(sys)] -= sys->tally[i] * force[i] * way[i];
     }
-    return energy;
-}
-
-void tribo_compliance_enter(const tribo_system *sys, const double *limit, double *force, double *y)
-{
-    tribo_compliance_get(sys, y, force);
-    y[tribo_system_energy(sys)] += bound_forces(sys, limit, force);
     tribo_compliance_put(sys, force, y);
 }
 

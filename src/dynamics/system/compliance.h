@@ -70,7 +70,8 @@ void tribo_compliance_noise(const tribo_system *sys, const double *q, double *no
  * [ncontact] = f. */
 void tribo_compliance_enter(const tribo_system *sys, const double *limit, double *force, double *y);
 
-/* c->f = rates f' in [c->lo, c->hi]; v [n]: in velocities without f', out v + G f', exactly 0 where f' != 0. */
+/* c->f = the forces, or rates of forces, in [c->lo, c->hi] that minimize 1/2 f'G f + v'f. v [n]: displacements, or velocities; in
+ * without f, out v + G f, exactly 0 where f is between its bounds. */
 void tribo_compliance_share(struct definite *c, double *v);
 
 /* Applies slip [ncontact] to perturbations v [2 ndof + count][columns] of a state: 0 for forces of sliding contacts. work [2
