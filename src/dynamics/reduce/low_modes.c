@@ -45,7 +45,7 @@ struct shifted {
 
 /* Writes the message for a status of tribo_normal_modes, or, without a doubt, of a search that found `count` modes. Returns the
  * status. */
-static int modes_failed(const struct model *m, int status, const struct doubt *doubt, size_t count)
+static int modes_failed(const tribo_model *m, int status, const struct doubt *doubt, size_t count)
 {
     switch (status) {
     case TRIBO_OK:
@@ -77,7 +77,7 @@ static int modes_failed(const struct model *m, int status, const struct doubt *d
 /* ---------------------------------------------------------------------------------------------------------------- the factors */
 
 /* Returns sum |K_ii| / sum |M_ii|; 1 without stiffness, 0 without mass. */
-static double mean_square_frequency(const struct model *m)
+static double mean_square_frequency(const tribo_model *m)
 {
     double stiffness = 0.0, mass = 0.0;
     for (size_t i = 0; i < m->ndof; i++) {
@@ -88,7 +88,7 @@ static double mean_square_frequency(const struct model *m)
 }
 
 /* Sets *c = the factor of factor K + other M. Returns a status. */
-static int factorize_sum(const struct model *m, double factor, double other, struct cholesky *c, size_t *where)
+static int factorize_sum(const tribo_model *m, double factor, double other, struct cholesky *c, size_t *where)
 {
     struct matrix sum;
     double pivot;
@@ -99,7 +99,7 @@ static int factorize_sum(const struct model *m, double factor, double other, str
     return tribo_cholesky_create(c, &sum, &sum, where, &pivot);
 }
 
-static int factor_failed(const struct model *m, int status, const char *what, size_t where)
+static int factor_failed(const tribo_model *m, int status, const char *what, size_t where)
 {
     return status == TRIBO_ERR_INDEFINITE
                ? tribo_model_fail(m, status, "%s is not positive semidefinite: it shows at degree of freedom %zu", what, where)
@@ -109,7 +109,7 @@ static int factor_failed(const struct model *m, int status, const char *what, si
                : TRIBO_OK;
 }
 
-static int factorize_shifted(const struct model *m, struct shifted *s)
+static int factorize_shifted(const tribo_model *m, struct shifted *s)
 {
     const double mean = mean_square_frequency(m);
     size_t where = 0;
@@ -126,7 +126,7 @@ static int factorize_shifted(const struct model *m, struct shifted *s)
 
 /* Returns TRIBO_ERR_INDEFINITE, and the row *where, if M is not semidefinite. For large M only minors of two rows are checked,
  * |M_ij| <= sqrt(M_ii M_jj): with a positive definite K the low modes are right whatever M does to the high ones. */
-static int check_mass(const struct model *m, size_t *where)
+static int check_mass(const tribo_model *m, size_t *where)
 {
     const struct matrix *mass = &m->mass;
     struct cholesky c;
@@ -152,7 +152,7 @@ static int check_mass(const struct model *m, size_t *where)
 
 /* Finds the `wanted` lowest modes among combinations of x [count][ndof], which may be r->phi. Stiffer motions are unknown here: omega^2 is computed
  * without rounding of the largest entries, by tribo_matrix_form. Returns a status. */
-static int find_among(const struct model *m, size_t count, const double *x, size_t wanted, struct reduced *r)
+static int find_among(const tribo_model *m, size_t count, const double *x, size_t wanted, struct reduced *r)
 {
     const size_t n = m->ndof;
     struct matrix rows = {0}, z = {0}, mass = {0};
@@ -178,7 +178,7 @@ static int find_among(const struct model *m, size_t count, const double *x, size
 
 /* Checks that rounding moves no mode across low->above, where modes were counted; and that each mode is an eigenvector, by SAME and
  * SAME_SHIFT: with the norms in M of (omega^2 + shift) (K + shift M)^-1 M phi - phi. Returns a status. */
-static int check_modes(const struct model *m, const struct shifted *s, const struct low_modes *low, const struct reduced *r)
+static int check_modes(const tribo_model *m, const struct shifted *s, const struct low_modes *low, const struct reduced *r)
 {
     const size_t n = m->ndof, below = low->below < r->count ? low->below : r->count;
     double *root = malloc(3 * n * sizeof *root), *x = root + n, *mx = x + n;
@@ -205,7 +205,7 @@ static int check_modes(const struct model *m, const struct shifted *s, const str
     return right ? TRIBO_OK : TRIBO_ERR_NO_CONVERGENCE;
 }
 
-static int find_densely(const struct model *m, struct reduced *r)
+static int find_densely(const tribo_model *m, struct reduced *r)
 {
     const struct matrix whole = {0};
     struct cholesky mass;
@@ -222,7 +222,7 @@ static int find_densely(const struct model *m, struct reduced *r)
 }
 
 /* Finds the lowest modes: by Lanczos' method for large structures with few modes, and for singular mass. Returns a status. */
-static int find_lowest(const struct model *m, struct shifted *s, struct reduced *r)
+static int find_lowest(const tribo_model *m, struct shifted *s, struct reduced *r)
 {
     const int large = m->ndof > DENSE_MOST || (m->ndof >= SPARSE_LEAST && 4 * m->nmode <= m->ndof);
     size_t where = 0;
@@ -252,7 +252,7 @@ static int find_lowest(const struct model *m, struct shifted *s, struct reduced 
 /* ----------------------------------------------------------------------------------------------------------- attachment modes */
 
 /* Makes x orthogonal in M to `count` phi_k, orthonormal in M. Sets mx [ndof] = M x. Returns the norm of x in M. */
-static double low_modes_separate(const struct model *m, size_t count, const double *phi, double *x, double *mx)
+static double low_modes_separate(const tribo_model *m, size_t count, const double *phi, double *x, double *mx)
 {
     tribo_matrix_multiply(&m->mass, x, mx);
     tribo_separate(&m->mass, count, phi, 1, x, mx, 0, NULL);
@@ -261,7 +261,7 @@ static double low_modes_separate(const struct model *m, size_t count, const doub
 }
 
 /* Sets *omega2 = |x'Kx|/norm^2. Returns 1 if *omega2 < shift/2: no stiffness holds x, a static response does not exist. */
-static int drifts(const struct model *m, const struct shifted *s, const double *x, double norm, double *omega2)
+static int drifts(const tribo_model *m, const struct shifted *s, const double *x, double norm, double *omega2)
 {
     *omega2 = norm > 0.0 ? fabs(tribo_matrix_form(&m->stiffness, x, x)) / norm / norm : HUGE_VAL;
     return *omega2 < 0.5 * s->shift;
@@ -270,7 +270,7 @@ static int drifts(const struct model *m, const struct shifted *s, const double *
 /* Appends the part of x [ndof], orthogonal to the modes and with norm `whole` in M, that is orthogonal to the other attachment
  * modes, unless it is rounding. If that is a drift with a small elastic part, removes the elastic part by inverse iteration. mx
  * [ndof]: workspace. */
-static void add_attachment(const struct model *m, const struct shifted *s, struct reduced *r, double *x, double whole, double *mx)
+static void add_attachment(const tribo_model *m, const struct shifted *s, struct reduced *r, double *x, double whole, double *mx)
 {
     const size_t n = m->ndof;
     double norm = low_modes_separate(m, r->count - m->nmode, r->phi + m->nmode * n, x, mx), omega2, before = HUGE_VAL;
@@ -293,8 +293,8 @@ static void add_attachment(const struct model *m, const struct shifted *s, struc
 /* x [ndof] = the static response, beside the modes, to a force at contact i. The force is taken without the part that acts on the
  * modes, M Phi Phi'force. A second solution removes the effect of shift except shift^2: x += (K + shift M)^-1 shift M x. before, mx
  * [ndof]: workspace. Returns the norm of x in M. */
-static double find_static_response(const struct model *m, const struct shifted *s, const struct reduced *r, size_t i, double *x,
-                                   double *before, double *mx)
+static double contact_response(const tribo_model *m, const struct shifted *s, const struct reduced *r, size_t i, double *x,
+                               double *before, double *mx)
 {
     const size_t n = m->ndof;
     tribo_matrix_get_row(&m->direction, i, x);
@@ -341,14 +341,14 @@ static int largest_part(size_t n, double *a, double *b, double *value, double *p
 
 /* Keeps the static responses of contacts beside the modes, or adds attachment modes to r, and makes all motions orthogonal in K.
  * Sets r->flexibility and r->truncation.missing. Returns a status. */
-static int attach(const struct model *m, const struct shifted *s, struct reduced *r)
+static int attach(const tribo_model *m, const struct shifted *s, struct reduced *r)
 {
     const size_t n = m->ndof, c = m->ncontact;
     double omega2, *x = malloc((3 * n + 2 * c * c + c) * sizeof *x);
     double *mx = x + n, *missing = mx + 2 * n, *whole = missing + c * c, *work = whole + c * c; /* missing: J x in rows */
     int status = x ? TRIBO_OK : tribo_model_no_memory(m);
     for (size_t i = 0; !status && i < c; i++) {
-        const double norm = find_static_response(m, s, r, i, x, mx + n, mx);
+        const double norm = contact_response(m, s, r, i, x, mx + n, mx);
         tribo_matrix_multiply(&m->direction, x, missing + i * c);
         if (r->residual && drifts(m, s, x, norm, &omega2)) {
             status = tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
@@ -389,7 +389,7 @@ void tribo_reduced_free(struct reduced *r)
     free(r->residual);
 }
 
-int tribo_model_find_modes(const struct model *m, struct reduced *r)
+int tribo_model_find_modes(const tribo_model *m, struct reduced *r)
 {
     const size_t n = m->ndof, most = m->nmode + (m->attachments ? m->ncontact : 0);
     struct shifted s = {0.0, {0}};

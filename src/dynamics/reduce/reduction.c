@@ -15,7 +15,7 @@
 
 /* Sets shapes [ncontact][count] = J Phi, 0 where that is rounding: by NO_SHAPE, or because phi has norm 1 in M, and a degree of
  * freedom d that moves alone has phi_d = 1/sqrt(M_dd). */
-static void find_shapes(const struct model *m, const struct reduced *r, double *shapes)
+static void find_shapes(const tribo_model *m, const struct reduced *r, double *shapes)
 {
     const struct matrix *j = &m->direction;
     for (size_t i = 0; i < m->ncontact; i++) {
@@ -36,7 +36,7 @@ static void find_shapes(const struct model *m, const struct reduced *r, double *
 #define NO_DAMPING (256.0 * DBL_EPSILON)
 
 /* Sets `to` [count][count] = Phi'C Phi; without damping `to` stays without rows. Returns 0 if out of memory. */
-static int project_damping(const struct model *m, const struct reduced *r, struct matrix *to)
+static int project_damping(const tribo_model *m, const struct reduced *r, struct matrix *to)
 {
     const size_t whole = m->ndof, n = r->count;
     if (!m->damping.first || m->damping.first[whole] == 0) {
@@ -62,7 +62,7 @@ static int project_damping(const struct model *m, const struct reduced *r, struc
 
 /* Builds q'' + Phi'C Phi q' + diag(omega^2) q = modes' p + rigid' f with J = shapes, both [ncontact][count], rigid 0 in rows of
  * other contacts; and sets the operator R = rigid rigid'. Returns a status. */
-static int reduction_build(const struct model *m, const struct reduced *r, const double *shapes, const double *rigid,
+static int reduction_build(const tribo_model *m, const struct reduced *r, const double *shapes, const double *rigid,
                            tribo_system **sys)
 {
     const size_t count = r->count, c = m->ncontact;
@@ -91,7 +91,6 @@ static int reduction_build(const struct model *m, const struct reduced *r, const
 struct compliant {
     size_t modes, contacts, soft;
     size_t *contact;        /* [soft] ascending */
-    size_t *place;          /* [modes + soft] 0, 1, 2, ... */
     double *shapes, *rigid; /* [contacts][modes] P of all contacts; of rigid contacts, 0 of others */
     double *own, *entries;  /* [contacts] G_ii; [contacts][contacts] G */
     double *by;             /* [contacts][modes + soft] -f by q and w: G^-1 P and -G^-1 */
@@ -126,26 +125,6 @@ static int find_soft(struct compliant *e, const struct reduced *r, const double 
     return shared;
 }
 
-/* Sets the expansion: a caller's degrees of freedom are q and w = P q + G f. Returns 0 if out of memory. */
-static int expand(const struct compliant *e, size_t sliders, tribo_system *sys)
-{
-    const size_t c = e->contacts;
-    struct triplets entries[3] = {{0}};
-    struct matrix follow = {0}, give = {0}, touch = {0};
-    for (size_t a = 0; a < e->soft; a++) {
-        const size_t i = e->contact[a];
-        tribo_triplets_put_row(&entries[0], a, &sys->direction, i);
-        for (size_t k = 0; k < c; k++) {
-            tribo_triplets_put(&entries[1], a, k, e->entries[i * c + k]);
-        }
-        tribo_triplets_put(&entries[2], i, a, 1.0);
-    }
-    int done = tribo_triplets_finish(&entries[0], e->soft, e->modes, &follow);
-    done &= tribo_triplets_finish(&entries[1], e->soft, c, &give);
-    done &= tribo_triplets_finish(&entries[2], c, e->soft, &touch);
-    return tribo_expansion_create(sys, sliders, e->place, NULL, &follow, &give, &touch) && done;
-}
-
 /* Sets sys->reduced: modes [given][modes + soft] = displacements by q and w; omega, infinite for w, which has no mass; truncation.
  * Returns 0 if out of memory. */
 static int set_modes(const struct compliant *e, size_t given, const struct reduced *r, tribo_system *sys)
@@ -178,7 +157,7 @@ static int set_modes(const struct compliant *e, size_t given, const struct reduc
 }
 
 /* Builds the system of the basis r. Returns a status. */
-static int build_reduced(const struct model *m, const struct reduced *r, tribo_system **sys)
+static int build_reduced(const tribo_model *m, const struct reduced *r, tribo_system **sys)
 {
     const size_t c = m->ncontact, k = r->count;
     struct compliant e = {.modes = k, .contacts = c};
@@ -186,7 +165,6 @@ static int build_reduced(const struct model *m, const struct reduced *r, tribo_s
     size_t where = 0;
     do {
         e.contact = tribo_layout_array(&l, c, sizeof *e.contact);
-        e.place = tribo_layout_array(&l, k + c, sizeof *e.place);
         e.shapes = tribo_layout_array(&l, c * k, sizeof *e.shapes);
         e.rigid = tribo_layout_array(&l, c * k, sizeof *e.rigid);
         e.own = tribo_layout_array(&l, c, sizeof *e.own);
@@ -196,15 +174,17 @@ static int build_reduced(const struct model *m, const struct reduced *r, tribo_s
     if (!l.memory) {
         return tribo_model_no_memory(m);
     }
-    for (size_t d = 0; d < k + c; d++) {
-        e.place[d] = d;
-    }
     find_shapes(m, r, e.shapes);
     const int shared = find_soft(&e, r, m->compliance);
     int status = reduction_build(m, r, e.shapes, e.rigid, sys);
     if (!status && e.soft) {
-        status = tribo_compliance_create(*sys, NULL, e.own, shared ? e.entries : NULL, &where);
-        status = status || expand(&e, m->flexible ? 0 : e.soft, *sys) ? status : TRIBO_ERR_MEMORY;
+        struct expansion x = {k, m->flexible ? 0 : e.soft, .place = malloc((k + e.soft) * sizeof *x.place)};
+        for (size_t d = 0; x.place && d < k; d++) {
+            x.place[d] = d;
+        }
+        status = x.place ? tribo_compliance_create(*sys, NULL, e.own, shared ? e.entries : NULL, &where) : TRIBO_ERR_MEMORY;
+        status = status || tribo_expansion_create(*sys, &x, e.own) ? status : TRIBO_ERR_MEMORY;
+        tribo_expansion_free(&x);
     }
     status = status || set_modes(&e, m->ndof, r, *sys) ? status : TRIBO_ERR_MEMORY;
     free(l.memory);
@@ -218,7 +198,7 @@ static int build_reduced(const struct model *m, const struct reduced *r, tribo_s
                                         : status;
 }
 
-int tribo_model_reduce(struct model *m, tribo_system **sys)
+int tribo_model_reduce(tribo_model *m, tribo_system **sys)
 {
     struct reduced r;
     int status = tribo_model_find_modes(m, &r);

@@ -10,36 +10,34 @@
 #include <string.h>
 
 #include "model.h"
-#include "common/layout.h"
 #include "common/real.h"
 
 /* A sum is rounding if at most ROUNDING times its terms; a pivot, if at most ROUNDING times its diagonal entry. */
 #define ROUNDING (64.0 * DBL_EPSILON)
 
 struct condensed {
-    size_t with, without, sliders;              /* lengths of q, of w, and of the part of w that are sliders */
-    size_t *place;                              /* [ndof + ncontact] places in q, w: of degrees of freedom, then of sliders */
-    double *x, *sum, *size;                     /* [ndof] workspace */
-    double *terms;                              /* [with] sum of the sizes of the terms of the stiffness K_ii of q */
-    double *own, *shared;                       /* [ncontact] G_ii; [ncontact][ncontact] G, NULL if G is diagonal */
-    struct cholesky factor;                     /* Cholesky factor of K_ww */
-    struct matrix kqq, kqw, kww, jq, direction; /* blocks of K and J; J_q + J_w follow */
-    struct matrix follow, give, touch;          /* [without][with], [without][ncontact]; J_w [ncontact][without] */
+    size_t with, without;         /* lengths of q, of w */
+    struct expansion x;           /* of the system, before the sliders are appended */
+    double *row, *sum, *size;     /* [ndof] workspace; sum of the entries of a row, and of their sizes, by columns */
+    size_t columns, *column;      /* columns of a row with an entry */
+    double *own, *shared;         /* [ncontact] G_ii; [ncontact][ncontact] G, NULL if G is diagonal */
+    struct cholesky factor;       /* Cholesky factor of K_ww */
+    struct matrix kww, direction; /* block of K; J_q + J_w follow */
 };
 
 static void condensed_free(struct condensed *s)
 {
-    struct matrix *const all[] = {&s->kqq, &s->kqw, &s->kww, &s->jq, &s->direction, &s->follow, &s->give, &s->touch};
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
-        tribo_matrix_free(all[k]);
-    }
+    tribo_expansion_free(&s->x);
+    tribo_matrix_free(&s->kww);
+    tribo_matrix_free(&s->direction);
     tribo_cholesky_free(&s->factor);
-    free(s->place);
+    free(s->row);
+    free(s->column);
     free(s->shared);
 }
 
 /* Returns 1 if degree of freedom d has no mass: its row of M is empty or 0. */
-static int is_massless(const struct model *m, size_t d)
+static int is_massless(const tribo_model *m, size_t d)
 {
     int is = 1;
     for (size_t e = m->mass.first[d]; e < m->mass.first[d + 1]; e++) {
@@ -48,71 +46,62 @@ static int is_massless(const struct model *m, size_t d)
     return is;
 }
 
-/* Sets place, with, without and sliders; reserves memory. Returns 0 if out of memory. */
-static int condense_number(const struct model *m, struct condensed *s)
+/* Sets place, with and without; reserves memory. Returns 0 if out of memory. */
+static int condense_number(const tribo_model *m, struct condensed *s)
 {
     const size_t n = m->ndof, c = m->ncontact;
-    struct layout l = {0};
-    do {
-        s->place = tribo_layout_array(&l, n + c, sizeof *s->place);
-        s->x = tribo_layout_array(&l, n, sizeof *s->x);
-        s->sum = tribo_layout_array(&l, n, sizeof *s->sum);
-        s->size = tribo_layout_array(&l, n, sizeof *s->size);
-        s->terms = tribo_layout_array(&l, n, sizeof *s->terms);
-        s->own = tribo_layout_array(&l, c, sizeof *s->own);
-    } while (!l.memory && tribo_layout_create(&l));
-    for (size_t d = 0; l.memory && d < n; d++) {
+    s->x = (struct expansion){.dofs = n, .place = malloc((n + c) * sizeof *s->x.place), .terms = malloc(n * sizeof *s->x.terms)};
+    s->row = calloc(3 * n + c, sizeof *s->row);
+    s->column = malloc(n * sizeof *s->column);
+    if (!s->row || !s->column || !s->x.place || !s->x.terms) {
+        return 0;
+    }
+    s->sum = s->row + n;
+    s->size = s->sum + n;
+    s->own = s->size + n;
+    for (size_t d = 0; d < n; d++) {
         s->with += !is_massless(m, d);
     }
-    for (size_t d = 0, q = 0; l.memory && d < n; d++) {
-        s->place[d] = is_massless(m, d) ? s->with + s->without++ : q++;
+    for (size_t d = 0, q = 0; d < n; d++) {
+        s->x.place[d] = is_massless(m, d) ? s->with + s->without++ : q++;
     }
-    for (size_t i = 0; l.memory && m->compliance && i < c; i++) {
-        if (m->compliance[i] > 0.0) {
-            s->place[n + s->sliders] = n + s->sliders;
-            s->sliders++;
-        }
-    }
-    return l.memory != NULL;
+    return 1;
 }
 
-static int check_damping(const struct model *m, const struct condensed *s)
+static int check_damping(const tribo_model *m, const struct condensed *s)
 {
     for (size_t i = 0; i < m->damping.rows; i++) {
         for (size_t k = m->damping.first[i]; k < m->damping.first[i + 1]; k++) {
             const size_t j = m->damping.col[k];
-            if (m->damping.val[k] != 0.0 && (s->place[i] >= s->with || s->place[j] >= s->with)) {
+            if (m->damping.val[k] != 0.0 && (s->x.place[i] >= s->with || s->x.place[j] >= s->with)) {
                 return tribo_model_fail(
                     m, TRIBO_ERR_UNSUPPORTED,
                     "damping[%zu][%zu] = %g, but degree of freedom %zu has no mass: there only stiffness acts", i, j,
-                    m->damping.val[k], s->place[i] >= s->with ? i : j);
+                    m->damping.val[k], s->x.place[i] >= s->with ? i : j);
             }
         }
     }
     return TRIBO_OK;
 }
 
-enum { Q, W, ALL };
-
-/* to = block of a, rows and columns of q or w; ALL rows for J (rows are contacts). Returns 0 if out of memory. */
-static int take_block(const struct condensed *s, const struct matrix *a, int rows, int cols, struct matrix *to)
+/* to = columns w of a, of the rows w (a = K), or of all rows (a = J). Returns 0 if out of memory. */
+static int take_without(const struct condensed *s, const struct matrix *a, int all, struct matrix *to)
 {
-    const size_t begin[] = {0, s->with, 0}, length[] = {s->with, s->without, a->rows};
+    const size_t rows = all ? a->rows : s->without;
     struct triplets t = {0};
     for (size_t i = 0; i < a->rows; i++) {
-        const size_t row = (rows == ALL ? i : s->place[i]) - begin[rows];
-        for (size_t e = a->first[i]; row < length[rows] && e < a->first[i + 1]; e++) {
-            const size_t col = s->place[a->col[e]] - begin[cols];
-            if (col < length[cols]) {
-                tribo_triplets_put(&t, row, col, a->val[e]);
+        const size_t row = all ? i : s->x.place[i] - s->with;
+        for (size_t e = a->first[i]; row < rows && e < a->first[i + 1]; e++) {
+            if (s->x.place[a->col[e]] >= s->with) {
+                tribo_triplets_put(&t, row, s->x.place[a->col[e]] - s->with, a->val[e]);
             }
         }
     }
-    return tribo_triplets_finish(&t, length[rows], length[cols], to);
+    return tribo_triplets_finish(&t, rows, s->without, to);
 }
 
 /* Factorizes K_ww. Returns a status, TRIBO_ERR_INDEFINITE if a pivot is rounding. */
-static int factorize_without(const struct model *m, struct condensed *s)
+static int factorize_without(const tribo_model *m, struct condensed *s)
 {
     size_t where = 0, dof = 0;
     double pivot = 0.0;
@@ -122,7 +111,7 @@ static int factorize_without(const struct model *m, struct condensed *s)
         pivot = s->factor.root[k] * s->factor.root[k];
         status = pivot <= ROUNDING * tribo_matrix_get(&s->kww, k, k) ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
     }
-    while (status == TRIBO_ERR_INDEFINITE && s->place[dof] != s->with + where) {
+    while (status == TRIBO_ERR_INDEFINITE && s->x.place[dof] != s->with + where) {
         dof++;
     }
     return status == TRIBO_ERR_INDEFINITE
@@ -135,30 +124,37 @@ static int factorize_without(const struct model *m, struct condensed *s)
                                       : TRIBO_OK;
 }
 
-/* s->x = K_ww^-1 (row i of a)', a [..][without]. Returns 1, or 0 if the row is empty. */
+/* s->row = K_ww^-1 (columns w of row i of a)', a [..][ndof]. Returns 1, or 0 if all these entries are 0. */
 static int solve_row(struct condensed *s, const struct matrix *a, size_t i)
 {
-    tribo_matrix_get_row(a, i, s->x);
-    if (a->first[i] < a->first[i + 1]) {
-        tribo_cholesky_solve(&s->factor, 1, s->x);
+    int any = 0;
+    memset(s->row, 0, s->without * sizeof *s->row);
+    for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
+        if (s->x.place[a->col[e]] >= s->with && a->val[e] != 0.0) {
+            s->row[s->x.place[a->col[e]] - s->with] = a->val[e];
+            any = 1;
+        }
     }
-    return a->first[i] < a->first[i + 1];
+    if (any) {
+        tribo_cholesky_solve(&s->factor, 1, s->row);
+    }
+    return any;
 }
 
 /* Sets own = G_ii, give, and shared = G if an entry off the diagonal is more than rounding. Returns 0 if out of memory. */
-static int find_compliance(const struct model *m, struct condensed *s)
+static int find_compliance(const tribo_model *m, struct condensed *s)
 {
     const size_t n = m->ncontact;
     struct triplets give = {0};
     int done = 1;
     for (size_t i = 0; done && i < n; i++) {
-        const int touches = solve_row(s, &s->touch, i);
-        s->own[i] = (m->compliance ? m->compliance[i] : 0.0) + tribo_matrix_row_dot(&s->touch, i, s->x);
+        const int touches = solve_row(s, &m->direction, i);
+        s->own[i] = (m->compliance ? m->compliance[i] : 0.0) + tribo_matrix_row_dot(&s->x.touch, i, s->row);
         for (size_t k = 0; touches && k < s->without; k++) {
-            tribo_triplets_put(&give, k, i, s->x[k]);
+            tribo_triplets_put(&give, k, i, s->row[k]);
         }
         for (size_t k = 0; touches && done && k < i; k++) {
-            const double shared = tribo_matrix_row_dot(&s->touch, k, s->x);
+            const double shared = tribo_matrix_row_dot(&s->x.touch, k, s->row);
             if (!s->shared && fabs(shared) > ROUNDING * sqrt(s->own[i] * s->own[k])) {
                 s->shared = calloc(n * n, sizeof *s->shared);
                 done = s->shared != NULL;
@@ -171,96 +167,72 @@ static int find_compliance(const struct model *m, struct condensed *s)
     for (size_t i = 0; s->shared && i < n; i++) {
         s->shared[i * n + i] = s->own[i];
     }
-    return tribo_triplets_finish(&give, s->without, n, &s->give) && done;
+    return tribo_triplets_finish(&give, s->without, n, &s->x.give) && done;
 }
 
 /* Sets follow = -K_ww^-1 K_wq. Returns 0 if out of memory. */
-static int find_follow(struct condensed *s)
+static int find_follow(const tribo_model *m, struct condensed *s)
 {
     struct triplets t = {0};
-    for (size_t i = 0; i < s->with; i++) {
-        for (size_t k = 0, end = solve_row(s, &s->kqw, i) ? s->without : 0; k < end; k++) {
-            tribo_triplets_put(&t, k, i, -s->x[k]);
+    for (size_t d = 0; d < m->ndof; d++) {
+        for (size_t k = 0, end = s->x.place[d] < s->with && solve_row(s, &m->stiffness, d) ? s->without : 0; k < end; k++) {
+            tribo_triplets_put(&t, k, s->x.place[d], -s->row[k]);
         }
     }
-    return tribo_triplets_finish(&t, s->without, s->with, &s->follow);
+    return tribo_triplets_finish(&t, s->without, s->with, &s->x.follow);
 }
 
-/* to = q + w follow, q [..][with], w [..][without]; 0 for entries that are rounding and rows with skip [rows] != 0 (NULL: none).
- * terms [rows] out, or NULL: sum of the sizes of the terms of to_ii. Returns 0 if out of memory. */
-static int condense_combine(struct condensed *s, const struct matrix *q, const struct matrix *w, const double *skip,
-                            double *terms, struct matrix *to)
+/* Adds x to column j of the sum of a row. */
+static void combine_add(struct condensed *s, size_t j, double x)
 {
+    if (s->size[j] == 0.0) {
+        s->column[s->columns++] = j;
+    }
+    s->sum[j] += x;
+    s->size[j] += fabs(x);
+}
+
+/* to = columns q + (columns w) follow of a, of the rows q, or of all rows (a = J); 0 for entries that are rounding and rows with
+ * skip [rows] != 0 (NULL: none). terms [rows] out, or NULL: sum of the sizes of the terms of to_ii. Returns 0 if out of
+ * memory. */
+static int condense_combine(struct condensed *s, const struct matrix *a, int all, const double *skip, double *terms,
+                            struct matrix *to)
+{
+    const size_t *place = s->x.place, rows = all ? a->rows : s->with;
+    const struct matrix *follow = &s->x.follow;
     struct triplets t = {0};
-    for (size_t i = 0; i < q->rows; i++) {
-        if (skip && skip[i] != 0.0) {
-            continue;
-        }
-        if (w->first[i] == w->first[i + 1]) {
-            tribo_triplets_put_row(&t, i, q, i);
-            if (terms) {
-                terms[i] = fabs(tribo_matrix_get(q, i, i));
+    for (size_t i = 0; i < a->rows; i++) {
+        const size_t row = all ? i : place[i];
+        for (size_t e = a->first[i]; row < rows && !(skip && skip[row] != 0.0) && e < a->first[i + 1]; e++) {
+            const size_t j = place[a->col[e]], w = j < s->with ? s->without : j - s->with;
+            if (w == s->without) {
+                combine_add(s, j, a->val[e]);
             }
-            continue;
-        }
-        memset(s->sum, 0, s->with * sizeof *s->sum);
-        memset(s->size, 0, s->with * sizeof *s->size);
-        for (size_t e = q->first[i]; e < q->first[i + 1]; e++) {
-            s->sum[q->col[e]] = q->val[e];
-            s->size[q->col[e]] = fabs(q->val[e]);
-        }
-        for (size_t e = w->first[i]; e < w->first[i + 1]; e++) {
-            for (size_t f = s->follow.first[w->col[e]]; f < s->follow.first[w->col[e] + 1]; f++) {
-                s->sum[s->follow.col[f]] += w->val[e] * s->follow.val[f];
-                s->size[s->follow.col[f]] += fabs(w->val[e] * s->follow.val[f]);
+            for (size_t f = w < s->without ? follow->first[w] : 0; w < s->without && f < follow->first[w + 1]; f++) {
+                combine_add(s, follow->col[f], a->val[e] * follow->val[f]);
             }
         }
-        for (size_t j = 0; j < s->with; j++) {
-            tribo_triplets_put(&t, i, j, fabs(s->sum[j]) > ROUNDING * s->size[j] ? s->sum[j] : 0.0);
+        if (terms && row < rows) {
+            terms[row] = s->size[row];
         }
-        if (terms) {
-            terms[i] = s->size[i];
+        for (; s->columns > 0; s->columns--) {
+            const size_t j = s->column[s->columns - 1];
+            tribo_triplets_put(&t, row, j, fabs(s->sum[j]) > ROUNDING * s->size[j] ? s->sum[j] : 0.0);
+            s->sum[j] = s->size[j] = 0.0;
         }
     }
-    return tribo_triplets_finish(&t, q->rows, s->with, to);
-}
-
-/* Appends the sliders to follow, give and touch. Returns 0 if out of memory. */
-static int append_sliders(const struct model *m, struct condensed *s)
-{
-    const size_t n = m->ncontact;
-    struct triplets follow = {0}, give = {0}, touch = {0};
-    size_t w = s->without;
-    for (size_t k = 0; k < s->without; k++) {
-        tribo_triplets_put_row(&follow, k, &s->follow, k);
-        tribo_triplets_put_row(&give, k, &s->give, k);
-    }
-    for (size_t i = 0; i < n; i++) {
-        if (!(m->compliance && m->compliance[i] > 0.0)) {
-            tribo_triplets_put_row(&touch, i, &s->touch, i);
-            continue;
-        }
-        tribo_triplets_put_row(&follow, w, &s->direction, i);
-        for (size_t k = 0; k < n; k++) {
-            tribo_triplets_put(&give, w, k, s->shared ? s->shared[i * n + k] : k == i ? s->own[i] : 0.0);
-        }
-        tribo_triplets_put(&touch, i, w++, 1.0);
-    }
-    tribo_matrix_free(&s->follow);
-    tribo_matrix_free(&s->give);
-    tribo_matrix_free(&s->touch);
-    return tribo_triplets_finish(&follow, w, s->with, &s->follow) & tribo_triplets_finish(&give, w, n, &s->give) &
-           tribo_triplets_finish(&touch, n, w, &s->touch);
+    return tribo_triplets_finish(&t, rows, s->with, to);
 }
 
 /* Replaces the matrices of m by the matrices of q, with empty rows of J for compliant contacts. Returns 0 if out of memory. */
-static int replace_matrices(struct model *m, struct condensed *s)
+static int replace_matrices(tribo_model *m, struct condensed *s)
 {
     struct matrix mass = {0}, damping = {0}, stiffness = {0}, rigid = {0}, half = {0}, other = {0};
-    const int done = take_block(s, &m->mass, Q, Q, &mass) && (!m->damping.rows || take_block(s, &m->damping, Q, Q, &damping)) &&
-                     condense_combine(s, &s->kqq, &s->kqw, NULL, s->terms, &half) && tribo_matrix_transpose(&other, &half) &&
+    const int done = condense_combine(s, &m->mass, 0, NULL, NULL, &mass) &&
+                     (!m->damping.rows || condense_combine(s, &m->damping, 0, NULL, NULL, &damping)) &&
+                     condense_combine(s, &m->stiffness, 0, NULL, s->x.terms, &half) && tribo_matrix_transpose(&other, &half) &&
                      tribo_matrix_sum(&stiffness, 0.5, &half, 0.5, &other) &&
-                     condense_combine(s, &s->jq, &s->touch, s->own, NULL, &rigid);
+                     condense_combine(s, &m->direction, 1, s->own, NULL, &rigid);
     tribo_matrix_free(&half);
     tribo_matrix_free(&other);
     tribo_model_free(m);
@@ -272,30 +244,31 @@ static int replace_matrices(struct model *m, struct condensed *s)
     return done;
 }
 
-int tribo_model_condense(struct model *m, tribo_system **sys)
+int tribo_model_condense(tribo_model *m, tribo_system **sys)
 {
     struct condensed s = {0};
-    const struct matrix *k = &m->stiffness, *j = &m->direction;
     const size_t given = m->ndof;
     size_t where = 0;
     int status = condense_number(m, &s) ? TRIBO_OK : tribo_model_no_memory(m);
-    if (status || s.without + s.sliders == 0 || s.with == 0) {
+    for (size_t i = 0; m->compliance && i < m->ncontact; i++) {
+        s.x.sliders += m->compliance[i] > 0.0;
+    }
+    if (status || s.without + s.x.sliders == 0 || s.with == 0) {
         condensed_free(&s);
         return status ? status : tribo_model_build_massive(m, sys);
     }
-    int done = take_block(&s, k, Q, Q, &s.kqq) && take_block(&s, k, Q, W, &s.kqw) && take_block(&s, k, W, W, &s.kww) &&
-               take_block(&s, j, ALL, Q, &s.jq) && take_block(&s, j, ALL, W, &s.touch);
+    int done = take_without(&s, &m->stiffness, 0, &s.kww) && take_without(&s, &m->direction, 1, &s.x.touch);
     status = done ? check_damping(m, &s) : tribo_model_no_memory(m);
     status = status ? status : factorize_without(m, &s);
     if (!status) {
-        done = find_compliance(m, &s) && find_follow(&s) && condense_combine(&s, &s.jq, &s.touch, NULL, NULL, &s.direction) &&
-               replace_matrices(m, &s) && append_sliders(m, &s);
+        done = find_compliance(m, &s) && find_follow(m, &s) &&
+               condense_combine(&s, &m->direction, 1, NULL, NULL, &s.direction) && replace_matrices(m, &s);
         status = done ? tribo_model_build_massive(m, sys) : tribo_model_no_memory(m);
     }
     if (!status) {
         (*sys)->given = given;
         status = tribo_compliance_create(*sys, &s.direction, s.own, s.shared, &where);
-        done = status || tribo_expansion_create(*sys, s.sliders, s.place, s.terms, &s.follow, &s.give, &s.touch);
+        done = status || tribo_expansion_create(*sys, &s.x, m->compliance);
         status = status == TRIBO_ERR_INDEFINITE
                      ? tribo_model_fail(
                            m, TRIBO_ERR_UNSUPPORTED,

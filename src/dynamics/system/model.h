@@ -5,60 +5,58 @@
 
 #include "system.h"
 
-/* The caller's matrices, and the text of the last error. */
-struct model {
-    size_t ndof, ncontact, nmode;
-    int attachments; /* 1: attachment modes: static responses to contact forces in addition to the modes */
-    int flexible;    /* 1: residual flexibility: the compliance that the modes lack at contacts */
+/* The caller's matrices. */
+struct tribo_model {
+    size_t ndof, ncontact, nmode; /* nmode: number of modes of a reduced system; 0: not reduced */
+    int attachments;              /* 1: attachment modes: static responses to contact forces in addition to the modes */
+    int flexible;                 /* 1: residual flexibility: the compliance that the modes lack at contacts */
     struct matrix mass, damping, stiffness, direction;
-    const double *compliance; /* [ncontact] compliance of springs before sliders; 0: rigid contact; NULL: all rigid */
-    char *message;
-    size_t size;
+    double *compliance; /* [ncontact] compliance of springs before sliders; 0: rigid contact; NULL: all rigid */
+    char *message;      /* [TRIBO_MESSAGE] text of the last error; NULL: none */
 };
 
 /* Writes the message and returns status. */
-int tribo_model_fail(const struct model *m, int status, const char *format, ...)
+int tribo_model_fail(const tribo_model *m, int status, const char *format, ...)
 #if defined(__GNUC__)
     __attribute__((format(printf, 3, 4)))
 #endif
     ;
-int tribo_model_no_memory(const struct model *m);
-int tribo_model_too_large(const struct model *m); /* for builds without sparse factors */
+int tribo_model_no_memory(const tribo_model *m);
+int tribo_model_too_large(const tribo_model *m); /* for builds without sparse factors */
 
-/* structure.c: builds the system. Frees the matrices of the model, also after an error. Returns a status. */
-int tribo_model_build(struct model *m, tribo_system **sys);
-void tribo_model_free(struct model *m);
+/* structure.c: builds the system of finite matrices. Frees the matrices of the model, also after an error. Returns a status. */
+int tribo_model_build(tribo_model *m, tribo_system **sys);
+void tribo_model_free(tribo_model *m);
 
 /* c = Cholesky factor of the mass matrix. Returns a status. */
-int tribo_model_factorize(const struct model *m, struct cholesky *c);
+int tribo_model_factorize(const tribo_model *m, struct cholesky *c);
 
 /* structure.c: builds a system of degrees of freedom that have mass, from checked matrices. Returns a status; after an error
  * tribo_model_build destroys *sys. */
-int tribo_model_build_massive(struct model *m, tribo_system **sys);
+int tribo_model_build_massive(tribo_model *m, tribo_system **sys);
 
 /* condense.c: builds the system of the degrees of freedom with mass, from checked matrices; the others, and the sliders of
  * contacts with springs, become its expansion. Returns a status. */
-int tribo_model_condense(struct model *m, tribo_system **sys);
+int tribo_model_condense(tribo_model *m, tribo_system **sys);
 
 /* Sets R in the contacts: Z'Z, Z [n][ncontact], symmetric, and semidefinite up to rounding; z NULL: J M^-1 J' by the factor of
  * sys. Refuses an R that hides bodies, unless the model is reduced. Returns a status. */
-int tribo_model_set_operator(const struct model *m, tribo_system *sys, const double *z, size_t n);
+int tribo_model_set_operator(const tribo_model *m, tribo_system *sys, const double *z, size_t n);
 
 /* reduction.c: builds the system of the lowest nmode modes. Returns a status. */
-int tribo_model_reduce(struct model *m, tribo_system **sys);
+int tribo_model_reduce(tribo_model *m, tribo_system **sys);
 
 /* Basis of a reduced system: vectors orthonormal in M and orthogonal in K. */
 struct reduced {
     size_t count;
     double *omega2, *phi; /* [count] ascending; [count][ndof] */
     struct truncation truncation;
-    double *residual,
-        *flexibility; /* [ncontact][ndof] static displacements by unit contact forces, without the part of the modes;
-                                       [ncontact][ncontact] at contacts. NULL without residual flexibility */
+    double *residual;    /* [ncontact][ndof] static displacements by unit contact forces, without the part of the modes */
+    double *flexibility; /* [ncontact][ncontact] residual at contacts; both NULL without residual flexibility */
 };
 
 /* low_modes.c: finds the lowest nmode modes, and attachment modes or residual flexibility. Allocates r, also after an error. */
-int tribo_model_find_modes(const struct model *m, struct reduced *r);
+int tribo_model_find_modes(const tribo_model *m, struct reduced *r);
 void tribo_reduced_free(struct reduced *r);
 
 #endif

@@ -7,13 +7,6 @@
 
 #include "model.h"
 
-/* Copies of the caller's matrices; message of the last failed call. */
-struct tribo_model {
-    struct model given;
-    double *compliance; /* [ncontact] or NULL: all contacts are rigid */
-    char text[240];
-};
-
 /* ---------------------------------------------------------------------------------------------------------------------- life */
 
 int tribo_model_create(tribo_model **model, size_t ndof, size_t ncontact)
@@ -24,11 +17,11 @@ int tribo_model_create(tribo_model **model, size_t ndof, size_t ncontact)
     if (ndof == 0 || ndof > (size_t)1 << 24 || ncontact > (size_t)1 << 24) {
         return TRIBO_ERR_SIZE;
     }
-    tribo_model *m = calloc(1, sizeof *m);
+    tribo_model *m = calloc(1, sizeof *m + TRIBO_MESSAGE);
     if (!m) {
         return TRIBO_ERR_MEMORY;
     }
-    m->given = (struct model){ndof, ncontact, .message = m->text, .size = sizeof m->text};
+    *m = (tribo_model){ndof, ncontact, .message = (char *)(m + 1)};
     *model = m;
     return TRIBO_OK;
 }
@@ -36,7 +29,7 @@ int tribo_model_create(tribo_model **model, size_t ndof, size_t ncontact)
 void tribo_model_destroy(tribo_model *model)
 {
     if (model) {
-        tribo_model_free(&model->given);
+        tribo_model_free(model);
         free(model->compliance);
         free(model);
     }
@@ -44,22 +37,22 @@ void tribo_model_destroy(tribo_model *model)
 
 const char *tribo_model_message(const tribo_model *model)
 {
-    return model ? model->text : "model is NULL";
+    return model ? model->message : "model is NULL";
 }
 
 int tribo_model_refuse(tribo_model *model, int status, const char *message)
 {
-    return model ? tribo_model_fail(&model->given, status, "%s", message ? message : "") : status;
+    return model ? tribo_model_fail(model, status, "%s", message ? message : "") : status;
 }
 
 size_t tribo_model_ndof(const tribo_model *model)
 {
-    return model ? model->given.ndof : 0;
+    return model ? model->ndof : 0;
 }
 
 size_t tribo_model_ncontact(const tribo_model *model)
 {
-    return model ? model->given.ncontact : 0;
+    return model ? model->ncontact : 0;
 }
 
 /* ------------------------------------------------------------------------------------------------------------------- matrices */
@@ -77,12 +70,11 @@ struct input {
 static struct input model_input_of(tribo_model *m, enum which which)
 {
     static const char *const name[] = {"mass", "damping", "stiffness", "direction"};
-    struct model *g = m ? &m->given : NULL;
-    if (!g) {
+    if (!m) {
         return (struct input){0};
     }
-    struct matrix *const to[] = {&g->mass, &g->damping, &g->stiffness, &g->direction};
-    return (struct input){m, to[which], name[which], which == DIRECTION ? g->ncontact : g->ndof};
+    struct matrix *const to[] = {&m->mass, &m->damping, &m->stiffness, &m->direction};
+    return (struct input){m, to[which], name[which], which == DIRECTION ? m->ncontact : m->ndof};
 }
 
 /* Sets *in->to = a if all entries are finite. done: 0 if there was no memory for a. Returns a status. */
@@ -91,11 +83,11 @@ static int model_take(const struct input *in, struct matrix *a, int done)
     size_t i, j;
     double x, y;
     if (!done) {
-        return tribo_model_no_memory(&in->model->given);
+        return tribo_model_no_memory(in->model);
     }
     if (tribo_matrix_flaw(a, 0, &i, &j, &x, &y)) {
         tribo_matrix_free(a);
-        return tribo_model_fail(&in->model->given, TRIBO_ERR_NOT_FINITE, "%s[%zu][%zu] = %g is not finite", in->name, i, j, x);
+        return tribo_model_fail(in->model, TRIBO_ERR_NOT_FINITE, "%s[%zu][%zu] = %g is not finite", in->name, i, j, x);
     }
     tribo_matrix_free(in->to);
     *in->to = *a;
@@ -108,7 +100,7 @@ static int check_input(const struct input *in, const void *numbers, const char *
     if (!in->model) {
         return TRIBO_ERR_NULL;
     }
-    return numbers || !count ? TRIBO_OK : tribo_model_fail(&in->model->given, TRIBO_ERR_NULL, "%s%s is NULL", in->name, part);
+    return numbers || !count ? TRIBO_OK : tribo_model_fail(in->model, TRIBO_ERR_NULL, "%s%s is NULL", in->name, part);
 }
 
 /* entries [rows][ndof], or, if diagonal = 1, [rows]. */
@@ -122,14 +114,14 @@ static int set_dense(tribo_model *model, enum which which, int diagonal, const d
     }
     return model_take(&in, &a,
                       diagonal ? tribo_matrix_diagonal(&a, in.rows, entries)
-                               : tribo_matrix_from_dense(&a, in.rows, model->given.ndof, entries));
+                               : tribo_matrix_from_dense(&a, in.rows, model->ndof, entries));
 }
 
 /* Returns an error if rowptr does not begin at 0 and ascend, or a column is too large. Checks all of rowptr before reading
  * col. */
 static int check_csr(const struct input *in, const size_t *rowptr, const size_t *col)
 {
-    const struct model *m = &in->model->given;
+    const tribo_model *m = in->model;
     if (rowptr[0] != 0) {
         return tribo_model_fail(m, TRIBO_ERR_SIZE, "%s: rowptr[%zu] = %zu is not 0", in->name, (size_t)0, rowptr[0]);
     }
@@ -164,7 +156,7 @@ static int set_csr(tribo_model *model, enum which which, const size_t *rowptr, c
     }
     /* a transposed matrix has ascending columns */
     const struct matrix rows = {
-        .rows = in.rows, .cols = model->given.ndof, .first = (size_t *)rowptr, .col = (size_t *)col, .val = (double *)val};
+        .rows = in.rows, .cols = model->ndof, .first = (size_t *)rowptr, .col = (size_t *)col, .val = (double *)val};
     struct matrix turned = {0};
     const int done = tribo_matrix_transpose(&turned, &rows) && tribo_matrix_transpose(&a, &turned);
     tribo_matrix_free(&turned);
@@ -172,7 +164,7 @@ static int set_csr(tribo_model *model, enum which which, const size_t *rowptr, c
         for (size_t k = a.first[i] + 1; k < a.first[i + 1]; k++) {
             if (a.col[k] == a.col[k - 1]) {
                 status =
-                    tribo_model_fail(&model->given, TRIBO_ERR_DUPLICATE, "%s[%zu][%zu] is given twice", in.name, i, a.col[k]);
+                    tribo_model_fail(model, TRIBO_ERR_DUPLICATE, "%s[%zu][%zu] is given twice", in.name, i, a.col[k]);
             }
         }
     }
@@ -240,23 +232,23 @@ int tribo_model_set_direction_csr(tribo_model *model, const size_t *rowptr, cons
 int tribo_model_set_compliance(tribo_model *model, const double *c)
 {
     const struct input in = {.model = model, .name = "compliance"};
-    const size_t n = model ? model->given.ncontact : 0;
+    const size_t n = model ? model->ncontact : 0;
     const int status = check_input(&in, c, "", n);
     for (size_t i = 0; !status && i < n; i++) {
         if (!isfinite(c[i])) {
-            return tribo_model_fail(&model->given, TRIBO_ERR_NOT_FINITE, "compliance[%zu] = %g is not finite", i, c[i]);
+            return tribo_model_fail(model, TRIBO_ERR_NOT_FINITE, "compliance[%zu] = %g is not finite", i, c[i]);
         }
         if (c[i] < 0.0) {
-            return tribo_model_fail(&model->given, TRIBO_ERR_NEGATIVE, "compliance[%zu] = %g is negative", i, c[i]);
+            return tribo_model_fail(model, TRIBO_ERR_NEGATIVE, "compliance[%zu] = %g is negative", i, c[i]);
         }
         if (c[i] > 0.0 && !(c[i] > 1.0 / DBL_MAX)) {
-            return tribo_model_fail(&model->given, TRIBO_ERR_RANGE,
+            return tribo_model_fail(model, TRIBO_ERR_RANGE,
                                     "compliance[%zu] = %g is of a stiffness that overflows: 0 is a rigid contact", i, c[i]);
         }
     }
     double *copy = status ? NULL : malloc((n + 1) * sizeof *copy);
     if (!copy) {
-        return status ? status : tribo_model_no_memory(&model->given);
+        return status ? status : tribo_model_no_memory(model);
     }
     if (n) {
         memcpy(copy, c, n * sizeof *copy);
@@ -270,54 +262,52 @@ int tribo_model_set_compliance(tribo_model *model, const double *c)
 
 /* Checks the model, and the arguments of tribo_system_reduce if reduces = 1; builds a system from copies of the model's matrices.
  * Returns a status. */
-static int build_system(tribo_system **sys, tribo_model *model, int reduces, size_t nmode, int statics)
+static int build_system(tribo_system **sys, const tribo_model *m, int reduces, size_t nmode, int statics)
 {
-    if (!model) {
+    if (!m) {
         return TRIBO_ERR_NULL;
     }
-    const struct model *g = &model->given;
-    const char *missing = !g->mass.first                       ? "mass"
-                          : !g->stiffness.first                ? "stiffness"
-                          : !g->direction.first && g->ncontact ? "direction"
+    const char *missing = !m->mass.first                       ? "mass"
+                          : !m->stiffness.first                ? "stiffness"
+                          : !m->direction.first && m->ncontact ? "direction"
                                                                : NULL;
     if (!sys) {
-        return tribo_model_fail(g, TRIBO_ERR_NULL, "sys is NULL");
+        return tribo_model_fail(m, TRIBO_ERR_NULL, "sys is NULL");
     }
     if (missing) {
-        return tribo_model_fail(g, TRIBO_ERR_STATE, "%s has not been set: call tribo_model_set_%s", missing, missing);
+        return tribo_model_fail(m, TRIBO_ERR_STATE, "%s has not been set: call tribo_model_set_%s", missing, missing);
     }
     if (reduces && nmode == 0) {
-        return tribo_model_fail(g, TRIBO_ERR_SIZE, "nmode = 0: a reduced system has a mode at least");
+        return tribo_model_fail(m, TRIBO_ERR_SIZE, "nmode = 0: a reduced system has a mode at least");
     }
-    if (nmode > g->ndof) {
-        return tribo_model_fail(g, TRIBO_ERR_SIZE, "nmode = %zu is more than the %zu degree%s of freedom", nmode, g->ndof,
-                                plural(g->ndof));
+    if (nmode > m->ndof) {
+        return tribo_model_fail(m, TRIBO_ERR_SIZE, "nmode = %zu is more than the %zu degree%s of freedom", nmode, m->ndof,
+                                plural(m->ndof));
     }
     if (statics < TRIBO_STATICS_NONE || statics > TRIBO_STATICS_COMPLIANCE) {
-        return tribo_model_fail(g, TRIBO_ERR_RANGE, "static_contacts = %d is not TRIBO_STATICS_...", statics);
+        return tribo_model_fail(m, TRIBO_ERR_RANGE, "static_contacts = %d is not TRIBO_STATICS_...", statics);
     }
-    if (g->damping.first && statics == TRIBO_STATICS_COMPLIANCE) {
-        return tribo_model_fail(g, TRIBO_ERR_UNSUPPORTED,
+    if (m->damping.first && statics == TRIBO_STATICS_COMPLIANCE) {
+        return tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
                                 "TRIBO_STATICS_COMPLIANCE takes no damping matrix: call tribo_system_set_damping_ratio, or take "
                                 "TRIBO_STATICS_MASS");
     }
-    struct model whole = {.ndof = g->ndof,
-                          .ncontact = g->ncontact,
-                          .nmode = nmode,
-                          .attachments = statics == TRIBO_STATICS_MASS,
-                          .flexible = statics == TRIBO_STATICS_COMPLIANCE,
-                          .compliance = model->compliance,
-                          .message = model->text,
-                          .size = sizeof model->text};
-    const int done = tribo_matrix_copy(&whole.mass, &g->mass) && tribo_matrix_copy(&whole.damping, &g->damping) &&
-                     tribo_matrix_copy(&whole.stiffness, &g->stiffness) &&
-                     (g->direction.first ? tribo_matrix_copy(&whole.direction, &g->direction)
-                                         : tribo_matrix_from_dense(&whole.direction, 0, g->ndof, NULL));
+    tribo_model copy = {.ndof = m->ndof,
+                        .ncontact = m->ncontact,
+                        .nmode = nmode,
+                        .attachments = statics == TRIBO_STATICS_MASS,
+                        .flexible = statics == TRIBO_STATICS_COMPLIANCE,
+                        .compliance = m->compliance,
+                        .message = m->message};
+    const int done = tribo_matrix_copy(&copy.mass, &m->mass) && tribo_matrix_copy(&copy.damping, &m->damping) &&
+                     tribo_matrix_copy(&copy.stiffness, &m->stiffness) &&
+                     (m->direction.first ? tribo_matrix_copy(&copy.direction, &m->direction)
+                                         : tribo_matrix_from_dense(&copy.direction, 0, m->ndof, NULL));
     if (!done) {
-        tribo_model_free(&whole);
-        return tribo_model_no_memory(g);
+        tribo_model_free(&copy);
+        return tribo_model_no_memory(m);
     }
-    return tribo_model_build(&whole, sys);
+    return tribo_model_build(&copy, sys);
 }
 
 int tribo_system_create(tribo_system **sys, tribo_model *model)

@@ -76,7 +76,7 @@ int tribo_system_chain(tribo_system **sys, size_t n, double limit, double alpha,
         return TRIBO_ERR_SIZE;
     }
     tribo_system *s = NULL;
-    struct model m = {.ndof = n, .ncontact = n};
+    tribo_model m = {.ndof = n, .ncontact = n};
     struct triplets t = {0};
     const double spring = (double)n;
     double *each = malloc(n * sizeof *each); /* [n] masses, then limits, then loads */

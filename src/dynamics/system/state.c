@@ -7,29 +7,55 @@
 #include <stdlib.h>
 #include <string.h>
 
-int tribo_expansion_create(tribo_system *sys, size_t sliders, const size_t *place, const double *terms, struct matrix *follow,
-                           struct matrix *give, struct matrix *touch)
+static int expansion_set(tribo_system *sys, struct expansion x)
 {
-    const size_t dofs = sys->ndof + follow->rows;
-    int done = 1;
-    size_t *copy = tribo_copy_of(place, dofs, sizeof *copy, &done);
-    sys->work.motion = malloc((tribo_system_size(sys) + follow->rows + 2 * sys->ncontact) * sizeof *sys->work.motion);
-    sys->expansion =
-        (struct expansion){dofs, sliders, copy, *follow, *give, *touch, tribo_copy_of(terms, sys->ndof, sizeof *terms, &done)};
-    *follow = *give = *touch = (struct matrix){0};
-    return sys->work.motion && done;
+    sys->expansion = x;
+    sys->work.motion = malloc((tribo_system_size(sys) + x.follow.rows + 2 * sys->ncontact) * sizeof *sys->work.motion);
+    return sys->work.motion != NULL;
+}
+
+int tribo_expansion_create(tribo_system *sys, struct expansion *x, const double *slides)
+{
+    const size_t n = sys->ncontact;
+    struct triplets follow = {0}, give = {0}, touch = {0};
+    size_t w = x->follow.rows;
+    for (size_t k = 0; k < w; k++) {
+        tribo_triplets_put_row(&follow, k, &x->follow, k);
+        tribo_triplets_put_row(&give, k, &x->give, k);
+    }
+    for (size_t i = 0; i < n; i++) {
+        if (slides && slides[i] > 0.0) {
+            tribo_triplets_put_row(&follow, w, &sys->direction, i);
+            for (size_t k = 0; k < n; k++) {
+                tribo_triplets_put(&give, w, k, tribo_compliance_entry(&sys->compliance, n, i, k));
+            }
+            tribo_triplets_put(&touch, i, w++, 1.0);
+            x->place[x->dofs] = x->dofs;
+            x->dofs++;
+        } else if (x->touch.rows) {
+            tribo_triplets_put_row(&touch, i, &x->touch, i);
+        }
+    }
+    tribo_matrix_free(&x->follow);
+    tribo_matrix_free(&x->give);
+    tribo_matrix_free(&x->touch);
+    const int done = tribo_triplets_finish(&follow, w, sys->ndof, &x->follow) &
+                     tribo_triplets_finish(&give, w, n, &x->give) & tribo_triplets_finish(&touch, n, w, &x->touch);
+    const struct expansion made = *x;
+    *x = (struct expansion){0};
+    return expansion_set(sys, made) && done;
 }
 
 int tribo_expansion_copy(tribo_system *to, const tribo_system *from)
 {
     const struct expansion *x = &from->expansion;
-    struct matrix a[3] = {{0}};
-    if (!x->place) {
-        return 1;
-    }
-    const int done =
-        tribo_matrix_copy(&a[0], &x->follow) && tribo_matrix_copy(&a[1], &x->give) && tribo_matrix_copy(&a[2], &x->touch);
-    return tribo_expansion_create(to, x->sliders, x->place, x->terms, &a[0], &a[1], &a[2]) && done;
+    struct expansion copy = {.dofs = x->dofs, .sliders = x->sliders};
+    int done = 1;
+    copy.place = tribo_copy_of(x->place, x->dofs, sizeof *x->place, &done);
+    copy.terms = tribo_copy_of(x->terms, from->ndof, sizeof *x->terms, &done);
+    done &= tribo_matrix_copy(&copy.follow, &x->follow) & tribo_matrix_copy(&copy.give, &x->give) &
+            tribo_matrix_copy(&copy.touch, &x->touch);
+    return !x->place || (expansion_set(to, copy) && done);
 }
 
 void tribo_expansion_free(struct expansion *x)

@@ -9,24 +9,24 @@
 #include "delassus.h"
 #include "model.h"
 
-int tribo_model_fail(const struct model *m, int status, const char *format, ...)
+int tribo_model_fail(const tribo_model *m, int status, const char *format, ...)
 {
-    if (m->message && m->size) {
+    if (m->message) {
         va_list args;
         va_start(args, format);
-        vsnprintf(m->message, m->size, format, args);
+        vsnprintf(m->message, TRIBO_MESSAGE, format, args);
         va_end(args);
     }
     return status;
 }
 
-int tribo_model_no_memory(const struct model *m)
+int tribo_model_no_memory(const tribo_model *m)
 {
     return tribo_model_fail(m, TRIBO_ERR_MEMORY, "out of memory for %zu degree%s of freedom and %zu contact%s", m->ndof,
                             plural(m->ndof), m->ncontact, plural(m->ncontact));
 }
 
-int tribo_model_too_large(const struct model *m)
+int tribo_model_too_large(const tribo_model *m)
 {
     return tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
                             "%zu degree%s of freedom are more than the %d that dense matrices are for: build tribo with "
@@ -34,7 +34,7 @@ int tribo_model_too_large(const struct model *m)
                             m->ndof, plural(m->ndof), DENSE_MOST);
 }
 
-int tribo_model_factorize(const struct model *m, struct cholesky *c)
+int tribo_model_factorize(const tribo_model *m, struct cholesky *c)
 {
     size_t where;
     double pivot;
@@ -51,7 +51,7 @@ int tribo_model_factorize(const struct model *m, struct cholesky *c)
     }
 }
 
-void tribo_model_free(struct model *m)
+void tribo_model_free(tribo_model *m)
 {
     tribo_matrix_free(&m->mass);
     tribo_matrix_free(&m->damping);
@@ -59,27 +59,14 @@ void tribo_model_free(struct model *m)
     tribo_matrix_free(&m->direction);
 }
 
-static int structure_check(const struct model *m)
+static int check_symmetric(const tribo_model *m, const char *name, const struct matrix *a)
 {
-    const struct {
-        const char *name;
-        const struct matrix *matrix;
-        int symmetric;
-    } all[] = {
-        {"mass", &m->mass, 1}, {"damping", &m->damping, 0}, {"stiffness", &m->stiffness, 1}, {"direction", &m->direction, 0}};
-    for (size_t k = 0; k < 4; k++) {
-        size_t i, j;
-        double x, y;
-        if (!tribo_matrix_flaw(all[k].matrix, all[k].symmetric, &i, &j, &x, &y)) {
-            continue;
-        }
-        if (!isfinite(x)) {
-            return tribo_model_fail(m, TRIBO_ERR_NOT_FINITE, "%s[%zu][%zu] = %g is not finite", all[k].name, i, j, x);
-        }
-        return tribo_model_fail(m, TRIBO_ERR_NOT_SYMMETRIC, "%s[%zu][%zu] = %.17g, but %s[%zu][%zu] = %.17g", all[k].name, i, j,
-                                x, all[k].name, j, i, y);
-    }
-    return TRIBO_OK;
+    size_t i, j;
+    double x, y;
+    return tribo_matrix_flaw(a, 1, &i, &j, &x, &y)
+               ? tribo_model_fail(m, TRIBO_ERR_NOT_SYMMETRIC, "%s[%zu][%zu] = %.17g, but %s[%zu][%zu] = %.17g", name, i, j, x,
+                                  name, j, i, y)
+               : TRIBO_OK;
 }
 
 /* --------------------------------------------------------------------------------------------------------------- builders */
@@ -89,7 +76,7 @@ static int solve_masses(const void *mass, size_t count, double *x)
     return tribo_cholesky_solve(mass, count, x);
 }
 
-static int check_unsolved(const struct model *m)
+static int check_unsolved(const tribo_model *m)
 {
     size_t i, j;
     double x, y;
@@ -106,7 +93,7 @@ static int check_unsolved(const struct model *m)
     return TRIBO_OK;
 }
 
-int tribo_model_set_operator(const struct model *m, tribo_system *sys, const double *z, size_t n)
+int tribo_model_set_operator(const tribo_model *m, tribo_system *sys, const double *z, size_t n)
 {
     const struct matrix *j = &sys->direction;
     const size_t c = m->ncontact;
@@ -156,7 +143,7 @@ static int solve_matrix(const struct cholesky *c, const struct matrix *a, struct
 }
 
 /* Divides M^-1 J', K and C of sys, which are J', K and C, by a diagonal mass matrix; sets R. Returns a status. */
-static int divide_by_masses(const struct model *m, tribo_system *sys)
+static int divide_by_masses(const tribo_model *m, tribo_system *sys)
 {
     const struct matrix *j = &sys->direction;
     double *inverse = malloc(m->ndof * sizeof *inverse);
@@ -175,7 +162,7 @@ static int divide_by_masses(const struct model *m, tribo_system *sys)
 }
 
 /* Solves for M^-1 J', M^-1 K and M^-1 C in the place of J', K and C of sys; keeps K and C; sets R. Returns a status. */
-static int solve_by_masses(const struct model *m, tribo_system *sys)
+static int solve_by_masses(const tribo_model *m, tribo_system *sys)
 {
     const struct cholesky *c = &sys->factor;
     struct matrix turned = sys->response;
@@ -194,7 +181,7 @@ static int solve_by_masses(const struct model *m, tribo_system *sys)
     return status;
 }
 
-int tribo_model_build_massive(struct model *m, tribo_system **sys)
+int tribo_model_build_massive(tribo_model *m, tribo_system **sys)
 {
     const int diagonal = tribo_matrix_is_diagonal(&m->mass), unsolved = !diagonal && m->ndof > DENSE_MOST;
     int status = unsolved ? check_unsolved(m) : TRIBO_OK;
@@ -225,10 +212,11 @@ int tribo_model_build_massive(struct model *m, tribo_system **sys)
     return status;
 }
 
-int tribo_model_build(struct model *m, tribo_system **sys)
+int tribo_model_build(tribo_model *m, tribo_system **sys)
 {
     tribo_system *s = NULL;
-    int status = structure_check(m);
+    int status = check_symmetric(m, "mass", &m->mass);
+    status = status ? status : check_symmetric(m, "stiffness", &m->stiffness);
     if (!status) {
         status = m->nmode ? tribo_model_reduce(m, &s) : tribo_model_condense(m, &s);
     }

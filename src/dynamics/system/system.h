@@ -21,7 +21,7 @@ struct harmonic {
     enum drives drives;
     int by_load;               /* 1: base motion that a load causes (tribo_system_add_load), removed with the loads */
     double omega;              /* tables: 0 */
-    double time, cos_t, sin_t; /* cos(omega time), sin(omega time); of a table, cos_t: value of column 0. time NaN: not computed */
+    double time, cos_t, sin_t; /* cos(omega time), sin(omega time); of a table, cos_t: value of column 0; time NaN: none */
     size_t knots, columns, at; /* at: last knot at or before time, or 0; knots, columns 0: a harmonic */
     size_t count;              /* entries: limits have all contacts; else those with cosine or sine not 0 */
     size_t *index;             /* [count] degree of freedom, or contact */
@@ -313,10 +313,9 @@ static inline size_t tribo_system_size(const tribo_system *sys)
     return tribo_system_energy(sys) + 1;
 }
 
-/* Creates the expansion of a system that has its compliance. Takes the matrices, copies terms [ndof] (NULL: reduced). Returns 1,
- * or 0 if out of memory. */
-int tribo_expansion_create(tribo_system *sys, size_t sliders, const size_t *place, const double *terms, struct matrix *follow,
-                           struct matrix *give, struct matrix *touch);
+/* Takes x as the expansion of a system that has its compliance, and appends a displacement w for each contact i with slides[i] > 0
+ * (NULL: none): with row i of J in follow, row i of G in give. x->place has room for these. Returns 1, or 0 if out of memory. */
+int tribo_expansion_create(tribo_system *sys, struct expansion *x, const double *slides);
 int tribo_expansion_copy(tribo_system *to, const tribo_system *from);
 void tribo_expansion_free(struct expansion *x);
 
