@@ -35,9 +35,8 @@
 /* After an interval that needed further looks, this part of it is tried. */
 #define SHRINK 0.7
 
-/* Growth of the length of intervals that are clear: near the first length that bounds allow, and beyond. */
-#define GROWS 1.7
-#define GROWS_ON 1.15
+/* Growth of the length of intervals that are clear. */
+#define GROWS 1.15
 
 /* An interval that ends at an expected zero may be longer by this factor. */
 #define STRETCH 1.5
@@ -274,7 +273,7 @@ static const struct guard *search_interval(struct first_zero *s, double b, doubl
     if (s->looks > looks + 1) {
         s->h = greater(SHRINK * length, greater(s->resolution, DBL_EPSILON * b));
     } else {
-        s->h = greater(s->h, (length < 0.5 * s->length ? GROWS : GROWS_ON) * length);
+        s->h = greater(s->h, GROWS * length);
     }
     if (b < end) {
         sample_all(s, b);

@@ -49,12 +49,7 @@ double tribo_quintic_least(const struct sample *a, const struct sample *b, doubl
     const double h_3 = h * h * h, doubt = bend * h_3 * h_3 * (1 / 14400.);
     const double p0 = a->g, p1 = p0 + 0.2 * h * a->d, p2 = p1 + 0.2 * h * (a->d + 0.25 * h * a->e);
     const double p5 = b->g, p4 = p5 - 0.2 * h * b->d, p3 = p4 - 0.2 * h * (b->d - 0.25 * h * b->e);
-    const double all = lesser(lesser(p0, p5), lesser(lesser(p1, p2), lesser(p3, p4))) - doubt;
-    double from[COEFFICIENTS];
-    if (all >= enough) { /* the coefficients below are means of these */
-        return all;
-    }
-    double c[COEFFICIENTS] = {p0,
+    double from[COEFFICIENTS], c[COEFFICIENTS] = {p0,
                               (p0 + 5.0 * p1) * (1 / 6.),
                               (p1 + 2.0 * p2) * (1 / 3.),
                               0.5 * (p2 + p3) - doubt,
@@ -91,8 +86,7 @@ static void quintic_powers(const struct sample *a, const struct sample *b, doubl
     p[5] = 6.0 * rise - 3.0 * tilt + 0.5 * curve;
 }
 
-/* The zero of p by Newton's method from s on, bisecting where it leaves the interval. Roots at 0 are divided out. Sums are by
- * pairs, so that no term waits for more than two others. */
+/* The zero of p by Newton's method from s on, bisecting where it leaves the interval. Roots at 0 are divided out. */
 static double zero(const double *p, double s)
 {
     int roots = 0;
@@ -100,13 +94,11 @@ static double zero(const double *p, double s)
         roots++;
     }
     const double *const c = p + roots;
-    const double c2 = 2.0 * c[2], c3 = 3.0 * c[3], c4 = 4.0 * c[4], c5 = 5.0 * c[5];
     double lo = 0.0, hi = 1.0;
     s = roots ? 0.5 : s;
     for (int i = 0; i < 40; i++) {
-        const double s2 = s * s;
-        const double value = (c[0] + c[1] * s) + s2 * ((c[2] + c[3] * s) + s2 * (c[4] + c[5] * s));
-        const double slope = (c[1] + c2 * s) + s2 * ((c3 + c4 * s) + s2 * c5);
+        const double value = c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * c[5]))));
+        const double slope = c[1] + s * (2.0 * c[2] + s * (3.0 * c[3] + s * (4.0 * c[4] + s * (5.0 * c[5]))));
         *(value > 0.0 ? &lo : &hi) = s;
         const double next = s - value / slope;
         if (slope < 0.0 && fabs(next - s) < CLOSE) {
