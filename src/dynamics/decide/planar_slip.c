@@ -104,11 +104,11 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
     }
     /* forces of planar contacts are known for limits that are the same at all times and speeds, at rest and not */
     for (size_t i = 0; i < m->constant.contacts; i++) {
-        if (tribo_breakaway_ratio(&m->breakaway, i) > 1.0) {
+        if (m->limits.ratio[i] > 1.0) {
             return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                      "method event knows no static limits beside planar contacts: contact %zu has ratio[%zu] = "
                                      "%g: take moreau/fixed",
-                                     i, i, m->breakaway.ratio[i]);
+                                     i, i, m->limits.ratio[i]);
         }
     }
     if (tribo_system_limits_vary(sys)) {

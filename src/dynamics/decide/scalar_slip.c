@@ -122,9 +122,9 @@ static void accelerate_doubtful(struct stick_slip *m, const tribo_system *sys, c
 static size_t let_go(struct stick_slip *m, size_t i, signed char direction)
 {
     struct slip_state *s = &m->state;
-    const int again = tribo_breakaway_is_sudden(&m->breakaway, i) && !m->breakaway.falls;
+    const int again = tribo_drops(m, i) && !m->limits.falls;
     if (again) {
-        tribo_breakaway_stick(&m->breakaway, i, 1.0);
+        tribo_limits_set_stick(m, i, 1.0);
     }
     tribo_stick_slip_set(m, i, again ? TRIBO_SLIP_STUCK : direction);
     s->force[i] = again ? s->force[i] : -direction * s->limit[i];
@@ -136,7 +136,7 @@ static size_t let_go(struct stick_slip *m, size_t i, signed char direction)
 /* 1 if contact i would lose a static limit and forces at rest are not unique. */
 static int must_be_sure(const struct stick_slip *m, size_t i)
 {
-    return m->state.dependents && tribo_breakaway_is_sudden(&m->breakaway, i);
+    return m->state.dependents && tribo_drops(m, i);
 }
 
 /* The direction in which contact i slides that is at its limit by `force`, if `part` of its acceleration work.v exceeds
@@ -191,7 +191,7 @@ static double find_moment(const struct stick_slip *m)
     const struct slip_state *s = &m->state;
     const double horizon = m->constant.horizon;
     double moment = horizon, force = 0.0;
-    if (!tribo_system_limits_vary(m->constant.sys) && !m->breakaway.falls) {
+    if (!tribo_system_limits_vary(m->constant.sys) && !m->limits.falls) {
         return horizon;
     }
     for (size_t i = 0; i < m->constant.contacts; i++) {
@@ -211,14 +211,9 @@ static int look_ahead(struct stick_slip *m, const tribo_system *sys, const doubl
 {
     struct slip_state *s = &m->state;
     struct slip_work *w = &m->work;
-    if (m->breakaway.falls) { /* rates of limits, as sliding contacts gain speed */
-        tribo_stick_slip_find_static(m, sys, y);
+    if (m->limits.falls) {
         tribo_stick_slip_accelerate(m, sys, w->a, s->force, w->v);
-        for (size_t i = 0; i < m->constant.contacts; i++) {
-            const double v = s->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
-            s->limit_rate[i] +=
-                s->slip[i] == TRIBO_SLIP_OPEN ? 0.0 : s->slip[i] * w->v[i] * tribo_breakaway_slope(&m->breakaway, i, v);
-        }
+        tribo_limits_fall(m, sys, y, w->v);
     }
     const double moment = find_moment(m);
     tribo_stick_slip_find_rate(m, sys, y);
@@ -246,7 +241,7 @@ static int look_ahead(struct stick_slip *m, const tribo_system *sys, const doubl
         const double room = limit_ahead(s, i, moment) - fabs(w->f[i]);
         if (tribo_stick_slip_searches(m, i) && room >= 0.0) {
             const signed char direction = (signed char)(room <= 0.0 ? leaves(m, i, w->f[i], 1.0) : 0);
-            const int sudden = tribo_breakaway_is_sudden(&m->breakaway, i);
+            const int sudden = tribo_drops(m, i);
             w->pulled[i] = (signed char)(sudden && s->tied[i] ? direction : 0);
             if (direction && !sudden) {
                 *ties -= s->tied[i] != 0;
@@ -319,7 +314,7 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
     if (status) {
         return status;
     }
-    const int sudden = worst < none && tribo_breakaway_is_sudden(&m->breakaway, worst);
+    const int sudden = worst < none && tribo_drops(m, worst);
     for (size_t i = 0; i < none; i++) {
         if (worst == none) { /* work.f are the forces */
             const double force = s->loose[i] ? s->force[i] : clamp(w->f[i], -s->stick[i], s->stick[i]);
@@ -360,12 +355,12 @@ int tribo_scalar_slip_settle(struct stick_slip *m, const tribo_system *sys, cons
             m->work.limit_lost = 0;
         }
     }
-    if (m->breakaway.some && !status) {
+    if (m->limits.differ && !status) {
         tribo_stick_slip_find_gains(m, sys, y);
         for (size_t i = 0; i < m->constant.contacts; i++) {
             /* a contact that broke away, and is held by others after all, has its static limit again */
             const double lowered = s->stick[i];
-            tribo_breakaway_stick(&m->breakaway, i, m->breakaway.ratio[i]);
+            tribo_limits_set_stick(m, i, m->limits.ratio[i]);
             s->tied[i] = (signed char)(lowered < s->stick[i] ? 0 : s->tied[i]);
         }
     }

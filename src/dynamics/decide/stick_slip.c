@@ -32,7 +32,7 @@ static void lay_out_arrays(struct stick_slip *m, struct layout *l, size_t contac
     struct slip_state *s = &m->state;
     struct slip_noise *r = &m->noise;
     struct slip_work *w = &m->work;
-    struct breakaway *b = &m->breakaway;
+    struct slip_limits *b = &m->limits;
     /* the three last ones and the first one below are zeroed together */
     double **const by_contact[] = {&c->diagonal,   &c->inertia,      &c->still,
                                    &c->swing,      &c->base_size,    &c->base_rate_size,
@@ -42,8 +42,8 @@ static void lay_out_arrays(struct stick_slip *m, struct layout *l, size_t contac
                                    &r->spring,     &r->parting,      &w->a,
                                    &w->v,          &w->lo,           &w->hi,
                                    &w->f,          &b->ratio,        &b->velocity,
-                                   &b->kinetic,    &b->kinetic_rate, &b->stick,
-                                   &b->stick_rate, &r->acceleration, &r->allowance,
+                                   &b->kinetic,    &b->kinetic_rate, &s->stick,
+                                   &s->stick_rate, &r->acceleration, &r->allowance,
                                    &r->excess};
     double **const by_dof[] = {&r->size, &c->load_size, &w->acceleration, &w->free, &w->rate};
     signed char **const sign[] = {&s->slip, &s->tied, &s->before, &s->loose, &s->slid, &w->pulled, &s->key};
@@ -134,8 +134,7 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
 {
     const size_t c = sys->ncontact + 1;
     struct layout l = {0};
-    *m = (struct stick_slip){
-        .constant = {.sys = sys, .contacts = sys->ncontact}, .noise.factor = 1.0, .breakaway.revision = SIZE_MAX};
+    *m = (struct stick_slip){.constant = {.sys = sys, .contacts = sys->ncontact}, .noise.factor = 1.0};
     lay_out_arrays(m, &l, c, sys->ndof);
     if (create_contexts(&m->constant, sys->contacts) && tribo_layout_zeros(&l)) {
         lay_out_arrays(m, &l, c, sys->ndof);
@@ -178,7 +177,7 @@ static void find_scales(struct stick_slip *m, const tribo_system *sys)
 {
     struct slip_constant *k = &m->constant;
     const size_t c = sys->ncontact;
-    const double fastest = tribo_system_fastest(sys) + m->breakaway.steepest;
+    const double fastest = tribo_system_fastest(sys) + m->limits.steepest;
     k->horizon = LOOK_AHEAD / (fastest > 0.0 ? fastest : 1.0);
     memset(k->base_size, 0, c * sizeof *k->base_size);
     memset(k->base_rate_size, 0, c * sizeof *k->base_rate_size);
@@ -245,8 +244,7 @@ void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, c
     m->noise.acceleration[i] = NOISE * m->noise.factor * (m->constant.base_rate_size[i] + size);
     m->noise.allowance[i] = TRIBO_ALLOWED * m->noise.acceleration[i] * m->constant.inertia[i];
     if (m->constant.swing[i] > 0.0) {
-        m->noise.allowance[i] +=
-            TRIBO_LIMIT_NOISE * m->noise.factor * tribo_breakaway_ratio(&m->breakaway, i) * m->constant.swing[i];
+        m->noise.allowance[i] += TRIBO_LIMIT_NOISE * m->noise.factor * m->limits.ratio[i] * m->constant.swing[i];
     }
     if (m->constant.base_moves) {
         m->noise.parting[i] =
@@ -266,7 +264,7 @@ void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, 
 double tribo_stick_slip_follows(const struct stick_slip *m, size_t i)
 {
     if (m->state.slip[i] == TRIBO_SLIP_STUCK) {
-        const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
+        const double ratio = m->limits.ratio[i];
         return m->state.holds[i] || !m->state.tied[i] ? 0.0 : m->state.force[i] > 0.0 ? ratio : -ratio;
     }
     return m->state.slip[i] == TRIBO_SLIP_OPEN ? 0.0 : -m->state.slip[i];
@@ -303,30 +301,36 @@ void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, 
     tribo_matrix_multiply_add(&sys->direction, 1.0, m->work.rate, v);
 }
 
+/* Sets state.base = b(t). It stays zero if no base moves. */
+static void find_base(struct stick_slip *m, const tribo_system *sys)
+{
+    if (tribo_system_bases_move(sys)) {
+        memset(m->state.base, 0, sys->ncontact * sizeof *m->state.base);
+        tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->state.base);
+    }
+}
+
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration,
                                   double *force)
 {
     const struct slip_state *s = &m->state;
     const size_t c = sys->ncontact;
-    double *limit = m->work.lo; /* those of (t, y): they swing, or fall with the speed */
-    tribo_system_free_motion(sys, t, y, acceleration, m->work.v, m->work.a);
+    tribo_system_free_acceleration(sys, t, y, acceleration);
+    find_base(m, sys);
     if (sys->compliance.count) {
         tribo_elastic_find(m, sys, y);
     }
-    tribo_system_limits(sys, limit, m->work.hi);
-    for (size_t i = 0; i < c; i++) {
-        limit[i] = greater(limit[i], 0.0);
+    if (tribo_system_limits_vary(sys)) {
+        tribo_system_limits(sys, s->limit, s->limit_rate);
+        tribo_limits_take(m);
     }
-    if (m->breakaway.some) {
-        tribo_breakaway_take(&m->breakaway, c, limit, m->work.hi);
-        tribo_breakaway_limits(&m->breakaway, c, s->slip, m->work.v, limit, m->work.hi);
-    }
+    tribo_limits_fall(m, sys, y, NULL);
     for (size_t i = 0; i < c; i++) {
         const double follows = m->constant.swing[i] > 0.0 ? tribo_stick_slip_follows(m, i) : 0.0;
         force[i] = !s->loose[i]                     ? 0.0
                    : s->slip[i] == TRIBO_SLIP_OPEN  ? 0.0
-                   : s->slip[i] != TRIBO_SLIP_STUCK ? -s->slip[i] * limit[i]
-                   : follows != 0.0                 ? follows * (m->breakaway.some ? m->breakaway.kinetic[i] : limit[i])
+                   : s->slip[i] != TRIBO_SLIP_STUCK ? -s->slip[i] * s->limit[i]
+                   : follows != 0.0                 ? follows * m->limits.kinetic[i]
                    : m->constant.elastic[i]         ? s->spring[i]
                                                     : s->force[i];
     }
@@ -334,9 +338,7 @@ int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, doubl
     tribo_stick_slip_contact_accelerations(sys, acceleration, 1, m->work.v);
     const int status = tribo_stick_slip_balance(m, m->work.v, m->work.f);
     tribo_matrix_multiply_add(&sys->response, 1.0, m->work.f, acceleration);
-    for (size_t i = 0; i < c; i++) {
-        force[i] += m->work.f[i];
-    }
+    tribo_add(force, 1.0, m->work.f, c);
     return status;
 }
 
@@ -353,7 +355,7 @@ static signed char slip_of(struct stick_slip *m, const tribo_system *sys, size_t
 static void update_limits(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     struct slip_state *s = &m->state;
-    if (!tribo_system_limits_vary(sys) && !m->breakaway.some) {
+    if (!tribo_system_limits_vary(sys)) {
         return;
     }
     tribo_system_limits(sys, s->limit, s->limit_rate);
@@ -366,11 +368,8 @@ static void update_limits(struct stick_slip *m, const tribo_system *sys, const d
         } else if (s->slip[i] == TRIBO_SLIP_OPEN) {
             tribo_stick_slip_set(m, i, slip_of(m, sys, i, y));
         }
-        s->limit[i] = greater(s->limit[i], 0.0);
     }
-    if (m->breakaway.some) {
-        tribo_breakaway_take(&m->breakaway, sys->ncontact, s->limit, s->limit_rate);
-    }
+    tribo_limits_take(m);
 }
 
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
@@ -394,7 +393,7 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
     /* where bases part, a contact at rest that does not hold slides by its velocity */
     for (size_t i = 0; !status && s->dependents && m->constant.base_moves && i < n; i++) {
         if (s->slip[i] == TRIBO_SLIP_STUCK && !s->holds[i]) {
-            const int loses = s->rested[i] && !m->breakaway.falls && tribo_breakaway_is_sudden(&m->breakaway, i);
+            const int loses = s->rested[i] && !m->limits.falls && tribo_drops(m, i);
             tribo_stick_slip_set(m, i, slip_of(m, sys, i, y));
             if (s->slip[i] && loses) { /* irreversible, so it must not depend on the choice of H */
                 status = tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
@@ -414,25 +413,6 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
 
 /* ------------------------------------------------------------------------------------------------------------- instant */
 
-/* Sets state.base = b(t). It stays zero if no base moves. */
-static void find_base(struct stick_slip *m, const tribo_system *sys)
-{
-    if (tribo_system_bases_move(sys)) {
-        memset(m->state.base, 0, sys->ncontact * sizeof *m->state.base);
-        tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->state.base);
-    }
-}
-
-void tribo_stick_slip_find_static(struct stick_slip *m, const tribo_system *sys, const double *y)
-{
-    if (m->breakaway.some) {
-        for (size_t i = 0; i < sys->ncontact; i++) {
-            m->work.v[i] = m->state.rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
-        }
-        tribo_breakaway_limits(&m->breakaway, sys->ncontact, m->state.slip, m->work.v, m->state.limit, m->state.limit_rate);
-    }
-}
-
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
     tribo_system_set_time(sys, t);
@@ -442,7 +422,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     tribo_elastic_place(m, sys, y);
     int status = m->plane ? tribo_planar_slip_find_resting(m, sys, y) : tribo_stick_slip_find_resting(m, sys, y);
     if (!status) {
-        tribo_stick_slip_find_static(m, sys, y);
+        tribo_limits_fall(m, sys, y, NULL);
         tribo_elastic_move(m, sys, y);
         tribo_system_free_acceleration(sys, t, y, m->work.free);
         tribo_stick_slip_contact_accelerations(sys, m->work.free, 1, m->work.a);
@@ -472,9 +452,8 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
     const size_t c = sys->ncontact;
     tribo_system_set_time(sys, t);
     tribo_system_limits(sys, s->limit, s->limit_rate);
-    tribo_breakaway_start(&m->breakaway, sys, m->work.rate, m->work.v);
-    s->stick = m->breakaway.some ? m->breakaway.stick : s->limit;
-    s->stick_rate = m->breakaway.some ? m->breakaway.stick_rate : s->limit_rate;
+    tribo_limits_start(m, sys);
+    tribo_limits_take(m);
     memset(s->base, 0, c * sizeof *s->base);
     find_base(m, sys);
     find_scales(m, sys);

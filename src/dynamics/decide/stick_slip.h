@@ -60,7 +60,7 @@ struct slip_state {
     size_t reached;      /* the contact whose force just met its limit, by the event; ncontact if none */
     double *limit;       /* [ncontact] limit while sliding */
     double *limit_rate;  /* [ncontact] its rate */
-    double *stick;       /* [ncontact] limit at rest: limit, or the static limit */
+    double *stick;       /* [ncontact] limit at rest */
     double *stick_rate;  /* [ncontact] its rate */
     double *force;       /* [ncontact] friction force f */
     double *spring;      /* [ncontact] force of an elastic contact by the state */
@@ -101,22 +101,15 @@ struct slip_work {
     size_t doubts;
 };
 
-/* Static limits above the limits to slide (tribo_set_static), for methods with events. A contact at rest holds up to its static
- * limit; one that cannot breaks away: its bound is the limit to slide, and all contacts are decided about again. A limit that
- * falls with the speed (Stribeck) is
- *     N(|v|) = limit + (ratio - 1) limit exp(-|v|/velocity).
- * The exponential is smooth while the contact slides: the equations of motion contain it. */
-struct breakaway {
-    int some;             /* 1: there are static limits */
-    int falls;            /* 1: with velocities by which they fall */
-    double *ratio;        /* [ncontact] static limit over the limit at high speed */
-    double *velocity;     /* [ncontact] */
+/* Limits at rest that differ from those to slide: limits.c. */
+struct slip_limits {
+    int differ;           /* 1: some ratio is above 1 */
+    int falls;            /* 1: limits fall with the speed */
+    double *ratio;        /* [ncontact] limit at rest over the limit at high speed */
+    double *velocity;     /* [ncontact] by which limits fall */
     double *kinetic;      /* [ncontact] limit at high speed */
     double *kinetic_rate; /* [ncontact] its rate */
-    double *stick;        /* [ncontact] limit at rest */
-    double *stick_rate;   /* [ncontact] its rate */
     double steepest;      /* bound of the growth rate of perturbations by limits that fall */
-    size_t revision;      /* of the system that steepest is of; SIZE_MAX: none */
 };
 
 /* How a planar contact slides: with a velocity; without one, by its acceleration; or by its force alone, which is about to
@@ -149,7 +142,7 @@ struct stick_slip {
     struct slip_state state;
     struct slip_noise noise;
     struct slip_work work;
-    struct breakaway breakaway;
+    struct slip_limits limits;
     struct planar_slip *plane; /* NULL if there are no planar contacts */
 };
 
@@ -215,9 +208,6 @@ static inline int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i
 /* Brings contacts to rest that have no velocity in the direction of their slip. Returns a status. */
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);
 
-/* Sets the limits at the velocities of y, if there are static limits. */
-void tribo_stick_slip_find_static(struct stick_slip *m, const tribo_system *sys, const double *y);
-
 /* scalar_slip.c: lets contacts at rest slide by the forces; sets slip, tied, force and allowance. Returns a status. */
 int tribo_scalar_slip_settle(struct stick_slip *m, const tribo_system *sys, const double *y);
 
@@ -262,35 +252,19 @@ int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const d
  * does not hold; else 0. */
 double tribo_stick_slip_follows(const struct stick_slip *m, size_t i);
 
-/* ------------------------------------------------------------------------------------------ breakaway.c: static limits */
+/* limits.c. start, at the beginning of an advance, reads ratios and velocities. take: state.limit and its rate are of the system;
+ * sets limits at rest. fall: sets limits that fall at the velocities of y; accelerations a [ncontact], or NULL, add to their
+ * rates. set_stick sets a limit at rest to ratio times that at high speed. */
+void tribo_limits_start(struct stick_slip *m, tribo_system *sys);
+void tribo_limits_take(struct stick_slip *m);
+void tribo_limits_fall(struct stick_slip *m, const tribo_system *sys, const double *y, const double *a);
+void tribo_limits_set_stick(struct stick_slip *m, size_t i, double ratio);
 
-/* Takes ratio and velocity from the system's context; finds steepest. dof [ndof], contact [ncontact]: workspace. */
-void tribo_breakaway_start(struct breakaway *b, tribo_system *sys, double *dof, double *contact);
-
-/* Takes limits at high speed, 0 for open contacts, and their rates; both [contacts]. */
-void tribo_breakaway_take(struct breakaway *b, size_t contacts, const double *limit, const double *limit_rate);
-
-/* Sets stick, and limit [contacts] of contacts with this slip and v, and their rates without the part of v'. */
-void tribo_breakaway_limits(struct breakaway *b, size_t contacts, const signed char *slip, const double *v, double *limit,
-                            double *limit_rate);
-
-/* dN/d|v| of contact i. */
-double tribo_breakaway_slope(const struct breakaway *b, size_t i, double v);
-
-/* Static limit of contact i over its limit at high speed. */
-static inline double tribo_breakaway_ratio(const struct breakaway *b, size_t i)
+/* 1 if the limit of contact i drops as it begins to slide, which must be certain then. */
+static inline int tribo_drops(const struct stick_slip *m, size_t i)
 {
-    return b->some ? b->ratio[i] : 1.0;
+    return m->state.stick[i] > m->limits.kinetic[i];
 }
-
-/* 1 if the limit of contact i drops as it breaks away, which must be certain then. */
-static inline int tribo_breakaway_is_sudden(const struct breakaway *b, size_t i)
-{
-    return b->some && b->stick[i] > b->kinetic[i];
-}
-
-/* Sets stick to ratio times the limit at high speed, and its rate. */
-void tribo_breakaway_stick(struct breakaway *b, size_t i, double ratio);
 
 /* ---------------------------------------------------------------------------------------- planar_slip.c: planar contacts */
 

@@ -196,7 +196,7 @@ static int decide(struct events *e, tribo_system *sys, double t, double *y)
  * loses that in its rounding. */
 static int is_brief(const struct events *e, const tribo_system *sys, double reach)
 {
-    const int simple = !e->stick_slip.plane && !e->stick_slip.breakaway.falls && !sys->compliance.count;
+    const int simple = !e->stick_slip.plane && !e->stick_slip.limits.falls && !sys->compliance.count;
     const int even = e->met && e->search.at_once && e->when * fabs(e->met->left.e) <= STEADY * fabs(e->met->left.d);
     return simple && even && (!sys->loads.tables || e->when <= BRIEF * reach) && e->when * tribo_system_fastest(sys) <= BRIEF;
 }

@@ -24,13 +24,13 @@ static void append(struct events *e, size_t i, int kind, double side, double tim
 /* Force beyond its limit with which contact i holds: the allowance, if its limit drops as it breaks away. */
 static double margin_of(const struct stick_slip *m, size_t i)
 {
-    return tribo_breakaway_is_sudden(&m->breakaway, i) ? m->noise.allowance[i] : 0.0;
+    return tribo_drops(m, i) ? m->noise.allowance[i] : 0.0;
 }
 
 void tribo_events_guard_contact(struct events *e, size_t i, const struct watch *w)
 {
     struct stick_slip *m = &e->stick_slip;
-    const double ratio = tribo_breakaway_ratio(&m->breakaway, i), margin = margin_of(m, i);
+    const double ratio = m->limits.ratio[i], margin = margin_of(m, i);
     if (m->state.slip[i] == TRIBO_SLIP_OPEN) {
         m->noise.velocity_scale[i] = w->size; /* for the decision when it touches down */
     } else if (tribo_slides(m->state.slip[i])) {
@@ -49,7 +49,7 @@ void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *w)
 {
     const struct stick_slip *m = &e->stick_slip;
     const int keeps = m->state.slip[i] == TRIBO_SLIP_STUCK && tribo_stick_slip_follows(m, i) == 0.0;
-    const double ratio = tribo_breakaway_ratio(&m->breakaway, i), swing = m->constant.swing[i];
+    const double ratio = m->limits.ratio[i], swing = m->constant.swing[i];
     if (m->state.holds[i] || !(keeps ? w->varies : swing > 0.0)) {
         return;
     }

@@ -44,20 +44,20 @@ static void add_transposed(const struct matrix *a, double factor, const double *
 /* Lists the crossings of static limits that drop at once, at tau into the phase: by the guard that ended the phase, and of other
  * contacts at the same time. Forces that do not rise only touch their limits. Sets row = df_i/dstate: f_i = e'J (-AK q - AC q'),
  * e = -R_HH^-1 unit_i. Returns a status. */
-static int find_breakaways(struct variation *x, double tau)
+static int find_drops(struct variation *x, double tau)
 {
     struct events *e = x->events;
     struct stick_slip *m = &e->stick_slip;
     const size_t n = tribo_system_energy(x->sys);
     int status = TRIBO_OK;
-    for (size_t k = 0; m->breakaway.some && !m->breakaway.falls && !status && k < e->search.guards; k++) {
+    for (size_t k = 0; m->limits.differ && !m->limits.falls && !status && k < e->search.guards; k++) {
         struct guard *g = &e->search.guard[k];
         const size_t i = g->contact;
-        if (g->kind != HOLDS || !g->output || !m->state.holds[i] || !tribo_breakaway_is_sudden(&m->breakaway, i)) {
+        if (g->kind != HOLDS || !g->output || !m->state.holds[i] || !tribo_drops(m, i)) {
             continue;
         }
         e->motion->look(e->own, tau, 1, &g);
-        if (!(g->middle.d < 0.0) || (g != e->met && !(g->middle.g <= TOGETHER * m->breakaway.stick[i]))) {
+        if (!(g->middle.d < 0.0) || (g != e->met && !(g->middle.g <= TOGETHER * m->state.stick[i]))) {
             continue;
         }
         double *row = x->row + x->count * n;
@@ -86,7 +86,7 @@ int tribo_variation_phase(struct variation *x, double tau, double t, const doubl
         status = no_derivative(x);
     }
     status = status || x->events->motion->keep ? status : catch_up(x);
-    return status ? status : find_breakaways(x, tau);
+    return status ? status : find_drops(x, tau);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- velocities */
@@ -229,7 +229,7 @@ void tribo_variation_event(struct variation *x)
     }
     /* contact i loses its static limit by none of these groups: the order of the crossings matters */
     for (size_t i = 0; x->count && i < x->sys->ncontact; i++) {
-        if (x->before[i] == 0 && tribo_slides(m->state.slip[i]) && !x->group[i] && tribo_breakaway_is_sudden(&m->breakaway, i)) {
+        if (x->before[i] == 0 && tribo_slides(m->state.slip[i]) && !x->group[i] && tribo_drops(m, i)) {
             tear(x, i, x->contact[0]);
         }
     }

@@ -11,7 +11,7 @@
 static void expand_falling(struct event *e, size_t k)
 {
     const struct stick_slip *m = &e->events.stick_slip;
-    const struct breakaway *b = &m->breakaway;
+    const struct slip_limits *b = &m->limits;
     const size_t c = e->sys->ncontact;
     for (size_t i = 0; i < c; i++) {
         const double *v = e->watch + i, *limit = e->limit + i;
@@ -74,7 +74,7 @@ static int expand_forces(struct event *e, size_t k, double scale)
     const int given = k < e->slide_terms;
     tribo_system_smooth(sys, (int)k, scale, e->q + k * n, e->u + k * n, e->spring + k * c, acc);
     find_velocities(e, k, scale, watch);
-    if (m->breakaway.falls) {
+    if (m->limits.falls) {
         expand_falling(e, k);
     }
     int status = TRIBO_OK;
@@ -118,7 +118,7 @@ int tribo_event_start(struct event *e, double t, const double *y)
     const int status = m->plane ? tribo_planar_series_begin(e, y) : TRIBO_OK;
     tribo_system_set_time(sys, t);
     /* limits; a coefficient of a limit that falls with the speed needs that of the velocity first */
-    const int falls = m->breakaway.falls;
+    const int falls = m->limits.falls;
     double scale = 1.0; /* 1/k! */
     e->slide = falls ? e->fall : e->limit;
     e->slide_terms = falls || m->plane ? e->order + 1 : e->terms;
@@ -225,13 +225,13 @@ static void find_term(struct event *e, size_t k, double tau, const struct pertur
             p->spring[i] *= -part;
         }
     }
-    if (m->breakaway.falls) { /* forces by limits N that fall, from terms of v: dN/d|v| = (limit - N)/velocity */
+    if (m->limits.falls) { /* forces by limits N that fall, from terms of v: dN/d|v| = (limit - N)/velocity */
         double power = 1.0;
         memset(p->force, 0, each * sizeof *p->force);
         for (size_t j = 0; j < k && j < p->rows; j++) {
             const double *fall = e->fall + j * c, *limit = e->limit + j * c, *from = p->v + (k - 1 - j) % p->rows * each;
             for (size_t i = 0; i < c; i++) {
-                const double slope = tribo_slides(m->state.slip[i]) ? (fall[i] - limit[i]) / m->breakaway.velocity[i] : 0.0;
+                const double slope = tribo_slides(m->state.slip[i]) ? (fall[i] - limit[i]) / m->limits.velocity[i] : 0.0;
                 tribo_add(p->force + i * p->columns, power * slope, from + i * p->columns, p->columns);
             }
             power *= tau;
@@ -251,7 +251,7 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
     struct stick_slip *m = &e->events.stick_slip;
     const struct compliance *g = &e->sys->compliance;
     const size_t n = e->sys->ndof, half = n * columns, each = e->sys->ncontact * columns;
-    struct perturbed p = {.columns = columns, .rows = m->breakaway.falls ? e->order + 1 : 1};
+    struct perturbed p = {.columns = columns, .rows = m->limits.falls ? e->order + 1 : 1};
     p.project = malloc((n * n + 3 * half + (2 + p.rows) * each + 1) * sizeof *p.project);
     if (!p.project) {
         return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));

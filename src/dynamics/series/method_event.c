@@ -22,7 +22,7 @@
 
 static double fastest(const struct event *e)
 {
-    return e->fastest + e->events.stick_slip.breakaway.steepest;
+    return e->fastest + e->events.stick_slip.limits.steepest;
 }
 
 /* Error allowed in a series [order + 1][n] that moves by `moves` within the time of the fastest motion, on a step of at most `most`;
@@ -56,7 +56,7 @@ double tribo_event_length(const struct event *e)
             /* forces of contacts at rest to the same part of their limit, or of what it becomes; and this itself */
             const double rise = e->terms > 1 ? fabs(e->limit[c + i]) * lesser(most, DBL_MAX) : 0.0;
             const double force = tolerance * (greater(e->limit[i], 0.0) + m->constant.swing[i] + rise);
-            const double stick = tribo_breakaway_ratio(&m->breakaway, i) * force;
+            const double stick = m->limits.ratio[i] * force;
             const double speed = m->plane ? m->plane->error[i] : u;
             const double scale = m->state.slip[i] == TRIBO_SLIP_STUCK && !tribo_stick_slip_may_part(m, i) ? stick : speed;
             term = m->state.slip[i] == TRIBO_SLIP_OPEN ? term : greater(term, fabs(e->watch[k * c + i]) / scale);
