@@ -57,13 +57,13 @@ int tribo_derivative_add_phase(struct derivative *d, double tau, const signed ch
 
 int tribo_derivative_add_jump(struct derivative *d, const double *row, double slope, const double *column)
 {
-    const size_t n = tribo_system_energy(d->sys);
+    const size_t n = tribo_system_energy(d->sys), moved = n - d->sys->ndof;
     struct derivative_step *s = add_step(d);
-    double *jump = s ? calloc(n + d->sys->ndof, sizeof *jump) : NULL;
+    double *jump = s ? calloc(n + moved, sizeof *jump) : NULL;
     if (jump) {
         s->jump = jump;
         tribo_add(jump, 1.0 / slope, row, n);
-        memcpy(jump + n, column, d->sys->ndof * sizeof *column);
+        memcpy(jump + n, column, moved * sizeof *column);
     }
     return jump != NULL;
 }
@@ -80,7 +80,7 @@ int tribo_derivative_apply(const struct derivative *d, size_t first, size_t colu
         if (s->jump) {
             memset(work, 0, columns * sizeof *work);
             tribo_multiply_add(1, all, columns, 1.0, s->jump, v, work);
-            tribo_multiply_add(n, 1, columns, 1.0, s->jump + all, work, v + n * columns);
+            tribo_multiply_add(all - n, 1, columns, 1.0, s->jump + all, work, v + n * columns);
             continue;
         }
         if (d->sys->compliance.count) {

@@ -6,12 +6,12 @@
 
 #include "dynamics/events/events.h"
 
-/* A phase, or a jump q'' += column (row v)/slope. */
+/* A phase, or a jump [q'', f'] += column (row v)/slope, f: forces of compliant contacts. */
 struct derivative_step {
     void *phase; /* of motion->keep; NULL: not kept */
     double tau;
     signed char *slip; /* [ncontact] slip in the phase; NULL: a jump */
-    double *jump;      /* row/slope [n], column [ndof] */
+    double *jump;      /* row/slope [n], column [n - ndof] */
 };
 
 struct derivative {
@@ -26,7 +26,7 @@ struct derivative {
 void tribo_derivative_begin(struct derivative *d, struct events *e, const tribo_system *sys);
 void tribo_derivative_free(struct derivative *d);
 
-/* Append the phase of d->events that lasted tau, and a jump: row [n], column [ndof]. Both return 0 if out of memory. */
+/* Append the phase of d->events that lasted tau, and a jump: row [n], column [n - ndof]. Both return 0 if out of memory. */
 int tribo_derivative_add_phase(struct derivative *d, double tau, const signed char *slip);
 int tribo_derivative_add_jump(struct derivative *d, const double *row, double slope, const double *column);
 

@@ -82,6 +82,8 @@ int tribo_variation_phase(struct variation *x, double tau, double t, const doubl
     x->count = 0;
     int status = x->status ? x->status : tribo_stick_slip_acceleration(m, x->sys, t, y, x->acceleration, x->force);
     tribo_stick_slip_contact_accelerations(x->sys, x->acceleration, 1, x->rate);
+    tribo_elastic_move(m, x->sys, y);
+    memcpy(x->spring_rate, m->state.spring_rate, x->sys->ncontact * sizeof *x->spring_rate);
     if (!status && !tribo_derivative_add_phase(x->to, tau, x->before)) {
         status = no_derivative(x);
     }
@@ -200,6 +202,7 @@ static void carry_over(struct variation *x, size_t first)
         }
         return;
     }
+    memset(x->change, 0, (all - n) * sizeof *x->change);
     tribo_matrix_multiply(&x->sys->response, x->f, x->change);
     for (size_t l = 0; l < x->count; l++) {
         const double change = tribo_dot(x->row + l * all + n, x->change, n);
@@ -208,6 +211,32 @@ static void carry_over(struct variation *x, size_t first)
         }
     }
     if (!tribo_derivative_add_jump(x->to, x->row + first * all, x->slope[first], x->change)) {
+        x->status = no_derivative(x);
+    }
+}
+
+/* Where elastic contact i = met->contact breaks away and other elastic contacts stop, because f' jumps: appends the jump of f',
+ * earlier by df_i/(f_i' - limit'). */
+static void carry_over_springs(struct variation *x)
+{
+    const struct stick_slip *m = &x->events->stick_slip;
+    const struct guard *met = x->events->met;
+    const struct compliance *g = &x->sys->compliance;
+    const size_t n = x->sys->ndof, all = tribo_system_energy(x->sys), i = met ? met->contact : 0;
+    int stop = 0;
+    if (!met || met->kind != HOLDS || !tribo_is_compliant(g, i) || x->before[i] != 0 || !tribo_slides(m->state.slip[i])) {
+        return;
+    }
+    memset(x->change, 0, (all - n) * sizeof *x->change);
+    memset(x->row, 0, all * sizeof *x->row);
+    for (size_t k = 0; k < g->count; k++) {
+        const size_t j = g->contact[k];
+        stop |= tribo_slides(x->before[j]) && m->state.slip[j] == TRIBO_SLIP_STUCK;
+        x->change[n + k] = m->state.spring_rate[j] - x->spring_rate[j];
+        x->row[2 * n + k] = j == i;
+    }
+    const double slope = x->spring_rate[i] + met->side * m->state.limit_rate[i];
+    if (stop && slope != 0.0 && !tribo_derivative_add_jump(x->to, x->row, slope, x->change)) {
         x->status = no_derivative(x);
     }
 }
@@ -233,6 +262,7 @@ void tribo_variation_event(struct variation *x)
             tear(x, i, x->contact[0]);
         }
     }
+    carry_over_springs(x);
     if (!x->events->motion->keep && !x->status) {
         x->status = catch_up(x);
     }
@@ -259,11 +289,12 @@ int tribo_variation_create(struct variation *x, struct events *e, tribo_system *
         x->acceleration = tribo_layout_array(&l, n, sizeof *x->acceleration);
         x->force = tribo_layout_array(&l, c, sizeof *x->force);
         x->rate = tribo_layout_array(&l, c, sizeof *x->rate);
+        x->spring_rate = tribo_layout_array(&l, c, sizeof *x->spring_rate);
         x->slope = tribo_layout_array(&l, c, sizeof *x->slope);
         x->row = tribo_layout_array(&l, c * all, sizeof *x->row);
         x->a = tribo_layout_array(&l, c, sizeof *x->a);
         x->f = tribo_layout_array(&l, c, sizeof *x->f);
-        x->change = tribo_layout_array(&l, n, sizeof *x->change);
+        x->change = tribo_layout_array(&l, all - n, sizeof *x->change);
         x->delay = tribo_layout_array(&l, 2 * columns, sizeof *x->delay);
         x->contact = tribo_layout_array(&l, c, sizeof *x->contact);
         x->group = tribo_layout_array(&l, c, sizeof *x->group);

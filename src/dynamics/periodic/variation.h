@@ -6,7 +6,8 @@
  * would move a contact at rest is removed. At an event a quantity g of a contact crosses zero: v_i of a sliding contact that stops
  * or reverses, or f_i - limit_i of a contact at rest whose static limit drops at once. A perturbed motion is earlier by dg/g', so
  * that the jump of q'' acts earlier: S = I + (q''+ - q''-) (dg/dstate)/g'. If a contact breaks away without a static limit, and
- * for elastic contacts, forces are continuous, and S = I.
+ * for elastic contacts, forces are continuous, and S = I; but where an elastic contact breaks away and others, coupled to it by G,
+ * stop, f' jumps likewise: S = I + (f'+ - f'-) (df_i/dstate)/f_i'.
  *
  * If several quantities cross zero at one instant by coincidence, contacts are divided into groups that pass no forces to each
  * other, and each group makes the jump of its own forces. There is no derivative, because the order of the crossings matters, if
@@ -32,6 +33,7 @@ struct variation {
     double *acceleration; /* [ndof] q'' */
     double *force;        /* [ncontact] friction forces */
     double *rate;         /* [ncontact] v' */
+    double *spring_rate;  /* [ncontact] f' of elastic contacts */
 
     /* crossings, at most one a contact: of static limits, found before the decision, then of velocities */
     size_t count;
@@ -42,7 +44,7 @@ struct variation {
 
     size_t *queue;          /* [ncontact] workspace */
     double *a, *f;          /* [ncontact] workspace */
-    double *change, *delay; /* [ndof], [2 columns] workspace */
+    double *change, *delay; /* [n - ndof], [2 columns] workspace */
 };
 
 /* Returns 1, or 0 if out of memory. Call tribo_variation_free also after a failure. */
