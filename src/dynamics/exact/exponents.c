@@ -22,20 +22,27 @@ static int exponents_unsupported(const struct modal_build *b, const char *why)
     return tribo_system_fail(b->sys, TRIBO_ERR_UNSUPPORTED, "method exact: %s; method event can do it", why);
 }
 
+/* Makes room for e exponents, a, b and r of `modes` modes each. Returns 0 if out of memory. */
+static int reserve_exponents(struct modal *h, size_t e, size_t modes)
+{
+    double **const part[] = {&h->ar, &h->ai, &h->br, &h->bi, &h->rr, &h->ri};
+    h->exponents = e;
+    h->lr = tribo_modal_take(&h->store, e * (2 + 6 * modes), sizeof *h->lr);
+    h->li = h->lr ? h->lr + e : NULL;
+    for (size_t k = 0; h->lr && k < 6; k++) {
+        *part[k] = h->lr + e * (2 + k * modes);
+    }
+    return h->lr != NULL;
+}
+
 static int exponents_decoupled(struct modal_build *b)
 {
     struct modal *h = b->h;
-    const size_t m = h->modes, most = 2 * m;
-    h->owner = tribo_modal_take(&h->store, most, sizeof *h->owner);
-    h->lr = tribo_modal_take(&h->store, 6 * most, sizeof *h->lr);
-    if (h->store.failed) {
+    const size_t m = h->modes;
+    h->owner = tribo_modal_take(&h->store, 2 * m, sizeof *h->owner);
+    if (!h->owner || !reserve_exponents(h, 2 * m, 1)) {
         return TRIBO_ERR_MEMORY;
     }
-    h->li = h->lr + most;
-    h->ar = h->li + most;
-    h->ai = h->ar + most;
-    h->br = h->ai + most;
-    h->bi = h->br + most;
     size_t p = 0;
     for (size_t k = 0; k < m; k++) {
         const double half = 0.5 * h->damping[k], square = h->omega2[k] - half * half, root = sqrt(fabs(square));
@@ -64,23 +71,6 @@ static int exponents_decoupled(struct modal_build *b)
     }
     h->exponents = p;
     return TRIBO_OK;
-}
-
-/* Makes room for e exponents of coupled modes. Returns 0 if out of memory. */
-static int reserve_coupled(struct modal *h, size_t e)
-{
-    h->exponents = e;
-    h->lr = tribo_modal_take(&h->store, e * (2 + 6 * h->modes), sizeof *h->lr);
-    if (h->lr) {
-        h->li = h->lr + e;
-        h->ar = h->li + e;
-        h->ai = h->ar + e * h->modes;
-        h->br = h->ai + e * h->modes;
-        h->bi = h->br + e * h->modes;
-        h->rr = h->bi + e * h->modes;
-        h->ri = h->rr + e * h->modes;
-    }
-    return h->lr != NULL;
 }
 
 /* Sets exponent p, with b and r of mode k, and a = -b omega^2/lambda, since b is a left eigenvector. */
@@ -146,7 +136,7 @@ static int exponents_coupled(struct modal_build *b)
         inverse[i * (size + 1)] = 1.0;
         exponents += !(im[i] < 0.0);
     }
-    if (status || !reserve_coupled(h, exponents)) {
+    if (status || !reserve_exponents(h, exponents, m)) {
         return TRIBO_ERR_MEMORY;
     }
     if (!(tribo_lu_create(a, size, pivot) >= ALIKE)) {
@@ -318,7 +308,7 @@ static int exponents_weak(struct modal_build *b, int *found)
     const size_t m = h->modes;
     struct weak x = {.h = h, .u = tribo_modal_take(&b->scratch, 7 * m, sizeof *x.u)};
     x.near = tribo_modal_take(&b->scratch, (NEAR_MOST + 1) * NEAR_MOST, sizeof *x.near);
-    if (!x.u || !x.near || !reserve_coupled(h, m)) {
+    if (!x.u || !x.near || !reserve_exponents(h, m, m)) {
         return TRIBO_ERR_MEMORY;
     }
     x.cu = x.u + 2 * m;

@@ -131,7 +131,7 @@ void tribo_modal_matrices_free(struct modal_matrices *m);
 void tribo_modal_free(struct modal *h);
 void tribo_forced_free(struct modal *h);
 
-/* Returns c of the part Re(c z) of term p in place'eta + speed'eta', place, speed [shapes]. */
+/* Returns c of the part Re(c z) of term p in place'eta + speed'eta', place, speed [shapes] or NULL. */
 double complex tribo_forced_weight(const struct forced *f, size_t p, const double *place, const double *speed);
 
 #endif

@@ -40,37 +40,38 @@ double complex tribo_forced_weight(const struct forced *f, size_t p, const doubl
 {
     const struct modal *h = f->modal;
     const size_t e = h->exponents, m = h->modes;
-    double re = 0.0, im = 0.0;
+    const double complex lambda = f->lr[p] + f->li[p] * I;
+    double complex sum = 0.0;
     if (p < e && h->owner) {
-        return place[h->owner[p]] + speed[h->owner[p]] * f->lr[p] + speed[h->owner[p]] * f->li[p] * I;
+        return (place ? place[h->owner[p]] : 0.0) + (speed ? lambda * speed[h->owner[p]] : 0.0);
     }
-    for (size_t k = 0; k < (p < e ? m : f->shapes); k++) {
-        const double rr = p < e ? h->rr[p * m + k] : creal(f->x[(p - e) * f->shapes + k]);
-        const double ri = p < e ? -h->ri[p * m + k] : cimag(f->x[(p - e) * f->shapes + k]);
-        const double fr = place[k] + speed[k] * f->lr[p], fi = speed[k] * f->li[p];
-        re += fr * rr - fi * ri;
-        im += fr * ri + fi * rr;
+    if (p < e) {
+        const double *rr = h->rr + p * m, *ri = h->ri + p * m;
+        sum += place ? tribo_dot(place, rr, m) - tribo_dot(place, ri, m) * I : 0.0;
+        return sum + (speed ? lambda * (tribo_dot(speed, rr, m) - tribo_dot(speed, ri, m) * I) : 0.0);
     }
-    return re + im * I;
+    for (size_t k = 0; k < f->shapes; k++) {
+        sum += ((place ? place[k] : 0.0) + (speed ? lambda * speed[k] : 0.0)) * f->x[(p - e) * f->shapes + k];
+    }
+    return sum;
 }
 
 /* Sets the output of contact i: the velocity, of a contact at rest that does not hold by bases only (on of modes is 0); or the
- * force, with the rest of the harmonics in direct, `rests` apart; NULL: 0. c [3 terms] is its memory, zero before; zero [shapes]
- * are zeros. Returns 1 if the output varies. */
-static int fill_output(const struct modal_build *b, size_t i, const double complex *direct, const double *zero, double *c,
-                       struct output *w)
+ * force, with the rest of the harmonics in direct, `rests` apart; NULL: 0. c [3 terms] is its memory, zero before. Returns 1 if
+ * the output varies. */
+static int fill_output(const struct modal_build *b, size_t i, const double complex *direct, double *c, struct output *w)
 {
     const struct forced *f = b->forced;
     const size_t terms = f->terms, e = b->h->exponents;
     const int holds = b->h->key[i] == 2;
-    const double *own = f->on + i * f->shapes, *by_u = holds && f->by_u ? f->by_u + i * f->shapes : zero;
-    int varies = tribo_largest(own, f->shapes) > 0.0 || tribo_largest(by_u, f->shapes) > 0.0;
+    const double *own = f->on + i * f->shapes, *by_u = holds && f->by_u ? f->by_u + i * f->shapes : NULL;
+    int varies = tribo_largest(own, f->shapes) > 0.0 || (by_u && tribo_largest(by_u, f->shapes) > 0.0);
     *w = (struct output){i, c, c + terms, c + 2 * terms, own};
     for (size_t s = 0; direct && s < f->harmonics; s++) {
         varies |= direct[s * b->h->rests] != 0.0;
     }
     for (size_t p = 0; varies && p < e + f->harmonics; p++) {
-        const double complex z = tribo_forced_weight(f, p, holds ? own : zero, holds ? by_u : own) +
+        const double complex z = tribo_forced_weight(f, p, holds ? own : NULL, holds ? by_u : own) +
                                  (direct && p >= e ? direct[(p - e) * b->h->rests] : 0.0);
         w->cr[p] = creal(z);
         w->ci[p] = cimag(z);
@@ -85,9 +86,8 @@ int tribo_forced_outputs(struct modal_build *b)
     struct forced *f = b->forced;
     const struct modal *h = b->h;
     const tribo_system *sys = b->sys;
-    const double *zero = tribo_modal_take(&b->scratch, f->shapes, sizeof *zero);
     f->output = tribo_modal_take(&f->store, sys->ncontact, sizeof *f->output);
-    if (!zero || !f->output || !find_terms(b)) {
+    if (!f->output || !find_terms(b)) {
         return 0;
     }
     double *c = tribo_modal_take(&f->store, 3 * f->terms * sys->ncontact, sizeof *c);
@@ -98,7 +98,7 @@ int tribo_forced_outputs(struct modal_build *b)
                 continue;
             }
             const double complex *own = p < h->rests && h->rest[p] == i ? b->direct + p++ : NULL;
-            const int varies = fill_output(b, i, own, zero, c + 3 * f->terms * f->outputs, &f->output[f->outputs]);
+            const int varies = fill_output(b, i, own, c + 3 * f->terms * f->outputs, &f->output[f->outputs]);
             f->outputs += varies || h->key[i] == 0 || (holds && tribo_system_swing(sys, i) > 0.0);
         }
     }
