@@ -6,16 +6,17 @@
 #include "support.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include "../../set_up_driver.h"
 
-enum { DOFS = 40, CONTACTS = 4, STATES = 2 * DOFS, LOADS = 5 };
+enum { DOFS = 40, CONTACTS = 4, STATES = 2 * DOFS, LOADS = 5, MODES = 6, NEAR = 12, DIRECTIONS = 3 };
+
+static double mass[DOFS][DOFS], damping[DOFS][DOFS], stiffness[DOFS][DOFS], direction[CONTACTS][DOFS];
 
 /* Bodies in a row on springs, one of them with a damper, which couples the modes, or all alike; contacts between some of them,
  * and to the ground. */
-static tribo_system *row(struct random *r, int coupled)
+static void make_row(struct random *r, int coupled)
 {
-    static double mass[DOFS][DOFS], damping[DOFS][DOFS], stiffness[DOFS][DOFS], direction[CONTACTS][DOFS];
-    tribo_system *sys;
     for (size_t i = 0; i < DOFS; i++) {
         for (size_t k = 0; k < DOFS; k++) {
             mass[i][k] = stiffness[i][k] = 0.0;
@@ -41,7 +42,33 @@ static tribo_system *row(struct random *r, int coupled)
             direction[i][k] = k == 9 * i + 2 ? 1.0 : k == 9 * i + 5 && i % 2 ? -1.0 : 0.0;
         }
     }
+}
+
+static tribo_system *row(struct random *r, int coupled)
+{
+    tribo_system *sys;
+    make_row(r, coupled);
     assert_ok(dense_system(&sys, DOFS, CONTACTS, mass[0], damping[0], stiffness[0], direction[0], 0, NULL, 0));
+    return sys;
+}
+
+/* The row by its lowest modes, contacts on bodies side by side: the compliance of the other modes couples the contacts. */
+static tribo_system *reduced_row(struct random *r)
+{
+    tribo_model *model;
+    tribo_system *sys;
+    double beside[NEAR][DOFS] = {{0.0}};
+    make_row(r, 0);
+    for (size_t i = 0; i < NEAR; i++) {
+        beside[i][15 + i] = 1.0;
+    }
+    assert_ok(tribo_model_create(&model, DOFS, NEAR));
+    assert_ok(tribo_model_set_mass(model, mass[0]));
+    assert_ok(tribo_model_set_stiffness(model, stiffness[0]));
+    assert_ok(tribo_model_set_direction(model, beside[0]));
+    assert_ok(tribo_system_reduce(&sys, model, MODES, TRIBO_STATICS_COMPLIANCE));
+    assert_ok(tribo_system_set_damping_ratio(sys, 0.02));
+    tribo_model_destroy(model);
     return sys;
 }
 
@@ -121,4 +148,42 @@ TEST(many_modes)
     tribo_system_destroy(sys);
 }
 
-TEST_MAIN("derivative", {many_modes, 6})
+/* Contacts that a compliance couples: D x is the difference of images, in directions of displacement and velocity. */
+TEST(coupled_contacts)
+{
+    struct random r = random_of(_i);
+    tribo_system *sys = reduced_row(&r);
+    double y[2 * MODES + NEAR + 1] = {0.0}, load[DOFS] = {0.0}, e[2 * MODES + NEAR], image[2][2 * MODES + NEAR];
+    tribo_driver *drv;
+    assert_ok(set_up_driver(&drv, sys, "exact", 1.0, 0.0, 0.0));
+    load[DOFS - 1] = 1.0;
+    assert_ok(tribo_system_add_load(sys, 0.9, NULL, load));
+    assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.005));
+    const int status = tribo_driver_find_periodic(drv, 0.0, 2.0 * PI / 0.9, y);
+    require(!status, "%s", tribo_driver_message(drv));
+    struct shooting *s = drv->shooting;
+    const size_t n = s->map.n;
+    ck_assert_uint_eq(n, 2 * MODES + NEAR);
+    for (int turn = 0; turn < DIRECTIONS; turn++) {
+        struct point *other = s->best == s->point ? s->point + 1 : s->point;
+        for (size_t i = 0; i < n; i++) {
+            e[i] = i < 2 * MODES ? uniform(&r, -1.0, 1.0) * s->best->size : 0.0;
+        }
+        for (int k = 0; k < 2; k++) {
+            for (size_t i = 0; i < n; i++) {
+                other->x[i] = s->best->x[i] + (k ? 1e-7 : -1e-7) * e[i];
+            }
+            assert_ok(tribo_period_map_follow(&s->map, other));
+            memcpy(image[k], other->image, sizeof image[k]);
+        }
+        assert_ok(tribo_period_map_apply(&s->map, s->best, e));
+        for (size_t i = 0; i < n; i++) {
+            const double want = (image[1][i] - image[0][i]) / 2e-7;
+            require(fabs(e[i] - want) <= 1e-4 * s->best->size, "direction %d: D x[%zu] = %g, not %g", turn, i, e[i], want);
+        }
+    }
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+TEST_MAIN("derivative", {many_modes, 6}, {coupled_contacts, 40})
