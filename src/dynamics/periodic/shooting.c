@@ -55,8 +55,8 @@
 /* Most spans extrapolated at once: few enough that a motion that grows in each span has residual > TOLERANCE size. */
 #define LONGEST 1024.0
 
-/* SINGULAR: pivot of I - derivative below which there may be a family of motions. Singular values are zero below CUT in steps,
- * and below FREE in the dimension of the family. */
+/* SINGULAR: pivot of I - derivative, and right-hand side over solution, below which there may be a family of motions. Singular
+ * values are zero below CUT in steps, and below FREE in the dimension of the family. */
 #define SINGULAR 1e-5
 #define CUT 1e-9
 #define FREE 1e-7
@@ -191,8 +191,8 @@ static int find_derivative(struct shooting *s, int spans)
 
 /* x [n] = the shortest solution of (I - D) y = x, D over `spans` spans from s->here. With n > DENSE and phases that are kept, by
  * GMRES to `tolerance`, if kernel is NULL: if contacts rest all the time, there may be many solutions; the Krylov space, then
- * without s->free, of a map that increases no distance has the shortest. Otherwise, and if that fails, by a matrix, with singular
- * values below cut taken as zero; *kernel = their number. Returns a status. */
+ * without s->free, of a map that increases no distance has the shortest. Otherwise, if that fails, and if the equation is nearly
+ * singular, by a matrix, with singular values below cut taken as zero; *kernel = their number. Returns a status. */
 static int solve_equation(struct shooting *s, int spans, double tolerance, double cut, double *x, size_t *kernel)
 {
     const size_t n = s->map.n;
@@ -207,7 +207,7 @@ static int solve_equation(struct shooting *s, int spans, double tolerance, doubl
         const int status = tribo_gmres(n, apply_equation, s, tolerance, n, x, &part, s->space);
         apply_free(s, x);
         s->preconditions = 0;
-        if (status || part <= tolerance) {
+        if (status || (part <= tolerance && SINGULAR * tribo_energy_length(x, n) <= tribo_energy_length(s->b, n))) {
             return status;
         }
         memcpy(x, s->b, n * sizeof *x);

@@ -570,8 +570,29 @@ TEST(resonance)
     search_free(&s);
 }
 
+/* The same of many modes, of which one resonates. */
+TEST(resonance_among_many)
+{
+    enum { DOFS = 25 };
+    static double mass[DOFS * DOFS], damping[DOFS * DOFS], stiffness[DOFS * DOFS];
+    double direction[DOFS] = {0}, load[DOFS] = {1.0}, y[2 * DOFS + 1] = {0};
+    for (size_t i = 0; i < DOFS; i++) {
+        mass[i * DOFS + i] = 1.0;
+        stiffness[i * DOFS + i] = 2.0;
+        if (i + 1 < DOFS) {
+            stiffness[i * DOFS + i + 1] = stiffness[(i + 1) * DOFS + i] = -1.0;
+        }
+    }
+    direction[2] = 1.0;
+    struct search s = search_create("exact", DOFS, 1, mass, damping, stiffness, direction, 2.0 * sin(1.5 * PI / (DOFS + 1)), load);
+    assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), _i ? 0.01 : 0.0));
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, s.period, y), TRIBO_ERR_NO_CONVERGENCE);
+    search_free(&s);
+}
+
 TEST_MAIN("periodic", {den_hartog, 6}, {stops, 6}, {multipliers, 2}, {family, 4}, {viscous_damping, 2}, {later, 2}, {multiple, 2},
           {stuck, 2}, {open, 2}, {times_of_extremes, 4}, {constant_load, 2}, {swinging_limits, 8},
           {multipliers_of_swinging_limits, 2}, {multipliers_of_twins, 2}, {multipliers_of_mirrored_halves, 2},
           {no_multipliers, 6}, {multipliers_of_pairs, 2}, {multipliers_of_strangers, 2}, {no_multipliers_by_a_third, 2},
-          {belt, 2}, {rigid_body, 2}, {undamped_structure, 2}, {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2})
+          {belt, 2}, {rigid_body, 2}, {undamped_structure, 2}, {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2},
+          {resonance_among_many, 2})
