@@ -84,6 +84,7 @@ FNR == 1 {
 
 {
     lines++
+    tool += FILENAME ~ /^src\/damper\//
     text = code($0)
     for (k = 1; k <= nfeature; k++) {
         if (!known[k] && tolower(text) ~ feature[k]) {
@@ -197,8 +198,8 @@ function circles(    pair, room, from, to, out, into, gone, left) {
 }
 
 BEGIN {
-    nfeature = split("planar _static|static_|breakaway elastic|massless|complian", feature, " ")
-    split("planar contacts/static limits/elastic contacts", name_of, "/")
+    nfeature = split("planar _static|static_|breakaway elastic massless|complian", feature, " ")
+    split("planar contacts/static limits/elastic contacts/compliance of contacts", name_of, "/")
 }
 
 END {
@@ -207,6 +208,7 @@ END {
         single += count <= 1
     }
     printf "lines of src\t%d\n", lines
+    printf "lines of src without the tool\t%d\n", lines - tool
     printf "functions\t%d\n", functions
     printf "static functions with one caller, of 1000 functions\t%d\n", 1000 * single / functions
     printf "lines of the longest function\t%d\t%s\n", most["longest"], example["longest"]
