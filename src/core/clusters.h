@@ -54,9 +54,9 @@ static inline const size_t *tribo_plane_first(const tribo_context *ctx)
 
 /* ---- planar.c */
 
-/* Gives ctx these planar contacts in the place of those it has, with clusters of an operator and the memory that goes with it; the
- * planar contacts of from; these and their last solutions, clone having the operator and memory, and no clusters. A status; after a
- * failure ctx has what it had. */
+/* Gives ctx these planar contacts in the place of those it has, with clusters of an operator and the memory that goes with it;
+ * the planar contacts of from; these and their last solutions, clone having the operator and memory, and no clusters. A status;
+ * after a failure ctx has what it had. */
 int tribo_clusters_renew(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m);
 int tribo_clusters_copy(tribo_context *ctx, const tribo_context *from);
 int tribo_clusters_clone(tribo_context *clone, const tribo_context *from);
@@ -103,11 +103,12 @@ const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct c
 /* 1 if the force of the planar contact with direction i depends on f_eq, at v [n]. */
 int tribo_plane_reads_feq(const tribo_context *ctx, size_t i, const double *v);
 
-/* force.c: out [4] = f of all contacts from v and f_eq, and its derivatives by v, f_eq and limit, [n], or if pairs = 1 [n][2]; each
- * may be NULL; a status. */
+/* force.c: out [4] = f of all contacts from v and f_eq, and its derivatives by v, f_eq and limit, [n], or if pairs = 1 [n][2];
+ * each may be NULL; a status. */
 int tribo_find_tangents(const tribo_context *ctx, int pairs, const double *v, const double *feq, double *const *out);
 
-/* out [4] = f of planar contacts from v and f_eq, and its derivatives by v, f_eq and limit, [n][2]; each may be NULL; a status. */
+/* out [4] = f of planar contacts from v and f_eq, and its derivatives by v, f_eq and limit, [n][2]; each may be NULL; a
+ * status. */
 int tribo_plane_force(const tribo_context *ctx, const double *v, const double *feq, double *const *out);
 
 #endif

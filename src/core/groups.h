@@ -34,8 +34,8 @@ static inline double tribo_carried(const tribo_context *ctx, const struct box_qp
 int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
 int tribo_step_alone(tribo_context *ctx, double dt, const double *v, double *f);
 
-/* The first part of a balance: last.f of contacts that need no solver, and f_eq where the law reads it, or of all such contacts if
- * wanted. Finds which contacts of groups are near stick, and lists their groups. */
+/* The first part of a balance: last.f of contacts that need no solver, and f_eq where the law reads it, or of all such contacts
+ * if wanted. Finds which contacts of groups are near stick, and lists their groups. */
 void tribo_balance_each(tribo_context *ctx, const double *v, const double *a, int wanted);
 
 /* The first part of a step: last.f = -v/(dt R_ii) within bounds. */

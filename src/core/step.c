@@ -199,8 +199,8 @@ int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double 
 
 /* ------------------------------------------------------------------------------------------------------- second order */
 
-/* Finds the second problem of a step: *free [n] in the place of vfree, bounds, and in ctx->spare the directions [n] of slip at the
- * end, or 0. Returns the number of contacts that make it another problem than the first. */
+/* Finds the second problem of a step: *free [n] in the place of vfree, bounds, and in ctx->spare the directions [n] of slip at
+ * the end, or 0. Returns the number of contacts that make it another problem than the first. */
 static size_t find_reversals(tribo_context *ctx, double dt, const double *v, const double *vfree, const double **free,
                              struct bounds *b)
 {

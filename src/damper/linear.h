@@ -25,8 +25,9 @@ void find_coupling(struct linear *l);
  * shape  [contacts][open->count] in   the modes at the contacts */
 struct linear stick(const struct linear *open, const struct contact *contact, size_t contacts, const double *shape);
 
-/* The motion under loads of frequency omega, rad/time: amplitude at the measured place, NaN if it has no finite one; a bound of the power of the loads, and the energy
- * norm of the modes' displacements and velocities at their largest. Results below NOTHING of these are rounding. */
+/* The motion under loads of frequency omega, rad/time: amplitude at the measured place, NaN if it has no finite one; a bound of
+ * the power of the loads, and the energy norm of the modes' displacements and velocities at their largest. Results below NOTHING
+ * of these are rounding. */
 struct scale {
     double amplitude, power, norm;
 };

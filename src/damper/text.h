@@ -7,8 +7,8 @@
 #include "output.h"
 #include "source.h"
 
-/* Text that is read word by word: a value that the user gives, or the lines of a file. An error in it ends the program, with place
- * and value. */
+/* Text that is read word by word: a value that the user gives, or the lines of a file. An error in it ends the program, with
+ * place and value. */
 struct text {
     const char *place; /* of the value, e.g. "option --force 1N"; or the path of the file */
     char *at;          /* the rest of the value or line, not read yet */
@@ -33,12 +33,14 @@ enum { MOST_COUNT = 1000000 /* of anything that the user may choose */ };
  * blanks may stand beside separators and at the end only; "": the word is the last one. what: its name in messages. */
 char *next_word(struct text *t, const char *what, const char *separators);
 
-/* The same as a finite number, as one above 0, or as a whole one from least to most; exponents also as Fortran writes them: 1.1D+03. */
+/* The same as a finite number, as one above 0, or as a whole one from least to most; exponents also as Fortran writes them:
+ * 1.1D+03. */
 double next_real(struct text *t, const char *what, const char *separators);
 double next_positive(struct text *t, const char *what, const char *separators);
 size_t next_whole(struct text *t, const char *what, const char *separators, size_t least, size_t most);
 
-/* at [3] out: at least `least` coordinates; those that are not given are 0. separators behind the first two, last behind the third. */
+/* at [3] out: at least `least` coordinates; those that are not given are 0. separators behind the first two, last behind the
+ * third. */
 void next_coordinates(struct text *t, const char *separators, const char *last, int least, double *at);
 
 /* Nothing but blanks may follow. */

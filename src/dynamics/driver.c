@@ -108,20 +108,20 @@ static int check_positive(const tribo_driver *drv, const char *name, double valu
                             : TRIBO_OK;
 }
 
-/* Returns TRIBO_OK if the method of drv accepts the setting, a bit TAKES_..., and value, called name, is positive. text: the setting,
- * and the methods that accept it. */
+/* Returns TRIBO_OK if the method of drv accepts the setting, a bit TAKES_..., and value, called name, is positive. text: the
+ * setting, and the methods that accept it. */
 static int check_setting(const tribo_driver *drv, int setting, const char *text, const char *name, double value)
 {
-    return !drv                           ? TRIBO_ERR_NULL
-           : drv->method->takes & setting ? check_positive(drv, name, value)
-                                          : tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s takes no %s do",
-                                                              drv->method->name, text);
+    return !drv ? TRIBO_ERR_NULL
+           : drv->method->takes & setting
+               ? check_positive(drv, name, value)
+               : tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s takes no %s do", drv->method->name, text);
 }
 
 int tribo_driver_set_step(tribo_driver *drv, double dt)
 {
-    const int status = check_setting(
-        drv, TAKES_STEP, "step; rk4/fixed, central/fixed, moreau/fixed and GSL's adaptive methods", "dt", dt);
+    const int status =
+        check_setting(drv, TAKES_STEP, "step; rk4/fixed, central/fixed, moreau/fixed and GSL's adaptive methods", "dt", dt);
     if (!status) {
         drv->dt = dt;
         drv->revision = SIZE_MAX;
@@ -155,8 +155,7 @@ int tribo_driver_set_output(tribo_driver *drv, double dt)
 
 int tribo_driver_set_max_step(tribo_driver *drv, double h)
 {
-    const int status =
-        check_setting(drv, TAKES_MAX_STEP, "largest step; GSL's adaptive methods", "h", h == HUGE_VAL ? 1.0 : h);
+    const int status = check_setting(drv, TAKES_MAX_STEP, "largest step; GSL's adaptive methods", "h", h == HUGE_VAL ? 1.0 : h);
     if (!status) {
         drv->max_step = h;
     }
@@ -289,8 +288,7 @@ static int check_settings(tribo_driver *drv)
     if ((drv->method->takes & (TAKES_STEP | TAKES_TOLERANCE)) == TAKES_STEP && drv->dt == 0.0) {
         return tribo_driver_fail(drv, TRIBO_ERR_STATE, "method %s has no step: call tribo_driver_set_step", drv->method->name);
     }
-    return tribo_driver_pass(drv,
-                             tribo_system_check_contacts(drv->sys, drv->method->name, drv->method->takes & NEEDS_SCALAR));
+    return tribo_driver_pass(drv, tribo_system_check_contacts(drv->sys, drv->method->name, drv->method->takes & NEEDS_SCALAR));
 }
 
 /* tribo_driver_advance for a methods' state y [tribo_system_size]. */

@@ -21,7 +21,7 @@ struct events;
 
 struct method {
     const char *name;
-    int takes; /* sum of TAKES_... and NEEDS_... */
+    int takes;                          /* sum of TAKES_... and NEEDS_... */
     int (*create)(tribo_driver *drv);   /* NULL: none needed */
     void (*destroy)(tribo_driver *drv); /* called also after create failed */
     /* Advances (*t, y) to t1 > *t. continues = 1: the last advance ended at (t, y), and settings and system are unchanged.

@@ -143,8 +143,8 @@ static double largest_size(const double *x, size_t n)
 }
 
 /* 1 if the force of a contact jumps between the beginning of the step and the last evaluation, and relaxes by more than `part`
- * within the step, or has rate 0: it does not relax. Open contacts carry nothing, and nearly nothing just before they open and after
- * they close. */
+ * within the step, or has rate 0: it does not relax. Open contacts carry nothing, and nearly nothing just before they open and
+ * after they close. */
 static int passes_a_change(const struct gsl_step *g, double part)
 {
     const size_t n = g->ncontact;
@@ -292,8 +292,7 @@ static struct gsl_step *gsl_step_create(const struct gsl_kind *kind, tribo_syste
         return NULL;
     }
     *g = first;
-    g->guarded =
-        (gsl_odeiv2_system){.function = guarded_function, .jacobian = guarded_jacobian, .dimension = n, .params = g};
+    g->guarded = (gsl_odeiv2_system){.function = guarded_function, .jacobian = guarded_jacobian, .dimension = n, .params = g};
     g->control = (gsl_odeiv2_control){.type = &tolerance, .state = g};
     g->driver.c = &g->control;
     g->step = gsl_odeiv2_step_alloc(*kind->type, n);

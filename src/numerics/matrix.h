@@ -30,7 +30,7 @@ struct triplets {
     struct triplet {
         size_t row, col;
         double value;
-    } *entry;
+    } * entry;
     int failed; /* 1: out of memory */
 };
 

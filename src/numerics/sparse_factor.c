@@ -21,7 +21,7 @@ struct sparse_factor {
     cholmod_common common;
     cholmod_factor *l;
     struct room room[2]; /* of one vector; of many */
-    double *column; /* [n] workspace */
+    double *column;      /* [n] workspace */
 };
 
 int tribo_sparse_available(void)

@@ -85,9 +85,9 @@ static void run_traffic(void *data)
  * widths and rates, where these differ, and how many it writes. */
 static const struct passes {
     size_t given, known, limits, widths, written;
-} passes[KERNELS] = {[FORCE] = {2, 0, 1, 2, 1},         [FORCE_TANGENT] = {2, 0, 1, 2, 4}, [BALANCE] = {2, 1, 1, 2, 1},
-                     [BALANCE_STUCK] = {2, 1, 1, 2, 1}, [STEP] = {1, 0, 1, 0, 1},          [STEP_STUCK] = {1, 1, 1, 0, 1},
-                     [SET_LIMIT] = {1, 0, 0, 0, 1}};
+} passes[KERNELS] = {
+    [FORCE] = {2, 0, 1, 2, 1}, [FORCE_TANGENT] = {2, 0, 1, 2, 4}, [BALANCE] = {2, 1, 1, 2, 1},  [BALANCE_STUCK] = {2, 1, 1, 2, 1},
+    [STEP] = {1, 0, 1, 0, 1},  [STEP_STUCK] = {1, 1, 1, 0, 1},    [SET_LIMIT] = {1, 0, 0, 0, 1}};
 
 static struct traffic traffic_of(const struct kernel_scene *s, enum likeness like, double *known)
 {

@@ -80,8 +80,7 @@ struct pass {
 static tribo_driver *open_driver(const struct pass *p, double dt, double tolerance)
 {
     tribo_driver *drv;
-    need(set_up_driver(&drv, p->study->sys, p->method, dt, tolerance, tolerance),
-         tribo_system_message(p->study->sys));
+    need(set_up_driver(&drv, p->study->sys, p->method, dt, tolerance, tolerance), tribo_system_message(p->study->sys));
     return drv;
 }
 

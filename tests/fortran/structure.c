@@ -36,7 +36,8 @@ int structure_system(tribo_system **sys, const struct structure *s, size_t nmode
         status = set_matrix(m, s, s->ndof, s->damping, tribo_model_set_damping, tribo_model_set_damping_csr);
     }
     status = status ? status : set_matrix(m, s, s->ndof, s->stiffness, tribo_model_set_stiffness, tribo_model_set_stiffness_csr);
-    status = status ? status : set_matrix(m, s, s->ncontact, s->direction, tribo_model_set_direction, tribo_model_set_direction_csr);
+    status =
+        status ? status : set_matrix(m, s, s->ncontact, s->direction, tribo_model_set_direction, tribo_model_set_direction_csr);
     if (!status) {
         status = nmode ? tribo_system_reduce(sys, m, nmode, statics) : tribo_system_create(sys, m);
     }

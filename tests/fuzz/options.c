@@ -17,8 +17,7 @@ static char *word[WORDS + 1];
 static void read_words(void)
 {
     const struct options o = read_options(count, word);
-    if (!o.mass || !o.stiffness || !o.dofs || !o.contacts.count || o.limits.from < 0.0 ||
-        !o.damping.count == !o.damping_matrix) {
+    if (!o.mass || !o.stiffness || !o.dofs || !o.contacts.count || o.limits.from < 0.0 || !o.damping.count == !o.damping_matrix) {
         abort();
     }
     for (size_t k = 0; k < o.damping.count; k++) {

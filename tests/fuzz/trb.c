@@ -18,13 +18,17 @@ typedef const double *in;
 typedef double *out;
 typedef const int *whole;
 void trbnew_(whole n, int *ih, int *ierr), trbcpy_(whole ih, int *copy, int *ierr), trbdel_(whole ih, int *ierr),
-    trbcps_(whole ih, whole from, int *ierr), trbfix_(whole ih, int *ierr), trbmsg_(whole ih, char *text, int *ierr, size_t length),
+    trbcps_(whole ih, whole from, int *ierr), trbfix_(whole ih, int *ierr),
+    trbmsg_(whole ih, char *text, int *ierr, size_t length),
     trblin_(whole ndof, whole n, in m, in c, in k, whole ldm, in j, whole ldj, int *ih, char *text, int *ierr, size_t length),
-    trbcln_(whole ih, int *copy, int *ierr), trbdrv_(whole ih, const char *name, in dt, in atol, in rtol, int *ierr, size_t length),
-    trbadv_(whole ih, whole ndof, out t, in t1, out y, int *ierr), trbper_(whole ih, whole ndof, in t, in period, out y, int *ierr),
+    trbcln_(whole ih, int *copy, int *ierr),
+    trbdrv_(whole ih, const char *name, in dt, in atol, in rtol, int *ierr, size_t length),
+    trbadv_(whole ih, whole ndof, out t, in t1, out y, int *ierr),
+    trbper_(whole ih, whole ndof, in t, in period, out y, int *ierr),
     trbcon_(whole ih, whole ndof, whole n, in t, in y, out v, out feq, out f, int *ierr);
 void trblim_(whole, whole, in, int *), trbeps_(whole, whole, in, int *), trbopd_(whole, whole, in, int *);
-void trbglm_(whole, whole, out, int *), trbgep_(whole, whole, out, int *), trbdis_(whole, whole, out, int *), trbfrq_(whole, whole, out, int *);
+void trbglm_(whole, whole, out, int *), trbgep_(whole, whole, out, int *), trbdis_(whole, whole, out, int *),
+    trbfrq_(whole, whole, out, int *);
 void trbnld_(whole, whole, in, in, int *), trbsta_(whole, whole, in, in, int *), trbacc_(whole, whole, in, in, int *);
 void trblm1_(whole, in, int *), trbep1_(whole, in, int *), trbzet_(whole, in, int *), trbout_(whole, in, int *),
     trbhmx_(whole, in, int *), trbhst_(whole, in, int *);
@@ -125,21 +129,51 @@ static int set(struct bytes *b, struct scene *s, const int *ih)
     numbers(b, s->x[0]);
     numbers(b, s->x[1]);
     switch (k) {
-    case 0: trblim_(ih, &s->n, x, &ierr); break;
-    case 1: trbeps_(ih, &s->n, x, &ierr); break;
-    case 2: trbopd_(ih, &s->n, x, &ierr); break;
-    case 3: trbnld_(ih, &s->n, x, z, &ierr); break;
-    case 4: trbsta_(ih, &s->n, x, z, &ierr); break;
-    case 5: trbacc_(ih, &s->n, x, z, &ierr); break;
-    case 6: (take(b, 2) ? trblm1_ : trbep1_)(ih, x, &ierr); break;
-    case 7: (take(b, 2) ? trbzet_ : trbout_)(ih, x, &ierr); break;
-    case 8: (take(b, 2) ? trbhmx_ : trbhst_)(ih, x, &ierr); break;
-    case 9: (take(b, 2) ? trblaw_ : take(b, 2) ? trbcpl_ : trbshr_)(ih, &w, &ierr); break;
-    case 10: trblod_(ih, &s->n, &omega, x, z, &ierr); break;
-    case 11: trbbas_(ih, &s->n, &omega, x, z, &ierr); break;
-    case 12: trbhlm_(ih, &s->n, &omega, x, z, &ierr); break;
-    case 13: (take(b, 2) ? trbcll_ : take(b, 2) ? trbbsc_ : trblmc_)(ih, &ierr); break;
-    case 14: matrix(b, s->x[0], s->n), trbopf_(ih, &s->n, x, take(b, 4) ? &s->n : &w, &ierr); break;
+    case 0:
+        trblim_(ih, &s->n, x, &ierr);
+        break;
+    case 1:
+        trbeps_(ih, &s->n, x, &ierr);
+        break;
+    case 2:
+        trbopd_(ih, &s->n, x, &ierr);
+        break;
+    case 3:
+        trbnld_(ih, &s->n, x, z, &ierr);
+        break;
+    case 4:
+        trbsta_(ih, &s->n, x, z, &ierr);
+        break;
+    case 5:
+        trbacc_(ih, &s->n, x, z, &ierr);
+        break;
+    case 6:
+        (take(b, 2) ? trblm1_ : trbep1_)(ih, x, &ierr);
+        break;
+    case 7:
+        (take(b, 2) ? trbzet_ : trbout_)(ih, x, &ierr);
+        break;
+    case 8:
+        (take(b, 2) ? trbhmx_ : trbhst_)(ih, x, &ierr);
+        break;
+    case 9:
+        (take(b, 2) ? trblaw_ : take(b, 2) ? trbcpl_ : trbshr_)(ih, &w, &ierr);
+        break;
+    case 10:
+        trblod_(ih, &s->n, &omega, x, z, &ierr);
+        break;
+    case 11:
+        trbbas_(ih, &s->n, &omega, x, z, &ierr);
+        break;
+    case 12:
+        trbhlm_(ih, &s->n, &omega, x, z, &ierr);
+        break;
+    case 13:
+        (take(b, 2) ? trbcll_ : take(b, 2) ? trbbsc_ : trblmc_)(ih, &ierr);
+        break;
+    case 14:
+        matrix(b, s->x[0], s->n), trbopf_(ih, &s->n, x, take(b, 4) ? &s->n : &w, &ierr);
+        break;
     default:
         for (int i = 0; i < ROOM; i++) {
             s->whole[i] = i <= s->n ? (take(b, 4) ? 1 + i : take(b, 20) - 2) : 1 + i % (s->n + 1);
@@ -159,14 +193,29 @@ static int ask(struct bytes *b, struct scene *s, const int *ih)
         numbers(b, s->x[i]);
     }
     switch (k) {
-    case 0: wholes[take(b, 6)](ih, &value, &ierr); break;
-    case 1: lists[take(b, 4)](ih, &s->n, s->x[4], &ierr); break;
-    case 2: trbfrc_(ih, &s->n, s->x[0], s->x[1], s->x[4], &ierr); break;
-    case 3: trbbal_(ih, &s->n, s->x[0], s->x[1], s->x[2], s->x[4], &ierr); break;
-    case 4: trbbox_(ih, &s->n, s->x[0], s->x[1], s->x[2], s->x[4], &ierr); break;
-    case 5: trbtpr_(ih, &s->n, s->x[0], s->x[1], s->x[4], &ierr); break;
-    case 6: trbcon_(ih, &ndof, &s->n, s->x[0], s->y, s->x[2], s->x[3], s->x[4], &ierr); break;
-    default: trbstp_(ih, s->x[0], s->x[1], &ierr);
+    case 0:
+        wholes[take(b, 6)](ih, &value, &ierr);
+        break;
+    case 1:
+        lists[take(b, 4)](ih, &s->n, s->x[4], &ierr);
+        break;
+    case 2:
+        trbfrc_(ih, &s->n, s->x[0], s->x[1], s->x[4], &ierr);
+        break;
+    case 3:
+        trbbal_(ih, &s->n, s->x[0], s->x[1], s->x[2], s->x[4], &ierr);
+        break;
+    case 4:
+        trbbox_(ih, &s->n, s->x[0], s->x[1], s->x[2], s->x[4], &ierr);
+        break;
+    case 5:
+        trbtpr_(ih, &s->n, s->x[0], s->x[1], s->x[4], &ierr);
+        break;
+    case 6:
+        trbcon_(ih, &ndof, &s->n, s->x[0], s->y, s->x[2], s->x[3], s->x[4], &ierr);
+        break;
+    default:
+        trbstp_(ih, s->x[0], s->x[1], &ierr);
     }
     return ierr;
 }
@@ -189,18 +238,29 @@ static int call(struct bytes *b, struct scene *s)
         return create(b, s, ih);
     }
     switch (what) {
-    case 1: trbdel_(handle, &ierr); return ierr;
-    case 2: (take(b, 2) ? trbcpy_ : trbcln_)(handle, &s->ih[take(b, HANDLES)], &ierr); return ierr;
-    case 3: trbcps_(handle, &s->ih[take(b, HANDLES)], &ierr); return ierr;
-    case 4: trbfix_(handle, &ierr); return ierr;
+    case 1:
+        trbdel_(handle, &ierr);
+        return ierr;
+    case 2:
+        (take(b, 2) ? trbcpy_ : trbcln_)(handle, &s->ih[take(b, HANDLES)], &ierr);
+        return ierr;
+    case 3:
+        trbcps_(handle, &s->ih[take(b, HANDLES)], &ierr);
+        return ierr;
+    case 4:
+        trbfix_(handle, &ierr);
+        return ierr;
     case 5:
     case 6:
-    case 7: return drive(b, s, handle);
+    case 7:
+        return drive(b, s, handle);
     case 8:
     case 9:
     case 10:
-    case 11: return set(b, s, handle);
-    default: return ask(b, s, handle);
+    case 11:
+        return set(b, s, handle);
+    default:
+        return ask(b, s, handle);
     }
 }
 

@@ -437,10 +437,14 @@ END_TEST
 TEST(same_limit)
 {
     static const char *const way[] = {
-        "--contact 2,0,0,x:limit=0.1",           "--contact 2,0,0,x --limits 0.1",
-        "--contact 2,0,0,x:mu=0.5 --limits 0.2", "--contacts c.txt",
-        "--contact 2,0,0,x:mu=2:load=0.05",      "--read o.txt",
-        "--contact=2,0,0,x:limit=0.1",           "--contact=2,0,0,x --limits=0.1",
+        "--contact 2,0,0,x:limit=0.1",
+        "--contact 2,0,0,x --limits 0.1",
+        "--contact 2,0,0,x:mu=0.5 --limits 0.2",
+        "--contacts c.txt",
+        "--contact 2,0,0,x:mu=2:load=0.05",
+        "--read o.txt",
+        "--contact=2,0,0,x:limit=0.1",
+        "--contact=2,0,0,x --limits=0.1",
         "--read=o.txt",
     };
     double first = 0.0;
@@ -464,11 +468,31 @@ END_TEST
 /* Every option with an equals sign, on the command line and in a file, as with a blank. */
 TEST(equals)
 {
-    static const char *const option[] = {
-        "mass M.mtx", "stiffness K.mtx", "dofs dofs.txt", "frequencies hz.txt", "contact 2,0,0,x", "contacts c.txt",
-        "load 4,0,0,x", "base x:acceleration=1", "output 3,0,0,x", "harmonics 2", "force 2", "drive 0.7", "limits 0.1",
-        "modes 3", "statics on", "damping 0.01,0.02", "damping-ratios r.txt", "method exact", "check 1", "law coulomb",
-        "step 1", "threads 1", "out .", "name damper", "field 0,90"};
+    static const char *const option[] = {"mass M.mtx",
+                                         "stiffness K.mtx",
+                                         "dofs dofs.txt",
+                                         "frequencies hz.txt",
+                                         "contact 2,0,0,x",
+                                         "contacts c.txt",
+                                         "load 4,0,0,x",
+                                         "base x:acceleration=1",
+                                         "output 3,0,0,x",
+                                         "harmonics 2",
+                                         "force 2",
+                                         "drive 0.7",
+                                         "limits 0.1",
+                                         "modes 3",
+                                         "statics on",
+                                         "damping 0.01,0.02",
+                                         "damping-ratios r.txt",
+                                         "method exact",
+                                         "check 1",
+                                         "law coulomb",
+                                         "step 1",
+                                         "threads 1",
+                                         "out .",
+                                         "name damper",
+                                         "field 0,90"};
     char line[3][TEXT] = {"", "", "--read o.txt"}, file[TEXT] = "", values[3][TEXT];
     write_chain();
     write_text("c.txt", "3,0,0,x\n");

@@ -35,8 +35,7 @@ static void create_within_bounds(const char *method, int planar)
         memory_unbound();
         failures += status != TRIBO_OK;
         require(!status || status == TRIBO_ERR_MEMORY, "%s, %zu bytes: %d", method, bytes, status);
-        require(!status || says(tribo_system_message(sys), "out of memory"), "%s: %s", method,
-                tribo_system_message(sys));
+        require(!status || says(tribo_system_message(sys), "out of memory"), "%s: %s", method, tribo_system_message(sys));
         require((drv == NULL) == (status != TRIBO_OK), "%s: a driver with status %d", method, status);
         tribo_driver_destroy(drv);
         require(memory_live() == none, "%s leaves %ld blocks with %zu bytes", method, memory_live() - none, bytes);

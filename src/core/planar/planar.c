@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Planar contacts: one alone, its motion and limits; life and settings of all. Clusters are made anew whenever operator or contacts
- * change. */
+/* Planar contacts: one alone, its motion and limits; life and settings of all. Clusters are made anew whenever operator or
+ * contacts change. */
 #include <stdlib.h>
 
 #include "common/layout.h"

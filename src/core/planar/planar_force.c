@@ -45,8 +45,9 @@ static void take_contact(tribo_context *ctx, size_t k, size_t i, const double *s
     }
 }
 
-/* Sets the directions of a cluster's problem, the contacts near stick at v, and the forces of the others. begins: static limits are
- * those of the contacts near stick, and the others have the limits by which they slide. Returns 1 if there are any near stick. */
+/* Sets the directions of a cluster's problem, the contacts near stick at v, and the forces of the others. begins: static limits
+ * are those of the contacts near stick, and the others have the limits by which they slide. Returns 1 if there are any near
+ * stick. */
 static int planar_collect(tribo_context *ctx, const struct cluster *g, const double *v, int begins)
 {
     const struct law *law = ctx->set.law;

@@ -9,8 +9,8 @@ struct turn {
     double v[2], limit[2], x[2], epsilon;
 };
 
-/* Of the contact at i, at v: adds to t->limit the changes of static limits with |v|, and sets t->x. At rest, where |v| has a kink, it
- * grows along `along`, the direction in which the contact begins to slide, or 0. */
+/* Of the contact at i, at v: adds to t->limit the changes of static limits with |v|, and sets t->x. At rest, where |v| has a
+ * kink, it grows along `along`, the direction in which the contact begins to slide, or 0. */
 static void turn_slide(const tribo_context *ctx, size_t i, const struct slide *s, const double *limit, const double *v,
                        const double *along, struct turn *t)
 {
@@ -224,8 +224,8 @@ static void turn_near(struct disc_qp *p, const struct given *g, const struct law
     }
 }
 
-/* Sets the derivatives out [3] of planar contact k by v, f_eq and the limits of the caller, [n][2] each, or NULL; static limits follow
- * |v|, too. p: the solved problem near stick, or NULL. */
+/* Sets the derivatives out [3] of planar contact k by v, f_eq and the limits of the caller, [n][2] each, or NULL; static limits
+ * follow |v|, too. p: the solved problem near stick, or NULL. */
 static void given_columns(const tribo_context *ctx, size_t k, const struct given *g, struct disc_qp *p, const double *v,
                           double *const *out)
 {

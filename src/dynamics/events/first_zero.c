@@ -171,9 +171,9 @@ static void watch_doubtful(struct first_zero *s, double h)
 }
 
 /* Among the watched guards that are not positive at the right end, h after a: the guard with the earliest zero of its quintic;
- * *when = that zero, as time after a. NULL: all are positive. begins = 1: a is where guards with an allowance began within that of
- * zero. If the quintic proves that such a guard is above zero in the middle, its zero is that without the allowance. *fine = 1 if
- * that is so for the guard, or need not be, and its zero is that of the quintic to rounding. */
+ * *when = that zero, as time after a. NULL: all are positive. begins = 1: a is where guards with an allowance began within that
+ * of zero. If the quintic proves that such a guard is above zero in the middle, its zero is that without the allowance. *fine = 1
+ * if that is so for the guard, or need not be, and its zero is that of the quintic to rounding. */
 static const struct guard *first_to_fall(const struct first_zero *s, double h, int begins, double *when, int *fine)
 {
     const struct guard *first = NULL;

@@ -41,8 +41,8 @@ static double least(double *c, double enough, int halvings)
     return first >= enough ? lesser(first, least(c, enough, halvings - 1)) : first;
 }
 
-/* By Bernstein coefficients c, degree 6, of a lower bound of all functions with samples a, b and sixth derivative up to bend: they
- * differ from the quintic through both samples by at most bend h^6/6! s^3 (1-s)^3, a multiple of the middle element 20 s^3
+/* By Bernstein coefficients c, degree 6, of a lower bound of all functions with samples a, b and sixth derivative up to bend:
+ * they differ from the quintic through both samples by at most bend h^6/6! s^3 (1-s)^3, a multiple of the middle element 20 s^3
  * (1-s)^3 of the basis. */
 double tribo_quintic_least(const struct sample *a, const struct sample *b, double h, double bend, double until, double enough)
 {
@@ -50,12 +50,12 @@ double tribo_quintic_least(const struct sample *a, const struct sample *b, doubl
     const double p0 = a->g, p1 = p0 + 0.2 * h * a->d, p2 = p1 + 0.2 * h * (a->d + 0.25 * h * a->e);
     const double p5 = b->g, p4 = p5 - 0.2 * h * b->d, p3 = p4 - 0.2 * h * (b->d - 0.25 * h * b->e);
     double from[COEFFICIENTS], c[COEFFICIENTS] = {p0,
-                              (p0 + 5.0 * p1) * (1 / 6.),
-                              (p1 + 2.0 * p2) * (1 / 3.),
-                              0.5 * (p2 + p3) - doubt,
-                              (2.0 * p3 + p4) * (1 / 3.),
-                              (5.0 * p4 + p5) * (1 / 6.),
-                              p5};
+                                                  (p0 + 5.0 * p1) * (1 / 6.),
+                                                  (p1 + 2.0 * p2) * (1 / 3.),
+                                                  0.5 * (p2 + p3) - doubt,
+                                                  (2.0 * p3 + p4) * (1 / 3.),
+                                                  (5.0 * p4 + p5) * (1 / 6.),
+                                                  p5};
     if (until < h) {
         split_bernstein(c, until / h, from);
     }

@@ -326,8 +326,7 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
     const struct forced *h = x->h;
     const struct modal *own = h->modal;
     const size_t n = own->n;
-    if (!motion_reserve(x) ||
-        (x->sys->loads.limits && !tribo_signal_reserve(&x->velocity, own->exponents + h->harmonics, 1))) {
+    if (!motion_reserve(x) || (x->sys->loads.limits && !tribo_signal_reserve(&x->velocity, own->exponents + h->harmonics, 1))) {
         return 0;
     }
     x->t0 = t;

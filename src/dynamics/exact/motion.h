@@ -33,8 +33,9 @@ struct held {
     size_t revision, structure; /* of the system: when the forced structures were created; when the others were */
 };
 
-/* The driver's own data, and a phase from t0. A mode: eta = constant + vel tau + acc tau^2/2 + harmonics + (Re(r z), or eta' tau if the mode drifts). A
- * shape by bases: eta = harmonics, or tau. Terms: exponents, then harmonics; harmonics of limits times side. */
+/* The driver's own data, and a phase from t0. A mode: eta = constant + vel tau + acc tau^2/2 + harmonics + (Re(r z), or eta' tau
+ * if the mode drifts). A shape by bases: eta = harmonics, or tau. Terms: exponents, then harmonics; harmonics of limits times
+ * side. */
 struct exact {
     tribo_system *sys;
     struct events events;
@@ -59,8 +60,8 @@ struct exact {
     struct signal velocity;       /* workspace */
 };
 
-/* Starts a phase at (t, y) with structure x->h, for a time of at most *longest; sets *longest to the time for which the bounds hold.
- * Returns 1, or 0 if out of memory. */
+/* Starts a phase at (t, y) with structure x->h, for a time of at most *longest; sets *longest to the time for which the bounds
+ * hold. Returns 1, or 0 if out of memory. */
 int tribo_modal_motion_start(struct exact *x, double t, const double *y, double *longest);
 
 /* Goes to t0 + tau: sets w, w' and w'' of all terms. */
@@ -93,8 +94,8 @@ void *tribo_modal_phase_keep(void *own, double tau);
 void tribo_modal_phase_release(void *phase);
 int tribo_modal_transition(void *own, const void *phase, double tau, size_t columns, double *v);
 
-/* terms.c. rest: sets w to z, at t0. go: sets w for t0 + tau, without resonances. spread: moves, rates [ndof] +=
- * displacements by place and velocities by rate. tribo_exp_1 returns (e^z - 1)/z, the integral of e^{z s} over s from 0 to 1, without loss of
+/* terms.c. rest: sets w to z, at t0. go: sets w for t0 + tau, without resonances. spread: moves, rates [ndof] += displacements by
+ * place and velocities by rate. tribo_exp_1 returns (e^z - 1)/z, the integral of e^{z s} over s from 0 to 1, without loss of
  * digits for small z. */
 void tribo_modal_terms_rest(struct exact *x);
 void tribo_modal_terms_go(struct exact *x, double tau);

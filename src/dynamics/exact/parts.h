@@ -26,9 +26,9 @@ int tribo_modal_exponents(struct modal_build *b);
 void tribo_modal_react(const struct modal *h, double *force, double *f, double *work);
 
 /* Sets a column of on, and of by_u or NULL, entries stride apart, by displacements y [n], with J_I y = b_I: contacts that hold:
- * force per eta, J_I'f = (K - omega2 M) y - J_A'f_A (A: compliant ones, f_A' = -G_AA^-1 (J_A y - b_A)), and per eta', J_I'f = C y;
- * other contacts: velocity per eta'. base [ncontact] = b, by which only the rest of the forces beside the modes counts; NULL: y is
- * a mode, 0. */
+ * force per eta, J_I'f = (K - omega2 M) y - J_A'f_A (A: compliant ones, f_A' = -G_AA^-1 (J_A y - b_A)), and per eta', J_I'f = C
+ * y; other contacts: velocity per eta'. base [ncontact] = b, by which only the rest of the forces beside the modes counts; NULL:
+ * y is a mode, 0. */
 void tribo_modal_effects(const struct modal_build *b, const double *y, double omega2, const double *base, double *on,
                          double *by_u, size_t stride);
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Coordinates x of a state with |x|^2 = scale^2 times twice its energy: omega_k eta_k and eta_k', times scale, for modal amplitudes
- * eta of the free structure. If friction is Coulomb's, and no damping or stiffness is negative, the distance |x1 - x2| of two motions under the
- * same drives never grows, because (f1 - f2)'(v1 - v2) <= 0: differences of friction forces do no positive work. Forces f of
- * compliant contacts have the coordinates root'f, G = root root': f'G f is twice the energy of their springs. */
+/* Coordinates x of a state with |x|^2 = scale^2 times twice its energy: omega_k eta_k and eta_k', times scale, for modal
+ * amplitudes eta of the free structure. If friction is Coulomb's, and no damping or stiffness is negative, the distance |x1 - x2|
+ * of two motions under the same drives never grows, because (f1 - f2)'(v1 - v2) <= 0: differences of friction forces do no
+ * positive work. Forces f of compliant contacts have the coordinates root'f, G = root root': f'G f is twice the energy of their
+ * springs. */
 #ifndef TRIBO_ENERGY_NORM_H
 #define TRIBO_ENERGY_NORM_H
 

@@ -61,9 +61,9 @@ int tribo_period_map_replay(struct period_map *m, const double *y, struct compan
 /* Sets m->odd, and m->span = period/2 if odd, else period. odd = 1 is for odd drives only. */
 void tribo_period_map_choose(struct period_map *m, int odd);
 
-/* forecast.c: sets x [m->n] = coordinates of the forecast of the state at m->t, m->odd = 1. Sets *done = 0 if there is no forecast: a
- * mode does not oscillate (as without stiffness), or resonates without damping, or x is not finite. Returns a status, its message on
- * the driver. */
+/* forecast.c: sets x [m->n] = coordinates of the forecast of the state at m->t, m->odd = 1. Sets *done = 0 if there is no
+ * forecast: a mode does not oscillate (as without stiffness), or resonates without damping, or x is not finite. Returns a status,
+ * its message on the driver. */
 int tribo_forecast(struct period_map *m, double *x, int *done);
 
 #endif

@@ -252,8 +252,8 @@ static int try_step(struct shooting *s, double part)
     return status;
 }
 
-/* Takes Newton's step; or, where no step changes the residual, as on a slow belt that carries a body for many periods, extrapolates
- * 1, 4, 16, ... spans. Returns a status. */
+/* Takes Newton's step; or, where no step changes the residual, as on a slow belt that carries a body for many periods,
+ * extrapolates 1, 4, 16, ... spans. Returns a status. */
 static int newton(struct shooting *s)
 {
     const int to_double = s->rate > DOUBLE_FROM && s->rate < DOUBLE_TO;
@@ -335,9 +335,9 @@ static int search(struct shooting *s, size_t halves)
     return status;
 }
 
-/* Searches from the forecast, unless the guess is near it; then from the guess, and from states some periods after it: where contacts
- * hardly slip, or static limits make motions diverge, Newton's steps may fail. With static limits a stable motion may be not odd,
- * although all drives are odd. Returns a status. */
+/* Searches from the forecast, unless the guess is near it; then from the guess, and from states some periods after it: where
+ * contacts hardly slip, or static limits make motions diverge, Newton's steps may fail. With static limits a stable motion may be
+ * not odd, although all drives are odd. Returns a status. */
 static int search_all(struct shooting *s)
 {
     static const size_t marched[] = {0, MARCHED, MARCHED_STATIC};
@@ -368,8 +368,8 @@ static int search_all(struct shooting *s)
 
 /* -------------------------------------------------------------------------------------------------------------- the family */
 
-/* Projects move [n] on the family of s->best, the kernel of I - derivative over the period; sets s->step. kernel: of solve_equation. Returns
- * a status. */
+/* Projects move [n] on the family of s->best, the kernel of I - derivative over the period; sets s->step. kernel: of
+ * solve_equation. Returns a status. */
 static int project_on_family(struct shooting *s, double *move, size_t *kernel)
 {
     const size_t n = s->map.n;
@@ -382,8 +382,8 @@ static int project_on_family(struct shooting *s, double *move, size_t *kernel)
     return status;
 }
 
-/* Takes the motion nearest to the guess in the family of the odd motion, if that motion comes back. If all modes are damped and no
- * contact rests in all phases, there is no family. Returns a status. */
+/* Takes the motion nearest to the guess in the family of the odd motion, if that motion comes back. If all modes are damped and
+ * no contact rests in all phases, there is no family. Returns a status. */
 static int approach_guess(struct shooting *s)
 {
     const size_t n = s->map.n;

@@ -87,8 +87,8 @@ void tribo_separate(const struct matrix *mass, size_t size, const double *q, siz
     }
 }
 
-/* Makes vectors j .. j + count - 1 of w orthogonal to the basis. Sets c [count][room] = the coefficients of the parts removed, norm,
- * and mw = M W. */
+/* Makes vectors j .. j + count - 1 of w orthogonal to the basis. Sets c [count][room] = the coefficients of the parts removed,
+ * norm, and mw = M W. */
 static void lanczos_separate(struct lanczos *l, size_t j, size_t count)
 {
     double *w = l->w + j * l->n, *mw = l->mw + j * l->n;
@@ -112,8 +112,8 @@ static int draw(struct lanczos *l, size_t j, size_t count)
     return done;
 }
 
-/* Appends vector j of w, normalized, to the basis, or a random vector if vector j depends on the basis. The last j vectors of
- * the basis come from w: vector j becomes orthogonal to these; if little remains, to the whole basis again. Sets complete = 1 if no
+/* Appends vector j of w, normalized, to the basis, or a random vector if vector j depends on the basis. The last j vectors of the
+ * basis come from w: vector j becomes orthogonal to these; if little remains, to the whole basis again. Sets complete = 1 if no
  * vector is independent. */
 static void lanczos_append(struct lanczos *l, size_t j)
 {

@@ -32,8 +32,8 @@ struct low_modes {
 int tribo_low_modes(const struct matrix *k, const struct matrix *m, double shift, const struct cholesky *shifted, size_t wanted,
                     struct low_modes *found);
 
-/* Makes w [count][n] orthogonal in M to q [size][n], orthonormal in M, twice, because one pass is not exact. mw [count][n]: M W, in
- * and out. c [count][stride] += the coefficients of the parts removed; NULL: not wanted. */
+/* Makes w [count][n] orthogonal in M to q [size][n], orthonormal in M, twice, because one pass is not exact. mw [count][n]: M W,
+ * in and out. c [count][stride] += the coefficients of the parts removed; NULL: not wanted. */
 void tribo_separate(const struct matrix *mass, size_t size, const double *q, size_t count, double *w, double *mw, size_t stride,
                     double *c);
 

@@ -29,7 +29,8 @@
 #define TAKEN 1e-12
 #define OWN 1e-7
 
-/* There is no bound of the truncation if left-out modes may have omega^2 <= ABOVE shift: static responses are inexact for these. */
+/* There is no bound of the truncation if left-out modes may have omega^2 <= ABOVE shift: static responses are inexact for
+ * these. */
 #define ABOVE 10.0
 
 /* Part of the diagonal added to a flexibility that is singular because displacements of contacts depend on each other. */
@@ -150,8 +151,8 @@ static int check_mass(const tribo_model *m, size_t *where)
 
 /* ------------------------------------------------------------------------------------------------------------------ the modes */
 
-/* Finds the `wanted` lowest modes among combinations of x [count][ndof], which may be r->phi. Stiffer motions are unknown here: omega^2 is computed
- * without rounding of the largest entries, by tribo_matrix_form. Returns a status. */
+/* Finds the `wanted` lowest modes among combinations of x [count][ndof], which may be r->phi. Stiffer motions are unknown here:
+ * omega^2 is computed without rounding of the largest entries, by tribo_matrix_form. Returns a status. */
 static int find_among(const tribo_model *m, size_t count, const double *x, size_t wanted, struct reduced *r)
 {
     const size_t n = m->ndof;
@@ -176,8 +177,8 @@ static int find_among(const tribo_model *m, size_t count, const double *x, size_
     return modes_failed(m, status, &doubt, 0);
 }
 
-/* Checks that rounding moves no mode across low->above, where modes were counted; and that each mode is an eigenvector, by SAME and
- * SAME_SHIFT: with the norms in M of (omega^2 + shift) (K + shift M)^-1 M phi - phi. Returns a status. */
+/* Checks that rounding moves no mode across low->above, where modes were counted; and that each mode is an eigenvector, by SAME
+ * and SAME_SHIFT: with the norms in M of (omega^2 + shift) (K + shift M)^-1 M phi - phi. Returns a status. */
 static int check_modes(const tribo_model *m, const struct shifted *s, const struct low_modes *low, const struct reduced *r)
 {
     const size_t n = m->ndof, below = low->below < r->count ? low->below : r->count;
@@ -291,8 +292,8 @@ static void add_attachment(const tribo_model *m, const struct shifted *s, struct
 }
 
 /* x [ndof] = the static response, beside the modes, to a force at contact i. The force is taken without the part that acts on the
- * modes, M Phi Phi'force. A second solution removes the effect of shift except shift^2: x += (K + shift M)^-1 shift M x. before, mx
- * [ndof]: workspace. Returns the norm of x in M. */
+ * modes, M Phi Phi'force. A second solution removes the effect of shift except shift^2: x += (K + shift M)^-1 shift M x. before,
+ * mx [ndof]: workspace. Returns the norm of x in M. */
 static double contact_response(const tribo_model *m, const struct shifted *s, const struct reduced *r, size_t i, double *x,
                                double *before, double *mx)
 {
@@ -321,8 +322,9 @@ static double contact_response(const tribo_model *m, const struct shifted *s, co
     return low_modes_separate(m, 0, r->phi, x, mx);
 }
 
-/* Sets *part = the largest x'Ax/x'Bx, A [n][n] semidefinite and a part of B, to rounding of the diagonal of B; 1 if B is lost in
- * the rounding of a subtraction, as of rigid-body motions. Overwrites a and b. value [n]: workspace. Returns 0 if out of memory. */
+/* Sets *part = the largest x'Ax/x'Bx, A [n][n] semidefinite and a part of B, to rounding of the diagonal of B; 1 if B is lost
+ * in the rounding of a subtraction, as of rigid-body motions. Overwrites a and b. value [n]: workspace. Returns 0 if out of
+ * memory. */
 static int largest_part(size_t n, double *a, double *b, double *value, double *part)
 {
     struct matrix whole = {0};
@@ -332,7 +334,8 @@ static int largest_part(size_t n, double *a, double *b, double *value, double *p
     for (size_t i = 0; i < n; i++) {
         b[i * n + i] += b[i * n + i] > 0.0 ? RIDGE * b[i * n + i] : 1.0;
     }
-    int status = tribo_matrix_from_dense(&whole, n, n, b) ? tribo_cholesky_create(&c, &whole, &whole, &where, &pivot) : TRIBO_ERR_MEMORY;
+    int status =
+        tribo_matrix_from_dense(&whole, n, n, b) ? tribo_cholesky_create(&c, &whole, &whole, &where, &pivot) : TRIBO_ERR_MEMORY;
     status = status ? status : tribo_symmetric_eigen_by(&c, a, n, value, b);
     *part = status ? 1.0 : clamp(n ? value[n - 1] : 0.0, 0.0, 1.0);
     tribo_cholesky_free(&c);

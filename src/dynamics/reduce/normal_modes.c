@@ -82,7 +82,8 @@ static void take_out(struct spectrum *s, size_t low)
     tribo_multiply_add(low, s->n - low, s->n, -0.5, s->block, s->y + low * s->n, s->y);
 }
 
-/* Finds all modes, omega^2 to rounding of the largest; then the low ones again, from K projected on these alone. Returns a status. */
+/* Finds all modes, omega^2 to rounding of the largest; then the low ones again, from K projected on these alone. Returns a
+ * status. */
 static int modes_find(struct spectrum *s, const struct cholesky *mass)
 {
     const size_t n = s->n;
@@ -133,7 +134,8 @@ static void modes_expand(const struct spectrum *s, size_t k, double *phi)
     }
 }
 
-/* Returns the share of phi'K phi, phi of mode k, of parts of other modes in it; *unexplained = 1 if a part is more than rounding. */
+/* Returns the share of phi'K phi, phi of mode k, of parts of other modes in it; *unexplained = 1 if a part is more than
+ * rounding. */
 static double find_impurity(struct spectrum *s, size_t k, const double *phi, int *unexplained)
 {
     const size_t n = s->n;

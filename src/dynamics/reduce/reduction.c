@@ -125,8 +125,8 @@ static int find_soft(struct compliant *e, const struct reduced *r, const double 
     return shared;
 }
 
-/* Sets sys->reduced: modes [given][modes + soft] = displacements by q and w; omega, infinite for w, which has no mass; truncation.
- * Returns 0 if out of memory. */
+/* Sets sys->reduced: modes [given][modes + soft] = displacements by q and w; omega, infinite for w, which has no mass;
+ * truncation. Returns 0 if out of memory. */
 static int set_modes(const struct compliant *e, size_t given, const struct reduced *r, tribo_system *sys)
 {
     const size_t m = e->modes, n = m + e->soft;

@@ -171,8 +171,8 @@ static double find_turn(const struct event *e, size_t k)
     return un * dt - ut * dn;
 }
 
-/* Returns the shortest time to a stop over the contacts with a direction at y that still turns too fast for an error of velocities
- * below e->error; HUGE_VAL if there is none. */
+/* Returns the shortest time to a stop over the contacts with a direction at y that still turns too fast for an error of
+ * velocities below e->error; HUGE_VAL if there is none. */
 static double find_settled(const struct event *e, const double *y)
 {
     const struct stick_slip *m = &e->events.stick_slip;
@@ -263,8 +263,8 @@ static double improve(struct event *e, size_t slides, double h)
     struct creep *c = &e->creep;
     const size_t unknowns = slides * NODES;
     for (size_t s = 0; s < slides * slides; s++) {
-        /* block (a, b): derivative of the part of x_a across u_a by the angles of contact b; part: of x_a along n and t to a force
-         * along n, then along t, of contact b */
+        /* block (a, b): derivative of the part of x_a across u_a by the angles of contact b; part: of x_a along n and t to a
+         * force along n, then along t, of contact b */
         const size_t a = s / slides, b = s % slides;
         double part[4][NODES * NODES] = {{0.0}}, power = 1.0;
         for (size_t m = 0; m <= e->order; m++) {

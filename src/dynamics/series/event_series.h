@@ -127,7 +127,8 @@ int tribo_event_hold(struct event *e, double *acc, double *held);
 /* Energy that sliding contact i dissipates until tau; own: struct event. */
 double tribo_event_work(void *own, size_t i, double tau);
 
-/* Moves perturbations v [2 ndof + compliant contacts][columns] of the state by tau in the phase. As transition of struct motion. */
+/* Moves perturbations v [2 ndof + compliant contacts][columns] of the state by tau in the phase. As transition of struct
+ * motion. */
 int tribo_event_transition(void *own, const void *phase, double tau, size_t columns, double *v);
 
 /* method_event.c: returns the length of the step on which the last two terms of all series are below the tolerance. */
@@ -155,8 +156,8 @@ int tribo_planar_series_finish(struct event *e, size_t k);
 /* The k-th coefficient of the power that planar contacts dissipate. */
 double tribo_planar_series_power(const struct event *e, size_t k);
 
-/* Sets square of all lines, with the forces in watch of contacts at rest. All terms count: those of the square are not small where
- * those of x end. */
+/* Sets square of all lines, with the forces in watch of contacts at rest. All terms count: those of the square are not small
+ * where those of x end. */
 void tribo_planar_series_squares(struct event *e);
 
 /* Sets plane->error [ncontact]: error of velocities, at most e->error. */

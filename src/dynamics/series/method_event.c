@@ -25,8 +25,8 @@ static double fastest(const struct event *e)
     return e->fastest + e->events.stick_slip.limits.steepest;
 }
 
-/* Error allowed in a series [order + 1][n] that moves by `moves` within the time of the fastest motion, on a step of at most `most`;
- * not below the rounding of its first term. Of a sharp motion relative to the largest term on that step. */
+/* Error allowed in a series [order + 1][n] that moves by `moves` within the time of the fastest motion, on a step of at most
+ * `most`; not below the rounding of its first term. Of a sharp motion relative to the largest term on that step. */
 static double wanted(const struct event *e, const double *series, size_t n, double moves, double most)
 {
     const tribo_driver *drv = e->drv;
@@ -215,8 +215,8 @@ static void method_event_destroy(tribo_driver *drv)
     }
 }
 
-/* The order grows with the digits of the tolerance. Powers of frequencies and of steps stay within MOST_DIGITS decimal digits, half
- * of that with squares of planar series; there are at least LEAST_ORDER terms. */
+/* The order grows with the digits of the tolerance. Powers of frequencies and of steps stay within MOST_DIGITS decimal digits,
+ * half of that with squares of planar series; there are at least LEAST_ORDER terms. */
 #define MOST_DIGITS 240.0
 #define LEAST_ORDER 4.0
 

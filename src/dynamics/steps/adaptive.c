@@ -101,8 +101,8 @@ static void find_bands(struct adaptive *a, tribo_system *sys)
 static int adaptive_fail(tribo_driver *drv, int status, double t, double h, double size)
 {
     if (!status) {
-        return tribo_driver_fail(
-            drv, TRIBO_ERR_STEP, "step from t = %.17g failed down to %g: the error is %g times the tolerance", t, h, size);
+        return tribo_driver_fail(drv, TRIBO_ERR_STEP,
+                                 "step from t = %.17g failed down to %g: the error is %g times the tolerance", t, h, size);
     }
     if (status == TRIBO_ERR_STEP || status == TRIBO_ERR_NO_CONVERGENCE) {
         return tribo_driver_fail(drv, TRIBO_ERR_STEP,

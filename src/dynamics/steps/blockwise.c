@@ -291,7 +291,8 @@ int tribo_blockwise_step(struct blockwise *b, tribo_system *sys, const struct bo
             continue;
         }
         accelerate(b, sys, k, s->q_to, s->u_to, a);
-        for (size_t i = 0; !b->wakes[k] && i < block_size(sys, k); i++) { /* contacts hold blocks at rest in steps of any length */
+        /* contacts hold blocks at rest in steps of any length */
+        for (size_t i = 0; !b->wakes[k] && i < block_size(sys, k); i++) {
             b->wakes[k] = !(fabs(a[i]) <= b->brake[k * MATRIX_BLOCK + i]);
         }
     }

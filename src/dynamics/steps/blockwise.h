@@ -27,7 +27,7 @@ struct blockwise {
     double grip;            /* 1: contacts inside the band oppose the acceleration, up to the limit; 0: they do not */
     double *before, *after; /* [ndof] velocities of the bases at both ends of a step */
     double *load;           /* [ndof] accelerations by loads */
-    double *room; /* [ncontact] workspace */
+    double *room;           /* [ncontact] workspace */
     size_t blocks;
     size_t *first, *last;         /* [blocks] block k accelerates no blocks before first[k] or after last[k] */
     unsigned char *driven;        /* [blocks] 1: a load, base or limit depends on time */

@@ -130,7 +130,7 @@ int tribo_step_form_fail(tribo_driver *drv, int status, double t, const char *me
 {
     return status != TRIBO_ERR_NOT_FINITE
                ? tribo_driver_fail(drv, status, "at t = %.17g: %s", t, message)
-               : tribo_driver_fail(
-                     drv, status, "at t = %.17g forces are too large: the motion grew without bound, or dt = %g is too long", t,
-                     drv->dt);
+               : tribo_driver_fail(drv, status,
+                                   "at t = %.17g forces are too large: the motion grew without bound, or dt = %g is too long", t,
+                                   drv->dt);
 }

@@ -15,8 +15,8 @@ typedef size_t tribo_fixed_run(tribo_driver *drv, size_t count, const double *t,
 /* Largest number of steps of a run. */
 enum { RUN = 16 };
 
-/* Takes steps drv->dt from the last good state y at *t to t1, several by run (NULL: none) without an observer; the last step may be
- * shorter. Keeps states as tribo_driver_keep does, without copies. Returns a status. */
+/* Takes steps drv->dt from the last good state y at *t to t1, several by run (NULL: none) without an observer; the last step may
+ * be shorter. Keeps states as tribo_driver_keep does, without copies. Returns a status. */
 int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, tribo_fixed_step *step, tribo_fixed_run *run);
 
 /* Of the two methods in step form: Coulomb's law over a step, without epsilon. Contacts at rest stay at rest

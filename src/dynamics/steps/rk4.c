@@ -134,8 +134,5 @@ static int rk4_advance(tribo_driver *drv, double *t, double t1, double *y, int c
     return status || drv->seen ? status : tell_contacts(drv, *t, drv->dt);
 }
 
-const struct method tribo_method_rk4_fixed = {.name = "rk4/fixed",
-                                              .takes = TAKES_STEP | NEEDS_MASS,
-                                              .create = rk4_create,
-                                              .destroy = rk4_destroy,
-                                              .advance = rk4_advance};
+const struct method tribo_method_rk4_fixed = {
+    .name = "rk4/fixed", .takes = TAKES_STEP | NEEDS_MASS, .create = rk4_create, .destroy = rk4_destroy, .advance = rk4_advance};

@@ -63,8 +63,8 @@ int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, dou
 
 /* ------------------------------------------------------------------------------------------------------------ its factor */
 
-/* Sets the band l [n][below + 1] of L, S = L L', by the lower triangle of S: row i begins with column i - below. Rows and columns held
- * [n] (NULL: none) are replaced by those of the identity. Returns the row of a pivot that is not positive, or n. */
+/* Sets the band l [n][below + 1] of L, S = L L', by the lower triangle of S: row i begins with column i - below. Rows and columns
+ * held [n] (NULL: none) are replaced by those of the identity. Returns the row of a pivot that is not positive, or n. */
 static size_t band_factorize(const struct step_matrix *m, const signed char *held, double *l)
 {
     const struct matrix *s = &m->s;

@@ -52,8 +52,8 @@ struct band_step {
     double *du, *f;
 };
 
-/* Prepares steps of length h with the S of m, which must outlive b. Returns a status, with a message in the system; TRIBO_OK also if
- * the system is not of that kind (matrix NULL). Keeps `at`. */
+/* Prepares steps of length h with the S of m, which must outlive b. Returns a status, with a message in the system; TRIBO_OK also
+ * if the system is not of that kind (matrix NULL). Keeps `at`. */
 int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const struct step_matrix *m, double h);
 
 /* du: in, impulses of loads and structure; out, changes of velocities, with forces |f| <= limit for which v = J (u + du) -

@@ -261,8 +261,8 @@ int tribo_model_condense(tribo_model *m, tribo_system **sys)
     status = done ? check_damping(m, &s) : tribo_model_no_memory(m);
     status = status ? status : factorize_without(m, &s);
     if (!status) {
-        done = find_compliance(m, &s) && find_follow(m, &s) &&
-               condense_combine(&s, &m->direction, 1, NULL, NULL, &s.direction) && replace_matrices(m, &s);
+        done = find_compliance(m, &s) && find_follow(m, &s) && condense_combine(&s, &m->direction, 1, NULL, NULL, &s.direction) &&
+               replace_matrices(m, &s);
         status = done ? tribo_model_build_massive(m, sys) : tribo_model_no_memory(m);
     }
     if (!status) {

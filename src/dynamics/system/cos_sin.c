@@ -46,8 +46,7 @@ static inline double sine_near_0(struct twofold x)
     return x.hi + (x.lo * (1.0 - 0.5 * z) - x.hi * z * alternating(z, c));
 }
 
-TRIBO_SIMD static void cos_sin_near(double omega, size_t n, const double *restrict t, double *restrict c,
-                                    double *restrict s)
+TRIBO_SIMD static void cos_sin_near(double omega, size_t n, const double *restrict t, double *restrict c, double *restrict s)
 {
     for (size_t k = 0; k < n; k++) {
         const struct twofold angle = twofold_product(omega, t[k]);

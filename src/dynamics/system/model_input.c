@@ -163,8 +163,7 @@ static int set_csr(tribo_model *model, enum which which, const size_t *rowptr, c
     for (size_t i = 0; done && i < in.rows; i++) {
         for (size_t k = a.first[i] + 1; k < a.first[i + 1]; k++) {
             if (a.col[k] == a.col[k - 1]) {
-                status =
-                    tribo_model_fail(model, TRIBO_ERR_DUPLICATE, "%s[%zu][%zu] is given twice", in.name, i, a.col[k]);
+                status = tribo_model_fail(model, TRIBO_ERR_DUPLICATE, "%s[%zu][%zu] is given twice", in.name, i, a.col[k]);
             }
         }
     }

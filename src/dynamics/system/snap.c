@@ -22,8 +22,8 @@ static double yield_of(const tribo_system *sys, size_t d, size_t i)
     return sys->unsolved ? 1.0 / tribo_matrix_get(&sys->mass, d, d) : fabs(tribo_matrix_get(&sys->response, d, i));
 }
 
-/* Returns which entry of row i, of two entries, to correct by the other: 1, the second; 0 if the second is over 1000 times as heavy
- * as the first. */
+/* Returns which entry of row i, of two entries, to correct by the other: 1, the second; 0 if the second is over 1000 times as
+ * heavy as the first. */
 static size_t follows(const tribo_system *sys, size_t i)
 {
     const size_t *dof = sys->direction.col + sys->direction.first[i];

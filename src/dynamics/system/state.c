@@ -39,8 +39,8 @@ int tribo_expansion_create(tribo_system *sys, struct expansion *x, const double 
     tribo_matrix_free(&x->follow);
     tribo_matrix_free(&x->give);
     tribo_matrix_free(&x->touch);
-    const int done = tribo_triplets_finish(&follow, w, sys->ndof, &x->follow) &
-                     tribo_triplets_finish(&give, w, n, &x->give) & tribo_triplets_finish(&touch, n, w, &x->touch);
+    const int done = tribo_triplets_finish(&follow, w, sys->ndof, &x->follow) & tribo_triplets_finish(&give, w, n, &x->give) &
+                     tribo_triplets_finish(&touch, n, w, &x->touch);
     const struct expansion made = *x;
     *x = (struct expansion){0};
     return expansion_set(sys, made) && done;

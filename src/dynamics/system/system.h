@@ -15,8 +15,8 @@
 enum drives { DRIVES_LOAD, DRIVES_BASE, DRIVES_LIMIT };
 
 /* A function of time: cosine[e] cos(omega t) + sine[e] sin(omega t) is added to element index[e]. Or, if it has knots, a table,
- * linear between knots, constant outside: cosine[e] value(t) is added; a table of limits has a column for each contact, and stands
- * in the place of given_limit. */
+ * linear between knots, constant outside: cosine[e] value(t) is added; a table of limits has a column for each contact, and
+ * stands in the place of given_limit. */
 struct harmonic {
     enum drives drives;
     int by_load;               /* 1: base motion that a load causes (tribo_system_add_load), removed with the loads */
@@ -29,8 +29,8 @@ struct harmonic {
     double *knot, *value;      /* [knots] times, [knots][columns] */
 };
 
-/* Error bound of a reduced system at omega: missing x^order/(1 - x), x = omega^2/above. Left-out modes have omega^2 >= above, and at
- * most the part `missing` of the work of steady contact forces on the elastic structure. */
+/* Error bound of a reduced system at omega: missing x^order/(1 - x), x = omega^2/above. Left-out modes have omega^2 >= above, and
+ * at most the part `missing` of the work of steady contact forces on the elastic structure. */
 struct truncation {
     double above, missing;
     double order; /* 0, 1, 2 with TRIBO_STATICS_NONE, _COMPLIANCE, _MASS: the static displacements included reduce the error */
@@ -53,7 +53,7 @@ struct loads {
     size_t tables;             /* number of tables */
     size_t limit_tables;       /* number of tables of limits, at most 1 */
     double *given_limit;       /* [ncontact] limits set by the caller; valid while limits vary */
-    double time, low; /* the set time (NaN: none) and its part below the last digit (tribo_system_set_low) */
+    double time, low;          /* the set time (NaN: none) and its part below the last digit (tribo_system_set_low) */
 };
 
 /* A reduced system. The modes convert loads to accelerations. */
@@ -204,8 +204,8 @@ double tribo_system_next_kink(const tribo_system *sys, double t);
 /* Returns a bound of all frequencies: of |exponents| of the structure, with any contacts held, and of loads. */
 double tribo_system_fastest(const tribo_system *sys);
 
-/* Returns K or C: forces, if it has rows; rates, if these are forces (unsolved, or M = 1) or have no rows; else *own = M rates, for
- * a diagonal M. The caller frees *own. NULL if out of memory. */
+/* Returns K or C: forces, if it has rows; rates, if these are forces (unsolved, or M = 1) or have no rows; else *own = M rates,
+ * for a diagonal M. The caller frees *own. NULL if out of memory. */
 const struct matrix *tribo_system_force_matrix(const tribo_system *sys, const struct matrix *forces, const struct matrix *rates,
                                                struct matrix *own);
 
@@ -289,8 +289,8 @@ int tribo_system_check_solved(const tribo_system *sys, const char *what);
 /* Both checks, for functions that compute rates of states: neither massless degrees of freedom nor unsolved systems. */
 int tribo_system_check_rates(const tribo_system *sys, const char *what);
 
-/* Returns TRIBO_ERR_UNSUPPORTED for planar contacts if scalar = 1 or the system has massless degrees of freedom, and for static limits
- * of elastic contacts. */
+/* Returns TRIBO_ERR_UNSUPPORTED for planar contacts if scalar = 1 or the system has massless degrees of freedom, and for static
+ * limits of elastic contacts. */
 int tribo_system_check_contacts(const tribo_system *sys, const char *method, int scalar);
 
 /* Returns TRIBO_OK if all x [n] are finite, or x is NULL, else an error with the name of x. */
@@ -313,8 +313,9 @@ static inline size_t tribo_system_size(const tribo_system *sys)
     return tribo_system_energy(sys) + 1;
 }
 
-/* Takes x as the expansion of a system that has its compliance, and appends a displacement w for each contact i with slides[i] > 0
- * (NULL: none): with row i of J in follow, row i of G in give. x->place has room for these. Returns 1, or 0 if out of memory. */
+/* Takes x as the expansion of a system that has its compliance, and appends a displacement w for each contact i with slides[i]
+ * > 0 (NULL: none): with row i of J in follow, row i of G in give. x->place has room for these. Returns 1, or 0 if out of
+ * memory. */
 int tribo_expansion_create(tribo_system *sys, struct expansion *x, const double *slides);
 int tribo_expansion_copy(tribo_system *to, const tribo_system *from);
 void tribo_expansion_free(struct expansion *x);

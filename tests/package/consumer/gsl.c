@@ -17,8 +17,7 @@ int main(void)
     gsl_spmatrix_set(one, 0, 0, 1);
     ok = tribo_model_create(&model, 1, 1) == TRIBO_OK && tribo_gsl_model_set_mass(model, one) == TRIBO_OK &&
          tribo_gsl_model_set_stiffness(model, one) == TRIBO_OK && tribo_gsl_model_set_direction(model, one) == TRIBO_OK &&
-         tribo_system_create(&sys, model) == TRIBO_OK &&
-         tribo_set_limit_all(tribo_system_context(sys), 1) == TRIBO_OK &&
+         tribo_system_create(&sys, model) == TRIBO_OK && tribo_set_limit_all(tribo_system_context(sys), 1) == TRIBO_OK &&
          tribo_gsl_driver_create(&drv, sys, "rk8pd") == TRIBO_OK && tribo_driver_set_tolerance(drv, 1e-9, 1e-9) == TRIBO_OK &&
          tribo_driver_advance(drv, &t, M_PI, y) == TRIBO_OK && gsl_fcmp(y[0], 0.5, 1e-9) == 0;
     tribo_driver_destroy(drv);

@@ -52,14 +52,13 @@ static void open(struct workshop *w, const struct csr *r)
     for (size_t i = 0; i < n; i++) {
         scale[i] = 1.0;
     }
-    w->p = (struct box_qp){
-        .group = &w->group,
-        .sets = &w->sets,
-        .scale = scale,
-        .at = w->at,
-        .row = w->values + 2 * n,
-        .order = w->places + n,
-        .sparse = {.l = w->values + 4 * n, .d = w->values, .w = w->values + n, .index = w->places}};
+    w->p = (struct box_qp){.group = &w->group,
+                           .sets = &w->sets,
+                           .scale = scale,
+                           .at = w->at,
+                           .row = w->values + 2 * n,
+                           .order = w->places + n,
+                           .sparse = {.l = w->values + 4 * n, .d = w->values, .w = w->values + n, .index = w->places}};
 }
 
 static void close(struct workshop *w)

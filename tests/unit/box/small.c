@@ -69,9 +69,9 @@ TEST(solution)
         require(b.lo[i] <= b.x[i] && b.x[i] <= b.hi[i], "x[%zu] = %g is outside", i, b.x[i]);
         require(fabs(gradient - b.gradient[i]) <= 1e-13, "gradient[%zu] = %g is %g", i, b.gradient[i], gradient);
         const double against = b.x[i] <= b.lo[i] && b.x[i] >= b.hi[i] ? 0.0
-                               : b.x[i] <= b.lo[i]                     ? greater(-gradient, 0.0)
-                               : b.x[i] >= b.hi[i]                     ? greater(gradient, 0.0)
-                                                                       : fabs(gradient);
+                               : b.x[i] <= b.lo[i]                    ? greater(-gradient, 0.0)
+                               : b.x[i] >= b.hi[i]                    ? greater(gradient, 0.0)
+                                                                      : fabs(gradient);
         require(against <= 1e-13, "gradient[%zu] = %g pulls", i, gradient);
     }
 }

@@ -221,11 +221,16 @@ static const struct {
     int (*call)(tribo_context *c);
     int has_message;
 } calls[] = {
-    {"create", create, 0},         {"clone", clone, 0},
-    {"diagonal", set_diagonal, 1}, {"dense", set_dense, 1},
-    {"csr", set_csr, 1},           {"mass", set_mass, 1},
-    {"callback", set_callback, 1}, {"diagonal as dense", set_dense_diagonal, 1},
-    {"planar", set_planar, 1},     {"planar copy", copy_planar, 0},
+    {"create", create, 0},
+    {"clone", clone, 0},
+    {"diagonal", set_diagonal, 1},
+    {"dense", set_dense, 1},
+    {"csr", set_csr, 1},
+    {"mass", set_mass, 1},
+    {"callback", set_callback, 1},
+    {"diagonal as dense", set_dense_diagonal, 1},
+    {"planar", set_planar, 1},
+    {"planar copy", copy_planar, 0},
     {"settings", copy_settings, 0},
 };
 

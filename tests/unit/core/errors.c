@@ -304,7 +304,8 @@ TEST(forces)
     REFUSED_CONST(TRIBO_ERR_NULL, tribo_force_tangent(c, NULL, good, out.f, out.dv, out.dfeq, out.dlimit));
     REFUSED_CONST(TRIBO_ERR_NULL, tribo_force_tangent(c, good, NULL, out.f, out.dv, out.dfeq, out.dlimit));
     REFUSED_CONST(TRIBO_ERR_NOT_FINITE, tribo_force_tangent(c, bad_v, good, out.f, out.dv, out.dfeq, out.dlimit));
-    REFUSED_CONST(TRIBO_ERR_NOT_FINITE, tribo_force_tangent(c, THREE(0.0, 0.0, 0.0), bad_feq, out.f, out.dv, out.dfeq, out.dlimit));
+    REFUSED_CONST(TRIBO_ERR_NOT_FINITE,
+                  tribo_force_tangent(c, THREE(0.0, 0.0, 0.0), bad_feq, out.f, out.dv, out.dfeq, out.dlimit));
     /* a contact that slides has no use for f_eq */
     const double sliding[N] = {9.0, 9.0, -9.0};
     assert_ok(tribo_force(c, sliding, THREE(NAN, HUGE_VAL, NAN), out.f));

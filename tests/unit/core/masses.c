@@ -238,8 +238,8 @@ TEST(enumerated)
             }
             const double off = failed ? HUGE_VAL : apart(&s, want, got);
             solved += off <= 1e-6;
-            require(off <= 1e-6 || ill_posed(&g, &s, want), "scene %zu, %s: %s, off by %g of a limit", k, step ? "step" : "balance",
-                    failed ? tribo_message(c) : "status 0", off);
+            require(off <= 1e-6 || ill_posed(&g, &s, want), "scene %zu, %s: %s, off by %g of a limit", k,
+                    step ? "step" : "balance", failed ? tribo_message(c) : "status 0", off);
         }
         tribo_destroy(c);
     }

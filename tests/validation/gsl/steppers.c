@@ -479,8 +479,8 @@ TEST(advance_in_pieces)
 }
 
 TEST_MAIN("steppers", {names, 1}, {own_stepper, 1}, {attached, 1}, {orders, COUNT(steppers)}, {smooth_law, COUNT(steppers)},
-          {energies, 2 * COUNT(systems)},
-          {steps_over_rest, COUNT(steppers)}, {short_slips, COUNT(steppers)}, {pulse, COUNT(steppers)},
-          {reversal_law, COUNT(steppers)}, {coulombs_law, COUNT(steppers)}, {largest_step, COUNT(steppers)},
-          {largest_step_errors, 1}, {singular_matrices, COUNT(steppers)}, {singular_by_rounding, COUNT(steppers)},
-          {impossible_tolerance, COUNT(steppers)}, {counts, COUNT(steppers)}, {advance_in_pieces, COUNT(steppers)})
+          {energies, 2 * COUNT(systems)}, {steps_over_rest, COUNT(steppers)}, {short_slips, COUNT(steppers)},
+          {pulse, COUNT(steppers)}, {reversal_law, COUNT(steppers)}, {coulombs_law, COUNT(steppers)},
+          {largest_step, COUNT(steppers)}, {largest_step_errors, 1}, {singular_matrices, COUNT(steppers)},
+          {singular_by_rounding, COUNT(steppers)}, {impossible_tolerance, COUNT(steppers)}, {counts, COUNT(steppers)},
+          {advance_in_pieces, COUNT(steppers)})

@@ -584,7 +584,8 @@ TEST(resonance_among_many)
         }
     }
     direction[2] = 1.0;
-    struct search s = search_create("exact", DOFS, 1, mass, damping, stiffness, direction, 2.0 * sin(1.5 * PI / (DOFS + 1)), load);
+    struct search s =
+        search_create("exact", DOFS, 1, mass, damping, stiffness, direction, 2.0 * sin(1.5 * PI / (DOFS + 1)), load);
     assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), _i ? 0.01 : 0.0));
     assert_status(tribo_driver_find_periodic(s.drv, 0.0, s.period, y), TRIBO_ERR_NO_CONVERGENCE);
     search_free(&s);

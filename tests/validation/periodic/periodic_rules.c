@@ -318,5 +318,4 @@ TEST(not_odd)
 }
 
 TEST_MAIN("periodic_rules", {nothing_left, 2}, {errors, 2}, {other_methods, 4}, {static_limit, 12}, {falling_limit, 12},
-          {nearly_stuck, 1}, {fast_load, 2}, {automatic, 1},
-          {automatic_turns, 1}, {any_size, 6}, {huge_load, 1}, {not_odd, 4})
+          {nearly_stuck, 1}, {fast_load, 2}, {automatic, 1}, {automatic_turns, 1}, {any_size, 6}, {huge_load, 1}, {not_odd, 4})

@@ -225,4 +225,5 @@ TEST(few_modes)
     }
 }
 
-TEST_MAIN("compliance", {power, 4}, {resonance, 3}, {methods, 2}, {displacements, 1}, {free_bodies, 1}, {tables, 1}, {few_modes, 1})
+TEST_MAIN("compliance", {power, 4}, {resonance, 3}, {methods, 2}, {displacements, 1}, {free_bodies, 1}, {tables, 1},
+          {few_modes, 1})

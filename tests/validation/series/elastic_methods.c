@@ -398,8 +398,8 @@ TEST(contacts_of_state)
     size_t stuck;
     assert_ok(tribo_system_get_slip(e, slip));
     assert_ok(tribo_system_get_count(e, TRIBO_COUNT_STUCK, &stuck));
-    require(slip[0] == TRIBO_SLIP_STUCK && slip[1] == TRIBO_SLIP_FORTH && stuck == 1, "slips %d and %d, %zu stuck", slip[0], slip[1],
-            stuck);
+    require(slip[0] == TRIBO_SLIP_STUCK && slip[1] == TRIBO_SLIP_FORTH && stuck == 1, "slips %d and %d, %zu stuck", slip[0],
+            slip[1], stuck);
     tribo_system_destroy(s);
     tribo_system_destroy(e);
 }

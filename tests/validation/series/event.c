@@ -569,8 +569,9 @@ TEST(units_by_default)
     tribo_system_destroy(other);
 }
 
-TEST_MAIN("event", {units_by_default, 12}, {errors_follow_the_tolerance, REFERENCES}, {work_for_the_chain, 1}, {nothing_is_missed, REFERENCES},
-          {fast_and_small, 1}, {rest_on_a_belt, 1}, {rest_on_each_other, 2}, {nothing_left_over, 4}, {state_changed, 2},
-          {reversal, 2}, {stop, 2}, {grazing_velocity, 2}, {grazing_force, 4}, {break_away_and_stick, 2}, {twins, 2},
-          {redundant_contacts, 4}, {driven_from_both_sides, 2}, {beside_one_at_its_limit, 1}, {load_table, 3}, {limit_table, 3},
-          {kinks_that_are_events, 3}, {observed_events, 2}, {on_the_edge, 2}, {units, 5}, {long_slide, 2})
+TEST_MAIN("event", {units_by_default, 12}, {errors_follow_the_tolerance, REFERENCES}, {work_for_the_chain, 1},
+          {nothing_is_missed, REFERENCES}, {fast_and_small, 1}, {rest_on_a_belt, 1}, {rest_on_each_other, 2},
+          {nothing_left_over, 4}, {state_changed, 2}, {reversal, 2}, {stop, 2}, {grazing_velocity, 2}, {grazing_force, 4},
+          {break_away_and_stick, 2}, {twins, 2}, {redundant_contacts, 4}, {driven_from_both_sides, 2},
+          {beside_one_at_its_limit, 1}, {load_table, 3}, {limit_table, 3}, {kinks_that_are_events, 3}, {observed_events, 2},
+          {on_the_edge, 2}, {units, 5}, {long_slide, 2})

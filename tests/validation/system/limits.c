@@ -630,5 +630,5 @@ TEST(errors_of_tables)
 TEST_MAIN("limits", {slides_on, 2}, {resonance, 2}, {lift_off, 2}, {touches_down_at_rest, 2}, {touches_down_pulled, 2},
           {grazing_lift_off, 2}, {released_at_the_load_s_extremum, 2}, {grazing_limit, 2}, {zero_limits, 2}, {constant, 1},
           {together, 2}, {doubled, 2}, {methods_agree, 12}, {reference_systems, 1}, {steppers, 1}, {energy, 12},
-          {late_in_time, 2}, {table_lifts_off, 1}, {table_and_harmonics, 1}, {given_limits, 2}, {automatic, 1}, {lent_context, 17}, {errors, 1},
-          {errors_of_tables, 1})
+          {late_in_time, 2}, {table_lifts_off, 1}, {table_and_harmonics, 1}, {given_limits, 2}, {automatic, 1},
+          {lent_context, 17}, {errors, 1}, {errors_of_tables, 1})
