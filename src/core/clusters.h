@@ -18,7 +18,7 @@ static inline size_t tribo_directions(const tribo_context *ctx, size_t i)
     return tribo_is_scalar(ctx, i) ? 1 : 2;
 }
 
-/* [n] the group whose box problem has the contact, or TRIBO_ALONE; for an operator with groups. */
+/* Returns [n]: number of the group of contact i, or TRIBO_ALONE. For an operator with groups. */
 static inline const size_t *tribo_group_of(const tribo_context *ctx)
 {
     return ctx->clusters ? ctx->clusters->group_of : ctx->op->group_of;
@@ -73,7 +73,7 @@ void tribo_clusters_refresh(tribo_context *ctx, int follows, double time);
 /* ---- planar_force.c */
 
 /* Forces of clusters in last.f, where those of all others are known; of the balance, and over a step; a status.
- * known [n] or NULL: not 0 for scalar contacts whose force is in last.f. */
+ * known [n] or NULL: known[i] != 0 if last.f[i] is the force of scalar contact i. */
 int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a);
 int tribo_clusters_step(tribo_context *ctx, double dt, const double *vfree, const signed char *known);
 

@@ -92,8 +92,8 @@ void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size
  * Overwrites last.v. */
 int tribo_hold_for_step(tribo_context *ctx, double dt, const double *v, const double *f);
 
-/* Gives contacts whose f_eq exceeds the static limit that to slide at the end of a step of dt, or (0) from rest. Returns their
- * number. */
+/* follow.now[i] = limit to slide, at the speed after a step of dt (0: from rest), of each contact of p at its static limit with
+ * |f_eq_i| above this limit by more than rounding. Returns the number of these contacts. */
 size_t tribo_break_away(tribo_context *ctx, struct box_qp *p, double dt);
 
 /* The same for contacts in no group, by vfree; their forces follow. */

@@ -206,8 +206,8 @@ static int has_sure_pivots(struct gsl_step *g, size_t n)
     return sure;
 }
 
-/* 1 if all matrices of a step are regular; needs reserve_factor. Of msbdf, whose matrix belongs to its order, only those of
- * orders up to the present one: an order grows from one step to the next only. */
+/* Returns 1 if all matrices I - c h A x J of a step are regular. Call reserve_factor before. msbdf has a matrix for each order;
+ * within a step its order does not grow, so that matrices of higher orders are not checked. */
 static int is_regular(struct gsl_step *g)
 {
     const size_t n = g->dimension, size = n * g->kind->stages;
@@ -332,7 +332,7 @@ static int gsl_step_try(const tribo_trial *x, void *data)
     if (g->kind->matrices) {
         status = reserve_factor(g);
         if (!status && g->known && !is_regular(g)) {
-            gsl_step_restart(g); /* GSL then asks for a Jacobian before it factorizes */
+            gsl_step_restart(g); /* after a restart GSL calls guarded_jacobian before it factorizes */
         }
     }
     if (!status) {

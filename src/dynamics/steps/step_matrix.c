@@ -165,8 +165,8 @@ int tribo_step_matrix_solve(const void *matrix, size_t count, double *x)
 /* ------------------------------------------------------------------------------------------------------ bodies held */
 
 /* The box-constrained problem of a step by the method of numerics/box/box.c, for bodies instead of contacts: begin
- * with the contacts that held in the last step; repeat: du = solution with these held; contacts whose force is above the limit
- * slide, contacts that move along their force hold; until no contact changes, or rounds end.
+ * with the contacts that held in the last step; repeat: du = solution with these held; contact i slides if |f_i| > limit_i,
+ * and holds if it moves along f_i; until no contact changes, or after ROUNDS.
  *
  * Where the band is stiff, the slip of a body overloads its neighbours within the step, and each round would reach the next
  * neighbour only. So in rounds in which contacts only begin to slide, neighbours within `reach` slide along, and reach
