@@ -143,7 +143,8 @@ static inline int tribo_small_find(size_t n, const struct small *s)
 }
 
 /* Solves the problem, beginning with the sets in at[]: frees variable i at a bound if minus its gradient, beyond noise, points
- * into the box, and sets free variables outside the box to the bound. Returns 0 if the sets do not settle in 2 n + 2 rounds. */
+ * into the box, and sets free variables outside the box to the bound. Returns 0 if at[] changes in each of 2 n + 2 rounds, or if
+ * tribo_small_find fails. */
 static inline int tribo_small_solve(size_t n, const struct small *s)
 {
     for (size_t round = 0; round < 2 * n + 2 && tribo_small_find(n, s); round++) {
