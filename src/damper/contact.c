@@ -102,11 +102,11 @@ void read_contact(struct text *t, void *contacts)
     c.stiffness = isnan(c.stiffness) ? 0.0 : c.stiffness;
     c.to.direction = c.at.direction;
     c.to.origin = t->place;
-    c.planar = second != 0;
-    for (int k = 0; k < (second ? 2 : 1); k++) {
+    c.directions = second ? 2 : 1;
+    for (int k = second ? 2 : 1; k > 0; k--) {
         all->contact = need_room(all->contact, all->count, &all->room, sizeof *all->contact);
         all->contact[all->count++] = c;
-        c.planar = 0;
+        c.directions = 0;
         c.at.direction = c.to.direction = second;
     }
 }

@@ -19,7 +19,7 @@ struct contact {
     double mu;
     int by_load;      /* 1: limit is NaN and mu is given, so that --limits gives normal loads */
     double stiffness; /* of the spring that it slides on; 0: none, it is rigid */
-    int planar;       /* the first direction of two, and the next contact is the other one */
+    int directions;   /* of the contact, of which this is the first one; 0: this is the second one of the contact before */
 };
 
 /* A harmonic load, size sin(omega t + phase): a force at a place; or an acceleration of all supports along a direction. */

@@ -46,7 +46,7 @@ void complete_options(struct options *o, const struct structure *s)
             die("%s: with --law %s marching takes rigid contacts only: leave out stiffness=, or --law", origin,
                 tribo_law_name(o->law));
         }
-        if (contact->planar && !o->march) {
+        if (contact->directions == 2 && !o->march) {
             die("%s: contacts in a plane are for --method march; method exact knows contacts along one axis only", origin);
         }
     }
@@ -225,7 +225,7 @@ static void build(struct damper *d)
             check_spring(d, c);
             compliance[c] = 1.0 / d->contact[c].stiffness;
         }
-        if (d->contact[c].planar) {
+        if (d->contact[c].directions == 2) {
             first[planar++] = c;
         }
     }

@@ -51,21 +51,21 @@ enum { EVENT, EXACT };
 
 static const struct method *const choices[] = {&tribo_method_event, &tribo_method_exact};
 
-/* Returns EXACT for up to 200 degrees of freedom, where modes are cheap, if exact supports the system; else EVENT. */
+/* Returns EXACT for up to 200 degrees of freedom, where modes are cheap, unless exact refused the system; else EVENT. */
 static int driver_choose(const tribo_driver *drv)
 {
     const tribo_system *sys = drv->sys;
     const int refused = drv->choice.refused && drv->choice.revision == tribo_system_revision(sys);
-    const int closed = !sys->loads.tables && !tribo_system_falls(sys) && !tribo_system_planar(sys);
-    return sys->ndof <= 200 && closed && !refused ? EXACT : EVENT;
+    return sys->ndof <= 200 && !refused ? EXACT : EVENT;
 }
 
-/* Makes a method the one at work, with its data. Returns a status; the message is in the system. */
+/* Makes a method that takes the contacts the one at work, with its data. Returns a status; the message is in the system. */
 static int set_to_work(tribo_driver *drv, int which)
 {
-    drv->at_work = choices[which];
+    const struct method *m = drv->at_work = choices[which];
     drv->own = drv->choice.own[which];
-    const int status = drv->own ? TRIBO_OK : drv->at_work->create(drv);
+    int status = tribo_system_check_contacts(drv->sys, m->name, m->takes & NEEDS_SCALAR);
+    status = status || drv->own ? status : m->create(drv);
     if (status) {
         drv->at_work->destroy(drv);
         drv->own = NULL;
@@ -73,11 +73,6 @@ static int set_to_work(tribo_driver *drv, int which)
     }
     drv->choice.own[which] = drv->own;
     return status;
-}
-
-static int create_choice(tribo_driver *drv)
-{
-    return set_to_work(drv, driver_choose(drv));
 }
 
 static void destroy_choice(tribo_driver *drv)
@@ -98,6 +93,12 @@ static int is_refused(tribo_driver *drv, int which, int status)
     drv->choice.revision = tribo_system_revision(drv->sys);
     drv->message[0] = '\0';
     return 1;
+}
+
+static int create_choice(tribo_driver *drv)
+{
+    const int which = driver_choose(drv), status = set_to_work(drv, which);
+    return is_refused(drv, which, status) ? set_to_work(drv, EVENT) : status;
 }
 
 static int advance_choice(tribo_driver *drv, double *t, double t1, double *y, int continues)

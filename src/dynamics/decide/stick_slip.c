@@ -150,6 +150,7 @@ void tribo_stick_slip_free(struct stick_slip *m)
 {
     tribo_destroy(m->constant.box);
     tribo_destroy(m->constant.hold);
+    tribo_planar_slip_free(m->plane);
     free(m->constant.memory);
     memset(m, 0, sizeof *m);
 }
@@ -445,7 +446,7 @@ void tribo_stick_slip_forget_shares(struct stick_slip *m)
     }
 }
 
-void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues)
+int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues)
 {
     struct slip_constant *k = &m->constant;
     struct slip_state *s = &m->state;
@@ -483,4 +484,5 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
     for (size_t i = 0; i < sys->loads.harmonics; i++) {
         k->base_moves |= sys->loads.harmonic[i].drives == DRIVES_BASE && sys->loads.harmonic[i].count > 0;
     }
+    return tribo_planar_slip_start(m, sys, continues);
 }

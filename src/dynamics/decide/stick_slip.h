@@ -147,10 +147,10 @@ struct stick_slip {
 };
 
 /* stick_slip.c: create returns a status, its message on the system's context. start begins an advance: reads the
- * limits; continues = 0: contacts with velocities of rounding size are at rest. Call the decision next. */
+ * limits; continues = 0: contacts with velocities of rounding size are at rest. Call the decision next. Returns a status, too. */
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_free(struct stick_slip *m);
-void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues);
+int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues);
 
 /* The decision at (t, y); sets slip, holds, force and allowance, and removes rounding of velocities at rest from y. Returns a
  * status. */
@@ -270,8 +270,7 @@ static inline int tribo_drops(const struct stick_slip *m, size_t i)
 
 void tribo_planar_slip_free(struct planar_slip *p); /* NULL is fine */
 
-/* After tribo_stick_slip_start: takes the planar contacts from the system, unless it continues. Returns a status, its message
- * on the system's context. */
+/* Takes the planar contacts from the system, unless it continues. Returns a status, its message on the system's context. */
 int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int continues);
 
 /* In the place of tribo_stick_slip_find_resting and tribo_scalar_slip_settle where there are planar contacts. */

@@ -66,7 +66,6 @@ int tribo_events_create(struct events *e, tribo_driver *drv, const struct motion
 
 void tribo_events_free(struct events *e)
 {
-    tribo_planar_slip_free(e->stick_slip.plane);
     tribo_stick_slip_free(&e->stick_slip);
     free(e->lasted);
 }
@@ -152,7 +151,7 @@ static int show_between(struct events *e, tribo_driver *drv, double t, const dou
     return status;
 }
 
-/* In shown[]: a planar contact that stopped and slides again at one instant. */
+/* In shown[]: a contact that slid in a plane, stopped, and slides again at one instant. */
 #define TURNS (-TRIBO_SLIP_PLANE)
 
 /* Shows the observer each contact whose slip differs from shown[], in ascending order, until it answers anything but 0; the
@@ -298,10 +297,9 @@ static int phase(struct events *e, tribo_driver *drv, double *t, double t1, doub
     if (!status && m->plane) {
         stops = m->plane->stopped < m->constant.contacts;
         status = stops ? count_event(e, drv, m->plane->stopped, *t) : TRIBO_OK;
-        for (size_t k = 0; drv->seen && k < m->plane->count; k++) {
-            const struct planar_contact *p = &m->plane->contact[k];
-            const int turns = p->begins != SLIDES_ON && e->shown[p->at] == TRIBO_SLIP_PLANE;
-            e->shown[p->at] = turns ? TURNS : e->shown[p->at];
+        for (size_t i = 0; drv->seen && i < m->constant.contacts; i++) {
+            const int slides = m->state.slip[i] == TRIBO_SLIP_PLANE && e->shown[i] == TRIBO_SLIP_PLANE;
+            e->shown[i] = slides && m->state.rested[i] ? TURNS : e->shown[i];
         }
     }
     status = status ? status : tribo_driver_keep(drv, *t, y);
@@ -326,8 +324,7 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
         memcpy(e->shown, m->state.slip, contacts);
     }
     e->watched = drv->seen != NULL;
-    tribo_stick_slip_start(m, drv->sys, *t, y, continues);
-    int status = tribo_planar_slip_start(m, drv->sys, continues), some;
+    int status = tribo_stick_slip_start(m, drv->sys, *t, y, continues), some;
     if (!status && !(continues && e->decided)) {
         status = decide(e, drv->sys, *t, y);
     }
