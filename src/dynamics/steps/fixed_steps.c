@@ -23,7 +23,7 @@ int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y,
     double *from = drv->state, *to = y;
     int status = TRIBO_OK;
     for (double k = 0.0; k < steps && !status;) {
-        const size_t count = steps - k < RUN ? (size_t)(steps - k) : RUN;
+        const size_t count = !run || drv->seen ? 1 : steps - k < RUN ? (size_t)(steps - k) : RUN;
         double time[RUN + 1];
         time[0] = drv->time;
         for (size_t s = 1; s <= count; s++) {

@@ -13,7 +13,7 @@ typedef int tribo_fixed_step(tribo_driver *drv, double t, double next, const dou
 typedef size_t tribo_fixed_run(tribo_driver *drv, size_t count, const double *t, double *y);
 
 /* Largest number of steps of a run. */
-enum { RUN = 16 };
+enum { RUN = 32 };
 
 /* Takes steps drv->dt from the last good state y at *t to t1, several by run (NULL: none) without an observer; the last step may
  * be shorter. Keeps states as tribo_driver_keep does, without copies. Returns a status. */

@@ -34,7 +34,7 @@ struct few_bodies {
     signed char at[FEW]; /* in the step before: FREE: holds; AT_LOWER, AT_UPPER: slides, with friction -limit, limit */
     /* of the steps of a run: durations over which forces act; lengths, that of the step before the run first; and what acts */
     double time[RUN], h[RUN + 1];
-    double load[FEW][RUN], base[FEW][RUN], limit[FEW][RUN];
+    double load[FEW][RUN], base[FEW][RUN], limit[RUN][FEW]; /* limits that do not vary: limit[0] */
 };
 
 struct central {
@@ -159,9 +159,10 @@ static void few_find_drives(tribo_system *sys, enum drives drives, size_t n, siz
                 cosine[s] = h->cos_t;
             }
             for (size_t e = 0; e < h->count; e++) {
-                double *to = row[h->index[e]];
+                const double a = h->cosine[e], b = h->sine[e];
+                double *restrict to = row[h->index[e]];
                 for (size_t s = 0; s < count; s++) {
-                    to[s] += h->cosine[e] * cosine[s] + h->sine[e] * sine[s];
+                    to[s] += a * cosine[s] + b * sine[s];
                 }
             }
         }
@@ -172,7 +173,7 @@ static void few_find_drives(tribo_system *sys, enum drives drives, size_t n, siz
  * too large. */
 static int few_find_all(struct few_bodies *b, tribo_system *sys, size_t count, const double *t, double last)
 {
-    double middle[RUN], limit[FEW];
+    double middle[RUN];
     int fits = 1;
     b->h[0] = last;
     for (size_t s = 0; s < count; s++) {
@@ -182,15 +183,11 @@ static int few_find_all(struct few_bodies *b, tribo_system *sys, size_t count, c
     }
     few_find_drives(sys, DRIVES_LOAD, sys->ndof, count, t, b->load);
     few_find_drives(sys, DRIVES_BASE, sys->ncontact, count, middle, b->base);
-    const int vary = tribo_system_limits_vary(sys);
-    for (size_t s = 0; s < count; s++) {
-        if (vary || s == 0) {
-            tribo_system_set_time(sys, t[s]);
-            tribo_get_limit(sys->contacts, limit);
-        }
+    for (size_t s = 0; s < (tribo_system_limits_vary(sys) ? count : 1); s++) {
+        tribo_system_set_time(sys, t[s]);
+        tribo_get_limit(sys->contacts, b->limit[s]);
         for (size_t i = 0; i < sys->ncontact; i++) {
-            fits &= limit[i] <= TRIBO_SMALL_MOST;
-            b->limit[i][s] = limit[i];
+            fits &= b->limit[s][i] <= TRIBO_SMALL_MOST;
         }
     }
     return fits;
@@ -216,7 +213,8 @@ struct few_state {
 static inline int few_step(struct few_bodies *b, tribo_system *sys, size_t n, size_t c, size_t s, struct few_state *m)
 {
     static const double least[FEW] = {0.0};
-    double u[FEW] = {0.0}, v[FEW], less[FEW], most[FEW], base[FEW], p[FEW] = {0.0}, end[FEW], work = 0.0;
+    const double *limit = b->limit[tribo_system_limits_vary(sys) ? s : 0];
+    double u[FEW], v[FEW], less[FEW], most[FEW], base[FEW], p[FEW] = {0.0}, end[FEW], work = 0.0;
     const struct small x = {b->r, b->inverse, &b->inverse_of, b->part, least, v, less, most, m->at, p, end};
     for (size_t d = 0; d < n; d++) {
         const double a = b->load[d][s] - row_times(n, b->damping + d * n, m->u); /* q is known later than u */
@@ -225,7 +223,7 @@ static inline int few_step(struct few_bodies *b, tribo_system *sys, size_t n, si
     for (size_t i = 0; i < c; i++) {
         base[i] = b->base[i][s];
         v[i] = row_times(n, b->direction + i * n, u) - base[i];
-        most[i] = b->time[s] * b->limit[i][s];
+        most[i] = b->time[s] * limit[i];
         less[i] = -most[i];
     }
     if (!tribo_small_solve(c, &x)) {
@@ -278,7 +276,7 @@ static size_t central_run(tribo_driver *drv, size_t count, const double *t, doub
     struct few_bodies *b = &x->few;
     tribo_system *sys = drv->sys;
     const size_t n = sys->ndof, c = sys->ncontact;
-    if (!b->fits || !few_find_all(b, sys, count, t, x->last)) {
+    if (!few_find_all(b, sys, count, t, x->last)) {
         return 0;
     }
     tribo_step_form_velocity(s, sys, x->when, s->u, s->end);
@@ -404,7 +402,7 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
         x->when = *t;
     }
     take_settings(x, drv->sys);
-    status = tribo_driver_fixed_steps(drv, t, t1, y, central_step, central_run);
+    status = tribo_driver_fixed_steps(drv, t, t1, y, central_step, x->few.fits ? central_run : NULL);
     if (status && *t > begin && !drv->seen) {
         memcpy(drv->state + n, s->u, n * sizeof *y);
     }

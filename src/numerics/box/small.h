@@ -118,7 +118,7 @@ static inline int tribo_small_find(size_t n, const struct small *s)
     for (size_t i = 0; i < n; i++) {
         const signed char at = s->at[i];
         set |= (unsigned)(at == FREE) << i;
-        s->x[i] = at == AWAY ? s->x[i] : at == FREE ? 0.0 : at == AT_LOWER ? s->lo[i] : s->hi[i];
+        s->x[i] = at == AT_LOWER ? s->lo[i] : at == AT_UPPER ? s->hi[i] : at == FREE ? 0.0 : s->x[i];
         gradient[i] = s->q[i];
     }
     if (set != *s->inverse_of) {
