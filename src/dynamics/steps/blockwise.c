@@ -102,6 +102,7 @@ void tribo_blockwise_take(struct blockwise *b, tribo_system *sys)
     memset(b->awake, 1, b->blocks);
     memset(b->wakes, 0, b->blocks);
     memset(b->load, 0, sys->ndof * sizeof *b->load);
+    b->when = NAN;
     memset(b->driven, tribo_system_limits_vary(sys), b->blocks);
     for (size_t s = 0; s < sys->loads.harmonics; s++) {
         const struct harmonic *h = &sys->loads.harmonic[s];
@@ -148,26 +149,22 @@ static size_t block_size(const tribo_system *sys, size_t k)
     return left < MATRIX_BLOCK ? left : MATRIX_BLOCK;
 }
 
-/* Sets the system's time, and load. */
+/* Sets the system's time, and load: clears only the entries that are driven. */
 static void set_time(struct blockwise *b, tribo_system *sys, double t)
 {
     const struct loads *all = &sys->loads;
     tribo_system_set_time(sys, t);
+    if (t == b->when) {
+        return;
+    }
+    b->when = t;
     for (size_t s = 0; s < all->harmonics; s++) {
         const struct harmonic *h = &all->harmonic[s];
         for (size_t k = 0; h->drives == DRIVES_LOAD && k < h->count; k++) {
             b->load[h->index[k]] = 0.0;
         }
     }
-    for (size_t s = 0; s < all->harmonics; s++) {
-        const struct harmonic *h = &all->harmonic[s];
-        if (h->drives == DRIVES_LOAD) {
-            tribo_system_turn(sys, s);
-            for (size_t k = 0; k < h->count; k++) {
-                b->load[h->index[k]] += h->cosine[k] * h->cos_t + h->sine[k] * h->sin_t;
-            }
-        }
-    }
+    tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, b->load);
 }
 
 /* a = accelerations of block k without friction at the time set, from its first degree of freedom on. */

@@ -26,7 +26,7 @@ struct blockwise {
     double *band, *rate;    /* [ndof] epsilon/|J|; slope of the law inside the band, see tribo_blockwise_take_law */
     double grip;            /* 1: contacts inside the band oppose the acceleration, up to the limit; 0: they do not */
     double *before, *after; /* [ndof] velocities of the bases at both ends of a step */
-    double *load;           /* [ndof] accelerations by loads */
+    double *load, when;     /* [ndof] accelerations by loads at the time `when`; NaN: not computed */
     double *room;           /* [ncontact] workspace */
     size_t blocks;
     size_t *first, *last;         /* [blocks] block k accelerates no blocks before first[k] or after last[k] */

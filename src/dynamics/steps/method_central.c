@@ -209,58 +209,52 @@ struct few_state {
     signed char at[FEW];
 };
 
-/* Step s of a run. 0 if it has to be left to others: then only m->at has changed. */
-static inline int few_step(struct few_bodies *b, tribo_system *sys, size_t n, size_t c, size_t s, struct few_state *m)
-{
-    static const double least[FEW] = {0.0};
-    const double *limit = b->limit[tribo_system_limits_vary(sys) ? s : 0];
-    double u[FEW], v[FEW], less[FEW], most[FEW], base[FEW], p[FEW] = {0.0}, end[FEW], work = 0.0;
-    const struct small x = {b->r, b->inverse, &b->inverse_of, b->part, least, v, less, most, m->at, p, end};
-    for (size_t d = 0; d < n; d++) {
-        const double a = b->load[d][s] - row_times(n, b->damping + d * n, m->u); /* q is known later than u */
-        u[d] = m->u[d] + b->time[s] * (a - row_times(n, b->stiffness + d * n, m->q));
-    }
-    for (size_t i = 0; i < c; i++) {
-        base[i] = b->base[i][s];
-        v[i] = row_times(n, b->direction + i * n, u) - base[i];
-        most[i] = b->time[s] * limit[i];
-        less[i] = -most[i];
-    }
-    if (!tribo_small_solve(c, &x)) {
-        return 0;
-    }
-    for (size_t d = 0; d < n; d++) {
-        u[d] += row_times(c, b->response + d * c, p);
-    }
-    /* makes the velocities of holding contacts exact, but of those at their bounds */
-    if (b->inverse_of) {
-        signed char loose[FEW];
-        for (size_t i = 0; i < c; i++) {
-            loose[i] = !(m->at[i] == FREE && fabs(p[i]) < most[i]);
-        }
-        tribo_system_snap(sys, loose, base, u);
-    }
-    for (size_t i = 0; i < c; i++) {
-        const double to = m->at[i] == FREE ? 0.0 : end[i];
-        work += sys->tally[i] * p[i] * (m->v[i] + to);
-        m->v[i] = to;
-    }
-    for (size_t d = 0; d < n; d++) {
-        m->q[d] += b->h[s + 1] * u[d];
-        m->u[d] = u[d];
-    }
-    m->energy -= 0.5 * work;
-    return 1;
-}
-
-/* The first steps of a run. Returns how many of count could be taken. */
+/* The first steps of a run of n degrees of freedom and c contacts. Returns how many of count could be taken; of the next step
+ * only motion->at has changed. */
 static inline size_t few_steps(struct few_bodies *b, tribo_system *sys, size_t n, size_t c, size_t count,
                                struct few_state *motion)
 {
+    static const double least[FEW] = {0.0};
     struct few_state m = *motion;
     size_t s = 0;
-    while (s < count && few_step(b, sys, n, c, s, &m)) {
-        s++;
+    for (; s < count; s++) {
+        const double *limit = b->limit[tribo_system_limits_vary(sys) ? s : 0];
+        double u[FEW], v[FEW], less[FEW], most[FEW], base[FEW], p[FEW] = {0.0}, end[FEW], work = 0.0;
+        const struct small x = {b->r, b->inverse, &b->inverse_of, b->part, least, v, less, most, m.at, p, end};
+        for (size_t d = 0; d < n; d++) {
+            const double a = b->load[d][s] - row_times(n, b->damping + d * n, m.u); /* q is known later than u */
+            u[d] = m.u[d] + b->time[s] * (a - row_times(n, b->stiffness + d * n, m.q));
+        }
+        for (size_t i = 0; i < c; i++) {
+            base[i] = b->base[i][s];
+            v[i] = row_times(n, b->direction + i * n, u) - base[i];
+            most[i] = b->time[s] * limit[i];
+            less[i] = -most[i];
+        }
+        if (!tribo_small_solve(c, &x)) {
+            break;
+        }
+        for (size_t d = 0; d < n; d++) {
+            u[d] += row_times(c, b->response + d * c, p);
+        }
+        /* makes the velocities of holding contacts exact, but of those at their bounds */
+        if (b->inverse_of) {
+            signed char loose[FEW];
+            for (size_t i = 0; i < c; i++) {
+                loose[i] = !(m.at[i] == FREE && fabs(p[i]) < most[i]);
+            }
+            tribo_system_snap(sys, loose, base, u);
+        }
+        for (size_t i = 0; i < c; i++) {
+            const double to = m.at[i] == FREE ? 0.0 : end[i];
+            work += sys->tally[i] * p[i] * (m.v[i] + to);
+            m.v[i] = to;
+        }
+        for (size_t d = 0; d < n; d++) {
+            m.q[d] += b->h[s + 1] * u[d];
+            m.u[d] = u[d];
+        }
+        m.energy -= 0.5 * work;
     }
     *motion = m;
     return s;
