@@ -90,7 +90,8 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
     return tribo_plane_force(ctx, v, feq, out);
 }
 
-int tribo_find_tangents(const tribo_context *ctx, int pairs, const double *v, const double *feq, double *const *out)
+/* out [OUTPUTS] = f of all contacts from v and f_eq, and its derivatives, [n], or if pairs = 1 [n][2]; a status. */
+static int find_tangents(const tribo_context *ctx, int pairs, const double *v, const double *feq, double *const *out)
 {
     int plain;
     const int status = ctx ? check_force(ctx, NULL, v, feq, &plain) : TRIBO_ERR_NULL;
@@ -115,7 +116,13 @@ int tribo_find_tangents(const tribo_context *ctx, int pairs, const double *v, co
 int tribo_force_tangent(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv, double *df_dfeq,
                         double *df_dlimit)
 {
-    return tribo_find_tangents(ctx, 0, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
+    return find_tangents(ctx, 0, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
+}
+
+int tribo_force_tangent_planar(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
+                               double *df_dfeq, double *df_dlimit)
+{
+    return find_tangents(ctx, 1, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
 }
 
 int tribo_accept(tribo_context *ctx, const double *v, const double *feq)

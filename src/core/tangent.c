@@ -58,66 +58,66 @@ static void follow_free(struct box_qp *p, size_t vectors, const double *rhs, dou
     }
 }
 
-/* Returns df [size] of a solved group. */
-static const double *group_product(const tribo_context *ctx, struct box_qp *p, size_t vectors, const struct change *d)
-{
-    const int partition = ctx->set.coupling == TRIBO_PARTITION;
-    const size_t *member = p->member, size = p->group->size;
-    double *df = p->gradient, *rhs = p->noise;
-    p->far = 1; /* derivatives are of any size */
-    for (size_t k = 0; k < size; k++) {
-        const double r = ctx->op->diagonal[member[k]], most = TRIBO_ROOM * tribo_most(p, k),
-                     pull = TRIBO_ROOM * TRIBO_FAR * lesser(r, 1.0);
-        df[k] = p->at[k] == FREE ? 0.0 : clamp(own_change(ctx, d, p, k), -most, most);
-        rhs[k] = clamp(tribo_entry(d->a, member[k]), -pull, pull);
-        if (!partition && ctx->set.law->relaxes) {
-            rhs[k] += r * clamp(relaxation_change(ctx, d, member[k]), -most, most);
-        }
-    }
-    follow_free(p, vectors, rhs, df);
-    /* So far forces are those that f_eq balances; laws with a memory have another derivative where |f_eq| exceeds the limit. */
-    memcpy(p->step, df, size * sizeof *df);
-    for (size_t k = 0; k < size; k++) {
-        const double r = ctx->op->diagonal[member[k]], dfeq = ctx->last.tangent.dfeq[member[k]];
-        if (partition && p->at[k] == FREE) {
-            df[k] = dfeq * df[k] + law_change(ctx, d, member[k]);
-        } else if (!partition && ctx->set.law->remembers) {
-            const double sum = divisible(tribo_entry(d->a, member[k]), r) + tribo_row_others(p, k, p->step);
-            df[k] = law_change(ctx, d, member[k]) - (ctx->last.near[member[k]] ? dfeq * quotient(sum, r) : 0.0);
-        }
-    }
-    return df;
-}
-
 /* A solved group, or a cluster. */
 struct part {
     struct box_qp *p; /* NULL: it is the cluster */
-    size_t vectors, cluster;
+    size_t vectors, cluster, size;
     const size_t *member; /* [size] */
-    size_t size;
 };
 
-static size_t parts_of(const tribo_context *ctx)
+/* df [size] of a solved group: forces that f_eq balances. */
+static void group_product(const tribo_context *ctx, const struct part *s, const struct change *d, double *df)
 {
-    return ctx->memory.nsolved + tribo_cluster_count(ctx);
-}
-
-/* Returns part k as the last balance left it. */
-static struct part part_resume(tribo_context *ctx, size_t k)
-{
-    if (k < ctx->memory.nsolved) {
-        struct box_qp *p = tribo_collect(ctx, ctx->memory.solved_list[k]);
-        return (struct part){p, tribo_null_basis(p), 0, p->member, p->group->size};
+    struct box_qp *p = s->p;
+    double *rhs = p->noise;
+    p->far = 1; /* derivatives are of any size */
+    for (size_t k = 0; k < s->size; k++) {
+        const size_t i = s->member[k];
+        const double r = ctx->op->diagonal[i], most = TRIBO_ROOM * tribo_most(p, k),
+                     pull = TRIBO_ROOM * TRIBO_FAR * lesser(r, 1.0);
+        df[k] = p->at[k] == FREE ? 0.0 : clamp(own_change(ctx, d, p, k), -most, most);
+        rhs[k] = clamp(tribo_entry(d->a, i), -pull, pull);
+        if (ctx->set.coupling == TRIBO_CONSISTENT && ctx->set.law->relaxes) {
+            rhs[k] += r * clamp(relaxation_change(ctx, d, i), -most, most);
+        }
     }
-    struct part s = {.cluster = k - ctx->memory.nsolved};
-    s.member = tribo_cluster_resume(ctx, s.cluster, &s.size);
-    return s;
+    follow_free(p, s->vectors, rhs, df);
 }
 
-/* Returns df [size]. */
+/* Of contacts near stick: df by law, from the change of f_eq, which the partition has in df. Laws with a memory have another
+ * derivative where |f_eq| exceeds the limit. */
+static void apply_laws(const tribo_context *ctx, const struct part *s, const struct change *d, double *df, double *balanced)
+{
+    const int partition = ctx->set.coupling == TRIBO_PARTITION;
+    memcpy(balanced, df, s->size * sizeof *df);
+    for (size_t k = 0; k < s->size; k++) {
+        const size_t i = s->member[k];
+        const double r = ctx->op->diagonal[i], *row = s->p ? NULL : ctx->clusters->cluster[s->cluster].r + k * s->size;
+        if (!ctx->last.near[i] || !tribo_is_scalar(ctx, i)) {
+            continue;
+        }
+        double sum = divisible(tribo_entry(d->a, i), r) + (s->p && !partition ? tribo_row_others(s->p, k, balanced) : 0.0);
+        for (size_t j = 0; row && j < s->size; j++) {
+            sum += j == k ? 0.0 : product(row[j], balanced[j]);
+        }
+        const double change = partition ? df[k] : -quotient(cut(sum), r);
+        df[k] = law_change(ctx, d, i) + product(ctx->last.tangent.dfeq[i], change);
+    }
+}
+
+/* Returns df [size], in workspace. */
 static const double *part_product(tribo_context *ctx, const struct part *s, const struct change *d)
 {
-    return s->p ? group_product(ctx, s->p, s->vectors, d) : tribo_cluster_product(ctx, s->cluster, d);
+    double *df = s->p ? s->p->gradient : ctx->clusters->df;
+    if (s->p) {
+        group_product(ctx, s, d, df);
+    } else {
+        tribo_cluster_product(ctx, s->cluster, d, df);
+    }
+    if (ctx->set.coupling == TRIBO_PARTITION || ctx->set.law->remembers) {
+        apply_laws(ctx, s, d, df, s->p ? s->p->step : ctx->clusters->v);
+    }
+    return df;
 }
 
 /* Returns df of a contact in no solved group. Where friction moves nothing, the force jumps as a changes its sign. */
@@ -130,25 +130,32 @@ static double alone_product(const tribo_context *ctx, const struct change *d, si
     return law_change(ctx, d, i) - balance;
 }
 
-/* out [n][n] = the changes of all forces, columns by unit changes d of each contact, in unit [n], which is 0; NULL is fine. */
-static void find_columns(tribo_context *ctx, const struct change *d, double *unit, double *out)
+/* out [n] = the changes of all forces by d. columns = 1: out [n][n] = the changes by each contact alone, where d has the unit
+ * vectors that are made in last.feq, 0 so far. */
+static void find_changes(tribo_context *ctx, const struct change *d, size_t columns, double *out)
 {
-    const size_t n = ctx->n;
-    for (size_t k = 0; out && k < n * n; k++) {
+    const size_t n = ctx->n, row = columns ? n : 1, solved = ctx->memory.nsolved;
+    double *unit = ctx->last.feq;
+    for (size_t k = 0; k < n * row; k++) {
         out[k] = 0.0;
     }
-    for (size_t i = 0; out && i < n; i++) {
+    for (size_t i = 0; i < n; i++) {
         unit[i] = 1.0;
-        out[i * n + i] = alone_product(ctx, d, i);
+        out[row * i + columns * i] = alone_product(ctx, d, i);
         unit[i] = 0.0;
     }
-    for (size_t q = 0; out && q < parts_of(ctx); q++) {
-        const struct part s = part_resume(ctx, q);
-        for (size_t k = 0; k < s.size; k++) {
+    for (size_t q = 0; q < solved + tribo_cluster_count(ctx); q++) {
+        struct part s = {.p = q < solved ? tribo_collect(ctx, ctx->memory.solved_list[q]) : NULL, .cluster = q - solved};
+        if (s.p) {
+            s.vectors = tribo_null_basis(s.p);
+            s.size = s.p->group->size;
+        }
+        s.member = s.p ? s.p->member : tribo_cluster_resume(ctx, s.cluster, &s.size);
+        for (size_t k = 0; k < (columns ? s.size : 1); k++) {
             unit[s.member[k]] = 1.0;
             const double *df = part_product(ctx, &s, d);
             for (size_t j = 0; j < s.size; j++) {
-                out[s.member[j] * n + s.member[k]] = df[j];
+                out[row * s.member[j] + columns * s.member[k]] = df[j];
             }
             unit[s.member[k]] = 0.0;
         }
@@ -177,8 +184,12 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
     tribo_copy(ctx->last.v, v, n);
     ctx->last.linearized = 1;
     memset(ctx->last.feq, 0, n * sizeof *v);
-    find_columns(ctx, &(struct change){ctx->last.feq, NULL, NULL}, ctx->last.feq, df_dv);
-    find_columns(ctx, &(struct change){NULL, ctx->last.feq, NULL}, ctx->last.feq, df_da);
+    if (df_dv) {
+        find_changes(ctx, &(struct change){ctx->last.feq, NULL, NULL}, 1, df_dv);
+    }
+    if (df_da) {
+        find_changes(ctx, &(struct change){NULL, ctx->last.feq, NULL}, 1, df_da);
+    }
     return TRIBO_OK;
 }
 
@@ -192,16 +203,7 @@ static int tangent_product_of(tribo_context *ctx, const struct change *d, double
     if (!ctx->last.linearized) {
         return tribo_fail(ctx, TRIBO_ERR_STATE, "no tribo_balance_tangent since the last balance or change");
     }
-    for (size_t i = 0; i < ctx->n; i++) {
-        df[i] = alone_product(ctx, d, i);
-    }
-    for (size_t q = 0; q < parts_of(ctx); q++) {
-        const struct part s = part_resume(ctx, q);
-        const double *own = part_product(ctx, &s, d);
-        for (size_t k = 0; k < s.size; k++) {
-            df[s.member[k]] = own[k];
-        }
-    }
+    find_changes(ctx, d, 0, df);
     return TRIBO_OK;
 }
 

@@ -114,16 +114,14 @@ static int allocate_memory(struct memory *m, const struct delassus *op)
     double **const vector[] = {
         &p->q,    &p->lo,       &p->hi,           &p->gradient, &p->noise,    &p->low.x,   &p->rounding.terms, &p->rounding.unit,
         &p->step, &p->low.step, &p->low.gradient, &p->row,      &p->spare[0], &p->spare[1]};
-    enum { VECTORS = sizeof vector / sizeof *vector };
     const size_t s = op->largest + 1;
     do {
         m->store = tribo_layout_array(&b, op->kept_size + 1, sizeof *m->store);
         m->sets = tribo_layout_array(&b, op->groups, sizeof *m->sets);
         m->solved_list = tribo_layout_array(&b, op->groups, sizeof *m->solved_list);
         m->solved = tribo_layout_array(&b, op->groups, 1);
-        double *numbers = tribo_layout_array(&b, VECTORS * s, sizeof *numbers);
-        for (size_t k = 0; numbers && k < VECTORS; k++) {
-            *vector[k] = numbers + k * s;
+        for (size_t k = 0; k < sizeof vector / sizeof *vector; k++) {
+            *vector[k] = tribo_layout_array(&b, s, sizeof **vector[k]);
         }
         p->near = tribo_layout_array(&b, s, sizeof *p->near);
         p->null.held = tribo_layout_array(&b, s, sizeof *p->null.held);

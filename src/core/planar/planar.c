@@ -123,8 +123,7 @@ static struct clusters *planar_create(size_t n, size_t count, const size_t *firs
 {
     struct layout b = {0};
     struct clusters *c, at = {.count = count};
-    double **const vector[] = {&at.y, &at.a, &at.v, &at.df, &at.other, &at.dlimit, &at.radius, &at.pull, &at.shift};
-    enum { VECTORS = sizeof vector / sizeof *vector };
+    double **const vector[] = {&at.y, &at.a, &at.v, &at.df, &at.growth, &at.radius, &at.pull, &at.shift};
     size_t *member;
     do {
         c = tribo_layout_array(&b, 1, sizeof *c);
@@ -137,9 +136,8 @@ static struct clusters *planar_create(size_t n, size_t count, const size_t *firs
         at.near = tribo_layout_array(&b, n + 1, sizeof *at.near);
         at.contact = tribo_layout_array(&b, n, sizeof *at.contact);
         at.directions = tribo_layout_array(&b, n, 1);
-        double *numbers = tribo_layout_array(&b, VECTORS * n, sizeof *numbers);
-        for (size_t k = 0; numbers && k < VECTORS; k++) {
-            *vector[k] = numbers + k * n;
+        for (size_t k = 0; k < sizeof vector / sizeof *vector; k++) {
+            *vector[k] = tribo_layout_array(&b, n, sizeof **vector[k]);
         }
     } while (!b.memory && tribo_layout_zeros(&b));
     if (c) {

@@ -44,8 +44,8 @@ struct clusters {
     double *a;                 /* [n] of the last balance, or step */
     double *shift;             /* [n] c of the problem's lenses, in parts of limits */
     double *pull;              /* [n] R f + a without the forces of the problem */
-    double *v, *df, *other;    /* [n] workspace */
-    double *dlimit;            /* [n] changes of limits that depend on v */
+    double *v, *df;            /* [n] workspace */
+    double *growth;            /* [n] d(limit)/limit of the problem's directions */
 };
 
 /* The most directions of a cluster: its matrix is kept. */
@@ -99,12 +99,7 @@ void tribo_planar_limits(const tribo_context *ctx, size_t i, int holds, const do
 
 /* ---- planar_force.c */
 
-/* The stand-in for the limit of direction i in the problem: at most the limit. cut: 1 where it is less; then the force is within
- * it. */
-double tribo_planar_reach(const tribo_context *ctx, size_t i);
-int tribo_planar_cut(const tribo_context *ctx, size_t i);
-
-/* pull [size] += (own blocks of s) shift. */
-void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pull);
+/* pull [size] += (own blocks of s) shift; directions [size] of the contacts that begin there. */
+void tribo_planar_turn(const struct disc_qp *p, const unsigned char *directions, const double *shift, double *pull);
 
 #endif

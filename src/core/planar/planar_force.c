@@ -69,10 +69,8 @@ static int planar_collect(tribo_context *ctx, const struct cluster *g, const dou
     return ctx->clusters->problem.size > 0;
 }
 
-void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pull)
+void tribo_planar_turn(const struct disc_qp *p, const unsigned char *directions, const double *shift, double *pull)
 {
-    const struct disc_qp *p = &ctx->clusters->problem;
-    const unsigned char *directions = ctx->clusters->directions;
     for (size_t e = 0; e < p->size; e += directions[e]) {
         for (size_t k = e; k < e + directions[e]; k++) {
             for (size_t j = e; j < e + directions[e]; j++) {
@@ -128,16 +126,6 @@ static void find_pulls(tribo_context *ctx, const struct cluster *g)
 /* Largest part that the curved limit of the other direction adds to the stiffness of a loose direction. */
 #define STRAIGHT 1e-12
 
-double tribo_planar_reach(const tribo_context *ctx, size_t i)
-{
-    return lesser(ctx->follow.contacts.bound[i], ctx->clusters->radius[i]);
-}
-
-int tribo_planar_cut(const tribo_context *ctx, size_t i)
-{
-    return ctx->clusters->radius[i] < ctx->follow.contacts.bound[i];
-}
-
 /* 1 if a direction of a planar contact is loose, of limits bound and reaches radius. */
 static int is_apart(const double *bound, const double *radius)
 {
@@ -180,7 +168,7 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
             p->pull[k] = length > 0.0 ? p->weight[k] * (c->pull[k] / length) * size : 0.0;
         }
     }
-    tribo_planar_turn(ctx, p->shift, p->pull);
+    tribo_planar_turn(p, c->directions, p->shift, p->pull);
 }
 
 /* Gives the contact at e of the problem the reaches wanted [directions], as far as its limits exceed them. */

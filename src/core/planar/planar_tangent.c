@@ -55,10 +55,33 @@ static double turn_shift(const struct law *law, const struct slide *s, const str
     return clamp(product(part, change) - product(shift, t->epsilon), -STEEPEST, STEEPEST);
 }
 
-/* df [size] of the contacts of a cluster that are not near stick; of those in the problem, the part of df that follows limits,
- * and dshift, the change of their shift. dlimit [n] = changes of limits, which may fall with speed. */
+/* move [size] = the change of y by growth, d(limit)/limit, by dshift, and by rhs, the change of pull with limits and shifts fixed.
+ * Overwrites rhs. directions: see tribo_planar_turn. */
+static void planar_follow(struct disc_qp *p, const unsigned char *directions, const double *growth, const double *dshift,
+                          double *rhs, double *move)
+{
+    double *turn = p->slide, *dy = p->best; /* dy: the part of the change of y that follows shifts */
+    for (size_t e = 0; e < p->size; e += p->wide[e]) {
+        tribo_disc_drag(p, e, dshift + e, dy + e);
+    }
+    for (size_t e = 0; e < p->size; e++) {
+        rhs[e] += product(growth[e], p->gradient[e]);
+        turn[e] = dshift[e] + product(p->shift[e], growth[e]);
+        for (size_t j = 0; j < p->size; j++) {
+            rhs[e] += p->s[e * p->size + j] * dy[j];
+        }
+    }
+    tribo_planar_turn(p, directions, turn, rhs);
+    tribo_disc_follow(p, rhs, move);
+    for (size_t e = 0; e < p->size; e++) {
+        move[e] += dy[e];
+    }
+}
+
+/* df [size] of the contacts of a cluster that are not near stick; of those in the problem, the part of df that follows limits;
+ * dshift and growth, the changes of their shifts and of their limits, which may fall with speed, in parts of limits. */
 static void own_changes(const tribo_context *ctx, const struct cluster *g, const struct change *d, double *df, double *dshift,
-                        double *dlimit)
+                        double *growth)
 {
     const struct contacts *c = &ctx->follow.contacts;
     const struct disc_qp *p = &ctx->clusters->problem;
@@ -80,76 +103,39 @@ static void own_changes(const tribo_context *ctx, const struct cluster *g, const
         }
         t.epsilon = s.open || !c->follows ? 0.0 : quotient(t.limit[s.far], c->limit[i + s.far]);
         turn_slide(ctx, i, &s, c->limit + i, ctx->last.v + i, along, &t);
-        memcpy(dlimit + i, t.limit, directions * sizeof *dlimit);
         turn_force(ctx->set.law, &s, c->limit + i, &t, df + k);
         for (; e < behind; e++) {
             const size_t j = near[e] - k;
             const int far = tribo_planar_cut(ctx, i + j);
             const double part = far ? quotient(c->bound[i + j], ctx->clusters->radius[i + j]) : 1.0;
             dshift[e] = turn_shift(ctx->set.law, &s, &t, j, part, p->shift[e]);
+            growth[e] = quotient(t.limit[j], c->limit[i + j]);
             df[k + j] = far ? 0.0 : product(p->y[e], t.limit[j]);
         }
     }
 }
 
-/* Laws with a memory have another derivative where |f_eq| exceeds the limit: corrects df of scalar contacts, from f_eq. */
-static void apply_laws(tribo_context *ctx, const struct cluster *g, const struct change *d, double *df)
+void tribo_cluster_product(const tribo_context *ctx, size_t q, const struct change *d, double *df)
 {
-    double *before = ctx->clusters->other;
-    memcpy(before, df, g->size * sizeof *df);
-    for (size_t e = 0; e < ctx->clusters->problem.size; e++) {
-        const size_t k = ctx->clusters->near[e], i = g->member[k];
-        const double *row = g->r + k * g->size;
-        const struct tangents *law = &ctx->last.tangent;
-        double sum = divisible(tribo_entry(d->a, i), row[k]);
-        for (size_t j = 0; j < g->size; j++) {
-            sum += j == k ? 0.0 : product(row[j], before[j]);
-        }
-        if (tribo_is_scalar(ctx, i)) {
-            df[k] = product(law->dv[i], tribo_entry(d->v, i)) + product(law->dlimit[i], tribo_limit_change(ctx, d, i)) -
-                    product(law->dfeq[i], quotient(cut(sum), row[k]));
-        }
-    }
-}
-
-const double *tribo_cluster_product(tribo_context *ctx, size_t q, const struct change *d)
-{
+    const struct clusters *c = ctx->clusters;
     struct disc_qp *p = &ctx->clusters->problem;
-    const struct cluster *g = &ctx->clusters->cluster[q];
-    const size_t *near = ctx->clusters->near, *contact = ctx->clusters->contact, n = p->size;
-    double *df = ctx->clusters->df, *dlimit = ctx->clusters->dlimit, *dshift = p->from, *turn = p->slide;
-    double *dy = p->best; /* the part of the change of y that follows shifts */
-    double *rhs = p->noise, *move = p->aim;
-    own_changes(ctx, g, d, df, dshift, dlimit);
-    for (size_t e = 0; e < n; e += p->wide[e]) {
-        tribo_disc_drag(p, e, dshift + e, dy + e);
-    }
-    /* rhs = the change of the gradient by df, d, dlimit, dshift and dy. */
-    for (size_t e = 0; e < n; e++) {
-        const double *row = g->r + near[e] * g->size, limit = ctx->follow.contacts.limit[contact[e]];
-        const double growth = limit > 0.0 ? quotient(dlimit[contact[e]], limit) : 0.0;
-        double sum = cut(tribo_entry(d->a, contact[e]));
+    const struct cluster *g = &c->cluster[q];
+    double *dshift = p->from, *rhs = p->noise, *move = p->aim;
+    own_changes(ctx, g, d, df, dshift, c->growth);
+    for (size_t e = 0; e < p->size; e++) {
+        const double *row = g->r + c->near[e] * g->size;
+        double sum = cut(tribo_entry(d->a, c->contact[e]));
         for (size_t j = 0; j < g->size; j++) {
             sum += product(row[j], df[j]);
         }
-        rhs[e] = p->weight[e] * quotient(quotient(cut(sum), ctx->clusters->unit_r), ctx->clusters->unit_force) +
-                 product(growth, p->gradient[e]);
-        turn[e] = dshift[e] + product(p->shift[e], growth);
-        for (size_t j = 0; j < n; j++) {
-            rhs[e] += p->s[e * n + j] * dy[j];
-        }
+        rhs[e] = p->weight[e] * quotient(quotient(cut(sum), c->unit_r), c->unit_force);
     }
-    tribo_planar_turn(ctx, turn, rhs);
-    if (n) {
-        tribo_disc_follow(p, rhs, move);
+    if (p->size) {
+        planar_follow(p, c->directions, c->growth, dshift, rhs, move);
     }
-    for (size_t e = 0; e < n; e++) {
-        df[near[e]] += product(tribo_planar_reach(ctx, contact[e]), dy[e] + move[e]);
+    for (size_t e = 0; e < p->size; e++) {
+        df[c->near[e]] += product(tribo_planar_reach(ctx, c->contact[e]), move[e]);
     }
-    if (ctx->set.law->remembers) {
-        apply_laws(ctx, g, d, df);
-    }
-    return df;
 }
 
 /* ------------------------------------------------------------------------------------------------ f_eq that is given */
@@ -205,22 +191,20 @@ int tribo_plane_reads_feq(const tribo_context *ctx, size_t i, const double *v)
 static void turn_near(struct disc_qp *p, const struct given *g, const struct law *law, const struct turn *t, const double *dfeq,
                       double *df)
 {
+    static const unsigned char both[2] = {2, 0};
     const double *bound = g->c.bound;
-    double dshift[2], dy[2], off[2], growth[2], rhs[2], move[2];
+    double dshift[2], growth[2], off[2], rhs[2], move[2];
     for (size_t k = 0; k < 2; k++) {
         dshift[k] = turn_shift(law, &g->s, t, k, 1.0, p->shift[k]);
-    }
-    tribo_disc_drag(p, 0, dshift, dy);
-    for (size_t k = 0; k < 2; k++) {
         growth[k] = bound[k] > 0.0 ? quotient(t->limit[k], bound[k]) : 0.0;
-        off[k] = bound[k] > 0.0 ? (p->y[k] + p->shift[k]) * growth[k] - quotient(dfeq[k], bound[k]) + dshift[k] + dy[k] : 0.0;
+        off[k] = bound[k] > 0.0 ? p->y[k] * growth[k] - quotient(dfeq[k], bound[k]) : 0.0;
     }
     for (size_t k = 0; k < 2; k++) {
-        rhs[k] = growth[k] * p->gradient[k] + p->s[2 * k] * off[0] + p->s[2 * k + 1] * off[1];
+        rhs[k] = p->s[2 * k] * off[0] + p->s[2 * k + 1] * off[1];
     }
-    tribo_disc_follow(p, rhs, move);
+    planar_follow(p, both, growth, dshift, rhs, move);
     for (size_t k = 0; k < 2; k++) {
-        df[k] = product(bound[k], dy[k] + move[k]) + p->y[k] * t->limit[k];
+        df[k] = product(bound[k], move[k]) + p->y[k] * t->limit[k];
     }
 }
 
@@ -289,10 +273,4 @@ int tribo_plane_force(const tribo_context *ctx, const double *v, const double *f
         tribo_copy(out[0] ? out[0] + i : NULL, f, out[0] ? 2 : 0);
     }
     return TRIBO_OK;
-}
-
-int tribo_force_tangent_planar(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
-                               double *df_dfeq, double *df_dlimit)
-{
-    return tribo_find_tangents(ctx, 1, v, feq, (double *const[4]){f, df_dv, df_dfeq, df_dlimit});
 }
