@@ -54,12 +54,12 @@ static inline const size_t *tribo_plane_first(const tribo_context *ctx)
 
 /* The stand-in for the limit of direction i in the problem: at most the limit. cut: 1 where it is less; then the force is within
  * it. */
-static inline double tribo_planar_reach(const tribo_context *ctx, size_t i)
+static inline double tribo_plane_reach(const tribo_context *ctx, size_t i)
 {
     return lesser(ctx->follow.contacts.bound[i], ctx->clusters->radius[i]);
 }
 
-static inline int tribo_planar_cut(const tribo_context *ctx, size_t i)
+static inline int tribo_plane_cut(const tribo_context *ctx, size_t i)
 {
     return ctx->clusters->radius[i] < ctx->follow.contacts.bound[i];
 }
@@ -114,6 +114,10 @@ void tribo_cluster_product(const tribo_context *ctx, size_t q, const struct chan
 
 /* 1 if the force of the planar contact with direction i depends on f_eq, at v [n]. */
 int tribo_plane_reads_feq(const tribo_context *ctx, size_t i, const double *v);
+
+/* force.c: out [4] = f of all contacts from v and f_eq, and its derivatives by v, f_eq and limit, [n], or if pairs = 1 [n][2];
+ * each may be NULL; a status. */
+int tribo_find_tangents(const tribo_context *ctx, int pairs, const double *v, const double *feq, double *const *out);
 
 /* out [4] = f of planar contacts from v and f_eq, and its derivatives by v, f_eq and limit, [n][2]; each may be NULL; a
  * status. */

@@ -11,27 +11,21 @@ static int reads_feq(const tribo_context *ctx, size_t i, const double *v)
     return tribo_is_scalar(ctx, i) ? fabs(v[i]) <= band : tribo_plane_reads_feq(ctx, i, v);
 }
 
-/* Checks feq where forces depend on it; a status. note: ctx, or NULL to keep no message. */
-static int check_feq(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq)
-{
-    if (!feq && ctx->n) {
-        return tribo_fail(note, TRIBO_ERR_NULL, "feq is NULL");
-    }
-    for (size_t i = 0; i < ctx->n; i++) {
-        if (!isfinite(feq[i]) && reads_feq(ctx, i, v)) {
-            return tribo_fail(note, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", i, feq[i]);
-        }
-    }
-    return TRIBO_OK;
-}
-
-/* Checks v and feq; a status. *plain: laws take feq as it is. note: see check_feq. */
+/* Checks v, and feq where forces depend on it; a status. *plain: laws take feq as it is. note: ctx, or NULL to keep no message. */
 static int check_force(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq, int *plain)
 {
     int status = tribo_has_epsilon(ctx) ? TRIBO_OK : tribo_fail_without_operator(note);
     status = status ? status : tribo_check_finite(note, "v", v, ctx->n);
     *plain = !ctx->set.law->uses_feq || tribo_is_within(feq, ctx->n, TRIBO_FAR);
-    return status || *plain ? status : check_feq(ctx, note, v, feq);
+    if (!status && !*plain && !feq && ctx->n) {
+        return tribo_fail(note, TRIBO_ERR_NULL, "feq is NULL");
+    }
+    for (size_t i = 0; !status && !*plain && i < ctx->n; i++) {
+        if (!isfinite(feq[i]) && reads_feq(ctx, i, v)) {
+            return tribo_fail(note, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", i, feq[i]);
+        }
+    }
+    return status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ forces */
@@ -90,8 +84,7 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
     return tribo_plane_force(ctx, v, feq, out);
 }
 
-/* out [OUTPUTS] = f of all contacts from v and f_eq, and its derivatives, [n], or if pairs = 1 [n][2]; a status. */
-static int find_tangents(const tribo_context *ctx, int pairs, const double *v, const double *feq, double *const *out)
+int tribo_find_tangents(const tribo_context *ctx, int pairs, const double *v, const double *feq, double *const *out)
 {
     int plain;
     const int status = ctx ? check_force(ctx, NULL, v, feq, &plain) : TRIBO_ERR_NULL;
@@ -116,13 +109,7 @@ static int find_tangents(const tribo_context *ctx, int pairs, const double *v, c
 int tribo_force_tangent(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv, double *df_dfeq,
                         double *df_dlimit)
 {
-    return find_tangents(ctx, 0, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
-}
-
-int tribo_force_tangent_planar(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
-                               double *df_dfeq, double *df_dlimit)
-{
-    return find_tangents(ctx, 1, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
+    return tribo_find_tangents(ctx, 0, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
 }
 
 int tribo_accept(tribo_context *ctx, const double *v, const double *feq)

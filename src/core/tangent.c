@@ -65,25 +65,6 @@ struct part {
     const size_t *member; /* [size] */
 };
 
-/* df [size] of a solved group: forces that f_eq balances. */
-static void group_product(const tribo_context *ctx, const struct part *s, const struct change *d, double *df)
-{
-    struct box_qp *p = s->p;
-    double *rhs = p->noise;
-    p->far = 1; /* derivatives are of any size */
-    for (size_t k = 0; k < s->size; k++) {
-        const size_t i = s->member[k];
-        const double r = ctx->op->diagonal[i], most = TRIBO_ROOM * tribo_most(p, k),
-                     pull = TRIBO_ROOM * TRIBO_FAR * lesser(r, 1.0);
-        df[k] = p->at[k] == FREE ? 0.0 : clamp(own_change(ctx, d, p, k), -most, most);
-        rhs[k] = clamp(tribo_entry(d->a, i), -pull, pull);
-        if (ctx->set.coupling == TRIBO_CONSISTENT && ctx->set.law->relaxes) {
-            rhs[k] += r * clamp(relaxation_change(ctx, d, i), -most, most);
-        }
-    }
-    follow_free(p, s->vectors, rhs, df);
-}
-
 /* Of contacts near stick: df by law, from the change of f_eq, which the partition has in df. Laws with a memory have another
  * derivative where |f_eq| exceeds the limit. */
 static void apply_laws(const tribo_context *ctx, const struct part *s, const struct change *d, double *df, double *balanced)
@@ -105,17 +86,28 @@ static void apply_laws(const tribo_context *ctx, const struct part *s, const str
     }
 }
 
-/* Returns df [size], in workspace. */
+/* Returns df [size], in workspace: first of forces that f_eq balances. */
 static const double *part_product(tribo_context *ctx, const struct part *s, const struct change *d)
 {
-    double *df = s->p ? s->p->gradient : ctx->clusters->df;
-    if (s->p) {
-        group_product(ctx, s, d, df);
+    struct box_qp *p = s->p;
+    const int partition = ctx->set.coupling == TRIBO_PARTITION, relaxes = !partition && ctx->set.law->relaxes;
+    double *df = p ? p->gradient : ctx->clusters->df;
+    for (size_t k = 0; p && k < s->size; k++) {
+        const size_t i = s->member[k];
+        const double r = ctx->op->diagonal[i], most = TRIBO_ROOM * tribo_most(p, k),
+                     pull = TRIBO_ROOM * TRIBO_FAR * lesser(r, 1.0);
+        df[k] = p->at[k] == FREE ? 0.0 : clamp(own_change(ctx, d, p, k), -most, most);
+        p->noise[k] = clamp(tribo_entry(d->a, i), -pull, pull);
+        p->noise[k] += relaxes ? r * clamp(relaxation_change(ctx, d, i), -most, most) : 0.0;
+    }
+    if (p) {
+        p->far = 1; /* derivatives are of any size */
+        follow_free(p, s->vectors, p->noise, df);
     } else {
         tribo_cluster_product(ctx, s->cluster, d, df);
     }
-    if (ctx->set.coupling == TRIBO_PARTITION || ctx->set.law->remembers) {
-        apply_laws(ctx, s, d, df, s->p ? s->p->step : ctx->clusters->v);
+    if (partition || ctx->set.law->remembers) {
+        apply_laws(ctx, s, d, df, p ? p->step : ctx->clusters->v);
     }
     return df;
 }

@@ -66,19 +66,6 @@ struct delassus *tribo_operator_diagonal(size_t n, const double *r)
     return o;
 }
 
-/* Room for what is constant of a group, and for what a memory keeps of it, in doubles, which are as large as indices. */
-static size_t fixed_by(const struct group *g)
-{
-    return 3 * g->size + (g->sparse ? 0 : (g->graded ? 2 : 1) * g->size * g->size);
-}
-
-static size_t kept_by(const struct group *g)
-{
-    const size_t inverse = g->size <= SMALL ? g->size * g->size : 0;
-    return 3 * g->size + inverse +
-           (g->sparse ? 3 * g->size + tribo_sparse_slots(g->sparse) : (g->graded ? 2 : 1) * g->size * g->size);
-}
-
 struct box_qp *tribo_memory_problem(const struct delassus *op, struct memory *m, size_t k)
 {
     struct box_qp *p = &m->problem;
@@ -400,10 +387,13 @@ int tribo_operator_create(struct delassus **created, struct memory *m, const str
         if (!status && !g->graded && g->size > SPARSE_FROM && !make_sparse(g, a, member, place)) {
             status = TRIBO_ERR_MEMORY;
         }
+        /* in doubles, which are as large as indices */
+        const size_t square = g->size * g->size, matrix = g->graded ? 2 * square : square,
+                     inverse = g->size <= SMALL ? square : 0;
         g->fixed = op->fixed_size;
         g->kept = op->kept_size;
-        op->fixed_size += fixed_by(g);
-        op->kept_size += kept_by(g);
+        op->fixed_size += 3 * g->size + (g->sparse ? 0 : matrix);
+        op->kept_size += 3 * g->size + inverse + (g->sparse ? 3 * g->size + tribo_sparse_slots(g->sparse) : matrix);
     }
     if (!status && groups) {
         op->fixed = tribo_zeros(op->fixed_size + 1, sizeof *op->fixed);

@@ -141,16 +141,16 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
     const double *bound = ctx->follow.contacts.bound, *radius = c->radius;
     c->unit_force = c->unit_r = 0.0;
     for (size_t e = 0; e < n; e++) {
-        c->unit_force = greater(c->unit_force, tribo_planar_reach(ctx, contact[e]));
+        c->unit_force = greater(c->unit_force, tribo_plane_reach(ctx, contact[e]));
         c->unit_r = greater(c->unit_r, ctx->op->diagonal[contact[e]]);
     }
     c->cuts = 0;
     for (size_t e = 0; e < n; e++) {
         const size_t i = contact[e], first = i - (c->directions[e] == 0);
-        const int cut_off = tribo_planar_cut(ctx, i), single = c->directions[e] == 1 || is_apart(bound + first, radius + first);
+        const int cut_off = tribo_plane_cut(ctx, i), single = c->directions[e] == 1 || is_apart(bound + first, radius + first);
         p->wide[e] = single ? 1 : c->directions[e];
         p->shift[e] = cut_off ? product(quotient(bound[i], radius[i]), c->shift[e]) : c->shift[e];
-        p->weight[e] = tribo_planar_reach(ctx, i) / c->unit_force;
+        p->weight[e] = tribo_plane_reach(ctx, i) / c->unit_force;
         p->y[e] = c->y[i];
         c->cuts += (size_t)cut_off;
     }
@@ -179,11 +179,11 @@ static void set_radius(tribo_context *ctx, size_t e, const double *wanted)
     const double *bound = ctx->follow.contacts.bound + i;
     const int pair = directions == 2 && !is_apart(bound, wanted);
     for (size_t k = 0; k < directions; k++) {
-        const double before = tribo_planar_reach(ctx, i + k);
+        const double before = tribo_plane_reach(ctx, i + k);
         const double radius = pair ? greater(wanted[0], wanted[1]) : wanted[k];
         const double least = pair ? lesser(bound[0], bound[1]) : bound[k];
         c->radius[i + k] = radius < least ? radius : HUGE_VAL;
-        const double reach = tribo_planar_reach(ctx, i + k);
+        const double reach = tribo_plane_reach(ctx, i + k);
         c->y[i + k] = reach == before ? c->y[i + k] : product(quotient(before, reach), c->y[i + k]);
     }
 }
@@ -223,7 +223,7 @@ static void estimate_reaches(tribo_context *ctx, const struct cluster *g)
     }
     for (size_t k = 0; k < n; k++) {
         const size_t i = c->contact[k];
-        far |= product(bound[i], sqrt(r[i])) > AMPLE * most || tribo_planar_cut(ctx, i);
+        far |= product(bound[i], sqrt(r[i])) > AMPLE * most || tribo_plane_cut(ctx, i);
     }
     for (size_t k = 0; far && !(most > 0.0) && k < n; k++) {
         c->radius[c->contact[k]] = HUGE_VAL;
@@ -249,8 +249,8 @@ static int rim_bends(const tribo_context *ctx, size_t e, size_t other)
 {
     const struct disc_qp *p = &ctx->clusters->problem;
     const size_t i = ctx->clusters->contact[e], j = ctx->clusters->contact[other];
-    const double part = quotient(tribo_planar_reach(ctx, j), ctx->follow.contacts.bound[j]);
-    return p->place[e] != LENS_INSIDE && !tribo_planar_cut(ctx, i) && tribo_planar_cut(ctx, j) &&
+    const double part = quotient(tribo_plane_reach(ctx, j), ctx->follow.contacts.bound[j]);
+    return p->place[e] != LENS_INSIDE && !tribo_plane_cut(ctx, i) && tribo_plane_cut(ctx, j) &&
            fabs(p->gradient[e]) * part * part > STRAIGHT * p->s[other * (p->size + 1)];
 }
 
@@ -266,7 +266,7 @@ static size_t widen_reaches(tribo_context *ctx)
         int out = p->wide[e] < count && (rim_bends(ctx, e, e + 1) || rim_bends(ctx, e + 1, e));
         for (size_t d = 0, bends = (size_t)out; d < count; d++) {
             const size_t i = c->contact[e + d], at = p->wide[e + d] ? e + d : e;
-            const int beyond = p->place[at] != LENS_INSIDE && tribo_planar_cut(ctx, i);
+            const int beyond = p->place[at] != LENS_INSIDE && tribo_plane_cut(ctx, i);
             wanted[d] = bends ? HUGE_VAL : beyond ? product(AMPLE, c->radius[i]) : c->radius[i];
             out |= beyond;
         }
@@ -367,7 +367,7 @@ static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt)
             for (size_t e = 0; e < p->size; e++) {
                 const size_t i = c->contact[e];
                 c->y[i] = p->y[e];
-                ctx->last.f[i] = p->y[e] * tribo_planar_reach(ctx, i);
+                ctx->last.f[i] = p->y[e] * tribo_plane_reach(ctx, i);
             }
         } while (c->cuts && widen_reaches(ctx));
     } while (ctx->set.breaking && planar_break(ctx, g, dt));

@@ -95,7 +95,7 @@ static void own_changes(const tribo_context *ctx, const struct cluster *g, const
         for (; behind < p->size && near[behind] < k + directions; behind++) {
             const int slips = p->place[behind - (p->wide[behind] == 0)] == LENS_ON_DISC;
             const size_t j = near[behind] - k;
-            along[j] = slips ? quotient(p->gradient[behind], tribo_planar_reach(ctx, i + j)) : 0.0;
+            along[j] = slips ? quotient(p->gradient[behind], tribo_plane_reach(ctx, i + j)) : 0.0;
         }
         for (size_t j = 0; j < directions; j++) {
             t.v[j] = tribo_entry(d->v, i + j);
@@ -106,7 +106,7 @@ static void own_changes(const tribo_context *ctx, const struct cluster *g, const
         turn_force(ctx->set.law, &s, c->limit + i, &t, df + k);
         for (; e < behind; e++) {
             const size_t j = near[e] - k;
-            const int far = tribo_planar_cut(ctx, i + j);
+            const int far = tribo_plane_cut(ctx, i + j);
             const double part = far ? quotient(c->bound[i + j], ctx->clusters->radius[i + j]) : 1.0;
             dshift[e] = turn_shift(ctx->set.law, &s, &t, j, part, p->shift[e]);
             growth[e] = quotient(t.limit[j], c->limit[i + j]);
@@ -134,7 +134,7 @@ void tribo_cluster_product(const tribo_context *ctx, size_t q, const struct chan
         planar_follow(p, c->directions, c->growth, dshift, rhs, move);
     }
     for (size_t e = 0; e < p->size; e++) {
-        df[c->near[e]] += product(tribo_planar_reach(ctx, c->contact[e]), move[e]);
+        df[c->near[e]] += product(tribo_plane_reach(ctx, c->contact[e]), move[e]);
     }
 }
 
@@ -273,4 +273,10 @@ int tribo_plane_force(const tribo_context *ctx, const double *v, const double *f
         tribo_copy(out[0] ? out[0] + i : NULL, f, out[0] ? 2 : 0);
     }
     return TRIBO_OK;
+}
+
+int tribo_force_tangent_planar(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
+                               double *df_dfeq, double *df_dlimit)
+{
+    return tribo_find_tangents(ctx, 1, v, feq, (double *const[4]){f, df_dv, df_dfeq, df_dlimit});
 }
