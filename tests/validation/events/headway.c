@@ -4,6 +4,7 @@
 
 #include "dynamics/events/events.h"
 #include "support.h"
+#include "../../make.h"
 #include "../../set_up_driver.h"
 
 static const struct motion *honest;
@@ -102,4 +103,20 @@ TEST(guards_overflow)
 }
 END_TEST
 
-TEST_MAIN("headway", {events_chatter, 4}, {steps_end, 2}, {guards_overflow, 4})
+/* A structure whose motion grows e-fold 10^149 times in the time asked for, at rest. */
+TEST(structure_too_fast)
+{
+    const double mass[] = {1.0, 0.0, 0.0, 1.0}, stiffness[] = {1.0, 1e300, 1e300, 1.0}, direction[] = {1.0, 0.0};
+    double y[5] = {0.0}, t = 0.0;
+    size_t steps;
+    assert_ok(dense_system(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(set_up_driver(&drv, sys, methods[_i], 0.01, 1e-9, 1e-9));
+    assert_status(tribo_driver_advance(drv, &t, 1.0, y), TRIBO_ERR_STEP);
+    assert_says(tribo_driver_message(drv), _i ? "the step is down to 0" : "the steps are too short for t1 = 1");
+    assert_ok(tribo_driver_count(drv, TRIBO_COUNT_STEPS, &steps));
+    require(t < 1e-100 && steps < 200000, "%zu steps to t = %g", steps, t);
+    give_back();
+}
+END_TEST
+
+TEST_MAIN("headway", {events_chatter, 4}, {steps_end, 2}, {guards_overflow, 4}, {structure_too_fast, 2})
