@@ -19,6 +19,9 @@
  * slide. */
 #define CLOSE 0.1
 
+/* The same if R is diagonal: only rounding may take a force that stands alone beyond its limit. */
+#define NEAR 1e-3
+
 /* The solver's error for redundant contacts, in units of the noise of accelerations. */
 #define CERTAIN 1e3
 
@@ -76,26 +79,27 @@ static int find_forces(struct stick_slip *m, const tribo_system *sys)
     const struct slip_constant *c = &m->constant;
     struct slip_state *s = &m->state;
     struct slip_work *w = &m->work;
+    const int all = !c->uncoupled;
+    const double part = 1.0 - (all ? CLOSE : NEAR);
     int status = TRIBO_OK, close = s->dependents && c->base_moves;
     size_t count = 0;
     for (size_t i = 0; i < c->contacts; i++) {
-        if (tribo_stick_slip_searches(m, i)) {
-            w->hi[i] = s->stick[i];
-            w->lo[i] = -s->stick[i];
-            s->force[i] = force_alone(m, i, w->a[i]);
-        } else {
-            s->force[i] = w->lo[i] = w->hi[i] = c->elastic[i] ? s->spring[i] : -s->slip[i] * s->limit[i];
-        }
+        const int searches = tribo_stick_slip_searches(m, i);
+        const double own = c->elastic[i] ? s->spring[i] : -s->slip[i] * s->limit[i];
+        w->hi[i] = searches ? s->stick[i] : own;
+        w->lo[i] = searches ? -s->stick[i] : own;
+        s->force[i] = searches ? force_alone(m, i, w->a[i]) : own;
     }
-    if (!c->uncoupled) {
+    if (all) {
         status = solve(m, sys, w->a, s->force);
     }
     for (size_t i = 0; i < c->contacts; i++) {
-        const int at_limit = fabs(s->force[i]) >= (1.0 - CLOSE) * s->stick[i] || i == s->reached;
-        const int near = at_limit && tribo_stick_slip_searches(m, i);
-        close |= near;
-        if (near || !c->uncoupled || !c->can_hold[i]) {
-            w->doubt[count++] = i;
+        const int at_limit = fabs(s->force[i]) >= part * s->stick[i] || i == s->reached;
+        if (at_limit || all || !c->can_hold[i]) {
+            const int near = at_limit && tribo_stick_slip_searches(m, i);
+            close |= near;
+            w->doubt[count] = i;
+            count += near || all || !c->can_hold[i];
         }
     }
     w->doubts = close ? count : 0;
