@@ -234,14 +234,10 @@ int tribo_driver_check(tribo_driver *drv, const double *y)
                              tribo_system_state_index(drv->sys, i), y[i], drv->time, why);
 }
 
-int tribo_driver_keep(tribo_driver *drv, double t, const double *y)
+void tribo_driver_keep(tribo_driver *drv, double t, const double *y)
 {
-    const int status = tribo_driver_check(drv, y);
-    if (!status) {
-        drv->time = t;
-        memcpy(drv->state, y, tribo_system_size(drv->sys) * sizeof *y);
-    }
-    return status;
+    drv->time = t;
+    memcpy(drv->state, y, tribo_system_size(drv->sys) * sizeof *y);
 }
 
 int tribo_driver_show(tribo_driver *drv, double t, const double *y, int kind, size_t contact)
@@ -256,8 +252,12 @@ int tribo_driver_show(tribo_driver *drv, double t, const double *y, int kind, si
 
 int tribo_driver_accept(tribo_driver *drv, double t, const double *y)
 {
-    const int status = tribo_driver_keep(drv, t, y);
-    return status ? status : tribo_driver_show(drv, t, y, TRIBO_MOMENT_STEP, SIZE_MAX);
+    const int status = tribo_driver_check(drv, y);
+    if (status) {
+        return status;
+    }
+    tribo_driver_keep(drv, t, y);
+    return tribo_driver_show(drv, t, y, TRIBO_MOMENT_STEP, SIZE_MAX);
 }
 
 static int check_times(tribo_driver *drv, const double *t, double t1, const double *y)
@@ -301,10 +301,12 @@ static int advance_motion(tribo_driver *drv, double *t, double t1, double *y)
     tribo_system *sys = drv->sys;
     const size_t bytes = tribo_system_size(sys) * sizeof *y, evaluations = sys->evaluations, jacobians = sys->jacobians;
     const int continues = *t == drv->time && drv->revision == tribo_system_revision(sys) && memcmp(y, drv->state, bytes) == 0;
-    drv->time = *t;
-    memcpy(drv->state, y, bytes);
+    tribo_driver_keep(drv, *t, y);
     status = drv->method->advance(drv, t, t1, y, continues);
-    status = status ? status : tribo_driver_keep(drv, *t, y);
+    status = status ? status : tribo_driver_check(drv, y);
+    if (!status) {
+        tribo_driver_keep(drv, *t, y);
+    }
     *t = drv->time;
     memcpy(y, drv->state, bytes);
     drv->revision = status == TRIBO_OK || status == TRIBO_ERR_STOPPED ? tribo_system_revision(sys) : SIZE_MAX;

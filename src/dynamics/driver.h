@@ -85,15 +85,15 @@ int tribo_driver_pass(const tribo_driver *drv, int status);
  * [tribo_system_size], see system.h. */
 int tribo_driver_check(tribo_driver *drv, const double *y);
 
-/* Keeps (t, y) as the last good state, restored by tribo_driver_advance after an error. Returns TRIBO_ERR_NOT_FINITE if a value
- * of y is not finite. Methods keep every computed state before any further use. */
-int tribo_driver_keep(tribo_driver *drv, double t, const double *y);
+/* Keeps (t, y), which was checked, as the last good state, restored by tribo_driver_advance after an error. Methods keep every
+ * computed state before any further use. */
+void tribo_driver_keep(tribo_driver *drv, double t, const double *y);
 
 /* Calls the observer, if any, for a kept state: kind TRIBO_MOMENT_..., contact SIZE_MAX for a step. Returns TRIBO_ERR_STOPPED if
  * the observer returns a value other than 0. */
 int tribo_driver_show(tribo_driver *drv, double t, const double *y, int kind, size_t contact);
 
-/* Keeps (t, y), and calls the observer for a step. Returns a status. */
+/* Checks and keeps (t, y), and calls the observer for a step. Returns a status. */
 int tribo_driver_accept(tribo_driver *drv, double t, const double *y);
 
 /* *drv = new driver with a method that must outlive the driver. Returns what tribo_driver_create returns. */

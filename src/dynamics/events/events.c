@@ -306,8 +306,11 @@ static int phase(struct events *e, tribo_driver *drv, double *t, double t1, doub
             e->shown[i] = slides && m->state.rested[i] ? TURNS : e->shown[i];
         }
     }
-    status = status ? status : tribo_driver_keep(drv, *t, y);
-    status = status || !drv->seen ? status : show_changes(e, drv, *t, y, &some);
+    if (status) {
+        return status;
+    }
+    tribo_driver_keep(drv, *t, y); /* finite: a decision takes only rounding out of y */
+    status = drv->seen ? show_changes(e, drv, *t, y, &some) : TRIBO_OK;
     const int seen = drv->seen && !some && (event || stops || (*t >= t1 && drv->sys->loads.low == 0.0));
     return seen && !status ? tribo_driver_show(drv, *t, y, TRIBO_MOMENT_STEP, SIZE_MAX) : status;
 }
@@ -345,8 +348,8 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
         memset(e->lasted, 0, SLIPS * contacts * sizeof *e->lasted);
         memcpy(e->shown, m->state.slip, contacts);
     } else if (!status && drv->seen) {
-        status = tribo_driver_keep(drv, *t, y);
-        status = status ? status : show_changes(e, drv, *t, y, &some);
+        tribo_driver_keep(drv, *t, y);
+        status = show_changes(e, drv, *t, y, &some);
     }
     while (!status && (*t < t1 || drv->sys->loads.low < 0.0)) {
         status = phase(e, drv, t, t1, y);
