@@ -56,20 +56,24 @@ double complex tribo_forced_weight(const struct forced *f, size_t p, const doubl
     return sum;
 }
 
-/* Sets the output of contact i: the velocity, of a contact at rest that does not hold by bases only (on of modes is 0); or the
- * force, with the rest of the harmonics in direct, `rests` apart; NULL: 0. c [3 terms] is its memory, zero before. Returns 1 if
- * the output varies. */
-static int fill_output(const struct modal_build *b, size_t i, const double complex *direct, double *c, struct output *w)
+/* Sets *w = the output of contact i, unless it is constant and `always` is 0: the velocity, of a contact at rest that does not
+ * hold by bases only (on of modes is 0); or the force, with the rest of the harmonics in direct, `rests` apart; NULL: 0. Returns
+ * the number of outputs, 0 or 1. */
+static size_t fill_output(const struct modal_build *b, size_t i, const double complex *direct, int always, struct output *w)
 {
-    const struct forced *f = b->forced;
-    const size_t terms = f->terms, e = b->h->exponents;
+    struct forced *f = b->forced;
+    const size_t e = b->h->exponents;
     const int holds = b->h->key[i] == 2;
     const double *own = f->on + i * f->shapes, *by_u = holds && f->by_u ? f->by_u + i * f->shapes : NULL;
     int varies = tribo_largest(own, f->shapes) > 0.0 || (by_u && tribo_largest(by_u, f->shapes) > 0.0);
-    *w = (struct output){i, c, c + terms, c + 2 * terms, own};
     for (size_t s = 0; direct && s < f->harmonics; s++) {
         varies |= direct[s * b->h->rests] != 0.0;
     }
+    double *c = varies || always ? tribo_modal_take(&f->store, 3 * f->terms, sizeof *c) : NULL;
+    if (!c) {
+        return 0;
+    }
+    *w = (struct output){i, c, c + f->terms, c + 2 * f->terms, own};
     for (size_t p = 0; varies && p < e + f->harmonics; p++) {
         const double complex z = tribo_forced_weight(f, p, holds ? own : NULL, holds ? by_u : own) +
                                  (direct && p >= e ? direct[(p - e) * b->h->rests] : 0.0);
@@ -77,7 +81,7 @@ static int fill_output(const struct modal_build *b, size_t i, const double compl
         w->ci[p] = cimag(z);
         w->size[p] = z != 0.0 ? tribo_modal_magnitude(creal(z), cimag(z)) : 0.0;
     }
-    return varies;
+    return 1;
 }
 
 /* Sets the outputs: of contacts that slide, and where velocity, force or limit varies. */
@@ -90,17 +94,15 @@ int tribo_forced_outputs(struct modal_build *b)
     if (!f->output || !find_terms(b)) {
         return 0;
     }
-    double *c = tribo_modal_take(&f->store, 3 * f->terms * sys->ncontact, sizeof *c);
-    for (int holds = 0; c && holds < 2; holds++) {
+    for (int holds = 0; holds < 2; holds++) {
         f->sliding = f->outputs;
         for (size_t i = 0, p = 0; i < sys->ncontact; i++) {
-            if (holds != (h->key[i] == 2)) {
-                continue;
+            if (holds == (h->key[i] == 2)) {
+                const double complex *own = p < h->rests && h->rest[p] == i ? b->direct + p++ : NULL;
+                const int always = h->key[i] == 0 || (holds && sys->loads.limits && tribo_system_swing(sys, i) > 0.0);
+                f->outputs += fill_output(b, i, own, always, &f->output[f->outputs]);
             }
-            const double complex *own = p < h->rests && h->rest[p] == i ? b->direct + p++ : NULL;
-            const int varies = fill_output(b, i, own, c + 3 * f->terms * f->outputs, &f->output[f->outputs]);
-            f->outputs += varies || h->key[i] == 0 || (holds && tribo_system_swing(sys, i) > 0.0);
         }
     }
-    return c != NULL;
+    return !f->store.failed;
 }
