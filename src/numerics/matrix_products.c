@@ -134,7 +134,7 @@ double tribo_matrix_noise(const struct matrix *a, const double *root, const doub
     double sum = 0.0;
     for (size_t i = 0; i < a->rows; i++) {
         double row = 0.0;
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+        for (size_t k = a->first[i]; x[i] != 0.0 && k < a->first[i + 1]; k++) {
             row += greater(fabs(a->val[k]), root[i] * root[a->col[k]]) * fabs(y[a->col[k]]);
         }
         sum += row * fabs(x[i]);
