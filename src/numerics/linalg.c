@@ -42,7 +42,7 @@ static inline double terms_of_eight(size_t n, const double *restrict x, const do
     return sum_of_eight(part);
 }
 
-TRIBO_SIMD double tribo_dot(const double *x, const double *y, size_t n)
+TRIBO_SIMD double tribo_dot_of_eight(size_t n, const double *x, const double *y)
 {
     return terms_of_eight(n, x, y, NULL, 0);
 }
@@ -96,7 +96,7 @@ TRIBO_SIMD static void add_four(double *restrict c, const double *restrict b, si
     }
 }
 
-/* c [4] += factor times the sums of tribo_dot for the rows of a [4][n]; four rows side by side, since each sum waits for
+/* c [4] += factor times the sums of tribo_dot_of_eight for the rows of a [4][n]; four rows side by side, since each sum waits for
  * itself. */
 TRIBO_SIMD static void add_four_dots(size_t n, double factor, const double *restrict a, const double *restrict x,
                                      double *restrict c)
@@ -131,7 +131,7 @@ void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, c
         const double *row = a + i * inner;
         size_t k = 0;
         if (cols == 1) {
-            c[i] += factor * tribo_dot(row, b, inner);
+            c[i] += factor * tribo_dot_of_eight(inner, row, b);
             continue;
         }
         for (; k + 4 <= inner; k += 4) {

@@ -62,8 +62,18 @@ void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y);
 enum { MATRIX_WIDE = 32 };
 
 /* Return x'y, and |x|'|y|, summed in eight parts. In linalg.c. */
-double tribo_dot(const double *x, const double *y, size_t n);
+double tribo_dot_of_eight(size_t n, const double *x, const double *y);
 double tribo_size_of_eight(size_t n, const double *x, const double *y);
+
+/* Returns x'y. A call for a few numbers takes longer than their sum. */
+static inline double tribo_dot(const double *x, const double *y, size_t n)
+{
+    double sum = 0.0;
+    for (size_t i = 0; n < 8 && i < n; i++) {
+        sum += x[i] * y[i];
+    }
+    return n < 8 ? sum : tribo_dot_of_eight(n, x, y);
+}
 
 /* Returns 1 if row i has no zeros, and at least MATRIX_WIDE columns. */
 static inline int tribo_matrix_row_is_wide(const struct matrix *a, size_t i)
