@@ -249,6 +249,18 @@ static void eliminate_tie(struct elimination *e)
     }
 }
 
+/* Sets the entries of a tie of one row with one degree of freedom, as fill and eliminate_tie do. */
+static void invert_one(const struct elimination *e)
+{
+    struct tie *tie = e->tie;
+    const double entry = e->direction->val[e->direction->first[e->row[tie->order[0]]]];
+    tie->rank = entry != 0.0;
+    tie->entry[0] = entry;
+    if (tie->rank && tie->stride > 1) {
+        tie->entry[1] = 1.0 / entry;
+    }
+}
+
 int tribo_constraints_create(struct constraints *c, const struct matrix *direction, const struct matrix *mass, const size_t *row,
                              size_t count, const unsigned char *last)
 {
@@ -279,8 +291,12 @@ int tribo_constraints_create(struct constraints *c, const struct matrix *directi
     for (size_t k = 0; k < c->ties; k++) {
         e.tie = &c->tie[k];
         e.zero = last ? sqrt(4.0 * (double)(e.tie->rows + 4) * DBL_EPSILON) : ROUNDING;
-        fill(&e);
-        eliminate_tie(&e);
+        if (e.tie->rows == 1 && e.tie->touched == 1) {
+            invert_one(&e);
+        } else {
+            fill(&e);
+            eliminate_tie(&e);
+        }
         c->rank += e.tie->rank;
     }
     size_t other = c->rank;
