@@ -37,10 +37,10 @@
 
 /* ------------------------------------------------------------------------------------------------------------- forces */
 
-/* The force of contact i alone within work.lo and hi: clamp(-a_i/R_ii, lo, hi); for R_ii = 0 the bound against a. */
-static inline double force_alone(const struct stick_slip *m, size_t i, double a)
+/* The force of contact i alone between lo and hi: clamp(-a_i/R_ii, lo, hi); for R_ii = 0 the bound against a. */
+static inline double force_alone(const struct stick_slip *m, size_t i, double a, double lo, double hi)
 {
-    const double r = m->constant.diagonal[i], lo = m->work.lo[i], hi = m->work.hi[i];
+    const double r = m->constant.diagonal[i];
     return r > 0.0 ? clamp(-a / r, lo, hi) : a > 0.0 ? lo : a < 0.0 ? hi : clamp(0.0, lo, hi);
 }
 
@@ -68,12 +68,12 @@ static int solve(struct stick_slip *m, const tribo_system *sys, const double *a,
     for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
         own += j->val[k] * tribo_matrix_row_dot(&sys->response, j->col[k], f);
     }
-    f[i] = force_alone(m, i, own);
+    f[i] = force_alone(m, i, own, lo[i], hi[i]);
     return TRIBO_OK;
 }
 
 /* Finds state.force and lists work.doubt: the contacts that others or their own limits may change in this decision. If R is
- * diagonal these are the contacts at rest close to their limits; else all, or none if none is close. Returns a status. */
+ * diagonal these are the contacts at rest near their limits; else all, or none if none is close. Returns a status. */
 static int find_forces(struct stick_slip *m, const tribo_system *sys)
 {
     const struct slip_constant *c = &m->constant;
@@ -83,23 +83,24 @@ static int find_forces(struct stick_slip *m, const tribo_system *sys)
     const double part = 1.0 - (all ? CLOSE : NEAR);
     int status = TRIBO_OK, close = s->dependents && c->base_moves;
     size_t count = 0;
-    for (size_t i = 0; i < c->contacts; i++) {
+    for (size_t i = 0; all && i < c->contacts; i++) {
         const int searches = tribo_stick_slip_searches(m, i);
-        const double own = c->elastic[i] ? s->spring[i] : -s->slip[i] * s->limit[i];
-        w->hi[i] = searches ? s->stick[i] : own;
-        w->lo[i] = searches ? -s->stick[i] : own;
-        s->force[i] = searches ? force_alone(m, i, w->a[i]) : own;
+        w->hi[i] = searches ? s->stick[i] : c->elastic[i] ? s->spring[i] : -s->slip[i] * s->limit[i];
+        w->lo[i] = searches ? -s->stick[i] : w->hi[i];
     }
     if (all) {
         status = solve(m, sys, w->a, s->force);
     }
     for (size_t i = 0; i < c->contacts; i++) {
-        const int at_limit = fabs(s->force[i]) >= part * s->stick[i] || i == s->reached;
-        if (at_limit || all || !c->can_hold[i]) {
-            const int near = at_limit && tribo_stick_slip_searches(m, i);
-            close |= near;
-            w->doubt[count] = i;
-            count += near || all || !c->can_hold[i];
+        const int searches = tribo_stick_slip_searches(m, i);
+        if (!all) {
+            const double own = c->elastic[i] ? s->spring[i] : -s->slip[i] * s->limit[i];
+            s->force[i] = searches ? force_alone(m, i, w->a[i], -s->stick[i], s->stick[i]) : own;
+        }
+        const int near = searches && (fabs(s->force[i]) >= part * s->stick[i] || i == s->reached);
+        close |= near;
+        if (near || all || !c->can_hold[i]) {
+            w->doubt[count++] = i;
         }
     }
     w->doubts = close ? count : 0;
@@ -233,7 +234,7 @@ static int look_ahead(struct stick_slip *m, const tribo_system *sys, const doubl
             w->lo[i] = w->hi[i] = m->constant.elastic[i] ? s->spring[i] + moment * s->spring_rate[i] : -s->slip[i] * limit;
         }
         w->v[i] = w->a[i] + moment * w->v[i];
-        w->f[i] = force_alone(m, i, w->v[i]);
+        w->f[i] = force_alone(m, i, w->v[i], w->lo[i], w->hi[i]);
     }
     const int status = m->constant.uncoupled ? TRIBO_OK : solve(m, sys, w->v, w->f);
     if (status) {
