@@ -39,33 +39,24 @@ static double most_credit(const struct events *e)
 /* Slips from -1 to 3. */
 #define SLIPS 5
 
-static void lay_out_events(struct events *e, struct layout *l, const tribo_system *sys)
-{
-    const size_t c = sys->ncontact;
-    e->lasted = tribo_layout_array(l, SLIPS * c, sizeof *e->lasted);
-    e->search.guard = tribo_layout_array(l, 3 * c, sizeof *e->search.guard);
-    e->search.watched = tribo_layout_array(l, 3 * c, sizeof *e->search.watched);
-    e->shown = tribo_layout_array(l, c, sizeof *e->shown);
-}
-
 int tribo_events_create(struct events *e, tribo_driver *drv, const struct motion *motion, void *own)
 {
-    tribo_system *sys = drv->sys;
+    const size_t c = drv->sys->ncontact;
     e->motion = e->search.motion = motion;
     e->own = e->search.own = own;
-    const int status = tribo_stick_slip_create(&e->stick_slip, sys);
+    const int status = tribo_stick_slip_create(&e->stick_slip, drv->sys);
     if (status) {
         return status;
     }
     struct layout l = {0};
-    lay_out_events(e, &l, sys);
-    const int done = tribo_layout_zeros(&l);
-    lay_out_events(e, &l, sys);
-    if (!done) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contact%s", sys->ncontact,
-                                 plural(sys->ncontact));
-    }
-    return TRIBO_OK;
+    do {
+        e->lasted = tribo_layout_array(&l, SLIPS * c, sizeof *e->lasted);
+        e->search.guard = tribo_layout_array(&l, 3 * c, sizeof *e->search.guard);
+        e->search.watched = tribo_layout_array(&l, 3 * c, sizeof *e->search.watched);
+        e->shown = tribo_layout_array(&l, c, sizeof *e->shown);
+    } while (!l.memory && tribo_layout_zeros(&l));
+    return l.memory ? TRIBO_OK
+                    : tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contact%s", c, plural(c));
 }
 
 void tribo_events_free(struct events *e)
@@ -131,16 +122,6 @@ static int count_step(struct events *e, tribo_driver *drv, double t)
                ? TRIBO_OK
                : tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g, and %d such steps lead nowhere%s",
                                    t, e->when, MOST_IDLE, e->stick_slip.plane ? ": take moreau/fixed" : "");
-}
-
-/* Sets search.expected by the phases that began as this one does, if the last two were alike. */
-static void expect(struct events *e, const struct guard *event)
-{
-    if (e->begun && event) {
-        *e->begun = (struct lasted){e->when, fabs(e->when - e->begun->time)};
-    }
-    e->begun = event ? e->lasted + SLIPS * event->contact + (e->stick_slip.state.slip[event->contact] + 1) : NULL;
-    e->search.expected = e->begun && e->begun->change <= ALIKE * e->begun->time ? e->begun->time : 0.0;
 }
 
 /* Shows the observer the states at begin + k output, within the phase from t on. */
@@ -266,9 +247,7 @@ static int travel(struct events *e, tribo_driver *drv, double *t, double end, do
     const int there = e->when >= (end - *t) - sys->loads.low || next.hi > end || (next.hi == end && next.lo > 0.0);
     *t = there ? end : next.hi;
     tribo_system_set_low(sys, there ? 0.0 : next.lo);
-    if (e->motion->arrive) {
-        e->motion->arrive(e->own, *t);
-    }
+    tribo_system_set_time(sys, *t);
     return TRIBO_OK;
 }
 
@@ -294,7 +273,12 @@ static int phase(struct events *e, tribo_driver *drv, double *t, double t1, doub
         status = count_step(e, drv, *t);
     }
     status = status ? status : tribo_driver_pass(drv, decide(e, drv->sys, *t, y));
-    expect(e, event);
+    if (e->begun && event) {
+        *e->begun = (struct lasted){e->when, fabs(e->when - e->begun->time)};
+    }
+    /* a zero is expected as in the phases that began as the next one does, if the last two were alike */
+    e->begun = event ? e->lasted + SLIPS * event->contact + (m->state.slip[event->contact] + 1) : NULL;
+    e->search.expected = e->begun && e->begun->change <= ALIKE * e->begun->time ? e->begun->time : 0.0;
     if (!status && event && e->company) {
         e->company->decided(e->company);
     }

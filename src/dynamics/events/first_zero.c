@@ -24,7 +24,7 @@
 #define SHORT 1.9e-6
 
 /* The part of an interval within which parabolas foresee a zero. */
-#define SOON 0.1
+#define SOON 0.2
 
 /* A zero of the quintic is that of the guard if both differ there by at most this part of noise. */
 #define FINE 0.1
@@ -110,13 +110,6 @@ static void sample(struct first_zero *s, double tau)
     }
     s->looks++;
     s->lost |= all != 0.0 || s->looks >= MOST_LOOKS;
-}
-
-/* Samples all guards. */
-static void sample_all(struct first_zero *s, double tau)
-{
-    s->watching = s->guards;
-    sample(s, tau);
 }
 
 /* Makes the middle samples the left ones; drops the allowance of guards that have left zero. */
@@ -211,34 +204,29 @@ static int all_positive(const struct first_zero *s, int middle, double until, do
     return 1;
 }
 
-/* Sets expected to the first zero of parabolas at a within SOON h, if there is one. */
-static void foresee(struct first_zero *s)
+/* Moves a to b, where all guards have been sampled. Sets expected to the first zero of parabolas within SOON h, if there is one. */
+static void come_to(struct first_zero *s, double b)
 {
     double step = SOON * s->h;
+    s->a = b;
+    s->watching = s->guards;
+    keep_left(s);
     for (size_t k = 0; k < s->guards; k++) {
         const double own = parabola_fall(&s->guard[k].left, step);
         if (own <= step) {
             step = own;
-            s->expected = s->a + step;
+            s->expected = b + step;
         }
     }
-}
-
-/* Moves a to b, where all guards have been sampled, and foresees. */
-static void come_to(struct first_zero *s, double b)
-{
-    s->a = b;
-    keep_left(s);
-    foresee(s);
 }
 
 /* Searches [a, b]. Returns the first guard to be zero there, with *when; or NULL: no guard is below zero until a, which has moved
  * to b, or towards it. A doubt about an interval too short to be divided is rounding. */
 static const struct guard *search_interval(struct first_zero *s, double b, double *when)
 {
-    const double begun = s->a, end = b;
+    const double begun = s->a;
     const size_t looks = s->looks;
-    sample_all(s, b);
+    sample(s, b);
     keep_right(s);
     watch_doubtful(s, b - s->a);
     while (s->watching && !s->lost) {
@@ -269,19 +257,12 @@ static const struct guard *search_interval(struct first_zero *s, double b, doubl
         }
         watch_doubtful(s, b - s->a);
     }
-    const double length = b - begun;
     if (s->looks > looks + 1) {
-        s->h = greater(SHRINK * length, greater(s->resolution, DBL_EPSILON * b));
-    } else {
-        s->h = greater(s->h, GROWS * length);
-    }
-    if (b < end) {
-        sample_all(s, b);
-    } else {
+        s->h = greater(SHRINK * (b - begun), greater(s->resolution, DBL_EPSILON * b));
         s->watching = s->guards;
-        for (size_t k = 0; k < s->guards; k++) {
-            s->guard[k].middle = s->guard[k].right;
-        }
+        sample(s, b);
+    } else {
+        s->h = greater(s->h, GROWS * (b - begun));
     }
     come_to(s, b);
     return NULL;
@@ -297,7 +278,8 @@ static const struct guard *start(struct first_zero *s, double *when)
     for (size_t k = 0; k < s->guards; k++) {
         s->watched[k] = &s->guard[k];
     }
-    sample_all(s, 0.0);
+    s->watching = s->guards;
+    sample(s, 0.0);
     for (size_t k = 0; k < s->guards; k++) {
         struct guard *g = &s->guard[k];
         g->left = g->middle;
@@ -306,9 +288,8 @@ static const struct guard *start(struct first_zero *s, double *when)
     for (size_t k = 0; k < s->guards; k++) {
         const struct guard *g = &s->guard[k];
         const struct sample begins = {g->left.g - g->allowance, g->left.d, g->left.e};
-        const int moves = g->kind == SLIDES && begins.g > ALLOWED * fastest;
-        const double own = moves ? parabola_fall(&begins, step) : HUGE_VAL;
-        if (own <= step) {
+        const double own = g->kind == SLIDES ? parabola_fall(&begins, step) : HUGE_VAL;
+        if (own <= step && begins.g > ALLOWED * fastest) {
             first = g;
             step = own;
         }

@@ -19,8 +19,6 @@ struct motion {
     double (*bound)(void *own, double tau);
     /* Sets to = the state at tau into the phase that began with from; to may be from. */
     void (*state)(void *own, double tau, const double *from, double *to);
-    /* Sets the system's time to t, where the phase ends to which state went last. NULL: not needed. */
-    void (*arrive)(void *own, double t);
     /* Returns the data of the phase, which ends after tau, that transition needs later, until release; NULL if out of memory.
      * keep NULL: phases are not kept. */
     void *(*keep)(void *own, double tau);

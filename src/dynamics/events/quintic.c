@@ -49,6 +49,11 @@ double tribo_quintic_least(const struct sample *a, const struct sample *b, doubl
     const double h_3 = h * h * h, doubt = bend * h_3 * h_3 * (1 / 14400.);
     const double p0 = a->g, p1 = p0 + 0.2 * h * a->d, p2 = p1 + 0.2 * h * (a->d + 0.25 * h * a->e);
     const double p5 = b->g, p4 = p5 - 0.2 * h * b->d, p3 = p4 - 0.2 * h * (b->d - 0.25 * h * b->e);
+    /* 20 s^3 (1-s)^3 is at most half the sum of the middle elements of degree 5 */
+    const double rough = lesser(lesser(lesser(p0, p1), lesser(p2, p3) - 0.5 * doubt), lesser(p4, p5));
+    if (rough >= enough) {
+        return rough;
+    }
     double from[COEFFICIENTS], c[COEFFICIENTS] = {p0,
                                                   (p0 + 5.0 * p1) * (1 / 6.),
                                                   (p1 + 2.0 * p2) * (1 / 3.),

@@ -64,6 +64,7 @@ static int find_held(struct exact *x)
 static void method_exact_look(void *own, double tau, size_t guards, struct guard *const *guard)
 {
     struct exact *x = own;
+    x->sys->evaluations++;
     tribo_modal_motion_go(x, tau);
     for (size_t k = 0; k < guards; k++) {
         struct guard *g = guard[k];
@@ -87,14 +88,6 @@ static void method_exact_look(void *own, double tau, size_t guards, struct guard
             g->middle.e += g->limit * limit.e;
         }
     }
-}
-
-/* Sets the time t of the system. */
-static void arrive(void *own, double t)
-{
-    const struct exact *x = own;
-    x->sys->evaluations += x->events.search.looks;
-    tribo_system_set_time(x->sys, t);
 }
 
 /* Sets size and bend of all guards from tau on. Returns the time from which new bounds are worth finding: max(2 tau, 1/decay),
@@ -166,7 +159,6 @@ static const struct motion motion_closed = {.begin = method_exact_begin,
                                             .look = method_exact_look,
                                             .bound = method_exact_bound,
                                             .state = tribo_modal_motion_state,
-                                            .arrive = arrive,
                                             .keep = tribo_modal_phase_keep,
                                             .release = tribo_modal_phase_release,
                                             .transition = tribo_modal_transition,
@@ -183,8 +175,6 @@ static void method_exact_destroy(tribo_driver *drv)
         tribo_events_free(&x->events);
         tribo_signal_free(&x->velocity);
         free(x->lot);
-        free(x->way);
-        free(x->course);
         free(x);
     }
 }
@@ -223,17 +213,7 @@ static int method_exact_create(tribo_driver *drv)
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     x->sys = drv->sys;
-    const int status = tribo_events_create(&x->events, drv, &motion_closed, x);
-    if (status) {
-        return status;
-    }
-    x->way = malloc((2 * x->sys->ncontact + 1) * sizeof *x->way);
-    x->steady = x->way ? x->way + x->sys->ncontact : NULL;
-    x->course = malloc((x->sys->ncontact + 1) * sizeof *x->course);
-    if (!x->way || !x->course) {
-        return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
-    }
-    return TRIBO_OK;
+    return tribo_events_create(&x->events, drv, &motion_closed, x);
 }
 
 static int method_exact_open_events(tribo_driver *drv, struct events **events)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "motion.h"
+#include "common/layout.h"
 #include "common/real.h"
 
 #include <math.h>
@@ -12,31 +13,30 @@
 /* Makes room for the terms and shapes of x->h. Returns 0 if out of memory. */
 static int motion_reserve(struct exact *x)
 {
-    const struct forced *h = x->h;
-    struct parts *const parts[] = {&x->z, &x->far_e, &x->move, &x->rate_move};
-    double **const array[] = {&x->growth, &x->growth6, &x->vel, &x->acc, &x->drift, &x->place, &x->rate};
-    enum { PARTS = sizeof parts / sizeof *parts, ARRAYS = sizeof array / sizeof *array };
-    const size_t room = 2 * (h->terms > h->shapes ? h->terms : h->shapes);
-    if (2 * x->room >= room) {
+    const size_t least = x->h->terms > x->h->shapes ? x->h->terms : x->h->shapes, room = 2 * least, c = x->sys->ncontact;
+    if (x->room >= least) {
         return 1;
     }
-    struct lot *lot =
-        malloc((room / TRIBO_TERMS + 1) * sizeof *lot + ((2 * PARTS + ARRAYS + 1) * room + 2 * x->sys->ndof) * sizeof *x->work);
-    if (!lot) {
-        return 0;
-    }
+    struct parts *const parts[] = {&x->z, &x->far_e, &x->move, &x->rate_move};
+    double **const array[] = {&x->growth, &x->growth6, &x->vel, &x->acc, &x->drift, &x->place, &x->rate};
+    struct layout l = {0};
     free(x->lot);
-    x->lot = lot;
-    x->room = room;
-    x->work = (double *)(lot + room / TRIBO_TERMS + 1);
-    double *at = x->work + room + 2 * x->sys->ndof;
-    for (size_t k = 0; k < PARTS; k++, at += 2 * room) {
-        *parts[k] = (struct parts){at, at + room};
-    }
-    for (size_t k = 0; k < ARRAYS; k++, at += room) {
-        *array[k] = at;
-    }
-    return 1;
+    do {
+        x->lot = tribo_layout_array(&l, room / TRIBO_TERMS + 1, sizeof *x->lot);
+        x->course = tribo_layout_array(&l, c, sizeof *x->course);
+        x->way = tribo_layout_array(&l, c, sizeof *x->way);
+        x->steady = tribo_layout_array(&l, c, sizeof *x->steady);
+        x->work = tribo_layout_array(&l, room + 2 * x->sys->ndof, sizeof *x->work);
+        for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
+            parts[k]->re = tribo_layout_array(&l, 2 * room, sizeof *parts[k]->re);
+            parts[k]->im = parts[k]->re ? parts[k]->re + room : NULL;
+        }
+        for (size_t k = 0; k < sizeof array / sizeof *array; k++) {
+            *array[k] = tribo_layout_array(&l, room, sizeof **array);
+        }
+    } while (!l.memory && tribo_layout_create(&l));
+    x->room = l.memory ? room : 0;
+    return l.memory != NULL;
 }
 
 void tribo_modal_settle(const struct modal *h, size_t columns, const double *force, double *eta, double *rate, double *vel,
@@ -193,7 +193,6 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
     const tribo_system *sys = x->sys;
     const struct forced *h = x->h;
     const size_t n = sys->ndof;
-    double *moves = x->work;
     tribo_modal_motion_go(x, tau);
     /* brief: |lambda| tau is small for all terms; then q', as q, is the value at t0 plus a change. With shapes by bases q' is
      * computed anew: it follows the bases to rounding. */
@@ -202,12 +201,8 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
     if (to != from) {
         memcpy(to, from, tribo_system_size(sys) * sizeof *to);
     }
-    memset(moves, 0, 2 * n * sizeof *moves);
-    tribo_modal_terms_spread(x, moves, moves + n);
-    for (size_t d = 0; d < n; d++) {
-        to[d] += moves[d];
-        to[n + d] = (brief ? to[n + d] : 0.0) + moves[n + d];
-    }
+    memset(x->work, 0, 2 * n * sizeof *x->work);
+    tribo_modal_terms_spread(x, brief, x->work, to);
     for (size_t k = 0; k < sys->compliance.count; k++) {
         const size_t i = sys->compliance.contact[k];
         to[2 * n + k] += h->modal->key[i] == 2 ? tribo_dot(h->on + i * h->shapes, x->place, h->shapes) : 0.0;
@@ -259,7 +254,6 @@ static void find_constant_forces(struct exact *x, const double *y, double *force
     memcpy(force, h->constant, m * sizeof *force);
     if (holds) {
         tribo_compliance_give(sys, 1, x->events.stick_slip.state.force, x->way);
-        tribo_matrix_multiply_add(&sys->direction, 1.0, y, x->way);
     }
     for (size_t s = 0; holds && s < sys->loads.harmonics; s++) {
         const struct harmonic *w = &sys->loads.harmonic[s];
@@ -269,7 +263,8 @@ static void find_constant_forces(struct exact *x, const double *y, double *force
     }
     for (size_t o = 0; o < h->outputs; o++) {
         const struct output *out = &h->output[o];
-        const double push = o < h->sliding ? x->steady[out->contact] : -x->way[out->contact];
+        const size_t i = out->contact;
+        const double push = o < h->sliding ? x->steady[i] : -x->way[i] - tribo_matrix_row_dot(&sys->direction, i, y);
         for (size_t k = 0; k < m; k++) {
             force[k] += push * out->on_rate[k];
         }

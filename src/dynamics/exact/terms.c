@@ -108,9 +108,10 @@ void tribo_modal_terms_go(struct exact *x, double tau)
     turn_terms(h->terms, x->room, h->lr, e, x->z.re, x->lot);
 }
 
-TRIBO_SIMD void tribo_modal_terms_spread(const struct exact *x, double *restrict moves, double *restrict rates)
+TRIBO_SIMD void tribo_modal_terms_spread(const struct exact *x, int brief, double *restrict moves, double *restrict to)
 {
     const size_t n = x->sys->ndof, shapes = x->h->shapes;
+    double *restrict rates = moves + n;
     for (size_t k = 0; k < shapes; k++) {
         const struct shape own = x->h->shape[k];
         const double *phi = x->h->phi + k * n, place = x->place[k], rate = x->rate[k];
@@ -118,6 +119,11 @@ TRIBO_SIMD void tribo_modal_terms_spread(const struct exact *x, double *restrict
             moves[d] += phi[d] * place;
             rates[d] += phi[d] * rate;
         }
+    }
+    const double keep = brief ? 1.0 : 0.0;
+    for (size_t d = 0; d < n; d++) {
+        to[d] += moves[d];
+        to[n + d] = keep * to[n + d] + rates[d];
     }
 }
 
