@@ -96,7 +96,7 @@ int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const d
 {
     struct slip_state *s = &m->state;
     int status = TRIBO_OK;
-    if (s->snaps_differ && !sys->snaps_in_order) {
+    if (s->snaps_differ && !sys->snaps.in_order) {
         size_t holding = 0;
         for (size_t i = 0; i < m->constant.contacts; i++) {
             holding += !s->loose[i];

@@ -102,7 +102,7 @@ static int find_constants(struct stick_slip *m, const tribo_system *sys)
     struct slip_constant *c = &m->constant;
     struct constraints ties = {0};
     size_t *rigid = m->work.at, count = 0;
-    int in_order = sys->snaps_in_order; /* row by row, J has a degree of freedom that no row before has, with no loss of digits */
+    int in_order = sys->snaps.in_order; /* row by row, J has a degree of freedom that no row before has, with no loss of digits */
     for (size_t i = 0; i < c->contacts; i++) {
         c->diagonal[i] = tribo_system_delassus(sys, i, i);
         c->inertia[i] = c->diagonal[i] > 0.0 ? quotient(1.0, c->diagonal[i]) : 0.0;

@@ -53,7 +53,7 @@ struct slip_state {
     signed char *before;   /* [ncontact] tied as of the last choice of H; contacts that depend on each other */
     int hold_differs;      /* 1: H changed since constant.hold took it */
     int snaps_differ;      /* 1: H changed since snap was listed for it */
-    struct snap *snap;     /* [snaps] corrections that make J x = base exact: of all contacts if sys->snaps_in_order, else of H */
+    struct snap *snap;     /* [snaps] corrections that make J x = base exact: of all contacts if sys->snaps.in_order, else of H */
     size_t snaps;
     int simple;          /* 1: snap has a correction for every contact of H */
     signed char *tied;   /* [ncontact] at rest and at the limit: 1: stays there; 2: goes back inside */

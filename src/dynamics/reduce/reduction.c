@@ -125,13 +125,12 @@ static int find_soft(struct compliant *e, const struct reduced *r, const double 
     return shared;
 }
 
-/* Sets sys->reduced: modes [given][modes + soft] = displacements by q and w; omega, infinite for w, which has no mass;
- * truncation. Returns 0 if out of memory. */
+/* Sets sys->reduced: modes [given][modes + soft] = displacements by q and w; truncation. Returns 0 if out of memory. */
 static int set_modes(const struct compliant *e, size_t given, const struct reduced *r, tribo_system *sys)
 {
     const size_t m = e->modes, n = m + e->soft;
     sys->given = given;
-    sys->reduced = (struct reduction){malloc(given * n * sizeof(double)), malloc(n * sizeof(double)), r->truncation};
+    sys->reduced = (struct reduction){malloc(given * n * sizeof(double)), r->truncation};
     for (size_t a = 0; a < e->soft; a++) {
         double *row = e->by + e->contact[a] * n;
         memcpy(row, e->shapes + e->contact[a] * m, m * sizeof *row);
@@ -140,11 +139,7 @@ static int set_modes(const struct compliant *e, size_t given, const struct reduc
     if (e->soft) {
         tribo_compliance_solve(sys, NULL, n, e->by);
     }
-    if (!sys->reduced.modes || !sys->reduced.omega) {
-        return 0;
-    }
-    for (size_t k = 0; k < n; k++) {
-        sys->reduced.omega[k] = k < m ? sqrt(r->omega2[k]) : HUGE_VAL;
+    for (size_t k = 0; sys->reduced.modes && k < n; k++) {
         for (size_t i = 0; i < given; i++) {
             double *x = sys->reduced.modes + i * n + k;
             *x = k < m ? r->phi[k * given + i] : 0.0;
@@ -153,7 +148,7 @@ static int set_modes(const struct compliant *e, size_t given, const struct reduc
             }
         }
     }
-    return 1;
+    return sys->reduced.modes != NULL;
 }
 
 /* Builds the system of the basis r. Returns a status. */
@@ -236,7 +231,7 @@ int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
     struct matrix damping = {0};
     double *entries = malloc(sys->ndof * sizeof *entries);
     for (size_t k = 0; entries && k < sys->ndof; k++) {
-        entries[k] = sys->reduced.omega[k] < HUGE_VAL ? 2.0 * zeta * sys->reduced.omega[k] : 0.0;
+        entries[k] = 2.0 * zeta * sqrt(tribo_matrix_get(&sys->stiffness, k, k));
     }
     const int done = entries && tribo_matrix_diagonal(&damping, sys->ndof, entries);
     free(entries);
@@ -254,8 +249,8 @@ int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
 int tribo_system_get_frequencies(const tribo_system *sys, double *omega)
 {
     const int status = check_reduced(sys, omega, "omega");
-    if (!status) {
-        memcpy(omega, sys->reduced.omega, tribo_system_ndof(sys) * sizeof *omega);
+    for (size_t k = 0; !status && k < tribo_system_ndof(sys); k++) { /* after the modes displacements without mass */
+        omega[k] = k < sys->ndof ? sqrt(tribo_matrix_get(&sys->stiffness, k, k)) : HUGE_VAL;
     }
     return status;
 }
@@ -266,7 +261,7 @@ int tribo_system_expand(const tribo_system *sys, const double *reduced, double *
     if (status) {
         return status;
     }
-    const size_t n = tribo_system_ndof(sys), dofs = sys->expansion.place ? sys->expansion.dofs : n;
+    const size_t n = tribo_system_ndof(sys), dofs = sys->expansion.dofs;
     for (size_t i = 0; i < sys->given; i++) {
         double sum = 0.0;
         for (size_t j = 0; j < n; j++) {

@@ -180,17 +180,21 @@ static int advance_step(tribo_driver *drv, double *t, double end, double *y)
 static int begin_step(tribo_driver *drv, double t, const double *y)
 {
     struct adaptive *a = drv->own;
+    const size_t n = drv->sys->ndof, dimension = tribo_system_dimension(drv->sys);
+    double *slope = drv->slope;
     int law;
     tribo_get_law(drv->sys->contacts, &law);
-    if ((a->stepper.takes_slope || law == TRIBO_QUINN_REVERSAL) && tribo_system_begin_step(drv->sys, t, y, drv->slope)) {
-        return tribo_driver_explain(drv, t, a->h);
+    if (a->stepper.takes_slope || law == TRIBO_QUINN_REVERSAL) {
+        memcpy(slope, y + n, n * sizeof *slope);
+        if (tribo_system_rates(drv->sys, t, y, 1, slope + n, slope + 2 * n)) {
+            return tribo_driver_explain(drv, t, a->h);
+        }
     }
     if (tribo_system_limits_vary(drv->sys)) {
         find_bands(a, drv->sys);
     }
     /* tolerances relative to the largest displacement, the largest velocity, and the energy; no step has an error below
      * rounding */
-    const size_t n = drv->sys->ndof, dimension = tribo_system_dimension(drv->sys);
     const double q = drv->abstol + drv->reltol * tribo_largest(y, n), u = drv->abstol + drv->reltol * tribo_largest(y + n, n);
     for (size_t d = 0; d < n; d++) {
         a->tolerance[d] = q;

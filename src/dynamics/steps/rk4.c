@@ -88,7 +88,7 @@ static int take_step(tribo_driver *drv, double t, double h, const double *from, 
         r->time = t + part[s] * h;
         if (blockwise) {
             tribo_blockwise_rates(&r->alone, sys, r->time, at, r->k, &power[s]);
-        } else if ((s ? tribo_system_rates : tribo_system_begin_rates)(sys, r->time, at, r->k, &power[s])) {
+        } else if (tribo_system_rates(sys, r->time, at, s == 0, r->k, &power[s])) {
             return tribo_driver_explain(drv, t, h);
         }
         if (s + 1 < STAGES) {
@@ -107,7 +107,7 @@ static int tell_contacts(tribo_driver *drv, double t, double h)
     struct rk4 *r = drv->own;
     const size_t evaluations = drv->sys->evaluations;
     double power;
-    const int status = r->blockwise ? tribo_system_rates(drv->sys, r->time, r->stage[STAGES - 2], r->k, &power) : TRIBO_OK;
+    const int status = r->blockwise ? tribo_system_rates(drv->sys, r->time, r->stage[STAGES - 2], 0, r->k, &power) : TRIBO_OK;
     drv->sys->evaluations = evaluations;
     return status ? tribo_driver_explain(drv, t, h) : TRIBO_OK;
 }

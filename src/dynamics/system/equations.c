@@ -41,9 +41,11 @@ void tribo_system_free_motion(tribo_system *sys, double t, const double *y, doub
     }
 }
 
-/* tribo_system_rates; accepted = 1: (t, y) is an accepted state of the reversal law. */
-static int rates_at(tribo_system *sys, double t, const double *y, int accepted, double *acceleration, double *power)
+int tribo_system_rates(tribo_system *sys, double t, const double *y, int accepted, double *acceleration, double *power)
 {
+    int law;
+    tribo_get_law(sys->contacts, &law);
+    accepted = accepted && law == TRIBO_QUINN_REVERSAL;
     sys->evaluations++;
     tribo_system_free_motion(sys, t, y, acceleration, sys->work.v, sys->work.a);
     sys->status = tribo_balance(sys->contacts, sys->work.v, sys->work.a, accepted ? sys->work.feq : NULL, sys->work.f);
@@ -54,25 +56,6 @@ static int rates_at(tribo_system *sys, double t, const double *y, int accepted, 
         tribo_matrix_multiply_add(&sys->response, 1.0, sys->work.f, acceleration);
     }
     return tribo_system_explain(sys, sys->status);
-}
-
-int tribo_system_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power)
-{
-    return rates_at(sys, t, y, 0, acceleration, power);
-}
-
-int tribo_system_begin_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power)
-{
-    int law;
-    tribo_get_law(sys->contacts, &law);
-    return rates_at(sys, t, y, law == TRIBO_QUINN_REVERSAL, acceleration, power);
-}
-
-int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double *dydt)
-{
-    const size_t n = sys->ndof;
-    memcpy(dydt, y + n, n * sizeof *dydt);
-    return tribo_system_begin_rates(sys, t, y, dydt + n, dydt + 2 * n);
 }
 
 int tribo_system_derivative(tribo_system *sys, double t, const double *y, double *dydt)
@@ -90,7 +73,7 @@ int tribo_system_derivative(tribo_system *sys, double t, const double *y, double
     if (sys->status) {
         return sys->status;
     }
-    if (tribo_system_rates(sys, t, y, sys->work.acceleration, &power)) {
+    if (tribo_system_rates(sys, t, y, 0, sys->work.acceleration, &power)) {
         const int status = tribo_system_check_state(sys, t, y); /* names the value of y that is not finite */
         return sys->status = status ? status : sys->status;
     }

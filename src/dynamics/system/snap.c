@@ -14,6 +14,7 @@ struct snapping {
     double *known; /* [ndof] 1: the velocity is set by a correction in list */
     struct snap *list;
     size_t listed;
+    int clash; /* 1: a correction undoes an earlier one */
 };
 
 /* Returns |B_di|, the acceleration of degree of freedom d by a unit force of contact i; 1/m_d in unsolved systems. */
@@ -45,30 +46,32 @@ static int can_snap(const tribo_system *sys, const signed char *loose, size_t i)
            (entries == 1 || (entries == 2 && fabs(val[0]) == fabs(val[1])));
 }
 
-/* Lists the correction of entry `to` of row i, 0 or 1, by the other entry, if there are two. All entries are known then. */
+/* Lists the correction of entry `to` of row i, 0 or 1, by the other entry, if there are two. */
 static void snap_take(struct snapping *s, size_t i, size_t to)
 {
     const struct matrix *j = &s->sys->direction;
     const size_t first = j->first[i], from = first + entries_of(j, i) - 1 - to;
     to += first;
     s->list[s->listed++] = (struct snap){i, j->col[to], j->col[from], j->val[to], to == from ? 0.0 : j->val[from]};
+    s->clash |= s->known[j->col[to]] != 0.0;
     s->known[j->col[to]] = s->known[j->col[from]] = 1.0;
 }
 
-size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list)
+/* Lists the corrections of contacts with loose 0; in_order = 1: in the order of contacts, even if they clash. */
+static struct snapping find_snaps(const tribo_system *sys, const signed char *loose, int in_order, struct snap *list)
 {
     const struct matrix *j = &sys->direction;
     const size_t n = sys->ncontact;
-    struct snapping s = {sys, sys->work.acceleration, list, 0};
+    struct snapping s = {sys, sys->work.acceleration, list, 0, 0};
     memset(s.known, 0, sys->ndof * sizeof *s.known);
     for (size_t i = 0; i < n; i++) {
         const size_t entries = entries_of(j, i);
-        if ((entries == 1 || sys->snaps_in_order) && can_snap(sys, loose, i)) {
+        if ((entries == 1 || in_order) && can_snap(sys, loose, i)) {
             snap_take(&s, i, entries == 1 ? 0 : follows(sys, i));
         }
     }
     /* else the pairs with one known end; where there are none, the pair with the heaviest body */
-    for (int some = !sys->snaps_in_order; some;) {
+    for (int some = !in_order; some;) {
         size_t heaviest = n;
         double least = HUGE_VAL;
         some = 0;
@@ -89,32 +92,26 @@ size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose
             some = 1;
         }
     }
-    return s.listed;
+    return s;
 }
 
-/* Sets snaps_in_order = 1 if no rigid contact corrects a degree of freedom in the row of an earlier rigid contact. */
+size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list)
+{
+    return find_snaps(sys, loose, sys->snaps.in_order, list).listed;
+}
+
 void tribo_system_order_snaps(tribo_system *sys)
 {
-    const struct matrix *j = &sys->direction;
-    double *known = sys->work.acceleration;
-    signed char *loose = (signed char *)sys->work.feq;
-    memset(known, 0, sys->ndof * sizeof *known);
-    memset(loose, 0, sys->ncontact);
-    sys->snaps_in_order = 1;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        const size_t *dof = j->col + j->first[i], count = entries_of(j, i);
-        if (!tribo_is_compliant(&sys->compliance, i) && (count == 1 || count == 2)) {
-            sys->snaps_in_order &= known[dof[count == 2 ? follows(sys, i) : 0]] == 0.0;
-            known[dof[0]] = known[dof[count - 1]] = 1.0;
-        }
-    }
-    sys->snaps = sys->snaps_in_order ? tribo_system_list_snaps(sys, loose, sys->snap) : 0;
+    signed char *loose = memset(sys->work.feq, 0, sys->ncontact);
+    const struct snapping s = find_snaps(sys, loose, 1, sys->snaps.list);
+    sys->snaps.in_order = !s.clash;
+    sys->snaps.count = s.listed;
 }
 
 void tribo_system_snap(tribo_system *sys, const signed char *loose, const double *base, double *x)
 {
-    if (!sys->snaps_in_order) {
-        sys->snaps = tribo_system_list_snaps(sys, loose, sys->snap);
+    if (!sys->snaps.in_order) {
+        sys->snaps.count = tribo_system_list_snaps(sys, loose, sys->snaps.list);
     }
-    tribo_snap_all(sys->snap, sys->snaps, loose, base, x);
+    tribo_snap_all(sys->snaps.list, sys->snaps.count, loose, base, x);
 }

@@ -118,7 +118,7 @@ size_t tribo_system_planar(const tribo_system *sys)
 
 size_t tribo_system_ndof(const tribo_system *sys)
 {
-    return !sys ? 0 : sys->expansion.place ? sys->expansion.dofs - sys->expansion.sliders : sys->ndof;
+    return sys ? sys->expansion.dofs - sys->expansion.sliders : 0;
 }
 
 size_t tribo_system_ncontact(const tribo_system *sys)
@@ -239,7 +239,7 @@ void tribo_system_solve_mass(const tribo_system *sys, double *x)
 
 void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to, double *way)
 {
-    const size_t dofs = sys->expansion.place ? sys->expansion.dofs : sys->ndof;
+    const size_t dofs = sys->expansion.dofs;
     memset(to, 0, sys->ndof * sizeof *to);
     for (size_t i = 0; i < sys->given; i++) {
         if (!sys->reduced.modes) {
@@ -290,12 +290,12 @@ double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j)
     return sum;
 }
 
-/* Returns the first contact with ratio > 1 in tribo_set_static, or ncontact. */
-static size_t first_dropping(const tribo_system *sys)
+size_t tribo_system_first_static(const tribo_system *sys, int falls)
 {
+    const double *ratio = sys->work.feq, *velocity = sys->work.dv_dt;
     size_t i = 0;
-    tribo_get_static(sys->contacts, sys->work.feq, NULL);
-    while (i < sys->ncontact && !(sys->work.feq[i] > 1.0)) {
+    tribo_get_static(sys->contacts, sys->work.feq, falls ? sys->work.dv_dt : NULL);
+    while (i < sys->ncontact && !(ratio[i] > 1.0 && (!falls || velocity[i] > 0.0))) {
         i++;
     }
     return i;
@@ -303,7 +303,7 @@ static size_t first_dropping(const tribo_system *sys)
 
 int tribo_system_is_plain(const tribo_system *sys)
 {
-    return !tribo_system_planar(sys) && first_dropping(sys) == sys->ncontact;
+    return !tribo_system_planar(sys) && tribo_system_first_static(sys, 0) == sys->ncontact;
 }
 
 void tribo_system_rest_limits(const tribo_system *sys, double *limit)
@@ -315,15 +315,9 @@ void tribo_system_rest_limits(const tribo_system *sys, double *limit)
     }
 }
 
-size_t tribo_system_first_falling(const tribo_system *sys)
-{
-    tribo_get_static(sys->contacts, NULL, sys->work.feq);
-    return sys->ncontact && sys->work.feq[0] > 0.0 ? first_dropping(sys) : sys->ncontact;
-}
-
 int tribo_system_falls(const tribo_system *sys)
 {
-    return tribo_system_first_falling(sys) < sys->ncontact;
+    return tribo_system_first_static(sys, 1) < sys->ncontact;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- attached data */
@@ -375,7 +369,7 @@ void *tribo_system_attached(const tribo_system *sys, const void *key)
 int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact)
 {
     const size_t each = ncontact + 1, room = 8 * each + ndof;
-    tribo_system *s = tribo_zeros(sizeof *s + room * sizeof *s->tally + ncontact * sizeof *s->snap + TRIBO_MESSAGE, 1);
+    tribo_system *s = tribo_zeros(sizeof *s + room * sizeof *s->tally + ncontact * sizeof *s->snaps.list + TRIBO_MESSAGE, 1);
     const int status = s ? tribo_create(&s->contacts, ncontact) : TRIBO_ERR_MEMORY;
     if (status) {
         free(s);
@@ -388,9 +382,9 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact)
     for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
         *part[k] = work + k * each;
     }
-    s->snap = (struct snap *)(work + room);
-    s->message = (char *)(s->snap + ncontact);
-    s->ndof = s->given = ndof;
+    s->snaps.list = (struct snap *)(work + room);
+    s->message = (char *)(s->snaps.list + ncontact);
+    s->ndof = s->given = s->expansion.dofs = ndof;
     s->ncontact = ncontact;
     s->loads.time = NAN;
     for (size_t i = 0; i < ncontact; i++) {
@@ -409,7 +403,7 @@ int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
         return tribo_system_fail(sys, TRIBO_ERR_NULL, "copy is NULL");
     }
     tribo_system *to = NULL;
-    const size_t c = sys->ncontact, dofs = sys->expansion.place ? sys->expansion.dofs : sys->ndof;
+    const size_t c = sys->ncontact, dofs = sys->expansion.dofs;
     int done = tribo_system_build(&to, sys->ndof, c) == TRIBO_OK;
     if (done) {
         tribo_destroy(to->contacts);
@@ -421,7 +415,6 @@ int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
         memcpy(to->loads.given_limit, sys->loads.given_limit, c * sizeof *to->loads.given_limit);
         memcpy(to->tally, sys->tally, c * sizeof *to->tally);
         to->reduced.modes = tribo_copy_of(sys->reduced.modes, sys->given * dofs, sizeof *to->reduced.modes, &done);
-        to->reduced.omega = tribo_copy_of(sys->reduced.omega, dofs, sizeof *to->reduced.omega, &done);
         to->reduced.truncation = sys->reduced.truncation;
         const struct matrix *const from[] = {&sys->stiffness, &sys->damping, &sys->direction, &sys->response,
                                              &sys->k,         &sys->c,       &sys->mass};
@@ -471,7 +464,6 @@ void tribo_system_destroy(tribo_system *sys)
     tribo_compliance_free(&sys->compliance);
     tribo_expansion_free(&sys->expansion);
     free(sys->reduced.modes);
-    free(sys->reduced.omega);
     free(sys->work.motion);
     free(sys);
 }

@@ -39,7 +39,7 @@ struct truncation {
 /* The caller's x: with k = place[d], x_d = q_k if k < ndof, else w_(k - ndof), without mass, w = follow q + give f. */
 struct expansion {
     size_t dofs, sliders;       /* sliders: the last of dofs; the caller's state has no velocities of sliders */
-    size_t *place;              /* [dofs]; NULL: x = q, and all other members are empty */
+    size_t *place;              /* [dofs]; NULL: x = q, dofs = ndof, and all other members are empty */
     struct matrix follow, give; /* [dofs - ndof][ndof], [dofs - ndof][ncontact] */
     struct matrix touch;        /* [ncontact][dofs - ndof] J_w: f = G^-1 J_w (w - follow q) */
     double *terms;              /* [ndof] sum of the sizes of the terms of K_ii; NULL if reduced */
@@ -58,8 +58,21 @@ struct loads {
 
 /* A reduced system. The modes convert loads to accelerations. */
 struct reduction {
-    double *modes, *omega; /* [given][dofs] modes, [dofs] frequencies; NULL if not reduced */
+    double *modes; /* [given][dofs]; NULL if not reduced */
     struct truncation truncation;
+};
+
+/* A correction of the velocity of one contact: x[to] = (base[contact] - other x[from])/value. If other = 0, x[from] is not
+ * read. */
+struct snap {
+    size_t contact, to, from;
+    double value, other;
+};
+
+struct snaps {
+    int in_order;      /* 1: any set of resting contacts can be corrected in the order of contacts */
+    size_t count;      /* corrections in list: of all rigid contacts if in_order, else of the last tribo_system_snap */
+    struct snap *list; /* [ncontact] */
 };
 
 /* Workspace. */
@@ -96,11 +109,9 @@ struct tribo_system {
     struct reduction reduced;
     struct attached *attached; /* list of the data of tribo_system_attach */
     size_t evaluations, jacobians;
-    int status;         /* status of the last evaluation */
-    double *tally;      /* [ncontact] weight of f_i v_i in the energy of y: 1; 4/3 at a chain's last contact */
-    int snaps_in_order; /* 1: any set of resting contacts can be snapped in the order of contacts */
-    size_t snaps;       /* corrections in snap: of all rigid contacts if snaps_in_order, else of the last tribo_system_snap */
-    struct snap *snap;  /* [ncontact] */
+    int status;    /* status of the last evaluation */
+    double *tally; /* [ncontact] weight of f_i v_i in the energy of y: 1; 4/3 at a chain's last contact */
+    struct snaps snaps;
     struct workspace work;
 };
 
@@ -122,9 +133,9 @@ int tribo_system_explain(const tribo_system *sys, int status);
 /* Returns the number of planar contacts. */
 size_t tribo_system_planar(const tribo_system *sys);
 
-/* Returns the first contact with a limit that falls with speed (ratio > 1, velocity > 0 in tribo_set_static), or ncontact.
- * tribo_system_falls returns 1 if such a contact exists. */
-size_t tribo_system_first_falling(const tribo_system *sys);
+/* Returns the first contact with a static limit above its limit, falls = 1: that falls with speed; ncontact if there is none.
+ * tribo_system_falls returns 1 if a limit falls with speed. */
+size_t tribo_system_first_static(const tribo_system *sys, int falls);
 int tribo_system_falls(const tribo_system *sys);
 
 /* Returns 1 if all contacts are scalar and none has a static limit above its limit. */
@@ -223,12 +234,9 @@ void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y
 /* acceleration [ndof] = q'' without the forces of rigid contacts; v, a [ncontact] = J q' - b and J q'' - b'. */
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a);
 
-/* acceleration [ndof] = q'' with friction; power = power dissipated by friction. Returns a status. */
-int tribo_system_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power);
-
-/* tribo_system_rates at an accepted state (t, y); updates the reversal memory. begin_step outputs dydt. Returns a status. */
-int tribo_system_begin_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power);
-int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double *dydt);
+/* acceleration [ndof] = q'' with friction; power = power dissipated by friction. accepted = 1: (t, y) is an accepted state,
+ * which updates the memory of the reversal law. Returns a status. */
+int tribo_system_rates(tribo_system *sys, double t, const double *y, int accepted, double *acceleration, double *power);
 
 /* to [ndof] += factor M x. */
 void tribo_system_add_mass(const tribo_system *sys, double factor, const double *x, double *to);
@@ -245,27 +253,15 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
  * Overwrites sys->work.acceleration. */
 void tribo_system_snap(tribo_system *sys, const signed char *loose, const double *base, double *x);
 
-/* Sets snaps_in_order, and the corrections of all rigid contacts. Call before the other functions. */
+/* Sets snaps.in_order, and the corrections of all rigid contacts. Call before the other functions. */
 void tribo_system_order_snaps(tribo_system *sys);
-
-/* A correction for one contact: x[to] = (base[contact] - other x[from])/value. If other = 0, x[from] is not read. */
-struct snap {
-    size_t contact, to, from;
-    double value, other;
-};
-
-static inline void tribo_snap(const struct snap *s, const double *base, double *x)
-{
-    const double moved = s->other != 0.0 ? s->other * x[s->from] : 0.0;
-    x[s->to] = (base[s->contact] - moved) / s->value;
-}
 
 /* Applies those of count corrections that are of contacts with loose 0. */
 static inline void tribo_snap_all(const struct snap *list, size_t count, const signed char *loose, const double *base, double *x)
 {
-    for (size_t k = 0; k < count; k++) {
-        if (!loose[list[k].contact]) {
-            tribo_snap(&list[k], base, x);
+    for (const struct snap *s = list; s < list + count; s++) {
+        if (!loose[s->contact]) {
+            x[s->to] = (base[s->contact] - (s->other != 0.0 ? s->other * x[s->from] : 0.0)) / s->value;
         }
     }
 }
