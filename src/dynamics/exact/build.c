@@ -186,7 +186,7 @@ static int find_modes(struct modal_build *b)
         status = build_modes_failed(b, status, &doubt);
     }
     for (size_t k = 0; !status && h->omega2 && k < m; k++) {
-        tribo_system_add_mass(sys, 1.0, h->phi + k * n, h->psi + k * n);
+        tribo_matrix_multiply_add(&sys->mass, 1.0, h->phi + k * n, h->psi + k * n);
     }
     tribo_matrix_free(&z);
     tribo_cholesky_free(&own);
@@ -296,7 +296,7 @@ void tribo_modal_effects(const struct modal_build *b, const double *y, double om
     }
     if (h->rests > 0) {
         tribo_matrix_multiply_add(b->k, 1.0, y, force);
-        tribo_system_add_mass(sys, -omega2, y, force);
+        tribo_matrix_multiply_add(&sys->mass, -omega2, y, force);
         keep_reactions(h, force, base != NULL, force + n, on, stride);
     }
     if (h->rests > 0 && by_u) {
@@ -323,15 +323,12 @@ static int find_effects(struct modal_build *b)
     return 1;
 }
 
-int tribo_modal_create(struct modal **modal, struct modal_matrices *m, tribo_system *sys, const signed char *slip,
-                       const unsigned char *holds)
+int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const unsigned char *holds)
 {
     struct modal_store store = {0};
-    m->k = m->k ? m->k : tribo_system_force_matrix(sys, &sys->k, &sys->stiffness, &m->own[0]);
-    m->c = m->c || !sys->damping.rows ? m->c : tribo_system_force_matrix(sys, &sys->c, &sys->damping, &m->own[1]);
-    struct modal_build b = {.sys = sys, .h = *modal, .slip = slip, .k = m->k, .c = m->c};
-    int done = b.k && (b.c || !sys->damping.rows);
-    if (done && !b.h && (b.h = tribo_modal_take(&store, 1, sizeof *b.h)) != NULL) {
+    struct modal_build b = {.sys = sys, .h = *modal, .slip = slip, .k = &sys->k, .c = sys->c.rows ? &sys->c : NULL};
+    int done = 1;
+    if (!b.h && (b.h = tribo_modal_take(&store, 1, sizeof *b.h)) != NULL) {
         b.h->store = store;
         b.h->n = sys->ndof;
         done = list_rest(&b, holds) && find_stiffness(&b) && find_modes(&b) && find_damping(&b) && find_effects(&b);
@@ -376,11 +373,4 @@ void tribo_forced_free(struct modal *h)
         tribo_modal_give_back(&store);
         h->forced = NULL;
     }
-}
-
-void tribo_modal_matrices_free(struct modal_matrices *m)
-{
-    tribo_matrix_free(&m->own[0]);
-    tribo_matrix_free(&m->own[1]);
-    memset(m, 0, sizeof *m);
 }

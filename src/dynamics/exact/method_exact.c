@@ -26,7 +26,6 @@ static void drop_helds(struct exact *x)
         tribo_modal_free(x->held.last);
         x->held.last = next;
     }
-    tribo_modal_matrices_free(&x->held.matrices);
     x->held.bytes = 0;
 }
 
@@ -44,7 +43,7 @@ static int find_held(struct exact *x)
         drop_helds(x);
     }
     if (!known || !h->forced) {
-        const int status = tribo_modal_create(&h, &x->held.matrices, x->sys, m->state.slip, m->state.holds);
+        const int status = tribo_modal_create(&h, x->sys, m->state.slip, m->state.holds);
         if (status) {
             return status;
         }

@@ -114,20 +114,12 @@ static inline double tribo_modal_magnitude(double re, double im)
     return square > 1e-280 && square < 1e300 ? sqrt(square) : hypot(re, im);
 }
 
-/* K; C, or NULL without damping; memory of K and C where the system has only M^-1 K and M^-1 C. Zeros: not found. */
-struct modal_matrices {
-    const struct matrix *k, *c;
-    struct matrix own[2];
-};
-
 /* Creates *modal, if it is NULL, the structure with all contacts at rest, slip[i] = 0, held; and forced, if it is NULL, by the
- * loads. Finds K and C if m is zero. holds[i] = 1: contact i holds (set H of stick_slip.h); other contacts at rest depend on H.
+ * loads. holds[i] = 1: contact i holds (set H of stick_slip.h); other contacts at rest depend on H.
  * Returns a status, message on the system's context; after an error *modal and forced stay NULL. Every user of the structure
  * besides the first one adds 1 to users. tribo_modal_free frees h->forced, too, and takes NULL; tribo_forced_free frees
  * h->forced, which may be NULL. */
-int tribo_modal_create(struct modal **modal, struct modal_matrices *m, tribo_system *sys, const signed char *slip,
-                       const unsigned char *holds);
-void tribo_modal_matrices_free(struct modal_matrices *m);
+int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const unsigned char *holds);
 void tribo_modal_free(struct modal *h);
 void tribo_forced_free(struct modal *h);
 

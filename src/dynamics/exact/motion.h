@@ -27,7 +27,6 @@ struct parts {
 
 /* The structures so far. */
 struct held {
-    struct modal_matrices matrices;
     struct modal *last;         /* list of structures, in order of last use */
     size_t bytes;               /* of all structures */
     size_t revision, structure; /* of the system: when the forced structures were created; when the others were */

@@ -155,7 +155,7 @@ static void force_modes(struct modal_build *b, size_t s, double *work)
             for (size_t e = 0; w->drives == DRIVES_LOAD && e < w->count; e++) {
                 load[w->index[e]] = -value[e];
             }
-            tribo_system_add_mass(sys, 1.0, load, force);
+            tribo_matrix_multiply_add(&sys->mass, 1.0, load, force);
         }
         if (tribo_largest(force, n) == 0.0) {
             continue;

@@ -11,24 +11,14 @@
 static int find_free_modes(struct energy_norm *e, const tribo_system *sys)
 {
     const size_t n = e->n;
-    struct matrix own = {0};
-    const struct matrix *stiffness = tribo_system_force_matrix(sys, &sys->k, &sys->stiffness, &own);
-    if (!stiffness) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the modes of the free structure");
-    }
-    tribo_matrix_spread(stiffness, e->phi);
-    tribo_matrix_free(&own);
+    tribo_matrix_spread(&sys->k, e->phi);
     tribo_even_out(n, e->phi);
     const int status = tribo_symmetric_eigen_by(&sys->factor, e->phi, n, e->natural, e->psi);
     for (size_t i = 0; i < n; i++) {
         e->natural[i] = sqrt(fabs(e->natural[i]));
     }
     tribo_transpose(n, n, e->psi, e->phi);
-    if (sys->mass.rows) {
-        tribo_matrix_multiply_all(&sys->mass, n, e->phi, e->psi);
-    } else {
-        memcpy(e->psi, e->phi, n * n * sizeof *e->psi);
-    }
+    tribo_matrix_multiply_all(&sys->mass, n, e->phi, e->psi);
     return status ? tribo_system_fail(sys, status, "modes of the free structure: %s", tribo_strerror(status)) : TRIBO_OK;
 }
 

@@ -60,26 +60,6 @@ static int project_damping(const tribo_model *m, const struct reduced *r, struct
     return done;
 }
 
-/* Builds q'' + Phi'C Phi q' + diag(omega^2) q = modes' p + rigid' f with J = shapes, both [ncontact][count], rigid 0 in rows of
- * other contacts; and sets the operator R = rigid rigid'. Returns a status. */
-static int reduction_build(const tribo_model *m, const struct reduced *r, const double *shapes, const double *rigid,
-                           tribo_system **sys)
-{
-    const size_t count = r->count, c = m->ncontact;
-    double *responses = malloc((c * count + 1) * sizeof *responses);
-    int status = responses ? tribo_system_build(sys, count, c) : TRIBO_ERR_MEMORY;
-    if (!status) {
-        tribo_system *s = *sys;
-        tribo_transpose(c, count, rigid, responses);
-        const int done = tribo_matrix_diagonal(&s->stiffness, count, r->omega2) &&
-                         tribo_matrix_from_dense(&s->direction, c, count, shapes) &&
-                         tribo_matrix_from_dense(&s->response, count, c, responses) && project_damping(m, r, &s->damping);
-        status = done ? tribo_model_set_operator(m, s, responses, count) : TRIBO_ERR_MEMORY;
-    }
-    free(responses);
-    return status;
-}
-
 /* ------------------------------------------------------------------------------------------------------------ compliance */
 
 /* A contact is rigid if the flexibility that the modes lack is at most this part of its flexibility. */
@@ -151,12 +131,14 @@ static int set_modes(const struct compliant *e, size_t given, const struct reduc
     return sys->reduced.modes != NULL;
 }
 
-/* Builds the system of the basis r. Returns a status. */
+/* Builds q'' + Phi'C Phi q' + diag(omega^2) q = modes' p + P'f of the basis r. Returns a status. */
 static int build_reduced(const tribo_model *m, const struct reduced *r, tribo_system **sys)
 {
     const size_t c = m->ncontact, k = r->count;
     struct compliant e = {.modes = k, .contacts = c};
     struct layout l = {0};
+    tribo_model modal = {.ndof = k, .ncontact = c, .nmode = k, .message = m->message};
+    struct matrix direction = {0};
     size_t where = 0;
     do {
         e.contact = tribo_layout_array(&l, c, sizeof *e.contact);
@@ -171,17 +153,22 @@ static int build_reduced(const tribo_model *m, const struct reduced *r, tribo_sy
     }
     find_shapes(m, r, e.shapes);
     const int shared = find_soft(&e, r, m->compliance);
-    int status = reduction_build(m, r, e.shapes, e.rigid, sys);
+    const int done = tribo_matrix_diagonal(&modal.mass, k, NULL) && tribo_matrix_diagonal(&modal.stiffness, k, r->omega2) &&
+                     project_damping(m, r, &modal.damping) && tribo_matrix_from_dense(&modal.direction, c, k, e.rigid) &&
+                     tribo_matrix_from_dense(&direction, c, k, e.shapes);
+    int status = done ? tribo_model_build_massive(&modal, sys) : TRIBO_ERR_MEMORY;
+    tribo_model_free(&modal);
     if (!status && e.soft) {
         struct expansion x = {k, m->flexible ? 0 : e.soft, .place = malloc((k + e.soft) * sizeof *x.place)};
         for (size_t d = 0; x.place && d < k; d++) {
             x.place[d] = d;
         }
-        status = x.place ? tribo_compliance_create(*sys, NULL, e.own, shared ? e.entries : NULL, &where) : TRIBO_ERR_MEMORY;
+        status = x.place ? tribo_compliance_create(*sys, &direction, e.own, shared ? e.entries : NULL, &where) : TRIBO_ERR_MEMORY;
         status = status || tribo_expansion_create(*sys, &x, e.own) ? status : TRIBO_ERR_MEMORY;
         tribo_expansion_free(&x);
     }
     status = status || set_modes(&e, m->ndof, r, *sys) ? status : TRIBO_ERR_MEMORY;
+    tribo_matrix_free(&direction);
     free(l.memory);
     return status == TRIBO_ERR_INDEFINITE
                ? tribo_model_fail(
@@ -228,19 +215,22 @@ int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
     if (zeta < 0.0) {
         return tribo_system_fail(sys, TRIBO_ERR_NEGATIVE, "zeta = %g is negative", zeta);
     }
-    struct matrix damping = {0};
+    struct matrix damping = {0}, rates = {0}; /* equal, because M = 1 */
     double *entries = malloc(sys->ndof * sizeof *entries);
     for (size_t k = 0; entries && k < sys->ndof; k++) {
         entries[k] = 2.0 * zeta * sqrt(tribo_matrix_get(&sys->stiffness, k, k));
     }
-    const int done = entries && tribo_matrix_diagonal(&damping, sys->ndof, entries);
+    const int done = entries && tribo_matrix_diagonal(&damping, sys->ndof, entries) && tribo_matrix_copy(&rates, &damping);
     free(entries);
     if (!done) {
+        tribo_matrix_free(&damping);
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the damping of %zu mode%s", sys->ndof,
                                  plural(sys->ndof));
     }
+    tribo_matrix_free(&sys->c);
     tribo_matrix_free(&sys->damping);
-    sys->damping = damping;
+    sys->c = damping;
+    sys->damping = rates;
     sys->revision++;
     sys->structure++;
     return TRIBO_OK;

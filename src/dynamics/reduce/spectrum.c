@@ -23,34 +23,10 @@ struct highest {
     double values[MOST], work[MOST];         /* workspace */
 };
 
-static void apply_mass(const struct highest *l, const double *x, double *y)
-{
-    memset(y, 0, l->n * sizeof *y);
-    tribo_system_add_mass(l->sys, 1.0, x, y);
-}
-
-/* Returns 1 if damping is symmetric: x'M AC y = y'M AC x to rounding, for two pseudo-random x and y. */
-static int symmetric_damping(struct highest *l)
-{
-    double sum[2], size = 0.0;
-    uint64_t seed = 1;
-    tribo_scatter(&seed, l->n, l->v);
-    tribo_scatter(&seed, l->n, l->before);
-    for (int k = 0; k < 2; k++) {
-        tribo_matrix_multiply(&l->sys->damping, k ? l->v : l->before, l->next);
-        apply_mass(l, l->next, l->m_next);
-        sum[k] = tribo_dot(k ? l->before : l->v, l->m_next, l->n);
-        for (size_t i = 0; i < l->n; i++) {
-            size += fabs(l->m_next[i]);
-        }
-    }
-    return fabs(sum[0] - sum[1]) <= 1e-10 * size;
-}
-
 /* Sets v, mv = next, m_next, normalized, and before = v. Returns the norm of next in M, 0 if it is at most `least`. */
 static double advance(struct highest *l, double least)
 {
-    apply_mass(l, l->next, l->m_next);
+    tribo_matrix_multiply(&l->sys->mass, l->next, l->m_next);
     const double square = tribo_dot(l->next, l->m_next, l->n), norm = square > 0.0 ? sqrt(square) : 0.0;
     if (!(norm > least)) {
         return 0.0;
@@ -114,6 +90,11 @@ int tribo_system_highest(const tribo_system *sys, double stiffness, double dampi
         return TRIBO_OK;
     }
     struct highest l = {.sys = sys, .stiffness = stiffness / bound, .damping = damping / bound, .n = n};
+    size_t i, j;
+    double x, y;
+    if (sys->c.rows == 0 || tribo_matrix_flaw(&sys->c, 1, &i, &j, &x, &y)) {
+        l.damping = 0.0;
+    }
     int status = TRIBO_ERR_MEMORY;
     l.v = malloc(5 * n * sizeof *l.v);
     if (l.v) {
@@ -121,9 +102,6 @@ int tribo_system_highest(const tribo_system *sys, double stiffness, double dampi
         l.before = l.mv + n;
         l.next = l.before + n;
         l.m_next = l.next + n;
-        if (sys->damping.rows == 0 || !symmetric_damping(&l)) {
-            l.damping = 0.0;
-        }
         status = iterate(&l, value);
         *value = bound * greater(*value, 0.0);
     }

@@ -182,12 +182,12 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
     for (size_t i = 0; i < n; i++) {
         s->u[i] = from[i] + 0.5 * h * u[i];
     }
-    if (sys->mass.rows && !sys->unsolved) {
+    if (!sys->unsolved) {
         tribo_matrix_multiply(&sys->mass, p, m->push);
         memcpy(p, m->push, n * sizeof *p);
     }
-    tribo_matrix_multiply_add(m->matrix.k, -h, s->u, p);
-    tribo_matrix_multiply_add(m->matrix.c, -h, u, p);
+    tribo_matrix_multiply_add(&sys->k, -h, s->u, p);
+    tribo_matrix_multiply_add(&sys->c, -h, u, p);
     sys->evaluations++;
 }
 

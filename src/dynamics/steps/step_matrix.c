@@ -27,8 +27,6 @@ void tribo_step_matrix_free(struct step_matrix *m)
     free(m->pivot);
     tribo_cholesky_free(&m->sparse);
     tribo_matrix_free(&m->s);
-    tribo_matrix_free(&m->own[0]);
-    tribo_matrix_free(&m->own[1]);
     *m = (struct step_matrix){0};
 }
 
@@ -38,12 +36,9 @@ int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, dou
 {
     tribo_step_matrix_free(m);
     m->n = sys->ndof;
-    m->k = tribo_system_force_matrix(sys, &sys->k, &sys->stiffness, &m->own[0]);
-    m->c = tribo_system_force_matrix(sys, &sys->c, &sys->damping, &m->own[1]);
-    const struct matrix *const part[] = {m->k, m->c};
+    const struct matrix *const part[] = {&sys->k, &sys->c};
     const double factor[] = {0.25 * h * h, 0.5 * h};
-    int done = m->k && m->c;
-    done = done && (sys->mass.rows ? tribo_matrix_copy(&m->s, &sys->mass) : tribo_matrix_diagonal(&m->s, m->n, NULL));
+    int done = tribo_matrix_copy(&m->s, &sys->mass);
     for (int p = 0; done && p < 2; p++) {
         struct matrix sum = m->s;
         if (part[p]->rows) {
@@ -115,7 +110,7 @@ int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, 
     size_t where = 0, j;
     double x, y;
     int status;
-    if (m->c->rows && tribo_matrix_flaw(&m->s, 1, &where, &j, &x, &y)) {
+    if (sys->c.rows && tribo_matrix_flaw(&m->s, 1, &where, &j, &x, &y)) {
         /* with exchanges of rows, by LAPACK: S must be regular, but need not be definite */
         const size_t n = m->n, all = 2 * m->below + m->above + 1, middle = m->below + m->above;
         m->band = n < INT_MAX && all < INT_MAX ? calloc(n * all, sizeof *m->band) : NULL;

@@ -7,8 +7,6 @@
 #include "dynamics/system/system.h"
 
 struct step_matrix {
-    const struct matrix *k, *c; /* K and C, of forces: of the system, or in own; no rows: zero */
-    struct matrix own[2];
     struct matrix s; /* S; no rows once a sparse factor has taken its memory */
     size_t n, below, above;
 
@@ -18,7 +16,7 @@ struct step_matrix {
     struct cholesky sparse;
 };
 
-/* create: sets k, c and s. factorize: computes the factor; may free s if consumes = 1. Each returns a status, with a message in
+/* create: sets s. factorize: computes the factor; may free s if consumes = 1. Each returns a status, with a message in
  * the system. Call tribo_step_matrix_free also after an error. */
 int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, double h);
 int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, double h, int consumes);

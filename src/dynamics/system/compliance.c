@@ -56,7 +56,7 @@ static int find_stiffest(tribo_system *sys)
     tribo_matrix_add_sizes(&sys->stiffness, one, rate);
     tribo_matrix_add_sizes(&g->pull, force, rate);
     g->stiffest = tribo_largest(rate, n);
-    for (size_t d = 0; d < n; d++) {
+    for (size_t d = 0; d < sys->stiffness.rows; d++) {
         g->structure = greater(g->structure, tribo_matrix_get(&sys->stiffness, d, d));
         for (size_t e = g->pull.first[d]; e < g->pull.first[d + 1]; e++) {
             const double added = fabs(g->pull.val[e]) * force[g->pull.col[e]];

@@ -31,17 +31,13 @@ void tribo_model_free(tribo_model *m);
 /* c = Cholesky factor of the mass matrix. Returns a status. */
 int tribo_model_factorize(const tribo_model *m, struct cholesky *c);
 
-/* structure.c: builds a system of degrees of freedom that have mass, from checked matrices. Returns a status; after an error
- * tribo_model_build destroys *sys. */
+/* structure.c: builds a system of degrees of freedom that have mass, nmode > 0: of modes, from checked matrices. Returns a
+ * status; after an error tribo_model_build destroys *sys. */
 int tribo_model_build_massive(tribo_model *m, tribo_system **sys);
 
 /* condense.c: builds the system of the degrees of freedom with mass, from checked matrices; the others, and the sliders of
  * contacts with springs, become its expansion. Returns a status. */
 int tribo_model_condense(tribo_model *m, tribo_system **sys);
-
-/* Sets R in the contacts: Z'Z, Z [n][ncontact], symmetric, and semidefinite up to rounding; z NULL: J M^-1 J' by the factor of
- * sys. Refuses an R that hides bodies, unless the model is reduced. Returns a status. */
-int tribo_model_set_operator(const tribo_model *m, tribo_system *sys, const double *z, size_t n);
 
 /* reduction.c: builds the system of the lowest nmode modes. Returns a status. */
 int tribo_model_reduce(tribo_model *m, tribo_system **sys);

@@ -93,7 +93,9 @@ static int check_unsolved(const tribo_model *m)
     return TRIBO_OK;
 }
 
-int tribo_model_set_operator(const tribo_model *m, tribo_system *sys, const double *z, size_t n)
+/* Sets R in the contacts: Z'Z, Z [ndof][ncontact], symmetric, and semidefinite up to rounding; z NULL: J M^-1 J' by the factor
+ * of sys. Refuses an R that hides bodies, unless the degrees of freedom are modes. Returns a status. */
+static int set_operator(const tribo_model *m, tribo_system *sys, const double *z)
 {
     const struct matrix *j = &sys->direction;
     const size_t c = m->ncontact;
@@ -101,7 +103,7 @@ int tribo_model_set_operator(const tribo_model *m, tribo_system *sys, const doub
     double *r = calloc(c * c + 1, sizeof *r), *own = malloc((j->first[c] + 1) * sizeof *own);
     int hidden = r && own ? 0 : -1;
     if (!hidden && z) {
-        tribo_multiply_transposed_add(n, c, c, z, z, r);
+        tribo_multiply_transposed_add(m->ndof, c, c, z, z, r);
         for (size_t i = 0; i < c; i++) {
             for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
                 own[k] = tribo_matrix_get(&sys->response, j->col[k], i);
@@ -142,12 +144,13 @@ static int solve_matrix(const struct cholesky *c, const struct matrix *a, struct
     return done;
 }
 
-/* Divides M^-1 J', K and C of sys, which are J', K and C, by a diagonal mass matrix; sets R. Returns a status. */
+/* Sets M^-1 K, M^-1 C and, in the place of J', M^-1 J' of sys, for a diagonal mass matrix; sets R. Returns a status. */
 static int divide_by_masses(const tribo_model *m, tribo_system *sys)
 {
     const struct matrix *j = &sys->direction;
     double *inverse = malloc(m->ndof * sizeof *inverse);
-    if (!inverse) {
+    if (!inverse || !tribo_matrix_copy(&sys->stiffness, &sys->k) || !tribo_matrix_copy(&sys->damping, &sys->c)) {
+        free(inverse);
         return tribo_model_no_memory(m);
     }
     for (size_t i = 0; i < m->ndof; i++) {
@@ -161,21 +164,19 @@ static int divide_by_masses(const tribo_model *m, tribo_system *sys)
     return status ? tribo_model_fail(m, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
 }
 
-/* Solves for M^-1 J', M^-1 K and M^-1 C in the place of J', K and C of sys; keeps K and C; sets R. Returns a status. */
+/* Sets M^-1 K, M^-1 C and, in the place of J', M^-1 J' of sys by the factor of M; sets R. Returns a status. */
 static int solve_by_masses(const tribo_model *m, tribo_system *sys)
 {
     const struct cholesky *c = &sys->factor;
     struct matrix turned = sys->response;
     double *z = tribo_matrix_to_dense(&turned);
-    sys->k = sys->stiffness;
-    sys->c = sys->damping;
-    sys->stiffness = sys->damping = sys->response = (struct matrix){0};
+    sys->response = (struct matrix){0};
     const int done = z && solve_matrix(c, &turned, &sys->response) && solve_matrix(c, &sys->k, &sys->stiffness) &&
                      (!sys->c.rows || solve_matrix(c, &sys->c, &sys->damping));
     if (done && m->ncontact) {
         tribo_half_solve(c, 0, z, m->ncontact);
     }
-    const int status = done ? tribo_model_set_operator(m, sys, z, m->ndof) : tribo_model_no_memory(m);
+    const int status = done ? set_operator(m, sys, z) : tribo_model_no_memory(m);
     tribo_matrix_free(&turned);
     free(z);
     return status;
@@ -198,18 +199,19 @@ int tribo_model_build_massive(tribo_model *m, tribo_system **sys)
     }
     s->unsolved = unsolved;
     s->mass = m->mass;
-    s->stiffness = m->stiffness;
-    s->damping = m->damping;
+    s->k = m->stiffness;
+    s->c = m->damping;
     s->direction = m->direction;
     m->mass = m->stiffness = m->damping = m->direction = (struct matrix){0};
     if (!tribo_matrix_transpose(&s->response, &s->direction)) {
         return tribo_model_no_memory(m);
     }
-    status = diagonal ? divide_by_masses(m, s) : unsolved ? tribo_model_set_operator(m, s, NULL, 0) : solve_by_masses(m, s);
     if (unsolved) {
+        status = set_operator(m, s, NULL);
         tribo_cholesky_free(&s->factor);
+        return status;
     }
-    return status;
+    return diagonal && !m->nmode ? divide_by_masses(m, s) : solve_by_masses(m, s);
 }
 
 int tribo_model_build(tribo_model *m, tribo_system **sys)

@@ -214,25 +214,12 @@ int tribo_system_set_message(tribo_system *sys, int status, const char *text)
 
 /* ------------------------------------------------------------------------------------------------------------------ structure */
 
-void tribo_system_add_mass(const tribo_system *sys, double factor, const double *x, double *to)
-{
-    if (sys->mass.rows) {
-        tribo_matrix_multiply_add(&sys->mass, factor, x, to);
-    } else {
-        tribo_add(to, factor, x, sys->ndof);
-    }
-}
-
 void tribo_system_solve_mass(const tribo_system *sys, double *x)
 {
-    if (sys->unsolved || !sys->mass.rows) {
-        return;
-    }
     if (sys->factor.factor || sys->factor.sparse) {
         tribo_cholesky_solve(&sys->factor, 1, x);
-        return;
     }
-    for (size_t d = 0; d < sys->ndof; d++) {
+    for (size_t d = 0; !sys->factor.factor && !sys->factor.sparse && !sys->unsolved && d < sys->ndof; d++) {
         x[d] *= 1.0 / tribo_matrix_get(&sys->mass, d, d);
     }
 }
@@ -260,24 +247,6 @@ double tribo_system_fastest(const tribo_system *sys)
         most = greater(most, fabs(sys->loads.harmonic[s].omega));
     }
     return most;
-}
-
-const struct matrix *tribo_system_force_matrix(const tribo_system *sys, const struct matrix *forces, const struct matrix *rates,
-                                               struct matrix *own)
-{
-    if (forces->rows || sys->unsolved || !sys->mass.rows || !rates->rows) {
-        return forces->rows ? forces : rates;
-    }
-    double *mass = malloc(sys->ndof * sizeof *mass);
-    const int done = mass && tribo_matrix_copy(own, rates);
-    for (size_t d = 0; done && d < sys->ndof; d++) {
-        mass[d] = tribo_matrix_get(&sys->mass, d, d);
-    }
-    if (done) {
-        tribo_matrix_scale_rows(own, mass);
-    }
-    free(mass);
-    return done ? own : NULL;
 }
 
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j)
@@ -424,7 +393,7 @@ int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
         }
     }
     done = done && (!sys->lent || (tribo_clone(sys->lent, &to->lent) == TRIBO_OK && tribo_fix_operator(to->lent) == TRIBO_OK));
-    if (done && sys->mass.rows && !sys->unsolved) {
+    if (done && !sys->unsolved) {
         size_t where;
         double pivot;
         done = tribo_cholesky_create(&to->factor, &to->mass, NULL, &where, &pivot) == TRIBO_OK;

@@ -94,16 +94,13 @@ struct tribo_system {
     struct loads loads;
     size_t revision, structure; /* number of changes of loads, tables and damping; of damping */
 
-    /* K and C, if the mass matrix is not diagonal: rounding in M^-1 K has destroyed the low modes. Otherwise no rows: M AK = K
-     * and M AC = C up to rounding of every entry. */
-    struct matrix k, c;
+    struct matrix mass, k, c; /* M, K, C; of reduced systems, M = 1 */
+    struct cholesky factor;   /* Cholesky factor of M, if accelerations are solved for */
 
-    /* 1: accelerations are not solved for, M q'' = load - K q - C q' + J' f: stiffness, damping, response are K, C, J', and loads
-     * are forces. */
+    /* 1: accelerations are not solved for, M q'' = load - K q - C q' + J' f: stiffness and damping have no rows, response is J',
+     * and loads are forces. */
     int unsolved;
 
-    struct matrix mass;     /* no rows: the identity (reduced systems) */
-    struct cholesky factor; /* Cholesky factor of mass */
     struct compliance compliance;
     struct expansion expansion;
     struct reduction reduced;
@@ -115,7 +112,7 @@ struct tribo_system {
     struct workspace work;
 };
 
-/* Creates a system whose matrices have no rows: mass without rows is the identity, damping 0. Returns a status. */
+/* Creates a system whose matrices have no rows; C and AC without rows: no damping. Returns a status. */
 int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact);
 
 enum { TRIBO_MESSAGE = 240 };
@@ -215,11 +212,6 @@ double tribo_system_next_kink(const tribo_system *sys, double t);
 /* Returns a bound of all frequencies: of |exponents| of the structure, with any contacts held, and of loads. */
 double tribo_system_fastest(const tribo_system *sys);
 
-/* Returns K or C: forces, if it has rows; rates, if these are forces (unsolved, or M = 1) or have no rows; else *own = M rates,
- * for a diagonal M. The caller frees *own. NULL if out of memory. */
-const struct matrix *tribo_system_force_matrix(const tribo_system *sys, const struct matrix *forces, const struct matrix *rates,
-                                               struct matrix *own);
-
 /* Returns R_ij. */
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 
@@ -237,9 +229,6 @@ void tribo_system_free_motion(tribo_system *sys, double t, const double *y, doub
 /* acceleration [ndof] = q'' with friction; power = power dissipated by friction. accepted = 1: (t, y) is an accepted state,
  * which updates the memory of the reversal law. Returns a status. */
 int tribo_system_rates(tribo_system *sys, double t, const double *y, int accepted, double *acceleration, double *power);
-
-/* to [ndof] += factor M x. */
-void tribo_system_add_mass(const tribo_system *sys, double factor, const double *x, double *to);
 
 /* x [ndof] = M^-1 x; unchanged in unsolved systems. */
 void tribo_system_solve_mass(const tribo_system *sys, double *x);

@@ -9,12 +9,10 @@
 static int decompose(struct modal **h, tribo_system *sys, const signed char *slip, const unsigned char *holds)
 {
     struct modal *found = NULL;
-    struct modal_matrices matrices = {0};
-    const int status = tribo_modal_create(&found, &matrices, sys, slip, holds);
+    const int status = tribo_modal_create(&found, sys, slip, holds);
     if (!status) {
         *h = found;
     }
-    tribo_modal_matrices_free(&matrices);
     return status;
 }
 
@@ -180,7 +178,6 @@ TEST(kept)
     struct random r = random_of(_i);
     tribo_system *sys = row_of_bodies(&r, _i % 2 ? 0.05 : 0.0);
     struct modal *same = NULL;
-    struct modal_matrices matrices = {0};
     for (int k = 0; k < 3; k++) {
         const double load[BODIES] = {0.0, 1.0, 0.0, -0.3};
         signed char slip[CONTACTS];
@@ -190,7 +187,7 @@ TEST(kept)
             holds[i] = i == BODIES; /* the one between two bodies */
             slip[i] = !holds[i];
         }
-        assert_ok(tribo_modal_create(&same, &matrices, sys, slip, holds));
+        assert_ok(tribo_modal_create(&same, sys, slip, holds));
         assert_ok(decompose(&h, sys, slip, holds));
         compare(same->forced, h->forced);
         tribo_forced_free(same);
@@ -198,7 +195,6 @@ TEST(kept)
         assert_ok(tribo_system_add_load(sys, 0.4 + k, load, NULL));
     }
     tribo_modal_free(same);
-    tribo_modal_matrices_free(&matrices);
     tribo_system_destroy(sys);
 }
 
