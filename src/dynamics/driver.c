@@ -222,16 +222,20 @@ int tribo_driver_check(tribo_driver *drv, const double *y)
     if (tribo_dense_finite(y, tribo_system_size(drv->sys))) {
         return TRIBO_OK;
     }
+    const double *shown = drv->shown ? drv->shown : y;
     size_t i = 0;
-    while (isfinite(y[i])) {
+    if (drv->shown) {
+        tribo_system_write_state(drv->sys, drv->time, y, drv->shown);
+    }
+    while (i + 1 < tribo_system_dimension(drv->sys) && isfinite(shown[i])) {
         i++;
     }
     char why[60] = "";
     if (drv->dt > 0.0) {
         snprintf(why, sizeof why, ", or dt = %g is too long", drv->dt);
     }
-    return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "y[%zu] = %g after t = %.17g: the motion grows without bound%s",
-                             tribo_system_state_index(drv->sys, i), y[i], drv->time, why);
+    return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "y[%zu] = %g after t = %.17g: the motion grows without bound%s", i,
+                             shown[i], drv->time, why);
 }
 
 void tribo_driver_keep(tribo_driver *drv, double t, const double *y)

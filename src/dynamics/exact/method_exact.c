@@ -192,7 +192,7 @@ static int check_system(const tribo_system *sys)
                                  "%s follow a table, and method exact takes harmonic ones only: take event or auto",
                                  kind[drives]);
     }
-    const size_t i = tribo_system_first_static(sys, 1);
+    const size_t i = tribo_system_first_dropping(sys, 1);
     return i == sys->ncontact ? TRIBO_OK
                               : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                                   "contact %zu has a static limit that falls with the speed, and method exact "

@@ -50,9 +50,8 @@ static int modes_failed(const tribo_model *m, int status, const struct doubt *do
 {
     switch (status) {
     case TRIBO_OK:
-        return TRIBO_OK;
     case TRIBO_ERR_MEMORY:
-        return tribo_model_no_memory(m);
+        return status;
     case TRIBO_ERR_NOT_FINITE:
         return tribo_model_fail(m, status, "stiffness over mass overflows");
     case TRIBO_ERR_SIZE:
@@ -105,9 +104,7 @@ static int factor_failed(const tribo_model *m, int status, const char *what, siz
     return status == TRIBO_ERR_INDEFINITE
                ? tribo_model_fail(m, status, "%s is not positive semidefinite: it shows at degree of freedom %zu", what, where)
            : status == TRIBO_ERR_SIZE ? tribo_model_too_large(m)
-           : status
-               ? tribo_model_fail(m, status, "out of memory for the factor of %zu degree%s of freedom", m->ndof, plural(m->ndof))
-               : TRIBO_OK;
+                                      : status;
 }
 
 static int factorize_shifted(const tribo_model *m, struct shifted *s)
@@ -349,7 +346,7 @@ static int attach(const tribo_model *m, const struct shifted *s, struct reduced 
     const size_t n = m->ndof, c = m->ncontact;
     double omega2, *x = malloc((3 * n + 2 * c * c + c) * sizeof *x);
     double *mx = x + n, *missing = mx + 2 * n, *whole = missing + c * c, *work = whole + c * c; /* missing: J x in rows */
-    int status = x ? TRIBO_OK : tribo_model_no_memory(m);
+    int status = x ? TRIBO_OK : TRIBO_ERR_MEMORY;
     for (size_t i = 0; !status && i < c; i++) {
         const double norm = contact_response(m, s, r, i, x, mx + n, mx);
         tribo_matrix_multiply(&m->direction, x, missing + i * c);
@@ -377,7 +374,7 @@ static int attach(const tribo_model *m, const struct shifted *s, struct reduced 
                 tribo_add(whole + i * c, work[i] / r->omega2[k], work, c);
             }
         }
-        status = largest_part(c, missing, whole, work, &r->truncation.missing) ? TRIBO_OK : tribo_model_no_memory(m);
+        status = largest_part(c, missing, whole, work, &r->truncation.missing) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     }
     free(x);
     return status || r->count == m->nmode ? status : find_among(m, r->count, r->phi, r->count, r);
@@ -401,7 +398,7 @@ int tribo_model_find_modes(const tribo_model *m, struct reduced *r)
     r->phi = malloc(most * n * sizeof *r->phi);
     r->residual = m->flexible ? calloc(m->ncontact * (n + m->ncontact) + 1, sizeof *r->residual) : NULL;
     r->flexibility = r->residual ? r->residual + m->ncontact * n : NULL;
-    int status = r->omega2 && r->phi && (r->residual || !m->flexible) ? find_lowest(m, &s, r) : tribo_model_no_memory(m);
+    int status = r->omega2 && r->phi && (r->residual || !m->flexible) ? find_lowest(m, &s, r) : TRIBO_ERR_MEMORY;
     if (!status && r->omega2[0] < 0.0) {
         status = tribo_model_fail(m, TRIBO_ERR_INDEFINITE, "stiffness is not positive semidefinite: omega^2 = %g of mode 0",
                                   r->omega2[0]);

@@ -149,7 +149,7 @@ static int build_reduced(const tribo_model *m, const struct reduced *r, tribo_sy
         e.by = tribo_layout_array(&l, c * (k + c), sizeof *e.by);
     } while (!l.memory && tribo_layout_zeros(&l));
     if (!l.memory) {
-        return tribo_model_no_memory(m);
+        return TRIBO_ERR_MEMORY;
     }
     find_shapes(m, r, e.shapes);
     const int shared = find_soft(&e, r, m->compliance);
@@ -176,8 +176,7 @@ static int build_reduced(const tribo_model *m, const struct reduced *r, tribo_sy
                      "the flexibility that %zu mode%s to contact %zu is that of other contacts: take other modes, or "
                      "TRIBO_STATICS_MASS",
                      k, k == 1 ? " leaves" : "s leave", where)
-           : status == TRIBO_ERR_MEMORY ? tribo_model_no_memory(m)
-                                        : status;
+               : status;
 }
 
 int tribo_model_reduce(tribo_model *m, tribo_system **sys)

@@ -115,12 +115,6 @@ int tribo_system_top_frequency(const tribo_system *sys, double *omega)
 {
     double square;
     const int status = tribo_system_highest(sys, 1.0, 0.0, &square);
-    if (status) {
-        return status;
-    }
-    *omega = sqrt(square);
-    for (size_t k = 0; k < sys->loads.harmonics; k++) {
-        *omega = greater(*omega, fabs(sys->loads.harmonic[k].omega));
-    }
-    return TRIBO_OK;
+    *omega = status ? 0.0 : greater(sqrt(square), tribo_system_load_frequency(sys));
+    return status;
 }

@@ -104,10 +104,7 @@ int tribo_compliance_copy(tribo_system *to, const tribo_system *from)
 int tribo_compliance_check(const tribo_system *sys)
 {
     const struct compliance *g = &sys->compliance;
-    double own = g->structure;
-    for (size_t s = 0; s < sys->loads.harmonics; s++) {
-        own = greater(own, sys->loads.harmonic[s].omega * sys->loads.harmonic[s].omega);
-    }
+    const double omega = tribo_system_load_frequency(sys), own = greater(g->structure, omega * omega);
     if (!g->count || own == 0.0 || g->added <= MOST_STIFF * own) {
         return TRIBO_OK;
     }

@@ -120,8 +120,7 @@ static int factorize_without(const tribo_model *m, struct condensed *s)
                                   "hold it: pivot %g",
                                   dof, pivot)
            : status == TRIBO_ERR_SIZE ? tribo_model_too_large(m)
-           : status                   ? tribo_model_no_memory(m)
-                                      : TRIBO_OK;
+                                      : status;
 }
 
 /* s->row = K_ww^-1 (columns w of row i of a)', a [..][ndof]. Returns 1, or 0 if all these entries are 0. */
@@ -249,7 +248,7 @@ int tribo_model_condense(tribo_model *m, tribo_system **sys)
     struct condensed s = {0};
     const size_t given = m->ndof;
     size_t where = 0;
-    int status = condense_number(m, &s) ? TRIBO_OK : tribo_model_no_memory(m);
+    int status = condense_number(m, &s) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     for (size_t i = 0; m->compliance && i < m->ncontact; i++) {
         s.x.sliders += m->compliance[i] > 0.0;
     }
@@ -258,23 +257,22 @@ int tribo_model_condense(tribo_model *m, tribo_system **sys)
         return status ? status : tribo_model_build_massive(m, sys);
     }
     int done = take_without(&s, &m->stiffness, 0, &s.kww) && take_without(&s, &m->direction, 1, &s.x.touch);
-    status = done ? check_damping(m, &s) : tribo_model_no_memory(m);
+    status = done ? check_damping(m, &s) : TRIBO_ERR_MEMORY;
     status = status ? status : factorize_without(m, &s);
     if (!status) {
         done = find_compliance(m, &s) && find_follow(m, &s) && condense_combine(&s, &m->direction, 1, NULL, NULL, &s.direction) &&
                replace_matrices(m, &s);
-        status = done ? tribo_model_build_massive(m, sys) : tribo_model_no_memory(m);
+        status = done ? tribo_model_build_massive(m, sys) : TRIBO_ERR_MEMORY;
     }
     if (!status) {
         (*sys)->given = given;
         status = tribo_compliance_create(*sys, &s.direction, s.own, s.shared, &where);
-        done = status || tribo_expansion_create(*sys, &s.x, m->compliance);
+        status = status || tribo_expansion_create(*sys, &s.x, m->compliance) ? status : TRIBO_ERR_MEMORY;
         status = status == TRIBO_ERR_INDEFINITE
                      ? tribo_model_fail(
                            m, TRIBO_ERR_UNSUPPORTED,
                            "contact %zu moves degrees of freedom without mass only as other contacts do: give these mass", where)
-                 : status || !done ? tribo_model_no_memory(m)
-                                   : TRIBO_OK;
+                     : status;
     }
     condensed_free(&s);
     return status;

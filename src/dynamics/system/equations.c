@@ -58,21 +58,24 @@ int tribo_system_rates(tribo_system *sys, double t, const double *y, int accepte
     return tribo_system_explain(sys, sys->status);
 }
 
+int tribo_system_begin_rates(tribo_system *sys, const char *what, const double *y, const char *name, const double *to)
+{
+    int status = tribo_system_take_settings(sys);
+    status = status ? status : tribo_system_check_mass(sys, what);
+    status = status ? status : tribo_system_check_solved(sys, what);
+    if (!status && (!y || !to)) {
+        status = tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", y ? name : "y");
+    }
+    return sys->status = status;
+}
+
 int tribo_system_derivative(tribo_system *sys, double t, const double *y, double *dydt)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
+    if (!sys || tribo_system_begin_rates(sys, "the right-hand side", y, "dydt", dydt)) {
+        return sys ? sys->status : TRIBO_ERR_NULL;
     }
     const size_t n = sys->ndof;
     double power = 0.0;
-    sys->status = tribo_system_take_settings(sys);
-    sys->status = sys->status ? sys->status : tribo_system_check_rates(sys, "the right-hand side");
-    if (!sys->status && (!y || !dydt)) {
-        sys->status = tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", y ? "dydt" : "y");
-    }
-    if (sys->status) {
-        return sys->status;
-    }
     if (tribo_system_rates(sys, t, y, 0, sys->work.acceleration, &power)) {
         const int status = tribo_system_check_state(sys, t, y); /* names the value of y that is not finite */
         return sys->status = status ? status : sys->status;

@@ -111,21 +111,13 @@ static void write_rows(tribo_system *sys, const struct tangents *d, double *dfdy
 /* With u = q':  u' = load - AK q - AC u + B f,  f = f(v, a),  v = J u - b,  a = J (load - AK q - AC u) - b'. */
 int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *dfdy, double *dfdt)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
+    if (!sys || tribo_system_begin_rates(sys, "the Jacobian", y, "dfdy", dfdy)) {
+        return sys ? sys->status : TRIBO_ERR_NULL;
     }
     struct tangents d = {0};
     sys->jacobians++;
-    sys->status = tribo_system_take_settings(sys);
-    sys->status = sys->status ? sys->status : tribo_system_check_rates(sys, "the Jacobian");
-    if (!sys->status && (!y || !dfdy)) {
-        sys->status = tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", y ? "dfdy" : "y");
-    }
-    if (!sys->status && !create_tangents(&d, sys->ndof, sys->ncontact)) {
-        sys->status = tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the Jacobian");
-    }
-    if (sys->status) {
-        return sys->status;
+    if (!create_tangents(&d, sys->ndof, sys->ncontact)) {
+        return sys->status = tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the Jacobian");
     }
     tribo_system_free_motion(sys, t, y, d.load, sys->work.v, sys->work.a);
     int status = find_limit_rates(sys, d.df_dt);

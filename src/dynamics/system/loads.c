@@ -143,6 +143,15 @@ void tribo_system_set_time(tribo_system *sys, double t)
     }
 }
 
+double tribo_system_load_frequency(const tribo_system *sys)
+{
+    double most = 0.0;
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        most = greater(most, fabs(sys->loads.harmonic[k].omega));
+    }
+    return most;
+}
+
 double tribo_system_next_kink(const tribo_system *sys, double t)
 {
     double next = HUGE_VAL;

@@ -24,7 +24,8 @@ int tribo_model_fail(const tribo_model *m, int status, const char *format, ...)
 int tribo_model_no_memory(const tribo_model *m);
 int tribo_model_too_large(const tribo_model *m); /* for builds without sparse factors */
 
-/* structure.c: builds the system of finite matrices. Frees the matrices of the model, also after an error. Returns a status. */
+/* structure.c: builds the system of finite matrices. Frees the matrices of the model, also after an error. Returns a status;
+ * writes the message of TRIBO_ERR_MEMORY, of the functions below, too. */
 int tribo_model_build(tribo_model *m, tribo_system **sys);
 void tribo_model_free(tribo_model *m);
 

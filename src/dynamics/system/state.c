@@ -112,7 +112,7 @@ void tribo_system_add_velocities(const tribo_system *sys, const double *y, doubl
     tribo_matrix_multiply_add(&x->touch, 1.0, off, v);
 }
 
-/* A displacement w is a rounded 0 if at most ROUNDING times the sum of the sizes of its terms. */
+/* A displacement w is a rounded 0 if less than ROUNDING times the sum of the sizes of its terms. */
 #define ROUNDING (16.0 * DBL_EPSILON)
 
 void tribo_system_write_state(tribo_system *sys, double t, const double *from, double *y)
@@ -144,26 +144,11 @@ void tribo_system_write_state(tribo_system *sys, double t, const double *from, d
                 const size_t k = x->place[d] - n;
                 const double size =
                     tribo_matrix_row_size(&x->follow, k, from + (rate ? n : 0)) + tribo_matrix_row_size(&x->give, k, force);
-                y[rate ? caller + d : displacement_at(x, d)] = fabs(w[k]) > ROUNDING * size ? w[k] : 0.0;
+                y[rate ? caller + d : displacement_at(x, d)] = fabs(w[k]) < ROUNDING * size ? 0.0 : w[k];
             }
         }
     }
     y[2 * caller + x->sliders] = from[tribo_system_energy(sys)];
-}
-
-size_t tribo_system_state_index(const tribo_system *sys, size_t i)
-{
-    const struct expansion *x = &sys->expansion;
-    const size_t n = sys->ndof;
-    size_t d = 0;
-    if (!x->place || i >= tribo_system_energy(sys)) {
-        return x->place ? tribo_system_dimension(sys) - 1 : i;
-    }
-    const size_t k = i < n ? i : i < 2 * n ? i - n : n;
-    while (x->place[d] != k) {
-        d++;
-    }
-    return i < n || i >= 2 * n ? displacement_at(x, d) : x->dofs - x->sliders + d;
 }
 
 void tribo_system_add_part(const tribo_system *sys, size_t d, double part, double *q, double *f)

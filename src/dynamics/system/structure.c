@@ -38,17 +38,11 @@ int tribo_model_factorize(const tribo_model *m, struct cholesky *c)
 {
     size_t where;
     double pivot;
-    switch (tribo_cholesky_create(c, &m->mass, NULL, &where, &pivot)) {
-    case TRIBO_OK:
-        return TRIBO_OK;
-    case TRIBO_ERR_INDEFINITE:
-        return tribo_model_fail(m, TRIBO_ERR_INDEFINITE, "mass is not positive definite: pivot %g at degree of freedom %zu",
-                                pivot, where);
-    case TRIBO_ERR_SIZE:
-        return tribo_model_too_large(m);
-    default:
-        return tribo_model_no_memory(m);
-    }
+    const int status = tribo_cholesky_create(c, &m->mass, NULL, &where, &pivot);
+    return status == TRIBO_ERR_INDEFINITE
+               ? tribo_model_fail(m, status, "mass is not positive definite: pivot %g at degree of freedom %zu", pivot, where)
+           : status == TRIBO_ERR_SIZE ? tribo_model_too_large(m)
+                                      : status;
 }
 
 void tribo_model_free(tribo_model *m)
@@ -95,40 +89,34 @@ static int check_unsolved(const tribo_model *m)
 
 /* Sets R in the contacts: Z'Z, Z [ndof][ncontact], symmetric, and semidefinite up to rounding; z NULL: J M^-1 J' by the factor
  * of sys. Refuses an R that hides bodies, unless the degrees of freedom are modes. Returns a status. */
-static int set_operator(const tribo_model *m, tribo_system *sys, const double *z)
+static int set_dense_operator(const tribo_model *m, tribo_system *sys, const double *z)
 {
     const struct matrix *j = &sys->direction;
     const size_t c = m->ncontact;
     struct hidden where;
     double *r = calloc(c * c + 1, sizeof *r), *own = malloc((j->first[c] + 1) * sizeof *own);
-    int hidden = r && own ? 0 : -1;
-    if (!hidden && z) {
+    int done = r && own;
+    if (done && z) {
         tribo_multiply_transposed_add(m->ndof, c, c, z, z, r);
         for (size_t i = 0; i < c; i++) {
             for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
                 own[k] = tribo_matrix_get(&sys->response, j->col[k], i);
             }
         }
-    } else if (!hidden) {
-        hidden = tribo_delassus_by_columns(j, solve_masses, &sys->factor, NULL, r, own) - 1;
+    } else if (done) {
+        done = tribo_delassus_by_columns(j, solve_masses, &sys->factor, NULL, r, own);
         tribo_even_out(c, r);
     }
-    hidden = hidden || m->nmode ? hidden : tribo_hidden(j, &sys->mass, own, r, &where);
-    int status;
-    if (hidden > 0) {
-        status =
-            tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
-                             "mass: contact %zu touches bodies of which one is %g times as light; make the mass matrix diagonal",
-                             where.contact, where.spread);
-    } else if (hidden < 0) {
-        status = tribo_model_no_memory(m);
-    } else {
-        status = tribo_set_operator_dense(sys->contacts, r);
-        status = status ? tribo_model_fail(m, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
-    }
+    const int hidden = done && !m->nmode ? tribo_hidden(j, &sys->mass, own, r, &where) : 0;
+    const int status = done && !hidden ? tribo_set_operator_dense(sys->contacts, r) : TRIBO_ERR_MEMORY;
     free(r);
     free(own);
-    return status;
+    return hidden > 0 ? tribo_model_fail(
+                            m, TRIBO_ERR_UNSUPPORTED,
+                            "mass: contact %zu touches bodies of which one is %g times as light; make the mass matrix diagonal",
+                            where.contact, where.spread)
+           : done && status ? tribo_model_fail(m, status, "%s", tribo_message(sys->contacts))
+                            : status;
 }
 
 /* solved = M^-1 a. Returns 0 if out of memory. */
@@ -151,7 +139,7 @@ static int divide_by_masses(const tribo_model *m, tribo_system *sys)
     double *inverse = malloc(m->ndof * sizeof *inverse);
     if (!inverse || !tribo_matrix_copy(&sys->stiffness, &sys->k) || !tribo_matrix_copy(&sys->damping, &sys->c)) {
         free(inverse);
-        return tribo_model_no_memory(m);
+        return TRIBO_ERR_MEMORY;
     }
     for (size_t i = 0; i < m->ndof; i++) {
         inverse[i] = 1.0 / tribo_matrix_get(&sys->mass, i, i);
@@ -176,7 +164,7 @@ static int solve_by_masses(const tribo_model *m, tribo_system *sys)
     if (done && m->ncontact) {
         tribo_half_solve(c, 0, z, m->ncontact);
     }
-    const int status = done ? set_operator(m, sys, z) : tribo_model_no_memory(m);
+    const int status = done ? set_dense_operator(m, sys, z) : TRIBO_ERR_MEMORY;
     tribo_matrix_free(&turned);
     free(z);
     return status;
@@ -189,11 +177,9 @@ int tribo_model_build_massive(tribo_model *m, tribo_system **sys)
     if (status) {
         return status;
     }
-    if (tribo_system_build(sys, m->ndof, m->ncontact)) {
-        return tribo_model_no_memory(m);
-    }
+    status = tribo_system_build(sys, m->ndof, m->ncontact);
     tribo_system *s = *sys;
-    status = tribo_model_factorize(m, &s->factor);
+    status = status ? status : tribo_model_factorize(m, &s->factor);
     if (status) {
         return status;
     }
@@ -204,10 +190,10 @@ int tribo_model_build_massive(tribo_model *m, tribo_system **sys)
     s->direction = m->direction;
     m->mass = m->stiffness = m->damping = m->direction = (struct matrix){0};
     if (!tribo_matrix_transpose(&s->response, &s->direction)) {
-        return tribo_model_no_memory(m);
+        return TRIBO_ERR_MEMORY;
     }
     if (unsolved) {
-        status = set_operator(m, s, NULL);
+        status = set_dense_operator(m, s, NULL);
         tribo_cholesky_free(&s->factor);
         return status;
     }
@@ -225,7 +211,7 @@ int tribo_model_build(tribo_model *m, tribo_system **sys)
     tribo_model_free(m);
     if (status) {
         tribo_system_destroy(s);
-        return status;
+        return status == TRIBO_ERR_MEMORY ? tribo_model_no_memory(m) : status;
     }
     *sys = s;
     return TRIBO_OK;

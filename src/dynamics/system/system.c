@@ -52,12 +52,6 @@ int tribo_system_check_solved(const tribo_system *sys, const char *what)
                          : TRIBO_OK;
 }
 
-int tribo_system_check_rates(const tribo_system *sys, const char *what)
-{
-    const int status = tribo_system_check_mass(sys, what);
-    return status ? status : tribo_system_check_solved(sys, what);
-}
-
 int tribo_system_check_contacts(const tribo_system *sys, const char *method, int scalar)
 {
     const int springs = sys->expansion.place != NULL;
@@ -242,11 +236,7 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
 double tribo_system_fastest(const tribo_system *sys)
 {
     const double stiffest = sys->compliance.count ? sys->compliance.stiffest : tribo_matrix_row_sum(&sys->stiffness);
-    double most = greater(sqrt(stiffest), tribo_matrix_row_sum(&sys->damping));
-    for (size_t s = 0; s < sys->loads.harmonics; s++) {
-        most = greater(most, fabs(sys->loads.harmonic[s].omega));
-    }
-    return most;
+    return greater(greater(sqrt(stiffest), tribo_matrix_row_sum(&sys->damping)), tribo_system_load_frequency(sys));
 }
 
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j)
@@ -259,7 +249,7 @@ double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j)
     return sum;
 }
 
-size_t tribo_system_first_static(const tribo_system *sys, int falls)
+size_t tribo_system_first_dropping(const tribo_system *sys, int falls)
 {
     const double *ratio = sys->work.feq, *velocity = sys->work.dv_dt;
     size_t i = 0;
@@ -272,7 +262,7 @@ size_t tribo_system_first_static(const tribo_system *sys, int falls)
 
 int tribo_system_is_plain(const tribo_system *sys)
 {
-    return !tribo_system_planar(sys) && tribo_system_first_static(sys, 0) == sys->ncontact;
+    return !tribo_system_planar(sys) && tribo_system_first_dropping(sys, 0) == sys->ncontact;
 }
 
 void tribo_system_rest_limits(const tribo_system *sys, double *limit)
@@ -286,7 +276,7 @@ void tribo_system_rest_limits(const tribo_system *sys, double *limit)
 
 int tribo_system_falls(const tribo_system *sys)
 {
-    return tribo_system_first_static(sys, 1) < sys->ncontact;
+    return tribo_system_first_dropping(sys, 1) < sys->ncontact;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- attached data */

@@ -132,7 +132,7 @@ size_t tribo_system_planar(const tribo_system *sys);
 
 /* Returns the first contact with a static limit above its limit, falls = 1: that falls with speed; ncontact if there is none.
  * tribo_system_falls returns 1 if a limit falls with speed. */
-size_t tribo_system_first_static(const tribo_system *sys, int falls);
+size_t tribo_system_first_dropping(const tribo_system *sys, int falls);
 int tribo_system_falls(const tribo_system *sys);
 
 /* Returns 1 if all contacts are scalar and none has a static limit above its limit. */
@@ -204,6 +204,9 @@ void tribo_system_most_limits(const tribo_system *sys, double *most);
  * TRIBO_LIMIT_NOISE doubt times its terms is positive. */
 int tribo_system_presses(const tribo_system *sys, size_t i, double doubt);
 
+/* Returns the largest |omega| of harmonics. */
+double tribo_system_load_frequency(const tribo_system *sys);
+
 /* Returns the next time after t of a kink of a load or limit; HUGE_VAL if there is none. */
 double tribo_system_next_kink(const tribo_system *sys, double t);
 
@@ -271,8 +274,9 @@ int tribo_system_check_mass(const tribo_system *sys, const char *who);
 /* Returns TRIBO_OK, or TRIBO_ERR_UNSUPPORTED for an unsolved system, with a message that names `what`. */
 int tribo_system_check_solved(const tribo_system *sys, const char *what);
 
-/* Both checks, for functions that compute rates of states: neither massless degrees of freedom nor unsolved systems. */
-int tribo_system_check_rates(const tribo_system *sys, const char *what);
+/* Begins a call that computes rates of states: takes the settings, makes both checks, and refuses y or `to`, called name, NULL.
+ * Sets sys->status, and returns it. */
+int tribo_system_begin_rates(tribo_system *sys, const char *what, const double *y, const char *name, const double *to);
 
 /* Returns TRIBO_ERR_UNSUPPORTED for planar contacts if scalar = 1 or the system has massless degrees of freedom, and for static
  * limits of elastic contacts. */
@@ -311,9 +315,6 @@ void tribo_system_write_state(tribo_system *sys, double t, const double *from, d
 
 /* v [ncontact] += J_w (w' - follow q') of the caller's state y. Call after tribo_system_read_state for y. */
 void tribo_system_add_velocities(const tribo_system *sys, const double *y, double *v);
-
-/* Returns the index in the caller's state of value i of the methods' state; for a force, of a massless displacement. */
-size_t tribo_system_state_index(const tribo_system *sys, size_t i);
 
 /* For x_d = q_k adds part to q[k]; for x_d = w_k row k of follow and give, times part, to q [ndof] and f [ncontact]. */
 void tribo_system_add_part(const tribo_system *sys, size_t d, double part, double *q, double *f);
