@@ -117,9 +117,6 @@ static void find_pulls(tribo_context *ctx, const struct cluster *g)
 /* A reach is this factor times what the pull at a contact would make of its force. */
 #define AMPLE 1e3
 
-/* A reach is at least this part of the largest force that any contact could carry. */
-#define LITTLE 1e-50
-
 /* A direction is loose if its reach is below BESIDE times its limit. */
 #define BESIDE 1e-8
 
@@ -188,38 +185,18 @@ static void set_radius(tribo_context *ctx, size_t e, const double *wanted)
     }
 }
 
-/* Raises ask_k [size] to max_j |R_kj| ask_j/R_kk, at most the limit of direction k, until no ask_k changes: a force of direction
- * k alone that balances the pull of any other direction. */
-static void find_asks(const tribo_context *ctx, const struct cluster *g, double *ask)
-{
-    const size_t n = ctx->clusters->problem.size, *near = ctx->clusters->near;
-    const double *bound = ctx->follow.contacts.bound;
-    int grown = 1;
-    for (size_t round = 0; grown && round < n; round++) {
-        grown = 0;
-        for (size_t k = 0; k < n; k++) {
-            const double *row = g->r + near[k] * g->size, before = ask[k];
-            for (size_t j = 0; j < n; j++) {
-                ask[k] = j == k ? ask[k] : greater(ask[k], quotient(product(fabs(row[near[j]]), ask[j]), row[near[k]]));
-            }
-            ask[k] = lesser(ask[k], bound[ctx->clusters->contact[k]]);
-            grown |= ask[k] > before;
-        }
-    }
-}
-
 /* Sets the reach of all contacts of the problem by the pulls at them. */
-static void estimate_reaches(tribo_context *ctx, const struct cluster *g)
+static void estimate_reaches(tribo_context *ctx)
 {
     struct clusters *c = ctx->clusters;
     const double *bound = ctx->follow.contacts.bound, *r = ctx->op->diagonal;
-    double *ask = c->problem.spare, most = 0.0; /* most: max_k ask_k sqrt(R_kk), independent of the units of contacts */
+    double most = 0.0; /* at least f_k sqrt(R_kk) of forces that balance these pulls one by one, or one another */
     const size_t n = c->problem.size;
     int far = 0;
     for (size_t k = 0; k < n; k++) {
         const size_t i = c->contact[k];
-        ask[k] = lesser(quotient(fabs(c->pull[k]), r[i]) + product(fabs(c->shift[k]), bound[i]), bound[i]);
-        most = greater(most, product(ask[k], sqrt(r[i])));
+        const double ask = lesser(quotient(fabs(c->pull[k]), r[i]) + product(fabs(c->shift[k]), bound[i]), bound[i]);
+        most = greater(most, product(ask, sqrt(r[i])));
     }
     for (size_t k = 0; k < n; k++) {
         const size_t i = c->contact[k];
@@ -229,15 +206,10 @@ static void estimate_reaches(tribo_context *ctx, const struct cluster *g)
         c->radius[c->contact[k]] = HUGE_VAL;
         c->y[c->contact[k]] = 0.0;
     }
-    if (!far || !(most > 0.0)) {
-        return;
-    }
-    find_asks(ctx, g, ask);
-    for (size_t e = 0; e < n; e += c->directions[e]) {
+    for (size_t e = 0; far && most > 0.0 && e < n; e += c->directions[e]) {
         double wanted[2];
         for (size_t k = e; k < e + c->directions[e]; k++) {
-            const double little = quotient(LITTLE * most, sqrt(r[c->contact[k]]));
-            wanted[k - e] = product(greater(ask[k], greater(little, DBL_MIN)), AMPLE);
+            wanted[k - e] = product(greater(quotient(most, sqrt(r[c->contact[k]])), DBL_MIN), AMPLE);
         }
         set_radius(ctx, e, wanted);
     }
@@ -345,7 +317,7 @@ static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt)
     ctx->last.clusters++;
     do {
         find_pulls(ctx, g);
-        estimate_reaches(ctx, g);
+        estimate_reaches(ctx);
         do {
             pose_cluster(ctx, g);
             p->factor.qp.work.factorizations = 0;
