@@ -39,7 +39,7 @@ struct clusters {
     unsigned char *directions; /* [n] of the contact that begins with a direction of the problem: 1, 2; 0: none begins */
     double unit_force, unit_r; /* of the problem */
     size_t cuts;               /* directions of the problem with a reach below their limit */
-    double *y;                 /* [n] solutions, in parts of the reach */
+    double *y;                 /* [n] forces of the last solution */
     double *radius;            /* [n] reach = min(limit, radius) */
     double *a;                 /* [n] of the last balance, or step */
     double *shift;             /* [n] c of the problem's lenses, in parts of limits */

@@ -108,13 +108,13 @@ static void find_pulls(tribo_context *ctx, const struct cluster *g)
 /* ------------------------------------------------------------------------------------------------------------ reaches
  * Reaches of planar contacts and of the scalar ones beside them. In parts of a limit that is far beyond the pull at a contact, a
  * force has no digits. The force is then looked for within a smaller disc, a reach. If it lies inside, it is the solution for the
- * limit, too, since the problem is convex; else the reach grows.
+ * limit, too, since the problem is convex; else all reaches grow.
  *
  * A direction of a planar contact is loose if its force is such a small part of its limit that the other direction has its whole
  * limit, to the last digit. Then both are intervals, each with a reach. Else both have one reach, if both limits exceed it, or
  * none. */
 
-/* A reach is this factor times what the pull at a contact would make of its force. */
+/* A reach is this factor times the largest force that the pulls would make of one. */
 #define AMPLE 1e3
 
 /* A direction is loose if its reach is below BESIDE times its limit. */
@@ -148,7 +148,7 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
         p->wide[e] = single ? 1 : c->directions[e];
         p->shift[e] = cut_off ? product(quotient(bound[i], radius[i]), c->shift[e]) : c->shift[e];
         p->weight[e] = tribo_plane_reach(ctx, i) / c->unit_force;
-        p->y[e] = c->y[i];
+        p->y[e] = quotient(c->y[i], tribo_plane_reach(ctx, i));
         c->cuts += (size_t)cut_off;
     }
     for (size_t e = 0; e < n; e++) {
@@ -168,86 +168,58 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
     tribo_planar_turn(p, c->directions, p->shift, p->pull);
 }
 
-/* Gives the contact at e of the problem the reaches wanted [directions], as far as its limits exceed them. */
-static void set_radius(tribo_context *ctx, size_t e, const double *wanted)
+/* Returns what f_k sqrt(R_kk) of all forces is at most if each balances its pull, or the force of another. */
+static double estimate_forces(const tribo_context *ctx)
 {
-    struct clusters *c = ctx->clusters;
-    const size_t i = c->contact[e], directions = c->directions[e];
-    const double *bound = ctx->follow.contacts.bound + i;
-    const int pair = directions == 2 && !is_apart(bound, wanted);
-    for (size_t k = 0; k < directions; k++) {
-        const double before = tribo_plane_reach(ctx, i + k);
-        const double radius = pair ? greater(wanted[0], wanted[1]) : wanted[k];
-        const double least = pair ? lesser(bound[0], bound[1]) : bound[k];
-        c->radius[i + k] = radius < least ? radius : HUGE_VAL;
-        const double reach = tribo_plane_reach(ctx, i + k);
-        c->y[i + k] = reach == before ? c->y[i + k] : product(quotient(before, reach), c->y[i + k]);
-    }
-}
-
-/* Sets the reach of all contacts of the problem by the pulls at them. */
-static void estimate_reaches(tribo_context *ctx)
-{
-    struct clusters *c = ctx->clusters;
+    const struct clusters *c = ctx->clusters;
     const double *bound = ctx->follow.contacts.bound, *r = ctx->op->diagonal;
-    double most = 0.0; /* at least f_k sqrt(R_kk) of forces that balance these pulls one by one, or one another */
-    const size_t n = c->problem.size;
-    int far = 0;
-    for (size_t k = 0; k < n; k++) {
+    double most = 0.0;
+    for (size_t k = 0; k < c->problem.size; k++) {
         const size_t i = c->contact[k];
         const double ask = lesser(quotient(fabs(c->pull[k]), r[i]) + product(fabs(c->shift[k]), bound[i]), bound[i]);
         most = greater(most, product(ask, sqrt(r[i])));
     }
-    for (size_t k = 0; k < n; k++) {
-        const size_t i = c->contact[k];
-        far |= product(bound[i], sqrt(r[i])) > AMPLE * most || tribo_plane_cut(ctx, i);
-    }
-    for (size_t k = 0; far && !(most > 0.0) && k < n; k++) {
-        c->radius[c->contact[k]] = HUGE_VAL;
-        c->y[c->contact[k]] = 0.0;
-    }
-    for (size_t e = 0; far && most > 0.0 && e < n; e += c->directions[e]) {
-        double wanted[2];
-        for (size_t k = e; k < e + c->directions[e]; k++) {
-            wanted[k - e] = product(greater(quotient(most, sqrt(r[c->contact[k]])), DBL_MIN), AMPLE);
-        }
-        set_radius(ctx, e, wanted);
-    }
+    return most;
 }
 
-/* 1 if the direction at e of the problem is on the rim of its limit, which bends so much that the direction at other cannot be
- * loose. */
-static int rim_bends(const tribo_context *ctx, size_t e, size_t other)
+/* Sets the reaches of the problem's directions to most/sqrt(R_kk), most > 0, as far as limits exceed them. */
+static void set_reaches(tribo_context *ctx, double most)
 {
-    const struct disc_qp *p = &ctx->clusters->problem;
-    const size_t i = ctx->clusters->contact[e], j = ctx->clusters->contact[other];
-    const double part = quotient(tribo_plane_reach(ctx, j), ctx->follow.contacts.bound[j]);
-    return p->place[e] != LENS_INSIDE && !tribo_plane_cut(ctx, i) && tribo_plane_cut(ctx, j) &&
-           fabs(p->gradient[e]) * part * part > STRAIGHT * p->s[other * (p->size + 1)];
+    const struct clusters *c = ctx->clusters;
+    for (size_t e = 0; e < c->problem.size; e += c->directions[e]) {
+        const size_t i = c->contact[e], directions = c->directions[e];
+        const double *bound = ctx->follow.contacts.bound + i;
+        double radius[2] = {0.0, 0.0};
+        for (size_t k = 0; k < directions; k++) {
+            radius[k] = most < TRIBO_FAR ? greater(quotient(most, sqrt(ctx->op->diagonal[i + k])), DBL_MIN) : HUGE_VAL;
+        }
+        const int pair = directions == 2 && !is_apart(bound, radius);
+        for (size_t k = 0; k < directions; k++) {
+            const double own = pair ? greater(radius[0], radius[1]) : radius[k],
+                         least = pair ? lesser(bound[0], bound[1]) : bound[k];
+            c->radius[i + k] = own < least ? own : HUGE_VAL;
+        }
+    }
 }
 
-/* Widens the reach of forces that come up against it. Returns the number of these contacts. */
-static size_t widen_reaches(tribo_context *ctx)
+/* 1 if a force of the problem is at its reach, or on the rim of its limit where that bends so much that the other direction cannot
+ * be loose. */
+static int is_beyond_reach(const tribo_context *ctx)
 {
     const struct clusters *c = ctx->clusters;
     const struct disc_qp *p = &c->problem;
-    size_t widened = 0;
-    for (size_t e = 0, count; e < p->size; e += count) {
-        count = c->directions[e];
-        double wanted[2];
-        int out = p->wide[e] < count && (rim_bends(ctx, e, e + 1) || rim_bends(ctx, e + 1, e));
-        for (size_t d = 0, bends = (size_t)out; d < count; d++) {
-            const size_t i = c->contact[e + d], at = p->wide[e + d] ? e + d : e;
-            const int beyond = p->place[at] != LENS_INSIDE && tribo_plane_cut(ctx, i);
-            wanted[d] = bends ? HUGE_VAL : beyond ? product(AMPLE, c->radius[i]) : c->radius[i];
-            out |= beyond;
-        }
-        if (out) {
-            set_radius(ctx, e, wanted);
-            widened++;
+    for (size_t e = 0, first = 0; e < p->size; e++) {
+        first = p->wide[e] ? e : first;
+        const size_t other = p->wide[e] != 1 ? e : c->directions[e] == 2 ? e + 1 : c->directions[e] == 0 ? e - 1 : e;
+        const size_t j = c->contact[other];
+        const double part =
+            other != e && tribo_plane_cut(ctx, j) ? tribo_plane_reach(ctx, j) / ctx->follow.contacts.bound[j] : 0.0;
+        const int bends = fabs(p->gradient[e]) * part * part > STRAIGHT * p->s[other * (p->size + 1)];
+        if (p->place[first] != LENS_INSIDE && (bends || tribo_plane_cut(ctx, c->contact[e]))) {
+            return 1;
         }
     }
-    return widened;
+    return 0;
 }
 
 /* ------------------------------------------------------------------------------------------------------- static limits
@@ -317,8 +289,12 @@ static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt)
     ctx->last.clusters++;
     do {
         find_pulls(ctx, g);
-        estimate_reaches(ctx);
-        do {
+        double most = product(AMPLE, estimate_forces(ctx));
+        for (size_t e = 0; !(most > 0.0) && e < p->size; e++) {
+            c->y[c->contact[e]] = 0.0;
+        }
+        for (int beyond = 1; beyond; most = product(AMPLE, most)) {
+            set_reaches(ctx, most > 0.0 ? most : TRIBO_FAR);
             pose_cluster(ctx, g);
             p->factor.qp.work.factorizations = 0;
             p->near_enough = c->cuts ? NEAREST : TRIBO_NEAR_ENOUGH;
@@ -338,10 +314,10 @@ static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt)
             ctx->last.residual = greater(ctx->last.residual, p->residual);
             for (size_t e = 0; e < p->size; e++) {
                 const size_t i = c->contact[e];
-                c->y[i] = p->y[e];
-                ctx->last.f[i] = p->y[e] * tribo_plane_reach(ctx, i);
+                c->y[i] = ctx->last.f[i] = p->y[e] * tribo_plane_reach(ctx, i);
             }
-        } while (c->cuts && widen_reaches(ctx));
+            beyond = c->cuts && is_beyond_reach(ctx);
+        }
     } while (ctx->set.breaking && planar_break(ctx, g, dt));
     ctx->last.rank += p->factor.sets.rank;
     return TRIBO_OK;
