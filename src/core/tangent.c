@@ -65,33 +65,12 @@ struct part {
     const size_t *member; /* [size] */
 };
 
-/* Of contacts near stick: df by law, from the change of f_eq, which the partition has in df. Laws with a memory have another
- * derivative where |f_eq| exceeds the limit. */
-static void apply_laws(const tribo_context *ctx, const struct part *s, const struct change *d, double *df, double *balanced)
-{
-    const int partition = ctx->set.coupling == TRIBO_PARTITION;
-    memcpy(balanced, df, s->size * sizeof *df);
-    for (size_t k = 0; k < s->size; k++) {
-        const size_t i = s->member[k];
-        const double r = ctx->op->diagonal[i], *row = s->p ? NULL : ctx->clusters->cluster[s->cluster].r + k * s->size;
-        if (!ctx->last.near[i] || !tribo_is_scalar(ctx, i)) {
-            continue;
-        }
-        double sum = divisible(tribo_entry(d->a, i), r) + (s->p && !partition ? tribo_row_others(s->p, k, balanced) : 0.0);
-        for (size_t j = 0; row && j < s->size; j++) {
-            sum += j == k ? 0.0 : product(row[j], balanced[j]);
-        }
-        const double change = partition ? df[k] : -quotient(cut(sum), r);
-        df[k] = law_change(ctx, d, i) + product(ctx->last.tangent.dfeq[i], change);
-    }
-}
-
-/* Returns df [size], in workspace: first of forces that f_eq balances. */
+/* Returns df [size], in workspace. */
 static const double *part_product(tribo_context *ctx, const struct part *s, const struct change *d)
 {
     struct box_qp *p = s->p;
     const int partition = ctx->set.coupling == TRIBO_PARTITION, relaxes = !partition && ctx->set.law->relaxes;
-    double *df = p ? p->gradient : ctx->clusters->df;
+    double *df = p ? p->gradient : ctx->clusters->df, *balanced = p ? p->step : ctx->clusters->v;
     for (size_t k = 0; p && k < s->size; k++) {
         const size_t i = s->member[k];
         const double r = ctx->op->diagonal[i], most = TRIBO_ROOM * tribo_most(p, k),
@@ -106,8 +85,24 @@ static const double *part_product(tribo_context *ctx, const struct part *s, cons
     } else {
         tribo_cluster_product(ctx, s->cluster, d, df);
     }
-    if (partition || ctx->set.law->remembers) {
-        apply_laws(ctx, s, d, df, p ? p->step : ctx->clusters->v);
+    if (!partition && !ctx->set.law->remembers) {
+        return df;
+    }
+    /* So far df are forces that f_eq balances. In the partition they are the change of f_eq, which the law reads; laws with a
+     * memory have another derivative where |f_eq| exceeds the limit. */
+    memcpy(balanced, df, s->size * sizeof *df);
+    for (size_t k = 0; k < s->size; k++) {
+        const size_t i = s->member[k];
+        const double r = ctx->op->diagonal[i], *row = p ? NULL : ctx->clusters->cluster[s->cluster].r + k * s->size;
+        if (!ctx->last.near[i] || !tribo_is_scalar(ctx, i)) {
+            continue;
+        }
+        double sum = divisible(tribo_entry(d->a, i), r) + (p && !partition ? tribo_row_others(p, k, balanced) : 0.0);
+        for (size_t j = 0; row && j < s->size; j++) {
+            sum += j == k ? 0.0 : product(row[j], balanced[j]);
+        }
+        const double change = partition ? df[k] : -quotient(cut(sum), r);
+        df[k] = law_change(ctx, d, i) + product(ctx->last.tangent.dfeq[i], change);
     }
     return df;
 }
