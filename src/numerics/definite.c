@@ -14,24 +14,16 @@
 /* A pivot below this part of the diagonal entry is rounding. */
 #define ROUNDING (64.0 * DBL_EPSILON)
 
-/* PATIENCE: sets tried without fewer wrong rows, before rows change one at a time. CHANGES: most sets tried, for each row. */
-enum { PATIENCE = 8, CHANGES = 32 };
-
-/* Makes factor that of the rows with skip [n] 0 (all rows: NULL), unless it is. Returns the place in index of a pivot that is
- * rounding, or held. */
-static size_t choose_set(struct definite *d, const signed char *skip)
+/* Makes factor that of the rows with skip [n] 0 (all rows: NULL). Returns the place in index of a pivot that is rounding, or
+ * held. */
+static size_t factor_set(struct definite *d, const signed char *skip)
 {
     size_t m = 0;
-    int same = 1, info = 0;
+    int info = 0;
     for (size_t i = 0; i < d->n; i++) {
         if (d->own[i] > 0.0 && (!skip || skip[i] == 0)) {
-            same &= m < d->held && d->index[m] == i;
             d->index[m++] = i;
         }
-    }
-    if (m == 0 || (same && m == d->held)) {
-        d->held = m;
-        return m;
     }
     d->held = m;
     for (size_t i = 0; i < m; i++) {
@@ -40,7 +32,9 @@ static size_t choose_set(struct definite *d, const signed char *skip)
         }
     }
     const int rows = (int)m;
-    dpotrf_("U", &rows, d->factor, &rows, &info, 1);
+    if (m > 0) {
+        dpotrf_("U", &rows, d->factor, &rows, &info, 1);
+    }
     for (size_t i = 0; i < m; i++) {
         const double l = d->factor[i * (m + 1)];
         if (i + 1 == (size_t)info || !(l * l > ROUNDING * d->matrix[d->index[i] * (d->n + 1)])) {
@@ -61,7 +55,7 @@ void tribo_definite_solve(struct definite *d, const signed char *skip, size_t co
     if (!d->matrix) {
         return;
     }
-    choose_set(d, skip);
+    factor_set(d, skip);
     const struct cholesky factor = {.n = d->held, .factor = d->factor};
     for (size_t k = 0; k < d->held; k++) {
         memmove(x + k * columns, x + d->index[k] * columns, columns * sizeof *x);
@@ -90,13 +84,7 @@ int tribo_definite_create(struct definite *d, size_t n, const double *own, const
         d->inverse = tribo_layout_array(&l, square, sizeof *d->inverse);
         d->factor = tribo_layout_array(&l, square, sizeof *d->factor);
         d->x = tribo_layout_array(&l, n, sizeof *d->x);
-        d->q = tribo_layout_array(&l, n, sizeof *d->q);
-        d->lo = tribo_layout_array(&l, n, sizeof *d->lo);
-        d->hi = tribo_layout_array(&l, n, sizeof *d->hi);
-        d->f = tribo_layout_array(&l, n, sizeof *d->f);
         d->index = tribo_layout_array(&l, n, sizeof *d->index);
-        d->at = tribo_layout_array(&l, n, sizeof *d->at);
-        d->to = tribo_layout_array(&l, n, sizeof *d->to);
     } while ((!a || tribo_lapack_takes(n)) && !l.memory && tribo_layout_zeros(&l));
     if (!l.memory) {
         return TRIBO_ERR_MEMORY;
@@ -107,7 +95,7 @@ int tribo_definite_create(struct definite *d, size_t n, const double *own, const
         return TRIBO_OK;
     }
     memcpy(d->matrix, a, n * n * sizeof *a);
-    const size_t at = choose_set(d, NULL);
+    const size_t at = factor_set(d, NULL);
     if (at < d->held) {
         *where = d->index[at];
         return TRIBO_ERR_INDEFINITE;
@@ -146,60 +134,5 @@ void tribo_definite_solve_sizes(struct definite *d, double *x)
         for (size_t k = 0; d->matrix && k < d->n; k++) {
             x[i] += fabs(d->inverse[i * d->n + k]) * d->x[k];
         }
-    }
-}
-
-/* Returns the place of row i for f as it is: 0 inside the box, -1 at lo, 1 at hi. */
-static signed char place_of_row(const struct definite *d, size_t i)
-{
-    const double *row = d->matrix + i * d->n, *f = d->f;
-    if (!(d->lo[i] < d->hi[i])) {
-        return -1;
-    }
-    if (d->at[i] == 0) {
-        return (signed char)(f[i] < d->lo[i] ? -1 : f[i] > d->hi[i] ? 1 : 0);
-    }
-    double sum = d->q[i], size = fabs(d->q[i]);
-    for (size_t k = 0; k < d->n; k++) {
-        sum += row[k] * f[k];
-        size += fabs(row[k] * f[k]);
-    }
-    return (signed char)(d->at[i] * sum > ROUNDING * size ? 0 : d->at[i]);
-}
-
-/* Block principal pivoting: all wrong rows change at once while their number falls, else the last one alone, which ends for
- * definite matrices. Begins at the places of the last call, which differ in few rows from one event to the next. */
-void tribo_definite_box(struct definite *d)
-{
-    const size_t n = d->n;
-    double *f = d->f, *x = d->x;
-    size_t fewest = n + 1, patience = PATIENCE;
-    for (size_t i = 0; !d->matrix && i < n; i++) {
-        f[i] = d->own[i] > 0.0 ? clamp(-d->q[i] / d->own[i], d->lo[i], d->hi[i]) : 0.0;
-    }
-    for (size_t i = 0; i < n; i++) {
-        const double bound = d->at[i] < 0 ? d->lo[i] : d->at[i] > 0 ? d->hi[i] : 0.0;
-        d->at[i] = (signed char)(!(d->lo[i] < d->hi[i]) ? -1 : fabs(bound) < HUGE_VAL ? d->at[i] : 0);
-    }
-    for (size_t change = 0; d->matrix && change < CHANGES * (n + 1); change++) {
-        size_t wrong = 0, last = 0;
-        for (size_t i = 0; i < n; i++) {
-            f[i] = d->at[i] < 0 ? d->lo[i] : d->at[i] > 0 ? d->hi[i] : 0.0;
-            x[i] = -d->q[i];
-        }
-        tribo_multiply_add(n, n, 1, -1.0, d->matrix, f, x);
-        tribo_definite_solve(d, d->at, 1, x);
-        tribo_add(f, 1.0, x, n);
-        for (size_t i = 0; i < n; i++) {
-            d->to[i] = place_of_row(d, i);
-            last = d->to[i] != d->at[i] ? i : last;
-            wrong += d->to[i] != d->at[i];
-        }
-        if (!wrong) {
-            return;
-        }
-        patience = wrong < fewest ? PATIENCE : patience ? patience - 1 : 0;
-        fewest = wrong < fewest ? wrong : fewest;
-        memcpy(d->at + (patience ? 0 : last), d->to + (patience ? 0 : last), patience ? n : 1);
     }
 }

@@ -11,15 +11,10 @@ struct definite {
     double *own;     /* [n] a_ii */
     double *matrix;  /* [n][n] A; NULL if A is diagonal, and inverse, factor and index are empty */
     double *inverse; /* [n][n] A^-1 over the rows with a_ii > 0 */
-    double *factor;  /* [held][held] lower Cholesky factor of A over index */
-    size_t held;     /* rows of the set solved for last */
+    double *factor;  /* [held][held] workspace: lower Cholesky factor of A over the rows of a set */
+    size_t held;     /* number of these rows */
     size_t *index;   /* [held] these rows */
     double *x;       /* [n] workspace */
-    double *q;       /* [n] see tribo_definite_box; lo, hi, f alike */
-    double *lo, *hi; /* [n] */
-    double *f;       /* [n] */
-    signed char *at; /* [n] places of the rows found last by tribo_definite_box: 0 inside, -1 at lo, 1 at hi */
-    signed char *to; /* [n] workspace */
     void *memory;    /* of all arrays */
 };
 
@@ -36,8 +31,5 @@ void tribo_definite_multiply_add(const struct definite *d, size_t columns, const
 
 /* x [n] = |A^-1| x. */
 void tribo_definite_solve_sizes(struct definite *d, double *x);
-
-/* f = the minimum of 1/2 f'Af + q'f, lo <= f <= hi, arrays of d. Bounds may be infinite, and are 0 where a_ii = 0. */
-void tribo_definite_box(struct definite *d);
 
 #endif

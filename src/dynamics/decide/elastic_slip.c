@@ -60,7 +60,7 @@ void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *
 {
     const unsigned char *elastic = m->constant.elastic;
     struct slip_state *s = &m->state;
-    struct definite *g = sys->compliance.g;
+    const struct compliance *g = &sys->compliance;
     double *v = m->work.v; /* velocities of the contacts that slide */
     if (sys->compliance.count == 0) {
         return;
@@ -69,8 +69,8 @@ void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *
     for (size_t i = 0; i < sys->ncontact; i++) {
         const enum stand stand = elastic[i] ? stand_of(m, i) : OPEN;
         v[i] = elastic[i] ? tribo_stick_slip_find_velocity(m, sys, i, y) : 0.0;
-        g->lo[i] = stand == OPEN || (stand == AT_LIMIT && against(m, i) > 0) ? 0.0 : -HUGE_VAL;
-        g->hi[i] = stand == OPEN || (stand == AT_LIMIT && against(m, i) < 0) ? 0.0 : HUGE_VAL;
+        g->lo[i] = stand == OPEN || (stand == AT_LIMIT && against(m, i) > 0) ? 0.0 : -TRIBO_UNBOUNDED;
+        g->hi[i] = stand == OPEN || (stand == AT_LIMIT && against(m, i) < 0) ? 0.0 : TRIBO_UNBOUNDED;
     }
     tribo_compliance_share(g, v);
     for (size_t i = 0; i < sys->ncontact; i++) {

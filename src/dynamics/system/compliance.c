@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "delassus.h"
 #include "system.h"
+#include "common/layout.h"
 #include "common/real.h"
 
 #include <math.h>
@@ -12,6 +13,7 @@
 void tribo_compliance_free(struct compliance *g)
 {
     free(g->contact);
+    tribo_destroy(g->box);
     tribo_matrix_free(&g->pull);
     if (g->g) {
         tribo_definite_free(g->g);
@@ -76,9 +78,19 @@ int tribo_compliance_create(tribo_system *sys, struct matrix *direction, const d
         sys->direction = *direction;
         *direction = (struct matrix){0};
     }
-    g->contact = malloc((sys->ncontact + 1) * sizeof *g->contact);
+    struct layout l = {0};
+    do {
+        g->contact = tribo_layout_array(&l, sys->ncontact, sizeof *g->contact);
+        g->lo = tribo_layout_array(&l, sys->ncontact, sizeof *g->lo);
+        g->hi = tribo_layout_array(&l, sys->ncontact, sizeof *g->hi);
+        g->f = tribo_layout_array(&l, sys->ncontact, sizeof *g->f);
+    } while (!l.memory && tribo_layout_create(&l));
     g->g = calloc(1, sizeof *g->g);
-    const int status = g->contact && g->g ? tribo_definite_create(g->g, sys->ncontact, own, entries, where) : TRIBO_ERR_MEMORY;
+    int status = l.memory && g->g ? tribo_definite_create(g->g, sys->ncontact, own, entries, where) : TRIBO_ERR_MEMORY;
+    status = status ? status : tribo_create(&g->box, sys->ncontact);
+    status = status    ? status
+             : entries ? tribo_set_operator_dense(g->box, entries)
+                       : tribo_set_operator_diagonal(g->box, own);
     if (status) {
         return status;
     }
@@ -150,13 +162,14 @@ void tribo_compliance_give(const tribo_system *sys, size_t columns, const double
     }
 }
 
-void tribo_compliance_share(struct definite *c, double *v)
+void tribo_compliance_share(const struct compliance *g, double *v)
 {
-    memcpy(c->q, v, c->n * sizeof *v);
-    tribo_definite_box(c);
-    tribo_definite_multiply_add(c, 1, c->f, v);
-    for (size_t i = 0; i < c->n; i++) {
-        v[i] = c->lo[i] < c->f[i] && c->f[i] < c->hi[i] ? 0.0 : v[i];
+    if (tribo_solve_box(g->box, v, g->lo, g->hi, g->f)) {
+        memset(g->f, 0xff, g->g->n * sizeof *g->f); /* NaN: the states that follow fail */
+    }
+    tribo_definite_multiply_add(g->g, 1, g->f, v);
+    for (size_t i = 0; i < g->g->n; i++) {
+        v[i] = g->lo[i] < g->f[i] && g->f[i] < g->hi[i] ? 0.0 : v[i];
     }
 }
 
@@ -166,12 +179,12 @@ void tribo_compliance_rates(const tribo_system *sys, const signed char *slip, do
     const struct compliance *g = &sys->compliance;
     memset(rate, 0, sys->ncontact * sizeof *rate);
     for (size_t i = 0; g->count && i < sys->ncontact; i++) {
-        g->g->hi[i] = tribo_is_compliant(g, i) && slip[i] == TRIBO_SLIP_STUCK ? HUGE_VAL : 0.0;
-        g->g->lo[i] = -g->g->hi[i];
+        g->hi[i] = tribo_is_compliant(g, i) && slip[i] == TRIBO_SLIP_STUCK ? TRIBO_UNBOUNDED : 0.0;
+        g->lo[i] = -g->hi[i];
     }
     if (g->count) {
-        tribo_compliance_share(g->g, v);
-        memcpy(rate, g->g->f, sys->ncontact * sizeof *rate);
+        tribo_compliance_share(g, v);
+        memcpy(rate, g->f, sys->ncontact * sizeof *rate);
     }
 }
 
@@ -190,7 +203,6 @@ void tribo_compliance_noise(const tribo_system *sys, const double *q, double *no
 void tribo_compliance_move(const tribo_system *sys, const double *y, double *v, double *rate)
 {
     const struct compliance *g = &sys->compliance;
-    struct definite *c = g->g;
     double *limit = sys->work.put_limit, *noise = sys->work.dv_dt;
     tribo_get_limit(sys->contacts, limit);
     tribo_compliance_noise(sys, y, noise);
@@ -198,35 +210,34 @@ void tribo_compliance_move(const tribo_system *sys, const double *y, double *v, 
     for (size_t i = 0; i < sys->ncontact; i++) {
         const int at_limit = fabs(rate[i]) >= limit[i] - TRIBO_SPRING_ALLOWED * noise[i];
         const int open = limit[i] == 0.0 || !tribo_is_compliant(g, i);
-        c->lo[i] = open || (at_limit && rate[i] < 0.0) ? 0.0 : -HUGE_VAL;
-        c->hi[i] = open || (at_limit && rate[i] > 0.0) ? 0.0 : HUGE_VAL;
+        g->lo[i] = open || (at_limit && rate[i] < 0.0) ? 0.0 : -TRIBO_UNBOUNDED;
+        g->hi[i] = open || (at_limit && rate[i] > 0.0) ? 0.0 : TRIBO_UNBOUNDED;
     }
-    tribo_compliance_share(c, v);
-    memcpy(rate, c->f, sys->ncontact * sizeof *rate);
+    tribo_compliance_share(g, v);
+    memcpy(rate, g->f, sys->ncontact * sizeof *rate);
 }
 
 /* The change of the forces to within their limits minimizes f'G f. */
 void tribo_compliance_enter(const tribo_system *sys, const double *limit, double *force, double *y)
 {
     const struct compliance *g = &sys->compliance;
-    struct definite *c = g->g;
     double *way = sys->work.dv_dt;
     int beyond = 0;
     tribo_compliance_get(sys, y, force);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double most = tribo_is_compliant(g, i) ? limit[i] : 0.0;
         beyond |= most < fabs(force[i]);
-        c->lo[i] = -most - force[i];
-        c->hi[i] = most - force[i];
+        g->lo[i] = -most - force[i];
+        g->hi[i] = most - force[i];
         way[i] = 0.0;
     }
     if (!beyond) {
         return;
     }
-    tribo_compliance_share(c, way);
+    tribo_compliance_share(g, way);
     for (size_t k = 0; k < g->count; k++) {
         const size_t i = g->contact[k];
-        force[i] = c->f[i] == c->hi[i] ? limit[i] : c->f[i] == c->lo[i] ? -limit[i] : force[i] + c->f[i];
+        force[i] = g->f[i] == g->hi[i] ? limit[i] : g->f[i] == g->lo[i] ? -limit[i] : force[i] + g->f[i];
         y[tribo_system_energy(sys)] -= sys->tally[i] * force[i] * way[i];
     }
     tribo_compliance_put(sys, force, y);

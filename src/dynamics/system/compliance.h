@@ -13,6 +13,9 @@ struct compliance {
     size_t count;       /* number of compliant contacts; 0: all other members are empty */
     size_t *contact;    /* [count] compliant contacts, ascending */
     struct definite *g; /* G */
+    tribo_context *box; /* with operator G */
+    double *lo, *hi;    /* [ncontact] see tribo_compliance_share */
+    double *f;          /* [ncontact] */
     const double *own;  /* [ncontact] G_ii, in g */
     struct matrix pull; /* [ndof][ncontact] M^-1 J' in columns of compliant contacts, else 0 */
     double stiffest;    /* bound of omega^2, with any contacts at rest */
@@ -70,9 +73,12 @@ void tribo_compliance_noise(const tribo_system *sys, const double *q, double *no
  * [ncontact] = f. */
 void tribo_compliance_enter(const tribo_system *sys, const double *limit, double *force, double *y);
 
-/* c->f = the forces, or rates of forces, in [c->lo, c->hi] that minimize 1/2 f'G f + v'f. v [n]: displacements, or velocities; in
- * without f, out v + G f, exactly 0 where f is between its bounds. */
-void tribo_compliance_share(struct definite *c, double *v);
+/* No force or rate of a force reaches this bound. */
+#define TRIBO_UNBOUNDED 1e200
+
+/* g->f = the forces, or rates of forces, in [g->lo, g->hi] that minimize 1/2 f'G f + v'f. v [ncontact]: displacements, or
+ * velocities; in without f, out v + G f, exactly 0 where f is between its bounds. */
+void tribo_compliance_share(const struct compliance *g, double *v);
 
 /* Applies slip [ncontact] to perturbations v [2 ndof + count][columns] of a state: 0 for forces of sliding contacts. work [2
  * ncontact][columns]. */
