@@ -51,7 +51,7 @@ static void follow_free(struct box_qp *p, size_t vectors, const double *rhs, dou
             const size_t i = p->order[k];
             p->step[i] = -(tribo_row_dot(p, i, df, &ignored) + rhs[i]);
         }
-        tribo_null_solve(p, vectors, p->step);
+        tribo_factor_solve(p, vectors, p->step);
         for (size_t k = 0; k < all; k++) {
             df[p->order[k]] += p->step[p->order[k]];
         }

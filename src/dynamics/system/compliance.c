@@ -88,9 +88,7 @@ int tribo_compliance_create(tribo_system *sys, struct matrix *direction, const d
     g->g = calloc(1, sizeof *g->g);
     int status = l.memory && g->g ? tribo_definite_create(g->g, sys->ncontact, own, entries, where) : TRIBO_ERR_MEMORY;
     status = status ? status : tribo_create(&g->box, sys->ncontact);
-    status = status    ? status
-             : entries ? tribo_set_operator_dense(g->box, entries)
-                       : tribo_set_operator_diagonal(g->box, own);
+    status = status ? status : entries ? tribo_set_operator_dense(g->box, entries) : tribo_set_operator_diagonal(g->box, own);
     if (status) {
         return status;
     }

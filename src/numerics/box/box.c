@@ -25,6 +25,52 @@
 /* Rounding of the terms of a graded group, in parts of that of doubles. */
 #define GRADED_PART 0x1p-50
 
+/* low.x = 0: an x that no solver found has no low part. */
+static void forget_low(const struct box_qp *p)
+{
+    if (p->twofold) {
+        memset(p->low.x, 0, p->group->size * sizeof *p->low.x);
+    }
+}
+
+/* Rounding of the caller's a must not set redundant contacts against each other: their gradient may be this part of the unit, but
+ * not more than that part of the terms, since limits that are never reached do not bound rounding. */
+#define DISAGREEMENT 5e-13
+#define DISAGREED_TERMS 5e-9
+
+/* Returns the gradient of i that rounding of the caller's a may cause, for groups with redundant contacts. */
+static double disagreement(const struct box_qp *p, size_t i)
+{
+    if (!p->group->nullity) {
+        return 0.0;
+    }
+    return p->twofold ? DISAGREEMENT * tribo_graded_terms(p, i)
+                      : lesser(DISAGREEMENT * p->rounding.unit[i], DISAGREED_TERMS * p->rounding.terms[i]);
+}
+
+double tribo_box_tolerance(const struct box_qp *p, size_t i)
+{
+    return p->noise[i] + disagreement(p, i);
+}
+
+/* Returns 1 if pull, which may be negative, exceeds the tolerance of i. */
+static int box_pulls(const struct box_qp *p, size_t i, double pull)
+{
+    return pull > p->noise[i] && pull > tribo_box_tolerance(p, i);
+}
+
+/* Returns 1 if the gradients of the independent x are at most noises times their rounding. */
+static int box_settled(const struct box_qp *p, double noises)
+{
+    for (size_t k = 0; k < p->sets->rank; k++) {
+        const size_t i = p->order[k];
+        if (!(fabs(p->gradient[i]) <= noises * p->noise[i])) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 /* Forces and R of a graded group are as good as exact: only q is rounded. noise_i is a part of the terms that are rounded, and of
  * the largest force, by which forces underflow. */
 void tribo_box_gradients(struct box_qp *p)
@@ -43,7 +89,8 @@ void tribo_box_gradients(struct box_qp *p)
     }
 }
 
-void tribo_box_newton(struct box_qp *p)
+/* step = the move of the independent x that takes gradient to zero; 0 for the dependents. */
+static void box_newton(struct box_qp *p)
 {
     for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
         const size_t i = p->order[k];
@@ -53,11 +100,12 @@ void tribo_box_newton(struct box_qp *p)
     if (p->twofold) {
         tribo_graded_solve(p, p->step, p->low.step);
     } else {
-        tribo_factor_solve(p, p->step);
+        tribo_factor_solve(p, 0, p->step);
     }
 }
 
-void tribo_box_begin(struct box_qp *p, int bounded)
+/* Chooses twofold, and finds rounding.terms. bounded: lo and hi are set. */
+static void box_begin(struct box_qp *p, int bounded)
 {
     p->twofold = p->group->graded && tribo_graded_fits(p, bounded);
     if (p->group->nullity && !p->twofold) {
@@ -76,7 +124,8 @@ void tribo_box_begin(struct box_qp *p, int bounded)
     }
 }
 
-double tribo_box_moved(struct box_qp *p, size_t i)
+/* Returns x_i + step_i. */
+static double box_moved(struct box_qp *p, size_t i)
 {
     const double x = p->twofold ? tribo_graded_move(p, i, 1.0) : p->x[i] + p->step[i];
     return p->far ? tribo_cut(p, i, x) : cut(x);
@@ -116,7 +165,8 @@ static size_t box_change_all(struct box_qp *p)
     return changes;
 }
 
-size_t tribo_box_advance(struct box_qp *p, double longest)
+/* Moves the free x by as much of longest step as keeps them in their boxes. Returns the contact that meets its bound, or size. */
+static size_t box_advance(struct box_qp *p, double longest)
 {
     const size_t all = p->sets->rank + p->sets->dependents;
     double length = longest;
@@ -143,7 +193,9 @@ size_t tribo_box_advance(struct box_qp *p, double longest)
     return hit;
 }
 
-void tribo_box_enter(struct box_qp *p, int keep_bounds)
+/* Takes the near contacts into the problem, free, and the others out of it. keep_bounds: contacts at a bound stay there, unless
+ * the bound went far away. */
+static void box_enter(struct box_qp *p, int keep_bounds)
 {
     for (size_t e = 0; e < p->group->size; e++) {
         const size_t i = p->near[e];
@@ -166,11 +218,11 @@ void tribo_box_enter(struct box_qp *p, int keep_bounds)
 /* Takes the gradient of the independent x, which is up to date, to its rounding. */
 static void box_refine(struct box_qp *p)
 {
-    for (int pass = 0; pass < 4 && !tribo_box_settled(p, 1.0); pass++) {
-        tribo_box_newton(p);
+    for (int pass = 0; pass < 4 && !box_settled(p, 1.0); pass++) {
+        box_newton(p);
         for (size_t k = 0; k < p->sets->rank; k++) {
             const size_t i = p->order[k];
-            p->x[i] = tribo_box_moved(p, i);
+            p->x[i] = box_moved(p, i);
         }
         tribo_box_gradients(p);
     }
@@ -183,7 +235,7 @@ static int box_revise(struct box_qp *p)
     memcpy(p->to, p->at, g->size);
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
-        if (p->at[i] != FREE && p->lo[i] < p->hi[i] && tribo_box_pulls(p, i, (double)p->at[i] * p->gradient[i])) {
+        if (p->at[i] != FREE && p->lo[i] < p->hi[i] && box_pulls(p, i, (double)p->at[i] * p->gradient[i])) {
             p->to[i] = FREE;
         }
     }
@@ -193,7 +245,7 @@ static int box_revise(struct box_qp *p)
     }
     for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
         const size_t i = p->order[k];
-        if (tribo_box_pulls(p, i, fabs(p->gradient[i]))) {
+        if (box_pulls(p, i, fabs(p->gradient[i]))) {
             p->to[i] = p->gradient[i] > 0.0 ? AT_LOWER : AT_UPPER;
         }
     }
@@ -203,7 +255,7 @@ static int box_revise(struct box_qp *p)
 /* x = 0, or the bound next to 0: forces of earlier calls may be so large that their rounding hides others. */
 static void box_forget(struct box_qp *p)
 {
-    tribo_box_forget_low(p);
+    forget_low(p);
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
         p->x[i] = clamp(0.0, p->lo[i], p->hi[i]);
@@ -213,7 +265,7 @@ static void box_forget(struct box_qp *p)
 /* x = the solution with the sets and the factor as they are. Returns 1 if its gradient is rounding. */
 static int box_solve_sets(struct box_qp *p)
 {
-    tribo_box_forget_low(p);
+    forget_low(p);
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
         p->x[i] = p->at[i] == AT_LOWER ? p->lo[i] : p->at[i] == AT_UPPER ? p->hi[i] : p->x[i];
@@ -224,7 +276,7 @@ static int box_solve_sets(struct box_qp *p)
     }
     tribo_box_gradients(p);
     box_refine(p);
-    return tribo_box_settled(p, TRIBO_SETTLED);
+    return box_settled(p, TRIBO_SETTLED);
 }
 
 /* Patience as with block pivoting (Judice and Pires 1994, Comput. Oper. Res. 21, 587): it ends when the number of changes has
@@ -263,10 +315,10 @@ static int box_primal_dual(struct box_qp *p)
 
 /* ------------------------------------------------------------------------------------------------ primal active set */
 
-/* tribo_box_advance; a contact that meets a bound stays there. Returns 1 if one did. */
+/* box_advance; a contact that meets a bound stays there. Returns 1 if one did. */
 static int box_move(struct box_qp *p, double longest)
 {
-    const size_t hit = tribo_box_advance(p, longest);
+    const size_t hit = box_advance(p, longest);
     if (hit == p->group->size) {
         return 0;
     }
@@ -304,7 +356,7 @@ static size_t box_worst(const struct box_qp *p, int dependent)
         const size_t i = dependent ? p->order[p->sets->rank + e] : p->near[e];
         const double pull = dependent ? fabs(p->gradient[i]) : p->lo[i] < p->hi[i] ? (double)p->at[i] * p->gradient[i] : 0.0;
         double doubt = 0.0, excess = 0.0;
-        if (tribo_box_pulls(p, i, pull)) {
+        if (box_pulls(p, i, pull)) {
             tribo_row_dot(p, i, p->spare[0], &doubt);
             excess = quotient(pull, greater(tribo_box_tolerance(p, i) + doubt, DBL_MIN));
         }
@@ -340,7 +392,7 @@ static int box_slide(struct box_qp *p, size_t d)
 static int box_descend(struct box_qp *p)
 {
     tribo_box_gradients(p);
-    tribo_box_newton(p);
+    box_newton(p);
     return box_move(p, 1.0);
 }
 
@@ -348,7 +400,7 @@ static int box_descend(struct box_qp *p)
 static int box_primal(struct box_qp *p)
 {
     memcpy(p->to, p->at, p->group->size);
-    tribo_box_forget_low(p);
+    forget_low(p);
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
         p->x[i] = clamp(p->x[i], p->lo[i], p->hi[i]);
@@ -372,7 +424,7 @@ static int box_primal(struct box_qp *p)
         const size_t i = box_worst(p, 0);
         if (i < p->group->size) {
             tribo_box_change(p, i, FREE);
-        } else if (tribo_box_settled(p, TRIBO_SETTLED)) {
+        } else if (box_settled(p, TRIBO_SETTLED)) {
             return 1;
         } else {
             tribo_factor_rebuild(p, NULL);
@@ -383,7 +435,7 @@ static int box_primal(struct box_qp *p)
 
 static void box_restore(struct box_qp *p, const double *x)
 {
-    tribo_box_forget_low(p);
+    forget_low(p);
     for (size_t e = 0; e < p->count; e++) {
         p->x[p->near[e]] = x[p->near[e]];
     }
@@ -427,9 +479,112 @@ int tribo_box_solve(struct box_qp *p)
         p->x[i] = clamp(p->x[i], p->lo[i], p->hi[i]);
     }
     p->sets->far = p->far;
-    tribo_box_begin(p, 1);
-    tribo_box_enter(p, 1);
+    box_begin(p, 1);
+    box_enter(p, 1);
     return box_primal_dual(p) || box_primal(p);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- least norm
+ * Where R is singular R x is unique, but x is not: x becomes the solution in the box of least norm, which depends neither on the
+ * order of the contacts nor on the way to it. A primal active set method minimizes |x|^2 in the box along the null space of R
+ * over the contacts without gradient: basis spans the null space, and its first vectors do not move the contacts at a bound. */
+
+/* Rounding of null vectors, which come from a factor, in parts of that of a sum. */
+#define NULL_NOISE 64.0
+
+/* Reflects the first vectors so that only the last of them moves contact i. Returns 1, or 0 if they move it by rounding only:
+ * then makes these moves 0, since to hold i would take away a vector along which others share. */
+static int hold_contact(struct box_qp *p, size_t vectors, size_t i)
+{
+    const size_t size = p->group->size, last = vectors - 1;
+    double *u = p->row, square = 0.0;
+    for (size_t j = 0; j < vectors; j++) {
+        u[j] = p->null.basis[j * size + i];
+        square += u[j] * u[j];
+    }
+    const double length = sqrt(square);
+    const int moves = length > NULL_NOISE * tribo_resolution(size);
+    u[last] += u[last] < 0.0 ? -length : length;
+    const double scale = length * fabs(u[last]); /* u'u/2 */
+    for (size_t k = 0; moves && k < p->sets->rank + p->sets->dependents; k++) {
+        double *column = p->null.basis + p->order[k], sum = 0.0;
+        for (size_t j = 0; j < vectors; j++) {
+            sum += u[j] * column[j * size];
+        }
+        for (size_t j = 0; j < vectors; j++) {
+            column[j * size] -= sum / scale * u[j];
+        }
+    }
+    for (size_t j = 0; j < (moves ? last : vectors); j++) {
+        p->null.basis[j * size + i] = 0.0;
+    }
+    memset(u, 0, vectors * sizeof *u);
+    return moves;
+}
+
+/* step = the move of x to the least norm along the first vectors. */
+static void aim_at_least(struct box_qp *p, size_t vectors)
+{
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
+        p->step[p->order[k]] = p->low.step[p->order[k]] = 0.0;
+    }
+    tribo_null_project(p, vectors, p->x, p->step);
+}
+
+/* Lets the first held contact go that moves off its bound then. Returns 0 if there is none. */
+static int release_contact(struct box_qp *p, size_t vectors, size_t *held)
+{
+    double most = DBL_MIN, sum = 0.0; /* scaled, since squares may overflow */
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
+        most = greater(most, fabs(p->x[p->order[k]]));
+    }
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
+        const double part = p->x[p->order[k]] / most;
+        sum += part * part;
+    }
+    const double noise = tribo_resolution(p->group->size) * (most * sqrt(sum));
+    for (size_t tried = 0; tried < *held; tried++) {
+        const size_t i = p->null.held[0], others = *held - 1;
+        memmove(p->null.held, p->null.held + 1, others * sizeof *p->null.held);
+        for (size_t h = 0; h < others; h++) {
+            hold_contact(p, vectors - h, p->null.held[h]);
+        }
+        aim_at_least(p, vectors - others);
+        if (p->x[i] <= p->lo[i] ? p->step[i] > noise : p->step[i] < -noise) {
+            *held = others;
+            return 1;
+        }
+        p->null.held[others] = i;
+        hold_contact(p, vectors - others, i);
+    }
+    return 0;
+}
+
+/* x = the solution of least norm, up to rounding. Contacts at a bound without gradient become free. Returns 0 if the solution is
+ * unique. */
+static int find_least_norm(struct box_qp *p)
+{
+    const size_t size = p->group->size;
+    /* Contacts at a bound without gradient share, too. */
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->near[e];
+        if (p->at[i] != FREE && p->lo[i] < p->hi[i] && fabs(p->gradient[i]) <= tribo_box_tolerance(p, i)) {
+            tribo_box_change(p, i, FREE);
+        }
+    }
+    const size_t vectors = tribo_null_basis(p);
+    size_t held = 0;
+    for (size_t round = 0; vectors && round < 20 * (size + vectors); round++) {
+        aim_at_least(p, vectors - held);
+        const size_t hit = box_advance(p, 1.0);
+        if (hit < size && held < vectors) {
+            p->null.held[held] = hit;
+            held += (size_t)hold_contact(p, vectors - held, hit);
+        } else if (!release_contact(p, vectors, &held)) {
+            break;
+        }
+    }
+    return vectors > 0;
 }
 
 /* x = the solution of least norm. Takes the rounding of shares, which may be much to a contact that carries little, away again if
@@ -440,7 +595,7 @@ static double box_share_once(struct box_qp *p, double *before, double *after)
     double most = 0.0;
     int inside = 1;
     memcpy(before, p->x, p->group->size * sizeof *before);
-    if (!tribo_least_norm(p)) {
+    if (!find_least_norm(p)) {
         return 0.0;
     }
     memcpy(after, p->x, p->group->size * sizeof *after);
@@ -474,7 +629,7 @@ void tribo_box_share(struct box_qp *p)
     double violation = box_share_once(p, before, after);
     if (violation > TRIBO_SETTLED) {
         box_forget(p);
-        tribo_box_enter(p, 0);
+        box_enter(p, 0);
         if (box_primal_dual(p)) {
             violation = box_share_once(p, before, after);
         }
@@ -482,4 +637,65 @@ void tribo_box_share(struct box_qp *p)
     if (violation > TRIBO_SETTLED) {
         box_restore(p, before);
     }
+}
+
+/* --------------------------------------------------------------------------------------------------- the linear system */
+
+/* x = the solution of R x + q = 0 of least norm, or the least-squares one, by the factor as it is. Returns 1 if there is one. */
+static int minimum_norm(struct box_qp *p)
+{
+    forget_low(p);
+    for (size_t e = 0; e < p->count; e++) {
+        p->x[p->near[e]] = 0.0;
+    }
+    const size_t vectors = tribo_null_basis(p);
+    int consistent = 1;
+    for (int pass = 0; pass < 3; pass++) {
+        tribo_box_gradients(p);
+        if (vectors) {
+            double rounding = DBL_MIN;
+            for (size_t e = 0; e < p->count; e++) {
+                p->step[p->near[e]] = p->gradient[p->near[e]];
+                p->low.gradient[p->near[e]] = 0.0;
+                rounding = greater(rounding, 16.0 * p->noise[p->near[e]]);
+            }
+            tribo_null_project(p, vectors, p->gradient, p->gradient);
+            for (size_t e = 0; e < p->count; e++) {
+                const size_t i = p->near[e];
+                consistent &= pass > 0 || fabs(p->step[i] - p->gradient[i]) <= rounding + disagreement(p, i);
+            }
+        } else if (pass > 0 && box_settled(p, 1.0)) {
+            break;
+        }
+        box_newton(p);
+        if (vectors) { /* projections have the digits of a double */
+            tribo_null_project(p, vectors, p->step, p->step);
+            memset(p->low.step, 0, p->group->size * sizeof *p->low.step);
+        }
+        for (size_t e = 0; e < p->count; e++) {
+            const size_t i = p->near[e];
+            p->x[i] = box_moved(p, i);
+        }
+    }
+    tribo_box_gradients(p);
+    /* Without null vectors the system is consistent if the dependents have no gradient. */
+    for (size_t d = 0; d < p->sets->dependents && !vectors; d++) {
+        const size_t i = p->order[p->sets->rank + d];
+        consistent &= fabs(p->gradient[i]) <= 16.0 * p->noise[i] + disagreement(p, i);
+    }
+    return consistent;
+}
+
+int tribo_box_linear(struct box_qp *p)
+{
+    p->sets->far = p->far;
+    box_begin(p, 0);
+    box_enter(p, 0);
+    int consistent = minimum_norm(p);
+    /* The rank of a factor made row by row may differ from that of one with the largest pivots first. */
+    if (!consistent || !box_settled(p, TRIBO_SETTLED)) {
+        tribo_factor_rebuild(p, NULL);
+        consistent = minimum_norm(p);
+    }
+    return consistent;
 }

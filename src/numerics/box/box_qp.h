@@ -2,12 +2,12 @@
 /* A group of contacts that R couples, and the box-constrained quadratic program over its contacts near stick. Arrays are indexed
  * by place in the group. Nothing here allocates, unless it says so.
  *
- *   factor.c          rows of R, and its factor over the free contacts: a square block, kept from call to call and changed row by
- *                     row, or with twice as many digits, for light bodies between heavy ones
+ *   factor.c          rows of R, its null space, and its factor over the free contacts: a square block, kept from call to call and
+ *                     changed row by row, or with twice as many digits, for light bodies between heavy ones
  *   factor_sparse.c   the same for large groups with few entries
  *   small.h           solves the problem of up to 4 contacts
- *   least_norm.c      shares forces among redundant contacts, and solves the linear system of the partition coupling
- *   box.c             the sets of free contacts and of contacts at a bound, Newton's method, and the solution of the problem */
+ *   box.c             the sets of free contacts and of contacts at a bound, Newton's method, the solution of the problem, its
+ *                     share among redundant contacts, and the linear system of the partition coupling */
 #ifndef TRIBO_BOX_H
 #define TRIBO_BOX_H
 
@@ -165,8 +165,9 @@ void tribo_box_change(struct box_qp *p, size_t i, signed char to);
  * independent contacts, rounding unless R is indefinite, negative if a pivot is, and its contact *where; else 0. */
 double tribo_factor_rebuild(struct box_qp *p, size_t *where);
 
-/* step = R^-1 step over the independent contacts, 0 for the dependents. Leaves the other entries. */
-void tribo_factor_solve(const struct box_qp *p, double *step);
+/* step = R^-1 step over the independent contacts, 0 for the dependents; of least norm over both for `vectors` of the basis, else 0.
+ * Leaves the other entries. p->far: step is of any size. */
+void tribo_factor_solve(const struct box_qp *p, size_t vectors, double *step);
 
 /* Of a graded group: step + low = R^-1 (step + low), 0 for the dependents. */
 void tribo_graded_solve(const struct box_qp *p, double *step, double *low);
@@ -222,80 +223,22 @@ double tribo_row_others(const struct box_qp *p, size_t i, double *x);
 /* y [size] = the null vector of R over the free contacts with y_d = 1, d a dependent. Leaves the entries of other contacts. */
 void tribo_null_vector(const struct box_qp *p, size_t d, double *y);
 
-/* ---- sets: which contacts are free */
+/* basis = orthonormal null vectors of R over the free contacts. Returns their number: dependents, or 0 if there is no room. */
+size_t tribo_null_basis(struct box_qp *p);
 
-/* Takes the near contacts into the problem, free, and the others out of it. keep_bounds: contacts at a bound stay there, unless
- * the bound went far away. */
-void tribo_box_enter(struct box_qp *p, int keep_bounds);
+/* y [size] -= the projection of x [size], which may be y, to the first vectors of basis. */
+void tribo_null_project(const struct box_qp *p, size_t vectors, const double *x, double *y);
 
-/* Moves the free x by as much of longest step as keeps them in their boxes. Returns the contact that meets its bound, or size. */
-size_t tribo_box_advance(struct box_qp *p, double longest);
-
-/* Rounding of the caller's a must not set redundant contacts against each other: their gradient may be this part of the unit, but
- * not more than that part of the terms, since limits that are never reached do not bound rounding. */
-#define TRIBO_DISAGREEMENT 5e-13
-#define TRIBO_DISAGREED_TERMS 5e-9
-
-/* Returns the gradient of i that rounding of the caller's a may cause, for groups with redundant contacts. */
-static inline double tribo_box_disagreement(const struct box_qp *p, size_t i)
-{
-    if (!p->group->nullity) {
-        return 0.0;
-    }
-    return p->twofold ? TRIBO_DISAGREEMENT * tribo_graded_terms(p, i)
-                      : lesser(TRIBO_DISAGREEMENT * p->rounding.unit[i], TRIBO_DISAGREED_TERMS * p->rounding.terms[i]);
-}
-
-/* Returns the gradient of i that counts as zero. */
-static inline double tribo_box_tolerance(const struct box_qp *p, size_t i)
-{
-    return p->noise[i] + tribo_box_disagreement(p, i);
-}
-
-/* Returns 1 if pull, which may be negative, exceeds the tolerance of i. */
-static inline int tribo_box_pulls(const struct box_qp *p, size_t i, double pull)
-{
-    return pull > p->noise[i] && pull > tribo_box_tolerance(p, i);
-}
-
-/* ---- Newton's method with the sets as they are */
+/* ---- the problem */
 
 /* Largest gradient of a solution, in parts of its rounding; more shows an inexact factor. */
 #define TRIBO_SETTLED 4.0
 
-/* Chooses twofold, and finds rounding.terms. bounded: lo and hi are set. */
-void tribo_box_begin(struct box_qp *p, int bounded);
-
 /* Finds gradient and noise at x. */
 void tribo_box_gradients(struct box_qp *p);
 
-/* step = the move of the independent x that takes gradient to zero; 0 for the dependents. */
-void tribo_box_newton(struct box_qp *p);
-
-/* Returns x_i + step_i. */
-double tribo_box_moved(struct box_qp *p, size_t i);
-
-/* Returns 1 if the gradients of the independent x are at most noises times their rounding. */
-static inline int tribo_box_settled(const struct box_qp *p, double noises)
-{
-    for (size_t k = 0; k < p->sets->rank; k++) {
-        const size_t i = p->order[k];
-        if (!(fabs(p->gradient[i]) <= noises * p->noise[i])) {
-            return 0;
-        }
-    }
-    return 1;
-}
-
-/* low.x = 0: an x that no solver found has no low part. */
-static inline void tribo_box_forget_low(const struct box_qp *p)
-{
-    if (p->twofold) {
-        memset(p->low.x, 0, p->group->size * sizeof *p->low.x);
-    }
-}
-
-/* ---- the problem */
+/* Returns the gradient of i that counts as zero. */
+double tribo_box_tolerance(const struct box_qp *p, size_t i);
 
 /* Forces that miss the balance of a contact by more than this part of its limit are no solution. */
 #define TRIBO_MISSED 1e-6
@@ -316,20 +259,5 @@ void tribo_box_share(struct box_qp *p);
 /* x = the solution of R x + q = 0 of least norm over the near contacts, all of them free. Returns 1, or 0 if there is none: then
  * x is the least-squares solution. */
 int tribo_box_linear(struct box_qp *p);
-
-/* ---- least norm */
-
-/* basis = orthonormal null vectors of R over the free contacts. Returns their number: dependents, or 0 if there is no room. */
-size_t tribo_null_basis(struct box_qp *p);
-
-/* y [size] -= its projection to the first k vectors of basis. */
-void tribo_null_project(const struct box_qp *p, size_t k, double *y);
-
-/* step = R^-1 step of least norm over the free contacts, for `vectors` of basis. */
-void tribo_null_solve(const struct box_qp *p, size_t vectors, double *step);
-
-/* x = the solution of least norm, up to rounding. Contacts at a bound without gradient become free. Returns 0 if the solution is
- * unique. */
-int tribo_least_norm(struct box_qp *p);
 
 #endif

@@ -21,6 +21,9 @@
 /* Largest numbers of a graded solve: its results stay below TWOFOLD_FAR. */
 #define FITS 1e100
 
+/* With the smallest pivots of a factor, of 1e-200, this part of the largest numbers lead to finite ones. */
+#define ROOM 0x1p-664
+
 /* Sums side by side, since one sum waits for itself. */
 enum { SUMS = 4 };
 
@@ -378,22 +381,21 @@ static void factor_solve(const struct box_qp *p, double *step)
     }
 }
 
-void tribo_factor_solve(const struct box_qp *p, double *step)
+void tribo_factor_solve(const struct box_qp *p, size_t vectors, double *step)
 {
-    if (!p->far) {
-        factor_solve(p, step);
-        return;
-    }
+    const size_t all = p->sets->rank + (vectors ? p->sets->dependents : 0);
     double most = 0.0;
-    for (size_t k = 0; k < p->sets->rank; k++) {
+    for (size_t k = 0; p->far && k < all; k++) {
         most = greater(most, fabs(step[p->order[k]]));
     }
-    const double room = most < TRIBO_ROOM * TRIBO_FAR ? 1.0 : TRIBO_ROOM, far = room * TRIBO_FAR;
-    for (size_t k = 0; k < p->sets->rank; k++) {
+    const double room = most < ROOM * TRIBO_FAR ? 1.0 : ROOM, far = room * TRIBO_FAR;
+    for (size_t k = 0; p->far && k < all; k++) {
         step[p->order[k]] *= room;
     }
+    tribo_null_project(p, vectors, step, step);
     factor_solve(p, step);
-    for (size_t k = 0; k < p->sets->rank; k++) {
+    tribo_null_project(p, vectors, step, step);
+    for (size_t k = 0; p->far && k < all; k++) {
         step[p->order[k]] = clamp(step[p->order[k]], -far, far) / room;
     }
 }
@@ -435,6 +437,50 @@ void tribo_null_vector(const struct box_qp *p, size_t d, double *y)
         y[i] = -row[i];
         p->row[i] = g->graded ? -p->low.r[d * g->size + i] : 0.0;
     }
-    (g->graded ? factor_solve : tribo_factor_solve)(p, y);
+    if (g->graded) {
+        factor_solve(p, y);
+    } else {
+        tribo_factor_solve(p, 0, y);
+    }
     y[d] = 1.0;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- null space */
+
+static double free_dot(const struct box_qp *p, const double *x, const double *y)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
+        sum += x[p->order[k]] * y[p->order[k]];
+    }
+    return sum;
+}
+
+void tribo_null_project(const struct box_qp *p, size_t vectors, const double *x, double *y)
+{
+    for (size_t j = 0; j < vectors; j++) {
+        const double *b = p->null.basis + j * p->group->size, part = free_dot(p, b, x);
+        for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
+            y[p->order[k]] -= part * b[p->order[k]];
+        }
+    }
+}
+
+size_t tribo_null_basis(struct box_qp *p)
+{
+    const size_t vectors = p->sets->dependents;
+    if (vectors > p->null.redundant) {
+        return 0;
+    }
+    for (size_t j = 0; j < vectors; j++) {
+        double *b = p->null.basis + j * p->group->size;
+        tribo_null_vector(p, p->order[p->sets->rank + j], b);
+        tribo_null_project(p, j, b, b);
+        tribo_null_project(p, j, b, b);
+        const double length = sqrt(free_dot(p, b, b));
+        for (size_t k = 0; k < p->sets->rank + vectors; k++) {
+            b[p->order[k]] /= length;
+        }
+    }
+    return vectors;
 }

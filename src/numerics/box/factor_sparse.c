@@ -10,13 +10,28 @@
  *     += a w w'    for j on the way from k to the root: a new pivot and column j; w -= its part in column j
  *
  * "Place" is the number of a contact in its group, "position" its number in the order of elimination. */
-#include "factor_sparse.h"
+#include "box_qp.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/real.h"
+#include "numerics/csr.h"
+
+#define NONE SIZE_MAX
+
+struct sparse {
+    struct csr r;      /* R by places */
+    size_t *position;  /* [size] of a place */
+    size_t *place;     /* [size] of a position */
+    size_t *column;    /* [size + 1] column j of L has the slots column[j] to column[j + 1] - 1 */
+    size_t *row_of;    /* [slots] rows, ascending in a column */
+    size_t *row;       /* [size + 1] row k of L has the entries row[k] to row[k + 1] - 1 of: */
+    size_t *column_of; /* [slots] columns, ascending in a row */
+    size_t *slot;      /* [slots] slots */
+};
 
 /* Groups of at most DENSE_UP_TO contacts have a dense factor where a sparse one would have small pivots. */
 #define DENSE_UP_TO 2048
@@ -35,6 +50,122 @@ void tribo_sparse_free(struct sparse *s)
 size_t tribo_sparse_slots(const struct sparse *s)
 {
     return s->column[s->r.n];
+}
+
+/* --------------------------------------------------------------------------------------------------- nested dissection
+ * (George 1973): a level of a breadth-first search splits the graph of R into two sides, and is eliminated after them; each side
+ * is split likewise. */
+
+/* Parts of at most LEAF nodes are not split. */
+#define LEAF 24
+
+struct graph {
+    const struct csr *r;
+    size_t *node;  /* [n] the order; parts are pieces of it */
+    size_t *list;  /* [n] nodes in the order of a search */
+    size_t *level; /* [n] distances from its start */
+    size_t *mark;  /* [n] stamp: node of the part, not found */
+    size_t stamp;
+};
+
+struct part {
+    size_t begin, end;
+};
+
+/* list = the nodes of the part connected with start, nearest first. Returns their number. The other nodes of the part have the
+ * mark stamp. */
+static size_t search_breadth_first(struct graph *g, struct part part, size_t start)
+{
+    size_t count = 1;
+    g->stamp++;
+    for (size_t k = part.begin; k < part.end; k++) {
+        g->mark[g->node[k]] = g->stamp;
+    }
+    g->list[0] = start;
+    g->level[start] = g->mark[start] = 0;
+    for (size_t next = 0; next < count; next++) {
+        const size_t i = g->list[next];
+        for (size_t e = g->r->first[i]; e < g->r->first[i + 1]; e++) {
+            const size_t j = g->r->col[e];
+            if (g->mark[j] == g->stamp) {
+                g->mark[j] = 0;
+                g->level[j] = g->level[i] + 1;
+                g->list[count++] = j;
+            }
+        }
+    }
+    return count;
+}
+
+/* Orders a part, and appends the two sides that are not in order to stack: of a part in pieces, one piece and the others. */
+static void dissect(struct graph *g, struct part part, struct part *stack, size_t *depth)
+{
+    size_t *node = g->node + part.begin, from = 0, to = 0;
+    const size_t size = part.end - part.begin;
+    if (size <= LEAF) {
+        return;
+    }
+    const size_t count = search_breadth_first(g, part, node[0]);
+    if (count < size) {
+        for (size_t k = 0, next = count; k < size; k++) {
+            if (g->mark[node[k]] == g->stamp) {
+                g->list[next++] = node[k];
+            }
+        }
+        memcpy(node, g->list, size * sizeof *node);
+        from = to = count;
+    } else {
+        /* A search from the far end has more and smaller levels. list[from, to) = a small level that splits the others evenly. */
+        search_breadth_first(g, part, g->list[size - 1]);
+        const size_t last = g->level[g->list[size - 1]];
+        size_t best = SIZE_MAX;
+        for (size_t k = 0; k < size;) {
+            const size_t level = g->level[g->list[k]], begin = k;
+            while (k < size && g->level[g->list[k]] == level) {
+                k++;
+            }
+            const size_t behind = size - k, cost = 4 * (k - begin) + (begin > behind ? begin - behind : behind - begin);
+            if (level > 0 && level < last && cost < best) {
+                best = cost;
+                from = begin;
+                to = k;
+            }
+        }
+        if (best == SIZE_MAX) {
+            return;
+        }
+        memcpy(node, g->list, from * sizeof *node);
+        memcpy(node + from, g->list + to, (size - to) * sizeof *node);
+        memcpy(node + from + size - to, g->list + from, (to - from) * sizeof *node);
+    }
+    stack[(*depth)++] = (struct part){part.begin, part.begin + from};
+    stack[(*depth)++] = (struct part){part.begin + from, part.begin + from + size - to};
+}
+
+/* place [size] = an order of elimination that keeps L sparse. Returns 1, or 0 if out of memory. */
+static int order_by_dissection(const struct csr *r, size_t *place)
+{
+    struct graph g = {.r = r, .node = place};
+    struct part *stack = malloc((r->n + 2) * sizeof *stack);
+    g.list = malloc(2 * r->n * sizeof *g.list);
+    g.mark = calloc(r->n, sizeof *g.mark);
+    const int done = stack && g.list && g.mark;
+    if (done) {
+        size_t depth = 1;
+        g.level = g.list + r->n;
+        for (size_t i = 0; i < r->n; i++) {
+            place[i] = i;
+        }
+        stack[0] = (struct part){0, r->n};
+        while (depth > 0) {
+            depth--;
+            dissect(&g, stack[depth], stack, &depth);
+        }
+    }
+    free(stack);
+    free(g.list);
+    free(g.mark);
+    return done;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- pattern of L */
@@ -386,7 +517,7 @@ int tribo_sparse_create(struct sparse **created, const struct csr *r)
         s->column = calloc(2 * (size + 1), sizeof *s->column);
         s->place = s->position ? s->position + size : NULL;
         s->row = s->column ? s->column + size + 1 : NULL;
-        good = s->place && s->row && tribo_nested_dissection(r, s->place) ? 1 : -1;
+        good = s->place && s->row && order_by_dissection(r, s->place) ? 1 : -1;
     }
     for (size_t k = 0; good > 0 && k < size; k++) {
         s->position[s->place[k]] = k;

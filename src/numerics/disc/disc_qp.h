@@ -143,11 +143,8 @@ void tribo_disc_follow(struct disc_qp *p, const double *rhs, double *move);
 /* move [size] = for a singular s, a change of y along its null vectors that are pulled at, beyond all rims; 0 if none is. */
 void tribo_disc_slide(struct disc_qp *p, const double *rhs, double *move);
 
-/* Factors factor.matrix [size][size], symmetric and positive semidefinite. */
+/* Factors factor.matrix [size][size], symmetric and positive semidefinite; tribo_factor_solve then solves, in least norm. */
 void tribo_disc_factorize(struct disc_qp *p, size_t size);
-
-/* step [size] = matrix^-1 step, of least norm. */
-void tribo_disc_backsolve(struct disc_qp *p);
 
 /* dy [wide] = the change of the y of the contact at i with its c, without that along its freedoms. */
 void tribo_disc_drag(const struct disc_qp *p, size_t i, const double *dshift, double *dy);

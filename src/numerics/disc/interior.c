@@ -58,23 +58,7 @@ static void find_step(struct disc_qp *p, double aim)
     for (size_t i = 0; i < n; i++) {
         p->step[i] = -p->gradient[i];
     }
-    tribo_disc_backsolve(p);
-}
-
-/* Finds the changes of press with step. Returns the part of step, and of these changes, that a step takes. */
-static double longest_step(struct disc_qp *p, double aim)
-{
-    double length = 1.0 / NEARLY;
-    for (struct disc *d = p->disc; d < p->disc + p->discs; d++) {
-        double turn = 0.0;
-        for (size_t k = 0; k < p->wide[d->at]; k++) {
-            turn += d->x[k] * p->step[d->at + k];
-        }
-        d->change = aim / d->room - d->press + product(d->press / d->room, turn);
-        length = lesser(length, tribo_way_to_rim(p->wide[d->at], d->x, p->step + d->at));
-        length = d->change < 0.0 ? lesser(length, quotient(d->press, -d->change)) : length;
-    }
-    return NEARLY * length;
+    tribo_factor_solve(&p->factor.qp, p->factor.redundant, p->step);
 }
 
 void tribo_disc_interior(struct disc_qp *p)
@@ -101,7 +85,18 @@ void tribo_disc_interior(struct disc_qp *p)
             break;
         }
         find_step(p, aim);
-        length = longest_step(p, aim);
+        /* the part of step, and of the changes of press with it, up to the first rim or press of 0 */
+        length = 1.0 / NEARLY;
+        for (struct disc *d = p->disc; d < p->disc + p->discs; d++) {
+            double turn = 0.0;
+            for (size_t k = 0; k < p->wide[d->at]; k++) {
+                turn += d->x[k] * p->step[d->at + k];
+            }
+            d->change = aim / d->room - d->press + product(d->press / d->room, turn);
+            length = lesser(length, tribo_way_to_rim(p->wide[d->at], d->x, p->step + d->at));
+            length = d->change < 0.0 ? lesser(length, quotient(d->press, -d->change)) : length;
+        }
+        length *= NEARLY;
         if (!(length > 1e-12)) {
             break;
         }

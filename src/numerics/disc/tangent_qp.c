@@ -145,6 +145,7 @@ void tribo_disc_factorize(struct disc_qp *p, size_t size)
     f->r = p->factor.matrix;
     f->scale = scale;
     f->count = size;
+    f->far = 1;
     for (size_t k = 0; k < size; k++) {
         largest = greater(largest, p->factor.matrix[k * size + k]);
     }
@@ -157,29 +158,6 @@ void tribo_disc_factorize(struct disc_qp *p, size_t size)
     tribo_factor_rebuild(f, NULL);
     f->null.redundant = size;
     p->factor.redundant = tribo_null_basis(f);
-}
-
-/* A factor with the least pivots makes finite numbers of numbers up to 1/ROOM. */
-#define ROOM 0x1p200
-#define LEAST_EXPONENT (-1000)
-
-void tribo_disc_backsolve(struct disc_qp *p)
-{
-    double most = 0.0;
-    int e;
-    for (size_t k = 0; k < p->factor.group.size; k++) {
-        most = greater(most, fabs(p->step[k]));
-    }
-    frexp(most, &e);
-    e = e > LEAST_EXPONENT ? e : LEAST_EXPONENT;
-    const double unit = ldexp(1.0, e - 1), inverse = 0.5 / unit;
-    for (size_t k = 0; k < p->factor.group.size; k++) {
-        p->step[k] = p->step[k] * inverse * (1.0 / ROOM);
-    }
-    tribo_null_solve(&p->factor.qp, p->factor.redundant, p->step);
-    for (size_t k = 0; k < p->factor.group.size; k++) {
-        p->step[k] = product(product(p->step[k], 2.0 * ROOM), unit);
-    }
 }
 
 void tribo_disc_linearize(struct disc_qp *p)
@@ -227,7 +205,7 @@ void tribo_disc_follow(struct disc_qp *p, const double *rhs, double *move)
     for (size_t k = 0; k < p->freedoms; k++) {
         p->step[k] = -tangent_qp_along(&p->freedom[k], rhs);
     }
-    tribo_disc_backsolve(p);
+    tribo_factor_solve(&p->factor.qp, p->factor.redundant, p->step);
     spread(p, p->step, move);
 }
 
@@ -238,7 +216,7 @@ void tribo_disc_slide(struct disc_qp *p, const double *rhs, double *move)
     for (size_t k = 0; k < p->freedoms; k++) {
         pull[k] = balanced[k] = -tangent_qp_along(&p->freedom[k], rhs);
     }
-    tribo_null_project(&p->factor.qp, p->factor.redundant, balanced);
+    tribo_null_project(&p->factor.qp, p->factor.redundant, balanced, balanced);
     for (size_t k = 0; k < p->freedoms; k++) {
         pull[k] -= balanced[k];
         most = greater(most, fabs(pull[k]));
