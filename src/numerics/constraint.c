@@ -21,13 +21,9 @@
  * pivots. */
 struct elimination {
     const struct matrix *direction, *mass;
-    const size_t *row; /* [count] */
-    size_t count;
+    const size_t *row;         /* [count] */
     const unsigned char *last; /* [count] */
-    size_t *member;            /* [count] the tie of a row */
-    size_t *parent;            /* [cols] forest of the degrees of freedom that rows join */
-    size_t *place;             /* [cols] place in tie->dof, plus 1 */
-    size_t *number;            /* [cols] at roots: the tie, plus 1 */
+    const size_t *place;       /* [cols] place in tie->dof, plus tie->rows */
     struct tie *tie;
     double *size;   /* [rows][touched] sum of the sizes of an entry's terms */
     double *weight; /* [touched] 1/sqrt(mass) */
@@ -41,73 +37,6 @@ void tribo_constraints_free(struct constraints *c)
     free(c->memory[0]);
     free(c->memory[1]);
     memset(c, 0, sizeof *c);
-}
-
-/* ------------------------------------------------------------------------------------------------------------ the ties */
-
-/* Joins the degrees of freedom of each row, numbers the ties, and counts their rows and degrees of freedom. A row without entries
- * is a tie. */
-static void find_ties(const struct elimination *e, struct constraints *c)
-{
-    const struct matrix *j = e->direction;
-    for (size_t d = 0; d < j->cols; d++) {
-        e->parent[d] = d;
-    }
-    for (size_t p = 0; p < e->count; p++) {
-        for (size_t k = j->first[e->row[p]]; k < j->first[e->row[p] + 1]; k++) {
-            tribo_join(e->parent, j->col[k], j->col[j->first[e->row[p]]]);
-        }
-    }
-    for (size_t p = 0; p < e->count; p++) {
-        const size_t first = j->first[e->row[p]], end = j->first[e->row[p] + 1];
-        size_t none = 0, *number = first < end ? &e->number[tribo_root(e->parent, j->col[first])] : &none;
-        *number = *number ? *number : ++c->ties;
-        e->member[p] = *number - 1;
-        struct tie *tie = &c->tie[e->member[p]];
-        tie->rows++;
-        for (size_t k = first; k < end; k++) {
-            if (e->place[j->col[k]] == 0) {
-                e->place[j->col[k]] = ++tie->touched;
-            }
-        }
-    }
-}
-
-/* Allocates the arrays of the ties, and workspace for the largest tie, and lists the rows and degrees of freedom of each tie.
- * Returns 1, or 0 if out of memory. */
-static int create_ties(struct elimination *e, struct constraints *c)
-{
-    const struct matrix *j = e->direction;
-    struct layout l = {0};
-    size_t rows = 0, touched = 0, area = 0;
-    do {
-        c->memory[1] = tribo_layout_array(&l, 0, 1);
-        for (size_t t = 0; t < c->ties; t++) {
-            struct tie *const tie = &c->tie[t];
-            tie->order = tribo_layout_array(&l, tie->rows, sizeof *tie->order);
-            tie->dof = tribo_layout_array(&l, tie->touched, sizeof *tie->dof);
-            tie->stride = tie->touched + (e->last ? 0 : tie->rows);
-            tie->entry = tribo_layout_array(&l, tie->rows * tie->stride, sizeof *tie->entry);
-            rows = tie->rows > rows ? tie->rows : rows;
-            touched = tie->touched > touched ? tie->touched : touched;
-            area = tie->rows * tie->stride > area ? tie->rows * tie->stride : area;
-        }
-        e->size = tribo_layout_array(&l, area, sizeof *e->size);
-        e->weight = tribo_layout_array(&l, touched, sizeof *e->weight);
-        e->scale = tribo_layout_array(&l, rows, sizeof *e->scale);
-        e->most = tribo_layout_array(&l, rows, sizeof *e->most);
-    } while (!l.memory && tribo_layout_create(&l));
-    for (size_t k = 0; k < c->ties; k++) {
-        c->tie[k].rows = 0;
-    }
-    for (size_t p = 0; l.memory && p < e->count; p++) {
-        struct tie *tie = &c->tie[e->member[p]];
-        tie->order[tie->rows++] = p;
-        for (size_t k = j->first[e->row[p]]; k < j->first[e->row[p] + 1]; k++) {
-            tie->dof[e->place[j->col[k]] - 1] = j->col[k];
-        }
-    }
-    return l.memory != NULL;
 }
 
 /* --------------------------------------------------------------------------------------------------------- elimination */
@@ -185,7 +114,7 @@ static void fill(struct elimination *e)
         const size_t row = e->row[tie->order[p]];
         double most = 0.0, *entry = tie->entry + p * tie->stride;
         for (size_t k = j->first[row]; k < j->first[row + 1]; k++) {
-            const size_t l = e->place[j->col[k]] - 1;
+            const size_t l = e->place[j->col[k]] - tie->rows;
             entry[l] = j->val[k];
             most = greater(most, fabs(entry[l]) * e->weight[l]);
         }
@@ -261,31 +190,78 @@ static void invert_one(const struct elimination *e)
     }
 }
 
-int tribo_constraints_create(struct constraints *c, const struct matrix *direction, const struct matrix *mass, const size_t *row,
-                             size_t count, const unsigned char *last)
+/* Finds the ties, sets of rows and of degrees of freedom, which come behind all rows. Returns 1, or 0 if out of memory. */
+static int find_ties(struct elimination *e, struct constraints *c)
 {
-    const size_t n = direction->cols;
-    struct elimination e = {.direction = direction, .mass = mass, .row = row, .count = count, .last = last};
+    const struct matrix *j = e->direction;
+    const size_t count = c->count, all = count + j->cols;
     struct layout l = {0};
-    size_t independent = 0;
-    *c = (struct constraints){.count = count};
-    if (count == 0) {
-        return 1;
-    }
+    size_t *parent, *chosen, *of, *place, *first, *member;
     do {
         c->memory[0] = tribo_layout_array(&l, 0, 1);
         c->tie = tribo_layout_array(&l, count, sizeof *c->tie);
         c->order = tribo_layout_array(&l, count, sizeof *c->order);
-        e.member = tribo_layout_array(&l, count, sizeof *e.member);
-        e.parent = tribo_layout_array(&l, n, sizeof *e.parent);
-        e.place = tribo_layout_array(&l, n, sizeof *e.place);
-        e.number = tribo_layout_array(&l, n, sizeof *e.number);
-    } while (!l.memory && tribo_layout_zeros(&l));
+        parent = tribo_layout_array(&l, all, sizeof *parent);
+        chosen = tribo_layout_array(&l, all, sizeof *chosen);
+        of = tribo_layout_array(&l, all, sizeof *of);
+        place = tribo_layout_array(&l, all, sizeof *place);
+        first = tribo_layout_array(&l, all + 1, sizeof *first);
+        member = tribo_layout_array(&l, all, sizeof *member);
+    } while (!l.memory && tribo_layout_create(&l));
     if (!l.memory) {
         return 0;
     }
-    find_ties(&e, c);
-    if (!create_ties(&e, c)) {
+    memset(c->tie, 0, count * sizeof *c->tie);
+    for (size_t k = 0; k < all; k++) {
+        parent[k] = k;
+        chosen[k] = k < count ? 2 : 0;
+    }
+    for (size_t p = 0; p < count; p++) {
+        for (size_t k = j->first[e->row[p]]; k < j->first[e->row[p] + 1]; k++) {
+            tribo_join(parent, p, count + j->col[k]);
+        }
+    }
+    c->ties = tribo_list_sets(all, parent, chosen, of, place, first, member);
+    for (size_t t = 0; t < c->ties; t++) {
+        struct tie *tie = &c->tie[t];
+        tie->order = member + first[t];
+        for (size_t k = first[t]; k < first[t + 1]; k++) {
+            tie->rows += member[k] < count;
+            member[k] -= member[k] < count ? 0 : count;
+        }
+        tie->dof = tie->order + tie->rows;
+        tie->touched = first[t + 1] - first[t] - tie->rows;
+    }
+    e->place = place + count;
+    return 1;
+}
+
+int tribo_constraints_create(struct constraints *c, const struct matrix *direction, const struct matrix *mass, const size_t *row,
+                             size_t count, const unsigned char *last)
+{
+    struct elimination e = {.direction = direction, .mass = mass, .row = row, .last = last};
+    struct layout l = {0};
+    size_t rows = 0, touched = 0, area = 0, independent = 0;
+    *c = (struct constraints){.count = count};
+    if (count == 0 || !find_ties(&e, c)) {
+        return count == 0;
+    }
+    do {
+        c->memory[1] = tribo_layout_array(&l, 0, 1);
+        for (size_t t = 0; t < c->ties; t++) {
+            struct tie *const tie = &c->tie[t];
+            tie->stride = tie->touched + (last ? 0 : tie->rows);
+            tie->entry = tribo_layout_array(&l, tie->rows * tie->stride, sizeof *tie->entry);
+            rows = tie->rows > rows ? tie->rows : rows;
+            touched = tie->touched > touched ? tie->touched : touched;
+            area = tie->rows * tie->stride > area ? tie->rows * tie->stride : area;
+        }
+        e.size = tribo_layout_array(&l, area, sizeof *e.size);
+        e.weight = tribo_layout_array(&l, touched, sizeof *e.weight);
+        e.scale = tribo_layout_array(&l, rows, sizeof *e.scale);
+        e.most = tribo_layout_array(&l, rows, sizeof *e.most);
+    } while (!l.memory && tribo_layout_create(&l));
+    if (!l.memory) {
         return 0;
     }
     for (size_t k = 0; k < c->ties; k++) {

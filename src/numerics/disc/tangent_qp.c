@@ -76,31 +76,19 @@ static double unit_of(const struct disc_qp *p, size_t i)
     return p->near_enough < TRIBO_NEAR_ENOUGH ? lesser(product(p->gain[i], p->noise[i] / tribo_resolution(p->size)), 1.0) : 1.0;
 }
 
-/* Returns the error of the contact at i for the error noise of y - gain gradient: less if it is pressed against a rim. */
-static double doubt_of(const struct disc_qp *p, size_t i, double noise)
-{
-    double move[2];
-    if (noise <= DOUBTFUL) {
-        return noise;
-    }
-    for (size_t k = 0; k < p->wide[i]; k++) {
-        move[k] = product(p->gain[i + k], p->gradient[i + k]);
-    }
-    return greater(DOUBTFUL, noise / greater(1.0, tribo_length(p->wide[i], move)));
-}
-
 double tribo_disc_places(struct disc_qp *p)
 {
     const int far = p->near_enough < TRIBO_NEAR_ENOUGH;
     double worst = 0.0;
     p->residual = 0.0;
     for (size_t i = 0; i < p->size; i += p->wide[i]) {
-        double off[2] = {0.0, 0.0}, noise[2] = {0.0, 0.0};
+        double off[2] = {0.0, 0.0}, noise[2] = {0.0, 0.0}, move[2];
         p->place[i] = (unsigned char)tribo_disc_descend(p, i, p->gradient + i, p->to + i);
         for (size_t k = 0; k < p->wide[i]; k++) {
             p->outward[i + k] = p->to[i + k] + (p->place[i] == LENS_ON_SHIFTED ? p->shift[i + k] : 0.0);
             off[k] = p->to[i + k] - p->y[i + k];
             noise[k] = product(p->gain[i + k], p->noise[i + k]);
+            move[k] = product(p->gain[i + k], p->gradient[i + k]);
         }
         /* Pressure on the rim: the part of y - gain gradient beyond the rim, over gain. */
         double sum = 0.0;
@@ -119,7 +107,11 @@ double tribo_disc_places(struct disc_qp *p)
         }
         const double unit = far ? greater(unit_of(p, i), unit_of(p, i + p->wide[i] - 1)) : 1.0;
         const double rounding = greater(unit * (p->factor.sets.dependents ? DISAGREEMENT : 16.0 * DBL_EPSILON), DBL_MIN);
-        worst = greater(worst, quotient(distance, greater(rounding, doubt_of(p, i, greater(noise[0], noise[1])))));
+        double doubt = greater(noise[0], noise[1]); /* of y - gain gradient; of y less if it is pressed against a rim */
+        if (doubt > DOUBTFUL) {
+            doubt = greater(DOUBTFUL, doubt / greater(1.0, tribo_length(p->wide[i], move)));
+        }
+        worst = greater(worst, quotient(distance, greater(rounding, doubt)));
     }
     return worst;
 }
