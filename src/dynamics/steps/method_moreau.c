@@ -19,16 +19,14 @@
  * end. */
 struct moreau {
     struct step_form common;
-    double h;              /* prepared step length; 0: none */
-    struct step_band held; /* solver of bands; matrix NULL: not for this system. Else the rest is made at first need */
-    int whole;             /* 1: factor, response and contacts are ready */
+    double h; /* prepared step length; 0: none */
     struct step_matrix matrix;
+    int whole;               /* 1: response and contacts are ready; made at first need where the matrix holds bodies */
     double *response;        /* [ncontact][ndof] S^-1 J'; NULL: each step solves with S twice */
     double *push;            /* [ndof] workspace */
     size_t told;             /* TRIBO_COUNT_SETTINGS of the system's contacts as contacts took them; SIZE_MAX: never */
     double *limit;           /* [ncontact] limits in a step; limit/2 for compliant contacts */
     double *spring, *give;   /* [ncontact] forces f0 of compliant contacts; workspace, as G f0 */
-    double *change;          /* [ncontact] f1 - f0; workspace */
     tribo_context *contacts; /* contacts with the operator of a step */
     size_t settings;         /* sys->changes at the creation of contacts */
     size_t planar;           /* planar contacts of contacts */
@@ -40,8 +38,6 @@ static void moreau_destroy(tribo_driver *drv)
     if (m) {
         tribo_destroy(m->contacts);
         free(m->common.memory);
-        free(m->held.l);
-        free(m->held.body);
         tribo_step_matrix_free(&m->matrix);
         free(m->response);
         free(m);
@@ -53,14 +49,13 @@ static int moreau_create(tribo_driver *drv)
     const size_t n = drv->sys->ndof, c = drv->sys->ncontact;
     struct moreau *m = calloc(1, sizeof *m);
     drv->own = m;
-    if (!m || !tribo_step_form_create(&m->common, drv->sys, 4 * c + n)) {
+    if (!m || !tribo_step_form_create(&m->common, drv->sys, 3 * c + n)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
     m->limit = m->common.more;
     m->spring = m->limit + c;
     m->give = m->spring + c;
-    m->change = m->give + c;
-    m->push = m->change + c;
+    m->push = m->give + c;
     return TRIBO_OK;
 }
 
@@ -88,14 +83,10 @@ static int set_operator(struct moreau *m, const tribo_system *sys, const double 
     return status ? tribo_system_fail(sys, status, "in steps of %g, %s", h, tribo_message(m->contacts)) : TRIBO_OK;
 }
 
-/* Computes the factor, S^-1 J', and contacts with the operator J S^-1 J'. Returns a status. */
+/* Computes S^-1 J', and contacts with the operator J S^-1 J'. Returns a status. */
 static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
 {
     const size_t c = sys->ncontact;
-    int status = tribo_step_matrix_factorize(&m->matrix, sys, h, !m->held.matrix);
-    if (status) {
-        return status;
-    }
     /* S^-1 J' is kept up to 1/5 of the entries of a sparse factor: a step then solves with S once instead of twice. */
     const int keeps =
         !m->matrix.sparse.sparse || sys->ncontact * sys->ndof <= tribo_sparse_factor_entries(m->matrix.sparse.sparse) / 5;
@@ -123,8 +114,8 @@ static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
         const int both = tribo_is_compliant(&sys->compliance, i) && tribo_is_compliant(&sys->compliance, j);
         r[k] += both ? 4.0 / (h * h) * tribo_compliance_entry(&sys->compliance, c, i, j) : 0.0;
     }
-    status = done ? set_operator(m, sys, r, own, h)
-                  : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
+    const int status = done ? set_operator(m, sys, r, own, h)
+                            : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
     free(r);
     free(own);
     m->whole = !status;
@@ -150,15 +141,13 @@ static void push(struct moreau *m, const tribo_system *sys, double h, const doub
     tribo_add(u, 1.0, m->push, n);
 }
 
-/* Prepares steps of length h: the band solver, or all of prepare_whole. Returns a status. */
+/* Prepares steps of length h. Returns a status. */
 static int moreau_prepare(struct moreau *m, const tribo_system *sys, double h)
 {
     m->h = 0.0;
     m->whole = 0;
-    m->held.matrix = NULL;
     int status = tribo_step_matrix_create(&m->matrix, sys, h);
-    status = status || tribo_system_planar(sys) ? status : tribo_step_band_create(&m->held, sys, &m->matrix, h);
-    status = status || m->held.matrix ? status : prepare_whole(m, sys, h);
+    status = status || m->matrix.count ? status : prepare_whole(m, sys, h);
     if (!status) {
         m->h = h;
         m->common.revision = sys->revision;
@@ -168,7 +157,7 @@ static int moreau_prepare(struct moreau *m, const tribo_system *sys, double h)
 
 /* ------------------------------------------------------------------------------------------------------------ a step */
 
-/* p = impulse of loads and structure in a step; s->u = displacements in the middle of the step at constant velocity. */
+/* p = impulse of loads, structure, and f0/2 of compliant contacts in a step; s->u = displacements in the middle of the step at constant velocity. */
 static void find_push(struct moreau *m, tribo_system *sys, double t, double next, const double *from, double *p)
 {
     struct step_form *s = &m->common;
@@ -188,47 +177,45 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
     }
     tribo_matrix_multiply_add(&sys->k, -h, s->u, p);
     tribo_matrix_multiply_add(&sys->c, -h, u, p);
+    for (size_t k = 0; k < sys->compliance.count; k++) {
+        const size_t i = sys->compliance.contact[k];
+        tribo_matrix_add_row(&sys->direction, i, 0.5 * h * m->spring[i], p);
+    }
     sys->evaluations++;
 }
 
-/* Sets s->f, s->mode, and s->u = velocity at the end of the step: by the band solver, or, without a band, with static limits,
- * or if it finds none, with the operator of contacts. Returns a status. */
+/* Sets s->f, s->mode, and s->u = velocity at the end of the step: by bodies held, or else by the operator of contacts. Returns
+ * a status. */
 static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
 {
     struct step_form *s = &m->common;
     const struct compliance *g = &sys->compliance;
     const struct band_step step = {h, m->limit, s->base, u, du, s->f};
-    const int in_band = m->held.matrix && tribo_system_is_plain(sys) && tribo_step_band_solve(&m->held, &step);
-    int status = in_band || m->whole ? TRIBO_OK : prepare_whole(m, sys, h);
+    const int held = tribo_step_matrix_hold(&m->matrix, sys, &step);
+    int status = held || m->whole ? TRIBO_OK : prepare_whole(m, sys, h);
     if (status) {
         return status;
     }
-    if (!in_band) {
+    if (!held) {
         tribo_step_matrix_solve(&m->matrix, 1, du);
     }
     memcpy(s->u, u, sys->ndof * sizeof *u);
     tribo_add(s->u, 1.0, du, sys->ndof);
-    if (in_band) {
-        memcpy(s->mode, m->held.at, sys->ncontact);
+    if (held) {
+        memcpy(s->mode, m->matrix.at, sys->ncontact);
         return tribo_dense_finite(s->f, sys->ncontact) ? TRIBO_OK : TRIBO_ERR_NOT_FINITE;
     }
     size_t settings = 0;
     tribo_get_count(sys->contacts, TRIBO_COUNT_SETTINGS, &settings); /* limits that vary with time count */
     if (m->told != settings) {
-        double *ratio = m->give, *velocity = m->change;
+        double *ratio = m->give, *velocity = s->end;
         tribo_get_static(sys->contacts, ratio, velocity);
         tribo_set_limit(m->contacts, m->limit);
         tribo_set_static(m->contacts, ratio, tribo_system_falls(sys) ? velocity : NULL);
         m->told = settings;
     }
-    if (g->count) {
-        for (size_t i = 0; i < sys->ncontact; i++) {
-            s->f[i] = 0.5 * m->spring[i];
-        }
-        push(m, sys, h, s->f, s->u);
-        tribo_compliance_give(sys, 1, m->spring, m->give);
-    }
     tribo_step_form_relative(s, sys, s->u, s->end);
+    tribo_compliance_give(sys, 1, m->spring, m->give);
     for (size_t k = 0; k < g->count; k++) {
         const size_t i = g->contact[k];
         s->end[i] += s->v[i] - 2.0 / h * m->give[i];
@@ -241,31 +228,12 @@ static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, c
     return status;
 }
 
-/* For compliant contacts: m->spring = f1 = 2 s->f, then s->f = 0. Returns the energy dissipated. */
-static double end_springs(struct moreau *m, const tribo_system *sys, double h)
-{
-    struct step_form *s = &m->common;
-    const struct compliance *g = &sys->compliance;
-    double energy = 0.0, *change = m->change;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        change[i] = tribo_is_compliant(g, i) ? 2.0 * s->f[i] - m->spring[i] : 0.0;
-    }
-    tribo_compliance_give(sys, 1, change, m->give);
-    for (size_t k = 0; k < g->count; k++) {
-        const size_t i = g->contact[k];
-        const double way = 0.5 * h * (s->v[i] + s->end[i]) + m->give[i];
-        m->spring[i] = 2.0 * s->f[i];
-        s->f[i] = 0.0;
-        energy += s->mode[i] == TRIBO_SLIP_STUCK ? 0.0 : sys->tally[i] * greater(-m->spring[i] * way, 0.0);
-    }
-    return energy;
-}
-
 static int moreau_step(tribo_driver *drv, double t, double next, const double *from, double *y)
 {
     struct moreau *m = drv->own;
     struct step_form *s = &m->common;
     tribo_system *sys = drv->sys;
+    const struct compliance *g = &sys->compliance;
     const size_t n = sys->ndof, energy = tribo_system_energy(sys);
     const double h = next - t, *u = from + n;
     /* steps of equal length differ only by rounding of times */
@@ -276,7 +244,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
             return tribo_driver_pass(drv, status);
         }
     }
-    if (sys->compliance.count) {
+    if (g->count) {
         memcpy(y, from, tribo_system_size(sys) * sizeof *y);
         tribo_get_limit(sys->contacts, m->give);
         tribo_compliance_enter(sys, m->give, m->spring, y);
@@ -290,8 +258,8 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
         tribo_system_set_time(sys, t + 0.5 * h);
     }
     tribo_get_limit(sys->contacts, m->limit);
-    for (size_t k = 0; k < sys->compliance.count; k++) {
-        m->limit[sys->compliance.contact[k]] *= 0.5;
+    for (size_t k = 0; k < g->count; k++) {
+        m->limit[g->contact[k]] *= 0.5;
     }
     const int status = moreau_respond(m, sys, h, u, s->a);
     if (status) {
@@ -303,9 +271,20 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
         y[i] = from[i] + 0.5 * h * (u[i] + s->u[i]);
         y[n + i] = s->u[i];
     }
-    const double slid = sys->compliance.count ? end_springs(m, sys, h) : 0.0;
-    tribo_compliance_put(sys, m->spring, y);
-    y[energy] = from[energy] + h * tribo_step_form_power(s, sys) + slid;
+    if (g->count) { /* f = f1; (v + end)/2 is the velocity of sliding */
+        for (size_t k = 0; k < g->count; k++) {
+            m->spring[g->contact[k]] = 2.0 * s->f[g->contact[k]] - m->spring[g->contact[k]];
+        }
+        tribo_compliance_give(sys, 1, m->spring, m->give);
+        for (size_t k = 0; k < g->count; k++) {
+            const size_t i = g->contact[k];
+            const double slides = s->v[i] + s->end[i] + 2.0 / h * m->give[i];
+            s->end[i] = (s->mode[i] != TRIBO_SLIP_STUCK && s->f[i] * slides < 0.0 ? slides : 0.0) - s->v[i];
+            s->f[i] *= 2.0;
+        }
+        tribo_compliance_put(sys, s->f, y);
+    }
+    y[energy] = from[energy] + h * tribo_step_form_power(s, sys);
     return tribo_driver_check(drv, y);
 }
 

@@ -11,20 +11,11 @@
 #include "common/real.h"
 #include "numerics/lapack.h"
 
-/* Returns status, with a message in the system: TRIBO_ERR_INDEFINITE at degree of freedom `where`, or TRIBO_ERR_MEMORY. */
-static int step_matrix_fail(const tribo_system *sys, int status, double h, size_t where)
-{
-    return status == TRIBO_ERR_INDEFINITE
-               ? tribo_system_fail(
-                     sys, status, "the matrix of a step of length %g is not positive definite at degree of freedom %zu", h, where)
-           : status ? tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrix of a step")
-                    : TRIBO_OK;
-}
-
 void tribo_step_matrix_free(struct step_matrix *m)
 {
     free(m->band);
     free(m->pivot);
+    free(m->body);
     tribo_cholesky_free(&m->sparse);
     tribo_matrix_free(&m->s);
     *m = (struct step_matrix){0};
@@ -32,9 +23,9 @@ void tribo_step_matrix_free(struct step_matrix *m)
 
 /* ------------------------------------------------------------------------------------------------------------- the matrix */
 
-int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, double h)
+/* Sets s, n, below, above. Returns 0 if out of memory. */
+static int add_up(struct step_matrix *m, const tribo_system *sys, double h)
 {
-    tribo_step_matrix_free(m);
     m->n = sys->ndof;
     const struct matrix *const part[] = {&sys->k, &sys->c};
     const double factor[] = {0.25 * h * h, 0.5 * h};
@@ -53,17 +44,53 @@ int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, dou
             m->above = j > i && j - i > m->above ? j - i : m->above;
         }
     }
-    return step_matrix_fail(sys, done ? TRIBO_OK : TRIBO_ERR_MEMORY, h, 0);
+    return done;
+}
+
+/* Sets count if contacts hold bodies of their own, and S is narrow enough to save work. Returns 0 if out of memory. */
+static int find_bodies(struct step_matrix *m, const tribo_system *sys)
+{
+    const size_t n = m->n, count = sys->ncontact;
+    struct layout l = {0};
+    if (!count || sys->compliance.count || m->below != m->above || 2 * m->below > count || tribo_system_planar(sys)) {
+        return 1;
+    }
+    do {
+        m->body = tribo_layout_array(&l, count, sizeof *m->body);
+        m->contact = tribo_layout_array(&l, n, sizeof *m->contact);
+        m->lever = tribo_layout_array(&l, count, sizeof *m->lever);
+        m->own = tribo_layout_array(&l, count, sizeof *m->own);
+        m->noise = tribo_layout_array(&l, count, sizeof *m->noise);
+        m->push = tribo_layout_array(&l, n, sizeof *m->push);
+        m->move = tribo_layout_array(&l, n, sizeof *m->move);
+        m->at = tribo_layout_array(&l, count, 1);
+        m->held = tribo_layout_array(&l, n, 1);
+    } while (!l.memory && tribo_layout_zeros(&l));
+    if (!l.memory) {
+        return 0;
+    }
+    m->count = tribo_step_form_bodies(&sys->direction, m->body, m->lever, m->held) ? count : 0;
+    memset(m->held, 0, n);
+    for (size_t d = 0; d < n; d++) {
+        m->contact[d] = count;
+    }
+    for (size_t i = 0; i < m->count; i++) {
+        m->contact[m->body[i]] = i;
+        m->own[i] = tribo_matrix_get(&m->s, m->body[i], m->body[i]);
+    }
+    return 1;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ its factor */
 
-/* Sets the band l [n][below + 1] of L, S = L L', by the lower triangle of S: row i begins with column i - below. Rows and columns
- * held [n] (NULL: none) are replaced by those of the identity. Returns the row of a pivot that is not positive, or n. */
-static size_t band_factorize(const struct step_matrix *m, const signed char *held, double *l)
+/* Sets the band [n][below + 1] of L, S = L L', by the lower triangle of S: row i begins with column i - below. Rows and columns
+ * held are replaced by those of the identity. Returns the row of a pivot that is not positive, or n. */
+static size_t band_factorize(struct step_matrix *m)
 {
     const struct matrix *s = &m->s;
+    const signed char *held = m->held;
     const size_t width = m->below;
+    double *l = m->band;
     for (size_t i = 0; i < m->n; i++) {
         const int holds = held && held[i];
         double *own = l + i * (width + 1) + width - i; /* own[j] = l_ij */
@@ -90,8 +117,9 @@ static size_t band_factorize(const struct step_matrix *m, const signed char *hel
 }
 
 /* x [n] = (L L')^-1 x. LAPACK's upper band, by columns, is L by rows. */
-static void band_solve(const struct step_matrix *m, const double *l, double *x)
+static void band_solve(const struct step_matrix *m, double *x)
 {
+    const double *l = m->band;
     const int rows = (int)m->n, below = (int)m->below, stride = below + 1, one = 1;
     for (size_t i = 0; !below && i < m->n; i++) {
         x[i] = x[i] / l[i] / l[i];
@@ -102,40 +130,55 @@ static void band_solve(const struct step_matrix *m, const double *l, double *x)
     }
 }
 
-int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, double h, int consumes)
+/* With exchanges of rows, by LAPACK: S must be regular, but need not be definite. Returns a status, and the row *where of a pivot
+ * that is 0. */
+static int factorize_lopsided(struct step_matrix *m, size_t *where)
 {
-    /* a sparse factor costs less than the band if that has far more entries than S, or is almost the whole matrix */
-    const size_t width = m->below > m->above ? m->below : m->above;
-    const int sparse = m->n >= SPARSE_LEAST && (width > 5 * (m->s.first[m->n] / m->n + 1) || 2 * width > m->n);
+    const size_t n = m->n, all = 2 * m->below + m->above + 1, middle = m->below + m->above;
+    m->band = n < INT_MAX && all < INT_MAX ? calloc(n * all, sizeof *m->band) : NULL;
+    m->pivot = malloc(n * sizeof *m->pivot);
+    if (!m->band || !m->pivot) {
+        return TRIBO_ERR_MEMORY;
+    }
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = m->s.first[i]; k < m->s.first[i + 1]; k++) {
+            m->band[m->s.col[k] * all + middle + i - m->s.col[k]] = m->s.val[k];
+        }
+    }
+    const int rows = (int)n, below = (int)m->below, above = (int)m->above, stride = (int)all;
+    int info;
+    dgbtrf_(&rows, &rows, &below, &above, m->band, &stride, m->pivot, &info);
+    *where = info > 0 ? (size_t)info - 1 : n;
+    return info > 0 ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
+}
+
+int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, double h)
+{
     size_t where = 0, j;
     double x, y;
-    int status;
-    if (sys->c.rows && tribo_matrix_flaw(&m->s, 1, &where, &j, &x, &y)) {
-        /* with exchanges of rows, by LAPACK: S must be regular, but need not be definite */
-        const size_t n = m->n, all = 2 * m->below + m->above + 1, middle = m->below + m->above;
-        m->band = n < INT_MAX && all < INT_MAX ? calloc(n * all, sizeof *m->band) : NULL;
-        m->pivot = malloc(n * sizeof *m->pivot);
-        if (!m->band || !m->pivot) {
-            return step_matrix_fail(sys, TRIBO_ERR_MEMORY, h, 0);
+    tribo_step_matrix_free(m);
+    int status = add_up(m, sys, h) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    if (!status && sys->c.rows && tribo_matrix_flaw(&m->s, 1, &where, &j, &x, &y)) {
+        status = factorize_lopsided(m, &where);
+    } else if (!status && find_bodies(m, sys)) {
+        /* a sparse factor costs less than the band if that has far more entries than S, or is almost the whole matrix */
+        const size_t n = m->n, width = m->below > m->above ? m->below : m->above;
+        const int sparse = n >= SPARSE_LEAST && (width > 5 * (m->s.first[n] / n + 1) || 2 * width > n);
+        if (sparse && !m->count && tribo_sparse_available()) {
+            status = tribo_cholesky_create(&m->sparse, &m->s, &m->s, &where, &x);
+        } else {
+            m->band = malloc(n * (m->below + 1) * sizeof *m->band);
+            where = m->band ? band_factorize(m) : 0;
+            status = !m->band ? TRIBO_ERR_MEMORY : where < n ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
         }
-        for (size_t i = 0; i < n; i++) {
-            for (size_t k = m->s.first[i]; k < m->s.first[i + 1]; k++) {
-                m->band[m->s.col[k] * all + middle + i - m->s.col[k]] = m->s.val[k];
-            }
-        }
-        const int rows = (int)n, below = (int)m->below, above = (int)m->above, stride = (int)all;
-        int info;
-        dgbtrf_(&rows, &rows, &below, &above, m->band, &stride, m->pivot, &info);
-        where = info > 0 ? (size_t)info - 1 : n;
-        status = info > 0 ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
-    } else if (sparse && tribo_sparse_available()) {
-        status = tribo_cholesky_create(&m->sparse, &m->s, consumes ? &m->s : NULL, &where, &x);
     } else {
-        m->band = malloc(m->n * (m->below + 1) * sizeof *m->band);
-        where = m->band ? band_factorize(m, NULL, m->band) : 0;
-        status = !m->band ? TRIBO_ERR_MEMORY : where < m->n ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
+        status = TRIBO_ERR_MEMORY;
     }
-    return step_matrix_fail(sys, status, h, where);
+    return status == TRIBO_ERR_INDEFINITE
+               ? tribo_system_fail(
+                     sys, status, "the matrix of a step of length %g is not positive definite at degree of freedom %zu", h, where)
+           : status ? tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrix of a step")
+                    : TRIBO_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- solutions */
@@ -152,7 +195,7 @@ int tribo_step_matrix_solve(const void *matrix, size_t count, double *x)
         dgbtrs_("N", &n, &below, &above, &all, m->band, &stride, m->pivot, x, &n, &info, 1);
     }
     for (size_t k = 0; !m->pivot && k < count; k++) {
-        band_solve(m, m->band, x + k * m->n);
+        band_solve(m, x + k * m->n);
     }
     return 1;
 }
@@ -173,115 +216,72 @@ enum { FREE, HOLDS, FOLLOWS };
 /* A round costs as much as the band has entries, and a step hardly ever takes more than 10. */
 enum { ROUNDS = 100 };
 
-int tribo_step_band_create(struct step_band *b, const tribo_system *sys, const struct step_matrix *m, double h)
+/* The bodies of contacts at rest, or none, are held in the factor. */
+static void hold_bodies(struct step_matrix *m, int none)
 {
-    const size_t n = m->n, count = b->count = sys->ncontact;
-    struct layout l = {0};
-    b->matrix = NULL;
-    if (!b->body) { /* at is kept where the length of steps changes */
-        do {
-            b->body = tribo_layout_array(&l, count, sizeof *b->body);
-            b->contact = tribo_layout_array(&l, n, sizeof *b->contact);
-            b->lever = tribo_layout_array(&l, count, sizeof *b->lever);
-            b->own = tribo_layout_array(&l, count, sizeof *b->own);
-            b->noise = tribo_layout_array(&l, count, sizeof *b->noise);
-            b->push = tribo_layout_array(&l, n, sizeof *b->push);
-            b->move = tribo_layout_array(&l, n, sizeof *b->move);
-            b->at = tribo_layout_array(&l, count, 1);
-            b->held = tribo_layout_array(&l, n, 1);
-        } while (!l.memory && tribo_layout_zeros(&l));
+    int changed = 0;
+    for (size_t i = 0; i < m->count; i++) {
+        const signed char holds = none || m->at[i] ? FREE : HOLDS;
+        changed |= m->held[m->body[i]] != holds;
+        m->held[m->body[i]] = holds;
     }
-    if (!b->body) {
-        return step_matrix_fail(sys, TRIBO_ERR_MEMORY, h, 0);
+    if (changed) {
+        band_factorize(m);
     }
-    /* contacts must have bodies of their own, and S be symmetric and narrow enough to save work */
-    size_t i, j;
-    double x, y;
-    memset(b->held, 0, n);
-    if (!count || sys->compliance.count || m->below != m->above || 2 * m->below > count ||
-        !tribo_step_form_bodies(&sys->direction, b->body, b->lever, b->held) || tribo_matrix_flaw(&m->s, 1, &i, &j, &x, &y)) {
-        return TRIBO_OK;
-    }
-    free(b->l);
-    b->l = malloc(n * (m->below + 1) * sizeof *b->l);
-    if (!b->l) {
-        return step_matrix_fail(sys, TRIBO_ERR_MEMORY, h, 0);
-    }
-    b->matrix = m;
-    for (size_t d = 0; d < n; d++) {
-        b->contact[d] = count;
-    }
-    for (i = 0; i < count; i++) {
-        b->contact[b->body[i]] = i;
-        b->own[i] = tribo_matrix_get(&m->s, b->body[i], b->body[i]);
-    }
-    memset(b->held, 0, n);
-    b->factored = 0;
-    const size_t where = band_factorize(m, NULL, b->l); /* S is definite if and only if all these pivots are positive */
-    return step_matrix_fail(sys, where < n ? TRIBO_ERR_INDEFINITE : TRIBO_OK, h, where);
 }
 
-/* --------------------------------------------------------------------------------------------------------------- the step */
-
-/* du, f and noise with the contacts as they are in at[]; the factor is kept if held[] does not change. */
-static void solve_sets(struct step_band *b, const struct band_step *s)
+/* du, f and noise with the contacts as they are in at[]. */
+static void solve_sets(struct step_matrix *m, const struct band_step *s)
 {
     const double doubt = 8.0 * DBL_EPSILON;
-    const struct matrix *matrix = &b->matrix->s;
+    const struct matrix *matrix = &m->s;
     const size_t n = matrix->rows;
     double *x = s->du, *f = s->f;
-    for (size_t i = 0; i < b->count; i++) {
-        const signed char holds = b->at[i] ? FREE : HOLDS;
-        b->factored &= b->held[b->body[i]] == holds;
-        b->held[b->body[i]] = holds;
-    }
-    if (!b->factored) {
-        b->factored = band_factorize(b->matrix, b->held, b->l) == n;
-    }
-    memcpy(x, b->push, n * sizeof *x);
-    memset(b->move, 0, n * sizeof *x);
-    for (size_t i = 0; i < b->count; i++) {
-        const size_t d = b->body[i];
-        f[i] = b->at[i] * s->limit[i];
-        x[d] += s->h * b->lever[i] * f[i];
-        b->move[d] = b->at[i] ? 0.0 : s->base[i] / b->lever[i] - s->u[d];
+    hold_bodies(m, 0);
+    memcpy(x, m->push, n * sizeof *x);
+    memset(m->move, 0, n * sizeof *x);
+    for (size_t i = 0; i < m->count; i++) {
+        const size_t d = m->body[i];
+        f[i] = m->at[i] * s->limit[i];
+        x[d] += s->h * m->lever[i] * f[i];
+        m->move[d] = m->at[i] ? 0.0 : s->base[i] / m->lever[i] - s->u[d];
     }
     /* columns of held bodies that move with their bases go to the right-hand side */
-    tribo_matrix_multiply_add(matrix, -1.0, b->move, x);
+    tribo_matrix_multiply_add(matrix, -1.0, m->move, x);
     for (size_t d = 0; d < n; d++) {
-        x[d] = b->held[d] ? 0.0 : x[d];
+        x[d] = m->held[d] ? 0.0 : x[d];
     }
-    band_solve(b->matrix, b->l, x);
+    band_solve(m, x);
     for (size_t d = 0; d < n; d++) {
-        x[d] = b->held[d] ? b->move[d] : x[d];
+        x[d] = m->held[d] ? m->move[d] : x[d];
     }
-    for (size_t i = 0; i < b->count; i++) {
-        const size_t d = b->body[i];
-        const double size = tribo_matrix_row_size(matrix, d, x) + fabs(b->push[d]) + fabs(b->own[i] * s->u[d]);
-        const double unit = 1.0 / (s->h * b->lever[i]);
-        b->noise[i] = doubt * fabs(unit) * size;
-        f[i] = b->at[i] ? f[i] : unit * (tribo_matrix_row_dot(matrix, d, x) - b->push[d]);
+    for (size_t i = 0; i < m->count; i++) {
+        const size_t d = m->body[i];
+        const double size = tribo_matrix_row_size(matrix, d, x) + fabs(m->push[d]) + fabs(m->own[i] * s->u[d]);
+        const double unit = 1.0 / (s->h * m->lever[i]);
+        m->noise[i] = doubt * fabs(unit) * size;
+        f[i] = m->at[i] ? f[i] : unit * (tribo_matrix_row_dot(matrix, d, x) - m->push[d]);
     }
 }
 
 /* Revises at[] by forces and velocities: *freed contacts begin to slide, *caught contacts begin to hold. */
-static void band_revise(struct step_band *b, const struct band_step *s, size_t *freed, size_t *caught)
+static void band_revise(struct step_matrix *m, const struct band_step *s, size_t *freed, size_t *caught)
 {
     *freed = *caught = 0;
-    for (size_t i = 0; i < b->count; i++) {
-        const size_t d = b->body[i];
-        const double noise = b->noise[i], most = s->limit[i] + noise;
-        const signed char at = b->at[i];
+    for (size_t i = 0; i < m->count; i++) {
+        const size_t d = m->body[i];
+        const double noise = m->noise[i], most = s->limit[i] + noise;
+        const signed char at = m->at[i];
         if (at == 0) {
             const int side = (s->f[i] > most) - (s->f[i] < -most);
-            b->at[i] = (signed char)side;
+            m->at[i] = (signed char)side;
             *freed += side != 0;
         } else {
             /* the force that would take the velocity away within the step */
-            const double v = b->lever[i] * (s->u[d] + s->du[d]) - s->base[i];
-            const double pull = v * b->own[i] / (s->h * b->lever[i] * b->lever[i]);
+            const double v = m->lever[i] * (s->u[d] + s->du[d]) - s->base[i];
+            const double pull = v * m->own[i] / (s->h * m->lever[i] * m->lever[i]);
             if (pull * at > noise) {
-                b->at[i] = 0;
+                m->at[i] = 0;
                 ++*caught;
             }
         }
@@ -290,46 +290,52 @@ static void band_revise(struct step_band *b, const struct band_step *s, size_t *
 
 /* Passes over the bodies upwards or downwards: a holding contact within `reach` bodies after one that begins to slide slides
  * along. */
-static void band_sweep(struct step_band *b, size_t reach, int upwards)
+static void band_sweep(struct step_matrix *m, size_t reach, int upwards)
 {
-    const size_t n = b->matrix->n;
+    const size_t n = m->n;
     size_t left = 0;
     double way = 0.0;
     for (size_t k = 0; k < n; k++) {
-        const size_t d = upwards ? k : n - 1 - k, i = b->contact[d];
-        const int contact = i < b->count;
-        if (contact && b->held[d] == HOLDS && b->at[i]) {
+        const size_t d = upwards ? k : n - 1 - k, i = m->contact[d];
+        const int contact = i < m->count;
+        if (contact && m->held[d] == HOLDS && m->at[i]) {
             left = reach;
-            way = b->lever[i] * b->at[i];
+            way = m->lever[i] * m->at[i];
         } else if (left > 0) {
             left--;
-            if (contact && !b->at[i]) {
-                b->at[i] = b->lever[i] * way > 0.0 ? 1 : -1;
-                b->held[d] = FOLLOWS;
+            if (contact && !m->at[i]) {
+                m->at[i] = m->lever[i] * way > 0.0 ? 1 : -1;
+                m->held[d] = FOLLOWS;
             }
         }
     }
 }
 
-int tribo_step_band_solve(struct step_band *b, const struct band_step *s)
+int tribo_step_matrix_hold(struct step_matrix *m, const tribo_system *sys, const struct band_step *s)
 {
+    const int rounds = m->count && tribo_system_is_plain(sys) ? ROUNDS : 0;
     size_t reach = 0, freed, caught;
-    memcpy(b->push, s->du, b->matrix->n * sizeof *s->du);
-    for (int round = 0; round < ROUNDS; round++) {
-        solve_sets(b, s);
-        band_revise(b, s, &freed, &caught);
+    for (int round = 0; round < rounds; round++) {
+        if (round == 0) {
+            memcpy(m->push, s->du, m->n * sizeof *s->du);
+        }
+        solve_sets(m, s);
+        band_revise(m, s, &freed, &caught);
         if (freed + caught == 0) {
-            for (size_t i = 0; i < b->count; i++) {
+            for (size_t i = 0; i < m->count; i++) {
                 s->f[i] = clamp(s->f[i], -s->limit[i], s->limit[i]);
             }
             return 1;
         }
         reach = caught ? 0 : 2 * reach + 1;
         if (reach > 1) {
-            band_sweep(b, reach, 1);
-            band_sweep(b, reach, 0);
+            band_sweep(m, reach, 1);
+            band_sweep(m, reach, 0);
         }
     }
-    memcpy(s->du, b->push, b->matrix->n * sizeof *s->du);
+    hold_bodies(m, 1);
+    if (rounds) {
+        memcpy(s->du, m->push, m->n * sizeof *s->du);
+    }
     return 0;
 }
