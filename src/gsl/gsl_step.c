@@ -40,6 +40,7 @@ struct gsl_kind {
     double stable;   /* step times rate of a sticking contact above which no contact may change within a step; HUGE_VAL: none */
     int takes_slope; /* 1: a step begins with f(t, y) */
     int newton;      /* 1: an implicit Runge-Kutta method with GSL's Newton iteration */
+    int keeps;       /* 1: steps reuse the Jacobian of earlier ones; else GSL evaluates it in every step before it factorizes */
     size_t matrices; /* matrices I - h c[i] A x J that a step may factorize; 0: explicit */
     const double *c; /* [matrices] */
     size_t stages;   /* rows of A */
@@ -61,8 +62,7 @@ struct gsl_step {
     double *jacobian;  /* [dimension][dimension] the last one, if known */
     double *matrix;    /* [stages dimension][stages dimension] workspace */
     size_t *order;     /* [stages dimension] workspace */
-    int known;         /* 1: jacobian is set */
-    double regular;    /* step length for which all matrices with this Jacobian are regular; 0: none */
+    int known;         /* 1: jacobian is set, and steps may reuse it */
     double *end;       /* [dimension] slope at the end, newton kinds */
     double *force;     /* [ncontact] workspace */
     signed char *mode; /* [2][ncontact] slip at the beginning of a step; workspace */
@@ -212,13 +212,12 @@ static int is_regular(struct gsl_step *g)
 {
     const size_t n = g->dimension, size = n * g->kind->stages;
     const size_t order = gsl_odeiv2_step_order(g->step);
-    const size_t count = g->kind->type == &gsl_odeiv2_step_msbdf && order < g->kind->matrices ? order : g->kind->matrices;
-    const double h = g->trial->h;
-    for (size_t i = 0; i < count && h != g->regular; i++) {
+    const size_t count = g->kind->keeps && order < g->kind->matrices ? order : g->kind->matrices;
+    for (size_t i = 0; i < count; i++) {
         for (size_t row = 0; row < size; row++) { /* matrix = I - c h A x J */
             for (size_t column = 0; column < size; column++) {
                 const double a = g->kind->a ? g->kind->a[row / n * g->kind->stages + column / n] : 1.0;
-                const double entry = -g->kind->c[i] * h * a * g->jacobian[row % n * n + column % n];
+                const double entry = -g->kind->c[i] * g->trial->h * a * g->jacobian[row % n * n + column % n];
                 g->matrix[row * size + column] = entry + (row == column ? 1.0 : 0.0);
             }
         }
@@ -226,7 +225,6 @@ static int is_regular(struct gsl_step *g)
             return 0;
         }
     }
-    g->regular = g->kind->type == &gsl_odeiv2_step_msbdf ? 0.0 : h;
     return 1;
 }
 
@@ -245,8 +243,7 @@ static int guarded_jacobian(double t, const double y[], double *dfdy, double dfd
     }
     tribo_system_get_slip(g->sys, g->mode);
     memcpy(g->jacobian, dfdy, n * n * sizeof *dfdy);
-    g->known = 1;
-    g->regular = 0.0;
+    g->known = g->kind->keeps;
     const int status = reserve_factor(g);
     return status ? status : sum != 0.0 || !is_regular(g) ? GSL_FAILURE : GSL_SUCCESS;
 }
@@ -371,12 +368,12 @@ static const struct gsl_kind kinds[] = {
     {"rkf45", &gsl_odeiv2_step_rkf45, .stable = 3.6, .takes_slope = 1, .stages = 1},
     {"rkck", &gsl_odeiv2_step_rkck, .stable = 3.7, .takes_slope = 1, .stages = 1},
     {"rk8pd", &gsl_odeiv2_step_rk8pd, .stable = 5.1, .takes_slope = 1, .stages = 1},
-    {"rk1imp", &gsl_odeiv2_step_rk1imp, HUGE_VAL, 1, 1, 2, halves, 1, NULL},
-    {"rk2imp", &gsl_odeiv2_step_rk2imp, HUGE_VAL, 1, 1, 2, middle, 1, NULL},
-    {"rk4imp", &gsl_odeiv2_step_rk4imp, HUGE_VAL, 1, 1, 2, halves, 2, gauss},
-    {"bsimp", &gsl_odeiv2_step_bsimp, 0.1, 1, 0, 8, sequence, 1, NULL},
+    {"rk1imp", &gsl_odeiv2_step_rk1imp, HUGE_VAL, 1, 1, 0, 2, halves, 1, NULL},
+    {"rk2imp", &gsl_odeiv2_step_rk2imp, HUGE_VAL, 1, 1, 0, 2, middle, 1, NULL},
+    {"rk4imp", &gsl_odeiv2_step_rk4imp, HUGE_VAL, 1, 1, 0, 2, halves, 2, gauss},
+    {"bsimp", &gsl_odeiv2_step_bsimp, 0.1, 1, 0, 0, 8, sequence, 1, NULL},
     {"msadams", &gsl_odeiv2_step_msadams, .stable = 0.5, .takes_slope = 1, .stages = 1},
-    {"msbdf", &gsl_odeiv2_step_msbdf, HUGE_VAL, 0, 0, 5, bdf, 1, NULL},
+    {"msbdf", &gsl_odeiv2_step_msbdf, HUGE_VAL, 0, 0, 1, 5, bdf, 1, NULL},
 };
 
 int tribo_gsl_stepper_count(void)

@@ -117,30 +117,26 @@ static int synchronise(tribo_driver *drv, double t, double *y)
 /* Takes the settings of the system, if they have changed. Returns fits. */
 static int few_take(struct few_bodies *b, tribo_system *sys)
 {
-    const size_t revision = tribo_system_revision(sys);
+    const size_t revision = tribo_system_revision(sys), c = sys->ncontact;
     if (b->revision == revision) {
         return b->fits;
     }
     b->revision = revision;
-    const size_t c = sys->ncontact;
     b->fits = sys->ndof <= FEW && c <= FEW && tribo_system_is_plain(sys);
-    if (!b->fits) {
-        return 0;
-    }
-    memset(b->damping, 0, sizeof b->damping);
-    tribo_matrix_spread(&sys->stiffness, b->stiffness);
-    tribo_matrix_spread(&sys->damping, b->damping);
-    tribo_matrix_spread(&sys->direction, b->direction);
-    tribo_matrix_spread(&sys->response, b->response);
-    for (size_t i = 0; i < c; i++) {
-        for (size_t j = 0; j < c; j++) {
-            b->r[i * c + j] = tribo_system_delassus(sys, i, j);
+    if (b->fits) {
+        memset(b->damping, 0, sizeof b->damping);
+        tribo_matrix_spread(&sys->stiffness, b->stiffness);
+        tribo_matrix_spread(&sys->damping, b->damping);
+        tribo_matrix_spread(&sys->direction, b->direction);
+        tribo_matrix_spread(&sys->response, b->response);
+        for (size_t k = 0; k < c * c; k++) {
+            b->r[k] = tribo_system_delassus(sys, k / c, k % c);
+            b->part[k / c] = tribo_resolution(c);
         }
-        b->part[i] = tribo_resolution(c);
+        memset(b->at, FREE, sizeof b->at);
+        b->inverse_of = 0;
+        b->fits = tribo_small_fits(c, b->r, b->inverse); /* 0 if R is out of range, or nearly singular */
     }
-    memset(b->at, FREE, sizeof b->at);
-    b->inverse_of = 0;
-    b->fits = tribo_small_fits(c, b->r, b->inverse); /* 0 if R is out of range, or nearly singular */
     return b->fits;
 }
 
@@ -220,6 +216,7 @@ static inline size_t few_steps(struct few_bodies *b, tribo_system *sys, size_t n
     for (; s < count; s++) {
         const double *limit = b->limit[tribo_system_limits_vary(sys) ? s : 0];
         double u[FEW], v[FEW], less[FEW], most[FEW], base[FEW], p[FEW] = {0.0}, end[FEW], work = 0.0;
+        signed char loose[FEW];
         const struct small x = {b->r, b->inverse, &b->inverse_of, b->part, least, v, less, most, m.at, p, end};
         for (size_t d = 0; d < n; d++) {
             const double a = b->load[d][s] - row_times(n, b->damping + d * n, m.u); /* q is known later than u */
@@ -237,18 +234,15 @@ static inline size_t few_steps(struct few_bodies *b, tribo_system *sys, size_t n
         for (size_t d = 0; d < n; d++) {
             u[d] += row_times(c, b->response + d * c, p);
         }
-        /* makes the velocities of holding contacts exact, but of those at their bounds */
-        if (b->inverse_of) {
-            signed char loose[FEW];
-            for (size_t i = 0; i < c; i++) {
-                loose[i] = !(m.at[i] == FREE && fabs(p[i]) < most[i]);
-            }
-            tribo_system_snap(sys, loose, base, u);
-        }
         for (size_t i = 0; i < c; i++) {
-            const double to = m.at[i] == FREE ? 0.0 : end[i];
+            const int holds = m.at[i] == FREE;
+            const double to = holds ? 0.0 : end[i];
+            loose[i] = !(holds && fabs(p[i]) < most[i]);
             work += sys->tally[i] * p[i] * (m.v[i] + to);
             m.v[i] = to;
+        }
+        if (b->inverse_of) { /* makes the velocities of holding contacts exact, but of those at their bounds */
+            tribo_system_snap(sys, loose, base, u);
         }
         for (size_t d = 0; d < n; d++) {
             m.q[d] += b->h[s + 1] * u[d];

@@ -110,9 +110,7 @@ static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
         tribo_even_out(c, r);
     }
     for (size_t k = 0; done && k < c * c; k++) {
-        const size_t i = k / c, j = k % c;
-        const int both = tribo_is_compliant(&sys->compliance, i) && tribo_is_compliant(&sys->compliance, j);
-        r[k] += both ? 4.0 / (h * h) * tribo_compliance_entry(&sys->compliance, c, i, j) : 0.0;
+        r[k] += 4.0 / (h * h) * tribo_compliance_entry(&sys->compliance, c, k / c, k % c);
     }
     const int status = done ? set_operator(m, sys, r, own, h)
                             : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
@@ -157,12 +155,14 @@ static int moreau_prepare(struct moreau *m, const tribo_system *sys, double h)
 
 /* ------------------------------------------------------------------------------------------------------------ a step */
 
-/* p = impulse of loads, structure, and f0/2 of compliant contacts in a step; s->u = displacements in the middle of the step at constant velocity. */
-static void find_push(struct moreau *m, tribo_system *sys, double t, double next, const double *from, double *p)
+/* s->a = impulse of loads, structure, and f0/2 of compliant contacts in a step; s->u = displacements in the middle of the step at
+ * constant velocity. */
+static void find_push(struct moreau *m, tribo_system *sys, double t, double next, const double *from)
 {
     struct step_form *s = &m->common;
     const size_t n = sys->ndof;
     const double h = next - t, *u = from + n;
+    double *p = s->a;
     memset(p, 0, n * sizeof *p);
     tribo_system_set_time(sys, t);
     tribo_system_loads(sys, DRIVES_LOAD, 0, 0.5 * h, p);
@@ -184,23 +184,23 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
     sys->evaluations++;
 }
 
-/* Sets s->f, s->mode, and s->u = velocity at the end of the step: by bodies held, or else by the operator of contacts. Returns
- * a status. */
-static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
+/* Sets s->f, s->mode, and s->u = velocity at the end of the step, by the impulse s->a: by bodies held, or else by the operator of
+ * contacts. Returns a status. */
+static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, const double *u)
 {
     struct step_form *s = &m->common;
     const struct compliance *g = &sys->compliance;
-    const struct band_step step = {h, m->limit, s->base, u, du, s->f};
+    const struct band_step step = {h, m->limit, s->base, u, s->a, s->f};
     const int held = tribo_step_matrix_hold(&m->matrix, sys, &step);
     int status = held || m->whole ? TRIBO_OK : prepare_whole(m, sys, h);
     if (status) {
         return status;
     }
     if (!held) {
-        tribo_step_matrix_solve(&m->matrix, 1, du);
+        tribo_step_matrix_solve(&m->matrix, 1, s->a);
     }
     memcpy(s->u, u, sys->ndof * sizeof *u);
-    tribo_add(s->u, 1.0, du, sys->ndof);
+    tribo_add(s->u, 1.0, s->a, sys->ndof);
     if (held) {
         memcpy(s->mode, m->matrix.at, sys->ncontact);
         return tribo_dense_finite(s->f, sys->ncontact) ? TRIBO_OK : TRIBO_ERR_NOT_FINITE;
@@ -252,7 +252,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
         u = from + n;
     }
     tribo_step_form_velocity(s, sys, t, u, s->v);
-    find_push(m, sys, t, next, from, s->a);
+    find_push(m, sys, t, next, from);
     tribo_step_form_find_base(s, sys, next);
     if (tribo_system_limits_vary(sys)) {
         tribo_system_set_time(sys, t + 0.5 * h);
@@ -261,7 +261,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     for (size_t k = 0; k < g->count; k++) {
         m->limit[g->contact[k]] *= 0.5;
     }
-    const int status = moreau_respond(m, sys, h, u, s->a);
+    const int status = moreau_respond(m, sys, h, u);
     if (status) {
         return tribo_step_form_fail(drv, status, t, m->whole ? tribo_message(m->contacts) : tribo_system_message(sys));
     }

@@ -16,8 +16,8 @@ struct step_matrix {
     struct cholesky sparse;
 
     /* Each contact holds a body of its own to the base, and S is a narrow band: the operator that contacts see, J S^-1 J', would
-     * be dense. Bodies that contacts hold are rows and columns taken out of S: a step costs as much as the band has entries, and a
-     * new factor where other contacts hold. */
+     * be dense. Bodies that contacts hold are rows and columns taken out of S: a step costs as much as the band has entries, and
+     * a new factor where other contacts hold. */
     size_t count;        /* contacts; 0: steps need the operator of contacts */
     size_t *body;        /* [count] the body of a contact; owns the memory of the arrays below */
     size_t *contact;     /* [n] the contact on a body; count: none */
