@@ -11,8 +11,8 @@
  * A block that is left out cannot move. In the step before, it began and ended with velocity 0, and at its end |a| <= |B| limit
  * held for each of its rows. None of the blocks that accelerate it has moved since; load, limits and bases are constant: a is the
  * same to the last bit. A step begins with u = 0, which becomes h a without friction and 0 with it: |h a| <= h |B| limit for
- * every h, since rounding is monotonic. Both arrays of states, which steps write by turns, hold the same displacement. It is not enough
- * that a step of one length did not move the block: lengths differ by rounding. */
+ * every h, since rounding is monotonic. Both arrays of states, which steps write by turns, hold the same displacement. It is not
+ * enough that a step of one length did not move the block: lengths differ by rounding. */
 #ifndef TRIBO_BLOCKWISE_H
 #define TRIBO_BLOCKWISE_H
 

@@ -114,32 +114,6 @@ static int synchronise(tribo_driver *drv, double t, double *y)
 
 /* ------------------------------------------------------------------------------------------------------------ few bodies */
 
-/* Takes the settings of the system, if they have changed. Returns fits. */
-static int few_take(struct few_bodies *b, tribo_system *sys)
-{
-    const size_t revision = tribo_system_revision(sys), c = sys->ncontact;
-    if (b->revision == revision) {
-        return b->fits;
-    }
-    b->revision = revision;
-    b->fits = sys->ndof <= FEW && c <= FEW && tribo_system_is_plain(sys);
-    if (b->fits) {
-        memset(b->damping, 0, sizeof b->damping);
-        tribo_matrix_spread(&sys->stiffness, b->stiffness);
-        tribo_matrix_spread(&sys->damping, b->damping);
-        tribo_matrix_spread(&sys->direction, b->direction);
-        tribo_matrix_spread(&sys->response, b->response);
-        for (size_t k = 0; k < c * c; k++) {
-            b->r[k] = tribo_system_delassus(sys, k / c, k % c);
-            b->part[k / c] = tribo_resolution(c);
-        }
-        memset(b->at, FREE, sizeof b->at);
-        b->inverse_of = 0;
-        b->fits = tribo_small_fits(c, b->r, b->inverse); /* 0 if R is out of range, or nearly singular */
-    }
-    return b->fits;
-}
-
 /* Adds harmonics and tables that drive loads or bases at the times t [count] to rows [n], which begin with 0. */
 static void few_find_drives(tribo_system *sys, enum drives drives, size_t n, size_t count, const double *t, double row[FEW][RUN])
 {
@@ -295,9 +269,30 @@ static size_t central_run(tribo_driver *drv, size_t count, const double *t, doub
 
 /* ------------------------------------------------------------------------------------------------------------ the method */
 
+/* Takes the settings of the system: of runs, if they have changed, or of blocks. */
 static void take_settings(struct central *x, tribo_system *sys)
 {
-    if (!few_take(&x->few, sys)) {
+    const size_t revision = tribo_system_revision(sys), c = sys->ncontact;
+    struct few_bodies *b = &x->few;
+    if (b->revision != revision) {
+        b->revision = revision;
+        b->fits = sys->ndof <= FEW && c <= FEW && tribo_system_is_plain(sys);
+        if (b->fits) {
+            memset(b->damping, 0, sizeof b->damping);
+            tribo_matrix_spread(&sys->stiffness, b->stiffness);
+            tribo_matrix_spread(&sys->damping, b->damping);
+            tribo_matrix_spread(&sys->direction, b->direction);
+            tribo_matrix_spread(&sys->response, b->response);
+            for (size_t k = 0; k < c * c; k++) {
+                b->r[k] = tribo_system_delassus(sys, k / c, k % c);
+                b->part[k / c] = tribo_resolution(c);
+            }
+            memset(b->at, FREE, sizeof b->at);
+            b->inverse_of = 0;
+            b->fits = tribo_small_fits(c, b->r, b->inverse); /* 0 if R is out of range, or nearly singular */
+        }
+    }
+    if (!b->fits) {
         tribo_blockwise_take(&x->alone, sys);
     }
 }

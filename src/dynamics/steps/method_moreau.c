@@ -139,12 +139,17 @@ static void push(struct moreau *m, const tribo_system *sys, double h, const doub
     tribo_add(u, 1.0, m->push, n);
 }
 
-/* Prepares steps of length h. Returns a status. */
+/* Prepares steps of length h, if that is not done. Returns a status. */
 static int moreau_prepare(struct moreau *m, const tribo_system *sys, double h)
 {
+    /* steps of equal length differ only by rounding of times */
+    if (fabs(h - m->h) <= 1e-9 * h && m->common.revision == sys->revision &&
+        (m->settings == sys->changes || !(tribo_system_planar(sys) || m->planar))) {
+        return TRIBO_OK;
+    }
     m->h = 0.0;
     m->whole = 0;
-    int status = tribo_step_matrix_create(&m->matrix, sys, h);
+    int status = tribo_step_matrix_create(&m->matrix, sys, h, !tribo_system_planar(sys));
     status = status || m->matrix.count ? status : prepare_whole(m, sys, h);
     if (!status) {
         m->h = h;
@@ -191,6 +196,10 @@ static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, c
     struct step_form *s = &m->common;
     const struct compliance *g = &sys->compliance;
     const struct band_step step = {h, m->limit, s->base, u, s->a, s->f};
+    tribo_get_limit(sys->contacts, m->limit);
+    for (size_t k = 0; k < g->count; k++) {
+        m->limit[g->contact[k]] *= 0.5;
+    }
     const int held = tribo_step_matrix_hold(&m->matrix, sys, &step);
     int status = held || m->whole ? TRIBO_OK : prepare_whole(m, sys, h);
     if (status) {
@@ -236,13 +245,9 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     const struct compliance *g = &sys->compliance;
     const size_t n = sys->ndof, energy = tribo_system_energy(sys);
     const double h = next - t, *u = from + n;
-    /* steps of equal length differ only by rounding of times */
-    if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision ||
-        (m->settings != sys->changes && (tribo_system_planar(sys) || m->planar))) {
-        const int status = moreau_prepare(m, sys, h);
-        if (status) {
-            return tribo_driver_pass(drv, status);
-        }
+    int status = moreau_prepare(m, sys, h);
+    if (status) {
+        return tribo_driver_pass(drv, status);
     }
     if (g->count) {
         memcpy(y, from, tribo_system_size(sys) * sizeof *y);
@@ -257,11 +262,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     if (tribo_system_limits_vary(sys)) {
         tribo_system_set_time(sys, t + 0.5 * h);
     }
-    tribo_get_limit(sys->contacts, m->limit);
-    for (size_t k = 0; k < g->count; k++) {
-        m->limit[g->contact[k]] *= 0.5;
-    }
-    const int status = moreau_respond(m, sys, h, u);
+    status = moreau_respond(m, sys, h, u);
     if (status) {
         return tribo_step_form_fail(drv, status, t, m->whole ? tribo_message(m->contacts) : tribo_system_message(sys));
     }

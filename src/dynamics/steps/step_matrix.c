@@ -21,38 +21,12 @@ void tribo_step_matrix_free(struct step_matrix *m)
     *m = (struct step_matrix){0};
 }
 
-/* ------------------------------------------------------------------------------------------------------------- the matrix */
-
-/* Sets s, n, below, above. Returns 0 if out of memory. */
-static int add_up(struct step_matrix *m, const tribo_system *sys, double h)
-{
-    m->n = sys->ndof;
-    const struct matrix *const part[] = {&sys->k, &sys->c};
-    const double factor[] = {0.25 * h * h, 0.5 * h};
-    int done = tribo_matrix_copy(&m->s, &sys->mass);
-    for (int p = 0; done && p < 2; p++) {
-        struct matrix sum = m->s;
-        if (part[p]->rows) {
-            done = tribo_matrix_sum(&m->s, 1.0, &sum, factor[p], part[p]);
-            tribo_matrix_free(&sum);
-        }
-    }
-    for (size_t i = 0; i < m->s.rows; i++) {
-        for (size_t k = m->s.first[i], j; k < m->s.first[i + 1]; k++) {
-            j = m->s.col[k];
-            m->below = i > j && i - j > m->below ? i - j : m->below;
-            m->above = j > i && j - i > m->above ? j - i : m->above;
-        }
-    }
-    return done;
-}
-
 /* Sets count if contacts hold bodies of their own, and S is narrow enough to save work. Returns 0 if out of memory. */
-static int find_bodies(struct step_matrix *m, const tribo_system *sys)
+static int matrix_find_bodies(struct step_matrix *m, const tribo_system *sys)
 {
     const size_t n = m->n, count = sys->ncontact;
     struct layout l = {0};
-    if (!count || sys->compliance.count || m->below != m->above || 2 * m->below > count || tribo_system_planar(sys)) {
+    if (!count || sys->compliance.count || m->below != m->above || 2 * m->below > count) {
         return 1;
     }
     do {
@@ -81,7 +55,7 @@ static int find_bodies(struct step_matrix *m, const tribo_system *sys)
     return 1;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ its factor */
+/* ---------------------------------------------------------------------------------------------- the matrix and its factor */
 
 /* Sets the band [n][below + 1] of L, S = L L', by the lower triangle of S: row i begins with column i - below. Rows and columns
  * held are replaced by those of the identity. Returns the row of a pivot that is not positive, or n. */
@@ -152,15 +126,32 @@ static int factorize_lopsided(struct step_matrix *m, size_t *where)
     return info > 0 ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
 }
 
-int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, double h)
+int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, double h, int holds)
 {
+    const struct matrix *const part[] = {&sys->k, &sys->c};
+    const double factor[] = {0.25 * h * h, 0.5 * h};
     size_t where = 0, j;
     double x, y;
     tribo_step_matrix_free(m);
-    int status = add_up(m, sys, h) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    m->n = sys->ndof;
+    int status = tribo_matrix_copy(&m->s, &sys->mass) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    for (int p = 0; !status && p < 2; p++) {
+        struct matrix sum = m->s;
+        if (part[p]->rows) {
+            status = tribo_matrix_sum(&m->s, 1.0, &sum, factor[p], part[p]) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+            tribo_matrix_free(&sum);
+        }
+    }
+    for (size_t i = 0; i < m->s.rows; i++) {
+        for (size_t k = m->s.first[i]; k < m->s.first[i + 1]; k++) {
+            j = m->s.col[k];
+            m->below = i > j && i - j > m->below ? i - j : m->below;
+            m->above = j > i && j - i > m->above ? j - i : m->above;
+        }
+    }
     if (!status && sys->c.rows && tribo_matrix_flaw(&m->s, 1, &where, &j, &x, &y)) {
         status = factorize_lopsided(m, &where);
-    } else if (!status && find_bodies(m, sys)) {
+    } else if (!status && (!holds || matrix_find_bodies(m, sys))) {
         /* a sparse factor costs less than the band if that has far more entries than S, or is almost the whole matrix */
         const size_t n = m->n, width = m->below > m->above ? m->below : m->above;
         const int sparse = n >= SPARSE_LEAST && (width > 5 * (m->s.first[n] / n + 1) || 2 * width > n);
@@ -174,11 +165,11 @@ int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, dou
     } else {
         status = TRIBO_ERR_MEMORY;
     }
-    return status == TRIBO_ERR_INDEFINITE
-               ? tribo_system_fail(
-                     sys, status, "the matrix of a step of length %g is not positive definite at degree of freedom %zu", h, where)
-           : status ? tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrix of a step")
-                    : TRIBO_OK;
+    if (status == TRIBO_ERR_INDEFINITE) {
+        return tribo_system_fail(sys, status,
+                                 "the matrix of a step of length %g is not positive definite at degree of freedom %zu", h, where);
+    }
+    return status ? tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrix of a step") : TRIBO_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- solutions */

@@ -28,9 +28,9 @@ struct step_matrix {
     signed char *held;   /* [n] not 0: a contact holds the body, in the factor; NULL: none */
 };
 
-/* Computes S and its factor, with no body held. Returns a status, with a message in the system. Call tribo_step_matrix_free also
- * after an error. */
-int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, double h);
+/* Computes S and its factor, with no body held. holds = 0: contacts are not to hold bodies. Returns a status, with a message in
+ * the system. Call tribo_step_matrix_free also after an error. */
+int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, double h, int holds);
 void tribo_step_matrix_free(struct step_matrix *m);
 
 /* x [count][n] = S^-1 x, matrix: struct step_matrix with no body held. Returns 1, or 0 if out of memory, which cannot happen for
