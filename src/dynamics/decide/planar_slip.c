@@ -53,7 +53,7 @@ static int create_plane(struct stick_slip *m, const tribo_system *sys)
 {
     const size_t c = sys->ncontact;
     struct planar_slip *p = m->plane = calloc(1, sizeof *p);
-    if (!p || !(p->contact = malloc((c / 2) * sizeof *p->contact)) || !(p->in_plane = malloc(c)) ||
+    if (!p || !(p->contact = malloc((c + 1) * sizeof *p->contact)) || !(p->in_plane = malloc(c)) ||
         !(p->rate = malloc(3 * c * sizeof *p->rate))) {
         return TRIBO_ERR_MEMORY;
     }
@@ -76,17 +76,27 @@ static int create_plane(struct stick_slip *m, const tribo_system *sys)
     status = status ? status : tribo_get_slip(p->disc, slip);
     for (size_t i = 0; !status && i < c; i++) {
         /* directions of planar contacts stand in pairs; one without both limits is scalar, or open */
-        const double *limit = m->state.limit + i;
+        const double *limit = m->state.limit + i, *r = m->constant.diagonal + i;
         const int pair = slip[i] == TRIBO_SLIP_PLANE, slides = pair && limit[0] > 0.0 && limit[1] > 0.0;
         p->in_plane[i] = (unsigned char)slides;
         if (pair) {
             p->in_plane[i + 1] = slides ? 2 : 0;
         }
         if (slides) {
-            p->contact[p->count++] = (struct planar_contact){.at = i, .limit = {limit[0], limit[1]}, .now = HUGE_VAL};
+            p->contact[p->count++] = (struct planar_contact){.at = i,
+                                                             .size = 2,
+                                                             .limit = {limit[0], limit[1]},
+                                                             .brake = greater(limit[0] * r[0], limit[1] * r[1]),
+                                                             .now = HUGE_VAL};
             set_slip(m, &p->contact[p->count - 1], TRIBO_SLIP_PLANE);
         }
         i += (size_t)pair;
+    }
+    p->all = p->count;
+    for (size_t i = 0; !status && i < c; i++) {
+        if (!p->in_plane[i]) {
+            p->contact[p->all++] = (struct planar_contact){.at = i, .size = 1, .limit = {m->state.limit[i]}};
+        }
     }
     return status;
 }
@@ -130,8 +140,10 @@ static size_t stop_in_plane(struct stick_slip *m, const tribo_system *sys, const
     for (size_t k = 0; k < m->plane->count; k++) {
         struct planar_contact *p = &m->plane->contact[k];
         double v[2];
+        p->stop = 0.0;
         for (size_t d = 0; d < 2; d++) {
             v[d] = tribo_stick_slip_find_velocity(m, sys, p->at + d, y);
+            p->stop = greater(p->stop, fabs(v[d]) / (p->limit[d] * m->constant.diagonal[p->at + d]));
         }
         p->now = length(v);
         p->most = greater(p->most, p->now);
@@ -221,41 +233,26 @@ static int solve_discs(struct stick_slip *m, const tribo_system *sys, const doub
     return TRIBO_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------- letting go
- * A contact, scalar or planar, is its first direction i, its number of directions, and p if there are two. */
-
-struct face {
-    size_t i, size;
-    struct planar_contact *p;
-};
-
-/* The contact after f; the first one after {0}. Its size is 0 if there is none. */
-static struct face next_face(const struct stick_slip *m, struct face f)
-{
-    const size_t i = f.i + f.size;
-    struct planar_contact *p = f.p ? f.p : m->plane->contact;
-    p += f.size == 2;
-    return (struct face){i, i == m->constant.contacts ? 0 : m->plane->in_plane[i] ? 2 : 1, p};
-}
+/* ------------------------------------------------------------------------------------------------------- letting go */
 
 /* |f/limit|; *noise = its rounding. */
-static double share(const struct stick_slip *m, const struct face *c, const double *f, double *noise)
+static double share(const struct stick_slip *m, const struct planar_contact *p, const double *f, double *noise)
 {
     double sum = 0.0, allowance = 0.0, least = HUGE_VAL;
-    for (size_t i = c->i; i < c->i + c->size; i++) {
-        sum = hypot(sum, f[i] / m->state.limit[i]);
-        allowance = greater(allowance, m->noise.allowance[i]);
-        least = lesser(least, m->state.limit[i]);
+    for (size_t d = 0; d < p->size; d++) {
+        sum = hypot(sum, f[p->at + d] / p->limit[d]);
+        allowance = greater(allowance, m->noise.allowance[p->at + d]);
+        least = lesser(least, p->limit[d]);
     }
     *noise = allowance / least;
     return sum;
 }
 
 /* 1 if a contact accelerates, by work.v, against force f by more than rounding. */
-static int face_leaves(const struct stick_slip *m, const struct face *c, const double *f)
+static int accelerates(const struct stick_slip *m, const struct planar_contact *p, const double *f)
 {
     double against = 0.0, size = 0.0, noise = 0.0;
-    for (size_t i = c->i; i < c->i + c->size; i++) {
+    for (size_t i = p->at; i < p->at + p->size; i++) {
         against -= f[i] * m->work.v[i];
         noise += fabs(f[i]) * m->noise.acceleration[i];
         size += fabs(f[i]);
@@ -264,13 +261,12 @@ static int face_leaves(const struct stick_slip *m, const struct face *c, const d
 }
 
 /* Lets a contact slide against its force. */
-static void let_face_go(struct stick_slip *m, const struct face *c, int begins)
+static void let_slide_against(struct stick_slip *m, struct planar_contact *p, int begins)
 {
-    double *f = m->state.force + c->i;
-    struct planar_contact *p = c->p;
-    if (c->size == 1) {
-        tribo_stick_slip_set(m, c->i, f[0] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH);
-        f[0] = -m->state.slip[c->i] * m->state.limit[c->i];
+    double *f = m->state.force + p->at;
+    if (p->size == 1) {
+        tribo_stick_slip_set(m, p->at, f[0] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH);
+        f[0] = -m->state.slip[p->at] * p->limit[0];
         return;
     }
     const double part[2] = {f[0] / p->limit[0], f[1] / p->limit[1]}, size = length(part);
@@ -305,6 +301,7 @@ static int goes_beyond(const struct stick_slip *m, const tribo_system *sys, cons
 /* Lets tied contacts slide by the forces of a moment later. Returns a status. */
 static int look_ahead_in_plane(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
+    const struct planar_contact *end = m->plane->contact + m->plane->all;
     tribo_stick_slip_contact_accelerations(sys, tribo_stick_slip_find_acceleration(m, sys), 1, m->work.f);
     const double turn = given_forces(m, sys, y, m->work.f),
                  h = lesser(m->constant.horizon, turn > 0.0 ? TURN / turn : m->constant.horizon);
@@ -314,19 +311,19 @@ static int look_ahead_in_plane(struct stick_slip *m, const tribo_system *sys, co
         m->plane->ahead[i] = m->work.a[i] + h * m->work.v[i];
         m->work.lo[i] += h * m->plane->rate[i];
     }
-    for (struct face c = next_face(m, (struct face){0}); c.size; c = next_face(m, c)) {
+    for (const struct planar_contact *p = m->plane->contact; p < end; p++) {
         /* limits of a moment later: of tied contacts at most their forces; the full limit where sliding in a plane begins */
-        const int counts = m->state.slip[c.i] == TRIBO_SLIP_STUCK || (c.size == 2 && c.p->begins != SLIDES_ON);
+        const int counts = m->state.slip[p->at] == TRIBO_SLIP_STUCK || p->begins != SLIDES_ON;
         double noise;
-        const double part = !counts ? 0.0 : m->state.tied[c.i] ? lesser(share(m, &c, m->state.force, &noise), 1.0) : 1.0;
-        for (size_t i = c.i; i < c.i + c.size; i++) {
-            m->work.hi[i] = part * m->state.limit[i];
+        const double part = !counts ? 0.0 : m->state.tied[p->at] ? lesser(share(m, p, m->state.force, &noise), 1.0) : 1.0;
+        for (size_t d = 0; d < p->size; d++) {
+            m->work.hi[p->at + d] = part * p->limit[d];
         }
     }
     const int status = solve_discs(m, sys, m->plane->ahead, m->work.f);
-    for (struct face c = next_face(m, (struct face){0}); !status && c.size; c = next_face(m, c)) {
-        if (m->state.tied[c.i] && face_leaves(m, &c, m->work.f) && (c.size == 1 || goes_beyond(m, sys, c.p, m->work.f))) {
-            let_face_go(m, &c, BY_FORCE);
+    for (struct planar_contact *p = m->plane->contact; !status && p < end; p++) {
+        if (m->state.tied[p->at] && accelerates(m, p, m->work.f) && (p->size == 1 || goes_beyond(m, sys, p, m->work.f))) {
+            let_slide_against(m, p, BY_FORCE);
         }
     }
     return status;
@@ -345,14 +342,14 @@ int tribo_planar_slip_settle(struct stick_slip *m, const tribo_system *sys, cons
         return status;
     }
     tribo_stick_slip_find_gains(m, sys, y);
-    for (struct face c = next_face(m, (struct face){0}); c.size; c = next_face(m, c)) {
+    for (struct planar_contact *p = m->plane->contact; p < m->plane->contact + m->plane->all; p++) {
         /* at its limit; slides if it accelerates, else is tied */
         double noise;
-        if (s->slip[c.i] == TRIBO_SLIP_STUCK && (share(m, &c, s->force, &noise) >= 1.0 - noise || c.i == s->reached)) {
-            s->tied[c.i] = !face_leaves(m, &c, s->force);
-            ties += (size_t)s->tied[c.i];
-            if (!s->tied[c.i]) {
-                let_face_go(m, &c, BY_ACCELERATION);
+        if (s->slip[p->at] == TRIBO_SLIP_STUCK && (share(m, p, s->force, &noise) >= 1.0 - noise || p->at == s->reached)) {
+            s->tied[p->at] = !accelerates(m, p, s->force);
+            ties += (size_t)s->tied[p->at];
+            if (!s->tied[p->at]) {
+                let_slide_against(m, p, BY_ACCELERATION);
             }
         }
     }

@@ -116,12 +116,16 @@ struct slip_limits {
  * reach beyond the limit. The value is the power of time with which the velocity begins. */
 enum { SLIDES_ON = 0, BY_ACCELERATION = 1, BY_FORCE = 2 };
 
+/* Of a scalar contact only at, size and limit[0] count. */
 struct planar_contact {
     size_t at;           /* index of its first direction; the second one is at + 1 */
+    size_t size;         /* number of directions */
     double limit[2];     /* both > 0 */
+    double brake;        /* the largest deceleration by friction along a direction, limit R_ii */
     double most;         /* the largest speed so far */
     double now;          /* speed at this decision; 0 where it begins to slide */
     double before;       /* speed at the decision before */
+    double stop;         /* time in which friction would stop it, at this decision */
     int begins;          /* SLIDES_ON, BY_ACCELERATION or BY_FORCE */
     double direction[2]; /* if not SLIDES_ON: direction of limit v, against that of force/limit; length 1 */
 };
@@ -129,7 +133,8 @@ struct planar_contact {
 struct planar_slip {
     tribo_context *disc;            /* forces of contacts at rest, as f_eq by Coulomb's law for v = 0 */
     size_t count;                   /* number of planar contacts */
-    struct planar_contact *contact; /* [count] */
+    size_t all;                     /* number of contacts */
+    struct planar_contact *contact; /* [all] planar contacts, then scalar ones */
     size_t stopped;                 /* a contact that the last decision brought to rest; ncontact if none */
     unsigned char *in_plane;        /* [ncontact] 1: first direction of a planar contact; 2: second direction; 0: scalar */
     double *error;                  /* [ncontact] errors that velocities may have in a step */

@@ -59,9 +59,6 @@
 #define GROWS 4.0
 #define SHRINKS 0.2
 
-/* A step ends where |x| has fallen to this part (method_event.c): a smaller x need not have the direction of u. */
-#define LEFT 1e-2
-
 /* Zeros of P_8 - P_7, Legendre's polynomials, on [0, 1]. */
 static const double node[NODES] = {0.022479386438712498, 0.11467905316090423, 0.26578982278458947, 0.45284637366944461,
                                    0.64737528288683036,  0.81975930826310764, 0.94373743946307788, 1.0};
@@ -145,14 +142,14 @@ static size_t count_sliding(const struct stick_slip *m, int *begins)
 
 /* Least length of a step that pays: much longer than the time in which friction would stop a contact; HUGE_VAL if none can
  * pay. */
-static double find_least(const struct event *e, const double *y)
+static double find_least(const struct stick_slip *m)
 {
     int begins;
-    const size_t count = count_sliding(&e->events.stick_slip, &begins);
+    const size_t count = count_sliding(m, &begins);
     const double part = (double)count / FEW_CONTACTS;
     return count == 0 || count > MOST_CONTACTS || begins
                ? HUGE_VAL
-               : PAYS * greater(1.0, part * part * part) * tribo_planar_series_first_stop(e, y);
+               : PAYS * greater(1.0, part * part * part) * tribo_planar_series_first_stop(m);
 }
 
 /* --------------------------------------------------------------------------------------------------------- directions */
@@ -171,20 +168,17 @@ static double find_turn(const struct event *e, size_t k)
     return un * dt - ut * dn;
 }
 
-/* Returns the shortest time to a stop over the contacts with a direction at y that still turns too fast for an error of
- * velocities below e->error; HUGE_VAL if there is none. */
-static double find_settled(const struct event *e, const double *y)
+/* Returns the shortest time to a stop over the contacts with a direction that still turns too fast for an error of velocities
+ * below e->error; HUGE_VAL if there is none. */
+static double find_settled(const struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     double length = HUGE_VAL;
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
-        const double v =
-            hypot(tribo_stick_slip_velocity(m, e->sys, p->at, y), tribo_stick_slip_velocity(m, e->sys, p->at + 1, y));
-        const double stop = tribo_planar_series_stop(e, p, y);
         const double turn = tribo_slides_in_plane(m, p) ? fabs(find_turn(e, k)) : 0.0;
-        const int follows = turn <= TURNS * e->fastest || turn * stop <= lesser(MOST_STRAY, e->error / v);
-        length = follows ? length : lesser(length, stop);
+        const int follows = turn <= TURNS * e->fastest || turn * p->stop <= lesser(MOST_STRAY, e->error / p->now);
+        length = follows ? length : lesser(length, p->stop);
     }
     return length;
 }
@@ -303,10 +297,7 @@ static double improve(struct event *e, size_t slides, double h)
 /* Error of directions allowed over a step, by the error of velocities that forces make of it. */
 static double allowed(const struct event *e, size_t k, double h)
 {
-    const struct stick_slip *m = &e->events.stick_slip;
-    const struct planar_contact *p = &m->plane->contact[k];
-    const double r = greater(p->limit[0] * m->constant.diagonal[p->at], p->limit[1] * m->constant.diagonal[p->at + 1]);
-    return lesser(MOST_OFF, e->error * (double)(NODES + 1) / (r * h));
+    return lesser(MOST_OFF, e->error * (double)(NODES + 1) / (e->events.stick_slip.plane->contact[k].brake * h));
 }
 
 /* x along u and across u at tau. */
@@ -320,14 +311,10 @@ static void take_parts(const struct event *e, size_t k, double tau, double *alon
     *across = un * x[1] - ut * x[0];
 }
 
-/* The time in which friction would stop contact k, |x| being size. */
-static double stop_of(const struct event *e, size_t k, double size)
+/* The time in which friction would stop planar contact p, |x| being size. */
+static double stop_of(const struct planar_contact *p, double size)
 {
-    const struct stick_slip *m = &e->events.stick_slip;
-    const struct planar_contact *p = &m->plane->contact[k];
-    const double n = p->limit[0] * p->limit[0] * m->constant.diagonal[p->at],
-                 t = p->limit[1] * p->limit[1] * m->constant.diagonal[p->at + 1];
-    return size / greater(n, t);
+    return size / (p->brake * greater(p->limit[0], p->limit[1]));
 }
 
 /* Stray: velocity across u at tau in a step of length h, in units of its error allowed. Friction takes it away at once, or the
@@ -337,8 +324,8 @@ static double find_stray(const struct event *e, size_t k, double h, double tau)
     const struct planar_contact *p = &e->events.stick_slip.plane->contact[k];
     double along, across;
     take_parts(e, k, tau, &along, &across);
-    const double size = greater(hypot(along, across), LEFT * e->planar.line[k].xn[0]);
-    const double gone = fabs(across) / size * lesser(1.0, h / stop_of(e, k, size));
+    const double size = greater(hypot(along, across), TRIBO_SLOWER * e->planar.line[k].xn[0]);
+    const double gone = fabs(across) / size * lesser(1.0, h / stop_of(p, size));
     return gone / lesser(MOST_STRAY, e->error * lesser(p->limit[0], p->limit[1]) / size);
 }
 
@@ -361,7 +348,7 @@ static int is_with(const struct event *e, size_t k, double h)
         *(along > 0.0 ? &from : &to) = middle;
         along = 0.0;
     }
-    return along > 0.0 || fabs(across) < 0.5 * LEFT * e->planar.line[k].xn[0];
+    return along > 0.0 || fabs(across) < 0.5 * TRIBO_SLOWER * e->planar.line[k].xn[0];
 }
 
 /* Iterates directions of sliding contacts at the nodes of a step of length h until their series satisfies the equation of
@@ -405,7 +392,7 @@ static void judge(const struct event *e, size_t slides, double h, struct creep_s
         const double begins = find_stray(e, k, h, 0.0);
         /* A contact that creeps may start in another direction than its equation asks for, at any length of the step: stray is no
          * reason for shorter steps then. */
-        stray = h > PAYS * stop_of(e, k, l->xn[0]) ? greater(stray, begins) : stray;
+        stray = h > PAYS * stop_of(&e->events.stick_slip.plane->contact[k], l->xn[0]) ? greater(stray, begins) : stray;
         /* the error between nodes, in units of that allowed; that of directions is the last power between nodes */
         const double last = 2.0 * pow(0.25 * h, NODES - 1) * hypot(l->un[NODES - 1], l->ut[NODES - 1]) / allowed(e, k, h);
         defect = greater(defect, is_with(e, k, h) ? greater(begins, last) : HUGE_VAL);
@@ -460,7 +447,7 @@ static int creep_expand(struct event *e, double t, const double *y, double h, st
 int tribo_creep_begin(struct event *e, double t, const double *y, double most, double *length)
 {
     struct creep *c = &e->creep;
-    const double least = find_least(e, y), last = c->length;
+    const double least = find_least(&e->events.stick_slip), last = c->length;
     const size_t before = e->sys->evaluations;
     /* at once where such steps just became shorter than least */
     c->wait = e->events.anew ? PATIENCE : last > 0.0 && !(last > least) ? 0 : c->wait;
@@ -473,7 +460,7 @@ int tribo_creep_begin(struct event *e, double t, const double *y, double most, d
     if (!(least < most) || (!(c->length > least) && c->waited++ < c->wait)) {
         return TRIBO_OK;
     }
-    const double first = c->length > least ? c->length : lesser(FIRST * most, find_settled(e, y));
+    const double first = c->length > least ? c->length : lesser(FIRST * most, find_settled(e));
     struct creep_step step = {0, lesser(most, first), HUGE_VAL};
     for (int trial = 0; *length == 0.0 && step.next > least && trial < MOST_TRIALS; trial++) {
         const double h = step.next;
@@ -481,7 +468,6 @@ int tribo_creep_begin(struct event *e, double t, const double *y, double most, d
         if (status) {
             return status;
         }
-        tribo_planar_series_errors(e);
         const double right = tribo_event_length(e);
         *length = step.good && right >= h ? h : 0.0;
         step.next = step.good && right < h ? 0.9 * right : step.next;

@@ -115,7 +115,7 @@ int tribo_event_start(struct event *e, double t, const double *y)
     e->d[0] = y[tribo_system_energy(sys)];
     tribo_compliance_get(sys, y, e->spring);
     e->order = e->most_order;
-    const int status = m->plane ? tribo_planar_series_begin(e, y) : TRIBO_OK;
+    const int status = m->plane ? tribo_planar_series_begin(e) : TRIBO_OK;
     tribo_system_set_time(sys, t);
     /* limits; a coefficient of a limit that falls with the speed needs that of the velocity first */
     const int falls = m->limits.falls;

@@ -131,19 +131,25 @@ double tribo_event_work(void *own, size_t i, double tau);
  * motion. */
 int tribo_event_transition(void *own, const void *phase, double tau, size_t columns, double *v);
 
-/* method_event.c: returns the length of the step on which the last two terms of all series are below the tolerance. */
-double tribo_event_length(const struct event *e);
+/* method_event.c: returns the length of the step on which the last two terms of all series are below the tolerance; sets
+ * plane->error. */
+double tribo_event_length(struct event *e);
+
+/* method_event.c: sets curves [count], of neighbouring polynomials from term on, and their bounds over [0, h]. */
+void tribo_event_curves(struct curve *curve, size_t count, size_t terms, size_t stride, const double *term, double h);
+
+/* A step ends where the speed of a planar contact falls to this part: at a small speed the direction turns fast, and a stop is
+ * approached in ever shorter steps. */
+#define TRIBO_SLOWER 1e-2
 
 /* ------------------------------------------------------------------------------------------------------ planar_series.c */
 
-/* The time in which friction would stop planar contact p; and the least such time of contacts that slide already, HUGE_VAL if
- * there is none. */
-double tribo_planar_series_stop(const struct event *e, const struct planar_contact *p, const double *y);
-double tribo_planar_series_first_stop(const struct event *e, const double *y);
+/* The least time in which friction would stop a planar contact that slides already; HUGE_VAL if there is none. */
+double tribo_planar_series_first_stop(const struct stick_slip *m);
 
-/* Sets the order for a phase that begins with y; makes room; finds S for contacts that begin to slide. Returns a status, its
+/* Sets the order for a phase; makes room; finds S for contacts that begin to slide. Returns a status, its
  * message on the system's context, as the functions below. */
-int tribo_planar_series_begin(struct event *e, const double *y);
+int tribo_planar_series_begin(struct event *e);
 
 /* Takes the k-th coefficients v [ncontact] of velocities; sets those of sliding forces room.given, without the t-parts of
  * contacts that begin to slide. */
@@ -156,9 +162,8 @@ int tribo_planar_series_finish(struct event *e, size_t k);
 /* The k-th coefficient of the power that planar contacts dissipate. */
 double tribo_planar_series_power(const struct event *e, size_t k);
 
-/* Sets square of all lines, with the forces in watch of contacts at rest. All terms count: those of the square are not small
- * where those of x end. */
-void tribo_planar_series_squares(struct event *e);
+/* Adds the guards of planar contacts: speed, or the force at rest. */
+void tribo_planar_series_guards(struct event *e);
 
 /* Sets plane->error [ncontact]: error of velocities, at most e->error. */
 void tribo_planar_series_errors(struct event *e);

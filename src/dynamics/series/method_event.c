@@ -41,7 +41,7 @@ static double wanted(const struct event *e, const double *series, size_t n, doub
     return greater(error, DBL_EPSILON * size);
 }
 
-double tribo_event_length(const struct event *e)
+double tribo_event_length(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const size_t n = e->sys->ndof, c = e->sys->ncontact;
@@ -50,6 +50,9 @@ double tribo_event_length(const struct event *e)
                  d = wanted(e, e->d, 1, e->moves[2], most);
     const double tolerance = e->events.sharp ? lesser(e->tolerance, SHARP) : e->tolerance;
     double h = most;
+    if (m->plane) {
+        tribo_planar_series_errors(e);
+    }
     for (size_t k = e->order - 1; k <= e->order; k++) {
         double term = greater(tribo_largest(e->q + k * n, n) / q, greater(tribo_largest(e->u + k * n, n) / u, fabs(e->d[k]) / d));
         for (size_t i = 0; i < c; i++) {
@@ -112,8 +115,7 @@ static double method_event_bound(void *own, double tau)
     return HUGE_VAL;
 }
 
-/* Sets curves [count], of neighbouring polynomials from term on, and their bounds over [0, h]. */
-static void set_curves(struct curve *curve, size_t count, size_t terms, size_t stride, const double *term, double h)
+void tribo_event_curves(struct curve *curve, size_t count, size_t terms, size_t stride, const double *term, double h)
 {
     double power = 1.0, sixth = 1.0; /* of h; the second that of the sixth derivative */
     for (size_t i = 0; i < count; i++) {
@@ -131,29 +133,6 @@ static void set_curves(struct curve *curve, size_t count, size_t terms, size_t s
     }
 }
 
-/* A step ends where the speed of a planar contact falls to this part: at a small speed the direction turns fast, and a stop is
- * approached in ever shorter steps. */
-#define SLOWER 1e-2
-
-static void set_planar_guards(struct event *e)
-{
-    const struct stick_slip *m = &e->events.stick_slip;
-    tribo_planar_series_squares(e);
-    for (size_t k = 0; k < m->plane->count; k++) {
-        const struct planar_contact *p = &m->plane->contact[k];
-        const int moves = tribo_slides_in_plane(m, p);
-        const double *square = e->planar.line[k].square, limit = greater(p->limit[0], p->limit[1]);
-        struct curve *curve = &e->curve[p->at];
-        struct guard g = {.contact = p->at, .output = curve, .kind = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
-        set_curves(curve, 1, 2 * e->order + 1, 1, square, e->length);
-        g.offset = moves ? -SLOWER * SLOWER * square[0] : 0.5 * limit;
-        g.allowance = moves ? 0.0 : greater(m->noise.allowance[p->at], m->noise.allowance[p->at + 1]);
-        if (moves || curve->size >= 0.5 * limit) {
-            e->events.search.guard[e->events.search.guards++] = g;
-        }
-    }
-}
-
 /* Returns 0 if bounds overflow. */
 static int set_guards(struct event *e)
 {
@@ -167,10 +146,10 @@ static int set_guards(struct event *e)
         power = lesser(power * e->length, DBL_MAX);
     }
     e->events.search.guards = 0;
-    set_curves(e->curve, c, e->order + 1, c, e->watch, e->length);
-    set_curves(e->limit_curve, c, e->terms, c, e->limit, e->length);
+    tribo_event_curves(e->curve, c, e->order + 1, c, e->watch, e->length);
+    tribo_event_curves(e->limit_curve, c, e->terms, c, e->limit, e->length);
     if (m->plane) {
-        set_planar_guards(e);
+        tribo_planar_series_guards(e);
     }
     for (size_t i = 0; i < c; i++) {
         struct curve *curve = &e->curve[i];
@@ -306,12 +285,8 @@ static int method_event_begin(void *own, double t, const double *y, double *reac
     if (!status && length == 0.0) {
         status = tribo_event_start(e, t, y);
         status = status ? status : tribo_event_series(e);
-        if (!status && m->plane) {
-            tribo_planar_series_errors(e);
-            length = tribo_planar_series_shorten(e, lesser(tribo_event_length(e), most));
-        } else if (!status) {
-            length = tribo_event_length(e);
-        }
+        length = status ? 0.0 : tribo_event_length(e);
+        length = status || !m->plane ? length : tribo_planar_series_shorten(e, lesser(length, most));
     }
     if (status) {
         return status;

@@ -74,26 +74,13 @@ static double planar_series_along(const struct planar_contact *p, const struct p
     return p->limit[0] * l->t[0] * acc[p->at] + p->limit[1] * l->t[1] * acc[p->at + 1];
 }
 
-double tribo_planar_series_stop(const struct event *e, const struct planar_contact *p, const double *y)
+double tribo_planar_series_first_stop(const struct stick_slip *m)
 {
-    const struct stick_slip *m = &e->events.stick_slip;
-    double most = 0.0;
-    for (size_t d = 0; d < 2; d++) {
-        const double v = tribo_stick_slip_velocity(m, e->sys, p->at + d, y);
-        most = greater(most, fabs(v) / (p->limit[d] * m->constant.diagonal[p->at + d]));
-    }
-    return most;
-}
-
-double tribo_planar_series_first_stop(const struct event *e, const double *y)
-{
-    const struct planar_slip *plane = e->events.stick_slip.plane;
     double least = HUGE_VAL;
-    for (size_t k = 0; k < plane->count; k++) {
-        const struct planar_contact *p = &plane->contact[k];
-        if (tribo_slides_in_plane(&e->events.stick_slip, p) && p->begins == SLIDES_ON) {
-            least = lesser(least, tribo_planar_series_stop(e, p, y));
-        }
+    for (size_t k = 0; k < m->plane->count; k++) {
+        const struct planar_contact *p = &m->plane->contact[k];
+        const int slides = tribo_slides_in_plane(m, p) && p->begins == SLIDES_ON;
+        least = slides ? lesser(least, p->stop) : least;
     }
     return least;
 }
@@ -106,7 +93,7 @@ static void set_direction(struct planar_line *l, double x, double y)
     l->t[0] = -y;
 }
 
-int tribo_planar_series_begin(struct event *e, const double *y)
+int tribo_planar_series_begin(struct event *e)
 {
     struct stick_slip *m = &e->events.stick_slip;
     struct planar_series *s = &e->planar;
@@ -122,7 +109,7 @@ int tribo_planar_series_begin(struct event *e, const double *y)
                                  plural(count));
     }
     /* coefficients stay within MOST_DIGITS: their unit of time is that of the first stop */
-    const double most = MOST_DIGITS / greater(-log10(tribo_planar_series_first_stop(e, y)), 1.0);
+    const double most = MOST_DIGITS / greater(-log10(tribo_planar_series_first_stop(m)), 1.0);
     e->order = s->given ? e->most_order : (size_t)greater(lesser((double)e->most_order, most), LEAST_ORDER);
     s->begins = begins;
     for (size_t k = 0, q = 0; q < begins; k++) {
@@ -260,23 +247,32 @@ double tribo_planar_series_power(const struct event *e, size_t k)
 
 /* -------------------------------------------------------------------------------------------------------------- guards */
 
-void tribo_planar_series_squares(struct event *e)
+void tribo_planar_series_guards(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     for (size_t c = 0; c < m->plane->count; c++) {
         const struct planar_contact *p = &m->plane->contact[c];
         struct planar_line *l = &e->planar.line[c];
+        struct curve *curve = &e->curve[p->at];
         const int moves = tribo_slides_in_plane(m, p);
         const size_t last = e->order - (moves ? (size_t)p->begins : 0);
-        const double scale = moves ? 1.0 : 0.5 * greater(p->limit[0], p->limit[1]);
+        const double half = 0.5 * greater(p->limit[0], p->limit[1]);
         for (size_t k = 0; !moves && k <= e->order; k++) {
             const double *force = e->watch + k * m->constant.contacts + p->at;
             l->xn[k] = force[0] / p->limit[0];
             l->xt[k] = force[1] / p->limit[1];
         }
-        for (size_t k = 0; k <= 2 * e->order; k++) {
+        for (size_t k = 0; k <= 2 * e->order; k++) { /* terms of the square are not small where those of x end */
             const size_t from = k < last ? 0 : k - last, to = k < last ? k + 1 : last + 1;
-            l->square[k] = scale * (product_of(l->xn, l->xn, k, from, to) + product_of(l->xt, l->xt, k, from, to));
+            const double square = product_of(l->xn, l->xn, k, from, to) + product_of(l->xt, l->xt, k, from, to);
+            l->square[k] = moves ? square : half * square;
+        }
+        tribo_event_curves(curve, 1, 2 * e->order + 1, 1, l->square, e->length);
+        struct guard g = {.contact = p->at, .output = curve, .kind = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
+        g.offset = moves ? -TRIBO_SLOWER * TRIBO_SLOWER * l->square[0] : half;
+        g.allowance = moves ? 0.0 : greater(m->noise.allowance[p->at], m->noise.allowance[p->at + 1]);
+        if (moves || curve->size >= half) {
+            e->events.search.guard[e->events.search.guards++] = g;
         }
     }
 }
@@ -309,12 +305,11 @@ double tribo_planar_series_shorten(const struct event *e, double h)
         const double xn = tribo_series_value(l->xn, last, h), xt = tribo_series_value(l->xt, last, h), size = hypot(xn, xt);
         const double off =
             hypot(tribo_series_value(l->un, e->order, h) - xn / size, tribo_series_value(l->ut, e->order, h) - xt / size);
-        const double most_r = greater(p->limit[0] * m->constant.diagonal[p->at], p->limit[1] * m->constant.diagonal[p->at + 1]);
         double sum = 0.0;
         for (size_t k = last + 1; k-- > 0;) {
             sum = sum * h + fabs(l->xn[k]) + fabs(l->xt[k]);
         }
-        if (!(off * most_r * h / (double)(e->order + 1) <= m->plane->error[p->at] && sum <= FASTER * l->xn[0])) {
+        if (!(off * p->brake * h / (double)(e->order + 1) <= m->plane->error[p->at] && sum <= FASTER * l->xn[0])) {
             h *= 0.8;
             c = SIZE_MAX; /* from the first contact on */
         }
