@@ -89,8 +89,8 @@ void tribo_clusters_refresh(tribo_context *ctx, int follows, double time);
 int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a);
 int tribo_clusters_step(tribo_context *ctx, double dt, const double *vfree, const signed char *known);
 
-/* f_eq of the contacts of clusters in the last balance, in last.feq. */
-void tribo_clusters_feq(tribo_context *ctx);
+/* last.feq = f_eq of the contacts of cluster q in the last balance; 0 of open ones. */
+void tribo_cluster_feq(tribo_context *ctx, size_t q);
 
 /* After a step: sets feels [n] = (R f)_i without the term of f_i, for contacts of clusters. Of planar contacts that slide: sets
  * reverses = TRIBO_SLIP_PLANE, and *vfree = an array with v + vfree where v'(v at the end) > 0. Returns the number of these

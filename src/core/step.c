@@ -45,19 +45,11 @@ TRIBO_SIMD static int any_within_reach(size_t n, double times, const double *res
 /* Lists the groups with a contact that friction could hold, chunk by chunk: in a large scene most chunks have none. */
 static void find_candidates(tribo_context *ctx, const struct call *c)
 {
-    const double *row_sum = ctx->op->row_sum;
-    const struct chunk *chunk = ctx->follow.chunk;
-    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+    const double *row_sum = ctx->op->row_sum, largest = ctx->follow.largest;
+    for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
         const size_t n = tribo_chunk_size(ctx, i);
-        /* at least the largest limit in any group with a contact in the chunk */
-        const double before = k > 0 ? chunk[k - 1].largest : 0.0,
-                     behind = k + 1 < tribo_chunks(ctx->n) ? chunk[k + 1].largest : 0.0;
-        const double around = greater(chunk[k].largest, greater(before, behind));
-        const double largest = ctx->op->span < TRIBO_CHUNK ? around : ctx->follow.largest;
-        if (c->estimates && (largest == 0.0 || !any_within_reach(n, c->times, c->v + i, row_sum + i, largest))) {
-            continue;
-        }
-        for (size_t j = i; j < i + n; j++) {
+        const int any = !c->estimates || (largest > 0.0 && any_within_reach(n, c->times, c->v + i, row_sum + i, largest));
+        for (size_t j = i; any && j < i + n; j++) {
             if (!(c->estimates && out_of_reach(c->times, c->v[j], row_sum[j], largest))) {
                 tribo_list_group(ctx, c->group_of[j]);
             }

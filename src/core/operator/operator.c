@@ -296,8 +296,6 @@ static void fill_group(struct delassus *op, struct memory *m, size_t k, const st
     struct box_qp *p = tribo_memory_problem(op, m, k);
     struct group *g = &op->group[k];
     double *scale = op->fixed + g->fixed, *part = scale + g->size, *least = part + g->size, *r = least + g->size;
-    const size_t span = p->member[g->size - 1] - p->member[0];
-    op->span = span > op->span ? span : op->span;
     g->lightest = HUGE_VAL;
     g->terms = 0;
     for (size_t c = 0; c < g->size; c++) {

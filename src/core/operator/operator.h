@@ -30,7 +30,6 @@ struct delassus {
     size_t *member;               /* [n] contacts of groups, group by group, ascending */
     double *row_sum;              /* [n] sum_j |R_ij|; -1 for contacts in no group */
     double largest_sum;           /* of these */
-    size_t span;                  /* the largest distance of the first contact of a group from its last */
     size_t largest;               /* contacts in the largest group */
     double *fixed;                /* [fixed_size] R and what goes with it, group by group */
     size_t fixed_size, kept_size; /* of fixed, and of the store of a memory */

@@ -341,9 +341,9 @@ const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
 
 /* ------------------------------------------------------------------------------------------------------------- f_eq */
 
-/* Sets last.feq of the contacts of a cluster; 0 of open ones. */
-static void find_cluster_feq(tribo_context *ctx, const struct cluster *g)
+void tribo_cluster_feq(tribo_context *ctx, size_t q)
 {
+    const struct cluster *g = &ctx->clusters->cluster[q];
     for (size_t k = 0, directions; k < g->size; k += directions) {
         const size_t i = g->member[k], own[2] = {k, k + 1};
         directions = tribo_directions(ctx, i);
@@ -357,13 +357,6 @@ static void find_cluster_feq(tribo_context *ctx, const struct cluster *g)
         for (size_t d = 0; d < directions; d++) {
             ctx->last.feq[i + d] = most > 0.0 ? x[d] : 0.0;
         }
-    }
-}
-
-void tribo_clusters_feq(tribo_context *ctx)
-{
-    for (size_t q = 0; q < tribo_cluster_count(ctx); q++) {
-        find_cluster_feq(ctx, &ctx->clusters->cluster[q]);
     }
 }
 
@@ -382,12 +375,12 @@ int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a)
         status = solve_cluster(ctx, g, 0.0);
         /* Laws with a memory set the forces of scalar contacts from f_eq. */
         if (ctx->set.law->remembers) {
-            find_cluster_feq(ctx, g);
+            tribo_cluster_feq(ctx, q);
         }
         for (size_t e = 0; ctx->set.law->remembers && e < c->problem.size; e++) {
             const size_t i = c->contact[e];
+            const struct contacts at = tribo_contacts_from(&ctx->follow.contacts, i);
             if (tribo_is_scalar(ctx, i)) {
-                const struct contacts at = tribo_contacts_from(&ctx->follow.contacts, i);
                 ctx->set.law->force(&at, 1, v + i, ctx->last.feq + i, ctx->last.f + i);
             }
         }

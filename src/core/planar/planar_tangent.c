@@ -140,12 +140,14 @@ void tribo_cluster_product(const tribo_context *ctx, size_t q, const struct chan
 
 /* ------------------------------------------------------------------------------------------------ f_eq that is given */
 
-/* A planar contact with f_eq given: limits, law and motion. */
+/* Planar contact k with f_eq given. */
 struct given {
+    size_t i; /* first direction */
     double limit[2];
     struct contacts c; /* of its two directions */
     struct slide s;
     int near;
+    struct disc_alone x; /* its problem, near stick */
 };
 
 /* y [2] = f_eq in parts of limits. Returns |y|. */
@@ -157,27 +159,27 @@ static double feq_parts(const double *limit, const double *feq, double *y)
     return tribo_length(2, y);
 }
 
-/* Near stick: x->p.y = the point of the lens nearest to feq - kappa in the norm of the contact's block, in parts of limits.
- * Returns 1, or 0 without convergence. */
-static int given_near(const tribo_context *ctx, size_t k, const struct given *g, const double *feq, struct disc_alone *x)
+/* Near stick: y of the problem = the point of the lens nearest to feq - kappa in the norm of the contact's block, own [2][2], in
+ * parts of limits. Returns 1, or 0 without convergence. */
+static int given_near(const struct law *law, struct given *g, const double *own, const double *feq)
 {
-    const double *own = ctx->clusters->own[k], r = greater(own[0], own[3]), turn = ctx->set.law->relaxes ? 2.0 * g->s.speed : 0.0;
-    const double *bound = g->c.bound, force = greater(bound[0], bound[1]);
-    const double weight[2] = {bound[0] / force, bound[1] / force}, across = weight[0] * weight[1] * (own[1] / r);
-    const double m[4] = {weight[0] * weight[0] * greater(own[0] / r, NEXT_TO_IMMOVABLE), across, across,
-                         weight[1] * weight[1] * greater(own[3] / r, NEXT_TO_IMMOVABLE)};
-    const double shift[2] = {turn * g->s.n[0], turn * g->s.n[1]};
-    double aim[2], pull[2];
+    const double *bound = g->c.bound, force = greater(bound[0], bound[1]), r = greater(own[0], own[3]);
+    const double turn = law->relaxes ? 2.0 * g->s.speed : 0.0, shift[2] = {turn * g->s.n[0], turn * g->s.n[1]};
+    double aim[2], m[4], pull[2];
     const double length = feq_parts(bound, feq, aim);
+    for (int k = 0; k < 4; k++) {
+        const double part = k == 1 || k == 2 ? own[k] / r : greater(own[k] / r, NEXT_TO_IMMOVABLE);
+        m[k] = bound[k / 2] / force * (bound[k % 2] / force) * part;
+    }
     for (int d = 0; d < 2; d++) {
         aim[d] = (length > HARDEST ? aim[d] / length * HARDEST : aim[d]) - shift[d];
     }
     for (int d = 0; d < 2; d++) {
         pull[d] = -(m[2 * d] * aim[0] + m[2 * d + 1] * aim[1]);
     }
-    tribo_disc_alone(x, m, pull, shift);
-    memcpy(x->p.y, aim, sizeof aim);
-    return tribo_disc_solve(&x->p);
+    tribo_disc_alone(&g->x, m, pull, shift);
+    memcpy(g->x.p.y, aim, sizeof aim);
+    return tribo_disc_solve(&g->x.p);
 }
 
 int tribo_plane_reads_feq(const tribo_context *ctx, size_t i, const double *v)
@@ -187,60 +189,52 @@ int tribo_plane_reads_feq(const tribo_context *ctx, size_t i, const double *v)
     return tribo_planar_near(ctx->set.law, &s);
 }
 
-/* df [2] of a contact near stick by t and dfeq [2]; its problem is solved and linearized. */
-static void turn_near(struct disc_qp *p, const struct given *g, const struct law *law, const struct turn *t, const double *dfeq,
-                      double *df)
+/* Sets the derivatives out [3] by v, f_eq and the limits of the caller, [n][2] each, or NULL, of a contact at v [2]; static limits
+ * follow |v|, too. */
+static void given_columns(const tribo_context *ctx, struct given *g, const double *v, double *const *out)
 {
     static const unsigned char both[2] = {2, 0};
-    const double *bound = g->c.bound;
-    double dshift[2], growth[2], off[2], rhs[2], move[2];
-    for (size_t k = 0; k < 2; k++) {
-        dshift[k] = turn_shift(law, &g->s, t, k, 1.0, p->shift[k]);
-        growth[k] = bound[k] > 0.0 ? quotient(t->limit[k], bound[k]) : 0.0;
-        off[k] = bound[k] > 0.0 ? p->y[k] * growth[k] - quotient(dfeq[k], bound[k]) : 0.0;
-    }
-    for (size_t k = 0; k < 2; k++) {
-        rhs[k] = p->s[2 * k] * off[0] + p->s[2 * k + 1] * off[1];
-    }
-    planar_follow(p, both, growth, dshift, rhs, move);
-    for (size_t k = 0; k < 2; k++) {
-        df[k] = product(bound[k], move[k]) + p->y[k] * t->limit[k];
-    }
-}
-
-/* Sets the derivatives out [3] of planar contact k by v, f_eq and the limits of the caller, [n][2] each, or NULL; static limits
- * follow |v|, too. p: the solved problem near stick, or NULL. */
-static void given_columns(const tribo_context *ctx, size_t k, const struct given *g, struct disc_qp *p, const double *v,
-                          double *const *out)
-{
-    const size_t i = ctx->clusters->first[k];
-    const double *set = ctx->set.breaking ? ctx->follow.cut_limit + i : g->c.limit;
+    const struct law *law = ctx->set.law;
+    const double *bound = g->c.bound, *set = ctx->set.breaking ? ctx->follow.cut_limit + g->i : g->c.limit;
+    struct disc_qp *p = &g->x.p;
     double along[2] = {0.0, 0.0};
-    if (p) {
+    if (g->near) {
         tribo_disc_gradients(p);
         tribo_disc_places(p);
         tribo_disc_linearize(p);
     }
-    for (size_t d = 0; p && p->place[0] == LENS_ON_DISC && d < 2; d++) {
-        along[d] = g->c.bound[d] > 0.0 ? quotient(p->gradient[d], g->c.bound[d]) : 0.0;
+    for (size_t d = 0; g->near && p->place[0] == LENS_ON_DISC && d < 2; d++) {
+        along[d] = bound[d] > 0.0 ? quotient(p->gradient[d], bound[d]) : 0.0;
     }
     for (size_t column = 0; column < 6; column++) {
-        double unit[6] = {0.0}, df[2] = {0.0, 0.0};
-        unit[column] = column < 4 || ctx->set.limit[i + column - 4] > 0.0;
+        double unit[6] = {0.0}, df[2];
+        unit[column] = column < 4 || ctx->set.limit[g->i + column - 4] > 0.0;
         struct turn t = {{unit[0], unit[1]}, {unit[4], unit[5]}, {0.0, 0.0}, 0.0};
         t.epsilon = g->c.scales && !g->s.open ? quotient(t.limit[g->s.far], set[g->s.far]) : 0.0;
         for (size_t d = 0; d < 2 && ctx->set.breaking; d++) {
             const double part = set[d] > 0.0 ? quotient(g->c.limit[d], set[d]) : 0.0;
             t.limit[d] = product(part, t.limit[d]);
         }
-        turn_slide(ctx, i, &g->s, g->c.limit, v, along, &t);
-        if (p) {
-            turn_near(p, g, ctx->set.law, &t, unit + 2, df);
+        turn_slide(ctx, g->i, &g->s, g->c.limit, v, along, &t);
+        if (g->near) {
+            double dshift[2], growth[2], off[2], rhs[2], move[2];
+            for (size_t d = 0; d < 2; d++) {
+                dshift[d] = turn_shift(law, &g->s, &t, d, 1.0, p->shift[d]);
+                growth[d] = bound[d] > 0.0 ? quotient(t.limit[d], bound[d]) : 0.0;
+                off[d] = bound[d] > 0.0 ? p->y[d] * growth[d] - quotient(unit[2 + d], bound[d]) : 0.0;
+            }
+            for (size_t d = 0; d < 2; d++) {
+                rhs[d] = p->s[2 * d] * off[0] + p->s[2 * d + 1] * off[1];
+            }
+            planar_follow(p, both, growth, dshift, rhs, move);
+            for (size_t d = 0; d < 2; d++) {
+                df[d] = product(bound[d], move[d]) + p->y[d] * t.limit[d];
+            }
         } else {
-            turn_force(ctx->set.law, &g->s, g->c.limit, &t, df);
+            turn_force(law, &g->s, g->c.limit, &t, df);
         }
         for (size_t d = 0; out[column / 2] && d < 2; d++) {
-            out[column / 2][2 * (i + d) + column % 2] = df[d];
+            out[column / 2][2 * (g->i + d) + column % 2] = df[d];
         }
     }
 }
@@ -250,8 +244,7 @@ int tribo_plane_force(const tribo_context *ctx, const double *v, const double *f
     for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
         const size_t i = ctx->clusters->first[k];
         double f[2], y[2];
-        struct given g = {.c = tribo_contacts_from(&ctx->follow.contacts, i), .s = tribo_planar_slide(ctx, i, v + i)};
-        struct disc_alone x;
+        struct given g = {.i = i, .c = tribo_contacts_from(&ctx->follow.contacts, i), .s = tribo_planar_slide(ctx, i, v + i)};
         g.near = tribo_planar_near(ctx->set.law, &g.s);
         if (ctx->set.breaking) {
             const int holds = g.near && feq_parts(ctx->follow.hold + i, feq + i, y) <= 1.0;
@@ -260,15 +253,15 @@ int tribo_plane_force(const tribo_context *ctx, const double *v, const double *f
         }
         if (!g.near) {
             tribo_planar_slide_force(ctx->set.law, &g.s, g.c.limit, f);
-        } else if (!given_near(ctx, k, &g, feq + i, &x)) {
+        } else if (!given_near(ctx->set.law, &g, ctx->clusters->own[k], feq + i)) {
             return TRIBO_ERR_NO_CONVERGENCE;
         }
         for (size_t d = 0; g.near && d < 2; d++) {
-            const double held = cut(feq[i + d]) - x.p.shift[d] * g.c.bound[d];
-            f[d] = x.p.place[0] == LENS_INSIDE && g.c.bound[d] > 0.0 ? held : x.p.y[d] * g.c.bound[d];
+            const double held = cut(feq[i + d]) - g.x.p.shift[d] * g.c.bound[d];
+            f[d] = g.x.p.place[0] == LENS_INSIDE && g.c.bound[d] > 0.0 ? held : g.x.p.y[d] * g.c.bound[d];
         }
         if (out[1] || out[2] || out[3]) {
-            given_columns(ctx, k, &g, g.near ? &x.p : NULL, v + i, out + 1);
+            given_columns(ctx, &g, v + i, out + 1);
         }
         tribo_copy(out[0] ? out[0] + i : NULL, f, out[0] ? 2 : 0);
     }
