@@ -66,7 +66,6 @@ int tribo_blockwise_create(struct blockwise *b, const tribo_system *sys)
         b->room = tribo_layout_array(&l, c, sizeof *b->room);
         b->first = tribo_layout_array(&l, blocks, sizeof *b->first);
         b->last = tribo_layout_array(&l, blocks, sizeof *b->last);
-        b->still = tribo_layout_array(&l, blocks, sizeof *b->still);
         b->driven = tribo_layout_array(&l, blocks, 1);
         b->awake = tribo_layout_array(&l, blocks, 1);
         b->wakes = tribo_layout_array(&l, blocks, 1);
@@ -223,11 +222,11 @@ static void find_bases(struct blockwise *b, tribo_system *sys, double t, double 
 
 enum { STIRS = 1, GROWS = 2 };
 
-/* Takes the step for n degrees of freedom from i on. a [n]: in, accelerations without friction; out, minus twice the work of
- * friction. A body stops at the base if its friction can do that. Returns STIRS if one has a velocity at either end, GROWS
- * if one is not finite: looked at in words as wide as the numbers. */
+/* Takes the step for n degrees of freedom from i on, with accelerations a [n] without friction. work [n] = minus twice the work
+ * of friction. A body stops at the base if its friction can do that. Returns STIRS if one has a velocity at either end, GROWS if
+ * one is not finite: looked at in words as wide as the numbers. */
 TRIBO_SIMD static int move(const struct blockwise *b, const struct body_step *s, size_t i, size_t n, int moves,
-                           double *restrict a)
+                           const double *restrict a, double *restrict work)
 {
     static const double resting[MATRIX_BLOCK];
     const double time = s->time, h = s->h;
@@ -244,7 +243,7 @@ TRIBO_SIMD static int move(const struct blockwise *b, const struct body_step *s,
         const double to = q[d] + h * end;
         speeds |= fabs(u[d]) + fabs(end) > 0.0 ? -1 : 0;
         grows |= fabs(end) + fabs(to) <= DBL_MAX ? 0 : -1;
-        a[d] = mass[d] * change * ((u[d] - before[d]) + (end - after[d]));
+        work[d] = mass[d] * change * ((u[d] - before[d]) + (end - after[d]));
         u_to[d] = end;
         q_to[d] = to;
     }
@@ -255,7 +254,6 @@ int tribo_blockwise_step(struct blockwise *b, tribo_system *sys, const struct bo
 {
     const int moves = tribo_system_bases_move(sys);
     int did, all = 0;
-    size_t stills = 0;
     *rested += sys->ndof;
     set_time(b, sys, s->t);
     if (tribo_system_limits_vary(sys)) {
@@ -267,31 +265,22 @@ int tribo_blockwise_step(struct blockwise *b, tribo_system *sys, const struct bo
     }
     for (unsigned char *next = b->awake; (next = memchr(next, 1, (size_t)(b->awake + b->blocks - next))) != NULL;) {
         const size_t k = (size_t)(next - b->awake), n = block_size(sys, k);
-        double a[MATRIX_BLOCK];
+        double a[MATRIX_BLOCK], work[MATRIX_BLOCK];
+        int wakes = b->driven[k] | b->wakes[k];
         accelerate(b, sys, k, s->q, s->u, a);
-        all |= did = move(b, s, k * MATRIX_BLOCK, n, moves, a);
-        *energy -= 0.5 * tribo_sum(n, a);
+        all |= did = move(b, s, k * MATRIX_BLOCK, n, moves, a, work);
+        *energy -= 0.5 * tribo_sum(n, work);
         *rested -= n;
         *next = 0;
         if (did & STIRS) {
             memset(b->wakes + b->first[k], 1, b->last[k] - b->first[k] + 1);
-        } else if (b->driven[k]) {
-            b->wakes[k] = 1;
-        } else {
-            b->still[stills++] = k;
-        }
-    }
-    while (stills > 0) {
-        const size_t k = b->still[--stills];
-        double a[MATRIX_BLOCK];
-        if (b->wakes[k]) {
             continue;
         }
-        accelerate(b, sys, k, s->q_to, s->u_to, a);
-        /* contacts hold blocks at rest in steps of any length */
-        for (size_t i = 0; !b->wakes[k] && i < block_size(sys, k); i++) {
-            b->wakes[k] = !(fabs(a[i]) <= b->brake[k * MATRIX_BLOCK + i]);
+        /* contacts hold the block at rest in steps of any length */
+        for (size_t i = 0; !wakes && i < n; i++) {
+            wakes = !(fabs(a[i]) <= b->brake[k * MATRIX_BLOCK + i]);
         }
+        b->wakes[k] = (unsigned char)wakes;
     }
     unsigned char *last = b->awake;
     b->awake = b->wakes;

@@ -8,8 +8,8 @@
  * all blocks from the first to the last one that displacements or velocities of block k accelerate. Blocks are taken in their
  * order, so that the energy is the same sum.
  *
- * A block that is left out cannot move. In the step before, it began and ended with velocity 0, and at its end |a| <= |B| limit
- * held for each of its rows. None of the blocks that accelerate it has moved since; load, limits and bases are constant: a is the
+ * A block that is left out cannot move. In the step before, it began and ended with velocity 0, and |a| <= |B| limit held for
+ * each of its rows. None of the blocks that accelerate it has moved; load, limits and bases are constant: a is the
  * same to the last bit. A step begins with u = 0, which becomes h a without friction and 0 with it: |h a| <= h |B| limit for
  * every h, since rounding is monotonic. Both arrays of states, which steps write by turns, hold the same displacement. It is not
  * enough that a step of one length did not move the block: lengths differ by rounding. */
@@ -32,7 +32,6 @@ struct blockwise {
     size_t *first, *last;         /* [blocks] block k accelerates no blocks before first[k] or after last[k] */
     unsigned char *driven;        /* [blocks] 1: a load, base or limit depends on time */
     unsigned char *awake, *wakes; /* [blocks] 1: awake in this step, not yet done; in the next step */
-    size_t *still;                /* [blocks] workspace: blocks that did not move in this step */
     int fits;                     /* 1: steps, or rates, can be taken with the settings */
     size_t revision;              /* of the system to which settings and fits belong */
 };

@@ -74,18 +74,18 @@ int tribo_step_form_bodies(const struct matrix *j, size_t *body, double *lever, 
 int tribo_step_form_create(struct step_form *s, const tribo_system *sys, size_t more)
 {
     const size_t n = sys->ndof, c = sys->ncontact;
-    struct layout l = {0};
-    do {
-        double **const of_contact[] = {&s->v, &s->end, &s->f, &s->base};
-        s->memory = s->u = tribo_layout_array(&l, n, sizeof *s->u);
-        s->a = tribo_layout_array(&l, n, sizeof *s->a);
-        for (size_t k = 0; k < sizeof of_contact / sizeof *of_contact; k++) {
-            *of_contact[k] = tribo_layout_array(&l, c, sizeof **of_contact[k]);
-        }
-        s->more = tribo_layout_array(&l, more, sizeof *s->more);
-        s->mode = tribo_layout_array(&l, c, sizeof *s->mode);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    return l.memory != NULL;
+    s->memory = s->u = tribo_zeros(2 * n + 5 * c + more + 1, sizeof *s->u);
+    if (!s->memory) {
+        return 0;
+    }
+    s->a = s->u + n;
+    s->v = s->a + n;
+    s->end = s->v + c;
+    s->f = s->end + c;
+    s->base = s->f + c;
+    s->more = s->base + c;
+    s->mode = (signed char *)(s->more + more);
+    return 1;
 }
 
 void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t)

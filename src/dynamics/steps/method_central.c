@@ -241,12 +241,11 @@ static size_t central_run(tribo_driver *drv, size_t count, const double *t, doub
     if (!few_find_all(b, sys, count, t, x->last)) {
         return 0;
     }
-    tribo_step_form_velocity(s, sys, x->when, s->u, s->end);
     struct few_state m = {.energy = x->energy};
     memcpy(m.q, y, n * sizeof *y);
     memcpy(m.u, s->u, n * sizeof *y);
-    memcpy(m.v, s->end, c * sizeof *y);
     memcpy(m.at, b->at, sizeof m.at);
+    tribo_step_form_velocity(s, sys, x->when, s->u, m.v);
     /* sizes as constants make loops straight: a step then takes half the time */
     const size_t taken = n != c   ? few_steps(b, sys, n, c, count, &m)
                          : n == 1 ? few_steps(b, sys, 1, 1, count, &m)
