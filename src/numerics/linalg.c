@@ -78,7 +78,7 @@ double tribo_largest(const double *x, size_t n)
     return most;
 }
 
-TRIBO_SIMD int tribo_dense_finite(const double *x, size_t n)
+TRIBO_SIMD int tribo_many_finite(const double *x, size_t n)
 {
     int finite = 1;
     for (size_t i = 0; i < n; i++) {

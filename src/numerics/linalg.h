@@ -3,6 +3,8 @@
 #ifndef TRIBO_LINALG_H
 #define TRIBO_LINALG_H
 
+#include <math.h>
+
 #include "matrix.h"
 #include "sparse_factor.h"
 
@@ -12,8 +14,17 @@ double tribo_largest(const double *x, size_t n);
 /* to += factor x. */
 void tribo_add(double *to, double factor, const double *x, size_t n);
 
-/* Returns 1 if no x_i is an infinity or a NaN. */
-int tribo_dense_finite(const double *x, size_t n);
+/* Returns 1 if no x_i is an infinity or a NaN. few: without a call. */
+int tribo_many_finite(const double *x, size_t n);
+static inline int tribo_dense_finite(const double *x, size_t n)
+{
+    const int few = n < 8;
+    size_t i = 0;
+    while (few && i < n && isfinite(x[i])) {
+        i++;
+    }
+    return few ? i == n : tribo_many_finite(x, n);
+}
 
 /* Return sum x_i and sum x_i y_i z_i, summed in eight parts. */
 double tribo_sum(size_t n, const double *x);
