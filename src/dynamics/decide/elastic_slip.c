@@ -62,9 +62,6 @@ void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *
     struct slip_state *s = &m->state;
     const struct compliance *g = &sys->compliance;
     double *v = m->work.v; /* velocities of the contacts that slide */
-    if (sys->compliance.count == 0) {
-        return;
-    }
     tribo_elastic_find(m, sys, y);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const enum stand stand = elastic[i] ? stand_of(m, i) : OPEN;
@@ -99,7 +96,7 @@ void tribo_elastic_move(struct stick_slip *m, const tribo_system *sys, const dou
 
 void tribo_elastic_finish(struct stick_slip *m, const tribo_system *sys)
 {
-    for (size_t i = 0; sys->compliance.count && i < sys->ncontact; i++) {
+    for (size_t i = 0; i < sys->ncontact; i++) {
         m->noise.allowance[i] = m->constant.elastic[i] ? m->noise.spring[i] : m->noise.allowance[i];
         m->state.slid[i] = m->state.slip[i];
     }

@@ -80,7 +80,8 @@ static int find_forces(struct stick_slip *m, const tribo_system *sys)
     struct slip_state *s = &m->state;
     struct slip_work *w = &m->work;
     const int all = !c->uncoupled;
-    const double part = 1.0 - (all ? CLOSE : NEAR);
+    const double part = 1.0 - (all ? CLOSE : NEAR), *const stick = s->stick, *const a = w->a;
+    double *const force = s->force;
     int status = TRIBO_OK, close = s->dependents && c->base_moves;
     size_t count = 0;
     for (size_t i = 0; all && i < c->contacts; i++) {
@@ -89,15 +90,15 @@ static int find_forces(struct stick_slip *m, const tribo_system *sys)
         w->lo[i] = searches ? -s->stick[i] : w->hi[i];
     }
     if (all) {
-        status = solve(m, sys, w->a, s->force);
+        status = solve(m, sys, a, force);
     }
     for (size_t i = 0; i < c->contacts; i++) {
         const int searches = tribo_stick_slip_searches(m, i);
         if (!all) {
             const double own = c->elastic[i] ? s->spring[i] : -s->slip[i] * s->limit[i];
-            s->force[i] = searches ? force_alone(m, i, w->a[i], -s->stick[i], s->stick[i]) : own;
+            force[i] = searches ? force_alone(m, i, a[i], -stick[i], stick[i]) : own;
         }
-        const int near = searches && (fabs(s->force[i]) >= part * s->stick[i] || i == s->reached);
+        const int near = searches && (fabs(force[i]) >= part * stick[i] || i == s->reached);
         close |= near;
         if (near || all || !c->can_hold[i]) {
             w->doubt[count++] = i;

@@ -416,15 +416,20 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
 
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
+    const int springs = sys->compliance.count > 0;
     tribo_system_set_time(sys, t);
     find_base(m, sys);
     memset(m->state.tied, 0, sys->ncontact);
     update_limits(m, sys, y);
-    tribo_elastic_place(m, sys, y);
+    if (springs) {
+        tribo_elastic_place(m, sys, y);
+    }
     int status = m->plane ? tribo_planar_slip_find_resting(m, sys, y) : tribo_stick_slip_find_resting(m, sys, y);
     if (!status) {
         tribo_limits_fall(m, sys, y, NULL);
-        tribo_elastic_move(m, sys, y);
+        if (springs) {
+            tribo_elastic_move(m, sys, y);
+        }
         tribo_system_free_acceleration(sys, t, y, m->work.free);
         tribo_stick_slip_contact_accelerations(sys, m->work.free, 1, m->work.a);
         forget_gains(m);
@@ -434,7 +439,9 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     if (status) {
         return status;
     }
-    tribo_elastic_finish(m, sys);
+    if (springs) {
+        tribo_elastic_finish(m, sys);
+    }
     return tribo_stick_slip_find_holds(m, sys);
 }
 
