@@ -55,8 +55,9 @@ int tribo_events_create(struct events *e, tribo_driver *drv, const struct motion
         e->search.watched = tribo_layout_array(&l, 3 * c, sizeof *e->search.watched);
         e->shown = tribo_layout_array(&l, c, sizeof *e->shown);
     } while (!l.memory && tribo_layout_zeros(&l));
-    return l.memory ? TRIBO_OK
-                    : tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contact%s", c, plural(c));
+    return l.memory
+               ? TRIBO_OK
+               : tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contact%s", c, plural(c));
 }
 
 void tribo_events_free(struct events *e)
@@ -136,9 +137,6 @@ static int show_between(struct events *e, tribo_driver *drv, double t, const dou
     return status;
 }
 
-/* In shown[]: a contact that slid in a plane, stopped, and slides again at one instant. */
-#define TURNS (-TRIBO_SLIP_PLANE)
-
 /* Shows the observer each contact whose slip differs from shown[], in ascending order, until it answers anything but 0; the
  * next advance shows the others if it continues. Sets *some = 1 if a contact is shown. Returns a status. */
 static int show_changes(struct events *e, tribo_driver *drv, double t, const double *y, int *some)
@@ -180,9 +178,10 @@ static int decide(struct events *e, tribo_system *sys, double t, double *y)
  * loses that in its rounding. */
 static int is_brief(const struct events *e, const tribo_system *sys, double reach)
 {
-    const int simple = !e->stick_slip.plane && !e->stick_slip.limits.falls && !sys->compliance.count;
-    const int even = e->met && e->search.at_once && e->when * fabs(e->met->left.e) <= STEADY * fabs(e->met->left.d);
-    return simple && even && (!sys->loads.tables || e->when <= BRIEF * reach) && e->when * tribo_system_fastest(sys) <= BRIEF;
+    const struct guard *met = e->search.at_once ? e->met : NULL;
+    return met && !e->stick_slip.plane && !e->stick_slip.limits.falls && !sys->compliance.count &&
+           e->when * fabs(met->left.e) <= STEADY * fabs(met->left.d) && (!sys->loads.tables || e->when <= BRIEF * reach) &&
+           e->when * tribo_system_fastest(sys) <= BRIEF;
 }
 
 /* Moves y by a brief phase at constant accelerations, and forgets the shares of redundant contacts: these forces are no guess
@@ -256,7 +255,7 @@ static int travel(struct events *e, tribo_driver *drv, double *t, double end, do
 static int phase(struct events *e, tribo_driver *drv, double *t, double t1, double *y)
 {
     struct stick_slip *m = &e->stick_slip;
-    const double end = lesser(t1, tribo_system_next_kink(drv->sys, *t));
+    const double end = drv->sys->loads.tables ? lesser(t1, tribo_system_next_kink(drv->sys, *t)) : t1;
     e->decided = 0;
     int status = travel(e, drv, t, end, y), some = 0, stops = 0;
     status = status || !e->company ? status : tribo_driver_pass(drv, e->company->ends(e->company, e->when, *t, y));
@@ -268,7 +267,11 @@ static int phase(struct events *e, tribo_driver *drv, double *t, double t1, doub
     tribo_events_learn(e, drv);
     if (event) {
         status = count_event(e, drv, event->contact, *t);
-        tribo_events_mark(m, event);
+        if (event->kind == SLIDES) {
+            tribo_stick_slip_set(m, event->contact, TRIBO_SLIP_STUCK);
+        } else {
+            m->state.reached = event->contact;
+        }
     } else if (*t < end) {
         status = count_step(e, drv, *t);
     }
@@ -287,7 +290,8 @@ static int phase(struct events *e, tribo_driver *drv, double *t, double t1, doub
         status = stops ? count_event(e, drv, m->plane->stopped, *t) : TRIBO_OK;
         for (size_t i = 0; drv->seen && i < m->constant.contacts; i++) {
             const int slides = m->state.slip[i] == TRIBO_SLIP_PLANE && e->shown[i] == TRIBO_SLIP_PLANE;
-            e->shown[i] = slides && m->state.rested[i] ? TURNS : e->shown[i];
+            /* differs from TRIBO_SLIP_PLANE if the contact stopped, and slides again at one instant */
+            e->shown[i] = slides && m->state.rested[i] ? -TRIBO_SLIP_PLANE : e->shown[i];
         }
     }
     if (status) {

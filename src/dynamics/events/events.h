@@ -84,9 +84,6 @@ void tribo_events_guard_contact(struct events *e, size_t i, const struct watch *
  * or, of an open contact, does not rise above, or, of one that keeps its force, does not fall to that. */
 void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *w);
 
-/* Marks for the decision which contact stops, or has reached its limit, by an event. */
-void tribo_events_mark(struct stick_slip *m, const struct guard *event);
-
 /* Takes the size of velocities, and excess and backslip of the driver, from the guards of the phase that ended. */
 void tribo_events_learn(struct events *e, tribo_driver *drv);
 

@@ -149,6 +149,17 @@ static int positive(struct guard *g, const struct sample *b, double h, double un
     return is_clear(g, tribo_quintic_least(&g->left, b, h, g->bend, until, -noise(g)));
 }
 
+/* 1 if parabolas at a show no guard but first below zero until a + step, in reach of the derivatives. */
+static int are_clear(struct first_zero *s, const struct guard *first, double step)
+{
+    int clear = 1;
+    for (size_t k = 0; clear && k < s->guards; k++) {
+        struct guard *g = &s->guard[k];
+        clear = g == first || is_clear(g, parabola_least(&g->left, step));
+    }
+    return clear;
+}
+
 /* Watches only the doubtful guards of the interval between left and right samples, h apart. */
 static void watch_doubtful(struct first_zero *s, double h)
 {
@@ -165,27 +176,19 @@ static void watch_doubtful(struct first_zero *s, double h)
 
 /* Among the watched guards that are not positive at the right end, h after a: the guard with the earliest zero of its quintic;
  * *when = that zero, as time after a. NULL: all are positive. begins = 1: a is where guards with an allowance began within that
- * of zero. If the quintic proves that such a guard is above zero in the middle, its zero is that without the allowance. *fine = 1
- * if that is so for the guard, or need not be, and its zero is that of the quintic to rounding. */
+ * of zero. *fine = 1 if the guard has no allowance, or did not begin at a, and its zero is that of the quintic to rounding. */
 static const struct guard *first_to_fall(const struct first_zero *s, double h, int begins, double *when, int *fine)
 {
     const struct guard *first = NULL;
     for (size_t k = 0; k < s->watching; k++) {
         const struct guard *g = s->watched[k];
         if (g->right.g <= noise(g)) {
-            struct sample left = g->left, right = g->right;
-            int certain = 1;
-            if (begins && g->allowance > 0.0) {
-                const double middle = tribo_quintic_middle(&left, &right, h) - tribo_quintic_error(0.5 * h, h, g->bend);
-                certain = middle > 4.0 * g->allowance;
-                left.g = certain ? greater(left.g - g->allowance, 0.0) : left.g;
-                right.g -= certain ? g->allowance : 0.0;
-            }
-            const double guess = right.g >= 0.0 ? h : tribo_quintic_zero(&left, &right, h);
+            const double guess = g->right.g >= 0.0 ? h : tribo_quintic_zero(&g->left, &g->right, h);
             if (!first || guess < *when) {
                 first = g;
                 *when = guess;
-                *fine = certain && (guess == h || tribo_quintic_error(guess, h, g->bend) <= FINE * noise(g));
+                *fine =
+                    !(begins && g->allowance > 0.0) && (guess == h || tribo_quintic_error(guess, h, g->bend) <= FINE * noise(g));
             }
         }
     }
@@ -204,20 +207,24 @@ static int all_positive(const struct first_zero *s, int middle, double until, do
     return 1;
 }
 
-/* Moves a to b, where all guards have been sampled. Sets expected to the first zero of parabolas within SOON h, if there is one. */
-static void come_to(struct first_zero *s, double b)
+/* Moves a to b, where all guards have been sampled. Sets expected to the first zero of parabolas within SOON h, if there is one.
+ * Returns the guard if its zero, *when, is within reach of the derivatives; else NULL. */
+static const struct guard *come_to(struct first_zero *s, double b, double *when)
 {
-    double step = SOON * s->h;
+    const struct guard *first = NULL;
+    double step = lesser(SOON * s->h, s->longest - b);
     s->a = b;
     s->watching = s->guards;
     keep_left(s);
-    for (size_t k = 0; k < s->guards; k++) {
+    for (size_t k = 0; step > 0.0 && k < s->guards; k++) {
         const double own = parabola_fall(&s->guard[k].left, step);
         if (own <= step) {
+            first = &s->guard[k];
             step = own;
-            s->expected = b + step;
+            *when = s->expected = b + step;
         }
     }
+    return first && step <= SHORT * s->length && are_clear(s, first, step) ? first : NULL;
 }
 
 /* Searches [a, b]. Returns the first guard to be zero there, with *when; or NULL: no guard is below zero until a, which has moved
@@ -264,8 +271,7 @@ static const struct guard *search_interval(struct first_zero *s, double b, doubl
     } else {
         s->h = greater(s->h, GROWS * (b - begun));
     }
-    come_to(s, b);
-    return NULL;
+    return come_to(s, b, when);
 }
 
 /* Looks at the start. Returns a guard that is zero there; or the velocity that is first to fall to zero within reach of the
@@ -294,10 +300,7 @@ static const struct guard *start(struct first_zero *s, double *when)
             step = own;
         }
     }
-    for (size_t k = 0; first && k < s->guards; k++) {
-        struct guard *g = &s->guard[k];
-        first = g == first || is_clear(g, parabola_least(&g->left, step)) ? first : NULL;
-    }
+    first = first && are_clear(s, first, step) ? first : NULL;
     s->at_once = first != NULL;
     if (first) {
         *when = step;
@@ -310,10 +313,7 @@ static const struct guard *start(struct first_zero *s, double *when)
         g->middle.g += more;
         first = g->middle.g <= 0.0 ? g : NULL;
     }
-    if (!first) {
-        come_to(s, 0.0);
-    }
-    return first;
+    return first ? first : come_to(s, 0.0, when);
 }
 
 int tribo_first_zero(struct first_zero *s, double longest, const struct guard **first, double *when)
@@ -336,10 +336,10 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
         if (s->a >= s->better) {
             find_bounds(s);
         }
-        /* just after an expected zero, unless that is too far */
-        const double after = s->expected + SHORT * s->length;
-        const int near = s->expected > s->a && after < s->a + STRETCH * s->h;
-        *first = search_interval(s, lesser(near ? after : s->a + s->h, longest), when);
+        /* just before an expected zero, which is in reach of the derivatives there, unless that is too far */
+        const double before = s->expected - 0.5 * SHORT * s->length;
+        const int near = before > s->a && before < s->a + STRETCH * s->h;
+        *first = search_interval(s, lesser(near ? before : s->a + s->h, longest), when);
     }
     return 1;
 }

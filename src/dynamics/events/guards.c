@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* All that a guard means beside its course in time: which contacts have it, what the decision after its event learns, and what
- * its samples tell of the size of rounding. Another kind of event is added here, and in the enum of first_zero.h. */
+/* All that a guard means beside its course in time: which contacts have it, and the size of rounding by its samples. Another kind
+ * of event is added here, in the enum of first_zero.h, and where phase of events.c marks an event for the decision. */
 #include "events.h"
 #include "common/real.h"
 
@@ -59,15 +59,6 @@ void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *w)
     } else {
         const double side = m->state.slip[i] == TRIBO_SLIP_OPEN ? -1.0 : 1.0;
         append(e, i, HOLDS, 0.0, side, side * w->constant, 2.0 * TRIBO_LIMIT_NOISE * m->noise.factor * swing, w);
-    }
-}
-
-void tribo_events_mark(struct stick_slip *m, const struct guard *event)
-{
-    if (event->kind == SLIDES) {
-        tribo_stick_slip_set(m, event->contact, TRIBO_SLIP_STUCK);
-    } else {
-        m->state.reached = event->contact;
     }
 }
 

@@ -67,11 +67,6 @@ double tribo_quintic_least(const struct sample *a, const struct sample *b, doubl
     return least(until < h ? from : c, enough, HALVINGS);
 }
 
-double tribo_quintic_middle(const struct sample *a, const struct sample *b, double h)
-{
-    return 0.5 * (a->g + b->g) + h * (5 / 32.) * (a->d - b->d) + h * (h * (1 / 64.)) * (a->e + b->e);
-}
-
 double tribo_quintic_error(double at, double h, double bend)
 {
     const double x = at * (h - at);

@@ -15,9 +15,6 @@ double tribo_quintic_least(const struct sample *a, const struct sample *b, doubl
 /* The first zero in (0, h) of the quintic through both samples; a.g > 0 >= b.g. */
 double tribo_quintic_zero(const struct sample *a, const struct sample *b, double h);
 
-/* The quintic through both samples at h/2. */
-double tribo_quintic_middle(const struct sample *a, const struct sample *b, double h);
-
 /* Bound of the difference between quintic and function at `at`. */
 double tribo_quintic_error(double at, double h, double bend);
 
