@@ -14,41 +14,6 @@
 /* Largest number of samples in a phase without resonance. */
 #define MOST_SAMPLES 32768.0
 
-/* Sets *work = integral over [0, tau] of the part of the limit of contact c by harmonics times the velocity, closed; *size = an
- * estimate of the sizes of its parts and of the work of the steady force. Returns the largest |lambda| or Omega of the terms. */
-static double closed_work(struct exact *x, const struct course *c, double tau, double *work, double *size)
-{
-    const struct forced *h = x->h;
-    const struct output *v = c->output;
-    const size_t i = v->contact, e = h->modal->exponents;
-    double velocity = fabs(c->start) + fabs(c->ramp) * tau, limits = fabs(x->steady[i]), fastest = 0.0;
-    tribo_signal_reserve(&x->velocity, e + h->harmonics, 1); /* cannot fail: tribo_modal_motion_start has made room */
-    x->velocity.tau = tau;
-    x->velocity.a[0] = c->start;
-    x->velocity.a[1] = c->ramp;
-    for (size_t p = 0; p < e + h->harmonics; p++) {
-        const double re = x->z.re[p], im = x->z.im[p];
-        if (v->size[p] > 0.0) {
-            tribo_signal_add(&x->velocity, v->cr[p] * re - v->ci[p] * im, v->cr[p] * im + v->ci[p] * re, h->lr[p], h->li[p]);
-        }
-        velocity += v->size[p] * (fabs(re) + fabs(im));
-        fastest = greater(fastest, v->size[p] > 0.0 || p >= e ? h->size[p] : 0.0);
-    }
-    *work = 0.0;
-    for (size_t s = 0; s < x->sys->loads.harmonics; s++) {
-        const struct harmonic *w = &x->sys->loads.harmonic[s];
-        const double cosine = x->z.re[e + s], sine = x->z.im[e + s];
-        double re = 0.0, im = 0.0;
-        limits += w->drives == DRIVES_LIMIT ? fabs(w->cosine[i]) + fabs(w->sine[i]) : 0.0;
-        if (w->drives == DRIVES_LIMIT && w->omega != 0.0 && (w->cosine[i] != 0.0 || w->sine[i] != 0.0)) {
-            tribo_signal_integrate(&x->velocity, -w->omega, &re, &im);
-            *work += w->cosine[i] * (cosine * re - sine * im) + w->sine[i] * (sine * re + cosine * im);
-        }
-    }
-    *size = tau * limits * velocity;
-    return fastest;
-}
-
 /* Returns the work of the contact by Gauss's rule with 8 points in each interval. The caller chooses intervals in which no term
  * turns by more than 1 rad. Goes through the phase and back to tau. */
 static double sampled_work(struct exact *x, const struct course *course, double tau, size_t intervals)
@@ -70,20 +35,49 @@ static double sampled_work(struct exact *x, const struct course *course, double 
     return half * work;
 }
 
+/* Returns the energy that the contact of course c, which slides, dissipates until tau: steady, by its steady force, and the
+ * integral of the part of its limit by harmonics times the velocity, closed; or by samples where both cancel each other. */
+static double varying_work(struct exact *x, const struct course *c, double tau, double steady)
+{
+    const struct forced *h = x->h;
+    const struct output *v = c->output;
+    const size_t i = v->contact, e = h->modal->exponents;
+    double velocity = fabs(c->start) + fabs(c->ramp) * tau, limits = fabs(x->steady[i]), fastest = 0.0, work = 0.0;
+    tribo_signal_reserve(&x->velocity, e + h->harmonics, 1); /* cannot fail: tribo_modal_motion_start has made room */
+    x->velocity.tau = tau;
+    x->velocity.a[0] = c->start;
+    x->velocity.a[1] = c->ramp;
+    for (size_t p = 0; p < e + h->harmonics; p++) {
+        const double re = x->z.re[p], im = x->z.im[p];
+        if (v->size[p] > 0.0) {
+            tribo_signal_add(&x->velocity, v->cr[p] * re - v->ci[p] * im, v->cr[p] * im + v->ci[p] * re, h->lr[p], h->li[p]);
+        }
+        velocity += v->size[p] * (fabs(re) + fabs(im));
+        fastest = greater(fastest, v->size[p] > 0.0 || p >= e ? h->size[p] : 0.0);
+    }
+    for (size_t s = 0; s < x->sys->loads.harmonics; s++) {
+        const struct harmonic *w = &x->sys->loads.harmonic[s];
+        const double cosine = x->z.re[e + s], sine = x->z.im[e + s];
+        double re = 0.0, im = 0.0;
+        limits += w->drives == DRIVES_LIMIT ? fabs(w->cosine[i]) + fabs(w->sine[i]) : 0.0;
+        if (w->drives == DRIVES_LIMIT && w->omega != 0.0 && (w->cosine[i] != 0.0 || w->sine[i] != 0.0)) {
+            tribo_signal_integrate(&x->velocity, -w->omega, &re, &im);
+            work += w->cosine[i] * (cosine * re - sine * im) + w->sine[i] * (sine * re + cosine * im);
+        }
+    }
+    work = steady + x->events.stick_slip.state.slip[i] * work;
+    const double intervals = ceil(fastest * tau) + 1.0;
+    const int cancels = fabs(work) < CANCELS * tau * limits * velocity && 8.0 * intervals <= MOST_SAMPLES;
+    return x->h->resonant || cancels ? sampled_work(x, c, tau, (size_t)intervals) : work;
+}
+
 /* Returns the energy that the contact of course c, which slides, dissipates until tau, its force counted once. */
-static double work_of(struct exact *x, const struct course *c, double tau)
+static inline double work_of(struct exact *x, const struct course *c, double tau)
 {
     const size_t i = c->output->contact;
-    const signed char slip = x->events.stick_slip.state.slip[i];
     const double steady = -x->steady[i] * tribo_dot(c->output->on_rate, x->place, x->h->shapes);
-    if (!x->sys->loads.limits || !tribo_slides(slip)) {
-        return steady;
-    }
-    double closed, size;
-    const double intervals = ceil(closed_work(x, c, tau, &closed, &size) * tau) + 1.0;
-    const double work = steady + slip * closed;
-    const int samples = x->h->resonant || (fabs(work) < CANCELS * size && 8.0 * intervals <= MOST_SAMPLES);
-    return samples ? sampled_work(x, c, tau, (size_t)intervals) : work;
+    const int varies = x->sys->loads.limits && tribo_slides(x->events.stick_slip.state.slip[i]);
+    return varies ? varying_work(x, c, tau, steady) : steady;
 }
 
 double tribo_modal_motion_work(void *own, size_t i, double tau)

@@ -5,6 +5,7 @@
  * difference to a quintic. At an event stick_slip.h decides which contacts stick. The energy integral is closed, too
  * (energy.c). */
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,7 +35,12 @@ static int find_held(struct exact *x)
 {
     const struct stick_slip *m = &x->events.stick_slip;
     struct modal **at = &x->held.last;
-    while (*at && memcmp((*at)->key, m->state.key, m->constant.contacts) != 0) {
+    uint64_t hash = 0, word;
+    for (size_t i = 0; i < m->constant.contacts; i += sizeof word) {
+        memcpy(&word, m->state.key + i, sizeof word);
+        hash = (hash ^ word) * UINT64_C(0x9e3779b97f4a7c15);
+    }
+    while (*at && ((*at)->hash != hash || memcmp((*at)->key, m->state.key, m->constant.contacts) != 0)) {
         at = &(*at)->next;
     }
     struct modal *h = *at;
@@ -53,6 +59,7 @@ static int find_held(struct exact *x)
         *at = h->next;
     }
     h->next = x->held.last;
+    h->hash = hash;
     x->held.last = h;
     x->h = h->forced;
     return TRIBO_OK;
@@ -79,7 +86,7 @@ static void method_exact_look(void *own, double tau, size_t guards, struct guard
         } else {
             g->middle = (struct sample){g->offset, 0.0, 0.0};
         }
-        if (g->limit != 0.0) {
+        if (x->sys->loads.limits && g->limit != 0.0) {
             /* Adds the part of the limit by harmonics. */
             const struct sample limit = tribo_modal_motion_limit(x, g->contact);
             g->middle.g += g->limit * limit.g;
@@ -102,12 +109,11 @@ static double method_exact_bound(void *own, double tau)
         }
     }
     for (size_t k = 0; k < x->events.search.guards; k++) {
-        /* g->size and g->bend from the bounds of course c */
         struct guard *g = &x->events.search.guard[k];
         const struct course *c = g->output;
         g->size = fabs(g->offset) + (c ? c->size : 0.0);
         g->bend = c ? c->bend : 0.0;
-        if (g->limit != 0.0) {
+        if (x->sys->loads.limits && g->limit != 0.0) {
             g->size += fabs(g->limit) * x->events.stick_slip.constant.swing[g->contact];
             g->bend += fabs(g->limit) * tribo_modal_motion_limit_bend(x, g->contact);
         }

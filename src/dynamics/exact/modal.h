@@ -10,6 +10,7 @@
 #define TRIBO_MODAL_H
 
 #include <math.h>
+#include <stdint.h>
 
 #include "common/imaginary.h"
 #include "dynamics/system/system.h"
@@ -37,6 +38,7 @@ struct modal {
     struct forced *forced;    /* the structure under the loads; NULL: not created since the loads changed */
     size_t n;                 /* degrees of freedom */
     signed char *key;         /* [contacts] 1: at rest; 2: at rest and holds; 0: else */
+    uint64_t hash;            /* of key, for the caller */
     size_t rests, *rest;      /* [rests] rigid contacts that hold */
     size_t springs;           /* number of compliant contacts that hold */
     struct constraints ties;  /* constraints between degrees of freedom by the rigid contacts that hold */

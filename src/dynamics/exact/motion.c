@@ -156,6 +156,10 @@ static void move_shapes(struct exact *x, int brief)
     const struct forced *h = x->h;
     const struct modal *own = h->modal;
     const size_t e = own->exponents, shapes = h->shapes;
+    for (size_t k = 0; k < shapes; k++) {
+        x->place[k] = x->runs ? x->tau * (x->drift[k] + 0.5 * x->acc[k] * x->tau) : 0.0;
+        x->rate[k] = x->runs ? (brief ? 0.0 : x->drift[k]) + x->acc[k] * x->tau : 0.0;
+    }
     for (size_t p = 0; p < e + h->harmonics; p++) {
         const double complex lambda = h->lr[p] + h->li[p] * I;
         double complex move = tribo_now(x, p, 0) - tribo_part(&x->z, p);
@@ -169,13 +173,15 @@ static void move_shapes(struct exact *x, int brief)
         x->move.im[p] = cimag(move);
         x->rate_move.re[p] = creal(rate);
         x->rate_move.im[p] = cimag(rate);
+        if (own->owner && p < e) {
+            x->place[own->owner[p]] += creal(move);
+            x->rate[own->owner[p]] += creal(rate);
+        }
     }
-    for (size_t k = 0; k < shapes; k++) {
-        x->place[k] = x->runs ? x->tau * (x->drift[k] + 0.5 * x->acc[k] * x->tau) : 0.0;
-        x->rate[k] = x->runs ? (brief ? 0.0 : x->drift[k]) + x->acc[k] * x->tau : 0.0;
+    if (!own->owner) {
+        tribo_modal_join(own, 1, x->move.re, x->move.im, x->place);
+        tribo_modal_join(own, 1, x->rate_move.re, x->rate_move.im, x->rate);
     }
-    tribo_modal_join(own, 1, x->move.re, x->move.im, x->place);
-    tribo_modal_join(own, 1, x->rate_move.re, x->rate_move.im, x->rate);
     for (size_t s = 0; s < h->harmonics; s++) {
         const double er = x->move.re[e + s], ei = x->move.im[e + s], fr = x->rate_move.re[e + s], fi = x->rate_move.im[e + s];
         const double complex *response = h->x + s * shapes;
@@ -201,8 +207,19 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
     if (to != from) {
         memcpy(to, from, tribo_system_size(sys) * sizeof *to);
     }
-    memset(x->work, 0, 2 * n * sizeof *x->work);
-    tribo_modal_terms_spread(x, brief, x->work, to);
+    double *restrict moves = x->work, *restrict rates = moves + n;
+    memset(moves, 0, 2 * n * sizeof *moves);
+    for (size_t k = 0; k < h->shapes; k++) {
+        const double *phi = h->phi + k * n, place = x->place[k], rate = x->rate[k];
+        for (size_t d = h->shape[k].begin; d < h->shape[k].end; d++) {
+            moves[d] += phi[d] * place;
+            rates[d] += phi[d] * rate;
+        }
+    }
+    for (size_t d = 0; d < n; d++) {
+        to[d] += moves[d];
+        to[n + d] = (brief ? to[n + d] : 0.0) + rates[d];
+    }
     for (size_t k = 0; k < sys->compliance.count; k++) {
         const size_t i = sys->compliance.contact[k];
         to[2 * n + k] += h->modal->key[i] == 2 ? tribo_dot(h->on + i * h->shapes, x->place, h->shapes) : 0.0;

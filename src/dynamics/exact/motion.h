@@ -93,12 +93,10 @@ void *tribo_modal_phase_keep(void *own, double tau);
 void tribo_modal_phase_release(void *phase);
 int tribo_modal_transition(void *own, const void *phase, double tau, size_t columns, double *v);
 
-/* terms.c. rest: sets w to z, at t0. go: sets w for t0 + tau, without resonances. spread: to [ndof] += displacements by place; then
- * the velocities by rate, or if brief, their changes; moves [2 ndof] is workspace. tribo_exp_1 returns (e^z - 1)/z, the integral of e^{z s} over s from 0 to 1, without loss of
+/* terms.c. rest: sets w to z, at t0. go: sets w for t0 + tau, without resonances. tribo_exp_1 returns (e^z - 1)/z, the integral of e^{z s} over s from 0 to 1, without loss of
  * digits for small z. */
 void tribo_modal_terms_rest(struct exact *x);
 void tribo_modal_terms_go(struct exact *x, double tau);
-void tribo_modal_terms_spread(const struct exact *x, int brief, double *moves, double *to);
 double complex tribo_exp_1(double complex z);
 
 /* terms.c. begin: starts the course of c->output, value at t0; x is at t0; of_velocity 1: a velocity, 0: a force. look: sets

@@ -55,18 +55,19 @@ TRIBO_SIMD_OF_FOUR static void turn_little(size_t n, size_t next, double delta, 
     }
 }
 
-/* Below SMALL a series of SERIES terms gives (e^z - 1)/z to rounding. */
+/* Below SMALL a series of SERIES terms gives (e^z - 1)/z to rounding; below LITTLE, of FEWER. */
 #define SMALL 0.5
-#define SERIES 18
+#define LITTLE 0.1
+enum { SERIES = 18, FEWER = 12 };
 
 double complex tribo_exp_1(double complex z)
 {
-    if (cabs(z) >= SMALL) {
+    const double x = creal(z), y = cimag(z), size = fabs(x) + fabs(y);
+    if (size >= SMALL) {
         return (cexp(z) - 1.0) / z;
     }
-    const double x = creal(z), y = cimag(z);
     double re = 1.0, im = 0.0;
-    for (int k = SERIES - 1; k > 1; k--) { /* sum = 1 + sum z/k */
+    for (int k = (size < LITTLE ? FEWER : SERIES) - 1; k > 1; k--) { /* sum = 1 + sum z/k */
         const double old = re;
         re = 1.0 + (x * old - y * im) / k;
         im = (x * im + y * old) / k;
@@ -106,25 +107,6 @@ void tribo_modal_terms_go(struct exact *x, double tau)
         }
     }
     turn_terms(h->terms, x->room, h->lr, e, x->z.re, x->lot);
-}
-
-TRIBO_SIMD void tribo_modal_terms_spread(const struct exact *x, int brief, double *restrict moves, double *restrict to)
-{
-    const size_t n = x->sys->ndof, shapes = x->h->shapes;
-    double *restrict rates = moves + n;
-    for (size_t k = 0; k < shapes; k++) {
-        const struct shape own = x->h->shape[k];
-        const double *phi = x->h->phi + k * n, place = x->place[k], rate = x->rate[k];
-        for (size_t d = own.begin; d < own.end; d++) {
-            moves[d] += phi[d] * place;
-            rates[d] += phi[d] * rate;
-        }
-    }
-    const double keep = brief ? 1.0 : 0.0;
-    for (size_t d = 0; d < n; d++) {
-        to[d] += moves[d];
-        to[n + d] = keep * to[n + d] + rates[d];
-    }
 }
 
 /* ------------------------------------------------------------------------------------------------------- outputs in a phase */
