@@ -282,7 +282,7 @@ static int phase(struct events *e, tribo_driver *drv, double *t, double t1, doub
     /* a zero is expected as in the phases that began as the next one does, if the last two were alike */
     e->begun = event ? e->lasted + SLIPS * event->contact + (m->state.slip[event->contact] + 1) : NULL;
     e->search.expected = e->begun && e->begun->change <= ALIKE * e->begun->time ? e->begun->time : 0.0;
-    if (!status && event && e->company) {
+    if (!status && event && e->company && e->company->decided) {
         e->company->decided(e->company);
     }
     if (!status && m->plane) {

@@ -11,7 +11,7 @@
 #define TRIBO_SUSPECTS 8
 
 /* An observer of phases. ends: a phase that lasted tau has ended at (t, y), before the decision; returns a status, its message
- * on the system's context. decided: the decision at an event is done. */
+ * on the system's context. decided: the decision at an event is done; or NULL. */
 struct company {
     int (*ends)(struct company *c, double tau, double t, const double *y);
     void (*decided)(struct company *c);

@@ -5,7 +5,6 @@
  * at rest depend on the state: a perturbation of J q + G f of a held contact is a constant force on the modes. */
 #include "motion.h"
 #include "dynamics/system/cos_sin.h"
-#include "dynamics/periodic/variation.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -29,13 +28,17 @@ void tribo_modal_phase_release(void *phase)
 static void find_pull(const struct modal *h, const tribo_system *sys, size_t columns, const double *v, double *pull, double *row)
 {
     const struct compliance *g = &sys->compliance;
+    const struct matrix *direction = &sys->direction;
     memset(pull, 0, h->modes * columns * sizeof *pull);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double *on = h->on + i * h->modes;
         if (h->key[i] != 2 || tribo_largest(on, h->modes) == 0.0) {
             continue;
         }
-        tribo_contact_row(sys, i, v, columns, row);
+        memset(row, 0, columns * sizeof *row);
+        for (size_t k = direction->first[i]; k < direction->first[i + 1]; k++) {
+            tribo_add(row, direction->val[k], v + direction->col[k] * columns, columns);
+        }
         for (size_t k = 0; tribo_is_compliant(g, i) && k < g->count; k++) {
             const double entry = tribo_compliance_entry(g, sys->ncontact, i, g->contact[k]);
             tribo_add(row, entry, v + (2 * sys->ndof + k) * columns, columns);

@@ -13,6 +13,7 @@
 #include "common/imaginary.h"
 #include "common/layout.h"
 #include "common/real.h"
+#include "numerics/lapack.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -30,58 +31,24 @@ enum { LEAST_TIMES = 32, MOST_TIMES = 96 };
 /* rho_i |A_ii| of the first harmonic, without compliance: about 1/3 needs the fewest sweeps, with few and with many modes. */
 #define STEP 0.3
 
-/* Signals [N] of contacts and modes are values at the times, or spectra: cosine and sine part of each harmonic. */
+/* Signals are values at the times j h, or spectra, transformed by the orthogonal wave_pj = (cos + sin)(w_p j h)/sqrt(N). Entries p
+ * and N - 1 - p of a spectrum s make z = s_p + i s_(N-1-p), and the signal is the sum over p < N/2 of
+ * Re((1 - i) z e^{i w_p j h})/sqrt(N). */
 struct forecast {
     struct period_map *m;
     size_t modes, contacts, times; /* times: N, even */
-    double h;                      /* time between them */
-    double *shape;                 /* [modes][contacts] J phi_k */
-    double *wave, *back;           /* [N][N] orthogonal: rows cos and sin of w_p t for each p; its transpose */
-    double *inverse;               /* [N/2][2 contacts][2 contacts] (1 + rho A)^-1 on cosine and sine parts */
+    double *wave, *back;           /* [N][N] its transpose */
+    double complex *receptance;    /* [N/2][modes] H_k */
+    double *shape;                 /* [contacts][modes] J phi_k */
+    double complex *inverse;       /* [N/2][contacts][contacts] (1 + rho A)^-1 */
     double *rho;                   /* [contacts] */
     double *limit, *v, *f, *s;     /* [contacts][N]; v: v_0 */
-    double *y, *change;            /* [contacts][N] workspace */
-    double *force, *motion;        /* [modes][N] spectra of forces; of loads, and velocities by loads: workspace */
-    double *scaled;                /* [modes][2 contacts] workspace */
-    double *mobility;              /* [2 contacts][contacts] workspace */
-    double *matrix;                /* [2 contacts][2 contacts] workspace */
-    double *rate;                  /* [contacts] workspace */
-    int *pivot;                    /* [2 contacts] workspace */
+    double *y, *part;              /* [contacts][N] workspace */
+    double *load, *motion;         /* [modes][N] spectra of forces on modes; workspace */
+    double complex *matrix;        /* [contacts][contacts] workspace */
+    double *at;                    /* [contacts] workspace */
+    int *pivot;                    /* [contacts] workspace */
 };
-
-/* Lays out the arrays as zeros. Returns their memory, or NULL if out of memory. */
-static void *lay_out_forecast(struct forecast *x)
-{
-    const size_t c = x->contacts, n = x->times * c, all = x->times * x->modes;
-    const struct {
-        double **array;
-        size_t count;
-    } part[] = {{&x->shape, x->modes * c},
-                {&x->wave, x->times * x->times},
-                {&x->back, x->times * x->times},
-                {&x->inverse, 2 * n * c},
-                {&x->rho, c},
-                {&x->limit, n},
-                {&x->v, n},
-                {&x->f, n},
-                {&x->s, n},
-                {&x->y, n},
-                {&x->change, n},
-                {&x->force, all},
-                {&x->motion, all},
-                {&x->scaled, 2 * x->modes * c},
-                {&x->mobility, 2 * c * c},
-                {&x->matrix, 4 * c * c},
-                {&x->rate, c}};
-    struct layout l = {0};
-    do {
-        for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
-            *part[k].array = tribo_layout_array(&l, part[k].count, sizeof **part[k].array);
-        }
-        x->pivot = tribo_layout_array(&l, 2 * c, sizeof *x->pivot);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    return l.memory;
-}
 
 /* w_p. */
 static double harmonic(const struct forecast *x, size_t p)
@@ -89,18 +56,32 @@ static double harmonic(const struct forecast *x, size_t p)
     return acos(-1.0) * (double)(2 * p + 1) / x->m->span;
 }
 
-/* 1/H_k at the frequency w. */
-static double complex stiffness(const struct forecast *x, size_t k, double w)
+/* Get and put z at harmonic p of row `row` of spectra. */
+static double complex get(const struct forecast *x, const double *spectra, size_t row, size_t p)
 {
-    const struct energy_norm *norm = &x->m->norm;
-    return norm->natural[k] * norm->natural[k] - w * w + w * norm->damping[k] * I;
+    return spectra[row * x->times + p] + spectra[(row + 1) * x->times - 1 - p] * I;
 }
 
-/* Harmonic p of mode k by x->force, of its displacement. */
-static double complex harmonic_of(const struct forecast *x, size_t k, size_t p)
+static void put(const struct forecast *x, double *spectra, size_t row, size_t p, double complex z)
 {
-    const double *part = x->force + k * x->times + 2 * p;
-    return (part[0] - part[1] * I) / stiffness(x, k, harmonic(x, p));
+    spectra[row * x->times + p] = creal(z);
+    spectra[(row + 1) * x->times - 1 - p] = cimag(z);
+}
+
+/* z at harmonic p of the displacement of mode k by x->load. */
+static double complex displacement(const struct forecast *x, size_t k, size_t p)
+{
+    return get(x, x->load, k, p) * x->receptance[p * x->modes + k];
+}
+
+/* Entry of A at harmonic p. */
+static double complex mobility(const struct forecast *x, size_t p, size_t i, size_t j, double compliance)
+{
+    double complex sum = compliance;
+    for (size_t k = 0; k < x->modes; k++) {
+        sum += x->shape[i * x->modes + k] * x->shape[j * x->modes + k] * x->receptance[p * x->modes + k];
+    }
+    return harmonic(x, p) * sum * I;
 }
 
 /* to [rows][N] = from by wave or back, from values to spectra by back. */
@@ -110,94 +91,83 @@ static void transform(const struct forecast *x, size_t rows, const double *by, c
     tribo_multiply_add(rows, x->times, x->times, 1.0, from, by, to);
 }
 
-/* Sets shape. Returns 0 if a mode does not oscillate, or resonates without damping. */
+/* Sets receptance, shape, wave and back. Returns 0 if a mode does not oscillate, or resonates without damping. */
 static int forecast_modes(struct forecast *x)
 {
     const struct energy_norm *norm = &x->m->norm;
-    for (size_t k = 0; k < x->modes; k++) {
-        int fine = norm->natural[k] > 0.5 * fabs(norm->damping[k]);
-        for (size_t p = 0; p < x->times / 2; p++) {
-            fine &= cabs(stiffness(x, k, harmonic(x, p))) > RESONANCE * norm->natural[k] * norm->natural[k];
-        }
-        if (!fine) {
+    const size_t times = x->times;
+    for (size_t at = 0; at < times / 2 * x->modes; at++) {
+        const size_t k = at % x->modes;
+        const double w = harmonic(x, at / x->modes), omega = norm->natural[k];
+        const double complex stiffness = omega * omega - w * w + w * norm->damping[k] * I;
+        if (!(omega > 0.5 * fabs(norm->damping[k])) || !(cabs(stiffness) > RESONANCE * omega * omega)) {
             return 0;
         }
-        tribo_matrix_multiply(&x->m->sys->direction, norm->phi + k * x->modes, x->shape + k * x->contacts);
+        x->receptance[at] = 1.0 / stiffness;
     }
+    for (size_t at = 0; at < x->contacts * x->modes; at++) {
+        x->shape[at] = tribo_matrix_row_dot(&x->m->sys->direction, at / x->modes, norm->phi + at % x->modes * x->modes);
+    }
+    for (size_t at = 0; at < times * times; at++) {
+        const double turn = harmonic(x, at / times) * (double)(at % times) * x->m->span / (double)times;
+        x->wave[at] = (cos(turn) + sin(turn)) / sqrt((double)times);
+    }
+    tribo_transpose(times, times, x->wave, x->back);
     return 1;
 }
 
-/* Sets wave, back, rho and inverse. */
+/* Sets rho and inverse. */
 static void find_inverses(struct forecast *x)
 {
-    const size_t c = x->contacts, two = 2 * c;
-    const struct compliance *g = &x->m->sys->compliance;
-    double *a = x->mobility; /* real and imaginary part of A, without compliance */
-    for (size_t p = 0; p < x->times / 2; p++) {
-        const double w = harmonic(x, p);
-        for (size_t j = 0; j < x->times; j++) {
-            x->wave[2 * p * x->times + j] = sqrt(2.0 / (double)x->times) * cos(w * x->h * (double)j);
-            x->wave[(2 * p + 1) * x->times + j] = sqrt(2.0 / (double)x->times) * sin(w * x->h * (double)j);
-        }
-        for (size_t k = 0; k < x->modes; k++) {
-            const double complex r = w / stiffness(x, k, w) * I;
-            for (size_t i = 0; i < c; i++) {
-                x->scaled[k * two + i] = creal(r) * x->shape[k * c + i];
-                x->scaled[k * two + c + i] = cimag(r) * x->shape[k * c + i];
-            }
-        }
-        memset(a, 0, two * c * sizeof *a);
-        tribo_multiply_transposed_add(x->modes, two, c, x->scaled, x->shape, a);
-        double *inverse = x->inverse + p * two * two;
-        for (size_t i = 0; i < c; i++) {
-            const double size = hypot(a[i * c + i], a[(c + i) * c + i]);
-            x->rho[i] = p ? x->rho[i] : size > 0.0 ? STEP / size : 0.0;
-            for (size_t j = 0; j < c; j++) { /* of signals cosine - i sine */
-                double *to = x->matrix + i * two + j;
-                to[0] = to[c * two + c] = (i == j) + x->rho[i] * a[i * c + j];
-                to[c] = x->rho[i] * (a[(c + i) * c + j] + w * tribo_compliance_entry(g, c, i, j));
-                to[c * two] = -to[c];
-            }
-            inverse[i * two + i] = inverse[(c + i) * two + c + i] = 1.0;
-        }
-        tribo_lu_create(x->matrix, two, x->pivot);
-        tribo_lu_solve(x->matrix, two, x->pivot, inverse, two);
+    const size_t c = x->contacts;
+    const int count = (int)c;
+    int info;
+    for (size_t i = 0; i < c; i++) {
+        const double size = cabs(mobility(x, 0, i, i, 0.0));
+        x->rho[i] = size > 0.0 ? STEP / size : 0.0;
     }
-    tribo_transpose(x->times, x->times, x->wave, x->back);
+    for (size_t p = 0; p < x->times / 2; p++) {
+        double complex *inverse = x->inverse + p * c * c;
+        for (size_t at = 0; at < c * c; at++) {
+            const size_t i = at / c, j = at % c;
+            const double own = tribo_compliance_entry(&x->m->sys->compliance, c, i, j);
+            inverse[at] = i == j;
+            x->matrix[at] = inverse[at] + x->rho[i] * mobility(x, p, i, j, own);
+        }
+        zgesv_(&count, &count, x->matrix, &count, x->pivot, inverse, &count, &info);
+    }
 }
 
-/* Sets v, limit, and force by loads. */
+/* Sets v, limit and load. */
 static void find_drive(struct forecast *x)
 {
     const size_t c = x->contacts, n = x->modes, times = x->times;
     tribo_system *sys = x->m->sys;
     for (size_t j = 0; j < times; j++) {
-        tribo_system_set_time(sys, x->m->t + (double)j * x->h);
+        tribo_system_set_time(sys, x->m->t + (double)j * x->m->span / (double)times);
         tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, x->motion + j * n);
         tribo_system_loads(sys, DRIVES_BASE, 0, -1.0, x->f + j * c);
-        tribo_system_limits(sys, x->y + j * c, x->rate);
+        tribo_system_limits(sys, x->y + j * c, x->at);
     }
     tribo_transpose(times, c, x->f, x->v);
     tribo_transpose(times, c, x->y, x->limit);
-    tribo_transpose(times, n, x->motion, x->force);
+    tribo_transpose(times, n, x->motion, x->load);
     memset(x->motion, 0, n * times * sizeof *x->motion);
-    tribo_multiply_add(n, n, times, 1.0, x->m->norm.psi, x->force, x->motion);
-    transform(x, n, x->back, x->motion, x->force);
-    for (size_t k = 0; k < n; k++) {
-        for (size_t p = 0; p < times / 2; p++) {
-            const double complex rate = harmonic(x, p) * harmonic_of(x, k, p) * I;
-            x->motion[k * times + 2 * p] = creal(rate);
-            x->motion[k * times + 2 * p + 1] = -cimag(rate);
-        }
+    tribo_multiply_add(n, n, times, 1.0, x->m->norm.psi, x->load, x->motion);
+    transform(x, n, x->back, x->motion, x->load);
+    for (size_t at = 0; at < n * times / 2; at++) {
+        const size_t k = at % n, p = at / n;
+        put(x, x->motion, k, p, harmonic(x, p) * displacement(x, k, p) * I);
     }
-    tribo_multiply_transposed_add(n, c, times, x->shape, x->motion, x->change);
-    tribo_multiply_add(c, times, times, 1.0, x->change, x->wave, x->v);
+    memset(x->part, 0, c * times * sizeof *x->part);
+    tribo_multiply_add(c, n, times, 1.0, x->shape, x->motion, x->part);
+    tribo_multiply_add(c, times, times, 1.0, x->part, x->wave, x->v);
 }
 
 /* Sets x->f by sweeps. */
 static void forecast_forces(struct forecast *x)
 {
-    const size_t c = x->contacts, n = x->times * c, two = 2 * c;
+    const size_t c = x->contacts, n = x->times * c;
     double change = HUGE_VAL, size = 0.0;
     for (size_t sweep = 0; sweep < x->times && change > SETTLED * SETTLED * size; sweep++) {
         for (size_t k = 0; k < n; k++) {
@@ -205,17 +175,18 @@ static void forecast_forces(struct forecast *x)
             x->f[k] = clamp(x->s[k], -limit, limit);
             x->y[k] = 2.0 * x->f[k] - x->s[k] - x->rho[k / x->times] * x->v[k];
         }
-        transform(x, c, x->back, x->y, x->change);
-        tribo_transpose(c, x->times, x->change, x->y); /* [N/2][2 contacts] */
-        memset(x->change, 0, n * sizeof *x->change);
-        for (size_t p = 0; p < x->times / 2; p++) {
-            tribo_multiply_add(two, two, 1, 1.0, x->inverse + p * two * two, x->y + p * two, x->change + p * two);
+        transform(x, c, x->back, x->y, x->part);
+        for (size_t at = 0; at < n / 2; at++) {
+            double complex z = 0.0;
+            for (size_t j = 0; j < c; j++) {
+                z += x->inverse[at * c + j] * get(x, x->part, j, at / c);
+            }
+            put(x, x->y, at % c, at / c, z);
         }
-        tribo_transpose(x->times, c, x->change, x->y);
-        transform(x, c, x->wave, x->y, x->change);
+        transform(x, c, x->wave, x->y, x->part);
         change = size = 0.0;
         for (size_t k = 0; k < n; k++) {
-            const double move = x->change[k] - x->f[k];
+            const double move = x->part[k] - x->f[k];
             x->s[k] += move;
             change += move * move;
             size += x->f[k] * x->f[k];
@@ -227,47 +198,61 @@ static void forecast_forces(struct forecast *x)
 static void forecast_state(struct forecast *x)
 {
     struct period_map *m = x->m;
-    const size_t n = x->modes, c = x->contacts, times = x->times;
-    const double size = sqrt(2.0 / (double)times);
-    transform(x, c, x->back, x->f, x->change);
-    tribo_multiply_add(n, c, times, 1.0, x->shape, x->change, x->force);
+    const size_t n = x->modes, times = x->times;
+    transform(x, x->contacts, x->back, x->f, x->part);
+    tribo_multiply_transposed_add(x->contacts, n, times, x->shape, x->part, x->load);
     memset(m->y, 0, (m->n + 1) * sizeof *m->y);
     for (size_t k = 0; k < n; k++) {
         double complex eta = 0.0, rate = 0.0;
         for (size_t p = 0; p < times / 2; p++) {
-            const double complex part = harmonic_of(x, k, p);
-            eta += part;
-            rate += harmonic(x, p) * part * I;
+            const double complex z = displacement(x, k, p) * (1.0 - I) / sqrt((double)times);
+            eta += z;
+            rate += harmonic(x, p) * z * I;
         }
-        tribo_add(m->y, size * creal(eta), m->norm.phi + k * n, n);
-        tribo_add(m->y + n, size * creal(rate), m->norm.phi + k * n, n);
+        tribo_add(m->y, creal(eta), m->norm.phi + k * n, n);
+        tribo_add(m->y + n, creal(rate), m->norm.phi + k * n, n);
     }
-    for (size_t i = 0; i < c; i++) {
-        x->rate[i] = x->f[i * times];
+    for (size_t i = 0; i < x->contacts; i++) {
+        x->at[i] = x->f[i * times];
     }
-    tribo_compliance_put(m->sys, x->rate, m->y);
+    tribo_compliance_put(m->sys, x->at, m->y);
 }
 
 int tribo_forecast(struct period_map *m, double *x, int *done)
 {
-    const size_t modes = m->sys->ndof, even = modes - modes % 2;
-    struct forecast forecast = {.m = m, .modes = modes, .contacts = m->sys->ncontact};
-    forecast.times = even < LEAST_TIMES ? LEAST_TIMES : even > MOST_TIMES ? MOST_TIMES : even;
-    forecast.h = m->span / (double)forecast.times;
-    void *memory = lay_out_forecast(&forecast);
-    if (!memory) {
-        return tribo_driver_fail(m->drv, TRIBO_ERR_MEMORY, "out of memory for the forces of %zu contact%s", forecast.contacts,
-                                 plural(forecast.contacts));
+    const size_t n = m->sys->ndof, c = m->sys->ncontact, even = n - n % 2;
+    const size_t times = even < LEAST_TIMES ? LEAST_TIMES : even > MOST_TIMES ? MOST_TIMES : even;
+    struct forecast f = {.m = m, .modes = n, .contacts = c, .times = times};
+    double **const signal[] = {&f.limit, &f.v, &f.f, &f.s, &f.y, &f.part};
+    struct layout l = {0};
+    do {
+        f.receptance = tribo_layout_array(&l, times / 2 * n, sizeof *f.receptance);
+        f.shape = tribo_layout_array(&l, n * c, sizeof *f.shape);
+        f.wave = tribo_layout_array(&l, times * times, sizeof *f.wave);
+        f.back = tribo_layout_array(&l, times * times, sizeof *f.back);
+        f.inverse = tribo_layout_array(&l, times / 2 * c * c, sizeof *f.inverse);
+        for (size_t k = 0; k < sizeof signal / sizeof *signal; k++) {
+            *signal[k] = tribo_layout_array(&l, times * c, sizeof **signal[k]);
+        }
+        f.load = tribo_layout_array(&l, times * n, sizeof *f.load);
+        f.motion = tribo_layout_array(&l, times * n, sizeof *f.motion);
+        f.matrix = tribo_layout_array(&l, c * c, sizeof *f.matrix);
+        f.rho = tribo_layout_array(&l, c, sizeof *f.rho);
+        f.at = tribo_layout_array(&l, c, sizeof *f.at);
+        f.pivot = tribo_layout_array(&l, c, sizeof *f.pivot);
+    } while (!l.memory && tribo_layout_zeros(&l));
+    if (!l.memory) {
+        return tribo_driver_fail(m->drv, TRIBO_ERR_MEMORY, "out of memory for the forces of %zu contact%s", c, plural(c));
     }
-    *done = forecast_modes(&forecast);
+    *done = c > 0 && tribo_lapack_takes(c) && forecast_modes(&f);
     if (*done) {
-        find_inverses(&forecast);
-        find_drive(&forecast);
-        forecast_forces(&forecast);
-        forecast_state(&forecast);
+        find_inverses(&f);
+        find_drive(&f);
+        forecast_forces(&f);
+        forecast_state(&f);
         tribo_energy_norm_of(&m->norm, 1, m->y, x);
         *done = tribo_dense_finite(x, m->n);
     }
-    free(memory);
+    free(l.memory);
     return TRIBO_OK;
 }

@@ -95,39 +95,32 @@ static void find_image(const struct period_map *m, int odd, size_t columns, cons
     }
 }
 
-static int no_room(const struct period_map *m)
+/* Integrates from m->y and sets *p. Returns a status. */
+static int follow_state(struct period_map *m, struct point *p)
 {
-    return tribo_driver_fail(m->drv, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", m->n, plural(m->n));
-}
-
-/* v [n][columns] = perturbations of the state: n of unit coordinates, or fewer, without any symmetry. Returns a status. */
-static int perturb(const struct period_map *m, size_t columns, double *v)
-{
-    double *x = malloc(m->n * columns * sizeof *x);
-    for (size_t i = 0; x && i < m->n * columns; i++) {
-        x[i] = columns == m->n ? i % (m->n + 1) == 0 : sin(1.0 + (double)(i * i));
+    const size_t n = m->n;
+    memcpy(p->y, m->y, n * sizeof *p->y);
+    tribo_energy_norm_of(&m->norm, 1, m->y, p->x);
+    tribo_variation_begin(&m->variation, m->events, m->probe, m->columns, &p->derivative);
+    m->size = greater(m->least, tribo_energy_length(p->x, n));
+    int status = period_map_integrate(m, m->t, m->t + m->span, &m->company);
+    status = status ? status : tribo_driver_pass(m->drv, m->variation.status);
+    if (status) {
+        return status;
     }
-    if (x) {
-        tribo_energy_norm_state(&m->norm, columns, x, v);
-    }
-    free(x);
-    return x ? TRIBO_OK : no_room(m);
-}
-
-/* Sets p->derivative.matrix from v [n][n], the final perturbations of initial unit coordinates. Returns a status. */
-static int keep_matrix(const struct period_map *m, struct point *p, const double *v)
-{
-    p->derivative.matrix = malloc(m->n * m->n * sizeof *v);
-    if (!p->derivative.matrix) {
-        return no_room(m);
-    }
-    find_image(m, p->odd, m->n, v, p->derivative.matrix);
-    return TRIBO_OK;
+    m->moved = 1;
+    memcpy(p->end, m->y, n * sizeof *p->end);
+    find_image(m, m->odd, 1, m->y, p->image);
+    p->residual = tribo_energy_distance(p->image, p->x, n);
+    p->size = m->size;
+    p->odd = m->odd;
+    p->torn = m->variation.torn;
+    p->other = m->variation.other;
+    return m->events->motion->keep ? TRIBO_OK : tribo_period_map_matrix(m, p);
 }
 
 int tribo_period_map_follow(struct period_map *m, struct point *p)
 {
-    const size_t n = m->n;
     tribo_energy_norm_state(&m->norm, 1, p->x, m->y);
     int status = TRIBO_OK;
     if (m->moved) { /* removes rounding of velocities at contacts that rest since the last integration */
@@ -141,25 +134,17 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
         tribo_get_limit(m->sys->contacts, m->limit);
         tribo_compliance_enter(m->sys, m->limit, m->limit + m->sys->ncontact, m->y);
     }
-    memcpy(p->y, m->y, n * sizeof *p->y);
-    tribo_energy_norm_of(&m->norm, 1, m->y, p->x);
-    tribo_derivative_begin(&p->derivative, m->events, m->sys);
-    tribo_variation_begin(&m->variation, m->probe, &p->derivative);
-    m->size = greater(m->least, tribo_energy_length(p->x, n));
-    status = status ? status : period_map_integrate(m, m->t, m->t + m->span, &m->company);
-    status = status ? status : tribo_driver_pass(m->drv, m->variation.status);
-    if (status) {
-        return status;
-    }
-    m->moved = 1;
-    memcpy(p->end, m->y, n * sizeof *p->end);
-    find_image(m, m->odd, 1, m->y, p->image);
-    p->residual = tribo_energy_distance(p->image, p->x, n);
-    p->size = m->size;
-    p->odd = m->odd;
-    p->torn = m->variation.torn;
-    p->other = m->variation.other;
-    return m->events->motion->keep ? TRIBO_OK : keep_matrix(m, p, m->variation.v);
+    return status ? status : follow_state(m, p);
+}
+
+int tribo_period_map_later(struct period_map *m, const double *y, double later, struct point *p)
+{
+    memcpy(m->y, y, m->n * sizeof *y);
+    int status = period_map_integrate(m, m->t, m->t + later, NULL);
+    m->t += later;
+    status = status ? status : follow_state(m, p);
+    m->t -= later;
+    return status;
 }
 
 int tribo_period_map_apply(struct period_map *m, const struct point *p, double *x)
@@ -176,17 +161,30 @@ int tribo_period_map_apply(struct period_map *m, const struct point *p, double *
     return status;
 }
 
-int tribo_period_map_matrix(struct period_map *m, struct point *p, const double **matrix)
+/* Where phases are not kept, variation.v are the perturbations after the span. */
+int tribo_period_map_matrix(struct period_map *m, struct point *p)
 {
+    const size_t n = m->n;
     int status = TRIBO_OK;
-    if (!p->derivative.matrix) {
-        double *v = malloc(m->n * m->n * sizeof *v);
-        status = v ? perturb(m, m->n, v) : no_room(m);
-        status = status ? status : tribo_driver_pass(m->drv, tribo_derivative_apply(&p->derivative, 0, m->n, v));
-        status = status ? status : keep_matrix(m, p, v);
-        free(v);
+    if (p->derivative.matrix) {
+        return status;
     }
-    *matrix = p->derivative.matrix;
+    double *x = p->derivative.matrix = calloc(n * n, sizeof *x), *v = m->variation.v;
+    if (!x) {
+        return tribo_driver_fail(m->drv, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", n, plural(n));
+    }
+    if (m->events->motion->keep) {
+        for (size_t i = 0; i < n; i++) {
+            x[i * n + i] = 1.0;
+        }
+        tribo_energy_norm_state(&m->norm, n, x, v);
+        status = tribo_driver_pass(m->drv, tribo_derivative_apply(&p->derivative, 0, n, v));
+    }
+    find_image(m, p->odd, n, v, x);
+    if (status) {
+        free(x);
+        p->derivative.matrix = NULL;
+    }
     return status;
 }
 
@@ -272,18 +270,14 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period, cons
         m->norm.scale = ldexp(1.0, -(int)clamp(logb(size), -1000.0, 1000.0));
     }
     m->least = LEAST_SIZE * (m->norm.scale * least);
-    /* probes: all n unit perturbations, or a few if phases are kept; those of another method differ in number */
-    const size_t columns = m->events->motion->keep && m->n > PROBES ? PROBES : m->n;
-    if (m->variation.events != m->events) {
-        tribo_variation_free(&m->variation);
-        free(m->probe);
-        m->probe = malloc(m->n * columns * sizeof *m->probe);
-        if (!m->probe || !tribo_variation_create(&m->variation, m->events, m->sys, columns)) {
-            tribo_variation_free(&m->variation);
-            return no_room(m);
-        }
+    /* probes: n of unit coordinates, or a few, without any symmetry, if phases are kept */
+    m->columns = m->events->motion->keep && m->n > PROBES ? PROBES : m->n;
+    double *const x = m->variation.v;
+    for (size_t i = 0; i < m->n * m->columns; i++) {
+        x[i] = m->columns == m->n ? i % (m->n + 1) == 0 : sin(1.0 + (double)(i * i));
     }
-    return perturb(m, columns, m->probe);
+    tribo_energy_norm_state(&m->norm, m->columns, x, m->probe);
+    return TRIBO_OK;
 }
 
 void tribo_period_map_choose(struct period_map *m, int odd)
@@ -302,16 +296,16 @@ int tribo_period_map_create(struct period_map *m, tribo_driver *drv)
     do {
         m->y = tribo_layout_array(&l, n + 1, sizeof *m->y);
         m->x = tribo_layout_array(&l, n, sizeof *m->x);
+        m->probe = tribo_layout_array(&l, n * n, sizeof *m->probe);
         m->limit = tribo_layout_array(&l, 2 * drv->sys->ncontact, sizeof *m->limit);
     } while (!l.memory && tribo_layout_create(&l));
-    return l.memory != NULL;
+    return l.memory && tribo_variation_create(&m->variation, drv->sys);
 }
 
 void tribo_period_map_free(struct period_map *m)
 {
     tribo_energy_norm_free(&m->norm);
     tribo_variation_free(&m->variation);
-    free(m->probe);
     free(m->y);
     memset(m, 0, sizeof *m);
 }

@@ -27,7 +27,8 @@ struct period_map {
     struct company company;
     struct variation variation;
     double *y, *x;          /* [n + 1] a state; [n] coordinates of a state */
-    double *probe;          /* [n][variation.columns] initial perturbations */
+    double *probe;          /* [n][columns] initial perturbations */
+    size_t columns;         /* n, or fewer if phases are kept */
     double *limit;          /* [2 ncontact] workspace */
     double t, period, span; /* span: length of an integration of the map */
     int odd;                /* 1: span = period/2 */
@@ -42,15 +43,17 @@ void tribo_period_map_free(struct period_map *m);
 
 /* Each returns a status, its message on the driver. prepare: sets the map for the present system and the guess y. follow:
  * integrates from p->x, first corrected for rounding of contacts at rest and for spring forces above limits, and sets the rest of
- * *p. complete: sets *residual = |x(t + period) - x(t)| over the whole period. */
+ * *p. later: sets *p by a span from m->t + later on, of the motion from y at m->t. complete: sets *residual = |x(t + period) - x(t)|
+ * over the whole period. */
 int tribo_period_map_prepare(struct period_map *m, double t, double period, const double *y);
 int tribo_period_map_follow(struct period_map *m, struct point *p);
+int tribo_period_map_later(struct period_map *m, const double *y, double later, struct point *p);
 int tribo_period_map_complete(struct period_map *m, struct point *p, double *residual);
 
-/* apply: x [n] = D x, D = d image/d x at p. matrix: *matrix [n][n] = D, computed at the first call and kept in p. Both return a
+/* apply: x [n] = D x, D = d image/d x at p. matrix: p->derivative.matrix [n][n] = D, unless it is set. Both return a
  * status, its message on the driver. */
 int tribo_period_map_apply(struct period_map *m, const struct point *p, double *x);
-int tribo_period_map_matrix(struct period_map *m, struct point *p, const double **matrix);
+int tribo_period_map_matrix(struct period_map *m, struct point *p);
 
 /* x [n] = coordinates of the state `periods` periods after x. Returns a status, its message on the driver. */
 int tribo_period_map_march(struct period_map *m, size_t periods, double *x);

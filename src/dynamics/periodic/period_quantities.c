@@ -54,11 +54,6 @@ static int replay_phase(struct company *company, double tau, double t, const dou
     return status;
 }
 
-static void replay_event(struct company *company)
-{
-    (void)company;
-}
-
 /* Observes the period of the motion found. Returns a status. */
 static int replay(tribo_driver *drv, struct replay *r)
 {
@@ -72,9 +67,9 @@ static int replay(tribo_driver *drv, struct replay *r)
                                  s && s->found ? "the system has changed since the periodic motion was found"
                                                : "no periodic motion was found");
     }
-    r->company = (struct company){replay_phase, replay_event};
+    r->company = (struct company){.ends = replay_phase};
     r->map = &s->map;
-    const int status = tribo_period_map_replay(&s->map, s->best->y, &r->company);
+    const int status = tribo_period_map_replay(&s->map, s->here->y, &r->company);
     return status && s->map.drv != drv ? tribo_driver_fail(drv, status, "%s", s->map.drv->message) : status;
 }
 

@@ -125,12 +125,12 @@ int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im
     if (!s || !s->found) {
         return none_found(drv);
     }
-    if (s->best->torn < s->map.sys->ncontact) {
+    if (s->flow->torn < s->map.sys->ncontact) {
         return tribo_driver_fail(
             drv, TRIBO_ERR_UNSUPPORTED,
             "contact %zu and contact %zu stop or break away at one instant: which of them is first may change the motion, "
             "and it has no multipliers",
-            s->best->torn, s->best->other);
+            s->flow->torn, s->flow->other);
     }
     return tribo_shooting_multipliers(s, re, im);
 }

@@ -5,9 +5,7 @@
  *
  *     repeat
  *         find Newton's step, and integrate from its end
- *         accept the step if the residual falls
- *         otherwise continue from the end, for a few steps, unless the step has gone much too far
- *         otherwise go back to the best point and shorten its step
+ *         shorten the step, a few times, until the residual falls or the product is small
  *
  * If a contact hardly slips, r goes with the square of the distance to states where the contact rests, the border of a family
  * of solutions (a double root): Newton's steps halve each time, and ratio = 1/4. Then the step is made twice as long, and a
@@ -26,19 +24,11 @@
 #define TOLERANCE 1e-10
 #define AIM 1e-12
 
-/* FIRST: half periods, at most, of the search from the guess. MOST: the same of a search from the state after MARCHED periods
- * from the guess, or after MARCHED_STATIC, since static limits may need more. */
-#define FIRST 120
+/* Half periods, at most, of a search. */
 #define MOST 200
-#define MARCHED 20
-#define MARCHED_STATIC 100
 
 /* A step is successful if the residual falls to this part. */
 #define PAYS 0.9
-
-/* MOST_ASTRAY: unsuccessful steps in a row. TOO_FAR: a step with ratio <= -TOO_FAR has gone too far. */
-#define MOST_ASTRAY 2
-#define TOO_FAR 10.0
 
 /* LEFT: |ratio| below which a shorter step is good. MOST_TRIALS: number of shorter steps tried. */
 #define LEFT 0.5
@@ -55,22 +45,22 @@
 /* Most spans extrapolated at once: few enough that a motion that grows in each span has residual > TOLERANCE size. */
 #define LONGEST 1024.0
 
-/* SINGULAR: pivot of I - derivative, and right-hand side over solution, below which there may be a family of motions. Singular
- * values are zero below CUT in steps, and below FREE in the dimension of the family. */
+/* SINGULAR: right-hand side over solution of a nearly singular equation. Singular values of I - derivative are zero below CUT in
+ * steps, and below FREE in the dimension of the family. */
 #define SINGULAR 1e-5
 #define CUT 1e-9
 #define FREE 1e-7
 
-/* DENSE: with more rows, steps are solved by GMRES without a matrix, to a part of the residual: residual/size, or, if larger, 0.9
- * (residual/previous residual)^2 (Eisenstat and Walker 1996), within [LEAST_INEXACT, MOST_INEXACT], because the nonlinear motion
- * leaves about as much. MOST_INEXACT keeps steps longer than FLAT. NEARLY_SINGULAR: the free structure preconditions modes with
- * a larger determinant. */
-#define DENSE 40
-#define MOST_INEXACT 0.15
+/* Steps are solved by GMRES to a part of the residual: residual/size, or, if larger, 0.9 (residual/previous residual)^2 (Eisenstat
+ * and Walker 1996), within [LEAST_INEXACT, MOST_INEXACT], because the nonlinear motion leaves about as much; and at most the root
+ * of residual/size, because near a double root inexact steps stray. MOST_INEXACT keeps steps longer than FLAT, and what they leave
+ * below DOUBLE_FROM. NEARLY_SINGULAR: the free structure preconditions modes with a larger determinant. */
+#define MOST_INEXACT 0.1
 #define LEAST_INEXACT 1e-6
 #define NEARLY_SINGULAR 1e-6
 
-#define UNKNOWN ((size_t)-1)
+/* Velocities of contacts, over what a motion may have, that may have another sign at the end of a period than at its beginning. */
+#define AT_ONCE 1e-8
 
 /* A guess chooses a motion of the family if its distance from the odd motion along the family is this part of the size. */
 #define MEANT 0.1
@@ -99,22 +89,12 @@ static int close_enough(const struct point *p, double part)
     return comes_back(p->residual, p->size, part);
 }
 
-/* here = p; there = a point that is neither here nor best. */
-static void go_to(struct shooting *s, struct point *p)
+/* here = there. */
+static void go_there(struct shooting *s)
 {
-    s->here = p;
-    s->there = s->point;
-    while (s->there == s->here || s->there == s->best) {
-        s->there++;
-    }
-}
-
-/* Accepts the step: here = best = there, astray = 0. */
-static void shooting_settle(struct shooting *s)
-{
-    s->best = s->there;
-    s->astray = 0;
-    go_to(s, s->best);
+    struct point *const left = s->here;
+    s->here = s->there;
+    s->there = left;
 }
 
 /* to [n] = image - x of the point p. */
@@ -178,8 +158,8 @@ static int apply_equation(void *data, double *x)
 static int find_derivative(struct shooting *s, int spans)
 {
     const size_t n = s->map.n;
-    const double *d = NULL;
-    const int status = tribo_period_map_matrix(&s->map, s->here, &d);
+    const int status = tribo_period_map_matrix(&s->map, s->here);
+    const double *d = s->here->derivative.matrix;
     if (!status && spans == 2) {
         memset(s->b, 0, n * n * sizeof *s->b);
         tribo_multiply_add(n, n, n, 1.0, d, d, s->b);
@@ -189,14 +169,14 @@ static int find_derivative(struct shooting *s, int spans)
     return status;
 }
 
-/* x [n] = the shortest solution of (I - D) y = x, D over `spans` spans from s->here. With n > DENSE and phases that are kept, by
- * GMRES to `tolerance`, if kernel is NULL: if contacts rest all the time, there may be many solutions; the Krylov space, then
- * without s->free, of a map that increases no distance has the shortest. Otherwise, if that fails, and if the equation is nearly
- * singular, by a matrix, with singular values below cut taken as zero; *kernel = their number. Returns a status. */
+/* x [n] = the shortest solution of (I - D) y = x, D over `spans` spans from s->here. If kernel is NULL, by GMRES to `tolerance`:
+ * if contacts rest all the time, there may be many solutions; the Krylov space, then without s->free, of a map that increases no
+ * distance has the shortest. Otherwise, if that fails, and if the equation is nearly singular, by a matrix, with singular values
+ * below cut taken as zero; *kernel = their number. Returns a status. */
 static int solve_equation(struct shooting *s, int spans, double tolerance, double cut, double *x, size_t *kernel)
 {
     const size_t n = s->map.n;
-    if (!kernel && n > DENSE && s->map.events->motion->keep) {
+    if (!kernel) {
         double part;
         memcpy(s->b, x, n * sizeof *x);
         s->spans = spans;
@@ -212,19 +192,11 @@ static int solve_equation(struct shooting *s, int spans, double tolerance, doubl
         }
         memcpy(x, s->b, n * sizeof *x);
     }
-    size_t zeros = 0, *const count = kernel ? kernel : &zeros;
     const int status = find_derivative(s, spans);
-    *count = 0;
-    for (int singular = 0; !status && singular < 2; singular++) {
-        for (size_t i = 0; i < n * n; i++) {
-            s->a[i] = (i % (n + 1) == 0 ? 1.0 : 0.0) - s->b[i];
-        }
-        if (!singular && tribo_lu_create(s->a, n, s->pivot) > SINGULAR) {
-            tribo_lu_solve(s->a, n, s->pivot, x, 1);
-            return TRIBO_OK;
-        }
+    for (size_t i = 0; i < n * n; i++) {
+        s->a[i] = (i % (n + 1) == 0 ? 1.0 : 0.0) - s->b[i];
     }
-    return status || tribo_least_norm_solve(s->a, n, cut, x, count)
+    return status || tribo_least_norm_solve(s->a, n, cut, x, kernel)
                ? status
                : tribo_driver_fail(s->map.drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
                                    s->map.sys->ndof, plural(s->map.sys->ndof));
@@ -236,7 +208,8 @@ static int newton_step(struct shooting *s)
     const double near = s->here->residual / s->here->size;
     const double fell = s->before > 0.0 && near > LEAST_INEXACT ? lesser(s->here->residual / s->before, 1.0) : 0.0;
     find_misfit(s, s->here, s->step);
-    return solve_equation(s, 1, clamp(greater(near, 0.9 * fell * fell), LEAST_INEXACT, MOST_INEXACT), CUT, s->step, NULL);
+    return solve_equation(s, 1, clamp(greater(near, 0.9 * fell * fell), LEAST_INEXACT, lesser(MOST_INEXACT, sqrt(near))), CUT,
+                          s->step, NULL);
 }
 
 /* Sets s->there from there.x = here.x + part step, s->ratio and s->nearest. Returns a status. */
@@ -252,9 +225,15 @@ static int try_step(struct shooting *s, double part)
     return status;
 }
 
+/* Returns 1 if the residual has fallen by the step. */
+static int pays(const struct shooting *s)
+{
+    return s->there->residual < PAYS * s->here->residual;
+}
+
 /* Takes Newton's step; or, where no step changes the residual, as on a slow belt that carries a body for many periods,
- * extrapolates 1, 4, 16, ... spans. Returns a status. */
-static int newton(struct shooting *s)
+ * extrapolates 1, 4, 16, ... spans. *part = length of the step over s->step. Returns a status. */
+static int newton(struct shooting *s, double *part)
 {
     const int to_double = s->rate > DOUBLE_FROM && s->rate < DOUBLE_TO;
     const int status = newton_step(s);
@@ -262,23 +241,24 @@ static int newton(struct shooting *s)
     s->before = s->here->residual;
     if (!status && tribo_energy_length(s->step, s->map.n) < FLAT * s->here->residual) {
         find_misfit(s, s->here, s->step);
-        s->stride = s->stride > 0.0 ? lesser(4.0 * s->stride, LONGEST) : 1.0;
-        return try_step(s, s->stride);
+        *part = s->stride = s->stride > 0.0 ? lesser(4.0 * s->stride, LONGEST) : 1.0;
+    } else {
+        s->stride = 0.0;
+        *part = to_double ? BEYOND / (1.0 - sqrt(s->rate)) : 1.0;
     }
-    s->stride = 0.0;
-    return status ? status : try_step(s, to_double ? BEYOND / (1.0 - sqrt(s->rate)) : 1.0);
+    return status ? status : try_step(s, *part);
 }
 
-/* Tries shorter steps, part in (low, high); ratio = s->first at part 1. Returns a status. */
-static int shorten(struct shooting *s)
+/* Tries shorter steps, part in (low, high), after one of length high. Returns a status. */
+static int shorten(struct shooting *s, double high)
 {
-    double low = 0.0, high = 1.0, at_low = 1.0, at_high = s->first;
+    double low = 0.0, at_low = 1.0, at_high = s->ratio;
     int status = TRIBO_OK;
     for (int k = 0; !status && k < MOST_TRIALS; k++) {
         const double secant = low + (high - low) * at_low / (at_low - at_high), least = low > 0.0 ? sqrt(low * high) : 0.1 * high;
         const double part = at_high < 0.0 ? lesser(greater(secant, least), 0.9 * high) : 0.5 * high;
         status = try_step(s, part);
-        if (status || s->there->residual < PAYS * s->here->residual || fabs(s->ratio) < LEFT) {
+        if (status || pays(s) || fabs(s->ratio) < LEFT) {
             return status;
         }
         *(s->ratio > 0.0 ? &low : &high) = part;
@@ -289,48 +269,28 @@ static int shorten(struct shooting *s)
 
 /* -------------------------------------------------------------------------------------------------------------- search */
 
-/* Accepts or rejects s->there after a step. Returns a status. */
-static int proceed(struct shooting *s)
+/* Searches from s->here; the result is s->here. Returns a status. */
+static int search(struct shooting *s)
 {
-    const int pays = s->there->residual < PAYS * s->best->residual;
-    s->rate = pays && s->stride == 0.0 ? s->ratio : 0.0;
-    if (pays || (s->stride > 0.0 && s->ratio > 0.0)) {
-        shooting_settle(s);
-        return TRIBO_OK;
-    }
-    s->first = s->astray ? s->first : s->ratio;
-    if (s->astray < MOST_ASTRAY && s->ratio > -TOO_FAR) {
-        s->astray++;
-        go_to(s, s->there);
-        return TRIBO_OK;
-    }
-    go_to(s, s->best);
-    int status = newton_step(s);
-    status = status ? status : shorten(s);
-    if (!status) {
-        shooting_settle(s);
-    }
-    return status;
-}
-
-/* Searches from s->here for at most `halves` half periods; the result is s->best. Returns a status. */
-static int search(struct shooting *s, size_t halves)
-{
-    const size_t most = s->map.halves + halves;
+    const size_t most = s->map.halves + MOST;
     int status = tribo_period_map_follow(&s->map, s->here);
     if (status) {
         return status;
     }
-    s->best = s->here;
-    s->astray = 0;
     s->rate = s->stride = s->before = 0.0;
     s->nearest = s->here->residual / s->here->size;
-    while (!status && !close_enough(s->best, AIM) && s->map.halves < most) {
-        status = newton(s);
-        if (!status && close_enough(s->best, TOLERANCE) && !(s->there->residual < PAYS * s->best->residual)) {
+    while (!status && !close_enough(s->here, AIM) && s->map.halves < most) {
+        double part;
+        status = newton(s, &part);
+        const int falls = !status && pays(s);
+        if (!status && !falls && close_enough(s->here, TOLERANCE)) {
             break; /* limit of rounding */
         }
-        status = status ? status : proceed(s);
+        s->rate = falls && s->stride == 0.0 ? s->ratio : 0.0;
+        if (!status && !falls && !(s->stride > 0.0 && s->ratio > 0.0)) {
+            status = shorten(s, part);
+        }
+        go_there(s);
     }
     return status;
 }
@@ -340,15 +300,16 @@ static int search(struct shooting *s, size_t halves)
  * not odd, although all drives are odd. Returns a status. */
 static int search_all(struct shooting *s)
 {
-    static const size_t marched[] = {0, MARCHED, MARCHED_STATIC};
-    const size_t n = s->map.n, statics = !tribo_system_is_plain(s->map.sys);
+    static const size_t marched[] = {0, 20, 100};
+    const size_t n = s->map.n;
+    const size_t statics = !tribo_system_is_plain(s->map.sys);
     const int was_odd = s->map.odd;
     int done = 0, status = TRIBO_OK;
     if (was_odd && !statics && s->map.norm.scale == 1.0) {
         status = tribo_forecast(&s->map, s->here->x, &done);
         if (!status && done && tribo_energy_distance(s->guess, s->here->x, n) > FAR * tribo_energy_length(s->here->x, n)) {
-            status = search(s, FIRST);
-            done = !status && close_enough(s->best, TOLERANCE);
+            status = search(s);
+            done = !status && close_enough(s->here, TOLERANCE);
             status = status == TRIBO_ERR_MEMORY ? status : TRIBO_OK;
         } else {
             done = 0;
@@ -359,8 +320,8 @@ static int search_all(struct shooting *s)
             tribo_period_map_choose(&s->map, odd);
             memcpy(s->here->x, s->guess, n * sizeof *s->guess);
             status = k ? tribo_period_map_march(&s->map, marched[k], s->here->x) : TRIBO_OK;
-            status = status ? status : search(s, k ? MOST : FIRST);
-            done = !status && close_enough(s->best, TOLERANCE);
+            status = status ? status : search(s);
+            done = !status && close_enough(s->here, TOLERANCE);
         }
     }
     return status || done ? status : no_convergence(s, s->nearest);
@@ -368,13 +329,12 @@ static int search_all(struct shooting *s)
 
 /* -------------------------------------------------------------------------------------------------------------- the family */
 
-/* Projects move [n] on the family of s->best, the kernel of I - derivative over the period; sets s->step. kernel: of
+/* Projects move [n] on the family of s->here, the kernel of I - derivative over the period; sets s->step. kernel: of
  * solve_equation. Returns a status. */
 static int project_on_family(struct shooting *s, double *move, size_t *kernel)
 {
     const size_t n = s->map.n;
-    go_to(s, s->best);
-    s->spans = s->best->odd ? 2 : 1;
+    s->spans = s->here->odd ? 2 : 1;
     memcpy(s->step, move, n * sizeof *move);
     int status = apply_equation(s, s->step);
     status = status ? status : solve_equation(s, s->spans, AIM, FREE, s->step, kernel);
@@ -387,44 +347,92 @@ static int project_on_family(struct shooting *s, double *move, size_t *kernel)
 static int approach_guess(struct shooting *s)
 {
     const size_t n = s->map.n;
-    const int alone = s->map.norm.damped && !tribo_derivative_rests(&s->best->derivative);
+    const int alone = s->map.norm.damped && !tribo_derivative_rests(&s->here->derivative);
     if (!s->map.odd || alone || !(tribo_energy_length(s->guess, n) > 0.0) ||
-        tribo_energy_distance(s->guess, s->best->x, n) < MEANT * s->best->size) {
+        tribo_energy_distance(s->guess, s->here->x, n) < MEANT * s->here->size) {
         return TRIBO_OK;
     }
     /* guess = the part of guess - x in the family */
-    tribo_add(s->guess, -1.0, s->best->x, n);
+    tribo_add(s->guess, -1.0, s->here->x, n);
     int status = project_on_family(s, s->guess, NULL);
-    if (status || tribo_energy_length(s->guess, n) < MEANT * s->best->size) {
+    if (status || tribo_energy_length(s->guess, n) < MEANT * s->here->size) {
         return status;
     }
     tribo_period_map_choose(&s->map, 0);
-    memcpy(s->there->x, s->best->x, n * sizeof *s->best->x);
+    memcpy(s->there->x, s->here->x, n * sizeof *s->here->x);
     tribo_add(s->there->x, 1.0, s->guess, n);
     status = tribo_period_map_follow(&s->map, s->there);
     if (!status && close_enough(s->there, TOLERANCE)) {
-        shooting_settle(s);
+        go_there(s);
     } else {
         tribo_period_map_choose(&s->map, 1);
     }
     return status;
 }
 
-int tribo_shooting_freedom(struct shooting *s, size_t *freedom)
+/* -------------------------------------------------------------------------------------------------------------- multipliers */
+
+/* Returns 1 if the velocity of a contact that slides at the beginning or at the end of s->here is zero beside AT_ONCE of what the
+ * motion may have: its event falls on both or on neither. */
+static int begins_at_event(const struct shooting *s)
 {
-    const int status = s->freedom == UNKNOWN ? project_on_family(s, s->guess, &s->freedom) : TRIBO_OK;
-    s->freedom = status ? UNKNOWN : s->freedom;
-    *freedom = status ? *freedom : s->freedom;
+    const struct derivative *d = &s->here->derivative;
+    const tribo_system *sys = s->map.sys;
+    const signed char *first = NULL, *last = NULL;
+    for (size_t k = 0; k < d->steps; k++) {
+        last = d->step[k].slip ? d->step[k].slip : last;
+        first = first ? first : last;
+    }
+    tribo_system_set_time(s->map.sys, s->map.t);
+    memset(s->map.limit, 0, sys->ncontact * sizeof *s->map.limit);
+    tribo_system_loads(sys, DRIVES_BASE, 0, -1.0, s->map.limit);
+    for (size_t i = 0; first && i < sys->ncontact; i++) {
+        const double v = s->map.limit[i] + tribo_matrix_row_dot(&sys->direction, i, s->here->y + sys->ndof);
+        const double most = s->here->size / s->map.norm.scale * sqrt(tribo_system_delassus(sys, i, i));
+        if ((tribo_slides(first[i]) || tribo_slides(last[i])) && fabs(v) <= AT_ONCE * most) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Sets s->flow: s->here, or if it begins at an event the motion from the middle of its longest phase on. Returns a status. */
+static int find_flow(struct shooting *s)
+{
+    const struct derivative *d = &s->here->derivative;
+    double elapsed = 0.0, longest = 0.0, middle = 0.0;
+    s->flow = s->here;
+    if (!begins_at_event(s)) {
+        return TRIBO_OK;
+    }
+    for (size_t k = 0; k < d->steps; k++) {
+        if (d->step[k].tau > longest) {
+            longest = d->step[k].tau;
+            middle = elapsed + 0.5 * longest;
+        }
+        elapsed += d->step[k].tau;
+    }
+    const int status = tribo_period_map_later(&s->map, s->here->y, middle, s->there);
+    s->flow = !status && close_enough(s->there, TOLERANCE) ? s->there : s->here;
     return status;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- multipliers */
+int tribo_shooting_freedom(struct shooting *s, size_t *freedom)
+{
+    struct point *const found = s->here;
+    s->here = s->flow;
+    const int status = project_on_family(s, s->guess, freedom);
+    s->here = found;
+    return status;
+}
 
 int tribo_shooting_multipliers(struct shooting *s, double *re, double *im)
 {
     const size_t n = s->map.n, all = tribo_system_dimension(s->map.sys) - 1;
-    go_to(s, s->best);
-    int status = find_derivative(s, s->best->odd ? 2 : 1);
+    struct point *const found = s->here;
+    s->here = s->flow;
+    int status = find_derivative(s, s->here->odd ? 2 : 1);
+    s->here = found;
     if (status) {
         return status;
     }
@@ -455,19 +463,19 @@ int tribo_shooting_find(struct shooting *s, double t, double period, double *y)
     const size_t n = s->map.n;
     double residual = 0.0;
     s->found = 0;
-    s->freedom = UNKNOWN;
     int status = tribo_period_map_prepare(&s->map, t, period, y);
     if (!status) {
         tribo_energy_norm_of(&s->map.norm, 1, y, s->guess);
         status = search_all(s);
     }
     status = status ? status : approach_guess(s);
-    status = status ? status : tribo_period_map_complete(&s->map, s->best, &residual);
-    if (!status && !comes_back(residual, s->best->size, TOLERANCE)) {
-        status = no_convergence(s, residual / s->best->size);
+    status = status ? status : tribo_period_map_complete(&s->map, s->here, &residual);
+    if (!status && !comes_back(residual, s->here->size, TOLERANCE)) {
+        status = no_convergence(s, residual / s->here->size);
     }
+    status = status ? status : find_flow(s);
     if (!status) {
-        memcpy(y, s->best->y, n * sizeof *y);
+        memcpy(y, s->here->y, n * sizeof *y);
         y[n] = 0.0;
         s->found = 1;
         s->revision = tribo_system_revision(s->map.sys);
@@ -493,8 +501,7 @@ struct shooting *tribo_shooting_create(tribo_driver *drv)
         s->guess = tribo_layout_array(&l, n, sizeof *s->guess);
         s->free = tribo_layout_array(&l, 2 * n, sizeof *s->free);
         s->space = tribo_layout_array(&l, tribo_gmres_room(n, n), sizeof *s->space);
-        s->pivot = tribo_layout_array(&l, n, sizeof *s->pivot);
-        for (struct point *p = s->point; p < s->point + 3; p++) {
+        for (struct point *p = s->point; p < s->point + 2; p++) {
             p->y = tribo_layout_array(&l, n, sizeof *p->y);
             p->x = tribo_layout_array(&l, n, sizeof *p->x);
             p->end = tribo_layout_array(&l, n, sizeof *p->end);
@@ -505,15 +512,15 @@ struct shooting *tribo_shooting_create(tribo_driver *drv)
         tribo_shooting_free(s);
         return NULL;
     }
-    s->best = s->point;
-    go_to(s, s->best);
+    s->here = s->point;
+    s->there = s->point + 1;
     return s;
 }
 
 void tribo_shooting_free(struct shooting *s)
 {
     if (s) {
-        for (size_t k = 0; k < 3; k++) {
+        for (size_t k = 0; k < 2; k++) {
             tribo_derivative_free(&s->point[k].derivative);
         }
         tribo_period_map_free(&s->map);

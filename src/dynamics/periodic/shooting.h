@@ -7,23 +7,21 @@
 
 struct shooting {
     struct period_map map;
-    struct point point[3];
-    struct point *here, *there, *best; /* current point; end of the step, neither here nor best; point to go back to */
-    double *a, *b;                     /* [n][n] workspace; a owns the memory of all arrays */
-    double *space;                     /* workspace of tribo_gmres */
-    double *step, *guess;              /* [n] */
-    int *pivot;                        /* [n] */
-    double ratio;                      /* left_along(there)/left_along(here) of the step */
-    double first, rate; /* first: ratio of the step from best; rate: ratio of the last step if it was good, else 0 */
-    double stride;      /* spans extrapolated at once; 0: Newton's steps */
-    int spans;          /* spans of the equation solved in a Krylov space */
-    int preconditions;  /* 1: that equation is I - D times free from the right */
-    double *free;       /* [n/2][4] inverse of I - (flow of a mode of the free structure over a span) */
-    double before;      /* residual before the last step; 0: no step yet */
-    size_t astray;      /* unsuccessful steps since best */
-    double nearest;     /* least residual/size so far */
+    struct point point[2];
+    struct point *here, *there; /* current point; end of the step */
+    struct point *flow;         /* here, or there at another time of the motion found: has its multipliers */
+    double *a, *b;              /* [n][n] workspace; a owns the memory of all arrays */
+    double *space;              /* workspace of tribo_gmres */
+    double *step, *guess;       /* [n] */
+    double ratio;               /* left_along(there)/left_along(here) of the step */
+    double rate;                /* ratio of the last step if it was good, else 0 */
+    double stride;              /* spans extrapolated at once; 0: Newton's steps */
+    int spans;                  /* spans of the equation solved in a Krylov space */
+    int preconditions;          /* 1: that equation is I - D times free from the right */
+    double *free;               /* [n/2][4] inverse of I - (flow of a mode of the free structure over a span) */
+    double before;              /* residual before the last step */
+    double nearest;             /* least residual/size so far */
     int found;
-    size_t freedom;  /* dimension of the family of the motion found; UNKNOWN until computed */
     size_t revision; /* of the system when the motion was found */
 };
 

@@ -9,18 +9,107 @@
 /* Relative difference of equal times, and of a force at its limit; relative size of a negligible coupling. */
 #define TOGETHER 1e-6
 
-void tribo_contact_row(const tribo_system *sys, size_t i, const double *v, size_t columns, double *row)
+/* ---------------------------------------------------------------------------------------------------------------- steps */
+
+void tribo_derivative_free(struct derivative *d)
 {
-    const struct matrix *j = &sys->direction;
-    memset(row, 0, columns * sizeof *row);
-    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        tribo_add(row, j->val[k], v + j->col[k] * columns, columns);
+    for (size_t k = 0; k < d->steps; k++) {
+        if (d->step[k].phase) {
+            d->events->motion->release(d->step[k].phase);
+        }
+        free(d->step[k].slip);
+        free(d->step[k].jump);
     }
+    free(d->matrix);
+    free(d->step);
+    memset(d, 0, sizeof *d);
 }
 
-static int no_derivative(const struct variation *x)
+static int no_room(const struct derivative *d)
 {
-    return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for the derivative of a motion");
+    return tribo_system_fail(d->sys, TRIBO_ERR_MEMORY, "out of memory for the derivative of a motion");
+}
+
+/* Appends an empty step. Returns NULL if out of memory. */
+static struct derivative_step *add_step(struct derivative *d)
+{
+    if (d->steps == d->room) {
+        const size_t room = 2 * d->room + 16;
+        struct derivative_step *step = realloc(d->step, room * sizeof *step);
+        if (!step) {
+            return NULL;
+        }
+        d->step = step;
+        d->room = room;
+    }
+    memset(d->step + d->steps, 0, sizeof *d->step);
+    return d->step + d->steps++;
+}
+
+/* Appends the phase of d->events that lasted tau. Returns a status. */
+static int add_phase(struct derivative *d, double tau, const signed char *slip)
+{
+    const struct motion *motion = d->events->motion;
+    struct derivative_step *s = add_step(d);
+    int done = s != NULL;
+    if (s) {
+        s->tau = tau;
+        s->slip = tribo_copy_of(slip, d->sys->ncontact, 1, &done);
+        s->phase = motion->keep ? motion->keep(d->events->own, tau) : NULL;
+    }
+    return done && (s->phase || !motion->keep) ? TRIBO_OK : no_room(d);
+}
+
+/* Appends a jump. Returns a status. */
+static int add_jump(struct derivative *d, const double *row, const double *column)
+{
+    const size_t n = tribo_system_energy(d->sys), moved = n - d->sys->ndof;
+    struct derivative_step *s = add_step(d);
+    double *jump = s ? malloc((n + moved) * sizeof *jump) : NULL;
+    if (jump) {
+        s->jump = jump;
+        memcpy(jump, row, n * sizeof *row);
+        memcpy(jump + n, column, moved * sizeof *column);
+    }
+    return jump ? TRIBO_OK : no_room(d);
+}
+
+int tribo_derivative_apply(const struct derivative *d, size_t first, size_t columns, double *v)
+{
+    const size_t n = d->sys->ndof, all = tribo_system_energy(d->sys);
+    double *work = malloc((2 * d->sys->ncontact + 1) * columns * sizeof *work);
+    int status =
+        work ? TRIBO_OK
+             : tribo_system_fail(d->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
+    for (size_t k = first; !status && k < d->steps; k++) {
+        const struct derivative_step *s = d->step + k;
+        if (s->jump) {
+            memset(work, 0, columns * sizeof *work);
+            tribo_multiply_add(1, all, columns, 1.0, s->jump, v, work);
+            tribo_multiply_add(all - n, 1, columns, 1.0, s->jump + all, work, v + n * columns);
+            continue;
+        }
+        if (d->sys->compliance.count) {
+            tribo_compliance_perturb(d->sys, s->slip, columns, v, work);
+        }
+        status = d->events->motion->transition(d->events->own, s->phase, s->tau, columns, v);
+    }
+    free(work);
+    return status;
+}
+
+int tribo_derivative_rests(const struct derivative *d)
+{
+    for (size_t i = 0; i < d->sys->ncontact; i++) {
+        size_t k = 0;
+        while (k < d->steps && (d->step[k].jump || d->step[k].slip[i] == TRIBO_SLIP_STUCK)) {
+            k++;
+        }
+        if (k == d->steps) {
+            return 1;
+        }
+    }
+    return 0;
 }
 
 /* Applies the steps of x->to from x->applied on to x->v. Returns a status. */
@@ -46,7 +135,7 @@ static void add_transposed(const struct matrix *a, double factor, const double *
  * e = -R_HH^-1 unit_i. Returns a status. */
 static int find_drops(struct variation *x, double tau)
 {
-    struct events *e = x->events;
+    struct events *e = x->to->events;
     struct stick_slip *m = &e->stick_slip;
     const size_t n = tribo_system_energy(x->sys);
     int status = TRIBO_OK;
@@ -69,7 +158,9 @@ static int find_drops(struct variation *x, double tau)
         add_transposed(&x->sys->direction, 1.0, x->f, x->change);
         add_transposed(&x->sys->stiffness, -1.0, x->change, row);
         add_transposed(&x->sys->damping, -1.0, x->change, row + x->sys->ndof);
-        x->slope[x->count] = g->side * g->middle.d;
+        for (size_t l = 0; l < n; l++) {
+            row[l] /= g->side * g->middle.d;
+        }
         x->contact[x->count++] = i;
     }
     return status;
@@ -77,17 +168,15 @@ static int find_drops(struct variation *x, double tau)
 
 int tribo_variation_phase(struct variation *x, double tau, double t, const double *y)
 {
-    struct stick_slip *m = &x->events->stick_slip;
-    memcpy(x->before, m->state.slip, x->sys->ncontact);
+    struct stick_slip *m = &x->to->events->stick_slip;
     x->count = 0;
     int status = x->status ? x->status : tribo_stick_slip_acceleration(m, x->sys, t, y, x->acceleration, x->force);
     tribo_stick_slip_contact_accelerations(x->sys, x->acceleration, 1, x->rate);
     tribo_elastic_move(m, x->sys, y);
     memcpy(x->spring_rate, m->state.spring_rate, x->sys->ncontact * sizeof *x->spring_rate);
-    if (!status && !tribo_derivative_add_phase(x->to, tau, x->before)) {
-        status = no_derivative(x);
-    }
-    status = status || x->events->motion->keep ? status : catch_up(x);
+    status = status ? status : add_phase(x->to, tau, m->state.slip);
+    x->before = status ? NULL : x->to->step[x->to->steps - 1].slip;
+    status = status || x->to->events->motion->keep ? status : catch_up(x);
     return status ? status : find_drops(x, tau);
 }
 
@@ -98,10 +187,10 @@ int tribo_variation_phase(struct variation *x, double tau, double t, const doubl
  * contact, because its force is continuous. */
 static int stops(const struct variation *x, size_t i)
 {
-    const signed char before = x->before[i], *now = x->events->stick_slip.state.slip;
-    const struct guard *met = x->events->met;
+    const signed char before = x->before[i], *now = x->to->events->stick_slip.state.slip;
+    const struct guard *met = x->to->events->met;
     int acts = now[i] != before;
-    if (!tribo_slides(before) || x->events->stick_slip.constant.elastic[i] || now[i] == TRIBO_SLIP_OPEN) {
+    if (!tribo_slides(before) || x->to->events->stick_slip.constant.elastic[i] || now[i] == TRIBO_SLIP_OPEN) {
         return 0;
     }
     for (size_t k = 0; met && met->kind == SLIDES && met->contact == i && k < x->sys->ncontact; k++) {
@@ -118,8 +207,7 @@ static void find_stops(struct variation *x)
         if (stops(x, i)) {
             double *row = x->row + x->count * n;
             memset(row, 0, n * sizeof *row);
-            tribo_matrix_add_row(&x->sys->direction, i, 1.0, row + x->sys->ndof);
-            x->slope[x->count] = x->rate[i];
+            tribo_matrix_add_row(&x->sys->direction, i, 1.0 / x->rate[i], row + x->sys->ndof);
             x->contact[x->count++] = i;
         }
     }
@@ -131,20 +219,14 @@ static void find_stops(struct variation *x)
  * these stop, or rest before or after, and are not elastic. */
 static void gather(struct variation *x, size_t i, size_t group)
 {
-    const struct stick_slip *m = &x->events->stick_slip;
-    size_t count = 0;
-    x->queue[count++] = i;
+    const struct stick_slip *m = &x->to->events->stick_slip;
+    const double least = TOGETHER * tribo_system_delassus(x->sys, i, i);
     x->group[i] = group;
-    for (size_t k = 0; k < count; k++) {
-        const size_t one = x->queue[k];
-        const double least = TOGETHER * tribo_system_delassus(x->sys, one, one);
-        for (size_t j = 0; j < x->sys->ncontact; j++) {
-            const int passes = !x->group[j] && !m->constant.elastic[j] &&
-                               (x->before[j] == 0 || m->state.slip[j] == TRIBO_SLIP_STUCK || stops(x, j));
-            if (passes && fabs(tribo_system_delassus(x->sys, one, j)) > least) {
-                x->group[j] = group;
-                x->queue[count++] = j;
-            }
+    for (size_t j = 0; j < x->sys->ncontact; j++) {
+        const int passes =
+            !x->group[j] && !m->constant.elastic[j] && (x->before[j] == 0 || m->state.slip[j] == TRIBO_SLIP_STUCK || stops(x, j));
+        if (passes && fabs(tribo_system_delassus(x->sys, i, j)) > least) {
+            gather(x, j, group);
         }
     }
 }
@@ -166,9 +248,9 @@ static size_t find_apart(struct variation *x, size_t first)
         if (x->group[x->contact[k]] == group) {
             x->status = x->status ? x->status : catch_up(x);
             memset(delay, 0, x->columns * sizeof *delay);
-            tribo_multiply_add(1, n, x->columns, 1.0 / x->slope[first], x->row + first * n, x->v, delay);
+            tribo_multiply_add(1, n, x->columns, 1.0, x->row + first * n, x->v, delay);
             memcpy(difference, delay, x->columns * sizeof *delay);
-            tribo_multiply_add(1, n, x->columns, -1.0 / x->slope[k], x->row + k * n, x->v, difference);
+            tribo_multiply_add(1, n, x->columns, -1.0, x->row + k * n, x->v, difference);
             if (tribo_largest(difference, x->columns) > TOGETHER * tribo_largest(delay, x->columns)) {
                 return k;
             }
@@ -182,7 +264,7 @@ static size_t find_apart(struct variation *x, size_t first)
 static void carry_over(struct variation *x, size_t first)
 {
     const size_t n = x->sys->ndof, all = tribo_system_energy(x->sys), group = x->group[x->contact[first]];
-    const struct slip_state *now = &x->events->stick_slip.state;
+    const struct slip_state *now = &x->to->events->stick_slip.state;
     int acts = 0, slides = 0; /* 1: a contact stops, or breaks away; slides afterwards */
     for (size_t k = first; k < x->count; k++) {
         const size_t i = x->contact[k];
@@ -206,44 +288,42 @@ static void carry_over(struct variation *x, size_t first)
     tribo_matrix_multiply(&x->sys->response, x->f, x->change);
     for (size_t l = 0; l < x->count; l++) {
         const double change = tribo_dot(x->row + l * all + n, x->change, n);
-        if (x->group[x->contact[l]] != group && fabs(change) > TOGETHER * fabs(x->slope[l])) {
+        if (x->group[x->contact[l]] != group && fabs(change) > TOGETHER) {
             tear(x, x->contact[first], x->contact[l]);
         }
     }
-    if (!tribo_derivative_add_jump(x->to, x->row + first * all, x->slope[first], x->change)) {
-        x->status = no_derivative(x);
-    }
+    x->status = x->status ? x->status : add_jump(x->to, x->row + first * all, x->change);
 }
 
 /* Where elastic contact i = met->contact breaks away and other elastic contacts stop, because f' jumps: appends the jump of f',
  * earlier by df_i/(f_i' - limit'). */
 static void carry_over_springs(struct variation *x)
 {
-    const struct stick_slip *m = &x->events->stick_slip;
-    const struct guard *met = x->events->met;
+    const struct stick_slip *m = &x->to->events->stick_slip;
+    const struct guard *met = x->to->events->met;
     const struct compliance *g = &x->sys->compliance;
     const size_t n = x->sys->ndof, all = tribo_system_energy(x->sys), i = met ? met->contact : 0;
     int stop = 0;
     if (!met || met->kind != HOLDS || !tribo_is_compliant(g, i) || x->before[i] != 0 || !tribo_slides(m->state.slip[i])) {
         return;
     }
+    const double slope = x->spring_rate[i] + met->side * m->state.limit_rate[i];
     memset(x->change, 0, (all - n) * sizeof *x->change);
     memset(x->row, 0, all * sizeof *x->row);
     for (size_t k = 0; k < g->count; k++) {
         const size_t j = g->contact[k];
         stop |= tribo_slides(x->before[j]) && m->state.slip[j] == TRIBO_SLIP_STUCK;
         x->change[n + k] = m->state.spring_rate[j] - x->spring_rate[j];
-        x->row[2 * n + k] = j == i;
+        x->row[2 * n + k] = j == i && slope != 0.0 ? 1.0 / slope : 0.0;
     }
-    const double slope = x->spring_rate[i] + met->side * m->state.limit_rate[i];
-    if (stop && slope != 0.0 && !tribo_derivative_add_jump(x->to, x->row, slope, x->change)) {
-        x->status = no_derivative(x);
+    if (stop && slope != 0.0 && !x->status) {
+        x->status = add_jump(x->to, x->row, x->change);
     }
 }
 
 void tribo_variation_event(struct variation *x)
 {
-    const struct stick_slip *m = &x->events->stick_slip;
+    const struct stick_slip *m = &x->to->events->stick_slip;
     find_stops(x);
     memset(x->group, 0, x->sys->ncontact * sizeof *x->group);
     for (size_t k = 0; k < x->count; k++) {
@@ -263,43 +343,44 @@ void tribo_variation_event(struct variation *x)
         }
     }
     carry_over_springs(x);
-    if (!x->events->motion->keep && !x->status) {
+    if (!x->to->events->motion->keep && !x->status) {
         x->status = catch_up(x);
     }
 }
 
 /* ------------------------------------------------------------------------------------------------------------------- calls */
 
-void tribo_variation_begin(struct variation *x, const double *v, struct derivative *to)
+void tribo_variation_begin(struct variation *x, struct events *e, const double *v, size_t columns, struct derivative *to)
 {
-    memcpy(x->v, v, tribo_system_energy(x->sys) * x->columns * sizeof *v);
+    tribo_derivative_free(to);
+    to->events = e;
+    to->sys = x->sys;
+    memcpy(x->v, v, tribo_system_energy(x->sys) * columns * sizeof *v);
+    x->columns = columns;
     x->to = to;
     x->applied = 0;
     x->status = TRIBO_OK;
     x->torn = x->other = x->sys->ncontact;
 }
 
-int tribo_variation_create(struct variation *x, struct events *e, tribo_system *sys, size_t columns)
+int tribo_variation_create(struct variation *x, tribo_system *sys)
 {
     const size_t n = sys->ndof, c = sys->ncontact, all = tribo_system_energy(sys);
     struct layout l = {0};
-    *x = (struct variation){.events = e, .sys = sys, .columns = columns};
+    *x = (struct variation){.sys = sys};
     do {
-        x->v = tribo_layout_array(&l, all * columns, sizeof *x->v);
+        x->v = tribo_layout_array(&l, all * all, sizeof *x->v);
         x->acceleration = tribo_layout_array(&l, n, sizeof *x->acceleration);
         x->force = tribo_layout_array(&l, c, sizeof *x->force);
         x->rate = tribo_layout_array(&l, c, sizeof *x->rate);
         x->spring_rate = tribo_layout_array(&l, c, sizeof *x->spring_rate);
-        x->slope = tribo_layout_array(&l, c, sizeof *x->slope);
         x->row = tribo_layout_array(&l, c * all, sizeof *x->row);
         x->a = tribo_layout_array(&l, c, sizeof *x->a);
         x->f = tribo_layout_array(&l, c, sizeof *x->f);
         x->change = tribo_layout_array(&l, all - n, sizeof *x->change);
-        x->delay = tribo_layout_array(&l, 2 * columns, sizeof *x->delay);
+        x->delay = tribo_layout_array(&l, 2 * all, sizeof *x->delay);
         x->contact = tribo_layout_array(&l, c, sizeof *x->contact);
         x->group = tribo_layout_array(&l, c, sizeof *x->group);
-        x->queue = tribo_layout_array(&l, c, sizeof *x->queue);
-        x->before = tribo_layout_array(&l, c, sizeof *x->before);
     } while (!l.memory && tribo_layout_create(&l));
     return l.memory != NULL;
 }

@@ -16,49 +16,69 @@
 #ifndef TRIBO_VARIATION_H
 #define TRIBO_VARIATION_H
 
-#include "derivative.h"
+#include "dynamics/events/events.h"
+
+/* A phase, or a jump [q'', f'] += column row. */
+struct derivative_step {
+    void *phase; /* of motion->keep; NULL: not kept */
+    double tau;
+    signed char *slip; /* [ncontact] slip in the phase; NULL: a jump */
+    double *jump;      /* row [n], column [n - ndof] */
+};
+
+/* The derivative as steps; applied to a few perturbations, or to n units for the matrix. */
+struct derivative {
+    struct events *events;
+    const tribo_system *sys;
+    size_t steps, room;
+    struct derivative_step *step;
+    double *matrix; /* [n][n] in coordinates of the energy norm (period_map.h); NULL until computed */
+};
+
+/* Removes all steps and the matrix; free: takes a zeroed d. */
+void tribo_derivative_free(struct derivative *d);
+
+/* Moves perturbations v [n][columns] by the steps from `first` on. Returns a status, its message on the system's context. */
+int tribo_derivative_apply(const struct derivative *d, size_t first, size_t columns, double *v);
+
+/* Returns 1 if a contact is at rest in all phases. */
+int tribo_derivative_rests(const struct derivative *d);
 
 struct variation {
-    struct events *events;
     tribo_system *sys;
     struct derivative *to; /* of the motion so far */
-    size_t columns;
-    double *v;          /* [n][columns] perturbations after the first `applied` steps of `to` */
-    size_t applied;     /* all steps, if phases are not kept */
-    int status;         /* of a failure in an event, its message on the system's context */
-    size_t torn, other; /* two contacts because of which there is no derivative; ncontact: there is one */
+    size_t columns;        /* at most n */
+    double *v;             /* [n][columns] perturbations after the first `applied` steps of `to` */
+    size_t applied;        /* all steps, if phases are not kept */
+    int status;            /* of a failure in an event, its message on the system's context */
+    size_t torn, other;    /* two contacts because of which there is no derivative; ncontact: there is one */
 
     /* at the end of a phase */
-    signed char *before;  /* [ncontact] slip in the phase */
-    double *acceleration; /* [ndof] q'' */
-    double *force;        /* [ncontact] friction forces */
-    double *rate;         /* [ncontact] v' */
-    double *spring_rate;  /* [ncontact] f' of elastic contacts */
+    const signed char *before; /* [ncontact] slip in the phase, of `to` */
+    double *acceleration;      /* [ndof] q'' */
+    double *force;             /* [ncontact] friction forces */
+    double *rate;              /* [ncontact] v' */
+    double *spring_rate;       /* [ncontact] f' of elastic contacts */
 
     /* crossings, at most one a contact: of static limits, found before the decision, then of velocities */
     size_t count;
     size_t *contact; /* [ncontact] contact of crossing k */
-    double *slope;   /* [ncontact] g' */
-    double *row;     /* [ncontact][n] dg/dstate */
+    double *row;     /* [ncontact][n] (dg/dstate)/g': perturbed motions are earlier by row v */
     size_t *group;   /* [ncontact] 1, 2, ...: groups of contacts; 0: none */
 
-    size_t *queue;          /* [ncontact] workspace */
     double *a, *f;          /* [ncontact] workspace */
     double *change, *delay; /* [n - ndof], [2 columns] workspace */
 };
 
 /* Returns 1, or 0 if out of memory. Call tribo_variation_free also after a failure. */
-int tribo_variation_create(struct variation *x, struct events *e, tribo_system *sys, size_t columns);
+int tribo_variation_create(struct variation *x, tribo_system *sys);
 void tribo_variation_free(struct variation *x);
 
-/* Call begin before the motion. v [n][columns]: perturbations that decide whether contacts stop at one time. `to`: a derivative
- * without steps, to which the steps of the motion are appended: by tribo_variation_phase for a phase that lasted tau and ended in
+/* Call begin before a motion of e. v [n][columns]: perturbations that decide whether contacts stop at one time. `to`, of which all
+ * steps are removed: the steps of the motion are appended to it: by tribo_variation_phase for a phase that lasted tau and ended in
  * the state y, before the decision (returns a status), and by tribo_variation_event after the decision at an event. */
-void tribo_variation_begin(struct variation *x, const double *v, struct derivative *to);
+void tribo_variation_begin(struct variation *x, struct events *e, const double *v, size_t columns, struct derivative *to);
 int tribo_variation_phase(struct variation *x, double tau, double t, const double *y);
 void tribo_variation_event(struct variation *x);
-
-/* row [columns] = J_i v, v [ndof][columns]: the rows of displacements or of velocities of perturbations. */
-void tribo_contact_row(const tribo_system *sys, size_t i, const double *v, size_t columns, double *row);
 
 #endif

@@ -76,6 +76,26 @@ TEST(family)
     search_free(&s);
 }
 
+/* Its motions that stop where the period begins, but for rounding, have the multipliers of a later beginning. */
+TEST(begins_at_stop)
+{
+    const double beta = 1.0 / (2.0 * (1 + _i / 2));
+    struct search s = oscillator_search(methods[_i % 2], 0.0, 0.05, 1.0, beta);
+    for (int k = -1; k < 2; k++) {
+        double y[3] = {1.0 / (1.0 - beta * beta), 1e-13 * k}, z[3], re[2], im[2], want[2], t = 0.0;
+        find(&s, 0.0, y);
+        assert_close(y[1], 0.0, 2e-13);
+        assert_ok(tribo_driver_get_multipliers(s.drv, re, im));
+        require(driver_freedom(s.drv) == 1, "%zu free directions", driver_freedom(s.drv));
+        memcpy(z, y, sizeof z);
+        driver_advance(s.drv, &t, 0.3, z);
+        find(&s, 0.3, z);
+        assert_ok(tribo_driver_get_multipliers(s.drv, want, im));
+        assert_all_close(re, want, 2, 1e-9);
+    }
+    search_free(&s);
+}
+
 TEST(viscous_damping)
 {
     struct search s = oscillator_search(methods[_i], 0.1, 1.0, 1.5, 0.9);
@@ -591,8 +611,8 @@ TEST(resonance_among_many)
     search_free(&s);
 }
 
-TEST_MAIN("periodic", {den_hartog, 6}, {stops, 6}, {multipliers, 2}, {family, 4}, {viscous_damping, 2}, {later, 2}, {multiple, 2},
-          {stuck, 2}, {open, 2}, {times_of_extremes, 4}, {constant_load, 2}, {swinging_limits, 8},
+TEST_MAIN("periodic", {den_hartog, 6}, {stops, 6}, {multipliers, 2}, {family, 4}, {begins_at_stop, 4}, {viscous_damping, 2},
+          {later, 2}, {multiple, 2}, {stuck, 2}, {open, 2}, {times_of_extremes, 4}, {constant_load, 2}, {swinging_limits, 8},
           {multipliers_of_swinging_limits, 2}, {multipliers_of_twins, 2}, {multipliers_of_mirrored_halves, 2},
           {no_multipliers, 6}, {multipliers_of_pairs, 2}, {multipliers_of_strangers, 2}, {no_multipliers_by_a_third, 2},
           {belt, 2}, {rigid_body, 2}, {undamped_structure, 2}, {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2},

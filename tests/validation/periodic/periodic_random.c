@@ -289,7 +289,7 @@ static void check_multipliers(const struct structure *s, tribo_driver *drv, cons
         require(i == 0 || hypot(re[i], im[i]) <= hypot(re[i - 1], im[i - 1]) * (1.0 + 1e-12), "multipliers are not in order");
     }
     const char *off = "";
-    for (double h = 1e-6; off && h > 0.5e-8; h *= 0.1) {
+    for (double h = 1e-6; off && h > 0.5e-9; h *= 0.1) {
         if (!find_traces(s, drv, y, h * fmax(largest(y, n), 1e-3), trace)) {
             return;
         }
