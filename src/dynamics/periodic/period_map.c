@@ -188,16 +188,15 @@ int tribo_period_map_matrix(struct period_map *m, struct point *p)
     return status;
 }
 
-int tribo_period_map_complete(struct period_map *m, struct point *p, double *residual)
+int tribo_period_map_complete(struct period_map *m, struct point *p)
 {
-    *residual = p->residual;
-    if (!m->odd) {
+    if (!p->odd) {
         return TRIBO_OK;
     }
     memcpy(m->y, p->end, m->n * sizeof *m->y);
     const int status = period_map_integrate(m, m->t + m->span, m->t + m->period, NULL);
     tribo_energy_norm_of(&m->norm, 1, m->y, m->x);
-    *residual = tribo_energy_distance(m->x, p->x, m->n);
+    p->residual = tribo_energy_distance(m->x, p->x, m->n);
     return status;
 }
 

@@ -43,12 +43,12 @@ void tribo_period_map_free(struct period_map *m);
 
 /* Each returns a status, its message on the driver. prepare: sets the map for the present system and the guess y. follow:
  * integrates from p->x, first corrected for rounding of contacts at rest and for spring forces above limits, and sets the rest of
- * *p. later: sets *p by a span from m->t + later on, of the motion from y at m->t. complete: sets *residual = |x(t + period) - x(t)|
+ * *p. later: sets *p by a span from m->t + later on, of the motion from y at m->t. complete: sets p->residual = |x(t + period) - x(t)|
  * over the whole period. */
 int tribo_period_map_prepare(struct period_map *m, double t, double period, const double *y);
 int tribo_period_map_follow(struct period_map *m, struct point *p);
 int tribo_period_map_later(struct period_map *m, const double *y, double later, struct point *p);
-int tribo_period_map_complete(struct period_map *m, struct point *p, double *residual);
+int tribo_period_map_complete(struct period_map *m, struct point *p);
 
 /* apply: x [n] = D x, D = d image/d x at p. matrix: p->derivative.matrix [n][n] = D, unless it is set. Both return a
  * status, its message on the driver. */

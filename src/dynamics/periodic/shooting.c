@@ -78,15 +78,10 @@ static int no_convergence(const struct shooting *s, double residual)
 
 /* -------------------------------------------------------------------------------------------------------------- points */
 
-/* Returns 1 if residual <= part size and size is finite. */
-static int comes_back(double residual, double size, double part)
-{
-    return residual <= part * size && isfinite(size);
-}
-
+/* Returns 1 if the residual is at most part of the size, which is finite. */
 static int close_enough(const struct point *p, double part)
 {
-    return comes_back(p->residual, p->size, part);
+    return p->residual <= part * p->size && isfinite(p->size);
 }
 
 /* here = there. */
@@ -154,12 +149,12 @@ static int apply_equation(void *data, double *x)
     return status;
 }
 
-/* Sets s->b = D, the derivative at s->here over `spans` spans, 1 or 2. Returns a status. */
-static int find_derivative(struct shooting *s, int spans)
+/* Sets s->b = D, the derivative at p over `spans` spans, 1 or 2. Returns a status. */
+static int find_derivative(struct shooting *s, struct point *p, int spans)
 {
     const size_t n = s->map.n;
-    const int status = tribo_period_map_matrix(&s->map, s->here);
-    const double *d = s->here->derivative.matrix;
+    const int status = tribo_period_map_matrix(&s->map, p);
+    const double *d = p->derivative.matrix;
     if (!status && spans == 2) {
         memset(s->b, 0, n * n * sizeof *s->b);
         tribo_multiply_add(n, n, n, 1.0, d, d, s->b);
@@ -169,30 +164,12 @@ static int find_derivative(struct shooting *s, int spans)
     return status;
 }
 
-/* x [n] = the shortest solution of (I - D) y = x, D over `spans` spans from s->here. If kernel is NULL, by GMRES to `tolerance`:
- * if contacts rest all the time, there may be many solutions; the Krylov space, then without s->free, of a map that increases no
- * distance has the shortest. Otherwise, if that fails, and if the equation is nearly singular, by a matrix, with singular values
- * below cut taken as zero; *kernel = their number. Returns a status. */
-static int solve_equation(struct shooting *s, int spans, double tolerance, double cut, double *x, size_t *kernel)
+/* x [n] = the shortest solution of (I - D) y = x, D over `spans` spans from p, by a matrix, with singular values below cut taken as
+ * zero; *kernel = their number. Returns a status. */
+static int solve_dense(struct shooting *s, struct point *p, int spans, double cut, double *x, size_t *kernel)
 {
     const size_t n = s->map.n;
-    if (!kernel) {
-        double part;
-        memcpy(s->b, x, n * sizeof *x);
-        s->spans = spans;
-        s->preconditions = spans == 1 && !tribo_derivative_rests(&s->here->derivative);
-        if (s->preconditions) {
-            find_free(s);
-        }
-        const int status = tribo_gmres(n, apply_equation, s, tolerance, n, x, &part, s->space);
-        apply_free(s, x);
-        s->preconditions = 0;
-        if (status || (part <= tolerance && SINGULAR * tribo_energy_length(x, n) <= tribo_energy_length(s->b, n))) {
-            return status;
-        }
-        memcpy(x, s->b, n * sizeof *x);
-    }
-    const int status = find_derivative(s, spans);
+    const int status = find_derivative(s, p, spans);
     for (size_t i = 0; i < n * n; i++) {
         s->a[i] = (i % (n + 1) == 0 ? 1.0 : 0.0) - s->b[i];
     }
@@ -202,14 +179,26 @@ static int solve_equation(struct shooting *s, int spans, double tolerance, doubl
                                    s->map.sys->ndof, plural(s->map.sys->ndof));
 }
 
-/* Sets s->step, the shortest solution of (I - derivative) step = image - x. Returns a status. */
-static int newton_step(struct shooting *s)
+/* x [n] = the shortest solution of (I - D) y = x, D over s->spans spans from s->here, by GMRES to `tolerance`: if contacts rest all
+ * the time, there may be many solutions; the Krylov space, then without s->free, of a map that increases no distance has the
+ * shortest. If that fails, and if the equation is nearly singular, by a matrix. Returns a status. */
+static int solve_equation(struct shooting *s, double tolerance, double cut, double *x)
 {
-    const double near = s->here->residual / s->here->size;
-    const double fell = s->before > 0.0 && near > LEAST_INEXACT ? lesser(s->here->residual / s->before, 1.0) : 0.0;
-    find_misfit(s, s->here, s->step);
-    return solve_equation(s, 1, clamp(greater(near, 0.9 * fell * fell), LEAST_INEXACT, lesser(MOST_INEXACT, sqrt(near))), CUT,
-                          s->step, NULL);
+    const size_t n = s->map.n;
+    double part;
+    memcpy(s->b, x, n * sizeof *x);
+    s->preconditions = s->spans == 1 && !tribo_derivative_rests(&s->here->derivative);
+    if (s->preconditions) {
+        find_free(s);
+    }
+    const int status = tribo_gmres(n, apply_equation, s, tolerance, n, x, &part, s->space);
+    apply_free(s, x);
+    s->preconditions = 0;
+    if (status || (part <= tolerance && SINGULAR * tribo_energy_length(x, n) <= tribo_energy_length(s->b, n))) {
+        return status;
+    }
+    memcpy(x, s->b, n * sizeof *x);
+    return solve_dense(s, s->here, s->spans, cut, x, NULL);
 }
 
 /* Sets s->there from there.x = here.x + part step, s->ratio and s->nearest. Returns a status. */
@@ -231,17 +220,24 @@ static int pays(const struct shooting *s)
     return s->there->residual < PAYS * s->here->residual;
 }
 
-/* Takes Newton's step; or, where no step changes the residual, as on a slow belt that carries a body for many periods,
- * extrapolates 1, 4, 16, ... spans. *part = length of the step over s->step. Returns a status. */
+/* Takes Newton's step s->step, the shortest solution of (I - derivative) step = image - x; or, where no step changes the residual, as
+ * on a slow belt that carries a body for many periods, extrapolates 1, 4, 16, ... spans. *part = length of the step over s->step.
+ * Returns a status. */
 static int newton(struct shooting *s, double *part)
 {
     const int to_double = s->rate > DOUBLE_FROM && s->rate < DOUBLE_TO;
-    const int status = newton_step(s);
+    const double near = s->here->residual / s->here->size;
+    const double fell = s->before > 0.0 && near > LEAST_INEXACT ? lesser(s->here->residual / s->before, 1.0) : 0.0;
+    const double most = lesser(MOST_INEXACT, sqrt(near));
+    find_misfit(s, s->here, s->step);
+    s->spans = 1;
+    const int status = solve_equation(s, clamp(greater(near, 0.9 * fell * fell), LEAST_INEXACT, most), CUT, s->step);
     s->map.drv->newton++;
     s->before = s->here->residual;
+    s->stride = s->stride > 0.0 ? lesser(4.0 * s->stride, LONGEST) : 1.0;
     if (!status && tribo_energy_length(s->step, s->map.n) < FLAT * s->here->residual) {
         find_misfit(s, s->here, s->step);
-        *part = s->stride = s->stride > 0.0 ? lesser(4.0 * s->stride, LONGEST) : 1.0;
+        *part = s->stride;
     } else {
         s->stride = 0.0;
         *part = to_double ? BEYOND / (1.0 - sqrt(s->rate)) : 1.0;
@@ -329,19 +325,6 @@ static int search_all(struct shooting *s)
 
 /* -------------------------------------------------------------------------------------------------------------- the family */
 
-/* Projects move [n] on the family of s->here, the kernel of I - derivative over the period; sets s->step. kernel: of
- * solve_equation. Returns a status. */
-static int project_on_family(struct shooting *s, double *move, size_t *kernel)
-{
-    const size_t n = s->map.n;
-    s->spans = s->here->odd ? 2 : 1;
-    memcpy(s->step, move, n * sizeof *move);
-    int status = apply_equation(s, s->step);
-    status = status ? status : solve_equation(s, s->spans, AIM, FREE, s->step, kernel);
-    tribo_add(move, -1.0, s->step, n);
-    return status;
-}
-
 /* Takes the motion nearest to the guess in the family of the odd motion, if that motion comes back. If all modes are damped and
  * no contact rests in all phases, there is no family. Returns a status. */
 static int approach_guess(struct shooting *s)
@@ -352,9 +335,13 @@ static int approach_guess(struct shooting *s)
         tribo_energy_distance(s->guess, s->here->x, n) < MEANT * s->here->size) {
         return TRIBO_OK;
     }
-    /* guess = the part of guess - x in the family */
+    /* guess = the part of guess - x in the family, the kernel of I - derivative over the period */
     tribo_add(s->guess, -1.0, s->here->x, n);
-    int status = project_on_family(s, s->guess, NULL);
+    memcpy(s->step, s->guess, n * sizeof *s->step);
+    s->spans = 2;
+    int status = apply_equation(s, s->step);
+    status = status ? status : solve_equation(s, AIM, FREE, s->step);
+    tribo_add(s->guess, -1.0, s->step, n);
     if (status || tribo_energy_length(s->guess, n) < MEANT * s->here->size) {
         return status;
     }
@@ -372,67 +359,47 @@ static int approach_guess(struct shooting *s)
 
 /* -------------------------------------------------------------------------------------------------------------- multipliers */
 
-/* Returns 1 if the velocity of a contact that slides at the beginning or at the end of s->here is zero beside AT_ONCE of what the
- * motion may have: its event falls on both or on neither. */
-static int begins_at_event(const struct shooting *s)
+/* Sets s->flow: s->here; or, if a contact that slides at its beginning or end has there no velocity beside AT_ONCE of what the motion
+ * may have, so that its event falls on both or on neither, the motion from the middle of its longest phase on. */
+static void find_flow(struct shooting *s)
 {
     const struct derivative *d = &s->here->derivative;
-    const tribo_system *sys = s->map.sys;
-    const signed char *first = NULL, *last = NULL;
+    tribo_system *sys = s->map.sys;
+    double *base = s->map.limit, elapsed = 0.0, longest = 0.0, middle = 0.0;
+    const signed char *first = d->step->slip, *last = first;
     for (size_t k = 0; k < d->steps; k++) {
+        middle = d->step[k].tau > longest ? elapsed + 0.5 * d->step[k].tau : middle;
+        longest = greater(longest, d->step[k].tau);
+        elapsed += d->step[k].tau;
         last = d->step[k].slip ? d->step[k].slip : last;
-        first = first ? first : last;
     }
-    tribo_system_set_time(s->map.sys, s->map.t);
-    memset(s->map.limit, 0, sys->ncontact * sizeof *s->map.limit);
-    tribo_system_loads(sys, DRIVES_BASE, 0, -1.0, s->map.limit);
-    for (size_t i = 0; first && i < sys->ncontact; i++) {
-        const double v = s->map.limit[i] + tribo_matrix_row_dot(&sys->direction, i, s->here->y + sys->ndof);
+    tribo_system_set_time(sys, s->map.t);
+    memset(base, 0, sys->ncontact * sizeof *base);
+    tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, base);
+    s->flow = s->here;
+    for (size_t i = 0; i < sys->ncontact && s->flow == s->here; i++) {
+        const double v = tribo_matrix_row_dot(&sys->direction, i, s->here->y + sys->ndof) - base[i];
         const double most = s->here->size / s->map.norm.scale * sqrt(tribo_system_delassus(sys, i, i));
         if ((tribo_slides(first[i]) || tribo_slides(last[i])) && fabs(v) <= AT_ONCE * most) {
-            return 1;
+            const int status = tribo_period_map_later(&s->map, s->here->y, middle, s->there);
+            if (status || !close_enough(s->there, TOLERANCE)) {
+                return;
+            }
+            s->flow = s->there;
         }
     }
-    return 0;
-}
-
-/* Sets s->flow: s->here, or if it begins at an event the motion from the middle of its longest phase on. Returns a status. */
-static int find_flow(struct shooting *s)
-{
-    const struct derivative *d = &s->here->derivative;
-    double elapsed = 0.0, longest = 0.0, middle = 0.0;
-    s->flow = s->here;
-    if (!begins_at_event(s)) {
-        return TRIBO_OK;
-    }
-    for (size_t k = 0; k < d->steps; k++) {
-        if (d->step[k].tau > longest) {
-            longest = d->step[k].tau;
-            middle = elapsed + 0.5 * longest;
-        }
-        elapsed += d->step[k].tau;
-    }
-    const int status = tribo_period_map_later(&s->map, s->here->y, middle, s->there);
-    s->flow = !status && close_enough(s->there, TOLERANCE) ? s->there : s->here;
-    return status;
 }
 
 int tribo_shooting_freedom(struct shooting *s, size_t *freedom)
 {
-    struct point *const found = s->here;
-    s->here = s->flow;
-    const int status = project_on_family(s, s->guess, freedom);
-    s->here = found;
-    return status;
+    memset(s->step, 0, s->map.n * sizeof *s->step);
+    return solve_dense(s, s->flow, s->flow->odd ? 2 : 1, FREE, s->step, freedom);
 }
 
 int tribo_shooting_multipliers(struct shooting *s, double *re, double *im)
 {
     const size_t n = s->map.n, all = tribo_system_dimension(s->map.sys) - 1;
-    struct point *const found = s->here;
-    s->here = s->flow;
-    int status = find_derivative(s, s->here->odd ? 2 : 1);
-    s->here = found;
+    int status = find_derivative(s, s->flow, s->flow->odd ? 2 : 1);
     if (status) {
         return status;
     }
@@ -461,7 +428,6 @@ int tribo_shooting_multipliers(struct shooting *s, double *re, double *im)
 int tribo_shooting_find(struct shooting *s, double t, double period, double *y)
 {
     const size_t n = s->map.n;
-    double residual = 0.0;
     s->found = 0;
     int status = tribo_period_map_prepare(&s->map, t, period, y);
     if (!status) {
@@ -469,12 +435,12 @@ int tribo_shooting_find(struct shooting *s, double t, double period, double *y)
         status = search_all(s);
     }
     status = status ? status : approach_guess(s);
-    status = status ? status : tribo_period_map_complete(&s->map, s->here, &residual);
-    if (!status && !comes_back(residual, s->here->size, TOLERANCE)) {
-        status = no_convergence(s, residual / s->here->size);
+    status = status ? status : tribo_period_map_complete(&s->map, s->here);
+    if (!status && !close_enough(s->here, TOLERANCE)) {
+        status = no_convergence(s, s->here->residual / s->here->size);
     }
-    status = status ? status : find_flow(s);
     if (!status) {
+        find_flow(s);
         memcpy(y, s->here->y, n * sizeof *y);
         y[n] = 0.0;
         s->found = 1;

@@ -46,20 +46,6 @@ static struct derivative_step *add_step(struct derivative *d)
     return d->step + d->steps++;
 }
 
-/* Appends the phase of d->events that lasted tau. Returns a status. */
-static int add_phase(struct derivative *d, double tau, const signed char *slip)
-{
-    const struct motion *motion = d->events->motion;
-    struct derivative_step *s = add_step(d);
-    int done = s != NULL;
-    if (s) {
-        s->tau = tau;
-        s->slip = tribo_copy_of(slip, d->sys->ncontact, 1, &done);
-        s->phase = motion->keep ? motion->keep(d->events->own, tau) : NULL;
-    }
-    return done && (s->phase || !motion->keep) ? TRIBO_OK : no_room(d);
-}
-
 /* Appends a jump. Returns a status. */
 static int add_jump(struct derivative *d, const double *row, const double *column)
 {
@@ -174,9 +160,19 @@ int tribo_variation_phase(struct variation *x, double tau, double t, const doubl
     tribo_stick_slip_contact_accelerations(x->sys, x->acceleration, 1, x->rate);
     tribo_elastic_move(m, x->sys, y);
     memcpy(x->spring_rate, m->state.spring_rate, x->sys->ncontact * sizeof *x->spring_rate);
-    status = status ? status : add_phase(x->to, tau, m->state.slip);
-    x->before = status ? NULL : x->to->step[x->to->steps - 1].slip;
-    status = status || x->to->events->motion->keep ? status : catch_up(x);
+    if (status) {
+        return status;
+    }
+    const struct motion *motion = x->to->events->motion;
+    struct derivative_step *s = add_step(x->to);
+    int done = s != NULL;
+    if (s) {
+        s->tau = tau;
+        x->before = s->slip = tribo_copy_of(m->state.slip, x->sys->ncontact, 1, &done);
+        s->phase = motion->keep ? motion->keep(x->to->events->own, tau) : NULL;
+    }
+    status = done && (s->phase || !motion->keep) ? TRIBO_OK : no_room(x->to);
+    status = status || motion->keep ? status : catch_up(x);
     return status ? status : find_drops(x, tau);
 }
 
