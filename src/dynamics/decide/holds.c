@@ -53,7 +53,7 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
     struct constraints ties = {0};
     size_t rest = 0, *at = m->work.at;
     for (size_t i = 0; i < n; i++) {
-        s->holds[i] = s->slip[i] == TRIBO_SLIP_STUCK && c->can_hold[i];
+        s->holds[i] = s->slip[i] == TRIBO_SLIP_STUCK && tribo_can_hold(m, i);
         at[rest] = i;
         m->work.last[rest] = (unsigned char)(s->tied[i] == 1 ? 2 : s->tied[i] == 2);
         rest += s->holds[i] && !c->elastic[i];

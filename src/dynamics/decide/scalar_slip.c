@@ -100,7 +100,7 @@ static int find_forces(struct stick_slip *m, const tribo_system *sys)
         }
         const int near = searches && (fabs(force[i]) >= part * stick[i] || i == s->reached);
         close |= near;
-        if (near || all || !c->can_hold[i]) {
+        if (near || all || !tribo_can_hold(m, i)) {
             w->doubt[count++] = i;
         }
     }

@@ -47,7 +47,7 @@ static void lay_out_arrays(struct stick_slip *m, struct layout *l, size_t contac
                                    &r->excess};
     double **const by_dof[] = {&r->size, &c->load_size, &w->acceleration, &w->free, &w->rate};
     signed char **const sign[] = {&s->slip, &s->tied, &s->before, &s->loose, &s->slid, &w->pulled, &s->key};
-    unsigned char **const mark[] = {&s->holds, &s->rested, &c->can_hold, &c->elastic, &w->last};
+    unsigned char **const mark[] = {&s->holds, &s->rested, &c->elastic, &w->last};
     enum { CONTACTS = sizeof by_contact / sizeof *by_contact, DOFS = sizeof by_dof / sizeof *by_dof };
     enum { SIGNS = sizeof sign / sizeof *sign, MARKS = sizeof mark / sizeof *mark };
     c->memory = tribo_layout_array(l, 0, 1);
@@ -95,7 +95,7 @@ static int create_contexts(struct slip_constant *c, const tribo_context *contact
     return 1;
 }
 
-/* Fills R_ii, 1/R_ii, elastic[] and can_hold[]; sets independent; lists the snaps of all rigid contacts. Returns 0 if out of
+/* Fills R_ii, 1/R_ii and elastic[]; sets independent; lists the snaps of all rigid contacts. Returns 0 if out of
  * memory. */
 static int find_constants(struct stick_slip *m, const tribo_system *sys)
 {
@@ -107,7 +107,6 @@ static int find_constants(struct stick_slip *m, const tribo_system *sys)
         c->diagonal[i] = tribo_system_delassus(sys, i, i);
         c->inertia[i] = c->diagonal[i] > 0.0 ? quotient(1.0, c->diagonal[i]) : 0.0;
         c->elastic[i] = (unsigned char)tribo_is_compliant(&sys->compliance, i);
-        c->can_hold[i] = c->diagonal[i] > 0.0 || c->elastic[i];
         m->state.loose[i] = (signed char)c->elastic[i];
         rigid[count] = i;
         count += !c->elastic[i];
@@ -125,7 +124,7 @@ static int find_constants(struct stick_slip *m, const tribo_system *sys)
     }
     tribo_constraints_free(&ties);
     for (size_t i = 0; c->independent && i < c->contacts; i++) {
-        tribo_stick_slip_set_hold(m, i, c->can_hold[i]);
+        tribo_stick_slip_set_hold(m, i, tribo_can_hold(m, i));
     }
     return 1;
 }
@@ -173,7 +172,7 @@ static void add_amplitudes(const tribo_system *sys, enum drives drives, int orde
     }
 }
 
-/* Sets horizon, base_size, base_rate_size and load_size. */
+/* Sets horizon, base_moves, base_size, base_rate_size and load_size. */
 static void find_scales(struct stick_slip *m, const tribo_system *sys)
 {
     struct slip_constant *k = &m->constant;
@@ -192,9 +191,10 @@ static void find_scales(struct stick_slip *m, const tribo_system *sys)
     for (size_t i = 0; i < c; i++) {
         k->base_size[i] += late * k->base_rate_size[i];
     }
-    const double largest = k->independent ? 0.0 : tribo_largest(k->base_size, c);
-    for (size_t i = 0; i < c; i++) {
-        k->base_size[i] = greater(k->base_size[i], largest);
+    const double largest = tribo_largest(k->base_size, c);
+    k->base_moves = largest > 0.0;
+    for (size_t i = 0; !k->independent && i < c; i++) {
+        k->base_size[i] = largest;
     }
 }
 
@@ -487,9 +487,5 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     }
     s->fresh = s->hold_differs = 1;
     s->reached = c;
-    k->base_moves = 0;
-    for (size_t i = 0; i < sys->loads.harmonics; i++) {
-        k->base_moves |= sys->loads.harmonic[i].drives == DRIVES_BASE && sys->loads.harmonic[i].count > 0;
-    }
     return tribo_planar_slip_start(m, sys, continues);
 }

@@ -26,16 +26,15 @@ struct slip_constant {
     int base_moves;      /* 1: b(t) is not zero throughout */
     double abstol;       /* tolerances of the driver */
     double reltol;
-    double horizon;          /* time that decisions look ahead, short compared with the fastest motion */
-    double *diagonal;        /* [ncontact] R_ii */
-    double *inertia;         /* [ncontact] 1/R_ii; 0 if R_ii = 0 */
-    double *still;           /* [ncontact] zeros */
-    double *swing;           /* [ncontact] largest change of the limit by harmonics */
-    double *base_size;       /* [ncontact] bound of |b_i|, with the rounding of t */
-    double *base_rate_size;  /* [ncontact] bound of |b_i'| */
-    double *load_size;       /* [ndof] bound of accelerations by harmonic loads */
-    unsigned char *elastic;  /* [ncontact] 1: elastic contact */
-    unsigned char *can_hold; /* [ncontact] 1: R_ii > 0, or elastic */
+    double horizon;         /* time that decisions look ahead, short compared with the fastest motion */
+    double *diagonal;       /* [ncontact] R_ii */
+    double *inertia;        /* [ncontact] 1/R_ii; 0 if R_ii = 0 */
+    double *still;          /* [ncontact] zeros */
+    double *swing;          /* [ncontact] largest change of the limit by harmonics */
+    double *base_size;      /* [ncontact] bound of |b_i|, with the rounding of t */
+    double *base_rate_size; /* [ncontact] bound of |b_i'| */
+    double *load_size;      /* [ndof] bound of accelerations by harmonic loads */
+    unsigned char *elastic; /* [ncontact] 1: elastic contact */
 };
 
 /* What contacts do from the last decision on. */
@@ -171,6 +170,12 @@ void tribo_stick_slip_forget_shares(struct stick_slip *m);
 /* holds.c: sets what follows from slip[i] and from holds, 1 if contact i is at rest and in H. */
 void tribo_stick_slip_set_hold(struct stick_slip *m, size_t i, int holds);
 
+/* 1 if contact i has R_ii > 0, or is elastic. */
+static inline int tribo_can_hold(const struct stick_slip *m, size_t i)
+{
+    return m->constant.diagonal[i] > 0.0 || m->constant.elastic[i];
+}
+
 /* Sets the slip of contact i; the only function that writes slip. H follows at once or, if contacts at rest may depend on each
  * other, by find_holds. */
 static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed char slip)
@@ -179,7 +184,7 @@ static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed c
         m->state.slip[i] = slip;
         m->state.fresh = 1;
         if (m->constant.independent) {
-            tribo_stick_slip_set_hold(m, i, slip == TRIBO_SLIP_STUCK && m->constant.can_hold[i]);
+            tribo_stick_slip_set_hold(m, i, slip == TRIBO_SLIP_STUCK && tribo_can_hold(m, i));
         }
     }
 }

@@ -70,24 +70,19 @@ struct creep_step {
     double stray; /* how far directions were off where it began; HUGE_VAL: unknown */
 };
 
-void tribo_creep_free(struct creep *c)
-{
-    free(c->weight);
-    memset(c, 0, sizeof *c);
-}
-
 /* --------------------------------------------------------------------------------------------------------- what it takes */
 
 /* Makes room for sliding contacts; finds basis and weight. Returns 0 if out of memory. */
-static int reserve(struct event *e, size_t slides)
+static int reserve(struct event *e)
 {
     struct creep *c = &e->creep;
-    const size_t terms = e->most_order + 1, unknowns = slides * NODES;
+    const size_t terms = e->most_order + 1, slides = c->count, unknowns = slides * NODES;
     struct layout l = {0};
     if (c->room >= slides) {
         return 1;
     }
-    tribo_creep_free(c);
+    free(c->weight);
+    c->room = 0;
     do {
         c->weight = tribo_layout_array(&l, terms * NODES * NODES, sizeof *c->weight);
         c->response = tribo_layout_array(&l, 4 * slides * slides * terms, sizeof *c->response);
@@ -103,7 +98,7 @@ static int reserve(struct event *e, size_t slides)
     }
     c->room = slides;
     for (size_t i = 0; i < NODES; i++) {
-        double *b = c->basis[i];
+        double *b = memset(c->basis[i], 0, sizeof c->basis[i]);
         b[0] = 1.0;
         for (size_t j = 0; j < NODES; j++) { /* times (x - node_j)/(node_i - node_j) */
             for (size_t k = NODES - 1; j != i && k < NODES; k--) {
@@ -127,27 +122,19 @@ static int reserve(struct event *e, size_t slides)
     return 1;
 }
 
-/* Returns the number of planar contacts that slide; *begins = 1 if one of them begins to. */
-static size_t count_sliding(const struct stick_slip *m, int *begins)
+/* Sets c->count. Returns the least length of a step that pays: much longer than the time in which friction would stop a contact;
+ * HUGE_VAL if none can pay. */
+static double find_least(const struct stick_slip *m, struct creep *c)
 {
-    size_t count = 0;
-    *begins = 0;
+    int begins = 0;
+    c->count = 0;
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
-        count += (size_t)tribo_slides_in_plane(m, p);
-        *begins |= tribo_slides_in_plane(m, p) && p->begins != SLIDES_ON;
+        c->count += (size_t)tribo_slides_in_plane(m, p);
+        begins |= tribo_slides_in_plane(m, p) && p->begins != SLIDES_ON;
     }
-    return count;
-}
-
-/* Least length of a step that pays: much longer than the time in which friction would stop a contact; HUGE_VAL if none can
- * pay. */
-static double find_least(const struct stick_slip *m)
-{
-    int begins;
-    const size_t count = count_sliding(m, &begins);
-    const double part = (double)count / FEW_CONTACTS;
-    return count == 0 || count > MOST_CONTACTS || begins
+    const double part = (double)c->count / FEW_CONTACTS;
+    return c->count == 0 || c->count > MOST_CONTACTS || begins
                ? HUGE_VAL
                : PAYS * greater(1.0, part * part * part) * tribo_planar_series_first_stop(m);
 }
@@ -213,8 +200,9 @@ static void find_velocity(const struct event *e, size_t k, double tau, double *x
 /* ------------------------------------------------------------------------------------------------------------ response */
 
 /* to [terms][2 slides] += factor times the series of x. */
-static void add_series(const struct event *e, size_t slides, double factor, double *to)
+static void add_series(const struct event *e, double factor, double *to)
 {
+    const size_t slides = e->creep.count;
     for (size_t s = 0; s < slides; s++) {
         const struct planar_line *l = &e->planar.line[e->creep.slides[s]];
         for (size_t k = 0; k <= e->order; k++) {
@@ -225,10 +213,10 @@ static void add_series(const struct event *e, size_t slides, double factor, doub
 }
 
 /* c->response of all that slide, as a difference to the motion without their friction. */
-static int find_response(struct event *e, size_t slides)
+static int find_response(struct event *e)
 {
     struct creep *c = &e->creep;
-    const size_t terms = e->order + 1, each = 2 * slides * terms;
+    const size_t terms = e->order + 1, slides = c->count, each = 2 * slides * terms;
     for (size_t s = 0; s < slides; s++) {
         memset(e->planar.line[c->slides[s]].un, 0, terms * sizeof(double));
         memset(e->planar.line[c->slides[s]].ut, 0, terms * sizeof(double));
@@ -236,7 +224,7 @@ static int find_response(struct event *e, size_t slides)
     memset(c->response, 0, 2 * slides * each * sizeof *c->response);
     int status = tribo_event_series(e);
     for (size_t s = 0; !status && s < 2 * slides; s++) {
-        add_series(e, slides, -1.0, c->response + s * each);
+        add_series(e, -1.0, c->response + s * each);
     }
     for (size_t s = 0; !status && s < 2 * slides; s++) {
         const struct planar_line *l = &e->planar.line[c->slides[s / 2]];
@@ -244,7 +232,7 @@ static int find_response(struct event *e, size_t slides)
         u[0] = 1.0;
         status = tribo_event_series(e);
         u[0] = 0.0;
-        add_series(e, slides, 1.0, c->response + s * each);
+        add_series(e, 1.0, c->response + s * each);
     }
     return status;
 }
@@ -252,10 +240,10 @@ static int find_response(struct event *e, size_t slides)
 /* ------------------------------------------------------------------------------------------------------------- Newton */
 
 /* One step of Newton's method; returns its size, HUGE_VAL if there is none. */
-static double improve(struct event *e, size_t slides, double h)
+static double improve(struct event *e, double h)
 {
     struct creep *c = &e->creep;
-    const size_t unknowns = slides * NODES;
+    const size_t slides = c->count, unknowns = slides * NODES;
     for (size_t s = 0; s < slides * slides; s++) {
         /* block (a, b): derivative of the part of x_a across u_a by the angles of contact b; part: of x_a along n and t to a
          * force along n, then along t, of contact b */
@@ -353,24 +341,24 @@ static int is_with(const struct event *e, size_t k, double h)
 
 /* Iterates directions of sliding contacts at the nodes of a step of length h until their series satisfies the equation of
  * directions there; sets *found = 1 if it does. Returns a status. */
-static int find_angles(struct event *e, size_t slides, double h, int *found)
+static int find_angles(struct event *e, double h, int *found)
 {
-    struct creep *c = &e->creep;
+    const struct creep *c = &e->creep;
     double most = MOST_OFF, before = TOO_FAR;
-    for (size_t s = 0; s < slides; s++) {
+    for (size_t s = 0; s < c->count; s++) {
         most = lesser(most, allowed(e, c->slides[s], h));
     }
     for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
-        for (size_t s = 0; s < slides; s++) {
+        for (size_t s = 0; s < c->count; s++) {
             fit(e, s, h);
         }
         const int status = tribo_event_series(e);
         if (status) {
             return status;
         }
-        const double step = improve(e, slides, h);
+        const double step = improve(e, h);
         double stray = 0.0;
-        for (size_t j = 0; j < slides * NODES; j++) {
+        for (size_t j = 0; j < c->count * NODES; j++) {
             stray = greater(stray, find_stray(e, c->slides[j / NODES], h, node[j % NODES] * h));
         }
         *found = step <= ENOUGH * most && stray <= STRAY_ENOUGH;
@@ -383,10 +371,10 @@ static int find_angles(struct event *e, size_t slides, double h, int *found)
 }
 
 /* Sets step->good if the series of a step of length h is within the allowed error, and the length of the next step. */
-static void judge(const struct event *e, size_t slides, double h, struct creep_step *step)
+static void judge(const struct event *e, double h, struct creep_step *step)
 {
     double defect = 0.0, slow = h, stray = 0.0;
-    for (size_t s = 0; s < slides; s++) {
+    for (size_t s = 0; s < e->creep.count; s++) {
         const size_t k = e->creep.slides[s];
         const struct planar_line *l = &e->planar.line[k];
         const double begins = find_stray(e, k, h, 0.0);
@@ -416,12 +404,12 @@ static int creep_expand(struct event *e, double t, const double *y, double h, st
 {
     struct creep *c = &e->creep;
     const struct stick_slip *m = &e->events.stick_slip;
-    int begins, found = 0;
-    const size_t slides = count_sliding(m, &begins);
-    if (!reserve(e, slides)) {
-        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s that creep", slides, plural(slides));
+    int found = 0;
+    if (!reserve(e)) {
+        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s that creep", c->count,
+                                 plural(c->count));
     }
-    for (size_t k = 0, s = 0; s < slides; k++) {
+    for (size_t k = 0, s = 0; s < c->count; k++) {
         if (tribo_slides_in_plane(m, &m->plane->contact[k])) {
             /* guess: directions go on turning at their rate */
             const double turn = find_turn(e, k) * h;
@@ -433,13 +421,13 @@ static int creep_expand(struct event *e, double t, const double *y, double h, st
     }
     e->planar.given = 1;
     int status = tribo_event_start(e, t, y);
-    status = status ? status : find_response(e, slides);
-    status = status ? status : find_angles(e, slides, h, &found);
+    status = status ? status : find_response(e);
+    status = status ? status : find_angles(e, h, &found);
     e->planar.given = 0;
     step->good = 0;
     step->next = SHRINKS * h;
     if (!status && found) {
-        judge(e, slides, h, step);
+        judge(e, h, step);
     }
     return status;
 }
@@ -447,7 +435,7 @@ static int creep_expand(struct event *e, double t, const double *y, double h, st
 int tribo_creep_begin(struct event *e, double t, const double *y, double most, double *length)
 {
     struct creep *c = &e->creep;
-    const double least = find_least(&e->events.stick_slip), last = c->length;
+    const double least = find_least(&e->events.stick_slip, c), last = c->length;
     const size_t before = e->sys->evaluations;
     /* at once where such steps just became shorter than least */
     c->wait = e->events.anew ? PATIENCE : last > 0.0 && !(last > least) ? 0 : c->wait;

@@ -51,14 +51,14 @@ struct planar_series {
 struct creep {
     double length;                                      /* of the next such step; 0: unknown */
     size_t waited, wait;                                /* steps since contacts creep, and number of steps to wait */
-    size_t room;                                        /* room for sliding ones */
+    size_t count, room;                                 /* sliding planar contacts, and room for them */
     double basis[TRIBO_CREEP_NODES][TRIBO_CREEP_NODES]; /* [node][power] of the polynomial that is 1 there, 0 at other nodes */
     double *weight;   /* [terms][node][node] effect at the first node of a force basis[second] that acts by time^term, in steps;
-                         owns the memory of the members below */
+                         owns the memory of the members below; freed by method_event.c */
     double *angle;    /* [room][node] of u, from n of its line */
     double *u;        /* [room][node][2] cosine and sine of angle */
-    double *response; /* [2 slides][terms][2 slides] series of x along n and t by u = n or t */
-    size_t *slides;   /* [room] the sliding contacts */
+    double *response; /* [2 count][terms][2 count] series of x along n and t by u = n or t */
+    size_t *slides;   /* [room] these contacts */
     int *pivot;       /* [room NODES] */
     double *matrix;   /* [room NODES][room NODES] Newton's */
     double *rest;     /* [room NODES] its right-hand side */
@@ -173,8 +173,6 @@ void tribo_planar_series_errors(struct event *e);
 double tribo_planar_series_shorten(const struct event *e, double h);
 
 /* -------------------------------------------------------------------------------------------------------- event_creep.c */
-
-void tribo_creep_free(struct creep *c);
 
 /* Where planar contacts creep, tries steps from (t, y) of at most `most` with directions by collocation. *length = length of the
  * step whose series is found; 0: there is none. Returns a status. */

@@ -181,7 +181,8 @@ static void free_series(struct event *e)
     free(e->q);
     free(e->planar.line);
     e->planar = (struct planar_series){0};
-    tribo_creep_free(&e->creep);
+    free(e->creep.weight);
+    e->creep = (struct creep){0};
 }
 
 static void method_event_destroy(tribo_driver *drv)
