@@ -38,9 +38,9 @@ struct gsl_kind {
     const char *name;
     const gsl_odeiv2_step_type *const *type;
     double stable;   /* step times rate of a sticking contact above which no contact may change within a step; HUGE_VAL: none */
-    int takes_slope; /* 1: a step begins with f(t, y) */
     int newton;      /* 1: an implicit Runge-Kutta method with GSL's Newton iteration */
-    int keeps;       /* 1: steps reuse the Jacobian of earlier ones; else GSL evaluates it in every step before it factorizes */
+    int keeps;       /* 1: steps reuse the Jacobian of earlier ones; else they begin with f(t, y), and an implicit one evaluates
+                      * the Jacobian before it factorizes */
     size_t matrices; /* matrices I - h c[i] A x J that a step may factorize; 0: explicit */
     const double *c; /* [matrices] */
     size_t stages;   /* rows of A */
@@ -142,13 +142,13 @@ static double largest_size(const double *x, size_t n)
     return most;
 }
 
-/* 1 if the force of a contact jumps between the beginning of the step and the last evaluation, and relaxes by more than `part`
+/* 1 if the force of a contact jumps between the beginning of the step and the last evaluation, and relaxes by more than `stable`
  * within the step, or has rate 0: it does not relax. Open contacts carry nothing, and nearly nothing just before they open and
  * after they close. */
-static int passes_a_change(const struct gsl_step *g, double part)
+static int passes_a_change(const struct gsl_step *g)
 {
     const size_t n = g->ncontact;
-    const double *rate = g->trial->rate;
+    const double *rate = g->trial->rate, part = g->kind->stable;
     int found = 0;
     if (!tribo_system_get_slip(g->sys, g->mode + n)) {
         for (size_t i = 0; i < n; i++) {
@@ -168,7 +168,7 @@ static int guarded_function(double t, const double y[], double dydt[], void *par
     if (g->status || g->kind->matrices == 0) {
         return gsl_status(g->status);
     }
-    if (g->kind->stable < HUGE_VAL && passes_a_change(g, g->kind->stable)) {
+    if (g->kind->stable < HUGE_VAL && passes_a_change(g)) {
         return GSL_FAILURE;
     }
     if (g->kind->newton) {
@@ -304,19 +304,6 @@ static void gsl_step_restart(void *data)
     g->known = 0;
 }
 
-/* 1 if a contact sticks at either end of the step, or slides in two directions at its ends. */
-static int has_stuck(const struct gsl_step *g)
-{
-    const size_t n = g->ncontact;
-    int found = 0;
-    if (!tribo_system_get_slip(g->sys, g->mode + n)) {
-        for (size_t i = 0; i < n; i++) {
-            found |= g->mode[i] != g->mode[n + i] || g->mode[i] == TRIBO_SLIP_STUCK;
-        }
-    }
-    return found;
-}
-
 static int gsl_step_try(const tribo_trial *x, void *data)
 {
     struct gsl_step *g = data;
@@ -333,13 +320,18 @@ static int gsl_step_try(const tribo_trial *x, void *data)
         }
     }
     if (!status) {
-        status = gsl_odeiv2_step_apply(g->step, x->t, x->h, x->to, x->error, g->kind->takes_slope ? x->slope : NULL,
+        status = gsl_odeiv2_step_apply(g->step, x->t, x->h, x->to, x->error, g->kind->keeps ? NULL : x->slope,
                                        g->kind->newton ? g->end : NULL, &g->guarded);
     }
     if (!status && g->kind->newton) {
         /* The estimate by half steps misses a force that jumps before or after all stages, and a contact that breaks away
          * after them: adds the difference to the trapezoidal rule by slopes at both ends. */
-        const int jumps = has_stuck(g);
+        const signed char *before = g->mode, *after = g->mode + g->ncontact;
+        const int evaluated = !tribo_system_get_slip(g->sys, g->mode + g->ncontact);
+        int jumps = 0;
+        for (size_t i = 0; evaluated && i < g->ncontact; i++) {
+            jumps |= before[i] != after[i] || before[i] == TRIBO_SLIP_STUCK;
+        }
         for (size_t i = 0; jumps && i < g->dimension; i++) {
             x->error[i] = fabs(x->error[i]) + fabs(0.5 * x->h * (x->slope[i] + g->end[i]) - (x->to[i] - x->y[i]));
         }
@@ -363,17 +355,17 @@ static const double sequence[8] = {1.0 / 2, 1.0 / 6, 1.0 / 10, 1.0 / 14, 1.0 / 2
 static const double bdf[5] = {1.0, 2.0 / 3, 6.0 / 11, 12.0 / 25, 60.0 / 137};
 
 static const struct gsl_kind kinds[] = {
-    {"rk2", &gsl_odeiv2_step_rk2, .stable = 2.5, .takes_slope = 1, .stages = 1},
-    {"rk4", &gsl_odeiv2_step_rk4, .stable = 5.5, .takes_slope = 1, .stages = 1},
-    {"rkf45", &gsl_odeiv2_step_rkf45, .stable = 3.6, .takes_slope = 1, .stages = 1},
-    {"rkck", &gsl_odeiv2_step_rkck, .stable = 3.7, .takes_slope = 1, .stages = 1},
-    {"rk8pd", &gsl_odeiv2_step_rk8pd, .stable = 5.1, .takes_slope = 1, .stages = 1},
-    {"rk1imp", &gsl_odeiv2_step_rk1imp, HUGE_VAL, 1, 1, 0, 2, halves, 1, NULL},
-    {"rk2imp", &gsl_odeiv2_step_rk2imp, HUGE_VAL, 1, 1, 0, 2, middle, 1, NULL},
-    {"rk4imp", &gsl_odeiv2_step_rk4imp, HUGE_VAL, 1, 1, 0, 2, halves, 2, gauss},
-    {"bsimp", &gsl_odeiv2_step_bsimp, 0.1, 1, 0, 0, 8, sequence, 1, NULL},
-    {"msadams", &gsl_odeiv2_step_msadams, .stable = 0.5, .takes_slope = 1, .stages = 1},
-    {"msbdf", &gsl_odeiv2_step_msbdf, HUGE_VAL, 0, 0, 1, 5, bdf, 1, NULL},
+    {"rk2", &gsl_odeiv2_step_rk2, .stable = 2.5, .stages = 1},
+    {"rk4", &gsl_odeiv2_step_rk4, .stable = 5.5, .stages = 1},
+    {"rkf45", &gsl_odeiv2_step_rkf45, .stable = 3.6, .stages = 1},
+    {"rkck", &gsl_odeiv2_step_rkck, .stable = 3.7, .stages = 1},
+    {"rk8pd", &gsl_odeiv2_step_rk8pd, .stable = 5.1, .stages = 1},
+    {"rk1imp", &gsl_odeiv2_step_rk1imp, HUGE_VAL, 1, 0, 2, halves, 1, NULL},
+    {"rk2imp", &gsl_odeiv2_step_rk2imp, HUGE_VAL, 1, 0, 2, middle, 1, NULL},
+    {"rk4imp", &gsl_odeiv2_step_rk4imp, HUGE_VAL, 1, 0, 2, halves, 2, gauss},
+    {"bsimp", &gsl_odeiv2_step_bsimp, 0.1, 0, 0, 8, sequence, 1, NULL},
+    {"msadams", &gsl_odeiv2_step_msadams, .stable = 0.5, .stages = 1},
+    {"msbdf", &gsl_odeiv2_step_msbdf, HUGE_VAL, 0, 1, 5, bdf, 1, NULL},
 };
 
 int tribo_gsl_stepper_count(void)
@@ -408,7 +400,7 @@ int tribo_gsl_driver_create(tribo_driver **drv, tribo_system *sys, const char *s
     const tribo_stepper table = {.size = sizeof table,
                                  .name = kind->name,
                                  .stable = kind->matrices ? 0.0 : kind->stable,
-                                 .takes_slope = kind->takes_slope,
+                                 .takes_slope = !kind->keeps,
                                  .step = gsl_step_try,
                                  .order = gsl_step_order,
                                  .restart = gsl_step_restart,

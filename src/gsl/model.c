@@ -7,36 +7,26 @@
 
 typedef int csr_setter(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val);
 
-/* Row and column of entry k. *at: of compressed forms the row or column of entry k - 1. */
-static void find_entry(const gsl_spmatrix *a, size_t k, size_t *at, size_t *row, size_t *column)
+/* Compressed rows of a: rowptr [rows + 2] all 0, col and val [entries]. place [2][entries]: workspace. */
+static void compress_rows(const gsl_spmatrix *a, size_t *place, size_t *rowptr, size_t *col, double *val)
 {
-    if (GSL_SPMATRIX_ISCOO(a)) {
-        *row = (size_t)a->i[k];
-        *column = (size_t)a->p[k];
-        return;
-    }
-    while ((size_t)a->p[*at + 1] <= k) {
-        ++*at;
-    }
-    *row = GSL_SPMATRIX_ISCSC(a) ? (size_t)a->i[k] : *at;
-    *column = GSL_SPMATRIX_ISCSC(a) ? *at : (size_t)a->i[k];
-}
-
-/* Compressed rows of a: rowptr [rows + 2] all 0, col and val [entries]. */
-static void compress_rows(const gsl_spmatrix *a, size_t *rowptr, size_t *col, double *val)
-{
-    size_t row, column;
+    size_t *row = place, *column = place + a->nz;
     for (size_t k = 0, at = 0; k < a->nz; k++) {
-        find_entry(a, k, &at, &row, &column);
-        rowptr[row + 2]++;
+        while (!GSL_SPMATRIX_ISCOO(a) && (size_t)a->p[at + 1] <= k) {
+            at++;
+        }
+        const size_t inner = (size_t)a->i[k], outer = GSL_SPMATRIX_ISCOO(a) ? (size_t)a->p[k] : at;
+        row[k] = GSL_SPMATRIX_ISCSR(a) ? outer : inner;
+        column[k] = GSL_SPMATRIX_ISCSR(a) ? inner : outer;
+        rowptr[row[k] + 2]++;
     }
     for (size_t i = 0; i < a->size1; i++) {
         rowptr[i + 2] += rowptr[i + 1];
     }
-    for (size_t k = 0, at = 0; k < a->nz; k++) { /* rowptr[i + 1] goes up to the end of row i */
-        find_entry(a, k, &at, &row, &column);
-        col[rowptr[row + 1]] = column;
-        val[rowptr[row + 1]++] = a->data[k];
+    for (size_t k = 0; k < a->nz; k++) { /* rowptr[i + 1] goes up to the end of row i */
+        const size_t to = rowptr[row[k] + 1]++;
+        col[to] = column[k];
+        val[to] = a->data[k];
     }
 }
 
@@ -55,11 +45,11 @@ static int set_spmatrix(tribo_model *model, const gsl_spmatrix *a, const char *n
         snprintf(text, sizeof text, "%s is %zu x %zu, not %zu x %zu", name, a->size1, a->size2, rows, cols);
         return tribo_model_refuse(model, TRIBO_ERR_SIZE, text);
     }
-    size_t *rowptr = calloc(rows + 2 + a->nz, sizeof *rowptr), *col = rowptr + rows + 2;
+    size_t *rowptr = calloc(rows + 2 + 3 * a->nz, sizeof *rowptr), *col = rowptr + rows + 2;
     double *val = malloc((a->nz + 1) * sizeof *val);
     int status = TRIBO_ERR_MEMORY;
     if (rowptr && val) {
-        compress_rows(a, rowptr, col, val);
+        compress_rows(a, col + a->nz, rowptr, col, val);
         status = set(model, rowptr, col, val);
     } else {
         snprintf(text, sizeof text, "out of memory for %s", name);
