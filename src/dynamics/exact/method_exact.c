@@ -113,9 +113,11 @@ static double method_exact_bound(void *own, double tau)
         const struct course *c = g->output;
         g->size = fabs(g->offset) + (c ? c->size : 0.0);
         g->bend = c ? c->bend : 0.0;
-        if (x->sys->loads.limits && g->limit != 0.0) {
-            g->size += fabs(g->limit) * x->events.stick_slip.constant.swing[g->contact];
-            g->bend += fabs(g->limit) * tribo_modal_motion_limit_bend(x, g->contact);
+        g->size += g->limit != 0.0 ? fabs(g->limit) * x->events.stick_slip.constant.swing[g->contact] : 0.0;
+        for (size_t s = 0; g->limit != 0.0 && s < x->sys->loads.harmonics; s++) {
+            const struct harmonic *w = &x->sys->loads.harmonic[s];
+            const double swing = w->drives == DRIVES_LIMIT ? hypot(w->cosine[g->contact], w->sine[g->contact]) : 0.0;
+            g->bend += fabs(g->limit) * swing * x->h->sixth[x->h->modal->exponents + s];
         }
     }
     return decay > 0.0 ? greater(2.0 * tau, 1.0 / decay) : HUGE_VAL;

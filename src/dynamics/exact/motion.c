@@ -140,16 +140,6 @@ struct sample tribo_modal_motion_limit(const struct exact *x, size_t i)
     return sum;
 }
 
-double tribo_modal_motion_limit_bend(const struct exact *x, size_t i)
-{
-    double sum = 0.0;
-    for (size_t s = 0; s < x->sys->loads.harmonics; s++) {
-        const struct harmonic *w = &x->sys->loads.harmonic[s];
-        sum += w->drives == DRIVES_LIMIT ? pow(w->omega, 6.0) * hypot(w->cosine[i], w->sine[i]) : 0.0;
-    }
-    return sum;
-}
-
 /* Sets move, rate_move, and place and rate of all shapes. */
 static void move_shapes(struct exact *x, int brief)
 {

@@ -66,9 +66,8 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
 /* Goes to t0 + tau: sets w, w' and w'' of all terms. */
 void tribo_modal_motion_go(struct exact *x, double tau);
 
-/* Return the part of limit i by harmonics, with two derivatives, at x->tau; a bound of the sixth derivative of this part. */
+/* Returns the part of limit i by harmonics, with two derivatives, at x->tau. */
 struct sample tribo_modal_motion_limit(const struct exact *x, size_t i);
-double tribo_modal_motion_limit_bend(const struct exact *x, size_t i);
 
 /* Returns the energy dissipated by all contacts until t0 + tau, x and x->place being there. */
 double tribo_modal_motion_dissipated(struct exact *x, double tau);
