@@ -220,7 +220,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
         for (size_t g = 0; g < ctx->op->groups; g++) {
             find_other_feq(ctx, tribo_problem(ctx, g), a, ctx->memory.solved[g]);
         }
-        for (size_t q = 0; q < tribo_cluster_count(ctx); q++) {
+        for (size_t q = 0; q < ctx->plane.clusters; q++) {
             tribo_cluster_feq(ctx, q);
         }
         tribo_copy(feq, ctx->last.feq, ctx->n);

@@ -9,7 +9,7 @@
 /* 1 if contact i is no direction of a planar contact. */
 static inline int tribo_is_scalar(const tribo_context *ctx, size_t i)
 {
-    return !ctx->clusters || ctx->clusters->role[i] == ROLE_SCALAR;
+    return !ctx->plane.count || ctx->plane.role[i] == ROLE_SCALAR;
 }
 
 /* Directions of the contact that begins with direction i. */
@@ -21,47 +21,31 @@ static inline size_t tribo_directions(const tribo_context *ctx, size_t i)
 /* Returns [n]: number of the group of contact i, or TRIBO_ALONE. For an operator with groups. */
 static inline const size_t *tribo_group_of(const tribo_context *ctx)
 {
-    return ctx->clusters ? ctx->clusters->group_of : ctx->op->group_of;
+    return ctx->plane.count ? ctx->plane.group_of : ctx->op->group_of;
 }
 
 /* The first direction of the contact with direction i. */
 static inline size_t tribo_first_direction(const tribo_context *ctx, size_t i)
 {
-    return i - (ctx->clusters->role[i] == ROLE_SECOND);
+    return i - (ctx->plane.role[i] == ROLE_SECOND);
 }
 
 /* Single contacts, and connected ones counted as one, joined by R or by planar contacts. */
 static inline size_t tribo_islands(const tribo_context *ctx)
 {
-    return ctx->clusters && ctx->op->diagonal ? ctx->clusters->islands : ctx->op->islands;
-}
-
-static inline size_t tribo_cluster_count(const tribo_context *ctx)
-{
-    return ctx->clusters ? ctx->clusters->clusters : 0;
-}
-
-static inline size_t tribo_plane_count(const tribo_context *ctx)
-{
-    return ctx->clusters ? ctx->clusters->count : 0;
-}
-
-/* First directions of planar contacts, [count]. */
-static inline const size_t *tribo_plane_first(const tribo_context *ctx)
-{
-    return ctx->clusters ? ctx->clusters->first : NULL;
+    return ctx->plane.count && ctx->op->diagonal ? ctx->plane.islands : ctx->op->islands;
 }
 
 /* The stand-in for the limit of direction i in the problem: at most the limit. cut: 1 where it is less; then the force is within
  * it. */
 static inline double tribo_plane_reach(const tribo_context *ctx, size_t i)
 {
-    return lesser(ctx->follow.contacts.bound[i], ctx->clusters->radius[i]);
+    return lesser(ctx->follow.contacts.bound[i], ctx->plane.radius[i]);
 }
 
 static inline int tribo_plane_cut(const tribo_context *ctx, size_t i)
 {
-    return ctx->clusters->radius[i] < ctx->follow.contacts.bound[i];
+    return ctx->plane.radius[i] < ctx->follow.contacts.bound[i];
 }
 
 /* ---- planar.c */
@@ -73,7 +57,7 @@ int tribo_clusters_renew(tribo_context *ctx, size_t count, const size_t *first, 
 int tribo_clusters_copy(tribo_context *ctx, const tribo_context *from);
 int tribo_clusters_clone(tribo_context *clone, const tribo_context *from);
 
-/* Frees clusters; NULL is fine. */
+/* Frees what is in clusters, which may be empty. */
 void tribo_clusters_free(struct clusters *c);
 
 /* Fails if coupling is TRIBO_PARTITION, and count > 0; a status. */
@@ -110,7 +94,7 @@ const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size);
 /* ---- planar_tangent.c */
 
 /* df [size] of cluster q, which was resumed last: forces that f_eq balances. */
-void tribo_cluster_product(const tribo_context *ctx, size_t q, const struct change *d, double *df);
+void tribo_cluster_product(tribo_context *ctx, size_t q, const struct change *d, double *df);
 
 /* 1 if the force of the planar contact with direction i depends on f_eq, at v [n]. */
 int tribo_plane_reads_feq(const tribo_context *ctx, size_t i, const double *v);

@@ -89,10 +89,10 @@ struct tribo_context {
     int fixed; /* the operator cannot be changed */
     struct settings set;
     struct following follow;
-    struct delassus *op;       /* shared by clones */
-    struct memory memory;      /* of groups, from call to call */
-    struct clusters *clusters; /* NULL: all contacts are scalar */
-    unsigned char *moving;     /* [n] reversal memory */
+    struct delassus *op;  /* shared by clones */
+    struct memory memory; /* of groups, from call to call */
+    struct clusters plane;
+    unsigned char *moving; /* [n] reversal memory */
     struct last last;
     signed char *spare; /* [n] workspace */
     struct counters count;
@@ -143,7 +143,7 @@ static inline const double *tribo_inverses(const tribo_context *ctx, size_t k)
 /* 1 if no contact is coupled, planar or has a static limit. */
 static inline int tribo_all_alone(const tribo_context *ctx)
 {
-    return !ctx->op->groups && !ctx->clusters && !ctx->set.breaking;
+    return !ctx->op->groups && !ctx->plane.count && !ctx->set.breaking;
 }
 
 /* memcpy, for which NULL is fine if n is 0. */

@@ -91,7 +91,7 @@ int tribo_find_tangents(const tribo_context *ctx, int pairs, const double *v, co
     if (status) {
         return status;
     }
-    if (!pairs && tribo_plane_count(ctx) && (out[BY_V] || out[BY_FEQ] || out[BY_LIMIT])) {
+    if (!pairs && ctx->plane.count && (out[BY_V] || out[BY_FEQ] || out[BY_LIMIT])) {
         return TRIBO_ERR_UNSUPPORTED;
     }
     find_outputs(ctx, plain, v, feq, out);

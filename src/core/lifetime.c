@@ -85,7 +85,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     c->fixed = 0;
     TRIBO_SHARED_ADD(c->op->references, (size_t)1);
     c->memory = (struct memory){0};
-    c->clusters = NULL;
+    c->plane = (struct clusters){0};
     if (!tribo_memory_copy(&c->memory, &ctx->memory, ctx->op) || tribo_clusters_clone(c, ctx)) {
         tribo_destroy(c);
         return TRIBO_ERR_MEMORY;
@@ -102,7 +102,7 @@ void tribo_destroy(tribo_context *ctx)
     if (ctx) {
         tribo_operator_release(ctx->op);
         tribo_memory_free(&ctx->memory);
-        tribo_clusters_free(ctx->clusters);
+        tribo_clusters_free(&ctx->plane);
         free(ctx);
     }
 }

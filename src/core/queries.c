@@ -36,7 +36,7 @@ static void put_slips(const tribo_context *ctx, signed char *slip)
 {
     if (ctx->last.slips == SLIPS_IN_FORCES) {
         find_slips(ctx->n, ctx->last.f, ctx->follow.contacts.limit, ctx->last.holds, slip);
-        for (size_t i = 0; tribo_plane_count(ctx) && i < ctx->n; i++) {
+        for (size_t i = 0; ctx->plane.count && i < ctx->n; i++) {
             slip[i] = tribo_is_scalar(ctx, i) ? slip[i] : tribo_plane_slip(ctx, i);
         }
     } else if (ctx->n) {
@@ -82,7 +82,7 @@ int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
                        [TRIBO_COUNT_UPDATES] = work->updates,
                        [TRIBO_COUNT_REVERSALS] = ctx->count.marks,
                        [TRIBO_COUNT_REUSED] = ctx->count.reused,
-                       [TRIBO_COUNT_PLANAR] = tribo_plane_count(ctx),
+                       [TRIBO_COUNT_PLANAR] = ctx->plane.count,
                        [TRIBO_COUNT_SETTINGS] = ctx->revision};
     if (which < 0 || (size_t)which >= sizeof values / sizeof *values) {
         return TRIBO_ERR_RANGE;

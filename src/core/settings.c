@@ -313,7 +313,7 @@ static int check_choice(tribo_context *ctx, const char *name, int choice, const 
 int tribo_set_coupling(tribo_context *ctx, int coupling)
 {
     int status = check_choice(ctx, "coupling", coupling, "TRIBO_CONSISTENT nor TRIBO_PARTITION");
-    status = status ? status : tribo_plane_check_coupling(ctx, coupling, tribo_plane_count(ctx), tribo_plane_first(ctx));
+    status = status ? status : tribo_plane_check_coupling(ctx, coupling, ctx->plane.count, ctx->plane.first);
     if (!status) {
         ctx->set.coupling = coupling;
         settings_changed(ctx);

@@ -156,7 +156,7 @@ int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velo
     const int breaking = !above ? NEVER : velocity ? FALLS : DROPS;
     status = status ? status : tribo_check_breaking(ctx, ctx->set.law, breaking, ratio);
     if (!status && breaking) {
-        status = tribo_check_one_ratio(ctx, ratio, velocity, tribo_plane_count(ctx), tribo_plane_first(ctx));
+        status = tribo_check_one_ratio(ctx, ratio, velocity, ctx->plane.count, ctx->plane.first);
     }
     if (status) {
         return status;

@@ -237,7 +237,7 @@ int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const 
     }
     status = step_at_end(ctx, dt, v, vfree);
     /* Another problem follows planar contacts, and contacts that came in sliding and do not go on that way. */
-    const int plane = tribo_plane_count(ctx) > 0;
+    const int plane = ctx->plane.count > 0;
     for (size_t i = 0; !status && !ctx->set.breaking && !changes && i < ctx->n; i++) {
         changes = plane || (v[i] != 0.0 && ctx->last.f[i] != sliding(v[i], ctx->set.limit[i]));
     }

@@ -70,7 +70,7 @@ static const double *part_product(tribo_context *ctx, const struct part *s, cons
 {
     struct box_qp *p = s->p;
     const int partition = ctx->set.coupling == TRIBO_PARTITION, relaxes = !partition && ctx->set.law->relaxes;
-    double *df = p ? p->gradient : ctx->clusters->df, *balanced = p ? p->step : ctx->clusters->v;
+    double *df = p ? p->gradient : ctx->plane.df, *balanced = p ? p->step : ctx->plane.v;
     for (size_t k = 0; p && k < s->size; k++) {
         const size_t i = s->member[k];
         const double r = ctx->op->diagonal[i], most = TRIBO_ROOM * tribo_most(p, k),
@@ -93,7 +93,7 @@ static const double *part_product(tribo_context *ctx, const struct part *s, cons
     memcpy(balanced, df, s->size * sizeof *df);
     for (size_t k = 0; k < s->size; k++) {
         const size_t i = s->member[k];
-        const double r = ctx->op->diagonal[i], *row = p ? NULL : ctx->clusters->cluster[s->cluster].r + k * s->size;
+        const double r = ctx->op->diagonal[i], *row = p ? NULL : ctx->plane.cluster[s->cluster].r + k * s->size;
         if (!ctx->last.near[i] || !tribo_is_scalar(ctx, i)) {
             continue;
         }
@@ -131,7 +131,7 @@ static void find_changes(tribo_context *ctx, const struct change *d, size_t colu
         out[row * i + columns * i] = alone_product(ctx, d, i);
         unit[i] = 0.0;
     }
-    for (size_t q = 0; q < solved + tribo_cluster_count(ctx); q++) {
+    for (size_t q = 0; q < solved + ctx->plane.clusters; q++) {
         struct part s = {.p = q < solved ? tribo_collect(ctx, ctx->memory.solved_list[q]) : NULL, .cluster = q - solved};
         if (s.p) {
             s.vectors = tribo_null_basis(s.p);

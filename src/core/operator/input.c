@@ -58,7 +58,7 @@ static int input_out_of_memory(tribo_context *ctx)
 /* Replaces the operator and its memory; if there is no memory for clusters of op, the old ones stay. */
 static int install(tribo_context *ctx, struct delassus *op, struct memory *m)
 {
-    const int status = tribo_clusters_renew(ctx, tribo_plane_count(ctx), tribo_plane_first(ctx), op, m);
+    const int status = tribo_clusters_renew(ctx, ctx->plane.count, ctx->plane.first, op, m);
     if (status) {
         tribo_operator_release(op);
         tribo_memory_free(m);

@@ -93,9 +93,9 @@ double tribo_plane_rate(const tribo_context *ctx)
 {
     const double none[2] = {0.0, 0.0};
     double rate = 0.0;
-    for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
-        const double *own = ctx->clusters->own[k];
-        const struct slide s = tribo_planar_slide(ctx, ctx->clusters->first[k], none);
+    for (size_t k = 0; k < ctx->plane.count; k++) {
+        const double *own = ctx->plane.own[k];
+        const struct slide s = tribo_planar_slide(ctx, ctx->plane.first[k], none);
         double weighed[4];
         for (size_t e = 0; e < 4; e++) {
             weighed[e] = product(s.part[e / 2], product(s.part[e % 2], own[e]));
@@ -111,49 +111,46 @@ double tribo_plane_rate(const tribo_context *ctx)
 
 void tribo_clusters_free(struct clusters *c)
 {
-    if (c) {
-        tribo_disc_free(&c->problem);
-        free(c->cluster->r);
-        free(c);
-    }
+    tribo_disc_free(&c->problem);
+    free(c->cluster ? c->cluster->r : NULL);
+    free(c->first);
 }
 
-/* Returns count planar contacts of n directions, without clusters; NULL if out of memory. */
-static struct clusters *planar_create(size_t n, size_t count, const size_t *first)
+/* Makes count planar contacts of n directions, without clusters. Returns 0 if out of memory. */
+static int planar_create(struct clusters *c, size_t n, size_t count, const size_t *first)
 {
     struct layout b = {0};
-    struct clusters *c, at = {.count = count};
-    double **const vector[] = {&at.y, &at.a, &at.v, &at.df, &at.growth, &at.radius, &at.pull, &at.shift};
+    double **const vector[] = {&c->y, &c->a, &c->v, &c->df, &c->growth, &c->radius, &c->pull, &c->shift};
     size_t *member;
     do {
-        c = tribo_layout_array(&b, 1, sizeof *c);
-        at.first = tribo_layout_array(&b, count, sizeof *at.first);
-        at.role = tribo_layout_array(&b, n, 1);
-        at.own = tribo_layout_array(&b, count, sizeof *at.own);
-        at.group_of = tribo_layout_array(&b, n, sizeof *at.group_of);
-        at.cluster = tribo_layout_array(&b, count, sizeof *at.cluster);
+        c->first = tribo_layout_array(&b, count, sizeof *c->first); /* has the memory of all */
+        c->role = tribo_layout_array(&b, n, 1);
+        c->own = tribo_layout_array(&b, count, sizeof *c->own);
+        c->group_of = tribo_layout_array(&b, n, sizeof *c->group_of);
+        c->cluster = tribo_layout_array(&b, count, sizeof *c->cluster);
         member = tribo_layout_array(&b, n, sizeof *member);
-        at.near = tribo_layout_array(&b, n + 1, sizeof *at.near);
-        at.contact = tribo_layout_array(&b, n, sizeof *at.contact);
-        at.directions = tribo_layout_array(&b, n, 1);
+        c->near = tribo_layout_array(&b, n + 1, sizeof *c->near);
+        c->contact = tribo_layout_array(&b, n, sizeof *c->contact);
+        c->directions = tribo_layout_array(&b, n, 1);
         for (size_t k = 0; k < sizeof vector / sizeof *vector; k++) {
             *vector[k] = tribo_layout_array(&b, n, sizeof **vector[k]);
         }
     } while (!b.memory && tribo_layout_zeros(&b));
-    if (c) {
-        *c = at;
-        c->cluster->member = member;
-        memcpy(c->first, first, count * sizeof *first);
+    if (!b.memory) {
+        return 0;
     }
-    for (size_t k = 0; c && k < count; k++) {
+    c->count = count;
+    c->cluster->member = member;
+    memcpy(c->first, first, count * sizeof *first);
+    for (size_t k = 0; k < count; k++) {
         c->role[first[k]] = ROLE_FIRST;
         c->role[first[k] + 1] = ROLE_SECOND;
         c->own[k][0] = c->own[k][3] = 1.0;
     }
-    for (size_t i = 0; c && i < n; i++) {
+    for (size_t i = 0; i < n; i++) {
         c->radius[i] = HUGE_VAL;
     }
-    return c;
+    return 1;
 }
 
 /* --------------------------------------------------------------------------------------------------------- clusters */
@@ -245,32 +242,34 @@ static int find_clusters(struct clusters *c, size_t n, const struct delassus *op
 
 int tribo_clusters_renew(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m)
 {
-    struct clusters *c = count ? planar_create(ctx->n, count, first) : NULL;
-    int status = count && !c ? TRIBO_ERR_MEMORY : c && op->diagonal ? find_clusters(c, ctx->n, op, m) : TRIBO_OK;
+    struct clusters c = {0};
+    int status = count && !planar_create(&c, ctx->n, count, first) ? TRIBO_ERR_MEMORY
+                 : count && op->diagonal                           ? find_clusters(&c, ctx->n, op, m)
+                                                                   : TRIBO_OK;
     if (status == TRIBO_ERR_UNSUPPORTED) {
-        tribo_fail(ctx, status, "planar contacts couple %zu direction%s with each other, and not more than %d can be", c->largest,
-                   plural(c->largest), TRIBO_CLUSTER_MOST);
-    } else if (status || (c && !tribo_disc_create(&c->problem, c->largest))) {
+        tribo_fail(ctx, status, "planar contacts couple %zu direction%s with each other, and not more than %d can be", c.largest,
+                   plural(c.largest), TRIBO_CLUSTER_MOST);
+    } else if (status || (count && !tribo_disc_create(&c.problem, c.largest))) {
         status = tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s in the plane", count, plural(count));
     }
-    for (size_t k = 0; !status && c && op->diagonal && k < op->groups; k++) {
+    for (size_t k = 0; !status && count && op->diagonal && k < op->groups; k++) {
         const struct group *g = &op->group[k];
-        if (g->graded && g->spread > SPREAD_MOST && c->group_of[op->member[g->first]] == TRIBO_ALONE) {
+        if (g->graded && g->spread > SPREAD_MOST && c.group_of[op->member[g->first]] == TRIBO_ALONE) {
             status = tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
                                 "contact %zu touches bodies of which one is %g times as heavy as the other, and in a group with "
                                 "planar contacts not more than %g can be told",
                                 g->uneven, g->spread, SPREAD_MOST);
         }
     }
-    tribo_clusters_free(status ? c : ctx->clusters);
-    ctx->clusters = status ? ctx->clusters : c;
+    tribo_clusters_free(status ? &c : &ctx->plane);
+    ctx->plane = status ? ctx->plane : c;
     return status;
 }
 
 int tribo_clusters_copy(tribo_context *ctx, const tribo_context *from)
 {
-    const size_t count = tribo_plane_count(from), *first = tribo_plane_first(from);
-    if (count == tribo_plane_count(ctx) && (!count || memcmp(first, ctx->clusters->first, count * sizeof *first) == 0)) {
+    const size_t count = from->plane.count, *first = from->plane.first;
+    if (count == ctx->plane.count && (!count || memcmp(first, ctx->plane.first, count * sizeof *first) == 0)) {
         return TRIBO_OK;
     }
     return tribo_clusters_renew(ctx, count, first, ctx->op, &ctx->memory);
@@ -279,9 +278,9 @@ int tribo_clusters_copy(tribo_context *ctx, const tribo_context *from)
 int tribo_clusters_clone(tribo_context *clone, const tribo_context *from)
 {
     const int status = tribo_clusters_copy(clone, from);
-    if (!status && from->clusters) {
-        tribo_copy(clone->clusters->y, from->clusters->y, from->n);
-        tribo_copy(clone->clusters->radius, from->clusters->radius, from->n);
+    if (!status && from->plane.count) {
+        tribo_copy(clone->plane.y, from->plane.y, from->n);
+        tribo_copy(clone->plane.radius, from->plane.radius, from->n);
     }
     return status;
 }
@@ -289,9 +288,9 @@ int tribo_clusters_clone(tribo_context *clone, const tribo_context *from)
 /* A planar contact has one epsilon for all directions: for R_ii stands the largest eigenvalue of its block. */
 void tribo_clusters_refresh(tribo_context *ctx, int follows, double time)
 {
-    for (size_t k = 0; follows && k < tribo_plane_count(ctx); k++) {
-        const double largest = tribo_block_of(ctx->clusters->own[k], 2, 2).great, half = greater(product(largest, time), DBL_MIN);
-        for (size_t i = ctx->clusters->first[k]; i < ctx->clusters->first[k] + 2; i++) {
+    for (size_t k = 0; follows && k < ctx->plane.count; k++) {
+        const double largest = tribo_block_of(ctx->plane.own[k], 2, 2).great, half = greater(product(largest, time), DBL_MIN);
+        for (size_t i = ctx->plane.first[k]; i < ctx->plane.first[k] + 2; i++) {
             ctx->set.width[i] = 2.0 * half;
             ctx->set.rate[i] = largest > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
         }
@@ -316,7 +315,7 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
     }
     signed char *taken = ctx->spare;
     int status = tribo_plane_check_coupling(ctx, ctx->set.coupling, count, first);
-    if (status || (!count && !ctx->clusters)) {
+    if (status || (!count && !ctx->plane.count)) {
         return status;
     }
     memset(taken, 0, ctx->n);

@@ -29,7 +29,7 @@ static void push_back(const struct block *b, double *x)
 /* Takes the directions of contact i, at place k of its cluster, that have a limit into the problem. */
 static void take_contact(tribo_context *ctx, size_t k, size_t i, const double *shift)
 {
-    struct clusters *c = ctx->clusters;
+    struct clusters *c = &ctx->plane;
     const double *bound = ctx->follow.contacts.bound + i;
     const size_t directions = tribo_directions(ctx, i);
     const int both = directions == 2 && bound[0] > 0.0 && bound[1] > 0.0;
@@ -51,7 +51,7 @@ static void take_contact(tribo_context *ctx, size_t k, size_t i, const double *s
 static int planar_collect(tribo_context *ctx, const struct cluster *g, const double *v, int begins)
 {
     const struct law *law = ctx->set.law;
-    ctx->clusters->problem.size = 0;
+    ctx->plane.problem.size = 0;
     for (size_t k = 0; k < g->size; k += tribo_directions(ctx, g->member[k])) {
         const size_t i = g->member[k];
         const struct slide s = tribo_planar_slide(ctx, i, v + i);
@@ -66,7 +66,7 @@ static int planar_collect(tribo_context *ctx, const struct cluster *g, const dou
             tribo_planar_slide_force(law, &s, ctx->follow.contacts.limit + i, ctx->last.f + i);
         }
     }
-    return ctx->clusters->problem.size > 0;
+    return ctx->plane.problem.size > 0;
 }
 
 void tribo_planar_turn(const struct disc_qp *p, const unsigned char *directions, const double *shift, double *pull)
@@ -84,7 +84,7 @@ void tribo_planar_turn(const struct disc_qp *p, const unsigned char *directions,
 static double pull_at(const tribo_context *ctx, const struct cluster *g, size_t k, const size_t *skip, size_t count)
 {
     const double *row = g->r + k * g->size;
-    double sum = cut(ctx->clusters->a[g->member[k]]);
+    double sum = cut(ctx->plane.a[g->member[k]]);
     for (size_t j = 0, other = 0; j < g->size; j++) {
         const double bound = ctx->follow.contacts.bound[g->member[j]];
         if (other < count && skip[other] == j) {
@@ -99,7 +99,7 @@ static double pull_at(const tribo_context *ctx, const struct cluster *g, size_t 
 /* pull = R f + a of the problem's directions, with the forces of all others. */
 static void find_pulls(tribo_context *ctx, const struct cluster *g)
 {
-    const struct clusters *c = ctx->clusters;
+    const struct clusters *c = &ctx->plane;
     for (size_t e = 0; e < c->problem.size; e++) {
         c->pull[e] = pull_at(ctx, g, c->near[e], c->near, c->problem.size);
     }
@@ -132,7 +132,7 @@ static int is_apart(const double *bound, const double *radius)
 /* Sets the problem of forces in parts of their reach, from pull: which directions share a set, its shift, and all else. */
 static void pose_cluster(tribo_context *ctx, const struct cluster *g)
 {
-    struct clusters *c = ctx->clusters;
+    struct clusters *c = &ctx->plane;
     struct disc_qp *p = &c->problem;
     const size_t n = p->size, *contact = c->contact;
     const double *bound = ctx->follow.contacts.bound, *radius = c->radius;
@@ -171,7 +171,7 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
 /* Returns what f_k sqrt(R_kk) of all forces is at most if each balances its pull, or the force of another. */
 static double estimate_forces(const tribo_context *ctx)
 {
-    const struct clusters *c = ctx->clusters;
+    const struct clusters *c = &ctx->plane;
     const double *bound = ctx->follow.contacts.bound, *r = ctx->op->diagonal;
     double most = 0.0;
     for (size_t k = 0; k < c->problem.size; k++) {
@@ -185,7 +185,7 @@ static double estimate_forces(const tribo_context *ctx)
 /* Sets the reaches of the problem's directions to most/sqrt(R_kk), most > 0, as far as limits exceed them. */
 static void set_reaches(tribo_context *ctx, double most)
 {
-    const struct clusters *c = ctx->clusters;
+    const struct clusters *c = &ctx->plane;
     for (size_t e = 0; e < c->problem.size; e += c->directions[e]) {
         const size_t i = c->contact[e], directions = c->directions[e];
         const double *bound = ctx->follow.contacts.bound + i;
@@ -206,7 +206,7 @@ static void set_reaches(tribo_context *ctx, double most)
  * be loose. */
 static int is_beyond_reach(const tribo_context *ctx)
 {
-    const struct clusters *c = ctx->clusters;
+    const struct clusters *c = &ctx->plane;
     const struct disc_qp *p = &c->problem;
     for (size_t e = 0, first = 0; e < p->size; e++) {
         first = p->wide[e] ? e : first;
@@ -252,14 +252,14 @@ static int is_pulled_beyond(const struct disc_qp *p, size_t e)
  * Returns their number. */
 static size_t planar_break(tribo_context *ctx, const struct cluster *g, double dt)
 {
-    const struct disc_qp *p = &ctx->clusters->problem;
-    double *now = ctx->follow.now, *end = ctx->clusters->v; /* velocities at the end */
+    const struct disc_qp *p = &ctx->plane.problem;
+    double *now = ctx->follow.now, *end = ctx->plane.v; /* velocities at the end */
     size_t broken = 0;
     for (size_t k = 0; k < g->size; k++) {
         end[g->member[k]] = product(pull_at(ctx, g, k, NULL, 0), dt);
     }
     for (size_t e = 0; e < p->size; e += p->wide[e]) {
-        const size_t first = tribo_first_direction(ctx, ctx->clusters->contact[e]), behind = first + tribo_directions(ctx, first);
+        const size_t first = tribo_first_direction(ctx, ctx->plane.contact[e]), behind = first + tribo_directions(ctx, first);
         int holds = p->place[e] != LENS_INSIDE, falls = 0;
         for (size_t i = first; i < behind; i++) {
             holds &= now[i] == ctx->follow.hold[i];
@@ -283,7 +283,7 @@ static size_t planar_break(tribo_context *ctx, const struct cluster *g, double d
 /* Solves until all forces are within their reach, and no static limit breaks; a status. */
 static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt)
 {
-    struct clusters *c = ctx->clusters;
+    struct clusters *c = &ctx->plane;
     struct disc_qp *p = &c->problem;
     const struct work *work = &p->factor.qp.work;
     ctx->last.clusters++;
@@ -325,8 +325,8 @@ static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt)
 
 const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
 {
-    struct disc_qp *p = &ctx->clusters->problem;
-    const struct cluster *g = &ctx->clusters->cluster[q];
+    struct disc_qp *p = &ctx->plane.problem;
+    const struct cluster *g = &ctx->plane.cluster[q];
     *size = g->size;
     if (planar_collect(ctx, g, ctx->last.v, 0)) {
         find_pulls(ctx, g);
@@ -343,7 +343,7 @@ const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
 
 void tribo_cluster_feq(tribo_context *ctx, size_t q)
 {
-    const struct cluster *g = &ctx->clusters->cluster[q];
+    const struct cluster *g = &ctx->plane.cluster[q];
     for (size_t k = 0, directions; k < g->size; k += directions) {
         const size_t i = g->member[k], own[2] = {k, k + 1};
         directions = tribo_directions(ctx, i);
@@ -364,10 +364,10 @@ void tribo_cluster_feq(tribo_context *ctx, size_t q)
 
 int tribo_clusters_balance(tribo_context *ctx, const double *v, const double *a)
 {
-    const struct clusters *c = ctx->clusters;
+    const struct clusters *c = &ctx->plane;
     int status = TRIBO_OK;
-    tribo_copy(c ? c->a : NULL, a, c ? ctx->n : 0);
-    for (size_t q = 0; !status && q < tribo_cluster_count(ctx); q++) {
+    tribo_copy(c->a, a, c->count ? ctx->n : 0);
+    for (size_t q = 0; !status && q < ctx->plane.clusters; q++) {
         const struct cluster *g = &c->cluster[q];
         if (!planar_collect(ctx, g, v, 1)) {
             continue;
@@ -392,18 +392,18 @@ int tribo_clusters_step(tribo_context *ctx, double dt, const double *v, const si
 {
     const double none[2] = {0.0, 0.0};
     int status = TRIBO_OK;
-    for (size_t q = 0; !status && q < tribo_cluster_count(ctx); q++) {
-        const struct cluster *g = &ctx->clusters->cluster[q];
-        ctx->clusters->problem.size = 0;
+    for (size_t q = 0; !status && q < ctx->plane.clusters; q++) {
+        const struct cluster *g = &ctx->plane.cluster[q];
+        ctx->plane.problem.size = 0;
         for (size_t k = 0; k < g->size; k++) {
-            ctx->clusters->a[g->member[k]] = quotient(v[g->member[k]], dt);
+            ctx->plane.a[g->member[k]] = quotient(v[g->member[k]], dt);
         }
         for (size_t k = 0; k < g->size; k += tribo_directions(ctx, g->member[k])) {
             if (!(known && known[g->member[k]] && tribo_is_scalar(ctx, g->member[k]))) {
                 take_contact(ctx, k, g->member[k], none);
             }
         }
-        if (ctx->clusters->problem.size) {
+        if (ctx->plane.problem.size) {
             status = solve_cluster(ctx, g, dt);
         }
     }
@@ -431,17 +431,17 @@ signed char tribo_plane_slip(const tribo_context *ctx, size_t i)
 size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const double **vfree, double *feels,
                            signed char *reverses)
 {
-    double *turned = ctx->clusters ? ctx->clusters->v : NULL;
+    double *turned = ctx->plane.v;
     const double *free = *vfree;
     size_t changes = 0;
-    for (size_t q = 0; q < tribo_cluster_count(ctx); q++) {
-        const struct cluster *g = &ctx->clusters->cluster[q];
+    for (size_t q = 0; q < ctx->plane.clusters; q++) {
+        const struct cluster *g = &ctx->plane.cluster[q];
         for (size_t k = 0, directions; k < g->size; k += directions) {
             const size_t i = g->member[k];
             double forward = 0.0; /* v_end'v */
             directions = tribo_directions(ctx, i);
             for (size_t d = 0; d < directions; d++) {
-                ctx->clusters->a[i + d] = 0.0;
+                ctx->plane.a[i + d] = 0.0;
                 feels[i + d] = pull_at(ctx, g, k + d, &k, directions == 1 ? 1 : 0);
                 forward += product(free[i + d] + product(feels[i + d], dt), v[i + d]);
             }

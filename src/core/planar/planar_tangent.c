@@ -84,8 +84,8 @@ static void own_changes(const tribo_context *ctx, const struct cluster *g, const
                         double *growth)
 {
     const struct contacts *c = &ctx->follow.contacts;
-    const struct disc_qp *p = &ctx->clusters->problem;
-    const size_t *near = ctx->clusters->near;
+    const struct disc_qp *p = &ctx->plane.problem;
+    const size_t *near = ctx->plane.near;
     for (size_t k = 0, e = 0, behind = 0, directions; k < g->size; k += directions) {
         const size_t i = g->member[k];
         const struct slide s = tribo_planar_slide(ctx, i, ctx->last.v + i);
@@ -107,7 +107,7 @@ static void own_changes(const tribo_context *ctx, const struct cluster *g, const
         for (; e < behind; e++) {
             const size_t j = near[e] - k;
             const int far = tribo_plane_cut(ctx, i + j);
-            const double part = far ? quotient(c->bound[i + j], ctx->clusters->radius[i + j]) : 1.0;
+            const double part = far ? quotient(c->bound[i + j], ctx->plane.radius[i + j]) : 1.0;
             dshift[e] = turn_shift(ctx->set.law, &s, &t, j, part, p->shift[e]);
             growth[e] = quotient(t.limit[j], c->limit[i + j]);
             df[k + j] = far ? 0.0 : product(p->y[e], t.limit[j]);
@@ -115,10 +115,10 @@ static void own_changes(const tribo_context *ctx, const struct cluster *g, const
     }
 }
 
-void tribo_cluster_product(const tribo_context *ctx, size_t q, const struct change *d, double *df)
+void tribo_cluster_product(tribo_context *ctx, size_t q, const struct change *d, double *df)
 {
-    const struct clusters *c = ctx->clusters;
-    struct disc_qp *p = &ctx->clusters->problem;
+    const struct clusters *c = &ctx->plane;
+    struct disc_qp *p = &ctx->plane.problem;
     const struct cluster *g = &c->cluster[q];
     double *dshift = p->from, *rhs = p->noise, *move = p->aim;
     own_changes(ctx, g, d, df, dshift, c->growth);
@@ -241,8 +241,8 @@ static void given_columns(const tribo_context *ctx, struct given *g, const doubl
 
 int tribo_plane_force(const tribo_context *ctx, const double *v, const double *feq, double *const *out)
 {
-    for (size_t k = 0; k < tribo_plane_count(ctx); k++) {
-        const size_t i = ctx->clusters->first[k];
+    for (size_t k = 0; k < ctx->plane.count; k++) {
+        const size_t i = ctx->plane.first[k];
         double f[2], y[2];
         struct given g = {.i = i, .c = tribo_contacts_from(&ctx->follow.contacts, i), .s = tribo_planar_slide(ctx, i, v + i)};
         g.near = tribo_planar_near(ctx->set.law, &g.s);
@@ -253,7 +253,7 @@ int tribo_plane_force(const tribo_context *ctx, const double *v, const double *f
         }
         if (!g.near) {
             tribo_planar_slide_force(ctx->set.law, &g.s, g.c.limit, f);
-        } else if (!given_near(ctx->set.law, &g, ctx->clusters->own[k], feq + i)) {
+        } else if (!given_near(ctx->set.law, &g, ctx->plane.own[k], feq + i)) {
             return TRIBO_ERR_NO_CONVERGENCE;
         }
         for (size_t d = 0; g.near && d < 2; d++) {
