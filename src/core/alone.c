@@ -5,7 +5,7 @@
  * Outputs stay as they are where a call fails, so v and a are checked before anything is written. Then follow the contacts, chunk
  * by chunk. Arrays of a large scene are far away: kernels do not read 1/R_ii or limits that are equal for all, nor a where all
  * contacts slide. */
-#include "clusters.h"
+#include "calls.h"
 
 /* Inputs of a call. find sets the forces f [n] of chunk k. */
 struct call {

@@ -7,7 +7,7 @@
  *
  * A call first finds forces of contacts as if each was alone, which is right for those in no group, and for open and sliding
  * ones; then it solves the groups with a contact near stick. */
-#include "clusters.h"
+#include "calls.h"
 
 void tribo_begin_call(tribo_context *ctx)
 {

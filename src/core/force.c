@@ -2,7 +2,7 @@
 /* Forces, and their derivatives, of contacts whose f_eq is given; the reversal memory. */
 #include <math.h>
 
-#include "clusters.h"
+#include "calls.h"
 
 /* 1 if the force of contact i, at v [n], depends on f_eq: elsewhere feq need not be finite, nor set. */
 static int reads_feq(const tribo_context *ctx, size_t i, const double *v)

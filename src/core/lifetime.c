@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "common/layout.h"
-#include "clusters.h"
+#include "calls.h"
 
 #define DEFAULT_EPSILON 1e-6
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Answers about a context and its last call. */
-#include "clusters.h"
+#include "calls.h"
 
 int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What a caller sets: law, limits, epsilon, coupling, sharing; and what follows. Only bounds follow from limits, which change
  * more often than the rest. */
-#include "clusters.h"
+#include "calls.h"
 
 /* ------------------------------------------------------------------------------------------------------- what follows */
 

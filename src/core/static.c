@@ -12,7 +12,7 @@
  * All limits change together, so that the order of contacts has no effect. Limits only fall, so that the loop ends. A contact
  * that broke away, and is then held by others, rests with less than the kinetic limit. */
 
-#include "clusters.h"
+#include "calls.h"
 
 /* The part of the limit that falls with speed. */
 static double falling(const tribo_context *ctx, size_t i, double speed)

@@ -11,7 +11,7 @@
  *     solve again, if there are any
  *
  * A contact is driven through zero if the acceleration at v = 0 without its own force exceeds what its limit can hold. */
-#include "clusters.h"
+#include "calls.h"
 
 /* Inputs of a call. */
 struct call {

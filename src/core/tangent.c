@@ -2,7 +2,7 @@
 /* Derivatives of the forces of all contacts by velocities, accelerations and limits. With the sets of the last balance they are
  * linear: contacts inside their box (in the partition: all near stick) move so that accelerations, or f_eq, stay balanced; the
  * others follow their law or their bound. */
-#include "clusters.h"
+#include "calls.h"
 
 /* Returns the change of kappa = slope v. */
 static double relaxation_change(const tribo_context *ctx, const struct change *d, size_t i)

@@ -3,7 +3,7 @@
  * replaced when all checks are done. */
 #include <stdlib.h>
 
-#include "core/clusters.h"
+#include "core/calls.h"
 #include "numerics/csr.h"
 
 /* Entries (i,j) and (j,i) may differ by this part: the caller's rounding. */

@@ -5,7 +5,7 @@
 
 #include "common/layout.h"
 #include "numerics/union_find.h"
-#include "core/clusters.h"
+#include "core/calls.h"
 
 /* ---------------------------------------------------------------------------------------------------- one contact alone */
 

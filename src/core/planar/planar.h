@@ -5,7 +5,7 @@
  *   planar_force.c    forces
  *   planar_tangent.c  derivatives; forces and derivatives where f_eq is given
  *
- * clusters.h declares what the rest of core calls. */
+ * core/calls.h declares what the rest of core calls. */
 #ifndef TRIBO_PLANAR_H
 #define TRIBO_PLANAR_H
 

@@ -9,7 +9,7 @@
  *
  * In S, limits and R are parts of the largest ones near stick in the cluster. A reach stands in for a limit that is far beyond
  * the force, see below; c is then kappa/reach. */
-#include "core/clusters.h"
+#include "core/calls.h"
 
 /* -------------------------------------------------------------------------------------------------------- parts of R */
 

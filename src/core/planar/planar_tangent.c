@@ -2,7 +2,7 @@
 /* Derivatives of the forces of a cluster by velocities, accelerations and limits: the contacts near stick stay in their places,
  * and Newton's equations along the freedoms that these leave keep them balanced. Forces and derivatives of planar contacts with
  * f_eq given, each of which is a problem alone. */
-#include "core/clusters.h"
+#include "core/calls.h"
 
 /* Changes of one contact; x: of part v of a slide; epsilon: d(epsilon)/epsilon. */
 struct turn {
