@@ -88,17 +88,9 @@ double tribo_limit_rate(const tribo_context *ctx, size_t i, double v);
 void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size_t i, size_t n, const double *v,
                         const double *feq, const struct tangents *d);
 
-/* Sets limits over a step of dt: static, but those to slide of contacts that come in sliding at v [n], or NULL, and do not come
- * to a stop: f [n], or NULL, acts against v. Returns 0, and leaves all limits, if f acts against v at all that come in sliding.
- * Overwrites last.v. */
-int tribo_hold_for_step(tribo_context *ctx, double dt, const double *v, const double *f);
-
 /* follow.now[i] = limit to slide, at the speed after a step of dt (0: from rest), of each contact of p at its static limit with
  * |f_eq_i| above this limit by more than rounding. Returns the number of these contacts. */
 size_t tribo_break_away(tribo_context *ctx, struct box_qp *p, double dt);
-
-/* The same for contacts in no group, by vfree; their forces follow. */
-void tribo_break_alone(tribo_context *ctx, double dt, const double *vfree);
 
 /* ---- tangent.c */
 

@@ -40,32 +40,6 @@ void tribo_find_limits(const tribo_context *ctx, size_t i, size_t n, const doubl
     }
 }
 
-/* Over a step a contact comes in sliding if its speed exceeds this part of what friction can stop: more than rounding, and so
- * little that stopping it is no load for other contacts. */
-#define RESTS 1e-4
-
-int tribo_hold_for_step(tribo_context *ctx, double dt, const double *v, const double *f)
-{
-    double *limit = ctx->last.v; /* workspace */
-    int changes = !f;
-    for (size_t i = 0, directions; i < ctx->n; i += directions) {
-        double stops = 0.0, power = f ? 0.0 : -1.0;
-        directions = tribo_directions(ctx, i);
-        for (size_t k = i; k < i + directions; k++) {
-            stops = greater(stops, product(product(ctx->op->diagonal[k], dt), ctx->follow.hold[k]));
-            power += f ? product(f[k], v[k]) : 0.0;
-        }
-        const double speed = v ? tribo_length((int)directions, v + i) : 0.0;
-        const int comes_in = speed > RESTS * stops, slides = comes_in && power < 0.0;
-        for (size_t k = i; k < i + directions; k++) {
-            limit[k] = slides ? tribo_limit_at(ctx, k, speed) : ctx->follow.hold[k];
-        }
-        changes |= comes_in && !slides;
-    }
-    tribo_copy(ctx->follow.now, limit, changes ? ctx->n : 0);
-    return changes;
-}
-
 size_t tribo_break_away(tribo_context *ctx, struct box_qp *p, double dt)
 {
     size_t broken = 0;
@@ -81,18 +55,6 @@ size_t tribo_break_away(tribo_context *ctx, struct box_qp *p, double dt)
     }
     ctx->last.rank -= broken ? p->sets->rank : 0; /* the group will be solved again */
     return broken;
-}
-
-void tribo_break_alone(tribo_context *ctx, double dt, const double *vfree)
-{
-    for (size_t i = 0; i < ctx->n; i++) {
-        const double hold = ctx->follow.hold[i], held = product(ctx->op->diagonal[i] * dt, hold), beyond = fabs(vfree[i]) - held;
-        const int alone = !ctx->op->groups || ctx->op->group_of[i] == TRIBO_ALONE;
-        if (alone && tribo_is_scalar(ctx, i) && fabs(ctx->last.f[i]) == hold && beyond > 0.0) {
-            ctx->follow.now[i] = tribo_limit_at(ctx, i, beyond);
-            ctx->last.f[i] = copysign(ctx->follow.now[i], -vfree[i]);
-        }
-    }
 }
 
 /* The law's derivatives are by the limit of this call, which depends on v and on the caller's limit. */

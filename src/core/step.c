@@ -121,8 +121,13 @@ static int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bo
     const struct call c = {b, dt, op->groups ? quotient(1.0, dt) : 0.0, v, group_of, breaks, estimates};
     struct memory *m = &ctx->memory;
     tribo_step_each(ctx, dt, v, b);
-    if (breaks) {
-        tribo_break_alone(ctx, dt, v);
+    for (size_t i = 0; breaks && i < ctx->n; i++) {
+        const double hold = ctx->follow.hold[i], held = product(op->diagonal[i] * dt, hold), beyond = fabs(v[i]) - held;
+        const int alone = !op->groups || op->group_of[i] == TRIBO_ALONE;
+        if (alone && tribo_is_scalar(ctx, i) && fabs(ctx->last.f[i]) == hold && beyond > 0.0) {
+            ctx->follow.now[i] = tribo_limit_at(ctx, i, beyond);
+            ctx->last.f[i] = copysign(ctx->follow.now[i], -v[i]);
+        }
     }
     if (op->groups) {
         find_candidates(ctx, &c);
@@ -156,16 +161,45 @@ static int solve_step(tribo_context *ctx, double dt, const double *v, struct bou
     return status;
 }
 
+/* Over a step a contact comes in sliding if its speed exceeds this part of what friction can stop: more than rounding, and so
+ * little that stopping it is no load for other contacts. */
+#define RESTS 1e-4
+
+/* Sets limits over a step of dt: static, but those to slide of contacts that come in sliding at v [n], or NULL, and do not come
+ * to a stop: f [n], or NULL, acts against v. Returns 0, and leaves all limits, if f acts against v at all that come in sliding.
+ * Overwrites last.v. */
+static int hold_for_step(tribo_context *ctx, double dt, const double *v, const double *f)
+{
+    double *limit = ctx->last.v; /* workspace */
+    int changes = !f;
+    for (size_t i = 0, directions; i < ctx->n; i += directions) {
+        double stops = 0.0, power = f ? 0.0 : -1.0;
+        directions = tribo_directions(ctx, i);
+        for (size_t k = i; k < i + directions; k++) {
+            stops = greater(stops, product(product(ctx->op->diagonal[k], dt), ctx->follow.hold[k]));
+            power += f ? product(f[k], v[k]) : 0.0;
+        }
+        const double speed = v ? tribo_length((int)directions, v + i) : 0.0;
+        const int comes_in = speed > RESTS * stops, slides = comes_in && power < 0.0;
+        for (size_t k = i; k < i + directions; k++) {
+            limit[k] = slides ? tribo_limit_at(ctx, k, speed) : ctx->follow.hold[k];
+        }
+        changes |= comes_in && !slides;
+    }
+    tribo_copy(ctx->follow.now, limit, changes ? ctx->n : 0);
+    return changes;
+}
+
 /* The force of Coulomb's law at the end of a step. v [n]: velocities at the begin, or NULL; read where limits are static. */
 static int step_at_end(tribo_context *ctx, double dt, const double *v, const double *vfree)
 {
     const struct bounds b = {NULL, ctx->follow.contacts.limit};
     if (ctx->set.breaking) {
-        tribo_hold_for_step(ctx, dt, v, NULL);
+        hold_for_step(ctx, dt, v, NULL);
     }
     const int status = solve_step(ctx, dt, vfree, b, NULL);
     /* A contact that comes in sliding does so until it comes to a stop, and holds there if it can. */
-    const int again = !status && ctx->set.breaking && v && tribo_hold_for_step(ctx, dt, v, ctx->last.f);
+    const int again = !status && ctx->set.breaking && v && hold_for_step(ctx, dt, v, ctx->last.f);
     return again ? solve_step(ctx, dt, vfree, b, NULL) : status;
 }
 
