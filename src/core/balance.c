@@ -157,22 +157,6 @@ static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *v
                                    p->count, plural(p->count), p->member[p->near[0]], p->sets->rank);
 }
 
-/* f_eq of the contacts of a group; if it was solved, of those that were not near stick. 0 for open ones. */
-static void find_other_feq(tribo_context *ctx, struct box_qp *p, const double *a, int solved)
-{
-    const size_t size = p->group->size;
-    for (size_t k = 0; k < size; k++) {
-        p->step[k] = tribo_carried(ctx, p, k);
-    }
-    for (size_t k = 0; k < size; k++) {
-        const size_t i = p->member[k];
-        if (!(solved && ctx->last.near[i])) {
-            const double feq = quotient(-(cut(a[i]) + tribo_row_others(p, k, p->step)), ctx->op->diagonal[i]);
-            ctx->last.feq[i] = ctx->follow.contacts.limit[i] > 0.0 ? feq : 0.0;
-        }
-    }
-}
-
 /* Finds the forces of all contacts, and f_eq where laws read it; wanted: of all contacts in no group. */
 static int balance_all(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
@@ -216,10 +200,22 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     tribo_end_call(ctx, tribo_islands(ctx));
     ctx->last.slips = SLIPS_IN_FORCES;
     ctx->last.holds = ctx->set.law->holds;
-    if (feq) {
-        for (size_t g = 0; g < ctx->op->groups; g++) {
-            find_other_feq(ctx, tribo_problem(ctx, g), a, ctx->memory.solved[g]);
+    /* f_eq of the contacts of groups that no solution has: all, or those that were not near stick; 0 for open ones. */
+    for (size_t g = 0; feq && g < ctx->op->groups; g++) {
+        struct box_qp *p = tribo_problem(ctx, g);
+        const size_t size = p->group->size;
+        for (size_t k = 0; k < size; k++) {
+            p->step[k] = tribo_carried(ctx, p, k);
         }
+        for (size_t k = 0; k < size; k++) {
+            const size_t i = p->member[k];
+            if (!(ctx->memory.solved[g] && ctx->last.near[i])) {
+                const double balance = quotient(-(cut(a[i]) + tribo_row_others(p, k, p->step)), ctx->op->diagonal[i]);
+                ctx->last.feq[i] = ctx->follow.contacts.limit[i] > 0.0 ? balance : 0.0;
+            }
+        }
+    }
+    if (feq) {
         for (size_t q = 0; q < ctx->plane.clusters; q++) {
             tribo_cluster_feq(ctx, q);
         }

@@ -97,28 +97,6 @@ int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
     return TRIBO_OK;
 }
 
-/* In the consistent coupling a stuck contact relaxes at its own 2 N R_ii/epsilon; otherwise v' = -R diag(s) v with s =
- * 2N/epsilon, or half of it for laws that are dampers near v = 0. The eigenvalues of R diag(s), for any set of contacts near
- * stick, are at most the largest s_i R_ii times the largest eigenvalue of D^-1 R. */
-static double max_rate(const tribo_context *ctx)
-{
-    const struct contacts *c = &ctx->follow.contacts;
-    double rate = tribo_plane_rate(ctx);
-    for (size_t i = 0; i < ctx->n; i++) {
-        if (c->limit[i] > 0.0 && tribo_is_scalar(ctx, i)) {
-            const double steepest = ctx->set.breaking ? c->rate[i] * ctx->follow.hold[i] : tribo_slope_of(c, i);
-            rate = greater(rate, product(steepest, ctx->op->diagonal[i]));
-        }
-    }
-    if (!ctx->set.law->uses_feq) {
-        return product(0.5 * rate, ctx->op->growth);
-    }
-    if (!ctx->set.law->relaxes) {
-        return 0.0;
-    }
-    return ctx->set.coupling == TRIBO_PARTITION ? product(rate, ctx->op->growth) : rate;
-}
-
 int tribo_get_real(const tribo_context *ctx, int which, double *value)
 {
     if (!ctx || !value) {
@@ -134,8 +112,22 @@ int tribo_get_real(const tribo_context *ctx, int which, double *value)
     if (!tribo_has_operator(ctx)) {
         return TRIBO_ERR_STATE;
     }
+    /* In the consistent coupling a stuck contact relaxes at its own 2 N R_ii/epsilon; otherwise v' = -R diag(s) v with s =
+     * 2N/epsilon, or half of it for laws that are dampers near v = 0. The eigenvalues of R diag(s), for any set of contacts near
+     * stick, are at most the largest s_i R_ii times the largest eigenvalue of D^-1 R. */
+    const struct contacts *c = &ctx->follow.contacts;
+    const struct law *law = ctx->set.law;
+    const int own = law->uses_feq && ctx->set.coupling == TRIBO_CONSISTENT;
+    double rate = tribo_plane_rate(ctx);
+    for (size_t i = 0; i < ctx->n; i++) {
+        if (c->limit[i] > 0.0 && tribo_is_scalar(ctx, i)) {
+            const double steepest = ctx->set.breaking ? c->rate[i] * ctx->follow.hold[i] : tribo_slope_of(c, i);
+            rate = greater(rate, product(steepest, ctx->op->diagonal[i]));
+        }
+    }
+    rate = law->relaxes ? rate : law->uses_feq ? 0.0 : 0.5 * rate;
+    rate = own ? rate : product(rate, ctx->op->growth);
     /* The fourth-order Runge-Kutta method is stable for rate dt <= 2.785. */
-    const double rate = max_rate(ctx);
     *value = which == TRIBO_REAL_MAX_RATE ? rate : rate > 0.0 ? quotient(2.785, rate) : HUGE_VAL;
     return TRIBO_OK;
 }
