@@ -255,30 +255,6 @@ static void solve_sets(struct step_matrix *m, const struct band_step *s)
     }
 }
 
-/* Revises at[] by forces and velocities: *freed contacts begin to slide, *caught contacts begin to hold. */
-static void band_revise(struct step_matrix *m, const struct band_step *s, size_t *freed, size_t *caught)
-{
-    *freed = *caught = 0;
-    for (size_t i = 0; i < m->count; i++) {
-        const size_t d = m->body[i];
-        const double noise = m->noise[i], most = s->limit[i] + noise;
-        const signed char at = m->at[i];
-        if (at == 0) {
-            const int side = (s->f[i] > most) - (s->f[i] < -most);
-            m->at[i] = (signed char)side;
-            *freed += side != 0;
-        } else {
-            /* the force that would take the velocity away within the step */
-            const double v = m->lever[i] * (s->u[d] + s->du[d]) - s->base[i];
-            const double pull = v * m->own[i] / (s->h * m->lever[i] * m->lever[i]);
-            if (pull * at > noise) {
-                m->at[i] = 0;
-                ++*caught;
-            }
-        }
-    }
-}
-
 /* Passes over the bodies upwards or downwards: a holding contact within `reach` bodies after one that begins to slide slides
  * along. */
 static void band_sweep(struct step_matrix *m, size_t reach, int upwards)
@@ -305,24 +281,38 @@ static void band_sweep(struct step_matrix *m, size_t reach, int upwards)
 int tribo_step_matrix_hold(struct step_matrix *m, const tribo_system *sys, const struct band_step *s)
 {
     const int rounds = m->count && tribo_system_is_plain(sys) ? ROUNDS : 0;
-    size_t reach = 0, freed, caught;
-    for (int round = 0; round < rounds; round++) {
-        if (round == 0) {
-            memcpy(m->push, s->du, m->n * sizeof *s->du);
-        }
+    size_t reach = 0, freed = 1, caught = 0; /* contacts that begin to slide, to hold */
+    if (rounds) {
+        memcpy(m->push, s->du, m->n * sizeof *s->du);
+    }
+    for (int round = 0; freed + caught > 0 && round < rounds; round++) {
         solve_sets(m, s);
-        band_revise(m, s, &freed, &caught);
-        if (freed + caught == 0) {
-            for (size_t i = 0; i < m->count; i++) {
-                s->f[i] = clamp(s->f[i], -s->limit[i], s->limit[i]);
+        freed = caught = 0;
+        for (size_t i = 0; i < m->count; i++) {
+            const double noise = m->noise[i], most = s->limit[i] + noise, lever = m->lever[i];
+            if (m->at[i] == 0) {
+                m->at[i] = (signed char)((s->f[i] > most) - (s->f[i] < -most));
+                freed += m->at[i] != 0;
+                continue;
             }
-            return 1;
+            /* the force that would take the velocity away within the step */
+            const double v = lever * (s->u[m->body[i]] + s->du[m->body[i]]) - s->base[i];
+            if (v * m->own[i] / (s->h * lever * lever) * m->at[i] > noise) {
+                m->at[i] = 0;
+                caught++;
+            }
         }
         reach = caught ? 0 : 2 * reach + 1;
-        if (reach > 1) {
+        if (freed && reach > 1) {
             band_sweep(m, reach, 1);
             band_sweep(m, reach, 0);
         }
+    }
+    if (rounds && freed + caught == 0) {
+        for (size_t i = 0; i < m->count; i++) {
+            s->f[i] = clamp(s->f[i], -s->limit[i], s->limit[i]);
+        }
+        return 1;
     }
     hold_bodies(m, 1);
     if (rounds) {
