@@ -185,7 +185,7 @@ static int balance_all(tribo_context *ctx, const double *v, const double *a, int
 
 int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
 {
-    int status = ctx ? tribo_need_operator(ctx) : TRIBO_ERR_NULL;
+    int status = ctx ? tribo_need_operator(ctx, ctx) : TRIBO_ERR_NULL;
     if (status) {
         return status;
     }

@@ -57,9 +57,3 @@ int tribo_check_slowly(tribo_context *ctx, const char *name, const double *x, si
     }
     return finite;
 }
-
-int tribo_fail_without_operator(tribo_context *ctx)
-{
-    return tribo_fail(ctx, TRIBO_ERR_STATE,
-                      "no operator: call tribo_set_operator_diagonal or another tribo_set_operator_... first");
-}

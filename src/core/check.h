@@ -21,8 +21,6 @@ enum { FINITE, NONNEGATIVE, POSITIVE };
 #define TRIBO_NUMBER SIZE_MAX
 int tribo_check_slowly(tribo_context *ctx, const char *name, const double *x, size_t n, int range);
 
-int tribo_fail_without_operator(tribo_context *ctx);
-
 static inline int tribo_within(double x, double most)
 {
     return isfinite(x) && fabs(x) <= most;
@@ -57,15 +55,13 @@ static inline int tribo_has_operator(const tribo_context *ctx)
     return ctx->op->diagonal || !ctx->n;
 }
 
-/* 1 if epsilon is given, or follows an operator that is there. */
-static inline int tribo_has_epsilon(const tribo_context *ctx)
+/* Fails if ctx has no operator; note keeps the message. */
+static inline int tribo_need_operator(const tribo_context *ctx, tribo_context *note)
 {
-    return ctx->set.step > 0.0 ? tribo_has_operator(ctx) : 1;
-}
-
-static inline int tribo_need_operator(tribo_context *ctx)
-{
-    return tribo_has_operator(ctx) ? TRIBO_OK : tribo_fail_without_operator(ctx);
+    return tribo_has_operator(ctx)
+               ? TRIBO_OK
+               : tribo_fail(note, TRIBO_ERR_STATE,
+                            "no operator: call tribo_set_operator_diagonal or another tribo_set_operator_... first");
 }
 
 static inline int tribo_check_output(tribo_context *ctx, const char *name, const double *x)

@@ -12,20 +12,23 @@ static int reads_feq(const tribo_context *ctx, size_t i, const double *v)
 }
 
 /* Checks v, and feq where forces depend on it; a status. *plain: laws take feq as it is. note: ctx, or NULL to keep no message. */
-static int check_force(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq, int *plain)
+static inline int check_force(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq, int *plain)
 {
-    int status = tribo_has_epsilon(ctx) ? TRIBO_OK : tribo_fail_without_operator(note);
+    int status = ctx->set.step > 0.0 ? tribo_need_operator(ctx, note) : TRIBO_OK; /* of epsilon */
     status = status ? status : tribo_check_finite(note, "v", v, ctx->n);
     *plain = !ctx->set.law->uses_feq || tribo_is_within(feq, ctx->n, TRIBO_FAR);
-    if (!status && !*plain && !feq && ctx->n) {
+    if (status || *plain) {
+        return status;
+    }
+    if (!feq && ctx->n) {
         return tribo_fail(note, TRIBO_ERR_NULL, "feq is NULL");
     }
-    for (size_t i = 0; !status && !*plain && i < ctx->n; i++) {
+    for (size_t i = 0; i < ctx->n; i++) {
         if (!isfinite(feq[i]) && reads_feq(ctx, i, v)) {
             return tribo_fail(note, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", i, feq[i]);
         }
     }
-    return status;
+    return TRIBO_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ forces */

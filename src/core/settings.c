@@ -250,7 +250,7 @@ int tribo_get_epsilon(const tribo_context *ctx, double *epsilon)
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    if (!tribo_has_epsilon(ctx)) {
+    if (ctx->set.step > 0.0 && !tribo_has_operator(ctx)) {
         return TRIBO_ERR_STATE;
     }
     if (!epsilon && ctx->n) {

@@ -207,7 +207,7 @@ static int step_at_end(tribo_context *ctx, double dt, const double *v, const dou
 static int step_check(tribo_context *ctx, double dt, const double *vfree, const double *f)
 {
     int status = isfinite(dt) && dt > 0.0 ? TRIBO_OK : tribo_check_slowly(ctx, "dt", &dt, TRIBO_NUMBER, POSITIVE);
-    status = status ? status : tribo_need_operator(ctx);
+    status = status ? status : tribo_need_operator(ctx, ctx);
     status = status ? status : tribo_check_finite(ctx, "vfree", vfree, ctx->n);
     return status ? status : tribo_check_output(ctx, "f", f);
 }
@@ -297,7 +297,7 @@ int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const 
 
 int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, const double *upper, double *f)
 {
-    int status = ctx ? tribo_need_operator(ctx) : TRIBO_ERR_NULL;
+    int status = ctx ? tribo_need_operator(ctx, ctx) : TRIBO_ERR_NULL;
     status = status ? status : tribo_check_finite(ctx, "a", a, ctx->n);
     status = status ? status : tribo_check_finite(ctx, "lower", lower, ctx->n);
     status = status ? status : tribo_check_finite(ctx, "upper", upper, ctx->n);
