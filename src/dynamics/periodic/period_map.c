@@ -24,14 +24,9 @@ static const double full_turn = 6.283185307179586;
 
 /* -------------------------------------------------------------------------------------------------------------- integration */
 
-static struct period_map *of_company(struct company *company)
-{
-    return (struct period_map *)((char *)company - offsetof(struct period_map, company));
-}
-
 static int phase_ends(struct company *company, double tau, double t, const double *y)
 {
-    struct period_map *m = of_company(company);
+    struct period_map *m = (struct period_map *)company;
     tribo_energy_norm_of(&m->norm, 1, y, m->x);
     m->size = greater(m->size, tribo_energy_length(m->x, m->n));
     return tribo_variation_phase(&m->variation, tau, t, y);
@@ -39,7 +34,7 @@ static int phase_ends(struct company *company, double tau, double t, const doubl
 
 static void event_decided(struct company *company)
 {
-    tribo_variation_event(&of_company(company)->variation);
+    tribo_variation_event(&((struct period_map *)company)->variation);
 }
 
 /* Integrates m->y from t to end without the driver's observer; the driver's next run is a new one. Returns a status. */
@@ -290,7 +285,7 @@ void tribo_period_map_choose(struct period_map *m, int odd)
 int tribo_period_map_create(struct period_map *m, tribo_driver *drv)
 {
     const size_t n = tribo_system_energy(drv->sys);
-    *m = (struct period_map){.drv = drv, .sys = drv->sys, .n = n, .company = {phase_ends, event_decided}};
+    *m = (struct period_map){.company = {phase_ends, event_decided}, .drv = drv, .sys = drv->sys, .n = n};
     struct layout l = {0};
     do {
         m->y = tribo_layout_array(&l, n + 1, sizeof *m->y);

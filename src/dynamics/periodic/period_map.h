@@ -19,12 +19,12 @@ struct point {
 };
 
 struct period_map {
+    struct company company; /* of follow: the first member */
     tribo_driver *drv;
     tribo_system *sys;
     struct events *events;
     size_t n; /* values of a state with perturbations: tribo_system_energy(sys) */
     struct energy_norm norm;
-    struct company company;
     struct variation variation;
     double *y, *x;          /* [n + 1] a state; [n] coordinates of a state */
     double *probe;          /* [n][columns] initial perturbations */

@@ -18,16 +18,6 @@ struct replay {
     double *energy, *rest; /* [ncontact] dissipated energy; part of the period at rest; or NULL */
 };
 
-/* Adds the integral over the phase that begins at t. */
-static void integrate(struct replay *r, const struct signal *signal, double t)
-{
-    double re = 0.0, im = 0.0;
-    const double c = cos(r->omega * t), d = -sin(r->omega * t);
-    tribo_signal_integrate(signal, r->omega, &re, &im);
-    r->re += c * re - d * im;
-    r->im += d * re + c * im;
-}
-
 static int replay_phase(struct company *company, double tau, double t, const double *y)
 {
     struct replay *r = (struct replay *)company;
@@ -37,7 +27,11 @@ static int replay_phase(struct company *company, double tau, double t, const dou
     int status = r->c ? e->motion->signal(e->own, r->c, tau, y, &signal) : TRIBO_OK;
     (void)t;
     if (!status && r->c && !r->seeks) {
-        integrate(r, &signal, begin);
+        double re = 0.0, im = 0.0;
+        const double cosine = cos(r->omega * begin), sine = sin(r->omega * begin);
+        tribo_signal_integrate(&signal, r->omega, &re, &im);
+        r->re += cosine * re + sine * im;
+        r->im += cosine * im - sine * re;
     } else if (!status && r->c && !tribo_signal_extremes(&signal, begin, &r->extremes)) {
         status = tribo_system_fail(r->map->sys, TRIBO_ERR_STEP, "a phase of the period is too fast to be followed");
     }
@@ -54,10 +48,24 @@ static int replay_phase(struct company *company, double tau, double t, const dou
     return status;
 }
 
-/* Observes the period of the motion found. Returns a status. */
-static int replay(tribo_driver *drv, struct replay *r)
+/* Observes the period of the motion found, with coefficients c of q and q' or NULL. missing: an argument that is NULL, or NULL.
+ * Returns a status. */
+static int replay(tribo_driver *drv, struct replay *r, const char *missing, const double *c, size_t order)
 {
-    struct shooting *s = drv->shooting;
+    struct shooting *s = drv ? drv->shooting : NULL;
+    if (!drv || missing) {
+        return drv ? tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", missing) : TRIBO_ERR_NULL;
+    }
+    for (size_t i = 0; c && i < 2 * tribo_system_ndof(drv->sys); i++) {
+        if (!isfinite(c[i])) {
+            return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "c[%zu] = %g is not finite", i, c[i]);
+        }
+    }
+    r->c = c;
+    if (c && drv->motion) {
+        tribo_system_read_combination(drv->sys, c, drv->motion);
+        r->c = drv->motion;
+    }
     const int unset = tribo_system_take_settings(drv->sys);
     if (unset) {
         return tribo_driver_pass(drv, unset);
@@ -67,41 +75,18 @@ static int replay(tribo_driver *drv, struct replay *r)
                                  s && s->found ? "the system has changed since the periodic motion was found"
                                                : "no periodic motion was found");
     }
-    r->company = (struct company){.ends = replay_phase};
+    r->company = (struct company){replay_phase, NULL};
     r->map = &s->map;
+    r->omega = 2.0 * acos(-1.0) * (double)order / s->map.period;
     const int status = tribo_period_map_replay(&s->map, s->here->y, &r->company);
     return status && s->map.drv != drv ? tribo_driver_fail(drv, status, "%s", s->map.drv->message) : status;
-}
-
-/* Checks the caller's c, coefficients of q and q', and sets r->c. Returns a status. */
-static int take_combination(tribo_driver *drv, struct replay *r, const double *c)
-{
-    const size_t n = tribo_system_ndof(drv->sys);
-    for (size_t i = 0; i < 2 * n; i++) {
-        if (!isfinite(c[i])) {
-            return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "c[%zu] = %g is not finite", i, c[i]);
-        }
-    }
-    r->c = c;
-    if (drv->motion) {
-        tribo_system_read_combination(drv->sys, c, drv->motion);
-        r->c = drv->motion;
-    }
-    return TRIBO_OK;
 }
 
 int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most, double *at_least,
                                  double *at_most)
 {
-    if (!drv) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!c || !least || !most) {
-        return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", !c ? "c" : !least ? "least" : "most");
-    }
     struct replay r = {.seeks = 1, .extremes = {HUGE_VAL, -HUGE_VAL, 0.0, 0.0}};
-    int status = take_combination(drv, &r, c);
-    status = status ? status : replay(drv, &r);
+    const int status = replay(drv, &r, !c ? "c" : !least ? "least" : !most ? "most" : NULL, c, 0);
     if (status) {
         return status;
     }
@@ -118,18 +103,8 @@ int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *lea
 
 int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, double *cosine, double *sine)
 {
-    if (!drv) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!c || !cosine || !sine) {
-        return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", !c ? "c" : !cosine ? "cosine" : "sine");
-    }
     struct replay r = {0};
-    int status = take_combination(drv, &r, c);
-    if (!status && drv->shooting) {
-        r.omega = 2.0 * acos(-1.0) * (double)k / drv->shooting->map.period;
-    }
-    status = status ? status : replay(drv, &r);
+    const int status = replay(drv, &r, !c ? "c" : !cosine ? "cosine" : !sine ? "sine" : NULL, c, k);
     if (!status) {
         const double factor = (k ? 2.0 : 1.0) / drv->shooting->map.period;
         *cosine = factor * r.re;
@@ -141,16 +116,11 @@ int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, d
 /* to [ncontact] = the quantity of contacts, of r->energy or r->rest, *sum. Returns a status. */
 static int sum_up(tribo_driver *drv, struct replay *r, const char *name, double **sum, double *to)
 {
-    if (!drv) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!to) {
-        return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", name);
-    }
-    const size_t count = drv->sys->ncontact;
-    *sum = calloc(count + 1, sizeof *to);
-    const int status =
-        *sum ? replay(drv, r) : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", count, plural(count));
+    const size_t count = drv ? drv->sys->ncontact : 0;
+    *sum = to ? calloc(count + 1, sizeof *to) : NULL;
+    const int status = *sum || !to
+                           ? replay(drv, r, to ? NULL : name, NULL, 0)
+                           : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", count, plural(count));
     if (!status) {
         memcpy(to, *sum, count * sizeof *to);
     }

@@ -102,35 +102,35 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
     return status;
 }
 
-static int none_found(const tribo_driver *drv)
+/* *s = the search whose motion was found. missing: an argument that is NULL, or NULL. Returns a status. */
+static int get_found(const tribo_driver *drv, const char *missing, struct shooting **s)
 {
-    return tribo_driver_fail(drv, TRIBO_ERR_STATE, "no periodic motion was found: call tribo_driver_find_periodic first");
+    if (!drv || missing) {
+        return drv ? tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", missing) : TRIBO_ERR_NULL;
+    }
+    *s = drv->shooting;
+    return *s && (*s)->found
+               ? TRIBO_OK
+               : tribo_driver_fail(drv, TRIBO_ERR_STATE, "no periodic motion was found: call tribo_driver_find_periodic first");
 }
 
 int tribo_driver_get_freedom(const tribo_driver *drv, size_t *freedom)
 {
-    if (!drv || !freedom) {
-        return drv ? tribo_driver_fail(drv, TRIBO_ERR_NULL, "freedom is NULL") : TRIBO_ERR_NULL;
-    }
-    struct shooting *s = drv->shooting;
-    return s && s->found ? tribo_shooting_freedom(s, freedom) : none_found(drv);
+    struct shooting *s = NULL;
+    const int status = get_found(drv, freedom ? NULL : "freedom", &s);
+    return status ? status : tribo_shooting_freedom(s, freedom);
 }
 
 int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im)
 {
-    if (!drv || !re || !im) {
-        return drv ? tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", re ? "im" : "re") : TRIBO_ERR_NULL;
-    }
-    struct shooting *s = drv->shooting;
-    if (!s || !s->found) {
-        return none_found(drv);
-    }
-    if (s->flow->torn < s->map.sys->ncontact) {
+    struct shooting *s = NULL;
+    const int status = get_found(drv, !re ? "re" : !im ? "im" : NULL, &s);
+    if (!status && s->flow->torn < s->map.sys->ncontact) {
         return tribo_driver_fail(
             drv, TRIBO_ERR_UNSUPPORTED,
             "contact %zu and contact %zu stop or break away at one instant: which of them is first may change the motion, "
             "and it has no multipliers",
             s->flow->torn, s->flow->other);
     }
-    return tribo_shooting_multipliers(s, re, im);
+    return status ? status : tribo_shooting_multipliers(s, re, im);
 }

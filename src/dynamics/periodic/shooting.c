@@ -107,35 +107,26 @@ static double left_along(const struct shooting *s, const struct point *p)
     return tribo_dot(s->step, p->x, n) - tribo_dot(s->step, p->image, n);
 }
 
-/* x = s->free x, if s->preconditions. */
+/* If s->preconditions, x = (I - F)^-1 x, F: flow of the free structure over a span; modes without vibration, and modes for which that
+ * is nearly singular, stay. */
 static void apply_free(const struct shooting *s, double *x)
-{
-    const size_t half = s->map.sys->ndof;
-    for (size_t k = 0; s->preconditions && k < half; k++) {
-        const double *t = s->free + 4 * k, q = x[k], u = x[half + k];
-        x[k] = t[0] * q + t[1] * u;
-        x[half + k] = t[2] * q + t[3] * u;
-    }
-}
-
-/* Sets s->free; of modes without vibration, and where that is nearly singular, the identity. */
-static void find_free(struct shooting *s)
 {
     const struct energy_norm *norm = &s->map.norm;
     const double span = s->map.span, sign = s->map.odd ? -1.0 : 1.0;
-    for (size_t k = 0; k < norm->n; k++) {
+    for (size_t k = 0; s->preconditions && k < norm->n; k++) {
         const double omega = norm->natural[k], half = 0.5 * norm->damping[k], square = omega * omega - half * half;
         const double nu = sqrt(fabs(square)), size = sign * exp(-half * span), c = size * cos(nu * span);
         const double d = nu > 0.0 ? size * sin(nu * span) / nu : 0.0;
         const double qq = 1.0 - (c + half * d), qu = -norm->omega[k] * d, uq = omega * omega / norm->omega[k] * d;
-        const double uu = 1.0 - (c - half * d), det = qq * uu - qu * uq;
-        const double inverse[] = {uu / det, -qu / det, -uq / det, qq / det};
-        static const double unit[] = {1.0, 0.0, 0.0, 1.0};
-        memcpy(s->free + 4 * k, square > 0.0 && fabs(det) > NEARLY_SINGULAR ? inverse : unit, sizeof unit);
+        const double uu = 1.0 - (c - half * d), det = qq * uu - qu * uq, q = x[k], u = x[norm->n + k];
+        if (square > 0.0 && fabs(det) > NEARLY_SINGULAR) {
+            x[k] = (uu * q - qu * u) / det;
+            x[norm->n + k] = (qq * u - uq * q) / det;
+        }
     }
 }
 
-/* x = (I - D) x, D = the derivative at s->here over s->spans spans; x is multiplied by s->free first if s->preconditions. */
+/* x = (I - D) x, D = the derivative at s->here over s->spans spans; apply_free first. */
 static int apply_equation(void *data, double *x)
 {
     struct shooting *s = data;
@@ -180,7 +171,7 @@ static int solve_dense(struct shooting *s, struct point *p, int spans, double cu
 }
 
 /* x [n] = the shortest solution of (I - D) y = x, D over s->spans spans from s->here, by GMRES to `tolerance`: if contacts rest all
- * the time, there may be many solutions; the Krylov space, then without s->free, of a map that increases no distance has the
+ * the time, there may be many solutions; the Krylov space, then without apply_free, of a map that increases no distance has the
  * shortest. If that fails, and if the equation is nearly singular, by a matrix. Returns a status. */
 static int solve_equation(struct shooting *s, double tolerance, double cut, double *x)
 {
@@ -188,9 +179,6 @@ static int solve_equation(struct shooting *s, double tolerance, double cut, doub
     double part;
     memcpy(s->b, x, n * sizeof *x);
     s->preconditions = s->spans == 1 && !tribo_derivative_rests(&s->here->derivative);
-    if (s->preconditions) {
-        find_free(s);
-    }
     const int status = tribo_gmres(n, apply_equation, s, tolerance, n, x, &part, s->space);
     apply_free(s, x);
     s->preconditions = 0;
@@ -297,25 +285,20 @@ static int search(struct shooting *s)
 static int search_all(struct shooting *s)
 {
     static const size_t marched[] = {0, 20, 100};
-    const size_t n = s->map.n;
-    const size_t statics = !tribo_system_is_plain(s->map.sys);
+    const size_t n = s->map.n, statics = !tribo_system_is_plain(s->map.sys);
     const int was_odd = s->map.odd;
-    int done = 0, status = TRIBO_OK;
-    if (was_odd && !statics && s->map.norm.scale == 1.0) {
-        status = tribo_forecast(&s->map, s->here->x, &done);
-        if (!status && done && tribo_energy_distance(s->guess, s->here->x, n) > FAR * tribo_energy_length(s->here->x, n)) {
-            status = search(s);
-            done = !status && close_enough(s->here, TOLERANCE);
-            status = status == TRIBO_ERR_MEMORY ? status : TRIBO_OK;
-        } else {
-            done = 0;
-        }
+    int tries = was_odd && !statics && s->map.norm.scale == 1.0, done = 0;
+    int status = tries ? tribo_forecast(&s->map, s->here->x, &tries) : TRIBO_OK;
+    if (!status && tries && tribo_energy_distance(s->guess, s->here->x, n) > FAR * tribo_energy_length(s->here->x, n)) {
+        status = search(s);
+        done = !status && close_enough(s->here, TOLERANCE);
+        status = status == TRIBO_ERR_MEMORY ? status : TRIBO_OK;
     }
     for (int odd = was_odd; odd >= (statics ? 0 : was_odd); odd--) {
         for (size_t k = 0; !status && !done && k < 2 + statics; k++) {
             tribo_period_map_choose(&s->map, odd);
             memcpy(s->here->x, s->guess, n * sizeof *s->guess);
-            status = k ? tribo_period_map_march(&s->map, marched[k], s->here->x) : TRIBO_OK;
+            status = tribo_period_map_march(&s->map, marched[k], s->here->x);
             status = status ? status : search(s);
             done = !status && close_enough(s->here, TOLERANCE);
         }
@@ -365,7 +348,7 @@ static void find_flow(struct shooting *s)
 {
     const struct derivative *d = &s->here->derivative;
     tribo_system *sys = s->map.sys;
-    double *base = s->map.limit, elapsed = 0.0, longest = 0.0, middle = 0.0;
+    double *v = s->map.limit, elapsed = 0.0, longest = 0.0, middle = 0.0;
     const signed char *first = d->step->slip, *last = first;
     for (size_t k = 0; k < d->steps; k++) {
         middle = d->step[k].tau > longest ? elapsed + 0.5 * d->step[k].tau : middle;
@@ -374,13 +357,12 @@ static void find_flow(struct shooting *s)
         last = d->step[k].slip ? d->step[k].slip : last;
     }
     tribo_system_set_time(sys, s->map.t);
-    memset(base, 0, sys->ncontact * sizeof *base);
-    tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, base);
+    tribo_matrix_multiply(&sys->direction, s->here->y + sys->ndof, v);
+    tribo_system_loads(sys, DRIVES_BASE, 0, -1.0, v);
     s->flow = s->here;
     for (size_t i = 0; i < sys->ncontact && s->flow == s->here; i++) {
-        const double v = tribo_matrix_row_dot(&sys->direction, i, s->here->y + sys->ndof) - base[i];
         const double most = s->here->size / s->map.norm.scale * sqrt(tribo_system_delassus(sys, i, i));
-        if ((tribo_slides(first[i]) || tribo_slides(last[i])) && fabs(v) <= AT_ONCE * most) {
+        if ((tribo_slides(first[i]) || tribo_slides(last[i])) && fabs(v[i]) <= AT_ONCE * most) {
             const int status = tribo_period_map_later(&s->map, s->here->y, middle, s->there);
             if (status || !close_enough(s->there, TOLERANCE)) {
                 return;
@@ -465,7 +447,6 @@ struct shooting *tribo_shooting_create(tribo_driver *drv)
         s->b = tribo_layout_array(&l, n * n, sizeof *s->b);
         s->step = tribo_layout_array(&l, n, sizeof *s->step);
         s->guess = tribo_layout_array(&l, n, sizeof *s->guess);
-        s->free = tribo_layout_array(&l, 2 * n, sizeof *s->free);
         s->space = tribo_layout_array(&l, tribo_gmres_room(n, n), sizeof *s->space);
         for (struct point *p = s->point; p < s->point + 2; p++) {
             p->y = tribo_layout_array(&l, n, sizeof *p->y);

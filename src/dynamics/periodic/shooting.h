@@ -17,8 +17,7 @@ struct shooting {
     double rate;                /* ratio of the last step if it was good, else 0 */
     double stride;              /* spans extrapolated at once; 0: Newton's steps */
     int spans;                  /* spans of the equation solved in a Krylov space */
-    int preconditions;          /* 1: that equation is I - D times free from the right */
-    double *free;               /* [n/2][4] inverse of I - (flow of a mode of the free structure over a span) */
+    int preconditions;          /* 1: that equation is I - D times (I - F)^-1 from the right, apply_free */
     double before;              /* residual before the last step */
     double nearest;             /* least residual/size so far */
     int found;
