@@ -109,8 +109,6 @@ static int follow_state(struct period_map *m, struct point *p)
     p->residual = tribo_energy_distance(p->image, p->x, n);
     p->size = m->size;
     p->odd = m->odd;
-    p->torn = m->variation.torn;
-    p->other = m->variation.other;
     return m->events->motion->keep ? TRIBO_OK : tribo_period_map_matrix(m, p);
 }
 

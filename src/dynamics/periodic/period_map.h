@@ -15,7 +15,6 @@ struct point {
     double residual;              /* |image - x| */
     double size;                  /* largest |x| at the start and at the ends of phases */
     int odd;                      /* 1: image is that of -end */
-    size_t torn, other;           /* two contacts because of which there is no derivative; ncontact: there is one */
 };
 
 struct period_map {

@@ -125,12 +125,12 @@ int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im
 {
     struct shooting *s = NULL;
     const int status = get_found(drv, !re ? "re" : !im ? "im" : NULL, &s);
-    if (!status && s->flow->torn < s->map.sys->ncontact) {
+    if (!status && s->flow->derivative.torn < s->map.sys->ncontact) {
         return tribo_driver_fail(
             drv, TRIBO_ERR_UNSUPPORTED,
             "contact %zu and contact %zu stop or break away at one instant: which of them is first may change the motion, "
             "and it has no multipliers",
-            s->flow->torn, s->flow->other);
+            s->flow->derivative.torn, s->flow->derivative.other);
     }
     return status ? status : tribo_shooting_multipliers(s, re, im);
 }

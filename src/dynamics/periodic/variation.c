@@ -195,20 +195,6 @@ static int stops(const struct variation *x, size_t i)
     return acts && before * x->rate[i] < 0.0;
 }
 
-/* Appends the crossings of velocities. */
-static void find_stops(struct variation *x)
-{
-    const size_t n = tribo_system_energy(x->sys);
-    for (size_t i = 0; i < x->sys->ncontact; i++) {
-        if (stops(x, i)) {
-            double *row = x->row + x->count * n;
-            memset(row, 0, n * sizeof *row);
-            tribo_matrix_add_row(&x->sys->direction, i, 1.0 / x->rate[i], row + x->sys->ndof);
-            x->contact[x->count++] = i;
-        }
-    }
-}
-
 /* ----------------------------------------------------------------------------------------------------------------- groups */
 
 /* Sets x->group = group for contact i and all contacts that its forces reach by shared bodies and contacts whose forces may jump:
@@ -230,8 +216,8 @@ static void gather(struct variation *x, size_t i, size_t group)
 /* There is no derivative, because of contacts i and j. */
 static void tear(struct variation *x, size_t i, size_t j)
 {
-    x->torn = i < j ? i : j;
-    x->other = i < j ? j : i;
+    x->to->torn = i < j ? i : j;
+    x->to->other = i < j ? j : i;
 }
 
 /* Returns the first crossing of the group of crossing `first` that perturbed motions do not make at the same time, tied together
@@ -320,7 +306,15 @@ static void carry_over_springs(struct variation *x)
 void tribo_variation_event(struct variation *x)
 {
     const struct stick_slip *m = &x->to->events->stick_slip;
-    find_stops(x);
+    const size_t n = tribo_system_energy(x->sys);
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        if (stops(x, i)) {
+            double *row = x->row + x->count * n;
+            memset(row, 0, n * sizeof *row);
+            tribo_matrix_add_row(&x->sys->direction, i, 1.0 / x->rate[i], row + x->sys->ndof);
+            x->contact[x->count++] = i;
+        }
+    }
     memset(x->group, 0, x->sys->ncontact * sizeof *x->group);
     for (size_t k = 0; k < x->count; k++) {
         if (!x->group[x->contact[k]]) {
@@ -349,14 +343,12 @@ void tribo_variation_event(struct variation *x)
 void tribo_variation_begin(struct variation *x, struct events *e, const double *v, size_t columns, struct derivative *to)
 {
     tribo_derivative_free(to);
-    to->events = e;
-    to->sys = x->sys;
+    *to = (struct derivative){.events = e, .sys = x->sys, .torn = x->sys->ncontact, .other = x->sys->ncontact};
     memcpy(x->v, v, tribo_system_energy(x->sys) * columns * sizeof *v);
     x->columns = columns;
     x->to = to;
     x->applied = 0;
     x->status = TRIBO_OK;
-    x->torn = x->other = x->sys->ncontact;
 }
 
 int tribo_variation_create(struct variation *x, tribo_system *sys)

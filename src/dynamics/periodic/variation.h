@@ -32,7 +32,8 @@ struct derivative {
     const tribo_system *sys;
     size_t steps, room;
     struct derivative_step *step;
-    double *matrix; /* [n][n] in coordinates of the energy norm (period_map.h); NULL until computed */
+    size_t torn, other; /* two contacts because of which there is no derivative; ncontact: there is one */
+    double *matrix;     /* [n][n] in coordinates of the energy norm (period_map.h); NULL until computed */
 };
 
 /* Removes all steps and the matrix; free: takes a zeroed d. */
@@ -51,7 +52,6 @@ struct variation {
     double *v;             /* [n][columns] perturbations after the first `applied` steps of `to` */
     size_t applied;        /* all steps, if phases are not kept */
     int status;            /* of a failure in an event, its message on the system's context */
-    size_t torn, other;    /* two contacts because of which there is no derivative; ncontact: there is one */
 
     /* at the end of a phase */
     const signed char *before; /* [ncontact] slip in the phase, of `to` */
