@@ -93,11 +93,3 @@ void tribo_elastic_move(struct stick_slip *m, const tribo_system *sys, const dou
         tribo_compliance_rates(sys, m->state.slip, m->state.glide, m->state.spring_rate);
     }
 }
-
-void tribo_elastic_finish(struct stick_slip *m, const tribo_system *sys)
-{
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->noise.allowance[i] = m->constant.elastic[i] ? m->noise.spring[i] : m->noise.allowance[i];
-        m->state.slid[i] = m->state.slip[i];
-    }
-}

@@ -298,12 +298,11 @@ static int goes_beyond(const struct stick_slip *m, const tribo_system *sys, cons
     return beyond > noise;
 }
 
-/* Lets tied contacts slide by the forces of a moment later. Returns a status. */
+/* Lets tied contacts slide by the forces of a moment later. work.v: accelerations. Returns a status. */
 static int look_ahead_in_plane(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     const struct planar_contact *end = m->plane->contact + m->plane->all;
-    tribo_stick_slip_contact_accelerations(sys, tribo_stick_slip_find_acceleration(m, sys), 1, m->work.f);
-    const double turn = given_forces(m, sys, y, m->work.f),
+    const double turn = given_forces(m, sys, y, m->work.v),
                  h = lesser(m->constant.horizon, turn > 0.0 ? TURN / turn : m->constant.horizon);
     tribo_stick_slip_find_rate(m, sys, y);
     tribo_stick_slip_contact_accelerations(sys, m->work.rate, 2, m->work.v);

@@ -281,17 +281,13 @@ void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const doubl
     }
 }
 
-const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys)
-{
-    memcpy(m->work.acceleration, m->work.free, sys->ndof * sizeof *m->work.free);
-    tribo_matrix_multiply_add(&sys->response, 1.0, m->state.force, m->work.acceleration);
-    return m->work.acceleration;
-}
-
 void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
-    const double *acceleration = sys->damping.rows ? tribo_stick_slip_find_acceleration(m, sys) : NULL;
-    tribo_system_smooth(sys, 1, 1.0, y + sys->ndof, acceleration, m->state.spring_rate, m->work.rate);
+    if (sys->damping.rows) {
+        memcpy(m->work.acceleration, m->work.free, sys->ndof * sizeof *m->work.free);
+        tribo_matrix_multiply_add(&sys->response, 1.0, m->state.force, m->work.acceleration);
+    }
+    tribo_system_smooth(sys, 1, 1.0, y + sys->ndof, m->work.acceleration, m->state.spring_rate, m->work.rate);
 }
 
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v)
@@ -439,8 +435,9 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     if (status) {
         return status;
     }
-    if (springs) {
-        tribo_elastic_finish(m, sys);
+    for (size_t i = 0; springs && i < sys->ncontact; i++) {
+        m->noise.allowance[i] = m->constant.elastic[i] ? m->noise.spring[i] : m->noise.allowance[i];
+        m->state.slid[i] = m->state.slip[i];
     }
     return tribo_stick_slip_find_holds(m, sys);
 }

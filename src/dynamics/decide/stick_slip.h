@@ -228,22 +228,19 @@ void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, 
 /* The largest of noise.size. */
 double tribo_stick_slip_acceleration_size(struct stick_slip *m, const tribo_system *sys, const double *y);
 
-/* Returns q'' [ndof] with state.force, also after a decision; sets work.rate = its rate at constant forces; sets to [ncontact]
- * = J acceleration - the order-th derivative of b; sets v [ncontact] = a + R f, where v may be a. */
-const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys);
+/* Sets work.rate = the rate of q'' at constant forces; sets to [ncontact] = J acceleration - the order-th derivative of b; sets
+ * v [ncontact] = a + R f, where v may be a. */
 void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to);
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v);
 
 /* elastic_slip.c: elastic contacts; the state contains their forces. find sets state.spring and noise.spring; start
  * sets forces in y that exceed limits to these limits, and counts the lost energy as dissipated. A decision calls place (sets
- * slip, and forces, also in y), move (sets rates of forces, and velocities of those that slide), and finish (keeps slip for the
- * next decision). */
+ * slip, and forces, also in y) and move (sets rates of forces, and velocities of contacts that slide). */
 void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *y);
 void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *y);
 void tribo_elastic_move(struct stick_slip *m, const tribo_system *sys, const double *y);
-void tribo_elastic_finish(struct stick_slip *m, const tribo_system *sys);
 
 /* holds.c: chooses H among the contacts at rest, if slip or, of contacts that depend on each other, tied has changed. Returns a
  * status. */
