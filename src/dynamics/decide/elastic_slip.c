@@ -33,52 +33,31 @@ void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *
     }
 }
 
-/* What an instant knows of contact i before its velocity. */
-enum stand { OPEN, INSIDE, AT_LIMIT, STOPPED };
-
-static enum stand stand_of(const struct stick_slip *m, size_t i)
-{
-    const signed char before = m->state.slip[i];
-    const int slid = tribo_slides(m->state.slid[i]);
-    const int slides = tribo_slides(before) && m->state.slid[i] == before;
-    return before == TRIBO_SLIP_OPEN                                                                               ? OPEN
-           : before == TRIBO_SLIP_STUCK && slid                                                                    ? STOPPED
-           : slides || i == m->state.reached || fabs(m->state.spring[i]) >= m->state.limit[i] - m->noise.spring[i] ? AT_LIMIT
-                                                                                                                   : INSIDE;
-}
-
-/* The slip of contact i, at its limit, if it slides: against its force. */
-static signed char against(const struct stick_slip *m, size_t i)
-{
-    const signed char before = m->state.slip[i];
-    return before != 0 && m->state.slid[i] == before
-               ? before
-               : (signed char)(m->state.spring[i] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH);
-}
-
 void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *y)
 {
     const unsigned char *elastic = m->constant.elastic;
     struct slip_state *s = &m->state;
     const struct compliance *g = &sys->compliance;
-    double *v = m->work.v; /* velocities of the contacts that slide */
+    double *v = m->work.v;              /* velocities of the contacts that slide */
+    signed char *side = m->work.pulled; /* [ncontact] at the limit: direction to slide, against the force; else 0 */
     tribo_elastic_find(m, sys, y);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const enum stand stand = elastic[i] ? stand_of(m, i) : OPEN;
+        const int open = !elastic[i] || s->slip[i] == TRIBO_SLIP_OPEN;
+        const int stopped = s->slip[i] == TRIBO_SLIP_STUCK && tribo_slides(s->slid[i]);
+        const int slides = tribo_slides(s->slip[i]) && s->slid[i] == s->slip[i];
+        const int at_limit = slides || i == s->reached || fabs(s->spring[i]) >= s->limit[i] - m->noise.spring[i];
+        const int against = slides ? s->slip[i] : s->spring[i] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH;
+        side[i] = (signed char)(at_limit && !open && !stopped ? against : 0);
+        s->spring[i] = open ? 0.0 : stopped || at_limit ? -against * s->limit[i] : s->spring[i];
         v[i] = elastic[i] ? tribo_stick_slip_find_velocity(m, sys, i, y) : 0.0;
-        g->lo[i] = stand == OPEN || (stand == AT_LIMIT && against(m, i) > 0) ? 0.0 : -TRIBO_UNBOUNDED;
-        g->hi[i] = stand == OPEN || (stand == AT_LIMIT && against(m, i) < 0) ? 0.0 : TRIBO_UNBOUNDED;
+        g->lo[i] = open || side[i] > 0 ? 0.0 : -TRIBO_UNBOUNDED;
+        g->hi[i] = open || side[i] < 0 ? 0.0 : TRIBO_UNBOUNDED;
     }
     tribo_compliance_share(g, v);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const enum stand stand = elastic[i] ? stand_of(m, i) : OPEN;
-        const signed char direction = against(m, i);
-        if (stand != OPEN) {
-            const int slides = fabs(v[i]) > m->noise.factor * m->noise.velocity[i] && direction * v[i] > 0.0;
-            s->spring[i] = stand == INSIDE ? s->spring[i] : -direction * s->limit[i];
-            tribo_stick_slip_set(m, i, (signed char)(stand == AT_LIMIT && slides ? direction : TRIBO_SLIP_STUCK));
-        } else if (elastic[i]) {
-            s->spring[i] = 0.0;
+        if (elastic[i] && s->slip[i] != TRIBO_SLIP_OPEN) {
+            const int slides = side[i] * v[i] > m->noise.factor * m->noise.velocity[i];
+            tribo_stick_slip_set(m, i, (signed char)(slides ? side[i] : TRIBO_SLIP_STUCK));
         }
     }
     tribo_compliance_put(sys, s->spring, y);
