@@ -170,26 +170,6 @@ static double find_settled(const struct event *e)
     return length;
 }
 
-/* Sets u at the nodes by angle; fits un and ut of the s-th sliding contact to that. */
-static void fit(struct event *e, size_t s, double h)
-{
-    struct creep *c = &e->creep;
-    struct planar_line *l = &e->planar.line[c->slides[s]];
-    double power = 1.0;
-    memset(l->un, 0, (e->order + 1) * sizeof *l->un);
-    memset(l->ut, 0, (e->order + 1) * sizeof *l->ut);
-    for (size_t p = 0; p < NODES; p++) {
-        for (size_t i = 0; i < NODES; i++) {
-            double *u = c->u + 2 * (s * NODES + i);
-            u[0] = cos(c->angle[s * NODES + i]);
-            u[1] = sin(c->angle[s * NODES + i]);
-            l->un[p] += power * c->basis[i][p] * u[0];
-            l->ut[p] += power * c->basis[i][p] * u[1];
-        }
-        power /= h;
-    }
-}
-
 /* x along n and along t at tau. */
 static void find_velocity(const struct event *e, size_t k, double tau, double *x)
 {
@@ -349,8 +329,21 @@ static int find_angles(struct event *e, double h, int *found)
         most = lesser(most, allowed(e, c->slides[s], h));
     }
     for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
-        for (size_t s = 0; s < c->count; s++) {
-            fit(e, s, h);
+        for (size_t s = 0; s < c->count; s++) { /* u at the nodes by angle; un and ut fitted to that */
+            struct planar_line *l = &e->planar.line[c->slides[s]];
+            double power = 1.0;
+            memset(l->un, 0, (e->order + 1) * sizeof *l->un);
+            memset(l->ut, 0, (e->order + 1) * sizeof *l->ut);
+            for (size_t p = 0; p < NODES; p++) {
+                for (size_t i = 0; i < NODES; i++) {
+                    double *u = c->u + 2 * (s * NODES + i);
+                    u[0] = cos(c->angle[s * NODES + i]);
+                    u[1] = sin(c->angle[s * NODES + i]);
+                    l->un[p] += power * c->basis[i][p] * u[0];
+                    l->ut[p] += power * c->basis[i][p] * u[1];
+                }
+                power /= h;
+            }
         }
         const int status = tribo_event_series(e);
         if (status) {
