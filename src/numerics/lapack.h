@@ -48,8 +48,8 @@ void dgesvd_(const char *left, const char *right, const int *rows, const int *co
              size_t two);
 
 /* x = op(A)^-1 x for a triangle A of a band. */
-void dtbsv_(const char *triangle, const char *trans, const char *unit, const int *n, const int *width, const double *a,
-            const int *stride, double *x, const int *next, size_t one, size_t two, size_t three);
+void dpbtrs_(const char *triangle, const int *n, const int *width, const int *count, const double *band, const int *stride,
+             double *x, const int *next, int *info, size_t one);
 
 /* X = factor op(A)^-1 X, or factor X op(A)^-1, for a triangle A. */
 void dtrsm_(const char *side, const char *triangle, const char *trans, const char *unit, const int *rows, const int *cols,

@@ -90,20 +90,6 @@ static size_t band_factorize(struct step_matrix *m)
     return m->n;
 }
 
-/* x [n] = (L L')^-1 x. LAPACK's upper band, by columns, is L by rows. */
-static void band_solve(const struct step_matrix *m, double *x)
-{
-    const double *l = m->band;
-    const int rows = (int)m->n, below = (int)m->below, stride = below + 1, one = 1;
-    for (size_t i = 0; !below && i < m->n; i++) {
-        x[i] = x[i] / l[i] / l[i];
-    }
-    if (below) {
-        dtbsv_("U", "T", "N", &rows, &below, l, &stride, x, &one, 1, 1, 1);
-        dtbsv_("U", "N", "N", &rows, &below, l, &stride, x, &one, 1, 1, 1);
-    }
-}
-
 /* With exchanges of rows, by LAPACK: S must be regular, but need not be definite. Returns a status, and the row *where of a pivot
  * that is 0. */
 static int factorize_lopsided(struct step_matrix *m, size_t *where)
@@ -180,13 +166,17 @@ int tribo_step_matrix_solve(const void *matrix, size_t count, double *x)
     if (m->sparse.n) {
         return tribo_cholesky_solve(&m->sparse, count, x);
     }
+    const int n = (int)m->n, below = (int)m->below, above = (int)m->above, all = (int)count;
+    const int stride = 1 + below + (m->pivot ? below + above : 0);
+    int info;
     if (m->pivot) {
-        const int n = (int)m->n, below = (int)m->below, above = (int)m->above, all = (int)count, stride = 2 * below + above + 1;
-        int info;
         dgbtrs_("N", &n, &below, &above, &all, m->band, &stride, m->pivot, x, &n, &info, 1);
-    }
-    for (size_t k = 0; !m->pivot && k < count; k++) {
-        band_solve(m, x + k * m->n);
+    } else if (below) { /* LAPACK's upper band, by columns, is L by rows */
+        dpbtrs_("U", &n, &below, &all, m->band, &stride, x, &n, &info, 1);
+    } else {
+        for (size_t k = 0; k < count * m->n; k++) {
+            x[k] = x[k] / m->band[k % m->n] / m->band[k % m->n];
+        }
     }
     return 1;
 }
@@ -242,7 +232,7 @@ static void solve_sets(struct step_matrix *m, const struct band_step *s)
     for (size_t d = 0; d < n; d++) {
         x[d] = m->held[d] ? 0.0 : x[d];
     }
-    band_solve(m, x);
+    tribo_step_matrix_solve(m, 1, x);
     for (size_t d = 0; d < n; d++) {
         x[d] = m->held[d] ? m->move[d] : x[d];
     }
