@@ -189,7 +189,9 @@ void tribo_even_out(size_t n, double *a)
 void tribo_cholesky_free(struct cholesky *c)
 {
     free(c->root);
-    tribo_sparse_factor_free(c->sparse);
+    if (c->sparse) {
+        tribo_cholmod->destroy(c->sparse);
+    }
     memset(c, 0, sizeof *c);
 }
 
@@ -199,9 +201,9 @@ int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, struct mat
     int status = TRIBO_OK, info = 0; /* the row of a pivot that is not positive, plus 1: the pivot stands on the diagonal */
     struct layout l = {0};
     *c = (struct cholesky){.n = a->rows};
-    if (!diagonal && tribo_sparse_available() && c->n >= SPARSE_LEAST) {
+    if (!diagonal && tribo_cholmod && c->n >= SPARSE_LEAST) {
         *pivot = (double)NAN;
-        status = tribo_sparse_factor_create(&c->sparse, a, spent, where);
+        status = tribo_cholmod->create(&c->sparse, a, spent, where);
     } else if (!diagonal && c->n > DENSE_MOST) {
         status = TRIBO_ERR_SIZE;
     } else {
@@ -236,7 +238,7 @@ int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, struct mat
 int tribo_cholesky_solve(const struct cholesky *c, size_t count, double *x)
 {
     if (c->sparse) {
-        return tribo_sparse_factor_solve(c->sparse, count, x);
+        return tribo_cholmod->solve(c->sparse, count, x);
     }
     for (size_t k = 0; k < count; k++) {
         tribo_half_solve(c, 0, x + k * c->n, 1);
@@ -250,7 +252,7 @@ void tribo_half_solve(const struct cholesky *c, int back, double *x, size_t cols
     const double one = 1.0;
     const int n = (int)c->n, count = (int)cols;
     if (c->sparse) {
-        tribo_sparse_factor_half_solve(c->sparse, back, x, cols);
+        tribo_cholmod->half_solve(c->sparse, back, x, cols);
     } else if (c->factor && c->n && cols) {
         dtrsm_("R", "U", back ? "T" : "N", "N", &count, &n, &one, c->factor, &n, x, &count, 1, 1, 1, 1);
     }

@@ -24,11 +24,6 @@ struct sparse_factor {
     double *column;      /* [n] workspace */
 };
 
-int tribo_sparse_available(void)
-{
-    return 1;
-}
-
 static void sparse_factor_start(cholmod_common *common)
 {
     cholmod_l_start(common);
@@ -70,7 +65,7 @@ static cholmod_sparse *half_of(cholmod_sparse *a, struct matrix *spent, const ch
 
 /* x [count][n] = the solution of the system `what` of CHOLMOD. Makes the room of count vectors before: cholmod_l_solve2 goes on
  * without work[0] where there is no memory. Returns 1, or 0 if out of memory. */
-static int sparse_factor_solve(struct sparse_factor *f, int what, size_t count, double *x)
+static int sparse_factor_apply(struct sparse_factor *f, int what, size_t count, double *x)
 {
     const size_t n = f->l->n, most = f->l->maxesize;
     cholmod_dense b = {
@@ -93,7 +88,22 @@ static int status_of(const cholmod_common *common)
                                                                                           : TRIBO_OK;
 }
 
-int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, struct matrix *spent, size_t *where)
+static void sparse_factor_destroy(struct sparse_factor *f)
+{
+    if (f) {
+        cholmod_l_free_factor(&f->l, &f->common);
+        for (size_t k = 0; k < 2; k++) {
+            cholmod_l_free_dense(&f->room[k].solution, &f->common);
+            cholmod_l_free_dense(&f->room[k].work[0], &f->common);
+            cholmod_l_free_dense(&f->room[k].work[1], &f->common);
+        }
+        cholmod_l_finish(&f->common);
+        free(f->column);
+        free(f);
+    }
+}
+
+static int sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, struct matrix *spent, size_t *where)
 {
     struct sparse_factor *f = calloc(1, sizeof *f);
     double nothing[2] = {0.0, 0.0};
@@ -112,58 +122,43 @@ int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matri
     int status = status_of(&f->common);
     f->column = f->l ? calloc(f->l->n + 1, sizeof *f->column) : NULL;
     /* Makes the room of single solves, which cannot fail afterwards. */
-    status = status || (f->column && sparse_factor_solve(f, CHOLMOD_A, 1, f->column)) ? status : TRIBO_ERR_MEMORY;
+    status = status || (f->column && sparse_factor_apply(f, CHOLMOD_A, 1, f->column)) ? status : TRIBO_ERR_MEMORY;
     if (status) {
         const size_t row = f->l ? f->l->minor : 0; /* of P A P' */
         *where = f->l && row < f->l->n ? (size_t)((const SuiteSparse_long *)f->l->Perm)[row] : 0;
-        tribo_sparse_factor_free(f);
+        sparse_factor_destroy(f);
         return status;
     }
     *factor = f;
     return TRIBO_OK;
 }
 
-void tribo_sparse_factor_free(struct sparse_factor *f)
-{
-    if (f) {
-        cholmod_l_free_factor(&f->l, &f->common);
-        for (size_t k = 0; k < 2; k++) {
-            cholmod_l_free_dense(&f->room[k].solution, &f->common);
-            cholmod_l_free_dense(&f->room[k].work[0], &f->common);
-            cholmod_l_free_dense(&f->room[k].work[1], &f->common);
-        }
-        cholmod_l_finish(&f->common);
-        free(f->column);
-        free(f);
-    }
-}
-
-size_t tribo_sparse_factor_entries(const struct sparse_factor *f)
+static size_t sparse_factor_entries(const struct sparse_factor *f)
 {
     return f->l->is_super ? f->l->xsize : f->l->nzmax;
 }
 
-int tribo_sparse_factor_solve(struct sparse_factor *f, size_t count, double *x)
+static int sparse_factor_solve(struct sparse_factor *f, size_t count, double *x)
 {
-    return sparse_factor_solve(f, CHOLMOD_A, count, x);
+    return sparse_factor_apply(f, CHOLMOD_A, count, x);
 }
 
-void tribo_sparse_factor_half_solve(struct sparse_factor *f, int back, double *x, size_t cols)
+static void sparse_factor_half_solve(struct sparse_factor *f, int back, double *x, size_t cols)
 {
     for (size_t j = 0; j < cols; j++) {
         for (size_t i = 0; i < f->l->n; i++) {
             f->column[i] = x[i * cols + j];
         }
-        sparse_factor_solve(f, back ? CHOLMOD_Lt : CHOLMOD_P, 1, f->column);
-        sparse_factor_solve(f, back ? CHOLMOD_Pt : CHOLMOD_L, 1, f->column);
+        sparse_factor_apply(f, back ? CHOLMOD_Lt : CHOLMOD_P, 1, f->column);
+        sparse_factor_apply(f, back ? CHOLMOD_Pt : CHOLMOD_L, 1, f->column);
         for (size_t i = 0; i < f->l->n; i++) {
             x[i * cols + j] = f->column[i];
         }
     }
 }
 
-int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *a, struct matrix *spent, const double *size,
-                         struct inertia *found)
+static int sparse_inertia(const struct sparse_factor *like, const struct matrix *a, struct matrix *spent, const double *size,
+                          struct inertia *found)
 {
     cholmod_common common;
     double nothing[2] = {0.0, 0.0}, *sum = calloc(a->rows + 1, sizeof *sum); /* [n] sum_k |L_ik|^2 |D_k| */
@@ -202,46 +197,15 @@ int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *
     return status;
 }
 
+static const struct sparse_solver cholmod = {
+    sparse_factor_create, sparse_factor_destroy,    sparse_factor_entries,
+    sparse_factor_solve,  sparse_factor_half_solve, sparse_inertia,
+};
+
+const struct sparse_solver *const tribo_cholmod = &cholmod;
+
 #else
 
-int tribo_sparse_available(void)
-{
-    return 0;
-}
-
-int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, struct matrix *spent, size_t *where)
-{
-    (void)factor, (void)a, (void)spent, (void)where;
-    return TRIBO_ERR_UNSUPPORTED;
-}
-
-void tribo_sparse_factor_free(struct sparse_factor *factor)
-{
-    (void)factor;
-}
-
-size_t tribo_sparse_factor_entries(const struct sparse_factor *factor)
-{
-    (void)factor;
-    return 0;
-}
-
-int tribo_sparse_factor_solve(struct sparse_factor *factor, size_t count, double *x)
-{
-    (void)factor, (void)count, (void)x;
-    return 0;
-}
-
-void tribo_sparse_factor_half_solve(struct sparse_factor *factor, int back, double *x, size_t cols)
-{
-    (void)factor, (void)back, (void)x, (void)cols;
-}
-
-int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *a, struct matrix *spent, const double *size,
-                         struct inertia *found)
-{
-    (void)like, (void)a, (void)spent, (void)size, (void)found;
-    return TRIBO_ERR_UNSUPPORTED;
-}
+const struct sparse_solver *const tribo_cholmod = NULL;
 
 #endif

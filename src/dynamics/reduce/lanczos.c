@@ -292,7 +292,7 @@ static int count_modes(const struct lanczos *l, const struct matrix *k, double t
         for (size_t i = 0; i < k->rows; i++) {
             l->terms[i] = tribo_matrix_get(k, i, i) + fabs(sigma) * tribo_matrix_get(m, i, i);
         }
-        status = tribo_sparse_inertia(l->shifted->sparse, &shifted, &shifted, l->terms, &inertia);
+        status = tribo_cholmod->inertia(l->shifted->sparse, &shifted, &shifted, l->terms, &inertia);
         tribo_matrix_free(&shifted);
     }
     found->above = sigma;

@@ -27,8 +27,8 @@ struct low_modes {
  * shift    in          > 0
  * shifted  in          the factor of K + shift M
  * wanted   in          > 0
- * Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED (no CHOLMOD), TRIBO_ERR_NO_CONVERGENCE, or TRIBO_ERR_SIZE: only
- * found->count modes exist, because the mass matrix is singular. */
+ * Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE, or TRIBO_ERR_SIZE: only found->count modes exist, because the
+ * mass matrix is singular. Needs CHOLMOD. */
 int tribo_low_modes(const struct matrix *k, const struct matrix *m, double shift, const struct cholesky *shifted, size_t wanted,
                     struct low_modes *found);
 

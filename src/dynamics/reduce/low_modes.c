@@ -224,9 +224,9 @@ static int find_lowest(const tribo_model *m, struct shifted *s, struct reduced *
 {
     const int large = m->ndof > DENSE_MOST || (m->ndof >= SPARSE_LEAST && 4 * m->nmode <= m->ndof);
     size_t where = 0;
-    if (!large || !tribo_sparse_available()) {
+    if (!large || !tribo_cholmod) {
         const int status = find_densely(m, r);
-        if (status != TRIBO_ERR_INDEFINITE || !tribo_sparse_available() || check_mass(m, &where) == TRIBO_ERR_INDEFINITE) {
+        if (status != TRIBO_ERR_INDEFINITE || !tribo_cholmod || check_mass(m, &where) == TRIBO_ERR_INDEFINITE) {
             return status || r->omega2[0] < 0.0 ? status : factorize_shifted(m, s);
         }
     }

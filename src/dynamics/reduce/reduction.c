@@ -52,9 +52,6 @@ static int project_damping(const tribo_model *m, const struct reduced *r, struct
             c[i * n + k] = fabs(sum) > NO_DAMPING * tribo_size_of_eight(whole, phi, size) ? sum : 0.0;
         }
     }
-    if (c) {
-        tribo_even_out(n, c);
-    }
     const int done = c && tribo_matrix_from_dense(to, n, n, c);
     free(c);
     return done;

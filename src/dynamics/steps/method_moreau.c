@@ -89,7 +89,7 @@ static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
     const size_t c = sys->ncontact;
     /* S^-1 J' is kept up to 1/5 of the entries of a sparse factor: a step then solves with S once instead of twice. */
     const int keeps =
-        !m->matrix.sparse.sparse || sys->ncontact * sys->ndof <= tribo_sparse_factor_entries(m->matrix.sparse.sparse) / 5;
+        !m->matrix.sparse.sparse || sys->ncontact * sys->ndof <= tribo_cholmod->entries(m->matrix.sparse.sparse) / 5;
     tribo_destroy(m->contacts);
     m->contacts = NULL;
     m->settings = sys->changes;

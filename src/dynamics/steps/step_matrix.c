@@ -141,7 +141,7 @@ int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, dou
         /* a sparse factor costs less than the band if that has far more entries than S, or is almost the whole matrix */
         const size_t n = m->n, width = m->below > m->above ? m->below : m->above;
         const int sparse = n >= SPARSE_LEAST && (width > 5 * (m->s.first[n] / n + 1) || 2 * width > n);
-        if (sparse && !m->count && tribo_sparse_available()) {
+        if (sparse && !m->count && tribo_cholmod) {
             status = tribo_cholesky_create(&m->sparse, &m->s, &m->s, &where, &x);
         } else {
             m->band = malloc(n * (m->below + 1) * sizeof *m->band);

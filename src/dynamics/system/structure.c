@@ -74,7 +74,7 @@ static int check_unsolved(const tribo_model *m)
 {
     size_t i, j;
     double x, y;
-    if (!tribo_sparse_available()) {
+    if (!tribo_cholmod) {
         return tribo_model_too_large(m);
     }
     if (m->damping.rows && tribo_matrix_flaw(&m->damping, 1, &i, &j, &x, &y)) {

@@ -340,6 +340,22 @@ TEST(drift_beside_a_contact)
     tribo_system_destroy(sys);
 }
 
+/* Forces of a damping matrix that is not symmetric, as of a rotor, stay as they are. */
+TEST(rotor)
+{
+    const double mass[] = {1.0, 0.0, 0.0, 1.0}, damping_matrix[] = {0.1, 5.0, -4.0, 0.2}, stiffness[] = {2.0, 0.0, 0.0, 3.0},
+                 direction[] = {1.0, 0.0};
+    const double y[] = {0.0, 0.0, 1.0, 2.0, 0.0}, want[] = {-10.1, 3.6};
+    char text[200] = "";
+    double rate[5];
+    tribo_system *sys;
+    require(!dense_system(&sys, 2, 1, mass, damping_matrix, stiffness, direction, 2, text, sizeof text), "%s", text);
+    assert_ok(tribo_system_derivative(sys, 0.0, y, rate));
+    assert_close(rate[2], want[0], 1e-12);
+    assert_close(rate[3], want[1], 1e-12);
+    tribo_system_destroy(sys);
+}
+
 /* A copy knows it, too. */
 TEST(copies_keep_truncation)
 {
@@ -354,4 +370,4 @@ TEST(copies_keep_truncation)
 }
 
 TEST_MAIN("reduced", {drift_beside_a_contact, 1}, {beam_stuck, 4}, {beam_best, 8}, {truncation_bounds, 8}, {truncation_errors, 1},
-          {all_of_a_small_structure, 4}, {free_bodies, 1}, {drifts_left_out, 100}, {copies_keep_truncation, 1})
+          {all_of_a_small_structure, 4}, {free_bodies, 1}, {drifts_left_out, 100}, {rotor, 1}, {copies_keep_truncation, 1})
