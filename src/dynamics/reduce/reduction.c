@@ -67,17 +67,16 @@ static int project_damping(const tribo_model *m, const struct reduced *r, struct
  *     q'' + Omega^2 q = modes' p + P'f,   displacements = Phi q + residual'f. */
 struct compliant {
     size_t modes, contacts, soft;
-    size_t *contact;        /* [soft] ascending */
-    double *shapes, *rigid; /* [contacts][modes] P of all contacts; of rigid contacts, 0 of others */
-    double *own, *entries;  /* [contacts] G_ii; [contacts][contacts] G */
-    double *by;             /* [contacts][modes + soft] -f by q and w: G^-1 P and -G^-1 */
+    size_t *contact;       /* [soft] ascending */
+    double *shapes;        /* [contacts][modes] P of all contacts */
+    double *own, *entries; /* [contacts] G_ii; [contacts][contacts] G */
+    double *by;            /* [contacts][modes + soft] -f by q and w: G^-1 P and -G^-1 */
 };
 
-/* Sets contact, rigid, own and entries. Contacts with springs before their sliders (compliance [contacts] > 0; NULL: no
- * springs) are soft, and contacts that are not rigid by RIGID. Returns 1 if G is not diagonal. */
-static int find_soft(struct compliant *e, const struct reduced *r, const double *compliance)
+/* Sets contact, own and entries. Contacts with springs before their sliders (compliance [contacts] > 0; NULL: no springs) are
+ * soft, and contacts that are not rigid by RIGID. */
+static void find_soft(struct compliant *e, const struct reduced *r, const double *compliance)
 {
-    int shared = 0;
     for (size_t i = 0; i < e->contacts; i++) {
         const double *shape = e->shapes + i * e->modes, spring = compliance ? compliance[i] : 0.0;
         const double own = spring + (r->flexibility ? r->flexibility[i * e->contacts + i] : 0.0);
@@ -88,18 +87,14 @@ static int find_soft(struct compliant *e, const struct reduced *r, const double 
         if (spring > 0.0 || own > RIGID * whole) {
             e->contact[e->soft++] = i;
             e->own[i] = own;
-        } else {
-            memcpy(e->rigid + i * e->modes, shape, e->modes * sizeof *shape);
         }
     }
     for (size_t a = 0; a < e->soft; a++) {
         for (size_t b = 0; b < e->soft; b++) {
             const size_t at = e->contact[a] * e->contacts + e->contact[b];
             e->entries[at] = a == b ? e->own[e->contact[a]] : r->flexibility ? r->flexibility[at] : 0.0;
-            shared |= a != b && e->entries[at] != 0.0;
         }
     }
-    return shared;
 }
 
 /* Sets sys->reduced: modes [given][modes + soft] = displacements by q and w; truncation. Returns 0 if out of memory. */
@@ -135,12 +130,10 @@ static int build_reduced(const tribo_model *m, const struct reduced *r, tribo_sy
     struct compliant e = {.modes = k, .contacts = c};
     struct layout l = {0};
     tribo_model modal = {.ndof = k, .ncontact = c, .nmode = k, .message = m->message};
-    struct matrix direction = {0};
-    size_t where = 0;
+    size_t where = c;
     do {
         e.contact = tribo_layout_array(&l, c, sizeof *e.contact);
         e.shapes = tribo_layout_array(&l, c * k, sizeof *e.shapes);
-        e.rigid = tribo_layout_array(&l, c * k, sizeof *e.rigid);
         e.own = tribo_layout_array(&l, c, sizeof *e.own);
         e.entries = tribo_layout_array(&l, c * c, sizeof *e.entries);
         e.by = tribo_layout_array(&l, c * (k + c), sizeof *e.by);
@@ -149,31 +142,28 @@ static int build_reduced(const tribo_model *m, const struct reduced *r, tribo_sy
         return TRIBO_ERR_MEMORY;
     }
     find_shapes(m, r, e.shapes);
-    const int shared = find_soft(&e, r, m->compliance);
+    find_soft(&e, r, m->compliance);
     const int done = tribo_matrix_diagonal(&modal.mass, k, NULL) && tribo_matrix_diagonal(&modal.stiffness, k, r->omega2) &&
-                     project_damping(m, r, &modal.damping) && tribo_matrix_from_dense(&modal.direction, c, k, e.rigid) &&
-                     tribo_matrix_from_dense(&direction, c, k, e.shapes);
-    int status = done ? tribo_model_build_massive(&modal, sys) : TRIBO_ERR_MEMORY;
+                     project_damping(m, r, &modal.damping) && tribo_matrix_from_dense(&modal.direction, c, k, e.shapes);
+    int status = done ? tribo_model_build_massive(&modal, e.soft ? e.own : NULL, r->flexibility ? e.entries : NULL, &where, sys)
+                      : TRIBO_ERR_MEMORY;
     tribo_model_free(&modal);
     if (!status && e.soft) {
         struct expansion x = {k, m->flexible ? 0 : e.soft, .place = malloc((k + e.soft) * sizeof *x.place)};
         for (size_t d = 0; x.place && d < k; d++) {
             x.place[d] = d;
         }
-        status = x.place ? tribo_compliance_create(*sys, &direction, e.own, shared ? e.entries : NULL, &where) : TRIBO_ERR_MEMORY;
-        status = status || tribo_expansion_create(*sys, &x, e.own) ? status : TRIBO_ERR_MEMORY;
+        status = x.place && tribo_expansion_create(*sys, &x, e.own) ? TRIBO_OK : TRIBO_ERR_MEMORY;
         tribo_expansion_free(&x);
     }
     status = status || set_modes(&e, m->ndof, r, *sys) ? status : TRIBO_ERR_MEMORY;
-    tribo_matrix_free(&direction);
     free(l.memory);
-    return status == TRIBO_ERR_INDEFINITE
-               ? tribo_model_fail(
-                     m, TRIBO_ERR_UNSUPPORTED,
-                     "the flexibility that %zu mode%s to contact %zu is that of other contacts: take other modes, or "
-                     "TRIBO_STATICS_MASS",
-                     k, k == 1 ? " leaves" : "s leave", where)
-               : status;
+    return where < c ? tribo_model_fail(
+                           m, TRIBO_ERR_UNSUPPORTED,
+                           "the flexibility that %zu mode%s to contact %zu is that of other contacts: take other modes, or "
+                           "TRIBO_STATICS_MASS",
+                           k, k == 1 ? " leaves" : "s leave", where)
+                     : status;
 }
 
 int tribo_model_reduce(tribo_model *m, tribo_system **sys)

@@ -70,14 +70,9 @@ static int find_stiffest(tribo_system *sys)
     return 1;
 }
 
-int tribo_compliance_create(tribo_system *sys, struct matrix *direction, const double *own, const double *entries, size_t *where)
+int tribo_compliance_create(tribo_system *sys, const double *own, const double *entries, size_t *where)
 {
     struct compliance *g = &sys->compliance;
-    if (direction) {
-        tribo_matrix_free(&sys->direction);
-        sys->direction = *direction;
-        *direction = (struct matrix){0};
-    }
     struct layout l = {0};
     do {
         g->contact = tribo_layout_array(&l, sys->ncontact, sizeof *g->contact);
@@ -104,7 +99,7 @@ int tribo_compliance_copy(tribo_system *to, const tribo_system *from)
 {
     const struct definite *g = from->compliance.g;
     size_t where;
-    return !g || !tribo_compliance_create(to, NULL, g->own, g->matrix, &where);
+    return !g || !tribo_compliance_create(to, g->own, g->matrix, &where);
 }
 
 /* Largest stiffness of a compliant contact, relative to the structure. At this ratio the compliance changes a motion by 1e-8 of

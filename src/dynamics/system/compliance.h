@@ -39,10 +39,10 @@ static inline double tribo_compliance_entry(const struct compliance *g, size_t n
     return g->count && g->g->matrix ? g->g->matrix[i * n + k] : g->count && i == k ? g->own[i] : 0.0;
 }
 
-/* Sets J and G of sys; R and M^-1 J' of sys belong to the rigid contacts. direction: J of all contacts, taken; NULL: sys has J.
- * own [ncontact]: G_ii. entries [ncontact][ncontact]: G; NULL: diagonal. Returns TRIBO_OK, TRIBO_ERR_MEMORY, or
- * TRIBO_ERR_INDEFINITE and *where = a contact with a row of G that depends on earlier rows. */
-int tribo_compliance_create(tribo_system *sys, struct matrix *direction, const double *own, const double *entries, size_t *where);
+/* Sets G of sys; R and M^-1 J' of sys belong to the rigid contacts. own [ncontact]: G_ii. entries [ncontact][ncontact]: G; NULL:
+ * diagonal. Returns TRIBO_OK, TRIBO_ERR_MEMORY, or TRIBO_ERR_INDEFINITE and *where = a contact with a row of G that depends on
+ * earlier rows. */
+int tribo_compliance_create(tribo_system *sys, const double *own, const double *entries, size_t *where);
 int tribo_compliance_copy(tribo_system *to, const tribo_system *from); /* 1, or 0 if out of memory */
 void tribo_compliance_free(struct compliance *g);
 

@@ -16,20 +16,19 @@
 #define ROUNDING (64.0 * DBL_EPSILON)
 
 struct condensed {
-    size_t with, without;         /* lengths of q, of w */
-    struct expansion x;           /* of the system, before the sliders are appended */
-    double *row, *sum, *size;     /* [ndof] workspace; sum of the entries of a row, and of their sizes, by columns */
-    size_t columns, *column;      /* columns of a row with an entry */
-    double *own, *shared;         /* [ncontact] G_ii; [ncontact][ncontact] G, NULL if G is diagonal */
-    struct cholesky factor;       /* Cholesky factor of K_ww */
-    struct matrix kww, direction; /* block of K; J_q + J_w follow */
+    size_t with, without;     /* lengths of q, of w */
+    struct expansion x;       /* of the system, before the sliders are appended */
+    double *row, *sum, *size; /* [ndof] workspace; sum of the entries of a row, and of their sizes, by columns */
+    size_t columns, *column;  /* columns of a row with an entry */
+    double *own, *shared;     /* [ncontact] G_ii; [ncontact][ncontact] G, NULL if G is diagonal */
+    struct matrix kww;        /* block of K */
+    struct cholesky factor;   /* Cholesky factor of K_ww */
 };
 
 static void condensed_free(struct condensed *s)
 {
     tribo_expansion_free(&s->x);
     tribo_matrix_free(&s->kww);
-    tribo_matrix_free(&s->direction);
     tribo_cholesky_free(&s->factor);
     free(s->row);
     free(s->column);
@@ -191,18 +190,16 @@ static void combine_add(struct condensed *s, size_t j, double x)
     s->size[j] += fabs(x);
 }
 
-/* to = columns q + (columns w) follow of a, of the rows q, or of all rows (a = J); 0 for entries that are rounding and rows with
- * skip [rows] != 0 (NULL: none). terms [rows] out, or NULL: sum of the sizes of the terms of to_ii. Returns 0 if out of
- * memory. */
-static int condense_combine(struct condensed *s, const struct matrix *a, int all, const double *skip, double *terms,
-                            struct matrix *to)
+/* to = columns q + (columns w) follow of a, of the rows q, or of all rows (a = J); 0 for entries that are rounding. terms [rows]
+ * out, or NULL: sum of the sizes of the terms of to_ii. Returns 0 if out of memory. */
+static int condense_combine(struct condensed *s, const struct matrix *a, int all, double *terms, struct matrix *to)
 {
     const size_t *place = s->x.place, rows = all ? a->rows : s->with;
     const struct matrix *follow = &s->x.follow;
     struct triplets t = {0};
     for (size_t i = 0; i < a->rows; i++) {
         const size_t row = all ? i : place[i];
-        for (size_t e = a->first[i]; row < rows && !(skip && skip[row] != 0.0) && e < a->first[i + 1]; e++) {
+        for (size_t e = a->first[i]; row < rows && e < a->first[i + 1]; e++) {
             const size_t j = place[a->col[e]], w = j < s->with ? s->without : j - s->with;
             if (w == s->without) {
                 combine_add(s, j, a->val[e]);
@@ -223,22 +220,22 @@ static int condense_combine(struct condensed *s, const struct matrix *a, int all
     return tribo_triplets_finish(&t, rows, s->with, to);
 }
 
-/* Replaces the matrices of m by the matrices of q, with empty rows of J for compliant contacts. Returns 0 if out of memory. */
+/* Replaces the matrices of m by the matrices of q. Returns 0 if out of memory. */
 static int replace_matrices(tribo_model *m, struct condensed *s)
 {
-    struct matrix mass = {0}, damping = {0}, stiffness = {0}, rigid = {0}, half = {0}, other = {0};
-    const int done = condense_combine(s, &m->mass, 0, NULL, NULL, &mass) &&
-                     (!m->damping.rows || condense_combine(s, &m->damping, 0, NULL, NULL, &damping)) &&
-                     condense_combine(s, &m->stiffness, 0, NULL, s->x.terms, &half) && tribo_matrix_transpose(&other, &half) &&
+    struct matrix mass = {0}, damping = {0}, stiffness = {0}, direction = {0}, half = {0}, other = {0};
+    const int done = condense_combine(s, &m->mass, 0, NULL, &mass) &&
+                     (!m->damping.rows || condense_combine(s, &m->damping, 0, NULL, &damping)) &&
+                     condense_combine(s, &m->stiffness, 0, s->x.terms, &half) && tribo_matrix_transpose(&other, &half) &&
                      tribo_matrix_sum(&stiffness, 0.5, &half, 0.5, &other) &&
-                     condense_combine(s, &m->direction, 1, s->own, NULL, &rigid);
+                     condense_combine(s, &m->direction, 1, NULL, &direction);
     tribo_matrix_free(&half);
     tribo_matrix_free(&other);
     tribo_model_free(m);
     m->mass = mass;
     m->damping = damping;
     m->stiffness = stiffness;
-    m->direction = rigid;
+    m->direction = direction;
     m->ndof = s->with;
     return done;
 }
@@ -254,25 +251,24 @@ int tribo_model_condense(tribo_model *m, tribo_system **sys)
     }
     if (status || s.without + s.x.sliders == 0 || s.with == 0) {
         condensed_free(&s);
-        return status ? status : tribo_model_build_massive(m, sys);
+        return status ? status : tribo_model_build_massive(m, NULL, NULL, &where, sys);
     }
     int done = take_without(&s, &m->stiffness, 0, &s.kww) && take_without(&s, &m->direction, 1, &s.x.touch);
     status = done ? check_damping(m, &s) : TRIBO_ERR_MEMORY;
     status = status ? status : factorize_without(m, &s);
     if (!status) {
-        done = find_compliance(m, &s) && find_follow(m, &s) && condense_combine(&s, &m->direction, 1, NULL, NULL, &s.direction) &&
-               replace_matrices(m, &s);
-        status = done ? tribo_model_build_massive(m, sys) : TRIBO_ERR_MEMORY;
+        where = m->ncontact;
+        done = find_compliance(m, &s) && find_follow(m, &s) && replace_matrices(m, &s);
+        status = done ? tribo_model_build_massive(m, s.own, s.shared, &where, sys) : TRIBO_ERR_MEMORY;
+        if (where < m->ncontact) {
+            status = tribo_model_fail(
+                m, TRIBO_ERR_UNSUPPORTED,
+                "contact %zu moves degrees of freedom without mass only as other contacts do: give these mass", where);
+        }
     }
     if (!status) {
         (*sys)->given = given;
-        status = tribo_compliance_create(*sys, &s.direction, s.own, s.shared, &where);
-        status = status || tribo_expansion_create(*sys, &s.x, m->compliance) ? status : TRIBO_ERR_MEMORY;
-        status = status == TRIBO_ERR_INDEFINITE
-                     ? tribo_model_fail(
-                           m, TRIBO_ERR_UNSUPPORTED,
-                           "contact %zu moves degrees of freedom without mass only as other contacts do: give these mass", where)
-                     : status;
+        status = tribo_expansion_create(*sys, &s.x, m->compliance) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     }
     condensed_free(&s);
     return status;

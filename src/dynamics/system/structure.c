@@ -89,9 +89,8 @@ static int check_unsolved(const tribo_model *m)
 
 /* Sets R in the contacts: Z'Z, Z [ndof][ncontact], symmetric, and semidefinite up to rounding; z NULL: J M^-1 J' by the factor
  * of sys. Refuses an R that hides bodies, unless the degrees of freedom are modes. Returns a status. */
-static int set_dense_operator(const tribo_model *m, tribo_system *sys, const double *z)
+static int set_dense_operator(const tribo_model *m, tribo_system *sys, const struct matrix *j, const double *z)
 {
-    const struct matrix *j = &sys->direction;
     const size_t c = m->ncontact;
     struct hidden where;
     double *r = calloc(c * c + 1, sizeof *r), *own = malloc((j->first[c] + 1) * sizeof *own);
@@ -133,9 +132,8 @@ static int solve_matrix(const struct cholesky *c, const struct matrix *a, struct
 }
 
 /* Sets M^-1 K, M^-1 C and, in the place of J', M^-1 J' of sys, for a diagonal mass matrix; sets R. Returns a status. */
-static int divide_by_masses(const tribo_model *m, tribo_system *sys)
+static int divide_by_masses(const tribo_model *m, tribo_system *sys, const struct matrix *j)
 {
-    const struct matrix *j = &sys->direction;
     double *inverse = malloc(m->ndof * sizeof *inverse);
     if (!inverse || !tribo_matrix_copy(&sys->stiffness, &sys->k) || !tribo_matrix_copy(&sys->damping, &sys->c)) {
         free(inverse);
@@ -153,7 +151,7 @@ static int divide_by_masses(const tribo_model *m, tribo_system *sys)
 }
 
 /* Sets M^-1 K, M^-1 C and, in the place of J', M^-1 J' of sys by the factor of M; sets R. Returns a status. */
-static int solve_by_masses(const tribo_model *m, tribo_system *sys)
+static int solve_by_masses(const tribo_model *m, tribo_system *sys, const struct matrix *j)
 {
     const struct cholesky *c = &sys->factor;
     struct matrix turned = sys->response;
@@ -164,13 +162,13 @@ static int solve_by_masses(const tribo_model *m, tribo_system *sys)
     if (done && m->ncontact) {
         tribo_half_solve(c, 0, z, m->ncontact);
     }
-    const int status = done ? set_dense_operator(m, sys, z) : TRIBO_ERR_MEMORY;
+    const int status = done ? set_dense_operator(m, sys, j, z) : TRIBO_ERR_MEMORY;
     tribo_matrix_free(&turned);
     free(z);
     return status;
 }
 
-int tribo_model_build_massive(tribo_model *m, tribo_system **sys)
+int tribo_model_build_massive(tribo_model *m, const double *own, const double *entries, size_t *where, tribo_system **sys)
 {
     const int diagonal = tribo_matrix_is_diagonal(&m->mass), unsolved = !diagonal && m->ndof > DENSE_MOST;
     int status = unsolved ? check_unsolved(m) : TRIBO_OK;
@@ -189,15 +187,24 @@ int tribo_model_build_massive(tribo_model *m, tribo_system **sys)
     s->c = m->damping;
     s->direction = m->direction;
     m->mass = m->stiffness = m->damping = m->direction = (struct matrix){0};
-    if (!tribo_matrix_transpose(&s->response, &s->direction)) {
-        return TRIBO_ERR_MEMORY;
+    struct matrix rigid = {0}; /* J with empty rows of compliant contacts */
+    struct triplets rows = {0};
+    for (size_t i = 0; i < m->ncontact; i++) {
+        if (!(own && own[i] > 0.0)) {
+            tribo_triplets_put_row(&rows, i, &s->direction, i);
+        }
     }
-    if (unsolved) {
-        status = set_dense_operator(m, s, NULL);
+    if (!tribo_triplets_finish(&rows, m->ncontact, m->ndof, &rigid) || !tribo_matrix_transpose(&s->response, &rigid)) {
+        status = TRIBO_ERR_MEMORY;
+    } else if (unsolved) {
+        status = set_dense_operator(m, s, &rigid, NULL);
         tribo_cholesky_free(&s->factor);
-        return status;
+    } else {
+        status = (diagonal && !m->nmode ? divide_by_masses : solve_by_masses)(m, s, &rigid);
     }
-    return diagonal && !m->nmode ? divide_by_masses(m, s) : solve_by_masses(m, s);
+    tribo_matrix_free(&rigid);
+    *where = m->ncontact;
+    return status || !own ? status : tribo_compliance_create(s, own, entries, where);
 }
 
 int tribo_model_build(tribo_model *m, tribo_system **sys)
