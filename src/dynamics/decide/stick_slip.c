@@ -214,7 +214,6 @@ static double find_size(struct stick_slip *m, const tribo_system *sys, const dou
     for (size_t s = 0; sys->loads.tables && s < sys->loads.harmonics; s++) {
         const struct harmonic *w = &sys->loads.harmonic[s];
         const size_t all[] = {0, w->drives == DRIVES_LOAD && w->knots ? w->count : 0}, at = tribo_rows_find(all, w->index, 0, d);
-        tribo_system_turn(sys, s);
         size += at < w->count ? fabs(w->cosine[at] * w->cos_t) : 0.0;
     }
     size += sys->damping.rows ? tribo_matrix_row_size(&sys->damping, d, y + sys->ndof) : 0.0;

@@ -229,7 +229,6 @@ static void start_harmonics(struct exact *x)
         const struct forcing *f = &h->forcing[s];
         const struct harmonic *w = &x->sys->loads.harmonic[f->harmonic];
         const double side = f->contact == x->sys->ncontact ? 1.0 : tribo_stick_slip_follows(&x->events.stick_slip, f->contact);
-        tribo_system_turn(x->sys, f->harmonic);
         x->z.re[p] = side * w->cos_t;
         x->z.im[p] = side * w->sin_t;
         x->growth[p] = fabs(side);

@@ -125,7 +125,6 @@ static void few_find_drives(tribo_system *sys, enum drives drives, size_t n, siz
             tribo_cos_sin_all(h->omega, count, t, cosine, sine);
             for (size_t s = 0; h->knots && s < count; s++) {
                 tribo_system_set_time(sys, t[s]);
-                tribo_system_turn(sys, k);
                 cosine[s] = h->cos_t;
             }
             for (size_t e = 0; e < h->count; e++) {
@@ -153,8 +152,11 @@ static int few_find_all(struct few_bodies *b, tribo_system *sys, size_t count, c
     }
     few_find_drives(sys, DRIVES_LOAD, sys->ndof, count, t, b->load);
     few_find_drives(sys, DRIVES_BASE, sys->ncontact, count, middle, b->base);
-    for (size_t s = 0; s < (tribo_system_limits_vary(sys) ? count : 1); s++) {
-        tribo_system_set_time(sys, t[s]);
+    const int vary = tribo_system_limits_vary(sys);
+    for (size_t s = 0; s < (vary ? count : 1); s++) {
+        if (vary) {
+            tribo_system_set_time(sys, t[s]);
+        }
         tribo_get_limit(sys->contacts, b->limit[s]);
         for (size_t i = 0; i < sys->ncontact; i++) {
             fits &= b->limit[s][i] <= TRIBO_SMALL_MOST;

@@ -55,7 +55,7 @@ static void loads_changed(tribo_system *sys)
         l->limit_tables += h->drives == DRIVES_LIMIT && h->knots > 0;
     }
     sys->revision++;
-    tribo_system_forget_time(sys);
+    l->time = NAN;
 }
 
 int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
@@ -73,14 +73,6 @@ int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
 }
 
 /* ------------------------------------------------------------------------------------------------------------------ at a time */
-
-void tribo_system_forget_time(tribo_system *sys)
-{
-    sys->loads.time = NAN;
-    for (size_t k = 0; k < sys->loads.harmonics; k++) {
-        sys->loads.harmonic[k].time = NAN;
-    }
-}
 
 /* Returns the last knot of a table at or before t; 0 if there is none. */
 static size_t knot_at(const struct harmonic *h, double t)
@@ -105,17 +97,6 @@ static double look_up(const tribo_system *sys, const struct harmonic *h, size_t 
     return order ? slope : v[0] + slope * (sys->loads.time - h->knot[k] + sys->loads.low);
 }
 
-void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h)
-{
-    h->time = sys->loads.time;
-    if (h->knots == 0) {
-        tribo_cos_sin(h->omega, sys->loads.time, sys->loads.low, &h->cos_t, &h->sin_t);
-    } else if (h->count) {
-        h->at = knot_at(h, sys->loads.time);
-        h->cos_t = look_up(sys, h, 0, 0);
-    }
-}
-
 void tribo_system_put_limits(tribo_system *sys, double later)
 {
     tribo_system_limits(sys, sys->work.put_limit, sys->work.feq);
@@ -129,17 +110,26 @@ void tribo_system_set_low(tribo_system *sys, double low)
 {
     if (low != sys->loads.low) {
         sys->loads.low = low;
-        tribo_system_forget_time(sys);
+        sys->loads.time = NAN;
     }
 }
 
 void tribo_system_set_time(tribo_system *sys, double t)
 {
-    if (t != sys->loads.time) {
-        sys->loads.time = t;
-        if (tribo_system_limits_vary(sys)) {
-            tribo_system_put_limits(sys, 0.0);
+    if (t == sys->loads.time) {
+        return;
+    }
+    sys->loads.time = t;
+    for (struct harmonic *h = sys->loads.harmonic; h < sys->loads.harmonic + sys->loads.harmonics; h++) {
+        if (h->knots == 0) {
+            tribo_cos_sin(h->omega, t, sys->loads.low, &h->cos_t, &h->sin_t);
+        } else if (h->count) {
+            h->at = knot_at(h, t);
+            h->cos_t = look_up(sys, h, 0, 0);
         }
+    }
+    if (tribo_system_limits_vary(sys)) {
+        tribo_system_put_limits(sys, 0.0);
     }
 }
 
@@ -170,7 +160,6 @@ double tribo_system_next_kink(const tribo_system *sys, double t)
 static inline void loads_differentiate(const tribo_system *sys, size_t k, size_t e, int order, double *c, double *s)
 {
     const struct harmonic *h = &sys->loads.harmonic[k];
-    tribo_system_turn(sys, k);
     if (h->knots) {
         *c = h->columns > 1 || order ? look_up(sys, h, h->columns > 1 ? e : 0, order) : h->cos_t;
         *s = 0.0;

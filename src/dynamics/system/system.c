@@ -158,7 +158,7 @@ int tribo_system_take_settings(tribo_system *sys)
         tribo_get_limit(sys->lent, sys->loads.given_limit);
         sys->copied = now;
         sys->changes++;
-        tribo_system_forget_time(sys);
+        sys->loads.time = NAN;
     }
     return tribo_system_explain(sys, status);
 }

@@ -21,8 +21,8 @@ struct harmonic {
     enum drives drives;
     int by_load;               /* 1: base motion that a load causes (tribo_system_add_load), removed with the loads */
     double omega;              /* tables: 0 */
-    double time, cos_t, sin_t; /* cos(omega time), sin(omega time); of a table, cos_t: value of column 0; time NaN: none */
-    size_t knots, columns, at; /* at: last knot at or before time, or 0; knots, columns 0: a harmonic */
+    double cos_t, sin_t;       /* cos(omega t), sin(omega t) at the set time t; of a table, cos_t: value of column 0 */
+    size_t knots, columns, at; /* at: last knot at or before the set time, or 0; knots, columns 0: a harmonic */
     size_t count;              /* entries: limits have all contacts; else those with cosine or sine not 0 */
     size_t *index;             /* [count] degree of freedom, or contact */
     double *cosine, *sine;     /* [count] accelerations, velocities or limits; tables: 1 for limits; 0 */
@@ -53,7 +53,8 @@ struct loads {
     size_t tables;             /* number of tables */
     size_t limit_tables;       /* number of tables of limits, at most 1 */
     double *given_limit;       /* [ncontact] limits set by the caller; valid while limits vary */
-    double time, low;          /* the set time (NaN: none) and its part below the last digit (tribo_system_set_low) */
+    double time,
+        low; /* the set time (NaN: none, the next one is computed anew) and its part below the last digit (tribo_system_set_low) */
 };
 
 /* A reduced system. The modes convert loads to accelerations. */
@@ -150,21 +151,6 @@ int tribo_loads_copy(tribo_system *sys, const tribo_system *from);
 
 /* Sets time t. If limits vary, sets the limits of the contacts at t. */
 void tribo_system_set_time(tribo_system *sys, double t);
-
-/* Sets sys->loads.time and the time of all harmonics to NaN: the next use computes everything again. */
-void tribo_system_forget_time(tribo_system *sys);
-
-/* Sets cos_t and sin_t of h at the set time. */
-void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h);
-
-/* Sets cos_t and sin_t of harmonic k, unless they are of the set time. Call before reading these. */
-static inline void tribo_system_turn(const tribo_system *sys, size_t k)
-{
-    struct harmonic *h = &sys->loads.harmonic[k];
-    if (h->time != sys->loads.time) {
-        tribo_harmonic_turn(sys, h);
-    }
-}
 
 /* Sets the part of the time below its last digit: all times t mean t + low. An event can lie between two adjacent doubles t. */
 void tribo_system_set_low(tribo_system *sys, double low);
