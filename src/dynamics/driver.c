@@ -282,31 +282,23 @@ static int check_times(tribo_driver *drv, const double *t, double t1, const doub
     return TRIBO_OK;
 }
 
-/* Copies the context's settings. Returns TRIBO_OK if the method of drv can integrate the system with these settings. */
-static int check_settings(tribo_driver *drv)
-{
-    const int status = tribo_system_take_settings(drv->sys);
-    if (status) {
-        return tribo_driver_pass(drv, status);
-    }
-    if ((drv->method->takes & (TAKES_STEP | TAKES_TOLERANCE)) == TAKES_STEP && drv->dt == 0.0) {
-        return tribo_driver_fail(drv, TRIBO_ERR_STATE, "method %s has no step: call tribo_driver_set_step", drv->method->name);
-    }
-    return tribo_driver_pass(drv, tribo_system_check_contacts(drv->sys, drv->method->name, drv->method->takes & NEEDS_SCALAR));
-}
-
 /* tribo_driver_advance for a methods' state y [tribo_system_size]. */
 static int advance_motion(tribo_driver *drv, double *t, double t1, double *y)
 {
-    int status = check_settings(drv);
-    if (status || t1 == *t) {
-        return status;
-    }
     tribo_system *sys = drv->sys;
+    const struct method *method = drv->method;
+    int status = tribo_system_take_settings(sys);
+    if (!status && (method->takes & (TAKES_STEP | TAKES_TOLERANCE)) == TAKES_STEP && drv->dt == 0.0) {
+        return tribo_driver_fail(drv, TRIBO_ERR_STATE, "method %s has no step: call tribo_driver_set_step", method->name);
+    }
+    status = status ? status : tribo_system_check_contacts(sys, method->name, method->takes & NEEDS_SCALAR);
+    if (status || t1 == *t) {
+        return tribo_driver_pass(drv, status);
+    }
     const size_t bytes = tribo_system_size(sys) * sizeof *y, evaluations = sys->evaluations, jacobians = sys->jacobians;
     const int continues = *t == drv->time && drv->revision == tribo_system_revision(sys) && memcmp(y, drv->state, bytes) == 0;
     tribo_driver_keep(drv, *t, y);
-    status = drv->method->advance(drv, t, t1, y, continues);
+    status = method->advance(drv, t, t1, y, continues);
     status = status ? status : tribo_driver_check(drv, y);
     if (!status) {
         tribo_driver_keep(drv, *t, y);

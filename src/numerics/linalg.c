@@ -296,7 +296,7 @@ void tribo_lu_solve(const double *lu, size_t n, const int *pivot, double *x, siz
     }
 }
 
-int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors)
+int tribo_symmetric_eigen(double *a, size_t n, double *values)
 {
     enum { BLOCK = 32 };
     if (n == 0) {
@@ -319,7 +319,7 @@ int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors)
         }
         const double sign = a[k * n + most] < 0.0 ? -1.0 : 1.0;
         for (size_t i = 0; i < n; i++) {
-            vectors[i * n + k] = sign * a[k * n + i];
+            a[k * n + i] *= sign;
         }
     }
     return info ? TRIBO_ERR_NO_CONVERGENCE : TRIBO_OK;
@@ -330,12 +330,13 @@ int tribo_symmetric_eigen_by(const struct cholesky *b, double *a, size_t n, doub
     tribo_half_solve(b, 0, a, n);
     tribo_transpose(n, n, a, vectors);
     tribo_half_solve(b, 0, vectors, n);
-    memcpy(a, vectors, n * n * sizeof *a);
-    if (!tribo_dense_finite(a, n * n)) {
+    if (!tribo_dense_finite(vectors, n * n)) {
         return TRIBO_ERR_NOT_FINITE;
     }
-    const int status = tribo_symmetric_eigen(a, n, values, vectors);
-    tribo_half_solve(b, 1, vectors, n);
+    const int status = tribo_symmetric_eigen(vectors, n, values);
+    tribo_transpose(n, n, vectors, a);
+    tribo_half_solve(b, 1, a, n);
+    tribo_transpose(n, n, a, vectors);
     return status;
 }
 

@@ -75,11 +75,12 @@ double tribo_lu_create(double *a, size_t n, int *pivot);
 /* x [n][cols] = A^-1 x. */
 void tribo_lu_solve(const double *lu, size_t n, const int *pivot, double *x, size_t cols);
 
-/* values [n] = eigenvalues, ascending, and vectors [n][n] = orthonormal eigenvectors, as columns, of a symmetric a [n][n].
- * Overwrites a. Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE. */
-int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors);
+/* values [n] = eigenvalues, ascending, of a symmetric a [n][n]; a = orthonormal eigenvectors, in rows. Returns TRIBO_OK,
+ * TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE. */
+int tribo_symmetric_eigen(double *a, size_t n, double *values);
 
-/* The same of A x = value B x, B by its factor b, vectors orthonormal in B. Returns also TRIBO_ERR_NOT_FINITE: A/B overflows. */
+/* The same of A x = value B x, B by its factor b: vectors [n][n], in rows, orthonormal in B. Overwrites a. Returns also
+ * TRIBO_ERR_NOT_FINITE: A/B overflows. */
 int tribo_symmetric_eigen_by(const struct cholesky *b, double *a, size_t n, double *values, double *vectors);
 
 /* Eigenvalues and eigenvectors of a general real matrix.

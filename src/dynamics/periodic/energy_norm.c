@@ -11,13 +11,12 @@
 static int find_free_modes(struct energy_norm *e, const tribo_system *sys)
 {
     const size_t n = e->n;
-    tribo_matrix_spread(&sys->k, e->phi);
-    tribo_even_out(n, e->phi);
-    const int status = tribo_symmetric_eigen_by(&sys->factor, e->phi, n, e->natural, e->psi);
+    tribo_matrix_spread(&sys->k, e->psi);
+    tribo_even_out(n, e->psi);
+    const int status = tribo_symmetric_eigen_by(&sys->factor, e->psi, n, e->natural, e->phi);
     for (size_t i = 0; i < n; i++) {
         e->natural[i] = sqrt(fabs(e->natural[i]));
     }
-    tribo_transpose(n, n, e->psi, e->phi);
     tribo_matrix_multiply_all(&sys->mass, n, e->phi, e->psi);
     return status ? tribo_system_fail(sys, status, "modes of the free structure: %s", tribo_strerror(status)) : TRIBO_OK;
 }

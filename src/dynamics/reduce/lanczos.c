@@ -46,7 +46,7 @@ struct lanczos {
     double *c, *terms;         /* [BLOCK][room], [n] workspace */
     double *h;                 /* [room][room] Q'M shift (K + shift M)^-1 M Q */
     double *theta;             /* [size] eigenvalues of h, shift/(omega^2 + shift), descending */
-    double *s, *work;          /* [size][size] eigenvectors of h, in rows; [room][room] workspace */
+    double *s;                 /* [size][size] eigenvectors of h, in rows */
     double gram[BLOCK][BLOCK]; /* W'M W */
     uint64_t seed;
 };
@@ -169,10 +169,9 @@ static int lanczos_extend(struct lanczos *l)
     for (size_t i = 0; i < m * m; i++) {
         l->s[i] = -l->h[i / m * l->room + i % m];
     }
-    if (tribo_symmetric_eigen(l->s, m, l->theta, l->work)) {
+    if (tribo_symmetric_eigen(l->s, m, l->theta)) {
         return 0;
     }
-    tribo_transpose(m, m, l->work, l->s);
     for (size_t k = 0; k < m; k++) {
         l->theta[k] = -l->theta[k];
     }
@@ -181,26 +180,22 @@ static int lanczos_extend(struct lanczos *l)
 
 /* ------------------------------------------------------------------------------------------------------ modes of the basis */
 
-/* Returns the norm in M of shift (K + shift M)^-1 M x - theta x for mode k. */
-static double residual(const struct lanczos *l, size_t k)
-{
-    const double *s = l->s + k * l->size + l->size - l->pending;
-    double sum = 0.0;
-    for (size_t i = 0; i < l->pending; i++) {
-        for (size_t j = 0; j < l->pending; j++) {
-            sum += s[i] * l->gram[i][j] * s[j];
-        }
-    }
-    return sum > 0.0 ? sqrt(sum) : 0.0;
-}
-
+/* Returns the number of modes x for which the norm in M of shift (K + shift M)^-1 M x - theta x is at most FOUND theta. */
 static size_t count_found(const struct lanczos *l)
 {
-    size_t k = 0;
-    while (k < l->size && l->theta[k] > 0.0 && (l->complete || residual(l, k) <= FOUND * l->theta[k])) {
-        k++;
+    for (size_t k = 0; k < l->size; k++) {
+        const double *s = l->s + k * l->size + l->size - l->pending;
+        double square = 0.0;
+        for (size_t i = 0; i < l->pending && !l->complete; i++) {
+            for (size_t j = 0; j < l->pending; j++) {
+                square += s[i] * l->gram[i][j] * s[j];
+            }
+        }
+        if (!(l->theta[k] > 0.0 && (square <= 0.0 || sqrt(square) <= FOUND * l->theta[k]))) {
+            return k;
+        }
     }
-    return k;
+    return l->size;
 }
 
 /* Replaces the basis by the first `keep` combinations s. */
@@ -379,7 +374,6 @@ int tribo_low_modes(const struct matrix *k, const struct matrix *m, double shift
         l.theta = tribo_layout_array(&memory, room, sizeof *l.theta);
         l.h = tribo_layout_array(&memory, room * room, sizeof *l.h);
         l.s = tribo_layout_array(&memory, room * room, sizeof *l.s);
-        l.work = tribo_layout_array(&memory, room * room, sizeof *l.work);
     } while (!memory.memory && tribo_layout_create(&memory));
     if (!memory.memory) {
         return TRIBO_ERR_MEMORY;

@@ -88,8 +88,7 @@ static int modes_find(struct spectrum *s, const struct cholesky *mass)
 {
     const size_t n = s->n;
     memcpy(s->turn, s->k, n * n * sizeof *s->k);
-    int status = tribo_symmetric_eigen_by(mass, s->turn, n, s->value, s->block);
-    tribo_transpose(n, n, s->block, s->y);
+    int status = tribo_symmetric_eigen_by(mass, s->turn, n, s->value, s->y);
     for (size_t open = n, low = 0; !status && (low = set_apart(s, open)) > 0; open = low) {
         const size_t others = n - low;
         if (low == open) {
@@ -115,8 +114,7 @@ static int modes_find(struct spectrum *s, const struct cholesky *mass)
         take_out(s, low);
         stress(s, 0, low);
         modes_share(s, low, 0, low);
-        status = tribo_symmetric_eigen(s->block, low, s->value, s->turn);
-        tribo_transpose(low, low, s->turn, s->block);
+        status = tribo_symmetric_eigen(s->block, low, s->value);
         memset(s->ky, 0, low * n * sizeof *s->ky);
         tribo_multiply_add(low, low, n, 1.0, s->block, s->y, s->ky);
         memcpy(s->y, s->ky, low * n * sizeof *s->y);

@@ -123,55 +123,52 @@ static int set_modes(const struct compliant *e, size_t given, const struct reduc
     return sys->reduced.modes != NULL;
 }
 
-/* Builds q'' + Phi'C Phi q' + diag(omega^2) q = modes' p + P'f of the basis r. Returns a status. */
-static int build_reduced(const tribo_model *m, const struct reduced *r, tribo_system **sys)
+/* The system is q'' + Phi'C Phi q' + diag(omega^2) q = modes' p + P'f. */
+int tribo_model_reduce(tribo_model *m, tribo_system **sys)
 {
-    const size_t c = m->ncontact, k = r->count;
+    struct reduced r;
+    int status = tribo_model_find_modes(m, &r);
+    const size_t c = m->ncontact, k = r.count;
     struct compliant e = {.modes = k, .contacts = c};
     struct layout l = {0};
     tribo_model modal = {.ndof = k, .ncontact = c, .nmode = k, .message = m->message};
-    size_t where = c;
+    size_t where = 0;
     do {
         e.contact = tribo_layout_array(&l, c, sizeof *e.contact);
         e.shapes = tribo_layout_array(&l, c * k, sizeof *e.shapes);
         e.own = tribo_layout_array(&l, c, sizeof *e.own);
         e.entries = tribo_layout_array(&l, c * c, sizeof *e.entries);
         e.by = tribo_layout_array(&l, c * (k + c), sizeof *e.by);
-    } while (!l.memory && tribo_layout_zeros(&l));
+    } while (!status && !l.memory && tribo_layout_zeros(&l));
     if (!l.memory) {
-        return TRIBO_ERR_MEMORY;
+        tribo_reduced_free(&r);
+        return status ? status : TRIBO_ERR_MEMORY;
     }
-    find_shapes(m, r, e.shapes);
-    find_soft(&e, r, m->compliance);
-    const int done = tribo_matrix_diagonal(&modal.mass, k, NULL) && tribo_matrix_diagonal(&modal.stiffness, k, r->omega2) &&
-                     project_damping(m, r, &modal.damping) && tribo_matrix_from_dense(&modal.direction, c, k, e.shapes);
-    int status = done ? tribo_model_build_massive(&modal, e.soft ? e.own : NULL, r->flexibility ? e.entries : NULL, &where, sys)
-                      : TRIBO_ERR_MEMORY;
+    find_shapes(m, &r, e.shapes);
+    find_soft(&e, &r, m->compliance);
+    const int done = tribo_matrix_diagonal(&modal.mass, k, NULL) && tribo_matrix_diagonal(&modal.stiffness, k, r.omega2) &&
+                     project_damping(m, &r, &modal.damping) && tribo_matrix_from_dense(&modal.direction, c, k, e.shapes);
+    status = done ? tribo_model_build_massive(&modal, e.own, sys) : TRIBO_ERR_MEMORY;
     tribo_model_free(&modal);
     if (!status && e.soft) {
         struct expansion x = {k, m->flexible ? 0 : e.soft, .place = malloc((k + e.soft) * sizeof *x.place)};
         for (size_t d = 0; x.place && d < k; d++) {
             x.place[d] = d;
         }
-        status = x.place && tribo_expansion_create(*sys, &x, e.own) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+        status = x.place ? tribo_compliance_create(*sys, e.own, r.flexibility ? e.entries : NULL, &where) : TRIBO_ERR_MEMORY;
+        status = status || tribo_expansion_create(*sys, &x, e.own) ? status : TRIBO_ERR_MEMORY;
         tribo_expansion_free(&x);
-    }
-    status = status || set_modes(&e, m->ndof, r, *sys) ? status : TRIBO_ERR_MEMORY;
-    free(l.memory);
-    return where < c ? tribo_model_fail(
+        status = status == TRIBO_ERR_INDEFINITE
+                     ? tribo_model_fail(
                            m, TRIBO_ERR_UNSUPPORTED,
                            "the flexibility that %zu mode%s to contact %zu is that of other contacts: take other modes, or "
                            "TRIBO_STATICS_MASS",
                            k, k == 1 ? " leaves" : "s leave", where)
                      : status;
-}
-
-int tribo_model_reduce(tribo_model *m, tribo_system **sys)
-{
-    struct reduced r;
-    int status = tribo_model_find_modes(m, &r);
-    status = status ? status : build_reduced(m, &r, sys);
+    }
+    status = status || set_modes(&e, m->ndof, &r, *sys) ? status : TRIBO_ERR_MEMORY;
     tribo_reduced_free(&r);
+    free(l.memory);
     return status;
 }
 

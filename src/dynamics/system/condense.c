@@ -251,24 +251,24 @@ int tribo_model_condense(tribo_model *m, tribo_system **sys)
     }
     if (status || s.without + s.x.sliders == 0 || s.with == 0) {
         condensed_free(&s);
-        return status ? status : tribo_model_build_massive(m, NULL, NULL, &where, sys);
+        return status ? status : tribo_model_build_massive(m, NULL, sys);
     }
     int done = take_without(&s, &m->stiffness, 0, &s.kww) && take_without(&s, &m->direction, 1, &s.x.touch);
     status = done ? check_damping(m, &s) : TRIBO_ERR_MEMORY;
     status = status ? status : factorize_without(m, &s);
     if (!status) {
-        where = m->ncontact;
         done = find_compliance(m, &s) && find_follow(m, &s) && replace_matrices(m, &s);
-        status = done ? tribo_model_build_massive(m, s.own, s.shared, &where, sys) : TRIBO_ERR_MEMORY;
-        if (where < m->ncontact) {
-            status = tribo_model_fail(
-                m, TRIBO_ERR_UNSUPPORTED,
-                "contact %zu moves degrees of freedom without mass only as other contacts do: give these mass", where);
-        }
+        status = done ? tribo_model_build_massive(m, s.own, sys) : TRIBO_ERR_MEMORY;
     }
     if (!status) {
         (*sys)->given = given;
-        status = tribo_expansion_create(*sys, &s.x, m->compliance) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+        status = tribo_compliance_create(*sys, s.own, s.shared, &where);
+        status = status || tribo_expansion_create(*sys, &s.x, m->compliance) ? status : TRIBO_ERR_MEMORY;
+        status = status == TRIBO_ERR_INDEFINITE
+                     ? tribo_model_fail(
+                           m, TRIBO_ERR_UNSUPPORTED,
+                           "contact %zu moves degrees of freedom without mass only as other contacts do: give these mass", where)
+                     : status;
     }
     condensed_free(&s);
     return status;

@@ -70,13 +70,6 @@ TRIBO_SIMD static int any_far(double omega, size_t n, const double *t)
     return any != 0;
 }
 
-void tribo_turn(double angle, double *cosine, double *sine)
-{
-    const double c = cos(angle), s = sin(angle);
-    *cosine = c;
-    *sine = s;
-}
-
 /* For smaller angles, cosine = 1 and sine = angle up to rounding. */
 #define TINY_ANGLE 1e-8
 
@@ -84,10 +77,11 @@ void tribo_turn(double angle, double *cosine, double *sine)
 void tribo_cos_sin(double omega, double t, double low, double *c, double *s)
 {
     const double angle = omega * t, rest = (fabs(angle) < TWOFOLD_FAR ? twofold_product(omega, t).lo : 0.0) + omega * low;
-    double ca, sa, cr = 1.0, sr = rest;
-    tribo_turn(angle, &ca, &sa);
+    const double ca = cos(angle), sa = sin(angle);
+    double cr = 1.0, sr = rest;
     if (!(fabs(rest) < TINY_ANGLE)) {
-        tribo_turn(rest, &cr, &sr);
+        cr = cos(rest);
+        sr = sin(rest);
     }
     *c = ca * cr - sa * sr;
     *s = sa * cr + ca * sr;

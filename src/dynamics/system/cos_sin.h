@@ -5,9 +5,6 @@
 
 #include <stddef.h>
 
-/* cosine, sine of angle by math.h. A separate function without branches: compilers then compute both values together. */
-void tribo_turn(double angle, double *cosine, double *sine);
-
 /* c [n], s [n] = cosine and sine of omega t, times t [n], to 1.2e-16 for the exact product omega t. The bits of a pair depend
  * only on omega and its t, not on n. For |omega t| <= COS_SIN_NEAR: some 100 operations, several times at once; beyond by
  * math.h. */

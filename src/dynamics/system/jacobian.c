@@ -13,23 +13,7 @@ struct tangents {
     double *df_dy;         /* [ncontact][2 ndof + 1] derivatives of f by the state */
     double *df_dt;         /* [ncontact] */
     double *load;          /* [ndof] derivative of the accelerations by the load */
-    void *memory;
 };
-
-static int create_tangents(struct tangents *d, size_t n, size_t m)
-{
-    struct layout l = {0};
-    do {
-        d->memory = tribo_layout_array(&l, 0, 1);
-        d->df_dv = tribo_layout_array(&l, m * m, sizeof *d->df_dv);
-        d->df_da = tribo_layout_array(&l, m * m, sizeof *d->df_da);
-        d->pull = tribo_layout_array(&l, m * n, sizeof *d->pull);
-        d->df_dy = tribo_layout_array(&l, m * (2 * n + 1), sizeof *d->df_dy);
-        d->df_dt = tribo_layout_array(&l, m, sizeof *d->df_dt);
-        d->load = tribo_layout_array(&l, n, sizeof *d->load);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    return l.memory != NULL;
-}
 
 /* Time step of finite differences, times the highest frequency. */
 #define SHORT 1e-7
@@ -114,9 +98,19 @@ int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *
     if (!sys || tribo_system_begin_rates(sys, "the Jacobian", y, "dfdy", dfdy)) {
         return sys ? sys->status : TRIBO_ERR_NULL;
     }
-    struct tangents d = {0};
+    const size_t n = sys->ndof, m = sys->ncontact;
+    struct tangents d;
+    struct layout l = {0};
     sys->jacobians++;
-    if (!create_tangents(&d, sys->ndof, sys->ncontact)) {
+    do {
+        d.df_dv = tribo_layout_array(&l, m * m, sizeof *d.df_dv);
+        d.df_da = tribo_layout_array(&l, m * m, sizeof *d.df_da);
+        d.pull = tribo_layout_array(&l, m * n, sizeof *d.pull);
+        d.df_dy = tribo_layout_array(&l, m * (2 * n + 1), sizeof *d.df_dy);
+        d.df_dt = tribo_layout_array(&l, m, sizeof *d.df_dt);
+        d.load = tribo_layout_array(&l, n, sizeof *d.load);
+    } while (!l.memory && tribo_layout_zeros(&l));
+    if (!l.memory) {
         return sys->status = tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the Jacobian");
     }
     tribo_system_free_motion(sys, t, y, d.load, sys->work.v, sys->work.a);
@@ -131,6 +125,6 @@ int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *
     } else {
         write_rows(sys, &d, dfdy, dfdt);
     }
-    free(d.memory);
+    free(l.memory);
     return sys->status;
 }

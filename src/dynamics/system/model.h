@@ -32,10 +32,10 @@ void tribo_model_free(tribo_model *m);
 /* c = Cholesky factor of the mass matrix. Returns a status. */
 int tribo_model_factorize(const tribo_model *m, struct cholesky *c);
 
-/* structure.c: builds a system of degrees of freedom that have mass, nmode > 0: of modes, from checked matrices, with the
- * compliance of tribo_compliance_create; own NULL: all contacts are rigid. *where = ncontact, or, with TRIBO_ERR_INDEFINITE, a
- * contact with a row of G that depends on earlier rows. Returns a status; after an error tribo_model_build destroys *sys. */
-int tribo_model_build_massive(tribo_model *m, const double *own, const double *entries, size_t *where, tribo_system **sys);
+/* structure.c: builds a system of degrees of freedom that have mass, nmode > 0: of modes, from checked matrices. Contacts with
+ * soft [ncontact] > 0 (NULL: none) have no part in R and M^-1 J'. Returns a status; after an error tribo_model_build destroys
+ * *sys. */
+int tribo_model_build_massive(tribo_model *m, const double *soft, tribo_system **sys);
 
 /* condense.c: builds the system of the degrees of freedom with mass, from checked matrices; the others, and the sliders of
  * contacts with springs, become its expansion. Returns a status. */

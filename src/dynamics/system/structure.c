@@ -168,7 +168,7 @@ static int solve_by_masses(const tribo_model *m, tribo_system *sys, const struct
     return status;
 }
 
-int tribo_model_build_massive(tribo_model *m, const double *own, const double *entries, size_t *where, tribo_system **sys)
+int tribo_model_build_massive(tribo_model *m, const double *soft, tribo_system **sys)
 {
     const int diagonal = tribo_matrix_is_diagonal(&m->mass), unsolved = !diagonal && m->ndof > DENSE_MOST;
     int status = unsolved ? check_unsolved(m) : TRIBO_OK;
@@ -187,10 +187,10 @@ int tribo_model_build_massive(tribo_model *m, const double *own, const double *e
     s->c = m->damping;
     s->direction = m->direction;
     m->mass = m->stiffness = m->damping = m->direction = (struct matrix){0};
-    struct matrix rigid = {0}; /* J with empty rows of compliant contacts */
+    struct matrix rigid = {0}; /* J with empty rows of soft contacts */
     struct triplets rows = {0};
     for (size_t i = 0; i < m->ncontact; i++) {
-        if (!(own && own[i] > 0.0)) {
+        if (!(soft && soft[i] > 0.0)) {
             tribo_triplets_put_row(&rows, i, &s->direction, i);
         }
     }
@@ -203,8 +203,7 @@ int tribo_model_build_massive(tribo_model *m, const double *own, const double *e
         status = (diagonal && !m->nmode ? divide_by_masses : solve_by_masses)(m, s, &rigid);
     }
     tribo_matrix_free(&rigid);
-    *where = m->ncontact;
-    return status || !own ? status : tribo_compliance_create(s, own, entries, where);
+    return status;
 }
 
 int tribo_model_build(tribo_model *m, tribo_system **sys)

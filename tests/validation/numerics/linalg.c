@@ -352,23 +352,23 @@ static void pair_of_kind(int kind, struct random *g, double *a)
 TEST(pairs)
 {
     struct random g = random_of(_i);
-    double a[4], spent[4], value[2], x[4];
+    double a[4], value[2], x[4];
     const int kind = _i % KINDS;
     pair_of_kind(kind, &g, a);
-    memcpy(spent, a, sizeof a);
-    assert_ok(tribo_symmetric_eigen(spent, 2, value, x));
+    memcpy(x, a, sizeof a);
+    assert_ok(tribo_symmetric_eigen(x, 2, value));
     const long double half = 0.5L * ((long double)a[0] - a[3]), middle = 0.5L * ((long double)a[0] + a[3]);
     const double high = (double)(middle + hypotl(half, a[1]));
     const double low = high > 0.0 ? (double)(((long double)a[0] * a[3] - (long double)a[1] * a[1]) / high) : 0.0;
     require(value[0] <= value[1], "%g before %g", value[0], value[1]);
     require(fabs(value[1] - high) <= 8.0 * DBL_EPSILON * high, "%.17g, not %.17g", value[1], high);
     require(fabs(value[0] - low) <= 40.0 * DBL_EPSILON * (kind == SINGULAR ? high : low), "%.17g, not %.17g", value[0], low);
-    assert_close(x[0] * x[0] + x[2] * x[2], 1.0, 4.0 * DBL_EPSILON);
-    assert_close(x[1] * x[1] + x[3] * x[3], 1.0, 4.0 * DBL_EPSILON);
-    assert_close(x[0] * x[1] + x[2] * x[3], 0.0, 4.0 * DBL_EPSILON);
+    assert_close(x[0] * x[0] + x[1] * x[1], 1.0, 4.0 * DBL_EPSILON);
+    assert_close(x[2] * x[2] + x[3] * x[3], 1.0, 4.0 * DBL_EPSILON);
+    assert_close(x[0] * x[2] + x[1] * x[3], 0.0, 4.0 * DBL_EPSILON);
     for (size_t k = 0; k < 2; k++) {
         for (size_t i = 0; i < 2; i++) {
-            const double off = a[2 * i] * x[k] + a[2 * i + 1] * x[2 + k] - value[k] * x[2 * i + k];
+            const double off = a[2 * i] * x[2 * k] + a[2 * i + 1] * x[2 * k + 1] - value[k] * x[2 * k + i];
             require(fabs(off) <= 8.0 * DBL_EPSILON * high, "mode %zu: %g beside %g", k, off, high);
         }
     }
@@ -376,8 +376,8 @@ TEST(pairs)
 
 TEST(one_alone)
 {
-    double a = -3.5, value, x;
-    assert_ok(tribo_symmetric_eigen(&a, 1, &value, &x));
+    double x = -3.5, value;
+    assert_ok(tribo_symmetric_eigen(&x, 1, &value));
     assert_exact(value, -3.5);
     assert_exact(x, 1.0);
 }
@@ -585,19 +585,19 @@ TEST(shortest)
         x[i] = y[i] = uniform(&g, -1.0, 1.0);
         for (size_t k = 0; k < SPACE; k++) {
             b[i * SPACE + k] = uniform(&g, -1.0, 1.0);
-            a[i * SPACE + k] = a[k * SPACE + i] = uniform(&g, -1.0, 1.0);
+            v[i * SPACE + k] = v[k * SPACE + i] = uniform(&g, -1.0, 1.0);
         }
     }
-    assert_ok(tribo_symmetric_eigen(a, SPACE, value, v));
+    assert_ok(tribo_symmetric_eigen(v, SPACE, value));
     memcpy(a, b, sizeof a);
     for (size_t i = 0; i < SPACE; i++) {
         for (size_t j = 0; j < zeros; j++) {
             double part = 0.0;
             for (size_t k = 0; k < SPACE; k++) {
-                part += b[i * SPACE + k] * v[k * SPACE + j];
+                part += b[i * SPACE + k] * v[j * SPACE + k];
             }
             for (size_t k = 0; k < SPACE; k++) {
-                a[i * SPACE + k] -= part * v[k * SPACE + j];
+                a[i * SPACE + k] -= part * v[j * SPACE + k];
             }
         }
     }
@@ -607,7 +607,7 @@ TEST(shortest)
     for (size_t j = 0; j < zeros; j++) {
         double part = 0.0;
         for (size_t k = 0; k < SPACE; k++) {
-            part += v[k * SPACE + j] * y[k];
+            part += v[j * SPACE + k] * y[k];
         }
         assert_close(part, 0.0, 1e-12 * (1.0 + tribo_largest(y, SPACE)));
     }
