@@ -112,7 +112,7 @@ TEST(structure_too_fast)
     assert_ok(dense_system(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
     assert_ok(set_up_driver(&drv, sys, methods[_i], 0.01, 1e-9, 1e-9));
     assert_status(tribo_driver_advance(drv, &t, 1.0, y), TRIBO_ERR_STEP);
-    assert_says(tribo_driver_message(drv), _i ? "the step is down to 0" : "the steps are too short for t1 = 1");
+    assert_says(tribo_driver_message(drv), _i ? "the step is down to 0" : "100000 such steps lead nowhere");
     assert_ok(tribo_driver_count(drv, TRIBO_COUNT_STEPS, &steps));
     require(t < 1e-100 && steps < 200000, "%zu steps to t = %g", steps, t);
     give_back();
