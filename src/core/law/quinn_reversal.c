@@ -28,8 +28,8 @@ static void crossing(double r, double *g, double *dg)
     }
 }
 
-/* Sets the force of contact i, and its derivatives d, or NULL, where they are not those of Quinn's law. */
-static void cross(const struct contacts *c, size_t i, double v, double feq, double *f, struct tangent *d)
+/* Sets the force of contact i, and its derivatives in d, or NULL, where they are not those of Quinn's law. */
+static void cross(const struct contacts *c, size_t i, double v, double feq, double *f, const struct tangents *d)
 {
     const double limit = c->limit[i], follows = c->scales;
     if (c->moving[i] && fabs(feq) > limit && limit > 0.0 && fabs(v) <= tribo_epsilon_of(c, i)) {
@@ -37,10 +37,12 @@ static void cross(const struct contacts *c, size_t i, double v, double feq, doub
         double g, dg;
         crossing(r, &g, &dg);
         const double x = sign(feq) * g * limit - slope * v, turned = 2.0 * quotient(v, tribo_epsilon_of(c, i));
+        const int full = fabs(x) > limit;
         *f = clamp(x, -limit, limit);
         if (d) {
-            *d = fabs(x) > limit ? (struct tangent){0.0, 0.0, sign(x)}
-                                 : (struct tangent){-slope, dg, sign(feq) * (g - r * dg) - (1.0 - follows) * turned};
+            d->dv[i] = full ? 0.0 : -slope;
+            d->dfeq[i] = full ? 0.0 : dg;
+            d->dlimit[i] = full ? sign(x) : sign(feq) * (g - r * dg) - (1.0 - follows) * turned;
         }
     }
 }
@@ -66,11 +68,7 @@ static void reversal_tangent_all(const struct contacts *c, size_t n, const doubl
 {
     tribo_law_quinn.tangent(c, n, v, feq, d);
     for (size_t i = 0; i < n; i++) {
-        struct tangent one = {d->dv[i], d->dfeq[i], d->dlimit[i]};
-        cross(c, i, v[i], feq[i], d->f + i, &one);
-        d->dv[i] = one.dv;
-        d->dfeq[i] = one.dfeq;
-        d->dlimit[i] = one.dlimit;
+        cross(c, i, v[i], feq[i], d->f + i, d);
     }
 }
 

@@ -72,8 +72,8 @@ int tribo_law_eval(int law, double v, double feq, double limit, double epsilon, 
     const double rate = lesser(tribo_rate(epsilon), TRIBO_FAR / greater(bound, 1.0));
     const unsigned char moving = 1;
     const struct contacts c = {&limit, &bound, &epsilon, &rate, &moving, 0, 0, 0};
-    double ignored[3], *const to[3] = {df_dv, df_dfeq, df_dlimit};
-    l->tangent(&c, 1, &v, &read,
-               &(struct tangents){f, to[0] ? to[0] : ignored, to[1] ? to[1] : ignored + 1, to[2] ? to[2] : ignored + 2});
+    double ignored[3];
+    const struct tangents to = {f, df_dv ? df_dv : ignored, df_dfeq ? df_dfeq : ignored + 1, df_dlimit ? df_dlimit : ignored + 2};
+    l->tangent(&c, 1, &v, &read, &to);
     return TRIBO_OK;
 }
