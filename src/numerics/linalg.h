@@ -96,4 +96,17 @@ int tribo_eigen(double *a, size_t n, double *re, double *im, double *x);
  * Returns 1, or 0 if out of memory. x is NaN if a is not finite. */
 int tribo_least_norm_solve(double *a, size_t n, double cut, double *x, size_t *kernel);
 
+/* ---- linear equations whose matrix is known by its products, by GMRES (Saad and Schultz 1986) */
+
+/* x [n] = A x. Returns a status. */
+typedef int tribo_product(void *data, double *x);
+
+/* Returns the doubles of workspace for a space of `most` dimensions. */
+size_t tribo_gmres_room(size_t n, size_t most);
+
+/* x [n] = the y with the smallest |x - A y| in the Krylov space of at most `most` dimensions; *part = |x - A y| / |x|, at most
+ * tolerance unless the space is too small. Returns TRIBO_OK, or the status of a product that failed. */
+int tribo_gmres(size_t n, tribo_product *multiply, void *data, double tolerance, size_t most, double *x, double *part,
+                double *work);
+
 #endif

@@ -14,7 +14,6 @@
 #include "common/layout.h"
 #include "common/real.h"
 #include "numerics/linalg.h"
-#include "numerics/krylov.h"
 
 #include <math.h>
 #include <stdlib.h>

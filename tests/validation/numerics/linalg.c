@@ -6,7 +6,6 @@
 
 #include "numerics/constraint.h"
 #include "numerics/linalg.h"
-#include "numerics/krylov.h"
 #include "dynamics/reduce/normal_modes.h"
 #include "support.h"
 
