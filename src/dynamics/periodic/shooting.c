@@ -61,6 +61,9 @@
 /* Velocities of contacts, over what a motion may have, that may have another sign at the end of a period than at its beginning. */
 #define AT_ONCE 1e-8
 
+/* Residual over size, from another beginning of the period, of a motion that repeats. */
+#define LASTS 1e-6
+
 /* A guess chooses a motion of the family if its distance from the odd motion along the family is this part of the size. */
 #define MEANT 0.1
 
@@ -342,8 +345,9 @@ static int approach_guess(struct shooting *s)
 /* -------------------------------------------------------------------------------------------------------------- multipliers */
 
 /* Sets s->flow: s->here; or, if a contact that slides at its beginning or end has there no velocity beside AT_ONCE of what the motion
- * may have, so that its event falls on both or on neither, the motion from the middle of its longest phase on. */
-static void find_flow(struct shooting *s)
+ * may have, so that its event falls on both or on neither, the motion from the middle of its longest phase on. If that does not
+ * come back, a contact slides at the beginning and is held at the end, above its kinetic limit. Returns a status. */
+static int find_flow(struct shooting *s)
 {
     const struct derivative *d = &s->here->derivative;
     tribo_system *sys = s->map.sys;
@@ -363,12 +367,13 @@ static void find_flow(struct shooting *s)
         const double most = s->here->size / s->map.norm.scale * sqrt(tribo_system_delassus(sys, i, i));
         if ((tribo_slides(first[i]) || tribo_slides(last[i])) && fabs(v[i]) <= AT_ONCE * most) {
             const int status = tribo_period_map_later(&s->map, s->here->y, middle, s->there);
-            if (status || !close_enough(s->there, TOLERANCE)) {
-                return;
+            if (status || !close_enough(s->there, LASTS)) {
+                return status ? status : no_convergence(s, s->there->residual / s->there->size);
             }
             s->flow = s->there;
         }
     }
+    return TRIBO_OK;
 }
 
 int tribo_shooting_freedom(struct shooting *s, size_t *freedom)
@@ -420,8 +425,8 @@ int tribo_shooting_find(struct shooting *s, double t, double period, double *y)
     if (!status && !close_enough(s->here, TOLERANCE)) {
         status = no_convergence(s, s->here->residual / s->here->size);
     }
+    status = status ? status : find_flow(s);
     if (!status) {
-        find_flow(s);
         memcpy(y, s->here->y, n * sizeof *y);
         y[n] = 0.0;
         s->found = 1;
