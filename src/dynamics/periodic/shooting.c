@@ -58,10 +58,9 @@
 #define LEAST_INEXACT 1e-6
 #define NEARLY_SINGULAR 1e-6
 
-/* Velocities of contacts, over what a motion may have, that may have another sign at the end of a period than at its beginning. */
+/* AT_ONCE: velocity of a contact over what a motion may have, whose sign may change from the beginning of a period to its end. LASTS:
+ * residual over size, from another beginning of the period, of a motion that repeats. */
 #define AT_ONCE 1e-8
-
-/* Residual over size, from another beginning of the period, of a motion that repeats. */
 #define LASTS 1e-6
 
 /* A guess chooses a motion of the family if its distance from the odd motion along the family is this part of the size. */
@@ -385,13 +384,12 @@ int tribo_shooting_freedom(struct shooting *s, size_t *freedom)
 int tribo_shooting_multipliers(struct shooting *s, double *re, double *im)
 {
     const size_t n = s->map.n, all = tribo_system_dimension(s->map.sys) - 1;
-    int status = find_derivative(s, s->flow, s->flow->odd ? 2 : 1);
+    const int missing = find_derivative(s, s->flow, s->flow->odd ? 2 : 1);
+    const int status = missing ? missing : tribo_eigen(s->b, n, s->step, s->guess, s->a);
     if (status) {
-        return status;
-    }
-    status = tribo_eigen(s->b, n, s->step, s->guess, s->a);
-    if (status) {
-        return tribo_driver_fail(s->map.drv, status, "multipliers of %zu equation%s: %s", n, plural(n), tribo_strerror(status));
+        return missing ? missing
+                       : tribo_driver_fail(s->map.drv, status, "multipliers of %zu equation%s: %s", n, plural(n),
+                                           tribo_strerror(status));
     }
     for (size_t i = 0; i < n; i++) { /* the largest first; the order within pairs, neighbours of equal size, stays */
         const double size = hypot(s->step[i], s->guess[i]);

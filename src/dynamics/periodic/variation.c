@@ -298,9 +298,7 @@ static void carry_over_springs(struct variation *x)
         x->change[n + k] = m->state.spring_rate[j] - x->spring_rate[j];
         x->row[2 * n + k] = j == i && slope != 0.0 ? 1.0 / slope : 0.0;
     }
-    if (stop && slope != 0.0 && !x->status) {
-        x->status = add_jump(x->to, x->row, x->change);
-    }
+    x->status = x->status || !stop || slope == 0.0 ? x->status : add_jump(x->to, x->row, x->change);
 }
 
 void tribo_variation_event(struct variation *x)
@@ -333,9 +331,7 @@ void tribo_variation_event(struct variation *x)
         }
     }
     carry_over_springs(x);
-    if (!x->to->events->motion->keep && !x->status) {
-        x->status = catch_up(x);
-    }
+    x->status = x->status || x->to->events->motion->keep ? x->status : catch_up(x);
 }
 
 /* ------------------------------------------------------------------------------------------------------------------- calls */
