@@ -44,17 +44,10 @@ static inline void *tribo_layout_array(struct layout *b, size_t count, size_t si
     return array;
 }
 
-/* Allocates the sum of the sizes, tribo_layout_zeros as zeros, and restarts the layout at 0. Returns 0 if out of memory. */
+/* Allocates the sum of the sizes as zeros, and restarts the layout at 0. Returns 0 if out of memory. */
 static inline int tribo_layout_zeros(struct layout *b)
 {
     b->memory = tribo_zeros(b->used + 1, 1);
-    b->used = 0;
-    return b->memory != NULL;
-}
-
-static inline int tribo_layout_create(struct layout *b)
-{
-    b->memory = malloc(b->used + 1);
     b->used = 0;
     return b->memory != NULL;
 }

@@ -207,7 +207,7 @@ static int find_ties(struct elimination *e, struct constraints *c)
         place = tribo_layout_array(&l, all, sizeof *place);
         first = tribo_layout_array(&l, all + 1, sizeof *first);
         member = tribo_layout_array(&l, all, sizeof *member);
-    } while (!l.memory && tribo_layout_create(&l));
+    } while (!l.memory && tribo_layout_zeros(&l));
     if (!l.memory) {
         return 0;
     }
@@ -260,7 +260,7 @@ int tribo_constraints_create(struct constraints *c, const struct matrix *directi
         e.weight = tribo_layout_array(&l, touched, sizeof *e.weight);
         e.scale = tribo_layout_array(&l, rows, sizeof *e.scale);
         e.most = tribo_layout_array(&l, rows, sizeof *e.most);
-    } while (!l.memory && tribo_layout_create(&l));
+    } while (!l.memory && tribo_layout_zeros(&l));
     if (!l.memory) {
         return 0;
     }

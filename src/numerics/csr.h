@@ -32,7 +32,7 @@ static inline int tribo_csr_create(struct csr *a, size_t n, size_t entries)
         a->first = tribo_layout_array(&l, n + 2, sizeof *a->first);
         a->col = tribo_layout_array(&l, entries + 1, sizeof *a->col);
         a->val = tribo_layout_array(&l, entries + 1, sizeof *a->val);
-    } while (!l.memory && tribo_layout_create(&l));
+    } while (!l.memory && tribo_layout_zeros(&l));
     if (l.memory) {
         a->n = n;
         memset(a->first, 0, (n + 2) * sizeof *a->first);

@@ -210,7 +210,7 @@ int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, struct mat
         do {
             c->root = tribo_layout_array(&l, c->n, sizeof *c->root);
             c->factor = diagonal ? NULL : tribo_layout_array(&l, c->n * c->n, sizeof *c->factor);
-        } while (!l.memory && tribo_layout_create(&l));
+        } while (!l.memory && tribo_layout_zeros(&l));
         status = l.memory ? TRIBO_OK : TRIBO_ERR_MEMORY;
     }
     if (c->factor) {

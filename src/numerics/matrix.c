@@ -92,7 +92,7 @@ static int matrix_finish(struct matrix *a)
             a->offset = tribo_layout_array(&l, a->diagonals, sizeof *a->offset);
             a->block = tribo_layout_array(&l, blocks_of(a), sizeof *a->block);
             a->fast = tribo_layout_array(&l, blocks_of(a) * a->diagonals * MATRIX_BLOCK + TRIBO_LINE, sizeof *a->fast);
-        } while (!l.memory && tribo_layout_create(&l));
+        } while (!l.memory && tribo_layout_zeros(&l));
         if (!l.memory) {
             tribo_matrix_free(a);
             return 0;

@@ -53,7 +53,7 @@ struct delassus *tribo_operator_diagonal(size_t n, const double *r)
     do {
         o = tribo_layout_array(&l, 1, sizeof *o);
         diagonal = r ? tribo_layout_array(&l, 2 * n + TRIBO_LINE, sizeof *diagonal) : NULL;
-    } while (!l.memory && tribo_layout_create(&l));
+    } while (!l.memory && tribo_layout_zeros(&l));
     if (!o) {
         return NULL;
     }

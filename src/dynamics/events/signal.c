@@ -3,7 +3,6 @@
 #include "common/real.h"
 #include "first_zero.h"
 
-#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,16 +13,14 @@
 int tribo_signal_reserve(struct signal *s, size_t terms, size_t degree)
 {
     if (terms > s->room[0] || degree + 1 > s->room[1]) {
-        double *more = malloc((4 * terms + degree + 1) * sizeof *more);
+        double complex *more = malloc((2 * terms + degree + 1) * sizeof *more);
         if (!more) {
             return 0;
         }
-        free(s->a);
-        s->a = more;
-        s->cr = more + degree + 1;
-        s->ci = s->cr + terms;
-        s->lr = s->ci + terms;
-        s->li = s->lr + terms;
+        free(s->c);
+        s->c = more;
+        s->lambda = more + terms;
+        s->a = (double *)(more + 2 * terms);
         s->room[0] = terms;
         s->room[1] = degree + 1;
     }
@@ -35,22 +32,14 @@ int tribo_signal_reserve(struct signal *s, size_t terms, size_t degree)
 
 void tribo_signal_free(struct signal *s)
 {
-    free(s->a);
+    free(s->c);
     memset(s, 0, sizeof *s);
 }
 
-void tribo_signal_add(struct signal *s, double cr, double ci, double lr, double li)
+void tribo_signal_add(struct signal *s, double complex c, double complex lambda)
 {
-    const size_t p = s->terms++;
-    s->cr[p] = cr;
-    s->ci[p] = ci;
-    s->lr[p] = lr;
-    s->li[p] = li;
-}
-
-static double complex number(double re, double im)
-{
-    return re + im * (double complex)_Complex_I;
+    s->c[s->terms] = c;
+    s->lambda[s->terms++] = lambda;
 }
 
 void tribo_signal_at(const struct signal *s, double at, double *to)
@@ -67,11 +56,10 @@ void tribo_signal_at(const struct signal *s, double at, double *to)
     to[2] = 2.0 * v2;
     to[3] = 6.0 * v3;
     for (size_t p = 0; p < s->terms; p++) {
-        const double complex rate = number(s->lr[p], s->li[p]);
-        double complex term = number(s->cr[p], s->ci[p]) * cexp(rate * at);
+        double complex term = s->c[p] * cexp(s->lambda[p] * at);
         for (int k = 0; k < 4; k++) {
             to[k] += creal(term);
-            term *= rate;
+            term *= s->lambda[p];
         }
     }
 }
@@ -103,8 +91,8 @@ static double bound(void *own, double tau)
     (void)tau;
     g->size = g->bend = 0.0;
     for (size_t p = 0; p < s->terms; p++) {
-        const double rate = hypot(s->lr[p], s->li[p]);
-        const double size = hypot(s->cr[p], s->ci[p]) * rate * exp(s->lr[p] * (s->lr[p] > 0.0 ? s->tau : c->from));
+        const double rate = cabs(s->lambda[p]), growth = creal(s->lambda[p]);
+        const double size = cabs(s->c[p]) * rate * exp(growth * (growth > 0.0 ? s->tau : c->from));
         g->size += size;
         g->bend += size * pow(rate, 6.0);
     }
@@ -175,7 +163,7 @@ static double complex moment(double complex z, double tau, size_t j)
 void tribo_signal_integrate(const struct signal *s, double omega, double *re, double *im)
 {
     const double tau = s->tau, turn = fabs(omega) * tau;
-    const double complex turns = number(0.0, -omega), end = cexp(turns * tau);
+    const double complex turns = -omega * I, end = cexp(turns * tau);
     double complex sum = 0.0, m = 1.0; /* M_j, the moment of turns; for j = 0 by parts: j M_{j-1}/tau = 1 */
     double power = 1.0;
     for (size_t j = 0; j <= s->degree; j++) {
@@ -186,9 +174,9 @@ void tribo_signal_integrate(const struct signal *s, double omega, double *re, do
     for (size_t p = 0; p < s->terms; p++) {
         /* half of c e^{lambda s} and half of its conjugate */
         for (int side = -1; side <= 1; side += 2) {
-            const double complex z = number(s->lr[p], side * s->li[p] - omega);
+            const double complex z = (side < 0 ? conj(s->lambda[p]) : s->lambda[p]) - omega * I;
             const double complex integral = cabs(z) * tau < 1.0 ? moment(z, tau, 0) : (cexp(z * tau) - 1.0) / z;
-            sum += 0.5 * number(s->cr[p], side * s->ci[p]) * integral;
+            sum += 0.5 * (side < 0 ? conj(s->c[p]) : s->c[p]) * integral;
         }
     }
     *re += creal(sum);

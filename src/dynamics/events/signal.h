@@ -3,13 +3,15 @@
 #ifndef TRIBO_SIGNAL_H
 #define TRIBO_SIGNAL_H
 
+#include "common/imaginary.h"
+
 #include <stddef.h>
 
 struct signal {
     size_t terms, degree;
-    size_t room[2];            /* for terms, and for degrees */
-    double *cr, *ci, *lr, *li; /* [terms] */
-    double *a;                 /* [degree + 1] */
+    size_t room[2];             /* for terms, and for degrees */
+    double complex *c, *lambda; /* [terms] */
+    double *a;                  /* [degree + 1] */
     double tau;
 };
 
@@ -17,7 +19,7 @@ struct signal {
 int tribo_signal_reserve(struct signal *s, size_t terms, size_t degree);
 void tribo_signal_free(struct signal *s);
 
-void tribo_signal_add(struct signal *s, double cr, double ci, double lr, double li);
+void tribo_signal_add(struct signal *s, double complex c, double complex lambda);
 
 /* to[4] = the value and its first three derivatives. */
 void tribo_signal_at(const struct signal *s, double at, double *to);

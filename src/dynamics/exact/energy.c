@@ -48,11 +48,11 @@ static double varying_work(struct exact *x, const struct course *c, double tau, 
     x->velocity.a[0] = c->start;
     x->velocity.a[1] = c->ramp;
     for (size_t p = 0; p < e + h->harmonics; p++) {
-        const double re = x->z.re[p], im = x->z.im[p];
+        const double complex z = tribo_part(&x->z, p);
         if (v->size[p] > 0.0) {
-            tribo_signal_add(&x->velocity, v->cr[p] * re - v->ci[p] * im, v->cr[p] * im + v->ci[p] * re, h->lr[p], h->li[p]);
+            tribo_signal_add(&x->velocity, (v->cr[p] + v->ci[p] * I) * z, h->lr[p] + h->li[p] * I);
         }
-        velocity += v->size[p] * (fabs(re) + fabs(im));
+        velocity += v->size[p] * (fabs(creal(z)) + fabs(cimag(z)));
         fastest = greater(fastest, v->size[p] > 0.0 || p >= e ? h->size[p] : 0.0);
     }
     for (size_t s = 0; s < x->sys->loads.harmonics; s++) {

@@ -34,7 +34,7 @@ static int motion_reserve(struct exact *x)
         for (size_t k = 0; k < sizeof array / sizeof *array; k++) {
             *array[k] = tribo_layout_array(&l, room, sizeof **array);
         }
-    } while (!l.memory && tribo_layout_create(&l));
+    } while (!l.memory && tribo_layout_zeros(&l));
     x->room = l.memory ? room : 0;
     return l.memory != NULL;
 }

@@ -35,8 +35,7 @@ static void add_weights(const struct exact *x, const double *place, const double
         for (size_t k = 0; h->resonant && p >= e && k < own->modes; k++) {
             c += (place[k] + h->li[p] * speed[k] * I) * resonance(h, p - e, k);
         }
-        to->cr[p] += creal(c * z);
-        to->ci[p] += cimag(c * z);
+        to->c[p] += c * z;
     }
     for (size_t k = 0; k < h->shapes; k++) {
         to->a[0] += speed[k] * x->drift[k];
@@ -51,7 +50,7 @@ static int list_terms(const struct exact *x, struct signal *to)
     const struct forced *h = x->h;
     const size_t e = h->modal->exponents;
     for (size_t p = 0; p < e + h->harmonics; p++) {
-        tribo_signal_add(to, 0.0, 0.0, h->lr[p], h->li[p]);
+        tribo_signal_add(to, 0.0, h->lr[p] + h->li[p] * I);
         for (size_t s = 0; h->resonant && p < e && s < h->harmonics; s++) {
             if (h->resonant[s * h->modal->modes + h->modal->owner[p]] &&
                 hypot(h->lr[p], fabs(h->li[p]) - fabs(h->forcing[s].omega)) < TOO_CLOSE * h->size[p]) {

@@ -36,7 +36,7 @@ int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys)
         e->natural = tribo_layout_array(&l, n, sizeof *e->natural);
         e->damping = tribo_layout_array(&l, n, sizeof *e->damping);
         e->omega = tribo_layout_array(&l, n, sizeof *e->omega);
-    } while (tribo_lapack_takes(c) && !l.memory && tribo_layout_create(&l));
+    } while (tribo_lapack_takes(c) && !l.memory && tribo_layout_zeros(&l));
     if (!l.memory) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the modes of the free structure");
     }

@@ -290,7 +290,7 @@ int tribo_period_map_create(struct period_map *m, tribo_driver *drv)
         m->x = tribo_layout_array(&l, n, sizeof *m->x);
         m->probe = tribo_layout_array(&l, n * n, sizeof *m->probe);
         m->limit = tribo_layout_array(&l, 2 * drv->sys->ncontact, sizeof *m->limit);
-    } while (!l.memory && tribo_layout_create(&l));
+    } while (!l.memory && tribo_layout_zeros(&l));
     return l.memory && tribo_variation_create(&m->variation, drv->sys);
 }
 

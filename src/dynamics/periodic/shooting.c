@@ -456,7 +456,7 @@ struct shooting *tribo_shooting_create(tribo_driver *drv)
             p->end = tribo_layout_array(&l, n, sizeof *p->end);
             p->image = tribo_layout_array(&l, n, sizeof *p->image);
         }
-    } while (!l.memory && tribo_layout_create(&l));
+    } while (!l.memory && tribo_layout_zeros(&l));
     if (!l.memory || !tribo_period_map_create(&s->map, drv)) {
         tribo_shooting_free(s);
         return NULL;

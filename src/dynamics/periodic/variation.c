@@ -365,7 +365,7 @@ int tribo_variation_create(struct variation *x, tribo_system *sys)
         x->delay = tribo_layout_array(&l, 2 * all, sizeof *x->delay);
         x->contact = tribo_layout_array(&l, c, sizeof *x->contact);
         x->group = tribo_layout_array(&l, c, sizeof *x->group);
-    } while (!l.memory && tribo_layout_create(&l));
+    } while (!l.memory && tribo_layout_zeros(&l));
     return l.memory != NULL;
 }
 

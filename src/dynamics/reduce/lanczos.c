@@ -374,7 +374,7 @@ int tribo_low_modes(const struct matrix *k, const struct matrix *m, double shift
         l.theta = tribo_layout_array(&memory, room, sizeof *l.theta);
         l.h = tribo_layout_array(&memory, room * room, sizeof *l.h);
         l.s = tribo_layout_array(&memory, room * room, sizeof *l.s);
-    } while (!memory.memory && tribo_layout_create(&memory));
+    } while (!memory.memory && tribo_layout_zeros(&memory));
     if (!memory.memory) {
         return TRIBO_ERR_MEMORY;
     }

@@ -201,7 +201,7 @@ int tribo_normal_modes(const struct matrix *k, const double *terms, const struct
         s.value = tribo_layout_array(&l, m, sizeof *s.value);
         s.root = tribo_layout_array(&l, n, sizeof *s.root);
         s.force = tribo_layout_array(&l, n, sizeof *s.force);
-    } while (!l.memory && tribo_layout_create(&l));
+    } while (!l.memory && tribo_layout_zeros(&l));
     int status = l.memory && tribo_matrix_congruent(k, z, s.k) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     if (!status) {
         tribo_matrix_roots(k, terms, s.root);

@@ -92,7 +92,7 @@ static int reserve(struct event *e)
         c->u = tribo_layout_array(&l, 2 * unknowns, sizeof *c->u);
         c->slides = tribo_layout_array(&l, slides, sizeof *c->slides);
         c->pivot = tribo_layout_array(&l, unknowns, sizeof *c->pivot);
-    } while (!l.memory && tribo_layout_create(&l));
+    } while (!l.memory && tribo_layout_zeros(&l));
     if (!l.memory) {
         return 0;
     }

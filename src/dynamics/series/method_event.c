@@ -239,7 +239,7 @@ static int method_event_prepare(struct event *e)
             *series[k] = tribo_layout_array(&l, terms * c, sizeof **series[k]);
             *rooms[k] = tribo_layout_array(&l, c, sizeof **rooms[k]);
         }
-    } while (!l.memory && tribo_layout_create(&l));
+    } while (!l.memory && tribo_layout_zeros(&l));
     return l.memory ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
 }
 

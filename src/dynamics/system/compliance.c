@@ -79,7 +79,7 @@ int tribo_compliance_create(tribo_system *sys, const double *own, const double *
         g->lo = tribo_layout_array(&l, sys->ncontact, sizeof *g->lo);
         g->hi = tribo_layout_array(&l, sys->ncontact, sizeof *g->hi);
         g->f = tribo_layout_array(&l, sys->ncontact, sizeof *g->f);
-    } while (!l.memory && tribo_layout_create(&l));
+    } while (!l.memory && tribo_layout_zeros(&l));
     g->g = calloc(1, sizeof *g->g);
     int status = l.memory && g->g ? tribo_definite_create(g->g, sys->ncontact, own, entries, where) : TRIBO_ERR_MEMORY;
     status = status ? status : tribo_create(&g->box, sys->ncontact);

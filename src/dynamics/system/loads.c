@@ -27,7 +27,7 @@ static int create_harmonic(struct harmonic *h, const void *from)
         h->sine = tribo_layout_array(&l, h->count, sizeof *h->sine);
         h->knot = tribo_layout_array(&l, h->knots, sizeof *h->knot);
         h->value = tribo_layout_array(&l, h->knots * h->columns, sizeof *h->value);
-    } while (!l.memory && tribo_layout_create(&l));
+    } while (!l.memory && tribo_layout_zeros(&l));
     if (l.memory && from) {
         memcpy(l.memory, from, l.used);
     }
