@@ -214,7 +214,6 @@ static void hold_bodies(struct step_matrix *m, int none)
 /* du, f and noise with the contacts as they are in at[]. */
 static void solve_sets(struct step_matrix *m, const struct band_step *s)
 {
-    const double doubt = 8.0 * DBL_EPSILON;
     const struct matrix *matrix = &m->s;
     const size_t n = matrix->rows;
     double *x = s->du, *f = s->f;
@@ -230,17 +229,14 @@ static void solve_sets(struct step_matrix *m, const struct band_step *s)
     /* columns of held bodies that move with their bases go to the right-hand side */
     tribo_matrix_multiply_add(matrix, -1.0, m->move, x);
     for (size_t d = 0; d < n; d++) {
-        x[d] = m->held[d] ? 0.0 : x[d];
+        x[d] = m->held[d] ? m->move[d] : x[d]; /* rows of the identity keep it */
     }
     tribo_step_matrix_solve(m, 1, x);
-    for (size_t d = 0; d < n; d++) {
-        x[d] = m->held[d] ? m->move[d] : x[d];
-    }
     for (size_t i = 0; i < m->count; i++) {
         const size_t d = m->body[i];
         const double size = tribo_matrix_row_size(matrix, d, x) + fabs(m->push[d]) + fabs(m->own[i] * s->u[d]);
         const double unit = 1.0 / (s->h * m->lever[i]);
-        m->noise[i] = doubt * fabs(unit) * size;
+        m->noise[i] = 8.0 * DBL_EPSILON * fabs(unit) * size;
         f[i] = m->at[i] ? f[i] : unit * (tribo_matrix_row_dot(matrix, d, x) - m->push[d]);
     }
 }
