@@ -64,7 +64,7 @@ void tribo_modal_give_back(struct modal_store *store)
 
 /* ------------------------------------------------------------------------------------------------- the contacts that hold */
 
-/* Sets key, rest, springs and ties. Returns 0 if out of memory, or on another failure, with b->status set. */
+/* Sets key, rest, ties and b->springs. Returns 0 if out of memory, or on another failure, with b->status set. */
 static int list_rest(struct modal_build *b, const unsigned char *holds)
 {
     struct modal *h = b->h;
@@ -76,7 +76,7 @@ static int list_rest(struct modal_build *b, const unsigned char *holds)
         h->key[i] = (signed char)((b->slip[i] == TRIBO_SLIP_STUCK) + holds[i]);
         h->rest[h->rests] = i;
         h->rests += holds[i] && !compliant;
-        h->springs += holds[i] && compliant;
+        b->springs += holds[i] && compliant;
     }
     if (h->store.failed || !tribo_constraints_create(&h->ties, &sys->direction, &sys->mass, h->rest, h->rests, NULL)) {
         return 0;
@@ -95,21 +95,26 @@ static int find_stiffness(struct modal_build *b)
     const tribo_system *sys = b->sys;
     const size_t n = b->h->n, c = sys->ncontact;
     b->stiffness = b->k;
-    if (!b->h->springs) {
+    if (!b->springs) {
         return 1;
     }
-    double *added = tribo_modal_take(&b->scratch, n * n + c * c, sizeof *added), *inverse = added ? added + n * n : NULL;
-    struct matrix g = {0}, k = {0};
+    const struct matrix *j = &sys->direction;
+    double *added = tribo_modal_take(&b->scratch, n * n + c * n, sizeof *added), *x = added ? added + n * n : NULL;
+    struct matrix k = {0};
     if (!added) {
         return 0;
     }
     for (size_t i = 0; i < c; i++) {
-        inverse[i * (c + 1)] = 1.0;
+        tribo_matrix_add_row(j, i, 1.0, x + i * n);
     }
-    tribo_compliance_solve(sys, b->slip, c, inverse);
-    const int done = tribo_matrix_from_dense(&g, c, c, inverse) && tribo_matrix_congruent(&g, &sys->direction, added) &&
-                     tribo_matrix_from_dense(&k, n, n, added) && tribo_matrix_sum(&b->own_stiffness, 1.0, b->k, 1.0, &k);
-    tribo_matrix_free(&g);
+    tribo_compliance_solve(sys, b->slip, n, x);
+    for (size_t i = 0; i < c; i++) {
+        for (size_t e = j->first[i]; e < j->first[i + 1] && b->h->key[i] == 2; e++) {
+            tribo_add(added + j->col[e] * n, j->val[e], x + i * n, n);
+        }
+    }
+    tribo_even_out(n, added);
+    const int done = tribo_matrix_from_dense(&k, n, n, added) && tribo_matrix_sum(&b->own_stiffness, 1.0, b->k, 1.0, &k);
     tribo_matrix_free(&k);
     b->stiffness = &b->own_stiffness;
     return done;
@@ -162,6 +167,35 @@ static int build_modes_failed(const struct modal_build *b, int status, const str
     }
 }
 
+/* Sets stiffness = S'Z'KZ S and phi = (Z S)', (Z'MZ)^-1 = S S'. Returns a status. */
+static int find_coordinates(struct modal_build *b, const struct matrix *z, const struct cholesky *mass)
+{
+    struct modal *h = b->h;
+    const size_t n = h->n, m = h->modes;
+    double *a = h->stiffness = tribo_modal_take(&h->store, m * m, sizeof *a);
+    double *turned = tribo_modal_take(&b->scratch, 2 * m * m, sizeof *turned), *s = turned + m * m;
+    if (!a || !turned || !tribo_matrix_congruent(b->stiffness, z, turned)) {
+        return TRIBO_ERR_MEMORY;
+    }
+    tribo_half_solve(mass, 0, turned, m);
+    tribo_transpose(m, m, turned, a);
+    tribo_half_solve(mass, 0, a, m);
+    tribo_even_out(m, a);
+    for (size_t k = 0; k < m; k++) {
+        s[k * (m + 1)] = 1.0;
+    }
+    tribo_half_solve(mass, 1, s, m);
+    tribo_transpose(m, m, s, turned);
+    for (size_t k = 0; k < m; k++) {
+        if (z->rows) {
+            tribo_matrix_multiply(z, turned + k * m, h->phi + k * n);
+        } else {
+            memcpy(h->phi + k * n, turned + k * m, n * sizeof *h->phi);
+        }
+    }
+    return TRIBO_OK;
+}
+
 /* Sets modes, omega2, phi, psi, and damping to zeros. Returns 0 on failure, with b->status set unless out of memory. */
 static int find_modes(struct modal_build *b)
 {
@@ -180,7 +214,9 @@ static int find_modes(struct modal_build *b)
         h->psi = h->phi + m * n;
         status = held && m > 0 ? factorize_mass(b, &z, &own) : TRIBO_OK;
     }
-    if (!status && h->omega2 && m > 0) {
+    if (!status && h->omega2 && b->powers) {
+        status = find_coordinates(b, &z, held ? &own : &sys->factor);
+    } else if (!status && h->omega2 && m > 0) {
         status =
             tribo_normal_modes(b->stiffness, sys->expansion.terms, &z, held ? &own : &sys->factor, m, h->omega2, h->phi, &doubt);
         status = build_modes_failed(b, status, &doubt);
@@ -219,24 +255,30 @@ static int damping_couples(const struct modal_build *b, const double *c, const d
     return 0;
 }
 
-/* Sets damping = diagonal of C~, 0 where only rounding; coupling = C~ if not diagonal; drifts. Returns 0 if out of memory. */
+/* Sets damping = diagonal of C~, 0 where only rounding; coupling = C~ if not diagonal, or without modes. Returns 0 if out of
+ * memory. */
 static int find_damping(struct modal_build *b)
 {
     struct modal *h = b->h;
     const struct matrix *damping = b->c;
     const size_t n = h->n, m = h->modes;
     double *c = damping ? tribo_modal_take(&h->store, m * m, sizeof *c) : NULL, most = 0.0;
-    double *root = damping ? tribo_modal_take(&b->scratch, 2 * n, sizeof *root) : NULL;
-    h->drifts = tribo_modal_take(&h->store, m, 1);
+    double *root = damping ? tribo_modal_take(&b->scratch, 2 * n + m, sizeof *root) : NULL, *column = root ? root + 2 * n : NULL;
     if (h->store.failed || b->scratch.failed) {
         return 0;
     }
     for (size_t l = 0; c && l < m; l++) {
         tribo_matrix_multiply(damping, h->phi + l * n, root);
+        memset(column, 0, m * sizeof *column);
+        tribo_multiply_add(m, n, 1, 1.0, h->phi, root, column);
         for (size_t k = 0; k < m; k++) {
-            c[k * m + l] = tribo_dot(h->phi + k * n, root, n);
+            c[k * m + l] = column[k];
         }
         most = greater(most, fabs(c[l * m + l]));
+    }
+    if (b->powers) {
+        h->coupling = c;
+        return 1;
     }
     if (c) {
         tribo_matrix_roots(damping, NULL, root);
@@ -247,7 +289,6 @@ static int find_damping(struct modal_build *b)
             const double own = c[k * m + k], noise = tribo_matrix_noise(damping, root, h->phi + k * n, h->phi + k * n);
             h->damping[k] = fabs(own) > greater(ROUNDING * noise, IMPURITY * IMPURITY * most) ? own : 0.0;
         }
-        h->drifts[k] = h->omega2[k] == 0.0 && h->damping[k] == 0.0;
     }
     h->coupling = c && damping_couples(b, c, root, root + n) ? c : NULL;
     return 1;
@@ -285,7 +326,7 @@ void tribo_modal_effects(const struct modal_build *b, const double *y, double om
         }
         v[i] = fabs(v[i] - base[i]) > NO_MOTION * size ? v[i] - base[i] : 0.0;
     }
-    if (h->springs) {
+    if (sys->compliance.count > 0) {
         tribo_compliance_rates(sys, b->slip, v, rate);
     }
     for (size_t i = 0; i < c; i++) {
@@ -297,7 +338,7 @@ void tribo_modal_effects(const struct modal_build *b, const double *y, double om
     if (h->rests > 0) {
         tribo_matrix_multiply_add(b->k, 1.0, y, force);
         tribo_matrix_multiply_add(&sys->mass, -omega2, y, force);
-        keep_reactions(h, force, base != NULL, force + n, on, stride);
+        keep_reactions(h, force, base || h->stiffness, force + n, on, stride);
     }
     if (h->rests > 0 && by_u) {
         memset(force, 0, n * sizeof *force);
@@ -323,16 +364,17 @@ static int find_effects(struct modal_build *b)
     return 1;
 }
 
-int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const unsigned char *holds)
+int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const unsigned char *holds, int powers)
 {
     struct modal_store store = {0};
-    struct modal_build b = {.sys = sys, .h = *modal, .slip = slip, .k = &sys->k, .c = sys->c.rows ? &sys->c : NULL};
+    struct modal_build b = {
+        .sys = sys, .h = *modal, .slip = slip, .powers = powers, .k = &sys->k, .c = sys->c.rows ? &sys->c : NULL};
     int done = 1;
     if (!b.h && (b.h = tribo_modal_take(&store, 1, sizeof *b.h)) != NULL) {
         b.h->store = store;
         b.h->n = sys->ndof;
         done = list_rest(&b, holds) && find_stiffness(&b) && find_modes(&b) && find_damping(&b) && find_effects(&b);
-        b.status = done ? tribo_modal_exponents(&b) : b.status;
+        b.status = done && !powers ? tribo_modal_exponents(&b) : b.status;
     }
     store = (struct modal_store){0};
     if (done && b.h && !b.status && (b.forced = tribo_modal_take(&store, 1, sizeof *b.forced)) != NULL) {

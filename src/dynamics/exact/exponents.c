@@ -46,7 +46,7 @@ static int exponents_decoupled(struct modal_build *b)
     size_t p = 0;
     for (size_t k = 0; k < m; k++) {
         const double half = 0.5 * h->damping[k], square = h->omega2[k] - half * half, root = sqrt(fabs(square));
-        if (h->drifts[k]) {
+        if (tribo_modal_drifts(h, k)) {
             continue;
         }
         if (fabs(square) < CRITICAL * greater(fabs(h->omega2[k]), half * half)) {

@@ -14,33 +14,43 @@
 #include "common/real.h"
 #include "common/layout.h"
 
+/* Number of phases without modes with the same contacts held: about as many take as long as a decomposition. */
+#define LASTING 8
+
 /* Bytes of structures above which all structures are dropped. */
 #define CACHE_BYTES ((size_t)512 << 20)
+
+/* Least degrees of freedom for phases without modes: fewer modes are found as fast as powers are computed again each time. */
+#define POWERS_LEAST 40
 
 /* ---------------------------------------------------------------------------------------------- structures that are held */
 
 static void drop_helds(struct exact *x)
 {
-    while (x->held.last) {
-        struct modal *next = x->held.last->next;
-        tribo_forced_free(x->held.last);
-        tribo_modal_free(x->held.last);
-        x->held.last = next;
+    for (size_t k = 0; k < TRIBO_HELD_LISTS; k++) {
+        while (x->held.last[k]) {
+            struct modal *next = x->held.last[k]->next;
+            tribo_forced_free(x->held.last[k]);
+            tribo_modal_free(x->held.last[k]);
+            x->held.last[k] = next;
+        }
     }
     x->held.bytes = 0;
+    x->held.powers = NULL;
 }
 
-/* Sets x->h, the structure with the contacts at rest held, under the loads. Returns a status. */
-static int find_held(struct exact *x)
+/* *found = the structure with the contacts at rest held, under the loads, with powers = 1 without modes. Returns a status. */
+static int find_held(struct exact *x, int powers, struct modal **found)
 {
     const struct stick_slip *m = &x->events.stick_slip;
-    struct modal **at = &x->held.last;
     uint64_t hash = 0, word;
     for (size_t i = 0; i < m->constant.contacts; i += sizeof word) {
         memcpy(&word, m->state.key + i, sizeof word);
         hash = (hash ^ word) * UINT64_C(0x9e3779b97f4a7c15);
     }
-    while (*at && ((*at)->hash != hash || memcmp((*at)->key, m->state.key, m->constant.contacts) != 0)) {
+    struct modal **const list = &x->held.last[(hash >> 32) % TRIBO_HELD_LISTS], **at = list;
+    while (*at && ((*at)->hash != hash || ((*at)->stiffness != NULL) != powers ||
+                   memcmp((*at)->key, m->state.key, m->constant.contacts) != 0)) {
         at = &(*at)->next;
     }
     struct modal *h = *at;
@@ -49,7 +59,7 @@ static int find_held(struct exact *x)
         drop_helds(x);
     }
     if (!known || !h->forced) {
-        const int status = tribo_modal_create(&h, x->sys, m->state.slip, m->state.holds);
+        const int status = tribo_modal_create(&h, x->sys, m->state.slip, m->state.holds, powers);
         if (status) {
             return status;
         }
@@ -58,11 +68,44 @@ static int find_held(struct exact *x)
     if (known) {
         *at = h->next;
     }
-    h->next = x->held.last;
+    h->next = *list;
     h->hash = hash;
-    x->held.last = h;
-    x->h = h->forced;
+    *list = h;
+    *found = h;
     return TRIBO_OK;
+}
+
+/* Returns 1 if no base moves at a constant speed, no limit varies, and the structure is large enough. */
+static int takes_powers(const tribo_system *sys)
+{
+    int plain = !sys->loads.limits && sys->ndof >= POWERS_LEAST;
+    for (size_t k = 0; plain && k < sys->loads.harmonics; k++) {
+        const struct harmonic *w = &sys->loads.harmonic[k];
+        plain &= w->drives == DRIVES_LOAD || (w->drives == DRIVES_BASE && w->omega != 0.0);
+    }
+    return plain;
+}
+
+/* Sets x->h, the structure of the next phase. Phases have no modes, until LASTING follow each other with the same contacts held;
+ * from there on in this run they have: no motion depends on runs before. Returns a status. */
+static int choose_held(struct exact *x)
+{
+    struct held *s = &x->held;
+    struct modal *h = NULL;
+    if (x->events.anew) {
+        s->run++;
+        s->powers = NULL;
+        x->events.anew = 0;
+    }
+    int status = takes_powers(x->sys) ? find_held(x, 1, &h) : TRIBO_OK;
+    s->phases = h && h == s->powers ? s->phases + 1 : 0;
+    if (!status && h && s->phases == LASTING) {
+        h->run = s->run;
+    }
+    s->powers = h && h->run != s->run ? h : NULL;
+    status = status || s->powers ? status : find_held(x, 0, &h);
+    x->h = status ? x->h : h->forced;
+    return status;
 }
 
 /* --------------------------------------------------------------------------------------------------------------------- guards */
@@ -135,7 +178,7 @@ static struct watch watch_of(const struct exact *x, size_t i, struct course *c)
 static int method_exact_begin(void *own, double t, const double *y, double *reach)
 {
     struct exact *x = own;
-    const int status = find_held(x);
+    const int status = choose_held(x);
     const struct forced *h = x->h;
     if (status) {
         return status;
@@ -234,9 +277,11 @@ static int method_exact_open_events(tribo_driver *drv, struct events **events)
         drop_helds(x);
         x->held.structure = sys->structure;
     }
-    for (struct modal *h = x->held.last; h && x->held.revision != sys->revision; h = h->next) {
-        x->held.bytes -= h->forced ? h->forced->store.bytes : 0;
-        tribo_forced_free(h);
+    for (size_t k = 0; x->held.revision != sys->revision && k < TRIBO_HELD_LISTS; k++) {
+        for (struct modal *h = x->held.last[k]; h; h = h->next) {
+            x->held.bytes -= h->forced ? h->forced->store.bytes : 0;
+            tribo_forced_free(h);
+        }
     }
     x->held.revision = sys->revision;
     *events = &x->events;

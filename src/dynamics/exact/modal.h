@@ -35,22 +35,23 @@ struct modal {
     struct modal_store store; /* memory of all arrays */
     size_t users;             /* number of users besides the first; the last tribo_modal_free frees */
     struct modal *next;       /* of the caller's list */
+    size_t run;               /* the caller's: of coordinates, the run in which modes took their place */
     struct forced *forced;    /* the structure under the loads; NULL: not created since the loads changed */
     size_t n;                 /* degrees of freedom */
     signed char *key;         /* [contacts] 1: at rest; 2: at rest and holds; 0: else */
     uint64_t hash;            /* of key, for the caller */
     size_t rests, *rest;      /* [rests] rigid contacts that hold */
-    size_t springs;           /* number of compliant contacts that hold */
     struct constraints ties;  /* constraints between degrees of freedom by the rigid contacts that hold */
 
     size_t modes;
     double *phi; /* [modes][n] mode shapes */
     double *psi; /* [modes][n] M times the mode shapes */
     double *omega2, *damping;
-    double *coupling;      /* [modes][modes] C~; NULL if C~ is diagonal */
-    unsigned char *drifts; /* [modes] 1: omega = 0 and no damping */
-    double *on;            /* [contacts][modes] contact that holds: force per eta; else: velocity per eta' */
-    double *by_u;          /* [contacts][modes] rigid contact that holds: force per eta'; else 0; NULL without damping */
+    double *stiffness; /* NULL; or [modes][modes] Phi'K Phi of coordinates Phi, orthonormal in M, that are no modes: then there
+                        * are no exponents, omega2 and damping are 0, and motions are powers of time (powers.c) */
+    double *coupling;  /* [modes][modes] C~; NULL if C~ is diagonal, or 0 without modes */
+    double *on;        /* [contacts][modes] contact that holds: force per eta; else: velocity per eta' */
+    double *by_u;      /* [contacts][modes] rigid contact that holds: force per eta'; else 0; NULL without damping */
 
     size_t exponents;
     double *lr, *li;           /* [exponents] lambda */
@@ -98,13 +99,14 @@ struct forced {
     double *constant; /* [modes] constant forcing: by constant loads, by damping of y0, by damping of eta' = ramp/omega^2 */
     double *ramp;     /* [modes] rate of the forcing by bases of constant speed */
     unsigned char *resonant; /* [harmonics][modes] 1: the response is not in x, since the divisor is close to 0; NULL: none */
+    double resonates;        /* largest Omega of these */
 
     size_t terms;            /* exponents, harmonics, and zeros up to a multiple of TRIBO_TERMS; not 0 */
     double *lr, *li, *size;  /* [terms] lambda (harmonics: i Omega); |lambda| */
     double *sixth;           /* [terms] |lambda|^6 */
     size_t outputs, sliding; /* output [0, sliding): velocities; [sliding, outputs): forces of contacts that hold */
     struct output *output;
-    double fastest;       /* largest |lambda| of exponents */
+    double fastest;       /* largest |lambda| of exponents; without modes a bound of these and of Omega */
     double quickest;      /* largest |lambda| of exponents and harmonics */
     double decay, growth; /* largest -Re lambda; largest Re lambda; at least 0 */
 };
@@ -116,12 +118,19 @@ static inline double tribo_modal_magnitude(double re, double im)
     return square > 1e-280 && square < 1e300 ? sqrt(square) : hypot(re, im);
 }
 
+/* Returns 1 if mode k has omega = 0 and no damping. */
+static inline int tribo_modal_drifts(const struct modal *h, size_t k)
+{
+    return h->omega2[k] == 0.0 && h->damping[k] == 0.0;
+}
+
 /* Creates *modal, if it is NULL, the structure with all contacts at rest, slip[i] = 0, held; and forced, if it is NULL, by the
- * loads. holds[i] = 1: contact i holds (set H of stick_slip.h); other contacts at rest depend on H.
+ * loads. powers = 1: without modes, which takes a small part of the time, where no base moves at a constant speed and no limit
+ * varies. holds[i] = 1: contact i holds (set H of stick_slip.h); other contacts at rest depend on H.
  * Returns a status, message on the system's context; after an error *modal and forced stay NULL. Every user of the structure
  * besides the first one adds 1 to users. tribo_modal_free frees h->forced, too, and takes NULL; tribo_forced_free frees
  * h->forced, which may be NULL. */
-int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const unsigned char *holds);
+int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const unsigned char *holds, int powers);
 void tribo_modal_free(struct modal *h);
 void tribo_forced_free(struct modal *h);
 

@@ -27,6 +27,7 @@ static int motion_reserve(struct exact *x)
         x->way = tribo_layout_array(&l, c, sizeof *x->way);
         x->steady = tribo_layout_array(&l, c, sizeof *x->steady);
         x->work = tribo_layout_array(&l, room + 2 * x->sys->ndof, sizeof *x->work);
+        x->power = tribo_layout_array(&l, (2 * x->sys->ndof + c) * TRIBO_POWERS, sizeof *x->power);
         for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
             parts[k]->re = tribo_layout_array(&l, 2 * room, sizeof *parts[k]->re);
             parts[k]->im = parts[k]->re ? parts[k]->re + room : NULL;
@@ -44,9 +45,10 @@ void tribo_modal_settle(const struct modal *h, size_t columns, const double *for
 {
     for (size_t k = 0, at = 0; k < h->modes; k++) {
         const double stiff = h->omega2[k], damping = h->damping[k];
+        const int drifts = tribo_modal_drifts(h, k);
         for (size_t j = 0; j < columns; j++, at++) {
-            acc[at] = h->drifts[k] ? force[at] : 0.0;
-            vel[at] = !h->drifts[k] && stiff == 0.0 ? force[at] / damping : 0.0;
+            acc[at] = drifts ? force[at] : 0.0;
+            vel[at] = !drifts && stiff == 0.0 ? force[at] / damping : 0.0;
             eta[at] -= stiff != 0.0 ? force[at] / stiff : 0.0;
             rate[at] -= vel[at];
         }
@@ -116,7 +118,9 @@ static void add_resonances(struct exact *x, double tau)
 
 void tribo_modal_motion_go(struct exact *x, double tau)
 {
-    if (tau != x->tau) {
+    if (x->h->modal->stiffness) {
+        x->tau = tau;
+    } else if (tau != x->tau) {
         tribo_modal_terms_go(x, tau);
         if (x->h->resonant) {
             add_resonances(x, tau);
@@ -192,8 +196,13 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
     tribo_modal_motion_go(x, tau);
     /* brief: |lambda| tau is small for all terms; then q', as q, is the value at t0 plus a change. With shapes by bases q' is
      * computed anew: it follows the bases to rounding. */
-    const int brief = x->tau * h->quickest < LITTLE && !h->resonant && h->shapes == h->modal->modes;
-    move_shapes(x, brief);
+    const int powers = h->modal->stiffness != NULL;
+    const int brief = (powers || x->tau * h->quickest < LITTLE) && !h->resonant && h->shapes == h->modal->modes;
+    if (powers) {
+        tribo_powers_move(x, tau, brief);
+    } else {
+        move_shapes(x, brief);
+    }
     if (to != from) {
         memcpy(to, from, tribo_system_size(sys) * sizeof *to);
     }
@@ -296,8 +305,8 @@ static void split_amplitudes(struct exact *x, const double *force)
             x->place[k] -= xr * c - xi * d;
             x->rate[k] += h->forcing[s].omega * (xr * d + xi * c);
         }
-        x->drift[k] = x->vel[k] + (own->drifts[k] ? x->rate[k] : 0.0);
-        x->runs |= x->vel[k] != 0.0 || own->drifts[k];
+        x->drift[k] = x->vel[k] + (tribo_modal_drifts(own, k) ? x->rate[k] : 0.0);
+        x->runs |= x->vel[k] != 0.0 || tribo_modal_drifts(own, k);
     }
     for (size_t k = own->modes; k < h->shapes; k++) {
         x->acc[k] = 0.0;
@@ -338,6 +347,13 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
         x->place[k] = tribo_dot(own->psi + k * n + begin, y + begin, moved);
         x->rate[k] = tribo_dot(own->psi + k * n + begin, y + n + begin, moved);
     }
+    if (own->stiffness) {
+        x->runs = 0;
+        x->tau = 0.0;
+        x->longest = *longest = lesser(*longest, TRIBO_POWERS_REACH / h->fastest);
+        tribo_powers_start(x, x->work);
+        return 1;
+    }
     split_amplitudes(x, x->work);
     tribo_modal_split(own, 1, x->place, x->rate, x->z.re, x->z.im);
     /* w = z at t0; resonances change only w' and w'' there. */
@@ -345,9 +361,9 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
     if (h->resonant) {
         add_resonances(x, 0.0);
     }
-    /* The bounds hold for longest; at most 1/growth if an exponent grows, and 16/fastest with resonances. */
+    /* The bounds hold for longest; at most 1/growth if an exponent grows, and 16/Omega with resonances. */
     const double last = h->growth > 0.0 ? lesser(*longest, 1.0 / h->growth) : *longest;
-    x->longest = *longest = h->resonant ? lesser(last, 16.0 / h->fastest) : last;
+    x->longest = *longest = h->resonant ? lesser(last, 16.0 / h->resonates) : last;
     tribo_modal_motion_bound(x, 0.0);
     return 1;
 }

@@ -12,6 +12,7 @@ struct course {
     double start, ramp; /* the linear part is start + ramp tau */
     double size, bend;  /* bounds of |output| and of the sixth derivative */
     double tau;         /* time of the last look */
+    double *power;      /* [TRIBO_POWERS] coefficients of the powers of time, of the output; without modes */
     struct sample at;   /* output at tau, with two derivatives */
 };
 
@@ -25,11 +26,21 @@ struct parts {
     double *re, *im;
 };
 
+/* Number of powers of time of a motion without modes, and |lambda| tau up to which they give it to rounding: 1/20! = 4e-19. */
+enum { TRIBO_POWERS = 20 };
+#define TRIBO_POWERS_REACH 1.0
+
+/* Number of lists of structures. */
+enum { TRIBO_HELD_LISTS = 1024 };
+
 /* The structures so far. */
 struct held {
-    struct modal *last;         /* list of structures, in order of last use */
-    size_t bytes;               /* of all structures */
-    size_t revision, structure; /* of the system: when the forced structures were created; when the others were */
+    struct modal *last[TRIBO_HELD_LISTS]; /* by their keys, in order of last use */
+    size_t bytes;                         /* of all structures */
+    size_t revision, structure;           /* of the system: when the forced structures were created; when the others were */
+    size_t run;                           /* number of runs so far */
+    const struct modal *powers;           /* coordinates of the last phase of the run; NULL: modes, or no phase */
+    size_t phases;                        /* number of phases in a row that powers had before the last one */
 };
 
 /* The driver's own data, and a phase from t0. A mode: eta = constant + vel tau + acc tau^2/2 + harmonics + (Re(r z), or eta' tau
@@ -57,6 +68,7 @@ struct exact {
     double *steady;               /* [ncontact] force of a sliding contact without harmonics of the limit */
     struct course *course;        /* [ncontact] courses of the outputs of h */
     struct signal velocity;       /* workspace */
+    double *power;                /* eta, eta' [TRIBO_POWERS][modes], outputs [outputs][TRIBO_POWERS]: coefficients */
 };
 
 /* Starts a phase at (t, y) with structure x->h, for a time of at most *longest; sets *longest to the time for which the bounds
@@ -82,6 +94,16 @@ void tribo_modal_settle(const struct modal *h, size_t columns, const double *for
                         double *acc);
 void tribo_modal_split(const struct modal *h, size_t columns, const double *eta, const double *rate, double *zr, double *zi);
 void tribo_modal_join(const struct modal *h, size_t columns, const double *zr, const double *zi, double *eta);
+
+/* powers.c, without modes. start: from place = eta and rate = eta' at t0, and the constant forces [modes]. move: sets place to
+ * the change of eta until tau, and rate to eta' at tau, or with changes = 1 to the change of eta'. carry: tribo_modal_transition
+ * of eta and rate [modes][columns], by pull; eta becomes its change; work [3 modes][columns]. look and bound: of a course. */
+void tribo_powers_start(struct exact *x, const double *force);
+void tribo_powers_move(struct exact *x, double tau, int changes);
+void tribo_powers_carry(const struct modal *h, double tau, size_t columns, const double *pull, double *eta, double *rate,
+                        double *work);
+void tribo_powers_look(const struct exact *x, struct course *c);
+void tribo_powers_bound(const struct exact *x, struct course *c);
 
 /* Functions of struct motion. The state of a signal is [q, q', f], f: forces of compliant contacts. The data of a phase is
  * its structure, with one user more. */

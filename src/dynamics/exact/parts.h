@@ -10,6 +10,8 @@ struct modal_build {
     struct modal *h;
     struct forced *forced;
     const signed char *slip;        /* [ncontact] */
+    int powers;                     /* 1: no modes */
+    size_t springs;                 /* number of compliant contacts that hold; of a new structure */
     struct modal_store scratch;     /* workspace until the structure is built */
     const struct matrix *k, *c;     /* K; C, or NULL without damping */
     const struct matrix *stiffness; /* K + J_A' G_AA^-1 J_A, A: compliant contacts that hold */
@@ -36,5 +38,8 @@ void tribo_modal_effects(const struct modal_build *b, const double *y, double om
  * b->status set. */
 int tribo_forced_respond(struct modal_build *b);
 int tribo_forced_outputs(struct modal_build *b);
+
+/* Returns a bound of the |lambda| of a structure without modes. */
+double tribo_powers_fastest(const struct modal *h);
 
 #endif

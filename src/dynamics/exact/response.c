@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A structure under loads: shapes by bases, forcing of the modes, and response of the modes. */
 #include "parts.h"
+#include "common/real.h"
 #include "numerics/lapack.h"
 
 #include <math.h>
@@ -184,6 +185,7 @@ static int respond_alone(struct modal_build *b)
         const int forced = omega != 0.0 && (gr != 0.0 || gi != 0.0);
         f->resonant[at] = forced && sqrt(square) < RESONANCE * fabs(h->omega2[k]);
         any |= f->resonant[at];
+        f->resonates = f->resonant[at] ? greater(f->resonates, fabs(omega)) : f->resonates;
         if (!f->resonant[at] && forced) {
             f->x[s * f->shapes + k] = (gr * re + gi * im) / square + (gi * re - gr * im) / square * I;
         }
@@ -269,5 +271,5 @@ int tribo_forced_respond(struct modal_build *b)
             f->constant[k] -= (h->coupling ? h->coupling[k * m + l] : h->damping[k]) * (f->ramp[l] / h->omega2[l]);
         }
     }
-    return h->coupling ? respond_together(b) : respond_alone(b);
+    return h->stiffness ? 1 : h->coupling ? respond_together(b) : respond_alone(b);
 }

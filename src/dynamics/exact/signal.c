@@ -25,6 +25,10 @@ static void add_weights(const struct exact *x, const double *place, const double
     const struct forced *h = x->h;
     const struct modal *own = h->modal;
     const size_t e = own->exponents;
+    for (size_t k = 0; own->stiffness && k <= to->degree; k++) {
+        const double *power = x->power + k * own->modes;
+        to->a[k] += tribo_dot(place, power, own->modes) + tribo_dot(speed, power + TRIBO_POWERS * own->modes, own->modes);
+    }
     for (size_t p = 0; p < e + h->harmonics; p++) {
         double complex z = tribo_part(&x->z, p);
         double complex c = tribo_forced_weight(h, p, place, speed);
@@ -37,7 +41,7 @@ static void add_weights(const struct exact *x, const double *place, const double
         }
         to->c[p] += c * z;
     }
-    for (size_t k = 0; k < h->shapes; k++) {
+    for (size_t k = 0; !own->stiffness && k < h->shapes; k++) {
         to->a[0] += speed[k] * x->drift[k];
         to->a[1] += place[k] * x->drift[k] + speed[k] * x->acc[k];
         to->a[2] += 0.5 * place[k] * x->acc[k];
@@ -67,9 +71,10 @@ int tribo_modal_motion_signal(void *own, const double *c, double tau, const doub
     const struct forced *h = x->h;
     const struct compliance *g = &x->sys->compliance;
     const size_t n = x->sys->ndof, m = h->shapes, f = tribo_system_energy(x->sys);
+    const int powers = h->modal->stiffness != NULL;
     const size_t terms = h->modal->exponents + h->harmonics;
     double *place = calloc(3 * m + 1, sizeof *place), *speed = place + m, *rate = speed + m, v[4];
-    if (!place || !tribo_signal_reserve(to, terms, 2)) {
+    if (!place || !tribo_signal_reserve(to, terms, powers ? TRIBO_POWERS - 1 : 2)) {
         free(place);
         return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu term%s", terms, plural(terms));
     }

@@ -165,6 +165,10 @@ static double total(const double *sum)
 void tribo_course_look(const struct exact *x, struct course *c)
 {
     double sum[3 * T];
+    if (x->h->modal->stiffness) {
+        tribo_powers_look(x, c);
+        return;
+    }
     sum_terms(x->h->terms, c->output->cr, x->lot, sum);
     c->tau = x->tau;
     c->at.g = total(sum) + (c->start + c->ramp * x->tau);
@@ -175,6 +179,10 @@ void tribo_course_look(const struct exact *x, struct course *c)
 void tribo_course_bound(const struct exact *x, struct course *c)
 {
     double sum[2 * T];
+    if (x->h->modal->stiffness) {
+        tribo_powers_bound(x, c);
+        return;
+    }
     sum_bounds(x->h->terms, c->output->size, x->growth, x->growth6, sum);
     c->size = total(sum) + fabs(c->start) + fabs(c->ramp) * x->longest;
     c->bend = total(sum + T);
@@ -186,6 +194,9 @@ void tribo_course_begin(const struct exact *x, struct course *c, int of_velocity
     c->start = 0.0;
     c->ramp = x->runs ? tribo_dot(w->on_rate, of_velocity ? x->acc : x->vel, x->h->shapes) : 0.0;
     tribo_course_look(x, c);
+    if (x->h->modal->stiffness) {
+        c->power[0] = value;
+    }
     c->start = value - c->at.g;
     c->at.g = value;
     tribo_course_bound(x, c);

@@ -49,25 +49,18 @@ static void find_pull(const struct modal *h, const tribo_system *sys, size_t col
     }
 }
 
-int tribo_modal_transition(void *own, const void *phase, double tau, size_t columns, double *v)
+/* tribo_powers_carry for a structure with modes; work [10 modes][columns] + [4 modes]. */
+static void carry_modes(const struct modal *h, double tau, size_t columns, const double *pull, double *eta, double *rate,
+                        double *work)
 {
-    const struct modal *h = phase;
-    tribo_system *sys = ((struct exact *)own)->sys;
-    const size_t n = h->n, m = h->modes, c = columns, block = n * c;
-    double *eta = calloc(13 * block + c + 4 * n + 1, sizeof *eta), *rate = eta + block, *pull = rate + block, *vel = pull + block;
-    double *acc = vel + block, *zr = acc + block, *zi = zr + 2 * block, *wr = zi + 2 * block, *wi = wr + 2 * block,
+    const size_t m = h->modes, c = columns, block = m * c;
+    double *vel = work, *acc = vel + block, *zr = acc + block, *zi = zr + 2 * block, *wr = zi + 2 * block, *wi = wr + 2 * block,
            *turn = wi + 2 * block;
-    if (!eta) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
-    }
-    tribo_multiply_add(m, n, c, 1.0, h->psi, v, eta);
-    tribo_multiply_add(m, n, c, 1.0, h->psi, v + block, rate);
-    find_pull(h, sys, c, v, pull, turn + 4 * n);
     tribo_modal_settle(h, c, pull, eta, rate, vel, acc);
     tribo_modal_split(h, c, eta, rate, zr, zi);
-    tribo_cos_sin_all(tau, h->exponents, h->li, turn, turn + 2 * n);
+    tribo_cos_sin_all(tau, h->exponents, h->li, turn, turn + 2 * m);
     for (size_t p = 0, at = 0; p < h->exponents; p++) {
-        const double size = h->lr[p] != 0.0 ? exp(h->lr[p] * tau) : 1.0, re = size * turn[p], im = size * turn[2 * n + p];
+        const double size = h->lr[p] != 0.0 ? exp(h->lr[p] * tau) : 1.0, re = size * turn[p], im = size * turn[2 * m + p];
         for (size_t j = 0; j < c; j++, at++) {
             /* z becomes w - z, w that at tau, beside w'. */
             const double r = re * zr[at] - im * zi[at], i = re * zi[at] + im * zr[at];
@@ -78,12 +71,28 @@ int tribo_modal_transition(void *own, const void *phase, double tau, size_t colu
         }
     }
     for (size_t at = 0; at < m * c; at++) {
-        const double drift = vel[at] + (h->drifts[at / c] ? rate[at] : 0.0);
+        const double drift = vel[at] + (tribo_modal_drifts(h, at / c) ? rate[at] : 0.0);
         eta[at] = tau * (drift + 0.5 * tau * acc[at]);
         rate[at] = drift + tau * acc[at];
     }
     tribo_modal_join(h, c, zr, zi, eta);
     tribo_modal_join(h, c, wr, wi, rate);
+}
+
+int tribo_modal_transition(void *own, const void *phase, double tau, size_t columns, double *v)
+{
+    const struct modal *h = phase;
+    tribo_system *sys = ((struct exact *)own)->sys;
+    const size_t n = h->n, m = h->modes, c = columns, block = n * c;
+    double *eta = calloc(13 * block + c + 4 * n + 1, sizeof *eta), *rate = eta + block, *pull = rate + block;
+    double *row = pull + block, *work = row + c;
+    if (!eta) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
+    }
+    tribo_multiply_add(m, n, c, 1.0, h->psi, v, eta);
+    tribo_multiply_add(m, n, c, 1.0, h->psi, v + block, rate);
+    find_pull(h, sys, c, v, pull, row);
+    (h->stiffness ? tribo_powers_carry : carry_modes)(h, tau, c, pull, eta, rate, work);
     memset(v + block, 0, block * sizeof *v);
     tribo_multiply_transposed_add(m, n, c, h->phi, eta, v);
     tribo_multiply_transposed_add(m, n, c, h->phi, rate, v + block);

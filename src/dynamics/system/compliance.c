@@ -166,18 +166,18 @@ void tribo_compliance_share(const struct compliance *g, double *v)
     }
 }
 
-/* Sets lo and hi of all contacts to 0, without bounds for compliant contacts with slip 0. */
+/* rate_A = -G_AA^-1 v_A, v += G rate, over the compliant contacts A at rest. */
 void tribo_compliance_rates(const tribo_system *sys, const signed char *slip, double *v, double *rate)
 {
-    const struct compliance *g = &sys->compliance;
     memset(rate, 0, sys->ncontact * sizeof *rate);
-    for (size_t i = 0; g->count && i < sys->ncontact; i++) {
-        g->hi[i] = tribo_is_compliant(g, i) && slip[i] == TRIBO_SLIP_STUCK ? TRIBO_UNBOUNDED : 0.0;
-        g->lo[i] = -g->hi[i];
+    if (sys->compliance.count == 0) {
+        return;
     }
-    if (g->count) {
-        tribo_compliance_share(g, v);
-        memcpy(rate, g->f, sys->ncontact * sizeof *rate);
+    tribo_add(rate, -1.0, v, sys->ncontact);
+    tribo_compliance_solve(sys, slip, 1, rate);
+    tribo_definite_multiply_add(sys->compliance.g, 1, rate, v);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        v[i] = tribo_is_compliant(&sys->compliance, i) && slip[i] == TRIBO_SLIP_STUCK ? 0.0 : v[i];
     }
 }
 

@@ -517,7 +517,35 @@ TEST(limits_through_zero)
     assert_close(over[0], over[1], fmax(1e-7 * over[1], 1e-19 * big));
 }
 
+/* Bodies of one mass in a ring of one spring: modes in pairs of one frequency, contacts that stop at one time, and phases so
+ * short that they are powers of time. */
+TEST(ring)
+{
+    enum { N = 40 };
+    double mass[N * N] = {0.0}, stiffness[N * N] = {0.0}, damping[N * N], direction[N * N] = {0.0}, load[N];
+    double y[2 * N + 1] = {0.0}, want[2 * N + 1] = {0.0};
+    for (size_t i = 0; i < N; i++) {
+        mass[i * (N + 1)] = direction[i * (N + 1)] = 1.0;
+        stiffness[i * (N + 1)] = 2.5;
+        stiffness[i * N + (i + 1) % N] = stiffness[i * N + (i + N - 1) % N] = -1.0;
+        load[i] = i % 2 ? 1.0 : _i ? -1.0 : 0.5 * cos((double)i);
+    }
+    for (size_t k = 0; k < N * N; k++) {
+        damping[k] = 0.05 * stiffness[k];
+    }
+    tribo_system *sys;
+    assert_ok(dense_system(&sys, N, N, mass, damping, stiffness, direction, 0, NULL, 0));
+    assert_ok(tribo_system_add_load(sys, 1.3, load, NULL));
+    assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.3));
+    run(sys, "exact", 1.0, 0.0, 30.0, y);
+    run(sys, "event", 1.0, 1e-13, 30.0, want);
+    assert_all_close(y, want, 2 * N + 1, 1e-10);
+    require(y[2 * N] > 1.0, "nothing slides");
+    tribo_system_destroy(sys);
+}
+
 TEST_MAIN("exact", {limits_through_zero, 8}, {reference_values, REFERENCES}, {events_of_the_chain, 1}, {growth_that_stops, 1},
           {chains, 6}, {beam_against_event, 3}, {stuck_for_good, 2}, {resonance, 1}, {resonance_elsewhere, 1},
           {resonance_beside_damping, 1}, {held_together, 2}, {balance_of_energy, 8}, {observer_sees_the_motion, 1},
-          {observer_stops, 1}, {in_pieces, 1}, {automatic, 1}, {automatic_runs, 1}, {unsupported, 1}, {tables, 2}, {creation, 1})
+          {observer_stops, 1}, {in_pieces, 1}, {automatic, 1}, {automatic_runs, 1}, {unsupported, 1}, {ring, 2}, {tables, 2},
+          {creation, 1})

@@ -9,7 +9,7 @@
 static int decompose(struct modal **h, tribo_system *sys, const signed char *slip, const unsigned char *holds)
 {
     struct modal *found = NULL;
-    const int status = tribo_modal_create(&found, sys, slip, holds);
+    const int status = tribo_modal_create(&found, sys, slip, holds, 0);
     if (!status) {
         *h = found;
     }
@@ -75,7 +75,7 @@ TEST(upper_holds)
     ck_assert_uint_eq(f->outputs, 2);
     ck_assert_uint_eq(f->sliding, 1);
     assert_exact(h->omega2[0], 0.0);
-    ck_assert(h->drifts[0]);
+    ck_assert(tribo_modal_drifts(h, 0));
     assert_close(h->omega2[1] / (4.0 * (1.0 / whole + 4.0)), 1.0, 1e-14);
     /* what it carries is what accelerates the light body: light (spring + load)/whole - load of the light one; the spring's is
      * part of the exponent and of the response to the load, the direct part of the load is what is left of it */
@@ -187,7 +187,7 @@ TEST(kept)
             holds[i] = i == BODIES; /* the one between two bodies */
             slip[i] = !holds[i];
         }
-        assert_ok(tribo_modal_create(&same, sys, slip, holds));
+        assert_ok(tribo_modal_create(&same, sys, slip, holds, 0));
         assert_ok(decompose(&h, sys, slip, holds));
         compare(same->forced, h->forced);
         tribo_forced_free(same);
@@ -195,6 +195,47 @@ TEST(kept)
         assert_ok(tribo_system_add_load(sys, 0.4 + k, load, NULL));
     }
     tribo_modal_free(same);
+    tribo_system_destroy(sys);
+}
+
+/* Perturbations move over a short phase as they do by modes: of bodies in a row; and of equal ones without springs between them,
+ * of one omega. Contacts on two bodies and between two hold. */
+TEST(powers)
+{
+    struct random r = random_of(_i);
+    const size_t columns = 3, size = 2 * BODIES * columns;
+    double mass[BODIES * BODIES] = {0.0}, stiffness[BODIES * BODIES] = {0.0}, direction[CONTACTS * BODIES] = {0.0};
+    double v[2 * BODIES * 3], w[2 * BODIES * 3];
+    tribo_system *sys = _i % 3 ? row_of_bodies(&r, _i % 3 == 2 ? 0.05 : 0.0) : NULL;
+    for (size_t i = 0; i < BODIES; i++) {
+        mass[i * (BODIES + 1)] = stiffness[i * (BODIES + 1)] = direction[i * (BODIES + 1)] = 2.0;
+    }
+    direction[BODIES * BODIES + 1] = direction[BODIES * BODIES + 5] = 1.0;
+    if (!sys) {
+        assert_ok(dense_system(&sys, BODIES, CONTACTS, mass, NULL, stiffness, direction, 0, NULL, 0));
+    }
+    signed char slip[CONTACTS];
+    unsigned char holds[CONTACTS];
+    for (size_t i = 0; i < CONTACTS; i++) {
+        holds[i] = i == 0 || i == 7 || i == BODIES;
+        slip[i] = !holds[i];
+    }
+    struct modal *modes = NULL, *none = NULL;
+    struct exact own = {.sys = sys};
+    assert_ok(tribo_modal_create(&modes, sys, slip, holds, 0));
+    assert_ok(tribo_modal_create(&none, sys, slip, holds, 1));
+    ck_assert_ptr_null(modes->stiffness);
+    ck_assert_uint_eq(none->exponents, 0);
+    for (size_t k = 0; k < size; k++) {
+        v[k] = w[k] = uniform(&r, -1.0, 1.0);
+    }
+    const double tau = TRIBO_POWERS_REACH / none->forced->fastest;
+    require(none->forced->fastest >= modes->forced->fastest, "a bound of %g", none->forced->fastest);
+    assert_ok(tribo_modal_transition(&own, modes, tau, columns, v));
+    assert_ok(tribo_modal_transition(&own, none, tau, columns, w));
+    assert_all_close(w, v, size, 1e-14);
+    tribo_modal_free(modes);
+    tribo_modal_free(none);
     tribo_system_destroy(sys);
 }
 
@@ -398,5 +439,5 @@ TEST(exponential_from_one)
     }
 }
 
-TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1}, {kept, 10}, {one_sided, 1},
+TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1}, {kept, 10}, {powers, 9}, {one_sided, 1},
           {damper_alone, 1}, {free_motions, 1}, {moved_alike, 1}, {coupled, 10}, {exponential_from_one, 5})

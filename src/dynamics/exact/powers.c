@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A phase of a structure without modes, in powers of time: eta'' = -K eta - C~ eta' + constant + Re(g e^{i Omega t}). A phase of
+ * less than TRIBO_POWERS_REACH/|lambda| needs few powers, and a decomposition into modes takes much longer; where many contacts
+ * slide and stick, most sets of contacts that hold last no longer. */
+#include "motion.h"
+#include "parts.h"
+#include "common/real.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { P = TRIBO_POWERS };
+
+/* A term that changes nothing, relative to the sum. */
+#define NOTHING 1e-18
+
+/* Returns the largest sum of the sizes of a row of a [n][n]. */
+static double row_sum(const double *a, size_t n)
+{
+    double most = 0.0;
+    for (size_t i = 0; a && i < n; i++) {
+        double sum = 0.0;
+        for (size_t j = 0; j < n; j++) {
+            sum += fabs(a[i * n + j]);
+        }
+        most = greater(most, sum);
+    }
+    return most;
+}
+
+double tribo_powers_fastest(const struct modal *h)
+{
+    return sqrt(row_sum(h->stiffness, h->modes)) + row_sum(h->coupling, h->modes);
+}
+
+/* to [modes][columns] -= K eta + C~ rate. */
+static void pull_back(const struct modal *h, size_t columns, const double *eta, const double *rate, double *to)
+{
+    tribo_multiply_add(h->modes, h->modes, columns, -1.0, h->stiffness, eta, to);
+    if (h->coupling) {
+        tribo_multiply_add(h->modes, h->modes, columns, -1.0, h->coupling, rate, to);
+    }
+}
+
+/* to[k] += the real part of c z e^{i Omega t} for the power k. */
+static void add_harmonic(double omega, double complex cz, double *to)
+{
+    for (size_t k = 0; k < P; k++) {
+        to[k] += creal(cz);
+        cz *= omega / (double)(k + 1) * I;
+    }
+}
+
+void tribo_powers_start(struct exact *x, const double *force)
+{
+    const struct forced *f = x->h;
+    const struct modal *h = f->modal;
+    const size_t m = h->modes;
+    double *eta = x->power, *rate = eta + m * P, *out = rate + m * P;
+    memset(rate + m, 0, (P - 1) * m * sizeof *rate);
+    memcpy(eta, x->place, m * sizeof *eta);
+    memcpy(rate, x->rate, m * sizeof *rate);
+    memcpy(rate + m, force, m * sizeof *rate);
+    for (size_t s = 0; s < f->harmonics; s++) { /* the part of a constant load is in force */
+        const double omega = f->forcing[s].omega;
+        double complex z = tribo_part(&x->z, s);
+        for (size_t k = 1; k < P && omega != 0.0; k++) {
+            for (size_t j = 0; j < m; j++) {
+                rate[k * m + j] += creal(f->g[s * m + j] * z);
+            }
+            z *= omega / (double)k * I;
+        }
+    }
+    for (size_t k = 0; k + 1 < P; k++, eta += m, rate += m) {
+        double *next = rate + m;
+        for (size_t j = 0; j < m; j++) {
+            eta[m + j] = rate[j] / (double)(k + 1);
+        }
+        pull_back(h, 1, eta, rate, next);
+        for (size_t j = 0; j < m; j++) {
+            next[j] /= (double)(k + 1);
+        }
+    }
+    memset(out, 0, f->outputs * P * sizeof *out);
+    for (size_t o = 0; o < f->outputs; o++, out += P) {
+        const struct output *w = &f->output[o];
+        const double *by_u = o >= f->sliding && f->by_u ? f->by_u + w->contact * f->shapes : NULL;
+        tribo_multiply_add(P, m, 1, 1.0, o < f->sliding ? x->power + m * P : x->power, w->on_rate, out);
+        if (by_u) {
+            tribo_multiply_add(P, m, 1, 1.0, x->power + m * P, by_u, out);
+        }
+        for (size_t s = 0; s < f->harmonics; s++) {
+            add_harmonic(f->forcing[s].omega, (w->cr[s] + w->ci[s] * I) * tribo_part(&x->z, s), out);
+        }
+        x->course[o].power = out;
+    }
+}
+
+void tribo_powers_move(struct exact *x, double tau, int changes)
+{
+    const struct forced *f = x->h;
+    const size_t m = f->modal->modes;
+    memset(x->place, 0, f->shapes * sizeof *x->place);
+    memset(x->rate, 0, f->shapes * sizeof *x->rate);
+    for (size_t k = P; k-- > 1;) {
+        for (size_t j = 0; j < m; j++) {
+            x->place[j] = (x->place[j] + x->power[k * m + j]) * tau;
+            x->rate[j] = (x->rate[j] + x->power[(P + k) * m + j]) * tau;
+        }
+    }
+    if (!changes) {
+        tribo_add(x->rate, 1.0, x->power + P * m, m);
+    }
+    for (size_t s = 0; s < f->harmonics; s++) {
+        const double complex turn = f->forcing[s].omega * tau * I, z = tribo_part(&x->z, s);
+        const double complex move = turn * tribo_exp_1(turn) * z, rate = f->forcing[s].omega * (z + move) * I;
+        for (size_t k = m; k < f->shapes; k++) {
+            x->place[k] += creal(f->x[s * f->shapes + k] * move);
+            x->rate[k] += creal(f->x[s * f->shapes + k] * rate);
+        }
+    }
+}
+
+void tribo_powers_carry(const struct modal *h, double tau, size_t columns, const double *pull, double *eta, double *rate,
+                        double *work)
+{
+    const size_t all = h->modes * columns;
+    double *e = work, *u = e + all, *next = u + all;
+    memcpy(e, eta, all * sizeof *e);
+    memcpy(u, rate, all * sizeof *u);
+    memcpy(next, pull, all * sizeof *next);
+    memset(eta, 0, all * sizeof *eta);
+    for (size_t k = 1; k < P; k++) {
+        pull_back(h, columns, e, u, next);
+        for (size_t j = 0; j < all; j++) {
+            e[j] = u[j] * (tau / (double)k);
+            u[j] = next[j] * (tau / (double)k);
+            eta[j] += e[j];
+            rate[j] += u[j];
+        }
+        memset(next, 0, all * sizeof *next);
+        if (tribo_largest(e, all) <= NOTHING * tribo_largest(eta, all) &&
+            tribo_largest(u, all) <= NOTHING * tribo_largest(rate, all)) {
+            return;
+        }
+    }
+}
+
+void tribo_powers_look(const struct exact *x, struct course *c)
+{
+    double v0 = 0.0, v1 = 0.0, v2 = 0.0;
+    for (size_t k = P; k-- > 0;) {
+        v2 = v2 * x->tau + v1;
+        v1 = v1 * x->tau + v0;
+        v0 = v0 * x->tau + c->power[k];
+    }
+    c->tau = x->tau;
+    c->at = (struct sample){v0, v1, 2.0 * v2};
+}
+
+void tribo_powers_bound(const struct exact *x, struct course *c)
+{
+    double power = 1.0; /* longest^k */
+    c->size = c->bend = 0.0;
+    for (size_t k = 0; k < P; k++, power *= x->longest) {
+        c->size += fabs(c->power[k]) * power;
+        if (k + 6 < P) {
+            c->bend += fabs(c->power[k + 6]) * power * (double)((k + 1) * (k + 2) * (k + 3) * (k + 4) * (k + 5) * (k + 6));
+        }
+    }
+}
