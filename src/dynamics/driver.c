@@ -3,7 +3,6 @@
 #include "driver.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,7 +27,7 @@ int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const stru
     const size_t size = tribo_system_size(sys), shown = sys->expansion.place ? tribo_system_dimension(sys) : 0;
     tribo_driver *d = tribo_zeros(sizeof *d + (2 * size + 2 * shown) * sizeof *d->state + TRIBO_MESSAGE, 1);
     if (!d) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a driver of %zu equation%s", size, plural(size));
+        return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for a driver of %zu equation%s", size, plural(size));
     }
     d->sys = sys;
     d->revision = SIZE_MAX;
@@ -70,23 +69,14 @@ const char *tribo_driver_message(const tribo_driver *drv)
     return drv ? drv->message : "drv is NULL";
 }
 
-int tribo_driver_fail(const tribo_driver *drv, int status, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    vsnprintf(drv->message, TRIBO_MESSAGE, format, args);
-    va_end(args);
-    return status;
-}
-
 int tribo_driver_pass(const tribo_driver *drv, int status)
 {
-    return status ? tribo_driver_fail(drv, status, "%s", tribo_system_message(drv->sys)) : TRIBO_OK;
+    return status ? tribo_error(drv->message, status, "%s", tribo_system_message(drv->sys)) : TRIBO_OK;
 }
 
 int tribo_driver_explain(tribo_driver *drv, double t, double h)
 {
-    return tribo_driver_fail(drv, drv->sys->status, "at t = %.17g, in a step of %g: %s", t, h, tribo_system_message(drv->sys));
+    return tribo_error(drv->message, drv->sys->status, "at t = %.17g, in a step of %g: %s", t, h, tribo_system_message(drv->sys));
 }
 
 /* -------------------------------------------------------------------------------------------------------------- settings */
@@ -103,8 +93,8 @@ int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(const tribo_moment 
 
 static int check_positive(const tribo_driver *drv, const char *name, double value)
 {
-    return !isfinite(value) ? tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "%s = %g is not finite", name, value)
-           : value <= 0.0   ? tribo_driver_fail(drv, TRIBO_ERR_NOT_POSITIVE, "%s = %g is not positive", name, value)
+    return !isfinite(value) ? tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "%s = %g is not finite", name, value)
+           : value <= 0.0   ? tribo_error(drv->message, TRIBO_ERR_NOT_POSITIVE, "%s = %g is not positive", name, value)
                             : TRIBO_OK;
 }
 
@@ -115,7 +105,7 @@ static int check_setting(const tribo_driver *drv, int setting, const char *text,
     return !drv ? TRIBO_ERR_NULL
            : drv->method->takes & setting
                ? check_positive(drv, name, value)
-               : tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s takes no %s do", drv->method->name, text);
+               : tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "method %s takes no %s do", drv->method->name, text);
 }
 
 int tribo_driver_set_step(tribo_driver *drv, double dt)
@@ -133,7 +123,7 @@ int tribo_driver_set_tolerance(tribo_driver *drv, double abstol, double reltol)
 {
     int status = check_setting(drv, TAKES_TOLERANCE, "tolerance; event, auto and GSL's adaptive methods", "abstol", abstol);
     if (!status && !(reltol >= 0.0 && isfinite(reltol))) {
-        status = isfinite(reltol) ? tribo_driver_fail(drv, TRIBO_ERR_NEGATIVE, "reltol = %g is negative", reltol)
+        status = isfinite(reltol) ? tribo_error(drv->message, TRIBO_ERR_NEGATIVE, "reltol = %g is negative", reltol)
                                   : check_positive(drv, "reltol", reltol);
     }
     if (!status) {
@@ -167,7 +157,7 @@ int tribo_driver_set_max_step(tribo_driver *drv, double h)
 /* Returns TRIBO_OK if drv and value are not NULL. */
 static int check_query(const tribo_driver *drv, const void *value)
 {
-    return drv && value ? TRIBO_OK : drv ? tribo_driver_fail(drv, TRIBO_ERR_NULL, "value is NULL") : TRIBO_ERR_NULL;
+    return drv && value ? TRIBO_OK : drv ? tribo_error(drv->message, TRIBO_ERR_NULL, "value is NULL") : TRIBO_ERR_NULL;
 }
 
 int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
@@ -195,7 +185,7 @@ int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
             return TRIBO_OK;
         }
     }
-    return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "which = %d is no count of a driver", which);
+    return tribo_error(drv->message, TRIBO_ERR_RANGE, "which = %d is no count of a driver", which);
 }
 
 int tribo_driver_real(const tribo_driver *drv, int which, double *value)
@@ -205,11 +195,11 @@ int tribo_driver_real(const tribo_driver *drv, int which, double *value)
         return status;
     }
     if (which != TRIBO_REAL_EXCESS && which != TRIBO_REAL_BACKSLIP) {
-        return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "which = %d is no real quantity of a driver", which);
+        return tribo_error(drv->message, TRIBO_ERR_RANGE, "which = %d is no real quantity of a driver", which);
     }
     if (!(drv->method->takes & TAKES_OUTPUT)) {
-        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s does not bound how far the motion strays",
-                                 drv->method->name);
+        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "method %s does not bound how far the motion strays",
+                           drv->method->name);
     }
     *value = which == TRIBO_REAL_EXCESS ? drv->excess : drv->backslip;
     return TRIBO_OK;
@@ -234,8 +224,8 @@ int tribo_driver_check(tribo_driver *drv, const double *y)
     if (drv->dt > 0.0) {
         snprintf(why, sizeof why, ", or dt = %g is too long", drv->dt);
     }
-    return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "y[%zu] = %g after t = %.17g: the motion grows without bound%s", i,
-                             shown[i], drv->time, why);
+    return tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "y[%zu] = %g after t = %.17g: the motion grows without bound%s", i,
+                       shown[i], drv->time, why);
 }
 
 void tribo_driver_keep(tribo_driver *drv, double t, const double *y)
@@ -251,7 +241,7 @@ int tribo_driver_show(tribo_driver *drv, double t, const double *y, int kind, si
         tribo_system_write_state(drv->sys, t, y, drv->shown);
     }
     const int answer = drv->seen ? drv->seen(&moment, drv->data) : 0;
-    return answer ? tribo_driver_fail(drv, TRIBO_ERR_STOPPED, "the observer answered %d at t = %.17g", answer, t) : TRIBO_OK;
+    return answer ? tribo_error(drv->message, TRIBO_ERR_STOPPED, "the observer answered %d at t = %.17g", answer, t) : TRIBO_OK;
 }
 
 int tribo_driver_accept(tribo_driver *drv, double t, const double *y)
@@ -267,17 +257,17 @@ int tribo_driver_accept(tribo_driver *drv, double t, const double *y)
 static int check_times(tribo_driver *drv, const double *t, double t1, const double *y)
 {
     if (!t || !y) {
-        return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", t ? "y" : "t");
+        return tribo_error(drv->message, TRIBO_ERR_NULL, "%s is NULL", t ? "y" : "t");
     }
     const int status = tribo_system_check_state(drv->sys, *t, y);
     if (status) {
         return tribo_driver_pass(drv, status);
     }
     if (!isfinite(t1)) {
-        return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "t1 = %g is not finite", t1);
+        return tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "t1 = %g is not finite", t1);
     }
     if (t1 < *t) {
-        return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "t1 = %.17g is before t = %.17g", t1, *t);
+        return tribo_error(drv->message, TRIBO_ERR_RANGE, "t1 = %.17g is before t = %.17g", t1, *t);
     }
     return TRIBO_OK;
 }
@@ -289,7 +279,7 @@ static int advance_motion(tribo_driver *drv, double *t, double t1, double *y)
     const struct method *method = drv->method;
     int status = tribo_system_take_settings(sys);
     if (!status && (method->takes & (TAKES_STEP | TAKES_TOLERANCE)) == TAKES_STEP && drv->dt == 0.0) {
-        return tribo_driver_fail(drv, TRIBO_ERR_STATE, "method %s has no step: call tribo_driver_set_step", method->name);
+        return tribo_error(drv->message, TRIBO_ERR_STATE, "method %s has no step: call tribo_driver_set_step", method->name);
     }
     status = status ? status : tribo_system_check_contacts(sys, method->name, method->takes & NEEDS_SCALAR);
     if (status || t1 == *t) {

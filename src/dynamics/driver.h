@@ -68,14 +68,7 @@ struct tribo_driver {
     double excess, backslip; /* largest values so far, of methods with TAKES_OUTPUT */
 };
 
-/* Writes the message of the driver and returns status. */
-int tribo_driver_fail(const tribo_driver *drv, int status, const char *format, ...)
-#if defined(__GNUC__)
-    __attribute__((format(printf, 3, 4)))
-#endif
-    ;
-
-/* tribo_driver_fail with status and message of the system, for a failed evaluation in a step h from t. */
+/* Returns status and message of the system, for a failed evaluation in a step h from t. */
 int tribo_driver_explain(tribo_driver *drv, double t, double h);
 
 /* Returns status; if it is an error, the message of the system becomes that of the driver. */

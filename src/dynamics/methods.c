@@ -30,7 +30,7 @@ int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *metho
         return TRIBO_ERR_NULL;
     }
     if (!drv || !method) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", drv ? "method" : "drv");
+        return tribo_error(sys->message, TRIBO_ERR_NULL, "%s is NULL", drv ? "method" : "drv");
     }
     const struct method *m = NULL;
     char list[200] = "";
@@ -40,9 +40,9 @@ int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *metho
         snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", methods[i]->name);
     }
     return m ? tribo_driver_create_method(drv, sys, m)
-             : tribo_system_fail(sys, TRIBO_ERR_NAME,
-                                 "method \"%.20s\" is unknown; there are %s; tribo_gsl_driver_create takes GSL's steppers",
-                                 method, list);
+             : tribo_error(sys->message, TRIBO_ERR_NAME,
+                           "method \"%.20s\" is unknown; there are %s; tribo_gsl_driver_create takes GSL's steppers", method,
+                           list);
 }
 
 /* ------------------------------------------------------------------------------------------------------ method "auto" */
@@ -69,7 +69,7 @@ static int set_to_work(tribo_driver *drv, int which)
     if (status) {
         drv->at_work->destroy(drv);
         drv->own = NULL;
-        tribo_driver_fail(drv, status, "method %s: %s", drv->at_work->name, tribo_system_message(drv->sys));
+        tribo_error(drv->message, status, "method %s: %s", drv->at_work->name, tribo_system_message(drv->sys));
     }
     drv->choice.own[which] = drv->own;
     return status;

@@ -26,7 +26,7 @@ int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f)
         status = tribo_set_limit(c->hold, f);
     }
     status = status ? status : tribo_balance(c->hold, c->still, a, f, NULL);
-    return status ? tribo_system_fail(c->sys, status, "%s", tribo_message(c->hold)) : TRIBO_OK;
+    return status ? tribo_error(c->sys->message, status, "%s", tribo_message(c->hold)) : TRIBO_OK;
 }
 
 void tribo_stick_slip_set_hold(struct stick_slip *m, size_t i, int holds)
@@ -62,7 +62,7 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
         /* an independent set: first contacts inside their limits, then those that go back inside, then those at their limits */
         if (!tribo_constraints_create(&ties, &sys->direction, &sys->mass, at, rest, m->work.last)) {
             tribo_constraints_free(&ties);
-            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s at rest", rest, plural(rest));
+            return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s at rest", rest, plural(rest));
         }
         for (size_t k = ties.rank; k < rest; k++) {
             s->holds[at[ties.order[k]]] = 0;

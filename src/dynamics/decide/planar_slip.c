@@ -115,19 +115,19 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
     /* forces of planar contacts are known for limits that are the same at all times and speeds, at rest and not */
     for (size_t i = 0; i < m->constant.contacts; i++) {
         if (m->limits.ratio[i] > 1.0) {
-            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                     "method event knows no static limits beside planar contacts: contact %zu has ratio[%zu] = "
-                                     "%g: take moreau/fixed",
-                                     i, i, m->limits.ratio[i]);
+            return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                               "method event knows no static limits beside planar contacts: contact %zu has ratio[%zu] = "
+                               "%g: take moreau/fixed",
+                               i, i, m->limits.ratio[i]);
         }
     }
     if (tribo_system_limits_vary(sys)) {
-        return tribo_system_fail(
-            sys, TRIBO_ERR_UNSUPPORTED,
+        return tribo_error(
+            sys->message, TRIBO_ERR_UNSUPPORTED,
             "method event knows no limits that change with time beside planar contacts, of which the system has %zu", planar);
     }
     const int status = create_plane(m, sys);
-    return status ? tribo_system_fail(sys, status, "%s, of planar contacts", tribo_strerror(status)) : TRIBO_OK;
+    return status ? tribo_error(sys->message, status, "%s, of planar contacts", tribo_strerror(status)) : TRIBO_OK;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- at rest */
@@ -165,10 +165,10 @@ static int check_holds(const struct stick_slip *m, const tribo_system *sys)
 {
     for (size_t i = 0; m->state.dependents && i < m->constant.contacts; i++) {
         if (m->state.slip[i] == TRIBO_SLIP_STUCK && !m->state.holds[i]) {
-            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                     "at t = %.17g contact %zu rests by what others hold: method event knows no redundant "
-                                     "contacts at rest where some are planar",
-                                     sys->loads.time, i);
+            return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                               "at t = %.17g contact %zu rests by what others hold: method event knows no redundant "
+                               "contacts at rest where some are planar",
+                               sys->loads.time, i);
         }
     }
     return TRIBO_OK;
@@ -226,7 +226,7 @@ static int solve_discs(struct stick_slip *m, const tribo_system *sys, const doub
     int status = tribo_set_limit(m->plane->disc, m->work.hi);
     status = status ? status : tribo_balance(m->plane->disc, m->constant.still, m->work.v, NULL, f);
     if (status) {
-        return tribo_system_fail(sys, status, "at t = %.17g: %s", sys->loads.time, tribo_message(m->plane->disc));
+        return tribo_error(sys->message, status, "at t = %.17g: %s", sys->loads.time, tribo_message(m->plane->disc));
     }
     tribo_add(f, 1.0, m->work.lo, m->constant.contacts);
     tribo_stick_slip_accelerate(m, sys, a, f, m->work.v);

@@ -61,7 +61,7 @@ static int solve(struct stick_slip *m, const tribo_system *sys, const double *a,
     }
     if (!c->independent || unknown > 1) { /* contacts that depend on each other start from these forces next time */
         const int status = tribo_solve_box(c->box, a, lo, hi, f);
-        return status ? tribo_system_fail(sys, status, "at t = %.17g: %s", sys->loads.time, tribo_message(c->box)) : TRIBO_OK;
+        return status ? tribo_error(sys->message, status, "at t = %.17g: %s", sys->loads.time, tribo_message(c->box)) : TRIBO_OK;
     }
     double own = a[i];
     f[i] = 0.0;

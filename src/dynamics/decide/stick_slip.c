@@ -142,7 +142,7 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
         }
     }
     tribo_stick_slip_free(m);
-    return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", sys->ncontact, plural(sys->ncontact));
+    return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", sys->ncontact, plural(sys->ncontact));
 }
 
 void tribo_stick_slip_free(struct stick_slip *m)
@@ -392,10 +392,10 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
             const int loses = s->rested[i] && !m->limits.falls && tribo_drops(m, i);
             tribo_stick_slip_set(m, i, slip_of(m, sys, i, y));
             if (s->slip[i] && loses) { /* irreversible, so it must not depend on the choice of H */
-                status = tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                           "contact %zu has a static limit and is tied to others that stop beside it: which of "
-                                           "them rest is not unique; take central/fixed or moreau/fixed",
-                                           i);
+                status = tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                                     "contact %zu has a static limit and is tied to others that stop beside it: which of "
+                                     "them rest is not unique; take central/fixed or moreau/fixed",
+                                     i);
             }
         }
     }

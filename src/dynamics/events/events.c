@@ -53,7 +53,7 @@ int tribo_events_create(struct events *e, tribo_driver *drv, const struct motion
     } while (!l.memory && tribo_layout_zeros(&l));
     return l.memory
                ? TRIBO_OK
-               : tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contact%s", c, plural(c));
+               : tribo_error(drv->sys->message, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contact%s", c, plural(c));
 }
 
 void tribo_events_free(struct events *e)
@@ -103,9 +103,9 @@ static int count_event(struct events *e, tribo_driver *drv, size_t contact, doub
     for (size_t i = 0, used = 0; i < e->suspects; i++) {
         used += (size_t)snprintf(text + used, sizeof text - used, "%scontact %zu", i ? ", " : "", e->suspect[i]);
     }
-    return tribo_driver_fail(
-        drv, TRIBO_ERR_CHATTER,
-        "events make no headway at t = %.17g (%s): take central/fixed or moreau/fixed, or limits that differ", t, text);
+    return tribo_error(drv->message, TRIBO_ERR_CHATTER,
+                       "events make no headway at t = %.17g (%s): take central/fixed or moreau/fixed, or limits that differ", t,
+                       text);
 }
 
 /* Counts a step that no event ended. */
@@ -115,10 +115,10 @@ static int count_step(struct events *e, tribo_driver *drv, double t, double t1)
         e->rested = t;
         e->idle = 0;
     }
-    return ++e->idle <= MOST_IDLE
-               ? TRIBO_OK
-               : tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g, and %d such steps lead nowhere%s",
-                                   t, e->when, MOST_IDLE, e->stick_slip.plane ? ": take moreau/fixed" : "");
+    return ++e->idle <= MOST_IDLE ? TRIBO_OK
+                                  : tribo_error(drv->message, TRIBO_ERR_STEP,
+                                                "at t = %.17g the step is down to %g, and %d such steps lead nowhere%s", t,
+                                                e->when, MOST_IDLE, e->stick_slip.plane ? ": take moreau/fixed" : "");
 }
 
 /* Shows the observer the states at begin + k output, within the phase from t on. */
@@ -216,15 +216,15 @@ static int travel(struct events *e, tribo_driver *drv, double *t, double end, do
     reach = fabs(even - reach) <= 1e-3 * reach ? even : reach;
     e->search.resolution = DBL_EPSILON * DBL_EPSILON * greater(fabs(*t), reach);
     if (!(reach > e->search.resolution)) {
-        return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", *t, reach);
+        return tribo_error(drv->message, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", *t, reach);
     }
     if (!tribo_first_zero(&e->search, reach, &e->met, &e->when)) {
         e->motion->state(e->own, reach, y, y);
         status = tribo_driver_check(drv, y); /* an error if y overflows */
         return status ? status
-                      : tribo_driver_fail(drv, TRIBO_ERR_STEP,
-                                          "from t = %.17g on the motion is too fast to be followed: given up after %zu look%s",
-                                          *t, e->search.looks, plural(e->search.looks));
+                      : tribo_error(drv->message, TRIBO_ERR_STEP,
+                                    "from t = %.17g on the motion is too fast to be followed: given up after %zu look%s", *t,
+                                    e->search.looks, plural(e->search.looks));
     }
     e->when = e->met ? lesser(e->when, reach) : reach;
     status = show_between(e, drv, *t, y);
@@ -308,8 +308,8 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
     e->begin = *t;
     e->outputs = 1.0;
     if (drv->seen && drv->output > 0.0 && !(*t + drv->output > *t && t1 - drv->output < t1)) {
-        return tribo_driver_fail(drv, TRIBO_ERR_STEP, "output every %g is below what time resolves at t = %.17g", drv->output,
-                                 t1);
+        return tribo_error(drv->message, TRIBO_ERR_STEP, "output every %g is below what time resolves at t = %.17g", drv->output,
+                           t1);
     }
     if (!e->watched) {
         memcpy(e->shown, m->state.slip, contacts);

@@ -82,8 +82,9 @@ static int list_rest(struct modal_build *b, const unsigned char *holds)
         return 0;
     }
     if (h->ties.rank < h->rests) {
-        b->status = tribo_system_fail(sys, TRIBO_ERR_INDEFINITE, "contact %zu cannot hold: the others that do leave it no motion",
-                                      h->rest[h->ties.order[h->ties.rank]]);
+        b->status =
+            tribo_error(sys->message, TRIBO_ERR_INDEFINITE, "contact %zu cannot hold: the others that do leave it no motion",
+                        h->rest[h->ties.order[h->ties.rank]]);
         return 0;
     }
     return 1;
@@ -142,7 +143,7 @@ static int factorize_mass(struct modal_build *b, const struct matrix *z, struct 
         status = tribo_cholesky_create(c, &w, &w, &where, &pivot);
     }
     if (status == TRIBO_ERR_INDEFINITE) {
-        tribo_system_fail(b->sys, status, "mass of what is not held is not positive definite: pivot %g", pivot);
+        tribo_error(b->sys->message, status, "mass of what is not held is not positive definite: pivot %g", pivot);
     }
     return status;
 }
@@ -152,16 +153,16 @@ static int build_modes_failed(const struct modal_build *b, int status, const str
 {
     switch (status) {
     case TRIBO_ERR_NOT_FINITE:
-        return tribo_system_fail(b->sys, status, "stiffness over mass overflows");
+        return tribo_error(b->sys->message, status, "stiffness over mass overflows");
     case TRIBO_ERR_UNSUPPORTED:
-        return tribo_system_fail(b->sys, status,
-                                 "with contacts at rest held, omega^2 = %g of mode %zu is hardly more than rounding of the "
-                                 "stiffness, which comes to %g: make the stiffest parts softer, or rigid",
-                                 doubt->omega2, doubt->mode, doubt->noise);
+        return tribo_error(b->sys->message, status,
+                           "with contacts at rest held, omega^2 = %g of mode %zu is hardly more than rounding of the "
+                           "stiffness, which comes to %g: make the stiffest parts softer, or rigid",
+                           doubt->omega2, doubt->mode, doubt->noise);
     case TRIBO_ERR_NO_CONVERGENCE:
-        return tribo_system_fail(b->sys, status,
-                                 "with contacts at rest held, omega^2 = %g of mode %zu does not come out pure: take method event",
-                                 doubt->omega2, doubt->mode);
+        return tribo_error(b->sys->message, status,
+                           "with contacts at rest held, omega^2 = %g of mode %zu does not come out pure: take method event",
+                           doubt->omega2, doubt->mode);
     default:
         return status;
     }
@@ -395,7 +396,7 @@ int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed cha
     }
     return b.status && b.status != TRIBO_ERR_MEMORY
                ? b.status
-               : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the modes of a held structure");
+               : tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for the modes of a held structure");
 }
 
 void tribo_modal_free(struct modal *h)

@@ -19,7 +19,7 @@
 
 static int exponents_unsupported(const struct modal_build *b, const char *why)
 {
-    return tribo_system_fail(b->sys, TRIBO_ERR_UNSUPPORTED, "method exact: %s; method event can do it", why);
+    return tribo_error(b->sys->message, TRIBO_ERR_UNSUPPORTED, "method exact: %s; method event can do it", why);
 }
 
 /* Makes room for e exponents, a, b and r of `modes` modes each. Returns 0 if out of memory. */
@@ -128,8 +128,8 @@ static int exponents_coupled(struct modal_build *b)
     }
     const int status = tribo_eigen(a, size, re, im, x);
     if (status == TRIBO_ERR_NO_CONVERGENCE || status == TRIBO_ERR_NOT_FINITE) {
-        return tribo_system_fail(b->sys, status, "method exact: exponents of %zu mode%s that damping couples: %s", m, plural(m),
-                                 tribo_strerror(status));
+        return tribo_error(b->sys->message, status, "method exact: exponents of %zu mode%s that damping couples: %s", m,
+                           plural(m), tribo_strerror(status));
     }
     tribo_transpose(size, size, x, a);
     for (size_t i = 0; !status && i < size; i++) {

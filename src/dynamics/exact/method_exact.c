@@ -184,7 +184,7 @@ static int method_exact_begin(void *own, double t, const double *y, double *reac
         return status;
     }
     if (!tribo_modal_motion_start(x, t, y, reach)) {
-        return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu term%s", h->terms, plural(h->terms));
+        return tribo_error(x->sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu term%s", h->terms, plural(h->terms));
     }
     x->events.search.guards = 0;
     for (size_t k = 0; k < h->outputs; k++) {
@@ -239,16 +239,15 @@ static int check_system(const tribo_system *sys)
         drives = h->knots && h->drives < drives ? h->drives : drives;
     }
     if (sys->loads.tables) {
-        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                 "%s follow a table, and method exact takes harmonic ones only: take event or auto",
-                                 kind[drives]);
+        return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                           "%s follow a table, and method exact takes harmonic ones only: take event or auto", kind[drives]);
     }
     const size_t i = tribo_system_first_dropping(sys, 1);
     return i == sys->ncontact ? TRIBO_OK
-                              : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                                  "contact %zu has a static limit that falls with the speed, and method exact "
-                                                  "takes such that drop at once only: take event or auto",
-                                                  i);
+                              : tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                                            "contact %zu has a static limit that falls with the speed, and method exact "
+                                            "takes such that drop at once only: take event or auto",
+                                            i);
 }
 
 static int method_exact_create(tribo_driver *drv)
@@ -260,7 +259,7 @@ static int method_exact_create(tribo_driver *drv)
     struct exact *x = tribo_zeros(1, sizeof *x);
     drv->own = x;
     if (!x) {
-        return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
+        return tribo_error(drv->sys->message, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     x->sys = drv->sys;
     return tribo_events_create(&x->events, drv, &motion_closed, x);
@@ -271,7 +270,7 @@ static int method_exact_open_events(tribo_driver *drv, struct events **events)
     struct exact *x = drv->own;
     tribo_system *sys = drv->sys;
     if (check_system(sys) || tribo_compliance_check(sys)) {
-        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "%s", tribo_system_message(sys));
+        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "%s", tribo_system_message(sys));
     }
     if (x->held.structure != sys->structure) {
         drop_helds(x);

@@ -222,11 +222,10 @@ static int respond_together(struct modal_build *b)
         }
         zgesv_(&rows, &one, a, &rows, pivot, x, &rows, &info);
         if (!known || info != 0) {
-            b->status =
-                tribo_system_fail(b->sys, TRIBO_ERR_UNSUPPORTED,
-                                  "the harmonic of omega = %g is in resonance with an undamped mode, while damping couples "
-                                  "others: take method event",
-                                  omega);
+            b->status = tribo_error(b->sys->message, TRIBO_ERR_UNSUPPORTED,
+                                    "the harmonic of omega = %g is in resonance with an undamped mode, while damping couples "
+                                    "others: take method event",
+                                    omega);
             return 0;
         }
     }

@@ -76,12 +76,12 @@ int tribo_modal_motion_signal(void *own, const double *c, double tau, const doub
     double *place = calloc(3 * m + 1, sizeof *place), *speed = place + m, *rate = speed + m, v[4];
     if (!place || !tribo_signal_reserve(to, terms, powers ? TRIBO_POWERS - 1 : 2)) {
         free(place);
-        return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu term%s", terms, plural(terms));
+        return tribo_error(x->sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu term%s", terms, plural(terms));
     }
     if (!list_terms(x, to)) {
         free(place);
-        return tribo_system_fail(x->sys, TRIBO_ERR_UNSUPPORTED,
-                                 "method exact: a load is in resonance with an undamped mode; method event can do it");
+        return tribo_error(x->sys->message, TRIBO_ERR_UNSUPPORTED,
+                           "method exact: a load is in resonance with an undamped mode; method event can do it");
     }
     /* place, speed: derivatives of c'[q, q', f] by eta and eta'; rate: of the part by f', by eta' */
     tribo_multiply_add(m, n, 1, 1.0, h->phi, c, place);

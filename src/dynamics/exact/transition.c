@@ -87,7 +87,7 @@ int tribo_modal_transition(void *own, const void *phase, double tau, size_t colu
     double *eta = calloc(13 * block + c + 4 * n + 1, sizeof *eta), *rate = eta + block, *pull = rate + block;
     double *row = pull + block, *work = row + c;
     if (!eta) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
+        return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     }
     tribo_multiply_add(m, n, c, 1.0, h->psi, v, eta);
     tribo_multiply_add(m, n, c, 1.0, h->psi, v + block, rate);

@@ -18,7 +18,7 @@ static int find_free_modes(struct energy_norm *e, const tribo_system *sys)
         e->natural[i] = sqrt(fabs(e->natural[i]));
     }
     tribo_matrix_multiply_all(&sys->mass, n, e->phi, e->psi);
-    return status ? tribo_system_fail(sys, status, "modes of the free structure: %s", tribo_strerror(status)) : TRIBO_OK;
+    return status ? tribo_error(sys->message, status, "modes of the free structure: %s", tribo_strerror(status)) : TRIBO_OK;
 }
 
 int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys)
@@ -38,7 +38,7 @@ int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys)
         e->omega = tribo_layout_array(&l, n, sizeof *e->omega);
     } while (tribo_lapack_takes(c) && !l.memory && tribo_layout_zeros(&l));
     if (!l.memory) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the modes of the free structure");
+        return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for the modes of the free structure");
     }
     for (size_t k = 0; k < c * c; k++) {
         e->root[k] = k % c <= k / c ? tribo_compliance_entry(g, sys->ncontact, g->contact[k / c], g->contact[k % c]) : 0.0;
@@ -46,7 +46,7 @@ int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys)
     if (c) {
         dpotrf_("U", &springs, e->root, &springs, &info, 1);
     }
-    return info ? tribo_system_fail(sys, TRIBO_ERR_INDEFINITE, "the compliance of the contacts is not positive definite")
+    return info ? tribo_error(sys->message, TRIBO_ERR_INDEFINITE, "the compliance of the contacts is not positive definite")
                 : find_free_modes(e, sys);
 }
 

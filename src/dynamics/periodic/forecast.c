@@ -242,7 +242,7 @@ int tribo_forecast(struct period_map *m, double *x, int *done)
         f.pivot = tribo_layout_array(&l, c, sizeof *f.pivot);
     } while (!l.memory && tribo_layout_zeros(&l));
     if (!l.memory) {
-        return tribo_driver_fail(m->drv, TRIBO_ERR_MEMORY, "out of memory for the forces of %zu contact%s", c, plural(c));
+        return tribo_error(m->drv->message, TRIBO_ERR_MEMORY, "out of memory for the forces of %zu contact%s", c, plural(c));
     }
     *done = c > 0 && tribo_lapack_takes(c) && forecast_modes(&f);
     if (*done) {

@@ -164,7 +164,7 @@ int tribo_period_map_matrix(struct period_map *m, struct point *p)
     }
     double *x = p->derivative.matrix = calloc(n * n, sizeof *x), *v = m->variation.v;
     if (!x) {
-        return tribo_driver_fail(m->drv, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", n, plural(n));
+        return tribo_error(m->drv->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", n, plural(n));
     }
     if (m->events->motion->keep) {
         for (size_t i = 0; i < n; i++) {

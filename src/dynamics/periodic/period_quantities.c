@@ -33,7 +33,7 @@ static int replay_phase(struct company *company, double tau, double t, const dou
         r->re += cosine * re + sine * im;
         r->im += cosine * im - sine * re;
     } else if (!status && r->c && !tribo_signal_extremes(&signal, begin, &r->extremes)) {
-        status = tribo_system_fail(r->map->sys, TRIBO_ERR_STEP, "a phase of the period is too fast to be followed");
+        status = tribo_error(r->map->sys->message, TRIBO_ERR_STEP, "a phase of the period is too fast to be followed");
     }
     for (size_t i = 0; !r->c && i < r->map->sys->ncontact; i++) {
         const signed char slip = e->stick_slip.state.slip[i];
@@ -54,11 +54,11 @@ static int replay(tribo_driver *drv, struct replay *r, const char *missing, cons
 {
     struct shooting *s = drv ? drv->shooting : NULL;
     if (!drv || missing) {
-        return drv ? tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", missing) : TRIBO_ERR_NULL;
+        return drv ? tribo_error(drv->message, TRIBO_ERR_NULL, "%s is NULL", missing) : TRIBO_ERR_NULL;
     }
     for (size_t i = 0; c && i < 2 * tribo_system_ndof(drv->sys); i++) {
         if (!isfinite(c[i])) {
-            return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "c[%zu] = %g is not finite", i, c[i]);
+            return tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "c[%zu] = %g is not finite", i, c[i]);
         }
     }
     r->c = c;
@@ -71,15 +71,15 @@ static int replay(tribo_driver *drv, struct replay *r, const char *missing, cons
         return tribo_driver_pass(drv, unset);
     }
     if (!s || !s->found || s->revision != tribo_system_revision(drv->sys)) {
-        return tribo_driver_fail(drv, TRIBO_ERR_STATE, "%s: call tribo_driver_find_periodic first",
-                                 s && s->found ? "the system has changed since the periodic motion was found"
-                                               : "no periodic motion was found");
+        return tribo_error(drv->message, TRIBO_ERR_STATE, "%s: call tribo_driver_find_periodic first",
+                           s && s->found ? "the system has changed since the periodic motion was found"
+                                         : "no periodic motion was found");
     }
     r->company = (struct company){replay_phase, NULL};
     r->map = &s->map;
     r->omega = 2.0 * acos(-1.0) * (double)order / s->map.period;
     const int status = tribo_period_map_replay(&s->map, s->here->y, &r->company);
-    return status && s->map.drv != drv ? tribo_driver_fail(drv, status, "%s", s->map.drv->message) : status;
+    return status && s->map.drv != drv ? tribo_error(drv->message, status, "%s", s->map.drv->message) : status;
 }
 
 int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most, double *at_least,
@@ -120,7 +120,7 @@ static int sum_up(tribo_driver *drv, struct replay *r, const char *name, double 
     *sum = to ? calloc(count + 1, sizeof *to) : NULL;
     const int status = *sum || !to
                            ? replay(drv, r, to ? NULL : name, NULL, 0)
-                           : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", count, plural(count));
+                           : tribo_error(drv->message, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", count, plural(count));
     if (!status) {
         memcpy(to, *sum, count * sizeof *to);
     }

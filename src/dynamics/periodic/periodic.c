@@ -11,14 +11,14 @@
 static int check_period(tribo_driver *drv, double t, double period)
 {
     if (!isfinite(period)) {
-        return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "period = %g is not finite", period);
+        return tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "period = %g is not finite", period);
     }
     if (period <= 0.0) {
-        return tribo_driver_fail(drv, TRIBO_ERR_NOT_POSITIVE, "period = %g is not positive", period);
+        return tribo_error(drv->message, TRIBO_ERR_NOT_POSITIVE, "period = %g is not positive", period);
     }
     return t + 0.5 * period > t && t + period > t + 0.5 * period && isfinite(t + period)
                ? TRIBO_OK
-               : tribo_driver_fail(drv, TRIBO_ERR_STEP, "period = %g is lost beside t = %.17g", period, t);
+               : tribo_error(drv->message, TRIBO_ERR_STEP, "period = %g is lost beside t = %.17g", period, t);
 }
 
 static int check_loads(tribo_driver *drv, double period)
@@ -27,16 +27,16 @@ static int check_loads(tribo_driver *drv, double period)
     const tribo_system *sys = drv->sys;
     size_t of_kind[] = {0, 0, 0};
     if (sys->loads.tables) {
-        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                 "loads, base motions and limits that follow a table are not periodic");
+        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
+                           "loads, base motions and limits that follow a table are not periodic");
     }
     for (size_t k = 0; k < sys->loads.harmonics; k++) {
         const struct harmonic *w = &sys->loads.harmonic[k];
         const double turns = fabs(w->omega) / (2.0 * acos(-1.0)) * period, whole = fmax(round(turns), w->omega != 0.0);
         if (w->count > 0 && !(fabs(turns - whole) <= WHOLE + 4.0 * DBL_EPSILON * whole)) {
-            return tribo_driver_fail(drv, TRIBO_ERR_RANGE,
-                                     "%s[%zu], omega = %.17g, is not periodic in period = %.17g: %.12g turns", kind[w->drives],
-                                     of_kind[w->drives], w->omega, period, turns);
+            return tribo_error(drv->message, TRIBO_ERR_RANGE,
+                               "%s[%zu], omega = %.17g, is not periodic in period = %.17g: %.12g turns", kind[w->drives],
+                               of_kind[w->drives], w->omega, period, turns);
         }
         of_kind[w->drives]++;
     }
@@ -52,15 +52,14 @@ static int check_friction(tribo_driver *drv)
     tribo_get_static(drv->sys->contacts, ratio, NULL);
     for (size_t i = 0; drv->sys->expansion.place && i < drv->sys->ncontact; i++) {
         if (ratio[i] > 1.0) {
-            return tribo_driver_fail(
-                drv, TRIBO_ERR_UNSUPPORTED,
-                "periodic motions are found without static limits where degrees of freedom have no mass, and "
-                "ratio[%zu] = %g",
-                i, ratio[i]);
+            return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
+                               "periodic motions are found without static limits where degrees of freedom have no mass, and "
+                               "ratio[%zu] = %g",
+                               i, ratio[i]);
         }
     }
-    return planar ? tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                      "periodic motions are found without planar contacts, of which the system has %zu", planar)
+    return planar ? tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
+                                "periodic motions are found without planar contacts, of which the system has %zu", planar)
                   : TRIBO_OK;
 }
 
@@ -69,8 +68,8 @@ int tribo_events_find_periodic(tribo_driver *drv, double t, double period, doubl
     drv->shooting = drv->shooting ? drv->shooting : tribo_shooting_create(drv);
     return drv->shooting
                ? tribo_shooting_find(drv->shooting, t, period, y)
-               : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
-                                   drv->sys->ndof, plural(drv->sys->ndof));
+               : tribo_error(drv->message, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
+                             drv->sys->ndof, plural(drv->sys->ndof));
 }
 
 int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y)
@@ -79,11 +78,11 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
         return TRIBO_ERR_NULL;
     }
     if (!drv->method->find_periodic) {
-        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s finds no periodic motions: take exact, event or auto",
-                                 drv->method->name);
+        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "method %s finds no periodic motions: take exact, event or auto",
+                           drv->method->name);
     }
     if (!y) {
-        return tribo_driver_fail(drv, TRIBO_ERR_NULL, "y is NULL");
+        return tribo_error(drv->message, TRIBO_ERR_NULL, "y is NULL");
     }
     int status = tribo_system_check_state(drv->sys, t, y);
     status = status ? status : tribo_system_take_settings(drv->sys);
@@ -106,12 +105,12 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
 static int get_found(const tribo_driver *drv, const char *missing, struct shooting **s)
 {
     if (!drv || missing) {
-        return drv ? tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", missing) : TRIBO_ERR_NULL;
+        return drv ? tribo_error(drv->message, TRIBO_ERR_NULL, "%s is NULL", missing) : TRIBO_ERR_NULL;
     }
     *s = drv->shooting;
-    return *s && (*s)->found
-               ? TRIBO_OK
-               : tribo_driver_fail(drv, TRIBO_ERR_STATE, "no periodic motion was found: call tribo_driver_find_periodic first");
+    return *s && (*s)->found ? TRIBO_OK
+                             : tribo_error(drv->message, TRIBO_ERR_STATE,
+                                           "no periodic motion was found: call tribo_driver_find_periodic first");
 }
 
 int tribo_driver_get_freedom(const tribo_driver *drv, size_t *freedom)
@@ -126,8 +125,8 @@ int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im
     struct shooting *s = NULL;
     const int status = get_found(drv, !re ? "re" : !im ? "im" : NULL, &s);
     if (!status && s->flow->derivative.torn < s->map.sys->ncontact) {
-        return tribo_driver_fail(
-            drv, TRIBO_ERR_UNSUPPORTED,
+        return tribo_error(
+            drv->message, TRIBO_ERR_UNSUPPORTED,
             "contact %zu and contact %zu stop or break away at one instant: which of them is first may change the motion, "
             "and it has no multipliers",
             s->flow->derivative.torn, s->flow->derivative.other);

@@ -71,10 +71,9 @@
 
 static int no_convergence(const struct shooting *s, double residual)
 {
-    return tribo_driver_fail(
-        s->map.drv, TRIBO_ERR_NO_CONVERGENCE,
-        "no motion of period %.17g was found in %g periods: the nearest misses its beginning by %.3g of its size", s->map.period,
-        0.5 * (double)s->map.halves, residual);
+    return tribo_error(s->map.drv->message, TRIBO_ERR_NO_CONVERGENCE,
+                       "no motion of period %.17g was found in %g periods: the nearest misses its beginning by %.3g of its size",
+                       s->map.period, 0.5 * (double)s->map.halves, residual);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- points */
@@ -167,8 +166,9 @@ static int solve_dense(struct shooting *s, struct point *p, int spans, double cu
     }
     return status || tribo_least_norm_solve(s->a, n, cut, x, kernel)
                ? status
-               : tribo_driver_fail(s->map.drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
-                                   s->map.sys->ndof, plural(s->map.sys->ndof));
+               : tribo_error(s->map.drv->message, TRIBO_ERR_MEMORY,
+                             "out of memory for periodic motions of %zu degree%s of freedom", s->map.sys->ndof,
+                             plural(s->map.sys->ndof));
 }
 
 /* x [n] = the shortest solution of (I - D) y = x, D over s->spans spans from s->here, by GMRES to `tolerance`: if contacts rest all
@@ -388,8 +388,8 @@ int tribo_shooting_multipliers(struct shooting *s, double *re, double *im)
     const int status = missing ? missing : tribo_eigen(s->b, n, s->step, s->guess, s->a);
     if (status) {
         return missing ? missing
-                       : tribo_driver_fail(s->map.drv, status, "multipliers of %zu equation%s: %s", n, plural(n),
-                                           tribo_strerror(status));
+                       : tribo_error(s->map.drv->message, status, "multipliers of %zu equation%s: %s", n, plural(n),
+                                     tribo_strerror(status));
     }
     for (size_t i = 0; i < n; i++) { /* the largest first; the order within pairs, neighbours of equal size, stays */
         const double size = hypot(s->step[i], s->guess[i]);

@@ -27,7 +27,7 @@ void tribo_derivative_free(struct derivative *d)
 
 static int no_room(const struct derivative *d)
 {
-    return tribo_system_fail(d->sys, TRIBO_ERR_MEMORY, "out of memory for the derivative of a motion");
+    return tribo_error(d->sys->message, TRIBO_ERR_MEMORY, "out of memory for the derivative of a motion");
 }
 
 /* Appends an empty step. Returns NULL if out of memory. */
@@ -66,7 +66,7 @@ int tribo_derivative_apply(const struct derivative *d, size_t first, size_t colu
     double *work = malloc((2 * d->sys->ncontact + 1) * columns * sizeof *work);
     int status =
         work ? TRIBO_OK
-             : tribo_system_fail(d->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
+             : tribo_error(d->sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     for (size_t k = first; !status && k < d->steps; k++) {
         const struct derivative_step *s = d->step + k;
         if (s->jump) {

@@ -53,24 +53,23 @@ static int modes_failed(const tribo_model *m, int status, const struct doubt *do
     case TRIBO_ERR_MEMORY:
         return status;
     case TRIBO_ERR_NOT_FINITE:
-        return tribo_model_fail(m, status, "stiffness over mass overflows");
+        return tribo_error(m->message, status, "stiffness over mass overflows");
     case TRIBO_ERR_SIZE:
-        return tribo_model_fail(m, status, "nmode = %zu, but the mass matrix lets the structure have %zu mode%s only", m->nmode,
-                                count, plural(count));
+        return tribo_error(m->message, status, "nmode = %zu, but the mass matrix lets the structure have %zu mode%s only",
+                           m->nmode, count, plural(count));
     case TRIBO_ERR_UNSUPPORTED:
-        return tribo_model_fail(
-            m, status,
+        return tribo_error(
+            m->message, status,
             "omega^2 = %g of mode %zu is hardly more than rounding of the stiffness, which comes to %g: make the stiffest "
             "parts softer, or rigid",
             doubt->omega2, doubt->mode, doubt->noise);
     default:
-        return doubt
-                   ? tribo_model_fail(m, status,
-                                      "omega^2 = %g of mode %zu does not come out pure: reduce the system to fewer modes",
-                                      doubt->omega2, doubt->mode)
-                   : tribo_model_fail(
-                         m, status, "nmode = %zu: these modes are not found, or not counted; reduce the system to fewer or more",
-                         m->nmode);
+        return doubt ? tribo_error(m->message, status,
+                                   "omega^2 = %g of mode %zu does not come out pure: reduce the system to fewer modes",
+                                   doubt->omega2, doubt->mode)
+                     : tribo_error(m->message, status,
+                                   "nmode = %zu: these modes are not found, or not counted; reduce the system to fewer or more",
+                                   m->nmode);
     }
 }
 
@@ -102,7 +101,8 @@ static int factorize_sum(const tribo_model *m, double factor, double other, stru
 static int factor_failed(const tribo_model *m, int status, const char *what, size_t where)
 {
     return status == TRIBO_ERR_INDEFINITE
-               ? tribo_model_fail(m, status, "%s is not positive semidefinite: it shows at degree of freedom %zu", what, where)
+               ? tribo_error(m->message, status, "%s is not positive semidefinite: it shows at degree of freedom %zu", what,
+                             where)
            : status == TRIBO_ERR_SIZE ? tribo_model_too_large(m)
                                       : status;
 }
@@ -113,7 +113,7 @@ static int factorize_shifted(const tribo_model *m, struct shifted *s)
     size_t where = 0;
     int status = TRIBO_ERR_INDEFINITE;
     if (!(mean > 0.0)) {
-        return tribo_model_fail(m, TRIBO_ERR_INDEFINITE, "mass is zero");
+        return tribo_error(m->message, TRIBO_ERR_INDEFINITE, "mass is zero");
     }
     for (double part = SHIFT; status == TRIBO_ERR_INDEFINITE && part < MOST_SHIFT; part *= MORE) {
         s->shift = part * mean;
@@ -351,10 +351,10 @@ static int attach(const tribo_model *m, const struct shifted *s, struct reduced 
         const double norm = contact_response(m, s, r, i, x, mx + n, mx);
         tribo_matrix_multiply(&m->direction, x, missing + i * c);
         if (r->residual && drifts(m, s, x, norm, &omega2)) {
-            status = tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
-                                      "nmode = %zu leaves out a motion that contact %zu moves and no stiffness holds: take "
-                                      "more modes, or TRIBO_STATICS_MASS",
-                                      m->nmode, i);
+            status = tribo_error(m->message, TRIBO_ERR_UNSUPPORTED,
+                                 "nmode = %zu leaves out a motion that contact %zu moves and no stiffness holds: take "
+                                 "more modes, or TRIBO_STATICS_MASS",
+                                 m->nmode, i);
         } else if (r->residual) {
             memcpy(r->residual + i * n, x, n * sizeof *x);
         } else if (m->attachments) {
@@ -400,8 +400,8 @@ int tribo_model_find_modes(const tribo_model *m, struct reduced *r)
     r->flexibility = r->residual ? r->residual + m->ncontact * n : NULL;
     int status = r->omega2 && r->phi && (r->residual || !m->flexible) ? find_lowest(m, &s, r) : TRIBO_ERR_MEMORY;
     if (!status && r->omega2[0] < 0.0) {
-        status = tribo_model_fail(m, TRIBO_ERR_INDEFINITE, "stiffness is not positive semidefinite: omega^2 = %g of mode 0",
-                                  r->omega2[0]);
+        status = tribo_error(m->message, TRIBO_ERR_INDEFINITE, "stiffness is not positive semidefinite: omega^2 = %g of mode 0",
+                             r->omega2[0]);
     }
     status = status || m->nmode == n || !m->ncontact ? status : attach(m, &s, r);
     r->truncation.above = r->truncation.above > ABOVE * s.shift ? r->truncation.above : 0.0;

@@ -13,15 +13,15 @@ int tribo_system_reduce_to(tribo_system **sys, tribo_model *model, double omega,
         return TRIBO_ERR_NULL;
     }
     if (!sys) {
-        return tribo_model_fail(model, TRIBO_ERR_NULL, "sys is NULL");
+        return tribo_error(model->message, TRIBO_ERR_NULL, "sys is NULL");
     }
     if (!isfinite(omega) || !isfinite(tolerance)) {
-        return isfinite(omega) ? tribo_model_fail(model, TRIBO_ERR_NOT_FINITE, "tolerance = %g is not finite", tolerance)
-                               : tribo_model_fail(model, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
+        return isfinite(omega) ? tribo_error(model->message, TRIBO_ERR_NOT_FINITE, "tolerance = %g is not finite", tolerance)
+                               : tribo_error(model->message, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
     }
     if (omega < 0.0 || tolerance <= 0.0) {
-        return omega < 0.0 ? tribo_model_fail(model, TRIBO_ERR_NEGATIVE, "omega = %g is negative", omega)
-                           : tribo_model_fail(model, TRIBO_ERR_NOT_POSITIVE, "tolerance = %g is not positive", tolerance);
+        return omega < 0.0 ? tribo_error(model->message, TRIBO_ERR_NEGATIVE, "omega = %g is negative", omega)
+                           : tribo_error(model->message, TRIBO_ERR_NOT_POSITIVE, "tolerance = %g is not positive", tolerance);
     }
     const size_t most = model->ndof;
     size_t few = 0, enough = 0, nmode = FIRST < most ? FIRST : most; /* number of modes: too few, enough */
@@ -41,8 +41,8 @@ int tribo_system_reduce_to(tribo_system **sys, tribo_model *model, double omega,
             few = nmode;
         }
         if (!status && few == most) {
-            status =
-                tribo_model_fail(model, TRIBO_ERR_UNSUPPORTED, "tolerance = %g is less than the error of all modes", tolerance);
+            status = tribo_error(model->message, TRIBO_ERR_UNSUPPORTED, "tolerance = %g is less than the error of all modes",
+                                 tolerance);
         }
         nmode = enough ? few + (enough - few) / 2 : nmode < most / 2 ? 2 * nmode : most;
     }

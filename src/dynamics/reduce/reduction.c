@@ -158,13 +158,13 @@ int tribo_model_reduce(tribo_model *m, tribo_system **sys)
         status = x.place ? tribo_compliance_create(*sys, e.own, r.flexibility ? e.entries : NULL, &where) : TRIBO_ERR_MEMORY;
         status = status || tribo_expansion_create(*sys, &x, e.own) ? status : TRIBO_ERR_MEMORY;
         tribo_expansion_free(&x);
-        status = status == TRIBO_ERR_INDEFINITE
-                     ? tribo_model_fail(
-                           m, TRIBO_ERR_UNSUPPORTED,
-                           "the flexibility that %zu mode%s to contact %zu is that of other contacts: take other modes, or "
-                           "TRIBO_STATICS_MASS",
-                           k, k == 1 ? " leaves" : "s leave", where)
-                     : status;
+        status =
+            status == TRIBO_ERR_INDEFINITE
+                ? tribo_error(m->message, TRIBO_ERR_UNSUPPORTED,
+                              "the flexibility that %zu mode%s to contact %zu is that of other contacts: take other modes, or "
+                              "TRIBO_STATICS_MASS",
+                              k, k == 1 ? " leaves" : "s leave", where)
+                : status;
     }
     status = status || set_modes(&e, m->ndof, &r, *sys) ? status : TRIBO_ERR_MEMORY;
     tribo_reduced_free(&r);
@@ -181,9 +181,9 @@ static int check_reduced(const tribo_system *sys, const void *argument, const ch
         return TRIBO_ERR_NULL;
     }
     if (!sys->reduced.modes) {
-        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED, "the system is not reduced to modes");
+        return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED, "the system is not reduced to modes");
     }
-    return argument ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", name);
+    return argument ? TRIBO_OK : tribo_error(sys->message, TRIBO_ERR_NULL, "%s is NULL", name);
 }
 
 int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
@@ -193,10 +193,10 @@ int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
         return status;
     }
     if (!isfinite(zeta)) {
-        return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "zeta = %g is not finite", zeta);
+        return tribo_error(sys->message, TRIBO_ERR_NOT_FINITE, "zeta = %g is not finite", zeta);
     }
     if (zeta < 0.0) {
-        return tribo_system_fail(sys, TRIBO_ERR_NEGATIVE, "zeta = %g is negative", zeta);
+        return tribo_error(sys->message, TRIBO_ERR_NEGATIVE, "zeta = %g is negative", zeta);
     }
     struct matrix damping = {0}, rates = {0}; /* equal, because M = 1 */
     double *entries = malloc(sys->ndof * sizeof *entries);
@@ -207,8 +207,8 @@ int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
     free(entries);
     if (!done) {
         tribo_matrix_free(&damping);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the damping of %zu mode%s", sys->ndof,
-                                 plural(sys->ndof));
+        return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for the damping of %zu mode%s", sys->ndof,
+                           plural(sys->ndof));
     }
     tribo_matrix_free(&sys->c);
     tribo_matrix_free(&sys->damping);
@@ -252,7 +252,7 @@ int tribo_system_get_truncation(const tribo_system *sys, double omega, double *e
         return status;
     }
     if (!isfinite(omega)) {
-        return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
+        return tribo_error(sys->message, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
     }
     const struct truncation *t = &sys->reduced.truncation;
     const double square = omega * omega, x = square < t->above ? square / t->above : 1.0;

@@ -106,8 +106,8 @@ int tribo_system_highest(const tribo_system *sys, double stiffness, double dampi
         *value = bound * greater(*value, 0.0);
     }
     free(l.v);
-    return status ? tribo_system_fail(sys, status, "frequencies of %zu degree%s of freedom: %s", n, plural(n),
-                                      tribo_strerror(status))
+    return status ? tribo_error(sys->message, status, "frequencies of %zu degree%s of freedom: %s", n, plural(n),
+                                tribo_strerror(status))
                   : TRIBO_OK;
 }
 

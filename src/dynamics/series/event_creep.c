@@ -399,8 +399,8 @@ static int creep_expand(struct event *e, double t, const double *y, double h, st
     const struct stick_slip *m = &e->events.stick_slip;
     int found = 0;
     if (!reserve(e)) {
-        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s that creep", c->count,
-                                 plural(c->count));
+        return tribo_error(e->sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s that creep", c->count,
+                           plural(c->count));
     }
     for (size_t k = 0, s = 0; s < c->count; k++) {
         if (tribo_slides_in_plane(m, &m->plane->contact[k])) {

@@ -254,7 +254,7 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
     struct perturbed p = {.columns = columns, .rows = m->limits.falls ? e->order + 1 : 1};
     p.project = malloc((n * n + 3 * half + (2 + p.rows) * each + 1) * sizeof *p.project);
     if (!p.project) {
-        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
+        return tribo_error(e->sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     }
     p.q = p.project + n * n;
     p.u = p.q + half;

@@ -240,7 +240,7 @@ static int method_event_prepare(struct event *e)
             *rooms[k] = tribo_layout_array(&l, c, sizeof **rooms[k]);
         }
     } while (!l.memory && tribo_layout_zeros(&l));
-    return l.memory ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
+    return l.memory ? TRIBO_OK : tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for method event");
 }
 
 static void series_state(void *own, double tau, const double *from, double *to)
@@ -300,8 +300,8 @@ static int method_event_begin(void *own, double t, const double *y, double *reac
     e->length = fastest(e) > 0.0 ? greater(*reach, lesser(length, 1.0 / fastest(e))) : *reach;
     return set_guards(e)
                ? TRIBO_OK
-               : tribo_system_fail(e->sys, TRIBO_ERR_NOT_FINITE,
-                                   "at t = %.17g derivatives of the motion overflow: it grows without bound, or is too fast", t);
+               : tribo_error(e->sys->message, TRIBO_ERR_NOT_FINITE,
+                             "at t = %.17g derivatives of the motion overflow: it grows without bound, or is too fast", t);
 }
 
 static int series_signal(void *own, const double *c, double tau, const double *end, struct signal *to)
@@ -311,7 +311,7 @@ static int series_signal(void *own, const double *c, double tau, const double *e
     const size_t n = e->sys->ndof, count = e->sys->ncontact;
     (void)end;
     if (!tribo_signal_reserve(to, 0, e->order)) {
-        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu power%s", e->order, plural(e->order));
+        return tribo_error(e->sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu power%s", e->order, plural(e->order));
     }
     to->tau = tau;
     for (size_t k = 0; k <= e->order; k++) {
@@ -338,7 +338,7 @@ static int method_event_create(tribo_driver *drv)
     struct event *e = tribo_zeros(1, sizeof *e);
     drv->own = e;
     if (!e) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
+        return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for method event");
     }
     e->drv = drv;
     e->sys = sys;

@@ -105,8 +105,8 @@ int tribo_planar_series_begin(struct event *e)
         begins += tribo_slides_in_plane(m, &all[k]) && all[k].begins != SLIDES_ON;
     }
     if (!reserve_lines(e, begins)) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for series of %zu contact%s in a plane", count,
-                                 plural(count));
+        return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for series of %zu contact%s in a plane", count,
+                           plural(count));
     }
     /* coefficients stay within MOST_DIGITS: their unit of time is that of the first stop */
     const double most = MOST_DIGITS / greater(-log10(tribo_planar_series_first_stop(m)), 1.0);
@@ -175,9 +175,9 @@ int tribo_planar_series_forces(struct event *e, size_t k, const double *v)
             l->xt[j] = j ? l->t[0] * x[0] + l->t[1] * x[1] : 0.0;
         }
         if (k == shift && !(l->xn[0] > 0.0)) {
-            return tribo_system_fail(e->sys, TRIBO_ERR_CHATTER,
-                                     "at t = %.17g it is not clear in which direction the planar contact %zu begins to slide",
-                                     e->sys->loads.time, p->at);
+            return tribo_error(e->sys->message, TRIBO_ERR_CHATTER,
+                               "at t = %.17g it is not clear in which direction the planar contact %zu begins to slide",
+                               e->sys->loads.time, p->at);
         }
         if (!e->planar.given) {
             l->un[k] = k ? -0.5 * (product_of(l->un, l->un, k, 1, k) + product_of(l->ut, l->ut, k, 1, k)) : 1.0;
@@ -217,9 +217,9 @@ int tribo_planar_series_finish(struct event *e, size_t k)
         s->tau[q] = planar_series_along(p, l, a) - times * asked;
     }
     if (!(tribo_lu_create(s->lu, n, s->pivot) > 0.0)) {
-        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                 "at t = %.17g friction cannot turn the planar contact %zu, which begins to slide",
-                                 sys->loads.time, all[s->begin[0]].at);
+        return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                           "at t = %.17g friction cannot turn the planar contact %zu, which begins to slide", sys->loads.time,
+                           all[s->begin[0]].at);
     }
     tribo_lu_solve(s->lu, n, s->pivot, s->tau, 1);
     for (size_t q = 0; q < n; q++) {

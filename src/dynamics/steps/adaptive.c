@@ -101,16 +101,16 @@ static void find_bands(struct adaptive *a, tribo_system *sys)
 static int adaptive_fail(tribo_driver *drv, int status, double t, double h, double size)
 {
     if (!status) {
-        return tribo_driver_fail(drv, TRIBO_ERR_STEP,
-                                 "step from t = %.17g failed down to %g: the error is %g times the tolerance", t, h, size);
+        return tribo_error(drv->message, TRIBO_ERR_STEP,
+                           "step from t = %.17g failed down to %g: the error is %g times the tolerance", t, h, size);
     }
     if (status == TRIBO_ERR_STEP || status == TRIBO_ERR_NO_CONVERGENCE) {
-        return tribo_driver_fail(drv, TRIBO_ERR_STEP,
-                                 "step from t = %.17g failed down to %g: the implicit equations have no solution", t, h);
+        return tribo_error(drv->message, TRIBO_ERR_STEP,
+                           "step from t = %.17g failed down to %g: the implicit equations have no solution", t, h);
     }
     return drv->sys->status == status
                ? tribo_driver_explain(drv, t, h)
-               : tribo_driver_fail(drv, status, "at t = %.17g, in a step of %g: %s", t, h, tribo_strerror(status));
+               : tribo_error(drv->message, status, "at t = %.17g, in a step of %g: %s", t, h, tribo_strerror(status));
 }
 
 /* The next length of steps, divided by the last one: as in GSL's control, small changes are not made. */
@@ -139,7 +139,7 @@ static int advance_step(tribo_driver *drv, double *t, double end, double *y)
     for (;;) {
         const double left = end - *t, h = a->h >= left ? left : lesser(a->h, 0.5 * left); /* leaves no tiny rest */
         if (!(*t + h > *t)) {
-            return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", *t, h);
+            return tribo_error(drv->message, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", *t, h);
         }
         const tribo_trial trial = {sizeof trial, *t, h, y, drv->slope, a->tolerance, a->rate, a->to, a->error};
         drv->sys->status = TRIBO_OK;
@@ -166,7 +166,7 @@ static int advance_step(tribo_driver *drv, double *t, double end, double *y)
             a->since = *t;
             a->rejected = 0;
         } else if (a->rejected > MOST_REJECTED) {
-            return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g steps make no headway, at a length of %g", *t, h);
+            return tribo_error(drv->message, TRIBO_ERR_STEP, "at t = %.17g steps make no headway, at a length of %g", *t, h);
         }
         a->h = h * (isfinite(size) ? next_step(a, size) : 0.25);
         if (a->h < DBL_EPSILON * greater(fabs(*t), a->span)) {
@@ -203,8 +203,8 @@ static int begin_step(tribo_driver *drv, double t, const double *y)
     a->tolerance[2 * n] = drv->abstol + drv->reltol * fabs(y[2 * n]);
     for (size_t i = 0; i < dimension; i++) {
         if (a->tolerance[i] < DBL_EPSILON * fabs(y[i])) {
-            return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g no step is so short that y[%zu] = %g is found to %g", t,
-                                     i, y[i], a->tolerance[i]);
+            return tribo_error(drv->message, TRIBO_ERR_STEP, "at t = %.17g no step is so short that y[%zu] = %g is found to %g",
+                               t, i, y[i], a->tolerance[i]);
         }
     }
     return TRIBO_OK;
@@ -256,19 +256,19 @@ int tribo_driver_create_stepper(tribo_driver **drv, tribo_system *sys, const tri
         return TRIBO_ERR_NULL;
     }
     if (!drv || !stepper) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", drv ? "stepper" : "drv");
+        return tribo_error(sys->message, TRIBO_ERR_NULL, "%s is NULL", drv ? "stepper" : "drv");
     }
     if (stepper->size < sizeof *stepper) {
-        return tribo_system_fail(sys, TRIBO_ERR_SIZE, "stepper->size = %zu is below %zu", stepper->size, sizeof *stepper);
+        return tribo_error(sys->message, TRIBO_ERR_SIZE, "stepper->size = %zu is below %zu", stepper->size, sizeof *stepper);
     }
     const char *missing = !stepper->name ? "name" : !stepper->step ? "step" : !stepper->order ? "order" : NULL;
     if (missing) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "stepper->%s is NULL", missing);
+        return tribo_error(sys->message, TRIBO_ERR_NULL, "stepper->%s is NULL", missing);
     }
     const size_t n = tribo_system_dimension(sys), c = sys->ncontact;
     struct adaptive *a = malloc(sizeof *a + (4 * n + 2 * c) * sizeof *a->to); /* and all arrays */
     if (!a) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for stepper %.20s", stepper->name);
+        return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for stepper %.20s", stepper->name);
     }
     *a = (struct adaptive){.stepper = *stepper, .data = data, .structure = SIZE_MAX, .revision = SIZE_MAX};
     a->method = (struct method){.name = stepper->name,

@@ -12,8 +12,8 @@ int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y,
 {
     const double begin = *t, whole = (t1 - begin) / drv->dt, resolution = DBL_EPSILON * greater(fabs(begin), fabs(t1));
     if (drv->dt < 16.0 * resolution) {
-        return tribo_driver_fail(drv, TRIBO_ERR_STEP, "from t = %.17g to %.17g, dt = %g is hardly more than time resolves, %g",
-                                 begin, t1, drv->dt, resolution);
+        return tribo_error(drv->message, TRIBO_ERR_STEP, "from t = %.17g to %.17g, dt = %g is hardly more than time resolves, %g",
+                           begin, t1, drv->dt, resolution);
     }
     /* a rest that is only rounding is spread over the steps */
     const double rest = greater(1e-6, 4.0 * resolution / drv->dt);
@@ -129,8 +129,8 @@ double tribo_step_form_power(const struct step_form *s, const tribo_system *sys)
 int tribo_step_form_fail(tribo_driver *drv, int status, double t, const char *message)
 {
     return status != TRIBO_ERR_NOT_FINITE
-               ? tribo_driver_fail(drv, status, "at t = %.17g: %s", t, message)
-               : tribo_driver_fail(drv, status,
-                                   "at t = %.17g forces are too large: the motion grew without bound, or dt = %g is too long", t,
-                                   drv->dt);
+               ? tribo_error(drv->message, status, "at t = %.17g: %s", t, message)
+               : tribo_error(drv->message, status,
+                             "at t = %.17g forces are too large: the motion grew without bound, or dt = %g is too long", t,
+                             drv->dt);
 }

@@ -63,7 +63,7 @@ static int central_create(tribo_driver *drv)
     struct central *x = tribo_zeros(1, sizeof *x);
     drv->own = x;
     if (!x || !tribo_step_form_create(&x->common, drv->sys, drv->sys->ndof) || !tribo_blockwise_create(&x->alone, drv->sys)) {
-        return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
+        return tribo_error(drv->sys->message, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
     x->few.revision = SIZE_MAX;
     x->next = x->common.more;
@@ -365,8 +365,8 @@ static int check_step(tribo_driver *drv, double h)
         status = tribo_system_highest(sys, 1.0, 2.0 / limit, &value);
     }
     return status ? tribo_driver_pass(drv, status)
-                  : tribo_driver_fail(drv, TRIBO_ERR_STEP,
-                                      "central differences are unstable in steps of %g: dt must be below %.4g", h, limit);
+                  : tribo_error(drv->message, TRIBO_ERR_STEP,
+                                "central differences are unstable in steps of %g: dt must be below %.4g", h, limit);
 }
 
 static int central_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)

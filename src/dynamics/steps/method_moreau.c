@@ -50,7 +50,7 @@ static int moreau_create(tribo_driver *drv)
     struct moreau *m = calloc(1, sizeof *m);
     drv->own = m;
     if (!m || !tribo_step_form_create(&m->common, drv->sys, 3 * c + n)) {
-        return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
+        return tribo_error(drv->sys->message, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
     m->limit = m->common.more;
     m->spring = m->limit + c;
@@ -67,20 +67,20 @@ static int set_operator(struct moreau *m, const tribo_system *sys, const double 
     struct hidden where;
     const int hidden = tribo_hidden(j, &sys->mass, own, r, &where);
     if (hidden < 0) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
+        return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
     }
     if (hidden && (m->matrix.below || m->matrix.above || sys->compliance.count)) {
-        return tribo_system_fail(
-            sys, TRIBO_ERR_UNSUPPORTED,
-            "contact %zu touches bodies of which one gives way %g times as much as the other in steps of %g: %s", where.contact,
-            where.spread, h, sys->unsolved ? "reduce the system" : "take central/fixed, event or exact");
+        return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                           "contact %zu touches bodies of which one gives way %g times as much as the other in steps of %g: %s",
+                           where.contact, where.spread, h,
+                           sys->unsolved ? "reduce the system" : "take central/fixed, event or exact");
     }
     for (size_t d = 0; hidden && d < sys->ndof; d++) {
         m->push[d] = 1.0 / tribo_matrix_get(&m->matrix.s, d, d);
     }
     const int status = hidden ? tribo_set_operator_mass(m->contacts, sys->ndof, m->push, j->first, j->col, j->val)
                               : tribo_set_operator_dense(m->contacts, r);
-    return status ? tribo_system_fail(sys, status, "in steps of %g, %s", h, tribo_message(m->contacts)) : TRIBO_OK;
+    return status ? tribo_error(sys->message, status, "in steps of %g, %s", h, tribo_message(m->contacts)) : TRIBO_OK;
 }
 
 /* Computes S^-1 J', and contacts with the operator J S^-1 J'. Returns a status. */
@@ -113,7 +113,7 @@ static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
         r[k] += 4.0 / (h * h) * tribo_compliance_entry(&sys->compliance, c, k / c, k % c);
     }
     const int status = done ? set_operator(m, sys, r, own, h)
-                            : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
+                            : tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
     free(r);
     free(own);
     m->whole = !status;

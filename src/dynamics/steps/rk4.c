@@ -38,7 +38,7 @@ static int rk4_create(tribo_driver *drv)
     struct rk4 *r = calloc(1, sizeof *r);
     drv->own = r;
     if (!r || !(r->memory = malloc((8 * n + TRIBO_LINE) * sizeof *r->memory)) || !tribo_blockwise_create(&r->alone, drv->sys)) {
-        return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method rk4/fixed");
+        return tribo_error(drv->sys->message, TRIBO_ERR_MEMORY, "out of memory for method rk4/fixed");
     }
     r->k = tribo_aligned(r->memory);
     r->sum = r->k + n;

@@ -152,10 +152,10 @@ int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, dou
         status = TRIBO_ERR_MEMORY;
     }
     if (status == TRIBO_ERR_INDEFINITE) {
-        return tribo_system_fail(sys, status,
-                                 "the matrix of a step of length %g is not positive definite at degree of freedom %zu", h, where);
+        return tribo_error(sys->message, status,
+                           "the matrix of a step of length %g is not positive definite at degree of freedom %zu", h, where);
     }
-    return status ? tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrix of a step") : TRIBO_OK;
+    return status ? tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for the matrix of a step") : TRIBO_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- solutions */

@@ -113,10 +113,10 @@ int tribo_compliance_check(const tribo_system *sys)
     if (!g->count || own == 0.0 || g->added <= MOST_STIFF * own) {
         return TRIBO_OK;
     }
-    return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                             "the elastic contact %zu gives way by %g, and makes omega^2 = %g of %g: a contact more than %g "
-                             "times as stiff as the structure is rigid: leave out its spring, or take moreau/fixed",
-                             g->tightest, g->own[g->tightest], g->added, own, MOST_STIFF);
+    return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                       "the elastic contact %zu gives way by %g, and makes omega^2 = %g of %g: a contact more than %g "
+                       "times as stiff as the structure is rigid: leave out its spring, or take moreau/fixed",
+                       g->tightest, g->own[g->tightest], g->added, own, MOST_STIFF);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ forces */

@@ -73,10 +73,9 @@ static int check_damping(const tribo_model *m, const struct condensed *s)
         for (size_t k = m->damping.first[i]; k < m->damping.first[i + 1]; k++) {
             const size_t j = m->damping.col[k];
             if (m->damping.val[k] != 0.0 && (s->x.place[i] >= s->with || s->x.place[j] >= s->with)) {
-                return tribo_model_fail(
-                    m, TRIBO_ERR_UNSUPPORTED,
-                    "damping[%zu][%zu] = %g, but degree of freedom %zu has no mass: there only stiffness acts", i, j,
-                    m->damping.val[k], s->x.place[i] >= s->with ? i : j);
+                return tribo_error(m->message, TRIBO_ERR_UNSUPPORTED,
+                                   "damping[%zu][%zu] = %g, but degree of freedom %zu has no mass: there only stiffness acts", i,
+                                   j, m->damping.val[k], s->x.place[i] >= s->with ? i : j);
             }
         }
     }
@@ -114,10 +113,10 @@ static int factorize_without(const tribo_model *m, struct condensed *s)
         dof++;
     }
     return status == TRIBO_ERR_INDEFINITE
-               ? tribo_model_fail(m, status,
-                                  "mass is not positive definite: degree of freedom %zu has none, and the stiffness does not "
-                                  "hold it: pivot %g",
-                                  dof, pivot)
+               ? tribo_error(m->message, status,
+                             "mass is not positive definite: degree of freedom %zu has none, and the stiffness does not "
+                             "hold it: pivot %g",
+                             dof, pivot)
            : status == TRIBO_ERR_SIZE ? tribo_model_too_large(m)
                                       : status;
 }
@@ -265,9 +264,9 @@ int tribo_model_condense(tribo_model *m, tribo_system **sys)
         status = tribo_compliance_create(*sys, s.own, s.shared, &where);
         status = status || tribo_expansion_create(*sys, &s.x, m->compliance) ? status : TRIBO_ERR_MEMORY;
         status = status == TRIBO_ERR_INDEFINITE
-                     ? tribo_model_fail(
-                           m, TRIBO_ERR_UNSUPPORTED,
-                           "contact %zu moves degrees of freedom without mass only as other contacts do: give these mass", where)
+                     ? tribo_error(m->message, TRIBO_ERR_UNSUPPORTED,
+                                   "contact %zu moves degrees of freedom without mass only as other contacts do: give these mass",
+                                   where)
                      : status;
     }
     condensed_free(&s);

@@ -64,7 +64,7 @@ int tribo_system_begin_rates(tribo_system *sys, const char *what, const double *
     status = status ? status : tribo_system_check_mass(sys, what);
     status = status ? status : tribo_system_check_solved(sys, what);
     if (!status && (!y || !to)) {
-        status = tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", y ? name : "y");
+        status = tribo_error(sys->message, TRIBO_ERR_NULL, "%s is NULL", y ? name : "y");
     }
     return sys->status = status;
 }
@@ -92,7 +92,7 @@ int tribo_system_get_force(const tribo_system *sys, double *f)
         return TRIBO_ERR_NULL;
     }
     if (!f) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "f is NULL");
+        return tribo_error(sys->message, TRIBO_ERR_NULL, "f is NULL");
     }
     memcpy(f, sys->work.f, sys->ncontact * sizeof *f);
     return TRIBO_OK;

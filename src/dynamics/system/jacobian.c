@@ -111,7 +111,7 @@ int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *
         d.load = tribo_layout_array(&l, n, sizeof *d.load);
     } while (!l.memory && tribo_layout_zeros(&l));
     if (!l.memory) {
-        return sys->status = tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the Jacobian");
+        return sys->status = tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for the Jacobian");
     }
     tribo_system_free_motion(sys, t, y, d.load, sys->work.v, sys->work.a);
     int status = find_limit_rates(sys, d.df_dt);

@@ -272,13 +272,12 @@ static int check_pattern(const tribo_system *sys, enum drives drives, const char
     const int status = tribo_system_check_finite(sys, name, x, n);
     for (size_t i = 0; x && place && !status && i < n; i++) {
         if (x[i] != 0.0 && drives == DRIVES_LOAD && !sys->reduced.modes && place[i] >= sys->ndof) {
-            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                     "%s[%zu] = %g, but degree of freedom %zu has no mass, and takes no load", name, i, x[i], i);
+            return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                               "%s[%zu] = %g, but degree of freedom %zu has no mass, and takes no load", name, i, x[i], i);
         }
         if (x[i] != 0.0 && drives == DRIVES_LIMIT && tribo_is_compliant(&sys->compliance, i)) {
-            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                     "%s[%zu] = %g, but contact %zu is elastic, and its limit must be constant", name, i, x[i],
-                                     i);
+            return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                               "%s[%zu] = %g, but contact %zu is elastic, and its limit must be constant", name, i, x[i], i);
         }
     }
     return status;
@@ -299,8 +298,8 @@ static int check_limits(tribo_system *sys, const double *cosine, const double *s
         const double most =
             sys->loads.given_limit[i] + tribo_system_swing(sys, i) + hypot(cosine ? cosine[i] : 0.0, sine ? sine[i] : 0.0);
         if (!(most <= MOST_LIMIT)) {
-            return tribo_system_fail(sys, TRIBO_ERR_RANGE, "limit of contact %zu comes to %g, and %g is the most", i, most,
-                                     MOST_LIMIT);
+            return tribo_error(sys->message, TRIBO_ERR_RANGE, "limit of contact %zu comes to %g, and %g is the most", i, most,
+                               MOST_LIMIT);
         }
     }
     return status;
@@ -312,14 +311,14 @@ static int check_table(const tribo_system *sys, const struct harmonic *h, const 
     const double *time = h->knot, *value = h->value;
     const size_t n = h->columns;
     if (!h->knots || !time || !value) {
-        return h->knots ? tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", time ? name : "time")
-                        : tribo_system_fail(sys, TRIBO_ERR_SIZE, "knots = 0");
+        return h->knots ? tribo_error(sys->message, TRIBO_ERR_NULL, "%s is NULL", time ? name : "time")
+                        : tribo_error(sys->message, TRIBO_ERR_SIZE, "knots = 0");
     }
     int status = tribo_system_check_finite(sys, "time", time, h->knots);
     for (size_t k = 1; !status && k < h->knots; k++) {
         if (time[k] <= time[k - 1]) {
-            status = tribo_system_fail(sys, TRIBO_ERR_RANGE, "time[%zu] = %.17g is not after time[%zu] = %.17g", k, time[k],
-                                       k - 1, time[k - 1]);
+            status = tribo_error(sys->message, TRIBO_ERR_RANGE, "time[%zu] = %.17g is not after time[%zu] = %.17g", k, time[k],
+                                 k - 1, time[k - 1]);
         }
     }
     if (status || h->drives != DRIVES_LIMIT) {
@@ -328,9 +327,9 @@ static int check_table(const tribo_system *sys, const struct harmonic *h, const 
     for (size_t k = 0; k < h->knots * n; k++) {
         const int finite = isfinite(value[k]);
         if (!(finite && value[k] >= 0.0)) {
-            return tribo_system_fail(sys, finite ? TRIBO_ERR_NEGATIVE : TRIBO_ERR_NOT_FINITE,
-                                     "limit[%zu] = %g of contact %zu is %s", k / n, value[k], k % n,
-                                     finite ? "negative" : "not finite");
+            return tribo_error(sys->message, finite ? TRIBO_ERR_NEGATIVE : TRIBO_ERR_NOT_FINITE,
+                               "limit[%zu] = %g of contact %zu is %s", k / n, value[k], k % n,
+                               finite ? "negative" : "not finite");
         }
     }
     for (size_t k = 0; !status && k < h->knots; k++) {
@@ -409,8 +408,8 @@ static int take_harmonic(tribo_system *sys, struct harmonic h, const double *cos
     }
     if (parts && h.knots && tribo_largest(way, c) > 0.0) {
         free(parts);
-        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                 "the load of a table bends what is reduced to compliance: take TRIBO_STATICS_MASS");
+        return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                           "the load of a table bends what is reduced to compliance: take TRIBO_STATICS_MASS");
     }
     int done = parts && append_harmonic(sys, h, parts);
     if (done && tribo_largest(way, 2 * c) * fabs(h.omega) > 0.0) {
@@ -425,8 +424,9 @@ static int take_harmonic(tribo_system *sys, struct harmonic h, const double *cos
         }
     }
     free(parts);
-    return done ? TRIBO_OK
-                : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a function of time of %zu value%s", n, plural(n));
+    return done
+               ? TRIBO_OK
+               : tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for a function of time of %zu value%s", n, plural(n));
 }
 
 /* Checks and adds a function of time; table: name of the values of a table, NULL: a harmonic. Returns a status. */
@@ -437,9 +437,9 @@ static int loads_add(tribo_system *sys, struct harmonic h, const char *table, co
     }
     int status = table               ? check_table(sys, &h, table)
                  : isfinite(h.omega) ? TRIBO_OK
-                                     : tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", h.omega);
+                                     : tribo_error(sys->message, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", h.omega);
     if (!status && table && !cosine && h.drives != DRIVES_LIMIT) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "pattern is NULL");
+        return tribo_error(sys->message, TRIBO_ERR_NULL, "pattern is NULL");
     }
     status = status ? status : check_pattern(sys, h.drives, table ? "pattern" : "cosine", cosine);
     status = status ? status : check_pattern(sys, h.drives, "sine", sine);

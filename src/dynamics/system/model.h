@@ -15,12 +15,6 @@ struct tribo_model {
     char *message;      /* [TRIBO_MESSAGE] text of the last error; NULL: none */
 };
 
-/* Writes the message and returns status. */
-int tribo_model_fail(const tribo_model *m, int status, const char *format, ...)
-#if defined(__GNUC__)
-    __attribute__((format(printf, 3, 4)))
-#endif
-    ;
 int tribo_model_no_memory(const tribo_model *m);
 int tribo_model_too_large(const tribo_model *m); /* for builds without sparse factors */
 

@@ -42,7 +42,7 @@ const char *tribo_model_message(const tribo_model *model)
 
 int tribo_model_refuse(tribo_model *model, int status, const char *message)
 {
-    return model ? tribo_model_fail(model, status, "%s", message ? message : "") : status;
+    return model ? tribo_error(model->message, status, "%s", message ? message : "") : status;
 }
 
 size_t tribo_model_ndof(const tribo_model *model)
@@ -87,7 +87,7 @@ static int model_take(const struct input *in, struct matrix *a, int done)
     }
     if (tribo_matrix_flaw(a, 0, &i, &j, &x, &y)) {
         tribo_matrix_free(a);
-        return tribo_model_fail(in->model, TRIBO_ERR_NOT_FINITE, "%s[%zu][%zu] = %g is not finite", in->name, i, j, x);
+        return tribo_error(in->model->message, TRIBO_ERR_NOT_FINITE, "%s[%zu][%zu] = %g is not finite", in->name, i, j, x);
     }
     tribo_matrix_free(in->to);
     *in->to = *a;
@@ -100,7 +100,7 @@ static int check_input(const struct input *in, const void *numbers, const char *
     if (!in->model) {
         return TRIBO_ERR_NULL;
     }
-    return numbers || !count ? TRIBO_OK : tribo_model_fail(in->model, TRIBO_ERR_NULL, "%s%s is NULL", in->name, part);
+    return numbers || !count ? TRIBO_OK : tribo_error(in->model->message, TRIBO_ERR_NULL, "%s%s is NULL", in->name, part);
 }
 
 /* entries [rows][ndof], or, if diagonal = 1, [rows]. */
@@ -123,19 +123,19 @@ static int check_csr(const struct input *in, const size_t *rowptr, const size_t 
 {
     const tribo_model *m = in->model;
     if (rowptr[0] != 0) {
-        return tribo_model_fail(m, TRIBO_ERR_SIZE, "%s: rowptr[%zu] = %zu is not 0", in->name, (size_t)0, rowptr[0]);
+        return tribo_error(m->message, TRIBO_ERR_SIZE, "%s: rowptr[%zu] = %zu is not 0", in->name, (size_t)0, rowptr[0]);
     }
     for (size_t i = 1; i <= in->rows; i++) {
         if (rowptr[i] < rowptr[i - 1]) {
-            return tribo_model_fail(m, TRIBO_ERR_SIZE, "%s: rowptr[%zu] = %zu is below rowptr[%zu] = %zu", in->name, i, rowptr[i],
-                                    i - 1, rowptr[i - 1]);
+            return tribo_error(m->message, TRIBO_ERR_SIZE, "%s: rowptr[%zu] = %zu is below rowptr[%zu] = %zu", in->name, i,
+                               rowptr[i], i - 1, rowptr[i - 1]);
         }
     }
     for (size_t i = 0; i < in->rows; i++) {
         for (size_t k = rowptr[i]; k < rowptr[i + 1]; k++) {
             if (col[k] >= m->ndof) {
-                return tribo_model_fail(m, TRIBO_ERR_RANGE, "%s: col[%zu] = %zu is not below %zu, the number of columns",
-                                        in->name, k, col[k], m->ndof);
+                return tribo_error(m->message, TRIBO_ERR_RANGE, "%s: col[%zu] = %zu is not below %zu, the number of columns",
+                                   in->name, k, col[k], m->ndof);
             }
         }
     }
@@ -163,7 +163,7 @@ static int set_csr(tribo_model *model, enum which which, const size_t *rowptr, c
     for (size_t i = 0; done && i < in.rows; i++) {
         for (size_t k = a.first[i] + 1; k < a.first[i + 1]; k++) {
             if (a.col[k] == a.col[k - 1]) {
-                status = tribo_model_fail(model, TRIBO_ERR_DUPLICATE, "%s[%zu][%zu] is given twice", in.name, i, a.col[k]);
+                status = tribo_error(model->message, TRIBO_ERR_DUPLICATE, "%s[%zu][%zu] is given twice", in.name, i, a.col[k]);
             }
         }
     }
@@ -235,14 +235,14 @@ int tribo_model_set_compliance(tribo_model *model, const double *c)
     const int status = check_input(&in, c, "", n);
     for (size_t i = 0; !status && i < n; i++) {
         if (!isfinite(c[i])) {
-            return tribo_model_fail(model, TRIBO_ERR_NOT_FINITE, "compliance[%zu] = %g is not finite", i, c[i]);
+            return tribo_error(model->message, TRIBO_ERR_NOT_FINITE, "compliance[%zu] = %g is not finite", i, c[i]);
         }
         if (c[i] < 0.0) {
-            return tribo_model_fail(model, TRIBO_ERR_NEGATIVE, "compliance[%zu] = %g is negative", i, c[i]);
+            return tribo_error(model->message, TRIBO_ERR_NEGATIVE, "compliance[%zu] = %g is negative", i, c[i]);
         }
         if (c[i] > 0.0 && !(c[i] > 1.0 / DBL_MAX)) {
-            return tribo_model_fail(model, TRIBO_ERR_RANGE,
-                                    "compliance[%zu] = %g is of a stiffness that overflows: 0 is a rigid contact", i, c[i]);
+            return tribo_error(model->message, TRIBO_ERR_RANGE,
+                               "compliance[%zu] = %g is of a stiffness that overflows: 0 is a rigid contact", i, c[i]);
         }
     }
     double *copy = status ? NULL : malloc((n + 1) * sizeof *copy);
@@ -271,25 +271,25 @@ static int build_system(tribo_system **sys, const tribo_model *m, int reduces, s
                           : !m->direction.first && m->ncontact ? "direction"
                                                                : NULL;
     if (!sys) {
-        return tribo_model_fail(m, TRIBO_ERR_NULL, "sys is NULL");
+        return tribo_error(m->message, TRIBO_ERR_NULL, "sys is NULL");
     }
     if (missing) {
-        return tribo_model_fail(m, TRIBO_ERR_STATE, "%s has not been set: call tribo_model_set_%s", missing, missing);
+        return tribo_error(m->message, TRIBO_ERR_STATE, "%s has not been set: call tribo_model_set_%s", missing, missing);
     }
     if (reduces && nmode == 0) {
-        return tribo_model_fail(m, TRIBO_ERR_SIZE, "nmode = 0: a reduced system has a mode at least");
+        return tribo_error(m->message, TRIBO_ERR_SIZE, "nmode = 0: a reduced system has a mode at least");
     }
     if (nmode > m->ndof) {
-        return tribo_model_fail(m, TRIBO_ERR_SIZE, "nmode = %zu is more than the %zu degree%s of freedom", nmode, m->ndof,
-                                plural(m->ndof));
+        return tribo_error(m->message, TRIBO_ERR_SIZE, "nmode = %zu is more than the %zu degree%s of freedom", nmode, m->ndof,
+                           plural(m->ndof));
     }
     if (statics < TRIBO_STATICS_NONE || statics > TRIBO_STATICS_COMPLIANCE) {
-        return tribo_model_fail(m, TRIBO_ERR_RANGE, "static_contacts = %d is not TRIBO_STATICS_...", statics);
+        return tribo_error(m->message, TRIBO_ERR_RANGE, "static_contacts = %d is not TRIBO_STATICS_...", statics);
     }
     if (m->damping.first && statics == TRIBO_STATICS_COMPLIANCE) {
-        return tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
-                                "TRIBO_STATICS_COMPLIANCE takes no damping matrix: call tribo_system_set_damping_ratio, or take "
-                                "TRIBO_STATICS_MASS");
+        return tribo_error(m->message, TRIBO_ERR_UNSUPPORTED,
+                           "TRIBO_STATICS_COMPLIANCE takes no damping matrix: call tribo_system_set_damping_ratio, or take "
+                           "TRIBO_STATICS_MASS");
     }
     tribo_model copy = {.ndof = m->ndof,
                         .ncontact = m->ncontact,

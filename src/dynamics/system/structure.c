@@ -2,36 +2,23 @@
 /* Builds systems from matrices. A diagonal mass matrix is inverted; else accelerations are solved for (M^-1 K, M^-1 C), up to
  * DENSE_MOST degrees of freedom. Larger systems keep their matrices (unsolved). */
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "delassus.h"
 #include "model.h"
 
-int tribo_model_fail(const tribo_model *m, int status, const char *format, ...)
-{
-    if (m->message) {
-        va_list args;
-        va_start(args, format);
-        vsnprintf(m->message, TRIBO_MESSAGE, format, args);
-        va_end(args);
-    }
-    return status;
-}
-
 int tribo_model_no_memory(const tribo_model *m)
 {
-    return tribo_model_fail(m, TRIBO_ERR_MEMORY, "out of memory for %zu degree%s of freedom and %zu contact%s", m->ndof,
-                            plural(m->ndof), m->ncontact, plural(m->ncontact));
+    return tribo_error(m->message, TRIBO_ERR_MEMORY, "out of memory for %zu degree%s of freedom and %zu contact%s", m->ndof,
+                       plural(m->ndof), m->ncontact, plural(m->ncontact));
 }
 
 int tribo_model_too_large(const tribo_model *m)
 {
-    return tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
-                            "%zu degree%s of freedom are more than the %d that dense matrices are for: build tribo with "
-                            "TRIBO_SPARSE=ON, which needs CHOLMOD",
-                            m->ndof, plural(m->ndof), DENSE_MOST);
+    return tribo_error(m->message, TRIBO_ERR_UNSUPPORTED,
+                       "%zu degree%s of freedom are more than the %d that dense matrices are for: build tribo with "
+                       "TRIBO_SPARSE=ON, which needs CHOLMOD",
+                       m->ndof, plural(m->ndof), DENSE_MOST);
 }
 
 int tribo_model_factorize(const tribo_model *m, struct cholesky *c)
@@ -40,7 +27,7 @@ int tribo_model_factorize(const tribo_model *m, struct cholesky *c)
     double pivot;
     const int status = tribo_cholesky_create(c, &m->mass, NULL, &where, &pivot);
     return status == TRIBO_ERR_INDEFINITE
-               ? tribo_model_fail(m, status, "mass is not positive definite: pivot %g at degree of freedom %zu", pivot, where)
+               ? tribo_error(m->message, status, "mass is not positive definite: pivot %g at degree of freedom %zu", pivot, where)
            : status == TRIBO_ERR_SIZE ? tribo_model_too_large(m)
                                       : status;
 }
@@ -58,8 +45,8 @@ static int check_symmetric(const tribo_model *m, const char *name, const struct 
     size_t i, j;
     double x, y;
     return tribo_matrix_flaw(a, 1, &i, &j, &x, &y)
-               ? tribo_model_fail(m, TRIBO_ERR_NOT_SYMMETRIC, "%s[%zu][%zu] = %.17g, but %s[%zu][%zu] = %.17g", name, i, j, x,
-                                  name, j, i, y)
+               ? tribo_error(m->message, TRIBO_ERR_NOT_SYMMETRIC, "%s[%zu][%zu] = %.17g, but %s[%zu][%zu] = %.17g", name, i, j, x,
+                             name, j, i, y)
                : TRIBO_OK;
 }
 
@@ -78,11 +65,10 @@ static int check_unsolved(const tribo_model *m)
         return tribo_model_too_large(m);
     }
     if (m->damping.rows && tribo_matrix_flaw(&m->damping, 1, &i, &j, &x, &y)) {
-        return tribo_model_fail(
-            m, TRIBO_ERR_NOT_SYMMETRIC,
-            "damping[%zu][%zu] = %.17g, but damping[%zu][%zu] = %.17g: with more than %d degrees of freedom and a "
-            "mass matrix that is not diagonal it must be symmetric",
-            i, j, x, j, i, y, DENSE_MOST);
+        return tribo_error(m->message, TRIBO_ERR_NOT_SYMMETRIC,
+                           "damping[%zu][%zu] = %.17g, but damping[%zu][%zu] = %.17g: with more than %d degrees of freedom and a "
+                           "mass matrix that is not diagonal it must be symmetric",
+                           i, j, x, j, i, y, DENSE_MOST);
     }
     return TRIBO_OK;
 }
@@ -110,11 +96,11 @@ static int set_dense_operator(const tribo_model *m, tribo_system *sys, const str
     const int status = done && !hidden ? tribo_set_operator_dense(sys->contacts, r) : TRIBO_ERR_MEMORY;
     free(r);
     free(own);
-    return hidden > 0 ? tribo_model_fail(
-                            m, TRIBO_ERR_UNSUPPORTED,
-                            "mass: contact %zu touches bodies of which one is %g times as light; make the mass matrix diagonal",
-                            where.contact, where.spread)
-           : done && status ? tribo_model_fail(m, status, "%s", tribo_message(sys->contacts))
+    return hidden > 0
+               ? tribo_error(m->message, TRIBO_ERR_UNSUPPORTED,
+                             "mass: contact %zu touches bodies of which one is %g times as light; make the mass matrix diagonal",
+                             where.contact, where.spread)
+           : done && status ? tribo_error(m->message, status, "%s", tribo_message(sys->contacts))
                             : status;
 }
 
@@ -147,7 +133,7 @@ static int divide_by_masses(const tribo_model *m, tribo_system *sys, const struc
     tribo_matrix_scale_rows(&sys->damping, inverse);
     const int status = tribo_set_operator_mass(sys->contacts, m->ndof, inverse, j->first, j->col, j->val);
     free(inverse);
-    return status ? tribo_model_fail(m, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
+    return status ? tribo_error(m->message, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
 }
 
 /* Sets M^-1 K, M^-1 C and, in the place of J', M^-1 J' of sys by the factor of M; sets R. Returns a status. */

@@ -10,18 +10,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-int tribo_system_fail(const tribo_system *sys, int status, const char *format, ...)
+int tribo_error(char *message, int status, const char *format, ...)
 {
-    va_list args;
-    va_start(args, format);
-    vsnprintf(sys->message, TRIBO_MESSAGE, format, args);
-    va_end(args);
+    if (message) {
+        va_list args;
+        va_start(args, format);
+        vsnprintf(message, TRIBO_MESSAGE, format, args);
+        va_end(args);
+    }
     return status;
 }
 
 int tribo_system_explain(const tribo_system *sys, int status)
 {
-    return status ? tribo_system_fail(sys, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
+    return status ? tribo_error(sys->message, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
 }
 
 const char *tribo_system_message(const tribo_system *sys)
@@ -36,20 +38,19 @@ int tribo_system_check_mass(const tribo_system *sys, const char *who)
     while (x->place && x->place[d] < sys->ndof) {
         d++;
     }
-    return x->place
-               ? tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                   "%s needs mass, and degree of freedom %zu has none: take exact, event or moreau/fixed", who, d)
-               : TRIBO_OK;
+    return x->place ? tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                                  "%s needs mass, and degree of freedom %zu has none: take exact, event or moreau/fixed", who, d)
+                    : TRIBO_OK;
 }
 
 int tribo_system_check_solved(const tribo_system *sys, const char *what)
 {
-    return sys->unsolved ? tribo_system_fail(
-                               sys, TRIBO_ERR_UNSUPPORTED,
-                               "%s needs accelerations: %zu degree%s of freedom are more than the %d that are solved for with a "
-                               "mass matrix that is not diagonal; take moreau/fixed, or tribo_system_reduce",
-                               what, sys->ndof, plural(sys->ndof), DENSE_MOST)
-                         : TRIBO_OK;
+    return sys->unsolved
+               ? tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                             "%s needs accelerations: %zu degree%s of freedom are more than the %d that are solved for with a "
+                             "mass matrix that is not diagonal; take moreau/fixed, or tribo_system_reduce",
+                             what, sys->ndof, plural(sys->ndof), DENSE_MOST)
+               : TRIBO_OK;
 }
 
 int tribo_system_check_contacts(const tribo_system *sys, const char *method, int scalar)
@@ -57,9 +58,9 @@ int tribo_system_check_contacts(const tribo_system *sys, const char *method, int
     const int springs = sys->expansion.place != NULL;
     const size_t planar = scalar || springs ? tribo_system_planar(sys) : 0;
     if (planar) {
-        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                 "method %s knows no planar contacts%s, of which the system has %zu%s", method,
-                                 springs ? " where degrees of freedom have no mass" : "", planar, springs ? "" : ": take event");
+        return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                           "method %s knows no planar contacts%s, of which the system has %zu%s", method,
+                           springs ? " where degrees of freedom have no mass" : "", planar, springs ? "" : ": take event");
     }
     if (springs) {
         tribo_get_static(sys->contacts, sys->work.feq, NULL);
@@ -67,9 +68,8 @@ int tribo_system_check_contacts(const tribo_system *sys, const char *method, int
     for (size_t k = 0; k < sys->compliance.count; k++) {
         const size_t i = sys->compliance.contact[k];
         if (sys->work.feq[i] > 1.0) {
-            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                     "contact %zu is elastic, and takes no static limit: ratio[%zu] = %g", i, i,
-                                     sys->work.feq[i]);
+            return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                               "contact %zu is elastic, and takes no static limit: ratio[%zu] = %g", i, i, sys->work.feq[i]);
         }
     }
     return TRIBO_OK;
@@ -79,7 +79,7 @@ int tribo_system_check_finite(const tribo_system *sys, const char *name, const d
 {
     for (size_t i = 0; x && i < n; i++) {
         if (!isfinite(x[i])) {
-            return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "%s[%zu] = %g is not finite", name, i, x[i]);
+            return tribo_error(sys->message, TRIBO_ERR_NOT_FINITE, "%s[%zu] = %g is not finite", name, i, x[i]);
         }
     }
     return TRIBO_OK;
@@ -88,10 +88,10 @@ int tribo_system_check_finite(const tribo_system *sys, const char *name, const d
 int tribo_system_check_state(const tribo_system *sys, double t, const double *y)
 {
     if (!isfinite(t)) {
-        return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "t = %g is not finite", t);
+        return tribo_error(sys->message, TRIBO_ERR_NOT_FINITE, "t = %g is not finite", t);
     }
     if (!y) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "y is NULL");
+        return tribo_error(sys->message, TRIBO_ERR_NULL, "y is NULL");
     }
     return tribo_system_check_finite(sys, "y", y, tribo_system_dimension(sys));
 }
@@ -167,15 +167,15 @@ int tribo_system_get_slip(const tribo_system *sys, signed char *slip)
 {
     const int status = sys ? tribo_get_slip(sys->contacts, slip) : TRIBO_ERR_NULL;
     static const char early[] = "no forces of contacts were computed yet: call tribo_system_contacts";
-    return status && sys ? tribo_system_fail(sys, status, "%s", slip ? early : "slip is NULL") : status;
+    return status && sys ? tribo_error(sys->message, status, "%s", slip ? early : "slip is NULL") : status;
 }
 
 int tribo_system_get_count(const tribo_system *sys, int which, size_t *value)
 {
     const int status = sys ? tribo_get_count(sys->contacts, which, value) : TRIBO_ERR_NULL;
     return !status || !sys ? status
-           : value         ? tribo_system_fail(sys, status, "which = %d is no count", which)
-                           : tribo_system_fail(sys, status, "value is NULL");
+           : value         ? tribo_error(sys->message, status, "which = %d is no count", which)
+                           : tribo_error(sys->message, status, "value is NULL");
 }
 
 int tribo_system_get_limit(tribo_system *sys, double t, double *limit)
@@ -184,10 +184,10 @@ int tribo_system_get_limit(tribo_system *sys, double t, double *limit)
         return TRIBO_ERR_NULL;
     }
     if (!isfinite(t)) {
-        return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "t = %g is not finite", t);
+        return tribo_error(sys->message, TRIBO_ERR_NOT_FINITE, "t = %g is not finite", t);
     }
     if (!limit && sys->ncontact) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "limit is NULL");
+        return tribo_error(sys->message, TRIBO_ERR_NULL, "limit is NULL");
     }
     const int status = tribo_system_take_settings(sys);
     if (!status) {
@@ -202,7 +202,7 @@ int tribo_system_set_message(tribo_system *sys, int status, const char *text)
     if (!sys) {
         return TRIBO_ERR_NULL;
     }
-    sys->status = tribo_system_fail(sys, status, "%s", text ? text : "");
+    sys->status = tribo_error(sys->message, status, "%s", text ? text : "");
     return status;
 }
 
@@ -303,14 +303,14 @@ int tribo_system_attach(tribo_system *sys, const void *key, void *data, void (*d
         return TRIBO_ERR_NULL;
     }
     if (!key) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "key is NULL");
+        return tribo_error(sys->message, TRIBO_ERR_NULL, "key is NULL");
     }
     if (attached_find(sys, key)) {
-        return tribo_system_fail(sys, TRIBO_ERR_STATE, "data of this key is attached to the system already");
+        return tribo_error(sys->message, TRIBO_ERR_STATE, "data of this key is attached to the system already");
     }
     struct attached *a = malloc(sizeof *a);
     if (!a) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for data attached to the system");
+        return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for data attached to the system");
     }
     *a = (struct attached){key, data, destroy, sys->attached};
     sys->attached = a;
@@ -359,7 +359,7 @@ int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
         return TRIBO_ERR_NULL;
     }
     if (!copy) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "copy is NULL");
+        return tribo_error(sys->message, TRIBO_ERR_NULL, "copy is NULL");
     }
     tribo_system *to = NULL;
     const size_t c = sys->ncontact, dofs = sys->expansion.dofs;
@@ -392,8 +392,8 @@ int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
            tribo_expansion_copy(to, sys) && tribo_loads_copy(to, sys);
     if (!done) {
         tribo_system_destroy(to);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu degree%s of freedom", sys->ndof,
-                                 plural(sys->ndof));
+        return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu degree%s of freedom", sys->ndof,
+                           plural(sys->ndof));
     }
     *copy = to;
     return TRIBO_OK;

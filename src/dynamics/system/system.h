@@ -247,8 +247,8 @@ static inline void tribo_snap_all(const struct snap *list, size_t count, const s
 /* list [ncontact] = corrections of tribo_system_snap in their order; no correction undoes another. Returns their number. */
 size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list);
 
-/* Writes the message of the system and returns status. */
-int tribo_system_fail(const tribo_system *sys, int status, const char *format, ...)
+/* Writes message [TRIBO_MESSAGE] of a model, system or driver, unless it is NULL, and returns status. */
+int tribo_error(char *message, int status, const char *format, ...)
 #if defined(__GNUC__)
     __attribute__((format(printf, 3, 4)))
 #endif
