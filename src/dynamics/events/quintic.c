@@ -2,6 +2,7 @@
 #include "quintic.h"
 #include "common/real.h"
 
+#include <float.h>
 #include <math.h>
 
 /* In Bernstein's basis, and in powers. */
@@ -125,4 +126,35 @@ double tribo_quintic_zero(const struct sample *a, const struct sample *b, double
     const struct sample end = {-b->g, b->d, -b->e}, start = {-a->g, a->d, -a->e};
     quintic_powers(&end, &start, h, p);
     return h - zero(p, back) * h;
+}
+
+void tribo_curve_add(const struct curve *c, double s, double factor, struct sample *to)
+{
+    double v0 = 0.0, v1 = 0.0, v2 = 0.0;
+    for (size_t k = c->terms; k-- > 0;) {
+        v2 = v2 * s + v1;
+        v1 = v1 * s + v0;
+        v0 = v0 * s + c->term[k * c->stride];
+    }
+    to->g += factor * v0;
+    to->d += factor * v1;
+    to->e += factor * 2.0 * v2;
+}
+
+void tribo_curves_bound(struct curve *curve, size_t count, size_t terms, size_t stride, const double *term, double h)
+{
+    double power = 1.0, sixth = 1.0; /* of h; the second that of the sixth derivative */
+    for (size_t i = 0; i < count; i++) {
+        curve[i] = (struct curve){.term = term + i, .terms = terms, .stride = stride};
+    }
+    for (size_t k = 0; k < terms; k++) {
+        const double six = k < 6 ? 0.0 : (double)(k * (k - 1) * (k - 2)) * (double)((k - 3) * (k - 4) * (k - 5)) * sixth;
+        for (size_t i = 0; i < count; i++) {
+            const double w = fabs(term[k * stride + i]);
+            curve[i].size += w * power;
+            curve[i].bend += w * six;
+        }
+        power = lesser(power * h, DBL_MAX);
+        sixth = k < 6 ? 1.0 : lesser(sixth * h, DBL_MAX);
+    }
 }

@@ -53,7 +53,7 @@ void *tribo_modal_take(struct modal_store *store, size_t count, size_t size)
     return memset(block->unit + block->used - units, 0, units * sizeof *block->unit);
 }
 
-void tribo_modal_give_back(struct modal_store *store)
+static void build_give_back(struct modal_store *store)
 {
     while (store->last) {
         struct modal_block *next = store->last->next;
@@ -383,7 +383,7 @@ int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed cha
         b.h->forced = b.forced;
     }
     done = b.forced && tribo_forced_respond(&b) && tribo_forced_outputs(&b);
-    tribo_modal_give_back(&b.scratch);
+    build_give_back(&b.scratch);
     tribo_matrix_free(&b.own_stiffness);
     if (done) {
         *modal = b.h;
@@ -405,7 +405,7 @@ void tribo_modal_free(struct modal *h)
         struct modal_store store = h->store;
         tribo_forced_free(h);
         tribo_constraints_free(&h->ties);
-        tribo_modal_give_back(&store);
+        build_give_back(&store);
     }
 }
 
@@ -413,7 +413,7 @@ void tribo_forced_free(struct modal *h)
 {
     if (h->forced) {
         struct modal_store store = h->forced->store;
-        tribo_modal_give_back(&store);
+        build_give_back(&store);
         h->forced = NULL;
     }
 }

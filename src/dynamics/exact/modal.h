@@ -28,7 +28,6 @@ struct modal_store {
 
 /* Returns a zeroed array of elements; NULL, with failed = 1, if out of memory. */
 void *tribo_modal_take(struct modal_store *store, size_t count, size_t size);
-void tribo_modal_give_back(struct modal_store *store);
 
 /* The structure without loads. */
 struct modal {

@@ -149,24 +149,16 @@ void tribo_powers_carry(const struct modal *h, double tau, size_t columns, const
 
 void tribo_powers_look(const struct exact *x, struct course *c)
 {
-    double v0 = 0.0, v1 = 0.0, v2 = 0.0;
-    for (size_t k = P; k-- > 0;) {
-        v2 = v2 * x->tau + v1;
-        v1 = v1 * x->tau + v0;
-        v0 = v0 * x->tau + c->power[k];
-    }
+    const struct curve curve = {.term = c->power, .terms = P, .stride = 1};
     c->tau = x->tau;
-    c->at = (struct sample){v0, v1, 2.0 * v2};
+    c->at = (struct sample){0.0, 0.0, 0.0};
+    tribo_curve_add(&curve, x->tau, 1.0, &c->at);
 }
 
 void tribo_powers_bound(const struct exact *x, struct course *c)
 {
-    double power = 1.0; /* longest^k */
-    c->size = c->bend = 0.0;
-    for (size_t k = 0; k < P; k++, power *= x->longest) {
-        c->size += fabs(c->power[k]) * power;
-        if (k + 6 < P) {
-            c->bend += fabs(c->power[k + 6]) * power * (double)((k + 1) * (k + 2) * (k + 3) * (k + 4) * (k + 5) * (k + 6));
-        }
-    }
+    struct curve curve;
+    tribo_curves_bound(&curve, 1, P, 1, c->power, x->longest);
+    c->size = curve.size;
+    c->bend = curve.bend;
 }

@@ -16,14 +16,6 @@ struct event_room {
     double *rate;
 };
 
-/* A polynomial in time, an output of guards: term[k stride], k < terms; bounds, over the phase, of the sum of the sizes of its
- * terms, and of that of its sixth derivative. */
-struct curve {
-    const double *term;
-    size_t terms, stride;
-    double size, bend;
-};
-
 /* Series of a planar contact, along the first direction n of its velocity and the normal t. */
 struct planar_line {
     double n[2], t[2];
@@ -134,9 +126,6 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
 /* method_event.c: returns the length of the step on which the last two terms of all series are below the tolerance; sets
  * plane->error. */
 double tribo_event_length(struct event *e);
-
-/* method_event.c: sets curves [count], of neighbouring polynomials from term on, and their bounds over [0, h]. */
-void tribo_event_curves(struct curve *curve, size_t count, size_t terms, size_t stride, const double *term, double h);
 
 /* A step ends where the speed of a planar contact falls to this part: at a small speed the direction turns fast, and a stop is
  * approached in ever shorter steps. */

@@ -72,20 +72,6 @@ double tribo_event_length(struct event *e)
 
 /* --------------------------------------------------------------------------------------------------------- guards */
 
-/* to += factor times value and derivatives of the curve at s. */
-static void add_curve(const struct curve *c, double s, double factor, struct sample *to)
-{
-    double v0 = 0.0, v1 = 0.0, v2 = 0.0;
-    for (size_t k = c->terms; k-- > 0;) {
-        v2 = v2 * s + v1;
-        v1 = v1 * s + v0;
-        v0 = v0 * s + c->term[k * c->stride];
-    }
-    to->g += factor * v0;
-    to->d += factor * v1;
-    to->e += factor * 2.0 * v2;
-}
-
 static void method_event_look(void *own, double tau, size_t guards, struct guard *const *guard)
 {
     const struct event *e = own;
@@ -93,10 +79,10 @@ static void method_event_look(void *own, double tau, size_t guards, struct guard
         struct guard *g = guard[k];
         g->middle = (struct sample){g->offset, 0.0, 0.0};
         if (g->output) {
-            add_curve(g->output, tau, g->side, &g->middle);
+            tribo_curve_add(g->output, tau, g->side, &g->middle);
         }
         if (g->limit != 0.0) {
-            add_curve(&e->limit_curve[g->contact], tau, g->limit, &g->middle);
+            tribo_curve_add(&e->limit_curve[g->contact], tau, g->limit, &g->middle);
         }
     }
 }
@@ -115,24 +101,6 @@ static double method_event_bound(void *own, double tau)
     return HUGE_VAL;
 }
 
-void tribo_event_curves(struct curve *curve, size_t count, size_t terms, size_t stride, const double *term, double h)
-{
-    double power = 1.0, sixth = 1.0; /* of h; the second that of the sixth derivative */
-    for (size_t i = 0; i < count; i++) {
-        curve[i] = (struct curve){.term = term + i, .terms = terms, .stride = stride};
-    }
-    for (size_t k = 0; k < terms; k++) {
-        const double six = k < 6 ? 0.0 : (double)(k * (k - 1) * (k - 2)) * (double)((k - 3) * (k - 4) * (k - 5)) * sixth;
-        for (size_t i = 0; i < count; i++) {
-            const double w = fabs(term[k * stride + i]);
-            curve[i].size += w * power;
-            curve[i].bend += w * six;
-        }
-        power = lesser(power * h, DBL_MAX);
-        sixth = k < 6 ? 1.0 : lesser(sixth * h, DBL_MAX);
-    }
-}
-
 /* Returns 0 if bounds overflow. */
 static int set_guards(struct event *e)
 {
@@ -146,8 +114,8 @@ static int set_guards(struct event *e)
         power = lesser(power * e->length, DBL_MAX);
     }
     e->events.search.guards = 0;
-    tribo_event_curves(e->curve, c, e->order + 1, c, e->watch, e->length);
-    tribo_event_curves(e->limit_curve, c, e->terms, c, e->limit, e->length);
+    tribo_curves_bound(e->curve, c, e->order + 1, c, e->watch, e->length);
+    tribo_curves_bound(e->limit_curve, c, e->terms, c, e->limit, e->length);
     if (m->plane) {
         tribo_planar_series_guards(e);
     }

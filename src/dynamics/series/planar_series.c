@@ -267,7 +267,7 @@ void tribo_planar_series_guards(struct event *e)
             const double square = product_of(l->xn, l->xn, k, from, to) + product_of(l->xt, l->xt, k, from, to);
             l->square[k] = moves ? square : half * square;
         }
-        tribo_event_curves(curve, 1, 2 * e->order + 1, 1, l->square, e->length);
+        tribo_curves_bound(curve, 1, 2 * e->order + 1, 1, l->square, e->length);
         struct guard g = {.contact = p->at, .output = curve, .kind = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
         g.offset = moves ? -TRIBO_SLOWER * TRIBO_SLOWER * l->square[0] : half;
         g.allowance = moves ? 0.0 : greater(m->noise.allowance[p->at], m->noise.allowance[p->at + 1]);
