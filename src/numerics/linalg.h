@@ -96,7 +96,7 @@ int tribo_eigen(double *a, size_t n, double *re, double *im, double *x);
  * Returns 1, or 0 if out of memory. x is NaN if a is not finite. */
 int tribo_least_norm_solve(double *a, size_t n, double cut, double *x, size_t *kernel);
 
-/* ---- linear equations whose matrix is known by its products, by GMRES (Saad and Schultz 1986) */
+/* ---- GMRES (Saad and Schultz 1986): solves A x = b by products A x alone */
 
 /* x [n] = A x. Returns a status. */
 typedef int tribo_product(void *data, double *x);

@@ -48,7 +48,7 @@ static int replay_phase(struct company *company, double tau, double t, const dou
     return status;
 }
 
-/* Observes the period of the motion found, with coefficients c of q and q' or NULL. missing: an argument that is NULL, or NULL.
+/* Observes the period of the motion found, with coefficients c of q and q' or NULL. missing: name of an argument that is NULL.
  * Returns a status. */
 static int replay(tribo_driver *drv, struct replay *r, const char *missing, const double *c, size_t order)
 {

@@ -101,7 +101,8 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
     return status;
 }
 
-/* *s = the search whose motion was found. missing: an argument that is NULL, or NULL. Returns a status. */
+/* Sets *s = the search of drv. Returns TRIBO_OK if drv is not NULL, the search has found a motion, and missing is NULL; missing:
+ * name of an argument that is NULL. */
 static int get_found(const tribo_driver *drv, const char *missing, struct shooting **s)
 {
     if (!drv || missing) {

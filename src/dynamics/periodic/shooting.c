@@ -50,16 +50,17 @@
 #define CUT 1e-9
 #define FREE 1e-7
 
-/* Steps are solved by GMRES to a part of the residual: residual/size, or, if larger, 0.9 (residual/previous residual)^2 (Eisenstat
- * and Walker 1996), within [LEAST_INEXACT, MOST_INEXACT], because the nonlinear motion leaves about as much; and at most the root
- * of residual/size, because near a double root inexact steps stray. MOST_INEXACT keeps steps longer than FLAT, and what they leave
- * below DOUBLE_FROM. NEARLY_SINGULAR: the free structure preconditions modes with a larger determinant. */
+/* Steps are solved by GMRES to a part of the residual: residual/size, or, if larger, 0.9 (residual/previous residual)^2
+ * (Eisenstat and Walker 1996), within [LEAST_INEXACT, MOST_INEXACT], because the nonlinear motion leaves about as much; and at
+ * most the root of residual/size, because near a double root inexact steps stray. MOST_INEXACT keeps steps longer than FLAT,
+ * and what they leave below DOUBLE_FROM. NEARLY_SINGULAR: the free structure preconditions modes with a larger determinant. */
 #define MOST_INEXACT 0.1
 #define LEAST_INEXACT 1e-6
 #define NEARLY_SINGULAR 1e-6
 
-/* AT_ONCE: velocity of a contact over what a motion may have, whose sign may change from the beginning of a period to its end. LASTS:
- * residual over size, from another beginning of the period, of a motion that repeats. */
+/* AT_ONCE: a velocity below AT_ONCE times the largest velocity of a motion may be rounding, and its sign may differ between
+ * the beginning and the end of a period. LASTS: largest residual over size of a periodic motion, from another beginning of the
+ * period. */
 #define AT_ONCE 1e-8
 #define LASTS 1e-6
 
@@ -107,8 +108,8 @@ static double left_along(const struct shooting *s, const struct point *p)
     return tribo_dot(s->step, p->x, n) - tribo_dot(s->step, p->image, n);
 }
 
-/* If s->preconditions, x = (I - F)^-1 x, F: flow of the free structure over a span; modes without vibration, and modes for which that
- * is nearly singular, stay. */
+/* If s->preconditions, x = (I - F)^-1 x, F: flow of the free structure over a span; modes without vibration, and modes for
+ * which that is nearly singular, stay. */
 static void apply_free(const struct shooting *s, double *x)
 {
     const struct energy_norm *norm = &s->map.norm;
@@ -155,8 +156,8 @@ static int find_derivative(struct shooting *s, struct point *p, int spans)
     return status;
 }
 
-/* x [n] = the shortest solution of (I - D) y = x, D over `spans` spans from p, by a matrix, with singular values below cut taken as
- * zero; *kernel = their number. Returns a status. */
+/* x [n] = the shortest solution of (I - D) y = x, D over `spans` spans from p, by a matrix, with singular values below cut
+ * taken as zero; *kernel = their number. Returns a status. */
 static int solve_dense(struct shooting *s, struct point *p, int spans, double cut, double *x, size_t *kernel)
 {
     const size_t n = s->map.n;
@@ -171,9 +172,9 @@ static int solve_dense(struct shooting *s, struct point *p, int spans, double cu
                              plural(s->map.sys->ndof));
 }
 
-/* x [n] = the shortest solution of (I - D) y = x, D over s->spans spans from s->here, by GMRES to `tolerance`: if contacts rest all
- * the time, there may be many solutions; the Krylov space, then without apply_free, of a map that increases no distance has the
- * shortest. If that fails, and if the equation is nearly singular, by a matrix. Returns a status. */
+/* x [n] = the shortest solution of (I - D) y = x, D over s->spans spans from s->here, by GMRES to `tolerance`: if contacts
+ * rest all the time, there may be many solutions; the Krylov space, then without apply_free, of a map that increases no
+ * distance has the shortest. If that fails, and if the equation is nearly singular, by a matrix. Returns a status. */
 static int solve_equation(struct shooting *s, double tolerance, double cut, double *x)
 {
     const size_t n = s->map.n;
@@ -209,9 +210,9 @@ static int pays(const struct shooting *s)
     return s->there->residual < PAYS * s->here->residual;
 }
 
-/* Takes Newton's step s->step, the shortest solution of (I - derivative) step = image - x; or, where no step changes the residual, as
- * on a slow belt that carries a body for many periods, extrapolates 1, 4, 16, ... spans. *part = length of the step over s->step.
- * Returns a status. */
+/* Takes Newton's step s->step, the shortest solution of (I - derivative) step = image - x; or, where no step changes the
+ * residual, as on a slow belt that carries a body for many periods, extrapolates 1, 4, 16, ... spans. *part = length of the
+ * step over s->step. Returns a status. */
 static int newton(struct shooting *s, double *part)
 {
     const int to_double = s->rate > DOUBLE_FROM && s->rate < DOUBLE_TO;
@@ -343,9 +344,9 @@ static int approach_guess(struct shooting *s)
 
 /* -------------------------------------------------------------------------------------------------------------- multipliers */
 
-/* Sets s->flow: s->here; or, if a contact that slides at its beginning or end has there no velocity beside AT_ONCE of what the motion
- * may have, so that its event falls on both or on neither, the motion from the middle of its longest phase on. If that does not
- * come back, a contact slides at the beginning and is held at the end, above its kinetic limit. Returns a status. */
+/* Sets s->flow: s->here; or, if a contact that slides at its beginning or end has there no velocity beside AT_ONCE of what the
+ * motion may have, so that its event falls on both or on neither, the motion from the middle of its longest phase on. If that
+ * does not come back, a contact slides at the beginning and is held at the end, above its kinetic limit. Returns a status. */
 static int find_flow(struct shooting *s)
 {
     const struct derivative *d = &s->here->derivative;

@@ -113,7 +113,8 @@ struct tribo_system {
     struct workspace work;
 };
 
-/* Creates a system whose matrices have no rows; C and AC without rows: no damping. Returns a status. */
+/* Creates a system. The caller then sets M, K and J, and C and AC if there is damping: rows = 0 means no damping. Returns a
+ * status. */
 int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact);
 
 enum { TRIBO_MESSAGE = 240 };
