@@ -168,47 +168,67 @@ int tribo_disc_solve(struct disc_qp *p)
 /* A share within this part of limits of a solution is one: a further solution would leave the share. */
 #define SHARED 1e-12
 
+/* y = the solution with stiffness more weight^2 towards centre [size]; NULL: towards 0, which is far, until y moves by rounding
+ * only, since in soft directions distances settle before y does. Returns 0 without convergence. */
+static int solve_towards(struct disc_qp *p, double more, const double *centre)
+{
+    double *diagonal = p->kept, *pull = diagonal + p->size, moved = 1.0;
+    for (size_t i = 0; i < p->size; i++) {
+        const double soft = more * p->weight[i] * p->weight[i];
+        diagonal[i] = p->s[i * (p->size + 1)];
+        pull[i] = p->pull[i];
+        p->s[i * (p->size + 1)] += soft;
+        p->pull[i] -= centre ? soft * centre[i] : 0.0;
+    }
+    const int done = tribo_disc_solve(p);
+    for (int round = 0; !centre && round < FROM_INTERIOR && moved > 1e-8; round++) {
+        step_newton(p);
+        disc_look(p);
+        moved = 0.0;
+        for (size_t i = 0; i < p->size; i++) {
+            moved = greater(moved, fabs(p->y[i] - p->from[i]));
+        }
+    }
+    for (size_t i = 0; i < p->size; i++) {
+        p->s[i * (p->size + 1)] = diagonal[i];
+        p->pull[i] = pull[i];
+    }
+    tribo_disc_gains(p);
+    return done;
+}
+
+/* Returns 1 if y is a solution, for a further solution would leave the share. */
+static int is_shared(struct disc_qp *p)
+{
+    const double off = disc_look(p);
+    return p->near_enough < TRIBO_NEAR_ENOUGH ? off <= SETTLED : p->residual < SHARED;
+}
+
 /* With SOFT more stiffness the solution is off by as much; its solutions with SOFT, SOFT/2 and SOFT/4 extrapolate to 0 with
- * errors of third order. */
+ * errors of third order. Stiffness towards the share then takes y to the solution nearest to the share: Newton's step without
+ * stiffness goes far along the null vectors where a rim bears next to no pressure. */
 int tribo_disc_share(struct disc_qp *p)
 {
     const double part[] = {1.0, 0.5, 0.25}, weight[] = {1.0 / 3.0, -2.0, 8.0 / 3.0};
-    double most = 0.0;
-    int done = 1;
+    double *share = p->kept + 2 * p->size, most = 0.0;
+    int done = 1, shared;
     for (size_t i = 0; i < p->size; i++) {
-        p->diagonal[i] = p->s[i * (p->size + 1)];
-        most = greater(most, p->diagonal[i]);
-        p->share[i] = 0.0;
+        most = greater(most, p->s[i * (p->size + 1)]);
+        share[i] = 0.0;
     }
     for (int k = 0; k < 3; k++) {
-        const double more = part[k] * SOFT * most;
+        done = solve_towards(p, part[k] * SOFT * most, NULL) && done;
         for (size_t i = 0; i < p->size; i++) {
-            p->s[i * (p->size + 1)] = p->diagonal[i] + more * p->weight[i] * p->weight[i];
-        }
-        done = tribo_disc_solve(p) && done;
-        /* In soft directions distances settle before y does: repeats Newton's steps until y moves by rounding only. */
-        double moved = 1.0;
-        for (int round = 0; round < FROM_INTERIOR && moved > 1e-8; round++) {
-            step_newton(p);
-            disc_look(p);
-            moved = 0.0;
-            for (size_t i = 0; i < p->size; i++) {
-                moved = greater(moved, fabs(p->y[i] - p->from[i]));
-            }
-        }
-        for (size_t i = 0; i < p->size; i++) {
-            p->share[i] += weight[k] * p->y[i];
+            share[i] += weight[k] * p->y[i];
         }
     }
-    for (size_t i = 0; i < p->size; i++) {
-        p->s[i * (p->size + 1)] = p->diagonal[i];
-    }
-    tribo_disc_gains(p);
-    disc_project(p, p->share, p->share, 1.0);
+    disc_project(p, share, share, 1.0);
     disc_look(p);
     disc_project(p, p->to, p->to, 1.0); /* sliding contacts are on their rims to the last digit */
-    const double off = disc_look(p);
-    const int shared = p->near_enough < TRIBO_NEAR_ENOUGH ? off <= SETTLED : p->residual < SHARED;
+    for (double nearer = 0.25; !(shared = is_shared(p)) && nearer > 1e-5; nearer *= 0.125) {
+        memcpy(share, p->y, p->size * sizeof *share);
+        solve_towards(p, nearer * SOFT * most, share);
+    }
     return done && (shared || tribo_disc_solve(p));
 }
 
@@ -216,10 +236,9 @@ int tribo_disc_share(struct disc_qp *p)
 
 static void lay_out_disc(struct disc_qp *p, struct layout *l, size_t most)
 {
-    double **const vector[] = {&p->pull,     &p->shift,   &p->y,         &p->gradient,    &p->noise,         &p->gain,
-                               &p->to,       &p->outward, &p->curvature, &p->step,        &p->spare,         &p->best,
-                               &p->from,     &p->aim,     &p->slide,     &p->factor.qp.q, &p->factor.qp.row, &p->weight,
-                               &p->diagonal, &p->share};
+    double **const vector[] = {&p->pull, &p->shift,   &p->y,         &p->gradient,    &p->noise,         &p->gain,
+                               &p->to,   &p->outward, &p->curvature, &p->step,        &p->spare,         &p->best,
+                               &p->from, &p->aim,     &p->slide,     &p->factor.qp.q, &p->factor.qp.row, &p->weight};
     double **const square[] = {&p->s, &p->factor.matrix, &p->factor.qp.l, &p->factor.qp.null.basis};
     enum { VECTORS = sizeof vector / sizeof *vector, SQUARES = sizeof square / sizeof *square };
     const size_t s = most + 1;
@@ -229,6 +248,7 @@ static void lay_out_disc(struct disc_qp *p, struct layout *l, size_t most)
     for (size_t k = 0; k < SQUARES; k++) {
         *square[k] = tribo_layout_array(l, s * s, sizeof **square[k]);
     }
+    p->kept = tribo_layout_array(l, 3 * s, sizeof *p->kept);
     p->freedom = tribo_layout_array(l, s, sizeof *p->freedom);
     p->disc = tribo_layout_array(l, 2 * s, sizeof *p->disc);
     p->factor.qp.near = tribo_layout_array(l, s, sizeof *p->factor.qp.near);

@@ -93,7 +93,7 @@ struct disc_qp {
     struct freedom *freedom;                          /* [size] */
     size_t freedoms;                                  /* of Newton's matrix */
     double *step, *spare, *best, *from, *aim, *slide; /* [size] */
-    double *diagonal, *share;                         /* [size] */
+    double *kept;                                     /* [3][size] of tribo_disc_share */
     struct disc *disc;                                /* [discs], at most 2 size */
     size_t discs;
     struct disc_factor factor;

@@ -475,6 +475,48 @@ TEST(least_norm)
     require(apart > 3, "%zu of 20 shares differ", apart);
 }
 
+/* Three planar contacts or two and a scalar one on a body of three directions, R = J J': a rim bears a pressure of rounding, along
+ * which many solutions differ. want: an interior-point method in numbers of 16 bytes. */
+TEST(least_norm_beside_rims)
+{
+    enum { N = 5, M = 3 };
+    static const struct {
+        double j[N * M], a[N], want[N];
+        size_t first[2];
+    } known[] = {
+        {{-0.66435054931045023, 0.81390263845523503, 0, -0.82306311390587084, 0, -0.38228433174163295, 0.53884114138154637,
+          0.97410391808589725, 0.65482543985919384, 0.54804779548152716, 0.5164316686049234, 0, 1.6461262278117417, -0,
+          0.76456866348326591},
+         {-0.16083607418989748, -1.8502989744590981, 2.8387168888089374, 1.6638224024710146, 3.7005979489181962},
+         {-0.0640001478824, 0.739638319447, -0.749320287243, -0.98173103212, -0.190273961891},
+         {0, 3}},
+        {{0, 0.8798446178563144, 0.89198119128494935, 0, 0.51725237151872738, 0, 0.41704268684764328, 0.34875261087105119,
+          0.97077104417571403, 0.41562757354208468, 0, 0.97897228076383724, 0, -0.48839088852018442, 0},
+         {-1.6461658766448248, -0.26535863741483195, -1.5608401704459671, -1.3926331007376438, 0.25055224072344934},
+         {0.985189600228, -0.171468514904, 0.0113411170738, 0.459359879858, 0.550912650651},
+         {0, 2}},
+        {{-0.57522966733174075, 0, -0.41852206566967065, 0.40018278091436166, -0.68980233032075366, 0.62724607794646481,
+          0.84960345625673583, 0.93035260214191129, 0.87104683803027716, -0.51784451542449794, 0.65777966377820896,
+          -0.62851156641777362, 0.47859838573307245, 0.82886877107217538, 0.39849492074277876},
+         {-1.6082016134065498, 1.0962571637227574, 3.4820527722586769, -1.3214854712615061, 2.057305539306145},
+         {0.985457549433, 0.169921800443, -0.543334488149, 0.710970603394, -0.748324388677},
+         {0, 2}}};
+    const double none[N] = {0.0};
+    double r[N * N], f[N];
+    tribo_context *c;
+    for (size_t i = 0; i < N * N; i++) {
+        const double *one = known[_i].j + i / N * M, *other = known[_i].j + i % N * M;
+        r[i] = (double)((long double)one[0] * other[0] + (long double)one[1] * other[1] + (long double)one[2] * other[2]);
+    }
+    assert_ok(tribo_create(&c, N));
+    assert_ok(tribo_set_limit_all(c, 1.0));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_ok(tribo_set_planar(c, 2, known[_i].first));
+    assert_ok(tribo_balance(c, none, known[_i].a, NULL, f));
+    assert_all_close(f, known[_i].want, N, 1e-7);
+    tribo_destroy(c);
+}
+
 /* A clone solves the groups of its own contacts, whatever becomes of the context that it is a copy of, and of its memory. */
 TEST(clones)
 {
@@ -499,5 +541,5 @@ TEST(clones)
     tribo_destroy(other);
 }
 
-TEST_MAIN("planar_coupled", {identical_contacts_share, 20}, {least_norm, 5}, {random_problems, 5}, {steps, 5}, {turned, 3},
-          {tangents, 3}, {limits, 12}, {clones, 1})
+TEST_MAIN("planar_coupled", {identical_contacts_share, 20}, {least_norm, 5}, {least_norm_beside_rims, 3}, {random_problems, 5},
+          {steps, 5}, {turned, 3}, {tangents, 3}, {limits, 12}, {clones, 1})
