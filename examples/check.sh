@@ -6,7 +6,7 @@ cd "$(dirname -- "$0")"
 results=$1 keys=$2 program=$3
 rm -rf "$results"
 mkdir -p "$results"
-"$program" "$results" >"$results/values-$keys.txt"
+"$program" "$results" >"$results/values-printed.txt"
 awk -F'|' -v keys="$keys." 'NR == 1 || index($1, keys) == 1' expected.txt >"$results/expected.txt"
 awk -f summary.awk "$results"/values-*.txt "$results/expected.txt"
 [ "$(wc -l <"$results/expected.txt")" -gt 1 ] || {
