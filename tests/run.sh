@@ -15,7 +15,8 @@ while :; do
     case ${1-} in
     --all)
         preset=all
-        packages="$packages git libclang-rt-dev clang-tidy abigail-tools gcc-multilib musl-tools gcc-mingw-w64-x86-64 wine libopenblas0-pthread"
+        packages="$packages git libclang-rt-dev clang-tidy abigail-tools gcc-multilib musl-tools gcc-mingw-w64-x86-64 wine libopenblas0-pthread
+            python3-numpy"
         ;;
     --no-install) setup_install=no ;;
     *) break ;;
