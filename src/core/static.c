@@ -83,8 +83,8 @@ int tribo_check_one_ratio(tribo_context *ctx, const double *ratio, const double 
         const double *x = same ? velocity : ratio;
         if (x && (x[i] < x[j] || x[i] > x[j])) {
             const char *name = same ? "velocity" : "ratio";
-            return tribo_fail(ctx, TRIBO_ERR_RANGE, "%s[%zu] = %g and %s[%zu] = %g are of one planar contact, and differ", name,
-                              i, x[i], name, j, x[j]);
+            return tribo_fail(ctx, TRIBO_ERR_RANGE, "%s[%zu] = %.15g and %s[%zu] = %.15g are of one planar contact, and differ",
+                              name, i, x[i], name, j, x[j]);
         }
     }
     return TRIBO_OK;
@@ -111,7 +111,7 @@ int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velo
     status = status || !velocity ? status : tribo_check_slowly(ctx, "velocity", velocity, ctx->n, POSITIVE);
     for (size_t i = 0; !status && ratio && i < ctx->n; i++) {
         if (ratio[i] < 1.0) {
-            return tribo_fail(ctx, TRIBO_ERR_RANGE, "ratio[%zu] = %g is below 1", i, ratio[i]);
+            return tribo_fail(ctx, TRIBO_ERR_RANGE, "ratio[%zu] = %.15g is below 1", i, ratio[i]);
         }
         above |= ratio[i] > 1.0;
     }

@@ -304,7 +304,7 @@ int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, co
     double most = 0.0;
     for (size_t i = 0; !status && i < ctx->n; i++) {
         if (lower[i] > upper[i]) {
-            return tribo_fail(ctx, TRIBO_ERR_RANGE, "lower[%zu] = %g is above upper[%zu] = %g", i, lower[i], i, upper[i]);
+            return tribo_fail(ctx, TRIBO_ERR_RANGE, "lower[%zu] = %.15g is above upper[%zu] = %.15g", i, lower[i], i, upper[i]);
         }
         most = greater(most, greater(upper[i], -lower[i]));
     }

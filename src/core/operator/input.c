@@ -32,13 +32,13 @@ static int symmetrize(tribo_context *ctx, const struct csr *a, double negligible
                 return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "r of contacts %zu, %zu is %g", i, j, x);
             }
             if (fabs(0.5 * x - 0.5 * y) > 0.5 * ASYMMETRY * greater(size, greater(fabs(x), fabs(y)))) {
-                return tribo_fail(ctx, TRIBO_ERR_NOT_SYMMETRIC, "r of contacts %zu, %zu is %g one way and %g the other", i, j, x,
-                                  y);
+                return tribo_fail(ctx, TRIBO_ERR_NOT_SYMMETRIC, "r of contacts %zu, %zu is %.15g one way and %.15g the other", i,
+                                  j, x, y);
             }
             if (fabs(x) - size > ASYMMETRY * size) {
                 return tribo_fail(ctx, TRIBO_ERR_INDEFINITE,
-                                  "r of contacts %zu, %zu is %g, more than the root of their diagonal entries' product, %g", i, j,
-                                  x, size);
+                                  "r of contacts %zu, %zu is %.15g, more than the root of their diagonal entries' product, %.15g",
+                                  i, j, x, size);
             }
             const int counts = j == i || lesser(fabs(x), fabs(y)) > negligible * size;
             a->val[k] = counts ? x + 0.5 * (y - x) : 0.0;

@@ -414,6 +414,8 @@ TEST(refusals)
     assert_status(tribo_get_static(NULL, ratio, velocity), TRIBO_ERR_NULL);
     assert_status(tribo_set_static(c, TWO(2.0, 0.9), NULL), TRIBO_ERR_RANGE);
     assert_says(tribo_message(c), "ratio[1] = 0.9 is below 1");
+    assert_status(tribo_set_static(c, TWO(2.0, 0.99999999), NULL), TRIBO_ERR_RANGE);
+    assert_says(tribo_message(c), "ratio[1] = 0.99999999 is below 1");
     assert_status(tribo_set_static(c, TWO(NAN, 2.0), NULL), TRIBO_ERR_NOT_FINITE);
     assert_says(tribo_message(c), "ratio[0]");
     assert_status(tribo_set_static(c, TWO(1.0, 2.0), TWO(1.0, 0.0)), TRIBO_ERR_NOT_POSITIVE);

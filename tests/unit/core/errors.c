@@ -216,6 +216,7 @@ TEST(diagonal_and_dense)
         {{1, 0, 0, 0, 1, HUGE_VAL, 0, 0, 1}, TRIBO_ERR_NOT_FINITE, {"r[1][2]", "inf"}},
         {{1, 0, 0.5, 0, 1, 0, 0.25, 0, 1}, TRIBO_ERR_NOT_SYMMETRIC, {"contacts 0, 2", "0.5 one way and 0.25"}},
         {{1, 0, 0, 0, 1, 0, 0, 0.125, 1}, TRIBO_ERR_NOT_SYMMETRIC, {"contacts 2, 1", "0.125 one way and 0"}},
+        {{1, 0.5, 0, 0.50000001, 1, 0, 0, 0, 1}, TRIBO_ERR_NOT_SYMMETRIC, {"contacts 0, 1", "0.5 one way and 0.50000001 the"}},
         {{1, 1e-9, 0, 0, 1, 0, 0, 0, 1}, TRIBO_ERR_NOT_SYMMETRIC, {"contacts 0, 1", "1e-09"}},
         {{1, 0, 0, 0, -3, 0, 0, 0, 1}, TRIBO_ERR_INDEFINITE, {"contact 1", "-3"}},
         {{1, 0, 0, 0, 1, 1.5, 0, 1.5, 2}, TRIBO_ERR_INDEFINITE, {"contacts 1, 2", "1.5"}},
