@@ -344,15 +344,15 @@ void tribo_constraints_follow(const struct constraints *c, const double *b, doub
     }
 }
 
-void tribo_constraints_react(const struct constraints *c, const double *force, double *f)
+void tribo_constraints_react(const struct constraints *c, size_t columns, const double *force, double *f)
 {
+    memset(f, 0, c->count * columns * sizeof *f);
     for (size_t i = 0; i < c->ties; i++) {
         const struct tie *const tie = &c->tie[i];
         for (size_t k = 0; k < tie->rank; k++) {
             const double *inverse = tie->entry + tie->touched + k;
-            f[tie->order[k]] = 0.0;
             for (size_t p = 0; p < tie->rank; p++) {
-                f[tie->order[k]] += inverse[p * tie->stride] * force[tie->dof[p]];
+                tribo_add(f + tie->order[k] * columns, inverse[p * tie->stride], force + tie->dof[p] * columns, columns);
             }
         }
     }

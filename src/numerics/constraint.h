@@ -49,7 +49,7 @@ int tribo_constraints_basis(const struct constraints *c, size_t ndof, struct mat
 /* Adds displacements of slaves with J_I q = b [count] to q [ndof]. */
 void tribo_constraints_follow(const struct constraints *c, const double *b, double *q);
 
-/* f [count] = the forces with J_I'f = force [ndof] in all slaves; in all degrees of freedom if Z'force = 0. */
-void tribo_constraints_react(const struct constraints *c, const double *force, double *f);
+/* f [count][columns] = the forces with J_I'f = force [ndof][columns] in all slaves; in all degrees of freedom if Z'force = 0. */
+void tribo_constraints_react(const struct constraints *c, size_t columns, const double *force, double *f);
 
 #endif

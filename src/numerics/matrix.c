@@ -412,6 +412,32 @@ void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y)
     tribo_matrix_multiply_add(a, 1.0, x, y);
 }
 
+TRIBO_SIMD void tribo_matrix_add_columns(const struct matrix *a, double factor, size_t columns, const double *x, double *to)
+{
+    if (columns == 1) {
+        tribo_matrix_multiply_add(a, factor, x, to);
+        return;
+    }
+    for (size_t i = 0; i < a->rows; i++) {
+        double *restrict row = to + i * columns;
+        size_t k = a->first[i];
+        for (; k + 3 <= a->first[i + 1]; k += 3) {
+            const double f = factor * a->val[k], g = factor * a->val[k + 1], h = factor * a->val[k + 2];
+            const double *restrict p = x + a->col[k] * columns, *restrict q = x + a->col[k + 1] * columns;
+            const double *restrict r = x + a->col[k + 2] * columns;
+            for (size_t j = 0; j < columns; j++) {
+                row[j] = ((row[j] + f * p[j]) + g * q[j]) + h * r[j];
+            }
+        }
+        for (; k < a->first[i + 1]; k++) {
+            const double f = factor * a->val[k], *restrict p = x + a->col[k] * columns;
+            for (size_t j = 0; j < columns; j++) {
+                row[j] += f * p[j];
+            }
+        }
+    }
+}
+
 void tribo_matrix_multiply_all(const struct matrix *a, size_t count, const double *x, double *y)
 {
     for (size_t k = 0; k < count; k++) {
@@ -464,25 +490,23 @@ double tribo_matrix_noise(const struct matrix *a, const double *root, const doub
 
 int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, double *to)
 {
-    struct matrix turned;
+    const size_t n = z->rows ? z->cols : a->rows;
+    double *row = malloc((n + 1) * sizeof *row); /* of A Z */
     if (!z->rows) {
         tribo_matrix_spread(a, to);
-        tribo_even_out(a->rows, to);
-        return 1;
     }
-    double *x = malloc(2 * z->rows * sizeof *x), *image = x && a->rows ? x + z->rows : x;
-    const int done = x && tribo_matrix_transpose(&turned, z);
-    for (size_t k = 0; done && k < z->cols; k++) {
-        tribo_matrix_get_row(&turned, k, x);
-        if (a->rows) {
-            tribo_matrix_multiply(a, x, image);
+    memset(to, 0, z->rows ? n * n * sizeof *to : 0);
+    for (size_t i = 0; row && i < z->rows; i++) {
+        const size_t entries = z->first[i + 1] - z->first[i];
+        memset(row, 0, n * sizeof *row);
+        for (size_t k = a->first[i]; entries && k < a->first[i + 1]; k++) {
+            tribo_matrix_add_row(z, a->col[k], a->val[k], row);
         }
-        tribo_matrix_multiply(&turned, image, to + k * z->cols);
+        for (size_t k = z->first[i]; k < z->first[i + 1]; k++) {
+            tribo_add(to + z->col[k] * n, z->val[k], row, n);
+        }
     }
-    if (done) {
-        tribo_even_out(z->cols, to);
-        tribo_matrix_free(&turned);
-    }
-    free(x);
-    return done;
+    tribo_even_out(n, to);
+    free(row);
+    return row != NULL;
 }

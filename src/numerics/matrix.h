@@ -127,6 +127,12 @@ void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y);
 /* y += factor A x. */
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y);
 
+/* to [rows][columns] += factor A x, x [cols][columns]. */
+void tribo_matrix_add_columns(const struct matrix *a, double factor, size_t columns, const double *x, double *to);
+
+/* to [rows][columns] += factor A x, x [cols][columns]. */
+void tribo_matrix_add_columns(const struct matrix *a, double factor, size_t columns, const double *x, double *to);
+
 /* y [count][rows] = A x of count vectors x [count][cols]. */
 void tribo_matrix_multiply_all(const struct matrix *a, size_t count, const double *x, double *y);
 
@@ -140,7 +146,7 @@ void tribo_matrix_roots(const struct matrix *a, const double *terms, double *roo
  * terms of the size of a_ii and a_jj. */
 double tribo_matrix_noise(const struct matrix *a, const double *root, const double *x, const double *y);
 
-/* to [z->cols][z->cols] = Z'AZ of a symmetric A, exactly symmetric. No rows: A, or Z, is the identity. Returns 1, or 0 if out of
+/* to [z->cols][z->cols] = Z'AZ of a symmetric A, exactly symmetric. Z without rows: the identity. Returns 1, or 0 if out of
  * memory. */
 int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, double *to);
 

@@ -121,12 +121,12 @@ static int find_stiffness(struct modal_build *b)
     return done;
 }
 
-void tribo_modal_react(const struct modal *h, double *force, double *f, double *work)
+void tribo_modal_react(const struct modal *h, size_t columns, double *force, double *f, double *work)
 {
-    memset(work, 0, h->modes * sizeof *work);
-    tribo_multiply_add(h->modes, h->n, 1, -1.0, h->phi, force, work);
-    tribo_multiply_transposed_add(h->modes, h->n, 1, h->psi, work, force);
-    tribo_constraints_react(&h->ties, force, f);
+    memset(work, 0, h->modes * columns * sizeof *work);
+    tribo_multiply_transposed_add(h->n, h->modes, columns, h->phi, force, work);
+    tribo_multiply_add(h->n, h->modes, columns, -1.0, h->psi, work, force);
+    tribo_constraints_react(&h->ties, columns, force, f);
 }
 
 /* ------------------------------------------------------------------------------------------------- modes of vibration */
@@ -168,14 +168,14 @@ static int build_modes_failed(const struct modal_build *b, int status, const str
     }
 }
 
-/* Sets stiffness = S'Z'KZ S and phi = (Z S)', (Z'MZ)^-1 = S S'. Returns a status. */
+/* Sets stiffness = S'Z'KZ S and phi = Z S, (Z'MZ)^-1 = S S'. Returns a status. */
 static int find_coordinates(struct modal_build *b, const struct matrix *z, const struct cholesky *mass)
 {
     struct modal *h = b->h;
-    const size_t n = h->n, m = h->modes;
-    double *a = h->stiffness = tribo_modal_take(&h->store, m * m, sizeof *a);
-    double *turned = tribo_modal_take(&b->scratch, 2 * m * m, sizeof *turned), *s = turned + m * m;
-    if (!a || !turned || !tribo_matrix_congruent(b->stiffness, z, turned)) {
+    const size_t m = h->modes;
+    double *a = tribo_modal_take(&b->scratch, 3 * m * m, sizeof *a), *turned = a + m * m, *s = turned + m * m;
+    h->powers = tribo_modal_take(&h->store, 1, sizeof *h->powers);
+    if (!a || !h->powers || !tribo_matrix_congruent(b->stiffness, z, turned)) {
         return TRIBO_ERR_MEMORY;
     }
     tribo_half_solve(mass, 0, turned, m);
@@ -186,15 +186,12 @@ static int find_coordinates(struct modal_build *b, const struct matrix *z, const
         s[k * (m + 1)] = 1.0;
     }
     tribo_half_solve(mass, 1, s, m);
-    tribo_transpose(m, m, s, turned);
-    for (size_t k = 0; k < m; k++) {
-        if (z->rows) {
-            tribo_matrix_multiply(z, turned + k * m, h->phi + k * n);
-        } else {
-            memcpy(h->phi + k * n, turned + k * m, n * sizeof *h->phi);
-        }
+    if (z->rows) {
+        tribo_matrix_add_columns(z, 1.0, m, s, h->phi);
+    } else {
+        memcpy(h->phi, s, m * m * sizeof *s);
     }
-    return TRIBO_OK;
+    return tribo_matrix_from_dense(&h->powers->stiffness, m, m, a) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
 /* Sets modes, omega2, phi, psi, and damping to zeros. Returns 0 on failure, with b->status set unless out of memory. */
@@ -209,26 +206,29 @@ static int find_modes(struct modal_build *b)
     const int held = z.rows > 0;
     const size_t n = h->n, m = h->modes = held ? z.cols : n;
     h->omega2 = tribo_modal_take(&h->store, m * (2 + 2 * n), sizeof *h->omega2);
-    if (!status && h->omega2) {
+    b->shape = tribo_modal_take(&b->scratch, b->powers ? 0 : m * n, sizeof *b->shape);
+    status = status || (h->omega2 && b->shape) ? status : TRIBO_ERR_MEMORY;
+    if (!status) {
         h->damping = h->omega2 + m;
         h->phi = h->damping + m;
         h->psi = h->phi + m * n;
         status = held && m > 0 ? factorize_mass(b, &z, &own) : TRIBO_OK;
     }
-    if (!status && h->omega2 && b->powers) {
+    if (!status && b->powers) {
         status = find_coordinates(b, &z, held ? &own : &sys->factor);
-    } else if (!status && h->omega2 && m > 0) {
-        status =
-            tribo_normal_modes(b->stiffness, sys->expansion.terms, &z, held ? &own : &sys->factor, m, h->omega2, h->phi, &doubt);
+    } else if (!status && m > 0) {
+        status = tribo_normal_modes(b->stiffness, sys->expansion.terms, &z, held ? &own : &sys->factor, m, h->omega2, b->shape,
+                                    &doubt);
         status = build_modes_failed(b, status, &doubt);
+        tribo_transpose(m, n, b->shape, h->phi);
     }
-    for (size_t k = 0; !status && h->omega2 && k < m; k++) {
-        tribo_matrix_multiply_add(&sys->mass, 1.0, h->phi + k * n, h->psi + k * n);
+    if (!status) {
+        tribo_matrix_add_columns(&sys->mass, 1.0, m, h->phi, h->psi);
     }
     tribo_matrix_free(&z);
     tribo_cholesky_free(&own);
     b->status = status;
-    return !status && h->omega2;
+    return !status;
 }
 
 /* Returns 1 if some c_kl, k != l, of c = C~ [modes][modes] is neither negligible beside c_kk and c_ll nor rounding of C or of the
@@ -239,7 +239,7 @@ static int damping_couples(const struct modal_build *b, const double *c, const d
     const size_t n = h->n, m = h->modes;
     for (size_t kl = 0; kl < m * m; kl++) {
         const size_t k = kl / m, l = kl % m;
-        const double *one = h->phi + k * n, *other = h->phi + l * n;
+        const double *one = b->shape + k * n, *other = b->shape + l * n;
         const double shared = fabs(c[kl]), own = sqrt(fabs(c[k * m + k] * c[l * m + l]));
         const double larger = greater(fabs(c[k * m + k]), fabs(c[l * m + l]));
         if (k == l || shared <= greater(NEGLIGIBLE * own, IMPURITY * larger)) {
@@ -256,95 +256,95 @@ static int damping_couples(const struct modal_build *b, const double *c, const d
     return 0;
 }
 
-/* Sets damping = diagonal of C~, 0 where only rounding; coupling = C~ if not diagonal, or without modes. Returns 0 if out of
- * memory. */
+/* Sets damping = diagonal of C~, 0 where only rounding; coupling = C~ if not diagonal; or, without modes, powers->damping = C~.
+ * Returns 0 if out of memory. */
 static int find_damping(struct modal_build *b)
 {
     struct modal *h = b->h;
     const struct matrix *damping = b->c;
     const size_t n = h->n, m = h->modes;
-    double *c = damping ? tribo_modal_take(&h->store, m * m, sizeof *c) : NULL, most = 0.0;
-    double *root = damping ? tribo_modal_take(&b->scratch, 2 * n + m, sizeof *root) : NULL, *column = root ? root + 2 * n : NULL;
-    if (h->store.failed || b->scratch.failed) {
-        return 0;
+    double *c = tribo_modal_take(&h->store, damping ? m * m : 0, sizeof *c), most = 0.0;
+    double *root = tribo_modal_take(&b->scratch, damping ? n * (2 + m) : 0, sizeof *root);
+    if (!damping || !c || !root) {
+        return c && root;
     }
-    for (size_t l = 0; c && l < m; l++) {
-        tribo_matrix_multiply(damping, h->phi + l * n, root);
-        memset(column, 0, m * sizeof *column);
-        tribo_multiply_add(m, n, 1, 1.0, h->phi, root, column);
-        for (size_t k = 0; k < m; k++) {
-            c[k * m + l] = column[k];
-        }
-        most = greater(most, fabs(c[l * m + l]));
-    }
+    tribo_matrix_add_columns(damping, 1.0, m, h->phi, root + 2 * n);
+    tribo_multiply_transposed_add(n, m, m, h->phi, root + 2 * n, c);
     if (b->powers) {
-        h->coupling = c;
-        return 1;
+        return tribo_matrix_from_dense(&h->powers->damping, m, m, c);
     }
-    if (c) {
-        tribo_matrix_roots(damping, NULL, root);
-        tribo_matrix_roots(b->stiffness, b->sys->expansion.terms, root + n);
+    tribo_matrix_roots(damping, NULL, root);
+    tribo_matrix_roots(b->stiffness, b->sys->expansion.terms, root + n);
+    for (size_t k = 0; k < m; k++) {
+        most = greater(most, fabs(c[k * (m + 1)]));
     }
     for (size_t k = 0; k < m; k++) {
-        if (c) {
-            const double own = c[k * m + k], noise = tribo_matrix_noise(damping, root, h->phi + k * n, h->phi + k * n);
-            h->damping[k] = fabs(own) > greater(ROUNDING * noise, IMPURITY * IMPURITY * most) ? own : 0.0;
-        }
+        const double own = c[k * (m + 1)], noise = tribo_matrix_noise(damping, root, b->shape + k * n, b->shape + k * n);
+        h->damping[k] = fabs(own) > greater(ROUNDING * noise, IMPURITY * IMPURITY * most) ? own : 0.0;
     }
-    h->coupling = c && damping_couples(b, c, root, root + n) ? c : NULL;
+    h->coupling = damping_couples(b, c, root, root + n) ? c : NULL;
     return 1;
 }
 
-/* to[i stride] = f_i of the rigid contacts i that hold, J_I'f = force, project: without the part of the force that moves the
- * modes. work [rests + modes]. */
-static void keep_reactions(const struct modal *h, double *force, int project, double *work, double *to, size_t stride)
+/* Rows i of to [ncontact][columns] = f_i of the rigid contacts i that hold, J_I'f = force, project: without the part of the force
+ * that moves the modes. work [rests + modes][columns]. */
+static void keep_reactions(const struct modal *h, size_t columns, double *force, int project, double *work, double *to)
 {
     if (project) {
-        tribo_modal_react(h, force, work, work + h->rests);
+        tribo_modal_react(h, columns, force, work, work + h->rests * columns);
     } else {
-        tribo_constraints_react(&h->ties, force, work);
+        tribo_constraints_react(&h->ties, columns, force, work);
     }
     for (size_t p = 0; p < h->rests; p++) {
-        to[h->rest[p] * stride] = work[p];
+        memcpy(to + h->rest[p] * columns, work + p * columns, columns * sizeof *to);
     }
 }
 
-void tribo_modal_effects(const struct modal_build *b, const double *y, double omega2, const double *base, double *on,
-                         double *by_u, size_t stride)
+void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y, const double *omega2, const double *base,
+                         double *on, double *by_u)
 {
     const struct modal *h = b->h;
     const tribo_system *sys = b->sys;
     const struct matrix *j = &sys->direction;
-    const size_t n = h->n, c = sys->ncontact;
-    double *v = b->work, *rate = v + c, *force = rate + c;
+    const size_t n = h->n, c = sys->ncontact, room = h->rests ? 2 * n + h->rests + h->modes : n, each = columns * sizeof *on;
+    double *rate = tribo_modal_take(&b->scratch, columns * (c + room), sizeof *rate), *force = rate + c * columns;
+    double *moved = force + n * columns, *work = moved + n * columns; /* M^-1 times forces of inertia */
     const double most = base ? tribo_largest(y, n) : 0.0;
-    tribo_matrix_multiply(j, y, v);
-    memset(rate, 0, (c + n) * sizeof *rate);
+    if (!rate) {
+        return;
+    }
+    memset(on, 0, c * each);
+    tribo_matrix_add_columns(j, 1.0, columns, y, on);
     for (size_t i = 0; base && i < c; i++) {
         double size = fabs(base[i]);
         for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
             size += fabs(j->val[e]) * most;
         }
-        v[i] = fabs(v[i] - base[i]) > NO_MOTION * size ? v[i] - base[i] : 0.0;
+        on[i] = fabs(on[i] - base[i]) > NO_MOTION * size ? on[i] - base[i] : 0.0;
     }
-    if (sys->compliance.count > 0) {
-        tribo_compliance_rates(sys, b->slip, v, rate);
-    }
+    tribo_compliance_rates(sys, b->slip, columns, on, rate);
     for (size_t i = 0; i < c; i++) {
-        on[i * stride] = h->key[i] == 2 ? rate[i] : h->key[i] == 0 || base ? v[i] : 0.0;
-        if (rate[i] != 0.0) {
-            tribo_matrix_add_row(j, i, -rate[i], force);
+        if (h->key[i] == 2 || (h->key[i] == 1 && !base)) {
+            memcpy(on + i * columns, rate + i * columns, each);
+        }
+        for (size_t e = j->first[i]; tribo_is_compliant(&sys->compliance, i) && e < j->first[i + 1]; e++) {
+            tribo_add(force + j->col[e] * columns, -j->val[e], rate + i * columns, columns);
         }
     }
     if (h->rests > 0) {
-        tribo_matrix_multiply_add(b->k, 1.0, y, force);
-        tribo_matrix_multiply_add(&sys->mass, -omega2, y, force);
-        keep_reactions(h, force, base || h->stiffness, force + n, on, stride);
+        tribo_matrix_add_columns(b->k, 1.0, columns, y, force);
+        for (size_t d = 0; d < n; d++) {
+            for (size_t k = 0; k < columns; k++) {
+                moved[d * columns + k] = omega2[k] * y[d * columns + k];
+            }
+        }
+        tribo_matrix_add_columns(&sys->mass, -1.0, columns, moved, force);
+        keep_reactions(h, columns, force, base || h->powers, work, on);
     }
     if (h->rests > 0 && by_u) {
-        memset(force, 0, n * sizeof *force);
-        tribo_matrix_multiply_add(b->c, 1.0, y, force);
-        keep_reactions(h, force, 1, force + n, by_u, stride);
+        memset(force, 0, n * each);
+        tribo_matrix_add_columns(b->c, 1.0, columns, y, force);
+        keep_reactions(h, columns, force, 1, work, by_u);
     }
 }
 
@@ -354,15 +354,12 @@ static int find_effects(struct modal_build *b)
     struct modal *h = b->h;
     const size_t m = h->modes, c = b->sys->ncontact;
     h->on = tribo_modal_take(&h->store, (b->c ? 2 : 1) * m * c, sizeof *h->on);
-    b->work = tribo_modal_take(&b->scratch, 2 * c + h->n + h->rests + m, sizeof *b->work);
-    if (!h->on || !b->work) {
+    if (!h->on) {
         return 0;
     }
     h->by_u = b->c ? h->on + m * c : NULL;
-    for (size_t k = 0; k < m; k++) {
-        tribo_modal_effects(b, h->phi + k * h->n, h->omega2[k], NULL, h->on + k, h->by_u ? h->by_u + k : NULL, m);
-    }
-    return 1;
+    tribo_modal_effects(b, m, h->phi, h->omega2, NULL, h->on, h->by_u);
+    return !b->scratch.failed;
 }
 
 int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const unsigned char *holds, int powers)
@@ -403,6 +400,10 @@ void tribo_modal_free(struct modal *h)
 {
     if (h && h->users-- == 0) {
         struct modal_store store = h->store;
+        if (h->powers) {
+            tribo_matrix_free(&h->powers->stiffness);
+            tribo_matrix_free(&h->powers->damping);
+        }
         tribo_forced_free(h);
         tribo_constraints_free(&h->ties);
         build_give_back(&store);

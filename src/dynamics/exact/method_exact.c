@@ -49,7 +49,7 @@ static int find_held(struct exact *x, int powers, struct modal **found)
         hash = (hash ^ word) * UINT64_C(0x9e3779b97f4a7c15);
     }
     struct modal **const list = &x->held.last[(hash >> 32) % TRIBO_HELD_LISTS], **at = list;
-    while (*at && ((*at)->hash != hash || ((*at)->stiffness != NULL) != powers ||
+    while (*at && ((*at)->hash != hash || ((*at)->powers != NULL) != powers ||
                    memcmp((*at)->key, m->state.key, m->constant.contacts) != 0)) {
         at = &(*at)->next;
     }

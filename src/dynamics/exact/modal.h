@@ -29,6 +29,12 @@ struct modal_store {
 /* Returns a zeroed array of elements; NULL, with failed = 1, if out of memory. */
 void *tribo_modal_take(struct modal_store *store, size_t count, size_t size);
 
+/* Phi'K Phi and Phi'C Phi [modes][modes] of coordinates Phi that are orthonormal in M, and no modes: motions are powers of time
+ * (powers.c). Without damping the second has no rows. */
+struct modal_powers {
+    struct matrix stiffness, damping;
+};
+
 /* The structure without loads. */
 struct modal {
     struct modal_store store; /* memory of all arrays */
@@ -43,14 +49,13 @@ struct modal {
     struct constraints ties;  /* constraints between degrees of freedom by the rigid contacts that hold */
 
     size_t modes;
-    double *phi; /* [modes][n] mode shapes */
-    double *psi; /* [modes][n] M times the mode shapes */
+    double *phi; /* [n][modes] mode shapes */
+    double *psi; /* [n][modes] M times the mode shapes */
     double *omega2, *damping;
-    double *stiffness; /* NULL; or [modes][modes] Phi'K Phi of coordinates Phi, orthonormal in M, that are no modes: then there
-                        * are no exponents, omega2 and damping are 0, and motions are powers of time (powers.c) */
-    double *coupling;  /* [modes][modes] C~; NULL if C~ is diagonal, or 0 without modes */
-    double *on;        /* [contacts][modes] contact that holds: force per eta; else: velocity per eta' */
-    double *by_u;      /* [contacts][modes] rigid contact that holds: force per eta'; else 0; NULL without damping */
+    struct modal_powers *powers; /* NULL: Phi are modes; else there are no exponents, and omega2 and damping are 0 */
+    double *coupling;            /* [modes][modes] C~; NULL if C~ is diagonal, or without modes */
+    double *on;                  /* [contacts][modes] contact that holds: force per eta; else: velocity per eta' */
+    double *by_u;                /* [contacts][modes] rigid contact that holds: force per eta'; else 0; NULL without damping */
 
     size_t exponents;
     double *lr, *li;           /* [exponents] lambda */
@@ -74,13 +79,6 @@ struct forcing {
     size_t harmonic, contact; /* harmonic: index in the system; contact: of the limit, else ncontact */
 };
 
-/* A shape moves, or a mode is moved by, degrees of freedom d, begin <= d < end. speed: eta' of a shape for bases of constant
- * speed, 1; else 0. */
-struct shape {
-    size_t begin, end;
-    double speed;
-};
-
 /* The structure under the loads of the system. Shapes: the modes, then a shape for each part, cosine or sine, of a harmonic of
  * bases: the velocities of the structure, with Phi'M y = 0, for eta' = e^{i Omega t} or i e^{i Omega t}; or for bases of
  * constant speed, if steady: eta' = 1. */
@@ -89,8 +87,8 @@ struct forced {
     struct modal_store store;
     size_t shapes;
     int steady;
-    double *phi, *on, *by_u; /* of the modal, with further rows, or columns, [shapes] */
-    struct shape *shape;     /* [shapes] */
+    double *phi, *on, *by_u; /* of the modal, with further columns, [shapes] */
+    double *speed;           /* [shapes] eta' of a shape for bases of constant speed, 1; else 0 */
 
     size_t harmonics;        /* the harmonics of the system, in order, then harmonics of limits */
     struct forcing *forcing; /* [harmonics] */

@@ -27,7 +27,7 @@ static int motion_reserve(struct exact *x)
         x->way = tribo_layout_array(&l, c, sizeof *x->way);
         x->steady = tribo_layout_array(&l, c, sizeof *x->steady);
         x->work = tribo_layout_array(&l, room + 2 * x->sys->ndof, sizeof *x->work);
-        x->power = tribo_layout_array(&l, (2 * x->sys->ndof + c) * TRIBO_POWERS, sizeof *x->power);
+        x->power = tribo_layout_array(&l, (4 * x->sys->ndof + c) * TRIBO_POWERS, sizeof *x->power);
         for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
             parts[k]->re = tribo_layout_array(&l, 2 * room, sizeof *parts[k]->re);
             parts[k]->im = parts[k]->re ? parts[k]->re + room : NULL;
@@ -118,7 +118,7 @@ static void add_resonances(struct exact *x, double tau)
 
 void tribo_modal_motion_go(struct exact *x, double tau)
 {
-    if (x->h->modal->stiffness) {
+    if (x->h->modal->powers) {
         x->tau = tau;
     } else if (tau != x->tau) {
         tribo_modal_terms_go(x, tau);
@@ -196,7 +196,7 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
     tribo_modal_motion_go(x, tau);
     /* brief: |lambda| tau is small for all terms; then q', as q, is the value at t0 plus a change. With shapes by bases q' is
      * computed anew: it follows the bases to rounding. */
-    const int powers = h->modal->stiffness != NULL;
+    const int powers = h->modal->powers != NULL;
     const int brief = (powers || x->tau * h->quickest < LITTLE) && !h->resonant && h->shapes == h->modal->modes;
     if (powers) {
         tribo_powers_move(x, tau, brief);
@@ -206,19 +206,9 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
     if (to != from) {
         memcpy(to, from, tribo_system_size(sys) * sizeof *to);
     }
-    double *restrict moves = x->work, *restrict rates = moves + n;
-    memset(moves, 0, 2 * n * sizeof *moves);
-    for (size_t k = 0; k < h->shapes; k++) {
-        const double *phi = h->phi + k * n, place = x->place[k], rate = x->rate[k];
-        for (size_t d = h->shape[k].begin; d < h->shape[k].end; d++) {
-            moves[d] += phi[d] * place;
-            rates[d] += phi[d] * rate;
-        }
-    }
-    for (size_t d = 0; d < n; d++) {
-        to[d] += moves[d];
-        to[n + d] = (brief ? to[n + d] : 0.0) + rates[d];
-    }
+    memset(to + n, 0, brief ? 0 : n * sizeof *to);
+    tribo_multiply_add(n, h->shapes, 1, 1.0, h->phi, x->place, to);
+    tribo_multiply_add(n, h->shapes, 1, 1.0, h->phi, x->rate, to + n);
     for (size_t k = 0; k < sys->compliance.count; k++) {
         const size_t i = sys->compliance.contact[k];
         to[2 * n + k] += h->modal->key[i] == 2 ? tribo_dot(h->on + i * h->shapes, x->place, h->shapes) : 0.0;
@@ -310,7 +300,7 @@ static void split_amplitudes(struct exact *x, const double *force)
     }
     for (size_t k = own->modes; k < h->shapes; k++) {
         x->acc[k] = 0.0;
-        x->vel[k] = x->drift[k] = h->shape[k].speed;
+        x->vel[k] = x->drift[k] = h->speed[k];
     }
 }
 
@@ -342,12 +332,11 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
     x->t0 = t;
     start_harmonics(x);
     find_constant_forces(x, y, x->work);
-    for (size_t k = 0; k < own->modes; k++) {
-        const size_t begin = h->shape[k].begin, moved = h->shape[k].end - begin;
-        x->place[k] = tribo_dot(own->psi + k * n + begin, y + begin, moved);
-        x->rate[k] = tribo_dot(own->psi + k * n + begin, y + n + begin, moved);
-    }
-    if (own->stiffness) {
+    memset(x->place, 0, own->modes * sizeof *x->place);
+    memset(x->rate, 0, own->modes * sizeof *x->rate);
+    tribo_multiply_transposed_add(n, own->modes, 1, own->psi, y, x->place);
+    tribo_multiply_transposed_add(n, own->modes, 1, own->psi, y + n, x->rate);
+    if (own->powers) {
         x->runs = 0;
         x->tau = 0.0;
         x->longest = *longest = lesser(*longest, TRIBO_POWERS_REACH / h->fastest);

@@ -68,7 +68,8 @@ struct exact {
     double *steady;               /* [ncontact] force of a sliding contact without harmonics of the limit */
     struct course *course;        /* [ncontact] courses of the outputs of h */
     struct signal velocity;       /* workspace */
-    double *power;                /* eta, eta' [TRIBO_POWERS][modes], outputs [outputs][TRIBO_POWERS]: coefficients */
+    double *power;                /* eta, eta' [TRIBO_POWERS][modes], outputs [outputs][TRIBO_POWERS]: coefficients; and
+                                     eta, eta' [modes][TRIBO_POWERS] */
 };
 
 /* Starts a phase at (t, y) with structure x->h, for a time of at most *longest; sets *longest to the time for which the bounds

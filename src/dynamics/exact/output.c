@@ -33,7 +33,7 @@ static int find_terms(struct modal_build *b)
         f->decay = greater(f->decay, -f->lr[k]);
         f->growth = greater(f->growth, f->lr[k]);
     }
-    if (b->h->stiffness) {
+    if (b->h->powers) {
         f->fastest = greater(f->quickest, tribo_powers_fastest(b->h));
     }
     return 1;

@@ -16,7 +16,7 @@ struct modal_build {
     const struct matrix *k, *c;     /* K; C, or NULL without damping */
     const struct matrix *stiffness; /* K + J_A' G_AA^-1 J_A, A: compliant contacts that hold */
     struct matrix own_stiffness;    /* memory of stiffness if A is not empty */
-    double *work;                   /* [2 ncontact + n + rests + modes] workspace of functions of build.c and response.c */
+    double *shape;                  /* [modes][n] mode shapes */
     double complex *direct; /* [harmonics][rests] forces of the rigid contacts that hold, by loads and limits at fixed eta */
     int status;             /* of a failure other than out of memory; else 0 */
 };
@@ -24,15 +24,16 @@ struct modal_build {
 /* Sets the exponents of eta, and a, b, r, owner. Returns a status. */
 int tribo_modal_exponents(struct modal_build *b);
 
-/* work [modes] = -Phi'force, force [n] += M Phi work; then f [rests]: J_I'f = force, I: the rigid contacts that hold. */
-void tribo_modal_react(const struct modal *h, double *force, double *f, double *work);
+/* work [modes][columns] = Phi'force, force [n][columns] -= M Phi work; then f [rests][columns]: J_I'f = force, I: the rigid
+ * contacts that hold. */
+void tribo_modal_react(const struct modal *h, size_t columns, double *force, double *f, double *work);
 
-/* Sets a column of on, and of by_u or NULL, entries stride apart, by displacements y [n], with J_I y = b_I: contacts that hold:
- * force per eta, J_I'f = (K - omega2 M) y - J_A'f_A (A: compliant ones, f_A' = -G_AA^-1 (J_A y - b_A)), and per eta', J_I'f = C
- * y; other contacts: velocity per eta'. base [ncontact] = b, by which only the rest of the forces beside the modes counts; NULL:
- * y is a mode, 0. */
-void tribo_modal_effects(const struct modal_build *b, const double *y, double omega2, const double *base, double *on,
-                         double *by_u, size_t stride);
+/* Sets on, and by_u or NULL, [ncontact][columns] by displacements y [n][columns], with J_I y = b_I: contacts that hold: force per
+ * eta, J_I'f = K y - M y omega2 - J_A'f_A (A: compliant ones, f_A' = -G_AA^-1 (J_A y - b_A)), and per eta', J_I'f = C y; other
+ * contacts: velocity per eta'. base [ncontact] = b, of one column, by which only the rest of the forces beside the modes counts;
+ * NULL: y are the modes, 0. Sets b->scratch.failed = 1 if out of memory. */
+void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y, const double *omega2, const double *base,
+                         double *on, double *by_u);
 
 /* Fill b->forced: shapes, forcing and response; then terms and outputs. Return 1; 0 if out of memory, or on another failure, with
  * b->status set. */

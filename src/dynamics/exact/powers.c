@@ -15,32 +15,16 @@ enum { P = TRIBO_POWERS };
 /* A term that changes nothing, relative to the sum. */
 #define NOTHING 1e-18
 
-/* Returns the largest sum of the sizes of a row of a [n][n]. */
-static double row_sum(const double *a, size_t n)
-{
-    double most = 0.0;
-    for (size_t i = 0; a && i < n; i++) {
-        double sum = 0.0;
-        for (size_t j = 0; j < n; j++) {
-            sum += fabs(a[i * n + j]);
-        }
-        most = greater(most, sum);
-    }
-    return most;
-}
-
 double tribo_powers_fastest(const struct modal *h)
 {
-    return sqrt(row_sum(h->stiffness, h->modes)) + row_sum(h->coupling, h->modes);
+    return sqrt(tribo_matrix_row_sum(&h->powers->stiffness)) + tribo_matrix_row_sum(&h->powers->damping);
 }
 
 /* to [modes][columns] -= K eta + C~ rate. */
 static void pull_back(const struct modal *h, size_t columns, const double *eta, const double *rate, double *to)
 {
-    tribo_multiply_add(h->modes, h->modes, columns, -1.0, h->stiffness, eta, to);
-    if (h->coupling) {
-        tribo_multiply_add(h->modes, h->modes, columns, -1.0, h->coupling, rate, to);
-    }
+    tribo_matrix_add_columns(&h->powers->stiffness, -1.0, columns, eta, to);
+    tribo_matrix_add_columns(&h->powers->damping, -1.0, columns, rate, to);
 }
 
 /* to[k] += the real part of c z e^{i Omega t} for the power k. */
@@ -82,13 +66,16 @@ void tribo_powers_start(struct exact *x, const double *force)
             next[j] /= (double)(k + 1);
         }
     }
+    double *turned = out + f->outputs * P; /* eta, eta' [modes][P] */
     memset(out, 0, f->outputs * P * sizeof *out);
+    tribo_transpose(P, m, x->power, turned);
+    tribo_transpose(P, m, x->power + m * P, turned + m * P);
     for (size_t o = 0; o < f->outputs; o++, out += P) {
         const struct output *w = &f->output[o];
         const double *by_u = o >= f->sliding && f->by_u ? f->by_u + w->contact * f->shapes : NULL;
-        tribo_multiply_add(P, m, 1, 1.0, o < f->sliding ? x->power + m * P : x->power, w->on_rate, out);
+        tribo_multiply_add(1, m, P, 1.0, w->on_rate, o < f->sliding ? turned + m * P : turned, out);
         if (by_u) {
-            tribo_multiply_add(P, m, 1, 1.0, x->power + m * P, by_u, out);
+            tribo_multiply_add(1, m, P, 1.0, by_u, turned + m * P, out);
         }
         for (size_t s = 0; s < f->harmonics; s++) {
             add_harmonic(f->forcing[s].omega, (w->cr[s] + w->ci[s] * I) * tribo_part(&x->z, s), out);

@@ -29,28 +29,18 @@ static int make_shapes(struct modal_build *b)
         const struct harmonic *w = &sys->loads.harmonic[s];
         f->shapes += w->drives != DRIVES_BASE ? 0 : w->omega != 0.0 ? 2 : 1;
     }
-    f->shape = tribo_modal_take(&f->store, f->shapes, sizeof *f->shape);
+    f->speed = tribo_modal_take(&f->store, f->shapes, sizeof *f->speed);
     f->x = tribo_modal_take(&f->store, f->harmonics * f->shapes, sizeof *f->x);
-    f->phi = h->phi;
-    f->on = h->on;
-    f->by_u = h->by_u;
-    if (f->shapes == m || f->store.failed) {
-        return !f->store.failed;
-    }
-    f->phi = tribo_modal_take(&f->store, f->shapes * n, sizeof *f->phi);
-    f->on = tribo_modal_take(&f->store, f->shapes * c, sizeof *f->on);
-    f->by_u = h->by_u ? tribo_modal_take(&f->store, f->shapes * c, sizeof *f->by_u) : NULL;
-    if (f->store.failed) {
-        return 0;
-    }
-    memcpy(f->phi, h->phi, m * n * sizeof *f->phi);
-    for (size_t i = 0; i < c; i++) {
-        memcpy(f->on + i * f->shapes, h->on + i * m, m * sizeof *f->on);
-        if (h->by_u) {
-            memcpy(f->by_u + i * f->shapes, h->by_u + i * m, m * sizeof *f->by_u);
+    double *const own[] = {h->phi, h->on, h->by_u}, **const to[] = {&f->phi, &f->on, &f->by_u};
+    for (size_t k = 0; k < 3; k++) {
+        const size_t rows = k ? c : n;
+        const int grows = f->shapes > m && own[k];
+        *to[k] = grows ? tribo_modal_take(&f->store, rows * f->shapes, sizeof **to[k]) : own[k];
+        for (size_t i = 0; grows && *to[k] && i < rows; i++) {
+            memcpy(*to[k] + i * f->shapes, own[k] + i * m, m * sizeof **to[k]);
         }
     }
-    return 1;
+    return !f->store.failed;
 }
 
 /* Sets shape k, velocities y with J_I y = b_I, b = base [ncontact], and Phi'M y = 0, and what it does at contacts and to the
@@ -60,27 +50,36 @@ static void follow_base(struct modal_build *b, size_t k, double omega, const dou
 {
     struct forced *f = b->forced;
     const struct modal *h = b->h;
-    const size_t n = h->n, m = h->modes;
-    double *y = f->phi + k * n, *x = b->work, *drag = b->work;
+    const size_t n = h->n, m = h->modes, c = b->sys->ncontact;
+    const double omega2 = omega * omega;
+    double *y = tribo_modal_take(&b->scratch, 2 * n + 3 * c, sizeof *y), *drag = y + n, *x = drag + n, *on = x + c,
+           *by_u = on + c;
+    if (!y) {
+        return;
+    }
     for (size_t p = 0; p < h->rests; p++) {
         x[p] = base[h->rest[p]];
     }
     tribo_constraints_follow(&h->ties, x, y);
     memset(place, 0, m * sizeof *place);
     memset(rate, 0, m * sizeof *rate);
-    tribo_multiply_add(m, n, 1, 1.0, h->psi, y, place);
-    for (size_t l = 0; l < m; l++) {
-        tribo_add(y, -place[l], h->phi + l * n, n);
-        place[l] = 0.0;
+    tribo_multiply_transposed_add(n, m, 1, h->psi, y, place);
+    tribo_multiply_add(n, m, 1, -1.0, h->phi, place, y);
+    memset(place, 0, m * sizeof *place);
+    tribo_modal_effects(b, 1, y, &omega2, base, on, f->by_u ? by_u : NULL);
+    for (size_t d = 0; d < n; d++) {
+        f->phi[d * f->shapes + k] = y[d];
     }
-    tribo_modal_effects(b, y, omega * omega, base, f->on + k, f->by_u ? f->by_u + k : NULL, f->shapes);
-    for (size_t i = 0; i < b->sys->ncontact; i++) {
+    for (size_t i = 0; i < c; i++) {
         tribo_add(place, h->key[i] == 2 ? -base[i] : 0.0, h->on + i * m, m);
+        f->on[i * f->shapes + k] = on[i];
+        if (f->by_u) {
+            f->by_u[i * f->shapes + k] = by_u[i];
+        }
     }
     if (b->c) {
-        memset(drag, 0, n * sizeof *drag);
         tribo_matrix_multiply_add(b->c, -1.0, y, drag);
-        tribo_multiply_add(m, n, 1, 1.0, h->phi, drag, rate);
+        tribo_multiply_transposed_add(n, m, 1, h->phi, drag, rate);
     }
 }
 
@@ -93,8 +92,7 @@ static int follow_bases(struct modal_build *b)
     const tribo_system *sys = b->sys;
     const size_t m = h->modes, c = sys->ncontact;
     double *base = tribo_modal_take(&b->scratch, c + 2 * m, sizeof *base), *place = base ? base + c : NULL;
-    b->work = tribo_modal_take(&b->scratch, 2 * c + h->n + h->rests + m, sizeof *b->work);
-    if (!base || !b->work || !make_shapes(b)) {
+    if (!base || !make_shapes(b)) {
         return 0;
     }
     double *rate = place + m;
@@ -112,7 +110,7 @@ static int follow_bases(struct modal_build *b)
         follow_base(b, k, w->omega, base, place, rate);
         if (w->omega == 0.0) {
             f->steady = 1;
-            f->shape[k].speed = 1.0;
+            f->speed[k] = 1.0;
             tribo_add(f->ramp, 1.0, place, m);
             tribo_add(f->constant, 1.0, rate, m);
         } else {
@@ -123,14 +121,7 @@ static int follow_bases(struct modal_build *b)
         }
         k++;
     }
-    for (size_t at = 0; at < f->shapes * h->n; at++) {
-        if (f->phi[at] != 0.0 || (at < m * h->n && h->psi[at] != 0.0)) {
-            struct shape *own = &f->shape[at / h->n];
-            own->begin = own->end ? own->begin : at % h->n;
-            own->end = at % h->n + 1;
-        }
-    }
-    return 1;
+    return !b->scratch.failed;
 }
 
 /* ------------------------------------------------------------------------------------------------- forcing and response */
@@ -161,9 +152,9 @@ static void force_modes(struct modal_build *b, size_t s, double *work)
         if (tribo_largest(force, n) == 0.0) {
             continue;
         }
-        tribo_modal_react(h, force, react, by);
+        tribo_modal_react(h, 1, force, react, by);
         for (size_t k = 0; k < m; k++) {
-            f->g[s * m + k] += unit * by[k];
+            f->g[s * m + k] -= unit * by[k];
         }
         for (size_t p = 0; w->omega != 0.0 && p < h->rests; p++) {
             b->direct[s * h->rests + p] += unit * react[p];
@@ -270,5 +261,5 @@ int tribo_forced_respond(struct modal_build *b)
             f->constant[k] -= (h->coupling ? h->coupling[k * m + l] : h->damping[k]) * (f->ramp[l] / h->omega2[l]);
         }
     }
-    return h->stiffness ? 1 : h->coupling ? respond_together(b) : respond_alone(b);
+    return h->powers ? 1 : h->coupling ? respond_together(b) : respond_alone(b);
 }

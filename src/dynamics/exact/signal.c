@@ -25,7 +25,7 @@ static void add_weights(const struct exact *x, const double *place, const double
     const struct forced *h = x->h;
     const struct modal *own = h->modal;
     const size_t e = own->exponents;
-    for (size_t k = 0; own->stiffness && k <= to->degree; k++) {
+    for (size_t k = 0; own->powers && k <= to->degree; k++) {
         const double *power = x->power + k * own->modes;
         to->a[k] += tribo_dot(place, power, own->modes) + tribo_dot(speed, power + TRIBO_POWERS * own->modes, own->modes);
     }
@@ -41,7 +41,7 @@ static void add_weights(const struct exact *x, const double *place, const double
         }
         to->c[p] += c * z;
     }
-    for (size_t k = 0; !own->stiffness && k < h->shapes; k++) {
+    for (size_t k = 0; !own->powers && k < h->shapes; k++) {
         to->a[0] += speed[k] * x->drift[k];
         to->a[1] += place[k] * x->drift[k] + speed[k] * x->acc[k];
         to->a[2] += 0.5 * place[k] * x->acc[k];
@@ -71,7 +71,7 @@ int tribo_modal_motion_signal(void *own, const double *c, double tau, const doub
     const struct forced *h = x->h;
     const struct compliance *g = &x->sys->compliance;
     const size_t n = x->sys->ndof, m = h->shapes, f = tribo_system_energy(x->sys);
-    const int powers = h->modal->stiffness != NULL;
+    const int powers = h->modal->powers != NULL;
     const size_t terms = h->modal->exponents + h->harmonics;
     double *place = calloc(3 * m + 1, sizeof *place), *speed = place + m, *rate = speed + m, v[4];
     if (!place || !tribo_signal_reserve(to, terms, powers ? TRIBO_POWERS - 1 : 2)) {
@@ -84,8 +84,8 @@ int tribo_modal_motion_signal(void *own, const double *c, double tau, const doub
                            "method exact: a load is in resonance with an undamped mode; method event can do it");
     }
     /* place, speed: derivatives of c'[q, q', f] by eta and eta'; rate: of the part by f', by eta' */
-    tribo_multiply_add(m, n, 1, 1.0, h->phi, c, place);
-    tribo_multiply_add(m, n, 1, 1.0, h->phi, c + n, speed);
+    tribo_multiply_transposed_add(n, m, 1, h->phi, c, place);
+    tribo_multiply_transposed_add(n, m, 1, h->phi, c + n, speed);
     for (size_t k = 0; k < g->count; k++) {
         const double *on = h->on + g->contact[k] * m;
         const int holds = h->modal->key[g->contact[k]] == 2;

@@ -165,7 +165,7 @@ static double total(const double *sum)
 void tribo_course_look(const struct exact *x, struct course *c)
 {
     double sum[3 * T];
-    if (x->h->modal->stiffness) {
+    if (x->h->modal->powers) {
         tribo_powers_look(x, c);
         return;
     }
@@ -179,7 +179,7 @@ void tribo_course_look(const struct exact *x, struct course *c)
 void tribo_course_bound(const struct exact *x, struct course *c)
 {
     double sum[2 * T];
-    if (x->h->modal->stiffness) {
+    if (x->h->modal->powers) {
         tribo_powers_bound(x, c);
         return;
     }
@@ -194,7 +194,7 @@ void tribo_course_begin(const struct exact *x, struct course *c, int of_velocity
     c->start = 0.0;
     c->ramp = x->runs ? tribo_dot(w->on_rate, of_velocity ? x->acc : x->vel, x->h->shapes) : 0.0;
     tribo_course_look(x, c);
-    if (x->h->modal->stiffness) {
+    if (x->h->modal->powers) {
         c->power[0] = value;
     }
     c->start = value - c->at.g;

@@ -89,13 +89,13 @@ int tribo_modal_transition(void *own, const void *phase, double tau, size_t colu
     if (!eta) {
         return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     }
-    tribo_multiply_add(m, n, c, 1.0, h->psi, v, eta);
-    tribo_multiply_add(m, n, c, 1.0, h->psi, v + block, rate);
+    tribo_multiply_transposed_add(n, m, c, h->psi, v, eta);
+    tribo_multiply_transposed_add(n, m, c, h->psi, v + block, rate);
     find_pull(h, sys, c, v, pull, row);
-    (h->stiffness ? tribo_powers_carry : carry_modes)(h, tau, c, pull, eta, rate, work);
+    (h->powers ? tribo_powers_carry : carry_modes)(h, tau, c, pull, eta, rate, work);
     memset(v + block, 0, block * sizeof *v);
-    tribo_multiply_transposed_add(m, n, c, h->phi, eta, v);
-    tribo_multiply_transposed_add(m, n, c, h->phi, rate, v + block);
+    tribo_multiply_add(n, m, c, 1.0, h->phi, eta, v);
+    tribo_multiply_add(n, m, c, 1.0, h->phi, rate, v + block);
     for (size_t k = 0; k < sys->compliance.count; k++) {
         const size_t i = sys->compliance.contact[k];
         for (size_t l = 0; h->key[i] == 2 && l < m; l++) {

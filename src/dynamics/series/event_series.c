@@ -36,7 +36,7 @@ static void find_velocities(const struct event *e, size_t k, double scale, doubl
     tribo_system_loads(e->sys, DRIVES_BASE, (int)k, -scale, v);
     tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->u + k * e->sys->ndof, v);
     if (e->sys->compliance.count) {
-        tribo_compliance_rates(e->sys, m->state.slip, v, e->room.rate);
+        tribo_compliance_rates(e->sys, m->state.slip, 1, v, e->room.rate);
         for (size_t i = 0; k < e->order && i < c; i++) {
             e->spring[(k + 1) * c + i] = e->room.rate[i] / (double)(k + 1);
         }
@@ -194,16 +194,6 @@ struct perturbed {
 /* Most terms; a series of exponentials over a step has far less. */
 #define MOST_TERMS 400
 
-/* to [rows of a] += factor a x, for rows of perturbations. */
-static void add_perturbed(const struct perturbed *p, const struct matrix *a, double factor, const double *x, double *to)
-{
-    for (size_t i = 0; i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            tribo_add(to + i * p->columns, factor * a->val[k], x + a->col[k] * p->columns, p->columns);
-        }
-    }
-}
-
 /* Sets the terms of order k from those before. */
 static void find_term(struct event *e, size_t k, double tau, const struct perturbed *p)
 {
@@ -213,12 +203,12 @@ static void find_term(struct event *e, size_t k, double tau, const struct pertur
     const double part = tau / (double)k;
     double *v = p->v + (k - 1) % p->rows * each;
     memset(p->next, 0, half * sizeof *p->next);
-    add_perturbed(p, &sys->stiffness, -part, p->q, p->next);
-    add_perturbed(p, &sys->damping, -part, p->u, p->next);
+    tribo_matrix_add_columns(&sys->stiffness, -part, p->columns, p->q, p->next);
+    tribo_matrix_add_columns(&sys->damping, -part, p->columns, p->u, p->next);
     memset(v, 0, each * sizeof *v);
-    add_perturbed(p, &sys->direction, 1.0, p->u, v);
+    tribo_matrix_add_columns(&sys->direction, 1.0, p->columns, p->u, v);
     if (sys->compliance.count) {
-        add_perturbed(p, &sys->compliance.pull, part, p->spring, p->next);
+        tribo_matrix_add_columns(&sys->compliance.pull, part, p->columns, p->spring, p->next);
         memcpy(p->spring, v, each * sizeof *v);
         tribo_compliance_solve(sys, m->state.slip, p->columns, p->spring);
         for (size_t i = 0; i < each; i++) {
@@ -236,7 +226,7 @@ static void find_term(struct event *e, size_t k, double tau, const struct pertur
             }
             power *= tau;
         }
-        add_perturbed(p, &sys->response, part, p->force, p->next);
+        tribo_matrix_add_columns(&sys->response, part, p->columns, p->force, p->next);
     }
     for (size_t i = 0; i < half; i++) {
         p->q[i] = part * p->u[i];

@@ -167,17 +167,19 @@ void tribo_compliance_share(const struct compliance *g, double *v)
 }
 
 /* rate_A = -G_AA^-1 v_A, v += G rate, over the compliant contacts A at rest. */
-void tribo_compliance_rates(const tribo_system *sys, const signed char *slip, double *v, double *rate)
+void tribo_compliance_rates(const tribo_system *sys, const signed char *slip, size_t columns, double *v, double *rate)
 {
-    memset(rate, 0, sys->ncontact * sizeof *rate);
+    memset(rate, 0, sys->ncontact * columns * sizeof *rate);
     if (sys->compliance.count == 0) {
         return;
     }
-    tribo_add(rate, -1.0, v, sys->ncontact);
-    tribo_compliance_solve(sys, slip, 1, rate);
-    tribo_definite_multiply_add(sys->compliance.g, 1, rate, v);
+    tribo_add(rate, -1.0, v, sys->ncontact * columns);
+    tribo_compliance_solve(sys, slip, columns, rate);
+    tribo_definite_multiply_add(sys->compliance.g, columns, rate, v);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        v[i] = tribo_is_compliant(&sys->compliance, i) && slip[i] == TRIBO_SLIP_STUCK ? 0.0 : v[i];
+        if (tribo_is_compliant(&sys->compliance, i) && slip[i] == TRIBO_SLIP_STUCK) {
+            memset(v + i * columns, 0, columns * sizeof *v);
+        }
     }
 }
 

@@ -60,8 +60,9 @@ void tribo_compliance_solve(const tribo_system *sys, const signed char *slip, si
 /* x [ncontact][columns] = G f. */
 void tribo_compliance_give(const tribo_system *sys, size_t columns, const double *f, double *x);
 
-/* rate [ncontact] = f'; 0 for rigid contacts. v [ncontact]: in J q' - b; out J q' + G f' - b, unchanged for rigid contacts. */
-void tribo_compliance_rates(const tribo_system *sys, const signed char *slip, double *v, double *rate);
+/* rate [ncontact][columns] = f'; 0 for rigid contacts. v [ncontact][columns]: in J q' - b; out J q' + G f' - b, unchanged for
+ * rigid contacts. */
+void tribo_compliance_rates(const tribo_system *sys, const signed char *slip, size_t columns, double *v, double *rate);
 
 /* tribo_compliance_rates without slip: a contact slides if its force in y is at its limit and v points against the force. */
 void tribo_compliance_move(const tribo_system *sys, const double *y, double *v, double *rate);

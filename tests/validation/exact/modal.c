@@ -224,7 +224,7 @@ TEST(powers)
     struct exact own = {.sys = sys};
     assert_ok(tribo_modal_create(&modes, sys, slip, holds, 0));
     assert_ok(tribo_modal_create(&none, sys, slip, holds, 1));
-    ck_assert_ptr_null(modes->stiffness);
+    ck_assert_ptr_null(modes->powers);
     ck_assert_uint_eq(none->exponents, 0);
     for (size_t k = 0; k < size; k++) {
         v[k] = w[k] = uniform(&r, -1.0, 1.0);

@@ -56,7 +56,7 @@ TEST(light_between)
     }
     struct constraints c = constrain(2, 2, j, mass, NULL);
     /* the heavy one is pushed by the second contact alone, the light one by both */
-    tribo_constraints_react(&c, force, f);
+    tribo_constraints_react(&c, 1, force, f);
     assert_exact(f[1], 5.0);
     assert_exact(f[0], 8.0);
     tribo_constraints_follow(&c, b, q);
@@ -205,7 +205,7 @@ TEST(forces_and_displacements)
     struct matrix z;
     require(tribo_constraints_basis(&c, COLS, &z), "out of memory");
     ck_assert_uint_eq(c.rank, ROWS);
-    tribo_constraints_react(&c, force, f);
+    tribo_constraints_react(&c, 1, force, f);
     assert_all_close(f, want, ROWS, 1e-12);
     tribo_constraints_follow(&c, want, q);
     for (size_t i = 0; i < ROWS; i++) {
