@@ -37,13 +37,6 @@ static inline double quotient(double x, double y)
     return x / greater(y, fabs(x) * (1.0 / TRIBO_FAR));
 }
 
-/* Returns x limited to a range in which x/y does not overflow. */
-static inline double divisible(double x, double y)
-{
-    const double most = TRIBO_FAR * lesser(y, 1.0);
-    return clamp(x, -most, most);
-}
-
 /* Returns x y, |x y| limited to TRIBO_FAR. */
 static inline double product(double x, double y)
 {
@@ -55,6 +48,16 @@ static inline double product(double x, double y)
 static inline double scaled(double x, double y)
 {
     return y > 1.0 ? product(x, y) : cut(x * y);
+}
+
+/* Returns max |x_i|. */
+static inline double tribo_largest(const double *x, size_t n)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        most = greater(most, fabs(x[i]));
+    }
+    return most;
 }
 
 /* Exchanges count elements of x and y, at distances of stride. */

@@ -11,7 +11,7 @@
 struct call {
     void (*find)(tribo_context *ctx, const struct call *call, size_t k, double *f);
     const double *v, *a;
-    double *feq;     /* of a balance; NULL: f_eq is not kept */
+    double *feq;     /* of a balance; NULL: f_eq is not kept, and no two contacts share a body */
     int wanted;      /* f_eq of contacts that slide, too */
     int plain;       /* |a_i| <= TRIBO_PLAIN */
     double dt;       /* of a step */
@@ -145,36 +145,26 @@ static void balance_chunk(tribo_context *ctx, const struct call *call, size_t k,
     }
 }
 
-void tribo_balance_each(tribo_context *ctx, const double *v, const double *a, int wanted)
+void tribo_balance_each(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f)
 {
-    find_each(ctx, &(const struct call){.find = balance_chunk, .v = v, .a = a, .feq = ctx->last.feq, .wanted = wanted}, NULL);
+    const int alone = tribo_all_alone(ctx);
+    const struct call call = {
+        .find = balance_chunk, .v = v, .a = a, .feq = alone ? feq : ctx->last.feq, .wanted = feq != NULL, .plain = plain};
+    find_each(ctx, &call, alone ? f : NULL);
 }
 
-int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
+void tribo_balance_one(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f)
 {
-    int plain;
-    const int status = tribo_check_motion(ctx, v, a, &plain);
-    const double holds = ctx->set.law->holds;
-    if (status) {
-        return status;
+    const struct contacts *c = &ctx->follow.contacts;
+    const double inverse = *ctx->op->inverse;
+    const double balance = plain && ctx->follow.chunk->plain ? tribo_alone(*a, inverse) : tribo_alone_far(*a, inverse);
+    double force;
+    ctx->set.law->force(c, 1, v, &balance, &force);
+    if (feq) {
+        *feq = *c->limit > 0.0 ? balance : 0.0;
     }
-    if (ctx->n == 1) {
-        const struct contacts *c = &ctx->follow.contacts;
-        const double inverse = *ctx->op->inverse;
-        const double balance = plain && ctx->follow.chunk->plain ? tribo_alone(*a, inverse) : tribo_alone_far(*a, inverse);
-        double force;
-        ctx->set.law->force(c, 1, v, &balance, &force);
-        if (feq) {
-            *feq = *c->limit > 0.0 ? balance : 0.0;
-        }
-        put_one(ctx, force, holds, f);
-    } else {
-        const struct call call = {.find = balance_chunk, .v = v, .a = a, .feq = feq, .wanted = feq != NULL, .plain = plain};
-        find_each(ctx, &call, f);
-        alone_finish(ctx, holds);
-    }
+    put_one(ctx, force, ctx->set.law->holds, f);
     ctx->last.residual = 0.0;
-    return TRIBO_OK;
 }
 
 /* ----------------------------------------------------------------------------------------------------------------- step */

@@ -157,12 +157,12 @@ static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *v
                                    p->count, plural(p->count), p->member[p->near[0]], p->sets->rank);
 }
 
-/* Finds the forces of all contacts, and f_eq where laws read it; wanted: of all contacts in no group. */
-static int balance_all(tribo_context *ctx, const double *v, const double *a, int wanted)
+/* Finds the forces of all contacts, and f_eq where laws read it; plain, feq, f: see tribo_balance_each. */
+static int balance_all(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f)
 {
     int status = TRIBO_OK;
     tribo_begin_call(ctx);
-    tribo_balance_each(ctx, v, a, wanted);
+    tribo_balance_each(ctx, plain, v, a, feq, f);
     for (size_t k = 0; k < ctx->memory.nsolved; k++) {
         struct box_qp *p = tribo_collect(ctx, ctx->memory.solved_list[k]);
         const int one = ctx->set.coupling == TRIBO_PARTITION ? solve_partition(ctx, p, v, a) : solve_consistent(ctx, p, v, a);
@@ -185,15 +185,17 @@ static int balance_all(tribo_context *ctx, const double *v, const double *a, int
 
 int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
 {
-    int status = ctx ? tribo_need_operator(ctx, ctx) : TRIBO_ERR_NULL;
+    int plain, status = ctx ? tribo_need_operator(ctx, ctx) : TRIBO_ERR_NULL;
+    status = status ? status : tribo_check_motion(ctx, v, a, &plain);
     if (status) {
         return status;
     }
-    if (tribo_all_alone(ctx)) {
-        return tribo_balance_alone(ctx, v, a, feq, f);
+    const int alone = tribo_all_alone(ctx);
+    if (alone && ctx->n == 1) {
+        tribo_balance_one(ctx, plain, v, a, feq, f);
+        return TRIBO_OK;
     }
-    status = tribo_check_motion(ctx, v, a, &(int){0});
-    status = status ? status : balance_all(ctx, v, a, feq != NULL);
+    status = balance_all(ctx, plain, v, a, feq, f);
     if (status && status != TRIBO_ERR_INCONSISTENT) {
         return status;
     }
@@ -215,12 +217,10 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
             }
         }
     }
-    if (feq) {
-        for (size_t q = 0; q < ctx->plane.clusters; q++) {
-            tribo_cluster_feq(ctx, q);
-        }
-        tribo_copy(feq, ctx->last.feq, ctx->n);
+    for (size_t q = 0; feq && q < ctx->plane.clusters; q++) {
+        tribo_cluster_feq(ctx, q);
     }
-    tribo_copy(f, ctx->last.f, f ? ctx->n : 0);
+    tribo_copy(feq, ctx->last.feq, feq && !alone ? ctx->n : 0);
+    tribo_copy(f, ctx->last.f, f && !alone ? ctx->n : 0);
     return status;
 }

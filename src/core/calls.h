@@ -31,13 +31,15 @@ static inline double tribo_carried(const tribo_context *ctx, const struct box_qp
 
 /* ---- alone.c: contacts as if no two shared a body */
 
-/* tribo_balance and tribo_step_force where tribo_all_alone. feq and f of the balance may be NULL. */
-int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
+/* tribo_balance of one contact, and tribo_step_force, where tribo_all_alone. feq and f of the balance may be NULL. plain: |a_i| <=
+ * TRIBO_PLAIN. */
+void tribo_balance_one(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f);
 int tribo_step_alone(tribo_context *ctx, double dt, const double *v, double *f);
 
-/* The first part of a balance: last.f of contacts that need no solver, and f_eq where the law reads it, or of all such contacts
- * if wanted. Finds which contacts of groups are near stick, and lists their groups. */
-void tribo_balance_each(tribo_context *ctx, const double *v, const double *a, int wanted);
+/* The first part of a balance: last.f of contacts that need no solver, and last.feq where the law reads it, or of all such
+ * contacts unless feq is NULL. Finds which contacts of groups are near stick, and lists their groups. Where tribo_all_alone: also
+ * f, unless it is NULL, and f_eq in feq in the place of last.feq. */
+void tribo_balance_each(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f);
 
 /* The first part of a step: last.f = -v/(dt R_ii) within bounds. */
 void tribo_step_each(tribo_context *ctx, double dt, const double *v, struct bounds b);

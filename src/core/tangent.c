@@ -97,7 +97,7 @@ static const double *part_product(tribo_context *ctx, const struct part *s, cons
         if (!ctx->last.near[i] || !tribo_is_scalar(ctx, i)) {
             continue;
         }
-        double sum = divisible(tribo_entry(d->a, i), r) + (p && !partition ? tribo_row_others(p, k, balanced) : 0.0);
+        double sum = cut(tribo_entry(d->a, i)) + (p && !partition ? tribo_row_others(p, k, balanced) : 0.0);
         for (size_t j = 0; row && j < s->size; j++) {
             sum += j == k ? 0.0 : product(row[j], balanced[j]);
         }
@@ -105,16 +105,6 @@ static const double *part_product(tribo_context *ctx, const struct part *s, cons
         df[k] = law_change(ctx, d, i) + product(ctx->last.tangent.dfeq[i], change);
     }
     return df;
-}
-
-/* Returns df of a contact in no solved group. Where friction moves nothing, the force jumps as a changes its sign. */
-static double alone_product(const tribo_context *ctx, const struct change *d, size_t i)
-{
-    const double r = ctx->op->diagonal[i];
-    const int balanced = !ctx->op->groups || ctx->op->group_of[i] == TRIBO_ALONE;
-    const int follows = balanced && ctx->follow.contacts.limit[i] > 0.0 && r > TRIBO_IMMOVABLE;
-    const double balance = follows ? quotient(product(ctx->last.tangent.dfeq[i], tribo_entry(d->a, i)), r) : 0.0;
-    return law_change(ctx, d, i) - balance;
 }
 
 /* out [n] = the changes of all forces by d. columns = 1: out [n][n] = the changes by each contact alone, where d has the unit
@@ -126,9 +116,14 @@ static void find_changes(tribo_context *ctx, const struct change *d, size_t colu
     for (size_t k = 0; k < n * row; k++) {
         out[k] = 0.0;
     }
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = 0; i < n; i++) { /* as if the contact was in no solved group */
+        const double r = ctx->op->diagonal[i];
+        const int balanced = !ctx->op->groups || ctx->op->group_of[i] == TRIBO_ALONE;
+        /* Where friction moves nothing, the force jumps as a changes its sign. */
+        const int follows = balanced && ctx->follow.contacts.limit[i] > 0.0 && r > TRIBO_IMMOVABLE;
         unit[i] = 1.0;
-        out[row * i + columns * i] = alone_product(ctx, d, i);
+        const double balance = follows ? quotient(product(ctx->last.tangent.dfeq[i], tribo_entry(d->a, i)), r) : 0.0;
+        out[row * i + columns * i] = law_change(ctx, d, i) - balance;
         unit[i] = 0.0;
     }
     for (size_t q = 0; q < solved + ctx->plane.clusters; q++) {

@@ -133,15 +133,6 @@ static int reserve_factor(struct gsl_step *g)
 
 /* ---------------------------------------------------------------------------------------------------------- callbacks */
 
-static double largest_size(const double *x, size_t n)
-{
-    double most = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        most = greater(most, fabs(x[i]));
-    }
-    return most;
-}
-
 /* 1 if the force of a contact jumps between the beginning of the step and the last evaluation, and relaxes by more than `stable`
  * within the step, or has rate 0: it does not relax. Open contacts carry nothing, and nearly nothing just before they open and
  * after they close. */
@@ -175,9 +166,9 @@ static int guarded_function(double t, const double y[], double dydt[], void *par
         /* Slopes that change a value by less than NEGLIGIBLE of its tolerance are 0 for Newton's method: GSL's takes
          * rounding that does not decrease for divergence. */
         const size_t n = g->dimension / 2;
-        const double h = g->trial->h, way = largest_size(y, n) + h * largest_size(y + n, n);
+        const double h = g->trial->h, way = tribo_largest(y, n) + h * tribo_largest(y + n, n);
         tribo_system_get_force(g->sys, g->force);
-        const double size[] = {way, way / h, fabs(y[2 * n]) + way * largest_size(g->force, g->ncontact)};
+        const double size[] = {way, way / h, fabs(y[2 * n]) + way * tribo_largest(g->force, g->ncontact)};
         for (size_t i = 0; i <= 2 * n; i++) {
             const double least = NEGLIGIBLE * lesser(g->trial->tolerance[i], ROUNDING * size[i / n]);
             dydt[i] = fabs(dydt[i]) * h < least ? 0.0 : dydt[i];
@@ -221,7 +212,7 @@ static int is_regular(struct gsl_step *g)
                 g->matrix[row * size + column] = entry + (row == column ? 1.0 : 0.0);
             }
         }
-        if (!(largest_size(g->matrix, size * size) <= LARGEST_ENTRY) || !has_sure_pivots(g, size)) {
+        if (!(tribo_largest(g->matrix, size * size) <= LARGEST_ENTRY) || !has_sure_pivots(g, size)) {
             return 0;
         }
     }

@@ -69,15 +69,6 @@ void tribo_add(double *to, double factor, const double *x, size_t n)
     }
 }
 
-double tribo_largest(const double *x, size_t n)
-{
-    double most = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        most = greater(most, fabs(x[i]));
-    }
-    return most;
-}
-
 TRIBO_SIMD int tribo_many_finite(const double *x, size_t n)
 {
     int finite = 1;

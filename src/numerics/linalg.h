@@ -5,11 +5,9 @@
 
 #include <math.h>
 
+#include "common/real.h"
 #include "matrix.h"
 #include "sparse_factor.h"
-
-/* Returns max |x_i|. */
-double tribo_largest(const double *x, size_t n);
 
 /* to += factor x. */
 void tribo_add(double *to, double factor, const double *x, size_t n);

@@ -110,13 +110,8 @@ static inline double sliding(double v, double limit)
     return copysign(limit, -v);
 }
 
-/* d(force)/d(limit) where a contact slides, and where it carries clamp(feq, -limit, limit). Laws choose between numbers, not
- * between computations: their loops become vectors. */
-static inline double sliding_rate(double v)
-{
-    return copysign(1.0, -v);
-}
-
+/* d(force)/d(limit) where a contact carries clamp(feq, -limit, limit). Laws choose between numbers, not between computations: their
+ * loops become vectors. */
 static inline double held_rate(double feq, int held)
 {
     return held ? 0.0 : sign(feq);
@@ -127,7 +122,7 @@ static inline struct tangent dry_tangent(int slides, double v, double feq, doubl
 {
     const int held = fabs(feq) < limit;
     const double gain = held ? 1.0 : 0.0, rate = held_rate(feq, held);
-    return (struct tangent){0.0, slides ? 0.0 : gain, slides ? sliding_rate(v) : rate};
+    return (struct tangent){0.0, slides ? 0.0 : gain, slides ? sliding(v, 1.0) : rate};
 }
 
 /* The calls in the record of a law. */

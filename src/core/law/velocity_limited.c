@@ -15,7 +15,7 @@ static inline struct tangent limited_tangent(double v, double feq, double limit,
     (void)feq, (void)limit, (void)follows;
     const int slides = fabs(v) > epsilon;
     const double rate = -0.5 * turn * inside_band(v, epsilon);
-    return (struct tangent){slides ? 0.0 : -0.5 * slope, 0.0, slides ? sliding_rate(v) : rate};
+    return (struct tangent){slides ? 0.0 : -0.5 * slope, 0.0, slides ? sliding(v, 1.0) : rate};
 }
 
 TRIBO_LAW_LOOPS(limited)

@@ -12,8 +12,10 @@
 #include "numerics/twofold.h"
 #include "numerics/union_find.h"
 
-/* Smaller groups are dense, whatever their entries. */
+/* Smaller groups are dense, whatever their entries; groups of at most DENSE_UP_TO contacts where a sparse factor, which does not
+ * choose its pivots, would have small ones. */
 #define SPARSE_FROM 128
+#define DENSE_UP_TO 2048
 
 /* Groups of up to GRADED_TO contacts are kept to twice as many digits if the masses of a contact's bodies differ by more than
  * GRADED_FROM, and a pivot of R is less than GRADED_PIVOT. Masses differ by at most GRADED_MOST; in larger groups by
@@ -325,16 +327,26 @@ static void fill_group(struct delassus *op, struct memory *m, size_t k, const st
 }
 
 /* Factors R of group k, graded if g->graded and a pivot is small; sets nullity, small and the room for null vectors from the
- * rank. Returns TRIBO_OK, or TRIBO_ERR_INDEFINITE if a pivot is below zero by more than rounding. */
+ * rank. Frees the sparse factor if a pivot is small in a group of at most DENSE_UP_TO contacts: *again = 1, since the group needs
+ * room for a dense one. Returns TRIBO_OK, or TRIBO_ERR_INDEFINITE if a pivot is below zero by more than rounding. */
 static int judge_group(struct delassus *op, struct memory *m, size_t k, const struct inertia *from, const size_t *place,
-                       tribo_context *note)
+                       int *again, tribo_context *note)
 {
     struct group *g = &op->group[k];
     const int uneven = g->graded;
     size_t where = 0;
     g->graded = 0;
     struct box_qp *p = tribo_memory_problem(op, m, k);
-    double left = factorize_all(p, &where);
+    double left = factorize_all(p, &where), most = 0.0; /* 1/pivot */
+    for (size_t i = 0; g->sparse && i < g->size; i++) {
+        most = greater(most, p->sparse.d[i]);
+    }
+    if (g->sparse && g->size <= DENSE_UP_TO && (p->sets->dependents || most * TRIBO_DOUBTFUL >= 1.0)) {
+        tribo_sparse_free(g->sparse);
+        g->sparse = NULL;
+        *again = 1;
+        return TRIBO_OK;
+    }
     const double last = uneven && p->sets->rank ? p->l[(p->sets->rank - 1) * (g->size + 1)] : 1.0; /* the root of its inverse */
     if (uneven && (p->sets->rank < g->size || 1.0 < GRADED_PIVOT * last * last)) {
         /* R in doubles may have a pivot so small that its rounding counts. */
@@ -357,6 +369,27 @@ static int judge_group(struct delassus *op, struct memory *m, size_t k, const st
     const size_t redundant = g->sparse && g->nullity > TRIBO_SPARSE_REDUNDANT ? TRIBO_SPARSE_REDUNDANT : g->nullity;
     op->basis = redundant * g->size > op->basis ? redundant * g->size : op->basis;
     return TRIBO_OK;
+}
+
+/* Allocates what is constant of the groups, and a memory without its basis, in the place of those of another layout. Returns 0 if
+ * out of memory. */
+static int allocate_groups(struct delassus *op, struct memory *m)
+{
+    op->fixed_size = op->kept_size = 0;
+    for (size_t k = 0; k < op->groups; k++) {
+        struct group *g = &op->group[k];
+        /* in doubles, which are as large as indices */
+        const size_t square = g->size * g->size, matrix = g->graded ? 2 * square : square,
+                     inverse = g->size <= SMALL ? square : 0;
+        g->fixed = op->fixed_size;
+        g->kept = op->kept_size;
+        op->fixed_size += 3 * g->size + (g->sparse ? 0 : matrix);
+        op->kept_size += 3 * g->size + inverse + (g->sparse ? 3 * g->size + tribo_sparse_slots(g->sparse) : matrix);
+    }
+    free(op->fixed);
+    tribo_memory_free(m);
+    op->fixed = tribo_zeros(op->fixed_size + 1, sizeof *op->fixed);
+    return op->fixed && allocate_memory(m, op);
 }
 
 int tribo_operator_create(struct delassus **created, struct memory *m, const struct csr *a, const double *diagonal,
@@ -385,21 +418,14 @@ int tribo_operator_create(struct delassus **created, struct memory *m, const str
         if (!status && !g->graded && g->size > SPARSE_FROM && !make_sparse(g, a, member, place)) {
             status = TRIBO_ERR_MEMORY;
         }
-        /* in doubles, which are as large as indices */
-        const size_t square = g->size * g->size, matrix = g->graded ? 2 * square : square,
-                     inverse = g->size <= SMALL ? square : 0;
-        g->fixed = op->fixed_size;
-        g->kept = op->kept_size;
-        op->fixed_size += 3 * g->size + (g->sparse ? 0 : matrix);
-        op->kept_size += 3 * g->size + inverse + (g->sparse ? 3 * g->size + tribo_sparse_slots(g->sparse) : matrix);
     }
-    if (!status && groups) {
-        op->fixed = tribo_zeros(op->fixed_size + 1, sizeof *op->fixed);
-        status = op->fixed && allocate_memory(m, op) ? TRIBO_OK : TRIBO_ERR_MEMORY;
-    }
-    for (size_t k = 0; !status && k < groups; k++) {
-        fill_group(op, m, k, a, place);
-        status = judge_group(op, m, k, from, place, note);
+    for (int again = groups > 0; !status && again;) {
+        again = 0;
+        status = allocate_groups(op, m) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+        for (size_t k = 0; !status && k < groups; k++) {
+            fill_group(op, m, k, a, place);
+            status = judge_group(op, m, k, from, place, &again, note);
+        }
     }
     m->problem.work.factorizations = 0;
     if (status || !allocate_basis(m, op)) {

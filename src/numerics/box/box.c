@@ -76,11 +76,8 @@ static int box_settled(const struct box_qp *p, double noises)
 void tribo_box_gradients(struct box_qp *p)
 {
     const double rounded = p->twofold ? GRADED_PART : 1.0;
-    double most = 1.0, size;
-    for (size_t i = 0; p->far && i < p->group->size; i++) {
-        most = greater(most, fabs(p->x[i]));
-    }
-    most = lesser(most, TRIBO_FAR);
+    const double most = p->far ? clamp(tribo_largest(p->x, p->group->size), 1.0, TRIBO_FAR) : 1.0;
+    double size;
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
         p->gradient[i] =

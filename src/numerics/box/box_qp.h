@@ -205,8 +205,7 @@ double tribo_sparse_dot(const struct box_qp *p, size_t i, const double *x, doubl
 void tribo_sparse_spread(const struct box_qp *p, size_t i, double factor, double *y);
 
 /* Allocates the pattern of the factor of R = r (columns ascending, by place). *s = NULL if a dense factor is better: the sparse
- * one would have too many entries, or R is nearly singular and not too large for a factor that chooses its pivots. Returns 1, or
- * 0 if out of memory. */
+ * one would have too many entries. Returns 1, or 0 if out of memory. */
 struct csr;
 int tribo_sparse_create(struct sparse **s, const struct csr *r);
 size_t tribo_sparse_slots(const struct sparse *s);

@@ -33,9 +33,6 @@ struct sparse {
     size_t *slot;      /* [slots] slots */
 };
 
-/* Groups of at most DENSE_UP_TO contacts have a dense factor where a sparse one would have small pivots. */
-#define DENSE_UP_TO 2048
-
 void tribo_sparse_free(struct sparse *s)
 {
     if (s) {
@@ -142,32 +139,6 @@ static void dissect(struct graph *g, struct part part, struct part *stack, size_
     stack[(*depth)++] = (struct part){part.begin + from, part.begin + from + size - to};
 }
 
-/* place [size] = an order of elimination that keeps L sparse. Returns 1, or 0 if out of memory. */
-static int order_by_dissection(const struct csr *r, size_t *place)
-{
-    struct graph g = {.r = r, .node = place};
-    struct part *stack = malloc((r->n + 2) * sizeof *stack);
-    g.list = malloc(2 * r->n * sizeof *g.list);
-    g.mark = calloc(r->n, sizeof *g.mark);
-    const int done = stack && g.list && g.mark;
-    if (done) {
-        size_t depth = 1;
-        g.level = g.list + r->n;
-        for (size_t i = 0; i < r->n; i++) {
-            place[i] = i;
-        }
-        stack[0] = (struct part){0, r->n};
-        while (depth > 0) {
-            depth--;
-            dissect(&g, stack[depth], stack, &depth);
-        }
-    }
-    free(stack);
-    free(g.list);
-    free(g.mark);
-    return done;
-}
-
 /* ---------------------------------------------------------------------------------------------------------- pattern of L */
 
 /* Walks the entries of L row by row, and counts them by columns in count [size]. Sets parent [size] of the elimination tree where
@@ -191,12 +162,17 @@ static void sparse_walk(struct sparse *s, size_t *parent, size_t *seen, size_t *
     }
 }
 
-/* Finds the pattern of L by columns and rows. parent, seen, count [size]: workspace, count 0. Returns 1; 0 if a dense factor is
- * better; -1 if out of memory. */
-static int find_pattern(struct sparse *s, size_t *parent, size_t *seen, size_t *count)
+/* Finds the pattern of L by columns and rows. work [3 size] is workspace. Returns 1; 0 if a dense factor is better; -1 if out of
+ * memory. */
+static int find_pattern(struct sparse *s, size_t *work)
 {
     const size_t size = s->r.n;
-    memset(parent, 0xff, size * sizeof *parent);
+    size_t *parent = work, *seen = work + size, *count = work + 2 * size;
+    for (size_t k = 0; k < size; k++) {
+        s->position[s->place[k]] = k;
+        parent[k] = NONE;
+        count[k] = 0;
+    }
     sparse_walk(s, parent, seen, count, 0);
     for (size_t j = 0; j < size; j++) {
         s->column[j + 1] = s->column[j] + count[j];
@@ -474,63 +450,31 @@ void tribo_sparse_leave(struct box_qp *p, size_t i)
 
 /* ---------------------------------------------------------------------------------------------------------- creation */
 
-/* Returns 1 if all pivots of R are well above zero, 0 if not, -1 if out of memory. */
-static int well_conditioned(struct sparse *s)
-{
-    const size_t size = s->r.n;
-    const struct group group = {.size = size, .sparse = s};
-    struct sets sets = {0};
-    double *scale = calloc(tribo_sparse_slots(s) + 6 * size, sizeof *scale), least = 1.0, most = 1.0; /* of 1/pivot or 0 */
-    if (!scale) {
-        return -1;
-    }
-    const struct sparse_factor factor = {
-        .d = scale + size, .w = scale + 2 * size, .index = (size_t *)(scale + 3 * size), .l = scale + 6 * size};
-    struct box_qp p = {.group = &group, .sets = &sets, .scale = scale, .sparse = factor};
-    p.order = (size_t *)(scale + 4 * size);
-    p.at = (signed char *)(scale + 5 * size);
-    for (size_t i = 0; i < size; i++) {
-        const double *diagonal = tribo_csr_entry(&s->r, i, i);
-        scale[i] = tribo_scale(diagonal ? *diagonal : 0.0);
-    }
-    tribo_sparse_rebuild(&p, NULL);
-    for (size_t k = 0; k < size; k++) {
-        least = lesser(least, factor.d[k]);
-        most = greater(most, factor.d[k]);
-    }
-    free(scale);
-    return least > 0.0 && most * TRIBO_DOUBTFUL < 1.0;
-}
-
 int tribo_sparse_create(struct sparse **created, const struct csr *r)
 {
-    const size_t size = r->n, entries = r->first[size];
-    *created = NULL;
-    if (entries > size * size / 8) {
-        return 1;
-    }
+    const size_t size = r->n;
     struct sparse *s = calloc(1, sizeof *s);
-    size_t *work = calloc(3 * size + 1, sizeof *work);
+    size_t *work = calloc(5 * size + 4, sizeof *work), depth = 1;
     int good = -1;
     if (s && work && tribo_csr_transpose(&s->r, size, size, r->first, r->col, r->val)) { /* r is symmetric */
         s->position = malloc(2 * size * sizeof *s->position);
         s->column = calloc(2 * (size + 1), sizeof *s->column);
-        s->place = s->position ? s->position + size : NULL;
-        s->row = s->column ? s->column + size + 1 : NULL;
-        good = s->place && s->row && order_by_dissection(r, s->place) ? 1 : -1;
     }
-    for (size_t k = 0; good > 0 && k < size; k++) {
-        s->position[s->place[k]] = k;
+    if (s && s->position && s->column) {
+        struct graph g = {r, s->position + size, work, work + size, work + 2 * size, 0};
+        struct part *stack = (void *)(work + 3 * size); /* [size + 2] */
+        s->place = g.node;
+        s->row = s->column + size + 1;
+        for (size_t k = 0; k < size; k++) {
+            s->place[k] = k;
+        }
+        for (stack[0] = (struct part){0, size}; depth-- > 0;) {
+            dissect(&g, stack[depth], stack, &depth);
+        }
+        good = find_pattern(s, work);
     }
-    if (good > 0) {
-        good = find_pattern(s, work, work + size, work + 2 * size);
-    }
-    if (good > 0 && size <= DENSE_UP_TO) {
-        good = well_conditioned(s);
-    }
-    if (good > 0) {
-        *created = s;
-    } else {
+    *created = good > 0 ? s : NULL;
+    if (good <= 0) {
         tribo_sparse_free(s);
     }
     free(work);
