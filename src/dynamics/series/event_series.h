@@ -66,6 +66,7 @@ struct event {
     double abstol;             /* that of the driver when tolerance was found */
     double fastest;            /* bound of the frequencies of the motion, without growth by falling friction */
     size_t revision;           /* of the system that fastest is of */
+    size_t planes;             /* planar contacts when order was found */
     double moves[3];           /* change of q, u and d within the time of the fastest motion; if abstol = 0 */
     double error;              /* allowed in velocities where planar contacts slide */
     double length;             /* of the step, and of the interval of bounds */

@@ -173,12 +173,12 @@ static int method_event_prepare(struct event *e)
 {
     const tribo_system *sys = e->sys;
     const double abstol = e->drv->abstol;
-    const size_t n = sys->ndof, c = sys->ncontact;
+    const size_t n = sys->ndof, c = sys->ncontact, planes = tribo_system_planar(sys);
     double **const series[] = {&e->watch, &e->limit, &e->fall, &e->part, &e->spring};
     double **const rooms[] = {&e->room.base, &e->room.a, &e->room.given, &e->room.held, &e->room.rate};
     e->events.stick_slip.constant.abstol = abstol;
     e->events.stick_slip.constant.reltol = abstol > 0.0 ? e->drv->reltol : USUAL;
-    if (e->q && e->abstol == abstol && e->revision == sys->revision) {
+    if (e->q && e->abstol == abstol && e->revision == sys->revision && e->planes == planes) {
         return TRIBO_OK;
     }
     const int status = tribo_compliance_check(sys);
@@ -187,9 +187,10 @@ static int method_event_prepare(struct event *e)
     }
     e->abstol = abstol;
     e->revision = sys->revision;
+    e->planes = planes;
     e->tolerance = abstol > 0.0 ? clamp(abstol, 1e-16, 1e-2) : USUAL;
     e->fastest = tribo_system_fastest(sys);
-    const double digits = tribo_system_planar(sys) ? 0.5 * MOST_DIGITS : MOST_DIGITS, best = 10.0 - 1.5 * log10(e->tolerance);
+    const double digits = planes ? 0.5 * MOST_DIGITS : MOST_DIGITS, best = 10.0 - 1.5 * log10(e->tolerance);
     const double most = e->fastest > 0.0 ? greater(digits / (1.0 + fabs(log10(e->fastest))), LEAST_ORDER) : HUGE_VAL;
     e->order = e->most_order = (size_t)lesser(best, most);
     e->terms = sys->loads.limits > sys->loads.limit_tables ? e->order + 1 : sys->loads.limits ? 2 : 1;
