@@ -60,8 +60,8 @@
 !>   TRBSAC(IH, NDOF, T, Y, IERR)                    T, Y: the step was accepted
 !> Integrators of the library
 !>   TRBDRV(IH, NAME, DT, ATOL, RTOL, IERR)          NAME of a method, e.g. 'exact': an integrator in the place of the one
-!>                                                   before. DT > 0 as TRBHST, or for exact, event and auto as TRBOUT; ATOL > 0
-!>                                                   and RTOL as TRBTOL where NAME takes them; 0: not set
+!>                                                   before. DT > 0 as TRBHST, or for exact, event and auto as TRBOUT; ATOL
+!>                                                   and RTOL as TRBTOL; 0, or both 0: not set
 !>   TRBHST(IH, DT, IERR)                            DT > 0: the step of a method with fixed steps, or the first step
 !>   TRBTOL(IH, ATOL, RTOL, IERR)                    ATOL > 0, RTOL >= 0: tolerances of event, auto and adaptive methods
 !>   TRBOUT(IH, DT, IERR)                            DT > 0: exact, event and auto call SEEN of TRBOBS also every DT
@@ -718,20 +718,23 @@ subroutine trbdrv(ih, name, dt, atol, rtol, ierr)
   integer, intent(out) :: ierr
   type(structure), pointer :: s
   type(tribo_driver) :: trial
+  type(c_ptr) :: ctx
   integer :: status
 
   call find_structure(ih, s, ierr)
   if (ierr /= TRIBO_OK) return
   call trial%create(s%system, name, stat=ierr)
-  if (ierr == TRIBO_OK .and. abs(dt) > 0) then
+  if (ierr == TRIBO_OK .and. .not. abs(dt) <= 0) then
     call trial%set_output(dt, ierr)
     if (ierr == TRIBO_ERR_UNSUPPORTED) call trial%set_step(dt, ierr)
   end if
-  if (ierr == TRIBO_OK .and. abs(atol) > 0) then
-    call trial%set_tolerance(atol, rtol, status)
-    if (status /= TRIBO_ERR_UNSUPPORTED) ierr = status
+  if (ierr == TRIBO_OK .and. .not. (abs(atol) <= 0 .and. abs(rtol) <= 0)) call trial%set_tolerance(atol, rtol, ierr)
+  if (ierr == TRIBO_OK) then
+    call take(s%driver, trial)
+  else if (c_associated(object_of(trial))) then
+    call find(ih, ctx, status)
+    ierr = c_handle_note(ctx, int(ierr, c_int), trial%message() // c_null_char)
   end if
-  if (ierr == TRIBO_OK) call take(s%driver, trial)
 end subroutine trbdrv
 
 subroutine trbhst(ih, dt, ierr)

@@ -181,6 +181,11 @@ C     and copies, which have contacts alone.
       CALL BUILD(.TRUE., IH, IERR)
       CALL TRBDRV(IH, 'rk5', 0.1D0, 0D0, 0D0, IERR)
       CALL EXPECT('TRBDRV', IERR .EQ. 7)
+      CALL TRBDRV(IH, 'rk4/fixed', 0.1D0, 1D-9, 1D-9, IERR)
+      CALL WANTED('TRBDRV', IH, IERR, 9, 'method rk4/fixed takes no '//
+     1  'tolerance; event, auto and GSL''s adaptive methods do')
+      CALL TRBDRV(IH, 'event', 0.1D0, 0D0, 1D-9, IERR)
+      CALL WANTED('TRBDRV', IH, IERR, 4, 'abstol = 0 is not positive')
       CALL TRBDRV(IH, 'exact', 0.1D0, 0D0, 0D0, IERR)
       CALL TRBPER(IH, 3, 0D0, 1D0, Y, IERR)
       CALL WANTED('TRBPER', IH, IERR, 6,
