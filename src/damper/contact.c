@@ -147,10 +147,21 @@ void read_contacts(struct text *path, void *contacts)
     const size_t before = all->count;
     while (next_data(&t)) {
         char *value = make_printable(rest_of(&t));
-        struct text contact = text_of(new_text("%s:%zu: contact %s", path->at, t.line, value), value);
+        const size_t at = all->count;
+        char *line = new_text("%s:%zu: contact %s", path->at, t.line, value);
+        struct text contact = text_of(line, value);
         read_contact(&contact, contacts);
+        all->contact[at].line = line;
     }
     if (all->count == before) {
         die("%s: there is no contact in it", path->at);
     }
+}
+
+void free_contacts(struct contacts *all)
+{
+    for (size_t c = 0; c < all->count; c++) {
+        free(all->contact[c].line);
+    }
+    free(all->contact);
 }

@@ -20,6 +20,7 @@ struct contact {
     int by_load;      /* 1: limit is NaN and mu is given, so that --limits gives normal loads */
     double stiffness; /* of the spring that it slides on; 0: none, it is rigid */
     int directions;   /* of the contact, of which this is the first one; 0: this is the second one of the contact before */
+    char *line;       /* origin of a contact from a file, or NULL; owned */
 };
 
 /* A harmonic load, size sin(omega t + phase): a force at a place; or an acceleration of all supports along a direction. */
@@ -51,5 +52,7 @@ struct contacts {
  * parted by colons or blanks: adds the contact, or the two directions of a planar one, to a struct contacts. The other one adds
  * the contacts of a file, one a line. */
 reader read_contact, read_contacts;
+
+void free_contacts(struct contacts *all);
 
 #endif

@@ -37,5 +37,6 @@ int main(int argc, char **argv)
     close_file(stdout, "standard output");
     free_model(&model);
     free_structure(&structure);
+    free_options(&options);
     return interrupted() ? INTERRUPTED : EXIT_SUCCESS;
 }

@@ -306,6 +306,14 @@ static const struct option *find_option(const char *name)
     return NULL;
 }
 
+/* Returns text, which lives until free_options. */
+static char *keep(struct options *o, char *text)
+{
+    o->texts.text = need_room(o->texts.text, o->texts.count, &o->texts.room, sizeof *o->texts.text);
+    o->texts.text[o->texts.count++] = text;
+    return text;
+}
+
 /* An option a line: its name without hyphens, a blank or an equals sign, and its value up to the end of the line. */
 static void read_option_file(struct text *path, void *options)
 {
@@ -314,7 +322,7 @@ static void read_option_file(struct text *path, void *options)
     while (next_data(&t)) {
         const char *name = next_word(&t, "an option", "= ");
         const struct option *option = find_option(name);
-        char *value = new_text("%s", rest_of(&t));
+        char *value = keep(options, new_text("%s", rest_of(&t)));
         if (!option || option->read == read_option_file) {
             die_at(&t, "there is no option \"%s\"; see --help", name);
         }
@@ -322,10 +330,11 @@ static void read_option_file(struct text *path, void *options)
             die_at(&t, "option %s needs a value", name);
         }
         const char *argument = option->help + 5 + strlen(name);
-        struct text text = text_of(make_printable(new_text("%s:%zu: %s %s", path->at, t.line, name, value)), value);
+        struct text text =
+            text_of(make_printable(keep(options, new_text("%s:%zu: %s %s", path->at, t.line, name, value))), value);
         if (slash && *value != '/' && strcmp(value, "none") != 0 &&
             (strncmp(argument, "FILE ", 5) == 0 || strncmp(argument, "FOLDER ", 7) == 0)) {
-            text.at = new_text("%.*s/%s", (int)(slash - path->at), path->at, value);
+            text.at = keep(options, new_text("%.*s/%s", (int)(slash - path->at), path->at, value));
         }
         option->read(&text, (char *)options + option->offset);
     }
@@ -424,7 +433,7 @@ struct options read_options(int argc, char **argv)
         if (!value || !*value) {
             die("option %s needs a value; see --help", name);
         }
-        struct text text = text_of(new_text("option %s %s", name, value), value);
+        struct text text = text_of(keep(&o, new_text("option %s %s", name, value)), value);
         option->read(&text, (char *)&o + option->offset);
     }
     check_options(&o);
@@ -435,4 +444,17 @@ struct options read_options(int argc, char **argv)
         o.frequencies = NULL;
     }
     return o;
+}
+
+void free_options(struct options *o)
+{
+    for (size_t k = 0; k < o->texts.count; k++) {
+        free(o->texts.text[k]);
+    }
+    free(o->texts.text);
+    free(o->damping.value);
+    free_contacts(&o->contacts);
+    free(o->loads.load);
+    free(o->outputs.place);
+    free(o->field.value);
 }

@@ -32,10 +32,15 @@ struct options {
     double step;
     int law;
     size_t threads; /* 0: one a core */
+    struct texts {
+        char **text; /* [count] */
+        size_t count, room;
+    } texts; /* what options point to */
 };
 
 /* Reads the command line; prints help or version, or ends the program with a message, where that is due. */
 struct options read_options(int argc, char **argv);
+void free_options(struct options *o);
 
 /* 1 if the limit of a contact follows the option --limits. */
 int limits_vary(const struct options *o);
