@@ -144,7 +144,7 @@ int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, dou
         if (sparse && !m->count && tribo_cholmod) {
             status = tribo_cholesky_create(&m->sparse, &m->s, &m->s, &where, &x);
         } else {
-            m->band = malloc(n * (m->below + 1) * sizeof *m->band);
+            m->band = n < INT_MAX ? malloc(n * (m->below + 1) * sizeof *m->band) : NULL;
             where = m->band ? band_factorize(m) : 0;
             status = !m->band ? TRIBO_ERR_MEMORY : where < n ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
         }
