@@ -121,4 +121,34 @@ TEST(one_after_the_other)
     tribo_destroy(fresh);
 }
 
-TEST_MAIN("coupled", {gauss_seidel_agrees, 60}, {fixed_point_after_many_changes, 60}, {one_after_the_other, 300})
+/* Box problems by what makes them solutions: R of rows of sizes from 1e-4 to 1e4, bounds beyond all forces, on one side of 0, equal,
+ * and of the size of the forces. */
+TEST(boxes)
+{
+    struct random g = random_of(_i);
+    const size_t n = 1 + below(&g, 12);
+    const struct recipe recipe = {n, 2 * n, 4.0, 0.0, 1.0, 0.0, 1.0, 0.0};
+    struct problem p = problem_create(&g, &recipe);
+    double lo[LARGEST], hi[LARGEST], f[LARGEST];
+    tribo_context *c;
+    for (size_t i = 0; i < n; i++) {
+        const size_t kind = below(&g, 5);
+        const double own = sqrt(p.r[i * n + i]);
+        p.a[i] = own * uniform(&g, -1.0, 1.0);
+        hi[i] = kind < 2 ? 1e200 : kind == 2 ? 0.0 : uniform(&g, 0.0, 1.0) / own;
+        lo[i] = kind == 0 ? -1e200 : kind == 4 ? hi[i] : kind == 1 ? 0.0 : -uniform(&g, 0.0, 1.0) / own;
+    }
+    assert_ok(tribo_create(&c, n));
+    assert_ok(tribo_set_operator_dense(c, p.r));
+    assert_ok(tribo_solve_box(c, p.a, lo, hi, f));
+    for (size_t i = 0; i < n; i++) {
+        const double size = balancing_noise(&p, i, f) * p.r[i * n + i] / DBL_EPSILON,
+                     pull = (double)acceleration(&p, i, f) / size;
+        require(f[i] >= lo[i] && f[i] <= hi[i], "f[%zu] = %g is not within %g and %g", i, f[i], lo[i], hi[i]);
+        require(f[i] == lo[i] || pull <= 1e-13, "contact %zu: %g above", i, pull);
+        require(f[i] == hi[i] || pull >= -1e-13, "contact %zu: %g below", i, pull);
+    }
+    tribo_destroy(c);
+}
+
+TEST_MAIN("coupled", {boxes, 500}, {gauss_seidel_agrees, 60}, {fixed_point_after_many_changes, 60}, {one_after_the_other, 300})

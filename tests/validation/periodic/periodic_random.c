@@ -276,12 +276,21 @@ static int find_traces(const struct structure *s, tribo_driver *drv, const doubl
     return 1;
 }
 
+/* NULL, or how the sum of n multipliers, and of their squares, differs from traces. */
+static const char *off_traces(size_t n, const double *sum, const double *trace)
+{
+    const double usual = 1e-5 * (double)n;
+    const char *off = difference("sum of multipliers", sum[0], trace[0], fmax(usual, 1e-7 * fabs(sum[0])));
+    return off ? off : difference("sum of their squares", sum[1], trace[1], fmax(usual, 1e-7 * fabs(sum[1])));
+}
+
 /* The sum of the multipliers, and of their squares, is the trace of the map's derivative, and of its square: of its differences
- * with the longest of a few steps that reaches no other order of events. */
+ * with the longest of a few steps that reaches no other order of events, or of two of these, which extrapolate to 0. Multipliers
+ * that are large have sums with the rounding of their size. */
 static void check_multipliers(const struct structure *s, tribo_driver *drv, const double *y, double *re, double *im)
 {
     const size_t n = 2 * s->ndof;
-    double trace[2], sum[2] = {0};
+    double trace[2], last[2] = {HUGE_VAL, HUGE_VAL}, sum[2] = {0};
     assert_ok(tribo_driver_get_multipliers(drv, re, im));
     for (size_t i = 0; i < n; i++) {
         sum[0] += re[i];
@@ -293,8 +302,13 @@ static void check_multipliers(const struct structure *s, tribo_driver *drv, cons
         if (!find_traces(s, drv, y, h * fmax(largest(y, n), 1e-3), trace)) {
             return;
         }
-        off = difference("sum of multipliers", sum[0], trace[0], 1e-5 * (double)n);
-        off = off ? off : difference("sum of their squares", sum[1], trace[1], 1e-5 * (double)n);
+        off = off_traces(n, sum, trace);
+        for (int k = 0; off && k < 2; k++) {
+            const double coarse = last[k];
+            last[k] = trace[k];
+            trace[k] += (trace[k] - coarse) / 99.0;
+        }
+        off = off ? off_traces(n, sum, trace) : off;
     }
     require(!off, "%s", off);
 }
@@ -373,6 +387,13 @@ TEST(held_above_kinetic)
     check_static_limits(seeds[_i], "exact");
 }
 
+/* Motions that small changes bring to other motions soon: a difference with one step is right to a few digits only. */
+TEST(strongly_unstable)
+{
+    static const int seeds[] = {2822, 3271};
+    check_static_limits(seeds[_i], "exact");
+}
+
 TEST(falling_limits)
 {
     check_static_limits(_i, "event");
@@ -395,4 +416,4 @@ TEST(event)
 }
 
 TEST_MAIN("periodic_random", {comes_back, 500}, {marched_first, 1}, {marching, 12}, {multipliers, 40}, {static_limits, 100},
-          {held_above_kinetic, 4}, {falling_limits, 40}, {event, 12})
+          {held_above_kinetic, 4}, {strongly_unstable, 2}, {falling_limits, 40}, {event, 12})
