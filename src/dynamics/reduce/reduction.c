@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/layout.h"
 #include "common/real.h"
 #include "dynamics/system/model.h"
 
@@ -62,65 +61,60 @@ static int project_damping(const tribo_model *m, const struct reduced *r, struct
 /* A contact is rigid if the flexibility that the modes lack is at most this part of its flexibility. */
 #define RIGID 1e-7
 
-/* A structure reduced to modes q and a compliance G at its soft contacts: springs before sliders, and residual flexibility, the
+/* A structure reduced to modes q has a compliance G at its soft contacts: springs before sliders, and residual flexibility, the
  * flexibility that the modes lack, with which w = P q + G f of the soft contacts moves the structure too:
  *     q'' + Omega^2 q = modes' p + P'f,   displacements = Phi q + residual'f. */
-struct compliant {
-    size_t modes, contacts, soft;
-    size_t *contact;       /* [soft] ascending */
-    double *shapes;        /* [contacts][modes] P of all contacts */
-    double *own, *entries; /* [contacts] G_ii; [contacts][contacts] G */
-    double *by;            /* [contacts][modes + soft] -f by q and w: G^-1 P and -G^-1 */
-};
 
-/* Sets contact, own and entries. Contacts with springs before their sliders (compliance [contacts] > 0; NULL: no springs) are
- * soft, and contacts that are not rigid by RIGID. */
-static void find_soft(struct compliant *e, const struct reduced *r, const double *compliance)
+/* Sets own [ncontact] = G_ii; r->flexibility = G. Contacts with springs before their sliders (compliance [ncontact] > 0; NULL: no
+ * springs) are soft, and contacts that are not rigid by RIGID. shapes [ncontact][count]: P of all contacts. Returns the number of
+ * soft contacts. */
+static size_t find_soft(struct reduced *r, size_t contacts, const double *shapes, const double *compliance, double *own)
 {
-    for (size_t i = 0; i < e->contacts; i++) {
-        const double *shape = e->shapes + i * e->modes, spring = compliance ? compliance[i] : 0.0;
-        const double own = spring + (r->flexibility ? r->flexibility[i * e->contacts + i] : 0.0);
-        double whole = own;
-        for (size_t k = 0; k < e->modes; k++) {
+    size_t soft = 0;
+    for (size_t i = 0; i < contacts; i++) {
+        const double *shape = shapes + i * r->count, spring = compliance ? compliance[i] : 0.0;
+        own[i] = spring + (r->flexibility ? r->flexibility[i * contacts + i] : 0.0);
+        double whole = own[i];
+        for (size_t k = 0; k < r->count; k++) {
             whole += r->omega2[k] > 0.0 ? shape[k] * shape[k] / r->omega2[k] : 0.0;
         }
-        if (spring > 0.0 || own > RIGID * whole) {
-            e->contact[e->soft++] = i;
-            e->own[i] = own;
-        }
+        const int is_soft = spring > 0.0 || own[i] > RIGID * whole;
+        own[i] = is_soft ? own[i] : 0.0;
+        soft += (size_t)is_soft;
     }
-    for (size_t a = 0; a < e->soft; a++) {
-        for (size_t b = 0; b < e->soft; b++) {
-            const size_t at = e->contact[a] * e->contacts + e->contact[b];
-            e->entries[at] = a == b ? e->own[e->contact[a]] : r->flexibility ? r->flexibility[at] : 0.0;
-        }
+    for (size_t at = 0; r->flexibility && at < contacts * contacts; at++) {
+        const double a = own[at / contacts], b = own[at % contacts];
+        r->flexibility[at] = at % (contacts + 1) == 0 ? a : a > 0.0 && b > 0.0 ? r->flexibility[at] : 0.0;
     }
+    return soft;
 }
 
-/* Sets sys->reduced: modes [given][modes + soft] = displacements by q and w; truncation. Returns 0 if out of memory. */
-static int set_modes(const struct compliant *e, size_t given, const struct reduced *r, tribo_system *sys)
+/* Sets sys->reduced: modes [given][dofs] = displacements by unit q and w; truncation. Returns 0 if out of memory. */
+static int set_modes(const struct reduced *r, size_t given, tribo_system *sys)
 {
-    const size_t m = e->modes, n = m + e->soft;
+    const size_t n = sys->expansion.dofs, *contact = sys->compliance.contact;
+    const size_t soft = r->residual ? sys->compliance.count : 0;
+    double *unit = calloc(tribo_system_dimension(sys) + tribo_system_size(sys), sizeof *unit);
+    double *state = unit + tribo_system_dimension(sys);
     sys->given = given;
     sys->reduced = (struct reduction){malloc(given * n * sizeof(double)), r->truncation};
-    for (size_t a = 0; a < e->soft; a++) {
-        double *row = e->by + e->contact[a] * n;
-        memcpy(row, e->shapes + e->contact[a] * m, m * sizeof *row);
-        row[m + a] = -1.0;
-    }
-    if (e->soft) {
-        tribo_compliance_solve(sys, NULL, n, e->by);
-    }
-    for (size_t k = 0; sys->reduced.modes && k < n; k++) {
+    for (size_t k = 0; unit && sys->reduced.modes && k < n; k++) {
+        if (soft) {
+            unit[k] = 1.0;
+            tribo_system_read_state(sys, unit, state);
+            unit[k] = 0.0;
+        }
         for (size_t i = 0; i < given; i++) {
             double *x = sys->reduced.modes + i * n + k;
-            *x = k < m ? r->phi[k * given + i] : 0.0;
-            for (size_t a = 0; r->residual && a < e->soft; a++) {
-                *x -= e->by[e->contact[a] * n + k] * r->residual[e->contact[a] * given + i];
+            *x = k < r->count ? r->phi[k * given + i] : 0.0;
+            for (size_t a = 0; a < soft; a++) {
+                *x += state[2 * r->count + a] * r->residual[contact[a] * given + i];
             }
         }
     }
-    return sys->reduced.modes != NULL;
+    const int done = unit && sys->reduced.modes;
+    free(unit);
+    return done;
 }
 
 /* The system is q'' + Phi'C Phi q' + diag(omega^2) q = modes' p + P'f. */
@@ -129,34 +123,25 @@ int tribo_model_reduce(tribo_model *m, tribo_system **sys)
     struct reduced r;
     int status = tribo_model_find_modes(m, &r);
     const size_t c = m->ncontact, k = r.count;
-    struct compliant e = {.modes = k, .contacts = c};
-    struct layout l = {0};
-    tribo_model modal = {.ndof = k, .ncontact = c, .nmode = k, .message = m->message};
-    size_t where = 0;
-    do {
-        e.contact = tribo_layout_array(&l, c, sizeof *e.contact);
-        e.shapes = tribo_layout_array(&l, c * k, sizeof *e.shapes);
-        e.own = tribo_layout_array(&l, c, sizeof *e.own);
-        e.entries = tribo_layout_array(&l, c * c, sizeof *e.entries);
-        e.by = tribo_layout_array(&l, c * (k + c), sizeof *e.by);
-    } while (!status && !l.memory && tribo_layout_zeros(&l));
-    if (!l.memory) {
-        tribo_reduced_free(&r);
-        return status ? status : TRIBO_ERR_MEMORY;
+    size_t where = 0, soft = 0;
+    double *own = calloc(c * (k + 1) + 1, sizeof *own), *shapes = own + c;
+    status = status || own ? status : TRIBO_ERR_MEMORY;
+    if (!status) {
+        tribo_model modal = {.ndof = k, .ncontact = c, .nmode = k, .message = m->message};
+        find_shapes(m, &r, shapes);
+        soft = find_soft(&r, c, shapes, m->compliance, own);
+        const int done = tribo_matrix_diagonal(&modal.mass, k, NULL) && tribo_matrix_diagonal(&modal.stiffness, k, r.omega2) &&
+                         project_damping(m, &r, &modal.damping) && tribo_matrix_from_dense(&modal.direction, c, k, shapes);
+        status = done ? tribo_model_build_massive(&modal, own, sys) : TRIBO_ERR_MEMORY;
+        tribo_model_free(&modal);
     }
-    find_shapes(m, &r, e.shapes);
-    find_soft(&e, &r, m->compliance);
-    const int done = tribo_matrix_diagonal(&modal.mass, k, NULL) && tribo_matrix_diagonal(&modal.stiffness, k, r.omega2) &&
-                     project_damping(m, &r, &modal.damping) && tribo_matrix_from_dense(&modal.direction, c, k, e.shapes);
-    status = done ? tribo_model_build_massive(&modal, e.own, sys) : TRIBO_ERR_MEMORY;
-    tribo_model_free(&modal);
-    if (!status && e.soft) {
-        struct expansion x = {k, m->flexible ? 0 : e.soft, .place = malloc((k + e.soft) * sizeof *x.place)};
+    if (!status && soft) {
+        struct expansion x = {k, m->flexible ? 0 : soft, .place = malloc((k + soft) * sizeof *x.place)};
         for (size_t d = 0; x.place && d < k; d++) {
             x.place[d] = d;
         }
-        status = x.place ? tribo_compliance_create(*sys, e.own, r.flexibility ? e.entries : NULL, &where) : TRIBO_ERR_MEMORY;
-        status = status || tribo_expansion_create(*sys, &x, e.own) ? status : TRIBO_ERR_MEMORY;
+        status = x.place ? tribo_compliance_create(*sys, own, r.flexibility, &where) : TRIBO_ERR_MEMORY;
+        status = status || tribo_expansion_create(*sys, &x, own) ? status : TRIBO_ERR_MEMORY;
         tribo_expansion_free(&x);
         status =
             status == TRIBO_ERR_INDEFINITE
@@ -166,9 +151,9 @@ int tribo_model_reduce(tribo_model *m, tribo_system **sys)
                               k, k == 1 ? " leaves" : "s leave", where)
                 : status;
     }
-    status = status || set_modes(&e, m->ndof, &r, *sys) ? status : TRIBO_ERR_MEMORY;
+    status = status || set_modes(&r, m->ndof, *sys) ? status : TRIBO_ERR_MEMORY;
     tribo_reduced_free(&r);
-    free(l.memory);
+    free(own);
     return status;
 }
 
