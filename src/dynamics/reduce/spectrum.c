@@ -18,23 +18,22 @@ struct highest {
     const tribo_system *sys;
     double stiffness, damping;
     size_t n;
-    double *v, *mv, *before, *next, *m_next; /* [n] vector k; M v; vector k - 1; vector k + 1; M next */
-    double alpha[MOST], beta[MOST];          /* diagonals of the tridiagonal matrix */
-    double values[MOST], work[MOST];         /* workspace */
+    double *v, *mv, *next;           /* [n] vector k; M v; vector k + 1 */
+    double alpha[MOST], beta[MOST];  /* diagonals of the tridiagonal matrix */
+    double values[MOST], work[MOST]; /* workspace */
 };
 
-/* Sets v, mv = next, m_next, normalized, and before = v. Returns the norm of next in M, 0 if it is at most `least`. */
-static double advance(struct highest *l, double least)
+/* Sets mv = M next, v = next, normalized; next = - norm times the v before. Returns the norm of next in M. */
+static double advance(struct highest *l)
 {
-    tribo_matrix_multiply(&l->sys->mass, l->next, l->m_next);
-    const double square = tribo_dot(l->next, l->m_next, l->n), norm = square > 0.0 ? sqrt(square) : 0.0;
-    if (!(norm > least)) {
-        return 0.0;
-    }
+    tribo_matrix_multiply(&l->sys->mass, l->next, l->mv);
+    const double square = tribo_dot(l->next, l->mv, l->n), norm = square > 0.0 ? sqrt(square) : 0.0;
+    const double part = norm > 0.0 ? 1.0 / norm : 0.0;
     for (size_t i = 0; i < l->n; i++) {
-        l->before[i] = l->v[i];
-        l->v[i] = l->next[i] / norm;
-        l->mv[i] = l->m_next[i] / norm;
+        const double before = l->v[i];
+        l->v[i] = part * l->next[i];
+        l->mv[i] *= part;
+        l->next[i] = -norm * before;
     }
     return norm;
 }
@@ -45,21 +44,18 @@ static int iterate(struct highest *l, double *value)
     double last = -HUGE_VAL, size = 0.0;
     uint64_t seed = 3;
     int status = TRIBO_OK;
-    memset(l->v, 0, n * sizeof *l->v);
     tribo_scatter(&seed, n, l->next);
-    advance(l, 0.0);
+    advance(l);
     for (size_t k = 1, check = 8; !status && k <= most; k++) {
-        memset(l->next, 0, n * sizeof *l->next);
         tribo_matrix_multiply_add(&l->sys->stiffness, l->stiffness, l->v, l->next);
         if (l->damping != 0.0) {
             tribo_matrix_multiply_add(&l->sys->damping, l->damping, l->v, l->next);
         }
         l->alpha[k - 1] = tribo_dot(l->mv, l->next, n);
         tribo_add(l->next, -l->alpha[k - 1], l->v, n);
-        tribo_add(l->next, k > 1 ? -l->beta[k - 2] : 0.0, l->before, n);
-        l->beta[k - 1] = advance(l, 1e-13 * size);
+        l->beta[k - 1] = advance(l);
+        const int exhausted = !(l->beta[k - 1] > 1e-13 * size) || k == n;
         size = greater(size, fabs(l->alpha[k - 1]) + l->beta[k - 1]);
-        const int exhausted = l->beta[k - 1] == 0.0 || k == n;
         if (exhausted || k == most || k == check) {
             const int rows = (int)k;
             int info = 0;
@@ -96,12 +92,10 @@ int tribo_system_highest(const tribo_system *sys, double stiffness, double dampi
         l.damping = 0.0;
     }
     int status = TRIBO_ERR_MEMORY;
-    l.v = malloc(5 * n * sizeof *l.v);
+    l.v = calloc(3 * n, sizeof *l.v);
     if (l.v) {
         l.mv = l.v + n;
-        l.before = l.mv + n;
-        l.next = l.before + n;
-        l.m_next = l.next + n;
+        l.next = l.mv + n;
         status = iterate(&l, value);
         *value = bound * greater(*value, 0.0);
     }

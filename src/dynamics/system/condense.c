@@ -21,7 +21,7 @@ struct condensed {
     double *row, *sum, *size; /* [ndof] workspace; sum of the entries of a row, and of their sizes, by columns */
     size_t columns, *column;  /* columns of a row with an entry */
     double *own, *shared;     /* [ncontact] G_ii; [ncontact][ncontact] G, NULL if G is diagonal */
-    struct matrix kww;        /* block of K */
+    struct matrix kww, kqw;   /* blocks of K */
     struct cholesky factor;   /* Cholesky factor of K_ww */
 };
 
@@ -29,6 +29,7 @@ static void condensed_free(struct condensed *s)
 {
     tribo_expansion_free(&s->x);
     tribo_matrix_free(&s->kww);
+    tribo_matrix_free(&s->kqw);
     tribo_cholesky_free(&s->factor);
     free(s->row);
     free(s->column);
@@ -82,13 +83,14 @@ static int check_damping(const tribo_model *m, const struct condensed *s)
     return TRIBO_OK;
 }
 
-/* to = columns w of a, of the rows w (a = K), or of all rows (a = J). Returns 0 if out of memory. */
-static int take_without(const struct condensed *s, const struct matrix *a, int all, struct matrix *to)
+/* to [rows][without] = columns w of a, of the rows with place first .. first + rows - 1; place NULL: of all rows. Returns 0 if out of
+ * memory. */
+static int take_without(const struct condensed *s, const struct matrix *a, const size_t *place, size_t first, size_t rows,
+                        struct matrix *to)
 {
-    const size_t rows = all ? a->rows : s->without;
     struct triplets t = {0};
     for (size_t i = 0; i < a->rows; i++) {
-        const size_t row = all ? i : s->x.place[i] - s->with;
+        const size_t row = (place ? place[i] : i) - first;
         for (size_t e = a->first[i]; row < rows && e < a->first[i + 1]; e++) {
             if (s->x.place[a->col[e]] >= s->with) {
                 tribo_triplets_put(&t, row, s->x.place[a->col[e]] - s->with, a->val[e]);
@@ -121,21 +123,11 @@ static int factorize_without(const tribo_model *m, struct condensed *s)
                                       : status;
 }
 
-/* s->row = K_ww^-1 (columns w of row i of a)', a [..][ndof]. Returns 1, or 0 if all these entries are 0. */
+/* s->row = K_ww^-1 (row i of a)', a [..][without]. Returns 0 if the row has no entry. */
 static int solve_row(struct condensed *s, const struct matrix *a, size_t i)
 {
-    int any = 0;
-    memset(s->row, 0, s->without * sizeof *s->row);
-    for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
-        if (s->x.place[a->col[e]] >= s->with && a->val[e] != 0.0) {
-            s->row[s->x.place[a->col[e]] - s->with] = a->val[e];
-            any = 1;
-        }
-    }
-    if (any) {
-        tribo_cholesky_solve(&s->factor, 1, s->row);
-    }
-    return any;
+    tribo_matrix_get_row(a, i, s->row);
+    return a->first[i] < a->first[i + 1] && tribo_cholesky_solve(&s->factor, 1, s->row);
 }
 
 /* Sets own = G_ii, give, and shared = G if an entry off the diagonal is more than rounding. Returns 0 if out of memory. */
@@ -145,7 +137,7 @@ static int find_compliance(const tribo_model *m, struct condensed *s)
     struct triplets give = {0};
     int done = 1;
     for (size_t i = 0; done && i < n; i++) {
-        const int touches = solve_row(s, &m->direction, i);
+        const int touches = solve_row(s, &s->x.touch, i);
         s->own[i] = (m->compliance ? m->compliance[i] : 0.0) + tribo_matrix_row_dot(&s->x.touch, i, s->row);
         for (size_t k = 0; touches && k < s->without; k++) {
             tribo_triplets_put(&give, k, i, s->row[k]);
@@ -168,12 +160,12 @@ static int find_compliance(const tribo_model *m, struct condensed *s)
 }
 
 /* Sets follow = -K_ww^-1 K_wq. Returns 0 if out of memory. */
-static int find_follow(const tribo_model *m, struct condensed *s)
+static int find_follow(struct condensed *s)
 {
     struct triplets t = {0};
-    for (size_t d = 0; d < m->ndof; d++) {
-        for (size_t k = 0, end = s->x.place[d] < s->with && solve_row(s, &m->stiffness, d) ? s->without : 0; k < end; k++) {
-            tribo_triplets_put(&t, k, s->x.place[d], -s->row[k]);
+    for (size_t q = 0; q < s->with; q++) {
+        for (size_t k = 0, end = solve_row(s, &s->kqw, q) ? s->without : 0; k < end; k++) {
+            tribo_triplets_put(&t, k, q, -s->row[k]);
         }
     }
     return tribo_triplets_finish(&t, s->without, s->with, &s->x.follow);
@@ -252,11 +244,13 @@ int tribo_model_condense(tribo_model *m, tribo_system **sys)
         condensed_free(&s);
         return status ? status : tribo_model_build_massive(m, NULL, sys);
     }
-    int done = take_without(&s, &m->stiffness, 0, &s.kww) && take_without(&s, &m->direction, 1, &s.x.touch);
+    int done = take_without(&s, &m->stiffness, s.x.place, s.with, s.without, &s.kww) &&
+               take_without(&s, &m->stiffness, s.x.place, 0, s.with, &s.kqw) &&
+               take_without(&s, &m->direction, NULL, 0, m->ncontact, &s.x.touch);
     status = done ? check_damping(m, &s) : TRIBO_ERR_MEMORY;
     status = status ? status : factorize_without(m, &s);
     if (!status) {
-        done = find_compliance(m, &s) && find_follow(m, &s) && replace_matrices(m, &s);
+        done = find_compliance(m, &s) && find_follow(&s) && replace_matrices(m, &s);
         status = done ? tribo_model_build_massive(m, s.own, sys) : TRIBO_ERR_MEMORY;
     }
     if (!status) {
