@@ -148,26 +148,6 @@ static int factorize_mass(struct modal_build *b, const struct matrix *z, struct 
     return status;
 }
 
-/* Sets the message for a failure of tribo_normal_modes. Returns status. */
-static int build_modes_failed(const struct modal_build *b, int status, const struct doubt *doubt)
-{
-    switch (status) {
-    case TRIBO_ERR_NOT_FINITE:
-        return tribo_error(b->sys->message, status, "stiffness over mass overflows");
-    case TRIBO_ERR_UNSUPPORTED:
-        return tribo_error(b->sys->message, status,
-                           "with contacts at rest held, omega^2 = %g of mode %zu is hardly more than rounding of the "
-                           "stiffness, which comes to %g: make the stiffest parts softer, or rigid",
-                           doubt->omega2, doubt->mode, doubt->noise);
-    case TRIBO_ERR_NO_CONVERGENCE:
-        return tribo_error(b->sys->message, status,
-                           "with contacts at rest held, omega^2 = %g of mode %zu does not come out pure: take method event",
-                           doubt->omega2, doubt->mode);
-    default:
-        return status;
-    }
-}
-
 /* Sets stiffness = S'Z'KZ S and phi = Z S, (Z'MZ)^-1 = S S'. Returns a status. */
 static int find_coordinates(struct modal_build *b, const struct matrix *z, const struct cholesky *mass)
 {
@@ -201,7 +181,7 @@ static int find_modes(struct modal_build *b)
     const tribo_system *sys = b->sys;
     struct matrix z = {0};
     struct cholesky own = {0};
-    struct doubt doubt = {0};
+    const struct modes_text text = {sys->message, "with contacts at rest held, ", "take method event"};
     int status = h->rests == 0 || tribo_constraints_basis(&h->ties, h->n, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     const int held = z.rows > 0;
     const size_t n = h->n, m = h->modes = held ? z.cols : n;
@@ -217,9 +197,8 @@ static int find_modes(struct modal_build *b)
     if (!status && b->powers) {
         status = find_coordinates(b, &z, held ? &own : &sys->factor);
     } else if (!status && m > 0) {
-        status = tribo_normal_modes(b->stiffness, sys->expansion.terms, &z, held ? &own : &sys->factor, m, h->omega2, b->shape,
-                                    &doubt);
-        status = build_modes_failed(b, status, &doubt);
+        status =
+            tribo_normal_modes(b->stiffness, sys->expansion.terms, &z, held ? &own : &sys->factor, m, h->omega2, b->shape, &text);
         tribo_transpose(m, n, b->shape, h->phi);
     }
     if (!status) {

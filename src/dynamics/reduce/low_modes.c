@@ -44,33 +44,16 @@ struct shifted {
 
 /* ------------------------------------------------------------------------------------------------------------------- messages */
 
-/* Writes the message for a status of tribo_normal_modes, or, without a doubt, of a search that found `count` modes. Returns the
- * status. */
-static int modes_failed(const tribo_model *m, int status, const struct doubt *doubt, size_t count)
+/* Writes the message for a status of a search that found `count` modes. Returns the status. */
+static int search_failed(const tribo_model *m, int status, size_t count)
 {
-    switch (status) {
-    case TRIBO_OK:
-    case TRIBO_ERR_MEMORY:
-        return status;
-    case TRIBO_ERR_NOT_FINITE:
-        return tribo_error(m->message, status, "stiffness over mass overflows");
-    case TRIBO_ERR_SIZE:
-        return tribo_error(m->message, status, "nmode = %zu, but the mass matrix lets the structure have %zu mode%s only",
-                           m->nmode, count, plural(count));
-    case TRIBO_ERR_UNSUPPORTED:
-        return tribo_error(
-            m->message, status,
-            "omega^2 = %g of mode %zu is hardly more than rounding of the stiffness, which comes to %g: make the stiffest "
-            "parts softer, or rigid",
-            doubt->omega2, doubt->mode, doubt->noise);
-    default:
-        return doubt ? tribo_error(m->message, status,
-                                   "omega^2 = %g of mode %zu does not come out pure: reduce the system to fewer modes",
-                                   doubt->omega2, doubt->mode)
-                     : tribo_error(m->message, status,
-                                   "nmode = %zu: these modes are not found, or not counted; reduce the system to fewer or more",
-                                   m->nmode);
-    }
+    return !status || status == TRIBO_ERR_MEMORY ? status
+           : status == TRIBO_ERR_SIZE
+               ? tribo_error(m->message, status, "nmode = %zu, but the mass matrix lets the structure have %zu mode%s only",
+                             m->nmode, count, plural(count))
+               : tribo_error(m->message, status,
+                             "nmode = %zu: these modes are not found, or not counted; reduce the system to fewer or more",
+                             m->nmode);
 }
 
 /* ---------------------------------------------------------------------------------------------------------------- the factors */
@@ -155,7 +138,7 @@ static int find_among(const tribo_model *m, size_t count, const double *x, size_
     const size_t n = m->ndof;
     struct matrix rows = {0}, z = {0}, mass = {0};
     struct cholesky c = {0};
-    struct doubt doubt = {0};
+    const struct modes_text text = {m->message, "", "reduce the system to fewer modes"};
     size_t where;
     double pivot, *product = malloc(count * count * sizeof *product);
     const int done = product && tribo_matrix_from_dense(&rows, count, n, x) && tribo_matrix_transpose(&z, &rows) &&
@@ -163,7 +146,8 @@ static int find_among(const tribo_model *m, size_t count, const double *x, size_
     tribo_matrix_free(&rows);
     free(product);
     int status = done ? tribo_cholesky_create(&c, &mass, &mass, &where, &pivot) : TRIBO_ERR_MEMORY;
-    status = status ? status : tribo_normal_modes(&m->stiffness, NULL, &z, &c, wanted, r->omega2, r->phi, &doubt);
+    status = search_failed(m, status, 0);
+    status = status ? status : tribo_normal_modes(&m->stiffness, NULL, &z, &c, wanted, r->omega2, r->phi, &text);
     tribo_cholesky_free(&c);
     tribo_matrix_free(&z);
     for (size_t k = 0; !status && k < wanted; k++) {
@@ -171,7 +155,7 @@ static int find_among(const tribo_model *m, size_t count, const double *x, size_
         r->omega2[k] = r->omega2[k] != 0.0 ? tribo_matrix_form(&m->stiffness, phi, phi) : 0.0;
     }
     r->count = wanted;
-    return modes_failed(m, status, &doubt, 0);
+    return status;
 }
 
 /* Checks that rounding moves no mode across low->above, where modes were counted; and that each mode is an eigenvector, by SAME
@@ -207,16 +191,16 @@ static int find_densely(const tribo_model *m, struct reduced *r)
 {
     const struct matrix whole = {0};
     struct cholesky mass;
-    struct doubt doubt = {0};
+    const struct modes_text text = {m->message, "", "reduce the system to fewer modes"};
     int status = m->ndof > DENSE_MOST ? tribo_model_too_large(m) : tribo_model_factorize(m, &mass);
     if (status) {
         return status;
     }
-    status = tribo_normal_modes(&m->stiffness, NULL, &whole, &mass, m->nmode, r->omega2, r->phi, &doubt);
+    status = tribo_normal_modes(&m->stiffness, NULL, &whole, &mass, m->nmode, r->omega2, r->phi, &text);
     tribo_cholesky_free(&mass);
     r->count = m->nmode;
     r->truncation.above = m->nmode == m->ndof ? HUGE_VAL : status ? 0.0 : r->omega2[m->nmode - 1];
-    return modes_failed(m, status, &doubt, 0);
+    return status;
 }
 
 /* Finds the lowest modes: by Lanczos' method for large structures with few modes, and for singular mass. Returns a status. */
@@ -238,13 +222,13 @@ static int find_lowest(const tribo_model *m, struct shifted *s, struct reduced *
         return status;
     }
     status = tribo_low_modes(&m->stiffness, &m->mass, s->shift, &s->factor, m->nmode, &low);
-    status = status ? modes_failed(m, status, NULL, low.count) : find_among(m, low.count, low.phi, m->nmode, r);
+    status = status ? search_failed(m, status, low.count) : find_among(m, low.count, low.phi, m->nmode, r);
     free(low.phi);
     if (status) {
         return status;
     }
     r->truncation.above = low.below == m->nmode ? low.above : r->omega2[m->nmode - 1];
-    return modes_failed(m, check_modes(m, s, &low, r), NULL, 0);
+    return search_failed(m, check_modes(m, s, &low, r), 0);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- attachment modes */

@@ -34,6 +34,7 @@
 #define EXPLAINED 8.0
 
 struct spectrum {
+    const struct modes_text *text;
     const struct matrix *stiffness, *z; /* K; Z, without rows: the identity */
     size_t n;                           /* number of displacements y */
     double *k;                          /* [n][n] Z'KZ */
@@ -151,8 +152,8 @@ static double find_impurity(struct spectrum *s, size_t k, const double *phi, int
     return energy;
 }
 
-/* Sets *omega2 = phi'K phi of mode k, or 0 if that is rounding, and *doubt if in doubt. Returns a status. */
-static int modes_judge(struct spectrum *s, size_t k, const double *phi, double *omega2, struct doubt *doubt)
+/* Sets *omega2 = phi'K phi of mode k, or 0 if that is rounding. Returns a status. */
+static int modes_judge(struct spectrum *s, size_t k, const double *phi, double *omega2)
 {
     const size_t n = s->stiffness->rows;
     tribo_matrix_multiply(s->stiffness, phi, s->force);
@@ -164,12 +165,20 @@ static int modes_judge(struct spectrum *s, size_t k, const double *phi, double *
     int unexplained = 0;
     noise += find_impurity(s, k, phi, &unexplained);
     *omega2 = tribo_matrix_form(s->stiffness, phi, phi);
-    *doubt = (struct doubt){k, *omega2, noise};
     if (fabs(*omega2) <= NOTHING * noise) {
         *omega2 = 0.0;
         return TRIBO_OK;
     }
-    return !(fabs(*omega2) >= CERTAIN * noise) ? TRIBO_ERR_UNSUPPORTED : unexplained ? TRIBO_ERR_NO_CONVERGENCE : TRIBO_OK;
+    if (fabs(*omega2) >= CERTAIN * noise) {
+        return unexplained ? tribo_error(s->text->message, TRIBO_ERR_NO_CONVERGENCE,
+                                         "%somega^2 = %g of mode %zu does not come out pure: %s", s->text->circumstance, *omega2,
+                                         k, s->text->remedy)
+                           : TRIBO_OK;
+    }
+    return tribo_error(s->text->message, TRIBO_ERR_UNSUPPORTED,
+                       "%somega^2 = %g of mode %zu is hardly more than rounding of the stiffness, which comes to %g: make the "
+                       "stiffest parts softer, or rigid",
+                       s->text->circumstance, *omega2, k, noise);
 }
 
 /* Makes the first of the largest |phi_i| positive, because the sign of a mode would be chance. */
@@ -187,10 +196,10 @@ static void turn_positive(double *phi, size_t n)
 }
 
 int tribo_normal_modes(const struct matrix *k, const double *terms, const struct matrix *z, const struct cholesky *mass,
-                       size_t wanted, double *omega2, double *phi, struct doubt *doubt)
+                       size_t wanted, double *omega2, double *phi, const struct modes_text *text)
 {
     const size_t n = k->rows, m = z->rows ? z->cols : n;
-    struct spectrum s = {.stiffness = k, .z = z, .n = m};
+    struct spectrum s = {.text = text, .stiffness = k, .z = z, .n = m};
     struct layout l = {0};
     do {
         s.k = tribo_layout_array(&l, m * m, sizeof *s.k);
@@ -206,6 +215,11 @@ int tribo_normal_modes(const struct matrix *k, const double *terms, const struct
     if (!status) {
         tribo_matrix_roots(k, terms, s.root);
         status = m ? modes_find(&s, mass) : TRIBO_OK;
+        if (status == TRIBO_ERR_NOT_FINITE) {
+            tribo_error(text->message, status, "stiffness over mass overflows");
+        } else if (status && status != TRIBO_ERR_MEMORY) {
+            tribo_error(text->message, status, "%smodes do not come out pure: %s", text->circumstance, text->remedy);
+        }
     }
     for (size_t p = 0; !status && p < wanted; p++) {
         size_t lowest = p;
@@ -216,7 +230,7 @@ int tribo_normal_modes(const struct matrix *k, const double *terms, const struct
         tribo_exchange(s.y + p * m, s.y + lowest * m, m, 1);
         modes_expand(&s, p, phi + p * n);
         turn_positive(phi + p * n, n);
-        status = modes_judge(&s, p, phi + p * n, &omega2[p], doubt);
+        status = modes_judge(&s, p, phi + p * n, &omega2[p]);
         for (size_t q = p; !status && q > 0 && omega2[q] < omega2[q - 1]; q--) {
             tribo_exchange(&omega2[q], &omega2[q - 1], 1, 1);
             tribo_exchange(phi + q * n, phi + (q - 1) * n, n, 1);

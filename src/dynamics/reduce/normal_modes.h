@@ -9,12 +9,13 @@
 #ifndef TRIBO_NORMAL_MODES_H
 #define TRIBO_NORMAL_MODES_H
 
-#include "numerics/linalg.h"
+#include "dynamics/system/system.h"
 
-/* A mode in doubt, its omega^2, and the error of omega^2 by rounding of the stiffness. */
-struct doubt {
-    size_t mode;
-    double omega2, noise;
+/* Texts of a message about a mode in doubt. */
+struct modes_text {
+    char *message;            /* [TRIBO_MESSAGE] out, after an error other than TRIBO_ERR_MEMORY; NULL: not wanted */
+    const char *circumstance; /* beginning of the message */
+    const char *remedy;       /* end of the message: another way, for a mode that is mixed with others */
 };
 
 /* Finds the lowest modes, in the displacements q = Z y that constraints allow. omega^2 of rigid-body motions is exactly 0. An
@@ -26,10 +27,10 @@ struct doubt {
  * wanted  in          <= m, without other limit
  * omega2  [wanted] out     ascending
  * phi     [wanted][n] out  modal masses are 1, the first of the largest displacements is positive
- * doubt   out         with the last two errors
+ * text    in and out  message
  * Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_NOT_FINITE (K over M overflows), TRIBO_ERR_UNSUPPORTED (omega^2 of a mode is
  * hardly more than rounding), TRIBO_ERR_NO_CONVERGENCE. */
 int tribo_normal_modes(const struct matrix *k, const double *terms, const struct matrix *z, const struct cholesky *mass,
-                       size_t wanted, double *omega2, double *phi, struct doubt *doubt);
+                       size_t wanted, double *omega2, double *phi, const struct modes_text *text);
 
 #endif

@@ -262,7 +262,7 @@ TEST(graded_stiffness)
     double k[N * N] = {0}, omega2[N], phi[N * N], product = 1.0;
     const struct matrix whole = {0};
     const struct cholesky unit = {0};
-    struct doubt doubt;
+    const struct modes_text text = {NULL, "", ""};
     for (size_t i = 0; i < N; i++) {
         const double scale = pow(10.0, uniform(&g, -7.0, 7.0));
         /* tridiagonal (2, -1): determinant N + 1 */
@@ -282,7 +282,7 @@ TEST(graded_stiffness)
         k[i * N + i] *= 2.0 * k[i * N + i];
     }
     struct matrix a = dense(N, N, k);
-    assert_ok(tribo_normal_modes(&a, NULL, &whole, &unit, N, omega2, phi, &doubt));
+    assert_ok(tribo_normal_modes(&a, NULL, &whole, &unit, N, omega2, phi, &text));
     for (size_t i = 0; i < N; i++) {
         product /= omega2[i];
         require(omega2[i] > 0.0 && (i == 0 || omega2[i] >= omega2[i - 1]), "%g after %g", omega2[i], omega2[i ? i - 1 : 0]);
@@ -306,9 +306,9 @@ TEST(negative_stiffness)
     double omega2[3], phi[9];
     const struct matrix whole = {0};
     const struct cholesky unit = {0};
-    struct doubt doubt;
+    const struct modes_text text = {NULL, "", ""};
     struct matrix a = dense(3, 3, k);
-    assert_ok(tribo_normal_modes(&a, NULL, &whole, &unit, 3, omega2, phi, &doubt));
+    assert_ok(tribo_normal_modes(&a, NULL, &whole, &unit, 3, omega2, phi, &text));
     assert_close(omega2[0], low, 1e-14);
     assert_close(omega2[1] / 1e7, 1.0, 1e-13);
     assert_close(omega2[2] / 1e15, 1.0, 1e-15);
@@ -322,10 +322,10 @@ TEST(overflowing_stiffness)
     size_t where;
     const struct matrix whole = {0};
     struct cholesky c;
-    struct doubt doubt;
+    const struct modes_text text = {NULL, "", ""};
     struct matrix a = dense(2, 2, k), mass = diagonal(2, m);
     assert_ok(tribo_cholesky_create(&c, &mass, NULL, &where, &pivot));
-    assert_status(tribo_normal_modes(&a, NULL, &whole, &c, 2, omega2, phi, &doubt), TRIBO_ERR_NOT_FINITE);
+    assert_status(tribo_normal_modes(&a, NULL, &whole, &c, 2, omega2, phi, &text), TRIBO_ERR_NOT_FINITE);
     tribo_cholesky_free(&c);
     tribo_matrix_free(&mass);
     tribo_matrix_free(&a);
