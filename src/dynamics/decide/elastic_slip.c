@@ -68,7 +68,5 @@ void tribo_elastic_move(struct stick_slip *m, const tribo_system *sys, const dou
     for (size_t i = 0; sys->compliance.count && i < sys->ncontact; i++) {
         m->state.glide[i] = m->constant.elastic[i] ? tribo_stick_slip_velocity(m, sys, i, y) : 0.0;
     }
-    if (sys->compliance.count) {
-        tribo_compliance_rates(sys, m->state.slip, 1, m->state.glide, m->state.spring_rate);
-    }
+    tribo_compliance_rates(sys, m->state.slip, 1, m->state.glide, m->state.spring_rate);
 }

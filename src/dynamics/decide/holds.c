@@ -77,19 +77,11 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
     return TRIBO_OK;
 }
 
-/* x -= B_H R_HH^-1 (J_H x - base), twice: the second time removes the rounding of the first. */
+/* The second time removes the rounding of the first. */
 int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
 {
-    int status = TRIBO_OK;
-    for (int pass = 0; !status && pass < 2; pass++) {
-        tribo_matrix_multiply(&sys->direction, x, m->work.lo);
-        tribo_add(m->work.lo, -1.0, base, m->constant.contacts);
-        status = tribo_stick_slip_balance(m, m->work.lo, m->work.f);
-        if (!status) {
-            tribo_matrix_multiply_add(&sys->response, 1.0, m->work.f, x);
-        }
-    }
-    return status;
+    const int status = tribo_stick_slip_pull(m, sys, base, x, m->work.f);
+    return status ? status : tribo_stick_slip_pull(m, sys, base, x, m->work.f);
 }
 
 int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)

@@ -13,12 +13,9 @@ void tribo_limits_start(struct stick_slip *m, tribo_system *sys)
     struct slip_limits *b = &m->limits;
     double *dof = m->work.rate, *slope = m->work.v;
     b->falls = tribo_system_falls(sys);
-    b->differ = 0;
+    b->differ = tribo_system_first_dropping(sys, 0) < sys->ncontact;
     b->steepest = 0.0;
     tribo_get_static(sys->contacts, b->ratio, b->velocity);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        b->differ |= b->ratio[i] > 1.0;
-    }
     if (b->falls) {
         /* the largest row sum of |J| |B| diag(slopes at rest), with the largest limits of all times */
         memset(dof, 0, sys->ndof * sizeof *dof);

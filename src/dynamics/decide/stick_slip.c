@@ -48,26 +48,22 @@ static void lay_out_arrays(struct stick_slip *m, struct layout *l, size_t contac
     double **const by_dof[] = {&r->size, &c->load_size, &w->acceleration, &w->free, &w->rate};
     signed char **const sign[] = {&s->slip, &s->tied, &s->before, &s->loose, &s->slid, &w->pulled, &s->key};
     unsigned char **const mark[] = {&s->holds, &s->rested, &c->elastic, &w->last};
-    enum { CONTACTS = sizeof by_contact / sizeof *by_contact, DOFS = sizeof by_dof / sizeof *by_dof };
-    enum { SIGNS = sizeof sign / sizeof *sign, MARKS = sizeof mark / sizeof *mark };
     c->memory = tribo_layout_array(l, 0, 1);
-    double *work = tribo_layout_array(l, CONTACTS * contacts + DOFS * dofs, sizeof *work);
+    for (size_t k = 0; k < sizeof by_contact / sizeof *by_contact; k++) {
+        *by_contact[k] = tribo_layout_array(l, contacts, sizeof **by_contact[k]);
+    }
+    for (size_t k = 0; k < sizeof by_dof / sizeof *by_dof; k++) {
+        *by_dof[k] = tribo_layout_array(l, dofs, sizeof **by_dof[k]);
+    }
+    for (size_t k = 0; k < sizeof sign / sizeof *sign; k++) { /* zeros follow key */
+        *sign[k] = tribo_layout_array(l, contacts + sizeof(uint64_t), 1);
+    }
+    for (size_t k = 0; k < sizeof mark / sizeof *mark; k++) {
+        *mark[k] = tribo_layout_array(l, contacts, 1);
+    }
     w->at = tribo_layout_array(l, contacts, sizeof *w->at);
     w->doubt = tribo_layout_array(l, contacts, sizeof *w->doubt);
     s->snap = tribo_layout_array(l, contacts, sizeof *s->snap);
-    signed char *bytes = tribo_layout_array(l, (SIGNS + MARKS) * contacts + sizeof(uint64_t), 1);
-    for (size_t k = 0; work && k < CONTACTS; k++) {
-        *by_contact[k] = work + k * contacts;
-    }
-    for (size_t k = 0; work && k < DOFS; k++) {
-        *by_dof[k] = work + CONTACTS * contacts + k * dofs;
-    }
-    for (size_t k = 0; bytes && k < MARKS; k++) {
-        *mark[k] = (unsigned char *)bytes + k * contacts;
-    }
-    for (size_t k = 0; bytes && k < SIGNS; k++) { /* key last: zeros follow it */
-        *sign[k] = bytes + (MARKS + k) * contacts;
-    }
     r->founds = 3 * contacts + dofs;
 }
 
@@ -297,13 +293,11 @@ void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, 
     tribo_matrix_multiply_add(&sys->direction, 1.0, m->work.rate, v);
 }
 
-/* Sets state.base = b(t). It stays zero if no base moves. */
+/* Sets state.base = b(t). */
 static void find_base(struct stick_slip *m, const tribo_system *sys)
 {
-    if (tribo_system_bases_move(sys)) {
-        memset(m->state.base, 0, sys->ncontact * sizeof *m->state.base);
-        tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->state.base);
-    }
+    memset(m->state.base, 0, sys->ncontact * sizeof *m->state.base);
+    tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->state.base);
 }
 
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration,
@@ -458,7 +452,6 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     tribo_system_limits(sys, s->limit, s->limit_rate);
     tribo_limits_start(m, sys);
     tribo_limits_take(m);
-    memset(s->base, 0, c * sizeof *s->base);
     find_base(m, sys);
     find_scales(m, sys);
     memset(m->noise.velocity_scale, 0, c * sizeof *m->noise.velocity_scale);

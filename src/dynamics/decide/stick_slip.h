@@ -249,7 +249,22 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys);
 /* holds.c: solves R_HH f_H = -a_H; other f are 0. Returns a status, with a message in the system. */
 int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f);
 
-/* holds.c: x -= B_H R_HH^-1 (J_H x - base), which makes J_H x = base. Returns a status. */
+/* x += B_H f, f [ncontact] = -R_HH^-1 (J_H x - base), which makes J_H x = base. Returns a status. */
+static inline int tribo_stick_slip_pull(struct stick_slip *m, const tribo_system *sys, const double *base, double *x, double *f)
+{
+    double *a = m->work.lo;
+    for (size_t i = 0; i < m->constant.contacts; i++) {
+        a[i] = -base[i];
+    }
+    tribo_matrix_multiply_add(&sys->direction, 1.0, x, a);
+    const int status = tribo_stick_slip_balance(m, a, f);
+    if (!status) {
+        tribo_matrix_multiply_add(&sys->response, 1.0, f, x);
+    }
+    return status;
+}
+
+/* holds.c: the same twice. Returns a status. */
 int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, const double *base, double *x);
 
 /* The same for J x - base that is rounding: by snaps, then by project if they are not enough. Returns a status. */

@@ -47,16 +47,12 @@ static int check_loads(tribo_driver *drv, double period)
  * contacts: derivatives lack the turning of sliding forces. */
 static int check_friction(tribo_driver *drv)
 {
-    double *ratio = drv->sys->work.feq;
-    const size_t planar = tribo_system_planar(drv->sys);
-    tribo_get_static(drv->sys->contacts, ratio, NULL);
-    for (size_t i = 0; drv->sys->expansion.place && i < drv->sys->ncontact; i++) {
-        if (ratio[i] > 1.0) {
-            return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
-                               "periodic motions are found without static limits where degrees of freedom have no mass, and "
-                               "ratio[%zu] = %g",
-                               i, ratio[i]);
-        }
+    const size_t planar = tribo_system_planar(drv->sys), i = tribo_system_first_dropping(drv->sys, 0);
+    if (drv->sys->expansion.place && i < drv->sys->ncontact) {
+        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
+                           "periodic motions are found without static limits where degrees of freedom have no mass, and "
+                           "ratio[%zu] = %g",
+                           i, drv->sys->work.feq[i]);
     }
     return planar ? tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
                                 "periodic motions are found without planar contacts, of which the system has %zu", planar)

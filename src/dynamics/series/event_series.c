@@ -46,24 +46,6 @@ static void find_velocities(const struct event *e, size_t k, double scale, doubl
     }
 }
 
-void tribo_event_relative(const struct event *e, const double *acc, double *a)
-{
-    for (size_t i = 0; i < e->sys->ncontact; i++) {
-        a[i] = -e->room.base[i];
-    }
-    tribo_matrix_multiply_add(&e->sys->direction, 1.0, acc, a);
-}
-
-int tribo_event_hold(struct event *e, double *acc, double *held)
-{
-    tribo_event_relative(e, acc, e->room.a);
-    const int status = tribo_stick_slip_balance(&e->events.stick_slip, e->room.a, held);
-    if (!status) {
-        tribo_matrix_multiply_add(&e->sys->response, 1.0, held, acc);
-    }
-    return status;
-}
-
 /* Sets the k-th coefficients of accelerations and of watch, scale = 1/k!. Returns a status. */
 static int expand_forces(struct event *e, size_t k, double scale)
 {
@@ -90,7 +72,7 @@ static int expand_forces(struct event *e, size_t k, double scale)
     }
     memset(base, 0, c * sizeof *base);
     tribo_system_loads(sys, DRIVES_BASE, (int)k + 1, scale, base);
-    status = status ? status : tribo_event_hold(e, acc, held);
+    status = status ? status : tribo_stick_slip_pull(m, sys, base, acc, held);
     status = status || !m->plane ? status : tribo_planar_series_finish(e, k);
     if (status) {
         return status;

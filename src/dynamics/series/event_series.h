@@ -112,11 +112,6 @@ static inline double tribo_series_value(const double *x, size_t powers, double h
 int tribo_event_start(struct event *e, double t, const double *y);
 int tribo_event_series(struct event *e);
 
-/* a [ncontact] = J acc - room.base. hold: finds the forces held [ncontact] for which a = 0 where contacts hold, and adds their
- * effect to acc [ndof]. Returns a status. */
-void tribo_event_relative(const struct event *e, const double *acc, double *a);
-int tribo_event_hold(struct event *e, double *acc, double *held);
-
 /* Energy that sliding contact i dissipates until tau; own: struct event. */
 double tribo_event_work(void *own, size_t i, double tau);
 

@@ -126,15 +126,14 @@ int tribo_planar_series_begin(struct event *e)
         double *acc = s->answer + q * sys->ndof, *a = e->room.a, *f = e->room.given;
         memset(acc, 0, sys->ndof * sizeof *acc);
         memset(f, 0, c * sizeof *f);
-        memset(e->room.base, 0, c * sizeof *f);
         f[p->at] = -p->limit[0] * l->t[0];
         f[p->at + 1] = -p->limit[1] * l->t[1];
         tribo_matrix_multiply_add(&sys->response, 1.0, f, acc);
-        const int status = tribo_event_hold(e, acc, s->held + q * c);
+        const int status = tribo_stick_slip_pull(m, sys, m->constant.still, acc, s->held + q * c);
         if (status) {
             return status;
         }
-        tribo_event_relative(e, acc, a);
+        tribo_matrix_multiply(&sys->direction, acc, a);
         for (size_t r = 0; r < begins; r++) {
             s->s[r * begins + q] = -planar_series_along(&all[s->begin[r]], &s->line[s->begin[r]], a);
         }
@@ -204,7 +203,8 @@ int tribo_planar_series_finish(struct event *e, size_t k)
     if (n == 0 || k == 0) {
         return TRIBO_OK;
     }
-    tribo_event_relative(e, e->room.acceleration, a);
+    tribo_matrix_multiply(&sys->direction, e->room.acceleration, a);
+    tribo_add(a, -1.0, e->room.base, sys->ncontact);
     memcpy(s->lu, s->s, n * n * sizeof *s->s);
     for (size_t q = 0; q < n; q++) {
         const struct planar_contact *p = &all[s->begin[q]];

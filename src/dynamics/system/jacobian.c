@@ -18,23 +18,6 @@ struct tangents {
 /* Time step of finite differences, times the highest frequency. */
 #define SHORT 1e-7
 
-/* df_dt [ncontact] = (df/dlimit) limit', by a difference over a short time; 0 if limits are constant. Returns a status. */
-static int find_limit_rates(tribo_system *sys, double *df_dt)
-{
-    if (!tribo_system_limits_vary(sys)) {
-        return TRIBO_OK;
-    }
-    const double fastest = tribo_system_fastest(sys), later = SHORT / (fastest > 0.0 ? fastest : 1.0);
-    tribo_system_put_limits(sys, later);
-    int status = tribo_balance(sys->contacts, sys->work.v, sys->work.a, NULL, sys->work.dv_dt);
-    tribo_system_put_limits(sys, 0.0);
-    status = status ? status : tribo_balance(sys->contacts, sys->work.v, sys->work.a, NULL, sys->work.f);
-    for (size_t i = 0; !status && i < sys->ncontact; i++) {
-        df_dt[i] = (sys->work.dv_dt[i] - sys->work.f[i]) / later;
-    }
-    return tribo_system_explain(sys, status);
-}
-
 /* to [rows][stride] += factor a b, for a dense a [rows][b->rows]. */
 static void jacobian_add_product(size_t rows, double factor, const double *a, const struct matrix *b, size_t stride, double *to)
 {
@@ -114,12 +97,21 @@ int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *
         return sys->status = tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for the Jacobian");
     }
     tribo_system_free_motion(sys, t, y, d.load, sys->work.v, sys->work.a);
-    int status = find_limit_rates(sys, d.df_dt);
-    if (!status) {
-        status = tribo_balance_tangent(sys->contacts, sys->work.v, sys->work.a, NULL, sys->work.f, d.df_dv, d.df_da);
-        status = tribo_system_explain(sys, status);
+    int status = TRIBO_OK;
+    if (tribo_system_limits_vary(sys)) { /* df_dt = (df/dlimit) limit', by a difference over a short time */
+        const double fastest = tribo_system_fastest(sys), later = SHORT / (fastest > 0.0 ? fastest : 1.0);
+        tribo_system_put_limits(sys, later);
+        status = tribo_balance(sys->contacts, sys->work.v, sys->work.a, NULL, sys->work.dv_dt);
+        tribo_system_put_limits(sys, 0.0);
+        status = status ? status : tribo_balance(sys->contacts, sys->work.v, sys->work.a, NULL, sys->work.f);
+        for (size_t i = 0; !status && i < m; i++) {
+            d.df_dt[i] = (sys->work.dv_dt[i] - sys->work.f[i]) / later;
+        }
     }
+    status =
+        status ? status : tribo_balance_tangent(sys->contacts, sys->work.v, sys->work.a, NULL, sys->work.f, d.df_dv, d.df_da);
     if (status) {
+        tribo_system_explain(sys, status);
         const int found = tribo_system_check_state(sys, t, y); /* names the value of y that is not finite */
         sys->status = found ? found : status;
     } else {

@@ -57,22 +57,6 @@ static int solve_masses(const void *mass, size_t count, double *x)
     return tribo_cholesky_solve(mass, count, x);
 }
 
-static int check_unsolved(const tribo_model *m)
-{
-    size_t i, j;
-    double x, y;
-    if (!tribo_cholmod) {
-        return tribo_model_too_large(m);
-    }
-    if (m->damping.rows && tribo_matrix_flaw(&m->damping, 1, &i, &j, &x, &y)) {
-        return tribo_error(m->message, TRIBO_ERR_NOT_SYMMETRIC,
-                           "damping[%zu][%zu] = %.17g, but damping[%zu][%zu] = %.17g: with more than %d degrees of freedom and a "
-                           "mass matrix that is not diagonal it must be symmetric",
-                           i, j, x, j, i, y, DENSE_MOST);
-    }
-    return TRIBO_OK;
-}
-
 /* Sets R in the contacts: Z'Z, Z [ndof][ncontact], symmetric, and semidefinite up to rounding; z NULL: J M^-1 J' by the factor
  * of sys. Refuses an R that hides bodies, unless the degrees of freedom are modes. Returns a status. */
 static int set_dense_operator(const tribo_model *m, tribo_system *sys, const struct matrix *j, const double *z)
@@ -157,11 +141,18 @@ static int solve_by_masses(const tribo_model *m, tribo_system *sys, const struct
 int tribo_model_build_massive(tribo_model *m, const double *soft, tribo_system **sys)
 {
     const int diagonal = tribo_matrix_is_diagonal(&m->mass), unsolved = !diagonal && m->ndof > DENSE_MOST;
-    int status = unsolved ? check_unsolved(m) : TRIBO_OK;
-    if (status) {
-        return status;
+    size_t i, j;
+    double x, y;
+    if (unsolved && !tribo_cholmod) {
+        return tribo_model_too_large(m);
     }
-    status = tribo_system_build(sys, m->ndof, m->ncontact);
+    if (unsolved && m->damping.rows && tribo_matrix_flaw(&m->damping, 1, &i, &j, &x, &y)) {
+        return tribo_error(m->message, TRIBO_ERR_NOT_SYMMETRIC,
+                           "damping[%zu][%zu] = %.17g, but damping[%zu][%zu] = %.17g: with more than %d degrees of freedom and a "
+                           "mass matrix that is not diagonal it must be symmetric",
+                           i, j, x, j, i, y, DENSE_MOST);
+    }
+    int status = tribo_system_build(sys, m->ndof, m->ncontact);
     tribo_system *s = *sys;
     status = status ? status : tribo_model_factorize(m, &s->factor);
     if (status) {
@@ -175,7 +166,7 @@ int tribo_model_build_massive(tribo_model *m, const double *soft, tribo_system *
     m->mass = m->stiffness = m->damping = m->direction = (struct matrix){0};
     struct matrix rigid = {0}; /* J with empty rows of soft contacts */
     struct triplets rows = {0};
-    for (size_t i = 0; i < m->ncontact; i++) {
+    for (i = 0; i < m->ncontact; i++) {
         if (!(soft && soft[i] > 0.0)) {
             tribo_triplets_put_row(&rows, i, &s->direction, i);
         }
