@@ -7,20 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Sets natural, phi and psi by the eigenvectors of S'KS, M^-1 = S S'. Returns a status. */
-static int find_free_modes(struct energy_norm *e, const tribo_system *sys)
-{
-    const size_t n = e->n;
-    tribo_matrix_spread(&sys->k, e->psi);
-    tribo_even_out(n, e->psi);
-    const int status = tribo_symmetric_eigen_by(&sys->factor, e->psi, n, e->natural, e->phi);
-    for (size_t i = 0; i < n; i++) {
-        e->natural[i] = sqrt(fabs(e->natural[i]));
-    }
-    tribo_matrix_multiply_all(&sys->mass, n, e->phi, e->psi);
-    return status ? tribo_error(sys->message, status, "modes of the free structure: %s", tribo_strerror(status)) : TRIBO_OK;
-}
-
 int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys)
 {
     const struct compliance *g = &sys->compliance;
@@ -46,8 +32,18 @@ int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys)
     if (c) {
         dpotrf_("U", &springs, e->root, &springs, &info, 1);
     }
-    return info ? tribo_error(sys->message, TRIBO_ERR_INDEFINITE, "the compliance of the contacts is not positive definite")
-                : find_free_modes(e, sys);
+    if (info) {
+        return tribo_error(sys->message, TRIBO_ERR_INDEFINITE, "the compliance of the contacts is not positive definite");
+    }
+    /* eigenvectors of S'KS, M^-1 = S S' */
+    tribo_matrix_spread(&sys->k, e->psi);
+    tribo_even_out(n, e->psi);
+    const int status = tribo_symmetric_eigen_by(&sys->factor, e->psi, n, e->natural, e->phi);
+    for (size_t i = 0; i < n; i++) {
+        e->natural[i] = sqrt(fabs(e->natural[i]));
+    }
+    tribo_matrix_multiply_all(&sys->mass, n, e->phi, e->psi);
+    return status ? tribo_error(sys->message, status, "modes of the free structure: %s", tribo_strerror(status)) : TRIBO_OK;
 }
 
 void tribo_energy_norm_free(struct energy_norm *e)

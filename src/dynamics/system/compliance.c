@@ -22,24 +22,6 @@ void tribo_compliance_free(struct compliance *g)
     memset(g, 0, sizeof *g);
 }
 
-/* Sets pull = M^-1 J' in the columns of compliant contacts. Returns 0 if out of memory. */
-static int compliance_find_pull(tribo_system *sys)
-{
-    struct compliance *g = &sys->compliance;
-    struct triplets pull = {0};
-    double *x = malloc((sys->ndof + 1) * sizeof *x);
-    for (size_t k = 0; x && k < g->count; k++) {
-        tribo_matrix_get_row(&sys->direction, g->contact[k], x);
-        tribo_system_solve_mass(sys, x);
-        for (size_t d = 0; d < sys->ndof; d++) {
-            tribo_triplets_put(&pull, d, g->contact[k], x[d]);
-        }
-    }
-    const int done = tribo_triplets_finish(&pull, sys->ndof, sys->ncontact, &g->pull) && x;
-    free(x);
-    return done;
-}
-
 /* Sets stiffest, structure, added, tightest, by the bound |G^-1| |J| of forces per displacement. Returns 0 if out of memory. */
 static int find_stiffest(tribo_system *sys)
 {
@@ -92,7 +74,18 @@ int tribo_compliance_create(tribo_system *sys, const double *own, const double *
         g->contact[g->count] = i;
         g->count += own[i] > 0.0;
     }
-    return compliance_find_pull(sys) && find_stiffest(sys) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    struct triplets pull = {0};
+    double *x = malloc((sys->ndof + 1) * sizeof *x);
+    for (size_t k = 0; x && k < g->count; k++) {
+        tribo_matrix_get_row(&sys->direction, g->contact[k], x);
+        tribo_system_solve_mass(sys, x);
+        for (size_t d = 0; d < sys->ndof; d++) {
+            tribo_triplets_put(&pull, d, g->contact[k], x[d]);
+        }
+    }
+    const int done = tribo_triplets_finish(&pull, sys->ndof, sys->ncontact, &g->pull) && x && find_stiffest(sys);
+    free(x);
+    return done ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
 int tribo_compliance_copy(tribo_system *to, const tribo_system *from)

@@ -17,44 +17,37 @@ static int quinn_finish(tribo_system **sys, tribo_system *made, int status)
     return status;
 }
 
-/* Builds a system of n bodies with masses [n] and n contacts; stiffness and direction [n][n]. Returns a status. */
-static int build_dense(tribo_system **sys, size_t n, const double *mass, const double *stiffness, const double *direction)
+/* Creates a system of n <= 2 bodies with masses 1 and n contacts; stiffness, direction [n][n]; limit, load, motion [n], load and
+ * motion with cos(omega t), or NULL. Returns a status. */
+static int build_dense(tribo_system **sys, size_t n, const double *stiffness, const double *direction, const double *limit,
+                       double omega, const double *load, const double *motion)
 {
+    static const double mass[] = {1.0, 1.0};
     tribo_model *model = NULL;
-    int status = tribo_model_create(&model, n, n);
+    tribo_system *s = NULL;
+    int status = sys ? tribo_model_create(&model, n, n) : TRIBO_ERR_NULL;
     status = status ? status : tribo_model_set_mass_diagonal(model, mass);
     status = status ? status : tribo_model_set_stiffness(model, stiffness);
     status = status ? status : tribo_model_set_direction(model, direction);
-    status = status ? status : tribo_system_create(sys, model);
+    status = status ? status : tribo_system_create(&s, model);
+    status = status ? status : tribo_set_limit(s->contacts, limit);
+    status = status || !load ? status : tribo_system_add_load(s, omega, NULL, load);
+    status = status || !motion ? status : tribo_system_add_base_motion(s, omega, NULL, motion);
     tribo_model_destroy(model);
-    return status;
+    return quinn_finish(sys, s, status);
 }
 
 int tribo_system_oscillator(tribo_system **sys, double limit, double alpha, double omega)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
     const double one = 1.0;
-    tribo_system *s = NULL;
-    int status = build_dense(&s, 1, &one, &one, &one);
-    status = status ? status : tribo_set_limit(s->contacts, &limit);
-    status = status ? status : tribo_system_add_load(s, omega, NULL, &alpha);
-    return quinn_finish(sys, s, status);
+    return build_dense(sys, 1, &one, &one, &limit, omega, &alpha, NULL);
 }
 
 int tribo_system_belt(tribo_system **sys, double kappa, double limit1, double limit2, double speed, double omega)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    const double mass[] = {1.0, 1.0}, stiffness[] = {1.0, 0.0, 0.0, kappa}, direction[] = {1.0, 0.0, -1.0, 1.0};
+    const double stiffness[] = {1.0, 0.0, 0.0, kappa}, direction[] = {1.0, 0.0, -1.0, 1.0};
     const double limit[] = {limit1, limit2}, motion[] = {speed, 0.0};
-    tribo_system *s = NULL;
-    int status = build_dense(&s, 2, mass, stiffness, direction);
-    status = status ? status : tribo_set_limit(s->contacts, limit);
-    status = status ? status : tribo_system_add_base_motion(s, omega, NULL, motion);
-    return quinn_finish(sys, s, status);
+    return build_dense(sys, 2, stiffness, direction, limit, omega, NULL, motion);
 }
 
 /* each [n] = whole/n, but 3/4 of whole/n for the last block: the paper's last equation is 4/3 times an equation with symmetric
