@@ -497,9 +497,9 @@ int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, doubl
     }
     memset(to, 0, z->rows ? n * n * sizeof *to : 0);
     for (size_t i = 0; row && i < z->rows; i++) {
-        const size_t entries = z->first[i + 1] - z->first[i];
-        memset(row, 0, n * sizeof *row);
-        for (size_t k = a->first[i]; entries && k < a->first[i + 1]; k++) {
+        const int moves = z->first[i] < z->first[i + 1];
+        memset(row, 0, moves ? n * sizeof *row : 0);
+        for (size_t k = a->first[i]; moves && k < a->first[i + 1]; k++) {
             tribo_matrix_add_row(z, a->col[k], a->val[k], row);
         }
         for (size_t k = z->first[i]; k < z->first[i + 1]; k++) {

@@ -124,7 +124,7 @@ static int find_stiffness(struct modal_build *b)
 void tribo_modal_react(const struct modal *h, size_t columns, double *force, double *f, double *work)
 {
     memset(work, 0, h->modes * columns * sizeof *work);
-    tribo_multiply_transposed_add(h->n, h->modes, columns, h->phi, force, work);
+    tribo_multiply_add(h->modes, h->n, columns, 1.0, h->phi, force, work);
     tribo_multiply_add(h->n, h->modes, columns, -1.0, h->psi, work, force);
     tribo_constraints_react(&h->ties, columns, force, f);
 }
@@ -148,7 +148,7 @@ static int factorize_mass(struct modal_build *b, const struct matrix *z, struct 
     return status;
 }
 
-/* Sets stiffness = S'Z'KZ S and phi = Z S, (Z'MZ)^-1 = S S'. Returns a status. */
+/* Sets stiffness = S'Z'KZ S and b->shape = Z S, (Z'MZ)^-1 = S S'. Returns a status. */
 static int find_coordinates(struct modal_build *b, const struct matrix *z, const struct cholesky *mass)
 {
     struct modal *h = b->h;
@@ -167,10 +167,11 @@ static int find_coordinates(struct modal_build *b, const struct matrix *z, const
     }
     tribo_half_solve(mass, 1, s, m);
     if (z->rows) {
-        tribo_matrix_add_columns(z, 1.0, m, s, h->phi);
+        tribo_matrix_add_columns(z, 1.0, m, s, b->shape);
     } else {
-        memcpy(h->phi, s, m * m * sizeof *s);
+        memcpy(b->shape, s, m * m * sizeof *s);
     }
+    tribo_transpose(h->n, m, b->shape, h->phi);
     return tribo_matrix_from_dense(&h->powers->stiffness, m, m, a) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
@@ -186,7 +187,7 @@ static int find_modes(struct modal_build *b)
     const int held = z.rows > 0;
     const size_t n = h->n, m = h->modes = held ? z.cols : n;
     h->omega2 = tribo_modal_take(&h->store, m * (2 + 2 * n), sizeof *h->omega2);
-    b->shape = tribo_modal_take(&b->scratch, b->powers ? 0 : m * n, sizeof *b->shape);
+    b->shape = tribo_modal_take(&b->scratch, m * n, sizeof *b->shape);
     status = status || (h->omega2 && b->shape) ? status : TRIBO_ERR_MEMORY;
     if (!status) {
         h->damping = h->omega2 + m;
@@ -198,11 +199,11 @@ static int find_modes(struct modal_build *b)
         status = find_coordinates(b, &z, held ? &own : &sys->factor);
     } else if (!status && m > 0) {
         status =
-            tribo_normal_modes(b->stiffness, sys->expansion.terms, &z, held ? &own : &sys->factor, m, h->omega2, b->shape, &text);
-        tribo_transpose(m, n, b->shape, h->phi);
+            tribo_normal_modes(b->stiffness, sys->expansion.terms, &z, held ? &own : &sys->factor, m, h->omega2, h->phi, &text);
+        tribo_transpose(m, n, h->phi, b->shape);
     }
     if (!status) {
-        tribo_matrix_add_columns(&sys->mass, 1.0, m, h->phi, h->psi);
+        tribo_matrix_add_columns(&sys->mass, 1.0, m, b->shape, h->psi);
     }
     tribo_matrix_free(&z);
     tribo_cholesky_free(&own);
@@ -218,7 +219,7 @@ static int damping_couples(const struct modal_build *b, const double *c, const d
     const size_t n = h->n, m = h->modes;
     for (size_t kl = 0; kl < m * m; kl++) {
         const size_t k = kl / m, l = kl % m;
-        const double *one = b->shape + k * n, *other = b->shape + l * n;
+        const double *one = h->phi + k * n, *other = h->phi + l * n;
         const double shared = fabs(c[kl]), own = sqrt(fabs(c[k * m + k] * c[l * m + l]));
         const double larger = greater(fabs(c[k * m + k]), fabs(c[l * m + l]));
         if (k == l || shared <= greater(NEGLIGIBLE * own, IMPURITY * larger)) {
@@ -247,8 +248,8 @@ static int find_damping(struct modal_build *b)
     if (!damping || !c || !root) {
         return c && root;
     }
-    tribo_matrix_add_columns(damping, 1.0, m, h->phi, root + 2 * n);
-    tribo_multiply_transposed_add(n, m, m, h->phi, root + 2 * n, c);
+    tribo_matrix_add_columns(damping, 1.0, m, b->shape, root + 2 * n);
+    tribo_multiply_add(m, n, m, 1.0, h->phi, root + 2 * n, c);
     if (b->powers) {
         return tribo_matrix_from_dense(&h->powers->damping, m, m, c);
     }
@@ -258,7 +259,7 @@ static int find_damping(struct modal_build *b)
         most = greater(most, fabs(c[k * (m + 1)]));
     }
     for (size_t k = 0; k < m; k++) {
-        const double own = c[k * (m + 1)], noise = tribo_matrix_noise(damping, root, b->shape + k * n, b->shape + k * n);
+        const double own = c[k * (m + 1)], noise = tribo_matrix_noise(damping, root, h->phi + k * n, h->phi + k * n);
         h->damping[k] = fabs(own) > greater(ROUNDING * noise, IMPURITY * IMPURITY * most) ? own : 0.0;
     }
     h->coupling = damping_couples(b, c, root, root + n) ? c : NULL;
@@ -279,17 +280,17 @@ static void keep_reactions(const struct modal *h, size_t columns, double *force,
     }
 }
 
-void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y, const double *omega2, const double *base,
-                         double *on, double *by_u)
+void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y, const double *inertia, const double *omega2,
+                         const double *base, double *on, double *by_u)
 {
     const struct modal *h = b->h;
     const tribo_system *sys = b->sys;
     const struct matrix *j = &sys->direction;
-    const size_t n = h->n, c = sys->ncontact, room = h->rests ? 2 * n + h->rests + h->modes : n, each = columns * sizeof *on;
-    double *rate = tribo_modal_take(&b->scratch, columns * (c + room), sizeof *rate), *force = rate + c * columns;
-    double *moved = force + n * columns, *work = moved + n * columns; /* M^-1 times forces of inertia */
+    const size_t n = h->n, c = sys->ncontact, springs = sys->compliance.count ? c : 0, each = columns * sizeof *on;
+    double *force = tribo_modal_take(&b->scratch, columns * (n + h->rests + h->modes + springs), sizeof *force);
+    double *work = force + n * columns, *rate = work + (h->rests + h->modes) * columns;
     const double most = base ? tribo_largest(y, n) : 0.0;
-    if (!rate) {
+    if (!force) {
         return;
     }
     memset(on, 0, c * each);
@@ -301,12 +302,14 @@ void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y,
         }
         on[i] = fabs(on[i] - base[i]) > NO_MOTION * size ? on[i] - base[i] : 0.0;
     }
-    tribo_compliance_rates(sys, b->slip, columns, on, rate);
+    if (springs) {
+        tribo_compliance_rates(sys, b->slip, columns, on, rate);
+    }
     for (size_t i = 0; i < c; i++) {
-        if (h->key[i] == 2 || (h->key[i] == 1 && !base)) {
-            memcpy(on + i * columns, rate + i * columns, each);
-        }
-        for (size_t e = j->first[i]; tribo_is_compliant(&sys->compliance, i) && e < j->first[i + 1]; e++) {
+        const int rests = h->key[i] == 2 || (h->key[i] == 1 && !base), gives = tribo_is_compliant(&sys->compliance, i);
+        memset(on + i * columns, 0, rests ? each : 0);
+        memcpy(on + i * columns, rate + (gives ? i * columns : 0), rests && gives ? each : 0);
+        for (size_t e = j->first[i]; gives && e < j->first[i + 1]; e++) {
             tribo_add(force + j->col[e] * columns, -j->val[e], rate + i * columns, columns);
         }
     }
@@ -314,10 +317,9 @@ void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y,
         tribo_matrix_add_columns(b->k, 1.0, columns, y, force);
         for (size_t d = 0; d < n; d++) {
             for (size_t k = 0; k < columns; k++) {
-                moved[d * columns + k] = omega2[k] * y[d * columns + k];
+                force[d * columns + k] -= omega2[k] * inertia[d * columns + k];
             }
         }
-        tribo_matrix_add_columns(&sys->mass, -1.0, columns, moved, force);
         keep_reactions(h, columns, force, base || h->powers, work, on);
     }
     if (h->rests > 0 && by_u) {
@@ -337,7 +339,7 @@ static int find_effects(struct modal_build *b)
         return 0;
     }
     h->by_u = b->c ? h->on + m * c : NULL;
-    tribo_modal_effects(b, m, h->phi, h->omega2, NULL, h->on, h->by_u);
+    tribo_modal_effects(b, m, b->shape, h->psi, h->omega2, NULL, h->on, h->by_u);
     return !b->scratch.failed;
 }
 

@@ -49,7 +49,7 @@ struct modal {
     struct constraints ties;  /* constraints between degrees of freedom by the rigid contacts that hold */
 
     size_t modes;
-    double *phi; /* [n][modes] mode shapes */
+    double *phi; /* [modes][n] mode shapes */
     double *psi; /* [n][modes] M times the mode shapes */
     double *omega2, *damping;
     struct modal_powers *powers; /* NULL: Phi are modes; else there are no exponents, and omega2 and damping are 0 */
@@ -87,7 +87,7 @@ struct forced {
     struct modal_store store;
     size_t shapes;
     int steady;
-    double *phi, *on, *by_u; /* of the modal, with further columns, [shapes] */
+    double *phi, *on, *by_u; /* of the modal, with further rows, or columns, [shapes] */
     double *speed;           /* [shapes] eta' of a shape for bases of constant speed, 1; else 0 */
 
     size_t harmonics;        /* the harmonics of the system, in order, then harmonics of limits */

@@ -3,6 +3,7 @@
 #include "common/layout.h"
 #include "common/real.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +14,8 @@
 /* Makes room for the terms and shapes of x->h. Returns 0 if out of memory. */
 static int motion_reserve(struct exact *x)
 {
-    const size_t least = x->h->terms > x->h->shapes ? x->h->terms : x->h->shapes, room = 2 * least, c = x->sys->ncontact;
+    const size_t least = x->h->terms > x->h->shapes ? x->h->terms : x->h->shapes, room = 2 * least + TRIBO_POWERS;
+    const size_t c = x->sys->ncontact;
     if (x->room >= least) {
         return 1;
     }
@@ -207,8 +209,8 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
         memcpy(to, from, tribo_system_size(sys) * sizeof *to);
     }
     memset(to + n, 0, brief ? 0 : n * sizeof *to);
-    tribo_multiply_add(n, h->shapes, 1, 1.0, h->phi, x->place, to);
-    tribo_multiply_add(n, h->shapes, 1, 1.0, h->phi, x->rate, to + n);
+    tribo_multiply_transposed_add(h->shapes, n, 1, h->phi, x->place, to);
+    tribo_multiply_transposed_add(h->shapes, n, 1, h->phi, x->rate, to + n);
     for (size_t k = 0; k < sys->compliance.count; k++) {
         const size_t i = sys->compliance.contact[k];
         to[2 * n + k] += h->modal->key[i] == 2 ? tribo_dot(h->on + i * h->shapes, x->place, h->shapes) : 0.0;
@@ -340,6 +342,13 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
         x->runs = 0;
         x->tau = 0.0;
         x->longest = *longest = lesser(*longest, TRIBO_POWERS_REACH / h->fastest);
+        double power = 1.0, sixth = 1.0;
+        for (size_t k = 0; k < TRIBO_POWERS; k++) {
+            x->growth[k] = power;
+            x->growth6[k] = k < 6 ? 0.0 : (double)(k * (k - 1) * (k - 2) * (k - 3) * (k - 4) * (k - 5)) * sixth;
+            power = lesser(power * x->longest, DBL_MAX);
+            sixth = k < 6 ? 1.0 : lesser(sixth * x->longest, DBL_MAX);
+        }
         tribo_powers_start(x, x->work);
         return 1;
     }

@@ -59,7 +59,8 @@ struct exact {
     double far;                   /* time after t0 of the last look with e^{lambda tau} computed in full */
     struct parts far_e;           /* e^{lambda far} */
     struct parts move, rate_move; /* w - z; w', or w' - z' if brief: tau is short for all terms */
-    double *growth, *growth6;     /* [terms] bounds of |w| and of the sixth derivative */
+    double *growth, *growth6;     /* [terms] bounds of |w| and of the sixth derivative; without modes [TRIBO_POWERS] powers of
+                                     longest and their sixth derivatives */
     double *vel, *acc;            /* [shapes] */
     double *drift;                /* [shapes] vel, and of modes that drift also eta' at t0 */
     double *place, *rate;         /* [shapes] eta - eta(t0) at tau; eta' at tau, or eta' - eta'(t0) if brief */
@@ -68,8 +69,8 @@ struct exact {
     double *steady;               /* [ncontact] force of a sliding contact without harmonics of the limit */
     struct course *course;        /* [ncontact] courses of the outputs of h */
     struct signal velocity;       /* workspace */
-    double *power;                /* eta, eta' [TRIBO_POWERS][modes], outputs [outputs][TRIBO_POWERS]: coefficients; and
-                                     eta, eta' [modes][TRIBO_POWERS] */
+    double *power;                /* eta, eta' [TRIBO_POWERS][modes], outputs [outputs][TRIBO_POWERS]: coefficients; eta, eta'
+                                     [modes][TRIBO_POWERS] */
 };
 
 /* Starts a phase at (t, y) with structure x->h, for a time of at most *longest; sets *longest to the time for which the bounds
@@ -98,13 +99,11 @@ void tribo_modal_join(const struct modal *h, size_t columns, const double *zr, c
 
 /* powers.c, without modes. start: from place = eta and rate = eta' at t0, and the constant forces [modes]. move: sets place to
  * the change of eta until tau, and rate to eta' at tau, or with changes = 1 to the change of eta'. carry: tribo_modal_transition
- * of eta and rate [modes][columns], by pull; eta becomes its change; work [3 modes][columns]. look and bound: of a course. */
+ * of eta and rate [modes][columns], by pull; eta becomes its change; work [3 modes][columns]. */
 void tribo_powers_start(struct exact *x, const double *force);
 void tribo_powers_move(struct exact *x, double tau, int changes);
 void tribo_powers_carry(const struct modal *h, double tau, size_t columns, const double *pull, double *eta, double *rate,
                         double *work);
-void tribo_powers_look(const struct exact *x, struct course *c);
-void tribo_powers_bound(const struct exact *x, struct course *c);
 
 /* Functions of struct motion. The state of a signal is [q, q', f], f: forces of compliant contacts. The data of a phase is
  * its structure, with one user more. */

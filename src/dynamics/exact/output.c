@@ -53,7 +53,7 @@ double complex tribo_forced_weight(const struct forced *f, size_t p, const doubl
         sum += place ? tribo_dot(place, rr, m) - tribo_dot(place, ri, m) * I : 0.0;
         return sum + (speed ? lambda * (tribo_dot(speed, rr, m) - tribo_dot(speed, ri, m) * I) : 0.0);
     }
-    for (size_t k = 0; k < f->shapes; k++) {
+    for (size_t k = h->powers ? m : 0; k < f->shapes; k++) { /* powers of time have the response of the modes */
         sum += ((place ? place[k] : 0.0) + (speed ? lambda * speed[k] : 0.0)) * f->x[(p - e) * f->shapes + k];
     }
     return sum;

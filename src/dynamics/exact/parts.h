@@ -16,7 +16,7 @@ struct modal_build {
     const struct matrix *k, *c;     /* K; C, or NULL without damping */
     const struct matrix *stiffness; /* K + J_A' G_AA^-1 J_A, A: compliant contacts that hold */
     struct matrix own_stiffness;    /* memory of stiffness if A is not empty */
-    double *shape;                  /* [modes][n] mode shapes */
+    double *shape;                  /* [n][modes] Phi' */
     double complex *direct; /* [harmonics][rests] forces of the rigid contacts that hold, by loads and limits at fixed eta */
     int status;             /* of a failure other than out of memory; else 0 */
 };
@@ -28,12 +28,12 @@ int tribo_modal_exponents(struct modal_build *b);
  * contacts that hold. */
 void tribo_modal_react(const struct modal *h, size_t columns, double *force, double *f, double *work);
 
-/* Sets on, and by_u or NULL, [ncontact][columns] by displacements y [n][columns], with J_I y = b_I: contacts that hold: force per
- * eta, J_I'f = K y - M y omega2 - J_A'f_A (A: compliant ones, f_A' = -G_AA^-1 (J_A y - b_A)), and per eta', J_I'f = C y; other
- * contacts: velocity per eta'. base [ncontact] = b, of one column, by which only the rest of the forces beside the modes counts;
- * NULL: y are the modes, 0. Sets b->scratch.failed = 1 if out of memory. */
-void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y, const double *omega2, const double *base,
-                         double *on, double *by_u);
+/* Sets on, and by_u or NULL, [ncontact][columns] by displacements y [n][columns], with J_I y = b_I, and inertia = M y: contacts
+ * that hold: force per eta, J_I'f = K y - inertia omega2 - J_A'f_A (A: compliant ones, f_A' = -G_AA^-1 (J_A y - b_A)), and per
+ * eta', J_I'f = C y; other contacts: velocity per eta'. base [ncontact] = b, of one column, by which only the rest of the forces
+ * beside the modes counts; NULL: y are the modes, 0. Sets b->scratch.failed = 1 if out of memory. */
+void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y, const double *inertia, const double *omega2,
+                         const double *base, double *on, double *by_u);
 
 /* Fill b->forced: shapes, forcing and response; then terms and outputs. Return 1; 0 if out of memory, or on another failure, with
  * b->status set. */

@@ -27,15 +27,6 @@ static void pull_back(const struct modal *h, size_t columns, const double *eta, 
     tribo_matrix_add_columns(&h->powers->damping, -1.0, columns, rate, to);
 }
 
-/* to[k] += the real part of c z e^{i Omega t} for the power k. */
-static void add_harmonic(double omega, double complex cz, double *to)
-{
-    for (size_t k = 0; k < P; k++) {
-        to[k] += creal(cz);
-        cz *= omega / (double)(k + 1) * I;
-    }
-}
-
 void tribo_powers_start(struct exact *x, const double *force)
 {
     const struct forced *f = x->h;
@@ -57,16 +48,15 @@ void tribo_powers_start(struct exact *x, const double *force)
         }
     }
     for (size_t k = 0; k + 1 < P; k++, eta += m, rate += m) {
+        const double part = 1.0 / (double)(k + 1);
         double *next = rate + m;
-        for (size_t j = 0; j < m; j++) {
-            eta[m + j] = rate[j] / (double)(k + 1);
-        }
         pull_back(h, 1, eta, rate, next);
         for (size_t j = 0; j < m; j++) {
-            next[j] /= (double)(k + 1);
+            eta[m + j] = part * rate[j];
+            next[j] *= part;
         }
     }
-    double *turned = out + f->outputs * P; /* eta, eta' [modes][P] */
+    double *turned = out + f->outputs * P;
     memset(out, 0, f->outputs * P * sizeof *out);
     tribo_transpose(P, m, x->power, turned);
     tribo_transpose(P, m, x->power + m * P, turned + m * P);
@@ -78,7 +68,11 @@ void tribo_powers_start(struct exact *x, const double *force)
             tribo_multiply_add(1, m, P, 1.0, by_u, turned + m * P, out);
         }
         for (size_t s = 0; s < f->harmonics; s++) {
-            add_harmonic(f->forcing[s].omega, (w->cr[s] + w->ci[s] * I) * tribo_part(&x->z, s), out);
+            double complex z = (w->cr[s] + w->ci[s] * I) * tribo_part(&x->z, s);
+            for (size_t k = 0; k < P && w->size[s] > 0.0; k++) {
+                out[k] += creal(z);
+                z *= f->forcing[s].omega / (double)(k + 1) * I;
+            }
         }
         x->course[o].power = out;
     }
@@ -132,20 +126,4 @@ void tribo_powers_carry(const struct modal *h, double tau, size_t columns, const
             return;
         }
     }
-}
-
-void tribo_powers_look(const struct exact *x, struct course *c)
-{
-    const struct curve curve = {.term = c->power, .terms = P, .stride = 1};
-    c->tau = x->tau;
-    c->at = (struct sample){0.0, 0.0, 0.0};
-    tribo_curve_add(&curve, x->tau, 1.0, &c->at);
-}
-
-void tribo_powers_bound(const struct exact *x, struct course *c)
-{
-    struct curve curve;
-    tribo_curves_bound(&curve, 1, P, 1, c->power, x->longest);
-    c->size = curve.size;
-    c->bend = curve.bend;
 }

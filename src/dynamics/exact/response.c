@@ -33,11 +33,11 @@ static int make_shapes(struct modal_build *b)
     f->x = tribo_modal_take(&f->store, f->harmonics * f->shapes, sizeof *f->x);
     double *const own[] = {h->phi, h->on, h->by_u}, **const to[] = {&f->phi, &f->on, &f->by_u};
     for (size_t k = 0; k < 3; k++) {
-        const size_t rows = k ? c : n;
+        const size_t rows = k ? c : 1, each = k ? m : m * n, wide = k ? f->shapes : f->shapes * n;
         const int grows = f->shapes > m && own[k];
-        *to[k] = grows ? tribo_modal_take(&f->store, rows * f->shapes, sizeof **to[k]) : own[k];
+        *to[k] = grows ? tribo_modal_take(&f->store, rows * wide, sizeof **to[k]) : own[k];
         for (size_t i = 0; grows && *to[k] && i < rows; i++) {
-            memcpy(*to[k] + i * f->shapes, own[k] + i * m, m * sizeof **to[k]);
+            memcpy(*to[k] + i * wide, own[k] + i * each, each * sizeof **to[k]);
         }
     }
     return !f->store.failed;
@@ -52,9 +52,9 @@ static void follow_base(struct modal_build *b, size_t k, double omega, const dou
     const struct modal *h = b->h;
     const size_t n = h->n, m = h->modes, c = b->sys->ncontact;
     const double omega2 = omega * omega;
-    double *y = tribo_modal_take(&b->scratch, 2 * n + 3 * c, sizeof *y), *drag = y + n, *x = drag + n, *on = x + c,
-           *by_u = on + c;
-    if (!y) {
+    double *drag = tribo_modal_take(&b->scratch, n + 3 * c, sizeof *drag), *x = drag + n, *on = x + c, *by_u = on + c;
+    double *y = f->phi + k * n;
+    if (!drag) {
         return;
     }
     for (size_t p = 0; p < h->rests; p++) {
@@ -64,12 +64,12 @@ static void follow_base(struct modal_build *b, size_t k, double omega, const dou
     memset(place, 0, m * sizeof *place);
     memset(rate, 0, m * sizeof *rate);
     tribo_multiply_transposed_add(n, m, 1, h->psi, y, place);
-    tribo_multiply_add(n, m, 1, -1.0, h->phi, place, y);
-    memset(place, 0, m * sizeof *place);
-    tribo_modal_effects(b, 1, y, &omega2, base, on, f->by_u ? by_u : NULL);
-    for (size_t d = 0; d < n; d++) {
-        f->phi[d * f->shapes + k] = y[d];
+    for (size_t l = 0; l < m; l++) {
+        tribo_add(y, -place[l], h->phi + l * n, n);
+        place[l] = 0.0;
     }
+    tribo_matrix_multiply(&b->sys->mass, y, drag);
+    tribo_modal_effects(b, 1, y, drag, &omega2, base, on, f->by_u ? by_u : NULL);
     for (size_t i = 0; i < c; i++) {
         tribo_add(place, h->key[i] == 2 ? -base[i] : 0.0, h->on + i * m, m);
         f->on[i * f->shapes + k] = on[i];
@@ -78,8 +78,9 @@ static void follow_base(struct modal_build *b, size_t k, double omega, const dou
         }
     }
     if (b->c) {
+        memset(drag, 0, n * sizeof *drag);
         tribo_matrix_multiply_add(b->c, -1.0, y, drag);
-        tribo_multiply_transposed_add(n, m, 1, h->phi, drag, rate);
+        tribo_multiply_add(m, n, 1, 1.0, h->phi, drag, rate);
     }
 }
 

@@ -84,8 +84,8 @@ int tribo_modal_motion_signal(void *own, const double *c, double tau, const doub
                            "method exact: a load is in resonance with an undamped mode; method event can do it");
     }
     /* place, speed: derivatives of c'[q, q', f] by eta and eta'; rate: of the part by f', by eta' */
-    tribo_multiply_transposed_add(n, m, 1, h->phi, c, place);
-    tribo_multiply_transposed_add(n, m, 1, h->phi, c + n, speed);
+    tribo_multiply_add(m, n, 1, 1.0, h->phi, c, place);
+    tribo_multiply_add(m, n, 1, 1.0, h->phi, c + n, speed);
     for (size_t k = 0; k < g->count; k++) {
         const double *on = h->on + g->contact[k] * m;
         const int holds = h->modal->key[g->contact[k]] == 2;

@@ -166,7 +166,10 @@ void tribo_course_look(const struct exact *x, struct course *c)
 {
     double sum[3 * T];
     if (x->h->modal->powers) {
-        tribo_powers_look(x, c);
+        const struct curve curve = {.term = c->power, .terms = x->tau > 0.0 ? TRIBO_POWERS : 3, .stride = 1};
+        c->tau = x->tau;
+        c->at = (struct sample){0.0, 0.0, 0.0};
+        tribo_curve_add(&curve, x->tau, 1.0, &c->at);
         return;
     }
     sum_terms(x->h->terms, c->output->cr, x->lot, sum);
@@ -180,7 +183,8 @@ void tribo_course_bound(const struct exact *x, struct course *c)
 {
     double sum[2 * T];
     if (x->h->modal->powers) {
-        tribo_powers_bound(x, c);
+        c->size = tribo_size_of_eight(TRIBO_POWERS, x->growth, c->power);
+        c->bend = tribo_size_of_eight(TRIBO_POWERS, x->growth6, c->power);
         return;
     }
     sum_bounds(x->h->terms, c->output->size, x->growth, x->growth6, sum);

@@ -23,30 +23,20 @@ void tribo_modal_phase_release(void *phase)
     tribo_modal_free(phase);
 }
 
-/* pull [modes][columns] = -sum of on (J q + G f) over the contacts that hold: constant forces on the modes. row [columns] is
- * workspace. */
-static void find_pull(const struct modal *h, const tribo_system *sys, size_t columns, const double *v, double *pull, double *row)
+/* pull [modes][columns] = -sum of on (J q + G f) over the contacts that hold: constant forces on the modes. way [2 ncontact]
+ * [columns] is workspace, zeros. */
+static void find_pull(const struct modal *h, const tribo_system *sys, size_t columns, const double *v, double *pull, double *way)
 {
-    const struct compliance *g = &sys->compliance;
-    const struct matrix *direction = &sys->direction;
-    memset(pull, 0, h->modes * columns * sizeof *pull);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        const double *on = h->on + i * h->modes;
-        if (h->key[i] != 2 || tribo_largest(on, h->modes) == 0.0) {
-            continue;
-        }
-        memset(row, 0, columns * sizeof *row);
-        for (size_t k = direction->first[i]; k < direction->first[i + 1]; k++) {
-            tribo_add(row, direction->val[k], v + direction->col[k] * columns, columns);
-        }
-        for (size_t k = 0; tribo_is_compliant(g, i) && k < g->count; k++) {
-            const double entry = tribo_compliance_entry(g, sys->ncontact, i, g->contact[k]);
-            tribo_add(row, entry, v + (2 * sys->ndof + k) * columns, columns);
-        }
-        for (size_t k = 0; k < h->modes; k++) {
-            tribo_add(pull + k * columns, -on[k], row, columns);
-        }
+    double *f = way + sys->ncontact * columns;
+    for (size_t k = 0; k < sys->compliance.count; k++) {
+        tribo_add(f + sys->compliance.contact[k] * columns, -1.0, v + (2 * sys->ndof + k) * columns, columns);
     }
+    tribo_compliance_give(sys, columns, f, way);
+    tribo_matrix_add_columns(&sys->direction, -1.0, columns, v, way);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        memset(way + i * columns, 0, h->key[i] == 2 ? 0 : columns * sizeof *way);
+    }
+    tribo_multiply_transposed_add(sys->ncontact, h->modes, columns, h->on, way, pull);
 }
 
 /* tribo_powers_carry for a structure with modes; work [10 modes][columns] + [4 modes]. */
@@ -84,18 +74,18 @@ int tribo_modal_transition(void *own, const void *phase, double tau, size_t colu
     const struct modal *h = phase;
     tribo_system *sys = ((struct exact *)own)->sys;
     const size_t n = h->n, m = h->modes, c = columns, block = n * c;
-    double *eta = calloc(13 * block + c + 4 * n + 1, sizeof *eta), *rate = eta + block, *pull = rate + block;
-    double *row = pull + block, *work = row + c;
+    double *eta = calloc(13 * block + 2 * sys->ncontact * c + 4 * n + 1, sizeof *eta), *rate = eta + block;
+    double *pull = rate + block, *way = pull + block, *work = way + 2 * sys->ncontact * c;
     if (!eta) {
         return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     }
     tribo_multiply_transposed_add(n, m, c, h->psi, v, eta);
     tribo_multiply_transposed_add(n, m, c, h->psi, v + block, rate);
-    find_pull(h, sys, c, v, pull, row);
+    find_pull(h, sys, c, v, pull, way);
     (h->powers ? tribo_powers_carry : carry_modes)(h, tau, c, pull, eta, rate, work);
     memset(v + block, 0, block * sizeof *v);
-    tribo_multiply_add(n, m, c, 1.0, h->phi, eta, v);
-    tribo_multiply_add(n, m, c, 1.0, h->phi, rate, v + block);
+    tribo_multiply_transposed_add(m, n, c, h->phi, eta, v);
+    tribo_multiply_transposed_add(m, n, c, h->phi, rate, v + block);
     for (size_t k = 0; k < sys->compliance.count; k++) {
         const size_t i = sys->compliance.contact[k];
         for (size_t l = 0; h->key[i] == 2 && l < m; l++) {
