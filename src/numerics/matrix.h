@@ -58,7 +58,7 @@ void tribo_matrix_free(struct matrix *a);
 /* y += |A| |x|. */
 void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y);
 
-/* Columns from which a row without zeros is summed in eight parts. */
+/* Columns from which rows without zeros are multiplied by tribo_multiply_add. */
 enum { MATRIX_WIDE = 32 };
 
 /* Return x'y, and |x|'|y|, summed in eight parts. In linalg.c. */
@@ -75,19 +75,10 @@ static inline double tribo_dot(const double *x, const double *y, size_t n)
     return n < 8 ? sum : tribo_dot_of_eight(n, x, y);
 }
 
-/* Returns 1 if row i has no zeros, and at least MATRIX_WIDE columns. */
-static inline int tribo_matrix_row_is_wide(const struct matrix *a, size_t i)
-{
-    return a->cols >= MATRIX_WIDE && a->first[i + 1] - a->first[i] == a->cols;
-}
-
 /* Returns (A x)_i. */
 static inline double tribo_matrix_row_dot(const struct matrix *a, size_t i, const double *x)
 {
     double sum = 0.0;
-    if (tribo_matrix_row_is_wide(a, i)) {
-        return tribo_dot(a->val + a->first[i], x, a->cols);
-    }
     for (size_t k = a->first[i], end = a->first[i + 1]; k < end; k++) {
         sum += a->val[k] * x[a->col[k]];
     }
@@ -98,9 +89,6 @@ static inline double tribo_matrix_row_dot(const struct matrix *a, size_t i, cons
 static inline double tribo_matrix_row_size(const struct matrix *a, size_t i, const double *x)
 {
     double sum = 0.0;
-    if (tribo_matrix_row_is_wide(a, i)) {
-        return tribo_size_of_eight(a->cols, a->val + a->first[i], x);
-    }
     for (size_t k = a->first[i], end = a->first[i + 1]; k < end; k++) {
         sum += fabs(a->val[k] * x[a->col[k]]);
     }
