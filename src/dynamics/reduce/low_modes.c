@@ -366,13 +366,6 @@ static int attach(const tribo_model *m, const struct shifted *s, struct reduced 
 
 /* ------------------------------------------------------------------------------------------------------------------ calls */
 
-void tribo_reduced_free(struct reduced *r)
-{
-    free(r->omega2);
-    free(r->phi);
-    free(r->residual);
-}
-
 int tribo_model_find_modes(const tribo_model *m, struct reduced *r)
 {
     const size_t n = m->ndof, most = m->nmode + (m->attachments ? m->ncontact : 0);

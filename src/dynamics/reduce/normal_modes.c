@@ -181,20 +181,6 @@ static int modes_judge(struct spectrum *s, size_t k, const double *phi, double *
                        s->text->circumstance, *omega2, k, noise);
 }
 
-/* Makes the first of the largest |phi_i| positive, because the sign of a mode would be chance. */
-static void turn_positive(double *phi, size_t n)
-{
-    const double most = tribo_largest(phi, n);
-    size_t first = 0;
-    while (first < n && fabs(phi[first]) < 0.999 * most) {
-        first++;
-    }
-    const int turns = first < n && phi[first] < 0.0;
-    for (size_t i = 0; turns && i < n; i++) {
-        phi[i] = -phi[i];
-    }
-}
-
 int tribo_normal_modes(const struct matrix *k, const double *terms, const struct matrix *z, const struct cholesky *mass,
                        size_t wanted, double *omega2, double *phi, const struct modes_text *text)
 {
@@ -228,9 +214,19 @@ int tribo_normal_modes(const struct matrix *k, const double *terms, const struct
         }
         tribo_exchange(&s.value[p], &s.value[lowest], 1, 1);
         tribo_exchange(s.y + p * m, s.y + lowest * m, m, 1);
-        modes_expand(&s, p, phi + p * n);
-        turn_positive(phi + p * n, n);
-        status = modes_judge(&s, p, phi + p * n, &omega2[p]);
+        double *x = phi + p * n;
+        modes_expand(&s, p, x);
+        /* the first of the largest |x_i| is positive, because the sign of a mode would be chance */
+        const double most = tribo_largest(x, n);
+        size_t first = 0;
+        while (first < n && fabs(x[first]) < 0.999 * most) {
+            first++;
+        }
+        const int turns = first < n && x[first] < 0.0;
+        for (size_t i = 0; turns && i < n; i++) {
+            x[i] = -x[i];
+        }
+        status = modes_judge(&s, p, x, &omega2[p]);
         for (size_t q = p; !status && q > 0 && omega2[q] < omega2[q - 1]; q--) {
             tribo_exchange(&omega2[q], &omega2[q - 1], 1, 1);
             tribo_exchange(phi + q * n, phi + (q - 1) * n, n, 1);

@@ -152,7 +152,9 @@ int tribo_model_reduce(tribo_model *m, tribo_system **sys)
                 : status;
     }
     status = status || set_modes(&r, m->ndof, *sys) ? status : TRIBO_ERR_MEMORY;
-    tribo_reduced_free(&r);
+    free(r.omega2);
+    free(r.phi);
+    free(r.residual);
     free(own);
     return status;
 }

@@ -104,11 +104,3 @@ int tribo_system_highest(const tribo_system *sys, double stiffness, double dampi
                                 tribo_strerror(status))
                   : TRIBO_OK;
 }
-
-int tribo_system_top_frequency(const tribo_system *sys, double *omega)
-{
-    double square;
-    const int status = tribo_system_highest(sys, 1.0, 0.0, &square);
-    *omega = status ? 0.0 : greater(sqrt(square), tribo_system_load_frequency(sys));
-    return status;
-}

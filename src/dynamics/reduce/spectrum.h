@@ -9,7 +9,4 @@
  * positive. Neglects damping that is not symmetric. Returns TRIBO_OK or TRIBO_ERR_MEMORY, with a message on the context. */
 int tribo_system_highest(const tribo_system *sys, double stiffness, double damping, double *value);
 
-/* Sets *omega = a bound of the frequencies of structure and loads. Returns a status. */
-int tribo_system_top_frequency(const tribo_system *sys, double *omega);
-
 #endif

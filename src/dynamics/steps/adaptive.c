@@ -216,11 +216,12 @@ static int adaptive_advance(tribo_driver *drv, double *t, double t1, double *y, 
     tribo_system *sys = drv->sys;
     int status = TRIBO_OK;
     if (a->structure != sys->revision) {
-        double fastest;
-        status = tribo_system_top_frequency(sys, &fastest);
+        double square;
+        status = tribo_system_highest(sys, 1.0, 0.0, &square);
         if (status) {
             return tribo_driver_pass(drv, status);
         }
+        const double fastest = greater(sqrt(square), tribo_system_load_frequency(sys));
         a->largest = fastest > 0.0 ? LARGEST_STEP / fastest : HUGE_VAL;
         a->structure = sys->revision;
     }

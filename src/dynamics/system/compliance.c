@@ -88,13 +88,6 @@ int tribo_compliance_create(tribo_system *sys, const double *own, const double *
     return done ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
-int tribo_compliance_copy(tribo_system *to, const tribo_system *from)
-{
-    const struct definite *g = from->compliance.g;
-    size_t where;
-    return !g || !tribo_compliance_create(to, g->own, g->matrix, &where);
-}
-
 /* Largest stiffness of a compliant contact, relative to the structure. At this ratio the compliance changes a motion by 1e-8 of
  * the motion, and the rounding of displacements changes the force by 1e-8 of the force: the contact should be rigid. */
 #define MOST_STIFF 1e8

@@ -43,7 +43,6 @@ static inline double tribo_compliance_entry(const struct compliance *g, size_t n
  * diagonal. Returns TRIBO_OK, TRIBO_ERR_MEMORY, or TRIBO_ERR_INDEFINITE and *where = a contact with a row of G that depends on
  * earlier rows. */
 int tribo_compliance_create(tribo_system *sys, const double *own, const double *entries, size_t *where);
-int tribo_compliance_copy(tribo_system *to, const tribo_system *from); /* 1, or 0 if out of memory */
 void tribo_compliance_free(struct compliance *g);
 
 /* Returns TRIBO_ERR_UNSUPPORTED if a compliant contact is so stiff relative to structure and loads that rounding of displacements

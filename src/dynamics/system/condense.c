@@ -130,12 +130,17 @@ static int solve_row(struct condensed *s, const struct matrix *a, size_t i)
     return a->first[i] < a->first[i + 1] && tribo_cholesky_solve(&s->factor, 1, s->row);
 }
 
-/* Sets own = G_ii, give, and shared = G if an entry off the diagonal is more than rounding. Returns 0 if out of memory. */
-static int find_compliance(const tribo_model *m, struct condensed *s)
+/* Sets follow = -K_ww^-1 K_wq; own = G_ii, give, and shared = G if an entry off the diagonal is more than rounding. Returns 0 if out of memory. */
+static int find_responses(const tribo_model *m, struct condensed *s)
 {
     const size_t n = m->ncontact;
-    struct triplets give = {0};
+    struct triplets follow = {0}, give = {0};
     int done = 1;
+    for (size_t q = 0; q < s->with; q++) {
+        for (size_t k = 0, end = solve_row(s, &s->kqw, q) ? s->without : 0; k < end; k++) {
+            tribo_triplets_put(&follow, k, q, -s->row[k]);
+        }
+    }
     for (size_t i = 0; done && i < n; i++) {
         const int touches = solve_row(s, &s->x.touch, i);
         s->own[i] = (m->compliance ? m->compliance[i] : 0.0) + tribo_matrix_row_dot(&s->x.touch, i, s->row);
@@ -156,19 +161,8 @@ static int find_compliance(const tribo_model *m, struct condensed *s)
     for (size_t i = 0; s->shared && i < n; i++) {
         s->shared[i * n + i] = s->own[i];
     }
-    return tribo_triplets_finish(&give, s->without, n, &s->x.give) && done;
-}
-
-/* Sets follow = -K_ww^-1 K_wq. Returns 0 if out of memory. */
-static int find_follow(struct condensed *s)
-{
-    struct triplets t = {0};
-    for (size_t q = 0; q < s->with; q++) {
-        for (size_t k = 0, end = solve_row(s, &s->kqw, q) ? s->without : 0; k < end; k++) {
-            tribo_triplets_put(&t, k, q, -s->row[k]);
-        }
-    }
-    return tribo_triplets_finish(&t, s->without, s->with, &s->x.follow);
+    return tribo_triplets_finish(&follow, s->without, s->with, &s->x.follow) &
+           tribo_triplets_finish(&give, s->without, n, &s->x.give) & done;
 }
 
 /* Adds x to column j of the sum of a row. */
@@ -250,7 +244,7 @@ int tribo_model_condense(tribo_model *m, tribo_system **sys)
     status = done ? check_damping(m, &s) : TRIBO_ERR_MEMORY;
     status = status ? status : factorize_without(m, &s);
     if (!status) {
-        done = find_compliance(m, &s) && find_follow(&s) && replace_matrices(m, &s);
+        done = find_responses(m, &s) && replace_matrices(m, &s);
         status = done ? tribo_model_build_massive(m, s.own, sys) : TRIBO_ERR_MEMORY;
     }
     if (!status) {

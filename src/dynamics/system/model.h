@@ -49,6 +49,5 @@ struct reduced {
 
 /* low_modes.c: finds the lowest nmode modes, and attachment modes or residual flexibility. Allocates r, also after an error. */
 int tribo_model_find_modes(const tribo_model *m, struct reduced *r);
-void tribo_reduced_free(struct reduced *r);
 
 #endif

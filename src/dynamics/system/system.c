@@ -362,6 +362,8 @@ int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
         return tribo_error(sys->message, TRIBO_ERR_NULL, "copy is NULL");
     }
     tribo_system *to = NULL;
+    const struct definite *g = sys->compliance.g;
+    size_t where;
     const size_t c = sys->ncontact, dofs = sys->expansion.dofs;
     int done = tribo_system_build(&to, sys->ndof, c) == TRIBO_OK;
     if (done) {
@@ -384,12 +386,12 @@ int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
     }
     done = done && (!sys->lent || (tribo_clone(sys->lent, &to->lent) == TRIBO_OK && tribo_fix_operator(to->lent) == TRIBO_OK));
     if (done && !sys->unsolved) {
-        size_t where;
         double pivot;
         done = tribo_cholesky_create(&to->factor, &to->mass, NULL, &where, &pivot) == TRIBO_OK;
     }
-    done = done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && tribo_compliance_copy(to, sys) &&
-           tribo_expansion_copy(to, sys) && tribo_loads_copy(to, sys);
+    done = done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK &&
+           (!g || tribo_compliance_create(to, g->own, g->matrix, &where) == TRIBO_OK) && tribo_expansion_copy(to, sys) &&
+           tribo_loads_copy(to, sys);
     if (!done) {
         tribo_system_destroy(to);
         return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu degree%s of freedom", sys->ndof,
