@@ -29,8 +29,8 @@ static inline const char *any_method_name(int i)
 /* A driver by the method or the stepper of that name. */
 static inline int create_any_driver(tribo_driver **drv, tribo_system *sys, const char *method)
 {
-    const int status = method ? tribo_gsl_driver_create(drv, sys, method) : TRIBO_ERR_NAME;
-    return status == TRIBO_ERR_NAME ? tribo_driver_create(drv, sys, method) : status;
+    const int status = tribo_driver_create(drv, sys, method);
+    return status == TRIBO_ERR_NAME ? tribo_gsl_driver_create(drv, sys, method) : status;
 }
 
 /* Creates a driver, and sets what its method takes: dt as step, for exact and auto as output; tolerances where abstol > 0.

@@ -32,17 +32,17 @@ int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *metho
     if (!drv || !method) {
         return tribo_error(sys->message, TRIBO_ERR_NULL, "%s is NULL", drv ? "method" : "drv");
     }
-    const struct method *m = NULL;
-    char list[200] = "";
     for (int i = 0; i < tribo_method_count(); i++) {
-        const size_t used = strlen(list);
-        m = tribo_same_name(methods[i]->name, method) ? methods[i] : m;
-        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", methods[i]->name);
+        if (tribo_same_name(methods[i]->name, method)) {
+            return tribo_driver_create_method(drv, sys, methods[i]);
+        }
     }
-    return m ? tribo_driver_create_method(drv, sys, m)
-             : tribo_error(sys->message, TRIBO_ERR_NAME,
-                           "method \"%.20s\" is unknown; there are %s; tribo_gsl_driver_create takes GSL's steppers", method,
-                           list);
+    char list[200];
+    for (int i = 0, used = 0; i < tribo_method_count(); i++) {
+        used += snprintf(list + used, sizeof list - (size_t)used, "%s%s", i ? ", " : "", methods[i]->name);
+    }
+    return tribo_error(sys->message, TRIBO_ERR_NAME,
+                       "method \"%.20s\" is unknown; there are %s; tribo_gsl_driver_create takes GSL's steppers", method, list);
 }
 
 /* ------------------------------------------------------------------------------------------------------ method "auto" */

@@ -377,14 +377,16 @@ int tribo_gsl_driver_create(tribo_driver **drv, tribo_system *sys, const char *s
     if (!drv || !stepper) {
         return tribo_system_set_message(sys, TRIBO_ERR_NULL, drv ? "stepper is NULL" : "drv is NULL");
     }
-    const struct gsl_kind *kind = NULL;
-    char text[200];
-    size_t used = (size_t)snprintf(text, sizeof text, "stepper \"%.20s\" is unknown; GSL has ", stepper);
-    for (int i = 0; i < tribo_gsl_stepper_count(); i++) {
-        kind = tribo_same_name(kinds[i].name, stepper) ? &kinds[i] : kind;
-        used += (size_t)snprintf(text + used, sizeof text - used, "%s%s", i ? ", " : "", kinds[i].name);
+    const struct gsl_kind *kind = kinds, *const end = kinds + tribo_gsl_stepper_count();
+    while (kind < end && !tribo_same_name(kind->name, stepper)) {
+        kind++;
     }
-    if (!kind) {
+    if (kind == end) {
+        char text[200];
+        int used = snprintf(text, sizeof text, "stepper \"%.20s\" is unknown; GSL has ", stepper);
+        for (kind = kinds; kind < end; kind++) {
+            used += snprintf(text + used, sizeof text - (size_t)used, "%s%s", kind > kinds ? ", " : "", kind->name);
+        }
         return tribo_system_set_message(sys, TRIBO_ERR_NAME, text);
     }
     struct gsl_step *g = gsl_step_create(kind, sys);

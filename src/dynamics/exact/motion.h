@@ -31,7 +31,7 @@ enum { TRIBO_POWERS = 20 };
 #define TRIBO_POWERS_REACH 1.0
 
 /* Number of lists of structures. */
-enum { TRIBO_HELD_LISTS = 1024 };
+enum { TRIBO_HELD_LISTS = 64 };
 
 /* The structures so far. */
 struct held {
