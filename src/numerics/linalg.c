@@ -121,10 +121,16 @@ static inline int any_of_four(const double *f)
 void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c)
 {
     size_t i = 0;
+    if (cols == 1 && inner < LANES) {
+        for (; i < rows; i++) {
+            c[i] += factor * tribo_dot(a + i * inner, b, inner);
+        }
+        return;
+    }
     for (; cols == 1 && i + 4 <= rows; i += 4) {
         add_four_dots(inner, factor, a + i * inner, b, c + i);
     }
-    for (; i < rows; i++) {
+    for (; cols > 0 && i < rows; i++) {
         const double *row = a + i * inner;
         size_t k = 0;
         if (cols == 1) {

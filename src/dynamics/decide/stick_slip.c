@@ -67,15 +67,19 @@ static void lay_out_arrays(struct stick_slip *m, struct layout *l, size_t contac
     r->founds = 3 * contacts + dofs;
 }
 
-/* Contexts that know J and M only. Where R is diagonal forces are found without them, and there is no constant.hold. */
+/* Contexts that know J and M only. Where R is diagonal forces are found without them: there is no constant.hold, and without
+ * planar contacts no constant.box. */
 static int create_contexts(struct slip_constant *c, const tribo_context *contacts)
 {
     size_t islands;
-    if (tribo_clone(contacts, &c->box)) {
-        return 0;
+    tribo_get_count(contacts, TRIBO_COUNT_ISLANDS, &islands);
+    if (islands < c->contacts) { /* joined by R, or by planar contacts */
+        if (tribo_clone(contacts, &c->box)) {
+            return 0;
+        }
+        tribo_set_planar(c->box, 0, NULL);
+        tribo_get_count(c->box, TRIBO_COUNT_ISLANDS, &islands);
     }
-    tribo_set_planar(c->box, 0, NULL);
-    tribo_get_count(c->box, TRIBO_COUNT_ISLANDS, &islands);
     c->uncoupled = islands == c->contacts;
     if (c->uncoupled) {
         return 1;

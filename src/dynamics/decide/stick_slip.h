@@ -18,7 +18,7 @@
 struct slip_constant {
     tribo_system *sys;
     size_t contacts;
-    tribo_context *box;  /* clone of the system's context; solves min 1/2 f'R f + a'f, lo <= f <= hi */
+    tribo_context *box;  /* clone of the system's context; solves min 1/2 f'R f + a'f, lo <= f <= hi; or NULL */
     tribo_context *hold; /* solves R_HH f_H = -a_H over the holding contacts H, as f_eq for v = 0; NULL if R is diagonal */
     void *memory;        /* all arrays of the four parts */
     int uncoupled;       /* 1: R is diagonal */

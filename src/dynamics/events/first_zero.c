@@ -207,12 +207,12 @@ static int all_positive(const struct first_zero *s, int middle, double until, do
     return 1;
 }
 
-/* Moves a to b, where all guards have been sampled. Sets expected to the first zero of parabolas within SOON h, if there is one.
- * Returns the guard if its zero, *when, is within reach of the derivatives; else NULL. */
+/* Moves a to b, where all guards have been sampled. Sets expected, unless it is ahead, to the first zero of parabolas within SOON
+ * h, if there is one. Returns the guard if its zero, *when, is within reach of the derivatives; else NULL. */
 static const struct guard *come_to(struct first_zero *s, double b, double *when)
 {
     const struct guard *first = NULL;
-    double step = lesser(SOON * s->h, s->longest - b);
+    double step = s->expected > b + SHORT * s->length ? 0.0 : lesser(SOON * s->h, s->longest - b);
     s->a = b;
     s->watching = s->guards;
     keep_left(s);

@@ -115,6 +115,9 @@ static double zero(const double *p, double s)
 double tribo_quintic_zero(const struct sample *a, const struct sample *b, double h)
 {
     double p[POWERS + ROOTS] = {0.0}, back = b->d < 0.0 ? b->g / (h * b->d) : 1.0;
+    if (a->g <= 0.0 && a->d < 0.0) {
+        return 0.0;
+    }
     if (!(back > 0.0 && back < 0.5)) {
         quintic_powers(a, b, h, p);
         const double s = zero(p, a->g / (a->g - b->g));

@@ -146,7 +146,7 @@ struct sample tribo_modal_motion_limit(const struct exact *x, size_t i)
     return sum;
 }
 
-/* Sets move, rate_move, and place and rate of all shapes. */
+/* Sets place and rate of all shapes. */
 static void move_shapes(struct exact *x, int brief)
 {
     const struct forced *h = x->h;
@@ -165,27 +165,25 @@ static void move_shapes(struct exact *x, int brief)
             move = tribo_part(&x->z, p) * x->tau * lambda * tribo_exp_1(x->tau * lambda);
         }
         const double complex rate = brief ? lambda * move : tribo_now(x, p, 1);
-        x->move.re[p] = creal(move);
-        x->move.im[p] = cimag(move);
-        x->rate_move.re[p] = creal(rate);
-        x->rate_move.im[p] = cimag(rate);
-        if (own->owner && p < e) {
-            x->place[own->owner[p]] += creal(move);
-            x->rate[own->owner[p]] += creal(rate);
+        const double er = creal(move), ei = cimag(move), fr = creal(rate), fi = cimag(rate);
+        if (p < e && own->owner) {
+            x->place[own->owner[p]] += er;
+            x->rate[own->owner[p]] += fr;
+        } else if (p < e) {
+            x->move.re[p] = er;
+            x->move.im[p] = ei;
+            x->rate_move.re[p] = fr;
+            x->rate_move.im[p] = fi;
+        }
+        for (size_t k = 0; p >= e && k < shapes; k++) {
+            const double complex response = h->x[(p - e) * shapes + k];
+            x->place[k] += creal(response) * er - cimag(response) * ei;
+            x->rate[k] += creal(response) * fr - cimag(response) * fi;
         }
     }
     if (!own->owner) {
         tribo_modal_join(own, 1, x->move.re, x->move.im, x->place);
         tribo_modal_join(own, 1, x->rate_move.re, x->rate_move.im, x->rate);
-    }
-    for (size_t s = 0; s < h->harmonics; s++) {
-        const double er = x->move.re[e + s], ei = x->move.im[e + s], fr = x->rate_move.re[e + s], fi = x->rate_move.im[e + s];
-        const double complex *response = h->x + s * shapes;
-        for (size_t k = 0; k < shapes; k++) {
-            const double xr = creal(response[k]), xi = cimag(response[k]);
-            x->place[k] += xr * er - xi * ei;
-            x->rate[k] += xr * fr - xi * fi;
-        }
     }
 }
 
@@ -249,14 +247,14 @@ static void find_constant_forces(struct exact *x, const double *y, double *force
     const tribo_system *sys = x->sys;
     const int holds = h->outputs > h->sliding;
     const size_t m = h->modal->modes;
-    memcpy(x->steady, x->events.stick_slip.state.force, sys->ncontact * sizeof *x->steady);
-    for (size_t i = 0; sys->loads.limits && i < sys->ncontact; i++) {
+    for (size_t i = 0; i < sys->ncontact; i++) {
         double limit = sys->loads.given_limit[i];
-        for (size_t s = 0; s < sys->loads.harmonics; s++) {
+        for (size_t s = 0; sys->loads.limits && s < sys->loads.harmonics; s++) {
             const struct harmonic *w = &sys->loads.harmonic[s];
             limit += w->drives == DRIVES_LIMIT && w->omega == 0.0 ? w->cosine[i] : 0.0;
         }
-        x->steady[i] = tribo_stick_slip_follows(&x->events.stick_slip, i) * limit;
+        x->steady[i] =
+            sys->loads.limits ? tribo_stick_slip_follows(&x->events.stick_slip, i) * limit : x->events.stick_slip.state.force[i];
     }
     memcpy(force, h->constant, m * sizeof *force);
     if (holds) {

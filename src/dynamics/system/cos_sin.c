@@ -15,14 +15,6 @@ static inline double nearest(double x)
     return (x + lift) - lift;
 }
 
-/* Returns angle - quarters pi/2. pi/2 = first + second + third; multiples of first and second up to 2^20 are exact. */
-static inline struct twofold without_quarters(struct twofold angle, double quarters)
-{
-    const double first = 0x1.921fb544p+0, second = 0x1.0b4611a6p-34, third = 0x1.3198a2e037073p-69;
-    const struct twofold x = twofold_sum(angle.hi - quarters * first, -quarters * second);
-    return twofold_sum(x.hi, (x.lo - quarters * third) + angle.lo);
-}
-
 /* Returns the sum of c[k] (-z)^k, k < 8, added in pairs: no term waits for more than three others. */
 static inline double alternating(double z, const double *c)
 {
@@ -46,58 +38,46 @@ static inline double sine_near_0(struct twofold x)
     return x.hi + (x.lo * (1.0 - 0.5 * z) - x.hi * z * alternating(z, c));
 }
 
-TRIBO_SIMD static void cos_sin_near(double omega, size_t n, const double *restrict t, double *restrict c, double *restrict s)
+/* c, s = cosine and sine of an angle up to COS_SIN_NEAR. x = angle - quarters pi/2, pi/2 = first + second + third; multiples of
+ * first and second up to 2^20 are exact. */
+static inline void cos_sin_of(struct twofold angle, double *c, double *s)
 {
-    for (size_t k = 0; k < n; k++) {
-        const struct twofold angle = twofold_product(omega, t[k]);
-        const double quarters = nearest(angle.hi * 0.63661977236758134);
-        const struct twofold x = without_quarters(angle, quarters);
-        const double cx = cosine_near_0(x), sx = sine_near_0(x);
-        const double left = quarters - 4.0 * nearest(0.25 * quarters), size = fabs(left); /* -2 to 2; in other modes -3 to 3 */
-        const double past = (size - 1.0) * (size - 2.0) * (1 / 3.);                       /* 0 unless size is 0 or 3 */
-        const double cq = (1.0 - size) + size * past, sq = left * (2.0 - size) + left * past;
-        c[k] = cq * cx - sq * sx;
-        s[k] = sq * cx + cq * sx;
-    }
+    const double first = 0x1.921fb544p+0, second = 0x1.0b4611a6p-34, third = 0x1.3198a2e037073p-69;
+    const double quarters = nearest(angle.hi * 0.63661977236758134);
+    const struct twofold most = twofold_sum(angle.hi - quarters * first, -quarters * second);
+    const struct twofold x = twofold_sum(most.hi, (most.lo - quarters * third) + angle.lo);
+    const double cx = cosine_near_0(x), sx = sine_near_0(x);
+    const double left = quarters - 4.0 * nearest(0.25 * quarters), size = fabs(left); /* -2 to 2; in other modes -3 to 3 */
+    const double past = (size - 1.0) * (size - 2.0) * (1 / 3.);                       /* 0 unless size is 0 or 3 */
+    const double cq = (1.0 - size) + size * past, sq = left * (2.0 - size) + left * past;
+    *c = cq * cx - sq * sx;
+    *s = sq * cx + cq * sx;
 }
 
-TRIBO_SIMD static int any_far(double omega, size_t n, const double *t)
-{
-    int64_t any = 0; /* as wide as the doubles compared, for vectors */
-    for (size_t k = 0; k < n; k++) {
-        any |= fabs(omega * t[k]) <= COS_SIN_NEAR ? 0 : -1;
-    }
-    return any != 0;
-}
-
-/* For smaller angles, cosine = 1 and sine = angle up to rounding. */
-#define TINY_ANGLE 1e-8
-
-/* Rotates by `rest`, the rounding error of omega t plus omega low, without which phases at late times have random errors. */
+/* Far angles: rotates by `rest`, the rounding error of omega t plus omega low, without which phases at late times have random
+ * errors. */
 void tribo_cos_sin(double omega, double t, double low, double *c, double *s)
 {
     const double angle = omega * t, rest = (fabs(angle) < TWOFOLD_FAR ? twofold_product(omega, t).lo : 0.0) + omega * low;
-    const double ca = cos(angle), sa = sin(angle);
-    double cr = 1.0, sr = rest;
-    if (!(fabs(rest) < TINY_ANGLE)) {
-        cr = cos(rest);
-        sr = sin(rest);
+    if (fabs(angle) <= COS_SIN_NEAR) {
+        cos_sin_of((struct twofold){angle, rest}, c, s);
+        return;
     }
+    const double ca = cos(angle), sa = sin(angle), cr = cos(rest), sr = sin(rest);
     *c = ca * cr - sa * sr;
     *s = sa * cr + ca * sr;
 }
 
-void tribo_cos_sin_all(double omega, size_t n, const double *t, double *c, double *s)
+TRIBO_SIMD void tribo_cos_sin_all(double omega, size_t n, const double *restrict t, double *restrict c, double *restrict s)
 {
-    if (!any_far(omega, n, t)) {
-        cos_sin_near(omega, n, t, c, s);
-        return;
-    }
+    int64_t far = 0; /* as wide as the doubles compared, for vectors */
     for (size_t k = 0; k < n; k++) {
-        if (any_far(omega, 1, t + k)) {
-            tribo_cos_sin(omega, t[k], 0.0, c + k, s + k);
-        } else {
-            cos_sin_near(omega, 1, t + k, c + k, s + k);
-        }
+        far |= fabs(omega * t[k]) <= COS_SIN_NEAR ? 0 : -1;
+    }
+    for (size_t k = 0; !far && k < n; k++) {
+        cos_sin_of(twofold_product(omega, t[k]), c + k, s + k);
+    }
+    for (size_t k = 0; far && k < n; k++) {
+        tribo_cos_sin(omega, t[k], 0.0, c + k, s + k);
     }
 }

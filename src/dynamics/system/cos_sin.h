@@ -11,7 +11,8 @@
 #define COS_SIN_NEAR 1e6
 void tribo_cos_sin_all(double omega, size_t n, const double *t, double *c, double *s);
 
-/* c, s = cosine and sine of omega (t + low), low the part of the time below the last digit of t; by math.h, error 2.5e-16. */
+/* c, s = cosine and sine of omega (t + low), low the part of the time below the last digit of t, to the same error; by math.h
+ * beyond COS_SIN_NEAR, error 2.5e-16. With low = 0 the bits are those of tribo_cos_sin_all. */
 void tribo_cos_sin(double omega, double t, double low, double *c, double *s);
 
 #endif

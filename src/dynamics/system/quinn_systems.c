@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Quinn's three reference systems. */
+#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,18 +23,18 @@ static int quinn_finish(tribo_system **sys, tribo_system *made, int status)
 static int build_dense(tribo_system **sys, size_t n, const double *stiffness, const double *direction, const double *limit,
                        double omega, const double *load, const double *motion)
 {
-    static const double mass[] = {1.0, 1.0};
-    tribo_model *model = NULL;
+    tribo_model m = {.ndof = n, .ncontact = n};
     tribo_system *s = NULL;
-    int status = sys ? tribo_model_create(&model, n, n) : TRIBO_ERR_NULL;
-    status = status ? status : tribo_model_set_mass_diagonal(model, mass);
-    status = status ? status : tribo_model_set_stiffness(model, stiffness);
-    status = status ? status : tribo_model_set_direction(model, direction);
-    status = status ? status : tribo_system_create(&s, model);
+    const int done = tribo_matrix_diagonal(&m.mass, n, NULL) && tribo_matrix_from_dense(&m.stiffness, n, n, stiffness) &&
+                     tribo_matrix_from_dense(&m.direction, n, n, direction);
+    int status = !sys                              ? TRIBO_ERR_NULL
+                 : !isfinite(stiffness[n * n - 1]) ? TRIBO_ERR_NOT_FINITE
+                 : done                            ? tribo_model_build(&m, &s)
+                                                   : TRIBO_ERR_MEMORY;
+    tribo_model_free(&m);
     status = status ? status : tribo_set_limit(s->contacts, limit);
     status = status || !load ? status : tribo_system_add_load(s, omega, NULL, load);
     status = status || !motion ? status : tribo_system_add_base_motion(s, omega, NULL, motion);
-    tribo_model_destroy(model);
     return quinn_finish(sys, s, status);
 }
 

@@ -109,6 +109,15 @@ TEST(zero_at_the_start)
     assert_close(zero_of(&p), 0.5, 1e-14);
 }
 
+/* A function at zero, or below by rounding, that falls from the start is zero there. */
+TEST(fall_from_the_start)
+{
+    for (int k = 0; k < 3; k++) {
+        const struct polynomial p = {{-1e-16 * k, -1.0, -0.01, 0.1, 0.0, 0.0}, 1.0};
+        assert_exact(zero_of(&p), 0.0);
+    }
+}
+
 /* Two sines and a constant, of which the sixth derivative is at most bend. */
 struct swing {
     double a, b, omega, phase, offset, bend;
@@ -207,5 +216,5 @@ TEST(error_of_a_zero)
 }
 
 TEST_MAIN("quintic", {single_roots, 1}, {two_close_roots_and_a_third, 1}, {roots_whatever_the_scale, 1},
-          {tiny_leading_coefficients, 1}, {zero_at_the_start, 1}, {bounds_are_below, 1}, {bounds_tell_of_short_intervals, 1},
-          {near_touch, 1}, {error_of_a_zero, 1})
+          {tiny_leading_coefficients, 1}, {fall_from_the_start, 1}, {zero_at_the_start, 1}, {bounds_are_below, 1},
+          {bounds_tell_of_short_intervals, 1}, {near_touch, 1}, {error_of_a_zero, 1})

@@ -29,7 +29,7 @@ static void compare(double omega, double t, double most)
     tribo_cos_sin(omega, t, 0.0, c + 1, s + 1);
     for (int k = 0; k < 2; k++) {
         const long double off = hypotl(c[k] - cosl(angle), s[k] - sinl(angle));
-        require(off <= (k ? 2.5e-16 : most) + doubt, "omega = %.17g, t = %.17g: off by %Lg", omega, t, off);
+        require(off <= most + doubt, "omega = %.17g, t = %.17g: off by %Lg", omega, t, off);
     }
 }
 
