@@ -64,20 +64,21 @@ static void build_give_back(struct modal_store *store)
 
 /* ------------------------------------------------------------------------------------------------- the contacts that hold */
 
-/* Sets key, rest, ties and b->springs. Returns 0 if out of memory, or on another failure, with b->status set. */
+/* Sets key, rest and ties. Returns 0 if out of memory, or on another failure, with b->status set. */
 static int list_rest(struct modal_build *b, const unsigned char *holds)
 {
     struct modal *h = b->h;
     tribo_system *sys = b->sys;
     h->key = tribo_modal_take(&h->store, sys->ncontact, 1);
-    h->rest = tribo_modal_take(&h->store, sys->ncontact, sizeof *h->rest);
-    for (size_t i = 0; !h->store.failed && i < sys->ncontact; i++) {
-        const int compliant = tribo_is_compliant(&sys->compliance, i);
+    h->rest = tribo_modal_take(&h->store, sys->ncontact + 1, sizeof *h->rest);
+    for (size_t at = 0; !h->store.failed && at < 2 * sys->ncontact; at++) {
+        const size_t i = at % sys->ncontact;
+        const int springs = at >= sys->ncontact, listed = holds[i] && springs == tribo_is_compliant(&sys->compliance, i);
         h->key[i] = (signed char)((b->slip[i] == TRIBO_SLIP_STUCK) + holds[i]);
-        h->rest[h->rests] = i;
-        h->rests += holds[i] && !compliant;
-        b->springs += holds[i] && compliant;
+        h->rest[h->rests + h->springs] = i;
+        *(springs ? &h->springs : &h->rests) += (size_t)listed;
     }
+    b->like = h->rests ? NULL : b->like;
     if (h->store.failed || !tribo_constraints_create(&h->ties, &sys->direction, &sys->mass, h->rest, h->rests, NULL)) {
         return 0;
     }
@@ -93,32 +94,24 @@ static int list_rest(struct modal_build *b, const unsigned char *holds)
 /* Sets b->stiffness. Returns 0 if out of memory. */
 static int find_stiffness(struct modal_build *b)
 {
-    const tribo_system *sys = b->sys;
-    const size_t n = b->h->n, c = sys->ncontact;
+    const struct matrix *j = &b->sys->direction;
+    const size_t n = b->h->n, c = j->rows;
     b->stiffness = b->k;
-    if (!b->springs) {
+    if (!b->h->springs || b->powers) {
         return 1;
     }
-    const struct matrix *j = &sys->direction;
-    double *added = tribo_modal_take(&b->scratch, n * n + c * n, sizeof *added), *x = added ? added + n * n : NULL;
-    struct matrix k = {0};
+    double *added = tribo_modal_take(&b->scratch, n * (n + 2 * c), sizeof *added), *x = added + n * n, *dense = x + c * n;
     if (!added) {
         return 0;
     }
-    for (size_t i = 0; i < c; i++) {
-        tribo_matrix_add_row(j, i, 1.0, x + i * n);
-    }
-    tribo_compliance_solve(sys, b->slip, n, x);
-    for (size_t i = 0; i < c; i++) {
-        for (size_t e = j->first[i]; e < j->first[i + 1] && b->h->key[i] == 2; e++) {
-            tribo_add(added + j->col[e] * n, j->val[e], x + i * n, n);
-        }
-    }
+    tribo_matrix_spread(b->k, added);
+    tribo_matrix_spread(j, dense);
+    memcpy(x, dense, c * n * sizeof *x);
+    tribo_compliance_solve(b->sys, b->slip, n, x);
+    tribo_multiply_transposed_add(c, n, n, dense, x, added);
     tribo_even_out(n, added);
-    const int done = tribo_matrix_from_dense(&k, n, n, added) && tribo_matrix_sum(&b->own_stiffness, 1.0, b->k, 1.0, &k);
-    tribo_matrix_free(&k);
     b->stiffness = &b->own_stiffness;
-    return done;
+    return tribo_matrix_from_dense(&b->own_stiffness, n, n, added);
 }
 
 void tribo_modal_react(const struct modal *h, size_t columns, double *force, double *f, double *work)
@@ -154,8 +147,7 @@ static int find_coordinates(struct modal_build *b, const struct matrix *z, const
     struct modal *h = b->h;
     const size_t m = h->modes;
     double *a = tribo_modal_take(&b->scratch, 3 * m * m, sizeof *a), *turned = a + m * m, *s = turned + m * m;
-    h->powers = tribo_modal_take(&h->store, 1, sizeof *h->powers);
-    if (!a || !h->powers || !tribo_matrix_congruent(b->stiffness, z, turned)) {
+    if (!a || !tribo_matrix_congruent(b->k, z, turned)) {
         return TRIBO_ERR_MEMORY;
     }
     tribo_half_solve(mass, 0, turned, m);
@@ -166,11 +158,8 @@ static int find_coordinates(struct modal_build *b, const struct matrix *z, const
         s[k * (m + 1)] = 1.0;
     }
     tribo_half_solve(mass, 1, s, m);
-    if (z->rows) {
-        tribo_matrix_add_columns(z, 1.0, m, s, b->shape);
-    } else {
-        memcpy(b->shape, s, m * m * sizeof *s);
-    }
+    memcpy(b->shape, s, z->rows ? 0 : m * m * sizeof *s);
+    tribo_matrix_add_columns(z, 1.0, m, s, b->shape);
     tribo_transpose(h->n, m, b->shape, h->phi);
     return tribo_matrix_from_dense(&h->powers->stiffness, m, m, a) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
@@ -185,9 +174,13 @@ static int find_modes(struct modal_build *b)
     const struct modes_text text = {sys->message, "with contacts at rest held, ", "take method event"};
     int status = h->rests == 0 || tribo_constraints_basis(&h->ties, h->n, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     const int held = z.rows > 0;
-    const size_t n = h->n, m = h->modes = held ? z.cols : n;
-    h->omega2 = tribo_modal_take(&h->store, m * (2 + 2 * n), sizeof *h->omega2);
-    b->shape = tribo_modal_take(&b->scratch, m * n, sizeof *b->shape);
+    const size_t n = h->n, m = h->modes = held ? z.cols : n, all = m * (2 + 2 * n), room = all + m * sys->ncontact;
+    h->powers = b->like ? b->like->powers : b->powers ? calloc(1, sizeof *h->powers + room * sizeof *h->omega2) : NULL;
+    h->omega2 = h->powers ? h->powers->array : b->powers ? NULL : tribo_modal_take(&h->store, all, sizeof *h->omega2);
+    if (h->powers) {
+        h->powers->users++;
+    }
+    b->shape = tribo_modal_take(&b->scratch, b->like ? 0 : m * n, sizeof *b->shape);
     status = status || (h->omega2 && b->shape) ? status : TRIBO_ERR_MEMORY;
     if (!status) {
         h->damping = h->omega2 + m;
@@ -196,13 +189,13 @@ static int find_modes(struct modal_build *b)
         status = held && m > 0 ? factorize_mass(b, &z, &own) : TRIBO_OK;
     }
     if (!status && b->powers) {
-        status = find_coordinates(b, &z, held ? &own : &sys->factor);
+        status = b->like ? TRIBO_OK : find_coordinates(b, &z, held ? &own : &sys->factor);
     } else if (!status && m > 0) {
         status =
             tribo_normal_modes(b->stiffness, sys->expansion.terms, &z, held ? &own : &sys->factor, m, h->omega2, h->phi, &text);
         tribo_transpose(m, n, h->phi, b->shape);
     }
-    if (!status) {
+    if (!status && !b->like) {
         tribo_matrix_add_columns(&sys->mass, 1.0, m, b->shape, h->psi);
     }
     tribo_matrix_free(&z);
@@ -241,7 +234,7 @@ static int damping_couples(const struct modal_build *b, const double *c, const d
 static int find_damping(struct modal_build *b)
 {
     struct modal *h = b->h;
-    const struct matrix *damping = b->c;
+    const struct matrix *damping = b->like ? NULL : b->c;
     const size_t n = h->n, m = h->modes;
     double *c = tribo_modal_take(&h->store, damping ? m * m : 0, sizeof *c), most = 0.0;
     double *root = tribo_modal_take(&b->scratch, damping ? n * (2 + m) : 0, sizeof *root);
@@ -293,8 +286,6 @@ void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y,
     if (!force) {
         return;
     }
-    memset(on, 0, c * each);
-    tribo_matrix_add_columns(j, 1.0, columns, y, on);
     for (size_t i = 0; base && i < c; i++) {
         double size = fabs(base[i]);
         for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
@@ -309,7 +300,7 @@ void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y,
         const int rests = h->key[i] == 2 || (h->key[i] == 1 && !base), gives = tribo_is_compliant(&sys->compliance, i);
         memset(on + i * columns, 0, rests ? each : 0);
         memcpy(on + i * columns, rate + (gives ? i * columns : 0), rests && gives ? each : 0);
-        for (size_t e = j->first[i]; gives && e < j->first[i + 1]; e++) {
+        for (size_t e = j->first[i]; gives && h->rests && e < j->first[i + 1]; e++) {
             tribo_add(force + j->col[e] * columns, -j->val[e], rate + i * columns, columns);
         }
     }
@@ -322,32 +313,38 @@ void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y,
         }
         keep_reactions(h, columns, force, base || h->powers, work, on);
     }
-    if (h->rests > 0 && by_u) {
+    if (by_u) {
         memset(force, 0, n * each);
         tribo_matrix_add_columns(b->c, 1.0, columns, y, force);
         keep_reactions(h, columns, force, 1, work, by_u);
     }
 }
 
-/* Sets on and by_u. Returns 0 if out of memory. */
+/* Sets on, by_u and powers->reach. Returns 0 if out of memory. */
 static int find_effects(struct modal_build *b)
 {
     struct modal *h = b->h;
-    const size_t m = h->modes, c = b->sys->ncontact;
-    h->on = tribo_modal_take(&h->store, (b->c ? 2 : 1) * m * c, sizeof *h->on);
+    const size_t m = h->modes, all = m * b->sys->ncontact, lags = b->c && h->rests;
+    h->on = tribo_modal_take(&h->store, (lags ? 2 : 1) * all, sizeof *h->on);
     if (!h->on) {
         return 0;
     }
-    h->by_u = b->c ? h->on + m * c : NULL;
+    h->by_u = lags ? h->on + all : NULL;
+    double *reach = h->powers ? h->powers->reach = h->psi + m * h->n : h->on;
+    if (!b->like) {
+        tribo_matrix_add_columns(&b->sys->direction, 1.0, m, b->shape, reach);
+    }
+    memmove(h->on, reach, all * sizeof *reach);
     tribo_modal_effects(b, m, b->shape, h->psi, h->omega2, NULL, h->on, h->by_u);
     return !b->scratch.failed;
 }
 
-int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const unsigned char *holds, int powers)
+int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const unsigned char *holds, int powers,
+                       const struct modal *like)
 {
     struct modal_store store = {0};
     struct modal_build b = {
-        .sys = sys, .h = *modal, .slip = slip, .powers = powers, .k = &sys->k, .c = sys->c.rows ? &sys->c : NULL};
+        .sys = sys, .h = *modal, .slip = slip, .powers = powers, .like = like, .k = &sys->k, .c = sys->c.rows ? &sys->c : NULL};
     int done = 1;
     if (!b.h && (b.h = tribo_modal_take(&store, 1, sizeof *b.h)) != NULL) {
         b.h->store = store;
@@ -381,9 +378,10 @@ void tribo_modal_free(struct modal *h)
 {
     if (h && h->users-- == 0) {
         struct modal_store store = h->store;
-        if (h->powers) {
+        if (h->powers && --h->powers->users == 0) {
             tribo_matrix_free(&h->powers->stiffness);
             tribo_matrix_free(&h->powers->damping);
+            free(h->powers);
         }
         tribo_forced_free(h);
         tribo_constraints_free(&h->ties);

@@ -35,6 +35,7 @@ static void drop_helds(struct exact *x)
             x->held.last[k] = next;
         }
     }
+    x->held.like = NULL;
     x->held.bytes = 0;
     x->held.powers = NULL;
 }
@@ -49,8 +50,7 @@ static int find_held(struct exact *x, int powers, struct modal **found)
         hash = (hash ^ word) * UINT64_C(0x9e3779b97f4a7c15);
     }
     struct modal **const list = &x->held.last[(hash >> 32) % TRIBO_HELD_LISTS], **at = list;
-    while (*at && ((*at)->hash != hash || ((*at)->powers != NULL) != powers ||
-                   memcmp((*at)->key, m->state.key, m->constant.contacts) != 0)) {
+    while (*at && (((*at)->powers != NULL) != powers || memcmp((*at)->key, m->state.key, m->constant.contacts) != 0)) {
         at = &(*at)->next;
     }
     struct modal *h = *at;
@@ -59,7 +59,7 @@ static int find_held(struct exact *x, int powers, struct modal **found)
         drop_helds(x);
     }
     if (!known || !h->forced) {
-        const int status = tribo_modal_create(&h, x->sys, m->state.slip, m->state.holds, powers);
+        const int status = tribo_modal_create(&h, x->sys, m->state.slip, m->state.holds, powers, powers ? x->held.like : NULL);
         if (status) {
             return status;
         }
@@ -68,8 +68,8 @@ static int find_held(struct exact *x, int powers, struct modal **found)
     if (known) {
         *at = h->next;
     }
+    x->held.like = powers && h->rests == 0 ? h : x->held.like;
     h->next = *list;
-    h->hash = hash;
     *list = h;
     *found = h;
     return TRIBO_OK;

@@ -10,7 +10,6 @@
 #define TRIBO_MODAL_H
 
 #include <math.h>
-#include <stdint.h>
 
 #include "common/imaginary.h"
 #include "dynamics/system/system.h"
@@ -29,10 +28,11 @@ struct modal_store {
 /* Returns a zeroed array of elements; NULL, with failed = 1, if out of memory. */
 void *tribo_modal_take(struct modal_store *store, size_t count, size_t size);
 
-/* Phi'K Phi and Phi'C Phi [modes][modes] of coordinates Phi that are orthonormal in M, and no modes: motions are powers of time
- * (powers.c). Without damping the second has no rows. */
+/* Coordinates Phi that are orthonormal in M, and no modes, of `users` structures: motions are powers of time (powers.c). */
 struct modal_powers {
-    struct matrix stiffness, damping;
+    size_t users;
+    struct matrix stiffness, damping; /* Phi'K Phi and Phi'C Phi [modes][modes]; without damping the second has no rows */
+    double *reach, array[];           /* [contacts][modes] J Phi; omega2, damping, phi, psi and reach */
 };
 
 /* The structure without loads. */
@@ -44,8 +44,8 @@ struct modal {
     struct forced *forced;    /* the structure under the loads; NULL: not created since the loads changed */
     size_t n;                 /* degrees of freedom */
     signed char *key;         /* [contacts] 1: at rest; 2: at rest and holds; 0: else */
-    uint64_t hash;            /* of key, for the caller */
-    size_t rests, *rest;      /* [rests] rigid contacts that hold */
+    size_t rests, springs;    /* numbers of rigid contacts, and of others, that hold */
+    size_t *rest;             /* [rests + springs] these, the rigid ones first */
     struct constraints ties;  /* constraints between degrees of freedom by the rigid contacts that hold */
 
     size_t modes;
@@ -55,7 +55,7 @@ struct modal {
     struct modal_powers *powers; /* NULL: Phi are modes; else there are no exponents, and omega2 and damping are 0 */
     double *coupling;            /* [modes][modes] C~; NULL if C~ is diagonal, or without modes */
     double *on;                  /* [contacts][modes] contact that holds: force per eta; else: velocity per eta' */
-    double *by_u;                /* [contacts][modes] rigid contact that holds: force per eta'; else 0; NULL without damping */
+    double *by_u; /* [contacts][modes] rigid contact that holds: force per eta'; else 0; NULL without damping or such contacts */
 
     size_t exponents;
     double *lr, *li;           /* [exponents] lambda */
@@ -123,11 +123,12 @@ static inline int tribo_modal_drifts(const struct modal *h, size_t k)
 
 /* Creates *modal, if it is NULL, the structure with all contacts at rest, slip[i] = 0, held; and forced, if it is NULL, by the
  * loads. powers = 1: without modes, which takes a small part of the time, where no base moves at a constant speed and no limit
- * varies. holds[i] = 1: contact i holds (set H of stick_slip.h); other contacts at rest depend on H.
- * Returns a status, message on the system's context; after an error *modal and forced stay NULL. Every user of the structure
- * besides the first one adds 1 to users. tribo_modal_free frees h->forced, too, and takes NULL; tribo_forced_free frees
- * h->forced, which may be NULL. */
-int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const unsigned char *holds, int powers);
+ * varies; like: NULL, or such a structure without rigid contacts that hold, for its coordinates. holds[i] = 1: contact i holds
+ * (set H of stick_slip.h); other contacts at rest depend on H. Returns a status, message on the system's context; after an error
+ * *modal and forced stay NULL. Every user of the structure besides the first one adds 1 to users. tribo_modal_free frees h->forced,
+ * too, and takes NULL; tribo_forced_free frees h->forced, which may be NULL. */
+int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const unsigned char *holds, int powers,
+                       const struct modal *like);
 void tribo_modal_free(struct modal *h);
 void tribo_forced_free(struct modal *h);
 

@@ -196,9 +196,8 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
     tribo_modal_motion_go(x, tau);
     /* brief: |lambda| tau is small for all terms; then q', as q, is the value at t0 plus a change. With shapes by bases q' is
      * computed anew: it follows the bases to rounding. */
-    const int powers = h->modal->powers != NULL;
-    const int brief = (powers || x->tau * h->quickest < LITTLE) && !h->resonant && h->shapes == h->modal->modes;
-    if (powers) {
+    const int brief = (h->modal->powers || x->tau * h->quickest < LITTLE) && !h->resonant && h->shapes == h->modal->modes;
+    if (h->modal->powers) {
         tribo_powers_move(x, tau, brief);
     } else {
         move_shapes(x, brief);

@@ -36,6 +36,7 @@ enum { TRIBO_HELD_LISTS = 64 };
 /* The structures so far. */
 struct held {
     struct modal *last[TRIBO_HELD_LISTS]; /* by their keys, in order of last use */
+    const struct modal *like;             /* the last one without modes, and without rigid contacts that hold; NULL: none */
     size_t bytes;                         /* of all structures */
     size_t revision, structure;           /* of the system: when the forced structures were created; when the others were */
     size_t run;                           /* number of runs so far */
@@ -69,8 +70,7 @@ struct exact {
     double *steady;               /* [ncontact] force of a sliding contact without harmonics of the limit */
     struct course *course;        /* [ncontact] courses of the outputs of h */
     struct signal velocity;       /* workspace */
-    double *power;                /* eta, eta' [TRIBO_POWERS][modes], outputs [outputs][TRIBO_POWERS]: coefficients; eta, eta'
-                                     [modes][TRIBO_POWERS] */
+    double *power;                /* coefficients [TRIBO_POWERS][modes] of eta, eta'; [][TRIBO_POWERS] of outputs, eta, eta' */
 };
 
 /* Starts a phase at (t, y) with structure x->h, for a time of at most *longest; sets *longest to the time for which the bounds
@@ -99,7 +99,7 @@ void tribo_modal_join(const struct modal *h, size_t columns, const double *zr, c
 
 /* powers.c, without modes. start: from place = eta and rate = eta' at t0, and the constant forces [modes]. move: sets place to
  * the change of eta until tau, and rate to eta' at tau, or with changes = 1 to the change of eta'. carry: tribo_modal_transition
- * of eta and rate [modes][columns], by pull; eta becomes its change; work [3 modes][columns]. */
+ * of eta and rate [modes][columns], by pull; eta becomes its change; work [3 modes + 1][columns]. */
 void tribo_powers_start(struct exact *x, const double *force);
 void tribo_powers_move(struct exact *x, double tau, int changes);
 void tribo_powers_carry(const struct modal *h, double tau, size_t columns, const double *pull, double *eta, double *rate,

@@ -11,7 +11,7 @@ struct modal_build {
     struct forced *forced;
     const signed char *slip;        /* [ncontact] */
     int powers;                     /* 1: no modes */
-    size_t springs;                 /* number of compliant contacts that hold; of a new structure */
+    const struct modal *like;       /* of tribo_modal_create; NULL if a rigid contact holds */
     struct modal_store scratch;     /* workspace until the structure is built */
     const struct matrix *k, *c;     /* K; C, or NULL without damping */
     const struct matrix *stiffness; /* K + J_A' G_AA^-1 J_A, A: compliant contacts that hold */
@@ -28,10 +28,10 @@ int tribo_modal_exponents(struct modal_build *b);
  * contacts that hold. */
 void tribo_modal_react(const struct modal *h, size_t columns, double *force, double *f, double *work);
 
-/* Sets on, and by_u or NULL, [ncontact][columns] by displacements y [n][columns], with J_I y = b_I, and inertia = M y: contacts
- * that hold: force per eta, J_I'f = K y - inertia omega2 - J_A'f_A (A: compliant ones, f_A' = -G_AA^-1 (J_A y - b_A)), and per
- * eta', J_I'f = C y; other contacts: velocity per eta'. base [ncontact] = b, of one column, by which only the rest of the forces
- * beside the modes counts; NULL: y are the modes, 0. Sets b->scratch.failed = 1 if out of memory. */
+/* Sets on, in J y, and by_u or NULL, [ncontact][columns] by displacements y [n][columns], with J_I y = b_I, and inertia = M y:
+ * contacts that hold: force per eta, J_I'f = K y - inertia omega2 - J_A'f_A (A: compliant ones, f_A' = -G_AA^-1 (J_A y - b_A)),
+ * and per eta', J_I'f = C y; other contacts: velocity per eta'. base [ncontact] = b, of one column, by which only the rest of the
+ * forces beside the modes counts; NULL: y are the modes, 0. Sets b->scratch.failed = 1 if out of memory. */
 void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y, const double *inertia, const double *omega2,
                          const double *base, double *on, double *by_u);
 

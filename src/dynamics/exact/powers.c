@@ -7,7 +7,6 @@
 #include "common/real.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { P = TRIBO_POWERS };
@@ -17,14 +16,24 @@ enum { P = TRIBO_POWERS };
 
 double tribo_powers_fastest(const struct modal *h)
 {
-    return sqrt(tribo_matrix_row_sum(&h->powers->stiffness)) + tribo_matrix_row_sum(&h->powers->damping);
+    double most = tribo_matrix_row_sum(&h->powers->stiffness);
+    for (size_t s = h->rests; s < h->rests + h->springs; s++) { /* the trace of the springs */
+        most -= tribo_dot(h->on + h->rest[s] * h->modes, h->powers->reach + h->rest[s] * h->modes, h->modes);
+    }
+    return sqrt(greater(most, 0.0)) + tribo_matrix_row_sum(&h->powers->damping);
 }
 
-/* to [modes][columns] -= K eta + C~ rate. */
-static void pull_back(const struct modal *h, size_t columns, const double *eta, const double *rate, double *to)
+/* to [modes][columns] -= K eta + C~ rate, K with springs. work [columns]. */
+static void pull_back(const struct modal *h, size_t columns, const double *eta, const double *rate, double *to, double *work)
 {
     tribo_matrix_add_columns(&h->powers->stiffness, -1.0, columns, eta, to);
     tribo_matrix_add_columns(&h->powers->damping, -1.0, columns, rate, to);
+    for (size_t s = h->rests; s < h->rests + h->springs; s++) {
+        const size_t at = h->rest[s] * h->modes;
+        memset(work, 0, columns * sizeof *work);
+        tribo_multiply_add(1, h->modes, columns, 1.0, h->on + at, eta, work);
+        tribo_multiply_transposed_add(1, h->modes, columns, h->powers->reach + at, work, to);
+    }
 }
 
 void tribo_powers_start(struct exact *x, const double *force)
@@ -32,7 +41,7 @@ void tribo_powers_start(struct exact *x, const double *force)
     const struct forced *f = x->h;
     const struct modal *h = f->modal;
     const size_t m = h->modes;
-    double *eta = x->power, *rate = eta + m * P, *out = rate + m * P;
+    double *eta = x->power, *rate = eta + m * P, *out = rate + m * P, work;
     memset(rate + m, 0, (P - 1) * m * sizeof *rate);
     memcpy(eta, x->place, m * sizeof *eta);
     memcpy(rate, x->rate, m * sizeof *rate);
@@ -50,7 +59,7 @@ void tribo_powers_start(struct exact *x, const double *force)
     for (size_t k = 0; k + 1 < P; k++, eta += m, rate += m) {
         const double part = 1.0 / (double)(k + 1);
         double *next = rate + m;
-        pull_back(h, 1, eta, rate, next);
+        pull_back(h, 1, eta, rate, next, &work);
         for (size_t j = 0; j < m; j++) {
             eta[m + j] = part * rate[j];
             next[j] *= part;
@@ -64,9 +73,7 @@ void tribo_powers_start(struct exact *x, const double *force)
         const struct output *w = &f->output[o];
         const double *by_u = o >= f->sliding && f->by_u ? f->by_u + w->contact * f->shapes : NULL;
         tribo_multiply_add(1, m, P, 1.0, w->on_rate, o < f->sliding ? turned + m * P : turned, out);
-        if (by_u) {
-            tribo_multiply_add(1, m, P, 1.0, by_u, turned + m * P, out);
-        }
+        tribo_multiply_add(by_u != NULL, m, P, 1.0, by_u, turned + m * P, out);
         for (size_t s = 0; s < f->harmonics; s++) {
             double complex z = (w->cr[s] + w->ci[s] * I) * tribo_part(&x->z, s);
             for (size_t k = 0; k < P && w->size[s] > 0.0; k++) {
@@ -113,7 +120,7 @@ void tribo_powers_carry(const struct modal *h, double tau, size_t columns, const
     memcpy(next, pull, all * sizeof *next);
     memset(eta, 0, all * sizeof *eta);
     for (size_t k = 1; k < P; k++) {
-        pull_back(h, columns, e, u, next);
+        pull_back(h, columns, e, u, next, next + all);
         for (size_t j = 0; j < all; j++) {
             e[j] = u[j] * (tau / (double)k);
             u[j] = next[j] * (tau / (double)k);

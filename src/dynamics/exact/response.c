@@ -69,6 +69,7 @@ static void follow_base(struct modal_build *b, size_t k, double omega, const dou
         place[l] = 0.0;
     }
     tribo_matrix_multiply(&b->sys->mass, y, drag);
+    tribo_matrix_multiply(&b->sys->direction, y, on);
     tribo_modal_effects(b, 1, y, drag, &omega2, base, on, f->by_u ? by_u : NULL);
     for (size_t i = 0; i < c; i++) {
         tribo_add(place, h->key[i] == 2 ? -base[i] : 0.0, h->on + i * m, m);

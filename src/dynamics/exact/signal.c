@@ -71,10 +71,9 @@ int tribo_modal_motion_signal(void *own, const double *c, double tau, const doub
     const struct forced *h = x->h;
     const struct compliance *g = &x->sys->compliance;
     const size_t n = x->sys->ndof, m = h->shapes, f = tribo_system_energy(x->sys);
-    const int powers = h->modal->powers != NULL;
     const size_t terms = h->modal->exponents + h->harmonics;
     double *place = calloc(3 * m + 1, sizeof *place), *speed = place + m, *rate = speed + m, v[4];
-    if (!place || !tribo_signal_reserve(to, terms, powers ? TRIBO_POWERS - 1 : 2)) {
+    if (!place || !tribo_signal_reserve(to, terms, h->modal->powers ? TRIBO_POWERS - 1 : 2)) {
         free(place);
         return tribo_error(x->sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu term%s", terms, plural(terms));
     }

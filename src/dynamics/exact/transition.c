@@ -88,9 +88,7 @@ int tribo_modal_transition(void *own, const void *phase, double tau, size_t colu
     tribo_multiply_transposed_add(m, n, c, h->phi, rate, v + block);
     for (size_t k = 0; k < sys->compliance.count; k++) {
         const size_t i = sys->compliance.contact[k];
-        for (size_t l = 0; h->key[i] == 2 && l < m; l++) {
-            tribo_add(v + 2 * block + k * c, h->on[i * m + l], eta + l * c, c);
-        }
+        tribo_multiply_add(h->key[i] == 2, m, c, 1.0, h->on + i * m, eta, v + 2 * block + k * c);
     }
     free(eta);
     return TRIBO_OK;

@@ -9,7 +9,7 @@
 static int decompose(struct modal **h, tribo_system *sys, const signed char *slip, const unsigned char *holds)
 {
     struct modal *found = NULL;
-    const int status = tribo_modal_create(&found, sys, slip, holds, 0);
+    const int status = tribo_modal_create(&found, sys, slip, holds, 0, NULL);
     if (!status) {
         *h = found;
     }
@@ -187,7 +187,7 @@ TEST(kept)
             holds[i] = i == BODIES; /* the one between two bodies */
             slip[i] = !holds[i];
         }
-        assert_ok(tribo_modal_create(&same, sys, slip, holds, 0));
+        assert_ok(tribo_modal_create(&same, sys, slip, holds, 0, NULL));
         assert_ok(decompose(&h, sys, slip, holds));
         compare(same->forced, h->forced);
         tribo_forced_free(same);
@@ -222,8 +222,8 @@ TEST(powers)
     }
     struct modal *modes = NULL, *none = NULL;
     struct exact own = {.sys = sys};
-    assert_ok(tribo_modal_create(&modes, sys, slip, holds, 0));
-    assert_ok(tribo_modal_create(&none, sys, slip, holds, 1));
+    assert_ok(tribo_modal_create(&modes, sys, slip, holds, 0, NULL));
+    assert_ok(tribo_modal_create(&none, sys, slip, holds, 1, NULL));
     ck_assert_ptr_null(modes->powers);
     ck_assert_uint_eq(none->exponents, 0);
     for (size_t k = 0; k < size; k++) {
@@ -236,6 +236,63 @@ TEST(powers)
     assert_all_close(w, v, size, 1e-14);
     tribo_modal_free(modes);
     tribo_modal_free(none);
+    tribo_system_destroy(sys);
+}
+
+/* The same of a row by 4 modes and the compliance that they lack at 3 contacts, of which `set` hold: of several perturbations, and
+ * of each alone. Without modes all sets share one set of coordinates, which lasts as long as one of them. */
+TEST(springs)
+{
+    enum { MODES = 4, SPRINGS = 3, COLUMNS = 2, ALL = 2 * MODES + SPRINGS };
+    struct random r = random_of(_i);
+    double mass[BODIES * BODIES] = {0.0}, stiffness[BODIES * BODIES] = {0.0}, direction[SPRINGS * BODIES] = {0.0};
+    for (size_t i = 0; i < BODIES; i++) {
+        mass[i * (BODIES + 1)] = uniform(&r, 1.0, 3.0);
+        stiffness[i * (BODIES + 1)] = 2.1;
+        if (i > 0) {
+            stiffness[i * (BODIES + 1) - 1] = stiffness[(i - 1) * (BODIES + 1) + 1] = -1.0;
+        }
+        direction[i % SPRINGS * BODIES + i] = uniform(&r, 0.5, 1.5);
+    }
+    tribo_model *model;
+    tribo_system *sys;
+    assert_ok(tribo_model_create(&model, BODIES, SPRINGS));
+    assert_ok(tribo_model_set_mass(model, mass));
+    assert_ok(tribo_model_set_stiffness(model, stiffness));
+    assert_ok(tribo_model_set_direction(model, direction));
+    assert_ok(tribo_system_reduce(&sys, model, MODES, TRIBO_STATICS_COMPLIANCE));
+    assert_ok(tribo_system_set_damping_ratio(sys, _i % 2 ? 0.02 : 0.0));
+    tribo_model_destroy(model);
+    struct exact own = {.sys = sys};
+    struct modal *none[SPRINGS + 1] = {NULL};
+    for (size_t set = 0; set <= SPRINGS; set++) {
+        const signed char slip[] = {set < 1, set < 2, set < 3};
+        const unsigned char holds[] = {set > 0, set > 1, set > 2};
+        double v[ALL * COLUMNS], w[ALL * COLUMNS], one[ALL];
+        struct modal *modes = NULL;
+        assert_ok(tribo_modal_create(&modes, sys, slip, holds, 0, NULL));
+        assert_ok(tribo_modal_create(&none[set], sys, slip, holds, 1, set ? none[set - 1] : NULL));
+        ck_assert_ptr_eq(none[set]->powers, none[0]->powers);
+        for (size_t k = 0; k < ALL * COLUMNS; k++) {
+            v[k] = w[k] = k / COLUMNS < 2 * MODES + set ? uniform(&r, -1.0, 1.0) : 0.0; /* forces of contacts at rest */
+        }
+        for (size_t k = 0; k < ALL; k++) {
+            one[k] = v[k * COLUMNS + 1];
+        }
+        require(none[set]->forced->fastest >= modes->forced->fastest, "a bound of %g", none[set]->forced->fastest);
+        const double tau = TRIBO_POWERS_REACH / none[set]->forced->fastest;
+        assert_ok(tribo_modal_transition(&own, modes, tau, COLUMNS, v));
+        assert_ok(tribo_modal_transition(&own, none[set], tau, COLUMNS, w));
+        assert_ok(tribo_modal_transition(&own, none[set], tau, 1, one));
+        assert_all_close(w, v, ALL * COLUMNS, 1e-13);
+        for (size_t k = 0; k < ALL; k++) {
+            assert_close(one[k], w[k * COLUMNS + 1], 1e-14);
+        }
+        tribo_modal_free(modes);
+    }
+    for (size_t set = 0; set <= SPRINGS; set++) {
+        tribo_modal_free(none[set]);
+    }
     tribo_system_destroy(sys);
 }
 
@@ -439,5 +496,5 @@ TEST(exponential_from_one)
     }
 }
 
-TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1}, {kept, 10}, {powers, 9}, {one_sided, 1},
-          {damper_alone, 1}, {free_motions, 1}, {moved_alike, 1}, {coupled, 10}, {exponential_from_one, 5})
+TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1}, {kept, 10}, {powers, 9}, {springs, 6},
+          {one_sided, 1}, {damper_alone, 1}, {free_motions, 1}, {moved_alike, 1}, {coupled, 10}, {exponential_from_one, 5})
