@@ -113,13 +113,12 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
         return TRIBO_OK;
     }
     /* forces of planar contacts are known for limits that are the same at all times and speeds, at rest and not */
-    for (size_t i = 0; i < m->constant.contacts; i++) {
-        if (m->limits.ratio[i] > 1.0) {
-            return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
-                               "method event knows no static limits beside planar contacts: contact %zu has ratio[%zu] = "
-                               "%g: take moreau/fixed",
-                               i, i, m->limits.ratio[i]);
-        }
+    const size_t i = tribo_system_first_dropping(sys, 0);
+    if (i < m->constant.contacts) {
+        return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                           "method event knows no static limits beside planar contacts: contact %zu has ratio[%zu] = "
+                           "%g: take moreau/fixed",
+                           i, i, m->limits.ratio[i]);
     }
     if (tribo_system_limits_vary(sys)) {
         return tribo_error(

@@ -134,12 +134,11 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     const size_t c = sys->ncontact + 1;
     struct layout l = {0};
     *m = (struct stick_slip){.constant = {.sys = sys, .contacts = sys->ncontact}, .noise.factor = 1.0};
-    lay_out_arrays(m, &l, c, sys->ndof);
-    if (create_contexts(&m->constant, sys->contacts) && tribo_layout_zeros(&l)) {
+    do {
         lay_out_arrays(m, &l, c, sys->ndof);
-        if (find_constants(m, sys)) {
-            return TRIBO_OK;
-        }
+    } while (!l.memory && tribo_layout_zeros(&l));
+    if (l.memory && create_contexts(&m->constant, sys->contacts) && find_constants(m, sys)) {
+        return TRIBO_OK;
     }
     tribo_stick_slip_free(m);
     return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", sys->ncontact, plural(sys->ncontact));
@@ -297,11 +296,13 @@ void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, 
     tribo_matrix_multiply_add(&sys->direction, 1.0, m->work.rate, v);
 }
 
-/* Sets state.base = b(t). */
+/* Sets state.base = b(t). It stays zero if no base moves. */
 static void find_base(struct stick_slip *m, const tribo_system *sys)
 {
-    memset(m->state.base, 0, sys->ncontact * sizeof *m->state.base);
-    tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->state.base);
+    if (tribo_system_bases_move(sys)) {
+        memset(m->state.base, 0, sys->ncontact * sizeof *m->state.base);
+        tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->state.base);
+    }
 }
 
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration,
@@ -456,6 +457,7 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     tribo_system_limits(sys, s->limit, s->limit_rate);
     tribo_limits_start(m, sys);
     tribo_limits_take(m);
+    memset(s->base, 0, c * sizeof *s->base);
     find_base(m, sys);
     find_scales(m, sys);
     memset(m->noise.velocity_scale, 0, c * sizeof *m->noise.velocity_scale);

@@ -47,24 +47,6 @@ int tribo_delassus_by_columns(const struct matrix *j, delassus_solve *solve, con
 /* If the shares J^2/m of every contact have smaller ratios, small pivots have another cause. */
 #define APART 1e3
 
-/* Returns the number of pivots > SMALL of the Cholesky factorization of r [n][n], scaled to a diagonal of 1, largest pivot first.
- * Overwrites r; order [n] and work [2 n] are workspace. */
-static size_t large_pivots(double *r, size_t n, int *order, double *work)
-{
-    const int rows = (int)n;
-    const double small = SMALL;
-    int rank = 0, info = 0;
-    for (size_t i = 0; i < n; i++) {
-        const double root = sqrt(greater(r[i * n + i], DBL_MIN));
-        for (size_t k = 0; k < n; k++) {
-            r[i * n + k] /= root;
-            r[k * n + i] /= root;
-        }
-    }
-    dpstrf_("U", &rows, r, &rows, order, &rank, &small, work, &info, 1);
-    return (size_t)rank;
-}
-
 int tribo_hidden(const struct matrix *direction, const struct matrix *mass, const double *own, const double *r,
                  struct hidden *where)
 {
@@ -89,12 +71,22 @@ int tribo_hidden(const struct matrix *direction, const struct matrix *mass, cons
         return 0;
     }
     double *work = malloc((n + 2) * n * sizeof *work);
-    int *order = malloc(n * sizeof *order);
+    const int rows = (int)n;
+    const double small = SMALL;
+    int hidden = -1, pivots = 0, info = 0, *order = malloc(n * sizeof *order);
     const size_t rank = tribo_constraints_rank(direction, mass);
-    int hidden = -1;
     if (work && order && rank <= n && tribo_lapack_takes(n)) {
         memcpy(work, r, n * n * sizeof *work);
-        hidden = large_pivots(work, n, order, work + n * n) < rank;
+        for (size_t i = 0; i < n; i++) { /* scales R to a diagonal of 1 */
+            const double root = sqrt(greater(work[i * n + i], DBL_MIN));
+            for (size_t k = 0; k < n; k++) {
+                work[i * n + k] /= root;
+                work[k * n + i] /= root;
+            }
+        }
+        /* pivots: the number of pivots > SMALL, largest pivot first */
+        dpstrf_("U", &rows, work, &rows, order, &pivots, &small, work + n * n, &info, 1);
+        hidden = (size_t)pivots < rank;
     }
     free(work);
     free(order);
