@@ -197,11 +197,12 @@ static int solve_towards(struct disc_qp *p, double more, const double *centre)
     return done;
 }
 
-/* Returns 1 if y is a solution, for a further solution would leave the share. */
-static int is_shared(struct disc_qp *p)
+/* Returns 1 if y is a solution, for a further solution would leave the share. nearest: y is the solution nearest to a share, up to
+ * rounding, which exceeds SHARED where limits are small beside others. */
+static int is_shared(struct disc_qp *p, int nearest)
 {
-    const double off = disc_look(p);
-    return p->near_enough < TRIBO_NEAR_ENOUGH ? off <= SETTLED : p->residual < SHARED;
+    const int far = p->near_enough < TRIBO_NEAR_ENOUGH, settled = disc_look(p) <= SETTLED;
+    return ((far || nearest) && settled) || (!far && p->residual < SHARED);
 }
 
 /* With SOFT more stiffness the solution is off by as much; its solutions with SOFT, SOFT/2 and SOFT/4 extrapolate to 0 with
@@ -225,7 +226,7 @@ int tribo_disc_share(struct disc_qp *p)
     disc_project(p, share, share, 1.0);
     disc_look(p);
     disc_project(p, p->to, p->to, 1.0); /* sliding contacts are on their rims to the last digit */
-    for (double nearer = 0.25; !(shared = is_shared(p)) && nearer > 1e-5; nearer *= 0.125) {
+    for (double nearer = 0.25; !(shared = is_shared(p, nearer < 0.25)) && nearer > 1e-5; nearer *= 0.125) {
         memcpy(share, p->y, p->size * sizeof *share);
         solve_towards(p, nearer * SOFT * most, share);
     }
