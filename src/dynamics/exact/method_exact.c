@@ -20,8 +20,9 @@
 /* Bytes of structures above which all structures are dropped. */
 #define CACHE_BYTES ((size_t)512 << 20)
 
-/* Least degrees of freedom for phases without modes: fewer modes are found as fast as powers are computed again each time. */
+/* Least degrees of freedom and contacts for phases without modes: fewer modes take as long as powers, fewer sets come again. */
 #define POWERS_LEAST 40
+#define POWERS_CONTACTS 6
 
 /* ---------------------------------------------------------------------------------------------- structures that are held */
 
@@ -35,9 +36,8 @@ static void drop_helds(struct exact *x)
             x->held.last[k] = next;
         }
     }
-    x->held.like = NULL;
     x->held.bytes = 0;
-    x->held.powers = NULL;
+    x->held.like = x->held.powers = NULL;
 }
 
 /* *found = the structure with the contacts at rest held, under the loads, with powers = 1 without modes. Returns a status. */
@@ -78,7 +78,7 @@ static int find_held(struct exact *x, int powers, struct modal **found)
 /* Returns 1 if no base moves at a constant speed, no limit varies, and the structure is large enough. */
 static int takes_powers(const tribo_system *sys)
 {
-    int plain = !sys->loads.limits && sys->ndof >= POWERS_LEAST;
+    int plain = !sys->loads.limits && sys->ndof >= POWERS_LEAST && sys->ncontact >= POWERS_CONTACTS;
     for (size_t k = 0; plain && k < sys->loads.harmonics; k++) {
         const struct harmonic *w = &sys->loads.harmonic[k];
         plain &= w->drives == DRIVES_LOAD || (w->drives == DRIVES_BASE && w->omega != 0.0);

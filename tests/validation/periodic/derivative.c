@@ -9,7 +9,7 @@
 #include <string.h>
 #include "../../set_up_driver.h"
 
-enum { DOFS = 40, CONTACTS = 4, STATES = 2 * DOFS, LOADS = 5, MODES = 6, NEAR = 12, DIRECTIONS = 3 };
+enum { DOFS = 40, CONTACTS = 6, STATES = 2 * DOFS, LOADS = 5, MODES = 6, NEAR = 12, DIRECTIONS = 3 };
 
 static double mass[DOFS][DOFS], damping[DOFS][DOFS], stiffness[DOFS][DOFS], direction[CONTACTS][DOFS];
 
@@ -39,7 +39,7 @@ static void make_row(struct random *r, int coupled)
     damping[3][3] += coupled ? 1.0 : 0.0;
     for (size_t i = 0; i < CONTACTS; i++) {
         for (size_t k = 0; k < DOFS; k++) {
-            direction[i][k] = k == 9 * i + 2 ? 1.0 : k == 9 * i + 5 && i % 2 ? -1.0 : 0.0;
+            direction[i][k] = k == 6 * i + 2 ? 1.0 : k == 6 * i + 5 && i % 2 ? -1.0 : 0.0;
         }
     }
 }
