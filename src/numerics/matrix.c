@@ -330,35 +330,40 @@ double tribo_matrix_row_sum(const struct matrix *a)
 
 /* ------------------------------------------------------------------------------------------------------------- products */
 
-/* y [rows] += factor times rows begin to begin + rows - 1 of A x. These rows lie in one block, and all diagonals are inside the
- * matrix there. Passes over y once for three diagonals, but adds them one after the other. */
+/* y [rows] = z + factor times rows begin to begin + rows - 1 of A x; z [rows]: y, or no part of y. These rows lie in one block, and
+ * all diagonals are inside the matrix there. Passes over y once for three diagonals, but adds them one after the other. */
 TRIBO_SIMD static void add_diagonals(const struct matrix *a, size_t begin, size_t rows, double factor, const double *x,
-                                     double *restrict y)
+                                     const double *z, double *y)
 {
-    const double *restrict val = a->fast + a->block[begin / MATRIX_BLOCK] + begin % MATRIX_BLOCK, *restrict at = x + begin;
+    const double *val = a->fast + a->block[begin / MATRIX_BLOCK] + begin % MATRIX_BLOCK, *at = x + begin;
     size_t d = 0;
-    for (; d + 3 <= a->diagonals; d += 3) {
-        const double *restrict u = val + d * MATRIX_BLOCK, *restrict v = u + MATRIX_BLOCK, *restrict w = v + MATRIX_BLOCK;
-        const double *restrict p = at + a->offset[d], *restrict q = at + a->offset[d + 1], *restrict r = at + a->offset[d + 2];
+    for (; d + 3 <= a->diagonals; d += 3, z = y) {
+        const double *u = val + d * MATRIX_BLOCK, *v = u + MATRIX_BLOCK, *w = v + MATRIX_BLOCK;
+        const double *p = at + a->offset[d], *q = at + a->offset[d + 1], *r = at + a->offset[d + 2];
+        TRIBO_APART
         for (size_t i = 0; i < rows; i++) {
-            y[i] = ((y[i] + factor * u[i] * p[i]) + factor * v[i] * q[i]) + factor * w[i] * r[i];
+            y[i] = ((z[i] + factor * u[i] * p[i]) + factor * v[i] * q[i]) + factor * w[i] * r[i];
         }
     }
-    for (; d < a->diagonals; d++) {
-        const double *restrict u = val + d * MATRIX_BLOCK, *restrict p = at + a->offset[d];
+    for (; d < a->diagonals; d++, z = y) {
+        const double *u = val + d * MATRIX_BLOCK, *p = at + a->offset[d];
+        TRIBO_APART
         for (size_t i = 0; i < rows; i++) {
-            y[i] += factor * u[i] * p[i];
+            y[i] = z[i] + factor * u[i] * p[i];
         }
     }
 }
 
-/* y [end - begin] += factor times rows begin to end - 1 of A x, entry by entry in the order of the diagonals. */
-static void add_outer_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, double *y)
+/* y [end - begin] = z + factor times rows begin to end - 1 of A x, entry by entry in the order of the diagonals. */
+static void add_outer_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, const double *z,
+                           double *y)
 {
-    for (size_t i = begin; i < end; i++, y++) {
+    for (size_t i = begin; i < end; i++) {
+        double sum = *z++;
         for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            *y += factor * a->val[k] * x[a->col[k]];
+            sum += factor * a->val[k] * x[a->col[k]];
         }
+        *y++ = sum;
     }
 }
 
@@ -367,23 +372,25 @@ static size_t row_between(ptrdiff_t i, size_t least, size_t most)
     return i < (ptrdiff_t)least ? least : i > (ptrdiff_t)most ? most : (size_t)i;
 }
 
-void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, double *y)
+void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, const double *z,
+                           double *y)
 {
     if (a->cols >= MATRIX_WIDE && a->first[end] - a->first[begin] == (end - begin) * a->cols) {
+        memmove(y, z, (end - begin) * sizeof *y);
         tribo_multiply_add(end - begin, a->cols, 1, factor, a->val + a->first[begin], x, y);
     } else if (!a->diagonals) {
         for (size_t i = begin; i < end; i++) {
-            y[i - begin] += factor * tribo_matrix_row_dot(a, i, x);
+            y[i - begin] = z[i - begin] + factor * tribo_matrix_row_dot(a, i, x);
         }
     } else if (end - begin <= MATRIX_FEW) {
-        add_outer_rows(a, begin, end, factor, x, y);
+        add_outer_rows(a, begin, end, factor, x, z, y);
     } else {
         /* All diagonals are inside the matrix in rows first to last - 1. */
         const size_t first = row_between(-a->offset[0], begin, end),
                      last = row_between((ptrdiff_t)a->cols - a->offset[a->diagonals - 1], first, end);
-        add_outer_rows(a, begin, first, factor, x, y);
-        add_diagonals(a, first, last - first, factor, x, y + (first - begin));
-        add_outer_rows(a, last, end, factor, x, y + (last - begin));
+        add_outer_rows(a, begin, first, factor, x, z, y);
+        add_diagonals(a, first, last - first, factor, x, z + (first - begin), y + (first - begin));
+        add_outer_rows(a, last, end, factor, x, z + (last - begin), y + (last - begin));
     }
 }
 
@@ -397,12 +404,12 @@ void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y)
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y)
 {
     if (a->diagonals && a->rows <= MATRIX_FEW) { /* a second call would take as long as the product */
-        add_outer_rows(a, 0, a->rows, factor, x, y);
+        add_outer_rows(a, 0, a->rows, factor, x, y, y);
         return;
     }
     for (size_t i = 0; i < a->rows; i += MATRIX_BLOCK) {
         const size_t end = a->rows - i < MATRIX_BLOCK ? a->rows : i + MATRIX_BLOCK;
-        tribo_matrix_add_rows(a, i, end, factor, x, y + i);
+        tribo_matrix_add_rows(a, i, end, factor, x, y + i, y + i);
     }
 }
 

@@ -169,11 +169,10 @@ static void set_time(struct blockwise *b, tribo_system *sys, double t)
 /* a = accelerations of block k without friction at the time set, from its first degree of freedom on. */
 static void accelerate(const struct blockwise *b, const tribo_system *sys, size_t k, const double *q, const double *u, double *a)
 {
-    const size_t begin = k * MATRIX_BLOCK, n = block_size(sys, k), end = begin + n;
-    memcpy(a, b->load + begin, n * sizeof *a);
-    tribo_matrix_add_rows(&sys->stiffness, begin, end, -1.0, q, a);
+    const size_t begin = k * MATRIX_BLOCK, end = begin + block_size(sys, k);
+    tribo_matrix_add_rows(&sys->stiffness, begin, end, -1.0, q, b->load + begin, a);
     if (sys->damping.rows) {
-        tribo_matrix_add_rows(&sys->damping, begin, end, -1.0, u, a);
+        tribo_matrix_add_rows(&sys->damping, begin, end, -1.0, u, a, a);
     }
 }
 
