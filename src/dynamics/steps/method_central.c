@@ -147,7 +147,7 @@ static int few_find_all(struct few_bodies *b, tribo_system *sys, size_t count, c
     b->h[0] = last;
     for (size_t s = 0; s < count; s++) {
         b->h[s + 1] = t[s + 1] - t[s];
-        b->time[s] = 0.5 * (b->h[s] + b->h[s + 1]);
+        b->time[s] = 0.5 * ((s ? t[s] - t[s - 1] : last) + (t[s + 1] - t[s]));
         middle[s] = t[s] + 0.5 * (t[s + 1] - t[s]);
     }
     few_find_drives(sys, DRIVES_LOAD, sys->ndof, count, t, b->load);
@@ -181,9 +181,9 @@ struct few_state {
     signed char at[FEW];
 };
 
-/* The first steps of a run of n degrees of freedom and c contacts. Returns how many of count could be taken; of the next step
- * only motion->at has changed. */
-static inline size_t few_steps(struct few_bodies *b, tribo_system *sys, size_t n, size_t c, size_t count,
+/* The first steps of a run of n degrees of freedom and c contacts. in_order = 1: without calls. Returns how many of count could
+ * be taken; of the next step only motion->at has changed. */
+static inline size_t few_steps(struct few_bodies *b, tribo_system *sys, size_t n, size_t c, int in_order, size_t count,
                                struct few_state *motion)
 {
     static const double least[FEW] = {0.0};
@@ -217,7 +217,9 @@ static inline size_t few_steps(struct few_bodies *b, tribo_system *sys, size_t n
             work += sys->tally[i] * p[i] * (m.v[i] + to);
             m.v[i] = to;
         }
-        if (b->inverse_of) { /* makes the velocities of holding contacts exact, but of those at their bounds */
+        if (b->inverse_of && in_order) { /* makes the velocities of holding contacts exact, but of those at their bounds */
+            tribo_snap_all(sys->snaps.list, sys->snaps.count, loose, base, u);
+        } else if (b->inverse_of) {
             tribo_system_snap(sys, loose, base, u);
         }
         for (size_t d = 0; d < n; d++) {
@@ -249,11 +251,11 @@ static size_t central_run(tribo_driver *drv, size_t count, const double *t, doub
     memcpy(m.at, b->at, sizeof m.at);
     tribo_step_form_velocity(s, sys, x->when, s->u, m.v);
     /* sizes as constants make loops straight: a step then takes half the time */
-    const size_t taken = n != c   ? few_steps(b, sys, n, c, count, &m)
-                         : n == 1 ? few_steps(b, sys, 1, 1, count, &m)
-                         : n == 2 ? few_steps(b, sys, 2, 2, count, &m)
-                         : n == 3 ? few_steps(b, sys, 3, 3, count, &m)
-                                  : few_steps(b, sys, FEW, FEW, count, &m);
+    const size_t taken = n != c || !sys->snaps.in_order ? few_steps(b, sys, n, c, 0, count, &m)
+                         : n == 1                       ? few_steps(b, sys, 1, 1, 1, count, &m)
+                         : n == 2                       ? few_steps(b, sys, 2, 2, 1, count, &m)
+                         : n == 3                       ? few_steps(b, sys, 3, 3, 1, count, &m)
+                                                        : few_steps(b, sys, FEW, FEW, 1, count, &m);
     /* numbers that are not finite come back in every step that follows */
     if (taken == 0 || !isfinite(m.energy) || !tribo_dense_finite(m.q, n) || !tribo_dense_finite(m.u, n)) {
         return 0;
