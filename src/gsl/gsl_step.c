@@ -201,15 +201,18 @@ static int has_sure_pivots(struct gsl_step *g, size_t n)
  * within a step its order does not grow, so that matrices of higher orders are not checked. */
 static int is_regular(struct gsl_step *g)
 {
-    const size_t n = g->dimension, size = n * g->kind->stages;
+    const size_t n = g->dimension, stages = g->kind->stages, size = n * stages;
     const size_t order = gsl_odeiv2_step_order(g->step);
     const size_t count = g->kind->keeps && order < g->kind->matrices ? order : g->kind->matrices;
     for (size_t i = 0; i < count; i++) {
-        for (size_t row = 0; row < size; row++) { /* matrix = I - c h A x J */
-            for (size_t column = 0; column < size; column++) {
-                const double a = g->kind->a ? g->kind->a[row / n * g->kind->stages + column / n] : 1.0;
-                const double entry = -g->kind->c[i] * g->trial->h * a * g->jacobian[row % n * n + column % n];
-                g->matrix[row * size + column] = entry + (row == column ? 1.0 : 0.0);
+        for (size_t k = 0; k < stages * stages; k++) { /* blocks of matrix = I - c h A x J */
+            const double factor = -g->kind->c[i] * g->trial->h * (g->kind->a ? g->kind->a[k] : 1.0);
+            double *to = g->matrix + k / stages * n * size + k % stages * n;
+            for (size_t row = 0; row < n; row++) {
+                for (size_t column = 0; column < n; column++) {
+                    to[row * size + column] = factor * g->jacobian[row * n + column];
+                }
+                to[row * (size + 1)] += k % (stages + 1) == 0 ? 1.0 : 0.0;
             }
         }
         if (!(tribo_largest(g->matrix, size * size) <= LARGEST_ENTRY) || !has_sure_pivots(g, size)) {
