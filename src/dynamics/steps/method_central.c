@@ -106,8 +106,7 @@ static int synchronise(tribo_driver *drv, double t, double *y)
     struct central *x = drv->own;
     struct step_form *s = &x->common;
     const size_t n = drv->sys->ndof;
-    const double half = 0.5 * x->last;
-    const struct body_step back = {.from = x->when, .t = t, .to = t, .time = half, .q = y, .u = s->u, .u_to = y + n};
+    const struct body_step back = {.from = x->when, .t = t, .to = t, .time = 0.5 * x->last, .q = y, .u = s->u, .u_to = y + n};
     y[2 * n] = x->energy;
     return kick(drv, &back, y + 2 * n);
 }
@@ -238,7 +237,6 @@ static inline size_t few_steps(struct few_bodies *b, tribo_system *sys, size_t n
 static size_t central_run(tribo_driver *drv, size_t count, const double *t, double *y)
 {
     struct central *x = drv->own;
-    struct step_form *s = &x->common;
     struct few_bodies *b = &x->few;
     tribo_system *sys = drv->sys;
     const size_t n = sys->ndof, c = sys->ncontact;
@@ -247,9 +245,9 @@ static size_t central_run(tribo_driver *drv, size_t count, const double *t, doub
     }
     struct few_state m = {.energy = x->energy};
     memcpy(m.q, y, n * sizeof *y);
-    memcpy(m.u, s->u, n * sizeof *y);
+    memcpy(m.u, x->common.u, n * sizeof *y);
     memcpy(m.at, b->at, sizeof m.at);
-    tribo_step_form_velocity(s, sys, x->when, s->u, m.v);
+    tribo_step_form_velocity(&x->common, sys, x->when, x->common.u, m.v);
     /* sizes as constants make loops straight: a step then takes half the time */
     const size_t taken = n != c || !sys->snaps.in_order ? few_steps(b, sys, n, c, 0, count, &m)
                          : n == 1                       ? few_steps(b, sys, 1, 1, 1, count, &m)
@@ -261,7 +259,7 @@ static size_t central_run(tribo_driver *drv, size_t count, const double *t, doub
         return 0;
     }
     memcpy(y, m.q, n * sizeof *y);
-    memcpy(s->u, m.u, n * sizeof *y);
+    memcpy(x->common.u, m.u, n * sizeof *y);
     memcpy(b->at, m.at, sizeof m.at);
     x->last = b->h[taken];
     x->when = t[taken - 1] + 0.5 * x->last;
@@ -348,11 +346,10 @@ static int central_step(tribo_driver *drv, double t, double next, const double *
 static int check_step(tribo_driver *drv, double h)
 {
     struct central *x = drv->own;
-    struct step_form *s = &x->common;
     const tribo_system *sys = drv->sys;
     double value, limit = h;
-    x->stable = s->revision == sys->revision ? x->stable : 0.0;
-    s->revision = sys->revision;
+    x->stable = x->common.revision == sys->revision ? x->stable : 0.0;
+    x->common.revision = sys->revision;
     if (h <= x->stable) {
         return TRIBO_OK;
     }
