@@ -1,19 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* For many times: omega t is a sum of two doubles. Subtracting whole quarter turns gives an angle up to an eighth of a turn,
- * where eight terms of Taylor's series suffice. In a rounding mode upwards or downwards the angle is up to a quarter turn, where
- * the series have errors of 1e-12. There are no branches, so that loops over times become vectors. */
+/* omega t is a sum of two doubles. Subtracting whole quarter turns gives an angle up to an eighth of a turn, where eight terms of
+ * Taylor's series suffice. There are no branches, so that loops over times become vectors. */
 #include "cos_sin.h"
 #include "common/simd.h"
 #include "numerics/twofold.h"
 
 #include <math.h>
-
-/* Returns a whole number next to x, |x| < 2^51; the nearest one in the rounding mode to nearest. */
-static inline double nearest(double x)
-{
-    const double lift = 6755399441055744.0; /* 1.5 2^52: sums with lift have no digits after the point */
-    return (x + lift) - lift;
-}
 
 /* Returns the sum of c[k] (-z)^k, k < 8, added in pairs: no term waits for more than three others. */
 static inline double alternating(double z, const double *c)
@@ -38,18 +30,17 @@ static inline double sine_near_0(struct twofold x)
     return x.hi + (x.lo * (1.0 - 0.5 * z) - x.hi * z * alternating(z, c));
 }
 
-/* c, s = cosine and sine of an angle up to COS_SIN_NEAR. x = angle - quarters pi/2, pi/2 = first + second + third; multiples of
+/* c, s = cosine and sine of an angle up to COS_SIN_NEAR, in any rounding mode. x = angle - quarters pi/2, pi/2 = first + second + third; multiples of
  * first and second up to 2^20 are exact. */
 static inline void cos_sin_of(struct twofold angle, double *c, double *s)
 {
     const double first = 0x1.921fb544p+0, second = 0x1.0b4611a6p-34, third = 0x1.3198a2e037073p-69;
-    const double quarters = nearest(angle.hi * 0.63661977236758134);
+    const int quarters = (int)(angle.hi * 0.63661977236758134 + copysign(0.5, angle.hi));
     const struct twofold most = twofold_sum(angle.hi - quarters * first, -quarters * second);
     const struct twofold x = twofold_sum(most.hi, (most.lo - quarters * third) + angle.lo);
     const double cx = cosine_near_0(x), sx = sine_near_0(x);
-    const double left = quarters - 4.0 * nearest(0.25 * quarters), size = fabs(left); /* -2 to 2; in other modes -3 to 3 */
-    const double past = (size - 1.0) * (size - 2.0) * (1 / 3.);                       /* 0 unless size is 0 or 3 */
-    const double cq = (1.0 - size) + size * past, sq = left * (2.0 - size) + left * past;
+    const double left = ((quarters + 1) & 3) - 1, size = fabs(left); /* left: -1, 0, 1, 2 */
+    const double cq = 1.0 - size, sq = left * (2.0 - size);
     *c = cq * cx - sq * sx;
     *s = sq * cx + cq * sx;
 }
