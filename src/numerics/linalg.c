@@ -112,12 +112,6 @@ TRIBO_SIMD static void add_four_dots(size_t n, double factor, const double *rest
     }
 }
 
-/* Returns 1 unless all four numbers are 0. */
-static inline int any_of_four(const double *f)
-{
-    return (fabs(f[0]) + fabs(f[1])) + (fabs(f[2]) + fabs(f[3])) != 0.0;
-}
-
 void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c)
 {
     size_t i = 0;
@@ -139,7 +133,7 @@ void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, c
         }
         for (; k + 4 <= inner; k += 4) {
             const double f[] = {factor * row[k], factor * row[k + 1], factor * row[k + 2], factor * row[k + 3]};
-            if (any_of_four(f)) {
+            if (f[0] != 0.0 || f[1] != 0.0 || f[2] != 0.0 || f[3] != 0.0) {
                 add_four(c + i * cols, b + k * cols, cols, f);
             }
         }
@@ -159,7 +153,7 @@ void tribo_multiply_transposed_add(size_t rows, size_t inner, size_t cols, const
     for (; k + 4 <= rows; k += 4) {
         for (size_t i = 0; i < inner; i++) {
             const double *four = a + k * inner + i, f[] = {four[0], four[inner], four[2 * inner], four[3 * inner]};
-            if (any_of_four(f)) {
+            if (f[0] != 0.0 || f[1] != 0.0 || f[2] != 0.0 || f[3] != 0.0) {
                 add_four(c + i * cols, b + k * cols, cols, f);
             }
         }

@@ -117,8 +117,8 @@ static int find_stiffness(struct modal_build *b)
 void tribo_modal_react(const struct modal *h, size_t columns, double *force, double *f, double *work)
 {
     memset(work, 0, h->modes * columns * sizeof *work);
-    tribo_multiply_add(h->modes, h->n, columns, 1.0, h->phi, force, work);
-    tribo_multiply_add(h->n, h->modes, columns, -1.0, h->psi, work, force);
+    tribo_multiply_add(h->modes, h->n, columns, -1.0, h->phi, force, work);
+    tribo_multiply_transposed_add(h->modes, h->n, columns, h->psi, work, force);
     tribo_constraints_react(&h->ties, columns, force, f);
 }
 
@@ -195,8 +195,8 @@ static int find_modes(struct modal_build *b)
             tribo_normal_modes(b->stiffness, sys->expansion.terms, &z, held ? &own : &sys->factor, m, h->omega2, h->phi, &text);
         tribo_transpose(m, n, h->phi, b->shape);
     }
-    if (!status && !b->like) {
-        tribo_matrix_add_columns(&sys->mass, 1.0, m, b->shape, h->psi);
+    for (size_t k = 0; !status && !b->like && k < m; k++) {
+        tribo_matrix_multiply_add(&sys->mass, 1.0, h->phi + k * n, h->psi + k * n);
     }
     tribo_matrix_free(&z);
     tribo_cholesky_free(&own);
@@ -308,7 +308,7 @@ void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y,
         tribo_matrix_add_columns(b->k, 1.0, columns, y, force);
         for (size_t d = 0; d < n; d++) {
             for (size_t k = 0; k < columns; k++) {
-                force[d * columns + k] -= omega2[k] * inertia[d * columns + k];
+                force[d * columns + k] -= omega2[k] * inertia[k * n + d];
             }
         }
         keep_reactions(h, columns, force, base || h->powers, work, on);

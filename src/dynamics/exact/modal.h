@@ -50,7 +50,7 @@ struct modal {
 
     size_t modes;
     double *phi; /* [modes][n] mode shapes */
-    double *psi; /* [n][modes] M times the mode shapes */
+    double *psi; /* [modes][n] M times the mode shapes */
     double *omega2, *damping;
     struct modal_powers *powers; /* NULL: Phi are modes; else there are no exponents, and omega2 and damping are 0 */
     double *coupling;            /* [modes][modes] C~; NULL if C~ is diagonal, or without modes */
@@ -89,6 +89,7 @@ struct forced {
     int steady;
     double *phi, *on, *by_u; /* of the modal, with further rows, or columns, [shapes] */
     double *speed;           /* [shapes] eta' of a shape for bases of constant speed, 1; else 0 */
+    size_t *span;            /* [shapes][2] first and end of the degrees of freedom that a shape moves, or that move a mode */
 
     size_t harmonics;        /* the harmonics of the system, in order, then harmonics of limits */
     struct forcing *forcing; /* [harmonics] */

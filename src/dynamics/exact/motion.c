@@ -206,8 +206,13 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
         memcpy(to, from, tribo_system_size(sys) * sizeof *to);
     }
     memset(to + n, 0, brief ? 0 : n * sizeof *to);
-    tribo_multiply_transposed_add(h->shapes, n, 1, h->phi, x->place, to);
-    tribo_multiply_transposed_add(h->shapes, n, 1, h->phi, x->rate, to + n);
+    for (size_t k = 0; k < h->shapes; k++) {
+        const double *phi = h->phi + k * n, place = x->place[k], rate = x->rate[k];
+        for (size_t d = h->span[2 * k]; d < h->span[2 * k + 1]; d++) {
+            to[d] += phi[d] * place;
+            to[n + d] += phi[d] * rate;
+        }
+    }
     for (size_t k = 0; k < sys->compliance.count; k++) {
         const size_t i = sys->compliance.contact[k];
         to[2 * n + k] += h->modal->key[i] == 2 ? tribo_dot(h->on + i * h->shapes, x->place, h->shapes) : 0.0;
@@ -331,10 +336,11 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
     x->t0 = t;
     start_harmonics(x);
     find_constant_forces(x, y, x->work);
-    memset(x->place, 0, own->modes * sizeof *x->place);
-    memset(x->rate, 0, own->modes * sizeof *x->rate);
-    tribo_multiply_transposed_add(n, own->modes, 1, own->psi, y, x->place);
-    tribo_multiply_transposed_add(n, own->modes, 1, own->psi, y + n, x->rate);
+    for (size_t k = 0; k < own->modes; k++) {
+        const size_t begin = h->span[2 * k], moved = h->span[2 * k + 1] - begin;
+        x->place[k] = tribo_dot(own->psi + k * n + begin, y + begin, moved);
+        x->rate[k] = tribo_dot(own->psi + k * n + begin, y + n + begin, moved);
+    }
     if (own->powers) {
         x->runs = 0;
         x->tau = 0.0;

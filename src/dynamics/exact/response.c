@@ -30,6 +30,7 @@ static int make_shapes(struct modal_build *b)
         f->shapes += w->drives != DRIVES_BASE ? 0 : w->omega != 0.0 ? 2 : 1;
     }
     f->speed = tribo_modal_take(&f->store, f->shapes, sizeof *f->speed);
+    f->span = tribo_modal_take(&f->store, 2 * f->shapes, sizeof *f->span);
     f->x = tribo_modal_take(&f->store, f->harmonics * f->shapes, sizeof *f->x);
     double *const own[] = {h->phi, h->on, h->by_u}, **const to[] = {&f->phi, &f->on, &f->by_u};
     for (size_t k = 0; k < 3; k++) {
@@ -63,7 +64,7 @@ static void follow_base(struct modal_build *b, size_t k, double omega, const dou
     tribo_constraints_follow(&h->ties, x, y);
     memset(place, 0, m * sizeof *place);
     memset(rate, 0, m * sizeof *rate);
-    tribo_multiply_transposed_add(n, m, 1, h->psi, y, place);
+    tribo_multiply_add(m, n, 1, 1.0, h->psi, y, place);
     for (size_t l = 0; l < m; l++) {
         tribo_add(y, -place[l], h->phi + l * n, n);
         place[l] = 0.0;
@@ -123,6 +124,13 @@ static int follow_bases(struct modal_build *b)
         }
         k++;
     }
+    for (size_t at = 0; at < f->shapes * h->n; at++) {
+        if (f->phi[at] != 0.0 || (at < m * h->n && h->psi[at] != 0.0)) {
+            size_t *span = f->span + at / h->n * 2;
+            span[0] = span[1] ? span[0] : at % h->n;
+            span[1] = at % h->n + 1;
+        }
+    }
     return !b->scratch.failed;
 }
 
@@ -156,7 +164,7 @@ static void force_modes(struct modal_build *b, size_t s, double *work)
         }
         tribo_modal_react(h, 1, force, react, by);
         for (size_t k = 0; k < m; k++) {
-            f->g[s * m + k] -= unit * by[k];
+            f->g[s * m + k] += unit * by[k];
         }
         for (size_t p = 0; w->omega != 0.0 && p < h->rests; p++) {
             b->direct[s * h->rests + p] += unit * react[p];

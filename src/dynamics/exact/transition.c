@@ -79,8 +79,8 @@ int tribo_modal_transition(void *own, const void *phase, double tau, size_t colu
     if (!eta) {
         return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     }
-    tribo_multiply_transposed_add(n, m, c, h->psi, v, eta);
-    tribo_multiply_transposed_add(n, m, c, h->psi, v + block, rate);
+    tribo_multiply_add(m, n, c, 1.0, h->psi, v, eta);
+    tribo_multiply_add(m, n, c, 1.0, h->psi, v + block, rate);
     find_pull(h, sys, c, v, pull, way);
     (h->powers ? tribo_powers_carry : carry_modes)(h, tau, c, pull, eta, rate, work);
     memset(v + block, 0, block * sizeof *v);
