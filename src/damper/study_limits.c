@@ -142,6 +142,8 @@ void study_limits(struct study *s, struct curve *c)
         end_progress();
     }
     write_curves(s->tables, "curve", c, 1, s->damper);
-    plot_curve(s->tables);
+    if (s->options->limits.points > 1) {
+        plot_curve(s->tables);
+    }
     s->gaps += gaps_of(c);
 }

@@ -53,8 +53,7 @@ static int find_held(struct exact *x, int powers, struct modal **found)
     while (*at && (((*at)->powers != NULL) != powers || memcmp((*at)->key, m->state.key, m->constant.contacts) != 0)) {
         at = &(*at)->next;
     }
-    struct modal *h = *at;
-    const int known = h != NULL;
+    struct modal *h = *at, *const known = h;
     if (!known && x->held.bytes > CACHE_BYTES) {
         drop_helds(x);
     }

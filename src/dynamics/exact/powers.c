@@ -29,10 +29,9 @@ static void pull_back(const struct modal *h, size_t columns, const double *eta, 
     tribo_matrix_add_columns(&h->powers->stiffness, -1.0, columns, eta, to);
     tribo_matrix_add_columns(&h->powers->damping, -1.0, columns, rate, to);
     for (size_t s = h->rests; s < h->rests + h->springs; s++) {
-        const size_t at = h->rest[s] * h->modes;
         memset(work, 0, columns * sizeof *work);
-        tribo_multiply_add(1, h->modes, columns, 1.0, h->on + at, eta, work);
-        tribo_multiply_transposed_add(1, h->modes, columns, h->powers->reach + at, work, to);
+        tribo_multiply_add(1, h->modes, columns, 1.0, h->on + h->rest[s] * h->modes, eta, work);
+        tribo_multiply_transposed_add(1, h->modes, columns, h->powers->reach + h->rest[s] * h->modes, work, to);
     }
 }
 
