@@ -28,6 +28,13 @@
 !>          IERR)                                    that lifts off, no handle: DZ(2,N)   -RNORM*max(DEPTH, 0); DF(I,J,N) = dF(I)
 !>                                                   since F, DEPTH at the end, TANG and  by (DZ(1), DZ(2), DEPTH)(J)
 !>                                                   RNORM stiffness, FMU friction
+!>   TRBDAH(N, DZ, STIF, FMUN, F, DFDZ, IERR)        Dahl's law, no handle             F in/out: the state
+!>   TRBLUG(N, DT, DZ, PAR, Z, F, DFDZ, IERR)        LuGre, no handle: PAR(6,N) = s0,  Z in/out, F, DFDZ
+!>                                                   s1, s2, fc, fs, vs
+!>   TRBBWN(N, DZ, PAR, Z, F, DFDZ, IERR)            Bouc and Wen, no handle: PAR(5,N) Z in/out, F, DFDZ
+!>                                                   = stiffness, a, beta, gamma, m
+!>   TRBIWN(N, NROOM, DZ, PAR, STATE, F, DFDZ, IERR) Iwan's sliders, no handle:        STATE(3+2*NROOM,N) in/out, F, DFDZ
+!>                                                   PAR(4,N) = kt, fs, chi, beta
 !> Life
 !>   TRBNEW(N, IH, IERR)                             N >= 0                            IH new: quinn, limit 0, epsilon 1E-6,
 !>                                                                                     no operator yet
@@ -330,6 +337,50 @@ subroutine trbctf(n, dz, depth, tang, rnorm, fmu, f, df, ierr)
   ierr = TRIBO_ERR_NEGATIVE
   if (n >= 0) call tribo_contact_force(dz(:, :n), depth(:n), tang(:n), rnorm(:n), fmu(:n), f(:, :n), df(:, :, :n), ierr)
 end subroutine trbctf
+
+subroutine trbdah(n, dz, stif, fmun, f, dfdz, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: n
+  real(dp), intent(in) :: dz(*), stif(*), fmun(*)
+  real(dp), intent(inout) :: f(*), dfdz(*)
+  integer, intent(out) :: ierr
+  ierr = TRIBO_ERR_NEGATIVE
+  if (n >= 0) call tribo_dahl_force(dz(:n), stif(:n), fmun(:n), f(:n), dfdz(:n), ierr)
+end subroutine trbdah
+
+subroutine trblug(n, dt, dz, par, z, f, dfdz, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: n
+  real(dp), intent(in) :: dt, dz(*), par(6, *)
+  real(dp), intent(inout) :: z(*), f(*), dfdz(*)
+  integer, intent(out) :: ierr
+  ierr = TRIBO_ERR_NEGATIVE
+  if (n >= 0) call tribo_lugre_force(dt, dz(:n), par(:, :n), z(:n), f(:n), dfdz(:n), ierr)
+end subroutine trblug
+
+subroutine trbbwn(n, dz, par, z, f, dfdz, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: n
+  real(dp), intent(in) :: dz(*), par(5, *)
+  real(dp), intent(inout) :: z(*), f(*), dfdz(*)
+  integer, intent(out) :: ierr
+  ierr = TRIBO_ERR_NEGATIVE
+  if (n >= 0) call tribo_bouc_wen_force(dz(:n), par(:, :n), z(:n), f(:n), dfdz(:n), ierr)
+end subroutine trbbwn
+
+subroutine trbiwn(n, nroom, dz, par, state, f, dfdz, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: n, nroom
+  real(dp), intent(in) :: dz(*), par(4, *)
+  real(dp), intent(inout) :: state(3 + 2*max(nroom, 0), *), f(*), dfdz(*)
+  integer, intent(out) :: ierr
+  ierr = TRIBO_ERR_NEGATIVE
+  if (n >= 0 .and. nroom >= 0) call tribo_iwan_force(nroom, dz(:n), par(:, :n), state(:, :n), f(:n), dfdz(:n), ierr)
+end subroutine trbiwn
 
 ! -------------------------------------------------------------------------------------------------------------------------- life
 

@@ -47,7 +47,7 @@ module tribo_contexts
   public :: dp
   public :: tribo_version, tribo_version_string, tribo_strerror
   public :: tribo_law_count, tribo_law_name, tribo_law_reference, tribo_law_find, tribo_law_eval, tribo_elastic_force
-  public :: tribo_contact_force
+  public :: tribo_contact_force, tribo_dahl_force, tribo_lugre_force, tribo_bouc_wen_force, tribo_iwan_force
 
   !> A set of contacts with their law, limits, epsilon, operator R, solver memory and workspace.
   type, extends(tribo_object), public :: tribo_context
@@ -295,6 +295,119 @@ contains
     call blame(w, 'depth', depth) ! last: it may be negative
     call finish(w, stat, errmsg)
   end subroutine tribo_contact_force
+
+  !> Friction laws with a state, no context, in closed form over a step of constant velocity; df_dz is the derivative of f by dz.
+  !> Dahl's law: dz, stiffness, limit, f, df_dz (n); f is the state, in and out.
+  subroutine tribo_dahl_force(dz, stiffness, limit, f, df_dz, stat, errmsg)
+    real(dp), intent(in) :: dz(:), stiffness(:), limit(:)
+    real(dp), intent(inout) :: f(:)
+    real(dp), intent(inout), optional, contiguous :: df_dz(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    w%status = TRIBO_OK
+    w%n = size(f)
+    call expect_size(w, 'dz', dz, w%n)
+    call expect_size(w, 'stiffness', stiffness, w%n)
+    call expect_size(w, 'limit', limit, w%n)
+    if (present(df_dz)) call expect_size(w, 'df_dz', df_dz, w%n)
+    if (w%status == TRIBO_OK) w%status = c_dahl_force(int(w%n, c_size_t), dz, stiffness, limit, f, df_dz)
+    call blame(w, 'stiffness', stiffness)
+    call blame(w, 'limit', limit)
+    call blame(w, 'dz', dz)
+    call blame(w, 'f', f)
+    call finish(w, stat, errmsg)
+  end subroutine tribo_dahl_force
+
+  !> LuGre: parameter(6,n) = s0, s1, s2, fc, fs, vs; state z(n); velocity dz/dt.
+  subroutine tribo_lugre_force(dt, dz, parameter, z, f, df_dz, stat, errmsg)
+    real(dp), intent(in) :: dt, dz(:), parameter(:,:)
+    real(dp), intent(inout) :: z(:), f(:)
+    real(dp), intent(inout), optional, contiguous :: df_dz(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    w%status = TRIBO_OK
+    w%n = size(f)
+    call expect_elements(w, dz, parameter, 6, z, df_dz)
+    if (w%status == TRIBO_OK) w%status = c_lugre_force(int(w%n, c_size_t), dt, dz, parameter, z, f, df_dz)
+    call blame(w, 'dt', dt)
+    call blame_elements(w, dz, parameter, ['s0', 's1', 's2', 'fc', 'fs', 'vs'], z)
+    call finish(w, stat, errmsg)
+  end subroutine tribo_lugre_force
+
+  !> Bouc and Wen: parameter(5,n) = stiffness, a, beta, gamma, m; state z(n).
+  subroutine tribo_bouc_wen_force(dz, parameter, z, f, df_dz, stat, errmsg)
+    real(dp), intent(in) :: dz(:), parameter(:,:)
+    real(dp), intent(inout) :: z(:), f(:)
+    real(dp), intent(inout), optional, contiguous :: df_dz(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    w%status = TRIBO_OK
+    w%n = size(f)
+    call expect_elements(w, dz, parameter, 5, z, df_dz)
+    if (w%status == TRIBO_OK) w%status = c_bouc_wen_force(int(w%n, c_size_t), dz, parameter, z, f, df_dz)
+    call blame_elements(w, dz, parameter, [character(len=9) :: 'stiffness', 'a', 'beta', 'gamma', 'm'], z)
+    call finish(w, stat, errmsg)
+  end subroutine tribo_bouc_wen_force
+
+  !> Iwan's parallel sliders, Segalman's form: parameter(4,n) = kt, fs, chi, beta; state(3+2*room,n) for room turns.
+  subroutine tribo_iwan_force(room, dz, parameter, state, f, df_dz, stat, errmsg)
+    integer, intent(in) :: room
+    real(dp), intent(in) :: dz(:), parameter(:,:)
+    real(dp), intent(inout) :: state(:,:), f(:)
+    real(dp), intent(inout), optional, contiguous :: df_dz(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    w%status = TRIBO_OK
+    w%n = size(f)
+    call expect_shape(w, 'state', shape(state), [3 + 2*max(room, 0), w%n])
+    call expect_elements(w, dz, parameter, 4, f, df_dz)
+    if (room < 0) w%status = TRIBO_ERR_NEGATIVE
+    if (w%status == TRIBO_OK) then
+      w%status = c_iwan_force(int(w%n, c_size_t), int(room, c_size_t), dz, parameter, state, f, df_dz)
+    end if
+    call blame(w, 'room', real(room, dp))
+    call blame_elements(w, dz, parameter, ['kt  ', 'fs  ', 'chi ', 'beta'], reshape(state, [size(state)]))
+    call finish(w, stat, errmsg)
+  end subroutine tribo_iwan_force
+
+  !> Expects the sizes of w%n elements of a number of parameters each.
+  subroutine expect_elements(w, dz, parameter, numbers, z, df_dz)
+    type(work), intent(inout) :: w
+    real(dp), intent(in) :: dz(:), parameter(:,:), z(:)
+    integer, intent(in) :: numbers
+    real(dp), intent(in), optional :: df_dz(:)
+
+    call expect_size(w, 'dz', dz, w%n)
+    call expect_shape(w, 'parameter', shape(parameter), [numbers, w%n])
+    call expect_size(w, 'z', z, w%n)
+    if (present(df_dz)) call expect_size(w, 'df_dz', df_dz, w%n)
+  end subroutine expect_elements
+
+  !> Names the parameter, the displacement or the state of which a status speaks.
+  subroutine blame_elements(w, dz, parameter, name, state)
+    type(work), intent(inout) :: w
+    real(dp), intent(in) :: dz(:), parameter(:,:), state(:)
+    character(len=*), intent(in) :: name(:)
+    integer :: k
+
+    if (w%status == TRIBO_ERR_NEGATIVE .or. w%status == TRIBO_ERR_NOT_FINITE .or. w%status == TRIBO_ERR_NOT_POSITIVE) then
+      do k = 1, size(name)
+        call blame(w, trim(name(k)), parameter(k, :))
+      end do
+    end if
+    if (w%status == TRIBO_ERR_NOT_FINITE) then
+      call blame(w, 'dz', dz)
+      call blame(w, 'state', state)
+    end if
+  end subroutine blame_elements
 
   ! ---------------------------------------------------------------------------------------------------------- life of a context
 

@@ -164,6 +164,40 @@ TRIBO_API int tribo_elastic_force_planar(size_t n, const double *dz, const doubl
 TRIBO_API int tribo_contact_force(size_t n, const double *dz, const double *depth, const double *tangential, const double *normal,
                                   const double *mu, double *f, double *df);
 
+/* Friction laws with a state of their own, as elements without a context. Each is integrated in closed form over a step in which
+ * the velocity is constant: n steps of dz/n give what one step of dz gives. The bodies get J' f. Numbers other than 0 must lie between
+ * 1e-30 and 1e30 in size. Thread-safe.
+ * dz      [n] in      relative displacement since the last call, z = J x
+ * f       [n] out     friction force (of Dahl's law in/out: the force is the state)
+ * df_dz   [n] out, or NULL   derivative of f by dz; at dz = 0 the mean of both sides
+ * All return TRIBO_ERR_NULL, TRIBO_ERR_SIZE (n), TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_RANGE;
+ * on error outputs are unchanged. */
+
+/* Dahl (1968): df/dz = -stiffness (1 + f sgn(dz)/limit). stiffness, limit [n] in, >= 0. */
+TRIBO_API int tribo_dahl_force(size_t n, const double *dz, const double *stiffness, const double *limit, double *f, double *df_dz);
+
+/* LuGre (Canudas de Wit, Olsson, Astrom, Lischinsky, IEEE Trans. Autom. Control 40 (1995) 419, doi:10.1109/9.376053):
+ * f = -(s0 z + s1 z' + s2 v), z' = v - s0 |v| z/g, g = fc + (fs - fc) exp(-(v/vs)^2), v = dz/dt.
+ * dt         in   length of the step, > 0
+ * parameter  [n][6] in   s0 > 0, s1, s2, fc, fs >= 0, vs > 0
+ * z          [n] in/out  deflection of the bristles; 0 at the start */
+TRIBO_API int tribo_lugre_force(size_t n, double dt, const double *dz, const double *parameter, double *z, double *f, double *df_dz);
+
+/* Bouc (1967), Wen (1976): f = -stiffness z, dz/dx = a - |z|^m (gamma + beta sgn(z dx)).
+ * parameter  [n][5] in   stiffness >= 0, a > 0, beta >= 0, gamma >= -beta, m = 1 or 2
+ * z          [n] in/out  state; 0 at the start */
+TRIBO_API int tribo_bouc_wen_force(size_t n, const double *dz, const double *parameter, double *z, double *f, double *df_dz);
+
+/* Iwan's parallel sliders in the four-parameter form of Segalman (J. Appl. Mech. 72 (2005) 752, doi:10.1115/1.1989354), with Masing's
+ * rule for all turns of the motion.
+ * room       in   turns that a state can hold: turns of loops that have not closed, two in a steady motion, one for each half cycle
+ *                 in which a motion dies away; at most 1e6
+ * parameter  [n][4] in   kt > 0 tangential stiffness, fs >= 0 limit, chi > -1, beta >= 0
+ * state      [n][3 + 2 room] in/out   displacement from the middle, number of turns, direction, turns; 0 at the start
+ * Returns TRIBO_ERR_SIZE also where a turn finds no room. */
+TRIBO_API int tribo_iwan_force(size_t n, size_t room, const double *dz, const double *parameter, double *state, double *f,
+                               double *df_dz);
+
 /* -------------------------------------------------------------------------------------------------------- contexts */
 
 /* A set of contacts with their law, limits, epsilon, operator R, solver memory and workspace. */

@@ -167,7 +167,7 @@ contains
   subroutine registry()
     integer :: law, stats(3)
     character(len=200) :: msgs(3)
-    real(dp) :: f, df_dv, df_dfeq, df_dlimit, values(3), forces(3, 2)
+    real(dp) :: f, df_dv, df_dfeq, df_dlimit, values(3), forces(3, 2), z(1), turns(3, 1)
     real(dp), parameter :: ones(2, 2) = 1.0_dp
 
     law = blank_integer
@@ -211,6 +211,20 @@ contains
       errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'depth(2) = NaN is not finite')
     call require(all(untouched(reshape(forces, [6]))), 'tribo_contact_force: f')
+    values = blank
+    z = 0
+    turns = blank
+    call tribo_lugre_force(0.1_dp, [0.1_dp], reshape([1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp, 1.0_dp], [5, 1]), z, values(:1), &
+      stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'parameter has size 5 x 1, not 6 x 1')
+    call tribo_lugre_force(0.1_dp, [0.1_dp], reshape([1.0_dp, 0.0_dp, -2.0_dp, 1.0_dp, 1.0_dp, 1.0_dp], [6, 1]), z, values(:1), &
+      stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_NEGATIVE, 's2(1) = -2.000000 is negative')
+    call tribo_bouc_wen_force([0.1_dp], reshape([1.0_dp, 1.0_dp, nan, 1.0_dp, 1.0_dp], [5, 1]), z, values(:1), stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'beta(1) = NaN is not finite')
+    call tribo_iwan_force(-1, [0.1_dp], reshape([1.0_dp, 1.0_dp, 1.0_dp, 1.0_dp], [4, 1]), turns, values(:1), stat=stat, errmsg=msg)
+    call require(stat /= TRIBO_OK, 'room of less than nothing')
+    call require(all(untouched([values, turns(:, 1)])), 'laws with a state: f')
     values = blank
     msgs = ''
     call tribo_law_eval(TRIBO_QUINN, [9.0_dp, inf, -9.0_dp], 0.0_dp, 2.0_dp, 1.0_dp, values, stat=stats, errmsg=msgs)

@@ -90,6 +90,27 @@ C
       CALL CMPI('TRBCTF', IERR)
       CALL CMPR('TRBCTF', 6, P)
       CALL CMPR('TRBCTF', 18, DT)
+      DO 65 LAW = 0, 3
+         DO 62 I = 0, 11
+            DT(I+1) = EPS(MOD(I, N)+1) + 0.25D0
+            IF (LAW .EQ. 2 .AND. (I .EQ. 4 .OR. I .EQ. 9)) DT(I+1) = 1D0
+   62    CONTINUE
+         DO 64 I = 1, 10
+            W(I) = 0D0
+            W(I+10) = 0D0
+   64    CONTINUE
+         FEQ(1) = 0D0
+         FEQ(2) = 0D0
+         IF (LAW .EQ. 0) CALL TRBDAH(2, V, EPS, FMUN, FEQ, VAL, IERR)
+         IF (LAW .EQ. 1) CALL TRBLUG(2, 0.5D0, V, DT, W, FEQ, VAL, IERR)
+         IF (LAW .EQ. 2) CALL TRBBWN(2, V, DT, W, FEQ, VAL, IERR)
+         IF (LAW .EQ. 3) CALL TRBIWN(2, 1, V, DT, W(11), FEQ, VAL, IERR)
+         CALL CMPI('TRBDAH', IERR)
+         CALL CMPR('TRBDAH', 2, FEQ)
+         CALL CMPR('TRBDAH', 2, VAL)
+         CALL CMPR('TRBDAH', 2, W)
+         CALL CMPR('TRBDAH', 10, W(11))
+   65 CONTINUE
       J = -7
       CALL TRBFND('quin', J, IERR)
       CALL EXPECT('TRBFND of no law', J .EQ. -7 .AND. IERR .EQ. 7)

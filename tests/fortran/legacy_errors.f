@@ -168,6 +168,14 @@ C     The errors of calls with a handle that is one.
       CALL EXPECT('TRBELP', IERR .EQ. 3)
       CALL TRBCTF(-1, X, X, X, X, X, X, Y, IERR)
       CALL EXPECT('TRBCTF', IERR .EQ. 3)
+      CALL TRBDAH(-1, X, X, X, X, Y, IERR)
+      CALL EXPECT('TRBDAH', IERR .EQ. 3)
+      CALL TRBLUG(-1, 1D0, X, X, X, X, Y, IERR)
+      CALL EXPECT('TRBLUG', IERR .EQ. 3)
+      CALL TRBBWN(-1, X, X, X, X, Y, IERR)
+      CALL EXPECT('TRBBWN', IERR .EQ. 3)
+      CALL TRBIWN(1, -1, X, X, X, X, Y, IERR)
+      CALL EXPECT('TRBIWN', IERR .EQ. 3)
       DO 10 K = 1, 4
          X(K) = 0D0
          Y(K) = -777D0

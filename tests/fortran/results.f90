@@ -46,6 +46,7 @@ program results
 contains
 
   subroutine registry()
+    real(dp) :: parameters(12), z(2), state(5, 2)
     real(dp) :: f(n), df_dv(n), df_dfeq(n), df_dlimit(n), plane(2, n/2), turn(2, 2, n/2), pressed(3, 2), df(3, 3, 2)
     integer :: status, law, number, i, stat(n)
 
@@ -90,6 +91,30 @@ contains
     pressed = reshape([scene_feq(:, 4), scene_feq(:2, 5)], shape(pressed))
     call tribo_contact_force(reshape(scene_v(:, 4), [2, 2]), scene_limit(:2), scene_diagonal(:2), scene_diagonal(:2), &
       scene_epsilon(:2), pressed)
+    do law = 0, 3
+      do i = 0, 11
+        number = mod(i, n) + 1
+        parameters(i + 1) = merge(1.0_dp, scene_epsilon(number) + 0.25_dp, law == 2 .and. (i == 4 .or. i == 9))
+      end do
+      z = 0
+      state = 0
+      f(:2) = 0
+      select case (law)
+      case (0)
+        call tribo_dahl_force(scene_v(:2, 4), scene_epsilon(:2), scene_limit(:2), f(:2), df_dv(:2), stat(1))
+      case (1)
+        call tribo_lugre_force(0.5_dp, scene_v(:2, 4), reshape(parameters, [6, 2]), z, f(:2), df_dv(:2), stat(1))
+      case (2)
+        call tribo_bouc_wen_force(scene_v(:2, 4), reshape(parameters, [5, 2]), z, f(:2), df_dv(:2), stat(1))
+      case (3)
+        call tribo_iwan_force(1, scene_v(:2, 4), reshape(parameters, [4, 2]), state, f(:2), df_dv(:2), stat(1))
+      end select
+      call compare('a law with a state', stat(1))
+      call compare('a law with a state', f(:2))
+      call compare('a law with a state', df_dv(:2))
+      call compare('a law with a state', z)
+      call compare('a law with a state', reshape(state, [10]))
+    end do
     do law = 0, tribo_law_count() - 1
       number = -1
       call tribo_law_find(tribo_law_name(law) // '  ', number)

@@ -79,6 +79,22 @@ static void registry(void)
     put_one(tribo_contact_force(2, scene_v[3], scene_limit, scene_diagonal, scene_diagonal, scene_epsilon, force, df));
     put(6, force);
     put(18, df);
+    for (int law = 0; law < 4; law++) {
+        double parameter[2][6], state[2][5] = {{0.0}}, z[2] = {0.0, 0.0}, slope[2];
+        for (int k = 0; k < 12; k++) { /* a Bouc-Wen exponent of 1 */
+            parameter[k / 6][k % 6] = law == 2 && (k == 4 || k == 9) ? 1.0 : scene_epsilon[k % N] + 0.25;
+        }
+        double *const p = parameter[0], *const forces = f[0];
+        forces[0] = forces[1] = 0.0;
+        put_one(law == 0   ? tribo_dahl_force(2, scene_v[3], scene_epsilon, scene_limit, forces, slope)
+                : law == 1 ? tribo_lugre_force(2, 0.5, scene_v[3], p, z, forces, slope)
+                : law == 2 ? tribo_bouc_wen_force(2, scene_v[3], p, z, forces, slope)
+                           : tribo_iwan_force(2, 1, scene_v[3], p, state[0], forces, slope));
+        put(2, forces);
+        put(2, slope);
+        put(2, z);
+        put(10, state[0]);
+    }
 }
 
 static void settings(const tribo_context *c)

@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The friction element of bladed-disc and joint codes: a spring in series with a Coulomb slider (Jenkins 1922; Masing 1926), by
  * return mapping: the spring takes the displacement; where |f| is beyond the limit, the slider moves until it is not. */
-#include "check.h"
-
-/* TRIBO_ERR_SIZE where arrays of n elements are larger than memory. */
-static int check_size(size_t n)
-{
-    return n >= SIZE_MAX / 128 ? TRIBO_ERR_SIZE : TRIBO_OK;
-}
+#include "element.h"
 
 /* A planar element, two equal springs that end in one Coulomb slider, after a displacement dz. slip is the unit vector of f where
  * the element slides, 0 where it sticks. */
@@ -40,7 +34,7 @@ static struct elastic_end elastic_return(const double *dz, double stiffness, dou
 /* Checks what n elements of 1 or 2 directions are given. */
 static int check_all(size_t n, size_t directions, const double *dz, const double *stiffness, const double *limit, const double *f)
 {
-    int status = check_size(n);
+    int status = element_check_size(n);
     status = status ? status : tribo_check_finite(NULL, "dz", dz, n * directions);
     status = status ? status : tribo_check_nonnegative(NULL, "stiffness", stiffness, n);
     status = status ? status : tribo_check_nonnegative(NULL, "limit", limit, n);
@@ -80,7 +74,7 @@ int tribo_elastic_force_planar(size_t n, const double *dz, const double *stiffne
 int tribo_contact_force(size_t n, const double *dz, const double *depth, const double *tangential, const double *normal,
                         const double *mu, double *f, double *df)
 {
-    int status = check_size(n);
+    int status = element_check_size(n);
     status = status ? status : tribo_check_finite(NULL, "dz", dz, 2 * n);
     status = status ? status : tribo_check_finite(NULL, "depth", depth, n);
     status = status ? status : tribo_check_nonnegative(NULL, "tangential", tangential, n);

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Elements: friction laws with a state, without a context. Checks of the arrays of n elements. */
+#ifndef TRIBO_ELEMENT_H
+#define TRIBO_ELEMENT_H
+
+#include "core/check.h"
+
+/* TRIBO_ERR_SIZE where arrays of n elements are larger than memory. */
+static inline int element_check_size(size_t n)
+{
+    return n >= SIZE_MAX / 128 ? TRIBO_ERR_SIZE : TRIBO_OK;
+}
+
+/* Sizes of the numbers for which the formulas of elements with exponential functions neither overflow nor divide by 0. */
+#define ELEMENT_LEAST 1e-30
+#define ELEMENT_MOST 1e30
+
+/* Checks x [n] at distances of stride: POSITIVE: within [ELEMENT_LEAST, ELEMENT_MOST]; NONNEGATIVE: 0, too; FINITE: of either sign.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_RANGE. */
+int tribo_check_element(const double *x, size_t n, size_t stride, int range);
+
+#endif
