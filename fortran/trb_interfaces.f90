@@ -72,6 +72,34 @@ module trb_interfaces
       integer, intent(out) :: ierr
     end subroutine trbctf
 
+    subroutine trbdah(n, dz, stif, fmun, f, dfdz, ierr)
+      integer, intent(in) :: n
+      double precision, intent(in) :: dz(*), stif(*), fmun(*)
+      double precision, intent(inout) :: f(*), dfdz(*)
+      integer, intent(out) :: ierr
+    end subroutine trbdah
+
+    subroutine trblug(n, dt, dz, par, z, f, dfdz, ierr)
+      integer, intent(in) :: n
+      double precision, intent(in) :: dt, dz(*), par(6, *)
+      double precision, intent(inout) :: z(*), f(*), dfdz(*)
+      integer, intent(out) :: ierr
+    end subroutine trblug
+
+    subroutine trbbwn(n, dz, par, z, f, dfdz, ierr)
+      integer, intent(in) :: n
+      double precision, intent(in) :: dz(*), par(5, *)
+      double precision, intent(inout) :: z(*), f(*), dfdz(*)
+      integer, intent(out) :: ierr
+    end subroutine trbbwn
+
+    subroutine trbiwn(n, nroom, dz, par, state, f, dfdz, ierr)
+      integer, intent(in) :: n, nroom
+      double precision, intent(in) :: dz(*), par(4, *)
+      double precision, intent(inout) :: state(3 + 2*max(nroom, 0), *), f(*), dfdz(*)
+      integer, intent(out) :: ierr
+    end subroutine trbiwn
+
     subroutine trbnew(n, ih, ierr)
       integer, intent(in) :: n
       integer, intent(inout) :: ih

@@ -192,6 +192,52 @@ module tribo_c
       integer(c_int) :: answer
     end function c_contact_force
 
+    function c_dahl_force(n, dz, stiffness, limit, f, df_dz) result(answer) bind(c,name='tribo_dahl_force')
+      import
+      integer(c_size_t), value :: n
+      real(c_double), intent(in), optional :: dz(*)
+      real(c_double), intent(in), optional :: stiffness(*)
+      real(c_double), intent(in), optional :: limit(*)
+      real(c_double), intent(inout), optional :: f(*)
+      real(c_double), intent(inout), optional :: df_dz(*)
+      integer(c_int) :: answer
+    end function c_dahl_force
+
+    function c_lugre_force(n, dt, dz, parameter, z, f, df_dz) result(answer) bind(c,name='tribo_lugre_force')
+      import
+      integer(c_size_t), value :: n
+      real(c_double), value :: dt
+      real(c_double), intent(in), optional :: dz(*)
+      real(c_double), intent(in), optional :: parameter(*)
+      real(c_double), intent(inout), optional :: z(*)
+      real(c_double), intent(inout), optional :: f(*)
+      real(c_double), intent(inout), optional :: df_dz(*)
+      integer(c_int) :: answer
+    end function c_lugre_force
+
+    function c_bouc_wen_force(n, dz, parameter, z, f, df_dz) result(answer) bind(c,name='tribo_bouc_wen_force')
+      import
+      integer(c_size_t), value :: n
+      real(c_double), intent(in), optional :: dz(*)
+      real(c_double), intent(in), optional :: parameter(*)
+      real(c_double), intent(inout), optional :: z(*)
+      real(c_double), intent(inout), optional :: f(*)
+      real(c_double), intent(inout), optional :: df_dz(*)
+      integer(c_int) :: answer
+    end function c_bouc_wen_force
+
+    function c_iwan_force(n, room, dz, parameter, state, f, df_dz) result(answer) bind(c,name='tribo_iwan_force')
+      import
+      integer(c_size_t), value :: n
+      integer(c_size_t), value :: room
+      real(c_double), intent(in), optional :: dz(*)
+      real(c_double), intent(in), optional :: parameter(*)
+      real(c_double), intent(inout), optional :: state(*)
+      real(c_double), intent(inout), optional :: f(*)
+      real(c_double), intent(inout), optional :: df_dz(*)
+      integer(c_int) :: answer
+    end function c_iwan_force
+
     function c_create(ctx, ncontact) result(answer) bind(c,name='tribo_create')
       import
       type(c_ptr), intent(inout) :: ctx

@@ -180,12 +180,12 @@ TRIBO_API int tribo_dahl_force(size_t n, const double *dz, const double *stiffne
  * f = -(s0 z + s1 z' + s2 v), z' = v - s0 |v| z/g, g = fc + (fs - fc) exp(-(v/vs)^2), v = dz/dt.
  * dt         in   length of the step, > 0
  * parameter  [n][6] in   s0 > 0, s1, s2, fc, fs >= 0, vs > 0
- * z          [n] in/out  deflection of the bristles; 0 at the start */
+ * z          [n] in/out  deflection of the bristles, at most max(fc, fs)/s0 in size; 0 at the start */
 TRIBO_API int tribo_lugre_force(size_t n, double dt, const double *dz, const double *parameter, double *z, double *f, double *df_dz);
 
 /* Bouc (1967), Wen (1976): f = -stiffness z, dz/dx = a - |z|^m (gamma + beta sgn(z dx)).
  * parameter  [n][5] in   stiffness >= 0, a > 0, beta >= 0, gamma >= -beta, m = 1 or 2
- * z          [n] in/out  state; 0 at the start */
+ * z          [n] in/out  state, at most (a/(beta + gamma))^(1/m) in size; 0 at the start */
 TRIBO_API int tribo_bouc_wen_force(size_t n, const double *dz, const double *parameter, double *z, double *f, double *df_dz);
 
 /* Iwan's parallel sliders in the four-parameter form of Segalman (J. Appl. Mech. 72 (2005) 752, doi:10.1115/1.1989354), with Masing's

@@ -1,4 +1,3 @@
-/* SPDX-License-Identifier: BSD-3-Clause */
 /* Written by abi.sh: the prototypes once more. With another one in the header this does not compile. */
 #include "tribo/tribo.h"
 
@@ -17,6 +16,11 @@ TRIBO_API int tribo_elastic_force_planar(size_t n, const double *dz, const doubl
                                          double *df_dz);
 TRIBO_API int tribo_contact_force(size_t n, const double *dz, const double *depth, const double *tangential, const double *normal,
                                   const double *mu, double *f, double *df);
+TRIBO_API int tribo_dahl_force(size_t n, const double *dz, const double *stiffness, const double *limit, double *f, double *df_dz);
+TRIBO_API int tribo_lugre_force(size_t n, double dt, const double *dz, const double *parameter, double *z, double *f, double *df_dz);
+TRIBO_API int tribo_bouc_wen_force(size_t n, const double *dz, const double *parameter, double *z, double *f, double *df_dz);
+TRIBO_API int tribo_iwan_force(size_t n, size_t room, const double *dz, const double *parameter, double *state, double *f,
+                               double *df_dz);
 TRIBO_API int tribo_create(tribo_context **ctx, size_t ncontact);
 TRIBO_API int tribo_clone(const tribo_context *ctx, tribo_context **copy);
 TRIBO_API void tribo_destroy(tribo_context *ctx);

@@ -220,7 +220,8 @@ contains
     call tribo_lugre_force(0.1_dp, [0.1_dp], reshape([1.0_dp, 0.0_dp, -2.0_dp, 1.0_dp, 1.0_dp, 1.0_dp], [6, 1]), z, values(:1), &
       stat=stat, errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_NEGATIVE, 's2(1) = -2.000000 is negative')
-    call tribo_bouc_wen_force([0.1_dp], reshape([1.0_dp, 1.0_dp, nan, 1.0_dp, 1.0_dp], [5, 1]), z, values(:1), stat=stat, errmsg=msg)
+    call tribo_bouc_wen_force([0.1_dp], reshape([1.0_dp, 1.0_dp, nan, 1.0_dp, 1.0_dp], [5, 1]), z, values(:1), stat=stat, &
+      errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'beta(1) = NaN is not finite')
     call tribo_iwan_force(-1, [0.1_dp], reshape([1.0_dp, 1.0_dp, 1.0_dp, 1.0_dp], [4, 1]), turns, values(:1), stat=stat, errmsg=msg)
     call require(stat /= TRIBO_OK, 'room of less than nothing')

@@ -25,7 +25,7 @@ C
       DOUBLE PRECISION P(3,2), DP(3,3,2), DT(18)
       DOUBLE PRECISION FMUN(N), EPS(N), D(N), R(N,N), VAL(8), RM(6)
       DOUBLE PRECISION RJ(5), FLO(N), FUP(N), V(N), A(N), FEQ(N), W(4)
-      DOUBLE PRECISION SHARED
+      DOUBLE PRECISION SHARED, ST(20)
       CHARACTER*200 TEXT
       CALL SCDATA(FMUN, EPS, D, R, N, IROW, ICOL, VAL, RM, JROW, JCOL,
      1            RJ, FLO, FUP, SHARED)
@@ -96,20 +96,22 @@ C
             IF (LAW .EQ. 2 .AND. (I .EQ. 4 .OR. I .EQ. 9)) DT(I+1) = 1D0
    62    CONTINUE
          DO 64 I = 1, 10
-            W(I) = 0D0
-            W(I+10) = 0D0
+            ST(I) = 0D0
+            ST(I+10) = 0D0
    64    CONTINUE
          FEQ(1) = 0D0
          FEQ(2) = 0D0
          IF (LAW .EQ. 0) CALL TRBDAH(2, V, EPS, FMUN, FEQ, VAL, IERR)
-         IF (LAW .EQ. 1) CALL TRBLUG(2, 0.5D0, V, DT, W, FEQ, VAL, IERR)
-         IF (LAW .EQ. 2) CALL TRBBWN(2, V, DT, W, FEQ, VAL, IERR)
-         IF (LAW .EQ. 3) CALL TRBIWN(2, 1, V, DT, W(11), FEQ, VAL, IERR)
+         IF (LAW .EQ. 1)
+     1      CALL TRBLUG(2, 0.5D0, V, DT, ST, FEQ, VAL, IERR)
+         IF (LAW .EQ. 2) CALL TRBBWN(2, V, DT, ST, FEQ, VAL, IERR)
+         IF (LAW .EQ. 3)
+     1      CALL TRBIWN(2, 1, V, DT, ST(11), FEQ, VAL, IERR)
          CALL CMPI('TRBDAH', IERR)
          CALL CMPR('TRBDAH', 2, FEQ)
          CALL CMPR('TRBDAH', 2, VAL)
-         CALL CMPR('TRBDAH', 2, W)
-         CALL CMPR('TRBDAH', 10, W(11))
+         CALL CMPR('TRBDAH', 2, ST)
+         CALL CMPR('TRBDAH', 10, ST(11))
    65 CONTINUE
       J = -7
       CALL TRBFND('quin', J, IERR)

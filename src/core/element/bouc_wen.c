@@ -8,10 +8,7 @@ enum { PARAMETERS = 5 };
 static int check_parameters(size_t n, const double *parameter)
 {
     static const int range[PARAMETERS] = {NONNEGATIVE, POSITIVE, NONNEGATIVE, FINITE, POSITIVE};
-    int status = n && !parameter ? TRIBO_ERR_NULL : TRIBO_OK;
-    for (size_t k = 0; !status && n && k < PARAMETERS; k++) {
-        status = tribo_check_element(parameter + k, n, PARAMETERS, range[k]);
-    }
+    int status = tribo_check_elements(parameter, n, PARAMETERS, range);
     for (size_t i = 0; !status && i < n; i++) {
         const double *k = parameter + PARAMETERS * i;
         status = (k[4] != 1.0 && k[4] != 2.0) || k[2] + k[3] < 0.0 ? TRIBO_ERR_RANGE : TRIBO_OK;
@@ -53,15 +50,17 @@ static double distance_to_zero(double u, double a, double c, double m)
     return distance_of(a * c, -u / a);
 }
 
-/* z after a displacement dx. */
+/* z after a displacement dx; |z| is at most (a/(beta + gamma))^(1/m), at which it stays. */
 static double end_of(double z, double dx, double a, double beta, double gamma, double m)
 {
     const double sign = dx < 0.0 ? -1.0 : 1.0, c = m == 1.0 ? beta - gamma : gamma - beta;
-    double u = sign * z, s = fabs(dx);
+    const double ratio = gamma + beta > 0.0 ? a / (gamma + beta) : ELEMENT_MOST * ELEMENT_MOST,
+                 most_z = m == 1.0 ? ratio : sqrt(ratio);
+    double u = sign * clamp(z, -most_z, most_z), s = fabs(dx);
     if (u < 0.0) { /* unloads, where |u| = -u */
         const double most = distance_to_zero(u, a, c, m);
         if (s <= most) {
-            return sign * lesser(moved(u, s, a, c, m), 0.0);
+            return sign * (most < HUGE_VAL ? lesser(moved(u, s, a, c, m), 0.0) : u);
         }
         s -= most;
         u = 0.0;
@@ -72,9 +71,9 @@ static double end_of(double z, double dx, double a, double beta, double gamma, d
 int tribo_bouc_wen_force(size_t n, const double *dz, const double *parameter, double *z, double *f, double *df_dz)
 {
     int status = element_check_size(n);
-    status = status ? status : tribo_check_element(dz, n, 1, FINITE);
+    status = status ? status : tribo_check_element(dz, n, FINITE);
     status = status ? status : check_parameters(n, parameter);
-    status = status ? status : tribo_check_element(z, n, 1, FINITE);
+    status = status ? status : tribo_check_finite(NULL, "z", z, n);
     status = status ? status : n && !f ? TRIBO_ERR_NULL : TRIBO_OK;
     for (size_t i = 0; !status && i < n; i++) {
         const double *k = parameter + PARAMETERS * i, m = k[4];

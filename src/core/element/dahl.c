@@ -5,10 +5,10 @@
 int tribo_dahl_force(size_t n, const double *dz, const double *stiffness, const double *limit, double *f, double *df_dz)
 {
     int status = element_check_size(n);
-    status = status ? status : tribo_check_element(dz, n, 1, FINITE);
-    status = status ? status : tribo_check_element(stiffness, n, 1, NONNEGATIVE);
-    status = status ? status : tribo_check_element(limit, n, 1, NONNEGATIVE);
-    status = status ? status : tribo_check_element(f, n, 1, FINITE);
+    status = status ? status : tribo_check_element(dz, n, FINITE);
+    status = status ? status : tribo_check_element(stiffness, n, NONNEGATIVE);
+    status = status ? status : tribo_check_element(limit, n, NONNEGATIVE);
+    status = status ? status : tribo_check_finite(NULL, "f", f, n);
     for (size_t i = 0; !status && i < n; i++) {
         /* f + limit sgn(dz) falls by exp(-stiffness |dz|/limit). */
         const double L = limit[i], to = dz[i] > 0.0 ? -L : L, from = clamp(f[i], -L, L);

@@ -2,24 +2,38 @@
 /* Checks of the parameters of elements. */
 #include "element.h"
 
-int tribo_check_element(const double *x, size_t n, size_t stride, int range)
+/* The status of a number that is out of its range. */
+static int refuse(double x, int range)
+{
+    return !isfinite(x)                    ? TRIBO_ERR_NOT_FINITE
+           : range == FINITE               ? TRIBO_ERR_RANGE
+           : x < 0.0 && range == POSITIVE  ? TRIBO_ERR_NOT_POSITIVE
+           : x < 0.0                       ? TRIBO_ERR_NEGATIVE
+           : x == 0.0 && range == POSITIVE ? TRIBO_ERR_NOT_POSITIVE
+                                           : TRIBO_ERR_RANGE;
+}
+
+/* 1 if x is in its range. No comparison raises an exception. */
+static int in_range(double x, int range)
+{
+    const double least = range == FINITE ? -ELEMENT_MOST : ELEMENT_LEAST;
+    return (isgreaterequal(x, least) & islessequal(x, ELEMENT_MOST)) | ((x == 0.0) & (range != POSITIVE));
+}
+
+int tribo_check_elements(const double *x, size_t n, size_t numbers, const int *range)
 {
     if (!x && n) {
         return TRIBO_ERR_NULL;
     }
-    for (size_t i = 0; i < n; i++) {
-        const double value = x[i * stride], size = fabs(value);
-        if (!isfinite(value)) {
-            return TRIBO_ERR_NOT_FINITE;
+    for (size_t i = 0; i < n; i++, x += numbers) {
+        int all = 1;
+        for (size_t k = 0; k < numbers; k++) {
+            all &= in_range(x[k], range[k]);
         }
-        if (range != FINITE && value < 0.0) {
-            return range == POSITIVE ? TRIBO_ERR_NOT_POSITIVE : TRIBO_ERR_NEGATIVE;
-        }
-        if (range == POSITIVE && value == 0.0) {
-            return TRIBO_ERR_NOT_POSITIVE;
-        }
-        if (size > ELEMENT_MOST || (size > 0.0 && size < ELEMENT_LEAST && range != FINITE)) {
-            return TRIBO_ERR_RANGE;
+        for (size_t k = 0; !all && k < numbers; k++) {
+            if (!in_range(x[k], range[k])) {
+                return refuse(x[k], range[k]);
+            }
         }
     }
     return TRIBO_OK;

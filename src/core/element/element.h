@@ -15,8 +15,13 @@ static inline int element_check_size(size_t n)
 #define ELEMENT_LEAST 1e-30
 #define ELEMENT_MOST 1e30
 
-/* Checks x [n] at distances of stride: POSITIVE: within [ELEMENT_LEAST, ELEMENT_MOST]; NONNEGATIVE: 0, too; FINITE: of either sign.
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_RANGE. */
-int tribo_check_element(const double *x, size_t n, size_t stride, int range);
+/* Checks x [n][numbers]; range [numbers]: POSITIVE: within [ELEMENT_LEAST, ELEMENT_MOST]; NONNEGATIVE: 0, too; FINITE: of either
+ * sign. Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_RANGE. */
+int tribo_check_elements(const double *x, size_t n, size_t numbers, const int *range);
+
+static inline int tribo_check_element(const double *x, size_t n, int range)
+{
+    return tribo_check_elements(x, n, 1, &range);
+}
 
 #endif

@@ -33,10 +33,7 @@ static double curve(const struct iwan *p, double u, double *slope)
 static int check_parameters(size_t n, const double *parameter)
 {
     static const int range[PARAMETERS] = {POSITIVE, NONNEGATIVE, FINITE, NONNEGATIVE};
-    int status = n && !parameter ? TRIBO_ERR_NULL : TRIBO_OK;
-    for (size_t k = 0; !status && n && k < PARAMETERS; k++) {
-        status = tribo_check_element(parameter + k, n, PARAMETERS, range[k]);
-    }
+    int status = tribo_check_elements(parameter, n, PARAMETERS, range);
     for (size_t i = 0; !status && i < n; i++) {
         const double chi = parameter[PARAMETERS * i + 2];
         status = chi <= -1.0 || chi > 100.0 ? TRIBO_ERR_RANGE : TRIBO_OK;
@@ -106,9 +103,9 @@ static double move(const struct iwan *p, double dx, double *state, double *slope
 int tribo_iwan_force(size_t n, size_t room, const double *dz, const double *parameter, double *state, double *f, double *df_dz)
 {
     int status = room > MOST_ROOM || n >= SIZE_MAX / (16 * (HEAD + 2 * MOST_ROOM)) ? TRIBO_ERR_SIZE : TRIBO_OK;
-    status = status ? status : tribo_check_element(dz, n, 1, FINITE);
+    status = status ? status : tribo_check_element(dz, n, FINITE);
     status = status ? status : check_parameters(n, parameter);
-    status = status ? status : tribo_check_element(state, n * (HEAD + 2 * room), 1, FINITE);
+    status = status ? status : tribo_check_finite(NULL, "state", state, n * (HEAD + 2 * room));
     status = status ? status : n && !f ? TRIBO_ERR_NULL : check_state(n, room, dz, state);
     for (size_t i = 0; !status && i < n; i++) {
         const struct iwan p = read_parameters(parameter + PARAMETERS * i);

@@ -13,35 +13,36 @@ struct lugre {
 static int check_parameters(size_t n, const double *parameter)
 {
     static const int range[PARAMETERS] = {POSITIVE, NONNEGATIVE, NONNEGATIVE, NONNEGATIVE, NONNEGATIVE, POSITIVE};
-    int status = n && !parameter ? TRIBO_ERR_NULL : TRIBO_OK;
-    for (size_t k = 0; !status && n && k < PARAMETERS; k++) {
-        status = tribo_check_element(parameter + k, n, PARAMETERS, range[k]);
-    }
-    return status;
+    return tribo_check_elements(parameter, n, PARAMETERS, range);
 }
 
-/* Moves *z by a step dt at velocity v != 0, and returns f; *df_dv: its derivative. g > 0. */
+/* 1 - exp(-x) to its own digits, x >= 0. */
+static double fallen(double x)
+{
+    return x < 0.5 ? -expm1(-x) : 1.0 - exp(-x);
+}
+
+/* Moves *z by a step dt at velocity v != 0, and returns f; *df_dv: its derivative. */
 static double slide(const struct lugre *p, double dt, double v, double *z, double *df_dv)
 {
-    const double r = lesser(fabs(v) / p->vs, 30.0), bell = exp(-r * r), sign = v > 0.0 ? 1.0 : -1.0;
-    const double g = greater(p->fs * bell - p->fc * expm1(-r * r), ELEMENT_LEAST),
-                 steep = -2.0 * sign * (p->fs - p->fc) * bell * r / p->vs;                              /* dg/dv */
+    const double sign = v > 0.0 ? 1.0 : -1.0, r = lesser(fabs(v) / p->vs, 30.0), fall = fallen(r * r);
+    const double g = greater(p->fs - (p->fs - p->fc) * fall, ELEMENT_LEAST);
+    const double steep = -2.0 * sign * (p->fs - p->fc) * (1.0 - fall) * r / p->vs;                      /* dg/dv */
     const double rate = p->s0 * fabs(v) / g, growth = p->s0 * (sign / g - r * p->vs * steep / (g * g)); /* d rate/dv */
-    const double left = exp(-rate * dt), to = sign * g / p->s0, away = to - *z;
-    const double dto = sign * steep / p->s0, speed = rate * away * left; /* speed: z' at the end */
-    *z = *z * left - to * expm1(-rate * dt);
-    *df_dv = -(p->s0 * (away * left * growth * dt - dto * expm1(-rate * dt)) +
-               p->s1 * left * (growth * away * (1.0 - rate * dt) + rate * dto) + p->s2);
-    return -(p->s0 * *z + p->s1 * speed + p->s2 * v);
+    const double way = fallen(rate * dt), left = 1.0 - way, to = sign * g / p->s0, dto = sign * steep / p->s0, away = to - *z;
+    *z += way * away;
+    *df_dv = -(p->s0 * (away * left * growth * dt + dto * way) + p->s1 * left * (growth * away * (1.0 - rate * dt) + rate * dto) +
+               p->s2);
+    return -(p->s0 * *z + p->s1 * rate * away * left + p->s2 * v);
 }
 
 int tribo_lugre_force(size_t n, double dt, const double *dz, const double *parameter, double *z, double *f, double *df_dz)
 {
     int status = element_check_size(n);
-    status = status ? status : tribo_check_element(&dt, 1, 1, POSITIVE);
-    status = status ? status : tribo_check_element(dz, n, 1, FINITE);
+    status = status ? status : tribo_check_element(&dt, 1, POSITIVE);
+    status = status ? status : tribo_check_element(dz, n, FINITE);
     status = status ? status : check_parameters(n, parameter);
-    status = status ? status : tribo_check_element(z, n, 1, FINITE);
+    status = status ? status : tribo_check_finite(NULL, "z", z, n);
     status = status ? status : n && !f ? TRIBO_ERR_NULL : TRIBO_OK;
     for (size_t i = 0; !status && i < n; i++) {
         const double *k = parameter + PARAMETERS * i, v = dz[i] / dt;
@@ -52,6 +53,8 @@ int tribo_lugre_force(size_t n, double dt, const double *dz, const double *param
             f[i] = -p.s2 * v;
             df_dv = -p.s2;
         } else {
+            const double most = greater(p.fc, p.fs) / p.s0;
+            z[i] = clamp(z[i], -most, most);
             f[i] = v == 0.0 ? -p.s0 * z[i] : slide(&p, dt, v, z + i, &df_dv);
         }
         if (df_dz) {
