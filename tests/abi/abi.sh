@@ -49,6 +49,7 @@ constants() {
 }
 
 prototypes() {
+    printf '/* SPDX-License-Identifier: BSD-3-Clause */\n'
     printf '/* Written by abi.sh: the prototypes once more. With another one in the header this does not compile. */\n'
     printf '#include "tribo/%s"\n\n' "${1##*/}"
     awk '/^TRIBO_API / { on = 1 } on; /;$/ { on = 0 }' "$1"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Written by abi.sh: the prototypes once more. With another one in the header this does not compile. */
 #include "tribo/tribo.h"
 
