@@ -31,6 +31,12 @@
 !>          NMODE, ISTAT, IH, TEXT, IERR)            series with the sliders, 0: a
 !>                                                   rigid contact; NMODE = 0: not
 !>                                                   reduced
+!>   TRBNML(NFULL, N, IRM, ICM, RM, IRC, ICC, C,     all of TRBMOD, and limits that    IH, TEXT as of TRBLIN
+!>          IRK, ICK, RK, IRJ, ICJ, RJ, CMP,         follow the motion: NRM(I) = row
+!>          NRM, RN,                                 of J that is the normal of
+!>          NMODE, ISTAT, IH, TEXT, IERR)            contact I, 0: none; RN(3,N):
+!>                                                   friction coefficient, normal
+!>                                                   stiffness, gap of contact I
 !>   TRBCLN(IH, IHNEW, IERR)                         IH                                IHNEW a copy that shares nothing, with
 !>                                                                                     loads and tables, without integrator
 !>   TRBNDF(IH, NDOF, IERR)                          IH                                NDOF
@@ -313,6 +319,21 @@ contains
     end if
     call give_structure(s, ih, ierr)
   end subroutine make_structure
+
+  !> The same, reduced to nmode modes, or, if nmode = 0, not reduced.
+  subroutine make_from_modes(model, nmode, istat, ih, text, ierr)
+    type(tribo_model), intent(in) :: model
+    integer, intent(in) :: nmode, istat
+    integer, intent(inout) :: ih
+    character(len=*), intent(inout) :: text
+    integer, intent(out) :: ierr
+
+    if (nmode == 0) then
+      call make_structure(model, ih, text, ierr)
+    else
+      call make_structure(model, ih, text, ierr, nmode, istat)
+    end if
+  end subroutine make_from_modes
 end module tribo_fixed_dynamics
 
 ! --------------------------------------------------------------------------------------------------------------------- structure
@@ -373,13 +394,32 @@ subroutine trbmod(nfull, n, irm, icm, rm, irc, icc, c, irk, ick, rk, irj, icj, r
   call create_model(model, 'NFULL', nfull, n, irm, icm, rm, irk, ick, rk, irj, icj, rj, text, ierr)
   call set_rows(model, 'damping', nfull, nfull, irc, icc, c, text, ierr)
   if (ierr == TRIBO_OK) call model%set_compliance(cmp(:n), ierr, text)
-  if (ierr /= TRIBO_OK) return
-  if (nmode == 0) then
-    call make_structure(model, ih, text, ierr)
-  else
-    call make_structure(model, ih, text, ierr, nmode, istat)
-  end if
+  if (ierr == TRIBO_OK) call make_from_modes(model, nmode, istat, ih, text, ierr)
 end subroutine trbmod
+
+subroutine trbnml(nfull, n, irm, icm, rm, irc, icc, c, irk, ick, rk, irj, icj, rj, cmp, nrm, rn, nmode, istat, ih, text, ierr)
+  use tribo_fixed_dynamics
+  implicit none
+  integer, intent(in) :: nfull, n, irm(*), icm(*), irc(*), icc(*), irk(*), ick(*), irj(*), icj(*), nrm(*), nmode, istat
+  real(dp), intent(in) :: rm(*), c(*), rk(*), rj(*), cmp(*), rn(3, *)
+  integer, intent(inout) :: ih
+  character(len=*), intent(inout) :: text
+  integer, intent(out) :: ierr
+  type(tribo_model) :: model
+  integer :: i
+
+  ierr = TRIBO_OK
+  call expect_least('NMODE', nmode, 0, text, ierr)
+  call create_model(model, 'NFULL', nfull, n, irm, icm, rm, irk, ick, rk, irj, icj, rj, text, ierr)
+  call set_rows(model, 'damping', nfull, nfull, irc, icc, c, text, ierr)
+  if (ierr == TRIBO_OK) call model%set_compliance(cmp(:n), ierr, text)
+  do i = 1, n
+    if (ierr == TRIBO_OK) then
+      if (nrm(i) /= 0) call model%set_normal(i, nrm(i), rn(1, i), rn(2, i), rn(3, i), ierr, text)
+    end if
+  end do
+  if (ierr == TRIBO_OK) call make_from_modes(model, nmode, istat, ih, text, ierr)
+end subroutine trbnml
 
 subroutine trbred(nfull, n, irm, icm, rm, irk, ick, rk, irj, icj, rj, nmode, istat, ih, text, ierr)
   use tribo_fixed_dynamics

@@ -394,6 +394,14 @@ module trb_interfaces
       integer, intent(out) :: ierr
     end subroutine trbmod
 
+    subroutine trbnml(nfull, n, irm, icm, rm, irc, icc, c, irk, ick, rk, irj, icj, rj, cmp, nrm, rn, nmode, istat, ih, text, ierr)
+      integer, intent(in) :: nfull, n, irm(*), icm(*), irc(*), icc(*), irk(*), ick(*), irj(*), icj(*), nrm(*), nmode, istat
+      double precision, intent(in) :: rm(*), c(*), rk(*), rj(*), cmp(*), rn(3, *)
+      integer, intent(inout) :: ih
+      character(len=*), intent(inout) :: text
+      integer, intent(out) :: ierr
+    end subroutine trbnml
+
     subroutine trbred(nfull, n, irm, icm, rm, irk, ick, rk, irj, icj, rj, nmode, istat, ih, text, ierr)
       integer, intent(in) :: nfull, n, irm(*), icm(*), irk(*), ick(*), irj(*), icj(*), nmode, istat
       double precision, intent(in) :: rm(*), rk(*), rj(*)

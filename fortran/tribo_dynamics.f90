@@ -50,6 +50,7 @@ module tribo_systems
   !>     call model%set_stiffness(k)
   !>     call model%set_direction(j)       ! (ncontact,ndof) or type(tribo_sparse)
   !>     call model%set_compliance(c)      ! (ncontact) 1/stiffness of the springs before sliders; 0: rigid
+  !>     call model%set_normal(1, 2, mu, stiffness, gap)  ! limit of contact 1: mu stiffness max(0, J_2 q - gap)
   !>     call system%create(model)         ! or system%reduce(model, nmode)
   type, extends(tribo_object), public :: tribo_model
   contains
@@ -63,6 +64,7 @@ module tribo_systems
     generic :: set_stiffness => stiffness_dense, stiffness_diagonal, stiffness_sparse
     generic :: set_direction => direction_dense, direction_sparse
     procedure :: set_compliance
+    procedure :: set_normal
     procedure :: message => model_message
     procedure, private :: assign_model
     generic :: assignment(=) => assign_model
@@ -441,6 +443,24 @@ contains
     if (w%status == TRIBO_OK) w%status = c_model_set_compliance(w%object, c)
     call finish_model(w, stat, errmsg)
   end subroutine set_compliance
+
+  !> The limit of a contact follows the motion: mu N, N = stiffness max(0, J_n q - gap), n = normal, another row of J. It gets -N.
+  subroutine set_normal(this, contact, normal, mu, stiffness, gap, stat, errmsg)
+    class(tribo_model), intent(inout) :: this
+    integer, intent(in) :: contact, normal
+    real(dp), intent(in) :: mu, stiffness, gap
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_model(this, w)
+    if (w%status == TRIBO_OK) call expect_index(w, 'contact', 1, contact, w%n)
+    if (w%status == TRIBO_OK) call expect_index(w, 'normal', 1, normal, w%n)
+    if (w%status == TRIBO_OK) then
+      w%status = c_model_set_normal(w%object, int(contact - 1, c_size_t), int(normal - 1, c_size_t), mu, stiffness, gap)
+    end if
+    call finish_model(w, stat, errmsg)
+  end subroutine set_normal
 
   !> The text of the last error on the model, also of a system that was not made; empty before any.
   function model_message(this) result(text)

@@ -167,6 +167,18 @@ module tribo_dynamics_c
       integer(c_int) :: answer
     end function c_model_set_compliance
 
+    function c_model_set_normal(model, contact, normal, mu, stiffness, gap) result(answer) &
+      bind(c,name='tribo_model_set_normal')
+      import
+      type(c_ptr), value :: model
+      integer(c_size_t), value :: contact
+      integer(c_size_t), value :: normal
+      real(c_double), value :: mu
+      real(c_double), value :: stiffness
+      real(c_double), value :: gap
+      integer(c_int) :: answer
+    end function c_model_set_normal
+
     function c_model_ndof(model) result(answer) bind(c,name='tribo_model_ndof')
       import
       type(c_ptr), value :: model

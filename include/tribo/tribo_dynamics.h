@@ -61,6 +61,20 @@ TRIBO_API int tribo_model_set_direction_csr(tribo_model *model, const size_t *ro
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_RANGE (1/c overflows), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_model_set_compliance(tribo_model *model, const double *c);
 
+/* A contact whose limit follows the motion: the normal load is a spring that lifts off,
+ *     N = stiffness max(0, J_n q - gap),   limit of the contact = mu N,   and the bodies get -J_n' N, n = normal.
+ * contact    in   the contact; of a planar one (tribo_set_planar) its first direction
+ * normal     in   another row of J, the normal direction, positive where the bodies press on each other. Its row in forces of
+ *                 contacts is -N; it has no friction, and no compliance. Contacts may share a normal, with equal stiffness and gap
+ * mu         in   >= 0   coefficient of friction
+ * stiffness  in   >= 0, force/displacement   normal stiffness of the contact
+ * gap        in   displacement; < 0: a preload
+ * Another call for the contact replaces its normal. In tribo_system_context the limits of contact and normal stay 0. Open contacts
+ * have no force; the slider of an elastic one goes along. At touch-down the slider begins where the body is.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_RANGE (no such row; normal of itself; a row that is
+ * both; stiffness or gap of a shared normal differ), TRIBO_ERR_MEMORY. Yang and Menq (1998). */
+TRIBO_API int tribo_model_set_normal(tribo_model *model, size_t contact, size_t normal, double mu, double stiffness, double gap);
+
 /* Sizes; 0 for NULL. */
 TRIBO_API size_t tribo_model_ndof(const tribo_model *model);
 TRIBO_API size_t tribo_model_ncontact(const tribo_model *model);
@@ -174,20 +188,21 @@ TRIBO_API int tribo_system_clear_base_motion(tribo_system *sys);
  * omega         in   angular frequency, rad/time
  * cosine, sine  [ncontact] in, each or NULL; forces
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (limits beyond 1e300), TRIBO_ERR_UNSUPPORTED (an elastic
- * contact), TRIBO_ERR_MEMORY. */
+ * contact, or one of tribo_model_set_normal), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine, const double *sine);
 
 /* Sets the limits by a table, which replaces the limits of tribo_system_context; linear between the knots and constant outside.
  * time   [knots] in   ascending
  * limit  [knots][ncontact] in   >= 0; 0: lifted off
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE (no knots), TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_RANGE (time does not
- * ascend), TRIBO_ERR_UNSUPPORTED (an elastic contact), TRIBO_ERR_MEMORY. */
+ * ascend), TRIBO_ERR_UNSUPPORTED (an elastic contact, or one of tribo_model_set_normal), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit);
 
 /* Removes the table and all harmonics of the limits; the limits of tribo_system_context apply again. Returns TRIBO_ERR_NULL. */
 TRIBO_API int tribo_system_clear_limits(tribo_system *sys);
 
-/* limit [ncontact] out: the limits at time t, with table and harmonics. Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE. */
+/* limit [ncontact] out: the limits at time t, with table and harmonics. Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE,
+ * TRIBO_ERR_UNSUPPORTED (limits that follow the motion). */
 TRIBO_API int tribo_system_get_limit(tribo_system *sys, double t, double *limit);
 
 /* Reduced systems: damping ratio of every mode, C = diag(2 zeta omega_k). zeta >= 0.
@@ -259,8 +274,8 @@ TRIBO_API int tribo_system_accept(tribo_system *sys, double t, const double *y);
  * dydt   [dimension] out
  * dfdy   [dimension][dimension] out   derivative of dydt[i] by y[j] in row i
  * dfdt   [dimension] out   partial derivative by t, or NULL
- * Return TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_UNSUPPORTED (no mass, or no accelerations), TRIBO_ERR_MEMORY
- * (Jacobian), and what tribo_balance returns. */
+ * Return TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_UNSUPPORTED (no mass, or no accelerations; Jacobian: limits that
+ * follow the motion), TRIBO_ERR_MEMORY (Jacobian), and what tribo_balance returns. */
 TRIBO_API int tribo_system_derivative(tribo_system *sys, double t, const double *y, double *dydt);
 TRIBO_API int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *dfdy, double *dfdt);
 

@@ -12,6 +12,7 @@ C     call (legacy_structures.c), then the errors.
       CALL SPARSE(.TRUE.)
       CALL SCEND
       CALL ELASTC
+      CALL NORMAL
       CALL CREATE
       CALL NODRIV
       CALL WRONG
@@ -290,6 +291,40 @@ C     spring of 1: the amplitude is 3.38660810; also of the only mode.
       CALL TRBMOD(-1, 1, IRM, ICM, ONE, IRM, ICM, C, IRM, ICM, ONE,
      1            IRM, ICM, ONE, CMP, 0, 0, IH, TEXT, IERR)
       CALL SAYS('NFULL', IERR, 6, TEXT, 'NFULL = -1 is less than 0')
+      CALL EXPECT('no handle', IH .EQ. -777)
+      END
+C
+C     An elastic contact that lifts off, as in models.f90.
+      SUBROUTINE NORMAL
+      INTEGER IH, IERR, IR(3), IC(2), NRM(2)
+      DOUBLE PRECISION ONE(2), C(2), RK(2), CMP(2), RN(3, 2)
+      DOUBLE PRECISION PC(2), PS(2), Y(6)
+      CHARACTER*80 TEXT
+      DATA IR /1, 2, 3/, IC /1, 2/, ONE /2*1D0/, RK /12D0, 21D0/
+      DATA CMP /0.2D0, 0D0/, NRM /2, 0/, PS /2*0D0/, Y /6*0D0/
+      DATA RN /0.85D0, 21D0, 0D0, 3*0D0/
+      C(1) = 0.1D0*SQRT(12D0)
+      C(2) = 2D0
+      CALL TRBNML(2, 2, IR, IC, ONE, IR, IC, C, IR, IC, RK, IR, IC, ONE,
+     1            CMP, NRM, RN, 0, 0, IH, TEXT, IERR)
+      CALL EXPECT('TRBNML', IERR .EQ. 0)
+      PC(1) = 0D0
+      PC(2) = 100D0
+      CALL TRBLOD(IH, 2, 0D0, PC, PS, IERR)
+      PC(1) = 60D0
+      PC(2) = 60D0
+      CALL TRBLOD(IH, 2, 5D0, PC, PS, IERR)
+      CALL TRBDRV(IH, 'event', 0D0, 0D0, 0D0, IERR)
+      CALL TRBPER(IH, 2, 0D0, 2D0*ACOS(-1D0)/5D0, Y, IERR)
+      CALL EXPECT('TRBPER', IERR .EQ. 0)
+      CALL EXPECT('steady', ABS(Y(1) + 5.44592597D0) .LT. 1D-8)
+      CALL TRBDEL(IH, IERR)
+      IH = -777
+      NRM(1) = 1
+      CALL TRBNML(2, 2, IR, IC, ONE, IR, IC, C, IR, IC, RK, IR, IC, ONE,
+     1            CMP, NRM, RN, 0, 0, IH, TEXT, IERR)
+      CALL SAYS('NRM', IERR, 5, TEXT,
+     1          'contact 1 is to be its own normal')
       CALL EXPECT('no handle', IH .EQ. -777)
       END
 C

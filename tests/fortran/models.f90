@@ -15,6 +15,7 @@ program models
   call forms()
   call errors()
   call compliance()
+  call normal()
   call report()
 
 contains
@@ -122,6 +123,14 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_NOT_SYMMETRIC, 'stiffness(1,2) = 7, but stiffness(2,1) = -1')
     call model%set_compliance([0.0_dp, -1.0_dp], stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NEGATIVE, 'compliance(2) = -1 is negative')
+    call model%set_normal(1, 3, 0.5_dp, 1.0_dp, 0.0_dp, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_RANGE, 'normal(1) = 3 is not in 1 to 2')
+    call model%set_normal(0, 2, 0.5_dp, 1.0_dp, 0.0_dp, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_RANGE, 'contact(1) = 0 is not in 1 to 2')
+    call model%set_normal(2, 2, 0.5_dp, 1.0_dp, 0.0_dp, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_RANGE, 'contact 2 is to be its own normal')
+    call model%set_normal(1, 2, -0.5_dp, 1.0_dp, 0.0_dp, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NEGATIVE, 'mu = -0.5 of contact 1 is negative')
     call model%set_stiffness(k)
     call s%reduce(model, 4, stat=stat, errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_SIZE, 'nmode = 4 is more than the 3 degrees of freedom')
@@ -155,4 +164,29 @@ contains
     call d%period_extremes([1.0_dp, 0.0_dp], least, most)
     call require(abs(most - 3.38660810_dp) < 1e-7_dp, 'compliance: the amplitude')
   end subroutine compliance
+
+  !> An elastic contact that lifts off: x'' + 0.1 sqrt(12) x' + 12 x + f = 60 cos 5 t, y'' + 2 y' + 21 y + N = 100 + 60 cos 5 t,
+  !> stiffness 5, mu = 0.85, N = 21 max(y, 0): the steady motion at t = 0 by two other codes.
+  subroutine normal()
+    type(tribo_model) :: model
+    type(tribo_system) :: s
+    type(tribo_driver) :: d
+    real(dp) :: y(6)
+
+    call model%create(2, 2)
+    call model%set_mass([1.0_dp, 1.0_dp])
+    call model%set_damping([0.1_dp*sqrt(12.0_dp), 2.0_dp])
+    call model%set_stiffness([12.0_dp, 21.0_dp])
+    call model%set_direction(reshape([1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [2, 2]))
+    call model%set_compliance([0.2_dp, 0.0_dp])
+    call model%set_normal(1, 2, 0.85_dp, 21.0_dp, 0.0_dp)
+    call s%create(model)
+    call s%add_load(0.0_dp, cosine=[0.0_dp, 100.0_dp])
+    call s%add_load(5.0_dp, cosine=[60.0_dp, 60.0_dp])
+    call d%create(s, 'event')
+    y = 0
+    call d%find_periodic(0.0_dp, 2*acos(-1.0_dp)/5, y)
+    call require(abs(y(1) + 5.44592597_dp) < 1e-8_dp, 'normal: x')
+    call require(abs(y(3) - 7.32000819_dp) < 1e-8_dp, 'normal: velocity')
+  end subroutine normal
 end program models

@@ -3,8 +3,9 @@
  * problem min 1/2 f''G f' + v'f':
  *
  *     inside the limit: the contact rests, and v + G f' = 0
- *     at the limit: it slides if v points against the force, and rests if v takes the force back inside
+ *     at the limit: |f|' <= limit'; it slides if v + G f' points against the force, and rests if v takes the force back inside
  *     at the limit, without velocity: it rests; where v begins to point against the force, the force leaves the limit: an event
+ *     at touch-down, f = limit = 0: |f'| <= limit'
  */
 #include "stick_slip.h"
 
@@ -15,6 +16,7 @@ void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const dou
     tribo_compliance_get(sys, y, m->state.spring);
     tribo_compliance_noise(sys, y, m->noise.spring);
     for (size_t i = 0; i < sys->ncontact; i++) {
+        m->noise.spring[i] += m->constant.elastic[i] ? TRIBO_LIMIT_NOISE * m->constant.swing[i] : 0.0;
         m->noise.spring[i] *= TRIBO_SPRING_ALLOWED * m->noise.factor;
     }
 }
@@ -50,12 +52,16 @@ void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *
         side[i] = (signed char)(at_limit && !open && !stopped ? against : 0);
         s->spring[i] = open ? 0.0 : stopped || at_limit ? -against * s->limit[i] : s->spring[i];
         v[i] = elastic[i] ? tribo_stick_slip_find_velocity(m, sys, i, y) : 0.0;
-        g->lo[i] = open || side[i] > 0 ? 0.0 : -TRIBO_UNBOUNDED;
-        g->hi[i] = open || side[i] < 0 ? 0.0 : TRIBO_UNBOUNDED;
+        const int both = side[i] && s->limit[i] == 0.0; /* touch-down */
+        g->lo[i] = open ? 0.0 : both || side[i] > 0 ? -s->limit_rate[i] : -TRIBO_UNBOUNDED;
+        g->hi[i] = open ? 0.0 : both || side[i] < 0 ? s->limit_rate[i] : TRIBO_UNBOUNDED;
     }
     tribo_compliance_share(g, v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (elastic[i] && s->slip[i] != TRIBO_SLIP_OPEN) {
+            if (side[i] && s->limit[i] == 0.0) {
+                side[i] = (signed char)(v[i] > 0.0 ? TRIBO_SLIP_FORTH : TRIBO_SLIP_BACK);
+            }
             const int slides = side[i] * v[i] > m->noise.factor * m->noise.velocity[i];
             tribo_stick_slip_set(m, i, (signed char)(slides ? side[i] : TRIBO_SLIP_STUCK));
         }
@@ -65,8 +71,11 @@ void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *
 
 void tribo_elastic_move(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
+    double *slide = m->work.f;
     for (size_t i = 0; sys->compliance.count && i < sys->ncontact; i++) {
-        m->state.glide[i] = m->constant.elastic[i] ? tribo_stick_slip_velocity(m, sys, i, y) : 0.0;
+        const int elastic = m->constant.elastic[i];
+        m->state.glide[i] = elastic ? tribo_stick_slip_velocity(m, sys, i, y) : 0.0;
+        slide[i] = elastic && tribo_slides(m->state.slip[i]) ? -m->state.slip[i] * m->state.limit_rate[i] : 0.0;
     }
-    tribo_compliance_rates(sys, m->state.slip, 1, m->state.glide, m->state.spring_rate);
+    tribo_compliance_rates(sys, m->state.slip, sys->normals.count ? slide : NULL, 1, m->state.glide, m->state.spring_rate);
 }

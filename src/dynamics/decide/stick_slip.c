@@ -47,7 +47,7 @@ static void lay_out_arrays(struct stick_slip *m, struct layout *l, size_t contac
                                    &r->excess};
     double **const by_dof[] = {&r->size, &c->load_size, &w->acceleration, &w->free, &w->rate};
     signed char **const sign[] = {&s->slip, &s->tied, &s->before, &s->loose, &s->slid, &w->pulled, &s->key};
-    unsigned char **const mark[] = {&s->holds, &s->rested, &c->elastic, &w->last};
+    unsigned char **const mark[] = {&s->holds, &s->rested, &c->elastic, &w->last, &s->pressed};
     c->memory = tribo_layout_array(l, 0, 1);
     for (size_t k = 0; k < sizeof by_contact / sizeof *by_contact; k++) {
         *by_contact[k] = tribo_layout_array(l, contacts, sizeof **by_contact[k]);
@@ -215,6 +215,10 @@ static double find_size(struct stick_slip *m, const tribo_system *sys, const dou
         const size_t all[] = {0, w->drives == DRIVES_LOAD && w->knots ? w->count : 0}, at = tribo_rows_find(all, w->index, 0, d);
         size += at < w->count ? fabs(w->cosine[at] * w->cos_t) : 0.0;
     }
+    for (size_t k = 0; k < sys->normals.count; k++) {
+        const struct normal *n = &sys->normals.normal[k];
+        size += fabs(tribo_matrix_get(&sys->response, d, n->row)) * n->stiffness * n->size;
+    }
     size += sys->damping.rows ? tribo_matrix_row_size(&sys->damping, d, y + sys->ndof) : 0.0;
     size += sys->compliance.count ? tribo_matrix_row_size(&sys->compliance.pull, d, m->state.spring) : 0.0;
     return m->noise.size[d] = size;
@@ -310,12 +314,14 @@ int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, doubl
 {
     const struct slip_state *s = &m->state;
     const size_t c = sys->ncontact;
+    tribo_stick_slip_press(m, sys);
     tribo_system_free_acceleration(sys, t, y, acceleration);
     find_base(m, sys);
     if (sys->compliance.count) {
         tribo_elastic_find(m, sys, y);
     }
     if (tribo_system_limits_vary(sys)) {
+        tribo_normals_move(sys, y, y + sys->ndof);
         tribo_system_limits(sys, s->limit, s->limit_rate);
         tribo_limits_take(m);
     }
@@ -346,18 +352,68 @@ static signed char slip_of(struct stick_slip *m, const tribo_system *sys, size_t
     return (signed char)(fabs(v) <= noise ? TRIBO_SLIP_STUCK : v > 0.0 ? TRIBO_SLIP_FORTH : TRIBO_SLIP_BACK);
 }
 
+void tribo_stick_slip_press(const struct stick_slip *m, tribo_system *sys)
+{
+    for (size_t k = 0; k < sys->normals.count; k++) {
+        sys->normals.normal[k].pressed = m->state.pressed[k];
+    }
+}
+
+/* Sets which normals are pressed just after the set time: by the lowest derivative of the depth that is more than rounding. The
+ * acceleration has the forces of contacts of the last decision. Sets swing = size of the terms of limits that follow. */
+static void press(struct stick_slip *m, tribo_system *sys, const double *y)
+{
+    const struct matrix *j = &sys->direction;
+    const double factor = m->noise.factor;
+    tribo_stick_slip_press(m, sys);
+    tribo_normals_move(sys, y, y + sys->ndof);
+    for (size_t k = 0; k < sys->normals.count; k++) {
+        struct normal *n = &sys->normals.normal[k];
+        const int at_zero = n->row == m->state.reached || fabs(n->depth) <= TRIBO_LIMIT_NOISE * factor * n->size;
+        const double still = TRIBO_VELOCITY_NOISE * factor * tribo_matrix_row_size(j, n->row, y + sys->ndof);
+        double order = at_zero ? n->speed : n->depth, rounding = at_zero ? still : 0.0;
+        n->depth = at_zero ? 0.0 : n->depth;
+        if (fabs(order) <= rounding) {
+            tribo_system_free_acceleration(sys, sys->loads.time, y, m->work.free);
+            rounding = NOISE * factor * tribo_matrix_row_size(j, n->row, m->work.free);
+            tribo_matrix_multiply_add(&sys->response, 1.0, m->state.force, m->work.free);
+            order = tribo_matrix_row_dot(j, n->row, m->work.free);
+        }
+        n->pressed = fabs(order) > rounding ? order > 0.0 : n->pressed;
+        m->state.pressed[k] = (unsigned char)n->pressed;
+        m->constant.swing[n->row] = greater(n->stiffness * n->size, DBL_MIN);
+    }
+    for (size_t k = 0; k < sys->normals.followers; k++) {
+        const struct follower *f = &sys->normals.follower[k];
+        const double swing = f->mu * m->constant.swing[sys->normals.normal[f->normal].row];
+        m->constant.swing[f->contact] = m->constant.swing[f->second] = greater(swing, DBL_MIN);
+    }
+}
+
+/* Returns 1 if contact i has a limit > 0 just after the set time. */
+static int presses(const struct stick_slip *m, const tribo_system *sys, size_t i)
+{
+    const struct follower *f = tribo_normals_follower(sys, i);
+    const struct normal *n = f ? &sys->normals.normal[f->normal] : NULL;
+    return n                            ? n->pressed && f->mu * n->stiffness > 0.0
+           : tribo_normals_at(sys, i)   ? 0
+           : m->constant.swing[i] > 0.0 ? tribo_system_presses(sys, i, m->noise.factor)
+                                        : m->state.limit[i] != 0.0 || m->state.limit_rate[i] != 0.0;
+}
+
 /* Updates limits, and opens and closes contacts by them. */
-static void update_limits(struct stick_slip *m, const tribo_system *sys, const double *y)
+static void update_limits(struct stick_slip *m, tribo_system *sys, const double *y)
 {
     struct slip_state *s = &m->state;
     if (!tribo_system_limits_vary(sys)) {
         return;
     }
+    if (sys->normals.count) {
+        press(m, sys, y);
+    }
     tribo_system_limits(sys, s->limit, s->limit_rate);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const int presses = m->constant.swing[i] > 0.0 ? tribo_system_presses(sys, i, m->noise.factor)
-                                                       : s->limit[i] != 0.0 || s->limit_rate[i] != 0.0;
-        if (!presses) {
+        if (!presses(m, sys, i)) {
             s->limit[i] = s->limit_rate[i] = 0.0;
             tribo_stick_slip_set(m, i, TRIBO_SLIP_OPEN);
         } else if (s->slip[i] == TRIBO_SLIP_OPEN) {
@@ -454,6 +510,18 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     struct slip_state *s = &m->state;
     const size_t c = sys->ncontact;
     tribo_system_set_time(sys, t);
+    m->noise.factor = 1.0;
+    s->reached = c;
+    for (size_t i = 0; i < c; i++) {
+        k->swing[i] = tribo_system_swing(sys, i);
+    }
+    if (!continues) {
+        memset(s->pressed, 0, sys->normals.count);
+        memset(s->force, 0, c * sizeof *s->force);
+    }
+    if (sys->normals.count) {
+        press(m, sys, y);
+    }
     tribo_system_limits(sys, s->limit, s->limit_rate);
     tribo_limits_start(m, sys);
     tribo_limits_take(m);
@@ -461,12 +529,7 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     find_base(m, sys);
     find_scales(m, sys);
     memset(m->noise.velocity_scale, 0, c * sizeof *m->noise.velocity_scale);
-    m->noise.factor = 1.0;
-    for (size_t i = 0; i < c; i++) {
-        k->swing[i] = tribo_system_swing(sys, i);
-    }
     if (!continues) {
-        memset(s->force, 0, c * sizeof *s->force);
         forget_gains(m);
         for (size_t i = 0; i < c; i++) {
             const signed char slip = slip_of(m, sys, i, y);

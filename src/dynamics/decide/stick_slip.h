@@ -54,18 +54,19 @@ struct slip_state {
     int snaps_differ;      /* 1: H changed since snap was listed for it */
     struct snap *snap;     /* [snaps] corrections that make J x = base exact: of all contacts if sys->snaps.in_order, else of H */
     size_t snaps;
-    int simple;          /* 1: snap has a correction for every contact of H */
-    signed char *tied;   /* [ncontact] at rest and at the limit: 1: stays there; 2: goes back inside */
-    size_t reached;      /* the contact whose force just met its limit, by the event; ncontact if none */
-    double *limit;       /* [ncontact] limit while sliding */
-    double *limit_rate;  /* [ncontact] its rate */
-    double *stick;       /* [ncontact] limit at rest */
-    double *stick_rate;  /* [ncontact] its rate */
-    double *force;       /* [ncontact] friction force f */
-    double *spring;      /* [ncontact] force of an elastic contact by the state */
-    double *spring_rate; /* [ncontact] its rate */
-    double *glide;       /* [ncontact] velocity of an elastic contact that slides */
-    double *base;        /* [ncontact] b(t) */
+    int simple;             /* 1: snap has a correction for every contact of H */
+    signed char *tied;      /* [ncontact] at rest and at the limit: 1: stays there; 2: goes back inside */
+    size_t reached;         /* the contact whose force just met its limit, by the event; ncontact if none */
+    double *limit;          /* [ncontact] limit while sliding */
+    double *limit_rate;     /* [ncontact] its rate */
+    double *stick;          /* [ncontact] limit at rest */
+    double *stick_rate;     /* [ncontact] its rate */
+    double *force;          /* [ncontact] friction force f */
+    double *spring;         /* [ncontact] force of an elastic contact by the state */
+    double *spring_rate;    /* [ncontact] its rate */
+    double *glide;          /* [ncontact] velocity of an elastic contact that slides */
+    double *base;           /* [ncontact] b(t) */
+    unsigned char *pressed; /* [normals] 1: pressed by the last decision */
 };
 
 /* Bounds of rounding. */
@@ -163,6 +164,10 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
 /* Finds q'' [ndof] and all forces [ncontact] at (t, y) for the slip of the last decision. Returns a status. */
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration,
                                   double *force);
+
+/* Sets the normals that are pressed to those of the last decision: what evaluates the system in between, as an observer may, sets
+ * them by its own states. */
+void tribo_stick_slip_press(const struct stick_slip *m, tribo_system *sys);
 
 /* Redundant forces start from those found last; this makes them start from zero. */
 void tribo_stick_slip_forget_shares(struct stick_slip *m);

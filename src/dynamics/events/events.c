@@ -133,6 +133,20 @@ static int show_between(struct events *e, tribo_driver *drv, double t, const dou
     return status;
 }
 
+/* The slip of contact i for the observer: a contact that presses without friction, mu = 0, is not open. */
+static signed char shown_slip(const struct stick_slip *m, size_t i)
+{
+    const struct follower *f = m->state.slip[i] == TRIBO_SLIP_OPEN ? tribo_normals_follower(m->constant.sys, i) : NULL;
+    return f && m->state.pressed[f->normal] ? TRIBO_SLIP_STUCK : m->state.slip[i];
+}
+
+static void set_shown(struct events *e)
+{
+    for (size_t i = 0; i < e->stick_slip.constant.contacts; i++) {
+        e->shown[i] = shown_slip(&e->stick_slip, i);
+    }
+}
+
 /* Shows the observer each contact whose slip differs from shown[], in ascending order, until it answers anything but 0; the
  * next advance shows the others if it continues. Sets *some = 1 if a contact is shown. Returns a status. */
 static int show_changes(struct events *e, tribo_driver *drv, double t, const double *y, int *some)
@@ -140,7 +154,7 @@ static int show_changes(struct events *e, tribo_driver *drv, double t, const dou
     const struct stick_slip *m = &e->stick_slip;
     int status = TRIBO_OK;
     for (size_t i = 0; i < m->constant.contacts && !status; i++) {
-        const signed char from = e->shown[i], to = m->state.slip[i];
+        const signed char from = e->shown[i], to = shown_slip(m, i);
         const int second = m->plane && m->plane->in_plane[i] == 2;
         e->shown[i] = to;
         if (!second && from != to) {
@@ -175,7 +189,7 @@ static int decide(struct events *e, tribo_system *sys, double t, double *y)
 static int is_brief(const struct events *e, const tribo_system *sys, double reach)
 {
     const struct guard *met = e->search.at_once ? e->met : NULL;
-    return met && !e->stick_slip.plane && !e->stick_slip.limits.falls && !sys->compliance.count &&
+    return met && !e->stick_slip.plane && !e->stick_slip.limits.falls && !sys->compliance.count && !sys->normals.count &&
            e->when * fabs(met->left.e) <= STEADY * fabs(met->left.d) && (!sys->loads.tables || e->when <= BRIEF * reach) &&
            e->when * tribo_system_fastest(sys) <= BRIEF;
 }
@@ -312,7 +326,7 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
                            t1);
     }
     if (!e->watched) {
-        memcpy(e->shown, m->state.slip, contacts);
+        set_shown(e);
     }
     e->watched = drv->seen != NULL;
     int status = tribo_stick_slip_start(m, drv->sys, *t, y, continues), some;
@@ -329,7 +343,7 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
         e->stuck = 0.0;
         refill_credit(e, *t);
         memset(e->lasted, 0, SLIPS * contacts * sizeof *e->lasted);
-        memcpy(e->shown, m->state.slip, contacts);
+        set_shown(e);
     } else if (!status && drv->seen) {
         tribo_driver_keep(drv, *t, y);
         status = show_changes(e, drv, *t, y, &some);

@@ -81,7 +81,8 @@ struct watch {
 void tribo_events_guard_contact(struct events *e, size_t i, const struct watch *w);
 
 /* Adds the guard of the limit of contact i, if it swings or the contact keeps its force: that the limit does not fall to 0,
- * or, of an open contact, does not rise above, or, of one that keeps its force, does not fall to that. */
+ * or, of an open contact, does not rise above, or, of one that keeps its force, does not fall to that. For contacts whose limits
+ * follow the motion the normal has the first two: its limit is the normal load, < 0 where it is open. */
 void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *w);
 
 /* Takes the size of velocities, and excess and backslip of the driver, from the guards of the phase that ended. */

@@ -50,14 +50,16 @@ void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *w)
     const struct stick_slip *m = &e->stick_slip;
     const int keeps = m->state.slip[i] == TRIBO_SLIP_STUCK && tribo_stick_slip_follows(m, i) == 0.0;
     const double ratio = m->limits.ratio[i], swing = m->constant.swing[i];
-    if (m->state.holds[i] || !(keeps ? w->varies : swing > 0.0)) {
+    const struct normal *normal = tribo_normals_at(m->constant.sys, i);
+    if (m->state.holds[i] || !(keeps ? w->varies : swing > 0.0) || (!keeps && tribo_normals_follower(m->constant.sys, i))) {
         return;
     }
     if (keeps) {
         append(e, i, HOLDS, 0.0, ratio, ratio * w->constant + (margin_of(m, i) - fabs(m->state.force[i])), m->noise.allowance[i],
                w);
     } else {
-        const double side = m->state.slip[i] == TRIBO_SLIP_OPEN ? -1.0 : 1.0;
+        const int open = normal ? !normal->pressed : m->state.slip[i] == TRIBO_SLIP_OPEN;
+        const double side = open ? -1.0 : 1.0;
         append(e, i, HOLDS, 0.0, side, side * w->constant, 2.0 * TRIBO_LIMIT_NOISE * m->noise.factor * swing, w);
     }
 }

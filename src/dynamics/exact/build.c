@@ -294,7 +294,7 @@ void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y,
         on[i] = fabs(on[i] - base[i]) > NO_MOTION * size ? on[i] - base[i] : 0.0;
     }
     if (springs) {
-        tribo_compliance_rates(sys, b->slip, columns, on, rate);
+        tribo_compliance_rates(sys, b->slip, NULL, columns, on, rate);
     }
     for (size_t i = 0; i < c; i++) {
         const int rests = h->key[i] == 2 || (h->key[i] == 1 && !base), gives = tribo_is_compliant(&sys->compliance, i);

@@ -241,6 +241,13 @@ static int check_system(const tribo_system *sys)
         return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
                            "%s follow a table, and method exact takes harmonic ones only: take event or auto", kind[drives]);
     }
+    if (sys->normals.count) {
+        return tribo_error(
+            sys->message, TRIBO_ERR_UNSUPPORTED,
+            "the limit of contact %zu follows its normal load, for which method exact has no closed form: take event "
+            "or auto",
+            sys->normals.follower[0].contact);
+    }
     const size_t i = tribo_system_first_dropping(sys, 1);
     return i == sys->ncontact ? TRIBO_OK
                               : tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,

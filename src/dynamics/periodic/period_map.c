@@ -124,6 +124,10 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
         status = tribo_driver_pass(m->drv, tribo_stick_slip_hold(contacts, m->sys, contacts->state.base, m->y + m->sys->ndof));
     }
     if (m->sys->compliance.count) {
+        if (m->sys->normals.count) {
+            tribo_system_set_time(m->sys, m->t);
+            tribo_normals_set(m->sys, m->y, m->y + m->sys->ndof);
+        }
         tribo_get_limit(m->sys->contacts, m->limit);
         tribo_compliance_enter(m->sys, m->limit, m->limit + m->sys->ncontact, m->y);
     }
@@ -195,9 +199,13 @@ int tribo_period_map_complete(struct period_map *m, struct point *p)
 
 /* -------------------------------------------------------------------------------------------------------------- preparation */
 
-/* Returns 1 if, half a period later, loads and bases have the opposite sign and limits are the same. */
+/* Returns 1 if, half a period later, loads and bases have the opposite sign and limits are the same. Limits that follow the motion
+ * are not. */
 static int is_odd(const tribo_system *sys, double period)
 {
+    if (sys->normals.count) {
+        return 0;
+    }
     for (size_t k = 0; k < sys->loads.harmonics; k++) {
         const struct harmonic *w = &sys->loads.harmonic[k];
         const double order = round(fabs(w->omega) * period / full_turn);

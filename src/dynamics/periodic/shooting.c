@@ -9,7 +9,10 @@
  *
  * If a contact hardly slips, r goes with the square of the distance to states where the contact rests, the border of a family
  * of solutions (a double root): Newton's steps halve each time, and ratio = 1/4. Then the step is made twice as long, and a
- * little more. */
+ * little more.
+ *
+ * Where limits follow the motion, friction may feed energy in, the map may increase distances, and r is not monotone. Then |r|
+ * measures a step, which is halved until |r| falls; if it does not, the search begins anew some periods later. */
 #include "shooting.h"
 #include "common/layout.h"
 #include "common/real.h"
@@ -32,6 +35,9 @@
 /* LEFT: |ratio| below which a shorter step is good. MOST_TRIALS: number of shorter steps tried. */
 #define LEFT 0.5
 #define MOST_TRIALS 3
+
+/* Halvings of a step where limits follow the motion. */
+#define MOST_HALVINGS 6
 
 /* DOUBLE_FROM, DOUBLE_TO: range of ratio near a double root. BEYOND: length of the step over the distance to the double root. */
 #define DOUBLE_FROM 0.15
@@ -210,6 +216,12 @@ static int pays(const struct shooting *s)
     return s->there->residual < PAYS * s->here->residual;
 }
 
+/* Returns 1 if limits follow the motion. */
+static int limits_follow(const struct shooting *s)
+{
+    return s->map.sys->normals.count > 0;
+}
+
 /* Takes Newton's step s->step, the shortest solution of (I - derivative) step = image - x; or, where no step changes the
  * residual, as on a slow belt that carries a body for many periods, extrapolates 1, 4, 16, ... spans. *part = length of the
  * step over s->step. Returns a status. */
@@ -225,12 +237,12 @@ static int newton(struct shooting *s, double *part)
     s->map.drv->newton++;
     s->before = s->here->residual;
     s->stride = s->stride > 0.0 ? lesser(4.0 * s->stride, LONGEST) : 1.0;
-    if (!status && tribo_energy_length(s->step, s->map.n) < FLAT * s->here->residual) {
+    if (!status && !limits_follow(s) && tribo_energy_length(s->step, s->map.n) < FLAT * s->here->residual) {
         find_misfit(s, s->here, s->step);
         *part = s->stride;
     } else {
         s->stride = 0.0;
-        *part = to_double ? BEYOND / (1.0 - sqrt(s->rate)) : 1.0;
+        *part = to_double && !limits_follow(s) ? BEYOND / (1.0 - sqrt(s->rate)) : 1.0;
     }
     return status ? status : try_step(s, *part);
 }
@@ -240,6 +252,13 @@ static int shorten(struct shooting *s, double high)
 {
     double low = 0.0, at_low = 1.0, at_high = s->ratio;
     int status = TRIBO_OK;
+    for (int k = 0; limits_follow(s) && !status && !pays(s) && k < MOST_HALVINGS; k++) {
+        high *= 0.5;
+        status = try_step(s, high);
+    }
+    if (limits_follow(s)) {
+        return status;
+    }
     for (int k = 0; !status && k < MOST_TRIALS; k++) {
         const double secant = low + (high - low) * at_low / (at_low - at_high), least = low > 0.0 ? sqrt(low * high) : 0.1 * high;
         const double part = at_high < 0.0 ? lesser(greater(secant, least), 0.9 * high) : 0.5 * high;
@@ -276,18 +295,21 @@ static int search(struct shooting *s)
         if (!status && !falls && !(s->stride > 0.0 && s->ratio > 0.0)) {
             status = shorten(s, part);
         }
+        if (limits_follow(s) && (status || !pays(s))) {
+            break;
+        }
         go_there(s);
     }
     return status;
 }
 
 /* Searches from the forecast, unless the guess is near it; then from the guess, and from states some periods after it: where
- * contacts hardly slip, or static limits make motions diverge, Newton's steps may fail. With static limits a stable motion may be
+ * contacts hardly slip, or static limits or limits that follow make motions diverge, Newton's steps may fail. With static limits a stable motion may be
  * not odd, although all drives are odd. Returns a status. */
 static int search_all(struct shooting *s)
 {
     static const size_t marched[] = {0, 20, 100};
-    const size_t n = s->map.n, statics = !tribo_system_is_plain(s->map.sys);
+    const size_t n = s->map.n, statics = !tribo_system_is_plain(s->map.sys), marches = statics || limits_follow(s);
     const int was_odd = s->map.odd;
     int tries = was_odd && !statics && s->map.norm.scale == 1.0, done = 0;
     int status = tries ? tribo_forecast(&s->map, s->here->x, &tries) : TRIBO_OK;
@@ -297,7 +319,7 @@ static int search_all(struct shooting *s)
         status = status == TRIBO_ERR_MEMORY ? status : TRIBO_OK;
     }
     for (int odd = was_odd; odd >= (statics ? 0 : was_odd); odd--) {
-        for (size_t k = 0; !status && !done && k < 2 + statics; k++) {
+        for (size_t k = 0; !status && !done && k < 2 + marches; k++) {
             tribo_period_map_choose(&s->map, odd);
             memcpy(s->here->x, s->guess, n * sizeof *s->guess);
             status = tribo_period_map_march(&s->map, marched[k], s->here->x);

@@ -156,6 +156,9 @@ int tribo_variation_phase(struct variation *x, double tau, double t, const doubl
 {
     struct stick_slip *m = &x->to->events->stick_slip;
     x->count = 0;
+    for (size_t k = 0; k < x->sys->normals.count; k++) {
+        x->pressed[k] = m->state.pressed[k];
+    }
     int status = x->status ? x->status : tribo_stick_slip_acceleration(m, x->sys, t, y, x->acceleration, x->force);
     tribo_stick_slip_contact_accelerations(x->sys, x->acceleration, 1, x->rate);
     tribo_elastic_move(m, x->sys, y);
@@ -298,7 +301,41 @@ static void carry_over_springs(struct variation *x)
         x->change[n + k] = m->state.spring_rate[j] - x->spring_rate[j];
         x->row[2 * n + k] = j == i && slope != 0.0 ? 1.0 / slope : 0.0;
     }
+    const struct follower *f = tribo_normals_follower(x->sys, i);
+    if (f && slope != 0.0) {
+        const struct normal *normal = &x->sys->normals.normal[f->normal];
+        tribo_matrix_add_row(&x->sys->direction, normal->row, met->side * f->mu * normal->stiffness / slope, x->row);
+    }
     x->status = x->status || !stop || slope == 0.0 ? x->status : add_jump(x->to, x->row, x->change);
+}
+
+/* Appends the jumps of f' where normals lift off or touch down, earlier by depth/speed. Of several normals each makes the jumps of
+ * its own contacts. */
+static void carry_over_normals(struct variation *x)
+{
+    const struct slip_state *now = &x->to->events->stick_slip.state;
+    const struct normals *s = &x->sys->normals;
+    const struct compliance *g = &x->sys->compliance;
+    const size_t n = x->sys->ndof, all = tribo_system_energy(x->sys);
+    size_t changes = 0;
+    for (size_t k = 0; k < s->count; k++) {
+        changes += x->pressed[k] != now->pressed[k];
+    }
+    for (size_t k = 0; g->count && k < s->count; k++) {
+        if (x->pressed[k] == now->pressed[k] || s->normal[k].speed == 0.0) {
+            continue;
+        }
+        memset(x->change, 0, (all - n) * sizeof *x->change);
+        memset(x->row, 0, all * sizeof *x->row);
+        tribo_matrix_add_row(&x->sys->direction, s->normal[k].row, 1.0 / s->normal[k].speed, x->row);
+        for (size_t l = 0; l < g->count; l++) {
+            const size_t j = g->contact[l];
+            const struct follower *f = tribo_normals_follower(x->sys, j);
+            const int own = changes == 1 || (f && f->normal == k);
+            x->change[n + l] = own ? now->spring_rate[j] - x->spring_rate[j] : 0.0;
+        }
+        x->status = x->status ? x->status : add_jump(x->to, x->row, x->change);
+    }
 }
 
 void tribo_variation_event(struct variation *x)
@@ -331,6 +368,7 @@ void tribo_variation_event(struct variation *x)
         }
     }
     carry_over_springs(x);
+    carry_over_normals(x);
     x->status = x->status || x->to->events->motion->keep ? x->status : catch_up(x);
 }
 
@@ -363,6 +401,7 @@ int tribo_variation_create(struct variation *x, tribo_system *sys)
         x->f = tribo_layout_array(&l, c, sizeof *x->f);
         x->change = tribo_layout_array(&l, all - n, sizeof *x->change);
         x->delay = tribo_layout_array(&l, 2 * all, sizeof *x->delay);
+        x->pressed = tribo_layout_array(&l, c, 1);
         x->contact = tribo_layout_array(&l, c, sizeof *x->contact);
         x->group = tribo_layout_array(&l, c, sizeof *x->group);
     } while (!l.memory && tribo_layout_zeros(&l));

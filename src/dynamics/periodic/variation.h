@@ -9,6 +9,8 @@
  * for elastic contacts, forces are continuous, and S = I; but where an elastic contact breaks away and others, coupled to it by G,
  * stop, f' jumps likewise: S = I + (f'+ - f'-) (df_i/dstate)/f_i'.
  *
+ * Where a normal lifts off or touches down, q'' is continuous, and f' of elastic contacts jumps: S = I + (f'+ - f'-) J_n/(J_n q').
+ *
  * If several quantities cross zero at one instant by coincidence, contacts are divided into groups that pass no forces to each
  * other, and each group makes the jump of its own forces. There is no derivative, because the order of the crossings matters, if
  * in a group they come apart in perturbed motions and a contact slides afterwards, or if the jump of one group changes g' of
@@ -59,6 +61,7 @@ struct variation {
     double *force;             /* [ncontact] friction forces */
     double *rate;              /* [ncontact] v' */
     double *spring_rate;       /* [ncontact] f' of elastic contacts */
+    unsigned char *pressed;    /* [normals] 1: pressed in the phase */
 
     /* crossings, at most one a contact: of static limits, found before the decision, then of velocities */
     size_t count;

@@ -96,8 +96,7 @@ static int set_modes(const struct reduced *r, size_t given, tribo_system *sys)
     const size_t soft = r->residual ? sys->compliance.count : 0;
     double *unit = calloc(tribo_system_dimension(sys) + tribo_system_size(sys), sizeof *unit);
     double *state = unit + tribo_system_dimension(sys);
-    sys->given = given;
-    sys->reduced = (struct reduction){malloc(given * n * sizeof(double)), r->truncation};
+    sys->reduced = (struct reduction){malloc(given * n * sizeof(double)), r->truncation, given};
     for (size_t k = 0; unit && sys->reduced.modes && k < n; k++) {
         if (soft) {
             unit[k] = 1.0;
@@ -222,7 +221,7 @@ int tribo_system_expand(const tribo_system *sys, const double *reduced, double *
         return status;
     }
     const size_t n = tribo_system_ndof(sys), dofs = sys->expansion.dofs;
-    for (size_t i = 0; i < sys->given; i++) {
+    for (size_t i = 0; i < sys->reduced.given; i++) {
         double sum = 0.0;
         for (size_t j = 0; j < n; j++) {
             sum += sys->reduced.modes[i * dofs + j] * reduced[j];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Lanczos' method for the highest eigenvalue, in the metric of the mass matrix, in which AK is symmetric. Contacts at rest can
- * only lower the eigenvalue. */
+ * only lower the eigenvalue; normals count as pressed. */
 #include "spectrum.h"
 #include "lanczos.h"
 #include "common/real.h"
@@ -48,6 +48,9 @@ static int iterate(struct highest *l, double *value)
     advance(l);
     for (size_t k = 1, check = 8; !status && k <= most; k++) {
         tribo_matrix_multiply_add(&l->sys->stiffness, l->stiffness, l->v, l->next);
+        if (l->sys->normals.count) {
+            tribo_normals_push(l->sys, 1, 0, -l->stiffness, l->v, l->next);
+        }
         if (l->damping != 0.0) {
             tribo_matrix_multiply_add(&l->sys->damping, l->damping, l->v, l->next);
         }
@@ -80,7 +83,8 @@ static int iterate(struct highest *l, double *value)
 int tribo_system_highest(const tribo_system *sys, double stiffness, double damping, double *value)
 {
     const size_t n = sys->ndof;
-    const double bound = stiffness * tribo_matrix_row_sum(&sys->stiffness) + damping * tribo_matrix_row_sum(&sys->damping);
+    const double bound = stiffness * (tribo_matrix_row_sum(&sys->stiffness) + sys->normals.stiffest) +
+                         damping * tribo_matrix_row_sum(&sys->damping);
     *value = bound;
     if (bound == 0.0 || !isfinite(bound)) {
         return TRIBO_OK;

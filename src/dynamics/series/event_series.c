@@ -36,7 +36,11 @@ static void find_velocities(const struct event *e, size_t k, double scale, doubl
     tribo_system_loads(e->sys, DRIVES_BASE, (int)k, -scale, v);
     tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->u + k * e->sys->ndof, v);
     if (e->sys->compliance.count) {
-        tribo_compliance_rates(e->sys, m->state.slip, 1, v, e->room.rate);
+        const double *slide = e->sys->normals.count ? e->room.a : NULL;
+        if (slide) {
+            tribo_normal_series_slide(e, k, e->room.a);
+        }
+        tribo_compliance_rates(e->sys, m->state.slip, slide, 1, v, e->room.rate);
         for (size_t i = 0; k < e->order && i < c; i++) {
             e->spring[(k + 1) * c + i] = e->room.rate[i] / (double)(k + 1);
         }
@@ -54,6 +58,9 @@ static int expand_forces(struct event *e, size_t k, double scale)
     const size_t n = sys->ndof, c = sys->ncontact;
     double *acc = e->room.acceleration, *watch = e->watch + k * c, *base = e->room.base, *held = e->room.held;
     const int given = k < e->slide_terms;
+    if (sys->normals.count) {
+        tribo_normal_series_expand(e, k);
+    }
     tribo_system_smooth(sys, (int)k, scale, e->q + k * n, e->u + k * n, e->spring + k * c, acc);
     find_velocities(e, k, scale, watch);
     if (m->limits.falls) {
@@ -160,7 +167,7 @@ double tribo_event_work(void *own, size_t i, double tau)
 
 /* ------------------------------------------------------------------------------------------------------- perturbations */
 
-/* Terms x^(k) tau^k/k!, of one order k, of perturbations of the state; arrays are [...][columns]. Loads, bases and limits do not
+/* Terms x^(k) tau^k/k!, of one order k, of perturbations of the state; arrays are [...][columns]. Loads and bases do not
  * depend on the state. */
 struct perturbed {
     size_t columns;
@@ -169,7 +176,7 @@ struct perturbed {
     double *q, *u;   /* [ndof] */
     double *next;    /* [ndof] workspace */
     double *spring;  /* [ncontact] forces of compliant contacts */
-    double *force;   /* [ncontact] forces by limits that fall */
+    double *force;   /* [ncontact] forces by limits that fall, or follow the motion */
     double *v;       /* [rows][ncontact] velocities of contacts, the last orders cyclically */
 };
 
@@ -189,12 +196,21 @@ static void find_term(struct event *e, size_t k, double tau, const struct pertur
     tribo_matrix_add_columns(&sys->damping, -part, p->columns, p->u, p->next);
     memset(v, 0, each * sizeof *v);
     tribo_matrix_add_columns(&sys->direction, 1.0, p->columns, p->u, v);
+    if (sys->normals.count) {
+        tribo_normal_series_perturb(e, p->columns, p->q, p->force);
+        tribo_matrix_add_columns(&sys->response, part, p->columns, p->force, p->next);
+        tribo_normal_series_perturb(e, p->columns, p->u, p->force);
+    }
     if (sys->compliance.count) {
         tribo_matrix_add_columns(&sys->compliance.pull, part, p->columns, p->spring, p->next);
+        if (sys->normals.count) {
+            tribo_definite_multiply_add(sys->compliance.g, p->columns, p->force, v);
+        }
         memcpy(p->spring, v, each * sizeof *v);
         tribo_compliance_solve(sys, m->state.slip, p->columns, p->spring);
         for (size_t i = 0; i < each; i++) {
-            p->spring[i] *= -part;
+            const int slides = sys->normals.count && m->constant.elastic[i / p->columns] && m->state.slip[i / p->columns];
+            p->spring[i] = slides ? part * p->force[i] : -part * p->spring[i];
         }
     }
     if (m->limits.falls) { /* forces by limits N that fall, from terms of v: dN/d|v| = (limit - N)/velocity */
@@ -235,6 +251,7 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
     p.force = p.spring + each;
     p.v = p.force + each;
     (void)phase;
+    tribo_stick_slip_press(m, e->sys);
     int status = TRIBO_OK;
     for (size_t j = 0; !status && j < n; j++) {
         memset(p.next, 0, n * sizeof *p.next);

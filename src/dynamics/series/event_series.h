@@ -157,6 +157,19 @@ void tribo_planar_series_errors(struct event *e);
  * and x/|x|, and no speed grows so much that it is lost in rounding. */
 double tribo_planar_series_shorten(const struct event *e, double h);
 
+/* ------------------------------------------------------------------------------------------------------ normal_series.c */
+
+/* Sets the k-th coefficients of normal loads, in the rows of their directions, and of limits that follow them; < 0 where a contact has
+ * lifted off. */
+void tribo_normal_series_expand(struct event *e, size_t k);
+
+/* slide [ncontact] = the k-th coefficients of the rates of forces of contacts that slide at limits that follow; 0 of others. */
+void tribo_normal_series_slide(const struct event *e, size_t k, double *slide);
+
+/* to [ncontact][columns] = forces of pressed normals, and of contacts that slide, by perturbations x [ndof][columns] of
+ * displacements. */
+void tribo_normal_series_perturb(const struct event *e, size_t columns, const double *x, double *to);
+
 /* -------------------------------------------------------------------------------------------------------- event_creep.c */
 
 /* Where planar contacts creep, tries steps from (t, y) of at most `most` with directions by collocation. *length = length of the

@@ -57,7 +57,10 @@ double tribo_event_length(struct event *e)
         double term = greater(tribo_largest(e->q + k * n, n) / q, greater(tribo_largest(e->u + k * n, n) / u, fabs(e->d[k]) / d));
         for (size_t i = 0; i < c; i++) {
             /* forces of contacts at rest to the same part of their limit, or of what it becomes; and this itself */
-            const double rise = e->terms > 1 ? fabs(e->limit[c + i]) * lesser(most, DBL_MAX) : 0.0;
+            double rise = e->terms > 1 ? fabs(e->limit[c + i]) * lesser(most, DBL_MAX) : 0.0;
+            if (e->sys->normals.count && fastest(e) > 0.0) { /* limits may begin with the square of time */
+                rise += fabs(e->limit[2 * c + i]) / (fastest(e) * fastest(e));
+            }
             const double force = tolerance * (greater(e->limit[i], 0.0) + m->constant.swing[i] + rise);
             const double stick = m->limits.ratio[i] * force;
             const double speed = m->plane ? m->plane->error[i] : u;
@@ -193,7 +196,7 @@ static int method_event_prepare(struct event *e)
     const double digits = planes ? 0.5 * MOST_DIGITS : MOST_DIGITS, best = 10.0 - 1.5 * log10(e->tolerance);
     const double most = e->fastest > 0.0 ? greater(digits / (1.0 + fabs(log10(e->fastest))), LEAST_ORDER) : HUGE_VAL;
     e->order = e->most_order = (size_t)lesser(best, most);
-    e->terms = sys->loads.limits > sys->loads.limit_tables ? e->order + 1 : sys->loads.limits ? 2 : 1;
+    e->terms = sys->loads.limits > sys->loads.limit_tables || sys->normals.count ? e->order + 1 : sys->loads.limits ? 2 : 1;
     free_series(e);
     const size_t terms = e->order + 1;
     struct layout l = {0};
@@ -242,13 +245,22 @@ static int method_event_begin(void *own, double t, const double *y, double *reac
     const size_t n = e->sys->ndof;
     const double most = fastest(e) > 0.0 ? lesser(*reach, LONGEST / fastest(e)) : *reach;
     double length = 0.0;
+    tribo_stick_slip_press(m, e->sys);
     if (!(e->drv->abstol > 0.0)) {
         /* by velocities and sizes of the terms of accelerations */
         const double radian = fastest(e) > 0.0 ? 1.0 / fastest(e) : 1.0;
         e->moves[1] = tribo_largest(y + n, n) + radian * tribo_stick_slip_acceleration_size(m, e->sys, y);
         e->moves[0] = tribo_largest(y, n) + radian * e->moves[1];
-        e->moves[2] =
-            fabs(y[tribo_system_energy(e->sys)]) + radian * tribo_largest(m->state.force, m->constant.contacts) * e->moves[1];
+        double force = tribo_largest(m->state.force, m->constant.contacts);
+        for (size_t k = 0; k < e->sys->normals.followers; k++) { /* what limits that follow may become */
+            const struct follower *f = &e->sys->normals.follower[k];
+            const struct normal *normal = &e->sys->normals.normal[f->normal];
+            const struct matrix *j = &e->sys->direction;
+            for (size_t d = j->first[normal->row]; d < j->first[normal->row + 1]; d++) {
+                force = greater(force, f->mu * normal->stiffness * fabs(j->val[d]) * e->moves[0]);
+            }
+        }
+        e->moves[2] = fabs(y[tribo_system_energy(e->sys)]) + radian * force * e->moves[1];
     }
     e->error = wanted(e, y + n, n, e->moves[1], HUGE_VAL);
     int status = m->plane ? tribo_creep_begin(e, t, y, most, &length) : TRIBO_OK;
@@ -314,11 +326,36 @@ static int method_event_create(tribo_driver *drv)
     return tribo_events_create(&e->events, drv, &motion_in_series, e);
 }
 
+/* Returns TRIBO_ERR_UNSUPPORTED for limits that follow the motion, of planar contacts, or beside limits that fall with the speed. */
+static int check_following(const tribo_system *sys)
+{
+    const size_t dropping = sys->normals.count ? tribo_system_first_dropping(sys, 1) : sys->ncontact;
+    for (size_t k = 0; k < sys->normals.followers; k++) {
+        const struct follower *f = &sys->normals.follower[k];
+        if (f->second != f->contact) {
+            return tribo_error(
+                sys->message, TRIBO_ERR_UNSUPPORTED,
+                "the limit of the planar contact %zu follows its normal load, and method event knows that of scalar "
+                "contacts only: take central/fixed or moreau/fixed",
+                f->contact);
+        }
+    }
+    return dropping == sys->ncontact
+               ? TRIBO_OK
+               : tribo_error(
+                     sys->message, TRIBO_ERR_UNSUPPORTED,
+                     "contact %zu has a limit that falls with the speed, which method event does not know beside limits that "
+                     "follow normal loads, as of contact %zu: take central/fixed or moreau/fixed",
+                     dropping, sys->normals.follower[0].contact);
+}
+
 static int open_events(tribo_driver *drv, struct events **events)
 {
     struct event *e = drv->own;
+    int status = check_following(e->sys);
     *events = &e->events;
-    return tribo_driver_pass(drv, method_event_prepare(e));
+    status = status ? status : method_event_prepare(e);
+    return tribo_driver_pass(drv, status);
 }
 
 const struct method tribo_method_event = {

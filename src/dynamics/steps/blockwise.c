@@ -94,7 +94,7 @@ static void take_limits(struct blockwise *b, const tribo_system *sys)
 void tribo_blockwise_take(struct blockwise *b, tribo_system *sys)
 {
     b->revision = tribo_system_revision(sys);
-    b->fits = b->body && tribo_system_is_plain(sys);
+    b->fits = b->body && tribo_system_is_plain(sys) && !sys->normals.count;
     if (!b->fits) {
         return;
     }

@@ -79,6 +79,7 @@ static int kick(tribo_driver *drv, const struct body_step *k, double *energy)
     tribo_step_form_velocity(s, sys, k->from, k->u, s->v);
     /* velocities without friction, by forces at t and q */
     tribo_system_set_time(sys, k->t);
+    tribo_normals_set(sys, k->q, k->u);
     tribo_system_smooth(sys, 0, 1.0, k->q, k->u, NULL, s->a);
     for (size_t i = 0; i < sys->ndof; i++) {
         k->u_to[i] = k->u[i] + k->time * s->a[i];
@@ -277,7 +278,7 @@ static void take_settings(struct central *x, tribo_system *sys)
     struct few_bodies *b = &x->few;
     if (b->revision != revision) {
         b->revision = revision;
-        b->fits = sys->ndof <= FEW && c <= FEW && tribo_system_is_plain(sys);
+        b->fits = sys->ndof <= FEW && c <= FEW && tribo_system_is_plain(sys) && !sys->normals.count;
         if (b->fits) {
             memset(b->damping, 0, sizeof b->damping);
             tribo_matrix_spread(&sys->stiffness, b->stiffness);

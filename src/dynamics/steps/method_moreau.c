@@ -16,7 +16,10 @@
  * A compliant contact has forces f0 and f1 at the ends of the step; (f0 + f1)/2 acts during the step. The contact slides by
  *     h J (u0 + u1)/2 + G (f1 - f0) - displacement of its base,   |f1| <= limit.
  * The context computes f1/2 within limit/2: 4 G/h^2 is added to its operator, J (u0 + u1) - 2 G f0/h replaces the velocity at the
- * end. */
+ * end.
+ *
+ * A normal is pressed in a step if it is in the middle at constant velocity; then S has its stiffness. Limits that follow it are
+ * those of the middle at constant velocity, of compliant contacts those of the end. */
 struct moreau {
     struct step_form common;
     double h; /* prepared step length; 0: none */
@@ -27,6 +30,8 @@ struct moreau {
     size_t told;             /* TRIBO_COUNT_SETTINGS of the system's contacts as contacts took them; SIZE_MAX: never */
     double *limit;           /* [ncontact] limits in a step; limit/2 for compliant contacts */
     double *spring, *give;   /* [ncontact] forces f0 of compliant contacts; workspace, as G f0 */
+    double *early, *late;    /* [ncontact] limits at the beginning and at the end of a step, if limits follow the motion */
+    double *pressed;         /* [normals] 1: S has the normal */
     tribo_context *contacts; /* contacts with the operator of a step */
     size_t settings;         /* sys->changes at the creation of contacts */
     size_t planar;           /* planar contacts of contacts */
@@ -49,13 +54,16 @@ static int moreau_create(tribo_driver *drv)
     const size_t n = drv->sys->ndof, c = drv->sys->ncontact;
     struct moreau *m = calloc(1, sizeof *m);
     drv->own = m;
-    if (!m || !tribo_step_form_create(&m->common, drv->sys, 3 * c + n)) {
+    if (!m || !tribo_step_form_create(&m->common, drv->sys, 6 * c + n)) {
         return tribo_error(drv->sys->message, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
     m->limit = m->common.more;
     m->spring = m->limit + c;
     m->give = m->spring + c;
-    m->push = m->give + c;
+    m->late = m->give + c;
+    m->early = m->late + c;
+    m->pressed = m->early + c;
+    m->push = m->pressed + c;
     return TRIBO_OK;
 }
 
@@ -142,14 +150,19 @@ static void push(struct moreau *m, const tribo_system *sys, double h, const doub
 /* Prepares steps of length h, if that is not done. Returns a status. */
 static int moreau_prepare(struct moreau *m, const tribo_system *sys, double h)
 {
+    int same = 1;
+    for (size_t k = 0; k < sys->normals.count; k++) {
+        same &= m->pressed[k] == sys->normals.normal[k].pressed;
+        m->pressed[k] = sys->normals.normal[k].pressed;
+    }
     /* steps of equal length differ only by rounding of times */
-    if (fabs(h - m->h) <= 1e-9 * h && m->common.revision == sys->revision &&
+    if (same && fabs(h - m->h) <= 1e-9 * h && m->common.revision == sys->revision &&
         (m->settings == sys->changes || !(tribo_system_planar(sys) || m->planar))) {
         return TRIBO_OK;
     }
     m->h = 0.0;
     m->whole = 0;
-    int status = tribo_step_matrix_create(&m->matrix, sys, h, !tribo_system_planar(sys));
+    int status = tribo_step_matrix_create(&m->matrix, sys, h, !tribo_system_planar(sys) && !sys->normals.count);
     status = status || m->matrix.count ? status : prepare_whole(m, sys, h);
     if (!status) {
         m->h = h;
@@ -186,6 +199,10 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
         const size_t i = sys->compliance.contact[k];
         tribo_matrix_add_row(&sys->direction, i, 0.5 * h * m->spring[i], p);
     }
+    for (size_t k = 0; k < sys->normals.count; k++) {
+        const struct normal *own = &sys->normals.normal[k];
+        tribo_matrix_add_row(&sys->direction, own->row, own->pressed ? -h * own->stiffness * own->depth : 0.0, p);
+    }
     sys->evaluations++;
 }
 
@@ -198,7 +215,8 @@ static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, c
     const struct band_step step = {h, m->limit, s->base, u, s->a, s->f};
     tribo_get_limit(sys->contacts, m->limit);
     for (size_t k = 0; k < g->count; k++) {
-        m->limit[g->contact[k]] *= 0.5;
+        const size_t i = g->contact[k];
+        m->limit[i] = 0.5 * (sys->normals.count ? m->late[i] : m->limit[i]);
     }
     const int held = tribo_step_matrix_hold(&m->matrix, sys, &step);
     int status = held || m->whole ? TRIBO_OK : prepare_whole(m, sys, h);
@@ -237,6 +255,43 @@ static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, c
     return status;
 }
 
+/* Sets late, and the motion of the normals in the middle of a step from `from` at t, at constant velocity. */
+static void foresee_normals(struct moreau *m, tribo_system *sys, double t, double h, const double *from)
+{
+    const size_t n = sys->ndof;
+    for (int part = 2; sys->normals.count && part > 0; part--) {
+        tribo_system_set_time(sys, t + 0.5 * part * h);
+        memcpy(m->common.u, from, n * sizeof *from);
+        tribo_add(m->common.u, 0.5 * part * h, from + n, n);
+        tribo_normals_set(sys, m->common.u, from + n);
+        if (part == 2) {
+            tribo_get_limit(sys->contacts, m->late);
+        }
+    }
+}
+
+/* Sets the forces of compliant contacts in y = f1; s->end and s->f = velocity and force of which friction has its power: (v + end)/2
+ * is the velocity of sliding. */
+static void end_springs(struct moreau *m, const tribo_system *sys, double h, double *y)
+{
+    struct step_form *s = &m->common;
+    const struct compliance *g = &sys->compliance;
+    for (size_t k = 0; k < g->count; k++) {
+        y[2 * sys->ndof + k] = 2.0 * s->f[g->contact[k]];
+        m->spring[g->contact[k]] = y[2 * sys->ndof + k] - m->spring[g->contact[k]];
+    }
+    tribo_compliance_give(sys, 1, m->spring, m->give);
+    for (size_t k = 0; k < g->count; k++) {
+        const size_t i = g->contact[k];
+        const double slides = s->v[i] + s->end[i] + 2.0 / h * m->give[i];
+        s->end[i] = (s->mode[i] != TRIBO_SLIP_STUCK && s->f[i] * slides < 0.0 ? slides : 0.0) - s->v[i];
+        s->f[i] *= 2.0;
+        if (sys->normals.count) { /* the work of a contact that slides all the step */
+            s->f[i] = copysign(0.5 * (m->early[i] + m->late[i]), -slides);
+        }
+    }
+}
+
 static int moreau_step(tribo_driver *drv, double t, double next, const double *from, double *y)
 {
     struct moreau *m = drv->own;
@@ -245,16 +300,21 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     const struct compliance *g = &sys->compliance;
     const size_t n = sys->ndof, energy = tribo_system_energy(sys);
     const double h = next - t, *u = from + n;
+    if (g->count) {
+        if (sys->normals.count) {
+            tribo_system_set_time(sys, t);
+            tribo_normals_set(sys, from, u);
+        }
+        memcpy(y, from, tribo_system_size(sys) * sizeof *y);
+        tribo_get_limit(sys->contacts, m->early);
+        tribo_compliance_enter(sys, m->early, m->spring, y);
+        from = y;
+        u = from + n;
+    }
+    foresee_normals(m, sys, t, h, from);
     int status = moreau_prepare(m, sys, h);
     if (status) {
         return tribo_driver_pass(drv, status);
-    }
-    if (g->count) {
-        memcpy(y, from, tribo_system_size(sys) * sizeof *y);
-        tribo_get_limit(sys->contacts, m->give);
-        tribo_compliance_enter(sys, m->give, m->spring, y);
-        from = y;
-        u = from + n;
     }
     tribo_step_form_velocity(s, sys, t, u, s->v);
     find_push(m, sys, t, next, from);
@@ -272,18 +332,8 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
         y[i] = from[i] + 0.5 * h * (u[i] + s->u[i]);
         y[n + i] = s->u[i];
     }
-    if (g->count) { /* f = f1; (v + end)/2 is the velocity of sliding */
-        for (size_t k = 0; k < g->count; k++) {
-            m->spring[g->contact[k]] = 2.0 * s->f[g->contact[k]] - m->spring[g->contact[k]];
-        }
-        tribo_compliance_give(sys, 1, m->spring, m->give);
-        for (size_t k = 0; k < g->count; k++) {
-            const size_t i = g->contact[k];
-            const double slides = s->v[i] + s->end[i] + 2.0 / h * m->give[i];
-            s->end[i] = (s->mode[i] != TRIBO_SLIP_STUCK && s->f[i] * slides < 0.0 ? slides : 0.0) - s->v[i];
-            s->f[i] *= 2.0;
-        }
-        tribo_compliance_put(sys, s->f, y);
+    if (g->count) {
+        end_springs(m, sys, h, y);
     }
     y[energy] = from[energy] + h * tribo_step_form_power(s, sys);
     return tribo_driver_check(drv, y);

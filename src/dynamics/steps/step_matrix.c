@@ -112,6 +112,30 @@ static int factorize_lopsided(struct step_matrix *m, size_t *where)
     return info > 0 ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
 }
 
+/* S += factor k J_n' J_n over the pressed normals. Returns 0 if out of memory. */
+static int matrix_add_normals(struct step_matrix *m, const tribo_system *sys, double factor)
+{
+    const struct matrix *j = &sys->direction;
+    int done = 1;
+    for (size_t k = 0; done && k < sys->normals.count; k++) {
+        const struct normal *n = &sys->normals.normal[k];
+        struct triplets t = {0};
+        struct matrix own = {0}, sum = m->s;
+        for (size_t d = j->first[n->row]; n->pressed && d < j->first[n->row + 1]; d++) {
+            for (size_t e = j->first[n->row]; e < j->first[n->row + 1]; e++) {
+                tribo_triplets_put(&t, j->col[d], j->col[e], n->stiffness * j->val[d] * j->val[e]);
+            }
+        }
+        done = tribo_triplets_finish(&t, m->n, m->n, &own);
+        if (done) {
+            done = tribo_matrix_sum(&m->s, 1.0, &sum, factor, &own);
+            tribo_matrix_free(&sum);
+        }
+        tribo_matrix_free(&own);
+    }
+    return done;
+}
+
 int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, double h, int holds)
 {
     const struct matrix *const part[] = {&sys->k, &sys->c};
@@ -128,6 +152,7 @@ int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, dou
             tribo_matrix_free(&sum);
         }
     }
+    status = status || matrix_add_normals(m, sys, factor[0]) ? status : TRIBO_ERR_MEMORY;
     for (size_t i = 0; i < m->s.rows; i++) {
         for (size_t k = m->s.first[i]; k < m->s.first[i + 1]; k++) {
             j = m->s.col[k];

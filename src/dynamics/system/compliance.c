@@ -152,12 +152,16 @@ void tribo_compliance_share(const struct compliance *g, double *v)
     }
 }
 
-/* rate_A = -G_AA^-1 v_A, v += G rate, over the compliant contacts A at rest. */
-void tribo_compliance_rates(const tribo_system *sys, const signed char *slip, size_t columns, double *v, double *rate)
+/* v += G slide; rate_A = -G_AA^-1 v_A, v += G rate, over the compliant contacts A at rest. */
+void tribo_compliance_rates(const tribo_system *sys, const signed char *slip, const double *slide, size_t columns, double *v,
+                            double *rate)
 {
     memset(rate, 0, sys->ncontact * columns * sizeof *rate);
     if (sys->compliance.count == 0) {
         return;
+    }
+    if (slide) {
+        tribo_definite_multiply_add(sys->compliance.g, columns, slide, v);
     }
     tribo_add(rate, -1.0, v, sys->ncontact * columns);
     tribo_compliance_solve(sys, slip, columns, rate);
@@ -165,6 +169,9 @@ void tribo_compliance_rates(const tribo_system *sys, const signed char *slip, si
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (tribo_is_compliant(&sys->compliance, i) && slip[i] == TRIBO_SLIP_STUCK) {
             memset(v + i * columns, 0, columns * sizeof *v);
+        }
+        if (slide && tribo_is_compliant(&sys->compliance, i)) {
+            tribo_add(rate + i * columns, 1.0, slide + i * columns, columns);
         }
     }
 }
@@ -184,15 +191,15 @@ void tribo_compliance_noise(const tribo_system *sys, const double *q, double *no
 void tribo_compliance_move(const tribo_system *sys, const double *y, double *v, double *rate)
 {
     const struct compliance *g = &sys->compliance;
-    double *limit = sys->work.put_limit, *noise = sys->work.dv_dt;
-    tribo_get_limit(sys->contacts, limit);
+    double *limit = sys->work.put_limit, *noise = sys->work.dv_dt, *rise = g->f;
+    tribo_system_limits(sys, limit, rise);
     tribo_compliance_noise(sys, y, noise);
     tribo_compliance_get(sys, y, rate);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const int at_limit = fabs(rate[i]) >= limit[i] - TRIBO_SPRING_ALLOWED * noise[i];
-        const int open = limit[i] == 0.0 || !tribo_is_compliant(g, i);
-        g->lo[i] = open || (at_limit && rate[i] < 0.0) ? 0.0 : -TRIBO_UNBOUNDED;
-        g->hi[i] = open || (at_limit && rate[i] > 0.0) ? 0.0 : TRIBO_UNBOUNDED;
+        const int open = !tribo_is_compliant(g, i) || limit[i] < 0.0 || (limit[i] == 0.0 && !(rise[i] > 0.0));
+        g->lo[i] = open ? 0.0 : at_limit && rate[i] <= 0.0 && (rate[i] < 0.0 || rise[i] > 0.0) ? -rise[i] : -TRIBO_UNBOUNDED;
+        g->hi[i] = open ? 0.0 : at_limit && rate[i] >= 0.0 && (rate[i] > 0.0 || rise[i] > 0.0) ? rise[i] : TRIBO_UNBOUNDED;
     }
     tribo_compliance_share(g, v);
     memcpy(rate, g->f, sys->ncontact * sizeof *rate);
@@ -224,10 +231,11 @@ void tribo_compliance_enter(const tribo_system *sys, const double *limit, double
     tribo_compliance_put(sys, force, y);
 }
 
-/* f_A += G_AA^-1 G_AS f_S over the sets A at rest and S of sliding contacts, then f_S = 0. */
+/* f_A += G_AA^-1 G_AS (f_S - s) over the sets A at rest and S of sliding contacts, then f_S = s = -slip limit(q). */
 void tribo_compliance_perturb(const tribo_system *sys, const signed char *slip, size_t columns, double *v, double *work)
 {
     const struct compliance *g = &sys->compliance;
+    const struct matrix *j = &sys->direction;
     const size_t c = sys->ncontact, row = columns * sizeof *v;
     double *f = v + 2 * sys->ndof * columns, *way = work + c * columns;
     memset(work, 0, c * row);
@@ -235,6 +243,15 @@ void tribo_compliance_perturb(const tribo_system *sys, const signed char *slip, 
         if (slip[g->contact[k]] != TRIBO_SLIP_STUCK) {
             memcpy(work + g->contact[k] * columns, f + k * columns, row);
             memset(f + k * columns, 0, row);
+            const struct follower *own = tribo_normals_follower(sys, g->contact[k]);
+            const struct normal *n = own ? &sys->normals.normal[own->normal] : NULL;
+            const signed char side = slip[g->contact[k]];
+            for (size_t e = n && side != TRIBO_SLIP_OPEN ? j->first[n->row] : 0;
+                 n && side != TRIBO_SLIP_OPEN && e < j->first[n->row + 1]; e++) {
+                const double slope = -side * own->mu * n->stiffness * j->val[e];
+                tribo_add(f + k * columns, slope, v + j->col[e] * columns, columns);
+                tribo_add(work + g->contact[k] * columns, -slope, v + j->col[e] * columns, columns);
+            }
         }
     }
     tribo_compliance_give(sys, columns, work, way);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Compliant contacts: v = J q' + G f' - b. G is symmetric, positive definite over compliant contacts, 0 in rows of rigid
  * contacts. The forces f are part of the state. With the sets A of compliant contacts at rest and S of sliding contacts,
- *     f_A' = -G_AA^-1 (J_A q' - b_A),   f_S' = 0,   v_S = J_S q' - b_S + G_SA f_A'. */
+ *     f_A' = -G_AA^-1 (J_A q' - b_A + G_AS f_S'),   v_S = J_S q' - b_S + G_SA f_A' + G_SS f_S',
+ * f_S' = 0 with constant limits, else by the rates of limits. */
 #ifndef TRIBO_COMPLIANCE_H
 #define TRIBO_COMPLIANCE_H
 
@@ -59,11 +60,13 @@ void tribo_compliance_solve(const tribo_system *sys, const signed char *slip, si
 /* x [ncontact][columns] = G f. */
 void tribo_compliance_give(const tribo_system *sys, size_t columns, const double *f, double *x);
 
-/* rate [ncontact][columns] = f'; 0 for rigid contacts. v [ncontact][columns]: in J q' - b; out J q' + G f' - b, unchanged for
- * rigid contacts. */
-void tribo_compliance_rates(const tribo_system *sys, const signed char *slip, size_t columns, double *v, double *rate);
+/* rate [ncontact][columns] = f'; 0 for rigid contacts. slide [ncontact][columns]: f' of the contacts with slip not 0, else 0; NULL:
+ * 0. v [ncontact][columns]: in J q' - b; out J q' + G f' - b, unchanged for rigid contacts. */
+void tribo_compliance_rates(const tribo_system *sys, const signed char *slip, const double *slide, size_t columns, double *v,
+                            double *rate);
 
-/* tribo_compliance_rates without slip: a contact slides if its force in y is at its limit and v points against the force. */
+/* tribo_compliance_rates without slip: a contact slides if its force in y is at its limit and v points against the force. Limits are
+ * those of the set time and motion. */
 void tribo_compliance_move(const tribo_system *sys, const double *y, double *v, double *rate);
 
 /* noise [ncontact] = TRIBO_SPRING_NOISE |G^-1| |J| |q|, bounds of rounding errors of forces; 0 for rigid contacts. */
@@ -80,8 +83,8 @@ void tribo_compliance_enter(const tribo_system *sys, const double *limit, double
  * velocities; in without f, out v + G f, exactly 0 where f is between its bounds. */
 void tribo_compliance_share(const struct compliance *g, double *v);
 
-/* Applies slip [ncontact] to perturbations v [2 ndof + count][columns] of a state: 0 for forces of sliding contacts. work [2
- * ncontact][columns]. */
+/* Applies slip [ncontact] to perturbations v [2 ndof + count][columns] of a state: 0 for forces of open contacts, and of sliding
+ * ones what their limits are perturbed by. work [2 ncontact][columns]. */
 void tribo_compliance_perturb(const tribo_system *sys, const signed char *slip, size_t columns, double *v, double *work);
 
 #endif

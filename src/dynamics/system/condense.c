@@ -248,7 +248,7 @@ int tribo_model_condense(tribo_model *m, tribo_system **sys)
         status = done ? tribo_model_build_massive(m, s.own, sys) : TRIBO_ERR_MEMORY;
     }
     if (!status) {
-        (*sys)->given = given;
+        (*sys)->reduced.given = given;
         status = tribo_compliance_create(*sys, s.own, s.shared, &where);
         status = status || tribo_expansion_create(*sys, &s.x, m->compliance) ? status : TRIBO_ERR_MEMORY;
         status = status == TRIBO_ERR_INDEFINITE

@@ -19,6 +19,9 @@ void tribo_system_smooth(const tribo_system *sys, int order, double scale, const
     if (sys->compliance.count) {
         tribo_matrix_multiply_add(&sys->compliance.pull, 1.0, f, to);
     }
+    if (sys->normals.count) {
+        tribo_normals_push(sys, 0, order == 0, 1.0, q, to);
+    }
 }
 
 void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration)
@@ -32,12 +35,25 @@ void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y
 
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a)
 {
+    if (sys->normals.count) {
+        tribo_system_set_time(sys, t);
+        tribo_normals_set(sys, y, y + sys->ndof);
+    }
     tribo_system_free_acceleration(sys, t, y, acceleration);
     tribo_matrix_multiply(&sys->direction, y + sys->ndof, v);
     tribo_matrix_multiply(&sys->direction, acceleration, a);
     if (tribo_system_bases_move(sys)) {
         tribo_system_loads(sys, DRIVES_BASE, 0, -1.0, v);
         tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, a);
+    }
+}
+
+/* f [ncontact]: sets the forces at normals, -N, of the motion set. */
+static void equations_put_normals(const tribo_system *sys, double *f)
+{
+    for (size_t k = 0; k < sys->normals.count; k++) {
+        const struct normal *n = &sys->normals.normal[k];
+        f[n->row] = n->pressed ? -n->stiffness * n->depth : 0.0;
     }
 }
 
@@ -54,6 +70,9 @@ int tribo_system_rates(tribo_system *sys, double t, const double *y, int accepte
         sys->status = accepted ? tribo_accept(sys->contacts, sys->work.v, sys->work.feq) : TRIBO_OK;
         *power = -tribo_dot_of_three(sys->ncontact, sys->tally, sys->work.f, sys->work.v);
         tribo_matrix_multiply_add(&sys->response, 1.0, sys->work.f, acceleration);
+        if (sys->normals.count) {
+            equations_put_normals(sys, sys->work.f);
+        }
     }
     return tribo_system_explain(sys, sys->status);
 }
@@ -114,6 +133,7 @@ static int contacts_at(tribo_system *sys, double t, const double **y)
     if (x->place) {
         tribo_system_set_time(sys, t);
         tribo_system_read_state(sys, *y, sys->work.motion);
+        tribo_normals_set(sys, own, own + sys->ndof);
         tribo_get_limit(sys->contacts, sys->work.a);
         tribo_compliance_enter(sys, sys->work.a, sys->work.feq, sys->work.motion);
     }
@@ -135,6 +155,11 @@ int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *
     int status = sys ? contacts_at(sys, t, &y) : TRIBO_ERR_NULL;
     if (!status) {
         status = tribo_system_explain(sys, tribo_balance(sys->contacts, sys->work.v, sys->work.a, feq, f));
+    }
+    for (int k = 0; !status && k < 2; k++) {
+        if (k ? feq : f) {
+            equations_put_normals(sys, k ? feq : f);
+        }
     }
     for (size_t k = 0; !status && k < 2 * sys->compliance.count; k++) { /* of compliant contacts, the forces in y */
         double *to = k % 2 ? feq : f;

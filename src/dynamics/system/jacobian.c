@@ -82,6 +82,12 @@ int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *
         return sys ? sys->status : TRIBO_ERR_NULL;
     }
     const size_t n = sys->ndof, m = sys->ncontact;
+    if (sys->normals.count) {
+        return sys->status = tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                                         "the limit of contact %zu follows its normal load, of which the Jacobian lacks the "
+                                         "derivatives: take an explicit method, moreau/fixed or event",
+                                         sys->normals.follower[0].contact);
+    }
     struct tangents d;
     struct layout l = {0};
     sys->jacobians++;

@@ -211,6 +211,7 @@ void tribo_system_limits(const tribo_system *sys, double *limit, double *rate)
         }
         tribo_system_loads(sys, DRIVES_LIMIT, 0, 1.0, limit);
         tribo_system_loads(sys, DRIVES_LIMIT, 1, 1.0, rate);
+        tribo_normals_limits(sys, limit, rate);
     }
 }
 
@@ -268,7 +269,7 @@ int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
  * on a degree of freedom without mass, or a varying limit of a compliant contact. */
 static int check_pattern(const tribo_system *sys, enum drives drives, const char *name, const double *x)
 {
-    const size_t *place = sys->expansion.place, n = drives == DRIVES_LOAD ? sys->given : sys->ncontact;
+    const size_t *place = sys->expansion.place, n = drives == DRIVES_LOAD ? sys->reduced.given : sys->ncontact;
     const int status = tribo_system_check_finite(sys, name, x, n);
     for (size_t i = 0; x && place && !status && i < n; i++) {
         if (x[i] != 0.0 && drives == DRIVES_LOAD && !sys->reduced.modes && place[i] >= sys->ndof) {
@@ -278,6 +279,13 @@ static int check_pattern(const tribo_system *sys, enum drives drives, const char
         if (x[i] != 0.0 && drives == DRIVES_LIMIT && tribo_is_compliant(&sys->compliance, i)) {
             return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
                                "%s[%zu] = %g, but contact %zu is elastic, and its limit must be constant", name, i, x[i], i);
+        }
+    }
+    for (size_t i = 0; x && !status && drives == DRIVES_LIMIT && sys->normals.count && i < n; i++) {
+        const int follows = tribo_normals_follower(sys, i) != NULL;
+        if (x[i] != 0.0 && (follows || tribo_normals_at(sys, i))) {
+            return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED, "%s[%zu] = %g, but contact %zu %s", name, i, x[i], i,
+                               follows ? "has a limit that follows its normal load" : "is a normal direction, without friction");
         }
     }
     return status;

@@ -11,8 +11,10 @@ struct tribo_model {
     int attachments;              /* 1: attachment modes: static responses to contact forces in addition to the modes */
     int flexible;                 /* 1: residual flexibility: the compliance that the modes lack at contacts */
     struct matrix mass, damping, stiffness, direction;
-    double *compliance; /* [ncontact] compliance of springs before sliders; 0: rigid contact; NULL: all rigid */
-    char *message;      /* [TRIBO_MESSAGE] text of the last error; NULL: none */
+    double *compliance;          /* [ncontact] compliance of springs before sliders; 0: rigid contact; NULL: all rigid */
+    size_t normals;              /* number of contacts with a normal */
+    struct normal_input *normal; /* [normals] */
+    char *message;               /* [TRIBO_MESSAGE] text of the last error; NULL: none */
 };
 
 int tribo_model_no_memory(const tribo_model *m);

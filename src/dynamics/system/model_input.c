@@ -31,6 +31,7 @@ void tribo_model_destroy(tribo_model *model)
     if (model) {
         tribo_model_free(model);
         free(model->compliance);
+        free(model->normal);
         free(model);
     }
 }
@@ -257,6 +258,74 @@ int tribo_model_set_compliance(tribo_model *model, const double *c)
     return TRIBO_OK;
 }
 
+/* Returns an error if contact and row of `in` cannot be a contact and its normal beside the normals of the model. */
+static int check_roles(const tribo_model *m, const struct normal_input *in)
+{
+    const size_t index[] = {in->contact, in->row};
+    for (int k = 0; k < 2; k++) {
+        if (index[k] >= m->ncontact) {
+            return tribo_error(m->message, TRIBO_ERR_RANGE, "%s = %zu is not below %zu, the number of contacts",
+                               k ? "normal" : "contact", index[k], m->ncontact);
+        }
+    }
+    if (in->contact == in->row) {
+        return tribo_error(m->message, TRIBO_ERR_RANGE, "contact %zu is to be its own normal", in->contact);
+    }
+    for (const struct normal_input *o = m->normal; o < m->normal + m->normals; o++) {
+        if (o->row == in->contact || o->contact == in->row) {
+            const struct normal_input *normal = o->row == in->contact ? o : in;
+            return tribo_error(m->message, TRIBO_ERR_RANGE,
+                               "contact %zu is the normal of contact %zu, and takes no normal itself", normal->row,
+                               normal->contact);
+        }
+        if (o->row == in->row && o->contact != in->contact && (o->stiffness != in->stiffness || o->gap != in->gap)) {
+            const int gap = o->stiffness == in->stiffness;
+            return tribo_error(
+                m->message, TRIBO_ERR_RANGE, "%s = %.17g of contact %zu, but %.17g of contact %zu with the same normal",
+                gap ? "gap" : "stiffness", gap ? in->gap : in->stiffness, in->contact, gap ? o->gap : o->stiffness, o->contact);
+        }
+    }
+    return TRIBO_OK;
+}
+
+int tribo_model_set_normal(tribo_model *model, size_t contact, size_t normal, double mu, double stiffness, double gap)
+{
+    if (!model) {
+        return TRIBO_ERR_NULL;
+    }
+    const struct normal_input in = {contact, normal, mu, stiffness, gap};
+    const double value[] = {mu, stiffness, gap};
+    static const char *const name[] = {"mu", "stiffness", "gap"};
+    for (int k = 0; k < 3; k++) {
+        if (!isfinite(value[k])) {
+            return tribo_error(model->message, TRIBO_ERR_NOT_FINITE, "%s = %g of contact %zu is not finite", name[k], value[k],
+                               contact);
+        }
+        if (k < 2 && value[k] < 0.0) {
+            return tribo_error(model->message, TRIBO_ERR_NEGATIVE, "%s = %g of contact %zu is negative", name[k], value[k],
+                               contact);
+        }
+    }
+    const int status = check_roles(model, &in);
+    if (status) {
+        return status;
+    }
+    size_t k = 0;
+    while (k < model->normals && model->normal[k].contact != contact) {
+        k++;
+    }
+    if (k == model->normals) {
+        struct normal_input *more = realloc(model->normal, (k + 1) * sizeof *more);
+        if (!more) {
+            return tribo_model_no_memory(model);
+        }
+        model->normal = more;
+        model->normals++;
+    }
+    model->normal[k] = in;
+    return TRIBO_OK;
+}
+
 /* -------------------------------------------------------------------------------------------------------------------- systems */
 
 /* Checks the model, and the arguments of tribo_system_reduce if reduces = 1; builds a system from copies of the model's matrices.
@@ -297,6 +366,8 @@ static int build_system(tribo_system **sys, const tribo_model *m, int reduces, s
                         .attachments = statics == TRIBO_STATICS_MASS,
                         .flexible = statics == TRIBO_STATICS_COMPLIANCE,
                         .compliance = m->compliance,
+                        .normals = m->normals,
+                        .normal = m->normal,
                         .message = m->message};
     const int done = tribo_matrix_copy(&copy.mass, &m->mass) && tribo_matrix_copy(&copy.damping, &m->damping) &&
                      tribo_matrix_copy(&copy.stiffness, &m->stiffness) &&

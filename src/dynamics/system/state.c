@@ -130,6 +130,7 @@ void tribo_system_write_state(tribo_system *sys, double t, const double *from, d
         if (rate) {
             memset(v, 0, sys->ncontact * sizeof *v);
             tribo_system_set_time(sys, t);
+            tribo_normals_move(sys, from, from + n);
             tribo_system_loads(sys, DRIVES_BASE, 0, -1.0, v);
             tribo_matrix_multiply_add(&sys->direction, 1.0, from + n, v);
             tribo_compliance_move(sys, from, v, force); /* force: f' */

@@ -190,6 +190,7 @@ int tribo_model_build(tribo_model *m, tribo_system **sys)
     status = status ? status : check_symmetric(m, "stiffness", &m->stiffness);
     if (!status) {
         status = m->nmode ? tribo_model_reduce(m, &s) : tribo_model_condense(m, &s);
+        status = status ? status : tribo_normals_create(s, m->normals, m->normal, m->message);
     }
     tribo_model_free(m);
     if (status) {

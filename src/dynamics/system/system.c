@@ -153,14 +153,20 @@ int tribo_system_take_settings(tribo_system *sys)
     if (!sys->lent || tribo_get_count(sys->lent, TRIBO_COUNT_SETTINGS, &now) || now == sys->copied) {
         return TRIBO_OK;
     }
-    const int status = tribo_copy_settings(sys->contacts, sys->lent);
+    tribo_get_limit(sys->lent, sys->work.put_limit);
+    int status = tribo_normals_check_limits(sys, sys->work.put_limit);
+    if (status) {
+        return status;
+    }
+    status = tribo_system_explain(sys, tribo_copy_settings(sys->contacts, sys->lent));
+    status = status ? status : tribo_normals_pair(sys);
     if (!status) {
         tribo_get_limit(sys->lent, sys->loads.given_limit);
         sys->copied = now;
         sys->changes++;
         sys->loads.time = NAN;
     }
-    return tribo_system_explain(sys, status);
+    return status;
 }
 
 int tribo_system_get_slip(const tribo_system *sys, signed char *slip)
@@ -188,6 +194,12 @@ int tribo_system_get_limit(tribo_system *sys, double t, double *limit)
     }
     if (!limit && sys->ncontact) {
         return tribo_error(sys->message, TRIBO_ERR_NULL, "limit is NULL");
+    }
+    if (sys->normals.count) {
+        return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                           "the limit of contact %zu follows its normal load, and is no function of time: tribo_system_contacts "
+                           "finds the loads by the state",
+                           sys->normals.follower[0].contact);
     }
     const int status = tribo_system_take_settings(sys);
     if (!status) {
@@ -222,7 +234,7 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
 {
     const size_t dofs = sys->expansion.dofs;
     memset(to, 0, sys->ndof * sizeof *to);
-    for (size_t i = 0; i < sys->given; i++) {
+    for (size_t i = 0; i < sys->reduced.given; i++) {
         if (!sys->reduced.modes) {
             tribo_system_add_part(sys, i, force[i], to, way);
         }
@@ -236,7 +248,8 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
 double tribo_system_fastest(const tribo_system *sys)
 {
     const double stiffest = sys->compliance.count ? sys->compliance.stiffest : tribo_matrix_row_sum(&sys->stiffness);
-    return greater(greater(sqrt(stiffest), tribo_matrix_row_sum(&sys->damping)), tribo_system_load_frequency(sys));
+    return greater(greater(sqrt(stiffest + sys->normals.stiffest), tribo_matrix_row_sum(&sys->damping)),
+                   tribo_system_load_frequency(sys));
 }
 
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j)
@@ -343,7 +356,7 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact)
     }
     s->snaps.list = (struct snap *)(work + room);
     s->message = (char *)(s->snaps.list + ncontact);
-    s->ndof = s->given = s->expansion.dofs = ndof;
+    s->ndof = s->reduced.given = s->expansion.dofs = ndof;
     s->ncontact = ncontact;
     s->loads.time = NAN;
     for (size_t i = 0; i < ncontact; i++) {
@@ -370,12 +383,12 @@ int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
         tribo_destroy(to->contacts);
         to->contacts = NULL;
         to->revision = sys->revision;
-        to->given = sys->given;
+        to->reduced.given = sys->reduced.given;
         to->unsolved = sys->unsolved;
         to->copied = sys->copied;
         memcpy(to->loads.given_limit, sys->loads.given_limit, c * sizeof *to->loads.given_limit);
         memcpy(to->tally, sys->tally, c * sizeof *to->tally);
-        to->reduced.modes = tribo_copy_of(sys->reduced.modes, sys->given * dofs, sizeof *to->reduced.modes, &done);
+        to->reduced.modes = tribo_copy_of(sys->reduced.modes, sys->reduced.given * dofs, sizeof *to->reduced.modes, &done);
         to->reduced.truncation = sys->reduced.truncation;
         const struct matrix *const from[] = {&sys->stiffness, &sys->damping, &sys->direction, &sys->response,
                                              &sys->k,         &sys->c,       &sys->mass};
@@ -390,8 +403,8 @@ int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
         done = tribo_cholesky_create(&to->factor, &to->mass, NULL, &where, &pivot) == TRIBO_OK;
     }
     done = done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK &&
-           (!g || tribo_compliance_create(to, g->own, g->matrix, &where) == TRIBO_OK) && tribo_expansion_copy(to, sys) &&
-           tribo_loads_copy(to, sys);
+           (!g || tribo_compliance_create(to, g->own, g->matrix, &where) == TRIBO_OK) && tribo_normals_copy(to, sys) &&
+           tribo_expansion_copy(to, sys) && tribo_loads_copy(to, sys);
     if (!done) {
         tribo_system_destroy(to);
         return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu degree%s of freedom", sys->ndof,
@@ -423,6 +436,7 @@ void tribo_system_destroy(tribo_system *sys)
     tribo_loads_free(sys);
     tribo_cholesky_free(&sys->factor);
     tribo_compliance_free(&sys->compliance);
+    tribo_normals_free(&sys->normals);
     tribo_expansion_free(&sys->expansion);
     free(sys->reduced.modes);
     free(sys->work.motion);

@@ -9,6 +9,7 @@
 
 #include "numerics/linalg.h"
 #include "compliance.h"
+#include "normals.h"
 #include "common/text.h"
 
 /* The function of time to which a harmonic or table adds: load, base velocity b(t), or limits. */
@@ -61,6 +62,7 @@ struct loads {
 struct reduction {
     double *modes; /* [given][dofs]; NULL if not reduced */
     struct truncation truncation;
+    size_t given; /* length of the caller's loads; of accelerations, if not reduced */
 };
 
 /* A correction of the velocity of one contact: x[to] = (base[contact] - other x[from])/value. If other = 0, x[from] is not
@@ -86,7 +88,6 @@ struct workspace {
 
 struct tribo_system {
     size_t ndof, ncontact;                                 /* ndof: number of degrees of freedom with mass */
-    size_t given;                                          /* length of the caller's loads; of accelerations, if not reduced */
     struct matrix stiffness, damping, direction, response; /* AK, AC, J, B */
     tribo_context *contacts; /* computes forces, with the settings of `lent` and the limits at the set time */
     tribo_context *lent;     /* the caller's context of tribo_system_context; NULL before the first call */
@@ -103,6 +104,7 @@ struct tribo_system {
     int unsolved;
 
     struct compliance compliance;
+    struct normals normals;
     struct expansion expansion;
     struct reduction reduced;
     struct attached *attached; /* list of the data of tribo_system_attach */
@@ -112,6 +114,19 @@ struct tribo_system {
     struct snaps snaps;
     struct workspace work;
 };
+
+/* Return the normal at row i of J, or NULL; the follower at contact i, or NULL. */
+static inline const struct normal *tribo_normals_at(const tribo_system *sys, size_t i)
+{
+    const struct normals *s = &sys->normals;
+    return s->count && s->at[i] ? &s->normal[s->at[i] - 1] : NULL;
+}
+
+static inline const struct follower *tribo_normals_follower(const tribo_system *sys, size_t i)
+{
+    const struct normals *s = &sys->normals;
+    return s->count && s->by[i] ? &s->follower[s->by[i] - 1] : NULL;
+}
 
 /* Creates a system. The caller then sets M, K and J, and C and AC if there is damping: rows = 0 means no damping. Returns a
  * status. */
@@ -166,13 +181,14 @@ static inline int tribo_system_bases_move(const tribo_system *sys)
     return sys->loads.bases > 0;
 }
 
-/* Returns 1 if limits change with time, by a table or harmonics. */
+/* Returns 1 if limits change, by a table or harmonics, or with the motion. */
 static inline int tribo_system_limits_vary(const tribo_system *sys)
 {
-    return sys->loads.limits > 0;
+    return sys->loads.limits > 0 || sys->normals.count > 0;
 }
 
-/* limit, rate [ncontact] = limits and derivatives at the set time. With harmonics limit < 0 where a contact has lifted off. */
+/* limit, rate [ncontact] = limits and derivatives at the set time, and motion (tribo_normals_move). With harmonics, and where
+ * limits follow the motion, limit < 0 where a contact has lifted off. */
 void tribo_system_limits(const tribo_system *sys, double *limit, double *rate);
 
 /* Sets the limits of the contacts to limit + later rate at the set time, at least 0. */
@@ -206,14 +222,16 @@ double tribo_system_fastest(const tribo_system *sys);
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 
 /* to [ndof] = scale times the order-th derivative of the load at the set time, - AK q - AC u + M^-1 J' f over the compliant
- * contacts; f [ncontact]. u is not read without damping, f not without compliant contacts. */
+ * contacts, and the forces of pressed normals, of which the gap counts in order 0; f [ncontact]. u is not read without damping, f
+ * not without compliant contacts. */
 void tribo_system_smooth(const tribo_system *sys, int order, double scale, const double *q, const double *u, const double *f,
                          double *to);
 
 /* acceleration [ndof] = q'' without the forces of rigid contacts, at t and y. */
 void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration);
 
-/* acceleration [ndof] = q'' without the forces of rigid contacts; v, a [ncontact] = J q' - b and J q'' - b'. */
+/* Sets the motion y of the normals. acceleration [ndof] = q'' without the forces of rigid contacts; v, a [ncontact] = J q' - b and
+ * J q'' - b'. */
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a);
 
 /* acceleration [ndof] = q'' with friction; power = power dissipated by friction. accepted = 1: (t, y) is an accepted state,
