@@ -30,8 +30,8 @@ static inline double sine_near_0(struct twofold x)
     return x.hi + (x.lo * (1.0 - 0.5 * z) - x.hi * z * alternating(z, c));
 }
 
-/* c, s = cosine and sine of an angle up to COS_SIN_NEAR, in any rounding mode. x = angle - quarters pi/2, pi/2 = first + second + third; multiples of
- * first and second up to 2^20 are exact. */
+/* c, s = cosine and sine of an angle up to COS_SIN_NEAR, in any rounding mode. x = angle - quarters pi/2, pi/2 = first + second +
+ * third; multiples of first and second up to 2^20 are exact. */
 static inline void cos_sin_of(struct twofold angle, double *c, double *s)
 {
     const double first = 0x1.921fb544p+0, second = 0x1.0b4611a6p-34, third = 0x1.3198a2e037073p-69;
@@ -59,7 +59,7 @@ void tribo_cos_sin(double omega, double t, double low, double *c, double *s)
     *s = sa * cr + ca * sr;
 }
 
-TRIBO_SIMD void tribo_cos_sin_all(double omega, size_t n, const double *restrict t, double *restrict c, double *restrict s)
+TRIBO_SIMD_OF_FOUR void tribo_cos_sin_all(double omega, size_t n, const double *restrict t, double *restrict c, double *restrict s)
 {
     int64_t far = 0; /* as wide as the doubles compared, for vectors */
     for (size_t k = 0; k < n; k++) {
