@@ -98,14 +98,14 @@ static int find_motion(double preload, double omega, double *y, double *amplitud
     return status;
 }
 
-/* The amplitude along the platforms by central differences: 4000 steps a period, after 200 periods. */
+/* The amplitude along the platforms by method moreau: 4000 steps a period, after 200 periods. */
 static double march(double preload, double omega)
 {
     const double period = 2.0 * pi / omega, begin = 200.0 * period;
     double t = 0.0, y[DIMENSION] = {0.0}, least = HUGE_VAL, most = -HUGE_VAL;
     tribo_system *sys = create_system(preload, omega);
     tribo_driver *drv;
-    need(tribo_driver_create(&drv, sys, "central/fixed"), tribo_system_message(sys));
+    need(tribo_driver_create(&drv, sys, "moreau/fixed"), tribo_system_message(sys));
     need(tribo_driver_set_step(drv, period / 4000.0), tribo_driver_message(drv));
     need(tribo_driver_advance(drv, &t, begin, y), tribo_driver_message(drv));
     for (int k = 1; k <= 1000; k++) {
@@ -156,7 +156,7 @@ int main(int argc, char **argv)
         write_value(values, largest[k], "platform.amplitude%zu", k + 1);
         write_value(values, open[k], "platform.open%zu", k + 1);
     }
-    write_value(values, march(preload[1], at[1]), "platform.amplitude2.central");
+    write_value(values, march(preload[1], at[1]), "platform.amplitude2.moreau");
     write_value(values, missing, "platform.missing");
     close_file(table, "platform.csv");
     close_file(values, "values-platform.txt");
