@@ -3,7 +3,6 @@
 #include "parts.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "common/real.h"
 
@@ -20,8 +19,10 @@ static int find_terms(struct modal_build *b)
     f->li = f->lr + f->terms;
     f->size = f->li + f->terms;
     f->sixth = f->size + f->terms;
-    memcpy(f->lr, b->h->lr, p * sizeof *f->lr);
-    memcpy(f->li, b->h->li, p * sizeof *f->li);
+    for (size_t k = 0; k < p; k++) {
+        f->lr[k] = b->h->lr[k];
+        f->li[k] = b->h->li[k];
+    }
     for (size_t s = 0; s < f->harmonics; s++) {
         f->li[p + s] = f->forcing[s].omega;
     }

@@ -126,6 +126,7 @@ TEST(many_modes)
     tribo_system *sys = row(&r, _i % 2);
     double y[STATES + 1] = {0.0}, load[DOFS] = {0.0};
     tribo_driver *drv;
+    ck_assert_uint_le(tribo_system_dimension(sys), COUNT(y));
     assert_ok(set_up_driver(&drv, sys, "exact", 1.0, 0.0, 0.0));
     load[DOFS - 1] = 1.0;
     for (int k = 0; k < LOADS; k++) {
@@ -153,7 +154,7 @@ TEST(coupled_contacts)
 {
     struct random r = random_of(_i);
     tribo_system *sys = reduced_row(&r);
-    double y[2 * MODES + NEAR + 1] = {0.0}, load[DOFS] = {0.0}, e[2 * MODES + NEAR], image[2][2 * MODES + NEAR];
+    double y[100] = {0.0}, load[DOFS] = {0.0}, e[2 * MODES + NEAR], image[2][2 * MODES + NEAR];
     tribo_driver *drv;
     assert_ok(set_up_driver(&drv, sys, "exact", 1.0, 0.0, 0.0));
     load[DOFS - 1] = 1.0;

@@ -181,7 +181,7 @@ TEST(holes)
 {
     const size_t cols = _i ? 401 : 21, nmode = 5, masses = cols / 2 + 1;
     const struct grid g = {1, cols, 1, .free = 1, .holes = 1};
-    double omega[5];
+    double omega[100]; /* of all degrees of freedom of sys */
     char text[200] = "";
     tribo_system *sys = NULL;
     const int status = create(&sys, &g, nmode, text, sizeof text);
