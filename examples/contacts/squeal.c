@@ -81,7 +81,7 @@ static double complex find_flutter(const double *k)
     const double a = k[0], b = k[1] - mu * normal, c = k[2], d = k[3] + normal;
     const double complex kappa = 0.5 * (a + d) + csqrt(0.25 * (a - d) * (a - d) + b * c);
     const double complex root = csqrt(0.25 * damping * damping - kappa);
-    return fabs(creal(root)) - 0.5 * damping + fabs(cimag(root)) * I;
+    return fabs(creal(root)) - 0.5 * damping + fabs(cimag(root)) * (double complex)I;
 }
 
 int main(int argc, char **argv)
