@@ -222,6 +222,18 @@ contains
     real(dp), intent(inout), optional, contiguous :: df_dz(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
+
+    call limited_force(c_elastic_force, dz, stiffness, limit, f, df_dz, stat, errmsg)
+  end subroutine elastic_force_line
+
+  !> Forces f by an element of C that has a stiffness and a limit.
+  subroutine limited_force(element, dz, stiffness, limit, f, df_dz, stat, errmsg)
+    procedure(c_elastic_force) :: element
+    real(dp), intent(in) :: dz(:), stiffness(:), limit(:)
+    real(dp), intent(inout) :: f(:)
+    real(dp), intent(inout), optional, contiguous :: df_dz(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
     w%status = TRIBO_OK
@@ -230,13 +242,13 @@ contains
     call expect_size(w, 'stiffness', stiffness, w%n)
     call expect_size(w, 'limit', limit, w%n)
     if (present(df_dz)) call expect_size(w, 'df_dz', df_dz, w%n)
-    if (w%status == TRIBO_OK) w%status = c_elastic_force(int(w%n, c_size_t), dz, stiffness, limit, f, df_dz)
+    if (w%status == TRIBO_OK) w%status = element(int(w%n, c_size_t), dz, stiffness, limit, f, df_dz)
     call blame(w, 'stiffness', stiffness)
     call blame(w, 'limit', limit)
     call blame(w, 'dz', dz)
     call blame(w, 'f', f)
     call finish(w, stat, errmsg)
-  end subroutine elastic_force_line
+  end subroutine limited_force
 
   !> The same in the plane: dz(2,n), f(2,n), stiffness(n), limit(n), df_dz(2,2,n).
   subroutine elastic_force_plane(dz, stiffness, limit, f, df_dz, stat, errmsg)
@@ -304,20 +316,8 @@ contains
     real(dp), intent(inout), optional, contiguous :: df_dz(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(work) :: w
 
-    w%status = TRIBO_OK
-    w%n = size(f)
-    call expect_size(w, 'dz', dz, w%n)
-    call expect_size(w, 'stiffness', stiffness, w%n)
-    call expect_size(w, 'limit', limit, w%n)
-    if (present(df_dz)) call expect_size(w, 'df_dz', df_dz, w%n)
-    if (w%status == TRIBO_OK) w%status = c_dahl_force(int(w%n, c_size_t), dz, stiffness, limit, f, df_dz)
-    call blame(w, 'stiffness', stiffness)
-    call blame(w, 'limit', limit)
-    call blame(w, 'dz', dz)
-    call blame(w, 'f', f)
-    call finish(w, stat, errmsg)
+    call limited_force(c_dahl_force, dz, stiffness, limit, f, df_dz, stat, errmsg)
   end subroutine tribo_dahl_force
 
   !> LuGre: parameter(6,n) = s0, s1, s2, fc, fs, vs; state z(n); velocity dz/dt.

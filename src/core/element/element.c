@@ -7,9 +7,8 @@ static int refuse(double x, int range)
 {
     return !isfinite(x)                    ? TRIBO_ERR_NOT_FINITE
            : range == FINITE               ? TRIBO_ERR_RANGE
-           : x < 0.0 && range == POSITIVE  ? TRIBO_ERR_NOT_POSITIVE
+           : x <= 0.0 && range == POSITIVE ? TRIBO_ERR_NOT_POSITIVE
            : x < 0.0                       ? TRIBO_ERR_NEGATIVE
-           : x == 0.0 && range == POSITIVE ? TRIBO_ERR_NOT_POSITIVE
                                            : TRIBO_ERR_RANGE;
 }
 

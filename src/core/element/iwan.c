@@ -41,7 +41,7 @@ static int check_parameters(size_t n, const double *parameter)
     return status;
 }
 
-/* Whether dx turns a branch of direction state[2]. */
+/* Returns 1 if dx is against the direction state[2] of the last motion. */
 static int turns(const double *state, double dx)
 {
     return dx * state[2] < 0.0;
@@ -61,7 +61,7 @@ static int check_state(size_t n, size_t room, const double *dz, const double *st
     return TRIBO_OK;
 }
 
-/* The force at x on the branch after `turn` turns, in direction sign. */
+/* The force at x on the branch after turn [count][2]: x_r, p_r of the open turns; *slope: its derivative. */
 static double branch(const struct iwan *p, const double *turn, size_t count, double x, double *slope)
 {
     if (!count) {

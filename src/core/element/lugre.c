@@ -10,12 +10,6 @@ struct lugre {
     double fc, fs, vs; /* kinetic limit, static limit, Stribeck velocity */
 };
 
-static int check_parameters(size_t n, const double *parameter)
-{
-    static const int range[PARAMETERS] = {POSITIVE, NONNEGATIVE, NONNEGATIVE, NONNEGATIVE, NONNEGATIVE, POSITIVE};
-    return tribo_check_elements(parameter, n, PARAMETERS, range);
-}
-
 /* 1 - exp(-x) to its own digits, x >= 0. */
 static double fallen(double x)
 {
@@ -38,10 +32,11 @@ static double slide(const struct lugre *p, double dt, double v, double *z, doubl
 
 int tribo_lugre_force(size_t n, double dt, const double *dz, const double *parameter, double *z, double *f, double *df_dz)
 {
+    static const int range[PARAMETERS] = {POSITIVE, NONNEGATIVE, NONNEGATIVE, NONNEGATIVE, NONNEGATIVE, POSITIVE};
     int status = element_check_size(n);
     status = status ? status : tribo_check_element(&dt, 1, POSITIVE);
     status = status ? status : tribo_check_element(dz, n, FINITE);
-    status = status ? status : check_parameters(n, parameter);
+    status = status ? status : tribo_check_elements(parameter, n, PARAMETERS, range);
     status = status ? status : tribo_check_finite(NULL, "z", z, n);
     status = status ? status : n && !f ? TRIBO_ERR_NULL : TRIBO_OK;
     for (size_t i = 0; !status && i < n; i++) {

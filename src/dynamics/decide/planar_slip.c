@@ -63,17 +63,9 @@ static int create_plane(struct stick_slip *m, const tribo_system *sys)
     if (status) {
         return status;
     }
-    tribo_set_law(p->disc, TRIBO_COULOMB);
     tribo_set_sharing(p->disc, TRIBO_SHARE_PREVIOUS);
-    /* slip[i] = TRIBO_SLIP_PLANE for directions of planar contacts: the slip of contacts that all slide */
-    double *one = p->rate;
     signed char *slip = (signed char *)p->in_plane;
-    for (size_t i = 0; i < c; i++) {
-        one[i] = 1.0;
-    }
-    status = tribo_set_limit(p->disc, one);
-    status = status ? status : tribo_balance(p->disc, one, one, NULL, one);
-    status = status ? status : tribo_get_slip(p->disc, slip);
+    status = tribo_system_find_pairs(p->disc, c, p->rate, slip);
     for (size_t i = 0; !status && i < c; i++) {
         /* directions of planar contacts stand in pairs; one without both limits is scalar, or open */
         const double *limit = m->state.limit + i, *r = m->constant.diagonal + i;

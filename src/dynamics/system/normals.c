@@ -145,18 +145,11 @@ int tribo_normals_pair(tribo_system *sys)
     if (s->count == 0) {
         return TRIBO_OK;
     }
-    /* contacts that all slide: TRIBO_SLIP_PLANE at both directions of planar ones */
     tribo_context *probe = NULL;
     double *one = malloc(2 * c * sizeof *one);
     signed char *slip = (signed char *)(one + c);
-    for (size_t i = 0; one && i < c; i++) {
-        one[i] = 1.0;
-    }
     int status = one ? tribo_clone(sys->contacts, &probe) : TRIBO_ERR_MEMORY;
-    status = status ? status : tribo_set_law(probe, TRIBO_COULOMB);
-    status = status ? status : tribo_set_limit(probe, one);
-    status = status ? status : tribo_balance(probe, one, one, NULL, one);
-    status = status ? status : tribo_get_slip(probe, slip);
+    status = status ? status : tribo_system_find_pairs(probe, c, one, slip);
     memset(s->by, 0, c * sizeof *s->by);
     for (size_t k = 0; k < s->followers; k++) {
         s->by[s->follower[k].contact] = k + 1;

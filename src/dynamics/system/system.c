@@ -110,6 +110,17 @@ size_t tribo_system_planar(const tribo_system *sys)
     return planar;
 }
 
+int tribo_system_find_pairs(tribo_context *contacts, size_t ncontact, double *one, signed char *slip)
+{
+    for (size_t i = 0; i < ncontact; i++) {
+        one[i] = 1.0;
+    }
+    int status = tribo_set_law(contacts, TRIBO_COULOMB);
+    status = status ? status : tribo_set_limit(contacts, one);
+    status = status ? status : tribo_balance(contacts, one, one, NULL, one);
+    return status ? status : tribo_get_slip(contacts, slip);
+}
+
 size_t tribo_system_ndof(const tribo_system *sys)
 {
     return sys ? sys->expansion.dofs - sys->expansion.sliders : 0;

@@ -181,6 +181,10 @@ static inline int tribo_system_bases_move(const tribo_system *sys)
     return sys->loads.bases > 0;
 }
 
+/* slip [ncontact] = TRIBO_SLIP_PLANE at both directions of planar contacts, found by a balance in which all contacts slide. contacts:
+ * a copy of the context, which keeps Coulomb's law and the limits 1; one [ncontact]: workspace. Returns a status. */
+int tribo_system_find_pairs(tribo_context *contacts, size_t ncontact, double *one, signed char *slip);
+
 /* Returns 1 if limits change, by a table or harmonics, or with the motion. */
 static inline int tribo_system_limits_vary(const tribo_system *sys)
 {
