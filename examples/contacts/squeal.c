@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Squeal: a body on a belt, whose normal load follows its motion. Above a coefficient of friction the sliding state is unstable
- * (flutter of two coupled modes; the model of Hoffmann, Fischer, Allgaier and Gaul 2002), and the motion grows into a limit cycle of
- * slip, stick and lift-off.
+/* Squeal of a body on a belt, N = normal y. For mu > mu_c two modes of the sliding body couple, and the sliding state is unstable
+ * (flutter; the model of Hoffmann, Fischer, Allgaier and Gaul 2002). The motion grows into a limit cycle of slip, stick and
+ * lift-off.
  *
  *     contact_squeal FOLDER
  *

@@ -61,16 +61,16 @@ TRIBO_API int tribo_model_set_direction_csr(tribo_model *model, const size_t *ro
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_RANGE (1/c overflows), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_model_set_compliance(tribo_model *model, const double *c);
 
-/* A contact whose limit follows the motion: the normal load is a spring that lifts off,
- *     N = stiffness max(0, J_n q - gap),   limit of the contact = mu N,   and the bodies get -J_n' N, n = normal.
+/* Sets the limit of a contact to mu N, N the force of a spring in the normal direction n = normal, which lifts off:
+ *     N = stiffness max(0, J_n q - gap),   the bodies get -J_n' N.
  * contact    in   the contact; of a planar one (tribo_set_planar) its first direction
  * normal     in   another row of J, the normal direction, positive where the bodies press on each other. Its row in forces of
  *                 contacts is -N; it has no friction, and no compliance. Contacts may share a normal, with equal stiffness and gap
  * mu         in   >= 0   coefficient of friction
  * stiffness  in   >= 0, force/displacement   normal stiffness of the contact
  * gap        in   displacement; < 0: a preload
- * Another call for the contact replaces its normal. In tribo_system_context the limits of contact and normal stay 0. Open contacts
- * have no force; the slider of an elastic one goes along. At touch-down the slider begins where the body is.
+ * Another call for the contact replaces its normal. In tribo_system_context the limits of contact and normal stay 0. An open
+ * contact, N = 0, has no force; the slider of an elastic contact moves with the body, and begins at the body at touch-down.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_RANGE (no such row; normal of itself; a row that is
  * both; stiffness or gap of a shared normal differ), TRIBO_ERR_MEMORY. Yang and Menq (1998). */
 TRIBO_API int tribo_model_set_normal(tribo_model *model, size_t contact, size_t normal, double mu, double stiffness, double gap);

@@ -56,7 +56,7 @@ struct slip_state {
     size_t snaps;
     int simple;             /* 1: snap has a correction for every contact of H */
     signed char *tied;      /* [ncontact] at rest and at the limit: 1: stays there; 2: goes back inside */
-    size_t reached;         /* the contact whose force just met its limit, by the event; ncontact if none */
+    size_t reached;         /* contact with |f| = limit at the event, or normal with N = 0; ncontact: none */
     double *limit;          /* [ncontact] limit while sliding */
     double *limit_rate;     /* [ncontact] its rate */
     double *stick;          /* [ncontact] limit at rest */

@@ -28,7 +28,8 @@ int tribo_modal_exponents(struct modal_build *b);
  * contacts that hold. */
 void tribo_modal_react(const struct modal *h, size_t columns, double *force, double *f, double *work);
 
-/* Sets on, in J y, and by_u or NULL, [ncontact][columns] by displacements y [n][columns], with J_I y = b_I, and inertia = y'M [columns][n]:
+/* Sets on, in J y, and by_u or NULL, [ncontact][columns] by displacements y [n][columns], with J_I y = b_I, and inertia = y'M
+ * [columns][n]:
  * contacts that hold: force per eta, J_I'f = K y - inertia omega2 - J_A'f_A (A: compliant ones, f_A' = -G_AA^-1 (J_A y - b_A)),
  * and per eta', J_I'f = C y; other contacts: velocity per eta'. base [ncontact] = b, of one column, by which only the rest of the
  * forces beside the modes counts; NULL: y are the modes, 0. Sets b->scratch.failed = 1 if out of memory. */

@@ -304,8 +304,8 @@ static int search(struct shooting *s)
 }
 
 /* Searches from the forecast, unless the guess is near it; then from the guess, and from states some periods after it: where
- * contacts hardly slip, or static limits or limits that follow make motions diverge, Newton's steps may fail. With static limits a stable motion may be
- * not odd, although all drives are odd. Returns a status. */
+ * contacts hardly slip, and where motions diverge by static limits or limits that follow, Newton's steps may fail. With static
+ * limits a stable motion may be not odd, although all drives are odd. Returns a status. */
 static int search_all(struct shooting *s)
 {
     static const size_t marched[] = {0, 20, 100};

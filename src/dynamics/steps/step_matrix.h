@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The matrix S = M + h/2 C + h^2/4 K of a midpoint step of length h, K with the pressed normals, and its factor. Degrees of freedom without mass enter S
- * only by the stiffness of the other ones (condense.c). */
+/* The matrix S = M + h/2 C + h^2/4 K of a midpoint step of length h, K with the pressed normals, and its factor. Degrees of
+ * freedom without mass enter S only by the stiffness of the other ones (condense.c). */
 #ifndef TRIBO_STEP_MATRIX_H
 #define TRIBO_STEP_MATRIX_H
 

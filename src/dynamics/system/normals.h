@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Contacts whose limits follow the motion (Yang and Menq 1998): row n of J is a normal direction, with
+/* Limits mu N by normal loads N(q) (Yang and Menq 1998). Row n of J is a normal direction:
  *     depth = J_n q - gap,   N = stiffness max(0, depth),   limit of each contact of the normal = mu N,
  * and the bodies get -J_n' N. While the normal is pressed, N is linear in q: the forces of the structure, its limits, and their
  * derivatives in time follow from those of q. Row n has limit 0, and no friction. */
