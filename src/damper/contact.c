@@ -50,25 +50,36 @@ struct word {
     enum { POSITIVE, NOT_NEGATIVE, ANY } sign;
 };
 
-/* Reads the words behind a place; to: the other end of a contact, or NULL; all: them all, for the message. */
+/* Reads the words behind a place; to: the contact, or NULL; all: them all, for the message. */
 static void read_words(struct text *t, const struct word *known, size_t count, struct contact *to, const char *all)
 {
     while (*rest_of(t)) {
         const char *name = next_word(t, "a word", " :=");
         const struct word *w = NULL;
-        const int is_to = to && strcmp(name, "to") == 0;
+        const int is_to = to && strcmp(name, "to") == 0, is_normal = to && strcmp(name, "normal") == 0;
         for (size_t k = 0; k < count; k++) {
             w = strcmp(known[k].name, name) == 0 ? &known[k] : w;
         }
-        if (t->end != '=' || !(w || is_to)) {
+        if (t->end != '=' || !(w || is_to || is_normal)) {
             die_at(t, "\"%.40s\" is none of %s", name, all);
         }
-        if (is_to ? to->between : !isnan(*w->value)) {
+        if (is_to ? to->between : is_normal ? to->normal.direction : !isnan(*w->value)) {
             die_at(t, "%s= is there twice", name);
         }
         if (is_to) {
             next_coordinates(t, ",", PARTED, 3, to->to.at);
             to->between = 1;
+        } else if (is_normal) {
+            const char *word = next_word(t, "direction", ",");
+            const int against = word[0] == '-', along = direction_of(word[against || word[0] == '+']);
+            if (!along || word[1 + (against || word[0] == '+')]) {
+                die_at(t, "normal=%.40s must be x, y or z, or one of them with a sign", word);
+            }
+            if (t->end != ',') {
+                die_at(t, "normal=%.40s needs a stiffness: normal=%.40s,STIFFNESS", word, word);
+            }
+            to->normal.direction = against ? -along : along;
+            to->normal.stiffness = next_positive(t, "stiffness", PARTED);
         } else {
             *w->value = (w->sign == POSITIVE ? next_positive : next_real)(t, name, PARTED);
             if (*w->value < 0.0 && w->sign == NOT_NEGATIVE) {
@@ -78,26 +89,48 @@ static void read_words(struct text *t, const struct word *known, size_t count, s
     }
 }
 
+/* Checks the words of a contact, which may slide along a second direction. */
+static void check_contact(const struct text *t, const struct contact *c, int second)
+{
+    const struct normal *n = &c->normal;
+    const int along = abs(n->direction);
+    if (!isnan(c->limit) && !(isnan(c->mu) && isnan(n->load))) {
+        die_at(t, "either limit= or mu=, not both");
+    }
+    if (isnan(c->mu) && !isnan(n->load)) {
+        die_at(t, "load= needs mu=, too");
+    }
+    if (!along && !isnan(n->gap)) {
+        die_at(t, "gap=%g needs normal=, too", n->gap);
+    }
+    if (along && isnan(c->mu)) {
+        die_at(t, "normal= needs mu=, in the place of limit=: the limit is mu times the load of the normal spring");
+    }
+    if (along && (along == c->at.direction || along == second)) {
+        die_at(t, "normal=%c is a direction along which the contact slides", "xyz"[along - 1]);
+    }
+    if (!isnan(n->gap) && !isnan(n->load)) {
+        die_at(t, "either gap=%g or load=%g, not both", n->gap, n->load);
+    }
+}
+
 void read_contact(struct text *t, void *contacts)
 {
     struct contacts *all = contacts;
-    struct contact c = {.mu = (double)NAN, .limit = (double)NAN, .stiffness = (double)NAN};
-    double load = (double)NAN;
+    const double none = (double)NAN;
+    struct contact c = {.mu = none, .limit = none, .stiffness = none, .normal = {.gap = none, .load = none}};
     const struct word known[] = {{"limit", &c.limit, NOT_NEGATIVE},
                                  {"mu", &c.mu, POSITIVE},
-                                 {"load", &load, POSITIVE},
-                                 {"stiffness", &c.stiffness, POSITIVE}};
+                                 {"load", &c.normal.load, POSITIVE},
+                                 {"stiffness", &c.stiffness, POSITIVE},
+                                 {"gap", &c.normal.gap, ANY}};
     int second;
     c.at = next_place(t, PARTED, &second);
-    read_words(t, known, sizeof known / sizeof *known, &c, "to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER");
-    if (!isnan(c.limit) && !(isnan(c.mu) && isnan(load))) {
-        die_at(t, "either limit= or mu=, not both");
-    }
-    if (isnan(c.mu) && !isnan(load)) {
-        die_at(t, "load= needs mu=, too");
-    }
-    c.by_load = isnan(c.limit) && isnan(load) && !isnan(c.mu);
-    c.limit = isnan(load) ? c.limit : c.mu * load;
+    read_words(t, known, sizeof known / sizeof *known, &c,
+               "to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER normal=DIR,STIFFNESS gap=LENGTH");
+    check_contact(t, &c, second);
+    c.by_load = isnan(c.limit) && isnan(c.normal.load) && isnan(c.normal.gap) && !isnan(c.mu);
+    c.limit = !isnan(c.normal.gap) ? 0.0 : isnan(c.normal.load) ? c.limit : c.mu * c.normal.load;
     c.mu = isnan(c.mu) ? 1.0 : c.mu;
     c.stiffness = isnan(c.stiffness) ? 0.0 : c.stiffness;
     c.to.direction = c.at.direction;
@@ -155,6 +188,21 @@ void read_contacts(struct text *path, void *contacts)
     }
     if (all->count == before) {
         die("%s: there is no contact in it", path->at);
+    }
+}
+
+void add_normals(struct contacts *all)
+{
+    for (size_t c = 0; c < all->count; c++) {
+        struct contact n = all->contact[c];
+        if (n.directions && n.normal.direction) {
+            n.at.direction = n.to.direction = abs(n.normal.direction);
+            n.stiffness = n.normal.stiffness;
+            n.directions = 0;
+            n.line = NULL;
+            all->contact = need_room(all->contact, all->count + all->normals, &all->room, sizeof *all->contact);
+            all->contact[all->count + all->normals++] = n;
+        }
     }
 }
 

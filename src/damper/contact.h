@@ -11,16 +11,28 @@ struct place {
     const char *origin; /* where it was given, for messages */
 };
 
-/* A contact between a node and the ground, or another node; or one of the two directions of a contact in a plane. */
+/* The normal load of a contact by a spring that lifts off: stiffness max(0, displacement - gap), or max(0, load + stiffness
+ * displacement), where the structure at rest holds the load. */
+struct normal {
+    int direction;    /* 1, 2, 3; < 0: the node presses as it moves against it; 0: there is none */
+    double stiffness; /* > 0 */
+    double gap;       /* NaN: load is given */
+    double load;      /* NaN: gap is given, or the load is that of --limits */
+};
+
+/* A contact between a node and the ground, or another node; or one of the two directions of a contact in a plane; or the normal
+ * direction of a contact, along which a spring presses. */
 struct contact {
     struct place at, to;
     int between;  /* 0: to the ground, and there is no to */
     double limit; /* NaN: mu times the value of --limits */
     double mu;
-    int by_load;      /* 1: limit is NaN and mu is given, so that --limits gives normal loads */
-    double stiffness; /* of the spring that it slides on; 0: none, it is rigid */
-    int directions;   /* of the contact, of which this is the first one; 0: this is the second one of the contact before */
-    char *line;       /* origin of a contact from a file, or NULL; owned */
+    int by_load; /* 1: limit is NaN and mu is given, so that --limits gives normal loads */
+    double
+        stiffness;  /* of the spring that it slides on; 0: none, it is rigid; of a normal direction, of the spring that presses */
+    int directions; /* of the contact, of which this is the first one; 0: this is the second one of the contact before */
+    struct normal normal;
+    char *line; /* origin of a contact from a file, or NULL; owned */
 };
 
 /* A harmonic load, size sin(omega t + phase): a force at a place; or an acceleration of all supports along a direction. */
@@ -44,15 +56,17 @@ struct place read_place(struct text *t);
 reader read_load, read_base;
 
 struct contacts {
-    struct contact *contact;
+    struct contact *contact; /* [count + normals] */
     size_t count, room;
+    size_t normals; /* normal directions, behind all contacts, in the order of their contacts; added by add_normals */
 };
 
-/* "X,Y,Z,DIR", where DIR may be two directions, and words to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER behind it,
- * parted by colons or blanks: adds the contact, or the two directions of a planar one, to a struct contacts. The other one adds
+/* "X,Y,Z,DIR", where DIR may be two directions, and words to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER
+ * normal=DIR,STIFFNESS gap=LENGTH behind it, parted by colons or blanks: adds the contact, or the two directions of a planar one, to a struct contacts. The other one adds
  * the contacts of a file, one a line. */
 reader read_contact, read_contacts;
 
+void add_normals(struct contacts *all);
 void free_contacts(struct contacts *all);
 
 #endif

@@ -50,13 +50,15 @@ void complete_options(struct options *o, const struct structure *s)
             die("%s: contacts in a plane are for --method march; method exact knows contacts along one axis only", origin);
         }
     }
+    add_normals(&o->contacts);
 }
 
-/* Rows over the degrees of freedom [ndof]: directions of contacts, then loads of size 1, then outputs, then the place where
+/* Rows over the degrees of freedom [ndof]: directions of contacts, normal directions, then loads of size 1, then outputs, then the place where
  * amplitudes are measured. A load of the supports is -M r with r the direction, which is 1 along it. */
 static struct sparse make_rows(const struct options *o, const struct structure *s)
 {
-    const size_t contacts = o->contacts.count, loads = o->loads.count, rows = contacts + loads + o->outputs.count + 1;
+    const size_t contacts = o->contacts.count + o->contacts.normals, loads = o->loads.count,
+                 rows = contacts + loads + o->outputs.count + 1;
     struct sparse j = {.rows = rows, .first = need_memory(rows + 1, sizeof *j.first)};
     const size_t most = 2 * rows + loads * s->ndof;
     size_t count = 0;
@@ -66,6 +68,7 @@ static struct sparse make_rows(const struct options *o, const struct structure *
         const struct contact *contact = r < contacts ? &o->contacts.contact[r] : NULL;
         const struct load *load = r >= contacts && r < contacts + loads ? &o->loads.load[r - contacts] : NULL;
         const size_t output = r - contacts - loads;
+        const double sign = contact && r >= o->contacts.count && contact->normal.direction < 0 ? -1.0 : 1.0;
         if (load && load->supports) {
             for (size_t i = 0; i < s->ndof; i++) {
                 j.col[count] = i;
@@ -78,11 +81,11 @@ static struct sparse make_rows(const struct options *o, const struct structure *
                                      : r + 1 < rows ? &o->outputs.place[output]
                                                     : measured_place(o);
             j.col[count] = find_degree(s, at);
-            j.val[count++] = 1.0;
+            j.val[count++] = sign;
         }
         if (contact && contact->between) {
             j.col[count] = find_degree(s, &contact->to);
-            j.val[count++] = -1.0;
+            j.val[count++] = -sign;
             if (j.col[count - 1] == j.col[count - 2]) {
                 die("%s: both ends are the same node", contact->at.origin);
             }
@@ -138,7 +141,7 @@ static void reduce(struct damper *d, const struct structure *s)
 {
     const struct options *o = d->options;
     /* with statics the loads are contacts, too: their static responses are needed as those of contacts */
-    const size_t loads = o->loads.count, directions = d->contacts + (o->statics ? loads : 0);
+    const size_t loads = o->loads.count, directions = d->rows + (o->statics ? loads : 0);
     struct sparse rows = make_rows(o, s);
     tribo_model *model = NULL;
     need(tribo_model_create(&model, s->ndof, directions), NULL);
@@ -157,7 +160,7 @@ static void reduce(struct damper *d, const struct structure *s)
     double *shape = need_memory(rows.rows * n, sizeof *shape);
     d->open = create_linear(n);
     d->contact_shape = shape;
-    d->output_shape = shape + (d->contacts + loads) * n;
+    d->output_shape = shape + (d->rows + loads) * n;
     need(tribo_system_get_frequencies(d->reduced, d->open.omega), tribo_system_message(d->reduced));
     for (size_t k = 0; k < n; k++) {
         unit[k] = 1.0;
@@ -170,11 +173,11 @@ static void reduce(struct damper *d, const struct structure *s)
     }
     for (size_t i = 0; i < loads * n; i++) {
         const struct load *load = &o->loads.load[i / n];
-        const double force = load->size * shape[d->contacts * n + i], phase = TURN / 360.0 * load->phase;
+        const double force = load->size * shape[d->rows * n + i], phase = TURN / 360.0 * load->phase;
         d->open.cosine[i % n] += phase != 0.0 ? force * sin(phase) : 0.0;
         d->open.sine[i % n] += phase != 0.0 ? force * cos(phase) : force;
     }
-    for (size_t c = 0; c < d->contacts; c++, shape += n) {
+    for (size_t c = 0; c < d->rows; c++, shape += n) {
         double most = 0.0;
         for (size_t k = 0; k < n; k++) {
             most = fmax(most, fabs(shape[k]));
@@ -202,19 +205,24 @@ static void check_spring(const struct damper *d, size_t c)
         lowest = d->open.omega[k] > 1e-6 * d->open.omega[d->modes - 1] ? fmin(lowest, d->open.omega[k]) : lowest;
     }
     if (!(spring <= MOST_STIFF * lowest * lowest)) {
-        die("%s: stiffness=%g is more than %g times that of the structure there: leave it out for a rigid contact",
-            d->contact[c].at.origin, stiffness, MOST_STIFF);
+        die("%s: stiffness=%g is more than %g times that of the structure there%s", d->contact[c].at.origin, stiffness,
+            MOST_STIFF, c < d->contacts ? ": leave it out for a rigid contact" : "; that of normal=");
     }
 }
 
-/* The system of modes, with the springs of contacts. */
-static void build(struct damper *d)
+double rest_load(const struct contact *c, double limit)
+{
+    return !isnan(c->normal.gap) ? 0.0 : isnan(c->normal.load) ? limit : c->normal.load;
+}
+
+tribo_system *create_system(const struct damper *d, double limit)
 {
     const size_t n = d->modes;
-    double *mass = need_memory(3 * n + d->contacts, sizeof *mass);
+    double *mass = need_memory(3 * n + d->rows, sizeof *mass);
     double *stiffness = mass + n, *damping = stiffness + n, *compliance = damping + n;
-    size_t *first = need_memory(d->contacts, sizeof *first), planar = 0;
+    size_t *first = need_memory(d->contacts, sizeof *first), planar = 0, row = d->contacts;
     tribo_model *model = NULL;
+    tribo_system *sys = NULL;
     for (size_t k = 0; k < n; k++) {
         mass[k] = 1.0;
         stiffness[k] = d->open.omega[k] * d->open.omega[k];
@@ -222,31 +230,37 @@ static void build(struct damper *d)
     }
     for (size_t c = 0; c < d->contacts; c++) {
         if (d->contact[c].stiffness > 0.0) {
-            check_spring(d, c);
             compliance[c] = 1.0 / d->contact[c].stiffness;
         }
         if (d->contact[c].directions == 2) {
             first[planar++] = c;
         }
     }
-    need(tribo_model_create(&model, n, d->contacts), NULL);
+    need(tribo_model_create(&model, n, d->rows), NULL);
     need(tribo_model_set_mass_diagonal(model, mass), tribo_model_message(model));
     need(tribo_model_set_stiffness_diagonal(model, stiffness), tribo_model_message(model));
     need(d->open.coupled ? tribo_model_set_damping(model, d->open.damping) : tribo_model_set_damping_diagonal(model, damping),
          tribo_model_message(model));
     need(tribo_model_set_direction(model, d->contact_shape), tribo_model_message(model));
     need(tribo_model_set_compliance(model, compliance), tribo_model_message(model));
-    if (tribo_system_create(&d->sys, model)) {
+    for (size_t c = 0; c < d->contacts; c++) {
+        const struct contact *contact = &d->contact[c];
+        if (contact->directions && contact->normal.direction) {
+            const struct normal *to = &contact->normal;
+            const double gap = isnan(to->gap) ? -rest_load(contact, limit) / to->stiffness : to->gap;
+            need(tribo_model_set_normal(model, c, row++, contact->mu, to->stiffness, gap), tribo_model_message(model));
+        }
+    }
+    if (tribo_system_create(&sys, model)) {
         die("modes and springs: %s", tribo_model_message(model));
     }
-    tribo_context *context = tribo_system_context(d->sys);
+    tribo_context *context = tribo_system_context(sys);
     need(tribo_set_law(context, d->law), tribo_message(context));
     need(tribo_set_planar(context, planar, first), tribo_message(context));
-    d->marched = planar > 0;
-    d->dimension = tribo_system_dimension(d->sys);
     tribo_model_destroy(model);
     free(mass);
     free(first);
+    return sys;
 }
 
 struct damper create_damper(const struct options *o, const struct structure *s, size_t kept)
@@ -255,6 +269,7 @@ struct damper create_damper(const struct options *o, const struct structure *s, 
                        .ndof = s->ndof,
                        .kept = kept,
                        .contacts = o->contacts.count,
+                       .rows = o->contacts.count + o->contacts.normals,
                        .contact = o->contacts.contact,
                        .law = o->law};
     if (o->modes > s->ndof) {
@@ -263,13 +278,20 @@ struct damper create_damper(const struct options *o, const struct structure *s, 
     reduce(&d, s);
     d.lowest = o->drive.from > 0.0 ? o->drive.from : d.open.omega[0] / TURN;
     d.highest = o->drive.from > 0.0 ? o->drive.to : d.lowest;
-    d.stuck = stick(&d.open, d.contact, d.contacts, d.contact_shape);
+    d.stuck = stick(&d.open, d.contact, d.rows, d.contact_shape);
     /* rigid contacts must not hold all motions of the modes, unless they hold the structure itself */
     if (d.modes < d.ndof && d.stuck.count == 0) {
         die("the contacts, if they stick, hold all that the %zu mode%s of the reduced structure let%s move: keep more --modes",
             d.modes, d.modes == 1 ? "" : "s", d.modes == 1 ? "s" : "");
     }
-    build(&d);
+    for (size_t c = 0; c < d.rows; c++) {
+        if (d.contact[c].stiffness > 0.0) {
+            check_spring(&d, c);
+        }
+        d.marched |= d.contact[c].directions == 2;
+    }
+    d.sys = create_system(&d, o->limits.from);
+    d.dimension = tribo_system_dimension(d.sys);
     return d;
 }
 

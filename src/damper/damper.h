@@ -14,15 +14,16 @@
 struct damper {
     const struct options *options;
     tribo_system *reduced;         /* for truncation, and for displacements of the whole structure */
-    tribo_system *sys;             /* the same with springs, without a load */
+    tribo_system *sys;             /* the same with springs, without a load; with normal directions at the first of --limits */
     size_t ndof, kept, modes;      /* of the structure; lowest modes kept; those and static responses */
     size_t contacts;               /* number of them, of a contact in a plane both directions */
-    const struct contact *contact; /* [contacts] */
+    size_t rows;                   /* number of contacts and of normal directions behind them */
+    const struct contact *contact; /* [rows] */
     size_t dimension;              /* of a state */
     int marched;                   /* 1: motions are found by marching only, since contacts slide in a plane */
     struct linear open, stuck;     /* without friction, and with all contacts stuck */
     double lowest, highest;        /* ends of the band of the load, Hz */
-    double *contact_shape;         /* [contacts][modes] the modes at the contacts */
+    double *contact_shape;         /* [rows][modes] the modes at the contacts, positive where normal directions press */
     const double *output_shape;    /* [outputs][modes] at the places of --output */
     int law;
 };
@@ -33,6 +34,12 @@ void complete_options(struct options *o, const struct structure *s);
 /* kept: the lowest modes to keep. The options must stay. */
 struct damper create_damper(const struct options *o, const struct structure *s, size_t kept);
 void free_damper(struct damper *d);
+
+/* The system of modes, with the springs of contacts, for a value of --limits. */
+tribo_system *create_system(const struct damper *d, double limit);
+
+/* The load of a normal spring where the structure is at rest, for a value of --limits; 0 if the contact has a gap. */
+double rest_load(const struct contact *c, double limit);
 
 /* Ends the program if at this frequency of the load there is nothing to compute with. */
 void check_drive(const struct damper *d, double hz);

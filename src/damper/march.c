@@ -230,7 +230,7 @@ struct motion march(struct worker *w, double limit, double hz, double *y)
     }
     memcpy(y, state[0], n * sizeof *y);
     double *record = y + n;
-    for (size_t c = 0; c < 2 * d->contacts; c++) {
+    for (size_t c = 0; c < 3 * d->contacts; c++) {
         *record++ = (double)NAN;
     }
     for (size_t k = 0; k < output_size(d) * d->options->outputs.count; k++) {

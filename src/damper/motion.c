@@ -9,21 +9,27 @@
 #include "output.h"
 #include "team.h"
 
+static void open_driver(struct worker *w)
+{
+    if (!w->d->marched) {
+        need(tribo_driver_create(&w->drv, w->sys, w->d->rows > w->d->contacts ? "auto" : "exact"), tribo_system_message(w->sys));
+    }
+}
+
 struct worker create_worker(const struct damper *d, int march)
 {
-    struct worker w = {.d = d, .march = march, .dimension = d->dimension};
+    struct worker w = {.d = d, .march = march, .at = d->options->limits.from, .dimension = d->dimension};
     need(tribo_system_clone(d->sys, &w.sys), NULL);
-    if (!d->marched) {
-        need(tribo_driver_create(&w.drv, w.sys, "exact"), tribo_system_message(w.sys));
-    }
-    w.limit = need_memory(d->contacts, sizeof *w.limit);
+    open_driver(&w);
+    w.limit = need_memory(d->rows, sizeof *w.limit);
+    w.each = need_memory(d->rows, sizeof *w.each);
     w.c = need_memory(2 * d->modes, sizeof *w.c);
     return w;
 }
 
 size_t record_of(const struct damper *d)
 {
-    return d->dimension + 2 * d->contacts + output_size(d) * d->options->outputs.count;
+    return d->dimension + 3 * d->contacts + output_size(d) * d->options->outputs.count;
 }
 
 void free_worker(struct worker *w)
@@ -32,19 +38,35 @@ void free_worker(struct worker *w)
     tribo_driver_destroy(w->marcher);
     tribo_system_destroy(w->sys);
     free(w->limit);
+    free(w->each);
     free(w->c);
 }
 
 void set_point(struct worker *w, double limit, double hz)
 {
     const struct damper *d = w->d;
+    const int follows = d->rows > d->contacts;
+    if (follows && w->at != limit) { /* gaps of normal directions belong to the structure */
+        tribo_driver_destroy(w->drv);
+        tribo_system_destroy(w->sys);
+        w->sys = create_system(d, limit);
+        open_driver(w);
+        w->at = limit;
+    }
     tribo_context *contacts = tribo_system_context(w->sys);
     for (size_t c = 0; c < d->contacts; c++) {
-        w->limit[c] = isnan(d->contact[c].limit) ? d->contact[c].mu * limit : d->contact[c].limit;
+        const double own = d->contact[c].limit;
+        w->limit[c] = d->contact[c].normal.direction ? 0.0 : isnan(own) ? d->contact[c].mu * limit : own;
     }
     need(tribo_set_limit(contacts, w->limit), tribo_message(contacts));
     need(tribo_system_clear_loads(w->sys), tribo_system_message(w->sys));
     need(tribo_system_add_load(w->sys, TURN * hz, d->open.cosine, d->open.sine), tribo_system_message(w->sys));
+    /* a constant load holds the loads of normal directions at rest */
+    memset(w->c, 0, d->modes * sizeof *w->c);
+    for (size_t k = d->contacts * d->modes; k < d->rows * d->modes; k++) {
+        w->c[k % d->modes] += rest_load(&d->contact[k / d->modes], limit) * d->contact_shape[k];
+    }
+    need(follows ? tribo_system_add_load(w->sys, 0.0, w->c, NULL) : TRIBO_OK, tribo_system_message(w->sys));
 }
 
 tribo_driver *driver_at(struct worker *w, double limit, double hz)
@@ -79,6 +101,58 @@ static int measure_outputs(struct worker *w, double *output)
     return status;
 }
 
+/* Times of lift-off and touch-down of the contacts in a period. */
+struct opening {
+    size_t contacts;
+    double *since; /* [contacts] of lift-off; NaN: pressed */
+    double *open;  /* [contacts] time open so far */
+};
+
+static int see_opening(const tribo_moment *moment, void *data)
+{
+    struct opening *o = data;
+    const size_t c = moment->contact;
+    if (c < o->contacts && moment->kind == TRIBO_MOMENT_LIFT) {
+        o->since[c] = moment->t;
+    } else if (c < o->contacts && moment->kind == TRIBO_MOMENT_TOUCH) {
+        o->open[c] += moment->t - (isnan(o->since[c]) ? 0.0 : o->since[c]);
+        o->since[c] = (double)NAN;
+    }
+    return 0;
+}
+
+/* What normal loads that follow the motion bring about. open [contacts] out: shares of the period, which begins with y, for which
+ * contacts have lifted off; m->message if motions beside this one leave it. */
+static int measure_following(struct worker *w, const double *y, double *open, struct motion *m)
+{
+    const struct damper *d = w->d;
+    const size_t n = d->dimension;
+    struct opening o = {d->contacts, w->each, open};
+    double *state = need_memory(3 * n + d->rows, sizeof *state), *re = state + n, *im = re + n, *f = im + n, now = 0.0;
+    signed char *slip = need_memory(d->rows, sizeof *slip);
+    memcpy(state, y, n * sizeof *state);
+    int status = tribo_system_contacts(w->sys, 0.0, y, NULL, NULL, f);
+    status = status ? status : tribo_system_get_slip(w->sys, slip);
+    for (size_t c = 0; c < d->contacts; c++) {
+        const int is_open = d->contact[c].normal.direction && slip[c] == TRIBO_SLIP_OPEN;
+        o.since[c] = is_open ? 0.0 : (double)NAN;
+        open[c] = 0.0;
+    }
+    if (tribo_driver_get_multipliers(w->drv, re, im) == TRIBO_OK && hypot(re[0], im[0]) > 1.0 + 1e-6) {
+        snprintf(m->message, sizeof m->message, "unstable: motions beside it leave it by a factor of %.4g a period",
+                 hypot(re[0], im[0]));
+    }
+    status = status ? status : tribo_driver_set_observer(w->drv, see_opening, &o);
+    status = status ? status : tribo_driver_advance(w->drv, &now, 1.0 / m->hz, state);
+    need(tribo_driver_set_observer(w->drv, NULL, NULL), NULL);
+    for (size_t c = 0; c < d->contacts; c++) {
+        open[c] = fmin(m->hz * (open[c] + (isnan(o.since[c]) ? 0.0 : 1.0 / m->hz - o.since[c])), 1.0);
+    }
+    free(state);
+    free(slip);
+    return status;
+}
+
 /* Quantities of the motion just found, in closed form. The mean power of the loads is that of the first harmonic of the
  * displacements in phase with their rates; friction and damping take it. */
 static int measure(struct worker *w, struct motion *m, double *power)
@@ -91,9 +165,11 @@ static int measure(struct worker *w, struct motion *m, double *power)
         memcpy(w->c, k ? d->open.sine : d->open.cosine, d->modes * sizeof *w->c);
         status = tribo_driver_period_harmonic(w->drv, w->c, 1, &cosine[k], &sine[k]);
     }
-    status = status ? status : tribo_driver_period_dissipation(w->drv, power);
-    status = status ? status : tribo_driver_period_stick(w->drv, power + d->contacts);
-    status = status ? status : measure_outputs(w, power + 2 * d->contacts);
+    status = status ? status : tribo_driver_period_dissipation(w->drv, w->each);
+    memcpy(power, w->each, d->contacts * sizeof *power);
+    status = status ? status : tribo_driver_period_stick(w->drv, w->each);
+    memcpy(power + d->contacts, w->each, d->contacts * sizeof *power);
+    status = status ? status : measure_outputs(w, power + 3 * d->contacts);
     if (status) {
         return status;
     }
@@ -123,6 +199,9 @@ static struct motion shoot(struct worker *w, double limit, double hz, double *y)
     set_point(w, limit, hz);
     int status = tribo_driver_find_periodic(w->drv, 0.0, 1.0 / hz, y);
     status = status ? status : measure(w, &m, y + w->dimension);
+    if (!status && w->d->rows > w->d->contacts) {
+        status = measure_following(w, y, y + w->dimension + 2 * w->d->contacts, &m);
+    }
     m.periods = periods_of(w) - before;
     m.found = !status;
     if (status) {

@@ -10,18 +10,20 @@ struct motion {
     double friction, damped, input; /* lost to friction, lost to damping, put in by the loads */
     size_t periods;                 /* that were integrated to find it */
     int found;                      /* 0: numbers mean nothing, and message says why */
-    char message[200];
+    char message[200];              /* of a motion that was found: why it may not be the one that is seen; or empty */
 };
 
 /* One that computes, with a copy of the system: belongs to one thread. */
 struct worker {
     const struct damper *d;
     tribo_system *sys;
-    tribo_driver *drv;     /* "exact"; NULL with contacts in a plane */
+    double at;             /* value of --limits that sys is made for, with normal directions */
+    tribo_driver *drv;     /* "exact"; "auto" with normal directions; NULL with contacts in a plane */
     tribo_driver *marcher; /* of driver_at; NULL: none */
     int march;             /* steady motions are found by marching */
     size_t dimension;
-    double *limit; /* [contacts] */
+    double *limit; /* [rows] */
+    double *each;  /* [rows] workspace: a quantity of each contact */
     double *c;     /* [2 modes] workspace: coefficients of a signal c'[q, q'] */
 };
 struct worker create_worker(const struct damper *d, int march);
@@ -34,7 +36,7 @@ void set_point(struct worker *w, double limit, double hz);
 tribo_driver *driver_at(struct worker *w, double limit, double hz);
 
 /* Numbers in the record of a motion: the state at the beginning of a period; of each contact the power lost to its friction; of
- * each contact the share of the period for which it is at rest; of each output the amplitude, and of each harmonic h of it
+ * each contact the shares of the period for which it is at rest, and for which it has lifted off; of each output the amplitude, and of each harmonic h of it
  * a and phase of a sin(h omega t + phase), phase in degrees. Marching leaves powers and shares NaN. */
 size_t record_of(const struct damper *d);
 

@@ -194,7 +194,13 @@ static const struct option {
      "                         mu=NUMBER     its limit is mu times the normal load, and --limits gives normal loads\n"
      "                         mu=NUMBER load=FORCE   its limit is the product\n"
      "                         stiffness=NUMBER   a spring before the slider, force over length: the contact gives way while it\n"
-     "                                            sticks; with --law coulomb only\n"},
+     "                                            sticks; with --law coulomb only\n"
+     "                         normal=DIR,STIFFNESS   the normal load follows the motion: that of a spring along DIR, which\n"
+     "                                            presses as the node moves along DIR (against it: -DIR), relative to the other\n"
+     "                                            end, and lifts off; mu= is needed. At rest the spring has the load of load= "
+     "or\n"
+     "                                            --limits, which the structure holds; or, with gap=LENGTH, it begins to press\n"
+     "                                            at this displacement, below 0 if it presses at rest\n"},
     {OPTION(read_contacts, contacts), "  --contacts FILE      contacts, one a line, in the same words\n"},
     {TEXT, "\n"
            "The loads, at least one --load or --base; each may be given several times:\n"},
@@ -269,7 +275,8 @@ static const struct option {
      "  damper-history.csv       one frequency: three periods at the limit of most power; cycle, time, displacement where\n"
      "                           amplitudes are measured; of each contact velocity (with a spring, of the slider), force,\n"
      "                           and slip (0 sticks, 1 and -1 slides, 2 open, 3 slides in a plane); then of each contact the\n"
-     "                           displacement, over which the force makes its hysteresis loop\n"
+     "                           displacement, over which the force makes its hysteresis loop; then the load of each normal "
+     "spring\n"
      "  damper-sticking.csv      the same at three times that limit\n"
      "  damper-loop.csv          one frequency and one limit: the same there\n"
      "  damper-history.vtk, damper-sticking.vtk, damper-loop.vtk   with --field: nodes, and vectors displacement_DEG\n"
@@ -280,14 +287,17 @@ static const struct option {
      "  values-damper.txt        all single results, with all digits\n"
      "Columns of responses: limit (1 if every contact has its own); frequency; amplitude (half of the way from the smallest to\n"
      "the largest displacement); mean powers over a period, lost to friction, lost to damping, put in by the loads; periods\n"
-     "that were integrated; message, empty if the motion was found; for each contact, in the order given, the power that it\n"
-     "dissipates and the share of the period for which it sticks, both blank by marching; for each --output amplitude, phase of\n"
+     "that were integrated; message, empty if the motion was found, but with normal= unstable motions are found, too; for each\n"
+     "contact, in the order given, the power that it dissipates, the share of the period for which it sticks, and with normal=\n"
+     "that for which it is open, all blank by marching; for each --output amplitude, phase of\n"
      "the first harmonic, and with --harmonics the amplitude of harmonic 1, amplitude and phase of harmonics 2 to N; harmonic h\n"
      "is a sin(h omega t + phase), phase in degrees.\n"
      "If a contact that follows --limits has mu=, the column, the texts, and best.load and band.load in values-damper.txt are\n"
      "normal loads, else limits: a contact slides at mu times the normal load.\n"
      "Sweeps up and down agree: with a linear structure and constant limits the motion is unique, except for the places of\n"
-     "contacts that never slip, since friction takes energy from the difference of two motions.\n"},
+     "contacts that never slip, since friction takes energy from the difference of two motions. With normal= there may be "
+     "several\n"
+     "motions, or none that is stable, and friction may feed energy in: each point is searched from its neighbour.\n"},
     {TEXT,
      "\n"
      "Status 0; 1 with a message if something is wrong; 130 after Ctrl-C, the tables then hold the points found until then.\n"},

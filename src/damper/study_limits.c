@@ -52,7 +52,7 @@ static struct optimum balance_mode(const struct damper *d, double drive)
     const double damping = l->damping[k * (d->modes + 1)], load = hypot(l->cosine[k], l->sine[k]);
     for (size_t c = 0; c < d->contacts; c++) {
         const struct contact *contact = &d->contact[c];
-        one = one && isnan(contact->limit) && contact->mu == 1.0 && contact->stiffness == 0.0;
+        one = one && isnan(contact->limit) && contact->mu == 1.0 && contact->stiffness == 0.0 && !contact->normal.direction;
         sum += fabs(d->contact_shape[c * d->modes + k]);
     }
     if (!one || fabs(l->omega[k] - drive) > 0.05 * damping) {

@@ -50,7 +50,7 @@ void write_motion_head(const struct tables *t, FILE *file, const struct damper *
 {
     fprintf(file, "%s,frequency,amplitude,friction power,damping power,input power,periods,message", t->limit);
     for (size_t c = 1; d && c <= d->contacts; c++) {
-        fprintf(file, ",power%zu,stick%zu", c, c);
+        fprintf(file, d->contact[c - 1].normal.direction ? ",power%zu,stick%zu,open%zu" : ",power%zu,stick%zu", c, c, c);
     }
     for (size_t k = 1; d && k <= d->options->outputs.count; k++) {
         fprintf(file, ",amplitude%zu,phase%zu", k, k);
@@ -74,17 +74,20 @@ void write_motion(FILE *file, const struct motion *m, const double *y, const str
     write_number(file, m, m->friction);
     write_number(file, m, m->damped);
     write_number(file, m, m->input);
-    fprintf(file, ",%zu,%s", m->periods, m->found ? "" : "\"");
-    for (const char *c = m->found ? "" : m->message; *c; c++) {
+    fprintf(file, ",%zu,%s", m->periods, m->message[0] ? "\"" : "");
+    for (const char *c = m->message; *c; c++) {
         fputc(*c == '"' ? '\'' : *c, file);
     }
-    fprintf(file, m->found ? "" : "\"");
+    fprintf(file, m->message[0] ? "\"" : "");
     for (size_t c = 0; d && c < d->contacts; c++) {
         write_number(file, m, y[d->dimension + c]);
         write_number(file, m, y[d->dimension + d->contacts + c]);
+        if (d->contact[c].normal.direction) {
+            write_number(file, m, y[d->dimension + 2 * d->contacts + c]);
+        }
     }
     for (size_t k = 0; d && k < d->options->outputs.count; k++) {
-        const double *o = y + d->dimension + 2 * d->contacts + k * output_size(d);
+        const double *o = y + d->dimension + 3 * d->contacts + k * output_size(d);
         write_number(file, m, o[0]);
         write_number(file, m, o[2]);
         for (size_t h = 1; h <= d->options->harmonics; h++) {
@@ -183,13 +186,13 @@ enum { PERIODS = 3, STEPS = 3000 /* of them all */ };
 void write_history(const struct tables *t, struct worker *w, const struct motion *m, const double *y, const char *what)
 {
     const struct damper *d = w->d;
-    tribo_context *contacts = tribo_system_context(w->sys);
-    double *v = need_memory(2 * d->contacts, sizeof *v), *f = v + d->contacts, now = 0.0;
+    double *v = need_memory(2 * d->rows, sizeof *v), *f = v + d->rows, now = 0.0;
     double *state = need_memory(w->dimension, sizeof *state);
-    signed char *slip = need_memory(d->contacts, sizeof *slip);
+    signed char *slip = need_memory(d->rows, sizeof *slip);
     FILE *table = create_table(t, what, "csv");
     tribo_driver *drv = driver_at(w, m->limit, m->hz);
     if (drv == w->drv) {
+        tribo_context *contacts = tribo_system_context(w->sys);
         /* contacts that stick have velocities of rounding size: a law with a band around v = 0 sees them stick */
         const double size = fmax(m->amplitude, 1e-6 * scale_of(&d->open, TURN * m->hz).amplitude);
         need(tribo_set_law(contacts, TRIBO_QUINN), tribo_message(contacts));
@@ -203,6 +206,9 @@ void write_history(const struct tables *t, struct worker *w, const struct motion
     for (size_t c = 0; c < d->contacts; c++) {
         fprintf(table, ",z%zu", c + 1);
     }
+    for (size_t r = d->contacts; r < d->rows; r++) {
+        fprintf(table, ",normal%zu", r - d->contacts + 1);
+    }
     fprintf(table, "\n");
     for (int i = 0; i <= STEPS; i++) {
         const double cycle = (double)PERIODS * i / STEPS;
@@ -215,6 +221,9 @@ void write_history(const struct tables *t, struct worker *w, const struct motion
         }
         for (size_t c = 0; c < d->contacts; c++) {
             fprintf(table, ",%.8g", dot(d->contact_shape + c * d->modes, state, d->modes));
+        }
+        for (size_t r = d->contacts; r < d->rows; r++) {
+            fprintf(table, ",%.8g", -f[r]);
         }
         fprintf(table, "\n");
     }

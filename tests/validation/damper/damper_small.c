@@ -216,6 +216,62 @@ TEST(normal_load)
 }
 END_TEST
 
+/* Normal loads that follow the motion: the elastic contact of tests/validation/series/normals.c, x'' + cx x' + 12 x + f, y'' + 2 y' +
+ * 21 y + N, case 4, which lifts off; its normal load at rest, 50, once from load=, once from --limits, and once by a gap, where the
+ * constant load is missing and y moves about another place of rest. What is refused. */
+#define FOLLOWS                                                                                                                  \
+    "--mass follow-m.mtx --stiffness follow-k.mtx --damping-matrix follow-c.mtx --dofs follow.txt --drive 0.79577471545947673 "  \
+    "--load 0,0,0,x:force=60:phase=90 --load 0,0,0,y:force=60:phase=90 --contact 0,0,0,x:stiffness=5:"
+
+/* Friction feeds energy in where a spring couples x and y. */
+#define PAIR_FOLLOWS                                                                                                             \
+    "--mass follow-m.mtx --stiffness follow-k.mtx --dofs follow.txt --load 0,0,0,x:force=20:phase=90 "                           \
+    "--load 0,0,0,y:force=10:phase=90 --drive 0.3 --contact 0,0,0,x:normal=y,21:mu=1.2:load=5"
+
+TEST(normal_follows)
+{
+    const double open = (0.908836362 - 0.585951290) * 2.5 / PI;
+    write_text("follow-m.mtx", HEAD "2 2 2\n1 1 1\n2 2 1\n");
+    write_text("follow-k.mtx", HEAD "2 2 2\n1 1 12\n2 2 21\n");
+    write_text("follow-c.mtx", HEAD "2 2 2\n1 1 0.34641016151377546\n2 2 2\n");
+    write_text("follow.txt", "1 1 1 0 0 0\n2 1 2 0 0 0\n");
+    static const char *const given[] = {FOLLOWS "mu=0.85:normal=y,21:load=50 --output 0,0,0,y",
+                                        FOLLOWS "mu=0.85:normal=y,21 --limits 50 --output 0,0,0,y",
+                                        FOLLOWS "mu=0.85:normal=y,21:gap=-2.3809523809523809 --output 0,0,0,y"};
+    for (size_t k = 0; k < 3; k++) {
+        assert_runs(given[k]);
+        const double off = k < 2 ? 0.0 : fabs(column_of("damper-curve.csv", 12) - open);
+        require(k < 2 || off > 0.01, "open for %g", open);
+        if (k < 2) {
+            assert_close(column_of("damper-curve.csv", 3), 0.5 * (6.2164272 + 5.6224136), 1e-6);
+            assert_close(column_of("damper-curve.csv", 4), 91.379129104 * 2.5 / PI, 1e-7);
+            assert_close(column_of("damper-curve.csv", 11), open, 1e-8);
+        }
+    }
+    assert_runs(FOLLOWS "mu=0.85:normal=y,21:load=50 --check 1");
+    assert_close(value_of("damper.check.amplitude"), 0.0, 1e-4);
+    /* a motion that others leave: told in its row */
+    write_text("follow-k.mtx", HEAD "2 2 3\n1 1 12\n2 1 14\n2 2 21\n");
+    char text[TEXT];
+    assert_runs(PAIR_FOLLOWS);
+    read_text("damper-curve.csv", text);
+    require(says(text, "unstable: motions beside it leave it by a factor of 3.8"), "%s", text);
+    write_text("follow-k.mtx", HEAD "2 2 2\n1 1 12\n2 2 21\n");
+    /* a band of loads: a curve for each, and a best one */
+    const struct outcome o = assert_runs(FOLLOWS "mu=0.85:normal=y,21 --drive 0.6:1:3 --limits 5:500:3");
+    require(says(o.out, "best normal load of the band"), "%s", o.out);
+    assert_exact(value_of("damper.gaps"), 0.0);
+    assert_refused(FOLLOWS "mu=0.85:normal=x,21", "along x", "normal=x is a direction along which the contact slides");
+    assert_refused(FOLLOWS "mu=0.85:normal=w,21", "w", "0,0,0,x:stiffness=5:mu=0.85:normal=w,21: normal=w must be x, y or z");
+    assert_refused(FOLLOWS "mu=0.85:normal=-y", "none", "normal=-y needs a stiffness: normal=-y,STIFFNESS");
+    assert_refused(FOLLOWS "mu=0.85:normal=y,0", "zero", "must be above 0");
+    assert_refused(FOLLOWS "normal=y,21", "no mu", "normal= needs mu=");
+    assert_refused(FOLLOWS "mu=0.85:gap=1", "gap alone", "gap=1 needs normal=, too");
+    assert_refused(FOLLOWS "mu=0.85:normal=y,21:gap=1:load=2", "both", "either gap=1 or load=2, not both");
+    assert_refused(FOLLOWS "mu=0.85:normal=z,21:load=1", "z", "the node there cannot move along z");
+}
+END_TEST
+
 /* Masses that hang together, the last of which has no spring: said, with the reason why no motion is found. */
 TEST(loose_row)
 {
@@ -254,5 +310,5 @@ TEST(own_limit)
 }
 END_TEST
 
-TEST_MAIN("damper_small", {spring, 1}, {loads, 1}, {damping_by_mode, 1}, {field, 1}, {normal_load, 1}, {loose_row, 1},
-          {own_limit, 1})
+TEST_MAIN("damper_small", {spring, 1}, {loads, 1}, {damping_by_mode, 1}, {field, 1}, {normal_load, 1}, {normal_follows, 1},
+          {loose_row, 1}, {own_limit, 1})
