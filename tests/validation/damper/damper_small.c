@@ -258,7 +258,7 @@ TEST(normal_follows)
     require(says(text, "unstable: motions beside it leave it by a factor of 3.8"), "%s", text);
     write_text("follow-k.mtx", HEAD "2 2 2\n1 1 12\n2 2 21\n");
     /* a band of loads: a curve for each, and a best one */
-    const struct outcome o = assert_runs(FOLLOWS "mu=0.85:normal=y,21 --drive 0.6:1:3 --limits 5:500:3");
+    const struct outcome o = assert_runs(FOLLOWS "mu=0.85:normal=y,21 --drive 0.5:0.75:3 --limits 5:500:3");
     require(says(o.out, "best normal load of the band"), "%s", o.out);
     assert_exact(value_of("damper.gaps"), 0.0);
     assert_refused(FOLLOWS "mu=0.85:normal=x,21", "along x", "normal=x is a direction along which the contact slides");
