@@ -47,7 +47,7 @@ static void lay_out_arrays(struct stick_slip *m, struct layout *l, size_t contac
                                    &r->excess};
     double **const by_dof[] = {&r->size, &c->load_size, &w->acceleration, &w->free, &w->rate};
     signed char **const sign[] = {&s->slip, &s->tied, &s->before, &s->loose, &s->slid, &w->pulled, &s->key};
-    unsigned char **const mark[] = {&s->holds, &s->rested, &c->elastic, &w->last, &s->pressed};
+    unsigned char **const mark[] = {&s->holds, &s->rested, &c->elastic, &w->last, &s->pressed, &s->was_pressed, &s->rests};
     c->memory = tribo_layout_array(l, 0, 1);
     for (size_t k = 0; k < sizeof by_contact / sizeof *by_contact; k++) {
         *by_contact[k] = tribo_layout_array(l, contacts, sizeof **by_contact[k]);
@@ -359,35 +359,60 @@ void tribo_stick_slip_press(const struct stick_slip *m, tribo_system *sys)
     }
 }
 
-/* Sets which normals are pressed just after the set time: by the lowest derivative of the depth that is more than rounding. The
- * acceleration has the forces of contacts of the last decision. Sets swing = size of the terms of limits that follow. */
-static void press(struct stick_slip *m, tribo_system *sys, const double *y)
+/* Presses normals at depth 0 that do not move by their acceleration, with the forces of contacts of the last decision, if the
+ * acceleration is more than rounding; else a normal leaves its side if its depth ended the phase, and is open if not. resting: their
+ * number. Returns it. */
+static size_t press_by_acceleration(struct stick_slip *m, tribo_system *sys, const double *y, size_t resting)
+{
+    const struct matrix *j = &sys->direction;
+    double *size = m->work.rate, *acceleration = m->work.free;
+    if (resting == 0) {
+        return 0;
+    }
+    tribo_system_free_acceleration(sys, sys->loads.time, y, acceleration);
+    memcpy(size, acceleration, sys->ndof * sizeof *size);
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->state.force, acceleration);
+    for (size_t k = 0; k < sys->normals.count; k++) {
+        struct normal *n = &sys->normals.normal[k];
+        if (m->state.rests[k]) {
+            const double order = tribo_matrix_row_dot(j, n->row, acceleration);
+            const double rounding = NOISE * m->noise.factor * tribo_matrix_row_size(j, n->row, size);
+            const int leaves = n->row == m->state.reached && !m->state.was_pressed[k];
+            n->pressed = fabs(order) > rounding ? order > 0.0 : leaves;
+        }
+    }
+    return resting;
+}
+
+/* Sets which normals are pressed just after the set time: by the lowest derivative of the depth that is more than rounding. Sets
+ * swing = size of the terms of limits that follow. Returns the number of normals by the acceleration. */
+static size_t press(struct stick_slip *m, tribo_system *sys, const double *y)
 {
     const struct matrix *j = &sys->direction;
     const double factor = m->noise.factor;
-    tribo_stick_slip_press(m, sys);
+    size_t resting = 0;
     tribo_normals_move(sys, y, y + sys->ndof);
     for (size_t k = 0; k < sys->normals.count; k++) {
         struct normal *n = &sys->normals.normal[k];
         const int at_zero = n->row == m->state.reached || fabs(n->depth) <= TRIBO_LIMIT_NOISE * factor * n->size;
         const double still = TRIBO_VELOCITY_NOISE * factor * tribo_matrix_row_size(j, n->row, y + sys->ndof);
-        double order = at_zero ? n->speed : n->depth, rounding = at_zero ? still : 0.0;
+        const double order = at_zero ? n->speed : n->depth;
         n->depth = at_zero ? 0.0 : n->depth;
-        if (fabs(order) <= rounding) {
-            tribo_system_free_acceleration(sys, sys->loads.time, y, m->work.free);
-            rounding = NOISE * factor * tribo_matrix_row_size(j, n->row, m->work.free);
-            tribo_matrix_multiply_add(&sys->response, 1.0, m->state.force, m->work.free);
-            order = tribo_matrix_row_dot(j, n->row, m->work.free);
-        }
-        n->pressed = fabs(order) > rounding ? order > 0.0 : n->pressed;
-        m->state.pressed[k] = (unsigned char)n->pressed;
+        m->state.rests[k] = at_zero && fabs(order) <= still;
+        n->pressed = order > 0.0 && !m->state.rests[k];
+        resting += m->state.rests[k];
         m->constant.swing[n->row] = greater(n->stiffness * n->size, DBL_MIN);
+    }
+    resting = press_by_acceleration(m, sys, y, resting);
+    for (size_t k = 0; k < sys->normals.count; k++) {
+        m->state.pressed[k] = (unsigned char)sys->normals.normal[k].pressed;
     }
     for (size_t k = 0; k < sys->normals.followers; k++) {
         const struct follower *f = &sys->normals.follower[k];
         const double swing = f->mu * m->constant.swing[sys->normals.normal[f->normal].row];
         m->constant.swing[f->contact] = m->constant.swing[f->second] = greater(swing, DBL_MIN);
     }
+    return resting;
 }
 
 /* Returns 1 if contact i has a limit > 0 just after the set time. */
@@ -464,11 +489,10 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
 
 /* ------------------------------------------------------------------------------------------------------------- instant */
 
-int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
+/* Decides, with normals at rest pressed by the forces of the last decision. Returns a status. */
+static int decide_once(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
     const int springs = sys->compliance.count > 0;
-    tribo_system_set_time(sys, t);
-    find_base(m, sys);
     memset(m->state.tied, 0, sys->ncontact);
     update_limits(m, sys, y);
     if (springs) {
@@ -485,11 +509,25 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
         forget_gains(m);
         status = m->plane ? tribo_planar_slip_settle(m, sys, y) : tribo_scalar_slip_settle(m, sys, y);
     }
+    return status;
+}
+
+int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
+{
+    tribo_system_set_time(sys, t);
+    find_base(m, sys);
+    memcpy(m->state.was_pressed, m->state.pressed, sys->normals.count);
+    int status = decide_once(m, sys, t, y);
+    if (!status && memchr(m->state.rests, 1, sys->normals.count)) { /* the forces found may press other normals at rest */
+        memcpy(m->work.last, m->state.pressed, sys->normals.count);
+        const int others = press(m, sys, y) > 0 && memcmp(m->work.last, m->state.pressed, sys->normals.count) != 0;
+        status = others ? decide_once(m, sys, t, y) : TRIBO_OK;
+    }
     m->state.reached = sys->ncontact;
     if (status) {
         return status;
     }
-    for (size_t i = 0; springs && i < sys->ncontact; i++) {
+    for (size_t i = 0; sys->compliance.count && i < sys->ncontact; i++) {
         m->noise.allowance[i] = m->constant.elastic[i] ? m->noise.spring[i] : m->noise.allowance[i];
         m->state.slid[i] = m->state.slip[i];
     }

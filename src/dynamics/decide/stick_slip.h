@@ -54,19 +54,21 @@ struct slip_state {
     int snaps_differ;      /* 1: H changed since snap was listed for it */
     struct snap *snap;     /* [snaps] corrections that make J x = base exact: of all contacts if sys->snaps.in_order, else of H */
     size_t snaps;
-    int simple;             /* 1: snap has a correction for every contact of H */
-    signed char *tied;      /* [ncontact] at rest and at the limit: 1: stays there; 2: goes back inside */
-    size_t reached;         /* contact with |f| = limit at the event, or normal with N = 0; ncontact: none */
-    double *limit;          /* [ncontact] limit while sliding */
-    double *limit_rate;     /* [ncontact] its rate */
-    double *stick;          /* [ncontact] limit at rest */
-    double *stick_rate;     /* [ncontact] its rate */
-    double *force;          /* [ncontact] friction force f */
-    double *spring;         /* [ncontact] force of an elastic contact by the state */
-    double *spring_rate;    /* [ncontact] its rate */
-    double *glide;          /* [ncontact] velocity of an elastic contact that slides */
-    double *base;           /* [ncontact] b(t) */
-    unsigned char *pressed; /* [normals] 1: pressed by the last decision */
+    int simple;                 /* 1: snap has a correction for every contact of H */
+    signed char *tied;          /* [ncontact] at rest and at the limit: 1: stays there; 2: goes back inside */
+    size_t reached;             /* contact with |f| = limit at the event, or normal with N = 0; ncontact: none */
+    double *limit;              /* [ncontact] limit while sliding */
+    double *limit_rate;         /* [ncontact] its rate */
+    double *stick;              /* [ncontact] limit at rest */
+    double *stick_rate;         /* [ncontact] its rate */
+    double *force;              /* [ncontact] friction force f */
+    double *spring;             /* [ncontact] force of an elastic contact by the state */
+    double *spring_rate;        /* [ncontact] its rate */
+    double *glide;              /* [ncontact] velocity of an elastic contact that slides */
+    double *base;               /* [ncontact] b(t) */
+    unsigned char *pressed;     /* [normals] 1: pressed by the last decision */
+    unsigned char *was_pressed; /* [normals] 1: pressed before this decision */
+    unsigned char *rests;       /* [normals] 1: depth and speed are 0 */
 };
 
 /* Bounds of rounding. */

@@ -58,8 +58,10 @@ double tribo_event_length(struct event *e)
         for (size_t i = 0; i < c; i++) {
             /* forces of contacts at rest to the same part of their limit, or of what it becomes; and this itself */
             double rise = e->terms > 1 ? fabs(e->limit[c + i]) * lesser(most, DBL_MAX) : 0.0;
-            if (e->sys->normals.count && fastest(e) > 0.0) { /* limits may begin with the square of time */
-                rise += fabs(e->limit[2 * c + i]) / (fastest(e) * fastest(e));
+            double power = 1.0; /* limits that follow may begin with a higher power of time */
+            for (size_t p = 2; e->sys->normals.count && fastest(e) > 0.0 && (p == 2 || rise == 0.0) && p <= e->order; p++) {
+                power /= fastest(e);
+                rise += fabs(e->limit[p * c + i]) * power / fastest(e);
             }
             const double force = tolerance * (greater(e->limit[i], 0.0) + m->constant.swing[i] + rise);
             const double stick = m->limits.ratio[i] * force;

@@ -1,0 +1,316 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Random structures with contacts whose limits follow the motion: the motion keeps the equations of motion and the law, as this file
+ * computes both from states only. TRIBO_SEED is the first seed, TRIBO_BLOCKS the number of blocks of seeds. */
+#include <stdio.h>
+#include <string.h>
+
+#include "make.h"
+#include "../validation/run.h"
+
+enum { BLOCK = 25, DOFS = 6, ROWS = 8, FOLLOWERS = 4, WINDOWS = 24 };
+
+#define DURATION 8.0
+
+/* Step of the differences in time. */
+#define STEP 2e-3
+
+struct wave {
+    double omega, cosine[DOFS], sine[DOFS];
+};
+
+/* Rows of J: the followers, then the normals. */
+struct scene {
+    size_t n, followers, normals, rows;
+    double mass[DOFS * DOFS], damping[DOFS * DOFS], stiffness[DOFS * DOFS], direction[ROWS * DOFS], compliance[ROWS];
+    size_t normal[FOLLOWERS]; /* index of the normal of a follower */
+    double mu[FOLLOWERS], spring[FOLLOWERS], gap[FOLLOWERS];
+    struct wave load[3];
+    double belt[ROWS], shake[ROWS], shake_omega;
+    double start[2 * DOFS];
+    char name[120];
+};
+
+static int chance(struct random *g, double p)
+{
+    return uniform(g, 0.0, 1.0) < p;
+}
+
+static void make_matrices(struct scene *s, struct random *g)
+{
+    const size_t n = s->n, damping = below(g, 4);
+    for (size_t i = 0; i < n; i++) {
+        s->mass[i * n + i] = log_uniform(g, chance(g, 0.3) ? 2.0 : 0.3);
+        s->stiffness[i * n + i] += uniform(g, 0.5, 6.0);
+        for (size_t j = 0; j < i; j++) {
+            const double k = chance(g, 0.5) ? uniform(g, -2.0, 4.0) : 0.0, size = fabs(k);
+            s->stiffness[i * n + j] = s->stiffness[j * n + i] = -k;
+            s->stiffness[i * n + i] += size;
+            s->stiffness[j * n + j] += size;
+        }
+    }
+    for (size_t k = 0; k < n * n && damping; k++) {
+        s->damping[k] = (damping == 2 ? 0.02 : 0.002) * s->stiffness[k];
+    }
+    for (size_t i = 0; i < n && damping == 3; i++) {
+        s->damping[i * n + i] += chance(g, 0.5) ? uniform(g, 0.0, 0.5) * s->mass[i * n + i] : 0.0;
+    }
+}
+
+/* Tangential: a body, two bodies, or any; normal: another degree of freedom, oblique ones with all. */
+static void make_directions(struct scene *s, struct random *g)
+{
+    const size_t n = s->n;
+    const int oblique = chance(g, 0.4);
+    for (size_t i = 0; i < s->rows; i++) {
+        double *row = s->direction + i * n;
+        const int of_normal = i >= s->followers;
+        const size_t a = below(g, n), b = below(g, n);
+        row[a] = 1.0;
+        row[b] -= a != b && chance(g, 0.4) ? 1.0 : 0.0;
+        for (size_t j = 0; j < n; j++) {
+            row[j] += oblique && chance(g, of_normal ? 0.5 : 0.3) ? uniform(g, -0.6, 0.6) : 0.0;
+        }
+    }
+    for (size_t k = 0; k < s->followers; k++) {
+        s->normal[k] = k < s->normals ? k : below(g, s->normals);
+    }
+}
+
+static struct scene scene_create(int seed)
+{
+    struct random g = random_of(seed);
+    struct scene s = {.n = 1 + below(&g, DOFS), .followers = 1 + below(&g, FOLLOWERS)};
+    s.normals = 1 + below(&g, s.followers);
+    s.rows = s.followers + s.normals;
+    make_matrices(&s, &g);
+    make_directions(&s, &g);
+    const int elastic = chance(&g, 0.5), belts = chance(&g, 0.5), moving = chance(&g, 0.5), shakes = chance(&g, 0.2);
+    for (size_t k = 0; k < s.followers; k++) {
+        s.mu[k] = uniform(&g, 0.05, 0.8);
+        s.compliance[k] = elastic && chance(&g, 0.6) ? log_uniform(&g, 0.7) : 0.0;
+        s.belt[k] = belts && chance(&g, 0.7) ? uniform(&g, -1.0, 1.0) : 0.0;
+        s.shake[k] = shakes ? uniform(&g, -0.5, 0.5) : 0.0;
+    }
+    s.shake_omega = uniform(&g, 0.5, 3.0);
+    for (size_t k = 0; k < s.normals; k++) {
+        s.spring[k] = log_uniform(&g, 1.5) * 3.0;
+        s.gap[k] = chance(&g, 0.4) ? 0.0 : uniform(&g, -1.0, 0.3);
+    }
+    for (size_t k = 0; k < 3; k++) {
+        s.load[k].omega = k ? uniform(&g, 0.5, 4.0) : 0.0;
+        for (size_t i = 0; i < s.n; i++) {
+            s.load[k].cosine[i] = chance(&g, 0.6) ? uniform(&g, -2.0, k ? 2.0 : 3.0) : 0.0;
+            s.load[k].sine[i] = k && chance(&g, 0.6) ? uniform(&g, -2.0, 2.0) : 0.0;
+        }
+    }
+    for (size_t i = 0; moving && i < 2 * s.n; i++) {
+        s.start[i] = uniform(&g, -1.0, 1.0);
+    }
+    snprintf(s.name, sizeof s.name, "%zu dofs, %zu contacts, %zu normals%s%s%s%s", s.n, s.followers, s.normals,
+             elastic ? ", elastic" : "", belts ? ", belts" : "", shakes ? ", shaken" : "", moving ? ", moving" : "");
+    return s;
+}
+
+static tribo_system *scene_system(const struct scene *s, int seed)
+{
+    tribo_model *model;
+    tribo_system *sys = NULL;
+    assert_ok(tribo_model_create(&model, s->n, s->rows));
+    assert_ok(tribo_model_set_mass(model, s->mass));
+    assert_ok(tribo_model_set_damping(model, s->damping));
+    assert_ok(tribo_model_set_stiffness(model, s->stiffness));
+    assert_ok(tribo_model_set_direction(model, s->direction));
+    assert_ok(tribo_model_set_compliance(model, s->compliance));
+    for (size_t k = 0; k < s->followers; k++) {
+        const size_t n = s->normal[k];
+        assert_ok(tribo_model_set_normal(model, k, s->followers + n, s->mu[k], s->spring[n], s->gap[n]));
+    }
+    const int status = tribo_system_create(&sys, model);
+    require(!status, "seed %d: %s", seed, tribo_model_message(model));
+    tribo_model_destroy(model);
+    for (size_t k = 0; k < 3; k++) {
+        assert_ok(tribo_system_add_load(sys, s->load[k].omega, s->load[k].cosine, s->load[k].sine));
+    }
+    assert_ok(tribo_system_add_base_motion(sys, 0.0, s->belt, NULL));
+    assert_ok(tribo_system_add_base_motion(sys, s->shake_omega, s->shake, NULL));
+    return sys;
+}
+
+/* ---------------------------------------------------------------------------------------------------------------- the law */
+
+static double row_of(const double *row, const double *x, size_t n)
+{
+    double sum = 0.0;
+    for (size_t j = 0; j < n; j++) {
+        sum += row[j] * x[j];
+    }
+    return sum;
+}
+
+/* Weights of the derivative by 9 points. */
+static const double weight[9] = {1.0 / 280, -4.0 / 105, 0.2, -0.8, 0.0, 0.8, -0.2, 4.0 / 105, -1.0 / 280};
+
+/* Derivative of value k of the states y [9]. */
+static double derivative(double y[9][2 * DOFS + FOLLOWERS + 1], size_t k)
+{
+    double sum = 0.0;
+    for (size_t p = 0; p < 9; p++) {
+        sum += weight[p] * y[p][k];
+    }
+    return sum / STEP;
+}
+
+/* f [count] = the forces in directions row [count][n] that leave the least of r [n], by normal equations; r becomes what they leave.
+ * Returns 0 if the directions depend on each other. */
+static int find_forces(size_t n, size_t count, const double *const *row, double *r, double *f)
+{
+    double a[FOLLOWERS][FOLLOWERS + 1];
+    for (size_t i = 0; i < count; i++) {
+        for (size_t j = 0; j < count; j++) {
+            a[i][j] = row_of(row[i], row[j], n);
+        }
+        a[i][count] = row_of(row[i], r, n);
+    }
+    for (size_t i = 0; i < count; i++) {
+        if (fabs(a[i][i]) < 1e-6) {
+            return 0;
+        }
+        for (size_t k = 0; k < count; k++) {
+            const double by = k == i ? 0.0 : a[k][i] / a[i][i];
+            for (size_t j = i; j <= count && k != i; j++) {
+                a[k][j] -= by * a[i][j];
+            }
+        }
+    }
+    for (size_t i = 0; i < count; i++) {
+        f[i] = a[i][count] / a[i][i];
+        for (size_t j = 0; j < n; j++) {
+            r[j] -= f[i] * row[i][j];
+        }
+    }
+    return 1;
+}
+
+/* Residual of the equations of motion and of the law at t, the middle of states y; largest number of these in *size. */
+static double residual(const struct scene *s, double t, double y[9][2 * DOFS + FOLLOWERS + 1], double *size)
+{
+    const size_t n = s->n;
+    const double *q = y[4], *u = q + n;
+    double r[DOFS], f[FOLLOWERS], off = 0.0, power = 0.0;
+    const double *stuck[FOLLOWERS];
+    size_t held[FOLLOWERS], count = 0, springs = 0;
+    *size = 1.0;
+    for (size_t d = 0; d < n; d++) {
+        r[d] = row_of(s->stiffness + d * n, q, n) + row_of(s->damping + d * n, u, n);
+        *size = fmax(*size, fabs(r[d]));
+        for (size_t e = 0; e < n; e++) {
+            r[d] += s->mass[d * n + e] * derivative(y, n + e);
+        }
+        for (size_t k = 0; k < 3; k++) {
+            r[d] -= s->load[k].cosine[d] * cos(s->load[k].omega * t) + s->load[k].sine[d] * sin(s->load[k].omega * t);
+        }
+        for (size_t k = 0; k < s->normals; k++) {
+            const double *row = s->direction + (s->followers + k) * n;
+            r[d] += row[d] * s->spring[k] * fmax(row_of(row, q, n) - s->gap[k], 0.0);
+        }
+    }
+    for (size_t k = 0; k < s->followers; k++) {
+        const double *row = s->direction + k * n, *across = s->direction + (s->followers + s->normal[k]) * n;
+        const double limit = s->mu[k] * s->spring[s->normal[k]] * fmax(row_of(across, q, n) - s->gap[s->normal[k]], 0.0);
+        double v = row_of(row, u, n) - s->belt[k] - s->shake[k] * cos(s->shake_omega * t);
+        const int elastic = s->compliance[k] > 0.0;
+        *size = fmax(*size, limit);
+        if (elastic) {
+            f[k] = (q[2 * n + springs] - row_of(row, q, n)) / s->compliance[k];
+            v += derivative(y, 2 * n + springs++) - row_of(row, u, n);
+            off = fmax(off, fabs(f[k]) - limit);
+        }
+        if (limit == 0.0) {
+            off = fmax(off, elastic ? fabs(f[k]) : 0.0);
+            f[k] = 0.0;
+        } else if (fabs(v) > 1e-8) {
+            off = elastic ? fmax(off, fmin(fabs(f[k] + copysign(limit, v)), fabs(v))) : off;
+            f[k] = -copysign(limit, v);
+        } else if (!elastic) {
+            held[count] = k;
+            stuck[count++] = row;
+            continue;
+        }
+        power -= f[k] * v;
+        for (size_t d = 0; d < n; d++) {
+            r[d] -= row[d] * f[k];
+        }
+    }
+    double hold[FOLLOWERS];
+    if (!find_forces(n, count, stuck, r, hold)) {
+        return 0.0;
+    }
+    for (size_t k = 0; k < count; k++) {
+        const double *across = s->direction + (s->followers + s->normal[held[k]]) * n;
+        const size_t c = s->normal[held[k]];
+        off = fmax(off, fabs(hold[k]) - s->mu[held[k]] * s->spring[c] * fmax(row_of(across, q, n) - s->gap[c], 0.0));
+    }
+    for (size_t d = 0; d < n; d++) {
+        off = fmax(off, fabs(r[d]));
+    }
+    return fmax(off, fabs(derivative(y, 2 * n + springs) - power));
+}
+
+static int count_events(const tribo_moment *moment, void *data)
+{
+    *(int *)data += moment->kind != TRIBO_MOMENT_STEP;
+    return 0;
+}
+
+/* Moves scene s by a method from its start; checks the law in windows in which no event falls. y: the states at the ends of WINDOWS
+ * pieces. Returns the driver's status. */
+static int follow(const struct scene *s, int seed, const char *method, double y[WINDOWS][2 * DOFS + FOLLOWERS + 1])
+{
+    tribo_system *sys = scene_system(s, seed);
+    const size_t all = tribo_system_dimension(sys);
+    tribo_driver *d = NULL;
+    double t = 0.0, at[9][2 * DOFS + FOLLOWERS + 1] = {{0.0}}, state[2 * DOFS + FOLLOWERS + 1] = {0.0}, size;
+    int status = tribo_driver_create(&d, sys, method), events = 0;
+    if (status) {
+        tribo_system_destroy(sys);
+        return status;
+    }
+    memcpy(state, s->start, 2 * s->n * sizeof *state);
+    assert_ok(tribo_driver_set_observer(d, count_events, &events));
+    for (size_t w = 0; !status && w < WINDOWS; w++) {
+        const double end = DURATION * (double)(w + 1) / WINDOWS;
+        for (size_t p = 0; !status && p < 9; p++) {
+            status = tribo_driver_advance(d, &t, end + ((double)p - 8.0) * STEP, state);
+            memcpy(at[p], state, all * sizeof *state);
+            events = p ? events : 0;
+        }
+        memcpy(y[w], state, all * sizeof *state);
+        if (!status && !events) {
+            const double off = residual(s, end - 4.0 * STEP, at, &size);
+            require(off < 1e-7 * size, "seed %d, %s: %s breaks the law at t = %.17g by %g of %g", seed, s->name, method,
+                    end - 4.0 * STEP, off, size);
+        }
+    }
+    if (status) {
+        printf("seed %d, %s, %s: %s\n", seed, s->name, method, tribo_driver_message(d));
+    }
+    tribo_driver_destroy(d);
+    tribo_system_destroy(sys);
+    return status;
+}
+
+TEST(agree)
+{
+    for (int seed = setting("TRIBO_SEED", 0) + BLOCK * _i; seed < setting("TRIBO_SEED", 0) + BLOCK * (_i + 1); seed++) {
+        const struct scene s = scene_create(seed);
+        double y[WINDOWS][2 * DOFS + FOLLOWERS + 1];
+        const int event = follow(&s, seed, "event", y);
+        require(!event, "seed %d, %s: event: %d", seed, s.name, event);
+    }
+}
+
+int main(void)
+{
+    const struct test tests[] = {{agree, setting("TRIBO_BLOCKS", 12)}};
+    return run_suite("following", tests, COUNT(tests));
+}
