@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* All arrays of an object in one block of memory. A function lays out the arrays twice: first with memory NULL, to add up the
- * sizes; then in the allocated memory. */
+/* All arrays of an object in one block of memory. */
 #ifndef TRIBO_LAYOUT_H
 #define TRIBO_LAYOUT_H
 
@@ -14,13 +13,12 @@
 static inline void *tribo_zeros(size_t count, size_t size)
 {
     enum { FRESH = 1024 };
-    if (count > FRESH / size) {
-        return calloc(count, size);
-    }
-    void *memory = malloc(count * size + 1);
-    return memory ? memset(memory, 0, count * size) : NULL;
+    const size_t small = count > FRESH / size ? 0 : count * size;
+    void *memory = count > FRESH / size ? calloc(count, size) : malloc(small + 1);
+    return memory ? memset(memory, 0, small) : NULL;
 }
 
+/* A block in which a function lays out arrays twice: first with memory NULL, to add up the sizes; then in the allocated memory. */
 struct layout {
     char *memory; /* NULL in the first pass */
     size_t used;
@@ -44,12 +42,34 @@ static inline void *tribo_layout_array(struct layout *b, size_t count, size_t si
     return array;
 }
 
-/* Allocates the sum of the sizes as zeros, and restarts the layout at 0. Returns 0 if out of memory. */
-static inline int tribo_layout_zeros(struct layout *b)
+/* The array *at [count] of elements of size. */
+struct array {
+    void *at;
+    size_t count, size;
+};
+
+#define ARRAY(pointer, count)                                                                                                    \
+    {                                                                                                                            \
+        &(pointer), (count), sizeof *(pointer)                                                                                   \
+    }
+
+/* Allocates the arrays of list [length] as zeros in one block, which the first array owns, and sets their pointers. Returns the
+ * block; NULL, as all pointers, if out of memory. */
+static inline void *tribo_allocate(const struct array *list, size_t length)
 {
-    b->memory = tribo_zeros(b->used + 1, 1);
-    b->used = 0;
-    return b->memory != NULL;
+    struct layout b = {0};
+    do {
+        b.used = 0;
+        for (size_t k = 0; k < length; k++) {
+            void *const array = tribo_layout_array(&b, list[k].count, list[k].size);
+            memcpy(list[k].at, &array, sizeof array); /* all pointers to objects have the representation of void * */
+        }
+    } while (!b.memory && (b.memory = tribo_zeros(b.used + 1, 1)) != NULL);
+    return b.memory;
 }
+
+/* tribo_allocate of a list of ARRAY(pointer, count). */
+#define ALLOCATE(...)                                                                                                            \
+    tribo_allocate((const struct array[]){__VA_ARGS__}, sizeof((const struct array[]){__VA_ARGS__}) / sizeof(struct array))
 
 #endif

@@ -12,8 +12,8 @@
 static tribo_context *context_allocate(size_t n, const tribo_context *like)
 {
     const size_t m = n + 1, chunks = tribo_chunks(m);
-    struct layout b = {0};
     tribo_context *ctx, at = *like;
+    double *numbers;
     double **const array[] = {
         &at.set.limit, &at.set.width,        &at.set.rate,          &at.set.ratio,          &at.set.stribeck,      &at.last.f,
         &at.last.feq,  &at.follow.cut_limit, &at.follow.cut_factor, &at.follow.hold,        &at.follow.hold_width, &at.follow.now,
@@ -22,25 +22,20 @@ static tribo_context *context_allocate(size_t n, const tribo_context *like)
     /* Each array of n doubles begins a line of cache, an odd number of lines behind the one before: of arrays at distances of a
      * power of two few would stay in cache. */
     const size_t room = TRIBO_LINE * ((n / TRIBO_LINE + 1) | 1);
-    do {
-        ctx = tribo_layout_array(&b, 1, sizeof *ctx);
-        double *numbers = tribo_aligned(tribo_layout_array(&b, ARRAYS * room + TRIBO_LINE, sizeof *numbers));
-        for (size_t k = 0; numbers && k < ARRAYS; k++) {
-            *array[k] = numbers + k * room;
-        }
-        at.follow.chunk = tribo_layout_array(&b, chunks, sizeof *at.follow.chunk);
-        at.moving = tribo_layout_array(&b, m, 1);
-        at.last.slip = tribo_layout_array(&b, m, 1);
-        at.last.near = tribo_layout_array(&b, m, 1);
-        at.spare = tribo_layout_array(&b, m, 1);
-    } while (!b.memory && tribo_layout_zeros(&b));
-    if (ctx && like->set.limit) {
+    if (!ALLOCATE(ARRAY(ctx, 1), ARRAY(numbers, ARRAYS * room + TRIBO_LINE), ARRAY(at.follow.chunk, chunks), ARRAY(at.moving, m),
+                  ARRAY(at.last.slip, m), ARRAY(at.last.near, m), ARRAY(at.spare, m))) {
+        return NULL;
+    }
+    for (size_t k = 0; k < ARRAYS; k++) {
+        *array[k] = tribo_aligned(numbers) + k * room;
+    }
+    if (like->set.limit) {
         memcpy(at.set.limit, like->set.limit, ARRAYS * room * sizeof *at.set.limit);
         memcpy(at.follow.chunk, like->follow.chunk, (size_t)((char *)(at.spare + m) - (char *)at.follow.chunk));
     }
     at.n = n;
     at.message[0] = 0;
-    return ctx ? memcpy(ctx, &at, sizeof at) : NULL;
+    return memcpy(ctx, &at, sizeof at);
 }
 
 int tribo_create(tribo_context **ctx, size_t ncontact)

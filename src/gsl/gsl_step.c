@@ -265,21 +265,13 @@ static struct gsl_step *gsl_step_create(const struct gsl_kind *kind, tribo_syste
     static const gsl_odeiv2_control_type tolerance = {.name = "tribo", .errlevel = tell_tolerance};
     const size_t n = tribo_system_dimension(sys), c = tribo_system_ncontact(sys), size = kind->matrices ? n * kind->stages : 0;
     struct gsl_step *g, first = {.kind = kind, .sys = sys, .dimension = n, .ncontact = c};
-    struct layout l = {0};
-    do {
-        g = tribo_layout_array(&l, 1, sizeof *g);
-        first.jacobian = tribo_layout_array(&l, size ? n * n : 0, sizeof *g->jacobian);
-        first.matrix = tribo_layout_array(&l, size * size, sizeof *g->matrix);
-        first.order = tribo_layout_array(&l, size, sizeof *g->order);
-        first.end = tribo_layout_array(&l, n, sizeof *g->end);
-        first.force = tribo_layout_array(&l, c, sizeof *g->force);
-        first.mode = tribo_layout_array(&l, 2 * c, sizeof *g->mode);
-    } while (!l.memory && tribo_layout_zeros(&l));
+    void *const memory = ALLOCATE(ARRAY(g, 1), ARRAY(first.jacobian, size ? n * n : 0), ARRAY(first.matrix, size * size),
+                                  ARRAY(first.order, size), ARRAY(first.end, n), ARRAY(first.force, c), ARRAY(first.mode, 2 * c));
     /* memory of GSL's own: headers, vectors, histories of up to 13 vectors, and matrices */
     const size_t length = n * kind->stages, vector = HEADER + length * sizeof(double);
     const size_t bytes[] = {24 * HEADER, 40 * vector, 48 * vector, 3 * length * vector};
-    if (!l.memory || length > SIZE_MAX / sizeof(double) / (100 + 3 * length) || !has_memory(bytes, kind->matrices ? 4 : 3)) {
-        free(l.memory);
+    if (!memory || length > SIZE_MAX / sizeof(double) / (100 + 3 * length) || !has_memory(bytes, kind->matrices ? 4 : 3)) {
+        free(memory);
         return NULL;
     }
     *g = first;

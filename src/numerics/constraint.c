@@ -195,23 +195,12 @@ static int find_ties(struct elimination *e, struct constraints *c)
 {
     const struct matrix *j = e->direction;
     const size_t count = c->count, all = count + j->cols;
-    struct layout l = {0};
     size_t *parent, *chosen, *of, *place, *first, *member;
-    do {
-        c->memory[0] = tribo_layout_array(&l, 0, 1);
-        c->tie = tribo_layout_array(&l, count, sizeof *c->tie);
-        c->order = tribo_layout_array(&l, count, sizeof *c->order);
-        parent = tribo_layout_array(&l, all, sizeof *parent);
-        chosen = tribo_layout_array(&l, all, sizeof *chosen);
-        of = tribo_layout_array(&l, all, sizeof *of);
-        place = tribo_layout_array(&l, all, sizeof *place);
-        first = tribo_layout_array(&l, all + 1, sizeof *first);
-        member = tribo_layout_array(&l, all, sizeof *member);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    if (!l.memory) {
+    c->memory[0] = ALLOCATE(ARRAY(c->tie, count), ARRAY(c->order, count), ARRAY(parent, all), ARRAY(chosen, all), ARRAY(of, all),
+                            ARRAY(place, all), ARRAY(first, all + 1), ARRAY(member, all));
+    if (!c->memory[0]) {
         return 0;
     }
-    memset(c->tie, 0, count * sizeof *c->tie);
     for (size_t k = 0; k < all; k++) {
         parent[k] = k;
         chosen[k] = k < count ? 2 : 0;
@@ -240,32 +229,29 @@ int tribo_constraints_create(struct constraints *c, const struct matrix *directi
                              size_t count, const unsigned char *last)
 {
     struct elimination e = {.direction = direction, .mass = mass, .row = row, .last = last};
-    struct layout l = {0};
-    size_t rows = 0, touched = 0, area = 0, independent = 0;
+    size_t rows = 0, touched = 0, area = 0, entries = 0, independent = 0;
     *c = (struct constraints){.count = count};
     if (count == 0 || !find_ties(&e, c)) {
         return count == 0;
     }
-    do {
-        c->memory[1] = tribo_layout_array(&l, 0, 1);
-        for (size_t t = 0; t < c->ties; t++) {
-            struct tie *const tie = &c->tie[t];
-            tie->stride = tie->touched + (last ? 0 : tie->rows);
-            tie->entry = tribo_layout_array(&l, tie->rows * tie->stride, sizeof *tie->entry);
-            rows = tie->rows > rows ? tie->rows : rows;
-            touched = tie->touched > touched ? tie->touched : touched;
-            area = tie->rows * tie->stride > area ? tie->rows * tie->stride : area;
-        }
-        e.size = tribo_layout_array(&l, area, sizeof *e.size);
-        e.weight = tribo_layout_array(&l, touched, sizeof *e.weight);
-        e.scale = tribo_layout_array(&l, rows, sizeof *e.scale);
-        e.most = tribo_layout_array(&l, rows, sizeof *e.most);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    if (!l.memory) {
+    for (size_t t = 0; t < c->ties; t++) {
+        struct tie *const tie = &c->tie[t];
+        tie->stride = tie->touched + (last ? 0 : tie->rows);
+        rows = tie->rows > rows ? tie->rows : rows;
+        touched = tie->touched > touched ? tie->touched : touched;
+        area = tie->rows * tie->stride > area ? tie->rows * tie->stride : area;
+        entries += tie->rows * tie->stride;
+    }
+    double *entry;
+    c->memory[1] =
+        ALLOCATE(ARRAY(entry, entries), ARRAY(e.size, area), ARRAY(e.weight, touched), ARRAY(e.scale, rows), ARRAY(e.most, rows));
+    if (!c->memory[1]) {
         return 0;
     }
     for (size_t k = 0; k < c->ties; k++) {
         e.tie = &c->tie[k];
+        e.tie->entry = entry;
+        entry += e.tie->rows * e.tie->stride;
         e.zero = last ? sqrt(4.0 * (double)(e.tie->rows + 4) * DBL_EPSILON) : ROUNDING;
         if (e.tie->rows == 1 && e.tie->touched == 1) {
             invert_one(&e);

@@ -26,18 +26,12 @@ static inline void tribo_csr_free(struct csr *a)
 /* Allocates a of n rows with room for entries; first is all 0. Returns 1, or 0 if out of memory. */
 static inline int tribo_csr_create(struct csr *a, size_t n, size_t entries)
 {
-    struct layout l = {0};
     *a = (struct csr){0};
-    do {
-        a->first = tribo_layout_array(&l, n + 2, sizeof *a->first);
-        a->col = tribo_layout_array(&l, entries + 1, sizeof *a->col);
-        a->val = tribo_layout_array(&l, entries + 1, sizeof *a->val);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    if (l.memory) {
-        a->n = n;
-        memset(a->first, 0, (n + 2) * sizeof *a->first);
+    if (!ALLOCATE(ARRAY(a->first, n + 2), ARRAY(a->col, entries + 1), ARRAY(a->val, entries + 1))) {
+        return 0;
     }
-    return l.memory != NULL;
+    a->n = n;
+    return 1;
 }
 
 /* b = a', columns ascending, for a [n][columns]. Returns 1, or 0 if out of memory. */

@@ -75,18 +75,11 @@ void tribo_definite_solve(struct definite *d, const signed char *skip, size_t co
 int tribo_definite_create(struct definite *d, size_t n, const double *own, const double *a, size_t *where)
 {
     const size_t square = a ? n * n : 0;
-    struct layout l = {0};
     *d = (struct definite){.n = n};
-    do {
-        d->memory = tribo_layout_array(&l, 0, 1);
-        d->own = tribo_layout_array(&l, n, sizeof *d->own);
-        d->matrix = tribo_layout_array(&l, square, sizeof *d->matrix);
-        d->inverse = tribo_layout_array(&l, square, sizeof *d->inverse);
-        d->factor = tribo_layout_array(&l, square, sizeof *d->factor);
-        d->x = tribo_layout_array(&l, n, sizeof *d->x);
-        d->index = tribo_layout_array(&l, n, sizeof *d->index);
-    } while ((!a || tribo_lapack_takes(n)) && !l.memory && tribo_layout_zeros(&l));
-    if (!l.memory) {
+    d->memory = !a || tribo_lapack_takes(n) ? ALLOCATE(ARRAY(d->own, n), ARRAY(d->matrix, square), ARRAY(d->inverse, square),
+                                                       ARRAY(d->factor, square), ARRAY(d->x, n), ARRAY(d->index, n))
+                                            : NULL;
+    if (!d->memory) {
         return TRIBO_ERR_MEMORY;
     }
     memcpy(d->own, own, n * sizeof *own);

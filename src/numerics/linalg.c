@@ -196,7 +196,6 @@ int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, struct mat
 {
     const int diagonal = tribo_matrix_is_diagonal(a), rows = (int)a->rows;
     int status = TRIBO_OK, info = 0; /* the row of a pivot that is not positive, plus 1: the pivot stands on the diagonal */
-    struct layout l = {0};
     *c = (struct cholesky){.n = a->rows};
     if (!diagonal && tribo_cholmod && c->n >= SPARSE_LEAST) {
         *pivot = (double)NAN;
@@ -204,11 +203,8 @@ int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, struct mat
     } else if (!diagonal && c->n > DENSE_MOST) {
         status = TRIBO_ERR_SIZE;
     } else {
-        do {
-            c->root = tribo_layout_array(&l, c->n, sizeof *c->root);
-            c->factor = diagonal ? NULL : tribo_layout_array(&l, c->n * c->n, sizeof *c->factor);
-        } while (!l.memory && tribo_layout_zeros(&l));
-        status = l.memory ? TRIBO_OK : TRIBO_ERR_MEMORY;
+        status = ALLOCATE(ARRAY(c->root, c->n), ARRAY(c->factor, diagonal ? 0 : c->n * c->n)) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+        c->factor = diagonal ? NULL : c->factor;
     }
     if (c->factor) {
         tribo_matrix_spread(a, c->factor);

@@ -87,13 +87,8 @@ static int matrix_finish(struct matrix *a)
     }
     a->diagonals = count <= MOST_DIAGONALS && count * a->rows <= 2 * a->first[a->rows] ? count : 0;
     if (a->diagonals && a->rows > MATRIX_FEW) {
-        struct layout l = {0};
-        do {
-            a->offset = tribo_layout_array(&l, a->diagonals, sizeof *a->offset);
-            a->block = tribo_layout_array(&l, blocks_of(a), sizeof *a->block);
-            a->fast = tribo_layout_array(&l, blocks_of(a) * a->diagonals * MATRIX_BLOCK + TRIBO_LINE, sizeof *a->fast);
-        } while (!l.memory && tribo_layout_zeros(&l));
-        if (!l.memory) {
+        if (!ALLOCATE(ARRAY(a->offset, a->diagonals), ARRAY(a->block, blocks_of(a)),
+                      ARRAY(a->fast, blocks_of(a) * a->diagonals * MATRIX_BLOCK + TRIBO_LINE))) {
             tribo_matrix_free(a);
             return 0;
         }

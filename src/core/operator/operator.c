@@ -49,17 +49,13 @@ void tribo_memory_free(struct memory *m)
 
 struct delassus *tribo_operator_diagonal(size_t n, const double *r)
 {
-    struct layout l = {0};
     struct delassus *o;
     double *diagonal;
-    do {
-        o = tribo_layout_array(&l, 1, sizeof *o);
-        diagonal = r ? tribo_layout_array(&l, 2 * n + TRIBO_LINE, sizeof *diagonal) : NULL;
-    } while (!l.memory && tribo_layout_zeros(&l));
-    if (!o) {
+    if (!ALLOCATE(ARRAY(o, 1), ARRAY(diagonal, r ? 2 * n + TRIBO_LINE : 0))) {
         return NULL;
     }
-    *o = (struct delassus){.references = 1, .most = TRIBO_FAR, .growth = 1.0, .islands = r ? n : 0, .diagonal = diagonal};
+    *o = (struct delassus){
+        .references = 1, .most = TRIBO_FAR, .growth = 1.0, .islands = r ? n : 0, .diagonal = r ? diagonal : NULL};
     o->inverse = r ? tribo_aligned(diagonal + n) : NULL;
     for (size_t i = 0; r && i < n; i++) {
         diagonal[i] = greater(r[i], TRIBO_IMMOVABLE);
@@ -98,25 +94,13 @@ struct box_qp *tribo_memory_problem(const struct delassus *op, struct memory *m,
 /* Allocates a memory of zeros without its basis, whose size follows from ranks. Returns 0 if out of memory. */
 static int allocate_memory(struct memory *m, const struct delassus *op)
 {
-    struct layout b = {0};
     struct box_qp *p = &m->problem;
-    double **const vector[] = {
-        &p->q,    &p->lo,       &p->hi,           &p->gradient, &p->noise,    &p->low.x,   &p->rounding.terms, &p->rounding.unit,
-        &p->step, &p->low.step, &p->low.gradient, &p->row,      &p->spare[0], &p->spare[1]};
     const size_t s = op->largest + 1;
-    do {
-        m->store = tribo_layout_array(&b, op->kept_size + 1, sizeof *m->store);
-        m->sets = tribo_layout_array(&b, op->groups, sizeof *m->sets);
-        m->solved_list = tribo_layout_array(&b, op->groups, sizeof *m->solved_list);
-        m->solved = tribo_layout_array(&b, op->groups, 1);
-        for (size_t k = 0; k < sizeof vector / sizeof *vector; k++) {
-            *vector[k] = tribo_layout_array(&b, s, sizeof **vector[k]);
-        }
-        p->near = tribo_layout_array(&b, s, sizeof *p->near);
-        p->null.held = tribo_layout_array(&b, s, sizeof *p->null.held);
-        p->to = tribo_layout_array(&b, s, 1);
-    } while (!b.memory && tribo_layout_zeros(&b));
-    return b.memory != NULL;
+    return ALLOCATE(ARRAY(m->store, op->kept_size + 1), ARRAY(m->sets, op->groups), ARRAY(m->solved_list, op->groups),
+                    ARRAY(m->solved, op->groups), ARRAY(p->q, s), ARRAY(p->lo, s), ARRAY(p->hi, s), ARRAY(p->gradient, s),
+                    ARRAY(p->noise, s), ARRAY(p->low.x, s), ARRAY(p->rounding.terms, s), ARRAY(p->rounding.unit, s),
+                    ARRAY(p->step, s), ARRAY(p->low.step, s), ARRAY(p->low.gradient, s), ARRAY(p->row, s), ARRAY(p->spare[0], s),
+                    ARRAY(p->spare[1], s), ARRAY(p->near, s), ARRAY(p->null.held, s), ARRAY(p->to, s)) != NULL;
 }
 
 static int allocate_basis(struct memory *m, const struct delassus *op)
@@ -149,7 +133,6 @@ static int find_groups(struct delassus *op, const struct csr *a, size_t *place, 
 {
     const size_t n = a->n;
     size_t *parent = work, *count = work + n, *first = work + 2 * n;
-    struct layout b = {0};
     for (size_t i = 0; i < n; i++) {
         parent[i] = i;
         count[i] = 0;
@@ -169,13 +152,7 @@ static int find_groups(struct delassus *op, const struct csr *a, size_t *place, 
     if (!op->groups) {
         return 1;
     }
-    do {
-        op->group_of = tribo_layout_array(&b, n, sizeof *op->group_of);
-        op->member = tribo_layout_array(&b, n, sizeof *op->member);
-        op->row_sum = tribo_layout_array(&b, n, sizeof *op->row_sum);
-        op->group = tribo_layout_array(&b, op->groups, sizeof *op->group);
-    } while (!b.memory && tribo_layout_zeros(&b));
-    if (!b.memory) {
+    if (!ALLOCATE(ARRAY(op->group_of, n), ARRAY(op->member, n), ARRAY(op->row_sum, n), ARRAY(op->group, op->groups))) {
         return 0;
     }
     tribo_list_sets(n, parent, count, op->group_of, place, first, op->member);

@@ -119,24 +119,11 @@ void tribo_clusters_free(struct clusters *c)
 /* Makes count planar contacts of n directions, without clusters. Returns 0 if out of memory. */
 static int planar_create(struct clusters *c, size_t n, size_t count, const size_t *first)
 {
-    struct layout b = {0};
-    double **const vector[] = {&c->y, &c->a, &c->v, &c->df, &c->growth, &c->radius, &c->pull, &c->shift};
     size_t *member;
-    do {
-        c->first = tribo_layout_array(&b, count, sizeof *c->first); /* has the memory of all */
-        c->role = tribo_layout_array(&b, n, 1);
-        c->own = tribo_layout_array(&b, count, sizeof *c->own);
-        c->group_of = tribo_layout_array(&b, n, sizeof *c->group_of);
-        c->cluster = tribo_layout_array(&b, count, sizeof *c->cluster);
-        member = tribo_layout_array(&b, n, sizeof *member);
-        c->near = tribo_layout_array(&b, n + 1, sizeof *c->near);
-        c->contact = tribo_layout_array(&b, n, sizeof *c->contact);
-        c->directions = tribo_layout_array(&b, n, 1);
-        for (size_t k = 0; k < sizeof vector / sizeof *vector; k++) {
-            *vector[k] = tribo_layout_array(&b, n, sizeof **vector[k]);
-        }
-    } while (!b.memory && tribo_layout_zeros(&b));
-    if (!b.memory) {
+    if (!ALLOCATE(ARRAY(c->first, count), ARRAY(c->role, n), ARRAY(c->own, count), ARRAY(c->group_of, n),
+                  ARRAY(c->cluster, count), ARRAY(member, n), ARRAY(c->near, n + 1), ARRAY(c->contact, n),
+                  ARRAY(c->directions, n), ARRAY(c->y, n), ARRAY(c->a, n), ARRAY(c->v, n), ARRAY(c->df, n), ARRAY(c->growth, n),
+                  ARRAY(c->radius, n), ARRAY(c->pull, n), ARRAY(c->shift, n))) {
         return 0;
     }
     c->count = count;

@@ -26,47 +26,6 @@
 
 /* ------------------------------------------------------------------------------------------------------------ constants */
 
-static void lay_out_arrays(struct stick_slip *m, struct layout *l, size_t contacts, size_t dofs)
-{
-    struct slip_constant *c = &m->constant;
-    struct slip_state *s = &m->state;
-    struct slip_noise *r = &m->noise;
-    struct slip_work *w = &m->work;
-    struct slip_limits *b = &m->limits;
-    /* the three last ones and the first one below are zeroed together */
-    double **const by_contact[] = {&c->diagonal,   &c->inertia,      &c->still,
-                                   &c->swing,      &c->base_size,    &c->base_rate_size,
-                                   &s->limit,      &s->limit_rate,   &s->force,
-                                   &s->spring,     &s->spring_rate,  &s->base,
-                                   &s->glide,      &r->velocity,     &r->velocity_scale,
-                                   &r->spring,     &r->parting,      &w->a,
-                                   &w->v,          &w->lo,           &w->hi,
-                                   &w->f,          &b->ratio,        &b->velocity,
-                                   &b->kinetic,    &b->kinetic_rate, &s->stick,
-                                   &s->stick_rate, &r->acceleration, &r->allowance,
-                                   &r->excess};
-    double **const by_dof[] = {&r->size, &c->load_size, &w->acceleration, &w->free, &w->rate};
-    signed char **const sign[] = {&s->slip, &s->tied, &s->before, &s->loose, &s->slid, &w->pulled, &s->key};
-    unsigned char **const mark[] = {&s->holds, &s->rested, &c->elastic, &w->last, &s->pressed, &s->was_pressed, &s->rests};
-    c->memory = tribo_layout_array(l, 0, 1);
-    for (size_t k = 0; k < sizeof by_contact / sizeof *by_contact; k++) {
-        *by_contact[k] = tribo_layout_array(l, contacts, sizeof **by_contact[k]);
-    }
-    for (size_t k = 0; k < sizeof by_dof / sizeof *by_dof; k++) {
-        *by_dof[k] = tribo_layout_array(l, dofs, sizeof **by_dof[k]);
-    }
-    for (size_t k = 0; k < sizeof sign / sizeof *sign; k++) { /* zeros follow key */
-        *sign[k] = tribo_layout_array(l, contacts + sizeof(uint64_t), 1);
-    }
-    for (size_t k = 0; k < sizeof mark / sizeof *mark; k++) {
-        *mark[k] = tribo_layout_array(l, contacts, 1);
-    }
-    w->at = tribo_layout_array(l, contacts, sizeof *w->at);
-    w->doubt = tribo_layout_array(l, contacts, sizeof *w->doubt);
-    s->snap = tribo_layout_array(l, contacts, sizeof *s->snap);
-    r->founds = 3 * contacts + dofs;
-}
-
 /* Contexts that know J and M only. Where R is diagonal forces are found without them: there is no constant.hold, and without
  * planar contacts no constant.box. */
 static int create_contexts(struct slip_constant *c, const tribo_context *contacts)
@@ -131,13 +90,28 @@ static int find_constants(struct stick_slip *m, const tribo_system *sys)
 
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
 {
-    const size_t c = sys->ncontact + 1;
-    struct layout l = {0};
-    *m = (struct stick_slip){.constant = {.sys = sys, .contacts = sys->ncontact}, .noise.factor = 1.0};
-    do {
-        lay_out_arrays(m, &l, c, sys->ndof);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    if (l.memory && create_contexts(&m->constant, sys->contacts) && find_constants(m, sys)) {
+    const size_t n = sys->ncontact + 1, dofs = sys->ndof;
+    struct slip_constant *c = &m->constant;
+    struct slip_state *s = &m->state;
+    struct slip_noise *r = &m->noise;
+    struct slip_work *w = &m->work;
+    struct slip_limits *b = &m->limits;
+    *m = (struct stick_slip){.constant = {.sys = sys, .contacts = sys->ncontact},
+                             .noise = {.factor = 1.0, .founds = 3 * n + dofs}};
+    /* r->acceleration to r->size are zeroed together */
+    c->memory = ALLOCATE(ARRAY(c->diagonal, n), ARRAY(c->inertia, n), ARRAY(c->still, n), ARRAY(c->swing, n),
+                         ARRAY(c->base_size, n), ARRAY(c->base_rate_size, n), ARRAY(s->limit, n), ARRAY(s->limit_rate, n),
+                         ARRAY(s->force, n), ARRAY(s->spring, n), ARRAY(s->spring_rate, n), ARRAY(s->base, n), ARRAY(s->glide, n),
+                         ARRAY(r->velocity, n), ARRAY(r->velocity_scale, n), ARRAY(r->spring, n), ARRAY(r->parting, n),
+                         ARRAY(w->a, n), ARRAY(w->v, n), ARRAY(w->lo, n), ARRAY(w->hi, n), ARRAY(w->f, n), ARRAY(b->ratio, n),
+                         ARRAY(b->velocity, n), ARRAY(b->kinetic, n), ARRAY(b->kinetic_rate, n), ARRAY(s->stick, n),
+                         ARRAY(s->stick_rate, n), ARRAY(r->acceleration, n), ARRAY(r->allowance, n), ARRAY(r->excess, n),
+                         ARRAY(r->size, dofs), ARRAY(c->load_size, dofs), ARRAY(w->acceleration, dofs), ARRAY(w->free, dofs),
+                         ARRAY(w->rate, dofs), ARRAY(s->slip, n), ARRAY(s->tied, n), ARRAY(s->before, n), ARRAY(s->loose, n),
+                         ARRAY(s->slid, n), ARRAY(w->pulled, n), ARRAY(s->key, n + sizeof(uint64_t)), ARRAY(s->holds, n),
+                         ARRAY(s->rested, n), ARRAY(c->elastic, n), ARRAY(w->last, n), ARRAY(s->pressed, n),
+                         ARRAY(s->was_pressed, n), ARRAY(s->rests, n), ARRAY(w->at, n), ARRAY(w->doubt, n), ARRAY(s->snap, n));
+    if (c->memory && create_contexts(c, sys->contacts) && find_constants(m, sys)) {
         return TRIBO_OK;
     }
     tribo_stick_slip_free(m);

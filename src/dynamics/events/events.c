@@ -44,14 +44,8 @@ int tribo_events_create(struct events *e, tribo_driver *drv, const struct motion
     if (status) {
         return status;
     }
-    struct layout l = {0};
-    do {
-        e->lasted = tribo_layout_array(&l, SLIPS * c, sizeof *e->lasted);
-        e->search.guard = tribo_layout_array(&l, 3 * c, sizeof *e->search.guard);
-        e->search.watched = tribo_layout_array(&l, 3 * c, sizeof *e->search.watched);
-        e->shown = tribo_layout_array(&l, c, sizeof *e->shown);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    return l.memory
+    return ALLOCATE(ARRAY(e->lasted, SLIPS * c), ARRAY(e->search.guard, 3 * c), ARRAY(e->search.watched, 3 * c),
+                    ARRAY(e->shown, c))
                ? TRIBO_OK
                : tribo_error(drv->sys->message, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contact%s", c, plural(c));
 }

@@ -19,27 +19,16 @@ static int motion_reserve(struct exact *x)
     if (x->room >= least) {
         return 1;
     }
-    struct parts *const parts[] = {&x->z, &x->far_e, &x->move, &x->rate_move};
-    double **const array[] = {&x->growth, &x->growth6, &x->vel, &x->acc, &x->drift, &x->place, &x->rate};
-    struct layout l = {0};
     free(x->lot);
-    do {
-        x->lot = tribo_layout_array(&l, room / TRIBO_TERMS + 1, sizeof *x->lot);
-        x->course = tribo_layout_array(&l, c, sizeof *x->course);
-        x->way = tribo_layout_array(&l, c, sizeof *x->way);
-        x->steady = tribo_layout_array(&l, c, sizeof *x->steady);
-        x->work = tribo_layout_array(&l, room + 2 * x->sys->ndof, sizeof *x->work);
-        x->power = tribo_layout_array(&l, (4 * x->sys->ndof + c) * TRIBO_POWERS, sizeof *x->power);
-        for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
-            parts[k]->re = tribo_layout_array(&l, 2 * room, sizeof *parts[k]->re);
-            parts[k]->im = parts[k]->re ? parts[k]->re + room : NULL;
-        }
-        for (size_t k = 0; k < sizeof array / sizeof *array; k++) {
-            *array[k] = tribo_layout_array(&l, room, sizeof **array);
-        }
-    } while (!l.memory && tribo_layout_zeros(&l));
-    x->room = l.memory ? room : 0;
-    return l.memory != NULL;
+    x->room = ALLOCATE(ARRAY(x->lot, room / TRIBO_TERMS + 1), ARRAY(x->course, c), ARRAY(x->way, c), ARRAY(x->steady, c),
+                       ARRAY(x->work, room + 2 * x->sys->ndof), ARRAY(x->power, (4 * x->sys->ndof + c) * TRIBO_POWERS),
+                       ARRAY(x->z.re, room), ARRAY(x->z.im, room), ARRAY(x->far_e.re, room), ARRAY(x->far_e.im, room),
+                       ARRAY(x->move.re, room), ARRAY(x->move.im, room), ARRAY(x->rate_move.re, room),
+                       ARRAY(x->rate_move.im, room), ARRAY(x->growth, room), ARRAY(x->growth6, room), ARRAY(x->vel, room),
+                       ARRAY(x->acc, room), ARRAY(x->drift, room), ARRAY(x->place, room), ARRAY(x->rate, room))
+                  ? room
+                  : 0;
+    return x->room > 0;
 }
 
 void tribo_modal_settle(const struct modal *h, size_t columns, const double *force, double *eta, double *rate, double *vel,

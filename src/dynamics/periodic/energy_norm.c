@@ -13,17 +13,9 @@ int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys)
     const size_t n = sys->ndof, c = g->count;
     const int springs = (int)c;
     int info = 0;
-    struct layout l = {0};
     *e = (struct energy_norm){.n = n, .springs = c, .scale = 1.0};
-    do {
-        e->phi = tribo_layout_array(&l, n * n, sizeof *e->phi);
-        e->psi = tribo_layout_array(&l, n * n, sizeof *e->psi);
-        e->root = tribo_layout_array(&l, c * c, sizeof *e->root);
-        e->natural = tribo_layout_array(&l, n, sizeof *e->natural);
-        e->damping = tribo_layout_array(&l, n, sizeof *e->damping);
-        e->omega = tribo_layout_array(&l, n, sizeof *e->omega);
-    } while (tribo_lapack_takes(c) && !l.memory && tribo_layout_zeros(&l));
-    if (!l.memory) {
+    if (!tribo_lapack_takes(c) || !ALLOCATE(ARRAY(e->phi, n * n), ARRAY(e->psi, n * n), ARRAY(e->root, c * c),
+                                            ARRAY(e->natural, n), ARRAY(e->damping, n), ARRAY(e->omega, n))) {
         return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for the modes of the free structure");
     }
     for (size_t k = 0; k < c * c; k++) {

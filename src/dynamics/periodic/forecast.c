@@ -223,25 +223,11 @@ int tribo_forecast(struct period_map *m, double *x, int *done)
     const size_t n = m->sys->ndof, c = m->sys->ncontact, even = n - n % 2;
     const size_t times = even < LEAST_TIMES ? LEAST_TIMES : even > MOST_TIMES ? MOST_TIMES : even;
     struct forecast f = {.m = m, .modes = n, .contacts = c, .times = times};
-    double **const signal[] = {&f.limit, &f.v, &f.f, &f.s, &f.y, &f.part};
-    struct layout l = {0};
-    do {
-        f.receptance = tribo_layout_array(&l, times / 2 * n, sizeof *f.receptance);
-        f.shape = tribo_layout_array(&l, n * c, sizeof *f.shape);
-        f.wave = tribo_layout_array(&l, times * times, sizeof *f.wave);
-        f.back = tribo_layout_array(&l, times * times, sizeof *f.back);
-        f.inverse = tribo_layout_array(&l, times / 2 * c * c, sizeof *f.inverse);
-        for (size_t k = 0; k < sizeof signal / sizeof *signal; k++) {
-            *signal[k] = tribo_layout_array(&l, times * c, sizeof **signal[k]);
-        }
-        f.load = tribo_layout_array(&l, times * n, sizeof *f.load);
-        f.motion = tribo_layout_array(&l, times * n, sizeof *f.motion);
-        f.matrix = tribo_layout_array(&l, c * c, sizeof *f.matrix);
-        f.rho = tribo_layout_array(&l, c, sizeof *f.rho);
-        f.at = tribo_layout_array(&l, c, sizeof *f.at);
-        f.pivot = tribo_layout_array(&l, c, sizeof *f.pivot);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    if (!l.memory) {
+    if (!ALLOCATE(ARRAY(f.receptance, times / 2 * n), ARRAY(f.shape, n * c), ARRAY(f.wave, times * times),
+                  ARRAY(f.back, times * times), ARRAY(f.inverse, times / 2 * c * c), ARRAY(f.limit, times * c),
+                  ARRAY(f.v, times * c), ARRAY(f.f, times * c), ARRAY(f.s, times * c), ARRAY(f.y, times * c),
+                  ARRAY(f.part, times * c), ARRAY(f.load, times * n), ARRAY(f.motion, times * n), ARRAY(f.matrix, c * c),
+                  ARRAY(f.rho, c), ARRAY(f.at, c), ARRAY(f.pivot, c))) {
         return tribo_error(m->drv->message, TRIBO_ERR_MEMORY, "out of memory for the forces of %zu contact%s", c, plural(c));
     }
     *done = c > 0 && tribo_lapack_takes(c) && forecast_modes(&f);
@@ -253,6 +239,6 @@ int tribo_forecast(struct period_map *m, double *x, int *done)
         tribo_energy_norm_of(&m->norm, 1, m->y, x);
         *done = tribo_dense_finite(x, m->n);
     }
-    free(l.memory);
+    free(f.receptance);
     return TRIBO_OK;
 }

@@ -292,14 +292,8 @@ int tribo_period_map_create(struct period_map *m, tribo_driver *drv)
 {
     const size_t n = tribo_system_energy(drv->sys);
     *m = (struct period_map){.company = {phase_ends, event_decided}, .drv = drv, .sys = drv->sys, .n = n};
-    struct layout l = {0};
-    do {
-        m->y = tribo_layout_array(&l, n + 1, sizeof *m->y);
-        m->x = tribo_layout_array(&l, n, sizeof *m->x);
-        m->probe = tribo_layout_array(&l, n * n, sizeof *m->probe);
-        m->limit = tribo_layout_array(&l, 2 * drv->sys->ncontact, sizeof *m->limit);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    return l.memory && tribo_variation_create(&m->variation, drv->sys);
+    return ALLOCATE(ARRAY(m->y, n + 1), ARRAY(m->x, n), ARRAY(m->probe, n * n), ARRAY(m->limit, 2 * drv->sys->ncontact)) &&
+           tribo_variation_create(&m->variation, drv->sys);
 }
 
 void tribo_period_map_free(struct period_map *m)

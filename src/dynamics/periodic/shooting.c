@@ -462,30 +462,20 @@ int tribo_shooting_find(struct shooting *s, double t, double period, double *y)
 struct shooting *tribo_shooting_create(tribo_driver *drv)
 {
     const size_t n = tribo_system_energy(drv->sys);
-    struct layout l = {0};
     struct shooting *s = calloc(1, sizeof *s);
     if (!s) {
         return NULL;
     }
-    do {
-        s->a = tribo_layout_array(&l, n * n, sizeof *s->a);
-        s->b = tribo_layout_array(&l, n * n, sizeof *s->b);
-        s->step = tribo_layout_array(&l, n, sizeof *s->step);
-        s->guess = tribo_layout_array(&l, n, sizeof *s->guess);
-        s->space = tribo_layout_array(&l, tribo_gmres_room(n, n), sizeof *s->space);
-        for (struct point *p = s->point; p < s->point + 2; p++) {
-            p->y = tribo_layout_array(&l, n, sizeof *p->y);
-            p->x = tribo_layout_array(&l, n, sizeof *p->x);
-            p->end = tribo_layout_array(&l, n, sizeof *p->end);
-            p->image = tribo_layout_array(&l, n, sizeof *p->image);
-        }
-    } while (!l.memory && tribo_layout_zeros(&l));
-    if (!l.memory || !tribo_period_map_create(&s->map, drv)) {
+    struct point *const p = s->point, *const other = s->point + 1;
+    if (!ALLOCATE(ARRAY(s->a, n * n), ARRAY(s->b, n * n), ARRAY(s->step, n), ARRAY(s->guess, n),
+                  ARRAY(s->space, tribo_gmres_room(n, n)), ARRAY(p->y, n), ARRAY(p->x, n), ARRAY(p->end, n), ARRAY(p->image, n),
+                  ARRAY(other->y, n), ARRAY(other->x, n), ARRAY(other->end, n), ARRAY(other->image, n)) ||
+        !tribo_period_map_create(&s->map, drv)) {
         tribo_shooting_free(s);
         return NULL;
     }
-    s->here = s->point;
-    s->there = s->point + 1;
+    s->here = p;
+    s->there = other;
     return s;
 }
 

@@ -388,24 +388,10 @@ void tribo_variation_begin(struct variation *x, struct events *e, const double *
 int tribo_variation_create(struct variation *x, tribo_system *sys)
 {
     const size_t n = sys->ndof, c = sys->ncontact, all = tribo_system_energy(sys);
-    struct layout l = {0};
     *x = (struct variation){.sys = sys};
-    do {
-        x->v = tribo_layout_array(&l, all * all, sizeof *x->v);
-        x->acceleration = tribo_layout_array(&l, n, sizeof *x->acceleration);
-        x->force = tribo_layout_array(&l, c, sizeof *x->force);
-        x->rate = tribo_layout_array(&l, c, sizeof *x->rate);
-        x->spring_rate = tribo_layout_array(&l, c, sizeof *x->spring_rate);
-        x->row = tribo_layout_array(&l, c * all, sizeof *x->row);
-        x->a = tribo_layout_array(&l, c, sizeof *x->a);
-        x->f = tribo_layout_array(&l, c, sizeof *x->f);
-        x->change = tribo_layout_array(&l, all - n, sizeof *x->change);
-        x->delay = tribo_layout_array(&l, 2 * all, sizeof *x->delay);
-        x->pressed = tribo_layout_array(&l, c, 1);
-        x->contact = tribo_layout_array(&l, c, sizeof *x->contact);
-        x->group = tribo_layout_array(&l, c, sizeof *x->group);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    return l.memory != NULL;
+    return ALLOCATE(ARRAY(x->v, all * all), ARRAY(x->acceleration, n), ARRAY(x->force, c), ARRAY(x->rate, c),
+                    ARRAY(x->spring_rate, c), ARRAY(x->row, c * all), ARRAY(x->a, c), ARRAY(x->f, c), ARRAY(x->change, all - n),
+                    ARRAY(x->delay, 2 * all), ARRAY(x->pressed, c), ARRAY(x->contact, c), ARRAY(x->group, c)) != NULL;
 }
 
 void tribo_variation_free(struct variation *x)

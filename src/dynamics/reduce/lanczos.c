@@ -364,18 +364,8 @@ int tribo_low_modes(const struct matrix *k, const struct matrix *m, double shift
     const size_t n = k->rows, most = 2 * wanted + 20 * BLOCK, room = most < n ? most : n;
     struct lanczos l = {.mass = m, .shifted = shifted, .shift = shift, .n = n, .room = room, .seed = 1};
     memset(found, 0, sizeof *found);
-    struct layout memory = {0};
-    do {
-        l.q = tribo_layout_array(&memory, room * n, sizeof *l.q);
-        l.w = tribo_layout_array(&memory, BLOCK * n, sizeof *l.w);
-        l.mw = tribo_layout_array(&memory, BLOCK * n, sizeof *l.mw);
-        l.c = tribo_layout_array(&memory, BLOCK * room, sizeof *l.c);
-        l.terms = tribo_layout_array(&memory, n, sizeof *l.terms);
-        l.theta = tribo_layout_array(&memory, room, sizeof *l.theta);
-        l.h = tribo_layout_array(&memory, room * room, sizeof *l.h);
-        l.s = tribo_layout_array(&memory, room * room, sizeof *l.s);
-    } while (!memory.memory && tribo_layout_zeros(&memory));
-    if (!memory.memory) {
+    if (!ALLOCATE(ARRAY(l.q, room * n), ARRAY(l.w, BLOCK * n), ARRAY(l.mw, BLOCK * n), ARRAY(l.c, BLOCK * room),
+                  ARRAY(l.terms, n), ARRAY(l.theta, room), ARRAY(l.h, room * room), ARRAY(l.s, room * room))) {
         return TRIBO_ERR_MEMORY;
     }
     const int status = lanczos_find(&l, k, wanted, found);

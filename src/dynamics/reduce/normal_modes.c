@@ -186,18 +186,11 @@ int tribo_normal_modes(const struct matrix *k, const double *terms, const struct
 {
     const size_t n = k->rows, m = z->rows ? z->cols : n;
     struct spectrum s = {.text = text, .stiffness = k, .z = z, .n = m};
-    struct layout l = {0};
-    do {
-        s.k = tribo_layout_array(&l, m * m, sizeof *s.k);
-        s.y = tribo_layout_array(&l, m * m, sizeof *s.y);
-        s.ky = tribo_layout_array(&l, m * m, sizeof *s.ky);
-        s.block = tribo_layout_array(&l, m * m, sizeof *s.block);
-        s.turn = tribo_layout_array(&l, m * m, sizeof *s.turn);
-        s.value = tribo_layout_array(&l, m, sizeof *s.value);
-        s.root = tribo_layout_array(&l, n, sizeof *s.root);
-        s.force = tribo_layout_array(&l, n, sizeof *s.force);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    int status = l.memory && tribo_matrix_congruent(k, z, s.k) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    int status = ALLOCATE(ARRAY(s.k, m * m), ARRAY(s.y, m * m), ARRAY(s.ky, m * m), ARRAY(s.block, m * m), ARRAY(s.turn, m * m),
+                          ARRAY(s.value, m), ARRAY(s.root, n), ARRAY(s.force, n)) &&
+                         tribo_matrix_congruent(k, z, s.k)
+                     ? TRIBO_OK
+                     : TRIBO_ERR_MEMORY;
     if (!status) {
         tribo_matrix_roots(k, terms, s.root);
         status = m ? modes_find(&s, mass) : TRIBO_OK;

@@ -77,23 +77,14 @@ static int reserve(struct event *e)
 {
     struct creep *c = &e->creep;
     const size_t terms = e->most_order + 1, slides = c->count, unknowns = slides * NODES;
-    struct layout l = {0};
     if (c->room >= slides) {
         return 1;
     }
     free(c->weight);
     c->room = 0;
-    do {
-        c->weight = tribo_layout_array(&l, terms * NODES * NODES, sizeof *c->weight);
-        c->response = tribo_layout_array(&l, 4 * slides * slides * terms, sizeof *c->response);
-        c->matrix = tribo_layout_array(&l, unknowns * unknowns, sizeof *c->matrix);
-        c->rest = tribo_layout_array(&l, unknowns, sizeof *c->rest);
-        c->angle = tribo_layout_array(&l, unknowns, sizeof *c->angle);
-        c->u = tribo_layout_array(&l, 2 * unknowns, sizeof *c->u);
-        c->slides = tribo_layout_array(&l, slides, sizeof *c->slides);
-        c->pivot = tribo_layout_array(&l, unknowns, sizeof *c->pivot);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    if (!l.memory) {
+    if (!ALLOCATE(ARRAY(c->weight, terms * NODES * NODES), ARRAY(c->response, 4 * slides * slides * terms),
+                  ARRAY(c->matrix, unknowns * unknowns), ARRAY(c->rest, unknowns), ARRAY(c->angle, unknowns),
+                  ARRAY(c->u, 2 * unknowns), ARRAY(c->slides, slides), ARRAY(c->pivot, unknowns))) {
         return 0;
     }
     c->room = slides;

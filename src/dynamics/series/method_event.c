@@ -179,8 +179,6 @@ static int method_event_prepare(struct event *e)
     const tribo_system *sys = e->sys;
     const double abstol = e->drv->abstol;
     const size_t n = sys->ndof, c = sys->ncontact, planes = tribo_system_planar(sys);
-    double **const series[] = {&e->watch, &e->limit, &e->fall, &e->part, &e->spring};
-    double **const rooms[] = {&e->room.base, &e->room.a, &e->room.given, &e->room.held, &e->room.rate};
     e->events.stick_slip.constant.abstol = abstol;
     e->events.stick_slip.constant.reltol = abstol > 0.0 ? e->drv->reltol : USUAL;
     if (e->q && e->abstol == abstol && e->revision == sys->revision && e->planes == planes) {
@@ -201,20 +199,12 @@ static int method_event_prepare(struct event *e)
     e->terms = sys->loads.limits > sys->loads.limit_tables || sys->normals.count ? e->order + 1 : sys->loads.limits ? 2 : 1;
     free_series(e);
     const size_t terms = e->order + 1;
-    struct layout l = {0};
-    do {
-        e->q = tribo_layout_array(&l, terms * n, sizeof *e->q);
-        e->u = tribo_layout_array(&l, terms * n, sizeof *e->u);
-        e->d = tribo_layout_array(&l, terms, sizeof *e->d);
-        e->room.acceleration = tribo_layout_array(&l, n, sizeof *e->u);
-        e->curve = tribo_layout_array(&l, c, sizeof *e->curve);
-        e->limit_curve = tribo_layout_array(&l, c, sizeof *e->limit_curve);
-        for (size_t k = 0; k < 5; k++) {
-            *series[k] = tribo_layout_array(&l, terms * c, sizeof **series[k]);
-            *rooms[k] = tribo_layout_array(&l, c, sizeof **rooms[k]);
-        }
-    } while (!l.memory && tribo_layout_zeros(&l));
-    return l.memory ? TRIBO_OK : tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for method event");
+    return ALLOCATE(ARRAY(e->q, terms * n), ARRAY(e->u, terms * n), ARRAY(e->d, terms), ARRAY(e->room.acceleration, n),
+                    ARRAY(e->curve, c), ARRAY(e->limit_curve, c), ARRAY(e->watch, terms * c), ARRAY(e->limit, terms * c),
+                    ARRAY(e->fall, terms * c), ARRAY(e->part, terms * c), ARRAY(e->spring, terms * c), ARRAY(e->room.base, c),
+                    ARRAY(e->room.a, c), ARRAY(e->room.given, c), ARRAY(e->room.held, c), ARRAY(e->room.rate, c))
+               ? TRIBO_OK
+               : tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for method event");
 }
 
 static void series_state(void *own, double tau, const double *from, double *to)

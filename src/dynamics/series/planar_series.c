@@ -38,24 +38,16 @@ static int reserve_lines(struct event *e, size_t begins)
 {
     struct planar_series *s = &e->planar;
     const size_t terms = e->most_order + 1, count = e->events.stick_slip.plane->count;
-    struct layout l = {0};
     double *series;
     if (s->line && s->room >= count && s->begin_room >= begins) {
         return 1;
     }
     free(s->line);
-    do {
-        s->line = tribo_layout_array(&l, count, sizeof *s->line);
-        series = tribo_layout_array(&l, 7 * terms * count, sizeof *series);
-        s->begin = tribo_layout_array(&l, begins, sizeof *s->begin);
-        s->pivot = tribo_layout_array(&l, begins, sizeof *s->pivot);
-        s->s = tribo_layout_array(&l, begins * begins, sizeof *s->s);
-        s->lu = tribo_layout_array(&l, begins * begins, sizeof *s->lu);
-        s->tau = tribo_layout_array(&l, begins, sizeof *s->tau);
-        s->answer = tribo_layout_array(&l, begins * e->sys->ndof, sizeof *s->answer);
-        s->held = tribo_layout_array(&l, begins * e->sys->ncontact, sizeof *s->held);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    for (size_t k = 0; l.memory && k < count; k++, series += 7 * terms) {
+    const int done =
+        ALLOCATE(ARRAY(s->line, count), ARRAY(series, 7 * terms * count), ARRAY(s->begin, begins), ARRAY(s->pivot, begins),
+                 ARRAY(s->s, begins * begins), ARRAY(s->lu, begins * begins), ARRAY(s->tau, begins),
+                 ARRAY(s->answer, begins * e->sys->ndof), ARRAY(s->held, begins * e->sys->ncontact)) != NULL;
+    for (size_t k = 0; done && k < count; k++, series += 7 * terms) {
         s->line[k] = (struct planar_line){.xn = series,
                                           .xt = series + terms,
                                           .un = series + 2 * terms,
@@ -65,7 +57,7 @@ static int reserve_lines(struct event *e, size_t begins)
     }
     s->room = count;
     s->begin_room = begins;
-    return l.memory != NULL;
+    return done;
 }
 
 /* (limit t)'J acc, acc [ncontact] = J acc. */

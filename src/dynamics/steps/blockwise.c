@@ -52,26 +52,13 @@ void tribo_blockwise_free(struct blockwise *b)
 int tribo_blockwise_create(struct blockwise *b, const tribo_system *sys)
 {
     const size_t n = sys->ndof, c = sys->ncontact, blocks = (n + MATRIX_BLOCK - 1) / MATRIX_BLOCK;
-    struct layout l = {0};
     signed char *taken;
     memset(b, 0, sizeof *b);
     b->blocks = blocks;
-    do {
-        double **const of_dof[] = {&b->mass, &b->brake, &b->band, &b->rate, &b->before, &b->after, &b->load};
-        b->body = tribo_layout_array(&l, c, sizeof *b->body);
-        for (size_t k = 0; k < sizeof of_dof / sizeof *of_dof; k++) {
-            *of_dof[k] = tribo_layout_array(&l, n, sizeof **of_dof[k]);
-        }
-        b->turn = tribo_layout_array(&l, c, sizeof *b->turn);
-        b->room = tribo_layout_array(&l, c, sizeof *b->room);
-        b->first = tribo_layout_array(&l, blocks, sizeof *b->first);
-        b->last = tribo_layout_array(&l, blocks, sizeof *b->last);
-        b->driven = tribo_layout_array(&l, blocks, 1);
-        b->awake = tribo_layout_array(&l, blocks, 1);
-        b->wakes = tribo_layout_array(&l, blocks, 1);
-        taken = tribo_layout_array(&l, n, 1);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    if (!l.memory) {
+    if (!ALLOCATE(ARRAY(b->body, c), ARRAY(b->mass, n), ARRAY(b->brake, n), ARRAY(b->band, n), ARRAY(b->rate, n),
+                  ARRAY(b->before, n), ARRAY(b->after, n), ARRAY(b->load, n), ARRAY(b->turn, c), ARRAY(b->room, c),
+                  ARRAY(b->first, blocks), ARRAY(b->last, blocks), ARRAY(b->driven, blocks), ARRAY(b->awake, blocks),
+                  ARRAY(b->wakes, blocks), ARRAY(taken, n))) {
         return 0;
     }
     if (!find_bodies(b, sys, taken)) {

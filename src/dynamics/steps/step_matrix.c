@@ -25,22 +25,11 @@ void tribo_step_matrix_free(struct step_matrix *m)
 static int matrix_find_bodies(struct step_matrix *m, const tribo_system *sys)
 {
     const size_t n = m->n, count = sys->ncontact;
-    struct layout l = {0};
     if (!count || sys->compliance.count || m->below != m->above || 2 * m->below > count) {
         return 1;
     }
-    do {
-        m->body = tribo_layout_array(&l, count, sizeof *m->body);
-        m->contact = tribo_layout_array(&l, n, sizeof *m->contact);
-        m->lever = tribo_layout_array(&l, count, sizeof *m->lever);
-        m->own = tribo_layout_array(&l, count, sizeof *m->own);
-        m->noise = tribo_layout_array(&l, count, sizeof *m->noise);
-        m->push = tribo_layout_array(&l, n, sizeof *m->push);
-        m->move = tribo_layout_array(&l, n, sizeof *m->move);
-        m->at = tribo_layout_array(&l, count, 1);
-        m->held = tribo_layout_array(&l, n, 1);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    if (!l.memory) {
+    if (!ALLOCATE(ARRAY(m->body, count), ARRAY(m->contact, n), ARRAY(m->lever, count), ARRAY(m->own, count),
+                  ARRAY(m->noise, count), ARRAY(m->push, n), ARRAY(m->move, n), ARRAY(m->at, count), ARRAY(m->held, n))) {
         return 0;
     }
     m->count = tribo_step_form_bodies(&sys->direction, m->body, m->lever, m->held) ? count : 0;

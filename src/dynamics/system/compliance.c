@@ -55,15 +55,10 @@ static int find_stiffest(tribo_system *sys)
 int tribo_compliance_create(tribo_system *sys, const double *own, const double *entries, size_t *where)
 {
     struct compliance *g = &sys->compliance;
-    struct layout l = {0};
-    do {
-        g->contact = tribo_layout_array(&l, sys->ncontact, sizeof *g->contact);
-        g->lo = tribo_layout_array(&l, sys->ncontact, sizeof *g->lo);
-        g->hi = tribo_layout_array(&l, sys->ncontact, sizeof *g->hi);
-        g->f = tribo_layout_array(&l, sys->ncontact, sizeof *g->f);
-    } while (!l.memory && tribo_layout_zeros(&l));
+    const int room = ALLOCATE(ARRAY(g->contact, sys->ncontact), ARRAY(g->lo, sys->ncontact), ARRAY(g->hi, sys->ncontact),
+                              ARRAY(g->f, sys->ncontact)) != NULL;
     g->g = calloc(1, sizeof *g->g);
-    int status = l.memory && g->g ? tribo_definite_create(g->g, sys->ncontact, own, entries, where) : TRIBO_ERR_MEMORY;
+    int status = room && g->g ? tribo_definite_create(g->g, sys->ncontact, own, entries, where) : TRIBO_ERR_MEMORY;
     status = status ? status : tribo_create(&g->box, sys->ncontact);
     status = status ? status : entries ? tribo_set_operator_dense(g->box, entries) : tribo_set_operator_diagonal(g->box, own);
     if (status) {

@@ -89,17 +89,9 @@ int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *
                                          sys->normals.follower[0].contact);
     }
     struct tangents d;
-    struct layout l = {0};
     sys->jacobians++;
-    do {
-        d.df_dv = tribo_layout_array(&l, m * m, sizeof *d.df_dv);
-        d.df_da = tribo_layout_array(&l, m * m, sizeof *d.df_da);
-        d.pull = tribo_layout_array(&l, m * n, sizeof *d.pull);
-        d.df_dy = tribo_layout_array(&l, m * (2 * n + 1), sizeof *d.df_dy);
-        d.df_dt = tribo_layout_array(&l, m, sizeof *d.df_dt);
-        d.load = tribo_layout_array(&l, n, sizeof *d.load);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    if (!l.memory) {
+    if (!ALLOCATE(ARRAY(d.df_dv, m * m), ARRAY(d.df_da, m * m), ARRAY(d.pull, m * n), ARRAY(d.df_dy, m * (2 * n + 1)),
+                  ARRAY(d.df_dt, m), ARRAY(d.load, n))) {
         return sys->status = tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for the Jacobian");
     }
     tribo_system_free_motion(sys, t, y, d.load, sys->work.v, sys->work.a);
@@ -123,6 +115,6 @@ int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *
     } else {
         write_rows(sys, &d, dfdy, dfdt);
     }
-    free(l.memory);
+    free(d.df_dv);
     return sys->status;
 }

@@ -20,18 +20,12 @@ static size_t length_of(const tribo_system *sys, enum drives drives)
  * leaves them unset). Returns 0 if out of memory. */
 static int create_harmonic(struct harmonic *h, const void *from)
 {
-    struct layout l = {0};
-    do {
-        h->index = tribo_layout_array(&l, h->count, sizeof *h->index);
-        h->cosine = tribo_layout_array(&l, h->count, sizeof *h->cosine);
-        h->sine = tribo_layout_array(&l, h->count, sizeof *h->sine);
-        h->knot = tribo_layout_array(&l, h->knots, sizeof *h->knot);
-        h->value = tribo_layout_array(&l, h->knots * h->columns, sizeof *h->value);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    if (l.memory && from) {
-        memcpy(l.memory, from, l.used);
+    const int done = ALLOCATE(ARRAY(h->index, h->count), ARRAY(h->cosine, h->count), ARRAY(h->sine, h->count),
+                              ARRAY(h->knot, h->knots), ARRAY(h->value, h->knots * h->columns)) != NULL;
+    if (done && from) {
+        memcpy(h->index, from, (size_t)((char *)(h->value + h->knots * h->columns) - (char *)h->index));
     }
-    return l.memory != NULL;
+    return done;
 }
 
 void tribo_loads_free(tribo_system *sys)

@@ -20,15 +20,8 @@ void tribo_normals_free(struct normals *s)
 /* Allocates the arrays for at most `count` normals and followers each. Returns 0 if out of memory. */
 static int normals_reserve(struct normals *s, size_t count, size_t ncontact)
 {
-    struct layout l = {0};
-    do {
-        s->normal = tribo_layout_array(&l, count, sizeof *s->normal);
-        s->follower = tribo_layout_array(&l, count, sizeof *s->follower);
-        s->at = tribo_layout_array(&l, ncontact, sizeof *s->at);
-        s->by = tribo_layout_array(&l, ncontact, sizeof *s->by);
-        s->force = tribo_layout_array(&l, ncontact, sizeof *s->force);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    return l.memory != NULL;
+    return ALLOCATE(ARRAY(s->normal, count), ARRAY(s->follower, count), ARRAY(s->at, ncontact), ARRAY(s->by, ncontact),
+                    ARRAY(s->force, ncontact)) != NULL;
 }
 
 /* Sets stiffest: the largest row sum of |B_n| k |J_n| over the normals, and of |B_i| mu k |J_n| over their contacts, which slide.

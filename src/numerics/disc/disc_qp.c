@@ -263,11 +263,12 @@ int tribo_disc_create(struct disc_qp *p, size_t most)
 {
     struct layout l = {0};
     *p = (struct disc_qp){0};
-    do {
-        p->memory = tribo_layout_array(&l, 0, 1);
-        lay_out_disc(p, &l, most);
-    } while (!l.memory && tribo_layout_zeros(&l));
-    return l.memory != NULL;
+    lay_out_disc(p, &l, most);
+    p->memory = tribo_zeros(l.used + 1, 1);
+    if (p->memory) {
+        lay_out_disc(p, &(struct layout){.memory = p->memory}, most);
+    }
+    return p->memory != NULL;
 }
 
 void tribo_disc_free(struct disc_qp *p)
