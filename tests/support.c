@@ -73,6 +73,11 @@ int setting(const char *name, int otherwise)
     return text ? atoi(text) : otherwise;
 }
 
+int more(void)
+{
+    return setting("TRIBO_MORE", 0);
+}
+
 struct random random_of(int seed)
 {
     return (struct random){(uint64_t)seed * 0x632BE59BD9B4E019u + 1u};

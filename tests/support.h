@@ -79,6 +79,9 @@ int stained(const void *memory, size_t bytes);
 /* The number in an environment variable, or another if it is not set. */
 int setting(const char *name, int otherwise);
 
+/* TRIBO_MORE is set: the suite takes its long cases, too. */
+int more(void);
+
 /* splitmix64 (Steele, Lea and Flood 2014): the same numbers on every machine. */
 struct random {
     uint64_t state;

@@ -212,14 +212,16 @@ static double energy(size_t system, const char *method, double epsilon, double d
     return y[last];
 }
 
-/* Against fixed steps in which the band is resolved. */
+/* Against fixed steps in which the band is resolved. The steps of the method of first order are as the root of the tolerance: its tightest
+ * tolerance is one of the long cases. */
 TEST(energies)
 {
     const double epsilon = _i % 2 ? 1e-3 : 1e-2;
     const size_t system = (size_t)_i / 2;
     const double want = energy(system, "rk4/fixed", epsilon, 0.1 * epsilon, 0.0);
     for (size_t k = 0; k < COUNT(steppers); k++) {
-        for (double tolerance = 1e-4; tolerance > 1e-9; tolerance *= 1e-2) {
+        const double tightest = steppers[k].order == 1 && !more() ? 1e-6 : 1e-8;
+        for (double tolerance = 1e-4; tolerance > 0.5 * tightest; tolerance *= 1e-2) {
             const double error = energy(system, steppers[k].name, epsilon, 1e-3, tolerance) / want - 1.0;
             require(fabs(error) < steppers[k].most * fmin(pow(tolerance, steppers[k].power), 1e-2),
                     "%s, %s, epsilon %g, tolerance %g: off by %.2g", systems[system].name, steppers[k].name, epsilon, tolerance,
@@ -234,7 +236,8 @@ TEST(steps_over_rest)
 {
     const double epsilon = 1e-4, want = energy(0, "exact", epsilon, 1.0, 0.0);
     assert_close(want, 67.674, 1e-3);
-    for (double tolerance = 1e-3; tolerance > 1e-9; tolerance *= 1e-5) {
+    const double tightest = steppers[_i].order == 1 && !more() ? 1e-3 : 1e-8;
+    for (double tolerance = 1e-3; tolerance > 0.5 * tightest; tolerance *= 1e-5) {
         const double error = energy(0, steppers[_i].name, epsilon, 1e-3, tolerance) / want - 1.0;
         require(fabs(error) < steppers[_i].most * fmin(pow(tolerance, steppers[_i].power), 1e-3), "%s, tolerance %g: off by %.2g",
                 steppers[_i].name, tolerance, error);
@@ -286,15 +289,19 @@ TEST(reversal_law)
         assert_ok(tribo_set_epsilon_all(tribo_system_context(sys[k]), 0.05));
     }
     run(sys[0], "rk4/fixed", 1e-4, 0.0, 20.0, want);
-    run(sys[1], steppers[_i].name, 1e-3, 1e-9, 20.0, y);
+    run(sys[1], steppers[_i].name, 1e-3, steppers[_i].order == 1 && !more() ? 1e-7 : 1e-9, 20.0, y);
     assert_all_close(y, want, 3, steppers[_i].order == 1 ? 1e-3 : steppers[_i].order == 2 ? 1e-5 : 2e-6);
     tribo_system_destroy(sys[0]);
     tribo_system_destroy(sys[1]);
 }
 
-/* Coulomb's law itself jumps where v = 0: right, or an error, and in any case the state that an observer saw last. */
+/* Coulomb's law itself jumps where v = 0: right, or an error, and in any case the state that an observer saw last. The multistep
+ * methods take 4 million steps at the jump: long cases. */
 TEST(coulombs_law)
 {
+    if (!more() && strncmp(steppers[_i].name, "ms", 2) == 0) {
+        return;
+    }
     struct log *log = calloc(1, sizeof *log);
     double t = 0.0, y[3] = {0}, want[3] = {0};
     tribo_system *sys = oscillator(TRIBO_COULOMB, 1.5, 0.5);

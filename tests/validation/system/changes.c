@@ -134,6 +134,12 @@ static int possible(const char *method, size_t change)
     return strcmp(method, "exact") || !(falls || table);
 }
 
+/* First order: at 1e-8 each run takes 10^5 steps. */
+static int slow(const char *method)
+{
+    return strcmp(method, "rk1imp") == 0;
+}
+
 /* Where rkf45 rejects a step depends on the last bits: at 1e-8 two runs are now and then 1e-6 apart. */
 static tribo_driver *start(const char *method, tribo_system *sys)
 {
@@ -151,7 +157,7 @@ TEST(like_a_new_driver)
         const struct model m = model_create(&g, 1);
         double t[2] = {0.0}, y[2][DIMENSION] = {{0.5, 0.0, -0.5}};
         model = &m;
-        if (!possible(method, k)) {
+        if (!possible(method, k) || (!more() && slow(method) && k % 5)) {
             continue;
         }
         tribo_system *sys[] = {model_system(&m, 0, 4, 0.05), model_system(&m, 0, 4, 0.05)};
