@@ -10,7 +10,7 @@ CDPATH= cd -- "$(dirname -- "$0")/.."
 setup gcc gfortran libc6-dev make cmake pkg-config libgsl-dev liblapack-dev libsuitesparse-dev zlib1g-dev gnuplot-nox
 
 build=build/release bin=build/release/examples results=$PWD/build/results
-legacy='legacy_newmark_before legacy_newmark_after legacy_newmark_implicit legacy_rk45 legacy_fric legacy_lift legacy_vfric legacy_damper'
+legacy='legacy_newmark_before legacy_newmark_after legacy_newmark_implicit legacy_rk45 legacy_fric legacy_lift legacy_vfric legacy_damper legacy_hosts'
 contacts='contact_whirl contact_liftoff contact_stick_slip contact_hysteresis contact_platform contact_squeal'
 programs="paper_oscillator paper_dissipation paper_belt paper_chain tribo_damper $contacts clutches $legacy"
 cores=$(getconf _NPROCESSORS_ONLN)
