@@ -411,7 +411,7 @@ TRIBO_API int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(const tri
  * y        [dimension] in/out   in: a guess, e.g. zeros; out: the state, with energy 0; unchanged on error
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_STEP (a period below the resolution of t),
  * TRIBO_ERR_RANGE (a load or base motion without this period), TRIBO_ERR_UNSUPPORTED (other methods; tables; static limits
- * together with elastic contacts; planar contacts), TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
+ * together with elastic contacts), TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
 TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y);
 
 /* Floquet multipliers re + i im of the last periodic motion found, largest modulus first; in a complex pair im > 0 is first.
@@ -431,7 +431,7 @@ TRIBO_API int tribo_driver_get_freedom(const tribo_driver *drv, size_t *freedom)
  * at_least, at_most    out, or NULL     times of the extremes in the period from t
  * k                    in               harmonic cosine cos(k 2 pi t/period) + sine sin(k 2 pi t/period); 0: cosine is the mean
  * cosine, sine         out
- * energy               [ncontact] out   energy dissipated in a period
+ * energy               [ncontact] out   energy dissipated in a period; of planar contacts along each direction
  * share                [ncontact] out   part of the period, 0 to 1, in which the contact is at rest
  * Return TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE (c), TRIBO_ERR_STATE (no motion found, or the system changed), TRIBO_ERR_MEMORY,
  * TRIBO_ERR_STEP (extremes: a motion too fast to be followed), TRIBO_ERR_UNSUPPORTED (extremes, harmonic by exact: a load in

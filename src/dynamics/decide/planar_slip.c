@@ -209,6 +209,18 @@ static double given_forces(struct stick_slip *m, const tribo_system *sys, const 
     return fastest;
 }
 
+void tribo_planar_slip_forces(const struct stick_slip *m, const tribo_system *sys, const double *y, double *force)
+{
+    for (size_t k = 0; k < m->plane->count; k++) {
+        const struct planar_contact *p = &m->plane->contact[k];
+        const double x[2] = {p->limit[0] * tribo_stick_slip_velocity(m, sys, p->at, y),
+                             p->limit[1] * tribo_stick_slip_velocity(m, sys, p->at + 1, y)};
+        for (size_t d = 0; d < 2 && tribo_slides_in_plane(m, p); d++) {
+            force[p->at + d] = -p->limit[d] * quotient(x[d], length(x));
+        }
+    }
+}
+
 /* Finds forces f [ncontact] at accelerations a without friction: work.lo of sliding contacts, Coulomb's law with limits work.hi
  * for the others. Sets work.v = a + R f. */
 static int solve_discs(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)

@@ -309,6 +309,9 @@ int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, doubl
                    : m->constant.elastic[i]         ? s->spring[i]
                                                     : s->force[i];
     }
+    if (m->plane) {
+        tribo_planar_slip_forces(m, sys, y, force);
+    }
     tribo_matrix_multiply_add(&sys->response, 1.0, force, acceleration);
     tribo_stick_slip_contact_accelerations(sys, acceleration, 1, m->work.v);
     const int status = tribo_stick_slip_balance(m, m->work.v, m->work.f);

@@ -306,6 +306,9 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
 int tribo_planar_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);
 int tribo_planar_slip_settle(struct stick_slip *m, const tribo_system *sys, const double *y);
 
+/* Sets the entries of force [ncontact] of planar contacts that slide, by their velocities in y. */
+void tribo_planar_slip_forces(const struct stick_slip *m, const tribo_system *sys, const double *y, double *force);
+
 /* ---------------------------------------------------------------------------------------------------------- velocities */
 
 /* Rounding of a velocity, in parts of the sum of the sizes of its terms. */

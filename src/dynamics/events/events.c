@@ -286,11 +286,11 @@ static int phase(struct events *e, tribo_driver *drv, double *t, double t1, doub
     /* a zero is expected as in the phases that began as the next one does, if the last two were alike */
     e->begun = event ? e->lasted + SLIPS * event->contact + (m->state.slip[event->contact] + 1) : NULL;
     e->search.expected = e->begun && e->begun->change <= ALIKE * e->begun->time ? e->begun->time : 0.0;
-    if (!status && event && e->company && e->company->decided) {
+    stops = !status && m->plane && m->plane->stopped < m->constant.contacts;
+    if (!status && (event || stops) && e->company && e->company->decided) {
         e->company->decided(e->company);
     }
     if (!status && m->plane) {
-        stops = m->plane->stopped < m->constant.contacts;
         status = stops ? count_event(e, drv, m->plane->stopped, *t) : TRIBO_OK;
         for (size_t i = 0; drv->seen && i < m->constant.contacts; i++) {
             const int slides = m->state.slip[i] == TRIBO_SLIP_PLANE && e->shown[i] == TRIBO_SLIP_PLANE;

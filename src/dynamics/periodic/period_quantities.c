@@ -37,7 +37,7 @@ static int replay_phase(struct company *company, double tau, double t, const dou
     }
     for (size_t i = 0; !r->c && i < r->map->sys->ncontact; i++) {
         const signed char slip = e->stick_slip.state.slip[i];
-        if (r->energy && tribo_slides(slip)) {
+        if (r->energy && slip != TRIBO_SLIP_STUCK && slip != TRIBO_SLIP_OPEN) {
             r->energy[i] += r->map->sys->tally[i] * e->motion->work(e->own, i, tau);
         } else if (r->rest && slip == TRIBO_SLIP_STUCK) {
             r->rest[i] += tau / r->map->period;

@@ -189,6 +189,9 @@ static int stops(const struct variation *x, size_t i)
     const signed char before = x->before[i], *now = x->to->events->stick_slip.state.slip;
     const struct guard *met = x->to->events->met;
     int acts = now[i] != before;
+    if (before == TRIBO_SLIP_PLANE) {
+        return now[i] == TRIBO_SLIP_STUCK || x->to->events->stick_slip.state.rested[i];
+    }
     if (!tribo_slides(before) || x->to->events->stick_slip.constant.elastic[i] || now[i] == TRIBO_SLIP_OPEN) {
         return 0;
     }
@@ -210,7 +213,8 @@ static void gather(struct variation *x, size_t i, size_t group)
     for (size_t j = 0; j < x->sys->ncontact; j++) {
         const int passes =
             !x->group[j] && !m->constant.elastic[j] && (x->before[j] == 0 || m->state.slip[j] == TRIBO_SLIP_STUCK || stops(x, j));
-        if (passes && fabs(tribo_system_delassus(x->sys, i, j)) > least) {
+        const int pair = m->plane && (m->plane->in_plane[i] == 1 ? j == i + 1 : m->plane->in_plane[i] == 2 && j + 1 == i);
+        if (passes && (pair || fabs(tribo_system_delassus(x->sys, i, j)) > least)) {
             gather(x, j, group);
         }
     }
@@ -342,11 +346,20 @@ void tribo_variation_event(struct variation *x)
 {
     const struct stick_slip *m = &x->to->events->stick_slip;
     const size_t n = tribo_system_energy(x->sys);
-    for (size_t i = 0; i < x->sys->ncontact; i++) {
-        if (stops(x, i)) {
+    for (size_t i = 0, end; i < x->sys->ncontact; i = end) {
+        const int pair = m->plane && m->plane->in_plane[i] == 1;
+        double power = 0.0; /* rate of g = f'v along the force f of a contact that slides */
+        end = i + (pair ? 2 : 1);
+        for (size_t k = i; k < end; k++) {
+            power += x->force[k] * x->rate[k];
+        }
+        if (stops(x, i) && (!pair || power > 0.0)) {
             double *row = x->row + x->count * n;
             memset(row, 0, n * sizeof *row);
-            tribo_matrix_add_row(&x->sys->direction, i, 1.0 / x->rate[i], row + x->sys->ndof);
+            for (size_t k = i; k < end; k++) {
+                const double part = pair ? x->force[k] / power : 1.0 / x->rate[k];
+                tribo_matrix_add_row(&x->sys->direction, k, part, row + x->sys->ndof);
+            }
             x->contact[x->count++] = i;
         }
     }

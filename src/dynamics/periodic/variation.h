@@ -9,6 +9,9 @@
  * for elastic contacts, forces are continuous, and S = I; but where an elastic contact breaks away and others, coupled to it by G,
  * stop, f' jumps likewise: S = I + (f'+ - f'-) (df_i/dstate)/f_i'.
  *
+ * The force of a sliding planar contact turns with its velocity, which the method of the motion takes into account. Where it stops
+ * g = f'v, f its force before, the acceleration is that of the phase before, and the jump is that of both directions.
+ *
  * Where a normal lifts off or touches down, q'' is continuous, and f' of elastic contacts jumps: S = I + (f'+ - f'-) J_n/(J_n q').
  *
  * If several quantities cross zero at one instant by coincidence, contacts are divided into groups that pass no forces to each

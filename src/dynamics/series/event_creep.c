@@ -429,7 +429,7 @@ int tribo_creep_begin(struct event *e, double t, const double *y, double most, d
     }
     e->events.anew = 0;
     *length = 0.0;
-    if (!(least < most) || (!(c->length > least) && c->waited++ < c->wait)) {
+    if (e->events.sharp || !(least < most) || (!(c->length > least) && c->waited++ < c->wait)) {
         return TRIBO_OK;
     }
     const double first = c->length > least ? c->length : lesser(FIRST * most, find_settled(e));

@@ -158,9 +158,11 @@ int tribo_event_series(struct event *e)
 double tribo_event_work(void *own, size_t i, double tau)
 {
     const struct event *e = own;
+    const int turns = e->events.stick_slip.state.slip[i] == TRIBO_SLIP_PLANE;
     double work = 0.0;
     for (size_t k = e->order; k-- > 0;) {
-        work = work * tau + power_of(e, i, k) / (double)(k + 1);
+        const double power = turns ? tribo_planar_series_power_along(e, i, k) : power_of(e, i, k);
+        work = work * tau + power / (double)(k + 1);
     }
     return work * tau;
 }
@@ -178,13 +180,14 @@ struct perturbed {
     double *spring;  /* [ncontact] forces of compliant contacts */
     double *force;   /* [ncontact] forces by limits that fall, or follow the motion */
     double *v;       /* [rows][ncontact] velocities of contacts, the last orders cyclically */
+    struct planar_turns turns;
 };
 
 /* Most terms; a series of exponentials over a step has far less. */
 #define MOST_TERMS 400
 
-/* Sets the terms of order k from those before. */
-static void find_term(struct event *e, size_t k, double tau, const struct perturbed *p)
+/* Sets the terms of order k from those before. Returns a status. */
+static int find_term(struct event *e, size_t k, double tau, const struct perturbed *p)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const tribo_system *sys = e->sys;
@@ -226,11 +229,16 @@ static void find_term(struct event *e, size_t k, double tau, const struct pertur
         }
         tribo_matrix_add_columns(&sys->response, part, p->columns, p->force, p->next);
     }
+    if (m->plane) {
+        tribo_planar_series_turn(e, k - 1, &p->turns, p->force);
+        tribo_matrix_add_columns(&sys->response, part, p->columns, p->force, p->next);
+    }
     for (size_t i = 0; i < half; i++) {
         p->q[i] = part * p->u[i];
     }
     memset(p->u, 0, half * sizeof *p->u);
     tribo_multiply_add(n, n, p->columns, 1.0, p->project, p->next, p->u);
+    return m->plane ? tribo_planar_series_turn_finish(e, k - 1, &p->turns, p->u) : TRIBO_OK;
 }
 
 int tribo_event_transition(void *own, const void *phase, double tau, size_t columns, double *v)
@@ -239,8 +247,9 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
     struct stick_slip *m = &e->events.stick_slip;
     const struct compliance *g = &e->sys->compliance;
     const size_t n = e->sys->ndof, half = n * columns, each = e->sys->ncontact * columns;
-    struct perturbed p = {.columns = columns, .rows = m->limits.falls ? e->order + 1 : 1};
-    p.project = malloc((n * n + 3 * half + (2 + p.rows) * each + 1) * sizeof *p.project);
+    const size_t planes = m->plane ? m->plane->count * columns : 0;
+    struct perturbed p = {.columns = columns, .rows = m->limits.falls || m->plane ? e->order + 1 : 1};
+    p.project = malloc((n * n + 3 * half + (2 + p.rows) * each + (1 + p.rows) * planes + 1) * sizeof *p.project);
     if (!p.project) {
         return tribo_error(e->sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     }
@@ -250,6 +259,7 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
     p.spring = p.next + half;
     p.force = p.spring + each;
     p.v = p.force + each;
+    p.turns = (struct planar_turns){columns, p.rows, tau, p.v, p.v + p.rows * each, p.v + p.rows * (each + planes)};
     (void)phase;
     tribo_stick_slip_press(m, e->sys);
     int status = TRIBO_OK;
@@ -268,8 +278,9 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
     for (size_t k = 0; k < g->count; k++) {
         memcpy(p.spring + g->contact[k] * columns, v + 2 * half + k * columns, columns * sizeof *v);
     }
-    for (size_t k = 1, small = 0; !status && small < 2 && k < MOST_TERMS; k++) {
-        find_term(e, k, tau, &p);
+    const size_t most = m->plane ? tribo_planar_series_terms(e, MOST_TERMS) : MOST_TERMS;
+    for (size_t k = 1, small = 0; !status && small < 2 && k < most; k++) {
+        status = find_term(e, k, tau, &p);
         tribo_add(v, 1.0, p.q, 2 * half); /* q and u */
         for (size_t i = 0; i < g->count; i++) {
             tribo_add(v + 2 * half + i * columns, 1.0, p.spring + g->contact[i] * columns, columns);

@@ -157,6 +157,26 @@ void tribo_planar_series_errors(struct event *e);
  * and x/|x|, and no speed grows so much that it is lost in rounding. */
 double tribo_planar_series_shorten(const struct event *e, double h);
 
+/* Terms x^(k) tau^k/k! of perturbations: v [rows][ncontact][columns] of velocities of contacts, z [rows][planar contacts][columns]
+ * of the turns of directions u, both of the last orders, cyclically; rows > order of the series. */
+struct planar_turns {
+    size_t columns, rows;
+    double tau;
+    double *v, *z, *w; /* w [planar contacts][columns]: workspace */
+};
+
+/* Sets the k-th terms of turns, and force [ncontact][columns] = those of forces of sliding planar contacts; without the turns of
+ * contacts that begin to slide, which finish finds: it adds their effect to the terms of order k + 1 of velocities
+ * u [ndof][columns]. */
+void tribo_planar_series_turn(const struct event *e, size_t k, const struct planar_turns *p, double *force);
+int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct planar_turns *p, double *u);
+
+/* Returns the number of terms of perturbations, at most `most`: where a contact begins to slide by its force, series are asymptotic. */
+size_t tribo_planar_series_terms(const struct event *e, size_t most);
+
+/* The k-th coefficient of the power that direction i of a planar contact dissipates. */
+double tribo_planar_series_power_along(const struct event *e, size_t i, size_t k);
+
 /* ------------------------------------------------------------------------------------------------------ normal_series.c */
 
 /* Sets the k-th coefficients of normal loads, in the rows of their directions, and of limits that follow them; < 0 where a contact has

@@ -26,6 +26,9 @@
 /* Error of a velocity, in parts of the contact's own speed, even if that is far below the tolerance: the direction counts. */
 #define PART 1e-4
 
+/* Longest step of a periodic motion, in parts of the radius of convergence of 1/|x|, which perturbations need. */
+#define WITHIN 0.7
+
 /* Least order. */
 #define LEAST_ORDER 4.0
 
@@ -237,6 +240,148 @@ double tribo_planar_series_power(const struct event *e, size_t k)
     return power;
 }
 
+double tribo_planar_series_power_along(const struct event *e, size_t i, size_t k)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    double power = 0.0;
+    for (size_t c = 0; c < m->plane->count; c++) {
+        const struct planar_contact *p = &m->plane->contact[c];
+        const struct planar_line *l = &e->planar.line[c];
+        const size_t d = i - p->at, shift = (size_t)p->begins;
+        if (d < 2 && tribo_slides_in_plane(m, p)) {
+            for (size_t j = 0; j + shift <= k; j++) {
+                const double x = l->n[d] * l->xn[j] + l->t[d] * l->xt[j];
+                power += x * (l->n[d] * l->un[k - shift - j] + l->t[d] * l->ut[k - shift - j]);
+            }
+        }
+    }
+    return power;
+}
+
+/* ------------------------------------------------------------------------------------------------------- perturbations */
+
+/* The direction u turns by z, du = z r with r the normal of u. With |x| u = x
+ *     |x| z = r'(limit dv),
+ * from which each term of z follows; of contacts that begin to slide by the equation of their t-parts, with S. */
+
+size_t tribo_planar_series_terms(const struct event *e, size_t most)
+{
+    const struct planar_contact *all = e->events.stick_slip.plane->contact;
+    for (size_t q = 0; q < e->planar.begins; q++) {
+        most = all[e->planar.begin[q]].begins == BY_FORCE ? e->order : most;
+    }
+    return most;
+}
+
+/* Component d of the coefficient j of r. */
+static double normal_of(const struct planar_line *l, size_t d, size_t j)
+{
+    return l->t[d] * l->un[j] - l->n[d] * l->ut[j];
+}
+
+/* w [columns] += term k of r'(limit dv) of contact c, with coefficients of r from `from` on. */
+static void add_sideways(const struct event *e, size_t c, const struct planar_turns *p, size_t k, size_t from, double *w)
+{
+    const struct planar_contact *contact = &e->events.stick_slip.plane->contact[c];
+    double power = pow(p->tau, (double)from);
+    for (size_t j = from; j <= k && j <= e->order; j++, power *= p->tau) {
+        const double *v = p->v + (k - j) % p->rows * e->sys->ncontact * p->columns;
+        for (size_t i = contact->at; i < contact->at + 2; i++) {
+            const double part = contact->limit[i - contact->at] * normal_of(&e->planar.line[c], i - contact->at, j);
+            tribo_add(w, power * part, v + i * p->columns, p->columns);
+        }
+    }
+}
+
+/* w [columns] += factor times term k of |x| z of contact c, with coefficients of |x| from `from` on. */
+static void add_turned(const struct event *e, size_t c, const struct planar_turns *p, size_t k, size_t from, double factor,
+                       double *w)
+{
+    const struct planar_slip *plane = e->events.stick_slip.plane;
+    for (size_t j = from; j <= k && j + (size_t)plane->contact[c].begins <= e->order; j++) {
+        const double *z = p->z + ((k - j) % p->rows * plane->count + c) * p->columns;
+        tribo_add(w, factor * pow(p->tau, (double)j) * e->planar.line[c].speed[j], z, p->columns);
+    }
+}
+
+void tribo_planar_series_turn(const struct event *e, size_t k, const struct planar_turns *p, double *force)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const struct planar_slip *plane = m->plane;
+    memset(force, 0, e->sys->ncontact * p->columns * sizeof *force);
+    for (size_t c = 0; c < plane->count; c++) {
+        const struct planar_contact *contact = &plane->contact[c];
+        const struct planar_line *l = &e->planar.line[c];
+        double *z = p->z + (k % p->rows * plane->count + c) * p->columns;
+        memset(z, 0, p->columns * sizeof *z);
+        if (!tribo_slides_in_plane(m, contact)) {
+            continue;
+        }
+        if (contact->begins == SLIDES_ON) {
+            add_sideways(e, c, p, k, 0, z);
+            add_turned(e, c, p, k, 1, -1.0, z);
+            for (size_t j = 0; j < p->columns; j++) {
+                z[j] /= l->speed[0];
+            }
+        }
+        double power = 1.0;
+        for (size_t j = 0; j <= k && j <= e->order; j++, power *= p->tau) {
+            const double *turn = p->z + ((k - j) % p->rows * plane->count + c) * p->columns;
+            for (size_t d = 0; d < 2; d++) {
+                tribo_add(force + (contact->at + d) * p->columns, -power * contact->limit[d] * normal_of(l, d, j), turn,
+                          p->columns);
+            }
+        }
+    }
+}
+
+int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct planar_turns *p, double *u)
+{
+    const tribo_system *sys = e->sys;
+    const struct planar_slip *plane = e->events.stick_slip.plane;
+    struct planar_series *s = &e->planar;
+    const size_t n = s->begins;
+    const double part = p->tau / (double)(k + 1);
+    memcpy(s->lu, s->s, n * n * sizeof *s->s);
+    for (size_t q = 0; q < n; q++) {
+        const size_t c = s->begin[q];
+        const struct planar_contact *contact = &plane->contact[c];
+        double *w = p->w + q * p->columns;
+        memset(w, 0, p->columns * sizeof *w);
+        for (size_t d = 0; d < 2; d++) {
+            const size_t i = contact->at + d;
+            for (size_t at = sys->direction.first[i]; at < sys->direction.first[i + 1]; at++) {
+                const double side = contact->limit[d] * normal_of(&s->line[c], d, 0) * sys->direction.val[at];
+                tribo_add(w, side, u + sys->direction.col[at] * p->columns, p->columns);
+            }
+        }
+        add_sideways(e, c, p, k + 1, 1, w);
+        if (contact->begins == BY_ACCELERATION) {
+            add_turned(e, c, p, k, 1, -p->tau, w);
+            s->lu[q * n + q] += (double)(k + 1) * s->line[c].speed[0];
+        } else if (k > 0) {
+            add_turned(e, c, p, k - 1, 0, -p->tau * p->tau, w);
+        }
+        for (size_t j = 0; j < p->columns; j++) {
+            w[j] /= part;
+        }
+    }
+    if (n > 0 && !(tribo_lu_create(s->lu, n, s->pivot) > 0.0)) {
+        return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                           "at t = %.17g the planar contact %zu begins to slide, and motions beside this one leave it at once",
+                           sys->loads.time, plane->contact[s->begin[0]].at);
+    }
+    tribo_lu_solve(s->lu, n, s->pivot, p->w, p->columns);
+    for (size_t q = 0; q < n; q++) {
+        const double *w = p->w + q * p->columns;
+        memcpy(p->z + (k % p->rows * plane->count + s->begin[q]) * p->columns, w, p->columns * sizeof *w);
+        for (size_t d = 0; d < sys->ndof; d++) {
+            tribo_add(u + d * p->columns, part * s->answer[q * sys->ndof + d], w, p->columns);
+        }
+    }
+    return TRIBO_OK;
+}
+
 /* -------------------------------------------------------------------------------------------------------------- guards */
 
 void tribo_planar_series_guards(struct event *e)
@@ -284,6 +429,20 @@ void tribo_planar_series_errors(struct event *e)
     }
 }
 
+/* The radius of convergence of 1/|x|, by its last coefficients; overwrites square. */
+static double inverse_reaches(const struct planar_line *l, size_t last)
+{
+    double *inverse = l->square, radius = HUGE_VAL;
+    inverse[0] = 1.0 / l->speed[0];
+    for (size_t k = 1; k <= last; k++) {
+        inverse[k] = -product_of(l->speed, inverse, k, 1, k + 1) / l->speed[0];
+        if (k + 2 > last && inverse[k] != 0.0) {
+            radius = lesser(radius, pow(fabs(inverse[k] * l->speed[0]), -1.0 / (double)k));
+        }
+    }
+    return radius;
+}
+
 double tribo_planar_series_shorten(const struct event *e, double h)
 {
     const struct stick_slip *m = &e->events.stick_slip;
@@ -300,6 +459,9 @@ double tribo_planar_series_shorten(const struct event *e, double h)
         double sum = 0.0;
         for (size_t k = last + 1; k-- > 0;) {
             sum = sum * h + fabs(l->xn[k]) + fabs(l->xt[k]);
+        }
+        if (e->events.sharp) {
+            h = lesser(h, WITHIN * inverse_reaches(l, last));
         }
         if (!(off * p->brake * h / (double)(e->order + 1) <= m->plane->error[p->at] && sum <= FASTER * l->xn[0])) {
             h *= 0.8;
