@@ -82,6 +82,7 @@
 !>                                                   TRBDRV
 !>   TRBADV(IH, NDOF, T, T1, Y, IERR)                T, Y, T1 >= T                     T, Y there; on error the last good step
 !>   TRBPER(IH, NDOF, T, PERIOD, Y, IERR)            T, PERIOD of the loads; Y guess   Y at T of a periodic motion
+!>   TRBCYC(IH, NDOF, T, PERIOD, Y, IERR)            T; PERIOD, Y guess, PERIOD 0: none    PERIOD and Y at T of a cycle
 !> Of the periodic motion found last
 !>   TRBFAM(IH, NFREE, IERR)                                                           NFREE: dimension of the family it belongs to
 !>   TRBMUL(IH, NDOF, RE, AI, IERR)                                                    RE, AI: Floquet multipliers, one less than values of Y
@@ -880,6 +881,19 @@ subroutine trbper(ih, ndof, t, period, y, ierr)
   call find_driven(ih, s, ierr, ndof)
   if (ierr == TRIBO_OK) call s%driver%find_periodic(t, period, y(:s%system%dimension()), ierr)
 end subroutine trbper
+
+subroutine trbcyc(ih, ndof, t, period, y, ierr)
+  use tribo_fixed_dynamics
+  implicit none
+  integer, intent(in) :: ih, ndof
+  real(dp), intent(in) :: t
+  real(dp), intent(inout) :: period, y(*)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_driven(ih, s, ierr, ndof)
+  if (ierr == TRIBO_OK) call s%driver%find_cycle(t, period, y(:s%system%dimension()), ierr)
+end subroutine trbcyc
 
 subroutine trbdct(ih, iwhich, ival, ierr)
   use tribo_fixed_dynamics

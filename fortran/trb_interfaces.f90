@@ -619,6 +619,13 @@ module trb_interfaces
       integer, intent(out) :: ierr
     end subroutine trbper
 
+    subroutine trbcyc(ih, ndof, t, period, y, ierr)
+      integer, intent(in) :: ih, ndof
+      double precision, intent(in) :: t
+      double precision, intent(inout) :: period, y(*)
+      integer, intent(out) :: ierr
+    end subroutine trbcyc
+
     subroutine trbdct(ih, iwhich, ival, ierr)
       integer, intent(in) :: ih, iwhich
       integer, intent(inout) :: ival

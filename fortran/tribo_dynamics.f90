@@ -98,7 +98,7 @@ module tribo_systems
     procedure, private :: count_short, count_long
     generic :: count => count_short, count_long
     procedure :: real => driver_real
-    procedure :: find_periodic
+    procedure :: find_periodic, find_cycle
     procedure :: get_multipliers
     procedure :: get_freedom
     procedure :: period_extremes, period_harmonic, period_dissipation, period_stick
@@ -1183,6 +1183,26 @@ contains
     end if
     call finish(w, stat, errmsg)
   end subroutine find_periodic
+
+  !> A cycle, whose period is unknown, from a guess period, or 0, and y; see tribo_driver_find_cycle.
+  subroutine find_cycle(this, t, period, y, stat, errmsg)
+    class(tribo_driver), intent(inout) :: this
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: period, y(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    real(dp) :: found(1)
+
+    call find_driver(this, w)
+    call expect_size(w, 'y', y, w%dimension)
+    found = period
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_find_cycle(w%object, t, found, y)
+    end if
+    period = found(1)
+    call finish(w, stat, errmsg)
+  end subroutine find_cycle
 
   !> Floquet multipliers of the last periodic motion found, re and im (dimension - 1), the largest first.
   subroutine get_multipliers(this, re, im, stat, errmsg)

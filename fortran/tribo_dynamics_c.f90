@@ -591,6 +591,15 @@ module tribo_dynamics_c
       integer(c_int) :: answer
     end function c_driver_find_periodic
 
+    function c_driver_find_cycle(drv, t, period, y) result(answer) bind(c,name='tribo_driver_find_cycle')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), value :: t
+      real(c_double), intent(inout), optional :: period(*)
+      real(c_double), intent(inout), optional :: y(*)
+      integer(c_int) :: answer
+    end function c_driver_find_cycle
+
     function c_driver_get_multipliers(drv, re, im) result(answer) bind(c,name='tribo_driver_get_multipliers')
       import
       type(c_ptr), value :: drv

@@ -414,6 +414,19 @@ TRIBO_API int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(const tri
  * together with elastic contacts), TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
 TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y);
 
+/* Finds a cycle: a periodic motion, and its period, of a system in which no load, base motion or limit depends on time (constant
+ * ones may act), as stick-slip and squeal, stable or not. Methods exact, event, auto. The search does not call the observer. One
+ * multiplier of a cycle is 1, of the motion along it: the others say whether it is stable. Its freedom is at least 1.
+ * t        in       time at which the period begins
+ * period   in/out   in: >= 0; a guess, or a multiple up to 16 times, or 0: none; out: the period, the smallest; unchanged on error
+ * y        [dimension] in/out   in: a guess, no equilibrium; out: the state, with energy 0, as the contact of lowest index
+ *                   that breaks away does so, after its longest rest; or, if none does, any; unchanged on error
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE (period < 0, or 0 of a structure without stiffness),
+ * TRIBO_ERR_STEP (a period below the resolution of t), TRIBO_ERR_UNSUPPORTED (what depends on time, named; and as
+ * tribo_driver_find_periodic), TRIBO_ERR_NO_CONVERGENCE (also where the motion comes to rest), and what tribo_driver_advance
+ * returns. */
+TRIBO_API int tribo_driver_find_cycle(tribo_driver *drv, double t, double *period, double *y);
+
 /* Floquet multipliers re + i im of the last periodic motion found, largest modulus first; in a complex pair im > 0 is first.
  * re, im   [dimension - 1] out
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_STATE (no search yet, or the last search failed),

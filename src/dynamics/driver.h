@@ -18,6 +18,14 @@ enum {
 };
 
 struct events;
+struct shooting;
+
+/* A periodic motion that is looked for: by find, with the data of the search. period, y: of the guess, then of the motion. */
+struct wanted {
+    int (*find)(struct shooting *s, struct wanted *w);
+    double t, period;
+    double *y; /* methods' state, unchanged by errors */
+};
 
 struct method {
     const char *name;
@@ -29,8 +37,8 @@ struct method {
     int (*advance)(tribo_driver *drv, double *t, double t1, double *y, int continues);
     /* Methods with a loop over events (events.h): prepares *events. NULL: other methods. */
     int (*open)(tribo_driver *drv, struct events **events);
-    /* tribo_driver_find_periodic with checked arguments. NULL: TRIBO_ERR_UNSUPPORTED. */
-    int (*find_periodic)(tribo_driver *drv, double t, double period, double *y);
+    /* Finds a periodic motion, with checked arguments; returns what w->find returns. NULL: TRIBO_ERR_UNSUPPORTED. */
+    int (*find_periodic)(tribo_driver *drv, struct wanted *w);
 };
 
 /* The data of the methods that auto takes, event and exact, each created at first use. */

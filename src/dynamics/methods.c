@@ -116,11 +116,11 @@ static int advance_choice(tribo_driver *drv, double *t, double t1, double *y, in
     }
 }
 
-static int find_by_choice(tribo_driver *drv, double t, double period, double *y)
+static int find_by_choice(tribo_driver *drv, struct wanted *w)
 {
     for (int which = driver_choose(drv);; which = EVENT) {
         int status = set_to_work(drv, which);
-        status = status ? status : drv->at_work->find_periodic(drv, t, period, y);
+        status = status ? status : drv->at_work->find_periodic(drv, w);
         if (!is_refused(drv, which, status)) {
             return status;
         }

@@ -13,6 +13,7 @@ C     call (legacy_structures.c), then the errors.
       CALL SCEND
       CALL ELASTC
       CALL NORMAL
+      CALL BELT
       CALL CREATE
       CALL NODRIV
       CALL WRONG
@@ -326,6 +327,31 @@ C     An elastic contact that lifts off, as in models.f90.
       CALL SAYS('NRM', IERR, 5, TEXT,
      1          'contact 1 is to be its own normal')
       CALL EXPECT('no handle', IH .EQ. -777)
+      END
+C
+C     Stick-slip on a belt, as in models.f90.
+      SUBROUTINE BELT
+      INTEGER IH, IERR, IR(2), IC(1)
+      DOUBLE PRECISION ONE(1), ZERO(1), V(1), F(1), R(1), Y(3), PERIOD
+      CHARACTER*80 TEXT
+      DATA IR /1, 2/, IC /1/, ONE /1D0/, ZERO /0D0/, V /0.2D0/
+      DATA F /0.6D0/, Y /3*0D0/, PERIOD /0D0/
+      R(1) = 1D0/0.6D0
+      CALL TRBMOD(1, 1, IR, IC, ONE, IR, IC, ZERO, IR, IC, ONE,
+     1            IR, IC, ONE, ZERO, 0, 0, IH, TEXT, IERR)
+      CALL EXPECT('TRBMOD', IERR .EQ. 0)
+      CALL TRBLIM(IH, 1, F, IERR)
+      CALL TRBSTA(IH, 1, R, ZERO, IERR)
+      CALL EXPECT('TRBSTA', IERR .EQ. 0)
+      CALL TRBBAS(IH, 1, 0D0, V, ZERO, IERR)
+      CALL TRBDRV(IH, 'exact', 0D0, 0D0, 0D0, IERR)
+      CALL TRBCYC(IH, 1, 0D0, PERIOD, Y, IERR)
+      CALL EXPECT('TRBCYC', IERR .EQ. 0)
+      CALL EXPECT('period', ABS(PERIOD - 8.0688878716D0) .LT. 1D-9)
+      CALL EXPECT('break-away', ABS(Y(1) - 1D0) .LT. 1D-9)
+      CALL TRBCYC(IH, 2, 0D0, PERIOD, Y, IERR)
+      CALL EXPECT('NDOF', IERR .EQ. 6)
+      CALL TRBDEL(IH, IERR)
       END
 C
 C     Nothing is made of what is wrong, and the handle stays as it was.

@@ -16,6 +16,7 @@ program models
   call errors()
   call compliance()
   call normal()
+  call cycle_of_belt()
   call report()
 
 contains
@@ -189,4 +190,35 @@ contains
     call require(abs(y(1) + 5.44592597_dp) < 1e-8_dp, 'normal: x')
     call require(abs(y(3) - 7.32000819_dp) < 1e-8_dp, 'normal: velocity')
   end subroutine normal
+
+  !> Stick-slip of a block on a belt at speed 0.2, m = k = 1, limit 0.6, at rest 1, in closed form.
+  subroutine cycle_of_belt()
+    type(tribo_model) :: model
+    type(tribo_system) :: s
+    type(tribo_driver) :: d
+    type(tribo_context) :: c
+    real(dp) :: y(3), period
+    integer :: stat
+
+    call model%create(1, 1)
+    call model%set_mass([1.0_dp])
+    call model%set_stiffness([1.0_dp])
+    call model%set_direction(reshape([1.0_dp], [1, 1]))
+    call s%create(model)
+    call s%context(c)
+    call c%set_limit(0.6_dp)
+    call c%set_static([1/0.6_dp])
+    call s%add_base_motion(0.0_dp, cosine=[0.2_dp])
+    call d%create(s, 'exact')
+    y = 0
+    period = 0
+    call d%find_cycle(0.0_dp, period, y)
+    call require(abs(period - 8.0688878716_dp) < 1e-9_dp, 'cycle: period')
+    call require(abs(y(1) - 1) < 1e-9_dp .and. abs(y(2) - 0.2_dp) < 1e-9_dp, 'cycle: state')
+    period = -1
+    call d%find_cycle(0.0_dp, period, y, stat)
+    call require(stat == TRIBO_ERR_NOT_POSITIVE .and. abs(period + 1) < 1e-9_dp, 'cycle: a negative period')
+    call d%find_cycle(0.0_dp, period, y(:2), stat)
+    call require(stat == TRIBO_ERR_SIZE, 'cycle: a short state')
+  end subroutine cycle_of_belt
 end program models

@@ -65,7 +65,7 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
 int tribo_events_method(tribo_driver *drv, double *t, double t1, double *y, int continues);
 
 /* The find_periodic of methods that have an open. */
-int tribo_events_find_periodic(tribo_driver *drv, double t, double period, double *y);
+int tribo_events_find_periodic(tribo_driver *drv, struct wanted *w);
 
 /* guards.c, for begin of a motion, which sets search.guards = 0 first: what guards of contact i are made of. */
 struct watch {

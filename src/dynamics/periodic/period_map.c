@@ -42,7 +42,8 @@ static int period_map_integrate(struct period_map *m, double t, double end, stru
 {
     tribo_driver *drv = m->drv;
     int (*const seen)(const tribo_moment *, void *) = drv->seen;
-    const size_t evaluations = m->sys->evaluations, halves = end - t < 0.75 * m->period ? 1 : 2;
+    const size_t evaluations = m->sys->evaluations;
+    const size_t halves = (size_t)greater(round(2.0 * (end - t) / m->period), 1.0);
     m->y[m->n] = 0.0;
     drv->time = t;
     drv->revision = SIZE_MAX;
@@ -70,12 +71,12 @@ int tribo_period_map_replay(struct period_map *m, const double *y, struct compan
     return status ? status : period_map_integrate(m, m->t, m->t + m->period, company);
 }
 
-int tribo_period_map_march(struct period_map *m, size_t periods, double *x)
+int tribo_period_map_march(struct period_map *m, double time, size_t times, struct company *company, double *x)
 {
     int status = TRIBO_OK;
     tribo_energy_norm_state(&m->norm, 1, x, m->y);
-    for (size_t k = 0; !status && k < periods; k++) {
-        status = period_map_integrate(m, m->t, m->t + m->period, NULL);
+    for (size_t k = 0; !status && k < times; k++) {
+        status = period_map_integrate(m, m->t, m->t + time, company);
     }
     tribo_energy_norm_of(&m->norm, 1, m->y, x);
     return status;
@@ -142,6 +143,17 @@ int tribo_period_map_later(struct period_map *m, const double *y, double later, 
     status = status ? status : follow_state(m, p);
     m->t -= later;
     return status;
+}
+
+void tribo_period_map_rate(const struct period_map *m, const double *end, double *rate)
+{
+    const size_t n = m->sys->ndof;
+    memcpy(m->y, end + n, n * sizeof *m->y);
+    memcpy(m->y + n, m->variation.acceleration, n * sizeof *m->y);
+    for (size_t k = 0; k < m->sys->compliance.count; k++) {
+        m->y[2 * n + k] = m->variation.spring_rate[m->sys->compliance.contact[k]];
+    }
+    tribo_energy_norm_of(&m->norm, 1, m->y, rate);
 }
 
 int tribo_period_map_apply(struct period_map *m, const struct point *p, double *x)

@@ -7,14 +7,18 @@
 #include "energy_norm.h"
 #include "variation.h"
 
+/* Unknowns beside x, at most. */
+#define TRIBO_UNKNOWNS 2
+
 /* The map at one point; arrays [n]. y: initial state; x: coordinates of y in the energy norm. */
 struct point {
     double *y, *x;
     double *end, *image;          /* end: state after the span; image of x: coordinates of end, or of -end if odd */
     struct derivative derivative; /* d end/d y */
-    double residual;              /* |image - x| */
-    double size;                  /* largest |x| at the start and at the ends of phases */
-    int odd;                      /* 1: image is that of -end */
+    double unknown[TRIBO_UNKNOWNS], value[TRIBO_UNKNOWNS], *border; /* see struct border (shooting.h) */
+    double residual;                                                /* |image - x| */
+    double size;                                                    /* largest |x| at the start and at the ends of phases */
+    int odd;                                                        /* 1: image is that of -end */
 };
 
 struct period_map {
@@ -54,11 +58,15 @@ int tribo_period_map_complete(struct period_map *m, struct point *p);
 int tribo_period_map_apply(struct period_map *m, const struct point *p, double *x);
 int tribo_period_map_matrix(struct period_map *m, struct point *p);
 
-/* x [n] = coordinates of the state `periods` periods after x. Returns a status, its message on the driver. */
-int tribo_period_map_march(struct period_map *m, size_t periods, double *x);
+/* x [n] = coordinates of the state after `times` integrations of length `time` from x, with the observer `company`, or NULL.
+ * Returns a status, its message on the driver. */
+int tribo_period_map_march(struct period_map *m, double time, size_t times, struct company *company, double *x);
 
 /* Integrates one period from y with the observer `company`. Returns a status, its message on the driver. */
 int tribo_period_map_replay(struct period_map *m, const double *y, struct company *company);
+
+/* rate [n] = coordinates of the derivative of the state by time at the end of the last integration by follow. */
+void tribo_period_map_rate(const struct period_map *m, const double *end, double *rate);
 
 /* Sets m->odd, and m->span = period/2 if odd, else period. odd = 1 is for odd drives only. */
 void tribo_period_map_choose(struct period_map *m, int odd);

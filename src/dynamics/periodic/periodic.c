@@ -8,6 +8,8 @@
 /* Largest distance of omega period/(2 pi) from a whole number, beside rounding. */
 #define WHOLE 3e-12
 
+static const char *const drive_name[] = {[DRIVES_LOAD] = "load", [DRIVES_BASE] = "base motion", [DRIVES_LIMIT] = "limit"};
+
 static int check_period(tribo_driver *drv, double t, double period)
 {
     if (!isfinite(period)) {
@@ -21,24 +23,29 @@ static int check_period(tribo_driver *drv, double t, double period)
                : tribo_error(drv->message, TRIBO_ERR_STEP, "period = %g is lost beside t = %.17g", period, t);
 }
 
+/* Refuses tables, and harmonics without this period; period = 0: all that depends on time. */
 static int check_loads(tribo_driver *drv, double period)
 {
-    static const char *const kind[] = {[DRIVES_LOAD] = "load", [DRIVES_BASE] = "base motion", [DRIVES_LIMIT] = "limit"};
     const tribo_system *sys = drv->sys;
     size_t of_kind[] = {0, 0, 0};
-    if (sys->loads.tables) {
-        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
-                           "loads, base motions and limits that follow a table are not periodic");
-    }
     for (size_t k = 0; k < sys->loads.harmonics; k++) {
         const struct harmonic *w = &sys->loads.harmonic[k];
+        const char *const name = drive_name[w->drives];
+        const size_t of = of_kind[w->drives]++;
         const double turns = fabs(w->omega) / (2.0 * acos(-1.0)) * period, whole = fmax(round(turns), w->omega != 0.0);
+        if (w->knots) {
+            return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "%s[%zu] follows a table, which is not periodic", name, of);
+        }
+        if (w->count > 0 && w->omega != 0.0 && period == 0.0) {
+            return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
+                               "%s[%zu], omega = %.17g, depends on time: a cycle has the period of the motion alone", name, of,
+                               w->omega);
+        }
         if (w->count > 0 && !(fabs(turns - whole) <= WHOLE + 4.0 * DBL_EPSILON * whole)) {
             return tribo_error(drv->message, TRIBO_ERR_RANGE,
-                               "%s[%zu], omega = %.17g, is not periodic in period = %.17g: %.12g turns", kind[w->drives],
-                               of_kind[w->drives], w->omega, period, turns);
+                               "%s[%zu], omega = %.17g, is not periodic in period = %.17g: %.12g turns", name, of, w->omega,
+                               period, turns);
         }
-        of_kind[w->drives]++;
     }
     return TRIBO_OK;
 }
@@ -57,13 +64,42 @@ static int check_friction(tribo_driver *drv)
     return TRIBO_OK;
 }
 
-int tribo_events_find_periodic(tribo_driver *drv, double t, double period, double *y)
+int tribo_events_find_periodic(tribo_driver *drv, struct wanted *w)
 {
     drv->shooting = drv->shooting ? drv->shooting : tribo_shooting_create(drv);
     return drv->shooting
-               ? tribo_shooting_find(drv->shooting, t, period, y)
+               ? w->find(drv->shooting, w)
                : tribo_error(drv->message, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
                              drv->sys->ndof, plural(drv->sys->ndof));
+}
+
+/* Returns TRIBO_OK if the method of drv finds periodic motions, and y is a state at t. what: the motions, for a message. */
+static int check_search(tribo_driver *drv, const char *what, double t, const double *y)
+{
+    if (!drv->method->find_periodic) {
+        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "method %s finds no %s: take exact, event or auto",
+                           drv->method->name, what);
+    }
+    if (!y) {
+        return tribo_error(drv->message, TRIBO_ERR_NULL, "y is NULL");
+    }
+    int status = tribo_system_check_state(drv->sys, t, y);
+    status = status ? status : tribo_system_take_settings(drv->sys);
+    return tribo_driver_pass(drv, status);
+}
+
+/* Searches from the caller's state y, which becomes that of the motion found. Returns a status. */
+static int search_from(tribo_driver *drv, struct wanted *w, double *y)
+{
+    w->y = drv->motion ? drv->motion : y;
+    if (drv->motion) {
+        tribo_system_read_state(drv->sys, y, drv->motion);
+    }
+    const int status = drv->method->find_periodic(drv, w);
+    if (!status && drv->motion) {
+        tribo_system_write_state(drv->sys, w->t, drv->motion, y);
+    }
+    return status;
 }
 
 int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y)
@@ -71,26 +107,30 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
     if (!drv) {
         return TRIBO_ERR_NULL;
     }
-    if (!drv->method->find_periodic) {
-        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "method %s finds no periodic motions: take exact, event or auto",
-                           drv->method->name);
-    }
-    if (!y) {
-        return tribo_error(drv->message, TRIBO_ERR_NULL, "y is NULL");
-    }
-    int status = tribo_system_check_state(drv->sys, t, y);
-    status = status ? status : tribo_system_take_settings(drv->sys);
-    status = tribo_driver_pass(drv, status);
+    struct wanted w = {.find = tribo_shooting_find, .t = t, .period = period};
+    int status = check_search(drv, "periodic motions", t, y);
     status = status ? status : check_period(drv, t, period);
     status = status ? status : check_loads(drv, period);
     status = status ? status : check_friction(drv);
-    if (status || !drv->motion) {
-        return status ? status : drv->method->find_periodic(drv, t, period, y);
+    return status ? status : search_from(drv, &w, y);
+}
+
+int tribo_driver_find_cycle(tribo_driver *drv, double t, double *period, double *y)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
     }
-    tribo_system_read_state(drv->sys, y, drv->motion);
-    status = drv->method->find_periodic(drv, t, period, drv->motion);
+    if (!period) {
+        return tribo_error(drv->message, TRIBO_ERR_NULL, "period is NULL");
+    }
+    struct wanted w = {.find = tribo_shooting_find_cycle, .t = t, .period = *period};
+    int status = check_search(drv, "cycles", t, y);
+    status = status || *period == 0.0 ? status : check_period(drv, t, *period);
+    status = status ? status : check_loads(drv, 0.0);
+    status = status ? status : check_friction(drv);
+    status = status ? status : search_from(drv, &w, y);
     if (!status) {
-        tribo_system_write_state(drv->sys, t, drv->motion, y);
+        *period = w.period;
     }
     return status;
 }

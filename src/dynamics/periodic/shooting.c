@@ -12,7 +12,10 @@
  * little more.
  *
  * Where limits follow the motion, friction may feed energy in, the map may increase distances, and r is not monotone. Then |r|
- * measures a step, which is halved until |r| falls; if it does not, the search begins anew some periods later. */
+ * measures a step, which is halved until |r| falls; if it does not, the search begins anew some periods later.
+ *
+ * Unknowns beside x (struct border), such as the period of a cycle, have as many conditions: Newton's equation is bordered by their
+ * columns and rows, and |r| with the conditions measures a step. */
 #include "shooting.h"
 #include "common/layout.h"
 #include "common/real.h"
@@ -22,8 +25,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Residual over size: TOLERANCE of a motion that is found, AIM that ends the search. */
-#define TOLERANCE 1e-10
+/* Residual over size that ends the search. */
 #define AIM 1e-12
 
 /* Half periods, at most, of a search. */
@@ -47,7 +49,7 @@
 /* |I - derivative| <= 2: a step shorter than this part of the residual cannot solve the equation. */
 #define FLAT 0.4
 
-/* Most spans extrapolated at once: few enough that a motion that grows in each span has residual > TOLERANCE size. */
+/* Most spans extrapolated at once: few enough that a motion that grows in each span has residual > TRIBO_PERIODIC size. */
 #define LONGEST 1024.0
 
 /* SINGULAR: right-hand side over solution of a nearly singular equation. Singular values of I - derivative are zero below CUT in
@@ -76,7 +78,7 @@
 /* The search starts from the forecast if |guess - forecast| > FAR |forecast|. */
 #define FAR 0.1
 
-static int no_convergence(const struct shooting *s, double residual)
+int tribo_shooting_fails(const struct shooting *s, double residual)
 {
     return tribo_error(s->map.drv->message, TRIBO_ERR_NO_CONVERGENCE,
                        "no motion of period %.17g was found in %g periods: the nearest misses its beginning by %.3g of its size",
@@ -85,14 +87,12 @@ static int no_convergence(const struct shooting *s, double residual)
 
 /* -------------------------------------------------------------------------------------------------------------- points */
 
-/* Returns 1 if the residual is at most part of the size, which is finite. */
-static int close_enough(const struct point *p, double part)
+int tribo_point_is_closed(const struct point *p, double part)
 {
     return p->residual <= part * p->size && isfinite(p->size);
 }
 
-/* here = there. */
-static void go_there(struct shooting *s)
+void tribo_shooting_turn(struct shooting *s)
 {
     struct point *const left = s->here;
     s->here = s->there;
@@ -104,6 +104,19 @@ static void find_misfit(const struct shooting *s, const struct point *p, double 
 {
     memcpy(to, p->image, s->map.n * sizeof *to);
     tribo_add(to, -1.0, p->x, s->map.n);
+}
+
+/* Follows p with its unknowns; conditions count in the residual. Returns a status. */
+static int shooting_follow(struct shooting *s, struct point *p)
+{
+    const size_t k = s->extra.count;
+    int status = k ? s->extra.apply(s, p) : TRIBO_OK;
+    status = status ? status : tribo_period_map_follow(&s->map, p);
+    if (k && !status) {
+        status = s->extra.border(s, p);
+        p->residual = hypot(p->residual, tribo_energy_length(p->value, k));
+    }
+    return status;
 }
 
 /* -------------------------------------------------------------------------------------------------------------- steps */
@@ -162,16 +175,22 @@ static int find_derivative(struct shooting *s, struct point *p, int spans)
     return status;
 }
 
-/* x [n] = the shortest solution of (I - D) y = x, D over `spans` spans from p, by a matrix, with singular values below cut
- * taken as zero; *kernel = their number. Returns a status. */
-static int solve_dense(struct shooting *s, struct point *p, int spans, double cut, double *x, size_t *kernel)
+/* x [n + count] = the shortest solution of (I - D) y = x, D over `spans` spans from p, bordered by the columns and rows of `count`
+ * unknowns, by a matrix, with singular values below cut taken as zero; *kernel = their number. Returns a status. */
+static int solve_dense(struct shooting *s, struct point *p, int spans, size_t count, double cut, double *x, size_t *kernel)
 {
-    const size_t n = s->map.n;
+    const size_t n = s->map.n, all = n + count;
     const int status = find_derivative(s, p, spans);
-    for (size_t i = 0; i < n * n; i++) {
-        s->a[i] = (i % (n + 1) == 0 ? 1.0 : 0.0) - s->b[i];
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j < n; j++) {
+            s->a[i * all + j] = (i == j ? 1.0 : 0.0) - s->b[i * n + j];
+        }
+        for (size_t k = 0; k < count; k++) {
+            s->a[i * all + n + k] = -p->border[k * n + i];
+        }
     }
-    return status || tribo_least_norm_solve(s->a, n, cut, x, kernel)
+    memcpy(s->a + n * all, p->border + count * n, count * all * sizeof *s->a);
+    return status || tribo_least_norm_solve(s->a, all, cut, x, kernel)
                ? status
                : tribo_error(s->map.drv->message, TRIBO_ERR_MEMORY,
                              "out of memory for periodic motions of %zu degree%s of freedom", s->map.sys->ndof,
@@ -194,7 +213,7 @@ static int solve_equation(struct shooting *s, double tolerance, double cut, doub
         return status;
     }
     memcpy(x, s->b, n * sizeof *x);
-    return solve_dense(s, s->here, s->spans, cut, x, NULL);
+    return solve_dense(s, s->here, s->spans, 0, cut, x, NULL);
 }
 
 /* Sets s->there from there.x = here.x + part step, s->ratio and s->nearest. Returns a status. */
@@ -202,7 +221,9 @@ static int try_step(struct shooting *s, double part)
 {
     memcpy(s->there->x, s->here->x, s->map.n * sizeof *s->there->x);
     tribo_add(s->there->x, part, s->step, s->map.n);
-    const int status = tribo_period_map_follow(&s->map, s->there);
+    memcpy(s->there->unknown, s->here->unknown, sizeof s->here->unknown);
+    tribo_add(s->there->unknown, part, s->step + s->map.n, s->extra.count);
+    const int status = shooting_follow(s, s->there);
     if (!status) {
         s->ratio = left_along(s, s->there) / left_along(s, s->here);
         s->nearest = lesser(s->nearest, s->there->residual / s->there->size);
@@ -216,10 +237,10 @@ static int pays(const struct shooting *s)
     return s->there->residual < PAYS * s->here->residual;
 }
 
-/* Returns 1 if limits follow the motion. */
-static int limits_follow(const struct shooting *s)
+/* Returns 1 if the map may increase distances: limits follow the motion, or there are unknowns beside x. */
+static int may_diverge(const struct shooting *s)
 {
-    return s->map.sys->normals.count > 0;
+    return s->map.sys->normals.count > 0 || s->extra.count > 0;
 }
 
 /* Takes Newton's step s->step, the shortest solution of (I - derivative) step = image - x; or, where no step changes the
@@ -232,17 +253,22 @@ static int newton(struct shooting *s, double *part)
     const double fell = s->before > 0.0 && near > LEAST_INEXACT ? lesser(s->here->residual / s->before, 1.0) : 0.0;
     const double most = lesser(MOST_INEXACT, sqrt(near));
     find_misfit(s, s->here, s->step);
+    for (size_t k = 0; k < s->extra.count; k++) {
+        s->step[s->map.n + k] = -s->here->value[k];
+    }
     s->spans = 1;
-    const int status = solve_equation(s, clamp(greater(near, 0.9 * fell * fell), LEAST_INEXACT, most), CUT, s->step);
+    const int status = s->extra.count
+                           ? solve_dense(s, s->here, 1, s->extra.count, CUT, s->step, NULL)
+                           : solve_equation(s, clamp(greater(near, 0.9 * fell * fell), LEAST_INEXACT, most), CUT, s->step);
     s->map.drv->newton++;
     s->before = s->here->residual;
     s->stride = s->stride > 0.0 ? lesser(4.0 * s->stride, LONGEST) : 1.0;
-    if (!status && !limits_follow(s) && tribo_energy_length(s->step, s->map.n) < FLAT * s->here->residual) {
+    if (!status && !may_diverge(s) && tribo_energy_length(s->step, s->map.n) < FLAT * s->here->residual) {
         find_misfit(s, s->here, s->step);
         *part = s->stride;
     } else {
         s->stride = 0.0;
-        *part = to_double && !limits_follow(s) ? BEYOND / (1.0 - sqrt(s->rate)) : 1.0;
+        *part = to_double && !may_diverge(s) ? BEYOND / (1.0 - sqrt(s->rate)) : 1.0;
     }
     return status ? status : try_step(s, *part);
 }
@@ -252,11 +278,11 @@ static int shorten(struct shooting *s, double high)
 {
     double low = 0.0, at_low = 1.0, at_high = s->ratio;
     int status = TRIBO_OK;
-    for (int k = 0; limits_follow(s) && !status && !pays(s) && k < MOST_HALVINGS; k++) {
+    for (int k = 0; may_diverge(s) && !status && !pays(s) && k < MOST_HALVINGS; k++) {
         high *= 0.5;
         status = try_step(s, high);
     }
-    if (limits_follow(s)) {
+    if (may_diverge(s)) {
         return status;
     }
     for (int k = 0; !status && k < MOST_TRIALS; k++) {
@@ -274,31 +300,30 @@ static int shorten(struct shooting *s, double high)
 
 /* -------------------------------------------------------------------------------------------------------------- search */
 
-/* Searches from s->here; the result is s->here. Returns a status. */
-static int search(struct shooting *s)
+int tribo_shooting_search(struct shooting *s)
 {
     const size_t most = s->map.halves + MOST;
-    int status = tribo_period_map_follow(&s->map, s->here);
+    int status = shooting_follow(s, s->here);
     if (status) {
         return status;
     }
     s->rate = s->stride = s->before = 0.0;
     s->nearest = s->here->residual / s->here->size;
-    while (!status && !close_enough(s->here, AIM) && s->map.halves < most) {
+    while (!status && !tribo_point_is_closed(s->here, AIM) && s->map.halves < most) {
         double part;
         status = newton(s, &part);
         const int falls = !status && pays(s);
-        if (!status && !falls && close_enough(s->here, TOLERANCE)) {
+        if (!status && !falls && tribo_point_is_closed(s->here, TRIBO_PERIODIC)) {
             break; /* limit of rounding */
         }
         s->rate = falls && s->stride == 0.0 ? s->ratio : 0.0;
         if (!status && !falls && !(s->stride > 0.0 && s->ratio > 0.0)) {
             status = shorten(s, part);
         }
-        if (limits_follow(s) && (status || !pays(s))) {
+        if (may_diverge(s) && (status || !pays(s))) {
             break;
         }
-        go_there(s);
+        tribo_shooting_turn(s);
     }
     return status;
 }
@@ -309,25 +334,25 @@ static int search(struct shooting *s)
 static int search_all(struct shooting *s)
 {
     static const size_t marched[] = {0, 20, 100};
-    const size_t n = s->map.n, statics = !tribo_system_is_plain(s->map.sys), marches = statics || limits_follow(s);
+    const size_t n = s->map.n, statics = !tribo_system_is_plain(s->map.sys), marches = statics || may_diverge(s);
     const int was_odd = s->map.odd;
     int tries = was_odd && !statics && s->map.norm.scale == 1.0, done = 0;
     int status = tries ? tribo_forecast(&s->map, s->here->x, &tries) : TRIBO_OK;
     if (!status && tries && tribo_energy_distance(s->guess, s->here->x, n) > FAR * tribo_energy_length(s->here->x, n)) {
-        status = search(s);
-        done = !status && close_enough(s->here, TOLERANCE);
+        status = tribo_shooting_search(s);
+        done = !status && tribo_point_is_closed(s->here, TRIBO_PERIODIC);
         status = status == TRIBO_ERR_MEMORY ? status : TRIBO_OK;
     }
     for (int odd = was_odd; odd >= (statics ? 0 : was_odd); odd--) {
         for (size_t k = 0; !status && !done && k < 2 + marches; k++) {
             tribo_period_map_choose(&s->map, odd);
             memcpy(s->here->x, s->guess, n * sizeof *s->guess);
-            status = tribo_period_map_march(&s->map, marched[k], s->here->x);
-            status = status ? status : search(s);
-            done = !status && close_enough(s->here, TOLERANCE);
+            status = tribo_period_map_march(&s->map, s->map.period, marched[k], NULL, s->here->x);
+            status = status ? status : tribo_shooting_search(s);
+            done = !status && tribo_point_is_closed(s->here, TRIBO_PERIODIC);
         }
     }
-    return status || done ? status : no_convergence(s, s->nearest);
+    return status || done ? status : tribo_shooting_fails(s, s->nearest);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- the family */
@@ -356,8 +381,8 @@ static int approach_guess(struct shooting *s)
     memcpy(s->there->x, s->here->x, n * sizeof *s->here->x);
     tribo_add(s->there->x, 1.0, s->guess, n);
     status = tribo_period_map_follow(&s->map, s->there);
-    if (!status && close_enough(s->there, TOLERANCE)) {
-        go_there(s);
+    if (!status && tribo_point_is_closed(s->there, TRIBO_PERIODIC)) {
+        tribo_shooting_turn(s);
     } else {
         tribo_period_map_choose(&s->map, 1);
     }
@@ -389,8 +414,8 @@ static int find_flow(struct shooting *s)
         const double most = s->here->size / s->map.norm.scale * sqrt(tribo_system_delassus(sys, i, i));
         if ((tribo_slides(first[i]) || tribo_slides(last[i])) && fabs(v[i]) <= AT_ONCE * most) {
             const int status = tribo_period_map_later(&s->map, s->here->y, middle, s->there);
-            if (status || !close_enough(s->there, LASTS)) {
-                return status ? status : no_convergence(s, s->there->residual / s->there->size);
+            if (status || !tribo_point_is_closed(s->there, LASTS)) {
+                return status ? status : tribo_shooting_fails(s, s->there->residual / s->there->size);
             }
             s->flow = s->there;
         }
@@ -401,7 +426,7 @@ static int find_flow(struct shooting *s)
 int tribo_shooting_freedom(struct shooting *s, size_t *freedom)
 {
     memset(s->step, 0, s->map.n * sizeof *s->step);
-    return solve_dense(s, s->flow, s->flow->odd ? 2 : 1, FREE, s->step, freedom);
+    return solve_dense(s, s->flow, s->flow->odd ? 2 : 1, 0, FREE, s->step, freedom);
 }
 
 int tribo_shooting_multipliers(struct shooting *s, double *re, double *im)
@@ -432,26 +457,32 @@ int tribo_shooting_multipliers(struct shooting *s, double *re, double *im)
 
 /* -------------------------------------------------------------------------------------------------------------- the whole */
 
-int tribo_shooting_find(struct shooting *s, double t, double period, double *y)
+void tribo_shooting_keep(struct shooting *s, struct wanted *w)
 {
-    const size_t n = s->map.n;
+    memcpy(w->y, s->here->y, s->map.n * sizeof *w->y);
+    w->y[s->map.n] = 0.0;
+    w->period = s->map.period;
+    s->found = 1;
+    s->revision = tribo_system_revision(s->map.sys);
+}
+
+int tribo_shooting_find(struct shooting *s, struct wanted *w)
+{
     s->found = 0;
-    int status = tribo_period_map_prepare(&s->map, t, period, y);
+    s->extra.count = 0;
+    int status = tribo_period_map_prepare(&s->map, w->t, w->period, w->y);
     if (!status) {
-        tribo_energy_norm_of(&s->map.norm, 1, y, s->guess);
+        tribo_energy_norm_of(&s->map.norm, 1, w->y, s->guess);
         status = search_all(s);
     }
     status = status ? status : approach_guess(s);
     status = status ? status : tribo_period_map_complete(&s->map, s->here);
-    if (!status && !close_enough(s->here, TOLERANCE)) {
-        status = no_convergence(s, s->here->residual / s->here->size);
+    if (!status && !tribo_point_is_closed(s->here, TRIBO_PERIODIC)) {
+        status = tribo_shooting_fails(s, s->here->residual / s->here->size);
     }
     status = status ? status : find_flow(s);
     if (!status) {
-        memcpy(y, s->here->y, n * sizeof *y);
-        y[n] = 0.0;
-        s->found = 1;
-        s->revision = tribo_system_revision(s->map.sys);
+        tribo_shooting_keep(s, w);
     }
     s->map.drv->periods += (s->map.halves + 1) / 2;
     return status;
@@ -461,15 +492,16 @@ int tribo_shooting_find(struct shooting *s, double t, double period, double *y)
 
 struct shooting *tribo_shooting_create(tribo_driver *drv)
 {
-    const size_t n = tribo_system_energy(drv->sys);
+    const size_t n = tribo_system_energy(drv->sys), all = n + TRIBO_UNKNOWNS;
     struct shooting *s = calloc(1, sizeof *s);
     if (!s) {
         return NULL;
     }
     struct point *const p = s->point, *const other = s->point + 1;
-    if (!ALLOCATE(ARRAY(s->a, n * n), ARRAY(s->b, n * n), ARRAY(s->step, n), ARRAY(s->guess, n),
+    if (!ALLOCATE(ARRAY(s->a, all * all), ARRAY(s->b, n * n), ARRAY(s->step, all), ARRAY(s->guess, n),
                   ARRAY(s->space, tribo_gmres_room(n, n)), ARRAY(p->y, n), ARRAY(p->x, n), ARRAY(p->end, n), ARRAY(p->image, n),
-                  ARRAY(other->y, n), ARRAY(other->x, n), ARRAY(other->end, n), ARRAY(other->image, n)) ||
+                  ARRAY(other->y, n), ARRAY(other->x, n), ARRAY(other->end, n), ARRAY(other->image, n),
+                  ARRAY(p->border, TRIBO_UNKNOWNS * (n + all)), ARRAY(other->border, TRIBO_UNKNOWNS * (n + all))) ||
         !tribo_period_map_create(&s->map, drv)) {
         tribo_shooting_free(s);
         return NULL;

@@ -5,14 +5,29 @@
 
 #include "period_map.h"
 
+struct shooting;
+
+/* Unknowns beside x, of which the map depends, and as many conditions value_k = 0. Both functions return a status, its message
+ * on the driver. Of a point p: p->unknown [count] in; p->value [count], and p->border, the columns d image/d unknown_k [n] and
+ * then the rows d value_k/d(x, unknown) [n + count], by border. */
+struct border {
+    size_t count; /* 0: none, the other members are not read */
+    /* Sets the map for p->unknown. */
+    int (*apply)(struct shooting *s, const struct point *p);
+    /* Sets value and border of p, which the map followed last. */
+    int (*border)(struct shooting *s, struct point *p);
+    double unit, first; /* an unknown period over its unknown; its value as the search begins */
+};
+
 struct shooting {
     struct period_map map;
+    struct border extra;
     struct point point[2];
     struct point *here, *there; /* current point; end of the step */
     struct point *flow;         /* here, or there at another time of the motion found: has its multipliers */
-    double *a, *b;              /* [n][n] workspace; a owns the memory of all arrays */
+    double *a, *b;              /* [n + TRIBO_UNKNOWNS][n + TRIBO_UNKNOWNS], [n][n] workspace; a owns the memory of all arrays */
     double *space;              /* workspace of tribo_gmres */
-    double *step, *guess;       /* [n] */
+    double *step, *guess;       /* [n + TRIBO_UNKNOWNS], [n] */
     double ratio;               /* left_along(there)/left_along(here) of the step */
     double rate;                /* ratio of the last step if it was good, else 0 */
     double stride;              /* spans extrapolated at once; 0: Newton's steps */
@@ -31,7 +46,27 @@ struct shooting *tribo_shooting_create(tribo_driver *drv);
 int tribo_shooting_multipliers(struct shooting *s, double *re, double *im);
 int tribo_shooting_freedom(struct shooting *s, size_t *freedom);
 
-/* As tribo_driver_find_periodic, with arguments already checked. */
-int tribo_shooting_find(struct shooting *s, double t, double period, double *y);
+/* Largest residual over size of a motion that is found. */
+#define TRIBO_PERIODIC 1e-10
+
+/* Returns 1 if the residual is at most part of the size, which is finite. */
+int tribo_point_is_closed(const struct point *p, double part);
+
+/* Searches from s->here, x and unknown; the result is s->here. Returns a status, its message on the driver; the motion is found if
+ * tribo_point_is_closed(s->here, TRIBO_PERIODIC). */
+int tribo_shooting_search(struct shooting *s);
+
+/* Exchanges here and there. */
+void tribo_shooting_turn(struct shooting *s);
+
+/* Returns TRIBO_ERR_NO_CONVERGENCE with a message of the residual over size of the nearest motion. */
+int tribo_shooting_fails(const struct shooting *s, double residual);
+
+/* Marks the motion s->here, y, as found: w->y, w->period and the questions about it. */
+void tribo_shooting_keep(struct shooting *s, struct wanted *w);
+
+/* The find of struct wanted: tribo_driver_find_periodic and tribo_driver_find_cycle (cycle.c), with arguments already checked. */
+int tribo_shooting_find(struct shooting *s, struct wanted *w);
+int tribo_shooting_find_cycle(struct shooting *s, struct wanted *w);
 
 #endif
