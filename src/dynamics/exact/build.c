@@ -174,7 +174,8 @@ static int find_modes(struct modal_build *b)
     const struct modes_text text = {sys->message, "with contacts at rest held, ", "take method event"};
     int status = h->rests == 0 || tribo_constraints_basis(&h->ties, h->n, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     const int held = z.rows > 0;
-    const size_t n = h->n, m = h->modes = held ? z.cols : n, all = m * (2 + 2 * n), room = all + m * sys->ncontact;
+    const size_t n = h->n, m = h->modes = held ? z.cols : n, all = m * (2 + 2 * n);
+    const size_t room = all + (h->rests == 0 || h->springs ? m * sys->ncontact : 0);
     h->powers = b->like ? b->like->powers : b->powers ? calloc(1, sizeof *h->powers + room * sizeof *h->omega2) : NULL;
     h->omega2 = h->powers ? h->powers->array : b->powers ? NULL : tribo_modal_take(&h->store, all, sizeof *h->omega2);
     if (h->powers) {
@@ -306,7 +307,7 @@ void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y,
     }
     if (h->rests > 0) {
         tribo_matrix_add_columns(b->k, 1.0, columns, y, force);
-        for (size_t d = 0; d < n; d++) {
+        for (size_t d = 0; (base || !h->powers) && d < n; d++) { /* of coordinates omega2 is 0 */
             for (size_t k = 0; k < columns; k++) {
                 force[d * columns + k] -= omega2[k] * inertia[k * n + d];
             }
@@ -330,11 +331,12 @@ static int find_effects(struct modal_build *b)
         return 0;
     }
     h->by_u = lags ? h->on + all : NULL;
-    double *reach = h->powers ? h->powers->reach = h->psi + m * h->n : h->on;
+    const int apart = h->powers && (h->rests == 0 || h->springs);
+    double *reach = apart ? h->powers->reach = h->psi + m * h->n : h->on;
     if (!b->like) {
         tribo_matrix_add_columns(&b->sys->direction, 1.0, m, b->shape, reach);
     }
-    memmove(h->on, reach, all * sizeof *reach);
+    memmove(h->on, reach, apart ? all * sizeof *reach : 0);
     tribo_modal_effects(b, m, b->shape, h->psi, h->omega2, NULL, h->on, h->by_u);
     return !b->scratch.failed;
 }

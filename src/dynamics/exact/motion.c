@@ -263,9 +263,7 @@ static void find_constant_forces(struct exact *x, const double *y, double *force
         const struct output *out = &h->output[o];
         const size_t i = out->contact;
         const double push = o < h->sliding ? x->steady[i] : -x->way[i] - tribo_matrix_row_dot(&sys->direction, i, y);
-        for (size_t k = 0; k < m; k++) {
-            force[k] += push * out->on_rate[k];
-        }
+        tribo_add(force, push, out->on_rate, m);
     }
 }
 

@@ -45,14 +45,15 @@ void tribo_powers_start(struct exact *x, const double *force)
     memcpy(eta, x->place, m * sizeof *eta);
     memcpy(rate, x->rate, m * sizeof *rate);
     memcpy(rate + m, force, m * sizeof *rate);
-    for (size_t s = 0; s < f->harmonics; s++) { /* the part of a constant load is in force */
-        const double omega = f->forcing[s].omega;
-        double complex z = tribo_part(&x->z, s);
-        for (size_t k = 1; k < P && omega != 0.0; k++) {
-            for (size_t j = 0; j < m; j++) {
-                rate[k * m + j] += creal(f->g[s * m + j] * z);
-            }
-            z *= omega / (double)k * I;
+    for (size_t at = 0; at < f->harmonics * m; at++) { /* the part of a constant load is in force */
+        const double omega = f->forcing[at / m].omega;
+        const double complex z = f->g[at] * tribo_part(&x->z, at / m);
+        double re = creal(z), im = cimag(z);
+        for (size_t k = 1; k < P && omega != 0.0 && f->g[at] != 0.0; k++) {
+            const double turn = omega / (double)k, old = re;
+            rate[k * m + at % m] += re;
+            re = -im * turn;
+            im = old * turn;
         }
     }
     for (size_t k = 0; k + 1 < P; k++, eta += m, rate += m) {

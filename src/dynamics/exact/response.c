@@ -124,12 +124,17 @@ static int follow_bases(struct modal_build *b)
         }
         k++;
     }
-    for (size_t at = 0; at < f->shapes * h->n; at++) {
-        if (f->phi[at] != 0.0 || (at < m * h->n && h->psi[at] != 0.0)) {
-            size_t *span = f->span + at / h->n * 2;
-            span[0] = span[1] ? span[0] : at % h->n;
-            span[1] = at % h->n + 1;
+    for (size_t k = 0, n = h->n; k < f->shapes; k++) {
+        const double *phi = f->phi + k * n, *psi = k < m ? h->psi + k * n : phi;
+        size_t begin = 0, end = n;
+        while (begin < end && phi[begin] == 0.0 && psi[begin] == 0.0) {
+            begin++;
         }
+        while (begin < end && phi[end - 1] == 0.0 && psi[end - 1] == 0.0) {
+            end--;
+        }
+        f->span[2 * k] = begin;
+        f->span[2 * k + 1] = end;
     }
     return !b->scratch.failed;
 }
