@@ -46,8 +46,11 @@ void complete_options(struct options *o, const struct structure *s)
             die("%s: with --law %s marching takes rigid contacts only: leave out stiffness=, or --law", origin,
                 tribo_law_name(o->law));
         }
-        if (contact->directions == 2 && !o->march) {
-            die("%s: contacts in a plane are for --method march; method exact knows contacts along one axis only", origin);
+        if (contact->directions == 2 && contact->normal.direction && !o->march) {
+            die("%s: a contact in a plane with normal= is for --method march: periodic motions are found of such contacts along "
+                "one "
+                "axis only",
+                origin);
         }
     }
     add_normals(&o->contacts);
@@ -288,7 +291,8 @@ struct damper create_damper(const struct options *o, const struct structure *s, 
         if (d.contact[c].stiffness > 0.0) {
             check_spring(&d, c);
         }
-        d.marched |= d.contact[c].directions == 2;
+        d.in_plane |= d.contact[c].directions == 2;
+        d.marched |= d.contact[c].directions == 2 && d.contact[c].normal.direction;
     }
     d.sys = create_system(&d, o->limits.from);
     d.dimension = tribo_system_dimension(d.sys);

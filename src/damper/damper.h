@@ -20,7 +20,8 @@ struct damper {
     size_t rows;                   /* number of contacts and of normal directions behind them */
     const struct contact *contact; /* [rows] */
     size_t dimension;              /* of a state */
-    int marched;                   /* 1: motions are found by marching only, since contacts slide in a plane */
+    int in_plane;                  /* 1: contacts slide in a plane */
+    int marched;                   /* 1: motions are found by marching only, since such contacts have a normal direction */
     struct linear open, stuck;     /* without friction, and with all contacts stuck */
     double lowest, highest;        /* ends of the band of the load, Hz */
     double *contact_shape;         /* [rows][modes] the modes at the contacts, positive where normal directions press */

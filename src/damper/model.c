@@ -15,7 +15,7 @@ static const double MARGIN = 2.5; /* error over change: up to 2.2 on beams and p
 
 /* -------------------------------------------------------------------------------------------------------------- comparing */
 
-/* Contacts in a plane are marched with Coulomb's law, all others are exact. */
+/* Contacts in a plane with a normal direction are marched with Coulomb's law, all others are exact. */
 void compare_models(const struct model *m, size_t threads, struct point *point, size_t count)
 {
     struct damper both[] = {m->damper, m->finer};

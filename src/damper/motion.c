@@ -12,7 +12,8 @@
 static void open_driver(struct worker *w)
 {
     if (!w->d->marched) {
-        need(tribo_driver_create(&w->drv, w->sys, w->d->rows > w->d->contacts ? "auto" : "exact"), tribo_system_message(w->sys));
+        const int events = w->d->in_plane || w->d->rows > w->d->contacts;
+        need(tribo_driver_create(&w->drv, w->sys, events ? "auto" : "exact"), tribo_system_message(w->sys));
     }
 }
 

@@ -187,7 +187,7 @@ static const struct option {
      "                       place of the node, lengths\n"},
     {OPTION(read_contact, contacts),
      "  --contact CONTACT    X,Y,Z,DIR: a contact to ground at the node with these coordinates, sliding along DIR (x, y or z);\n"
-     "                       or in a plane, xy, xz or yz (--method march). A contact in a plane has two columns in the tables,\n"
+     "                       or in a plane, xy, xz or yz. A contact in a plane has two columns in the tables,\n"
      "                       one for each direction. Words may follow, separated by colons or blanks:\n"
      "                         to=X,Y,Z      the contact is not to ground but to this node\n"
      "                         limit=FORCE   its limit, in a plane in any direction; without, the limit is that of --limits\n"
@@ -242,7 +242,8 @@ static const struct option {
     {OPTION(read_path, frequencies),
      "  --frequencies FILE   natural frequencies in Hz from elsewhere, shown beside the natural frequencies found; \"none\"\n"},
     {OPTION(read_method, march),
-     "  --method NAME        exact; or march: time steps until the motion repeats itself, slow, also for contacts in a plane\n"},
+     "  --method NAME        exact; or march: time steps until the motion repeats itself, slow, also for contacts in a\n"
+     "                       plane with normal=\n"},
     {OPTION(read_check, check),
      "  --check N            computes N points also by marching, and shows the differences: another method, the same modes; 0\n"},
     {OPTION(read_law, law),

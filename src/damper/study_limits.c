@@ -45,7 +45,7 @@ static struct optimum balance_mode(const struct damper *d, double drive)
     const struct linear *l = &d->open;
     size_t k = 0;
     double sum = 0.0;
-    int one = !d->marched && !l->coupled;
+    int one = !d->in_plane && !l->coupled;
     for (size_t i = 1; i < d->modes; i++) {
         k = fabs(l->omega[i] - drive) < fabs(l->omega[k] - drive) ? i : k;
     }

@@ -272,6 +272,30 @@ TEST(normal_follows)
 }
 END_TEST
 
+/* A contact in a plane, by events: a force of size 1 that turns at 0.6 makes a circle of radius sqrt(1 - N^2)/(1 - 0.36) on a mass of
+ * 1, but for the damping of 1e-9; each direction takes half of the power. On a whole curve nothing is missing. */
+#define TURNS                                                                                                                    \
+    "--mass turn.mtx --stiffness turn.mtx --dofs follow.txt --damping 1e-9 --drive 0.0954929658551372 "                          \
+    "--load 0,0,0,x:force=1:phase=90 --load 0,0,0,y:force=1 --contact 0,0,0,xy:"
+
+TEST(plane)
+{
+    const double radius = sqrt(1.0 - 0.09) / 0.64, power = 0.5 * 0.3 * radius * 0.6;
+    write_text("turn.mtx", HEAD "2 2 2\n1 1 1\n2 2 1\n");
+    write_text("follow.txt", "1 1 1 0 0 0\n2 1 2 0 0 0\n");
+    assert_runs(TURNS "limit=0.3 --output 0,0,0,y");
+    assert_close(column_of("damper-curve.csv", 3), radius, 1e-8);
+    assert_close(column_of("damper-curve.csv", 4), 2.0 * power, 1e-8);
+    assert_close(column_of("damper-curve.csv", 9), power, 1e-8);
+    assert_exact(column_of("damper-curve.csv", 10), 0.0);
+    assert_close(column_of("damper-curve.csv", 11), power, 1e-8);
+    assert_close(column_of("damper-curve.csv", 13), radius, 1e-8);
+    assert_runs(TURNS "mu=1 --limits 0.05:2:5");
+    assert_exact(value_of("damper.gaps"), 0.0);
+    assert_refused(TURNS "mu=0.3:normal=z,1:load=1", "normal", "a contact in a plane with normal= is for --method march");
+}
+END_TEST
+
 /* Masses that hang together, the last of which has no spring: said, with the reason why no motion is found. */
 TEST(loose_row)
 {
@@ -311,4 +335,4 @@ TEST(own_limit)
 END_TEST
 
 TEST_MAIN("damper_small", {spring, 1}, {loads, 1}, {damping_by_mode, 1}, {field, 1}, {normal_load, 1}, {normal_follows, 1},
-          {loose_row, 1}, {own_limit, 1})
+          {plane, 1}, {loose_row, 1}, {own_limit, 1})
