@@ -25,18 +25,14 @@ int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const stru
         return status;
     }
     const size_t size = tribo_system_size(sys), shown = sys->expansion.place ? tribo_system_dimension(sys) : 0;
-    tribo_driver *d = tribo_zeros(sizeof *d + (2 * size + 2 * shown) * sizeof *d->state + TRIBO_MESSAGE, 1);
-    if (!d) {
+    tribo_driver *d, new = {.sys = sys, .revision = SIZE_MAX, .method = m, .at_work = m};
+    if (!ALLOCATE(ARRAY(d, 1), ARRAY(new.state, size), ARRAY(new.slope, size), ARRAY(new.motion, shown), ARRAY(new.shown, shown),
+                  ARRAY(new.message, TRIBO_MESSAGE))) {
         return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for a driver of %zu equation%s", size, plural(size));
     }
-    d->sys = sys;
-    d->revision = SIZE_MAX;
-    d->method = d->at_work = m;
-    d->state = (double *)(d + 1);
-    d->slope = d->state + size;
-    d->motion = shown ? d->slope + size : NULL;
-    d->shown = shown ? d->motion + shown : NULL;
-    d->message = (char *)(d->slope + size + 2 * shown);
+    new.motion = shown ? new.motion : NULL;
+    new.shown = shown ? new.shown : NULL;
+    *d = new;
     tribo_system_order_snaps(sys);
     status = m->create ? m->create(d) : TRIBO_OK;
     if (status) {

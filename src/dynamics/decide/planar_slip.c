@@ -9,6 +9,7 @@
  *
  * The problem is convex: each solution decides about all contacts together. */
 #include "stick_slip.h"
+#include "common/layout.h"
 #include "common/real.h"
 
 #include <math.h>
@@ -29,8 +30,6 @@ void tribo_planar_slip_free(struct planar_slip *p)
     if (p) {
         tribo_destroy(p->disc);
         free(p->contact);
-        free(p->in_plane);
-        free(p->rate);
         free(p);
     }
 }
@@ -53,12 +52,9 @@ static int create_plane(struct stick_slip *m, const tribo_system *sys)
 {
     const size_t c = sys->ncontact;
     struct planar_slip *p = m->plane = calloc(1, sizeof *p);
-    if (!p || !(p->contact = malloc((c + 1) * sizeof *p->contact)) || !(p->in_plane = malloc(c)) ||
-        !(p->rate = malloc(3 * c * sizeof *p->rate))) {
+    if (!p || !ALLOCATE(ARRAY(p->contact, c), ARRAY(p->in_plane, c), ARRAY(p->rate, c), ARRAY(p->ahead, c), ARRAY(p->error, c))) {
         return TRIBO_ERR_MEMORY;
     }
-    p->ahead = p->rate + c;
-    p->error = p->rate + 2 * c;
     int status = tribo_clone(sys->contacts, &p->disc);
     if (status) {
         return status;

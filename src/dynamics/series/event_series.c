@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "event_series.h"
+#include "common/layout.h"
 
 #include <float.h>
 #include <math.h>
@@ -249,17 +250,12 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
     const size_t n = e->sys->ndof, half = n * columns, each = e->sys->ncontact * columns;
     const size_t planes = m->plane ? m->plane->count * columns : 0;
     struct perturbed p = {.columns = columns, .rows = m->limits.falls || m->plane ? e->order + 1 : 1};
-    p.project = malloc((n * n + 3 * half + (2 + p.rows) * each + (1 + p.rows) * planes + 1) * sizeof *p.project);
-    if (!p.project) {
+    struct planar_turns *t = &p.turns;
+    if (!ALLOCATE(ARRAY(p.project, n * n), ARRAY(p.q, half), ARRAY(p.u, half), ARRAY(p.next, half), ARRAY(p.spring, each),
+                  ARRAY(p.force, each), ARRAY(p.v, p.rows * each), ARRAY(t->z, p.rows * planes), ARRAY(t->w, planes))) {
         return tribo_error(e->sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     }
-    p.q = p.project + n * n;
-    p.u = p.q + half;
-    p.next = p.u + half;
-    p.spring = p.next + half;
-    p.force = p.spring + each;
-    p.v = p.force + each;
-    p.turns = (struct planar_turns){columns, p.rows, tau, p.v, p.v + p.rows * each, p.v + p.rows * (each + planes)};
+    *t = (struct planar_turns){columns, p.rows, tau, p.v, t->z, t->w};
     (void)phase;
     tribo_stick_slip_press(m, e->sys);
     int status = TRIBO_OK;
@@ -272,7 +268,6 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
         }
     }
     memcpy(p.q, v, half * sizeof *v);
-    memset(p.u, 0, (2 * half + each) * sizeof *v);
     tribo_multiply_add(n, n, columns, 1.0, p.project, v + half, p.u);
     memcpy(v + half, p.u, half * sizeof *v);
     for (size_t k = 0; k < g->count; k++) {

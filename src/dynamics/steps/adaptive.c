@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/layout.h"
 #include "common/real.h"
 #include "dynamics/driver.h"
 #include "dynamics/reduce/spectrum.h"
@@ -267,21 +268,16 @@ int tribo_driver_create_stepper(tribo_driver **drv, tribo_system *sys, const tri
         return tribo_error(sys->message, TRIBO_ERR_NULL, "stepper->%s is NULL", missing);
     }
     const size_t n = tribo_system_dimension(sys), c = sys->ncontact;
-    struct adaptive *a = malloc(sizeof *a + (4 * n + 2 * c) * sizeof *a->to); /* and all arrays */
-    if (!a) {
+    struct adaptive *a, new = {.stepper = *stepper, .data = data, .structure = SIZE_MAX, .revision = SIZE_MAX};
+    if (!ALLOCATE(ARRAY(a, 1), ARRAY(new.to, n), ARRAY(new.error, n), ARRAY(new.tolerance, n), ARRAY(new.cap, n),
+                  ARRAY(new.band, c), ARRAY(new.rate, c))) {
         return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for stepper %.20s", stepper->name);
     }
-    *a = (struct adaptive){.stepper = *stepper, .data = data, .structure = SIZE_MAX, .revision = SIZE_MAX};
-    a->method = (struct method){.name = stepper->name,
-                                .takes = TAKES_STEP | TAKES_TOLERANCE | TAKES_MAX_STEP | NEEDS_MASS,
-                                .destroy = adaptive_destroy,
-                                .advance = adaptive_advance};
-    a->to = (double *)(a + 1);
-    a->error = a->to + n;
-    a->tolerance = a->error + n;
-    a->cap = a->tolerance + n;
-    a->band = a->cap + n;
-    a->rate = a->band + c;
+    new.method = (struct method){.name = stepper->name,
+                                 .takes = TAKES_STEP | TAKES_TOLERANCE | TAKES_MAX_STEP | NEEDS_MASS,
+                                 .destroy = adaptive_destroy,
+                                 .advance = adaptive_advance};
+    *a = new;
     const int status = tribo_driver_create_method(drv, sys, &a->method);
     if (status) {
         free(a);

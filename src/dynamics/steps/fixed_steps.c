@@ -71,21 +71,12 @@ int tribo_step_form_bodies(const struct matrix *j, size_t *body, double *lever, 
     return 1;
 }
 
-int tribo_step_form_create(struct step_form *s, const tribo_system *sys, size_t more)
+int tribo_step_form_create(struct step_form *s, const tribo_system *sys)
 {
     const size_t n = sys->ndof, c = sys->ncontact;
-    s->memory = s->u = tribo_zeros(2 * n + 5 * c + more + 1, sizeof *s->u);
-    if (!s->memory) {
-        return 0;
-    }
-    s->a = s->u + n;
-    s->v = s->a + n;
-    s->end = s->v + c;
-    s->f = s->end + c;
-    s->base = s->f + c;
-    s->more = s->base + c;
-    s->mode = (signed char *)(s->more + more);
-    return 1;
+    s->memory = ALLOCATE(ARRAY(s->u, n), ARRAY(s->a, n), ARRAY(s->spare, n), ARRAY(s->v, c), ARRAY(s->end, c), ARRAY(s->f, c),
+                         ARRAY(s->base, c), ARRAY(s->mode, c));
+    return s->memory != NULL;
 }
 
 void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t)

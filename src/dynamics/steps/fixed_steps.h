@@ -26,7 +26,7 @@ struct step_form {
     double *u, *a;       /* [ndof] velocity (central: half a step back); acceleration, or what a step adds to u */
     double *v, *end, *f; /* [ncontact] velocity at the beginning and at the end of a step, force */
     double *base;        /* [ncontact] b at the end */
-    double *more;        /* [more] arrays of the method, zeros at first */
+    double *spare;       /* [ndof] of the method */
     signed char *mode;   /* [ncontact] slip */
     size_t revision;     /* of the system for which a method has prepared */
 };
@@ -36,7 +36,7 @@ struct step_form {
 int tribo_step_form_bodies(const struct matrix *j, size_t *body, double *lever, signed char *seen);
 
 /* 1, or 0 if out of memory. */
-int tribo_step_form_create(struct step_form *s, const tribo_system *sys, size_t more);
+int tribo_step_form_create(struct step_form *s, const tribo_system *sys);
 
 /* base = b(t); v = J u - base. */
 void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t);

@@ -41,7 +41,6 @@ struct central {
     struct step_form common;
     struct few_bodies few;
     struct blockwise alone;
-    double *next;  /* [ndof] u at the end of a step in progress */
     double energy; /* dissipated up to u */
     double last;   /* length of the step before; 0: u is the velocity at t */
     double when;   /* time of u */
@@ -62,11 +61,10 @@ static int central_create(tribo_driver *drv)
 {
     struct central *x = tribo_zeros(1, sizeof *x);
     drv->own = x;
-    if (!x || !tribo_step_form_create(&x->common, drv->sys, drv->sys->ndof) || !tribo_blockwise_create(&x->alone, drv->sys)) {
+    if (!x || !tribo_step_form_create(&x->common, drv->sys) || !tribo_blockwise_create(&x->alone, drv->sys)) {
         return tribo_error(drv->sys->message, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
     x->few.revision = SIZE_MAX;
-    x->next = x->common.more;
     return TRIBO_OK;
 }
 
@@ -315,7 +313,7 @@ static int central_step(tribo_driver *drv, double t, double next, const double *
             return synchronise(drv, next, y);
         }
     }
-    const struct body_step k = {x->when, t, t + 0.5 * h, 0.5 * (x->last + h), h, from, s->u, y, x->next};
+    const struct body_step k = {x->when, t, t + 0.5 * h, 0.5 * (x->last + h), h, from, s->u, y, s->spare};
     const int alone = !x->few.fits && x->alone.fits;
     double energy = x->energy;
     int status = TRIBO_OK;
@@ -336,7 +334,7 @@ static int central_step(tribo_driver *drv, double t, double next, const double *
     if (status) {
         return status;
     }
-    x->next = s->u;
+    s->spare = s->u;
     s->u = k.u_to;
     x->last = h;
     x->when = k.to;

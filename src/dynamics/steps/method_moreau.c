@@ -9,6 +9,7 @@
 #include "dynamics/system/delassus.h"
 #include "fixed_steps.h"
 #include "step_matrix.h"
+#include "common/layout.h"
 #include "common/real.h"
 
 /* Data of steps of length h: matrix S = M + h/2 C + h^2/4 K, S^-1 J', and contacts with the operator J S^-1 J'.
@@ -26,7 +27,6 @@ struct moreau {
     struct step_matrix matrix;
     int whole;               /* 1: response and contacts are ready; made at first need where the matrix holds bodies */
     double *response;        /* [ncontact][ndof] S^-1 J'; NULL: each step solves with S twice */
-    double *push;            /* [ndof] workspace */
     size_t told;             /* TRIBO_COUNT_SETTINGS of the system's contacts as contacts took them; SIZE_MAX: never */
     double *limit;           /* [ncontact] limits in a step; limit/2 for compliant contacts */
     double *spring, *give;   /* [ncontact] forces f0 of compliant contacts; workspace, as G f0 */
@@ -43,6 +43,7 @@ static void moreau_destroy(tribo_driver *drv)
     if (m) {
         tribo_destroy(m->contacts);
         free(m->common.memory);
+        free(m->limit);
         tribo_step_matrix_free(&m->matrix);
         free(m->response);
         free(m);
@@ -51,19 +52,14 @@ static void moreau_destroy(tribo_driver *drv)
 
 static int moreau_create(tribo_driver *drv)
 {
-    const size_t n = drv->sys->ndof, c = drv->sys->ncontact;
+    const size_t c = drv->sys->ncontact;
     struct moreau *m = calloc(1, sizeof *m);
     drv->own = m;
-    if (!m || !tribo_step_form_create(&m->common, drv->sys, 6 * c + n)) {
+    if (!m || !tribo_step_form_create(&m->common, drv->sys) ||
+        !ALLOCATE(ARRAY(m->limit, c), ARRAY(m->spring, c), ARRAY(m->give, c), ARRAY(m->late, c), ARRAY(m->early, c),
+                  ARRAY(m->pressed, c))) {
         return tribo_error(drv->sys->message, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
-    m->limit = m->common.more;
-    m->spring = m->limit + c;
-    m->give = m->spring + c;
-    m->late = m->give + c;
-    m->early = m->late + c;
-    m->pressed = m->early + c;
-    m->push = m->pressed + c;
     return TRIBO_OK;
 }
 
@@ -84,9 +80,9 @@ static int set_operator(struct moreau *m, const tribo_system *sys, const double 
                            sys->unsolved ? "reduce the system" : "take central/fixed, event or exact");
     }
     for (size_t d = 0; hidden && d < sys->ndof; d++) {
-        m->push[d] = 1.0 / tribo_matrix_get(&m->matrix.s, d, d);
+        m->common.spare[d] = 1.0 / tribo_matrix_get(&m->matrix.s, d, d);
     }
-    const int status = hidden ? tribo_set_operator_mass(m->contacts, sys->ndof, m->push, j->first, j->col, j->val)
+    const int status = hidden ? tribo_set_operator_mass(m->contacts, sys->ndof, m->common.spare, j->first, j->col, j->val)
                               : tribo_set_operator_dense(m->contacts, r);
     return status ? tribo_error(sys->message, status, "in steps of %g, %s", h, tribo_message(m->contacts)) : TRIBO_OK;
 }
@@ -139,12 +135,12 @@ static void push(struct moreau *m, const tribo_system *sys, double h, const doub
         }
         return;
     }
-    memset(m->push, 0, n * sizeof *m->push);
+    memset(m->common.spare, 0, n * sizeof *m->common.spare);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        tribo_matrix_add_row(j, i, h * f[i], m->push);
+        tribo_matrix_add_row(j, i, h * f[i], m->common.spare);
     }
-    tribo_step_matrix_solve(&m->matrix, 1, m->push);
-    tribo_add(u, 1.0, m->push, n);
+    tribo_step_matrix_solve(&m->matrix, 1, m->common.spare);
+    tribo_add(u, 1.0, m->common.spare, n);
 }
 
 /* Prepares steps of length h, if that is not done. Returns a status. */
@@ -190,8 +186,8 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
         s->u[i] = from[i] + 0.5 * h * u[i];
     }
     if (!sys->unsolved) {
-        tribo_matrix_multiply(&sys->mass, p, m->push);
-        memcpy(p, m->push, n * sizeof *p);
+        tribo_matrix_multiply(&sys->mass, p, m->common.spare);
+        memcpy(p, m->common.spare, n * sizeof *p);
     }
     tribo_matrix_multiply_add(&sys->k, -h, s->u, p);
     tribo_matrix_multiply_add(&sys->c, -h, u, p);

@@ -351,30 +351,25 @@ void *tribo_system_attached(const tribo_system *sys, const void *key)
 
 int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact)
 {
-    const size_t each = ncontact + 1, room = 8 * each + ndof;
-    tribo_system *s = tribo_zeros(sizeof *s + room * sizeof *s->tally + ncontact * sizeof *s->snaps.list + TRIBO_MESSAGE, 1);
-    const int status = s ? tribo_create(&s->contacts, ncontact) : TRIBO_ERR_MEMORY;
+    const size_t c = ncontact;
+    tribo_system *s, new = {.ndof = ndof, .ncontact = c, .loads.time = NAN, .reduced.given = ndof, .expansion.dofs = ndof};
+    struct workspace *w = &new.work;
+    if (!ALLOCATE(ARRAY(s, 1), ARRAY(w->v, c), ARRAY(w->a, c), ARRAY(w->f, c), ARRAY(w->feq, c), ARRAY(w->dv_dt, c),
+                  ARRAY(w->put_limit, c), ARRAY(w->acceleration, ndof), ARRAY(new.loads.given_limit, c), ARRAY(new.tally, c),
+                  ARRAY(new.snaps.list, c), ARRAY(new.message, TRIBO_MESSAGE))) {
+        return TRIBO_ERR_MEMORY;
+    }
+    for (size_t i = 0; i < c; i++) {
+        new.tally[i] = 1.0;
+    }
+    *s = new;
+    const int status = tribo_create(&s->contacts, c);
     if (status) {
         free(s);
-        return status;
+    } else {
+        *sys = s;
     }
-    double *const work = (double *)(s + 1);
-    double **const part[] = {&s->work.v,         &s->work.a,     &s->work.f,
-                             &s->work.feq,       &s->work.dv_dt, &s->loads.given_limit,
-                             &s->work.put_limit, &s->tally,      &s->work.acceleration};
-    for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
-        *part[k] = work + k * each;
-    }
-    s->snaps.list = (struct snap *)(work + room);
-    s->message = (char *)(s->snaps.list + ncontact);
-    s->ndof = s->reduced.given = s->expansion.dofs = ndof;
-    s->ncontact = ncontact;
-    s->loads.time = NAN;
-    for (size_t i = 0; i < ncontact; i++) {
-        s->tally[i] = 1.0;
-    }
-    *sys = s;
-    return TRIBO_OK;
+    return status;
 }
 
 int tribo_system_clone(const tribo_system *sys, tribo_system **copy)

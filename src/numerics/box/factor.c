@@ -402,17 +402,10 @@ void tribo_factor_solve(const struct box_qp *p, size_t vectors, double *step)
 
 /* ----------------------------------------------------------------------------------------------------------- rows of R */
 
-TRIBO_SIMD static double factor_dense_dot(const double *row, const double *x, size_t n, double *size)
+TRIBO_SIMD double tribo_row_dot(const struct box_qp *p, size_t i, const double *x, double *size)
 {
-    return dot_of_four(row, x, n, size);
-}
-
-double tribo_row_dot(const struct box_qp *p, size_t i, const double *x, double *size)
-{
-    if (p->group->sparse) {
-        return tribo_sparse_dot(p, i, x, size);
-    }
-    return factor_dense_dot(p->r + i * p->group->size, x, p->group->size, size);
+    const size_t n = p->group->size;
+    return p->group->sparse ? tribo_sparse_dot(p, i, x, size) : dot_of_four(p->r + i * n, x, n, size);
 }
 
 double tribo_row_others(const struct box_qp *p, size_t i, double *x)
