@@ -16,7 +16,8 @@ while :; do
     --all)
         preset=all
         packages="$packages git libclang-rt-dev clang-tidy abigail-tools gcc-multilib musl-tools gcc-mingw-w64-x86-64 wine libopenblas0-pthread
-            python3-numpy libspooles-dev libarpack2-dev dpkg-dev gnuplot-nox"
+            python3-numpy libspooles-dev libarpack2-dev dpkg-dev gnuplot-nox libsundials-dev
+            python3-scipy"
         ;;
     --no-install) setup_install=no ;;
     *) break ;;
