@@ -65,7 +65,7 @@ static void build_give_back(struct modal_store *store)
 /* ------------------------------------------------------------------------------------------------- the contacts that hold */
 
 /* Sets key, rest and ties. Returns 0 if out of memory, or on another failure, with b->status set. */
-static int list_rest(struct modal_build *b, const unsigned char *holds)
+static int list_rest(struct modal_build *b)
 {
     struct modal *h = b->h;
     tribo_system *sys = b->sys;
@@ -73,8 +73,9 @@ static int list_rest(struct modal_build *b, const unsigned char *holds)
     h->rest = tribo_modal_take(&h->store, sys->ncontact + 1, sizeof *h->rest);
     for (size_t at = 0; !h->store.failed && at < 2 * sys->ncontact; at++) {
         const size_t i = at % sys->ncontact;
-        const int springs = at >= sys->ncontact, listed = holds[i] && springs == tribo_is_compliant(&sys->compliance, i);
-        h->key[i] = (signed char)((b->slip[i] == TRIBO_SLIP_STUCK) + holds[i]);
+        const int springs = at >= sys->ncontact;
+        const int listed = b->key[i] == KEY_HOLDS && springs == tribo_is_compliant(&sys->compliance, i);
+        h->key[i] = b->key[i];
         h->rest[h->rests + h->springs] = i;
         *(springs ? &h->springs : &h->rests) += (size_t)listed;
     }
@@ -237,8 +238,9 @@ static int find_damping(struct modal_build *b)
     struct modal *h = b->h;
     const struct matrix *damping = b->like ? NULL : b->c;
     const size_t n = h->n, m = h->modes;
-    double *c = tribo_modal_take(&h->store, damping ? m * m : 0, sizeof *c), most = 0.0;
+    double *c = tribo_modal_take(&h->store, damping || b->follows ? m * m : 0, sizeof *c), most = 0.0;
     double *root = tribo_modal_take(&b->scratch, damping ? n * (2 + m) : 0, sizeof *root);
+    h->coupling = b->follows ? c : NULL;
     if (!damping || !c || !root) {
         return c && root;
     }
@@ -256,7 +258,7 @@ static int find_damping(struct modal_build *b)
         const double own = c[k * (m + 1)], noise = tribo_matrix_noise(damping, root, h->phi + k * n, h->phi + k * n);
         h->damping[k] = fabs(own) > greater(ROUNDING * noise, IMPURITY * IMPURITY * most) ? own : 0.0;
     }
-    h->coupling = damping_couples(b, c, root, root + n) ? c : NULL;
+    h->coupling = b->follows || damping_couples(b, c, root, root + n) ? c : NULL;
     return 1;
 }
 
@@ -274,45 +276,77 @@ static void keep_reactions(const struct modal *h, size_t columns, double *force,
     }
 }
 
+void tribo_modal_rates(const struct modal_build *b, size_t columns, const double *slide, double *v, double *rate)
+{
+    tribo_compliance_rates(b->sys, b->slip, b->follows ? slide : NULL, columns, v, rate);
+    for (size_t i = 0; b->follows && i < b->sys->ncontact; i++) {
+        const int keeps = tribo_is_compliant(&b->sys->compliance, i);
+        memcpy(rate + i * columns, slide + i * columns, keeps ? 0 : columns * sizeof *rate);
+    }
+}
+
+/* v [ncontact], velocities of contacts by those of the structure, y: becomes v - base, or 0 if that is rounding; of normals v. */
+static void leave_bases(const tribo_system *sys, const double *y, const double *base, double *v)
+{
+    const double most = tribo_largest(y, sys->ndof);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        double size = fabs(base[i]);
+        for (size_t e = sys->direction.first[i]; e < sys->direction.first[i + 1]; e++) {
+            size += fabs(sys->direction.val[e]) * most;
+        }
+        const double rest = fabs(v[i] - base[i]) > NO_MOTION * size ? v[i] - base[i] : 0.0;
+        v[i] = tribo_normals_at(sys, i) ? v[i] : rest;
+    }
+}
+
 void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y, const double *inertia, const double *omega2,
                          const double *base, double *on, double *by_u)
 {
     const struct modal *h = b->h;
     const tribo_system *sys = b->sys;
     const struct matrix *j = &sys->direction;
-    const size_t n = h->n, c = sys->ncontact, springs = sys->compliance.count ? c : 0, each = columns * sizeof *on;
-    double *force = tribo_modal_take(&b->scratch, columns * (n + h->rests + h->modes + springs), sizeof *force);
-    double *work = force + n * columns, *rate = work + (h->rests + h->modes) * columns;
-    const double most = base ? tribo_largest(y, n) : 0.0;
+    const size_t n = h->n, c = sys->ncontact, springs = sys->compliance.count || b->follows ? c : 0, each = columns * sizeof *on;
+    const int pulls = h->rests > 0 || (base && b->follows);
+    double *force = tribo_modal_take(&b->scratch, columns * (n + h->rests + h->modes + 2 * springs), sizeof *force);
+    double *work = force + n * columns, *rate = work + (h->rests + h->modes) * columns, *slide = rate + springs * columns;
     if (!force) {
         return;
     }
-    for (size_t i = 0; base && i < c; i++) {
-        double size = fabs(base[i]);
-        for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
-            size += fabs(j->val[e]) * most;
-        }
-        on[i] = fabs(on[i] - base[i]) > NO_MOTION * size ? on[i] - base[i] : 0.0;
+    if (b->follows) {
+        tribo_follow_slide(sys, h->key, columns, on, slide);
+    }
+    if (base) {
+        leave_bases(sys, y, base, on);
     }
     if (springs) {
-        tribo_compliance_rates(sys, b->slip, NULL, columns, on, rate);
+        tribo_modal_rates(b, columns, slide, on, rate);
     }
     for (size_t i = 0; i < c; i++) {
-        const int rests = h->key[i] == 2 || (h->key[i] == 1 && !base), gives = tribo_is_compliant(&sys->compliance, i);
+        const struct normal *normal = tribo_normals_at(sys, i);
+        const int gives = tribo_is_compliant(&sys->compliance, i), slides = tribo_follow_side(h->key[i]) != 0.0;
+        const int rests = h->key[i] == KEY_HOLDS ||
+                          (!base && (h->key[i] == KEY_RESTS || h->key[i] == KEY_TIED_BACK || h->key[i] == KEY_TIED_FORTH));
         memset(on + i * columns, 0, rests ? each : 0);
         memcpy(on + i * columns, rate + (gives ? i * columns : 0), rests && gives ? each : 0);
-        for (size_t e = j->first[i]; gives && h->rests && e < j->first[i + 1]; e++) {
+        for (size_t k = 0; normal && k < columns; k++) {
+            on[i * columns + k] *= normal->stiffness;
+        }
+        for (size_t e = j->first[i]; (gives || slides) && pulls && e < j->first[i + 1]; e++) {
             tribo_add(force + j->col[e] * columns, -j->val[e], rate + i * columns, columns);
         }
     }
-    if (h->rests > 0) {
+    if (pulls) {
         tribo_matrix_add_columns(b->k, 1.0, columns, y, force);
-        for (size_t d = 0; (base || !h->powers) && d < n; d++) { /* of coordinates omega2 is 0 */
+        for (size_t d = 0; (base || !(h->powers || b->follows)) && d < n; d++) { /* of coordinates omega2 is 0 */
             for (size_t k = 0; k < columns; k++) {
                 force[d * columns + k] -= omega2[k] * inertia[k * n + d];
             }
         }
-        keep_reactions(h, columns, force, base || h->powers, work, on);
+        if (base && b->follows) {
+            memset(b->push, 0, h->modes * sizeof *b->push);
+            tribo_multiply_add(h->modes, n, 1, -1.0, h->phi, force, b->push);
+        }
+        keep_reactions(h, columns, force, base || h->powers || b->follows, work, on);
     }
     if (by_u) {
         memset(force, 0, n * each);
@@ -341,17 +375,24 @@ static int find_effects(struct modal_build *b)
     return !b->scratch.failed;
 }
 
-int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const unsigned char *holds, int powers,
+int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const signed char *key, int powers,
                        const struct modal *like)
 {
     struct modal_store store = {0};
-    struct modal_build b = {
-        .sys = sys, .h = *modal, .slip = slip, .powers = powers, .like = like, .k = &sys->k, .c = sys->c.rows ? &sys->c : NULL};
-    int done = 1;
+    struct modal_build b = {.sys = sys,
+                            .h = *modal,
+                            .slip = slip,
+                            .key = key,
+                            .powers = powers,
+                            .like = like,
+                            .k = &sys->k,
+                            .c = sys->c.rows ? &sys->c : NULL};
+    int done = !b.h || tribo_follow_press(&b);
     if (!b.h && (b.h = tribo_modal_take(&store, 1, sizeof *b.h)) != NULL) {
         b.h->store = store;
         b.h->n = sys->ndof;
-        done = list_rest(&b, holds) && find_stiffness(&b) && find_modes(&b) && find_damping(&b) && find_effects(&b);
+        done = list_rest(&b) && tribo_follow_press(&b) && find_stiffness(&b) && find_modes(&b) && find_damping(&b) &&
+               tribo_follow_couple(&b) && find_effects(&b);
         b.status = done && !powers ? tribo_modal_exponents(&b) : b.status;
     }
     store = (struct modal_store){0};
@@ -362,6 +403,7 @@ int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed cha
     done = b.forced && tribo_forced_respond(&b) && tribo_forced_outputs(&b);
     build_give_back(&b.scratch);
     tribo_matrix_free(&b.own_stiffness);
+    tribo_matrix_free(&b.pressed_stiffness);
     if (done) {
         *modal = b.h;
         return TRIBO_OK;

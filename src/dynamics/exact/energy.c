@@ -22,13 +22,14 @@ static double sampled_work(struct exact *x, const struct course *course, double 
                         weight[] = {0.36268378337836198, 0.31370664587788729, 0.22238103445337447, 0.10122853629037626};
     const double half = 0.5 * tau / (double)intervals;
     const size_t i = course->output->contact;
+    const int follows = tribo_normals_follower(x->sys, i) != NULL;
     struct course c = *course;
     double work = 0.0;
     for (size_t k = 0; k < 8 * intervals; k++) {
         const size_t point = k % 8;
         tribo_modal_motion_go(x, half * ((double)(2 * (k / 8) + 1) + (point % 2 ? at[point / 2] : -at[point / 2])));
         tribo_course_look(x, &c);
-        const double limit = x->sys->loads.given_limit[i] + tribo_modal_motion_limit(x, i).g;
+        const double limit = (follows ? 0.0 : x->sys->loads.given_limit[i]) + tribo_modal_motion_limit(x, i).g;
         work += weight[point / 2] * greater(limit, 0.0) * greater(x->events.stick_slip.state.slip[i] * c.at.g, 0.0);
     }
     tribo_modal_motion_go(x, tau);
@@ -76,7 +77,10 @@ static inline double work_of(struct exact *x, const struct course *c, double tau
 {
     const size_t i = c->output->contact;
     const double steady = -x->steady[i] * tribo_dot(c->output->on_rate, x->place, x->h->shapes);
-    const int varies = x->sys->loads.limits && tribo_slides(x->events.stick_slip.state.slip[i]);
+    const int slides = tribo_slides(x->events.stick_slip.state.slip[i]), varies = x->sys->loads.limits && slides;
+    if (tribo_normals_follower(x->sys, i)) {
+        return slides ? sampled_work(x, c, tau, (size_t)(ceil(x->h->quickest * tau) + 1.0)) : 0.0;
+    }
     return varies ? varying_work(x, c, tau, steady) : steady;
 }
 

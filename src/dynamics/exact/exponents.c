@@ -17,6 +17,10 @@
 /* Largest |A x - lambda x|/|lambda|, |x| = 1, of an exponent that is accepted. */
 #define KNOWN 1e-8
 
+/* Largest product of the lengths of the left and right eigenvectors of an exponent, of product 1: the condition of the exponent, and
+ * the factor by which rounding of the motion grows. */
+#define CONDITION 1e4
+
 static int exponents_unsupported(const struct modal_build *b, const char *why)
 {
     return tribo_error(b->sys->message, TRIBO_ERR_UNSUPPORTED, "method exact: %s; method event can do it", why);
@@ -88,44 +92,137 @@ static void keep_coupled(struct modal *h, size_t p, size_t k, double complex lam
     h->ri[p * h->modes + k] = -cimag(r);
 }
 
-/* Returns 1 if |A x - lambda x| < KNOWN |lambda| for the eigenvector x = v + i w, |x| = 1, of exponents_coupled. */
-static int is_known(const struct modal *h, const double *s, double complex lambda, const double *v, const double *w)
+/* Sets the part of exponent p that modes which drift follow: lambda^2 r_d = -sum over k of (K~_dk + lambda C~_dk) r_k. */
+static void follow_modes(struct modal *h, size_t p, double complex lambda)
 {
     const size_t m = h->modes;
-    double square = 0.0;
-    for (size_t k = 0; k < m; k++) {
-        const double *c = h->coupling + k * m;
-        const double complex place = v[k] + w[k] * I, rate = v[m + k] + w[m + k] * I;
-        const double complex up = s[k] * rate - lambda * place;
-        const double complex down = s[k] * place + tribo_dot(c, v + m, m) + tribo_dot(c, w + m, m) * I + lambda * rate;
-        square += creal(up * conj(up) + down * conj(down));
+    double *rr = h->rr + p * m, *ri = h->ri + p * m;
+    for (size_t d = 0; d < m; d++) {
+        const double *k = h->stiff + d * m, *c = h->coupling + d * m;
+        if (h->omega2[d] == 0.0) {
+            const double complex pull =
+                (tribo_dot(k, rr, m) - tribo_dot(k, ri, m) * I) + lambda * (tribo_dot(c, rr, m) - tribo_dot(c, ri, m) * I);
+            const double complex r = -pull / (lambda * lambda);
+            rr[d] = creal(r);
+            ri[d] = -cimag(r);
+        }
     }
-    return sqrt(square) < KNOWN * cabs(lambda);
+}
+
+/* Returns |A x - lambda x|/|lambda| of the eigenvector x = v + i w, |x| = 1, of a = A [size][size]. */
+static double eigen_error(const double *a, size_t size, double complex lambda, const double *v, const double *w)
+{
+    double square = 0.0;
+    for (size_t i = 0; i < size; i++) {
+        const double complex x = v[i] + w[i] * I;
+        const double complex off = tribo_dot(a + i * size, v, size) + tribo_dot(a + i * size, w, size) * I - lambda * x;
+        square += creal(off * conj(off));
+    }
+    return sqrt(square) / cabs(lambda);
+}
+
+/* Keeps exponent p of modes whose K~ is not symmetric: x = v + i w the right, y - i z, times half, the left eigenvector, by modes at
+ * [count], divided by s. */
+static void keep_following(struct modal *h, size_t p, size_t count, const size_t *at, const double *s, double complex lambda,
+                           double half, const double *const *vector)
+{
+    h->lr[p] = creal(lambda);
+    h->li[p] = cimag(lambda);
+    for (size_t i = 0; i < count; i++) {
+        const size_t k = at[i], ab = k * h->exponents + p, r = p * h->modes + k;
+        h->ar[ab] = half * s[i] * vector[2][i];
+        h->ai[ab] = -half * s[i] * vector[3][i];
+        h->br[ab] = half * vector[2][count + i];
+        h->bi[ab] = -half * vector[3][count + i];
+        h->rr[r] = vector[0][i] / (half * s[i]);
+        h->ri[r] = -vector[1][i] / (half * s[i]);
+    }
+    follow_modes(h, p, lambda);
+}
+
+/* Sets s = omega and a = A of x' = A x, x = (s eta, eta'), of the modes at [count]. */
+static void fill_first_order(const struct modal *h, size_t count, const size_t *at, double *s, double *a)
+{
+    const size_t size = 2 * count;
+    for (size_t i = 0; i < count; i++) {
+        s[i] = sqrt(fabs(h->omega2[at[i]]));
+        a[i * size + count + i] = s[i];
+    }
+    for (size_t i = 0; i < count; i++) {
+        double *down = a + (count + i) * size;
+        down[i] = h->stiff ? 0.0 : -s[i];
+        for (size_t j = 0; j < count; j++) {
+            const size_t kl = at[i] * h->modes + at[j];
+            down[j] -= h->stiff ? h->stiff[kl] / s[j] : 0.0;
+            down[count + j] = -h->coupling[kl];
+        }
+    }
+}
+
+/* Eigenvalues re + i im [2 count] of `first`, A of x' = A x, x = (s eta, eta'), of the modes at [count]; right eigenvectors, and the
+ * inverse of their matrix, in rows. */
+struct coupled {
+    size_t count;
+    const size_t *at;
+    const double *s, *first, *re, *im, *zero, *x, *inverse;
+};
+
+/* Keeps all exponents. Returns a status. */
+static int keep_exponents(struct modal_build *b, const struct coupled *c)
+{
+    struct modal *h = b->h;
+    const size_t m = h->modes, size = 2 * c->count;
+    const double *s = c->s, *re = c->re, *im = c->im;
+    for (size_t i = 0, p = 0; i < size; i++) {
+        const double complex lambda = re[i] + im[i] * I;
+        const double half = im[i] > 0.0 ? 0.5 : 1.0, *v = c->x + i * size, *w = im[i] > 0.0 ? v + size : c->zero;
+        const double *y = c->inverse + i * size, *z = im[i] > 0.0 ? y + size : c->zero;
+        const double *const vector[] = {v, w, y, z};
+        if (im[i] < 0.0) {
+            continue;
+        }
+        if (!(eigen_error(c->first, size, lambda, v, w) < KNOWN)) {
+            return exponents_unsupported(b, "damping couples modes of too different frequencies");
+        }
+        if (h->stiff && half * sqrt(tribo_dot(y, y, size) + tribo_dot(z, z, size)) > CONDITION) {
+            return exponents_unsupported(b, "two modes have nearly the same exponent and shape, as at the border of flutter");
+        }
+        if (h->stiff) {
+            keep_following(h, p, c->count, c->at, s, lambda, half, vector);
+        }
+        /* x = (v + i w) z + conjugate = 2 (v Re z - w Im z) */
+        for (size_t k = 0; !h->stiff && k < m; k++) {
+            keep_coupled(h, p, k, lambda, half * (y[m + k] - z[m + k] * I), (v[k] + w[k] * I) / (half * s[k]));
+        }
+        p++;
+    }
+    return TRIBO_OK;
 }
 
 /* All eigenvectors by QR, the left ones as the inverse of the right ones. */
 static int exponents_coupled(struct modal_build *b)
 {
     struct modal *h = b->h;
-    const size_t m = h->modes, size = 2 * m;
-    double *a = tribo_modal_take(&b->scratch, 3 * size * size + 7 * m, sizeof *a);
-    int *pivot = tribo_modal_take(&b->scratch, size, sizeof *pivot);
-    if (!a || !pivot) {
-        return TRIBO_ERR_MEMORY;
-    }
-    double *x = a + size * size, *inverse = x + size * size, *s = inverse + size * size, *re = s + m, *im = re + size;
-    const double *zero = im + size;
-    size_t exponents = 0;
-    for (size_t k = 0; k < m; k++) {
-        if (!(h->omega2[k] > 0.0)) {
+    const size_t m = h->modes;
+    size_t *at = tribo_modal_take(&b->scratch, m, sizeof *at), count = 0, exponents = 0;
+    for (size_t k = 0; at && k < m; k++) {
+        at[count] = k;
+        count += !h->stiff || h->omega2[k] != 0.0;
+        if (!h->stiff && !(h->omega2[k] > 0.0)) {
             return exponents_unsupported(b, "coupled damping, and a mode without stiffness");
         }
-        s[k] = sqrt(h->omega2[k]);
-        /* a = A of x' = A x, x = (s eta, eta'), s = omega */
-        a[k * size + m + k] = s[k];
-        a[(m + k) * size + k] = -s[k];
-        tribo_add(a + (m + k) * size + m, -1.0, h->coupling + k * m, m);
     }
+    const size_t size = 2 * count;
+    double *first = tribo_modal_take(&b->scratch, 4 * size * size + 7 * m, sizeof *first);
+    int *pivot = tribo_modal_take(&b->scratch, size, sizeof *pivot);
+    if (!at || !first || !pivot) {
+        return TRIBO_ERR_MEMORY;
+    }
+    double *a = first + size * size, *x = a + size * size, *inverse = x + size * size, *s = inverse + size * size, *re = s + m,
+           *im = re + size;
+    const double *zero = im + size;
+    fill_first_order(h, count, at, s, first);
+    memcpy(a, first, size * size * sizeof *a);
     const int status = tribo_eigen(a, size, re, im, x);
     if (status == TRIBO_ERR_NO_CONVERGENCE || status == TRIBO_ERR_NOT_FINITE) {
         return tribo_error(b->sys->message, status, "method exact: exponents of %zu mode%s that damping couples: %s", m,
@@ -139,24 +236,11 @@ static int exponents_coupled(struct modal_build *b)
     if (status || !reserve_exponents(h, exponents, m)) {
         return TRIBO_ERR_MEMORY;
     }
-    if (!(tribo_lu_create(a, size, pivot) >= ALIKE)) {
+    if (size > 0 && !(tribo_lu_create(a, size, pivot) >= ALIKE)) {
         return exponents_unsupported(b, "two modes have nearly the same exponent and shape");
     }
     tribo_lu_solve(a, size, pivot, inverse, size);
-    for (size_t i = 0, p = 0; i < size; i++) {
-        const double complex lambda = re[i] + im[i] * I;
-        const double half = im[i] > 0.0 ? 0.5 : 1.0, *v = x + i * size, *w = im[i] > 0.0 ? v + size : zero;
-        const double *y = inverse + i * size, *z = im[i] > 0.0 ? y + size : zero;
-        if (!(im[i] < 0.0) && !is_known(h, s, lambda, v, w)) {
-            return exponents_unsupported(b, "damping couples modes of too different frequencies");
-        }
-        /* x = (v + i w) z + conjugate = 2 (v Re z - w Im z) */
-        for (size_t k = 0; !(im[i] < 0.0) && k < m; k++) {
-            keep_coupled(h, p, k, lambda, half * (y[m + k] - z[m + k] * I), (v[k] + w[k] * I) / (half * s[k]));
-        }
-        p += !(im[i] < 0.0);
-    }
-    return TRIBO_OK;
+    return keep_exponents(b, &(struct coupled){count, at, s, first, re, im, zero, x, inverse});
 }
 
 /* ------------------------------------------------------------------------------------------------- weakly coupled modes
@@ -334,6 +418,6 @@ int tribo_modal_exponents(struct modal_build *b)
         return exponents_decoupled(b);
     }
     int found = 0;
-    const int status = is_weak(b->h) ? exponents_weak(b, &found) : TRIBO_OK;
+    const int status = !b->h->stiff && is_weak(b->h) ? exponents_weak(b, &found) : TRIBO_OK;
     return status || found ? status : exponents_coupled(b);
 }

@@ -44,13 +44,14 @@ static void drop_helds(struct exact *x)
 static int find_held(struct exact *x, int powers, struct modal **found)
 {
     const struct stick_slip *m = &x->events.stick_slip;
+    const signed char *key = tribo_follow_key(m, x->held.room);
     uint64_t hash = 0, word;
     for (size_t i = 0; i < m->constant.contacts; i += sizeof word) {
-        memcpy(&word, m->state.key + i, sizeof word);
+        memcpy(&word, key + i, sizeof word);
         hash = (hash ^ word) * UINT64_C(0x9e3779b97f4a7c15);
     }
     struct modal **const list = &x->held.last[(hash >> 32) % TRIBO_HELD_LISTS], **at = list;
-    while (*at && (((*at)->powers != NULL) != powers || memcmp((*at)->key, m->state.key, m->constant.contacts) != 0)) {
+    while (*at && (((*at)->powers != NULL) != powers || memcmp((*at)->key, key, m->constant.contacts) != 0)) {
         at = &(*at)->next;
     }
     struct modal *h = *at, *const known = h;
@@ -58,7 +59,7 @@ static int find_held(struct exact *x, int powers, struct modal **found)
         drop_helds(x);
     }
     if (!known || !h->forced) {
-        const int status = tribo_modal_create(&h, x->sys, m->state.slip, m->state.holds, powers, powers ? x->held.like : NULL);
+        const int status = tribo_modal_create(&h, x->sys, m->state.slip, key, powers, powers ? x->held.like : NULL);
         if (status) {
             return status;
         }
@@ -77,7 +78,7 @@ static int find_held(struct exact *x, int powers, struct modal **found)
 /* Returns 1 if no base moves at a constant speed, no limit varies, and the structure is large enough. */
 static int takes_powers(const tribo_system *sys)
 {
-    int plain = !sys->loads.limits && sys->ndof >= POWERS_LEAST && sys->ncontact >= POWERS_CONTACTS;
+    int plain = !tribo_system_limits_vary(sys) && sys->ndof >= POWERS_LEAST && sys->ncontact >= POWERS_CONTACTS;
     for (size_t k = 0; plain && k < sys->loads.harmonics; k++) {
         const struct harmonic *w = &sys->loads.harmonic[k];
         plain &= w->drives == DRIVES_LOAD || (w->drives == DRIVES_BASE && w->omega != 0.0);
@@ -128,8 +129,8 @@ static void method_exact_look(void *own, double tau, size_t guards, struct guard
         } else {
             g->middle = (struct sample){g->offset, 0.0, 0.0};
         }
-        if (x->sys->loads.limits && g->limit != 0.0) {
-            /* Adds the part of the limit by harmonics. */
+        if (g->limit != 0.0) {
+            /* Adds the part of the limit by harmonics, or the limit that follows. */
             const struct sample limit = tribo_modal_motion_limit(x, g->contact);
             g->middle.g += g->limit * limit.g;
             g->middle.d += g->limit * limit.d;
@@ -155,6 +156,13 @@ static double method_exact_bound(void *own, double tau)
         const struct course *c = g->output;
         g->size = fabs(g->offset) + (c ? c->size : 0.0);
         g->bend = c ? c->bend : 0.0;
+        double mu;
+        const struct course *follows = g->limit != 0.0 ? tribo_modal_limit_course(x, g->contact, &mu) : NULL;
+        if (follows) {
+            g->size += fabs(g->limit) * mu * follows->size;
+            g->bend += fabs(g->limit) * mu * follows->bend;
+            continue;
+        }
         g->size += g->limit != 0.0 ? fabs(g->limit) * x->events.stick_slip.constant.swing[g->contact] : 0.0;
         for (size_t s = 0; g->limit != 0.0 && s < x->sys->loads.harmonics; s++) {
             const struct harmonic *w = &x->sys->loads.harmonic[s];
@@ -170,13 +178,28 @@ static struct watch watch_of(const struct exact *x, size_t i, struct course *c)
 {
     const double swing = x->events.stick_slip.constant.swing[i];
     const double steady = swing > 0.0 ? x->sys->loads.given_limit[i] : x->events.stick_slip.state.limit[i];
-    return (struct watch){
-        .output = c, .size = c ? c->size : 0.0, .constant = steady, .least = steady - swing, .varies = swing > 0.0};
+    double mu;
+    const int follows = tribo_modal_limit_course(x, i, &mu) != NULL;
+    return (struct watch){.output = c,
+                          .size = c ? c->size : 0.0,
+                          .constant = follows ? 0.0 : steady,
+                          .least = follows ? -HUGE_VAL : steady - swing,
+                          .varies = swing > 0.0 || follows};
+}
+
+/* Returns N of normal k, < 0 if it is apart, without rounding against the decision. */
+static double first_load(const struct exact *x, size_t k, const double *y)
+{
+    const struct normal *n = &x->sys->normals.normal[k];
+    const double load = n->stiffness * (tribo_matrix_row_dot(&x->sys->direction, n->row, y) - n->gap);
+    return n->pressed ? greater(load, 0.0) : lesser(load, 0.0);
 }
 
 static int method_exact_begin(void *own, double t, const double *y, double *reach)
 {
     struct exact *x = own;
+    const struct stick_slip *m = &x->events.stick_slip;
+    tribo_stick_slip_press(m, x->sys);
     const int status = choose_held(x);
     const struct forced *h = x->h;
     if (status) {
@@ -187,17 +210,17 @@ static int method_exact_begin(void *own, double t, const double *y, double *reac
     }
     x->events.search.guards = 0;
     for (size_t k = 0; k < h->outputs; k++) {
-        struct course *c = &x->course[k];
-        const struct stick_slip *m = &x->events.stick_slip;
-        const int of_velocity = k < h->sliding;
-        c->output = &h->output[k];
-        const size_t i = c->output->contact;
-        const double value = of_velocity ? tribo_stick_slip_first_velocity(m, x->sys, i, y) : m->state.force[i];
-        tribo_course_begin(x, c, of_velocity, value);
-        const struct watch w = watch_of(x, i, c);
-        tribo_events_guard_contact(&x->events, i, &w);
+        const size_t i = h->output[k].contact;
+        const double value = k >= h->holding  ? first_load(x, k - h->holding, y)
+                             : k < h->sliding ? tribo_stick_slip_first_velocity(m, x->sys, i, y)
+                                              : m->state.force[i];
+        tribo_course_begin(x, k, value);
     }
-    for (size_t i = 0; x->sys->loads.limits && i < x->sys->ncontact; i++) {
+    for (size_t k = 0; k < h->holding; k++) {
+        const struct watch w = watch_of(x, h->output[k].contact, &x->course[k]);
+        tribo_events_guard_contact(&x->events, h->output[k].contact, &w);
+    }
+    for (size_t i = 0; tribo_system_limits_vary(x->sys) && i < x->sys->ncontact; i++) {
         const struct watch w = watch_of(x, i, NULL);
         tribo_events_guard_limit(&x->events, i, &w);
     }
@@ -223,6 +246,7 @@ static void method_exact_destroy(tribo_driver *drv)
         drop_helds(x);
         tribo_events_free(&x->events);
         tribo_signal_free(&x->velocity);
+        free(x->held.room);
         free(x->lot);
         free(x);
     }
@@ -241,12 +265,12 @@ static int check_system(const tribo_system *sys)
         return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
                            "%s follow a table, and method exact takes harmonic ones only: take event or auto", kind[drives]);
     }
-    if (sys->normals.count) {
-        return tribo_error(
-            sys->message, TRIBO_ERR_UNSUPPORTED,
-            "the limit of contact %zu follows its normal load, for which method exact has no closed form: take event "
-            "or auto",
-            sys->normals.follower[0].contact);
+    const size_t drops = sys->normals.count ? tribo_system_first_dropping(sys, 0) : sys->ncontact;
+    if (drops < sys->ncontact) {
+        return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                           "contact %zu has a static limit, which method exact does not take beside limits that follow normal "
+                           "loads, as of contact %zu: take event or auto",
+                           drops, sys->normals.follower[0].contact);
     }
     const size_t i = tribo_system_first_dropping(sys, 1);
     return i == sys->ncontact ? TRIBO_OK
@@ -268,6 +292,10 @@ static int method_exact_create(tribo_driver *drv)
         return tribo_error(drv->sys->message, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     x->sys = drv->sys;
+    x->held.room = tribo_zeros(drv->sys->ncontact + sizeof(uint64_t), 1);
+    if (!x->held.room) {
+        return tribo_error(drv->sys->message, TRIBO_ERR_MEMORY, "out of memory for method exact");
+    }
     return tribo_events_create(&x->events, drv, &motion_closed, x);
 }
 

@@ -18,6 +18,10 @@
 /* Number of terms computed side by side. The number of terms of a structure is a multiple of TRIBO_TERMS. */
 enum { TRIBO_TERMS = 4 };
 
+/* What a contact does in a structure. At rest without force of its own; at rest and holds; a normal that is apart, or pressed; slides, or
+ * is tied at its limit, which follows the motion, with a force > 0 (BACK) or < 0 (FORTH). */
+enum { KEY_FREE, KEY_RESTS, KEY_HOLDS, KEY_APART, KEY_PRESSED, KEY_BACK, KEY_FORTH, KEY_TIED_BACK, KEY_TIED_FORTH };
+
 /* Arrays that are freed together. */
 struct modal_store {
     struct modal_block *last;
@@ -43,7 +47,7 @@ struct modal {
     size_t run;               /* the caller's: of coordinates, the run in which modes took their place */
     struct forced *forced;    /* the structure under the loads; NULL: not created since the loads changed */
     size_t n;                 /* degrees of freedom */
-    signed char *key;         /* [contacts] 1: at rest; 2: at rest and holds; 0: else */
+    signed char *key;         /* [contacts] KEY_ */
     size_t rests, springs;    /* numbers of rigid contacts, and of others, that hold */
     size_t *rest;             /* [rests + springs] these, the rigid ones first */
     struct constraints ties;  /* constraints between degrees of freedom by the rigid contacts that hold */
@@ -54,7 +58,9 @@ struct modal {
     double *omega2, *damping;
     struct modal_powers *powers; /* NULL: Phi are modes; else there are no exponents, and omega2 and damping are 0 */
     double *coupling;            /* [modes][modes] C~; NULL if C~ is diagonal, or without modes */
-    double *on;                  /* [contacts][modes] contact that holds: force per eta; else: velocity per eta' */
+    double *stiff, *give; /* [modes][modes] K~ where contacts slide at limits that follow the motion; its inverse over the modes
+                                    with omega2 != 0; NULL: diag(omega2) */
+    double *on;           /* [contacts][modes] contact that holds: force per eta; normal: N per eta; else: velocity per eta' */
     double *by_u; /* [contacts][modes] rigid contact that holds: force per eta'; else 0; NULL without damping or such contacts */
 
     size_t exponents;
@@ -64,12 +70,12 @@ struct modal {
     size_t *owner;             /* [exponents] mode of an exponent: eta = sum of Re z; NULL if coupled */
 };
 
-/* Velocity of a sliding contact or force of a held contact: Re(sum c_p z_p) + constant + ramp t. First the terms z_p of the
- * exponents, then the terms of the harmonics: z = e^{i Omega t}, c = response. */
+/* Velocity of a sliding contact, force of a held contact, or N of a normal: Re(sum c_p z_p) + constant + ramp t, of N also + square t^2.
+ * First the terms z_p of the exponents, then the terms of the harmonics: z = e^{i Omega t}, c = response. */
 struct output {
     size_t contact;
     double *cr, *ci, *size; /* [terms] c_p, |c_p| */
-    const double *on_rate;  /* [shapes] held: force per eta, ramp per eta'; sliding: velocity per eta', ramp per eta'' */
+    const double *on_rate;  /* [shapes] held, normal: per eta, ramp per eta'; sliding: velocity per eta', ramp per eta'' */
 };
 
 /* Forcing of the modes: a harmonic of the system; or a harmonic of the limit of one contact that does not hold, for the force
@@ -94,15 +100,18 @@ struct forced {
     size_t harmonics;        /* the harmonics of the system, in order, then harmonics of limits */
     struct forcing *forcing; /* [harmonics] */
     double complex *g, *x;   /* [harmonics][modes] forcing of eta; [harmonics][shapes] response eta */
-    double *constant; /* [modes] constant forcing: by constant loads, by damping of y0, by damping of eta' = ramp/omega^2 */
-    double *ramp;     /* [modes] rate of the forcing by bases of constant speed */
+    double
+        *constant; /* [modes] constant forcing: by constant loads, by damping of y0, by damping of eta' = ramp/omega^2; with K~:
+                         eta' = K~^-1 ramp */
+    double *ramp;  /* [modes] rate of the forcing by bases of constant speed */
     unsigned char *resonant; /* [harmonics][modes] 1: the response is not in x, since the divisor is close to 0; NULL: none */
     double resonates;        /* largest Omega of these */
 
     size_t terms;            /* exponents, harmonics, and zeros up to a multiple of TRIBO_TERMS; not 0 */
     double *lr, *li, *size;  /* [terms] lambda (harmonics: i Omega); |lambda| */
     double *sixth;           /* [terms] |lambda|^6 */
-    size_t outputs, sliding; /* output [0, sliding): velocities; [sliding, outputs): forces of contacts that hold */
+    size_t outputs, sliding; /* output [0, sliding): velocities; [sliding, holding): forces of contacts that hold */
+    size_t holding;          /* output [holding, outputs): N of the normals, in their order */
     struct output *output;
     double fastest;       /* largest |lambda| of exponents; without modes a bound of these and of Omega */
     double quickest;      /* largest |lambda| of exponents and harmonics */
@@ -123,15 +132,20 @@ static inline int tribo_modal_drifts(const struct modal *h, size_t k)
 }
 
 /* Creates *modal, if it is NULL, the structure with all contacts at rest, slip[i] = 0, held; and forced, if it is NULL, by the
- * loads. powers = 1: without modes, which takes a small part of the time, where no base moves at a constant speed and no limit
- * varies; like: NULL, or such a structure without rigid contacts that hold, for its coordinates. holds[i] = 1: contact i holds
- * (set H of stick_slip.h); other contacts at rest depend on H. Returns a status, message on the system's context; after an error
+ * loads. key: of tribo_follow_key. powers = 1: without modes, which takes a small part of the time, where no base moves at a constant speed and no limit
+ * varies; like: NULL, or such a structure without rigid contacts that hold, for its coordinates. KEY_HOLDS: set H of stick_slip.h;
+ * other contacts at rest depend on H. Returns a status, message on the system's context; after an error
  * *modal and forced stay NULL. Every user of the structure besides the first one adds 1 to users. tribo_modal_free frees h->forced,
  * too, and takes NULL; tribo_forced_free frees h->forced, which may be NULL. */
-int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const unsigned char *holds, int powers,
+int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const signed char *key, int powers,
                        const struct modal *like);
 void tribo_modal_free(struct modal *h);
 void tribo_forced_free(struct modal *h);
+
+/* follow.c. side: sign of the force of a contact with this key that slides, or is tied, at a limit that follows; else 0. slide: force
+ * [ncontact][columns] = forces of such contacts by way [ncontact][columns] = J q. */
+double tribo_follow_side(signed char key);
+void tribo_follow_slide(const tribo_system *sys, const signed char *key, size_t columns, const double *way, double *force);
 
 /* Returns c of the part Re(c z) of term p in place'eta + speed'eta', place, speed [shapes] or NULL. */
 double complex tribo_forced_weight(const struct forced *f, size_t p, const double *place, const double *speed);

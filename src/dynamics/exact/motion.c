@@ -34,6 +34,10 @@ static int motion_reserve(struct exact *x)
 void tribo_modal_settle(const struct modal *h, size_t columns, const double *force, double *eta, double *rate, double *vel,
                         double *acc)
 {
+    if (h->stiff) {
+        tribo_follow_settle(h, columns, force, eta, vel, acc);
+        return;
+    }
     for (size_t k = 0, at = 0; k < h->modes; k++) {
         const double stiff = h->omega2[k], damping = h->damping[k];
         const int drifts = tribo_modal_drifts(h, k);
@@ -119,9 +123,26 @@ void tribo_modal_motion_go(struct exact *x, double tau)
     }
 }
 
-struct sample tribo_modal_motion_limit(const struct exact *x, size_t i)
+struct course *tribo_modal_limit_course(const struct exact *x, size_t i, double *mu)
+{
+    const struct normals *s = &x->sys->normals;
+    const struct follower *f = tribo_normals_follower(x->sys, i);
+    const struct normal *n = f ? &s->normal[f->normal] : tribo_normals_at(x->sys, i);
+    *mu = f ? f->mu : 1.0;
+    return n ? &x->course[x->h->holding + (size_t)(n - s->normal)] : NULL;
+}
+
+struct sample tribo_modal_motion_limit(struct exact *x, size_t i)
 {
     struct sample sum = {0.0, 0.0, 0.0};
+    double mu;
+    struct course *load = tribo_modal_limit_course(x, i, &mu);
+    if (load) {
+        if (load->tau != x->tau) {
+            tribo_course_look(x, load);
+        }
+        return (struct sample){mu * load->at.g, mu * load->at.d, mu * load->at.e};
+    }
     for (size_t s = 0; s < x->sys->loads.harmonics; s++) {
         const struct harmonic *w = &x->sys->loads.harmonic[s];
         if (w->drives == DRIVES_LIMIT) {
@@ -204,7 +225,11 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
     }
     for (size_t k = 0; k < sys->compliance.count; k++) {
         const size_t i = sys->compliance.contact[k];
-        to[2 * n + k] += h->modal->key[i] == 2 ? tribo_dot(h->on + i * h->shapes, x->place, h->shapes) : 0.0;
+        const struct follower *f = tribo_normals_follower(sys, i);
+        const double side = f ? f->mu * tribo_follow_side(h->modal->key[i]) : 0.0;
+        const size_t row = side != 0.0 ? sys->normals.normal[f->normal].row : i;
+        const double by = h->modal->key[i] == KEY_HOLDS ? 1.0 : side;
+        to[2 * n + k] += by != 0.0 ? by * tribo_dot(h->on + row * h->shapes, x->place, h->shapes) : 0.0;
     }
     to[tribo_system_energy(sys)] += tribo_modal_motion_dissipated(x, tau);
 }
@@ -232,13 +257,14 @@ static void start_harmonics(struct exact *x)
 }
 
 /* force [modes] = the constant right-hand side of the modes: constant loads, steady forces of sliding contacts, and, of
- * contacts that hold, -(J q + G f - displacements of bases) times the force per eta. K q is not added: for a rigid-body
+ * contacts that hold, -(J q + G f - displacements of bases) times the force per eta, and of pressed normals by gaps; from place =
+ * eta and rate = eta' where limits follow the motion. K q is not added: for a rigid-body
  * displacement q, K q would be rounding only. Sets x->steady: the forces of contacts without harmonics of limits. */
 static void find_constant_forces(struct exact *x, const double *y, double *force)
 {
     const struct forced *h = x->h;
     const tribo_system *sys = x->sys;
-    const int holds = h->outputs > h->sliding;
+    const int holds = h->holding > h->sliding;
     const size_t m = h->modal->modes;
     for (size_t i = 0; i < sys->ncontact; i++) {
         double limit = sys->loads.given_limit[i];
@@ -248,6 +274,10 @@ static void find_constant_forces(struct exact *x, const double *y, double *force
         }
         x->steady[i] =
             sys->loads.limits ? tribo_stick_slip_follows(&x->events.stick_slip, i) * limit : x->events.stick_slip.state.force[i];
+    }
+    if (h->modal->stiff) {
+        tribo_follow_forces(x, y, force);
+        return;
     }
     memcpy(force, h->constant, m * sizeof *force);
     if (holds) {
@@ -262,7 +292,10 @@ static void find_constant_forces(struct exact *x, const double *y, double *force
     for (size_t o = 0; o < h->outputs; o++) {
         const struct output *out = &h->output[o];
         const size_t i = out->contact;
-        const double push = o < h->sliding ? x->steady[i] : -x->way[i] - tribo_matrix_row_dot(&sys->direction, i, y);
+        const double pressed = o >= h->holding && h->modal->key[i] == KEY_PRESSED ? 1.0 : 0.0;
+        const double push = o >= h->holding  ? pressed * sys->normals.normal[o - h->holding].gap
+                            : o < h->sliding ? x->steady[i]
+                                             : -x->way[i] - tribo_matrix_row_dot(&sys->direction, i, y);
         tribo_add(force, push, out->on_rate, m);
     }
 }
@@ -277,7 +310,7 @@ static void split_amplitudes(struct exact *x, const double *force)
     x->runs = h->steady;
     for (size_t k = 0; k < own->modes; k++) {
         if (h->steady && own->omega2[k] != 0.0) {
-            x->vel[k] += h->ramp[k] / own->omega2[k];
+            x->vel[k] += own->stiff ? h->constant[k] : h->ramp[k] / own->omega2[k];
             x->rate[k] -= x->vel[k];
         }
         for (size_t s = 0; s < h->harmonics; s++) {
@@ -322,12 +355,12 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
     }
     x->t0 = t;
     start_harmonics(x);
-    find_constant_forces(x, y, x->work);
     for (size_t k = 0; k < own->modes; k++) {
         const size_t begin = h->span[2 * k], moved = h->span[2 * k + 1] - begin;
         x->place[k] = tribo_dot(own->psi + k * n + begin, y + begin, moved);
         x->rate[k] = tribo_dot(own->psi + k * n + begin, y + n + begin, moved);
     }
+    find_constant_forces(x, y, x->work);
     if (own->powers) {
         x->runs = 0;
         x->tau = 0.0;
@@ -344,6 +377,9 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
     }
     split_amplitudes(x, x->work);
     tribo_modal_split(own, 1, x->place, x->rate, x->z.re, x->z.im);
+    if (own->stiff) {
+        tribo_follow_drift(own, 1, x->z.re, x->z.im, x->drift);
+    }
     /* w = z at t0; resonances change only w' and w'' there. */
     tribo_modal_terms_rest(x);
     if (h->resonant) {

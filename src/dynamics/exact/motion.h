@@ -9,11 +9,11 @@
 /* An output in a phase. */
 struct course {
     const struct output *output;
-    double start, ramp; /* the linear part is start + ramp tau */
-    double size, bend;  /* bounds of |output| and of the sixth derivative */
-    double tau;         /* time of the last look */
-    double *power;      /* [TRIBO_POWERS] coefficients of the powers of time, of the output; without modes */
-    struct sample at;   /* output at tau, with two derivatives */
+    double start, ramp, square; /* the polynomial part is start + ramp tau + square tau^2 */
+    double size, bend;          /* bounds of |output| and of the sixth derivative */
+    double tau;                 /* time of the last look */
+    double *power;              /* [TRIBO_POWERS] coefficients of the powers of time, of the output; without modes */
+    struct sample at;           /* output at tau, with two derivatives */
 };
 
 /* TRIBO_TERMS terms side by side, with two derivatives. */
@@ -40,6 +40,7 @@ struct held {
     size_t bytes;                         /* of all structures */
     size_t revision, structure;           /* of the system: when the forced structures were created; when the others were */
     size_t run;                           /* number of runs so far */
+    signed char *room;                    /* [ncontact] for keys, and zeros */
     const struct modal *powers;           /* coordinates of the last phase of the run; NULL: modes, or no phase */
     size_t phases;                        /* number of phases in a row that powers had before the last one */
 };
@@ -80,8 +81,10 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
 /* Goes to t0 + tau: sets w, w' and w'' of all terms. */
 void tribo_modal_motion_go(struct exact *x, double tau);
 
-/* Returns the part of limit i by harmonics, with two derivatives, at x->tau. */
-struct sample tribo_modal_motion_limit(const struct exact *x, size_t i);
+/* Returns the part of limit i by harmonics, or the whole limit that follows the motion, with two derivatives, at x->tau. limit_course:
+ * the course of its N, times *mu; NULL: it does not follow. */
+struct sample tribo_modal_motion_limit(struct exact *x, size_t i);
+struct course *tribo_modal_limit_course(const struct exact *x, size_t i, double *mu);
 
 /* Returns the energy dissipated by all contacts until t0 + tau, x and x->place being there. */
 double tribo_modal_motion_dissipated(struct exact *x, double tau);
@@ -96,6 +99,17 @@ void tribo_modal_settle(const struct modal *h, size_t columns, const double *for
                         double *acc);
 void tribo_modal_split(const struct modal *h, size_t columns, const double *eta, const double *rate, double *zr, double *zi);
 void tribo_modal_join(const struct modal *h, size_t columns, const double *zr, const double *zi, double *eta);
+
+/* follow.c. key: returns the keys, KEY_, of the contacts, in m or in key [ncontact]. forces: force [modes] = F with eta'' + C~ eta' + K~ eta = F + ramp tau + harmonics, from eta and eta' at t0 in
+ * place and rate. settle: as tribo_modal_settle; vel is 0. drift: subtracts from drift [modes][columns] of modes that drift eta' by z.
+ * pull [modes][columns] = constant forces on eta by perturbations v, of which eta are those of eta, and f [ncontact][columns] those of springs; work [ndof +
+ * 2 ncontact][columns]. */
+const signed char *tribo_follow_key(const struct stick_slip *m, signed char *key);
+void tribo_follow_forces(struct exact *x, const double *y, double *force);
+void tribo_follow_settle(const struct modal *h, size_t columns, const double *force, double *eta, double *vel, double *acc);
+void tribo_follow_drift(const struct modal *h, size_t columns, const double *zr, const double *zi, double *drift);
+void tribo_follow_pull(const struct modal *h, const tribo_system *sys, size_t columns, const double *v, double *f,
+                       const double *eta, double *pull, double *work);
 
 /* powers.c, without modes. start: from place = eta and rate = eta' at t0, and the constant forces [modes]. move: sets place to
  * the change of eta until tau, and rate to eta' at tau, or with changes = 1 to the change of eta'. carry: tribo_modal_transition
@@ -120,9 +134,9 @@ void tribo_modal_terms_rest(struct exact *x);
 void tribo_modal_terms_go(struct exact *x, double tau);
 double complex tribo_exp_1(double complex z);
 
-/* terms.c. begin: starts the course of c->output, value at t0; x is at t0; of_velocity 1: a velocity, 0: a force. look: sets
+/* terms.c. begin: starts the course of output o, value at t0; x is at t0. look: sets
  * c->at for x->tau. bound: sets c->size and c->bend from growth and growth6. */
-void tribo_course_begin(const struct exact *x, struct course *c, int of_velocity, double value);
+void tribo_course_begin(struct exact *x, size_t o, double value);
 void tribo_course_look(const struct exact *x, struct course *c);
 void tribo_course_bound(const struct exact *x, struct course *c);
 

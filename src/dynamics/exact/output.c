@@ -60,15 +60,16 @@ double complex tribo_forced_weight(const struct forced *f, size_t p, const doubl
     return sum;
 }
 
-/* Sets *w = the output of contact i, unless it is constant and `always` is 0: the velocity, of a contact at rest that does not
- * hold by bases only (on of modes is 0); or the force, with the rest of the harmonics in direct, `rests` apart; NULL: 0. Returns
+/* Sets *w = the output of contact i, unless it is constant and `always` is 0: N of a normal; the velocity, of a contact at rest that does
+ * not hold by bases only (on of modes is 0); or the force, with the rest of the harmonics in direct, `rests` apart; NULL: 0. Returns
  * the number of outputs, 0 or 1. */
 static size_t fill_output(const struct modal_build *b, size_t i, const double complex *direct, int always, struct output *w)
 {
     struct forced *f = b->forced;
     const size_t e = b->h->exponents;
-    const int holds = b->h->key[i] == 2;
-    const double *own = f->on + i * f->shapes, *by_u = holds && f->by_u ? f->by_u + i * f->shapes : NULL;
+    const int of_normal = b->h->key[i] == KEY_APART || b->h->key[i] == KEY_PRESSED;
+    const int holds = b->h->key[i] == KEY_HOLDS || of_normal;
+    const double *own = f->on + i * f->shapes, *by_u = holds && !of_normal && f->by_u ? f->by_u + i * f->shapes : NULL;
     int varies = tribo_largest(own, f->shapes) > 0.0 || (by_u && tribo_largest(by_u, f->shapes) > 0.0);
     for (size_t s = 0; direct && s < f->harmonics; s++) {
         varies |= direct[s * b->h->rests] != 0.0;
@@ -88,7 +89,7 @@ static size_t fill_output(const struct modal_build *b, size_t i, const double co
     return 1;
 }
 
-/* Sets the outputs: of contacts that slide, and where velocity, force or limit varies. */
+/* Sets the outputs: of contacts that slide, where velocity, force or limit varies, and of all normals. */
 int tribo_forced_outputs(struct modal_build *b)
 {
     struct forced *f = b->forced;
@@ -101,12 +102,17 @@ int tribo_forced_outputs(struct modal_build *b)
     for (int holds = 0; holds < 2; holds++) {
         f->sliding = f->outputs;
         for (size_t i = 0, p = 0; i < sys->ncontact; i++) {
-            if (holds == (h->key[i] == 2)) {
+            if (holds == (h->key[i] == KEY_HOLDS) && !tribo_normals_at(sys, i)) {
                 const double complex *own = p < h->rests && h->rest[p] == i ? b->direct + p++ : NULL;
-                const int always = h->key[i] == 0 || (holds && sys->loads.limits && tribo_system_swing(sys, i) > 0.0);
-                f->outputs += fill_output(b, i, own, always, &f->output[f->outputs]);
+                const int slides = h->key[i] == KEY_FREE || h->key[i] == KEY_BACK || h->key[i] == KEY_FORTH;
+                const int varies = tribo_normals_follower(sys, i) || (sys->loads.limits && tribo_system_swing(sys, i) > 0.0);
+                f->outputs += fill_output(b, i, own, slides || (holds && varies), &f->output[f->outputs]);
             }
         }
+    }
+    f->holding = f->outputs;
+    for (size_t k = 0; k < sys->normals.count; k++) {
+        f->outputs += fill_output(b, sys->normals.normal[k].row, NULL, 1, &f->output[f->outputs]);
     }
     return !f->store.failed;
 }

@@ -14,6 +14,9 @@
 /* |lambda - i Omega|/Omega down to which the response of coupled modes keeps enough digits. */
 #define UNDAMPED 1e-9
 
+/* The same where K~ is not symmetric. */
+#define NEAR_RESONANCE 1e-5
+
 /* ------------------------------------------------------------------------------------------------------- shapes by bases */
 
 /* Makes room for shapes: one for each part of a harmonic of bases, and one for bases of constant speed. Without such shapes phi,
@@ -46,18 +49,19 @@ static int make_shapes(struct modal_build *b)
 
 /* Sets shape k, velocities y with J_I y = b_I, b = base [ncontact], and Phi'M y = 0, and what it does at contacts and to the
  * modes: place, rate [modes], forcing of eta per displacement, and per velocity of the shape. By Maxwell and Betti, phi'(K y -
- * J'f') is the sum of b_i times the force of contact i per eta over the contacts that hold. */
+ * J'f') is the sum of b_i times the force of contact i per eta over the contacts that hold, if no force follows the motion. */
 static void follow_base(struct modal_build *b, size_t k, double omega, const double *base, double *place, double *rate)
 {
     struct forced *f = b->forced;
     const struct modal *h = b->h;
     const size_t n = h->n, m = h->modes, c = b->sys->ncontact;
     const double omega2 = omega * omega;
-    double *drag = tribo_modal_take(&b->scratch, n + 3 * c, sizeof *drag), *x = drag + n, *on = x + c, *by_u = on + c;
+    double *drag = tribo_modal_take(&b->scratch, n + 3 * c + m, sizeof *drag), *x = drag + n, *on = x + c, *by_u = on + c;
     double *y = f->phi + k * n;
     if (!drag) {
         return;
     }
+    b->push = by_u + c;
     for (size_t p = 0; p < h->rests; p++) {
         x[p] = base[h->rest[p]];
     }
@@ -72,8 +76,9 @@ static void follow_base(struct modal_build *b, size_t k, double omega, const dou
     tribo_matrix_multiply(&b->sys->mass, y, drag);
     tribo_matrix_multiply(&b->sys->direction, y, on);
     tribo_modal_effects(b, 1, y, drag, &omega2, base, on, f->by_u ? by_u : NULL);
+    memcpy(place, b->push, b->follows ? m * sizeof *place : 0);
     for (size_t i = 0; i < c; i++) {
-        tribo_add(place, h->key[i] == 2 ? -base[i] : 0.0, h->on + i * m, m);
+        tribo_add(place, h->key[i] == KEY_HOLDS && !b->follows ? -base[i] : 0.0, h->on + i * m, m);
         f->on[i * f->shapes + k] = on[i];
         if (f->by_u) {
             f->by_u[i * f->shapes + k] = by_u[i];
@@ -214,16 +219,17 @@ static int respond_together(struct modal_build *b)
         const double omega = f->forcing[s].omega;
         double complex *x = f->x + s * f->shapes;
         int known = 1;
-        if (omega == 0.0) {
+        if (omega == 0.0 || m == 0) {
             continue;
         }
         for (size_t p = 0; p < h->exponents; p++) {
-            known &= hypot(h->lr[p], fabs(h->li[p]) - fabs(omega)) > UNDAMPED * fabs(omega);
+            known &= hypot(h->lr[p], fabs(h->li[p]) - fabs(omega)) > (h->stiff ? NEAR_RESONANCE : UNDAMPED) * fabs(omega);
         }
         for (size_t k = 0; k < m; k++) {
             x[k] = f->g[s * m + k];
             for (size_t l = 0; l < m; l++) {
-                a[l * m + k] = (k == l ? h->omega2[k] - omega * omega : 0.0) + omega * h->coupling[k * m + l] * I;
+                const double stiff = h->stiff ? h->stiff[k * m + l] : k == l ? h->omega2[k] : 0.0;
+                a[l * m + k] = stiff - (k == l ? omega * omega : 0.0) + omega * h->coupling[k * m + l] * I;
             }
         }
         zgesv_(&rows, &one, a, &rows, pivot, x, &rows, &info);
@@ -250,7 +256,7 @@ int tribo_forced_respond(struct modal_build *b)
         const struct harmonic *w = &sys->loads.harmonic[k];
         f->forcing[k] = (struct forcing){w->omega, k, c};
         for (size_t i = 0; w->drives == DRIVES_LIMIT && w->omega != 0.0 && i < c; i++) {
-            if (h->key[i] != 2 && (w->cosine[i] != 0.0 || w->sine[i] != 0.0)) {
+            if (h->key[i] != KEY_HOLDS && (w->cosine[i] != 0.0 || w->sine[i] != 0.0)) {
                 f->forcing[f->harmonics++] = (struct forcing){w->omega, k, i};
             }
         }
@@ -268,7 +274,10 @@ int tribo_forced_respond(struct modal_build *b)
     }
     /* With bases of constant speed modes of omega != 0 have eta' = ramp/omega^2; damping of eta' is a constant force. Modes that
      * damping couples all have omega != 0. */
-    for (size_t k = 0; k < m; k++) {
+    if (h->stiff && !tribo_follow_ramps(b)) {
+        return 0;
+    }
+    for (size_t k = 0; k < m && !h->stiff; k++) {
         for (size_t s = 0; s < sys->loads.harmonics; s++) {
             f->constant[k] += f->forcing[s].omega == 0.0 ? creal(f->g[s * m + k]) : 0.0;
         }

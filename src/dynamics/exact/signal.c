@@ -86,10 +86,13 @@ int tribo_modal_motion_signal(void *own, const double *c, double tau, const doub
     tribo_multiply_add(m, n, 1, 1.0, h->phi, c, place);
     tribo_multiply_add(m, n, 1, 1.0, h->phi, c + n, speed);
     for (size_t k = 0; k < g->count; k++) {
-        const double *on = h->on + g->contact[k] * m;
-        const int holds = h->modal->key[g->contact[k]] == 2;
-        tribo_add(place, holds ? c[2 * n + k] : 0.0, on, m);
-        tribo_add(rate, holds ? c[f + k] : 0.0, on, m);
+        const size_t i = g->contact[k];
+        const struct follower *follower = tribo_normals_follower(x->sys, i);
+        const double side = follower ? follower->mu * tribo_follow_side(h->modal->key[i]) : 0.0;
+        const double by = h->modal->key[i] == KEY_HOLDS ? 1.0 : side;
+        const double *on = h->on + (side != 0.0 ? x->sys->normals.normal[follower->normal].row : i) * m;
+        tribo_add(place, by * c[2 * n + k], on, m);
+        tribo_add(rate, by * c[f + k], on, m);
     }
     to->tau = tau;
     add_weights(x, place, speed, to);

@@ -174,9 +174,9 @@ void tribo_course_look(const struct exact *x, struct course *c)
     }
     sum_terms(x->h->terms, c->output->cr, x->lot, sum);
     c->tau = x->tau;
-    c->at.g = total(sum) + (c->start + c->ramp * x->tau);
-    c->at.d = total(sum + T) + c->ramp;
-    c->at.e = total(sum + 2 * T);
+    c->at.g = total(sum) + (c->start + (c->ramp + c->square * x->tau) * x->tau);
+    c->at.d = total(sum + T) + (c->ramp + 2.0 * c->square * x->tau);
+    c->at.e = total(sum + 2 * T) + 2.0 * c->square;
 }
 
 void tribo_course_bound(const struct exact *x, struct course *c)
@@ -188,15 +188,19 @@ void tribo_course_bound(const struct exact *x, struct course *c)
         return;
     }
     sum_bounds(x->h->terms, c->output->size, x->growth, x->growth6, sum);
-    c->size = total(sum) + fabs(c->start) + fabs(c->ramp) * x->longest;
+    c->size = total(sum) + fabs(c->start) + (fabs(c->ramp) + fabs(c->square) * x->longest) * x->longest;
     c->bend = total(sum + T);
 }
 
-void tribo_course_begin(const struct exact *x, struct course *c, int of_velocity, double value)
+void tribo_course_begin(struct exact *x, size_t o, double value)
 {
-    const struct output *w = c->output;
+    const struct output *w = &x->h->output[o];
+    struct course *c = &x->course[o];
+    const int of_velocity = o < x->h->sliding, of_normal = o >= x->h->holding;
+    c->output = w;
     c->start = 0.0;
-    c->ramp = x->runs ? tribo_dot(w->on_rate, of_velocity ? x->acc : x->vel, x->h->shapes) : 0.0;
+    c->ramp = x->runs ? tribo_dot(w->on_rate, of_velocity ? x->acc : of_normal ? x->drift : x->vel, x->h->shapes) : 0.0;
+    c->square = x->runs && of_normal ? 0.5 * tribo_dot(w->on_rate, x->acc, x->h->shapes) : 0.0;
     tribo_course_look(x, c);
     if (x->h->modal->powers) {
         c->power[0] = value;

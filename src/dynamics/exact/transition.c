@@ -23,18 +23,24 @@ void tribo_modal_phase_release(void *phase)
     tribo_modal_free(phase);
 }
 
+/* f [ncontact][columns] += factor times the forces of springs in perturbations v. */
+static void spring_forces(const tribo_system *sys, size_t columns, double factor, const double *v, double *f)
+{
+    for (size_t k = 0; k < sys->compliance.count; k++) {
+        tribo_add(f + sys->compliance.contact[k] * columns, factor, v + (2 * sys->ndof + k) * columns, columns);
+    }
+}
+
 /* pull [modes][columns] = -sum of on (J q + G f) over the contacts that hold: constant forces on the modes. way [2 ncontact]
  * [columns] is workspace, zeros. */
 static void find_pull(const struct modal *h, const tribo_system *sys, size_t columns, const double *v, double *pull, double *way)
 {
     double *f = way + sys->ncontact * columns;
-    for (size_t k = 0; k < sys->compliance.count; k++) {
-        tribo_add(f + sys->compliance.contact[k] * columns, -1.0, v + (2 * sys->ndof + k) * columns, columns);
-    }
+    spring_forces(sys, columns, -1.0, v, f);
     tribo_compliance_give(sys, columns, f, way);
     tribo_matrix_add_columns(&sys->direction, -1.0, columns, v, way);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        memset(way + i * columns, 0, h->key[i] == 2 ? 0 : columns * sizeof *way);
+        memset(way + i * columns, 0, h->key[i] == KEY_HOLDS ? 0 : columns * sizeof *way);
     }
     tribo_multiply_transposed_add(sys->ncontact, h->modes, columns, h->on, way, pull);
 }
@@ -48,6 +54,9 @@ static void carry_modes(const struct modal *h, double tau, size_t columns, const
            *turn = wi + 2 * block;
     tribo_modal_settle(h, c, pull, eta, rate, vel, acc);
     tribo_modal_split(h, c, eta, rate, zr, zi);
+    if (h->stiff) {
+        tribo_follow_drift(h, c, zr, zi, rate);
+    }
     tribo_cos_sin_all(tau, h->exponents, h->li, turn, turn + 2 * m);
     for (size_t p = 0, at = 0; p < h->exponents; p++) {
         const double size = h->lr[p] != 0.0 ? exp(h->lr[p] * tau) : 1.0, re = size * turn[p], im = size * turn[2 * m + p];
@@ -81,14 +90,23 @@ int tribo_modal_transition(void *own, const void *phase, double tau, size_t colu
     }
     tribo_multiply_add(m, n, c, 1.0, h->psi, v, eta);
     tribo_multiply_add(m, n, c, 1.0, h->psi, v + block, rate);
-    find_pull(h, sys, c, v, pull, way);
+    if (h->stiff) {
+        spring_forces(sys, c, 1.0, v, way);
+        tribo_follow_pull(h, sys, c, v, way, eta, pull, work);
+    } else {
+        find_pull(h, sys, c, v, pull, way);
+    }
     (h->powers ? tribo_powers_carry : carry_modes)(h, tau, c, pull, eta, rate, work);
     memset(v + block, 0, block * sizeof *v);
     tribo_multiply_transposed_add(m, n, c, h->phi, eta, v);
     tribo_multiply_transposed_add(m, n, c, h->phi, rate, v + block);
     for (size_t k = 0; k < sys->compliance.count; k++) {
         const size_t i = sys->compliance.contact[k];
-        tribo_multiply_add(h->key[i] == 2, m, c, 1.0, h->on + i * m, eta, v + 2 * block + k * c);
+        const struct follower *f = tribo_normals_follower(sys, i);
+        const double side = f ? tribo_follow_side(h->key[i]) * f->mu : 0.0;
+        const size_t row = side != 0.0 ? sys->normals.normal[f->normal].row : i;
+        tribo_multiply_add(h->key[i] == KEY_HOLDS || side != 0.0, m, c, h->key[i] == KEY_HOLDS ? 1.0 : side, h->on + row * m, eta,
+                           v + 2 * block + k * c);
     }
     free(eta);
     return TRIBO_OK;
