@@ -274,8 +274,8 @@ TRIBO_API int tribo_system_accept(tribo_system *sys, double t, const double *y);
  * dydt   [dimension] out
  * dfdy   [dimension][dimension] out   derivative of dydt[i] by y[j] in row i
  * dfdt   [dimension] out   partial derivative by t, or NULL
- * Return TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_UNSUPPORTED (no mass, or no accelerations; Jacobian: limits that
- * follow the motion), TRIBO_ERR_MEMORY (Jacobian), and what tribo_balance returns. */
+ * Return TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_UNSUPPORTED (no mass, or no accelerations; Jacobian: static
+ * limits beside limits that follow the motion), TRIBO_ERR_MEMORY (Jacobian), and what tribo_balance returns. */
 TRIBO_API int tribo_system_derivative(tribo_system *sys, double t, const double *y, double *dydt);
 TRIBO_API int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *dfdy, double *dfdt);
 
@@ -411,7 +411,7 @@ TRIBO_API int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(const tri
  * y        [dimension] in/out   in: a guess, e.g. zeros; out: the state, with energy 0; unchanged on error
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_STEP (a period below the resolution of t),
  * TRIBO_ERR_RANGE (a load or base motion without this period), TRIBO_ERR_UNSUPPORTED (other methods; tables; static limits
- * together with elastic contacts), TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
+ * together with degrees of freedom without mass), TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
 TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y);
 
 /* Finds a cycle: a periodic motion, and its period, of a system in which no load, base motion or limit depends on time (constant

@@ -118,7 +118,7 @@ static void add_transposed(const struct matrix *a, double factor, const double *
 
 /* Lists the crossings of static limits that drop at once, at tau into the phase: by the guard that ended the phase, and of other
  * contacts at the same time. Forces that do not rise only touch their limits. Sets row = df_i/dstate: f_i = e'J (-AK q - AC q'),
- * e = -R_HH^-1 unit_i. Returns a status. */
+ * e = -R_HH^-1 unit_i, with the forces of normals. Returns a status. */
 static int find_drops(struct variation *x, double tau)
 {
     struct events *e = x->to->events;
@@ -143,6 +143,20 @@ static int find_drops(struct variation *x, double tau)
         status = tribo_stick_slip_balance(m, x->a, x->f);
         add_transposed(&x->sys->direction, 1.0, x->f, x->change);
         add_transposed(&x->sys->stiffness, -1.0, x->change, row);
+        for (size_t j = 0; j < x->sys->normals.count; j++) {
+            const struct normal *normal = &x->sys->normals.normal[j];
+            double force = 0.0; /* by x->change, less the limit that follows */
+            for (size_t c = 0; m->state.pressed[j] && c < x->sys->ncontact; c++) {
+                const struct follower *f = tribo_normals_follower(x->sys, c);
+                const double mu = f && f->normal == j ? f->mu : 0.0;
+                const double part = c == normal->row ? 1.0 : tribo_slides(m->state.slip[c]) ? m->state.slip[c] * mu : 0.0;
+                for (size_t d = 0; part != 0.0 && d < x->sys->ndof; d++) {
+                    force -= part * x->change[d] * tribo_matrix_get(&x->sys->response, d, c);
+                }
+                force += c == i ? g->side * m->limits.ratio[i] * mu : 0.0;
+            }
+            tribo_matrix_add_row(&x->sys->direction, normal->row, force * normal->stiffness, row);
+        }
         add_transposed(&x->sys->damping, -1.0, x->change, row + x->sys->ndof);
         for (size_t l = 0; l < n; l++) {
             row[l] /= g->side * g->middle.d;

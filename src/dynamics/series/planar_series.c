@@ -429,20 +429,6 @@ void tribo_planar_series_errors(struct event *e)
     }
 }
 
-/* The radius of convergence of 1/|x|, by its last coefficients; overwrites square. */
-static double inverse_reaches(const struct planar_line *l, size_t last)
-{
-    double *inverse = l->square, radius = HUGE_VAL;
-    inverse[0] = 1.0 / l->speed[0];
-    for (size_t k = 1; k <= last; k++) {
-        inverse[k] = -product_of(l->speed, inverse, k, 1, k + 1) / l->speed[0];
-        if (k + 2 > last && inverse[k] != 0.0) {
-            radius = lesser(radius, pow(fabs(inverse[k] * l->speed[0]), -1.0 / (double)k));
-        }
-    }
-    return radius;
-}
-
 double tribo_planar_series_shorten(const struct event *e, double h)
 {
     const struct stick_slip *m = &e->events.stick_slip;
@@ -460,8 +446,13 @@ double tribo_planar_series_shorten(const struct event *e, double h)
         for (size_t k = last + 1; k-- > 0;) {
             sum = sum * h + fabs(l->xn[k]) + fabs(l->xt[k]);
         }
-        if (e->events.sharp) {
-            h = lesser(h, WITHIN * inverse_reaches(l, last));
+        double *inverse = l->square; /* overwritten: the series of 1/|x|, times |x_0|, for its radius of convergence */
+        inverse[0] = 1.0;
+        for (size_t k = 1; e->events.sharp && k <= last; k++) {
+            inverse[k] = -product_of(l->speed, inverse, k, 1, k + 1) / l->speed[0];
+            if (k + 2 > last && inverse[k] != 0.0) {
+                h = lesser(h, WITHIN * pow(fabs(inverse[k]), -1.0 / (double)k));
+            }
         }
         if (!(off * p->brake * h / (double)(e->order + 1) <= m->plane->error[p->at] && sum <= FASTER * l->xn[0])) {
             h *= 0.8;

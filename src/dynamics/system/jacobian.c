@@ -28,11 +28,35 @@ static void jacobian_add_product(size_t rows, double factor, const double *a, co
     }
 }
 
+/* rates [ndof][stride] -= B_n k J_n, and df_dy [ncontact][stride] += (df/dlimit) mu k J_n, over the pressed normals: N = k (J_n q - gap)
+ * pushes the bodies, and the limits of its contacts follow it. At the point of the last tribo_balance_tangent. Returns a status. */
+static int jacobian_add_normals(tribo_system *sys, size_t stride, double *rates, double *df_dy)
+{
+    double *limit = sys->work.put_limit, *force = sys->work.dv_dt;
+    int status = TRIBO_OK;
+    for (size_t k = 0; !status && k < sys->normals.count; k++) {
+        const struct normal *n = &sys->normals.normal[k];
+        memset(limit, 0, sys->ncontact * sizeof *limit);
+        for (const struct follower *f = sys->normals.follower; f < sys->normals.follower + sys->normals.followers; f++) {
+            limit[f->contact] = limit[f->second] = f->normal == k ? f->mu * n->stiffness : limit[f->contact];
+        }
+        status = n->pressed ? tribo_limit_product(sys->contacts, limit, force) : TRIBO_OK;
+        for (size_t i = 0; !status && n->pressed && i < sys->ndof; i++) {
+            const double push = n->stiffness * tribo_matrix_get(&sys->response, i, n->row);
+            tribo_matrix_add_row(&sys->direction, n->row, -push, rates + i * stride);
+        }
+        for (size_t i = 0; !status && n->pressed && i < sys->ncontact; i++) {
+            tribo_matrix_add_row(&sys->direction, n->row, force[i], df_dy + i * stride);
+        }
+    }
+    return status;
+}
+
 /* Writes the rows of q' = u, of u' = load - AK q - AC u + B f, and of the energy, of rate -sum tally_i f_i v_i:
  *     df/dy = (df/da) J [-AK, -AC, 0] + (df/dv) [0, J, 0],
  *     df/dt = (df/dlimit) limit' - (df/dv) b' + (df/da) (J load' - b''); df_dt in: the first term.
- * Overwrites v, a, f and dv_dt of sys->work. */
-static void write_rows(tribo_system *sys, const struct tangents *d, double *dfdy, double *dfdt)
+ * Overwrites v, a, f and dv_dt of sys->work. Returns a status. */
+static int write_rows(tribo_system *sys, const struct tangents *d, double *dfdy, double *dfdt)
 {
     const size_t n = sys->ndof, m = sys->ncontact, size = 2 * n + 1;
     const struct matrix *b = &sys->response, *j = &sys->direction;
@@ -44,6 +68,10 @@ static void write_rows(tribo_system *sys, const struct tangents *d, double *dfdy
         if (sys->damping.rows) {
             tribo_matrix_add_row(&sys->damping, i, -1.0, rates + i * size + n);
         }
+    }
+    const int status = jacobian_add_normals(sys, size, rates, d->df_dy);
+    if (status) {
+        return status;
     }
     jacobian_add_product(m, 1.0, d->df_da, j, n, d->pull);
     tribo_multiply_add(m, n, size, 1.0, d->pull, rates, d->df_dy);
@@ -73,6 +101,7 @@ static void write_rows(tribo_system *sys, const struct tangents *d, double *dfdy
         tribo_matrix_multiply_add(b, 1.0, d->df_dt, dfdt + n);
         dfdt[2 * n] = tribo_dot(sys->work.v, d->df_dt, m) + tribo_dot(sys->work.f, dv_dt, m);
     }
+    return TRIBO_OK;
 }
 
 /* With u = q':  u' = load - AK q - AC u + B f,  f = f(v, a),  v = J u - b,  a = J (load - AK q - AC u) - b'. */
@@ -82,11 +111,13 @@ int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *
         return sys ? sys->status : TRIBO_ERR_NULL;
     }
     const size_t n = sys->ndof, m = sys->ncontact;
-    if (sys->normals.count) {
-        return sys->status = tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
-                                         "the limit of contact %zu follows its normal load, of which the Jacobian lacks the "
-                                         "derivatives: take an explicit method, moreau/fixed or event",
-                                         sys->normals.follower[0].contact);
+    const size_t dropping = sys->normals.count ? tribo_system_first_dropping(sys, 0) : m;
+    if (dropping < m) {
+        return sys->status =
+                   tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                               "contact %zu has a static limit, beside limits that follow normal loads, as of contact %zu, "
+                               "and the Jacobian lacks its derivatives: take an explicit method, moreau/fixed or event",
+                               dropping, sys->normals.follower[0].contact);
     }
     struct tangents d;
     sys->jacobians++;
@@ -96,7 +127,10 @@ int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *
     }
     tribo_system_free_motion(sys, t, y, d.load, sys->work.v, sys->work.a);
     int status = TRIBO_OK;
-    if (tribo_system_limits_vary(sys)) { /* df_dt = (df/dlimit) limit', by a difference over a short time */
+    for (size_t k = 0; k < sys->normals.count; k++) { /* df_dt is for the state as it is */
+        sys->normals.normal[k].speed = 0.0;
+    }
+    if (sys->loads.limits) { /* df_dt = (df/dlimit) limit', by a difference over a short time */
         const double fastest = tribo_system_fastest(sys), later = SHORT / (fastest > 0.0 ? fastest : 1.0);
         tribo_system_put_limits(sys, later);
         status = tribo_balance(sys->contacts, sys->work.v, sys->work.a, NULL, sys->work.dv_dt);
@@ -113,7 +147,7 @@ int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *
         const int found = tribo_system_check_state(sys, t, y); /* names the value of y that is not finite */
         sys->status = found ? found : status;
     } else {
-        write_rows(sys, &d, dfdy, dfdt);
+        sys->status = write_rows(sys, &d, dfdy, dfdt);
     }
     free(d.df_dv);
     return sys->status;

@@ -209,15 +209,18 @@ TEST(periodic)
     tribo_system_destroy(sys);
 }
 
-/* Multipliers: trace of the map over a period, and of its square, by differences of motions. Elastic and rigid; a
- * spring couples x and y. */
+/* Multipliers: trace of the map over a period, and of its square, by differences of motions. Elastic and rigid, and rigid with a static
+ * limit; a spring couples x and y. */
 TEST(multipliers)
 {
     const struct value *v = &values[_i % VALUES];
     const double period = full_turn / v->omega, h = 1e-6;
-    tribo_system *sys = shaker_with(v->fx, v->fy, v->omega, _i / VALUES % 2 ? 0.0 : 0.2, 0.4, 1.0, 3.0);
-    tribo_driver *d = driver_of(sys, _i >= 2 * VALUES);
+    tribo_system *sys = shaker_with(v->fx, v->fy, v->omega, _i / VALUES % 2 || _i >= 4 * VALUES ? 0.0 : 0.2, 0.4, 1.0, 3.0);
+    tribo_driver *d = driver_of(sys, _i / VALUES / 2 == 1);
     const size_t n = tribo_system_dimension(sys) - 1;
+    if (_i >= 4 * VALUES) {
+        assert_ok(tribo_set_static(tribo_system_context(sys), (const double[]){1.3, 1.0}, NULL));
+    }
     double y[6] = {0.0}, map[5][5], re[5], im[5], trace[2] = {0.0}, sum[2] = {0.0};
     const int status = tribo_driver_find_periodic(d, 0.0, period, y);
     require(!status, "%s", tribo_driver_message(d));
@@ -245,6 +248,98 @@ TEST(multipliers)
     assert_close(sum[0], trace[0], 2e-6);
     assert_close(sum[1], trace[1], 2e-6);
     tribo_driver_destroy(d);
+    tribo_system_destroy(sys);
+}
+
+/* A motion that others leave, so that no marching finds it, and that Newton's steps of full length miss: the search by |r|. */
+TEST(unstable)
+{
+    const double period = full_turn / 3.5;
+    tribo_system *sys = shaker_with(60.0, 60.0, 3.5, 0.2, 0.0, 0.05, 14.0);
+    tribo_driver *d = driver_create(sys, "event", 0.0, 0.0);
+    double t = 0.0, y[6] = {0.0}, z[6], re[5], im[5];
+    const int status = tribo_driver_find_periodic(d, 0.0, period, y);
+    require(!status, "%s", tribo_driver_message(d));
+    assert_ok(tribo_driver_get_multipliers(d, re, im));
+    require(hypot(re[0], im[0]) > 1.03, "|%g + %g i|", re[0], im[0]);
+    memcpy(z, y, sizeof y);
+    driver_advance(d, &t, period, z);
+    for (size_t i = 0; i < 5; i++) {
+        assert_close(z[i], y[i], 1e-8);
+    }
+    tribo_driver_destroy(d);
+    tribo_system_destroy(sys);
+}
+
+/* ------------------------------------------------------------------------------------------------- several normals, one body */
+
+/* A body between three walls: it slides on bases that run away, along x on a wall below and one above, along y on one beside it. Each
+ * presses by its own stiffness, from its own gap. */
+static const struct wall {
+    double mu, stiffness, gap;
+} walls[] = {{0.6, 21.0, -0.3}, {0.4, 15.0, 0.2}, {0.5, 9.0, -0.1}};
+
+static tribo_system *between_walls(double fast)
+{
+    const double mass[] = {1.0, 1.5}, damping[] = {0.3, 0.5}, stiffness[] = {12.0, 2.0, 2.0, 17.0};
+    const double direction[] = {1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 1.0, 0.0};
+    const double base[] = {fast, fast, -fast, 0.0, 0.0, 0.0};
+    tribo_model *model;
+    tribo_system *sys;
+    assert_ok(tribo_model_create(&model, 2, 6));
+    assert_ok(tribo_model_set_mass_diagonal(model, mass));
+    assert_ok(tribo_model_set_damping_diagonal(model, damping));
+    assert_ok(tribo_model_set_stiffness(model, stiffness));
+    assert_ok(tribo_model_set_direction(model, direction));
+    for (size_t k = 0; k < 3; k++) {
+        assert_ok(tribo_model_set_normal(model, k, 3 + k, walls[k].mu, walls[k].stiffness, walls[k].gap));
+    }
+    assert_ok(tribo_system_create(&sys, model));
+    tribo_model_destroy(model);
+    assert_ok(tribo_system_add_load(sys, 3.0, (const double[]){9.0, 20.0}, (const double[]){4.0, 0.0}));
+    assert_ok(tribo_system_add_base_motion(sys, 0.0, base, NULL));
+    return sys;
+}
+
+static double wall_load(size_t k, double x)
+{
+    return walls[k].stiffness * fmax(x - walls[k].gap, 0.0);
+}
+
+static void wall_rates(double t, const double *y, double *rate)
+{
+    const double below = wall_load(0, y[1]), above = wall_load(1, -y[1]), beside = wall_load(2, y[0]);
+    rate[0] = y[2];
+    rate[1] = y[3];
+    rate[2] = 9.0 * cos(3.0 * t) + 4.0 * sin(3.0 * t) - 12.0 * y[0] - 2.0 * y[1] - 0.3 * y[2] + walls[0].mu * below +
+              walls[1].mu * above - beside;
+    rate[3] = (20.0 * cos(3.0 * t) - 2.0 * y[0] - 17.0 * y[1] - 0.5 * y[3] - walls[2].mu * beside - below + above) / 1.5;
+}
+
+/* Against the equations by hand, in short steps of Runge and Kutta's method: loads and limits are continuous where walls are left. */
+TEST(walls_of_a_body)
+{
+    static const char *const method[] = {"event", "moreau/fixed", "central/fixed", "exact"};
+    const double error[] = {1e-8, 1e-4, 2e-3, 1e-8}, h = 1e-5;
+    double want[4] = {0.0}, y[5] = {0.0};
+    for (size_t step = 0; step < 300000; step++) {
+        double rate[4][4] = {{0.0}}, at[4];
+        for (int k = 0; k < 4; k++) {
+            const double part = k == 0 ? 0.0 : k == 3 ? h : 0.5 * h;
+            for (size_t i = 0; i < 4; i++) {
+                at[i] = want[i] + part * rate[k ? k - 1 : 0][i];
+            }
+            wall_rates((double)step * h + part, at, rate[k]);
+        }
+        for (size_t i = 0; i < 4; i++) {
+            want[i] += h / 6.0 * (rate[0][i] + 2.0 * (rate[1][i] + rate[2][i]) + rate[3][i]);
+        }
+    }
+    tribo_system *sys = between_walls(100.0);
+    run(sys, method[_i], 1e-4, 0.0, 3.0, y);
+    for (size_t i = 0; i < 4; i++) {
+        assert_close(y[i], want[i], error[_i]);
+    }
     tribo_system_destroy(sys);
 }
 
@@ -650,19 +745,16 @@ TEST(refused)
         assert_status(tribo_system_add_limit(sys, 1.0, limit[k], NULL), TRIBO_ERR_UNSUPPORTED);
         assert_says(tribo_system_message(sys), k ? "contact 1 is a normal direction" : "contact 0 has a limit that follows");
     }
-    assert_status(tribo_system_jacobian(sys, 0.0, y, to, NULL), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_system_message(sys), "the limit of contact 0 follows its normal load, of which the Jacobian lacks");
     assert_status(tribo_system_get_limit(sys, 0.0, to), TRIBO_ERR_UNSUPPORTED);
-    /* limits that fall with the speed: fixed steps only; periodic motions: no static limits */
+    /* limits that fall with the speed: fixed steps only */
     const double ratio[] = {1.5, 1.0}, velocity[] = {1.0, 1.0};
     double t = 0.0, z[5] = {0.0};
     d = driver_create(sys, "event", 0.0, 0.0);
     assert_ok(tribo_set_static(c, ratio, velocity));
+    assert_status(tribo_system_jacobian(sys, 0.0, y, to, NULL), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_system_message(sys), "contact 0 has a static limit, beside limits that follow normal loads");
     assert_status(tribo_driver_advance(d, &t, 1.0, z), TRIBO_ERR_UNSUPPORTED);
     assert_says(tribo_driver_message(d), "contact 0 has a limit that falls with the speed");
-    assert_ok(tribo_set_static(c, ratio, NULL));
-    assert_status(tribo_driver_find_periodic(d, 0.0, full_turn / 5.0, z), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_driver_message(d), "static limits where limits follow the motion");
     tribo_driver_destroy(d);
     /* planar contacts */
     const size_t first = 0;
@@ -688,6 +780,6 @@ TEST(refused)
     }
 }
 
-TEST_MAIN("normals", {steady_motions, 2 * VALUES}, {periodic, 4 * VALUES}, {multipliers, 4 * VALUES}, {limit_cycle, 4},
-          {flutter, 3}, {shock, 2}, {steps, 7}, {stiff, 1}, {structures, 8}, {observed, 4}, {planar, 3}, {wrong_normals, 1},
-          {refused, 1})
+TEST_MAIN("normals", {steady_motions, 2 * VALUES}, {periodic, 4 * VALUES}, {multipliers, 5 * VALUES}, {unstable, 1},
+          {walls_of_a_body, 4}, {limit_cycle, 4}, {flutter, 3}, {shock, 2}, {steps, 7}, {stiff, 1}, {structures, 8},
+          {observed, 4}, {planar, 3}, {wrong_normals, 1}, {refused, 1})

@@ -107,6 +107,62 @@ TEST(jacobians)
     tribo_system_destroy(sys);
 }
 
+/* Three masses of 1 with springs between them; contacts 0 and 1 along the first mass and between the first two, a planar contact 2, 3 on
+ * the others, one at zero and one that shares it; two normals, which are pressed in about half of the states. */
+static tribo_system *following(int planar)
+{
+    const double mass[4] = {1.0, 1.2, 0.8, 1.5}, j[6 * 4] = {1.0, 0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.3, 0.0, 0.0, 1.0, 0.2,
+                                                             0.0, 0.5, 0.0, 1.0, 0.0, 1.0,  0.4, 0.0, 0.3, 0.0, 0.0, -1.0};
+    const double stiffness[16] = {3.0, -1.0, 0.0, 0.5, -1.0, 4.0, -0.3, 0.0, 0.0, -0.3, 2.0, 0.0, 0.5, 0.0, 0.0, 2.5};
+    tribo_model *model;
+    tribo_system *sys;
+    assert_ok(tribo_model_create(&model, 4, 6));
+    assert_ok(tribo_model_set_mass_diagonal(model, mass));
+    assert_ok(tribo_model_set_stiffness(model, stiffness));
+    assert_ok(tribo_model_set_direction(model, j));
+    assert_ok(tribo_model_set_normal(model, 0, 4, 0.7, 6.0, -0.1));
+    assert_ok(tribo_model_set_normal(model, 1, 4, 0.3, 6.0, -0.1));
+    assert_ok(tribo_model_set_normal(model, 2, 5, 0.5, 8.0, 0.05));
+    assert_ok(tribo_system_create(&sys, model));
+    tribo_model_destroy(model);
+    assert_ok(tribo_system_add_load(sys, 1.1, (const double[]){1.0, 2.0, 0.5, -1.0}, NULL));
+    assert_ok(tribo_set_planar(tribo_system_context(sys), planar ? 1 : 0, (const size_t[]){2}));
+    assert_ok(tribo_set_epsilon_all(tribo_system_context(sys), 0.5));
+    return sys;
+}
+
+/* Limits that follow the motion: their derivatives by the displacement. One more contact has a limit that changes with time. */
+TEST(limits_that_follow)
+{
+    struct random g = random_of(_i);
+    tribo_system *sys = following(_i % 2);
+    assert_ok(tribo_set_law(tribo_system_context(sys), _i % 4 < 2 ? TRIBO_QUINN : TRIBO_SMOOTH));
+    if (_i % 2 == 0) {
+        assert_ok(tribo_system_add_limit(sys, 0.7, (const double[]){0.0, 0.0, 0.0, 0.4, 0.0, 0.0}, NULL));
+    }
+    check_jacobian(sys, &g);
+    tribo_system_destroy(sys);
+}
+
+/* Implicit steps of GSL arrive where explicit ones do. */
+TEST(implicit_steps)
+{
+    double y[2][9] = {{0.3, 0.2, -0.1, 0.1}, {0.3, 0.2, -0.1, 0.1}};
+    for (int k = 0; k < 2; k++) {
+        tribo_system *sys = following(_i);
+        tribo_driver *d;
+        double t = 0.0;
+        assert_ok(tribo_gsl_driver_create(&d, sys, k ? "rkf45" : "bsimp"));
+        assert_ok(tribo_driver_set_tolerance(d, 1e-11, 0.0));
+        assert_ok(tribo_driver_advance(d, &t, 3.0, y[k]));
+        tribo_driver_destroy(d);
+        tribo_system_destroy(sys);
+    }
+    for (size_t i = 0; i < 9; i++) {
+        assert_close(y[0][i], y[1][i], 1e-6);
+    }
+}
+
 /* Damping that comes after the first Jacobian is in the next one. */
 TEST(jacobian_after_new_damping)
 {
@@ -129,4 +185,5 @@ TEST(jacobian_of_bad_states)
     tribo_system_destroy(sys);
 }
 
-TEST_MAIN("jacobian", {jacobians, SYSTEMS *COUNT(laws)}, {jacobian_after_new_damping, 1}, {jacobian_of_bad_states, 1})
+TEST_MAIN("jacobian", {jacobians, SYSTEMS *COUNT(laws)}, {limits_that_follow, 4}, {implicit_steps, 2},
+          {jacobian_after_new_damping, 1}, {jacobian_of_bad_states, 1})
