@@ -24,7 +24,7 @@ setup gcc libc6-dev make cmake pkg-config libgsl-dev liblapack-dev libsuitespars
 build=build/bench results=$PWD/build/bench/results
 echo "== Building in $build"
 cmake -S . -B $build -DCMAKE_BUILD_TYPE=Release -DTRIBO_FORTRAN=OFF -DTRIBO_BUILD_EXAMPLES=OFF -DTRIBO_BENCH_PEERS=ON
-cmake --build $build --parallel "$(getconf _NPROCESSORS_ONLN)" --target bench bench_balance bench_periodic bench_planar \
+cmake --build $build --parallel "$(getconf _NPROCESSORS_ONLN)" --target bench bench_balance bench_periodic bench_planar bench_follow \
     bench_kernels bench_modes bench_whole bench_points
 
 echo "== Running; tables and pictures go to $results"
@@ -36,6 +36,7 @@ case " $* " in *" --quick "*) quick=--quick ;; *) quick= ;; esac
 OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $build/tests/bench/bench_balance --out "$results/balance" $quick \
     > "$results/balance/tables.txt"
 $build/tests/bench/bench_planar > "$results/planar.txt"
+$build/tests/bench/bench_follow > "$results/follow.txt"
 $build/tests/bench/bench_kernels $quick > "$results/kernels.txt"
 $build/tests/bench/bench_periodic --out "$results/periodic" > "$results/periodic.txt"
 $build/tests/bench/bench_points > "$results/points.txt"
@@ -50,5 +51,5 @@ for format in png svg; do
 done
 
 awk -f tests/bench/tables.awk "$results"/*.csv | tee "$results/tables.txt"
-cat "$results/balance/tables.txt" "$results/kernels.txt" "$results/planar.txt" "$results/periodic.txt" "$results/points.txt" \
+cat "$results/balance/tables.txt" "$results/kernels.txt" "$results/planar.txt" "$results/follow.txt" "$results/periodic.txt" "$results/points.txt" \
     "$results/modes.txt"
