@@ -91,6 +91,10 @@
 !>   TRBHAR(IH, NDOF, CV, K, XC, XS, IERR)           CV(2*NDOF), K >= 0                XC*COS(K*w*t) + XS*SIN(K*w*t) of CV'Y
 !>   TRBDIS(IH, N, E, IERR)                                                            E(N): energy that each contact dissipates
 !>   TRBSHS(IH, N, SHARE, IERR)                                                        SHARE(N) of the period for which each rests
+!> Its derivatives by NP parameters, KIND(NP) TRIBO_PARAMETER_... of tribo_dynamics.h, INDX(NP) contacts of limits (KIND 0)
+!>   TRBDEX(IH, NDOF, NP, KIND, INDX, CV, DX, IERR)  CV(2*NDOF)                        DX(2,NP): of XMIN and XMAX of TRBEXT
+!>   TRBDEN(IH, N, NP, KIND, INDX, DE, IERR)                                           DE(N,NP): of E of TRBDIS
+!>   TRBDEY(IH, NDOF, NP, KIND, INDX, DY, LDY, IERR) LDY >= values of Y                DY(LDY,NP): of Y of TRBPER
 !> Counts and real quantities
 !>   TRBDCT(IH, IWHICH, IVAL, IERR)                  IWHICH TRIBO_COUNT_... of a       IVAL
 !>                                                   driver, see tribo_dynamics.h
@@ -996,3 +1000,50 @@ subroutine trbshs(ih, n, share, ierr)
   if (ierr == TRIBO_OK) call find_driven(ih, s, ierr)
   if (ierr == TRIBO_OK) call s%driver%period_stick(share(:n), ierr)
 end subroutine trbshs
+
+subroutine trbdex(ih, ndof, np, kind, indx, cv, dx, ierr)
+  use tribo_fixed_dynamics
+  implicit none
+  integer, intent(in) :: ih, ndof, np, kind(*), indx(*)
+  real(dp), intent(in) :: cv(*)
+  real(dp), intent(inout) :: dx(2, *)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_driven(ih, s, ierr, ndof)
+  call require_least(ih, 'NP', np, 1, ierr)
+  if (ierr == TRIBO_OK) then
+    call s%driver%period_derivatives(kind(:np), indx(:np), c=cv(:2*ndof), extremes=dx(:, :np), stat=ierr)
+  end if
+end subroutine trbdex
+
+subroutine trbden(ih, n, np, kind, indx, de, ierr)
+  use tribo_fixed_dynamics
+  implicit none
+  integer, intent(in) :: ih, n, np, kind(*), indx(*)
+  real(dp), intent(inout) :: de(n, *)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_contacts(ih, s, ierr, n)
+  if (ierr == TRIBO_OK) call find_driven(ih, s, ierr)
+  call require_least(ih, 'NP', np, 1, ierr)
+  if (ierr == TRIBO_OK) call s%driver%period_derivatives(kind(:np), indx(:np), energy=de(:, :np), stat=ierr)
+end subroutine trbden
+
+subroutine trbdey(ih, ndof, np, kind, indx, dy, ldy, ierr)
+  use tribo_fixed_dynamics
+  implicit none
+  integer, intent(in) :: ih, ndof, np, kind(*), indx(*), ldy
+  real(dp), intent(inout) :: dy(ldy, *)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+  integer :: m
+
+  call find_driven(ih, s, ierr, ndof)
+  call require_least(ih, 'NP', np, 1, ierr)
+  m = 1
+  if (ierr == TRIBO_OK) m = s%system%dimension()
+  call require_least(ih, 'LDY', ldy, m, ierr)
+  if (ierr == TRIBO_OK) call s%driver%period_derivatives(kind(:np), indx(:np), y=dy(:m, :np), stat=ierr)
+end subroutine trbdey

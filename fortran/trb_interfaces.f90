@@ -675,5 +675,24 @@ module trb_interfaces
       double precision, intent(inout) :: share(*)
       integer, intent(out) :: ierr
     end subroutine trbshs
+
+    subroutine trbdex(ih, ndof, np, kind, indx, cv, dx, ierr)
+      integer, intent(in) :: ih, ndof, np, kind(*), indx(*)
+      double precision, intent(in) :: cv(*)
+      double precision, intent(inout) :: dx(2, *)
+      integer, intent(out) :: ierr
+    end subroutine trbdex
+
+    subroutine trbden(ih, n, np, kind, indx, de, ierr)
+      integer, intent(in) :: ih, n, np, kind(*), indx(*)
+      double precision, intent(inout) :: de(n, *)
+      integer, intent(out) :: ierr
+    end subroutine trbden
+
+    subroutine trbdey(ih, ndof, np, kind, indx, dy, ldy, ierr)
+      integer, intent(in) :: ih, ndof, np, kind(*), indx(*), ldy
+      double precision, intent(inout) :: dy(ldy, *)
+      integer, intent(out) :: ierr
+    end subroutine trbdey
   end interface
 end module trb_interfaces

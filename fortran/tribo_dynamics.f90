@@ -101,7 +101,7 @@ module tribo_systems
     procedure :: find_periodic, find_cycle
     procedure :: get_multipliers
     procedure :: get_freedom
-    procedure :: period_extremes, period_harmonic, period_dissipation, period_stick
+    procedure :: period_extremes, period_harmonic, period_dissipation, period_stick, period_derivatives
     procedure :: set_observer
     procedure :: set_step, set_tolerance, set_output, set_max_step
     procedure :: message => driver_message
@@ -1318,6 +1318,36 @@ contains
     end if
     call finish(w, stat, errmsg)
   end subroutine period_stick
+
+  !> Derivatives of that motion by parameters, kind(n) TRIBO_PARAMETER_... and index(n), the contacts of limits: of the extremes of
+  !> period_extremes for c, extremes(2,n), of the energies of period_dissipation, energy(ncontact,n), and of its state, y(dimension,n).
+  subroutine period_derivatives(this, kind, index, c, extremes, energy, y, stat, errmsg)
+    class(tribo_driver), intent(in) :: this
+    integer, intent(in) :: kind(:), index(:)
+    real(dp), intent(in), optional, contiguous :: c(:)
+    real(dp), intent(inout), optional, contiguous :: extremes(:,:), energy(:,:), y(:,:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_size_t) :: contact(size(index))
+    type(work) :: w
+    integer :: i, n
+
+    n = size(kind)
+    call find_driver(this, w)
+    call expect_shape(w, 'index', shape(index), shape(kind))
+    if (present(c)) call expect_size(w, 'c', c, 2*w%ndof)
+    if (present(extremes)) call expect_shape(w, 'extremes', shape(extremes), [2, n])
+    if (present(energy)) call expect_shape(w, 'energy', shape(energy), [w%n, n])
+    if (present(y)) call expect_shape(w, 'y', shape(y), [w%dimension, n])
+    do i = 1, min(n, size(index))
+      if (kind(i) == TRIBO_PARAMETER_LIMIT) call expect_index(w, 'index', i, index(i), w%n)
+      contact(i) = int(max(index(i), 1) - 1, c_size_t)
+    end do
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_period_derivatives(w%object, int(n, c_size_t), to_int(kind), contact, c, extremes, energy, y)
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine period_derivatives
 
   !> Advances call observer%seen, see tribo_observer; without observer, none. The observer must have the attribute target (or be a
   !> pointer) where it is declared, and must outlive its use.

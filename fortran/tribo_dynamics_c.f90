@@ -26,6 +26,15 @@ module tribo_dynamics_constants
   !> the limit rises from 0
   integer, parameter, public :: TRIBO_MOMENT_TOUCH = 5
 
+  !> the limit of contact `index`
+  integer, parameter, public :: TRIBO_PARAMETER_LIMIT = 0
+  !> a factor of all loads and base motions, at 1
+  integer, parameter, public :: TRIBO_PARAMETER_LOADS = 1
+  !> a factor of all frequencies, at 1; base motions keep their displacements
+  integer, parameter, public :: TRIBO_PARAMETER_FREQUENCY = 2
+  !> a factor of the damping matrix, at 1
+  integer, parameter, public :: TRIBO_PARAMETER_DAMPING = 3
+
   !> accepted steps
   integer, parameter, public :: TRIBO_COUNT_STEPS = 100
   !> rejected steps
@@ -650,6 +659,20 @@ module tribo_dynamics_c
       real(c_double), intent(inout), optional :: share(*)
       integer(c_int) :: answer
     end function c_driver_period_stick
+
+    function c_driver_period_derivatives(drv, count, kind, index, c, extremes, energy, y) result(answer) &
+      bind(c,name='tribo_driver_period_derivatives')
+      import
+      type(c_ptr), value :: drv
+      integer(c_size_t), value :: count
+      integer(c_int), intent(in), optional :: kind(*)
+      integer(c_size_t), intent(in), optional :: index(*)
+      real(c_double), intent(in), optional :: c(*)
+      real(c_double), intent(inout), optional :: extremes(*)
+      real(c_double), intent(inout), optional :: energy(*)
+      real(c_double), intent(inout), optional :: y(*)
+      integer(c_int) :: answer
+    end function c_driver_period_derivatives
 
     function c_driver_count(drv, which, value) result(answer) bind(c,name='tribo_driver_count')
       import

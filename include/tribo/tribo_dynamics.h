@@ -455,6 +455,25 @@ TRIBO_API int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, s
 TRIBO_API int tribo_driver_period_dissipation(tribo_driver *drv, double *energy);
 TRIBO_API int tribo_driver_period_stick(tribo_driver *drv, double *share);
 
+/* A parameter of the system. */
+enum {
+    TRIBO_PARAMETER_LIMIT = 0,     /* the limit of contact `index` */
+    TRIBO_PARAMETER_LOADS = 1,     /* a factor of all loads and base motions, at 1 */
+    TRIBO_PARAMETER_FREQUENCY = 2, /* a factor of all frequencies, at 1; base motions keep their displacements */
+    TRIBO_PARAMETER_DAMPING = 3    /* a factor of the damping matrix, at 1 */
+};
+
+/* Derivatives of the last periodic motion found by parameters, in closed form along its events. The system must be unchanged since.
+ * kind, index  [count] in                  TRIBO_PARAMETER_...; contacts of TRIBO_PARAMETER_LIMIT, not read for other kinds
+ * c            [2 ndof] in, or NULL        as in tribo_driver_period_extremes; read for extremes
+ * extremes     [count][2] out, or NULL     derivatives of least and most of tribo_driver_period_extremes
+ * energy       [count][ncontact] out, or NULL   derivatives of the energies of tribo_driver_period_dissipation
+ * y            [count][dimension] out, or NULL  derivatives of the state at the start; by the frequency at constant t/period
+ * Returns what tribo_driver_period_extremes returns, TRIBO_ERR_SIZE (count 0), TRIBO_ERR_RANGE (kind, index),
+ * TRIBO_ERR_NO_CONVERGENCE (the motion is not isolated), TRIBO_ERR_UNSUPPORTED: see the manual. */
+TRIBO_API int tribo_driver_period_derivatives(tribo_driver *drv, size_t count, const int *kind, const size_t *index,
+                                              const double *c, double *extremes, double *energy, double *y);
+
 /* Counts since creation. tribo_driver_count returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE. */
 enum {
     TRIBO_COUNT_STEPS = 100,       /* accepted steps */

@@ -28,6 +28,14 @@ static void put_period(tribo_driver *drv, double *y)
     put(N, each);
     tribo_driver_period_stick(drv, each);
     put(N, each);
+    static const int kind[] = {TRIBO_PARAMETER_LIMIT, TRIBO_PARAMETER_FREQUENCY};
+    const size_t index[] = {1, 0};
+    double extremes[4], state[2 * DIMENSION];
+    put_one(tribo_driver_period_derivatives(drv, 2, kind, index, c, extremes, NULL, NULL));
+    put(4, extremes);
+    put_one(tribo_driver_period_derivatives(drv, 2, kind, index, NULL, NULL, NULL, state));
+    put(2 * DIMENSION, state);
+    put_one(tribo_driver_period_derivatives(drv, 2, kind, index, NULL, NULL, each, NULL));
     tribo_driver_count(drv, TRIBO_COUNT_PERIODS, &count);
     put_one((double)count);
 }

@@ -73,9 +73,11 @@ C
       END
 C
       SUBROUTINE PERIOD(IH, Y)
-      INTEGER IH, IERR, I
-      DOUBLE PRECISION Y(5), CV(4), RE(4), AI(4), X(4), E(2)
+      INTEGER IH, IERR, I, KIND(2), INDX(2)
+      DOUBLE PRECISION Y(5), CV(4), RE(4), AI(4), X(4), E(2), DX(4)
+      DOUBLE PRECISION DY(10)
       DATA CV /1D0, -0.5D0, 0.25D0, 0D0/
+      DATA KIND, INDX /0, 2, 2, 1/
       CALL TRBPER(IH, 2, 0.5D0, 7.853981633974483D0, Y, IERR)
       CALL CMPI('TRBPER', IERR)
       CALL CMPR('TRBPER', 5, Y)
@@ -90,6 +92,14 @@ C
       CALL CMPR('TRBDIS', 2, E)
       CALL TRBSHS(IH, 2, E, IERR)
       CALL CMPR('TRBSHS', 2, E)
+      CALL TRBDEX(IH, 2, 2, KIND, INDX, CV, DX, IERR)
+      CALL CMPI('TRBDEX', IERR)
+      CALL CMPR('TRBDEX', 4, DX)
+      CALL TRBDEY(IH, 2, 2, KIND, INDX, DY, 5, IERR)
+      CALL CMPI('TRBDEY', IERR)
+      CALL CMPR('TRBDEY', 10, DY)
+      CALL TRBDEN(IH, 2, 2, KIND, INDX, DX, IERR)
+      CALL CMPI('TRBDEN', IERR)
       CALL TRBDCT(IH, 105, I, IERR)
       CALL CMPI('TRBDCT', I)
       END
@@ -117,7 +127,7 @@ C
 C     Every routine with what is no handle, with one of contacts alone,
 C     and, if it works on a driver, without one.
       SUBROUTINE NODRIV
-      INTEGER IHS(3), ICODE(3), IH, K, IERR, I
+      INTEGER IHS(3), ICODE(3), IH, K, IERR, I, M(1)
       DOUBLE PRECISION X(5)
       CHARACTER*80 TEXT(3)
       IHS(1) = 12345
@@ -162,6 +172,12 @@ C     and, if it works on a driver, without one.
          CALL WANTED('TRBDIS', IH, IERR, ICODE(K), TEXT(K))
          CALL TRBSHS(IH, 2, X, IERR)
          CALL WANTED('TRBSHS', IH, IERR, ICODE(K), TEXT(K))
+         CALL TRBDEX(IH, 2, 1, M, M, X, X, IERR)
+         CALL WANTED('TRBDEX', IH, IERR, ICODE(K), TEXT(K))
+         CALL TRBDEN(IH, 2, 1, M, M, X, IERR)
+         CALL WANTED('TRBDEN', IH, IERR, ICODE(K), TEXT(K))
+         CALL TRBDEY(IH, 2, 1, M, M, X, 5, IERR)
+         CALL WANTED('TRBDEY', IH, IERR, ICODE(K), TEXT(K))
          CALL TRBDCT(IH, 100, I, IERR)
          CALL WANTED('TRBDCT', IH, IERR, ICODE(K), TEXT(K))
    20 CONTINUE

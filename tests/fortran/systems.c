@@ -210,6 +210,13 @@ static void periodic(void)
     put_one(a);
     put_one(tribo_driver_period_stick(drv, &a));
     put_one(a);
+    static const int kind[] = {TRIBO_PARAMETER_LIMIT, TRIBO_PARAMETER_LOADS, TRIBO_PARAMETER_FREQUENCY};
+    const size_t index[3] = {0};
+    double extremes[6], energy[3], by_y[9];
+    put_one(tribo_driver_period_derivatives(drv, 3, kind, index, c, extremes, energy, by_y));
+    put(6, extremes);
+    put(3, energy);
+    put(9, by_y);
     tribo_driver_destroy(drv);
     tribo_system_destroy(sys);
 }

@@ -305,7 +305,7 @@ contains
     type(tribo_system) :: sys
     type(tribo_driver) :: drv
     real(dp), parameter :: period = 8.975979010256552_dp, c(2) = [1.0_dp, 0.5_dp]
-    real(dp) :: y(3), re(2), im(2), a, b, at(2), contact(1)
+    real(dp) :: y(3), re(2), im(2), a, b, at(2), contact(1), by_extremes(2, 3), by_energy(1, 3), by_y(3, 3)
     integer :: stat, freedom
 
     y = 0
@@ -346,6 +346,16 @@ contains
     call drv%period_stick(contact, stat)
     call compare('period_stick', stat)
     call compare('period_stick: share', contact)
+    call drv%period_derivatives([TRIBO_PARAMETER_LIMIT, TRIBO_PARAMETER_LOADS, TRIBO_PARAMETER_FREQUENCY], [1, 0, 0], c, &
+      by_extremes, by_energy, by_y, stat)
+    call compare('period_derivatives', stat)
+    call compare('period_derivatives: extremes', reshape(by_extremes, [6]))
+    call compare('period_derivatives: energy', reshape(by_energy, [3]))
+    call compare('period_derivatives: y', reshape(by_y, [size(by_y)]))
+    call drv%period_derivatives([TRIBO_PARAMETER_LIMIT], [2], c, by_extremes(:, :1), stat=stat)
+    call require(stat == TRIBO_ERR_RANGE, 'a limit of no contact')
+    call drv%period_derivatives([TRIBO_PARAMETER_LIMIT], [1], c, by_extremes(:, :2), stat=stat)
+    call require(stat == TRIBO_ERR_SIZE, 'more derivatives than parameters')
   end subroutine periodic
 
   !> Arrays as sections against whole arrays, and outputs each by itself.

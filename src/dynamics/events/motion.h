@@ -9,6 +9,13 @@
 struct guard;
 struct signal;
 
+/* What moves perturbations [columns] of a phase besides their initial values: column j has q'' += B force + inertia_j q'' + damping_j
+ * AC q', q' and q'' of the motion in the phase that ends. force [ncontact][columns]: of rigid contacts, constant. inertia, damping
+ * [columns]; or both NULL: 0. */
+struct source {
+    const double *force, *inertia, *damping;
+};
+
 struct motion {
     /* Begins a phase at (t, y) that lasts *reach, or lowers *reach, and sets the guards. Returns a status, its message on the
      * system's context. */
@@ -24,8 +31,9 @@ struct motion {
     void *(*keep)(void *own, double tau);
     void (*release)(void *phase);
     /* Moves perturbations v [2 ndof][columns] of the state by tau in a phase that was kept; in the one that ends if phase is
-     * NULL. Projects them first so that contacts at rest stay there. Returns a status, its message on the system's context. */
-    int (*transition)(void *own, const void *phase, double tau, size_t columns, double *v);
+     * NULL. Projects them first so that contacts at rest stay there. source: NULL, or what moves them in the phase. Returns a
+     * status, its message on the system's context. */
+    int (*transition)(void *own, const void *phase, double tau, size_t columns, double *v, const struct source *source);
     /* Sets to = c'y, c [2 ndof], in the phase that lasts tau and ends with the state end. Returns a status, likewise. */
     int (*signal)(void *own, const double *c, double tau, const double *end, struct signal *to);
     /* Returns the energy that sliding contact i dissipated in the phase that lasted tau, its force counted once. */

@@ -113,11 +113,12 @@ void tribo_follow_pull(const struct modal *h, const tribo_system *sys, size_t co
 
 /* powers.c, without modes. start: from place = eta and rate = eta' at t0, and the constant forces [modes]. move: sets place to
  * the change of eta until tau, and rate to eta' at tau, or with changes = 1 to the change of eta'. carry: tribo_modal_transition
- * of eta and rate [modes][columns], by pull; eta becomes its change; work [3 modes + 1][columns]. */
+ * of eta and rate [modes][columns], by pull, and a source with coefficients [TRIBO_POWERS][modes][columns] of the powers of time, or
+ * NULL; eta becomes its change; work [3 modes + 1][columns]. */
 void tribo_powers_start(struct exact *x, const double *force);
 void tribo_powers_move(struct exact *x, double tau, int changes);
 void tribo_powers_carry(const struct modal *h, double tau, size_t columns, const double *pull, double *eta, double *rate,
-                        double *work);
+                        double *work, const double *source);
 
 /* Functions of struct motion. The state of a signal is [q, q', f], f: forces of compliant contacts. The data of a phase is
  * its structure, with one user more. */
@@ -126,7 +127,10 @@ double tribo_modal_motion_work(void *own, size_t i, double tau);
 int tribo_modal_motion_signal(void *own, const double *c, double tau, const double *end, struct signal *to);
 void *tribo_modal_phase_keep(void *own, double tau);
 void tribo_modal_phase_release(void *phase);
-int tribo_modal_transition(void *own, const void *phase, double tau, size_t columns, double *v);
+int tribo_modal_transition(void *own, const void *phase, double tau, size_t columns, double *v, const struct source *source);
+
+/* source.c: eta, rate [modes][columns] += the response at tau to the source of the phase that ends, without its force. Returns a status, its message on the system's context. */
+int tribo_modal_source(const struct exact *x, double tau, size_t columns, const struct source *source, double *eta, double *rate);
 
 /* terms.c. rest: sets w to z, at t0. go: sets w for t0 + tau, without resonances. tribo_exp_1 returns (e^z - 1)/z, the integral of e^{z s} over s from 0 to 1, without loss of
  * digits for small z. */

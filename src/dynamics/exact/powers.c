@@ -111,16 +111,20 @@ void tribo_powers_move(struct exact *x, double tau, int changes)
 }
 
 void tribo_powers_carry(const struct modal *h, double tau, size_t columns, const double *pull, double *eta, double *rate,
-                        double *work)
+                        double *work, const double *source)
 {
     const size_t all = h->modes * columns;
-    double *e = work, *u = e + all, *next = u + all;
+    double *e = work, *u = e + all, *next = u + all, power = 1.0; /* power: tau^(k - 1) */
     memcpy(e, eta, all * sizeof *e);
     memcpy(u, rate, all * sizeof *u);
     memcpy(next, pull, all * sizeof *next);
     memset(eta, 0, all * sizeof *eta);
     for (size_t k = 1; k < P; k++) {
         pull_back(h, columns, e, u, next, next + all);
+        if (source) {
+            tribo_add(next, power, source + (k - 1) * all, all);
+        }
+        power *= tau;
         for (size_t j = 0; j < all; j++) {
             e[j] = u[j] * (tau / (double)k);
             u[j] = next[j] * (tau / (double)k);
@@ -128,7 +132,7 @@ void tribo_powers_carry(const struct modal *h, double tau, size_t columns, const
             rate[j] += u[j];
         }
         memset(next, 0, all * sizeof *next);
-        if (tribo_largest(e, all) <= NOTHING * tribo_largest(eta, all) &&
+        if (!source && tribo_largest(e, all) <= NOTHING * tribo_largest(eta, all) &&
             tribo_largest(u, all) <= NOTHING * tribo_largest(rate, all)) {
             return;
         }

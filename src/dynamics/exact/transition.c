@@ -23,28 +23,6 @@ void tribo_modal_phase_release(void *phase)
     tribo_modal_free(phase);
 }
 
-/* f [ncontact][columns] += factor times the forces of springs in perturbations v. */
-static void spring_forces(const tribo_system *sys, size_t columns, double factor, const double *v, double *f)
-{
-    for (size_t k = 0; k < sys->compliance.count; k++) {
-        tribo_add(f + sys->compliance.contact[k] * columns, factor, v + (2 * sys->ndof + k) * columns, columns);
-    }
-}
-
-/* pull [modes][columns] = -sum of on (J q + G f) over the contacts that hold: constant forces on the modes. way [2 ncontact]
- * [columns] is workspace, zeros. */
-static void find_pull(const struct modal *h, const tribo_system *sys, size_t columns, const double *v, double *pull, double *way)
-{
-    double *f = way + sys->ncontact * columns;
-    spring_forces(sys, columns, -1.0, v, f);
-    tribo_compliance_give(sys, columns, f, way);
-    tribo_matrix_add_columns(&sys->direction, -1.0, columns, v, way);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        memset(way + i * columns, 0, h->key[i] == KEY_HOLDS ? 0 : columns * sizeof *way);
-    }
-    tribo_multiply_transposed_add(sys->ncontact, h->modes, columns, h->on, way, pull);
-}
-
 /* tribo_powers_carry for a structure with modes; work [10 modes][columns] + [4 modes]. */
 static void carry_modes(const struct modal *h, double tau, size_t columns, const double *pull, double *eta, double *rate,
                         double *work)
@@ -78,25 +56,40 @@ static void carry_modes(const struct modal *h, double tau, size_t columns, const
     tribo_modal_join(h, c, wr, wi, rate);
 }
 
-int tribo_modal_transition(void *own, const void *phase, double tau, size_t columns, double *v)
+int tribo_modal_transition(void *own, const void *phase, double tau, size_t columns, double *v, const struct source *source)
 {
-    const struct modal *h = phase;
-    tribo_system *sys = ((struct exact *)own)->sys;
+    const struct exact *x = own;
+    const struct modal *h = phase ? phase : x->h->modal;
+    tribo_system *sys = x->sys;
     const size_t n = h->n, m = h->modes, c = columns, block = n * c;
-    double *eta = calloc(13 * block + 2 * sys->ncontact * c + 4 * n + 1, sizeof *eta), *rate = eta + block;
-    double *pull = rate + block, *way = pull + block, *work = way + 2 * sys->ncontact * c;
+    const size_t ways = 2 * sys->ncontact * c;
+    double *eta = malloc((13 * block + ways + 4 * n + 1) * sizeof *eta), *rate = eta + block;
+    double *pull = rate + block, *way = pull + block, *force = way + ways / 2, *work = way + ways;
     if (!eta) {
         return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     }
+    memset(eta, 0, (3 * block + ways) * sizeof *eta);
     tribo_multiply_add(m, n, c, 1.0, h->psi, v, eta);
     tribo_multiply_add(m, n, c, 1.0, h->psi, v + block, rate);
     if (h->stiff) {
-        spring_forces(sys, c, 1.0, v, way);
+        for (size_t k = 0; k < sys->compliance.count; k++) {
+            memcpy(way + sys->compliance.contact[k] * c, v + (2 * n + k) * c, c * sizeof *v);
+        }
         tribo_follow_pull(h, sys, c, v, way, eta, pull, work);
     } else {
-        find_pull(h, sys, c, v, pull, way);
+        /* constant forces on the modes: -on (J q + G f) of contacts that hold; on times the force of others, f of compliant ones */
+        tribo_system_find_ways(sys, c, v, force, way);
+        for (size_t i = 0; i < sys->ncontact * c; i++) {
+            way[i] = h->key[i / c] == KEY_HOLDS ? -way[i] : force[i] + (source ? source->force[i] : 0.0);
+        }
+        tribo_multiply_transposed_add(sys->ncontact, m, c, h->on, way, pull);
     }
-    (h->powers ? tribo_powers_carry : carry_modes)(h, tau, c, pull, eta, rate, work);
+    if (h->powers) {
+        tribo_powers_carry(h, tau, c, pull, eta, rate, work, NULL);
+    } else {
+        carry_modes(h, tau, c, pull, eta, rate, work);
+    }
+    const int status = source && source->inertia ? tribo_modal_source(x, tau, c, source, eta, rate) : TRIBO_OK;
     memset(v + block, 0, block * sizeof *v);
     tribo_multiply_transposed_add(m, n, c, h->phi, eta, v);
     tribo_multiply_transposed_add(m, n, c, h->phi, rate, v + block);
@@ -109,5 +102,5 @@ int tribo_modal_transition(void *own, const void *phase, double tau, size_t colu
                            v + 2 * block + k * c);
     }
     free(eta);
-    return TRIBO_OK;
+    return status;
 }

@@ -37,6 +37,8 @@ static void event_decided(struct company *company)
     tribo_variation_event(&((struct period_map *)company)->variation);
 }
 
+static const struct company with_derivative = {phase_ends, event_decided};
+
 /* Integrates m->y from t to end without the driver's observer; the driver's next run is a new one. Returns a status. */
 static int period_map_integrate(struct period_map *m, double t, double end, struct company *company)
 {
@@ -64,11 +66,11 @@ static int period_map_integrate(struct period_map *m, double t, double end, stru
     return status ? status : tribo_driver_check(drv, m->y);
 }
 
-int tribo_period_map_replay(struct period_map *m, const double *y, struct company *company)
+int tribo_period_map_replay(struct period_map *m, const double *y, double length, struct company *company)
 {
     const int status = m->drv->at_work->open(m->drv, &m->events);
     memcpy(m->y, y, m->n * sizeof *y);
-    return status ? status : period_map_integrate(m, m->t, m->t + m->period, company);
+    return status ? status : period_map_integrate(m, m->t, m->t + length, company);
 }
 
 int tribo_period_map_march(struct period_map *m, double time, size_t times, struct company *company, double *x)
@@ -165,7 +167,7 @@ int tribo_period_map_apply(struct period_map *m, const struct point *p, double *
         return TRIBO_OK;
     }
     tribo_energy_norm_state(&m->norm, 1, x, m->y);
-    const int status = tribo_driver_pass(m->drv, tribo_derivative_apply(&p->derivative, 0, 1, m->y));
+    const int status = tribo_driver_pass(m->drv, tribo_derivative_apply(&p->derivative, 0, 1, m->y, NULL));
     find_image(m, p->odd, 1, m->y, x);
     return status;
 }
@@ -187,7 +189,7 @@ int tribo_period_map_matrix(struct period_map *m, struct point *p)
             x[i * n + i] = 1.0;
         }
         tribo_energy_norm_state(&m->norm, n, x, v);
-        status = tribo_driver_pass(m->drv, tribo_derivative_apply(&p->derivative, 0, n, v));
+        status = tribo_driver_pass(m->drv, tribo_derivative_apply(&p->derivative, 0, n, v, NULL));
     }
     find_image(m, p->odd, n, v, x);
     if (status) {
@@ -303,9 +305,9 @@ void tribo_period_map_choose(struct period_map *m, int odd)
 int tribo_period_map_create(struct period_map *m, tribo_driver *drv)
 {
     const size_t n = tribo_system_energy(drv->sys);
-    *m = (struct period_map){.company = {phase_ends, event_decided}, .drv = drv, .sys = drv->sys, .n = n};
+    *m = (struct period_map){.company = with_derivative, .drv = drv, .sys = drv->sys, .n = n};
     return ALLOCATE(ARRAY(m->y, n + 1), ARRAY(m->x, n), ARRAY(m->probe, n * n), ARRAY(m->limit, 2 * drv->sys->ncontact)) &&
-           tribo_variation_create(&m->variation, drv->sys);
+           tribo_variation_create(&m->variation, drv->sys, n);
 }
 
 void tribo_period_map_free(struct period_map *m)

@@ -62,8 +62,9 @@ int tribo_period_map_matrix(struct period_map *m, struct point *p);
  * Returns a status, its message on the driver. */
 int tribo_period_map_march(struct period_map *m, double time, size_t times, struct company *company, double *x);
 
-/* Integrates one period from y with the observer `company`. Returns a status, its message on the driver. */
-int tribo_period_map_replay(struct period_map *m, const double *y, struct company *company);
+/* Integrates from y at m->t for a time `length` with the observer `company`; m->y becomes the state at the end. Returns a status, its
+ * message on the driver. */
+int tribo_period_map_replay(struct period_map *m, const double *y, double length, struct company *company);
 
 /* rate [n] = coordinates of the derivative of the state by time at the end of the last integration by follow. */
 void tribo_period_map_rate(const struct period_map *m, const double *end, double *rate);

@@ -48,37 +48,48 @@ static int replay_phase(struct company *company, double tau, double t, const dou
     return status;
 }
 
-/* Observes the period of the motion found, with coefficients c of q and q' or NULL. missing: name of an argument that is NULL.
- * Returns a status. */
-static int replay(tribo_driver *drv, struct replay *r, const char *missing, const double *c, size_t order)
+static const struct company quantities = {replay_phase, NULL};
+
+int tribo_shooting_ready(tribo_driver *drv, const char *missing, const double **c)
 {
     struct shooting *s = drv ? drv->shooting : NULL;
     if (!drv || missing) {
         return drv ? tribo_error(drv->message, TRIBO_ERR_NULL, "%s is NULL", missing) : TRIBO_ERR_NULL;
     }
-    for (size_t i = 0; c && i < 2 * tribo_system_ndof(drv->sys); i++) {
-        if (!isfinite(c[i])) {
-            return tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "c[%zu] = %g is not finite", i, c[i]);
+    for (size_t i = 0; *c && i < 2 * tribo_system_ndof(drv->sys); i++) {
+        if (!isfinite((*c)[i])) {
+            return tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "c[%zu] = %g is not finite", i, (*c)[i]);
         }
     }
-    r->c = c;
-    if (c && drv->motion) {
-        tribo_system_read_combination(drv->sys, c, drv->motion);
-        r->c = drv->motion;
+    if (*c && drv->motion) {
+        tribo_system_read_combination(drv->sys, *c, drv->motion);
+        *c = drv->motion;
     }
     const int unset = tribo_system_take_settings(drv->sys);
     if (unset) {
         return tribo_driver_pass(drv, unset);
     }
-    if (!s || !s->found || s->revision != tribo_system_revision(drv->sys)) {
-        return tribo_error(drv->message, TRIBO_ERR_STATE, "%s: call tribo_driver_find_periodic first",
-                           s && s->found ? "the system has changed since the periodic motion was found"
-                                         : "no periodic motion was found");
+    return s && s->found && s->revision == tribo_system_revision(drv->sys)
+               ? TRIBO_OK
+               : tribo_error(drv->message, TRIBO_ERR_STATE, "%s: call tribo_driver_find_periodic first",
+                             s && s->found ? "the system has changed since the periodic motion was found"
+                                           : "no periodic motion was found");
+}
+
+/* Observes the period of the motion found, with coefficients c of q and q' or NULL. missing: name of an argument that is NULL.
+ * Returns a status. */
+static int replay(tribo_driver *drv, struct replay *r, const char *missing, const double *c, size_t order)
+{
+    const int unready = tribo_shooting_ready(drv, missing, &c);
+    if (unready) {
+        return unready;
     }
-    r->company = (struct company){replay_phase, NULL};
+    struct shooting *s = drv->shooting;
+    r->c = c;
+    r->company = quantities;
     r->map = &s->map;
     r->omega = 2.0 * acos(-1.0) * (double)order / s->map.period;
-    const int status = tribo_period_map_replay(&s->map, s->here->y, &r->company);
+    const int status = tribo_period_map_replay(&s->map, s->here->y, s->map.period, &r->company);
     return status && s->map.drv != drv ? tribo_error(drv->message, status, "%s", s->map.drv->message) : status;
 }
 

@@ -66,6 +66,9 @@
 #define LEAST_INEXACT 1e-6
 #define NEARLY_SINGULAR 1e-6
 
+/* Values of a state up to which many equations are solved by the matrix. */
+#define DIRECT 200
+
 /* AT_ONCE: a velocity below AT_ONCE times the largest velocity of a motion may be rounding, and its sign may differ between
  * the beginning and the end of a period. LASTS: largest residual over size of a periodic motion, from another beginning of the
  * period. */
@@ -83,6 +86,12 @@ int tribo_shooting_fails(const struct shooting *s, double residual)
     return tribo_error(s->map.drv->message, TRIBO_ERR_NO_CONVERGENCE,
                        "no motion of period %.17g was found in %g periods: the nearest misses its beginning by %.3g of its size",
                        s->map.period, 0.5 * (double)s->map.halves, residual);
+}
+
+static int no_memory(const struct shooting *s)
+{
+    return tribo_error(s->map.drv->message, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
+                       s->map.sys->ndof, plural(s->map.sys->ndof));
 }
 
 /* -------------------------------------------------------------------------------------------------------------- points */
@@ -190,11 +199,7 @@ static int solve_dense(struct shooting *s, struct point *p, int spans, size_t co
         }
     }
     memcpy(s->a + n * all, p->border + count * n, count * all * sizeof *s->a);
-    return status || tribo_least_norm_solve(s->a, all, cut, x, kernel)
-               ? status
-               : tribo_error(s->map.drv->message, TRIBO_ERR_MEMORY,
-                             "out of memory for periodic motions of %zu degree%s of freedom", s->map.sys->ndof,
-                             plural(s->map.sys->ndof));
+    return status || tribo_least_norm_solve(s->a, all, cut, x, kernel) ? status : no_memory(s);
 }
 
 /* x [n] = the shortest solution of (I - D) y = x, D over s->spans spans from s->here, by GMRES to `tolerance`: if contacts
@@ -295,6 +300,32 @@ static int shorten(struct shooting *s, double high)
         *(s->ratio > 0.0 ? &low : &high) = part;
         *(s->ratio > 0.0 ? &at_low : &at_high) = s->ratio;
     }
+    return status;
+}
+
+int tribo_shooting_solve(struct shooting *s, size_t columns, double *x)
+{
+    const size_t n = s->map.n, direct = n <= DIRECT;
+    int *pivot = malloc((n + 1) * sizeof *pivot);
+    int status = !pivot ? no_memory(s) : direct ? find_derivative(s, s->here, 1) : TRIBO_OK;
+    for (size_t i = 0; direct && !status && i < n * n; i++) {
+        s->a[i] = (i % (n + 1) == 0 ? 1.0 : 0.0) - s->b[i];
+    }
+    const int regular = direct && !status && tribo_lu_create(s->a, n, pivot) > FREE;
+    if (regular) {
+        tribo_lu_solve(s->a, n, pivot, x, columns);
+    }
+    s->spans = 1;
+    for (size_t j = 0; !status && !regular && j < columns; j++) {
+        for (size_t i = 0; i < n; i++) {
+            s->step[i] = x[i * columns + j];
+        }
+        status = tribo_energy_length(s->step, n) > 0.0 ? solve_equation(s, AIM, FREE, s->step) : TRIBO_OK;
+        for (size_t i = 0; i < n; i++) {
+            x[i * columns + j] = s->step[i];
+        }
+    }
+    free(pivot);
     return status;
 }
 

@@ -69,4 +69,12 @@ void tribo_shooting_keep(struct shooting *s, struct wanted *w);
 int tribo_shooting_find(struct shooting *s, struct wanted *w);
 int tribo_shooting_find_cycle(struct shooting *s, struct wanted *w);
 
+/* Returns TRIBO_OK if drv is not NULL, missing is NULL, and the system is that of the motion found; missing: name of an argument that
+ * is NULL. *c: NULL, or coefficients of q, q' of the caller's, which become those of the methods' state: [2 ndof + 2 springs] with
+ * those of f and f', or without an expansion [2 ndof]. */
+int tribo_shooting_ready(tribo_driver *drv, const char *missing, const double **c);
+
+/* x [n][columns] = (I - D)^-1 x, D = d image/d x of the motion found. Returns a status. */
+int tribo_shooting_solve(struct shooting *s, size_t columns, double *x);
+
 #endif

@@ -46,24 +46,27 @@ static struct derivative_step *add_step(struct derivative *d)
     return d->step + d->steps++;
 }
 
-/* Appends a jump. Returns a status. */
-static int add_jump(struct derivative *d, const double *row, const double *column)
+/* Appends a jump, whose crossing the limit of contact moves by lift. Returns a status. */
+static int add_jump(struct derivative *d, const double *row, size_t contact, double lift, const double *column)
 {
     const size_t n = tribo_system_energy(d->sys), moved = n - d->sys->ndof;
     struct derivative_step *s = add_step(d);
     double *jump = s ? malloc((n + moved) * sizeof *jump) : NULL;
     if (jump) {
         s->jump = jump;
+        s->contact = contact;
+        s->lift = lift;
         memcpy(jump, row, n * sizeof *row);
         memcpy(jump + n, column, moved * sizeof *column);
     }
     return jump ? TRIBO_OK : no_room(d);
 }
 
-int tribo_derivative_apply(const struct derivative *d, size_t first, size_t columns, double *v)
+int tribo_derivative_apply(const struct derivative *d, size_t first, size_t columns, double *v, const struct parameters *p)
 {
-    const size_t n = d->sys->ndof, all = tribo_system_energy(d->sys);
-    double *work = malloc((2 * d->sys->ncontact + 1) * columns * sizeof *work);
+    const size_t n = d->sys->ndof, all = tribo_system_energy(d->sys), each = d->sys->ncontact * columns;
+    double *work = malloc((3 * each + columns) * sizeof *work), *force = work + 2 * each + columns;
+    const struct source source = {.force = force, .inertia = p ? p->inertia : NULL, .damping = p ? p->damping : NULL};
     int status =
         work ? TRIBO_OK
              : tribo_error(d->sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
@@ -72,13 +75,19 @@ int tribo_derivative_apply(const struct derivative *d, size_t first, size_t colu
         if (s->jump) {
             memset(work, 0, columns * sizeof *work);
             tribo_multiply_add(1, all, columns, 1.0, s->jump, v, work);
+            tribo_add(work, s->lift, p ? p->rise + s->contact * columns : v, p ? columns : 0);
             tribo_multiply_add(all - n, 1, columns, 1.0, s->jump + all, work, v + n * columns);
             continue;
         }
         if (d->sys->compliance.count) {
-            tribo_compliance_perturb(d->sys, s->slip, columns, v, work);
+            tribo_compliance_perturb(d->sys, s->slip, p ? p->rise : NULL, columns, v, work);
         }
-        status = d->events->motion->transition(d->events->own, s->phase, s->tau, columns, v);
+        for (size_t i = 0; p && i < each; i++) {
+            const size_t contact = i / columns;
+            const int pushes = tribo_slides(s->slip[contact]) && !d->events->stick_slip.constant.elastic[contact];
+            force[i] = pushes ? -s->slip[contact] * p->rise[i] : 0.0;
+        }
+        status = d->events->motion->transition(d->events->own, s->phase, s->tau, columns, v, p ? &source : NULL);
     }
     free(work);
     return status;
@@ -103,7 +112,13 @@ static int catch_up(struct variation *x)
 {
     const size_t first = x->applied;
     x->applied = x->to->steps;
-    return tribo_derivative_apply(x->to, first, x->columns, x->v);
+    return tribo_derivative_apply(x->to, first, x->columns, x->v, x->by);
+}
+
+/* Returns 1 if steps may wait for catch_up. */
+static int may_wait(const struct variation *x)
+{
+    return x->to->events->motion->keep && !x->by;
 }
 
 /* -------------------------------------------------------------------------------------------------------- static limits */
@@ -189,7 +204,7 @@ int tribo_variation_phase(struct variation *x, double tau, double t, const doubl
         s->phase = motion->keep ? motion->keep(x->to->events->own, tau) : NULL;
     }
     status = done && (s->phase || !motion->keep) ? TRIBO_OK : no_room(x->to);
-    status = status || motion->keep ? status : catch_up(x);
+    status = status || may_wait(x) ? status : catch_up(x);
     return status ? status : find_drops(x, tau);
 }
 
@@ -295,11 +310,11 @@ static void carry_over(struct variation *x, size_t first)
             tear(x, x->contact[first], x->contact[l]);
         }
     }
-    x->status = x->status ? x->status : add_jump(x->to, x->row + first * all, x->change);
+    x->status = x->status ? x->status : add_jump(x->to, x->row + first * all, 0, 0.0, x->change);
 }
 
 /* Where elastic contact i = met->contact breaks away and other elastic contacts stop, because f' jumps: appends the jump of f',
- * earlier by df_i/(f_i' - limit'). */
+ * earlier by (df_i - dlimit)/(f_i' - limit'). */
 static void carry_over_springs(struct variation *x)
 {
     const struct stick_slip *m = &x->to->events->stick_slip;
@@ -324,7 +339,7 @@ static void carry_over_springs(struct variation *x)
         const struct normal *normal = &x->sys->normals.normal[f->normal];
         tribo_matrix_add_row(&x->sys->direction, normal->row, met->side * f->mu * normal->stiffness / slope, x->row);
     }
-    x->status = x->status || !stop || slope == 0.0 ? x->status : add_jump(x->to, x->row, x->change);
+    x->status = x->status || !stop || slope == 0.0 ? x->status : add_jump(x->to, x->row, i, met->side / slope, x->change);
 }
 
 /* Appends the jumps of f' where normals lift off or touch down, earlier by depth/speed. Of several normals each makes the jumps of
@@ -352,7 +367,7 @@ static void carry_over_normals(struct variation *x)
             const int own = changes == 1 || (f && f->normal == k);
             x->change[n + l] = own ? now->spring_rate[j] - x->spring_rate[j] : 0.0;
         }
-        x->status = x->status ? x->status : add_jump(x->to, x->row, x->change);
+        x->status = x->status ? x->status : add_jump(x->to, x->row, 0, 0.0, x->change);
     }
 }
 
@@ -396,7 +411,7 @@ void tribo_variation_event(struct variation *x)
     }
     carry_over_springs(x);
     carry_over_normals(x);
-    x->status = x->status || x->to->events->motion->keep ? x->status : catch_up(x);
+    x->status = x->status || may_wait(x) ? x->status : catch_up(x);
 }
 
 /* ------------------------------------------------------------------------------------------------------------------- calls */
@@ -408,17 +423,18 @@ void tribo_variation_begin(struct variation *x, struct events *e, const double *
     memcpy(x->v, v, tribo_system_energy(x->sys) * columns * sizeof *v);
     x->columns = columns;
     x->to = to;
+    x->by = NULL;
     x->applied = 0;
     x->status = TRIBO_OK;
 }
 
-int tribo_variation_create(struct variation *x, tribo_system *sys)
+int tribo_variation_create(struct variation *x, tribo_system *sys, size_t columns)
 {
     const size_t n = sys->ndof, c = sys->ncontact, all = tribo_system_energy(sys);
     *x = (struct variation){.sys = sys};
-    return ALLOCATE(ARRAY(x->v, all * all), ARRAY(x->acceleration, n), ARRAY(x->force, c), ARRAY(x->rate, c),
+    return ALLOCATE(ARRAY(x->v, all * columns), ARRAY(x->acceleration, n), ARRAY(x->force, c), ARRAY(x->rate, c),
                     ARRAY(x->spring_rate, c), ARRAY(x->row, c * all), ARRAY(x->a, c), ARRAY(x->f, c), ARRAY(x->change, all - n),
-                    ARRAY(x->delay, 2 * all), ARRAY(x->pressed, c), ARRAY(x->contact, c), ARRAY(x->group, c)) != NULL;
+                    ARRAY(x->delay, 2 * columns), ARRAY(x->pressed, c), ARRAY(x->contact, c), ARRAY(x->group, c)) != NULL;
 }
 
 void tribo_variation_free(struct variation *x)

@@ -23,12 +23,20 @@
 
 #include "dynamics/events/events.h"
 
-/* A phase, or a jump [q'', f'] += column row. */
+/* A phase, or a jump [q'', f'] += column (row + lift times the derivative of the limit of contact). */
 struct derivative_step {
     void *phase; /* of motion->keep; NULL: not kept */
     double tau;
     signed char *slip; /* [ncontact] slip in the phase; NULL: a jump */
     double *jump;      /* row [n], column [n - ndof] */
+    size_t contact;
+    double lift;
+};
+
+/* Perturbations [columns] that are derivatives by parameters: rise [ncontact][columns] of limits; inertia and damping [columns] as of
+ * struct source, or both NULL. */
+struct parameters {
+    const double *rise, *inertia, *damping;
 };
 
 /* The derivative as steps; applied to a few perturbations, or to n units for the matrix. */
@@ -44,19 +52,21 @@ struct derivative {
 /* Removes all steps and the matrix; free: takes a zeroed d. */
 void tribo_derivative_free(struct derivative *d);
 
-/* Moves perturbations v [n][columns] by the steps from `first` on. Returns a status, its message on the system's context. */
-int tribo_derivative_apply(const struct derivative *d, size_t first, size_t columns, double *v);
+/* Moves perturbations v [n][columns] by the steps from `first` on. p: NULL, or parameters by which v are derivatives: with inertia and
+ * damping, the only phase among the steps is that which ends. Returns a status, its message on the system's context. */
+int tribo_derivative_apply(const struct derivative *d, size_t first, size_t columns, double *v, const struct parameters *p);
 
 /* Returns 1 if a contact is at rest in all phases. */
 int tribo_derivative_rests(const struct derivative *d);
 
 struct variation {
     tribo_system *sys;
-    struct derivative *to; /* of the motion so far */
-    size_t columns;        /* at most n */
-    double *v;             /* [n][columns] perturbations after the first `applied` steps of `to` */
-    size_t applied;        /* all steps, if phases are not kept */
-    int status;            /* of a failure in an event, its message on the system's context */
+    struct derivative *to;       /* of the motion so far */
+    size_t columns;              /* at most those of create */
+    double *v;                   /* [n][columns] perturbations after the first `applied` steps of `to` */
+    const struct parameters *by; /* parameters by which v are derivatives, set after begin, or NULL */
+    size_t applied;              /* all steps, if phases are not kept, and with parameters */
+    int status;                  /* of a failure in an event, its message on the system's context */
 
     /* at the end of a phase */
     const signed char *before; /* [ncontact] slip in the phase, of `to` */
@@ -76,8 +86,8 @@ struct variation {
     double *change, *delay; /* [n - ndof], [2 columns] workspace */
 };
 
-/* Returns 1, or 0 if out of memory. Call tribo_variation_free also after a failure. */
-int tribo_variation_create(struct variation *x, tribo_system *sys);
+/* Returns 1, or 0 if out of memory. columns: the most. Call tribo_variation_free also after a failure. */
+int tribo_variation_create(struct variation *x, tribo_system *sys, size_t columns);
 void tribo_variation_free(struct variation *x);
 
 /* Call begin before a motion of e. v [n][columns]: perturbations that decide whether contacts stop at one time. `to`, of which all

@@ -182,10 +182,34 @@ struct perturbed {
     double *force;   /* [ncontact] forces by limits that fall, or follow the motion */
     double *v;       /* [rows][ncontact] velocities of contacts, the last orders cyclically */
     struct planar_turns turns;
+    const struct source *source;
+    double *drag; /* [ndof] workspace, one column: AC q' */
+    double power; /* tau^(k - 1) */
 };
 
 /* Most terms; a series of exponentials over a step has far less. */
 #define MOST_TERMS 400
+
+/* p->next += part times the terms of order k - 1 of the source, if any. */
+static void add_source(struct event *e, size_t k, double part, const struct perturbed *p)
+{
+    const struct source *s = p->source;
+    const size_t n = e->sys->ndof, c = p->columns;
+    if (s && k == 1) {
+        tribo_matrix_add_columns(&e->sys->response, part, c, s->force, p->next);
+    }
+    if (!s || !s->inertia || k > e->order) {
+        return;
+    }
+    memset(p->drag, 0, n * sizeof *p->drag);
+    if (e->sys->damping.rows) {
+        tribo_matrix_multiply(&e->sys->damping, e->u + (k - 1) * n, p->drag);
+    }
+    for (size_t at = 0; at < n * c; at++) {
+        const double acceleration = (double)k * e->u[k * n + at / c];
+        p->next[at] += part * p->power * (s->inertia[at % c] * acceleration + s->damping[at % c] * p->drag[at / c]);
+    }
+}
 
 /* Sets the terms of order k from those before. Returns a status. */
 static int find_term(struct event *e, size_t k, double tau, const struct perturbed *p)
@@ -230,6 +254,7 @@ static int find_term(struct event *e, size_t k, double tau, const struct perturb
         }
         tribo_matrix_add_columns(&sys->response, part, p->columns, p->force, p->next);
     }
+    add_source(e, k, part, p);
     if (m->plane) {
         tribo_planar_series_turn(e, k - 1, &p->turns, p->force);
         tribo_matrix_add_columns(&sys->response, part, p->columns, p->force, p->next);
@@ -242,17 +267,19 @@ static int find_term(struct event *e, size_t k, double tau, const struct perturb
     return m->plane ? tribo_planar_series_turn_finish(e, k - 1, &p->turns, p->u) : TRIBO_OK;
 }
 
-int tribo_event_transition(void *own, const void *phase, double tau, size_t columns, double *v)
+int tribo_event_transition(void *own, const void *phase, double tau, size_t columns, double *v, const struct source *source)
 {
     struct event *e = own;
     struct stick_slip *m = &e->events.stick_slip;
     const struct compliance *g = &e->sys->compliance;
     const size_t n = e->sys->ndof, half = n * columns, each = e->sys->ncontact * columns;
     const size_t planes = m->plane ? m->plane->count * columns : 0;
-    struct perturbed p = {.columns = columns, .rows = m->limits.falls || m->plane ? e->order + 1 : 1};
+    struct perturbed p = {
+        .columns = columns, .rows = m->limits.falls || m->plane ? e->order + 1 : 1, .source = source, .power = 1.0};
     struct planar_turns *t = &p.turns;
     if (!ALLOCATE(ARRAY(p.project, n * n), ARRAY(p.q, half), ARRAY(p.u, half), ARRAY(p.next, half), ARRAY(p.spring, each),
-                  ARRAY(p.force, each), ARRAY(p.v, p.rows * each), ARRAY(t->z, p.rows * planes), ARRAY(t->w, planes))) {
+                  ARRAY(p.force, each), ARRAY(p.v, p.rows * each), ARRAY(t->z, p.rows * planes), ARRAY(t->w, planes),
+                  ARRAY(p.drag, n))) {
         return tribo_error(e->sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     }
     *t = (struct planar_turns){columns, p.rows, tau, p.v, t->z, t->w};
@@ -282,7 +309,8 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
         }
         const int adds = tribo_largest(p.q, half) > DBL_EPSILON * tribo_largest(v, half) ||
                          tribo_largest(p.u, half) > DBL_EPSILON * tribo_largest(v + half, half);
-        small = adds ? 0 : small + 1;
+        small = adds || (source && k <= e->order) ? 0 : small + 1;
+        p.power *= tau;
     }
     free(p.project);
     return status;

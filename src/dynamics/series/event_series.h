@@ -117,7 +117,7 @@ double tribo_event_work(void *own, size_t i, double tau);
 
 /* Moves perturbations v [2 ndof + compliant contacts][columns] of the state by tau in the phase. As transition of struct
  * motion. */
-int tribo_event_transition(void *own, const void *phase, double tau, size_t columns, double *v);
+int tribo_event_transition(void *own, const void *phase, double tau, size_t columns, double *v, const struct source *source);
 
 /* method_event.c: returns the length of the step on which the last two terms of all series are below the tolerance; sets
  * plane->error. */

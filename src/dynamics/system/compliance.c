@@ -136,6 +136,16 @@ void tribo_compliance_give(const tribo_system *sys, size_t columns, const double
     }
 }
 
+void tribo_system_find_ways(const tribo_system *sys, size_t columns, const double *v, double *f, double *way)
+{
+    memset(f, 0, sys->ncontact * columns * sizeof *f);
+    for (size_t k = 0; k < sys->compliance.count; k++) {
+        memcpy(f + sys->compliance.contact[k] * columns, v + (2 * sys->ndof + k) * columns, columns * sizeof *v);
+    }
+    tribo_compliance_give(sys, columns, f, way);
+    tribo_matrix_add_columns(&sys->direction, 1.0, columns, v, way);
+}
+
 void tribo_compliance_share(const struct compliance *g, double *v)
 {
     if (tribo_solve_box(g->box, v, g->lo, g->hi, g->f)) {
@@ -226,8 +236,9 @@ void tribo_compliance_enter(const tribo_system *sys, const double *limit, double
     tribo_compliance_put(sys, force, y);
 }
 
-/* f_A += G_AA^-1 G_AS (f_S - s) over the sets A at rest and S of sliding contacts, then f_S = s = -slip limit(q). */
-void tribo_compliance_perturb(const tribo_system *sys, const signed char *slip, size_t columns, double *v, double *work)
+/* f_A += G_AA^-1 G_AS (f_S - s) over the sets A at rest and S of sliding contacts, then f_S = s = -slip (limit(q) + rise). */
+void tribo_compliance_perturb(const tribo_system *sys, const signed char *slip, const double *rise, size_t columns, double *v,
+                              double *work)
 {
     const struct compliance *g = &sys->compliance;
     const struct matrix *j = &sys->direction;
@@ -241,6 +252,9 @@ void tribo_compliance_perturb(const tribo_system *sys, const signed char *slip, 
             const struct follower *own = tribo_normals_follower(sys, g->contact[k]);
             const struct normal *n = own ? &sys->normals.normal[own->normal] : NULL;
             const signed char side = slip[g->contact[k]];
+            const double *own_rise = rise && side != TRIBO_SLIP_OPEN ? rise + g->contact[k] * columns : NULL;
+            tribo_add(f + k * columns, -side, own_rise, own_rise ? columns : 0);
+            tribo_add(work + g->contact[k] * columns, side, own_rise, own_rise ? columns : 0);
             for (size_t e = n && side != TRIBO_SLIP_OPEN ? j->first[n->row] : 0;
                  n && side != TRIBO_SLIP_OPEN && e < j->first[n->row + 1]; e++) {
                 const double slope = -side * own->mu * n->stiffness * j->val[e];

@@ -225,6 +225,9 @@ double tribo_system_fastest(const tribo_system *sys);
 /* Returns R_ij. */
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 
+/* way [ncontact][columns] = J q + G f of perturbations v [tribo_system_energy][columns]; f [ncontact][columns] = their forces. */
+void tribo_system_find_ways(const tribo_system *sys, size_t columns, const double *v, double *f, double *way);
+
 /* to [ndof] = scale times the order-th derivative of the load at the set time, - AK q - AC u + M^-1 J' f over the compliant
  * contacts, and the forces of pressed normals, of which the gap counts in order 0; f [ncontact]. u is not read without damping, f
  * not without compliant contacts. */

@@ -243,8 +243,8 @@ TEST(powers)
     }
     const double tau = TRIBO_POWERS_REACH / none->forced->fastest;
     require(none->forced->fastest >= modes->forced->fastest, "a bound of %g", none->forced->fastest);
-    assert_ok(tribo_modal_transition(&own, modes, tau, columns, v));
-    assert_ok(tribo_modal_transition(&own, none, tau, columns, w));
+    assert_ok(tribo_modal_transition(&own, modes, tau, columns, v, NULL));
+    assert_ok(tribo_modal_transition(&own, none, tau, columns, w, NULL));
     assert_all_close(w, v, size, 1e-14);
     tribo_modal_free(modes);
     tribo_modal_free(none);
@@ -293,9 +293,9 @@ TEST(springs)
         }
         require(none[set]->forced->fastest >= modes->forced->fastest, "a bound of %g", none[set]->forced->fastest);
         const double tau = TRIBO_POWERS_REACH / none[set]->forced->fastest;
-        assert_ok(tribo_modal_transition(&own, modes, tau, COLUMNS, v));
-        assert_ok(tribo_modal_transition(&own, none[set], tau, COLUMNS, w));
-        assert_ok(tribo_modal_transition(&own, none[set], tau, 1, one));
+        assert_ok(tribo_modal_transition(&own, modes, tau, COLUMNS, v, NULL));
+        assert_ok(tribo_modal_transition(&own, none[set], tau, COLUMNS, w, NULL));
+        assert_ok(tribo_modal_transition(&own, none[set], tau, 1, one, NULL));
         assert_all_close(w, v, ALL * COLUMNS, 1e-13);
         for (size_t k = 0; k < ALL; k++) {
             assert_close(one[k], w[k * COLUMNS + 1], 1e-14);

@@ -1,0 +1,243 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The response of a phase of method "exact" to a source that is linear in its motion, in closed form: derivatives of the motion by
+ * damping and by frequency. With modes the source of mode k is
+ *     Re(sum over exponents and harmonics of c e^{mu s}) + c_0 + c_1 s,
+ * for the source eta'' with c = lambda^2 r z of an exponent, for the source C~ eta' with c = -(lambda^2 + omega_k^2) r z; and an exponent
+ * takes from it z' = lambda z + b c e^{mu s}. */
+#include "motion.h"
+#include "common/layout.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The sources eta'' and C~ eta', and responses to both. */
+enum { INERTIA, DAMPING, SOURCES };
+
+/* |z| below which (e^z - 1 - z)/z^2 is a sum of TERMS terms. */
+#define NEAR_ZERO 1.0
+enum { TERMS = 18 };
+
+/* Sources and responses [SOURCES][modes]. */
+struct response {
+    const struct exact *x;
+    double tau;
+    double *steady, *ramp;    /* c_0, c_1 */
+    double *re, *im;          /* [SOURCES][harmonics][modes] c of harmonics */
+    double *eta, *rate;       /* responses at tau */
+    double *zr, *zi;          /* [exponents] response of exponents */
+    double *q, *u;            /* [ndof] workspace */
+    double *unit;             /* [shapes] workspace */
+    double *power;            /* [TRIBO_POWERS][modes][SOURCES] coefficients of the sources; without modes */
+    double *e, *e_rate, *out; /* [modes][SOURCES], [modes][SOURCES], [4 modes + 1][SOURCES] workspace; without modes */
+};
+
+/* Returns (e^z - 1 - z)/z^2, the integral of (1 - s) e^{z s} over s from 0 to 1. */
+static double complex exp_2(double complex z)
+{
+    double complex sum = 0.0;
+    if (cabs(z) > NEAR_ZERO) {
+        return (tribo_exp_1(z) - 1.0) / z;
+    }
+    for (int k = TERMS; k > 0; k--) {
+        sum = (1.0 + sum * z) / (k + 1);
+    }
+    return sum;
+}
+
+/* Returns the integral of e^{lambda (tau - s)} e^{mu s} over s from 0 to tau. */
+static double complex meet(double complex lambda, double complex mu, double tau)
+{
+    const double complex high = creal(mu) > creal(lambda) ? mu : lambda, low = creal(mu) > creal(lambda) ? lambda : mu;
+    return tau * cexp(high * tau) * tribo_exp_1((low - high) * tau);
+}
+
+/* to [modes] += psi AC q' for q' = sum of the shapes times rate [shapes]. */
+static void add_damping(struct response *r, const double *rate, double *to)
+{
+    const struct forced *h = r->x->h;
+    const size_t n = h->modal->n;
+    if (r->x->sys->damping.rows) {
+        memset(r->q, 0, n * sizeof *r->q);
+        tribo_multiply_transposed_add(h->shapes, n, 1, h->phi, rate, r->q);
+        tribo_matrix_multiply(&r->x->sys->damping, r->q, r->u);
+        tribo_multiply_add(h->modal->modes, n, 1, 1.0, h->modal->psi, r->u, to);
+    }
+}
+
+/* Sets c of harmonics, c_0 and c_1 of a source. */
+static void find_source(struct response *r, int source)
+{
+    const struct exact *x = r->x;
+    const struct forced *h = x->h;
+    const size_t m = h->modal->modes, at = (size_t)source * m;
+    if (source == INERTIA) {
+        memcpy(r->steady, x->acc, m * sizeof *x->acc);
+    } else {
+        add_damping(r, x->drift, r->steady + at);
+        add_damping(r, x->acc, r->ramp + at);
+    }
+    for (size_t s = 0; s < h->harmonics; s++) {
+        const double omega = h->forcing[s].omega;
+        const double complex z = tribo_part(&x->z, h->modal->exponents + s), *response = h->x + s * h->shapes;
+        for (int part = 0; part < 2; part++) {
+            double *to = (part ? r->im : r->re) + at * h->harmonics + s * m;
+            for (size_t k = 0; k < h->shapes; k++) {
+                const double complex motion = response[k] * z;
+                r->unit[k] = omega * (part ? creal(motion) : -cimag(motion));
+                if (source == INERTIA && k < m) {
+                    to[k] = -omega * omega * (part ? cimag(motion) : creal(motion));
+                }
+            }
+            if (source == DAMPING) {
+                add_damping(r, r->unit, to);
+            }
+        }
+    }
+}
+
+/* b of exponent p and mode k. */
+static double complex takes(const struct modal *h, size_t p, size_t k)
+{
+    const size_t at = h->owner ? p : k * h->exponents + p;
+    return h->owner && h->owner[p] != k ? 0.0 : h->br[at] + h->bi[at] * I;
+}
+
+/* Returns what exponent p takes until tau: from c_0, c_1, harmonics, and exponents. */
+static double complex respond_exponent(const struct response *r, int source, size_t p)
+{
+    const struct forced *f = r->x->h;
+    const struct modal *h = f->modal;
+    const double complex own = h->lr[p] + h->li[p] * I;
+    const size_t m = h->modes, first = h->owner ? h->owner[p] : 0, end = h->owner ? first + 1 : m, at = (size_t)source * m;
+    const double complex steady = r->tau * tribo_exp_1(own * r->tau), ramp = r->tau * r->tau * exp_2(own * r->tau);
+    double complex sum = 0.0;
+    for (size_t k = first; k < end; k++) {
+        sum += takes(h, p, k) * (r->steady[at + k] * steady + r->ramp[at + k] * ramp);
+    }
+    for (size_t s = 0; s < f->harmonics; s++) {
+        const double complex turn = f->forcing[s].omega * I;
+        const double complex along = 0.5 * meet(own, turn, r->tau), against = 0.5 * meet(own, -turn, r->tau);
+        const double *re = r->re + ((size_t)source * f->harmonics + s) * m, *im = r->im + ((size_t)source * f->harmonics + s) * m;
+        for (size_t k = first; k < end; k++) {
+            sum += takes(h, p, k) * ((re[k] + im[k] * I) * along + (re[k] - im[k] * I) * against);
+        }
+    }
+    for (size_t q = 0; q < h->exponents; q++) {
+        const double complex mu = h->lr[q] + h->li[q] * I, z = tribo_part(&r->x->z, q);
+        double complex with = 0.0, conjugate = 0.0;
+        for (size_t k = first; k < end && (!h->owner || h->owner[q] == first); k++) {
+            const double complex shape = h->owner ? 1.0 : h->rr[q * m + k] - h->ri[q * m + k] * I;
+            const double complex c = (source == INERTIA ? mu * mu : -(mu * mu + h->omega2[k])) * shape * z;
+            with += takes(h, p, k) * c;
+            conjugate += takes(h, p, k) * conj(c);
+        }
+        if (with != 0.0 || conjugate != 0.0) {
+            sum += 0.5 * (with * meet(own, mu, r->tau) + conjugate * meet(own, conj(mu), r->tau));
+        }
+    }
+    return sum;
+}
+
+/* Sets the responses of modes. */
+static void respond_modes(struct response *r, int source)
+{
+    const struct forced *f = r->x->h;
+    const struct modal *h = f->modal;
+    const size_t m = h->modes, e = h->exponents;
+    const double t = r->tau;
+    double *eta = r->eta + (size_t)source * m, *rate = r->rate + (size_t)source * m;
+    const double *steady = r->steady + (size_t)source * m, *ramp = r->ramp + (size_t)source * m;
+    for (size_t p = 0; p < e; p++) {
+        const double complex z = respond_exponent(r, source, p);
+        r->zr[p] = creal(z);
+        r->zi[p] = cimag(z);
+    }
+    tribo_modal_join(h, 1, r->zr, r->zi, eta);
+    for (size_t p = 0; p < e; p++) {
+        const double re = r->zr[p];
+        r->zr[p] = h->lr[p] * re - h->li[p] * r->zi[p];
+        r->zi[p] = h->lr[p] * r->zi[p] + h->li[p] * re;
+    }
+    tribo_modal_join(h, 1, r->zr, r->zi, rate);
+    for (size_t k = 0; k < m; k++) {
+        if (!tribo_modal_drifts(h, k)) {
+            continue;
+        }
+        eta[k] += t * t * (0.5 * steady[k] + t / 6.0 * ramp[k]);
+        rate[k] += t * (steady[k] + 0.5 * t * ramp[k]);
+        for (size_t s = 0; s < f->harmonics; s++) {
+            const size_t at = ((size_t)source * f->harmonics + s) * m + k;
+            const double complex c = r->re[at] + r->im[at] * I, turn = f->forcing[s].omega * t * I;
+            eta[k] += t * t * creal(c * exp_2(turn));
+            rate[k] += t * creal(c * tribo_exp_1(turn));
+        }
+    }
+}
+
+/* The same of a structure without modes, whose sources are powers of time. */
+static void respond_powers(struct response *r)
+{
+    const struct exact *x = r->x;
+    const struct forced *f = x->h;
+    const size_t m = f->modal->modes;
+    double part = 1.0; /* 1/k! */
+    for (size_t k = 0; k < TRIBO_POWERS; k++) {
+        const double *rate = x->power + (TRIBO_POWERS + k) * m;
+        memset(r->unit, 0, f->shapes * sizeof *r->unit);
+        memcpy(r->unit, rate, m * sizeof *rate);
+        for (size_t s = 0; s < f->harmonics; s++) {
+            const double complex turn = f->forcing[s].omega * I;
+            double complex z = part * turn * tribo_part(&x->z, s);
+            for (size_t j = 0; j < k; j++) {
+                z *= turn;
+            }
+            for (size_t l = m; l < f->shapes; l++) {
+                r->unit[l] += creal(f->x[s * f->shapes + l] * z);
+            }
+        }
+        memset(r->steady, 0, m * sizeof *r->steady);
+        add_damping(r, r->unit, r->steady);
+        for (size_t l = 0; l < m; l++) {
+            r->power[(k * m + l) * SOURCES + INERTIA] = k + 1 < TRIBO_POWERS ? (double)(k + 1) * rate[m + l] : 0.0;
+            r->power[(k * m + l) * SOURCES + DAMPING] = r->steady[l];
+        }
+        part /= (double)(k + 1);
+    }
+    tribo_powers_carry(f->modal, r->tau, SOURCES, r->out, r->e, r->e_rate, r->out + m * SOURCES, r->power);
+    tribo_transpose(m, SOURCES, r->e, r->eta);
+    tribo_transpose(m, SOURCES, r->e_rate, r->rate);
+}
+
+int tribo_modal_source(const struct exact *x, double tau, size_t columns, const struct source *source, double *eta, double *rate)
+{
+    const struct forced *f = x->h;
+    const struct modal *h = f->modal;
+    const size_t m = h->modes, loads = SOURCES * f->harmonics * m, powers = h->powers ? SOURCES * m : 0;
+    if (f->resonant) {
+        return tribo_error(x->sys->message, TRIBO_ERR_UNSUPPORTED,
+                           "method exact: a load is in resonance with an undamped mode; method event can do it");
+    }
+    struct response r = {.x = x, .tau = tau};
+    if (!ALLOCATE(ARRAY(r.steady, SOURCES * m), ARRAY(r.ramp, SOURCES * m), ARRAY(r.eta, SOURCES * m), ARRAY(r.rate, SOURCES * m),
+                  ARRAY(r.re, loads), ARRAY(r.im, loads), ARRAY(r.zr, h->exponents), ARRAY(r.zi, h->exponents), ARRAY(r.q, h->n),
+                  ARRAY(r.u, h->n), ARRAY(r.unit, f->shapes), ARRAY(r.power, TRIBO_POWERS * powers), ARRAY(r.e, powers),
+                  ARRAY(r.e_rate, powers), ARRAY(r.out, 4 * powers + SOURCES))) {
+        return tribo_error(x->sys->message, TRIBO_ERR_MEMORY, "out of memory for derivatives of %zu mode%s", m, plural(m));
+    }
+    if (h->powers) {
+        respond_powers(&r);
+    } else {
+        find_source(&r, INERTIA);
+        respond_modes(&r, INERTIA);
+        find_source(&r, DAMPING);
+        respond_modes(&r, DAMPING);
+    }
+    for (size_t at = 0; at < m * columns; at++) {
+        const size_t k = at / columns, j = at % columns;
+        eta[at] += source->inertia[j] * r.eta[k] + source->damping[j] * r.eta[m + k];
+        rate[at] += source->inertia[j] * r.rate[k] + source->damping[j] * r.rate[m + k];
+    }
+    free(r.steady);
+    return TRIBO_OK;
+}
