@@ -8,9 +8,10 @@
 !         node, direction, limit, row of R     of each contact
 !         node, direction, amplitude           of each load
 !
-!     way: 1 Coulomb's law over the step, 2 Quinn's law with
-!     lambda dt = 0.2. R, accelerations of contacts by their forces, is
-!     that of the modes. Writes record.txt: time, velocity at the
+!     way: 1 Coulomb's law over the step; 2 Quinn's law with
+!     lambda dt = 0.2; 3 a spring before the slider of each contact,
+!     whose stiffness stands first in the row of R. R, accelerations of
+!     contacts by their forces, is that of the modes. Writes record.txt: time, velocity at the
 !     first load, velocity and force of each contact.
 !
 !     CalculiX gives displacements and velocities at the start of the
@@ -34,10 +35,11 @@
      &  ldof(most),ih,ierr,i,j,known
       real*8 limit(most),r(most,most),amp(most),omega,begin,last,
      &  v(most),v0(most),f(most),f0(most),a(most),a0(most),ax(most),
-     &  vfree(most),feq(most),dt,share
+     &  vfree(most),feq(most),dt,share,
+     &  dz(most),held(most),stiff(most),dfdz(most)
       character*200 text
       save n,nload,way,nodes,dofs,lnode,ldof,ih,known,limit,r,amp,
-     &  omega,begin,last,v0,f,f0,a0
+     &  omega,begin,last,v0,f,f0,a0,held,stiff
       data ih /0/, ierr /0/, share /0.6d0/
 !
       if(ih.eq.0) then
@@ -47,6 +49,8 @@
           read(71,*) nodes(i),dofs(i),limit(i),(r(i,j),j=1,n)
           f(i)=0.d0
           v0(i)=0.d0
+          held(i)=0.d0
+          stiff(i)=r(i,1)
         enddo
         do i=1,nload
           read(71,*) lnode(i),ldof(i),amp(i)
@@ -55,7 +59,7 @@
         open(72,file='record.txt')
         call trbnew(n,ih,ierr)
         if(ierr.eq.0) call trblim(ih,n,limit,ierr)
-        if(ierr.eq.0) call trbopf(ih,n,r,most,ierr)
+        if(ierr.eq.0.and.way.lt.3) call trbopf(ih,n,r,most,ierr)
         last=time(1)
         known=0
       endif
@@ -67,33 +71,53 @@
         enddo
         if(last.ge.begin) write(72,'(50(1pe17.9))') last,
      &    veold(ldof(1),lnode(1)),(v(i),f(i),i=1,n)
+        if(way.eq.3) then
 !
-!       mean acceleration without friction over the last increment,
-!       and over the next one
+!         the spring forces at the start of the increment, then those
+!         that the motion foreseen gives at its end
 !
-        do i=1,n
-          a(i)=(v(i)-v0(i))/dt
-          do j=1,n
-            if(known.ge.1) a(i)=a(i)-0.5d0*r(i,j)*(f0(j)+f(j))
+          do i=1,n
+            dz(i)=0.5d0*dt*(v0(i)+v(i))
           enddo
-          if(known.eq.0) a(i)=0.d0
-          ax(i)=a(i)
-          if(known.ge.2) ax(i)=2.d0*a(i)-a0(i)
-        enddo
-        do i=1,n
-          vfree(i)=v(i)+dt*ax(i)
-          do j=1,n
-            vfree(i)=vfree(i)+(1.d0-share)*dt*r(i,j)*f(j)
+          if(ierr.eq.0) call trbelf(n,dz,stiff,limit,held,dfdz,ierr)
+          do i=1,n
+            a(i)=(v(i)-v0(i))/dt
+            if(known.eq.0) a0(i)=a(i)
+            dz(i)=dt*(v(i)+0.5d0*dt*(1.5d0*a(i)-0.5d0*a0(i)))
+            f(i)=held(i)
+            v0(i)=v(i)
+            a0(i)=a(i)
           enddo
-          v0(i)=v(i)
-          f0(i)=f(i)
-          a0(i)=a(i)
-        enddo
-        if(way.eq.1) then
-          if(ierr.eq.0) call trbstf(ih,n,share*dt,vfree,f,ierr)
+          if(ierr.eq.0) call trbelf(n,dz,stiff,limit,f,dfdz,ierr)
         else
-          if(ierr.eq.0) call trbstp(ih,dt,0.2d0,ierr)
-          if(ierr.eq.0) call trbbal(ih,n,v,ax,feq,f,ierr)
+!
+!         mean acceleration without friction over the last increment,
+!         and over the next one
+!
+          do i=1,n
+            a(i)=(v(i)-v0(i))/dt
+            do j=1,n
+              if(known.ge.1) a(i)=a(i)-0.5d0*r(i,j)*(f0(j)+f(j))
+            enddo
+            if(known.eq.0) a(i)=0.d0
+            ax(i)=a(i)
+            if(known.ge.2) ax(i)=2.d0*a(i)-a0(i)
+          enddo
+          do i=1,n
+            vfree(i)=v(i)+dt*ax(i)
+            do j=1,n
+              vfree(i)=vfree(i)+(1.d0-share)*dt*r(i,j)*f(j)
+            enddo
+            v0(i)=v(i)
+            f0(i)=f(i)
+            a0(i)=a(i)
+          enddo
+          if(way.eq.1) then
+            if(ierr.eq.0) call trbstf(ih,n,share*dt,vfree,f,ierr)
+          else
+            if(ierr.eq.0) call trbstp(ih,dt,0.2d0,ierr)
+            if(ierr.eq.0) call trbbal(ih,n,v,ax,feq,f,ierr)
+          endif
         endif
         known=known+1
         last=time(1)

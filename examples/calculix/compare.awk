@@ -1,43 +1,27 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# awk -f compare.awk damper-curve.csv record.txt...: amplitude and power of the last period of each record, named
-# INCREMENTS.WAY/record.txt, beside the exact ones, and the order of their errors. Status 1 if way 1 is worse than its bars.
+# awk -v title=TEXT -v most=NUMBER -v hertz=F -f compare.awk damper-curve.csv record.txt...: amplitude and power of the last period of each
+# record, named INCREMENTS.CASE/record.txt, beside the exact ones, and the order of their errors. Status 1 if errors of the last record
+# exceed most, or the order of the amplitude from the first to the last is below 1.6.
 function abs(x) { return x < 0 ? -x : x }
-function finish(   off, power, rate, key) {
-    if (rows == 0) {
-        return
-    }
-    off = abs((highest - lowest) / 2 / exact_amplitude - 1)
-    power = abs(30 * energy / exact_power - 1)
-    key = way == 1 ? "Coulomb over the step" : "Quinn, lambda dt 0.2"
-    printf "| %s | %d | %.6f | %.1e | %.4f | %.1e |\n", key, increments, (highest - lowest) / 2, off, 30 * energy, power
-    if (way == 1 && increments == 1000 && !(off < 5e-4 && power < 5e-4)) {
-        bad = 1
-    }
-    if (increments == 500) {
-        coarse[way] = off
-    }
-    if (increments == 2000) {
-        rate = log(coarse[way] / off) / log(4)
-        printf "| | order | | %.2f | | |\n", rate
-        done++
-        if (!(rate > 1.6 && rate < 2.6)) {
-            bad = 1
+function finish() {
+    if (rows > 0) {
+        off = abs((highest - lowest) / 2 / exact_amplitude - 1)
+        power = abs(hertz * energy / exact_power - 1)
+        printf "| %s | %d | %.6f | %.1e | %.4f | %.1e |\n", title, increments, (highest - lowest) / 2, off, hertz * energy, power
+        if (records++ == 0) {
+            first_off = off
+            first_increments = increments
         }
     }
 }
-BEGIN {
-    FS = ","
-    print "| force | increments a period | amplitude, mm | off by | power, mW | off by |\n|---|---|---|---|---|---|"
-}
+BEGIN { FS = "," }
 FNR == 1 && NR > 1 {
     finish()
     rows = energy = highest = lowest = place = 0
     FS = " "
     $0 = $0
     count = split(FILENAME, part, "/")
-    split(part[count - 1], name, ".")
-    increments = name[1]
-    way = name[2]
+    increments = part[count - 1] + 0
 }
 NR == FNR {
     if (FNR == 2) {
@@ -65,6 +49,7 @@ NR == FNR {
 }
 END {
     finish()
-    printf "| exact | | %.6f | | %.4f | |\n", exact_amplitude, exact_power
-    exit bad || done != 2
+    order = records > 1 ? log(first_off / off) / log(increments / first_increments) : 0
+    printf "| exact | order %.2f | %.6f | | %.4f | |\n", order, exact_amplitude, exact_power
+    exit !(off < most && power < most && order > 1.6)
 }
