@@ -196,8 +196,8 @@ static size_t periods_of(const struct worker *w)
 static struct motion shoot(struct worker *w, double limit, double hz, double *y)
 {
     struct motion m = {.limit = limit, .hz = hz};
+    set_point(w, limit, hz); /* may open another driver, which counts anew */
     const size_t before = periods_of(w);
-    set_point(w, limit, hz);
     int status = tribo_driver_find_periodic(w->drv, 0.0, 1.0 / hz, y);
     status = status ? status : measure(w, &m, y + w->dimension);
     if (!status && w->d->rows > w->d->contacts) {

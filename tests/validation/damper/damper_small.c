@@ -257,6 +257,15 @@ TEST(normal_follows)
     read_text("damper-curve.csv", text);
     require(says(text, "unstable: motions beside it leave it by a factor of 3.8"), "%s", text);
     write_text("follow-k.mtx", HEAD "2 2 2\n1 1 12\n2 2 21\n");
+    /* periods of each load are those of its own search */
+    assert_runs(FOLLOWS "mu=0.85:normal=y,21 --limits 40:60:3");
+    read_text("damper-curve.csv", text);
+    size_t lines = 0;
+    for (const char *line = strchr(text, '\n'); line && line[1]; line = strchr(line + 1, '\n'), lines++) {
+        double periods = HUGE_VAL;
+        require(sscanf(line, "%*f,%*f,%*f,%*f,%*f,%*f,%lf", &periods) == 1 && periods < 1000.0, "%s", line);
+    }
+    ck_assert_uint_ge(lines, 3);
     /* a band of loads: a curve for each, and a best one */
     const struct outcome o = assert_runs(FOLLOWS "mu=0.85:normal=y,21 --drive 0.5:0.75:3 --limits 5:500:3");
     require(says(o.out, "best normal load of the band"), "%s", o.out);
