@@ -277,9 +277,9 @@ TEST(unstable)
  * presses by its own stiffness, from its own gap. */
 static const struct wall {
     double mu, stiffness, gap;
-} walls[] = {{0.6, 21.0, -0.3}, {0.4, 15.0, 0.2}, {0.5, 9.0, -0.1}};
+} walls[] = {{0.6, 21.0, -0.3}, {0.4, 15.0, -0.2}, {0.5, 9.0, -0.1}};
 
-static tribo_system *between_walls(double fast)
+static tribo_system *between_walls(double fast, double load)
 {
     const double mass[] = {1.0, 1.5}, damping[] = {0.3, 0.5}, stiffness[] = {12.0, 2.0, 2.0, 17.0};
     const double direction[] = {1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 1.0, 0.0};
@@ -296,7 +296,7 @@ static tribo_system *between_walls(double fast)
     }
     assert_ok(tribo_system_create(&sys, model));
     tribo_model_destroy(model);
-    assert_ok(tribo_system_add_load(sys, 3.0, (const double[]){9.0, 20.0}, (const double[]){4.0, 0.0}));
+    assert_ok(tribo_system_add_load(sys, 3.0, (const double[]){9.0 * load, 20.0 * load}, (const double[]){4.0 * load, 0.0}));
     assert_ok(tribo_system_add_base_motion(sys, 0.0, base, NULL));
     return sys;
 }
@@ -335,12 +335,26 @@ TEST(walls_of_a_body)
             want[i] += h / 6.0 * (rate[0][i] + 2.0 * (rate[1][i] + rate[2][i]) + rate[3][i]);
         }
     }
-    tribo_system *sys = between_walls(100.0);
+    tribo_system *sys = between_walls(100.0, 1.0);
     run(sys, method[_i], 1e-4, 0.0, 3.0, y);
     for (size_t i = 0; i < 4; i++) {
         assert_close(y[i], want[i], error[_i]);
     }
     tribo_system_destroy(sys);
+}
+
+/* The walls stand: two of them hold the body along x, at rest together, and each limit goes its own way. Steps of 1e-4 are off by 1e-5. */
+TEST(redundant)
+{
+    double y[2][5] = {{0.0}, {0.0}};
+    for (size_t k = 0; k < 2; k++) {
+        tribo_system *sys = between_walls(0.0, 0.3 * pow(1.5, (double)_i));
+        run(sys, k ? "moreau/fixed" : "event", 1e-4, 0.0, 12.0, y[k]);
+        tribo_system_destroy(sys);
+    }
+    for (size_t i = 0; i < 5; i++) {
+        assert_close(y[0][i], y[1][i], 1e-4 * (1.0 + y[0][4]));
+    }
 }
 
 /* Limit cycle: stick, slip, lift, touch, of period 1.53650780675 (belt 0.5) and 1.48153261 (belt 1.0). */
@@ -781,5 +795,5 @@ TEST(refused)
 }
 
 TEST_MAIN("normals", {steady_motions, 2 * VALUES}, {periodic, 4 * VALUES}, {multipliers, 5 * VALUES}, {unstable, 1},
-          {walls_of_a_body, 4}, {limit_cycle, 4}, {flutter, 3}, {shock, 2}, {steps, 7}, {stiff, 1}, {structures, 8},
-          {observed, 4}, {planar, 3}, {wrong_normals, 1}, {refused, 1})
+          {walls_of_a_body, 4}, {redundant, 4}, {limit_cycle, 4}, {flutter, 3}, {shock, 2}, {steps, 7}, {stiff, 1},
+          {structures, 8}, {observed, 4}, {planar, 3}, {wrong_normals, 1}, {refused, 1})
