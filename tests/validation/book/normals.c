@@ -42,18 +42,24 @@ static double shaken(int variant)
     return variant % 2 ? energy[0] : most;
 }
 
-/* Squeal after Hoffmann and others (2002). variant 0: period on a belt of 0.5; 1: on a belt of 1; 2: x at break-away. */
-static double squeal(int variant)
+/* Squeal after Hoffmann and others (2002), on a belt. */
+static tribo_system *squealing(double speed)
 {
-    const double mass[2] = {1.0, 1.0}, damping[2] = {0.1, 0.1}, load[2] = {0.0, 10.0}, belt[2] = {variant == 1 ? 1.0 : 0.5};
+    const double mass[2] = {1.0, 1.0}, damping[2] = {0.1, 0.1}, load[2] = {0.0, 10.0}, belt[2] = {speed};
     const double xx = 11.0 * 0.75 + 20.0 * 0.75, yy = 11.0 * 0.25 + 20.0 * 0.25, xy = (20.0 - 11.0) * 0.25 * sqrt(3.0);
     const double stiffness[4] = {xx, xy, xy, yy};
+    tribo_system *sys = pressed(mass, damping, stiffness, 0.0, 0.6, 11.0, load);
+    need(tribo_system_add_base_motion(sys, 0.0, belt, NULL), tribo_system_message(sys));
+    return sys;
+}
+
+/* By marching. variant 0: period on a belt of 0.5; 1: on a belt of 1; 2: x at break-away. */
+static double squeal(int variant)
+{
     double y[5] = {0.1, 0.9};
     struct motion m;
     size_t seen = 0, at[2] = {0};
-    tribo_system *sys = pressed(mass, damping, stiffness, 0.0, 0.6, 11.0, load);
-    need(tribo_system_add_base_motion(sys, 0.0, belt, NULL), tribo_system_message(sys));
-    motion_begin(&m, sys, "event");
+    motion_begin(&m, squealing(variant == 1 ? 1.0 : 0.5), "event");
     motion_advance(&m, 400.0, y);
     motion_end(&m);
     for (size_t k = m.count; seen < 2 && k > m.count - MOST_MOMENTS; k--) {
@@ -62,6 +68,18 @@ static double squeal(int variant)
         }
     }
     return variant == 2 ? m.q[at[0]] : m.at[at[0]] - m.at[at[1]];
+}
+
+/* By shooting, belt 0.5. variant 0: period; 1, 2: real and imaginary part of the multipliers beside 1 and 0. */
+static double squeal_cycle(int variant)
+{
+    double y[5] = {0.1, 0.9}, period = 0.0, re[4], im[4];
+    struct motion m;
+    motion_begin(&m, squealing(0.5), "event");
+    need(tribo_driver_find_cycle(m.drv, 0.0, &period, y), tribo_driver_message(m.drv));
+    need(tribo_driver_get_multipliers(m.drv, re, im), tribo_driver_message(m.drv));
+    motion_end(&m);
+    return variant == 0 ? period : variant == 1 ? re[1] : im[1];
 }
 
 /* SDND101: a mass of 100 on a spring of 1e4 with speed 1 against a stop of 1e6. variant 0: how long they touch; 1: largest force. */
@@ -111,6 +129,9 @@ const struct row rows_normals[] = {
     {"squeal.period", squeal, 0},
     {"squeal.fast", squeal, 1},
     {"squeal.slip", squeal, 2},
+    {"squeal.cycle", squeal_cycle, 0},
+    {"squeal.multiplier.re", squeal_cycle, 1},
+    {"squeal.multiplier.im", squeal_cycle, 2},
     {"sdnd101.time", shock, 0},
     {"sdnd101.force", shock, 1},
     {"bounces", bounces, 0},

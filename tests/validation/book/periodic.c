@@ -27,6 +27,21 @@ static double hartog_multiplier(int variant)
     return variant ? im[0] : re[0];
 }
 
+/* Derivatives of its amplitude there, by limit and by frequency. */
+static double hartog_derivative(int variant)
+{
+    static const int kind[] = {TRIBO_PARAMETER_LIMIT, TRIBO_PARAMETER_FREQUENCY};
+    static const size_t contact[] = {0, 0};
+    const double c[2] = {1.0};
+    double y[3], extremes[2][2];
+    struct motion m;
+    motion_begin(&m, oscillator(0.0, 1.0, 0.3, 1.0, 0.0, 0.7), "exact");
+    motion_find(&m, 2.0 * PI / 0.7, y);
+    need(tribo_driver_period_derivatives(m.drv, 2, kind, contact, c, extremes[0], NULL, NULL), tribo_driver_message(m.drv));
+    motion_end(&m);
+    return variant ? extremes[1][1] / 0.7 : extremes[0][1];
+}
+
 /* Damping ratio 0.05, omega 0.9, load 1.5, limit 1: amplitude. */
 static double damped(int variant)
 {
@@ -95,6 +110,8 @@ const struct row rows_periodic[] = {
     {"hartog.3", hartog, 2},
     {"hartog.multiplier.re", hartog_multiplier, 0},
     {"hartog.multiplier.im", hartog_multiplier, 1},
+    {"hartog.by.limit", hartog_derivative, 0},
+    {"hartog.by.frequency", hartog_derivative, 1},
     {"hartog.damped", damped, 0},
     {"jenkins.amplitude", jenkins, 0},
     {"ring.1", ring, 0},
