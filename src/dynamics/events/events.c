@@ -44,7 +44,7 @@ int tribo_events_create(struct events *e, tribo_driver *drv, const struct motion
     if (status) {
         return status;
     }
-    return ALLOCATE(ARRAY(e->lasted, SLIPS * c), ARRAY(e->search.guard, 3 * c), ARRAY(e->search.watched, 3 * c),
+    return ALLOCATE(ARRAY(e->lasted, SLIPS * c), ARRAY(e->search.guard, 4 * c), ARRAY(e->search.watched, 4 * c),
                     ARRAY(e->shown, c))
                ? TRIBO_OK
                : tribo_error(drv->sys->message, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contact%s", c, plural(c));
