@@ -191,6 +191,33 @@ uint32_t tribo_handle_count(void)
     return count;
 }
 
+/* A law in fixed form, and the arrays that it gets. Contexts that share it, copies among them, may be destroyed in any order. */
+struct external_law {
+    void (*law)(void);
+    void *rpar, *ipar;
+    struct external_law *next;
+};
+
+static struct external_law *external_laws = NULL;
+
+void *tribo_handle_law(void (*law)(void), void *rpar, void *ipar)
+{
+    lock();
+    struct external_law *p = external_laws;
+    while (p && !(p->law == law && p->rpar == rpar && p->ipar == ipar)) {
+        p = p->next;
+    }
+    if (!p) {
+        p = malloc(sizeof *p);
+        if (p) {
+            *p = (struct external_law){law, rpar, ipar, external_laws};
+            external_laws = p;
+        }
+    }
+    unlock();
+    return p;
+}
+
 /* The first place of an object, locked; NULL if it has none. */
 static struct place *place_with(const void *object)
 {

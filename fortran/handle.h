@@ -36,6 +36,10 @@ TRIBO_API int tribo_handle_note(const void *object, int status, const char *text
 /* Copies the message of object to text [size], "" if there is none. */
 TRIBO_API void tribo_handle_noted(const void *object, size_t size, char *text);
 
+/* Returns the address of these three, which are the first members of what is there and stay as long as the program; equal ones
+ * have one address. NULL if memory runs out. */
+TRIBO_API void *tribo_handle_law(void (*law)(void), void *rpar, void *ipar);
+
 /* Number of numbers with an object. */
 TRIBO_API uint32_t tribo_handle_count(void);
 

@@ -49,6 +49,13 @@
 !> Settings
 !>   TRBLAW(IH, LAW, IERR)                           LAW
 !>   TRBNAM(IH, NAME, IERR)                          NAME of the law
+!>   TRBULW(IH, LAW, RPAR, IPAR, IERR)               a law of yours, EXTERNAL in your program, for contacts I1 to I1 + N - 1: CALL
+!>                                                   LAW(I1, N, IDER, V, FMUN, EPS, BOX, RPAR, IPAR, IER) sets BOX(N,3) to lower
+!>                                                   and upper bound and shift of F = MIN(MAX(FEQ - shift, lower), upper), with
+!>                                                   IDER 1 also BOX(N,4) to BOX(N,6) to their derivatives by V(N) and BOX(N,7) to
+!>                                                   BOX(N,9) by FMUN(N), or IER, 0 before, to another value; inside FMUN, and
+!>                                                   lower = upper where ABS(V) > EPS. RPAR(*) and IPAR(*) stay in use:
+!>                                                   declare them in a COMMON block
 !>   TRBGLW(IH, LAW, IERR)                                                             LAW
 !>   TRBLIM(IH, N, FMUN, IERR)                       FMUN(N) limits mu*N >= 0
 !>   TRBNLD(IH, N, FMU, FN, IERR)                    FMU(N) >= 0, FN(N) normal loads   the limits FMU*max(FN, 0)
@@ -120,6 +127,23 @@ module tribo_fixed
     end subroutine inverse_of_mass
   end interface
 
+  abstract interface
+    !> LAW of TRBULW.
+    subroutine boxes_of_law(i1, n, ider, v, fmun, eps, box, rpar, ipar, ier)
+      import :: dp
+      integer, intent(in) :: i1, n, ider
+      real(dp), intent(in) :: v(*), fmun(*), eps(*)
+      real(dp), intent(inout) :: box(n, *), rpar(*)
+      integer, intent(inout) :: ipar(*), ier
+    end subroutine boxes_of_law
+  end interface
+
+  !> What tribo_handle_law keeps.
+  type, bind(c) :: external_law
+    type(c_funptr) :: law
+    type(c_ptr) :: rpar, ipar
+  end type external_law
+
   !> rpar and ipar point to the first elements of the caller's arrays of unknown length.
   type, extends(tribo_mass) :: external_mass
     procedure(inverse_of_mass), pointer, nopass :: minv => null()
@@ -138,6 +162,28 @@ contains
     ier = 0
     call this%minv(size(force), force, acceleration, this%rpar, this%ipar, ier)
   end function call_minv
+
+  !> Calls LAW of TRBULW for the library.
+  integer(c_int) function call_law(first, n, derivatives, v, limit, epsilon, box, data) bind(c, name='')
+    integer(c_size_t), value :: first, n
+    integer(c_int), value :: derivatives
+    real(c_double), intent(in) :: v(n), limit(n), epsilon(n)
+    real(c_double), intent(inout) :: box(n, *)
+    type(c_ptr), value :: data
+    type(external_law), pointer :: held
+    procedure(boxes_of_law), pointer :: law
+    real(dp), pointer :: rpar(:)
+    integer, pointer :: ipar(:)
+    integer :: ier
+
+    call c_f_pointer(data, held)
+    call c_f_procpointer(held%law, law)
+    call c_f_pointer(held%rpar, rpar, [1])
+    call c_f_pointer(held%ipar, ipar, [1])
+    ier = 0
+    call law(int(first) + 1, int(n), int(derivatives), v, limit, epsilon, box, rpar, ipar, ier)
+    call_law = to_int(ier)
+  end function call_law
 
   !> The context of a handle; ierr is an error if it has none, or not n contacts.
   subroutine find(ih, ctx, ierr, n)
@@ -503,6 +549,24 @@ subroutine trbnam(ih, name, ierr)
   call borrow(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%set_law(name, ierr)
 end subroutine trbnam
+
+subroutine trbulw(ih, law, rpar, ipar, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  procedure(boxes_of_law) :: law
+  real(dp), intent(inout), target :: rpar(*)
+  integer, intent(inout), target :: ipar(*)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+  type(c_ptr) :: data
+
+  call borrow(ih, c, ierr)
+  if (ierr /= TRIBO_OK) return
+  data = c_handle_law(c_funloc(law), c_loc(rpar), c_loc(ipar))
+  ierr = TRIBO_ERR_MEMORY
+  if (c_associated(data)) call c%set_user_law(c_funloc(call_law), data, ierr)
+end subroutine trbulw
 
 subroutine trbglw(ih, law, ierr)
   use tribo_fixed

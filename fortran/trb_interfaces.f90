@@ -150,6 +150,14 @@ module trb_interfaces
       integer, intent(out) :: ierr
     end subroutine trbnam
 
+    subroutine trbulw(ih, law, rpar, ipar, ierr)
+      integer, intent(in) :: ih
+      external :: law
+      double precision, intent(inout), target :: rpar(*)
+      integer, intent(inout), target :: ipar(*)
+      integer, intent(out) :: ierr
+    end subroutine trbulw
+
     subroutine trbglw(ih, law, ierr)
       integer, intent(in) :: ih
       integer, intent(inout) :: law

@@ -59,6 +59,7 @@ module tribo_contexts
     procedure :: get_ncontact
     procedure, private :: set_law_number, set_law_name
     generic :: set_law => set_law_number, set_law_name
+    procedure :: set_user_law
     procedure :: get_law
     procedure, private :: set_limit_each, set_limit_all
     generic :: set_limit => set_limit_each, set_limit_all
@@ -538,6 +539,25 @@ contains
     if (w%status == TRIBO_OK) w%status = c_set_law(w%ctx, to_int(number))
     call finish(w, stat, errmsg)
   end subroutine set_law_name
+
+  !> A law of the caller: c_funloc of an integer(c_int) function with bind(c), called for contacts first + 1 to first + n:
+  !>   law(first, n, derivatives, v, limit, epsilon, box, data)
+  !>   integer(c_size_t), value :: first, n;  integer(c_int), value :: derivatives;  type(c_ptr), value :: data
+  !>   real(c_double), intent(in) :: v(n), limit(n), epsilon(n);  real(c_double), intent(inout) :: box(n, *)
+  !> box(:,1:3) = lower, upper, shift; with derivatives = 1 also box(:,4:6) by v and box(:,7:9) by limit: f = min(max(feq - shift,
+  !> lower), upper). A result other than 0 ends the call. Conditions and threads: tribo_set_user_law in tribo.h.
+  subroutine set_user_law(this, law, data, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    type(c_funptr), value :: law
+    type(c_ptr), value :: data
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call begin(this, w)
+    if (w%status == TRIBO_OK) w%status = c_set_user_law(w%ctx, law, data)
+    call finish(w, stat, errmsg)
+  end subroutine set_user_law
 
   subroutine get_law(this, law, stat, errmsg)
     class(tribo_context), intent(in) :: this

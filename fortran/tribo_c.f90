@@ -49,6 +49,8 @@ module tribo_constants
   integer, parameter, public :: TRIBO_KARNOPP = 3
   integer, parameter, public :: TRIBO_QUINN = 4
   integer, parameter, public :: TRIBO_QUINN_REVERSAL = 5
+  !> a function of the caller, see tribo_set_user_law; for tribo_get_law only
+  integer, parameter, public :: TRIBO_USER_LAW = -1
 
   integer, parameter, public :: TRIBO_CONSISTENT = 0
   integer, parameter, public :: TRIBO_PARTITION = 1
@@ -290,6 +292,14 @@ module tribo_c
       integer(c_int), intent(inout) :: law
       integer(c_int) :: answer
     end function c_get_law
+
+    function c_set_user_law(ctx, law, data) result(answer) bind(c,name='tribo_set_user_law')
+      import
+      type(c_ptr), value :: ctx
+      type(c_funptr), value :: law
+      type(c_ptr), value :: data
+      integer(c_int) :: answer
+    end function c_set_user_law
 
     function c_set_limit(ctx, limit) result(answer) bind(c,name='tribo_set_limit')
       import
@@ -641,6 +651,14 @@ module tribo_c
       integer(c_size_t), value :: size
       character(kind=c_char), intent(inout), optional :: text(*)
     end subroutine c_handle_noted
+
+    function c_handle_law(law, rpar, ipar) result(answer) bind(c,name='tribo_handle_law')
+      import
+      type(c_funptr), value :: law
+      type(c_ptr), value :: rpar
+      type(c_ptr), value :: ipar
+      type(c_ptr) :: answer
+    end function c_handle_law
 
     function c_handle_count() result(answer) bind(c,name='tribo_handle_count')
       import

@@ -19,7 +19,7 @@
  *
  * Arrays hold one double per contact, contiguous, unless stated otherwise; contacts are counted from 0. Outputs are the last
  * arguments, except a handle to create, which is the first. Outputs must not overlap inputs. On error outputs are unchanged,
- * except on TRIBO_ERR_INCONSISTENT. For an output marked "or NULL", NULL skips the computation.
+ * except on TRIBO_ERR_INCONSISTENT, and where tribo_set_user_law says so. For an output marked "or NULL", NULL skips the computation.
  *
  * Status. Every call that can fail returns TRIBO_OK (0) or one of TRIBO_ERR_...; tribo_message names the argument, the contact
  * and the value. No call prints, exits, aborts or keeps global state.
@@ -108,7 +108,8 @@ enum {
     TRIBO_SMOOTH = 2,
     TRIBO_KARNOPP = 3,
     TRIBO_QUINN = 4,
-    TRIBO_QUINN_REVERSAL = 5
+    TRIBO_QUINN_REVERSAL = 5,
+    TRIBO_USER_LAW = -1 /* a function of the caller, see tribo_set_user_law; for tribo_get_law only */
 };
 
 /* Number of laws; their numbers are 0 to tribo_law_count() - 1. */
@@ -174,14 +175,16 @@ TRIBO_API int tribo_contact_force(size_t n, const double *dz, const double *dept
  * on error outputs are unchanged. */
 
 /* Dahl (1968): df/dz = -stiffness (1 + f sgn(dz)/limit). stiffness, limit [n] in, >= 0. */
-TRIBO_API int tribo_dahl_force(size_t n, const double *dz, const double *stiffness, const double *limit, double *f, double *df_dz);
+TRIBO_API int tribo_dahl_force(size_t n, const double *dz, const double *stiffness, const double *limit, double *f,
+                               double *df_dz);
 
 /* LuGre (Canudas de Wit, Olsson, Astrom, Lischinsky, IEEE Trans. Autom. Control 40 (1995) 419, doi:10.1109/9.376053):
  * f = -(s0 z + s1 z' + s2 v), z' = v - s0 |v| z/g, g = fc + (fs - fc) exp(-(v/vs)^2), v = dz/dt.
  * dt         in   length of the step, > 0
  * parameter  [n][6] in   s0 > 0, s1, s2, fc, fs >= 0, vs > 0
  * z          [n] in/out  deflection of the bristles, at most max(fc, fs)/s0 in size; 0 at the start */
-TRIBO_API int tribo_lugre_force(size_t n, double dt, const double *dz, const double *parameter, double *z, double *f, double *df_dz);
+TRIBO_API int tribo_lugre_force(size_t n, double dt, const double *dz, const double *parameter, double *z, double *f,
+                                double *df_dz);
 
 /* Bouc (1967), Wen (1976): f = -stiffness z, dz/dx = a - |z|^m (gamma + beta sgn(z dx)).
  * parameter  [n][5] in   stiffness >= 0, a > 0, beta >= 0, gamma >= -beta, m = 1 or 2
@@ -231,6 +234,25 @@ TRIBO_API int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact);
  * and SMOOTH with static limits that drop at once). */
 TRIBO_API int tribo_set_law(tribo_context *ctx, int law);
 TRIBO_API int tribo_get_law(const tribo_context *ctx, int *law);
+
+/* Laws of the caller: f = clamp(f_eq - shift, lower, upper), where the box and shift follow from v, limit, epsilon and what law
+ * knows of a contact. All laws above but QUINN_REVERSAL have this form, see the manual. tribo_force, tribo_balance, their
+ * tangents and products, "rk4/fixed" and GSL's steppers use the law; tribo_step_force and the other methods keep Coulomb's.
+ * Calls return TRIBO_ERR_CALLBACK if law fails or breaks a condition; tribo_message names contact and value, but not after
+ * calls on a const ctx. Outputs are undefined then, but for those of tribo_balance. tribo_get_slip: stuck inside the box. Threads
+ * that share ctx, and clones, call law with the same data at the same time; law must not use ctx. */
+
+/* Law of all contacts by a function, with -limit <= lower <= upper <= limit; lower = upper where |v| > epsilon; |shift| <= 4e307.
+ * law   in  called any number of times for n contacts, the first of which is first; returns 0, or another value to fail:
+ *           v, limit, epsilon [n] in;  derivatives in   1: box is [9][n], 0: [3][n]
+ *           box  out   rows lower, upper, shift; their derivatives by v; by limit, including that of an epsilon that follows the
+ *                      limit (these may stay unset unless a call asks for them)
+ * data  in  passed to law; stays in use with ctx, its clones, and contexts that take its settings
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_UNSUPPORTED (planar contacts, static limits, which later calls refuse, too). */
+TRIBO_API int tribo_set_user_law(tribo_context *ctx,
+                                 int (*law)(size_t first, size_t n, int derivatives, const double *v, const double *limit,
+                                            const double *epsilon, double *box, void *data),
+                                 void *data);
 
 /* Limits mu*N. limit [n] in, finite and >= 0; 0: the contact is open, carries no force and costs no time.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE; on error all limits are unchanged. */

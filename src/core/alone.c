@@ -6,6 +6,7 @@
  * by chunk. Arrays of a large scene are far away: kernels do not read 1/R_ii or limits that are equal for all, nor a where all
  * contacts slide. */
 #include "calls.h"
+#include "own.h"
 
 /* Inputs of a call. find sets the forces f [n] of chunk k. */
 struct call {
@@ -98,6 +99,22 @@ static void find_each(tribo_context *ctx, const struct call *call, double *f)
 
 /* -------------------------------------------------------------------------------------------------------------- balance */
 
+/* feq [n] of chunk k; 0 of open contacts. */
+static void find_feq(const tribo_context *ctx, const struct call *call, size_t k, double *feq)
+{
+    const size_t i = k * TRIBO_CHUNK, n = tribo_chunk_size(ctx, i);
+    if (ctx->follow.chunk[k].plain && tribo_is_within(call->a + i, n, TRIBO_PLAIN)) {
+        feq_alone(n, tribo_inverses(ctx, k), call->a + i, feq);
+    } else {
+        for (size_t j = 0; j < n; j++) {
+            feq[j] = tribo_alone_far(call->a[i + j], tribo_inverses(ctx, k)[j]);
+        }
+    }
+    for (size_t j = 0; ctx->follow.chunk[k].least == 0.0 && j < n; j++) {
+        feq[j] = ctx->follow.contacts.limit[i + j] > 0.0 ? feq[j] : 0.0;
+    }
+}
+
 /* Where the law uses f_eq, contacts that are not near stick slide with their limits. */
 static void balance_chunk(tribo_context *ctx, const struct call *call, size_t k, double *f)
 {
@@ -114,15 +131,8 @@ static void balance_chunk(tribo_context *ctx, const struct call *call, size_t k,
         return;
     }
     const int finds = reads || (call->wanted && alone);
-    if (finds && ctx->follow.chunk[k].plain && tribo_is_within(call->a + i, n, TRIBO_PLAIN)) {
-        feq_alone(n, tribo_inverses(ctx, k), call->a + i, feq);
-    } else {
-        for (size_t j = 0; finds && j < n; j++) {
-            feq[j] = tribo_alone_far(call->a[i + j], tribo_inverses(ctx, k)[j]);
-        }
-    }
-    for (size_t j = 0; finds && ctx->follow.chunk[k].least == 0.0 && j < n; j++) {
-        feq[j] = ctx->follow.contacts.limit[i + j] > 0.0 ? feq[j] : 0.0;
+    if (finds) {
+        find_feq(ctx, call, k, feq);
     }
     if (ctx->set.breaking) {
         tribo_find_limits(ctx, i, n, v, reads ? feq : NULL, ctx->follow.now + i);
@@ -145,11 +155,30 @@ static void balance_chunk(tribo_context *ctx, const struct call *call, size_t k,
     }
 }
 
+/* The same by a law of the caller, whose boxes are kept. */
+static void balance_own(tribo_context *ctx, const struct call *call, size_t k, double *f)
+{
+    const size_t i = k * TRIBO_CHUNK, n = tribo_chunk_size(ctx, i);
+    double *feq = ctx->last.feq + i;
+    find_feq(ctx, call, k, feq);
+    tribo_own_forces(ctx, i, call->v + i, feq, f);
+    for (size_t j = 0; ctx->op->groups && j < n; j++) {
+        ctx->last.near[i + j] = tribo_own_row(ctx, LOWER)[i + j] < tribo_own_row(ctx, UPPER)[i + j];
+        if (ctx->last.near[i + j]) {
+            tribo_list_group(ctx, tribo_group_of(ctx)[i + j]);
+        }
+    }
+}
+
 void tribo_balance_each(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f)
 {
-    const int alone = tribo_all_alone(ctx);
-    const struct call call = {
-        .find = balance_chunk, .v = v, .a = a, .feq = alone ? feq : ctx->last.feq, .wanted = feq != NULL, .plain = plain};
+    const int alone = tribo_balance_alone(ctx);
+    const struct call call = {.find = tribo_is_own(ctx) ? balance_own : balance_chunk,
+                              .v = v,
+                              .a = a,
+                              .feq = alone ? feq : ctx->last.feq,
+                              .wanted = feq != NULL,
+                              .plain = plain};
     find_each(ctx, &call, alone ? f : NULL);
 }
 

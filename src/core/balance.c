@@ -8,6 +8,7 @@
  * A call first finds forces of contacts as if each was alone, which is right for those in no group, and for open and sliding
  * ones; then it solves the groups with a contact near stick. */
 #include "calls.h"
+#include "own.h"
 
 void tribo_begin_call(tribo_context *ctx)
 {
@@ -101,7 +102,8 @@ int tribo_solve_group(tribo_context *ctx, struct box_qp *p)
 static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *v, const double *a)
 {
     const struct contacts *c = &ctx->follow.contacts;
-    const int relaxes = ctx->set.law->relaxes;
+    const int relaxes = ctx->set.law->relaxes, own = tribo_is_own(ctx);
+    const double *shift = tribo_own_row(ctx, SHIFT); /* of a law of the caller */
     int status;
     for (size_t e = 0; ctx->set.breaking == DROPS && e < p->count; e++) {
         ctx->follow.now[p->member[p->near[e]]] = ctx->follow.hold[p->member[p->near[e]]];
@@ -109,15 +111,19 @@ static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *
     do {
         for (size_t e = 0; e < p->count; e++) {
             const size_t k = p->near[e], i = p->member[k];
-            const double limit = c->bound[i], kappa = relaxes ? tribo_slope_of(c, i) * v[i] : 0.0;
-            p->lo[k] = kappa < 0.0 ? lesser(limit, -limit - kappa) : -limit;
-            p->hi[k] = kappa > 0.0 ? greater(-limit, limit - kappa) : limit;
-            p->q[k] = cut(a[i]) + ctx->op->diagonal[i] * kappa;
+            const double limit = c->bound[i], kappa = own ? shift[i] : relaxes ? tribo_slope_of(c, i) * v[i] : 0.0;
+            p->lo[k] = own           ? clamp(tribo_own_row(ctx, LOWER)[i], -limit, limit)
+                       : kappa < 0.0 ? lesser(limit, -limit - kappa)
+                                     : -limit;
+            p->hi[k] = own           ? clamp(tribo_own_row(ctx, UPPER)[i], -limit, limit)
+                       : kappa > 0.0 ? greater(-limit, limit - kappa)
+                                     : limit;
+            p->q[k] = cut(a[i]) + (own ? product(ctx->op->diagonal[i], kappa) : ctx->op->diagonal[i] * kappa);
         }
         status = tribo_solve_group(ctx, p);
         for (size_t e = 0; !status && e < p->count; e++) {
             const size_t k = p->near[e], i = p->member[k];
-            const double kappa = relaxes ? tribo_slope_of(c, i) * v[i] : 0.0;
+            const double kappa = own ? shift[i] : relaxes ? tribo_slope_of(c, i) * v[i] : 0.0;
             /* The gradient of a free contact is rounding, of which a large group would gather too much. */
             const double beyond = p->at[k] == FREE ? 0.0 : quotient(p->gradient[k], ctx->op->diagonal[i]);
             ctx->last.feq[i] = cut(p->x[k] + kappa - beyond);
@@ -163,6 +169,9 @@ static int balance_all(tribo_context *ctx, int plain, const double *v, const dou
     int status = TRIBO_OK;
     tribo_begin_call(ctx);
     tribo_balance_each(ctx, plain, v, a, feq, f);
+    if (tribo_is_own(ctx) && !tribo_all_within(ctx->last.f, ctx->n, DBL_MAX)) {
+        return tribo_own_fail(ctx, 0, v);
+    }
     for (size_t k = 0; k < ctx->memory.nsolved; k++) {
         struct box_qp *p = tribo_collect(ctx, ctx->memory.solved_list[k]);
         const int one = ctx->set.coupling == TRIBO_PARTITION ? solve_partition(ctx, p, v, a) : solve_consistent(ctx, p, v, a);
@@ -170,8 +179,12 @@ static int balance_all(tribo_context *ctx, int plain, const double *v, const dou
             return one;
         }
         status = one ? one : status;
+        for (size_t e = 0; tribo_is_own(ctx) && e < p->count; e++) {
+            const size_t i = p->member[p->near[e]];
+            ctx->last.f[i] = tribo_own_force(ctx, i, ctx->last.feq[i]);
+        }
         /* The law's forces of the contacts near stick, neighbours at once. */
-        for (size_t e = 0, run; e < p->count; e += run) {
+        for (size_t e = 0, run; !tribo_is_own(ctx) && e < p->count; e += run) {
             const size_t i = p->member[p->near[e]];
             const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
             for (run = 1; e + run < p->count && p->member[p->near[e + run]] == i + run;) {
@@ -190,7 +203,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     if (status) {
         return status;
     }
-    const int alone = tribo_all_alone(ctx);
+    const int alone = tribo_balance_alone(ctx), own = tribo_is_own(ctx);
     if (alone && ctx->n == 1) {
         tribo_balance_one(ctx, plain, v, a, feq, f);
         return TRIBO_OK;
@@ -202,6 +215,9 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     tribo_end_call(ctx, tribo_islands(ctx));
     ctx->last.slips = SLIPS_IN_FORCES;
     ctx->last.holds = ctx->set.law->holds;
+    if (own) {
+        tribo_own_slips(ctx, v);
+    }
     /* f_eq of the contacts of groups that no solution has: all, or those that were not near stick; 0 for open ones. */
     for (size_t g = 0; feq && g < ctx->op->groups; g++) {
         struct box_qp *p = tribo_problem(ctx, g);

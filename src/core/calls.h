@@ -71,7 +71,7 @@ void tribo_end_call(tribo_context *ctx, size_t islands);
 
 /* ---- static.c */
 
-/* A law without stick needs Stribeck velocities where a ratio exceeds 1; a status. */
+/* A law without stick needs Stribeck velocities where a ratio exceeds 1, a law of the caller no ratio at all; a status. */
 int tribo_check_breaking(tribo_context *ctx, const struct law *law, int breaking, const double *ratio);
 
 /* Both directions of a planar contact have the same ratio and velocity; a status. */
@@ -168,8 +168,8 @@ int tribo_clusters_clone(tribo_context *clone, const tribo_context *from);
 /* Frees what is in clusters, which may be empty. */
 void tribo_clusters_free(struct clusters *c);
 
-/* Fails if coupling is TRIBO_PARTITION, and count > 0; a status. */
-int tribo_plane_check_coupling(tribo_context *ctx, int coupling, size_t count, const size_t *first);
+/* Fails if law is of the caller or coupling is TRIBO_PARTITION, and count > 0; a status. */
+int tribo_plane_check_coupling(tribo_context *ctx, const struct law *law, int coupling, size_t count, const size_t *first);
 
 /* If epsilon follows the operator: sets widths and rates of planar contacts; time as in tribo_refresh. */
 void tribo_clusters_refresh(tribo_context *ctx, int follows, double time);

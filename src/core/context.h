@@ -51,6 +51,7 @@ struct settings {
     int breaking;           /* NEVER, ... */
     double *ratio;          /* [n] static limit / limit */
     double *stribeck;       /* [n] velocity scale; 0 unless FALLS */
+    struct user_law user;   /* of the caller's law */
 };
 
 /* What follows from settings and operator. */
@@ -129,9 +130,16 @@ static inline struct contacts tribo_chunk_contacts(const tribo_context *ctx, siz
     const struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
     const struct contacts *c = &ctx->follow.contacts;
     const size_t limits = chunk->alike ? chunk->model : i;
-    return (struct contacts){
-        c->limit + limits, c->bound + limits, c->width + chunk->model, c->rate + chunk->model, c->moving + i, c->follows,
-        c->scales,         chunk->alike};
+    return (struct contacts){c->limit + limits,
+                             c->bound + limits,
+                             c->width + chunk->model,
+                             c->rate + chunk->model,
+                             c->moving + i,
+                             c->follows,
+                             c->scales,
+                             chunk->alike,
+                             i,
+                             c->user};
 }
 
 /* 1/R_ii of the contacts of chunk k. */

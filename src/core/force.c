@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "calls.h"
+#include "own.h"
 
 /* 1 if the force of contact i, at v [n], depends on f_eq: elsewhere feq need not be finite, nor set. */
 static int reads_feq(const tribo_context *ctx, size_t i, const double *v)
@@ -71,6 +72,16 @@ static void find_outputs(const tribo_context *ctx, int plain, const double *v, c
     }
 }
 
+/* 1 if a law of the caller failed, or gave no number for one of the outputs. */
+static int own_failed(const tribo_context *ctx, double *const *out)
+{
+    int failed = 0;
+    for (int k = 0; tribo_is_own(ctx) && k < OUTPUTS; k++) {
+        failed |= out[k] && !tribo_all_within(out[k], ctx->n, DBL_MAX);
+    }
+    return failed;
+}
+
 int tribo_force(const tribo_context *ctx, const double *v, const double *feq, double *f)
 {
     int plain;
@@ -78,13 +89,13 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
     if (status || (!f && ctx->n)) {
         return status ? status : TRIBO_ERR_NULL;
     }
-    if (ctx->n == 1 && plain && !ctx->set.breaking) {
+    if (ctx->n == 1 && plain && !ctx->set.breaking && !tribo_is_own(ctx)) {
         ctx->set.law->force(&ctx->follow.contacts, 1, v, ctx->set.law->uses_feq ? feq : v, f);
         return TRIBO_OK;
     }
     double *const out[OUTPUTS] = {f, NULL, NULL, NULL};
     find_outputs(ctx, plain, v, feq, out);
-    return tribo_plane_force(ctx, v, feq, out);
+    return own_failed(ctx, out) ? TRIBO_ERR_CALLBACK : tribo_plane_force(ctx, v, feq, out);
 }
 
 int tribo_find_tangents(const tribo_context *ctx, int pairs, const double *v, const double *feq, double *const *out)
@@ -98,6 +109,9 @@ int tribo_find_tangents(const tribo_context *ctx, int pairs, const double *v, co
         return TRIBO_ERR_UNSUPPORTED;
     }
     find_outputs(ctx, plain, v, feq, out);
+    if (own_failed(ctx, out)) {
+        return TRIBO_ERR_CALLBACK;
+    }
     /* [n] become [n][2]: scalar contacts have nothing beside their own derivative. */
     for (int k = BY_V; pairs && k < OUTPUTS; k++) {
         for (size_t i = out[k] ? ctx->n : 0; i-- > 0;) {

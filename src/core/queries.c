@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Answers about a context and its last call. */
 #include "calls.h"
+#include "own.h"
 
 int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
 {
@@ -117,9 +118,9 @@ int tribo_get_real(const tribo_context *ctx, int which, double *value)
      * stick, are at most the largest s_i R_ii times the largest eigenvalue of D^-1 R. */
     const struct contacts *c = &ctx->follow.contacts;
     const struct law *law = ctx->set.law;
-    const int own = law->uses_feq && ctx->set.coupling == TRIBO_CONSISTENT;
+    const int own = law->uses_feq && ctx->set.coupling == TRIBO_CONSISTENT, of_caller = tribo_is_own(ctx);
     double rate = tribo_plane_rate(ctx);
-    for (size_t i = 0; i < ctx->n; i++) {
+    for (size_t i = 0; !of_caller && i < ctx->n; i++) {
         if (c->limit[i] > 0.0 && tribo_is_scalar(ctx, i)) {
             const double steepest = ctx->set.breaking ? c->rate[i] * ctx->follow.hold[i] : tribo_slope_of(c, i);
             rate = greater(rate, product(steepest, ctx->op->diagonal[i]));
@@ -127,6 +128,9 @@ int tribo_get_real(const tribo_context *ctx, int which, double *value)
     }
     rate = law->relaxes ? rate : law->uses_feq ? 0.0 : 0.5 * rate;
     rate = own ? rate : product(rate, ctx->op->growth);
+    if (of_caller && tribo_own_rate(ctx, &rate)) {
+        return TRIBO_ERR_CALLBACK;
+    }
     /* The fourth-order Runge-Kutta method is stable for rate dt <= 2.785. */
     *value = which == TRIBO_REAL_MAX_RATE ? rate : rate > 0.0 ? quotient(2.785, rate) : HUGE_VAL;
     return TRIBO_OK;

@@ -80,7 +80,7 @@ static void hold_limits(tribo_context *ctx)
         rate[i] = lesser(rate[i], 2.0 * TRIBO_FAR / greater(hold, 1.0));
         chunk->largest = i % TRIBO_CHUNK ? greater(chunk->largest, hold) : hold;
     }
-    *c = (struct contacts){now, now, ctx->follow.hold_width, rate, ctx->moving, 0, c->scales, 0};
+    *c = (struct contacts){now, now, ctx->follow.hold_width, rate, ctx->moving, 0, c->scales, 0, 0, c->user};
 }
 
 static void settings_changed(tribo_context *ctx)
@@ -93,8 +93,8 @@ void tribo_refresh_limits(tribo_context *ctx)
 {
     const int follows = epsilon_follows(ctx), fixed = !ctx->set.breaking;
     ctx->follow.largest = 0.0;
-    ctx->follow.contacts =
-        (struct contacts){ctx->set.limit, ctx->set.limit, ctx->set.width, ctx->set.rate, ctx->moving, follows, follows, 0};
+    ctx->follow.contacts = (struct contacts){
+        ctx->set.limit, ctx->set.limit, ctx->set.width, ctx->set.rate, ctx->moving, follows, follows, 0, 0, &ctx->set.user};
     if (ctx->set.breaking) {
         hold_limits(ctx);
     }
@@ -157,20 +157,39 @@ static int settings_answer(const int *from, int *to)
 
 /* --------------------------------------------------------------------------------------------------------------- law */
 
+/* Takes a law; a status. */
+static int put_law(tribo_context *ctx, const struct law *law)
+{
+    const int status = tribo_check_breaking(ctx, law, ctx->set.breaking, ctx->set.ratio);
+    if (!status) {
+        ctx->set.law = law;
+        memset(ctx->moving, 0, ctx->n);
+        settings_changed(ctx);
+    }
+    return status;
+}
+
 int tribo_set_law(tribo_context *ctx, int law)
 {
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
     const struct law *l = tribo_law(law);
-    if (!l) {
-        return tribo_fail(ctx, TRIBO_ERR_RANGE, "law = %d is none of the %d laws", law, tribo_law_count());
+    return l ? put_law(ctx, l) : tribo_fail(ctx, TRIBO_ERR_RANGE, "law = %d is none of the %d laws", law, tribo_law_count());
+}
+
+int tribo_set_user_law(tribo_context *ctx,
+                       int (*law)(size_t first, size_t n, int derivatives, const double *v, const double *limit,
+                                  const double *epsilon, double *box, void *data),
+                       void *data)
+{
+    if (!ctx || !law) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "law is NULL");
     }
-    const int status = tribo_check_breaking(ctx, l, ctx->set.breaking, ctx->set.ratio);
+    int status = tribo_plane_check_coupling(ctx, &tribo_law_own, ctx->set.coupling, ctx->plane.count, ctx->plane.first);
+    status = status ? status : put_law(ctx, &tribo_law_own);
     if (!status) {
-        ctx->set.law = l;
-        memset(ctx->moving, 0, ctx->n);
-        settings_changed(ctx);
+        ctx->set.user = (struct user_law){law, data};
     }
     return status;
 }
@@ -313,7 +332,7 @@ static int check_choice(tribo_context *ctx, const char *name, int choice, const 
 int tribo_set_coupling(tribo_context *ctx, int coupling)
 {
     int status = check_choice(ctx, "coupling", coupling, "TRIBO_CONSISTENT nor TRIBO_PARTITION");
-    status = status ? status : tribo_plane_check_coupling(ctx, coupling, ctx->plane.count, ctx->plane.first);
+    status = status ? status : tribo_plane_check_coupling(ctx, ctx->set.law, coupling, ctx->plane.count, ctx->plane.first);
     if (!status) {
         ctx->set.coupling = coupling;
         settings_changed(ctx);
@@ -368,7 +387,7 @@ int tribo_copy_settings(tribo_context *ctx, const tribo_context *from)
     tribo_copy(own.limit, s->limit, (size_t)(own.stribeck - own.limit) + n); /* and the arrays between these two */
     memcpy(ctx->follow.chunk, from->follow.chunk, tribo_chunks(n) * sizeof *ctx->follow.chunk);
     ctx->set = (struct settings){s->law,    s->coupling, s->sharing,  s->step,   s->lambda_dt, own.limit,
-                                 own.width, own.rate,    s->breaking, own.ratio, own.stribeck};
+                                 own.width, own.rate,    s->breaking, own.ratio, own.stribeck, s->user};
     tribo_refresh(ctx);
     return TRIBO_OK;
 }

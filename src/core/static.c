@@ -92,6 +92,9 @@ int tribo_check_one_ratio(tribo_context *ctx, const double *ratio, const double 
 
 int tribo_check_breaking(tribo_context *ctx, const struct law *law, int breaking, const double *ratio)
 {
+    if (breaking && law == &tribo_law_own) {
+        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "laws of the caller know no static limits: let the law make its own");
+    }
     for (size_t i = 0; breaking == DROPS && !law->uses_feq && i < ctx->n; i++) {
         if (ratio[i] > 1.0) {
             return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,

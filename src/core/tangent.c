@@ -3,15 +3,7 @@
  * linear: contacts inside their box (in the partition: all near stick) move so that accelerations, or f_eq, stay balanced; the
  * others follow their law or their bound. */
 #include "calls.h"
-
-/* Returns the change of kappa = slope v. */
-static double relaxation_change(const tribo_context *ctx, const struct change *d, size_t i)
-{
-    const struct contacts *c = &ctx->follow.contacts;
-    const double v = ctx->last.v[i], by_limit = product(c->rate[i], v);
-    const double rate = tribo_slope_of(c, i) + product(by_limit, tribo_limit_rate(ctx, i, v));
-    return product(rate, tribo_entry(d->v, i)) + product(c->follows ? 0.0 : by_limit, tribo_limit_change(ctx, d, i));
-}
+#include "own.h"
 
 /* Returns the change of a force by its law, f_eq fixed. */
 static double law_change(const tribo_context *ctx, const struct change *d, size_t i)
@@ -20,11 +12,23 @@ static double law_change(const tribo_context *ctx, const struct change *d, size_
     return product(t->dv[i], tribo_entry(d->v, i)) + product(t->dlimit[i], tribo_limit_change(ctx, d, i));
 }
 
+/* Returns the change of kappa = slope v, or of the shift of a law of the caller. */
+static double relaxation_change(const tribo_context *ctx, const struct change *d, size_t i)
+{
+    if (tribo_is_own(ctx)) {
+        return -law_change(ctx, d, i);
+    }
+    const struct contacts *c = &ctx->follow.contacts;
+    const double v = ctx->last.v[i], by_limit = product(c->rate[i], v);
+    const double rate = tribo_slope_of(c, i) + product(by_limit, tribo_limit_rate(ctx, i, v));
+    return product(rate, tribo_entry(d->v, i)) + product(c->follows ? 0.0 : by_limit, tribo_limit_change(ctx, d, i));
+}
+
 /* Returns the change of the force of contact i at place k, which is not balanced: by its law, or with its bound. */
 static double own_change(const tribo_context *ctx, const struct change *d, const struct box_qp *p, size_t k)
 {
     const size_t i = p->member[k];
-    if (!ctx->last.near[i]) {
+    if (!ctx->last.near[i] || tribo_is_own(ctx)) {
         return law_change(ctx, d, i);
     }
     /* The bound of a law that relaxes moves with kappa, unless it is the other limit. */
@@ -69,7 +73,8 @@ struct part {
 static const double *part_product(tribo_context *ctx, const struct part *s, const struct change *d)
 {
     struct box_qp *p = s->p;
-    const int partition = ctx->set.coupling == TRIBO_PARTITION, relaxes = !partition && ctx->set.law->relaxes;
+    const int partition = ctx->set.coupling == TRIBO_PARTITION,
+              relaxes = !partition && (ctx->set.law->relaxes || tribo_is_own(ctx));
     double *df = p ? p->gradient : ctx->plane.df, *balanced = p ? p->step : ctx->plane.v;
     for (size_t k = 0; p && k < s->size; k++) {
         const size_t i = s->member[k];
@@ -148,13 +153,17 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
                           double *df_da)
 {
     /* f_eq of contacts that are all alone is not kept but in an array that is given. */
-    const int alone = ctx && tribo_all_alone(ctx), status = tribo_balance(ctx, v, a, alone ? ctx->last.feq : feq, f);
+    const int alone = ctx && tribo_balance_alone(ctx), status = tribo_balance(ctx, v, a, alone ? ctx->last.feq : feq, f);
     if (status) {
         return status;
     }
     tribo_copy(feq, ctx->last.feq, alone && feq ? ctx->n : 0);
     const size_t n = ctx->n;
     const struct tangents *t = &ctx->last.tangent;
+    const int own = tribo_is_own(ctx);
+    if (own && ctx->set.coupling == TRIBO_CONSISTENT) {
+        tribo_own_sides(ctx);
+    }
     /* The derivatives of all laws at v and a. */
     for (size_t i = 0; i < n; i += TRIBO_CHUNK) {
         double ignored[TRIBO_CHUNK];
@@ -162,6 +171,9 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
         const struct contacts c = tribo_chunk_contacts(ctx, i);
         tribo_law_tangents(ctx, &c, i, count, v + i, ctx->last.feq + i,
                            &(struct tangents){ignored, t->dv + i, t->dfeq + i, t->dlimit + i});
+    }
+    if (own && !(tribo_all_within(t->dv, n, DBL_MAX) && tribo_all_within(t->dfeq, n, DBL_MAX))) {
+        return tribo_own_fail(ctx, 1, v);
     }
     tribo_copy(ctx->last.v, v, n);
     ctx->last.linearized = 1;
@@ -204,6 +216,12 @@ int tribo_limit_product(tribo_context *ctx, const double *dlimit, double *df)
         if (ctx->set.ratio[i] > 1.0) {
             return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "tribo_limit_product knows no static limits, and ratio[%zu] = %g", i,
                               ctx->set.ratio[i]);
+        }
+    }
+    const double *by_limit = ctx ? ctx->last.tangent.dlimit : NULL;
+    for (size_t i = 0; !status && tribo_is_own(ctx) && ctx->last.linearized && i < ctx->n; i++) {
+        if (!isfinite(by_limit[i])) {
+            return tribo_fail(ctx, TRIBO_ERR_CALLBACK, "law gave no derivative by the limit of contact %zu", i);
         }
     }
     return status ? status : tangent_product_of(ctx, &(struct change){NULL, NULL, dlimit}, df);

@@ -17,8 +17,10 @@ TRIBO_API int tribo_elastic_force_planar(size_t n, const double *dz, const doubl
                                          double *df_dz);
 TRIBO_API int tribo_contact_force(size_t n, const double *dz, const double *depth, const double *tangential, const double *normal,
                                   const double *mu, double *f, double *df);
-TRIBO_API int tribo_dahl_force(size_t n, const double *dz, const double *stiffness, const double *limit, double *f, double *df_dz);
-TRIBO_API int tribo_lugre_force(size_t n, double dt, const double *dz, const double *parameter, double *z, double *f, double *df_dz);
+TRIBO_API int tribo_dahl_force(size_t n, const double *dz, const double *stiffness, const double *limit, double *f,
+                               double *df_dz);
+TRIBO_API int tribo_lugre_force(size_t n, double dt, const double *dz, const double *parameter, double *z, double *f,
+                                double *df_dz);
 TRIBO_API int tribo_bouc_wen_force(size_t n, const double *dz, const double *parameter, double *z, double *f, double *df_dz);
 TRIBO_API int tribo_iwan_force(size_t n, size_t room, const double *dz, const double *parameter, double *state, double *f,
                                double *df_dz);
@@ -30,6 +32,10 @@ TRIBO_API int tribo_copy_settings(tribo_context *ctx, const tribo_context *from)
 TRIBO_API int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact);
 TRIBO_API int tribo_set_law(tribo_context *ctx, int law);
 TRIBO_API int tribo_get_law(const tribo_context *ctx, int *law);
+TRIBO_API int tribo_set_user_law(tribo_context *ctx,
+                                 int (*law)(size_t first, size_t n, int derivatives, const double *v, const double *limit,
+                                            const double *epsilon, double *box, void *data),
+                                 void *data);
 TRIBO_API int tribo_set_limit(tribo_context *ctx, const double *limit);
 TRIBO_API int tribo_set_limit_all(tribo_context *ctx, double limit);
 TRIBO_API int tribo_get_limit(const tribo_context *ctx, double *limit);

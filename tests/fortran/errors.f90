@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: BSD-3-Clause
 !> Every error that a procedure of module tribo can answer: status, text, outputs left alone, context as it was.
 program errors
+  use, intrinsic :: iso_c_binding, only: c_null_funptr, c_null_ptr
   use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
   use check, only: blank, blank_integer, expect_error, report, require, untouched
   use errors_mass, only: broken_mass
@@ -83,6 +84,8 @@ contains
     call c%set_law('coulomb', stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%set_law('nothing', stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, none)
+    call c%set_user_law(c_null_funptr, c_null_ptr, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%get_law(i, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
@@ -245,6 +248,8 @@ contains
     ! No number is cut to the half of it that an int of C takes, where integers have eight bytes: that half is a law.
     call c%set_law(shiftl(1, bit_size(1)/2), stat)
     call require(stat == TRIBO_ERR_RANGE, 'set_law: a large number')
+    call c%set_user_law(c_null_funptr, c_null_ptr, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, 'law is NULL')
     call c%set_law('Quin', stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NAME, 'no law is called "Quin"' // laws)
     call c%set_law(repeat('x', 500), stat, msg)

@@ -13,6 +13,7 @@ C     compared to that of the C call (see scene.c); then every error.
       CALL NOHAND
       CALL ERRORS
       CALL HANDLE
+      CALL OWNLAW
       CALL EXPECT('all deleted', NALIVE() .EQ. 0)
       CALL REPORT_ALL
       END
@@ -237,6 +238,90 @@ C     masses. IPAR counts the calls; at call IPAR(2) it fails.
    20 CONTINUE
       IPAR(1) = IPAR(1) + 1
       IF (IPAR(1) .EQ. IPAR(2)) IER = 17
+      END
+C
+C     Quinn's law, by its box
+      SUBROUTINE BOXLAW(I1, N, IDER, V, FMUN, EPS, BOX, RPAR, IPAR, IER)
+      INTEGER I1, N, IDER, IPAR(*), IER, I
+      DOUBLE PRECISION V(N), FMUN(N), EPS(N), BOX(N,*), RPAR(*), S
+      IPAR(1) = IPAR(1) + 1
+      DO 10 I = 1, N
+         S = RPAR(1)*FMUN(I)/EPS(I)
+         BOX(I,1) = -FMUN(I)
+         BOX(I,2) = FMUN(I)
+         BOX(I,3) = S*V(I)
+         IF (V(I) .LT. 0D0) BOX(I,1) = MIN(FMUN(I), -FMUN(I)-BOX(I,3))
+         IF (V(I) .GT. 0D0) BOX(I,2) = MAX(-FMUN(I), FMUN(I)-BOX(I,3))
+         IF (ABS(V(I)) .GT. EPS(I)) THEN
+            BOX(I,1) = -SIGN(FMUN(I), V(I))
+            BOX(I,2) = BOX(I,1)
+            BOX(I,3) = 0D0
+         END IF
+         IF (IDER .EQ. 1) THEN
+            BOX(I,4) = 0D0
+            BOX(I,5) = 0D0
+            BOX(I,6) = 0D0
+            IF (ABS(V(I)) .LE. EPS(I)) THEN
+               IF (V(I) .LE. 0D0) BOX(I,4) = -S
+               IF (V(I) .GE. 0D0) BOX(I,5) = -S
+               BOX(I,6) = S
+            END IF
+         END IF
+         IF (I1 + I - 1 .EQ. IPAR(2)) IER = 9
+   10 CONTINUE
+      END
+C
+C     A law of the program's own moves forces and derivatives as the
+C     built-in one does
+      SUBROUTINE OWNLAW
+      INTEGER N
+      PARAMETER (N = 3)
+      INTEGER IH(3), IERR, I, J, K, LAW, IPAR(2)
+      DOUBLE PRECISION R(N,N), V(N), A(N), FMUN(N), EPS(N), RPAR(1)
+      DOUBLE PRECISION FEQ(N,3), F(N,3), DFDV(N,N,3), DFDA(N,N,3), OFF
+      CHARACTER*200 TEXT
+      EXTERNAL BOXLAW
+      COMMON /OWNPAR/ RPAR, IPAR
+      DATA R /2D0, 1D0, 0D0, 1D0, 2D0, 1D0, 0D0, 1D0, 2D0/
+      DATA V /0.01D0, -0.02D0, 0.5D0/, A /0.3D0, -9D0, 1D0/
+      DATA FMUN /1D0, 2D0, 1.5D0/, EPS /0.1D0, 0.2D0, 0.1D0/
+      RPAR(1) = 2D0
+      IPAR(1) = 0
+      IPAR(2) = 0
+      DO 20 K = 1, 3
+         IF (K .LT. 3) CALL TRBNEW(N, IH(K), IERR)
+         IF (K .EQ. 3) CALL TRBCPY(IH(2), IH(3), IERR)
+         CALL TRBLIM(IH(K), N, FMUN, IERR)
+         CALL TRBEPS(IH(K), N, EPS, IERR)
+         IF (K .LT. 3) CALL TRBOPF(IH(K), N, R, N, IERR)
+         IF (K .EQ. 2) CALL TRBULW(IH(K), BOXLAW, RPAR, IPAR, IERR)
+         CALL TRBBTN(IH(K), N, V, A, FEQ(1,K), F(1,K), DFDV(1,1,K),
+     1               DFDA(1,1,K), N, IERR)
+         CALL EXPECT('TRBULW', IERR .EQ. 0)
+   20 CONTINUE
+      CALL TRBGLW(IH(2), LAW, IERR)
+      CALL EXPECT('number of TRBULW', LAW .EQ. -1)
+      CALL EXPECT('calls of TRBULW', IPAR(1) .EQ. 4)
+      OFF = 0D0
+      DO 50 K = 2, 3
+         DO 40 I = 1, N
+            OFF = MAX(OFF, ABS(FEQ(I,K)-FEQ(I,1)), ABS(F(I,K)-F(I,1)))
+            DO 30 J = 1, N
+               OFF = MAX(OFF, ABS(DFDV(I,J,K)-DFDV(I,J,1))*1D-2,
+     1                   ABS(DFDA(I,J,K)-DFDA(I,J,1)))
+   30       CONTINUE
+   40    CONTINUE
+   50 CONTINUE
+      CALL EXPECT('results of TRBULW', OFF .LT. 1D-14)
+      CALL TRBDEL(IH(2), IERR)
+      IPAR(2) = 2
+      CALL TRBBAL(IH(3), N, V, A, FEQ, F, IERR)
+      CALL EXPECT('failure of TRBULW', IERR .EQ. 62)
+      CALL TRBMSG(IH(3), TEXT, IERR)
+      CALL EXPECT('message of TRBULW', TEXT .EQ.
+     1 'law answered 9 for 3 contacts, of which the first is contact 1')
+      CALL TRBDEL(IH(3), IERR)
+      CALL TRBDEL(IH(1), IERR)
       END
 C
       SUBROUTINE SETTIN(IH)

@@ -10,7 +10,7 @@ C     Every routine that takes a handle, with one that is none.
       DOUBLE PRECISION X(N), Y(N), Z(N), D(N), E(N), Q(N,N), P(N,N)
       CHARACTER*80 TEXT
       CHARACTER*80 SAYS
-      EXTERNAL MINV
+      EXTERNAL MINV, BOXLAW
       DATA IPAR /0, 0/
       CALL TRBNEW(N, IHS(1), IERR)
       CALL TRBDEL(IHS(1), IERR)
@@ -58,6 +58,8 @@ C     Every routine that takes a handle, with one that is none.
          CALL WANTED('TRBLAW', IH, IERR, 1, SAYS)
          CALL TRBNAM(IH, 'coulomb', IERR)
          CALL WANTED('TRBNAM', IH, IERR, 1, SAYS)
+         CALL TRBULW(IH, BOXLAW, X, IPAR, IERR)
+         CALL WANTED('TRBULW', IH, IERR, 1, SAYS)
          CALL TRBGLW(IH, J, IERR)
          CALL WANTED('TRBGLW', IH, IERR, 1, SAYS)
          CALL TRBLIM(IH, N, X, IERR)
@@ -151,7 +153,7 @@ C     The errors of calls with a handle that is one.
       INTEGER IPL(2)
       CHARACTER*60 SAYS
       LOGICAL SAME
-      EXTERNAL MINV
+      EXTERNAL MINV, BOXLAW
       DATA NEG /1D0, 2D0, -1D0/, VAL /1D0, 1D0, 1D0, 1D0/
       DATA NOS /2, 4, -3/, IPAR /0, 2/
       IH = -777

@@ -2,6 +2,7 @@
 !> Every procedure of module tribo that can succeed, with each of its results compared to that of the C call: scene.c plays the
 !> same scene on its tape.
 module results_mass
+  use, intrinsic :: iso_c_binding
   use scene, only: scene_inverse_mass
   use tribo
   implicit none
@@ -16,6 +17,23 @@ module results_mass
 
 contains
 
+  !> Coulomb's law with friction that falls to data's part of the limit as contacts slide.
+  integer(c_int) function falling(first, n, derivatives, v, limit, epsilon, box, data) bind(c)
+    integer(c_size_t), value :: first, n
+    integer(c_int), value :: derivatives
+    real(c_double), intent(in) :: v(n), limit(n), epsilon(n)
+    real(c_double), intent(inout) :: box(n, *)
+    type(c_ptr), value :: data
+    real(c_double), pointer :: part(:)
+
+    call c_f_pointer(data, part, [first + n])
+    box(:, 1) = merge(-limit, -sign(part(first + 1:)*limit, v), abs(v) <= epsilon)
+    box(:, 2) = merge(limit, box(:, 1), abs(v) <= epsilon)
+    box(:, 3) = 0
+    if (derivatives == 1) box(:, 4:6) = 0
+    falling = 0
+  end function falling
+
   integer function apply(this, force, acceleration)
     class(mass_of_scene), intent(inout) :: this
     real(dp), intent(in) :: force(:)
@@ -29,7 +47,8 @@ end module results_mass
 program results
   use, intrinsic :: iso_fortran_env, only: int64
   use check, only: report, require, same_bits
-  use results_mass, only: mass_of_scene
+  use, intrinsic :: iso_c_binding, only: c_funloc, c_loc
+  use results_mass, only: falling, mass_of_scene
   use scene
   use tape, only: compare, end_of_tape, record
   use tribo
@@ -40,6 +59,7 @@ program results
   call contexts()
   call end_of_tape()
   call sections()
+  call user_law()
   call no_contacts()
   call report()
 
@@ -493,6 +513,28 @@ contains
       call d%accept(v(2, :), other(n:1:-1, 2))
     end do
   end subroutine compare_forces
+
+  !> A law of the program, in a context and in its clone.
+  subroutine user_law()
+    type(tribo_context) :: c, copy
+    real(dp), target :: part(3) = [0.5_dp, 0.25_dp, 0.75_dp]
+    real(dp) :: f(3), feq(3), df_dv(3), df_dfeq(3)
+    integer :: law
+
+    call c%create(3)
+    call c%set_limit([1.0_dp, 2.0_dp, 4.0_dp])
+    call c%set_epsilon(0.1_dp)
+    call c%set_operator([1.0_dp, 1.0_dp, 1.0_dp])
+    call c%set_user_law(c_funloc(falling), c_loc(part))
+    call c%get_law(law)
+    call require(law == TRIBO_USER_LAW, 'number of a law of the caller')
+    call c%clone(copy)
+    call copy%balance([1.0_dp, 0.0_dp, -1.0_dp], [0.3_dp, 0.3_dp, 0.3_dp], feq, f)
+    call require(maxval(abs(f - [-0.5_dp, -0.3_dp, 3.0_dp])) <= 0, 'law of the caller: balance')
+    call c%force_tangent([1.0_dp, 0.0_dp, -1.0_dp], feq, f, df_dv, df_dfeq)
+    call require(maxval(abs([f - [-0.5_dp, -0.3_dp, 3.0_dp], df_dv, df_dfeq - [0, 1, 0]])) <= 0, &
+      'law of the caller: derivatives')
+  end subroutine user_law
 
   !> No contacts at all are fine everywhere.
   subroutine no_contacts()

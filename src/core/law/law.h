@@ -22,8 +22,17 @@ struct contacts {
     const double *width, *rate;
     const unsigned char *moving; /* reversal memory */
     int follows;
-    int scales; /* epsilon follows the caller's limit, also where it is in width (static limits) */
-    int alike;  /* all have the first limit, bound, width and rate */
+    int scales;                  /* epsilon follows the caller's limit, also where it is in width (static limits) */
+    int alike;                   /* all have the first limit, bound, width and rate */
+    size_t first;                /* number of the first contact */
+    const struct user_law *user; /* of the caller's law; NULL: contacts of no context */
+};
+
+/* The caller's law, see tribo_set_user_law. */
+struct user_law {
+    int (*law)(size_t first, size_t n, int derivatives, const double *v, const double *limit, const double *epsilon, double *box,
+               void *data);
+    void *data;
 };
 
 /* Returns rate for a given epsilon. */
@@ -34,8 +43,8 @@ static inline double tribo_rate(double epsilon)
 
 static inline struct contacts tribo_contacts_from(const struct contacts *c, size_t i)
 {
-    return (struct contacts){c->limit + i,  c->bound + i, c->width + i, c->rate + i,
-                             c->moving + i, c->follows,   c->scales,    c->alike};
+    return (struct contacts){c->limit + i, c->bound + i, c->width + i, c->rate + i,  c->moving + i,
+                             c->follows,   c->scales,    c->alike,     c->first + i, c->user};
 }
 
 /* epsilon and slope of contact i. Factors are chosen, since a product that is not needed might overflow. */
@@ -76,6 +85,7 @@ struct law {
 
 extern const struct law tribo_law_coulomb, tribo_law_velocity_limited, tribo_law_smooth, tribo_law_karnopp, tribo_law_quinn,
     tribo_law_quinn_reversal;
+extern const struct law tribo_law_own; /* own.c; it has no number of the registry */
 
 /* Returns the law of this number, or NULL. */
 const struct law *tribo_law(int id);

@@ -71,7 +71,7 @@ int tribo_law_eval(int law, double v, double feq, double limit, double epsilon, 
     const double bound = lesser(limit, TRIBO_FAR), read = needs_feq ? cut(feq) : 0.0;
     const double rate = lesser(tribo_rate(epsilon), TRIBO_FAR / greater(bound, 1.0));
     const unsigned char moving = 1;
-    const struct contacts c = {&limit, &bound, &epsilon, &rate, &moving, 0, 0, 0};
+    const struct contacts c = {&limit, &bound, &epsilon, &rate, &moving, 0, 0, 0, 0, NULL};
     double ignored[3];
     const struct tangents to = {f, df_dv ? df_dv : ignored, df_dfeq ? df_dfeq : ignored + 1, df_dlimit ? df_dlimit : ignored + 2};
     l->tangent(&c, 1, &v, &read, &to);

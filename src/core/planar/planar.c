@@ -50,7 +50,7 @@ double tribo_planar_carried(const struct law *law, double speed, double *slope)
 {
     const double one = 1.0, two = 2.0, none = 0.0;
     const unsigned char moving = 0;
-    const struct contacts c = {&one, &one, &one, &two, &moving, 0, 0, 0};
+    const struct contacts c = {&one, &one, &one, &two, &moving, 0, 0, 0, 0, NULL};
     double f = -1.0;
     struct tangent d = {0.0, 0.0, 0.0};
     if (!law->uses_feq) {
@@ -284,8 +284,12 @@ void tribo_clusters_refresh(tribo_context *ctx, int follows, double time)
     }
 }
 
-int tribo_plane_check_coupling(tribo_context *ctx, int coupling, size_t count, const size_t *first)
+int tribo_plane_check_coupling(tribo_context *ctx, const struct law *law, int coupling, size_t count, const size_t *first)
 {
+    if (count && law == &tribo_law_own) {
+        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "laws of the caller know no planar contacts, and contact %zu is one",
+                          first[0]);
+    }
     return count && coupling == TRIBO_PARTITION
                ? tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "the partition coupling knows no planar contacts, and contact %zu is one",
                             first[0])
@@ -301,7 +305,7 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
         return tribo_fail(ctx, TRIBO_ERR_NULL, "first is NULL");
     }
     signed char *taken = ctx->spare;
-    int status = tribo_plane_check_coupling(ctx, ctx->set.coupling, count, first);
+    int status = tribo_plane_check_coupling(ctx, ctx->set.law, ctx->set.coupling, count, first);
     if (status || (!count && !ctx->plane.count)) {
         return status;
     }

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The law of the caller (tribo_set_user_law): for a velocity, f = clamp(f_eq - shift, lower, upper). */
+#ifndef TRIBO_OWN_H
+#define TRIBO_OWN_H
+
+#include "context.h"
+
+static inline int tribo_is_own(const tribo_context *ctx)
+{
+    return ctx->set.law == &tribo_law_own;
+}
+
+/* 1 if a balance writes to its outputs directly. */
+static inline int tribo_balance_alone(const tribo_context *ctx)
+{
+    return tribo_all_alone(ctx) && !tribo_is_own(ctx);
+}
+
+/* Rows of what the law gives: a box, its derivatives by v, by the limit. */
+enum { LOWER, UPPER, SHIFT, BOX_ROWS, BY_V_ROWS = BOX_ROWS, BY_LIMIT_ROWS = 2 * BOX_ROWS, ALL_ROWS = 3 * BOX_ROWS };
+
+/* box [BOX_ROWS][n], or if derivatives = 1 [ALL_ROWS][n], of n <= TRIBO_CHUNK contacts at v [n]. Returns 1, or 0 where the law
+ * fails or its boxes are none: all rows are HUGE_VAL then. */
+int tribo_own_boxes(const struct contacts *c, size_t n, int derivatives, const double *v, double *box);
+
+/* Where balances keep boxes [n] between their parts: in the place of the derivatives, which are found after them. */
+static inline double *tribo_own_row(const tribo_context *ctx, int row)
+{
+    double *const rows[] = {ctx->last.tangent.dv, ctx->last.tangent.dfeq, ctx->last.tangent.dlimit};
+    return rows[row];
+}
+
+static inline double tribo_own_force(const tribo_context *ctx, size_t i, double feq)
+{
+    return clamp(feq - tribo_own_row(ctx, SHIFT)[i], tribo_own_row(ctx, LOWER)[i], tribo_own_row(ctx, UPPER)[i]);
+}
+
+/* f [n] of the chunk of contact i from v and feq [n], and keeps its boxes; HUGE_VAL where tribo_own_boxes returns 0. */
+void tribo_own_forces(const tribo_context *ctx, size_t i, const double *v, const double *feq, double *f);
+
+/* The failure of the law at v [ctx->n], derivatives as in tribo_own_boxes; TRIBO_ERR_CALLBACK. */
+int tribo_own_fail(tribo_context *ctx, int derivatives, const double *v);
+
+/* last.slip of a balance at v. */
+void tribo_own_slips(tribo_context *ctx, const double *v);
+
+/* last.feq of contacts near stick = any f_eq for which the law is on the side of its box on which the balance left it. */
+void tribo_own_sides(tribo_context *ctx);
+
+/* *rate = the largest R_ii times slope of a law at v = 0; TRIBO_ERR_CALLBACK if it fails. */
+int tribo_own_rate(const tribo_context *ctx, double *rate);
+
+#endif
