@@ -430,7 +430,8 @@ TRIBO_API int tribo_driver_find_cycle(tribo_driver *drv, double t, double *perio
 /* Floquet multipliers re + i im of the last periodic motion found, largest modulus first; in a complex pair im > 0 is first.
  * re, im   [dimension - 1] out
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_STATE (no search yet, or the last search failed),
- * TRIBO_ERR_UNSUPPORTED (contacts that act on each other stop or break away at one instant: the motion nearby is not linear). */
+ * TRIBO_ERR_UNSUPPORTED (contacts that act on each other stop or break away at one instant, or a normal rests at depth 0: the
+ * motion nearby is not linear). */
 TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im);
 
 /* The dimension of the family of periodic motions around the last periodic motion found: a contact that never slips can rest at

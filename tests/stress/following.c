@@ -106,8 +106,16 @@ static struct scene scene_create(int seed)
     for (size_t i = 0; moving && i < 2 * s.n; i++) {
         s.start[i] = uniform(&g, -1.0, 1.0);
     }
-    snprintf(s.name, sizeof s.name, "%zu dofs, %zu contacts, %zu normals%s%s%s%s", s.n, s.followers, s.normals,
-             elastic ? ", elastic" : "", belts ? ", belts" : "", shakes ? ", shaken" : "", moving ? ", moving" : "");
+    const int is_free = chance(&g, 0.2);
+    for (size_t i = 0; is_free && i < s.n; i++) { /* some bodies, which nothing holds */
+        const size_t end = chance(&g, 0.5) ? s.n : 0;
+        for (size_t j = 0; j < end; j++) {
+            s.stiffness[i * s.n + j] = s.stiffness[j * s.n + i] = s.damping[i * s.n + j] = s.damping[j * s.n + i] = 0.0;
+        }
+    }
+    snprintf(s.name, sizeof s.name, "%zu dofs, %zu contacts, %zu normals%s%s%s%s%s", s.n, s.followers, s.normals,
+             is_free ? ", free" : "", elastic ? ", elastic" : "", belts ? ", belts" : "", shakes ? ", shaken" : "",
+             moving ? ", moving" : "");
     return s;
 }
 
@@ -324,6 +332,71 @@ TEST(agree)
     }
 }
 
+/* Finds a periodic motion of s by a method: y, its multipliers sorted by modulus, re [dimension - 1], and by event how far the motion is
+ * from there after a period. Returns a status. */
+static int find_return(const struct scene *s, int seed, const char *method, double period, double *y, double *modulus,
+                       double *off)
+{
+    tribo_system *sys = scene_system(s, seed);
+    const size_t all = tribo_system_dimension(sys);
+    tribo_driver *d = NULL;
+    double re[2 * DOFS + FOLLOWERS], im[2 * DOFS + FOLLOWERS], t = 0.0, z[2 * DOFS + FOLLOWERS + 1];
+    assert_ok(tribo_driver_create(&d, sys, method));
+    int status = tribo_driver_find_periodic(d, 0.0, period, y);
+    status = status ? status : tribo_driver_get_multipliers(d, re, im);
+    if (status) {
+        printf("seed %d, %s, %s: %s\n", seed, s->name, method, tribo_driver_message(d));
+    }
+    tribo_driver_destroy(d);
+    *off = 0.0;
+    if (!status) {
+        for (size_t i = 0; i + 1 < all; i++) {
+            modulus[i] = hypot(re[i], im[i]);
+        }
+        memcpy(z, y, all * sizeof *z);
+        assert_ok(tribo_driver_create(&d, sys, "event"));
+        assert_ok(tribo_driver_advance(d, &t, period, z));
+        for (size_t i = 0; i + 1 < all; i++) {
+            *off = fmax(*off, fabs(z[i] - y[i]));
+        }
+        tribo_driver_destroy(d);
+    }
+    tribo_system_destroy(sys);
+    return status;
+}
+
+/* Periodic motions by event and by exact return, and have the same multipliers. Bodies that nothing holds return to any place. */
+TEST(periodic)
+{
+    for (int seed = setting("TRIBO_SEED", 0) + BLOCK * _i; seed < setting("TRIBO_SEED", 0) + BLOCK * (_i + 1); seed++) {
+        struct scene s = scene_create(seed);
+        double y[2][2 * DOFS + FOLLOWERS + 1] = {{0.0}}, modulus[2][2 * DOFS + FOLLOWERS] = {{0.0}}, off[2], size = 1.0,
+                                           same = 0.0;
+        if (strstr(s.name, "free")) {
+            continue;
+        }
+        s.load[2].omega = 2.0 * s.load[1].omega;
+        s.shake_omega = s.load[1].omega;
+        for (size_t i = 0; i < s.n; i++) {
+            s.damping[i * (s.n + 1)] += 0.2 * s.mass[i * (s.n + 1)];
+        }
+        int status[2];
+        for (int k = 0; k < 2; k++) {
+            status[k] = find_return(&s, seed, k ? "exact" : "event", 2.0 * PI / s.load[1].omega, y[k], modulus[k], &off[k]);
+        }
+        for (size_t i = 0; i < 2 * DOFS + FOLLOWERS; i++) {
+            size = fmax(size, fmax(fabs(y[0][i]), modulus[0][i]));
+            same = fmax(same, fabs(y[0][i] - y[1][i]));
+        }
+        require(status[0] || off[0] < 1e-9 * size, "seed %d, %s: event does not return by %g", seed, s.name, off[0]);
+        require(status[1] || off[1] < 1e-9 * size, "seed %d, %s: exact does not return by %g", seed, s.name, off[1]);
+        for (size_t i = 0; !status[0] && !status[1] && same < 1e-9 * size && i < 2 * DOFS + FOLLOWERS; i++) {
+            require(fabs(modulus[0][i] - modulus[1][i]) < 1e-6 * size, "seed %d, %s: multiplier %zu: %g by event, %g by exact",
+                    seed, s.name, i, modulus[0][i], modulus[1][i]);
+        }
+    }
+}
+
 /* A body of mass 1 with x and y on springs; the contact acts in x, the normal in y, of stiffness 3, gap 0; elastic or rigid. Copies of
  * the body, each with its contact. */
 static struct scene bodies(size_t copies, int elastic, double mu)
@@ -420,6 +493,6 @@ TEST(degenerate)
 
 int main(void)
 {
-    const struct test tests[] = {{agree, setting("TRIBO_BLOCKS", 12)}, {degenerate, 2 * CASES}};
+    const struct test tests[] = {{agree, setting("TRIBO_BLOCKS", 12)}, {periodic, 2}, {degenerate, 2 * CASES}};
     return run_suite("following", tests, COUNT(tests));
 }

@@ -321,6 +321,29 @@ static int make_periodic_event(tribo_system **sys, tribo_driver **drv)
     return find_periodic(sys, drv, "event");
 }
 
+/* A periodic motion of an elastic contact that slides at a limit which follows the motion, and lifts off. */
+static int make_following(tribo_system **sys, tribo_driver **drv)
+{
+    const double mass[] = {1.0, 1.0}, stiffness[] = {12.0, 1.0, 1.0, 21.0}, direction[] = {1.0, 0.0, 0.0, 1.0},
+                 soft[] = {0.2, 0.0};
+    const double damping[] = {0.4, 2.0}, steady[] = {0.0, 100.0}, swing[] = {60.0, 60.0};
+    double y[6] = {0.0};
+    tribo_model *from = NULL;
+    int status = tribo_model_create(&from, 2, 2);
+    status = status ? status : tribo_model_set_mass_diagonal(from, mass);
+    status = status ? status : tribo_model_set_damping_diagonal(from, damping);
+    status = status ? status : tribo_model_set_stiffness(from, stiffness);
+    status = status ? status : tribo_model_set_direction(from, direction);
+    status = status ? status : tribo_model_set_compliance(from, soft);
+    status = status ? status : tribo_model_set_normal(from, 0, 1, 0.85, 21.0, 0.0);
+    status = status ? status : tribo_system_create(sys, from);
+    tribo_model_destroy(from);
+    status = status ? status : tribo_system_add_load(*sys, 0.0, steady, NULL);
+    status = status ? status : tribo_system_add_load(*sys, 5.0, swing, NULL);
+    status = status ? status : set_up_driver(drv, *sys, "exact", 1.0, 0.0, 0.0);
+    return status ? status : tribo_driver_find_periodic(*drv, 0.0, 2.0 * PI / 5.0, y);
+}
+
 static const struct {
     const char *name;
     int (*make)(tribo_system **sys, tribo_driver **drv);
@@ -334,6 +357,7 @@ static const struct {
               {"loaded", make_loaded},
               {"exact", make_exact},
               {"coupled", make_coupled},
+              {"following", make_following},
               {"graded", make_graded},
               {"copy", make_copy},
               {"full copy", make_full_copy},

@@ -92,23 +92,6 @@ static void keep_coupled(struct modal *h, size_t p, size_t k, double complex lam
     h->ri[p * h->modes + k] = -cimag(r);
 }
 
-/* Sets the part of exponent p that modes which drift follow: lambda^2 r_d = -sum over k of (K~_dk + lambda C~_dk) r_k. */
-static void follow_modes(struct modal *h, size_t p, double complex lambda)
-{
-    const size_t m = h->modes;
-    double *rr = h->rr + p * m, *ri = h->ri + p * m;
-    for (size_t d = 0; d < m; d++) {
-        const double *k = h->stiff + d * m, *c = h->coupling + d * m;
-        if (h->omega2[d] == 0.0) {
-            const double complex pull =
-                (tribo_dot(k, rr, m) - tribo_dot(k, ri, m) * I) + lambda * (tribo_dot(c, rr, m) - tribo_dot(c, ri, m) * I);
-            const double complex r = -pull / (lambda * lambda);
-            rr[d] = creal(r);
-            ri[d] = -cimag(r);
-        }
-    }
-}
-
 /* Returns |A x - lambda x|/|lambda| of the eigenvector x = v + i w, |x| = 1, of a = A [size][size]. */
 static double eigen_error(const double *a, size_t size, double complex lambda, const double *v, const double *w)
 {
@@ -122,7 +105,7 @@ static double eigen_error(const double *a, size_t size, double complex lambda, c
 }
 
 /* Keeps exponent p of modes whose K~ is not symmetric: x = v + i w the right, y - i z, times half, the left eigenvector, by modes at
- * [count], divided by s. */
+ * [count], divided by s. Modes which drift follow: lambda^2 r_d = -sum over k of (K~_dk + lambda C~_dk) r_k. */
 static void keep_following(struct modal *h, size_t p, size_t count, const size_t *at, const double *s, double complex lambda,
                            double half, const double *const *vector)
 {
@@ -137,7 +120,18 @@ static void keep_following(struct modal *h, size_t p, size_t count, const size_t
         h->rr[r] = vector[0][i] / (half * s[i]);
         h->ri[r] = -vector[1][i] / (half * s[i]);
     }
-    follow_modes(h, p, lambda);
+    const size_t m = h->modes;
+    double *rr = h->rr + p * m, *ri = h->ri + p * m;
+    for (size_t d = 0; d < m; d++) {
+        const double *k = h->stiff + d * m, *c = h->coupling + d * m;
+        if (h->omega2[d] == 0.0) {
+            const double complex pull =
+                (tribo_dot(k, rr, m) - tribo_dot(k, ri, m) * I) + lambda * (tribo_dot(c, rr, m) - tribo_dot(c, ri, m) * I);
+            const double complex r = -pull / (lambda * lambda);
+            rr[d] = creal(r);
+            ri[d] = -cimag(r);
+        }
+    }
 }
 
 /* Sets s = omega and a = A of x' = A x, x = (s eta, eta'), of the modes at [count]. */

@@ -63,7 +63,7 @@ int tribo_modal_transition(void *own, const void *phase, double tau, size_t colu
     tribo_system *sys = x->sys;
     const size_t n = h->n, m = h->modes, c = columns, block = n * c;
     const size_t ways = 2 * sys->ncontact * c;
-    double *eta = malloc((13 * block + ways + 4 * n + 1) * sizeof *eta), *rate = eta + block;
+    double *eta = malloc((13 * block + 2 * ways + 4 * n + 1) * sizeof *eta), *rate = eta + block;
     double *pull = rate + block, *way = pull + block, *force = way + ways / 2, *work = way + ways;
     if (!eta) {
         return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));

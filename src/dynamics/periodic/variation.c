@@ -181,6 +181,40 @@ static int find_drops(struct variation *x, double tau)
     return status;
 }
 
+/* There is no derivative, because of contacts i and j. */
+static void tear(struct variation *x, size_t i, size_t j)
+{
+    x->to->torn = i < j ? i : j;
+    x->to->other = i < j ? j : i;
+}
+
+/* Depth, speed and acceleration of a normal, relative to the largest ones of the structure, that are rounding. */
+#define RESTS 1e-13
+
+/* Where a normal rests at depth 0 some neighbouring motions are pressed, and others are not: there is no derivative. */
+static void tear_resting(struct variation *x, const double *y)
+{
+    const tribo_system *sys = x->sys;
+    const struct normals *s = &sys->normals;
+    const size_t n = sys->ndof;
+    for (size_t k = 0; k < s->followers; k++) {
+        const struct normal *at = &s->normal[s->follower[k].normal];
+        const double *const value[] = {y, y + n, x->acceleration};
+        double reach = 0.0;
+        int rests = 1;
+        for (size_t e = sys->direction.first[at->row]; e < sys->direction.first[at->row + 1]; e++) {
+            reach += fabs(sys->direction.val[e]);
+        }
+        for (size_t order = 0; order < 3; order++) {
+            const double gap = order ? 0.0 : at->gap, off = tribo_matrix_row_dot(&sys->direction, at->row, value[order]) - gap;
+            rests &= fabs(off) <= RESTS * (reach * tribo_largest(value[order], n) + fabs(gap));
+        }
+        if (rests) {
+            tear(x, s->follower[k].contact, at->row);
+        }
+    }
+}
+
 int tribo_variation_phase(struct variation *x, double tau, double t, const double *y)
 {
     struct stick_slip *m = &x->to->events->stick_slip;
@@ -195,6 +229,7 @@ int tribo_variation_phase(struct variation *x, double tau, double t, const doubl
     if (status) {
         return status;
     }
+    tear_resting(x, y);
     const struct motion *motion = x->to->events->motion;
     struct derivative_step *s = add_step(x->to);
     int done = s != NULL;
@@ -247,13 +282,6 @@ static void gather(struct variation *x, size_t i, size_t group)
             gather(x, j, group);
         }
     }
-}
-
-/* There is no derivative, because of contacts i and j. */
-static void tear(struct variation *x, size_t i, size_t j)
-{
-    x->to->torn = i < j ? i : j;
-    x->to->other = i < j ? j : i;
 }
 
 /* Returns the first crossing of the group of crossing `first` that perturbed motions do not make at the same time, tied together
@@ -343,7 +371,7 @@ static void carry_over_springs(struct variation *x)
 }
 
 /* Appends the jumps of f' where normals lift off or touch down, earlier by depth/speed. Of several normals each makes the jumps of
- * its own contacts. */
+ * its own contacts. Where a normal is at rest f' of a contact that slides does not jump; if the contact sticks there is no derivative. */
 static void carry_over_normals(struct variation *x)
 {
     const struct slip_state *now = &x->to->events->stick_slip.state;
@@ -355,7 +383,16 @@ static void carry_over_normals(struct variation *x)
         changes += x->pressed[k] != now->pressed[k];
     }
     for (size_t k = 0; g->count && k < s->count; k++) {
-        if (x->pressed[k] == now->pressed[k] || s->normal[k].speed == 0.0) {
+        if (x->pressed[k] == now->pressed[k]) {
+            continue;
+        }
+        for (size_t l = 0; now->rests[k] && l < g->count; l++) {
+            const struct follower *f = tribo_normals_follower(x->sys, g->contact[l]);
+            if (f && f->normal == k && now->slip[g->contact[l]] == TRIBO_SLIP_STUCK) {
+                tear(x, g->contact[l], s->normal[k].row);
+            }
+        }
+        if (now->rests[k]) {
             continue;
         }
         memset(x->change, 0, (all - n) * sizeof *x->change);

@@ -360,6 +360,53 @@ TEST(redundant)
     }
 }
 
+/* N falls to 0 and rises again, or lifts off for a moment: multipliers are those of a motion that stays pressed close by. */
+TEST(graze)
+{
+    static const double more[] = {0.0, 1e-15, -1e-15, 1e-14, 1e-13, 1e-12, 1e-10};
+    const double w = 3.6, fy = 100.0 / 42.0 * hypot(42.0 - w * w, 2.0 * w), period = full_turn / w;
+    double re[2][5], im[2][5];
+    for (int k = 0; k < 2; k++) {
+        tribo_system *sys = shaker(80.0, fy * (k ? 1.0 + more[_i / 2] : 1.0 - 1e-6), w, 0.2, 0.0);
+        tribo_driver *d = driver_of(sys, _i % 2);
+        double y[6] = {0.0};
+        const int status = tribo_driver_find_periodic(d, 0.0, period, y);
+        require(!status, "%s", tribo_driver_message(d));
+        assert_ok(tribo_driver_get_multipliers(d, re[k], im[k]));
+        tribo_driver_destroy(d);
+        tribo_system_destroy(sys);
+    }
+    assert_all_close(re[1], re[0], 5, 1e-4);
+    assert_all_close(im[1], im[0], 5, 1e-4);
+}
+
+/* A normal that rests at depth 0, beside a body that slides: neighbouring motions press or do not, and there are no multipliers. */
+TEST(resting)
+{
+    const double mass[] = {1.0, 1.0, 1.0}, stiffness[] = {2.0, 3.0, 5.0},
+                 direction[] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+    const double damping[] = {0.1, 0.1, 0.1}, limit[] = {0.0, 0.0, 0.5}, swing[] = {1.0, 0.0, 2.0}, period = full_turn / 1.3;
+    double y[7] = {0.0}, re[6] = {5.0}, im[6];
+    tribo_model *model;
+    tribo_system *sys;
+    assert_ok(tribo_model_create(&model, 3, 3));
+    assert_ok(tribo_model_set_mass_diagonal(model, mass));
+    assert_ok(tribo_model_set_damping_diagonal(model, damping));
+    assert_ok(tribo_model_set_stiffness_diagonal(model, stiffness));
+    assert_ok(tribo_model_set_direction(model, direction));
+    assert_ok(tribo_model_set_normal(model, 0, 1, 0.4, 7.0, 0.0));
+    assert_ok(tribo_system_create(&sys, model));
+    tribo_model_destroy(model);
+    assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
+    assert_ok(tribo_system_add_load(sys, 1.3, swing, NULL));
+    tribo_driver *d = driver_of(sys, _i);
+    assert_ok(tribo_driver_find_periodic(d, 0.0, period, y));
+    assert_status(tribo_driver_get_multipliers(d, re, im), TRIBO_ERR_UNSUPPORTED);
+    assert_exact(re[0], 5.0);
+    tribo_driver_destroy(d);
+    tribo_system_destroy(sys);
+}
+
 /* Limit cycle: stick, slip, lift, touch, of period 1.53650780675 (belt 0.5) and 1.48153261 (belt 1.0). */
 TEST(limit_cycle)
 {
@@ -798,5 +845,5 @@ TEST(refused)
 }
 
 TEST_MAIN("normals", {steady_motions, 2 * VALUES}, {periodic, 4 * VALUES}, {multipliers, 5 * VALUES}, {unstable, 1},
-          {walls_of_a_body, 4}, {redundant, 4}, {limit_cycle, 4}, {flutter, 3}, {shock, 2}, {steps, 7}, {stiff, 1},
-          {structures, 8}, {observed, 4}, {planar, 3}, {wrong_normals, 1}, {refused, 1})
+          {walls_of_a_body, 4}, {redundant, 4}, {limit_cycle, 4}, {graze, 14}, {resting, 2}, {flutter, 3}, {shock, 2}, {steps, 7},
+          {stiff, 1}, {structures, 8}, {observed, 4}, {planar, 3}, {wrong_normals, 1}, {refused, 1})
