@@ -2,7 +2,8 @@ C SPDX-License-Identifier: BSD-3-Clause
 C     FOUR IMPLICIT METHODS THAT CALL TRIBO: NEWMARK, HILBER, HUGHES AND
 C     TAYLOR (HHT), GENERALIZED ALPHA, BATHE.  EACH ONCE WITH COULOMB'S
 C     LAW OVER THE STEP (TRBSTF), ONCE WITH TANGENTS (TRBBTN) AND
-C     NEWTON'S METHOD.  THREE MASSES IN A ROW RUB ON THE GROUND.
+C     NEWTON'S METHOD, ONCE WITH A FORCE THAT IS CONSTANT OVER THE STEP
+C     (TRBSTM).  THREE MASSES IN A ROW RUB ON THE GROUND.
 C         legacy_hosts [FOLDER [STEPS]]
 C     PRINTS ERRORS AGAINST THE EXACT MOTION FOR STEPS THAT ARE HALVED,
 C     ITERATIONS A STEP, AND CREEP: HOW FAR THE MASSES MOVE IN STEPS
@@ -16,14 +17,14 @@ C     SMALLER THAN THE LIMITS
       COMMON /MOTION/ T, U(N), V(N), A(N), F(N)
       COMMON /HOST/ ISTEP, IH, NITER
       DIMENSION UEX(N), UREST(N), ERR(LEVELS)
-      CHARACTER*8 NAME(4), WAY(2)
+      CHARACTER*8 NAME(4), WAY(3)
       CHARACTER*80 TEXT
       DATA NAME /'newmark', 'hht', 'alpha', 'bathe'/
-      DATA WAY /'step', 'tangent'/
+      DATA WAY /'step', 'tangent', 'mean'/
       NCREEP = 50000
       CALL GETARG(2, TEXT)
       IF (TEXT .NE. ' ') READ (TEXT, *) NCREEP
-      DO 60 ISTEP = 1, 2
+      DO 60 ISTEP = 1, 3
          DO 60 METHOD = 1, 4
             CALL INPUT(0D0)
             CALL EXACT(TEND, UEX)
@@ -135,7 +136,7 @@ C     TWO STEPS
       COMMON /STRUC/ XM(N), XC(N,N), XK(N,N), FMU(N)
       COMMON /MOTION/ T, U(N), V(N), A(N), F(N)
       COMMON /HOST/ ISTEP, IH, NITER
-      COMMON /KEPT/ EINV(N,N), EMAT(N,N), WAS(4)
+      COMMON /KEPT/ EINV(N,N), EMAT(N,N), WAS(4), RMEAN(N,N)
       DIMENSION RINV(N)
       T = 0D0
       NITER = 0
@@ -149,7 +150,7 @@ C     TWO STEPS
    20    A(I) = 0D0
       CALL TRBNEW(N, IH, IERR)
       IF (IERR .EQ. 0) CALL TRBLIM(IH, N, FMU, IERR)
-      IF (ISTEP .EQ. 1) GOTO 30
+      IF (ISTEP .NE. 2) GOTO 30
       IF (IERR .EQ. 0) CALL TRBOPD(IH, N, RINV, IERR)
       IF (IERR .EQ. 0) CALL TRBSTP(IH, DT, 2D0, IERR)
    30 CALL CHECK(IH, IERR)
@@ -163,17 +164,20 @@ C
       RETURN
       END
 C
-C     ACCELERATIONS AT T = 0, BY THE BALANCE OF THE CONTACTS
+C     ACCELERATIONS AT T = 0, BY THE BALANCE OF THE CONTACTS; WITHOUT
+C     FRICTION WHERE THE FORCE IS CONSTANT OVER THE STEP
       SUBROUTINE START
       IMPLICIT REAL*8 (A-H,O-Z)
       PARAMETER (N=3)
       COMMON /STRUC/ XM(N), XC(N,N), XK(N,N), FMU(N)
       COMMON /MOTION/ T, U(N), V(N), A(N), F(N)
+      COMMON /HOST/ ISTEP, IH, NITER
       DIMENSION P(N)
       CALL LOADS(0D0, P)
       DO 10 I = 1, N
          F(I) = -DMIN1(DMAX1(P(I), -FMU(I)), FMU(I))
-   10    A(I) = (P(I) + F(I))/XM(I)
+         A(I) = P(I)/XM(I)
+   10    IF (ISTEP .NE. 3) A(I) = A(I) + F(I)/XM(I)
       RETURN
       END
 C
@@ -214,12 +218,16 @@ C     NEWMARK'S METHOD, BETA 1/4, GAMMA 1/2
       IMPLICIT REAL*8 (A-H,O-Z)
       PARAMETER (N=3, BETA=0.25D0, GAMMA=0.5D0)
       COMMON /MOTION/ T, U(N), V(N), A(N), F(N)
+      COMMON /MEAN/ GN, BN, AN
       DIMENSION UP(N), VP(N), P(N)
       DO 10 I = 1, N
          UP(I) = U(I) + DT*(V(I) + (0.5D0 - BETA)*DT*A(I))
    10    VP(I) = V(I) + (1D0 - GAMMA)*DT*A(I)
       T = T + DT
       CALL LOADS(T, P)
+      GN = (1D0 - GAMMA)*DT
+      BN = (0.5D0 - BETA)*DT**2
+      AN = 0D0
       CALL SOLVE(1D0, 1D0, GAMMA*DT, BETA*DT**2, UP, VP, P)
       RETURN
       END
@@ -231,6 +239,7 @@ C     LOADS BETWEEN BOTH ENDS OF THE STEP
       PARAMETER (N=3, ALPHA=-0.1D0, GAMMA=0.5D0-ALPHA,
      1           BETA=0.25D0*(1D0-ALPHA)**2)
       COMMON /MOTION/ T, U(N), V(N), A(N), F(N)
+      COMMON /MEAN/ GN, BN, AN
       DIMENSION UP(N), VP(N), P(N), POLD(N), Q(N)
       CALL LOADS(T, POLD)
       CALL INNER(U, V, Q)
@@ -240,6 +249,9 @@ C     LOADS BETWEEN BOTH ENDS OF THE STEP
          UP(I) = U(I) + DT*(V(I) + (0.5D0 - BETA)*DT*A(I))
          VP(I) = V(I) + (1D0 - GAMMA)*DT*A(I)
    10    P(I) = (1D0 + ALPHA)*P(I) - ALPHA*(POLD(I) - Q(I))
+      GN = (1D0 - GAMMA)*DT
+      BN = (0.5D0 - BETA)*DT**2
+      AN = 0D0
       CALL SOLVE(1D0, 1D0 + ALPHA, GAMMA*DT, BETA*DT**2, UP, VP, P)
       RETURN
       END
@@ -253,6 +265,7 @@ C     FORCES, TOO
      2           BETA=0.25D0*(1D0-AM+AF)**2)
       COMMON /STRUC/ XM(N), XC(N,N), XK(N,N), FMU(N)
       COMMON /MOTION/ T, U(N), V(N), A(N), F(N)
+      COMMON /MEAN/ GN, BN, AN
       DIMENSION UP(N), VP(N), P(N), POLD(N), Q(N)
       CALL LOADS(T, POLD)
       CALL INNER(U, V, Q)
@@ -262,6 +275,9 @@ C     FORCES, TOO
          UP(I) = U(I) + DT*(V(I) + (0.5D0 - BETA)*DT*A(I))
          VP(I) = V(I) + (1D0 - GAMMA)*DT*A(I)
    10    P(I) = (1D0 - AF)*P(I) + AF*(POLD(I) - Q(I)) - AM*XM(I)*A(I)
+      GN = (1D0 - GAMMA)*DT
+      BN = (0.5D0 - BETA)*DT**2
+      AN = AM
       CALL SOLVE(1D0 - AM, 1D0 - AF, GAMMA*DT, BETA*DT**2, UP, VP, P)
       RETURN
       END
@@ -271,7 +287,10 @@ C     BACKWARD FORMULA OF THREE POINTS
       SUBROUTINE BATHE(DT)
       IMPLICIT REAL*8 (A-H,O-Z)
       PARAMETER (N=3)
+      COMMON /STRUC/ XM(N), XC(N,N), XK(N,N), FMU(N)
       COMMON /MOTION/ T, U(N), V(N), A(N), F(N)
+      COMMON /HOST/ ISTEP, IH, NITER
+      COMMON /MEAN/ GN, BN, AN
       DIMENSION UP(N), VP(N), P(N), UOLD(N), VOLD(N)
       H = 0.5D0*DT
       DO 10 I = 1, N
@@ -281,9 +300,15 @@ C     BACKWARD FORMULA OF THREE POINTS
    10    VP(I) = V(I) + 0.5D0*H*A(I)
       T = T + H
       CALL LOADS(T, P)
+      GN = 0.5D0*H
+      BN = 0.25D0*H**2
+      AN = 0D0
       CALL SOLVE(1D0, 1D0, 0.5D0*H, 0.25D0*H**2, UP, VP, P)
+      GN = H/3D0
+      BN = DT/3D0*GN
       DO 20 I = 1, N
          VP(I) = V(I) + (V(I) - VOLD(I))/3D0
+         IF (ISTEP .EQ. 3) VP(I) = VP(I) - GN*F(I)/XM(I)
    20    UP(I) = U(I) + (U(I) - UOLD(I))/3D0 + DT/3D0*VP(I)
       T = T + H
       CALL LOADS(T, P)
@@ -299,7 +324,7 @@ C     WHERE A WEIGHT HAS CHANGED
       PARAMETER (N=3)
       COMMON /STRUC/ XM(N), XC(N,N), XK(N,N), FMU(N)
       COMMON /HOST/ ISTEP, IH, NITER
-      COMMON /KEPT/ EINV(N,N), EMAT(N,N), WAS(4)
+      COMMON /KEPT/ EINV(N,N), EMAT(N,N), WAS(4), RMEAN(N,N)
       DIMENSION UP(N), VP(N), P(N), Q(N), RHS(N)
       IF (WAS(1) .EQ. WM .AND. WAS(2) .EQ. WK .AND. WAS(3) .EQ. G
      1    .AND. WAS(4) .EQ. B) GOTO 20
@@ -314,11 +339,13 @@ C     WHERE A WEIGHT HAS CHANGED
       CALL INVERT(EMAT, EINV)
       IF (ISTEP .EQ. 1) CALL TRBOPF(IH, N, EINV, N, IERR)
       IF (ISTEP .EQ. 1) CALL CHECK(IH, IERR)
+      IF (ISTEP .EQ. 3) CALL REACT(WK, G)
    20 CALL INNER(UP, VP, Q)
       DO 30 I = 1, N
    30    RHS(I) = P(I) - WK*Q(I)
       IF (ISTEP .EQ. 1) CALL BYSTEP(G, B, UP, VP, RHS)
       IF (ISTEP .EQ. 2) CALL BYTANG(G, B, UP, VP, RHS)
+      IF (ISTEP .EQ. 3) CALL BYMEAN(G, B, UP, VP, RHS)
       RETURN
       END
 C
@@ -329,7 +356,7 @@ C     CONTACT THAT STICKS HAS V = 0 AND NO ACCELERATION FROM HERE ON
       PARAMETER (N=3)
       COMMON /MOTION/ T, U(N), V(N), A(N), F(N)
       COMMON /HOST/ ISTEP, IH, NITER
-      COMMON /KEPT/ EINV(N,N), EMAT(N,N), WAS(4)
+      COMMON /KEPT/ EINV(N,N), EMAT(N,N), WAS(4), RMEAN(N,N)
       DIMENSION UP(N), VP(N), RHS(N), VFREE(N), ISLIP(N)
       DO 20 I = 1, N
          VFREE(I) = VP(I)
@@ -350,6 +377,68 @@ C     CONTACT THAT STICKS HAS V = 0 AND NO ACCELERATION FROM HERE ON
       RETURN
       END
 C
+C     A FORCE THAT IS CONSTANT OVER THE STEP: A IS THE ACCELERATION BY
+C     SPRINGS AND LOADS ALONE, AND F/M IS ADDED AT BOTH ENDS.
+C     ACCELERATION AT THE END BY A FORCE: RMEAN; R DT = GN/M + G RMEAN
+      SUBROUTINE REACT(WK, G)
+      IMPLICIT REAL*8 (A-H,O-Z)
+      PARAMETER (N=3)
+      COMMON /STRUC/ XM(N), XC(N,N), XK(N,N), FMU(N)
+      COMMON /HOST/ ISTEP, IH, NITER
+      COMMON /MEAN/ GN, BN, AN
+      COMMON /KEPT/ EINV(N,N), EMAT(N,N), WAS(4), RMEAN(N,N)
+      DIMENSION R(N,N)
+      DO 30 J = 1, N
+         DO 20 I = 1, N
+            RMEAN(I,J) = (1D0 - AN)*EINV(I,J)
+            DO 10 K = 1, N
+   10          RMEAN(I,J) = RMEAN(I,J)
+     1            - WK*EINV(I,K)*(BN*XK(K,J) + GN*XC(K,J))/XM(J)
+   20       R(I,J) = G*RMEAN(I,J)
+   30    R(J,J) = R(J,J) + GN/XM(J)
+      DO 40 J = 1, N
+         DO 40 I = 1, J
+            R(I,J) = 0.5D0*(R(I,J) + R(J,I))
+   40       R(J,I) = R(I,J)
+      CALL TRBOPF(IH, N, R, N, IERR)
+      CALL CHECK(IH, IERR)
+      RETURN
+      END
+C
+      SUBROUTINE BYMEAN(G, B, UP, VP, RHS)
+      IMPLICIT REAL*8 (A-H,O-Z)
+      PARAMETER (N=3)
+      COMMON /STRUC/ XM(N), XC(N,N), XK(N,N), FMU(N)
+      COMMON /MOTION/ T, U(N), V(N), A(N), F(N)
+      COMMON /HOST/ ISTEP, IH, NITER
+      COMMON /MEAN/ GN, BN, AN
+      COMMON /KEPT/ EINV(N,N), EMAT(N,N), WAS(4), RMEAN(N,N)
+      DIMENSION UP(N), VP(N), RHS(N), AFREE(N), VFREE(N), ISLIP(N)
+      DO 20 I = 1, N
+         AFREE(I) = 0D0
+         DO 10 J = 1, N
+   10       AFREE(I) = AFREE(I) + EINV(I,J)*RHS(J)
+   20    VFREE(I) = VP(I) + G*AFREE(I)
+      CALL TRBSTM(IH, N, 1D0, V, VFREE, F, IERR)
+      IF (IERR .EQ. 0) CALL TRBSLP(IH, N, ISLIP, IERR)
+      CALL CHECK(IH, IERR)
+      NITER = NITER + 1
+      DO 50 I = 1, N
+         ACC = AFREE(I)
+         DO 30 J = 1, N
+   30       ACC = ACC + RMEAN(I,J)*F(J)
+         VOLD = V(I)
+         V(I) = VP(I) + GN*F(I)/XM(I) + G*ACC
+         IF (ISLIP(I) .NE. 0) GOTO 40
+         V(I) = 0D0
+         ACC = 0D0
+         IF (VOLD .EQ. 0D0) GOTO 50
+   40    U(I) = UP(I) + BN*F(I)/XM(I)
+     1        + B/G*(V(I) - VP(I) - GN*F(I)/XM(I))
+   50    A(I) = ACC - F(I)/XM(I)
+      RETURN
+      END
+C
 C     QUINN'S LAW WITH TANGENTS: NEWTON'S METHOD FOR A, AT LEAST ONE
 C     ITERATION.  EACH FIFTH ONE GOES HALF THE WAY, WHICH ENDS CYCLES
 C     BETWEEN THE TWO DIRECTIONS OF SLIDING
@@ -359,7 +448,7 @@ C     BETWEEN THE TWO DIRECTIONS OF SLIDING
       COMMON /STRUC/ XM(N), XC(N,N), XK(N,N), FMU(N)
       COMMON /MOTION/ T, U(N), V(N), A(N), F(N)
       COMMON /HOST/ ISTEP, IH, NITER
-      COMMON /KEPT/ EINV(N,N), EMAT(N,N), WAS(4)
+      COMMON /KEPT/ EINV(N,N), EMAT(N,N), WAS(4), RMEAN(N,N)
       DIMENSION UP(N), VP(N), RHS(N), P(N), Q(N), AFREE(N), FEQ(N)
       DIMENSION DFDV(N,N), DFDA(N,N), XJ(N,N), XINV(N,N), RES(N)
       CALL LOADS(T, P)
