@@ -180,9 +180,80 @@ static double count_belt(const char *method)
     return count_small(sys, 2, method, 60.0);
 }
 
+/* A periodic motion of a chain of bodies with a contact each but the last two; its derivatives by 20 parameters: the limits, twice. */
+enum { BODIES = 12, TOUCHING = 10, PARAMETERS = 20 };
+
+struct steady {
+    tribo_driver *drv;
+    double period, y[2 * BODIES + 1];
+    int kind[PARAMETERS];
+    size_t index[PARAMETERS];
+};
+
+static void run_search(void *data)
+{
+    struct steady *s = data;
+    memset(s->y, 0, sizeof s->y);
+    need(tribo_driver_find_periodic(s->drv, 0.0, s->period, s->y), tribo_driver_message(s->drv));
+}
+
+static void run_derivatives(void *data)
+{
+    const double c[2 * BODIES] = {1.0};
+    struct steady *s = data;
+    double extremes[PARAMETERS][2], energy[PARAMETERS][TOUCHING];
+    need(tribo_driver_period_derivatives(s->drv, PARAMETERS, s->kind, s->index, c, extremes[0], energy[0], NULL),
+         tribo_driver_message(s->drv));
+}
+
+/* Counts the periods of a search, or one call for its derivatives. */
+static double count_steady(const char *method, int derivatives)
+{
+    struct steady s = {.period = 2.0 * acos(-1.0) / 0.6};
+    double mass[BODIES], stiffness[BODIES * BODIES] = {0}, damping[BODIES * BODIES], direction[TOUCHING * BODIES] = {0};
+    double load[BODIES], limit[TOUCHING];
+    tribo_model *model;
+    tribo_system *sys;
+    for (size_t d = 0; d < BODIES; d++) {
+        mass[d] = 1.0;
+        load[d] = 1.0 + 0.3 * sin(3.0 * (double)d);
+        stiffness[d * BODIES + d] = d == 0 || d + 1 == BODIES ? 20.3 : 40.3;
+        if (d > 0) {
+            stiffness[d * BODIES + d - 1] = stiffness[(d - 1) * BODIES + d] = -20.0;
+        }
+    }
+    for (size_t i = 0; i < BODIES * BODIES; i++) {
+        damping[i] = 0.01 * stiffness[i];
+    }
+    for (size_t i = 0; i < TOUCHING; i++) {
+        direction[i * BODIES + i] = 1.0;
+        limit[i] = 0.4 + 0.15 * sin(2.0 * (double)i);
+        s.index[i] = s.index[i + TOUCHING] = i;
+    }
+    need(tribo_model_create(&model, BODIES, TOUCHING), NULL);
+    need(tribo_model_set_mass_diagonal(model, mass), NULL);
+    need(tribo_model_set_stiffness(model, stiffness), NULL);
+    need(tribo_model_set_damping(model, damping), NULL);
+    need(tribo_model_set_direction(model, direction), NULL);
+    need(tribo_system_create(&sys, model), tribo_model_message(model));
+    tribo_model_destroy(model);
+    need(tribo_system_add_load(sys, 0.6, load, NULL), NULL);
+    need(tribo_set_limit(tribo_system_context(sys), limit), NULL);
+    need(set_up_driver(&s.drv, sys, method, 0.01, 1e-11, 1e-11), NULL);
+    run_search(&s);
+    const struct motion m = {.drv = s.drv};
+    const struct work w = {derivatives ? run_derivatives : run_search, &s, 10};
+    const double before = progress(&m, TRIBO_COUNT_PERIODS);
+    counted(&w);
+    const double periods = progress(&m, TRIBO_COUNT_PERIODS) - before;
+    tribo_driver_destroy(s.drv);
+    tribo_system_destroy(sys);
+    return derivatives ? (double)w.times : periods;
+}
+
 /* --------------------------------------------------------------------------------------------------------------- scenes */
 
-enum subject { KERNEL, FIXED_FORM, CHAIN, RESTING, SLIDING, OSCILLATOR, BELT };
+enum subject { KERNEL, FIXED_FORM, CHAIN, RESTING, SLIDING, OSCILLATOR, BELT, STEADY, DERIVATIVES };
 
 static const struct scene {
     const char *name, *unit;
@@ -231,6 +302,10 @@ static const struct scene {
     {"event-7a", "event", OSCILLATOR, FORCE, 1, 0, "event", 1.5, 0.5},
     {"event-belt", "event", BELT, FORCE, 2, 0, "event", 0.0, 0.0},
     {"event-32", "event", CHAIN, FORCE, 32, 0, "event", 0.0, 0.0},
+    {"steady-exact", "period", STEADY, FORCE, BODIES, 0, "exact", 0.0, 0.0},
+    {"derivatives-exact", "call", DERIVATIVES, FORCE, BODIES, 0, "exact", 0.0, 0.0},
+    {"steady-event", "period", STEADY, FORCE, BODIES, 0, "event", 0.0, 0.0},
+    {"derivatives-event", "call", DERIVATIVES, FORCE, BODIES, 0, "event", 0.0, 0.0},
 };
 enum { SCENES = sizeof scenes / sizeof *scenes };
 
@@ -248,6 +323,9 @@ static double run_scene(const struct scene *s)
         return count_oscillator(s->method, s->alpha, s->omega);
     case BELT:
         return count_belt(s->method);
+    case STEADY:
+    case DERIVATIVES:
+        return count_steady(s->method, s->subject == DERIVATIVES);
     default:
         break;
     }
