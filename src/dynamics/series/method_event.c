@@ -256,25 +256,33 @@ static int method_event_begin(void *own, double t, const double *y, double *reac
     }
     e->error = wanted(e, y + n, n, e->moves[1], HUGE_VAL);
     int status = m->plane ? tribo_creep_begin(e, t, y, most, &length) : TRIBO_OK;
-    if (!status && length == 0.0) {
+    const int creeps = length != 0.0;
+    const double whole = *reach;
+    if (!status && !creeps) {
         status = tribo_event_start(e, t, y);
         status = status ? status : tribo_event_series(e);
-        length = status ? 0.0 : tribo_event_length(e);
-        length = status || !m->plane ? length : tribo_planar_series_shorten(e, lesser(length, most));
     }
     if (status) {
         return status;
     }
-    if ((double)(e->order + 1) < DBL_EPSILON * fabs(t + *reach) * e->fastest) {
-        length = 0.0; /* steps that frequencies allow are lost in the rounding of the end: it is never reached */
+    for (int overflows = 1; overflows; e->order = overflows ? e->order / 2 : e->order) {
+        if (!creeps) {
+            length = tribo_event_length(e);
+            length = m->plane ? tribo_planar_series_shorten(e, lesser(length, most)) : length;
+        }
+        if ((double)(e->order + 1) < DBL_EPSILON * fabs(t + whole) * e->fastest) {
+            length = 0.0; /* steps that frequencies allow are lost in the rounding of the end: it is never reached */
+        }
+        *reach = lesser(length, whole);
+        /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
+        e->length = fastest(e) > 0.0 ? greater(*reach, lesser(length, 1.0 / fastest(e))) : *reach;
+        overflows = !set_guards(e);
+        if (overflows && (creeps || !m->plane || (double)e->order < 2.0 * LEAST_ORDER)) { /* else squares overflow */
+            return tribo_error(e->sys->message, TRIBO_ERR_NOT_FINITE,
+                               "at t = %.17g derivatives of the motion overflow: it grows without bound, or is too fast", t);
+        }
     }
-    *reach = lesser(length, *reach);
-    /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
-    e->length = fastest(e) > 0.0 ? greater(*reach, lesser(length, 1.0 / fastest(e))) : *reach;
-    return set_guards(e)
-               ? TRIBO_OK
-               : tribo_error(e->sys->message, TRIBO_ERR_NOT_FINITE,
-                             "at t = %.17g derivatives of the motion overflow: it grows without bound, or is too fast", t);
+    return TRIBO_OK;
 }
 
 static int series_signal(void *own, const double *c, double tau, const double *end, struct signal *to)

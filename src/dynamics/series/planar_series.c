@@ -29,6 +29,12 @@
 /* Longest step of a periodic motion, in parts of the radius of convergence of 1/|x|, which perturbations need. */
 #define WITHIN 0.7
 
+/* Error of a direction in a periodic motion: that of perturbations. */
+#define STRAIGHT 1e-8
+
+/* The radius is found from the first coefficient that exceeds LARGEST, since the next ones may overflow. */
+#define LARGEST 1e100
+
 /* Least order. */
 #define LEAST_ORDER 4.0
 
@@ -450,11 +456,16 @@ double tribo_planar_series_shorten(const struct event *e, double h)
         inverse[0] = 1.0;
         for (size_t k = 1; e->events.sharp && k <= last; k++) {
             inverse[k] = -product_of(l->speed, inverse, k, 1, k + 1) / l->speed[0];
-            if (k + 2 > last && inverse[k] != 0.0) {
-                h = lesser(h, WITHIN * pow(fabs(inverse[k]), -1.0 / (double)k));
+            const double term = fabs(inverse[k]);
+            if ((k + 2 > last && term > 0.0) || term > LARGEST) {
+                h = lesser(h, WITHIN * pow(term, -1.0 / (double)k));
+            }
+            if (term > LARGEST) {
+                break;
             }
         }
-        if (!(off * p->brake * h / (double)(e->order + 1) <= m->plane->error[p->at] && sum <= FASTER * l->xn[0])) {
+        if ((e->events.sharp && !(off <= STRAIGHT)) ||
+            !(off * p->brake * h / (double)(e->order + 1) <= m->plane->error[p->at] && sum <= FASTER * l->xn[0])) {
             h *= 0.8;
             c = SIZE_MAX; /* from the first contact on */
         }
