@@ -2,16 +2,6 @@
 /* Checks of the parameters of elements. */
 #include "element.h"
 
-/* The status of a number that is out of its range. */
-static int refuse(double x, int range)
-{
-    return !isfinite(x)                    ? TRIBO_ERR_NOT_FINITE
-           : range == FINITE               ? TRIBO_ERR_RANGE
-           : x <= 0.0 && range == POSITIVE ? TRIBO_ERR_NOT_POSITIVE
-           : x < 0.0                       ? TRIBO_ERR_NEGATIVE
-                                           : TRIBO_ERR_RANGE;
-}
-
 /* 1 if x is in its range. No comparison raises an exception. */
 static int in_range(double x, int range)
 {
@@ -31,7 +21,11 @@ int tribo_check_elements(const double *x, size_t n, size_t numbers, const int *r
         }
         for (size_t k = 0; !all && k < numbers; k++) {
             if (!in_range(x[k], range[k])) {
-                return refuse(x[k], range[k]);
+                return !isfinite(x[k])                       ? TRIBO_ERR_NOT_FINITE
+                       : range[k] == FINITE                  ? TRIBO_ERR_RANGE
+                       : x[k] <= 0.0 && range[k] == POSITIVE ? TRIBO_ERR_NOT_POSITIVE
+                       : x[k] < 0.0                          ? TRIBO_ERR_NEGATIVE
+                                                             : TRIBO_ERR_RANGE;
             }
         }
     }

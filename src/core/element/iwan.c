@@ -12,12 +12,6 @@ struct iwan {
     double fs, most;
 };
 
-static struct iwan read_parameters(const double *k)
-{
-    const double kt = k[0], fs = k[1], chi = k[2], beta = k[3];
-    return (struct iwan){kt, chi, (chi + 2.0) * (1.0 + beta), fs, fs * (1.0 + beta) / (kt * (beta + (chi + 1.0) / (chi + 2.0)))};
-}
-
 /* B(u), u >= 0; *slope: B'(u). */
 static double curve(const struct iwan *p, double u, double *slope)
 {
@@ -108,7 +102,9 @@ int tribo_iwan_force(size_t n, size_t room, const double *dz, const double *para
     status = status ? status : tribo_check_finite(NULL, "state", state, n * (HEAD + 2 * room));
     status = status ? status : n && !f ? TRIBO_ERR_NULL : check_state(n, room, dz, state);
     for (size_t i = 0; !status && i < n; i++) {
-        const struct iwan p = read_parameters(parameter + PARAMETERS * i);
+        const double *k = parameter + PARAMETERS * i, kt = k[0], fs = k[1], chi = k[2], beta = k[3];
+        const double most = fs * (1.0 + beta) / (kt * (beta + (chi + 1.0) / (chi + 2.0)));
+        const struct iwan p = {kt, chi, (chi + 2.0) * (1.0 + beta), fs, most};
         double slope;
         f[i] = -move(&p, dz[i], state + i * (HEAD + 2 * room), &slope);
         if (df_dz) {

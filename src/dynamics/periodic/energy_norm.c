@@ -19,7 +19,7 @@ int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys)
         return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for the modes of the free structure");
     }
     for (size_t k = 0; k < c * c; k++) {
-        e->root[k] = k % c <= k / c ? tribo_compliance_entry(g, sys->ncontact, g->contact[k / c], g->contact[k % c]) : 0.0;
+        e->root[k] = k % c <= k / c ? tribo_compliance_entry(g, g->contact[k / c], g->contact[k % c]) : 0.0;
     }
     if (c) {
         dpotrf_("U", &springs, e->root, &springs, &info, 1);

@@ -130,7 +130,7 @@ static void find_inverses(struct forecast *x)
         double complex *inverse = x->inverse + p * c * c;
         for (size_t at = 0; at < c * c; at++) {
             const size_t i = at / c, j = at % c;
-            const double own = tribo_compliance_entry(&x->m->sys->compliance, c, i, j);
+            const double own = tribo_compliance_entry(&x->m->sys->compliance, i, j);
             inverse[at] = i == j;
             x->matrix[at] = inverse[at] + x->rho[i] * mobility(x, p, i, j, own);
         }

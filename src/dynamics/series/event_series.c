@@ -232,7 +232,7 @@ static int find_term(struct event *e, size_t k, double tau, const struct perturb
     if (sys->compliance.count) {
         tribo_matrix_add_columns(&sys->compliance.pull, part, p->columns, p->spring, p->next);
         if (sys->normals.count) {
-            tribo_definite_multiply_add(sys->compliance.g, p->columns, p->force, v);
+            tribo_matrix_add_columns(&sys->compliance.g, 1.0, p->columns, p->force, v);
         }
         memcpy(p->spring, v, each * sizeof *v);
         tribo_compliance_solve(sys, m->state.slip, p->columns, p->spring);

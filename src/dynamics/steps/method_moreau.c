@@ -114,7 +114,7 @@ static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
         tribo_even_out(c, r);
     }
     for (size_t k = 0; done && k < c * c; k++) {
-        r[k] += 4.0 / (h * h) * tribo_compliance_entry(&sys->compliance, c, k / c, k % c);
+        r[k] += 4.0 / (h * h) * tribo_compliance_entry(&sys->compliance, k / c, k % c);
     }
     const int status = done ? set_operator(m, sys, r, own, h)
                             : tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");

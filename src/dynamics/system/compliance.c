@@ -3,7 +3,9 @@
 #include "system.h"
 #include "common/layout.h"
 #include "common/real.h"
+#include "numerics/lapack.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,10 +17,8 @@ void tribo_compliance_free(struct compliance *g)
     free(g->contact);
     tribo_destroy(g->box);
     tribo_matrix_free(&g->pull);
-    if (g->g) {
-        tribo_definite_free(g->g);
-    }
-    free(g->g);
+    tribo_matrix_free(&g->g);
+    tribo_matrix_free(&g->inverse);
     memset(g, 0, sizeof *g);
 }
 
@@ -27,16 +27,15 @@ static int find_stiffest(tribo_system *sys)
 {
     const size_t n = sys->ndof;
     struct compliance *g = &sys->compliance;
-    double *one = malloc((2 * n + sys->ncontact + 1) * sizeof *one), *rate = one + n, *force = one + 2 * n;
-    if (!one) {
+    double *one, *rate, *size, *force;
+    if (!ALLOCATE(ARRAY(one, n), ARRAY(rate, n), ARRAY(size, sys->ncontact), ARRAY(force, sys->ncontact))) {
         return 0;
     }
     for (size_t d = 0; d < n; d++) {
         one[d] = 1.0;
     }
-    memset(rate, 0, (n + sys->ncontact) * sizeof *rate);
-    tribo_matrix_add_sizes(&sys->direction, one, force);
-    tribo_definite_solve_sizes(g->g, force);
+    tribo_matrix_add_sizes(&sys->direction, one, size);
+    tribo_matrix_add_sizes(&g->inverse, size, force);
     tribo_matrix_add_sizes(&sys->stiffness, one, rate);
     tribo_matrix_add_sizes(&g->pull, force, rate);
     g->stiffest = tribo_largest(rate, n);
@@ -52,22 +51,79 @@ static int find_stiffest(tribo_system *sys)
     return 1;
 }
 
+/* A pivot below this part of the diagonal entry is rounding. */
+#define ROUNDING (64.0 * DBL_EPSILON)
+
+/* Returns 1 if contact i is compliant, and rests; slip NULL: all rest. */
+static int gives_at_rest(const struct compliance *g, const signed char *slip, size_t i)
+{
+    return tribo_is_compliant(g, i) && (!slip || slip[i] == TRIBO_SLIP_STUCK);
+}
+
+/* Sets factor, with rows of the identity for contacts that are rigid or slide. Returns the row of a pivot that is not positive, plus
+ * 1; or 0. */
+static int factorize_at_rest(const struct compliance *g, const signed char *slip)
+{
+    const size_t n = g->g.rows;
+    const int rows = (int)n;
+    int info = 0;
+    tribo_matrix_spread(&g->g, g->factor);
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = 0; k < n && !gives_at_rest(g, slip, i); k++) {
+            g->factor[i * n + k] = g->factor[k * n + i] = i == k ? 1.0 : 0.0;
+        }
+    }
+    dpotrf_("U", &rows, g->factor, &rows, &info, 1);
+    return info;
+}
+
+/* Sets inverse. Returns TRIBO_OK, TRIBO_ERR_MEMORY, or TRIBO_ERR_INDEFINITE with the row *where of a pivot that is rounding. */
+static int find_inverse(tribo_system *sys, size_t *where)
+{
+    struct compliance *g = &sys->compliance;
+    const size_t n = sys->ncontact, columns = g->factor ? n : 1;
+    const int info = g->factor ? factorize_at_rest(g, NULL) : 0;
+    double *x;
+    for (size_t i = 0; g->factor && i < n; i++) {
+        const double l = g->factor[i * (n + 1)];
+        if (i + 1 == (size_t)info || !(l * l > ROUNDING * g->own[i])) {
+            *where = i;
+            return TRIBO_ERR_INDEFINITE;
+        }
+    }
+    if (!ALLOCATE(ARRAY(x, n * columns))) {
+        return TRIBO_ERR_MEMORY;
+    }
+    for (size_t i = 0; i < n; i++) {
+        x[i * columns + i % columns] = 1.0;
+    }
+    tribo_compliance_solve(sys, NULL, columns, x);
+    const int done = g->factor ? tribo_matrix_from_dense(&g->inverse, n, n, x) : tribo_matrix_diagonal(&g->inverse, n, x);
+    free(x);
+    return done ? TRIBO_OK : TRIBO_ERR_MEMORY;
+}
+
 int tribo_compliance_create(tribo_system *sys, const double *own, const double *entries, size_t *where)
 {
     struct compliance *g = &sys->compliance;
-    const int room = ALLOCATE(ARRAY(g->contact, sys->ncontact), ARRAY(g->lo, sys->ncontact), ARRAY(g->hi, sys->ncontact),
-                              ARRAY(g->f, sys->ncontact)) != NULL;
-    g->g = calloc(1, sizeof *g->g);
-    int status = room && g->g ? tribo_definite_create(g->g, sys->ncontact, own, entries, where) : TRIBO_ERR_MEMORY;
-    status = status ? status : tribo_create(&g->box, sys->ncontact);
-    status = status ? status : entries ? tribo_set_operator_dense(g->box, entries) : tribo_set_operator_diagonal(g->box, own);
-    if (status) {
-        return status;
+    const size_t n = sys->ncontact;
+    if ((entries && !tribo_lapack_takes(n)) ||
+        !ALLOCATE(ARRAY(g->contact, n), ARRAY(g->own, n), ARRAY(g->lo, n), ARRAY(g->hi, n), ARRAY(g->f, n),
+                  ARRAY(g->factor, entries ? n * n : 0)) ||
+        !(entries ? tribo_matrix_from_dense(&g->g, n, n, entries) : tribo_matrix_diagonal(&g->g, n, own))) {
+        return TRIBO_ERR_MEMORY;
     }
-    g->own = g->g->own;
-    for (size_t i = 0; i < sys->ncontact; i++) {
+    for (size_t i = 0; i < n; i++) {
+        g->own[i] = own[i];
         g->contact[g->count] = i;
         g->count += own[i] > 0.0;
+    }
+    g->factor = tribo_matrix_is_diagonal(&g->g) ? NULL : g->factor;
+    int status = find_inverse(sys, where);
+    status = status ? status : tribo_create(&g->box, n);
+    status = status ? status : tribo_set_operator_csr(g->box, g->g.first, g->g.col, g->g.val);
+    if (status) {
+        return status;
     }
     struct triplets pull = {0};
     double *x = malloc((sys->ndof + 1) * sizeof *x);
@@ -121,19 +177,25 @@ void tribo_compliance_put(const tribo_system *sys, const double *force, double *
 
 void tribo_compliance_solve(const tribo_system *sys, const signed char *slip, size_t columns, double *x)
 {
-    if (sys->compliance.g) {
-        tribo_definite_solve(sys->compliance.g, slip, columns, x);
-    } else {
-        memset(x, 0, sys->ncontact * columns * sizeof *x);
+    const struct compliance *g = &sys->compliance;
+    const struct cholesky c = {.n = sys->ncontact, .factor = g->factor};
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const int in = gives_at_rest(g, slip, i);
+        for (size_t k = i * columns; k < (i + 1) * columns; k++) {
+            x[k] = !in ? 0.0 : g->factor ? x[k] : x[k] / g->own[i];
+        }
+    }
+    if (g->factor) {
+        factorize_at_rest(g, slip);
+        tribo_half_solve(&c, 0, x, columns);
+        tribo_half_solve(&c, 1, x, columns);
     }
 }
 
 void tribo_compliance_give(const tribo_system *sys, size_t columns, const double *f, double *x)
 {
     memset(x, 0, sys->ncontact * columns * sizeof *x);
-    if (sys->compliance.g) {
-        tribo_definite_multiply_add(sys->compliance.g, columns, f, x);
-    }
+    tribo_matrix_add_columns(&sys->compliance.g, 1.0, columns, f, x);
 }
 
 void tribo_system_find_ways(const tribo_system *sys, size_t columns, const double *v, double *f, double *way)
@@ -149,10 +211,10 @@ void tribo_system_find_ways(const tribo_system *sys, size_t columns, const doubl
 void tribo_compliance_share(const struct compliance *g, double *v)
 {
     if (tribo_solve_box(g->box, v, g->lo, g->hi, g->f)) {
-        memset(g->f, 0xff, g->g->n * sizeof *g->f); /* NaN: the states that follow fail */
+        memset(g->f, 0xff, g->g.rows * sizeof *g->f); /* NaN: the states that follow fail */
     }
-    tribo_definite_multiply_add(g->g, 1, g->f, v);
-    for (size_t i = 0; i < g->g->n; i++) {
+    tribo_matrix_multiply_add(&g->g, 1.0, g->f, v);
+    for (size_t i = 0; i < g->g.rows; i++) {
         v[i] = g->lo[i] < g->f[i] && g->f[i] < g->hi[i] ? 0.0 : v[i];
     }
 }
@@ -166,11 +228,11 @@ void tribo_compliance_rates(const tribo_system *sys, const signed char *slip, co
         return;
     }
     if (slide) {
-        tribo_definite_multiply_add(sys->compliance.g, columns, slide, v);
+        tribo_matrix_add_columns(&sys->compliance.g, 1.0, columns, slide, v);
     }
     tribo_add(rate, -1.0, v, sys->ncontact * columns);
     tribo_compliance_solve(sys, slip, columns, rate);
-    tribo_definite_multiply_add(sys->compliance.g, columns, rate, v);
+    tribo_matrix_add_columns(&sys->compliance.g, 1.0, columns, rate, v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (tribo_is_compliant(&sys->compliance, i) && slip[i] == TRIBO_SLIP_STUCK) {
             memset(v + i * columns, 0, columns * sizeof *v);
@@ -184,13 +246,12 @@ void tribo_compliance_rates(const tribo_system *sys, const signed char *slip, co
 void tribo_compliance_noise(const tribo_system *sys, const double *q, double *noise)
 {
     const struct compliance *g = &sys->compliance;
+    double *size = g->lo;
     memset(noise, 0, sys->ncontact * sizeof *noise);
-    for (size_t k = 0; k < g->count; k++) {
-        noise[g->contact[k]] = TRIBO_SPRING_NOISE * tribo_matrix_row_size(&sys->direction, g->contact[k], q);
+    for (size_t i = 0; g->count && i < sys->ncontact; i++) {
+        size[i] = g->own[i] > 0.0 ? TRIBO_SPRING_NOISE * tribo_matrix_row_size(&sys->direction, i, q) : 0.0;
     }
-    if (g->count) {
-        tribo_definite_solve_sizes(g->g, noise);
-    }
+    tribo_matrix_add_sizes(&g->inverse, size, noise);
 }
 
 void tribo_compliance_move(const tribo_system *sys, const double *y, double *v, double *rate)

@@ -6,18 +6,19 @@
 #ifndef TRIBO_COMPLIANCE_H
 #define TRIBO_COMPLIANCE_H
 
-#include "numerics/definite.h"
 #include "numerics/matrix.h"
 #include "tribo/tribo_dynamics.h"
 
 struct compliance {
-    size_t count;       /* number of compliant contacts; 0: all other members are empty */
-    size_t *contact;    /* [count] compliant contacts, ascending */
-    struct definite *g; /* G */
+    size_t count;          /* number of compliant contacts; 0: all other members are empty */
+    size_t *contact;       /* [count] compliant contacts, ascending */
+    struct matrix g;       /* [ncontact][ncontact] G */
+    struct matrix inverse; /* [ncontact][ncontact] G^-1 over the compliant contacts, else 0 */
+    double *factor;     /* [ncontact][ncontact] workspace: Cholesky factor of G over a set of contacts; NULL if G is diagonal */
+    double *own;        /* [ncontact] G_ii */
     tribo_context *box; /* with operator G */
-    double *lo, *hi;    /* [ncontact] see tribo_compliance_share */
+    double *lo, *hi;    /* [ncontact] see tribo_compliance_share; workspace */
     double *f;          /* [ncontact] */
-    const double *own;  /* [ncontact] G_ii, in g */
     struct matrix pull; /* [ndof][ncontact] M^-1 J' in columns of compliant contacts, else 0 */
     double stiffest;    /* bound of omega^2, with any contacts at rest */
     double structure;   /* largest (M^-1 K)_dd */
@@ -34,10 +35,10 @@ static inline int tribo_is_compliant(const struct compliance *g, size_t i)
     return g->count && g->own[i] > 0.0;
 }
 
-/* Returns G_ik; n: number of contacts. */
-static inline double tribo_compliance_entry(const struct compliance *g, size_t n, size_t i, size_t k)
+/* Returns G_ik. */
+static inline double tribo_compliance_entry(const struct compliance *g, size_t i, size_t k)
 {
-    return g->count && g->g->matrix ? g->g->matrix[i * n + k] : g->count && i == k ? g->own[i] : 0.0;
+    return g->count ? tribo_matrix_get(&g->g, i, k) : 0.0;
 }
 
 /* Sets G of sys; R and M^-1 J' of sys belong to the rigid contacts. own [ncontact]: G_ii. entries [ncontact][ncontact]: G; NULL:

@@ -32,14 +32,13 @@ static int normals_find_stiffest(tribo_system *sys)
     const size_t n = sys->ndof, c = sys->ncontact;
     struct normals *s = &sys->normals;
     struct compliance *g = &sys->compliance;
-    double *one = malloc((2 * n + 2 * c + 1) * sizeof *one), *rate = one + n, *force = one + 2 * n, *shared = force + c;
-    if (!one) {
+    double *one, *rate, *force, *shared;
+    if (!ALLOCATE(ARRAY(one, n), ARRAY(rate, n), ARRAY(force, c), ARRAY(shared, c))) {
         return 0;
     }
     for (size_t d = 0; d < n; d++) {
         one[d] = 1.0;
     }
-    memset(rate, 0, (n + 2 * c) * sizeof *rate);
     for (size_t k = 0; k < s->count; k++) {
         force[s->normal[k].row] = s->normal[k].stiffness * tribo_matrix_row_size(&sys->direction, s->normal[k].row, one);
     }
@@ -47,17 +46,12 @@ static int normals_find_stiffest(tribo_system *sys)
         const struct follower *f = &s->follower[k];
         force[f->contact] = f->mu * force[s->normal[f->normal].row];
     }
-    for (size_t k = 0; g->count && g->g->matrix && k < c * c; k++) {
-        shared[k / c] += fabs(g->g->matrix[k]) * force[k % c];
-    }
-    if (g->count && g->g->matrix) {
-        tribo_definite_solve_sizes(g->g, shared);
-        tribo_add(force, 1.0, shared, c);
+    if (g->factor) {
+        tribo_matrix_add_sizes(&g->g, force, shared);
+        tribo_matrix_add_sizes(&g->inverse, shared, force);
     }
     tribo_matrix_add_sizes(&sys->response, force, rate);
-    if (g->count) {
-        tribo_matrix_add_sizes(&g->pull, force, rate);
-    }
+    tribo_matrix_add_sizes(&g->pull, force, rate);
     s->stiffest = tribo_largest(rate, n);
     free(one);
     return 1;

@@ -27,7 +27,7 @@ int tribo_expansion_create(tribo_system *sys, struct expansion *x, const double 
         if (slides && slides[i] > 0.0) {
             tribo_triplets_put_row(&follow, w, &sys->direction, i);
             for (size_t k = 0; k < n; k++) {
-                tribo_triplets_put(&give, w, k, tribo_compliance_entry(&sys->compliance, n, i, k));
+                tribo_triplets_put(&give, w, k, tribo_compliance_entry(&sys->compliance, i, k));
             }
             tribo_triplets_put(&touch, i, w++, 1.0);
             x->place[x->dofs] = x->dofs;

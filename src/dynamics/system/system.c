@@ -381,10 +381,11 @@ int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
         return tribo_error(sys->message, TRIBO_ERR_NULL, "copy is NULL");
     }
     tribo_system *to = NULL;
-    const struct definite *g = sys->compliance.g;
+    const struct compliance *g = &sys->compliance;
+    double *entries = g->factor ? tribo_matrix_to_dense(&g->g) : NULL;
     size_t where;
     const size_t c = sys->ncontact, dofs = sys->expansion.dofs;
-    int done = tribo_system_build(&to, sys->ndof, c) == TRIBO_OK;
+    int done = (entries || !g->factor) && tribo_system_build(&to, sys->ndof, c) == TRIBO_OK;
     if (done) {
         tribo_destroy(to->contacts);
         to->contacts = NULL;
@@ -409,8 +410,9 @@ int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
         done = tribo_cholesky_create(&to->factor, &to->mass, NULL, &where, &pivot) == TRIBO_OK;
     }
     done = done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK &&
-           (!g || tribo_compliance_create(to, g->own, g->matrix, &where) == TRIBO_OK) && tribo_normals_copy(to, sys) &&
+           (!g->count || tribo_compliance_create(to, g->own, entries, &where) == TRIBO_OK) && tribo_normals_copy(to, sys) &&
            tribo_expansion_copy(to, sys) && tribo_loads_copy(to, sys);
+    free(entries);
     if (!done) {
         tribo_system_destroy(to);
         return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu degree%s of freedom", sys->ndof,
