@@ -203,7 +203,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     if (status) {
         return status;
     }
-    const int alone = tribo_balance_alone(ctx), own = tribo_is_own(ctx);
+    const int alone = tribo_balance_alone(ctx);
     if (alone && ctx->n == 1) {
         tribo_balance_one(ctx, plain, v, a, feq, f);
         return TRIBO_OK;
@@ -215,7 +215,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     tribo_end_call(ctx, tribo_islands(ctx));
     ctx->last.slips = SLIPS_IN_FORCES;
     ctx->last.holds = ctx->set.law->holds;
-    if (own) {
+    if (tribo_is_own(ctx)) {
         tribo_own_slips(ctx, v);
     }
     /* f_eq of the contacts of groups that no solution has: all, or those that were not near stick; 0 for open ones. */

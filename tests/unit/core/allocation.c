@@ -57,6 +57,71 @@ TEST(hot_paths)
     tribo_destroy(c);
 }
 
+/* f of the contacts in use of p, by a context of these alone. */
+static void forces_of_some(const struct problem *p, const int *used, double *f)
+{
+    struct problem some = {.n = 0};
+    size_t of[LARGEST];
+    double g[LARGEST];
+    for (size_t i = 0; i < p->n; i++) {
+        of[some.n] = i;
+        some.n += used[i] != 0;
+        f[i] = 0.0;
+    }
+    for (size_t i = 0; i < some.n; i++) {
+        some.limit[i] = p->limit[of[i]];
+        some.epsilon[i] = p->epsilon[of[i]];
+        some.v[i] = p->v[of[i]];
+        some.a[i] = p->a[of[i]];
+        for (size_t j = 0; j < some.n; j++) {
+            some.r[i * some.n + j] = p->r[of[i] * p->n + of[j]];
+        }
+    }
+    tribo_context *c = problem_context(&some, TRIBO_QUINN, TRIBO_CONSISTENT);
+    assert_ok(tribo_balance(c, some.v, some.a, NULL, g));
+    for (size_t i = 0; i < some.n; i++) {
+        f[of[i]] = g[i];
+    }
+    tribo_destroy(c);
+}
+
+/* Contacts come and go by their limits: no allocation in many steps, forces and ranks of those in use alone, and no solve where all
+ * are away. */
+TEST(come_and_go)
+{
+    struct random g = random_of(_i);
+    const struct recipe recipe = recipe_regular(&g, 12);
+    struct problem p = problem_create(&g, &recipe);
+    double limit[LARGEST], f[LARGEST], want[LARGEST];
+    int used[LARGEST];
+    tribo_context *c = problem_context(&p, TRIBO_QUINN, TRIBO_CONSISTENT);
+    size_t asked = 0;
+    for (size_t i = 0; i < p.n; i += 2) {
+        p.v[i] = 0.0;
+    }
+    for (int step = 0; step < 25000; step++) {
+        const size_t before = memory_calls(), solves = count_of(c, TRIBO_COUNT_SOLVES);
+        size_t in_use = 0;
+        for (size_t i = 0; i < p.n; i++) {
+            used[i] = step % 100 != 50 && below(&g, 3) > 0 && p.limit[i] > 0.0;
+            limit[i] = used[i] ? p.limit[i] : 0.0;
+            in_use += used[i] != 0;
+        }
+        assert_ok(tribo_set_limit(c, limit));
+        assert_ok(tribo_balance(c, p.v, p.a, NULL, f));
+        asked += memory_calls() - before;
+        require(count_of(c, TRIBO_COUNT_RANK) <= in_use, "rank %zu of %zu", count_of(c, TRIBO_COUNT_RANK), in_use);
+        require(in_use || count_of(c, TRIBO_COUNT_SOLVES) == solves, "solved for contacts that are away");
+        if (step % 500 == 0 || step % 500 == 50) {
+            forces_of_some(&p, used, want);
+            assert_all_close(f, want, p.n, 1e-12);
+        }
+    }
+    require(asked == 0, "%zu allocations", asked);
+    require(p.n < 4 || count_of(c, TRIBO_COUNT_SOLVES) > 10000, "%zu solves", count_of(c, TRIBO_COUNT_SOLVES));
+    tribo_destroy(c);
+}
+
 TEST(planar)
 {
     struct random g = random_of(_i);
@@ -321,5 +386,5 @@ TEST(refusals)
     require(memory_live() == none, "%ld blocks leak", memory_live() - none);
 }
 
-TEST_MAIN("allocation", {hot_paths, 24}, {planar, 4}, {hot_paths_of_a_sparse_group, 2}, {failures, COUNT(calls)},
-          {failures_of_a_sparse_group, 2}, {refusals, 1})
+TEST_MAIN("allocation", {hot_paths, 24}, {come_and_go, 4}, {planar, 4}, {hot_paths_of_a_sparse_group, 2},
+          {failures, COUNT(calls)}, {failures_of_a_sparse_group, 2}, {refusals, 1})
