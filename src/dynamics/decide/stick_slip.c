@@ -493,9 +493,12 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
 {
     tribo_system_set_time(sys, t);
     find_base(m, sys);
-    memcpy(m->state.was_pressed, m->state.pressed, sys->normals.count);
+    if (sys->normals.count) {
+        memcpy(m->state.was_pressed, m->state.pressed, sys->normals.count);
+    }
     int status = decide_once(m, sys, t, y);
-    if (!status && memchr(m->state.rests, 1, sys->normals.count)) { /* the forces found may press other normals at rest */
+    if (!status && sys->normals.count &&
+        memchr(m->state.rests, 1, sys->normals.count)) { /* the forces found may press other normals at rest */
         memcpy(m->work.last, m->state.pressed, sys->normals.count);
         const int others = press(m, sys, y) > 0 && memcmp(m->work.last, m->state.pressed, sys->normals.count) != 0;
         status = others ? decide_once(m, sys, t, y) : TRIBO_OK;

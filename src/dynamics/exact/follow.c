@@ -24,9 +24,6 @@ double tribo_follow_side(signed char key)
 const signed char *tribo_follow_key(const struct stick_slip *m, signed char *key)
 {
     const struct normals *s = &m->constant.sys->normals;
-    if (s->count == 0) {
-        return m->state.key;
-    }
     memcpy(key, m->state.key, m->constant.contacts);
     for (size_t k = 0; k < s->count; k++) {
         key[s->normal[k].row] = m->state.pressed[k] ? KEY_PRESSED : KEY_APART;

@@ -44,7 +44,7 @@ static void drop_helds(struct exact *x)
 static int find_held(struct exact *x, int powers, struct modal **found)
 {
     const struct stick_slip *m = &x->events.stick_slip;
-    const signed char *key = tribo_follow_key(m, x->held.room);
+    const signed char *key = x->sys->normals.count ? tribo_follow_key(m, x->held.room) : m->state.key;
     uint64_t hash = 0, word;
     for (size_t i = 0; i < m->constant.contacts; i += sizeof word) {
         memcpy(&word, key + i, sizeof word);
@@ -179,7 +179,7 @@ static struct watch watch_of(const struct exact *x, size_t i, struct course *c)
     const double swing = x->events.stick_slip.constant.swing[i];
     const double steady = swing > 0.0 ? x->sys->loads.given_limit[i] : x->events.stick_slip.state.limit[i];
     double mu;
-    const int follows = tribo_modal_limit_course(x, i, &mu) != NULL;
+    const int follows = x->sys->normals.count > 0 && tribo_modal_limit_course(x, i, &mu) != NULL;
     return (struct watch){.output = c,
                           .size = c ? c->size : 0.0,
                           .constant = follows ? 0.0 : steady,
