@@ -83,6 +83,8 @@
 !>   TRBADV(IH, NDOF, T, T1, Y, IERR)                T, Y, T1 >= T                     T, Y there; on error the last good step
 !>   TRBPER(IH, NDOF, T, PERIOD, Y, IERR)            T, PERIOD of the loads; Y guess   Y at T of a periodic motion
 !>   TRBCYC(IH, NDOF, T, PERIOD, Y, IERR)            T; PERIOD, Y guess, PERIOD 0: none    PERIOD and Y at T of a cycle
+!>   TRBNLM(IH, NDOF, CV, AMPL, OMEGA, ZETA, Y,      CV(2*NDOF), AMPL of CV'Y; OMEGA, ZETA OMEGA, ZETA and Y of a nonlinear mode
+!>          IERR)                                    and Y guess, OMEGA 0, Y 0: none
 !> Of the periodic motion found last
 !>   TRBFAM(IH, NFREE, IERR)                                                           NFREE: dimension of the family it belongs to
 !>   TRBMUL(IH, NDOF, RE, AI, IERR)                                                    RE, AI: Floquet multipliers, one less than values of Y
@@ -898,6 +900,19 @@ subroutine trbcyc(ih, ndof, t, period, y, ierr)
   call find_driven(ih, s, ierr, ndof)
   if (ierr == TRIBO_OK) call s%driver%find_cycle(t, period, y(:s%system%dimension()), ierr)
 end subroutine trbcyc
+
+subroutine trbnlm(ih, ndof, cv, ampl, omega, zeta, y, ierr)
+  use tribo_fixed_dynamics
+  implicit none
+  integer, intent(in) :: ih, ndof
+  real(dp), intent(in) :: cv(*), ampl
+  real(dp), intent(inout) :: omega, zeta, y(*)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_driven(ih, s, ierr, ndof)
+  if (ierr == TRIBO_OK) call s%driver%find_mode(cv(:2*ndof), ampl, omega, zeta, y(:s%system%dimension()), ierr)
+end subroutine trbnlm
 
 subroutine trbdct(ih, iwhich, ival, ierr)
   use tribo_fixed_dynamics

@@ -634,6 +634,13 @@ module trb_interfaces
       integer, intent(out) :: ierr
     end subroutine trbcyc
 
+    subroutine trbnlm(ih, ndof, cv, ampl, omega, zeta, y, ierr)
+      integer, intent(in) :: ih, ndof
+      double precision, intent(in) :: cv(*), ampl
+      double precision, intent(inout) :: omega, zeta, y(*)
+      integer, intent(out) :: ierr
+    end subroutine trbnlm
+
     subroutine trbdct(ih, iwhich, ival, ierr)
       integer, intent(in) :: ih, iwhich
       integer, intent(inout) :: ival

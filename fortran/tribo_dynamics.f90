@@ -98,7 +98,7 @@ module tribo_systems
     procedure, private :: count_short, count_long
     generic :: count => count_short, count_long
     procedure :: real => driver_real
-    procedure :: find_periodic, find_cycle
+    procedure :: find_periodic, find_cycle, find_mode
     procedure :: get_multipliers
     procedure :: get_freedom
     procedure :: period_extremes, period_harmonic, period_dissipation, period_stick, period_derivatives
@@ -1203,6 +1203,29 @@ contains
     period = found(1)
     call finish(w, stat, errmsg)
   end subroutine find_cycle
+
+  !> A nonlinear mode of this amplitude of the signal c, from a guess omega, or 0, zeta and y; see tribo_driver_find_mode.
+  subroutine find_mode(this, c, amplitude, omega, zeta, y, stat, errmsg)
+    class(tribo_driver), intent(inout) :: this
+    real(dp), intent(in) :: c(:), amplitude
+    real(dp), intent(inout) :: omega, zeta, y(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    real(dp) :: frequency(1), ratio(1)
+
+    call find_driver(this, w)
+    call expect_size(w, 'c', c, 2*w%ndof)
+    call expect_size(w, 'y', y, w%dimension)
+    frequency = omega
+    ratio = zeta
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_find_mode(w%object, c, amplitude, frequency, ratio, y)
+    end if
+    omega = frequency(1)
+    zeta = ratio(1)
+    call finish(w, stat, errmsg)
+  end subroutine find_mode
 
   !> Floquet multipliers of the last periodic motion found, re and im (dimension - 1), the largest first.
   subroutine get_multipliers(this, re, im, stat, errmsg)

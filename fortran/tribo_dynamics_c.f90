@@ -609,6 +609,17 @@ module tribo_dynamics_c
       integer(c_int) :: answer
     end function c_driver_find_cycle
 
+    function c_driver_find_mode(drv, c, amplitude, omega, zeta, y) result(answer) bind(c,name='tribo_driver_find_mode')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), intent(in), optional :: c(*)
+      real(c_double), value :: amplitude
+      real(c_double), intent(inout), optional :: omega(*)
+      real(c_double), intent(inout), optional :: zeta(*)
+      real(c_double), intent(inout), optional :: y(*)
+      integer(c_int) :: answer
+    end function c_driver_find_mode
+
     function c_driver_get_multipliers(drv, re, im) result(answer) bind(c,name='tribo_driver_get_multipliers')
       import
       type(c_ptr), value :: drv

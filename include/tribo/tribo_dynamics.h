@@ -427,6 +427,19 @@ TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double per
  * returns. */
 TRIBO_API int tribo_driver_find_cycle(tribo_driver *drv, double t, double *period, double *y);
 
+/* Finds a nonlinear mode: a periodic motion without loads, of an amplitude, in which a change of the damping from C to C - 2 delta M
+ * makes up for what friction and damping dissipate (extended periodic motion concept, Krack 2015). Loads and base motions that
+ * depend on time do not act, constant ones do. omega and zeta = delta/omega over the amplitude are what vibration tests measure of a
+ * joint. Methods exact, event, auto. The questions about periodic motions are about the mode then. The period begins at t = 0.
+ * c          [2 ndof] in      coefficients of a signal c'[q, q'], of degrees of freedom with mass
+ * amplitude  in               > 0; of the signal at the beginning of the period, where its rate is 0
+ * omega      in/out           in: >= 0, a guess, or 0 for the lowest mode; out: 2 pi/period; unchanged on error, as zeta and y
+ * zeta       in/out           in: a guess; out: the damping ratio, < 0 of a structure that vibrates by itself
+ * y          [dimension] in/out   in: the state of a guess, or zeros: from the linear mode nearest to omega; out: the state
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_RANGE (c), TRIBO_ERR_UNSUPPORTED (limits in
+ * time; tables; as tribo_driver_find_periodic), TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
+TRIBO_API int tribo_driver_find_mode(tribo_driver *drv, const double *c, double amplitude, double *omega, double *zeta, double *y);
+
 /* Floquet multipliers re + i im of the last periodic motion found, largest modulus first; in a complex pair im > 0 is first.
  * re, im   [dimension - 1] out
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_STATE (no search yet, or the last search failed),

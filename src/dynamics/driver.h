@@ -24,7 +24,9 @@ struct shooting;
 struct wanted {
     int (*find)(struct shooting *s, struct wanted *w);
     double t, period;
-    double *y; /* methods' state, unchanged by errors */
+    double *y;               /* methods' state, unchanged by errors */
+    const double *c;         /* modes: [2 ndof] coefficients of q and q', as methods have them */
+    double amplitude, delta; /* modes: of c'[q, q'], in; half the damping that they lose per mass, of the guess, then found */
 };
 
 struct method {

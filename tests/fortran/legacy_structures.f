@@ -252,6 +252,7 @@ C     spring of 1: the amplitude is 3.38660810; also of the only mode.
       INTEGER IH, IERR, IRM(2), ICM(1), K, NDOF
       DOUBLE PRECISION ONE(1), C(1), CMP(1), ZERO(1), HALF(1), Y(4)
       DOUBLE PRECISION CV(2), XMIN, XMAX, TMIN, TMAX, RE(4), AI(4)
+      DOUBLE PRECISION OMEGA, ZETA
       CHARACTER*80 TEXT
       DATA IRM /1, 2/, ICM /1/, ONE /1D0/, C /0.1D0/, CMP /1D0/
       DATA ZERO /0D0/, HALF /0.5D0/, CV /1D0, 0D0/
@@ -276,6 +277,13 @@ C     spring of 1: the amplitude is 3.38660810; also of the only mode.
          CALL TRBMUL(IH, 1, RE, AI, IERR)
          CALL EXPECT('three multipliers', IERR .EQ. 0 .AND.
      1               ABS(RE(4) + 7D0) .LT. 1D-9)
+         OMEGA = 0D0
+         ZETA = 0D0
+         CALL TRBNLM(IH, 1, CV, 1D0, OMEGA, ZETA, Y, IERR)
+         CALL EXPECT('TRBNLM', IERR .EQ. 0)
+         CALL EXPECT('omega', ABS(OMEGA - 1.2258676901977D0) .LT. 1D-9)
+         CALL EXPECT('zeta', ABS(ZETA - 0.105752880426D0 - 5D-2/OMEGA)
+     1               .LT. 1D-9)
          CALL TRBDEL(IH, IERR)
    10 CONTINUE
       IH = -777

@@ -164,7 +164,38 @@ contains
     call d%find_periodic(0.0_dp, 2*acos(-1.0_dp)/1.1_dp, y)
     call d%period_extremes([1.0_dp, 0.0_dp], least, most)
     call require(abs(most - 3.38660810_dp) < 1e-7_dp, 'compliance: the amplitude')
+    call mode_of_contact()
   end subroutine compliance
+
+  !> Nonlinear mode of m = k = kt = 1, limit 0.5: values of another code.
+  subroutine mode_of_contact()
+    type(tribo_model) :: model
+    type(tribo_system) :: s
+    type(tribo_driver) :: d
+    type(tribo_context) :: c
+    real(dp) :: y(4), omega, zeta
+    integer :: stat
+
+    call model%create(1, 1)
+    call model%set_mass([1.0_dp])
+    call model%set_stiffness([1.0_dp])
+    call model%set_direction(reshape([1.0_dp], [1, 1]))
+    call model%set_compliance([1.0_dp])
+    call s%create(model)
+    call s%context(c)
+    call c%set_limit(0.5_dp)
+    call d%create(s, 'exact')
+    y = 0
+    omega = 0
+    zeta = 0
+    call d%find_mode([1.0_dp, 0.0_dp], 1.0_dp, omega, zeta, y)
+    call require(abs(omega - 1.2258676901977_dp) < 1e-9_dp, 'mode: omega')
+    call require(abs(zeta - 0.105752880426_dp) < 1e-9_dp, 'mode: zeta')
+    call d%find_mode([1.0_dp], 1.0_dp, omega, zeta, y, stat)
+    call require(stat == TRIBO_ERR_SIZE, 'mode: a short signal')
+    call d%find_mode([1.0_dp, 0.0_dp], -1.0_dp, omega, zeta, y, stat)
+    call require(stat == TRIBO_ERR_NOT_POSITIVE .and. abs(omega - 1.2258676901977_dp) < 1e-9_dp, 'mode: a negative amplitude')
+  end subroutine mode_of_contact
 
   !> An elastic contact that lifts off: x'' + 0.1 sqrt(12) x' + 12 x + f = 60 cos 5 t, y'' + 2 y' + 21 y + N = 100 + 60 cos 5 t,
   !> stiffness 5, mu = 0.85, N = 21 max(y, 0): the steady motion at t = 0 by two other codes.

@@ -104,7 +104,7 @@ static void course_begin(struct course *c)
 /* The unknown is T/extra.unit. */
 static int cycle_apply(struct shooting *s, const struct point *p)
 {
-    const double period = p->unknown[0] * s->extra.unit, first = s->extra.first;
+    const double period = p->unknown[0] * s->extra.unit[0], first = s->extra.first;
     if (!(period >= first / STRAYS && period <= first * STRAYS)) {
         return tribo_error(s->map.drv->message, TRIBO_ERR_NO_CONVERGENCE,
                            "no cycle was found: from period = %g the search goes to %g", first, period);
@@ -122,7 +122,7 @@ static int cycle_border(struct shooting *s, struct point *p)
     const double speed = tribo_energy_length(column, n);
     for (size_t i = 0; i < n; i++) {
         row[i] = speed > 0.0 ? column[i] / speed : 0.0;
-        column[i] *= s->extra.unit;
+        column[i] *= s->extra.unit[0];
     }
     row[n] = p->value[0] = 0.0;
     return TRIBO_OK;
@@ -142,14 +142,14 @@ static int cycle_shoot(struct shooting *s, double period, int *found, int *rests
     const double size = greater(tribo_energy_length(p->x, s->map.n), s->map.least);
     s->map.moved = 0;
     s->extra.first = period;
-    s->extra.unit = size > 0.0 ? period / size : period;
-    p->unknown[0] = period / s->extra.unit;
+    s->extra.unit[0] = size > 0.0 ? period / size : period;
+    p->unknown[0] = period / s->extra.unit[0];
     const int status = tribo_shooting_search(s);
     const double length = cycle_length(s, s->here);
     const int closed = !status && tribo_point_is_closed(s->here, TRIBO_PERIODIC);
     *rests |= closed && !(length > AT_REST * s->here->size);
     *found = closed && length > AT_REST * s->here->size && s->here->residual <= COMES_BACK * length;
-    s->map.period = *found ? s->here->unknown[0] * s->extra.unit : period;
+    s->map.period = *found ? s->here->unknown[0] * s->extra.unit[0] : period;
     return status == TRIBO_ERR_MEMORY || status == TRIBO_ERR_UNSUPPORTED ? status : TRIBO_OK;
 }
 

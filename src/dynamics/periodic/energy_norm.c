@@ -5,7 +5,11 @@
 #include "numerics/lapack.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+/* Stiffness of rigid contacts that stick in linear modes, over the largest one. */
+#define FIRM 1e6
 
 int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys)
 {
@@ -103,4 +107,44 @@ double tribo_energy_distance(const double *a, const double *b, size_t n)
         square += (a[i] - b[i]) * (a[i] - b[i]);
     }
     return sqrt(square);
+}
+
+int tribo_energy_norm_modes(const struct energy_norm *e, const tribo_system *sys, int sticks, double *value, double *states)
+{
+    const struct compliance *g = &sys->compliance;
+    const size_t n = e->n, contacts = sys->ncontact, all = 2 * n + e->springs;
+    const double most = tribo_largest(e->natural, n);
+    double *a = calloc(n * n + 2 * contacts * n + 1, sizeof *a), *shape = a + n * n, *spring = shape + contacts * n;
+    if (!a) {
+        return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for linear modes");
+    }
+    for (size_t at = 0; at < contacts * n; at++) {
+        shape[at] = spring[at] = tribo_matrix_row_dot(&sys->direction, at / n, e->phi + at % n * n);
+    }
+    if (g->count) {
+        tribo_compliance_solve(sys, NULL, n, spring);
+    }
+    for (size_t i = 0; i < contacts; i++) {
+        const double r = tribo_system_delassus(sys, i, i), firm = r > 0.0 ? FIRM * greater(most * most, 1.0) / r : 0.0;
+        const struct normal *normal = tribo_normals_at(sys, i);
+        const double stiffness = normal ? normal->stiffness : sticks ? firm : 0.0;
+        for (size_t k = 0; k < n; k++) {
+            const double own = tribo_is_compliant(g, i) ? sticks * spring[i * n + k] : stiffness * shape[i * n + k];
+            spring[i * n + k] = own;
+        }
+    }
+    tribo_multiply_transposed_add(contacts, n, n, shape, spring, a);
+    for (size_t k = 0; k < n; k++) {
+        a[k * (n + 1)] += e->natural[k] * e->natural[k];
+    }
+    const int status = tribo_symmetric_eigen(a, n, value);
+    memset(states, 0, n * all * sizeof *states);
+    for (size_t k = 0; !status && k < n; k++) {
+        tribo_multiply_transposed_add(n, n, 1, e->phi, a + k * n, states + k * all);
+        for (size_t l = 0; l < e->springs; l++) {
+            states[k * all + 2 * n + l] = -tribo_dot(spring + g->contact[l] * n, a + k * n, n);
+        }
+    }
+    free(a);
+    return status ? tribo_error(sys->message, status, "linear modes: %s", tribo_strerror(status)) : TRIBO_OK;
 }

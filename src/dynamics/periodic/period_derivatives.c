@@ -348,7 +348,7 @@ static int differentiate(struct sensitivity *d, struct shooting *s, const size_t
 {
     const tribo_driver *drv = d->map->drv;
     int status = TRIBO_OK;
-    const char *const without = s->extra.count                         ? "an unknown period"
+    const char *const without = s->told->extra.count                   ? "an unknown period"
                                 : drv->sys->normals.count              ? "limits that follow the motion"
                                 : tribo_system_is_plain(drv->sys) == 0 ? "static limits and contacts in a plane"
                                                                        : NULL;

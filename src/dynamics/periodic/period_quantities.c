@@ -84,12 +84,12 @@ static int replay(tribo_driver *drv, struct replay *r, const char *missing, cons
     if (unready) {
         return unready;
     }
-    struct shooting *s = drv->shooting;
+    const struct shooting *s = drv->shooting->told;
     r->c = c;
     r->company = quantities;
-    r->map = &s->map;
+    r->map = &drv->shooting->told->map;
     r->omega = 2.0 * acos(-1.0) * (double)order / s->map.period;
-    const int status = tribo_period_map_replay(&s->map, s->here->y, s->map.period, &r->company);
+    const int status = tribo_period_map_replay(r->map, s->here->y, s->map.period, &r->company);
     return status && s->map.drv != drv ? tribo_error(drv->message, status, "%s", s->map.drv->message) : status;
 }
 
@@ -117,7 +117,7 @@ int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, d
     struct replay r = {0};
     const int status = replay(drv, &r, !c ? "c" : !cosine ? "cosine" : !sine ? "sine" : NULL, c, k);
     if (!status) {
-        const double factor = (k ? 2.0 : 1.0) / drv->shooting->map.period;
+        const double factor = (k ? 2.0 : 1.0) / drv->shooting->told->map.period;
         *cosine = factor * r.re;
         *sine = k ? -factor * r.im : 0.0;
     }

@@ -4,6 +4,8 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* Largest distance of omega period/(2 pi) from a whole number, beside rounding. */
 #define WHOLE 3e-12
@@ -134,6 +136,61 @@ int tribo_driver_find_cycle(tribo_driver *drv, double t, double *period, double 
     return status;
 }
 
+int tribo_driver_find_mode(tribo_driver *drv, const double *c, double amplitude, double *omega, double *zeta, double *y)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!c || !omega || !zeta) {
+        return tribo_error(drv->message, TRIBO_ERR_NULL, "%s is NULL", !c ? "c" : !omega ? "omega" : "zeta");
+    }
+    const tribo_system *sys = drv->sys;
+    const size_t given = tribo_system_ndof(sys), n = sys->ndof;
+    const double turn = 2.0 * acos(-1.0);
+    int status = check_search(drv, "modes", 0.0, y);
+    if (!status && !(tribo_dense_finite(c, 2 * given) && isfinite(amplitude + *omega + *zeta))) {
+        status = tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "c, or amplitude = %g, omega = %g or zeta = %g is not finite",
+                             amplitude, *omega, *zeta);
+    }
+    if (!status && (!(amplitude > 0.0) || *omega < 0.0)) {
+        status = tribo_error(drv->message, TRIBO_ERR_NOT_POSITIVE, "%s = %g is not positive",
+                             amplitude > 0.0 ? "omega" : "amplitude", amplitude > 0.0 ? *omega : amplitude);
+    }
+    status = status ? status : check_friction(drv);
+    for (size_t k = 0; !status && k < sys->loads.harmonics; k++) {
+        const struct harmonic *w = &sys->loads.harmonic[k];
+        if (w->knots || (w->drives == DRIVES_LIMIT && w->omega != 0.0)) {
+            status =
+                tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "modes have limits that do not depend on time, and no tables");
+        }
+    }
+    if (status) {
+        return status;
+    }
+    double *own = calloc(2 * tribo_system_size(sys) + 2 * given + 1, sizeof *own);
+    if (!own) {
+        return tribo_error(drv->message, TRIBO_ERR_MEMORY, "out of memory for a mode");
+    }
+    if (drv->motion) {
+        tribo_system_read_combination(sys, c, own);
+    } else {
+        memcpy(own, c, 2 * n * sizeof *c);
+    }
+    if (!(tribo_largest(own, 2 * n) > 0.0) || tribo_largest(own + 2 * n, 2 * (tribo_system_energy(sys) - 2 * n)) > 0.0) {
+        status = tribo_error(drv->message, TRIBO_ERR_RANGE, "c is 0, or takes in degrees of freedom without mass");
+    } else if (sys->normals.count && tribo_largest(own + n, n) > 0.0) {
+        status = tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "where limits follow the motion c takes displacements only");
+    }
+    struct wanted w = {tribo_shooting_find_mode, 0.0, *omega > 0.0 ? turn / *omega : 0.0, NULL, own, amplitude, *zeta * *omega};
+    status = status ? status : search_from(drv, &w, y);
+    if (!status) {
+        *omega = turn / w.period;
+        *zeta = w.delta / *omega;
+    }
+    free(own);
+    return status;
+}
+
 /* Sets *s = the search of drv. Returns TRIBO_OK if drv is not NULL, the search has found a motion, and missing is NULL; missing:
  * name of an argument that is NULL. */
 static int get_found(const tribo_driver *drv, const char *missing, struct shooting **s)
@@ -141,10 +198,9 @@ static int get_found(const tribo_driver *drv, const char *missing, struct shooti
     if (!drv || missing) {
         return drv ? tribo_error(drv->message, TRIBO_ERR_NULL, "%s is NULL", missing) : TRIBO_ERR_NULL;
     }
-    *s = drv->shooting;
-    return *s && (*s)->found ? TRIBO_OK
-                             : tribo_error(drv->message, TRIBO_ERR_STATE,
-                                           "no periodic motion was found: call tribo_driver_find_periodic first");
+    *s = drv->shooting && drv->shooting->found ? drv->shooting->told : NULL;
+    return *s ? TRIBO_OK
+              : tribo_error(drv->message, TRIBO_ERR_STATE, "no periodic motion was found: call tribo_driver_find_periodic first");
 }
 
 int tribo_driver_get_freedom(const tribo_driver *drv, size_t *freedom)

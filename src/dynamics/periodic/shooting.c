@@ -115,11 +115,15 @@ static void find_misfit(const struct shooting *s, const struct point *p, double 
     tribo_add(to, -1.0, p->x, s->map.n);
 }
 
-/* Follows p with its unknowns; conditions count in the residual. Returns a status. */
+/* Follows p with its unknowns; conditions count in the residual, which is HUGE_VAL beyond the range of the unknowns. Returns a status. */
 static int shooting_follow(struct shooting *s, struct point *p)
 {
     const size_t k = s->extra.count;
     int status = k ? s->extra.apply(s, p) : TRIBO_OK;
+    if (status == TRIBO_ERR_NO_CONVERGENCE) {
+        p->residual = p->size = HUGE_VAL;
+        return TRIBO_OK;
+    }
     status = status ? status : tribo_period_map_follow(&s->map, p);
     if (k && !status) {
         status = s->extra.border(s, p);
@@ -231,7 +235,7 @@ static int try_step(struct shooting *s, double part)
     const int status = shooting_follow(s, s->there);
     if (!status) {
         s->ratio = left_along(s, s->there) / left_along(s, s->here);
-        s->nearest = lesser(s->nearest, s->there->residual / s->there->size);
+        s->nearest = isfinite(s->there->size) ? lesser(s->nearest, s->there->residual / s->there->size) : s->nearest;
     }
     return status;
 }
@@ -425,7 +429,7 @@ static int approach_guess(struct shooting *s)
 /* Sets s->flow: s->here; or, if a contact that slides at its beginning or end has there no velocity beside AT_ONCE of what the
  * motion may have, so that its event falls on both or on neither, the motion from the middle of its longest phase on. If that
  * does not come back, a contact slides at the beginning and is held at the end, above its kinetic limit. Returns a status. */
-static int find_flow(struct shooting *s)
+int tribo_shooting_find_flow(struct shooting *s)
 {
     const struct derivative *d = &s->here->derivative;
     tribo_system *sys = s->map.sys;
@@ -494,6 +498,7 @@ void tribo_shooting_keep(struct shooting *s, struct wanted *w)
     w->y[s->map.n] = 0.0;
     w->period = s->map.period;
     s->found = 1;
+    s->told = s;
     s->revision = tribo_system_revision(s->map.sys);
 }
 
@@ -511,7 +516,7 @@ int tribo_shooting_find(struct shooting *s, struct wanted *w)
     if (!status && !tribo_point_is_closed(s->here, TRIBO_PERIODIC)) {
         status = tribo_shooting_fails(s, s->here->residual / s->here->size);
     }
-    status = status ? status : find_flow(s);
+    status = status ? status : tribo_shooting_find_flow(s);
     if (!status) {
         tribo_shooting_keep(s, w);
     }
@@ -549,6 +554,8 @@ void tribo_shooting_free(struct shooting *s)
             tribo_derivative_free(&s->point[k].derivative);
         }
         tribo_period_map_free(&s->map);
+        tribo_driver_destroy(s->twin.drv);
+        tribo_system_destroy(s->twin.sys);
         free(s->a);
         free(s);
     }

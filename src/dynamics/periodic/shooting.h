@@ -12,11 +12,26 @@ struct shooting;
  * then the rows d value_k/d(x, unknown) [n + count], by border. */
 struct border {
     size_t count; /* 0: none, the other members are not read */
-    /* Sets the map for p->unknown. */
+    /* Sets the map for p->unknown; TRIBO_ERR_NO_CONVERGENCE: beyond their range. */
     int (*apply)(struct shooting *s, const struct point *p);
     /* Sets value and border of p, which the map followed last. */
     int (*border)(struct shooting *s, struct point *p);
-    double unit, first; /* an unknown period over its unknown; its value as the search begins */
+    double unit[TRIBO_UNKNOWNS]; /* an unknown in its own unit over p->unknown */
+    double first;                /* an unknown period as the search begins */
+};
+
+/* A mode that is searched (mode.c). c [2 ndof]: coefficients of q and q'; x [n]: workspace. like: system of the caller. */
+struct mode {
+    const tribo_system *like;
+    const double *c;
+    double *x;
+    double amplitude;
+};
+
+/* The system of modes, and its driver. */
+struct twin {
+    tribo_system *sys;
+    tribo_driver *drv;
 };
 
 struct shooting {
@@ -36,7 +51,10 @@ struct shooting {
     double before;              /* residual before the last step */
     double nearest;             /* least residual/size so far */
     int found;
-    size_t revision; /* of the system when the motion was found */
+    size_t revision;       /* of the system when the motion was found */
+    struct mode *mode;     /* of the search of a mode; else NULL */
+    struct twin twin;      /* of the modes of this driver */
+    struct shooting *told; /* the search that has the motion found: this one, or that of twin.drv */
 };
 
 /* Returns NULL if out of memory. */
@@ -65,9 +83,13 @@ int tribo_shooting_fails(const struct shooting *s, double residual);
 /* Marks the motion s->here, y, as found: w->y, w->period and the questions about it. */
 void tribo_shooting_keep(struct shooting *s, struct wanted *w);
 
-/* The find of struct wanted: tribo_driver_find_periodic and tribo_driver_find_cycle (cycle.c), with arguments already checked. */
+/* Sets s->flow, the point that has the multipliers of s->here. Returns a status. */
+int tribo_shooting_find_flow(struct shooting *s);
+
+/* The find of struct wanted: tribo_driver_find_periodic, tribo_driver_find_cycle (cycle.c), tribo_driver_find_mode (mode.c), with arguments already checked. */
 int tribo_shooting_find(struct shooting *s, struct wanted *w);
 int tribo_shooting_find_cycle(struct shooting *s, struct wanted *w);
+int tribo_shooting_find_mode(struct shooting *s, struct wanted *w);
 
 /* Returns TRIBO_OK if drv is not NULL, missing is NULL, and the system is that of the motion found; missing: name of an argument that
  * is NULL. *c: NULL, or coefficients of q, q' of the caller's, which become those of the methods' state: [2 ndof + 2 springs] with

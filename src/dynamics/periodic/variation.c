@@ -451,6 +451,28 @@ void tribo_variation_event(struct variation *x)
     x->status = x->status || may_wait(x) ? x->status : catch_up(x);
 }
 
+/* c_v'q'' = w'(load - AK q - AC q' + B f), w = c_v + J'f with f_H = -R_HH^-1 B_H'c_v over the contacts H that are held. */
+int tribo_variation_rate_row(struct variation *x, struct events *e, const double *c, double *row)
+{
+    const size_t n = x->sys->ndof;
+    double *const w = x->acceleration;
+    memset(row, 0, tribo_system_energy(x->sys) * sizeof *row);
+    memcpy(row + n, c, n * sizeof *c);
+    memcpy(w, c + n, n * sizeof *c);
+    memset(x->a, 0, x->sys->ncontact * sizeof *x->a);
+    add_transposed(&x->sys->response, 1.0, w, x->a);
+    const int status = tribo_stick_slip_balance(&e->stick_slip, x->a, x->f);
+    add_transposed(&x->sys->direction, 1.0, x->f, w);
+    add_transposed(&x->sys->stiffness, -1.0, w, row);
+    add_transposed(&x->sys->damping, -1.0, w, row + n);
+    memset(x->a, 0, x->sys->ncontact * sizeof *x->a);
+    add_transposed(&x->sys->compliance.pull, 1.0, w, x->a);
+    for (size_t k = 0; k < x->sys->compliance.count; k++) {
+        row[2 * n + k] = x->a[x->sys->compliance.contact[k]];
+    }
+    return status;
+}
+
 /* ------------------------------------------------------------------------------------------------------------------- calls */
 
 void tribo_variation_begin(struct variation *x, struct events *e, const double *v, size_t columns, struct derivative *to)

@@ -97,4 +97,8 @@ void tribo_variation_begin(struct variation *x, struct events *e, const double *
 int tribo_variation_phase(struct variation *x, double tau, double t, const double *y);
 void tribo_variation_event(struct variation *x);
 
+/* row [n] = derivative of c'[q', q''], c [2 ndof], by the state, contacts at rest held as at the end of the motion of e. Uses
+ * acceleration, a and f. Returns a status. */
+int tribo_variation_rate_row(struct variation *x, struct events *e, const double *c, double *row);
+
 #endif

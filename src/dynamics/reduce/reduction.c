@@ -196,12 +196,7 @@ int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
         return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for the damping of %zu mode%s", sys->ndof,
                            plural(sys->ndof));
     }
-    tribo_matrix_free(&sys->c);
-    tribo_matrix_free(&sys->damping);
-    sys->c = damping;
-    sys->damping = rates;
-    sys->revision++;
-    sys->structure++;
+    tribo_system_put_damping(sys, &damping, &rates);
     return TRIBO_OK;
 }
 

@@ -372,6 +372,16 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact)
     return status;
 }
 
+void tribo_system_put_damping(tribo_system *sys, const struct matrix *c, const struct matrix *rates)
+{
+    tribo_matrix_free(&sys->c);
+    tribo_matrix_free(&sys->damping);
+    sys->c = *c;
+    sys->damping = *rates;
+    sys->revision++;
+    sys->structure++;
+}
+
 int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
 {
     if (!sys) {

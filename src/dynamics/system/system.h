@@ -132,6 +132,9 @@ static inline const struct follower *tribo_normals_follower(const tribo_system *
  * status. */
 int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact);
 
+/* Takes C and AC = M^-1 C in the place of those of sys. */
+void tribo_system_put_damping(tribo_system *sys, const struct matrix *c, const struct matrix *rates);
+
 enum { TRIBO_MESSAGE = 240 };
 
 /* Copies the settings of sys->lent to sys->contacts if they have changed. Call at the start of public functions. Returns a

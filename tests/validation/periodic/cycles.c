@@ -79,6 +79,9 @@ TEST(drops)
     tribo_driver *drv = driver_create(sys, methods[_i % 3], 1e-3, 1e-13);
     double y[3] = {from[_i / 3], 0.0, 3.0}, period = guess[_i / 3], re[2], im[2], least, most, energy, share, at;
     find_cycle(drv, &period, y);
+    const int kind = TRIBO_PARAMETER_LIMIT;
+    const size_t contact = 0;
+    assert_status(tribo_driver_period_derivatives(drv, 1, &kind, &contact, NULL, NULL, &energy, NULL), TRIBO_ERR_UNSUPPORTED);
     assert_close(period, 8.0688878716, 1e-10);
     assert_close(period, stick + slip, 1e-11);
     assert_close(y[0], 1.0, 1e-12);
