@@ -344,6 +344,36 @@ static int make_following(tribo_system **sys, tribo_driver **drv)
     return status ? status : tribo_driver_find_periodic(*drv, 0.0, 2.0 * PI / 5.0, y);
 }
 
+/* A cycle of a block on a belt. */
+static int make_cycle(tribo_system **sys, tribo_driver **drv)
+{
+    const double one = 1.0, belt = 0.2, ratio = 1.0 / 0.6, limit = 0.6;
+    double y[3] = {0.0}, period = 0.0;
+    int status = dense_system(sys, 1, 1, &one, NULL, &one, &one, 0, NULL, 0);
+    status = status ? status : tribo_system_add_base_motion(*sys, 0.0, &belt, NULL);
+    tribo_context *c = status ? NULL : tribo_system_context(*sys);
+    status = status || c ? status : TRIBO_ERR_MEMORY;
+    status = status ? status : tribo_set_limit(c, &limit);
+    status = status ? status : tribo_set_static(c, &ratio, NULL);
+    status = status ? status : set_up_driver(drv, *sys, "exact", 1.0, 1e-13, 0.0);
+    return status ? status : tribo_driver_find_cycle(*drv, 0.0, &period, y);
+}
+
+/* A nonlinear mode, from the linear one, and the mode of the next amplitude. */
+static int make_mode(tribo_system **sys, tribo_driver **drv)
+{
+    const double limits[] = {0.1, 0.05}, c[] = {1.0, 0.0, 0.0, 0.5};
+    double y[6] = {0.0}, omega = 0.0, zeta = 0.0, re[5], im[5];
+    int status = make_sliders(sys, 0);
+    tribo_context *own = status ? NULL : tribo_system_context(*sys);
+    status = status || own ? status : TRIBO_ERR_MEMORY;
+    status = status ? status : tribo_set_limit(own, limits);
+    status = status ? status : set_up_driver(drv, *sys, "exact", 1.0, 1e-13, 0.0);
+    status = status ? status : tribo_driver_find_mode(*drv, c, 1.0, &omega, &zeta, y);
+    status = status ? status : tribo_driver_find_mode(*drv, c, 1.2, &omega, &zeta, y);
+    return status ? status : tribo_driver_get_multipliers(*drv, re, im);
+}
+
 static const struct {
     const char *name;
     int (*make)(tribo_system **sys, tribo_driver **drv);
@@ -362,6 +392,8 @@ static const struct {
               {"copy", make_copy},
               {"full copy", make_full_copy},
               {"periodic", make_periodic},
+              {"cycle", make_cycle},
+              {"mode", make_mode},
               {"periodic event", make_periodic_event},
               {"sparse", make_sparse},
               {"compliant", make_compliant},
