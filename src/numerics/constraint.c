@@ -330,15 +330,16 @@ void tribo_constraints_follow(const struct constraints *c, const double *b, doub
     }
 }
 
-void tribo_constraints_react(const struct constraints *c, size_t columns, const double *force, double *f)
+void tribo_constraints_react(const struct constraints *c, const size_t *rows, size_t columns, const double *force, double *f)
 {
     memset(f, 0, c->count * columns * sizeof *f);
     for (size_t i = 0; i < c->ties; i++) {
         const struct tie *const tie = &c->tie[i];
-        for (size_t k = 0; k < tie->rank; k++) {
-            const double *inverse = tie->entry + tie->touched + k;
-            for (size_t p = 0; p < tie->rank; p++) {
-                tribo_add(f + tie->order[k] * columns, inverse[p * tie->stride], force + tie->dof[p] * columns, columns);
+        for (size_t p = 0; p < tie->rank; p++) {
+            const double *inverse = tie->entry + p * tie->stride + tie->touched;
+            const size_t d = tie->dof[p];
+            for (size_t k = 0; rows[0] <= d && d < rows[1] && k < tie->rank; k++) {
+                tribo_add(f + tie->order[k] * columns, inverse[k], force + (d - rows[0]) * columns, columns);
             }
         }
     }

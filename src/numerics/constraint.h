@@ -49,7 +49,8 @@ int tribo_constraints_basis(const struct constraints *c, size_t ndof, struct mat
 /* Adds displacements of slaves with J_I q = b [count] to q [ndof]. */
 void tribo_constraints_follow(const struct constraints *c, const double *b, double *q);
 
-/* f [count][columns] = the forces with J_I'f = force [ndof][columns] in all slaves; in all degrees of freedom if Z'force = 0. */
-void tribo_constraints_react(const struct constraints *c, size_t columns, const double *force, double *f);
+/* f [count][columns] = the forces with J_I'f = force [][columns] in all slaves; in all degrees of freedom if Z'force = 0. force
+ * has rows for degrees of freedom rows[0] to rows[1] - 1, and is 0 elsewhere. */
+void tribo_constraints_react(const struct constraints *c, const size_t *rows, size_t columns, const double *force, double *f);
 
 #endif

@@ -96,7 +96,7 @@ static int list_rest(struct modal_build *b)
 static int find_stiffness(struct modal_build *b)
 {
     const struct matrix *j = &b->sys->direction;
-    const size_t n = b->h->n, c = j->rows;
+    const size_t n = b->sys->ndof, c = j->rows;
     b->stiffness = b->k;
     if (!b->h->springs || b->powers) {
         return 1;
@@ -115,12 +115,56 @@ static int find_stiffness(struct modal_build *b)
     return tribo_matrix_from_dense(&b->own_stiffness, n, n, added);
 }
 
-void tribo_modal_react(const struct modal *h, size_t columns, double *force, double *f, double *work)
+void tribo_modal_react(const struct modal *h, const size_t *rows, size_t columns, double *force, double *f, double *work)
 {
+    const size_t n = tribo_modal_wide(h->within);
+    double *moved = force + (h->within[0] - rows[0]) * columns;
     memset(work, 0, h->modes * columns * sizeof *work);
-    tribo_multiply_add(h->modes, h->n, columns, -1.0, h->phi, force, work);
-    tribo_multiply_transposed_add(h->modes, h->n, columns, h->psi, work, force);
-    tribo_constraints_react(&h->ties, columns, force, f);
+    tribo_multiply_add(h->modes, n, columns, -1.0, h->phi, moved, work);
+    tribo_multiply_transposed_add(h->modes, n, columns, h->psi, work, moved);
+    tribo_constraints_react(&h->ties, rows, columns, force, f);
+}
+
+/* to [rows[1] - rows[0]][columns] += rows of a times x, which is 0 but in its rows `of`. */
+static void add_between(const struct matrix *a, const size_t *rows, const size_t *of, size_t columns, const double *x, double *to)
+{
+    if (tribo_modal_wide(rows) == a->rows && tribo_modal_wide(of) == a->cols) {
+        tribo_matrix_add_columns(a, 1.0, columns, x, to);
+        return;
+    }
+    for (size_t i = rows[0]; i < rows[1]; i++) {
+        for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
+            const size_t j = a->col[e];
+            if (of[0] <= j && j < of[1]) {
+                tribo_add(to + (i - rows[0]) * columns, a->val[e], x + (j - of[0]) * columns, columns);
+            }
+        }
+    }
+}
+
+/* Sets h->within by the displacements q = z y; z without rows, compliant contacts or normals: all. */
+static void find_within(struct modal_build *b, const struct matrix *z)
+{
+    const tribo_system *sys = b->sys;
+    const struct matrix *const beside[] = {&sys->k, &sys->mass, &sys->c};
+    size_t *within = b->h->within, first = 0, end = sys->ndof;
+    const int some = z->rows > 0 && sys->compliance.count == 0 && sys->normals.count == 0;
+    while (some && first < end && z->first[first] == z->first[first + 1]) {
+        first++;
+    }
+    while (some && first < end && z->first[end - 1] == z->first[end]) {
+        end--;
+    }
+    within[0] = first;
+    within[1] = end;
+    for (size_t at = 0; some && at < 3 * sys->ndof; at++) { /* rows with entries from first to end; columns ascend */
+        const struct matrix *a = beside[at % 3];
+        const size_t d = at / 3, from = a->rows ? a->first[d] : 0, to = a->rows ? a->first[d + 1] : 0;
+        if (from < to && a->col[from] < end && a->col[to - 1] >= first) {
+            within[0] = d < within[0] ? d : within[0];
+            within[1] = d < within[1] ? within[1] : d + 1;
+        }
+    }
 }
 
 /* ------------------------------------------------------------------------------------------------- modes of vibration */
@@ -146,7 +190,7 @@ static int factorize_mass(struct modal_build *b, const struct matrix *z, struct 
 static int find_coordinates(struct modal_build *b, const struct matrix *z, const struct cholesky *mass)
 {
     struct modal *h = b->h;
-    const size_t m = h->modes;
+    const size_t m = h->modes, all[] = {0, m};
     double *a = tribo_modal_take(&b->scratch, 3 * m * m, sizeof *a), *turned = a + m * m, *s = turned + m * m;
     if (!a || !tribo_matrix_congruent(b->k, z, turned)) {
         return TRIBO_ERR_MEMORY;
@@ -160,8 +204,9 @@ static int find_coordinates(struct modal_build *b, const struct matrix *z, const
     }
     tribo_half_solve(mass, 1, s, m);
     memcpy(b->shape, s, z->rows ? 0 : m * m * sizeof *s);
-    tribo_matrix_add_columns(z, 1.0, m, s, b->shape);
-    tribo_transpose(h->n, m, b->shape, h->phi);
+    if (z->rows) {
+        add_between(z, h->within, all, m, s, b->shape);
+    }
     return tribo_matrix_from_dense(&h->powers->stiffness, m, m, a) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
@@ -173,32 +218,41 @@ static int find_modes(struct modal_build *b)
     struct matrix z = {0};
     struct cholesky own = {0};
     const struct modes_text text = {sys->message, "with contacts at rest held, ", "take method event"};
-    int status = h->rests == 0 || tribo_constraints_basis(&h->ties, h->n, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    int status = h->rests == 0 || tribo_constraints_basis(&h->ties, sys->ndof, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     const int held = z.rows > 0;
-    const size_t n = h->n, m = h->modes = held ? z.cols : n, all = m * (2 + 2 * n);
+    find_within(b, &z);
+    const size_t n = tribo_modal_wide(h->within), m = h->modes = held ? z.cols : sys->ndof, all = m * (2 + 2 * n);
     const size_t room = all + (h->rests == 0 || h->springs ? m * sys->ncontact : 0);
     h->powers = b->like ? b->like->powers : b->powers ? calloc(1, sizeof *h->powers + room * sizeof *h->omega2) : NULL;
     h->omega2 = h->powers ? h->powers->array : b->powers ? NULL : tribo_modal_take(&h->store, all, sizeof *h->omega2);
     if (h->powers) {
         h->powers->users++;
     }
-    b->shape = tribo_modal_take(&b->scratch, b->like ? 0 : m * n, sizeof *b->shape);
-    status = status || (h->omega2 && b->shape) ? status : TRIBO_ERR_MEMORY;
+    b->shape = tribo_modal_take(&b->scratch, b->like ? 0 : 2 * m * n, sizeof *b->shape);
+    b->full = tribo_modal_take(&b->scratch, b->powers ? 0 : m * sys->ndof, sizeof *b->full);
+    status = status || (h->omega2 && b->shape && b->full) ? status : TRIBO_ERR_MEMORY;
     if (!status) {
         h->damping = h->omega2 + m;
         h->phi = h->damping + m;
         h->psi = h->phi + m * n;
+        b->inertia = b->shape + (b->like ? 0 : m * n);
         status = held && m > 0 ? factorize_mass(b, &z, &own) : TRIBO_OK;
     }
     if (!status && b->powers) {
         status = b->like ? TRIBO_OK : find_coordinates(b, &z, held ? &own : &sys->factor);
     } else if (!status && m > 0) {
         status =
-            tribo_normal_modes(b->stiffness, sys->expansion.terms, &z, held ? &own : &sys->factor, m, h->omega2, h->phi, &text);
-        tribo_transpose(m, n, h->phi, b->shape);
+            tribo_normal_modes(b->stiffness, sys->expansion.terms, &z, held ? &own : &sys->factor, m, h->omega2, b->full, &text);
+        for (size_t k = 0; k < m; k++) {
+            for (size_t d = 0; d < n; d++) {
+                b->shape[d * m + k] = b->full[k * sys->ndof + h->within[0] + d];
+            }
+        }
     }
-    for (size_t k = 0; !status && !b->like && k < m; k++) {
-        tribo_matrix_multiply_add(&sys->mass, 1.0, h->phi + k * n, h->psi + k * n);
+    if (!status && !b->like) {
+        add_between(&sys->mass, h->within, h->within, m, b->shape, b->inertia);
+        tribo_transpose(n, m, b->shape, h->phi);
+        tribo_transpose(n, m, b->inertia, h->psi);
     }
     tribo_matrix_free(&z);
     tribo_cholesky_free(&own);
@@ -211,10 +265,10 @@ static int find_modes(struct modal_build *b)
 static int damping_couples(const struct modal_build *b, const double *c, const double *root, const double *stiff_root)
 {
     const struct modal *h = b->h;
-    const size_t n = h->n, m = h->modes;
+    const size_t n = b->sys->ndof, m = h->modes;
     for (size_t kl = 0; kl < m * m; kl++) {
         const size_t k = kl / m, l = kl % m;
-        const double *one = h->phi + k * n, *other = h->phi + l * n;
+        const double *one = b->full + k * n, *other = b->full + l * n;
         const double shared = fabs(c[kl]), own = sqrt(fabs(c[k * m + k] * c[l * m + l]));
         const double larger = greater(fabs(c[k * m + k]), fabs(c[l * m + l]));
         if (k == l || shared <= greater(NEGLIGIBLE * own, IMPURITY * larger)) {
@@ -237,15 +291,15 @@ static int find_damping(struct modal_build *b)
 {
     struct modal *h = b->h;
     const struct matrix *damping = b->like ? NULL : b->c;
-    const size_t n = h->n, m = h->modes;
+    const size_t n = b->sys->ndof, m = h->modes;
     double *c = tribo_modal_take(&h->store, damping || b->follows ? m * m : 0, sizeof *c), most = 0.0;
     double *root = tribo_modal_take(&b->scratch, damping ? n * (2 + m) : 0, sizeof *root);
     h->coupling = b->follows ? c : NULL;
     if (!damping || !c || !root) {
         return c && root;
     }
-    tribo_matrix_add_columns(damping, 1.0, m, b->shape, root + 2 * n);
-    tribo_multiply_add(m, n, m, 1.0, h->phi, root + 2 * n, c);
+    add_between(damping, h->within, h->within, m, b->shape, root + 2 * n);
+    tribo_multiply_add(m, tribo_modal_wide(h->within), m, 1.0, h->phi, root + 2 * n, c);
     if (b->powers) {
         return tribo_matrix_from_dense(&h->powers->damping, m, m, c);
     }
@@ -255,7 +309,7 @@ static int find_damping(struct modal_build *b)
         most = greater(most, fabs(c[k * (m + 1)]));
     }
     for (size_t k = 0; k < m; k++) {
-        const double own = c[k * (m + 1)], noise = tribo_matrix_noise(damping, root, h->phi + k * n, h->phi + k * n);
+        const double own = c[k * (m + 1)], noise = tribo_matrix_noise(damping, root, b->full + k * n, b->full + k * n);
         h->damping[k] = fabs(own) > greater(ROUNDING * noise, IMPURITY * IMPURITY * most) ? own : 0.0;
     }
     h->coupling = b->follows || damping_couples(b, c, root, root + n) ? c : NULL;
@@ -264,12 +318,13 @@ static int find_damping(struct modal_build *b)
 
 /* Rows i of to [ncontact][columns] = f_i of the rigid contacts i that hold, J_I'f = force, project: without the part of the force
  * that moves the modes. work [rests + modes][columns]. */
-static void keep_reactions(const struct modal *h, size_t columns, double *force, int project, double *work, double *to)
+static void keep_reactions(const struct modal *h, const size_t *rows, size_t columns, double *force, int project, double *work,
+                           double *to)
 {
     if (project) {
-        tribo_modal_react(h, columns, force, work, work + h->rests * columns);
+        tribo_modal_react(h, rows, columns, force, work, work + h->rests * columns);
     } else {
-        tribo_constraints_react(&h->ties, columns, force, work);
+        tribo_constraints_react(&h->ties, rows, columns, force, work);
     }
     for (size_t p = 0; p < h->rests; p++) {
         memcpy(to + h->rest[p] * columns, work + p * columns, columns * sizeof *to);
@@ -305,7 +360,8 @@ void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y,
     const struct modal *h = b->h;
     const tribo_system *sys = b->sys;
     const struct matrix *j = &sys->direction;
-    const size_t n = h->n, c = sys->ncontact, springs = sys->compliance.count || b->follows ? c : 0, each = columns * sizeof *on;
+    const size_t all[] = {0, sys->ndof}, *rows = base ? all : h->within, n = tribo_modal_wide(rows);
+    const size_t c = sys->ncontact, springs = sys->compliance.count || b->follows ? c : 0, each = columns * sizeof *on;
     const int pulls = h->rests > 0 || (base && b->follows);
     double *force = tribo_modal_take(&b->scratch, columns * (n + h->rests + h->modes + 2 * springs), sizeof *force);
     double *work = force + n * columns, *rate = work + (h->rests + h->modes) * columns, *slide = rate + springs * columns;
@@ -336,22 +392,21 @@ void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y,
         }
     }
     if (pulls) {
-        tribo_matrix_add_columns(b->k, 1.0, columns, y, force);
-        for (size_t d = 0; (base || !(h->powers || b->follows)) && d < n; d++) { /* of coordinates omega2 is 0 */
-            for (size_t k = 0; k < columns; k++) {
-                force[d * columns + k] -= omega2[k] * inertia[k * n + d];
-            }
+        add_between(b->k, rows, rows, columns, y, force);
+        const size_t pulled = base || !(h->powers || b->follows) ? n * columns : 0; /* of coordinates omega2 is 0 */
+        for (size_t at = 0, k = 0; at < pulled; at++, k = k + 1 < columns ? k + 1 : 0) {
+            force[at] -= omega2[k] * inertia[at];
         }
         if (base && b->follows) {
             memset(b->push, 0, h->modes * sizeof *b->push);
             tribo_multiply_add(h->modes, n, 1, -1.0, h->phi, force, b->push);
         }
-        keep_reactions(h, columns, force, base || h->powers || b->follows, work, on);
+        keep_reactions(h, rows, columns, force, base || h->powers || b->follows, work, on);
     }
     if (by_u) {
         memset(force, 0, n * each);
-        tribo_matrix_add_columns(b->c, 1.0, columns, y, force);
-        keep_reactions(h, columns, force, 1, work, by_u);
+        add_between(b->c, rows, rows, columns, y, force);
+        keep_reactions(h, rows, columns, force, 1, work, by_u);
     }
 }
 
@@ -366,12 +421,13 @@ static int find_effects(struct modal_build *b)
     }
     h->by_u = lags ? h->on + all : NULL;
     const int apart = h->powers && (h->rests == 0 || h->springs);
-    double *reach = apart ? h->powers->reach = h->psi + m * h->n : h->on;
+    const size_t contacts[] = {0, b->sys->ncontact};
+    double *reach = apart ? h->powers->reach = h->psi + m * tribo_modal_wide(h->within) : h->on;
     if (!b->like) {
-        tribo_matrix_add_columns(&b->sys->direction, 1.0, m, b->shape, reach);
+        add_between(&b->sys->direction, contacts, h->within, m, b->shape, reach);
     }
     memmove(h->on, reach, apart ? all * sizeof *reach : 0);
-    tribo_modal_effects(b, m, b->shape, h->psi, h->omega2, NULL, h->on, h->by_u);
+    tribo_modal_effects(b, m, b->shape, b->inertia, h->omega2, NULL, h->on, h->by_u);
     return !b->scratch.failed;
 }
 
@@ -390,7 +446,6 @@ int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed cha
     int done = !b.h || tribo_follow_press(&b);
     if (!b.h && (b.h = tribo_modal_take(&store, 1, sizeof *b.h)) != NULL) {
         b.h->store = store;
-        b.h->n = sys->ndof;
         done = list_rest(&b) && tribo_follow_press(&b) && find_stiffness(&b) && find_modes(&b) && find_damping(&b) &&
                tribo_follow_couple(&b) && find_effects(&b);
         b.status = done && !powers ? tribo_modal_exponents(&b) : b.status;

@@ -202,7 +202,7 @@ void tribo_follow_forces(struct exact *x, const double *y, double *force)
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, x->way, acceleration);
     memset(force, 0, m * sizeof *force);
-    tribo_multiply_add(m, h->n, 1, 1.0, h->psi, acceleration, force);
+    tribo_multiply_add(m, sys->ndof, 1, 1.0, h->psi, acceleration, force);
     tribo_multiply_add(m, m, 1, 1.0, h->stiff, x->place, force);
     tribo_multiply_add(m, m, 1, 1.0, h->coupling, x->rate, force);
     tribo_multiply_add(m, m, 1, -1.0, h->coupling, f->constant, force);

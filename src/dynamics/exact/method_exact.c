@@ -15,7 +15,7 @@
 #include "common/layout.h"
 
 /* Number of phases without modes with the same contacts held: about as many take as long as a decomposition. */
-#define LASTING 8
+#define LASTING 6
 
 /* Bytes of structures above which all structures are dropped. */
 #define CACHE_BYTES ((size_t)512 << 20)

@@ -46,14 +46,14 @@ struct modal {
     struct modal *next;       /* of the caller's list */
     size_t run;               /* the caller's: of coordinates, the run in which modes took their place */
     struct forced *forced;    /* the structure under the loads; NULL: not created since the loads changed */
-    size_t n;                 /* degrees of freedom */
+    size_t within[2];         /* first and end of n degrees of freedom: all that modes, or M, K or C times modes, move */
     signed char *key;         /* [contacts] KEY_ */
     size_t rests, springs;    /* numbers of rigid contacts, and of others, that hold */
     size_t *rest;             /* [rests + springs] these, the rigid ones first */
     struct constraints ties;  /* constraints between degrees of freedom by the rigid contacts that hold */
 
     size_t modes;
-    double *phi; /* [modes][n] mode shapes */
+    double *phi; /* [modes][n] mode shapes, of the degrees of freedom within */
     double *psi; /* [modes][n] M times the mode shapes */
     double *omega2, *damping;
     struct modal_powers *powers; /* NULL: Phi are modes; else there are no exponents, and omega2 and damping are 0 */
@@ -93,6 +93,7 @@ struct forced {
     struct modal_store store;
     size_t shapes;
     int steady;
+    size_t within[2];        /* first and end of the degrees of freedom of phi */
     double *phi, *on, *by_u; /* of the modal, with further rows, or columns, [shapes] */
     double *speed;           /* [shapes] eta' of a shape for bases of constant speed, 1; else 0 */
     size_t *span;            /* [shapes][2] first and end of the degrees of freedom that a shape moves, or that move a mode */
@@ -123,6 +124,12 @@ static inline double tribo_modal_magnitude(double re, double im)
 {
     const double square = re * re + im * im;
     return square > 1e-280 && square < 1e300 ? sqrt(square) : hypot(re, im);
+}
+
+/* Returns the number of degrees of freedom within. */
+static inline size_t tribo_modal_wide(const size_t *within)
+{
+    return within[1] - within[0];
 }
 
 /* Returns 1 if mode k has omega = 0 and no damping. */

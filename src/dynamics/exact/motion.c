@@ -217,10 +217,12 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
     }
     memset(to + n, 0, brief ? 0 : n * sizeof *to);
     for (size_t k = 0; k < h->shapes; k++) {
-        const double *phi = h->phi + k * n, place = x->place[k], rate = x->rate[k];
-        for (size_t d = h->span[2 * k]; d < h->span[2 * k + 1]; d++) {
-            to[d] += phi[d] * place;
-            to[n + d] += phi[d] * rate;
+        const size_t begin = h->span[2 * k], moved = h->span[2 * k + 1] - begin;
+        const double *phi = h->phi + k * tribo_modal_wide(h->within) + (begin - h->within[0]);
+        const double place = x->place[k], rate = x->rate[k];
+        for (size_t d = 0; d < moved; d++) {
+            to[begin + d] += phi[d] * place;
+            to[n + begin + d] += phi[d] * rate;
         }
     }
     for (size_t k = 0; k < sys->compliance.count; k++) {
@@ -349,7 +351,7 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
 {
     const struct forced *h = x->h;
     const struct modal *own = h->modal;
-    const size_t n = own->n;
+    const size_t n = x->sys->ndof;
     if (!motion_reserve(x) || (x->sys->loads.limits && !tribo_signal_reserve(&x->velocity, own->exponents + h->harmonics, 1))) {
         return 0;
     }
@@ -357,8 +359,9 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
     start_harmonics(x);
     for (size_t k = 0; k < own->modes; k++) {
         const size_t begin = h->span[2 * k], moved = h->span[2 * k + 1] - begin;
-        x->place[k] = tribo_dot(own->psi + k * n + begin, y + begin, moved);
-        x->rate[k] = tribo_dot(own->psi + k * n + begin, y + n + begin, moved);
+        const double *psi = own->psi + k * tribo_modal_wide(own->within) + (begin - own->within[0]);
+        x->place[k] = tribo_dot(psi, y + begin, moved);
+        x->rate[k] = tribo_dot(psi, y + n + begin, moved);
     }
     find_constant_forces(x, y, x->work);
     if (own->powers) {

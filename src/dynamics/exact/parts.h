@@ -18,21 +18,22 @@ struct modal_build {
     struct matrix own_stiffness;     /* memory of stiffness if A is not empty */
     struct matrix pressed_stiffness; /* memory of k if a normal is pressed */
     int follows;                     /* 1: a contact slides at a limit that follows the motion */
-    double *push;  /* [modes] force on the modes by the shape that tribo_modal_effects was called with last; if follows */
-    double *shape; /* [n][modes] Phi' */
-    double complex *direct; /* [harmonics][rests] forces of the rigid contacts that hold, by loads and limits at fixed eta */
-    int status;             /* of a failure other than out of memory; else 0 */
+    double *push; /* [modes] force on the modes by the shape that tribo_modal_effects was called with last; if follows */
+    double *shape, *inertia; /* [n][modes] Phi' and M Phi', of the degrees of freedom within */
+    double *full;            /* [modes][ndof] modes */
+    double complex *direct;  /* [harmonics][rests] forces of the rigid contacts that hold, by loads and limits at fixed eta */
+    int status;              /* of a failure other than out of memory; else 0 */
 };
 
 /* Sets the exponents of eta, and a, b, r, owner. Returns a status. */
 int tribo_modal_exponents(struct modal_build *b);
 
-/* work [modes][columns] = -Phi'force, force [n][columns] += M Phi work; then f [rests][columns]: J_I'f = force, I: the rigid
- * contacts that hold. */
-void tribo_modal_react(const struct modal *h, size_t columns, double *force, double *f, double *work);
+/* work [modes][columns] = -Phi'force, force [][columns] += M Phi work; then f [rests][columns]: J_I'f = force, I: the rigid
+ * contacts that hold. rows: first and end of the degrees of freedom of force. */
+void tribo_modal_react(const struct modal *h, const size_t *rows, size_t columns, double *force, double *f, double *work);
 
-/* Sets on, in J y, and by_u or NULL, [ncontact][columns] by displacements y [n][columns], with J_I y = b_I, and inertia = y'M
- * [columns][n]:
+/* Sets on, in J y, and by_u or NULL, [ncontact][columns] by displacements y [n][columns], with J_I y = b_I, and inertia = M y,
+ * of modes within, else of all degrees of freedom:
  * contacts that hold: force per eta, J_I'f = K y - inertia omega2 - J_A'f_A (A: compliant ones, f_A' = -G_AA^-1 (J_A y - b_A), and
  * those that slide at limits that follow), and per eta', J_I'f = C y; normals: N per eta; other contacts: velocity per eta'. base [ncontact] = b, of one column, by which only the rest of the
  * forces beside the modes counts; NULL: y are the modes, 0. Sets b->scratch.failed = 1 if out of memory. */

@@ -26,7 +26,7 @@ static int make_shapes(struct modal_build *b)
     struct forced *f = b->forced;
     const struct modal *h = b->h;
     const tribo_system *sys = b->sys;
-    const size_t n = h->n, m = h->modes, c = sys->ncontact;
+    const size_t n = tribo_modal_wide(h->within), m = h->modes, c = sys->ncontact;
     f->shapes = m;
     for (size_t s = 0; s < sys->loads.harmonics; s++) {
         const struct harmonic *w = &sys->loads.harmonic[s];
@@ -35,13 +35,15 @@ static int make_shapes(struct modal_build *b)
     f->speed = tribo_modal_take(&f->store, f->shapes, sizeof *f->speed);
     f->span = tribo_modal_take(&f->store, 2 * f->shapes, sizeof *f->span);
     f->x = tribo_modal_take(&f->store, f->harmonics * f->shapes, sizeof *f->x);
+    f->within[0] = f->shapes > m ? 0 : h->within[0];
+    f->within[1] = f->shapes > m ? sys->ndof : h->within[1];
     double *const own[] = {h->phi, h->on, h->by_u}, **const to[] = {&f->phi, &f->on, &f->by_u};
     for (size_t k = 0; k < 3; k++) {
-        const size_t rows = k ? c : 1, each = k ? m : m * n, wide = k ? f->shapes : f->shapes * n;
+        const size_t rows = k ? c : f->shapes, wide = k ? f->shapes : tribo_modal_wide(f->within), each = k ? m : n;
         const int grows = f->shapes > m && own[k];
         *to[k] = grows ? tribo_modal_take(&f->store, rows * wide, sizeof **to[k]) : own[k];
-        for (size_t i = 0; grows && *to[k] && i < rows; i++) {
-            memcpy(*to[k] + i * wide, own[k] + i * each, each * sizeof **to[k]);
+        for (size_t i = 0; grows && *to[k] && i < (k ? c : m); i++) {
+            memcpy(*to[k] + i * wide + (k ? 0 : h->within[0]), own[k] + i * each, each * sizeof **to[k]);
         }
     }
     return !f->store.failed;
@@ -54,7 +56,7 @@ static void follow_base(struct modal_build *b, size_t k, double omega, const dou
 {
     struct forced *f = b->forced;
     const struct modal *h = b->h;
-    const size_t n = h->n, m = h->modes, c = b->sys->ncontact;
+    const size_t n = b->sys->ndof, m = h->modes, c = b->sys->ncontact, wide = tribo_modal_wide(h->within);
     const double omega2 = omega * omega;
     double *drag = tribo_modal_take(&b->scratch, n + 3 * c + m, sizeof *drag), *x = drag + n, *on = x + c, *by_u = on + c;
     double *y = f->phi + k * n;
@@ -68,9 +70,9 @@ static void follow_base(struct modal_build *b, size_t k, double omega, const dou
     tribo_constraints_follow(&h->ties, x, y);
     memset(place, 0, m * sizeof *place);
     memset(rate, 0, m * sizeof *rate);
-    tribo_multiply_add(m, n, 1, 1.0, h->psi, y, place);
+    tribo_multiply_add(m, wide, 1, 1.0, h->psi, y + h->within[0], place);
     for (size_t l = 0; l < m; l++) {
-        tribo_add(y, -place[l], h->phi + l * n, n);
+        tribo_add(y + h->within[0], -place[l], h->phi + l * wide, wide);
         place[l] = 0.0;
     }
     tribo_matrix_multiply(&b->sys->mass, y, drag);
@@ -87,7 +89,7 @@ static void follow_base(struct modal_build *b, size_t k, double omega, const dou
     if (b->c) {
         memset(drag, 0, n * sizeof *drag);
         tribo_matrix_multiply_add(b->c, -1.0, y, drag);
-        tribo_multiply_add(m, n, 1, 1.0, h->phi, drag, rate);
+        tribo_multiply_add(m, wide, 1, 1.0, h->phi, drag + h->within[0], rate);
     }
 }
 
@@ -129,8 +131,9 @@ static int follow_bases(struct modal_build *b)
         }
         k++;
     }
-    for (size_t k = 0, n = h->n; k < f->shapes; k++) {
-        const double *phi = f->phi + k * n, *psi = k < m ? h->psi + k * n : phi;
+    for (size_t k = 0; k < f->shapes; k++) {
+        const size_t *within = k < m ? h->within : f->within, n = tribo_modal_wide(within);
+        const double *phi = (k < m ? h->phi : f->phi) + k * n, *psi = k < m ? h->psi + k * n : phi;
         size_t begin = 0, end = n;
         while (begin < end && phi[begin] == 0.0 && psi[begin] == 0.0) {
             begin++;
@@ -138,8 +141,8 @@ static int follow_bases(struct modal_build *b)
         while (begin < end && phi[end - 1] == 0.0 && psi[end - 1] == 0.0) {
             end--;
         }
-        f->span[2 * k] = begin;
-        f->span[2 * k + 1] = end;
+        f->span[2 * k] = within[0] + begin;
+        f->span[2 * k + 1] = within[0] + end;
     }
     return !b->scratch.failed;
 }
@@ -154,7 +157,7 @@ static void force_modes(struct modal_build *b, size_t s, double *work)
     const struct modal *h = b->h;
     const tribo_system *sys = b->sys;
     const struct matrix *j = &sys->direction;
-    const size_t n = h->n, m = h->modes, i = f->forcing[s].contact;
+    const size_t n = sys->ndof, all[] = {0, n}, m = h->modes, i = f->forcing[s].contact;
     const struct harmonic *w = &sys->loads.harmonic[f->forcing[s].harmonic];
     double *load = work, *force = load + n, *by = force + n, *react = by + m;
     for (int part = 0; part < 2; part++) {
@@ -172,7 +175,7 @@ static void force_modes(struct modal_build *b, size_t s, double *work)
         if (tribo_largest(force, n) == 0.0) {
             continue;
         }
-        tribo_modal_react(h, 1, force, react, by);
+        tribo_modal_react(h, all, 1, force, react, by);
         for (size_t k = 0; k < m; k++) {
             f->g[s * m + k] += unit * by[k];
         }
@@ -265,7 +268,7 @@ int tribo_forced_respond(struct modal_build *b)
     f->ramp = tribo_modal_take(&f->store, 2 * m, sizeof *f->ramp);
     f->constant = f->ramp ? f->ramp + m : NULL;
     b->direct = tribo_modal_take(&b->scratch, f->harmonics * h->rests, sizeof *b->direct);
-    double *work = tribo_modal_take(&b->scratch, 2 * h->n + m + h->rests, sizeof *work);
+    double *work = tribo_modal_take(&b->scratch, 2 * sys->ndof + m + h->rests, sizeof *work);
     if (f->store.failed || b->scratch.failed || !follow_bases(b)) {
         return 0;
     }

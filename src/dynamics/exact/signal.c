@@ -83,8 +83,8 @@ int tribo_modal_motion_signal(void *own, const double *c, double tau, const doub
                            "method exact: a load is in resonance with an undamped mode; method event can do it");
     }
     /* place, speed: derivatives of c'[q, q', f] by eta and eta'; rate: of the part by f', by eta' */
-    tribo_multiply_add(m, n, 1, 1.0, h->phi, c, place);
-    tribo_multiply_add(m, n, 1, 1.0, h->phi, c + n, speed);
+    tribo_multiply_add(m, tribo_modal_wide(h->within), 1, 1.0, h->phi, c + h->within[0], place);
+    tribo_multiply_add(m, tribo_modal_wide(h->within), 1, 1.0, h->phi, c + n + h->within[0], speed);
     for (size_t k = 0; k < g->count; k++) {
         const size_t i = g->contact[k];
         const struct follower *follower = tribo_normals_follower(x->sys, i);

@@ -56,12 +56,12 @@ static double complex meet(double complex lambda, double complex mu, double tau)
 static void add_damping(struct response *r, const double *rate, double *to)
 {
     const struct forced *h = r->x->h;
-    const size_t n = h->modal->n;
+    const size_t *to_q = h->within, *of_u = h->modal->within;
     if (r->x->sys->damping.rows) {
-        memset(r->q, 0, n * sizeof *r->q);
-        tribo_multiply_transposed_add(h->shapes, n, 1, h->phi, rate, r->q);
+        memset(r->q, 0, r->x->sys->ndof * sizeof *r->q);
+        tribo_multiply_transposed_add(h->shapes, tribo_modal_wide(to_q), 1, h->phi, rate, r->q + to_q[0]);
         tribo_matrix_multiply(&r->x->sys->damping, r->q, r->u);
-        tribo_multiply_add(h->modal->modes, n, 1, 1.0, h->modal->psi, r->u, to);
+        tribo_multiply_add(h->modal->modes, tribo_modal_wide(of_u), 1, 1.0, h->modal->psi, r->u + of_u[0], to);
     }
 }
 
@@ -220,9 +220,10 @@ int tribo_modal_source(const struct exact *x, double tau, size_t columns, const 
     }
     struct response r = {.x = x, .tau = tau};
     if (!ALLOCATE(ARRAY(r.steady, SOURCES * m), ARRAY(r.ramp, SOURCES * m), ARRAY(r.eta, SOURCES * m), ARRAY(r.rate, SOURCES * m),
-                  ARRAY(r.re, loads), ARRAY(r.im, loads), ARRAY(r.zr, h->exponents), ARRAY(r.zi, h->exponents), ARRAY(r.q, h->n),
-                  ARRAY(r.u, h->n), ARRAY(r.unit, f->shapes), ARRAY(r.power, TRIBO_POWERS * powers), ARRAY(r.e, powers),
-                  ARRAY(r.e_rate, powers), ARRAY(r.out, 4 * powers + SOURCES))) {
+                  ARRAY(r.re, loads), ARRAY(r.im, loads), ARRAY(r.zr, h->exponents), ARRAY(r.zi, h->exponents),
+                  ARRAY(r.q, x->sys->ndof), ARRAY(r.u, x->sys->ndof), ARRAY(r.unit, f->shapes),
+                  ARRAY(r.power, TRIBO_POWERS * powers), ARRAY(r.e, powers), ARRAY(r.e_rate, powers),
+                  ARRAY(r.out, 4 * powers + SOURCES))) {
         return tribo_error(x->sys->message, TRIBO_ERR_MEMORY, "out of memory for derivatives of %zu mode%s", m, plural(m));
     }
     if (h->powers) {

@@ -61,16 +61,17 @@ int tribo_modal_transition(void *own, const void *phase, double tau, size_t colu
     const struct exact *x = own;
     const struct modal *h = phase ? phase : x->h->modal;
     tribo_system *sys = x->sys;
-    const size_t n = h->n, m = h->modes, c = columns, block = n * c;
+    const size_t n = sys->ndof, m = h->modes, c = columns, block = n * c, wide = tribo_modal_wide(h->within);
     const size_t ways = 2 * sys->ncontact * c;
+    double *moved = v + h->within[0] * c;
     double *eta = malloc((13 * block + 2 * ways + 4 * n + 1) * sizeof *eta), *rate = eta + block;
     double *pull = rate + block, *way = pull + block, *force = way + ways / 2, *work = way + ways;
     if (!eta) {
         return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     }
     memset(eta, 0, (3 * block + ways) * sizeof *eta);
-    tribo_multiply_add(m, n, c, 1.0, h->psi, v, eta);
-    tribo_multiply_add(m, n, c, 1.0, h->psi, v + block, rate);
+    tribo_multiply_add(m, wide, c, 1.0, h->psi, moved, eta);
+    tribo_multiply_add(m, wide, c, 1.0, h->psi, moved + block, rate);
     if (h->stiff) {
         for (size_t k = 0; k < sys->compliance.count; k++) {
             memcpy(way + sys->compliance.contact[k] * c, v + (2 * n + k) * c, c * sizeof *v);
@@ -91,8 +92,8 @@ int tribo_modal_transition(void *own, const void *phase, double tau, size_t colu
     }
     const int status = source && source->inertia ? tribo_modal_source(x, tau, c, source, eta, rate) : TRIBO_OK;
     memset(v + block, 0, block * sizeof *v);
-    tribo_multiply_transposed_add(m, n, c, h->phi, eta, v);
-    tribo_multiply_transposed_add(m, n, c, h->phi, rate, v + block);
+    tribo_multiply_transposed_add(m, wide, c, h->phi, eta, moved);
+    tribo_multiply_transposed_add(m, wide, c, h->phi, rate, moved + block);
     for (size_t k = 0; k < sys->compliance.count; k++) {
         const size_t i = sys->compliance.contact[k];
         const struct follower *f = tribo_normals_follower(sys, i);

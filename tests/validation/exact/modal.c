@@ -61,8 +61,10 @@ TEST(both_hold)
     ck_assert_uint_eq(f->outputs, 2);
     ck_assert_uint_eq(f->sliding, 0);
     assert_close(h->omega2[0], 16.0, 1e-14);
-    ck_assert_int_eq(h->phi[0] == 0.0 && h->phi[1] == 0.0, 1);
-    assert_close(fabs(h->phi[2]), 2.0, 1e-14);
+    ck_assert_uint_eq(h->within[0], 1); /* K phi moves body 1 */
+    ck_assert_uint_eq(h->within[1], 3);
+    ck_assert_int_eq(h->phi[0] == 0.0, 1);
+    assert_close(fabs(h->phi[1]), 2.0, 1e-14);
     for (size_t k = 0; k < 2; k++) {
         const struct output *out = &f->output[k];
         assert_close(out->size[0], 8.0, 1e-13);
@@ -508,5 +510,69 @@ TEST(exponential_from_one)
     }
 }
 
+/* A row of bodies, each with a contact to the ground; those of one end, which the loads and bases move, slide now and then. Body d
+ * is row d of the matrices, or, mirrored, the last row but d. Sets y, what oscillates as body 1, and the sum of the multipliers. */
+static void move_row(size_t n, int damped, int bases, int mirrored, double *y, double *harmonic, double *trace)
+{
+    enum { MOST = 44 };
+    static double mass[MOST * MOST], damping[MOST * MOST], stiffness[MOST * MOST], direction[MOST * MOST];
+    double load[MOST] = {0.0}, base[MOST] = {0.0}, limit[MOST], c[2 * MOST] = {0.0}, re[2 * MOST], im[2 * MOST];
+    tribo_system *sys;
+    tribo_driver *drv;
+    for (size_t k = 0; k < n * n; k++) {
+        mass[k] = damping[k] = stiffness[k] = direction[k] = 0.0;
+    }
+    for (size_t d = 0; d < n; d++) {
+        const size_t i = mirrored ? n - 1 - d : d, beside = mirrored ? i - 1 : i + 1;
+        mass[i * (n + 1)] = 1.0 + 0.01 * (double)d;
+        stiffness[i * (n + 1)] = 2.5;
+        damping[i * (n + 1)] = 0.1 + 0.01 * (double)d;
+        direction[d * n + i] = 1.0;
+        limit[d] = d < 3 ? 0.3 + 0.1 * (double)d : 1e3;
+        base[d] = d > 2 ? 0.02 * (double)d : 0.0;
+        if (d + 1 < n) {
+            stiffness[i * n + beside] = stiffness[beside * n + i] = -1.0;
+            mass[i * n + beside] = mass[beside * n + i] = 0.1;
+        }
+    }
+    load[mirrored ? n - 1 : 0] = 1.5;
+    c[mirrored ? n - 2 : 1] = 1.0;
+    c[n + (mirrored ? n - 2 : 1)] = 0.5;
+    assert_ok(dense_system(&sys, n, n, mass, damped ? damping : NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
+    assert_ok(tribo_system_add_load(sys, 0.7, load, NULL));
+    if (bases) {
+        assert_ok(tribo_system_add_base_motion(sys, 0.7, NULL, base));
+    }
+    assert_ok(set_up_driver(&drv, sys, "exact", 0.01, 0.0, 0.0));
+    require(tribo_driver_find_periodic(drv, 0.0, 2.0 * PI / 0.7, y) == TRIBO_OK, "%s", tribo_driver_message(drv));
+    assert_ok(tribo_driver_get_multipliers(drv, re, im));
+    assert_ok(tribo_driver_period_harmonic(drv, c, 1, &harmonic[0], &harmonic[1]));
+    *trace = 0.0;
+    for (size_t k = 0; k < 2 * n; k++) {
+        *trace += re[k];
+    }
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+/* Which bodies move does not depend on which rows these are. */
+TEST(mirrored)
+{
+    const size_t n = _i & 4 ? 44 : 8;
+    double y[2][2 * 44 + 1] = {{0.0}}, harmonic[2][2], trace[2];
+    for (int k = 0; k < 2; k++) {
+        move_row(n, _i & 1, _i & 2, k, y[k], harmonic[k], &trace[k]);
+    }
+    for (size_t d = 0; d < n; d++) {
+        assert_close(y[1][n - 1 - d], y[0][d], 1e-10);
+        assert_close(y[1][2 * n - 1 - d], y[0][n + d], 1e-10);
+    }
+    assert_close(harmonic[1][0], harmonic[0][0], 1e-10);
+    assert_close(harmonic[1][1], harmonic[0][1], 1e-10);
+    assert_close(trace[1], trace[0], 1e-9);
+}
+
 TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1}, {kept, 10}, {powers, 9}, {springs, 6},
-          {one_sided, 1}, {damper_alone, 1}, {free_motions, 1}, {moved_alike, 1}, {coupled, 10}, {exponential_from_one, 5})
+          {one_sided, 1}, {damper_alone, 1}, {free_motions, 1}, {moved_alike, 1}, {coupled, 10}, {exponential_from_one, 5},
+          {mirrored, 8})

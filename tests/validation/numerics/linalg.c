@@ -56,9 +56,12 @@ TEST(light_between)
     }
     struct constraints c = constrain(2, 2, j, mass, NULL);
     /* the heavy one is pushed by the second contact alone, the light one by both */
-    tribo_constraints_react(&c, 1, force, f);
+    tribo_constraints_react(&c, (const size_t[]){0, 2}, 1, force, f);
     assert_exact(f[1], 5.0);
     assert_exact(f[0], 8.0);
+    tribo_constraints_react(&c, (const size_t[]){1, 2}, 1, force + 1, f);
+    assert_exact(f[1], 5.0);
+    assert_exact(f[0], 5.0);
     tribo_constraints_follow(&c, b, q);
     assert_exact(q[0], 7.0);
     assert_exact(q[1], 7.25);
@@ -205,7 +208,7 @@ TEST(forces_and_displacements)
     struct matrix z;
     require(tribo_constraints_basis(&c, COLS, &z), "out of memory");
     ck_assert_uint_eq(c.rank, ROWS);
-    tribo_constraints_react(&c, 1, force, f);
+    tribo_constraints_react(&c, (const size_t[]){0, COLS}, 1, force, f);
     assert_all_close(f, want, ROWS, 1e-12);
     tribo_constraints_follow(&c, want, q);
     for (size_t i = 0; i < ROWS; i++) {
