@@ -6,6 +6,16 @@
 
 enum { DEFAULT_MODES = 12 /* kept by default */ };
 
+struct outputs {
+    struct place *place; /* [count] */
+    size_t count, room;
+};
+
+struct texts {
+    char **text; /* [count] */
+    size_t count, room;
+};
+
 struct options {
     const char *mass, *stiffness, *dofs;
     const char *damping_matrix; /* NULL: ratios */
@@ -17,10 +27,7 @@ struct options {
     struct list damping;        /* ratios of mode 1, 2, ...; the last one is that of all others */
     struct contacts contacts;
     struct loads loads;
-    struct outputs {
-        struct place *place; /* [count] */
-        size_t count, room;
-    } outputs;
+    struct outputs outputs;
     size_t harmonics;    /* of each output */
     struct list field;   /* phases of displacement fields, degrees */
     double force;        /* of loads without one */
@@ -31,11 +38,8 @@ struct options {
     size_t check;        /* points to be found by marching as well */
     double step;
     int law;
-    size_t threads; /* 0: one a core */
-    struct texts {
-        char **text; /* [count] */
-        size_t count, room;
-    } texts; /* what options point to */
+    size_t threads;     /* 0: one a core */
+    struct texts texts; /* what options point to */
 };
 
 /* Reads the command line; prints help or version, or ends the program with a message, where that is due. */

@@ -5,7 +5,7 @@
 
 enum { PARAMETERS = 5 };
 
-static int check_parameters(size_t n, const double *parameter)
+static int check_bouc_wen(size_t n, const double *parameter)
 {
     static const int range[PARAMETERS] = {NONNEGATIVE, POSITIVE, NONNEGATIVE, FINITE, POSITIVE};
     int status = tribo_check_elements(parameter, n, PARAMETERS, range);
@@ -72,7 +72,7 @@ int tribo_bouc_wen_force(size_t n, const double *dz, const double *parameter, do
 {
     int status = element_check_size(n);
     status = status ? status : tribo_check_element(dz, n, FINITE);
-    status = status ? status : check_parameters(n, parameter);
+    status = status ? status : check_bouc_wen(n, parameter);
     status = status ? status : tribo_check_finite(NULL, "z", z, n);
     status = status ? status : n && !f ? TRIBO_ERR_NULL : TRIBO_OK;
     for (size_t i = 0; !status && i < n; i++) {

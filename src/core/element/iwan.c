@@ -24,7 +24,7 @@ static double curve(const struct iwan *p, double u, double *slope)
     return p->kt * u * (1.0 - part);
 }
 
-static int check_parameters(size_t n, const double *parameter)
+static int check_iwan(size_t n, const double *parameter)
 {
     static const int range[PARAMETERS] = {POSITIVE, NONNEGATIVE, FINITE, NONNEGATIVE};
     int status = tribo_check_elements(parameter, n, PARAMETERS, range);
@@ -66,7 +66,7 @@ static double branch(const struct iwan *p, const double *turn, size_t count, dou
 }
 
 /* Moves a state by dx; returns the force of the sliders, of the sign of x; *slope: its derivative. */
-static double move(const struct iwan *p, double dx, double *state, double *slope)
+static double move_sliders(const struct iwan *p, double dx, double *state, double *slope)
 {
     double *turn = state + HEAD, x = state[0];
     size_t count = (size_t)state[1];
@@ -98,7 +98,7 @@ int tribo_iwan_force(size_t n, size_t room, const double *dz, const double *para
 {
     int status = room > MOST_ROOM || n >= SIZE_MAX / (16 * (HEAD + 2 * MOST_ROOM)) ? TRIBO_ERR_SIZE : TRIBO_OK;
     status = status ? status : tribo_check_element(dz, n, FINITE);
-    status = status ? status : check_parameters(n, parameter);
+    status = status ? status : check_iwan(n, parameter);
     status = status ? status : tribo_check_finite(NULL, "state", state, n * (HEAD + 2 * room));
     status = status ? status : n && !f ? TRIBO_ERR_NULL : check_state(n, room, dz, state);
     for (size_t i = 0; !status && i < n; i++) {
@@ -106,7 +106,7 @@ int tribo_iwan_force(size_t n, size_t room, const double *dz, const double *para
         const double most = fs * (1.0 + beta) / (kt * (beta + (chi + 1.0) / (chi + 2.0)));
         const struct iwan p = {kt, chi, (chi + 2.0) * (1.0 + beta), fs, most};
         double slope;
-        f[i] = -move(&p, dz[i], state + i * (HEAD + 2 * room), &slope);
+        f[i] = -move_sliders(&p, dz[i], state + i * (HEAD + 2 * room), &slope);
         if (df_dz) {
             df_dz[i] = -slope;
         }

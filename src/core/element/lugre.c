@@ -17,7 +17,7 @@ static double fallen(double x)
 }
 
 /* Moves *z by a step dt at velocity v != 0, and returns f; *df_dv: its derivative. */
-static double slide(const struct lugre *p, double dt, double v, double *z, double *df_dv)
+static double deflect(const struct lugre *p, double dt, double v, double *z, double *df_dv)
 {
     const double sign = v > 0.0 ? 1.0 : -1.0, r = lesser(fabs(v) / p->vs, 30.0), fall = fallen(r * r);
     const double g = greater(p->fs - (p->fs - p->fc) * fall, ELEMENT_LEAST);
@@ -50,7 +50,7 @@ int tribo_lugre_force(size_t n, double dt, const double *dz, const double *param
         } else {
             const double most = greater(p.fc, p.fs) / p.s0;
             z[i] = clamp(z[i], -most, most);
-            f[i] = v == 0.0 ? -p.s0 * z[i] : slide(&p, dt, v, z + i, &df_dv);
+            f[i] = v == 0.0 ? -p.s0 * z[i] : deflect(&p, dt, v, z + i, &df_dv);
         }
         if (df_dz) {
             df_dz[i] = df_dv / dt;
