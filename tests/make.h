@@ -5,8 +5,8 @@
 
 #include "tribo/tribo_gsl.h"
 
-/* The system of a model with dense matrices (damping may be NULL), nmode > 0: reduced to as many modes. message [size] or NULL: the
- * model's message if a call fails. Returns the status of the call that failed first. */
+/* The system of a model with dense matrices (damping may be NULL), nmode > 0: reduced to as many modes. message [size] or NULL:
+ * the model's message if a call fails. Returns the status of the call that failed first. */
 int dense_system(tribo_system **sys, size_t ndof, size_t ncontact, const double *mass, const double *damping,
                  const double *stiffness, const double *direction, size_t nmode, char *message, size_t size);
 

@@ -10,8 +10,8 @@
 #include "../../src/damper/output.h"
 #include "tribo/tribo_dynamics.h"
 
-/* Blade: mass 1, stiffness and damping in x (along the platforms) and y (across); load amplitudes in phase. Contacts: stiffness in x
- * and y, coefficient of friction. */
+/* Blade: mass 1, stiffness and damping in x (along the platforms) and y (across); load amplitudes in phase. Contacts: stiffness
+ * in x and y, coefficient of friction. */
 static const double stiffness[2] = {12.0, 21.0}, damping[2] = {0.1, 0.1}, force[2] = {3.0, 6.0}, tangential = 5.0, normal = 10.0,
                     mu = 0.5;
 static const double pi = 3.14159265358979323846;
@@ -61,7 +61,8 @@ static int see(const tribo_moment *moment, void *data)
     return 0;
 }
 
-/* One steady motion from the guess y: amplitudes along x and y, energy of a period, share of the period in which a contact is open. */
+/* One steady motion from the guess y: amplitudes along x and y, energy of a period, share of the period in which a contact is
+ * open. */
 static int find_motion(double preload, double omega, double *y, double *amplitude, double *energy, double *share)
 {
     const double period = 2.0 * pi / omega;

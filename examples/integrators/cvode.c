@@ -3,7 +3,8 @@
  *
  *     integrator_cvode
  *
- * Prints the error of the energy that friction takes in ten cycles and what the run took, for settings that are right and wrong. */
+ * Prints the error of the energy that friction takes in ten cycles and what the run took, for settings that are right and wrong.
+ * */
 #include <cvode/cvode.h>
 #include <math.h>
 #include <nvector/nvector_serial.h>

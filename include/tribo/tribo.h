@@ -19,7 +19,8 @@
  *
  * Arrays hold one double per contact, contiguous, unless stated otherwise; contacts are counted from 0. Outputs are the last
  * arguments, except a handle to create, which is the first. Outputs must not overlap inputs. On error outputs are unchanged,
- * except on TRIBO_ERR_INCONSISTENT, and where tribo_set_user_law says so. For an output marked "or NULL", NULL skips the computation.
+ * except on TRIBO_ERR_INCONSISTENT, and where tribo_set_user_law says so. For an output marked "or NULL", NULL skips the
+ * computation.
  *
  * Status. Every call that can fail returns TRIBO_OK (0) or one of TRIBO_ERR_...; tribo_message names the argument, the contact
  * and the value. No call prints, exits, aborts or keeps global state.
@@ -166,13 +167,13 @@ TRIBO_API int tribo_contact_force(size_t n, const double *dz, const double *dept
                                   const double *mu, double *f, double *df);
 
 /* Friction laws with a state of their own, as elements without a context. Each is integrated in closed form over a step in which
- * the velocity is constant: n steps of dz/n give what one step of dz gives. The bodies get J' f. Numbers other than 0 must lie between
- * 1e-30 and 1e30 in size. Thread-safe.
+ * the velocity is constant: n steps of dz/n give what one step of dz gives. The bodies get J' f. Numbers other than 0 must lie
+ * between 1e-30 and 1e30 in size. Thread-safe.
  * dz      [n] in      relative displacement since the last call, z = J x
  * f       [n] out     friction force (of Dahl's law in/out: the force is the state)
  * df_dz   [n] out, or NULL   derivative of f by dz; at dz = 0 the mean of both sides
- * All return TRIBO_ERR_NULL, TRIBO_ERR_SIZE (n), TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_RANGE;
- * on error outputs are unchanged. */
+ * All return TRIBO_ERR_NULL, TRIBO_ERR_SIZE (n), TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_NOT_POSITIVE,
+ * TRIBO_ERR_RANGE; on error outputs are unchanged. */
 
 /* Dahl (1968): df/dz = -stiffness (1 + f sgn(dz)/limit). stiffness, limit [n] in, >= 0. */
 TRIBO_API int tribo_dahl_force(size_t n, const double *dz, const double *stiffness, const double *limit, double *f,
@@ -191,9 +192,10 @@ TRIBO_API int tribo_lugre_force(size_t n, double dt, const double *dz, const dou
  * z          [n] in/out  state, at most (a/(beta + gamma))^(1/m) in size; 0 at the start */
 TRIBO_API int tribo_bouc_wen_force(size_t n, const double *dz, const double *parameter, double *z, double *f, double *df_dz);
 
-/* Iwan's parallel sliders in the four-parameter form of Segalman (J. Appl. Mech. 72 (2005) 752, doi:10.1115/1.1989354), with Masing's
- * rule for all turns of the motion.
- * room       in   turns that a state can hold: turns of loops that have not closed, two in a steady motion, one for each half cycle
+/* Iwan's parallel sliders in the four-parameter form of Segalman (J. Appl. Mech. 72 (2005) 752, doi:10.1115/1.1989354), with
+ * Masing's rule for all turns of the motion.
+ * room       in   turns that a state can hold: turns of loops that have not closed, two in a steady motion, one for each half
+ * cycle
  *                 in which a motion dies away; at most 1e6
  * parameter  [n][4] in   kt > 0 tangential stiffness, fs >= 0 limit, chi > -1, beta >= 0
  * state      [n][3 + 2 room] in/out   displacement from the middle, number of turns, direction, turns; 0 at the start

@@ -3,7 +3,8 @@
  *
  * A system is M q'' + C q' + K q = p(t) + J' f,  v = J q' - b(t),  with p and b sums of harmonics and tables; f are the friction
  * forces of its contacts, by the settings of tribo_system_context, and v their relative velocities. Its state is
- *     y = q [ndof], q' [ndof], displacements of the sliders of contacts with compliance, energy dissipated by friction since t = 0.
+ *     y = q [ndof], q' [ndof], displacements of the sliders of contacts with compliance, energy dissipated by friction since t =
+ *     0.
  *
  * Conventions, units and threads as in tribo.h; a system and its drivers are used by one thread at a time.
  * All functions: since 1.0, unless stated otherwise.
@@ -65,7 +66,7 @@ TRIBO_API int tribo_model_set_compliance(tribo_model *model, const double *c);
  *     N = stiffness max(0, J_n q - gap),   the bodies get -J_n' N.
  * contact    in   the contact; of a planar one (tribo_set_planar) its first direction
  * normal     in   another row of J, the normal direction, positive where the bodies press on each other. Its row in forces of
- *                 contacts is -N; it has no friction, and no compliance. Contacts may share a normal, with equal stiffness and gap
+ *                 contacts is -N, without friction and compliance. Contacts that share a normal have equal stiffness and gap
  * mu         in   >= 0   coefficient of friction
  * stiffness  in   >= 0, force/displacement   normal stiffness of the contact
  * gap        in   displacement; < 0: a preload
@@ -103,9 +104,9 @@ TRIBO_API int tribo_system_create(tribo_system **sys, tribo_model *model);
 /* How a reduced system represents the static displacements by contact forces that its modes do not contain. */
 enum { TRIBO_STATICS_NONE = 0, TRIBO_STATICS_MASS = 1, TRIBO_STATICS_COMPLIANCE = 2 };
 
-/* Creates the system of the nmode > 0 lowest modes of the model, with modal mass 1. The largest displacement of a mode, of several
- * equal ones the first, is positive. The damping matrix is projected on the modes; tribo_system_set_damping_ratio replaces the
- * damping. static_contacts:
+/* Creates the system of the nmode > 0 lowest modes of the model, with modal mass 1. The largest displacement of a mode, of
+ * several equal ones the first, is positive. The damping matrix is projected on the modes; tribo_system_set_damping_ratio
+ * replaces the damping. static_contacts:
  *   TRIBO_STATICS_NONE        modes only
  *   TRIBO_STATICS_MASS        adds static responses to contact forces, orthonormal in M and orthogonal in K: ndof is nmode plus
  *                             at most 1 per contact. To add the static response to a load, add a row of J with limit 0
@@ -254,8 +255,8 @@ TRIBO_API const char *tribo_system_message(const tribo_system *sys);
  * returns. */
 TRIBO_API int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *v, double *feq, double *f);
 
-/* Slip states at the last tribo_system_contacts, or step of central/fixed, rk4/fixed or an adaptive method. After a step of another
- * method, and in an observer, call tribo_system_contacts first.
+/* Slip states at the last tribo_system_contacts, or step of central/fixed, rk4/fixed or an adaptive method. After a step of
+ * another method, and in an observer, call tribo_system_contacts first.
  * slip  [ncontact] out   TRIBO_SLIP_...
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_STATE (no such call yet). */
 TRIBO_API int tribo_system_get_slip(const tribo_system *sys, signed char *slip);
@@ -323,8 +324,8 @@ typedef struct {
     const char *name; /* for messages; must live as long as the driver */
     double stable;    /* explicit method: largest h rate of a contact at rest for which the method is stable; 0: implicit */
     int takes_slope;  /* 1: step reads slope */
-    /* Tries a step. Returns 0 on success. After TRIBO_ERR_STEP, TRIBO_ERR_NO_CONVERGENCE or TRIBO_ERR_NOT_FINITE the driver tries a
-     * shorter step; any other status ends the advance. A trial at the t of the last trial replaces the last trial; a trial at
+    /* Tries a step. Returns 0 on success. After TRIBO_ERR_STEP, TRIBO_ERR_NO_CONVERGENCE or TRIBO_ERR_NOT_FINITE the driver tries
+     * a shorter step; any other status ends the advance. A trial at the t of the last trial replaces the last trial; a trial at
      * another t means that the last trial was accepted. */
     int (*step)(const tribo_trial *trial, void *data);
     double (*order)(void *data); /* the error of the next step is proportional to h^(order + 1) */
@@ -418,7 +419,8 @@ TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double per
  * ones may act), as stick-slip and squeal, stable or not. Methods exact, event, auto. The search does not call the observer. One
  * multiplier of a cycle is 1, of the motion along it: the others say whether it is stable. Its freedom is at least 1.
  * t        in       time at which the period begins
- * period   in/out   in: >= 0; a guess, or a multiple up to 16 times, or 0: none; out: the period, the smallest; unchanged on error
+ * period   in/out   in: >= 0; a guess, or a multiple up to 16 times, or 0: none; out: the period, the smallest; unchanged on
+ * error
  * y        [dimension] in/out   in: a guess, no equilibrium; out: the state, with energy 0, as the contact of lowest index
  *                   that breaks away does so, after its longest rest; or, if none does, any; unchanged on error
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE (period < 0, or 0 of a structure without stiffness),
@@ -427,10 +429,11 @@ TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double per
  * returns. */
 TRIBO_API int tribo_driver_find_cycle(tribo_driver *drv, double t, double *period, double *y);
 
-/* Finds a nonlinear mode: a periodic motion without loads, of an amplitude, in which a change of the damping from C to C - 2 delta M
- * makes up for what friction and damping dissipate (extended periodic motion concept, Krack 2015). Loads and base motions that
- * depend on time do not act, constant ones do. omega and zeta = delta/omega over the amplitude are what vibration tests measure of a
- * joint. Methods exact, event, auto. The questions about periodic motions are about the mode then. The period begins at t = 0.
+/* Finds a nonlinear mode: a periodic motion without loads, of an amplitude, in which a change of the damping from C to C - 2
+ * delta M makes up for what friction and damping dissipate (extended periodic motion concept, Krack 2015). Loads and base motions
+ * that depend on time do not act, constant ones do. omega and zeta = delta/omega over the amplitude are what vibration tests
+ * measure of a joint. Methods exact, event, auto. The questions about periodic motions are about the mode then. The period begins
+ * at t = 0.
  * c          [2 ndof] in      coefficients of a signal c'[q, q'], of degrees of freedom with mass
  * amplitude  in               > 0; of the signal at the beginning of the period, where its rate is 0
  * omega      in/out           in: >= 0, a guess, or 0 for the lowest mode; out: 2 pi/period; unchanged on error, as zeta and y
@@ -438,7 +441,8 @@ TRIBO_API int tribo_driver_find_cycle(tribo_driver *drv, double t, double *perio
  * y          [dimension] in/out   in: the state of a guess, or zeros: from the linear mode nearest to omega; out: the state
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_RANGE (c), TRIBO_ERR_UNSUPPORTED (limits in
  * time; tables; as tribo_driver_find_periodic), TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
-TRIBO_API int tribo_driver_find_mode(tribo_driver *drv, const double *c, double amplitude, double *omega, double *zeta, double *y);
+TRIBO_API int tribo_driver_find_mode(tribo_driver *drv, const double *c, double amplitude, double *omega, double *zeta,
+                                     double *y);
 
 /* Floquet multipliers re + i im of the last periodic motion found, largest modulus first; in a complex pair im > 0 is first.
  * re, im   [dimension - 1] out
@@ -477,8 +481,9 @@ enum {
     TRIBO_PARAMETER_DAMPING = 3    /* a factor of the damping matrix, at 1 */
 };
 
-/* Derivatives of the last periodic motion found by parameters, in closed form along its events. The system must be unchanged since.
- * kind, index  [count] in                  TRIBO_PARAMETER_...; contacts of TRIBO_PARAMETER_LIMIT, not read for other kinds
+/* Derivatives of the last periodic motion found by parameters, in closed form along its events. The system must be unchanged
+ * since. kind, index  [count] in                  TRIBO_PARAMETER_...; contacts of TRIBO_PARAMETER_LIMIT, not read for other
+ * kinds
  * c            [2 ndof] in, or NULL        as in tribo_driver_period_extremes; read for extremes
  * extremes     [count][2] out, or NULL     derivatives of least and most of tribo_driver_period_extremes
  * energy       [count][ncontact] out, or NULL   derivatives of the energies of tribo_driver_period_dissipation

@@ -40,8 +40,8 @@ TRIBO_API int tribo_gsl_driver_create(tribo_driver **drv, tribo_system *sys, con
 TRIBO_API int tribo_gsl_stepper_count(void);
 TRIBO_API const char *tribo_gsl_stepper_name(int stepper);
 
-/* The system, with Jacobian, for a GSL driver of the caller. Owned by sys; for one driver at a time. NULL if sys is NULL or out of
- * memory. */
+/* The system, with Jacobian, for a GSL driver of the caller. Owned by sys; for one driver at a time. NULL if sys is NULL or out
+ * of memory. */
 TRIBO_API const gsl_odeiv2_system *tribo_gsl_system(tribo_system *sys);
 
 #ifdef __cplusplus

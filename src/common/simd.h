@@ -32,8 +32,8 @@
 #define TRIBO_UNROLLED
 #endif
 
-/* Before a loop over arrays that do not overlap, where restrict on pointers in a struct has no effect. Clang compares the addresses
- * before the loop. */
+/* Before a loop over arrays that do not overlap, where restrict on pointers in a struct has no effect. Clang compares the
+ * addresses before the loop. */
 #if defined(TRIBO_GNU_C) && !defined(__clang__)
 #define TRIBO_APART _Pragma("GCC ivdep")
 #else

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Forces of all contacts as if no two shared a body, of the balance and over a step: all there is to a call if no two do, else its
- * first part.
+/* Forces of all contacts as if no two shared a body, of the balance and over a step: all there is to a call if no two do, else
+ * its first part.
  *
  * Outputs stay as they are where a call fails, so v and a are checked before anything is written. Then follow the contacts, chunk
  * by chunk. Arrays of a large scene are far away: kernels do not read 1/R_ii or limits that are equal for all, nor a where all

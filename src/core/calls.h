@@ -31,8 +31,8 @@ static inline double tribo_carried(const tribo_context *ctx, const struct box_qp
 
 /* ---- alone.c: contacts as if no two shared a body */
 
-/* tribo_balance of one contact, and tribo_step_force, where tribo_all_alone. feq and f of the balance may be NULL. plain: |a_i| <=
- * TRIBO_PLAIN. */
+/* tribo_balance of one contact, and tribo_step_force, where tribo_all_alone. feq and f of the balance may be NULL. plain: |a_i|
+ * <= TRIBO_PLAIN. */
 void tribo_balance_one(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f);
 int tribo_step_alone(tribo_context *ctx, double dt, const double *v, double *f);
 

@@ -56,8 +56,8 @@ void complete_options(struct options *o, const struct structure *s)
     add_normals(&o->contacts);
 }
 
-/* Rows over the degrees of freedom [ndof]: directions of contacts, normal directions, then loads of size 1, then outputs, then the place where
- * amplitudes are measured. A load of the supports is -M r with r the direction, which is 1 along it. */
+/* Rows over the degrees of freedom [ndof]: directions of contacts, normal directions, then loads of size 1, then outputs, then
+ * the place where amplitudes are measured. A load of the supports is -M r with r the direction, which is 1 along it. */
 static struct sparse make_rows(const struct options *o, const struct structure *s)
 {
     const size_t contacts = o->contacts.count + o->contacts.normals, loads = o->loads.count,

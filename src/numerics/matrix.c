@@ -325,8 +325,8 @@ double tribo_matrix_row_sum(const struct matrix *a)
 
 /* ------------------------------------------------------------------------------------------------------------- products */
 
-/* y [rows] = z + factor times rows begin to begin + rows - 1 of A x; z [rows]: y, or no part of y. These rows lie in one block, and
- * all diagonals are inside the matrix there. Passes over y once for three diagonals, but adds them one after the other. */
+/* y [rows] = z + factor times rows begin to begin + rows - 1 of A x; z [rows]: y, or no part of y. These rows lie in one block,
+ * and all diagonals are inside the matrix there. Passes over y once for three diagonals, but adds them one after the other. */
 TRIBO_SIMD static void add_diagonals(const struct matrix *a, size_t begin, size_t rows, double factor, const double *x,
                                      const double *z, double *y)
 {

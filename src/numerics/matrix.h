@@ -106,7 +106,8 @@ static inline void tribo_matrix_add_row(const struct matrix *a, size_t i, double
 /* Sets x [cols] = row i of A. */
 void tribo_matrix_get_row(const struct matrix *a, size_t i, double *x);
 
-/* y [end - begin] = z + factor times rows begin to end - 1 of A x; z [end - begin]: y, or no part of y. The rows lie in one block. */
+/* y [end - begin] = z + factor times rows begin to end - 1 of A x; z [end - begin]: y, or no part of y. The rows lie in one
+ * block. */
 void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, const double *z,
                            double *y);
 

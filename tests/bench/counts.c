@@ -180,7 +180,8 @@ static double count_belt(const char *method)
     return count_small(sys, 2, method, 60.0);
 }
 
-/* A periodic motion of a chain of bodies with a contact each but the last two; its derivatives by 20 parameters: the limits, twice. */
+/* A periodic motion of a chain of bodies with a contact each but the last two; its derivatives by 20 parameters: the limits,
+ * twice. */
 enum { BODIES = 12, TOUCHING = 10, PARAMETERS = 20 };
 
 struct steady {

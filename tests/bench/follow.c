@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What a contact whose limit follows the motion costs, and how exact it is: a period of a motion that slides, lifts off and touches
- * down, from its beginning, to which it must return. Two bodies of mass 1 in one: x'' + 0.346 x' + 12 x + f = 60 cos 5t, y'' + 2 y' +
- * 21 y + N = 100 + 60 cos 5t, N = 21 max(y, 0), |f| <= 0.85 N; rigid, or with a spring of stiffness 5 before the slider (case 4 of
- * tests/validation/series/normals.c). */
+/* What a contact whose limit follows the motion costs, and how exact it is: a period of a motion that slides, lifts off and
+ * touches down, from its beginning, to which it must return. Two bodies of mass 1 in one: x'' + 0.346 x' + 12 x + f = 60 cos 5t,
+ * y'' + 2 y' + 21 y + N = 100 + 60 cos 5t, N = 21 max(y, 0), |f| <= 0.85 N; rigid, or with a spring of stiffness 5 before the
+ * slider (case 4 of tests/validation/series/normals.c). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

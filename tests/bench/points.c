@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What a steady motion costs over the number of modes of the structure and of its contacts.
  *   bench_points [[mass stiffness dofs contacts] modes none|mass|compliance]
- * Without arguments: the beam of the examples on three contacts, driven at frequencies about three times its first one, in 12, 24,
- * 48 and 96 modes, alone, with static responses of the contacts, and with compliance; or one row of these. Otherwise a structure whose contacts are spread over the
- * degrees of freedom in direction z, the last of which has the load, driven about its first frequency.
- * POINTS motions at several frequencies and limits, by one driver, each from the motion before. Prints a row a system: times in
- * milliseconds and beside those of the first row; spans followed, events and decompositions a point; power at the first point. */
+ * Without arguments: the beam of the examples on three contacts, driven at frequencies about three times its first one, in 12,
+ * 24, 48 and 96 modes, alone, with static responses of the contacts, and with compliance; or one row of these. Otherwise a
+ * structure whose contacts are spread over the degrees of freedom in direction z, the last of which has the load, driven about
+ * its first frequency. POINTS motions at several frequencies and limits, by one driver, each from the motion before. Prints a row
+ * a system: times in milliseconds and beside those of the first row; spans followed, events and decompositions a point; power at
+ * the first point. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

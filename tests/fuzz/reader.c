@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What tribo-damper reads: the first character says what the rest is, a Matrix Market file (m), a compressed one (g), CalculiX's
- * matrix (s), a compressed one (z), CalculiX's degrees of freedom, a line "=" and its input (d), or a table of degrees of freedom (t). */
+ * matrix (s), a compressed one (z), CalculiX's degrees of freedom, a line "=" and its input (d), or a table of degrees of freedom
+ * (t). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

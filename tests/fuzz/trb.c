@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* TRB routines as a Fortran program calls them: contexts and systems of up to four contacts and degrees of freedom are created,
- * set, asked, moved and deleted in any order, with legal and illegal handles, sizes and numbers. After each call the status is known;
- * a status other than 0 of a call with a handle has a message. */
+ * set, asked, moved and deleted in any order, with legal and illegal handles, sizes and numbers. After each call the status is
+ * known; a status other than 0 of a call with a handle has a message. */
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>

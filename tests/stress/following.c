@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Random structures with contacts whose limits follow the motion: the motion keeps the equations of motion and the law, as this file
- * computes both from states only. TRIBO_SEED is the first seed, TRIBO_BLOCKS the number of blocks of seeds. */
+/* Random structures with contacts whose limits follow the motion: the motion keeps the equations of motion and the law, as this
+ * file computes both from states only. TRIBO_SEED is the first seed, TRIBO_BLOCKS the number of blocks of seeds. */
 #include <stdio.h>
 #include <string.h>
 
@@ -168,8 +168,8 @@ static double derivative(double y[9][2 * DOFS + FOLLOWERS + 1], size_t k)
     return sum / STEP;
 }
 
-/* f [count] = the forces in directions row [count][n] that leave the least of r [n], by normal equations; r becomes what they leave.
- * Returns 0 if the directions depend on each other. */
+/* f [count] = the forces in directions row [count][n] that leave the least of r [n], by normal equations; r becomes what they
+ * leave. Returns 0 if the directions depend on each other. */
 static int find_forces(size_t n, size_t count, const double *const *row, double *r, double *f)
 {
     double a[FOLLOWERS][FOLLOWERS + 1];
@@ -270,8 +270,8 @@ static int count_events(const tribo_moment *moment, void *data)
     return 0;
 }
 
-/* Moves scene s by a method from its start; checks the law in windows in which no event falls. y: the states at the ends of WINDOWS
- * pieces. Returns the driver's status. */
+/* Moves scene s by a method from its start; checks the law in windows in which no event falls. y: the states at the ends of
+ * WINDOWS pieces. Returns the driver's status. */
 static int follow(const struct scene *s, int seed, const char *method, double y[WINDOWS][2 * DOFS + FOLLOWERS + 1])
 {
     tribo_system *sys = scene_system(s, seed);
@@ -332,8 +332,8 @@ TEST(agree)
     }
 }
 
-/* Finds a periodic motion of s by a method: y, its multipliers sorted by modulus, re [dimension - 1], and by event how far the motion is
- * from there after a period. Returns a status. */
+/* Finds a periodic motion of s by a method: y, its multipliers sorted by modulus, re [dimension - 1], and by event how far the
+ * motion is from there after a period. Returns a status. */
 static int find_return(const struct scene *s, int seed, const char *method, double period, double *y, double *modulus,
                        double *off)
 {
@@ -397,8 +397,8 @@ TEST(periodic)
     }
 }
 
-/* A body of mass 1 with x and y on springs; the contact acts in x, the normal in y, of stiffness 3, gap 0; elastic or rigid. Copies of
- * the body, each with its contact. */
+/* A body of mass 1 with x and y on springs; the contact acts in x, the normal in y, of stiffness 3, gap 0; elastic or rigid.
+ * Copies of the body, each with its contact. */
 static struct scene bodies(size_t copies, int elastic, double mu)
 {
     struct scene s = {.n = 2 * copies, .followers = copies, .normals = copies, .rows = 2 * copies, .name = "by hand"};

@@ -130,8 +130,8 @@ static void drive(tribo_system *sys, struct random *g, const struct row *r, int 
 }
 
 /* Of all methods, by limits of 10^-3 to 10^12; of such as follow a law without jumps in steps of their own to 10^2, and what they
- * dissipate is right to their tolerance. In fixed steps forces and the mean velocity balance energy, and in one in which a contact
- * turns they may give some, by the order of the step. */
+ * dissipate is right to their tolerance. In fixed steps forces and the mean velocity balance energy, and in one in which a
+ * contact turns they may give some, by the order of the step. */
 TEST(never_negative)
 {
     static const struct {

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Parallel sliders in Segalman's form (2005) of Iwan's (1966). From rest the force is the curve
  *     B(u) = kt u (1 - (u/most)^(chi + 1)/((chi + 2)(1 + beta))), u < most;  fs beyond,
- * most = fs (1 + beta)/(kt (beta + (chi + 1)/(chi + 2))). After a turn at (x_r, p_r) it is p_r +- 2 B(|x - x_r|/2) (Masing), until
- * the loop closes: then the motion continues on the curve that the loop left. The turns of loops that are open are the state. */
+ * most = fs (1 + beta)/(kt (beta + (chi + 1)/(chi + 2))). After a turn at (x_r, p_r) it is p_r +- 2 B(|x - x_r|/2) (Masing),
+ * until the loop closes: then the motion continues on the curve that the loop left. The turns of loops that are open are the
+ * state. */
 #include "element.h"
 
 enum { PARAMETERS = 4, HEAD = 3, MOST_ROOM = 1000000 };

@@ -120,8 +120,8 @@ static inline double sliding(double v, double limit)
     return copysign(limit, -v);
 }
 
-/* d(force)/d(limit) where a contact carries clamp(feq, -limit, limit). Laws choose between numbers, not between computations: their
- * loops become vectors. */
+/* d(force)/d(limit) where a contact carries clamp(feq, -limit, limit). Laws choose between numbers, not between computations:
+ * their loops become vectors. */
 static inline double held_rate(double feq, int held)
 {
     return held ? 0.0 : sign(feq);

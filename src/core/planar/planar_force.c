@@ -202,8 +202,8 @@ static void set_reaches(tribo_context *ctx, double most)
     }
 }
 
-/* 1 if a force of the problem is at its reach, or on the rim of its limit where that bends so much that the other direction cannot
- * be loose. */
+/* 1 if a force of the problem is at its reach, or on the rim of its limit where that bends so much that the other direction
+ * cannot be loose. */
 static int is_beyond_reach(const tribo_context *ctx)
 {
     const struct clusters *c = &ctx->plane;

@@ -55,8 +55,8 @@ static double turn_shift(const struct law *law, const struct slide *s, const str
     return clamp(product(part, change) - product(shift, t->epsilon), -STEEPEST, STEEPEST);
 }
 
-/* move [size] = the change of y by growth, d(limit)/limit, by dshift, and by rhs, the change of pull with limits and shifts fixed.
- * Overwrites rhs. directions: see tribo_planar_turn. */
+/* move [size] = the change of y by growth, d(limit)/limit, by dshift, and by rhs, the change of pull with limits and shifts
+ * fixed. Overwrites rhs. directions: see tribo_planar_turn. */
 static void planar_follow(struct disc_qp *p, const unsigned char *directions, const double *growth, const double *dshift,
                           double *rhs, double *move)
 {
@@ -189,8 +189,8 @@ int tribo_plane_reads_feq(const tribo_context *ctx, size_t i, const double *v)
     return tribo_planar_near(ctx->set.law, &s);
 }
 
-/* Sets the derivatives out [3] by v, f_eq and the limits of the caller, [n][2] each, or NULL, of a contact at v [2]; static limits
- * follow |v|, too. */
+/* Sets the derivatives out [3] by v, f_eq and the limits of the caller, [n][2] each, or NULL, of a contact at v [2]; static
+ * limits follow |v|, too. */
 static void given_columns(const tribo_context *ctx, struct given *g, const double *v, double *const *out)
 {
     static const unsigned char both[2] = {2, 0};

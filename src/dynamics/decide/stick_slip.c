@@ -337,8 +337,8 @@ void tribo_stick_slip_press(const struct stick_slip *m, tribo_system *sys)
 }
 
 /* Presses normals at depth 0 that do not move by their acceleration, with the forces of contacts of the last decision, if the
- * acceleration is more than rounding; else a normal leaves its side if its depth ended the phase, and is open if not. resting: their
- * number. Returns it. */
+ * acceleration is more than rounding; else a normal leaves its side if its depth ended the phase, and is open if not. resting:
+ * their number. Returns it. */
 static size_t press_by_acceleration(struct stick_slip *m, tribo_system *sys, const double *y, size_t resting)
 {
     const struct matrix *j = &sys->direction;

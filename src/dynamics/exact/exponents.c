@@ -17,8 +17,8 @@
 /* Largest |A x - lambda x|/|lambda|, |x| = 1, of an exponent that is accepted. */
 #define KNOWN 1e-8
 
-/* Largest product of the lengths of the left and right eigenvectors of an exponent, of product 1: the condition of the exponent, and
- * the factor by which rounding of the motion grows. */
+/* Largest product of the lengths of the left and right eigenvectors of an exponent, of product 1: the condition of the exponent,
+ * and the factor by which rounding of the motion grows. */
 #define CONDITION 1e4
 
 static int exponents_unsupported(const struct modal_build *b, const char *why)
@@ -29,7 +29,7 @@ static int exponents_unsupported(const struct modal_build *b, const char *why)
 /* Makes room for e exponents, a, b and r of `modes` modes each. Returns 0 if out of memory. */
 static int reserve_exponents(struct modal *h, size_t e, size_t modes)
 {
-    double **const part[] = {&h->ar, &h->ai, &h->br, &h->bi, &h->rr, &h->ri};
+    double **const part[] = {&h->left.ar, &h->left.ai, &h->left.br, &h->left.bi, &h->rr, &h->ri};
     h->exponents = e;
     h->lr = tribo_modal_take(&h->store, e * (2 + 6 * modes), sizeof *h->lr);
     h->li = h->lr ? h->lr + e : NULL;
@@ -59,17 +59,17 @@ static int exponents_decoupled(struct modal_build *b)
         if (square > 0.0) {
             h->lr[p] = -half;
             h->li[p] = root;
-            h->ar[p] = 1.0;
-            h->ai[p] = -half / root;
-            h->bi[p] = -1.0 / root;
+            h->left.ar[p] = 1.0;
+            h->left.ai[p] = -half / root;
+            h->left.bi[p] = -1.0 / root;
             h->owner[p++] = k;
             continue;
         }
         const double far = half > 0.0 ? -half - root : -half + root, near = h->omega2[k] / far;
         for (int which = 0; which < 2; which++) {
             h->lr[p] = which ? far : near;
-            h->br[p] = which ? 1.0 / (far - near) : 1.0 / (near - far);
-            h->ar[p] = -h->br[p] * (which ? near : far);
+            h->left.br[p] = which ? 1.0 / (far - near) : 1.0 / (near - far);
+            h->left.ar[p] = -h->left.br[p] * (which ? near : far);
             h->owner[p++] = k;
         }
     }
@@ -84,10 +84,10 @@ static void keep_coupled(struct modal *h, size_t p, size_t k, double complex lam
     const double complex a = -h->omega2[k] * b / lambda;
     h->lr[p] = creal(lambda);
     h->li[p] = cimag(lambda);
-    h->ar[at] = creal(a);
-    h->ai[at] = cimag(a);
-    h->br[at] = creal(b);
-    h->bi[at] = cimag(b);
+    h->left.ar[at] = creal(a);
+    h->left.ai[at] = cimag(a);
+    h->left.br[at] = creal(b);
+    h->left.bi[at] = cimag(b);
     h->rr[p * h->modes + k] = creal(r);
     h->ri[p * h->modes + k] = -cimag(r);
 }
@@ -104,7 +104,8 @@ static double eigen_error(const double *a, size_t size, double complex lambda, c
     return sqrt(square) / cabs(lambda);
 }
 
-/* Keeps exponent p of modes whose K~ is not symmetric: x = v + i w the right, y - i z, times half, the left eigenvector, by modes at
+/* Keeps exponent p of modes whose K~ is not symmetric: x = v + i w the right, y - i z, times half, the left eigenvector, by modes
+ * at
  * [count], divided by s. Modes which drift follow: lambda^2 r_d = -sum over k of (K~_dk + lambda C~_dk) r_k. */
 static void keep_following(struct modal *h, size_t p, size_t count, const size_t *at, const double *s, double complex lambda,
                            double half, const double *const *vector)
@@ -113,10 +114,10 @@ static void keep_following(struct modal *h, size_t p, size_t count, const size_t
     h->li[p] = cimag(lambda);
     for (size_t i = 0; i < count; i++) {
         const size_t k = at[i], ab = k * h->exponents + p, r = p * h->modes + k;
-        h->ar[ab] = half * s[i] * vector[2][i];
-        h->ai[ab] = -half * s[i] * vector[3][i];
-        h->br[ab] = half * vector[2][count + i];
-        h->bi[ab] = -half * vector[3][count + i];
+        h->left.ar[ab] = half * s[i] * vector[2][i];
+        h->left.ai[ab] = -half * s[i] * vector[3][i];
+        h->left.br[ab] = half * vector[2][count + i];
+        h->left.bi[ab] = -half * vector[3][count + i];
         h->rr[r] = vector[0][i] / (half * s[i]);
         h->ri[r] = -vector[1][i] / (half * s[i]);
     }
@@ -153,8 +154,8 @@ static void fill_first_order(const struct modal *h, size_t count, const size_t *
     }
 }
 
-/* Eigenvalues re + i im [2 count] of `first`, A of x' = A x, x = (s eta, eta'), of the modes at [count]; right eigenvectors, and the
- * inverse of their matrix, in rows. */
+/* Eigenvalues re + i im [2 count] of `first`, A of x' = A x, x = (s eta, eta'), of the modes at [count]; right eigenvectors, and
+ * the inverse of their matrix, in rows. */
 struct coupled {
     size_t count;
     const size_t *at;

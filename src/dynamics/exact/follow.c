@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Structures with normals that are pressed, and contacts that slide at limits which follow these. A pressed normal adds its
- * stiffness to K. A contact that slides adds the forces side mu N along its own row of J: K~ of the modes is not symmetric then, and
- * has left and right vectors (exponents.c). A mode without stiffness drifts: no force follows it, but forces that follow other modes
- * move it. */
+ * stiffness to K. A contact that slides adds the forces side mu N along its own row of J: K~ of the modes is not symmetric then,
+ * and has left and right vectors (exponents.c). A mode without stiffness drifts: no force follows it, but forces that follow
+ * other modes move it. */
 #include "motion.h"
 #include "parts.h"
 #include "common/real.h"

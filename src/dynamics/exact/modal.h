@@ -18,8 +18,8 @@
 /* Number of terms computed side by side. The number of terms of a structure is a multiple of TRIBO_TERMS. */
 enum { TRIBO_TERMS = 4 };
 
-/* What a contact does in a structure. At rest without force of its own; at rest and holds; a normal that is apart, or pressed; slides, or
- * is tied at its limit, which follows the motion, with a force > 0 (BACK) or < 0 (FORTH). */
+/* What a contact does in a structure. At rest without force of its own; at rest and holds; a normal that is apart, or pressed;
+ * slides, or is tied at its limit, which follows the motion, with a force > 0 (BACK) or < 0 (FORTH). */
 enum { KEY_FREE, KEY_RESTS, KEY_HOLDS, KEY_APART, KEY_PRESSED, KEY_BACK, KEY_FORTH, KEY_TIED_BACK, KEY_TIED_FORTH };
 
 /* Arrays that are freed together. */
@@ -37,6 +37,11 @@ struct modal_powers {
     size_t users;
     struct matrix stiffness, damping; /* Phi'K Phi and Phi'C Phi [modes][modes]; without damping the second has no rows */
     double *reach, array[];           /* [contacts][modes] J Phi; omega2, damping, phi, psi and reach */
+};
+
+/* z = a eta + b eta' of the exponents: [exponents], eta of the owner; coupled: [modes][exponents]. */
+struct left_vectors {
+    double *ar, *ai, *br, *bi;
 };
 
 /* The structure without loads. */
@@ -64,14 +69,14 @@ struct modal {
     double *by_u; /* [contacts][modes] rigid contact that holds: force per eta'; else 0; NULL without damping or such contacts */
 
     size_t exponents;
-    double *lr, *li;           /* [exponents] lambda */
-    double *ar, *ai, *br, *bi; /* z = a eta + b eta': [exponents], eta of the owner; coupled: [modes][exponents] */
-    double *rr, *ri;           /* [exponents][modes] coupled: eta = rr Re z + ri Im z */
-    size_t *owner;             /* [exponents] mode of an exponent: eta = sum of Re z; NULL if coupled */
+    double *lr, *li; /* [exponents] lambda */
+    struct left_vectors left;
+    double *rr, *ri; /* [exponents][modes] coupled: eta = rr Re z + ri Im z */
+    size_t *owner;   /* [exponents] mode of an exponent: eta = sum of Re z; NULL if coupled */
 };
 
-/* Velocity of a sliding contact, force of a held contact, or N of a normal: Re(sum c_p z_p) + constant + ramp t, of N also + square t^2.
- * First the terms z_p of the exponents, then the terms of the harmonics: z = e^{i Omega t}, c = response. */
+/* Velocity of a sliding contact, force of a held contact, or N of a normal: Re(sum c_p z_p) + constant + ramp t, of N also +
+ * square t^2. First the terms z_p of the exponents, then the terms of the harmonics: z = e^{i Omega t}, c = response. */
 struct output {
     size_t contact;
     double *cr, *ci, *size; /* [terms] c_p, |c_p| */
@@ -139,17 +144,18 @@ static inline int tribo_modal_drifts(const struct modal *h, size_t k)
 }
 
 /* Creates *modal, if it is NULL, the structure with all contacts at rest, slip[i] = 0, held; and forced, if it is NULL, by the
- * loads. key: of tribo_follow_key. powers = 1: without modes, which takes a small part of the time, where no base moves at a constant speed and no limit
- * varies; like: NULL, or such a structure without rigid contacts that hold, for its coordinates. KEY_HOLDS: set H of stick_slip.h;
- * other contacts at rest depend on H. Returns a status, message on the system's context; after an error
- * *modal and forced stay NULL. Every user of the structure besides the first one adds 1 to users. tribo_modal_free frees h->forced,
- * too, and takes NULL; tribo_forced_free frees h->forced, which may be NULL. */
+ * loads. key: of tribo_follow_key. powers = 1: without modes, which takes a small part of the time, where no base moves at a
+ * constant speed and no limit varies; like: NULL, or such a structure without rigid contacts that hold, for its coordinates.
+ * KEY_HOLDS: set H of stick_slip.h; other contacts at rest depend on H. Returns a status, message on the system's context; after
+ * an error *modal and forced stay NULL. Every user of the structure besides the first one adds 1 to users. tribo_modal_free frees
+ * h->forced, too, and takes NULL; tribo_forced_free frees h->forced, which may be NULL. */
 int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const signed char *key, int powers,
                        const struct modal *like);
 void tribo_modal_free(struct modal *h);
 void tribo_forced_free(struct modal *h);
 
-/* follow.c. side: sign of the force of a contact with this key that slides, or is tied, at a limit that follows; else 0. slide: force
+/* follow.c. side: sign of the force of a contact with this key that slides, or is tied, at a limit that follows; else 0. slide:
+ * force
  * [ncontact][columns] = forces of such contacts by way [ncontact][columns] = J q. */
 double tribo_follow_side(signed char key);
 void tribo_follow_slide(const tribo_system *sys, const signed char *key, size_t columns, const double *way, double *force);

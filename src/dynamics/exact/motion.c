@@ -56,17 +56,17 @@ void tribo_modal_split(const struct modal *h, size_t columns, const double *eta,
     if (!h->owner) {
         memset(zr, 0, e * columns * sizeof *zr);
         memset(zi, 0, e * columns * sizeof *zi);
-        tribo_multiply_transposed_add(m, e, columns, h->ar, eta, zr);
-        tribo_multiply_transposed_add(m, e, columns, h->br, rate, zr);
-        tribo_multiply_transposed_add(m, e, columns, h->ai, eta, zi);
-        tribo_multiply_transposed_add(m, e, columns, h->bi, rate, zi);
+        tribo_multiply_transposed_add(m, e, columns, h->left.ar, eta, zr);
+        tribo_multiply_transposed_add(m, e, columns, h->left.br, rate, zr);
+        tribo_multiply_transposed_add(m, e, columns, h->left.ai, eta, zi);
+        tribo_multiply_transposed_add(m, e, columns, h->left.bi, rate, zi);
         return;
     }
     for (size_t p = 0, at = 0; p < e; p++) {
         const double *q = eta + h->owner[p] * columns, *u = rate + h->owner[p] * columns;
         for (size_t j = 0; j < columns; j++, at++) {
-            zr[at] = h->ar[p] * q[j] + h->br[p] * u[j];
-            zi[at] = h->ai[p] * q[j] + h->bi[p] * u[j];
+            zr[at] = h->left.ar[p] * q[j] + h->left.br[p] * u[j];
+            zi[at] = h->left.ai[p] * q[j] + h->left.bi[p] * u[j];
         }
     }
 }

@@ -81,8 +81,8 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
 /* Goes to t0 + tau: sets w, w' and w'' of all terms. */
 void tribo_modal_motion_go(struct exact *x, double tau);
 
-/* Returns the part of limit i by harmonics, or the whole limit that follows the motion, with two derivatives, at x->tau. limit_course:
- * the course of its N, times *mu; NULL: it does not follow. */
+/* Returns the part of limit i by harmonics, or the whole limit that follows the motion, with two derivatives, at x->tau.
+ * limit_course: the course of its N, times *mu; NULL: it does not follow. */
 struct sample tribo_modal_motion_limit(struct exact *x, size_t i);
 struct course *tribo_modal_limit_course(const struct exact *x, size_t i, double *mu);
 
@@ -100,10 +100,11 @@ void tribo_modal_settle(const struct modal *h, size_t columns, const double *for
 void tribo_modal_split(const struct modal *h, size_t columns, const double *eta, const double *rate, double *zr, double *zi);
 void tribo_modal_join(const struct modal *h, size_t columns, const double *zr, const double *zi, double *eta);
 
-/* follow.c. key: key [ncontact] = the keys, KEY_, of the contacts; returns key. forces: force [modes] = F with eta'' + C~ eta' + K~ eta =
- * F + ramp tau + harmonics, from eta and eta' at t0 in place and rate. settle: as tribo_modal_settle; vel is 0. drift: subtracts from
- * drift [modes][columns] of modes that drift eta' by z. pull [modes][columns] = constant forces on eta by perturbations v, of which eta
- * are those of eta, and f [ncontact][columns] those of springs; work [ndof + 2 ncontact][columns]. */
+/* follow.c. key: key [ncontact] = the keys, KEY_, of the contacts; returns key. forces: force [modes] = F with eta'' + C~ eta' +
+ * K~ eta = F + ramp tau + harmonics, from eta and eta' at t0 in place and rate. settle: as tribo_modal_settle; vel is 0. drift:
+ * subtracts from drift [modes][columns] of modes that drift eta' by z. pull [modes][columns] = constant forces on eta by
+ * perturbations v, of which eta are those of eta, and f [ncontact][columns] those of springs; work [ndof + 2 ncontact][columns].
+ * */
 const signed char *tribo_follow_key(const struct stick_slip *m, signed char *key);
 void tribo_follow_forces(struct exact *x, const double *y, double *force);
 void tribo_follow_settle(const struct modal *h, size_t columns, const double *force, double *eta, double *vel, double *acc);
@@ -113,8 +114,8 @@ void tribo_follow_pull(const struct modal *h, const tribo_system *sys, size_t co
 
 /* powers.c, without modes. start: from place = eta and rate = eta' at t0, and the constant forces [modes]. move: sets place to
  * the change of eta until tau, and rate to eta' at tau, or with changes = 1 to the change of eta'. carry: tribo_modal_transition
- * of eta and rate [modes][columns], by pull, and a source with coefficients [TRIBO_POWERS][modes][columns] of the powers of time, or
- * NULL; eta becomes its change; work [3 modes + 1][columns]. */
+ * of eta and rate [modes][columns], by pull, and a source with coefficients [TRIBO_POWERS][modes][columns] of the powers of time,
+ * or NULL; eta becomes its change; work [3 modes + 1][columns]. */
 void tribo_powers_start(struct exact *x, const double *force);
 void tribo_powers_move(struct exact *x, double tau, int changes);
 void tribo_powers_carry(const struct modal *h, double tau, size_t columns, const double *pull, double *eta, double *rate,
@@ -129,11 +130,12 @@ void *tribo_modal_phase_keep(void *own, double tau);
 void tribo_modal_phase_release(void *phase);
 int tribo_modal_transition(void *own, const void *phase, double tau, size_t columns, double *v, const struct source *source);
 
-/* source.c: eta, rate [modes][columns] += the response at tau to the source of the phase that ends, without its force. Returns a status, its message on the system's context. */
+/* source.c: eta, rate [modes][columns] += the response at tau to the source of the phase that ends, without its force. Returns a
+ * status, its message on the system's context. */
 int tribo_modal_source(const struct exact *x, double tau, size_t columns, const struct source *source, double *eta, double *rate);
 
-/* terms.c. rest: sets w to z, at t0. go: sets w for t0 + tau, without resonances. tribo_exp_1 returns (e^z - 1)/z, the integral of e^{z s} over s from 0 to 1, without loss of
- * digits for small z. */
+/* terms.c. rest: sets w to z, at t0. go: sets w for t0 + tau, without resonances. tribo_exp_1 returns (e^z - 1)/z, the integral
+ * of e^{z s} over s from 0 to 1, without loss of digits for small z. */
 void tribo_modal_terms_rest(struct exact *x);
 void tribo_modal_terms_go(struct exact *x, double tau);
 double complex tribo_exp_1(double complex z);

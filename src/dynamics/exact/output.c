@@ -60,9 +60,9 @@ double complex tribo_forced_weight(const struct forced *f, size_t p, const doubl
     return sum;
 }
 
-/* Sets *w = the output of contact i, unless it is constant and `always` is 0: N of a normal; the velocity, of a contact at rest that does
- * not hold by bases only (on of modes is 0); or the force, with the rest of the harmonics in direct, `rests` apart; NULL: 0. Returns
- * the number of outputs, 0 or 1. */
+/* Sets *w = the output of contact i, unless it is constant and `always` is 0: N of a normal; the velocity, of a contact at rest
+ * that does not hold by bases only (on of modes is 0); or the force, with the rest of the harmonics in direct, `rests` apart;
+ * NULL: 0. Returns the number of outputs, 0 or 1. */
 static size_t fill_output(const struct modal_build *b, size_t i, const double complex *direct, int always, struct output *w)
 {
     struct forced *f = b->forced;

@@ -34,14 +34,15 @@ void tribo_modal_react(const struct modal *h, const size_t *rows, size_t columns
 
 /* Sets on, in J y, and by_u or NULL, [ncontact][columns] by displacements y [n][columns], with J_I y = b_I, and inertia = M y,
  * of modes within, else of all degrees of freedom:
- * contacts that hold: force per eta, J_I'f = K y - inertia omega2 - J_A'f_A (A: compliant ones, f_A' = -G_AA^-1 (J_A y - b_A), and
- * those that slide at limits that follow), and per eta', J_I'f = C y; normals: N per eta; other contacts: velocity per eta'. base [ncontact] = b, of one column, by which only the rest of the
- * forces beside the modes counts; NULL: y are the modes, 0. Sets b->scratch.failed = 1 if out of memory. */
+ * contacts that hold: force per eta, J_I'f = K y - inertia omega2 - J_A'f_A (A: compliant ones, f_A' = -G_AA^-1 (J_A y - b_A),
+ * and those that slide at limits that follow), and per eta', J_I'f = C y; normals: N per eta; other contacts: velocity per eta'.
+ * base [ncontact] = b, of one column, by which only the rest of the forces beside the modes counts; NULL: y are the modes, 0.
+ * Sets b->scratch.failed = 1 if out of memory. */
 void tribo_modal_effects(struct modal_build *b, size_t columns, const double *y, const double *inertia, const double *omega2,
                          const double *base, double *on, double *by_u);
 
-/* rate [ncontact][columns] = rates of the forces of springs that hold, and of contacts that slide, by slide [ncontact][columns], at
- * velocities v; v as in tribo_compliance_rates. */
+/* rate [ncontact][columns] = rates of the forces of springs that hold, and of contacts that slide, by slide [ncontact][columns],
+ * at velocities v; v as in tribo_compliance_rates. */
 void tribo_modal_rates(const struct modal_build *b, size_t columns, const double *slide, double *v, double *rate);
 
 /* Fill b->forced: shapes, forcing and response; then terms and outputs. Return 1; 0 if out of memory, or on another failure, with
@@ -49,8 +50,8 @@ void tribo_modal_rates(const struct modal_build *b, size_t columns, const double
 int tribo_forced_respond(struct modal_build *b);
 int tribo_forced_outputs(struct modal_build *b);
 
-/* follow.c. press: sets follows, and k with pressed normals. couple: sets stiff and give. ramps: sets constant from ramp. Return 1; 0 if
- * out of memory, or on another failure, with b->status set. */
+/* follow.c. press: sets follows, and k with pressed normals. couple: sets stiff and give. ramps: sets constant from ramp. Return
+ * 1; 0 if out of memory, or on another failure, with b->status set. */
 int tribo_follow_press(struct modal_build *b);
 int tribo_follow_couple(struct modal_build *b);
 int tribo_follow_ramps(struct modal_build *b);

@@ -34,7 +34,8 @@ static void add_weights(const struct exact *x, const double *place, const double
         double complex c = tribo_forced_weight(h, p, place, speed);
         for (size_t s = 0; h->resonant && p < e && s < h->harmonics; s++) {
             const double complex w = resonance(h, s, own->owner[p]) * tribo_part(&x->z, e + s);
-            z -= (own->ar[p] + own->ai[p] * I) * creal(w) - (own->br[p] + own->bi[p] * I) * h->forcing[s].omega * cimag(w);
+            z -= (own->left.ar[p] + own->left.ai[p] * I) * creal(w) -
+                 (own->left.br[p] + own->left.bi[p] * I) * h->forcing[s].omega * cimag(w);
         }
         for (size_t k = 0; h->resonant && p >= e && k < own->modes; k++) {
             c += (place[k] + h->li[p] * speed[k] * I) * resonance(h, p - e, k);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The response of a phase of method "exact" to a source that is linear in its motion, in closed form: derivatives of the motion by
- * damping and by frequency. With modes the source of mode k is
+/* The response of a phase of method "exact" to a source that is linear in its motion, in closed form: derivatives of the motion
+ * by damping and by frequency. With modes the source of mode k is
  *     Re(sum over exponents and harmonics of c e^{mu s}) + c_0 + c_1 s,
- * for the source eta'' with c = lambda^2 r z of an exponent, for the source C~ eta' with c = -(lambda^2 + omega_k^2) r z; and an exponent
- * takes from it z' = lambda z + b c e^{mu s}. */
+ * for the source eta'' with c = lambda^2 r z of an exponent, for the source C~ eta' with c = -(lambda^2 + omega_k^2) r z; and an
+ * exponent takes from it z' = lambda z + b c e^{mu s}. */
 #include "motion.h"
 #include "common/layout.h"
 
@@ -100,7 +100,7 @@ static void find_source(struct response *r, int source)
 static double complex takes(const struct modal *h, size_t p, size_t k)
 {
     const size_t at = h->owner ? p : k * h->exponents + p;
-    return h->owner && h->owner[p] != k ? 0.0 : h->br[at] + h->bi[at] * I;
+    return h->owner && h->owner[p] != k ? 0.0 : h->left.br[at] + h->left.bi[at] * I;
 }
 
 /* Returns what exponent p takes until tau: from c_0, c_1, harmonics, and exponents. */

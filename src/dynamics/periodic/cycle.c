@@ -18,7 +18,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* MOST_RETURNS: break-aways of a contact that are compared. SAMPLES: of a motion without break-aways in a length of the search. */
+/* MOST_RETURNS: break-aways of a contact that are compared. SAMPLES: of a motion without break-aways in a length of the search.
+ * */
 enum { MOST_RETURNS = 16, SAMPLES = 64 };
 
 /* In lengths of the search: times between looks at the break-aways; until there are MOST_RETURNS; time that is sampled. */
@@ -134,8 +135,8 @@ static double cycle_length(const struct shooting *s, const struct point *p)
     return tribo_energy_length(p->border, s->map.n) * p->unknown[0];
 }
 
-/* Shoots from x at s->here. Sets *found = 1 if s->here is a cycle, *rests = 1 if it is a motion at rest. Returns a status: not that of
- * a search which ends. */
+/* Shoots from x at s->here. Sets *found = 1 if s->here is a cycle, *rests = 1 if it is a motion at rest. Returns a status: not
+ * that of a search which ends. */
 static int cycle_shoot(struct shooting *s, double period, int *found, int *rests)
 {
     struct point *p = s->here;
@@ -155,8 +156,8 @@ static int cycle_shoot(struct shooting *s, double period, int *found, int *rests
 
 /* -------------------------------------------------------------------------------------------------------------- returns */
 
-/* Marches from x. x = a state to which the motion returns after *period, about; *period = 0: there is none, *rests = 1 if the motion
- * comes to rest. Returns a status. */
+/* Marches from x. x = a state to which the motion returns after *period, about; *period = 0: there is none, *rests = 1 if the
+ * motion comes to rest. Returns a status. */
 static int find_return(struct shooting *s, struct course *c, double scale, double *x, double *period, int *rests)
 {
     const size_t n = s->map.n;

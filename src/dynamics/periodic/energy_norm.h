@@ -35,8 +35,8 @@ void tribo_energy_norm_of(const struct energy_norm *e, size_t columns, const dou
 void tribo_energy_norm_state(const struct energy_norm *e, size_t columns, double *x, double *y);
 
 /* Linear modes of the structure with contacts that stick, sticks = 1, or slide, and with pressed normals: value [n] = omega^2,
- * ascending; states [n][2n + springs] = displacement q, q'M q = 1, velocity 0, forces of compliant contacts. Returns a status, its
- * message on the system's context. */
+ * ascending; states [n][2n + springs] = displacement q, q'M q = 1, velocity 0, forces of compliant contacts. Returns a status,
+ * its message on the system's context. */
 int tribo_energy_norm_modes(const struct energy_norm *e, const tribo_system *sys, int sticks, double *value, double *states);
 
 /* Returns |x|, and |a - b|, of coordinates. */

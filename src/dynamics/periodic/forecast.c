@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Approximate state of the odd periodic motion, by Coulomb's law. Damping that couples free modes is neglected.
  *
- * Forces and velocities are sums of the N/2 lowest odd harmonics of half a period, w_p = (2 p + 1) pi/span, known by their values at
- * N times. Mode k, eta'' + c eta' + omega^2 eta = load_k + J_k'f, has the receptance H_k = 1/(omega^2 - w^2 + i w c), so that
+ * Forces and velocities are sums of the N/2 lowest odd harmonics of half a period, w_p = (2 p + 1) pi/span, known by their values
+ * at N times. Mode k, eta'' + c eta' + omega^2 eta = load_k + J_k'f, has the receptance H_k = 1/(omega^2 - w^2 + i w c), so that
  * velocities are
  *     v = v_0 + i w (G + sum over modes of J_k J_k' H_k) f
- * v_0: velocities by loads and bases; G: matrix of compliance. f'v is the work on the structure, which generates no energy. Therefore,
- * with the limits L, the velocities v_0 + A f, and a rho that is diagonal over the contacts,
+ * v_0: velocities by loads and bases; G: matrix of compliance. f'v is the work on the structure, which generates no energy.
+ * Therefore, with the limits L, the velocities v_0 + A f, and a rho that is diagonal over the contacts,
  *     f = clamp(s, -L, L),    (1 + rho A) y = 2 f - s - rho v_0,    s += y - f
  * converges to f = clamp(f - rho v, -L, L), Coulomb's law (Douglas and Rachford 1956; Lions and Mercier 1979). */
 #include "period_map.h"
@@ -31,8 +31,8 @@ enum { LEAST_TIMES = 32, MOST_TIMES = 96 };
 /* rho_i |A_ii| of the first harmonic, without compliance: about 1/3 needs the fewest sweeps, with few and with many modes. */
 #define STEP 0.3
 
-/* Signals are values at the times j h, or spectra, transformed by the orthogonal wave_pj = (cos + sin)(w_p j h)/sqrt(N). Entries p
- * and N - 1 - p of a spectrum s make z = s_p + i s_(N-1-p), and the signal is the sum over p < N/2 of
+/* Signals are values at the times j h, or spectra, transformed by the orthogonal wave_pj = (cos + sin)(w_p j h)/sqrt(N). Entries
+ * p and N - 1 - p of a spectrum s make z = s_p + i s_(N-1-p), and the signal is the sum over p < N/2 of
  * Re((1 - i) z e^{i w_p j h})/sqrt(N). */
 struct forecast {
     struct period_map *m;

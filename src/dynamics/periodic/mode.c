@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Nonlinear modes by the extended periodic motion concept (Krack 2015): M q'' + (C - 2 delta M) q' + K q = J'f without loads in
- * time, periodic with T. Unknowns of the shooting beside x: T and delta; conditions at the beginning of the period: c'y = amplitude,
- * c'y' = 0.
+ * time, periodic with T. Unknowns of the shooting beside x: T and delta; conditions at the beginning of the period: c'y =
+ * amplitude, c'y' = 0.
  *
- * A copy of the system, the twin, has the damping C - 2 delta M, and a driver of its own; questions about the mode go to the search of
- * that driver. */
+ * A copy of the system, the twin, has the damping C - 2 delta M, and a driver of its own; questions about the mode go to the
+ * search of that driver. */
 #include "shooting.h"
 #include "common/real.h"
 
@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* LEAST: amplitude of the first mode of a path from a linear one over that wanted. STEEPEST, FLATTEST: steps of amplitudes of a path,
- * as factors; at most MOST_SHOTS of them. */
+/* LEAST: amplitude of the first mode of a path from a linear one over that wanted. STEEPEST, FLATTEST: steps of amplitudes of a
+ * path, as factors; at most MOST_SHOTS of them. */
 #define LEAST 1e-4
 #define STEEPEST 4.0
 #define FLATTEST 1.02
@@ -112,9 +112,9 @@ static int mode_border(struct shooting *s, struct point *p)
 
 /* -------------------------------------------------------------------------------------------------------------- search */
 
-/* Sets x at s->here = the linear mode of this amplitude, and its period and delta, of the structure with contacts that stick, sticks =
- * 1, or slide: of those that move c'y the one of the frequency nearest to omega; omega = 0: of the lowest one. *found = 0: there is
- * none. Returns a status. */
+/* Sets x at s->here = the linear mode of this amplitude, and its period and delta, of the structure with contacts that stick,
+ * sticks = 1, or slide: of those that move c'y the one of the frequency nearest to omega; omega = 0: of the lowest one. *found =
+ * 0: there is none. Returns a status. */
 static int linear_mode(struct shooting *s, int sticks, double amplitude, double omega, double *period, double *delta, int *found)
 {
     const tribo_system *sys = s->map.sys;
@@ -152,8 +152,8 @@ static int linear_mode(struct shooting *s, int sticks, double amplitude, double 
     return status;
 }
 
-/* Goes from x at s->here, about a mode of the amplitude `reached`, to the amplitude wanted, by steps as large as searches end well.
- * known: 1: x is such a mode; 0: the first search finds it. *found = 1: s->here is the mode wanted. Returns a status. */
+/* Goes from x at s->here, about a mode of the amplitude `reached`, to the amplitude wanted, by steps as large as searches end
+ * well. known: 1: x is such a mode; 0: the first search finds it. *found = 1: s->here is the mode wanted. Returns a status. */
 static int follow_path(struct shooting *s, double period, double delta, double reached, int known, int *found)
 {
     const size_t n = s->map.n;

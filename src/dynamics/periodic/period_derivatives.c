@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Derivatives of the periodic motion found last by parameters p. With the image of the start x after the span, d image = D dx + w dp,
+/* Derivatives of the periodic motion found last by parameters p. With the image of the start x after the span, d image = D dx + w
+ * dp,
  *     dx/dp = (I - D)^-1 w,
- * w: perturbation at the end of the span by the sources of dp, from zero. The motion is then followed once more, with the perturbations
- * dx/dp at its start, which come back to dx/dp.
+ * w: perturbation at the end of the span by the sources of dp, from zero. The motion is then followed once more, with the
+ * perturbations dx/dp at its start, which come back to dx/dp.
  *
  * Perturbations by the frequency are at constant phase theta = (1 + e) t of the loads, where q'' += -2 e q'' - e AC q', as by a
- * source, and q' = (1 + e) dq/dtheta. A factor of all loads and bases needs no source: the motion is homogeneous in loads, bases and
- * limits. */
+ * source, and q' = (1 + e) dq/dtheta. A factor of all loads and bases needs no source: the motion is homogeneous in loads, bases
+ * and limits. */
 #include "shooting.h"
 #include "common/layout.h"
 #include "common/real.h"
@@ -53,8 +54,8 @@ struct sensitivity {
     int begun;             /* 1: there was a phase */
 };
 
-/* Adds slip J q to the paths: the parts of the last phase at the end of it, and of the phase that ends now, at its start. The slider
- * of a contact that rested before the event was where it was before the jump, of another where it is after it. */
+/* Adds slip J q to the paths: the parts of the last phase at the end of it, and of the phase that ends now, at its start. The
+ * slider of a contact that rested before the event was where it was before the jump, of another where it is after it. */
 static void add_paths(struct sensitivity *d, const signed char *slip, const double *v)
 {
     double *after = d->end;
@@ -79,8 +80,8 @@ static int find_by(struct sensitivity *d, struct extreme *x, const struct deriva
     return status;
 }
 
-/* Updates an extreme if it is at time s >= 0 of the phase that ends. Its derivatives are found now, if the phase will be lost or the
- * source is of its motion; else when the span has ended: most extremes of phases are none of the period. Returns a status. */
+/* Updates an extreme if it is at time s >= 0 of the phase that ends. Its derivatives are found now, if the phase will be lost or
+ * the source is of its motion; else when the span has ended: most extremes of phases are none of the period. Returns a status. */
 static int update_extreme(struct sensitivity *d, struct extreme *x, const struct signal *signal, double s, double value)
 {
     const struct events *e = d->map->events;
@@ -309,8 +310,8 @@ static int write_extremes(struct sensitivity *d, double *extremes)
     return TRIBO_OK;
 }
 
-/* energy [columns][contacts] = derivatives of the energies, limit times length of slip; to [columns][dimension] = derivatives of the
- * caller's state at the start y, which without massless degrees of freedom is linear in the methods' state. Each or NULL. */
+/* energy [columns][contacts] = derivatives of the energies, limit times length of slip; to [columns][dimension] = derivatives of
+ * the caller's state at the start y, which without massless degrees of freedom is linear in the methods' state. Each or NULL. */
 static void write_columns(struct sensitivity *d, const double *y, double *energy, double *to)
 {
     const tribo_driver *drv = d->map->drv;

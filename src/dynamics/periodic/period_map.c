@@ -213,8 +213,8 @@ int tribo_period_map_complete(struct period_map *m, struct point *p)
 
 /* -------------------------------------------------------------------------------------------------------------- preparation */
 
-/* Returns 1 if, half a period later, loads and bases have the opposite sign and limits are the same. Limits that follow the motion
- * are not. */
+/* Returns 1 if, half a period later, loads and bases have the opposite sign and limits are the same. Limits that follow the
+ * motion are not. */
 static int is_odd(const tribo_system *sys, double period)
 {
     if (sys->normals.count) {

@@ -46,8 +46,8 @@ void tribo_period_map_free(struct period_map *m);
 
 /* Each returns a status, its message on the driver. prepare: sets the map for the present system and the guess y. follow:
  * integrates from p->x, first corrected for rounding of contacts at rest and for spring forces above limits, and sets the rest of
- * *p. later: sets *p by a span from m->t + later on, of the motion from y at m->t. complete: sets p->residual = |x(t + period) - x(t)|
- * over the whole period. */
+ * *p. later: sets *p by a span from m->t + later on, of the motion from y at m->t. complete: sets p->residual = |x(t + period) -
+ * x(t)| over the whole period. */
 int tribo_period_map_prepare(struct period_map *m, double t, double period, const double *y);
 int tribo_period_map_follow(struct period_map *m, struct point *p);
 int tribo_period_map_later(struct period_map *m, const double *y, double later, struct point *p);
@@ -62,8 +62,8 @@ int tribo_period_map_matrix(struct period_map *m, struct point *p);
  * Returns a status, its message on the driver. */
 int tribo_period_map_march(struct period_map *m, double time, size_t times, struct company *company, double *x);
 
-/* Integrates from y at m->t for a time `length` with the observer `company`; m->y becomes the state at the end. Returns a status, its
- * message on the driver. */
+/* Integrates from y at m->t for a time `length` with the observer `company`; m->y becomes the state at the end. Returns a status,
+ * its message on the driver. */
 int tribo_period_map_replay(struct period_map *m, const double *y, double length, struct company *company);
 
 /* rate [n] = coordinates of the derivative of the state by time at the end of the last integration by follow. */

@@ -14,8 +14,8 @@
  * Where limits follow the motion, friction may feed energy in, the map may increase distances, and r is not monotone. Then |r|
  * measures a step, which is halved until |r| falls; if it does not, the search begins anew some periods later.
  *
- * Unknowns beside x (struct border), such as the period of a cycle, have as many conditions: Newton's equation is bordered by their
- * columns and rows, and |r| with the conditions measures a step. */
+ * Unknowns beside x (struct border), such as the period of a cycle, have as many conditions: Newton's equation is bordered by
+ * their columns and rows, and |r| with the conditions measures a step. */
 #include "shooting.h"
 #include "common/layout.h"
 #include "common/real.h"
@@ -115,7 +115,8 @@ static void find_misfit(const struct shooting *s, const struct point *p, double 
     tribo_add(to, -1.0, p->x, s->map.n);
 }
 
-/* Follows p with its unknowns; conditions count in the residual, which is HUGE_VAL beyond the range of the unknowns. Returns a status. */
+/* Follows p with its unknowns; conditions count in the residual, which is HUGE_VAL beyond the range of the unknowns. Returns a
+ * status. */
 static int shooting_follow(struct shooting *s, struct point *p)
 {
     const size_t k = s->extra.count;
@@ -188,8 +189,8 @@ static int find_derivative(struct shooting *s, struct point *p, int spans)
     return status;
 }
 
-/* x [n + count] = the shortest solution of (I - D) y = x, D over `spans` spans from p, bordered by the columns and rows of `count`
- * unknowns, by a matrix, with singular values below cut taken as zero; *kernel = their number. Returns a status. */
+/* x [n + count] = the shortest solution of (I - D) y = x, D over `spans` spans from p, bordered by the columns and rows of
+ * `count` unknowns, by a matrix, with singular values below cut taken as zero; *kernel = their number. Returns a status. */
 static int solve_dense(struct shooting *s, struct point *p, int spans, size_t count, double cut, double *x, size_t *kernel)
 {
     const size_t n = s->map.n, all = n + count;

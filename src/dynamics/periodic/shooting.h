@@ -70,8 +70,8 @@ int tribo_shooting_freedom(struct shooting *s, size_t *freedom);
 /* Returns 1 if the residual is at most part of the size, which is finite. */
 int tribo_point_is_closed(const struct point *p, double part);
 
-/* Searches from s->here, x and unknown; the result is s->here. Returns a status, its message on the driver; the motion is found if
- * tribo_point_is_closed(s->here, TRIBO_PERIODIC). */
+/* Searches from s->here, x and unknown; the result is s->here. Returns a status, its message on the driver; the motion is found
+ * if tribo_point_is_closed(s->here, TRIBO_PERIODIC). */
 int tribo_shooting_search(struct shooting *s);
 
 /* Exchanges here and there. */
@@ -86,14 +86,15 @@ void tribo_shooting_keep(struct shooting *s, struct wanted *w);
 /* Sets s->flow, the point that has the multipliers of s->here. Returns a status. */
 int tribo_shooting_find_flow(struct shooting *s);
 
-/* The find of struct wanted: tribo_driver_find_periodic, tribo_driver_find_cycle (cycle.c), tribo_driver_find_mode (mode.c), with arguments already checked. */
+/* The find of struct wanted: tribo_driver_find_periodic, tribo_driver_find_cycle (cycle.c), tribo_driver_find_mode (mode.c), with
+ * arguments already checked. */
 int tribo_shooting_find(struct shooting *s, struct wanted *w);
 int tribo_shooting_find_cycle(struct shooting *s, struct wanted *w);
 int tribo_shooting_find_mode(struct shooting *s, struct wanted *w);
 
-/* Returns TRIBO_OK if drv is not NULL, missing is NULL, and the system is that of the motion found; missing: name of an argument that
- * is NULL. *c: NULL, or coefficients of q, q' of the caller's, which become those of the methods' state: [2 ndof + 2 springs] with
- * those of f and f', or without an expansion [2 ndof]. */
+/* Returns TRIBO_OK if drv is not NULL, missing is NULL, and the system is that of the motion found; missing: name of an argument
+ * that is NULL. *c: NULL, or coefficients of q, q' of the caller's, which become those of the methods' state: [2 ndof + 2
+ * springs] with those of f and f', or without an expansion [2 ndof]. */
 int tribo_shooting_ready(tribo_driver *drv, const char *missing, const double **c);
 
 /* x [n][columns] = (I - D)^-1 x, D = d image/d x of the motion found. Returns a status. */

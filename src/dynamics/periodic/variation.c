@@ -370,8 +370,9 @@ static void carry_over_springs(struct variation *x)
     x->status = x->status || !stop || slope == 0.0 ? x->status : add_jump(x->to, x->row, i, met->side / slope, x->change);
 }
 
-/* Appends the jumps of f' where normals lift off or touch down, earlier by depth/speed. Of several normals each makes the jumps of
- * its own contacts. Where a normal is at rest f' of a contact that slides does not jump; if the contact sticks there is no derivative. */
+/* Appends the jumps of f' where normals lift off or touch down, earlier by depth/speed. Of several normals each makes the jumps
+ * of its own contacts. Where a normal is at rest f' of a contact that slides does not jump; if the contact sticks there is no
+ * derivative. */
 static void carry_over_normals(struct variation *x)
 {
     const struct slip_state *now = &x->to->events->stick_slip.state;

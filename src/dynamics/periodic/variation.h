@@ -3,16 +3,17 @@
  * perturbations of the state.
  *
  * In a phase v moves as the structure without loads and without sliding contacts; contacts at rest are held: the part of v that
- * would move a contact at rest is removed. At an event a quantity g of a contact crosses zero: v_i of a sliding contact that stops
- * or reverses, or f_i - limit_i of a contact at rest whose static limit drops at once. A perturbed motion is earlier by dg/g', so
- * that the jump of q'' acts earlier: S = I + (q''+ - q''-) (dg/dstate)/g'. If a contact breaks away without a static limit, and
- * for elastic contacts, forces are continuous, and S = I; but where an elastic contact breaks away and others, coupled to it by G,
- * stop, f' jumps likewise: S = I + (f'+ - f'-) (df_i/dstate)/f_i'.
+ * would move a contact at rest is removed. At an event a quantity g of a contact crosses zero: v_i of a sliding contact that
+ * stops or reverses, or f_i - limit_i of a contact at rest whose static limit drops at once. A perturbed motion is earlier by
+ * dg/g', so that the jump of q'' acts earlier: S = I + (q''+ - q''-) (dg/dstate)/g'. If a contact breaks away without a static
+ * limit, and for elastic contacts, forces are continuous, and S = I; but where an elastic contact breaks away and others, coupled
+ * to it by G, stop, f' jumps likewise: S = I + (f'+ - f'-) (df_i/dstate)/f_i'.
  *
- * The force of a sliding planar contact turns with its velocity, which the method of the motion takes into account. Where it stops
- * g = f'v, f its force before, the acceleration is that of the phase before, and the jump is that of both directions.
+ * The force of a sliding planar contact turns with its velocity, which the method of the motion takes into account. Where it
+ * stops g = f'v, f its force before, the acceleration is that of the phase before, and the jump is that of both directions.
  *
- * Where a normal lifts off or touches down, q'' is continuous, and f' of elastic contacts jumps: S = I + (f'+ - f'-) J_n/(J_n q').
+ * Where a normal lifts off or touches down, q'' is continuous, and f' of elastic contacts jumps: S = I + (f'+ - f'-) J_n/(J_n
+ * q').
  *
  * If several quantities cross zero at one instant by coincidence, contacts are divided into groups that pass no forces to each
  * other, and each group makes the jump of its own forces. There is no derivative, because the order of the crossings matters, if
@@ -33,8 +34,8 @@ struct derivative_step {
     double lift;
 };
 
-/* Perturbations [columns] that are derivatives by parameters: rise [ncontact][columns] of limits; inertia and damping [columns] as of
- * struct source, or both NULL. */
+/* Perturbations [columns] that are derivatives by parameters: rise [ncontact][columns] of limits; inertia and damping [columns]
+ * as of struct source, or both NULL. */
 struct parameters {
     const double *rise, *inertia, *damping;
 };
@@ -52,8 +53,9 @@ struct derivative {
 /* Removes all steps and the matrix; free: takes a zeroed d. */
 void tribo_derivative_free(struct derivative *d);
 
-/* Moves perturbations v [n][columns] by the steps from `first` on. p: NULL, or parameters by which v are derivatives: with inertia and
- * damping, the only phase among the steps is that which ends. Returns a status, its message on the system's context. */
+/* Moves perturbations v [n][columns] by the steps from `first` on. p: NULL, or parameters by which v are derivatives: with
+ * inertia and damping, the only phase among the steps is that which ends. Returns a status, its message on the system's context.
+ * */
 int tribo_derivative_apply(const struct derivative *d, size_t first, size_t columns, double *v, const struct parameters *p);
 
 /* Returns 1 if a contact is at rest in all phases. */
@@ -90,9 +92,9 @@ struct variation {
 int tribo_variation_create(struct variation *x, tribo_system *sys, size_t columns);
 void tribo_variation_free(struct variation *x);
 
-/* Call begin before a motion of e. v [n][columns]: perturbations that decide whether contacts stop at one time. `to`, of which all
- * steps are removed: the steps of the motion are appended to it: by tribo_variation_phase for a phase that lasted tau and ended in
- * the state y, before the decision (returns a status), and by tribo_variation_event after the decision at an event. */
+/* Call begin before a motion of e. v [n][columns]: perturbations that decide whether contacts stop at one time. `to`, of which
+ * all steps are removed: the steps of the motion are appended to it: by tribo_variation_phase for a phase that lasted tau and
+ * ended in the state y, before the decision (returns a status), and by tribo_variation_event after the decision at an event. */
 void tribo_variation_begin(struct variation *x, struct events *e, const double *v, size_t columns, struct derivative *to);
 int tribo_variation_phase(struct variation *x, double tau, double t, const double *y);
 void tribo_variation_event(struct variation *x);

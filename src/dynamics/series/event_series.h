@@ -157,8 +157,8 @@ void tribo_planar_series_errors(struct event *e);
  * and x/|x|, and no speed grows so much that it is lost in rounding. */
 double tribo_planar_series_shorten(const struct event *e, double h);
 
-/* Terms x^(k) tau^k/k! of perturbations: v [rows][ncontact][columns] of velocities of contacts, z [rows][planar contacts][columns]
- * of the turns of directions u, both of the last orders, cyclically; rows > order of the series. */
+/* Terms x^(k) tau^k/k! of perturbations: v [rows][ncontact][columns] of velocities of contacts, z [rows][planar
+ * contacts][columns] of the turns of directions u, both of the last orders, cyclically; rows > order of the series. */
 struct planar_turns {
     size_t columns, rows;
     double tau;
@@ -171,7 +171,8 @@ struct planar_turns {
 void tribo_planar_series_turn(const struct event *e, size_t k, const struct planar_turns *p, double *force);
 int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct planar_turns *p, double *u);
 
-/* Returns the number of terms of perturbations, at most `most`: where a contact begins to slide by its force, series are asymptotic. */
+/* Returns the number of terms of perturbations, at most `most`: where a contact begins to slide by its force, series are
+ * asymptotic. */
 size_t tribo_planar_series_terms(const struct event *e, size_t most);
 
 /* The k-th coefficient of the power that direction i of a planar contact dissipates. */
@@ -179,8 +180,8 @@ double tribo_planar_series_power_along(const struct event *e, size_t i, size_t k
 
 /* ------------------------------------------------------------------------------------------------------ normal_series.c */
 
-/* Sets the k-th coefficients of normal loads, in the rows of their directions, and of limits that follow them; < 0 where a contact has
- * lifted off. */
+/* Sets the k-th coefficients of normal loads, in the rows of their directions, and of limits that follow them; < 0 where a
+ * contact has lifted off. */
 void tribo_normal_series_expand(struct event *e, size_t k);
 
 /* slide [ncontact] = the k-th coefficients of the rates of forces of contacts that slide at limits that follow; 0 of others. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Series of normal loads that follow the motion, and of limits that follow these: while a normal is pressed both are linear in the
- * displacements. */
+/* Series of normal loads that follow the motion, and of limits that follow these: while a normal is pressed both are linear in
+ * the displacements. */
 #include "event_series.h"
 
 #include <string.h>

@@ -266,8 +266,8 @@ static void foresee_normals(struct moreau *m, tribo_system *sys, double t, doubl
     }
 }
 
-/* Sets the forces of compliant contacts in y = f1; s->end and s->f = velocity and force of which friction has its power: (v + end)/2
- * is the velocity of sliding. */
+/* Sets the forces of compliant contacts in y = f1; s->end and s->f = velocity and force of which friction has its power: (v +
+ * end)/2 is the velocity of sliding. */
 static void end_springs(struct moreau *m, const tribo_system *sys, double h, double *y)
 {
     struct step_form *s = &m->common;

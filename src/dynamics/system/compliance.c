@@ -60,8 +60,8 @@ static int gives_at_rest(const struct compliance *g, const signed char *slip, si
     return tribo_is_compliant(g, i) && (!slip || slip[i] == TRIBO_SLIP_STUCK);
 }
 
-/* Sets factor, with rows of the identity for contacts that are rigid or slide. Returns the row of a pivot that is not positive, plus
- * 1; or 0. */
+/* Sets factor, with rows of the identity for contacts that are rigid or slide. Returns the row of a pivot that is not positive,
+ * plus 1; or 0. */
 static int factorize_at_rest(const struct compliance *g, const signed char *slip)
 {
     const size_t n = g->g.rows;

@@ -61,13 +61,13 @@ void tribo_compliance_solve(const tribo_system *sys, const signed char *slip, si
 /* x [ncontact][columns] = G f. */
 void tribo_compliance_give(const tribo_system *sys, size_t columns, const double *f, double *x);
 
-/* rate [ncontact][columns] = f'; 0 for rigid contacts. slide [ncontact][columns]: f' of the contacts with slip not 0, else 0; NULL:
- * 0. v [ncontact][columns]: in J q' - b; out J q' + G f' - b, unchanged for rigid contacts. */
+/* rate [ncontact][columns] = f'; 0 for rigid contacts. slide [ncontact][columns]: f' of the contacts with slip not 0, else 0;
+ * NULL: 0. v [ncontact][columns]: in J q' - b; out J q' + G f' - b, unchanged for rigid contacts. */
 void tribo_compliance_rates(const tribo_system *sys, const signed char *slip, const double *slide, size_t columns, double *v,
                             double *rate);
 
-/* tribo_compliance_rates without slip: a contact slides if its force in y is at its limit and v points against the force. Limits are
- * those of the set time and motion. */
+/* tribo_compliance_rates without slip: a contact slides if its force in y is at its limit and v points against the force. Limits
+ * are those of the set time and motion. */
 void tribo_compliance_move(const tribo_system *sys, const double *y, double *v, double *rate);
 
 /* noise [ncontact] = TRIBO_SPRING_NOISE |G^-1| |J| |q|, bounds of rounding errors of forces; 0 for rigid contacts. */
@@ -85,7 +85,8 @@ void tribo_compliance_enter(const tribo_system *sys, const double *limit, double
 void tribo_compliance_share(const struct compliance *g, double *v);
 
 /* Applies slip [ncontact] to perturbations v [2 ndof + count][columns] of a state: 0 for forces of open contacts, and of sliding
- * ones what their limits are perturbed by: by the motion, and by rise [ncontact][columns], or NULL. work [2 ncontact][columns]. */
+ * ones what their limits are perturbed by: by the motion, and by rise [ncontact][columns], or NULL. work [2 ncontact][columns].
+ * */
 void tribo_compliance_perturb(const tribo_system *sys, const signed char *slip, const double *rise, size_t columns, double *v,
                               double *work);
 

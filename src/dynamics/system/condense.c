@@ -83,8 +83,8 @@ static int check_damping(const tribo_model *m, const struct condensed *s)
     return TRIBO_OK;
 }
 
-/* to [rows][without] = columns w of a, of the rows with place first .. first + rows - 1; place NULL: of all rows. Returns 0 if out of
- * memory. */
+/* to [rows][without] = columns w of a, of the rows with place first .. first + rows - 1; place NULL: of all rows. Returns 0 if
+ * out of memory. */
 static int take_without(const struct condensed *s, const struct matrix *a, const size_t *place, size_t first, size_t rows,
                         struct matrix *to)
 {
@@ -130,7 +130,8 @@ static int solve_row(struct condensed *s, const struct matrix *a, size_t i)
     return a->first[i] < a->first[i + 1] && tribo_cholesky_solve(&s->factor, 1, s->row);
 }
 
-/* Sets follow = -K_ww^-1 K_wq; own = G_ii, give, and shared = G if an entry off the diagonal is more than rounding. Returns 0 if out of memory. */
+/* Sets follow = -K_ww^-1 K_wq; own = G_ii, give, and shared = G if an entry off the diagonal is more than rounding. Returns 0 if
+ * out of memory. */
 static int find_responses(const tribo_model *m, struct condensed *s)
 {
     const size_t n = m->ncontact;

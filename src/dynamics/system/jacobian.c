@@ -28,8 +28,9 @@ static void jacobian_add_product(size_t rows, double factor, const double *a, co
     }
 }
 
-/* rates [ndof][stride] -= B_n k J_n, and df_dy [ncontact][stride] += (df/dlimit) mu k J_n, over the pressed normals: N = k (J_n q - gap)
- * pushes the bodies, and the limits of its contacts follow it. At the point of the last tribo_balance_tangent. Returns a status. */
+/* rates [ndof][stride] -= B_n k J_n, and df_dy [ncontact][stride] += (df/dlimit) mu k J_n, over the pressed normals: N = k (J_n q
+ * - gap) pushes the bodies, and the limits of its contacts follow it. At the point of the last tribo_balance_tangent. Returns a
+ * status. */
 static int jacobian_add_normals(tribo_system *sys, size_t stride, double *rates, double *df_dy)
 {
     double *limit = sys->work.put_limit, *force = sys->work.dv_dt;

@@ -25,8 +25,8 @@ static int normals_reserve(struct normals *s, size_t count, size_t ncontact)
 }
 
 /* Sets stiffest: the largest row sum of |B_n| k |J_n| over the normals, and of |B_i| mu k |J_n| over their contacts, which slide.
- * Where compliance couples contacts, |G^-1| |G| times the forces of those that slide bounds the forces of others. Returns 0 if out
- * of memory. */
+ * Where compliance couples contacts, |G^-1| |G| times the forces of those that slide bounds the forces of others. Returns 0 if
+ * out of memory. */
 static int normals_find_stiffest(tribo_system *sys)
 {
     const size_t n = sys->ndof, c = sys->ncontact;

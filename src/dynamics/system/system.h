@@ -184,8 +184,8 @@ static inline int tribo_system_bases_move(const tribo_system *sys)
     return sys->loads.bases > 0;
 }
 
-/* slip [ncontact] = TRIBO_SLIP_PLANE at both directions of planar contacts, found by a balance in which all contacts slide. contacts:
- * a copy of the context, which keeps Coulomb's law and the limits 1; one [ncontact]: workspace. Returns a status. */
+/* slip [ncontact] = TRIBO_SLIP_PLANE at both directions of planar contacts, found by a balance in which all contacts slide.
+ * contacts: a copy of the context, which keeps Coulomb's law and the limits 1; one [ncontact]: workspace. Returns a status. */
 int tribo_system_find_pairs(tribo_context *contacts, size_t ncontact, double *one, signed char *slip);
 
 /* Returns 1 if limits change, by a table or harmonics, or with the motion. */
@@ -240,8 +240,8 @@ void tribo_system_smooth(const tribo_system *sys, int order, double scale, const
 /* acceleration [ndof] = q'' without the forces of rigid contacts, at t and y. */
 void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration);
 
-/* Sets the motion y of the normals. acceleration [ndof] = q'' without the forces of rigid contacts; v, a [ncontact] = J q' - b and
- * J q'' - b'. */
+/* Sets the motion y of the normals. acceleration [ndof] = q'' without the forces of rigid contacts; v, a [ncontact] = J q' - b
+ * and J q'' - b'. */
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a);
 
 /* acceleration [ndof] = q'' with friction; power = power dissipated by friction. accepted = 1: (t, y) is an accepted state,

@@ -2,7 +2,8 @@
 /* A group of contacts that R couples, and the box-constrained quadratic program over its contacts near stick. Arrays are indexed
  * by place in the group. Nothing here allocates, unless it says so.
  *
- *   factor.c          rows of R, its null space, and its factor over the free contacts: a square block, kept from call to call and
+ *   factor.c          rows of R, its null space, and its factor over the free contacts: a square block, kept from call to call
+ *   and
  *                     changed row by row, or with twice as many digits, for light bodies between heavy ones
  *   factor_sparse.c   the same for large groups with few entries
  *   small.h           solves the problem of up to 4 contacts
@@ -165,8 +166,8 @@ void tribo_box_change(struct box_qp *p, size_t i, signed char to);
  * independent contacts, rounding unless R is indefinite, negative if a pivot is, and its contact *where; else 0. */
 double tribo_factor_rebuild(struct box_qp *p, size_t *where);
 
-/* step = R^-1 step over the independent contacts, 0 for the dependents; of least norm over both for `vectors` of the basis, else 0.
- * Leaves the other entries. p->far: step is of any size. */
+/* step = R^-1 step over the independent contacts, 0 for the dependents; of least norm over both for `vectors` of the basis, else
+ * 0. Leaves the other entries. p->far: step is of any size. */
 void tribo_factor_solve(const struct box_qp *p, size_t vectors, double *step);
 
 /* Of a graded group: step + low = R^-1 (step + low), 0 for the dependents. */

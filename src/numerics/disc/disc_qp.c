@@ -197,8 +197,8 @@ static int solve_towards(struct disc_qp *p, double more, const double *centre)
     return done;
 }
 
-/* Returns 1 if y is a solution, for a further solution would leave the share. nearest: y is the solution nearest to a share, up to
- * rounding, which exceeds SHARED where limits are small beside others. */
+/* Returns 1 if y is a solution, for a further solution would leave the share. nearest: y is the solution nearest to a share, up
+ * to rounding, which exceeds SHARED where limits are small beside others. */
 static int is_shared(struct disc_qp *p, int nearest)
 {
     const int far = p->near_enough < TRIBO_NEAR_ENOUGH, settled = disc_look(p) <= SETTLED;

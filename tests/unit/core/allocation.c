@@ -85,8 +85,8 @@ static void forces_of_some(const struct problem *p, const int *used, double *f)
     tribo_destroy(c);
 }
 
-/* Contacts come and go by their limits: no allocation in many steps, forces and ranks of those in use alone, and no solve where all
- * are away. */
+/* Contacts come and go by their limits: no allocation in many steps, forces and ranks of those in use alone, and no solve where
+ * all are away. */
 TEST(come_and_go)
 {
     struct random g = random_of(_i);

@@ -121,8 +121,8 @@ TEST(one_after_the_other)
     tribo_destroy(fresh);
 }
 
-/* Box problems by what makes them solutions: R of rows of sizes from 1e-4 to 1e4, bounds beyond all forces, on one side of 0, equal,
- * and of the size of the forces. */
+/* Box problems by what makes them solutions: R of rows of sizes from 1e-4 to 1e4, bounds beyond all forces, on one side of 0,
+ * equal, and of the size of the forces. */
 TEST(boxes)
 {
     struct random g = random_of(_i);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Laws with a state: published values, steps cut into pieces, integration by Runge's method, sliders one by one, derivatives against
- * differences, borders, and bad input. */
+/* Laws with a state: published values, steps cut into pieces, integration by Runge's method, sliders one by one, derivatives
+ * against differences, borders, and bad input. */
 #include "traps.h"
 
 #include <string.h>

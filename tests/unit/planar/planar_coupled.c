@@ -153,8 +153,8 @@ static void check_fixed_point(const struct scene *s, int relaxes, const double *
     }
 }
 
-/* Sweeps of the projection, a contact after the other, until they move nothing, in parts of each force: a force far below its limit
- * stands still in parts of that long before the end. Returns whether they came to that. */
+/* Sweeps of the projection, a contact after the other, until they move nothing, in parts of each force: a force far below its
+ * limit stands still in parts of that long before the end. Returns whether they came to that. */
 static int gauss_seidel(const struct scene *s, int relaxes, double *f)
 {
     double moved = 1.0;
@@ -497,8 +497,8 @@ TEST(least_norm_of_small_limits)
     check_least_norm(seeds[_i], 1);
 }
 
-/* Three planar contacts or two and a scalar one on a body of three directions, R = J J': a rim bears a pressure of rounding, along
- * which many solutions differ. want: an interior-point method in numbers of 16 bytes. */
+/* Three planar contacts or two and a scalar one on a body of three directions, R = J J': a rim bears a pressure of rounding,
+ * along which many solutions differ. want: an interior-point method in numbers of 16 bytes. */
 TEST(least_norm_beside_rims)
 {
     enum { N = 5, M = 3 };

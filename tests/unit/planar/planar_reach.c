@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Planar contacts whose limits are far beyond the force, up to 1e300, alone and beside others that slide: conditions of optimality
- * in long double. */
+/* Planar contacts whose limits are far beyond the force, up to 1e300, alone and beside others that slide: conditions of
+ * optimality in long double. */
 #include <float.h>
 #include <string.h>
 

@@ -2,8 +2,8 @@
 /* Several bodies: clutches, masses that are pulled, blocks under noise. */
 #include "book.h"
 
-/* SDND106: two masses of 5 on a spring of 1e4, one with a limit of 2000, static 3000; 3000 on the other until t = 0.2. variant 0, 1:
- * displacements at 0.15; 2, 3: when and where the first stops. */
+/* SDND106: two masses of 5 on a spring of 1e4, one with a limit of 2000, static 3000; 3000 on the other until t = 0.2. variant 0,
+ * 1: displacements at 0.15; 2, 3: when and where the first stops. */
 static double sdnd106(int variant)
 {
     const double mass[2] = {5.0, 5.0}, stiffness[4] = {1e4, -1e4, -1e4, 1e4}, direction[2] = {1.0, 0.0}, load[2] = {0.0, 3000.0};
@@ -58,9 +58,9 @@ static double next_uniform(unsigned long long *state)
     return ((double)((z ^ (z >> 31)) >> 11) + 0.5) / 9007199254740992.0;
 }
 
-/* Mean square of the velocity of blocks of mass 1 under white noise of intensity 2 G, limit D = G = 1, in steps of tribo_step_force:
- * fine steps, and coarse ones of four under the same noise. A control variate of mean 0, the noise times g(v) = -v (|v| + 2) with
- * g' - g sgn v = v^2 - 2, takes out most of the randomness. */
+/* Mean square of the velocity of blocks of mass 1 under white noise of intensity 2 G, limit D = G = 1, in steps of
+ * tribo_step_force: fine steps, and coarse ones of four under the same noise. A control variate of mean 0, the noise times g(v) =
+ * -v (|v| + 2) with g' - g sgn v = v^2 - 2, takes out most of the randomness. */
 enum { BLOCKS = 4, FINE = 4 };
 struct walk {
     tribo_context *ctx;

@@ -57,8 +57,8 @@ static double lugre_at(double z, double v, double *slope)
     return f;
 }
 
-/* A mass of 1 pulled by a spring of 2 whose end moves with 0.1 (Canudas de Wit and others 1995): displacement at t = 25. Velocities
- * stand half a step from displacements; a step moves the bristle at constant velocity. */
+/* A mass of 1 pulled by a spring of 2 whose end moves with 0.1 (Canudas de Wit and others 1995): displacement at t = 25.
+ * Velocities stand half a step from displacements; a step moves the bristle at constant velocity. */
 static double lugre_run(int steps)
 {
     const double parameter[6] = {1e5, sqrt(1e5), 0.4, 1.0, 1.5, 1e-3}, dt = 25.0 / steps;

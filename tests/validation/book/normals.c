@@ -82,7 +82,8 @@ static double squeal_cycle(int variant)
     return variant == 0 ? period : variant == 1 ? re[1] : im[1];
 }
 
-/* SDND101: a mass of 100 on a spring of 1e4 with speed 1 against a stop of 1e6. variant 0: how long they touch; 1: largest force. */
+/* SDND101: a mass of 100 on a spring of 1e4 with speed 1 against a stop of 1e6. variant 0: how long they touch; 1: largest force.
+ * */
 static double shock(int variant)
 {
     const double mass[2] = {1.0, 100.0}, damping[2] = {0.0}, stiffness[4] = {1.0, 0.0, 0.0, 1e4}, load[2] = {0.0};
@@ -101,8 +102,8 @@ static double shock(int variant)
     return variant ? -f[1] : length;
 }
 
-/* A block of mass 1 falls on a floor of stiffness 1e4 from 0.05 at g = 10, with 5 along the floor, mu 0.1: its speed along the floor
- * after three bounces, each of which takes mu (2 v + g t), t the time it touches. */
+/* A block of mass 1 falls on a floor of stiffness 1e4 from 0.05 at g = 10, with 5 along the floor, mu 0.1: its speed along the
+ * floor after three bounces, each of which takes mu (2 v + g t), t the time it touches. */
 static double bounces(int variant)
 {
     const double mass[2] = {1.0, 1.0}, none[4] = {0.0}, load[2] = {0.0, 10.0};

@@ -103,8 +103,8 @@ static double drop_cycle(int variant)
     return period;
 }
 
-/* A block on a belt of speed 0.2 whose limit falls with the sliding speed, 1/(1 + 3 |v|): the caller's own loop. While it sticks it
- * moves with the belt up to the limit 1; it slides by the method of Runge and Kutta until v = 0, which bisection locates. */
+/* A block on a belt of speed 0.2 whose limit falls with the sliding speed, 1/(1 + 3 |v|): the caller's own loop. While it sticks
+ * it moves with the belt up to the limit 1; it slides by the method of Runge and Kutta until v = 0, which bisection locates. */
 
 /* Acceleration of the block at x, u while it slides backwards, v < 0, by tribo_law_eval. */
 static double belt_acceleration(double x, double u)

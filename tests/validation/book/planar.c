@@ -116,8 +116,8 @@ static double incline(int variant)
     return hypot(y[2], y[3]) + y[3];
 }
 
-/* A box of 10 kg on the ground (mu 0.4) with 25 balls of 1 kg (mu 0.8), pushed by 150 N along x = y, g = 9.81: speed of the box at
- * t = 4. Degrees of freedom of a ball: its place, and how far its surface has turned (inertia 0.4 m). */
+/* A box of 10 kg on the ground (mu 0.4) with 25 balls of 1 kg (mu 0.8), pushed by 150 N along x = y, g = 9.81: speed of the box
+ * at t = 4. Degrees of freedom of a ball: its place, and how far its surface has turned (inertia 0.4 m). */
 static double balls(int variant)
 {
     enum { BALLS = 25, N = 2 + 4 * BALLS, C = 2 + 2 * BALLS };

@@ -37,8 +37,8 @@ static size_t instants_at_rest(const char *name, double limit)
     return count;
 }
 
-/* Relative error of the amplitude without friction, of damping ratio zeta at resonance: after half a period the state comes back to
- * 1e-10 of the largest (tolerance of tribo_driver_find_periodic), and the mode keeps exp(-pi zeta) of a deviation. */
+/* Relative error of the amplitude without friction, of damping ratio zeta at resonance: after half a period the state comes back
+ * to 1e-10 of the largest (tolerance of tribo_driver_find_periodic), and the mode keeps exp(-pi zeta) of a deviation. */
 static double resonance_error(double zeta)
 {
     return 1e-10 / (1.0 - exp(-PI * zeta));
@@ -185,8 +185,8 @@ TEST(interrupted)
 }
 END_TEST
 
-/* --plot runs gnuplot on a script beside the tables, also where names hold a quote; without gnuplot it is refused before any work.
- * A script stands for gnuplot: it keeps what it is given. */
+/* --plot runs gnuplot on a script beside the tables, also where names hold a quote; without gnuplot it is refused before any
+ * work. A script stands for gnuplot: it keeps what it is given. */
 TEST(plots)
 {
     char script[TEXT], path[4096], longer[4096 + 2];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* tribo-damper with few modes of the beam and the plate of the examples: errors, beside those that it prints. Works in the current
- * folder. */
+/* tribo-damper with few modes of the beam and the plate of the examples: errors, beside those that it prints. Works in the
+ * current folder. */
 #include <stdio.h>
 #include <string.h>
 
@@ -70,8 +70,8 @@ static const struct few_modes {
 #endif
 };
 
-/* Errors at all limits are at most the one that is printed, and that is at most five times the largest: errors peak where contacts
- * just stick for ever. */
+/* Errors at all limits are at most the one that is printed, and that is at most five times the largest: errors peak where
+ * contacts just stick for ever. */
 TEST(error_of_few_modes)
 {
     const struct few_modes *few = &few_modes[_i];

@@ -216,9 +216,9 @@ TEST(normal_load)
 }
 END_TEST
 
-/* Normal loads that follow the motion: the elastic contact of tests/validation/series/normals.c, x'' + cx x' + 12 x + f, y'' + 2 y' +
- * 21 y + N, case 4, which lifts off; its normal load at rest, 50, once from load=, once from --limits, and once by a gap, where the
- * constant load is missing and y moves about another place of rest. What is refused. */
+/* Normal loads that follow the motion: the elastic contact of tests/validation/series/normals.c, x'' + cx x' + 12 x + f, y'' + 2
+ * y' + 21 y + N, case 4, which lifts off; its normal load at rest, 50, once from load=, once from --limits, and once by a gap,
+ * where the constant load is missing and y moves about another place of rest. What is refused. */
 #define FOLLOWS                                                                                                                  \
     "--mass follow-m.mtx --stiffness follow-k.mtx --damping-matrix follow-c.mtx --dofs follow.txt --drive 0.79577471545947673 "  \
     "--load 0,0,0,x:force=60:phase=90 --load 0,0,0,y:force=60:phase=90 --contact 0,0,0,x:stiffness=5:"
@@ -281,8 +281,8 @@ TEST(normal_follows)
 }
 END_TEST
 
-/* A contact in a plane, by events: a force of size 1 that turns at 0.6 makes a circle of radius sqrt(1 - N^2)/(1 - 0.36) on a mass of
- * 1, but for the damping of 1e-9; each direction takes half of the power. On a whole curve nothing is missing. */
+/* A contact in a plane, by events: a force of size 1 that turns at 0.6 makes a circle of radius sqrt(1 - N^2)/(1 - 0.36) on a
+ * mass of 1, but for the damping of 1e-9; each direction takes half of the power. On a whole curve nothing is missing. */
 #define TURNS                                                                                                                    \
     "--mass turn.mtx --stiffness turn.mtx --dofs follow.txt --damping 1e-9 --drive 0.0954929658551372 "                          \
     "--load 0,0,0,x:force=1:phase=90 --load 0,0,0,y:force=1 --contact 0,0,0,xy:"

@@ -44,10 +44,13 @@ TEST(consistent_converges)
 }
 
 /* Equal masses: the same state, from farther away. A ratio of 1e6: nothing reports a failure, but light blocks are flung to where
- * no spring would let them go, five times as near with a fifth of the step. */
+ * no spring would let them go, five times as near with a fifth of the step. Uneven limits are a long case. */
 TEST(partition)
 {
-    const int even = _i;
+    const int even = !_i;
+    if (!even && !more()) {
+        return;
+    }
     const double dt[] = {1e-2, 2e-3};
     double want[PILE_STATES], y[PILE_STATES], error[COUNT(dt)];
     reach(even, 1.0, "event", TRIBO_CONSISTENT, 1.0, 1e-10, want);

@@ -157,9 +157,9 @@ TEST(an_observer_that_would_see_nothing)
     tribo_system_destroy(sys);
 }
 
-/* Three oscillators; two contacts between bodies 0 and 1, whose forces at rest are not unique, and one that holds body 1 by a limit
- * that swings through zero, 10^2 to 10^6 times as large: it passes the load in a moment, and a decision must not look beyond
- * that. A period has some 20 events, wherever it is cut. */
+/* Three oscillators; two contacts between bodies 0 and 1, whose forces at rest are not unique, and one that holds body 1 by a
+ * limit that swings through zero, 10^2 to 10^6 times as large: it passes the load in a moment, and a decision must not look
+ * beyond that. A period has some 20 events, wherever it is cut. */
 static tribo_system *clutch(struct random *g)
 {
     const double mass[] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, direction[] = {0, -1, 1, 0, 1, -1, 0, 1, 0}, load[] = {0, 1, 0};

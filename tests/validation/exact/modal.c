@@ -253,8 +253,8 @@ TEST(powers)
     tribo_system_destroy(sys);
 }
 
-/* The same of a row by 4 modes and the compliance that they lack at 3 contacts, of which `set` hold: of several perturbations, and
- * of each alone. Without modes all sets share one set of coordinates, which lasts as long as one of them. */
+/* The same of a row by 4 modes and the compliance that they lack at 3 contacts, of which `set` hold: of several perturbations,
+ * and of each alone. Without modes all sets share one set of coordinates, which lasts as long as one of them. */
 TEST(springs)
 {
     enum { MODES = 4, SPRINGS = 3, COLUMNS = 2, ALL = 2 * MODES + SPRINGS };
@@ -484,7 +484,8 @@ TEST(coupled)
         for (size_t l = 0; l < m; l++) {
             double complex at = 0.0, rate = 0.0;
             for (size_t p = 0; p < e; p++) {
-                const double complex part = (h->rr[p * m + k] - h->ri[p * m + k] * I) * (h->br[l * e + p] + h->bi[l * e + p] * I);
+                const double complex part =
+                    (h->rr[p * m + k] - h->ri[p * m + k] * I) * (h->left.br[l * e + p] + h->left.bi[l * e + p] * I);
                 at += creal(part);
                 rate += creal((h->lr[p] + h->li[p] * I) * part);
             }
@@ -510,8 +511,9 @@ TEST(exponential_from_one)
     }
 }
 
-/* A row of bodies, each with a contact to the ground; those of one end, which the loads and bases move, slide now and then. Body d
- * is row d of the matrices, or, mirrored, the last row but d. Sets y, what oscillates as body 1, and the sum of the multipliers. */
+/* A row of bodies, each with a contact to the ground; those of one end, which the loads and bases move, slide now and then. Body
+ * d is row d of the matrices, or, mirrored, the last row but d. Sets y, what oscillates as body 1, and the sum of the
+ * multipliers. */
 static void move_row(size_t n, int damped, int bases, int mirrored, double *y, double *harmonic, double *trace)
 {
     enum { MOST = 44 };

@@ -212,8 +212,8 @@ static double energy(size_t system, const char *method, double epsilon, double d
     return y[last];
 }
 
-/* Against fixed steps in which the band is resolved. The steps of the method of first order are as the root of the tolerance: its tightest
- * tolerance is one of the long cases. */
+/* Against fixed steps in which the band is resolved. The steps of the method of first order are as the root of the tolerance: its
+ * tightest tolerance is one of the long cases. */
 TEST(energies)
 {
     const double epsilon = _i % 2 ? 1e-3 : 1e-2;

@@ -453,7 +453,8 @@ TEST(eigenvalues_of_what_is_none)
 
 /* ---------------------------------------------------------------------------------------------------- linear equations */
 
-/* A = L L' with rows of any size: its factor solves; and less a part of one row's pivot, that row is the one that is not definite. */
+/* A = L L' with rows of any size: its factor solves; and less a part of one row's pivot, that row is the one that is not
+ * definite. */
 TEST(definite_factor)
 {
     enum { N = 30 };

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Cycles, whose period is unknown: reference values of stick-slip and squeal, from poor guesses; an unstable cycle without events;
- * cycles that are independent of each other; states of rest, and loads in time. */
+/* Cycles, whose period is unknown: reference values of stick-slip and squeal, from poor guesses; an unstable cycle without
+ * events; cycles that are independent of each other; states of rest, and loads in time. */
 #include "run.h"
 
 #include <string.h>
 
 static const char *const methods[] = {"exact", "event", "auto"};
 
-/* Equal blocks, m = k = 1, on a belt at speed v0, of which block i has a spring k (1 + differ i). Limits 0.6 while sliding, ratio times
- * that at rest; falls: velocity by which they fall, 0: at once. damping: of each block. */
+/* Equal blocks, m = k = 1, on a belt at speed v0, of which block i has a spring k (1 + differ i). Limits 0.6 while sliding, ratio
+ * times that at rest; falls: velocity by which they fall, 0: at once. damping: of each block. */
 static tribo_system *blocks(size_t count, double ratio, double falls, double v0, double damping, double differ)
 {
     double mass[2] = {1.0, 1.0}, k[4] = {1.0}, j[4] = {1.0}, c[4] = {damping}, belt[2] = {v0, v0};
@@ -68,8 +68,9 @@ static void cycle_free(tribo_driver *d, tribo_system *sys)
     tribo_system_destroy(sys);
 }
 
-/* The limit drops at once: closed form. From rest without a guess of the period, from afar, from three periods; the state begins as
- * the block breaks away; another search from it changes nothing; the motion has the period; a period's energy is the belt's work. */
+/* The limit drops at once: closed form. From rest without a guess of the period, from afar, from three periods; the state begins
+ * as the block breaks away; another search from it changes nothing; the motion has the period; a period's energy is the belt's
+ * work. */
 TEST(drops)
 {
     static const double guess[] = {0.0, 8.0, 24.2, 1.0};
@@ -109,8 +110,8 @@ TEST(drops)
     cycle_free(drv, sys);
 }
 
-/* The limit falls with the speed, limit 0.6 + 0.4 exp(-|v|/0.3): slip of 4.63232626800163 to x = 0.18626175426093, by steps of 80 bits
- * of another code. */
+/* The limit falls with the speed, limit 0.6 + 0.4 exp(-|v|/0.3): slip of 4.63232626800163 to x = 0.18626175426093, by steps of 80
+ * bits of another code. */
 TEST(falls)
 {
     tribo_system *sys = blocks(1, 1.0 / 0.6, 0.3, 0.2, 0.0, 0.0);
@@ -128,8 +129,9 @@ TEST(falls)
     cycle_free(drv, sys);
 }
 
-/* A block with damping 0.115 slides on a belt at speed 1, limit 0.6 + 0.4 exp(-|v|/0.5). The state of equilibrium is stable, and an
- * unstable cycle without events surrounds it: period, largest velocity at the place of equilibrium, and multiplier by another code. */
+/* A block with damping 0.115 slides on a belt at speed 1, limit 0.6 + 0.4 exp(-|v|/0.5). The state of equilibrium is stable, and
+ * an unstable cycle without events surrounds it: period, largest velocity at the place of equilibrium, and multiplier by another
+ * code. */
 TEST(unstable)
 {
     tribo_system *sys = blocks(1, 1.0 / 0.6, 0.5, 1.0, 0.115, 0.0);
@@ -196,8 +198,8 @@ TEST(squeals)
     cycle_free(drv, sys);
 }
 
-/* Two blocks on one belt: alike from one state or from two, each has its own neutral direction; of other periods there is no common
- * cycle. */
+/* Two blocks on one belt: alike from one state or from two, each has its own neutral direction; of other periods there is no
+ * common cycle. */
 TEST(two_blocks)
 {
     tribo_system *sys = blocks(2, 1.0 / 0.6, 0.0, 0.2, 0.0, _i / 3 == 2 ? 0.7 : 0.0);
@@ -225,7 +227,8 @@ TEST(two_blocks)
     cycle_free(drv, sys);
 }
 
-/* States of rest are no cycles: sliding on the belt, from the equilibrium and from near it; held by a base at rest; below flutter. */
+/* States of rest are no cycles: sliding on the belt, from the equilibrium and from near it; held by a base at rest; below
+ * flutter. */
 TEST(rests)
 {
     tribo_system *sys = _i == 3 ? squeal(0.5, 0.3) : blocks(1, 1.0 / 0.6, 0.5, _i == 2 ? 0.0 : 1.0, 0.2, 0.0);

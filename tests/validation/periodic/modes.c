@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Nonlinear modes: reference values of an oscillator with an elastic contact; modes of structures beside the motion of a structure
- * with the damping C - 2 delta M; a backbone of the beam; what is refused. */
+/* Nonlinear modes: reference values of an oscillator with an elastic contact; modes of structures beside the motion of a
+ * structure with the damping C - 2 delta M; a backbone of the beam; what is refused. */
 #include "beam.h"
 #include "run.h"
 
@@ -14,8 +14,8 @@ static void find_mode(tribo_driver *d, const double *c, double amplitude, double
     require(!status, "amplitude %g: %s", amplitude, tribo_driver_message(d));
 }
 
-/* m = k = kt = 1, limit 0.5: closed pieces, by an adaptive integrator of another code to 1e-13. From the linear mode; then from the
- * mode of the amplitude before. Energy of friction 4 N (X - N/kt). */
+/* m = k = kt = 1, limit 0.5: closed pieces, by an adaptive integrator of another code to 1e-13. From the linear mode; then from
+ * the mode of the amplitude before. Energy of friction 4 N (X - N/kt). */
 TEST(jenkins)
 {
     static const double amplitude[] = {0.3, 0.6, 1.0, 2.0};
@@ -61,8 +61,8 @@ TEST(jenkins)
     tribo_system_destroy(sys);
 }
 
-/* Two masses between springs, damped; the first contact has this compliance, the second is rigid, soft[2] > 0: or a spring before it.
- * less: delta that is taken from the damping. preload: normal load of a contact under the second mass, 0: constant limits. */
+/* Two masses between springs, damped; the first contact has this compliance, the second is rigid, soft[2] > 0: or a spring before
+ * it. less: delta that is taken from the damping. preload: normal load of a contact under the second mass, 0: constant limits. */
 static tribo_system *masses(double soft, double less, double preload)
 {
     const double mass[] = {1.0, 0.0, 0.0, 2.0}, stiffness[] = {5.0, -2.0, -2.0, 4.0}, direction[] = {1.0, 0.0, -1.0, 1.0};
@@ -90,8 +90,8 @@ static tribo_system *masses(double soft, double less, double preload)
     return sys;
 }
 
-/* A structure with the damping C - 2 delta M comes back after 2 pi/omega from the state found, where the signal has the amplitude and
- * no rate. Signals of displacements, and of velocities; from zeros and both linear frequencies. */
+/* A structure with the damping C - 2 delta M comes back after 2 pi/omega from the state found, where the signal has the amplitude
+ * and no rate. Signals of displacements, and of velocities; from zeros and both linear frequencies. */
 TEST(structures)
 {
     static const double signals[][4] = {{1.0, 0.0, 0.0, 0.0}, {0.5, 1.0, 0.0, 0.0}, {0.0, 0.0, 0.3, 1.0}, {0.2, 0.3, 0.4, 0.0}};
@@ -157,9 +157,9 @@ static tribo_system *soft_beam(double soft, double limit)
     return sys;
 }
 
-/* The first mode of the beam at 60 amplitudes, each from the one before, up and down: the same ones. At small amplitudes contacts stick,
- * and frequency and damping are constant; at large ones they slide, and what they dissipate, 4 limit amplitude, makes zeta fall with
- * 1/amplitude to that of the structure. */
+/* The first mode of the beam at 60 amplitudes, each from the one before, up and down: the same ones. At small amplitudes contacts
+ * stick, and frequency and damping are constant; at large ones they slide, and what they dissipate, 4 limit amplitude, makes zeta
+ * fall with 1/amplitude to that of the structure. */
 TEST(backbone)
 {
     enum { AMPLITUDES = 60 };

@@ -13,7 +13,8 @@ static const char *const methods[] = {"exact", "event", "auto"};
 
 /* ------------------------------------------------------------------------------------------------------ one oscillator */
 
-/* Of Den Hartog's amplitude, by limit and by frequency; 4 N x0 a period are dissipated. By the loads, with the sum of degree 1. */
+/* Of Den Hartog's amplitude, by limit and by frequency; 4 N x0 a period are dissipated. By the loads, with the sum of degree 1.
+ * */
 TEST(den_hartog)
 {
     static const int kind[] = {TRIBO_PARAMETER_LIMIT, TRIBO_PARAMETER_LOADS, TRIBO_PARAMETER_FREQUENCY, TRIBO_PARAMETER_DAMPING};
@@ -68,8 +69,8 @@ struct scene {
     double omega;
 };
 
-/* A chain of n bodies, the first ones on the ground by springs; contact i holds body i, or 2 i, to the ground, every third one to the
- * next body. FREE: no stiffness, and the bodies slide on the contacts. */
+/* A chain of n bodies, the first ones on the ground by springs; contact i holds body i, or 2 i, to the ground, every third one to
+ * the next body. FREE: no stiffness, and the bodies slide on the contacts. */
 static tribo_system *build(const struct scene *s)
 {
     static double mass[DOFS], k[DOFS * DOFS], c[DOFS * DOFS], j[CONTACTS * DOFS];
@@ -336,8 +337,8 @@ static void eliminate(size_t n, double a[CONTACTS][CONTACTS], double *x)
     }
 }
 
-/* Ten limits by which ten contacts dissipate the energies that are asked for: Newton's method by the derivatives finds the limits that
- * had these energies, and doubles the digits in each of the last steps. */
+/* Ten limits by which ten contacts dissipate the energies that are asked for: Newton's method by the derivatives finds the limits
+ * that had these energies, and doubles the digits in each of the last steps. */
 TEST(ten_limits)
 {
     static const int kind[CONTACTS] = {0};
@@ -437,8 +438,8 @@ TEST(errors)
     search_free(&s);
 }
 
-/* Where the period begins as a contact stops there is no derivative of the state. Where two contacts of a symmetric structure, that
- * act on each other, stop at one instant, a limit that changes parts them. */
+/* Where the period begins as a contact stops there is no derivative of the state. Where two contacts of a symmetric structure,
+ * that act on each other, stop at one instant, a limit that changes parts them. */
 TEST(no_derivative)
 {
     const int kind = TRIBO_PARAMETER_LIMIT;

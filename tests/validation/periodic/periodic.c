@@ -446,7 +446,8 @@ TEST(multipliers_of_strangers)
     search_free(&s);
 }
 
-/* No multipliers where no inertia couples them, but a third contact that rests does, which leaves their sum with the block between. */
+/* No multipliers where no inertia couples them, but a third contact that rests does, which leaves their sum with the block
+ * between. */
 TEST(no_multipliers_by_a_third)
 {
     const double mass[] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0},

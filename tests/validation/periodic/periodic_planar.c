@@ -9,8 +9,8 @@ enum { MOST = 6 };
 
 static const double identity[4] = {1.0, 0.0, 0.0, 1.0};
 
-/* A force of size 1 that turns at w = 0.6 on a mass of 1: a circle of radius sqrt(1 - N^2)/(1 - w^2), behind by asin(N), whose friction
- * takes 2 pi N radius a period; two multipliers of a motion that turns with the load. */
+/* A force of size 1 that turns at w = 0.6 on a mass of 1: a circle of radius sqrt(1 - N^2)/(1 - w^2), behind by asin(N), whose
+ * friction takes 2 pi N radius a period; two multipliers of a motion that turns with the load. */
 TEST(whirl)
 {
     const double w = 0.6, limit = 0.3, radius = sqrt(1.0 - limit * limit) / (1.0 - w * w), lag = asin(limit);
@@ -80,8 +80,9 @@ static double between(uint64_t *seed, double from, double to)
     return from + (to - from) * (double)(*seed >> 11) / 9007199254740992.0;
 }
 
-/* One to three masses with planar contacts, with each other for every third seed, some with ellipses; two harmonics of a period. wide:
- * limits of a hundredth to three: some contacts turn within 1e-6 while others rest, and squares of their series overflow. */
+/* One to three masses with planar contacts, with each other for every third seed, some with ellipses; two harmonics of a period.
+ * wide: limits of a hundredth to three: some contacts turn within 1e-6 while others rest, and squares of their series overflow.
+ * */
 static tribo_system *coupled(uint64_t seed, int wide, size_t *ndof, double *period)
 {
     uint64_t s = seed * 7919u + 12345u;

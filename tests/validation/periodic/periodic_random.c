@@ -379,8 +379,8 @@ TEST(static_limits)
     check_static_limits(_i, "exact");
 }
 
-/* Contacts held above their kinetic limit, where rounding of velocities would make them slide; of 956, states from which one slides
- * until it is held at the end of the period: none is a periodic motion. */
+/* Contacts held above their kinetic limit, where rounding of velocities would make them slide; of 956, states from which one
+ * slides until it is held at the end of the period: none is a periodic motion. */
 TEST(held_above_kinetic)
 {
     static const int seeds[] = {651, 940, 956, 1155};

@@ -286,8 +286,8 @@ TEST(free_bodies)
     gsl_spmatrix_free(direction);
 }
 
-/* Two free chains of which one drift is a mode and the other is left to the static response of a contact of both: a drift, too. As
- * compliance it would have no bound. */
+/* Two free chains of which one drift is a mode and the other is left to the static response of a contact of both: a drift, too.
+ * As compliance it would have no bound. */
 TEST(drifts_left_out)
 {
     struct random g = random_of(_i + 1);

@@ -104,8 +104,8 @@ static int see_rest(const tribo_moment *moment, void *data)
     return 0;
 }
 
-/* A block rides on a shaking belt for 300 of its cycles: its relative velocity is 0, not nearly 0, whenever it is seen. Then it is
- * pulled off, slowly, and slides for good: one event. */
+/* A block rides on a shaking belt for 300 of its cycles: its relative velocity is 0, not nearly 0, whenever it is seen. Then it
+ * is pulled off, slowly, and slides for good: one event. */
 TEST(rest_on_a_belt)
 {
     const double times[] = {2000.0, 2100.0}, values[] = {0.0, 5.0}, one = 1.0;

@@ -9,9 +9,9 @@ enum { MOST = 16, EVENTS = 8 };
 
 static const double full_turn = 6.283185307179586;
 
-/* x'' + cx x' + 12 x + f = Fx cos wt, y'' + 2 y' + 21 y + N = 100 + Fy cos wt, N = 21 max(y, 0), limit 0.85 N, cx = 0.1 sqrt 12. The
- * elastic contact has stiffness 5. In coordinates turned by an angle both rows of J, and K, have several entries. damped: factor of the
- * damping. coupling: stiffness between x and y. */
+/* x'' + cx x' + 12 x + f = Fx cos wt, y'' + 2 y' + 21 y + N = 100 + Fy cos wt, N = 21 max(y, 0), limit 0.85 N, cx = 0.1 sqrt 12.
+ * The elastic contact has stiffness 5. In coordinates turned by an angle both rows of J, and K, have several entries. damped:
+ * factor of the damping. coupling: stiffness between x and y. */
 static tribo_system *shaker_with(double fx, double fy, double omega, double soft, double turn, double damped, double coupling)
 {
     const double c = cos(turn), s = sin(turn), cx = 0.1 * sqrt(12.0) * damped, cy = 2.0 * damped, mass[] = {1.0, 1.0};
@@ -43,8 +43,8 @@ static tribo_system *shaker(double fx, double fy, double omega, double soft, dou
     return shaker_with(fx, fy, omega, soft, turn, 1.0, 0.0);
 }
 
-/* Mode coupling, after Hoffmann and others (2002): m = 1, springs 11 at 150 degrees and 20 at 30 degrees, normal stiffness 11 in y,
- * preload 10, on a belt. */
+/* Mode coupling, after Hoffmann and others (2002): m = 1, springs 11 at 150 degrees and 20 at 30 degrees, normal stiffness 11 in
+ * y, preload 10, on a belt. */
 static tribo_system *squeal_with(double belt, double mu, double damped)
 {
     const double a = full_turn * 150.0 / 360.0, b = full_turn * 30.0 / 360.0,
@@ -209,8 +209,8 @@ TEST(periodic)
     tribo_system_destroy(sys);
 }
 
-/* Multipliers: trace of the map over a period, and of its square, by differences of motions. Elastic and rigid, and rigid with a static
- * limit; a spring couples x and y. */
+/* Multipliers: trace of the map over a period, and of its square, by differences of motions. Elastic and rigid, and rigid with a
+ * static limit; a spring couples x and y. */
 TEST(multipliers)
 {
     const struct value *v = &values[_i % VALUES];
@@ -273,8 +273,8 @@ TEST(unstable)
 
 /* ------------------------------------------------------------------------------------------------- several normals, one body */
 
-/* A body between three walls: it slides on bases that run away, along x on a wall below and one above, along y on one beside it. Each
- * presses by its own stiffness, from its own gap. */
+/* A body between three walls: it slides on bases that run away, along x on a wall below and one above, along y on one beside it.
+ * Each presses by its own stiffness, from its own gap. */
 static const struct wall {
     double mu, stiffness, gap;
 } walls[] = {{0.6, 21.0, -0.3}, {0.4, 15.0, -0.2}, {0.5, 9.0, -0.1}};
@@ -316,7 +316,8 @@ static void wall_rates(double t, const double *y, double *rate)
     rate[3] = (20.0 * cos(3.0 * t) - 2.0 * y[0] - 17.0 * y[1] - 0.5 * y[3] - walls[2].mu * beside - below + above) / 1.5;
 }
 
-/* Against the equations by hand, in short steps of Runge and Kutta's method: loads and limits are continuous where walls are left. */
+/* Against the equations by hand, in short steps of Runge and Kutta's method: loads and limits are continuous where walls are
+ * left. */
 TEST(walls_of_a_body)
 {
     static const char *const method[] = {"event", "moreau/fixed", "central/fixed", "exact"};
@@ -343,8 +344,8 @@ TEST(walls_of_a_body)
     tribo_system_destroy(sys);
 }
 
-/* The walls stand: two of them hold the body along x, at rest together, and each limit goes its own way. Steps of 1e-4 are off by 1e-5.
- * Method exact, which decides at events only, and event are the same. */
+/* The walls stand: two of them hold the body along x, at rest together, and each limit goes its own way. Steps of 1e-4 are off by
+ * 1e-5. Method exact, which decides at events only, and event are the same. */
 TEST(redundant)
 {
     static const char *const method[] = {"event", "moreau/fixed", "exact"};
@@ -380,7 +381,8 @@ TEST(graze)
     assert_all_close(im[1], im[0], 5, 1e-4);
 }
 
-/* A normal that rests at depth 0, beside a body that slides: neighbouring motions press or do not, and there are no multipliers. */
+/* A normal that rests at depth 0, beside a body that slides: neighbouring motions press or do not, and there are no multipliers.
+ * */
 TEST(resting)
 {
     const double mass[] = {1.0, 1.0, 1.0}, stiffness[] = {2.0, 3.0, 5.0},
@@ -452,8 +454,8 @@ TEST(limit_cycle)
     tribo_system_destroy(sys);
 }
 
-/* At the border of flutter, mu = ((K11 - K22)^2 + 4 K12^2)/(4 K12 kn), the sliding state has two equal exponents and one vector: exact
- * says so, and auto takes event. Beside it exact has both exponents, and agrees. */
+/* At the border of flutter, mu = ((K11 - K22)^2 + 4 K12^2)/(4 K12 kn), the sliding state has two equal exponents and one vector:
+ * exact says so, and auto takes event. Beside it exact has both exponents, and agrees. */
 TEST(flutter)
 {
     static const double mu[] = {0.47237749297, 0.47237749297 * (1.0 - 1e-5), 0.47237749297 * (1.0 + 1e-5)};
@@ -509,8 +511,8 @@ TEST(shock)
 /* ------------------------------------------------------------------------------------------------------------- fixed steps */
 
 /* Errors of fixed steps against event, relative to the largest displacement, velocity, or energy. Rigid contacts slide on a fast
- * base: where they stop, steps are of first order with constant limits, too. Central differences are of second order without damping.
- * rk4 has the law of Quinn, with a band of the width of 10 steps. */
+ * base: where they stop, steps are of first order with constant limits, too. Central differences are of second order without
+ * damping. rk4 has the law of Quinn, with a band of the width of 10 steps. */
 static double step_error(const char *method, double dt, const struct value *v, double soft)
 {
     const double fast[] = {300.0, 0.0}, end = 3.0, damped = strcmp(method, "central/fixed") ? 1.0 : 0.0;
@@ -550,7 +552,8 @@ TEST(steps)
             error[1], error[2], order);
 }
 
-/* A stiff normal that stays pressed is stable in steps of moreau far above 1/omega: the distance from equilibrium does not grow. */
+/* A stiff normal that stays pressed is stable in steps of moreau far above 1/omega: the distance from equilibrium does not grow.
+ * */
 TEST(stiff)
 {
     const double mass = 1.0, spring = 100.0, stiffness = 1e8, push = 1e6, direction[] = {0.0, 1.0};
@@ -578,8 +581,8 @@ TEST(stiff)
 /* -------------------------------------------------------------------------------------------------------------- structures */
 
 /* Three bodies on springs, each with a tangential and a normal degree of freedom. Contact 0 is tied to the ground by normal 3,
- * contacts 1 and 2, on bodies 0 and 1, and on body 2, share normal 4, between the bodies 1 and 2; contact 5 has no normal. soft: the
- * compliance of contacts 0 and 2. */
+ * contacts 1 and 2, on bodies 0 and 1, and on body 2, share normal 4, between the bodies 1 and 2; contact 5 has no normal. soft:
+ * the compliance of contacts 0 and 2. */
 static tribo_model *block_model(int seed, double soft)
 {
     enum { N = 6, C = 6 };

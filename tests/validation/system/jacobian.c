@@ -107,8 +107,8 @@ TEST(jacobians)
     tribo_system_destroy(sys);
 }
 
-/* Three masses of 1 with springs between them; contacts 0 and 1 along the first mass and between the first two, a planar contact 2, 3 on
- * the others, one at zero and one that shares it; two normals, which are pressed in about half of the states. */
+/* Three masses of 1 with springs between them; contacts 0 and 1 along the first mass and between the first two, a planar contact
+ * 2, 3 on the others, one at zero and one that shares it; two normals, which are pressed in about half of the states. */
 static tribo_system *following(int planar)
 {
     const double mass[4] = {1.0, 1.2, 0.8, 1.5}, j[6 * 4] = {1.0, 0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.3, 0.0, 0.0, 1.0, 0.2,

@@ -537,7 +537,8 @@ TEST(automatic)
     tribo_system_destroy(sys);
 }
 
-/* What a system does, with any method, changes nothing in the context that it lends; errors of the system leave no message there. */
+/* What a system does, with any method, changes nothing in the context that it lends; errors of the system leave no message there.
+ * */
 TEST(lent_context)
 {
     const char *method = any_method_name(_i);
@@ -548,6 +549,7 @@ TEST(lent_context)
     tribo_system *sys = block(1.0, 1.0, 0.3);
     tribo_context *c = tribo_system_context(sys);
     assert_ok(tribo_set_limit_all(c, 0.7));
+    assert_ok(tribo_set_epsilon_all(c, 1e-3));
     add_limit(sys, 1.25, 0.6, 0.0);
     assert_status(tribo_set_law(c, 999), TRIBO_ERR_RANGE);
     assert_ok(tribo_get_count(c, TRIBO_COUNT_SETTINGS, &before));

@@ -42,8 +42,8 @@ static double left(size_t n, const double *a, size_t i, const double *q, const d
     return size > 0.0 ? sum / size : 0.0;
 }
 
-/* Returns a system of one body and n contacts with the compliance a [n][n], and the status of that in *status; if diagonal, makes a
- * diagonal first. */
+/* Returns a system of one body and n contacts with the compliance a [n][n], and the status of that in *status; if diagonal, makes
+ * a diagonal first. */
 static tribo_system *create(size_t n, int diagonal, double *a, int *status, size_t *where)
 {
     const double none[MOST] = {0.0};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Systems with compliance beside the same systems with a degree of freedom without mass for each slider: the same motions to the
- * last bit, with the displacements of sliders behind the velocities in the state. Stiffness and compliance are powers of 2 or sums
- * of few, so that both ways to the matrices are without rounding. */
+ * last bit, with the displacements of sliders behind the velocities in the state. Stiffness and compliance are powers of 2 or
+ * sums of few, so that both ways to the matrices are without rounding. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
