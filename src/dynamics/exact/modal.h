@@ -119,8 +119,7 @@ struct forced {
     size_t outputs, sliding; /* output [0, sliding): velocities; [sliding, holding): forces of contacts that hold */
     size_t holding;          /* output [holding, outputs): N of the normals, in their order */
     struct output *output;
-    double fastest;       /* largest |lambda| of exponents; without modes a bound of these and of Omega */
-    double quickest;      /* largest |lambda| of exponents and harmonics */
+    double quickest;      /* largest |lambda| of exponents and harmonics; without modes a bound of these */
     double decay, growth; /* largest -Re lambda; largest Re lambda; at least 0 */
 };
 

@@ -367,7 +367,7 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
     if (own->powers) {
         x->runs = 0;
         x->tau = 0.0;
-        x->longest = *longest = lesser(*longest, TRIBO_POWERS_REACH / h->fastest);
+        x->longest = *longest = lesser(*longest, TRIBO_POWERS_REACH / h->quickest);
         double power = 1.0, sixth = 1.0;
         for (size_t k = 0; k < TRIBO_POWERS; k++) {
             x->growth[k] = power;

@@ -29,13 +29,12 @@ static int find_terms(struct modal_build *b)
     for (size_t k = 0; k < f->terms; k++) {
         f->size[k] = tribo_modal_magnitude(f->lr[k], f->li[k]);
         f->sixth[k] = f->size[k] * f->size[k] * f->size[k] * f->size[k] * f->size[k] * f->size[k];
-        f->fastest = greater(f->fastest, k < p ? f->size[k] : 0.0);
         f->quickest = greater(f->quickest, f->size[k]);
         f->decay = greater(f->decay, -f->lr[k]);
         f->growth = greater(f->growth, f->lr[k]);
     }
     if (b->h->powers) {
-        f->fastest = greater(f->quickest, tribo_powers_fastest(b->h));
+        f->quickest = greater(f->quickest, tribo_powers_fastest(b->h));
     }
     return 1;
 }

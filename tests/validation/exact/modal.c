@@ -243,8 +243,8 @@ TEST(powers)
     for (size_t k = 0; k < size; k++) {
         v[k] = w[k] = uniform(&r, -1.0, 1.0);
     }
-    const double tau = TRIBO_POWERS_REACH / none->forced->fastest;
-    require(none->forced->fastest >= modes->forced->fastest, "a bound of %g", none->forced->fastest);
+    const double tau = TRIBO_POWERS_REACH / none->forced->quickest;
+    require(none->forced->quickest >= modes->forced->quickest, "a bound of %g", none->forced->quickest);
     assert_ok(tribo_modal_transition(&own, modes, tau, columns, v, NULL));
     assert_ok(tribo_modal_transition(&own, none, tau, columns, w, NULL));
     assert_all_close(w, v, size, 1e-14);
@@ -293,8 +293,8 @@ TEST(springs)
         for (size_t k = 0; k < ALL; k++) {
             one[k] = v[k * COLUMNS + 1];
         }
-        require(none[set]->forced->fastest >= modes->forced->fastest, "a bound of %g", none[set]->forced->fastest);
-        const double tau = TRIBO_POWERS_REACH / none[set]->forced->fastest;
+        require(none[set]->forced->quickest >= modes->forced->quickest, "a bound of %g", none[set]->forced->quickest);
+        const double tau = TRIBO_POWERS_REACH / none[set]->forced->quickest;
         assert_ok(tribo_modal_transition(&own, modes, tau, COLUMNS, v, NULL));
         assert_ok(tribo_modal_transition(&own, none[set], tau, COLUMNS, w, NULL));
         assert_ok(tribo_modal_transition(&own, none[set], tau, 1, one, NULL));
