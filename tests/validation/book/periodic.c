@@ -73,6 +73,20 @@ static double jenkins(int variant)
     return most;
 }
 
+/* Nonlinear modes of m = k = 1 with Jenkins' element: omega, then zeta, at the amplitudes 0.6, 1, 2. */
+static double jenkins_mode(int variant)
+{
+    const double amplitude[] = {0.6, 1.0, 2.0}, one = 1.0, c[2] = {1.0};
+    double y[4] = {0.0}, omega = 0.0, zeta = 0.0;
+    struct motion m;
+    tribo_system *sys = dense(1, 1, &one, NULL, &one, &one, &one);
+    need(tribo_set_limit_all(tribo_system_context(sys), 0.5), "limit");
+    motion_begin(&m, sys, "exact");
+    need(tribo_driver_find_mode(m.drv, c, amplitude[variant / 2], &omega, &zeta, y), tribo_driver_message(m.drv));
+    motion_end(&m);
+    return variant % 2 ? zeta : omega;
+}
+
 /* A ring of 12 blades of mass and stiffness 1, springs of 0.5 between neighbours, a contact each to the ground, loads
  * cos(omega t - 2 pi r j/12): amplitude. */
 static double ring(int variant)
@@ -114,6 +128,12 @@ const struct row rows_periodic[] = {
     {"hartog.by.frequency", hartog_derivative, 1},
     {"hartog.damped", damped, 0},
     {"jenkins.amplitude", jenkins, 0},
+    {"jenkins.mode.1", jenkins_mode, 0},
+    {"jenkins.mode.1.zeta", jenkins_mode, 1},
+    {"jenkins.mode.2", jenkins_mode, 2},
+    {"jenkins.mode.2.zeta", jenkins_mode, 3},
+    {"jenkins.mode.3", jenkins_mode, 4},
+    {"jenkins.mode.3.zeta", jenkins_mode, 5},
     {"ring.1", ring, 0},
     {"ring.2", ring, 1},
     {"ring.3", ring, 2},
