@@ -14,7 +14,7 @@ plot '< cut -d, -f1,4 rigid-loop.csv' using ($1 <= 1 ? $1 : 1/0):2 with lines lw
      "< tr -s ' ' ',' < 250.rigid/record.txt" using (first($2)):4 with points pt 7 ps 0.4 lc rgb '#cc3311' title 'CalculiX, 250', \
      "< tr -s ' ' ',' < 1000.rigid/record.txt" using (first($2)):4 with lines lc rgb '#0077bb' title 'CalculiX, 1000'
 set ylabel 'friction force, N'
-set yrange [-6:7.5]
+set yrange [-6:9]
 plot '< cut -d, -f1,5 rigid-loop.csv' using ($1 <= 1 ? $1 : 1/0):2 with lines lw 3 lc rgb '#bbbbbb' title 'exact', \
      "< tr -s ' ' ',' < 250.rigid/record.txt" using (first($2)):5 with points pt 7 ps 0.4 lc rgb '#cc3311' title 'CalculiX, 250', \
      "< tr -s ' ' ',' < 1000.rigid/record.txt" using (first($2)):5 with lines lc rgb '#0077bb' title 'CalculiX, 1000'
