@@ -512,9 +512,9 @@ TEST(exponential_from_one)
 }
 
 /* A row of bodies, each with a contact to the ground; those of one end, which the loads and bases move, slide now and then. Body
- * d is row d of the matrices, or, mirrored, the last row but d. Sets y, what oscillates as body 1, and the sum of the
- * multipliers. */
-static void move_row(size_t n, int damped, int bases, int mirrored, double *y, double *harmonic, double *trace)
+ * d is row d of the matrices, or, mirrored, the last row but d. Sets y, what oscillates as body 1, the sum of the
+ * multipliers, and by [2][dimension], the derivatives of y by frequency and damping. */
+static void move_row(size_t n, int damped, int bases, int mirrored, double *y, double *harmonic, double *trace, double *by)
 {
     enum { MOST = 44 };
     static double mass[MOST * MOST], damping[MOST * MOST], stiffness[MOST * MOST], direction[MOST * MOST];
@@ -550,6 +550,10 @@ static void move_row(size_t n, int damped, int bases, int mirrored, double *y, d
     require(tribo_driver_find_periodic(drv, 0.0, 2.0 * PI / 0.7, y) == TRIBO_OK, "%s", tribo_driver_message(drv));
     assert_ok(tribo_driver_get_multipliers(drv, re, im));
     assert_ok(tribo_driver_period_harmonic(drv, c, 1, &harmonic[0], &harmonic[1]));
+    const int kind[] = {TRIBO_PARAMETER_FREQUENCY, TRIBO_PARAMETER_DAMPING};
+    const size_t index[] = {0, 0};
+    const int status = tribo_driver_period_derivatives(drv, 2, kind, index, NULL, NULL, NULL, by);
+    require(!status, "%s", tribo_driver_message(drv));
     *trace = 0.0;
     for (size_t k = 0; k < 2 * n; k++) {
         *trace += re[k];
@@ -562,9 +566,9 @@ static void move_row(size_t n, int damped, int bases, int mirrored, double *y, d
 TEST(mirrored)
 {
     const size_t n = _i & 4 ? 44 : 8;
-    double y[2][2 * 44 + 1] = {{0.0}}, harmonic[2][2], trace[2];
+    double y[2][2 * 44 + 1] = {{0.0}}, harmonic[2][2], trace[2], by[2][2][2 * 44 + 1], far = 0.0;
     for (int k = 0; k < 2; k++) {
-        move_row(n, _i & 1, _i & 2, k, y[k], harmonic[k], &trace[k]);
+        move_row(n, _i & 1, _i & 2, k, y[k], harmonic[k], &trace[k], by[k][0]);
     }
     for (size_t d = 0; d < n; d++) {
         assert_close(y[1][n - 1 - d], y[0][d], 1e-10);
@@ -573,6 +577,15 @@ TEST(mirrored)
     assert_close(harmonic[1][0], harmonic[0][0], 1e-10);
     assert_close(harmonic[1][1], harmonic[0][1], 1e-10);
     assert_close(trace[1], trace[0], 1e-9);
+    for (size_t p = 0; p < 2; p++) {
+        const double *const to = by[0][0] + p * (2 * n + 1), *const back = by[1][0] + p * (2 * n + 1);
+        for (size_t d = 0; d < n; d++) {
+            assert_close(back[n - 1 - d], to[d], 1e-9);
+            assert_close(back[2 * n - 1 - d], to[n + d], 1e-9);
+            far = fmax(far, fabs(to[d]));
+        }
+    }
+    ck_assert_double_gt(far, 0.01);
 }
 
 TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1}, {kept, 10}, {powers, 9}, {springs, 6},
