@@ -137,7 +137,7 @@ int main(int argc, char **argv)
     struct backbone b = {.iterations = 0};
     double mass[MODES], compliance[CONTACTS];
     tribo_model *model;
-    tribo_system *sys;
+    tribo_system *sys = NULL;
     tribo_system_destroy(beam_create(&b.model));
     for (size_t k = 0; k < MODES; k++) {
         mass[k] = 1.0;
