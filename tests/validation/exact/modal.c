@@ -566,9 +566,9 @@ static void move_row(size_t n, int damped, int bases, int mirrored, double *y, d
 TEST(mirrored)
 {
     const size_t n = _i & 4 ? 44 : 8;
-    double y[2][2 * 44 + 1] = {{0.0}}, harmonic[2][2], trace[2], by[2][2][2 * 44 + 1], far = 0.0;
+    double y[2][2 * 44 + 1] = {{0.0}}, harmonic[2][2], trace[2], by[2][2 * (2 * 44 + 1)], far = 0.0;
     for (int k = 0; k < 2; k++) {
-        move_row(n, _i & 1, _i & 2, k, y[k], harmonic[k], &trace[k], by[k][0]);
+        move_row(n, _i & 1, _i & 2, k, y[k], harmonic[k], &trace[k], by[k]);
     }
     for (size_t d = 0; d < n; d++) {
         assert_close(y[1][n - 1 - d], y[0][d], 1e-10);
@@ -578,7 +578,7 @@ TEST(mirrored)
     assert_close(harmonic[1][1], harmonic[0][1], 1e-10);
     assert_close(trace[1], trace[0], 1e-9);
     for (size_t p = 0; p < 2; p++) {
-        const double *const to = by[0][0] + p * (2 * n + 1), *const back = by[1][0] + p * (2 * n + 1);
+        const double *const to = by[0] + p * (2 * n + 1), *const back = by[1] + p * (2 * n + 1);
         for (size_t d = 0; d < n; d++) {
             assert_close(back[n - 1 - d], to[d], 1e-9);
             assert_close(back[2 * n - 1 - d], to[n + d], 1e-9);

@@ -290,21 +290,21 @@ TEST(at_once)
     static const size_t index[] = {2, 0, 0, 9, 9};
     const struct scene s = scene_of(4);
     struct quantities q;
-    double c[2 * DOFS], extremes[5][2], energy[5][CONTACTS] = {{0}}, y[5][STATES];
+    double c[2 * DOFS], extremes[5][2], energy[5 * CONTACTS] = {0}, y[5 * STATES];
     memset(&q, 0, sizeof q);
     tribo_system *sys = build(&s);
     tribo_driver *drv = solve(&s, methods[_i], sys, &q);
     const size_t dimension = tribo_system_dimension(sys);
     combine(&s, 1, c);
-    assert_ok(tribo_driver_period_derivatives(drv, 5, kind, index, c, extremes[0], energy[0], y[0]));
+    assert_ok(tribo_driver_period_derivatives(drv, 5, kind, index, c, extremes[0], energy, y));
     for (size_t j = 0; j < 5; j++) {
         struct quantities one;
         assert_ok(tribo_driver_period_derivatives(drv, 1, kind + j, index + j, c, one.extremes[0], NULL, NULL));
         assert_all_close(extremes[j], one.extremes[0], 2, 1e-11);
         assert_ok(tribo_driver_period_derivatives(drv, 1, kind + j, index + j, NULL, NULL, one.energy, NULL));
-        assert_all_close(&energy[0][j * s.contacts], one.energy, s.contacts, 1e-11);
+        assert_all_close(&energy[j * s.contacts], one.energy, s.contacts, 1e-11);
         assert_ok(tribo_driver_period_derivatives(drv, 1, kind + j, index + j, NULL, NULL, NULL, one.y));
-        assert_all_close(&y[0][j * dimension], one.y, dimension, 1e-11);
+        assert_all_close(&y[j * dimension], one.y, dimension, 1e-11);
     }
     tribo_driver_destroy(drv);
     tribo_system_destroy(sys);
