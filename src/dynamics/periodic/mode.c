@@ -241,7 +241,7 @@ int tribo_shooting_find_mode(struct shooting *s, struct wanted *w)
     }
     for (int sticks = 1; !status && !found && sticks >= 0; sticks--) {
         const double from = sticks ? LEAST * w->amplitude : w->amplitude / LEAST;
-        double period, delta;
+        double period = 0.0, delta = 0.0;
         int moves;
         status = linear_mode(t, sticks, from, guess > 0.0 ? turn / guess : 0.0, &period, &delta, &moves);
         status = status || !moves ? status : follow_path(t, period, delta, from, 0, &found);
