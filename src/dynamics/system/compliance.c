@@ -60,20 +60,30 @@ static int gives_at_rest(const struct compliance *g, const signed char *slip, si
     return tribo_is_compliant(g, i) && (!slip || slip[i] == TRIBO_SLIP_STUCK);
 }
 
-/* Sets factor, with rows of the identity for contacts that are rigid or slide. Returns the row of a pivot that is not positive,
- * plus 1; or 0. */
-static int factorize_at_rest(const struct compliance *g, const signed char *slip)
+/* Sets factor [*rests][*rests], of G over the compliant contacts at rest. Returns the number of the pivot that is not positive, or
+ * 0. */
+static int factorize_at_rest(const struct compliance *g, const signed char *slip, size_t *rests)
 {
-    const size_t n = g->g.rows;
-    const int rows = (int)n;
-    int info = 0;
-    tribo_matrix_spread(&g->g, g->factor);
-    for (size_t i = 0; i < n; i++) {
-        for (size_t k = 0; k < n && !gives_at_rest(g, slip, i); k++) {
-            g->factor[i * n + k] = g->factor[k * n + i] = i == k ? 1.0 : 0.0;
+    double *to = g->factor;
+    int rows = 0, info = 0;
+    for (size_t k = 0; k < g->count; k++) {
+        const size_t i = g->contact[k];
+        size_t e = g->g.first[i];
+        for (size_t l = 0; gives_at_rest(g, slip, i) && l < g->count; l++) {
+            const size_t j = g->contact[l];
+            while (e < g->g.first[i + 1] && g->g.col[e] < j) {
+                e++;
+            }
+            if (gives_at_rest(g, slip, j)) {
+                *to++ = e < g->g.first[i + 1] && g->g.col[e] == j ? g->g.val[e] : 0.0;
+            }
         }
+        rows += gives_at_rest(g, slip, i);
     }
-    dpotrf_("U", &rows, g->factor, &rows, &info, 1);
+    *rests = (size_t)rows;
+    if (rows) {
+        dpotrf_("U", &rows, g->factor, &rows, &info, 1);
+    }
     return info;
 }
 
@@ -82,12 +92,13 @@ static int find_inverse(tribo_system *sys, size_t *where)
 {
     struct compliance *g = &sys->compliance;
     const size_t n = sys->ncontact, columns = g->factor ? n : 1;
-    const int info = g->factor ? factorize_at_rest(g, NULL) : 0;
+    size_t rests = 0;
+    const int info = g->factor ? factorize_at_rest(g, NULL, &rests) : 0;
     double *x;
-    for (size_t i = 0; g->factor && i < n; i++) {
-        const double l = g->factor[i * (n + 1)];
-        if (i + 1 == (size_t)info || !(l * l > ROUNDING * g->own[i])) {
-            *where = i;
+    for (size_t k = 0; k < rests; k++) {
+        const double l = g->factor[k * (rests + 1)];
+        if (k + 1 == (size_t)info || !(l * l > ROUNDING * g->own[g->contact[k]])) {
+            *where = g->contact[k];
             return TRIBO_ERR_INDEFINITE;
         }
     }
@@ -178,17 +189,27 @@ void tribo_compliance_put(const tribo_system *sys, const double *force, double *
 void tribo_compliance_solve(const tribo_system *sys, const signed char *slip, size_t columns, double *x)
 {
     const struct compliance *g = &sys->compliance;
-    const struct cholesky c = {.n = sys->ncontact, .factor = g->factor};
+    struct cholesky c = {.factor = g->factor};
+    size_t rests = 0;
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const int in = gives_at_rest(g, slip, i);
-        for (size_t k = i * columns; k < (i + 1) * columns; k++) {
-            x[k] = !in ? 0.0 : g->factor ? x[k] : x[k] / g->own[i];
+        if (gives_at_rest(g, slip, i)) {
+            for (size_t k = 0; k < columns; k++) {
+                x[rests * columns + k] = g->factor ? x[i * columns + k] : x[i * columns + k] / g->own[i];
+            }
+            rests++;
         }
     }
-    if (g->factor) {
-        factorize_at_rest(g, slip);
+    if (g->factor && rests) {
+        factorize_at_rest(g, slip, &c.n);
         tribo_half_solve(&c, 0, x, columns);
         tribo_half_solve(&c, 1, x, columns);
+    }
+    for (size_t i = sys->ncontact; i-- > 0;) { /* from the first `rests` rows to those of the contacts at rest */
+        if (gives_at_rest(g, slip, i)) {
+            memmove(x + i * columns, x + --rests * columns, columns * sizeof *x);
+        } else {
+            memset(x + i * columns, 0, columns * sizeof *x);
+        }
     }
 }
 
