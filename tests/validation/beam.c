@@ -24,21 +24,34 @@ gsl_spmatrix *beam_matrix(const char *name)
 }
 
 /* Rows of dofs.txt, counted from 1. */
-tribo_system *beam_with_contacts(double limit)
+tribo_system *beam_with_springs(double compliance, double limit)
 {
     gsl_spmatrix *mass = beam_matrix("M.mtx"), *stiffness = beam_matrix("K.mtx"), *direction = gsl_spmatrix_alloc(3, BEAM_DOFS);
     const size_t rows[] = {117, 189, 261};
-    tribo_system *sys = NULL;
+    const double each[] = {compliance, compliance, compliance};
+    tribo_model *model;
+    tribo_system *sys;
     for (size_t i = 0; i < 3; i++) {
         gsl_spmatrix_set(direction, i, rows[i] - 1, 1.0);
     }
-    assert_ok(sparse_system(&sys, mass, NULL, stiffness, direction, BEAM_MODES, NULL, 0));
+    assert_ok(tribo_model_create(&model, BEAM_DOFS, 3));
+    assert_ok(tribo_gsl_model_set_mass(model, mass));
+    assert_ok(tribo_gsl_model_set_stiffness(model, stiffness));
+    assert_ok(tribo_gsl_model_set_direction(model, direction));
+    assert_ok(tribo_model_set_compliance(model, each));
+    assert_ok(tribo_system_reduce(&sys, model, BEAM_MODES, TRIBO_STATICS_NONE));
+    tribo_model_destroy(model);
     gsl_spmatrix_free(mass);
     gsl_spmatrix_free(stiffness);
     gsl_spmatrix_free(direction);
     assert_ok(tribo_system_set_damping_ratio(sys, 0.002));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), limit));
     return sys;
+}
+
+tribo_system *beam_with_contacts(double limit)
+{
+    return beam_with_springs(0.0, limit);
 }
 
 void beam_add_load(tribo_system *sys, double omega)

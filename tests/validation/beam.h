@@ -17,7 +17,8 @@
 gsl_spmatrix *beam_matrix(const char *name);
 
 /* The beam as the example has it: 12 modes, damping ratio 0.002, three contacts on its lower edge, and a load at its tip: without
- * one, or with one of 0.1 N in the first resonance. */
+ * one, or with one of 0.1 N in the first resonance. springs: contacts of this compliance. */
+tribo_system *beam_with_springs(double compliance, double limit);
 tribo_system *beam_with_contacts(double limit);
 tribo_system *beam_with_damper(double limit);
 void beam_add_load(tribo_system *sys, double omega);

@@ -82,8 +82,8 @@ static double squeal_cycle(int variant)
     return variant == 0 ? period : variant == 1 ? re[1] : im[1];
 }
 
-/* SDND101: a mass of 100 on a spring of 1e4 with speed 1 against a stop of 1e6. variant 0: how long they touch; 1: largest force.
- * */
+/* SDND101: a mass of 100 on a spring of 1e4 with speed 1 against a stop of 1e6. variant 0: how long they touch; 1: largest
+ * force. */
 static double shock(int variant)
 {
     const double mass[2] = {1.0, 100.0}, damping[2] = {0.0}, stiffness[4] = {1.0, 0.0, 0.0, 1e4}, load[2] = {0.0};

@@ -203,8 +203,8 @@ TEST(either_holds)
 #define MANY 100
 #define MODES 160
 
-/* Contacts that see all modes, each in its own way, are as many as they are, however many: while they hold, none of them moves.
- * */
+/* Contacts that see all modes, each in its own way, are as many as they are, however many: while they hold, none of them
+ * moves. */
 TEST(many_hold)
 {
     struct random g = random_of(_i);

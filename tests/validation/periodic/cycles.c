@@ -2,6 +2,7 @@
 /* Cycles, whose period is unknown: reference values of stick-slip and squeal, from poor guesses; an unstable cycle without
  * events; cycles that are independent of each other; states of rest, and loads in time. */
 #include "run.h"
+#include "squeal.h"
 
 #include <string.h>
 
@@ -30,29 +31,6 @@ static tribo_system *blocks(size_t count, double ratio, double falls, double v0,
     assert_ok(tribo_system_add_base_motion(sys, 0.0, belt, NULL));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.6));
     assert_ok(tribo_set_static(tribo_system_context(sys), ratios, falls > 0.0 ? velocity : NULL));
-    return sys;
-}
-
-/* Mode coupling, after Hoffmann and others (2002), as in series/normals.c. */
-static tribo_system *squeal(double belt, double mu)
-{
-    const double turn = acos(-1.0) / 6.0, a = 5.0 * turn, xy = 11.0 * cos(a) * sin(a) + 20.0 * cos(turn) * sin(turn);
-    const double mass[] = {1.0, 1.0}, damping[] = {0.1, 0.1}, direction[] = {1.0, 0.0, 0.0, 1.0};
-    const double stiffness[] = {11.0 * cos(a) * cos(a) + 20.0 * cos(turn) * cos(turn), xy, xy,
-                                11.0 * sin(a) * sin(a) + 20.0 * sin(turn) * sin(turn)};
-    const double load[] = {0.0, 10.0}, base[] = {belt, 0.0};
-    tribo_model *model;
-    tribo_system *sys;
-    assert_ok(tribo_model_create(&model, 2, 2));
-    assert_ok(tribo_model_set_mass_diagonal(model, mass));
-    assert_ok(tribo_model_set_damping_diagonal(model, damping));
-    assert_ok(tribo_model_set_stiffness(model, stiffness));
-    assert_ok(tribo_model_set_direction(model, direction));
-    assert_ok(tribo_model_set_normal(model, 0, 1, mu, 11.0, 0.0));
-    assert_ok(tribo_system_create(&sys, model));
-    tribo_model_destroy(model);
-    assert_ok(tribo_system_add_load(sys, 0.0, load, NULL));
-    assert_ok(tribo_system_add_base_motion(sys, 0.0, base, NULL));
     return sys;
 }
 
@@ -173,7 +151,7 @@ TEST(squeals)
 {
     static const double from[][4] = {{0.0}, {0.1, 0.9, 0.0, 0.0}, {5.0, -3.0, 2.0, 0.0}};
     const double belt = _i % 2 ? 1.0 : 0.5, c[] = {1.0, 0.0, 0.0, 0.0};
-    tribo_system *sys = squeal(belt, 0.6);
+    tribo_system *sys = squeal(belt, 0.6, 0.1);
     tribo_driver *drv = driver_create(sys, methods[1 + _i / 2 % 2], 1e-3, 1e-13);
     double y[5] = {0.0}, period = _i / 4 == 1 ? 1.5 : 0.0, re[4], im[4], least, most;
     memcpy(y, from[_i / 4], sizeof from[0]);
@@ -231,7 +209,7 @@ TEST(two_blocks)
  * flutter. */
 TEST(rests)
 {
-    tribo_system *sys = _i == 3 ? squeal(0.5, 0.3) : blocks(1, 1.0 / 0.6, 0.5, _i == 2 ? 0.0 : 1.0, 0.2, 0.0);
+    tribo_system *sys = _i == 3 ? squeal(0.5, 0.3, 0.1) : blocks(1, 1.0 / 0.6, 0.5, _i == 2 ? 0.0 : 1.0, 0.2, 0.0);
     tribo_driver *drv = driver_create(sys, "auto", 1e-3, 1e-13);
     const double place = 0.6 + 0.4 * exp(-2.0);
     for (int k = 0; k < 2; k++) {

@@ -132,31 +132,6 @@ TEST(structures)
     tribo_system_destroy(sys);
 }
 
-/* The first 12 modes of the beam, damping ratio 0.002, with 3 elastic contacts of this compliance. */
-static tribo_system *soft_beam(double soft, double limit)
-{
-    gsl_spmatrix *mass = beam_matrix("M.mtx"), *stiffness = beam_matrix("K.mtx"), *direction = gsl_spmatrix_alloc(3, BEAM_DOFS);
-    const double compliance[] = {soft, soft, soft};
-    tribo_model *model;
-    tribo_system *sys;
-    for (size_t i = 0; i < 3; i++) {
-        gsl_spmatrix_set(direction, i, 116 + 72 * i, 1.0);
-    }
-    assert_ok(tribo_model_create(&model, BEAM_DOFS, 3));
-    assert_ok(tribo_gsl_model_set_mass(model, mass));
-    assert_ok(tribo_gsl_model_set_stiffness(model, stiffness));
-    assert_ok(tribo_gsl_model_set_direction(model, direction));
-    assert_ok(tribo_model_set_compliance(model, compliance));
-    assert_ok(tribo_system_reduce(&sys, model, BEAM_MODES, TRIBO_STATICS_NONE));
-    tribo_model_destroy(model);
-    gsl_spmatrix_free(mass);
-    gsl_spmatrix_free(stiffness);
-    gsl_spmatrix_free(direction);
-    assert_ok(tribo_system_set_damping_ratio(sys, 0.002));
-    assert_ok(tribo_set_limit_all(tribo_system_context(sys), limit));
-    return sys;
-}
-
 /* The first mode of the beam at 60 amplitudes, each from the one before, up and down: the same ones. At small amplitudes contacts
  * stick, and frequency and damping are constant; at large ones they slide, and what they dissipate, 4 limit amplitude, makes zeta
  * fall with 1/amplitude to that of the structure. */
@@ -164,7 +139,7 @@ TEST(backbone)
 {
     enum { AMPLITUDES = 60 };
     const double limit = 1e-2;
-    tribo_system *sys = soft_beam(0.3, limit);
+    tribo_system *sys = beam_with_springs(0.3, limit);
     tribo_driver *drv = driver_create(sys, methods[_i], 1e-3, 1e-13);
     double c[2 * BEAM_MODES] = {1.0}, natural[BEAM_MODES], y[BEAM_STATES + 3] = {0.0}, omega = 0.0, zeta = 0.0;
     double up[AMPLITUDES][2];

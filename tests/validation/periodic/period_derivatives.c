@@ -13,8 +13,8 @@ static const char *const methods[] = {"exact", "event", "auto"};
 
 /* ------------------------------------------------------------------------------------------------------ one oscillator */
 
-/* Of Den Hartog's amplitude, by limit and by frequency; 4 N x0 a period are dissipated. By the loads, with the sum of degree 1.
- * */
+/* Of Den Hartog's amplitude, by limit and by frequency; 4 N x0 a period are dissipated. By the loads, with the sum of degree
+ * 1. */
 TEST(den_hartog)
 {
     static const int kind[] = {TRIBO_PARAMETER_LIMIT, TRIBO_PARAMETER_LOADS, TRIBO_PARAMETER_FREQUENCY, TRIBO_PARAMETER_DAMPING};

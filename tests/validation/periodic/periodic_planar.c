@@ -81,8 +81,8 @@ static double between(uint64_t *seed, double from, double to)
 }
 
 /* One to three masses with planar contacts, with each other for every third seed, some with ellipses; two harmonics of a period.
- * wide: limits of a hundredth to three: some contacts turn within 1e-6 while others rest, and squares of their series overflow.
- * */
+ * wide: limits of a hundredth to three: some contacts turn within 1e-6 while others rest, and squares of their series
+ * overflow. */
 static tribo_system *coupled(uint64_t seed, int wide, size_t *ndof, double *period)
 {
     uint64_t s = seed * 7919u + 12345u;

@@ -221,8 +221,8 @@ TEST(automatic)
     require(count[1] == count[0] && count[0] > 0, "%zu periods, not %zu", count[1], count[0]);
 }
 
-/* "auto" finds motions by "exact" until limits fall with the speed, then by "event", and by "exact" again: each as a new driver.
- * */
+/* "auto" finds motions by "exact" until limits fall with the speed, then by "event", and by "exact" again: each as a new
+ * driver. */
 TEST(automatic_turns)
 {
     const double ratio[2] = {1.4, 1.4}, falls[2] = {0.5, 0.5}, force[4] = {1.0, 0.0, 0.5, 0.0};

@@ -129,8 +129,8 @@ TEST(methods)
     tribo_system_destroy(copy);
 }
 
-/* Displacements of contacts are those of w; bounds of what is missing lie between those of modes alone and of static responses.
- * */
+/* Displacements of contacts are those of w; bounds of what is missing lie between those of modes alone and of static
+ * responses. */
 TEST(displacements)
 {
     double y[5 + HELD], full[BEAM_DOFS], error[3];

@@ -2,6 +2,7 @@
 /* Contacts whose limits follow the motion: reference values of motions, by two independent codes each; orders of fixed steps;
  * derivatives of periodic motions; normals that contacts share; what is refused. */
 #include "run.h"
+#include "squeal.h"
 
 #include <string.h>
 
@@ -41,36 +42,6 @@ static tribo_system *shaker_with(double fx, double fy, double omega, double soft
 static tribo_system *shaker(double fx, double fy, double omega, double soft, double turn)
 {
     return shaker_with(fx, fy, omega, soft, turn, 1.0, 0.0);
-}
-
-/* Mode coupling, after Hoffmann and others (2002): m = 1, springs 11 at 150 degrees and 20 at 30 degrees, normal stiffness 11 in
- * y, preload 10, on a belt. */
-static tribo_system *squeal_with(double belt, double mu, double damped)
-{
-    const double a = full_turn * 150.0 / 360.0, b = full_turn * 30.0 / 360.0,
-                 xy = 11.0 * cos(a) * sin(a) + 20.0 * cos(b) * sin(b);
-    const double mass[] = {1.0, 1.0}, damping[] = {damped, damped}, direction[] = {1.0, 0.0, 0.0, 1.0};
-    const double stiffness[] = {11.0 * cos(a) * cos(a) + 20.0 * cos(b) * cos(b), xy, xy,
-                                11.0 * sin(a) * sin(a) + 20.0 * sin(b) * sin(b)};
-    const double load[] = {0.0, 10.0}, base[] = {belt, 0.0};
-    tribo_model *model;
-    tribo_system *sys;
-    assert_ok(tribo_model_create(&model, 2, 2));
-    assert_ok(tribo_model_set_mass_diagonal(model, mass));
-    assert_ok(tribo_model_set_damping_diagonal(model, damping));
-    assert_ok(tribo_model_set_stiffness(model, stiffness));
-    assert_ok(tribo_model_set_direction(model, direction));
-    assert_ok(tribo_model_set_normal(model, 0, 1, mu, 11.0, 0.0));
-    assert_ok(tribo_system_create(&sys, model));
-    tribo_model_destroy(model);
-    assert_ok(tribo_system_add_load(sys, 0.0, load, NULL));
-    assert_ok(tribo_system_add_base_motion(sys, 0.0, base, NULL));
-    return sys;
-}
-
-static tribo_system *squeal(double belt)
-{
-    return squeal_with(belt, 0.6, 0.1);
 }
 
 /* The methods with events. */
@@ -381,8 +352,8 @@ TEST(graze)
     assert_all_close(im[1], im[0], 5, 1e-4);
 }
 
-/* A normal that rests at depth 0, beside a body that slides: neighbouring motions press or do not, and there are no multipliers.
- * */
+/* A normal that rests at depth 0, beside a body that slides: neighbouring motions press or do not, and there are no
+ * multipliers. */
 TEST(resting)
 {
     const double mass[] = {1.0, 1.0, 1.0}, stiffness[] = {2.0, 3.0, 5.0},
@@ -414,7 +385,7 @@ TEST(limit_cycle)
 {
     const int fast = _i % 2;
     const double belt = fast ? 1.0 : 0.5, period = fast ? 1.48153261 : 1.53650780675;
-    tribo_system *sys = squeal(belt);
+    tribo_system *sys = squeal(belt, 0.6, 0.1);
     tribo_driver *d = driver_of(sys, _i >= 2);
     double t = 0.0, y[5] = {0.1, 0.9};
     struct seen s = {.values = 4, .most = -HUGE_VAL, .least = HUGE_VAL};
@@ -459,7 +430,7 @@ TEST(limit_cycle)
 TEST(flutter)
 {
     static const double mu[] = {0.47237749297, 0.47237749297 * (1.0 - 1e-5), 0.47237749297 * (1.0 + 1e-5)};
-    tribo_system *sys = squeal_with(5.0, mu[_i], 0.0);
+    tribo_system *sys = squeal(5.0, mu[_i], 0.0);
     double y[3][5] = {{0.1, 0.9}, {0.1, 0.9}, {0.1, 0.9}}, t = 0.0;
     tribo_driver *d = driver_of(sys, 1);
     const int status = tribo_driver_advance(d, &t, 2.0, y[0]);
@@ -552,8 +523,8 @@ TEST(steps)
             error[1], error[2], order);
 }
 
-/* A stiff normal that stays pressed is stable in steps of moreau far above 1/omega: the distance from equilibrium does not grow.
- * */
+/* A stiff normal that stays pressed is stable in steps of moreau far above 1/omega: the distance from equilibrium does not
+ * grow. */
 TEST(stiff)
 {
     const double mass = 1.0, spring = 100.0, stiffness = 1e8, push = 1e6, direction[] = {0.0, 1.0};

@@ -65,8 +65,8 @@ TEST(stuck)
     tribo_system_destroy(sys);
 }
 
-/* A mass of 1 on a spring of 1 and a belt of velocity t: stuck, q = t^2/2, until 1 + q = limit = 3; then it slides back around 3.
- * */
+/* A mass of 1 on a spring of 1 and a belt of velocity t: stuck, q = t^2/2, until 1 + q = limit = 3; then it slides back around
+ * 3. */
 TEST(breaks_away)
 {
     const double ramp[2] = {0.0, 10.0}, one = 1.0, mass = 1.0;

@@ -537,8 +537,8 @@ TEST(automatic)
     tribo_system_destroy(sys);
 }
 
-/* What a system does, with any method, changes nothing in the context that it lends; errors of the system leave no message there.
- * */
+/* What a system does, with any method, changes nothing in the context that it lends; errors of the system leave no message
+ * there. */
 TEST(lent_context)
 {
     const char *method = any_method_name(_i);
