@@ -181,7 +181,8 @@ static int balance_all(tribo_context *ctx, int plain, const double *v, const dou
         status = one ? one : status;
         for (size_t e = 0; tribo_is_own(ctx) && e < p->count; e++) {
             const size_t i = p->member[p->near[e]];
-            ctx->last.f[i] = tribo_own_force(ctx, i, ctx->last.feq[i]);
+            ctx->last.f[i] = clamp(ctx->last.feq[i] - tribo_own_row(ctx, SHIFT)[i], tribo_own_row(ctx, LOWER)[i],
+                                   tribo_own_row(ctx, UPPER)[i]);
         }
         /* The law's forces of the contacts near stick, neighbours at once. */
         for (size_t e = 0, run; !tribo_is_own(ctx) && e < p->count; e += run) {

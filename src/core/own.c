@@ -113,9 +113,7 @@ TRIBO_SIMD static void clamp_all(size_t n, const double *restrict feq, const dou
 static void own_force_all(const struct contacts *c, size_t n, const double *v, const double *feq, double *f)
 {
     for (size_t i = 0, m; i < n; i += m) {
-        const struct contacts part = c->alike ? (struct contacts){c->limit,   c->bound,  c->width, c->rate,      c->moving + i,
-                                                                  c->follows, c->scales, c->alike, c->first + i, c->user}
-                                              : tribo_contacts_from(c, i);
+        const struct contacts part = tribo_contacts_from(c, i);
         double box[BOX_ROWS * TRIBO_CHUNK];
         m = n - i < TRIBO_CHUNK ? n - i : TRIBO_CHUNK;
         tribo_own_boxes(&part, m, 0, v + i, box);

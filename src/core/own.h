@@ -30,11 +30,6 @@ static inline double *tribo_own_row(const tribo_context *ctx, int row)
     return rows[row];
 }
 
-static inline double tribo_own_force(const tribo_context *ctx, size_t i, double feq)
-{
-    return clamp(feq - tribo_own_row(ctx, SHIFT)[i], tribo_own_row(ctx, LOWER)[i], tribo_own_row(ctx, UPPER)[i]);
-}
-
 /* f [n] of the chunk of contact i from v and feq [n], and keeps its boxes; HUGE_VAL where tribo_own_boxes returns 0. */
 void tribo_own_forces(const tribo_context *ctx, size_t i, const double *v, const double *feq, double *f);
 

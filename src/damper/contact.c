@@ -71,8 +71,8 @@ static void read_words(struct text *t, const struct word *known, size_t count, s
             to->between = 1;
         } else if (is_normal) {
             const char *word = next_word(t, "direction", ",");
-            const int against = word[0] == '-', along = direction_of(word[against || word[0] == '+']);
-            if (!along || word[1 + (against || word[0] == '+')]) {
+            const int against = word[0] == '-', signs = against || word[0] == '+', along = direction_of(word[signs]);
+            if (!along || word[signs + 1]) {
                 die_at(t, "normal=%.40s must be x, y or z, or one of them with a sign", word);
             }
             if (t->end != ',') {

@@ -27,10 +27,9 @@ struct contact {
     int between;  /* 0: to the ground, and there is no to */
     double limit; /* NaN: mu times the value of --limits */
     double mu;
-    int by_load; /* 1: limit is NaN and mu is given, so that --limits gives normal loads */
-    double
-        stiffness;  /* of the spring that it slides on; 0: none, it is rigid; of a normal direction, of the spring that presses */
-    int directions; /* of the contact, of which this is the first one; 0: this is the second one of the contact before */
+    int by_load;      /* 1: limit is NaN and mu is given, so that --limits gives normal loads */
+    double stiffness; /* of the spring before the slider, 0: a rigid contact; of a normal direction, of the spring that presses */
+    int directions;   /* of the contact, of which this is the first one; 0: this is the second one of the contact before */
     struct normal normal;
     char *line; /* origin of a contact from a file, or NULL; owned */
 };

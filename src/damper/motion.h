@@ -37,8 +37,8 @@ tribo_driver *driver_at(struct worker *w, double limit, double hz);
 
 /* Numbers in the record of a motion: the state at the beginning of a period; of each contact the power lost to its friction; of
  * each contact the shares of the period for which it is at rest, and for which it has lifted off; of each output the amplitude,
- * and of each harmonic h of it a and phase of a sin(h omega t + phase), phase in degrees. Marching leaves powers and shares NaN.
- * */
+ * and of each harmonic h of it a and phase of a sin(h omega t + phase), phase in degrees. Marching leaves powers and shares
+ * NaN. */
 size_t record_of(const struct damper *d);
 
 /* Finds it from the state guess, or from rest if that is NULL. y out, if found: its record. */

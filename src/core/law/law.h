@@ -14,8 +14,8 @@
 /* Contacts as laws see them, an array each. A law finds epsilon, and slope = 2 limit/epsilon, from width and rate, which stay
  * when limits change:
  *   epsilon does not follow the limit:  epsilon = width,        slope = rate bound,  rate = 2/epsilon
- *   it follows the limit:               epsilon = width bound,  slope = rate,        rate = 2/width, or 0 where nothing relaxes
- * */
+ *   it follows the limit:               epsilon = width bound,  slope = rate,        rate = 2/width, or 0 where nothing
+ * relaxes */
 struct contacts {
     const double *limit;
     const double *bound; /* the limit, or less where products with width or rate would overflow */
@@ -41,10 +41,12 @@ static inline double tribo_rate(double epsilon)
     return 2.0 * quotient(1.0, epsilon);
 }
 
+/* c from contact i on. */
 static inline struct contacts tribo_contacts_from(const struct contacts *c, size_t i)
 {
-    return (struct contacts){c->limit + i, c->bound + i, c->width + i, c->rate + i,  c->moving + i,
-                             c->follows,   c->scales,    c->alike,     c->first + i, c->user};
+    const size_t own = c->alike ? 0 : i;
+    return (struct contacts){c->limit + own, c->bound + own, c->width + own, c->rate + own, c->moving + i,
+                             c->follows,     c->scales,      c->alike,       c->first + i,  c->user};
 }
 
 /* epsilon and slope of contact i. Factors are chosen, since a product that is not needed might overflow. */

@@ -18,8 +18,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* MOST_RETURNS: break-aways of a contact that are compared. SAMPLES: of a motion without break-aways in a length of the search.
- * */
+/* MOST_RETURNS: break-aways of a contact that are compared. SAMPLES: of a motion without break-aways in a length of the
+ * search. */
 enum { MOST_RETURNS = 16, SAMPLES = 64 };
 
 /* In lengths of the search: times between looks at the break-aways; until there are MOST_RETURNS; time that is sampled. */
@@ -141,17 +141,15 @@ static int cycle_shoot(struct shooting *s, double period, int *found, int *rests
 {
     struct point *p = s->here;
     const double size = greater(tribo_energy_length(p->x, s->map.n), s->map.least);
-    s->map.moved = 0;
-    s->extra.first = period;
+    int closed;
     s->extra.unit[0] = size > 0.0 ? period / size : period;
     p->unknown[0] = period / s->extra.unit[0];
-    const int status = tribo_shooting_search(s);
+    const int status = tribo_shooting_try(s, period, &closed);
     const double length = cycle_length(s, s->here);
-    const int closed = !status && tribo_point_is_closed(s->here, TRIBO_PERIODIC);
     *rests |= closed && !(length > AT_REST * s->here->size);
     *found = closed && length > AT_REST * s->here->size && s->here->residual <= COMES_BACK * length;
     s->map.period = *found ? s->here->unknown[0] * s->extra.unit[0] : period;
-    return status == TRIBO_ERR_MEMORY || status == TRIBO_ERR_UNSUPPORTED ? status : TRIBO_OK;
+    return status;
 }
 
 /* -------------------------------------------------------------------------------------------------------------- returns */

@@ -169,17 +169,13 @@ static int follow_path(struct shooting *s, double period, double delta, double r
             s->here->x[i] = x[i] * (next / reached);
         }
         const double size = tribo_energy_length(s->here->x, n);
-        s->map.moved = 0;
         s->mode->amplitude = next;
-        s->extra.first = period;
         s->extra.unit[0] = period / size;
         s->extra.unit[1] = 1.0 / (period * size);
         s->here->unknown[0] = size;
         s->here->unknown[1] = delta / s->extra.unit[1];
-        status = tribo_shooting_search(s);
-        const int seen = !status && tribo_point_is_closed(s->here, TRIBO_PERIODIC);
-        status = status == TRIBO_ERR_MEMORY || status == TRIBO_ERR_UNSUPPORTED ? status : TRIBO_OK;
-        if (seen) {
+        status = tribo_shooting_try(s, period, found);
+        if (*found) { /* a mode, which need not be that wanted */
             memcpy(x, s->here->x, n * sizeof *x);
             period = s->here->unknown[0] * s->extra.unit[0];
             delta = s->here->unknown[1] * s->extra.unit[1];

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Derivatives of the periodic motion found last by parameters p. With the image of the start x after the span, d image = D dx + w
- * dp,
- *     dx/dp = (I - D)^-1 w,
+/* Derivatives of the periodic motion found last by parameters p. With the image of the start x after the span,
+ *     d image = D dx + w dp,   dx/dp = (I - D)^-1 w,
  * w: perturbation at the end of the span by the sources of dp, from zero. The motion is then followed once more, with the
  * perturbations dx/dp at its start, which come back to dx/dp.
  *
@@ -176,18 +175,12 @@ static int find_start(struct sensitivity *d, struct shooting *s)
 {
     struct period_map *m = d->map;
     const size_t all = d->n * d->columns;
-    const double *c = d->c;
-    double *path = d->path, *energy = d->energy;
     int status;
     if (m->events->motion->keep && !d->moves) {
         status = tribo_driver_pass(m->drv, tribo_derivative_apply(&s->here->derivative, 0, d->columns, d->start, &d->by));
         memcpy(d->end, d->start, all * sizeof *d->end);
     } else {
-        d->c = d->path = d->energy = NULL;
         status = follow_perturbed(d, d->start);
-        d->c = c;
-        d->path = path;
-        d->energy = energy;
         memcpy(d->end, d->variation.v, all * sizeof *d->end);
     }
     tribo_energy_norm_of(&m->norm, d->columns, d->end, d->start);
@@ -242,13 +235,13 @@ static int check_return(struct sensitivity *d)
 
 /* ----------------------------------------------------------------------------------------------------------------- parameters */
 
-/* Sets the column j of rise, inertia and damping for the parameter of kind and index. Returns a status. */
-static int set_parameter(struct sensitivity *d, const tribo_driver *drv, size_t j, int kind, size_t index)
+/* Sets the column j of rise, inertia and damping for the parameter of kind and index; limit [contacts]: limits at the start.
+ * Returns a status. */
+static int set_parameter(struct sensitivity *d, const tribo_driver *drv, size_t j, size_t index, const double *limit)
 {
-    tribo_system *sys = drv->sys;
-    double *limit = drv->sys->work.put_limit;
+    const tribo_system *sys = drv->sys;
+    const int kind = d->kind[j];
     int steady = 0;
-    tribo_system_limits(sys, limit, sys->work.feq);
     for (size_t k = 0; k < sys->loads.harmonics; k++) {
         steady |= sys->loads.harmonic[k].drives == DRIVES_BASE && sys->loads.harmonic[k].omega == 0.0;
     }
@@ -348,6 +341,9 @@ static int differentiate(struct sensitivity *d, struct shooting *s, const size_t
                          double *y)
 {
     const tribo_driver *drv = d->map->drv;
+    const double *c = d->c;
+    double *path = d->path, *energies = d->energy;
+    d->c = d->path = d->energy = NULL; /* until d->start is known */
     int status = TRIBO_OK;
     const char *const without = s->told->extra.count                   ? "an unknown period"
                                 : drv->sys->normals.count              ? "limits that follow the motion"
@@ -360,13 +356,15 @@ static int differentiate(struct sensitivity *d, struct shooting *s, const size_t
             tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
                         "a contact stops or breaks away as the period begins, at t = %.17g: begin it at another time", s->map.t);
     }
+    tribo_system_limits(drv->sys, drv->sys->work.put_limit, drv->sys->work.feq);
     for (size_t j = 0; !status && j < d->columns; j++) {
-        status = set_parameter(d, drv, j, d->kind[j], index[j]);
+        status = set_parameter(d, drv, j, index[j], drv->sys->work.put_limit);
     }
     d->by = (struct parameters){d->rise, d->moves ? d->inertia : NULL, d->moves ? d->damping : NULL};
     status = status ? status : find_start(d, s);
-    d->path = energy ? d->path : NULL;
-    d->energy = energy ? d->energy : NULL;
+    d->c = c;
+    d->path = energy ? path : NULL;
+    d->energy = energy ? energies : NULL;
     status = status ? status : follow_perturbed(d, d->start);
     status = status ? status : check_return(d);
     status = status || !extremes ? status : write_extremes(d, extremes);

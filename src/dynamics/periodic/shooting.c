@@ -364,6 +364,15 @@ int tribo_shooting_search(struct shooting *s)
     return status;
 }
 
+int tribo_shooting_try(struct shooting *s, double period, int *closed)
+{
+    s->map.moved = 0;
+    s->extra.first = period;
+    const int status = tribo_shooting_search(s);
+    *closed = !status && tribo_point_is_closed(s->here, TRIBO_PERIODIC);
+    return status == TRIBO_ERR_MEMORY || status == TRIBO_ERR_UNSUPPORTED ? status : TRIBO_OK;
+}
+
 /* Searches from the forecast, unless the guess is near it; then from the guess, and from states some periods after it: where
  * contacts hardly slip, and where motions diverge by static limits or limits that follow, Newton's steps may fail. With static
  * limits a stable motion may be not odd, although all drives are odd. Returns a status. */

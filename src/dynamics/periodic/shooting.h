@@ -74,6 +74,10 @@ int tribo_point_is_closed(const struct point *p, double part);
  * if tribo_point_is_closed(s->here, TRIBO_PERIODIC). */
 int tribo_shooting_search(struct shooting *s);
 
+/* Searches from s->here, with an unknown period about `period`. *closed = 1 if the search ends at a closed motion. Returns a
+ * status: not that of a search that fails. */
+int tribo_shooting_try(struct shooting *s, double period, int *closed);
+
 /* Exchanges here and there. */
 void tribo_shooting_turn(struct shooting *s);
 

@@ -46,7 +46,7 @@ static struct derivative_step *add_step(struct derivative *d)
     return d->step + d->steps++;
 }
 
-/* Appends a jump, whose crossing the limit of contact moves by lift. Returns a status. */
+/* Appends a jump; a change of the limit of contact moves the time of its crossing by lift times the change. Returns a status. */
 static int add_jump(struct derivative *d, const double *row, size_t contact, double lift, const double *column)
 {
     const size_t n = tribo_system_energy(d->sys), moved = n - d->sys->ndof;

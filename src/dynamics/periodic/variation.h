@@ -4,16 +4,16 @@
  *
  * In a phase v moves as the structure without loads and without sliding contacts; contacts at rest are held: the part of v that
  * would move a contact at rest is removed. At an event a quantity g of a contact crosses zero: v_i of a sliding contact that
- * stops or reverses, or f_i - limit_i of a contact at rest whose static limit drops at once. A perturbed motion is earlier by
- * dg/g', so that the jump of q'' acts earlier: S = I + (q''+ - q''-) (dg/dstate)/g'. If a contact breaks away without a static
+ * stops or reverses, or f_i - limit_i of a contact at rest with a static limit that drops at once. A perturbed motion is earlier
+ * by dg/g', so that the jump of q'' acts earlier: S = I + (q''+ - q''-) (dg/dstate)/g'. If a contact breaks away without a static
  * limit, and for elastic contacts, forces are continuous, and S = I; but where an elastic contact breaks away and others, coupled
  * to it by G, stop, f' jumps likewise: S = I + (f'+ - f'-) (df_i/dstate)/f_i'.
  *
  * The force of a sliding planar contact turns with its velocity, which the method of the motion takes into account. Where it
  * stops g = f'v, f its force before, the acceleration is that of the phase before, and the jump is that of both directions.
  *
- * Where a normal lifts off or touches down, q'' is continuous, and f' of elastic contacts jumps: S = I + (f'+ - f'-) J_n/(J_n
- * q').
+ * Where a normal lifts off or touches down, q'' is continuous, and f' of elastic contacts jumps: 
+ *     S = I + (f'+ - f'-) J_n/(J_n q').
  *
  * If several quantities cross zero at one instant by coincidence, contacts are divided into groups that pass no forces to each
  * other, and each group makes the jump of its own forces. There is no derivative, because the order of the crossings matters, if
@@ -54,8 +54,8 @@ struct derivative {
 void tribo_derivative_free(struct derivative *d);
 
 /* Moves perturbations v [n][columns] by the steps from `first` on. p: NULL, or parameters by which v are derivatives: with
- * inertia and damping, the only phase among the steps is that which ends. Returns a status, its message on the system's context.
- * */
+ * inertia and damping, the only phase among the steps is that which ends. Returns a status, its message on the system's
+ * context. */
 int tribo_derivative_apply(const struct derivative *d, size_t first, size_t columns, double *v, const struct parameters *p);
 
 /* Returns 1 if a contact is at rest in all phases. */

@@ -60,16 +60,17 @@ static int gives_at_rest(const struct compliance *g, const signed char *slip, si
     return tribo_is_compliant(g, i) && (!slip || slip[i] == TRIBO_SLIP_STUCK);
 }
 
-/* Sets factor [*rests][*rests], of G over the compliant contacts at rest. Returns the number of the pivot that is not positive, or
- * 0. */
+/* Sets factor [*rests][*rests], of G over the compliant contacts at rest. Returns the number of the pivot that is not positive,
+ * or 0. */
 static int factorize_at_rest(const struct compliance *g, const signed char *slip, size_t *rests)
 {
     double *to = g->factor;
     int rows = 0, info = 0;
     for (size_t k = 0; k < g->count; k++) {
         const size_t i = g->contact[k];
+        const int in = gives_at_rest(g, slip, i);
         size_t e = g->g.first[i];
-        for (size_t l = 0; gives_at_rest(g, slip, i) && l < g->count; l++) {
+        for (size_t l = 0; in && l < g->count; l++) {
             const size_t j = g->contact[l];
             while (e < g->g.first[i + 1] && g->g.col[e] < j) {
                 e++;
@@ -78,7 +79,7 @@ static int factorize_at_rest(const struct compliance *g, const signed char *slip
                 *to++ = e < g->g.first[i + 1] && g->g.col[e] == j ? g->g.val[e] : 0.0;
             }
         }
-        rows += gives_at_rest(g, slip, i);
+        rows += in;
     }
     *rests = (size_t)rows;
     if (rows) {
