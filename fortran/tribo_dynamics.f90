@@ -1184,7 +1184,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine find_periodic
 
-  !> A cycle, whose period is unknown, from a guess period, or 0, and y; see tribo_driver_find_cycle.
+  !> A cycle and its period, from guesses of both in period, or 0, and y; see tribo_driver_find_cycle.
   subroutine find_cycle(this, t, period, y, stat, errmsg)
     class(tribo_driver), intent(inout) :: this
     real(dp), intent(in) :: t

@@ -9,10 +9,11 @@
 !         node, direction, amplitude           of each load
 !
 !     way: 1 Coulomb's law over the step; 2 Quinn's law with
-!     lambda dt = 0.2; 3 a spring before the slider of each contact,
-!     whose stiffness stands first in the row of R. R, accelerations of
-!     contacts by their forces, is that of the modes. Writes record.txt: time, velocity at the
-!     first load, velocity and force of each contact.
+!     lambda dt = 0.2; 3 a spring before the slider of each contact:
+!     the first number in the row of R is the stiffness of the spring.
+!     R, accelerations of contacts by their forces, is that of the
+!     modes. Writes record.txt: time, velocity at the first load,
+!     velocity and force of each contact.
 !
 !     CalculiX gives displacements and velocities at the start of the
 !     increment, and lets loads vary linearly to what CLOAD returns.

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* tribo inside CVODE of SUNDIALS: an oscillator whose contact rests for long, x'' + x = f + 1.5 sin 0.5 t, |f| <= 1.
+/* tribo inside CVODE of SUNDIALS: an oscillator with long times of rest, x'' + x = f + 1.5 sin 0.5 t, |f| <= 1.
  *
  *     integrator_cvode
  *
- * Prints the error of the energy that friction takes in ten cycles and what the run took, for settings that are right and wrong.
- * */
+ * Prints the error of the energy that friction takes in ten cycles and what the run took, for settings that are right and
+ * wrong. */
 #include <cvode/cvode.h>
 #include <math.h>
 #include <nvector/nvector_serial.h>

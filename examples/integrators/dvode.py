@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""tribo inside DVODE, as scipy.integrate.ode has it, by ctypes: an oscillator whose contact rests for long.
+"""tribo inside DVODE, as scipy.integrate.ode has it, by ctypes: an oscillator with long times of rest.
 
     python3 dvode.py [path of libtribo.so]
 

@@ -248,7 +248,7 @@ TRIBO_API int tribo_get_law(const tribo_context *ctx, int *law);
  * law   in  called any number of times for n contacts, the first of which is first; returns 0, or another value to fail:
  *           v, limit, epsilon [n] in;  derivatives in   1: box is [9][n], 0: [3][n]
  *           box  out   rows lower, upper, shift; their derivatives by v; by limit, including that of an epsilon that follows the
- *                      limit (these may stay unset unless a call asks for them)
+ *                      limit (rows by limit may stay unset: calls for df_dlimit fail then)
  * data  in  passed to law; stays in use with ctx, its clones, and contexts that take its settings
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_UNSUPPORTED (planar contacts, static limits, which later calls refuse, too). */
 TRIBO_API int tribo_set_user_law(tribo_context *ctx,

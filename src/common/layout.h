@@ -18,8 +18,8 @@ static inline void *tribo_zeros(size_t count, size_t size)
     return memory ? memset(memory, 0, small) : NULL;
 }
 
-/* A block in which a function lays out arrays twice: first with memory NULL, to add up the sizes; then in the allocated memory.
- * */
+/* A block in which a function lays out arrays twice: first with memory NULL, to add up the sizes; then in the allocated
+ * memory. */
 struct layout {
     char *memory; /* NULL in the first pass */
     size_t used;

@@ -155,7 +155,7 @@ static void balance_chunk(tribo_context *ctx, const struct call *call, size_t k,
     }
 }
 
-/* The same by a law of the caller, whose boxes are kept. */
+/* Balances chunk k by the law of the caller; its boxes stay in tribo_own_row. */
 static void balance_own(tribo_context *ctx, const struct call *call, size_t k, double *f)
 {
     const size_t i = k * TRIBO_CHUNK, n = tribo_chunk_size(ctx, i);

@@ -12,8 +12,8 @@ static int reads_feq(const tribo_context *ctx, size_t i, const double *v)
     return tribo_is_scalar(ctx, i) ? fabs(v[i]) <= band : tribo_plane_reads_feq(ctx, i, v);
 }
 
-/* Checks v, and feq where forces depend on it; a status. *plain: laws take feq as it is. note: ctx, or NULL to keep no message.
- * */
+/* Checks v, and feq where forces depend on it; a status. *plain: laws take feq as it is. note: ctx, or NULL to keep no
+ * message. */
 static inline int check_force(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq, int *plain)
 {
     int status = ctx->set.step > 0.0 ? tribo_need_operator(ctx, note) : TRIBO_OK; /* of epsilon */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What a backbone costs: the first mode of the beam with elastic contacts, frequency and damping over the amplitude, by
- * tribo_driver_find_mode and by harmonic balance with one harmonic, the describing function of the contacts. --smoke: no times.
- * */
+ * tribo_driver_find_mode and by harmonic balance with one harmonic, the describing function of the contacts. --smoke: no
+ * times. */
 #include <complex.h>
 #include <math.h>
 #include <stdio.h>

@@ -81,8 +81,8 @@ struct watch {
 void tribo_events_guard_contact(struct events *e, size_t i, const struct watch *w);
 
 /* Adds the guard of the limit L of contact i, if L varies: L > 0 of a closed contact, L < 0 of an open contact, L > |f| of a
- * contact with constant f. A normal has the guard of L = N, N < 0 where it is open; the contacts of a normal have none of L. And
- * 2 L > L(0) - |f(0)| of a contact at rest whose force f follows L: there f, which has turned, is at L again. */
+ * contact with constant f. A normal has the guard of L = N, N < 0 where it is open; the contacts of a normal have none of L. A
+ * contact at rest with a force f that follows L has the guard 2 L > L(0) - |f(0)|: f has turned, and is at L again. */
 void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *w);
 
 /* Takes the size of velocities, and excess and backslip of the driver, from the guards of the phase that ended. */

@@ -51,8 +51,7 @@ void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *w)
     const int keeps = m->state.slip[i] == TRIBO_SLIP_STUCK && tribo_stick_slip_follows(m, i) == 0.0;
     const double ratio = m->limits.ratio[i], swing = m->constant.swing[i];
     const struct normal *normal = tribo_normals_at(m->constant.sys, i);
-    /* slack: of a contact at rest whose force follows the limit L inside it, |f| = ratio L - slack, and < 0 from ratio L = slack
-     * on */
+    /* slack: ratio L - |f| of a contact at rest, constant while f follows the limit L; f changes its sign at ratio L = slack */
     const double slack = m->state.slip[i] == TRIBO_SLIP_STUCK && !keeps ? m->state.stick[i] - fabs(m->state.force[i]) : 0.0;
     if (w->varies && !m->state.holds[i] && slack > m->noise.allowance[i]) {
         append(e, i, HOLDS, 0.0, 2.0 * ratio, 2.0 * ratio * w->constant - slack, m->noise.allowance[i], w);

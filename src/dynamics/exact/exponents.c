@@ -104,9 +104,8 @@ static double eigen_error(const double *a, size_t size, double complex lambda, c
     return sqrt(square) / cabs(lambda);
 }
 
-/* Keeps exponent p of modes whose K~ is not symmetric: x = v + i w the right, y - i z, times half, the left eigenvector, by modes
- * at
- * [count], divided by s. Modes which drift follow: lambda^2 r_d = -sum over k of (K~_dk + lambda C~_dk) r_k. */
+/* Keeps exponent p where K~ is not symmetric, of the modes at [count]. Right eigenvector: v + i w; left eigenvector: half (y - i
+ * z); both are divided by s. Modes d that drift follow: lambda^2 r_d = -sum over k of (K~_dk + lambda C~_dk) r_k. */
 static void keep_following(struct modal *h, size_t p, size_t count, const size_t *at, const double *s, double complex lambda,
                            double half, const double *const *vector)
 {

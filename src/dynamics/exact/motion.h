@@ -103,8 +103,8 @@ void tribo_modal_join(const struct modal *h, size_t columns, const double *zr, c
 /* follow.c. key: key [ncontact] = the keys, KEY_, of the contacts; returns key. forces: force [modes] = F with eta'' + C~ eta' +
  * K~ eta = F + ramp tau + harmonics, from eta and eta' at t0 in place and rate. settle: as tribo_modal_settle; vel is 0. drift:
  * subtracts from drift [modes][columns] of modes that drift eta' by z. pull [modes][columns] = constant forces on eta by
- * perturbations v, of which eta are those of eta, and f [ncontact][columns] those of springs; work [ndof + 2 ncontact][columns].
- * */
+ * perturbations v, of which eta are those of eta, and f [ncontact][columns] those of springs; work [ndof + 2
+ * ncontact][columns]. */
 const signed char *tribo_follow_key(const struct stick_slip *m, signed char *key);
 void tribo_follow_forces(struct exact *x, const double *y, double *force);
 void tribo_follow_settle(const struct modal *h, size_t columns, const double *force, double *eta, double *vel, double *acc);

@@ -175,7 +175,7 @@ static void respond_modes(struct response *r, int source)
     }
 }
 
-/* The same of a structure without modes, whose sources are powers of time. */
+/* Sets the responses of a structure without modes: sources and responses are powers of time. */
 static void respond_powers(struct response *r)
 {
     const struct exact *x = r->x;

@@ -78,8 +78,8 @@ int tribo_modal_transition(void *own, const void *phase, double tau, size_t colu
         }
         tribo_follow_pull(h, sys, c, v, way, eta, pull, work);
     } else {
-        /* constant forces on the modes: -on (J q + G f) of contacts that hold; on times the force of others, f of compliant ones
-         * */
+        /* constant forces on the modes: -on (J q + G f) of contacts that hold; on times the force of others, f of compliant
+         * ones */
         tribo_system_find_ways(sys, c, v, force, way);
         for (size_t i = 0; i < sys->ncontact * c; i++) {
             way[i] = h->key[i / c] == KEY_HOLDS ? -way[i] : force[i] + (source ? source->force[i] : 0.0);

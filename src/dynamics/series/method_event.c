@@ -326,8 +326,8 @@ static int method_event_create(tribo_driver *drv)
     return tribo_events_create(&e->events, drv, &motion_in_series, e);
 }
 
-/* Returns TRIBO_ERR_UNSUPPORTED for limits that follow the motion, of planar contacts, or beside limits that fall with the speed.
- * */
+/* Returns TRIBO_ERR_UNSUPPORTED for limits that follow the motion, of planar contacts, or beside limits that fall with the
+ * speed. */
 static int check_following(const tribo_system *sys)
 {
     const size_t dropping = sys->normals.count ? tribo_system_first_dropping(sys, 1) : sys->ncontact;

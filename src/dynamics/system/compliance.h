@@ -85,8 +85,8 @@ void tribo_compliance_enter(const tribo_system *sys, const double *limit, double
 void tribo_compliance_share(const struct compliance *g, double *v);
 
 /* Applies slip [ncontact] to perturbations v [2 ndof + count][columns] of a state: 0 for forces of open contacts, and of sliding
- * ones what their limits are perturbed by: by the motion, and by rise [ncontact][columns], or NULL. work [2 ncontact][columns].
- * */
+ * ones what their limits are perturbed by: by the motion, and by rise [ncontact][columns], or NULL. work [2
+ * ncontact][columns]. */
 void tribo_compliance_perturb(const tribo_system *sys, const signed char *slip, const double *rise, size_t columns, double *v,
                               double *work);
 

@@ -44,15 +44,15 @@ int tribo_normals_create(struct tribo_system *sys, size_t count, const struct no
 int tribo_normals_copy(struct tribo_system *to, const struct tribo_system *from); /* 1, or 0 if out of memory */
 void tribo_normals_free(struct normals *s);
 
-/* Returns TRIBO_ERR_UNSUPPORTED, with a message in the system, if limit [ncontact] > 0 at a normal, or at a contact that has one.
- * */
+/* Returns TRIBO_ERR_UNSUPPORTED, with a message in the system, if limit [ncontact] > 0 at a normal, or at a contact that has
+ * one. */
 int tribo_normals_check_limits(const struct tribo_system *sys, const double *limit);
 
 /* Sets the second directions of planar contacts. Call where settings change. Returns a status. */
 int tribo_normals_pair(struct tribo_system *sys);
 
-/* move: sets depth, speed and size by q, u. set: likewise, pressed by depth > 0, and the limits of the contacts at the set time.
- * */
+/* move: sets depth, speed and size by q, u. set: likewise, pressed by depth > 0, and the limits of the contacts at the set
+ * time. */
 void tribo_normals_move(struct tribo_system *sys, const double *q, const double *u);
 void tribo_normals_set(struct tribo_system *sys, const double *q, const double *u);
 
@@ -60,8 +60,8 @@ void tribo_normals_set(struct tribo_system *sys, const double *q, const double *
  * normals. */
 void tribo_normals_limits(const struct tribo_system *sys, double *limit, double *rate);
 
-/* to [ndof] -= factor B_n stiffness (J_n x - gap) over the normals pressed (all = 1: over all normals); gap = 0: without the gap.
- * */
+/* to [ndof] -= factor B_n stiffness (J_n x - gap) over the normals pressed (all = 1: over all normals); gap = 0: without the
+ * gap. */
 void tribo_normals_push(const struct tribo_system *sys, int all, int gap, double factor, const double *x, double *to);
 
 #endif
