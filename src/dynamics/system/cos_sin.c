@@ -31,15 +31,15 @@ static inline double sine_near_0(struct twofold x)
 }
 
 /* c, s = cosine and sine of an angle up to COS_SIN_NEAR, in any rounding mode. x = angle - quarters pi/2, pi/2 = first + second +
- * third; multiples of first and second up to 2^20 are exact. */
+ * third; multiples of first and second up to 2^20 are exact. Integers would be vectors of another length than doubles. */
 static inline void cos_sin_of(struct twofold angle, double *c, double *s)
 {
     const double first = 0x1.921fb544p+0, second = 0x1.0b4611a6p-34, third = 0x1.3198a2e037073p-69;
-    const int quarters = (int)(angle.hi * 0.63661977236758134 + copysign(0.5, angle.hi));
+    const double quarters = floor(angle.hi * 0.63661977236758134 + 0.5);
     const struct twofold most = twofold_sum(angle.hi - quarters * first, -quarters * second);
     const struct twofold x = twofold_sum(most.hi, (most.lo - quarters * third) + angle.lo);
     const double cx = cosine_near_0(x), sx = sine_near_0(x);
-    const double left = ((quarters + 1) & 3) - 1, size = fabs(left); /* left: -1, 0, 1, 2 */
+    const double left = quarters - 4.0 * floor(0.25 * quarters + 0.25), size = fabs(left); /* left: -1, 0, 1, 2 */
     const double cq = 1.0 - size, sq = left * (2.0 - size);
     *c = cq * cx - sq * sx;
     *s = sq * cx + cq * sx;
@@ -47,7 +47,7 @@ static inline void cos_sin_of(struct twofold angle, double *c, double *s)
 
 /* Far angles: rotates by `rest`, the rounding error of omega t plus omega low, without which phases at late times have random
  * errors. */
-void tribo_cos_sin(double omega, double t, double low, double *c, double *s)
+TRIBO_SIMD_OF_FOUR void tribo_cos_sin(double omega, double t, double low, double *c, double *s)
 {
     const double angle = omega * t, rest = (fabs(angle) < TWOFOLD_FAR ? twofold_product(omega, t).lo : 0.0) + omega * low;
     if (fabs(angle) <= COS_SIN_NEAR) {
@@ -59,14 +59,14 @@ void tribo_cos_sin(double omega, double t, double low, double *c, double *s)
     *s = sa * cr + ca * sr;
 }
 
-TRIBO_SIMD_OF_FOUR void tribo_cos_sin_all(double omega, size_t n, const double *restrict t, double *restrict c, double *restrict s)
+TRIBO_SIMD_OF_FOUR void tribo_cos_sin_all(double omega, size_t n, const double *restrict t, double *restrict c,
+                                          double *restrict s)
 {
     int64_t far = 0; /* as wide as the doubles compared, for vectors */
     for (size_t k = 0; k < n; k++) {
-        far |= fabs(omega * t[k]) <= COS_SIN_NEAR ? 0 : -1;
-    }
-    for (size_t k = 0; !far && k < n; k++) {
-        cos_sin_of(twofold_product(omega, t[k]), c + k, s + k);
+        const int near = fabs(omega * t[k]) <= COS_SIN_NEAR;
+        far |= near ? 0 : -1;
+        cos_sin_of(twofold_product(omega, near ? t[k] : 0.0), c + k, s + k);
     }
     for (size_t k = 0; far && k < n; k++) {
         tribo_cos_sin(omega, t[k], 0.0, c + k, s + k);
