@@ -31,7 +31,14 @@ TRIBO_SIMD static int any_in_band(size_t n, const double *v, double band)
     return any != 0;
 }
 
-TRIBO_SIMD static void slide(size_t n, const double *restrict v, const double *restrict limit, double *restrict f)
+int tribo_any_near(const tribo_context *ctx, size_t k, const double *v)
+{
+    const struct law *law = ctx->set.law;
+    const double widest = ctx->follow.chunk[k].band, band = law->sticks_in_band ? widest : lesser(widest, 0.0);
+    return law->uses_feq && (fabs(*v) <= band || any_in_band(tribo_chunk_size(ctx, k * TRIBO_CHUNK), v, band));
+}
+
+TRIBO_SIMD void tribo_slide(size_t n, const double *restrict v, const double *restrict limit, double *restrict f)
 {
     for (size_t i = 0; i < n; i++) {
         f[i] = sliding(v[i], limit[i]);
@@ -123,8 +130,8 @@ static void balance_chunk(tribo_context *ctx, const struct call *call, size_t k,
     const struct contacts c = tribo_chunk_contacts(ctx, i);
     const struct delassus *op = ctx->op;
     const int alone = op->islands > op->groups; /* there are contacts in no group */
-    const double *v = call->v + i, widest = ctx->follow.chunk[k].band, band = law->sticks_in_band ? widest : lesser(widest, 0.0);
-    const int near = law->uses_feq && (fabs(*v) <= band || any_in_band(n, v, band)), reads = near && alone;
+    const double *v = call->v + i;
+    const int near = tribo_any_near(ctx, k, v), reads = near && alone;
     double room[TRIBO_CHUNK], *feq = call->feq ? call->feq + i : room;
     if (reads && !call->feq && call->plain && ctx->follow.chunk[k].plain) {
         law->balance(&c, n, v, call->a + i, tribo_inverses(ctx, k), f);
@@ -140,7 +147,7 @@ static void balance_chunk(tribo_context *ctx, const struct call *call, size_t k,
     if (reads || !law->uses_feq) {
         law->force(&c, n, v, reads ? feq : v, f);
     } else {
-        slide(n, v, c.limit, f);
+        tribo_slide(n, v, c.limit, f);
     }
     if (op->groups) {
         unsigned char *is_near = ctx->last.near + i;
@@ -212,7 +219,7 @@ static void step_chunk(tribo_context *ctx, const struct call *call, size_t k, do
     const double far = product(1.0000001 * greater(product(chunk->quickest, dt), DBL_MIN), chunk->largest);
     const double reach = chunk->least > 0.0 && far < TRIBO_FAR ? far : DBL_MAX;
     if (!(fabs(*v) <= reach || any_in_band(n, v, reach))) {
-        slide(n, v, limit, f);
+        tribo_slide(n, v, limit, f);
     } else if (!chunk->plain || dt < LEAST_STEP || !tribo_is_within(v, n, TRIBO_PLAIN)) {
         stop_far(n, dt, v, tribo_inverses(ctx, k), &(struct bounds){NULL, limit}, f);
     } else {

@@ -36,6 +36,12 @@ static inline double tribo_carried(const tribo_context *ctx, const struct box_qp
 void tribo_balance_one(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f);
 int tribo_step_alone(tribo_context *ctx, double dt, const double *v, double *f);
 
+/* 1 if a contact of chunk k at v [its size] is near stick, where laws with f_eq read it; elsewhere they slide with their limits. */
+int tribo_any_near(const tribo_context *ctx, size_t k, const double *v);
+
+/* f [n] of contacts that slide at v != 0. */
+void tribo_slide(size_t n, const double *restrict v, const double *restrict limit, double *restrict f);
+
 /* The first part of a balance: last.f of contacts that need no solver, and last.feq where the law reads it, or of all such
  * contacts unless feq is NULL. Finds which contacts of groups are near stick, and lists their groups. Where tribo_all_alone: also
  * f, unless it is NULL, and f_eq in feq in the place of last.feq. */

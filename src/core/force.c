@@ -43,6 +43,7 @@ static void find_outputs(const tribo_context *ctx, int plain, const double *v, c
 {
     const int derivatives = out[BY_V] || out[BY_FEQ] || out[BY_LIMIT];
     const int whole = plain && !ctx->set.breaking && !derivatives;
+    const int may_slide = ctx->set.law->uses_feq && !tribo_is_own(ctx) && !derivatives;
     const double *given = ctx->set.law->uses_feq ? feq : v;
     for (size_t i = 0, n; i < ctx->n; i += n) {
         double room[TRIBO_CHUNK], limit[TRIBO_CHUNK], unwanted[OUTPUTS][TRIBO_CHUNK], *to[OUTPUTS];
@@ -67,6 +68,8 @@ static void find_outputs(const tribo_context *ctx, int plain, const double *v, c
         }
         if (derivatives) {
             tribo_law_tangents(ctx, &c, i, n, v + i, used, &(struct tangents){to[FORCES], to[BY_V], to[BY_FEQ], to[BY_LIMIT]});
+        } else if (may_slide && !chunk->alike && chunk->band >= 0.0 && !tribo_any_near(ctx, i / TRIBO_CHUNK, v + i)) {
+            tribo_slide(n, v + i, c.limit, to[FORCES]); /* reads neither f_eq nor widths */
         } else if (out[FORCES]) {
             ctx->set.law->force(&c, n, v + i, used, to[FORCES]);
         }

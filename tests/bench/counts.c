@@ -267,11 +267,13 @@ static const struct scene {
 } scenes[] = {
     {"force-alike", "contact", KERNEL, FORCE, 1000, 1, NULL, 0.0, 0.0},
     {"force", "contact", KERNEL, FORCE, 1000, 0, NULL, 0.0, 0.0},
+    {"force-slide", "contact", KERNEL, FORCE_SLIDE, 1000, 0, NULL, 0.0, 0.0},
     {"force-tangent-alike", "contact", KERNEL, FORCE_TANGENT, 1000, 1, NULL, 0.0, 0.0},
     {"force-tangent", "contact", KERNEL, FORCE_TANGENT, 1000, 0, NULL, 0.0, 0.0},
     {"balance-alike", "contact", KERNEL, BALANCE, 1000, 1, NULL, 0.0, 0.0},
     {"balance", "contact", KERNEL, BALANCE, 1000, 0, NULL, 0.0, 0.0},
     {"balance-stuck", "contact", KERNEL, BALANCE_STUCK, 1000, 0, NULL, 0.0, 0.0},
+    {"balance-slide", "contact", KERNEL, BALANCE_SLIDE, 1000, 0, NULL, 0.0, 0.0},
     {"step-alike", "contact", KERNEL, STEP, 1000, 1, NULL, 0.0, 0.0},
     {"step", "contact", KERNEL, STEP, 1000, 0, NULL, 0.0, 0.0},
     {"step-stuck", "contact", KERNEL, STEP_STUCK, 1000, 0, NULL, 0.0, 0.0},

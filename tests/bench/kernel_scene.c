@@ -7,9 +7,11 @@
 #include "../../src/damper/output.h"
 
 const char *const kernel_name[KERNELS] = {"tribo_force",
+                                          "tribo_force, all slide",
                                           "tribo_force_tangent",
                                           "tribo_balance, diagonal R",
                                           "tribo_balance, all inside epsilon",
+                                          "tribo_balance, all slide",
                                           "tribo_step_force, all slide",
                                           "tribo_step_force, all stop",
                                           "tribo_set_limit"};
@@ -17,6 +19,7 @@ const char *const kernel_name[KERNELS] = {"tribo_force",
 void kernel_scene_create(struct kernel_scene *s, enum kernel kernel, size_t n, enum likeness like)
 {
     double *width = need_memory(n, sizeof *width);
+    const int slide = kernel == STEP || kernel == FORCE_SLIDE || kernel == BALANCE_SLIDE;
     *s = (struct kernel_scene){.kernel = kernel, .n = n};
     s->limit = need_memory(n, sizeof *s->limit);
     s->v = need_memory(n, sizeof *s->v);
@@ -28,7 +31,7 @@ void kernel_scene_create(struct kernel_scene *s, enum kernel kernel, size_t n, e
         const double x = sin((double)i), y = sin(1.7 * (double)i);
         s->limit[i] = like == ALL ? 1.0 : 1.5 + x;
         width[i] = like != NOTHING ? 1e-3 : 1e-3 * (1.5 + y);
-        s->v[i] = kernel == STEP ? 1.0 + 0.5 * y : width[i] * (kernel == BALANCE_STUCK ? 1.0 : 2.0) * sin(3.1 * (double)i);
+        s->v[i] = slide ? 1.0 + 0.5 * y : width[i] * (kernel == BALANCE_STUCK ? 1.0 : 2.0) * sin(3.1 * (double)i);
         s->a[i] = 2.0 * sin(0.6 * (double)i);
         s->out[1][i] = s->out[2][i] = 1.0 + 0.5 * x;
     }
@@ -56,6 +59,7 @@ void kernel_call(struct kernel_scene *s)
     int status = 0;
     switch (s->kernel) {
     case FORCE:
+    case FORCE_SLIDE:
         status = tribo_force(s->ctx, s->v, s->a, s->out[0]);
         break;
     case FORCE_TANGENT:

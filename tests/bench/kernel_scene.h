@@ -5,7 +5,7 @@
 
 #include "tribo/tribo.h"
 
-enum kernel { FORCE, FORCE_TANGENT, BALANCE, BALANCE_STUCK, STEP, STEP_STUCK, SET_LIMIT, KERNELS };
+enum kernel { FORCE, FORCE_SLIDE, FORCE_TANGENT, BALANCE, BALANCE_STUCK, BALANCE_SLIDE, STEP, STEP_STUCK, SET_LIMIT, KERNELS };
 extern const char *const kernel_name[KERNELS];
 
 /* What contacts have in common. */
@@ -19,8 +19,8 @@ struct kernel_scene {
     double *out[4];
 };
 
-/* Velocities are within two epsilons, or of BALANCE_STUCK within one; a step stops
- * none, or of STEP_STUCK all. */
+/* Velocities are within two epsilons, or of BALANCE_STUCK within one, of kernels that slide beyond; a step stops none, or of
+ * STEP_STUCK all. */
 void kernel_scene_create(struct kernel_scene *s, enum kernel kernel, size_t n, enum likeness like);
 void kernel_scene_destroy(struct kernel_scene *s);
 

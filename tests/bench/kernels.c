@@ -40,7 +40,7 @@ static void run_arrays(void *data)
  * again, with what the context knows of each contact, while outputs are written. */
 struct traffic {
     size_t n, read, written;
-    const double *in[8];
+    const double *checked[2], *in[8];
     double *out[4];
     int odd;
 };
@@ -68,7 +68,7 @@ TRIBO_SIMD static void add_to(size_t n, double *restrict sum, const double *rest
 static void run_traffic(void *data)
 {
     struct traffic *t = data;
-    t->odd += any_odd(t->n, t->in[0], t->in[1]);
+    t->odd += any_odd(t->n, t->checked[0], t->checked[1]);
     for (size_t i = 0; i < t->n; i += TRIBO_CHUNK) {
         double sum[TRIBO_CHUNK] = {0};
         const size_t n = t->n - i < TRIBO_CHUNK ? t->n - i : TRIBO_CHUNK;
@@ -81,22 +81,26 @@ static void run_traffic(void *data)
     }
 }
 
-/* How many arrays a call is given, how many of what the context knows of each contact it reads anyway, how many of limits, and of
- * widths and rates, where these differ, and how many it writes. */
+/* Arrays that a call reads and writes: given ones that it checks, and of these the ones that it reads again; what the context
+ * knows of each contact anyway; limits, and widths and rates, where these differ; outputs. */
 static const struct passes {
-    size_t given, known, limits, widths, written;
-} passes[KERNELS] = {
-    [FORCE] = {2, 0, 1, 2, 1}, [FORCE_TANGENT] = {2, 0, 1, 2, 4}, [BALANCE] = {2, 1, 1, 2, 1},  [BALANCE_STUCK] = {2, 1, 1, 2, 1},
-    [STEP] = {1, 0, 1, 0, 1},  [STEP_STUCK] = {1, 1, 1, 0, 1},    [SET_LIMIT] = {1, 0, 0, 0, 1}};
+    size_t given, again, known, limits, widths, written;
+} passes[KERNELS] = {[FORCE] = {2, 2, 0, 1, 2, 1},   [FORCE_SLIDE] = {2, 1, 0, 1, 0, 1},   [FORCE_TANGENT] = {2, 2, 0, 1, 2, 4},
+                     [BALANCE] = {2, 2, 1, 1, 2, 1}, [BALANCE_STUCK] = {2, 2, 1, 1, 2, 1}, [BALANCE_SLIDE] = {2, 1, 0, 1, 0, 1},
+                     [STEP] = {1, 1, 0, 1, 0, 1},    [STEP_STUCK] = {1, 1, 1, 1, 0, 1},    [SET_LIMIT] = {1, 1, 0, 0, 0, 1}};
 
 static struct traffic traffic_of(const struct kernel_scene *s, enum likeness like, double *known)
 {
     const struct passes *p = &passes[s->kernel];
-    struct traffic t = {s->n,       p->given + p->known + (like < ALL ? p->limits : 0) + (like == NOTHING ? p->widths : 0),
-                        p->written, {s->v, p->given > 1 ? s->a : s->v},
-                        {NULL},     0};
-    for (size_t k = p->given; k < t.read; k++) {
-        t.in[k] = known + (k - p->given) * s->n;
+    struct traffic t = {s->n,
+                        p->again + p->known + (like < ALL ? p->limits : 0) + (like == NOTHING ? p->widths : 0),
+                        p->written,
+                        {s->v, p->given > 1 ? s->a : s->v},
+                        {s->v, s->a},
+                        {NULL},
+                        0};
+    for (size_t k = p->again; k < t.read; k++) {
+        t.in[k] = known + (k - p->again) * s->n;
     }
     for (size_t k = 0; k < t.written; k++) {
         t.out[k] = s->out[k];
