@@ -446,9 +446,10 @@ TRIBO_API int tribo_driver_find_mode(tribo_driver *drv, const double *c, double 
 
 /* Floquet multipliers re + i im of the last periodic motion found, largest modulus first; in a complex pair im > 0 is first.
  * re, im   [dimension - 1] out
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_STATE (no search yet, or the last search failed),
- * TRIBO_ERR_UNSUPPORTED (contacts that act on each other stop or break away at one instant, or a normal rests at depth 0: the
- * motion nearby is not linear). */
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_STATE (no search yet, or the last search failed; with
+ * elastic contacts: the system has changed since), TRIBO_ERR_UNSUPPORTED (contacts that act on each other stop or break away at one
+ * instant, a normal rests at depth 0, or the force of an elastic contact only touches its limit: the motion nearby is not linear;
+ * the message names the contact). */
 TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im);
 
 /* The dimension of the family of periodic motions around the last periodic motion found: a contact that never slips can rest at

@@ -355,6 +355,8 @@ static int differentiate(struct sensitivity *d, struct shooting *s, const size_t
         status =
             tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
                         "a contact stops or breaks away as the period begins, at t = %.17g: begin it at another time", s->map.t);
+    } else {
+        status = tribo_shooting_check_touches(s, "derivatives");
     }
     tribo_system_limits(drv->sys, drv->sys->work.put_limit, drv->sys->work.feq);
     for (size_t j = 0; !status && j < d->columns; j++) {

@@ -20,6 +20,14 @@
 /* Sizes in [1/LARGE, LARGE] need no scale: squares of these and of far smaller or larger sizes neither underflow nor overflow. */
 #define LARGE 1e100
 
+/* Relative change of limits. */
+#define NUDGE 1e-7
+
+/* The period is followed from this part of it on, where no touch is expected by symmetry. Phases shorter than INSTANT of the
+ * period do not count: contacts slide between two events at one time. */
+#define LATER 0.381966011250105
+#define INSTANT 1e-8
+
 static const double full_turn = 6.283185307179586;
 
 /* -------------------------------------------------------------------------------------------------------------- integration */
@@ -208,6 +216,108 @@ int tribo_period_map_complete(struct period_map *m, struct point *p)
     const int status = period_map_integrate(m, m->t + m->span, m->t + m->period, NULL);
     tribo_energy_norm_of(&m->norm, 1, m->y, m->x);
     p->residual = tribo_energy_distance(m->x, p->x, m->n);
+    return status;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- touches
+ * An elastic contact whose force only touches its limit, as where sliders come to rest in the course of time: in some neighbouring
+ * motions the contact slides there, in others it does not, and the map has no derivative. The contact slides a different number of
+ * times in a period with limits that are slightly lower, or slightly higher. */
+
+/* Observer of a period. */
+struct slides {
+    struct company company;
+    const struct events *events;
+    double instant;
+    size_t *count;         /* [ncontact] number of times that a contact begins to slide */
+    unsigned char *before; /* [ncontact] 1: slides in the phase before */
+};
+
+static int slides_phase(struct company *company, double tau, double t, const double *y)
+{
+    struct slides *s = (struct slides *)company;
+    const struct stick_slip *m = &s->events->stick_slip;
+    (void)t;
+    (void)y;
+    for (size_t i = 0; tau > s->instant && i < m->constant.contacts; i++) {
+        const unsigned char now = tribo_slides(m->state.slip[i]) || m->state.slip[i] == TRIBO_SLIP_PLANE;
+        s->count[i] += now && !s->before[i];
+        s->before[i] = now;
+    }
+    return TRIBO_OK;
+}
+
+/* slides->count [ncontact] += number of times that each contact begins to slide within a period from the state y at t on, with
+ * limits of elastic contacts times a factor. Returns a status, its message on the driver. */
+static int count_slides(const struct period_map *m, double factor, double t, const double *y, struct slides *slides)
+{
+    tribo_system *sys = NULL;
+    tribo_driver *drv = NULL;
+    struct period_map map = {.drv = NULL};
+    int status = tribo_driver_pass(m->drv, tribo_system_clone(m->sys, &sys));
+    tribo_context *contacts = status ? NULL : tribo_system_context(sys);
+    if (contacts) {
+        double *limit = sys->work.put_limit;
+        tribo_get_limit(contacts, limit);
+        for (size_t k = 0; k < sys->compliance.count; k++) {
+            limit[sys->compliance.contact[k]] *= factor;
+        }
+        for (struct follower *f = sys->normals.follower; f < sys->normals.follower + sys->normals.followers; f++) {
+            f->mu *= tribo_is_compliant(&sys->compliance, f->contact) ? factor : 1.0;
+        }
+        tribo_set_limit(contacts, limit);
+        status = tribo_driver_create_method(&drv, sys, m->drv->at_work);
+        status = status ? tribo_error(m->drv->message, status, "%s", tribo_system_message(sys)) : status;
+    }
+    if (!status && (!contacts || !tribo_period_map_create(&map, drv))) {
+        status = tribo_error(m->drv->message, TRIBO_ERR_MEMORY, "out of memory for the motions beside a motion");
+    } else if (!status) {
+        drv->abstol = m->drv->abstol;
+        drv->reltol = m->drv->reltol;
+        map.t = t;
+        map.period = m->period;
+        memcpy(map.y, y, (map.n + 1) * sizeof *y);
+        tribo_system_set_time(sys, t);
+        tribo_normals_set(sys, map.y, map.y + sys->ndof);
+        tribo_get_limit(sys->contacts, map.limit);
+        tribo_compliance_enter(sys, map.limit, map.limit + sys->ncontact, map.y);
+        memcpy(map.x, map.y, map.n * sizeof *map.x);
+        status = drv->at_work->open(drv, &map.events);
+        slides->events = map.events;
+        status = status ? status : tribo_period_map_replay(&map, map.x, map.period, &slides->company);
+        status = status ? tribo_error(m->drv->message, status, "%s", drv->message) : status;
+    }
+    tribo_period_map_free(&map);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+    return status;
+}
+
+int tribo_period_map_find_touch(struct period_map *m, const double *y, int changed, size_t *contact)
+{
+    const size_t c = m->sys->ncontact;
+    *contact = c;
+    if (!m->sys->compliance.count || changed) {
+        return !m->sys->compliance.count
+                   ? TRIBO_OK
+                   : tribo_error(m->drv->message, TRIBO_ERR_STATE,
+                                 "the system has elastic contacts, and has changed since the periodic motion was found");
+    }
+    double *later = NULL;
+    struct slides less = {.company = {slides_phase, NULL}, .instant = INSTANT * m->period}, more = less;
+    if (!ALLOCATE(ARRAY(later, m->n + 1), ARRAY(less.count, c), ARRAY(more.count, c), ARRAY(less.before, c),
+                  ARRAY(more.before, c))) {
+        return tribo_error(m->drv->message, TRIBO_ERR_MEMORY, "out of memory for the motions beside a motion");
+    }
+    int status = tribo_period_map_replay(m, y, LATER * m->period, NULL);
+    memcpy(later, m->y, m->n * sizeof *later);
+    status = status ? status : count_slides(m, 1.0 - NUDGE, m->t + LATER * m->period, later, &less);
+    status = status ? status : count_slides(m, 1.0 + NUDGE, m->t + LATER * m->period, later, &more);
+    for (size_t k = 0; !status && k < m->sys->compliance.count; k++) {
+        const size_t i = m->sys->compliance.contact[k];
+        *contact = *contact == c && less.count[i] != more.count[i] ? i : *contact;
+    }
+    free(later);
     return status;
 }
 

@@ -66,6 +66,10 @@ int tribo_period_map_march(struct period_map *m, double time, size_t times, stru
  * its message on the driver. */
 int tribo_period_map_replay(struct period_map *m, const double *y, double length, struct company *company);
 
+/* *contact = an elastic contact whose force only touches its limit in the motion from y at m->t, in a period; ncontact: there is
+ * none. changed = 1: the system has changed since the motion was found. Returns a status, its message on the driver. */
+int tribo_period_map_find_touch(struct period_map *m, const double *y, int changed, size_t *contact);
+
 /* rate [n] = coordinates of the derivative of the state by time at the end of the last integration by follow. */
 void tribo_period_map_rate(const struct period_map *m, const double *end, double *rate);
 

@@ -213,13 +213,17 @@ int tribo_driver_get_freedom(const tribo_driver *drv, size_t *freedom)
 int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im)
 {
     struct shooting *s = NULL;
-    const int status = get_found(drv, !re ? "re" : !im ? "im" : NULL, &s);
+    int status = get_found(drv, !re ? "re" : !im ? "im" : NULL, &s);
     if (!status && s->flow->derivative.torn < s->map.sys->ncontact) {
         return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
                            "contact %zu and contact %zu stop or break away at one instant, or are a contact and its normal that "
                            "just touches: which "
                            "of them is first may change the motion, and it has no multipliers",
                            s->flow->derivative.torn, s->flow->derivative.other);
+    }
+    if (!status) {
+        status = tribo_shooting_check_touches(s, "multipliers");
+        status = status && s->map.drv != drv ? tribo_error(drv->message, status, "%s", s->map.drv->message) : status;
     }
     return status ? status : tribo_shooting_multipliers(s, re, im);
 }

@@ -468,6 +468,19 @@ int tribo_shooting_find_flow(struct shooting *s)
     return TRIBO_OK;
 }
 
+int tribo_shooting_check_touches(struct shooting *s, const char *what)
+{
+    size_t contact = 0;
+    const int changed = s->revision != tribo_system_revision(s->map.sys);
+    const int status = tribo_period_map_find_touch(&s->map, s->here->y, changed, &contact);
+    return status || contact == s->map.sys->ncontact
+               ? status
+               : tribo_error(s->map.drv->message, TRIBO_ERR_UNSUPPORTED,
+                             "the force of elastic contact %zu only touches its limit: beside this motion are some that slide "
+                             "there and some that do not, and it has no %s",
+                             contact, what);
+}
+
 int tribo_shooting_freedom(struct shooting *s, size_t *freedom)
 {
     memset(s->step, 0, s->map.n * sizeof *s->step);

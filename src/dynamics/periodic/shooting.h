@@ -64,6 +64,10 @@ struct shooting *tribo_shooting_create(tribo_driver *drv);
 int tribo_shooting_multipliers(struct shooting *s, double *re, double *im);
 int tribo_shooting_freedom(struct shooting *s, size_t *freedom);
 
+/* Returns TRIBO_OK; TRIBO_ERR_UNSUPPORTED if the force of an elastic contact only touches its limit in the motion found, so that it
+ * has no `what`; or another status. The message is on the driver. */
+int tribo_shooting_check_touches(struct shooting *s, const char *what);
+
 /* Largest residual over size of a motion that is found. */
 #define TRIBO_PERIODIC 1e-10
 
