@@ -349,16 +349,15 @@ TRIBO_SIMD static void add_diagonals(const struct matrix *a, size_t begin, size_
     }
 }
 
-/* y [end - begin] = z + factor times rows begin to end - 1 of A x, entry by entry in the order of the diagonals. */
+/* y [end - begin] = z + factor times rows begin to end - 1 of A x, in the order of the diagonals. Sums in y: GCC pairs others. */
 static void add_outer_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, const double *z,
                            double *y)
 {
-    for (size_t i = begin; i < end; i++) {
-        double sum = *z++;
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            sum += factor * a->val[k] * x[a->col[k]];
+    for (size_t i = begin, k = a->first[i]; i < end; i++, y++) {
+        *y = *z++;
+        for (const size_t next = a->first[i + 1]; k < next; k++) {
+            *y += factor * a->val[k] * x[a->col[k]];
         }
-        *y++ = sum;
     }
 }
 
@@ -410,6 +409,11 @@ void tribo_matrix_multiply_add(const struct matrix *a, double factor, const doub
 
 void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y)
 {
+    static const double zeros[MATRIX_FEW];
+    if (a->diagonals && a->rows <= MATRIX_FEW) {
+        add_outer_rows(a, 0, a->rows, 1.0, x, zeros, y);
+        return;
+    }
     memset(y, 0, a->rows * sizeof *y);
     tribo_matrix_multiply_add(a, 1.0, x, y);
 }

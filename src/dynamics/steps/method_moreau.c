@@ -176,18 +176,17 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
     struct step_form *s = &m->common;
     const size_t n = sys->ndof;
     const double h = next - t, *u = from + n;
-    double *p = s->a;
-    memset(p, 0, n * sizeof *p);
+    double *p = s->a, *load = sys->unsolved ? p : s->spare;
+    memset(load, 0, n * sizeof *load);
     tribo_system_set_time(sys, t);
-    tribo_system_loads(sys, DRIVES_LOAD, 0, 0.5 * h, p);
+    tribo_system_loads(sys, DRIVES_LOAD, 0, 0.5 * h, load);
     tribo_system_set_time(sys, next);
-    tribo_system_loads(sys, DRIVES_LOAD, 0, 0.5 * h, p);
+    tribo_system_loads(sys, DRIVES_LOAD, 0, 0.5 * h, load);
     for (size_t i = 0; i < n; i++) {
         s->u[i] = from[i] + 0.5 * h * u[i];
     }
     if (!sys->unsolved) {
-        tribo_matrix_multiply(&sys->mass, p, m->common.spare);
-        memcpy(p, m->common.spare, n * sizeof *p);
+        tribo_matrix_multiply(&sys->mass, load, p);
     }
     tribo_matrix_multiply_add(&sys->k, -h, s->u, p);
     tribo_matrix_multiply_add(&sys->c, -h, u, p);

@@ -188,8 +188,8 @@ int tribo_step_matrix_solve(const void *matrix, size_t count, double *x)
     } else if (below) { /* LAPACK's upper band, by columns, is L by rows */
         dpbtrs_("U", &n, &below, &all, m->band, &stride, x, &n, &info, 1);
     } else {
-        for (size_t k = 0; k < count * m->n; k++) {
-            x[k] = x[k] / m->band[k % m->n] / m->band[k % m->n];
+        for (size_t k = 0, d = 0; k < count * m->n; k++, d = d + 1 < m->n ? d + 1 : 0) {
+            x[k] /= m->band[d] * m->band[d];
         }
     }
     return 1;
@@ -229,21 +229,18 @@ static void hold_bodies(struct step_matrix *m, int none)
 static void solve_sets(struct step_matrix *m, const struct band_step *s)
 {
     const struct matrix *matrix = &m->s;
-    const size_t n = matrix->rows;
     double *x = s->du, *f = s->f;
     hold_bodies(m, 0);
-    memcpy(x, m->push, n * sizeof *x);
-    memset(m->move, 0, n * sizeof *x);
     for (size_t i = 0; i < m->count; i++) {
-        const size_t d = m->body[i];
         f[i] = m->at[i] * s->limit[i];
-        x[d] += s->h * m->lever[i] * f[i];
-        m->move[d] = m->at[i] ? 0.0 : s->base[i] / m->lever[i] - s->u[d];
+        m->move[m->body[i]] = m->at[i] ? 0.0 : s->base[i] / m->lever[i] - s->u[m->body[i]];
     }
-    /* columns of held bodies that move with their bases go to the right-hand side */
-    tribo_matrix_multiply_add(matrix, -1.0, m->move, x);
-    for (size_t d = 0; d < n; d++) {
-        x[d] = m->held[d] ? m->move[d] : x[d]; /* rows of the identity keep it */
+    /* rows of held bodies are those of the identity; columns of held bodies that move with their bases go to the right-hand side */
+    tribo_matrix_multiply(matrix, m->move, x);
+    for (size_t d = 0; d < matrix->rows; d++) {
+        const size_t i = m->contact[d];
+        const double rest = m->push[d] - x[d];
+        x[d] = m->held[d] ? m->move[d] : i < m->count ? rest + s->h * m->lever[i] * f[i] : rest;
     }
     tribo_step_matrix_solve(m, 1, x);
     for (size_t i = 0; i < m->count; i++) {
