@@ -298,7 +298,7 @@ TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
  * scalar; arrays keep one entry per direction. The manual explains laws, epsilon and sharing in the plane.
  * first  [count] in   count 0: no planar contacts
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE (first; static limits that differ), TRIBO_ERR_DUPLICATE (a direction of two contacts),
- * TRIBO_ERR_UNSUPPORTED (partition coupling; more than 2048 coupled directions; an operator set by masses that differ too much),
+ * TRIBO_ERR_UNSUPPORTED (partition coupling; an operator set by masses that differ too much),
  * TRIBO_ERR_MEMORY; on error the planar contacts are unchanged. */
 TRIBO_API int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first);
 

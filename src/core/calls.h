@@ -210,6 +210,9 @@ const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size);
 /* df [size] of cluster q, which was resumed last: forces that f_eq balances. */
 void tribo_cluster_product(tribo_context *ctx, size_t q, const struct change *d, double *df);
 
+/* Returns sum_j R_kj df_j over the places j of cluster q without k. */
+double tribo_cluster_others(const tribo_context *ctx, size_t q, size_t k, const double *df);
+
 /* 1 if the force of the planar contact with direction i depends on f_eq, at v [n]. */
 int tribo_plane_reads_feq(const tribo_context *ctx, size_t i, const double *v);
 

@@ -98,14 +98,14 @@ static const double *part_product(tribo_context *ctx, const struct part *s, cons
     memcpy(balanced, df, s->size * sizeof *df);
     for (size_t k = 0; k < s->size; k++) {
         const size_t i = s->member[k];
-        const double r = ctx->op->diagonal[i], *row = p ? NULL : ctx->plane.cluster[s->cluster].r + k * s->size;
+        const double r = ctx->op->diagonal[i];
         if (!ctx->last.near[i] || !tribo_is_scalar(ctx, i)) {
             continue;
         }
-        double sum = cut(tribo_entry(d->a, i)) + (p && !partition ? tribo_row_others(p, k, balanced) : 0.0);
-        for (size_t j = 0; row && j < s->size; j++) {
-            sum += j == k ? 0.0 : product(row[j], balanced[j]);
-        }
+        const double others = !p           ? tribo_cluster_others(ctx, s->cluster, k, balanced)
+                              : !partition ? tribo_row_others(p, k, balanced)
+                                           : 0.0,
+                     sum = cut(tribo_entry(d->a, i)) + others;
         const double change = partition ? df[k] : -quotient(cut(sum), r);
         df[k] = law_change(ctx, d, i) + product(ctx->last.tangent.dfeq[i], change);
     }

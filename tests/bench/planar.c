@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What planar contacts cost: the step and the balance at rest, which are one problem, beside projected Gauss-Seidel in plain C;
- * and a balance within the band, which is the lenses'. Where Siconos is installed, a second table of the step by its solvers. */
+ * and a balance within the band, which is the lenses'. Where Siconos is installed, a table of the step by its solvers. Then rows
+ * and carpets of many contacts, beside as many scalar ones. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,13 +17,14 @@
 
 #define ENOUGH 1e-10 /* a sweep that moves no force by more ends Gauss-Seidel */
 #define MOST_SWEEPS 20000
-#define MOST 100 /* contacts */
+#define MOST 1000 /* contacts of a scene */
 
 /* n planar contacts, limit 1, of which some would need more than their limit to hold; calls take the two pulls in turn. */
 struct scene {
     const char *name;
     size_t n;
     double *r;           /* [2n][2n] */
+    size_t *begin, *end; /* [2n] entries of its rows that are not 0 are there */
     double *pull[2], *v; /* [2n] */
     double *f, *plain;   /* [2n] of tribo, and of Gauss-Seidel */
     tribo_context *ctx;
@@ -70,6 +72,8 @@ static struct scene scene_create(const char *name, size_t n)
     const size_t size = 2 * n;
     size_t *first = calloc(n, sizeof *first);
     unsigned state = 7;
+    s.begin = calloc(2 * size, sizeof *s.begin);
+    s.end = s.begin + size;
     s.r = calloc(size * size, sizeof *s.r);
     s.pull[0] = calloc(5 * size, sizeof *s.f);
     s.pull[1] = s.pull[0] + size;
@@ -82,9 +86,13 @@ static struct scene scene_create(const char *name, size_t n)
         couple(&s, strcmp(name, "dense") == 0 ? 2 * size : n);
     }
     for (size_t i = 0; i < size; i++) {
+        s.begin[i] = strcmp(name, "row") == 0 && i > 2 ? i - 2 : 0;
+        s.end[i] = strcmp(name, "row") == 0 && i + 3 < size ? i + 3 : size;
+    }
+    for (size_t i = 0; i < size; i++) {
         const double angle = (double)(i / 2), needed = (0.5 + 0.4 * (double)(i / 2 % 3)) * (i % 2 ? cos(angle) : sin(angle));
         const double other = needed * (1.0 + 0.01 * uniform(&state));
-        for (size_t k = 0; k < size; k++) {
+        for (size_t k = s.begin[i]; k < s.end[i]; k++) {
             s.pull[0][k] += s.r[k * size + i] * needed;
             s.pull[1][k] += s.r[k * size + i] * other;
         }
@@ -103,6 +111,7 @@ static struct scene scene_create(const char *name, size_t n)
 static void scene_destroy(struct scene *s)
 {
     tribo_destroy(s->ctx);
+    free(s->begin);
     free(s->r);
     free(s->pull[0]);
 }
@@ -137,7 +146,7 @@ static double relax(struct scene *s, const double *pull, size_t i)
     double x[2], moved = 0.0;
     for (size_t d = 0; d < 2; d++) {
         double sum = pull[i + d];
-        for (size_t k = 0; k < n; k++) {
+        for (size_t k = s->begin[i + d]; k < s->end[i + d]; k++) {
             sum += row[d * n + k] * s->plain[k];
         }
         x[d] = s->plain[i + d] - sum / largest;
@@ -223,8 +232,8 @@ static void print_peers(struct scene *s, const struct effort *effort)
 {
     printf("| %s | %zu |", s->name, s->n);
     for (size_t k = 0; tresca_name(k); k++) {
-        if (k == 2 && strcmp(s->name, "redundant") == 0) {
-            printf(" |"); /* Newton's matrix is singular, which it prints */
+        if (k == 2 && (strcmp(s->name, "redundant") == 0 || s->n > 100)) {
+            printf(" |"); /* Newton's matrix is singular, which it prints; or takes minutes */
             continue;
         }
         struct peer p = {.scene = s, .tresca = tresca_create(k, s->n, s->r, ENOUGH)};
@@ -297,6 +306,126 @@ static void print_row(struct scene *s, const struct effort *effort)
     fflush(stdout);
 }
 
+/* -------------------------------------------------------------------------------------------------------- many contacts */
+
+enum { NEAR_LOADS, FAR_LOADS, LOADS };
+
+/* Contacts in a row, or on a carpet, planar or scalar, limit 1. Calls take loads in turn: two that differ by 1%, or two of
+ * which each pushes the contacts as the other does their neighbours. */
+struct field {
+    size_t n, *rowptr, *col; /* directions, and R */
+    double *val, *pull[LOADS][2], *v, *f;
+    tribo_context *ctx;
+    size_t calls;
+    int loads;
+};
+
+static void field_couple(struct field *s, size_t width, size_t wide)
+{
+    for (size_t i = 0; i < s->n; i++) {
+        const size_t k = i / wide, contacts = s->n / wide, apart[4] = {width, 1, 1, width};
+        const int has[4] = {k >= width, k % width > 0, k % width + 1 < width && k + 1 < contacts, k + width < contacts};
+        size_t end = s->rowptr[i];
+        for (size_t side = 0; side < 5; side++) {
+            if (side == 2) {
+                s->col[end] = i;
+                s->val[end++] = width < contacts ? 4.5 : 2.0;
+            }
+            if (side < 4 && has[side]) {
+                s->col[end] = side < 2 ? i - wide * apart[side] : i + wide * apart[side];
+                s->val[end++] = -1.0;
+            }
+        }
+        s->rowptr[i + 1] = end;
+    }
+}
+
+static struct field field_create(size_t contacts, size_t width, size_t wide)
+{
+    struct field s = {.n = wide * contacts};
+    size_t *first = calloc(contacts, sizeof *first);
+    unsigned state = 7;
+    s.rowptr = calloc(6 * s.n + 1, sizeof *s.rowptr);
+    s.col = s.rowptr + s.n + 1;
+    s.val = calloc(11 * s.n, sizeof *s.val);
+    s.v = s.val + 5 * s.n;
+    s.f = s.v + s.n;
+    field_couple(&s, width, wide);
+    for (size_t k = 0; k < LOADS * 2; k++) {
+        s.pull[k / 2][k % 2] = s.f + s.n * (k + 1);
+    }
+    for (size_t i = 0; i < s.n; i++) {
+        first[i / wide] = i - i % wide;
+        s.v[i] = 0.4 * uniform(&state);
+        for (size_t k = 0; k < LOADS * 2; k++) {
+            const size_t contact = i / wide + (k == 3);
+            const double size = 0.5 + 0.4 * (double)(contact % 3), angle = (double)contact;
+            const double needed = size * (wide == 1 ? (contact % 2 ? -1.0 : 1.0) : i % 2 ? cos(angle) : sin(angle));
+            for (size_t e = s.rowptr[i]; e < s.rowptr[i + 1]; e++) {
+                s.pull[k / 2][k % 2][s.col[e]] += s.val[e] * needed * (k == 1 ? 1.0 + 0.01 * s.v[i] / 0.4 : 1.0);
+            }
+        }
+    }
+    need(tribo_create(&s.ctx, s.n), NULL);
+    need(tribo_set_planar(s.ctx, wide == 2 ? contacts : 0, first), tribo_message(s.ctx));
+    need(tribo_set_limit_all(s.ctx, 1.0), tribo_message(s.ctx));
+    need(tribo_set_epsilon_all(s.ctx, 1.0), tribo_message(s.ctx));
+    need(tribo_set_operator_csr(s.ctx, s.rowptr, s.col, s.val), tribo_message(s.ctx));
+    free(first);
+    return s;
+}
+
+static void field_destroy(struct field *s)
+{
+    tribo_destroy(s->ctx);
+    free(s->rowptr);
+    free(s->val);
+}
+
+static void field_step(void *data)
+{
+    struct field *s = data;
+    need(tribo_step_force(s->ctx, 1.0, s->pull[s->loads][s->calls++ % 2], s->f), tribo_message(s->ctx));
+}
+
+static void field_band(void *data)
+{
+    struct field *s = data;
+    need(tribo_balance(s->ctx, s->v, s->pull[s->loads][s->calls++ % 2], NULL, s->f), tribo_message(s->ctx));
+}
+
+static void print_field(const char *name, size_t contacts, size_t width, const struct effort *effort)
+{
+    struct field planar = field_create(contacts, width, 2), scalar = field_create(contacts, width, 1);
+    printf("| %s | %zu |", name, contacts);
+    for (int k = 0; k < 2 * LOADS; k++) {
+        struct job mine = {k % 2 ? field_band : field_step, &planar, 0.0}, unit = {mine.run, &scalar, 0.0};
+        planar.loads = scalar.loads = k / 2;
+        for (int twice = 0; twice < 2; twice++) {
+            probe_job(&mine);
+            probe_job(&unit);
+        }
+        const struct timing t = time_job(&mine, &unit, effort);
+        printf(" %.3g ms, %.2g |", 1e3 * t.seconds, t.ratio);
+    }
+    printf("\n");
+    fflush(stdout);
+    field_destroy(&planar);
+    field_destroy(&scalar);
+}
+
+static void print_fields(const struct effort *effort)
+{
+    printf("\n| coupling | contacts | step, 1%% | balance in the band, 1%% | step, another load | balance in the band, another "
+           "load |\n"
+           "|---|---|---|---|---|---|\n");
+    for (size_t n = 1000; n <= 100000; n *= 10) {
+        print_field("row", n, n, effort);
+    }
+    print_field("carpet", 1000, 32, effort);
+    print_field("carpet", 10000, 100, effort);
+}
+
 int main(int argc, char **argv)
 {
     static const char *const name[] = {"row", "dense", "redundant"};
@@ -308,7 +437,7 @@ int main(int argc, char **argv)
                "|---|---|---|---|---|---|---|---|\n");
     }
     for (size_t k = 0; k < sizeof name / sizeof *name; k++) {
-        for (size_t n = 1; n <= (smoke ? 10u : MOST); n *= 10) {
+        for (size_t n = 1; n <= (smoke ? 10u : k == 0 ? MOST : 100u); n *= 10) {
             struct scene s = scene_create(name[k], n);
             if (smoke) {
                 const double apart = difference(&s);
@@ -324,11 +453,14 @@ int main(int argc, char **argv)
         print_peer_head();
     }
     for (size_t k = 0; !smoke && k < sizeof name / sizeof *name; k++) {
-        for (size_t n = 1; n <= MOST; n *= 10) {
+        for (size_t n = 1; n <= (k == 0 ? MOST : 100u); n *= 10) {
             struct scene s = scene_create(name[k], n);
             print_peers(&s, &effort);
             scene_destroy(&s);
         }
+    }
+    if (!smoke) {
+        print_fields(&effort);
     }
     return good ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -26,6 +26,11 @@
 #define GRADED_MOST 1e18
 #define GRADED_MOST_LARGE 1e10
 
+int tribo_prefers_sparse(size_t size, int thin)
+{
+    return size > (thin ? DENSE_UP_TO : SPARSE_FROM);
+}
+
 void tribo_operator_release(struct delassus *op)
 {
     if (!op || TRIBO_SHARED_ADD(op->references, SIZE_MAX) > 0) { /* one less */
@@ -303,6 +308,21 @@ static void fill_group(struct delassus *op, struct memory *m, size_t k, const st
     }
 }
 
+/* 1 if a pivot of the factor of a group is small, or zero. */
+static int is_thin(const struct box_qp *p)
+{
+    const size_t size = p->group->size;
+    double most = 1.0; /* 1/pivot */
+    for (size_t i = 0; p->group->sparse && i < size; i++) {
+        most = greater(most, p->sparse.d[i]);
+    }
+    if (!p->group->sparse && p->sets->rank) {
+        const double last = p->l[(p->sets->rank - 1) * (size + 1)];
+        most = last * last;
+    }
+    return p->sets->dependents || most * TRIBO_DOUBTFUL >= 1.0;
+}
+
 /* Factors R of group k, graded if g->graded and a pivot is small; sets nullity, small and the room for null vectors from the
  * rank. Frees the sparse factor if a pivot is small in a group of at most DENSE_UP_TO contacts: *again = 1, since the group needs
  * room for a dense one. Returns TRIBO_OK, or TRIBO_ERR_INDEFINITE if a pivot is below zero by more than rounding. */
@@ -314,11 +334,8 @@ static int judge_group(struct delassus *op, struct memory *m, size_t k, const st
     size_t where = 0;
     g->graded = 0;
     struct box_qp *p = tribo_memory_problem(op, m, k);
-    double left = factorize_all(p, &where), most = 0.0; /* 1/pivot */
-    for (size_t i = 0; g->sparse && i < g->size; i++) {
-        most = greater(most, p->sparse.d[i]);
-    }
-    if (g->sparse && g->size <= DENSE_UP_TO && (p->sets->dependents || most * TRIBO_DOUBTFUL >= 1.0)) {
+    double left = factorize_all(p, &where);
+    if (g->sparse && !tribo_prefers_sparse(g->size, is_thin(p))) {
         tribo_sparse_free(g->sparse);
         g->sparse = NULL;
         *again = 1;
@@ -340,6 +357,7 @@ static int judge_group(struct delassus *op, struct memory *m, size_t k, const st
                           p->member[where], g->size, plural(g->size));
     }
     g->nullity = p->sets->dependents;
+    g->thin = is_thin(p);
     g->small = g->size <= SMALL && !g->nullity && !g->graded && tribo_small_fits(g->size, p->r, p->inverse);
     memset(p->at, AWAY, g->size);
     tribo_factor_rebuild(p, NULL);
@@ -392,7 +410,7 @@ int tribo_operator_create(struct delassus **created, struct memory *m, const str
         struct group *g = &op->group[k];
         const size_t *member = op->member + g->first;
         status = find_grading(g, from, member, note);
-        if (!status && !g->graded && g->size > SPARSE_FROM && !make_sparse(g, a, member, place)) {
+        if (!status && !g->graded && tribo_prefers_sparse(g->size, 0) && !make_sparse(g, a, member, place)) {
             status = TRIBO_ERR_MEMORY;
         }
     }

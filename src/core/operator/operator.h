@@ -71,6 +71,9 @@ void tribo_operator_release(struct delassus *op);
 int tribo_memory_copy(struct memory *to, const struct memory *from, const struct delassus *op);
 void tribo_memory_free(struct memory *m);
 
+/* 1 if a group of so many contacts has a sparse factor, unless that has too many entries. thin: a pivot of R is small. */
+int tribo_prefers_sparse(size_t size, int thin);
+
 /* Returns the problem with views of group k. */
 struct box_qp *tribo_memory_problem(const struct delassus *op, struct memory *m, size_t k);
 

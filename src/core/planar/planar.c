@@ -78,15 +78,20 @@ void tribo_planar_limits(const tribo_context *ctx, size_t i, int holds, const do
     }
 }
 
-struct block tribo_block_of(const double *r, size_t size, size_t directions)
+struct block tribo_block_of(const double *first, const double *second)
 {
-    const double second = r[(directions - 1) * (size + 1)], across = directions == 2 ? r[1] : 0.0;
-    const double mean = 0.5 * r[0] + 0.5 * second, half = 0.5 * r[0] - 0.5 * second;
+    const double great = first[0], small = second ? *second : great, across = second ? first[1] : 0.0;
+    const double mean = 0.5 * great + 0.5 * small, half = 0.5 * great - 0.5 * small;
     const double turned[2] = {half, across}, spread = tribo_length(2, turned);
     const double raw[2] = {half >= 0.0 ? spread + half : across, half >= 0.0 ? across : spread - half},
                  length = tribo_length(2, raw);
     return (struct block){
         mean + spread, greater(mean - spread, 0.0), {length > 0.0 ? raw[0] / length : 1.0, length > 0.0 ? raw[1] / length : 0.0}};
+}
+
+struct block tribo_cluster_block(const struct cluster *g, size_t k, size_t directions)
+{
+    return tribo_block_of(tribo_csr_entry(&g->r, k, k), directions == 2 ? tribo_csr_entry(&g->r, k + 1, k + 1) : NULL);
 }
 
 double tribo_plane_rate(const tribo_context *ctx)
@@ -101,7 +106,7 @@ double tribo_plane_rate(const tribo_context *ctx)
             weighed[e] = product(s.part[e / 2], product(s.part[e % 2], own[e]));
         }
         if (!s.open) {
-            rate = greater(rate, product(2.0 * quotient(s.bound, s.epsilon), tribo_block_of(weighed, 2, 2).great));
+            rate = greater(rate, product(2.0 * quotient(s.bound, s.epsilon), tribo_block_of(weighed, weighed + 3).great));
         }
     }
     return rate;
@@ -112,7 +117,10 @@ double tribo_plane_rate(const tribo_context *ctx)
 void tribo_clusters_free(struct clusters *c)
 {
     tribo_disc_free(&c->problem);
-    free(c->cluster ? c->cluster->r : NULL);
+    for (size_t k = 0; k < c->clusters; k++) {
+        tribo_sparse_free(c->cluster[k].pattern);
+        tribo_csr_free(&c->cluster[k].r);
+    }
     free(c->first);
 }
 
@@ -121,7 +129,7 @@ static int planar_create(struct clusters *c, size_t n, size_t count, const size_
 {
     size_t *member;
     if (!ALLOCATE(ARRAY(c->first, count), ARRAY(c->role, n), ARRAY(c->own, count), ARRAY(c->group_of, n),
-                  ARRAY(c->cluster, count), ARRAY(member, n), ARRAY(c->near, n + 1), ARRAY(c->contact, n),
+                  ARRAY(c->cluster, count), ARRAY(member, n), ARRAY(c->near, n + 1), ARRAY(c->contact, n), ARRAY(c->index, n),
                   ARRAY(c->directions, n), ARRAY(c->y, n), ARRAY(c->a, n), ARRAY(c->v, n), ARRAY(c->df, n), ARRAY(c->growth, n),
                   ARRAY(c->radius, n), ARRAY(c->pull, n), ARRAY(c->shift, n))) {
         return 0;
@@ -142,84 +150,174 @@ static int planar_create(struct clusters *c, size_t n, size_t count, const size_
 
 /* --------------------------------------------------------------------------------------------------------- clusters */
 
-/* Sets R of all clusters, which is 0, group_of and own. of, place [n]: see tribo_list_sets. */
-static void fill_clusters(struct clusters *c, const struct delassus *op, struct memory *m, size_t n, const size_t *of,
-                          const size_t *place)
+/* What clusters are made of; lists are [n]. */
+struct parts {
+    const struct delassus *op;
+    struct memory *m;                /* of op */
+    size_t *parent, *chosen, *start; /* see tribo_list_sets; start [n + 1] */
+    size_t *of, *place;              /* cluster, or SIZE_MAX, and place there */
+    size_t *inside;                  /* place in the operator's group */
+    size_t *mark;                    /* first direction + 1 of the last contact that listed this one; 0 at first */
+};
+
+/* A row of R, of the contacts member. */
+struct row {
+    size_t count;
+    const size_t *member, *col; /* col NULL: member 0, 1, ... */
+    const double *val;
+};
+
+/* The row of direction *i. */
+static struct row find_row(const struct parts *x, const size_t *i)
 {
-    for (size_t i = 0; i < n; i++) {
-        c->group_of[i] = op->groups && of[i] == SIZE_MAX ? op->group_of[i] : TRIBO_ALONE;
-        if (of[i] != SIZE_MAX) {
-            c->cluster[of[i]].r[place[i] * (c->cluster[of[i]].size + 1)] = op->diagonal[i];
-        }
+    struct row row = {1, i, NULL, x->op->diagonal + *i};
+    if (x->op->groups && x->op->group_of[*i] != TRIBO_ALONE) {
+        const struct box_qp *p = tribo_memory_problem(x->op, x->m, x->op->group_of[*i]);
+        row.member = p->member;
+        row.count = tribo_row_entries(p, x->inside[*i], &row.col, &row.val);
     }
-    for (size_t g = 0; g < op->groups; g++) {
-        struct box_qp *p = tribo_memory_problem(op, m, g);
-        struct cluster *to = of[p->member[0]] != SIZE_MAX ? &c->cluster[of[p->member[0]]] : NULL;
-        double *unit = p->step, ignored;
-        memset(unit, 0, p->group->size * sizeof *unit);
-        for (size_t j = 0; to && j < p->group->size; j++) {
-            unit[j] = 1.0;
-            for (size_t i = 0; i < p->group->size; i++) {
-                to->r[place[p->member[i]] * to->size + place[p->member[j]]] = tribo_row_dot(p, i, unit, &ignored);
-            }
-            unit[j] = 0.0;
-            to->redundant |= p->group->nullity > 0;
-        }
-    }
-    for (size_t k = 0; k < c->count; k++) {
-        const struct cluster *g = &c->cluster[of[c->first[k]]];
-        const double *row = g->r + place[c->first[k]] * (g->size + 1);
-        c->own[k][0] = row[0];
-        c->own[k][1] = c->own[k][2] = row[1];
-        c->own[k][3] = row[g->size + 1];
-    }
+    return row;
 }
 
-/* Makes clusters of the operator's groups and the contacts that join them; a status. m: memory of op. */
+static size_t row_member(const struct row *row, size_t e)
+{
+    return row->member[row->col ? row->col[e] : e];
+}
+
+/* Appends to col the places of the contacts that R couples with direction *i of the contact with mark stamp, unless they have
+ * this mark. Returns their number. */
+static size_t list_neighbours(const struct clusters *c, const struct parts *x, const size_t *i, size_t stamp, size_t *col)
+{
+    const struct row row = find_row(x, i);
+    size_t count = 0;
+    for (size_t e = 0; e < row.count; e++) {
+        const size_t j = row_member(&row, e), first = j - (c->role[j] == ROLE_SECOND);
+        for (size_t d = first; row.val[e] != 0.0 && x->mark[first] != stamp && d <= first + (c->role[first] == ROLE_FIRST); d++) {
+            col[count++] = x->place[d];
+        }
+        x->mark[first] = row.val[e] != 0.0 ? stamp : x->mark[first];
+    }
+    return count;
+}
+
+/* Makes R of a cluster. Returns 0 if out of memory. */
+static int fill_cluster(const struct clusters *c, const struct parts *x, struct cluster *g)
+{
+    struct csr listed;
+    size_t room = 0;
+    for (size_t k = 0, directions; k < g->size; k += directions) {
+        size_t most = 0;
+        directions = c->role[g->member[k]] == ROLE_FIRST ? 2 : 1;
+        for (size_t d = 0; d < directions; d++) {
+            most += 2 * find_row(x, &g->member[k + d]).count;
+        }
+        room += directions * (most < g->size ? most : g->size);
+    }
+    if (!tribo_csr_create(&listed, g->size, room)) {
+        return 0;
+    }
+    for (size_t k = 0, end = 0, directions; k < g->size; k += directions) {
+        const size_t i = g->member[k], begin = end;
+        directions = c->role[i] == ROLE_FIRST ? 2 : 1;
+        for (size_t d = 0; d < directions; d++) {
+            end += list_neighbours(c, x, &g->member[k + d], i + 1, listed.col + end);
+        }
+        listed.first[k + 1] = end;
+        if (directions == 2) {
+            memcpy(listed.col + end, listed.col + begin, (end - begin) * sizeof *listed.col);
+            listed.first[k + 2] = end += end - begin;
+        }
+    }
+    /* The pattern is symmetric: its transpose has columns ascending. */
+    const int done = tribo_csr_transpose(&g->r, g->size, g->size, listed.first, listed.col, listed.val);
+    tribo_csr_free(&listed);
+    for (size_t k = 0; done && k < g->size; k++) {
+        const struct row row = find_row(x, &g->member[k]);
+        for (size_t e = 0; e < row.count; e++) {
+            if (row.val[e] != 0.0) {
+                *tribo_csr_entry(&g->r, k, x->place[row_member(&row, e)]) = row.val[e];
+            }
+        }
+    }
+    return done;
+}
+
+/* Makes R of all clusters, patterns of sparse ones, room for their problems, group_of and own. Returns 0 if out of memory. */
+static int fill_clusters(struct clusters *c, const struct parts *x, size_t n)
+{
+    const struct delassus *op = x->op;
+    struct disc_room room = {0};
+    for (size_t i = 0; i < n; i++) {
+        c->group_of[i] = op->groups && x->of[i] == SIZE_MAX ? op->group_of[i] : TRIBO_ALONE;
+    }
+    for (size_t k = 0; k < c->clusters; k++) {
+        struct cluster *g = &c->cluster[k];
+        int thin = 0;
+        for (size_t j = 0; op->groups && j < g->size; j++) {
+            const size_t group = op->group_of[g->member[j]];
+            g->redundant |= group != TRIBO_ALONE && op->group[group].nullity > 0;
+            thin |= group != TRIBO_ALONE && op->group[group].thin;
+        }
+        if (!fill_cluster(c, x, g) || (tribo_prefers_sparse(g->size, thin) && !tribo_sparse_create(&g->pattern, &g->r))) {
+            return 0;
+        }
+        const size_t sparse = g->pattern ? g->size : 0, dense = g->size - sparse;
+        room.size = g->size > room.size ? g->size : room.size;
+        room.dense = dense > room.dense ? dense : room.dense;
+        if (sparse) {
+            const size_t entries = g->r.first[sparse], slots = tribo_sparse_slots(g->pattern);
+            room.places = sparse > room.places ? sparse : room.places;
+            room.entries = entries > room.entries ? entries : room.entries;
+            room.slots = slots > room.slots ? slots : room.slots;
+        }
+    }
+    for (size_t k = 0; k < c->count; k++) {
+        const struct cluster *g = &c->cluster[x->of[c->first[k]]];
+        const size_t place = x->place[c->first[k]];
+        const double *first = tribo_csr_entry(&g->r, place, place);
+        c->own[k][0] = first[0];
+        c->own[k][1] = c->own[k][2] = first[1];
+        c->own[k][3] = *tribo_csr_entry(&g->r, place + 1, place + 1);
+    }
+    return tribo_disc_create(&c->problem, &room);
+}
+
+/* Makes clusters of the operator's groups and the contacts that join them. Returns 0 if out of memory. */
 static int find_clusters(struct clusters *c, size_t n, const struct delassus *op, struct memory *m)
 {
-    enum { LISTS = 5 };
-    size_t *parent = malloc(LISTS * (n + 1) * sizeof *parent), entries = 0;
-    if (!parent) {
-        return TRIBO_ERR_MEMORY;
+    struct parts x = {.op = op, .m = m};
+    if (!ALLOCATE(ARRAY(x.parent, n), ARRAY(x.chosen, n), ARRAY(x.start, n + 1), ARRAY(x.of, n), ARRAY(x.place, n),
+                  ARRAY(x.inside, n), ARRAY(x.mark, n))) {
+        return 0;
     }
-    size_t *chosen = parent + n + 1, *of = chosen + n + 1, *place = of + n + 1, *start = place + n + 1;
     for (size_t i = 0; i < n; i++) {
-        parent[i] = i;
-        chosen[i] = 0;
-        if (op->groups && op->group_of[i] != TRIBO_ALONE) {
-            tribo_join(parent, op->member[op->group[op->group_of[i]].first], i);
+        x.parent[i] = i;
+    }
+    for (size_t g = 0; g < op->groups; g++) {
+        const size_t *member = op->member + op->group[g].first;
+        for (size_t k = 0; k < op->group[g].size; k++) {
+            x.inside[member[k]] = k;
+            tribo_join(x.parent, member[0], member[k]);
         }
     }
     for (size_t k = 0; k < c->count; k++) {
-        tribo_join(parent, c->first[k], c->first[k] + 1);
+        tribo_join(x.parent, c->first[k], c->first[k] + 1);
     }
     for (size_t k = 0; k < c->count; k++) {
-        chosen[tribo_root(parent, c->first[k])] = 2;
+        x.chosen[tribo_root(x.parent, c->first[k])] = 2;
     }
     for (size_t i = 0; i < n; i++) {
-        c->islands += parent[i] == i;
+        c->islands += x.parent[i] == i;
     }
     size_t *member = c->cluster->member;
-    c->clusters = tribo_list_sets(n, parent, chosen, of, place, start, member);
+    c->clusters = tribo_list_sets(n, x.parent, x.chosen, x.of, x.place, x.start, member);
     for (size_t k = 0; k < c->clusters; k++) {
-        c->cluster[k].member = member + start[k];
-        c->cluster[k].size = start[k + 1] - start[k];
-        c->largest = c->cluster[k].size > c->largest ? c->cluster[k].size : c->largest;
-        entries += c->cluster[k].size * c->cluster[k].size;
+        c->cluster[k].member = member + x.start[k];
+        c->cluster[k].size = x.start[k + 1] - x.start[k];
     }
-    int status = c->largest > TRIBO_CLUSTER_MOST ? TRIBO_ERR_UNSUPPORTED : TRIBO_OK;
-    double *r = status ? NULL : calloc(entries, sizeof *r);
-    c->cluster->r = r;
-    if (r) {
-        for (size_t k = 0; k < c->clusters; k++) {
-            c->cluster[k].r = r;
-            r += c->cluster[k].size * c->cluster[k].size;
-        }
-        fill_clusters(c, op, m, n, of, place);
-    }
-    free(parent);
-    return status || r ? status : TRIBO_ERR_MEMORY;
+    const int done = fill_clusters(c, &x, n);
+    free(x.parent);
+    return done;
 }
 
 /* --------------------------------------------------------------------------------------------------------- settings */
@@ -230,13 +328,8 @@ static int find_clusters(struct clusters *c, size_t n, const struct delassus *op
 int tribo_clusters_renew(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m)
 {
     struct clusters c = {0};
-    int status = count && !planar_create(&c, ctx->n, count, first) ? TRIBO_ERR_MEMORY
-                 : count && op->diagonal                           ? find_clusters(&c, ctx->n, op, m)
-                                                                   : TRIBO_OK;
-    if (status == TRIBO_ERR_UNSUPPORTED) {
-        tribo_fail(ctx, status, "planar contacts couple %zu direction%s with each other, and not more than %d can be", c.largest,
-                   plural(c.largest), TRIBO_CLUSTER_MOST);
-    } else if (status || (count && !tribo_disc_create(&c.problem, c.largest))) {
+    int status = TRIBO_OK;
+    if (count && (!planar_create(&c, ctx->n, count, first) || (op->diagonal && !find_clusters(&c, ctx->n, op, m)))) {
         status = tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s in the plane", count, plural(count));
     }
     for (size_t k = 0; !status && count && op->diagonal && k < op->groups; k++) {
@@ -276,7 +369,8 @@ int tribo_clusters_clone(tribo_context *clone, const tribo_context *from)
 void tribo_clusters_refresh(tribo_context *ctx, int follows, double time)
 {
     for (size_t k = 0; follows && k < ctx->plane.count; k++) {
-        const double largest = tribo_block_of(ctx->plane.own[k], 2, 2).great, half = greater(product(largest, time), DBL_MIN);
+        const double largest = tribo_block_of(ctx->plane.own[k], ctx->plane.own[k] + 3).great,
+                     half = greater(product(largest, time), DBL_MIN);
         for (size_t i = ctx->plane.first[k]; i < ctx->plane.first[k] + 2; i++) {
             ctx->set.width[i] = 2.0 * half;
             ctx->set.rate[i] = largest > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;

@@ -12,6 +12,7 @@
 #include "numerics/disc/disc_qp.h"
 #include "core/law/law.h"
 #include "core/operator/operator.h"
+#include "numerics/csr.h"
 
 /* Roles of a direction. */
 enum { ROLE_SCALAR, ROLE_FIRST, ROLE_SECOND };
@@ -20,9 +21,10 @@ enum { ROLE_SCALAR, ROLE_FIRST, ROLE_SECOND };
  * neighbours. */
 struct cluster {
     size_t size;
-    size_t *member; /* [size] */
-    double *r;      /* [size][size] R */
-    int redundant;  /* R is singular */
+    size_t *member;         /* [size] */
+    struct csr r;           /* R by places; rows of one contact have the same columns */
+    struct sparse *pattern; /* of the factor; NULL: dense */
+    int redundant;          /* R is singular */
 };
 
 /* Planar contacts of a context; what it keeps of them from call to call; workspace. Without an operator there are no clusters. */
@@ -30,12 +32,13 @@ struct clusters {
     size_t count, *first; /* [count] first directions */
     unsigned char *role;  /* [n] */
     double (*own)[4];     /* [count] R of the contact alone, [2][2] */
-    size_t clusters, islands, largest;
-    struct cluster *cluster; /* [clusters]; the first has the memory of R and of the members of all */
+    size_t clusters, islands;
+    struct cluster *cluster; /* [clusters]; the first has the memory of the members of all */
     size_t *group_of;        /* [n] that of the operator; TRIBO_ALONE for members of clusters */
     struct disc_qp problem;
     size_t *near;              /* [n + 1] places in the cluster of the problem's directions */
     size_t *contact;           /* [n] the contacts there */
+    size_t *index;             /* [n] the problem's direction at a place of its cluster, or TRIBO_ALONE */
     unsigned char *directions; /* [n] of the contact that begins with a direction of the problem: 1, 2; 0: none begins */
     double unit_force, unit_r; /* of the problem */
     size_t cuts;               /* directions of the problem with a reach below their limit */
@@ -47,9 +50,6 @@ struct clusters {
     double *v, *df;            /* [n] workspace */
     double *growth;            /* [n] d(limit)/limit of the problem's directions */
 };
-
-/* The most directions of a cluster: its matrix is kept. */
-#define TRIBO_CLUSTER_MOST 2048
 
 /* ---- planar.c */
 
@@ -91,8 +91,11 @@ struct block {
     double great, small;
     double e[2];
 };
-/* The block that begins at r, of rows [size]. */
-struct block tribo_block_of(const double *r, size_t size, size_t directions);
+/* The block [[first_0, first_1], [first_1, *second]]; second NULL: of one direction. */
+struct block tribo_block_of(const double *first, const double *second);
+
+/* The block of the contact at place k of a cluster. */
+struct block tribo_cluster_block(const struct cluster *g, size_t k, size_t directions);
 
 /* limit [directions] of the contact at i: static ones if it holds, or those by which it slides at v. */
 void tribo_planar_limits(const tribo_context *ctx, size_t i, int holds, const double *v, double *limit);

@@ -38,10 +38,20 @@ static void take_contact(tribo_context *ctx, size_t k, size_t i, const double *s
             c->shift[c->problem.size] = shift[d];
             c->directions[c->problem.size] = (unsigned char)(both ? 2 - 2 * d : 1);
             c->contact[c->problem.size] = i + d;
+            c->index[k + d] = c->problem.size;
             c->near[c->problem.size++] = k + d;
         } else {
             ctx->last.f[i + d] = 0.0;
         }
+    }
+}
+
+/* Begins a problem of a cluster without directions. */
+static void begin_problem(struct clusters *c, const struct cluster *g)
+{
+    c->problem.size = 0;
+    for (size_t k = 0; k < g->size; k++) {
+        c->index[k] = TRIBO_ALONE;
     }
 }
 
@@ -51,7 +61,7 @@ static void take_contact(tribo_context *ctx, size_t k, size_t i, const double *s
 static int planar_collect(tribo_context *ctx, const struct cluster *g, const double *v, int begins)
 {
     const struct law *law = ctx->set.law;
-    ctx->plane.problem.size = 0;
+    begin_problem(&ctx->plane, g);
     for (size_t k = 0; k < g->size; k += tribo_directions(ctx, g->member[k])) {
         const size_t i = g->member[k];
         const struct slide s = tribo_planar_slide(ctx, i, v + i);
@@ -73,24 +83,24 @@ void tribo_planar_turn(const struct disc_qp *p, const unsigned char *directions,
 {
     for (size_t e = 0; e < p->size; e += directions[e]) {
         for (size_t k = e; k < e + directions[e]; k++) {
+            const double *row = p->s.val + tribo_disc_own(p, k) - (k - e);
             for (size_t j = e; j < e + directions[e]; j++) {
-                pull[k] += p->s[k * p->size + j] * shift[j];
+                pull[k] += row[j - e] * shift[j];
             }
         }
     }
 }
 
-/* Returns R f + a at place k of a cluster, without the forces at places skip [count], ascending. */
-static double pull_at(const tribo_context *ctx, const struct cluster *g, size_t k, const size_t *skip, size_t count)
+/* Returns R f + a at place k of a cluster, without the forces at places own to own + count - 1, and without those of the problem if
+ * others = 1. */
+static double pull_at(const tribo_context *ctx, const struct cluster *g, size_t k, size_t own, size_t count, int others)
 {
-    const double *row = g->r + k * g->size;
     double sum = cut(ctx->plane.a[g->member[k]]);
-    for (size_t j = 0, other = 0; j < g->size; j++) {
-        const double bound = ctx->follow.contacts.bound[g->member[j]];
-        if (other < count && skip[other] == j) {
-            other++;
-        } else {
-            sum += row[j] * clamp(ctx->last.f[g->member[j]], -bound, bound);
+    for (size_t e = g->r.first[k]; e < g->r.first[k + 1]; e++) {
+        const size_t j = g->r.col[e], i = g->member[j];
+        const double bound = ctx->follow.contacts.bound[i];
+        if (!(j >= own && j < own + count) && !(others && ctx->plane.index[j] != TRIBO_ALONE)) {
+            sum += g->r.val[e] * clamp(ctx->last.f[i], -bound, bound);
         }
     }
     return sum;
@@ -101,7 +111,7 @@ static void find_pulls(tribo_context *ctx, const struct cluster *g)
 {
     const struct clusters *c = &ctx->plane;
     for (size_t e = 0; e < c->problem.size; e++) {
-        c->pull[e] = pull_at(ctx, g, c->near[e], c->near, c->problem.size);
+        c->pull[e] = pull_at(ctx, g, c->near[e], 0, 0, 1);
     }
 }
 
@@ -129,6 +139,33 @@ static int is_apart(const double *bound, const double *radius)
     return radius[0] < BESIDE * bound[0] || radius[1] < BESIDE * bound[1];
 }
 
+/* Sets S of the problem. */
+static void pose_rows(struct clusters *c, const struct cluster *g)
+{
+    struct disc_qp *p = &c->problem;
+    size_t end = 0;
+    p->s.pattern = g->pattern;
+    p->s.places = g->size;
+    p->s.place = c->near;
+    memset(p->s.val, 0, (g->pattern ? 0 : p->size * p->size) * sizeof *p->s.val);
+    for (size_t e = 0; e < p->size; e++) {
+        for (size_t t = g->r.first[c->near[e]]; t < g->r.first[c->near[e] + 1]; t++) {
+            const size_t j = c->index[g->r.col[t]];
+            if (j != TRIBO_ALONE) {
+                const double r = g->r.val[t] / c->unit_r;
+                const size_t at = g->pattern ? end : e * p->size + j;
+                p->s.val[at] = p->weight[e] * p->weight[j] * (j == e ? greater(r, NEXT_TO_IMMOVABLE) : r);
+                if (g->pattern) {
+                    p->s.col[end] = j;
+                    p->s.slot[end] = t;
+                    p->s.own[e] = j == e ? end : p->s.own[e];
+                    p->s.first[e + 1] = ++end;
+                }
+            }
+        }
+    }
+}
+
 /* Sets the problem of forces in parts of their reach, from pull: which directions share a set, its shift, and all else. */
 static void pose_cluster(tribo_context *ctx, const struct cluster *g)
 {
@@ -151,13 +188,7 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
         p->y[e] = quotient(c->y[i], tribo_plane_reach(ctx, i));
         c->cuts += (size_t)cut_off;
     }
-    for (size_t e = 0; e < n; e++) {
-        const double *row = g->r + c->near[e] * g->size;
-        for (size_t j = 0; j < n; j++) {
-            const double r = row[c->near[j]] / c->unit_r;
-            p->s[e * n + j] = p->weight[e] * p->weight[j] * (j == e ? greater(r, NEXT_TO_IMMOVABLE) : r);
-        }
-    }
+    pose_rows(c, g);
     for (size_t e = 0; e < n; e += p->wide[e]) {
         const double length = tribo_length(p->wide[e], c->pull + e);
         const double size = lesser(quotient(quotient(length, c->unit_r), c->unit_force), HARDEST);
@@ -214,7 +245,7 @@ static int is_beyond_reach(const tribo_context *ctx)
         const size_t j = c->contact[other];
         const double part =
             other != e && tribo_plane_cut(ctx, j) ? tribo_plane_reach(ctx, j) / ctx->follow.contacts.bound[j] : 0.0;
-        const int bends = fabs(p->gradient[e]) * part * part > STRAIGHT * p->s[other * (p->size + 1)];
+        const int bends = fabs(p->gradient[e]) * part * part > STRAIGHT * p->s.val[tribo_disc_own(p, other)];
         if (p->place[first] != LENS_INSIDE && (bends || tribo_plane_cut(ctx, c->contact[e]))) {
             return 1;
         }
@@ -234,7 +265,8 @@ static int is_beyond_reach(const tribo_context *ctx)
  * gradient. */
 static int is_pulled_beyond(const struct disc_qp *p, size_t e)
 {
-    const struct block b = tribo_block_of(p->s + e * (p->size + 1), p->size, p->wide[e]);
+    const double *own = p->s.val + tribo_disc_own(p, e), *second = p->wide[e] == 2 ? p->s.val + tribo_disc_own(p, e + 1) : NULL;
+    const struct block b = tribo_block_of(own, second);
     double feq[2] = {p->gradient[e], p->wide[e] == 2 ? p->gradient[e + 1] : 0.0};
     push_back(&b, feq);
     for (size_t k = 0; k < p->wide[e]; k++) {
@@ -256,7 +288,7 @@ static size_t planar_break(tribo_context *ctx, const struct cluster *g, double d
     double *now = ctx->follow.now, *end = ctx->plane.v; /* velocities at the end */
     size_t broken = 0;
     for (size_t k = 0; k < g->size; k++) {
-        end[g->member[k]] = product(pull_at(ctx, g, k, NULL, 0), dt);
+        end[g->member[k]] = product(pull_at(ctx, g, k, 0, 0, 0), dt);
     }
     for (size_t e = 0; e < p->size; e += p->wide[e]) {
         const size_t first = tribo_first_direction(ctx, ctx->plane.contact[e]), behind = first + tribo_directions(ctx, first);
@@ -335,6 +367,7 @@ const size_t *tribo_cluster_resume(tribo_context *ctx, size_t q, size_t *size)
         tribo_disc_gradients(p);
         tribo_disc_places(p);
         tribo_disc_linearize(p);
+        tribo_disc_redundant(p);
     }
     return g->member;
 }
@@ -345,12 +378,12 @@ void tribo_cluster_feq(tribo_context *ctx, size_t q)
 {
     const struct cluster *g = &ctx->plane.cluster[q];
     for (size_t k = 0, directions; k < g->size; k += directions) {
-        const size_t i = g->member[k], own[2] = {k, k + 1};
+        const size_t i = g->member[k];
         directions = tribo_directions(ctx, i);
-        const struct block block = tribo_block_of(g->r + k * (g->size + 1), g->size, directions);
+        const struct block block = tribo_cluster_block(g, k, directions);
         double x[2] = {0.0, 0.0}, most = 0.0;
         for (size_t d = 0; d < directions; d++) {
-            x[d] = pull_at(ctx, g, k + d, own, directions);
+            x[d] = pull_at(ctx, g, k + d, k, directions, 0);
             most = greater(most, ctx->set.limit[i + d]);
         }
         push_back(&block, x);
@@ -394,7 +427,7 @@ int tribo_clusters_step(tribo_context *ctx, double dt, const double *v, const si
     int status = TRIBO_OK;
     for (size_t q = 0; !status && q < ctx->plane.clusters; q++) {
         const struct cluster *g = &ctx->plane.cluster[q];
-        ctx->plane.problem.size = 0;
+        begin_problem(&ctx->plane, g);
         for (size_t k = 0; k < g->size; k++) {
             ctx->plane.a[g->member[k]] = quotient(v[g->member[k]], dt);
         }
@@ -442,7 +475,7 @@ size_t tribo_clusters_turn(tribo_context *ctx, double dt, const double *v, const
             directions = tribo_directions(ctx, i);
             for (size_t d = 0; d < directions; d++) {
                 ctx->plane.a[i + d] = 0.0;
-                feels[i + d] = pull_at(ctx, g, k + d, &k, directions == 1 ? 1 : 0);
+                feels[i + d] = pull_at(ctx, g, k + d, k, directions == 1, 0);
                 forward += product(free[i + d] + product(feels[i + d], dt), v[i + d]);
             }
             if (directions == 1 || !reaches_limits(ctx, i)) {

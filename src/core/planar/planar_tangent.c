@@ -67,9 +67,7 @@ static void planar_follow(struct disc_qp *p, const unsigned char *directions, co
     for (size_t e = 0; e < p->size; e++) {
         rhs[e] += product(growth[e], p->gradient[e]);
         turn[e] = dshift[e] + product(p->shift[e], growth[e]);
-        for (size_t j = 0; j < p->size; j++) {
-            rhs[e] += p->s[e * p->size + j] * dy[j];
-        }
+        rhs[e] += tribo_disc_dot(p, e, dy);
     }
     tribo_planar_turn(p, directions, turn, rhs);
     tribo_disc_follow(p, rhs, move);
@@ -115,6 +113,21 @@ static void own_changes(const tribo_context *ctx, const struct cluster *g, const
     }
 }
 
+/* Returns sum_j r_kj x_j without j = other. */
+static double cluster_row_product(const struct csr *r, size_t k, const double *x, size_t other)
+{
+    double sum = 0.0;
+    for (size_t e = r->first[k]; e < r->first[k + 1]; e++) {
+        sum += r->col[e] == other ? 0.0 : product(r->val[e], x[r->col[e]]);
+    }
+    return sum;
+}
+
+double tribo_cluster_others(const tribo_context *ctx, size_t q, size_t k, const double *df)
+{
+    return cluster_row_product(&ctx->plane.cluster[q].r, k, df, k);
+}
+
 void tribo_cluster_product(tribo_context *ctx, size_t q, const struct change *d, double *df)
 {
     const struct clusters *c = &ctx->plane;
@@ -123,11 +136,7 @@ void tribo_cluster_product(tribo_context *ctx, size_t q, const struct change *d,
     double *dshift = p->from, *rhs = p->noise, *move = p->aim;
     own_changes(ctx, g, d, df, dshift, c->growth);
     for (size_t e = 0; e < p->size; e++) {
-        const double *row = g->r + c->near[e] * g->size;
-        double sum = cut(tribo_entry(d->a, c->contact[e]));
-        for (size_t j = 0; j < g->size; j++) {
-            sum += product(row[j], df[j]);
-        }
+        const double sum = cut(tribo_entry(d->a, c->contact[e])) + cluster_row_product(&g->r, c->near[e], df, SIZE_MAX);
         rhs[e] = p->weight[e] * quotient(quotient(cut(sum), c->unit_r), c->unit_force);
     }
     if (p->size) {
@@ -224,7 +233,7 @@ static void given_columns(const tribo_context *ctx, struct given *g, const doubl
                 off[d] = bound[d] > 0.0 ? p->y[d] * growth[d] - quotient(unit[2 + d], bound[d]) : 0.0;
             }
             for (size_t d = 0; d < 2; d++) {
-                rhs[d] = p->s[2 * d] * off[0] + p->s[2 * d + 1] * off[1];
+                rhs[d] = p->s.val[2 * d] * off[0] + p->s.val[2 * d + 1] * off[1];
             }
             planar_follow(p, both, growth, dshift, rhs, move);
             for (size_t d = 0; d < 2; d++) {

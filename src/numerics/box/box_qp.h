@@ -50,6 +50,7 @@ struct group {
     double spread;         /* largest ratio of the shares of bodies in an R_ii, */
     size_t uneven;         /* and its contact i */
     size_t nullity;        /* size - rank of R: redundant contacts */
+    int thin;              /* 1: a pivot of R is small */
 };
 
 /* Scalars of a group that are kept from call to call. */
@@ -202,6 +203,7 @@ int tribo_sparse_enter(struct box_qp *p, size_t i);
 void tribo_sparse_leave(struct box_qp *p, size_t i);
 double tribo_sparse_rebuild(struct box_qp *p, size_t *where);
 void tribo_sparse_solve(const struct box_qp *p, double *step);
+size_t tribo_sparse_row(const struct box_qp *p, size_t i, const size_t **col, const double **val);
 double tribo_sparse_dot(const struct box_qp *p, size_t i, const double *x, double *size);
 void tribo_sparse_spread(const struct box_qp *p, size_t i, double factor, double *y);
 
@@ -210,12 +212,18 @@ void tribo_sparse_spread(const struct box_qp *p, size_t i, double factor, double
 struct csr;
 int tribo_sparse_create(struct sparse **s, const struct csr *r);
 size_t tribo_sparse_slots(const struct sparse *s);
+
+/* Entries of R by rows, of the order of r. */
+double *tribo_sparse_values(struct sparse *s);
 void tribo_sparse_free(struct sparse *s);
 
 /* ---- rows of R */
 
 /* Returns sum_j R_ij x_j, and *size = sum_j |R_ij x_j|. */
 double tribo_row_dot(const struct box_qp *p, size_t i, const double *x, double *size);
+
+/* Returns the entries of row i, *col their columns, NULL: 0, 1, ..., and *val. */
+size_t tribo_row_entries(const struct box_qp *p, size_t i, const size_t **col, const double **val);
 
 /* Returns the sum without j = i. Leaves x as it was. */
 double tribo_row_others(const struct box_qp *p, size_t i, double *x);

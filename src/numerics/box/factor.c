@@ -100,10 +100,44 @@ static inline struct twofold entry_left(const struct box_qp *p, int graded, size
     return x;
 }
 
+/* left = entry_left of order[i], order[i + 1], ... order[all - 1], SUMS at most, and order[k], with sums side by side. */
+static inline void entries_left(const struct box_qp *p, int graded, size_t i, size_t all, size_t k, struct twofold *left)
+{
+    const size_t size = p->group->size, count = all - i < SUMS ? all - i : SUMS;
+    const int together = !graded && count == SUMS;
+    double sum[SUMS];
+    for (size_t a = 0; a < count; a++) {
+        left[a] = entry_left(p, graded, i + a, k, together ? 0 : k);
+        sum[a] = left[a].hi;
+    }
+    for (size_t m = 0; together && m < k; m++) {
+        for (size_t a = 0; a < SUMS; a++) {
+            sum[a] -= p->l[(i + a) * size + m] * p->l[k * size + m];
+        }
+    }
+    for (size_t a = 0; a < count; a++) {
+        left[a].hi = sum[a];
+    }
+}
+
+/* Exchanges order[k] and order[best], with k columns of l and the pivots that wait on the diagonal. */
+static inline void exchange_contacts(const struct box_qp *p, int graded, size_t k, size_t best)
+{
+    const size_t size = p->group->size, first = p->order[k];
+    double *const array[] = {p->l, p->low.l};
+    for (int a = 0; a < 1 + graded && best != k; a++) {
+        tribo_exchange(array[a] + k * size, array[a] + best * size, k, 1);
+        tribo_exchange(array[a] + k * (size + 1), array[a] + best * (size + 1), 1, 1);
+    }
+    p->order[k] = p->order[best];
+    p->order[best] = first;
+}
+
 /* Cholesky factorization, column by column, with the largest pivot next; pivots wait on the diagonal. */
 static inline double dense_rebuild(struct box_qp *p, int graded, size_t *where)
 {
     const size_t size = p->group->size;
+    struct twofold left[SUMS];
     size_t all = 0, k = 0;
     double most = 0.0;
     p->work.factorizations++;
@@ -124,19 +158,16 @@ static inline double dense_rebuild(struct box_qp *p, int graded, size_t *where)
         if (p->l[best * (size + 1)] <= zero) {
             break;
         }
-        double *const array[] = {p->l, p->low.l};
-        for (int a = 0; a < 1 + graded && best != k; a++) {
-            tribo_exchange(array[a] + k * size, array[a] + best * size, k, 1);
-            tribo_exchange(array[a] + k * (size + 1), array[a] + best * (size + 1), 1, 1);
-        }
-        const size_t first = p->order[k];
-        p->order[k] = p->order[best];
-        p->order[best] = first;
+        exchange_contacts(p, graded, k, best);
         const struct twofold pivot = factor_entry(p, graded, k, k);
         const struct twofold inverse = graded ? twofold_inverse_root(pivot) : (struct twofold){1.0 / sqrt(pivot.hi), 0.0};
         set_factor(p, graded, k, k, inverse);
         for (size_t i = k + 1; i < all; i++) {
-            const struct twofold x = factor_times(graded, entry_left(p, graded, i, k, k), inverse);
+            const size_t lane = (i - k - 1) % SUMS;
+            if (lane == 0) {
+                entries_left(p, graded, i, all, k, left);
+            }
+            const struct twofold x = factor_times(graded, left[lane], inverse);
             set_factor(p, graded, i, k, x);
             set_factor(p, graded, i, i, factor_minus(graded, factor_entry(p, graded, i, i), factor_times(graded, x, x)));
         }
@@ -406,6 +437,16 @@ TRIBO_SIMD double tribo_row_dot(const struct box_qp *p, size_t i, const double *
 {
     const size_t n = p->group->size;
     return p->group->sparse ? tribo_sparse_dot(p, i, x, size) : dot_of_four(p->r + i * n, x, n, size);
+}
+
+size_t tribo_row_entries(const struct box_qp *p, size_t i, const size_t **col, const double **val)
+{
+    if (p->group->sparse) {
+        return tribo_sparse_row(p, i, col, val);
+    }
+    *col = NULL;
+    *val = p->r + i * p->group->size;
+    return p->group->size;
 }
 
 double tribo_row_others(const struct box_qp *p, size_t i, double *x)

@@ -49,6 +49,11 @@ size_t tribo_sparse_slots(const struct sparse *s)
     return s->column[s->r.n];
 }
 
+double *tribo_sparse_values(struct sparse *s)
+{
+    return s->r.val;
+}
+
 /* --------------------------------------------------------------------------------------------------- nested dissection
  * (George 1973): a level of a breadth-first search splits the graph of R into two sides, and is eliminated after them; each side
  * is split likewise. */
@@ -207,6 +212,14 @@ static int find_pattern(struct sparse *s, size_t *work)
 }
 
 /* ------------------------------------------------------------------------------------------------------- rows of R */
+
+size_t tribo_sparse_row(const struct box_qp *p, size_t i, const size_t **col, const double **val)
+{
+    const struct csr *r = &p->group->sparse->r;
+    *col = r->col + r->first[i];
+    *val = r->val + r->first[i];
+    return r->first[i + 1] - r->first[i];
+}
 
 double tribo_sparse_dot(const struct box_qp *p, size_t i, const double *x, double *size)
 {

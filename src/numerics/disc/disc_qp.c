@@ -64,23 +64,34 @@ static double disc_look(struct disc_qp *p)
 }
 
 /* Returns 1 if the objective at y is not above that at from, for gradient and noise at y. */
-static int descends(const struct disc_qp *p)
+static int descends(struct disc_qp *p)
 {
     double change = 0.0, rounding = 0.0;
     for (size_t i = 0; i < p->size; i++) {
-        double turn = 0.0;
-        for (size_t k = 0; k < p->size; k++) {
-            turn += p->s[i * p->size + k] * (p->y[k] - p->from[k]);
-        }
-        change += (p->y[i] - p->from[i]) * (p->gradient[i] - 0.5 * turn);
-        rounding += fabs(p->y[i] - p->from[i]) * p->noise[i];
+        p->spare[i] = p->y[i] - p->from[i];
+    }
+    tribo_disc_multiply(p, p->spare, p->slide, p->step);
+    for (size_t i = 0; i < p->size; i++) {
+        change += p->spare[i] * (p->gradient[i] - 0.5 * p->slide[i]);
+        rounding += fabs(p->spare[i]) * p->noise[i];
     }
     return change <= rounding;
 }
 
+/* Takes each contact to the point of its set nearest to y - gain gradient, which lowers the objective. */
+static void disc_sweep(struct disc_qp *p)
+{
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        double gradient[2];
+        for (size_t k = 0; k < p->wide[i]; k++) {
+            gradient[k] = p->pull[i + k] + tribo_disc_dot(p, i + k, p->y);
+        }
+        tribo_disc_descend(p, i, gradient, p->y + i);
+    }
+}
+
 /* Takes as much of Newton's step as lowers the objective: from its part up to the first rim of an inside contact on, halved until
- * it does; all of it if it halves the distance, since near the solution the objective is rounding. If no part does, takes each
- * contact to the point of its set nearest to y - gain gradient, which always does. */
+ * it does; all of it if it halves the distance, since near the solution the objective is rounding. If no part does, sweeps. */
 static void step_down(struct disc_qp *p)
 {
     const double before = p->residual;
@@ -109,16 +120,7 @@ static void step_down(struct disc_qp *p)
         }
     }
     disc_project(p, p->from, p->from, 1.0);
-    for (size_t i = 0; i < p->size; i += p->wide[i]) {
-        double gradient[2];
-        for (size_t k = 0; k < p->wide[i]; k++) {
-            gradient[k] = p->pull[i + k];
-            for (size_t j = 0; j < p->size; j++) {
-                gradient[k] += p->s[(i + k) * p->size + j] * p->y[j];
-            }
-        }
-        tribo_disc_descend(p, i, gradient, p->y + i);
-    }
+    disc_sweep(p);
 }
 
 /* Repeats step until y is the solution up to rounding, at most rounds times. Returns 0 without convergence. */
@@ -175,9 +177,9 @@ static int solve_towards(struct disc_qp *p, double more, const double *centre)
     double *diagonal = p->kept, *pull = diagonal + p->size, moved = 1.0;
     for (size_t i = 0; i < p->size; i++) {
         const double soft = more * p->weight[i] * p->weight[i];
-        diagonal[i] = p->s[i * (p->size + 1)];
+        diagonal[i] = p->s.val[tribo_disc_own(p, i)];
         pull[i] = p->pull[i];
-        p->s[i * (p->size + 1)] += soft;
+        p->s.val[tribo_disc_own(p, i)] += soft;
         p->pull[i] -= centre ? soft * centre[i] : 0.0;
     }
     const int done = tribo_disc_solve(p);
@@ -190,7 +192,7 @@ static int solve_towards(struct disc_qp *p, double more, const double *centre)
         }
     }
     for (size_t i = 0; i < p->size; i++) {
-        p->s[i * (p->size + 1)] = diagonal[i];
+        p->s.val[tribo_disc_own(p, i)] = diagonal[i];
         p->pull[i] = pull[i];
     }
     tribo_disc_gains(p);
@@ -214,7 +216,7 @@ int tribo_disc_share(struct disc_qp *p)
     double *share = p->kept + 2 * p->size, most = 0.0;
     int done = 1, shared;
     for (size_t i = 0; i < p->size; i++) {
-        most = greater(most, p->s[i * (p->size + 1)]);
+        most = greater(most, p->s.val[tribo_disc_own(p, i)]);
         share[i] = 0.0;
     }
     for (int k = 0; k < 3; k++) {
@@ -235,20 +237,32 @@ int tribo_disc_share(struct disc_qp *p)
 
 /* ------------------------------------------------------------------------------------------------------------ room */
 
-static void lay_out_disc(struct disc_qp *p, struct layout *l, size_t most)
+static void lay_out_disc(struct disc_qp *p, struct layout *l, const struct disc_room *room)
 {
     double **const vector[] = {&p->pull, &p->shift,   &p->y,         &p->gradient,    &p->noise,         &p->gain,
                                &p->to,   &p->outward, &p->curvature, &p->step,        &p->spare,         &p->best,
                                &p->from, &p->aim,     &p->slide,     &p->factor.qp.q, &p->factor.qp.row, &p->weight};
-    double **const square[] = {&p->s, &p->factor.matrix, &p->factor.qp.l, &p->factor.qp.null.basis};
+    double **const square[] = {&p->factor.dense, &p->factor.qp.l};
     enum { VECTORS = sizeof vector / sizeof *vector, SQUARES = sizeof square / sizeof *square };
-    const size_t s = most + 1;
+    const size_t s = room->size + 1, dense = (room->dense + 1) * (room->dense + 1), sparse = room->places;
+    const size_t vectors = TRIBO_SPARSE_REDUNDANT * sparse;
+    struct sparse_factor *f = &p->factor.qp.sparse;
     for (size_t k = 0; k < VECTORS; k++) {
         *vector[k] = tribo_layout_array(l, s, sizeof **vector[k]);
     }
     for (size_t k = 0; k < SQUARES; k++) {
-        *square[k] = tribo_layout_array(l, s * s, sizeof **square[k]);
+        *square[k] = tribo_layout_array(l, dense, sizeof **square[k]);
     }
+    p->s.val = tribo_layout_array(l, dense > room->entries ? dense : room->entries, sizeof *p->s.val);
+    p->factor.qp.null.basis = tribo_layout_array(l, dense > vectors ? dense : vectors, sizeof *p->factor.qp.null.basis);
+    p->s.first = tribo_layout_array(l, sparse + 1, sizeof *p->s.first);
+    p->s.own = tribo_layout_array(l, sparse, sizeof *p->s.own);
+    p->s.col = tribo_layout_array(l, room->entries, sizeof *p->s.col);
+    p->s.slot = tribo_layout_array(l, room->entries, sizeof *p->s.slot);
+    f->l = tribo_layout_array(l, room->slots, sizeof *f->l);
+    f->d = tribo_layout_array(l, sparse, sizeof *f->d);
+    f->w = tribo_layout_array(l, sparse, sizeof *f->w);
+    f->index = tribo_layout_array(l, sparse, sizeof *f->index);
     p->kept = tribo_layout_array(l, 3 * s, sizeof *p->kept);
     p->freedom = tribo_layout_array(l, s, sizeof *p->freedom);
     p->disc = tribo_layout_array(l, 2 * s, sizeof *p->disc);
@@ -259,14 +273,14 @@ static void lay_out_disc(struct disc_qp *p, struct layout *l, size_t most)
     p->factor.qp.at = tribo_layout_array(l, s, 1);
 }
 
-int tribo_disc_create(struct disc_qp *p, size_t most)
+int tribo_disc_create(struct disc_qp *p, const struct disc_room *room)
 {
     struct layout l = {0};
     *p = (struct disc_qp){0};
-    lay_out_disc(p, &l, most);
+    lay_out_disc(p, &l, room);
     p->memory = tribo_zeros(l.used + 1, 1);
     if (p->memory) {
-        lay_out_disc(p, &(struct layout){.memory = p->memory}, most);
+        lay_out_disc(p, &(struct layout){.memory = p->memory}, room);
     }
     return p->memory != NULL;
 }
@@ -281,10 +295,10 @@ void tribo_disc_alone(struct disc_alone *x, const double *s, const double *pull,
 {
     struct layout l = {.memory = (char *)x->store};
     memset(x, 0, sizeof *x);
-    lay_out_disc(&x->p, &l, 2);
+    lay_out_disc(&x->p, &l, &(struct disc_room){.size = 2, .dense = 2});
     x->p.size = x->p.wide[0] = 2;
     x->p.near_enough = TRIBO_NEAR_ENOUGH;
-    memcpy(x->p.s, s, 4 * sizeof *s);
+    memcpy(x->p.s.val, s, 4 * sizeof *s);
     memcpy(x->p.pull, pull, 2 * sizeof *pull);
     memcpy(x->p.shift, shift, 2 * sizeof *shift);
 }

@@ -6,7 +6,7 @@
  *   tangent_qp.c  the directions in which contacts may move y, and Newton's equations along them
  *   interior.c    an interior-point method, which needs no beginning
  *   disc_qp.c     solves the problem
- * Each calls those above it only, and the dense factor of box/. */
+ * Each calls those above it only, and the factors of box/. */
 #ifndef TRIBO_DISC_QP_H
 #define TRIBO_DISC_QP_H
 
@@ -46,6 +46,7 @@ double tribo_way_to_rim(int directions, const double *x, const double *step);
 /* A direction in which the place of a contact lets y move. */
 struct freedom {
     size_t at;         /* first direction of the contact */
+    size_t row;        /* of Newton's matrix */
     double tangent[2]; /* the second is 0 for an interval */
     double curvature;  /* of the rim, times the pressure on it */
 };
@@ -60,9 +61,21 @@ struct disc {
 
 #define TRIBO_NEAR_ENOUGH 1e-13
 
-/* The factor of Newton's matrix. */
+/* S by rows: dense, [size][size]; or sparse, entries first_i to first_i+1 - 1 in row i. Rows of one contact have the same
+ * columns. */
+struct disc_rows {
+    struct sparse *pattern;    /* of Newton's matrix, at places of the caller; NULL: dense */
+    size_t places;             /* rows of the pattern */
+    const size_t *place;       /* [size] those of the directions */
+    double *val;               /* entries, columns ascending */
+    size_t *first, *col, *own; /* [size + 1]; of entries; [size] entries of the diagonal */
+    size_t *slot;              /* entries of the pattern where those of val are */
+};
+
+/* The factor of Newton's matrix: row i is that of the freedom at direction i, or at its place in the pattern. */
 struct disc_factor {
-    double *matrix; /* [size][size] */
+    double *dense;  /* [size][size] */
+    double *matrix; /* dense, or the values of the pattern */
     struct group group;
     struct sets sets;
     struct box_qp qp;
@@ -73,11 +86,11 @@ struct disc_qp {
     /* the problem */
     size_t size;         /* directions */
     unsigned char *wide; /* [size] directions of the contact that begins here: 1 or 2; 0 if none does */
-    double *s;           /* [size][size] */
-    double *pull;        /* [size] */
-    double *shift;       /* [size] c of the lenses */
-    double near_enough;  /* distances below this part of limits are 0: TRIBO_NEAR_ENOUGH, unless forces are far below limits */
-    double *weight;      /* [size] weights of y in tribo_disc_share */
+    struct disc_rows s;
+    double *pull;       /* [size] */
+    double *shift;      /* [size] c of the lenses */
+    double near_enough; /* distances below this part of limits are 0: TRIBO_NEAR_ENOUGH, unless forces are far below limits */
+    double *weight;     /* [size] weights of y in tribo_disc_share */
     /* the solution; in: the beginning */
     double *y;       /* [size] */
     double residual; /* largest distance of y from the fixed point, in parts of limits */
@@ -100,13 +113,19 @@ struct disc_qp {
     void *memory; /* of all arrays; NULL: the caller's */
 };
 
-/* Allocates room for up to most directions. Returns 1, or 0 if out of memory: tribo_disc_free takes that too. */
-int tribo_disc_create(struct disc_qp *p, size_t most);
+/* Sizes of the largest problem. */
+struct disc_room {
+    size_t size, dense;            /* directions; of dense problems */
+    size_t places, entries, slots; /* of sparse problems; entries of S and of the factor */
+};
+
+/* Allocates room. Returns 1, or 0 if out of memory: tribo_disc_free takes that too. */
+int tribo_disc_create(struct disc_qp *p, const struct disc_room *room);
 void tribo_disc_free(struct disc_qp *p);
 
 /* Room for the problem of one planar contact. */
 struct disc_alone {
-    double store[168];
+    double store[176];
     struct disc_qp p;
 };
 
@@ -122,6 +141,36 @@ int tribo_disc_share(struct disc_qp *p);
 
 /* ---- tangent_qp.c */
 
+/* Returns the first entry of row i of S. */
+static inline size_t tribo_disc_row(const struct disc_qp *p, size_t i)
+{
+    return p->s.pattern ? p->s.first[i] : i * p->size;
+}
+
+/* Returns the entry s_ii; beside it are those of the other direction of the contact. */
+static inline size_t tribo_disc_own(const struct disc_qp *p, size_t i)
+{
+    return p->s.pattern ? p->s.own[i] : i * (p->size + 1);
+}
+
+/* Returns the entries of row i. */
+static inline size_t tribo_disc_terms(const struct disc_qp *p, size_t i)
+{
+    return p->s.pattern ? p->s.first[i + 1] - p->s.first[i] : p->size;
+}
+
+/* Returns the entry of Newton's matrix at entry e of S. */
+static inline double *tribo_disc_entry(const struct disc_qp *p, size_t e)
+{
+    return &p->factor.matrix[p->s.pattern ? p->s.slot[e] : e];
+}
+
+/* Returns sum_k s_ik x_k. */
+double tribo_disc_dot(const struct disc_qp *p, size_t i, const double *x);
+
+/* y [size] = S x, size_i [size] = sum_k |s_ik x_k|; neither is x. */
+void tribo_disc_multiply(const struct disc_qp *p, const double *x, double *y, double *size);
+
 /* Finds gain, once for a problem. */
 void tribo_disc_gains(struct disc_qp *p);
 
@@ -134,17 +183,23 @@ void tribo_disc_gradients(struct disc_qp *p);
 /* Finds to, outward, curvature and place. Returns the largest distance of y from `to`, in parts of its rounding. */
 double tribo_disc_places(struct disc_qp *p);
 
-/* Factors Newton's matrix of the freedoms of the places. */
+/* Sets Newton's matrix of the freedoms of the places. */
+void tribo_disc_assemble(struct disc_qp *p);
+
+/* Factors it: symmetric and positive semidefinite. tribo_factor_solve then solves, of a dense problem in least norm. */
+void tribo_disc_factorize(struct disc_qp *p);
+
+/* Both. */
 void tribo_disc_linearize(struct disc_qp *p);
+
+/* Takes up to TRIBO_SPARSE_REDUNDANT null vectors of a sparse problem into the factor: tribo_disc_follow is then of least norm. */
+void tribo_disc_redundant(struct disc_qp *p);
 
 /* move [size] = the change of y along the freedoms that brings rhs [size], the gradient without it, to 0. */
 void tribo_disc_follow(struct disc_qp *p, const double *rhs, double *move);
 
-/* move [size] = for a singular s, a change of y along its null vectors that are pulled at, beyond all rims; 0 if none is. */
+/* move [size] = for a singular dense s, a change of y along its null vectors that are pulled at, beyond all rims; 0 if none is. */
 void tribo_disc_slide(struct disc_qp *p, const double *rhs, double *move);
-
-/* Factors factor.matrix [size][size], symmetric and positive semidefinite; tribo_factor_solve then solves, in least norm. */
-void tribo_disc_factorize(struct disc_qp *p, size_t size);
 
 /* dy [wide] = the change of the y of the contact at i with its c, without that along its freedoms. */
 void tribo_disc_drag(const struct disc_qp *p, size_t i, const double *dshift, double *dy);

@@ -38,27 +38,24 @@ static double find_rooms(struct disc_qp *p)
     return sum / (double)p->discs;
 }
 
-/* step = the change of y towards room times press = aim. */
+/* aim [size] of p = the change of y towards room times press = aim. */
 static void find_step(struct disc_qp *p, double aim)
 {
-    const size_t n = p->size;
     tribo_disc_gradients(p);
-    memcpy(p->factor.matrix, p->s, n * n * sizeof *p->factor.matrix);
+    memset(p->place, LENS_INSIDE, p->size);
+    tribo_disc_assemble(p);
     for (const struct disc *d = p->disc; d < p->disc + p->discs; d++) {
-        double *block = p->factor.matrix + d->at * (n + 1);
         for (size_t k = 0; k < p->wide[d->at]; k++) {
+            const size_t row = tribo_disc_own(p, d->at + k) - k;
             p->gradient[d->at + k] += aim / d->room * d->x[k];
-            block[k * (n + 1)] += d->press;
+            *tribo_disc_entry(p, row + k) += d->press;
             for (size_t j = 0; j < p->wide[d->at]; j++) {
-                block[k * n + j] += d->press / d->room * d->x[k] * d->x[j];
+                *tribo_disc_entry(p, row + j) += d->press / d->room * d->x[k] * d->x[j];
             }
         }
     }
-    tribo_disc_factorize(p, n);
-    for (size_t i = 0; i < n; i++) {
-        p->step[i] = -p->gradient[i];
-    }
-    tribo_factor_solve(&p->factor.qp, p->factor.redundant, p->step);
+    tribo_disc_factorize(p);
+    tribo_disc_follow(p, p->gradient, p->aim);
 }
 
 void tribo_disc_interior(struct disc_qp *p)
@@ -90,10 +87,10 @@ void tribo_disc_interior(struct disc_qp *p)
         for (struct disc *d = p->disc; d < p->disc + p->discs; d++) {
             double turn = 0.0;
             for (size_t k = 0; k < p->wide[d->at]; k++) {
-                turn += d->x[k] * p->step[d->at + k];
+                turn += d->x[k] * p->aim[d->at + k];
             }
             d->change = aim / d->room - d->press + product(d->press / d->room, turn);
-            length = lesser(length, tribo_way_to_rim(p->wide[d->at], d->x, p->step + d->at));
+            length = lesser(length, tribo_way_to_rim(p->wide[d->at], d->x, p->aim + d->at));
             length = d->change < 0.0 ? lesser(length, quotient(d->press, -d->change)) : length;
         }
         length *= NEARLY;
@@ -102,7 +99,7 @@ void tribo_disc_interior(struct disc_qp *p)
         }
         /* y and press go by length along their steps. A press far from aim/room would let y cross the disc again and again. */
         for (size_t i = 0; i < p->size; i++) {
-            p->y[i] += length * p->step[i];
+            p->y[i] += length * p->aim[i];
         }
         find_rooms(p);
         for (struct disc *d = p->disc; d < p->disc + p->discs; d++) {

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "common/real.h"
+#include "common/simd.h"
 
 /* A set of redundant contacts counts as balanced up to this part of limits: the rounding of pull. */
 #define DISAGREEMENT 5e-13
@@ -28,16 +29,50 @@
 /* A distance longer than any within a set, in parts of limits. */
 #define BEYOND_ALL 4.0
 
-void tribo_disc_gains(struct disc_qp *p)
+double tribo_disc_dot(const struct disc_qp *p, size_t i, const double *x)
+{
+    const size_t begin = tribo_disc_row(p, i), terms = tribo_disc_terms(p, i);
+    double sum = 0.0;
+    for (size_t t = 0; t < terms; t++) {
+        sum += p->s.val[begin + t] * x[p->s.pattern ? p->s.col[begin + t] : t];
+    }
+    return sum;
+}
+
+/* S is symmetric: dense columns are rows, and sums go side by side. */
+TRIBO_SIMD void tribo_disc_multiply(const struct disc_qp *p, const double *x, double *restrict y, double *restrict size)
 {
     const size_t n = p->size;
-    for (size_t i = 0; i < n; i += p->wide[i]) {
-        const double a = p->s[i * n + i], d = p->wide[i] == 2 ? p->s[(i + 1) * n + i + 1] : a;
-        const double turned[2] = {0.5 * (a - d), p->wide[i] == 2 ? p->s[i * n + i + 1] : 0.0};
+    for (size_t i = 0; i < n; i++) {
+        y[i] = size[i] = 0.0;
+    }
+    for (size_t i = 0; !p->s.pattern && i < n; i++) {
+        const double *row = p->s.val + i * n;
+        for (size_t k = 0; k < n; k++) {
+            const double term = row[k] * x[i];
+            y[k] += term;
+            size[k] += fabs(term);
+        }
+    }
+    for (size_t i = 0; p->s.pattern && i < n; i++) {
+        for (size_t e = p->s.first[i]; e < p->s.first[i + 1]; e++) {
+            const double term = p->s.val[e] * x[p->s.col[e]];
+            y[i] += term;
+            size[i] += fabs(term);
+        }
+    }
+}
+
+void tribo_disc_gains(struct disc_qp *p)
+{
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        const double *own = p->s.val + tribo_disc_own(p, i), a = own[0];
+        const double d = p->wide[i] == 2 ? p->s.val[tribo_disc_own(p, i + 1)] : a;
+        const double turned[2] = {0.5 * (a - d), p->wide[i] == 2 ? own[1] : 0.0};
         const double largest = greater(0.5 * (a + d) + tribo_length(2, turned), DBL_MIN);
         const int skew = lesser(a, d) * SKEW < greater(a, d);
         for (size_t k = i; k < i + p->wide[i]; k++) {
-            p->gain[k] = 1.0 / (skew ? greater(2.0 * p->s[k * (n + 1)], DBL_MIN) : largest);
+            p->gain[k] = 1.0 / (skew ? greater(2.0 * p->s.val[tribo_disc_own(p, k)], DBL_MIN) : largest);
         }
     }
 }
@@ -56,24 +91,19 @@ int tribo_disc_descend(const struct disc_qp *p, size_t i, const double *gradient
 
 void tribo_disc_gradients(struct disc_qp *p)
 {
-    const size_t n = p->size;
-    for (size_t i = 0; i < n; i++) {
-        const double *s = p->s + i * n;
-        double sum = p->pull[i], size = fabs(p->pull[i]);
-        for (size_t k = 0; k < n; k++) {
-            const double term = s[k] * p->y[k];
-            sum += term;
-            size += fabs(term);
-        }
-        p->gradient[i] = sum;
-        p->noise[i] = tribo_resolution(n) * size;
+    tribo_disc_multiply(p, p->y, p->gradient, p->noise);
+    for (size_t i = 0; i < p->size; i++) {
+        p->gradient[i] += p->pull[i];
+        p->noise[i] = tribo_resolution(tribo_disc_terms(p, i)) * (p->noise[i] + fabs(p->pull[i]));
     }
 }
 
 /* Returns the limit of direction i, 1, or the size of its pull if forces are far below limits. */
 static double unit_of(const struct disc_qp *p, size_t i)
 {
-    return p->near_enough < TRIBO_NEAR_ENOUGH ? lesser(product(p->gain[i], p->noise[i] / tribo_resolution(p->size)), 1.0) : 1.0;
+    return p->near_enough < TRIBO_NEAR_ENOUGH
+               ? lesser(product(p->gain[i], p->noise[i] / tribo_resolution(tribo_disc_terms(p, i))), 1.0)
+               : 1.0;
 }
 
 double tribo_disc_places(struct disc_qp *p)
@@ -118,7 +148,8 @@ double tribo_disc_places(struct disc_qp *p)
 
 static void add_freedom(struct disc_qp *p, size_t at, double x, double y, double curvature)
 {
-    p->freedom[p->freedoms++] = (struct freedom){at, {x, y}, curvature};
+    const size_t row = p->s.pattern ? p->s.place[at] : at;
+    p->freedom[p->freedoms++] = (struct freedom){at, row, {x, y}, curvature};
 }
 
 /* Returns x [size] along a freedom. */
@@ -127,67 +158,95 @@ static double tangent_qp_along(const struct freedom *e, const double *x)
     return e->tangent[0] * x[e->at] + (e->tangent[1] != 0.0 ? e->tangent[1] * x[e->at + 1] : 0.0);
 }
 
-void tribo_disc_factorize(struct disc_qp *p, size_t size)
+static int is_on_rim(const struct disc_qp *p, size_t i)
+{
+    return p->wide[i] == 2 && (p->place[i] == LENS_ON_DISC || p->place[i] == LENS_ON_SHIFTED);
+}
+
+void tribo_disc_assemble(struct disc_qp *p)
+{
+    p->factor.matrix = p->s.pattern ? tribo_sparse_values(p->s.pattern) : p->factor.dense;
+    p->freedoms = 0;
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        for (size_t k = i; p->place[i] == LENS_INSIDE && k < i + p->wide[i]; k++) {
+            add_freedom(p, k, 1.0, 0.0, 0.0);
+        }
+        if (is_on_rim(p, i)) {
+            add_freedom(p, i, -p->outward[i + 1], p->outward[i], p->curvature[i]);
+        }
+    }
+    for (size_t k = 0; k < p->freedoms; k++) {
+        const struct freedom *f = &p->freedom[k];
+        const size_t begin = tribo_disc_row(p, f->at), terms = tribo_disc_terms(p, f->at);
+        const int both = f->tangent[1] != 0.0;
+        const double *row = p->s.val + begin, *other = both ? p->s.val + tribo_disc_row(p, f->at + 1) : row;
+        for (size_t t = 0; t < terms; t++) {
+            const size_t j = p->s.pattern ? p->s.col[begin + t] : t;
+            double x = f->tangent[0] * row[t] + (both ? f->tangent[1] * other[t] : 0.0);
+            if (is_on_rim(p, j)) {
+                const double y = f->tangent[0] * row[t + 1] + (both ? f->tangent[1] * other[t + 1] : 0.0);
+                x = p->outward[j] * y - p->outward[j + 1] * x;
+            }
+            *tribo_disc_entry(p, begin + t) = x;
+        }
+        *tribo_disc_entry(p, tribo_disc_own(p, f->at)) += f->curvature;
+    }
+}
+
+void tribo_disc_factorize(struct disc_qp *p)
 {
     struct box_qp *f = &p->factor.qp;
     double *scale = f->q, largest = 0.0;
-    p->factor.group = (struct group){.size = size};
+    p->factor.group = (struct group){.size = p->s.pattern ? p->s.places : p->size, .sparse = p->s.pattern};
     f->group = &p->factor.group;
     f->sets = &p->factor.sets;
     f->r = p->factor.matrix;
     f->scale = scale;
-    f->count = size;
+    f->count = p->freedoms;
     f->far = 1;
-    for (size_t k = 0; k < size; k++) {
-        largest = greater(largest, p->factor.matrix[k * size + k]);
+    memset(f->at, AWAY, p->factor.group.size);
+    for (size_t k = 0; p->s.pattern && k < p->s.places; k++) {
+        scale[k] = 0.0;
     }
-    for (size_t k = 0; k < size; k++) {
-        p->factor.matrix[k * size + k] = greater(p->factor.matrix[k * size + k], NEXT_TO_NOTHING * largest);
-        scale[k] = tribo_scale(p->factor.matrix[k * size + k]);
-        f->near[k] = k;
-        f->at[k] = FREE;
+    for (size_t k = 0; k < p->freedoms; k++) {
+        largest = greater(largest, *tribo_disc_entry(p, tribo_disc_own(p, p->freedom[k].at)));
+    }
+    for (size_t k = 0; k < p->freedoms; k++) {
+        const size_t row = p->freedom[k].row;
+        double *own = tribo_disc_entry(p, tribo_disc_own(p, p->freedom[k].at));
+        *own = greater(*own, NEXT_TO_NOTHING * largest);
+        scale[row] = tribo_scale(*own);
+        f->near[k] = row;
+        f->at[row] = FREE;
     }
     tribo_factor_rebuild(f, NULL);
-    f->null.redundant = size;
+    f->null.redundant = p->s.pattern ? 0 : p->size;
     p->factor.redundant = tribo_null_basis(f);
 }
 
 void tribo_disc_linearize(struct disc_qp *p)
 {
-    const size_t n = p->size;
-    p->freedoms = 0;
-    for (size_t i = 0; i < p->size; i += p->wide[i]) {
-        const int rim = p->place[i] == LENS_ON_DISC || p->place[i] == LENS_ON_SHIFTED;
-        for (size_t k = i; p->place[i] == LENS_INSIDE && k < i + p->wide[i]; k++) {
-            add_freedom(p, k, 1.0, 0.0, 0.0);
-        }
-        if (rim && p->wide[i] == 2) {
-            add_freedom(p, i, -p->outward[i + 1], p->outward[i], p->curvature[i]);
-        }
-    }
-    for (size_t k = 0; k < p->freedoms; k++) {
-        const struct freedom *e = &p->freedom[k];
-        const double *row = p->s + e->at * n;
-        for (size_t j = 0; j < n; j++) {
-            p->spare[j] = e->tangent[0] * row[j] + (e->tangent[1] != 0.0 ? e->tangent[1] * row[n + j] : 0.0);
-        }
-        for (size_t j = 0; j < p->freedoms; j++) {
-            p->factor.matrix[k * p->freedoms + j] = tangent_qp_along(&p->freedom[j], p->spare);
-        }
-        p->factor.matrix[k * p->freedoms + k] += e->curvature;
-    }
-    tribo_disc_factorize(p, p->freedoms);
+    tribo_disc_assemble(p);
+    tribo_disc_factorize(p);
 }
 
-/* move [size] = step [freedoms] along the freedoms. */
+void tribo_disc_redundant(struct disc_qp *p)
+{
+    if (p->s.pattern) {
+        p->factor.qp.null.redundant = TRIBO_SPARSE_REDUNDANT;
+        p->factor.redundant = tribo_null_basis(&p->factor.qp);
+    }
+}
+
+/* move [size] = step, by rows of Newton's matrix, along the freedoms. */
 static void spread(const struct disc_qp *p, const double *step, double *move)
 {
     memset(move, 0, p->size * sizeof *move);
     for (size_t k = 0; k < p->freedoms; k++) {
         const struct freedom *e = &p->freedom[k];
-        move[e->at] += e->tangent[0] * step[k];
+        move[e->at] += e->tangent[0] * step[e->row];
         if (e->tangent[1] != 0.0) {
-            move[e->at + 1] += e->tangent[1] * step[k];
+            move[e->at + 1] += e->tangent[1] * step[e->row];
         }
     }
 }
@@ -195,7 +254,7 @@ static void spread(const struct disc_qp *p, const double *step, double *move)
 void tribo_disc_follow(struct disc_qp *p, const double *rhs, double *move)
 {
     for (size_t k = 0; k < p->freedoms; k++) {
-        p->step[k] = -tangent_qp_along(&p->freedom[k], rhs);
+        p->step[p->freedom[k].row] = -tangent_qp_along(&p->freedom[k], rhs);
     }
     tribo_factor_solve(&p->factor.qp, p->factor.redundant, p->step);
     spread(p, p->step, move);
@@ -206,16 +265,19 @@ void tribo_disc_slide(struct disc_qp *p, const double *rhs, double *move)
     double *pull = p->spare, *balanced = p->step, most = 0.0;
     int apart = 0;
     for (size_t k = 0; k < p->freedoms; k++) {
-        pull[k] = balanced[k] = -tangent_qp_along(&p->freedom[k], rhs);
+        const size_t row = p->freedom[k].row;
+        pull[row] = balanced[row] = -tangent_qp_along(&p->freedom[k], rhs);
     }
     tribo_null_project(&p->factor.qp, p->factor.redundant, balanced, balanced);
     for (size_t k = 0; k < p->freedoms; k++) {
-        pull[k] -= balanced[k];
-        most = greater(most, fabs(pull[k]));
-        apart |= product(p->gain[p->freedom[k].at], fabs(pull[k])) > DISAGREEMENT * unit_of(p, p->freedom[k].at);
+        const size_t i = p->freedom[k].at, row = p->freedom[k].row;
+        pull[row] -= balanced[row];
+        most = greater(most, fabs(pull[row]));
+        apart |= product(p->gain[i], fabs(pull[row])) > DISAGREEMENT * unit_of(p, i);
     }
     for (size_t k = 0; k < p->freedoms; k++) {
-        pull[k] = apart ? BEYOND_ALL * (pull[k] / most) : 0.0;
+        double *x = &pull[p->freedom[k].row];
+        *x = apart ? BEYOND_ALL * (*x / most) : 0.0;
     }
     spread(p, pull, move);
 }

@@ -60,17 +60,6 @@ TEST(arguments)
     tribo_destroy(c);
 }
 
-/* Groups that are too large for a matrix are refused, and what was there stays. */
-TEST(large_groups)
-{
-    enum { N = 2050 };
-    tribo_context *c = problem_chain(N, 1, TRIBO_CONSISTENT);
-    assert_status(tribo_set_planar(c, 1, ONE(7)), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_message(c), "2050");
-    ck_assert_uint_eq(count_of(c, TRIBO_COUNT_PLANAR), 0);
-    tribo_destroy(c);
-}
-
 /* Without planar contacts all is as it was, and so it is when they are gone. */
 TEST(undone)
 {
@@ -354,5 +343,5 @@ TEST(bounded)
     tribo_destroy(scalar);
 }
 
-TEST_MAIN("planar", {arguments, 1}, {large_groups, 1}, {undone, 1}, {rest, 4}, {motion, 1}, {lens, 1}, {line, 4}, {flat, 2},
-          {open, 1}, {immovable, 1}, {ellipse, 1}, {blocks, 36}, {bounded, 2})
+TEST_MAIN("planar", {arguments, 1}, {undone, 1}, {rest, 4}, {motion, 1}, {lens, 1}, {line, 4}, {flat, 2}, {open, 1},
+          {immovable, 1}, {ellipse, 1}, {blocks, 36}, {bounded, 2})
