@@ -36,7 +36,8 @@ TRIBO_API const char *tribo_model_message(const tribo_model *model);
  * m, c, k           [ndof][ndof] in, or _diagonal [ndof] in
  * rowptr, col, val  [ndof + 1], [rowptr[ndof]] in   compressed rows, counted from 0, columns in any order; no entry twice
  * The mass must be symmetric and positive definite; a diagonal mass is fastest. A degree of freedom without mass is allowed if
- * the stiffness holds the degree of freedom. The stiffness must be symmetric. The damping is 0 if not set.
+ * the stiffness holds the degree of freedom. The damping is 0 if not set. Damping and stiffness need not be symmetric (gyroscopic
+ * forces; loads that follow the structure); the manual says what a stiffness that is not is refused for.
  * Return TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_SIZE (rowptr), TRIBO_ERR_RANGE (col), TRIBO_ERR_DUPLICATE,
  * TRIBO_ERR_MEMORY; on error the matrix is unchanged. */
 TRIBO_API int tribo_model_set_mass(tribo_model *model, const double *m);

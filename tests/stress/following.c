@@ -332,6 +332,31 @@ TEST(agree)
     }
 }
 
+/* Adds a part to the stiffness of s that is not symmetric, as of loads that follow the structure. */
+static void circulate(struct scene *s, int seed)
+{
+    struct random g = random_of(seed + 1000000);
+    const double size = uniform(&g, 0.02, 0.6);
+    for (size_t i = 0; i < s->n; i++) {
+        for (size_t j = 0; j < i; j++) {
+            const double own = sqrt(fabs(s->stiffness[i * (s->n + 1)] * s->stiffness[j * (s->n + 1)]));
+            const double part = chance(&g, 0.6) ? uniform(&g, -size, size) * own : 0.0;
+            s->stiffness[i * s->n + j] += part;
+            s->stiffness[j * s->n + i] -= part;
+        }
+    }
+}
+
+/* Structures with a stiffness that is not symmetric, and limits that follow the motion. */
+TEST(circulatory)
+{
+    for (int seed = setting("TRIBO_SEED", 0) + BLOCK * _i; seed < setting("TRIBO_SEED", 0) + BLOCK * (_i + 1); seed++) {
+        struct scene s = scene_create(seed);
+        circulate(&s, seed);
+        both(&s, seed);
+    }
+}
+
 /* Finds a periodic motion of s by a method: y, its multipliers sorted by modulus, re [dimension - 1], and by event how far the
  * motion is from there after a period. Returns a status. */
 static int find_return(const struct scene *s, int seed, const char *method, double period, double *y, double *modulus,
@@ -493,6 +518,7 @@ TEST(degenerate)
 
 int main(void)
 {
-    const struct test tests[] = {{agree, setting("TRIBO_BLOCKS", 12)}, {periodic, 2}, {degenerate, 2 * CASES}};
+    const struct test tests[] = {
+        {agree, setting("TRIBO_BLOCKS", 12)}, {circulatory, setting("TRIBO_BLOCKS", 4)}, {periodic, 2}, {degenerate, 2 * CASES}};
     return run_suite("following", tests, COUNT(tests));
 }

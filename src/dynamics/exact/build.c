@@ -98,7 +98,7 @@ static int find_stiffness(struct modal_build *b)
     const struct matrix *j = &b->sys->direction;
     const size_t n = b->sys->ndof, c = j->rows;
     b->stiffness = b->k;
-    if (!b->h->springs || b->powers) {
+    if ((!b->h->springs && b->sys->circulation == 0.0) || b->powers) {
         return 1;
     }
     double *added = tribo_modal_take(&b->scratch, n * (n + 2 * c), sizeof *added), *x = added + n * n, *dense = x + c * n;
@@ -106,10 +106,12 @@ static int find_stiffness(struct modal_build *b)
         return 0;
     }
     tribo_matrix_spread(b->k, added);
-    tribo_matrix_spread(j, dense);
-    memcpy(x, dense, c * n * sizeof *x);
-    tribo_compliance_solve(b->sys, b->slip, n, x);
-    tribo_multiply_transposed_add(c, n, n, dense, x, added);
+    if (b->h->springs) {
+        tribo_matrix_spread(j, dense);
+        memcpy(x, dense, c * n * sizeof *x);
+        tribo_compliance_solve(b->sys, b->slip, n, x);
+        tribo_multiply_transposed_add(c, n, n, dense, x, added);
+    }
     tribo_even_out(n, added);
     b->stiffness = &b->own_stiffness;
     return tribo_matrix_from_dense(&b->own_stiffness, n, n, added);
@@ -142,13 +144,13 @@ static void add_between(const struct matrix *a, const size_t *rows, const size_t
     }
 }
 
-/* Sets h->within by the displacements q = z y; z without rows, compliant contacts or normals: all. */
+/* Sets h->within by the displacements q = z y; z without rows, compliant contacts, normals, or K not symmetric: all. */
 static void find_within(struct modal_build *b, const struct matrix *z)
 {
     const tribo_system *sys = b->sys;
     const struct matrix *const beside[] = {&sys->k, &sys->mass, &sys->c};
     size_t *within = b->h->within, first = 0, end = sys->ndof;
-    const int some = z->rows > 0 && sys->compliance.count == 0 && sys->normals.count == 0;
+    const int some = z->rows > 0 && sys->compliance.count == 0 && sys->normals.count == 0 && sys->circulation == 0.0;
     while (some && first < end && z->first[first] == z->first[first + 1]) {
         first++;
     }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Structures with normals that are pressed, and contacts that slide at limits which follow these. A pressed normal adds its
  * stiffness to K. A contact that slides adds the forces side mu N along its own row of J: K~ of the modes is not symmetric then,
- * and has left and right vectors (exponents.c). A mode without stiffness drifts: no force follows it, but forces that follow
+ * and has left and right vectors (exponents.c); likewise if K itself is not symmetric, as by loads that follow the structure:
+ * the modes are those of its symmetric part. A mode without stiffness drifts: no force follows it, but forces that follow
  * other modes move it. */
 #include "motion.h"
 #include "parts.h"
@@ -58,6 +59,7 @@ int tribo_follow_press(struct modal_build *b)
     const struct matrix *j = &sys->direction;
     const size_t n = sys->ndof;
     double *sum = NULL;
+    b->follows |= sys->circulation > 0.0;
     for (size_t k = 0; k < s->followers; k++) {
         b->follows |= tribo_follow_side(b->h->key[s->follower[k].contact]) != 0.0;
     }
@@ -79,7 +81,9 @@ int tribo_follow_press(struct modal_build *b)
     if (!sum) {
         return 1;
     }
-    tribo_even_out(n, sum);
+    if (sys->circulation == 0.0) {
+        tribo_even_out(n, sum);
+    }
     b->k = &b->pressed_stiffness;
     return tribo_matrix_from_dense(&b->pressed_stiffness, n, n, sum);
 }
@@ -87,9 +91,9 @@ int tribo_follow_press(struct modal_build *b)
 /* Returns 0 with b->status set: method exact does not know the structure. */
 static int follow_unsupported(struct modal_build *b, const char *why)
 {
-    b->status = tribo_error(b->sys->message, TRIBO_ERR_UNSUPPORTED,
-                            "method exact: where contacts slide at limits that follow their normal loads, %s; method event can "
-                            "do it",
+    b->status = tribo_error(b->sys->message, TRIBO_ERR_UNSUPPORTED, "method exact: %s, %s; method event can do it",
+                            b->sys->circulation > 0.0 ? "with a stiffness that is not symmetric"
+                                                      : "where contacts slide at limits that follow their normal loads",
                             why);
     return 0;
 }
@@ -147,9 +151,24 @@ int tribo_follow_couple(struct modal_build *b)
         return 1;
     }
     double *way = tribo_modal_take(&b->scratch, 4 * all, sizeof *way);
+    double *pull = tribo_modal_take(&b->scratch, sys->circulation > 0.0 ? m * (m + sys->ndof) : 0, sizeof *pull);
     h->stiff = tribo_modal_take(&h->store, 2 * m * m, sizeof *h->stiff);
-    if (!way || !h->stiff) {
+    if (!way || !pull || !h->stiff) {
         return 0;
+    }
+    if (sys->circulation > 0.0) { /* the antisymmetric part of Phi'K Phi */
+        double *turned = pull + m * m;
+        tribo_matrix_add_columns(&sys->k, 1.0, m, b->shape, turned);
+        tribo_multiply_add(m, sys->ndof, m, 1.0, h->phi, turned, pull);
+        for (size_t at = 0; at < m * m; at++) {
+            h->stiff[at] = 0.5 * (pull[at] - pull[at % m * m + at / m]);
+        }
+        const double most = tribo_largest(pull, m * m);
+        for (size_t k = 0; k < m; k++) { /* only a scale beside K~: != 0, of a mode that does not drift */
+            const double own = tribo_largest(h->stiff + k * m, m);
+            h->stiff[k * (m + 1)] = own > STILL * most && h->omega2[k] == 0.0 ? -own : 0.0;
+            h->omega2[k] -= h->stiff[k * (m + 1)];
+        }
     }
     double *slide = way + all, *rate = slide + all, *give = rate + all;
     h->give = h->stiff + m * m;

@@ -75,10 +75,11 @@ static int find_held(struct exact *x, int powers, struct modal **found)
     return TRIBO_OK;
 }
 
-/* Returns 1 if no base moves at a constant speed, no limit varies, and the structure is large enough. */
+/* Returns 1 if no base moves at a constant speed, no limit varies, K is symmetric, and the structure is large enough. */
 static int takes_powers(const tribo_system *sys)
 {
-    int plain = !tribo_system_limits_vary(sys) && sys->ndof >= POWERS_LEAST && sys->ncontact >= POWERS_CONTACTS;
+    int plain = !tribo_system_limits_vary(sys) && sys->circulation == 0.0 && sys->ndof >= POWERS_LEAST &&
+                sys->ncontact >= POWERS_CONTACTS;
     for (size_t k = 0; plain && k < sys->loads.harmonics; k++) {
         const struct harmonic *w = &sys->loads.harmonic[k];
         plain &= w->drives == DRIVES_LOAD || (w->drives == DRIVES_BASE && w->omega != 0.0);

@@ -63,8 +63,8 @@ struct modal {
     double *omega2, *damping;
     struct modal_powers *powers; /* NULL: Phi are modes; else there are no exponents, and omega2 and damping are 0 */
     double *coupling;            /* [modes][modes] C~; NULL if C~ is diagonal, or without modes */
-    double *stiff, *give; /* [modes][modes] K~ where contacts slide at limits that follow the motion; its inverse over the modes
-                                    with omega2 != 0; NULL: diag(omega2) */
+    double *stiff, *give; /* [modes][modes] K~ where contacts slide at limits that follow the motion, or K is not symmetric; its
+                                    inverse over the modes with omega2 != 0; NULL: diag(omega2) */
     double *on;           /* [contacts][modes] contact that holds: force per eta; normal: N per eta; else: velocity per eta' */
     double *by_u; /* [contacts][modes] rigid contact that holds: force per eta'; else 0; NULL without damping or such contacts */
 

@@ -14,10 +14,10 @@ struct modal_build {
     const struct modal *like;        /* of tribo_modal_create; NULL if a rigid contact holds */
     struct modal_store scratch;      /* workspace until the structure is built */
     const struct matrix *k, *c;      /* K with pressed normals; C, or NULL without damping */
-    const struct matrix *stiffness;  /* K + J_A' G_AA^-1 J_A, A: compliant contacts that hold */
-    struct matrix own_stiffness;     /* memory of stiffness if A is not empty */
+    const struct matrix *stiffness;  /* (K + K')/2 + J_A' G_AA^-1 J_A, A: compliant contacts that hold */
+    struct matrix own_stiffness;     /* memory of stiffness if A is not empty, or K not symmetric */
     struct matrix pressed_stiffness; /* memory of k if a normal is pressed */
-    int follows;                     /* 1: a contact slides at a limit that follows the motion */
+    int follows;                     /* 1: a contact slides at a limit that follows the motion, or K is not symmetric */
     double *push; /* [modes] force on the modes by the shape that tribo_modal_effects was called with last; if follows */
     double *shape, *inertia; /* [n][modes] Phi' and M Phi', of the degrees of freedom within */
     double *full;            /* [modes][ndof] modes */

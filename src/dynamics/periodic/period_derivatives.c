@@ -347,6 +347,7 @@ static int differentiate(struct sensitivity *d, struct shooting *s, const size_t
     int status = TRIBO_OK;
     const char *const without = s->told->extra.count                   ? "an unknown period"
                                 : drv->sys->normals.count              ? "limits that follow the motion"
+                                : drv->sys->circulation > 0.0          ? "a stiffness that is not symmetric"
                                 : tribo_system_is_plain(drv->sys) == 0 ? "static limits and contacts in a plane"
                                                                        : NULL;
     if (without) {

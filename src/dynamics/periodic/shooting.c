@@ -247,10 +247,10 @@ static int pays(const struct shooting *s)
     return s->there->residual < PAYS * s->here->residual;
 }
 
-/* Returns 1 if the map may increase distances: limits follow the motion, or there are unknowns beside x. */
+/* Returns 1 if the map may increase distances: limits follow the motion, K is not symmetric, or there are unknowns beside x. */
 static int may_diverge(const struct shooting *s)
 {
-    return s->map.sys->normals.count > 0 || s->extra.count > 0;
+    return s->map.sys->normals.count > 0 || s->map.sys->circulation > 0.0 || s->extra.count > 0;
 }
 
 /* Takes Newton's step s->step, the shortest solution of (I - derivative) step = image - x; or, where no step changes the

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Lanczos' method for the highest eigenvalue, in the metric of the mass matrix, in which AK is symmetric. Contacts at rest can
- * only lower the eigenvalue; normals count as pressed. */
+ * only lower the eigenvalue; normals count as pressed. Of a K that is not symmetric: a bound. */
 #include "spectrum.h"
 #include "lanczos.h"
 #include "common/real.h"
@@ -83,10 +83,10 @@ static int iterate(struct highest *l, double *value)
 int tribo_system_highest(const tribo_system *sys, double stiffness, double damping, double *value)
 {
     const size_t n = sys->ndof;
-    const double bound = stiffness * (tribo_matrix_row_sum(&sys->stiffness) + sys->normals.stiffest) +
-                         damping * tribo_matrix_row_sum(&sys->damping);
+    const double even = tribo_matrix_row_sum(&sys->stiffness) + sys->normals.stiffest;
+    const double bound = stiffness * (even + 2.0 * sys->circulation) + damping * tribo_matrix_row_sum(&sys->damping);
     *value = bound;
-    if (bound == 0.0 || !isfinite(bound)) {
+    if (bound == 0.0 || !isfinite(bound) || sys->circulation > 0.0) {
         return TRIBO_OK;
     }
     struct highest l = {.sys = sys, .stiffness = stiffness / bound, .damping = damping / bound, .n = n};

@@ -33,7 +33,7 @@ struct moreau {
     double *early, *late;    /* [ncontact] limits at the beginning and at the end of a step, if limits follow the motion */
     double *pressed;         /* [normals] 1: S has the normal */
     tribo_context *contacts; /* contacts with the operator of a step */
-    size_t settings;         /* sys->changes at the creation of contacts */
+    size_t settings;         /* sys->settings.changes at the creation of contacts */
     size_t planar;           /* planar contacts of contacts */
 };
 
@@ -96,7 +96,7 @@ static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
         !m->matrix.sparse.sparse || sys->ncontact * sys->ndof <= tribo_cholmod->entries(m->matrix.sparse.sparse) / 5;
     tribo_destroy(m->contacts);
     m->contacts = NULL;
-    m->settings = sys->changes;
+    m->settings = sys->settings.changes;
     m->planar = tribo_system_planar(sys);
     m->told = SIZE_MAX;
     /* a clone is made again where settings change; the law of a context by create accepts all static limits */
@@ -153,7 +153,7 @@ static int moreau_prepare(struct moreau *m, const tribo_system *sys, double h)
     }
     /* steps of equal length differ only by rounding of times */
     if (same && fabs(h - m->h) <= 1e-9 * h && m->common.revision == sys->revision &&
-        (m->settings == sys->changes || !(tribo_system_planar(sys) || m->planar))) {
+        (m->settings == sys->settings.changes || !(tribo_system_planar(sys) || m->planar))) {
         return TRIBO_OK;
     }
     m->h = 0.0;

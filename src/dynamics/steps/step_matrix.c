@@ -149,7 +149,7 @@ int tribo_step_matrix_create(struct step_matrix *m, const tribo_system *sys, dou
             m->above = j > i && j - i > m->above ? j - i : m->above;
         }
     }
-    if (!status && sys->c.rows && tribo_matrix_flaw(&m->s, 1, &where, &j, &x, &y)) {
+    if (!status && (sys->c.rows || sys->circulation > 0.0) && tribo_matrix_flaw(&m->s, 1, &where, &j, &x, &y)) {
         status = factorize_lopsided(m, &where);
     } else if (!status && (!holds || matrix_find_bodies(m, sys))) {
         /* a sparse factor costs less than the band if that has far more entries than S, or is almost the whole matrix */

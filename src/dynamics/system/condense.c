@@ -210,10 +210,11 @@ static int condense_combine(struct condensed *s, const struct matrix *a, int all
 static int replace_matrices(tribo_model *m, struct condensed *s)
 {
     struct matrix mass = {0}, damping = {0}, stiffness = {0}, direction = {0}, half = {0}, other = {0};
+    const double even = s->without ? 0.5 : 0.0; /* K of q alone is as given, also if not symmetric */
     const int done = condense_combine(s, &m->mass, 0, NULL, &mass) &&
                      (!m->damping.rows || condense_combine(s, &m->damping, 0, NULL, &damping)) &&
                      condense_combine(s, &m->stiffness, 0, s->x.terms, &half) && tribo_matrix_transpose(&other, &half) &&
-                     tribo_matrix_sum(&stiffness, 0.5, &half, 0.5, &other) &&
+                     tribo_matrix_sum(&stiffness, 1.0 - even, &half, even, &other) &&
                      condense_combine(s, &m->direction, 1, NULL, &direction);
     tribo_matrix_free(&half);
     tribo_matrix_free(&other);
@@ -238,6 +239,14 @@ int tribo_model_condense(tribo_model *m, tribo_system **sys)
     if (status || s.without + s.x.sliders == 0 || s.with == 0) {
         condensed_free(&s);
         return status ? status : tribo_model_build_massive(m, NULL, sys);
+    }
+    if (s.without) {
+        status = tribo_model_check_symmetric(m, "stiffness", &m->stiffness,
+                                             ": beside degrees of freedom without mass it must be symmetric");
+        if (status) {
+            condensed_free(&s);
+            return status;
+        }
     }
     int done = take_without(&s, &m->stiffness, s.x.place, s.with, s.without, &s.kww) &&
                take_without(&s, &m->stiffness, s.x.place, 0, s.with, &s.kqw) &&

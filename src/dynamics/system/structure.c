@@ -40,13 +40,13 @@ void tribo_model_free(tribo_model *m)
     tribo_matrix_free(&m->direction);
 }
 
-static int check_symmetric(const tribo_model *m, const char *name, const struct matrix *a)
+int tribo_model_check_symmetric(const tribo_model *m, const char *name, const struct matrix *a, const char *why)
 {
     size_t i, j;
     double x, y;
-    return tribo_matrix_flaw(a, 1, &i, &j, &x, &y)
-               ? tribo_error(m->message, TRIBO_ERR_NOT_SYMMETRIC, "%s[%zu][%zu] = %.17g, but %s[%zu][%zu] = %.17g", name, i, j, x,
-                             name, j, i, y)
+    return a->rows && tribo_matrix_flaw(a, 1, &i, &j, &x, &y)
+               ? tribo_error(m->message, TRIBO_ERR_NOT_SYMMETRIC, "%s[%zu][%zu] = %.17g, but %s[%zu][%zu] = %.17g%s", name, i, j,
+                             x, name, j, i, y, why)
                : TRIBO_OK;
 }
 
@@ -138,26 +138,48 @@ static int solve_by_masses(const tribo_model *m, tribo_system *sys, const struct
     return status;
 }
 
+/* Sets circulation = the largest sum of |entries| of a row of M^-1 (K - K')/2. That matrix is antisymmetric in the metric of M:
+ * the sum bounds its norm there. Returns a status. */
+static int find_circulation(tribo_system *sys)
+{
+    struct matrix mirror = {0}, odd = {0}, rates = {0};
+    int done = tribo_matrix_transpose(&mirror, &sys->k) && tribo_matrix_sum(&odd, 0.5, &sys->k, -0.5, &mirror);
+    if (done && (sys->factor.factor || sys->factor.sparse)) {
+        done = solve_matrix(&sys->factor, &odd, &rates);
+    } else if (done && (done = tribo_matrix_copy(&rates, &odd)) != 0) {
+        for (size_t i = 0; i < sys->ndof; i++) {
+            for (size_t e = rates.first[i]; e < rates.first[i + 1]; e++) {
+                rates.val[e] /= tribo_matrix_get(&sys->mass, i, i);
+            }
+        }
+    }
+    sys->circulation = done ? tribo_matrix_row_sum(&rates) : 0.0;
+    tribo_matrix_free(&mirror);
+    tribo_matrix_free(&odd);
+    tribo_matrix_free(&rates);
+    return done ? TRIBO_OK : TRIBO_ERR_MEMORY;
+}
+
 int tribo_model_build_massive(tribo_model *m, const double *soft, tribo_system **sys)
 {
     const int diagonal = tribo_matrix_is_diagonal(&m->mass), unsolved = !diagonal && m->ndof > DENSE_MOST;
-    size_t i, j;
-    double x, y;
+    int status = TRIBO_OK;
     if (unsolved && !tribo_cholmod) {
         return tribo_model_too_large(m);
     }
-    if (unsolved && m->damping.rows && tribo_matrix_flaw(&m->damping, 1, &i, &j, &x, &y)) {
-        return tribo_error(m->message, TRIBO_ERR_NOT_SYMMETRIC,
-                           "damping[%zu][%zu] = %.17g, but damping[%zu][%zu] = %.17g: with more than %d degrees of freedom and a "
-                           "mass matrix that is not diagonal it must be symmetric",
-                           i, j, x, j, i, y, DENSE_MOST);
+    if (unsolved) {
+        static const char why[] =
+            ": where accelerations are not solved for, with many degrees of freedom and a mass matrix that is "
+            "not diagonal, it must be symmetric";
+        status = tribo_model_check_symmetric(m, "damping", &m->damping, why);
+        status = status ? status : tribo_model_check_symmetric(m, "stiffness", &m->stiffness, why);
     }
-    int status = tribo_system_build(sys, m->ndof, m->ncontact);
-    tribo_system *s = *sys;
-    status = status ? status : tribo_model_factorize(m, &s->factor);
+    status = status ? status : tribo_system_build(sys, m->ndof, m->ncontact);
+    status = status ? status : tribo_model_factorize(m, &(*sys)->factor);
     if (status) {
         return status;
     }
+    tribo_system *s = *sys;
     s->unsolved = unsolved;
     s->mass = m->mass;
     s->k = m->stiffness;
@@ -166,7 +188,7 @@ int tribo_model_build_massive(tribo_model *m, const double *soft, tribo_system *
     m->mass = m->stiffness = m->damping = m->direction = (struct matrix){0};
     struct matrix rigid = {0}; /* J with empty rows of soft contacts */
     struct triplets rows = {0};
-    for (i = 0; i < m->ncontact; i++) {
+    for (size_t i = 0; i < m->ncontact; i++) {
         if (!(soft && soft[i] > 0.0)) {
             tribo_triplets_put_row(&rows, i, &s->direction, i);
         }
@@ -186,10 +208,17 @@ int tribo_model_build_massive(tribo_model *m, const double *soft, tribo_system *
 int tribo_model_build(tribo_model *m, tribo_system **sys)
 {
     tribo_system *s = NULL;
-    int status = check_symmetric(m, "mass", &m->mass);
-    status = status ? status : check_symmetric(m, "stiffness", &m->stiffness);
+    size_t i, j;
+    double x, y;
+    const int circulates = tribo_matrix_flaw(&m->stiffness, 1, &i, &j, &x, &y);
+    int status = tribo_model_check_symmetric(m, "mass", &m->mass, "");
+    if (!status && m->nmode) {
+        status = tribo_model_check_symmetric(m, "stiffness", &m->stiffness,
+                                             ": modes for a reduction are those of a symmetric stiffness");
+    }
     if (!status) {
         status = m->nmode ? tribo_model_reduce(m, &s) : tribo_model_condense(m, &s);
+        status = status || !circulates ? status : find_circulation(s);
         status = status ? status : tribo_normals_create(s, m->normals, m->normal, m->message);
     }
     tribo_model_free(m);

@@ -100,7 +100,7 @@ int tribo_system_check_state(const tribo_system *sys, double t, const double *y)
 
 size_t tribo_system_revision(const tribo_system *sys)
 {
-    return sys->revision + sys->changes;
+    return sys->revision + sys->settings.changes;
 }
 
 size_t tribo_system_planar(const tribo_system *sys)
@@ -153,7 +153,7 @@ tribo_context *tribo_system_context(tribo_system *sys)
         if (tribo_system_limits_vary(sys)) {
             tribo_set_limit(sys->lent, sys->loads.given_limit);
         }
-        tribo_get_count(sys->lent, TRIBO_COUNT_SETTINGS, &sys->copied);
+        tribo_get_count(sys->lent, TRIBO_COUNT_SETTINGS, &sys->settings.copied);
     }
     return sys ? sys->lent : NULL;
 }
@@ -161,7 +161,7 @@ tribo_context *tribo_system_context(tribo_system *sys)
 int tribo_system_take_settings(tribo_system *sys)
 {
     size_t now = 0;
-    if (!sys->lent || tribo_get_count(sys->lent, TRIBO_COUNT_SETTINGS, &now) || now == sys->copied) {
+    if (!sys->lent || tribo_get_count(sys->lent, TRIBO_COUNT_SETTINGS, &now) || now == sys->settings.copied) {
         return TRIBO_OK;
     }
     tribo_get_limit(sys->lent, sys->work.put_limit);
@@ -173,8 +173,8 @@ int tribo_system_take_settings(tribo_system *sys)
     status = status ? status : tribo_normals_pair(sys);
     if (!status) {
         tribo_get_limit(sys->lent, sys->loads.given_limit);
-        sys->copied = now;
-        sys->changes++;
+        sys->settings.copied = now;
+        sys->settings.changes++;
         sys->loads.time = NAN;
     }
     return status;
@@ -259,7 +259,7 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
 double tribo_system_fastest(const tribo_system *sys)
 {
     const double stiffest = sys->compliance.count ? sys->compliance.stiffest : tribo_matrix_row_sum(&sys->stiffness);
-    return greater(greater(sqrt(stiffest + sys->normals.stiffest), tribo_matrix_row_sum(&sys->damping)),
+    return greater(greater(sqrt(stiffest + 2.0 * sys->circulation + sys->normals.stiffest), tribo_matrix_row_sum(&sys->damping)),
                    tribo_system_load_frequency(sys));
 }
 
@@ -402,7 +402,8 @@ int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
         to->revision = sys->revision;
         to->reduced.given = sys->reduced.given;
         to->unsolved = sys->unsolved;
-        to->copied = sys->copied;
+        to->circulation = sys->circulation;
+        to->settings.copied = sys->settings.copied;
         memcpy(to->loads.given_limit, sys->loads.given_limit, c * sizeof *to->loads.given_limit);
         memcpy(to->tally, sys->tally, c * sizeof *to->tally);
         to->reduced.modes = tribo_copy_of(sys->reduced.modes, sys->reduced.given * dofs, sizeof *to->reduced.modes, &done);

@@ -86,17 +86,23 @@ struct workspace {
     double *motion;                  /* [tribo_system_size + dofs - ndof + 2 ncontact]; NULL without an expansion */
 };
 
+/* copied: TRIBO_COUNT_SETTINGS of the context that is lent, at the last copy; changes: number of copies. */
+struct settings {
+    size_t copied, changes;
+};
+
 struct tribo_system {
     size_t ndof, ncontact;                                 /* ndof: number of degrees of freedom with mass */
     struct matrix stiffness, damping, direction, response; /* AK, AC, J, B */
     tribo_context *contacts; /* computes forces, with the settings of `lent` and the limits at the set time */
     tribo_context *lent;     /* the caller's context of tribo_system_context; NULL before the first call */
-    size_t copied, changes;  /* TRIBO_COUNT_SETTINGS of lent at the last copy; number of copies */
-    char *message;           /* [TRIBO_MESSAGE] also written for a const system */
+    struct settings settings;
+    char *message; /* [TRIBO_MESSAGE] also written for a const system */
     struct loads loads;
     size_t revision, structure; /* number of changes of loads, tables and damping; of damping */
 
     struct matrix mass, k, c; /* M, K, C; of reduced systems, M = 1 */
+    double circulation;       /* bound of |M^-1 (K - K')/2|; 0: K is symmetric */
     struct cholesky factor;   /* Cholesky factor of M, if accelerations are solved for */
 
     /* 1: accelerations are not solved for, M q'' = load - K q - C q' + J' f: stiffness and damping have no rows, response is J',

@@ -11,7 +11,6 @@
 #define DAMPING 0.2
 #define OMEGA 1.3
 #define CONTACT 2.0
-#define PI 3.14159265358979323846
 
 enum { CONSTANT, FOLLOWS, KINDS };
 

@@ -342,7 +342,7 @@ static const struct input refused[] = {
     {{1, 2, 2, 1}, {0}, {2, -1, -1, 2}, {1, 0}, 2, 0, 0, TRIBO_ERR_INDEFINITE, "mass is not positive definite"},
     {{1, 0, 0, -2}, {0}, {2, -1, -1, 2}, {1, 0}, 2, 1, 0, TRIBO_ERR_INDEFINITE, "pivot -2 at degree of freedom 1"},
     {{1, 0, 0, 2}, {0}, {1, 0, 0, HUGE_VAL}, {1, 0}, 2, 0, 0, TRIBO_ERR_NOT_FINITE, "stiffness[1][1] = inf"},
-    {{1, 0, 0, 2}, {0}, {1, 0, 1, 1}, {1, 0}, 2, 0, 0, TRIBO_ERR_NOT_SYMMETRIC, "stiffness[1][0] = 1, but stiffness[0][1] = 0"},
+    {{1, 0, 0, 2}, {0}, {1, 0, 1, 1}, {1, 0}, 2, 1, 0, TRIBO_ERR_NOT_SYMMETRIC, "stiffness[1][0] = 1, but stiffness[0][1] = 0"},
     {{1, 0, 0, 2}, {0}, {-4, 0, 0, 1}, {1, 0}, 2, 1, 0, TRIBO_ERR_INDEFINITE, "omega^2 = -4 of mode 0"},
     {{1, 0, 0, 2}, {0, NAN, 0, 0}, {2, 0, 0, 2}, {1, 0}, 2, 0, 1, TRIBO_ERR_NOT_FINITE, "damping[0][1] = nan"},
     {{1, 0, 0, 2}, {0}, {2, 0, 0, 2}, {1, -HUGE_VAL}, 2, 0, 0, TRIBO_ERR_NOT_FINITE, "direction[0][1] = -inf"},
