@@ -8,6 +8,7 @@
 
 #include "../../src/damper/output.h"
 #include "../../src/common/simd.h"
+#include "elements.h"
 #include "harness.h"
 #include "kernel_scene.h"
 
@@ -155,6 +156,26 @@ static void measure(size_t n, enum likeness like, size_t contacts, int repeats)
     free(known);
 }
 
+static void measure_elements(size_t n, size_t elements, int repeats)
+{
+    printf(
+        "\n| n = %zu, elements with a state, a step with derivatives | ns an element | times the array loop |\n|---|---|---|\n",
+        n);
+    for (int k = 0; k < ELEMENT_LAWS; k++) {
+        struct elements e;
+        elements_create(&e, (enum element_law)k, n);
+        struct arrays w = {n, e.df_dz, e.f, e.dz, e.parameter, e.state};
+        const size_t times = elements / n + 1;
+        double loop = 1.0, mean = 0.0;
+        for (int j = 0; j < repeats; j++) { /* the mean: steps after a turn take longer */
+            mean += seconds_a_contact(elements_step, &e, n, times) / repeats;
+            loop = lesser_of(loop, seconds_a_contact(run_arrays, &w, n, times));
+        }
+        printf("| %s | %.2f | %.2f of %.2f |\n", element_name[k], 1e9 * mean, mean / loop, 1e9 * loop);
+        elements_destroy(&e);
+    }
+}
+
 int main(int count, char **argument)
 {
     program = "bench_kernels";
@@ -170,6 +191,7 @@ int main(int count, char **argument)
         for (int like = ALL; like >= NOTHING; like--) {
             measure(sizes[k], (enum likeness)like, smoke ? 1 : 200000, repeats);
         }
+        measure_elements(sizes[k] < 1000000 ? sizes[k] : 1000000, smoke ? 1 : 200000, repeats);
     }
     return EXIT_SUCCESS;
 }

@@ -3,41 +3,30 @@
  * closed form over a step, in two parts where z changes its sign. */
 #include "element.h"
 
-enum { PARAMETERS = 5 };
+#include "common/exponent.h"
 
-static int check_bouc_wen(size_t n, const double *parameter)
+enum { STIFFNESS, A, BETA, GAMMA, EXPONENT, PARAMETERS };
+
+/* Below it series of one term are exact. */
+#define SMALL 1e-9
+
+/* u after a distance s of du/ds = a - c u; grown = exp(-c s) - 1. */
+static inline double moved_linear(double u, double s, double a, double c, double grown)
 {
-    static const int range[PARAMETERS] = {NONNEGATIVE, POSITIVE, NONNEGATIVE, FINITE, POSITIVE};
-    int status = tribo_check_elements(parameter, n, PARAMETERS, range);
-    for (size_t i = 0; !status && i < n; i++) {
-        const double *k = parameter + PARAMETERS * i;
-        status = (k[4] != 1.0 && k[4] != 2.0) || k[2] + k[3] < 0.0 ? TRIBO_ERR_RANGE : TRIBO_OK;
-    }
-    return status;
+    const double by = fabs(c) > DBL_MIN ? c : DBL_MIN;
+    return fabs(c) * s < SMALL ? u + s * (a - c * u) : u * (1.0 + grown) - a * grown / by;
 }
 
-/* T(s) = tanh(w s)/w, w = sqrt(b); s for b = 0, tan(w s)/w with w = sqrt(-b) for b < 0. */
-static double tangent_of(double b, double s)
+/* tanh(w s)/w; grown = exp(-2 w s) - 1. */
+static inline double hyperbolic(double w, double s, double grown)
 {
-    const double w = sqrt(fabs(b));
-    return w * s < 1e-9 ? s : b > 0.0 ? tanh(w * s) / w : tan(w * s) / w;
+    return w * s < SMALL ? s : -grown / ((2.0 + grown) * greater(w, DBL_MIN));
 }
 
-/* s of T(s) = t >= 0; HUGE_VAL if T stays below t. */
-static double distance_of(double b, double t)
+/* u after du/ds = a - c u^2; t = tanh(w s)/w with w = sqrt(a c), tan(w s)/w with w = sqrt(-a c) where c < 0. */
+static inline double moved_square(double u, double t, double a, double c)
 {
-    const double w = sqrt(fabs(b));
-    return w * t < 1e-9 ? t : b < 0.0 ? atan(w * t) / w : w * t < 1.0 ? atanh(w * t) / w : HUGE_VAL;
-}
-
-/* u after a distance s of du/ds = a - c u (m = 1) or a - c u^2 (m = 2). */
-static double moved(double u, double s, double a, double c, double m)
-{
-    if (m == 1.0) {
-        return fabs(c) * s < 1e-9 ? u + s * (a - c * u) : u * exp(-c * s) - a * expm1(-c * s) / c;
-    }
-    const double t = tangent_of(a * c, s);
-    return (u + a * t) / (1.0 + c * t * u);
+    return (u + a * t) / greater(1.0 + c * t * u, ELEMENT_LEAST);
 }
 
 /* The distance after which u < 0 comes to 0; HUGE_VAL: never. */
@@ -45,45 +34,84 @@ static double distance_to_zero(double u, double a, double c, double m)
 {
     if (m == 1.0) {
         const double x = c * u / a;
-        return fabs(x) < 1e-9 ? -u / a : x < 1.0 ? log1p(-x) / c : HUGE_VAL;
+        return fabs(x) < SMALL ? -u / a : x < 1.0 ? log1p(-x) / c : HUGE_VAL;
     }
-    return distance_of(a * c, -u / a);
+    const double w = sqrt(fabs(a * c)), t = -u / a;
+    return w * t < SMALL ? t : c < 0.0 ? atan(w * t) / w : w * t < 1.0 ? atanh(w * t) / w : HUGE_VAL;
 }
 
-/* z after a displacement dx; |z| is at most (a/(beta + gamma))^(1/m), at which it stays. */
-static double end_of(double z, double dx, double a, double beta, double gamma, double m)
+/* Unloads: moves *u < 0, where |u| = -u, by *s but at most to 0; *s becomes the rest of the distance. */
+static void unload(double *u, double *s, double a, double beta, double gamma, double m)
 {
-    const double sign = dx < 0.0 ? -1.0 : 1.0, c = m == 1.0 ? beta - gamma : gamma - beta;
-    const double ratio = gamma + beta > 0.0 ? a / (gamma + beta) : ELEMENT_MOST * ELEMENT_MOST,
-                 most_z = m == 1.0 ? ratio : sqrt(ratio);
-    double u = sign * clamp(z, -most_z, most_z), s = fabs(dx);
-    if (u < 0.0) { /* unloads, where |u| = -u */
-        const double most = distance_to_zero(u, a, c, m);
-        if (s <= most) {
-            return sign * (most < HUGE_VAL ? lesser(moved(u, s, a, c, m), 0.0) : u);
-        }
-        s -= most;
-        u = 0.0;
+    const double far = 230.0; /* exp(far) is beyond all ratios of parameters */
+    const double quarter_turn = 1.5707963267948966, way = *s, from = *u;
+    const double c = m == 1.0 ? beta - gamma : gamma - beta, w = sqrt(fabs(a * c));
+    const double t = m == 1.0                     ? 0.0
+                     : w * way < SMALL || c > 0.0 ? hyperbolic(w, way, tribo_expm1(-2.0 * w * way))
+                     : w * way < quarter_turn     ? tan(w * way) / w
+                                                  : ELEMENT_MOST * ELEMENT_MOST;
+    const double end = m == 1.0        ? moved_linear(from, way, a, c, tribo_expm1(lesser(-c * way, far)))
+                       : a * t < -from ? moved_square(from, t, a, c)
+                                       : 0.0;
+    *u = clamp(end, from, 0.0);
+    *s = end < 0.0 ? 0.0 : greater(way - distance_to_zero(from, a, c, m), 0.0);
+}
+
+/* u and s: state and displacement, of the sign of the displacement; |u| is at most (a/(beta + gamma))^(1/m), at which it stays. */
+TRIBO_SIMD static void turn(size_t n, const double *restrict dz, double (*restrict p)[TRIBO_CHUNK], const double *restrict z,
+                            double *restrict u, double *restrict s)
+{
+    for (size_t i = 0; i < n; i++) {
+        const double sum = p[GAMMA][i] + p[BETA][i], any = ELEMENT_MOST * ELEMENT_MOST,
+                     ratio = sum > 0.0 ? p[A][i] / greater(sum, DBL_MIN) : any, root = sqrt(ratio),
+                     most = p[EXPONENT][i] > 1.0 ? root : ratio, start = clamp(z[i], -most, most);
+        u[i] = dz[i] < 0.0 ? -start : start;
+        s[i] = fabs(dz[i]);
     }
-    return sign * moved(u, s, a, gamma + beta, m);
+}
+
+/* Loads: moves u >= 0 by s; u < 0 has s = 0. */
+TRIBO_SIMD static void load(size_t n, const double *restrict dz, double (*restrict p)[TRIBO_CHUNK], const double *restrict u,
+                            const double *restrict s, double *restrict z, double *restrict f, double *restrict df_dz)
+{
+    for (size_t i = 0; i < n; i++) {
+        const double stiffness = p[STIFFNESS][i], a = p[A][i], beta = p[BETA][i], gamma = p[GAMMA][i], c = gamma + beta;
+        const int square = p[EXPONENT][i] > 1.0;
+        const double w = sqrt(a * c), rate = square ? 2.0 * w : c, grown = tribo_expm1(-rate * s[i]);
+        const double linear = moved_linear(u[i], s[i], a, c, grown),
+                     end = square ? moved_square(u[i], hyperbolic(w, s[i], grown), a, c) : linear;
+        const double after = dz[i] < 0.0 ? -end : end, size = fabs(after), power = square ? size * size : size;
+        /* At dz = 0 the mean of both directions. */
+        const double way = dz[i] != 0.0 ? beta : 0.0, turned = end > 0.0 ? way : end < 0.0 ? -way : 0.0;
+        z[i] = after;
+        f[i] = -stiffness * after;
+        df_dz[i] = -stiffness * (a - power * (gamma + turned));
+    }
 }
 
 int tribo_bouc_wen_force(size_t n, const double *dz, const double *parameter, double *z, double *f, double *df_dz)
 {
+    static const int range[PARAMETERS] = {NONNEGATIVE, POSITIVE, NONNEGATIVE, FINITE, POSITIVE};
     int status = element_check_size(n);
     status = status ? status : tribo_check_element(dz, n, FINITE);
-    status = status ? status : check_bouc_wen(n, parameter);
+    status = status ? status : tribo_check_elements(parameter, n, PARAMETERS, range);
+    for (size_t i = 0; !status && i < n; i++) {
+        const double *k = parameter + PARAMETERS * i;
+        status = (k[EXPONENT] != 1.0 && k[EXPONENT] != 2.0) || k[BETA] + k[GAMMA] < 0.0 ? TRIBO_ERR_RANGE : TRIBO_OK;
+    }
     status = status ? status : tribo_check_finite(NULL, "z", z, n);
     status = status ? status : n && !f ? TRIBO_ERR_NULL : TRIBO_OK;
-    for (size_t i = 0; !status && i < n; i++) {
-        const double *k = parameter + PARAMETERS * i, m = k[4];
-        z[i] = end_of(z[i], dz[i], k[1], k[2], k[3], m);
-        f[i] = -k[0] * z[i];
-        if (df_dz) {
-            /* At dz = 0 the mean of both directions. */
-            const double turn = z[i] * dz[i] > 0.0 ? 1.0 : z[i] * dz[i] < 0.0 ? -1.0 : 0.0, size = fabs(z[i]);
-            df_dz[i] = -k[0] * (k[1] - (m == 1.0 ? size : size * size) * (k[3] + k[2] * turn));
+    for (size_t i = 0; !status && i < n; i += TRIBO_CHUNK) {
+        double ignored[TRIBO_CHUNK], p[PARAMETERS][TRIBO_CHUNK], u[TRIBO_CHUNK], s[TRIBO_CHUNK];
+        const size_t count = element_chunk(n, i);
+        element_columns(parameter + PARAMETERS * i, count, PARAMETERS, p);
+        turn(count, dz + i, p, z + i, u, s);
+        for (size_t k = 0; k < count; k++) {
+            if (u[k] < 0.0) {
+                unload(u + k, s + k, p[A][k], p[BETA][k], p[GAMMA][k], p[EXPONENT][k]);
+            }
         }
+        load(count, dz + i, p, u, s, z + i, f + i, df_dz ? df_dz + i : ignored);
     }
     return status;
 }

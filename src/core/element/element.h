@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Elements: friction laws with a state, without a context. Checks of the arrays of n elements. */
+/* Elements: friction laws with a state, without a context. Checks of the arrays of n elements; chunks of elements as loops that
+ * become vectors read them. */
 #ifndef TRIBO_ELEMENT_H
 #define TRIBO_ELEMENT_H
 
@@ -17,11 +18,27 @@ static inline int element_check_size(size_t n)
 
 /* Checks x [n][numbers]; range [numbers]: POSITIVE: within [ELEMENT_LEAST, ELEMENT_MOST]; NONNEGATIVE: 0, too; FINITE: of either
  * sign. Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_RANGE. */
+enum { ELEMENT_NUMBERS = 6 }; /* at most */
 int tribo_check_elements(const double *x, size_t n, size_t numbers, const int *range);
 
 static inline int tribo_check_element(const double *x, size_t n, int range)
 {
     return tribo_check_elements(x, n, 1, &range);
+}
+
+static inline size_t element_chunk(size_t n, size_t i)
+{
+    return n - i < TRIBO_CHUNK ? n - i : TRIBO_CHUNK;
+}
+
+/* column [numbers] = the numbers of n <= TRIBO_CHUNK elements, x [n][numbers]. */
+static inline void element_columns(const double *x, size_t n, size_t numbers, double (*column)[TRIBO_CHUNK])
+{
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = 0; k < numbers; k++) {
+            column[k][i] = x[numbers * i + k];
+        }
+    }
 }
 
 #endif

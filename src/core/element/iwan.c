@@ -6,34 +6,29 @@
  * state. */
 #include "element.h"
 
-enum { PARAMETERS = 4, HEAD = 3, MOST_ROOM = 1000000 };
+#include "common/exponent.h"
+
+enum { KT, FS, CHI, BETA, PARAMETERS, HEAD = 3, MOST_ROOM = 1000000 };
 
 struct iwan {
     double kt, chi, weight; /* weight: (chi + 2)(1 + beta) */
     double fs, most;
 };
 
-/* B(u), u >= 0; *slope: B'(u). */
-static double curve(const struct iwan *p, double u, double *slope)
+static inline struct iwan iwan_of(double kt, double fs, double chi, double beta)
 {
-    if (u >= p->most) {
-        *slope = 0.0;
-        return p->fs;
-    }
-    const double part = pow(u / p->most, p->chi + 1.0) / p->weight;
-    *slope = p->kt * (1.0 - (p->chi + 2.0) * part);
-    return p->kt * u * (1.0 - part);
+    const double ends = 1.0 + beta, weight = (chi + 2.0) * ends;
+    return (struct iwan){kt, chi, weight, fs, fs * weight / (kt * (beta * (chi + 2.0) + (chi + 1.0)))};
 }
 
-static int check_iwan(size_t n, const double *parameter)
+/* B(u), u >= 0; *slope: B'(u). */
+static inline double curve(const struct iwan *p, double u, double *slope)
 {
-    static const int range[PARAMETERS] = {POSITIVE, NONNEGATIVE, FINITE, NONNEGATIVE};
-    int status = tribo_check_elements(parameter, n, PARAMETERS, range);
-    for (size_t i = 0; !status && i < n; i++) {
-        const double chi = parameter[PARAMETERS * i + 2];
-        status = chi <= -1.0 || chi > 100.0 ? TRIBO_ERR_RANGE : TRIBO_OK;
-    }
-    return status;
+    const int slides = u >= p->most;
+    const double ratio = u / greater(p->most, DBL_MIN), power = tribo_exp((p->chi + 1.0) * tribo_log(clamp(ratio, DBL_MIN, 1.0))),
+                 part = (ratio > 0.0 ? power : 0.0) / p->weight;
+    *slope = slides ? 0.0 : p->kt * (1.0 - (p->chi + 2.0) * part);
+    return slides ? p->fs : p->kt * u * (1.0 - part);
 }
 
 /* Returns 1 if dx is against the direction state[2] of the last motion. */
@@ -42,37 +37,55 @@ static int turns(const double *state, double dx)
     return dx * state[2] < 0.0;
 }
 
-/* Checks that turns are whole numbers up to room, and that a further turn has room. */
-static int check_state(size_t n, size_t room, const double *dz, const double *state)
+/* Checks that turns are whole numbers up to room, that a further turn has room, and that all turns are finite; chi. */
+static int check_state(size_t n, size_t room, const double *dz, const double *parameter, const double *state)
 {
+    const uint64_t sign = (uint64_t)1 << 63, most = tribo_bits(DBL_MAX);
     for (size_t i = 0; i < n; i++, state += HEAD + 2 * room) {
-        if (!(state[1] >= 0.0 && state[1] <= (double)room) || state[1] != floor(state[1])) {
+        const double count = isfinite(state[1]) ? state[1] : -1.0;
+        const size_t used = count >= 0.0 && count <= (double)room ? HEAD + 2 * (size_t)count : HEAD;
+        uint64_t beyond = 0; /* has the sign bit if an entry is not finite */
+        for (size_t k = 0; k < used; k++) {
+            beyond |= most - (tribo_bits(state[k]) & ~sign);
+        }
+        if (beyond & sign) {
+            return TRIBO_ERR_NOT_FINITE;
+        }
+        const double chi = parameter[PARAMETERS * i + CHI];
+        if (chi <= -1.0 || chi > 100.0 || !(count >= 0.0 && count <= (double)room) || count != floor(count)) {
             return TRIBO_ERR_RANGE;
         }
-        if (state[1] == (double)room && turns(state, dz[i])) {
+        if (count == (double)room && turns(state, dz[i])) {
             return TRIBO_ERR_SIZE;
         }
     }
     return TRIBO_OK;
 }
 
-/* The force at x on the branch after turn [count][2]: x_r, p_r of the open turns; *slope: its derivative. */
-static double branch(const struct iwan *p, const double *turn, size_t count, double x, double *slope)
+/* The force at x on a branch: base + factor B(distance). */
+struct branch {
+    double base, factor, distance;
+};
+
+/* The branch at x after turn [count][2]: x_r, p_r of the open turns. */
+static struct branch branch_at(const double *turn, size_t count, double x)
 {
     if (!count) {
-        return (x < 0.0 ? -1.0 : 1.0) * curve(p, fabs(x), slope);
+        return (struct branch){0.0, x < 0.0 ? -1.0 : 1.0, fabs(x)};
     }
     const double *last = turn + 2 * (count - 1), way = x - last[0];
-    return last[1] + (way < 0.0 ? -2.0 : 2.0) * curve(p, 0.5 * fabs(way), slope);
+    return (struct branch){last[1], way < 0.0 ? -2.0 : 2.0, 0.5 * fabs(way)};
 }
 
-/* Moves a state by dx; returns the force of the sliders, of the sign of x; *slope: its derivative. */
-static double move_sliders(const struct iwan *p, double dx, double *state, double *slope)
+/* Moves a state by dx; returns the branch of the force of the sliders, which has the sign of x. */
+static struct branch move_sliders(const struct iwan *p, double dx, double *state)
 {
     double *turn = state + HEAD, x = state[0];
     size_t count = (size_t)state[1];
     if (turns(state, dx)) {
-        turn[2 * count + 1] = branch(p, turn, count, x, slope);
+        double ignored;
+        const struct branch b = branch_at(turn, count, x);
+        turn[2 * count + 1] = b.base + b.factor * curve(p, b.distance, &ignored);
         turn[2 * count] = x;
         count++;
     }
@@ -92,25 +105,41 @@ static double move_sliders(const struct iwan *p, double dx, double *state, doubl
     state[0] = x;
     state[1] = (double)count;
     state[2] = sign;
-    return branch(p, turn, count, x, slope);
+    return branch_at(turn, count, x);
+}
+
+/* f and df_dz of elements on their branches, base, factor, distance [n]. */
+TRIBO_SIMD static void follow_curves(size_t n, double (*restrict p)[TRIBO_CHUNK], const double *restrict base,
+                                     const double *restrict factor, const double *restrict distance, double *restrict f,
+                                     double *restrict df_dz)
+{
+    for (size_t i = 0; i < n; i++) {
+        const struct iwan own = iwan_of(p[KT][i], p[FS][i], p[CHI][i], p[BETA][i]);
+        double slope;
+        f[i] = -(base[i] + factor[i] * curve(&own, distance[i], &slope));
+        df_dz[i] = -slope;
+    }
 }
 
 int tribo_iwan_force(size_t n, size_t room, const double *dz, const double *parameter, double *state, double *f, double *df_dz)
 {
+    static const int range[PARAMETERS] = {POSITIVE, NONNEGATIVE, FINITE, NONNEGATIVE};
     int status = room > MOST_ROOM || n >= SIZE_MAX / (16 * (HEAD + 2 * MOST_ROOM)) ? TRIBO_ERR_SIZE : TRIBO_OK;
     status = status ? status : tribo_check_element(dz, n, FINITE);
-    status = status ? status : check_iwan(n, parameter);
-    status = status ? status : tribo_check_finite(NULL, "state", state, n * (HEAD + 2 * room));
-    status = status ? status : n && !f ? TRIBO_ERR_NULL : check_state(n, room, dz, state);
-    for (size_t i = 0; !status && i < n; i++) {
-        const double *k = parameter + PARAMETERS * i, kt = k[0], fs = k[1], chi = k[2], beta = k[3];
-        const double most = fs * (1.0 + beta) / (kt * (beta + (chi + 1.0) / (chi + 2.0)));
-        const struct iwan p = {kt, chi, (chi + 2.0) * (1.0 + beta), fs, most};
-        double slope;
-        f[i] = -move_sliders(&p, dz[i], state + i * (HEAD + 2 * room), &slope);
-        if (df_dz) {
-            df_dz[i] = -slope;
+    status = status ? status : tribo_check_elements(parameter, n, PARAMETERS, range);
+    status = status ? status : n && (!state || !f) ? TRIBO_ERR_NULL : check_state(n, room, dz, parameter, state);
+    for (size_t i = 0; !status && i < n; i += TRIBO_CHUNK) {
+        double ignored[TRIBO_CHUNK], p[PARAMETERS][TRIBO_CHUNK], base[TRIBO_CHUNK], factor[TRIBO_CHUNK], distance[TRIBO_CHUNK];
+        const size_t count = element_chunk(n, i);
+        element_columns(parameter + PARAMETERS * i, count, PARAMETERS, p);
+        for (size_t k = 0; k < count; k++) {
+            const struct iwan own = iwan_of(p[KT][k], p[FS][k], p[CHI][k], p[BETA][k]);
+            const struct branch b = move_sliders(&own, dz[i + k], state + (i + k) * (HEAD + 2 * room));
+            base[k] = b.base;
+            factor[k] = b.factor;
+            distance[k] = b.distance;
         }
+        follow_curves(count, p, base, factor, distance, f + i, df_dz ? df_dz + i : ignored);
     }
     return status;
 }

@@ -3,31 +3,35 @@
  * f = -(s0 z + s1 z' + s2 v), g = fc + (fs - fc) exp(-(v/vs)^2). With v constant over a step z is an exponential function. */
 #include "element.h"
 
-enum { PARAMETERS = 6 };
+#include "common/exponent.h"
 
-struct lugre {
-    double s0, s1, s2; /* stiffness and damping of the bristles, viscosity */
-    double fc, fs, vs; /* kinetic limit, static limit, Stribeck velocity */
-};
+/* Stiffness and damping of the bristles, viscosity; kinetic limit, static limit, Stribeck velocity. */
+enum { S0, S1, S2, FC, FS, VS, PARAMETERS };
 
-/* 1 - exp(-x) to its own digits, x >= 0. */
-static double fallen(double x)
+/* Moves z by a step dt. */
+TRIBO_SIMD static void deflect(size_t n, double dt, const double *restrict dz, double (*restrict p)[TRIBO_CHUNK],
+                               double *restrict z, double *restrict f, double *restrict df_dz)
 {
-    return x < 0.5 ? -expm1(-x) : 1.0 - exp(-x);
-}
-
-/* Moves *z by a step dt at velocity v != 0, and returns f; *df_dv: its derivative. */
-static double deflect(const struct lugre *p, double dt, double v, double *z, double *df_dv)
-{
-    const double sign = v > 0.0 ? 1.0 : -1.0, r = lesser(fabs(v) / p->vs, 30.0), fall = fallen(r * r);
-    const double g = greater(p->fs - (p->fs - p->fc) * fall, ELEMENT_LEAST);
-    const double steep = -2.0 * sign * (p->fs - p->fc) * (1.0 - fall) * r / p->vs;                      /* dg/dv */
-    const double rate = p->s0 * fabs(v) / g, growth = p->s0 * (sign / g - r * p->vs * steep / (g * g)); /* d rate/dv */
-    const double way = fallen(rate * dt), left = 1.0 - way, to = sign * g / p->s0, dto = sign * steep / p->s0, away = to - *z;
-    *z += way * away;
-    *df_dv = -(p->s0 * (away * left * growth * dt + dto * way) + p->s1 * left * (growth * away * (1.0 - rate * dt) + rate * dto) +
-               p->s2);
-    return -(p->s0 * *z + p->s1 * rate * away * left + p->s2 * v);
+    const double most_r = 30.0; /* |v|/vs; the Stribeck curve is flat there */
+    for (size_t i = 0; i < n; i++) {
+        const double s0 = p[S0][i], s1 = p[S1][i], s2 = p[S2][i], fc = p[FC][i], drop = p[FS][i] - fc;
+        const double v = dz[i] / dt, sign = v > 0.0 ? 1.0 : -1.0, per_vs = 1.0 / p[VS][i], per_s0 = 1.0 / s0;
+        const double limit = greater(fc, p[FS][i]), most = limit * per_s0, start = clamp(z[i], -most, most);
+        const double r = lesser(fabs(v) * per_vs, most_r), fall = -tribo_expm1(-r * r);
+        const double g = greater(p[FS][i] - drop * fall, ELEMENT_LEAST), per_g = 1.0 / g;
+        const double steep = -2.0 * sign * drop * (1.0 - fall) * r * per_vs;                                   /* dg/dv */
+        const double rate = s0 * fabs(v) * per_g, growth = s0 * per_g * (sign - r * p[VS][i] * steep * per_g); /* d rate/dv */
+        const double way = -tribo_expm1(-rate * dt), left = 1.0 - way, to = sign * g * per_s0, dto = sign * steep * per_s0,
+                     away = to - start, end = start + way * away;
+        const double moving = -(s0 * end + s1 * rate * away * left + s2 * v);
+        const double by_v =
+            -(s0 * (away * left * growth * dt + dto * way) + s1 * left * (growth * away * (1.0 - rate * dt) + rate * dto) + s2);
+        /* At v = 0 the mean of both sides. */
+        const double force = v != 0.0 ? moving : -s0 * start, slope = v != 0.0 ? by_v : -(s0 * dt + s1 + s2);
+        z[i] = limit > 0.0 ? (v != 0.0 ? end : start) : 0.0;
+        f[i] = limit > 0.0 ? force : -s2 * v; /* open */
+        df_dz[i] = (limit > 0.0 ? slope : -s2) / dt;
+    }
 }
 
 int tribo_lugre_force(size_t n, double dt, const double *dz, const double *parameter, double *z, double *f, double *df_dz)
@@ -39,22 +43,11 @@ int tribo_lugre_force(size_t n, double dt, const double *dz, const double *param
     status = status ? status : tribo_check_elements(parameter, n, PARAMETERS, range);
     status = status ? status : tribo_check_finite(NULL, "z", z, n);
     status = status ? status : n && !f ? TRIBO_ERR_NULL : TRIBO_OK;
-    for (size_t i = 0; !status && i < n; i++) {
-        const double *k = parameter + PARAMETERS * i, v = dz[i] / dt;
-        const struct lugre p = {k[0], k[1], k[2], k[3], k[4], k[5]};
-        double df_dv = -(p.s0 * dt + p.s1 + p.s2); /* at v = 0: the mean of both sides */
-        if (p.fc == 0.0 && p.fs == 0.0) {
-            z[i] = 0.0; /* open */
-            f[i] = -p.s2 * v;
-            df_dv = -p.s2;
-        } else {
-            const double most = greater(p.fc, p.fs) / p.s0;
-            z[i] = clamp(z[i], -most, most);
-            f[i] = v == 0.0 ? -p.s0 * z[i] : deflect(&p, dt, v, z + i, &df_dv);
-        }
-        if (df_dz) {
-            df_dz[i] = df_dv / dt;
-        }
+    for (size_t i = 0; !status && i < n; i += TRIBO_CHUNK) {
+        double ignored[TRIBO_CHUNK], column[PARAMETERS][TRIBO_CHUNK];
+        const size_t count = element_chunk(n, i);
+        element_columns(parameter + PARAMETERS * i, count, PARAMETERS, column);
+        deflect(count, dt, dz + i, column, z + i, f + i, df_dz ? df_dz + i : ignored);
     }
     return status;
 }

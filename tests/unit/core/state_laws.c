@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#include "common/exponent.h"
+
 enum { DAHL, LUGRE, BOUC_WEN, IWAN, LAWS, ROOM = 40, STATES = 3 + 2 * ROOM };
 
 struct element {
@@ -274,5 +276,76 @@ TEST(bad_input)
     assert_ok(tribo_lugre_force(0, 1.0, NULL, NULL, NULL, NULL, NULL));
 }
 
-TEST_MAIN("state_laws", {dahl_loop, 1}, {iwan_values, 1}, {iwan_sliders, 5}, {pieces, 300}, {integrated, 50}, {derivatives, 300},
-          {rest, 50}, {extremes, 1}, {bad_input, 1})
+/* Calls of all laws with n elements at dz: parameters [n][6] of which a law has the first numbers, states [n][STATES]. */
+static int move_many(int law, size_t n, double dt, const double *dz, const double *parameter, double *state, double *f,
+                     double *df)
+{
+    return law == DAHL       ? tribo_dahl_force(n, dz, parameter, parameter + n, f, df)
+           : law == LUGRE    ? tribo_lugre_force(n, dt, dz, parameter, state, f, df)
+           : law == BOUC_WEN ? tribo_bouc_wen_force(n, dz, parameter, state, f, df)
+                             : tribo_iwan_force(n, ROOM, dz, parameter, state, f, df);
+}
+
+/* Many elements in one call have the bits of elements alone; a bad one among them changes none. */
+TEST(many)
+{
+    enum { MOST = 300 };
+    static const int numbers[LAWS] = {2, 6, 5, 4};
+    static double parameter[6 * MOST], state[MOST * STATES], before[MOST * STATES], f[MOST], df[MOST], dz[MOST];
+    struct random g = random_of(_i);
+    for (int law = 0; law < LAWS; law++) {
+        const size_t n = 1 + below(&g, MOST), size = law == IWAN ? STATES : 1, bad = below(&g, n);
+        struct element e[MOST];
+        for (size_t i = 0; i < n; i++) {
+            e[i] = random_element(&g, law);
+            e[i].dt = 0.5;
+            dz[i] = below(&g, 9) ? uniform(&g, -1.5, 1.5) : 0.0;
+            for (int k = 0; k < numbers[law]; k++) {
+                parameter[law == DAHL ? (size_t)k * n + i : (size_t)(numbers[law] * (int)i + k)] = e[i].parameter[k];
+            }
+            memcpy(state + size * i, e[i].state, size * sizeof *state);
+            f[i] = e[i].state[0];
+            df[i] = 0.25;
+        }
+        memcpy(before, state, sizeof state);
+        double *at = law == DAHL ? parameter + bad : parameter + numbers[law] * (int)bad, kept = *at;
+        *at = -1.0;
+        assert_status(move_many(law, n, 0.5, dz, parameter, state, f, df),
+                      law == DAHL || law == BOUC_WEN ? TRIBO_ERR_NEGATIVE : TRIBO_ERR_NOT_POSITIVE);
+        ck_assert_mem_eq(state, before, sizeof state);
+        require(f[n / 2] == e[n / 2].state[0] || law != DAHL, "f is written");
+        require(df[n / 2] == 0.25, "df_dz is written");
+        *at = kept;
+        assert_ok(move_many(law, n, 0.5, dz, parameter, state, f, df));
+        for (size_t i = 0; i < n; i++) {
+            double slope;
+            const double alone = move(e + i, dz[i], &slope);
+            require(alone == f[i] && slope == df[i], "law %d, element %zu: f = %.17g, df_dz = %.17g alone; %.17g, %.17g of %zu",
+                    law, i, alone, slope, f[i], df[i], n);
+            ck_assert_mem_eq(law == DAHL ? f + i : state + size * i, e[i].state, size * sizeof *state);
+        }
+    }
+    /* a limit of -0 is 0 */
+    double none[] = {1.0, -0.0}, one = 1.0, way = 0.5, force = 0.0;
+    assert_ok(tribo_dahl_force(1, &way, &one, none + 1, &force, NULL));
+    assert_close(force, 0.0, 0.0);
+}
+
+/* exp, expm1 and log beside those of the system. */
+TEST(exponents)
+{
+    const double unit = 2.3e-16;
+    struct random g = random_of(_i);
+    for (int k = 0; k < 20000; k++) {
+        const double x = (k % 2 ? -1.0 : 1.0) * pow(10.0, uniform(&g, -18.0, 2.8)),
+                     y = k % 3 ? pow(10.0, uniform(&g, -300.0, 300.0)) : uniform(&g, 0.5, 1.5);
+        assert_close(tribo_exp(x) / exp(x), 1.0, 2.0 * unit);
+        assert_close(tribo_expm1(x), expm1(x), 2.5 * unit * fabs(expm1(x)));
+        assert_close(tribo_log(y), log(y), 2.0 * unit * fabs(log(y)));
+    }
+    require(tribo_exp(0.0) == 1.0 && tribo_expm1(0.0) == 0.0 && tribo_log(1.0) == 0.0, "at 0 and 1");
+    assert_close(tribo_expm1(-1e30), -1.0, 0.0);
+}
+
+TEST_MAIN("state_laws", {many, 40}, {exponents, 3}, {dahl_loop, 1}, {iwan_values, 1}, {iwan_sliders, 5}, {pieces, 300},
+          {integrated, 50}, {derivatives, 300}, {rest, 50}, {extremes, 1}, {bad_input, 1})
