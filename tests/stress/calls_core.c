@@ -82,7 +82,7 @@ static void check_settings(const struct slot *s)
     tribo_get_ncontact(s->c, &n);
     require(n == s->n, "%zu contacts", n);
     tribo_get_law(s->c, &number);
-    require(number == s->law, "law %d", number);
+    require(number == (s->own ? TRIBO_USER_LAW : s->law), "law %d", number);
     tribo_get_coupling(s->c, &number);
     require(number == s->coupling, "coupling %d", number);
     tribo_get_sharing(s->c, &number);
@@ -163,6 +163,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             create(s, &in);
         } else if (call % 32 == 1) {
             clone(s, &slots[take(&in) % SLOTS]);
+        } else if (call >= 240) {
+            elements(&in);
         } else {
             calls[call % (sizeof calls / sizeof *calls)](s, &in);
         }

@@ -41,11 +41,11 @@ int fault(const double *x, size_t n, int sign);
 /* n values; most of the time of the sign that is asked for. */
 void numbers(struct string *s, double *x, size_t n, int sign, int *wild);
 
-/* A context, and what it should hold. */
+/* A context, and what it should hold. own: a law of the caller that is the law. */
 struct slot {
     tribo_context *c;
     size_t n;
-    int law, coupling, sharing, operator, follows, wild_limit, wild_epsilon, wild_operator, linear;
+    int law, own, coupling, sharing, operator, follows, wild_limit, wild_epsilon, wild_operator, linear;
     double limit[MOST], epsilon[MOST], *r;
 };
 
@@ -65,5 +65,8 @@ void step(struct slot *s, struct string *in);
 void box(struct slot *s, struct string *in);
 void tangents(struct slot *s, struct string *in);
 void law(struct slot *s, struct string *in);
+
+/* calls_elements.c */
+void elements(struct string *in);
 
 #endif

@@ -7,47 +7,20 @@
  * ctest replays the strings in corpus_gsl, and TRIBO_BLOCKS times 1000 random ones from TRIBO_SEED on. As a target of
  * libFuzzer: ../fuzz. */
 #include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "calls_gsl.h"
 #include "make.h"
-#include "tribo/tribo_gsl.h"
 #include "../set_up_driver.h"
 
-#define COUNT(array) (sizeof(array) / sizeof *(array))
+/* Least pivot of a mass matrix over its diagonal, in scenes whose events are looked for. */
+#define LIGHT 1e-8
 
-enum {
-    SYSTEMS = 3,
-    DRIVERS = 4,
-    MOST_DOFS = 6,
-    MOST_STATES = 2 * MOST_DOFS + 1,
-    MOST_CONTACTS = 6,
-    MOST_CALLS = 80,
-    PATIENCE = 200
-};
-
-static const char *input = ""; /* what is replayed, for messages */
-
-#define demand(holds, ...)                                                                                                       \
-    do {                                                                                                                         \
-        if (!(holds)) {                                                                                                          \
-            fprintf(stderr, "%s: line %d: %s: ", input, __LINE__, #holds);                                                       \
-            fprintf(stderr, __VA_ARGS__);                                                                                        \
-            fprintf(stderr, "\n");                                                                                               \
-            abort();                                                                                                             \
-        }                                                                                                                        \
-    } while (0)
+const char *input = "";
 
 /* ------------------------------------------------------------------------------------------------------------- choices */
 
-struct bytes {
-    const uint8_t *at;
-    size_t left;
-};
-
-static size_t choose(struct bytes *b, size_t n)
+size_t choose(struct bytes *b, size_t n)
 {
     if (b->left == 0) {
         return 0;
@@ -56,8 +29,7 @@ static size_t choose(struct bytes *b, size_t n)
     return *b->at++ % n;
 }
 
-/* Mostly of the order of 1; now and then what no argument may be, or what is far too large or small for the rest. */
-static double number(struct bytes *b)
+double number(struct bytes *b)
 {
     static const double plain[] = {0.0, 1.0, -1.0, 0.5, 2.0, -0.25, 3.0, 0.1, 1e-3, 10.0, 0.3, -2.0, 1.0, 0.7},
                         odd[] = {NAN, HUGE_VAL, -HUGE_VAL, 1e300, -1e200, 1e-300, 4e-320, -0.0};
@@ -65,21 +37,20 @@ static double number(struct bytes *b)
     return k == 63 ? odd[choose(b, COUNT(odd))] : plain[k % COUNT(plain)];
 }
 
-static double positive(struct bytes *b)
+double positive(struct bytes *b)
 {
     const double x = number(b);
     return x == 0.0 || choose(b, 16) == 15 ? x : fabs(x);
 }
 
-static void fill(struct bytes *b, double *x, size_t n)
+void fill(struct bytes *b, double *x, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         x[i] = number(b);
     }
 }
 
-/* Numbers that events are not looked for among. */
-static int wild(const double *x, size_t n)
+int wild(const double *x, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         if (!(fabs(x[i]) < 1e6) || (x[i] != 0.0 && fabs(x[i]) < 1e-9)) {
@@ -89,26 +60,7 @@ static int wild(const double *x, size_t n)
     return 0;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- scenes */
-
-struct run {
-    tribo_driver *drv;
-    int events; /* exact, event or auto */
-    size_t contacts;
-    double t, y[MOST_STATES], stop;
-    /* what the observer knows */
-    double from, to, last;
-    size_t seen, patience;
-};
-
-struct scene {
-    tribo_system *sys;
-    size_t n, c, given, dimension;
-    int wild;
-    struct run run[DRIVERS];
-};
-
-static int finite(const double *y, size_t n)
+int are_finite(const double *y, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         if (!isfinite(y[i])) {
@@ -141,8 +93,7 @@ static void destroy_scene(struct scene *s)
     memset(s, 0, sizeof *s);
 }
 
-/* Symmetric, and mostly so that it may be a mass or a stiffness. */
-static void fill_matrix(struct bytes *b, double *a, size_t n, double diagonal)
+void fill_matrix(struct bytes *b, double *a, size_t n, double diagonal)
 {
     const size_t kind = choose(b, 8);
     for (size_t i = 0; i < n; i++) {
@@ -156,6 +107,23 @@ static void fill_matrix(struct bytes *b, double *a, size_t n, double diagonal)
     }
 }
 
+int light(const double *mass, size_t n)
+{
+    double a[MOST_DOFS * MOST_DOFS];
+    memcpy(a, mass, n * n * sizeof *a);
+    for (size_t k = 0; k < n; k++) {
+        if (!(a[k * n + k] > LIGHT * mass[k * n + k])) {
+            return 1;
+        }
+        for (size_t i = k + 1; i < n; i++) {
+            for (size_t j = k + 1; j < n; j++) {
+                a[i * n + j] -= a[i * n + k] * a[k * n + j] / a[k * n + k];
+            }
+        }
+    }
+    return 0;
+}
+
 static int create_linear(struct bytes *b, struct scene *s)
 {
     double mass[MOST_DOFS * MOST_DOFS], damping[MOST_DOFS * MOST_DOFS], stiffness[MOST_DOFS * MOST_DOFS],
@@ -167,7 +135,7 @@ static int create_linear(struct bytes *b, struct scene *s)
     fill_matrix(b, damping, n, 0.0);
     fill(b, direction, c * n);
     s->given = n;
-    s->wild = wild(mass, n * n) || wild(stiffness, n * n) || wild(damping, n * n) || wild(direction, c * n);
+    s->wild = light(mass, n) || wild(mass, n * n) || wild(stiffness, n * n) || wild(damping, n * n) || wild(direction, c * n);
     const int status =
         dense_system(&s->sys, n, c, mass, damped == 1 ? damping : NULL, stiffness, direction, nmode, text, sizeof text);
     demand(status == TRIBO_OK || text[0] != '\0', "status %d without a message", status);
@@ -189,6 +157,9 @@ static void create_scene(struct bytes *b, struct scene *s)
         break;
     case 2:
         status = tribo_system_belt(&s->sys, y, x, w, z, y);
+        break;
+    case 4:
+        status = create_pressed(b, s);
         break;
     default:
         status = create_linear(b, s);
@@ -215,6 +186,7 @@ static void load(struct bytes *b, struct scene *s)
     time[0] = number(b);
     time[1] = time[0] + positive(b);
     time[2] = time[1] + positive(b);
+    s->omega = omega;
     s->wild |= wild(&omega, 1) || wild(cosine, MOST_DOFS) || wild(sine, MOST_DOFS) || wild(value, COUNT(value)) || wild(time, 3);
     switch (choose(b, 6)) {
     case 0:
@@ -286,8 +258,8 @@ static void ask(struct bytes *b, struct scene *s, const struct run *r)
     const int which = (int)choose(b, 3),
               status = tribo_system_contacts(s->sys, t, y, which ? v : NULL, which == 1 ? feq : NULL, f);
     check(s, status);
-    demand(status || finite(f, s->c), "forces are not finite");
-    demand(status || !which || finite(v, s->c), "velocities are not finite");
+    demand(status || are_finite(f, s->c), "forces are not finite");
+    demand(status || !which || are_finite(v, s->c), "velocities are not finite");
     check(s, tribo_system_accept(s->sys, t, y));
     check(s, tribo_system_get_frequencies(s->sys, omega));
     check(s, tribo_system_expand(s->sys, y, full));
@@ -316,14 +288,17 @@ static void tune(struct bytes *b, struct run *r)
 {
     static const double tolerances[] = {1e-6, 1e-3, 1e-9, 0.0, 1e-1, -1.0, NAN};
     const double h = 0.1 * positive(b);
+    double abstol, reltol;
     int status;
     switch (choose(b, 4)) {
     case 0:
         status = tribo_driver_set_max_step(r->drv, h);
         break;
     case 1:
-        status = tribo_driver_set_tolerance(r->drv, tolerances[choose(b, 16) % COUNT(tolerances)],
-                                            tolerances[choose(b, 16) % COUNT(tolerances)]);
+        abstol = tolerances[choose(b, 16) % COUNT(tolerances)];
+        reltol = tolerances[choose(b, 16) % COUNT(tolerances)];
+        status = tribo_driver_set_tolerance(r->drv, abstol, reltol);
+        r->tolerance = status ? r->tolerance : fmax(abstol, reltol);
         break;
     case 2:
         status = tribo_driver_set_output(r->drv, h);
@@ -376,7 +351,7 @@ static void set_run(struct bytes *b, const struct scene *s, struct run *r)
 
 /* Steps of exact and event may be many where numbers are wild, and the others' where only few of them make dt: those are left
  * out. */
-static int bearable(const struct scene *s, const struct run *r, double span)
+int bearable(const struct scene *s, const struct run *r, double span)
 {
     return !(r->events && (s->wild || wild(r->y, s->dimension) || wild(&r->t, 1) || wild(&span, 1)));
 }
@@ -394,18 +369,18 @@ static void advance(struct bytes *b, struct scene *s, struct run *r)
     r->to = t1;
     r->seen = 0;
     demand(tribo_driver_set_observer(r->drv, observe, r) == TRIBO_OK, "observer");
-    const int legal = isfinite(t1) && t1 >= before && finite(y, s->dimension);
+    const int legal = isfinite(t1) && t1 >= before && are_finite(y, s->dimension);
     const int status = tribo_driver_advance(r->drv, &r->t, t1, r->y);
     demand(status == TRIBO_OK || tribo_driver_message(r->drv)[0] != '\0', "status %d without a message", status);
     demand(strcmp(tribo_strerror(status), tribo_strerror(-1)) != 0, "status %d is unknown", status);
     demand(legal || status, "illegal, but well done");
     demand(legal || (r->t == before && memcmp(y, r->y, sizeof y) == 0), "illegal, but changed");
-    demand(!legal || finite(r->y, s->dimension), "%s, status %d: not finite", tribo_driver_method(r->drv), status);
+    demand(!legal || are_finite(r->y, s->dimension), "%s, status %d: not finite", tribo_driver_method(r->drv), status);
     demand(!legal || (r->t >= before && r->t <= t1), "%.17g from %.17g to %.17g", r->t, before, t1);
     demand(status || r->t == t1, "%.17g, not %.17g", r->t, t1);
     demand(status != TRIBO_ERR_STOPPED || r->seen == r->patience, "stopped by nobody");
     demand(r->seen < r->patience || status, "not stopped");
-    if (!finite(r->y, s->dimension)) {
+    if (!are_finite(r->y, s->dimension)) {
         memset(r->y, 0, sizeof r->y);
     }
 }
@@ -430,6 +405,8 @@ static void step(struct bytes *b, struct scene *s)
         create_run(b, s, r);
     } else if (what == 8) {
         set_run(b, s, r);
+    } else if (what == 7) {
+        periods(b, s, r);
     } else {
         advance(b, s, r);
     }
@@ -500,6 +477,8 @@ int main(int argc, char **argv)
         replay_file(argv[k]);
     }
     for (unsigned long seed = first; seed < first + count; seed++) {
+        if (getenv("SHOW"))
+            fprintf(stderr, "%lu\n", seed);
         replay_seed(seed);
     }
     printf("%d files and %lu random strings\n", argc - 1, count);

@@ -4,10 +4,23 @@
 #include <string.h>
 
 #include "calls_core.h"
+#include "../user_quinn.h"
+
+/* Numbers of laws from which on the law is Quinn's as a caller writes it. */
+enum { USER = 200 };
+
+static struct quinn quinn = {0, 0};
 
 void set_number(struct slot *s, struct string *in)
 {
     const int which = (int)take(in) % 3, value = (int)take(in) - 2;
+    if (which == 0 && value >= USER) {
+        check(s, "set_user_law", tribo_set_user_law(s->c, quinn_box, &quinn), TRIBO_OK);
+        s->law = TRIBO_QUINN;
+        s->own = 1;
+        s->linear = 0;
+        return;
+    }
     int *const setting = which == 0 ? &s->law : which == 1 ? &s->coupling : &s->sharing;
     const int most = which == 0 ? 6 : 2, legal = value >= 0 && value < most;
     const int status = which == 0   ? tribo_set_law(s->c, value)
@@ -15,6 +28,7 @@ void set_number(struct slot *s, struct string *in)
                                     : tribo_set_sharing(s->c, value);
     if (!check(s, "set_number", status, legal ? TRIBO_OK : TRIBO_ERR_RANGE)) {
         *setting = value;
+        s->own = s->own && which != 0;
         s->linear = 0;
     }
 }

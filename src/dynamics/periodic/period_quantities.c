@@ -148,5 +148,9 @@ int tribo_driver_period_dissipation(tribo_driver *drv, double *energy)
 int tribo_driver_period_stick(tribo_driver *drv, double *share)
 {
     struct replay r = {0};
-    return sum_up(drv, &r, "share", &r.rest, share);
+    const int status = sum_up(drv, &r, "share", &r.rest, share);
+    for (size_t i = 0; !status && i < drv->sys->ncontact; i++) {
+        share[i] = lesser(share[i], 1.0); /* of phases that sum up to the period but for rounding */
+    }
+    return status;
 }

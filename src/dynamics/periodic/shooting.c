@@ -345,7 +345,7 @@ int tribo_shooting_search(struct shooting *s)
     }
     s->rate = s->stride = s->before = 0.0;
     s->nearest = s->here->residual / s->here->size;
-    while (!status && !tribo_point_is_closed(s->here, AIM) && s->map.halves < most) {
+    while (!status && isfinite(s->here->size) && !tribo_point_is_closed(s->here, AIM) && s->map.halves < most) {
         double part;
         status = newton(s, &part);
         const int falls = !status && pays(s);

@@ -107,7 +107,8 @@ static int synchronise(tribo_driver *drv, double t, double *y)
     const size_t n = drv->sys->ndof;
     const struct body_step back = {.from = x->when, .t = t, .to = t, .time = 0.5 * x->last, .q = y, .u = s->u, .u_to = y + n};
     y[2 * n] = x->energy;
-    return kick(drv, &back, y + 2 * n);
+    const int status = kick(drv, &back, y + 2 * n);
+    return status ? status : tribo_driver_check(drv, y);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ few bodies */

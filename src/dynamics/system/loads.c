@@ -117,7 +117,7 @@ void tribo_system_set_time(tribo_system *sys, double t)
     for (struct harmonic *h = sys->loads.harmonic; h < sys->loads.harmonic + sys->loads.harmonics; h++) {
         if (h->knots == 0) {
             tribo_cos_sin(h->omega, t, sys->loads.low, &h->cos_t, &h->sin_t);
-        } else if (h->count) {
+        } else {
             h->at = knot_at(h, t);
             h->cos_t = look_up(sys, h, 0, 0);
         }
@@ -357,17 +357,20 @@ static void remove_driven(struct loads *l, enum drives drives, int tables)
     l->harmonics = left;
 }
 
-/* Appends a function of time like h, or replaces the table of limits. parts [2][n]: cosine and sine, of which entries that are
- * both 0 are left out; limits have all entries, so that the index is the contact. Returns 0 if out of memory. */
+/* Appends a function of time like h, unless it is 0, or replaces the table of limits. parts [2][n]: cosine and sine, of which
+ * entries that are both 0 are left out; limits have all entries, so that the index is the contact. Returns 0 if out of memory. */
 static int append_harmonic(tribo_system *sys, struct harmonic h, const double *parts)
 {
     const size_t n = length_of(sys, h.drives);
     const double *time = h.knot, *value = h.value;
     struct loads *l = &sys->loads;
-    struct harmonic *all = realloc(l->harmonic, (l->harmonics + 1) * sizeof *all);
     for (size_t i = 0; i < n; i++) {
         h.count += parts[i] != 0.0 || parts[n + i] != 0.0 || h.drives == DRIVES_LIMIT;
     }
+    if (h.count == 0) {
+        return 1;
+    }
+    struct harmonic *all = realloc(l->harmonic, (l->harmonics + 1) * sizeof *all);
     l->harmonic = all ? all : l->harmonic;
     if (!all || !create_harmonic(&h, NULL)) {
         return 0;
@@ -395,7 +398,7 @@ static int append_harmonic(tribo_system *sys, struct harmonic h, const double *p
  * load, way [2][ncontact], become a base motion b = -d(way)/dt, so that v includes d(way)/dt. Returns a status. */
 static int take_harmonic(tribo_system *sys, struct harmonic h, const double *cosine, const double *sine)
 {
-    const size_t n = length_of(sys, h.drives), c = sys->ncontact;
+    const size_t n = length_of(sys, h.drives), c = sys->ncontact, before = sys->loads.harmonics;
     double *parts = tribo_zeros(2 * n + 4 * c + 1, sizeof *parts), *way = parts ? parts + 2 * n : NULL;
     for (size_t part = 0; parts && part < 2; part++) {
         const double *from = part ? sine : cosine;
@@ -421,7 +424,7 @@ static int take_harmonic(tribo_system *sys, struct harmonic h, const double *cos
             base[c + i] = h.omega * way[i];
         }
         done = append_harmonic(sys, (struct harmonic){.drives = DRIVES_BASE, .omega = h.omega, .by_load = 1}, base);
-        if (!done) {
+        if (!done && sys->loads.harmonics > before) {
             free(sys->loads.harmonic[--sys->loads.harmonics].index);
         }
     }
