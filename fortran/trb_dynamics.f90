@@ -54,6 +54,11 @@
 !>   TRBSCN(IH, IWHICH, IVAL, IERR)                  IWHICH TRIBO_COUNT_... of contacts  IVAL
 !>   TRBLMT(IH, N, KNOTS, TIME, FMUN, IERR)          limits linear between FMUN(N,KNOTS) at TIME(KNOTS)
 !>   TRBCON(IH, NDOF, N, T, Y, V, FEQ, F, IERR)      T, Y                              V(N), FEQ(N), F(N) of the contacts there
+!> Steady sliding
+!>   TRBEQU(IH, NDOF, N, IGIVEN, Y, ISLIP, NEXP,     IGIVEN(N) directions of slip, 0 as    Y: equilibrium, ISLIP(N), NEXP exponents
+!>          RE, AI, IERR)                            found; Y: where contacts rest         RE(2*NDOF), AI(2*NDOF)
+!>   TRBFLT(IH, NDOF, N, IPAR, IGIVEN, Y, FROM, TO,  IPAR TRIBO_FLUTTER_...; as TRBEQU;    CRIT: first factor that is not stable,
+!>          CRIT, OMEGA, IERR)                       FROM and TO of the factor             OMEGA: frequency there
 !> Reduced structures
 !>   TRBZET(IH, ZETA, IERR)                          ZETA >= 0: damping ratio of every mode
 !>   TRBFRQ(IH, NDOF, W, IERR)                                                         W(NDOF): natural frequencies, rad/time
@@ -629,6 +634,35 @@ subroutine trbcon(ih, ndof, n, t, y, v, feq, f, ierr)
   if (ierr == TRIBO_OK) call find_structure(ih, s, ierr, ndof)
   if (ierr == TRIBO_OK) call s%system%contacts(t, y(:s%system%dimension()), v(:n), feq(:n), f(:n), ierr)
 end subroutine trbcon
+
+subroutine trbequ(ih, ndof, n, given, y, slip, nexp, re, ai, ierr)
+  use tribo_fixed_dynamics
+  implicit none
+  integer, intent(in) :: ih, ndof, n, given(*)
+  integer, intent(inout) :: slip(*), nexp
+  real(dp), intent(inout) :: y(*), re(*), ai(*)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_contacts(ih, s, ierr, n)
+  if (ierr == TRIBO_OK) call find_structure(ih, s, ierr, ndof)
+  if (ierr == TRIBO_OK) call s%system%equilibrium(y(:s%system%dimension()), slip(:n), nexp, re(:2*ndof), ai(:2*ndof), given(:n), &
+    ierr)
+end subroutine trbequ
+
+subroutine trbflt(ih, ndof, n, ipar, given, y, from, to, crit, omega, ierr)
+  use tribo_fixed_dynamics
+  implicit none
+  integer, intent(in) :: ih, ndof, n, ipar, given(*)
+  real(dp), intent(in) :: y(*), from, to
+  real(dp), intent(inout) :: crit, omega
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_contacts(ih, s, ierr, n)
+  if (ierr == TRIBO_OK) call find_structure(ih, s, ierr, ndof)
+  if (ierr == TRIBO_OK) call s%system%find_flutter(ipar, from, to, crit, omega, given(:n), y(:s%system%dimension()), ierr)
+end subroutine trbflt
 
 ! ------------------------------------------------------------------------------------------------------------ reduced structures
 

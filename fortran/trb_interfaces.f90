@@ -507,6 +507,20 @@ module trb_interfaces
       integer, intent(out) :: ierr
     end subroutine trbcon
 
+    subroutine trbequ(ih, ndof, n, given, y, slip, nexp, re, ai, ierr)
+      integer, intent(in) :: ih, ndof, n, given(*)
+      integer, intent(inout) :: slip(*), nexp
+      double precision, intent(inout) :: y(*), re(*), ai(*)
+      integer, intent(out) :: ierr
+    end subroutine trbequ
+
+    subroutine trbflt(ih, ndof, n, ipar, given, y, from, to, crit, omega, ierr)
+      integer, intent(in) :: ih, ndof, n, ipar, given(*)
+      double precision, intent(in) :: y(*), from, to
+      double precision, intent(inout) :: crit, omega
+      integer, intent(out) :: ierr
+    end subroutine trbflt
+
     subroutine trbzet(ih, zeta, ierr)
       integer, intent(in) :: ih
       double precision, intent(in) :: zeta

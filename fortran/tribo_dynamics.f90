@@ -84,6 +84,7 @@ module tribo_systems
     procedure :: context
     procedure :: derivative, jacobian
     procedure :: contacts, accept
+    procedure :: equilibrium, find_flutter
     procedure :: get_slip, get_count => get_system_count
     procedure :: message => system_message
     procedure, private :: assign_system
@@ -973,6 +974,67 @@ contains
     if (w%status == TRIBO_OK) value = int(min(count, int(huge(value), c_size_t)))
     call finish(w, stat, errmsg)
   end subroutine get_system_count
+
+  !> Equilibrium of steady sliding at which contacts rest as in y, and its exponents; see tribo_system_equilibrium. y(dimension),
+  !> slip(ncontact), count exponents re(2 ndof), im(2 ndof); given(ncontact): directions of sliding, 0: as found.
+  subroutine equilibrium(this, y, slip, count, re, im, given, stat, errmsg)
+    class(tribo_system), intent(inout) :: this
+    real(dp), intent(inout) :: y(:), re(:), im(:)
+    integer, intent(inout) :: slip(:), count
+    integer, intent(in), optional :: given(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_signed_char) :: small(size(slip)), directions(size(slip))
+    integer(c_size_t) :: exponents
+    type(work) :: w
+
+    call find_system(this, w)
+    call expect_size(w, 'y', y, w%dimension)
+    call expect_shape(w, 'slip', shape(slip), [w%n])
+    call expect_size(w, 're', re, 2*w%ndof)
+    call expect_size(w, 'im', im, 2*w%ndof)
+    directions = 0_c_signed_char
+    if (present(given)) then
+      call expect_shape(w, 'given', shape(given), [w%n])
+      if (w%status == TRIBO_OK) directions = int(max(-9, min(given, 9)), c_signed_char)
+    end if
+    if (w%status == TRIBO_OK) w%status = c_system_equilibrium(w%object, directions, y, small, exponents, re, im)
+    if (w%status == TRIBO_OK) slip = int(small)
+    if (w%status == TRIBO_OK) count = int(exponents)
+    call finish(w, stat, errmsg)
+  end subroutine equilibrium
+
+  !> The first factor of TRIBO_FLUTTER_... between bounds at which steady sliding is not stable, and the frequency there; see
+  !> tribo_system_find_flutter. given, y: as in equilibrium.
+  subroutine find_flutter(this, parameter, from, to, critical, omega, given, y, stat, errmsg)
+    class(tribo_system), intent(inout) :: this
+    integer, intent(in) :: parameter
+    real(dp), intent(in) :: from, to
+    real(dp), intent(inout) :: critical, omega
+    integer, intent(in), optional :: given(:)
+    real(dp), intent(in), optional, contiguous :: y(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_signed_char), allocatable :: directions(:)
+    type(work) :: w
+    real(dp) :: factor(1), frequency(1)
+
+    call find_system(this, w)
+    if (present(y)) call expect_size(w, 'y', y, w%dimension)
+    allocate(directions(max(w%n, 0)), source=0_c_signed_char)
+    if (present(given)) then
+      call expect_shape(w, 'given', shape(given), [w%n])
+      if (w%status == TRIBO_OK) directions = int(max(-9, min(given, 9)), c_signed_char)
+    end if
+    factor = critical
+    frequency = omega
+    if (w%status == TRIBO_OK) then
+      w%status = c_system_find_flutter(w%object, to_int(parameter), directions, y, from, to, factor, frequency)
+    end if
+    critical = factor(1)
+    omega = frequency(1)
+    call finish(w, stat, errmsg)
+  end subroutine find_flutter
 
   !> accept of the context for the state (t, y): to be called after each accepted step by integrators other than tribo_driver.
   subroutine accept(this, t, y, stat, errmsg)

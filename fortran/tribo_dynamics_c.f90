@@ -13,6 +13,11 @@ module tribo_dynamics_constants
   integer, parameter, public :: TRIBO_STATICS_MASS = 1
   integer, parameter, public :: TRIBO_STATICS_COMPLIANCE = 2
 
+  !> limits, and coefficients of friction of tribo_model_set_normal
+  integer, parameter, public :: TRIBO_FLUTTER_FRICTION = 0
+  !> velocities of bases
+  integer, parameter, public :: TRIBO_FLUTTER_SPEED = 1
+
   !> end of a step, output, end of an advance, or an event without a change of a contact
   integer, parameter, public :: TRIBO_MOMENT_STEP = 0
   !> a contact comes to rest
@@ -460,6 +465,32 @@ module tribo_dynamics_c
       real(c_double), intent(in), optional :: y(*)
       integer(c_int) :: answer
     end function c_system_accept
+
+    function c_system_equilibrium(sys, given, y, slip, count, re, im) result(answer) bind(c,name='tribo_system_equilibrium')
+      import
+      type(c_ptr), value :: sys
+      integer(c_signed_char), intent(in), optional :: given(*)
+      real(c_double), intent(inout), optional :: y(*)
+      integer(c_signed_char), intent(inout), optional :: slip(*)
+      integer(c_size_t), intent(inout) :: count
+      real(c_double), intent(inout), optional :: re(*)
+      real(c_double), intent(inout), optional :: im(*)
+      integer(c_int) :: answer
+    end function c_system_equilibrium
+
+    function c_system_find_flutter(sys, parameter, given, y, from, to, critical, omega) result(answer) &
+      bind(c,name='tribo_system_find_flutter')
+      import
+      type(c_ptr), value :: sys
+      integer(c_int), value :: parameter
+      integer(c_signed_char), intent(in), optional :: given(*)
+      real(c_double), intent(in), optional :: y(*)
+      real(c_double), value :: from
+      real(c_double), value :: to
+      real(c_double), intent(inout), optional :: critical(*)
+      real(c_double), intent(inout), optional :: omega(*)
+      integer(c_int) :: answer
+    end function c_system_find_flutter
 
     function c_system_derivative(sys, t, y, dydt) result(answer) bind(c,name='tribo_system_derivative')
       import

@@ -269,6 +269,40 @@ TRIBO_API int tribo_system_get_count(const tribo_system *sys, int which, size_t 
  * Returns what tribo_system_contacts returns. */
 TRIBO_API int tribo_system_accept(tribo_system *sys, double t, const double *y);
 
+/* --------------------------------------------------------------------------------------------------------- steady sliding */
+
+/* Finds the equilibrium of steady sliding under constant loads and bases of constant velocities (belts), and the exponents re + i
+ * im of small motions about it. The manual says what rests, slides and is refused.
+ * given   [ncontact] in, or NULL  TRIBO_SLIP_FORTH, _BACK: slides at its limit, also on a base at rest; _OPEN: no friction; 0: as
+ *                                 found
+ * y       [dimension] in/out      in: where contacts rest, e.g. zeros; out: the equilibrium, with velocities and energy 0
+ * slip    [ncontact] out, or NULL  TRIBO_SLIP_...; _OPEN also of normals
+ * count   out, or NULL            number of exponents, at most 2 tribo_system_ndof; NULL: none are found
+ * re, im  [count] out, or NULL    1/time, rad/time; largest re first; in a complex pair im > 0 is first
+ * On error outputs are unchanged. Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (given), TRIBO_ERR_UNSUPPORTED,
+ * TRIBO_ERR_INDEFINITE (nothing holds the structure), TRIBO_ERR_NO_CONVERGENCE (there is none: a contact at rest reaches its
+ * limit), TRIBO_ERR_MEMORY. */
+TRIBO_API int tribo_system_equilibrium(tribo_system *sys, const signed char *given, double *y, signed char *slip, size_t *count,
+                                       double *re, double *im);
+
+/* What is multiplied by a factor. */
+enum {
+    TRIBO_FLUTTER_FRICTION = 0, /* limits, and coefficients of friction of tribo_model_set_normal */
+    TRIBO_FLUTTER_SPEED = 1     /* velocities of bases */
+};
+
+/* Finds the first factor, of 128 between from and to, at which steady sliding is not stable, and the onset before it to rounding:
+ * mode coupling (Hoffmann and others 2002), limits that fall with the speed, or a loss of stiffness.
+ * parameter  in                     TRIBO_FLUTTER_...
+ * given, y   in, each or NULL       as in tribo_system_equilibrium; y NULL: zeros
+ * from, to   in                     >= 0; to may be below from; at from sliding is stable
+ * critical   out                    the factor at the onset; HUGE_VAL: stable at all factors tried
+ * omega      out, or NULL           frequency at the onset, rad/time; 0: no onset, or a loss of stiffness
+ * Returns what tribo_system_equilibrium returns at any factor tried, TRIBO_ERR_RANGE (parameter; not stable at from),
+ * TRIBO_ERR_NEGATIVE, TRIBO_ERR_NO_CONVERGENCE (no single motion is at the onset). */
+TRIBO_API int tribo_system_find_flutter(tribo_system *sys, int parameter, const signed char *given, const double *y, double from,
+                                        double to, double *critical, double *omega);
+
 /* --------------------------------------------------------------------------------------------------------- drivers */
 
 /* Derivative and Jacobian of the state, for integrators of the caller. y [dimension] in need not be finite; a derivative that is

@@ -346,9 +346,9 @@ int tribo_eigen(double *a, size_t n, double *re, double *im, double *x)
         return TRIBO_ERR_MEMORY;
     }
     /* Left eigenvectors of the transpose are the conjugates of the right ones of A. */
-    dgeev_("V", "N", &rows, a, &rows, re, im, x, &rows, NULL, &one, work, &size, &info, 1, 1);
+    dgeev_(x ? "V" : "N", "N", &rows, a, &rows, re, im, x, &rows, NULL, &one, work, &size, &info, 1, 1);
     free(work);
-    for (size_t k = 0; info == 0 && k < n; k++) {
+    for (size_t k = 0; x && info == 0 && k < n; k++) {
         for (size_t i = 0; im[k] < 0.0 && i < n; i++) {
             x[k * n + i] = -x[k * n + i];
         }

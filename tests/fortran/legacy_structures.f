@@ -253,7 +253,9 @@ C     spring of 1: the amplitude is 3.38660810; also of the only mode.
       DOUBLE PRECISION ONE(1), C(1), CMP(1), ZERO(1), HALF(1), Y(4)
       DOUBLE PRECISION CV(2), XMIN, XMAX, TMIN, TMAX, RE(4), AI(4)
       DOUBLE PRECISION OMEGA, ZETA
+      INTEGER IGIVEN(1), ISLIP(1), NEXP
       CHARACTER*80 TEXT
+      DATA IGIVEN /0/
       DATA IRM /1, 2/, ICM /1/, ONE /1D0/, C /0.1D0/, CMP /1D0/
       DATA ZERO /0D0/, HALF /0.5D0/, CV /1D0, 0D0/
       DO 10 K = 0, 1
@@ -284,6 +286,16 @@ C     spring of 1: the amplitude is 3.38660810; also of the only mode.
          CALL EXPECT('omega', ABS(OMEGA - 1.2258676901977D0) .LT. 1D-9)
          CALL EXPECT('zeta', ABS(ZETA - 0.105752880426D0 - 5D-2/OMEGA)
      1               .LT. 1D-9)
+         Y(1) = 0D0
+         Y(3) = 0D0
+         CALL TRBEQU(IH, 1, 1, IGIVEN, Y, ISLIP, NEXP, RE, AI, IERR)
+         CALL EXPECT('TRBEQU', IERR .EQ. 0 .AND. NEXP .EQ. 2)
+         CALL EXPECT('at rest', ISLIP(1) .EQ. 0 .AND. Y(1) .EQ. 0D0)
+         CALL EXPECT('exponents', ABS(RE(1) + 5D-2) .LT. 1D-12 .AND.
+     1               ABS(AI(2) + SQRT(1.9975D0)) .LT. 1D-12)
+         CALL TRBFLT(IH, 1, 1, 0, IGIVEN, Y, 0.1D0, 2D0, XMAX, OMEGA,
+     1               IERR)
+         CALL EXPECT('TRBFLT', IERR .EQ. 0 .AND. XMAX .GT. 1D300)
          CALL TRBDEL(IH, IERR)
    10 CONTINUE
       IH = -777

@@ -167,6 +167,8 @@ contains
     call d%period_extremes([1.0_dp, 0.0_dp], least, most)
     call require(abs(most - 3.38660810_dp) < 1e-7_dp, 'compliance: the amplitude')
     call mode_of_contact()
+    call flutter()
+  call flutter()
   end subroutine compliance
 
   !> Nonlinear mode of m = k = kt = 1, limit 0.5: values of another code.
@@ -198,6 +200,38 @@ contains
     call d%find_mode([1.0_dp, 0.0_dp], -1.0_dp, omega, zeta, y, stat)
     call require(stat == TRIBO_ERR_NOT_POSITIVE .and. abs(omega - 1.2258676901977_dp) < 1e-9_dp, 'mode: a negative amplitude')
   end subroutine mode_of_contact
+
+  !> Mode coupling: springs 11 at 150 and 20 at 30 degrees, normal stiffness 11, preload 10, friction 0.6 on a belt.
+  subroutine flutter()
+    type(tribo_model) :: model
+    type(tribo_system) :: s
+    real(dp), parameter :: x = 23.25_dp, z = 7.75_dp
+    real(dp) :: y(5), re(4), im(4), critical, omega, xz
+    integer :: slip(2), count, stat
+
+    xz = 9*sqrt(3.0_dp)/4
+    call model%create(2, 2)
+    call model%set_mass([1.0_dp, 1.0_dp])
+    call model%set_stiffness(reshape([x, xz, xz, z], [2, 2]))
+    call model%set_direction(reshape([1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [2, 2]))
+    call model%set_normal(1, 2, 0.6_dp, 11.0_dp, 0.0_dp)
+    call s%create(model)
+    call s%add_load(0.0_dp, [0.0_dp, 10.0_dp])
+    y = 0
+    call s%equilibrium(y, slip, count, re, im, [TRIBO_SLIP_BACK, 0])
+    call require(count == 4 .and. slip(1) == TRIBO_SLIP_BACK, 'equilibrium: slip')
+    call require(abs(x*y(1) + (xz - 6.6_dp)*y(2)) < 1e-12_dp, 'equilibrium: along the belt')
+    call require(re(1) > 0.1_dp .and. abs(re(1) + re(3)) < 1e-12_dp .and. abs(im(1) + im(2)) < 1e-12_dp, 'equilibrium: exponents')
+    call s%find_flutter(TRIBO_FLUTTER_FRICTION, 0.0_dp, 1.0_dp, critical, omega, [TRIBO_SLIP_BACK, 0], y)
+    call require(abs(0.6_dp*critical - 0.47237749297_dp) < 1e-11_dp, 'flutter: coefficient of friction')
+    call require(abs(omega - 4.5825756950_dp) < 1e-9_dp, 'flutter: frequency')
+    call s%equilibrium(y(:4), slip, count, re, im, stat=stat)
+    call require(stat == TRIBO_ERR_SIZE, 'equilibrium: a short state')
+    call s%equilibrium(y, slip, count, re, im, [99999, 0], stat)
+    call require(stat == TRIBO_ERR_RANGE, 'equilibrium: no direction')
+    call s%find_flutter(7, 0.0_dp, 1.0_dp, critical, omega, stat=stat)
+    call require(stat == TRIBO_ERR_RANGE, 'flutter: no parameter')
+  end subroutine flutter
 
   !> An elastic contact that lifts off: x'' + 0.1 sqrt(12) x' + 12 x + f = 60 cos 5 t, y'' + 2 y' + 21 y + N = 100 + 60 cos 5 t,
   !> stiffness 5, mu = 0.85, N = 21 max(y, 0): the steady motion at t = 0 by two other codes.

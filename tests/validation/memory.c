@@ -359,6 +359,31 @@ static int make_cycle(tribo_system **sys, tribo_driver **drv)
     return status ? status : tribo_driver_find_cycle(*drv, 0.0, &period, y);
 }
 
+/* An equilibrium of steady sliding, and its onset of flutter, with a contact that may rest. */
+static int make_equilibrium(tribo_system **sys, tribo_driver **drv)
+{
+    const double mass[] = {1.0, 1.0, 1.0}, belt[] = {0.5, 0.0, 0.0}, load[] = {0.0, 10.0, 0.1};
+    const double stiffness[] = {23.25, 7.8, 0.0, 7.8, 7.75, 0.0, 0.0, 0.0, 1.0};
+    double y[7] = {0.0}, re[6], im[6], critical, omega;
+    size_t count;
+    tribo_model *from = NULL;
+    (void)drv;
+    int status = tribo_model_create(&from, 3, 3);
+    status = status ? status : tribo_model_set_mass_diagonal(from, mass);
+    status = status ? status : tribo_model_set_stiffness(from, stiffness);
+    status = status ? status : tribo_model_set_direction(from, (const double[]){1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});
+    status = status ? status : tribo_model_set_normal(from, 0, 1, 0.6, 11.0, 0.0);
+    status = status ? status : tribo_system_create(sys, from);
+    tribo_model_destroy(from);
+    status = status ? status : tribo_system_add_load(*sys, 0.0, load, NULL);
+    status = status ? status : tribo_system_add_base_motion(*sys, 0.0, belt, NULL);
+    tribo_context *c = status ? NULL : tribo_system_context(*sys);
+    status = status || c ? status : TRIBO_ERR_MEMORY;
+    status = status ? status : tribo_set_limit(c, (const double[]){0.0, 0.0, 1.0});
+    status = status ? status : tribo_system_equilibrium(*sys, NULL, y, NULL, &count, re, im);
+    return status ? status : tribo_system_find_flutter(*sys, TRIBO_FLUTTER_FRICTION, NULL, NULL, 0.78, 2.0, &critical, &omega);
+}
+
 /* A nonlinear mode, from the linear one, and the mode of the next amplitude. */
 static int make_mode(tribo_system **sys, tribo_driver **drv)
 {
@@ -393,6 +418,7 @@ static const struct {
               {"full copy", make_full_copy},
               {"periodic", make_periodic},
               {"cycle", make_cycle},
+              {"equilibrium", make_equilibrium},
               {"mode", make_mode},
               {"periodic event", make_periodic_event},
               {"sparse", make_sparse},

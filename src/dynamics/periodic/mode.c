@@ -202,10 +202,7 @@ static int create_twin(struct shooting *s)
     if (status) {
         return status;
     }
-    struct loads *l = &s->twin.sys->loads;
-    for (size_t k = 0; k < l->harmonics; k++) {
-        l->harmonic[k].count = l->harmonic[k].omega != 0.0 ? 0 : l->harmonic[k].count;
-    }
+    tribo_loads_keep_constant(s->twin.sys);
     status = tribo_driver_create(&s->twin.drv, s->twin.sys, drv->at_work->name);
     if (status) {
         return tribo_error(drv->message, status, "%s", tribo_system_message(s->twin.sys));

@@ -230,6 +230,22 @@ void tribo_system_find_ways(const tribo_system *sys, size_t columns, const doubl
     tribo_matrix_add_columns(&sys->direction, 1.0, columns, v, way);
 }
 
+void tribo_springs_hold(const tribo_system *sys, const signed char *slip, size_t columns, double *stretch, double *f)
+{
+    if (sys->compliance.count) {
+        tribo_matrix_add_columns(&sys->compliance.g, -1.0, columns, f, stretch);
+        tribo_compliance_solve(sys, slip, columns, stretch);
+        tribo_add(f, 1.0, stretch, sys->ncontact * columns);
+    }
+}
+
+void tribo_system_put_steady(const tribo_system *sys, const double *q, const double *f, double *y)
+{
+    memset(y, 0, tribo_system_size(sys) * sizeof *y);
+    memcpy(y, q, sys->ndof * sizeof *q);
+    tribo_compliance_put(sys, f, y);
+}
+
 void tribo_compliance_share(const struct compliance *g, double *v)
 {
     if (tribo_solve_box(g->box, v, g->lo, g->hi, g->f)) {

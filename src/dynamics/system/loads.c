@@ -171,6 +171,13 @@ static inline void loads_differentiate(const tribo_system *sys, size_t k, size_t
     }
 }
 
+void tribo_loads_keep_constant(tribo_system *sys)
+{
+    for (struct harmonic *h = sys->loads.harmonic; h < sys->loads.harmonic + sys->loads.harmonics; h++) {
+        h->count = h->omega != 0.0 ? 0 : h->count;
+    }
+}
+
 void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, double factor, double *to)
 {
     for (size_t k = 0; k < sys->loads.harmonics; k++) {

@@ -174,6 +174,9 @@ void tribo_loads_free(tribo_system *sys);
 /* Copies loads, base motions and tables from `from` to sys, which has none. Returns 1, or 0 if out of memory. */
 int tribo_loads_copy(tribo_system *sys, const tribo_system *from);
 
+/* Leaves of all harmonics those of omega = 0. */
+void tribo_loads_keep_constant(tribo_system *sys);
+
 /* Sets time t. If limits vary, sets the limits of the contacts at t. */
 void tribo_system_set_time(tribo_system *sys, double t);
 
@@ -236,6 +239,13 @@ double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 
 /* way [ncontact][columns] = J q + G f of perturbations v [tribo_system_energy][columns]; f [ncontact][columns] = their forces. */
 void tribo_system_find_ways(const tribo_system *sys, size_t columns, const double *v, double *f, double *way);
+
+/* f [ncontact][columns] += forces of the springs of contacts at rest, slip 0, by which J q + G f takes the values that `stretch`
+ * [ncontact][columns] has less J q; f in: forces of the contacts that slide. Overwrites stretch. */
+void tribo_springs_hold(const tribo_system *sys, const signed char *slip, size_t columns, double *stretch, double *f);
+
+/* y [tribo_system_size] = the state q [ndof], q' = 0, with the forces f [ncontact] and energy 0. */
+void tribo_system_put_steady(const tribo_system *sys, const double *q, const double *f, double *y);
 
 /* to [ndof] = scale times the order-th derivative of the load at the set time, - AK q - AC u + M^-1 J' f over the compliant
  * contacts, and the forces of pressed normals, of which the gap counts in order 0; f [ncontact]. u is not read without damping, f
