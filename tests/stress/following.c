@@ -9,10 +9,16 @@
 
 enum { BLOCK = 25, DOFS = 6, ROWS = 8, FOLLOWERS = 4, WINDOWS = 24 };
 
+/* Direction k of J in a planar contact. */
+enum { ALONE, FIRST, SECOND };
+
 #define DURATION 8.0
 
 /* Step of the differences in time. */
-#define STEP 2e-3
+#define STEP 1e-3
+
+/* Difference in a state, for derivatives. */
+#define SHIFT 1e-6
 
 struct wave {
     double omega, cosine[DOFS], sine[DOFS];
@@ -23,6 +29,7 @@ struct scene {
     size_t n, followers, normals, rows;
     double mass[DOFS * DOFS], damping[DOFS * DOFS], stiffness[DOFS * DOFS], direction[ROWS * DOFS], compliance[ROWS];
     size_t normal[FOLLOWERS]; /* index of the normal of a follower */
+    int pair[FOLLOWERS];
     double mu[FOLLOWERS], spring[FOLLOWERS], gap[FOLLOWERS];
     struct wave load[3];
     double belt[ROWS], shake[ROWS], shake_omega;
@@ -119,6 +126,32 @@ static struct scene scene_create(int seed)
     return s;
 }
 
+/* Makes planar contacts of some followers: the second direction has the normal of the first. */
+static void pair_up(struct scene *s, int seed)
+{
+    struct random g = random_of(seed);
+    int pushes[FOLLOWERS] = {0};
+    for (size_t k = 0; k + 1 < s->followers; k++) {
+        if (s->pair[k] == ALONE && (k == 0 || chance(&g, 0.6))) {
+            s->pair[k] = FIRST;
+            s->pair[k + 1] = SECOND;
+            s->normal[k + 1] = s->normal[k];
+            s->mu[k + 1] = s->mu[k];
+        }
+    }
+    for (size_t k = 0; k < s->followers; k++) {
+        s->compliance[k] = 0.0;
+        pushes[s->normal[k]] = 1;
+        for (size_t j = 0; j < s->n; j++) { /* redundant contacts at rest are refused */
+            s->direction[k * s->n + j] += uniform(&g, -0.3, 0.3);
+        }
+    }
+    for (size_t k = 0; k < s->normals; k++) {
+        s->spring[k] *= pushes[k];
+    }
+    strcat(s->name, ", planar");
+}
+
 static tribo_system *scene_system(const struct scene *s, int seed)
 {
     tribo_model *model;
@@ -129,13 +162,20 @@ static tribo_system *scene_system(const struct scene *s, int seed)
     assert_ok(tribo_model_set_stiffness(model, s->stiffness));
     assert_ok(tribo_model_set_direction(model, s->direction));
     assert_ok(tribo_model_set_compliance(model, s->compliance));
+    size_t first[FOLLOWERS], planes = 0;
     for (size_t k = 0; k < s->followers; k++) {
         const size_t n = s->normal[k];
-        assert_ok(tribo_model_set_normal(model, k, s->followers + n, s->mu[k], s->spring[n], s->gap[n]));
+        if (s->pair[k] != SECOND) {
+            assert_ok(tribo_model_set_normal(model, k, s->followers + n, s->mu[k], s->spring[n], s->gap[n]));
+        }
+        if (s->pair[k] == FIRST) {
+            first[planes++] = k;
+        }
     }
     const int status = tribo_system_create(&sys, model);
     require(!status, "seed %d: %s", seed, tribo_model_message(model));
     tribo_model_destroy(model);
+    assert_ok(tribo_set_planar(tribo_system_context(sys), planes, first));
     for (size_t k = 0; k < 3; k++) {
         assert_ok(tribo_system_add_load(sys, s->load[k].omega, s->load[k].cosine, s->load[k].sine));
     }
@@ -199,6 +239,28 @@ static int find_forces(size_t n, size_t count, const double *const *row, double 
     return 1;
 }
 
+/* The velocity of direction k at t in the state y. */
+static double velocity(const struct scene *s, size_t k, double t, const double *y)
+{
+    return row_of(s->direction + k * s->n, y + s->n, s->n) - s->belt[k] - s->shake[k] * cos(s->shake_omega * t);
+}
+
+/* Returns 1 if a planar contact turns fast, or stops nearby, so that differences in time are not exact. */
+static int turns(const struct scene *s, double t, double y[9][2 * DOFS + FOLLOWERS + 1])
+{
+    for (size_t k = 0; k < s->followers; k++) {
+        double speed = 0.0, change = 0.0;
+        for (size_t d = k; s->pair[k] == FIRST && d < k + 2; d++) {
+            speed = hypot(speed, velocity(s, d, t, y[4]));
+            change = hypot(change, velocity(s, d, t + 4.0 * STEP, y[8]) - velocity(s, d, t - 4.0 * STEP, y[0]));
+        }
+        if (speed > 1e-8 && change > 0.2 * speed) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
 /* Residual of the equations of motion and of the law at t, the middle of states y; largest number of these in *size. */
 static double residual(const struct scene *s, double t, double y[9][2 * DOFS + FOLLOWERS + 1], double *size)
 {
@@ -225,7 +287,7 @@ static double residual(const struct scene *s, double t, double y[9][2 * DOFS + F
     for (size_t k = 0; k < s->followers; k++) {
         const double *row = s->direction + k * n, *across = s->direction + (s->followers + s->normal[k]) * n;
         const double limit = s->mu[k] * s->spring[s->normal[k]] * fmax(row_of(across, q, n) - s->gap[s->normal[k]], 0.0);
-        double v = row_of(row, u, n) - s->belt[k] - s->shake[k] * cos(s->shake_omega * t);
+        double v = velocity(s, k, t, q);
         const int elastic = s->compliance[k] > 0.0;
         *size = fmax(*size, limit);
         if (elastic) {
@@ -233,10 +295,14 @@ static double residual(const struct scene *s, double t, double y[9][2 * DOFS + F
             v += derivative(y, 2 * n + springs++) - row_of(row, u, n);
             off = fmax(off, fabs(f[k]) - limit);
         }
+        const double other = s->pair[k] == ALONE ? 0.0 : velocity(s, s->pair[k] == FIRST ? k + 1 : k - 1, t, q);
+        const double speed = hypot(v, other);
         if (limit == 0.0) {
             off = fmax(off, elastic ? fabs(f[k]) : 0.0);
             f[k] = 0.0;
-        } else if (fabs(v) > 1e-8) {
+        } else if (s->pair[k] != ALONE && speed > 1e-8) {
+            f[k] = -limit * v / speed;
+        } else if (speed > 1e-8) {
             off = elastic ? fmax(off, fmin(fabs(f[k] + copysign(limit, v)), fabs(v))) : off;
             f[k] = -copysign(limit, v);
         } else if (!elastic) {
@@ -250,13 +316,14 @@ static double residual(const struct scene *s, double t, double y[9][2 * DOFS + F
         }
     }
     double hold[FOLLOWERS];
-    if (!find_forces(n, count, stuck, r, hold)) {
+    if (turns(s, t, y) || !find_forces(n, count, stuck, r, hold)) {
         return 0.0;
     }
     for (size_t k = 0; k < count; k++) {
         const double *across = s->direction + (s->followers + s->normal[held[k]]) * n;
         const size_t c = s->normal[held[k]];
-        off = fmax(off, fabs(hold[k]) - s->mu[held[k]] * s->spring[c] * fmax(row_of(across, q, n) - s->gap[c], 0.0));
+        const double force = s->pair[held[k]] == FIRST ? hypot(hold[k], hold[k + 1]) : fabs(hold[k]);
+        off = fmax(off, force - s->mu[held[k]] * s->spring[c] * fmax(row_of(across, q, n) - s->gap[c], 0.0));
     }
     for (size_t d = 0; d < n; d++) {
         off = fmax(off, fabs(r[d]));
@@ -357,10 +424,24 @@ TEST(circulatory)
     }
 }
 
+/* Planar contacts: by event alone. */
+TEST(planes)
+{
+    for (int seed = setting("TRIBO_SEED", 0) + BLOCK * _i; seed < setting("TRIBO_SEED", 0) + BLOCK * (_i + 1); seed++) {
+        double y[WINDOWS][2 * DOFS + FOLLOWERS + 1] = {{0.0}};
+        struct scene s = scene_create(seed);
+        if (s.followers > 1 && s.n > 1) {
+            pair_up(&s, seed);
+            const int event = follow(&s, seed, "event", y);
+            require(!event || event == TRIBO_ERR_UNSUPPORTED, "seed %d, %s: event: %d", seed, s.name, event);
+        }
+    }
+}
+
 /* Finds a periodic motion of s by a method: y, its multipliers sorted by modulus, re [dimension - 1], and by event how far the
  * motion is from there after a period. Returns a status. */
-static int find_return(const struct scene *s, int seed, const char *method, double period, double *y, double *modulus,
-                       double *off)
+static int find_return(const struct scene *s, int seed, const char *method, double period, double *y, double *multiplier,
+                       double *modulus, double *off)
 {
     tribo_system *sys = scene_system(s, seed);
     const size_t all = tribo_system_dimension(sys);
@@ -376,6 +457,7 @@ static int find_return(const struct scene *s, int seed, const char *method, doub
     *off = 0.0;
     if (!status) {
         for (size_t i = 0; i + 1 < all; i++) {
+            multiplier[i] = re[i];
             modulus[i] = hypot(re[i], im[i]);
         }
         memcpy(z, y, all * sizeof *z);
@@ -395,8 +477,8 @@ TEST(periodic)
 {
     for (int seed = setting("TRIBO_SEED", 0) + BLOCK * _i; seed < setting("TRIBO_SEED", 0) + BLOCK * (_i + 1); seed++) {
         struct scene s = scene_create(seed);
-        double y[2][2 * DOFS + FOLLOWERS + 1] = {{0.0}}, modulus[2][2 * DOFS + FOLLOWERS] = {{0.0}}, off[2], size = 1.0,
-                                           same = 0.0;
+        double y[2][2 * DOFS + FOLLOWERS + 1] = {{0.0}}, modulus[2][2 * DOFS + FOLLOWERS] = {{0.0}},
+                                           multiplier[2 * DOFS + FOLLOWERS], off[2], size = 1.0, same = 0.0;
         if (strstr(s.name, "free")) {
             continue;
         }
@@ -407,7 +489,8 @@ TEST(periodic)
         }
         int status[2];
         for (int k = 0; k < 2; k++) {
-            status[k] = find_return(&s, seed, k ? "exact" : "event", 2.0 * PI / s.load[1].omega, y[k], modulus[k], &off[k]);
+            status[k] =
+                find_return(&s, seed, k ? "exact" : "event", 2.0 * PI / s.load[1].omega, y[k], multiplier, modulus[k], &off[k]);
         }
         for (size_t i = 0; i < 2 * DOFS + FOLLOWERS; i++) {
             size = fmax(size, fmax(fabs(y[0][i]), modulus[0][i]));
@@ -418,6 +501,58 @@ TEST(periodic)
         for (size_t i = 0; !status[0] && !status[1] && same < 1e-9 * size && i < 2 * DOFS + FOLLOWERS; i++) {
             require(fabs(modulus[0][i] - modulus[1][i]) < 1e-6 * size, "seed %d, %s: multiplier %zu: %g by event, %g by exact",
                     seed, s.name, i, modulus[0][i], modulus[1][i]);
+        }
+    }
+}
+
+/* Sum over the diagonal of the derivative of the motion over a period by its start y, by differences. */
+static double trace_of(const struct scene *s, int seed, double period, const double *y)
+{
+    tribo_system *sys = scene_system(s, seed);
+    const size_t all = tribo_system_dimension(sys);
+    tribo_driver *d = NULL;
+    double sum = 0.0;
+    assert_ok(tribo_driver_create(&d, sys, "event"));
+    for (size_t i = 0; i + 1 < all; i++) {
+        for (double side = -1.0; side <= 1.0; side += 2.0) {
+            double t = 0.0, z[2 * DOFS + FOLLOWERS + 1];
+            memcpy(z, y, all * sizeof *z);
+            z[i] += side * SHIFT;
+            assert_ok(tribo_driver_advance(d, &t, period, z));
+            sum += side * z[i] / (2.0 * SHIFT);
+        }
+    }
+    tribo_driver_destroy(d);
+    tribo_system_destroy(sys);
+    return sum;
+}
+
+/* Periodic motions of planar contacts by event return, and have the multipliers of the motions beside them. */
+TEST(periodic_planes)
+{
+    for (int seed = setting("TRIBO_SEED", 0) + BLOCK * _i; seed < setting("TRIBO_SEED", 0) + BLOCK * (_i + 1); seed++) {
+        struct scene s = scene_create(seed);
+        double y[2 * DOFS + FOLLOWERS + 1] = {0.0}, re[2 * DOFS + FOLLOWERS] = {0.0}, modulus[2 * DOFS + FOLLOWERS], off,
+                                        size = 1.0, sum = 0.0;
+        if (strstr(s.name, "free") || s.followers < 2 || s.n < 2) {
+            continue;
+        }
+        pair_up(&s, seed);
+        s.load[2].omega = 2.0 * s.load[1].omega;
+        s.shake_omega = s.load[1].omega;
+        for (size_t i = 0; i < s.n; i++) {
+            s.damping[i * (s.n + 1)] += 0.2 * s.mass[i * (s.n + 1)];
+        }
+        const double period = 2.0 * PI / s.load[1].omega;
+        if (!find_return(&s, seed, "event", period, y, re, modulus, &off)) {
+            for (size_t i = 0; i < 2 * DOFS; i++) {
+                size = fmax(size, fabs(y[i]));
+                sum += re[i];
+            }
+            require(off < 1e-9 * size, "seed %d, %s: event does not return by %g", seed, s.name, off);
+            const double want = trace_of(&s, seed, period, y);
+            require(fabs(sum - want) < 1e-3 * size, "seed %d, %s: multipliers have the sum %g, motions beside %g", seed, s.name,
+                    sum, want);
         }
     }
 }
@@ -454,14 +589,13 @@ enum {
     CASES
 };
 
-TEST(degenerate)
+static struct scene degenerate_scene(int which, size_t copies, int elastic)
 {
-    const int elastic = _i / CASES;
-    struct scene s = bodies(_i % CASES == EQUAL ? 3 : 1, elastic, 0.5);
+    struct scene s = bodies(which == EQUAL ? copies : 1, elastic, 0.5);
     s.load[1].omega = 1.5;
-    switch (_i % CASES) {
+    switch (which) {
     case EQUAL: /* touch, stick, slide and lift at the same times */
-        for (size_t k = 0; k < 3; k++) {
+        for (size_t k = 0; k < copies; k++) {
             s.load[1].cosine[2 * k] = 2.0;
             s.load[1].sine[2 * k + 1] = 1.5;
         }
@@ -502,7 +636,7 @@ TEST(degenerate)
     case AT_THE_LIMIT:    /* and against 0.5, the limit */
         s.stiffness[0] = 4.0;
         s.stiffness[1] = s.stiffness[2] = -1.5;
-        s.mu[0] = _i % CASES == VANISH_TOGETHER ? 0.6 : 0.5;
+        s.mu[0] = which == VANISH_TOGETHER ? 0.6 : 0.5;
         s.load[0].cosine[1] = 1.0;
         s.load[1].cosine[1] = 2.0;
         break;
@@ -512,13 +646,82 @@ TEST(degenerate)
         s.start[0] = -1.0;
         break;
     }
-    snprintf(s.name, sizeof s.name, "case %d%s", _i % CASES, elastic ? ", elastic" : "");
+    snprintf(s.name, sizeof s.name, "case %d%s", which, elastic ? ", elastic" : "");
+    return s;
+}
+
+TEST(degenerate)
+{
+    const struct scene s = degenerate_scene(_i % CASES, 3, _i / CASES);
     both(&s, _i);
+}
+
+/* The same scene with another degree of freedom across each contact, and planar contacts with directions askew. */
+static struct scene askew(const struct scene *s)
+{
+    struct scene p = {.n = s->n + s->followers, .followers = 2 * s->followers, .normals = s->normals};
+    const double c = 0.6, across = 0.8;
+    p.rows = p.followers + p.normals;
+    for (size_t i = 0; i < p.n; i++) {
+        p.mass[i * (p.n + 1)] = p.stiffness[i * (p.n + 1)] = 1.0;
+        for (size_t j = 0; j < s->n && i < s->n; j++) {
+            p.mass[i * p.n + j] = s->mass[i * s->n + j];
+            p.stiffness[i * p.n + j] = s->stiffness[i * s->n + j];
+        }
+    }
+    for (size_t i = 0; i < p.rows; i++) {
+        const size_t from = i < p.followers ? i / 2 : i - s->followers;
+        const double along = i >= p.followers ? 1.0 : i % 2 ? -across : c;
+        for (size_t j = 0; j < s->n; j++) {
+            p.direction[i * p.n + j] = along * s->direction[from * s->n + j];
+        }
+        if (i < p.followers) {
+            p.direction[i * p.n + s->n + i / 2] = i % 2 ? c : across;
+            p.normal[i] = s->normal[i / 2];
+            p.mu[i] = s->mu[i / 2];
+            p.pair[i] = i % 2 ? SECOND : FIRST;
+        }
+    }
+    memcpy(p.spring, s->spring, sizeof p.spring);
+    memcpy(p.gap, s->gap, sizeof p.gap);
+    memcpy(p.load, s->load, sizeof p.load);
+    for (size_t i = 0; i < s->n; i++) {
+        p.start[i] = s->start[i];
+        p.start[p.n + i] = s->start[s->n + i];
+    }
+    snprintf(p.name, sizeof p.name, "%.90s, planar", s->name);
+    return p;
+}
+
+/* A planar contact that moves on a line is the scalar one. */
+TEST(degenerate_planes)
+{
+    double y[2][WINDOWS][2 * DOFS + FOLLOWERS + 1] = {{{0.0}}};
+    const struct scene s = degenerate_scene(_i, 2, 0), p = askew(&s);
+    if (_i == DOUBLE) { /* redundant at rest */
+        return;
+    }
+    assert_ok(follow(&s, _i, "event", y[0]));
+    const int status = follow(&p, _i, "event", y[1]);
+    require(!status, "%s: %d", p.name, status);
+    for (size_t w = 0; w < WINDOWS; w++) {
+        double off = fabs(y[0][w][2 * s.n] - y[1][w][2 * p.n]);
+        for (size_t i = 0; i < s.n; i++) {
+            off = fmax(off, fabs(y[0][w][i] - y[1][w][i]));
+            off = fmax(off, fabs(y[0][w][s.n + i] - y[1][w][p.n + i]));
+        }
+        require(off < 1e-9, "%s: at piece %zu scalar and planar contacts differ by %g", p.name, w, off);
+    }
 }
 
 int main(void)
 {
-    const struct test tests[] = {
-        {agree, setting("TRIBO_BLOCKS", 12)}, {circulatory, setting("TRIBO_BLOCKS", 4)}, {periodic, 2}, {degenerate, 2 * CASES}};
+    const struct test tests[] = {{agree, setting("TRIBO_BLOCKS", 12)},
+                                 {circulatory, setting("TRIBO_BLOCKS", 4)},
+                                 {planes, setting("TRIBO_BLOCKS", 12)},
+                                 {periodic, 2},
+                                 {periodic_planes, 2},
+                                 {degenerate, 2 * CASES},
+                                 {degenerate_planes, CASES}};
     return run_suite("following", tests, COUNT(tests));
 }

@@ -22,6 +22,13 @@
 /* Rounding of a speed, in parts of the largest one so far. */
 #define ROUNDING 1e-14
 
+/* Speeds below this part of the largest one have a direction that is partly rounding. */
+#define LOST 1e-11
+
+/* A direction is known that turns by at most TURNS_LEFT, in radians, as the speed falls by SETTLED to the part LOST. */
+#define SETTLED 1e3
+#define TURNS_LEFT 1e-4
+
 /* Largest turn of a sliding force, in radians, in the moment looked ahead. */
 #define TURN 0.02
 
@@ -47,6 +54,12 @@ static void set_slip(struct stick_slip *m, const struct planar_contact *p, signe
     tribo_stick_slip_set(m, p->at + 1, slip);
 }
 
+/* 1 if the limit of contact i is not the same at all times. */
+static int limit_varies(const tribo_system *sys, size_t i)
+{
+    return tribo_normals_follower(sys, i) || tribo_system_varies_limit(sys, i, i);
+}
+
 /* Finds the planar contacts, which slide at first: whether they are at rest is seen by their speed alone. Returns a status. */
 static int create_plane(struct stick_slip *m, const tribo_system *sys)
 {
@@ -65,25 +78,28 @@ static int create_plane(struct stick_slip *m, const tribo_system *sys)
     for (size_t i = 0; !status && i < c; i++) {
         /* directions of planar contacts stand in pairs; one without both limits is scalar, or open */
         const double *limit = m->state.limit + i, *r = m->constant.diagonal + i;
-        const int pair = slip[i] == TRIBO_SLIP_PLANE, slides = pair && limit[0] > 0.0 && limit[1] > 0.0;
+        const int pair = slip[i] == TRIBO_SLIP_PLANE, varies = pair && (limit_varies(sys, i) || limit_varies(sys, i + 1)),
+                  slides = varies || (pair && limit[0] > 0.0 && limit[1] > 0.0);
         p->in_plane[i] = (unsigned char)slides;
         if (pair) {
             p->in_plane[i + 1] = slides ? 2 : 0;
         }
         if (slides) {
+            const double weight[2] = {varies ? 1.0 : limit[0], varies ? 1.0 : limit[1]};
             p->contact[p->count++] = (struct planar_contact){.at = i,
                                                              .size = 2,
-                                                             .limit = {limit[0], limit[1]},
-                                                             .brake = greater(limit[0] * r[0], limit[1] * r[1]),
+                                                             .weight = {weight[0], weight[1]},
+                                                             .varies = varies,
+                                                             .brake = greater(weight[0] * r[0], weight[1] * r[1]),
                                                              .now = HUGE_VAL};
-            set_slip(m, &p->contact[p->count - 1], TRIBO_SLIP_PLANE);
+            set_slip(m, &p->contact[p->count - 1], m->state.limit[i] > 0.0 ? TRIBO_SLIP_PLANE : TRIBO_SLIP_OPEN);
         }
         i += (size_t)pair;
     }
     p->all = p->count;
     for (size_t i = 0; !status && i < c; i++) {
         if (!p->in_plane[i]) {
-            p->contact[p->all++] = (struct planar_contact){.at = i, .size = 1, .limit = {m->state.limit[i]}};
+            p->contact[p->all++] = (struct planar_contact){.at = i, .size = 1, .weight = {1.0}};
         }
     }
     return status;
@@ -108,12 +124,16 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
                            "%g: take moreau/fixed",
                            i, i, m->limits.ratio[i]);
     }
-    if (tribo_system_limits_vary(sys)) {
-        return tribo_error(
-            sys->message, TRIBO_ERR_UNSUPPORTED,
-            "method event knows no limits that change with time beside planar contacts, of which the system has %zu", planar);
-    }
     const int status = create_plane(m, sys);
+    for (size_t k = 0; !status && k < m->plane->count; k++) {
+        const size_t at = m->plane->contact[k].at;
+        if (tribo_system_varies_limit(sys, at, at + 1)) {
+            return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                               "the limits of both directions of the planar contact %zu change with time, and differ: method "
+                               "event takes the same limit in both: take moreau/fixed",
+                               at);
+        }
+    }
     return status ? tribo_error(sys->message, status, "%s, of planar contacts", tribo_strerror(status)) : TRIBO_OK;
 }
 
@@ -130,10 +150,15 @@ static size_t stop_in_plane(struct stick_slip *m, const tribo_system *sys, const
         p->stop = 0.0;
         for (size_t d = 0; d < 2; d++) {
             v[d] = tribo_stick_slip_find_velocity(m, sys, p->at + d, y);
-            p->stop = greater(p->stop, fabs(v[d]) / (p->limit[d] * m->constant.diagonal[p->at + d]));
+            const double brake = product(p->limit[d], m->constant.diagonal[p->at + d]);
+            p->stop = greater(p->stop, brake > 0.0 ? quotient(fabs(v[d]), brake) : TRIBO_FAR);
         }
         p->now = length(v);
         p->most = greater(p->most, p->now);
+        for (size_t d = 0; p->now > LOST * p->most && d < 2; d++) {
+            p->way[d] = p->weight[d] * v[d] / hypot(p->weight[0] * v[0], p->weight[1] * v[1]);
+            p->settled[d] = p->now > SETTLED * LOST * p->most ? p->way[d] : p->settled[d];
+        }
         p->begins = SLIDES_ON;
         const double noise =
             greater(m->noise.factor * (m->noise.velocity[p->at] + m->noise.velocity[p->at + 1]), ROUNDING * p->most);
@@ -164,8 +189,15 @@ static int check_holds(const struct stick_slip *m, const tribo_system *sys)
 int tribo_planar_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
 {
     int status;
-    for (size_t k = 0; k < m->plane->count; k++) {
-        m->plane->contact[k].before = m->plane->contact[k].now;
+    for (size_t k = 0; k < m->plane->all; k++) {
+        struct planar_contact *p = &m->plane->contact[k];
+        const struct follower *f = tribo_normals_follower(sys, p->at);
+        const int rests = f && m->state.rests[f->normal];
+        p->before = p->now;
+        for (size_t d = 0; d < p->size; d++) {
+            p->limit[d] = m->state.limit[p->at + d];
+        }
+        p->lag = p->limit[0] > 0.0 ? 0 : m->state.limit_rate[p->at] > 0.0 && !rests ? 1 : 2;
     }
     m->plane->stopped = m->constant.contacts;
     do {
@@ -185,20 +217,20 @@ static double given_forces(struct stick_slip *m, const tribo_system *sys, const 
     double fastest = 0.0;
     for (size_t i = 0; i < m->constant.contacts; i++) {
         m->work.lo[i] = tribo_slides(m->state.slip[i]) ? -m->state.slip[i] * m->state.limit[i] : 0.0;
-        m->plane->rate[i] = 0.0;
+        m->plane->rate[i] = tribo_slides(m->state.slip[i]) ? -m->state.slip[i] * m->state.limit_rate[i] : 0.0;
     }
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
         if (tribo_slides_in_plane(m, p) && p->begins == SLIDES_ON) {
-            const double *limit = p->limit, *a = acc + p->at;
-            const double x[2] = {limit[0] * tribo_stick_slip_velocity(m, sys, p->at, y),
-                                 limit[1] * tribo_stick_slip_velocity(m, sys, p->at + 1, y)};
+            const double *limit = p->limit, *weight = p->weight, *rise = m->state.limit_rate + p->at, *a = acc + p->at;
+            const double x[2] = {weight[0] * tribo_stick_slip_velocity(m, sys, p->at, y),
+                                 weight[1] * tribo_stick_slip_velocity(m, sys, p->at + 1, y)};
             const double size = length(x), n[2] = {x[0] / size, x[1] / size};
-            const double turn = (n[0] * limit[1] * a[1] - n[1] * limit[0] * a[0]) / size;
+            const double turn = (n[0] * weight[1] * a[1] - n[1] * weight[0] * a[0]) / size;
             m->work.lo[p->at] = -limit[0] * n[0];
             m->work.lo[p->at + 1] = -limit[1] * n[1];
-            m->plane->rate[p->at] = limit[0] * n[1] * turn;
-            m->plane->rate[p->at + 1] = -limit[1] * n[0] * turn;
+            m->plane->rate[p->at] = limit[0] * n[1] * turn - rise[0] * n[0];
+            m->plane->rate[p->at + 1] = -limit[1] * n[0] * turn - rise[1] * n[1];
             fastest = greater(fastest, fabs(turn));
         }
     }
@@ -209,12 +241,35 @@ void tribo_planar_slip_forces(const struct stick_slip *m, const tribo_system *sy
 {
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
-        const double x[2] = {p->limit[0] * tribo_stick_slip_velocity(m, sys, p->at, y),
-                             p->limit[1] * tribo_stick_slip_velocity(m, sys, p->at + 1, y)};
+        const double x[2] = {p->weight[0] * tribo_stick_slip_velocity(m, sys, p->at, y),
+                             p->weight[1] * tribo_stick_slip_velocity(m, sys, p->at + 1, y)};
         for (size_t d = 0; d < 2 && tribo_slides_in_plane(m, p); d++) {
-            force[p->at + d] = -p->limit[d] * quotient(x[d], length(x));
+            const double way = length(x) > LOST * p->most * greater(p->weight[0], p->weight[1]) ? x[d] / length(x) : p->way[d];
+            force[p->at + d] = -m->state.limit[p->at + d] * way;
         }
     }
+}
+
+size_t tribo_stick_slip_uncertain(const struct stick_slip *m)
+{
+    for (size_t k = 0; m->plane && k < m->plane->count; k++) {
+        const struct planar_contact *p = &m->plane->contact[k];
+        const double turns = fabs(p->way[0] * p->settled[1] - p->way[1] * p->settled[0]);
+        if (tribo_slides_in_plane(m, p) && p->now <= LOST * p->most && turns > TURNS_LEFT) {
+            return p->at;
+        }
+    }
+    return m->constant.contacts;
+}
+
+double tribo_stick_slip_excess(const struct stick_slip *m, size_t i, double lowest)
+{
+    size_t k = 0;
+    while (k < m->plane->count && m->plane->contact[k].at != i) {
+        k++;
+    }
+    const double blunt = k < m->plane->count ? m->plane->contact[k].blunt : 0.0;
+    return blunt > 0.0 ? sqrt(2.0 * blunt * greater(lowest, 0.0)) : lowest;
 }
 
 /* Finds forces f [ncontact] at accelerations a without friction: work.lo of sliding contacts, Coulomb's law with limits work.hi
@@ -234,11 +289,11 @@ static int solve_discs(struct stick_slip *m, const tribo_system *sys, const doub
 
 /* ------------------------------------------------------------------------------------------------------- letting go */
 
-/* |f/limit|; *noise = its rounding. */
+/* |f/limit|, 1 for a limit of 0; *noise = its rounding. */
 static double share(const struct stick_slip *m, const struct planar_contact *p, const double *f, double *noise)
 {
-    double sum = 0.0, allowance = 0.0, least = HUGE_VAL;
-    for (size_t d = 0; d < p->size; d++) {
+    double sum = p->lag > 0 ? 1.0 : 0.0, allowance = 0.0, least = HUGE_VAL;
+    for (size_t d = 0; p->lag == 0 && d < p->size; d++) {
         sum = hypot(sum, f[p->at + d] / p->limit[d]);
         allowance = greater(allowance, m->noise.allowance[p->at + d]);
         least = lesser(least, p->limit[d]);
@@ -247,40 +302,45 @@ static double share(const struct stick_slip *m, const struct planar_contact *p, 
     return sum;
 }
 
-/* 1 if a contact accelerates, by work.v, against force f by more than rounding. */
+/* 1 if a contact accelerates, by work.v, against force f, or without a force, by more than rounding. */
 static int accelerates(const struct stick_slip *m, const struct planar_contact *p, const double *f)
 {
-    double against = 0.0, size = 0.0, noise = 0.0;
+    const int pushes = tribo_largest(f + p->at, p->size) > 0.0;
+    double against = 0.0, noise = 0.0;
     for (size_t i = p->at; i < p->at + p->size; i++) {
-        against -= f[i] * m->work.v[i];
-        noise += fabs(f[i]) * m->noise.acceleration[i];
-        size += fabs(f[i]);
+        const double part = pushes ? f[i] : -m->work.v[i];
+        against -= part * m->work.v[i];
+        noise += fabs(part) * m->noise.acceleration[i];
     }
-    return size > 0.0 && against > noise;
+    return against > noise;
 }
 
-/* Lets a contact slide against its force. */
+/* Lets a contact slide against its force; by work.v at a limit of 0. */
 static void let_slide_against(struct stick_slip *m, struct planar_contact *p, int begins)
 {
-    double *f = m->state.force + p->at;
+    double *f = m->state.force + p->at, part[2] = {0.0};
+    for (size_t d = 0; d < p->size; d++) {
+        part[d] = p->lag == 0 ? f[d] / p->limit[d] : -p->weight[d] * m->work.v[p->at + d];
+    }
     if (p->size == 1) {
-        tribo_stick_slip_set(m, p->at, f[0] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH);
+        tribo_stick_slip_set(m, p->at, part[0] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH);
         f[0] = -m->state.slip[p->at] * p->limit[0];
         return;
     }
-    const double part[2] = {f[0] / p->limit[0], f[1] / p->limit[1]}, size = length(part);
+    const double size = length(part);
     set_slip(m, p, TRIBO_SLIP_PLANE);
     p->begins = begins;
     p->now = 0.0;
     for (size_t d = 0; d < 2; d++) {
-        p->direction[d] = -part[d] / size;
+        p->direction[d] = p->way[d] = p->settled[d] = -part[d] / size;
         f[d] = -p->limit[d] * p->direction[d];
     }
 }
 
-/* 1 if the force that holds planar contact p a moment later, at forces f and accelerations work.v, is beyond the tangent to the
+/* 1 if the force that holds planar contact p a moment h later, at forces f and accelerations work.v, is beyond the tangent to the
  * limit curve at its present force. A force that turns along the curve is not: curvature is of second order. */
-static int goes_beyond(const struct stick_slip *m, const tribo_system *sys, const struct planar_contact *p, const double *f)
+static int goes_beyond(const struct stick_slip *m, const tribo_system *sys, const struct planar_contact *p, const double *f,
+                       double h)
 {
     double r[2][2], beyond = 0.0, noise = 0.0;
     for (size_t d = 0; d < 2; d++) {
@@ -289,12 +349,13 @@ static int goes_beyond(const struct stick_slip *m, const tribo_system *sys, cons
     }
     const double *v = m->work.v + p->at, determinant = r[0][0] * r[1][1] - r[0][1] * r[1][0];
     const double lacks[2] = {(r[0][1] * v[1] - r[1][1] * v[0]) / determinant, (r[1][0] * v[0] - r[0][0] * v[1]) / determinant};
-    for (size_t d = 0; d < 2; d++) {
-        const double part = m->state.force[p->at + d] / (p->limit[d] * p->limit[d]);
-        beyond += part * (f[p->at + d] + lacks[d] - m->state.force[p->at + d]);
+    for (size_t d = 0; p->lag == 0 && d < 2; d++) {
+        const double force = m->state.force[p->at + d], part = force / (p->limit[d] * p->limit[d]);
+        const double rises = h * m->state.limit_rate[p->at + d] / p->limit[d] * force;
+        beyond += part * (f[p->at + d] + lacks[d] - force - rises);
         noise += fabs(part) * m->noise.allowance[p->at + d];
     }
-    return beyond > noise;
+    return p->lag > 0 || beyond > noise;
 }
 
 /* Lets tied contacts slide by the forces of a moment later. work.v: accelerations. Returns a status. */
@@ -315,12 +376,12 @@ static int look_ahead_in_plane(struct stick_slip *m, const tribo_system *sys, co
         double noise;
         const double part = !counts ? 0.0 : m->state.tied[p->at] ? lesser(share(m, p, m->state.force, &noise), 1.0) : 1.0;
         for (size_t d = 0; d < p->size; d++) {
-            m->work.hi[p->at + d] = part * p->limit[d];
+            m->work.hi[p->at + d] = greater(part * p->limit[d] + (counts ? h * m->state.limit_rate[p->at + d] : 0.0), 0.0);
         }
     }
     const int status = solve_discs(m, sys, m->plane->ahead, m->work.f);
     for (struct planar_contact *p = m->plane->contact; !status && p < end; p++) {
-        if (m->state.tied[p->at] && accelerates(m, p, m->work.f) && (p->size == 1 || goes_beyond(m, sys, p, m->work.f))) {
+        if (m->state.tied[p->at] && accelerates(m, p, m->work.f) && (p->size == 1 || goes_beyond(m, sys, p, m->work.f, h))) {
             let_slide_against(m, p, BY_FORCE);
         }
     }

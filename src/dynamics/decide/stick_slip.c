@@ -419,7 +419,7 @@ static void update_limits(struct stick_slip *m, tribo_system *sys, const double 
             s->limit[i] = s->limit_rate[i] = 0.0;
             tribo_stick_slip_set(m, i, TRIBO_SLIP_OPEN);
         } else if (s->slip[i] == TRIBO_SLIP_OPEN) {
-            tribo_stick_slip_set(m, i, slip_of(m, sys, i, y));
+            tribo_stick_slip_set(m, i, m->plane && m->plane->in_plane[i] ? TRIBO_SLIP_PLANE : slip_of(m, sys, i, y));
         }
     }
     tribo_limits_take(m);

@@ -122,14 +122,20 @@ enum { SLIDES_ON = 0, BY_ACCELERATION = 1, BY_FORCE = 2 };
 struct planar_contact {
     size_t at;           /* index of its first direction; the second one is at + 1 */
     size_t size;         /* number of directions */
-    double limit[2];     /* both > 0 */
-    double brake;        /* the largest deceleration by friction along a direction, limit R_ii */
+    double limit[2];     /* at this decision */
+    double weight[2];    /* the force is along weight v; limit, or 1 if that varies */
+    int varies;          /* 1: the limit varies, and is the same in both directions */
+    double blunt;        /* > 0: the guard at rest is (limit^2 - |f|^2)/2 over this, and limits may be less */
+    size_t lag;          /* the power of time with which the limit begins: 0, 1, or 2 for all higher ones */
+    double brake;        /* the largest of weight R_ii */
     double most;         /* the largest speed so far */
     double now;          /* speed at this decision; 0 where it begins to slide */
     double before;       /* speed at the decision before */
     double stop;         /* time in which friction would stop it, at this decision */
     int begins;          /* SLIDES_ON, BY_ACCELERATION or BY_FORCE */
-    double direction[2]; /* if not SLIDES_ON: direction of limit v, against that of force/limit; length 1 */
+    double direction[2]; /* if not SLIDES_ON: direction of weight v, against that of force/weight; length 1 */
+    double way[2];       /* the last direction of weight v that is not lost in the rounding of v */
+    double settled[2];   /* the last one at SETTLED times that speed (planar_slip.c) */
 };
 
 struct planar_slip {
@@ -305,6 +311,13 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
 /* In the place of tribo_stick_slip_find_resting and tribo_scalar_slip_settle where there are planar contacts. */
 int tribo_planar_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);
 int tribo_planar_slip_settle(struct stick_slip *m, const tribo_system *sys, const double *y);
+
+/* Returns the first direction of a planar contact that is about to stop in a direction that still turns; ncontact if there is
+ * none. */
+size_t tribo_stick_slip_uncertain(const struct stick_slip *m);
+
+/* The excess of a force over its limit in a phase in which the guard of contact i at rest falls to -lowest. */
+double tribo_stick_slip_excess(const struct stick_slip *m, size_t i, double lowest);
 
 /* Sets the entries of force [ncontact] of planar contacts that slide, by their velocities in y. */
 void tribo_planar_slip_forces(const struct stick_slip *m, const tribo_system *sys, const double *y, double *force);

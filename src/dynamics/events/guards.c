@@ -78,7 +78,8 @@ void tribo_events_learn(struct events *e, tribo_driver *drv)
             m->noise.velocity_scale[g->contact] = e->brief ? fabs(g->left.g) + e->when * fabs(g->left.d) : g->size;
             drv->backslip = greater(drv->backslip, g->lowest);
         } else if (g->kind == HOLDS) {
-            drv->excess = greater(drv->excess, g->lowest + m->noise.excess[g->contact]);
+            const double lowest = m->plane ? tribo_stick_slip_excess(m, g->contact, g->lowest) : g->lowest;
+            drv->excess = greater(drv->excess, lowest + m->noise.excess[g->contact]);
         }
     }
 }

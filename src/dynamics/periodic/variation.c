@@ -191,12 +191,19 @@ static void tear(struct variation *x, size_t i, size_t j)
 /* Depth, speed and acceleration of a normal, relative to the largest ones of the structure, that are rounding. */
 #define RESTS 1e-13
 
-/* Where a normal rests at depth 0 some neighbouring motions are pressed, and others are not: there is no derivative. */
+/* Where a normal rests at depth 0 some neighbouring motions are pressed, and others are not: there is no derivative; nor where a
+ * contact in a plane begins to slide without a limit, and motions beside it in any direction. */
 static void tear_resting(struct variation *x, const double *y)
 {
     const tribo_system *sys = x->sys;
     const struct normals *s = &sys->normals;
     const size_t n = sys->ndof;
+    const struct stick_slip *m = &x->to->events->stick_slip;
+    for (size_t k = 0; m->plane && k < m->plane->count; k++) {
+        if (tribo_slides_in_plane(m, m->plane->contact + k) && m->plane->contact[k].begins && m->plane->contact[k].lag) {
+            tear(x, m->plane->contact[k].at, m->plane->contact[k].at + 1);
+        }
+    }
     for (size_t k = 0; k < s->followers; k++) {
         const struct normal *at = &s->normal[s->follower[k].normal];
         const double *const value[] = {y, y + n, x->acceleration};
@@ -230,6 +237,7 @@ int tribo_variation_phase(struct variation *x, double tau, double t, const doubl
         return status;
     }
     tear_resting(x, y);
+    x->uncertain = tribo_stick_slip_uncertain(m);
     const struct motion *motion = x->to->events->motion;
     struct derivative_step *s = add_step(x->to);
     int done = s != NULL;
@@ -413,6 +421,9 @@ void tribo_variation_event(struct variation *x)
 {
     const struct stick_slip *m = &x->to->events->stick_slip;
     const size_t n = tribo_system_energy(x->sys);
+    if (x->uncertain < x->sys->ncontact && m->state.slip[x->uncertain] != TRIBO_SLIP_STUCK) {
+        tear(x, x->uncertain, x->uncertain + 1);
+    }
     for (size_t i = 0, end; i < x->sys->ncontact; i = end) {
         const int pair = m->plane && m->plane->in_plane[i] == 1;
         double power = 0.0; /* rate of g = f'v along the force f of a contact that slides */

@@ -77,6 +77,7 @@ struct variation {
     double *rate;              /* [ncontact] v' */
     double *spring_rate;       /* [ncontact] f' of elastic contacts */
     unsigned char *pressed;    /* [normals] 1: pressed in the phase */
+    size_t uncertain;          /* a contact in a plane that slides in a direction which is not known; ncontact: none */
 
     /* crossings, at most one a contact: of static limits, found before the decision, then of velocities */
     size_t count;

@@ -256,7 +256,7 @@ static double improve(struct event *e, double h)
 /* Error of directions allowed over a step, by the error of velocities that forces make of it. */
 static double allowed(const struct event *e, size_t k, double h)
 {
-    return lesser(MOST_OFF, e->error * (double)(NODES + 1) / (e->events.stick_slip.plane->contact[k].brake * h));
+    return lesser(MOST_OFF, e->error * (double)(NODES + 1) / (tribo_planar_series_brake(e, k, h) * h));
 }
 
 /* x along u and across u at tau. */
@@ -273,7 +273,7 @@ static void take_parts(const struct event *e, size_t k, double tau, double *alon
 /* The time in which friction would stop planar contact p, |x| being size. */
 static double stop_of(const struct planar_contact *p, double size)
 {
-    return size / (p->brake * greater(p->limit[0], p->limit[1]));
+    return quotient(size, p->brake * greater(p->limit[0], p->limit[1]));
 }
 
 /* Stray: velocity across u at tau in a step of length h, in units of its error allowed. Friction takes it away at once, or the
@@ -285,7 +285,7 @@ static double find_stray(const struct event *e, size_t k, double h, double tau)
     take_parts(e, k, tau, &along, &across);
     const double size = greater(hypot(along, across), TRIBO_SLOWER * e->planar.line[k].xn[0]);
     const double gone = fabs(across) / size * lesser(1.0, h / stop_of(p, size));
-    return gone / lesser(MOST_STRAY, e->error * lesser(p->limit[0], p->limit[1]) / size);
+    return gone / lesser(MOST_STRAY, e->error * lesser(p->weight[0], p->weight[1]) / size);
 }
 
 /* 1 if the contact slides along u, or stops before it does not. */
@@ -403,11 +403,11 @@ static int creep_expand(struct event *e, double t, const double *y, double h, st
             c->slides[s++] = k;
         }
     }
-    e->planar.given = 1;
+    e->planar.given = h;
     int status = tribo_event_start(e, t, y);
     status = status ? status : find_response(e);
     status = status ? status : find_angles(e, h, &found);
-    e->planar.given = 0;
+    e->planar.given = 0.0;
     step->good = 0;
     step->next = SHRINKS * h;
     if (!status && found) {

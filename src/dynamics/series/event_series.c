@@ -278,11 +278,11 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
         .columns = columns, .rows = m->limits.falls || m->plane ? e->order + 1 : 1, .source = source, .power = 1.0};
     struct planar_turns *t = &p.turns;
     if (!ALLOCATE(ARRAY(p.project, n * n), ARRAY(p.q, half), ARRAY(p.u, half), ARRAY(p.next, half), ARRAY(p.spring, each),
-                  ARRAY(p.force, each), ARRAY(p.v, p.rows * each), ARRAY(t->z, p.rows * planes), ARRAY(t->w, planes),
-                  ARRAY(p.drag, n))) {
+                  ARRAY(p.force, each), ARRAY(p.v, p.rows * each), ARRAY(t->z, p.rows * planes), ARRAY(t->g, p.rows * planes),
+                  ARRAY(t->w, planes), ARRAY(p.drag, n))) {
         return tribo_error(e->sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     }
-    *t = (struct planar_turns){columns, p.rows, tau, p.v, t->z, t->w};
+    *t = (struct planar_turns){columns, p.rows, tau, p.q, p.v, t->z, t->g, t->w};
     (void)phase;
     tribo_stick_slip_press(m, e->sys);
     int status = TRIBO_OK;

@@ -21,12 +21,13 @@ struct planar_line {
     double n[2], t[2];
     double *xn, *xt, *un, *ut; /* [order + 1] coefficients of x and u along n and t */
     double *speed;             /* [order + 1] coefficients of |x| */
+    double *g, *fn, *ft;       /* [order + 1] coefficients of the limit over weight, and of g u along n and t */
     double *square; /* [2 order + 1] |x|^2/time^(2s); of a contact at rest half the larger limit times |force/limit|^2 */
 };
 
 struct planar_series {
     size_t room;              /* for contacts */
-    int given;                /* 1: un and ut are given, and all sliding contacts slide already */
+    double given;             /* > 0: un and ut are given for a step of this length, and all sliding contacts slide already */
     struct planar_line *line; /* [room]; owns the memory of all; freed by method_event.c */
     size_t begins;            /* number of contacts that begin to slide */
     size_t begin_room;        /* for such contacts */
@@ -86,6 +87,12 @@ struct event {
     struct planar_series planar;
     struct creep creep;
 };
+
+/* Number of rows of limit that are not zero, up to the order. */
+static inline size_t tribo_event_limit_terms(const struct event *e)
+{
+    return e->terms <= e->order ? e->terms : e->order + 1;
+}
 
 /* Coefficient k of a product of series, the sum of x_j y_(k - j) for from <= j < to; coefficients are stride doubles apart. */
 static inline double tribo_series_product(const double *x, const double *y, size_t stride, size_t k, size_t from, size_t to)
@@ -153,16 +160,21 @@ void tribo_planar_series_guards(struct event *e);
 /* Sets plane->error [ncontact]: error of velocities, at most e->error. */
 void tribo_planar_series_errors(struct event *e);
 
+/* Returns a bound, until tau, of the largest deceleration of planar contact k by its friction along a direction. */
+double tribo_planar_series_brake(const struct event *e, size_t k, double tau);
+
 /* Returns h, shortened until the velocities of contacts at h are right to plane->error, by the difference between the series of u
  * and x/|x|, and no speed grows so much that it is lost in rounding. */
 double tribo_planar_series_shorten(const struct event *e, double h);
 
-/* Terms x^(k) tau^k/k! of perturbations: v [rows][ncontact][columns] of velocities of contacts, z [rows][planar
- * contacts][columns] of the turns of directions u, both of the last orders, cyclically; rows > order of the series. */
+/* Terms x^(k) tau^k/k! of perturbations: q [ndof][columns] of displacements, of order k; v [rows][ncontact][columns] of velocities
+ * of contacts, z and g [rows][planar contacts][columns] of the turns of directions u and of limits that follow, all three of the
+ * last orders, cyclically; rows > order of the series. */
 struct planar_turns {
     size_t columns, rows;
     double tau;
-    double *v, *z, *w; /* w [planar contacts][columns]: workspace */
+    const double *q;
+    double *v, *z, *g, *w; /* w [planar contacts][columns]: workspace */
 };
 
 /* Sets the k-th terms of turns, and force [ncontact][columns] = those of forces of sliding planar contacts; without the turns of

@@ -120,7 +120,7 @@ static int set_guards(struct event *e)
     }
     e->events.search.guards = 0;
     tribo_curves_bound(e->curve, c, e->order + 1, c, e->watch, e->length);
-    tribo_curves_bound(e->limit_curve, c, e->terms, c, e->limit, e->length);
+    tribo_curves_bound(e->limit_curve, c, tribo_event_limit_terms(e), c, e->limit, e->length);
     if (m->plane) {
         tribo_planar_series_guards(e);
     }
@@ -326,21 +326,10 @@ static int method_event_create(tribo_driver *drv)
     return tribo_events_create(&e->events, drv, &motion_in_series, e);
 }
 
-/* Returns TRIBO_ERR_UNSUPPORTED for limits that follow the motion, of planar contacts, or beside limits that fall with the
- * speed. */
+/* Returns TRIBO_ERR_UNSUPPORTED for limits that follow the motion beside limits that fall with the speed. */
 static int check_following(const tribo_system *sys)
 {
     const size_t dropping = sys->normals.count ? tribo_system_first_dropping(sys, 1) : sys->ncontact;
-    for (size_t k = 0; k < sys->normals.followers; k++) {
-        const struct follower *f = &sys->normals.follower[k];
-        if (f->second != f->contact) {
-            return tribo_error(
-                sys->message, TRIBO_ERR_UNSUPPORTED,
-                "the limit of the planar contact %zu follows its normal load, and method event knows that of scalar "
-                "contacts only: take central/fixed or moreau/fixed",
-                f->contact);
-        }
-    }
     return dropping == sys->ncontact
                ? TRIBO_OK
                : tribo_error(

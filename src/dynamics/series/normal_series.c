@@ -2,6 +2,7 @@
 /* Series of normal loads that follow the motion, and of limits that follow these: while a normal is pressed both are linear in
  * the displacements. */
 #include "event_series.h"
+#include "common/real.h"
 
 #include <string.h>
 
@@ -12,7 +13,8 @@ void tribo_normal_series_expand(struct event *e, size_t k)
     for (size_t i = 0; i < sys->normals.count; i++) {
         const struct normal *n = &sys->normals.normal[i];
         const double depth = tribo_matrix_row_dot(&sys->direction, n->row, e->q + k * sys->ndof) - (k ? 0.0 : n->gap);
-        limit[n->row] = n->stiffness * depth;
+        const double sure = n->pressed ? greater(depth, 0.0) : lesser(depth, 0.0); /* on its side, by the decision */
+        limit[n->row] = n->stiffness * (k ? depth : sure);
     }
     for (size_t i = 0; i < sys->normals.followers; i++) {
         const struct follower *f = &sys->normals.follower[i];

@@ -1,21 +1,24 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Taylor series of the forces of sliding planar contacts, found coefficient by coefficient with those of the motion.
  *
- * In units of its limits a contact has the velocity x = limit v, which is tau^s times a series, with s = 0 where it slides
- * already, and 1 or 2 where it begins to (stick_slip.h); and the direction u = x/|x|, which makes the force -limit u. Both are
- * taken along the first direction n and its normal t:
+ * The limit of a contact is weight g, g a series: 1 if the limit is constant. By its weights it has the velocity x = weight v,
+ * which is tau^s times a series, with s = 0 where it slides already, and 1 or 2 where it begins to (stick_slip.h); and the
+ * direction u = x/|x|, which makes the force -weight g u. Both are taken along the first direction n and its normal t:
  *     |u| = 1   gives the n-part of each coefficient of u from those before,
  *     x = |x| u gives its t-part, if x is known; and the next one of |x|.
  * Where the contact begins to slide x follows from the acceleration, and so from the force itself: then t-parts, tau_k, solve
- *     (S + D_k) tau_k = acceleration along limit t without t-parts - terms of the coefficients before,
+ *     (S + D_k) tau_k = acceleration along weight t without t-parts - terms of the coefficients before,
  * with S the response of such accelerations to t-parts while contacts at rest are held;
  * D_k = (k + 1)|x_0| for s = 1, and 0 for s = 2.
+ * At touch-down g begins with tau^p, p > 0. The force of order k contains u up to order k - p, so that x gives all t-parts if
+ * p >= s; for s = 2 and p = 1 t-parts of order k - 1 solve the equation with D_k.
  * For s = 1 the series converges; for s = 2 it is asymptotic: as good as its last terms, which are what a step is chosen by.
  *
  * Or u is given, a polynomial, and only what follows from it is found (event_creep.c). */
 #include "event_series.h"
 #include "common/layout.h"
 
+#include <float.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -35,8 +38,12 @@
 /* The radius is found from the first coefficient that exceeds LARGEST, since the next ones may overflow. */
 #define LARGEST 1e100
 
-/* Least order. */
+/* Limits of a step that are below this part of the largest one do not make the guard of a contact at rest larger. */
+#define LEAST_PART 1e-3
+
+/* Least orders. */
 #define LEAST_ORDER 4.0
+#define LEAST_GIVEN (TRIBO_CREEP_NODES + 2.0)
 
 /* Largest sum of the terms of a speed over a step, in units of the speed at its start: else the square of a small speed is
  * lost in rounding, and with it a zero. */
@@ -53,26 +60,44 @@ static int reserve_lines(struct event *e, size_t begins)
     }
     free(s->line);
     const int done =
-        ALLOCATE(ARRAY(s->line, count), ARRAY(series, 7 * terms * count), ARRAY(s->begin, begins), ARRAY(s->pivot, begins),
+        ALLOCATE(ARRAY(s->line, count), ARRAY(series, 10 * terms * count), ARRAY(s->begin, begins), ARRAY(s->pivot, begins),
                  ARRAY(s->s, begins * begins), ARRAY(s->lu, begins * begins), ARRAY(s->tau, begins),
                  ARRAY(s->answer, begins * e->sys->ndof), ARRAY(s->held, begins * e->sys->ncontact)) != NULL;
-    for (size_t k = 0; done && k < count; k++, series += 7 * terms) {
+    for (size_t k = 0; done && k < count; k++, series += 10 * terms) {
         s->line[k] = (struct planar_line){.xn = series,
                                           .xt = series + terms,
                                           .un = series + 2 * terms,
                                           .ut = series + 3 * terms,
                                           .speed = series + 4 * terms,
-                                          .square = series + 5 * terms};
+                                          .g = series + 5 * terms,
+                                          .fn = series + 6 * terms,
+                                          .ft = series + 7 * terms,
+                                          .square = series + 8 * terms};
     }
     s->room = count;
     s->begin_room = begins;
     return done;
 }
 
-/* (limit t)'J acc, acc [ncontact] = J acc. */
+/* (weight t)'J acc, acc [ncontact] = J acc. */
 static double planar_series_along(const struct planar_contact *p, const struct planar_line *l, const double *acc)
 {
-    return p->limit[0] * l->t[0] * acc[p->at] + p->limit[1] * l->t[1] * acc[p->at + 1];
+    return p->weight[0] * l->t[0] * acc[p->at] + p->weight[1] * l->t[1] * acc[p->at + 1];
+}
+
+/* 1 if contact p slides, and t-parts of its u solve equations with those of others. */
+static int is_implicit(const struct stick_slip *m, const struct planar_contact *p)
+{
+    return tribo_slides_in_plane(m, p) && (size_t)p->begins > p->lag;
+}
+
+double tribo_planar_series_brake(const struct event *e, size_t k, double tau)
+{
+    double size = 0.0;
+    for (size_t j = tribo_event_limit_terms(e); j-- > 0;) {
+        size = size * tau + fabs(e->planar.line[k].g[j]);
+    }
+    return e->events.stick_slip.plane->contact[k].brake * size;
 }
 
 double tribo_planar_series_first_stop(const struct stick_slip *m)
@@ -103,18 +128,21 @@ int tribo_planar_series_begin(struct event *e)
     const size_t count = m->plane->count, c = sys->ncontact;
     size_t begins = 0;
     for (size_t k = 0; k < count; k++) {
-        begins += tribo_slides_in_plane(m, &all[k]) && all[k].begins != SLIDES_ON;
+        begins += (size_t)is_implicit(m, &all[k]);
     }
     if (!reserve_lines(e, begins)) {
         return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for series of %zu contact%s in a plane", count,
                            plural(count));
     }
-    /* coefficients stay within MOST_DIGITS: their unit of time is that of the first stop */
-    const double most = MOST_DIGITS / greater(-log10(tribo_planar_series_first_stop(m)), 1.0);
-    e->order = s->given ? e->most_order : (size_t)greater(lesser((double)e->most_order, most), LEAST_ORDER);
+    /* coefficients stay within MOST_DIGITS: their unit of time is that of the first stop, or of the step; given directions and
+     * constant limits make no higher powers of it */
+    const double unit = s->given > 0.0 ? s->given : tribo_planar_series_first_stop(m),
+                 least = s->given > 0.0 ? LEAST_GIVEN : LEAST_ORDER, most = MOST_DIGITS / greater(-log10(unit), 1.0);
+    const int bounded = s->given > 0.0 && e->terms == 1;
+    e->order = bounded ? e->most_order : (size_t)lesser((double)e->most_order, greater(most, least));
     s->begins = begins;
     for (size_t k = 0, q = 0; q < begins; k++) {
-        if (tribo_slides_in_plane(m, &all[k]) && all[k].begins != SLIDES_ON) {
+        if (is_implicit(m, &all[k])) {
             set_direction(&s->line[k], all[k].direction[0], all[k].direction[1]);
             s->begin[q++] = k;
         }
@@ -127,8 +155,9 @@ int tribo_planar_series_begin(struct event *e)
         double *acc = s->answer + q * sys->ndof, *a = e->room.a, *f = e->room.given;
         memset(acc, 0, sys->ndof * sizeof *acc);
         memset(f, 0, c * sizeof *f);
-        f[p->at] = -p->limit[0] * l->t[0];
-        f[p->at + 1] = -p->limit[1] * l->t[1];
+        const double *g = p->lag ? m->state.limit_rate + p->at : p->limit;
+        f[p->at] = -g[0] * l->t[0];
+        f[p->at + 1] = -g[1] * l->t[1];
         tribo_matrix_multiply_add(&sys->response, 1.0, f, acc);
         const int status = tribo_stick_slip_pull(m, sys, m->constant.still, acc, s->held + q * c);
         if (status) {
@@ -162,12 +191,13 @@ int tribo_planar_series_forces(struct event *e, size_t k, const double *v)
         const struct planar_contact *p = &m->plane->contact[c];
         struct planar_line *l = &e->planar.line[c];
         const size_t shift = (size_t)p->begins, j = k - shift;
-        const double x[2] = {p->limit[0] * v[p->at], p->limit[1] * v[p->at + 1]};
+        const size_t lead = shift < p->lag ? shift : p->lag, a = k - lead; /* a: the last order of u in this force */
+        const double x[2] = {p->weight[0] * v[p->at], p->weight[1] * v[p->at + 1]}, size = hypot(x[0], x[1]);
+        l->g[k] = k < tribo_event_limit_terms(e) ? e->limit[k * e->sys->ncontact + p->at] / p->weight[0] : 0.0;
         if (!tribo_slides_in_plane(m, p)) {
             continue;
         }
-        if (k == 0 && shift == 0) {
-            const double size = hypot(x[0], x[1]);
+        if (k == shift && !is_implicit(m, p) && size > 0.0) {
             set_direction(l, x[0] / size, x[1] / size);
         }
         if (k >= shift) {
@@ -179,15 +209,18 @@ int tribo_planar_series_forces(struct event *e, size_t k, const double *v)
                                "at t = %.17g it is not clear in which direction the planar contact %zu begins to slide",
                                e->sys->loads.time, p->at);
         }
-        if (!e->planar.given) {
-            l->un[k] = k ? -0.5 * (product_of(l->un, l->un, k, 1, k) + product_of(l->ut, l->ut, k, 1, k)) : 1.0;
-            l->ut[k] = k && shift == 0 ? (l->xt[k] - before(l, k)) / l->xn[0] : 0.0;
+        if (e->planar.given == 0.0 && k >= lead) {
+            l->un[a] = a ? -0.5 * (product_of(l->un, l->un, a, 1, a) + product_of(l->ut, l->ut, a, 1, a)) : 1.0;
+            l->ut[a] = a && shift == lead ? (l->xt[a] - before(l, a)) / l->xn[0] : 0.0;
         }
-        if (!e->planar.given && k >= shift) {
+        if (e->planar.given == 0.0 && k >= shift) {
             l->speed[j] = l->xn[j] - product_of(l->speed, l->un, j, 0, j);
         }
+        const size_t terms = tribo_event_limit_terms(e), to = k < terms ? k + 1 : terms;
+        l->fn[k] = product_of(l->g, l->un, k, lead, to);
+        l->ft[k] = product_of(l->g, l->ut, k, lead, to);
         for (size_t d = 0; d < 2; d++) {
-            e->room.given[p->at + d] = -p->limit[d] * (l->n[d] * l->un[k] + l->t[d] * l->ut[k]);
+            e->room.given[p->at + d] = -p->weight[d] * (l->n[d] * l->fn[k] + l->t[d] * l->ft[k]);
         }
     }
     return TRIBO_OK;
@@ -211,11 +244,16 @@ int tribo_planar_series_finish(struct event *e, size_t k)
         const struct planar_contact *p = &all[s->begin[q]];
         const struct planar_line *l = &s->line[s->begin[q]];
         double asked = k > 1 ? l->ut[k - 1] * l->xn[0] + before(l, k - 1) : 0.0;
-        if (p->begins == BY_ACCELERATION) {
-            asked = before(l, k);
+        if ((size_t)p->begins == p->lag + 1) {
+            asked = before(l, k - p->lag);
             s->lu[q * n + q] += times * l->xn[0];
         }
         s->tau[q] = planar_series_along(p, l, a) - times * asked;
+        if (k == p->lag) { /* u_0 = n */
+            memset(s->lu + q * n, 0, n * sizeof *s->lu);
+            s->lu[q * n + q] = 1.0;
+            s->tau[q] = 0.0;
+        }
     }
     if (!(tribo_lu_create(s->lu, n, s->pivot) > 0.0)) {
         return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
@@ -224,7 +262,10 @@ int tribo_planar_series_finish(struct event *e, size_t k)
     }
     tribo_lu_solve(s->lu, n, s->pivot, s->tau, 1);
     for (size_t q = 0; q < n; q++) {
-        s->line[s->begin[q]].ut[k] = s->tau[q];
+        const size_t lag = all[s->begin[q]].lag;
+        struct planar_line *l = &s->line[s->begin[q]];
+        l->ut[k - lag] = s->tau[q];
+        l->ft[k] += l->g[lag] * s->tau[q];
         tribo_add(e->room.acceleration, s->tau[q], s->answer + q * sys->ndof, sys->ndof);
         tribo_add(e->room.held, s->tau[q], s->held + q * sys->ncontact, sys->ncontact);
     }
@@ -240,7 +281,7 @@ double tribo_planar_series_power(const struct event *e, size_t k)
         const struct planar_line *l = &e->planar.line[c];
         const size_t j = k - (size_t)p->begins;
         if (tribo_slides_in_plane(m, p) && k >= (size_t)p->begins) {
-            power += e->sys->tally[p->at] * (product_of(l->un, l->xn, j, 0, j + 1) + product_of(l->ut, l->xt, j, 0, j + 1));
+            power += e->sys->tally[p->at] * (product_of(l->fn, l->xn, j, 0, j + 1) + product_of(l->ft, l->xt, j, 0, j + 1));
         }
     }
     return power;
@@ -257,7 +298,7 @@ double tribo_planar_series_power_along(const struct event *e, size_t i, size_t k
         if (d < 2 && tribo_slides_in_plane(m, p)) {
             for (size_t j = 0; j + shift <= k; j++) {
                 const double x = l->n[d] * l->xn[j] + l->t[d] * l->xt[j];
-                power += x * (l->n[d] * l->un[k - shift - j] + l->t[d] * l->ut[k - shift - j]);
+                power += x * (l->n[d] * l->fn[k - shift - j] + l->t[d] * l->ft[k - shift - j]);
             }
         }
     }
@@ -267,8 +308,9 @@ double tribo_planar_series_power_along(const struct event *e, size_t i, size_t k
 /* ------------------------------------------------------------------------------------------------------- perturbations */
 
 /* The direction u turns by z, du = z r with r the normal of u. With |x| u = x
- *     |x| z = r'(limit dv),
- * from which each term of z follows; of contacts that begin to slide by the equation of their t-parts, with S. */
+ *     |x| z = r'(weight dv),
+ * from which each term of z follows; of contacts that begin to slide by the equation of their t-parts, with S. The force turns
+ * by -weight g du, and grows by -weight u dg. */
 
 size_t tribo_planar_series_terms(const struct event *e, size_t most)
 {
@@ -285,7 +327,7 @@ static double normal_of(const struct planar_line *l, size_t d, size_t j)
     return l->t[d] * l->un[j] - l->n[d] * l->ut[j];
 }
 
-/* w [columns] += term k of r'(limit dv) of contact c, with coefficients of r from `from` on. */
+/* w [columns] += term k of r'(weight dv) of contact c, with coefficients of r from `from` on. */
 static void add_sideways(const struct event *e, size_t c, const struct planar_turns *p, size_t k, size_t from, double *w)
 {
     const struct planar_contact *contact = &e->events.stick_slip.plane->contact[c];
@@ -293,7 +335,7 @@ static void add_sideways(const struct event *e, size_t c, const struct planar_tu
     for (size_t j = from; j <= k && j <= e->order; j++, power *= p->tau) {
         const double *v = p->v + (k - j) % p->rows * e->sys->ncontact * p->columns;
         for (size_t i = contact->at; i < contact->at + 2; i++) {
-            const double part = contact->limit[i - contact->at] * normal_of(&e->planar.line[c], i - contact->at, j);
+            const double part = contact->weight[i - contact->at] * normal_of(&e->planar.line[c], i - contact->at, j);
             tribo_add(w, power * part, v + i * p->columns, p->columns);
         }
     }
@@ -310,6 +352,18 @@ static void add_turned(const struct event *e, size_t c, const struct planar_turn
     }
 }
 
+/* g [columns] = term of the limit of contact p by terms q [ndof][columns] of displacements; weight 1. */
+static void perturb_limit(const struct event *e, const struct planar_contact *p, const double *q, size_t columns, double *g)
+{
+    const struct follower *f = tribo_normals_follower(e->sys, p->at);
+    const struct normal *n = f ? &e->sys->normals.normal[f->normal] : NULL;
+    const struct matrix *j = &e->sys->direction;
+    memset(g, 0, columns * sizeof *g);
+    for (size_t d = n ? j->first[n->row] : 0; n && n->pressed && d < j->first[n->row + 1]; d++) {
+        tribo_add(g, f->mu * n->stiffness * j->val[d], q + j->col[d] * columns, columns);
+    }
+}
+
 void tribo_planar_series_turn(const struct event *e, size_t k, const struct planar_turns *p, double *force)
 {
     const struct stick_slip *m = &e->events.stick_slip;
@@ -320,6 +374,7 @@ void tribo_planar_series_turn(const struct event *e, size_t k, const struct plan
         const struct planar_line *l = &e->planar.line[c];
         double *z = p->z + (k % p->rows * plane->count + c) * p->columns;
         memset(z, 0, p->columns * sizeof *z);
+        perturb_limit(e, contact, p->q, p->columns, p->g + (k % p->rows * plane->count + c) * p->columns);
         if (!tribo_slides_in_plane(m, contact)) {
             continue;
         }
@@ -332,10 +387,12 @@ void tribo_planar_series_turn(const struct event *e, size_t k, const struct plan
         }
         double power = 1.0;
         for (size_t j = 0; j <= k && j <= e->order; j++, power *= p->tau) {
-            const double *turn = p->z + ((k - j) % p->rows * plane->count + c) * p->columns;
+            const size_t at = ((k - j) % p->rows * plane->count + c) * p->columns;
             for (size_t d = 0; d < 2; d++) {
-                tribo_add(force + (contact->at + d) * p->columns, -power * contact->limit[d] * normal_of(l, d, j), turn,
-                          p->columns);
+                const double turns = l->t[d] * l->fn[j] - l->n[d] * l->ft[j], grows = l->n[d] * l->un[j] + l->t[d] * l->ut[j];
+                double *to = force + (contact->at + d) * p->columns;
+                tribo_add(to, -power * contact->weight[d] * turns, p->z + at, p->columns);
+                tribo_add(to, -power * contact->weight[d] * grows, p->g + at, contact->varies ? p->columns : 0);
             }
         }
     }
@@ -357,7 +414,7 @@ int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct plan
         for (size_t d = 0; d < 2; d++) {
             const size_t i = contact->at + d;
             for (size_t at = sys->direction.first[i]; at < sys->direction.first[i + 1]; at++) {
-                const double side = contact->limit[d] * normal_of(&s->line[c], d, 0) * sys->direction.val[at];
+                const double side = contact->weight[d] * normal_of(&s->line[c], d, 0) * sys->direction.val[at];
                 tribo_add(w, side, u + sys->direction.col[at] * p->columns, p->columns);
             }
         }
@@ -390,31 +447,48 @@ int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct plan
 
 /* -------------------------------------------------------------------------------------------------------------- guards */
 
+/* Returns the limit by which the guard of a contact at rest, (limit^2 - |f|^2)/2 divided by it, is in units of forces: the least
+ * one of the step, not below a part of the largest one. Sets blunt. */
+static double find_reference(const struct event *e, struct planar_contact *p)
+{
+    const double most = e->limit_curve[p->at].size, least = 2.0 * p->limit[0] - most;
+    const double reference = greater(greater(least, LEAST_PART * most), DBL_MIN);
+    p->blunt = reference > least ? reference : 0.0;
+    return reference;
+}
+
 void tribo_planar_series_guards(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     for (size_t c = 0; c < m->plane->count; c++) {
-        const struct planar_contact *p = &m->plane->contact[c];
+        struct planar_contact *p = &m->plane->contact[c];
         struct planar_line *l = &e->planar.line[c];
         struct curve *curve = &e->curve[p->at];
         const int moves = tribo_slides_in_plane(m, p);
         const size_t last = e->order - (moves ? (size_t)p->begins : 0);
-        const double half = 0.5 * greater(p->limit[0], p->limit[1]);
+        const double half = 0.5 * greater(p->weight[0], p->weight[1]) / (p->varies ? find_reference(e, p) : 1.0);
+        if (p->varies) {
+            tribo_events_guard_limit(&e->events, p->at, &(struct watch){.varies = 1});
+        }
+        if (m->state.slip[p->at] == TRIBO_SLIP_OPEN) {
+            continue;
+        }
         for (size_t k = 0; !moves && k <= e->order; k++) {
             const double *force = e->watch + k * m->constant.contacts + p->at;
-            l->xn[k] = force[0] / p->limit[0];
-            l->xt[k] = force[1] / p->limit[1];
+            l->xn[k] = force[0] / p->weight[0];
+            l->xt[k] = force[1] / p->weight[1];
         }
         for (size_t k = 0; k <= 2 * e->order; k++) { /* terms of the square are not small where those of x end */
             const size_t from = k < last ? 0 : k - last, to = k < last ? k + 1 : last + 1;
             const double square = product_of(l->xn, l->xn, k, from, to) + product_of(l->xt, l->xt, k, from, to);
-            l->square[k] = moves ? square : half * square;
+            const double limit = moves || !p->varies ? 0.0 : product_of(l->g, l->g, k, from, to);
+            l->square[k] = moves ? square : half * (square - limit);
         }
         tribo_curves_bound(curve, 1, 2 * e->order + 1, 1, l->square, e->length);
         struct guard g = {.contact = p->at, .output = curve, .kind = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
-        g.offset = moves ? -TRIBO_SLOWER * TRIBO_SLOWER * l->square[0] : half;
+        g.offset = moves ? -TRIBO_SLOWER * TRIBO_SLOWER * l->square[0] : p->varies ? 0.0 : half;
         g.allowance = moves ? 0.0 : greater(m->noise.allowance[p->at], m->noise.allowance[p->at + 1]);
-        if (moves || curve->size >= half) {
+        if (moves || p->varies || curve->size >= half) {
             e->events.search.guard[e->events.search.guards++] = g;
         }
     }
@@ -429,7 +503,7 @@ void tribo_planar_series_errors(struct event *e)
     for (size_t c = 0; c < plane->count; c++) {
         const struct planar_contact *p = &plane->contact[c];
         if (tribo_slides_in_plane(&e->events.stick_slip, p) && p->begins == SLIDES_ON) {
-            const double own = PART * e->planar.line[c].xn[0] / greater(p->limit[0], p->limit[1]);
+            const double own = PART * e->planar.line[c].xn[0] / greater(p->weight[0], p->weight[1]);
             plane->error[p->at] = plane->error[p->at + 1] = lesser(e->error, own);
         }
     }
@@ -465,7 +539,8 @@ double tribo_planar_series_shorten(const struct event *e, double h)
             }
         }
         if ((e->events.sharp && !(off <= STRAIGHT)) ||
-            !(off * p->brake * h / (double)(e->order + 1) <= m->plane->error[p->at] && sum <= FASTER * l->xn[0])) {
+            !(off * tribo_planar_series_brake(e, c, h) * h / (double)(e->order + 1) <= m->plane->error[p->at] &&
+              sum <= FASTER * l->xn[0])) {
             h *= 0.8;
             c = SIZE_MAX; /* from the first contact on */
         }

@@ -226,6 +226,23 @@ double tribo_system_swing(const tribo_system *sys, size_t i)
     return sum;
 }
 
+int tribo_system_varies_limit(const tribo_system *sys, size_t i, size_t j)
+{
+    int varies = 0;
+    double off = i == j || !sys->loads.limits ? 0.0 : fabs(steady_limit(sys, i) - steady_limit(sys, j));
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        const struct harmonic *h = &sys->loads.harmonic[k];
+        if (h->drives == DRIVES_LIMIT) {
+            varies |= h->knots || h->cosine[i] != 0.0 || h->sine[i] != 0.0 || h->cosine[j] != 0.0 || h->sine[j] != 0.0;
+            off += fabs(h->cosine[i] - h->cosine[j]) + fabs(h->sine[i] - h->sine[j]);
+            for (size_t p = 0; p < h->knots; p++) {
+                off += fabs(h->value[p * h->columns + i] - h->value[p * h->columns + j]);
+            }
+        }
+    }
+    return varies && (i == j || off > 0.0);
+}
+
 void tribo_system_most_limits(const tribo_system *sys, double *most)
 {
     tribo_get_limit(sys->contacts, most);

@@ -44,7 +44,7 @@ static int normals_find_stiffest(tribo_system *sys)
     }
     for (size_t k = 0; k < s->followers; k++) {
         const struct follower *f = &s->follower[k];
-        force[f->contact] = f->mu * force[s->normal[f->normal].row];
+        force[f->contact] = force[f->second] = f->mu * force[s->normal[f->normal].row];
     }
     if (g->factor) {
         tribo_matrix_add_sizes(&g->g, force, shared);
@@ -155,6 +155,7 @@ int tribo_normals_pair(tribo_system *sys)
         }
         i += (size_t)pair;
     }
+    status = status || normals_find_stiffest(sys) ? status : TRIBO_ERR_MEMORY;
     free(one);
     tribo_destroy(probe);
     return status == TRIBO_ERR_MEMORY ? tribo_error(sys->message, status, "out of memory for %zu contact%s", c, plural(c))

@@ -193,6 +193,9 @@ static inline int tribo_system_bases_move(const tribo_system *sys)
     return sys->loads.bases > 0;
 }
 
+/* 1 if a function of time moves the limits of contacts i and j differently; i = j: if one moves that limit. */
+int tribo_system_varies_limit(const tribo_system *sys, size_t i, size_t j);
+
 /* slip [ncontact] = TRIBO_SLIP_PLANE at both directions of planar contacts, found by a balance in which all contacts slide.
  * contacts: a copy of the context, which keeps Coulomb's law and the limits 1; one [ncontact]: workspace. Returns a status. */
 int tribo_system_find_pairs(tribo_context *contacts, size_t ncontact, double *one, signed char *slip);

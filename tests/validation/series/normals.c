@@ -690,7 +690,7 @@ TEST(observed)
 /* A planar contact whose motion keeps to a line is the scalar one; along any line, with both directions at 45 degrees. */
 TEST(planar)
 {
-    static const char *const method[] = {"central/fixed", "moreau/fixed", "rk4/fixed"};
+    static const char *const method[] = {"central/fixed", "moreau/fixed", "rk4/fixed", "event"};
     const double c = sqrt(0.5), mass[] = {1.0, 1.0, 1.0}, stiffness[] = {12.0, 12.0, 21.0};
     const double direction[] = {c, c, 0.0, -c, c, 0.0, 0.0, 0.0, 1.0}, steady[] = {0.0, 0.0, 100.0}, swing[] = {60.0, 0.0, 60.0};
     double y[7] = {0.0}, z[5] = {0.0}, t = 0.0, u = 0.0;
@@ -709,20 +709,19 @@ TEST(planar)
     assert_ok(tribo_set_epsilon_all(tribo_system_context(line), 1e-2));
     assert_ok(tribo_system_add_load(sys, 0.0, steady, NULL));
     assert_ok(tribo_system_add_load(sys, 5.0, swing, NULL));
-    tribo_driver *d = driver_create(sys, method[_i], 1e-4, 0.0), *e = driver_create(line, method[_i], 1e-4, 0.0);
+    const double step = _i == 3 ? 0.0 : 1e-4;
+    tribo_driver *d = driver_create(sys, method[_i], step, 0.0), *e = driver_create(line, method[_i], step, 0.0);
     driver_advance(d, &t, 3.0, y);
     driver_advance(e, &u, 3.0, z);
-    const double error = _i < 2 ? 3e-2 : 1e-6; /* friction over steps that reverse differs by the order of a step */
+    const double error = _i < 2    ? 3e-2
+                         : _i == 2 ? 1e-6
+                                   : 1e-10; /* friction over steps that reverse differs by the order of a step */
     assert_close(y[0], z[0], error);
     assert_close(y[1], 0.0, 1e-12);
     assert_close(y[2], z[1], 1e-12);
     assert_close(y[3], z[2], error);
-    assert_close(y[6], z[4], _i < 2 ? error : 1e-3);
+    assert_close(y[6], z[4], _i < 2 ? error : _i == 2 ? 1e-3 : 1e-9);
     ck_assert(y[6] > 100.0);
-    tribo_driver_destroy(d);
-    assert_ok(tribo_driver_create(&d, sys, "event"));
-    assert_status(tribo_driver_advance(d, &t, 4.0, y), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_driver_message(d), "planar contact 0 follows its normal load");
     tribo_driver_destroy(d);
     tribo_driver_destroy(e);
     tribo_system_destroy(sys);
@@ -820,4 +819,4 @@ TEST(refused)
 
 TEST_MAIN("normals", {steady_motions, 2 * VALUES}, {periodic, 4 * VALUES}, {multipliers, 5 * VALUES}, {unstable, 1},
           {walls_of_a_body, 4}, {redundant, 4}, {limit_cycle, 4}, {graze, 14}, {resting, 2}, {flutter, 3}, {shock, 2}, {steps, 7},
-          {stiff, 1}, {structures, 8}, {observed, 4}, {planar, 3}, {wrong_normals, 1}, {refused, 1})
+          {stiff, 1}, {structures, 8}, {observed, 4}, {planar, 4}, {wrong_normals, 1}, {refused, 1})

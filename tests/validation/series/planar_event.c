@@ -330,20 +330,56 @@ TEST(parts)
 
 /* ------------------------------------------------------------------------------------------------------------- refusals */
 
-/* Limits that change. */
+/* Limits of both directions that change with time, and differ. */
 TEST(refused)
 {
     double y[5] = {0.0}, t = 0.0;
     tribo_system *s = planar_mass(identity, 1.0, 1.0);
     assert_ok(tribo_system_add_load(s, 1.0, (const double[]){1.5, 0.0}, NULL));
     tribo_driver *d = driver_create(s, "event", 0.1, 1e-9);
-    assert_ok(tribo_system_add_limit(s, 1.0, (const double[]){0.1, 0.1}, NULL));
+    assert_ok(tribo_system_add_limit(s, 1.0, (const double[]){0.1, 0.2}, NULL));
     assert_status(tribo_driver_advance(d, &t, 1.0, y), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_driver_message(d), "limits that change");
+    assert_says(tribo_driver_message(d), "limits of both directions of the planar contact 0 change with time, and differ");
     assert_exact(t, 0.0);
     assert_status(tribo_driver_find_periodic(d, 0.0, 2.0 * PI, y), TRIBO_ERR_UNSUPPORTED);
     tribo_driver_destroy(d);
     tribo_system_destroy(s);
+}
+
+/* A limit that swings, and lifts off where it would be negative (1), and one by a table (2): on a line, directions askew, a planar
+ * contact is the scalar one. Without a table also its periodic motion, and multipliers. */
+TEST(limits_vary)
+{
+    const double askew[4] = {0.6, 0.8, -0.8, 0.6}, one[1] = {1.0}, size[] = {0.5, 1.3, 0.0};
+    double y[2][5] = {{0.0}}, re[2][4], im[4], t;
+    for (size_t plane = 0; plane < 2; plane++) {
+        const size_t n = 1 + plane;
+        tribo_system *s;
+        assert_ok(dense_system(&s, n, n, identity, NULL, plane ? identity : one, plane ? askew : one, 0, NULL, 0));
+        assert_ok(plane ? tribo_set_planar(tribo_system_context(s), 1, (const size_t[]){0}) : TRIBO_OK);
+        assert_ok(tribo_set_limit_all(tribo_system_context(s), 0.8));
+        assert_ok(tribo_system_add_load(s, 0.7, (const double[]){1.6, 0.0}, (const double[]){0.4, 0.0}));
+        if (_i < 2) {
+            assert_ok(tribo_system_add_limit(s, 1.4, (const double[]){size[_i], size[_i]}, NULL));
+        } else {
+            const double time[] = {0.0, 5.0, 7.0, 20.0}, limit[] = {1.0, 1.0, 0.2, 0.2, 0.0, 0.0, 1.5, 1.5};
+            const double alone[] = {1.0, 0.2, 0.0, 1.5};
+            assert_ok(tribo_system_set_limit_table(s, 4, time, plane ? limit : alone));
+        }
+        tribo_driver *d = driver_create(s, "event", 0.1, 1e-11);
+        t = 0.0;
+        driver_advance(d, &t, 20.0, y[plane]);
+        if (_i < 2) {
+            assert_ok(tribo_driver_find_periodic(d, 0.0, 2.0 * PI / 0.7, y[plane]));
+            assert_ok(tribo_driver_get_multipliers(d, re[plane], im));
+        }
+        tribo_driver_destroy(d);
+        tribo_system_destroy(s);
+    }
+    assert_close(y[1][0], y[0][0], 1e-9);
+    assert_close(y[1][1], 0.0, 1e-9);
+    assert_close(y[1][2], y[0][1], 1e-9);
+    assert_close(y[1][4], y[0][2], 1e-9);
 }
 
 /* Static limits, which drop at once or fall with the speed (1, 3), nothing changed; of a planar contact, or of a scalar one
@@ -444,5 +480,5 @@ TEST(spinning_edge)
 }
 
 TEST_MAIN("planar_event", {reference, 4}, {whirl, 1}, {planar_later, 3}, {incline, 1}, {released, 1}, {reverses_on_line, 40},
-          {on_line, 9}, {tolerances, 40}, {agreement, 36}, {equal, 2}, {no_limits, 2}, {parts, 1}, {refused, 1},
+          {on_line, 9}, {tolerances, 40}, {agreement, 36}, {equal, 2}, {no_limits, 2}, {parts, 1}, {refused, 1}, {limits_vary, 3},
           {refused_static, 4}, {redundant, 1}, {fewer_and_more_terms, 1}, {spinning_edge, 60})
