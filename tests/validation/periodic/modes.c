@@ -200,4 +200,23 @@ TEST(refused)
     tribo_system_destroy(sys);
 }
 
-TEST_MAIN("modes", {jenkins, 6}, {structures, 36}, {refused, 2}, {backbone, 2})
+/* A structure of so much damping that its linear modes do not vibrate, from zeros and from a guess: none is found, and what was given
+ * is unchanged. */
+TEST(overdamped)
+{
+    tribo_system *sys = masses(0.2, -4.0, 0.0);
+    tribo_driver *drv = driver_create(sys, methods[_i % 3], 1e-3, 1e-13);
+    const double c[] = {1.0, 0.0, 0.0, 0.0};
+    double y[6] = {_i < 3 ? 0.0 : 0.5}, start[6], omega = _i < 3 ? 0.0 : 2.0, zeta = _i < 3 ? 0.0 : 3.0;
+    const double given[] = {omega, zeta};
+    memcpy(start, y, sizeof y);
+    assert_status(tribo_driver_find_mode(drv, c, 1.0, &omega, &zeta, y), TRIBO_ERR_NO_CONVERGENCE);
+    assert_says(tribo_driver_message(drv), "no mode was found");
+    assert_all_exact(y, start, 6);
+    assert_exact(omega, given[0]);
+    assert_exact(zeta, given[1]);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+TEST_MAIN("modes", {jenkins, 6}, {structures, 36}, {refused, 2}, {backbone, 2}, {overdamped, 6})
