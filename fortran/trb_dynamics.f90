@@ -90,6 +90,13 @@
 !>   TRBCYC(IH, NDOF, T, PERIOD, Y, IERR)            T; PERIOD, Y guess, PERIOD 0: none    PERIOD and Y at T of a cycle
 !>   TRBNLM(IH, NDOF, CV, AMPL, OMEGA, ZETA, Y,      CV(2*NDOF), AMPL of CV'Y; OMEGA, ZETA OMEGA, ZETA and Y of a nonlinear mode
 !>          IERR)                                    and Y guess, OMEGA 0, Y 0: none
+!>   TRBCRV(IH, NDOF, IOPT, ROPT, CV, T, PERIOD, Y,  IOPT(5): MOTION 0 of TRBPER, 1 of TRBCYC, 2 of TRBNLM; TRIBO_PARAMETER_...;
+!>          SEEN, RPAR, IPAR, IERR)                  the contact of a limit; points, 0: 10000; 1: coarse. ROPT(4): LEAST,
+!>                                                   MOST, STEP, AMPL, see tribo_curve. CV(2*NDOF) of modes. T, PERIOD, Y as of
+!>                                                   the motion; then those of the last point. At each point CALL SEEN(PT, NY, Y,
+!>                                                   KIND, ICON, ISTAB, RPAR, IPAR, ISTOP), PT(4): parameter, T, period, zeta;
+!>                                                   KIND TRIBO_POINT_..., ICON a contact or 0; ISTAB 1 stable, 0 not, -1 not
+!>                                                   known; ISTOP, 0 before, ends the curve if not 0
 !> Of the periodic motion found last
 !>   TRBFAM(IH, NFREE, IERR)                                                           NFREE: dimension of the family it belongs to
 !>   TRBMUL(IH, NDOF, RE, AI, IERR)                                                    RE, AI: Floquet multipliers, one less than values of Y
@@ -128,6 +135,15 @@ module tribo_fixed_dynamics
       real(dp), intent(inout) :: rpar(*)
       integer, intent(inout) :: ipar(*), istop
     end subroutine sees
+
+    !> SEEN of TRBCRV.
+    subroutine sees_point(pt, ny, y, kind, icon, istab, rpar, ipar, istop)
+      import :: dp
+      real(dp), intent(in) :: pt(4), y(*)
+      integer, intent(in) :: ny, kind, icon, istab
+      real(dp), intent(inout) :: rpar(*)
+      integer, intent(inout) :: ipar(*), istop
+    end subroutine sees_point
   end interface
 
   !> rpar and ipar begin where the caller's do; how long these are only the caller knows.
@@ -138,6 +154,14 @@ module tribo_fixed_dynamics
   contains
     procedure :: seen => call_see
   end type external_observer
+
+  type, extends(tribo_curve_observer) :: external_curve
+    procedure(sees_point), pointer, nopass :: see => null()
+    real(dp), pointer, contiguous :: rpar(:) => null()
+    integer, pointer, contiguous :: ipar(:) => null()
+  contains
+    procedure :: seen => call_see_point
+  end type external_curve
 
   type :: structure
     type(tribo_system) :: system
@@ -153,6 +177,14 @@ contains
     istop = 0
     call this%see(moment%t, size(moment%y), moment%y, moment%kind, moment%contact, this%rpar, this%ipar, istop)
   end function call_see
+
+  integer function call_see_point(this, point) result(istop)
+    class(external_curve), intent(inout) :: this
+    type(tribo_curve_point), intent(in) :: point
+    istop = 0
+    call this%see([point%parameter, point%t, point%period, point%zeta], size(point%y), point%y, point%kind, point%contact, &
+      point%stable, this%rpar, this%ipar, istop)
+  end function call_see_point
 
   !> The structure of a handle, which must have ndof degrees of freedom, and nfull of its matrices, as far as these are given.
   subroutine find_structure(ih, s, ierr, ndof, nfull)
@@ -947,6 +979,31 @@ subroutine trbnlm(ih, ndof, cv, ampl, omega, zeta, y, ierr)
   call find_driven(ih, s, ierr, ndof)
   if (ierr == TRIBO_OK) call s%driver%find_mode(cv(:2*ndof), ampl, omega, zeta, y(:s%system%dimension()), ierr)
 end subroutine trbnlm
+
+subroutine trbcrv(ih, ndof, iopt, ropt, cv, t, period, y, seen, rpar, ipar, ierr)
+  use tribo_fixed_dynamics
+  implicit none
+  integer, intent(in) :: ih, ndof, iopt(5)
+  real(dp), intent(in) :: ropt(4), cv(*), t
+  real(dp), intent(inout) :: period, y(*)
+  procedure(sees_point) :: seen
+  real(dp), intent(inout), target :: rpar(*)
+  integer, intent(inout), target :: ipar(*)
+  integer, intent(out) :: ierr
+  type(external_curve), target :: observer
+  type(tribo_curve) :: curve
+  type(structure), pointer :: s
+
+  call find_driven(ih, s, ierr, ndof)
+  if (ierr /= TRIBO_OK) return
+  curve = tribo_curve(motion=iopt(1), parameter=iopt(2), contact=iopt(3), points=iopt(4), coarse=iopt(5) /= 0, least=ropt(1), &
+    most=ropt(2), step=ropt(3), amplitude=ropt(4))
+  if (iopt(1) == TRIBO_MOTION_MODE) curve%c = cv(:2*ndof)
+  observer%see => seen
+  observer%rpar => rpar(:1)
+  observer%ipar => ipar(:1)
+  call s%driver%follow_curve(curve, t, period, y(:s%system%dimension()), observer, ierr)
+end subroutine trbcrv
 
 subroutine trbdct(ih, iwhich, ival, ierr)
   use tribo_fixed_dynamics

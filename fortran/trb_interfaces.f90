@@ -655,6 +655,16 @@ module trb_interfaces
       integer, intent(out) :: ierr
     end subroutine trbnlm
 
+    subroutine trbcrv(ih, ndof, iopt, ropt, cv, t, period, y, seen, rpar, ipar, ierr)
+      integer, intent(in) :: ih, ndof, iopt(5)
+      double precision, intent(in) :: ropt(4), cv(*), t
+      double precision, intent(inout) :: period, y(*)
+      external :: seen
+      double precision, intent(inout), target :: rpar(*)
+      integer, intent(inout), target :: ipar(*)
+      integer, intent(out) :: ierr
+    end subroutine trbcrv
+
     subroutine trbdct(ih, iwhich, ival, ierr)
       integer, intent(in) :: ih, iwhich
       integer, intent(inout) :: ival

@@ -100,6 +100,7 @@ module tribo_systems
     generic :: count => count_short, count_long
     procedure :: real => driver_real
     procedure :: find_periodic, find_cycle, find_mode
+    procedure :: follow_curve
     procedure :: get_multipliers
     procedure :: get_freedom
     procedure :: period_extremes, period_harmonic, period_dissipation, period_stick, period_derivatives
@@ -132,6 +133,36 @@ module tribo_systems
       class(tribo_observer), intent(inout) :: this
       type(tribo_moment), intent(in) :: moment
     end function seen
+  end interface
+
+  !> A curve for follow_curve; members as in tribo_curve of tribo_dynamics.h. contact: of TRIBO_PARAMETER_LIMIT.
+  type, public :: tribo_curve
+    integer :: motion = TRIBO_MOTION_PERIODIC, parameter = TRIBO_PARAMETER_FREQUENCY, contact = 1, points = 0
+    real(dp) :: least = 0, most = 0, step = 0, amplitude = 0
+    logical :: coarse = .false.
+    real(dp), allocatable :: c(:)
+  end type tribo_curve
+
+  !> A point of a curve; members as in tribo_curve_point of tribo_dynamics.h. contact 0: none. y is valid during the call.
+  type, public :: tribo_curve_point
+    real(dp) :: parameter = 0, t = 0, period = 0, zeta = 0
+    real(dp), pointer :: y(:) => null()
+    integer :: kind = 0, contact = 0, stable = 0
+  end type tribo_curve_point
+
+  !> An observer of curves: the caller extends this type by components of its own.
+  type, abstract, public :: tribo_curve_observer
+  contains
+    procedure(point_seen), deferred :: seen
+  end type tribo_curve_observer
+
+  abstract interface
+    !> Called at every point. Returns 0 to go on; else the curve ends with TRIBO_ERR_STOPPED. May ask the driver about the point.
+    integer function point_seen(this, point)
+      import :: tribo_curve_observer, tribo_curve_point
+      class(tribo_curve_observer), intent(inout) :: this
+      type(tribo_curve_point), intent(in) :: point
+    end function point_seen
   end interface
 
   abstract interface
@@ -171,6 +202,33 @@ module tribo_systems
     integer(c_int) :: kind
     integer(c_size_t) :: contact
   end type c_moment
+
+  !> tribo_curve and tribo_curve_point of tribo_dynamics.h.
+  type, bind(c) :: c_curve
+    integer(c_size_t) :: size
+    integer(c_int) :: motion, parameter
+    integer(c_size_t) :: index
+    real(c_double) :: least, most, step
+    integer(c_size_t) :: points
+    integer(c_int) :: coarse
+    real(c_double) :: amplitude
+    type(c_ptr) :: c
+  end type c_curve
+
+  type, bind(c) :: c_curve_point
+    integer(c_size_t) :: size
+    real(c_double) :: parameter, t, period, zeta
+    type(c_ptr) :: y
+    integer(c_int) :: kind
+    integer(c_size_t) :: contact
+    integer(c_int) :: stable
+  end type c_curve_point
+
+  !> An observer of a curve, and the values of a state.
+  type :: held_curve
+    class(tribo_curve_observer), pointer :: observer => null()
+    integer :: dimension = 0
+  end type held_curve
 
 contains
 
@@ -1289,6 +1347,51 @@ contains
     call finish(w, stat, errmsg)
   end subroutine find_mode
 
+  !> Follows periodic motions over a parameter, from guesses period and y, which become those of the last point; see
+  !> tribo_driver_follow_curve. Each point is shown to observer%seen, see tribo_curve_observer.
+  subroutine follow_curve(this, curve, t, period, y, observer, stat, errmsg)
+    class(tribo_driver), intent(inout) :: this
+    type(tribo_curve), intent(in) :: curve
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: period, y(:)
+    class(tribo_curve_observer), intent(inout), target :: observer
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(held_curve), target :: held
+    type(c_curve), target :: given
+    real(dp), allocatable, target :: c(:)
+    real(dp) :: found(1)
+    type(work) :: w
+
+    call find_driver(this, w)
+    call expect_size(w, 'y', y, w%dimension)
+    if (w%status == TRIBO_OK .and. curve%parameter == TRIBO_PARAMETER_LIMIT) call expect_index(w, 'contact', 1, curve%contact, w%n)
+    given%size = c_sizeof(given)
+    given%motion = to_int(curve%motion)
+    given%parameter = to_int(curve%parameter)
+    given%index = int(max(curve%contact, 1) - 1, c_size_t)
+    given%least = curve%least
+    given%most = curve%most
+    given%step = curve%step
+    given%points = int(max(curve%points, 0), c_size_t)
+    given%coarse = merge(1_c_int, 0_c_int, curve%coarse)
+    given%amplitude = curve%amplitude
+    given%c = c_null_ptr
+    if (allocated(curve%c)) then
+      call expect_size(w, 'c', curve%c, 2*w%ndof)
+      c = curve%c
+      given%c = c_loc(c)
+    end if
+    held%observer => observer
+    held%dimension = w%dimension
+    found = period
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_follow_curve(w%object, c_loc(given), t, found, y, c_funloc(tell_point), c_loc(held))
+    end if
+    period = found(1)
+    call finish(w, stat, errmsg)
+  end subroutine follow_curve
+
   !> Floquet multipliers of the last periodic motion found, re and im (dimension - 1), the largest first.
   subroutine get_multipliers(this, re, im, stat, errmsg)
     class(tribo_driver), intent(in) :: this
@@ -1649,6 +1752,25 @@ contains
     call c_f_pointer(seen%y, moment%y, [c_system_dimension(held%system%sys)])
     tell_observer = to_int(held%observer%seen(moment))
   end function tell_observer
+
+  !> Calls the observer of a curve for the library. SIZE_MAX, no contact, is -1 here.
+  integer(c_int) function tell_point(seen, data) bind(c, name='')
+    type(c_curve_point), intent(in) :: seen
+    type(c_ptr), value :: data
+    type(held_curve), pointer :: held
+    type(tribo_curve_point) :: point
+
+    call c_f_pointer(data, held)
+    point%parameter = seen%parameter
+    point%t = seen%t
+    point%period = seen%period
+    point%zeta = seen%zeta
+    point%kind = int(seen%kind)
+    point%contact = int(seen%contact + 1)
+    point%stable = int(seen%stable)
+    call c_f_pointer(seen%y, point%y, [held%dimension])
+    tell_point = to_int(held%observer%seen(point))
+  end function tell_point
 
   impure elemental subroutine assign_system(to, from)
     class(tribo_system), intent(inout) :: to

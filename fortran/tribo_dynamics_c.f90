@@ -39,6 +39,37 @@ module tribo_dynamics_constants
   integer, parameter, public :: TRIBO_PARAMETER_FREQUENCY = 2
   !> a factor of the damping matrix, at 1
   integer, parameter, public :: TRIBO_PARAMETER_DAMPING = 3
+  !> curves: a factor of all limits, at 1
+  integer, parameter, public :: TRIBO_PARAMETER_LIMITS = 4
+  !> curves: the amplitude of a nonlinear mode
+  integer, parameter, public :: TRIBO_PARAMETER_AMPLITUDE = 5
+
+  !> of tribo_driver_find_periodic
+  integer, parameter, public :: TRIBO_MOTION_PERIODIC = 0
+  !> of tribo_driver_find_cycle
+  integer, parameter, public :: TRIBO_MOTION_CYCLE = 1
+  !> of tribo_driver_find_mode
+  integer, parameter, public :: TRIBO_MOTION_MODE = 2
+
+  integer, parameter, public :: TRIBO_POINT_REGULAR = 0
+  !> the curve turns back: a multiplier 1, or a change of the sequence of events of `contact`
+  integer, parameter, public :: TRIBO_POINT_FOLD = 1
+  !> a multiplier -1: motions of twice the period begin
+  integer, parameter, public :: TRIBO_POINT_FLIP = 2
+  !> a complex pair of multipliers of modulus 1 (Neimark-Sacker)
+  integer, parameter, public :: TRIBO_POINT_TORUS = 3
+  !> a multiplier 1, and the curve goes on: another curve crosses, as where symmetry is lost
+  integer, parameter, public :: TRIBO_POINT_BRANCH = 4
+  !> `contact` begins to stick, once more a period
+  integer, parameter, public :: TRIBO_POINT_STICK = 5
+  !> `contact` ceases to stick, once more a period
+  integer, parameter, public :: TRIBO_POINT_SLIDE = 6
+  !> `contact` begins or ceases to touch, to lift off or to reverse
+  integer, parameter, public :: TRIBO_POINT_GRAZE = 7
+  !> events of several contacts change their order
+  integer, parameter, public :: TRIBO_POINT_ORDER = 8
+  !> a cycle shrinks to a state of rest (Hopf); the curve ends there
+  integer, parameter, public :: TRIBO_POINT_REST = 9
 
   !> accepted steps
   integer, parameter, public :: TRIBO_COUNT_STEPS = 100
@@ -715,6 +746,19 @@ module tribo_dynamics_c
       real(c_double), intent(inout), optional :: y(*)
       integer(c_int) :: answer
     end function c_driver_period_derivatives
+
+    function c_driver_follow_curve(drv, curve, t, period, y, seen, data) result(answer) &
+      bind(c,name='tribo_driver_follow_curve')
+      import
+      type(c_ptr), value :: drv
+      type(c_ptr), value :: curve
+      real(c_double), value :: t
+      real(c_double), intent(inout), optional :: period(*)
+      real(c_double), intent(inout), optional :: y(*)
+      type(c_funptr), value :: seen
+      type(c_ptr), value :: data
+      integer(c_int) :: answer
+    end function c_driver_follow_curve
 
     function c_driver_count(drv, which, value) result(answer) bind(c,name='tribo_driver_count')
       import

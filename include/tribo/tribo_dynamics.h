@@ -514,7 +514,9 @@ enum {
     TRIBO_PARAMETER_LIMIT = 0,     /* the limit of contact `index` */
     TRIBO_PARAMETER_LOADS = 1,     /* a factor of all loads and base motions, at 1 */
     TRIBO_PARAMETER_FREQUENCY = 2, /* a factor of all frequencies, at 1; base motions keep their displacements */
-    TRIBO_PARAMETER_DAMPING = 3    /* a factor of the damping matrix, at 1 */
+    TRIBO_PARAMETER_DAMPING = 3,   /* a factor of the damping matrix, at 1 */
+    TRIBO_PARAMETER_LIMITS = 4,    /* curves: a factor of all limits, at 1 */
+    TRIBO_PARAMETER_AMPLITUDE = 5  /* curves: the amplitude of a nonlinear mode */
 };
 
 /* Derivatives of the last periodic motion found by parameters, in closed form along its events. The system must be unchanged
@@ -528,6 +530,70 @@ enum {
  * TRIBO_ERR_NO_CONVERGENCE (the motion is not isolated), TRIBO_ERR_UNSUPPORTED: see the manual. */
 TRIBO_API int tribo_driver_period_derivatives(tribo_driver *drv, size_t count, const int *kind, const size_t *index,
                                               const double *c, double *extremes, double *energy, double *y);
+
+/* The motions of a curve. */
+enum {
+    TRIBO_MOTION_PERIODIC = 0, /* of tribo_driver_find_periodic */
+    TRIBO_MOTION_CYCLE = 1,    /* of tribo_driver_find_cycle */
+    TRIBO_MOTION_MODE = 2      /* of tribo_driver_find_mode */
+};
+
+/* Points of a curve. Changes are named along the curve. */
+enum {
+    TRIBO_POINT_REGULAR = 0,
+    TRIBO_POINT_FOLD = 1,   /* the curve turns back: a multiplier 1, or a change of the sequence of events of `contact` */
+    TRIBO_POINT_FLIP = 2,   /* a multiplier -1: motions of twice the period begin */
+    TRIBO_POINT_TORUS = 3,  /* a complex pair of multipliers of modulus 1 (Neimark-Sacker) */
+    TRIBO_POINT_BRANCH = 4, /* a multiplier 1, and the curve goes on: another curve crosses, as where symmetry is lost */
+    TRIBO_POINT_STICK = 5,  /* `contact` begins to stick, once more a period */
+    TRIBO_POINT_SLIDE = 6,  /* `contact` ceases to stick, once more a period */
+    TRIBO_POINT_GRAZE = 7,  /* `contact` begins or ceases to touch, to lift off or to reverse */
+    TRIBO_POINT_ORDER = 8,  /* events of several contacts change their order */
+    TRIBO_POINT_REST = 9    /* a cycle shrinks to a state of rest (Hopf); the curve ends there */
+};
+
+/* A curve of periodic motions over a parameter, followed around its turns by pseudo-arc-length; steps become shorter where the
+ * curve bends. Methods exact, event, auto. The curve begins with the motion of the system as it is: the value of the parameter is
+ * there 1, or the limit, or amplitude. Special points are located to 1e-8 of the parameter. The system stays unchanged. Within
+ * the observer the questions about periodic motions are about the point; searches and advances are not allowed there. Base
+ * motions of constant speed are part of TRIBO_PARAMETER_LOADS, and unchanged by TRIBO_PARAMETER_FREQUENCY. */
+typedef struct {
+    size_t size;        /* sizeof(tribo_curve) */
+    int motion;         /* TRIBO_MOTION_... */
+    int parameter;      /* TRIBO_PARAMETER_... */
+    size_t index;       /* the contact of TRIBO_PARAMETER_LIMIT */
+    double least, most; /* the curve ends where the parameter leaves [least, most] */
+    double step;        /* largest step of the parameter between points; < 0: the curve begins downwards */
+    size_t points;      /* the curve ends with the step in which this number of points is seen; 0: 10000 */
+    int coarse;         /* 1: changes of the sequence of events are passed, not located, unless the curve turns there */
+    double amplitude;   /* modes: of the first motion */
+    const double *c;    /* modes: [2 ndof] coefficients of the signal of tribo_driver_find_mode; else NULL */
+} tribo_curve;
+
+/* A point of a curve, passed to an observer. Valid during the call. */
+typedef struct {
+    size_t size;      /* sizeof(tribo_curve_point) of the library: later versions may add members at the end */
+    double parameter; /* value of the parameter */
+    double t, period; /* start of the period, and its length */
+    double zeta;      /* modes: damping ratio; else 0 */
+    const double *y;  /* [dimension] state at t, with energy 0 */
+    int kind;         /* TRIBO_POINT_... */
+    size_t contact;   /* the contact whose sequence of events changes, or the row of a normal; SIZE_MAX: none */
+    int stable;       /* 1: no multiplier outside of the unit circle; 0: unstable; -1: not known, as of modes */
+} tribo_curve_point;
+
+/* t        in       time at which the first period begins; by the frequency t/period stays constant; modes: not read
+ * period   in/out   in: as in tribo_driver_find_periodic, tribo_driver_find_cycle; modes: a guess or 0; out: of the last point
+ * y        [dimension] in/out   in: a guess; out: the state of the last point. Of cycles the period begins between events
+ * seen     in       called at each point; returns 0 to continue, any other value ends the curve with TRIBO_ERR_STOPPED; NULL: none
+ * data     in       passed to seen
+ * On error period and y hold the last point seen, or are unchanged.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE (curve->size), TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (motion, parameter, index; the
+ * first value is outside of the range), TRIBO_ERR_NOT_POSITIVE (step 0, least), TRIBO_ERR_UNSUPPORTED (parameter of another
+ * motion), TRIBO_ERR_STOPPED, TRIBO_ERR_NO_CONVERGENCE (no first motion; or the curve ends, as where motions jump), and what the
+ * searches return. */
+TRIBO_API int tribo_driver_follow_curve(tribo_driver *drv, const tribo_curve *curve, double t, double *period, double *y,
+                                        int (*seen)(const tribo_curve_point *point, void *data), void *data);
 
 /* Counts since creation. tribo_driver_count returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE. */
 enum {

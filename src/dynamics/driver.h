@@ -19,6 +19,7 @@ enum {
 
 struct events;
 struct shooting;
+struct track;
 
 /* A periodic motion that is looked for: by find, with the data of the search. period, y: of the guess, then of the motion. */
 struct wanted {
@@ -26,6 +27,7 @@ struct wanted {
     double t, period;
     double *y;               /* methods' state, unchanged by errors */
     const double *c;         /* modes: [2 ndof] coefficients of q and q', as methods have them */
+    struct track *curve;     /* curves: see curve.h; else NULL */
     double amplitude, delta; /* modes: of c'[q, q'], in; half the damping that they lose per mass, of the guess, then found */
 };
 

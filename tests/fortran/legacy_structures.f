@@ -246,15 +246,31 @@ C     Counts the steps, sums their times, and ends the run at the last.
       IF (IPAR(1) .EQ. IPAR(2)) ISTOP = 1
       END
 C
+C     Points of a curve: the last special one; stops at the first one if
+C     IPAR(2) is 1.
+      SUBROUTINE POINT(PT, NY, Y, KIND, ICON, ISTAB, RPAR, IPAR, ISTOP)
+      INTEGER NY, KIND, ICON, ISTAB, IPAR(*), ISTOP
+      DOUBLE PRECISION PT(4), Y(*), RPAR(*)
+      IF (KIND .NE. 0) THEN
+         IPAR(1) = 10*KIND + ICON
+         RPAR(1) = PT(1)
+      END IF
+      IF (ISTAB .NE. -1 .OR. NY .NE. 4 .OR. Y(NY) .NE. 0D0) ISTOP = 9
+      IF (IPAR(2) .EQ. 1) ISTOP = 1
+      END
+C
 C     x'' + 0.1 x' + x + f = cos 1.1 t, f of a slider of limit 0.5 on a
 C     spring of 1: the amplitude is 3.38660810; also of the only mode.
       SUBROUTINE ELASTC
       INTEGER IH, IERR, IRM(2), ICM(1), K, NDOF
       DOUBLE PRECISION ONE(1), C(1), CMP(1), ZERO(1), HALF(1), Y(4)
       DOUBLE PRECISION CV(2), XMIN, XMAX, TMIN, TMAX, RE(4), AI(4)
-      DOUBLE PRECISION OMEGA, ZETA
-      INTEGER IGIVEN(1), ISLIP(1), NEXP
+      DOUBLE PRECISION OMEGA, ZETA, PERIOD, SUM(1), ROPT(4)
+      INTEGER IOPT(5), ISEEN(2)
+      EXTERNAL POINT
       CHARACTER*80 TEXT
+      INTEGER IGIVEN(1), ISLIP(1), NEXP
+      DATA IOPT /2, 5, 1, 0, 0/, ROPT /0.1D0, 1D0, 0.1D0, 0.3D0/
       DATA IGIVEN /0/
       DATA IRM /1, 2/, ICM /1/, ONE /1D0/, C /0.1D0/, CMP /1D0/
       DATA ZERO /0D0/, HALF /0.5D0/, CV /1D0, 0D0/
@@ -286,6 +302,24 @@ C     spring of 1: the amplitude is 3.38660810; also of the only mode.
          CALL EXPECT('omega', ABS(OMEGA - 1.2258676901977D0) .LT. 1D-9)
          CALL EXPECT('zeta', ABS(ZETA - 0.105752880426D0 - 5D-2/OMEGA)
      1               .LT. 1D-9)
+         PERIOD = 0D0
+         SUM(1) = 0D0
+         ISEEN(1) = 0
+         ISEEN(2) = 0
+         Y(1) = 0D0
+         Y(2) = 0D0
+         Y(3) = 0D0
+         CALL TRBCRV(IH, 1, IOPT, ROPT, CV, 0D0, PERIOD, Y, POINT, SUM,
+     1               ISEEN, IERR)
+         CALL EXPECT('TRBCRV', IERR .EQ. 0)
+         CALL EXPECT('omega at the end', ABS(8D0*ATAN(1D0)/PERIOD -
+     1               OMEGA) .LT. 1D-9)
+         CALL EXPECT('ceases to stick', ISEEN(1) .EQ. 61 .AND.
+     1               ABS(SUM(1) - 0.5D0) .LT. 1D-8)
+         ISEEN(2) = 1
+         CALL TRBCRV(IH, 1, IOPT, ROPT, CV, 0D0, PERIOD, Y, POINT, SUM,
+     1               ISEEN, IERR)
+         CALL EXPECT('stopped', IERR .EQ. 60)
          Y(1) = 0D0
          Y(3) = 0D0
          CALL TRBEQU(IH, 1, 1, IGIVEN, Y, ISLIP, NEXP, RE, AI, IERR)

@@ -1,9 +1,45 @@
 ! SPDX-License-Identifier: BSD-3-Clause
+!> Points of a curve.
+module curve_points
+  use tribo
+  use tribo_dynamics
+  implicit none
+  private
+
+  !> Counts points, and keeps the special ones.
+  type, extends(tribo_curve_observer), public :: points
+    integer :: count = 0, special = 0, contact = 0, stop = 0
+    real(dp) :: parameter = 0, last = 0, size = 0, zeta = 0
+  contains
+    procedure :: seen => point_seen
+  end type points
+
+contains
+
+  integer function point_seen(this, point) result(answer)
+    class(points), intent(inout) :: this
+    type(tribo_curve_point), intent(in) :: point
+
+    this%count = this%count + 1
+    this%last = point%parameter
+    this%size = point%y(1)
+    this%zeta = point%zeta
+    if (point%kind /= TRIBO_POINT_REGULAR) then
+      this%special = point%kind
+      this%contact = point%contact
+      this%parameter = point%parameter
+    end if
+    answer = merge(1, 0, this%count == this%stop)
+  end function point_seen
+
+end module curve_points
+
 !> Models: dense, diagonal and sparse matrices make the same system, errors name what is wrong, and a contact with compliance is a
 !> spring before a slider.
 program models
   use tribo
   use tribo_dynamics
+  use curve_points
   use check
   implicit none
   integer :: stat
@@ -177,7 +213,8 @@ contains
     type(tribo_system) :: s
     type(tribo_driver) :: d
     type(tribo_context) :: c
-    real(dp) :: y(4), omega, zeta
+    type(points), target :: seen
+    real(dp) :: y(4), omega, zeta, period
     integer :: stat
 
     call model%create(1, 1)
@@ -199,6 +236,21 @@ contains
     call require(stat == TRIBO_ERR_SIZE, 'mode: a short signal')
     call d%find_mode([1.0_dp, 0.0_dp], -1.0_dp, omega, zeta, y, stat)
     call require(stat == TRIBO_ERR_NOT_POSITIVE .and. abs(omega - 1.2258676901977_dp) < 1e-9_dp, 'mode: a negative amplitude')
+    y = 0
+    period = 0
+    call d%follow_curve(curve_of([1.0_dp, 0.0_dp]), 0.0_dp, period, y, seen)
+    call require(seen%count > 5 .and. abs(seen%last - 1) <= 0 .and. abs(seen%size - 1) < 1e-9_dp, 'curve: its end')
+    call require(seen%special == TRIBO_POINT_SLIDE .and. seen%contact == 1, 'curve: a contact ceases to stick')
+    call require(abs(seen%parameter - 0.5_dp) < 1e-8_dp, 'curve: the amplitude at which it does')
+    call require(abs(8*atan(1.0_dp)/period - 1.2258676901977_dp) < 1e-9_dp, 'curve: omega')
+    call require(abs(seen%zeta - 0.105752880426_dp) < 1e-9_dp, 'curve: zeta')
+    seen%stop = seen%count + 2
+    y = 0
+    period = 0
+    call d%follow_curve(curve_of([1.0_dp, 0.0_dp]), 0.0_dp, period, y, seen, stat, msg)
+    call require(stat == TRIBO_ERR_STOPPED .and. index(msg, 'the observer answered 1') > 0, 'curve: stopped')
+    call d%follow_curve(curve_of([1.0_dp]), 0.0_dp, period, y, seen, stat)
+    call require(stat == TRIBO_ERR_SIZE, 'curve: a short signal')
   end subroutine mode_of_contact
 
   !> Mode coupling: springs 11 at 150 and 20 at 30 degrees, normal stiffness 11, preload 10, friction 0.6 on a belt.
@@ -232,6 +284,19 @@ contains
     call s%find_flutter(7, 0.0_dp, 1.0_dp, critical, omega, stat=stat)
     call require(stat == TRIBO_ERR_RANGE, 'flutter: no parameter')
   end subroutine flutter
+
+  function curve_of(c) result(curve)
+    real(dp), intent(in) :: c(:)
+    type(tribo_curve) :: curve
+
+    curve%motion = TRIBO_MOTION_MODE
+    curve%parameter = TRIBO_PARAMETER_AMPLITUDE
+    curve%least = 0.1_dp
+    curve%most = 1
+    curve%step = 0.1_dp
+    curve%amplitude = 0.3_dp
+    allocate (curve%c, source=c)
+  end function curve_of
 
   !> An elastic contact that lifts off: x'' + 0.1 sqrt(12) x' + 12 x + f = 60 cos 5 t, y'' + 2 y' + 21 y + N = 100 + 60 cos 5 t,
   !> stiffness 5, mu = 0.85, N = 21 max(y, 0): the steady motion at t = 0 by two other codes.

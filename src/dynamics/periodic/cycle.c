@@ -118,16 +118,19 @@ static int cycle_apply(struct shooting *s, const struct point *p)
 static int cycle_border(struct shooting *s, struct point *p)
 {
     const size_t n = s->map.n;
-    double *column = p->border, *row = p->border + n;
+    double *column = p->border, *row = p->border + s->extra.count * n;
     tribo_period_map_rate(&s->map, p->end, column);
     const double speed = tribo_energy_length(column, n);
     for (size_t i = 0; i < n; i++) {
         row[i] = speed > 0.0 ? column[i] / speed : 0.0;
         column[i] *= s->extra.unit[0];
     }
-    row[n] = p->value[0] = 0.0;
+    memset(row + n, 0, s->extra.count * sizeof *row);
+    p->value[0] = 0.0;
     return TRIBO_OK;
 }
+
+const struct border tribo_cycle_border = {.count = 1, .apply = cycle_apply, .border = cycle_border};
 
 /* speed period of a point that was followed. */
 static double cycle_length(const struct shooting *s, const struct point *p)
@@ -283,7 +286,7 @@ int tribo_shooting_find_cycle(struct shooting *s, struct wanted *w)
     struct course c = {.company = {course_phase, course_decided}, .map = &s->map};
     double scale = w->period; /* the guess, or else the longest natural period */
     s->found = 0;
-    s->extra = (struct border){.count = 1, .apply = cycle_apply, .border = cycle_border};
+    s->extra = tribo_cycle_border;
     int status = tribo_period_map_prepare(&s->map, w->t, scale > 0.0 ? scale : 1.0, w->y);
     if (!status && !(scale > 0.0)) {
         const double most = tribo_largest(norm->natural, norm->n);

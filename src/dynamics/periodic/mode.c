@@ -30,20 +30,18 @@ enum { MOST_SHOTS = 60 };
 
 /* -------------------------------------------------------------------------------------------------------------- the twin */
 
-/* Sets the damping of the twin to that of `like` less 2 delta M. Returns a status. */
-static int set_growth(struct shooting *s, double delta)
+int tribo_shooting_set_damping(struct shooting *s, const tribo_system *like, double factor, double delta)
 {
     tribo_system *sys = s->map.sys;
-    const tribo_system *like = s->mode->like;
     struct matrix one = {0}, c = {0}, rates = {0};
     const int damped = like->c.rows > 0;
     const int done = tribo_matrix_diagonal(&one, sys->ndof, NULL) &&
-                     tribo_matrix_sum(&c, damped, damped ? &like->c : &sys->mass, -2.0 * delta, &sys->mass) &&
-                     tribo_matrix_sum(&rates, damped, damped ? &like->damping : &one, -2.0 * delta, &one);
+                     tribo_matrix_sum(&c, damped ? factor : 0.0, damped ? &like->c : &sys->mass, -2.0 * delta, &sys->mass) &&
+                     tribo_matrix_sum(&rates, damped ? factor : 0.0, damped ? &like->damping : &one, -2.0 * delta, &one);
     tribo_matrix_free(&one);
     if (!done) {
         tribo_matrix_free(&c);
-        return tribo_error(s->map.drv->message, TRIBO_ERR_MEMORY, "out of memory for the damping of a mode");
+        return tribo_error(s->map.drv->message, TRIBO_ERR_MEMORY, "out of memory for a damping matrix");
     }
     tribo_system_put_damping(sys, &c, &rates);
     return s->map.drv->at_work->open(s->map.drv, &s->map.events);
@@ -60,17 +58,18 @@ static int mode_apply(struct shooting *s, const struct point *p)
     }
     s->map.period = period;
     tribo_period_map_choose(&s->map, s->map.odd);
-    return set_growth(s, delta);
+    return tribo_shooting_set_damping(s, s->mode->like, 1.0, delta);
 }
 
 /* Conditions at the beginning: c'y = amplitude and c'y' = 0, the accelerations as at the end. */
 static int mode_border(struct shooting *s, struct point *p)
 {
     struct period_map *m = &s->map;
-    const size_t n = m->n, dofs = m->sys->ndof;
+    const size_t n = m->n, dofs = m->sys->ndof, count = s->extra.count;
     const double *c = s->mode->c, sign = p->odd ? -1.0 : 1.0, later = NEARBY / m->period;
     const double rate = tribo_dot(c, p->end + dofs, dofs) + tribo_dot(c + dofs, m->variation.acceleration, dofs);
-    double *by_period = p->border, *by_growth = by_period + n, *row[] = {by_growth + n, by_growth + n + n + 2};
+    double *by_period = p->border, *by_growth = by_period + n,
+           *row[] = {by_period + count * n, by_period + count * n + n + count};
     double *functional = s->step, *image = s->guess, *states = s->a;
     tribo_period_map_rate(m, p->end, by_period);
     for (size_t i = 0; i < n; i++) {
@@ -80,7 +79,7 @@ static int mode_border(struct shooting *s, struct point *p)
     /* values and rows, in coordinates */
     p->value[0] = tribo_dot(c, p->y, 2 * dofs) - s->mode->amplitude;
     p->value[1] = sign * rate;
-    memset(row[0], 0, 2 * (n + 2) * sizeof *row[0]);
+    memset(row[0], 0, 2 * (n + count) * sizeof *row[0]);
     for (size_t k = 0; k < 2; k++) {
         memset(functional, 0, n * sizeof *functional);
         memcpy(functional, c, 2 * dofs * sizeof *c);
@@ -98,17 +97,22 @@ static int mode_border(struct shooting *s, struct point *p)
             row[k][i] /= size;
         }
         p->value[k] /= size > 0.0 ? size : 1.0;
+        if (count > 2 && k == 0 && size > 0.0) { /* the amplitude is an unknown, too */
+            row[0][n + 2] = -s->extra.unit[2] / size;
+        }
         row[k][n + 1] = k && size > 0.0 ? 2.0 * tribo_dot(c + dofs, p->y + dofs, dofs) * s->extra.unit[1] / size : 0.0;
     }
     /* by delta: a difference */
     memcpy(image, p->x, n * sizeof *image);
-    status = status ? status : set_growth(s, p->unknown[1] * s->extra.unit[1] + later);
+    status = status ? status : tribo_shooting_set_damping(s, s->mode->like, 1.0, p->unknown[1] * s->extra.unit[1] + later);
     status = status ? status : tribo_period_map_march(m, m->span, 1, NULL, image);
     for (size_t i = 0; i < n; i++) {
         by_growth[i] = (sign * image[i] - p->image[i]) / later * s->extra.unit[1];
     }
     return status ? status : mode_apply(s, p);
 }
+
+const struct border tribo_mode_border = {.count = 2, .apply = mode_apply, .border = mode_border};
 
 /* -------------------------------------------------------------------------------------------------------------- search */
 
@@ -191,8 +195,7 @@ static int follow_path(struct shooting *s, double period, double delta, double r
     return status;
 }
 
-/* Sets the twin of s: its system, without loads and bases that change in time, and its driver. Returns a status. */
-static int create_twin(struct shooting *s)
+int tribo_shooting_create_twin(struct shooting *s, int steady)
 {
     tribo_driver *drv = s->map.drv;
     tribo_driver_destroy(s->twin.drv);
@@ -202,20 +205,22 @@ static int create_twin(struct shooting *s)
     if (status) {
         return status;
     }
-    tribo_loads_keep_constant(s->twin.sys);
+    if (steady) {
+        tribo_loads_keep_constant(s->twin.sys);
+    }
     status = tribo_driver_create(&s->twin.drv, s->twin.sys, drv->at_work->name);
     if (status) {
         return tribo_error(drv->message, status, "%s", tribo_system_message(s->twin.sys));
     }
     s->twin.drv->shooting = tribo_shooting_create(s->twin.drv);
-    return s->twin.drv->shooting ? TRIBO_OK : tribo_error(drv->message, TRIBO_ERR_MEMORY, "out of memory for a mode");
+    return s->twin.drv->shooting ? TRIBO_OK : tribo_error(drv->message, TRIBO_ERR_MEMORY, "out of memory for a search");
 }
 
 int tribo_shooting_find_mode(struct shooting *s, struct wanted *w)
 {
     const size_t n = s->map.n;
     const double turn = 2.0 * acos(-1.0), guess = w->period;
-    int found = 0, status = create_twin(s);
+    int found = 0, status = tribo_shooting_create_twin(s, 1);
     s->found = 0;
     s->told = s;
     if (status) {
@@ -224,7 +229,7 @@ int tribo_shooting_find_mode(struct shooting *s, struct wanted *w)
     struct shooting *t = s->twin.drv->shooting;
     struct mode mode = {s->map.sys, w->c, calloc(n, sizeof *mode.x), w->amplitude};
     t->mode = &mode;
-    t->extra = (struct border){.count = 2, .apply = mode_apply, .border = mode_border};
+    t->extra = tribo_mode_border;
     status = mode.x ? tribo_period_map_prepare(&t->map, w->t, guess > 0.0 ? guess : 1.0, w->y)
                     : tribo_error(t->map.drv->message, TRIBO_ERR_MEMORY, "out of memory for a mode");
     const double of_guess = tribo_dot(w->c, w->y, 2 * t->map.sys->ndof);

@@ -123,11 +123,14 @@ static int follow_state(struct period_map *m, struct point *p)
     return m->events->motion->keep ? TRIBO_OK : tribo_period_map_matrix(m, p);
 }
 
-int tribo_period_map_follow(struct period_map *m, struct point *p)
+/* Sets m->y = the state of coordinates x, corrected for rounding of velocities at contacts that rest since the last integration,
+ * and for spring forces above limits. Returns a status. */
+static int enter(struct period_map *m, const double *x)
 {
-    tribo_energy_norm_state(&m->norm, 1, p->x, m->y);
+    memcpy(m->x, x, m->n * sizeof *x);
+    tribo_energy_norm_state(&m->norm, 1, m->x, m->y);
     int status = TRIBO_OK;
-    if (m->moved) { /* removes rounding of velocities at contacts that rest since the last integration */
+    if (m->moved) {
         struct stick_slip *contacts = &m->events->stick_slip;
         tribo_system_set_time(m->sys, m->t);
         memset(contacts->state.base, 0, m->sys->ncontact * sizeof *contacts->state.base);
@@ -142,7 +145,21 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
         tribo_get_limit(m->sys->contacts, m->limit);
         tribo_compliance_enter(m->sys, m->limit, m->limit + m->sys->ncontact, m->y);
     }
+    return status;
+}
+
+int tribo_period_map_follow(struct period_map *m, struct point *p)
+{
+    const int status = enter(m, p->x);
     return status ? status : follow_state(m, p);
+}
+
+int tribo_period_map_image(struct period_map *m, const double *x, struct company *company, double *image)
+{
+    int status = enter(m, x);
+    status = status ? status : period_map_integrate(m, m->t, m->t + m->span, company);
+    find_image(m, m->odd, 1, m->y, image);
+    return status;
 }
 
 int tribo_period_map_later(struct period_map *m, const double *y, double later, struct point *p)

@@ -8,7 +8,7 @@
 #include "variation.h"
 
 /* Unknowns beside x, at most. */
-#define TRIBO_UNKNOWNS 2
+#define TRIBO_UNKNOWNS 3
 
 /* The map at one point; arrays [n]. y: initial state; x: coordinates of y in the energy norm. */
 struct point {
@@ -52,6 +52,10 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period, cons
 int tribo_period_map_follow(struct period_map *m, struct point *p);
 int tribo_period_map_later(struct period_map *m, const double *y, double later, struct point *p);
 int tribo_period_map_complete(struct period_map *m, struct point *p);
+
+/* image [n] = image of x [n], corrected as by follow, whose last integration ended as that from x does, with the observer
+ * `company`. Returns a status, its message on the driver. */
+int tribo_period_map_image(struct period_map *m, const double *x, struct company *company, double *image);
 
 /* apply: x [n] = D x, D = d image/d x at p. matrix: p->derivative.matrix [n][n] = D, unless it is set. Both return a
  * status, its message on the driver. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Periodic motions: the public functions. */
-#include "shooting.h"
+#include "curve.h"
 
 #include <float.h>
 #include <math.h>
@@ -136,6 +136,54 @@ int tribo_driver_find_cycle(tribo_driver *drv, double t, double *period, double 
     return status;
 }
 
+/* Sets w for the mode of the amplitude of c'[q, q'], from a guess omega and zeta, and *own = w->c, memory to free also after a
+ * failure. Returns TRIBO_OK if the arguments are those of a mode. */
+static int check_mode(tribo_driver *drv, const double *c, double amplitude, double omega, double zeta, struct wanted *w,
+                      double **own)
+{
+    const tribo_system *sys = drv->sys;
+    const size_t given = tribo_system_ndof(sys), n = sys->ndof;
+    int status = TRIBO_OK;
+    if (!(tribo_dense_finite(c, 2 * given) && isfinite(amplitude + omega + zeta))) {
+        status = tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "c, or amplitude = %g, omega = %g or zeta = %g is not finite",
+                             amplitude, omega, zeta);
+    }
+    if (!status && (!(amplitude > 0.0) || omega < 0.0)) {
+        status = tribo_error(drv->message, TRIBO_ERR_NOT_POSITIVE, "%s = %g is not positive",
+                             amplitude > 0.0 ? "omega" : "amplitude", amplitude > 0.0 ? omega : amplitude);
+    }
+    status = status ? status : check_friction(drv);
+    for (size_t k = 0; !status && k < sys->loads.harmonics; k++) {
+        const struct harmonic *h = &sys->loads.harmonic[k];
+        if (h->knots || (h->drives == DRIVES_LIMIT && h->omega != 0.0)) {
+            status =
+                tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "modes have limits that do not depend on time, and no tables");
+        }
+    }
+    if (status) {
+        return status;
+    }
+    double *const to = *own = calloc(2 * tribo_system_size(sys) + 2 * given + 1, sizeof *to);
+    if (!to) {
+        return tribo_error(drv->message, TRIBO_ERR_MEMORY, "out of memory for a mode");
+    }
+    if (drv->motion) {
+        tribo_system_read_combination(sys, c, to);
+    } else {
+        memcpy(to, c, 2 * n * sizeof *c);
+    }
+    if (!(tribo_largest(to, 2 * n) > 0.0) || tribo_largest(to + 2 * n, 2 * (tribo_system_energy(sys) - 2 * n)) > 0.0) {
+        status = tribo_error(drv->message, TRIBO_ERR_RANGE, "c is 0, or takes in degrees of freedom without mass");
+    } else if (sys->normals.count && tribo_largest(to + n, n) > 0.0) {
+        status = tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "where limits follow the motion c takes displacements only");
+    }
+    w->period = omega > 0.0 ? 2.0 * acos(-1.0) / omega : 0.0;
+    w->c = to;
+    w->amplitude = amplitude;
+    w->delta = zeta * omega;
+    return status;
+}
+
 int tribo_driver_find_mode(tribo_driver *drv, const double *c, double amplitude, double *omega, double *zeta, double *y)
 {
     if (!drv) {
@@ -144,50 +192,90 @@ int tribo_driver_find_mode(tribo_driver *drv, const double *c, double amplitude,
     if (!c || !omega || !zeta) {
         return tribo_error(drv->message, TRIBO_ERR_NULL, "%s is NULL", !c ? "c" : !omega ? "omega" : "zeta");
     }
-    const tribo_system *sys = drv->sys;
-    const size_t given = tribo_system_ndof(sys), n = sys->ndof;
-    const double turn = 2.0 * acos(-1.0);
+    struct wanted w = {.find = tribo_shooting_find_mode};
+    double *own = NULL;
     int status = check_search(drv, "modes", 0.0, y);
-    if (!status && !(tribo_dense_finite(c, 2 * given) && isfinite(amplitude + *omega + *zeta))) {
-        status = tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "c, or amplitude = %g, omega = %g or zeta = %g is not finite",
-                             amplitude, *omega, *zeta);
-    }
-    if (!status && (!(amplitude > 0.0) || *omega < 0.0)) {
-        status = tribo_error(drv->message, TRIBO_ERR_NOT_POSITIVE, "%s = %g is not positive",
-                             amplitude > 0.0 ? "omega" : "amplitude", amplitude > 0.0 ? *omega : amplitude);
-    }
-    status = status ? status : check_friction(drv);
-    for (size_t k = 0; !status && k < sys->loads.harmonics; k++) {
-        const struct harmonic *w = &sys->loads.harmonic[k];
-        if (w->knots || (w->drives == DRIVES_LIMIT && w->omega != 0.0)) {
-            status =
-                tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "modes have limits that do not depend on time, and no tables");
-        }
-    }
-    if (status) {
-        return status;
-    }
-    double *own = calloc(2 * tribo_system_size(sys) + 2 * given + 1, sizeof *own);
-    if (!own) {
-        return tribo_error(drv->message, TRIBO_ERR_MEMORY, "out of memory for a mode");
-    }
-    if (drv->motion) {
-        tribo_system_read_combination(sys, c, own);
-    } else {
-        memcpy(own, c, 2 * n * sizeof *c);
-    }
-    if (!(tribo_largest(own, 2 * n) > 0.0) || tribo_largest(own + 2 * n, 2 * (tribo_system_energy(sys) - 2 * n)) > 0.0) {
-        status = tribo_error(drv->message, TRIBO_ERR_RANGE, "c is 0, or takes in degrees of freedom without mass");
-    } else if (sys->normals.count && tribo_largest(own + n, n) > 0.0) {
-        status = tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "where limits follow the motion c takes displacements only");
-    }
-    struct wanted w = {tribo_shooting_find_mode, 0.0, *omega > 0.0 ? turn / *omega : 0.0, NULL, own, amplitude, *zeta * *omega};
+    status = status ? status : check_mode(drv, c, amplitude, *omega, *zeta, &w, &own);
     status = status ? status : search_from(drv, &w, y);
     if (!status) {
-        *omega = turn / w.period;
+        *omega = 2.0 * acos(-1.0) / w.period;
         *zeta = w.delta / *omega;
     }
     free(own);
+    return status;
+}
+
+/* Returns TRIBO_OK if the members of the curve are those of a curve of drv. */
+static int check_curve(tribo_driver *drv, const tribo_curve *curve, const double *period)
+{
+    const tribo_system *sys = drv->sys;
+    const int mode = curve->motion == TRIBO_MOTION_MODE, kind = curve->parameter;
+    const int bounded = kind == TRIBO_PARAMETER_FREQUENCY || mode;
+    if (curve->size != sizeof *curve) {
+        return tribo_error(drv->message, TRIBO_ERR_SIZE, "curve->size is not sizeof(tribo_curve)");
+    }
+    if (!isfinite(curve->least + curve->most + curve->step + curve->amplitude + *period)) {
+        return tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "least, most, step, amplitude or period is not finite");
+    }
+    if (curve->motion == TRIBO_MOTION_MODE && !curve->c) {
+        return tribo_error(drv->message, TRIBO_ERR_NULL, "curve->c is NULL");
+    }
+    if (curve->motion < TRIBO_MOTION_PERIODIC || curve->motion > TRIBO_MOTION_MODE || kind < TRIBO_PARAMETER_LIMIT ||
+        kind > TRIBO_PARAMETER_AMPLITUDE) {
+        return tribo_error(drv->message, TRIBO_ERR_RANGE, "motion = %d or parameter = %d is none", curve->motion, kind);
+    }
+    if (mode != (kind == TRIBO_PARAMETER_AMPLITUDE) ||
+        (curve->motion == TRIBO_MOTION_CYCLE && kind == TRIBO_PARAMETER_FREQUENCY)) {
+        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
+                           "modes are followed over their amplitude, others not; cycles have no frequency of loads");
+    }
+    if (kind == TRIBO_PARAMETER_LIMIT && curve->index >= sys->ncontact) {
+        return tribo_error(drv->message, TRIBO_ERR_RANGE, "there is no contact %zu", curve->index);
+    }
+    if (kind == TRIBO_PARAMETER_LIMIT && (tribo_normals_at(sys, curve->index) || tribo_normals_follower(sys, curve->index))) {
+        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "the limit of contact %zu follows the motion", curve->index);
+    }
+    return curve->step == 0.0 || !(bounded ? curve->least > 0.0 : curve->least >= 0.0)
+               ? tribo_error(drv->message, TRIBO_ERR_NOT_POSITIVE, "step = %g is 0, or least = %g is too small", curve->step,
+                             curve->least)
+               : TRIBO_OK;
+}
+
+int tribo_driver_follow_curve(tribo_driver *drv, const tribo_curve *curve, double t, double *period, double *y,
+                              int (*seen)(const tribo_curve_point *point, void *data), void *data)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!curve || !period) {
+        return tribo_error(drv->message, TRIBO_ERR_NULL, "%s is NULL", curve ? "period" : "curve");
+    }
+    struct track c = {.ask = curve, .seen = seen, .data = data};
+    struct wanted w = {.find = tribo_shooting_follow_curve, .t = t, .period = *period, .curve = &c};
+    int status = check_search(drv, "curves", t, y);
+    status = status ? status : check_curve(drv, curve, period);
+    double *own = NULL, *from = calloc(2 * tribo_system_dimension(drv->sys) + 1, sizeof *from);
+    if (!status && !from) {
+        status = tribo_error(drv->message, TRIBO_ERR_MEMORY, "out of memory for a curve");
+    } else if (!status && curve->motion == TRIBO_MOTION_MODE) {
+        status = check_mode(drv, curve->c, curve->amplitude, *period > 0.0 ? 2.0 * acos(-1.0) / *period : 0.0, 0.0, &w, &own);
+    } else if (!status) {
+        const int cycle = curve->motion == TRIBO_MOTION_CYCLE;
+        status = cycle && *period == 0.0 ? TRIBO_OK : check_period(drv, t, *period);
+        status = status ? status : check_loads(drv, cycle ? 0.0 : *period);
+        status = status ? status : check_friction(drv);
+    }
+    if (!status) {
+        memcpy(from, y, tribo_system_dimension(drv->sys) * sizeof *y);
+        status = search_from(drv, &w, from);
+    }
+    if (c.points) {
+        memcpy(y, c.shown, tribo_system_dimension(drv->sys) * sizeof *y);
+        *period = w.period;
+    }
+    free(c.memory);
+    free(own);
+    free(from);
     return status;
 }
 

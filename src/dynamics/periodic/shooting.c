@@ -115,9 +115,7 @@ static void find_misfit(const struct shooting *s, const struct point *p, double 
     tribo_add(to, -1.0, p->x, s->map.n);
 }
 
-/* Follows p with its unknowns; conditions count in the residual, which is HUGE_VAL beyond the range of the unknowns. Returns a
- * status. */
-static int shooting_follow(struct shooting *s, struct point *p)
+int tribo_shooting_follow(struct shooting *s, struct point *p)
 {
     const size_t k = s->extra.count;
     int status = k ? s->extra.apply(s, p) : TRIBO_OK;
@@ -233,7 +231,7 @@ static int try_step(struct shooting *s, double part)
     tribo_add(s->there->x, part, s->step, s->map.n);
     memcpy(s->there->unknown, s->here->unknown, sizeof s->here->unknown);
     tribo_add(s->there->unknown, part, s->step + s->map.n, s->extra.count);
-    const int status = shooting_follow(s, s->there);
+    const int status = tribo_shooting_follow(s, s->there);
     if (!status) {
         s->ratio = left_along(s, s->there) / left_along(s, s->here);
         s->nearest = isfinite(s->there->size) ? lesser(s->nearest, s->there->residual / s->there->size) : s->nearest;
@@ -308,6 +306,14 @@ static int shorten(struct shooting *s, double high)
     return status;
 }
 
+int tribo_shooting_tangent(struct shooting *s, double *x)
+{
+    const size_t count = s->extra.count, all = s->map.n + count;
+    memset(x, 0, all * sizeof *x);
+    x[all - 1] = 1.0;
+    return solve_dense(s, s->here, 1, count, CUT, x, NULL);
+}
+
 int tribo_shooting_solve(struct shooting *s, size_t columns, double *x)
 {
     const size_t n = s->map.n, direct = n <= DIRECT;
@@ -339,7 +345,7 @@ int tribo_shooting_solve(struct shooting *s, size_t columns, double *x)
 int tribo_shooting_search(struct shooting *s)
 {
     const size_t most = s->map.halves + MOST;
-    int status = shooting_follow(s, s->here);
+    int status = tribo_shooting_follow(s, s->here);
     if (status) {
         return status;
     }
@@ -443,12 +449,9 @@ int tribo_shooting_find_flow(struct shooting *s)
 {
     const struct derivative *d = &s->here->derivative;
     tribo_system *sys = s->map.sys;
-    double *v = s->map.limit, elapsed = 0.0, longest = 0.0, middle = 0.0;
+    double *v = s->map.limit;
     const signed char *first = d->step->slip, *last = first;
     for (size_t k = 0; k < d->steps; k++) {
-        middle = d->step[k].tau > longest ? elapsed + 0.5 * d->step[k].tau : middle;
-        longest = greater(longest, d->step[k].tau);
-        elapsed += d->step[k].tau;
         last = d->step[k].slip ? d->step[k].slip : last;
     }
     tribo_system_set_time(sys, s->map.t);
@@ -458,7 +461,7 @@ int tribo_shooting_find_flow(struct shooting *s)
     for (size_t i = 0; i < sys->ncontact && s->flow == s->here; i++) {
         const double most = s->here->size / s->map.norm.scale * sqrt(tribo_system_delassus(sys, i, i));
         if ((tribo_slides(first[i]) || tribo_slides(last[i])) && fabs(v[i]) <= AT_ONCE * most) {
-            const int status = tribo_period_map_later(&s->map, s->here->y, middle, s->there);
+            const int status = tribo_period_map_later(&s->map, s->here->y, tribo_derivative_middle(d), s->there);
             if (status || !tribo_point_is_closed(s->there, LASTS)) {
                 return status ? status : tribo_shooting_fails(s, s->there->residual / s->there->size);
             }

@@ -20,6 +20,8 @@ struct border {
     double first;                /* an unknown period as the search begins */
 };
 
+struct track;
+
 /* A mode that is searched (mode.c). c [2 ndof]: coefficients of q and q'; x [n]: workspace. like: system of the caller. */
 struct mode {
     const tribo_system *like;
@@ -53,6 +55,7 @@ struct shooting {
     int found;
     size_t revision;       /* of the system when the motion was found */
     struct mode *mode;     /* of the search of a mode; else NULL */
+    struct track *curve;   /* of the curve that is followed; else NULL */
     struct twin twin;      /* of the modes of this driver */
     struct shooting *told; /* the search that has the motion found: this one, or that of twin.drv */
 };
@@ -82,6 +85,10 @@ int tribo_shooting_search(struct shooting *s);
  * status: not that of a search that fails. */
 int tribo_shooting_try(struct shooting *s, double period, int *closed);
 
+/* x [n + count] = the tangent: the shortest solution of the bordered equation at s->here with right-hand side 0, but 1 for the last
+ * condition. Returns a status. */
+int tribo_shooting_tangent(struct shooting *s, double *x);
+
 /* Exchanges here and there. */
 void tribo_shooting_turn(struct shooting *s);
 
@@ -99,6 +106,21 @@ int tribo_shooting_find_flow(struct shooting *s);
 int tribo_shooting_find(struct shooting *s, struct wanted *w);
 int tribo_shooting_find_cycle(struct shooting *s, struct wanted *w);
 int tribo_shooting_find_mode(struct shooting *s, struct wanted *w);
+int tribo_shooting_follow_curve(struct shooting *s, struct wanted *w);
+
+/* Borders of cycles (cycle.c) and modes (mode.c), which may be followed by more unknowns: unknowns T/unit[0], and delta/unit[1]. */
+extern const struct border tribo_cycle_border, tribo_mode_border;
+
+/* mode.c: sets the twin of s: a copy of its system, steady = 1: without loads and bases that change in time, and its driver.
+ * Returns a status. */
+int tribo_shooting_create_twin(struct shooting *s, int steady);
+
+/* mode.c: sets the damping of the twin that s searches to factor times that of `like`, less 2 delta M. Returns a status. */
+int tribo_shooting_set_damping(struct shooting *s, const tribo_system *like, double factor, double delta);
+
+/* Follows p with its unknowns; conditions count in the residual, which is HUGE_VAL beyond the range of the unknowns. Returns a
+ * status. */
+int tribo_shooting_follow(struct shooting *s, struct point *p);
 
 /* Returns TRIBO_OK if drv is not NULL, missing is NULL, and the system is that of the motion found; missing: name of an argument
  * that is NULL. *c: NULL, or coefficients of q, q' of the caller's, which become those of the methods' state: [2 ndof + 2

@@ -107,6 +107,17 @@ int tribo_derivative_rests(const struct derivative *d)
     return 0;
 }
 
+double tribo_derivative_middle(const struct derivative *d)
+{
+    double elapsed = 0.0, longest = 0.0, middle = 0.0;
+    for (size_t k = 0; k < d->steps; k++) {
+        middle = d->step[k].tau > longest ? elapsed + 0.5 * d->step[k].tau : middle;
+        longest = d->step[k].tau > longest ? d->step[k].tau : longest;
+        elapsed += d->step[k].tau;
+    }
+    return middle;
+}
+
 /* Applies the steps of x->to from x->applied on to x->v. Returns a status. */
 static int catch_up(struct variation *x)
 {
@@ -243,8 +254,15 @@ int tribo_variation_phase(struct variation *x, double tau, double t, const doubl
     int done = s != NULL;
     if (s) {
         s->tau = tau;
-        x->before = s->slip = tribo_copy_of(m->state.slip, x->sys->ncontact, 1, &done);
+        x->before = s->slip = malloc(x->sys->ncontact + x->sys->normals.count + 1);
+        done = s->slip != NULL;
         s->phase = motion->keep ? motion->keep(x->to->events->own, tau) : NULL;
+    }
+    if (done) {
+        memcpy(s->slip, m->state.slip, x->sys->ncontact);
+        for (size_t k = 0; k < x->sys->normals.count; k++) {
+            s->slip[x->sys->ncontact + k] = (signed char)x->pressed[k];
+        }
     }
     status = done && (s->phase || !motion->keep) ? TRIBO_OK : no_room(x->to);
     status = status || may_wait(x) ? status : catch_up(x);

@@ -28,7 +28,7 @@
 struct derivative_step {
     void *phase; /* of motion->keep; NULL: not kept */
     double tau;
-    signed char *slip; /* [ncontact] slip in the phase; NULL: a jump */
+    signed char *slip; /* [ncontact + normals] slip in the phase, then 1 for pressed normals; NULL: a jump */
     double *jump;      /* row [n], column [n - ndof] */
     size_t contact;
     double lift;
@@ -60,6 +60,9 @@ int tribo_derivative_apply(const struct derivative *d, size_t first, size_t colu
 
 /* Returns 1 if a contact is at rest in all phases. */
 int tribo_derivative_rests(const struct derivative *d);
+
+/* Returns the time of the middle of the longest phase. */
+double tribo_derivative_middle(const struct derivative *d);
 
 struct variation {
     tribo_system *sys;

@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Curves of periodic motions over a parameter p: z = (x, unknowns, p), unknowns: the period of cycles, and delta of modes. */
+#ifndef TRIBO_CURVE_H
+#define TRIBO_CURVE_H
+
+#include "shooting.h"
+
+/* The sequence of events of a period: slip of contacts and states of normals in each phase, phases that are alike in one. */
+struct word {
+    size_t letters, width;
+    signed char *letter; /* [letters][width] */
+};
+
+/* w = the sequence of the motion of p. width: contacts and normals. Returns 1, or 0 if out of memory. Call tribo_word_free also
+ * after a failure. */
+int tribo_word_read(struct word *w, const struct point *p, size_t width);
+void tribo_word_free(struct word *w);
+
+/* Returns 1 if the sequences differ, wherever the period begins. *kind = TRIBO_POINT_..., from `from` to `to`, and the contact of
+ * lowest index, of the first `contacts` ones, or normal whose own sequence differs; TRIBO_POINT_ORDER: none, contact
+ * SIZE_MAX. */
+int tribo_word_differ(const struct word *from, const struct word *to, size_t contacts, int *kind, size_t *contact);
+
+/* A motion of the curve. */
+struct knot {
+    double *z;       /* [n + count] x, unknowns and p in their own units */
+    double *tangent; /* [n + count] along the curve, of length 1 with unknowns over units of the curve */
+    double *rate;    /* [n] direction of x', of cycles */
+    double *re, *im; /* [all] multipliers, the largest first; without the `trivial` ones nearest to 1 */
+    size_t trivial;  /* of the family, and along a cycle */
+    int outside;     /* number of multipliers outside of the unit circle; -1: not known */
+    struct word word;
+};
+
+/* Observer of a motion with the steps `like`: same = 1 as long as the slip in its phases is that of `like`. */
+struct comparison {
+    struct company company;
+    const struct derivative *like;
+    size_t next; /* step of like after that of the last phase */
+    int same;
+};
+
+struct comparison tribo_word_compare(const struct derivative *like);
+
+/* Returns 1 if the motion observed has all phases of `like`. */
+int tribo_word_same(const struct comparison *c);
+
+enum { TRIBO_KNOTS = 13 };
+
+struct track {
+    const tribo_curve *ask;
+    struct shooting *owner, *s; /* of the caller's driver; of its twin */
+    const tribo_system *like;   /* the caller's system */
+    struct wanted *w;
+    struct mode mode;       /* of modes */
+    struct border base;     /* unknowns beside x and p */
+    size_t n, count, width; /* count: unknowns and p */
+    double t, period;       /* of the first motion */
+    double *limit, *put;    /* [ncontact] limits of the first motion; workspace */
+    double unit[TRIBO_UNKNOWNS];
+    const double *origin, *row; /* the section row'(z - origin) = ahead, over units */
+    double ahead;
+    int unique; /* 1: one motion for each p: sections of constant p */
+    struct knot
+        knot[TRIBO_KNOTS];  /* 0, 1: ends of a step; 2 to 8: to locate points; 9, 10: ends of a piece; 11, 12: the last ones */
+    size_t known;           /* number of last motions for a polynomial: the end of the step, and those of knot[11], [12] */
+    double *guess, *beyond; /* [n + count] a guess; a tangent */
+    double *memory, *shown; /* memory of all arrays; [dimension] state of the last point, as the caller has it */
+    int (*seen)(const tribo_curve_point *point, void *data);
+    void *data;
+    size_t points;          /* seen so far */
+    size_t halves, counted; /* half periods before the last search of the whole; those of the map that its driver has counted */
+};
+
+/* curve_parameter.c. begin: finds the first motion, s->here of the twin. set: sets system, t and period of the twin for p = value.
+ * border: c->s->extra for the section. free: takes a zeroed c. Return a status, its message on the driver of owner (begin), or of
+ * the twin. */
+int tribo_curve_begin(struct track *c);
+int tribo_curve_set(struct track *c, double value);
+void tribo_curve_border(struct track *c);
+
+/* Returns the value of the parameter of the caller's system. */
+double tribo_curve_first(const struct track *c);
+
+#endif
