@@ -166,7 +166,7 @@ static void balance_chunk(tribo_context *ctx, const struct call *call, size_t k,
 static void balance_own(tribo_context *ctx, const struct call *call, size_t k, double *f)
 {
     const size_t i = k * TRIBO_CHUNK, n = tribo_chunk_size(ctx, i);
-    double *feq = ctx->last.feq + i;
+    double room[TRIBO_CHUNK], *feq = call->feq ? call->feq + i : room;
     find_feq(ctx, call, k, feq);
     tribo_own_forces(ctx, i, call->v + i, feq, f);
     for (size_t j = 0; ctx->op->groups && j < n; j++) {
@@ -179,11 +179,13 @@ static void balance_own(tribo_context *ctx, const struct call *call, size_t k, d
 
 void tribo_balance_each(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f)
 {
-    const int alone = tribo_balance_alone(ctx);
+    const int alone = tribo_balance_alone(ctx), kept = feq || !tribo_all_alone(ctx);
     const struct call call = {.find = tribo_is_own(ctx) ? balance_own : balance_chunk,
                               .v = v,
                               .a = a,
-                              .feq = alone ? feq : ctx->last.feq,
+                              .feq = alone  ? feq
+                                     : kept ? ctx->last.feq
+                                            : NULL,
                               .wanted = feq != NULL,
                               .plain = plain};
     find_each(ctx, &call, alone ? f : NULL);

@@ -169,7 +169,7 @@ static int balance_all(tribo_context *ctx, int plain, const double *v, const dou
     int status = TRIBO_OK;
     tribo_begin_call(ctx);
     tribo_balance_each(ctx, plain, v, a, feq, f);
-    if (tribo_is_own(ctx) && !tribo_all_within(ctx->last.f, ctx->n, DBL_MAX)) {
+    if (tribo_is_own(ctx) && tribo_own_failed(ctx, ctx->last.f)) {
         return tribo_own_fail(ctx, 0, v);
     }
     for (size_t k = 0; k < ctx->memory.nsolved; k++) {
@@ -237,7 +237,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     for (size_t q = 0; feq && q < ctx->plane.clusters; q++) {
         tribo_cluster_feq(ctx, q);
     }
-    tribo_copy(feq, ctx->last.feq, feq && !alone ? ctx->n : 0);
+    tribo_copy(feq, ctx->last.feq, feq && !alone && feq != ctx->last.feq ? ctx->n : 0);
     tribo_copy(f, ctx->last.f, f && !alone ? ctx->n : 0);
     return status;
 }

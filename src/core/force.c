@@ -79,8 +79,9 @@ static void find_outputs(const tribo_context *ctx, int plain, const double *v, c
 /* 1 if a law of the caller failed, or gave no number for one of the outputs. */
 static int own_failed(const tribo_context *ctx, double *const *out)
 {
-    int failed = 0;
-    for (int k = 0; tribo_is_own(ctx) && k < OUTPUTS; k++) {
+    const int own = tribo_is_own(ctx);
+    int failed = own && out[FORCES] && tribo_own_failed(ctx, out[FORCES]);
+    for (int k = BY_V; own && k < OUTPUTS; k++) {
         failed |= out[k] && !tribo_all_within(out[k], ctx->n, DBL_MAX);
     }
     return failed;

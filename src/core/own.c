@@ -12,22 +12,27 @@ struct asked {
     double room[2][TRIBO_CHUNK];
 };
 
+TRIBO_SIMD static void fill_with(size_t n, double x, double *restrict to)
+{
+    for (size_t i = 0; i < n; i++) {
+        to[i] = x;
+    }
+}
+
 /* box = what the function of the caller writes over HUGE_VAL. Returns its answer. */
 static int ask(const struct contacts *c, size_t n, int derivatives, const double *v, struct asked *to, double *box)
 {
     to->v = v;
     to->limit = c->alike ? to->room[0] : c->limit;
     to->epsilon = c->alike || c->follows ? to->room[1] : c->width;
-    for (size_t i = 0; c->alike && i < n; i++) {
-        to->room[0][i] = *c->limit;
-        to->room[1][i] = tribo_epsilon_of(c, 0);
+    if (c->alike) {
+        fill_with(n, *c->limit, to->room[0]);
+        fill_with(n, tribo_epsilon_of(c, 0), to->room[1]);
     }
     for (size_t i = 0; !c->alike && c->follows && i < n; i++) {
         to->room[1][i] = tribo_epsilon_of(c, i);
     }
-    for (size_t k = 0; k < n * (derivatives ? ALL_ROWS : BOX_ROWS); k++) {
-        box[k] = HUGE_VAL;
-    }
+    fill_with(n * (derivatives ? ALL_ROWS : BOX_ROWS), HUGE_VAL, box);
     return c->user->law(c->first, n, derivatives, v, to->limit, to->epsilon, box, c->user->data);
 }
 
@@ -45,16 +50,22 @@ TRIBO_SIMD static int are_boxes(size_t n, const double *restrict v, const double
     return bad == 0;
 }
 
-int tribo_own_boxes(const struct contacts *c, size_t n, int derivatives, const double *v, double *box)
+/* tribo_own_boxes; *s: what was asked. */
+static int boxes_of(const struct contacts *c, size_t n, int derivatives, const double *v, struct asked *s, double *box)
 {
-    struct asked s;
     const size_t all = n * (derivatives ? ALL_ROWS : BOX_ROWS), needed = n * (derivatives ? BY_LIMIT_ROWS : BOX_ROWS);
-    const int good =
-        !ask(c, n, derivatives, v, &s, box) && tribo_all_within(box, needed, DBL_MAX) && are_boxes(n, v, s.limit, s.epsilon, box);
+    const int good = !ask(c, n, derivatives, v, s, box) && tribo_all_within(box, needed, DBL_MAX) &&
+                     are_boxes(n, v, s->limit, s->epsilon, box);
     for (size_t k = good ? needed : 0; k < all; k++) {
         box[k] = good && isfinite(box[k]) ? box[k] : HUGE_VAL;
     }
     return good;
+}
+
+int tribo_own_boxes(const struct contacts *c, size_t n, int derivatives, const double *v, double *box)
+{
+    struct asked s;
+    return boxes_of(c, n, derivatives, v, &s, box);
 }
 
 /* What is wrong with the box of contact i of asked, and in which row; NULL: nothing. */
@@ -148,30 +159,48 @@ const struct law tribo_law_own = {
 
 /* ------------------------------------------------------------------------------------------------------------- balances */
 
-void tribo_own_forces(const tribo_context *ctx, size_t i, const double *v, const double *feq, double *f)
+TRIBO_SIMD static void slips_of_boxes(size_t n, const double *restrict v, const double *restrict f, const double *restrict limit,
+                                      const double *restrict lower, const double *restrict upper, signed char *restrict slip)
 {
-    const size_t n = tribo_chunk_size(ctx, i);
-    const struct contacts c = tribo_chunk_contacts(ctx, i);
-    double box[BOX_ROWS * TRIBO_CHUNK];
-    tribo_own_boxes(&c, n, 0, v, box);
-    clamp_all(n, feq, box, box + n, box + SHIFT * n, f);
-    for (int row = 0; row < BOX_ROWS; row++) {
-        memcpy(tribo_own_row(ctx, row) + i, box + (size_t)row * n, n * sizeof *box);
-    }
-}
-
-TRIBO_SIMD void tribo_own_slips(tribo_context *ctx, const double *v)
-{
-    const double *f = ctx->last.f, *limit = ctx->follow.contacts.limit, *lower = tribo_own_row(ctx, LOWER),
-                 *upper = tribo_own_row(ctx, UPPER);
-    signed char *restrict slip = ctx->last.slip;
-    const size_t n = ctx->n;
     for (size_t i = 0; i < n; i++) {
         const double to = v[i] != 0.0 ? v[i] : -f[i], forth = to > 0.0 ? TRIBO_SLIP_FORTH : 0.0, back = to < 0.0 ? 1.0 : 0.0;
         const double under = f[i] < upper[i] ? 0.0 : forth - back, slides = f[i] > lower[i] ? under : forth - back;
         slip[i] = (signed char)(int)(limit[i] > 0.0 ? slides : TRIBO_SLIP_OPEN); /* as in slip_by_force */
     }
+}
+
+void tribo_own_forces(tribo_context *ctx, size_t i, const double *v, const double *feq, double *f)
+{
+    const size_t n = tribo_chunk_size(ctx, i);
+    const struct contacts c = tribo_chunk_contacts(ctx, i);
+    double box[BOX_ROWS * TRIBO_CHUNK];
+    struct asked s;
+    boxes_of(&c, n, 0, v, &s, box);
+    clamp_all(n, feq, box, box + n, box + SHIFT * n, f);
+    if (tribo_all_alone(ctx)) {
+        slips_of_boxes(n, v, f, s.limit, box, box + n, ctx->last.slip + i);
+    }
+    for (int row = 0; !tribo_all_alone(ctx) && row < BOX_ROWS; row++) {
+        memcpy(tribo_own_row(ctx, row) + i, box + (size_t)row * n, n * sizeof *box);
+    }
+}
+
+void tribo_own_slips(tribo_context *ctx, const double *v)
+{
+    if (!tribo_all_alone(ctx)) {
+        slips_of_boxes(ctx->n, v, ctx->last.f, ctx->follow.contacts.limit, tribo_own_row(ctx, LOWER), tribo_own_row(ctx, UPPER),
+                       ctx->last.slip);
+    }
     ctx->last.slips = SLIPS_WRITTEN;
+}
+
+int tribo_own_failed(const tribo_context *ctx, const double *f)
+{
+    int failed = 0;
+    for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
+        failed |= !isfinite(f[i]);
+    }
+    return failed;
 }
 
 void tribo_own_sides(tribo_context *ctx)

@@ -30,13 +30,17 @@ static inline double *tribo_own_row(const tribo_context *ctx, int row)
     return rows[row];
 }
 
-/* f [n] of the chunk of contact i from v and feq [n], and keeps its boxes; HUGE_VAL where tribo_own_boxes returns 0. */
-void tribo_own_forces(const tribo_context *ctx, size_t i, const double *v, const double *feq, double *f);
+/* f [n] of the chunk of contact i from v and feq [n]; all HUGE_VAL where tribo_own_boxes returns 0. Keeps its boxes unless
+ * tribo_all_alone: then sets last.slip. */
+void tribo_own_forces(tribo_context *ctx, size_t i, const double *v, const double *feq, double *f);
+
+/* 1 if tribo_own_boxes returned 0 for a chunk of f [ctx->n]. */
+int tribo_own_failed(const tribo_context *ctx, const double *f);
 
 /* The failure of the law at v [ctx->n], derivatives as in tribo_own_boxes; TRIBO_ERR_CALLBACK. */
 int tribo_own_fail(tribo_context *ctx, int derivatives, const double *v);
 
-/* last.slip of a balance at v. */
+/* last.slip of a balance at v, after tribo_own_forces of all chunks. */
 void tribo_own_slips(tribo_context *ctx, const double *v);
 
 /* last.feq of contacts near stick = any f_eq for which the law is on the side of its box on which the balance left it. */

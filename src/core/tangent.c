@@ -153,7 +153,7 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
                           double *df_da)
 {
     /* f_eq of contacts that are all alone is not kept but in an array that is given. */
-    const int alone = ctx && tribo_balance_alone(ctx), status = tribo_balance(ctx, v, a, alone ? ctx->last.feq : feq, f);
+    const int alone = ctx && tribo_all_alone(ctx), status = tribo_balance(ctx, v, a, alone ? ctx->last.feq : feq, f);
     if (status) {
         return status;
     }

@@ -8,6 +8,7 @@
 
 #include "../../src/damper/output.h"
 #include "../../src/common/simd.h"
+#include "../user_quinn.h"
 #include "elements.h"
 #include "harness.h"
 #include "kernel_scene.h"
@@ -156,6 +157,59 @@ static void measure(size_t n, enum likeness like, size_t contacts, int repeats)
     free(known);
 }
 
+/* R of islands of 4 contacts, each of which shares a body with the next one. */
+static void couple(tribo_context *ctx, size_t n)
+{
+    size_t *row = need_memory(n + 1, sizeof *row), *col = need_memory(3 * n, sizeof *col), count = 0;
+    double *val = need_memory(3 * n, sizeof *val);
+    for (size_t i = 0; i < n; i++) {
+        row[i] = count;
+        for (size_t j = i > 0 ? i - 1 : i; j < n && j <= i + 1; j++) {
+            if (i / 4 == j / 4) {
+                val[count] = i == j ? 2.0 : -1.0;
+                col[count++] = j;
+            }
+        }
+    }
+    row[n] = count;
+    need(tribo_set_operator_csr(ctx, row, col, val), tribo_message(ctx));
+    free(row);
+    free(col);
+    free(val);
+}
+
+/* Quinn's law as a function of the caller beside the built-in one. */
+static void measure_own(size_t n, size_t contacts, int repeats)
+{
+    static const char *const name[] = {"tribo_force", "tribo_balance, diagonal R", "tribo_balance, islands of 4 contacts"};
+    struct kernel_scene s[2];
+    struct quinn q = {0};
+    for (int k = 0; k < 2; k++) {
+        kernel_scene_create(s + k, FORCE, n, NOTHING);
+    }
+    need(tribo_set_user_law(s[1].ctx, quinn_box, &q), tribo_message(s[1].ctx));
+    printf("\n| n = %zu, limits and epsilons that differ | built-in law, ns a contact | law of the caller | ratio "
+           "|\n|---|---|---|---|\n",
+           n);
+    for (int row = 0; row < 3; row++) {
+        double least[2] = {1.0, 1.0};
+        const size_t times = contacts / n + 1;
+        for (int k = 0; k < 2; k++) {
+            s[k].kernel = row ? BALANCE : FORCE;
+            if (row == 2) {
+                couple(s[k].ctx, n);
+            }
+            kernel_call(s + k);
+        }
+        for (int j = 0; j < 2 * repeats; j++) {
+            least[j % 2] = lesser_of(least[j % 2], seconds_a_contact(run_kernel, s + j % 2, n, times));
+        }
+        printf("| %s | %.2f | %.2f | %.2f |\n", name[row], 1e9 * least[0], 1e9 * least[1], least[1] / least[0]);
+    }
+    kernel_scene_destroy(s);
+    kernel_scene_destroy(s + 1);
+}
+
 static void measure_elements(size_t n, size_t elements, int repeats)
 {
     printf(
@@ -191,6 +245,7 @@ int main(int count, char **argument)
         for (int like = ALL; like >= NOTHING; like--) {
             measure(sizes[k], (enum likeness)like, smoke ? 1 : 200000, repeats);
         }
+        measure_own(sizes[k] < 1000000 ? sizes[k] : 1000000, smoke ? 1 : 200000, repeats);
         measure_elements(sizes[k] < 1000000 ? sizes[k] : 1000000, smoke ? 1 : 200000, repeats);
     }
     return EXIT_SUCCESS;
