@@ -35,6 +35,7 @@ done
     echo tribo-damper build/plate/plate.txt --check 2
     echo tribo-damper examples/data/beam/family.txt --check 5
     echo tribo-damper examples/data/beam/beam.txt --check 7 --step 0.05
+    echo tribo-damper examples/data/beam/backbone.txt
     for figure in fig7a fig9 fig7b; do
         for law in smooth karnopp quinn-reversal quinn velocity-limited coulomb; do
             echo paper_dissipation $figure $law

@@ -279,7 +279,10 @@ struct damper create_damper(const struct options *o, const struct structure *s, 
         die("option --modes %zu: the structure has %zu degrees of freedom", o->modes, s->ndof);
     }
     reduce(&d, s);
-    d.lowest = o->drive.from > 0.0 ? o->drive.from : d.open.omega[0] / TURN;
+    if (o->backbone > d.kept) {
+        die("option --backbone %zu: the model keeps %zu mode%s: take more --modes", o->backbone, d.kept, d.kept == 1 ? "" : "s");
+    }
+    d.lowest = o->drive.from > 0.0 ? o->drive.from : d.open.omega[o->backbone ? o->backbone - 1 : 0] / TURN;
     d.highest = o->drive.from > 0.0 ? o->drive.to : d.lowest;
     d.stuck = stick(&d.open, d.contact, d.rows, d.contact_shape);
     /* rigid contacts must not hold all motions of the modes, unless they hold the structure itself */

@@ -221,6 +221,14 @@ static const struct option {
     {OPTION(read_range, limits),
      "  --limits FROM:TO:N   N limits of contacts (forces), geometric from FROM to TO; or one limit. Default: 0.001 to 10 times\n"
      "                       the sum of the forces (of --base: moving mass times acceleration), 33 limits, or 9 for a band\n"},
+    {OPTION(read_count, backbone),
+     "  --backbone MODE      in the place of a response: natural frequency and damping ratio of this mode over the amplitude, "
+     "as\n"
+     "                       free vibrations have them (nonlinear mode), at one limit. Loads do not act; without --load\n"
+     "                       amplitudes are measured at the first --output. Contacts that stick for a part of the period need\n"
+     "                       stiffness=\n"},
+    {OPTION(read_range, amplitudes),
+     "  --amplitudes FROM:TO:N   N amplitudes of --backbone, geometric from FROM to TO; or one\n"},
     {OPTION(read_output, outputs),
      "  --output X,Y,Z,DIR   a further place: amplitude and phase there; may be given several times\n"},
     {OPTION(read_count, harmonics), "  --harmonics N        of each --output also the harmonics 1 to N\n"},
@@ -256,8 +264,8 @@ static const struct option {
     {OPTION(read_path, out), "  --out FOLDER         folder of the tables, which must exist; \".\"\n"},
     {OPTION(read_name, name), "  --name WORD          first part of the names of tables; \"damper\"\n"},
     {OPTION(read_plot, plot),
-     "  --plot png|svg       draws the tables by gnuplot: damper-family or damper-curve, and the loops of contacts; the script\n"
-     "                       damper-plot.gp stays beside them\n"},
+     "  --plot png|svg       draws the tables by gnuplot: damper-family, damper-curve or damper-backbone, and the loops of\n"
+     "                       contacts; the script damper-plot.gp stays beside them\n"},
     {read_option_file, 0,
      "  --read FILE          options from a file, one a line, without hyphens; names of files are relative to its folder; lines\n"
      "                       that begin with # are comments\n"},
@@ -285,6 +293,8 @@ static const struct option {
      "  damper-best.csv          a band: the curve of the best limit\n"
      "  damper-linear.csv        a band: frequency, amplitude without friction, amplitude with all contacts stuck for ever\n"
      "  damper-check.csv         the points of --check, by marching\n"
+     "  damper-backbone.csv      --backbone: amplitude, frequency, damping ratio, of each contact the share of the period for\n"
+     "                           which it sticks, message\n"
      "  values-damper.txt        all single results, with all digits\n"
      "Columns of responses: limit (1 if every contact has its own); frequency; amplitude (half of the way from the smallest to\n"
      "the largest displacement); mean powers over a period, lost to friction, lost to damping, put in by the loads; periods\n"
@@ -390,7 +400,9 @@ static void check_options(const struct options *o)
                 {"--stiffness", o->stiffness != NULL},
                 {"--dofs", o->dofs != NULL},
                 {"--contact", o->contacts.count > 0},
-                {"--load", o->loads.count > 0}};
+                {"--load", o->loads.count > 0 || (o->backbone && o->outputs.count > 0)},
+                {"--amplitudes", o->amplitudes.points || !o->backbone},
+                {"--limits", o->limits.points || !limits_vary(o) || !o->backbone}};
     char missing[80] = "";
     for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
         if (!part[k].given) {
@@ -402,6 +414,13 @@ static void check_options(const struct options *o)
     }
     if (!measured_place(o)) {
         die("%s: --output is missing, the place where amplitudes are measured", o->loads.load[0].at.origin);
+    }
+    if (o->amplitudes.points && !o->backbone) {
+        die("option --amplitudes: --backbone is missing, the mode that has them");
+    }
+    if (o->backbone && (o->limits.points > 1 || o->drive.from > 0.0 || o->march || o->check || o->field.count || o->harmonics)) {
+        die("option --backbone %zu: it takes one limit, and no --drive, --method march, --check, --field or --harmonics",
+            o->backbone);
     }
     if (o->damping_matrix && o->damping.count) {
         die("option --damping-matrix %s: either a matrix or damping ratios, not both", o->damping_matrix);

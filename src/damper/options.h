@@ -28,14 +28,16 @@ struct options {
     struct contacts contacts;
     struct loads loads;
     struct outputs outputs;
-    size_t harmonics;    /* of each output */
-    struct list field;   /* phases of displacement fields, degrees */
-    double force;        /* of loads without one */
-    double size;         /* the sum of all forces; of supports, acceleration times mass */
-    struct range drive;  /* Hz; from 0: the first natural frequency */
-    struct range limits; /* of contacts, or normal loads */
-    int march;           /* find steady motions by marching */
-    size_t check;        /* points to be found by marching as well */
+    size_t harmonics;        /* of each output */
+    struct list field;       /* phases of displacement fields, degrees */
+    double force;            /* of loads without one */
+    double size;             /* the sum of all forces; of supports, acceleration times mass */
+    struct range drive;      /* Hz; from 0: the first natural frequency */
+    struct range limits;     /* of contacts, or normal loads */
+    size_t backbone;         /* number of a mode; 0: no backbone curve */
+    struct range amplitudes; /* of the backbone curve */
+    int march;               /* find steady motions by marching */
+    size_t check;            /* points to be found by marching as well */
     double step;
     int law;
     size_t threads;     /* 0: one a core */

@@ -62,18 +62,36 @@ static void begin_picture(const struct tables *t, const char *what, const char *
     free(picture);
 }
 
+/* Columns `left` and left + 1 of NAME-what.csv over the first one, on scales of their own. */
+static void plot_two(const struct tables *t, const char *what, int left, const char *const *title, const char *scale)
+{
+    char *file = file_of(t, what, "csv");
+    fprintf(t->script,
+            "set logscale %s\nset y2tics\nset key bottom\n"
+            "plot %s using 1:%d with lines linecolor '#0072b2' title '%s', \\\n"
+            "     %s using 1:%d axes x1y2 with lines linecolor '#d55e00' dashtype (10, 5) title '%s'\n"
+            "unset logscale\nunset y2label\nunset y2tics\nset key top\n",
+            scale, file, left, title[0], file, left + 1, title[1]);
+    free(file);
+}
+
 void plot_curve(const struct tables *t)
 {
+    static const char *const title[] = {"amplitude", "power"};
     if (t->script) {
-        char *file = file_of(t, "curve", "csv");
         begin_picture(t, "curve", t->limit, "amplitude where the load acts");
-        fprintf(t->script,
-                "set logscale xy\nset y2label 'mean power that friction takes'\nset y2tics\nset key bottom\n"
-                "plot %s using 1:3 with lines linecolor '#0072b2' title 'amplitude', \\\n"
-                "     %s using 1:4 axes x1y2 with lines linecolor '#d55e00' dashtype (10, 5) title 'power'\n"
-                "unset logscale\nunset y2label\nunset y2tics\nset key top\n",
-                file, file);
-        free(file);
+        fprintf(t->script, "set y2label 'mean power that friction takes'\n");
+        plot_two(t, "curve", 3, title, "xy");
+    }
+}
+
+void plot_backbone(const struct tables *t)
+{
+    static const char *const title[] = {"frequency", "damping"};
+    if (t->script) {
+        begin_picture(t, "backbone", "amplitude", "natural frequency");
+        fprintf(t->script, "set y2label 'damping ratio'\n");
+        plot_two(t, "backbone", 2, title, "x");
     }
 }
 

@@ -100,6 +100,10 @@ double find_least(double low, double high, double part,
 void run_study(struct study *s)
 {
     const struct options *o = s->options;
+    if (o->backbone) {
+        study_backbone(s);
+        return;
+    }
     const int band = o->drive.points > 1;
     const size_t count = band ? o->limits.points : 1;
     double *fixed = need_memory(count, sizeof *fixed);

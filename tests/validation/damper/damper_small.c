@@ -343,5 +343,59 @@ TEST(own_limit)
 }
 END_TEST
 
-TEST_MAIN("damper_small", {spring, 1}, {loads, 1}, {damping_by_mode, 1}, {field, 1}, {normal_load, 1}, {normal_follows, 1},
-          {plane, 1}, {loose_row, 1}, {own_limit, 1})
+/* The nonlinear mode of m = k = kt = 1, limit 0.5, values by another code; damping adds 0.05/omega to its ratio. The structure is
+ * whole; of two masses the second mode is found, too, and a load does not act. */
+TEST(backbone)
+{
+    static const double values[][3] = {{0.3, 1.4142135623731, 0.0},
+                                       {0.6, 1.3747608670481, 0.046412663224},
+                                       {1.0, 1.2258676901977, 0.105752880426},
+                                       {2.0, 1.0935981120212, 0.101057277142}};
+    static const char one[] = "--mass one.mtx --stiffness one.mtx --dofs one.txt --damping 0.05 --output 1,0,0,x "
+                              "--contact 1,0,0,x:stiffness=1";
+    char options[400];
+    write_text("one.mtx", "%%MatrixMarket matrix coordinate real symmetric\n1 1 1\n1 1 1.0\n");
+    write_text("one.txt", "1 1 1 1 0 0\n");
+    for (size_t k = 0; k < COUNT(values); k++) {
+        snprintf(options, sizeof options, "%s --backbone 1 --limits 0.5 --amplitudes %g%s", one, values[k][0],
+                 k ? " --load 1,0,0,x" : "");
+        const struct outcome o = assert_runs(options);
+        require(says(o.out, "model error: none"), "%s", o.out);
+        assert_exact(column_of("damper-backbone.csv", 1), values[k][0]);
+        assert_close(2.0 * PI * column_of("damper-backbone.csv", 2), values[k][1], 1e-8);
+        assert_close(column_of("damper-backbone.csv", 3), values[k][2] + 0.05 / values[k][1], 1e-9);
+        assert_close(value_of("damper.backbone.damping"), values[k][2] + 0.05 / values[k][1], 1e-9);
+        require((column_of("damper-backbone.csv", 4) < 1.0) == (k > 0), "sticks for %g", column_of("damper-backbone.csv", 4));
+    }
+    snprintf(options, sizeof options, "%s --backbone 1 --limits 0.5 --amplitudes 0.6:2:9", one);
+    assert_runs(options);
+    assert_close(column_of("damper-backbone.csv", 2) * 2.0 * PI, values[1][1], 1e-8);
+    require(value_of("damper.backbone.damping") > values[2][2] + 0.05 / values[2][1], "the largest damping is less than another");
+    assert_exact(value_of("damper.gaps"), 0.0);
+    static const char *const wrong[][2] = {
+        {"--backbone 1 --limits 0.5", "what is missing: --amplitudes"},
+        {"--backbone 1 --amplitudes 1", "what is missing: --limits"},
+        {"--amplitudes 1 --load 1,0,0,x", "--backbone is missing"},
+        {"--backbone 1 --limits 0.5:1:3 --amplitudes 1", "it takes one limit"},
+        {"--backbone 1 --limits 1 --amplitudes 1 --method march", "no --drive, --method march"},
+        {"--backbone 2 --limits 1 --amplitudes 1", "the model keeps 1 mode"}};
+    for (size_t k = 0; k < COUNT(wrong); k++) {
+        snprintf(options, sizeof options, "%s %s", one, wrong[k][0]);
+        assert_refused(options, options, wrong[k][1]);
+    }
+    write_text("two-m.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1.0\n2 2 1.0\n");
+    write_text("two-k.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 3\n1 1 2.0\n2 1 -1.0\n2 2 2.0\n");
+    write_text("two.txt", "1 1 1 0 0 0\n2 2 1 1 0 0\n");
+    for (int mode = 1; mode <= 2; mode++) { /* above all slip, both frequencies are those without friction */
+        snprintf(options, sizeof options,
+                 "--mass two-m.mtx --stiffness two-k.mtx --dofs two.txt --output 0,0,0,x --contact 1,0,0,x:stiffness=1 "
+                 "--limits 1e-6 --amplitudes 1 --backbone %d",
+                 mode);
+        assert_runs(options);
+        assert_close(2.0 * PI * column_of("damper-backbone.csv", 2), sqrt(2.0 * mode - 1.0), 1e-5);
+    }
+}
+END_TEST
+
+TEST_MAIN("damper_small", {spring, 1}, {backbone, 1}, {loads, 1}, {damping_by_mode, 1}, {field, 1}, {normal_load, 1},
+          {normal_follows, 1}, {plane, 1}, {loose_row, 1}, {own_limit, 1})
