@@ -109,6 +109,12 @@ static void check_contact(const struct text *t, const struct contact *c, int sec
     if (along && (along == c->at.direction || along == second)) {
         die_at(t, "normal=%c is a direction along which the contact slides", "xyz"[along - 1]);
     }
+    if (c->ratio < 1.0) {
+        die_at(t, "static=%g: the limit at rest is at least that while sliding", c->ratio);
+    }
+    if (second && c->belt != 0.0 && !isnan(c->belt)) {
+        die_at(t, "belt= is for contacts along one axis");
+    }
     if (!isnan(n->gap) && !isnan(n->load)) {
         die_at(t, "either gap=%g or load=%g, not both", n->gap, n->load);
     }
@@ -118,21 +124,24 @@ void read_contact(struct text *t, void *contacts)
 {
     struct contacts *all = contacts;
     const double none = (double)NAN;
-    struct contact c = {.mu = none, .limit = none, .stiffness = none, .normal = {.gap = none, .load = none}};
-    const struct word known[] = {{"limit", &c.limit, NOT_NEGATIVE},
-                                 {"mu", &c.mu, POSITIVE},
-                                 {"load", &c.normal.load, POSITIVE},
-                                 {"stiffness", &c.stiffness, POSITIVE},
-                                 {"gap", &c.normal.gap, ANY}};
+    struct contact c = {
+        .mu = none, .limit = none, .stiffness = none, .belt = none, .ratio = none, .normal = {.gap = none, .load = none}};
+    const struct word known[] = {{"limit", &c.limit, NOT_NEGATIVE},  {"mu", &c.mu, POSITIVE},
+                                 {"load", &c.normal.load, POSITIVE}, {"stiffness", &c.stiffness, POSITIVE},
+                                 {"gap", &c.normal.gap, ANY},        {"belt", &c.belt, ANY},
+                                 {"static", &c.ratio, POSITIVE}};
     int second;
     c.at = next_place(t, PARTED, &second);
     read_words(t, known, sizeof known / sizeof *known, &c,
-               "to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER normal=DIR,STIFFNESS gap=LENGTH");
+               "to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER normal=DIR,STIFFNESS gap=LENGTH "
+               "belt=VELOCITY static=RATIO");
     check_contact(t, &c, second);
     c.by_load = isnan(c.limit) && isnan(c.normal.load) && isnan(c.normal.gap) && !isnan(c.mu);
     c.limit = !isnan(c.normal.gap) ? 0.0 : isnan(c.normal.load) ? c.limit : c.mu * c.normal.load;
     c.mu = isnan(c.mu) ? 1.0 : c.mu;
     c.stiffness = isnan(c.stiffness) ? 0.0 : c.stiffness;
+    c.belt = isnan(c.belt) ? 0.0 : c.belt;
+    c.ratio = isnan(c.ratio) ? 1.0 : c.ratio;
     c.to.direction = c.at.direction;
     c.to.origin = t->place;
     c.directions = second ? 2 : 1;
@@ -198,6 +207,8 @@ void add_normals(struct contacts *all)
         if (n.directions && n.normal.direction) {
             n.at.direction = n.to.direction = abs(n.normal.direction);
             n.stiffness = n.normal.stiffness;
+            n.belt = 0.0;
+            n.ratio = 1.0;
             n.directions = 0;
             n.line = NULL;
             all->contact = need_room(all->contact, all->count + all->normals, &all->room, sizeof *all->contact);

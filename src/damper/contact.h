@@ -29,6 +29,8 @@ struct contact {
     double mu;
     int by_load;      /* 1: limit is NaN and mu is given, so that --limits gives normal loads */
     double stiffness; /* of the spring before the slider, 0: a rigid contact; of a normal direction, of the spring that presses */
+    double belt;      /* velocity of the other end, the ground, along the contact */
+    double ratio;     /* limit at rest over limit while sliding, >= 1 */
     int directions;   /* of the contact, of which this is the first one; 0: this is the second one of the contact before */
     struct normal normal;
     char *line; /* origin of a contact from a file, or NULL; owned */
@@ -61,7 +63,7 @@ struct contacts {
 };
 
 /* "X,Y,Z,DIR", where DIR may be two directions, and words to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER
- * normal=DIR,STIFFNESS gap=LENGTH behind it, parted by colons or blanks: adds the contact, or the two directions of a planar one,
+ * normal=DIR,STIFFNESS gap=LENGTH belt=VELOCITY static=RATIO behind it, parted by colons or blanks: adds the contact, or the two directions of a planar one,
  * to a struct contacts. The other one adds the contacts of a file, one a line. */
 reader read_contact, read_contacts;
 

@@ -221,15 +221,20 @@ double rest_load(const struct contact *c, double limit)
 tribo_system *create_system(const struct damper *d, double limit)
 {
     const size_t n = d->modes;
-    double *mass = need_memory(3 * n + d->rows, sizeof *mass);
-    double *stiffness = mass + n, *damping = stiffness + n, *compliance = damping + n;
-    size_t *first = need_memory(d->contacts, sizeof *first), planar = 0, row = d->contacts;
+    double *mass = need_memory(3 * n + 3 * d->rows, sizeof *mass), *ratio = mass + 3 * n + 2 * d->rows;
+    double *stiffness = mass + n, *damping = stiffness + n, *compliance = damping + n, *belt = compliance + d->rows;
+    size_t *first = need_memory(d->contacts, sizeof *first), planar = 0, row = d->contacts, moves = 0;
     tribo_model *model = NULL;
     tribo_system *sys = NULL;
     for (size_t k = 0; k < n; k++) {
         mass[k] = 1.0;
         stiffness[k] = d->open.omega[k] * d->open.omega[k];
         damping[k] = d->open.damping[k * (n + 1)];
+    }
+    for (size_t c = 0; c < d->rows; c++) {
+        belt[c] = d->contact[c].belt;
+        ratio[c] = d->contact[c].ratio;
+        moves += belt[c] != 0.0;
     }
     for (size_t c = 0; c < d->contacts; c++) {
         if (d->contact[c].stiffness > 0.0) {
@@ -260,6 +265,8 @@ tribo_system *create_system(const struct damper *d, double limit)
     tribo_context *context = tribo_system_context(sys);
     need(tribo_set_law(context, d->law), tribo_message(context));
     need(tribo_set_planar(context, planar, first), tribo_message(context));
+    need(tribo_set_static(context, ratio, NULL), tribo_message(context));
+    need(moves ? tribo_system_add_base_motion(sys, 0.0, belt, NULL) : TRIBO_OK, tribo_system_message(sys));
     tribo_model_destroy(model);
     free(mass);
     free(first);

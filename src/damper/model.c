@@ -112,7 +112,7 @@ static double probe_error(const struct model *m)
 static void check_drives(const struct damper *d)
 {
     const double end[] = {d->lowest, d->highest};
-    for (int k = 0; k < 2 && !d->options->backbone; k++) {
+    for (int k = 0; k < 2 && !is_unloaded(d->options); k++) {
         check_drive(d, end[k]);
         if (d->options->march || d->options->check) {
             check_steps(d, end[k]);
@@ -150,7 +150,7 @@ struct model create_model(const struct options *o, const struct structure *s)
         m.damper = with_modes(o, s, kept);
     }
     add_finer(&m);
-    while (!o->backbone && may_double(&m) && take_more_modes(&m, probe_error(&m))) {
+    while (!is_unloaded(o) && may_double(&m) && take_more_modes(&m, probe_error(&m))) {
     }
     end_progress();
     check_drives(&m.damper);

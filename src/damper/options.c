@@ -8,8 +8,14 @@
 
 #include "tribo/tribo.h"
 
-static const struct options standard = {
-    .out = ".", .name = "damper", .drive = {0.0, 0.0, 1}, .force = 1.0, .statics = 1, .step = 0.25, .law = TRIBO_COULOMB};
+static const struct options standard = {.out = ".",
+                                        .name = "damper",
+                                        .drive = {0.0, 0.0, 1},
+                                        .cycle = -1.0,
+                                        .force = 1.0,
+                                        .statics = 1,
+                                        .step = 0.25,
+                                        .law = TRIBO_COULOMB};
 static const double DAMPING = 0.002;
 
 /* ------------------------------------------------------------------------------------------------------------- readers */
@@ -108,6 +114,11 @@ static void read_force(struct text *value, void *force)
     *(double *)force = next_positive(value, "force", "");
 }
 
+static void read_cycle(struct text *value, void *period)
+{
+    *(double *)period = strcmp(value->at, "0") == 0 ? 0.0 : next_positive(value, "period", "");
+}
+
 static void read_drive(struct text *value, void *drive)
 {
     if (strcmp(value->at, "0") == 0) {
@@ -200,7 +211,9 @@ static const struct option {
      "                                            end, and lifts off; mu= is needed. At rest the spring has the load of load= "
      "or\n"
      "                                            --limits, which the structure holds; or, with gap=LENGTH, it begins to press\n"
-     "                                            at this displacement, below 0 if it presses at rest\n"},
+     "                                            at this displacement, below 0 if it presses at rest\n"
+     "                         belt=VELOCITY   with --cycle: the other end moves along the contact\n"
+     "                         static=RATIO    with --cycle: limit at rest over limit while sliding, at least 1\n"},
     {OPTION(read_contacts, contacts), "  --contacts FILE      contacts, one a line, in the same words\n"},
     {TEXT, "\n"
            "The loads, at least one --load or --base; each may be given several times:\n"},
@@ -229,6 +242,10 @@ static const struct option {
      "                       stiffness=\n"},
     {OPTION(read_range, amplitudes),
      "  --amplitudes FROM:TO:N   N amplitudes of --backbone, geometric from FROM to TO; or one\n"},
+    {OPTION(read_cycle, cycle),
+     "  --cycle PERIOD       in the place of a response: the motion that contacts on belts keep up by themselves, stick-slip or\n"
+     "                       squeal, from rest, at one limit; PERIOD is a guess, 0: none. There are no loads; amplitudes are\n"
+     "                       measured at the first --output\n"},
     {OPTION(read_output, outputs),
      "  --output X,Y,Z,DIR   a further place: amplitude and phase there; may be given several times\n"},
     {OPTION(read_count, harmonics), "  --harmonics N        of each --output also the harmonics 1 to N\n"},
@@ -293,6 +310,7 @@ static const struct option {
      "  damper-best.csv          a band: the curve of the best limit\n"
      "  damper-linear.csv        a band: frequency, amplitude without friction, amplitude with all contacts stuck for ever\n"
      "  damper-check.csv         the points of --check, by marching\n"
+     "  damper-cycle.csv         --cycle: as damper-history.csv, three periods of the cycle\n"
      "  damper-backbone.csv      --backbone: amplitude, frequency, damping ratio, of each contact the share of the period for\n"
      "                           which it sticks, message\n"
      "  values-damper.txt        all single results, with all digits\n"
@@ -362,6 +380,11 @@ static void read_option_file(struct text *path, void *options)
 }
 
 /* ------------------------------------------------------------------------------------------------------------- the whole */
+int is_unloaded(const struct options *o)
+{
+    return o->backbone || o->cycle >= 0.0;
+}
+
 int limits_vary(const struct options *o)
 {
     int vary = 0;
@@ -400,9 +423,10 @@ static void check_options(const struct options *o)
                 {"--stiffness", o->stiffness != NULL},
                 {"--dofs", o->dofs != NULL},
                 {"--contact", o->contacts.count > 0},
-                {"--load", o->loads.count > 0 || (o->backbone && o->outputs.count > 0)},
+                {"--load", o->loads.count > 0 || is_unloaded(o)},
+                {"--output", o->outputs.count > 0 || o->loads.count > 0 || !is_unloaded(o)},
                 {"--amplitudes", o->amplitudes.points || !o->backbone},
-                {"--limits", o->limits.points || !limits_vary(o) || !o->backbone}};
+                {"--limits", o->limits.points || !limits_vary(o) || !is_unloaded(o)}};
     char missing[80] = "";
     for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
         if (!part[k].given) {
@@ -418,9 +442,18 @@ static void check_options(const struct options *o)
     if (o->amplitudes.points && !o->backbone) {
         die("option --amplitudes: --backbone is missing, the mode that has them");
     }
-    if (o->backbone && (o->limits.points > 1 || o->drive.from > 0.0 || o->march || o->check || o->field.count || o->harmonics)) {
-        die("option --backbone %zu: it takes one limit, and no --drive, --method march, --check, --field or --harmonics",
-            o->backbone);
+    if (is_unloaded(o) &&
+        (o->limits.points > 1 || o->drive.from > 0.0 || o->march || o->check || o->field.count || o->harmonics)) {
+        die("option %s: it takes one limit, and no --drive, --method march, --check, --field or --harmonics",
+            o->backbone ? "--backbone" : "--cycle");
+    }
+    if (o->cycle >= 0.0 && (o->loads.count || o->backbone)) {
+        die("option --cycle: it takes no --load, --base or --backbone");
+    }
+    for (const struct contact *c = o->contacts.contact; c < o->contacts.contact + o->contacts.count; c++) {
+        if (o->cycle < 0.0 && (c->belt != 0.0 || c->ratio > 1.0)) {
+            die("%s: belt= and static= are for --cycle", c->at.origin);
+        }
     }
     if (o->damping_matrix && o->damping.count) {
         die("option --damping-matrix %s: either a matrix or damping ratios, not both", o->damping_matrix);

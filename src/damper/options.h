@@ -34,6 +34,7 @@ struct options {
     double size;             /* the sum of all forces; of supports, acceleration times mass */
     struct range drive;      /* Hz; from 0: the first natural frequency */
     struct range limits;     /* of contacts, or normal loads */
+    double cycle;            /* a guess of the period, 0: none; < 0: no cycle is looked for */
     size_t backbone;         /* number of a mode; 0: no backbone curve */
     struct range amplitudes; /* of the backbone curve */
     int march;               /* find steady motions by marching */
@@ -50,6 +51,9 @@ void free_options(struct options *o);
 
 /* 1 if the limit of a contact follows the option --limits. */
 int limits_vary(const struct options *o);
+
+/* 1 if loads do not act: with --backbone or --cycle. */
+int is_unloaded(const struct options *o);
 
 /* What --limits varies: "normal load" if a contact that follows has mu=, else "limit". */
 const char *word_for_limit(const struct options *o);

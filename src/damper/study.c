@@ -100,8 +100,10 @@ double find_least(double low, double high, double part,
 void run_study(struct study *s)
 {
     const struct options *o = s->options;
-    if (o->backbone) {
-        study_backbone(s);
+    if (is_unloaded(o)) {
+        write_frequencies(s->tables, s->damper, o->frequencies);
+        report_model(s->tables, s->model);
+        (o->backbone ? study_backbone : study_cycle)(s);
         return;
     }
     const int band = o->drive.points > 1;

@@ -82,6 +82,9 @@ void study_band(struct study *s, const struct curve *c, size_t count);
 /* Frequency and damping ratio of a mode over the amplitude: table, picture, results, and their changes with twice the modes. */
 void study_backbone(struct study *s);
 
+/* Steady sliding, and the cycle of contacts on belts: history, results, and their changes with twice the modes. */
+void study_cycle(struct study *s);
+
 /* The motions without friction and with all contacts stuck, beside their closed forms. */
 void check_extremes(const struct study *s, double hz);
 

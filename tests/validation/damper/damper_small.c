@@ -397,5 +397,56 @@ TEST(backbone)
 }
 END_TEST
 
-TEST_MAIN("damper_small", {spring, 1}, {backbone, 1}, {loads, 1}, {damping_by_mode, 1}, {field, 1}, {normal_load, 1},
+/* Stick-slip of m = k = 1 on a belt, limit 0.6 and 1 at rest: closed form. Mode coupling as in validation/squeal.c, the preload as
+ * the load of the normal spring at the equilibrium without friction. */
+TEST(cycle)
+{
+    static const char one[] = "--mass one.mtx --stiffness one.mtx --dofs one.txt --output 1,0,0,x --limits 0.6 "
+                              "--contact 1,0,0,x:belt=0.2";
+    const double xx = 23.25, xy = 2.25 * sqrt(3.0), yy = 7.75, load = 110.0 * xx / (xx * (yy + 11.0) - xy * xy);
+    char options[500], matrix[200];
+    write_text("one.mtx", "%%MatrixMarket matrix coordinate real symmetric\n1 1 1\n1 1 1.0\n");
+    write_text("one.txt", "1 1 1 1 0 0\n");
+    for (int k = 0; k < 2; k++) {
+        snprintf(options, sizeof options, "%s:static=1.6666666666666667 --damping 1e-13 --cycle %d", one, 8 * k);
+        const struct outcome o = assert_runs(options);
+        assert_close(value_of("damper.cycle.period"), 8.0688878716, 1e-9);
+        assert_close(value_of("damper.cycle.amplitude"), hypot(0.4, 0.2), 1e-10);
+        assert_close(value_of("damper.cycle.stick1"), 4.0 / 8.0688878716, 1e-9);
+        assert_close(value_of("damper.cycle.multiplier"), 0.0, 1e-9);
+        assert_close(value_of("damper.sliding.frequency"), 0.5 / PI, 1e-9);
+        require(says(o.out, "stable\n"), "%s", o.out);
+    }
+    snprintf(options, sizeof options, "%s --damping 0.05 --cycle 0", one); /* without static= the block comes to slide */
+    require(says(assert_runs(options).out, "no cycle was found"), "a cycle");
+    assert_exact(value_of("damper.gaps"), 1.0);
+    write_text("squeal-m.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1.0\n2 2 1.0\n");
+    write_text("squeal-c.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 0.1\n2 2 0.1\n");
+    snprintf(matrix, sizeof matrix, "%%%%MatrixMarket matrix coordinate real symmetric\n2 2 3\n1 1 %.17g\n2 1 %.17g\n2 2 %.17g\n",
+             xx, xy, yy);
+    write_text("squeal-k.mtx", matrix);
+    write_text("squeal.txt", "1 1 1 0 0 0\n2 1 2 0 0 0\n");
+    snprintf(options, sizeof options,
+             "--mass squeal-m.mtx --stiffness squeal-k.mtx --dofs squeal.txt --damping-matrix squeal-c.mtx --output 0,0,0,x "
+             "--contact 0,0,0,x:belt=0.5:normal=y,11:mu=0.6:load=%.17g --cycle 0",
+             load);
+    const struct outcome o = assert_runs(options);
+    assert_close(value_of("damper.cycle.period"), 1.53650780675, 1e-9);
+    assert_close(value_of("damper.cycle.amplitude"), 0.5 * (0.27080300 + 0.14959332), 1e-7);
+    assert_close(value_of("damper.cycle.multiplier"), hypot(0.758384, 0.424284), 1e-5);
+    require(value_of("damper.sliding.growth") > 0.1 && says(o.out, "steady sliding: unstable"), "%s", o.out);
+    static const char *const wrong[][2] = {{"--step 0.5", "what is missing: --load"},
+                                           {"--load 1,0,0,x", "belt= and static= are for --cycle"},
+                                           {"--cycle 0 --load 1,0,0,x", "it takes no --load"},
+                                           {"--cycle 0 --drive 1", "no --drive"},
+                                           {"--cycle -1", "must be above 0"},
+                                           {"--cycle 0 --contact 1,0,0,x:static=0.5", "at least that while sliding"}};
+    for (size_t k = 0; k < COUNT(wrong); k++) {
+        snprintf(options, sizeof options, "%s %s", one, wrong[k][0]);
+        assert_refused(options, options, wrong[k][1]);
+    }
+}
+END_TEST
+
+TEST_MAIN("damper_small", {spring, 1}, {backbone, 1}, {cycle, 1}, {loads, 1}, {damping_by_mode, 1}, {field, 1}, {normal_load, 1},
           {normal_follows, 1}, {plane, 1}, {loose_row, 1}, {own_limit, 1})
