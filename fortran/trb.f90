@@ -80,6 +80,7 @@
 !>          RPAR, IPAR, IERR)                        once a contact: MINV, which is EXTERNAL in your program, sets ACC(NDOF) to
 !>                                                   M**-1 FORCE(NDOF), to 1E-11, or IER, 0 before, to another value: IERR is
 !>                                                   TRIBO_ERR_CALLBACK then. RPAR(*) and IPAR(*) are for MINV alone
+!>   TRBUPD(IH, NVAL, VAL, IERR)                     VAL(NVAL) new values: RDIAG, R(N,N), VAL of TRBOPS or TRBOPM
 !>   TRBCPL(IH, ICPL, IERR)                          ICPL 0 consistent, 1 partition
 !>   TRBGCP(IH, ICPL, IERR)                                                            ICPL
 !>   TRBSHR(IH, ISHR, IERR)                          ISHR: redundant contacts share    0 by least norm, 1 as in the last call
@@ -786,6 +787,22 @@ subroutine trbopc(ih, n, ndof, minv, irow, icol, val, rpar, ipar, ierr)
   mass%ipar => ipar(:1)
   call c%set_operator_callback(ndof, mass, irow(:n + 1), icol(:max(irow(n + 1) - 1, 0)), val(:max(irow(n + 1) - 1, 0)), ierr)
 end subroutine trbopc
+
+subroutine trbupd(ih, nval, val, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, nval
+  real(dp), intent(in) :: val(*)
+  integer, intent(out) :: ierr
+  type(c_ptr) :: ctx
+  integer(c_size_t) :: count
+
+  call find(ih, ctx, ierr)
+  if (ierr == TRIBO_OK) ierr = c_get_count(ctx, int(TRIBO_COUNT_VALUES, c_int), count)
+  if (ierr /= TRIBO_OK) return
+  if (count > 0 .and. nval /= count) call refuse(ctx, ierr, 'NVAL', nval, ' is not ', int(count))
+  if (ierr == TRIBO_OK) ierr = told(ctx, c_update_operator(ctx, val))
+end subroutine trbupd
 
 subroutine trbcpl(ih, icpl, ierr)
   use tribo_fixed

@@ -262,6 +262,12 @@ module trb_interfaces
       integer, intent(out) :: ierr
     end subroutine trbopc
 
+    subroutine trbupd(ih, nval, val, ierr)
+      integer, intent(in) :: ih, nval
+      double precision, intent(in) :: val(*)
+      integer, intent(out) :: ierr
+    end subroutine trbupd
+
     subroutine trbcpl(ih, icpl, ierr)
       integer, intent(in) :: ih, icpl
       integer, intent(out) :: ierr

@@ -73,6 +73,7 @@ module tribo_contexts
     procedure, private :: set_operator_diagonal, set_operator_dense
     generic :: set_operator => set_operator_diagonal, set_operator_dense
     procedure :: set_operator_csr, set_operator_mass, set_operator_callback
+    procedure :: update_operator
     procedure :: set_coupling, get_coupling
     procedure :: set_sharing, get_sharing
     procedure :: force, force_tangent, force_tangent_planar
@@ -795,6 +796,24 @@ contains
     end if
     call finish(w, stat, errmsg)
   end subroutine set_operator_mass
+
+  !> New values of the operator, in the form that was set: val is the diagonal; a matrix column by column; val of R or J in compressed
+  !> rows. Its first two calls allocate.
+  subroutine update_operator(this, val, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in) :: val(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    integer(c_size_t) :: count
+
+    count = 0
+    call begin(this, w)
+    if (w%status == TRIBO_OK) w%status = c_get_count(w%ctx, to_int(TRIBO_COUNT_VALUES), count)
+    if (count > 0) call expect_size(w, 'val', val, int(count))
+    if (w%status == TRIBO_OK) w%status = c_update_operator(w%ctx, val)
+    call finish(w, stat, errmsg)
+  end subroutine update_operator
 
   !> R = J M**-1 J' with J [n][ndof] as above, for a mass matrix with a solver of the caller's: calls mass%apply once a contact.
   !> Contacts that do not act on each other have no entry in R.

@@ -90,6 +90,8 @@ module tribo_constants
   integer, parameter, public :: TRIBO_COUNT_PLANAR = 9
   !> calls that changed a setting or the operator
   integer, parameter, public :: TRIBO_COUNT_SETTINGS = 10
+  !> values that tribo_update_operator reads; 0 if it cannot be called
+  integer, parameter, public :: TRIBO_COUNT_VALUES = 11
 
   integer, parameter, public :: TRIBO_REAL_RESIDUAL = 0
   integer, parameter, public :: TRIBO_REAL_MAX_RATE = 1
@@ -430,6 +432,13 @@ module tribo_c
       real(c_double), intent(in), optional :: val(*)
       integer(c_int) :: answer
     end function c_set_operator_callback
+
+    function c_update_operator(ctx, val) result(answer) bind(c,name='tribo_update_operator')
+      import
+      type(c_ptr), value :: ctx
+      real(c_double), intent(in), optional :: val(*)
+      integer(c_int) :: answer
+    end function c_update_operator
 
     function c_fix_operator(ctx) result(answer) bind(c,name='tribo_fix_operator')
       import

@@ -31,7 +31,7 @@
  * Threads. Several threads may call functions of a const context on one context. For all other functions each thread needs a
  * context of its own (tribo_clone). With compilers other than GCC and Clang, only one thread at a time may clone a context,
  * change the operator of a clone, or destroy a clone. Only tribo_create, tribo_clone, tribo_copy_settings, tribo_set_planar and
- * tribo_set_operator_... allocate memory.
+ * tribo_set_operator_..., and at first tribo_update_operator, allocate memory.
  *
  * Source: D. D. Quinn, "A New Regularization of Coulomb Friction", J. Vib. Acoust. 126 (2004) 391-397,
  * doi:10.1115/1.1760564, "the paper" below. All functions: since 1.0, unless stated otherwise.
@@ -337,7 +337,19 @@ TRIBO_API int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
                                           int (*apply)(size_t ndof, const double *force, double *acceleration, void *data),
                                           void *data, const size_t *rowptr, const size_t *col, const double *val);
 
-/* Fixes the operator: later tribo_set_operator_... on ctx return TRIBO_ERR_UNSUPPORTED. The operator of a clone is not fixed.
+/* New values of the operator, in the form that was set: for contacts that move over a body, or bodies that turn. Forces are
+ * those of a context with the new operator set, to the last bit, unless sharing is PREVIOUS. Epsilon follows the operator;
+ * settings, planar contacts, counts and the reversal memory stay. On error the old values stay.
+ * val  in   tribo_set_operator_diagonal: r [n]; _dense: r [n][n]; _csr: val [rowptr[n]] at the rowptr and col that were set;
+ *           _mass: val [rowptr[n]] of J likewise; inverse_mass stays. Values may become 0, or cease to be
+ * Allocates memory in the first two calls after tribo_set_operator_..., tribo_set_planar, or tribo_clone of or to ctx; later only
+ * where R couples more contacts than before, or in groups of more than 128 contacts other ones.
+ * Returns what the call that set the operator returns, and TRIBO_ERR_STATE (no operator), TRIBO_ERR_UNSUPPORTED (the operator is
+ * fixed, or was set by tribo_set_operator_callback). */
+TRIBO_API int tribo_update_operator(tribo_context *ctx, const double *val);
+
+/* Fixes the operator: later tribo_set_operator_... and tribo_update_operator on ctx return TRIBO_ERR_UNSUPPORTED. The operator of
+ * a clone is not fixed.
  * Returns TRIBO_ERR_NULL. */
 TRIBO_API int tribo_fix_operator(tribo_context *ctx);
 
@@ -473,7 +485,8 @@ enum {
     TRIBO_COUNT_REVERSALS = 7,      /* reversal marks set or cleared by tribo_accept */
     TRIBO_COUNT_REUSED = 8,         /* solves that kept the stick set and the factor of the solve before */
     TRIBO_COUNT_PLANAR = 9,         /* planar contacts */
-    TRIBO_COUNT_SETTINGS = 10       /* calls that changed a setting or the operator */
+    TRIBO_COUNT_SETTINGS = 10,      /* calls that changed a setting or the operator */
+    TRIBO_COUNT_VALUES = 11         /* values that tribo_update_operator reads; 0 if it cannot be called */
 };
 /* Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE (which). */
 TRIBO_API int tribo_get_count(const tribo_context *ctx, int which, size_t *value);

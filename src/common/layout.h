@@ -54,9 +54,27 @@ struct array {
         &(pointer), (count), sizeof *(pointer)                                                                                   \
     }
 
-/* Allocates the arrays of list [length] as zeros in one block, which the first array owns, and sets their pointers. Returns the
- * block; NULL, as all pointers, if out of memory. */
-static inline void *tribo_allocate(const struct array *list, size_t length)
+/* A block of memory that is used again. */
+struct room {
+    void *block; /* owned; NULL: none */
+    size_t size; /* bytes */
+};
+
+/* Makes room of bytes, all 0; allocates if room->size is less. Returns the block; NULL, and an empty room, if out of memory. */
+static inline void *tribo_make_room(struct room *room, size_t bytes)
+{
+    if (room->block && bytes <= room->size) {
+        return memset(room->block, 0, bytes);
+    }
+    free(room->block);
+    room->block = tribo_zeros(bytes, 1);
+    room->size = room->block ? bytes : 0;
+    return room->block;
+}
+
+/* Lays out the arrays of list [length] as zeros in room, and sets their pointers. Returns the block; NULL, as all pointers, if out
+ * of memory. */
+static inline void *tribo_allocate_in(struct room *room, const struct array *list, size_t length)
 {
     struct layout b = {0};
     do {
@@ -65,12 +83,23 @@ static inline void *tribo_allocate(const struct array *list, size_t length)
             void *const array = tribo_layout_array(&b, list[k].count, list[k].size);
             memcpy(list[k].at, &array, sizeof array); /* all pointers to objects have the representation of void * */
         }
-    } while (!b.memory && (b.memory = tribo_zeros(b.used + 1, 1)) != NULL);
+    } while (!b.memory && (b.memory = tribo_make_room(room, b.used + 1)) != NULL);
     return b.memory;
 }
 
-/* tribo_allocate of a list of ARRAY(pointer, count). */
+/* Allocates the arrays of list [length] as zeros in one block, which the first array owns. Returns what tribo_allocate_in
+ * returns. */
+static inline void *tribo_allocate(const struct array *list, size_t length)
+{
+    struct room room = {0};
+    return tribo_allocate_in(&room, list, length);
+}
+
+/* tribo_allocate, and tribo_allocate_in, of a list of ARRAY(pointer, count). */
 #define ALLOCATE(...)                                                                                                            \
     tribo_allocate((const struct array[]){__VA_ARGS__}, sizeof((const struct array[]){__VA_ARGS__}) / sizeof(struct array))
+#define ALLOCATE_IN(room, ...)                                                                                                   \
+    tribo_allocate_in((room), (const struct array[]){__VA_ARGS__},                                                               \
+                      sizeof((const struct array[]){__VA_ARGS__}) / sizeof(struct array))
 
 #endif

@@ -24,9 +24,8 @@ void tribo_begin_call(tribo_context *ctx)
     ctx->last.linearized = 0;
 }
 
-void tribo_end_call(tribo_context *ctx, size_t islands)
+void tribo_keep_forces(tribo_context *ctx)
 {
-    ctx->count.skipped += islands - ctx->memory.nsolved - ctx->last.clusters;
     for (size_t g = 0; ctx->set.sharing == TRIBO_SHARE_PREVIOUS && g < ctx->op->groups; g++) {
         struct box_qp *p = tribo_problem(ctx, g);
         for (size_t k = 0; !ctx->memory.solved[g] && k < p->group->size; k++) {
@@ -34,6 +33,12 @@ void tribo_end_call(tribo_context *ctx, size_t islands)
             p->at[k] = p->at[k] == FREE ? FREE : AWAY;
         }
     }
+}
+
+void tribo_end_call(tribo_context *ctx, size_t islands)
+{
+    ctx->count.skipped += islands - ctx->memory.nsolved - ctx->last.clusters;
+    tribo_keep_forces(ctx);
 }
 
 struct box_qp *tribo_collect(tribo_context *ctx, size_t g)

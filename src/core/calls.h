@@ -71,6 +71,9 @@ struct box_qp *tribo_collect(tribo_context *ctx, size_t g);
 /* Solves the problem of a group, of which near, q, lo and hi are set; a status. */
 int tribo_solve_group(tribo_context *ctx, struct box_qp *p);
 
+/* With sharing by previous forces: keeps the forces of groups that the last call did not solve. */
+void tribo_keep_forces(tribo_context *ctx);
+
 /* Ends a call on islands without failure: counts those that were not solved, and, with sharing by previous forces, keeps their
  * forces. */
 void tribo_end_call(tribo_context *ctx, size_t islands);
@@ -164,12 +167,18 @@ static inline int tribo_plane_cut(const tribo_context *ctx, size_t i)
 
 /* ---- planar.c */
 
-/* Gives ctx these planar contacts in the place of those it has, with clusters of an operator and the memory that goes with it;
- * the planar contacts of from; these and their last solutions, clone having the operator and memory, and no clusters. A status;
- * after a failure ctx has what it had. */
-int tribo_clusters_renew(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m);
+/* Makes count planar contacts of ctx, and clusters of an operator and the memory that goes with it; a status. *c: empty, or spent,
+ * and then used again; after a failure to be freed. */
+int tribo_clusters_make(struct clusters *c, tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op,
+                        struct memory *m);
+
+/* Gives ctx the planar contacts of from; these and their last solutions, clone having the operator and memory, and no clusters. A
+ * status; after a failure ctx has what it had. */
 int tribo_clusters_copy(tribo_context *ctx, const tribo_context *from);
 int tribo_clusters_clone(tribo_context *clone, const tribo_context *from);
+
+/* Takes the last solution of clusters of the same contacts [n]. */
+void tribo_clusters_keep(struct clusters *to, const struct clusters *from, size_t n);
 
 /* Frees what is in clusters, which may be empty. */
 void tribo_clusters_free(struct clusters *c);

@@ -80,6 +80,25 @@ struct last {
     size_t clusters; /* solved */
 };
 
+/* An operator that replaces that of a context. All but drafts: the new one, or spent ones, whose memory is used again. */
+struct renewal {
+    struct delassus *op;
+    struct memory memory;
+    struct clusters plane;
+    struct drafts drafts;
+};
+
+/* The caller's J, of tribo_set_operator_mass, or places of R. Shared by clones. */
+struct pattern {
+    size_t references;    /* contexts */
+    size_t ndof, *rowptr; /* rowptr [n + 1] */
+    size_t *col;          /* [rowptr[n]] */
+    double *inverse_mass; /* [ndof]; of J */
+};
+
+/* Forms of operators. */
+enum { FORM_NONE, FORM_DIAGONAL, FORM_DENSE, FORM_ROWS, FORM_MASS, FORM_CALLBACK };
+
 /* Sums since tribo_create. */
 struct counters {
     size_t solves, reused, skipped, marks;
@@ -88,10 +107,13 @@ struct counters {
 struct tribo_context {
     size_t n;
     int fixed; /* the operator cannot be changed */
+    int form;  /* FORM_... of the operator */
     struct settings set;
     struct following follow;
-    struct delassus *op;  /* shared by clones */
-    struct memory memory; /* of groups, from call to call */
+    struct delassus *op;     /* shared by clones */
+    struct memory memory;    /* of groups, from call to call */
+    struct pattern *pattern; /* of FORM_ROWS and FORM_MASS, else NULL */
+    struct renewal *renewal; /* of the last tribo_update_operator; NULL: none */
     struct clusters plane;
     unsigned char *moving; /* [n] reversal memory */
     struct last last;
@@ -111,6 +133,13 @@ int tribo_fail(tribo_context *ctx, int status, const char *format, ...)
 /* settings.c: updates what follows from limits; from all settings and the operator. */
 void tribo_refresh_limits(tribo_context *ctx);
 void tribo_refresh(tribo_context *ctx);
+
+/* operator/input.c: counts a context less, the last of which frees the pattern; frees what is in r. NULL is fine. */
+void tribo_pattern_release(struct pattern *p);
+void tribo_renewal_free(struct renewal *r);
+
+/* operator/input.c: values that tribo_update_operator reads. */
+size_t tribo_operator_values(const tribo_context *ctx);
 
 /* Sets limits to limit [n], which may be those of ctx, and all that follows from them. */
 void tribo_take_limits(tribo_context *ctx, const double *limit);

@@ -49,7 +49,7 @@ int tribo_create(tribo_context **ctx, size_t ncontact)
     static const tribo_context blank;
     tribo_context *c = context_allocate(ncontact, &blank);
     if (c) {
-        c->op = tribo_operator_diagonal(ncontact, NULL);
+        c->op = tribo_operator_diagonal(NULL, ncontact, NULL);
     }
     if (!c || !c->op) {
         tribo_destroy(c);
@@ -79,8 +79,12 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     }
     c->fixed = 0;
     TRIBO_SHARED_ADD(c->op->references, (size_t)1);
+    if (c->pattern) {
+        TRIBO_SHARED_ADD(c->pattern->references, (size_t)1);
+    }
     c->memory = (struct memory){0};
     c->plane = (struct clusters){0};
+    c->renewal = NULL;
     if (!tribo_memory_copy(&c->memory, &ctx->memory, ctx->op) || tribo_clusters_clone(c, ctx)) {
         tribo_destroy(c);
         return TRIBO_ERR_MEMORY;
@@ -98,6 +102,9 @@ void tribo_destroy(tribo_context *ctx)
         tribo_operator_release(ctx->op);
         tribo_memory_free(&ctx->memory);
         tribo_clusters_free(&ctx->plane);
+        tribo_pattern_release(ctx->pattern);
+        tribo_renewal_free(ctx->renewal);
+        free(ctx->renewal);
         free(ctx);
     }
 }

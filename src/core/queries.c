@@ -84,7 +84,8 @@ int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
                        [TRIBO_COUNT_REVERSALS] = ctx->count.marks,
                        [TRIBO_COUNT_REUSED] = ctx->count.reused,
                        [TRIBO_COUNT_PLANAR] = ctx->plane.count,
-                       [TRIBO_COUNT_SETTINGS] = ctx->revision};
+                       [TRIBO_COUNT_SETTINGS] = ctx->revision,
+                       [TRIBO_COUNT_VALUES] = tribo_operator_values(ctx)};
     if (which < 0 || (size_t)which >= sizeof values / sizeof *values) {
         return TRIBO_ERR_RANGE;
     }

@@ -55,6 +55,7 @@ TRIBO_API int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const dou
 TRIBO_API int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
                                           int (*apply)(size_t ndof, const double *force, double *acceleration, void *data),
                                           void *data, const size_t *rowptr, const size_t *col, const double *val);
+TRIBO_API int tribo_update_operator(tribo_context *ctx, const double *val);
 TRIBO_API int tribo_fix_operator(tribo_context *ctx);
 TRIBO_API int tribo_set_coupling(tribo_context *ctx, int coupling);
 TRIBO_API int tribo_get_coupling(const tribo_context *ctx, int *coupling);

@@ -163,6 +163,11 @@ C     Where things begin in W and IWORK
      1                                 IWORK(29), W(LJ), W(LM-1),
      2                                 IPAR(2), IERR)
          CALL CMPI('TRBOP', IERR)
+         IF (IFORM .EQ. 1) CALL TRBUPD(IH, N, W(LD), IERR)
+         IF (IFORM .EQ. 3) CALL TRBUPD(IH, IWORK(2+N)-1, W(LV), IERR)
+         IF (IFORM .EQ. 4) CALL TRBUPD(IH, IWORK(19+N)-1, W(LJ), IERR)
+         IF (IFORM .EQ. 1 .OR. IFORM .EQ. 3 .OR. IFORM .EQ. 4)
+     1      CALL CMPI('TRBUPD', IERR)
          IF (IFORM .EQ. 5) CALL EXPECT('MINV', IPAR(2) .EQ. N)
          DO 20 ISET = 0, 2
             CALL TRBCPL(IH, MOD(ISET, 2), IERR)

@@ -86,6 +86,8 @@ C     Every routine that takes a handle, with one that is none.
          CALL WANTED('TRBOPM', IH, IERR, 1, SAYS)
          CALL TRBOPC(IH, N, N, MINV, IROW, ICOL, X, X, IPAR, IERR)
          CALL WANTED('TRBOPC', IH, IERR, 1, SAYS)
+         CALL TRBUPD(IH, N, X, IERR)
+         CALL WANTED('TRBUPD', IH, IERR, 1, SAYS)
          CALL TRBCPL(IH, 0, IERR)
          CALL WANTED('TRBCPL', IH, IERR, 1, SAYS)
          CALL TRBGCP(IH, J, IERR)
@@ -300,10 +302,22 @@ C     Values
      2'TRIBO_SHARE_PREVIOUS')
       CALL TRBOPD(IH, N, NEG, IERR)
       CALL WANTED('TRBOPD', IH, IERR, 3, 'r(3) = -1 is negative')
+      CALL TRBUPD(IH, N, NEG, IERR)
+      CALL WANTED('TRBUPD', IH, IERR, 8,
+     1'no operator: call tribo_set_operator_diagonal or another '//
+     2'tribo_set_operator_... first')
       CALL TRBOPF(IH, N, Q, 2, IERR)
       CALL WANTED('TRBOPF', IH, IERR, 6, 'LDR = 2 is less than 3')
       CALL TRBBTN(IH, N, X, X, Y, Z, Q, P, 2, IERR)
       CALL WANTED('TRBBTN', IH, IERR, 6, 'LDJ = 2 is less than 3')
+      CALL TRBNEW(N, J, IERR)
+      CALL TRBOPD(J, N, VAL, IERR)
+      CALL TRBUPD(J, N, NEG, IERR)
+      CALL WANTED('TRBUPD', J, IERR, 3, 'val(3) = -1 is negative')
+      CALL TRBUPD(J, 2, VAL, IERR)
+      CALL WANTED('TRBUPD', J, IERR, 6, 'NVAL = 2 is not 3')
+      CALL TRBDEL(J, IERR)
+      J = -777
       Q(1,1) = 1D0
       Q(2,2) = 1D0
       Q(3,3) = 1D0

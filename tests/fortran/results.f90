@@ -268,6 +268,10 @@ contains
       call require(mass%calls == n, 'set_operator_callback: one call a contact')
     end select
     call compare('set_operator', stat)
+    if (form == 1) call c%update_operator(scene_diagonal, stat)
+    if (form == 3) call c%update_operator(scene_val, stat)
+    if (form == 4) call c%update_operator(scene_j_val, stat)
+    if (form == 1 .or. form == 3 .or. form == 4) call compare('update_operator', stat)
   end subroutine set_operator
 
   subroutine settings(c)
@@ -395,7 +399,7 @@ contains
     type(tribo_context) :: c, d
     real(dp), parameter :: gap = 5
     real(dp) :: x(n, 4), y(2*n, 4), wide(3, 2*n, 3), feq(n, 2), f(n, 2), q(n, n, 2), jacobian(2*n, n, 2)
-    integer :: rowptr(2*(n + 1)), col(16), mode(2*n), straight(n), coupling
+    integer :: rowptr(2*(n + 1)), col(16), mode(2*n), straight(n), coupling, stat
     type(mass_of_scene) :: mass
 
     call c%create(n)
@@ -440,6 +444,11 @@ contains
     call c%set_operator_mass(scene_inverse_mass, int(scene_j_rowptr) + 1, int(scene_j_col) + 1, scene_j_val)
     call d%set_operator_mass(wide(3, ndof:1:-1, 3), rowptr(::2), col(:10:2), y(5:1:-1, 1))
     call compare_forces(c, d, 'mass')
+    call c%set_operator_mass(scene_inverse_mass, int(scene_j_rowptr) + 1, int(scene_j_col) + 1, 2*scene_j_val)
+    call d%update_operator(2*y(5:1:-1, 1))
+    call compare_forces(c, d, 'new values')
+    call d%update_operator(y(4:1:-1, 1), stat)
+    call require(stat == TRIBO_ERR_SIZE, 'too few values')
     mass%shared = scene_shared
     call c%set_operator_callback(ndof, mass, int(scene_j_rowptr) + 1, int(scene_j_col) + 1, scene_j_val)
     call d%set_operator_callback(ndof, mass, rowptr(::2), col(:10:2), y(5:1:-1, 1))

@@ -193,15 +193,18 @@ static void set_operator(tribo_context *c, int form)
     switch (form) {
     case 0:
         put_one(tribo_set_operator_diagonal(c, scene_diagonal));
+        put_one(tribo_update_operator(c, scene_diagonal));
         break;
     case 1:
         put_one(tribo_set_operator_dense(c, scene_dense[0]));
         break;
     case 2:
         put_one(tribo_set_operator_csr(c, scene_rowptr, scene_col, scene_val));
+        put_one(tribo_update_operator(c, scene_val));
         break;
     case 3:
         put_one(tribo_set_operator_mass(c, NDOF, scene_inverse_mass, scene_j_rowptr, scene_j_col, scene_j_val));
+        put_one(tribo_update_operator(c, scene_j_val));
         break;
     default:
         put_one(tribo_set_operator_callback(c, NDOF, accelerate, &scene_shared, scene_j_rowptr, scene_j_col, scene_j_val));

@@ -138,7 +138,7 @@ static void queries(struct slot *s, struct string *in)
     size_t count;
     double real;
     check(s, "count", tribo_get_count(s->c, which, &count),
-          which >= 0 && which <= TRIBO_COUNT_SETTINGS ? TRIBO_OK : TRIBO_ERR_RANGE);
+          which >= 0 && which <= TRIBO_COUNT_VALUES ? TRIBO_OK : TRIBO_ERR_RANGE);
     const int want = which < 0 || which > TRIBO_REAL_MAX_STEP ? TRIBO_ERR_RANGE
                      : which != TRIBO_REAL_RESIDUAL           ? missing(s)
                                                               : TRIBO_OK;

@@ -164,11 +164,15 @@ void set_operator(struct slot *s, struct string *in)
     for (size_t i = 0; i < n; i++) {
         diagonal[i] = r[i * n + i];
     }
-    const int status = form == 0   ? tribo_set_operator_diagonal(s->c, diagonal)
-                       : form == 1 ? tribo_set_operator_dense(s->c, r)
-                       : form == 2 ? tribo_set_operator_csr(s->c, first, col, val)
-                       : form == 3 ? tribo_set_operator_mass(s->c, b.count, b.inverse, b.first, b.col, b.val)
-                                   : tribo_set_operator_callback(s->c, b.count, accelerate, &m, b.first, b.col, b.val);
+    int status = form == 0   ? tribo_set_operator_diagonal(s->c, diagonal)
+                 : form == 1 ? tribo_set_operator_dense(s->c, r)
+                 : form == 2 ? tribo_set_operator_csr(s->c, first, col, val)
+                 : form == 3 ? tribo_set_operator_mass(s->c, b.count, b.inverse, b.first, b.col, b.val)
+                             : tribo_set_operator_callback(s->c, b.count, accelerate, &m, b.first, b.col, b.val);
+    const double *again = form == 0 ? diagonal : form == 1 ? r : form == 2 ? val : b.val;
+    for (unsigned k = 0; !status && form < 4 && k < spoilt % 4; k++) {
+        status = tribo_update_operator(s->c, again);
+    }
     if (form == 4 && n && m.fails) {
         want = TRIBO_ERR_CALLBACK;
     }

@@ -55,24 +55,58 @@ static int input_out_of_memory(tribo_context *ctx)
     return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for an operator of %zu contact%s", ctx->n, plural(ctx->n));
 }
 
-/* Replaces the operator and its memory; if there is no memory for clusters of op, the old ones stay. */
-static int install(tribo_context *ctx, struct delassus *op, struct memory *m)
+void tribo_pattern_release(struct pattern *p)
 {
-    const int status = tribo_clusters_renew(ctx, ctx->plane.count, ctx->plane.first, op, m);
+    if (p && TRIBO_SHARED_ADD(p->references, SIZE_MAX) == 0) { /* one less */
+        free(p);
+    }
+}
+
+void tribo_renewal_free(struct renewal *r)
+{
+    if (r) {
+        tribo_operator_release(r->op);
+        tribo_memory_free(&r->memory);
+        tribo_clusters_free(&r->plane);
+        tribo_csr_free(&r->drafts.t);
+        tribo_csr_free(&r->drafts.a);
+        free(r->drafts.room.block);
+    }
+}
+
+/* Makes clusters of the operator in r, and exchanges the two for those of ctx; a status. After a failure ctx has what it had. */
+static int install(tribo_context *ctx, struct renewal *r)
+{
+    const int status = tribo_clusters_make(&r->plane, ctx, ctx->plane.count, ctx->plane.first, r->op, &r->memory);
     if (status) {
-        tribo_operator_release(op);
-        tribo_memory_free(m);
         return status;
     }
-    m->problem.work.factorizations += ctx->memory.problem.work.factorizations;
-    m->problem.work.updates += ctx->memory.problem.work.updates;
-    tribo_operator_release(ctx->op);
-    tribo_memory_free(&ctx->memory);
-    ctx->op = op;
-    ctx->memory = *m;
+    const struct renewal spent = {ctx->op, ctx->memory, ctx->plane, r->drafts};
+    r->memory.problem.work.factorizations += spent.memory.problem.work.factorizations;
+    r->memory.problem.work.updates += spent.memory.problem.work.updates;
+    ctx->op = r->op;
+    ctx->memory = r->memory;
+    ctx->plane = r->plane;
+    *r = spent;
     ctx->last.slips = NO_SLIPS;
     tribo_refresh(ctx);
     return TRIBO_OK;
+}
+
+/* Ends a tribo_set_operator_...: frees r, and unless status is a failure gives ctx form and pattern, which is released otherwise.
+ * Returns status. */
+static int finish(tribo_context *ctx, struct renewal *r, int status, int form, struct pattern *pattern)
+{
+    tribo_renewal_free(r);
+    tribo_pattern_release(status ? pattern : ctx->pattern);
+    if (!status) {
+        tribo_renewal_free(ctx->renewal);
+        free(ctx->renewal);
+        ctx->renewal = NULL;
+        ctx->pattern = pattern;
+        ctx->form = form;
+    }
+    return status;
 }
 
 /* Fails if the caller must not change the operator, or for too many degrees of freedom; a status. */
@@ -98,36 +132,82 @@ int tribo_fix_operator(tribo_context *ctx)
     return TRIBO_OK;
 }
 
-int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
+/* Takes a diagonal as the operator; a status. */
+static int put_diagonal(tribo_context *ctx, struct renewal *r, const double *diagonal)
 {
-    int status = check_change(ctx, 0);
-    status = status ? status : tribo_check_nonnegative(ctx, "r", r, ctx->n);
     const double none = 0.0;
-    struct memory m = {0};
-    if (status) {
-        return status;
+    struct delassus *op = tribo_operator_diagonal(r->op, ctx->n, diagonal ? diagonal : &none);
+    if (!op) {
+        return input_out_of_memory(ctx);
     }
-    struct delassus *op = tribo_operator_diagonal(ctx->n, r ? r : &none);
-    return op ? install(ctx, op, &m) : input_out_of_memory(ctx);
+    r->op = op;
+    tribo_memory_clear(&r->memory);
+    return install(ctx, r);
 }
 
-/* Takes rows a, columns ascending, as the operator, and frees them; a status. negligible: see symmetrize; from: see
- * tribo_operator_create. */
-static int install_rows(tribo_context *ctx, struct csr *a, double negligible, const struct inertia *from)
+/* Lays out the arrays of drafts but t and a. Returns 0 if out of memory. */
+static int lay_out_drafts(const tribo_context *ctx, struct drafts *d)
 {
-    struct delassus *op;
-    struct memory m;
-    double *diagonal = malloc((ctx->n + 1) * sizeof *diagonal);
-    int status = diagonal ? symmetrize(ctx, a, negligible, diagonal) : TRIBO_ERR_MEMORY;
-    status = status ? status : tribo_operator_create(&op, &m, a, diagonal, from, ctx);
-    free(diagonal);
-    tribo_csr_free(a);
-    return status == TRIBO_ERR_MEMORY ? input_out_of_memory(ctx) : status ? status : install(ctx, op, &m);
+    const size_t n = ctx->n;
+    return ALLOCATE_IN(&d->room, ARRAY(d->diagonal, n + 1), ARRAY(d->x, 2 * n + 1), ARRAY(d->place, 4 * n + 1)) != NULL;
+}
+
+/* Takes rows drafts.a as the operator; a status. negligible: see symmetrize; from: see tribo_operator_create. */
+static int put_rows(tribo_context *ctx, struct renewal *r, double negligible, const struct inertia *from)
+{
+    int status = lay_out_drafts(ctx, &r->drafts) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    status = status ? status : symmetrize(ctx, &r->drafts.a, negligible, r->drafts.diagonal);
+    status = status ? status : tribo_operator_create(&r->op, &r->memory, &r->drafts, from, ctx);
+    return status == TRIBO_ERR_MEMORY ? input_out_of_memory(ctx) : status ? status : install(ctx, r);
+}
+
+/* Takes the transpose of drafts.t as the operator; a status. */
+static int put_transposed(tribo_context *ctx, struct renewal *r)
+{
+    const struct csr *t = &r->drafts.t;
+    return tribo_csr_transpose(&r->drafts.a, t->n, t->n, t->first, t->col, t->val) ? put_rows(ctx, r, 0.0, NULL)
+                                                                                   : input_out_of_memory(ctx);
+}
+
+/* Takes J diag(inverse_mass) J' as the operator, drafts.t = J'; a status. */
+static int put_mass(tribo_context *ctx, struct renewal *r, const double *inverse_mass, const size_t *rowptr, const size_t *col,
+                    const double *val)
+{
+    struct drafts *d = &r->drafts;
+    const struct inertia from = {inverse_mass, rowptr, col, val, &d->t};
+    return lay_out_drafts(ctx, d) && tribo_csr_product(&d->a, d->place, &d->t, inverse_mass, rowptr, col, val, ctx->n)
+               ? put_rows(ctx, r, 0.0, &from)
+               : input_out_of_memory(ctx);
+}
+
+int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
+{
+    struct renewal own = {0};
+    int status = check_change(ctx, 0);
+    status = status ? status : tribo_check_nonnegative(ctx, "r", r, ctx->n);
+    return status ? status : finish(ctx, &own, put_diagonal(ctx, &own, r), FORM_DIAGONAL, NULL);
 }
 
 /* -------------------------------------------------------------------------------------------------- forms of input */
 
-/* Checks the rows of a matrix [n][columns], t = its transpose, in which equal columns of a row are neighbours; a status. */
+/* Checks that the values of the rows of contacts are finite; a status. */
+static int check_values(tribo_context *ctx, const size_t *rowptr, const double *val)
+{
+    if (rowptr[ctx->n] && !val) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "val is NULL");
+    }
+    for (size_t i = 0; i < ctx->n; i++) {
+        for (size_t k = rowptr[i]; k < rowptr[i + 1]; k++) {
+            if (!isfinite(val[k])) {
+                return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "val[%zu] = %g of contact %zu is not finite", k, val[k], i);
+            }
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* Checks the rows of a matrix [n][columns], t = its transpose, in which equal columns of a row are neighbours; a status. t is
+ * empty. */
 static int input_read(tribo_context *ctx, size_t columns, const size_t *rowptr, const size_t *col, const double *val,
                       struct csr *t)
 {
@@ -144,18 +224,19 @@ static int input_read(tribo_context *ctx, size_t columns, const size_t *rowptr, 
                               rowptr[i]);
         }
     }
-    if (rowptr[n] && (!col || !val)) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "%s is NULL", col ? "val" : "col");
+    if (rowptr[n] && !col) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "col is NULL");
     }
     for (size_t i = 0; i < n; i++) {
         for (size_t k = rowptr[i]; k < rowptr[i + 1]; k++) {
             if (col[k] >= columns) {
                 return tribo_fail(ctx, TRIBO_ERR_RANGE, "col[%zu] = %zu of contact %zu is not below %zu", k, col[k], i, columns);
             }
-            if (!isfinite(val[k])) {
-                return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "val[%zu] = %g of contact %zu is not finite", k, val[k], i);
-            }
         }
+    }
+    const int status = check_values(ctx, rowptr, val);
+    if (status) {
+        return status;
     }
     if (!tribo_csr_transpose(t, n, columns, rowptr, col, val)) {
         return input_out_of_memory(ctx);
@@ -163,43 +244,58 @@ static int input_read(tribo_context *ctx, size_t columns, const size_t *rowptr, 
     for (size_t j = 0; j < t->n; j++) {
         for (size_t k = t->first[j] + 1; k < t->first[j + 1]; k++) {
             if (t->col[k] == t->col[k - 1]) {
-                const size_t i = t->col[k];
-                tribo_csr_free(t);
-                return tribo_fail(ctx, TRIBO_ERR_DUPLICATE, "contact %zu has column %zu twice", i, j);
+                return tribo_fail(ctx, TRIBO_ERR_DUPLICATE, "contact %zu has column %zu twice", t->col[k], j);
             }
         }
     }
     return TRIBO_OK;
 }
 
+/* *pattern = a copy of rows, and of inverse_mass [ndof]; a status. */
+static int keep_pattern(tribo_context *ctx, struct pattern **pattern, size_t ndof, const double *inverse_mass,
+                        const size_t *rowptr, const size_t *col)
+{
+    struct pattern *p, like = {.references = 1, .ndof = ndof};
+    const size_t n = ctx->n;
+    if (!ALLOCATE(ARRAY(p, 1), ARRAY(like.inverse_mass, ndof), ARRAY(like.rowptr, n + 1), ARRAY(like.col, rowptr[n]))) {
+        return input_out_of_memory(ctx);
+    }
+    tribo_copy(like.inverse_mass, inverse_mass, ndof);
+    memcpy(like.rowptr, rowptr, (n + 1) * sizeof *rowptr);
+    memcpy(like.col, rowptr[n] ? col : like.rowptr, rowptr[n] * sizeof *col);
+    *p = like;
+    *pattern = p;
+    return TRIBO_OK;
+}
+
 int tribo_set_operator_csr(tribo_context *ctx, const size_t *rowptr, const size_t *col, const double *val)
 {
-    struct csr t, a;
+    struct renewal own = {0};
+    struct pattern *pattern = NULL;
     int status = check_change(ctx, 0);
-    status = status ? status : input_read(ctx, ctx->n, rowptr, col, val, &t);
     if (status) {
         return status;
     }
-    const int done = tribo_csr_transpose(&a, t.n, t.n, t.first, t.col, t.val);
-    tribo_csr_free(&t);
-    return done ? install_rows(ctx, &a, 0.0, NULL) : input_out_of_memory(ctx);
+    status = input_read(ctx, ctx->n, rowptr, col, val, &own.drafts.t);
+    status = status ? status : keep_pattern(ctx, &pattern, 0, NULL, rowptr, col);
+    status = status ? status : put_transposed(ctx, &own);
+    return finish(ctx, &own, status, FORM_ROWS, pattern);
 }
 
 int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inverse_mass, const size_t *rowptr, const size_t *col,
                             const double *val)
 {
-    struct csr t, a;
+    struct renewal own = {0};
+    struct pattern *pattern = NULL;
     int status = check_change(ctx, ndof);
     status = status ? status : tribo_check_nonnegative(ctx, "inverse_mass", inverse_mass, ndof);
-    status = status ? status : input_read(ctx, ndof, rowptr, col, val, &t);
     if (status) {
         return status;
     }
-    const struct inertia from = {inverse_mass, rowptr, col, val, &t};
-    const int done = tribo_csr_product(&a, ctx->n, &t, inverse_mass, rowptr, col, val);
-    status = done ? install_rows(ctx, &a, 0.0, &from) : input_out_of_memory(ctx);
-    tribo_csr_free(&t);
-    return status;
+    status = input_read(ctx, ndof, rowptr, col, val, &own.drafts.t);
+    status = status ? status : keep_pattern(ctx, &pattern, ndof, inverse_mass, rowptr, col);
+    status = status ? status : put_mass(ctx, &own, inverse_mass, rowptr, col, val);
+    return finish(ctx, &own, status, FORM_MASS, pattern);
 }
 
 /* Columns R e_j: given, or J M^-1 J' e_j by the caller's mass matrix. */
@@ -239,7 +335,7 @@ static int find_column(tribo_context *ctx, const struct columns *m, size_t j, do
 }
 
 /* Takes columns, which are rows since R is symmetric, without their zeros as the operator; a status. */
-static int install_columns(tribo_context *ctx, const struct columns *m)
+static int put_columns(tribo_context *ctx, struct renewal *r, const struct columns *m)
 {
     const size_t n = ctx->n;
     struct csr a = {0};
@@ -268,43 +364,122 @@ static int install_columns(tribo_context *ctx, const struct columns *m)
         }
     }
     free(work);
-    if (status) {
-        tribo_csr_free(&a);
+    r->drafts.a = a;
+    return status ? status : put_rows(ctx, r, m->dense ? 0.0 : NEGLIGIBLE, NULL);
+}
+
+/* Checks r [n][n], an argument of this name; a status. */
+static int check_dense(tribo_context *ctx, const char *name, const double *r)
+{
+    const size_t n = ctx->n;
+    if (!r && n) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "%s is NULL", name);
     }
-    return status ? status : install_rows(ctx, &a, m->dense ? 0.0 : NEGLIGIBLE, NULL);
+    for (size_t k = 0; k < n * n; k++) {
+        if (!isfinite(r[k])) {
+            return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "%s[%zu][%zu] = %g is not finite", name, k / n, k % n, r[k]);
+        }
+    }
+    return TRIBO_OK;
 }
 
 int tribo_set_operator_dense(tribo_context *ctx, const double *r)
 {
-    const int status = check_change(ctx, 0);
-    if (status) {
-        return status;
-    }
-    const size_t n = ctx->n;
-    if (!r && n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "r is NULL");
-    }
-    for (size_t k = 0; k < n * n; k++) {
-        if (!isfinite(r[k])) {
-            return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "r[%zu][%zu] = %g is not finite", k / n, k % n, r[k]);
-        }
-    }
-    return install_columns(ctx, &(const struct columns){.dense = r});
+    struct renewal own = {0};
+    int status = check_change(ctx, 0);
+    status = status ? status : check_dense(ctx, "r", r);
+    return status ? status : finish(ctx, &own, put_columns(ctx, &own, &(const struct columns){.dense = r}), FORM_DENSE, NULL);
 }
 
 int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
                                 int (*apply)(size_t ndof, const double *force, double *acceleration, void *data), void *data,
                                 const size_t *rowptr, const size_t *col, const double *val)
 {
-    struct csr t;
+    struct renewal own = {0};
     int status = check_change(ctx, ndof);
     if (!status && !apply) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "apply is NULL");
     }
-    status = status ? status : input_read(ctx, ndof, rowptr, col, val, &t);
     if (status) {
         return status;
     }
-    tribo_csr_free(&t);
-    return install_columns(ctx, &(const struct columns){NULL, rowptr, col, val, ndof, apply, data});
+    status = input_read(ctx, ndof, rowptr, col, val, &own.drafts.t);
+    status = status ? status : put_columns(ctx, &own, &(const struct columns){NULL, rowptr, col, val, ndof, apply, data});
+    return finish(ctx, &own, status, FORM_CALLBACK, NULL);
+}
+
+/* ---------------------------------------------------------------------------------------------------- new values */
+
+/* Takes r [n][n] as the operator; a status. */
+static int put_dense(tribo_context *ctx, struct renewal *to, const double *r)
+{
+    const size_t n = ctx->n;
+    struct csr *a = &to->drafts.a;
+    if (!a->first) {
+        if (!tribo_csr_create(a, n, n * n)) {
+            return input_out_of_memory(ctx);
+        }
+        for (size_t k = 0; k < n * n; k++) {
+            a->col[k] = k % n;
+        }
+        for (size_t i = 0; i < n; i++) {
+            a->first[i + 1] = (i + 1) * n;
+        }
+    }
+    tribo_copy(a->val, r, n * n);
+    return put_rows(ctx, to, 0.0, NULL);
+}
+
+/* Takes val, of the form of the operator, as its values; a status. */
+static int put_values(tribo_context *ctx, struct renewal *r, const double *val)
+{
+    const struct pattern *p = ctx->pattern;
+    const int status = ctx->form == FORM_DIAGONAL ? tribo_check_nonnegative(ctx, "val", val, ctx->n)
+                       : ctx->form == FORM_DENSE  ? check_dense(ctx, "val", val)
+                                                  : check_values(ctx, p->rowptr, val);
+    if (status || ctx->form == FORM_DIAGONAL) {
+        return status ? status : put_diagonal(ctx, r, val);
+    }
+    if (ctx->form == FORM_DENSE) {
+        return put_dense(ctx, r, val);
+    }
+    const size_t columns = ctx->form == FORM_ROWS ? ctx->n : p->ndof;
+    if (!tribo_csr_transpose(&r->drafts.t, ctx->n, columns, p->rowptr, p->col, val)) {
+        return input_out_of_memory(ctx);
+    }
+    return ctx->form == FORM_ROWS ? put_transposed(ctx, r) : put_mass(ctx, r, p->inverse_mass, p->rowptr, p->col, val);
+}
+
+size_t tribo_operator_values(const tribo_context *ctx)
+{
+    return ctx->form == FORM_DIAGONAL ? ctx->n
+           : ctx->form == FORM_DENSE  ? ctx->n * ctx->n
+           : ctx->pattern             ? ctx->pattern->rowptr[ctx->n]
+                                      : 0;
+}
+
+int tribo_update_operator(tribo_context *ctx, const double *val)
+{
+    int status = check_change(ctx, 0);
+    status = status ? status : tribo_need_operator(ctx, ctx);
+    if (status || ctx->form == FORM_NONE) {
+        return status;
+    }
+    if (ctx->form == FORM_CALLBACK) {
+        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "the operator was set by a callback: set another one");
+    }
+    if (!ctx->renewal && !(ctx->renewal = calloc(1, sizeof *ctx->renewal))) {
+        return input_out_of_memory(ctx);
+    }
+    struct renewal *r = ctx->renewal;
+    if (r->op && TRIBO_SHARED_ADD(r->op->references, (size_t)0) > 1) {
+        tribo_operator_release(r->op); /* a clone has it */
+        r->op = NULL;
+    }
+    status = put_values(ctx, r, val);
+    if (!status && ctx->set.sharing == TRIBO_SHARE_PREVIOUS) {
+        tribo_keep_forces(ctx); /* the new memory has not solved any group */
+        tribo_clusters_keep(&ctx->plane, &r->plane, ctx->n);
+    }
+    return status;
 }

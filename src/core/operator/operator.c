@@ -31,36 +31,49 @@ int tribo_prefers_sparse(size_t size, int thin)
     return size > (thin ? DENSE_UP_TO : SPARSE_FROM);
 }
 
+static void forget_sparse(struct delassus *op)
+{
+    for (size_t k = 0; k < op->laid_out; k++) {
+        tribo_sparse_free(op->group[k].made);
+    }
+}
+
 void tribo_operator_release(struct delassus *op)
 {
     if (!op || TRIBO_SHARED_ADD(op->references, SIZE_MAX) > 0) { /* one less */
         return;
     }
-    for (size_t k = 0; op->group && k < op->groups; k++) {
-        tribo_sparse_free(op->group[k].sparse);
-    }
-    free(op->group_of);
-    free(op->fixed);
+    forget_sparse(op);
+    free(op->rooms[0].block);
+    free(op->rooms[1].block);
     free(op);
 }
 
 void tribo_memory_free(struct memory *m)
 {
-    struct box_qp *p = &m->problem;
-    free(m->store);
-    free(p->null.basis);
+    free(m->rooms[0].block);
+    free(m->rooms[1].block);
     *m = (struct memory){0};
 }
 
-struct delassus *tribo_operator_diagonal(size_t n, const double *r)
+struct delassus *tribo_operator_diagonal(struct delassus *spent, size_t n, const double *r)
 {
-    struct delassus *o;
-    double *diagonal;
-    if (!ALLOCATE(ARRAY(o, 1), ARRAY(diagonal, r ? 2 * n + TRIBO_LINE : 0))) {
+    struct delassus *o = spent;
+    double *diagonal = spent ? spent->diagonal : NULL;
+    if (!spent && !ALLOCATE(ARRAY(o, 1), ARRAY(diagonal, r ? 2 * n + TRIBO_LINE : 0))) {
         return NULL;
     }
-    *o = (struct delassus){
-        .references = 1, .most = TRIBO_FAR, .growth = 1.0, .islands = r ? n : 0, .diagonal = r ? diagonal : NULL};
+    *o = (struct delassus){.references = 1,
+                           .most = TRIBO_FAR,
+                           .growth = 1.0,
+                           .islands = r ? n : 0,
+                           .diagonal = r ? diagonal : NULL,
+                           .group_of = o->group_of,
+                           .group = o->group,
+                           .member = o->member,
+                           .row_sum = o->row_sum,
+                           .rooms = {o->rooms[0], o->rooms[1]},
+                           .laid_out = o->laid_out};
     o->inverse = r ? tribo_aligned(diagonal + n) : NULL;
     for (size_t i = 0; r && i < n; i++) {
         diagonal[i] = greater(r[i], TRIBO_IMMOVABLE);
@@ -101,17 +114,17 @@ static int allocate_memory(struct memory *m, const struct delassus *op)
 {
     struct box_qp *p = &m->problem;
     const size_t s = op->largest + 1;
-    return ALLOCATE(ARRAY(m->store, op->kept_size + 1), ARRAY(m->sets, op->groups), ARRAY(m->solved_list, op->groups),
-                    ARRAY(m->solved, op->groups), ARRAY(p->q, s), ARRAY(p->lo, s), ARRAY(p->hi, s), ARRAY(p->gradient, s),
-                    ARRAY(p->noise, s), ARRAY(p->low.x, s), ARRAY(p->rounding.terms, s), ARRAY(p->rounding.unit, s),
-                    ARRAY(p->step, s), ARRAY(p->low.step, s), ARRAY(p->low.gradient, s), ARRAY(p->row, s), ARRAY(p->spare[0], s),
-                    ARRAY(p->spare[1], s), ARRAY(p->near, s), ARRAY(p->null.held, s), ARRAY(p->to, s)) != NULL;
+    return ALLOCATE_IN(m->rooms, ARRAY(m->store, op->kept_size + 1), ARRAY(m->sets, op->groups),
+                       ARRAY(m->solved_list, op->groups), ARRAY(m->solved, op->groups), ARRAY(p->q, s), ARRAY(p->lo, s),
+                       ARRAY(p->hi, s), ARRAY(p->gradient, s), ARRAY(p->noise, s), ARRAY(p->low.x, s),
+                       ARRAY(p->rounding.terms, s), ARRAY(p->rounding.unit, s), ARRAY(p->step, s), ARRAY(p->low.step, s),
+                       ARRAY(p->low.gradient, s), ARRAY(p->row, s), ARRAY(p->spare[0], s), ARRAY(p->spare[1], s),
+                       ARRAY(p->near, s), ARRAY(p->null.held, s), ARRAY(p->to, s)) != NULL;
 }
 
 static int allocate_basis(struct memory *m, const struct delassus *op)
 {
-    m->problem.null.basis = op->basis ? malloc(op->basis * sizeof *m->problem.null.basis) : NULL;
-    return m->problem.null.basis || !op->basis;
+    return !op->basis || ALLOCATE_IN(m->rooms + 1, ARRAY(m->problem.null.basis, op->basis));
 }
 
 int tribo_memory_copy(struct memory *to, const struct memory *from, const struct delassus *op)
@@ -157,8 +170,14 @@ static int find_groups(struct delassus *op, const struct csr *a, size_t *place, 
     if (!op->groups) {
         return 1;
     }
-    if (!ALLOCATE(ARRAY(op->group_of, n), ARRAY(op->member, n), ARRAY(op->row_sum, n), ARRAY(op->group, op->groups))) {
-        return 0;
+    if (op->groups != op->laid_out) {
+        forget_sparse(op);
+        op->laid_out = 0;
+        if (!ALLOCATE_IN(op->rooms, ARRAY(op->group_of, n), ARRAY(op->member, n), ARRAY(op->row_sum, n),
+                         ARRAY(op->group, op->groups))) {
+            return 0;
+        }
+        op->laid_out = op->groups;
     }
     tribo_list_sets(n, parent, count, op->group_of, place, first, op->member);
     for (size_t i = 0; i < n; i++) {
@@ -172,13 +191,45 @@ static int find_groups(struct delassus *op, const struct csr *a, size_t *place, 
     return 1;
 }
 
+/* Returns 1, and sets the values of rows [g->size], if the entries of a group are at their places; 0 if not: then some values have
+ * changed. */
+static int set_values_of(struct csr *rows, const struct group *g, const struct csr *a, const size_t *member, const size_t *place)
+{
+    size_t entries = 0;
+    int same = rows->n == g->size;
+    for (size_t p = 0; same && p < g->size; p++) {
+        for (size_t e = a->first[member[p]]; same && e < a->first[member[p] + 1]; e++) {
+            if (a->val[e] != 0.0) {
+                same = entries < rows->first[p + 1] && rows->col[entries] == place[a->col[e]];
+                rows->val[entries] = a->val[e];
+                entries++;
+            }
+        }
+        same = same && entries == rows->first[p + 1];
+    }
+    return same;
+}
+
 /* Makes the sparse factor of a group, if it is worth it. Returns 0 if out of memory. */
 static int make_sparse(struct group *g, const struct csr *a, const size_t *member, const size_t *place)
 {
     struct csr own;
     size_t entries = 0;
+    uint64_t shape = 14695981039346656037u ^ g->size; /* the hash FNV-1a, of words */
     for (size_t p = 0; p < g->size; p++) {
-        entries += a->first[member[p] + 1] - a->first[member[p]];
+        for (size_t e = a->first[member[p]]; e < a->first[member[p] + 1]; e++) {
+            if (a->val[e] != 0.0) {
+                shape = (shape ^ (p * g->size + place[a->col[e]])) * 1099511628211u;
+                entries++;
+            }
+        }
+    }
+    if (shape == g->dense_shape) {
+        return 1;
+    }
+    if (g->made && set_values_of(tribo_sparse_rows(g->made), g, a, member, place)) {
+        g->sparse = g->made;
+        return 1;
     }
     if (!tribo_csr_create(&own, g->size, entries)) {
         return 0;
@@ -193,8 +244,11 @@ static int make_sparse(struct group *g, const struct csr *a, const size_t *membe
         }
         own.first[p + 1] = entries;
     }
-    const int done = tribo_sparse_create(&g->sparse, &own);
+    tribo_sparse_free(g->made);
+    const int done = tribo_sparse_create(&g->made, &own);
     tribo_csr_free(&own);
+    g->sparse = g->made;
+    g->dense_shape = done && !g->made ? shape : 0;
     return done;
 }
 
@@ -324,8 +378,8 @@ static int is_thin(const struct box_qp *p)
 }
 
 /* Factors R of group k, graded if g->graded and a pivot is small; sets nullity, small and the room for null vectors from the
- * rank. Frees the sparse factor if a pivot is small in a group of at most DENSE_UP_TO contacts: *again = 1, since the group needs
- * room for a dense one. Returns TRIBO_OK, or TRIBO_ERR_INDEFINITE if a pivot is below zero by more than rounding. */
+ * rank. Gives up the sparse factor if a pivot is small in a group of at most DENSE_UP_TO contacts: *again = 1, since the group
+ * needs room for a dense one. Returns TRIBO_OK, or TRIBO_ERR_INDEFINITE if a pivot is below zero by more than rounding. */
 static int judge_group(struct delassus *op, struct memory *m, size_t k, const struct inertia *from, const size_t *place,
                        int *again, tribo_context *note)
 {
@@ -336,7 +390,6 @@ static int judge_group(struct delassus *op, struct memory *m, size_t k, const st
     struct box_qp *p = tribo_memory_problem(op, m, k);
     double left = factorize_all(p, &where);
     if (g->sparse && !tribo_prefers_sparse(g->size, is_thin(p))) {
-        tribo_sparse_free(g->sparse);
         g->sparse = NULL;
         *again = 1;
         return TRIBO_OK;
@@ -381,22 +434,22 @@ static int allocate_groups(struct delassus *op, struct memory *m)
         op->fixed_size += 3 * g->size + (g->sparse ? 0 : matrix);
         op->kept_size += 3 * g->size + inverse + (g->sparse ? 3 * g->size + tribo_sparse_slots(g->sparse) : matrix);
     }
-    free(op->fixed);
-    tribo_memory_free(m);
-    op->fixed = tribo_zeros(op->fixed_size + 1, sizeof *op->fixed);
-    return op->fixed && allocate_memory(m, op);
+    tribo_memory_clear(m);
+    return ALLOCATE_IN(op->rooms + 1, ARRAY(op->fixed, op->fixed_size + 1)) && allocate_memory(m, op);
 }
 
-int tribo_operator_create(struct delassus **created, struct memory *m, const struct csr *a, const double *diagonal,
-                          const struct inertia *from, tribo_context *note)
+int tribo_operator_create(struct delassus **created, struct memory *m, struct drafts *d, const struct inertia *from,
+                          tribo_context *note)
 {
     enum { FEW = 4, MANY = 8 }; /* for the largest eigenvalue of contacts in a row, to 2% whatever the masses */
+    const struct csr *a = &d->a;
     const size_t n = a->n;
-    size_t *place = malloc((4 * n + 1) * sizeof *place);
-    double before = HUGE_VAL, *x = malloc((2 * n + 1) * sizeof *x);
-    struct delassus *op = tribo_operator_diagonal(n, diagonal);
-    *m = (struct memory){0};
-    const int made = place && x && op && find_groups(op, a, place, place + n);
+    size_t *place = d->place;
+    double before = HUGE_VAL, *x = d->x;
+    struct delassus *op = tribo_operator_diagonal(*created, n, d->diagonal);
+    *created = op;
+    tribo_memory_clear(m);
+    const int made = op && find_groups(op, a, place, place + n);
     const size_t groups = made ? op->groups : 0;
     int status = made ? TRIBO_OK : TRIBO_ERR_MEMORY;
     for (size_t i = 0; made && i < n; i++) {
@@ -409,6 +462,7 @@ int tribo_operator_create(struct delassus **created, struct memory *m, const str
     for (size_t k = 0; !status && k < groups; k++) {
         struct group *g = &op->group[k];
         const size_t *member = op->member + g->first;
+        g->sparse = NULL;
         status = find_grading(g, from, member, note);
         if (!status && !g->graded && tribo_prefers_sparse(g->size, 0) && !make_sparse(g, a, member, place)) {
             status = TRIBO_ERR_MEMORY;
@@ -423,14 +477,5 @@ int tribo_operator_create(struct delassus **created, struct memory *m, const str
         }
     }
     m->problem.work.factorizations = 0;
-    if (status || !allocate_basis(m, op)) {
-        status = status ? status : TRIBO_ERR_MEMORY;
-        tribo_operator_release(op);
-        tribo_memory_free(m);
-        op = NULL;
-    }
-    *created = op;
-    free(x);
-    free(place);
-    return status;
+    return status ? status : allocate_basis(m, op) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }

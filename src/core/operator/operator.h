@@ -8,7 +8,9 @@
 
 #include "tribo/tribo.h"
 
+#include "common/layout.h"
 #include "numerics/box/box_qp.h"
+#include "numerics/csr.h"
 
 #define TRIBO_ALONE SIZE_MAX
 
@@ -25,10 +27,12 @@ struct delassus {
     size_t islands;               /* groups and single contacts */
     size_t groups;                /* of two contacts and more */
     double most;                  /* the least tribo_most of their contacts; TRIBO_FAR without groups */
-    size_t *group_of;             /* [n] or TRIBO_ALONE; has the memory of the next three */
+    size_t *group_of;             /* [n] or TRIBO_ALONE */
     struct group *group;          /* [groups] */
     size_t *member;               /* [n] contacts of groups, group by group, ascending */
     double *row_sum;              /* [n] sum_j |R_ij|; -1 for contacts in no group */
+    struct room rooms[2];         /* memory of the four arrays above; of fixed */
+    size_t laid_out;              /* groups that the first of these holds */
     double largest_sum;           /* of these */
     size_t largest;               /* contacts in the largest group */
     double *fixed;                /* [fixed_size] R and what goes with it, group by group */
@@ -42,11 +46,19 @@ struct memory {
     size_t *solved_list;   /* [nsolved] these */
     size_t nsolved;
     struct sets *sets;     /* [groups] */
-    double *store;         /* [kept_size] group by group; has the memory of all but the basis */
+    double *store;         /* [kept_size] group by group */
     struct box_qp problem; /* workspace of the largest group, with views of one group */
+    struct room rooms[2];  /* memory of all but the basis; of the basis */
 };
 
-struct csr;
+/* What is made on the way to an operator. */
+struct drafts {
+    struct csr t, a;  /* J' or R', and R; columns ascend */
+    double *diagonal; /* [n] of R */
+    double *x;        /* [2 n] workspace */
+    size_t *place;    /* [4 n + 1] workspace */
+    struct room room; /* memory of the last three */
+};
 
 /* R = J diag(w) J' by rows of J; t = J'. */
 struct inertia {
@@ -56,13 +68,13 @@ struct inertia {
     const struct csr *t;
 };
 
-/* Makes an operator and its memory of rows a, symmetric and finite, columns ascending, and their diagonal [n]; a status. from may
- * be NULL. note keeps the message of a failure. */
-int tribo_operator_create(struct delassus **op, struct memory *m, const struct csr *a, const double *diagonal,
-                          const struct inertia *from, tribo_context *note);
+/* Makes an operator and its memory of d->a, symmetric and finite, and its diagonal; a status. from may be NULL. note keeps the
+ * message of a failure. *op, *m: NULL and empty, or spent, and then used again; after a failure to be released. */
+int tribo_operator_create(struct delassus **op, struct memory *m, struct drafts *d, const struct inertia *from,
+                          tribo_context *note);
 
-/* Returns an operator without groups, r NULL: not set yet; NULL if out of memory. */
-struct delassus *tribo_operator_diagonal(size_t n, const double *r);
+/* Returns an operator without groups, in the place of spent unless spent is NULL; r NULL: not set yet; NULL if out of memory. */
+struct delassus *tribo_operator_diagonal(struct delassus *spent, size_t n, const double *r);
 
 /* Counts a context less, the last of which frees the operator; NULL is fine. */
 void tribo_operator_release(struct delassus *op);
@@ -73,6 +85,12 @@ void tribo_memory_free(struct memory *m);
 
 /* 1 if a group of so many contacts has a sparse factor, unless that has too many entries. thin: a pivot of R is small. */
 int tribo_prefers_sparse(size_t size, int thin);
+
+/* Makes a memory that of no groups; it keeps its rooms. */
+static inline void tribo_memory_clear(struct memory *m)
+{
+    *m = (struct memory){.rooms = {m->rooms[0], m->rooms[1]}};
+}
 
 /* Returns the problem with views of group k. */
 struct box_qp *tribo_memory_problem(const struct delassus *op, struct memory *m, size_t k);

@@ -114,28 +114,43 @@ double tribo_plane_rate(const tribo_context *ctx)
 
 /* -------------------------------------------------------------------------------------------------------------- life */
 
+/* Frees R and patterns of all clusters that there is room for. */
+static void forget_clusters(struct clusters *c)
+{
+    for (size_t k = 0; k < c->laid_out; k++) {
+        tribo_sparse_free(c->cluster[k].made);
+        tribo_csr_free(&c->cluster[k].r);
+    }
+}
+
 void tribo_clusters_free(struct clusters *c)
 {
     tribo_disc_free(&c->problem);
-    for (size_t k = 0; k < c->clusters; k++) {
-        tribo_sparse_free(c->cluster[k].pattern);
-        tribo_csr_free(&c->cluster[k].r);
+    forget_clusters(c);
+    for (size_t k = 0; k < sizeof c->rooms / sizeof *c->rooms; k++) {
+        free(c->rooms[k].block);
     }
-    free(c->first);
+    *c = (struct clusters){0};
 }
 
 /* Makes count planar contacts of n directions, without clusters. Returns 0 if out of memory. */
 static int planar_create(struct clusters *c, size_t n, size_t count, const size_t *first)
 {
-    size_t *member;
-    if (!ALLOCATE(ARRAY(c->first, count), ARRAY(c->role, n), ARRAY(c->own, count), ARRAY(c->group_of, n),
-                  ARRAY(c->cluster, count), ARRAY(member, n), ARRAY(c->near, n + 1), ARRAY(c->contact, n), ARRAY(c->index, n),
-                  ARRAY(c->directions, n), ARRAY(c->y, n), ARRAY(c->a, n), ARRAY(c->v, n), ARRAY(c->df, n), ARRAY(c->growth, n),
-                  ARRAY(c->radius, n), ARRAY(c->pull, n), ARRAY(c->shift, n))) {
+    if (!ALLOCATE_IN(&c->rooms[0], ARRAY(c->first, count), ARRAY(c->role, n), ARRAY(c->own, count), ARRAY(c->group_of, n),
+                     ARRAY(c->members, n), ARRAY(c->near, n + 1), ARRAY(c->contact, n), ARRAY(c->index, n),
+                     ARRAY(c->directions, n), ARRAY(c->y, n), ARRAY(c->a, n), ARRAY(c->v, n), ARRAY(c->df, n),
+                     ARRAY(c->growth, n), ARRAY(c->radius, n), ARRAY(c->pull, n), ARRAY(c->shift, n))) {
         return 0;
     }
+    if (c->laid_out != count) {
+        forget_clusters(c);
+        c->laid_out = 0;
+        if (!ALLOCATE_IN(&c->rooms[1], ARRAY(c->cluster, count))) {
+            return 0;
+        }
+        c->laid_out = count;
+    }
     c->count = count;
-    c->cluster->member = member;
     memcpy(c->first, first, count * sizeof *first);
     for (size_t k = 0; k < count; k++) {
         c->role[first[k]] = ROLE_FIRST;
@@ -200,10 +215,32 @@ static size_t list_neighbours(const struct clusters *c, const struct parts *x, c
     return count;
 }
 
-/* Makes R of a cluster. Returns 0 if out of memory. */
-static int fill_cluster(const struct clusters *c, const struct parts *x, struct cluster *g)
+/* Gives g the rows of t, which are 0, unless its own have entries at the same places: these become 0. Returns 0 if out of memory. */
+static int take_places(struct cluster *g, const struct csr *t)
 {
-    struct csr listed;
+    const size_t n = t->n, entries = t->first[n];
+    struct csr *r = &g->r;
+    if (r->first && r->n == n && memcmp(r->first, t->first, (n + 1) * sizeof *t->first) == 0 &&
+        memcmp(r->col, t->col, entries * sizeof *t->col) == 0) {
+        memset(r->val, 0, entries * sizeof *r->val);
+        return 1;
+    }
+    tribo_sparse_free(g->made);
+    tribo_csr_free(r);
+    g->made = NULL;
+    g->dense = 0;
+    if (!tribo_csr_create(r, n, entries)) {
+        return 0;
+    }
+    memcpy(r->first, t->first, (n + 1) * sizeof *t->first);
+    memcpy(r->col, t->col, entries * sizeof *t->col);
+    return 1;
+}
+
+/* Makes R of a cluster. Returns 0 if out of memory. */
+static int fill_cluster(struct clusters *c, const struct parts *x, struct cluster *g)
+{
+    struct csr listed = {.n = g->size}, sorted = {.n = g->size};
     size_t room = 0;
     for (size_t k = 0, directions; k < g->size; k += directions) {
         size_t most = 0;
@@ -213,7 +250,8 @@ static int fill_cluster(const struct clusters *c, const struct parts *x, struct 
         }
         room += directions * (most < g->size ? most : g->size);
     }
-    if (!tribo_csr_create(&listed, g->size, room)) {
+    if (!ALLOCATE_IN(&c->rooms[3], ARRAY(listed.first, g->size + 2), ARRAY(listed.col, room + 1), ARRAY(listed.val, room + 1),
+                     ARRAY(sorted.first, g->size + 2), ARRAY(sorted.col, room + 1), ARRAY(sorted.val, room + 1))) {
         return 0;
     }
     for (size_t k = 0, end = 0, directions; k < g->size; k += directions) {
@@ -229,8 +267,8 @@ static int fill_cluster(const struct clusters *c, const struct parts *x, struct 
         }
     }
     /* The pattern is symmetric: its transpose has columns ascending. */
-    const int done = tribo_csr_transpose(&g->r, g->size, g->size, listed.first, listed.col, listed.val);
-    tribo_csr_free(&listed);
+    tribo_csr_transpose(&sorted, g->size, g->size, listed.first, listed.col, listed.val);
+    const int done = take_places(g, &sorted);
     for (size_t k = 0; done && k < g->size; k++) {
         const struct row row = find_row(x, &g->member[k]);
         for (size_t e = 0; e < row.count; e++) {
@@ -240,6 +278,20 @@ static int fill_cluster(const struct clusters *c, const struct parts *x, struct 
         }
     }
     return done;
+}
+
+/* Sets the pattern of a cluster; thin: see tribo_prefers_sparse. Returns 0 if out of memory. */
+static int find_factor(struct cluster *g, int thin)
+{
+    const int sparse = tribo_prefers_sparse(g->size, thin);
+    if (sparse && !g->made && !g->dense) {
+        if (!tribo_sparse_create(&g->made, &g->r)) {
+            return 0;
+        }
+        g->dense = !g->made;
+    }
+    g->pattern = sparse ? g->made : NULL;
+    return 1;
 }
 
 /* Makes R of all clusters, patterns of sparse ones, room for their problems, group_of and own. Returns 0 if out of memory. */
@@ -253,12 +305,13 @@ static int fill_clusters(struct clusters *c, const struct parts *x, size_t n)
     for (size_t k = 0; k < c->clusters; k++) {
         struct cluster *g = &c->cluster[k];
         int thin = 0;
+        g->redundant = 0;
         for (size_t j = 0; op->groups && j < g->size; j++) {
             const size_t group = op->group_of[g->member[j]];
             g->redundant |= group != TRIBO_ALONE && op->group[group].nullity > 0;
             thin |= group != TRIBO_ALONE && op->group[group].thin;
         }
-        if (!fill_cluster(c, x, g) || (tribo_prefers_sparse(g->size, thin) && !tribo_sparse_create(&g->pattern, &g->r))) {
+        if (!fill_cluster(c, x, g) || !find_factor(g, thin)) {
             return 0;
         }
         const size_t sparse = g->pattern ? g->size : 0, dense = g->size - sparse;
@@ -286,8 +339,8 @@ static int fill_clusters(struct clusters *c, const struct parts *x, size_t n)
 static int find_clusters(struct clusters *c, size_t n, const struct delassus *op, struct memory *m)
 {
     struct parts x = {.op = op, .m = m};
-    if (!ALLOCATE(ARRAY(x.parent, n), ARRAY(x.chosen, n), ARRAY(x.start, n + 1), ARRAY(x.of, n), ARRAY(x.place, n),
-                  ARRAY(x.inside, n), ARRAY(x.mark, n))) {
+    if (!ALLOCATE_IN(&c->rooms[2], ARRAY(x.parent, n), ARRAY(x.chosen, n), ARRAY(x.start, n + 1), ARRAY(x.of, n),
+                     ARRAY(x.place, n), ARRAY(x.inside, n), ARRAY(x.mark, n))) {
         return 0;
     }
     for (size_t i = 0; i < n; i++) {
@@ -309,15 +362,12 @@ static int find_clusters(struct clusters *c, size_t n, const struct delassus *op
     for (size_t i = 0; i < n; i++) {
         c->islands += x.parent[i] == i;
     }
-    size_t *member = c->cluster->member;
-    c->clusters = tribo_list_sets(n, x.parent, x.chosen, x.of, x.place, x.start, member);
+    c->clusters = tribo_list_sets(n, x.parent, x.chosen, x.of, x.place, x.start, c->members);
     for (size_t k = 0; k < c->clusters; k++) {
-        c->cluster[k].member = member + x.start[k];
+        c->cluster[k].member = c->members + x.start[k];
         c->cluster[k].size = x.start[k + 1] - x.start[k];
     }
-    const int done = fill_clusters(c, &x, n);
-    free(x.parent);
-    return done;
+    return fill_clusters(c, &x, n);
 }
 
 /* --------------------------------------------------------------------------------------------------------- settings */
@@ -325,22 +375,34 @@ static int find_clusters(struct clusters *c, size_t n, const struct delassus *op
 /* Light bodies between heavy ones come out right to this ratio in doubles, which clusters use. */
 #define SPREAD_MOST 1e10
 
-int tribo_clusters_renew(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m)
+int tribo_clusters_make(struct clusters *c, tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op,
+                        struct memory *m)
 {
-    struct clusters c = {0};
+    *c = (struct clusters){.cluster = c->cluster,
+                           .laid_out = c->laid_out,
+                           .problem = c->problem,
+                           .rooms = {c->rooms[0], c->rooms[1], c->rooms[2], c->rooms[3]}};
     int status = TRIBO_OK;
-    if (count && (!planar_create(&c, ctx->n, count, first) || (op->diagonal && !find_clusters(&c, ctx->n, op, m)))) {
+    if (count && (!planar_create(c, ctx->n, count, first) || (op->diagonal && !find_clusters(c, ctx->n, op, m)))) {
         status = tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s in the plane", count, plural(count));
     }
     for (size_t k = 0; !status && count && op->diagonal && k < op->groups; k++) {
         const struct group *g = &op->group[k];
-        if (g->graded && g->spread > SPREAD_MOST && c.group_of[op->member[g->first]] == TRIBO_ALONE) {
+        if (g->graded && g->spread > SPREAD_MOST && c->group_of[op->member[g->first]] == TRIBO_ALONE) {
             status = tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
                                 "contact %zu touches bodies of which one is %g times as heavy as the other, and in a group with "
                                 "planar contacts not more than %g can be told",
                                 g->uneven, g->spread, SPREAD_MOST);
         }
     }
+    return status;
+}
+
+/* Gives ctx these planar contacts in the place of those it has; a status. */
+static int renew_clusters(tribo_context *ctx, size_t count, const size_t *first)
+{
+    struct clusters c = {0};
+    const int status = tribo_clusters_make(&c, ctx, count, first, ctx->op, &ctx->memory);
     tribo_clusters_free(status ? &c : &ctx->plane);
     ctx->plane = status ? ctx->plane : c;
     return status;
@@ -352,15 +414,20 @@ int tribo_clusters_copy(tribo_context *ctx, const tribo_context *from)
     if (count == ctx->plane.count && (!count || memcmp(first, ctx->plane.first, count * sizeof *first) == 0)) {
         return TRIBO_OK;
     }
-    return tribo_clusters_renew(ctx, count, first, ctx->op, &ctx->memory);
+    return renew_clusters(ctx, count, first);
+}
+
+void tribo_clusters_keep(struct clusters *to, const struct clusters *from, size_t n)
+{
+    tribo_copy(to->y, from->y, to->count ? n : 0);
+    tribo_copy(to->radius, from->radius, to->count ? n : 0);
 }
 
 int tribo_clusters_clone(tribo_context *clone, const tribo_context *from)
 {
     const int status = tribo_clusters_copy(clone, from);
-    if (!status && from->plane.count) {
-        tribo_copy(clone->plane.y, from->plane.y, from->n);
-        tribo_copy(clone->plane.radius, from->plane.radius, from->n);
+    if (!status) {
+        tribo_clusters_keep(&clone->plane, &from->plane, from->n);
     }
     return status;
 }
@@ -425,7 +492,7 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
     status = tribo_check_one_ratio(ctx, ctx->set.ratio, ctx->set.stribeck, count, first);
     if (!status) {
         tribo_write_slips(ctx);
-        status = tribo_clusters_renew(ctx, count, first, ctx->op, &ctx->memory);
+        status = renew_clusters(ctx, count, first);
     }
     if (!status) {
         tribo_refresh(ctx);

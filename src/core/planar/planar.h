@@ -24,6 +24,8 @@ struct cluster {
     size_t *member;         /* [size] */
     struct csr r;           /* R by places; rows of one contact have the same columns */
     struct sparse *pattern; /* of the factor; NULL: dense */
+    struct sparse *made;    /* of r, owned; NULL: none was made */
+    int dense;              /* 1: a dense factor is better for entries at the places of r */
     int redundant;          /* R is singular */
 };
 
@@ -33,7 +35,10 @@ struct clusters {
     unsigned char *role;  /* [n] */
     double (*own)[4];     /* [count] R of the contact alone, [2][2] */
     size_t clusters, islands;
-    struct cluster *cluster; /* [clusters]; the first has the memory of the members of all */
+    struct cluster *cluster; /* [clusters] */
+    size_t laid_out;         /* clusters that there is room for */
+    size_t *members;         /* [n] of all clusters */
+    struct room rooms[4];    /* memory of the arrays but cluster; of cluster; of struct parts; of rows on the way */
     size_t *group_of;        /* [n] that of the operator; TRIBO_ALONE for members of clusters */
     struct disc_qp problem;
     size_t *near;              /* [n + 1] places in the cluster of the problem's directions */

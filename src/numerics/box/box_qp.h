@@ -15,6 +15,7 @@
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "common/real.h"
@@ -45,6 +46,8 @@ struct group {
     double lightest;       /* the smallest scale, that of the largest diagonal entry */
     size_t terms;          /* entries of the fullest row */
     struct sparse *sparse; /* R and the pattern of its factor; NULL if dense */
+    struct sparse *made;   /* that of the last R that had one; owned */
+    uint64_t dense_shape;  /* hash of the places of R's entries, if a dense factor is better for them; else 0 */
     int graded;            /* 1: R and its factor have twice as many digits */
     int small;             /* 1: tribo_box_small applies */
     double spread;         /* largest ratio of the shares of bodies in an R_ii, */
@@ -215,6 +218,9 @@ size_t tribo_sparse_slots(const struct sparse *s);
 
 /* Entries of R by rows, of the order of r. */
 double *tribo_sparse_values(struct sparse *s);
+
+/* R by places, columns ascending. Its values may be changed. */
+struct csr *tribo_sparse_rows(struct sparse *s);
 void tribo_sparse_free(struct sparse *s);
 
 /* ---- rows of R */

@@ -44,6 +44,11 @@ void tribo_sparse_free(struct sparse *s)
     }
 }
 
+struct csr *tribo_sparse_rows(struct sparse *s)
+{
+    return &s->r;
+}
+
 size_t tribo_sparse_slots(const struct sparse *s)
 {
     return s->column[s->r.n];

@@ -276,18 +276,17 @@ static void lay_out_disc(struct disc_qp *p, struct layout *l, const struct disc_
 int tribo_disc_create(struct disc_qp *p, const struct disc_room *room)
 {
     struct layout l = {0};
-    *p = (struct disc_qp){0};
+    *p = (struct disc_qp){.room = p->room};
     lay_out_disc(p, &l, room);
-    p->memory = tribo_zeros(l.used + 1, 1);
-    if (p->memory) {
-        lay_out_disc(p, &(struct layout){.memory = p->memory}, room);
+    if (tribo_make_room(&p->room, l.used + 1)) {
+        lay_out_disc(p, &(struct layout){.memory = p->room.block}, room);
     }
-    return p->memory != NULL;
+    return p->room.block != NULL;
 }
 
 void tribo_disc_free(struct disc_qp *p)
 {
-    free(p->memory);
+    free(p->room.block);
     *p = (struct disc_qp){0};
 }
 

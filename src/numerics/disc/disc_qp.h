@@ -10,6 +10,7 @@
 #ifndef TRIBO_DISC_QP_H
 #define TRIBO_DISC_QP_H
 
+#include "common/layout.h"
 #include "numerics/box/box_qp.h"
 
 /* ---- lens.c */
@@ -110,7 +111,7 @@ struct disc_qp {
     struct disc *disc;                                /* [discs], at most 2 size */
     size_t discs;
     struct disc_factor factor;
-    void *memory; /* of all arrays; NULL: the caller's */
+    struct room room; /* of all arrays; empty: the caller's */
 };
 
 /* Sizes of the largest problem. */
@@ -119,7 +120,8 @@ struct disc_room {
     size_t places, entries, slots; /* of sparse problems; entries of S and of the factor */
 };
 
-/* Allocates room. Returns 1, or 0 if out of memory: tribo_disc_free takes that too. */
+/* Makes room, in the memory of p if p has enough; p is all 0 at first. Returns 1, or 0 if out of memory: tribo_disc_free takes that
+ * too. */
 int tribo_disc_create(struct disc_qp *p, const struct disc_room *room);
 void tribo_disc_free(struct disc_qp *p);
 

@@ -162,7 +162,7 @@ TEST(getters)
     REFUSED_CONST(TRIBO_ERR_NULL, tribo_get_sharing(c, NULL));
     REFUSED(TRIBO_ERR_NULL, "df is NULL", tribo_tangent_product(c, NULL, NULL, NULL));
     REFUSED_CONST(TRIBO_ERR_RANGE, tribo_get_count(c, -1, &out.count));
-    REFUSED_CONST(TRIBO_ERR_RANGE, tribo_get_count(c, TRIBO_COUNT_SETTINGS + 1, &out.count));
+    REFUSED_CONST(TRIBO_ERR_RANGE, tribo_get_count(c, TRIBO_COUNT_VALUES + 1, &out.count));
     REFUSED_CONST(TRIBO_ERR_NULL, tribo_get_real(c, TRIBO_REAL_RESIDUAL, NULL));
     REFUSED_CONST(TRIBO_ERR_RANGE, tribo_get_real(c, -1, &out.value));
     REFUSED_CONST(TRIBO_ERR_RANGE, tribo_get_real(c, TRIBO_REAL_MAX_STEP + 1, &out.value));

@@ -131,6 +131,7 @@ static void problem_create(struct disc_qp *p, const struct scene *s, struct spar
                                    .entries = pattern ? entries : 0,
                                    .slots = pattern ? tribo_sparse_slots(pattern) : 0};
     size_t *direction = malloc(s->places * sizeof *direction), end = 0;
+    memset(p, 0, sizeof *p);
     require(direction && tribo_disc_create(p, &room), "no memory");
     for (size_t i = 0, e = 0; i < s->places; i++) {
         direction[i] = e < n && s->place[e] == i ? e++ : SIZE_MAX;
