@@ -18,6 +18,7 @@
 #include <string.h>
 
 #include "common/real.h"
+#include "common/simd.h"
 #include "numerics/csr.h"
 
 #define NONE SIZE_MAX
@@ -31,6 +32,7 @@ struct sparse {
     size_t *row;       /* [size + 1] row k of L has the entries row[k] to row[k + 1] - 1 of: */
     size_t *column_of; /* [slots] columns, ascending in a row */
     size_t *slot;      /* [slots] slots */
+    size_t *run;       /* [size] columns from this one on, of which each has the rows of the one before that are behind it */
 };
 
 void tribo_sparse_free(struct sparse *s)
@@ -202,6 +204,11 @@ static int find_pattern(struct sparse *s, size_t *work)
     for (size_t q = 0; q < slots; q++) {
         s->row[s->row_of[q] + 1]++;
     }
+    for (size_t j = size; j-- > 0;) {
+        const size_t begin = s->column[j], end = s->column[j + 1];
+        const int alike = end > begin && s->row_of[begin] == j + 1 && end - begin == s->column[j + 2] - end + 1;
+        s->run[j] = alike ? s->run[j + 1] + 1 : 1;
+    }
     for (size_t k = 0; k < size; k++) {
         s->row[k + 1] += s->row[k];
         count[k] = s->row[k];
@@ -254,6 +261,54 @@ void tribo_sparse_spread(const struct box_qp *p, size_t i, double factor, double
 
 /* ------------------------------------------------------------------------------------------------------- the factor */
 
+/* Runs of at least so many columns are eliminated at once. */
+#define WIDE 16
+
+/* x [n] -= its part in the first columns [width] of a run: x_a times column a, in turn, of which the n - 1 - a entries before the
+ * slot slot_a are those of the rows of x behind a. d [width] 0: the column is not in the factor. */
+TRIBO_SIMD static void subtract_run(const double *l, const size_t *slot, const double *d, size_t width, size_t n,
+                                    double *restrict x)
+{
+    size_t a = 0;
+    for (; a + 4 <= width; a += 4) {
+        const double *p = l + slot[a] - n, *q = l + slot[a + 1] - n, *r = l + slot[a + 2] - n, *s = l + slot[a + 3] - n;
+        const double e = d[a] == 0.0 ? 0.0 : x[a];
+        x[a + 1] -= e * p[a + 1];
+        const double f = d[a + 1] == 0.0 ? 0.0 : x[a + 1];
+        x[a + 2] -= e * p[a + 2] + f * q[a + 2];
+        const double g = d[a + 2] == 0.0 ? 0.0 : x[a + 2];
+        x[a + 3] -= e * p[a + 3] + f * q[a + 3] + g * r[a + 3];
+        const double h = d[a + 3] == 0.0 ? 0.0 : x[a + 3];
+        for (size_t i = a + 4; i < n; i++) {
+            x[i] -= (e * p[i] + f * q[i]) + (g * r[i] + h * s[i]);
+        }
+    }
+    for (; a < width; a++) {
+        const double *p = l + slot[a] - n, e = d[a] == 0.0 ? 0.0 : x[a];
+        for (size_t i = a + 1; i < n; i++) {
+            x[i] -= e * p[i];
+        }
+    }
+}
+
+/* w [size] -= its part in columns j to j + width - 1 of a run, of which the entries before the slots slot [width] count. x [size] is
+ * workspace, zero between calls. */
+static void eliminate_run(const struct box_qp *p, const size_t *slot, size_t j, size_t width, double *w, double *x)
+{
+    const struct sparse *s = p->group->sparse;
+    const size_t begin = s->column[j + width - 1], m = slot[width - 1] - begin, *row = s->row_of + begin;
+    memcpy(x, w + j, width * sizeof *x);
+    for (size_t q = 0; q < m; q++) {
+        x[width + q] = w[row[q]];
+    }
+    subtract_run(p->sparse.l, slot, p->sparse.d + j, width, width + m, x);
+    memcpy(w + j, x, width * sizeof *x);
+    for (size_t q = 0; q < m; q++) {
+        w[row[q]] = x[width + q];
+    }
+    memset(x, 0, (width + m) * sizeof *x);
+}
+
 /* Computes row k of L by elimination with the rows before it in the factor. Returns its pivot. Raises *left to the largest entry
  * that elimination leaves of free contacts that are not in the factor. */
 static double sparse_eliminate(const struct box_qp *p, size_t k, double *left)
@@ -267,15 +322,21 @@ static double sparse_eliminate(const struct box_qp *p, size_t k, double *left)
             p->sparse.w[j] = p->scale[i] * s->r.val[e] * p->scale[s->r.col[e]];
         }
     }
+    size_t done = s->row[k]; /* entries before it are in w */
     for (size_t t = s->row[k]; t < s->row[k + 1]; t++) {
         const size_t j = s->column_of[t];
+        if (t >= done && s->run[j] >= WIDE && k - j >= WIDE) {
+            const size_t width = s->run[j] < k - j ? s->run[j] : k - j;
+            eliminate_run(p, s->slot + t, j, width, p->sparse.w, p->row);
+            done = t + width;
+        }
         const double y = p->sparse.w[j];
         p->sparse.w[j] = 0.0;
         p->sparse.l[s->slot[t]] = y * p->sparse.d[j];
         if (p->sparse.d[j] == 0.0) {
             *left = p->at[s->place[j]] == FREE ? greater(*left, fabs(y)) : *left;
         } else if (y != 0.0) {
-            for (size_t q = s->column[j]; q < s->slot[t]; q++) {
+            for (size_t q = s->column[j]; t >= done && q < s->slot[t]; q++) {
                 p->sparse.w[s->row_of[q]] -= p->sparse.l[q] * y;
             }
             pivot -= p->sparse.l[s->slot[t]] * y;
@@ -340,6 +401,15 @@ void tribo_sparse_solve(const struct box_qp *p, double *step)
     const size_t size = p->group->size;
     double *y = p->row;
     for (size_t j = 0; j < size; j++) {
+        if (s->run[j] >= WIDE) {
+            const size_t behind = j + s->run[j];
+            for (size_t i = j; i < behind; i++) {
+                y[i] = p->sparse.d[i] == 0.0 ? 0.0 : y[i] + p->scale[s->place[i]] * step[s->place[i]];
+            }
+            eliminate_run(p, s->column + j + 1, j, s->run[j], y, p->sparse.w);
+            j = behind - 1;
+            continue;
+        }
         y[j] = p->sparse.d[j] == 0.0 ? 0.0 : y[j] + p->scale[s->place[j]] * step[s->place[j]];
         for (size_t q = s->column[j]; y[j] != 0.0 && q < s->column[j + 1]; q++) {
             y[s->row_of[q]] -= p->sparse.l[q] * y[j];
@@ -476,13 +546,14 @@ int tribo_sparse_create(struct sparse **created, const struct csr *r)
     int good = -1;
     if (s && work && tribo_csr_transpose(&s->r, size, size, r->first, r->col, r->val)) { /* r is symmetric */
         s->position = malloc(2 * size * sizeof *s->position);
-        s->column = calloc(2 * (size + 1), sizeof *s->column);
+        s->column = calloc(3 * (size + 1), sizeof *s->column);
     }
     if (s && s->position && s->column) {
         struct graph g = {r, s->position + size, work, work + size, work + 2 * size, 0};
         struct part *stack = (void *)(work + 3 * size); /* [size + 2] */
         s->place = g.node;
         s->row = s->column + size + 1;
+        s->run = s->row + size + 1;
         for (size_t k = 0; k < size; k++) {
             s->place[k] = k;
         }
