@@ -18,6 +18,11 @@ enum { FROM_BEFORE = 12, FROM_INTERIOR = 40 };
 /* Distances up to SETTLED times their rounding count as 0. */
 #define SETTLED 4.0
 
+/* A sparse factor of more than MANY entries a row, which takes far longer than a step, serves further steps with the same freedoms
+ * while each leaves at most GAIN of the residual. */
+#define MANY 16
+#define GAIN 0.03
+
 /* y = the point of the set nearest to from + part (aim - from). */
 static void disc_project(struct disc_qp *p, const double *from, const double *aim, double part)
 {
@@ -39,7 +44,16 @@ static void find_aim(struct disc_qp *p)
             p->y[k] = p->place[i] == LENS_INSIDE ? p->y[k] : p->to[k];
         }
     }
-    tribo_disc_linearize(p);
+    tribo_disc_list(p);
+    int served = p->residual < p->factor.serves && p->freedoms == p->factor.sets.rank;
+    for (size_t k = 0; served && k < p->freedoms; k++) {
+        served = p->factor.qp.at[p->freedom[k].row] == FREE;
+    }
+    if (!served) {
+        tribo_disc_assemble(p);
+        tribo_disc_factorize(p);
+    }
+    p->factor.serves = p->s.pattern && tribo_sparse_slots(p->s.pattern) > MANY * p->s.places ? GAIN * p->residual : 0.0;
     tribo_disc_gradients(p);
     tribo_disc_follow(p, p->gradient, p->aim);
     if (p->factor.redundant) {
@@ -134,7 +148,7 @@ static int disc_settle(struct disc_qp *p, int rounds, void (*step)(struct disc_q
     }
     /* Steps that halve the distance still improve y. */
     double before = HUGE_VAL;
-    while (p->residual > p->near_enough && p->residual < 0.5 * before) {
+    while (p->residual > (p->factor.serves > 0.0 ? 0.01 : 1.0) * p->near_enough && p->residual < 0.5 * before) {
         before = p->residual;
         memcpy(p->best, p->y, p->size * sizeof *p->y);
         step_newton(p);
@@ -151,6 +165,7 @@ int tribo_disc_solve(struct disc_qp *p)
 {
     /* Of contacts that do not couple this is the solution. */
     p->factor.sets = (struct sets){0};
+    p->factor.serves = 0.0;
     tribo_disc_gains(p);
     disc_project(p, p->y, p->y, 1.0);
     disc_look(p);
@@ -159,6 +174,7 @@ int tribo_disc_solve(struct disc_qp *p)
         return 1;
     }
     tribo_disc_interior(p);
+    p->factor.serves = 0.0;
     return disc_settle(p, FROM_INTERIOR, step_down);
 }
 

@@ -81,6 +81,7 @@ struct disc_factor {
     struct sets sets;
     struct box_qp qp;
     size_t redundant; /* null vectors */
+    double serves;    /* a sparse factor serves steps from residuals below this, with the same freedoms; 0: none */
 };
 
 struct disc_qp {
@@ -185,13 +186,16 @@ void tribo_disc_gradients(struct disc_qp *p);
 /* Finds to, outward, curvature and place. Returns the largest distance of y from `to`, in parts of its rounding. */
 double tribo_disc_places(struct disc_qp *p);
 
-/* Sets Newton's matrix of the freedoms of the places. */
+/* Lists the freedoms of the places. */
+void tribo_disc_list(struct disc_qp *p);
+
+/* Sets Newton's matrix of these freedoms. */
 void tribo_disc_assemble(struct disc_qp *p);
 
 /* Factors it: symmetric and positive semidefinite. tribo_factor_solve then solves, of a dense problem in least norm. */
 void tribo_disc_factorize(struct disc_qp *p);
 
-/* Both. */
+/* All three. */
 void tribo_disc_linearize(struct disc_qp *p);
 
 /* Takes up to TRIBO_SPARSE_REDUNDANT null vectors of a sparse problem into the factor: tribo_disc_follow is then of least norm. */

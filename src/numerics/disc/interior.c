@@ -43,6 +43,7 @@ static void find_step(struct disc_qp *p, double aim)
 {
     tribo_disc_gradients(p);
     memset(p->place, LENS_INSIDE, p->size);
+    tribo_disc_list(p);
     tribo_disc_assemble(p);
     for (const struct disc *d = p->disc; d < p->disc + p->discs; d++) {
         for (size_t k = 0; k < p->wide[d->at]; k++) {

@@ -55,11 +55,14 @@ TRIBO_SIMD void tribo_disc_multiply(const struct disc_qp *p, const double *x, do
         }
     }
     for (size_t i = 0; p->s.pattern && i < n; i++) {
+        double sum = 0.0, all = 0.0;
         for (size_t e = p->s.first[i]; e < p->s.first[i + 1]; e++) {
             const double term = p->s.val[e] * x[p->s.col[e]];
-            y[i] += term;
-            size[i] += fabs(term);
+            sum += term;
+            all += fabs(term);
         }
+        y[i] = sum;
+        size[i] = all;
     }
 }
 
@@ -163,9 +166,8 @@ static int is_on_rim(const struct disc_qp *p, size_t i)
     return p->wide[i] == 2 && (p->place[i] == LENS_ON_DISC || p->place[i] == LENS_ON_SHIFTED);
 }
 
-void tribo_disc_assemble(struct disc_qp *p)
+void tribo_disc_list(struct disc_qp *p)
 {
-    p->factor.matrix = p->s.pattern ? tribo_sparse_values(p->s.pattern) : p->factor.dense;
     p->freedoms = 0;
     for (size_t i = 0; i < p->size; i += p->wide[i]) {
         for (size_t k = i; p->place[i] == LENS_INSIDE && k < i + p->wide[i]; k++) {
@@ -175,6 +177,11 @@ void tribo_disc_assemble(struct disc_qp *p)
             add_freedom(p, i, -p->outward[i + 1], p->outward[i], p->curvature[i]);
         }
     }
+}
+
+void tribo_disc_assemble(struct disc_qp *p)
+{
+    p->factor.matrix = p->s.pattern ? tribo_sparse_values(p->s.pattern) : p->factor.dense;
     for (size_t k = 0; k < p->freedoms; k++) {
         const struct freedom *f = &p->freedom[k];
         const size_t begin = tribo_disc_row(p, f->at), terms = tribo_disc_terms(p, f->at);
@@ -226,6 +233,7 @@ void tribo_disc_factorize(struct disc_qp *p)
 
 void tribo_disc_linearize(struct disc_qp *p)
 {
+    tribo_disc_list(p);
     tribo_disc_assemble(p);
     tribo_disc_factorize(p);
 }
