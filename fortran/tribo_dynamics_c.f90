@@ -43,6 +43,10 @@ module tribo_dynamics_constants
   integer, parameter, public :: TRIBO_PARAMETER_LIMITS = 4
   !> curves: the amplitude of a nonlinear mode
   integer, parameter, public :: TRIBO_PARAMETER_AMPLITUDE = 5
+  !> curves: a factor of the loads and base motions that change in time, at 1
+  integer, parameter, public :: TRIBO_PARAMETER_SWING = 6
+  !> curves: a factor of all base motions, at 1
+  integer, parameter, public :: TRIBO_PARAMETER_BASES = 7
 
   !> of tribo_driver_find_periodic
   integer, parameter, public :: TRIBO_MOTION_PERIODIC = 0

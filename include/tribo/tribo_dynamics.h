@@ -516,7 +516,9 @@ enum {
     TRIBO_PARAMETER_FREQUENCY = 2, /* a factor of all frequencies, at 1; base motions keep their displacements */
     TRIBO_PARAMETER_DAMPING = 3,   /* a factor of the damping matrix, at 1 */
     TRIBO_PARAMETER_LIMITS = 4,    /* curves: a factor of all limits, at 1 */
-    TRIBO_PARAMETER_AMPLITUDE = 5  /* curves: the amplitude of a nonlinear mode */
+    TRIBO_PARAMETER_AMPLITUDE = 5, /* curves: the amplitude of a nonlinear mode */
+    TRIBO_PARAMETER_SWING = 6,     /* curves: a factor of the loads and base motions that change in time, at 1 */
+    TRIBO_PARAMETER_BASES = 7      /* curves: a factor of all base motions, at 1 */
 };
 
 /* Derivatives of the last periodic motion found by parameters, in closed form along its events. The system must be unchanged

@@ -24,14 +24,16 @@ int tribo_curve_set(struct track *c, double value)
     struct period_map *m = &c->s->map;
     const int parameter = c->ask->parameter;
     const double drives = parameter == TRIBO_PARAMETER_LOADS ? value : 1.0;
-    const double size[] = {
-        [DRIVES_LOAD] = drives, [DRIVES_BASE] = drives, [DRIVES_LIMIT] = parameter == TRIBO_PARAMETER_LIMITS ? value : 1.0};
+    const double size[] = {[DRIVES_LOAD] = drives,
+                           [DRIVES_BASE] = parameter == TRIBO_PARAMETER_BASES ? value : drives,
+                           [DRIVES_LIMIT] = parameter == TRIBO_PARAMETER_LIMITS ? value : 1.0};
     int status = TRIBO_OK;
     if (parameter == TRIBO_PARAMETER_AMPLITUDE) {
         c->mode.amplitude = value;
         return status;
     }
-    tribo_loads_scale(m->sys, c->like, size, parameter == TRIBO_PARAMETER_FREQUENCY ? value : 1.0);
+    tribo_loads_scale(m->sys, c->like, size, parameter == TRIBO_PARAMETER_SWING ? value : 1.0,
+                      parameter == TRIBO_PARAMETER_FREQUENCY ? value : 1.0);
     if (parameter == TRIBO_PARAMETER_FREQUENCY) {
         m->t = c->t / value;
         m->period = c->period / value;

@@ -221,7 +221,7 @@ static int check_curve(tribo_driver *drv, const tribo_curve *curve, const double
         return tribo_error(drv->message, TRIBO_ERR_NULL, "curve->c is NULL");
     }
     if (curve->motion < TRIBO_MOTION_PERIODIC || curve->motion > TRIBO_MOTION_MODE || kind < TRIBO_PARAMETER_LIMIT ||
-        kind > TRIBO_PARAMETER_AMPLITUDE) {
+        kind > TRIBO_PARAMETER_BASES) {
         return tribo_error(drv->message, TRIBO_ERR_RANGE, "motion = %d or parameter = %d is none", curve->motion, kind);
     }
     if (mode != (kind == TRIBO_PARAMETER_AMPLITUDE) ||

@@ -515,12 +515,13 @@ int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *
     return add_table(sys, DRIVES_LIMIT, sys ? sys->ncontact : 0, knots, time, "limit", limit, NULL);
 }
 
-void tribo_loads_scale(tribo_system *sys, const tribo_system *like, const double *size, double pace)
+void tribo_loads_scale(tribo_system *sys, const tribo_system *like, const double *size, double swing, double pace)
 {
     for (size_t k = 0; k < sys->loads.harmonics; k++) {
         const struct harmonic *from = &like->loads.harmonic[k];
         struct harmonic *h = &sys->loads.harmonic[k];
-        const double factor = size[h->drives] * (h->drives == DRIVES_BASE && h->omega != 0.0 ? pace : 1.0);
+        const double moves = h->drives == DRIVES_LIMIT ? 1.0 : h->drives == DRIVES_BASE ? pace * swing : swing;
+        const double factor = size[h->drives] * (from->omega != 0.0 ? moves : 1.0);
         h->omega = pace * from->omega;
         for (size_t e = 0; e < h->count; e++) {
             h->cosine[e] = factor * from->cosine[e];

@@ -177,9 +177,9 @@ int tribo_loads_copy(tribo_system *sys, const tribo_system *from);
 /* Leaves of all harmonics those of omega = 0. */
 void tribo_loads_keep_constant(tribo_system *sys);
 
-/* Sets the harmonics of sys, a clone of `like`, to those of `like` with amplitudes times size[drives] and frequencies times pace;
- * base motions that change in time keep their displacements. */
-void tribo_loads_scale(tribo_system *sys, const tribo_system *like, const double *size, double pace);
+/* Sets the harmonics of sys, a clone of `like`, to those of `like` with amplitudes times size[drives], of loads and bases that
+ * change in time also times swing, and frequencies times pace; these bases keep their displacements. */
+void tribo_loads_scale(tribo_system *sys, const tribo_system *like, const double *size, double swing, double pace);
 
 /* Sets time t. If limits vary, sets the limits of the contacts at t. */
 void tribo_system_set_time(tribo_system *sys, double t);

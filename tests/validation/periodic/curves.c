@@ -3,6 +3,7 @@
  * the work where motions are unique; what curves refuse. */
 #include "run.h"
 #include "beam.h"
+#include "squeal.h"
 
 #include <stdint.h>
 #include <string.h>
@@ -113,6 +114,46 @@ TEST(stop_folds)
     ck_assert_int_eq(s.stable, 1);
     assert_close(s.most, 3.015, 0.02);
     require(s.points < 90, "%zu points", s.points);
+    end(drv, sys);
+}
+
+/* The same over the load: two folds by det(D - I) = 0; a constant load, which SWING leaves alone, moves the stop by 0.1. */
+TEST(stop_loads)
+{
+    const double constant = _i ? 0.1 : 0.0;
+    tribo_system *sys = stopped(0.1, 1.5, 1.0 + constant, 0.1, 1.17);
+    tribo_driver *drv = driver_create(sys, "exact", 1e-3, 1e-13);
+    const tribo_curve curve = {
+        .size = sizeof curve, .parameter = _i ? TRIBO_PARAMETER_SWING : TRIBO_PARAMETER_LOADS, .most = 6.0, .step = 0.3};
+    double y[3] = {0.0};
+    struct curve_seen s = {0};
+    assert_ok(tribo_system_add_load(sys, 0.0, &constant, NULL));
+    assert_ok(follow(drv, &curve, 2.0 * PI / 1.17, y, &s));
+    ck_assert_uint_eq(s.specials, 3);
+    assert_special(&s, 0, TRIBO_POINT_GRAZE, hypot(1.0 - 1.17 * 1.17, 0.117) / 0.1, 1);
+    assert_special(&s, 1, TRIBO_POINT_FOLD, 4.055686933997, SIZE_MAX);
+    assert_special(&s, 2, TRIBO_POINT_FOLD, 3.777495581431, SIZE_MAX);
+    end(drv, sys);
+}
+
+/* The cycle of squeal from a belt at speed 0.5 to one at speed 1: periods of other codes. */
+TEST(squeal_speed)
+{
+    tribo_system *sys = squeal(0.5, 0.6, 0.1);
+    tribo_driver *drv = driver_create(sys, "event", 1e-3, 1e-13);
+    const tribo_curve curve = {.size = sizeof curve,
+                               .motion = TRIBO_MOTION_CYCLE,
+                               .parameter = TRIBO_PARAMETER_BASES,
+                               .least = 1.0,
+                               .most = 2.0,
+                               .step = 0.1,
+                               .coarse = 1};
+    double y[5] = {0.17, 1.47, 0.4, 1.37, 0.0};
+    struct curve_seen s = {0};
+    const int status = follow(drv, &curve, 0.0, y, &s);
+    require(!status, "%s", tribo_driver_message(drv));
+    assert_close(s.period, 1.48153261, 1e-8);
+    ck_assert_int_eq(s.stable, 1);
     end(drv, sys);
 }
 
@@ -288,7 +329,7 @@ TEST(refuses)
     } cases[] = {
         {{.size = 3, .parameter = 2, .least = 0.5, .most = 3.0, .step = 0.1}, period, TRIBO_ERR_SIZE},
         {{.size = sizeof good, .parameter = 2, .least = 0.5, .most = 3.0, .step = HUGE_VAL}, period, TRIBO_ERR_NOT_FINITE},
-        {{.size = sizeof good, .parameter = 6, .least = 0.5, .most = 3.0, .step = 0.1}, period, TRIBO_ERR_RANGE},
+        {{.size = sizeof good, .parameter = 8, .least = 0.5, .most = 3.0, .step = 0.1}, period, TRIBO_ERR_RANGE},
         {{.size = sizeof good, .motion = 3, .parameter = 2, .least = 0.5, .most = 3.0, .step = 0.1}, period, TRIBO_ERR_RANGE},
         {{.size = sizeof good, .parameter = 2, .least = 1.5, .most = 3.0, .step = 0.1}, period, TRIBO_ERR_RANGE},
         {{.size = sizeof good, .parameter = 0, .index = 2, .most = 3.0, .step = 0.1}, period, TRIBO_ERR_RANGE},
@@ -316,4 +357,5 @@ TEST(refuses)
     end(drv, sys);
 }
 
-TEST_MAIN("curves", {stop_folds, 2}, {flips, 1}, {stick_slip, 2}, {stick_slip_ends, 1}, {mode, 3}, {beam, 2}, {refuses, 1})
+TEST_MAIN("curves", {stop_folds, 2}, {stop_loads, 2}, {squeal_speed, 1}, {flips, 1}, {stick_slip, 2}, {stick_slip_ends, 1},
+          {mode, 3}, {beam, 2}, {refuses, 1})
