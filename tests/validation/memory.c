@@ -399,6 +399,29 @@ static int make_mode(tribo_system **sys, tribo_driver **drv)
     return status ? status : tribo_driver_get_multipliers(*drv, re, im);
 }
 
+/* A step of a curve of cycles. */
+static int make_curve(tribo_system **sys, tribo_driver **drv)
+{
+    const double one = 1.0, belt = 1.2, ratio = 1.0 / 0.6, limit = 0.6, fall = 0.5, damping = 0.115;
+    const tribo_curve curve = {.size = sizeof curve,
+                               .motion = TRIBO_MOTION_CYCLE,
+                               .parameter = TRIBO_PARAMETER_BASES,
+                               .least = 0.9,
+                               .most = 2.0,
+                               .step = 0.05,
+                               .points = 2,
+                               .coarse = 1};
+    double y[3] = {0.0, 1.2, 0.0}, period = 0.0;
+    int status = dense_system(sys, 1, 1, &one, &damping, &one, &one, 0, NULL, 0);
+    status = status ? status : tribo_system_add_base_motion(*sys, 0.0, &belt, NULL);
+    tribo_context *c = status ? NULL : tribo_system_context(*sys);
+    status = status || c ? status : TRIBO_ERR_MEMORY;
+    status = status ? status : tribo_set_limit(c, &limit);
+    status = status ? status : tribo_set_static(c, &ratio, &fall);
+    status = status ? status : set_up_driver(drv, *sys, "event", 1.0, 1e-13, 0.0);
+    return status ? status : tribo_driver_follow_curve(*drv, &curve, 0.0, &period, y, NULL, NULL);
+}
+
 static const struct {
     const char *name;
     int (*make)(tribo_system **sys, tribo_driver **drv);
@@ -420,6 +443,7 @@ static const struct {
               {"cycle", make_cycle},
               {"equilibrium", make_equilibrium},
               {"mode", make_mode},
+              {"curve", make_curve},
               {"periodic event", make_periodic_event},
               {"sparse", make_sparse},
               {"compliant", make_compliant},

@@ -173,6 +173,34 @@ TEST(flips)
     end(drv, sys);
 }
 
+/* Two masses, of which one meets a stop: complex multipliers leave the unit circle, and come back, by another code. */
+TEST(torus)
+{
+    const double mass[] = {1.0, 1.0}, stiffness[] = {1.7, -0.7, -0.7, 1.5}, damping[] = {0.05, 0.05}, omega = 0.65 * 2.1;
+    const double j[] = {1.0, 0.0, 1.0, 0.0}, load[] = {0.2, 0.5};
+    tribo_model *model;
+    tribo_system *sys;
+    assert_ok(tribo_model_create(&model, 2, 2));
+    assert_ok(tribo_model_set_mass_diagonal(model, mass));
+    assert_ok(tribo_model_set_stiffness(model, stiffness));
+    assert_ok(tribo_model_set_damping_diagonal(model, damping));
+    assert_ok(tribo_model_set_direction(model, j));
+    assert_ok(tribo_model_set_normal(model, 0, 1, 0.0, 20.0, 0.2));
+    assert_ok(tribo_system_create(&sys, model));
+    tribo_model_destroy(model);
+    assert_ok(tribo_system_add_load(sys, omega, load, NULL));
+    tribo_driver *drv = driver_create(sys, "exact", 1e-3, 1e-13);
+    const tribo_curve curve = {
+        .size = sizeof curve, .parameter = TRIBO_PARAMETER_FREQUENCY, .least = 1.0, .most = 1.15, .step = 0.05};
+    double y[5] = {-0.42, -0.7, 0.02, 0.09, 0.0};
+    struct curve_seen s = {0};
+    assert_ok(follow(drv, &curve, 2.0 * PI / omega, y, &s));
+    ck_assert_uint_eq(s.specials, 2);
+    assert_special(&s, 0, TRIBO_POINT_TORUS, 2.169861617220 / 2.1, SIZE_MAX);
+    assert_special(&s, 1, TRIBO_POINT_TORUS, 2.338008757868 / 2.1, SIZE_MAX);
+    end(drv, sys);
+}
+
 /* A block, m = k = 1, on a belt of speed v0; limit 0.6, at rest 1; falls: velocity by which it falls, 0: at once. */
 static tribo_system *block(double v0, double falls)
 {
@@ -357,5 +385,5 @@ TEST(refuses)
     end(drv, sys);
 }
 
-TEST_MAIN("curves", {stop_folds, 2}, {stop_loads, 2}, {squeal_speed, 1}, {flips, 1}, {stick_slip, 2}, {stick_slip_ends, 1},
-          {mode, 3}, {beam, 2}, {refuses, 1})
+TEST_MAIN("curves", {stop_folds, 2}, {stop_loads, 2}, {squeal_speed, 1}, {flips, 1}, {torus, 1}, {stick_slip, 2},
+          {stick_slip_ends, 1}, {mode, 3}, {beam, 2}, {refuses, 1})
