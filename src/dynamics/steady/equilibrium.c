@@ -48,7 +48,7 @@ static int steady_read_drives(struct equilibrium *e)
     tribo_system *sys = e->sys;
     const size_t c = sys->ncontact;
     for (const struct harmonic *w = sys->loads.harmonic; w < sys->loads.harmonic + sys->loads.harmonics; w++) {
-        if (w->knots || (w->count > 0 && w->omega != 0.0 && w->drives != DRIVES_LOAD)) {
+        if (w->knots || (w->count > 0 && w->omega != 0.0 && w->drives != DRIVES_LOAD && !w->by_load)) {
             return tribo_error(e->message, TRIBO_ERR_UNSUPPORTED, "a %s %s: there is no equilibrium", name[w->drives],
                                w->knots ? "follows a table" : "depends on time");
         }

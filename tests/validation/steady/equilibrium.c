@@ -286,6 +286,34 @@ TEST(springs)
     tribo_system_destroy(sys);
 }
 
+/* Of a structure reduced to one mode and the compliance of its contact a harmonic load moves the contact: it does not act. The
+ * slider on a belt leaves the mode its frequency, one at rest has the stiffness of the contact. */
+TEST(reduced)
+{
+    const double mass[] = {1.0, 0.0, 0.0, 2.0}, k[] = {3.0, -2.0, -2.0, 2.0}, j[] = {1.0, 0.0}, load[] = {1.0, 0.5}, belt = 1.0;
+    const struct given g = {2, 1, mass, NULL, k, j};
+    tribo_model *model = model_of(&g);
+    tribo_system *sys;
+    double y[8] = {0.0}, re[4], im[4], natural[2], stuck;
+    signed char slip;
+    assert_ok(tribo_system_reduce(&sys, model, 1, TRIBO_STATICS_COMPLIANCE));
+    assert_ok(tribo_system_get_frequencies(sys, natural));
+    assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.7));
+    assert_ok(tribo_system_add_load(sys, 3.0, load, load));
+    ck_assert_uint_eq(find(sys, NULL, y, &slip, re, im), 2);
+    ck_assert_int_eq(slip, TRIBO_SLIP_STUCK);
+    stuck = im[0];
+    assert_ok(tribo_system_add_base_motion(sys, 0.0, &belt, NULL));
+    ck_assert_uint_eq(find(sys, NULL, y, &slip, re, im), 2);
+    ck_assert_int_eq(slip, TRIBO_SLIP_BACK);
+    assert_close(im[0], natural[0], 1e-13);
+    /* omega^2 = 2 - sqrt 3; at rest the compliance, equal to the square of the shape at the contact, adds 1 */
+    assert_close(natural[0], sqrt(2.0 - sqrt(3.0)), 1e-14);
+    assert_close(stuck, sqrt(3.0 - sqrt(3.0)), 1e-13);
+    tribo_system_destroy(sys);
+    tribo_model_destroy(model);
+}
+
 /* A body in the plane on a belt: across the belt friction is damping, limit over speed. */
 TEST(across)
 {
@@ -544,5 +572,5 @@ TEST(refused)
 }
 
 TEST_MAIN("equilibrium", {mode_coupling, 2}, {onset, 2}, {alike, 1}, {constant_limit, 2}, {no_friction, 2}, {circulation, 1},
-          {falling_limit, 1}, {shared, 4}, {springs, 1}, {across, 1}, {lifts, 4}, {random_structures, 1}, {many_normals, 2},
-          {refused, 1})
+          {falling_limit, 1}, {shared, 4}, {springs, 1}, {reduced, 1}, {across, 1}, {lifts, 4}, {random_structures, 1},
+          {many_normals, 2}, {refused, 1})
