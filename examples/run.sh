@@ -11,7 +11,7 @@ setup gcc gfortran libc6-dev make cmake pkg-config libgsl-dev liblapack-dev libs
 
 build=build/release bin=build/release/examples results=$PWD/build/results
 legacy='legacy_newmark_before legacy_newmark_after legacy_newmark_implicit legacy_rk45 legacy_fric legacy_lift legacy_vfric legacy_damper legacy_hosts'
-contacts='contact_whirl contact_liftoff contact_stick_slip contact_hysteresis contact_platform contact_squeal contact_curve'
+contacts='contact_whirl contact_tipping contact_liftoff contact_stick_slip contact_hysteresis contact_platform contact_squeal contact_curve'
 programs="paper_oscillator paper_dissipation paper_belt paper_chain tribo_damper $contacts clutches $legacy"
 cores=$(getconf _NPROCESSORS_ONLN)
 begin=$(date +%s)
