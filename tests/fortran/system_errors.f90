@@ -349,6 +349,7 @@ contains
 
   subroutine drivers()
     type(tribo_system) :: s
+    type(tribo_context) :: c
     type(tribo_driver) :: d
     type(stopper), target :: sees
     real(dp) :: t, x, y(3), pair(2)
@@ -430,10 +431,12 @@ contains
     call require(sees%calls == 4, 'what the observer saw')
     ! A method that cannot do what the system has become.
     call d%create(s, 'exact')
-    call s%add_load_table([0.0_dp, 1.0_dp], [0.0_dp, 1.0_dp], [1.0_dp])
+    call s%context(c)
+    call c%set_static([2.0_dp], [1.0_dp])
     call d%advance(t, 2.0_dp, y, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, &
-      'loads follow a table, and method exact takes harmonic ones only: take event or auto')
+      'contact 1 has a static limit that falls with the speed, and method exact takes such that drop at once only: '// &
+      'take event or auto')
   end subroutine drivers
 
   !> A borrowed context does what its system does, and goes with it.

@@ -386,10 +386,9 @@ static void agree(size_t k, int seed)
     memset(&c, 0, sizeof c);
     kind->make(&c, &g);
     c.structure.begin = c.table ? 0.0 : any_of(&g, (const double[]){0.0, 0.0, 1e3, 1e6}, 4);
-    const char *method = c.table ? "event" : "exact"; /* which does not take tables */
     const size_t n = 2 * c.structure.ndof + 1;
-    const double excess[] = {move(&c, kind->duration, seed, kind, method, 1, want),
-                             move(&c, kind->duration, seed, kind, method, CUTS, cut),
+    const double excess[] = {move(&c, kind->duration, seed, kind, "exact", 1, want),
+                             move(&c, kind->duration, seed, kind, "exact", CUTS, cut),
                              move(&c, kind->duration, seed, kind, "event", 1, event)};
     move(&c, kind->duration, seed, kind, "central/fixed", 1, central);
     const double size = fmax(size_of(want, n), 1e-2);

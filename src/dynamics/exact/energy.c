@@ -29,7 +29,8 @@ static double sampled_work(struct exact *x, const struct course *course, double 
         const size_t point = k % 8;
         tribo_modal_motion_go(x, half * ((double)(2 * (k / 8) + 1) + (point % 2 ? at[point / 2] : -at[point / 2])));
         tribo_course_look(x, &c);
-        const double limit = (follows ? 0.0 : x->sys->loads.given_limit[i]) + tribo_modal_motion_limit(x, i).g;
+        const double limit =
+            (follows || x->sys->loads.limit_tables ? 0.0 : x->sys->loads.given_limit[i]) + tribo_modal_motion_limit(x, i).g;
         work += weight[point / 2] * greater(limit, 0.0) * greater(x->events.stick_slip.state.slip[i] * c.at.g, 0.0);
     }
     tribo_modal_motion_go(x, tau);
@@ -43,11 +44,13 @@ static double varying_work(struct exact *x, const struct course *c, double tau, 
     const struct forced *h = x->h;
     const struct output *v = c->output;
     const size_t i = v->contact, e = h->modal->exponents;
-    double velocity = fabs(c->start) + fabs(c->ramp) * tau, limits = fabs(x->steady[i]), fastest = 0.0, work = 0.0;
-    tribo_signal_reserve(&x->velocity, e + h->harmonics, 1); /* cannot fail: tribo_modal_motion_start has made room */
+    double velocity = fabs(c->start) + (fabs(c->ramp) + fabs(c->square) * tau) * tau, limits = fabs(x->steady[i]), fastest = 0.0,
+           work = 0.0;
+    tribo_signal_reserve(&x->velocity, e + h->harmonics, 2); /* cannot fail: tribo_modal_motion_start has made room */
     x->velocity.tau = tau;
     x->velocity.a[0] = c->start;
     x->velocity.a[1] = c->ramp;
+    x->velocity.a[2] = c->square;
     for (size_t p = 0; p < e + h->harmonics; p++) {
         const double complex z = tribo_part(&x->z, p);
         if (v->size[p] > 0.0) {
@@ -78,7 +81,7 @@ static inline double work_of(struct exact *x, const struct course *c, double tau
     const size_t i = c->output->contact;
     const double steady = -x->steady[i] * tribo_dot(c->output->on_rate, x->place, x->h->shapes);
     const int slides = tribo_slides(x->events.stick_slip.state.slip[i]), varies = x->sys->loads.limits && slides;
-    if (tribo_normals_follower(x->sys, i)) {
+    if (tribo_normals_follower(x->sys, i) || (varies && x->sys->loads.limit_tables)) {
         return slides ? sampled_work(x, c, tau, (size_t)(ceil(x->h->quickest * tau) + 1.0)) : 0.0;
     }
     return varies ? varying_work(x, c, tau, steady) : steady;

@@ -82,7 +82,7 @@ static int takes_powers(const tribo_system *sys)
                 sys->ncontact >= POWERS_CONTACTS;
     for (size_t k = 0; plain && k < sys->loads.harmonics; k++) {
         const struct harmonic *w = &sys->loads.harmonic[k];
-        plain &= w->drives == DRIVES_LOAD || (w->drives == DRIVES_BASE && w->omega != 0.0);
+        plain &= (w->drives == DRIVES_LOAD && !w->knots) || (w->drives == DRIVES_BASE && w->omega != 0.0);
     }
     return plain;
 }
@@ -165,6 +165,11 @@ static double method_exact_bound(void *own, double tau)
             continue;
         }
         g->size += g->limit != 0.0 ? fabs(g->limit) * x->events.stick_slip.constant.swing[g->contact] : 0.0;
+        if (g->limit != 0.0 && x->sys->loads.limit_tables) {
+            /* over a time of the structure's: what is rounding must not depend on where the next knot is */
+            const double time = greater(x->longest, 1.0 / x->events.fastest);
+            g->size += fabs(g->limit) * (fabs(x->slopes.limit[g->contact]) + fabs(x->slopes.rise[g->contact]) * time);
+        }
         for (size_t s = 0; g->limit != 0.0 && s < x->sys->loads.harmonics; s++) {
             const struct harmonic *w = &x->sys->loads.harmonic[s];
             const double swing = w->drives == DRIVES_LIMIT ? hypot(w->cosine[g->contact], w->sine[g->contact]) : 0.0;
@@ -181,19 +186,12 @@ static struct watch watch_of(const struct exact *x, size_t i, struct course *c)
     const double steady = swing > 0.0 ? x->sys->loads.given_limit[i] : x->events.stick_slip.state.limit[i];
     double mu;
     const int follows = x->sys->normals.count > 0 && tribo_modal_limit_course(x, i, &mu) != NULL;
+    const int table = x->sys->loads.limit_tables > 0;
     return (struct watch){.output = c,
                           .size = c ? c->size : 0.0,
-                          .constant = follows ? 0.0 : steady,
-                          .least = follows ? -HUGE_VAL : steady - swing,
-                          .varies = swing > 0.0 || follows};
-}
-
-/* Returns N of normal k, < 0 if it is apart, without rounding against the decision. */
-static double first_load(const struct exact *x, size_t k, const double *y)
-{
-    const struct normal *n = &x->sys->normals.normal[k];
-    const double load = n->stiffness * (tribo_matrix_row_dot(&x->sys->direction, n->row, y) - n->gap);
-    return n->pressed ? greater(load, 0.0) : lesser(load, 0.0);
+                          .constant = follows || table ? 0.0 : steady,
+                          .least = follows ? -HUGE_VAL : (table ? 0.0 : steady) - swing,
+                          .varies = swing > 0.0 || follows || table};
 }
 
 static int method_exact_begin(void *own, double t, const double *y, double *reach)
@@ -212,7 +210,10 @@ static int method_exact_begin(void *own, double t, const double *y, double *reac
     x->events.search.guards = 0;
     for (size_t k = 0; k < h->outputs; k++) {
         const size_t i = h->output[k].contact;
-        const double value = k >= h->holding  ? first_load(x, k - h->holding, y)
+        /* N of a normal, < 0 if it is apart, without rounding against the decision */
+        const struct normal *n = k >= h->holding ? &x->sys->normals.normal[k - h->holding] : NULL;
+        const double load = n ? n->stiffness * (tribo_matrix_row_dot(&x->sys->direction, n->row, y) - n->gap) : 0.0;
+        const double value = n                ? (n->pressed ? greater(load, 0.0) : lesser(load, 0.0))
                              : k < h->sliding ? tribo_stick_slip_first_velocity(m, x->sys, i, y)
                                               : m->state.force[i];
         tribo_course_begin(x, k, value);
@@ -253,18 +254,16 @@ static void method_exact_destroy(tribo_driver *drv)
     }
 }
 
-/* Returns a status: tables and falling static limits are unsupported. Every advance checks, since the system may change. */
+/* Returns a status: falling static limits, and tables of base motions where K~ is not symmetric, are unsupported. Every advance
+ * checks, since the system may change. */
 static int check_system(const tribo_system *sys)
 {
-    static const char *const kind[] = {[DRIVES_LOAD] = "loads", [DRIVES_BASE] = "base motions", [DRIVES_LIMIT] = "limits"};
-    enum drives drives = DRIVES_LIMIT;
-    for (size_t k = 0; k < sys->loads.harmonics; k++) {
-        const struct harmonic *h = &sys->loads.harmonic[k];
-        drives = h->knots && h->drives < drives ? h->drives : drives;
-    }
-    if (sys->loads.tables) {
-        return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
-                           "%s follow a table, and method exact takes harmonic ones only: take event or auto", kind[drives]);
+    for (size_t k = 0; (sys->normals.count || sys->circulation > 0.0) && k < sys->loads.harmonics; k++) {
+        if (sys->loads.harmonic[k].knots && sys->loads.harmonic[k].drives == DRIVES_BASE) {
+            return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                               "base motions follow a table, which method exact does not take beside %s: take event or auto",
+                               sys->normals.count ? "limits that follow normal loads" : "a stiffness that is not symmetric");
+        }
     }
     const size_t drops = sys->normals.count ? tribo_system_first_dropping(sys, 0) : sys->ncontact;
     if (drops < sys->ncontact) {

@@ -83,16 +83,18 @@ struct output {
     const double *on_rate;  /* [shapes] held, normal: per eta, ramp per eta'; sliding: velocity per eta', ramp per eta'' */
 };
 
-/* Forcing of the modes: a harmonic of the system; or a harmonic of the limit of one contact that does not hold, for the force
- * f = limit of this contact. */
+/* Forcing of the modes: a harmonic or table of the system; or a harmonic or table of the limit of one contact that does not hold,
+ * for the force f = limit of this contact. */
 struct forcing {
     double omega;
     size_t harmonic, contact; /* harmonic: index in the system; contact: of the limit, else ncontact */
+    size_t table;             /* 1 + the shape of a table; 0: a harmonic */
 };
 
 /* The structure under the loads of the system. Shapes: the modes, then a shape for each part, cosine or sine, of a harmonic of
  * bases: the velocities of the structure, with Phi'M y = 0, for eta' = e^{i Omega t} or i e^{i Omega t}; or for bases of
- * constant speed, if steady: eta' = 1. */
+ * constant speed, if steady: eta' = 1; or for a table of bases: eta' is its value. Last, a shape without displacements for each
+ * other table: eta is the value of the table less that at t0. */
 struct forced {
     struct modal *modal;
     struct modal_store store;
@@ -105,7 +107,8 @@ struct forced {
 
     size_t harmonics;        /* the harmonics of the system, in order, then harmonics of limits */
     struct forcing *forcing; /* [harmonics] */
-    double complex *g, *x;   /* [harmonics][modes] forcing of eta; [harmonics][shapes] response eta */
+    double complex *g, *x;   /* [harmonics][modes] forcing of eta; [harmonics][shapes] response eta; of tables 0, and
+                                g of a table of bases: forcing per eta of its shape + i forcing per eta' */
     double
         *constant; /* [modes] constant forcing: by constant loads, by damping of y0, by damping of eta' = ramp/omega^2; with K~:
                          eta' = K~^-1 ramp */

@@ -20,14 +20,17 @@ static int motion_reserve(struct exact *x)
         return 1;
     }
     free(x->lot);
-    x->room = ALLOCATE(ARRAY(x->lot, room / TRIBO_TERMS + 1), ARRAY(x->course, c), ARRAY(x->way, c), ARRAY(x->steady, c),
-                       ARRAY(x->work, room + 2 * x->sys->ndof), ARRAY(x->power, (4 * x->sys->ndof + c) * TRIBO_POWERS),
-                       ARRAY(x->z.re, room), ARRAY(x->z.im, room), ARRAY(x->far_e.re, room), ARRAY(x->far_e.im, room),
-                       ARRAY(x->move.re, room), ARRAY(x->move.im, room), ARRAY(x->rate_move.re, room),
-                       ARRAY(x->rate_move.im, room), ARRAY(x->growth, room), ARRAY(x->growth6, room), ARRAY(x->vel, room),
-                       ARRAY(x->acc, room), ARRAY(x->drift, room), ARRAY(x->place, room), ARRAY(x->rate, room))
-                  ? room
-                  : 0;
+    x->room =
+        ALLOCATE(ARRAY(x->lot, room / TRIBO_TERMS + 1), ARRAY(x->course, c), ARRAY(x->way, c), ARRAY(x->steady, c),
+                 ARRAY(x->work, room + 2 * x->sys->ndof), ARRAY(x->power, (4 * x->sys->ndof + c) * TRIBO_POWERS),
+                 ARRAY(x->z.re, room), ARRAY(x->z.im, room), ARRAY(x->far_e.re, room), ARRAY(x->far_e.im, room),
+                 ARRAY(x->move.re, room), ARRAY(x->move.im, room), ARRAY(x->rate_move.re, room), ARRAY(x->rate_move.im, room),
+                 ARRAY(x->growth, room), ARRAY(x->growth6, room), ARRAY(x->vel, room), ARRAY(x->jerk, room),
+                 ARRAY(x->slopes.rate, room), ARRAY(x->slopes.lead, room), ARRAY(x->slopes.bend, room),
+                 ARRAY(x->slopes.rest, room), ARRAY(x->slopes.limit, c), ARRAY(x->slopes.rise, c), ARRAY(x->acc, room),
+                 ARRAY(x->drift, room), ARRAY(x->place, room), ARRAY(x->rate, room))
+            ? room
+            : 0;
     return x->room > 0;
 }
 
@@ -145,7 +148,10 @@ struct sample tribo_modal_motion_limit(struct exact *x, size_t i)
     }
     for (size_t s = 0; s < x->sys->loads.harmonics; s++) {
         const struct harmonic *w = &x->sys->loads.harmonic[s];
-        if (w->drives == DRIVES_LIMIT) {
+        if (w->drives == DRIVES_LIMIT && w->knots) {
+            sum.g += x->slopes.limit[i] + x->slopes.rise[i] * x->tau;
+            sum.d += x->slopes.rise[i];
+        } else if (w->drives == DRIVES_LIMIT) {
             const double complex now = tribo_now(x, x->h->modal->exponents + s, 0);
             const double c = w->cosine[i], d = w->sine[i], value = c * creal(now) + d * cimag(now);
             sum.g += value;
@@ -163,8 +169,9 @@ static void move_shapes(struct exact *x, int brief)
     const struct modal *own = h->modal;
     const size_t e = own->exponents, shapes = h->shapes;
     for (size_t k = 0; k < shapes; k++) {
-        x->place[k] = x->runs ? x->tau * (x->drift[k] + 0.5 * x->acc[k] * x->tau) : 0.0;
-        x->rate[k] = x->runs ? (brief ? 0.0 : x->drift[k]) + x->acc[k] * x->tau : 0.0;
+        const double acc = x->runs ? x->acc[k] + x->jerk[k] * x->tau / 3.0 : 0.0; /* for the place */
+        x->place[k] = x->runs ? x->tau * (x->drift[k] + 0.5 * acc * x->tau) : 0.0;
+        x->rate[k] = x->runs ? (brief ? 0.0 : x->drift[k]) + (x->acc[k] + 0.5 * x->jerk[k] * x->tau) * x->tau : 0.0;
     }
     for (size_t p = 0; p < e + h->harmonics; p++) {
         const double complex lambda = h->lr[p] + h->li[p] * I;
@@ -238,7 +245,8 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
 
 /* ------------------------------------------------------------------------------------------------------- the start of a phase */
 
-/* Sets z, growth and growth6 of harmonics at t0, of limits times side; zeros after the last term. */
+/* Sets z, growth and growth6 of harmonics at t0, of limits times side, with z the value of a table, and slopes.rate, limit and rise;
+ * zeros after the last term. */
 static void start_harmonics(struct exact *x)
 {
     const struct forced *h = x->h;
@@ -247,14 +255,21 @@ static void start_harmonics(struct exact *x)
     for (size_t s = 0; s < h->harmonics; s++, p++) {
         const struct forcing *f = &h->forcing[s];
         const struct harmonic *w = &x->sys->loads.harmonic[f->harmonic];
-        const double side = f->contact == x->sys->ncontact ? 1.0 : tribo_stick_slip_follows(&x->events.stick_slip, f->contact);
-        x->z.re[p] = side * w->cos_t;
-        x->z.im[p] = side * w->sin_t;
+        const int whole = f->contact == x->sys->ncontact;
+        const double side = whole ? 1.0 : tribo_stick_slip_follows(&x->events.stick_slip, f->contact);
+        double rise = 0.0;
+        const double value = w->knots ? tribo_system_table(x->sys, f->harmonic, whole ? 0 : f->contact, &rise) : w->cos_t;
+        x->z.re[p] = side * value;
+        x->z.im[p] = w->knots ? 0.0 : side * w->sin_t;
+        x->slopes.rate[p] = side * rise;
+        for (size_t i = 0; whole && w->knots && w->drives == DRIVES_LIMIT && i < x->sys->ncontact; i++) {
+            x->slopes.limit[i] = tribo_system_table(x->sys, f->harmonic, i, &x->slopes.rise[i]);
+        }
         x->growth[p] = fabs(side);
         x->growth6[p] = h->sixth[p] * fabs(side);
     }
     for (; p < h->terms; p++) {
-        x->z.re[p] = x->z.im[p] = x->growth[p] = x->growth6[p] = 0.0;
+        x->z.re[p] = x->z.im[p] = x->slopes.rate[p] = x->growth[p] = x->growth6[p] = 0.0;
     }
 }
 
@@ -269,10 +284,10 @@ static void find_constant_forces(struct exact *x, const double *y, double *force
     const int holds = h->holding > h->sliding;
     const size_t m = h->modal->modes;
     for (size_t i = 0; i < sys->ncontact; i++) {
-        double limit = sys->loads.given_limit[i];
+        double limit = sys->loads.limit_tables ? 0.0 : sys->loads.given_limit[i];
         for (size_t s = 0; sys->loads.limits && s < sys->loads.harmonics; s++) {
             const struct harmonic *w = &sys->loads.harmonic[s];
-            limit += w->drives == DRIVES_LIMIT && w->omega == 0.0 ? w->cosine[i] : 0.0;
+            limit += w->drives == DRIVES_LIMIT && w->omega == 0.0 && !w->knots ? w->cosine[i] : 0.0;
         }
         x->steady[i] =
             sys->loads.limits ? tribo_stick_slip_follows(&x->events.stick_slip, i) * limit : x->events.stick_slip.state.force[i];
@@ -282,6 +297,13 @@ static void find_constant_forces(struct exact *x, const double *y, double *force
         return;
     }
     memcpy(force, h->constant, m * sizeof *force);
+    for (size_t s = 0; sys->loads.tables && s < h->harmonics; s++) {
+        const int base = sys->loads.harmonic[h->forcing[s].harmonic].drives == DRIVES_BASE;
+        for (size_t k = 0; h->forcing[s].table && k < m; k++) {
+            const double complex g = h->g[s * m + k];
+            force[k] += x->z.re[h->modal->exponents + s] * (base ? cimag(g) : creal(g));
+        }
+    }
     if (holds) {
         tribo_compliance_give(sys, 1, x->events.stick_slip.state.force, x->way);
     }
@@ -302,19 +324,61 @@ static void find_constant_forces(struct exact *x, const double *y, double *force
     }
 }
 
-/* Sets vel, acc and drift, and subtracts from place = eta and rate = eta' of the modes the responses to the constant and linear
+/* Sets lead, bend and rest by the ramps of tables, and subtracts from force [modes] the forces by damping of eta' = lead, and by
+ * inertia of eta'' = bend and rest. Of bases, places are quadratic in time. */
+static void lead_tables(struct exact *x, double *force)
+{
+    const struct forced *h = x->h;
+    const struct modal *own = h->modal;
+    const size_t m = own->modes;
+    double *lead = x->slopes.lead, *bend = x->slopes.bend, *ramp = x->slopes.rest;
+    memset(lead, 0, m * sizeof *lead);
+    memset(bend, 0, m * sizeof *bend);
+    memset(ramp, 0, m * sizeof *ramp);
+    if (!x->sys->loads.tables) {
+        return;
+    }
+    for (size_t s = 0; s < h->harmonics; s++) {
+        const double rate = x->slopes.rate[own->exponents + s], value = x->z.re[own->exponents + s];
+        const int base = x->sys->loads.harmonic[h->forcing[s].harmonic].drives == DRIVES_BASE;
+        for (size_t k = 0; h->forcing[s].table && k < m; k++) {
+            const double re = creal(h->g[s * m + k]), im = cimag(h->g[s * m + k]);
+            ramp[k] += base ? value * re + rate * im : rate * re;
+            bend[k] += base && own->omega2[k] != 0.0 ? rate * re / own->omega2[k] : 0.0;
+        }
+    }
+    for (size_t k = 0; x->sys->loads.bases && k < m; k++) {
+        ramp[k] -= own->coupling ? tribo_dot(own->coupling + k * m, bend, m) : own->damping[k] * bend[k];
+    }
+    tribo_multiply_add(own->stiff ? m : 0, m, 1, 1.0, own->give, ramp, lead);
+    for (size_t k = 0; k < m; k++) {
+        lead[k] += !own->stiff && own->omega2[k] != 0.0 ? ramp[k] / own->omega2[k] : 0.0;
+    }
+    for (size_t k = 0; k < m; k++) {
+        const int drifts = tribo_modal_drifts(own, k), held = own->omega2[k] != 0.0;
+        ramp[k] -= own->stiff ? tribo_dot(own->stiff + k * m, lead, m) : 0.0;
+        ramp[k] = held ? 0.0 : ramp[k] / (drifts ? 1.0 : own->damping[k]);
+        force[k] -= own->coupling ? tribo_dot(own->coupling + k * m, lead, m) : own->damping[k] * lead[k];
+        force[k] -= held ? bend[k] : drifts ? 0.0 : ramp[k];
+    }
+}
+
+/* Sets vel, acc, jerk and drift, and subtracts from place = eta and rate = eta' of the modes the responses to the constant and linear
  * right-hand side force [modes], and to harmonics. */
 static void split_amplitudes(struct exact *x, const double *force)
 {
     const struct forced *h = x->h;
     const struct modal *own = h->modal;
     tribo_modal_settle(own, 1, force, x->place, x->rate, x->vel, x->acc);
-    x->runs = h->steady;
+    x->runs = h->steady || x->sys->loads.tables > 0;
     for (size_t k = 0; k < own->modes; k++) {
-        if (h->steady && own->omega2[k] != 0.0) {
-            x->vel[k] += own->stiff ? h->constant[k] : h->ramp[k] / own->omega2[k];
+        const int drifts = tribo_modal_drifts(own, k);
+        if (x->runs && own->omega2[k] != 0.0) {
+            x->vel[k] += (own->stiff ? h->constant[k] : h->ramp[k] / own->omega2[k]) + x->slopes.lead[k];
             x->rate[k] -= x->vel[k];
         }
+        x->jerk[k] = drifts ? x->slopes.rest[k] : 0.0;
+        x->acc[k] += drifts ? 0.0 : x->slopes.rest[k] + x->slopes.bend[k];
         for (size_t s = 0; s < h->harmonics; s++) {
             const double xr = creal(h->x[s * h->shapes + k]), xi = cimag(h->x[s * h->shapes + k]);
             const double c = x->z.re[own->exponents + s], d = x->z.im[own->exponents + s];
@@ -325,8 +389,17 @@ static void split_amplitudes(struct exact *x, const double *force)
         x->runs |= x->vel[k] != 0.0 || tribo_modal_drifts(own, k);
     }
     for (size_t k = own->modes; k < h->shapes; k++) {
-        x->acc[k] = 0.0;
+        x->acc[k] = x->jerk[k] = 0.0;
         x->vel[k] = x->drift[k] = h->speed[k];
+    }
+    for (size_t s = 0; x->sys->loads.tables && s < h->harmonics; s++) {
+        const size_t k = h->forcing[s].table - 1;
+        if (h->forcing[s].table) {
+            const double rate = x->slopes.rate[own->exponents + s];
+            const int base = x->sys->loads.harmonic[h->forcing[s].harmonic].drives == DRIVES_BASE;
+            x->vel[k] = x->drift[k] = base ? x->z.re[own->exponents + s] : rate;
+            x->acc[k] = base ? rate : 0.0;
+        }
     }
 }
 
@@ -352,7 +425,7 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
     const struct forced *h = x->h;
     const struct modal *own = h->modal;
     const size_t n = x->sys->ndof;
-    if (!motion_reserve(x) || (x->sys->loads.limits && !tribo_signal_reserve(&x->velocity, own->exponents + h->harmonics, 1))) {
+    if (!motion_reserve(x) || (x->sys->loads.limits && !tribo_signal_reserve(&x->velocity, own->exponents + h->harmonics, 2))) {
         return 0;
     }
     x->t0 = t;
@@ -378,6 +451,7 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
         tribo_powers_start(x, x->work);
         return 1;
     }
+    lead_tables(x, x->work);
     split_amplitudes(x, x->work);
     tribo_modal_split(own, 1, x->place, x->rate, x->z.re, x->z.im);
     if (own->stiff) {

@@ -9,11 +9,11 @@
 /* An output in a phase. */
 struct course {
     const struct output *output;
-    double start, ramp, square; /* the polynomial part is start + ramp tau + square tau^2 */
-    double size, bend;          /* bounds of |output| and of the sixth derivative */
-    double tau;                 /* time of the last look */
-    double *power;              /* [TRIBO_POWERS] coefficients of the powers of time, of the output; without modes */
-    struct sample at;           /* output at tau, with two derivatives */
+    double start, ramp, square, cube; /* the polynomial part is start + ramp tau + square tau^2 + cube tau^3 */
+    double size, bend;                /* bounds of |output| and of the sixth derivative */
+    double tau;                       /* time of the last look */
+    double *power;                    /* [TRIBO_POWERS] coefficients of the powers of time, of the output; without modes */
+    struct sample at;                 /* output at tau, with two derivatives */
 };
 
 /* TRIBO_TERMS terms side by side, with two derivatives. */
@@ -45,8 +45,17 @@ struct held {
     size_t phases;                        /* number of phases in a row that powers had before the last one */
 };
 
-/* The driver's own data, and a phase from t0. A mode: eta = constant + vel tau + acc tau^2/2 + harmonics + (Re(r z), or eta' tau
- * if the mode drifts). A shape by bases: eta = harmonics, or tau. Terms: exponents, then harmonics; harmonics of limits times
+/* Tables in a phase, linear in time. */
+struct slopes {
+    double *rate;         /* [terms] of the forcings: rate of a table, of a limit times side; else 0 */
+    double *lead, *bend;  /* [modes] constant eta' and eta'' by the ramps, of modes with a stiffness */
+    double *rest;         /* [modes] by ramps that no stiffness takes: eta'' of a mode with damping, else the rate of eta'' */
+    double *limit, *rise; /* [ncontact] table of the limit at t0, and its rate; 0 without a table */
+};
+
+/* The driver's own data, and a phase from t0. A mode: eta = constant + vel tau + acc tau^2/2 + jerk tau^3/6 + harmonics + (Re(r
+ * z), or eta' tau if the mode drifts). A shape by bases: eta = harmonics, or tau, or value tau + rate tau^2/2 of a table; by
+ * another table: rate tau. Terms: exponents, then harmonics; harmonics of limits times
  * side. */
 struct exact {
     tribo_system *sys;
@@ -63,15 +72,16 @@ struct exact {
     struct parts move, rate_move; /* w - z; w', or w' - z' if brief: tau is short for all terms */
     double *growth, *growth6;     /* [terms] bounds of |w| and of the sixth derivative; without modes [TRIBO_POWERS] powers of
                                      longest and their sixth derivatives */
-    double *vel, *acc;            /* [shapes] */
-    double *drift;                /* [shapes] vel, and of modes that drift also eta' at t0 */
-    double *place, *rate;         /* [shapes] eta - eta(t0) at tau; eta' at tau, or eta' - eta'(t0) if brief */
-    double *work;                 /* [room + 2 ndof] workspace */
-    double *way;                  /* [ncontact] workspace */
-    double *steady;               /* [ncontact] force of a sliding contact without harmonics of the limit */
-    struct course *course;        /* [ncontact] courses of the outputs of h */
-    struct signal velocity;       /* workspace */
-    double *power;                /* coefficients [TRIBO_POWERS][modes] of eta, eta'; [][TRIBO_POWERS] of outputs, eta, eta' */
+    double *vel, *acc, *jerk;     /* [shapes] */
+    struct slopes slopes;
+    double *drift;          /* [shapes] vel, and of modes that drift also eta' at t0 */
+    double *place, *rate;   /* [shapes] eta - eta(t0) at tau; eta' at tau, or eta' - eta'(t0) if brief */
+    double *work;           /* [room + 2 ndof] workspace */
+    double *way;            /* [ncontact] workspace */
+    double *steady;         /* [ncontact] force of a sliding contact without harmonics of the limit */
+    struct course *course;  /* [ncontact] courses of the outputs of h */
+    struct signal velocity; /* workspace */
+    double *power;          /* coefficients [TRIBO_POWERS][modes] of eta, eta'; [][TRIBO_POWERS] of outputs, eta, eta' */
 };
 
 /* Starts a phase at (t, y) with structure x->h, for a time of at most *longest; sets *longest to the time for which the bounds

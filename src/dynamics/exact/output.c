@@ -104,7 +104,8 @@ int tribo_forced_outputs(struct modal_build *b)
             if (holds == (h->key[i] == KEY_HOLDS) && !tribo_normals_at(sys, i)) {
                 const double complex *own = p < h->rests && h->rest[p] == i ? b->direct + p++ : NULL;
                 const int slides = h->key[i] == KEY_FREE || h->key[i] == KEY_BACK || h->key[i] == KEY_FORTH;
-                const int varies = tribo_normals_follower(sys, i) || (sys->loads.limits && tribo_system_swing(sys, i) > 0.0);
+                const int varies = tribo_normals_follower(sys, i) || sys->loads.limit_tables ||
+                                   (sys->loads.limits && tribo_system_swing(sys, i) > 0.0);
                 f->outputs += fill_output(b, i, own, slides || (holds && varies), &f->output[f->outputs]);
             }
         }

@@ -19,8 +19,8 @@
 
 /* ------------------------------------------------------------------------------------------------------- shapes by bases */
 
-/* Makes room for shapes: one for each part of a harmonic of bases, and one for bases of constant speed. Without such shapes phi,
- * on and by_u are arrays of the modal. Returns 0 if out of memory. */
+/* Makes room for shapes: one for each part of a harmonic of bases, one for bases of constant speed, and one for each table.
+ * Without such shapes phi, on and by_u are arrays of the modal. Returns 0 if out of memory. */
 static int make_shapes(struct modal_build *b)
 {
     struct forced *f = b->forced;
@@ -31,6 +31,12 @@ static int make_shapes(struct modal_build *b)
     for (size_t s = 0; s < sys->loads.harmonics; s++) {
         const struct harmonic *w = &sys->loads.harmonic[s];
         f->shapes += w->drives != DRIVES_BASE ? 0 : w->omega != 0.0 ? 2 : 1;
+    }
+    for (size_t s = 0; s < f->harmonics; s++) {
+        const struct harmonic *w = &sys->loads.harmonic[f->forcing[s].harmonic];
+        const int table = w->knots && w->drives != DRIVES_BASE;
+        f->shapes += (size_t)table;
+        f->forcing[s].table = table ? f->shapes : 0;
     }
     f->speed = tribo_modal_take(&f->store, f->shapes, sizeof *f->speed);
     f->span = tribo_modal_take(&f->store, 2 * f->shapes, sizeof *f->span);
@@ -101,11 +107,11 @@ static int follow_bases(struct modal_build *b)
     const struct modal *h = b->h;
     const tribo_system *sys = b->sys;
     const size_t m = h->modes, c = sys->ncontact;
-    double *base = tribo_modal_take(&b->scratch, c + 2 * m, sizeof *base), *place = base ? base + c : NULL;
+    double *base = tribo_modal_take(&b->scratch, c + 2 * m, sizeof *base);
     if (!base || !make_shapes(b)) {
         return 0;
     }
-    double *rate = place + m;
+    double *place = base + c, *rate = place + m;
     for (size_t at = 0, k = m; at < 2 * sys->loads.harmonics; at++) {
         const struct harmonic *w = &sys->loads.harmonic[at / 2];
         const int part = at % 2;
@@ -118,16 +124,18 @@ static int follow_bases(struct modal_build *b)
             base[w->index[e]] = part ? -w->sine[e] : w->cosine[e];
         }
         follow_base(b, k, w->omega, base, place, rate);
-        if (w->omega == 0.0) {
+        if (w->knots) {
+            f->forcing[at / 2].table = k + 1;
+        } else if (w->omega == 0.0) {
             f->steady = 1;
             f->speed[k] = 1.0;
             tribo_add(f->ramp, 1.0, place, m);
             tribo_add(f->constant, 1.0, rate, m);
         } else {
             f->x[at / 2 * f->shapes + k] = unit / (w->omega * I);
-            for (size_t l = 0; l < m; l++) {
-                f->g[at / 2 * m + l] += unit * (place[l] / (w->omega * I) + rate[l]);
-            }
+        }
+        for (size_t l = 0; (w->knots || w->omega != 0.0) && l < m; l++) {
+            f->g[at / 2 * m + l] += w->knots ? place[l] + rate[l] * I : unit * (place[l] / (w->omega * I) + rate[l]);
         }
         k++;
     }
@@ -149,8 +157,8 @@ static int follow_bases(struct modal_build *b)
 
 /* ------------------------------------------------------------------------------------------------- forcing and response */
 
-/* Adds the forcing of eta by harmonic s of a load, or of a limit as force f = limit, to g; to direct the forces of contacts that
- * hold by what the modes leave of the load. work [2 n + modes + rests]. */
+/* Adds the forcing of eta by forcing s, of a load, or of a limit as force f = limit, to g; the forces of contacts that hold by what
+ * the modes leave of the load to direct, or of a table to `on` of its shape. work [2 n + modes + rests]. */
 static void force_modes(struct modal_build *b, size_t s, double *work)
 {
     struct forced *f = b->forced;
@@ -181,6 +189,9 @@ static void force_modes(struct modal_build *b, size_t s, double *work)
         }
         for (size_t p = 0; w->omega != 0.0 && p < h->rests; p++) {
             b->direct[s * h->rests + p] += unit * react[p];
+        }
+        for (size_t p = 0; f->forcing[s].table && p < h->rests; p++) {
+            f->on[h->rest[p] * f->shapes + f->forcing[s].table - 1] += react[p];
         }
     }
 }
@@ -257,10 +268,11 @@ int tribo_forced_respond(struct modal_build *b)
     f->forcing = tribo_modal_take(&f->store, f->harmonics + sys->loads.limits * (c - h->rests), sizeof *f->forcing);
     for (size_t k = 0; f->forcing && k < sys->loads.harmonics; k++) {
         const struct harmonic *w = &sys->loads.harmonic[k];
-        f->forcing[k] = (struct forcing){w->omega, k, c};
-        for (size_t i = 0; w->drives == DRIVES_LIMIT && w->omega != 0.0 && i < c; i++) {
-            if (h->key[i] != KEY_HOLDS && (w->cosine[i] != 0.0 || w->sine[i] != 0.0)) {
-                f->forcing[f->harmonics++] = (struct forcing){w->omega, k, i};
+        f->forcing[k] = (struct forcing){w->omega, k, c, 0};
+        for (size_t i = 0; w->drives == DRIVES_LIMIT && (w->omega != 0.0 || w->knots) && i < c; i++) {
+            const int follows = w->knots && (tribo_normals_at(sys, i) || tribo_normals_follower(sys, i));
+            if (h->key[i] != KEY_HOLDS && !follows && (w->cosine[i] != 0.0 || w->sine[i] != 0.0)) {
+                f->forcing[f->harmonics++] = (struct forcing){w->omega, k, i, 0};
             }
         }
     }
@@ -282,7 +294,8 @@ int tribo_forced_respond(struct modal_build *b)
     }
     for (size_t k = 0; k < m && !h->stiff; k++) {
         for (size_t s = 0; s < sys->loads.harmonics; s++) {
-            f->constant[k] += f->forcing[s].omega == 0.0 ? creal(f->g[s * m + k]) : 0.0;
+            const int steady = f->forcing[s].omega == 0.0 && !f->forcing[s].table;
+            f->constant[k] += steady ? creal(f->g[s * m + k]) : 0.0;
         }
         for (size_t l = h->coupling ? 0 : k; l < (h->coupling ? m : k + 1) && h->omega2[l] != 0.0; l++) {
             f->constant[k] -= (h->coupling ? h->coupling[k * m + l] : h->damping[k]) * (f->ramp[l] / h->omega2[l]);

@@ -174,9 +174,9 @@ void tribo_course_look(const struct exact *x, struct course *c)
     }
     sum_terms(x->h->terms, c->output->cr, x->lot, sum);
     c->tau = x->tau;
-    c->at.g = total(sum) + (c->start + (c->ramp + c->square * x->tau) * x->tau);
-    c->at.d = total(sum + T) + (c->ramp + 2.0 * c->square * x->tau);
-    c->at.e = total(sum + 2 * T) + 2.0 * c->square;
+    c->at.g = total(sum) + (c->start + (c->ramp + (c->square + c->cube * x->tau) * x->tau) * x->tau);
+    c->at.d = total(sum + T) + (c->ramp + (2.0 * c->square + 3.0 * c->cube * x->tau) * x->tau);
+    c->at.e = total(sum + 2 * T) + (2.0 * c->square + 6.0 * c->cube * x->tau);
 }
 
 void tribo_course_bound(const struct exact *x, struct course *c)
@@ -188,7 +188,8 @@ void tribo_course_bound(const struct exact *x, struct course *c)
         return;
     }
     sum_bounds(x->h->terms, c->output->size, x->growth, x->growth6, sum);
-    c->size = total(sum) + fabs(c->start) + (fabs(c->ramp) + fabs(c->square) * x->longest) * x->longest;
+    const double square = fabs(c->square) + fabs(c->cube) * x->longest;
+    c->size = total(sum) + fabs(c->start) + (fabs(c->ramp) + square * x->longest) * x->longest;
     c->bend = total(sum + T);
 }
 
@@ -201,6 +202,14 @@ void tribo_course_begin(struct exact *x, size_t o, double value)
     c->start = 0.0;
     c->ramp = x->runs ? tribo_dot(w->on_rate, of_velocity ? x->acc : of_normal ? x->drift : x->vel, x->h->shapes) : 0.0;
     c->square = x->runs && of_normal ? 0.5 * tribo_dot(w->on_rate, x->acc, x->h->shapes) : 0.0;
+    c->cube = 0.0;
+    if (x->sys->loads.tables) {
+        const double jerk = tribo_dot(w->on_rate, x->jerk, x->h->shapes);
+        const double *by_u = !of_velocity && !of_normal && x->h->by_u ? x->h->by_u + w->contact * x->h->shapes : NULL;
+        c->ramp += by_u ? tribo_dot(by_u, x->acc, x->h->shapes) : 0.0;
+        c->square += of_velocity ? 0.5 * jerk : of_normal ? 0.0 : 0.5 * tribo_dot(w->on_rate, x->acc, x->h->shapes);
+        c->cube = of_normal ? jerk / 6.0 : 0.0;
+    }
     tribo_course_look(x, c);
     if (x->h->modal->powers) {
         c->power[0] = value;

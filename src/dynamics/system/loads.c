@@ -91,6 +91,12 @@ static double look_up(const tribo_system *sys, const struct harmonic *h, size_t 
     return order ? slope : v[0] + slope * (sys->loads.time - h->knot[k] + sys->loads.low);
 }
 
+double tribo_system_table(const tribo_system *sys, size_t k, size_t i, double *slope)
+{
+    *slope = look_up(sys, &sys->loads.harmonic[k], i, 1);
+    return look_up(sys, &sys->loads.harmonic[k], i, 0);
+}
+
 void tribo_system_put_limits(tribo_system *sys, double later)
 {
     tribo_system_limits(sys, sys->work.put_limit, sys->work.feq);

@@ -233,6 +233,9 @@ int tribo_system_presses(const tribo_system *sys, size_t i, double doubt);
 /* Returns the largest |omega| of harmonics. */
 double tribo_system_load_frequency(const tribo_system *sys);
 
+/* Returns the value of column i of table k at the set time; *slope = its rate from there on. */
+double tribo_system_table(const tribo_system *sys, size_t k, size_t i, double *slope);
+
 /* Returns the next time after t of a kink of a load or limit; HUGE_VAL if there is none. */
 double tribo_system_next_kink(const tribo_system *sys, double t);
 

@@ -384,15 +384,19 @@ TEST(automatic)
 {
     const double times[] = {0.0, 1.0}, values[] = {0.0, 1.0}, pattern[] = {1.0}, limits[] = {1.0, 2.0};
     tribo_system *small = oscillator(TRIBO_QUINN, 1.5, 0.5), *loaded = oscillator(TRIBO_QUINN, 1.5, 0.5);
-    tribo_system *pressed = oscillator(TRIBO_QUINN, 1.5, 0.5), *large;
+    tribo_system *pressed = oscillator(TRIBO_QUINN, 1.5, 0.5), *moved = oscillator(TRIBO_QUINN, 1.5, 0.5), *large;
+    tribo_system *falls = oscillator(TRIBO_QUINN, 1.5, 0.5);
     assert_ok(tribo_system_add_load_table(loaded, 2, times, values, pattern));
     assert_ok(tribo_system_set_limit_table(pressed, 2, times, limits));
+    assert_ok(tribo_system_add_base_table(moved, 2, times, values, pattern));
+    assert_ok(tribo_set_static(tribo_system_context(falls), limits + 1, limits));
     assert_ok(tribo_system_chain(&large, 1000, 1.0, 0.25, 0.5));
     const struct {
         tribo_system *sys;
         const char *asked, *got;
-    } cases[] = {{small, "auto", "exact"},          {loaded, "auto", "event"},
-                 {pressed, "auto", "event"},        {large, "auto", "event"},
+    } cases[] = {{small, "auto", "exact"},          {loaded, "auto", "exact"},
+                 {pressed, "auto", "exact"},        {moved, "auto", "exact"},
+                 {falls, "auto", "event"},          {large, "auto", "event"},
                  {large, "exact", "exact"},         {small, "event", "event"},
                  {small, "rk4/fixed", "rk4/fixed"}, {small, "moreau/fixed", "moreau/fixed"}};
     for (size_t k = 0; k < COUNT(cases); k++) {
@@ -401,14 +405,16 @@ TEST(automatic)
         tribo_driver_destroy(drv);
     }
     ck_assert_ptr_null(tribo_driver_method(NULL));
-    /* a table that ends makes it exact again */
-    assert_ok(tribo_system_clear_limits(pressed));
-    tribo_driver *drv = driver_create(pressed, "auto", 1.0, 0.0);
+    /* limits that no longer fall make it exact again */
+    assert_ok(tribo_set_static(tribo_system_context(falls), NULL, NULL));
+    tribo_driver *drv = driver_create(falls, "auto", 1.0, 0.0);
     ck_assert_str_eq(tribo_driver_method(drv), "exact");
     tribo_driver_destroy(drv);
     tribo_system_destroy(small);
     tribo_system_destroy(loaded);
     tribo_system_destroy(pressed);
+    tribo_system_destroy(moved);
+    tribo_system_destroy(falls);
     tribo_system_destroy(large);
 }
 
@@ -445,28 +451,6 @@ TEST(unsupported)
     assert_exact(t, 0.5);
     assert_exact(y[0], 0.25);
     assert_exact(y[1], 2.0);
-    tribo_driver_destroy(drv);
-    check_event_takes(sys);
-}
-
-/* Tables neither, which a driver refuses when it is created, and, if they come later, when it advances. */
-TEST(tables)
-{
-    const double times[] = {0.0, 1.0}, values[] = {0.0, 1.0}, one = 1.0, limits[] = {1.0, 2.0};
-    const char *const text = _i ? "limits follow a table" : "loads follow a table";
-    double t = 0.5, y[3] = {0.25, 2.0, 0.0};
-    tribo_system *sys = block(1.0, 1.0, 1.0);
-    tribo_driver *drv = driver_create(sys, "exact", 1.0, 0.0), *none = NULL;
-    assert_ok(_i ? tribo_system_set_limit_table(sys, 2, times, limits)
-                 : tribo_system_add_load_table(sys, 2, times, values, &one));
-    assert_status(set_up_driver(&none, sys, "exact", 1.0, 0.0, 0.0), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_system_message(sys), text);
-    assert_says(tribo_system_message(sys), "take event or auto");
-    ck_assert_ptr_null(none);
-    assert_status(tribo_driver_advance(drv, &t, 3.0, y), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_driver_message(drv), text);
-    assert_exact(t, 0.5);
-    assert_exact(y[0], 0.25);
     tribo_driver_destroy(drv);
     check_event_takes(sys);
 }
@@ -547,5 +531,4 @@ TEST(ring)
 TEST_MAIN("exact", {limits_through_zero, 8}, {reference_values, REFERENCES}, {events_of_the_chain, 1}, {growth_that_stops, 1},
           {chains, 6}, {beam_against_event, 3}, {stuck_for_good, 2}, {resonance, 1}, {resonance_elsewhere, 1},
           {resonance_beside_damping, 1}, {held_together, 2}, {balance_of_energy, 8}, {observer_sees_the_motion, 1},
-          {observer_stops, 1}, {in_pieces, 1}, {automatic, 1}, {automatic_runs, 1}, {unsupported, 1}, {ring, 2}, {tables, 2},
-          {creation, 1})
+          {observer_stops, 1}, {in_pieces, 1}, {automatic, 1}, {automatic_runs, 1}, {unsupported, 1}, {ring, 2}, {creation, 1})

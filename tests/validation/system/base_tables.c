@@ -168,9 +168,8 @@ TEST(errors)
     assert_ok(tribo_system_clear_loads(sys)); /* bases go on */
     assert_ok(tribo_driver_advance(drv, &t, 2.0, y));
     tribo_driver_destroy(drv);
-    require((tribo_driver_create(&drv, sys, "exact") || tribo_driver_advance(drv, &s, 2.0, z)) == 1, "status");
     assert_ok(tribo_system_clone(sys, &copy));
-    assert_ok(tribo_driver_create(&drv, copy, "event"));
+    assert_ok(tribo_driver_create(&drv, copy, "exact"));
     assert_ok(tribo_driver_advance(drv, &s, 2.0, z));
     require(memcmp(y, z, sizeof y) == 0 && y[0] != 0.0, "a copy goes to q[0] = %.17g, not %.17g", z[0], y[0]);
     tribo_driver_destroy(drv);

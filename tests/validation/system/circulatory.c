@@ -225,6 +225,7 @@ TEST(refused)
         assert_says(tribo_model_message(model), massless ? "without mass" : "modes for a reduction");
         tribo_model_destroy(model);
     }
+    const double time[] = {0.0, 1.0};
     const int parameter = TRIBO_PARAMETER_FREQUENCY;
     const size_t index = 0;
     double y[5] = {0.0}, z[5];
@@ -234,6 +235,10 @@ TEST(refused)
     assert_ok(tribo_driver_find_periodic(drv, 0.0, 2.0 * PI / 1.7, y));
     assert_status(tribo_driver_period_derivatives(drv, 1, &parameter, &index, NULL, NULL, NULL, z), TRIBO_ERR_UNSUPPORTED);
     assert_says(tribo_driver_message(drv), "a stiffness that is not symmetric");
+    double t = 0.0;
+    assert_ok(tribo_system_add_base_table(sys, 2, time, row, row + 1));
+    assert_status(tribo_driver_advance(drv, &t, 1.0, y), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_driver_message(drv), "base motions follow a table, which method exact does not take beside a stiffness");
     tribo_driver_destroy(drv);
     tribo_system_destroy(sys);
 }
