@@ -23,6 +23,10 @@
 /* Relative change of limits. */
 #define NUDGE 1e-7
 
+/* Force of a touch that counts, relative to the largest force of the contact as it begins to slide, and to the terms of a limit that
+ * follows. */
+#define TOUCH 1e-2
+
 /* The period is followed from this part of it on, where no touch is expected by symmetry. Phases shorter than INSTANT of the
  * period do not count: contacts slide between two events at one time. */
 #define LATER 0.381966011250105
@@ -239,14 +243,15 @@ int tribo_period_map_complete(struct period_map *m, struct point *p)
 /* -------------------------------------------------------------------------------------------------------------- touches
  * An elastic contact whose force only touches its limit, as where sliders come to rest in the course of time: in some neighbouring
  * motions the contact slides there, in others it does not, and the map has no derivative. The contact slides a different number of
- * times in a period with limits that are slightly lower, or slightly higher. */
+ * times in a period with limits that are slightly lower, or slightly higher: a touch counts by the force with which it slides, which
+ * is small where a normal only just presses, and forces are smooth. */
 
 /* Observer of a period. */
 struct slides {
     struct company company;
     const struct events *events;
     double instant;
-    size_t *count;         /* [ncontact] number of times that a contact begins to slide */
+    double *sum, *most;    /* [ncontact] sum and maximum of |forces| as contacts begin to slide */
     unsigned char *before; /* [ncontact] 1: slides in the phase before */
 };
 
@@ -258,14 +263,16 @@ static int slides_phase(struct company *company, double tau, double t, const dou
     (void)y;
     for (size_t i = 0; tau > s->instant && i < m->constant.contacts; i++) {
         const unsigned char now = tribo_slides(m->state.slip[i]) || m->state.slip[i] == TRIBO_SLIP_PLANE;
-        s->count[i] += now && !s->before[i];
+        const double force = now && !s->before[i] ? fabs(m->state.force[i]) : 0.0;
+        s->sum[i] += force;
+        s->most[i] = greater(s->most[i], force);
         s->before[i] = now;
     }
     return TRIBO_OK;
 }
 
-/* slides->count [ncontact] += number of times that each contact begins to slide within a period from the state y at t on, with
- * limits of elastic contacts times a factor. Returns a status, its message on the driver. */
+/* Adds to slides what happens within a period from the state y at t on, with limits of elastic contacts times a factor. Returns a
+ * status, its message on the driver. */
 static int count_slides(const struct period_map *m, double factor, double t, const double *y, struct slides *slides)
 {
     tribo_system *sys = NULL;
@@ -322,8 +329,8 @@ int tribo_period_map_find_touch(struct period_map *m, const double *y, int chang
     }
     double *later = NULL;
     struct slides less = {.company = {slides_phase, NULL}, .instant = INSTANT * m->period}, more = less;
-    if (!ALLOCATE(ARRAY(later, m->n + 1), ARRAY(less.count, c), ARRAY(more.count, c), ARRAY(less.before, c),
-                  ARRAY(more.before, c))) {
+    if (!ALLOCATE(ARRAY(later, m->n + 1), ARRAY(less.sum, c), ARRAY(less.most, c), ARRAY(more.sum, c), ARRAY(more.most, c),
+                  ARRAY(less.before, c), ARRAY(more.before, c))) {
         return tribo_error(m->drv->message, TRIBO_ERR_MEMORY, "out of memory for the motions beside a motion");
     }
     int status = tribo_period_map_replay(m, y, LATER * m->period, NULL);
@@ -332,7 +339,10 @@ int tribo_period_map_find_touch(struct period_map *m, const double *y, int chang
     status = status ? status : count_slides(m, 1.0 + NUDGE, m->t + LATER * m->period, later, &more);
     for (size_t k = 0; !status && k < m->sys->compliance.count; k++) {
         const size_t i = m->sys->compliance.contact[k];
-        *contact = *contact == c && less.count[i] != more.count[i] ? i : *contact;
+        const struct follower *f = tribo_normals_follower(m->sys, i);
+        const struct normal *n = f ? &m->sys->normals.normal[f->normal] : NULL;
+        const double usual = greater(greater(less.most[i], more.most[i]), n ? f->mu * n->stiffness * n->size : 0.0);
+        *contact = *contact == c && fabs(less.sum[i] - more.sum[i]) > TOUCH * usual ? i : *contact;
     }
     free(later);
     return status;
