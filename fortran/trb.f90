@@ -10,6 +10,8 @@
 !>        returns TRIBO_ERR_MEMORY). A handle that was never given, or is deleted, gives TRIBO_ERR_NULL. One handle belongs to one
 !>        thread at a time.
 !> N      number of contacts; must be that of TRBNEW
+!>        Limits, epsilons, RDIAG, FMU, DT and RLDT that are denormal, or not 0 but at most 1E-290 beside numbers of at least
+!>        1E-200 in one array, give TRIBO_ERR_RANGE: so a REAL for a DOUBLE PRECISION often reads.
 !> IERR   0, or one of the codes of module tribo (TRIBO_ERR_...): outputs are unchanged, and TRBMSG returns the text.
 !>
 !> Registry                                          in                                out
@@ -248,6 +250,42 @@ contains
     write (text, '(2a,i0,a,i0)') name, ' = ', value, but, other
     ierr = c_handle_note(ctx, int(TRIBO_ERR_SIZE, c_int), trim(text) // c_null_char)
   end subroutine refuse
+
+  !> Fails if x(n), or x(1) without n, has a denormal number, or one of at most 1E-290 beside one of at least 1E-200: a REAL that is
+  !> read as a DOUBLE PRECISION often is such a number. 0 is none. Bits have the order of sizes, and no comparison of them traps.
+  subroutine check_precision(ctx, ierr, name, x, n)
+    type(c_ptr), intent(in) :: ctx
+    integer, intent(inout) :: ierr
+    character(len=*), intent(in) :: name
+    real(dp), intent(in) :: x(*)
+    integer, intent(in), optional :: n
+    integer(c_int64_t) :: bits, least, most, refused
+    integer :: i, count
+    character(len=20) :: place
+    character(len=120) :: text
+
+    if (ierr /= TRIBO_OK) return
+    count = 1
+    if (present(n)) count = n
+    least = huge(least)
+    most = 0
+    do i = 1, count
+      bits = iand(transfer(x(i), bits), huge(bits))
+      most = max(most, bits)
+      if (bits > 0) least = min(least, bits)
+    end do
+    refused = transfer(tiny(x), bits) - 1
+    if (most >= transfer(1e-200_dp, bits)) refused = transfer(1e-290_dp, bits)
+    if (least > refused) return
+    do i = 1, count
+      if (iand(transfer(x(i), bits), huge(bits)) == least) exit
+    end do
+    place = ''
+    if (present(n)) write (place, '(a,i0,a)') '(', i, ')'
+    write (text, '(3a,es10.3e3,3a)') name, trim(place), ' = ', x(i), ' is neither 0 nor of a usual size: is ', name, &
+      ' DOUBLE PRECISION?'
+    ierr = c_handle_note(ctx, int(TRIBO_ERR_RANGE, c_int), trim(text) // c_null_char)
+  end subroutine check_precision
 
   !> A handle for a context, if there is no error yet.
   subroutine give(ctx, ih, ierr)
@@ -590,6 +628,7 @@ subroutine trblim(ih, n, fmun, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
+  call check_precision(ctx, ierr, 'FMUN', fmun, n)
   if (ierr == TRIBO_OK) ierr = told(ctx, c_set_limit(ctx, fmun))
 end subroutine trblim
 
@@ -602,6 +641,7 @@ subroutine trbnld(ih, n, fmu, fn, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
+  call check_precision(ctx, ierr, 'FMU', fmu, n)
   if (ierr == TRIBO_OK) ierr = told(ctx, c_set_normal_load(ctx, fmu, fn))
 end subroutine trbnld
 
@@ -656,6 +696,7 @@ subroutine trblm1(ih, fmun, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr)
+  call check_precision(ctx, ierr, 'FMUN', [fmun])
   if (ierr == TRIBO_OK) ierr = told(ctx, c_set_limit_all(ctx, fmun))
 end subroutine trblm1
 
@@ -680,6 +721,7 @@ subroutine trbeps(ih, n, eps, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
+  call check_precision(ctx, ierr, 'EPS', eps, n)
   if (ierr == TRIBO_OK) ierr = told(ctx, c_set_epsilon(ctx, eps))
 end subroutine trbeps
 
@@ -692,6 +734,7 @@ subroutine trbep1(ih, eps, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr)
+  call check_precision(ctx, ierr, 'EPS', [eps])
   if (ierr == TRIBO_OK) ierr = told(ctx, c_set_epsilon_all(ctx, eps))
 end subroutine trbep1
 
@@ -704,6 +747,8 @@ subroutine trbstp(ih, dt, rldt, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr)
+  call check_precision(ctx, ierr, 'DT', [dt])
+  call check_precision(ctx, ierr, 'RLDT', [rldt])
   if (ierr == TRIBO_OK) ierr = told(ctx, c_set_epsilon_step(ctx, dt, rldt))
 end subroutine trbstp
 
@@ -728,6 +773,7 @@ subroutine trbopd(ih, n, rdiag, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
+  call check_precision(ctx, ierr, 'RDIAG', rdiag, n)
   if (ierr == TRIBO_OK) ierr = told(ctx, c_set_operator_diagonal(ctx, rdiag))
 end subroutine trbopd
 

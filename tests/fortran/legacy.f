@@ -11,6 +11,7 @@ C     compared to that of the C call (see scene.c); then every error.
       CALL PLAY
       CALL SCEND
       CALL NOHAND
+      CALL SINGLE
       CALL ERRORS
       CALL HANDLE
       CALL OWNLAW

@@ -419,3 +419,50 @@ C     A place in the table lasts for 2047 handles.
    10 CONTINUE
       CALL EXPECT('every handle is new', NEW)
       END
+C
+C     A REAL that is read as a DOUBLE PRECISION is refused; 0 is not.
+      SUBROUTINE SINGLE
+      INTEGER IH, IERR
+      REAL S(2)
+      DOUBLE PRECISION D(1), X(2), Y(2)
+      EQUIVALENCE (S, D)
+      CALL TRBNEW(2, IH, IERR)
+      S(1) = 1.0
+      S(2) = 0.0
+      CALL TRBLM1(IH, D(1), IERR)
+      CALL WANTED('TRBLM1', IH, IERR, 5, 'FMUN = 5.264E-315 is'//
+     1' neither 0 nor of a usual size: is FMUN DOUBLE PRECISION?')
+      CALL TRBEP1(IH, D(1), IERR)
+      CALL WANTED('TRBEP1', IH, IERR, 5, 'EPS = 5.264E-315 is'//
+     1' neither 0 nor of a usual size: is EPS DOUBLE PRECISION?')
+      CALL TRBSTP(IH, 1D0, D(1), IERR)
+      CALL WANTED('TRBSTP', IH, IERR, 5, 'RLDT = 5.264E-315 is'//
+     1' neither 0 nor of a usual size: is RLDT DOUBLE PRECISION?')
+      CALL TRBSTP(IH, D(1), 1D0, IERR)
+      CALL EXPECT('DT', IERR .EQ. 5)
+      X(1) = 2D0
+      X(2) = 1D-300
+      CALL TRBLIM(IH, 2, X, IERR)
+      CALL WANTED('TRBLIM', IH, IERR, 5, 'FMUN(2) = 1.000E-300 is'//
+     1' neither 0 nor of a usual size: is FMUN DOUBLE PRECISION?')
+      CALL TRBEPS(IH, 2, X, IERR)
+      CALL EXPECT('TRBEPS', IERR .EQ. 5)
+      CALL TRBOPD(IH, 2, X, IERR)
+      CALL EXPECT('TRBOPD', IERR .EQ. 5)
+      CALL TRBNLD(IH, 2, X, X, IERR)
+      CALL EXPECT('TRBNLD', IERR .EQ. 5)
+      CALL TRBGLM(IH, 2, Y, IERR)
+      CALL EXPECT('limits stay', Y(1) .EQ. 0D0 .AND. Y(2) .EQ. 0D0)
+C     Not in the way of others: 0, small ones alone, and far ones.
+      X(2) = 0D0
+      CALL TRBLIM(IH, 2, X, IERR)
+      CALL EXPECT('0 beside 2', IERR .EQ. 0)
+      X(2) = 1D-280
+      CALL TRBLIM(IH, 2, X, IERR)
+      CALL EXPECT('1D-280 beside 2', IERR .EQ. 0)
+      X(1) = 1D-300
+      X(2) = 1D-300
+      CALL TRBLIM(IH, 2, X, IERR)
+      CALL EXPECT('1D-300 alone', IERR .EQ. 0)
+      CALL TRBDEL(IH, IERR)
+      END

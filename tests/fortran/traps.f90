@@ -60,7 +60,7 @@ program traps
         do limit = 1, 3
           do width = 1, 3
             call by_module(law, coupling, form, limits(:, limit), width)
-            call by_routines(law, coupling, form, limits(:, limit), width)
+            call by_routines(law, coupling, form, max(limits(:, limit), merge(1e-280_dp, 0.0_dp, limits(:, limit) > 0)), width)
           end do
         end do
       end do
