@@ -401,7 +401,8 @@ int tribo_planar_slip_settle(struct stick_slip *m, const tribo_system *sys, cons
         return status;
     }
     tribo_stick_slip_find_gains(m, sys, y);
-    for (struct planar_contact *p = m->plane->contact; p < m->plane->contact + m->plane->all; p++) {
+    for (size_t k = 0; k < m->plane->all; k++) {
+        struct planar_contact *const p = m->plane->contact + k;
         /* at its limit; slides if it accelerates, else is tied */
         double noise;
         if (s->slip[p->at] == TRIBO_SLIP_STUCK && (share(m, p, s->force, &noise) >= 1.0 - noise || p->at == s->reached)) {

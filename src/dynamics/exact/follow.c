@@ -29,7 +29,8 @@ const signed char *tribo_follow_key(const struct stick_slip *m, signed char *key
     for (size_t k = 0; k < s->count; k++) {
         key[s->normal[k].row] = m->state.pressed[k] ? KEY_PRESSED : KEY_APART;
     }
-    for (const struct follower *f = s->follower; f < s->follower + s->followers; f++) {
+    for (size_t k = 0; k < s->followers; k++) {
+        const struct follower *f = s->follower + k;
         const double side = f->mu * s->normal[f->normal].stiffness > 0.0 ? tribo_stick_slip_follows(m, f->contact) : 0.0;
         const int slides = tribo_slides(m->state.slip[f->contact]);
         if (side != 0.0) {
@@ -43,7 +44,8 @@ void tribo_follow_slide(const tribo_system *sys, const signed char *key, size_t 
 {
     const struct normals *s = &sys->normals;
     memset(force, 0, sys->ncontact * columns * sizeof *force);
-    for (const struct follower *f = s->follower; f < s->follower + s->followers; f++) {
+    for (size_t k = 0; k < s->followers; k++) {
+        const struct follower *f = s->follower + k;
         const struct normal *n = &s->normal[f->normal];
         const double side = tribo_follow_side(key[f->contact]);
         tribo_add(force + f->contact * columns, side * f->mu * n->stiffness, way + n->row * columns, columns);
@@ -63,7 +65,8 @@ int tribo_follow_press(struct modal_build *b)
     for (size_t k = 0; k < s->followers; k++) {
         b->follows |= tribo_follow_side(b->h->key[s->follower[k].contact]) != 0.0;
     }
-    for (const struct normal *at = s->normal; at < s->normal + s->count; at++) {
+    for (size_t k = 0; k < s->count; k++) {
+        const struct normal *at = s->normal + k;
         if (b->h->key[at->row] != KEY_PRESSED) {
             continue;
         }
@@ -271,11 +274,13 @@ void tribo_follow_pull(const struct modal *h, const tribo_system *sys, size_t co
     tribo_matrix_add_columns(&sys->k, -1.0, c, v, load);
     tribo_matrix_add_columns(j, 1.0, c, v, way);
     tribo_follow_slide(sys, h->key, c, way, slide);
-    for (const struct follower *at = s->follower; at < s->follower + s->followers; at++) {
+    for (size_t k = 0; k < s->followers; k++) {
+        const struct follower *at = s->follower + k;
         const int slides = tribo_follow_side(h->key[at->contact]) != 0.0;
         memcpy(f + at->contact * c, slide + at->contact * c, slides ? c * sizeof *f : 0);
     }
-    for (const struct normal *at = s->normal; at < s->normal + s->count; at++) {
+    for (size_t k = 0; k < s->count; k++) {
+        const struct normal *at = s->normal + k;
         tribo_add(f + at->row * c, h->key[at->row] == KEY_PRESSED ? -at->stiffness : 0.0, way + at->row * c, c);
     }
     for (size_t i = 0; i < sys->ncontact; i++) {

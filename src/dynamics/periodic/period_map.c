@@ -286,7 +286,8 @@ static int count_slides(const struct period_map *m, double factor, double t, con
         for (size_t k = 0; k < sys->compliance.count; k++) {
             limit[sys->compliance.contact[k]] *= factor;
         }
-        for (struct follower *f = sys->normals.follower; f < sys->normals.follower + sys->normals.followers; f++) {
+        for (size_t k = 0; k < sys->normals.followers; k++) {
+            struct follower *const f = sys->normals.follower + k;
             f->mu *= tribo_is_compliant(&sys->compliance, f->contact) ? factor : 1.0;
         }
         tribo_set_limit(contacts, limit);

@@ -43,12 +43,14 @@ void tribo_normal_series_perturb(const struct event *e, size_t columns, const do
     const struct matrix *j = &sys->direction;
     const struct normals *s = &sys->normals;
     memset(to, 0, sys->ncontact * columns * sizeof *to);
-    for (const struct normal *n = s->normal; n < s->normal + s->count; n++) {
+    for (size_t k = 0; k < s->count; k++) {
+        const struct normal *n = s->normal + k;
         for (size_t d = j->first[n->row]; n->pressed && d < j->first[n->row + 1]; d++) {
             tribo_add(to + n->row * columns, -n->stiffness * j->val[d], x + j->col[d] * columns, columns);
         }
     }
-    for (const struct follower *f = s->follower; f < s->follower + s->followers; f++) {
+    for (size_t k = 0; k < s->followers; k++) {
+        const struct follower *f = s->follower + k;
         const signed char slip = e->events.stick_slip.state.slip[f->contact];
         const double *normal = to + s->normal[f->normal].row * columns;
         tribo_add(to + f->contact * columns, tribo_slides(slip) ? slip * f->mu : 0.0, normal, columns);

@@ -47,7 +47,8 @@ static int steady_read_drives(struct equilibrium *e)
     static const char *const name[] = {"load", "base motion", "limit"};
     tribo_system *sys = e->sys;
     const size_t c = sys->ncontact;
-    for (const struct harmonic *w = sys->loads.harmonic; w < sys->loads.harmonic + sys->loads.harmonics; w++) {
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        const struct harmonic *w = sys->loads.harmonic + k;
         if (w->knots || (w->count > 0 && w->omega != 0.0 && w->drives != DRIVES_LOAD && !w->by_load)) {
             return tribo_error(e->message, TRIBO_ERR_UNSUPPORTED, "a %s %s: there is no equilibrium", name[w->drives],
                                w->knots ? "follows a table" : "depends on time");
@@ -159,7 +160,8 @@ static void steady_find_forces(const struct equilibrium *e, int affine, size_t c
         const size_t row = s->normal[k].row;
         tribo_add(f + row * columns, e->pressed[k] ? -s->normal[k].stiffness : 0.0, way + row * columns, columns);
     }
-    for (const struct follower *at = s->follower; at < s->follower + s->followers; at++) {
+    for (size_t k = 0; k < s->followers; k++) {
+        const struct follower *at = s->follower + k;
         const double *depth = way + s->normal[at->normal].row * columns;
         const int follows = e->pressed[at->normal] && tribo_equilibrium_slides(e, at->contact);
         tribo_add(f + at->contact * columns, follows ? e->unit[at->contact] : 0.0, depth, columns);
@@ -471,7 +473,8 @@ static int steady_finish(struct equilibrium *e, const unsigned char *open)
         e->lift[k] = 0.0;
         e->pressed[k] = !open[k];
     }
-    for (const struct follower *at = sys->normals.follower; at < sys->normals.follower + sys->normals.followers; at++) {
+    for (size_t k = 0; k < sys->normals.followers; k++) {
+        const struct follower *at = sys->normals.follower + k;
         if (open[at->normal]) {
             e->slip[at->contact] = e->slip[at->second] = TRIBO_SLIP_OPEN;
         }

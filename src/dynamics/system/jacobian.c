@@ -38,7 +38,8 @@ static int jacobian_add_normals(tribo_system *sys, size_t stride, double *rates,
     for (size_t k = 0; !status && k < sys->normals.count; k++) {
         const struct normal *n = &sys->normals.normal[k];
         memset(limit, 0, sys->ncontact * sizeof *limit);
-        for (const struct follower *f = sys->normals.follower; f < sys->normals.follower + sys->normals.followers; f++) {
+        for (size_t e = 0; e < sys->normals.followers; e++) {
+            const struct follower *f = sys->normals.follower + e;
             limit[f->contact] = limit[f->second] = f->normal == k ? f->mu * n->stiffness : limit[f->contact];
         }
         status = n->pressed ? tribo_limit_product(sys->contacts, limit, force) : TRIBO_OK;

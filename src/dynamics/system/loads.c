@@ -120,7 +120,8 @@ void tribo_system_set_time(tribo_system *sys, double t)
         return;
     }
     sys->loads.time = t;
-    for (struct harmonic *h = sys->loads.harmonic; h < sys->loads.harmonic + sys->loads.harmonics; h++) {
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        struct harmonic *const h = sys->loads.harmonic + k;
         if (h->knots == 0) {
             tribo_cos_sin(h->omega, t, sys->loads.low, &h->cos_t, &h->sin_t);
         } else {
@@ -179,7 +180,8 @@ static inline void loads_differentiate(const tribo_system *sys, size_t k, size_t
 
 void tribo_loads_keep_constant(tribo_system *sys)
 {
-    for (struct harmonic *h = sys->loads.harmonic; h < sys->loads.harmonic + sys->loads.harmonics; h++) {
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        struct harmonic *const h = sys->loads.harmonic + k;
         h->count = h->omega != 0.0 ? 0 : h->count;
     }
 }

@@ -271,7 +271,8 @@ static int check_roles(const tribo_model *m, const struct normal_input *in)
     if (in->contact == in->row) {
         return tribo_error(m->message, TRIBO_ERR_RANGE, "contact %zu is to be its own normal", in->contact);
     }
-    for (const struct normal_input *o = m->normal; o < m->normal + m->normals; o++) {
+    for (size_t k = 0; k < m->normals; k++) {
+        const struct normal_input *o = m->normal + k;
         if (o->row == in->contact || o->contact == in->row) {
             const struct normal_input *normal = o->row == in->contact ? o : in;
             return tribo_error(m->message, TRIBO_ERR_RANGE,

@@ -66,7 +66,8 @@ int tribo_normals_create(tribo_system *sys, size_t count, const struct normal_in
     if (!normals_reserve(s, count, sys->ncontact)) {
         return TRIBO_ERR_MEMORY;
     }
-    for (const struct normal_input *in = input; in < input + count; in++) {
+    for (size_t k = 0; k < count; k++) {
+        const struct normal_input *in = input + k;
         if (s->at[in->row] == 0) {
             s->normal[s->count++] = (struct normal){.row = in->row, .stiffness = in->stiffness, .gap = in->gap};
             s->at[in->row] = s->count;
@@ -166,7 +167,8 @@ int tribo_normals_pair(tribo_system *sys)
 
 void tribo_normals_move(tribo_system *sys, const double *q, const double *u)
 {
-    for (struct normal *n = sys->normals.normal; n < sys->normals.normal + sys->normals.count; n++) {
+    for (size_t k = 0; k < sys->normals.count; k++) {
+        struct normal *const n = sys->normals.normal + k;
         n->depth = tribo_matrix_row_dot(&sys->direction, n->row, q) - n->gap;
         n->speed = tribo_matrix_row_dot(&sys->direction, n->row, u);
         n->size = tribo_matrix_row_size(&sys->direction, n->row, q) + fabs(n->gap);
@@ -176,7 +178,8 @@ void tribo_normals_move(tribo_system *sys, const double *q, const double *u)
 void tribo_normals_set(tribo_system *sys, const double *q, const double *u)
 {
     tribo_normals_move(sys, q, u);
-    for (struct normal *n = sys->normals.normal; n < sys->normals.normal + sys->normals.count; n++) {
+    for (size_t k = 0; k < sys->normals.count; k++) {
+        struct normal *const n = sys->normals.normal + k;
         n->pressed = n->depth > 0.0;
     }
     if (sys->normals.count) {

@@ -292,7 +292,8 @@ void tribo_system_order_snaps(tribo_system *sys);
 /* Applies those of count corrections that are of contacts with loose 0. */
 static inline void tribo_snap_all(const struct snap *list, size_t count, const signed char *loose, const double *base, double *x)
 {
-    for (const struct snap *s = list; s < list + count; s++) {
+    for (size_t k = 0; k < count; k++) {
+        const struct snap *s = list + k;
         if (!loose[s->contact]) {
             x[s->to] = (base[s->contact] - (s->other != 0.0 ? s->other * x[s->from] : 0.0)) / s->value;
         }
