@@ -23,7 +23,7 @@
 #define ROUNDING 1e-14
 
 /* Speeds below this part of the largest one have a direction that is partly rounding. */
-#define LOST 1e-11
+#define LOST 1e-12
 
 /* A direction is known that turns by at most TURNS_LEFT, in radians, as the speed falls by SETTLED to the part LOST. */
 #define SETTLED 1e3

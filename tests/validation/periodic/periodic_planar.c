@@ -138,7 +138,7 @@ TEST(multipliers)
         int sticks, wide;
     } scene[] = {{0, 0, 0},  {3, 0, 0},   {5, 1, 0},  {9, 1, 0},  {13, 1, 0},
                  {17, 1, 0}, {122, 0, 1}, {24, 0, 1}, {60, 0, 1}, {92, 0, 1}};
-    const double h = 1e-6;
+    const double h = 1e-5; /* motions after stops in the plane have rounding of 1e-11 */
     size_t n;
     double y[2 * MOST + 1] = {0.0}, map[2 * MOST][2 * MOST], re[2 * MOST], im[2 * MOST], trace[2] = {0.0}, sum[2] = {0.0};
     double period, stick[MOST];
@@ -168,8 +168,8 @@ TEST(multipliers)
             trace[1] += map[i][j] * map[j][i];
         }
     }
-    assert_close(sum[0], trace[0], 5e-6);
-    assert_close(sum[1], trace[1], 5e-6);
+    assert_close(sum[0], trace[0], 1e-6);
+    assert_close(sum[1], trace[1], 1e-6);
     require(!scene[_i].sticks || (stick[0] > 0.05 && stick[0] < 1.0), "at rest for %g", stick[0]);
     tribo_driver_destroy(d);
     tribo_system_destroy(sys);
