@@ -39,7 +39,7 @@ module tribo_dynamics_constants
   integer, parameter, public :: TRIBO_PARAMETER_FREQUENCY = 2
   !> a factor of the damping matrix, at 1
   integer, parameter, public :: TRIBO_PARAMETER_DAMPING = 3
-  !> curves: a factor of all limits, at 1
+  !> curves: a factor of all limits, at 1; none may follow a normal load
   integer, parameter, public :: TRIBO_PARAMETER_LIMITS = 4
   !> curves: the amplitude of a nonlinear mode
   integer, parameter, public :: TRIBO_PARAMETER_AMPLITUDE = 5

@@ -515,7 +515,7 @@ enum {
     TRIBO_PARAMETER_LOADS = 1,     /* a factor of all loads and base motions, at 1 */
     TRIBO_PARAMETER_FREQUENCY = 2, /* a factor of all frequencies, at 1; base motions keep their displacements */
     TRIBO_PARAMETER_DAMPING = 3,   /* a factor of the damping matrix, at 1 */
-    TRIBO_PARAMETER_LIMITS = 4,    /* curves: a factor of all limits, at 1 */
+    TRIBO_PARAMETER_LIMITS = 4,    /* curves: a factor of all limits, at 1; none may follow a normal load */
     TRIBO_PARAMETER_AMPLITUDE = 5, /* curves: the amplitude of a nonlinear mode */
     TRIBO_PARAMETER_SWING = 6,     /* curves: a factor of the loads and base motions that change in time, at 1 */
     TRIBO_PARAMETER_BASES = 7      /* curves: a factor of all base motions, at 1 */
@@ -592,8 +592,8 @@ typedef struct {
  * On error period and y hold the last point seen, or are unchanged.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE (curve->size), TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (motion, parameter, index; the
  * first value is outside of the range), TRIBO_ERR_NOT_POSITIVE (step 0, least), TRIBO_ERR_UNSUPPORTED (parameter of another
- * motion), TRIBO_ERR_STOPPED, TRIBO_ERR_NO_CONVERGENCE (no first motion; or the curve ends, as where motions jump), and what the
- * searches return. */
+ * motion, or limits that follow normal loads), TRIBO_ERR_STOPPED, TRIBO_ERR_NO_CONVERGENCE (no first motion; or the curve ends,
+ * as where motions jump), and what the searches return. */
 TRIBO_API int tribo_driver_follow_curve(tribo_driver *drv, const tribo_curve *curve, double t, double *period, double *y,
                                         int (*seen)(const tribo_curve_point *point, void *data), void *data);
 

@@ -245,8 +245,8 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
 
 /* ------------------------------------------------------------------------------------------------------- the start of a phase */
 
-/* Sets z, growth and growth6 of harmonics at t0, of limits times side, with z the value of a table, and slopes.rate, limit and rise;
- * zeros after the last term. */
+/* Sets z, growth and growth6 of harmonics at t0, of limits times side; z of a table to its value; slopes.rate, limit and rise.
+ * After the last term: zeros. */
 static void start_harmonics(struct exact *x)
 {
     const struct forced *h = x->h;
@@ -363,8 +363,8 @@ static void lead_tables(struct exact *x, double *force)
     }
 }
 
-/* Sets vel, acc, jerk and drift, and subtracts from place = eta and rate = eta' of the modes the responses to the constant and linear
- * right-hand side force [modes], and to harmonics. */
+/* Sets vel, acc, jerk and drift, and subtracts from place = eta and rate = eta' of the modes the responses to the constant and
+ * linear right-hand side force [modes], and to harmonics. */
 static void split_amplitudes(struct exact *x, const double *force)
 {
     const struct forced *h = x->h;

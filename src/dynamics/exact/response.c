@@ -157,8 +157,8 @@ static int follow_bases(struct modal_build *b)
 
 /* ------------------------------------------------------------------------------------------------- forcing and response */
 
-/* Adds the forcing of eta by forcing s, of a load, or of a limit as force f = limit, to g; the forces of contacts that hold by what
- * the modes leave of the load to direct, or of a table to `on` of its shape. work [2 n + modes + rests]. */
+/* Adds to g the forcing of eta by forcing s: a load, or a limit as force f = limit. Adds the forces of contacts that hold, by the
+ * part of the load beside the modes, to direct; of a table, to `on` of its shape. work [2 n + modes + rests]. */
 static void force_modes(struct modal_build *b, size_t s, double *work)
 {
     struct forced *f = b->forced;

@@ -54,6 +54,9 @@
 #define BEYOND_LAST 1e-2
 #define BEYOND_RATIO 10.0
 
+/* Distance from a bound of p, over the largest step of p, at which the curve ends there. */
+#define AT_BOUND 1e-9
+
 /* Size of a cycle, over that of the motion, from which p is extrapolated to a state of rest. */
 #define SWING 1e-2
 
@@ -61,8 +64,8 @@
 #define OUTSIDE 1e-6
 #define COMPLEX 1e-6
 
-/* BARRED: steps in a row that are shortened before the end of the piece is looked for. MOST_TESTS: motions to locate a point. MOST_POINTS:
- * of a curve, as one that closes upon itself. */
+/* BARRED: number of shortened steps in a row, after which the end of the piece is looked for. MOST_TESTS: motions to locate a
+ * point. MOST_POINTS: of a curve, as one that closes upon itself. */
 enum { BARRED = 3, MOST_TESTS = 100, MOST_POINTS = 10000 };
 
 /* -------------------------------------------------------------------------------------------------------------- motions */
@@ -290,7 +293,7 @@ static int show(struct track *c, const struct knot *k, int kind, size_t contact)
                   : TRIBO_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- special points */
+/* ------------------------------------------------------------------------------------------------------------ special points */
 
 /* A special point between lo and hi, in sections `low` and `high` ahead of c->origin. */
 struct bracket {
@@ -333,8 +336,8 @@ static int copy_knot(const struct track *c, struct knot *to, const struct knot *
     return done ? TRIBO_OK : tribo_error(c->s->map.drv->message, TRIBO_ERR_MEMORY, "out of memory for a sequence of events");
 }
 
-/* Locates the zero of the test `which` between from and to, in sections low and high, to `width`, in the knots of spare [3]. b->lo,
- * b->hi: the ends. Returns a status. */
+/* Locates the zero of the test `which` between from and to, in sections low and high, to `width`, in the knots of spare [3].
+ * b->lo, b->hi: the ends. Returns a status. */
 static int locate(struct track *c, const struct knot *from, const struct knot *to, double low, double high, size_t which,
                   double width, struct knot *spare, struct bracket *b)
 {
@@ -570,11 +573,11 @@ static int pass_barrier(struct track *c, struct knot *a, double high, struct kno
     return status ? status : show(c, b, TRIBO_POINT_REGULAR, SIZE_MAX);
 }
 
-/* Shoots to b at the bound of the range that it has left, from a. Returns a status. */
+/* Shoots to b at the bound of the range that the step from a to b reaches. Returns a status. */
 static int end_at_bound(struct track *c, const struct knot *a, struct knot *b)
 {
     const size_t n = c->n, last = n + c->count - 1;
-    const double bound = clamp(b->z[last], c->ask->least, c->ask->most);
+    const double bound = b->z[last] > a->z[last] ? c->ask->most : c->ask->least;
     const double part = (bound - a->z[last]) / (b->z[last] - a->z[last]);
     double *const row = c->beyond, *const z = c->guess;
     int found;
@@ -658,8 +661,8 @@ static int step_ahead(struct track *c, struct knot **a, struct knot **b, double 
         status = pass_barrier(c, *a, tried, *b);
         *length = BEYOND_LAST * size;
     } else {
-        const double high = (*b)->z[last];
-        *ends = !(high >= c->ask->least && high <= c->ask->most);
+        const double p = (*b)->z[last], near = AT_BOUND * fabs(c->ask->step);
+        *ends = (p > (*a)->z[last] && p >= c->ask->most - near) || (p < (*a)->z[last] && p <= c->ask->least + near);
         status = *ends ? end_at_bound(c, *a, *b) : TRIBO_OK;
         int rests = 0, joined = 1;
         status = status ? status : end_at_rest(c, *a, *b, *length, &rests);

@@ -61,8 +61,8 @@ struct track {
     const double *origin, *row; /* the section row'(z - origin) = ahead, over units */
     double ahead;
     int unique; /* 1: one motion for each p: sections of constant p */
-    struct knot
-        knot[TRIBO_KNOTS];  /* 0, 1: ends of a step; 2 to 8: to locate points; 9, 10: ends of a piece; 11, 12: the last ones */
+    /* 0, 1: ends of a step; 2 to 8: to locate points; 9, 10: ends of a piece; 11, 12: the last ones */
+    struct knot knot[TRIBO_KNOTS];
     size_t known;           /* number of last motions for a polynomial: the end of the step, and those of knot[11], [12] */
     double *guess, *beyond; /* [n + count] a guess; a tangent */
     double *memory, *shown; /* memory of all arrays; [dimension] state of the last point, as the caller has it */
@@ -73,8 +73,8 @@ struct track {
 };
 
 /* curve_parameter.c. begin: finds the first motion, s->here of the twin. set: sets system, t and period of the twin for p = value.
- * border: c->s->extra for the section. free: takes a zeroed c. Return a status, its message on the driver of owner (begin), or of
- * the twin. */
+ * Both return a status, its message on the driver of owner (begin), or of the twin (set). border: sets c->s->extra for the
+ * section. */
 int tribo_curve_begin(struct track *c);
 int tribo_curve_set(struct track *c, double value);
 void tribo_curve_border(struct track *c);

@@ -105,7 +105,7 @@ void tribo_curve_border(struct track *c)
     memcpy(c->s->extra.unit, c->unit, sizeof c->unit);
 }
 
-/* -------------------------------------------------------------------------------------------------------------- the first motion */
+/* ---------------------------------------------------------------------------------------------------------- the first motion */
 
 int tribo_curve_begin(struct track *c)
 {

@@ -23,8 +23,8 @@
 /* Relative change of limits. */
 #define NUDGE 1e-7
 
-/* Force of a touch that counts, relative to the largest force of the contact as it begins to slide, and to the terms of a limit that
- * follows. */
+/* Force of a touch that counts, relative to the largest force of the contact as it begins to slide, and to the terms of a limit
+ * that follows. */
 #define TOUCH 1e-2
 
 /* The period is followed from this part of it on, where no touch is expected by symmetry. Phases shorter than INSTANT of the
@@ -241,10 +241,10 @@ int tribo_period_map_complete(struct period_map *m, struct point *p)
 }
 
 /* -------------------------------------------------------------------------------------------------------------- touches
- * An elastic contact whose force only touches its limit, as where sliders come to rest in the course of time: in some neighbouring
- * motions the contact slides there, in others it does not, and the map has no derivative. The contact slides a different number of
- * times in a period with limits that are slightly lower, or slightly higher: a touch counts by the force with which it slides, which
- * is small where a normal only just presses, and forces are smooth. */
+ * An elastic contact whose force only touches its limit, as where sliders come to rest in the course of time: in some
+ * neighbouring motions the contact slides there, in others it does not, and the map has no derivative. With limits slightly lower,
+ * or slightly higher, the contact slides a different number of times in a period. A touch counts by the force at which the contact
+ * begins to slide: that is small where a normal only just presses, and forces are smooth there. */
 
 /* Observer of a period. */
 struct slides {

@@ -232,8 +232,12 @@ static int check_curve(tribo_driver *drv, const tribo_curve *curve, const double
     if (kind == TRIBO_PARAMETER_LIMIT && curve->index >= sys->ncontact) {
         return tribo_error(drv->message, TRIBO_ERR_RANGE, "there is no contact %zu", curve->index);
     }
-    if (kind == TRIBO_PARAMETER_LIMIT && (tribo_normals_at(sys, curve->index) || tribo_normals_follower(sys, curve->index))) {
-        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "the limit of contact %zu follows the motion", curve->index);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const struct follower *f = tribo_normals_follower(sys, i);
+        const int one = kind == TRIBO_PARAMETER_LIMIT && i == curve->index && (f || tribo_normals_at(sys, i));
+        if (one || (kind == TRIBO_PARAMETER_LIMITS && f && f->mu > 0.0)) {
+            return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "the limit of contact %zu follows the motion", i);
+        }
     }
     return curve->step == 0.0 || !(bounded ? curve->least > 0.0 : curve->least >= 0.0)
                ? tribo_error(drv->message, TRIBO_ERR_NOT_POSITIVE, "step = %g is 0, or least = %g is too small", curve->step,

@@ -67,8 +67,8 @@ struct shooting *tribo_shooting_create(tribo_driver *drv);
 int tribo_shooting_multipliers(struct shooting *s, double *re, double *im);
 int tribo_shooting_freedom(struct shooting *s, size_t *freedom);
 
-/* Returns TRIBO_OK; TRIBO_ERR_UNSUPPORTED if the force of an elastic contact only touches its limit in the motion found, so that it
- * has no `what`; or another status. The message is on the driver. */
+/* Returns TRIBO_OK; TRIBO_ERR_UNSUPPORTED if the force of an elastic contact only touches its limit in the motion found, so that
+ * the motion has no `what`; or another status. The message is on the driver. */
 int tribo_shooting_check_touches(struct shooting *s, const char *what);
 
 /* Largest residual over size of a motion that is found. */
@@ -85,8 +85,8 @@ int tribo_shooting_search(struct shooting *s);
  * status: not that of a search that fails. */
 int tribo_shooting_try(struct shooting *s, double period, int *closed);
 
-/* x [n + count] = the tangent: the shortest solution of the bordered equation at s->here with right-hand side 0, but 1 for the last
- * condition. Returns a status. */
+/* x [n + count] = the tangent: the shortest solution of the bordered equation at s->here with right-hand side 0, but 1 for the
+ * last condition. Returns a status. */
 int tribo_shooting_tangent(struct shooting *s, double *x);
 
 /* Exchanges here and there. */
@@ -108,7 +108,7 @@ int tribo_shooting_find_cycle(struct shooting *s, struct wanted *w);
 int tribo_shooting_find_mode(struct shooting *s, struct wanted *w);
 int tribo_shooting_follow_curve(struct shooting *s, struct wanted *w);
 
-/* Borders of cycles (cycle.c) and modes (mode.c), which may be followed by more unknowns: unknowns T/unit[0], and delta/unit[1]. */
+/* Borders of cycles (cycle.c) and modes (mode.c): unknowns T/unit[0], of modes also delta/unit[1]; more unknowns may follow. */
 extern const struct border tribo_cycle_border, tribo_mode_border;
 
 /* mode.c: sets the twin of s: a copy of its system, steady = 1: without loads and bases that change in time, and its driver.

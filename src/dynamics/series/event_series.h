@@ -167,9 +167,9 @@ double tribo_planar_series_brake(const struct event *e, size_t k, double tau);
  * and x/|x|, and no speed grows so much that it is lost in rounding. */
 double tribo_planar_series_shorten(const struct event *e, double h);
 
-/* Terms x^(k) tau^k/k! of perturbations: q [ndof][columns] of displacements, of order k; v [rows][ncontact][columns] of velocities
- * of contacts, z and g [rows][planar contacts][columns] of the turns of directions u and of limits that follow, all three of the
- * last orders, cyclically; rows > order of the series. */
+/* Terms x^(k) tau^k/k! of perturbations: q [ndof][columns] of displacements, of order k; v [rows][ncontact][columns] of
+ * velocities of contacts, z and g [rows][planar contacts][columns] of the turns of directions u and of limits that follow. v, z
+ * and g: of the last orders, cyclically; rows > order of the series. */
 struct planar_turns {
     size_t columns, rows;
     double tau;

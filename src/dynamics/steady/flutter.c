@@ -36,6 +36,8 @@ struct onset {
     enum kind kind;
     double complex at; /* lambda; of MERGE the mean of the squares */
     double omega;      /* frequency of the motion, by the last quantity */
+    size_t border; /* GROWS: number of motions of about this frequency with Re lambda >= 0, to rounding, by the last quantity */
+    size_t still;  /* GROWS: border at the stable end: motions without damping, beside the one that grows */
 };
 
 /* Finds the exponents at a factor. Returns a status. */
@@ -47,19 +49,26 @@ static int flutter_exponents(struct onset *o, double factor, struct exponents *x
     return status ? status : tribo_equilibrium_exponents(o->e, x);
 }
 
-/* Sets *value = the quantity that is zero at the onset, > 0 beyond. Returns a status. */
+/* Sets *value = the quantity that is zero at the onset, > 0 beyond. GROWS: the largest Re lambda; if that is 0, the largest one
+ * below those of `still` motions. Returns a status. */
 static int flutter_quantity(struct onset *o, double factor, double *value)
 {
     struct exponents x;
     const int status = flutter_exponents(o, factor, &x);
     const size_t m = o->e->modes;
+    const double noise = NOISE * cabs(o->at);
     double best = HUGE_VAL;
+    size_t found = 0;
     *value = 0.0;
+    o->border = 0;
     for (size_t k = 0; !status && o->kind == GROWS && k < x.count; k++) {
-        if (fabs(x.im[k] - cimag(o->at)) <= NEAR * cabs(o->at) && (best == HUGE_VAL || x.re[k] > *value)) {
-            *value = x.re[k];
-            o->omega = x.im[k];
-            best = 0.0;
+        const double off = fabs(x.im[k] - cimag(o->at));
+        if (off <= NEAR * cabs(o->at)) {
+            *value = found == 0 || (found <= o->still && *value <= noise) ? x.re[k] : *value;
+            o->omega = off < best ? x.im[k] : o->omega;
+            best = lesser(best, off);
+            o->border += x.re[k] >= -noise;
+            found++;
         }
     }
     for (size_t k = 0; !status && o->kind == FALLS && k < m; k++) {
@@ -107,6 +116,10 @@ static int flutter_zero(struct onset *o, double stable, double unstable, double 
 {
     double a = stable, b = unstable, fa, fb, f = 0.0, x = b;
     int status = flutter_quantity(o, a, &fa), side = 0;
+    if (!status && o->border > 0) {
+        o->still = o->border;
+        status = flutter_quantity(o, a, &fa);
+    }
     status = status ? status : flutter_quantity(o, b, &fb);
     if (!status && !(fb > 0.0)) {
         return tribo_error(o->e->message, TRIBO_ERR_NO_CONVERGENCE, "no single motion loses its stability at the factor %g", b);

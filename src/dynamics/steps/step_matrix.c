@@ -235,7 +235,7 @@ static void solve_sets(struct step_matrix *m, const struct band_step *s)
         f[i] = m->at[i] * s->limit[i];
         m->move[m->body[i]] = m->at[i] ? 0.0 : s->base[i] / m->lever[i] - s->u[m->body[i]];
     }
-    /* rows of held bodies are those of the identity; columns of held bodies that move with their bases go to the right-hand side */
+    /* rows of held bodies are those of the identity; their columns go to the right-hand side, times the moves of their bases */
     tribo_matrix_multiply(matrix, m->move, x);
     for (size_t d = 0; d < matrix->rows; d++) {
         const size_t i = m->contact[d];

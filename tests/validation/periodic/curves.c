@@ -17,9 +17,9 @@ struct curve_seen {
         double parameter;
         size_t contact;
     } special[20];
-    double last, period, zeta;
-    int stable, asks; /* asks: extremes of every point */
-    double most;      /* largest q_0 of all points */
+    double last, period, zeta, gap; /* gap: least difference of the parameter between two points in a row */
+    int stable, asks;               /* asks: extremes of every point */
+    double most;                    /* largest q_0 of all points */
 };
 
 static int look(const tribo_curve_point *p, void *data)
@@ -29,6 +29,8 @@ static int look(const tribo_curve_point *p, void *data)
     double low, high;
     ck_assert_uint_eq(p->size, sizeof *p);
     s->points++;
+    const double gap = fabs(p->parameter - s->last);
+    s->gap = s->points > 1 ? fmin(s->gap, gap) : HUGE_VAL;
     s->last = p->parameter;
     s->period = p->period;
     s->zeta = p->zeta;
@@ -383,7 +385,46 @@ TEST(refuses)
     assert_status(tribo_driver_follow_curve(drv, &good, 0.0, NULL, y, NULL, NULL), TRIBO_ERR_NULL);
     assert_status(tribo_driver_follow_curve(drv, &good, 0.0, &period, NULL, NULL, NULL), TRIBO_ERR_NULL);
     end(drv, sys);
+    const tribo_curve limits = {
+        .size = sizeof limits, .motion = TRIBO_MOTION_CYCLE, .parameter = TRIBO_PARAMETER_LIMITS, .most = 2.0, .step = 0.1};
+    double x[5] = {0.0};
+    sys = squeal(0.5, 0.6, 0.1);
+    drv = driver_create(sys, "event", 1e-3, 1e-13);
+    assert_status(follow(drv, &limits, 0.0, x, &s), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_driver_message(drv), "the limit of contact 0 follows the motion");
+    end(drv, sys);
+}
+
+/* A range of whole steps, also to rounding: the last point is at the bound, once. */
+TEST(whole_steps)
+{
+    for (int steps = 1; steps < 9; steps++) {
+        const double one = 1.0, damping = 0.2, load = 1.0, step = _i ? -0.1 : 0.1, last = 1.0 + steps * step;
+        tribo_model *model;
+        tribo_system *sys;
+        assert_ok(tribo_model_create(&model, 1, 1));
+        assert_ok(tribo_model_set_mass_diagonal(model, &one));
+        assert_ok(tribo_model_set_stiffness(model, &one));
+        assert_ok(tribo_model_set_damping(model, &damping));
+        assert_ok(tribo_model_set_direction(model, &one));
+        assert_ok(tribo_system_create(&sys, model));
+        tribo_model_destroy(model);
+        assert_ok(tribo_system_add_load(sys, 0.6, &load, NULL));
+        assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.1));
+        tribo_driver *drv = driver_create(sys, "exact", 1e-3, 1e-13);
+        const tribo_curve curve = {.size = sizeof curve,
+                                   .parameter = TRIBO_PARAMETER_LIMITS,
+                                   .least = fmin(1.0, last),
+                                   .most = fmax(1.0, last),
+                                   .step = step};
+        double y[3] = {0.0};
+        struct curve_seen s = {0};
+        assert_ok(follow(drv, &curve, 2.0 * PI / 0.6, y, &s));
+        assert_exact(s.last, last);
+        require(s.gap > 1e-6, "%d steps: two points are %g from each other", steps, s.gap);
+        end(drv, sys);
+    }
 }
 
 TEST_MAIN("curves", {stop_folds, 2}, {stop_loads, 2}, {squeal_speed, 1}, {flips, 1}, {torus, 1}, {stick_slip, 2},
-          {stick_slip_ends, 1}, {mode, 3}, {beam, 2}, {refuses, 1})
+          {stick_slip_ends, 1}, {mode, 3}, {beam, 2}, {refuses, 1}, {whole_steps, 2})

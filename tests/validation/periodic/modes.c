@@ -200,8 +200,8 @@ TEST(refused)
     tribo_system_destroy(sys);
 }
 
-/* A structure of so much damping that its linear modes do not vibrate, from zeros and from a guess: none is found, and what was given
- * is unchanged. */
+/* A structure of so much damping that its linear modes do not vibrate, from zeros and from a guess: no mode is found, and the
+ * arguments are unchanged. */
 TEST(overdamped)
 {
     tribo_system *sys = masses(0.2, -4.0, 0.0);

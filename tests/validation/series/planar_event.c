@@ -346,8 +346,8 @@ TEST(refused)
     tribo_system_destroy(s);
 }
 
-/* A limit that swings, and lifts off where it would be negative (1), and one by a table (2): on a line, directions askew, a planar
- * contact is the scalar one. Without a table also its periodic motion, and multipliers. */
+/* A limit that swings, and lifts off where it would be negative (1), and a limit by a table (2): on a line, directions askew, a
+ * planar contact is the scalar one. Without a table also its periodic motion, and multipliers. */
 TEST(limits_vary)
 {
     const double askew[4] = {0.6, 0.8, -0.8, 0.6}, one[1] = {1.0}, size[] = {0.5, 1.3, 0.0};

@@ -227,8 +227,29 @@ TEST(falling_limit)
     tribo_system_destroy(sys);
 }
 
-/* A body with two contacts side by side and a second one on a spring from it: forces are shared as limits allow, the contacts take
- * the motion of the first body away. */
+/* The block beside a body on a spring, without a contact and without damping, of the same frequency or almost: its exponents have
+ * no part in the onset. */
+TEST(beside_undamped)
+{
+    const double one[] = {1.0, 0.0, 0.0, 1.0}, k[] = {1.0, 0.0, 0.0, _i ? 1.001 : 1.0}, damping[] = {0.115, 0.0, 0.0, 0.0};
+    const double belt = 1.0, ratio = 1.0 / 0.6, velocity = 0.5;
+    const struct given g = {2, 1, one, damping, k, one};
+    tribo_system *sys = system_of(model_of(&g));
+    double critical, omega;
+    assert_ok(tribo_system_add_base_motion(sys, 0.0, &belt, NULL));
+    assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.6));
+    assert_ok(tribo_set_static(tribo_system_context(sys), &ratio, &velocity));
+    assert_ok(tribo_system_find_flutter(sys, TRIBO_FLUTTER_SPEED, NULL, NULL, 2.0, 0.1, &critical, &omega));
+    assert_close(critical, 0.5 * log(0.8 / 0.115), 1e-11);
+    assert_close(omega, 1.0, 1e-12);
+    assert_ok(tribo_system_find_flutter(sys, TRIBO_FLUTTER_FRICTION, NULL, NULL, 0.0, 3.0, &critical, &omega));
+    assert_close(critical, 0.115 / (0.8 * exp(-2.0)), 1e-11);
+    assert_close(omega, 1.0, 1e-12);
+    tribo_system_destroy(sys);
+}
+
+/* A body with two contacts side by side and a second body on a spring from it: the contacts share the force as limits allow, and
+ * hold the first body. */
 TEST(shared)
 {
     static const double limit[][2] = {{0.6, 0.6}, {0.2, 0.9}, {0.45, 0.45}, {0.5, 0.5}};
@@ -331,7 +352,7 @@ TEST(across)
     assert_close(y[1], 1.6 / 9.0, 1e-15);
     ck_assert_int_eq(slip[0], TRIBO_SLIP_PLANE);
     ck_assert_int_eq(slip[1], TRIBO_SLIP_PLANE);
-    /* damping 4 e e', e across the belt: (lambda^2 + 4)(lambda^2 + 9) + 4 lambda (0.64 (lambda^2 + 9) + 0.36 (lambda^2 + 4)) = 0 */
+    /* damping 4 e e', e across the belt: x z + 4 lambda (0.64 z + 0.36 x) = 0, x = lambda^2 + 4, z = lambda^2 + 9 */
     for (size_t k0 = 0; k0 < 4; k0++) {
         const double complex l = re[k0] + im[k0] * (double complex)_Complex_I, x = l * l + 4.0, z = l * l + 9.0;
         require(cabs(x * z + 4.0 * l * (0.64 * z + 0.36 * x)) < 1e-11, "lambda = %g + %g i", re[k0], im[k0]);
@@ -572,5 +593,5 @@ TEST(refused)
 }
 
 TEST_MAIN("equilibrium", {mode_coupling, 2}, {onset, 2}, {alike, 1}, {constant_limit, 2}, {no_friction, 2}, {circulation, 1},
-          {falling_limit, 1}, {shared, 4}, {springs, 1}, {reduced, 1}, {across, 1}, {lifts, 4}, {random_structures, 1},
-          {many_normals, 2}, {refused, 1})
+          {falling_limit, 1}, {beside_undamped, 2}, {shared, 4}, {springs, 1}, {reduced, 1}, {across, 1}, {lifts, 4},
+          {random_structures, 1}, {many_normals, 2}, {refused, 1})
