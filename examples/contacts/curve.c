@@ -30,8 +30,8 @@ static int note(const tribo_curve_point *point, void *data)
     const double c[] = {1.0, 0.0};
     double least, most;
     need(tribo_driver_period_extremes(r->drv, c, &least, &most, NULL, NULL), tribo_driver_message(r->drv));
-    for (int k = 0; k < (point->kind == TRIBO_POINT_FOLD || point->kind == TRIBO_POINT_REST ? 2 : 1);
-         k++) { /* ends of both parts */
+    const int parts = point->kind == TRIBO_POINT_FOLD || point->kind == TRIBO_POINT_REST ? 2 : 1; /* that end or begin here */
+    for (int k = 0; k < parts; k++) {
         const int stable = point->kind == TRIBO_POINT_REGULAR ? point->stable : k ? !r->stable : r->stable;
         fprintf(r->table, "%.12g,%.10g,%.10g,%d\n", point->parameter, most, least, stable);
     }

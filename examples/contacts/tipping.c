@@ -229,8 +229,8 @@ static double fastest(const struct box *b)
     return most;
 }
 
-/* The box falls, pushed and turning a little. Writes table and course unless they are NULL. Sets drift: its way in the last half
- * second. */
+/* The box falls, pushed and turning a little. Writes table and course unless they are NULL. *drift = the way of the box in the last
+ * half second. */
 static void fall(struct box *b, double dt, FILE *table, FILE *course, double *drift)
 {
     const double end = 1.6;

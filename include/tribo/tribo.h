@@ -194,9 +194,8 @@ TRIBO_API int tribo_bouc_wen_force(size_t n, const double *dz, const double *par
 
 /* Iwan's parallel sliders in the four-parameter form of Segalman (J. Appl. Mech. 72 (2005) 752, doi:10.1115/1.1989354), with
  * Masing's rule for all turns of the motion.
- * room       in   turns that a state can hold: turns of loops that have not closed, two in a steady motion, one for each half
- * cycle
- *                 in which a motion dies away; at most 1e6
+ * room       in   turns that a state can hold: of loops that have not closed, two in a steady motion, one for each half cycle in
+ *                 which a motion dies away; at most 1e6
  * parameter  [n][4] in   kt > 0 tangential stiffness, fs >= 0 limit, chi > -1, beta >= 0
  * state      [n][3 + 2 room] in/out   displacement from the middle, number of turns, direction, turns; 0 at the start
  * Returns TRIBO_ERR_SIZE also where a turn finds no room. */
@@ -298,8 +297,8 @@ TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
  * scalar; arrays keep one entry per direction. The manual explains laws, epsilon and sharing in the plane.
  * first  [count] in   count 0: no planar contacts
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE (first; static limits that differ), TRIBO_ERR_DUPLICATE (a direction of two contacts),
- * TRIBO_ERR_UNSUPPORTED (partition coupling; an operator set by masses that differ too much),
- * TRIBO_ERR_MEMORY; on error the planar contacts are unchanged. */
+ * TRIBO_ERR_UNSUPPORTED (partition coupling; an operator set by masses that differ too much), TRIBO_ERR_MEMORY; on error the
+ * planar contacts are unchanged. */
 TRIBO_API int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first);
 
 /* The operator R of z'' = R f + a, in one of five forms; on error the old operator stays. R_ii = 0: friction cannot move
@@ -341,7 +340,7 @@ TRIBO_API int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
  * those of a context with the new operator set, to the last bit, unless sharing is PREVIOUS. Epsilon follows the operator;
  * settings, planar contacts, counts and the reversal memory stay. On error the old values stay.
  * val  in   tribo_set_operator_diagonal: r [n]; _dense: r [n][n]; _csr: val [rowptr[n]] at the rowptr and col that were set;
- *           _mass: val [rowptr[n]] of J likewise; inverse_mass stays. Values may become 0, or cease to be
+ *           _mass: val [rowptr[n]] of J likewise; inverse_mass stays. A value of 0 may change, others may become 0
  * Allocates memory in the first two calls after tribo_set_operator_..., tribo_set_planar, or tribo_clone of or to ctx; later only
  * where R couples more contacts than before, or in groups of more than 128 contacts other ones.
  * Returns what the call that set the operator returns, and TRIBO_ERR_STATE (no operator), TRIBO_ERR_UNSUPPORTED (the operator is

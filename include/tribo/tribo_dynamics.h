@@ -37,7 +37,7 @@ TRIBO_API const char *tribo_model_message(const tribo_model *model);
  * rowptr, col, val  [ndof + 1], [rowptr[ndof]] in   compressed rows, counted from 0, columns in any order; no entry twice
  * The mass must be symmetric and positive definite; a diagonal mass is fastest. A degree of freedom without mass is allowed if
  * the stiffness holds the degree of freedom. The damping is 0 if not set. Damping and stiffness need not be symmetric (gyroscopic
- * forces; loads that follow the structure); the manual says what a stiffness that is not is refused for.
+ * forces; loads that follow the structure); the manual lists what refuses a stiffness that is not symmetric.
  * Return TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_SIZE (rowptr), TRIBO_ERR_RANGE (col), TRIBO_ERR_DUPLICATE,
  * TRIBO_ERR_MEMORY; on error the matrix is unchanged. */
 TRIBO_API int tribo_model_set_mass(tribo_model *model, const double *m);
@@ -273,8 +273,8 @@ TRIBO_API int tribo_system_accept(tribo_system *sys, double t, const double *y);
 
 /* Finds the equilibrium of steady sliding under constant loads and bases of constant velocities (belts), and the exponents re + i
  * im of small motions about it. The manual says what rests, slides and is refused.
- * given   [ncontact] in, or NULL  TRIBO_SLIP_FORTH, _BACK: slides at its limit, also on a base at rest; _OPEN: no friction; 0: as
- *                                 found
+ * given   [ncontact] in, or NULL  TRIBO_SLIP_FORTH, _BACK: slides at its limit, also on a base at rest; _OPEN: no friction;
+ *                                 0: rests, or slides on a base that moves
  * y       [dimension] in/out      in: where contacts rest, e.g. zeros; out: the equilibrium, with velocities and energy 0
  * slip    [ncontact] out, or NULL  TRIBO_SLIP_...; _OPEN also of normals
  * count   out, or NULL            number of exponents, at most 2 tribo_system_ndof; NULL: none are found
@@ -285,7 +285,7 @@ TRIBO_API int tribo_system_accept(tribo_system *sys, double t, const double *y);
 TRIBO_API int tribo_system_equilibrium(tribo_system *sys, const signed char *given, double *y, signed char *slip, size_t *count,
                                        double *re, double *im);
 
-/* What is multiplied by a factor. */
+/* The parameter that a factor multiplies. */
 enum {
     TRIBO_FLUTTER_FRICTION = 0, /* limits, and coefficients of friction of tribo_model_set_normal */
     TRIBO_FLUTTER_SPEED = 1     /* velocities of bases */
@@ -454,8 +454,7 @@ TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double per
  * ones may act), as stick-slip and squeal, stable or not. Methods exact, event, auto. The search does not call the observer. One
  * multiplier of a cycle is 1, of the motion along it: the others say whether it is stable. Its freedom is at least 1.
  * t        in       time at which the period begins
- * period   in/out   in: >= 0; a guess, or a multiple up to 16 times, or 0: none; out: the period, the smallest; unchanged on
- * error
+ * period   in/out   in: >= 0; a guess, or a multiple up to 16 times, or 0: none; out: the smallest period; unchanged on error
  * y        [dimension] in/out   in: a guess, no equilibrium; out: the state, with energy 0, as the contact of lowest index
  *                   that breaks away does so, after its longest rest; or, if none does, any; unchanged on error
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE (period < 0, or 0 of a structure without stiffness),
@@ -481,10 +480,10 @@ TRIBO_API int tribo_driver_find_mode(tribo_driver *drv, const double *c, double 
 
 /* Floquet multipliers re + i im of the last periodic motion found, largest modulus first; in a complex pair im > 0 is first.
  * re, im   [dimension - 1] out
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_STATE (no search yet, or the last search failed; with
- * elastic contacts: the system has changed since), TRIBO_ERR_UNSUPPORTED (contacts that act on each other stop or break away at one
- * instant, a normal rests at depth 0, or the force of an elastic contact only touches its limit: the motion nearby is not linear;
- * the message names the contact). */
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_STATE (no search yet, or the last search failed;
+ * with elastic contacts: the system has changed since), TRIBO_ERR_UNSUPPORTED (contacts that act on each other stop or break away
+ * at one instant, a normal rests at depth 0, or the force of an elastic contact only touches its limit: the motion nearby is not
+ * linear; the message names the contact). */
 TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im);
 
 /* The dimension of the family of periodic motions around the last periodic motion found: a contact that never slips can rest at
@@ -522,8 +521,9 @@ enum {
 };
 
 /* Derivatives of the last periodic motion found by parameters, in closed form along its events. The system must be unchanged
- * since. kind, index  [count] in                  TRIBO_PARAMETER_...; contacts of TRIBO_PARAMETER_LIMIT, not read for other
- * kinds
+ * since.
+ * kind         [count] in                  TRIBO_PARAMETER_...; those of curves are refused
+ * index        [count] in                  contacts of TRIBO_PARAMETER_LIMIT; not read for other kinds
  * c            [2 ndof] in, or NULL        as in tribo_driver_period_extremes; read for extremes
  * extremes     [count][2] out, or NULL     derivatives of least and most of tribo_driver_period_extremes
  * energy       [count][ncontact] out, or NULL   derivatives of the energies of tribo_driver_period_dissipation
@@ -554,11 +554,11 @@ enum {
     TRIBO_POINT_REST = 9    /* a cycle shrinks to a state of rest (Hopf); the curve ends there */
 };
 
-/* A curve of periodic motions over a parameter, followed around its turns by pseudo-arc-length; steps become shorter where the
- * curve bends. Methods exact, event, auto. The curve begins with the motion of the system as it is: the value of the parameter is
- * there 1, or the limit, or amplitude. Special points are located to 1e-8 of the parameter. The system stays unchanged. Within
- * the observer the questions about periodic motions are about the point; searches and advances are not allowed there. Base
- * motions of constant speed are part of TRIBO_PARAMETER_LOADS, and unchanged by TRIBO_PARAMETER_FREQUENCY. */
+/* A curve of periodic motions over a parameter, followed around its turns by pseudo-arc-length (Keller 1977); steps become
+ * shorter where the curve bends. Methods exact, event, auto. The curve begins with the motion of the system as it is: there the
+ * parameter is 1, or the limit, or the amplitude. Special points are located to 1e-8 of the parameter. The system stays
+ * unchanged. Within the observer the questions about periodic motions are about the point; searches and advances are not allowed
+ * there. Base motions of constant speed are part of TRIBO_PARAMETER_LOADS, and unchanged by TRIBO_PARAMETER_FREQUENCY. */
 typedef struct {
     size_t size;        /* sizeof(tribo_curve) */
     int motion;         /* TRIBO_MOTION_... */
@@ -584,10 +584,11 @@ typedef struct {
     int stable;       /* 1: no multiplier outside of the unit circle; 0: unstable; -1: not known, as of modes */
 } tribo_curve_point;
 
-/* t        in       time at which the first period begins; by the frequency t/period stays constant; modes: not read
+/* Follows a curve.
+ * t        in       time at which the first period begins; by the frequency t/period stays constant; modes: not read
  * period   in/out   in: as in tribo_driver_find_periodic, tribo_driver_find_cycle; modes: a guess or 0; out: of the last point
  * y        [dimension] in/out   in: a guess; out: the state of the last point. Of cycles the period begins between events
- * seen     in       called at each point; returns 0 to continue, any other value ends the curve with TRIBO_ERR_STOPPED; NULL: none
+ * seen     in       called at each point; returns 0 to continue, another value to end with TRIBO_ERR_STOPPED; NULL: none
  * data     in       passed to seen
  * On error period and y hold the last point seen, or are unchanged.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE (curve->size), TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (motion, parameter, index; the

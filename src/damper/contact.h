@@ -63,8 +63,8 @@ struct contacts {
 };
 
 /* "X,Y,Z,DIR", where DIR may be two directions, and words to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER
- * normal=DIR,STIFFNESS gap=LENGTH belt=VELOCITY static=RATIO behind it, parted by colons or blanks: adds the contact, or the two directions of a planar one,
- * to a struct contacts. The other one adds the contacts of a file, one a line. */
+ * normal=DIR,STIFFNESS gap=LENGTH belt=VELOCITY static=RATIO behind it, parted by colons or blanks: adds the contact, or the two
+ * directions of a planar one, to a struct contacts. The other one adds the contacts of a file, one a line. */
 reader read_contact, read_contacts;
 
 void add_normals(struct contacts *all);

@@ -213,7 +213,7 @@ static const struct option {
      "                                            --limits, which the structure holds; or, with gap=LENGTH, it begins to press\n"
      "                                            at this displacement, below 0 if it presses at rest\n"
      "                         belt=VELOCITY   with --cycle: the other end moves along the contact\n"
-     "                         static=RATIO    with --cycle: limit at rest over limit while sliding, at least 1\n"},
+     "                         static=RATIO    with --cycle: limit at rest over limit of sliding, at least 1; rigid contacts\n"},
     {OPTION(read_contacts, contacts), "  --contacts FILE      contacts, one a line, in the same words\n"},
     {TEXT, "\n"
            "The loads, at least one --load or --base; each may be given several times:\n"},
@@ -237,9 +237,9 @@ static const struct option {
     {OPTION(read_count, backbone),
      "  --backbone MODE      in the place of a response: natural frequency and damping ratio of this mode over the amplitude, "
      "as\n"
-     "                       free vibrations have them (nonlinear mode), at one limit. Loads do not act; without --load\n"
-     "                       amplitudes are measured at the first --output. Contacts that stick for a part of the period need\n"
-     "                       stiffness=\n"},
+     "                       free vibrations have them (nonlinear mode), at one limit. MODE counts as with all contacts stuck.\n"
+     "                       Loads do not act; without --load amplitudes are measured at the first --output. Contacts that\n"
+     "                       stick for a part of the period need stiffness=\n"},
     {OPTION(read_range, amplitudes),
      "  --amplitudes FROM:TO:N   N amplitudes of --backbone, geometric from FROM to TO; or one\n"},
     {OPTION(read_cycle, cycle),

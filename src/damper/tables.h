@@ -50,9 +50,9 @@ void write_field(const struct tables *t, const struct structure *s, const struct
 /* Opens NAME-plot.gp; ends the program if gnuplot cannot be run. */
 void open_plots(struct tables *t);
 
-/* Frequency and damping ratio over the amplitude, of NAME-backbone.csv; amplitude and power over the limit, of NAME-curve.csv;
- * amplitude over frequency for count limits, of NAME-family.csv, NAME-linear.csv
- * and, with best > 0, NAME-best.csv; force of each contact over its displacement in the last period, of NAME-what.csv. */
+/* Amplitude and power over the limit, of NAME-curve.csv; amplitude over frequency for count limits, of NAME-family.csv,
+ * NAME-linear.csv and, with best > 0, NAME-best.csv; frequency and damping ratio over the amplitude, of NAME-backbone.csv; force
+ * of each contact over its displacement in the last period, of NAME-what.csv. */
 void plot_curve(const struct tables *t);
 void plot_family(const struct tables *t, const double *limit, size_t count, double best);
 void plot_backbone(const struct tables *t);

@@ -204,7 +204,6 @@ contains
     call require(abs(most - 3.38660810_dp) < 1e-7_dp, 'compliance: the amplitude')
     call mode_of_contact()
     call flutter()
-  call flutter()
   end subroutine compliance
 
   !> Nonlinear mode of m = k = kt = 1, limit 0.5: values of another code.
