@@ -529,7 +529,7 @@ void tribo_loads_scale(tribo_system *sys, const tribo_system *like, const double
         const struct harmonic *from = &like->loads.harmonic[k];
         struct harmonic *h = &sys->loads.harmonic[k];
         const double moves = h->drives == DRIVES_LIMIT ? 1.0 : h->drives == DRIVES_BASE ? pace * swing : swing;
-        const double factor = size[h->drives] * (from->omega != 0.0 ? moves : 1.0);
+        const double factor = size[h->by_load ? DRIVES_LOAD : h->drives] * (from->omega != 0.0 ? moves : 1.0);
         h->omega = pace * from->omega;
         for (size_t e = 0; e < h->count; e++) {
             h->cosine[e] = factor * from->cosine[e];

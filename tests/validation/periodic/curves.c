@@ -340,6 +340,48 @@ TEST(beam)
     tribo_system_destroy(sys);
 }
 
+/* Two masses, reduced to one mode and the compliance of the contact, which the load bends: driven by loads and a base at a
+ * frequency, loads and the velocity of the base times these factors. */
+static tribo_system *bent(double omega, double loads, double bases)
+{
+    const double mass[] = {1.0, 2.0}, stiffness[] = {3.0, -2.0, -2.0, 2.0}, j[] = {0.0, 1.0};
+    const double load[] = {0.2 * loads, 0.7 * loads}, base = 0.3 * bases;
+    tribo_model *model;
+    tribo_system *sys;
+    assert_ok(tribo_model_create(&model, 2, 1));
+    assert_ok(tribo_model_set_mass_diagonal(model, mass));
+    assert_ok(tribo_model_set_stiffness(model, stiffness));
+    assert_ok(tribo_model_set_direction(model, j));
+    assert_ok(tribo_system_reduce(&sys, model, 1, TRIBO_STATICS_COMPLIANCE));
+    tribo_model_destroy(model);
+    assert_ok(tribo_system_set_damping_ratio(sys, 0.05));
+    assert_ok(tribo_system_add_load(sys, omega, load, NULL));
+    assert_ok(tribo_system_add_base_motion(sys, omega, &base, NULL));
+    assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.3));
+    return sys;
+}
+
+/* The last point of a curve over what drives the contact is the motion of a system made with that. */
+TEST(drives)
+{
+    static const int parameter[] = {TRIBO_PARAMETER_LOADS, TRIBO_PARAMETER_SWING, TRIBO_PARAMETER_BASES,
+                                    TRIBO_PARAMETER_FREQUENCY};
+    static const double loads[] = {1.4, 1.4, 1.0, 1.0}, bases[] = {1.4, 1.4, 1.4, 1.4}, pace[] = {1.0, 1.0, 1.0, 1.4};
+    const tribo_curve curve = {.size = sizeof curve, .parameter = parameter[_i], .least = 1.0, .most = 1.4, .step = 0.2};
+    double y[2][8] = {{0.0}}, period = 2.0 * PI / 1.3;
+    struct curve_seen s = {0};
+    for (int k = 0; k < 2; k++) {
+        tribo_system *sys = k ? bent(1.3 * pace[_i], loads[_i], bases[_i]) : bent(1.3, 1.0, 1.0);
+        tribo_driver *drv = driver_create(sys, "exact", 1e-3, 1e-13);
+        const int status =
+            k ? tribo_driver_find_periodic(drv, 0.0, period / pace[_i], y[k]) : follow(drv, &curve, period, y[k], &s);
+        require(!status, "%s", tribo_driver_message(drv));
+        end(drv, sys);
+    }
+    assert_exact(s.last, 1.4);
+    assert_all_close(y[0], y[1], 4, 1e-10);
+}
+
 /* The observer ends a curve, which keeps its last point; what curves refuse. */
 TEST(refuses)
 {
@@ -427,4 +469,4 @@ TEST(whole_steps)
 }
 
 TEST_MAIN("curves", {stop_folds, 2}, {stop_loads, 2}, {squeal_speed, 1}, {flips, 1}, {torus, 1}, {stick_slip, 2},
-          {stick_slip_ends, 1}, {mode, 3}, {beam, 2}, {refuses, 1}, {whole_steps, 2})
+          {stick_slip_ends, 1}, {mode, 3}, {beam, 2}, {drives, 4}, {refuses, 1}, {whole_steps, 2})
