@@ -14,6 +14,7 @@ C     call (legacy_structures.c), then the errors.
       CALL ELASTC
       CALL NORMAL
       CALL BELT
+      CALL FLUTTR
       CALL CREATE
       CALL NODRIV
       CALL WRONG
@@ -405,6 +406,38 @@ C     Stick-slip on a belt, as in models.f90.
       CALL EXPECT('break-away', ABS(Y(1) - 1D0) .LT. 1D-9)
       CALL TRBCYC(IH, 2, 0D0, PERIOD, Y, IERR)
       CALL EXPECT('NDOF', IERR .EQ. 6)
+      CALL TRBDEL(IH, IERR)
+      END
+C
+C     Steady sliding on a belt, friction that falls from 1 to 0.6 by the
+C     speed 0.5: stable while 0.8 exp(-2 speed) is below the damping.
+      SUBROUTINE FLUTTR
+      INTEGER IH, IERR, IR(2), IC(1), IGIVEN(1), ISLIP(1), NEXP
+      DOUBLE PRECISION ONE(1), ZERO(1), F(1), R(1), FALL(1), D(1), Y(3)
+      DOUBLE PRECISION RE(2), AI(2), CRIT, OMEGA
+      CHARACTER*80 TEXT
+      DATA IR /1, 2/, IC /1/, ONE /1D0/, ZERO /0D0/, F /0.6D0/
+      DATA FALL /0.5D0/, D /0.115D0/, Y /3*0D0/, IGIVEN /0/
+      R(1) = 1D0/0.6D0
+      CALL TRBMOD(1, 1, IR, IC, ONE, IR, IC, D, IR, IC, ONE,
+     1            IR, IC, ONE, ZERO, 0, 0, IH, TEXT, IERR)
+      CALL TRBLIM(IH, 1, F, IERR)
+      CALL TRBSTA(IH, 1, R, FALL, IERR)
+      CALL TRBBAS(IH, 1, 0D0, ONE, ZERO, IERR)
+      CALL TRBFLT(IH, 1, 1, 1, IGIVEN, Y, 2D0, 0.1D0, CRIT, OMEGA,
+     1            IERR)
+      CALL EXPECT('flutter', IERR .EQ. 0)
+      CALL EXPECT('speed at the onset', ABS(CRIT - 0.5D0*LOG(0.8D0/D(1)
+     1            )) .LT. 1D-10 .AND. ABS(OMEGA - 1D0) .LT. 1D-10)
+      CALL TRBEQU(IH, 1, 1, IGIVEN, Y, ISLIP, NEXP, RE, AI, IERR)
+      CALL EXPECT('slides back', IERR .EQ. 0 .AND. ISLIP(1) .EQ. -1)
+      CALL EXPECT('force of sliding', ABS(Y(1) - 0.6D0 -
+     1            0.4D0*EXP(-2D0)) .LT. 1D-12)
+      CALL EXPECT('growth', ABS(RE(1) + 0.5D0*(D(1) - 0.8D0*EXP(-2D0)))
+     1            .LT. 1D-12)
+      IGIVEN(1) = 7
+      CALL TRBEQU(IH, 1, 1, IGIVEN, Y, ISLIP, NEXP, RE, AI, IERR)
+      CALL EXPECT('IGIVEN', IERR .EQ. 5)
       CALL TRBDEL(IH, IERR)
       END
 C
