@@ -227,6 +227,35 @@ TEST(extremes)
     }
 }
 
+/* Bouc and Wen's law with beta = 0, displaced from one bound towards the other: dz/dx = 0 there, and z stays. */
+TEST(stationary)
+{
+    for (int k = 0; k < 1000; k++) {
+        const double m = 1.0 + k % 2, gamma = ldexp(1.0, k % 8 - 4), a = gamma * ldexp(1.0, 2 * (k % 5) - 4);
+        const double bound = pow(a / gamma, 1.0 / m), sign = k % 3 ? 1.0 : -1.0;
+        struct element e = {BOUC_WEN, {1.0, a, 0.0, gamma, m}, 1.0, {-sign * bound}};
+        const double f = move(&e, sign * 0.1 * k * bound / a, NULL);
+        require(f == sign * bound, "displacement %d: %.17g, not %g", k, f, sign * bound);
+    }
+}
+
+/* Elements side by side with beta + gamma = 0, where z has no bound, raise no exception. */
+TEST(unbounded)
+{
+    enum { N = 64 };
+    double parameter[5 * N], z[N], dz[N], f[N];
+    for (size_t i = 0; i < N; i++) {
+        const double own[] = {1.0, 1e30, 1.0, -1.0, 1.0 + (double)(i % 2)};
+        memcpy(parameter + 5 * i, own, sizeof own);
+        z[i] = 0.0;
+        dz[i] = 1.0;
+    }
+    assert_quiet(tribo_bouc_wen_force(N, dz, parameter, z, f, NULL));
+    for (size_t i = 0; i < N; i++) {
+        assert_close(f[i] / -1e30, 1.0, 1e-15);
+    }
+}
+
 /* On bad input nothing is written. */
 TEST(bad_input)
 {
@@ -348,4 +377,4 @@ TEST(exponents)
 }
 
 TEST_MAIN("state_laws", {many, 40}, {exponents, 3}, {dahl_loop, 1}, {iwan_values, 1}, {iwan_sliders, 5}, {pieces, 300},
-          {integrated, 50}, {derivatives, 300}, {rest, 50}, {extremes, 1}, {bad_input, 1})
+          {integrated, 50}, {derivatives, 300}, {rest, 50}, {extremes, 1}, {stationary, 1}, {unbounded, 1}, {bad_input, 1})
