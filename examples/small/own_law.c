@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A law of one's own beside built-in laws, on the mass on a spring of Quinn (2004), Fig. 5: friction that falls with speed to 0.6 of
- * the limit, and near stick is Quinn's law. With part 1 it is Quinn's law, and gives its motion. */
+/* A law of one's own beside built-in laws, on the mass on a spring of Quinn (2004), Fig. 5: friction falls with speed to a part
+ * of the limit, 0.6; near stick it is Quinn's law. With part 1 the law is Quinn's, and gives the same motion. */
 #include <math.h>
 #include <stdio.h>
 
@@ -11,7 +11,7 @@
 static int falling(size_t first, size_t n, int derivatives, const double *v, const double *limit, const double *epsilon,
                    double *box, void *data)
 {
-    const double part = *(const double *)data, speed = 1.0; /* of the fall */
+    const double part = *(const double *)data, speed = 1.0; /* the fall is by 1 - 1/e at this speed beyond epsilon */
     (void)first;
     for (size_t i = 0; i < n; i++) {
         const double L = limit[i], k = 2.0 * L * v[i] / epsilon[i], over = (fabs(v[i]) - epsilon[i]) / speed;

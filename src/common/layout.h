@@ -54,7 +54,7 @@ struct array {
         &(pointer), (count), sizeof *(pointer)                                                                                   \
     }
 
-/* A block of memory that is used again. */
+/* A block of memory for one layout of arrays after the other. */
 struct room {
     void *block; /* owned; NULL: none */
     size_t size; /* bytes */
@@ -72,8 +72,8 @@ static inline void *tribo_make_room(struct room *room, size_t bytes)
     return room->block;
 }
 
-/* Lays out the arrays of list [length] as zeros in room, and sets their pointers. Returns the block; NULL, as all pointers, if out
- * of memory. */
+/* Lays out the arrays of list [length] as zeros in room, and sets their pointers. Returns the block; NULL, and sets all pointers
+ * to NULL, if out of memory. */
 static inline void *tribo_allocate_in(struct room *room, const struct array *list, size_t length)
 {
     struct layout b = {0};

@@ -36,7 +36,7 @@ static inline double tribo_carried(const tribo_context *ctx, const struct box_qp
 void tribo_balance_one(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f);
 int tribo_step_alone(tribo_context *ctx, double dt, const double *v, double *f);
 
-/* 1 if a contact of chunk k at v [its size] is near stick, where laws with f_eq read it; elsewhere they slide with their limits. */
+/* Returns 1 if the law reads f_eq of a contact of chunk k at v [its size]; 0 for a law with f_eq: all slide with their limits. */
 int tribo_any_near(const tribo_context *ctx, size_t k, const double *v);
 
 /* f [n] of contacts that slide at v != 0. */
@@ -167,8 +167,8 @@ static inline int tribo_plane_cut(const tribo_context *ctx, size_t i)
 
 /* ---- planar.c */
 
-/* Makes count planar contacts of ctx, and clusters of an operator and the memory that goes with it; a status. *c: empty, or spent,
- * and then used again; after a failure to be freed. */
+/* Makes count planar contacts of ctx, and their clusters for an operator and its memory; a status. *c is empty, or was replaced:
+ * its memory is used again. After a failure free *c. */
 int tribo_clusters_make(struct clusters *c, tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op,
                         struct memory *m);
 
@@ -177,7 +177,7 @@ int tribo_clusters_make(struct clusters *c, tribo_context *ctx, size_t count, co
 int tribo_clusters_copy(tribo_context *ctx, const tribo_context *from);
 int tribo_clusters_clone(tribo_context *clone, const tribo_context *from);
 
-/* Takes the last solution of clusters of the same contacts [n]. */
+/* Copies the last solution of clusters of the same directions [n]. */
 void tribo_clusters_keep(struct clusters *to, const struct clusters *from, size_t n);
 
 /* Frees what is in clusters, which may be empty. */

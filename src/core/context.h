@@ -80,15 +80,15 @@ struct last {
     size_t clusters; /* solved */
 };
 
-/* An operator that replaces that of a context. All but drafts: the new one, or spent ones, whose memory is used again. */
+/* The operator that replaces that of a context, or the one that it replaced last, whose memory the next one uses. */
 struct renewal {
     struct delassus *op;
     struct memory memory;
     struct clusters plane;
-    struct drafts drafts;
+    struct drafts drafts; /* of both */
 };
 
-/* The caller's J, of tribo_set_operator_mass, or places of R. Shared by clones. */
+/* Places of the entries of the caller's J (tribo_set_operator_mass) or R (tribo_set_operator_csr). Shared by clones. */
 struct pattern {
     size_t references;    /* contexts */
     size_t ndof, *rowptr; /* rowptr [n + 1] */
@@ -138,7 +138,7 @@ void tribo_refresh(tribo_context *ctx);
 void tribo_pattern_release(struct pattern *p);
 void tribo_renewal_free(struct renewal *r);
 
-/* operator/input.c: values that tribo_update_operator reads. */
+/* operator/input.c: returns the number of values that tribo_update_operator reads. */
 size_t tribo_operator_values(const tribo_context *ctx);
 
 /* Sets limits to limit [n], which may be those of ctx, and all that follows from them. */

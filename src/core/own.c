@@ -50,7 +50,7 @@ TRIBO_SIMD static int are_boxes(size_t n, const double *restrict v, const double
     return bad == 0;
 }
 
-/* tribo_own_boxes; *s: what was asked. */
+/* tribo_own_boxes; *s = the arguments of the caller's function. */
 static int boxes_of(const struct contacts *c, size_t n, int derivatives, const double *v, struct asked *s, double *box)
 {
     const size_t all = n * (derivatives ? ALL_ROWS : BOX_ROWS), needed = n * (derivatives ? BY_LIMIT_ROWS : BOX_ROWS);
@@ -198,7 +198,7 @@ int tribo_own_failed(const tribo_context *ctx, const double *f)
 {
     int failed = 0;
     for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
-        failed |= !isfinite(f[i]);
+        failed |= !isfinite(f[i]); /* as all others of a chunk without boxes */
     }
     return failed;
 }

@@ -34,15 +34,15 @@ static inline int tribo_csr_create(struct csr *a, size_t n, size_t entries)
     return 1;
 }
 
-/* b = a', columns ascending, for a [n][columns]. b: empty, or such a transpose with as many columns and entries, whose memory it
- * keeps. Returns 1, or 0 if out of memory. */
+/* b = a', columns ascending, for a [n][columns]. b is empty, or a transpose with as many columns and entries: then b keeps its
+ * memory. Returns 1, or 0 if out of memory. */
 int tribo_csr_transpose(struct csr *b, size_t n, size_t columns, const size_t *rowptr, const size_t *col, const double *val);
 
 /* Returns the entry at (i, j), or NULL. Columns ascend. */
 double *tribo_csr_entry(const struct csr *a, size_t i, size_t j);
 
-/* a = J diag(w) J', columns ascending, for J [n][t->n] in compressed rows and t = J'; next [n + 1] is workspace. a: empty, or such
- * a product of a J with the same rowptr and col, whose memory and places it keeps. Returns 1, or 0 if out of memory. */
+/* a = J diag(w) J', columns ascending, for J [n][t->n] in compressed rows and t = J'; next [n + 1] is workspace. a is empty, or a
+ * product of a J with the same rowptr and col: then a keeps its memory and places. Returns 1, or 0 if out of memory. */
 int tribo_csr_product(struct csr *a, size_t *next, const struct csr *t, const double *w, const size_t *rowptr, const size_t *col,
                       const double *val, size_t n);
 

@@ -84,8 +84,8 @@ int tribo_symmetric_eigen_by(const struct cholesky *b, double *a, size_t n, doub
 /* Eigenvalues and eigenvectors of a general real matrix.
  * a [n][n]      in, overwritten
  * re, im [n]    out  eigenvalues; of a complex pair the one with im > 0 first, its conjugate next
- * x [n][n]      out, or NULL  eigenvectors of length 1: row k of a real eigenvalue k; of a pair k, k + 1 the real part in row k and the
- *                    imaginary part in row k + 1. Nearly parallel eigenvectors may be anything.
+ * x [n][n]      out  eigenvectors of length 1: row k of a real eigenvalue k; of a pair k, k + 1 the real part in row k and the
+ *                    imaginary part in row k + 1. Nearly parallel eigenvectors may be anything. NULL: none.
  * Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_NOT_FINITE (a), TRIBO_ERR_NO_CONVERGENCE. */
 int tribo_eigen(double *a, size_t n, double *re, double *im, double *x);
 

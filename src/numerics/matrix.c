@@ -349,7 +349,8 @@ TRIBO_SIMD static void add_diagonals(const struct matrix *a, size_t begin, size_
     }
 }
 
-/* y [end - begin] = z + factor times rows begin to end - 1 of A x, in the order of the diagonals. Sums in y: GCC pairs others. */
+/* y [end - begin] = z + factor times rows begin to end - 1 of A x, in the order of the diagonals. Sums are in y: with a sum in a
+ * local variable GCC takes two entries at a time as a vector, which is slower. */
 static void add_outer_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, const double *z,
                            double *y)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What calls_core.c asks for: elements without a context, whose forces are finite, and in their limits where these bound them; on
- * error states and forces are as they were. */
+/* Calls of calls_core.c: elements without a context. Forces are finite, and within the limits of laws with a limit; on error
+ * states and forces are unchanged. */
 #include <math.h>
 #include <string.h>
 

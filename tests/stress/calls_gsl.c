@@ -477,8 +477,6 @@ int main(int argc, char **argv)
         replay_file(argv[k]);
     }
     for (unsigned long seed = first; seed < first + count; seed++) {
-        if (getenv("SHOW"))
-            fprintf(stderr, "%lu\n", seed);
         replay_seed(seed);
     }
     printf("%d files and %lu random strings\n", argc - 1, count);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What the files of calls_gsl share: the string that says which calls to make, the systems and drivers that the calls are made on. */
+/* Shared by the files of calls_gsl: the string that chooses the calls, and the systems and drivers of the calls. */
 #ifndef CALLS_GSL_H
 #define CALLS_GSL_H
 
@@ -39,7 +39,7 @@ struct bytes {
     size_t left;
 };
 
-/* A choice of n. */
+/* Takes a choice from 0 to n - 1 off the string. */
 size_t choose(struct bytes *b, size_t n);
 
 /* Mostly of the order of 1; now and then what no argument may be, or what is far too large or small for the rest. */
@@ -47,7 +47,7 @@ double number(struct bytes *b);
 double positive(struct bytes *b);
 void fill(struct bytes *b, double *x, size_t n);
 
-/* Numbers that events are not looked for among. */
+/* Returns 1 if a number is too large or small to look for events. */
 int wild(const double *x, size_t n);
 
 struct run {
@@ -73,10 +73,10 @@ int are_finite(const double *y, size_t n);
 /* Symmetric, and mostly so that it may be a mass or a stiffness. */
 void fill_matrix(struct bytes *b, double *a, size_t n, double diagonal);
 
-/* A mass matrix that is nearly singular: the structure vibrates at frequencies whose periods no step may exceed. */
+/* Returns 1 if a mass matrix [n][n] is nearly singular: then periods of the structure are far shorter than a motion. */
 int light(const double *mass, size_t n);
 
-/* Whether the events of a motion of this length may be looked for. */
+/* Returns 1 if the events of a motion of length span may be looked for. */
 int bearable(const struct scene *s, const struct run *r, double span);
 
 /* calls_periods.c: a system whose contacts have springs and normals; periodic motions, and the questions about them. */

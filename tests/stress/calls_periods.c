@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What calls_gsl.c asks for: systems whose limits follow the motion, searches for periodic motions, cycles and nonlinear modes, and
- * the questions about what is found. A motion that is found comes back after its period. */
+/* Calls of calls_gsl.c: systems whose limits follow the motion, searches for periodic motions, cycles and nonlinear modes, and
+ * queries of the motions found. A motion found returns to its state after its period. */
 #include <math.h>
 #include <string.h>
 

@@ -7,11 +7,8 @@
 
 enum { STIFFNESS, A, BETA, GAMMA, EXPONENT, PARAMETERS };
 
-/* Series of one term are exact to rounding below this argument. */
-#define SMALL 1e-9
-
-/* Parameters divided by this do not overflow. */
-#define NO_OVERFLOW 1e-200
+#define SMALL 1e-9         /* series of one term are exact to rounding below this argument */
+#define NO_OVERFLOW 1e-200 /* parameters divided by this do not overflow */
 
 /* u after a distance s of du/ds = a - c u; grown = exp(-c s) - 1. */
 static inline double moved_linear(double u, double s, double a, double c, double grown)
@@ -32,21 +29,15 @@ static inline double moved_square(double u, double t, double a, double c)
     return (u + a * t) / greater(1.0 + c * t * u, ELEMENT_LEAST);
 }
 
-/* 1 if u < 0 never comes to 0: with beta = 0 it stays at the bound of the other direction, where du/ds = 0. */
-static int stays(double u, double a, double c, double m)
-{
-    return m == 1.0 ? c * u / a >= 1.0 : c > 0.0 && sqrt(a * c) * (-u / a) >= 1.0;
-}
-
-/* The distance after which u < 0 comes to 0, unless it stays. */
+/* The distance after which u < 0 comes to 0; HUGE_VAL: never, since du/ds = 0: beta = 0, and u is at the bound of unloading. */
 static double distance_to_zero(double u, double a, double c, double m)
 {
     if (m == 1.0) {
         const double x = c * u / a;
-        return fabs(x) < SMALL ? -u / a : log1p(-x) / c;
+        return fabs(x) < SMALL ? -u / a : x < 1.0 ? log1p(-x) / c : HUGE_VAL;
     }
     const double w = sqrt(fabs(a * c)), t = -u / a;
-    return w * t < SMALL ? t : (c < 0.0 ? atan(w * t) : atanh(w * t)) / w;
+    return w * t < SMALL ? t : c < 0.0 ? atan(w * t) / w : w * t < 1.0 ? atanh(w * t) / w : HUGE_VAL;
 }
 
 /* Unloads: moves *u < 0, where |u| = -u, by *s but at most to 0; *s becomes the rest of the distance. */
@@ -55,10 +46,6 @@ static void unload(double *u, double *s, double a, double beta, double gamma, do
     const double far = 230.0; /* exp(far) is beyond all ratios of parameters */
     const double quarter_turn = 1.5707963267948966, way = *s, from = *u;
     const double c = m == 1.0 ? beta - gamma : gamma - beta, w = sqrt(fabs(a * c));
-    if (stays(from, a, c, m)) {
-        *s = 0.0;
-        return;
-    }
     const double t = m == 1.0                     ? 0.0
                      : w * way < SMALL || c > 0.0 ? hyperbolic(w, way, tribo_expm1(-2.0 * w * way))
                      : w * way < quarter_turn     ? tan(w * way) / w
@@ -66,8 +53,9 @@ static void unload(double *u, double *s, double a, double beta, double gamma, do
     const double end = m == 1.0        ? moved_linear(from, way, a, c, tribo_expm1(lesser(-c * way, far)))
                        : a * t < -from ? moved_square(from, t, a, c)
                                        : 0.0;
-    *u = clamp(end, from, 0.0);
-    *s = end < 0.0 ? 0.0 : greater(way - distance_to_zero(from, a, c, m), 0.0);
+    const int rests = m == 1.0 ? c * from / a >= 1.0 : c > 0.0 && w * (-from / a) >= 1.0;
+    *u = rests ? from : clamp(end, from, 0.0);
+    *s = rests || end < 0.0 ? 0.0 : greater(way - distance_to_zero(from, a, c, m), 0.0);
 }
 
 /* u = z and s = |dz|, with the sign of dz in u; |u| is at most (a/(beta + gamma))^(1/m), where loading ends. */

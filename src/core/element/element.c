@@ -4,8 +4,8 @@
 
 #include "common/exponent.h"
 
-/* 1 if all x [n][numbers] are in their ranges; 0 also where one is -0. As whole numbers, bits have the order of what they mean, and
- * comparisons of them raise no exception. */
+/* Returns 1 if all x [n][numbers] are in their ranges; 0 also for a -0 that is not FINITE. Compares bits as integers, which have
+ * the order of the numbers >= 0: no exception is raised. */
 TRIBO_SIMD static int all_in_range(const double *x, size_t n, size_t numbers, const int *range)
 {
     enum { ROWS = 8, LENGTH = ROWS * ELEMENT_NUMBERS };

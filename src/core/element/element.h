@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Elements: friction laws with a state, without a context. Checks of the arrays of n elements; columns of their numbers, for loops
- * that become vectors. */
+/* Elements: friction laws with a state, without a context. Checks of their arrays; chunks of elements with a column for each
+ * number, for loops that become vectors. */
 #ifndef TRIBO_ELEMENT_H
 #define TRIBO_ELEMENT_H
 
@@ -12,13 +12,13 @@ static inline int element_check_size(size_t n)
     return n >= SIZE_MAX / 128 ? TRIBO_ERR_SIZE : TRIBO_OK;
 }
 
+enum { ELEMENT_NUMBERS = 6 }; /* of an element, at most */
+
 /* Sizes of the numbers for which the formulas of elements with exponential functions neither overflow nor divide by 0. */
 #define ELEMENT_LEAST 1e-30
 #define ELEMENT_MOST 1e30
 
-enum { ELEMENT_NUMBERS = 6 }; /* of an element, at most */
-
-/* Checks x [n][numbers], numbers <= ELEMENT_NUMBERS; range [numbers]: POSITIVE: within [ELEMENT_LEAST, ELEMENT_MOST]; NONNEGATIVE: 0, too; FINITE: of either
+/* Checks x [n][numbers]; range [numbers]: POSITIVE: within [ELEMENT_LEAST, ELEMENT_MOST]; NONNEGATIVE: 0, too; FINITE: of either
  * sign. Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_RANGE. */
 int tribo_check_elements(const double *x, size_t n, size_t numbers, const int *range);
 
@@ -27,7 +27,6 @@ static inline int tribo_check_element(const double *x, size_t n, int range)
     return tribo_check_elements(x, n, 1, &range);
 }
 
-/* Returns the size of the chunk of element i. */
 static inline size_t element_chunk(size_t n, size_t i)
 {
     return n - i < TRIBO_CHUNK ? n - i : TRIBO_CHUNK;

@@ -191,8 +191,8 @@ static int find_groups(struct delassus *op, const struct csr *a, size_t *place, 
     return 1;
 }
 
-/* Returns 1, and sets the values of rows [g->size], if the entries of a group are at their places; 0 if not: then some values have
- * changed. */
+/* Sets the values of rows [g->size] to those of a group. Returns 1; 0 if the entries of the group are at other places than those
+ * of rows, some of whose values are then changed. */
 static int set_values_of(struct csr *rows, const struct group *g, const struct csr *a, const size_t *member, const size_t *place)
 {
     size_t entries = 0;
@@ -201,8 +201,9 @@ static int set_values_of(struct csr *rows, const struct group *g, const struct c
         for (size_t e = a->first[member[p]]; same && e < a->first[member[p] + 1]; e++) {
             if (a->val[e] != 0.0) {
                 same = entries < rows->first[p + 1] && rows->col[entries] == place[a->col[e]];
-                rows->val[entries] = a->val[e];
-                entries++;
+                if (same) {
+                    rows->val[entries++] = a->val[e];
+                }
             }
         }
         same = same && entries == rows->first[p + 1];

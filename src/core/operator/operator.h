@@ -51,7 +51,7 @@ struct memory {
     struct room rooms[2];  /* memory of all but the basis; of the basis */
 };
 
-/* What is made on the way to an operator. */
+/* Intermediate results of making an operator. */
 struct drafts {
     struct csr t, a;  /* J' or R', and R; columns ascend */
     double *diagonal; /* [n] of R */
@@ -69,11 +69,11 @@ struct inertia {
 };
 
 /* Makes an operator and its memory of d->a, symmetric and finite, and its diagonal; a status. from may be NULL. note keeps the
- * message of a failure. *op, *m: NULL and empty, or spent, and then used again; after a failure to be released. */
+ * message of a failure. *op, *m: NULL and empty, or replaced: their memory is used again. After a failure release both. */
 int tribo_operator_create(struct delassus **op, struct memory *m, struct drafts *d, const struct inertia *from,
                           tribo_context *note);
 
-/* Returns an operator without groups, in the place of spent unless spent is NULL; r NULL: not set yet; NULL if out of memory. */
+/* Returns an operator without groups, in the memory of spent unless spent is NULL; r NULL: not set yet; NULL if out of memory. */
 struct delassus *tribo_operator_diagonal(struct delassus *spent, size_t n, const double *r);
 
 /* Counts a context less, the last of which frees the operator; NULL is fine. */
@@ -83,10 +83,10 @@ void tribo_operator_release(struct delassus *op);
 int tribo_memory_copy(struct memory *to, const struct memory *from, const struct delassus *op);
 void tribo_memory_free(struct memory *m);
 
-/* 1 if a group of so many contacts has a sparse factor, unless that has too many entries. thin: a pivot of R is small. */
+/* Returns 1 if a group of size contacts has a sparse factor, unless its entries are too many. thin: a pivot of R is small. */
 int tribo_prefers_sparse(size_t size, int thin);
 
-/* Makes a memory that of no groups; it keeps its rooms. */
+/* Empties a memory, but for its rooms. */
 static inline void tribo_memory_clear(struct memory *m)
 {
     *m = (struct memory){.rooms = {m->rooms[0], m->rooms[1]}};

@@ -114,7 +114,7 @@ double tribo_plane_rate(const tribo_context *ctx)
 
 /* -------------------------------------------------------------------------------------------------------------- life */
 
-/* Frees R and patterns of all clusters that there is room for. */
+/* Frees R and the patterns of all clusters. */
 static void forget_clusters(struct clusters *c)
 {
     for (size_t k = 0; k < c->laid_out; k++) {
@@ -165,7 +165,7 @@ static int planar_create(struct clusters *c, size_t n, size_t count, const size_
 
 /* --------------------------------------------------------------------------------------------------------- clusters */
 
-/* What clusters are made of; lists are [n]. */
+/* Data from which clusters are made; lists are [n]. */
 struct parts {
     const struct delassus *op;
     struct memory *m;                /* of op */
@@ -215,7 +215,8 @@ static size_t list_neighbours(const struct clusters *c, const struct parts *x, c
     return count;
 }
 
-/* Gives g the rows of t, which are 0, unless its own have entries at the same places: these become 0. Returns 0 if out of memory. */
+/* Sets R of g to zeros at the places of t. Keeps the memory of R and the pattern of its factor if the places are the same.
+ * Returns 0 if out of memory. */
 static int take_places(struct cluster *g, const struct csr *t)
 {
     const size_t n = t->n, entries = t->first[n];

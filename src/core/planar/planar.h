@@ -96,10 +96,10 @@ struct block {
     double great, small;
     double e[2];
 };
-/* The block [[first_0, first_1], [first_1, *second]]; second NULL: of one direction. */
+/* Returns the block [[first_0, first_1], [first_1, *second]]; second NULL: the contact has one direction, R = first_0. */
 struct block tribo_block_of(const double *first, const double *second);
 
-/* The block of the contact at place k of a cluster. */
+/* Returns the block of the contact at place k of a cluster. */
 struct block tribo_cluster_block(const struct cluster *g, size_t k, size_t directions);
 
 /* limit [directions] of the contact at i: static ones if it holds, or those by which it slides at v. */

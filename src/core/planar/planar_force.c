@@ -91,8 +91,8 @@ void tribo_planar_turn(const struct disc_qp *p, const unsigned char *directions,
     }
 }
 
-/* Returns R f + a at place k of a cluster, without the forces at places own to own + count - 1, and without those of the problem if
- * others = 1. */
+/* Returns R f + a at place k of a cluster, without the forces at places own to own + count - 1; others = 1: also without the
+ * forces of the problem. */
 static double pull_at(const tribo_context *ctx, const struct cluster *g, size_t k, size_t own, size_t count, int others)
 {
     double sum = cut(ctx->plane.a[g->member[k]]);

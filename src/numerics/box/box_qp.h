@@ -46,7 +46,7 @@ struct group {
     double lightest;       /* the smallest scale, that of the largest diagonal entry */
     size_t terms;          /* entries of the fullest row */
     struct sparse *sparse; /* R and the pattern of its factor; NULL if dense */
-    struct sparse *made;   /* that of the last R that had one; owned */
+    struct sparse *made;   /* owned; sparse, or that of an earlier R of the group; NULL: none */
     uint64_t dense_shape;  /* hash of the places of R's entries, if a dense factor is better for them; else 0 */
     int graded;            /* 1: R and its factor have twice as many digits */
     int small;             /* 1: tribo_box_small applies */
@@ -216,10 +216,7 @@ struct csr;
 int tribo_sparse_create(struct sparse **s, const struct csr *r);
 size_t tribo_sparse_slots(const struct sparse *s);
 
-/* Entries of R by rows, of the order of r. */
-double *tribo_sparse_values(struct sparse *s);
-
-/* R by places, columns ascending. Its values may be changed. */
+/* Returns R by places, columns ascending. Its values may be changed. */
 struct csr *tribo_sparse_rows(struct sparse *s);
 void tribo_sparse_free(struct sparse *s);
 
@@ -228,7 +225,7 @@ void tribo_sparse_free(struct sparse *s);
 /* Returns sum_j R_ij x_j, and *size = sum_j |R_ij x_j|. */
 double tribo_row_dot(const struct box_qp *p, size_t i, const double *x, double *size);
 
-/* Returns the entries of row i, *col their columns, NULL: 0, 1, ..., and *val. */
+/* Returns the number of entries of row i; *val: these, *col: their columns, NULL: 0, 1, ... */
 size_t tribo_row_entries(const struct box_qp *p, size_t i, const size_t **col, const double **val);
 
 /* Returns the sum without j = i. Leaves x as it was. */

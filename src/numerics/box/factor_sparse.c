@@ -32,7 +32,7 @@ struct sparse {
     size_t *row;       /* [size + 1] row k of L has the entries row[k] to row[k + 1] - 1 of: */
     size_t *column_of; /* [slots] columns, ascending in a row */
     size_t *slot;      /* [slots] slots */
-    size_t *run;       /* [size] columns from this one on, of which each has the rows of the one before that are behind it */
+    size_t *run;       /* [size] columns from j on of which each has the rows of the column before it but its own */
 };
 
 void tribo_sparse_free(struct sparse *s)
@@ -54,11 +54,6 @@ struct csr *tribo_sparse_rows(struct sparse *s)
 size_t tribo_sparse_slots(const struct sparse *s)
 {
     return s->column[s->r.n];
-}
-
-double *tribo_sparse_values(struct sparse *s)
-{
-    return s->r.val;
 }
 
 /* --------------------------------------------------------------------------------------------------- nested dissection
@@ -261,37 +256,40 @@ void tribo_sparse_spread(const struct box_qp *p, size_t i, double factor, double
 
 /* ------------------------------------------------------------------------------------------------------- the factor */
 
-/* Runs of at least so many columns are eliminated at once. */
+/* Runs of at least WIDE columns are eliminated together. */
 #define WIDE 16
 
-/* x [n] -= its part in the first columns [width] of a run: x_a times column a, in turn, of which the n - 1 - a entries before the
- * slot slot_a are those of the rows of x behind a. d [width] 0: the column is not in the factor. */
+/* Eliminates the first columns [width] of a run from x [n]: x_i -= l_ia x_a for i = a + 1 to n - 1, column after column. The
+ * entries l_ia are the n - 1 - a slots before slot_a. A column a with d_a = 0 is not in the factor, and changes nothing. */
 TRIBO_SIMD static void subtract_run(const double *l, const size_t *slot, const double *d, size_t width, size_t n,
                                     double *restrict x)
 {
     size_t a = 0;
     for (; a + 4 <= width; a += 4) {
-        const double *p = l + slot[a] - n, *q = l + slot[a + 1] - n, *r = l + slot[a + 2] - n, *s = l + slot[a + 3] - n;
+        const size_t rest = n - a - 4; /* rows behind the four columns; columns begin with rows between them */
+        const double *p = l + slot[a] - (rest + 3), *q = l + slot[a + 1] - (rest + 2), *r = l + slot[a + 2] - (rest + 1),
+                     *s = l + slot[a + 3] - rest;
         const double e = d[a] == 0.0 ? 0.0 : x[a];
-        x[a + 1] -= e * p[a + 1];
+        x[a + 1] -= e * p[0];
         const double f = d[a + 1] == 0.0 ? 0.0 : x[a + 1];
-        x[a + 2] -= e * p[a + 2] + f * q[a + 2];
+        x[a + 2] -= e * p[1] + f * q[0];
         const double g = d[a + 2] == 0.0 ? 0.0 : x[a + 2];
-        x[a + 3] -= e * p[a + 3] + f * q[a + 3] + g * r[a + 3];
+        x[a + 3] -= e * p[2] + f * q[1] + g * r[0];
         const double h = d[a + 3] == 0.0 ? 0.0 : x[a + 3];
-        for (size_t i = a + 4; i < n; i++) {
-            x[i] -= (e * p[i] + f * q[i]) + (g * r[i] + h * s[i]);
+        for (size_t i = 0; i < rest; i++) {
+            x[a + 4 + i] -= (e * p[3 + i] + f * q[2 + i]) + (g * r[1 + i] + h * s[i]);
         }
     }
     for (; a < width; a++) {
-        const double *p = l + slot[a] - n, e = d[a] == 0.0 ? 0.0 : x[a];
-        for (size_t i = a + 1; i < n; i++) {
-            x[i] -= e * p[i];
+        const size_t rest = n - a - 1;
+        const double *p = l + slot[a] - rest, e = d[a] == 0.0 ? 0.0 : x[a];
+        for (size_t i = 0; i < rest; i++) {
+            x[a + 1 + i] -= e * p[i];
         }
     }
 }
 
-/* w [size] -= its part in columns j to j + width - 1 of a run, of which the entries before the slots slot [width] count. x [size] is
+/* Eliminates columns j to j + width - 1 of a run from w [size], of each column the entries before its slot [width]. x [size] is
  * workspace, zero between calls. */
 static void eliminate_run(const struct box_qp *p, const size_t *slot, size_t j, size_t width, double *w, double *x)
 {
@@ -322,7 +320,7 @@ static double sparse_eliminate(const struct box_qp *p, size_t k, double *left)
             p->sparse.w[j] = p->scale[i] * s->r.val[e] * p->scale[s->r.col[e]];
         }
     }
-    size_t done = s->row[k]; /* entries before it are in w */
+    size_t done = s->row[k]; /* columns of entries before it are eliminated from w */
     for (size_t t = s->row[k]; t < s->row[k + 1]; t++) {
         const size_t j = s->column_of[t];
         if (t >= done && s->run[j] >= WIDE && k - j >= WIDE) {

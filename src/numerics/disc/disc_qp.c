@@ -18,8 +18,8 @@ enum { FROM_BEFORE = 12, FROM_INTERIOR = 40 };
 /* Distances up to SETTLED times their rounding count as 0. */
 #define SETTLED 4.0
 
-/* A sparse factor of more than MANY entries a row, which takes far longer than a step, serves further steps with the same freedoms
- * while each leaves at most GAIN of the residual. */
+/* A sparse factor of more than MANY entries a row takes far longer than a step. It serves further steps with the same freedoms,
+ * while each step leaves at most GAIN of the residual. */
 #define MANY 16
 #define GAIN 0.03
 
@@ -146,7 +146,7 @@ static int disc_settle(struct disc_qp *p, int rounds, void (*step)(struct disc_q
         }
         step(p);
     }
-    /* Steps that halve the distance still improve y. */
+    /* Steps that halve the distance still improve y; those by the factor of an earlier step converge linearly, and go on. */
     double before = HUGE_VAL;
     while (p->residual > (p->factor.serves > 0.0 ? 0.01 : 1.0) * p->near_enough && p->residual < 0.5 * before) {
         before = p->residual;

@@ -121,8 +121,8 @@ struct disc_room {
     size_t places, entries, slots; /* of sparse problems; entries of S and of the factor */
 };
 
-/* Makes room, in the memory of p if p has enough; p is all 0 at first. Returns 1, or 0 if out of memory: tribo_disc_free takes that
- * too. */
+/* Makes room for problems, in the memory of p if it is large enough; p is all 0 at first. Returns 1, or 0 if out of memory: then
+ * tribo_disc_free frees p, too. */
 int tribo_disc_create(struct disc_qp *p, const struct disc_room *room);
 void tribo_disc_free(struct disc_qp *p);
 
@@ -192,19 +192,19 @@ void tribo_disc_list(struct disc_qp *p);
 /* Sets Newton's matrix of these freedoms. */
 void tribo_disc_assemble(struct disc_qp *p);
 
-/* Factors it: symmetric and positive semidefinite. tribo_factor_solve then solves, of a dense problem in least norm. */
+/* Factors Newton's matrix, symmetric and positive semidefinite. tribo_factor_solve then solves; a dense problem in least norm. */
 void tribo_disc_factorize(struct disc_qp *p);
 
-/* All three. */
+/* Lists, assembles and factors. */
 void tribo_disc_linearize(struct disc_qp *p);
 
-/* Takes up to TRIBO_SPARSE_REDUNDANT null vectors of a sparse problem into the factor: tribo_disc_follow is then of least norm. */
+/* Adds up to TRIBO_SPARSE_REDUNDANT null vectors of a sparse problem to the factor: tribo_disc_follow takes the least norm. */
 void tribo_disc_redundant(struct disc_qp *p);
 
 /* move [size] = the change of y along the freedoms that brings rhs [size], the gradient without it, to 0. */
 void tribo_disc_follow(struct disc_qp *p, const double *rhs, double *move);
 
-/* move [size] = for a singular dense s, a change of y along its null vectors that are pulled at, beyond all rims; 0 if none is. */
+/* move [size] = for a singular dense S, the descent direction in the null space of S, beyond all rims; 0 if there is none. */
 void tribo_disc_slide(struct disc_qp *p, const double *rhs, double *move);
 
 /* dy [wide] = the change of the y of the contact at i with its c, without that along its freedoms. */

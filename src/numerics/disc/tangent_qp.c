@@ -10,6 +10,7 @@
 
 #include "common/real.h"
 #include "common/simd.h"
+#include "numerics/csr.h"
 
 /* A set of redundant contacts counts as balanced up to this part of limits: the rounding of pull. */
 #define DISAGREEMENT 5e-13
@@ -39,7 +40,7 @@ double tribo_disc_dot(const struct disc_qp *p, size_t i, const double *x)
     return sum;
 }
 
-/* S is symmetric: dense columns are rows, and sums go side by side. */
+/* S is symmetric: a dense S is summed by columns, which are its rows, in vectors. */
 TRIBO_SIMD void tribo_disc_multiply(const struct disc_qp *p, const double *x, double *restrict y, double *restrict size)
 {
     const size_t n = p->size;
@@ -181,7 +182,7 @@ void tribo_disc_list(struct disc_qp *p)
 
 void tribo_disc_assemble(struct disc_qp *p)
 {
-    p->factor.matrix = p->s.pattern ? tribo_sparse_values(p->s.pattern) : p->factor.dense;
+    p->factor.matrix = p->s.pattern ? tribo_sparse_rows(p->s.pattern)->val : p->factor.dense;
     for (size_t k = 0; k < p->freedoms; k++) {
         const struct freedom *f = &p->freedom[k];
         const size_t begin = tribo_disc_row(p, f->at), terms = tribo_disc_terms(p, f->at);

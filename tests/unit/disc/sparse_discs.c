@@ -162,6 +162,23 @@ static void problem_create(struct disc_qp *p, const struct scene *s, struct spar
     free(direction);
 }
 
+/* The problem of a scene with a dense factor, and with a sparse one. Returns the pattern of this factor. */
+static struct sparse *pair_create(struct disc_qp *dense, struct disc_qp *sparse, const struct scene *s)
+{
+    struct sparse *pattern;
+    require(tribo_sparse_create(&pattern, &s->pattern) && pattern, "no sparse factor");
+    problem_create(dense, s, NULL);
+    problem_create(sparse, s, pattern);
+    return pattern;
+}
+
+static void pair_free(struct disc_qp *dense, struct disc_qp *sparse, struct sparse *pattern)
+{
+    tribo_disc_free(dense);
+    tribo_disc_free(sparse);
+    tribo_sparse_free(pattern);
+}
+
 /* rows [size] = S x. */
 static void multiply(const struct disc_qp *p, const double *x, double *rows)
 {
@@ -179,12 +196,9 @@ TEST(beside_dense)
     struct random g = random_of(_i);
     struct scene s = scene_create(&g, of[0], of[1] < of[0] ? of[1] : of[0], _i);
     struct disc_qp dense, sparse;
-    struct sparse *pattern;
+    struct sparse *pattern = pair_create(&dense, &sparse, &s);
     const size_t n = s.size;
     double *x = calloc(4 * n, sizeof *x);
-    require(tribo_sparse_create(&pattern, &s.pattern) && pattern, "no sparse factor");
-    problem_create(&dense, &s, NULL);
-    problem_create(&sparse, &s, pattern);
     for (int call = 0; call < 4; call++) {
         pull(&s, &g, call % 2 ? 0.1 : 0.0);
         memcpy(dense.pull, s.pull, n * sizeof *s.pull);
@@ -208,9 +222,7 @@ TEST(beside_dense)
         tribo_disc_follow(&sparse, x, x + 2 * n);
         assert_all_close(x + 2 * n, x + n, n, 1e-8);
     }
-    tribo_disc_free(&dense);
-    tribo_disc_free(&sparse);
-    tribo_sparse_free(pattern);
+    pair_free(&dense, &sparse, pattern);
     scene_free(&s);
     free(x);
 }
@@ -221,12 +233,9 @@ TEST(least_norm_of_changes)
     struct random g = random_of(_i);
     struct scene s = scene_create(&g, 60, 60, 2);
     struct disc_qp dense, sparse;
-    struct sparse *pattern;
+    struct sparse *pattern = pair_create(&dense, &sparse, &s);
     const size_t n = s.size;
     double *x = calloc(3 * n, sizeof *x);
-    require(tribo_sparse_create(&pattern, &s.pattern) && pattern, "no sparse factor");
-    problem_create(&dense, &s, NULL);
-    problem_create(&sparse, &s, pattern);
     for (size_t e = 0; e < n; e++) { /* in the range of S */
         x[n + e] = uniform(&g, -1.0, 1.0);
     }
@@ -241,9 +250,7 @@ TEST(least_norm_of_changes)
     tribo_disc_follow(&dense, x, x + n);
     tribo_disc_follow(&sparse, x, x + 2 * n);
     assert_all_close(x + 2 * n, x + n, n, 1e-9);
-    tribo_disc_free(&dense);
-    tribo_disc_free(&sparse);
-    tribo_sparse_free(pattern);
+    pair_free(&dense, &sparse, pattern);
     scene_free(&s);
     free(x);
 }

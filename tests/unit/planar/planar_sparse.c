@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Planar contacts in long rows and on carpets, whose R is kept sparse: what makes their solution. */
+/* Planar contacts in long rows and on carpets, whose R is kept sparse: the conditions that their solutions meet. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,8 +31,8 @@ static size_t neighbours(size_t i, size_t width, size_t contacts, size_t *to)
     return count;
 }
 
-/* A row of contacts, or a carpet of rows of `width`, as discs. twice: each of the row is there twice. even: limits are 1; else some
- * are 0. */
+/* A row of contacts, or a carpet of rows of `width`, as discs. twice: each contact of a row is there twice. even: limits are 1;
+ * else some are 0. */
 static struct field field_create(struct random *g, size_t contacts, size_t width, int twice, int even)
 {
     struct field s = {.contacts = contacts, .n = 2 * contacts};
