@@ -111,6 +111,32 @@ TEST(onset)
     tribo_system_destroy(sys);
 }
 
+/* Squeal with and without damping, held off the belt by a load of 1 until a second contact, of limit 0.7 times the factor, presses
+ * it down: flutter begins at a jump, as the normal touches. */
+TEST(touch_down)
+{
+    const double mass[] = {1.0, 0.0, 0.0, 1.0}, damping[] = {0.1, 0.0, 0.0, 0.1}, j[] = {1.0, 0.0, 0.0, 1.0, 0.0, 1.0};
+    const double load[] = {0.0, -1.0}, belt[] = {0.5, 0.0, 1.0}, limit[] = {0.0, 0.0, 0.7};
+    double k[4], critical, omega;
+    squeal_stiffness(k);
+    k[3] -= 11.0;
+    const struct given g = {2, 3, mass, _i ? damping : NULL, k, j};
+    tribo_model *model = model_of(&g);
+    assert_ok(tribo_model_set_normal(model, 0, 1, 0.6, 11.0, 0.0));
+    tribo_system *sys = system_of(model);
+    assert_ok(tribo_system_add_load(sys, 0.0, load, NULL));
+    assert_ok(tribo_system_add_base_motion(sys, 0.0, belt, NULL));
+    assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
+    const int status = tribo_system_find_flutter(sys, TRIBO_FLUTTER_FRICTION, NULL, NULL, 0.0, 2.0, &critical, &omega);
+    require(!status, "%s", tribo_system_message(sys));
+    assert_close(critical, 1.0 / 0.7, 1e-8);
+    /* squares mean + i rest; lambda^2 + 0.1 lambda + square = 0 with damping */
+    const double mean = 0.5 * (k[0] + k[3] + 11.0), det = k[0] * (k[3] + 11.0) - (k[1] - 0.6 / 0.7 * 11.0) * k[2];
+    const double complex square = mean + sqrt(det - mean * mean) * (double complex)_Complex_I;
+    assert_close(omega, _i ? fabs(cimag(csqrt(0.0025 - square))) : sqrt(mean), 1e-8);
+    tribo_system_destroy(sys);
+}
+
 /* Two structures as squeal, alike: each exponent twice, and both merge at once. */
 TEST(alike)
 {
@@ -592,6 +618,6 @@ TEST(refused)
     tribo_system_destroy(sys);
 }
 
-TEST_MAIN("equilibrium", {mode_coupling, 2}, {onset, 2}, {alike, 1}, {constant_limit, 2}, {no_friction, 2}, {circulation, 1},
-          {falling_limit, 1}, {beside_undamped, 2}, {shared, 4}, {springs, 1}, {reduced, 1}, {across, 1}, {lifts, 4},
-          {random_structures, 1}, {many_normals, 2}, {refused, 1})
+TEST_MAIN("equilibrium", {mode_coupling, 2}, {onset, 2}, {touch_down, 2}, {alike, 1}, {constant_limit, 2}, {no_friction, 2},
+          {circulation, 1}, {falling_limit, 1}, {beside_undamped, 2}, {shared, 4}, {springs, 1}, {reduced, 1}, {across, 1},
+          {lifts, 4}, {random_structures, 1}, {many_normals, 2}, {refused, 1})
