@@ -15,7 +15,10 @@ enum { ALONE, FIRST, SECOND };
 #define DURATION 8.0
 
 /* Step of the differences in time. */
-#define STEP 1e-3
+#define STEP 5e-4
+
+/* Rounding of a derivative by differences, in parts of what is differentiated; motions that are not stable grow to 1e9. */
+#define ROUNDING (1e-15 / STEP)
 
 /* Difference in a state, for derivatives. */
 #define SHIFT 1e-6
@@ -152,6 +155,7 @@ static void pair_up(struct scene *s, int seed)
     strcat(s->name, ", planar");
 }
 
+/* NULL: bodies beside planar contacts are too light. */
 static tribo_system *scene_system(const struct scene *s, int seed)
 {
     tribo_model *model;
@@ -175,7 +179,13 @@ static tribo_system *scene_system(const struct scene *s, int seed)
     const int status = tribo_system_create(&sys, model);
     require(!status, "seed %d: %s", seed, tribo_model_message(model));
     tribo_model_destroy(model);
-    assert_ok(tribo_set_planar(tribo_system_context(sys), planes, first));
+    const int planar = tribo_set_planar(tribo_system_context(sys), planes, first);
+    if (planar) {
+        require(planar == TRIBO_ERR_UNSUPPORTED, "seed %d: %s", seed, tribo_message(tribo_system_context(sys)));
+        printf("seed %d, %s: %s\n", seed, s->name, tribo_message(tribo_system_context(sys)));
+        tribo_system_destroy(sys);
+        return NULL;
+    }
     for (size_t k = 0; k < 3; k++) {
         assert_ok(tribo_system_add_load(sys, s->load[k].omega, s->load[k].cosine, s->load[k].sine));
     }
@@ -254,27 +264,33 @@ static int turns(const struct scene *s, double t, double y[9][2 * DOFS + FOLLOWE
             speed = hypot(speed, velocity(s, d, t, y[4]));
             change = hypot(change, velocity(s, d, t + 4.0 * STEP, y[8]) - velocity(s, d, t - 4.0 * STEP, y[0]));
         }
-        if (speed > 1e-8 && change > 0.2 * speed) {
+        if (speed > 1e-8 && change > 0.1 * speed) {
             return 1;
         }
     }
     return 0;
 }
 
-/* Residual of the equations of motion and of the law at t, the middle of states y; largest number of these in *size. */
+/* Residual of the equations of motion and of the law at t, the middle of states y, less the rounding of differences; largest number of
+ * these in *size. */
 static double residual(const struct scene *s, double t, double y[9][2 * DOFS + FOLLOWERS + 1], double *size)
 {
     const size_t n = s->n;
     const double *q = y[4], *u = q + n;
-    double r[DOFS], f[FOLLOWERS], off = 0.0, power = 0.0;
+    double r[DOFS], rounding[DOFS] = {0.0}, f[FOLLOWERS], off = 0.0, power = 0.0, largest = 0.0;
     const double *stuck[FOLLOWERS];
     size_t held[FOLLOWERS], count = 0, springs = 0;
     *size = 1.0;
+    for (size_t d = 0; d < 2 * n; d++) {
+        largest = fmax(largest, fabs(q[d]));
+    }
+    const double still = 1e-8 + ROUNDING * largest;
     for (size_t d = 0; d < n; d++) {
         r[d] = row_of(s->stiffness + d * n, q, n) + row_of(s->damping + d * n, u, n);
         *size = fmax(*size, fabs(r[d]));
         for (size_t e = 0; e < n; e++) {
             r[d] += s->mass[d * n + e] * derivative(y, n + e);
+            rounding[d] += ROUNDING * fabs(s->mass[d * n + e] * u[e]);
         }
         for (size_t k = 0; k < 3; k++) {
             r[d] -= s->load[k].cosine[d] * cos(s->load[k].omega * t) + s->load[k].sine[d] * sin(s->load[k].omega * t);
@@ -300,9 +316,9 @@ static double residual(const struct scene *s, double t, double y[9][2 * DOFS + F
         if (limit == 0.0) {
             off = fmax(off, elastic ? fabs(f[k]) : 0.0);
             f[k] = 0.0;
-        } else if (s->pair[k] != ALONE && speed > 1e-8) {
+        } else if (s->pair[k] != ALONE && speed > still) {
             f[k] = -limit * v / speed;
-        } else if (speed > 1e-8) {
+        } else if (speed > still) {
             off = elastic ? fmax(off, fmin(fabs(f[k] + copysign(limit, v)), fabs(v))) : off;
             f[k] = -copysign(limit, v);
         } else if (!elastic) {
@@ -326,9 +342,10 @@ static double residual(const struct scene *s, double t, double y[9][2 * DOFS + F
         off = fmax(off, force - s->mu[held[k]] * s->spring[c] * fmax(row_of(across, q, n) - s->gap[c], 0.0));
     }
     for (size_t d = 0; d < n; d++) {
-        off = fmax(off, fabs(r[d]));
+        off = fmax(off, fabs(r[d]) - rounding[d]);
     }
-    return fmax(off, fabs(derivative(y, 2 * n + springs) - power));
+    const double lost = fabs(derivative(y, 2 * n + springs) - power) - ROUNDING * fabs(q[2 * n + springs]);
+    return fmax(off, lost * *size / fmax(*size, fabs(power)));
 }
 
 static int count_events(const tribo_moment *moment, void *data)
@@ -342,10 +359,10 @@ static int count_events(const tribo_moment *moment, void *data)
 static int follow(const struct scene *s, int seed, const char *method, double y[WINDOWS][2 * DOFS + FOLLOWERS + 1])
 {
     tribo_system *sys = scene_system(s, seed);
-    const size_t all = tribo_system_dimension(sys);
+    const size_t all = sys ? tribo_system_dimension(sys) : 0;
     tribo_driver *d = NULL;
     double t = 0.0, at[9][2 * DOFS + FOLLOWERS + 1] = {{0.0}}, state[2 * DOFS + FOLLOWERS + 1] = {0.0}, size;
-    int status = tribo_driver_create(&d, sys, method), events = 0;
+    int status = sys ? tribo_driver_create(&d, sys, method) : TRIBO_ERR_UNSUPPORTED, events = 0;
     if (status) {
         tribo_system_destroy(sys);
         return status;
@@ -444,9 +461,13 @@ static int find_return(const struct scene *s, int seed, const char *method, doub
                        double *modulus, double *off)
 {
     tribo_system *sys = scene_system(s, seed);
-    const size_t all = tribo_system_dimension(sys);
+    const size_t all = sys ? tribo_system_dimension(sys) : 0;
     tribo_driver *d = NULL;
     double re[2 * DOFS + FOLLOWERS], im[2 * DOFS + FOLLOWERS], t = 0.0, z[2 * DOFS + FOLLOWERS + 1];
+    *off = 0.0;
+    if (!sys) {
+        return TRIBO_ERR_UNSUPPORTED;
+    }
     assert_ok(tribo_driver_create(&d, sys, method));
     int status = tribo_driver_find_periodic(d, 0.0, period, y);
     status = status ? status : tribo_driver_get_multipliers(d, re, im);
@@ -454,7 +475,6 @@ static int find_return(const struct scene *s, int seed, const char *method, doub
         printf("seed %d, %s, %s: %s\n", seed, s->name, method, tribo_driver_message(d));
     }
     tribo_driver_destroy(d);
-    *off = 0.0;
     if (!status) {
         for (size_t i = 0; i + 1 < all; i++) {
             multiplier[i] = re[i];
@@ -462,7 +482,8 @@ static int find_return(const struct scene *s, int seed, const char *method, doub
         }
         memcpy(z, y, all * sizeof *z);
         assert_ok(tribo_driver_create(&d, sys, "event"));
-        assert_ok(tribo_driver_advance(d, &t, period, z));
+        status = tribo_driver_advance(d, &t, period, z);
+        require(!status || status == TRIBO_ERR_UNSUPPORTED, "seed %d, %s: %s", seed, s->name, tribo_driver_message(d));
         for (size_t i = 0; i + 1 < all; i++) {
             *off = fmax(*off, fabs(z[i] - y[i]));
         }

@@ -40,6 +40,9 @@ enum { MOST_RETURNS = 16, SAMPLES = 64 };
 #define SAME 1e-6
 #define STAYS 1e-8
 
+/* A motion that comes back after this part of a period found does not move. */
+#define LEAST_PART 1e-4
+
 /* Largest change of a period by a search, as a factor. */
 #define STRAYS 4.0
 
@@ -244,7 +247,7 @@ static int settle_period(struct shooting *s, struct course *c)
     const double whole = s->map.period;
     double period = whole, *x = s->guess;
     int status = TRIBO_OK, found = 0, rests = 0;
-    for (size_t k = 0; !status && k < sizeof primes / sizeof *primes;) {
+    for (size_t k = 0; !status && period > LEAST_PART * whole && k < sizeof primes / sizeof *primes;) {
         memcpy(x, s->here->x, n * sizeof *x);
         status = tribo_period_map_march(&s->map, period / primes[k], 1, NULL, x);
         if (tribo_energy_distance(x, s->here->x, n) <= SAME * cycle_length(s, s->here)) {
@@ -252,6 +255,9 @@ static int settle_period(struct shooting *s, struct course *c)
         } else {
             k++;
         }
+    }
+    if (!status && !(period > LEAST_PART * whole)) {
+        return tribo_error(s->map.drv->message, TRIBO_ERR_NO_CONVERGENCE, "no cycle was found: the motion stays at its beginning");
     }
     if (!status && period < whole) {
         status = cycle_shoot(s, period, &found, &rests);
