@@ -477,9 +477,20 @@ int tribo_update_operator(tribo_context *ctx, const double *val)
         r->op = NULL;
     }
     status = put_values(ctx, r, val);
-    if (!status && ctx->set.sharing == TRIBO_SHARE_PREVIOUS) {
-        tribo_keep_forces(ctx); /* the new memory has not solved any group */
-        tribo_clusters_keep(&ctx->plane, &r->plane, ctx->n);
+    if (status || ctx->set.sharing != TRIBO_SHARE_PREVIOUS) {
+        return status;
     }
-    return status;
+    /* Previous forces are those in the memory of the spent operator: after a failure of the caller's law last.f is not finite. */
+    for (size_t g = 0; g < r->op->groups; g++) {
+        const struct box_qp *p = tribo_memory_problem(r->op, &r->memory, g);
+        for (size_t k = 0; k < p->group->size; k++) {
+            ctx->last.f[p->member[k]] = p->x[k];
+        }
+    }
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->last.f[i] = isfinite(ctx->last.f[i]) ? ctx->last.f[i] : 0.0;
+    }
+    tribo_keep_forces(ctx);
+    tribo_clusters_keep(&ctx->plane, &r->plane, ctx->n);
+    return TRIBO_OK;
 }

@@ -416,5 +416,43 @@ TEST(previous_forces)
     tribo_destroy(c);
 }
 
+/* The box of Coulomb's law at rest; fails if *data is not 0. */
+static int box_at_rest(size_t first, size_t n, int derivatives, const double *v, const double *limit, const double *epsilon,
+                       double *box, void *data)
+{
+    (void)first, (void)v, (void)epsilon;
+    for (size_t i = 0; i < n; i++) {
+        box[i] = -limit[i];
+        box[n + i] = limit[i];
+        box[2 * n + i] = 0.0;
+    }
+    return derivatives || *(const int *)data;
+}
+
+/* A call in which the caller's law fails leaves the previous forces, also if R has new values since. */
+TEST(previous_forces_after_failure)
+{
+    const double r[] = {1.0, 1.0, 1.0, 1.0}, twice[] = {2.0, 2.0, 2.0, 2.0}, v[2] = {0.0, 0.0}, a[2] = {0.5, 0.5},
+                 pull[2] = {1.0, 1.0};
+    double before[2], after[2];
+    int fails = 0;
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 2));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_ok(tribo_set_epsilon_all(c, 1.0));
+    assert_ok(tribo_set_sharing(c, TRIBO_SHARE_PREVIOUS));
+    assert_ok(tribo_set_user_law(c, box_at_rest, &fails));
+    assert_ok(tribo_set_limit(c, (const double[]){0.125, 1.0}));
+    assert_ok(tribo_balance(c, v, a, NULL, before));
+    fails = 1;
+    assert_status(tribo_balance(c, v, a, NULL, after), TRIBO_ERR_CALLBACK);
+    fails = 0;
+    assert_ok(tribo_set_limit_all(c, 1.0));
+    assert_ok(tribo_update_operator(c, twice));
+    assert_ok(tribo_balance(c, v, pull, NULL, after));
+    assert_all_close(after, before, 2, 1e-15);
+    tribo_destroy(c);
+}
+
 TEST_MAIN("update", {bits_of_a_new_operator, 96}, {bits_of_large_groups, 12}, {no_memory, 8}, {refusals, 16}, {callback, 1},
-          {memory_ends, 16}, {previous_forces, 1})
+          {memory_ends, 16}, {previous_forces, 1}, {previous_forces_after_failure, 1})
