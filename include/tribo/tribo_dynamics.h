@@ -292,8 +292,8 @@ enum {
 };
 
 /* Finds the first factor, of 128 between from and to, at which steady sliding is not stable, and the onset before it to rounding:
- * mode coupling (Hoffmann and others 2002), limits that fall with the speed, or a loss of stiffness; to 1e-9 where a normal begins
- * to press or lifts off, and exponents jump.
+ * mode coupling (Hoffmann and others 2002), limits that fall with the speed, or a loss of stiffness; to 1e-9 where a normal
+ * begins to press or lifts off, and exponents jump.
  * parameter  in                     TRIBO_FLUTTER_...
  * given, y   in, each or NULL       as in tribo_system_equilibrium; y NULL: zeros
  * from, to   in                     >= 0; to may be below from; at from sliding is stable

@@ -59,7 +59,7 @@ static int flutter_quantity(struct onset *o, double factor, double *value)
     const double noise = NOISE * cabs(o->at);
     double best = HUGE_VAL;
     size_t found = 0;
-    *value = o->kind == GROWS ? -cabs(o->at) : 0.0; /* if there is no such motion, as where a normal is apart */
+    *value = o->kind == GROWS ? -cabs(o->at) : 0.0; /* without such a motion, as where a normal is apart */
     o->border = 0;
     for (size_t k = 0; !status && o->kind == GROWS && k < x.count; k++) {
         const double off = fabs(x.im[k] - cimag(o->at));
@@ -143,7 +143,7 @@ static int flutter_zero(struct onset *o, double stable, double unstable, double 
             side = -1;
         }
     }
-    /* where a normal touches there are no exponents, and they may jump: the frequency is that beyond */
+    /* where a normal touches there are no exponents, and they may jump: the frequency is that of the unstable end */
     status = !status || status == TRIBO_ERR_UNSUPPORTED ? flutter_quantity(o, status ? b : x, &f) : status;
     *critical = x;
     return status;

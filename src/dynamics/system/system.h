@@ -54,8 +54,8 @@ struct loads {
     size_t tables;             /* number of tables */
     size_t limit_tables;       /* number of tables of limits, at most 1 */
     double *given_limit;       /* [ncontact] limits set by the caller; valid while limits vary */
-    double time,
-        low; /* the set time (NaN: none, the next one is computed anew) and its part below the last digit (tribo_system_set_low) */
+    double time;               /* the set time; NaN: none, the next one is computed anew */
+    double low;                /* the part of time below its last digit (tribo_system_set_low) */
 };
 
 /* A reduced system. The modes convert loads to accelerations. */

@@ -111,8 +111,8 @@ TEST(onset)
     tribo_system_destroy(sys);
 }
 
-/* Squeal with and without damping, held off the belt by a load of 1 until a second contact, of limit 0.7 times the factor, presses
- * it down: flutter begins at a jump, as the normal touches. */
+/* Squeal without and with damping, held off the belt by a load of 1 until a second contact, of limit 0.7 times the factor,
+ * presses it down: flutter begins at a jump, as the normal touches. */
 TEST(touch_down)
 {
     const double mass[] = {1.0, 0.0, 0.0, 1.0}, damping[] = {0.1, 0.0, 0.0, 0.1}, j[] = {1.0, 0.0, 0.0, 1.0, 0.0, 1.0};
