@@ -187,6 +187,15 @@ static void multiply(const struct disc_qp *p, const double *x, double *rows)
     }
 }
 
+/* Asserts that both problems follow x [size] to this tolerance; x [3 size]: the rest becomes what they answer. */
+static void assert_follow_alike(struct disc_qp *dense, struct disc_qp *sparse, double *x, double tolerance)
+{
+    const size_t n = dense->size;
+    tribo_disc_follow(dense, x, x + n);
+    tribo_disc_follow(sparse, x, x + 2 * n);
+    assert_all_close(x + 2 * n, x + n, n, tolerance);
+}
+
 /* Solutions, those of least norm, and changes along the freedoms, from one pull to the next. */
 TEST(beside_dense)
 {
@@ -218,9 +227,7 @@ TEST(beside_dense)
         }
         tribo_disc_linearize(&dense);
         tribo_disc_linearize(&sparse);
-        tribo_disc_follow(&dense, x, x + n);
-        tribo_disc_follow(&sparse, x, x + 2 * n);
-        assert_all_close(x + 2 * n, x + n, n, 1e-8);
+        assert_follow_alike(&dense, &sparse, x, 1e-8);
     }
     pair_free(&dense, &sparse, pattern);
     scene_free(&s);
@@ -247,9 +254,7 @@ TEST(least_norm_of_changes)
     tribo_disc_redundant(&sparse);
     ck_assert_uint_eq(sparse.factor.redundant, dense.factor.redundant);
     require(dense.factor.redundant > 50, "few are redundant");
-    tribo_disc_follow(&dense, x, x + n);
-    tribo_disc_follow(&sparse, x, x + 2 * n);
-    assert_all_close(x + 2 * n, x + n, n, 1e-9);
+    assert_follow_alike(&dense, &sparse, x, 1e-9);
     pair_free(&dense, &sparse, pattern);
     scene_free(&s);
     free(x);
