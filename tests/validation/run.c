@@ -4,6 +4,29 @@
 #include <stdlib.h>
 #include "../set_up_driver.h"
 
+tribo_model *dense_model(size_t ndof, size_t ncontact, const double *mass, const double *damping, const double *stiffness,
+                         const double *direction)
+{
+    tribo_model *model;
+    assert_ok(tribo_model_create(&model, ndof, ncontact));
+    assert_ok(tribo_model_set_mass(model, mass));
+    if (damping) {
+        assert_ok(tribo_model_set_damping(model, damping));
+    }
+    assert_ok(tribo_model_set_stiffness(model, stiffness));
+    assert_ok(tribo_model_set_direction(model, direction));
+    return model;
+}
+
+tribo_system *finish_model(tribo_model *model)
+{
+    tribo_system *sys;
+    const int status = tribo_system_create(&sys, model);
+    require(!status, "%s", tribo_model_message(model));
+    tribo_model_destroy(model);
+    return sys;
+}
+
 tribo_driver *driver_create(tribo_system *sys, const char *method, double dt, double tolerance)
 {
     tribo_driver *drv = NULL;

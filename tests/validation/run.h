@@ -6,6 +6,12 @@
 #include "support.h"
 #include "tribo/tribo_gsl.h"
 
+/* A model of dense matrices, damping NULL: none; compliances and normals may follow. finish_model: its system, and the end of the
+ * model. What fails ends the test. */
+tribo_model *dense_model(size_t ndof, size_t ncontact, const double *mass, const double *damping, const double *stiffness,
+                         const double *direction);
+tribo_system *finish_model(tribo_model *model);
+
 /* A text to report, and the end of the test: what failed says the driver. */
 tribo_driver *driver_create(tribo_system *sys, const char *method, double dt, double tolerance);
 void driver_advance(tribo_driver *drv, double *t, double t1, double *y);

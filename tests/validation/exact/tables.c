@@ -14,16 +14,8 @@ enum { DOFS = 5, CONTACTS = 4, KNOTS = 40, SIZE = 2 * DOFS + CONTACTS + 1 };
 static void assert_ramp(double k, double c, double (*closed)(double t))
 {
     const double one = 1.0, time[] = {0.0, 6.0}, value[] = {1.0, 4.0};
-    tribo_model *model;
-    tribo_system *sys = NULL;
+    tribo_system *sys = finish_model(dense_model(1, 1, &one, &c, &k, &one));
     double y[3] = {0.3, -0.2, 0.0}, t = 0.0;
-    assert_ok(tribo_model_create(&model, 1, 1));
-    assert_ok(tribo_model_set_mass(model, &one));
-    assert_ok(tribo_model_set_stiffness(model, &k));
-    assert_ok(tribo_model_set_damping(model, &c));
-    assert_ok(tribo_model_set_direction(model, &one));
-    assert_ok(tribo_system_create(&sys, model));
-    tribo_model_destroy(model);
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.0));
     assert_ok(tribo_system_add_load_table(sys, 2, time, value, &one));
     tribo_driver *drv = driver_create(sys, "exact", 100.0, 0.0);
@@ -75,15 +67,8 @@ TEST(breaks_away)
 {
     const double one = 1.0, none = 0.0, time[] = {0.0, 10.0}, value[] = {0.2, 10.2}, limit[] = {1.0, 2.0};
     const double begin = 0.8 / 0.9, s = 4.0 - begin;
-    tribo_model *model;
-    tribo_system *sys = NULL;
+    tribo_system *sys = finish_model(dense_model(1, 1, &one, NULL, &none, &one));
     double y[3] = {0.0}, t = 0.0;
-    assert_ok(tribo_model_create(&model, 1, 1));
-    assert_ok(tribo_model_set_mass(model, &one));
-    assert_ok(tribo_model_set_stiffness(model, &none));
-    assert_ok(tribo_model_set_direction(model, &one));
-    assert_ok(tribo_system_create(&sys, model));
-    tribo_model_destroy(model);
     assert_ok(tribo_system_add_load_table(sys, 2, time, value, &one));
     assert_ok(tribo_system_set_limit_table(sys, 2, time, limit));
     tribo_driver *drv = driver_create(sys, _i ? "auto" : "exact", 100.0, 0.0);
@@ -162,14 +147,9 @@ static struct scene scene_create(struct random *g)
 
 static tribo_system *scene_system(const struct scene *s, struct random g)
 {
-    tribo_model *model;
     tribo_system *sys = NULL;
     double time[KNOTS], value[KNOTS], limit[KNOTS * CONTACTS], pattern[DOFS], wave[2][CONTACTS] = {{0.0}};
-    assert_ok(tribo_model_create(&model, s->n, s->contacts));
-    assert_ok(tribo_model_set_mass(model, s->mass));
-    assert_ok(tribo_model_set_damping(model, s->damping));
-    assert_ok(tribo_model_set_stiffness(model, s->stiffness));
-    assert_ok(tribo_model_set_direction(model, s->direction));
+    tribo_model *model = dense_model(s->n, s->contacts, s->mass, s->damping, s->stiffness, s->direction);
     assert_ok(tribo_model_set_compliance(model, s->compliance));
     if (s->follows) {
         assert_ok(tribo_model_set_normal(model, 0, s->contacts - 1, 0.4, 3.0, -0.3));

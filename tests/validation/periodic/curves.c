@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Curves of periodic motions: folds, flips, grazing and ends by other codes and closed forms; nonlinear modes over the amplitude;
  * the work where motions are unique; what curves refuse. */
-#include "run.h"
 #include "beam.h"
+#include "run.h"
 #include "squeal.h"
 
 #include <stdint.h>
@@ -60,16 +60,9 @@ static void assert_special(const struct curve_seen *s, size_t k, int kind, doubl
 static tribo_system *stopped(double damping, double stop, double gap, double load, double omega)
 {
     const double one = 1.0, j[] = {1.0, 1.0};
-    tribo_model *model;
-    tribo_system *sys;
-    assert_ok(tribo_model_create(&model, 1, 2));
-    assert_ok(tribo_model_set_mass_diagonal(model, &one));
-    assert_ok(tribo_model_set_stiffness(model, &one));
-    assert_ok(tribo_model_set_damping(model, &damping));
-    assert_ok(tribo_model_set_direction(model, j));
+    tribo_model *model = dense_model(1, 2, &one, &damping, &one, j);
     assert_ok(tribo_model_set_normal(model, 0, 1, 0.0, stop, gap));
-    assert_ok(tribo_system_create(&sys, model));
-    tribo_model_destroy(model);
+    tribo_system *sys = finish_model(model);
     assert_ok(tribo_system_add_load(sys, omega, &load, NULL));
     return sys;
 }
@@ -178,18 +171,12 @@ TEST(flips)
 /* Two masses, of which one meets a stop: complex multipliers leave the unit circle, and come back, by another code. */
 TEST(torus)
 {
-    const double mass[] = {1.0, 1.0}, stiffness[] = {1.7, -0.7, -0.7, 1.5}, damping[] = {0.05, 0.05}, omega = 0.65 * 2.1;
+    const double mass[] = {1.0, 0.0, 0.0, 1.0}, stiffness[] = {1.7, -0.7, -0.7, 1.5}, damping[] = {0.05, 0.0, 0.0, 0.05},
+                 omega = 0.65 * 2.1;
     const double j[] = {1.0, 0.0, 1.0, 0.0}, load[] = {0.2, 0.5};
-    tribo_model *model;
-    tribo_system *sys;
-    assert_ok(tribo_model_create(&model, 2, 2));
-    assert_ok(tribo_model_set_mass_diagonal(model, mass));
-    assert_ok(tribo_model_set_stiffness(model, stiffness));
-    assert_ok(tribo_model_set_damping_diagonal(model, damping));
-    assert_ok(tribo_model_set_direction(model, j));
+    tribo_model *model = dense_model(2, 2, mass, damping, stiffness, j);
     assert_ok(tribo_model_set_normal(model, 0, 1, 0.0, 20.0, 0.2));
-    assert_ok(tribo_system_create(&sys, model));
-    tribo_model_destroy(model);
+    tribo_system *sys = finish_model(model);
     assert_ok(tribo_system_add_load(sys, omega, load, NULL));
     tribo_driver *drv = driver_create(sys, "exact", 1e-3, 1e-13);
     const tribo_curve curve = {
@@ -207,15 +194,7 @@ TEST(torus)
 static tribo_system *block(double v0, double falls)
 {
     const double one = 1.0, damping = 0.115, ratio = 1.0 / 0.6;
-    tribo_model *model;
-    tribo_system *sys;
-    assert_ok(tribo_model_create(&model, 1, 1));
-    assert_ok(tribo_model_set_mass_diagonal(model, &one));
-    assert_ok(tribo_model_set_stiffness(model, &one));
-    assert_ok(tribo_model_set_damping(model, &damping));
-    assert_ok(tribo_model_set_direction(model, &one));
-    assert_ok(tribo_system_create(&sys, model));
-    tribo_model_destroy(model);
+    tribo_system *sys = finish_model(dense_model(1, 1, &one, &damping, &one, &one));
     assert_ok(tribo_system_add_base_motion(sys, 0.0, &v0, NULL));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.6));
     assert_ok(tribo_set_static(tribo_system_context(sys), &ratio, falls > 0.0 ? &falls : NULL));
@@ -269,15 +248,9 @@ TEST(mode)
     static const double most[] = {0.6, 1.0, 2.0}, omega[] = {1.3747608670481, 1.2258676901977, 1.0935981120212};
     static const double zeta[] = {0.046412663224, 0.105752880426, 0.101057277142};
     const double one = 1.0, c[] = {1.0, 0.0};
-    tribo_model *model;
-    tribo_system *sys;
-    assert_ok(tribo_model_create(&model, 1, 1));
-    assert_ok(tribo_model_set_mass_diagonal(model, &one));
-    assert_ok(tribo_model_set_stiffness(model, &one));
-    assert_ok(tribo_model_set_direction(model, &one));
+    tribo_model *model = dense_model(1, 1, &one, NULL, &one, &one);
     assert_ok(tribo_model_set_compliance(model, &one));
-    assert_ok(tribo_system_create(&sys, model));
-    tribo_model_destroy(model);
+    tribo_system *sys = finish_model(model);
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.5));
     tribo_driver *drv = driver_create(sys, "exact", 1e-3, 1e-13);
     const tribo_curve curve = {.size = sizeof curve,
@@ -344,14 +317,10 @@ TEST(beam)
  * frequency, loads and the velocity of the base times these factors. */
 static tribo_system *bent(double omega, double loads, double bases)
 {
-    const double mass[] = {1.0, 2.0}, stiffness[] = {3.0, -2.0, -2.0, 2.0}, j[] = {0.0, 1.0};
+    const double mass[] = {1.0, 0.0, 0.0, 2.0}, stiffness[] = {3.0, -2.0, -2.0, 2.0}, j[] = {0.0, 1.0};
     const double load[] = {0.2 * loads, 0.7 * loads}, base = 0.3 * bases;
-    tribo_model *model;
     tribo_system *sys;
-    assert_ok(tribo_model_create(&model, 2, 1));
-    assert_ok(tribo_model_set_mass_diagonal(model, mass));
-    assert_ok(tribo_model_set_stiffness(model, stiffness));
-    assert_ok(tribo_model_set_direction(model, j));
+    tribo_model *model = dense_model(2, 1, mass, NULL, stiffness, j);
     assert_ok(tribo_system_reduce(&sys, model, 1, TRIBO_STATICS_COMPLIANCE));
     tribo_model_destroy(model);
     assert_ok(tribo_system_set_damping_ratio(sys, 0.05));
@@ -442,15 +411,7 @@ TEST(whole_steps)
 {
     for (int steps = 1; steps < 9; steps++) {
         const double one = 1.0, damping = 0.2, load = 1.0, step = _i ? -0.1 : 0.1, last = 1.0 + steps * step;
-        tribo_model *model;
-        tribo_system *sys;
-        assert_ok(tribo_model_create(&model, 1, 1));
-        assert_ok(tribo_model_set_mass_diagonal(model, &one));
-        assert_ok(tribo_model_set_stiffness(model, &one));
-        assert_ok(tribo_model_set_damping(model, &damping));
-        assert_ok(tribo_model_set_direction(model, &one));
-        assert_ok(tribo_system_create(&sys, model));
-        tribo_model_destroy(model);
+        tribo_system *sys = finish_model(dense_model(1, 1, &one, &damping, &one, &one));
         assert_ok(tribo_system_add_load(sys, 0.6, &load, NULL));
         assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.1));
         tribo_driver *drv = driver_create(sys, "exact", 1e-3, 1e-13);

@@ -12,22 +12,15 @@ static const char *const methods[] = {"exact", "event", "auto"};
  * times that at rest; falls: velocity by which they fall, 0: at once. damping: of each block. */
 static tribo_system *blocks(size_t count, double ratio, double falls, double v0, double damping, double differ)
 {
-    double mass[2] = {1.0, 1.0}, k[4] = {1.0}, j[4] = {1.0}, c[4] = {damping}, belt[2] = {v0, v0};
+    double mass[4] = {1.0}, k[4] = {1.0}, j[4] = {1.0}, c[4] = {damping}, belt[2] = {v0, v0};
     const double ratios[2] = {ratio, ratio}, velocity[2] = {falls, falls};
-    tribo_model *model;
-    tribo_system *sys;
     if (count == 2) {
+        mass[3] = 1.0;
         k[3] = 1.0 + differ;
         j[3] = 1.0;
         c[3] = damping;
     }
-    assert_ok(tribo_model_create(&model, count, count));
-    assert_ok(tribo_model_set_mass_diagonal(model, mass));
-    assert_ok(tribo_model_set_stiffness(model, k));
-    assert_ok(tribo_model_set_damping(model, c));
-    assert_ok(tribo_model_set_direction(model, j));
-    assert_ok(tribo_system_create(&sys, model));
-    tribo_model_destroy(model);
+    tribo_system *sys = finish_model(dense_model(count, count, mass, c, k, j));
     assert_ok(tribo_system_add_base_motion(sys, 0.0, belt, NULL));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.6));
     assert_ok(tribo_set_static(tribo_system_context(sys), ratios, falls > 0.0 ? velocity : NULL));

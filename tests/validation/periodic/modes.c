@@ -24,15 +24,9 @@ TEST(jenkins)
                                        {1.2258676901977, 0.105752880426},
                                        {1.0935981120212, 0.101057277142}};
     const double one = 1.0, soft = 1.0, c[] = {1.0, 0.0}, swing[] = {0.3, 0.0};
-    tribo_model *model;
-    tribo_system *sys;
-    assert_ok(tribo_model_create(&model, 1, 1));
-    assert_ok(tribo_model_set_mass(model, &one));
-    assert_ok(tribo_model_set_stiffness(model, &one));
-    assert_ok(tribo_model_set_direction(model, &one));
+    tribo_model *model = dense_model(1, 1, &one, NULL, &one, &one);
     assert_ok(tribo_model_set_compliance(model, &soft));
-    assert_ok(tribo_system_create(&sys, model));
-    tribo_model_destroy(model);
+    tribo_system *sys = finish_model(model);
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.5));
     assert_ok(tribo_system_add_load(sys, 0.7, swing, NULL)); /* does not act */
     tribo_driver *drv = driver_create(sys, methods[_i % 3], 1e-3, 1e-13);
@@ -68,20 +62,12 @@ static tribo_system *masses(double soft, double less, double preload)
     const double mass[] = {1.0, 0.0, 0.0, 2.0}, stiffness[] = {5.0, -2.0, -2.0, 4.0}, direction[] = {1.0, 0.0, -1.0, 1.0};
     const double damping[] = {0.05 - 2.0 * less, -0.01, -0.01, 0.06 - 4.0 * less}, compliance[] = {soft, 0.0};
     const double load[] = {0.0, preload}, limit[] = {0.3, 0.1};
-    tribo_model *model;
-    tribo_system *sys;
-    assert_ok(tribo_model_create(&model, 2, 2));
-    assert_ok(tribo_model_set_mass(model, mass));
-    assert_ok(tribo_model_set_damping(model, damping));
-    assert_ok(tribo_model_set_stiffness(model, stiffness));
-    assert_ok(tribo_model_set_direction(model, direction));
+    tribo_model *model = dense_model(2, 2, mass, damping, stiffness, direction);
     assert_ok(tribo_model_set_compliance(model, compliance));
     if (preload > 0.0) {
         assert_ok(tribo_model_set_normal(model, 0, 1, 0.4, 3.0, 0.0));
     }
-    const int status = tribo_system_create(&sys, model);
-    require(!status, "%s", tribo_model_message(model));
-    tribo_model_destroy(model);
+    tribo_system *sys = finish_model(model);
     if (preload > 0.0) {
         assert_ok(tribo_system_add_load(sys, 0.0, load, NULL));
     } else {

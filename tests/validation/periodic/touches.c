@@ -27,21 +27,14 @@ static double lag(void)
 
 static tribo_system *system_create(int kind, double limit)
 {
-    tribo_model *model;
-    tribo_system *sys = NULL;
     const size_t n = kind == FOLLOWS ? 2 : 1;
     const double unit[] = {1.0, 0.0, 0.0, 1.0}, damping[] = {DAMPING, 0.0, 0.0, DAMPING}, soft[] = {1.0 / CONTACT, 0.0};
-    assert_ok(tribo_model_create(&model, n, n));
-    assert_ok(tribo_model_set_mass(model, unit));
-    assert_ok(tribo_model_set_stiffness(model, unit));
-    assert_ok(tribo_model_set_damping(model, damping));
-    assert_ok(tribo_model_set_direction(model, unit));
+    tribo_model *model = dense_model(n, n, unit, damping, unit, unit);
     assert_ok(tribo_model_set_compliance(model, soft));
     if (kind == FOLLOWS) {
         assert_ok(tribo_model_set_normal(model, 0, 1, 0.5, 3.0, 0.0));
     }
-    assert_ok(tribo_system_create(&sys, model));
-    tribo_model_destroy(model);
+    tribo_system *sys = finish_model(model);
     if (kind == FOLLOWS) { /* N = 3 y, 4 y = load */
         assert_ok(tribo_system_add_load(sys, 0.0, (double[]){0.0, 4.0 * limit / 1.5}, NULL));
     } else {

@@ -15,25 +15,17 @@ static const double full_turn = 6.283185307179586;
  * factor of the damping. coupling: stiffness between x and y. */
 static tribo_system *shaker_with(double fx, double fy, double omega, double soft, double turn, double damped, double coupling)
 {
-    const double c = cos(turn), s = sin(turn), cx = 0.1 * sqrt(12.0) * damped, cy = 2.0 * damped, mass[] = {1.0, 1.0};
+    const double c = cos(turn), s = sin(turn), cx = 0.1 * sqrt(12.0) * damped, cy = 2.0 * damped, mass[] = {1.0, 0.0, 0.0, 1.0};
     const double damping[] = {cx * c * c + cy * s * s, (cx - cy) * c * s, (cx - cy) * c * s, cx * s * s + cy * c * c};
     const double shared = (c * c - s * s) * coupling - 9.0 * c * s;
     const double stiffness[] = {12.0 * c * c + 21.0 * s * s - 2.0 * c * s * coupling, shared, shared,
                                 12.0 * s * s + 21.0 * c * c + 2.0 * c * s * coupling};
     const double direction[] = {c, s, -s, c}, compliance[] = {soft, 0.0};
     const double steady[] = {-100.0 * s, 100.0 * c}, swing[] = {fx * c - fy * s, fx * s + fy * c};
-    tribo_model *model;
-    tribo_system *sys;
-    assert_ok(tribo_model_create(&model, 2, 2));
-    assert_ok(tribo_model_set_mass_diagonal(model, mass));
-    assert_ok(tribo_model_set_damping(model, damping));
-    assert_ok(tribo_model_set_stiffness(model, stiffness));
-    assert_ok(tribo_model_set_direction(model, direction));
+    tribo_model *model = dense_model(2, 2, mass, damping, stiffness, direction);
     assert_ok(tribo_model_set_compliance(model, compliance));
     assert_ok(tribo_model_set_normal(model, 0, 1, 0.85, 21.0, 0.0));
-    const int status = tribo_system_create(&sys, model);
-    require(!status, "%s", tribo_model_message(model));
-    tribo_model_destroy(model);
+    tribo_system *sys = finish_model(model);
     assert_ok(tribo_system_add_load(sys, 0.0, steady, NULL));
     assert_ok(tribo_system_add_load(sys, omega, swing, NULL));
     return sys;
@@ -454,15 +446,9 @@ TEST(flutter)
 TEST(shock)
 {
     const double mass = 100.0, stiffness = 1e4, direction[] = {0.0, 1.0}, w = sqrt((1e4 + 1e6) / 100.0);
-    tribo_model *model;
-    tribo_system *sys;
-    assert_ok(tribo_model_create(&model, 1, 2));
-    assert_ok(tribo_model_set_mass(model, &mass));
-    assert_ok(tribo_model_set_stiffness(model, &stiffness));
-    assert_ok(tribo_model_set_direction(model, direction));
+    tribo_model *model = dense_model(1, 2, &mass, NULL, &stiffness, direction);
     assert_ok(tribo_model_set_normal(model, 0, 1, 0.0, 1e6, 0.0));
-    assert_ok(tribo_system_create(&sys, model));
-    tribo_model_destroy(model);
+    tribo_system *sys = finish_model(model);
     tribo_driver *d = driver_of(sys, _i);
     struct seen s = {.most = 0.0};
     double t = 0.0, y[3] = {0.0, 1.0, 0.0}, f[2], top[] = {1.0 / w, 0.0, 0.0};
@@ -530,15 +516,9 @@ TEST(stiff)
     const double mass = 1.0, spring = 100.0, stiffness = 1e8, push = 1e6, direction[] = {0.0, 1.0};
     const double rest = push / (stiffness + spring);
     double t = 0.0, y[3] = {rest + 1e-4};
-    tribo_model *model;
-    tribo_system *sys;
-    assert_ok(tribo_model_create(&model, 1, 2));
-    assert_ok(tribo_model_set_mass(model, &mass));
-    assert_ok(tribo_model_set_stiffness(model, &spring));
-    assert_ok(tribo_model_set_direction(model, direction));
+    tribo_model *model = dense_model(1, 2, &mass, NULL, &spring, direction);
     assert_ok(tribo_model_set_normal(model, 0, 1, 0.5, stiffness, 0.0));
-    assert_ok(tribo_system_create(&sys, model));
-    tribo_model_destroy(model);
+    tribo_system *sys = finish_model(model);
     assert_ok(tribo_system_add_load(sys, 0.0, &push, NULL));
     tribo_driver *d = driver_create(sys, "moreau/fixed", 1e-2, 0.0);
     for (int k = 1; k <= 100; k++) {

@@ -7,40 +7,11 @@
 #include <complex.h>
 #include <string.h>
 
-/* A structure, dense. */
-struct given {
-    size_t ndof, ncontact;
-    const double *mass, *damping, *stiffness, *direction; /* damping NULL: none */
-};
-
-static tribo_model *model_of(const struct given *g)
-{
-    tribo_model *model;
-    assert_ok(tribo_model_create(&model, g->ndof, g->ncontact));
-    assert_ok(tribo_model_set_mass(model, g->mass));
-    assert_ok(tribo_model_set_stiffness(model, g->stiffness));
-    assert_ok(tribo_model_set_direction(model, g->direction));
-    if (g->damping) {
-        assert_ok(tribo_model_set_damping(model, g->damping));
-    }
-    return model;
-}
-
-static tribo_system *system_of(tribo_model *model)
-{
-    tribo_system *sys;
-    const int status = tribo_system_create(&sys, model);
-    require(!status, "%s", tribo_model_message(model));
-    tribo_model_destroy(model);
-    return sys;
-}
-
 /* m = k = 1, damping c, on a base of this velocity, with a limit of 0.6. */
 static tribo_system *block(double c, double belt)
 {
     const double one = 1.0;
-    const struct given g = {1, 1, &one, &c, &one, &one};
-    tribo_system *sys = system_of(model_of(&g));
+    tribo_system *sys = finish_model(dense_model(1, 1, &one, &c, &one, &one));
     assert_ok(tribo_system_add_base_motion(sys, 0.0, &belt, NULL));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.6));
     return sys;
@@ -120,10 +91,9 @@ TEST(touch_down)
     double k[4], critical, omega;
     squeal_stiffness(k);
     k[3] -= 11.0;
-    const struct given g = {2, 3, mass, _i ? damping : NULL, k, j};
-    tribo_model *model = model_of(&g);
+    tribo_model *model = dense_model(2, 3, mass, _i ? damping : NULL, k, j);
     assert_ok(tribo_model_set_normal(model, 0, 1, 0.6, 11.0, 0.0));
-    tribo_system *sys = system_of(model);
+    tribo_system *sys = finish_model(model);
     assert_ok(tribo_system_add_load(sys, 0.0, load, NULL));
     assert_ok(tribo_system_add_base_motion(sys, 0.0, belt, NULL));
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
@@ -149,11 +119,10 @@ TEST(alike)
         k[5 * d] = own[3 * (d % 2)];
         k[4 * d + (d ^ 1)] = own[1];
     }
-    const struct given g = {4, 4, mass, NULL, k, j};
-    tribo_model *model = model_of(&g);
+    tribo_model *model = dense_model(4, 4, mass, NULL, k, j);
     assert_ok(tribo_model_set_normal(model, 0, 1, 0.6, 11.0, 0.0));
     assert_ok(tribo_model_set_normal(model, 2, 3, 0.6, 11.0, 0.0));
-    tribo_system *sys = system_of(model);
+    tribo_system *sys = finish_model(model);
     assert_ok(tribo_system_add_load(sys, 0.0, load, NULL));
     assert_ok(tribo_system_add_base_motion(sys, 0.0, belt, NULL));
     const int status = tribo_system_find_flutter(sys, TRIBO_FLUTTER_FRICTION, NULL, NULL, 0.0, 1.3, &critical, &omega);
@@ -186,8 +155,7 @@ TEST(constant_limit)
 TEST(circulation)
 {
     const double one[] = {1.0, 0.0, 0.0, 1.0}, k[] = {5.0, 3.0, -3.0, 5.0}, belt[] = {1.0, 1.0};
-    const struct given g = {2, 2, one, NULL, k, one};
-    tribo_system *sys = system_of(model_of(&g));
+    tribo_system *sys = finish_model(dense_model(2, 2, one, NULL, k, one));
     double y[5] = {0.0}, re[4], im[4], critical;
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.5));
     assert_ok(tribo_system_add_base_motion(sys, 0.0, belt, NULL));
@@ -206,12 +174,11 @@ TEST(circulation)
 TEST(no_friction)
 {
     const double one = 1.0, k = 4.0, load = 2.0, belt = 1.0;
-    const struct given g = {1, 1, &one, NULL, &k, &one};
     tribo_model *model;
     assert_ok(tribo_model_create(&model, 1, 0));
     assert_ok(tribo_model_set_mass(model, &one));
     assert_ok(tribo_model_set_stiffness(model, &k));
-    tribo_system *sys = system_of(_i ? model_of(&g) : model);
+    tribo_system *sys = finish_model(_i ? dense_model(1, 1, &one, NULL, &k, &one) : model);
     double y[3] = {0.0}, re[2], im[2], critical;
     signed char slip = 7;
     if (_i) {
@@ -259,8 +226,7 @@ TEST(beside_undamped)
 {
     const double one[] = {1.0, 0.0, 0.0, 1.0}, k[] = {1.0, 0.0, 0.0, _i ? 1.001 : 1.0}, damping[] = {0.115, 0.0, 0.0, 0.0};
     const double belt = 1.0, ratio = 1.0 / 0.6, velocity = 0.5;
-    const struct given g = {2, 1, one, damping, k, one};
-    tribo_system *sys = system_of(model_of(&g));
+    tribo_system *sys = finish_model(dense_model(2, 1, one, damping, k, one));
     double critical, omega;
     assert_ok(tribo_system_add_base_motion(sys, 0.0, &belt, NULL));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.6));
@@ -281,8 +247,7 @@ TEST(shared)
     static const double limit[][2] = {{0.6, 0.6}, {0.2, 0.9}, {0.45, 0.45}, {0.5, 0.5}};
     const double mass[] = {1.0, 0.0, 0.0, 2.0}, k[] = {3.0, -2.0, -2.0, 2.0}, j[] = {1.0, 0.0, 2.0, 0.0};
     const double twice[] = {1.0, 0.0, 1.0, 0.0}, load[] = {1.0, 0.0};
-    const struct given g = {2, 2, mass, NULL, k, _i == 3 ? j : twice};
-    tribo_system *sys = system_of(model_of(&g));
+    tribo_system *sys = finish_model(dense_model(2, 2, mass, NULL, k, _i == 3 ? j : twice));
     double y[5] = {0.0, 7.0}, re[4], im[4];
     signed char slip[2];
     size_t count;
@@ -309,10 +274,9 @@ TEST(shared)
 TEST(springs)
 {
     const double one = 1.0, soft = 0.5, load = 1.2, belt = -1.0;
-    const struct given g = {1, 1, &one, NULL, &one, &one};
-    tribo_model *model = model_of(&g);
+    tribo_model *model = dense_model(1, 1, &one, NULL, &one, &one);
     assert_ok(tribo_model_set_compliance(model, &soft));
-    tribo_system *sys = system_of(model);
+    tribo_system *sys = finish_model(model);
     double y[4] = {0.0, 0.0, 0.3, 0.0}, re[2], im[2];
     signed char slip;
     assert_ok(tribo_system_add_load(sys, 0.0, &load, NULL));
@@ -338,8 +302,7 @@ TEST(springs)
 TEST(reduced)
 {
     const double mass[] = {1.0, 0.0, 0.0, 2.0}, k[] = {3.0, -2.0, -2.0, 2.0}, j[] = {1.0, 0.0}, load[] = {1.0, 0.5}, belt = 1.0;
-    const struct given g = {2, 1, mass, NULL, k, j};
-    tribo_model *model = model_of(&g);
+    tribo_model *model = dense_model(2, 1, mass, NULL, k, j);
     tribo_system *sys;
     double y[8] = {0.0}, re[4], im[4], natural[2], stuck;
     signed char slip;
@@ -365,8 +328,7 @@ TEST(reduced)
 TEST(across)
 {
     const double one[] = {1.0, 0.0, 0.0, 1.0}, k[] = {4.0, 0.0, 0.0, 9.0}, belt[] = {0.3, 0.4};
-    const struct given g = {2, 2, one, NULL, k, one};
-    tribo_system *sys = system_of(model_of(&g));
+    tribo_system *sys = finish_model(dense_model(2, 2, one, NULL, k, one));
     const size_t first = 0;
     double y[5] = {0.0}, re[4], im[4];
     signed char slip[2];
@@ -491,16 +453,15 @@ TEST(random_structures)
             load[k] = uniform(&g, -1.0, 1.0);
         }
         const double limits[ROWS] = {normals ? 0.0 : 0.3, 0.0, normals ? 0.0 : rests ? 9.0 : 0.2, 0.0, 0.1, 0.2};
-        const struct given given = {DOFS, ROWS, mass, damped ? damping : NULL, stiffness, j};
         for (size_t i = 0; i < ROWS; i++) {
             belt[i] = i == 1 || i == 3 || (i == 2 && rests) ? 0.0 : uniform(&g, 0.2, 1.0) * (double)(1 - 2 * (int)(i % 2));
         }
-        tribo_model *model = model_of(&given);
+        tribo_model *model = dense_model(DOFS, ROWS, mass, damped ? damping : NULL, stiffness, j);
         for (size_t i = 0; normals && i < 4; i += 2) {
             const double mu = i == 2 && rests ? 50.0 : 0.4;
             assert_ok(tribo_model_set_normal(model, i, i + 1, mu, uniform(&g, 1.0, 5.0), uniform(&g, -0.3, 0.2)));
         }
-        tribo_system *sys = system_of(model);
+        tribo_system *sys = finish_model(model);
         assert_ok(tribo_set_law(tribo_system_context(sys), TRIBO_COULOMB));
         assert_ok(tribo_set_limit(tribo_system_context(sys), limits));
         if (!normals) {
@@ -554,12 +515,11 @@ TEST(many_normals)
         load[z] = b % 2 ? -1.0 : 1.0;
         belt[x] = _i ? -1.0 : 1.0;
     }
-    const struct given g = {ALL, ALL, mass, NULL, k, j};
-    tribo_model *model = model_of(&g);
+    tribo_model *model = dense_model(ALL, ALL, mass, NULL, k, j);
     for (size_t b = 0; b < BLOCKS; b++) {
         assert_ok(tribo_model_set_normal(model, 2 * b, 2 * b + 1, _i ? 400.0 : 0.5, 7.0, 0.0));
     }
-    tribo_system *sys = system_of(model);
+    tribo_system *sys = finish_model(model);
     assert_ok(tribo_system_add_load(sys, 0.0, load, NULL));
     assert_ok(tribo_system_add_base_motion(sys, 0.0, belt, NULL));
     if (_i) {
@@ -611,8 +571,7 @@ TEST(refused)
     assert_exact(omega, 3.0);
     tribo_system_destroy(sys);
     const double mass = 1.0, nothing = 0.0;
-    const struct given g = {1, 1, &mass, NULL, &nothing, &mass};
-    sys = system_of(model_of(&g));
+    sys = finish_model(dense_model(1, 1, &mass, NULL, &nothing, &mass));
     assert_status(tribo_system_equilibrium(sys, NULL, y, NULL, NULL, NULL, NULL), TRIBO_ERR_INDEFINITE);
     assert_says(tribo_system_message(sys), "singular");
     tribo_system_destroy(sys);

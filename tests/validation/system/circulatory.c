@@ -15,18 +15,9 @@
 static tribo_system *pendulum(double p, const double *damping, double limit, double c)
 {
     const double mass[] = {3.0, 1.0, 1.0, 1.0}, stiffness[] = {2.0 - p, p - 1.0, -1.0, 1.0}, row[] = {0.3, 1.0};
-    tribo_model *model;
-    tribo_system *sys = NULL;
-    assert_ok(tribo_model_create(&model, 2, 1));
-    assert_ok(tribo_model_set_mass(model, mass));
-    assert_ok(tribo_model_set_stiffness(model, stiffness));
-    assert_ok(tribo_model_set_direction(model, row));
+    tribo_model *model = dense_model(2, 1, mass, damping, stiffness, row);
     assert_ok(tribo_model_set_compliance(model, &c));
-    if (damping) {
-        assert_ok(tribo_model_set_damping(model, damping));
-    }
-    assert_ok(tribo_system_create(&sys, model));
-    tribo_model_destroy(model);
+    tribo_system *sys = finish_model(model);
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), limit));
     return sys;
 }

@@ -161,15 +161,9 @@ TEST(compliance)
 {
     const double one = 1.0, c = 0.1, soft = 1.0, limit = 0.5, x[2] = {1.0};
     double y[4] = {0.0}, least, most;
-    tribo_model *model;
-    tribo_system *sys;
-    assert_ok(tribo_model_create(&model, 1, 1));
-    assert_ok(tribo_model_set_mass(model, &one));
-    assert_ok(tribo_model_set_damping(model, &c));
-    assert_ok(tribo_model_set_stiffness(model, &one));
-    assert_ok(tribo_model_set_direction(model, &one));
+    tribo_model *model = dense_model(1, 1, &one, &c, &one, &one);
     assert_ok(tribo_model_set_compliance(model, &soft));
-    assert_ok(tribo_system_create(&sys, model));
+    tribo_system *sys = finish_model(model);
     assert_ok(tribo_set_limit(tribo_system_context(sys), &limit));
     assert_ok(tribo_system_add_load(sys, 1.1, &one, NULL));
     tribo_driver *drv = driver_create(sys, "exact", 1.0, 1e-9);
@@ -178,7 +172,6 @@ TEST(compliance)
     assert_close(most, 3.38660810, 1e-7);
     tribo_driver_destroy(drv);
     tribo_system_destroy(sys);
-    tribo_model_destroy(model);
 }
 
 /* Compliance 0 is a rigid contact; reduced to all modes the elastic structure is the same one. */
