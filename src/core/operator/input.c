@@ -70,7 +70,7 @@ void tribo_renewal_free(struct renewal *r)
         tribo_clusters_free(&r->plane);
         tribo_csr_free(&r->drafts.t);
         tribo_csr_free(&r->drafts.a);
-        free(r->drafts.room.block);
+        free(r->drafts.diagonal);
     }
 }
 
@@ -145,17 +145,17 @@ static int put_diagonal(tribo_context *ctx, struct renewal *r, const double *dia
     return install(ctx, r);
 }
 
-/* Lays out the arrays of drafts but t and a. Returns 0 if out of memory. */
-static int lay_out_drafts(const tribo_context *ctx, struct drafts *d)
+/* Allocates the arrays of drafts but t and a, unless drafts have these arrays. Returns 0 if out of memory. */
+static int allocate_drafts(const tribo_context *ctx, struct drafts *d)
 {
     const size_t n = ctx->n;
-    return ALLOCATE_IN(&d->room, ARRAY(d->diagonal, n + 1), ARRAY(d->x, 2 * n + 1), ARRAY(d->place, 4 * n + 1)) != NULL;
+    return d->diagonal || ALLOCATE(ARRAY(d->diagonal, n + 1), ARRAY(d->x, 2 * n + 1), ARRAY(d->place, 4 * n + 1));
 }
 
 /* Takes rows drafts.a as the operator; a status. negligible: see symmetrize; from: see tribo_operator_create. */
 static int put_rows(tribo_context *ctx, struct renewal *r, double negligible, const struct inertia *from)
 {
-    int status = lay_out_drafts(ctx, &r->drafts) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    int status = allocate_drafts(ctx, &r->drafts) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     status = status ? status : symmetrize(ctx, &r->drafts.a, negligible, r->drafts.diagonal);
     status = status ? status : tribo_operator_create(&r->op, &r->memory, &r->drafts, from, ctx);
     return status == TRIBO_ERR_MEMORY ? input_out_of_memory(ctx) : status ? status : install(ctx, r);
@@ -175,7 +175,7 @@ static int put_mass(tribo_context *ctx, struct renewal *r, const double *inverse
 {
     struct drafts *d = &r->drafts;
     const struct inertia from = {inverse_mass, rowptr, col, val, &d->t};
-    return lay_out_drafts(ctx, d) && tribo_csr_product(&d->a, d->place, &d->t, inverse_mass, rowptr, col, val, ctx->n)
+    return allocate_drafts(ctx, d) && tribo_csr_product(&d->a, d->place, &d->t, inverse_mass, rowptr, col, val, ctx->n)
                ? put_rows(ctx, r, 0.0, &from)
                : input_out_of_memory(ctx);
 }

@@ -54,10 +54,9 @@ struct memory {
 /* Intermediate results of making an operator. */
 struct drafts {
     struct csr t, a;  /* J' or R', and R; columns ascend */
-    double *diagonal; /* [n] of R */
+    double *diagonal; /* [n] of R; owns the memory of x and place */
     double *x;        /* [2 n] workspace */
     size_t *place;    /* [4 n + 1] workspace */
-    struct room room; /* memory of the last three */
 };
 
 /* R = J diag(w) J' by rows of J; t = J'. */
