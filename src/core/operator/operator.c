@@ -214,6 +214,10 @@ static int set_values_of(struct csr *rows, const struct group *g, const struct c
 /* Makes the sparse factor of a group, if it is worth it. Returns 0 if out of memory. */
 static int make_sparse(struct group *g, const struct csr *a, const size_t *member, const size_t *place)
 {
+    if (g->made && set_values_of(tribo_sparse_rows(g->made), g, a, member, place)) {
+        g->sparse = g->made;
+        return 1;
+    }
     struct csr own;
     size_t entries = 0;
     uint64_t shape = 14695981039346656037u ^ g->size; /* the hash FNV-1a, of words */
@@ -226,10 +230,6 @@ static int make_sparse(struct group *g, const struct csr *a, const size_t *membe
         }
     }
     if (shape == g->dense_shape) {
-        return 1;
-    }
-    if (g->made && set_values_of(tribo_sparse_rows(g->made), g, a, member, place)) {
-        g->sparse = g->made;
         return 1;
     }
     if (!tribo_csr_create(&own, g->size, entries)) {
