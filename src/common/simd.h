@@ -44,6 +44,12 @@
  * in the first-level cache. */
 #define TRIBO_CHUNK 128
 
+/* Returns the size of the chunk that begins at i, of n contacts. */
+static inline size_t tribo_chunk_from(size_t n, size_t i)
+{
+    return n - i < TRIBO_CHUNK ? n - i : TRIBO_CHUNK;
+}
+
 /* Returns x rounded up to the start of a cache line, by at most TRIBO_LINE - 1 numbers: no vector of the array crosses lines. */
 enum { TRIBO_LINE = 8 };
 static inline double *tribo_aligned(double *x)

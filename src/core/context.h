@@ -150,7 +150,7 @@ void tribo_write_slips(tribo_context *ctx);
 /* Contacts of the chunk that begins with contact i. */
 static inline size_t tribo_chunk_size(const tribo_context *ctx, size_t i)
 {
-    return ctx->n - i < TRIBO_CHUNK ? ctx->n - i : TRIBO_CHUNK;
+    return tribo_chunk_from(ctx->n, i);
 }
 
 /* The contacts of the chunk that begins with contact i, as laws see them. */

@@ -126,7 +126,7 @@ static void own_force_all(const struct contacts *c, size_t n, const double *v, c
     for (size_t i = 0, m; i < n; i += m) {
         const struct contacts part = tribo_contacts_from(c, i);
         double box[BOX_ROWS * TRIBO_CHUNK];
-        m = n - i < TRIBO_CHUNK ? n - i : TRIBO_CHUNK;
+        m = tribo_chunk_from(n, i);
         tribo_own_boxes(&part, m, 0, v + i, box);
         clamp_all(m, feq + i, box, box + m, box + SHIFT * m, f + i);
     }

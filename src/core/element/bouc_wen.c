@@ -103,7 +103,7 @@ int tribo_bouc_wen_force(size_t n, const double *dz, const double *parameter, do
     status = status ? status : n && !f ? TRIBO_ERR_NULL : TRIBO_OK;
     for (size_t i = 0; !status && i < n; i += TRIBO_CHUNK) {
         double ignored[TRIBO_CHUNK], p[PARAMETERS][TRIBO_CHUNK], u[TRIBO_CHUNK], s[TRIBO_CHUNK];
-        const size_t count = element_chunk(n, i);
+        const size_t count = tribo_chunk_from(n, i);
         element_columns(parameter + PARAMETERS * i, count, PARAMETERS, p);
         turn(count, dz + i, p, z + i, u, s);
         for (size_t k = 0; k < count; k++) {

@@ -26,7 +26,7 @@ int tribo_dahl_force(size_t n, const double *dz, const double *stiffness, const 
     status = status ? status : tribo_check_finite(NULL, "f", f, n);
     for (size_t i = 0; !status && i < n; i += TRIBO_CHUNK) {
         double ignored[TRIBO_CHUNK];
-        move_dahl(element_chunk(n, i), dz + i, stiffness + i, limit + i, f + i, df_dz ? df_dz + i : ignored);
+        move_dahl(tribo_chunk_from(n, i), dz + i, stiffness + i, limit + i, f + i, df_dz ? df_dz + i : ignored);
     }
     return status;
 }

@@ -27,11 +27,6 @@ static inline int tribo_check_element(const double *x, size_t n, int range)
     return tribo_check_elements(x, n, 1, &range);
 }
 
-static inline size_t element_chunk(size_t n, size_t i)
-{
-    return n - i < TRIBO_CHUNK ? n - i : TRIBO_CHUNK;
-}
-
 /* column [numbers] = the numbers of n <= TRIBO_CHUNK elements, x [n][numbers]. */
 static inline void element_columns(const double *x, size_t n, size_t numbers, double (*column)[TRIBO_CHUNK])
 {

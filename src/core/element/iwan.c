@@ -130,7 +130,7 @@ int tribo_iwan_force(size_t n, size_t room, const double *dz, const double *para
     status = status ? status : n && (!state || !f) ? TRIBO_ERR_NULL : check_state(n, room, dz, parameter, state);
     for (size_t i = 0; !status && i < n; i += TRIBO_CHUNK) {
         double ignored[TRIBO_CHUNK], p[PARAMETERS][TRIBO_CHUNK], base[TRIBO_CHUNK], factor[TRIBO_CHUNK], distance[TRIBO_CHUNK];
-        const size_t count = element_chunk(n, i);
+        const size_t count = tribo_chunk_from(n, i);
         element_columns(parameter + PARAMETERS * i, count, PARAMETERS, p);
         for (size_t k = 0; k < count; k++) {
             const struct iwan own = iwan_of(p[KT][k], p[FS][k], p[CHI][k], p[BETA][k]);

@@ -45,7 +45,7 @@ int tribo_lugre_force(size_t n, double dt, const double *dz, const double *param
     status = status ? status : n && !f ? TRIBO_ERR_NULL : TRIBO_OK;
     for (size_t i = 0; !status && i < n; i += TRIBO_CHUNK) {
         double ignored[TRIBO_CHUNK], column[PARAMETERS][TRIBO_CHUNK];
-        const size_t count = element_chunk(n, i);
+        const size_t count = tribo_chunk_from(n, i);
         element_columns(parameter + PARAMETERS * i, count, PARAMETERS, column);
         deflect(count, dt, dz + i, column, z + i, f + i, df_dz ? df_dz + i : ignored);
     }
