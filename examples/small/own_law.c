@@ -6,8 +6,8 @@
 
 #include "tribo/tribo_dynamics.h"
 
-/* The box of each contact: f = clamp(f_eq - shift, lower, upper), see "A law of your own" in the manual. No derivatives are set:
- * "rk4/fixed" asks for none. */
+/* box [3][n] = lower, upper and shift of each contact: f = clamp(f_eq - shift, lower, upper), see "A law of your own" in the
+ * manual. Sets no derivatives: the method "rk4/fixed" calls a law with derivatives = 0. */
 static int falling(size_t first, size_t n, int derivatives, const double *v, const double *limit, const double *epsilon,
                    double *box, void *data)
 {

@@ -80,12 +80,13 @@ struct last {
     size_t clusters; /* solved */
 };
 
-/* The operator that replaces that of a context, or the one that it replaced last, whose memory the next one uses. */
+/* The new operator of a context, until install exchanges the new operator for that of the context; then the replaced operator, in
+ * whose memory the next update makes the new operator. */
 struct renewal {
     struct delassus *op;
     struct memory memory;
     struct clusters plane;
-    struct drafts drafts; /* of both */
+    struct drafts drafts; /* of the new operator */
 };
 
 /* Places of the entries of the caller's J (tribo_set_operator_mass) or R (tribo_set_operator_csr). Shared by clones. */

@@ -37,7 +37,7 @@ static int turns(const double *state, double dx)
     return dx * state[2] < 0.0;
 }
 
-/* Checks that turns are whole numbers up to room, that a further turn has room, and that all turns are finite; chi. */
+/* Checks chi, and that the number of turns is whole and at most room, a further turn has room, and turns are finite; a status. */
 static int check_state(size_t n, size_t room, const double *dz, const double *parameter, const double *state)
 {
     const uint64_t sign = (uint64_t)1 << 63, most = tribo_bits(DBL_MAX);

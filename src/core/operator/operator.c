@@ -191,8 +191,8 @@ static int find_groups(struct delassus *op, const struct csr *a, size_t *place, 
     return 1;
 }
 
-/* Sets the values of rows [g->size] to those of a group. Returns 1; 0 if the entries of the group are at other places than those
- * of rows, some of whose values are then changed. */
+/* Sets rows->val to the entries of group g in a. Returns 1; returns 0, and may set a part of rows->val, if the places of the
+ * entries of g differ from those of rows. */
 static int set_values_of(struct csr *rows, const struct group *g, const struct csr *a, const size_t *member, const size_t *place)
 {
     size_t entries = 0;
