@@ -211,11 +211,10 @@ static int set_values_of(struct csr *rows, const struct group *g, const struct c
     return same;
 }
 
-/* Makes the sparse factor of a group, if it is worth it. Returns 0 if out of memory. */
+/* Sets g->made to the sparse factor of a group; NULL if a dense factor is better. Returns 0 if out of memory. */
 static int make_sparse(struct group *g, const struct csr *a, const size_t *member, const size_t *place)
 {
     if (g->made && set_values_of(tribo_sparse_rows(g->made), g, a, member, place)) {
-        g->sparse = g->made;
         return 1;
     }
     struct csr own;
@@ -248,7 +247,6 @@ static int make_sparse(struct group *g, const struct csr *a, const size_t *membe
     tribo_sparse_free(g->made);
     const int done = tribo_sparse_create(&g->made, &own);
     tribo_csr_free(&own);
-    g->sparse = g->made;
     g->dense_shape = done && !g->made ? shape : 0;
     return done;
 }
@@ -465,8 +463,9 @@ int tribo_operator_create(struct delassus **created, struct memory *m, struct dr
         const size_t *member = op->member + g->first;
         g->sparse = NULL;
         status = find_grading(g, from, member, note);
-        if (!status && !g->graded && tribo_prefers_sparse(g->size, 0) && !make_sparse(g, a, member, place)) {
-            status = TRIBO_ERR_MEMORY;
+        if (!status && !g->graded && tribo_prefers_sparse(g->size, 0)) {
+            status = make_sparse(g, a, member, place) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+            g->sparse = g->made;
         }
     }
     for (int again = groups > 0; !status && again;) {
