@@ -143,17 +143,15 @@ static int solve_by_masses(const tribo_model *m, tribo_system *sys, const struct
 static int find_circulation(tribo_system *sys)
 {
     struct matrix mirror = {0}, odd = {0}, rates = {0};
-    int done = tribo_matrix_transpose(&mirror, &sys->k) && tribo_matrix_sum(&odd, 0.5, &sys->k, -0.5, &mirror);
-    if (done && (sys->factor.factor || sys->factor.sparse)) {
-        done = solve_matrix(&sys->factor, &odd, &rates);
-    } else if (done && (done = tribo_matrix_copy(&rates, &odd)) != 0) {
-        for (size_t i = 0; i < sys->ndof; i++) {
-            for (size_t e = rates.first[i]; e < rates.first[i + 1]; e++) {
-                rates.val[e] /= tribo_matrix_get(&sys->mass, i, i);
-            }
+    const int solves = sys->factor.factor || sys->factor.sparse;
+    const int done = tribo_matrix_transpose(&mirror, &sys->k) && tribo_matrix_sum(&odd, 0.5, &sys->k, -0.5, &mirror) &&
+                     (!solves || solve_matrix(&sys->factor, &odd, &rates));
+    for (size_t i = 0; done && !solves && i < sys->ndof; i++) {
+        for (size_t e = odd.first[i]; e < odd.first[i + 1]; e++) {
+            odd.val[e] /= tribo_matrix_get(&sys->mass, i, i);
         }
     }
-    sys->circulation = done ? tribo_matrix_row_sum(&rates) : 0.0;
+    sys->circulation = done ? tribo_matrix_row_sum(solves ? &rates : &odd) : 0.0;
     tribo_matrix_free(&mirror);
     tribo_matrix_free(&odd);
     tribo_matrix_free(&rates);
