@@ -29,8 +29,7 @@ static double sampled_work(struct exact *x, const struct course *course, double 
         const size_t point = k % 8;
         tribo_modal_motion_go(x, half * ((double)(2 * (k / 8) + 1) + (point % 2 ? at[point / 2] : -at[point / 2])));
         tribo_course_look(x, &c);
-        const double limit =
-            (follows || x->sys->loads.limit_tables ? 0.0 : x->sys->loads.given_limit[i]) + tribo_modal_motion_limit(x, i).g;
+        const double limit = (follows ? 0.0 : tribo_system_steady_limit(x->sys, i)) + tribo_modal_motion_limit(x, i).g;
         work += weight[point / 2] * greater(limit, 0.0) * greater(x->events.stick_slip.state.slip[i] * c.at.g, 0.0);
     }
     tribo_modal_motion_go(x, tau);

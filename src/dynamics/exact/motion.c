@@ -284,7 +284,7 @@ static void find_constant_forces(struct exact *x, const double *y, double *force
     const int holds = h->holding > h->sliding;
     const size_t m = h->modal->modes;
     for (size_t i = 0; i < sys->ncontact; i++) {
-        double limit = sys->loads.limit_tables ? 0.0 : sys->loads.given_limit[i];
+        double limit = tribo_system_steady_limit(sys, i);
         for (size_t s = 0; sys->loads.limits && s < sys->loads.harmonics; s++) {
             const struct harmonic *w = &sys->loads.harmonic[s];
             limit += w->drives == DRIVES_LIMIT && w->omega == 0.0 && !w->knots ? w->cosine[i] : 0.0;

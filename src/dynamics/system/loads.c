@@ -204,19 +204,13 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
 
 /* ------------------------------------------------------------------------------------------------------------------- limits */
 
-/* Returns the part of limit i that does not vary: 0 with a table. */
-static double steady_limit(const tribo_system *sys, size_t i)
-{
-    return sys->loads.limit_tables ? 0.0 : sys->loads.given_limit[i];
-}
-
 void tribo_system_limits(const tribo_system *sys, double *limit, double *rate)
 {
     memset(rate, 0, sys->ncontact * sizeof *rate);
     tribo_get_limit(sys->contacts, limit);
     if (tribo_system_limits_vary(sys)) {
         for (size_t i = 0; i < sys->ncontact; i++) {
-            limit[i] = steady_limit(sys, i);
+            limit[i] = tribo_system_steady_limit(sys, i);
         }
         tribo_system_loads(sys, DRIVES_LIMIT, 0, 1.0, limit);
         tribo_system_loads(sys, DRIVES_LIMIT, 1, 1.0, rate);
@@ -237,7 +231,7 @@ double tribo_system_swing(const tribo_system *sys, size_t i)
 int tribo_system_varies_limit(const tribo_system *sys, size_t i, size_t j)
 {
     int varies = 0;
-    double off = i == j || !sys->loads.limits ? 0.0 : fabs(steady_limit(sys, i) - steady_limit(sys, j));
+    double off = i == j || !sys->loads.limits ? 0.0 : fabs(tribo_system_steady_limit(sys, i) - tribo_system_steady_limit(sys, j));
     for (size_t k = 0; k < sys->loads.harmonics; k++) {
         const struct harmonic *h = &sys->loads.harmonic[k];
         if (h->drives == DRIVES_LIMIT) {
@@ -255,7 +249,7 @@ void tribo_system_most_limits(const tribo_system *sys, double *most)
 {
     tribo_get_limit(sys->contacts, most);
     for (size_t i = 0; tribo_system_limits_vary(sys) && i < sys->ncontact; i++) {
-        most[i] = steady_limit(sys, i);
+        most[i] = tribo_system_steady_limit(sys, i);
         for (size_t k = 0; k < sys->loads.harmonics; k++) {
             const struct harmonic *h = &sys->loads.harmonic[k];
             for (size_t p = 0; h->drives == DRIVES_LIMIT && p < h->knots; p++) {
@@ -272,7 +266,7 @@ void tribo_system_most_limits(const tribo_system *sys, double *most)
 int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
 {
     for (int order = 0; order < DERIVATIVES; order++) {
-        double sum = order ? 0.0 : steady_limit(sys, i), size = fabs(sum);
+        double sum = order ? 0.0 : tribo_system_steady_limit(sys, i), size = fabs(sum);
         for (size_t k = 0; k < sys->loads.harmonics; k++) {
             const struct harmonic *h = &sys->loads.harmonic[k];
             double c, s;

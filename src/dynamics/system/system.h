@@ -210,6 +210,12 @@ static inline int tribo_system_limits_vary(const tribo_system *sys)
     return sys->loads.limits > 0 || sys->normals.count > 0;
 }
 
+/* Returns the part of limit i that does not vary: 0 with a table. Valid while limits vary. */
+static inline double tribo_system_steady_limit(const tribo_system *sys, size_t i)
+{
+    return sys->loads.limit_tables ? 0.0 : sys->loads.given_limit[i];
+}
+
 /* limit, rate [ncontact] = limits and derivatives at the set time, and motion (tribo_normals_move). With harmonics, and where
  * limits follow the motion, limit < 0 where a contact has lifted off. */
 void tribo_system_limits(const tribo_system *sys, double *limit, double *rate);
