@@ -85,10 +85,13 @@ static double period_of(const struct track *c, const struct knot *k)
     return c->base.count ? k->z[c->n] : c->period;
 }
 
-/* tribo_word_differ for the contacts of the system. */
-static int differ(const struct track *c, const struct word *from, const struct word *to, int *kind, size_t *contact)
+/* Returns the change of the sequence of events from a to b; TRIBO_POINT_FOLD: the curve turns back between them. *contact as by
+ * tribo_word_change. */
+static int change_between(const struct track *c, const struct knot *a, const struct knot *b, size_t *contact)
 {
-    return tribo_word_differ(from, to, c->like->ncontact, kind, contact);
+    const size_t last = c->n + c->count - 1;
+    const int kind = tribo_word_change(&a->word, &b->word, c->like->ncontact, contact);
+    return a->tangent[last] * b->tangent[last] < 0.0 ? TRIBO_POINT_FOLD : kind;
 }
 
 /* Sets the units for a step from k; its tangent keeps its direction. */
@@ -310,11 +313,9 @@ struct bracket {
 
 static double test_of(const struct track *c, const struct bracket *b, const struct knot *k)
 {
-    int kind;
-    size_t contact;
     return b->which == BY_PARAMETER ? k->tangent[c->n + c->count - 1]
            : b->which == BY_RATE    ? tribo_dot(b->first->rate, k->rate, c->n)
-           : b->which == BY_WORD    ? (differ(c, &b->lo->word, &k->word, &kind, &contact) ? 1.0 : -1.0)
+           : b->which == BY_WORD    ? (tribo_word_equal(&b->lo->word, &k->word) ? -1.0 : 1.0)
                                     : hypot(k->re[b->which], k->im[b->which]) - 1.0;
 }
 
@@ -415,10 +416,9 @@ static int show_specials(struct track *c, const struct knot *from, struct knot *
     const size_t points = c->points, last = c->n + c->count - 1;
     struct knot *const at = c->knot + 2;
     double low = 0.0;
-    int kind, status = copy_knot(c, at, from);
-    size_t contact;
+    int status = copy_knot(c, at, from);
     *joined = 1;
-    while (!status && differ(c, &at->word, &to->word, &kind, &contact) &&
+    while (!status && !tribo_word_equal(&at->word, &to->word) &&
            !(c->ask->coarse && at->tangent[last] * to->tangent[last] > 0.0)) {
         struct bracket b;
         status = locate(c, at, to, low, high, BY_WORD, LOCATED * size_of(c, at), c->knot + 3, &b);
@@ -430,8 +430,8 @@ static int show_specials(struct track *c, const struct knot *from, struct knot *
             break;
         }
         status = status ? status : show_smooth(c, at, b.lo, low, b.low);
-        differ(c, &b.lo->word, &b.hi->word, &kind, &contact);
-        kind = b.lo->tangent[last] * b.hi->tangent[last] < 0.0 ? TRIBO_POINT_FOLD : kind;
+        size_t contact;
+        const int kind = change_between(c, b.lo, b.hi, &contact);
         status = status ? status : restore(c, b.lo);
         status = status ? status : show(c, b.lo, kind, contact);
         low = b.high;
@@ -451,8 +451,6 @@ static int try_ahead(struct track *c, struct knot *a, double length, struct knot
     const size_t n = c->n, known = c->unique && c->known > 1 ? c->known : 0;
     const struct knot *const past[] = {a, c->knot + 11, c->knot + 12};
     double *const z = c->guess;
-    int kind;
-    size_t contact;
     c->origin = a->z;
     c->row = a->tangent;
     c->ahead = length;
@@ -469,7 +467,7 @@ static int try_ahead(struct track *c, struct knot *a, double length, struct knot
     if (*found && !c->unique) {
         const double turn = tribo_dot(a->tangent, b->tangent, n + c->count);
         *way = apart(c, z, b->z);
-        *found = *way <= ASTRAY * length && (turn >= COSINE || differ(c, &a->word, &b->word, &kind, &contact));
+        *found = *way <= ASTRAY * length && (turn >= COSINE || !tribo_word_equal(&a->word, &b->word));
     } else if (*found) {
         *way = tribo_energy_distance(z, b->z, n);
     }
@@ -482,8 +480,7 @@ static int find_barrier(struct track *c, struct knot *a, double high, struct kno
 {
     struct knot *spare = c->knot + 10;
     const double width = LOCATED * size_of(c, a);
-    size_t contact;
-    int kind, found, status = copy_knot(c, *at = c->knot + 9, a);
+    int found, status = copy_knot(c, *at = c->knot + 9, a);
     *low = 0.0;
     while (!status && high - *low > width) {
         const double middle = 0.5 * (*low + high);
@@ -492,7 +489,7 @@ static int find_barrier(struct track *c, struct knot *a, double high, struct kno
         c->row = a->tangent;
         c->ahead = middle;
         status = correct(c, c->guess, spare, &found);
-        found = found && !differ(c, &a->word, &spare->word, &kind, &contact);
+        found = found && tribo_word_equal(&a->word, &spare->word);
         *(found ? low : &high) = middle;
         if (found) {
             struct knot *const left = *at;
@@ -509,8 +506,7 @@ static int find_beyond(struct track *c, struct knot *a, struct knot *b, int *fou
     const size_t n = c->n, all = n + c->count;
     const double size = size_of(c, a);
     double *const row = c->beyond, *const z = c->guess;
-    int kind, status = TRIBO_OK;
-    size_t contact;
+    int status = TRIBO_OK;
     *found = 0;
     for (double length = BEYOND_FIRST * size; !status && !*found && length < BEYOND_LAST * size; length *= BEYOND_RATIO) {
         c->origin = a->z;
@@ -521,7 +517,7 @@ static int find_beyond(struct track *c, struct knot *a, struct knot *b, int *fou
         status = tribo_shooting_follow(c->s, c->s->here);
         status = status == TRIBO_ERR_MEMORY ? status : TRIBO_OK;
         if (status || !isfinite(c->s->here->size) || !tribo_word_read(&b->word, c->s->here, c->width) ||
-            !differ(c, &a->word, &b->word, &kind, &contact)) {
+            tribo_word_equal(&a->word, &b->word)) {
             continue;
         }
         status = tribo_shooting_tangent(c->s, row);
@@ -537,7 +533,7 @@ static int find_beyond(struct track *c, struct knot *a, struct knot *b, int *fou
             c->row = row;
             status = correct(c, z, b, found);
             *found = *found && apart(c, z, b->z) <= ASTRAY * length && length_to_kink(c, a, b) <= JOINED * LOCATED * size &&
-                     differ(c, &a->word, &b->word, &kind, &contact);
+                     !tribo_word_equal(&a->word, &b->word);
         }
     }
     return status;
@@ -546,15 +542,13 @@ static int find_beyond(struct track *c, struct knot *a, struct knot *b, int *fou
 /* Passes the end of a piece of the curve between a and the section `high` ahead of it, to b. Returns a status. */
 static int pass_barrier(struct track *c, struct knot *a, double high, struct knot *b)
 {
-    const size_t last = c->n + c->count - 1;
     struct knot *at;
     double low;
     int kind = TRIBO_POINT_REGULAR, found = 0, joined, status = find_barrier(c, a, high, &at, &low);
     size_t contact = SIZE_MAX;
     status = status ? status : find_beyond(c, at, b, &found);
     if (!status && found) {
-        differ(c, &at->word, &b->word, &kind, &contact);
-        kind = at->tangent[last] * b->tangent[last] < 0.0 ? TRIBO_POINT_FOLD : kind;
+        kind = change_between(c, at, b, &contact);
     }
     c->origin = a->z;
     c->row = a->tangent;

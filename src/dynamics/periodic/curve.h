@@ -16,10 +16,13 @@ struct word {
 int tribo_word_read(struct word *w, const struct point *p, size_t width);
 void tribo_word_free(struct word *w);
 
-/* Returns 1 if the sequences differ, wherever the period begins. *kind = TRIBO_POINT_..., from `from` to `to`, and the contact of
- * lowest index, of the first `contacts` ones, or normal whose own sequence differs; TRIBO_POINT_ORDER: none, contact
- * SIZE_MAX. */
-int tribo_word_differ(const struct word *from, const struct word *to, size_t contacts, int *kind, size_t *contact);
+/* Returns 1 if the sequences are equal, wherever their periods begin. */
+int tribo_word_equal(const struct word *a, const struct word *b);
+
+/* Returns the change of the sequence from `from` to `to`: TRIBO_POINT_STICK, _SLIDE, _GRAZE or _ORDER. *contact = the lowest index
+ * i at which the sequences of slip or state i alone differ, i >= contacts: normal i - contacts; SIZE_MAX if the change is
+ * TRIBO_POINT_ORDER: the sequences of all contacts and normals alone are equal. */
+int tribo_word_change(const struct word *from, const struct word *to, size_t contacts, size_t *contact);
 
 /* A motion of the curve. */
 struct knot {

@@ -64,8 +64,7 @@ static size_t read_contact(struct word *to, const struct word *from, size_t i)
     return rests;
 }
 
-/* Returns 1 if a and b are equal as rings. */
-static int equal_rings(const struct word *a, const struct word *b)
+int tribo_word_equal(const struct word *a, const struct word *b)
 {
     const size_t m = a->letters, width = a->width;
     for (size_t shift = 0; m == b->letters && shift < m; shift++) {
@@ -77,27 +76,24 @@ static int equal_rings(const struct word *a, const struct word *b)
     return m == 0 && b->letters == 0;
 }
 
-int tribo_word_differ(const struct word *from, const struct word *to, size_t contacts, int *kind, size_t *contact)
+int tribo_word_change(const struct word *from, const struct word *to, size_t contacts, size_t *contact)
 {
-    *kind = TRIBO_POINT_ORDER;
+    int kind = TRIBO_POINT_ORDER;
     *contact = SIZE_MAX;
-    if (equal_rings(from, to)) {
-        return 0;
-    }
     struct word a = {.letter = malloc(from->letters + 1)}, b = {.letter = malloc(to->letters + 1)};
     for (size_t i = 0; a.letter && b.letter && i < from->width && *contact == SIZE_MAX; i++) {
         const size_t before = read_contact(&a, from, i), after = read_contact(&b, to, i);
-        if (!equal_rings(&a, &b)) {
+        if (!tribo_word_equal(&a, &b)) {
             const int stuck = a.letters == 1 && before, sticks = b.letters == 1 && after; /* all the period */
-            *kind = stuck ? TRIBO_POINT_SLIDE : sticks || after > before ? TRIBO_POINT_STICK : TRIBO_POINT_GRAZE;
-            *kind = !stuck && !sticks && after < before ? TRIBO_POINT_SLIDE : *kind;
-            *kind = i < contacts ? *kind : TRIBO_POINT_GRAZE;
+            kind = stuck ? TRIBO_POINT_SLIDE : sticks || after > before ? TRIBO_POINT_STICK : TRIBO_POINT_GRAZE;
+            kind = !stuck && !sticks && after < before ? TRIBO_POINT_SLIDE : kind;
+            kind = i < contacts ? kind : TRIBO_POINT_GRAZE;
             *contact = i;
         }
     }
     free(a.letter);
     free(b.letter);
-    return 1;
+    return kind;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- comparison */
