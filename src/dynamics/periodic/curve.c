@@ -94,28 +94,34 @@ static int change_between(const struct track *c, const struct knot *a, const str
     return a->tangent[last] * b->tangent[last] < 0.0 ? TRIBO_POINT_FOLD : kind;
 }
 
+/* Divides the tangent v by its length, unless that is 0. */
+static void make_unit(const struct track *c, double *v)
+{
+    const size_t all = c->n + c->count;
+    const double length = tribo_energy_length(v, all);
+    for (size_t i = 0; length > 0.0 && i < all; i++) {
+        v[i] /= length;
+    }
+}
+
 /* Sets the units for a step from k; its tangent keeps its direction. */
 static void choose_units(struct track *c, struct knot *k)
 {
-    const size_t n = c->n, all = n + c->count;
     const double size = size_of(c, k), before[] = {c->unit[0], c->unit[1], c->unit[2]};
     for (size_t i = 0; i < c->count; i++) {
         c->unit[i] = i + 1 == c->count ? fabs(c->ask->step) / (SHARE * size)
                      : i == 0          ? period_of(c, k) / size
                                        : 1.0 / (period_of(c, k) * size);
-        k->tangent[n + i] *= before[i] / c->unit[i];
+        k->tangent[c->n + i] *= before[i] / c->unit[i];
     }
-    const double length = tribo_energy_length(k->tangent, all);
-    for (size_t i = 0; length > 0.0 && i < all; i++) {
-        k->tangent[i] /= length;
-    }
+    make_unit(c, k->tangent);
 }
 
-/* to = z + length along the tangent of k. */
-static void go_along(const struct track *c, const struct knot *k, double length, double *to)
+/* to [n + count] = z of k, and `length` times the tangent, [n + count] over units. */
+static void go_along(const struct track *c, const struct knot *k, const double *tangent, double length, double *to)
 {
     for (size_t i = 0; i < c->n + c->count; i++) {
-        to[i] = k->z[i] + length * k->tangent[i] * (i < c->n ? 1.0 : c->unit[i - c->n]);
+        to[i] = k->z[i] + length * tangent[i] * (i < c->n ? 1.0 : c->unit[i - c->n]);
     }
 }
 
@@ -153,7 +159,8 @@ static void place(struct track *c, const double *z)
 {
     struct shooting *s = c->s;
     memcpy(s->here->x, z, c->n * sizeof *z);
-    tribo_curve_border(c);
+    s->extra = tribo_curve_border;
+    memcpy(s->extra.unit, c->unit, sizeof c->unit);
     for (size_t i = 0; i < c->count; i++) {
         s->here->unknown[i] = z[c->n + i] / c->unit[i];
     }
@@ -209,11 +216,8 @@ static int read_knot(struct track *c, struct knot *k, double parameter)
         memset(k->tangent, 0, all * sizeof *k->tangent);
         k->tangent[n] = c->ask->step > 0.0 ? 1.0 : -1.0;
     } else {
-        status = tribo_shooting_tangent(s, s->step);
-        const double length = tribo_energy_length(s->step, all);
-        for (size_t i = 0; i < all; i++) {
-            k->tangent[i] = s->step[i] / length;
-        }
+        status = tribo_shooting_tangent(s, k->tangent);
+        make_unit(c, k->tangent);
     }
     if (!status && !tribo_word_read(&k->word, s->here, c->width)) {
         status = tribo_error(s->map.drv->message, TRIBO_ERR_MEMORY, "out of memory for a sequence of events");
@@ -356,7 +360,7 @@ static int locate(struct track *c, const struct knot *from, const struct knot *t
         for (int trial = 0; !status && !found && trial < 3; trial++) {
             const struct knot *const end = trial == 1 ? b->lo : b->hi;
             const double along = tribo_dot(c->row, end->tangent, all);
-            go_along(c, end, (c->ahead - (trial == 1 ? b->low : b->high)) / along, z);
+            go_along(c, end, end->tangent, (c->ahead - (trial == 1 ? b->low : b->high)) / along, z);
             for (size_t i = 0; !trial && i < all; i++) {
                 z[i] = b->lo->z[i] + part * (b->hi->z[i] - b->lo->z[i]);
             }
@@ -454,7 +458,7 @@ static int try_ahead(struct track *c, struct knot *a, double length, struct knot
     c->origin = a->z;
     c->row = a->tangent;
     c->ahead = length;
-    go_along(c, a, length, z);
+    go_along(c, a, a->tangent, length, z);
     memset(z, 0, known ? n * sizeof *z : 0);
     for (size_t j = 0; j < known; j++) {
         double weight = 1.0;
@@ -484,7 +488,7 @@ static int find_barrier(struct track *c, struct knot *a, double high, struct kno
     *low = 0.0;
     while (!status && high - *low > width) {
         const double middle = 0.5 * (*low + high);
-        go_along(c, *at, (middle - *low) / tribo_dot(a->tangent, (*at)->tangent, c->n + c->count), c->guess);
+        go_along(c, *at, (*at)->tangent, (middle - *low) / tribo_dot(a->tangent, (*at)->tangent, c->n + c->count), c->guess);
         c->origin = a->z;
         c->row = a->tangent;
         c->ahead = middle;
@@ -503,7 +507,7 @@ static int find_barrier(struct track *c, struct knot *a, double high, struct kno
 /* Looks for the curve beyond the motion a, at a change of the sequence of events: b, *found = 1. Returns a status. */
 static int find_beyond(struct track *c, struct knot *a, struct knot *b, int *found)
 {
-    const size_t n = c->n, all = n + c->count;
+    const size_t all = c->n + c->count;
     const double size = size_of(c, a);
     double *const row = c->beyond, *const z = c->guess;
     int status = TRIBO_OK;
@@ -512,7 +516,7 @@ static int find_beyond(struct track *c, struct knot *a, struct knot *b, int *fou
         c->origin = a->z;
         c->row = a->tangent;
         c->ahead = length;
-        go_along(c, a, length, z);
+        go_along(c, a, a->tangent, length, z);
         place(c, z);
         status = tribo_shooting_follow(c->s, c->s->here);
         status = status == TRIBO_ERR_MEMORY ? status : TRIBO_OK;
@@ -521,15 +525,12 @@ static int find_beyond(struct track *c, struct knot *a, struct knot *b, int *fou
             continue;
         }
         status = tribo_shooting_tangent(c->s, row);
-        const double along = tribo_energy_length(row, all);
-        for (size_t i = 0; i < all; i++) {
-            row[i] /= along;
-        }
+        make_unit(c, row);
         for (int side = 0; !status && !*found && side < 2; side++) {
             for (size_t i = 0; i < all; i++) {
                 row[i] = side ? -row[i] : row[i];
-                z[i] = a->z[i] + length * row[i] * (i < n ? 1.0 : c->unit[i - n]);
             }
+            go_along(c, a, row, length, z);
             c->row = row;
             status = correct(c, z, b, found);
             *found = *found && apart(c, z, b->z) <= ASTRAY * length && length_to_kink(c, a, b) <= JOINED * LOCATED * size &&
@@ -635,10 +636,11 @@ static int step_ahead(struct track *c, struct knot **a, struct knot **b, double 
     double tried = 0.0, way = 0.0;
     int found = 0, status = TRIBO_OK;
     choose_units(c, *a);
-    *length = lesser(*length, lesser(REACH * size, SHARE * size / fabs((*a)->tangent[last])));
+    const double longest = lesser(REACH * size, SHARE * size / fabs((*a)->tangent[last]));
+    *length = lesser(*length, longest);
     for (int k = 0; !status && !found && (k == 0 || *length > LEAST * size); k++) {
         *length *= k ? 0.5 : 1.0;
-        tried = k < 2 ? *length * (k ? 2.0 : 1.0) : 2.0 * *length;
+        tried = *length * (k ? 2.0 : 1.0);
         status = try_ahead(c, *a, *length, *b, &found, &way);
         *barred += k == 1;
         *barred = k == 0 && found && *barred <= BARRED ? 0 : *barred;
@@ -650,7 +652,7 @@ static int step_ahead(struct track *c, struct knot **a, struct knot **b, double 
         return tribo_shooting_fails(c->s, c->s->nearest);
     }
     if (!found || (*barred > BARRED && !c->unique)) {
-        tried = found ? lesser(2.0 * *length, lesser(REACH * size, SHARE * size / fabs((*a)->tangent[last]))) : tried;
+        tried = found ? lesser(2.0 * *length, longest) : tried;
         *barred = 0;
         status = pass_barrier(c, *a, tried, *b);
         *length = BEYOND_LAST * size;

@@ -76,11 +76,11 @@ struct track {
 };
 
 /* curve_parameter.c. begin: finds the first motion, s->here of the twin. set: sets system, t and period of the twin for p = value.
- * Both return a status, its message on the driver of owner (begin), or of the twin (set). border: sets c->s->extra for the
- * section. */
+ * Both return a status, its message on the driver of owner (begin), or of the twin (set). border: that of a section; its count is
+ * the number of unknowns and p, or 0 where motions are unique. */
 int tribo_curve_begin(struct track *c);
 int tribo_curve_set(struct track *c, double value);
-void tribo_curve_border(struct track *c);
+extern const struct border tribo_curve_border;
 
 /* Returns the value of the parameter of the caller's system. */
 double tribo_curve_first(const struct track *c);

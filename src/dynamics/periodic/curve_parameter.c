@@ -99,11 +99,7 @@ static int curve_border(struct shooting *s, struct point *p)
     return status;
 }
 
-void tribo_curve_border(struct track *c)
-{
-    c->s->extra = (struct border){.count = c->count, .apply = curve_apply, .border = curve_border};
-    memcpy(c->s->extra.unit, c->unit, sizeof c->unit);
-}
+const struct border tribo_curve_border = {.apply = curve_apply, .border = curve_border};
 
 /* ---------------------------------------------------------------------------------------------------------- the first motion */
 
