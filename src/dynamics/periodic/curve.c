@@ -338,6 +338,7 @@ static int copy_knot(const struct track *c, struct knot *to, const struct knot *
     tribo_word_free(&to->word);
     to->word = from->word;
     to->word.letter = tribo_copy_of(from->word.letter, from->word.letters * c->width, 1, &done);
+    to->word.letters = done ? from->word.letters : 0;
     return done ? TRIBO_OK : tribo_error(c->s->map.drv->message, TRIBO_ERR_MEMORY, "out of memory for a sequence of events");
 }
 
