@@ -445,6 +445,15 @@ TRIBO_SIMD void tribo_matrix_add_columns(const struct matrix *a, double factor, 
     }
 }
 
+void tribo_matrix_add_transposed(const struct matrix *a, double factor, size_t columns, const double *x, double *to)
+{
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            tribo_add(to + a->col[k] * columns, factor * a->val[k], x + i * columns, columns);
+        }
+    }
+}
+
 void tribo_matrix_multiply_all(const struct matrix *a, size_t count, const double *x, double *y)
 {
     for (size_t k = 0; k < count; k++) {

@@ -120,6 +120,9 @@ void tribo_matrix_multiply_add(const struct matrix *a, double factor, const doub
 /* to [rows][columns] += factor A x, x [cols][columns]. */
 void tribo_matrix_add_columns(const struct matrix *a, double factor, size_t columns, const double *x, double *to);
 
+/* to [cols][columns] += factor A'x, x [rows][columns]. */
+void tribo_matrix_add_transposed(const struct matrix *a, double factor, size_t columns, const double *x, double *to);
+
 /* y [count][rows] = A x of count vectors x [count][cols]. */
 void tribo_matrix_multiply_all(const struct matrix *a, size_t count, const double *x, double *y);
 

@@ -283,11 +283,7 @@ void tribo_follow_pull(const struct modal *h, const tribo_system *sys, size_t co
         const struct normal *at = s->normal + k;
         tribo_add(f + at->row * c, h->key[at->row] == KEY_PRESSED ? -at->stiffness : 0.0, way + at->row * c, c);
     }
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
-            tribo_add(load + j->col[e] * c, j->val[e], f + i * c, c);
-        }
-    }
+    tribo_matrix_add_transposed(j, 1.0, c, f, load);
     memset(pull, 0, h->modes * c * sizeof *pull);
     tribo_multiply_add(h->modes, n, c, 1.0, h->phi, load, pull);
     tribo_multiply_add(h->modes, h->modes, c, 1.0, h->stiff, eta, pull);

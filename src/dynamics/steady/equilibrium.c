@@ -176,17 +176,6 @@ static void steady_find_forces(const struct equilibrium *e, int affine, size_t c
     tribo_springs_hold(sys, e->slip, columns, way, f);
 }
 
-/* to [ndof][columns] += factor J'f, f [ncontact][columns]. */
-static void steady_add_forces(const tribo_system *sys, double factor, size_t columns, const double *f, double *to)
-{
-    const struct matrix *j = &sys->direction;
-    for (size_t i = 0; i < j->rows; i++) {
-        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-            tribo_add(to + j->col[k] * columns, factor * j->val[k], f + i * columns, columns);
-        }
-    }
-}
-
 /* residual = load - K q + J'f, with f = e->f by q. */
 static void steady_find_residual(struct equilibrium *e)
 {
@@ -199,7 +188,7 @@ static void steady_find_residual(struct equilibrium *e)
     steady_find_forces(e, 1, 1, way, e->f);
     memcpy(e->residual, e->load, sys->ndof * sizeof *e->load);
     tribo_matrix_multiply_add(&sys->k, -1.0, e->q, e->residual);
-    steady_add_forces(sys, 1.0, 1, e->f, e->residual);
+    tribo_matrix_add_transposed(&sys->direction, 1.0, 1, e->f, e->residual);
 }
 
 /* a [modes][modes] = shape'moved. */
@@ -219,7 +208,7 @@ int tribo_equilibrium_stiffness(const struct equilibrium *e, double *a)
     tribo_matrix_add_columns(&sys->k, 1.0, m, e->shape, e->moved);
     tribo_matrix_add_columns(&sys->direction, 1.0, m, e->shape, e->way);
     steady_find_forces(e, 0, m, e->way, e->force);
-    steady_add_forces(sys, -1.0, m, e->force, e->moved);
+    tribo_matrix_add_transposed(&sys->direction, -1.0, m, e->force, e->moved);
     steady_project(e, a);
     for (size_t k = 0; k < sys->normals.followers; k++) {
         const struct follower *f = &sys->normals.follower[k];
@@ -246,7 +235,7 @@ int tribo_equilibrium_damping(const struct equilibrium *e, double *a)
             tribo_add(e->force + i * m, factor * e->slope[i * c + k], e->way + k * m, m);
         }
     }
-    steady_add_forces(sys, -1.0, m, e->force, e->moved);
+    tribo_matrix_add_transposed(&sys->direction, -1.0, m, e->force, e->moved);
     steady_project(e, a);
     return tribo_largest(a, m * m) > 0.0;
 }
@@ -403,13 +392,14 @@ static size_t steady_solve_complementarity(struct complementarity *p)
         }
         return 0;
     }
-    for (size_t set = 0; set <= sets; set++) {
+    for (size_t set = 0; set <= sets; set++) { /* the last round sets `open` of best */
         for (size_t k = 0; k < n; k++) {
             p->open[k] = ((set < sets ? set : best) >> k) & 1;
         }
-        const int fits = steady_try_open(p) > -TOUCHING;
-        best = fits ? set : best;
-        found += fits && set < sets;
+        if (set < sets && steady_try_open(p) > -TOUCHING) {
+            best = set;
+            found++;
+        }
     }
     return found < 2 ? found : 2;
 }
@@ -433,7 +423,7 @@ static int steady_find_pressed(struct equilibrium *e, struct complementarity *p)
         memset(e->q, 0, sys->ndof * sizeof *e->q);
         e->way[normal[k].row] = 1.0;
         steady_find_forces(e, 0, 1, e->way, e->force);
-        steady_add_forces(sys, 1.0, 1, e->force, e->residual);
+        tribo_matrix_add_transposed(&sys->direction, 1.0, 1, e->force, e->residual);
         steady_give_way(e, e->residual, e->q);
         for (size_t i = 0; i < n; i++) {
             const double stiff = normal[i].stiffness, other = normal[k].stiffness;
