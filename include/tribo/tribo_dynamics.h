@@ -581,7 +581,7 @@ typedef struct {
     double zeta;      /* modes: damping ratio; else 0 */
     const double *y;  /* [dimension] state at t, with energy 0 */
     int kind;         /* TRIBO_POINT_... */
-    size_t contact;   /* the contact whose sequence of events changes, or the row of a normal; SIZE_MAX: none */
+    size_t contact;   /* contact, or row of a normal, of which the sequence of events changes; SIZE_MAX: no single one changes */
     int stable;       /* 1: no multiplier outside of the unit circle; 0: unstable; -1: not known, as of modes */
 } tribo_curve_point;
 

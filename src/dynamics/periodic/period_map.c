@@ -241,10 +241,11 @@ int tribo_period_map_complete(struct period_map *m, struct point *p)
 }
 
 /* -------------------------------------------------------------------------------------------------------------- touches
- * An elastic contact whose force only touches its limit, as where sliders come to rest in the course of time: in some
- * neighbouring motions the contact slides there, in others it does not, and the map has no derivative. With limits slightly lower,
- * or slightly higher, the contact slides a different number of times in a period. A touch counts by the force at which the contact
- * begins to slide: that is small where a normal only just presses, and forces are smooth there. */
+ * An elastic contact touches its limit where the force reaches the limit, and the contact slides in some neighbouring motions, but
+ * not in others, as where sliders come to rest in the course of time: the map has no derivative. With limits times 1 - NUDGE and
+ * 1 + NUDGE the contact begins to slide at different times in a period. A touch counts if the sums of |forces| at these times
+ * differ by more than TOUCH of the usual force of the contact: where a normal only just presses the sums differ by less, and forces
+ * are smooth. */
 
 /* Observer of a period. */
 struct slides {

@@ -53,8 +53,9 @@ int tribo_period_map_follow(struct period_map *m, struct point *p);
 int tribo_period_map_later(struct period_map *m, const double *y, double later, struct point *p);
 int tribo_period_map_complete(struct period_map *m, struct point *p);
 
-/* image [n] = image of x [n], corrected as by follow, whose last integration ended as that from x does, with the observer
- * `company`. Returns a status, its message on the driver. */
+/* image [n] = image of x [n], by an integration with the observer `company`. x is first corrected as by follow: the contacts at
+ * rest at the end of the last integration must be those at rest at the end of that from x. Returns a status, its message on the
+ * driver. */
 int tribo_period_map_image(struct period_map *m, const double *x, struct company *company, double *image);
 
 /* apply: x [n] = D x, D = d image/d x at p. matrix: p->derivative.matrix [n][n] = D, unless it is set. Both return a
@@ -70,8 +71,9 @@ int tribo_period_map_march(struct period_map *m, double time, size_t times, stru
  * its message on the driver. */
 int tribo_period_map_replay(struct period_map *m, const double *y, double length, struct company *company);
 
-/* *contact = an elastic contact whose force only touches its limit in the motion from y at m->t, in a period; ncontact: there is
- * none. changed = 1: the system has changed since the motion was found. Returns a status, its message on the driver. */
+/* *contact = the first elastic contact that touches its limit within the period from y at m->t: the force reaches the limit, and
+ * the contact slides in some neighbouring motions only. *contact = ncontact if no contact touches. changed = 1: the system has
+ * changed since the motion was found. Returns a status, its message on the driver. */
 int tribo_period_map_find_touch(struct period_map *m, const double *y, int changed, size_t *contact);
 
 /* rate [n] = coordinates of the derivative of the state by time at the end of the last integration by follow. */

@@ -217,7 +217,7 @@ static int check_curve(tribo_driver *drv, const tribo_curve *curve, const double
     if (!isfinite(curve->least + curve->most + curve->step + curve->amplitude + *period)) {
         return tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "least, most, step, amplitude or period is not finite");
     }
-    if (curve->motion == TRIBO_MOTION_MODE && !curve->c) {
+    if (mode && !curve->c) {
         return tribo_error(drv->message, TRIBO_ERR_NULL, "curve->c is NULL");
     }
     if (curve->motion < TRIBO_MOTION_PERIODIC || curve->motion > TRIBO_MOTION_MODE || kind < TRIBO_PARAMETER_LIMIT ||
