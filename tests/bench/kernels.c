@@ -73,7 +73,7 @@ static void run_traffic(void *data)
     t->odd += any_odd(t->n, t->checked[0], t->checked[1]);
     for (size_t i = 0; i < t->n; i += TRIBO_CHUNK) {
         double sum[TRIBO_CHUNK] = {0};
-        const size_t n = t->n - i < TRIBO_CHUNK ? t->n - i : TRIBO_CHUNK;
+        const size_t n = tribo_chunk_from(t->n, i);
         for (size_t k = 0; k < t->read; k++) {
             add_to(n, sum, t->in[k] + i);
         }
