@@ -410,7 +410,8 @@ static void both(const struct scene *s, int seed)
 
 TEST(agree)
 {
-    for (int seed = setting("TRIBO_SEED", 0) + BLOCK * _i; seed < setting("TRIBO_SEED", 0) + BLOCK * (_i + 1); seed++) {
+    const int first = setting("TRIBO_SEED", 0) + BLOCK * _i;
+    for (int seed = first; seed < first + BLOCK; seed++) {
         const struct scene s = scene_create(seed);
         both(&s, seed);
     }
@@ -434,7 +435,8 @@ static void circulate(struct scene *s, int seed)
 /* Structures with a stiffness that is not symmetric, and limits that follow the motion. */
 TEST(circulatory)
 {
-    for (int seed = setting("TRIBO_SEED", 0) + BLOCK * _i; seed < setting("TRIBO_SEED", 0) + BLOCK * (_i + 1); seed++) {
+    const int first = setting("TRIBO_SEED", 0) + BLOCK * _i;
+    for (int seed = first; seed < first + BLOCK; seed++) {
         struct scene s = scene_create(seed);
         circulate(&s, seed);
         both(&s, seed);
@@ -444,7 +446,8 @@ TEST(circulatory)
 /* Planar contacts: by event alone. */
 TEST(planes)
 {
-    for (int seed = setting("TRIBO_SEED", 0) + BLOCK * _i; seed < setting("TRIBO_SEED", 0) + BLOCK * (_i + 1); seed++) {
+    const int first = setting("TRIBO_SEED", 0) + BLOCK * _i;
+    for (int seed = first; seed < first + BLOCK; seed++) {
         double y[WINDOWS][2 * DOFS + FOLLOWERS + 1] = {{0.0}};
         struct scene s = scene_create(seed);
         if (s.followers > 1 && s.n > 1) {
@@ -493,25 +496,32 @@ static int find_return(const struct scene *s, int seed, const char *method, doub
     return status;
 }
 
+/* Gives the loads and the base one period, and each body damping. Returns the period. */
+static double give_period(struct scene *s)
+{
+    s->load[2].omega = 2.0 * s->load[1].omega;
+    s->shake_omega = s->load[1].omega;
+    for (size_t i = 0; i < s->n; i++) {
+        s->damping[i * (s->n + 1)] += 0.2 * s->mass[i * (s->n + 1)];
+    }
+    return 2.0 * PI / s->load[1].omega;
+}
+
 /* Periodic motions by event and by exact return, and have the same multipliers. Bodies that nothing holds return to any place. */
 TEST(periodic)
 {
-    for (int seed = setting("TRIBO_SEED", 0) + BLOCK * _i; seed < setting("TRIBO_SEED", 0) + BLOCK * (_i + 1); seed++) {
+    const int first = setting("TRIBO_SEED", 0) + BLOCK * _i;
+    for (int seed = first; seed < first + BLOCK; seed++) {
         struct scene s = scene_create(seed);
         double y[2][2 * DOFS + FOLLOWERS + 1] = {{0.0}}, modulus[2][2 * DOFS + FOLLOWERS] = {{0.0}},
                                            multiplier[2 * DOFS + FOLLOWERS], off[2], size = 1.0, same = 0.0;
         if (strstr(s.name, "free")) {
             continue;
         }
-        s.load[2].omega = 2.0 * s.load[1].omega;
-        s.shake_omega = s.load[1].omega;
-        for (size_t i = 0; i < s.n; i++) {
-            s.damping[i * (s.n + 1)] += 0.2 * s.mass[i * (s.n + 1)];
-        }
+        const double period = give_period(&s);
         int status[2];
         for (int k = 0; k < 2; k++) {
-            status[k] =
-                find_return(&s, seed, k ? "exact" : "event", 2.0 * PI / s.load[1].omega, y[k], multiplier, modulus[k], &off[k]);
+            status[k] = find_return(&s, seed, k ? "exact" : "event", period, y[k], multiplier, modulus[k], &off[k]);
         }
         for (size_t i = 0; i < 2 * DOFS + FOLLOWERS; i++) {
             size = fmax(size, fmax(fabs(y[0][i]), modulus[0][i]));
@@ -551,7 +561,8 @@ static double trace_of(const struct scene *s, int seed, double period, const dou
 /* Periodic motions of planar contacts by event return, and have the multipliers of the motions beside them. */
 TEST(periodic_planes)
 {
-    for (int seed = setting("TRIBO_SEED", 0) + BLOCK * _i; seed < setting("TRIBO_SEED", 0) + BLOCK * (_i + 1); seed++) {
+    const int first = setting("TRIBO_SEED", 0) + BLOCK * _i;
+    for (int seed = first; seed < first + BLOCK; seed++) {
         struct scene s = scene_create(seed);
         double y[2 * DOFS + FOLLOWERS + 1] = {0.0}, re[2 * DOFS + FOLLOWERS] = {0.0}, modulus[2 * DOFS + FOLLOWERS], off,
                                         size = 1.0, sum = 0.0;
@@ -559,12 +570,7 @@ TEST(periodic_planes)
             continue;
         }
         pair_up(&s, seed);
-        s.load[2].omega = 2.0 * s.load[1].omega;
-        s.shake_omega = s.load[1].omega;
-        for (size_t i = 0; i < s.n; i++) {
-            s.damping[i * (s.n + 1)] += 0.2 * s.mass[i * (s.n + 1)];
-        }
-        const double period = 2.0 * PI / s.load[1].omega;
+        const double period = give_period(&s);
         if (!find_return(&s, seed, "event", period, y, re, modulus, &off)) {
             for (size_t i = 0; i < 2 * DOFS; i++) {
                 size = fmax(size, fabs(y[i]));
