@@ -78,11 +78,7 @@ static int write_rows(tribo_system *sys, const struct tangents *d, double *dfdy,
     jacobian_add_product(m, 1.0, d->df_da, j, n, d->pull);
     tribo_multiply_add(m, n, size, 1.0, d->pull, rates, d->df_dy);
     jacobian_add_product(m, 1.0, d->df_dv, j, size, d->df_dy + n);
-    for (size_t i = 0; i < n; i++) {
-        for (size_t e = b->first[i]; e < b->first[i + 1]; e++) {
-            tribo_add(rates + i * size, b->val[e], d->df_dy + size * b->col[e], size);
-        }
-    }
+    tribo_matrix_add_columns(b, 1.0, size, d->df_dy, rates);
     for (size_t i = 0; i < m; i++) {
         sys->work.v[i] *= -sys->tally[i];
         sys->work.f[i] *= -sys->tally[i];
