@@ -280,13 +280,12 @@ static int show(struct track *c, const struct knot *k, int kind, size_t contact)
     } else {
         memcpy(c->shown, c->w->y, (c->n + 1) * sizeof *c->shown);
     }
-    const double turn = 2.0 * acos(-1.0);
     const int normal = contact != SIZE_MAX && contact >= drv->sys->ncontact;
     const tribo_curve_point point = {.size = sizeof point,
                                      .parameter = parameter_of(c, k),
                                      .t = s->map.t,
                                      .period = s->map.period,
-                                     .zeta = c->base.count > 1 ? k->z[c->n + 1] * s->map.period / turn : 0.0,
+                                     .zeta = c->base.count > 1 ? k->z[c->n + 1] * s->map.period / FULL_TURN : 0.0,
                                      .y = c->shown,
                                      .kind = kind,
                                      .contact = normal ? drv->sys->normals.normal[contact - drv->sys->ncontact].row : contact,

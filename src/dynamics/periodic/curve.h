@@ -19,8 +19,8 @@ void tribo_word_free(struct word *w);
 /* Returns 1 if the sequences are equal, wherever their periods begin. */
 int tribo_word_equal(const struct word *a, const struct word *b);
 
-/* Returns the change of the sequence from `from` to `to`: TRIBO_POINT_STICK, _SLIDE, _GRAZE or _ORDER. *contact = the lowest index
- * i at which the sequences of slip or state i alone differ, i >= contacts: normal i - contacts; SIZE_MAX if the change is
+/* Returns the change of the sequence from `from` to `to`: TRIBO_POINT_STICK, _SLIDE, _GRAZE or _ORDER. *contact = the lowest
+ * index i at which the sequences of slip or state i alone differ, i >= contacts: normal i - contacts; SIZE_MAX if the change is
  * TRIBO_POINT_ORDER: the sequences of all contacts and normals alone are equal. */
 int tribo_word_change(const struct word *from, const struct word *to, size_t contacts, size_t *contact);
 
@@ -75,9 +75,9 @@ struct track {
     size_t halves, counted; /* half periods before the last search of the whole; those of the map that its driver has counted */
 };
 
-/* curve_parameter.c. begin: finds the first motion, s->here of the twin. set: sets system, t and period of the twin for p = value.
- * Both return a status, its message on the driver of owner (begin), or of the twin (set). border: that of a section; its count is
- * the number of unknowns and p, or 0 where motions are unique. */
+/* curve_parameter.c. begin: finds the first motion, s->here of the twin. set: sets system, t and period of the twin for p =
+ * value. Both return a status, its message on the driver of owner (begin), or of the twin (set). border: that of a section; its
+ * user sets unit, and the count: number of unknowns and p, or 0 where motions are unique. */
 int tribo_curve_begin(struct track *c);
 int tribo_curve_set(struct track *c, double value);
 extern const struct border tribo_curve_border;

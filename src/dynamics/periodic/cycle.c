@@ -257,7 +257,8 @@ static int settle_period(struct shooting *s, struct course *c)
         }
     }
     if (!status && !(period > LEAST_PART * whole)) {
-        return tribo_error(s->map.drv->message, TRIBO_ERR_NO_CONVERGENCE, "no cycle was found: the motion stays at its beginning");
+        return tribo_error(s->map.drv->message, TRIBO_ERR_NO_CONVERGENCE,
+                           "no cycle was found: the motion stays at its beginning");
     }
     if (!status && period < whole) {
         status = cycle_shoot(s, period, &found, &rests);
@@ -300,7 +301,7 @@ int tribo_shooting_find_cycle(struct shooting *s, struct wanted *w)
         for (size_t k = 0; k < norm->n; k++) {
             least = norm->natural[k] > SAME * most ? lesser(least, norm->natural[k]) : least;
         }
-        scale = 2.0 * acos(-1.0) / least;
+        scale = FULL_TURN / least;
         status = least > 0.0 ? tribo_period_map_prepare(&s->map, w->t, scale, w->y)
                              : tribo_error(s->map.drv->message, TRIBO_ERR_NOT_POSITIVE,
                                            "period = 0 is no guess for a structure without natural frequencies");

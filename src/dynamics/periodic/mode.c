@@ -139,7 +139,7 @@ static int linear_mode(struct shooting *s, int sticks, double amplitude, double 
         }
         best = fabs(w - omega);
         *found = 1;
-        *period = 2.0 * acos(-1.0) / w;
+        *period = FULL_TURN / w;
         *delta = 0.0;
         for (size_t d = 0; d < n && sys->c.rows; d++) {
             *delta += 0.5 * move[d] * tribo_matrix_row_dot(&sys->c, d, move);
@@ -219,7 +219,7 @@ int tribo_shooting_create_twin(struct shooting *s, int steady)
 int tribo_shooting_find_mode(struct shooting *s, struct wanted *w)
 {
     const size_t n = s->map.n;
-    const double turn = 2.0 * acos(-1.0), guess = w->period;
+    const double guess = w->period;
     int found = 0, status = tribo_shooting_create_twin(s, 1);
     s->found = 0;
     s->told = s;
@@ -241,7 +241,7 @@ int tribo_shooting_find_mode(struct shooting *s, struct wanted *w)
         const double from = sticks ? LEAST * w->amplitude : w->amplitude / LEAST;
         double period = 0.0, delta = 0.0;
         int moves;
-        status = linear_mode(t, sticks, from, guess > 0.0 ? turn / guess : 0.0, &period, &delta, &moves);
+        status = linear_mode(t, sticks, from, guess > 0.0 ? FULL_TURN / guess : 0.0, &period, &delta, &moves);
         status = status || !moves ? status : follow_path(t, period, delta, from, 0, &found);
     }
     if (!status && !found) {

@@ -32,8 +32,6 @@
 #define LATER 0.381966011250105
 #define INSTANT 1e-8
 
-static const double full_turn = 6.283185307179586;
-
 /* -------------------------------------------------------------------------------------------------------------- integration */
 
 static int phase_ends(struct company *company, double tau, double t, const double *y)
@@ -241,11 +239,11 @@ int tribo_period_map_complete(struct period_map *m, struct point *p)
 }
 
 /* -------------------------------------------------------------------------------------------------------------- touches
- * An elastic contact touches its limit where the force reaches the limit, and the contact slides in some neighbouring motions, but
- * not in others, as where sliders come to rest in the course of time: the map has no derivative. With limits times 1 - NUDGE and
- * 1 + NUDGE the contact begins to slide at different times in a period. A touch counts if the sums of |forces| at these times
- * differ by more than TOUCH of the usual force of the contact: where a normal only just presses the sums differ by less, and forces
- * are smooth. */
+ * An elastic contact touches its limit where the force reaches the limit, and the contact slides in some neighbouring motions,
+ * but not in others, as where sliders come to rest in the course of time: the map has no derivative. With limits times 1 - NUDGE
+ * and 1 + NUDGE the contact begins to slide at different times in a period. A touch counts if the sums of |forces| at these times
+ * differ by more than TOUCH of the usual force of the contact: where a normal only just presses the sums differ by less, and
+ * forces are smooth. */
 
 /* Observer of a period. */
 struct slides {
@@ -361,7 +359,7 @@ static int is_odd(const tribo_system *sys, double period)
     }
     for (size_t k = 0; k < sys->loads.harmonics; k++) {
         const struct harmonic *w = &sys->loads.harmonic[k];
-        const double order = round(fabs(w->omega) * period / full_turn);
+        const double order = round(fabs(w->omega) * period / FULL_TURN);
         if (w->count > 0 && fmod(order, 2.0) != (w->drives == DRIVES_LIMIT ? 0.0 : 1.0)) {
             return 0;
         }
@@ -414,7 +412,7 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period, cons
     m->period = period;
     m->moved = 0;
     tribo_period_map_choose(m, is_odd(m->sys, period));
-    tribo_energy_norm_set(&m->norm, m->sys, LEAST_OMEGA * full_turn / period);
+    tribo_energy_norm_set(&m->norm, m->sys, LEAST_OMEGA * FULL_TURN / period);
     /* size of the motion: the larger of least and the guess y */
     const double least = least_motion(m);
     tribo_energy_norm_of(&m->norm, 1, y, m->x);

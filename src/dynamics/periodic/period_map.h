@@ -7,6 +7,8 @@
 #include "energy_norm.h"
 #include "variation.h"
 
+#define FULL_TURN 6.283185307179586 /* radians */
+
 /* Unknowns beside x, at most. */
 #define TRIBO_UNKNOWNS 3
 

@@ -88,7 +88,7 @@ static int replay(tribo_driver *drv, struct replay *r, const char *missing, cons
     r->c = c;
     r->company = quantities;
     r->map = &drv->shooting->told->map;
-    r->omega = 2.0 * acos(-1.0) * (double)order / s->map.period;
+    r->omega = FULL_TURN * (double)order / s->map.period;
     const int status = tribo_period_map_replay(r->map, s->here->y, s->map.period, &r->company);
     return status && s->map.drv != drv ? tribo_error(drv->message, status, "%s", s->map.drv->message) : status;
 }

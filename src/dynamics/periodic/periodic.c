@@ -34,7 +34,7 @@ static int check_loads(tribo_driver *drv, double period)
         const struct harmonic *w = &sys->loads.harmonic[k];
         const char *const name = drive_name[w->drives];
         const size_t of = of_kind[w->drives]++;
-        const double turns = fabs(w->omega) / (2.0 * acos(-1.0)) * period, whole = fmax(round(turns), w->omega != 0.0);
+        const double turns = fabs(w->omega) / FULL_TURN * period, whole = fmax(round(turns), w->omega != 0.0);
         if (w->knots) {
             return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "%s[%zu] follows a table, which is not periodic", name, of);
         }
@@ -177,7 +177,7 @@ static int check_mode(tribo_driver *drv, const double *c, double amplitude, doub
     } else if (sys->normals.count && tribo_largest(to + n, n) > 0.0) {
         status = tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "where limits follow the motion c takes displacements only");
     }
-    w->period = omega > 0.0 ? 2.0 * acos(-1.0) / omega : 0.0;
+    w->period = omega > 0.0 ? FULL_TURN / omega : 0.0;
     w->c = to;
     w->amplitude = amplitude;
     w->delta = zeta * omega;
@@ -198,7 +198,7 @@ int tribo_driver_find_mode(tribo_driver *drv, const double *c, double amplitude,
     status = status ? status : check_mode(drv, c, amplitude, *omega, *zeta, &w, &own);
     status = status ? status : search_from(drv, &w, y);
     if (!status) {
-        *omega = 2.0 * acos(-1.0) / w.period;
+        *omega = FULL_TURN / w.period;
         *zeta = w.delta / *omega;
     }
     free(own);
@@ -262,7 +262,7 @@ int tribo_driver_follow_curve(tribo_driver *drv, const tribo_curve *curve, doubl
     if (!status && !from) {
         status = tribo_error(drv->message, TRIBO_ERR_MEMORY, "out of memory for a curve");
     } else if (!status && curve->motion == TRIBO_MOTION_MODE) {
-        status = check_mode(drv, curve->c, curve->amplitude, *period > 0.0 ? 2.0 * acos(-1.0) / *period : 0.0, 0.0, &w, &own);
+        status = check_mode(drv, curve->c, curve->amplitude, *period > 0.0 ? FULL_TURN / *period : 0.0, 0.0, &w, &own);
     } else if (!status) {
         const int cycle = curve->motion == TRIBO_MOTION_CYCLE;
         status = cycle && *period == 0.0 ? TRIBO_OK : check_period(drv, t, *period);
