@@ -393,9 +393,23 @@ static int box_descend(struct box_qp *p)
     return box_move(p, 1.0);
 }
 
+/* Returns 1 if the gradients of the independent x are rounding of x: beside large forces which redundant contacts hold against each
+ * other, a force of 0 cannot be found to its own rounding. */
+static int box_hidden(const struct box_qp *p)
+{
+    for (size_t k = 0; k < p->sets->rank; k++) {
+        const size_t i = p->order[k];
+        if (!(fabs(p->gradient[i]) <= TRIBO_SETTLED * tribo_box_doubt(p, i))) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 /* Each round lowers the objective, or takes an x out of the set: no set returns. */
 static int box_primal(struct box_qp *p)
 {
+    int anew = 0;
     memcpy(p->to, p->at, p->group->size);
     forget_low(p);
     for (size_t e = 0; e < p->count; e++) {
@@ -421,10 +435,11 @@ static int box_primal(struct box_qp *p)
         const size_t i = box_worst(p, 0);
         if (i < p->group->size) {
             tribo_box_change(p, i, FREE);
-        } else if (box_settled(p, TRIBO_SETTLED)) {
+        } else if (box_settled(p, TRIBO_SETTLED) || (anew && box_hidden(p))) {
             return 1;
         } else {
             tribo_factor_rebuild(p, NULL);
+            anew = 1;
         }
     }
     return 0;

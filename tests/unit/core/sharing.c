@@ -301,6 +301,30 @@ TEST(rounding_takes_no_part)
     tribo_destroy(c);
 }
 
+/* Contacts 0, 1, 2 hold bodies 0 and 1 against each other, beside bodies without velocity: forces of 3 and 4 are 0, which no solver
+ * finds to their own rounding. */
+TEST(rest_beside_contacts_that_press)
+{
+    static const double inverse[] = {130.0, 0.0105, 108.0, 112.0, 0.879},
+                        arm[] = {1.0, -1.0, 1.0, 1.0, 0.25, 1.0, 1.0, -0.875, 1.0}, limit[] = {0.05, 0.002, 301.0, 1.3, 7.2},
+                        slips[] = {0.00127, 0.000127, -0.00054};
+    static const size_t first[] = {0, 1, 2, 4, 7, 9}, body[] = {1, 0, 0, 1, 2, 3, 1, 3, 4};
+    for (int run = 0; run < 200; run++) {
+        const double vfree[5] = {0.0, slips[run % 3], -0.7 - 0.01 * run, 0.0, 0.0};
+        tribo_context *c;
+        double f[5];
+        assert_ok(tribo_create(&c, 5));
+        assert_ok(tribo_set_operator_mass(c, 5, inverse, first, body, arm));
+        assert_ok(tribo_set_limit(c, limit));
+        assert_ok(tribo_step_force(c, 0.5, vfree, f));
+        assert_close(fabs(f[1]), limit[1], 1e-15);
+        assert_close(130.0 * (f[2] - f[1]) + vfree[2] / 0.5, 0.0, 1e-12);
+        assert_close(f[0] + f[2], 0.0, 1e-14);
+        assert_all_close(f + 3, ((double[]){0.0, 0.0}), 2, 1e-15);
+        tribo_destroy(c);
+    }
+}
+
 TEST_MAIN("sharing", {rounding_takes_no_part, 1}, {identical_contacts_share, 100}, {twins_share_beside_twins_at_limits, 1},
           {share_without_order, 200}, {least_norm, 200}, {shares_that_last, 40}, {shares_after_sliding, 1},
-          {nothing_is_shared_of_nothing, 1})
+          {nothing_is_shared_of_nothing, 1}, {rest_beside_contacts_that_press, 1})
