@@ -27,7 +27,7 @@
  * that follows. */
 #define TOUCH 1e-2
 
-/* The period is followed from this part of it on, where no touch is expected by symmetry. Phases shorter than INSTANT of the
+/* The span is followed from this part of it on, where no touch is expected by symmetry. Phases shorter than INSTANT of the
  * period do not count: contacts slide between two events at one time. */
 #define LATER 0.381966011250105
 #define INSTANT 1e-8
@@ -125,6 +125,19 @@ static int follow_state(struct period_map *m, struct point *p)
     return m->events->motion->keep ? TRIBO_OK : tribo_period_map_matrix(m, p);
 }
 
+/* Moves forces of elastic contacts in m->y that are above their limits at m->t to the limits. */
+static void lower_springs(struct period_map *m)
+{
+    if (m->sys->compliance.count) {
+        if (m->sys->normals.count) {
+            tribo_system_set_time(m->sys, m->t);
+            tribo_normals_set(m->sys, m->y, m->y + m->sys->ndof);
+        }
+        tribo_get_limit(m->sys->contacts, m->limit);
+        tribo_compliance_enter(m->sys, m->limit, m->limit + m->sys->ncontact, m->y);
+    }
+}
+
 /* Sets m->y = the state of coordinates x, corrected for rounding of velocities at contacts that rest since the last integration,
  * and for spring forces above limits. Returns a status. */
 static int enter(struct period_map *m, const double *x)
@@ -139,14 +152,7 @@ static int enter(struct period_map *m, const double *x)
         tribo_system_loads(m->sys, DRIVES_BASE, 0, 1.0, contacts->state.base);
         status = tribo_driver_pass(m->drv, tribo_stick_slip_hold(contacts, m->sys, contacts->state.base, m->y + m->sys->ndof));
     }
-    if (m->sys->compliance.count) {
-        if (m->sys->normals.count) {
-            tribo_system_set_time(m->sys, m->t);
-            tribo_normals_set(m->sys, m->y, m->y + m->sys->ndof);
-        }
-        tribo_get_limit(m->sys->contacts, m->limit);
-        tribo_compliance_enter(m->sys, m->limit, m->limit + m->sys->ncontact, m->y);
-    }
+    lower_springs(m);
     return status;
 }
 
@@ -241,11 +247,11 @@ int tribo_period_map_complete(struct period_map *m, struct point *p)
 /* -------------------------------------------------------------------------------------------------------------- touches
  * An elastic contact touches its limit where the force reaches the limit, and the contact slides in some neighbouring motions,
  * but not in others, as where sliders come to rest in the course of time: the map has no derivative. With limits times 1 - NUDGE
- * and 1 + NUDGE the contact begins to slide at different times in a period. A touch counts if the sums of |forces| at these times
+ * and 1 + NUDGE the contact begins to slide at different times in a span. A touch counts if the sums of |forces| at these times
  * differ by more than TOUCH of the usual force of the contact: where a normal only just presses the sums differ by less, and
  * forces are smooth. */
 
-/* Observer of a period. */
+/* Observer of a span. */
 struct slides {
     struct company company;
     const struct events *events;
@@ -270,77 +276,70 @@ static int slides_phase(struct company *company, double tau, double t, const dou
     return TRIBO_OK;
 }
 
-/* Adds to slides what happens within a period from the state y at t on, with limits of elastic contacts times a factor. Returns a
- * status, its message on the driver. */
-static int count_slides(const struct period_map *m, double factor, double t, const double *y, struct slides *slides)
+/* Sets the limits of elastic contacts to factor times limit [ncontact], and mu of their followers to factor times mu
+ * [followers]. The revision of the system stays: the caller sets factor 1 in the end. */
+static void scale_limits(tribo_system *sys, double factor, const double *limit, const double *mu)
 {
-    tribo_system *sys = NULL;
-    tribo_driver *drv = NULL;
-    struct period_map map = {.drv = NULL};
-    int status = tribo_driver_pass(m->drv, tribo_system_clone(m->sys, &sys));
-    tribo_context *contacts = status ? NULL : tribo_system_context(sys);
-    if (contacts) {
-        double *limit = sys->work.put_limit;
-        tribo_get_limit(contacts, limit);
-        for (size_t k = 0; k < sys->compliance.count; k++) {
-            limit[sys->compliance.contact[k]] *= factor;
-        }
-        for (size_t k = 0; k < sys->normals.followers; k++) {
-            struct follower *const f = sys->normals.follower + k;
-            f->mu *= tribo_is_compliant(&sys->compliance, f->contact) ? factor : 1.0;
-        }
-        tribo_set_limit(contacts, limit);
-        status = tribo_driver_create_method(&drv, sys, m->drv->at_work);
-        status = status ? tribo_error(m->drv->message, status, "%s", tribo_system_message(sys)) : status;
+    struct normals *s = &sys->normals;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        sys->loads.given_limit[i] = (tribo_is_compliant(&sys->compliance, i) ? factor : 1.0) * limit[i];
     }
-    if (!status && (!contacts || !tribo_period_map_create(&map, drv))) {
-        status = tribo_error(m->drv->message, TRIBO_ERR_MEMORY, "out of memory for the motions beside a motion");
-    } else if (!status) {
-        drv->abstol = m->drv->abstol;
-        drv->reltol = m->drv->reltol;
-        map.t = t;
-        map.period = m->period;
-        memcpy(map.y, y, (map.n + 1) * sizeof *y);
-        tribo_system_set_time(sys, t);
-        tribo_normals_set(sys, map.y, map.y + sys->ndof);
-        tribo_get_limit(sys->contacts, map.limit);
-        tribo_compliance_enter(sys, map.limit, map.limit + sys->ncontact, map.y);
-        memcpy(map.x, map.y, map.n * sizeof *map.x);
-        status = drv->at_work->open(drv, &map.events);
-        slides->events = map.events;
-        status = status ? status : tribo_period_map_replay(&map, map.x, map.period, &slides->company);
-        status = status ? tribo_error(m->drv->message, status, "%s", drv->message) : status;
+    for (size_t k = 0; k < s->followers; k++) {
+        s->follower[k].mu = (tribo_is_compliant(&sys->compliance, s->follower[k].contact) ? factor : 1.0) * mu[k];
     }
-    tribo_period_map_free(&map);
-    tribo_driver_destroy(drv);
-    tribo_system_destroy(sys);
-    return status;
+    tribo_set_limit(sys->contacts, sys->loads.given_limit);
+    sys->loads.time = NAN;
+    sys->structure += s->followers > 0; /* structures have mu */
+}
+
+/* Adds to slides what happens within a span from the state y at m->t on. Returns a status, its message on the driver. */
+static int count_slides(struct period_map *m, const double *y, struct slides *slides)
+{
+    const int status = m->drv->at_work->open(m->drv, &m->events);
+    memcpy(m->y, y, m->n * sizeof *y);
+    tribo_system_set_time(m->sys, m->t);
+    lower_springs(m);
+    return status ? status : period_map_integrate(m, m->t, m->t + m->span, &slides->company);
 }
 
 int tribo_period_map_find_touch(struct period_map *m, const double *y, int changed, size_t *contact)
 {
-    const size_t c = m->sys->ncontact;
+    tribo_system *sys = m->sys;
+    const size_t c = sys->ncontact;
     *contact = c;
-    if (!m->sys->compliance.count || changed) {
-        return !m->sys->compliance.count
+    if (!sys->compliance.count || changed) {
+        return !sys->compliance.count
                    ? TRIBO_OK
                    : tribo_error(m->drv->message, TRIBO_ERR_STATE,
                                  "the system has elastic contacts, and has changed since the periodic motion was found");
     }
-    double *later = NULL;
-    struct slides less = {.company = {slides_phase, NULL}, .instant = INSTANT * m->period}, more = less;
-    if (!ALLOCATE(ARRAY(later, m->n + 1), ARRAY(less.sum, c), ARRAY(less.most, c), ARRAY(more.sum, c), ARRAY(more.most, c),
-                  ARRAY(less.before, c), ARRAY(more.before, c))) {
+    const double t = m->t;
+    double *later = NULL, *limit, *mu;
+    struct slides less = {.company = {slides_phase, NULL}, .events = m->events, .instant = INSTANT * m->period}, more = less;
+    if (!ALLOCATE(ARRAY(later, m->n + 1), ARRAY(limit, c), ARRAY(mu, sys->normals.followers), ARRAY(less.sum, c),
+                  ARRAY(less.most, c), ARRAY(more.sum, c), ARRAY(more.most, c), ARRAY(less.before, c), ARRAY(more.before, c))) {
         return tribo_error(m->drv->message, TRIBO_ERR_MEMORY, "out of memory for the motions beside a motion");
     }
-    int status = tribo_period_map_replay(m, y, LATER * m->period, NULL);
+    int status = tribo_period_map_replay(m, y, LATER * m->span, NULL);
     memcpy(later, m->y, m->n * sizeof *later);
-    status = status ? status : count_slides(m, 1.0 - NUDGE, m->t + LATER * m->period, later, &less);
-    status = status ? status : count_slides(m, 1.0 + NUDGE, m->t + LATER * m->period, later, &more);
-    for (size_t k = 0; !status && k < m->sys->compliance.count; k++) {
-        const size_t i = m->sys->compliance.contact[k];
-        const struct follower *f = tribo_normals_follower(m->sys, i);
-        const struct normal *n = f ? &m->sys->normals.normal[f->normal] : NULL;
+    memcpy(limit, sys->loads.given_limit, c * sizeof *limit);
+    if (!tribo_system_limits_vary(sys)) {
+        tribo_get_limit(sys->contacts, limit);
+    }
+    for (size_t k = 0; k < sys->normals.followers; k++) {
+        mu[k] = sys->normals.follower[k].mu;
+    }
+    m->t += LATER * m->span;
+    scale_limits(sys, 1.0 - NUDGE, limit, mu);
+    status = status ? status : count_slides(m, later, &less);
+    scale_limits(sys, 1.0 + NUDGE, limit, mu);
+    status = status ? status : count_slides(m, later, &more);
+    scale_limits(sys, 1.0, limit, mu);
+    m->t = t;
+    for (size_t k = 0; !status && k < sys->compliance.count; k++) {
+        const size_t i = sys->compliance.contact[k];
+        const struct follower *f = tribo_normals_follower(sys, i);
+        const struct normal *n = f ? &sys->normals.normal[f->normal] : NULL;
         const double usual = greater(greater(less.most[i], more.most[i]), n ? f->mu * n->stiffness * n->size : 0.0);
         *contact = *contact == c && fabs(less.sum[i] - more.sum[i]) > TOUCH * usual ? i : *contact;
     }

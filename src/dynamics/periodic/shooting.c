@@ -22,6 +22,7 @@
 #include "numerics/linalg.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -473,9 +474,11 @@ int tribo_shooting_find_flow(struct shooting *s)
 
 int tribo_shooting_check_touches(struct shooting *s, const char *what)
 {
-    size_t contact = 0;
     const int changed = s->revision != tribo_system_revision(s->map.sys);
-    const int status = tribo_period_map_find_touch(&s->map, s->here->y, changed, &contact);
+    const int known = !changed && s->touches != SIZE_MAX;
+    size_t contact = s->touches;
+    const int status = known ? TRIBO_OK : tribo_period_map_find_touch(&s->map, s->here->y, changed, &contact);
+    s->touches = status ? SIZE_MAX : contact;
     return status || contact == s->map.sys->ncontact
                ? status
                : tribo_error(s->map.drv->message, TRIBO_ERR_UNSUPPORTED,
@@ -526,6 +529,7 @@ void tribo_shooting_keep(struct shooting *s, struct wanted *w)
     s->found = 1;
     s->told = s;
     s->revision = tribo_system_revision(s->map.sys);
+    s->touches = SIZE_MAX;
 }
 
 int tribo_shooting_find(struct shooting *s, struct wanted *w)

@@ -54,6 +54,7 @@ struct shooting {
     double nearest;             /* least residual/size so far */
     int found;
     size_t revision;       /* of the system when the motion was found */
+    size_t touches;        /* contact of check_touches, of the motion found: ncontact if none touches; SIZE_MAX: not yet known */
     struct mode *mode;     /* of the search of a mode; else NULL */
     struct track *curve;   /* of the curve that is followed; else NULL */
     struct twin twin;      /* of the modes of this driver */
