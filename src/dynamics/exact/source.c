@@ -14,6 +14,9 @@
 /* The sources eta'' and C~ eta', and responses to both. */
 enum { INERTIA, DAMPING, SOURCES };
 
+/* |mu - lambda| tau from which e^{mu tau} - e^{lambda tau} has nearly all digits. */
+#define APART 0.1
+
 /* |z| below which (e^z - 1 - z)/z^2 is a sum of TERMS terms. */
 #define NEAR_ZERO 1.0
 enum { TERMS = 18 };
@@ -22,14 +25,19 @@ enum { TERMS = 18 };
 struct response {
     const struct exact *x;
     double tau;
-    double *steady, *ramp;    /* c_0, c_1 */
-    double *re, *im;          /* [SOURCES][harmonics][modes] c of harmonics */
-    double *eta, *rate;       /* responses at tau */
-    double *zr, *zi;          /* [exponents] response of exponents */
-    double *q, *u;            /* [ndof] workspace */
-    double *unit;             /* [shapes] workspace */
-    double *power;            /* [TRIBO_POWERS][modes][SOURCES] coefficients of the sources; without modes */
-    double *e, *e_rate, *out; /* [modes][SOURCES], [modes][SOURCES], [4 modes + 1][SOURCES] workspace; without modes */
+    double *steady, *ramp; /* c_0, c_1 */
+    double *re, *im;       /* [SOURCES][harmonics][modes] c of harmonics */
+    double *eta, *rate;    /* responses at tau */
+    double *zr, *zi;       /* [exponents] response of exponents */
+    double complex *along,
+        *against;              /* [harmonics] what an exponent takes until tau from e^{i omega s}, and from e^{-i omega s} */
+    double complex *at_tau;    /* [exponents] e^{lambda tau} */
+    double *cr, *ci;           /* [modes][SOURCES][exponents] c of exponents; coupled */
+    double *rr, *ii, *ri, *ir; /* [exponents][SOURCES][exponents] products of re and im of b with re and im of c; coupled */
+    double *q, *u;             /* [ndof] workspace */
+    double *unit;              /* [shapes] workspace */
+    double *power;             /* [TRIBO_POWERS][modes][SOURCES] coefficients of the sources; without modes */
+    double *e, *e_rate, *out;  /* [modes][SOURCES], [modes][SOURCES], [4 modes + 1][SOURCES] workspace; without modes */
 };
 
 /* Returns (e^z - 1 - z)/z^2, the integral of (1 - s) e^{z s} over s from 0 to 1. */
@@ -45,11 +53,12 @@ static double complex exp_2(double complex z)
     return sum;
 }
 
-/* Returns the integral of e^{lambda (tau - s)} e^{mu s} over s from 0 to tau. */
-static double complex meet(double complex lambda, double complex mu, double tau)
+/* Returns the integral of e^{lambda (tau - s)} e^{mu s} over s from 0 to tau; at_lambda, at_mu: e^{lambda tau}, e^{mu tau}. */
+static double complex meet(double complex lambda, double complex mu, double tau, double complex at_lambda, double complex at_mu)
 {
-    const double complex high = creal(mu) > creal(lambda) ? mu : lambda, low = creal(mu) > creal(lambda) ? lambda : mu;
-    return tau * cexp(high * tau) * tribo_exp_1((low - high) * tau);
+    const double complex gap = mu - lambda;
+    return (fabs(creal(gap)) + fabs(cimag(gap))) * tau > APART ? (at_mu - at_lambda) / gap
+                                                               : tau * at_lambda * tribo_exp_1(gap * tau);
 }
 
 /* to [modes] += psi AC q' for q' = sum of the shapes times rate [shapes]. */
@@ -96,11 +105,29 @@ static void find_source(struct response *r, int source)
     }
 }
 
-/* b of exponent p and mode k. */
-static double complex takes(const struct modal *h, size_t p, size_t k)
+/* Sets at_tau, and of coupled modes c of exponents and its products with b. */
+static void find_exponents(struct response *r)
 {
-    const size_t at = h->owner ? p : k * h->exponents + p;
-    return h->owner && h->owner[p] != k ? 0.0 : h->left.br[at] + h->left.bi[at] * I;
+    const struct modal *h = r->x->h->modal;
+    const size_t m = h->modes, e = h->exponents, wide = SOURCES * e;
+    for (size_t q = 0; q < e; q++) {
+        const double complex mu = h->lr[q] + h->li[q] * I, z = tribo_part(&r->x->z, q), square = mu * mu;
+        r->at_tau[q] = cexp(mu * r->tau);
+        for (size_t k = 0; !h->owner && k < m; k++) {
+            const double complex motion = (h->rr[q * m + k] - h->ri[q * m + k] * I) * z;
+            const double complex c[] = {[INERTIA] = square * motion, [DAMPING] = -(square + h->omega2[k]) * motion};
+            for (size_t source = 0; source < SOURCES; source++) {
+                r->cr[k * wide + source * e + q] = creal(c[source]);
+                r->ci[k * wide + source * e + q] = cimag(c[source]);
+            }
+        }
+    }
+    if (!h->owner) {
+        tribo_multiply_transposed_add(m, e, wide, h->left.br, r->cr, r->rr);
+        tribo_multiply_transposed_add(m, e, wide, h->left.bi, r->ci, r->ii);
+        tribo_multiply_transposed_add(m, e, wide, h->left.br, r->ci, r->ri);
+        tribo_multiply_transposed_add(m, e, wide, h->left.bi, r->cr, r->ir);
+    }
 }
 
 /* Returns what exponent p takes until tau: from c_0, c_1, harmonics, and exponents. */
@@ -111,30 +138,39 @@ static double complex respond_exponent(const struct response *r, int source, siz
     const double complex own = h->lr[p] + h->li[p] * I;
     const size_t m = h->modes, first = h->owner ? h->owner[p] : 0, end = h->owner ? first + 1 : m, at = (size_t)source * m;
     const double complex steady = r->tau * tribo_exp_1(own * r->tau), ramp = r->tau * r->tau * exp_2(own * r->tau);
-    double complex sum = 0.0;
-    for (size_t k = first; k < end; k++) {
-        sum += takes(h, p, k) * (r->steady[at + k] * steady + r->ramp[at + k] * ramp);
-    }
+    double complex sum = 0.0, b = 0.0;
     for (size_t s = 0; s < f->harmonics; s++) {
-        const double complex turn = f->forcing[s].omega * I;
-        const double complex along = 0.5 * meet(own, turn, r->tau), against = 0.5 * meet(own, -turn, r->tau);
-        const double *re = r->re + ((size_t)source * f->harmonics + s) * m, *im = r->im + ((size_t)source * f->harmonics + s) * m;
-        for (size_t k = first; k < end; k++) {
-            sum += takes(h, p, k) * ((re[k] + im[k] * I) * along + (re[k] - im[k] * I) * against);
+        const double complex turn = f->forcing[s].omega * I, turned = cexp(turn * r->tau);
+        r->along[s] = 0.5 * meet(own, turn, r->tau, r->at_tau[p], turned);
+        r->against[s] = 0.5 * meet(own, -turn, r->tau, r->at_tau[p], conj(turned));
+    }
+    for (size_t k = first; k < end; k++) {
+        const size_t of = h->owner ? p : k * h->exponents + p;
+        double complex part = r->steady[at + k] * steady + r->ramp[at + k] * ramp;
+        for (size_t s = 0; s < f->harmonics; s++) {
+            const size_t to = ((size_t)source * f->harmonics + s) * m + k;
+            const double complex c = r->re[to] + r->im[to] * I;
+            part += c * r->along[s] + conj(c) * r->against[s];
         }
+        b = h->left.br[of] + h->left.bi[of] * I;
+        sum += b * part;
     }
     for (size_t q = 0; q < h->exponents; q++) {
-        const double complex mu = h->lr[q] + h->li[q] * I, z = tribo_part(&r->x->z, q);
-        double complex with = 0.0, conjugate = 0.0;
-        for (size_t k = first; k < end && (!h->owner || h->owner[q] == first); k++) {
-            const double complex shape = h->owner ? 1.0 : h->rr[q * m + k] - h->ri[q * m + k] * I;
-            const double complex c = (source == INERTIA ? mu * mu : -(mu * mu + h->omega2[k])) * shape * z;
-            with += takes(h, p, k) * c;
-            conjugate += takes(h, p, k) * conj(c);
+        const double complex mu = h->lr[q] + h->li[q] * I, square = mu * mu;
+        const size_t to = (p * SOURCES + (size_t)source) * h->exponents + q;
+        double complex with, conjugate;
+        if (!h->owner) {
+            with = r->rr[to] - r->ii[to] + (r->ri[to] + r->ir[to]) * I;
+            conjugate = r->rr[to] + r->ii[to] + (r->ir[to] - r->ri[to]) * I;
+        } else if (h->owner[q] == first) {
+            const double complex c = (source == INERTIA ? square : -(square + h->omega2[first])) * tribo_part(&r->x->z, q);
+            with = b * c;
+            conjugate = b * conj(c);
+        } else {
+            continue;
         }
-        if (with != 0.0 || conjugate != 0.0) {
-            sum += 0.5 * (with * meet(own, mu, r->tau) + conjugate * meet(own, conj(mu), r->tau));
-        }
+        sum += 0.5 * with * meet(own, mu, r->tau, r->at_tau[p], r->at_tau[q]);
+        sum += 0.5 * conjugate * meet(own, conj(mu), r->tau, r->at_tau[p], conj(r->at_tau[q]));
     }
     return sum;
 }
@@ -214,13 +250,16 @@ int tribo_modal_source(const struct exact *x, double tau, size_t columns, const 
     const struct forced *f = x->h;
     const struct modal *h = f->modal;
     const size_t m = h->modes, loads = SOURCES * f->harmonics * m, powers = h->powers ? SOURCES * m : 0;
+    const size_t e = h->exponents, each = h->owner ? 0 : SOURCES * e;
     if (f->resonant) {
         return tribo_error(x->sys->message, TRIBO_ERR_UNSUPPORTED,
                            "method exact: a load is in resonance with an undamped mode; method event can do it");
     }
     struct response r = {.x = x, .tau = tau};
     if (!ALLOCATE(ARRAY(r.steady, SOURCES * m), ARRAY(r.ramp, SOURCES * m), ARRAY(r.eta, SOURCES * m), ARRAY(r.rate, SOURCES * m),
-                  ARRAY(r.re, loads), ARRAY(r.im, loads), ARRAY(r.zr, h->exponents), ARRAY(r.zi, h->exponents),
+                  ARRAY(r.re, loads), ARRAY(r.im, loads), ARRAY(r.zr, e), ARRAY(r.zi, e), ARRAY(r.at_tau, e),
+                  ARRAY(r.along, f->harmonics), ARRAY(r.against, f->harmonics), ARRAY(r.cr, m * each), ARRAY(r.ci, m * each),
+                  ARRAY(r.rr, e * each), ARRAY(r.ii, e * each), ARRAY(r.ri, e * each), ARRAY(r.ir, e * each),
                   ARRAY(r.q, x->sys->ndof), ARRAY(r.u, x->sys->ndof), ARRAY(r.unit, f->shapes),
                   ARRAY(r.power, TRIBO_POWERS * powers), ARRAY(r.e, powers), ARRAY(r.e_rate, powers),
                   ARRAY(r.out, 4 * powers + SOURCES))) {
@@ -229,6 +268,7 @@ int tribo_modal_source(const struct exact *x, double tau, size_t columns, const 
     if (h->powers) {
         respond_powers(&r);
     } else {
+        find_exponents(&r);
         find_source(&r, INERTIA);
         respond_modes(&r, INERTIA);
         find_source(&r, DAMPING);

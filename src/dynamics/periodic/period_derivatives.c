@@ -2,7 +2,8 @@
 /* Derivatives of the periodic motion found last by parameters p. With the image of the start x after the span,
  *     d image = D dx + w dp,   dx/dp = (I - D)^-1 w,
  * w: perturbation at the end of the span by the sources of dp, from zero. The motion is then followed once more, with the
- * perturbations dx/dp at its start, which come back to dx/dp.
+ * perturbations dx/dp at its start, which come back to dx/dp. Where w takes a following of its own, this finds the extremes and
+ * the responses of phases to sources, which the second following takes over.
  *
  * Perturbations by the frequency are at constant phase theta = (1 + e) t of the loads, where q'' += -2 e q'' - e AC q', as by a
  * source, and q' = (1 + e) dq/dtheta. A factor of all loads and bases needs no source: the motion is homogeneous in loads, bases
@@ -36,21 +37,22 @@ struct sensitivity {
     struct company company;
     struct period_map *map;
     struct variation variation;
-    struct derivative steps; /* of this span */
+    struct derivative steps, first; /* of this span; of the following that found w */
     struct parameters by;
     size_t columns, n, contacts;
     const int *kind;
     int moves;       /* 1: a kind has inertia or damping */
     const double *c; /* [n] coefficients of the state; NULL: no extremes */
     struct extreme least, most;
-    double *from, *now;               /* [n + 1] state at the start of the phase; workspace */
-    double *start, *end;              /* [n][columns] perturbations at the start; workspace */
-    double *rise, *inertia, *damping; /* members of by */
-    double *way;                      /* [contacts][columns] J q + G f of perturbations at the end of the last phase */
-    double *force;                    /* [contacts][columns] workspace */
-    double *energy, *path; /* [contacts] dissipated energy; [contacts][columns] derivative of the length of slip; or NULL */
-    signed char *slip;     /* [contacts] slip in the last phase */
-    int begun;             /* 1: there was a phase */
+    int located;             /* 1: the phases and times of both are known */
+    double *from, *now;      /* [n + 1] state at the start of the phase; workspace */
+    double *start, *end;     /* [n][columns] perturbations at the start; workspace */
+    double *rise, *moved_by; /* members of by */
+    double *way;             /* [contacts][columns] J q + G f of perturbations at the end of the last phase */
+    double *force;           /* [contacts][columns] workspace */
+    double *energy, *path;   /* [contacts] dissipated energy; [contacts][columns] derivative of the length of slip; or NULL */
+    signed char *slip;       /* [contacts] slip in the last phase */
+    int begun;               /* 1: there was a phase */
 };
 
 /* Adds slip J q to the paths: the parts of the last phase at the end of it, and of the phase that ends now, at its start. The
@@ -67,44 +69,42 @@ static void add_paths(struct sensitivity *d, const signed char *slip, const doub
     }
 }
 
-/* Sets x->by, for a phase that ends, NULL, or one of the steps of the span. Returns a status. */
+/* Sets x->by, for the phase that ends, of = NULL, or one of the steps of the span. Returns a status. */
 static int find_by(struct sensitivity *d, struct extreme *x, const struct derivative_step *of)
-{
-    struct derivative_step step = {
-        .tau = x->at, .slip = of ? of->slip : d->map->events->stick_slip.state.slip, .phase = of ? of->phase : NULL};
-    const struct derivative one = {.events = d->map->events, .sys = d->map->sys, .steps = 1, .step = &step};
-    const int status = x->at > 0.0 ? tribo_derivative_apply(&one, 0, d->columns, x->v, &d->by) : TRIBO_OK;
-    memset(x->by, 0, d->columns * sizeof *x->by);
-    tribo_multiply_add(1, d->n, d->columns, 1.0, d->c, x->v, x->by);
-    return status;
-}
-
-/* Updates an extreme if it is at time s >= 0 of the phase that ends. Its derivatives are found now, if the phase will be lost or
- * the source is of its motion; else when the span has ended: most extremes of phases are none of the period. Returns a status. */
-static int update_extreme(struct sensitivity *d, struct extreme *x, const struct signal *signal, double s, double value)
 {
     const struct events *e = d->map->events;
     const size_t n = d->map->sys->ndof;
-    double at[4];
-    if (!(s >= 0.0)) {
-        return TRIBO_OK;
+    struct derivative_step step = {
+        .tau = x->at, .slip = of ? of->slip : e->stick_slip.state.slip, .phase = of ? of->phase : NULL};
+    const struct derivative one = {.events = d->map->events, .sys = d->map->sys, .steps = 1, .step = &step};
+    if (!of) {
+        memcpy(x->v, d->variation.v, d->n * d->columns * sizeof *x->v);
+        memcpy(d->now, d->from, (d->n + 1) * sizeof *d->now);
+        e->motion->state(e->own, x->at, d->from, d->now);
     }
-    memcpy(x->v, d->variation.v, d->n * d->columns * sizeof *x->v);
-    tribo_signal_at(signal, s, at);
-    x->value = value;
-    x->corner = (s == 0.0 || s == signal->tau) && fabs(at[1]) * d->map->period > CORNER * fabs(value);
-    x->at = s;
-    x->step = d->steps.steps;
-    if (e->motion->keep && !d->moves) {
-        return TRIBO_OK;
-    }
-    const int status = find_by(d, x, NULL);
-    memcpy(d->now, d->from, (d->n + 1) * sizeof *d->now);
-    e->motion->state(e->own, s, d->from, d->now);
-    for (size_t j = 0; j < d->columns; j++) {
+    const int status = x->at > 0.0 ? tribo_derivative_apply(&one, 0, d->columns, x->v, &d->by) : TRIBO_OK;
+    memset(x->by, 0, d->columns * sizeof *x->by);
+    tribo_multiply_add(1, d->n, d->columns, 1.0, d->c, x->v, x->by);
+    for (size_t j = 0; !of && j < d->columns; j++) {
         x->by[j] += d->kind[j] == TRIBO_PARAMETER_FREQUENCY ? tribo_dot(d->c + n, d->now + n, n) : 0.0;
     }
+    free(step.response);
     return status;
+}
+
+/* Sets an extreme if it is at time s >= 0 of the phase that ends. Its derivatives are found when the span has ended, or in the
+ * next following: most extremes of phases are none of the period. */
+static void update_extreme(struct sensitivity *d, struct extreme *x, const struct signal *signal, double s, double value)
+{
+    double at[4];
+    if (s >= 0.0) {
+        memcpy(x->v, d->variation.v, d->n * d->columns * sizeof *x->v);
+        tribo_signal_at(signal, s, at);
+        x->value = value;
+        x->corner = (s == 0.0 || s == signal->tau) && fabs(at[1]) * d->map->period > CORNER * fabs(value);
+        x->at = s;
+        x->step = d->steps.steps;
+    }
 }
 
 static int sensitivity_phase(struct company *company, double tau, double t, const double *y)
@@ -112,21 +112,26 @@ static int sensitivity_phase(struct company *company, double tau, double t, cons
     struct sensitivity *d = (struct sensitivity *)company;
     const struct events *e = d->map->events;
     const signed char *slip = e->stick_slip.state.slip;
-    struct extremes found = {d->least.value, d->most.value, NAN, NAN};
-    struct signal signal = {0};
     for (size_t i = 0; d->energy && i < d->contacts; i++) {
         d->energy[i] += tribo_slides(slip[i]) ? d->map->sys->tally[i] * e->motion->work(e->own, i, tau) : 0.0;
     }
     if (d->path) {
         add_paths(d, slip, d->variation.v);
     }
-    int status = d->c ? e->motion->signal(e->own, d->c, tau, y, &signal) : TRIBO_OK;
-    if (!status && d->c && !tribo_signal_extremes(&signal, 0.0, &found)) {
+    const int locates = d->c && !d->located;
+    struct extremes found = {d->least.value, d->most.value, NAN, NAN};
+    struct signal signal = {0};
+    int status = locates ? e->motion->signal(e->own, d->c, tau, y, &signal) : TRIBO_OK;
+    if (!status && locates && !tribo_signal_extremes(&signal, 0.0, &found)) {
         status = tribo_error(d->map->sys->message, TRIBO_ERR_STEP, "a phase of the period is too fast to be followed");
     }
-    status = status ? status : update_extreme(d, &d->least, &signal, found.at_least, found.least);
-    status = status ? status : update_extreme(d, &d->most, &signal, found.at_most, found.most);
+    update_extreme(d, &d->least, &signal, found.at_least, found.least);
+    update_extreme(d, &d->most, &signal, found.at_most, found.most);
     tribo_signal_free(&signal);
+    for (size_t k = 0; d->located && k < 2; k++) {
+        struct extreme *const x = k ? &d->most : &d->least;
+        status = status || x->step != d->steps.steps ? status : find_by(d, x, NULL);
+    }
     status = status ? status : tribo_variation_phase(&d->variation, tau, t, y);
     if (d->path) {
         tribo_system_find_ways(d->map->sys, d->columns, d->variation.v, d->force, d->way);
@@ -151,6 +156,7 @@ static int follow_perturbed(struct sensitivity *d, const double *v)
     const struct shooting *s = m->drv->shooting;
     tribo_variation_begin(&d->variation, m->events, v, d->columns, &d->steps);
     d->variation.by = &d->by;
+    d->variation.known = &d->first;
     memcpy(d->from, s->here->y, d->n * sizeof *d->from);
     d->from[d->n] = 0.0;
     int status = tribo_period_map_replay(m, s->here->y, m->span, &d->company);
@@ -182,6 +188,9 @@ static int find_start(struct sensitivity *d, struct shooting *s)
     } else {
         status = follow_perturbed(d, d->start);
         memcpy(d->end, d->variation.v, all * sizeof *d->end);
+        d->first = d->steps;
+        d->steps = (struct derivative){.events = NULL};
+        d->located = d->c != NULL;
     }
     tribo_energy_norm_of(&m->norm, d->columns, d->end, d->start);
     for (size_t i = 0; m->odd && i < all; i++) {
@@ -235,7 +244,7 @@ static int check_return(struct sensitivity *d)
 
 /* ----------------------------------------------------------------------------------------------------------------- parameters */
 
-/* Sets the column j of rise, inertia and damping for the parameter of kind and index; limit [contacts]: limits at the start.
+/* Sets the column j of rise and moved_by for the parameter of kind and index; limit [contacts]: limits at the start.
  * Returns a status. */
 static int set_parameter(struct sensitivity *d, const tribo_driver *drv, size_t j, size_t index, const double *limit)
 {
@@ -266,8 +275,8 @@ static int set_parameter(struct sensitivity *d, const tribo_driver *drv, size_t 
         const double own = i == index ? 1.0 : 0.0;
         d->rise[i * d->columns + j] = kind == TRIBO_PARAMETER_LIMIT ? own : kind == TRIBO_PARAMETER_LOADS ? limit[i] : 0.0;
     }
-    d->inertia[j] = kind == TRIBO_PARAMETER_FREQUENCY ? -2.0 : 0.0;
-    d->damping[j] = kind >= TRIBO_PARAMETER_FREQUENCY ? -1.0 : 0.0;
+    d->moved_by[j] = kind == TRIBO_PARAMETER_FREQUENCY ? -2.0 : 0.0;
+    d->moved_by[d->columns + j] = kind >= TRIBO_PARAMETER_FREQUENCY ? -1.0 : 0.0;
     d->moves |= kind >= TRIBO_PARAMETER_FREQUENCY;
     return TRIBO_OK;
 }
@@ -288,7 +297,7 @@ static int write_extremes(struct sensitivity *d, double *extremes)
     if (least->corner || most->corner) {
         return tribo_error(d->map->drv->message, TRIBO_ERR_UNSUPPORTED, "an extreme of the signal lies at an event, at a corner");
     }
-    for (int k = 0; d->map->events->motion->keep && !d->moves && k < (least == most ? 1 : 2); k++) {
+    for (int k = 0; !d->located && k < (least == most ? 1 : 2); k++) {
         struct extreme *const x = k ? most : least;
         const int status = tribo_driver_pass(d->map->drv, find_by(d, x, d->steps.step + x->step));
         if (status) {
@@ -341,9 +350,8 @@ static int differentiate(struct sensitivity *d, struct shooting *s, const size_t
                          double *y)
 {
     const tribo_driver *drv = d->map->drv;
-    const double *c = d->c;
     double *path = d->path, *energies = d->energy;
-    d->c = d->path = d->energy = NULL; /* until d->start is known */
+    d->path = d->energy = NULL; /* until d->start is known */
     int status = TRIBO_OK;
     const char *const without = s->told->extra.count                   ? "an unknown period"
                                 : drv->sys->normals.count              ? "limits that follow the motion"
@@ -363,9 +371,8 @@ static int differentiate(struct sensitivity *d, struct shooting *s, const size_t
     for (size_t j = 0; !status && j < d->columns; j++) {
         status = set_parameter(d, drv, j, index[j], drv->sys->work.put_limit);
     }
-    d->by = (struct parameters){d->rise, d->moves ? d->inertia : NULL, d->moves ? d->damping : NULL};
+    d->by = (struct parameters){d->rise, d->moves ? d->moved_by : NULL};
     status = status ? status : find_start(d, s);
-    d->c = c;
     d->path = energy ? path : NULL;
     d->energy = energy ? energies : NULL;
     status = status ? status : follow_perturbed(d, d->start);
@@ -413,16 +420,16 @@ int tribo_driver_period_derivatives(tribo_driver *drv, size_t count, const int *
         return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "derivatives of energies are found with constant limits");
     }
     const size_t each = d.contacts * count, all = d.n * count;
-    const int room =
-        ALLOCATE(ARRAY(d.start, all), ARRAY(d.end, all + each), ARRAY(d.from, d.n + 1), ARRAY(d.now, d.n + 1),
-                 ARRAY(d.least.v, all), ARRAY(d.most.v, all), ARRAY(d.least.by, count), ARRAY(d.most.by, count),
-                 ARRAY(d.inertia, count), ARRAY(d.damping, count), ARRAY(d.rise, each), ARRAY(d.way, each), ARRAY(d.force, each),
-                 ARRAY(d.path, each), ARRAY(d.energy, d.contacts), ARRAY(d.slip, d.contacts)) &&
-        tribo_variation_create(&d.variation, s->map.sys, count);
+    const int room = ALLOCATE(ARRAY(d.start, all), ARRAY(d.end, all + each), ARRAY(d.from, d.n + 1), ARRAY(d.now, d.n + 1),
+                              ARRAY(d.least.v, all), ARRAY(d.most.v, all), ARRAY(d.least.by, count), ARRAY(d.most.by, count),
+                              ARRAY(d.moved_by, 2 * count), ARRAY(d.rise, each), ARRAY(d.way, each), ARRAY(d.force, each),
+                              ARRAY(d.path, each), ARRAY(d.energy, d.contacts), ARRAY(d.slip, d.contacts)) &&
+                     tribo_variation_create(&d.variation, s->map.sys, count);
     status = room
                  ? differentiate(&d, s, index, extremes, energy, y)
                  : tribo_error(s->map.drv->message, TRIBO_ERR_MEMORY, "out of memory for %zu derivative%s", count, plural(count));
     tribo_derivative_free(&d.steps);
+    tribo_derivative_free(&d.first);
     tribo_variation_free(&d.variation);
     free(d.start);
     return status && s->map.drv != drv ? tribo_error(drv->message, status, "%s", s->map.drv->message) : status;

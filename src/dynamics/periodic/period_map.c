@@ -277,9 +277,12 @@ static int slides_phase(struct company *company, double tau, double t, const dou
 }
 
 /* Sets the limits of elastic contacts to factor times limit [ncontact], and mu of their followers to factor times mu
- * [followers]. The revision of the system stays: the caller sets factor 1 in the end. */
-static void scale_limits(tribo_system *sys, double factor, const double *limit, const double *mu)
+ * [followers]; the revision of the system stays, and the caller sets factor 1 in the end. Adds to slides, or NULL, what happens
+ * within a span from the state y at m->t on. Returns a status, its message on the driver. */
+static int count_slides(struct period_map *m, double factor, const double *limit, const double *mu, const double *y,
+                        struct slides *slides)
 {
+    tribo_system *sys = m->sys;
     struct normals *s = &sys->normals;
     for (size_t i = 0; i < sys->ncontact; i++) {
         sys->loads.given_limit[i] = (tribo_is_compliant(&sys->compliance, i) ? factor : 1.0) * limit[i];
@@ -290,16 +293,13 @@ static void scale_limits(tribo_system *sys, double factor, const double *limit, 
     tribo_set_limit(sys->contacts, sys->loads.given_limit);
     sys->loads.time = NAN;
     sys->structure += s->followers > 0; /* structures have mu */
-}
-
-/* Adds to slides what happens within a span from the state y at m->t on. Returns a status, its message on the driver. */
-static int count_slides(struct period_map *m, const double *y, struct slides *slides)
-{
-    const int status = m->drv->at_work->open(m->drv, &m->events);
-    memcpy(m->y, y, m->n * sizeof *y);
-    tribo_system_set_time(m->sys, m->t);
-    lower_springs(m);
-    return status ? status : period_map_integrate(m, m->t, m->t + m->span, &slides->company);
+    const int status = slides ? m->drv->at_work->open(m->drv, &m->events) : TRIBO_OK;
+    if (slides) {
+        memcpy(m->y, y, m->n * sizeof *y);
+        tribo_system_set_time(sys, m->t);
+        lower_springs(m);
+    }
+    return status || !slides ? status : period_map_integrate(m, m->t, m->t + m->span, &slides->company);
 }
 
 int tribo_period_map_find_touch(struct period_map *m, const double *y, int changed, size_t *contact)
@@ -330,11 +330,9 @@ int tribo_period_map_find_touch(struct period_map *m, const double *y, int chang
         mu[k] = sys->normals.follower[k].mu;
     }
     m->t += LATER * m->span;
-    scale_limits(sys, 1.0 - NUDGE, limit, mu);
-    status = status ? status : count_slides(m, later, &less);
-    scale_limits(sys, 1.0 + NUDGE, limit, mu);
-    status = status ? status : count_slides(m, later, &more);
-    scale_limits(sys, 1.0, limit, mu);
+    status = status ? status : count_slides(m, 1.0 - NUDGE, limit, mu, later, &less);
+    status = status ? status : count_slides(m, 1.0 + NUDGE, limit, mu, later, &more);
+    count_slides(m, 1.0, limit, mu, NULL, NULL);
     m->t = t;
     for (size_t k = 0; !status && k < sys->compliance.count; k++) {
         const size_t i = sys->compliance.contact[k];
