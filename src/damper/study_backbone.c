@@ -21,15 +21,9 @@ struct vibration {
 static void find_vibration(struct worker *w, struct vibration *v, double *y)
 {
     const struct damper *d = w->d;
-    int status = TRIBO_ERR_NO_CONVERGENCE;
     memset(w->c, 0, 2 * d->modes * sizeof *w->c);
     memcpy(w->c, d->open.measured, d->modes * sizeof *w->c);
-    for (int again = 0; again < 2 && status == TRIBO_ERR_NO_CONVERGENCE; again++) {
-        if (again) {
-            memset(y, 0, w->dimension * sizeof *y);
-        }
-        status = tribo_driver_find_mode(w->drv, w->c, v->amplitude, &v->omega, &v->zeta, y);
-    }
+    const int status = tribo_driver_find_mode(w->drv, w->c, v->amplitude, &v->omega, &v->zeta, y);
     v->found = !status;
     v->message[0] = '\0';
     if (status) {

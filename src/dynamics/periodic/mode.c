@@ -19,13 +19,11 @@
 #define FLATTEST 1.02
 enum { MOST_SHOTS = 60 };
 
-/* Difference of delta, times the period, for the derivative by delta. */
+/* NEARBY: difference of delta, times the period, for the derivative by delta. MOST_GROWTH: largest |delta| T; zeta is at most 1.
+ * STRAYS: largest change of a period by a search, as a factor. UNSEEN: |c'y| over the size of a mode below which c'y is at rest. */
 #define NEARBY 1e-7
-
-/* Largest |delta| T: zeta is at most 1. */
 #define MOST_GROWTH 6.3
-
-/* A mode without a motion of c'y. */
+#define STRAYS 1.3
 #define UNSEEN 1e-8
 
 /* -------------------------------------------------------------------------------------------------------------- the twin */
@@ -52,7 +50,7 @@ static int mode_apply(struct shooting *s, const struct point *p)
 {
     const double period = p->unknown[0] * s->extra.unit[0], first = s->extra.first;
     const double delta = p->unknown[1] * s->extra.unit[1];
-    if (!(period >= first / STEEPEST && period <= first * STEEPEST && fabs(delta) * period <= MOST_GROWTH)) {
+    if (!(period >= first / STRAYS && period <= first * STRAYS && fabs(delta) * period <= MOST_GROWTH)) {
         return tribo_error(s->map.drv->message, TRIBO_ERR_NO_CONVERGENCE,
                            "no mode was found: from period = %g the search goes to %g, delta = %g", first, period, delta);
     }
@@ -70,7 +68,7 @@ static int mode_border(struct shooting *s, struct point *p)
     const double rate = tribo_dot(c, p->end + dofs, dofs) + tribo_dot(c + dofs, m->variation.acceleration, dofs);
     double *by_period = p->border, *by_growth = by_period + n,
            *row[] = {by_period + count * n, by_period + count * n + n + count};
-    double *functional = s->step, *image = s->guess, *states = s->a;
+    double *image = s->guess, *states = s->a, *functional = states + n * n; /* s->step is that of the search */
     tribo_period_map_rate(m, p->end, by_period);
     for (size_t i = 0; i < n; i++) {
         by_period[i] *= sign * m->span / m->period * s->extra.unit[0];
@@ -86,9 +84,8 @@ static int mode_border(struct shooting *s, struct point *p)
         status = status || k == 0 ? status
                                   : tribo_driver_pass(m->drv, tribo_variation_rate_row(&m->variation, m->events, c, functional));
         p->value[1] += k ? tribo_dot(functional, p->y, n) - sign * tribo_dot(functional, p->end, n) : 0.0;
-        memset(s->b, 0, n * n * sizeof *s->b);
-        for (size_t i = 0; i < n; i++) {
-            s->b[i * (n + 1)] = 1.0;
+        for (size_t i = 0; i < n * n; i++) {
+            s->b[i] = i % (n + 1) == 0;
         }
         tribo_energy_norm_state(&m->norm, n, s->b, states);
         tribo_multiply_transposed_add(n, 1, n, functional, states, row[k]);
@@ -145,10 +142,7 @@ static int linear_mode(struct shooting *s, int sticks, double amplitude, double 
             *delta += 0.5 * move[d] * tribo_matrix_row_dot(&sys->c, d, move);
         }
         for (size_t d = 0; d < all; d++) { /* at the largest c'y */
-            y[d] = move[d] * part * (amplitude / (seen * seen));
-        }
-        for (size_t d = 0; d < n; d++) {
-            y[n + d] = move[d] * w * swing * (amplitude / (seen * seen));
+            y[d] = (d >= n && d < 2 * n ? move[d - n] * w * swing : move[d] * part) * (amplitude / (seen * seen));
         }
         tribo_energy_norm_of(&s->map.norm, 1, y, s->here->x);
     }
@@ -157,20 +151,21 @@ static int linear_mode(struct shooting *s, int sticks, double amplitude, double 
 }
 
 /* Goes from x at s->here, about a mode of the amplitude `reached`, to the amplitude wanted, by steps as large as searches end
- * well. known: 1: x is such a mode; 0: the first search finds it. *found = 1: s->here is the mode wanted. Returns a status. */
+ * well, each along the line through the last two modes. known: 1: x is such a mode; 0: the first search finds it. *found = 1:
+ * s->here is the mode wanted. Returns a status. */
 static int follow_path(struct shooting *s, double period, double delta, double reached, int known, int *found)
 {
     const size_t n = s->map.n;
-    const double wanted = s->mode->amplitude, up = wanted >= reached;
-    double factor = STEEPEST, *x = s->mode->x;
+    const double wanted = s->mode->amplitude;
+    double factor = STEEPEST, *x = s->mode->x, *before = x + n, at = 0.0; /* before: mode of the amplitude `at`; at first 0 */
     int status = TRIBO_OK, begun = known;
     *found = 0;
     memcpy(x, s->here->x, n * sizeof *x);
     for (int shots = 0; !status && !*found && factor > FLATTEST && shots < MOST_SHOTS; shots++) {
-        const double step = up > 0.0 ? lesser(reached * factor, wanted) : greater(reached / factor, wanted);
+        const double step = wanted >= reached ? lesser(reached * factor, wanted) : greater(reached / factor, wanted);
         const double next = begun ? step : reached;
         for (size_t i = 0; i < n; i++) {
-            s->here->x[i] = x[i] * (next / reached);
+            s->here->x[i] = x[i] + (x[i] - before[i]) * ((next - reached) / (reached - at));
         }
         const double size = tribo_energy_length(s->here->x, n);
         s->mode->amplitude = next;
@@ -180,7 +175,11 @@ static int follow_path(struct shooting *s, double period, double delta, double r
         s->here->unknown[1] = delta / s->extra.unit[1];
         status = tribo_shooting_try(s, period, found);
         if (*found) { /* a mode, which need not be that wanted */
-            memcpy(x, s->here->x, n * sizeof *x);
+            for (size_t i = 0; i < n; i++) {
+                before[i] = begun ? x[i] : 0.0;
+                x[i] = s->here->x[i];
+            }
+            at = begun ? reached : 0.0;
             period = s->here->unknown[0] * s->extra.unit[0];
             delta = s->here->unknown[1] * s->extra.unit[1];
             factor = begun ? lesser(factor * factor, STEEPEST) : factor;
@@ -227,7 +226,7 @@ int tribo_shooting_find_mode(struct shooting *s, struct wanted *w)
         return status;
     }
     struct shooting *t = s->twin.drv->shooting;
-    struct mode mode = {s->map.sys, w->c, calloc(n, sizeof *mode.x), w->amplitude};
+    struct mode mode = {s->map.sys, w->c, calloc(2 * n, sizeof *mode.x), w->amplitude};
     t->mode = &mode;
     t->extra = tribo_mode_border;
     status = mode.x ? tribo_period_map_prepare(&t->map, w->t, guess > 0.0 ? guess : 1.0, w->y)

@@ -14,7 +14,7 @@ struct border {
     size_t count; /* 0: none, the other members are not read */
     /* Sets the map for p->unknown; TRIBO_ERR_NO_CONVERGENCE: beyond their range. */
     int (*apply)(struct shooting *s, const struct point *p);
-    /* Sets value and border of p, which the map followed last. */
+    /* Sets value and border of p, which the map followed last; s->step stays: shorter steps are parts of it. */
     int (*border)(struct shooting *s, struct point *p);
     double unit[TRIBO_UNKNOWNS]; /* an unknown in its own unit over p->unknown */
     double first;                /* an unknown period as the search begins */
@@ -22,7 +22,7 @@ struct border {
 
 struct track;
 
-/* A mode that is searched (mode.c). c [2 ndof]: coefficients of q and q'; x [n]: workspace. like: system of the caller. */
+/* A mode that is searched (mode.c). c [2 ndof]: coefficients of q and q'; x [2 n]: workspace. like: system of the caller. */
 struct mode {
     const tribo_system *like;
     const double *c;
