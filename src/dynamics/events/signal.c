@@ -13,14 +13,15 @@
 int tribo_signal_reserve(struct signal *s, size_t terms, size_t degree)
 {
     if (terms > s->room[0] || degree + 1 > s->room[1]) {
-        double complex *more = malloc((2 * terms + degree + 1) * sizeof *more);
+        double complex *more = malloc((3 * terms + degree + 1) * sizeof *more);
         if (!more) {
             return 0;
         }
         free(s->c);
         s->c = more;
         s->lambda = more + terms;
-        s->a = (double *)(more + 2 * terms);
+        s->grown = more + 2 * terms;
+        s->a = (double *)(more + 3 * terms);
         s->room[0] = terms;
         s->room[1] = degree + 1;
     }
@@ -159,26 +160,69 @@ static double complex moment(double complex z, double tau, size_t j)
     return sum;
 }
 
-/* The integral of the powers is found upwards in j by parts where that loses no digits, else by the series. */
-void tribo_signal_integrate(const struct signal *s, double omega, double *re, double *im)
+/* The integral of e^{z s} from 0 to tau; grown: e^{z tau}. */
+static double complex integral(double complex z, double tau, double complex grown)
 {
-    const double tau = s->tau, turn = fabs(omega) * tau;
-    const double complex turns = -omega * I, end = cexp(turns * tau);
-    double complex sum = 0.0, m = 1.0; /* M_j, the moment of turns; for j = 0 by parts: j M_{j-1}/tau = 1 */
+    return cabs(z) * tau < 1.0 ? moment(z, tau, 0) : (grown - 1.0) / z;
+}
+
+/* The integral of sum a_j s^j e^{z s} from 0 to tau; grown: e^{z tau}. It is found upwards in j by parts where that loses no
+ * digits, else by the series. */
+static double complex integrate_powers(const struct signal *s, double complex z, double tau, double complex grown)
+{
+    const double turn = cabs(z) * tau;
+    double complex sum = 0.0, m = 1.0; /* M_j, the moment of z; for j = 0 by parts: j M_{j-1}/tau = 1 */
     double power = 1.0;
     for (size_t j = 0; j <= s->degree; j++) {
-        m = turn < 4.0 + (double)j ? moment(turns, tau, j) : (end - (j ? (double)j * m / tau : 1.0)) / turns;
+        m = turn < 4.0 + (double)j ? moment(z, tau, j) : (grown - (j ? (double)j * m / tau : 1.0)) / z;
         sum += s->a[j] * power * m;
         power *= tau;
     }
+    return sum;
+}
+
+void tribo_signal_integrate(const struct signal *s, double omega, double *re, double *im)
+{
+    const double tau = s->tau;
+    const double complex turns = -omega * I;
+    double complex sum = integrate_powers(s, turns, tau, cexp(turns * tau));
     for (size_t p = 0; p < s->terms; p++) {
         /* half of c e^{lambda s} and half of its conjugate */
         for (int side = -1; side <= 1; side += 2) {
             const double complex z = (side < 0 ? conj(s->lambda[p]) : s->lambda[p]) - omega * I;
-            const double complex integral = cabs(z) * tau < 1.0 ? moment(z, tau, 0) : (cexp(z * tau) - 1.0) / z;
-            sum += 0.5 * (side < 0 ? conj(s->c[p]) : s->c[p]) * integral;
+            sum += 0.5 * (side < 0 ? conj(s->c[p]) : s->c[p]) * integral(z, tau, cexp(z * tau));
         }
     }
     *re += creal(sum);
     *im += cimag(sum);
+}
+
+double tribo_signal_product(struct signal *s)
+{
+    const double tau = s->tau;
+    double sum = 0.0, power = tau;
+    for (size_t j = 0; j <= s[0].degree; j++) {
+        double by = power;
+        for (size_t k = 0; k <= s[1].degree; k++) {
+            sum += s[0].a[j] * s[1].a[k] * by / (double)(j + k + 1);
+            by *= tau;
+        }
+        power *= tau;
+    }
+    for (size_t p = 0; p < s[0].terms; p++) {
+        const double complex lambda = s[0].lambda[p], grown = cexp(lambda * tau);
+        s[0].grown[p] = grown;
+        sum += creal(s[0].c[p] * integrate_powers(s + 1, lambda, tau, grown));
+    }
+    for (size_t q = 0; q < s[1].terms; q++) {
+        const double complex lambda = s[1].lambda[q], grown = cexp(lambda * tau);
+        double complex other = integrate_powers(s, lambda, tau, grown);
+        for (size_t p = 0; p < s[0].terms; p++) {
+            const double complex one = s[0].lambda[p], end = s[0].grown[p], c = 0.5 * s[0].c[p];
+            other += c * integral(one + lambda, tau, end * grown);
+            other += conj(c) * integral(conj(one) + lambda, tau, conj(end) * grown);
+        }
+        sum += creal(s[1].c[q] * other);
+    }
+    return sum;
 }

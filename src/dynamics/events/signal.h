@@ -11,6 +11,7 @@ struct signal {
     size_t terms, degree;
     size_t room[2];             /* for terms, and for degrees */
     double complex *c, *lambda; /* [terms] */
+    double complex *grown;      /* [terms] workspace of tribo_signal_product */
     double *a;                  /* [degree + 1] */
     double tau;
 };
@@ -34,5 +35,8 @@ int tribo_signal_extremes(const struct signal *s, double t, struct extremes *e);
 
 /* *re + i *im += integral of the signal times e^{-i omega s} over [0, tau]. */
 void tribo_signal_integrate(const struct signal *s, double omega, double *re, double *im);
+
+/* Returns the integral of s[0] s[1] over [0, tau], tau of s[0]. */
+double tribo_signal_product(struct signal *s);
 
 #endif

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The energy that friction dissipates in a phase, in closed form. A steady force dissipates |force| times the distance slid. The
- * part of a force by harmonics of the limit is integrated with the velocity, a sum of exponentials (signal.h). If a large limit
- * swings through zero, these parts cancel each other: then the power, of one sign, is integrated by samples; so it is if a load
- * resonates. */
+ * part of a force by harmonics of the limit is integrated with the velocity, a sum of exponentials (signal.h), and so is a limit
+ * that follows a normal load. If a large limit swings through zero, these parts cancel each other: then the power, of one sign, is
+ * integrated by samples; so it is if a load resonates, and in a phase so short that samples are fewer than products of terms. */
 #include "motion.h"
 #include "common/real.h"
 
@@ -11,7 +11,8 @@
 /* Smallest |sum|/(size of the parts) at which the sum keeps enough digits. */
 #define CANCELS 1e-4
 
-/* Largest number of samples in a phase without resonance. */
+/* Samples of an interval, and the largest number of samples in a phase without resonance. */
+enum { SAMPLES = 8 };
 #define MOST_SAMPLES 32768.0
 
 /* Returns the work of the contact by Gauss's rule with 8 points in each interval. The caller chooses intervals in which no term
@@ -25,15 +26,52 @@ static double sampled_work(struct exact *x, const struct course *course, double 
     const int follows = tribo_normals_follower(x->sys, i) != NULL;
     struct course c = *course;
     double work = 0.0;
-    for (size_t k = 0; k < 8 * intervals; k++) {
-        const size_t point = k % 8;
-        tribo_modal_motion_go(x, half * ((double)(2 * (k / 8) + 1) + (point % 2 ? at[point / 2] : -at[point / 2])));
+    for (size_t k = 0; k < SAMPLES * intervals; k++) {
+        const size_t point = k % SAMPLES;
+        tribo_modal_motion_go(x, half * ((double)(2 * (k / SAMPLES) + 1) + (point % 2 ? at[point / 2] : -at[point / 2])));
         tribo_course_look(x, &c);
         const double limit = (follows ? 0.0 : tribo_system_steady_limit(x->sys, i)) + tribo_modal_motion_limit(x, i).g;
         work += weight[point / 2] * greater(limit, 0.0) * greater(x->events.stick_slip.state.slip[i] * c.at.g, 0.0);
     }
     tribo_modal_motion_go(x, tau);
     return half * work;
+}
+
+/* Sets *s = the output of course c over [0, tau]. Returns a bound of its size. */
+static double set_signal(const struct exact *x, const struct course *c, double tau, struct signal *s)
+{
+    const struct forced *h = x->h;
+    const size_t terms = h->modal->exponents + h->harmonics;
+    double size = fabs(c->start) + (fabs(c->ramp) + (fabs(c->square) + fabs(c->cube) * tau) * tau) * tau;
+    tribo_signal_reserve(s, terms, 3); /* cannot fail: tribo_modal_motion_start has made room */
+    s->tau = tau;
+    s->a[0] = c->start;
+    s->a[1] = c->ramp;
+    s->a[2] = c->square;
+    s->a[3] = c->cube;
+    for (size_t p = 0; p < terms; p++) {
+        const double complex z = tribo_part(&x->z, p);
+        if (c->output->size[p] > 0.0) {
+            tribo_signal_add(s, (c->output->cr[p] + c->output->ci[p] * I) * z, h->lr[p] + h->li[p] * I);
+        }
+        size += c->output->size[p] * (fabs(creal(z)) + fabs(cimag(z)));
+    }
+    return size;
+}
+
+/* Returns the energy that the contact of course c, which slides at a limit that follows `load` or a table, dissipates until tau:
+ * the integral of mu times the output of `load` times the velocity, closed; or by samples, with load = NULL always. */
+static double following_work(struct exact *x, const struct course *c, double tau, double mu, const struct course *load)
+{
+    const double intervals = ceil(x->h->quickest * tau) + 1.0;
+    if (load && !x->h->resonant && SAMPLES * intervals > (double)x->h->terms) {
+        const double size = set_signal(x, c, tau, &x->factor[0]) * set_signal(x, load, tau, &x->factor[1]);
+        const double work = x->events.stick_slip.state.slip[c->output->contact] * tribo_signal_product(x->factor);
+        if (work >= CANCELS * tau * size) {
+            return mu * work;
+        }
+    }
+    return sampled_work(x, c, tau, (size_t)intervals);
 }
 
 /* Returns the energy that the contact of course c, which slides, dissipates until tau: steady, by its steady force, and the
@@ -43,19 +81,9 @@ static double varying_work(struct exact *x, const struct course *c, double tau, 
     const struct forced *h = x->h;
     const struct output *v = c->output;
     const size_t i = v->contact, e = h->modal->exponents;
-    double velocity = fabs(c->start) + (fabs(c->ramp) + fabs(c->square) * tau) * tau, limits = fabs(x->steady[i]), fastest = 0.0,
-           work = 0.0;
-    tribo_signal_reserve(&x->velocity, e + h->harmonics, 2); /* cannot fail: tribo_modal_motion_start has made room */
-    x->velocity.tau = tau;
-    x->velocity.a[0] = c->start;
-    x->velocity.a[1] = c->ramp;
-    x->velocity.a[2] = c->square;
+    const double velocity = set_signal(x, c, tau, &x->factor[0]);
+    double limits = fabs(x->steady[i]), fastest = 0.0, work = 0.0;
     for (size_t p = 0; p < e + h->harmonics; p++) {
-        const double complex z = tribo_part(&x->z, p);
-        if (v->size[p] > 0.0) {
-            tribo_signal_add(&x->velocity, (v->cr[p] + v->ci[p] * I) * z, h->lr[p] + h->li[p] * I);
-        }
-        velocity += v->size[p] * (fabs(creal(z)) + fabs(cimag(z)));
         fastest = greater(fastest, v->size[p] > 0.0 || p >= e ? h->size[p] : 0.0);
     }
     for (size_t s = 0; s < x->sys->loads.harmonics; s++) {
@@ -64,13 +92,13 @@ static double varying_work(struct exact *x, const struct course *c, double tau, 
         double re = 0.0, im = 0.0;
         limits += w->drives == DRIVES_LIMIT ? fabs(w->cosine[i]) + fabs(w->sine[i]) : 0.0;
         if (w->drives == DRIVES_LIMIT && w->omega != 0.0 && (w->cosine[i] != 0.0 || w->sine[i] != 0.0)) {
-            tribo_signal_integrate(&x->velocity, -w->omega, &re, &im);
+            tribo_signal_integrate(&x->factor[0], -w->omega, &re, &im);
             work += w->cosine[i] * (cosine * re - sine * im) + w->sine[i] * (sine * re + cosine * im);
         }
     }
     work = steady + x->events.stick_slip.state.slip[i] * work;
     const double intervals = ceil(fastest * tau) + 1.0;
-    const int cancels = fabs(work) < CANCELS * tau * limits * velocity && 8.0 * intervals <= MOST_SAMPLES;
+    const int cancels = fabs(work) < CANCELS * tau * limits * velocity && SAMPLES * intervals <= MOST_SAMPLES;
     return x->h->resonant || cancels ? sampled_work(x, c, tau, (size_t)intervals) : work;
 }
 
@@ -81,7 +109,9 @@ static inline double work_of(struct exact *x, const struct course *c, double tau
     const double steady = -x->steady[i] * tribo_dot(c->output->on_rate, x->place, x->h->shapes);
     const int slides = tribo_slides(x->events.stick_slip.state.slip[i]), varies = x->sys->loads.limits && slides;
     if (tribo_normals_follower(x->sys, i) || (varies && x->sys->loads.limit_tables)) {
-        return slides ? sampled_work(x, c, tau, (size_t)(ceil(x->h->quickest * tau) + 1.0)) : 0.0;
+        double mu;
+        const struct course *load = tribo_modal_limit_course(x, i, &mu);
+        return slides ? following_work(x, c, tau, mu, load) : 0.0;
     }
     return varies ? varying_work(x, c, tau, steady) : steady;
 }

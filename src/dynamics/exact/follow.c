@@ -253,12 +253,13 @@ void tribo_follow_settle(const struct modal *h, size_t columns, const double *fo
 void tribo_follow_drift(const struct modal *h, size_t columns, const double *zr, const double *zi, double *drift)
 {
     const size_t m = h->modes;
-    for (size_t at = 0; at < m * h->exponents; at++) {
-        const size_t p = at / m, k = at % m;
-        const double rr = h->rr[at], ri = h->ri[at], lr = h->lr[p], li = h->li[p];
-        const double *re = zr + p * columns, *im = zi + p * columns;
-        for (size_t j = 0; h->omega2[k] == 0.0 && j < columns; j++) {
-            drift[k * columns + j] -= rr * (lr * re[j] - li * im[j]) + ri * (lr * im[j] + li * re[j]);
+    for (size_t k = 0; k < m; k++) {
+        for (size_t p = 0; h->omega2[k] == 0.0 && p < h->exponents; p++) {
+            const double rr = h->rr[p * m + k], ri = h->ri[p * m + k], lr = h->lr[p], li = h->li[p];
+            const double *re = zr + p * columns, *im = zi + p * columns;
+            for (size_t j = 0; j < columns; j++) {
+                drift[k * columns + j] -= rr * (lr * re[j] - li * im[j]) + ri * (lr * im[j] + li * re[j]);
+            }
         }
     }
 }

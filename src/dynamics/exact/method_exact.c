@@ -247,7 +247,8 @@ static void method_exact_destroy(tribo_driver *drv)
     if (x) {
         drop_helds(x);
         tribo_events_free(&x->events);
-        tribo_signal_free(&x->velocity);
+        tribo_signal_free(&x->factor[0]);
+        tribo_signal_free(&x->factor[1]);
         free(x->held.room);
         free(x->lot);
         free(x);

@@ -240,7 +240,7 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
         const double by = h->modal->key[i] == KEY_HOLDS ? 1.0 : side;
         to[2 * n + k] += by != 0.0 ? by * tribo_dot(h->on + row * h->shapes, x->place, h->shapes) : 0.0;
     }
-    to[tribo_system_energy(sys)] += tribo_modal_motion_dissipated(x, tau);
+    to[tribo_system_energy(sys)] += x->events.sharp ? 0.0 : tribo_modal_motion_dissipated(x, tau);
 }
 
 /* ------------------------------------------------------------------------------------------------------- the start of a phase */
@@ -425,8 +425,14 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
     const struct forced *h = x->h;
     const struct modal *own = h->modal;
     const size_t n = x->sys->ndof;
-    if (!motion_reserve(x) || (x->sys->loads.limits && !tribo_signal_reserve(&x->velocity, own->exponents + h->harmonics, 2))) {
+    const int varies = tribo_system_limits_vary(x->sys);
+    if (!motion_reserve(x)) {
         return 0;
+    }
+    for (size_t k = 0; varies && k < 2; k++) {
+        if (!tribo_signal_reserve(&x->factor[k], own->exponents + h->harmonics, 3)) {
+            return 0;
+        }
     }
     x->t0 = t;
     start_harmonics(x);

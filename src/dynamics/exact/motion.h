@@ -74,14 +74,14 @@ struct exact {
                                      longest and their sixth derivatives */
     double *vel, *acc, *jerk;     /* [shapes] */
     struct slopes slopes;
-    double *drift;          /* [shapes] vel, and of modes that drift also eta' at t0 */
-    double *place, *rate;   /* [shapes] eta - eta(t0) at tau; eta' at tau, or eta' - eta'(t0) if brief */
-    double *work;           /* [room + 2 ndof] workspace */
-    double *way;            /* [ncontact] workspace */
-    double *steady;         /* [ncontact] force of a sliding contact without harmonics of the limit */
-    struct course *course;  /* [ncontact] courses of the outputs of h */
-    struct signal velocity; /* workspace */
-    double *power;          /* coefficients [TRIBO_POWERS][modes] of eta, eta'; [][TRIBO_POWERS] of outputs, eta, eta' */
+    double *drift;           /* [shapes] vel, and of modes that drift also eta' at t0 */
+    double *place, *rate;    /* [shapes] eta - eta(t0) at tau; eta' at tau, or eta' - eta'(t0) if brief */
+    double *work;            /* [room + 2 ndof] workspace */
+    double *way;             /* [ncontact] workspace */
+    double *steady;          /* [ncontact] force of a sliding contact without harmonics of the limit */
+    struct course *course;   /* [ncontact] courses of the outputs of h */
+    struct signal factor[2]; /* workspace: velocity and limit */
+    double *power;           /* coefficients [TRIBO_POWERS][modes] of eta, eta'; [][TRIBO_POWERS] of outputs, eta, eta' */
 };
 
 /* Starts a phase at (t, y) with structure x->h, for a time of at most *longest; sets *longest to the time for which the bounds
