@@ -3,6 +3,7 @@
  *
  *     Newton's method from the last solution, its steps projected to the set; a problem like the last one ends it at once
  *     without convergence: an interior-point method, and Newton's method from there
+ *     without convergence: the same with a little stiffness towards the end of the interior-point method
  *
  * Either ends only if y is, up to rounding, the point of the set nearest to y - gain gradient: the solution. */
 #include "disc_qp.h"
@@ -161,7 +162,12 @@ static int disc_settle(struct disc_qp *p, int rounds, void (*step)(struct disc_q
     return 1;
 }
 
-int tribo_disc_solve(struct disc_qp *p)
+/* Rooms times presses at which interior-point methods end, in parts of the largest stiffness: NEXT_TO_NOTHING shows the places
+ * unless S is nearly singular. */
+#define NEXT_TO_NOTHING 1e-13
+#define NOTHING 1e-20
+
+static int solve_once(struct disc_qp *p)
 {
     /* Of contacts that do not couple this is the solution. */
     p->factor.sets = (struct sets){0};
@@ -170,21 +176,24 @@ int tribo_disc_solve(struct disc_qp *p)
     disc_project(p, p->y, p->y, 1.0);
     disc_look(p);
     disc_project(p, p->to, p->to, 1.0);
-    if (disc_settle(p, FROM_BEFORE, step_newton)) {
-        return 1;
+    int done = disc_settle(p, FROM_BEFORE, step_newton);
+    for (int deep = 0; !done && deep < 2; deep++) {
+        tribo_disc_interior(p, deep ? NOTHING : NEXT_TO_NOTHING);
+        p->factor.serves = 0.0;
+        done = disc_settle(p, FROM_INTERIOR, step_down);
     }
-    tribo_disc_interior(p);
-    p->factor.serves = 0.0;
-    return disc_settle(p, FROM_INTERIOR, step_down);
+    return done;
 }
 
-/* ------------------------------------------------------------------------------------------------ redundant contacts */
-
-/* Stiffness that takes y to the least norm, in parts of the largest s_kk. */
-#define SOFT 1e-6
-
-/* A share within this part of limits of a solution is one: a further solution would leave the share. */
-#define SHARED 1e-12
+/* Returns the largest s_kk. */
+static double stiffest_of(const struct disc_qp *p)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < p->size; i++) {
+        most = greater(most, p->s.val[tribo_disc_own(p, i)]);
+    }
+    return most;
+}
 
 /* y = the solution with stiffness more weight^2 towards centre [size]; NULL: towards 0, which is far, until y moves by rounding
  * only, since in soft directions distances settle before y does. Returns 0 without convergence. */
@@ -198,7 +207,7 @@ static int solve_towards(struct disc_qp *p, double more, const double *centre)
         p->s.val[tribo_disc_own(p, i)] += soft;
         p->pull[i] -= centre ? soft * centre[i] : 0.0;
     }
-    const int done = tribo_disc_solve(p);
+    const int done = solve_once(p);
     for (int round = 0; !centre && round < FROM_INTERIOR && moved > 1e-8; round++) {
         step_newton(p);
         disc_look(p);
@@ -215,6 +224,45 @@ static int solve_towards(struct disc_qp *p, double more, const double *centre)
     return done;
 }
 
+/* Stiffness that keeps y near a point, in parts of the largest s_kk: the least, the largest, and their ratio. */
+#define KEEPS 1e-8
+#define KEEPS_MOST 1e-4
+#define FIRMER 10.0
+
+/* Where S is nearly singular, Newton's steps along its soft directions are rounding, and projection to the rims adds their
+ * squares, which the other directions feel. Stiffness towards the end of the interior-point method leaves short steps, and moves y
+ * by so little that y is the solution without stiffness, too (proximal point algorithm, Rockafellar 1976, SIAM J. Control Optim.
+ * 14, 877, doi:10.1137/0314056). */
+int tribo_disc_solve(struct disc_qp *p)
+{
+    if (solve_once(p)) {
+        return 1;
+    }
+    double *centre = p->kept + 2 * p->size;
+    const double most = stiffest_of(p);
+    int done = 0;
+    tribo_disc_interior(p, NOTHING);
+    memcpy(centre, p->y, p->size * sizeof *centre);
+    for (double keeps = KEEPS; !done && keeps <= KEEPS_MOST; keeps *= FIRMER) {
+        if (solve_towards(p, keeps * most, centre)) {
+            memcpy(centre, p->y, p->size * sizeof *centre);
+        }
+        done = disc_look(p) <= SETTLED;
+        if (!done) {
+            memcpy(p->y, centre, p->size * sizeof *centre);
+        }
+    }
+    return done;
+}
+
+/* ------------------------------------------------------------------------------------------------ redundant contacts */
+
+/* Stiffness that takes y to the least norm, in parts of the largest s_kk. */
+#define SOFT 1e-6
+
+/* A share within this part of limits of a solution is one: a further solution would leave the share. */
+#define SHARED 1e-12
+
 /* Returns 1 if y is a solution, for a further solution would leave the share. nearest: y is the solution nearest to a share, up
  * to rounding, which exceeds SHARED where limits are small beside others. */
 static int is_shared(struct disc_qp *p, int nearest)
@@ -229,12 +277,10 @@ static int is_shared(struct disc_qp *p, int nearest)
 int tribo_disc_share(struct disc_qp *p)
 {
     const double part[] = {1.0, 0.5, 0.25}, weight[] = {1.0 / 3.0, -2.0, 8.0 / 3.0};
-    double *share = p->kept + 2 * p->size, most = 0.0;
+    const double most = stiffest_of(p);
+    double *share = p->kept + 2 * p->size;
     int done = 1, shared;
-    for (size_t i = 0; i < p->size; i++) {
-        most = greater(most, p->s.val[tribo_disc_own(p, i)]);
-        share[i] = 0.0;
-    }
+    memset(share, 0, p->size * sizeof *share);
     for (int k = 0; k < 3; k++) {
         done = solve_towards(p, part[k] * SOFT * most, NULL) && done;
         for (size_t i = 0; i < p->size; i++) {

@@ -212,7 +212,8 @@ void tribo_disc_drag(const struct disc_qp *p, size_t i, const double *dshift, do
 
 /* ---- interior.c */
 
-/* y = the solution, nearly enough to show the places. */
-void tribo_disc_interior(struct disc_qp *p);
+/* y = the solution, nearly enough to show the places: the average of room times press is at most the part least of the largest
+ * stiffness, or as small as rounding lets it be. */
+void tribo_disc_interior(struct disc_qp *p, double least);
 
 #endif

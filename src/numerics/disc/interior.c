@@ -10,11 +10,10 @@
 
 enum { ROUNDS = 100 };
 
-/* press and aim/room differ by this factor at most. */
+/* press exceeds aim/room by this factor at most. Where a step along a rim leaves little room, aim/room is far beyond the pressure:
+ * press falls below it to the part TOO_LITTLE. */
 #define FAR_OFF 100.0
-
-/* The method ends when the average of room times press falls below this part of the largest stiffness. */
-#define NEXT_TO_NOTHING 1e-13
+#define TOO_LITTLE 1e-6
 
 /* Part of the way to the first rim that a step takes. */
 #define NEARLY 0.99
@@ -59,7 +58,7 @@ static void find_step(struct disc_qp *p, double aim)
     tribo_disc_follow(p, p->gradient, p->aim);
 }
 
-void tribo_disc_interior(struct disc_qp *p)
+void tribo_disc_interior(struct disc_qp *p, double least)
 {
     double most = 0.0, stiffest = 0.0, length = 1.0;
     p->discs = 0;
@@ -79,7 +78,7 @@ void tribo_disc_interior(struct disc_qp *p)
     }
     for (int round = 0; round < ROUNDS; round++) {
         const double average = find_rooms(p), aim = (length > 0.9 ? 0.1 : length > 0.2 ? 0.5 : 1.0) * average;
-        if (!(average > NEXT_TO_NOTHING * stiffest)) {
+        if (!(average > least * stiffest)) {
             break;
         }
         find_step(p, aim);
@@ -104,7 +103,7 @@ void tribo_disc_interior(struct disc_qp *p)
         }
         find_rooms(p);
         for (struct disc *d = p->disc; d < p->disc + p->discs; d++) {
-            d->press = clamp(d->press + length * d->change, aim / d->room / FAR_OFF, FAR_OFF * (aim / d->room));
+            d->press = clamp(d->press + length * d->change, TOO_LITTLE * (aim / d->room), FAR_OFF * (aim / d->room));
         }
     }
 }
