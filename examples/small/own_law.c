@@ -6,20 +6,24 @@
 
 #include "tribo/tribo_dynamics.h"
 
+static double larger(double x, double y)
+{
+    return x > y ? x : y;
+}
+
 /* box [3][n] = lower, upper and shift of each contact: f = clamp(f_eq - shift, lower, upper), see "A law of your own" in the
  * manual. Sets no derivatives: the method "rk4/fixed" calls a law with derivatives = 0. */
 static int falling(size_t first, size_t n, int derivatives, const double *v, const double *limit, const double *epsilon,
-                   double *box, void *data)
+                   double *restrict box, void *data)
 {
     const double part = *(const double *)data, speed = 1.0; /* the fall is by 1 - 1/e at this speed beyond epsilon */
     (void)first;
     for (size_t i = 0; i < n; i++) {
-        const double L = limit[i], k = 2.0 * L * v[i] / epsilon[i], over = (fabs(v[i]) - epsilon[i]) / speed;
-        const int slides = over > 0.0;
-        const double slide = copysign(L * (part + (1.0 - part) * exp(-fabs(over))), -v[i]);
-        box[i] = slides ? slide : k < 0.0 ? fmin(L, -L - k) : -L;
-        box[n + i] = slides ? slide : k > 0.0 ? fmax(-L, L - k) : L;
-        box[2 * n + i] = slides ? 0.0 : k;
+        const double most = larger(fabs(v[i]), epsilon[i]), fall = exp((epsilon[i] - most) / speed);
+        const double L = limit[i] * (part + (1.0 - part) * fall), k = 2.0 * L * (v[i] / most);
+        box[i] = larger(-L, -L - k);
+        box[n + i] = -larger(-L, k - L);
+        box[2 * n + i] = k;
     }
     return derivatives; /* not 0: fails where derivatives are asked for */
 }

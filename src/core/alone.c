@@ -110,7 +110,7 @@ static void find_each(tribo_context *ctx, const struct call *call, double *f)
 static void find_feq(const tribo_context *ctx, const struct call *call, size_t k, double *feq)
 {
     const size_t i = k * TRIBO_CHUNK, n = tribo_chunk_size(ctx, i);
-    if (ctx->follow.chunk[k].plain && tribo_is_within(call->a + i, n, TRIBO_PLAIN)) {
+    if (ctx->follow.chunk[k].plain && (call->plain || tribo_is_within(call->a + i, n, TRIBO_PLAIN))) {
         feq_alone(n, tribo_inverses(ctx, k), call->a + i, feq);
     } else {
         for (size_t j = 0; j < n; j++) {
@@ -203,6 +203,25 @@ void tribo_balance_one(tribo_context *ctx, int plain, const double *v, const dou
     }
     put_one(ctx, force, ctx->set.law->holds, f);
     ctx->last.residual = 0.0;
+}
+
+int tribo_balance_own_one(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
+{
+    const struct contacts *c = &ctx->follow.contacts;
+    const double balance = *c->limit > 0.0 ? tribo_alone_far(*a, *ctx->op->inverse) : 0.0;
+    double force, box[BOX_ROWS];
+    if (!tribo_own_boxes(c, 1, 0, v, &balance, box, &force)) {
+        tribo_begin_call(ctx);
+        return tribo_own_fail(ctx, 0, v);
+    }
+    if (feq) {
+        *feq = balance;
+    }
+    put_one(ctx, force, ctx->set.law->holds, f);
+    *ctx->last.slip = tribo_own_slip(*v, force, *c->limit, box[LOWER], box[UPPER]);
+    ctx->last.slips = SLIPS_WRITTEN;
+    ctx->last.residual = 0.0;
+    return TRIBO_OK;
 }
 
 /* ----------------------------------------------------------------------------------------------------------------- step */

@@ -214,6 +214,9 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
         tribo_balance_one(ctx, plain, v, a, feq, f);
         return TRIBO_OK;
     }
+    if (ctx->n == 1 && tribo_all_alone(ctx)) {
+        return tribo_balance_own_one(ctx, v, a, feq, f);
+    }
     status = balance_all(ctx, plain, v, a, feq, f);
     if (status && status != TRIBO_ERR_INCONSISTENT) {
         return status;

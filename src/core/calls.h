@@ -31,9 +31,10 @@ static inline double tribo_carried(const tribo_context *ctx, const struct box_qp
 
 /* ---- alone.c: contacts as if no two shared a body */
 
-/* tribo_balance of one contact, and tribo_step_force, where tribo_all_alone. feq and f of the balance may be NULL. plain: |a_i|
- * <= TRIBO_PLAIN. */
+/* tribo_balance of one contact, by a law of the registry or of the caller, and tribo_step_force, where tribo_all_alone. feq and f
+ * of the balance may be NULL. plain: |a_i| <= TRIBO_PLAIN. */
 void tribo_balance_one(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f);
+int tribo_balance_own_one(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
 int tribo_step_alone(tribo_context *ctx, double dt, const double *v, double *f);
 
 /* Returns 1 if the law reads f_eq of a contact of chunk k at v [its size]; 0 for a law with f_eq: all slide with their limits. */

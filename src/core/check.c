@@ -2,21 +2,13 @@
 /* Checks of arguments: loops over arrays, and messages. */
 #include "check.h"
 
-/* |x| as an integer: larger for larger |x|; infinity and NaN are above all numbers. */
-static inline int64_t check_size_of(const double *x)
-{
-    int64_t bits;
-    memcpy(&bits, x, sizeof bits);
-    return bits & INT64_MAX;
-}
-
 TRIBO_SIMD int tribo_all_within(const double *x, size_t n, double most)
 {
-    const int64_t limit = check_size_of(&most);
+    const int64_t limit = tribo_size_of(&most);
     int64_t room = 0; /* negative if a difference is */
     TRIBO_UNROLLED
     for (size_t i = 0; i < n; i++) {
-        room |= limit - check_size_of(x + i);
+        room |= limit - tribo_size_of(x + i);
     }
     return room >= 0;
 }
@@ -24,7 +16,7 @@ TRIBO_SIMD int tribo_all_within(const double *x, size_t n, double most)
 TRIBO_SIMD int tribo_all_unsigned(const double *x, size_t n)
 {
     const double most = DBL_MAX;
-    const uint64_t limit = (uint64_t)check_size_of(&most), sign = (uint64_t)1 << 63;
+    const uint64_t limit = (uint64_t)tribo_size_of(&most), sign = (uint64_t)1 << 63;
     uint64_t beyond = 0; /* has the sign bit if an entry has, or its difference */
     TRIBO_UNROLLED
     for (size_t i = 0; i < n; i++) {

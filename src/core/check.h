@@ -10,6 +10,14 @@
 
 #include "context.h"
 
+/* |x| as an integer: larger for larger |x|; infinity and NaN are above all numbers. */
+static inline int64_t tribo_size_of(const double *x)
+{
+    int64_t bits;
+    memcpy(&bits, x, sizeof bits);
+    return bits & INT64_MAX;
+}
+
 /* 1 if all |x_i| <= most, which is finite. Raises no floating-point exception, whatever x is. */
 int tribo_all_within(const double *x, size_t n, double most);
 

@@ -79,12 +79,11 @@ static void find_outputs(const tribo_context *ctx, int plain, const double *v, c
 /* 1 if a law of the caller failed, or gave no number for one of the outputs. */
 static int own_failed(const tribo_context *ctx, double *const *out)
 {
-    const int own = tribo_is_own(ctx);
-    int failed = own && out[FORCES] && tribo_own_failed(ctx, out[FORCES]);
-    for (int k = BY_V; own && k < OUTPUTS; k++) {
-        failed |= out[k] && !tribo_all_within(out[k], ctx->n, DBL_MAX);
+    int failed = 0;
+    for (int k = FORCES; tribo_is_own(ctx) && k < BY_LIMIT; k++) {
+        failed |= out[k] && tribo_own_failed(ctx, out[k]);
     }
-    return failed;
+    return failed || (tribo_is_own(ctx) && out[BY_LIMIT] && !tribo_all_within(out[BY_LIMIT], ctx->n, DBL_MAX));
 }
 
 int tribo_force(const tribo_context *ctx, const double *v, const double *feq, double *f)
@@ -94,9 +93,9 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
     if (status || (!f && ctx->n)) {
         return status ? status : TRIBO_ERR_NULL;
     }
-    if (ctx->n == 1 && plain && !ctx->set.breaking && !tribo_is_own(ctx)) {
+    if (ctx->n == 1 && plain && !ctx->set.breaking) {
         ctx->set.law->force(&ctx->follow.contacts, 1, v, ctx->set.law->uses_feq ? feq : v, f);
-        return TRIBO_OK;
+        return tribo_is_own(ctx) && !isfinite(*f) ? TRIBO_ERR_CALLBACK : TRIBO_OK;
     }
     double *const out[OUTPUTS] = {f, NULL, NULL, NULL};
     find_outputs(ctx, plain, v, feq, out);

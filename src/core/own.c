@@ -9,13 +9,13 @@
 /* Contacts as the function of the caller gets them. */
 struct asked {
     const double *v, *limit, *epsilon;
-    double room[2][TRIBO_CHUNK];
+    double room[TRIBO_CHUNK];
 };
 
-TRIBO_SIMD static void fill_with(size_t n, double x, double *restrict to)
+TRIBO_SIMD static void fill_box(size_t n, double *restrict box)
 {
     for (size_t i = 0; i < n; i++) {
-        to[i] = x;
+        box[i] = HUGE_VAL;
     }
 }
 
@@ -23,49 +23,17 @@ TRIBO_SIMD static void fill_with(size_t n, double x, double *restrict to)
 static int ask(const struct contacts *c, size_t n, int derivatives, const double *v, struct asked *to, double *box)
 {
     to->v = v;
-    to->limit = c->alike ? to->room[0] : c->limit;
-    to->epsilon = c->alike || c->follows ? to->room[1] : c->width;
-    if (c->alike) {
-        fill_with(n, *c->limit, to->room[0]);
-        fill_with(n, tribo_epsilon_of(c, 0), to->room[1]);
+    to->limit = c->limit;
+    to->epsilon = c->follows ? to->room : c->width;
+    for (size_t i = 0; c->follows && i < n; i++) {
+        to->room[i] = tribo_epsilon_of(c, i);
     }
-    for (size_t i = 0; !c->alike && c->follows && i < n; i++) {
-        to->room[1][i] = tribo_epsilon_of(c, i);
+    if (n == 1 && !derivatives) {
+        box[LOWER] = box[UPPER] = box[SHIFT] = HUGE_VAL;
+    } else {
+        fill_box(n * (derivatives ? ALL_ROWS : BOX_ROWS), box);
     }
-    fill_with(n * (derivatives ? ALL_ROWS : BOX_ROWS), HUGE_VAL, box);
     return c->user->law(c->first, n, derivatives, v, to->limit, to->epsilon, box, c->user->data);
-}
-
-TRIBO_SIMD static int are_boxes(size_t n, const double *restrict v, const double *restrict limit, const double *restrict epsilon,
-                                const double *restrict box)
-{
-    const double *lower = box, *upper = box + n, *shift = box + SHIFT * n;
-    int64_t bad = 0; /* as wide as a double, for vectors */
-    TRIBO_UNROLLED
-    for (size_t i = 0; i < n; i++) {
-        const double wide = (fabs(v[i]) > epsilon[i] ? upper[i] : lower[i]) - lower[i];
-        const double out = greater(-limit[i] - lower[i], upper[i] - limit[i]);
-        bad |= greater(greater(out, lower[i] - upper[i]), greater(wide, fabs(shift[i]) - SHIFT_MOST)) > 0.0 ? -1 : 0;
-    }
-    return bad == 0;
-}
-
-/* tribo_own_boxes; *s = the arguments of the caller's function. */
-static int boxes_of(const struct contacts *c, size_t n, int derivatives, const double *v, struct asked *s, double *box)
-{
-    const size_t all = n * (derivatives ? ALL_ROWS : BOX_ROWS), needed = n * (derivatives ? BY_LIMIT_ROWS : BOX_ROWS);
-    const int good = !ask(c, n, derivatives, v, s, box) && tribo_all_within(box, needed, DBL_MAX) &&
-                     are_boxes(n, v, s->limit, s->epsilon, box);
-    for (size_t k = good ? needed : 0; k < all; k++) {
-        box[k] = good && isfinite(box[k]) ? box[k] : HUGE_VAL;
-    }
-    return good;
-}
-
-int tribo_own_boxes(const struct contacts *c, size_t n, int derivatives, const double *v, double *box)
-{
-    struct asked s;
-    return boxes_of(c, n, derivatives, v, &s, box);
 }
 
 /* What is wrong with the box of contact i of asked, and in which row; NULL: nothing. */
@@ -84,6 +52,61 @@ static const char *flaw(const struct asked *s, size_t n, size_t i, int rows, con
            : *row == SHIFT ? "too large"
            : wide          ? "above lower, outside epsilon"
                            : NULL;
+}
+
+/* Negative if |lower| or |upper| > limit, or |shift| > SHIFT_MOST, or one is NaN. Raises no floating-point exception. */
+static inline int64_t bounds_room(const double *limit, const double *lower, const double *upper, const double *shift)
+{
+    const double most = SHIFT_MOST;
+    const int64_t bound = tribo_size_of(limit), far = tribo_size_of(&most);
+    return (bound - tribo_size_of(lower)) | (bound - tribo_size_of(upper)) | (far - tribo_size_of(shift));
+}
+
+/* Positive if lower > upper, or lower < upper where |v| > epsilon. */
+static inline double order_excess(double v, double epsilon, double lower, double upper)
+{
+    const double wide = (fabs(v) > epsilon ? upper : lower) - lower;
+    return greater(lower - upper, wide);
+}
+
+/* f = clamp(feq - shift, lower, upper). Returns 1, or 0 if one of the boxes is none: before a comparison with NaN. */
+TRIBO_SIMD static int take_forces(size_t n, const double *restrict v, const double *restrict limit,
+                                  const double *restrict epsilon, const double *restrict feq, const double *restrict box,
+                                  double *restrict f)
+{
+    int64_t room = 0, bad = 0; /* as wide as a double, for vectors */
+    TRIBO_UNROLLED
+    for (size_t i = 0; i < n; i++) {
+        room |= bounds_room(limit + i, box + i, box + n + i, box + SHIFT * n + i);
+    }
+    if (room < 0) {
+        return 0;
+    }
+    for (size_t i = 0; i < n; i++) {
+        bad |= order_excess(v[i], epsilon[i], box[i], box[n + i]) > 0.0 ? -1 : 0;
+        f[i] = clamp(feq[i] - box[SHIFT * n + i], box[i], box[n + i]);
+    }
+    return bad == 0;
+}
+
+int tribo_own_boxes(const struct contacts *c, size_t n, int derivatives, const double *v, const double *feq, double *box,
+                    double *f)
+{
+    struct asked s;
+    int good = !ask(c, n, derivatives, v, &s, box);
+    if (good && n == 1) {
+        good = bounds_room(s.limit, box + LOWER, box + UPPER, box + SHIFT) >= 0 &&
+               !(order_excess(*v, *s.epsilon, box[LOWER], box[UPPER]) > 0.0);
+        *f = good ? clamp(*feq - box[SHIFT], box[LOWER], box[UPPER]) : HUGE_VAL;
+    } else if (good) {
+        good = take_forces(n, v, s.limit, s.epsilon, feq, box, f);
+    }
+    good = good && (!derivatives || tribo_all_within(box + BY_V_ROWS * n, BOX_ROWS * n, DBL_MAX));
+    if (!good) {
+        fill_box(n, f);
+        fill_box(n * (derivatives ? ALL_ROWS : BOX_ROWS), box);
+    }
+    return good;
 }
 
 int tribo_own_fail(tribo_context *ctx, int derivatives, const double *v)
@@ -113,38 +136,53 @@ int tribo_own_fail(tribo_context *ctx, int derivatives, const double *v)
 
 /* ------------------------------------------------------------------------------------------------------- forces of boxes */
 
-TRIBO_SIMD static void clamp_all(size_t n, const double *restrict feq, const double *restrict lower, const double *restrict upper,
-                                 const double *restrict shift, double *restrict f)
+static void own_force_all(const struct contacts *c, size_t n, const double *v, const double *feq, double *f)
 {
-    for (size_t i = 0; i < n; i++) {
-        f[i] = clamp(feq[i] - shift[i], lower[i], upper[i]);
+    double one[BOX_ROWS];
+    if (n == 1) {
+        tribo_own_boxes(c, 1, 0, v, feq, one, f);
+        return;
+    }
+    for (size_t i = 0, m; i < n; i += m) {
+        const struct contacts part = tribo_contacts_from(c, i);
+        double space[BOX_ROWS * TRIBO_CHUNK + TRIBO_LINE], *box = tribo_aligned(space);
+        m = tribo_chunk_from(n, i);
+        tribo_own_boxes(&part, m, 0, v + i, feq + i, box, f + i);
     }
 }
 
-static void own_force_all(const struct contacts *c, size_t n, const double *v, const double *feq, double *f)
+/* Of the sides of a box, that which carries the force x at f_eq - shift = x; inside of it the shift, whose sign turns. */
+static inline double by_side(double x, const double *restrict box, const double *restrict rows, size_t n, size_t i)
 {
-    for (size_t i = 0, m; i < n; i += m) {
-        const struct contacts part = tribo_contacts_from(c, i);
-        double box[BOX_ROWS * TRIBO_CHUNK];
-        m = tribo_chunk_from(n, i);
-        tribo_own_boxes(&part, m, 0, v + i, box);
-        clamp_all(m, feq + i, box, box + m, box + SHIFT * m, f + i);
+    const double lower = rows[i], upper = rows[n + i], inside = -rows[SHIFT * n + i], above = x >= box[n + i] ? upper : inside;
+    return x <= box[i] ? lower : above;
+}
+
+/* Derivatives of f = clamp(feq - shift, lower, upper). dlimit = HUGE_VAL of contacts without derivatives by the limit. */
+TRIBO_SIMD static void take_tangents(size_t n, const double *restrict feq, const double *restrict box, double *restrict dv,
+                                     double *restrict dfeq, double *restrict dlimit)
+{
+    const double most = DBL_MAX;
+    const int64_t finite = tribo_size_of(&most);
+    for (size_t i = 0; i < n; i++) {
+        const double x = feq[i] - box[SHIFT * n + i], below = x < box[n + i] ? 1.0 : 0.0;
+        const double by_limit = by_side(x, box, box + BY_LIMIT_ROWS * n, n, i);
+        dv[i] = by_side(x, box, box + BY_V_ROWS * n, n, i);
+        dfeq[i] = x > box[i] ? below : 0.0;
+        dlimit[i] = tribo_size_of(&by_limit) <= finite ? by_limit : HUGE_VAL;
     }
 }
 
 static void own_tangent_all(const struct contacts *c, size_t n, const double *v, const double *feq, const struct tangents *d)
 {
-    double box[ALL_ROWS * TRIBO_CHUNK];
-    const int good = tribo_own_boxes(c, n, 1, v, box);
-    for (size_t i = 0; i < n; i++) {
-        const double x = feq[i] - box[SHIFT * n + i];
-        const int row = x <= box[i] ? LOWER : x >= box[n + i] ? UPPER : SHIFT;
-        const double *by_v = box + (BY_V_ROWS + (size_t)row) * n, *by_limit = box + (BY_LIMIT_ROWS + (size_t)row) * n;
-        d->f[i] = clamp(x, box[i], box[n + i]);
-        d->dv[i] = row == SHIFT ? -by_v[i] : by_v[i];
-        d->dfeq[i] = row == SHIFT ? 1.0 : good ? 0.0 : HUGE_VAL;
-        d->dlimit[i] = row == SHIFT ? -by_limit[i] : by_limit[i];
+    double space[ALL_ROWS * TRIBO_CHUNK + TRIBO_LINE], *box = tribo_aligned(space);
+    if (tribo_own_boxes(c, n, 1, v, feq, box, d->f)) {
+        take_tangents(n, feq, box, d->dv, d->dfeq, d->dlimit);
+        return;
     }
+    fill_box(n, d->dv);
+    fill_box(n, d->dfeq);
+    fill_box(n, d->dlimit);
 }
 
 const struct law tribo_law_own = {
@@ -163,9 +201,7 @@ TRIBO_SIMD static void slips_of_boxes(size_t n, const double *restrict v, const 
                                       const double *restrict lower, const double *restrict upper, signed char *restrict slip)
 {
     for (size_t i = 0; i < n; i++) {
-        const double to = v[i] != 0.0 ? v[i] : -f[i], forth = to > 0.0 ? TRIBO_SLIP_FORTH : 0.0, back = to < 0.0 ? 1.0 : 0.0;
-        const double under = f[i] < upper[i] ? 0.0 : forth - back, slides = f[i] > lower[i] ? under : forth - back;
-        slip[i] = (signed char)(int)(limit[i] > 0.0 ? slides : TRIBO_SLIP_OPEN); /* as in slip_by_force */
+        slip[i] = tribo_own_slip(v[i], f[i], limit[i], lower[i], upper[i]);
     }
 }
 
@@ -173,12 +209,10 @@ void tribo_own_forces(tribo_context *ctx, size_t i, const double *v, const doubl
 {
     const size_t n = tribo_chunk_size(ctx, i);
     const struct contacts c = tribo_chunk_contacts(ctx, i);
-    double box[BOX_ROWS * TRIBO_CHUNK];
-    struct asked s;
-    boxes_of(&c, n, 0, v, &s, box);
-    clamp_all(n, feq, box, box + n, box + SHIFT * n, f);
+    double space[BOX_ROWS * TRIBO_CHUNK + TRIBO_LINE], *box = tribo_aligned(space);
+    tribo_own_boxes(&c, n, 0, v, feq, box, f);
     if (tribo_all_alone(ctx)) {
-        slips_of_boxes(n, v, f, s.limit, box, box + n, ctx->last.slip + i);
+        slips_of_boxes(n, v, f, c.limit, box, box + n, ctx->last.slip + i);
     }
     for (int row = 0; !tribo_all_alone(ctx) && row < BOX_ROWS; row++) {
         memcpy(tribo_own_row(ctx, row) + i, box + (size_t)row * n, n * sizeof *box);
@@ -223,9 +257,9 @@ int tribo_own_rate(const tribo_context *ctx, double *rate)
     for (size_t i = 0, n; i < ctx->n; i += n) {
         const double rest[TRIBO_CHUNK] = {0.0};
         const struct contacts c = tribo_chunk_contacts(ctx, i);
-        double box[ALL_ROWS * TRIBO_CHUNK];
+        double box[ALL_ROWS * TRIBO_CHUNK], ignored[TRIBO_CHUNK];
         n = tribo_chunk_size(ctx, i);
-        if (!tribo_own_boxes(&c, n, 1, rest, box)) {
+        if (!tribo_own_boxes(&c, n, 1, rest, rest, box, ignored)) {
             return TRIBO_ERR_CALLBACK;
         }
         for (size_t k = 0; k < n; k++) {

@@ -19,9 +19,10 @@ static inline int tribo_balance_alone(const tribo_context *ctx)
 /* Rows of what the law gives: a box, its derivatives by v, by the limit. */
 enum { LOWER, UPPER, SHIFT, BOX_ROWS, BY_V_ROWS = BOX_ROWS, BY_LIMIT_ROWS = 2 * BOX_ROWS, ALL_ROWS = 3 * BOX_ROWS };
 
-/* box [BOX_ROWS][n], or if derivatives = 1 [ALL_ROWS][n], of n <= TRIBO_CHUNK contacts at v [n]. Returns 1, or 0 where the law
- * fails or its boxes are none: all rows are HUGE_VAL then. */
-int tribo_own_boxes(const struct contacts *c, size_t n, int derivatives, const double *v, double *box);
+/* box [BOX_ROWS][n], or if derivatives = 1 [ALL_ROWS][n], and f [n] of n <= TRIBO_CHUNK contacts at v and feq [n]. Returns 1, or
+ * 0 where the law fails or its boxes are none: box and f are HUGE_VAL then. */
+int tribo_own_boxes(const struct contacts *c, size_t n, int derivatives, const double *v, const double *feq, double *box,
+                    double *f);
 
 /* Where balances keep boxes [n] between their parts: in the place of the derivatives, which are found after them. */
 static inline double *tribo_own_row(const tribo_context *ctx, int row)
@@ -30,11 +31,19 @@ static inline double *tribo_own_row(const tribo_context *ctx, int row)
     return rows[row];
 }
 
+/* The slip of a contact by its force f, within [lower, upper]. */
+static inline signed char tribo_own_slip(double v, double f, double limit, double lower, double upper)
+{
+    const double to = v != 0.0 ? v : -f, forth = to > 0.0 ? TRIBO_SLIP_FORTH : 0.0, back = to < 0.0 ? 1.0 : 0.0;
+    const double under = f < upper ? 0.0 : forth - back, slides = f > lower ? under : forth - back;
+    return (signed char)(int)(limit > 0.0 ? slides : TRIBO_SLIP_OPEN); /* as in slip_by_force */
+}
+
 /* f [n] of the chunk of contact i from v and feq [n]; all HUGE_VAL where tribo_own_boxes returns 0. Keeps its boxes unless
  * tribo_all_alone: then sets last.slip. */
 void tribo_own_forces(tribo_context *ctx, size_t i, const double *v, const double *feq, double *f);
 
-/* 1 if tribo_own_boxes returned 0 for a chunk of f [ctx->n]. */
+/* 1 if tribo_own_boxes returned 0 for a chunk of f [ctx->n], or of derivatives by v or f_eq. */
 int tribo_own_failed(const tribo_context *ctx, const double *f);
 
 /* The failure of the law at v [ctx->n], derivatives as in tribo_own_boxes; TRIBO_ERR_CALLBACK. */

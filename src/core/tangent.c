@@ -172,7 +172,7 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
         tribo_law_tangents(ctx, &c, i, count, v + i, ctx->last.feq + i,
                            &(struct tangents){ignored, t->dv + i, t->dfeq + i, t->dlimit + i});
     }
-    if (own && !(tribo_all_within(t->dv, n, DBL_MAX) && tribo_all_within(t->dfeq, n, DBL_MAX))) {
+    if (own && tribo_own_failed(ctx, t->dv)) {
         return tribo_own_fail(ctx, 1, v);
     }
     tribo_copy(ctx->last.v, v, n);

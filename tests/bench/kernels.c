@@ -130,14 +130,16 @@ static double lesser_of(double x, double y)
     return x < y ? x : y;
 }
 
+static const char *const likeness_name[LIKENESSES] = {"limits and epsilons that differ", "limits that differ, one epsilon",
+                                                      "one limit, one epsilon"};
+
 static void measure(size_t n, enum likeness like, size_t contacts, int repeats)
 {
     enum { MOST_KNOWN = 4 };
     double *known = need_memory(MOST_KNOWN * n, sizeof *known);
     memset(known, 0, MOST_KNOWN * n * sizeof *known);
     printf("\n| n = %zu, %s | ns a contact | times the array loop | times its own traffic |\n|---|---|---|---|\n", n,
-           (const char *[LIKENESSES]){"limits and epsilons that differ", "limits that differ, one epsilon",
-                                      "one limit, one epsilon"}[like]);
+           likeness_name[like]);
     for (int k = 0; k < KERNELS; k++) {
         struct kernel_scene s;
         kernel_scene_create(&s, (enum kernel)k, n, like);
@@ -178,36 +180,65 @@ static void couple(tribo_context *ctx, size_t n)
     free(val);
 }
 
-/* Quinn's law as a function of the caller beside the built-in one. */
-static void measure_own(size_t n, size_t contacts, int repeats)
+/* Calls with Quinn's law as a function of the caller. */
+struct own {
+    struct kernel_scene s;
+    struct quinn quinn;
+    double *epsilon;
+};
+
+/* The function of the caller alone, on pieces as calls give to it. */
+static void run_law(void *data)
 {
-    static const char *const name[] = {"tribo_force", "tribo_balance, diagonal R", "tribo_balance, islands of 4 contacts"};
-    struct kernel_scene s[2];
-    struct quinn q = {0};
-    for (int k = 0; k < 2; k++) {
-        kernel_scene_create(s + k, FORCE, n, NOTHING);
+    struct own *o = data;
+    double box[9 * TRIBO_CHUNK];
+    for (size_t i = 0; i < o->s.n; i += TRIBO_CHUNK) {
+        const size_t n = tribo_chunk_from(o->s.n, i);
+        quinn_box(i, n, o->s.kernel == FORCE_TANGENT, o->s.v + i, o->s.limit + i, o->epsilon + i, box, &o->quinn);
     }
-    need(tribo_set_user_law(s[1].ctx, quinn_box, &q), tribo_message(s[1].ctx));
-    printf("\n| n = %zu, limits and epsilons that differ | built-in law, ns a contact | law of the caller | ratio "
-           "|\n|---|---|---|---|\n",
-           n);
-    for (int row = 0; row < 3; row++) {
-        double least[2] = {1.0, 1.0};
+}
+
+/* Quinn's law as a function of the caller beside the built-in one. */
+static void measure_own(size_t n, enum likeness like, size_t contacts, int repeats)
+{
+    static const struct {
+        const char *name;
+        enum kernel kernel;
+    } row[] = {{"tribo_force", FORCE},
+               {"tribo_force_tangent", FORCE_TANGENT},
+               {"tribo_balance, diagonal R", BALANCE},
+               {"tribo_balance, islands of 4 contacts", BALANCE}};
+    enum { ROWS = sizeof row / sizeof *row, JOBS = 3 };
+    struct kernel_scene s;
+    struct own o = {.epsilon = need_memory(n, sizeof *o.epsilon)};
+    kernel_scene_create(&s, FORCE, n, like);
+    kernel_scene_create(&o.s, FORCE, n, like);
+    need(tribo_get_epsilon(o.s.ctx, o.epsilon), tribo_message(o.s.ctx));
+    need(tribo_set_user_law(o.s.ctx, quinn_box, &o.quinn), tribo_message(o.s.ctx));
+    printf("\n| n = %zu, %s | built-in law, ns a contact | law of the caller | ratio | its function alone "
+           "|\n|---|---|---|---|---|\n",
+           n, likeness_name[like]);
+    for (size_t k = 0; k < ROWS; k++) {
+        double least[JOBS] = {1.0, 1.0, 1.0};
         const size_t times = contacts / n + 1;
-        for (int k = 0; k < 2; k++) {
-            s[k].kernel = row ? BALANCE : FORCE;
-            if (row == 2) {
-                couple(s[k].ctx, n);
-            }
-            kernel_call(s + k);
+        s.kernel = o.s.kernel = row[k].kernel;
+        if (k == ROWS - 1) {
+            couple(s.ctx, n);
+            couple(o.s.ctx, n);
         }
-        for (int j = 0; j < 2 * repeats; j++) {
-            least[j % 2] = lesser_of(least[j % 2], seconds_a_contact(run_kernel, s + j % 2, n, times));
+        kernel_call(&s);
+        kernel_call(&o.s);
+        for (int j = 0; j < repeats; j++) {
+            least[0] = lesser_of(least[0], seconds_a_contact(run_kernel, &s, n, times));
+            least[1] = lesser_of(least[1], seconds_a_contact(run_kernel, &o.s, n, times));
+            least[2] = lesser_of(least[2], seconds_a_contact(run_law, &o, n, times));
         }
-        printf("| %s | %.2f | %.2f | %.2f |\n", name[row], 1e9 * least[0], 1e9 * least[1], least[1] / least[0]);
+        printf("| %s | %.2f | %.2f | %.2f | %.2f |\n", row[k].name, 1e9 * least[0], 1e9 * least[1], least[1] / least[0],
+               1e9 * least[2]);
     }
-    kernel_scene_destroy(s);
-    kernel_scene_destroy(s + 1);
+    kernel_scene_destroy(&s);
+    kernel_scene_destroy(&o.s);
+    free(o.epsilon);
 }
 
 static void measure_elements(size_t n, size_t elements, int repeats)
@@ -245,7 +276,8 @@ int main(int count, char **argument)
         for (int like = ALL; like >= NOTHING; like--) {
             measure(sizes[k], (enum likeness)like, smoke ? 1 : 200000, repeats);
         }
-        measure_own(sizes[k] < 1000000 ? sizes[k] : 1000000, smoke ? 1 : 200000, repeats);
+        measure_own(sizes[k], ALL, smoke ? 1 : 200000, repeats);
+        measure_own(sizes[k], NOTHING, smoke ? 1 : 200000, repeats);
         measure_elements(sizes[k] < 1000000 ? sizes[k] : 1000000, smoke ? 1 : 200000, repeats);
     }
     return EXIT_SUCCESS;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Laws of the caller: Quinn's law written by its box beside the built-in one, boxes of any kind beside their equations, and laws
  * that fail. */
+#include <fenv.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -194,6 +195,42 @@ TEST(boxes)
     ck_assert_uint_gt(smooth, all * 95 / 100);
 }
 
+/* A contact alone, and beside another one: the same bits. */
+TEST(one_contact)
+{
+    struct random g = random_of(_i);
+    int stuck = 0, slides = 0;
+    for (int k = 0; k < 200; k++) {
+        const int open = below(&g, 9) == 0, follows = below(&g, 2) > 0;
+        const double x = open ? 0.0 : uniform(&g, 0.1, 2.0), limit[] = {x, 1.0}, r[] = {uniform(&g, 0.5, 2.0), 1.0};
+        const double v[] = {uniform(&g, -1.0, 1.0) * (below(&g, 3) > 0), 0.1}, a[] = {uniform(&g, -4.0, 4.0), 1.0};
+        double phase[] = {uniform(&g, -3.0, 3.0), 0.0}, out[2][4][2];
+        signed char slip[2][2];
+        for (size_t n = 1; n <= 2; n++) {
+            tribo_context *c;
+            assert_ok(tribo_create(&c, n));
+            assert_ok(tribo_set_limit(c, limit));
+            assert_ok(tribo_set_operator_diagonal(c, r));
+            assert_ok(follows ? tribo_set_epsilon_step(c, 0.1, 0.5) : tribo_set_epsilon_all(c, 0.3));
+            assert_ok(tribo_set_user_law(c, waves, phase));
+            assert_ok(tribo_balance(c, v, a, out[n - 1][0], out[n - 1][1]));
+            assert_ok(tribo_get_slip(c, slip[n - 1]));
+            assert_ok(tribo_force(c, v, a, out[n - 1][2]));
+            assert_ok(tribo_force_tangent(c, v, a, NULL, out[n - 1][3], NULL, NULL));
+            tribo_destroy(c);
+        }
+        for (int j = 0; j < 4; j++) {
+            assert_all_exact(out[0][j], out[1][j], 1);
+        }
+        ck_assert_int_eq(slip[0][0], slip[1][0]);
+        ck_assert_int_eq(slip[0][0] == TRIBO_SLIP_OPEN, open);
+        stuck += slip[0][0] == TRIBO_SLIP_STUCK;
+        slides += slip[0][0] == TRIBO_SLIP_FORTH || slip[0][0] == TRIBO_SLIP_BACK;
+    }
+    ck_assert_int_gt(stuck, 10);
+    ck_assert_int_gt(slides, 10);
+}
+
 /* ------------------------------------------------------------------------------------------------- laws that fail */
 
 /* Coulomb's law, of which one number is another. */
@@ -221,6 +258,34 @@ static int wrong_law(size_t first, size_t n, int derivatives, const double *v, c
         }
     }
     return first <= w->contact && w->contact < first + n ? w->answer : 0;
+}
+
+/* w fails for a contact alone. */
+static void one_fails(struct wrong *w, double v, int by_tangent)
+{
+    const double limit = 1.0, a = 0.2;
+    double f, feq, df;
+    signed char slip;
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 1));
+    assert_ok(tribo_set_limit_all(c, limit));
+    assert_ok(tribo_set_epsilon_all(c, 0.1));
+    assert_ok(tribo_set_operator_diagonal(c, &limit));
+    assert_ok(tribo_set_user_law(c, wrong_law, w));
+    w->contact = 1;
+    assert_ok(tribo_balance(c, &v, &a, &feq, &f));
+    w->contact = 0;
+    stain(&f, sizeof f);
+    stain(&feq, sizeof feq);
+    if (!by_tangent) {
+        assert_status(tribo_balance(c, &v, &a, &feq, &f), TRIBO_ERR_CALLBACK);
+        assert_says(tribo_message(c), w->answer ? "law answered 7 for 1 contact" : "of contact 0 is");
+        require(stained(&f, sizeof f) && stained(&feq, sizeof feq), "outputs changed");
+        assert_status(tribo_get_slip(c, &slip), TRIBO_ERR_STATE);
+        assert_status(tribo_force(c, &v, &a, &f), TRIBO_ERR_CALLBACK);
+    }
+    assert_status(tribo_force_tangent(c, &v, &a, &f, &df, NULL, NULL), TRIBO_ERR_CALLBACK);
+    tribo_destroy(c);
 }
 
 TEST(failures)
@@ -262,6 +327,7 @@ TEST(failures)
             assert_ok(tribo_clone(c, &copy));
             stain(f, sizeof f);
             stain(feq, sizeof feq);
+            feclearexcept(FE_ALL_EXCEPT);
             if (!scene[k].tangent) {
                 assert_status(tribo_balance(copy, v, a, feq, f), TRIBO_ERR_CALLBACK);
                 assert_says(tribo_message(copy), scene[k].text);
@@ -272,7 +338,9 @@ TEST(failures)
             assert_says(tribo_message(copy), scene[k].text);
             assert_status(tribo_tangent_product(copy, v, a, f), TRIBO_ERR_STATE);
             assert_status(tribo_force_tangent(copy, v, a, f, df, NULL, NULL), TRIBO_ERR_CALLBACK);
+            ck_assert_int_eq(fetestexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW), 0);
             tribo_destroy(copy);
+            one_fails(&w, v[scene[k].w.contact], scene[k].tangent);
         }
         /* no derivative by limit, where one is asked for */
         struct wrong none = {N, -1, 0, 0.0};
@@ -336,4 +404,4 @@ TEST(settings)
     tribo_destroy(c);
 }
 
-TEST_MAIN("user_law", {equal_balances, 8}, {equal_forces, 24}, {boxes, 4}, {failures, 1}, {settings, 1})
+TEST_MAIN("user_law", {equal_balances, 8}, {equal_forces, 24}, {boxes, 4}, {one_contact, 2}, {failures, 1}, {settings, 1})
