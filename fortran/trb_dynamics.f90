@@ -109,6 +109,8 @@
 !>   TRBDEX(IH, NDOF, NP, KIND, INDX, CV, DX, IERR)  CV(2*NDOF)                        DX(2,NP): of XMIN and XMAX of TRBEXT
 !>   TRBDEN(IH, N, NP, KIND, INDX, DE, IERR)                                           DE(N,NP): of E of TRBDIS
 !>   TRBDEY(IH, NDOF, NP, KIND, INDX, DY, LDY, IERR) LDY >= values of Y                DY(LDY,NP): of Y of TRBPER
+!>   TRBDML(IH, NDOF, K, NP, KIND, INDX, DR, DI,     K: multiplier, in TRBMUL's order  DR(NP), DI(NP): of RE(K) and AI(K) of TRBMUL
+!>          IERR)
 !> Counts and real quantities
 !>   TRBDCT(IH, IWHICH, IVAL, IERR)                  IWHICH TRIBO_COUNT_... of a       IVAL
 !>                                                   driver, see tribo_dynamics.h
@@ -1153,3 +1155,16 @@ subroutine trbdey(ih, ndof, np, kind, indx, dy, ldy, ierr)
   call require_least(ih, 'LDY', ldy, m, ierr)
   if (ierr == TRIBO_OK) call s%driver%period_derivatives(kind(:np), indx(:np), y=dy(:m, :np), stat=ierr)
 end subroutine trbdey
+
+subroutine trbdml(ih, ndof, k, np, kind, indx, dr, di, ierr)
+  use tribo_fixed_dynamics
+  implicit none
+  integer, intent(in) :: ih, ndof, k, np, kind(*), indx(*)
+  real(dp), intent(inout) :: dr(*), di(*)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_driven(ih, s, ierr, ndof)
+  call require_least(ih, 'NP', np, 1, ierr)
+  if (ierr == TRIBO_OK) call s%driver%multiplier_derivatives(k, kind(:np), indx(:np), dr(:np), di(:np), ierr)
+end subroutine trbdml

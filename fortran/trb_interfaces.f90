@@ -739,5 +739,11 @@ module trb_interfaces
       double precision, intent(inout) :: dy(ldy, *)
       integer, intent(out) :: ierr
     end subroutine trbdey
+
+    subroutine trbdml(ih, ndof, k, np, kind, indx, dr, di, ierr)
+      integer, intent(in) :: ih, ndof, k, np, kind(*), indx(*)
+      double precision, intent(inout) :: dr(*), di(*)
+      integer, intent(out) :: ierr
+    end subroutine trbdml
   end interface
 end module trb_interfaces

@@ -104,6 +104,7 @@ module tribo_systems
     procedure :: get_multipliers
     procedure :: get_freedom
     procedure :: period_extremes, period_harmonic, period_dissipation, period_stick, period_derivatives
+    procedure :: multiplier_derivatives
     procedure :: set_observer
     procedure :: set_step, set_tolerance, set_output, set_max_step
     procedure :: message => driver_message
@@ -1536,6 +1537,34 @@ contains
     end if
     call finish(w, stat, errmsg)
   end subroutine period_derivatives
+
+  !> Derivatives of multiplier `which` (from 1, in the order of get_multipliers) of that motion by parameters, kind(n)
+  !> TRIBO_PARAMETER_LIMIT, _LOADS or _FREQUENCY and index(n), the contacts of limits: of its real and imaginary part, re(n), im(n).
+  subroutine multiplier_derivatives(this, which, kind, index, re, im, stat, errmsg)
+    class(tribo_driver), intent(in) :: this
+    integer, intent(in) :: which, kind(:), index(:)
+    real(dp), intent(inout) :: re(:), im(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_size_t) :: contact(size(index))
+    type(work) :: w
+    integer :: i
+
+    call find_driver(this, w)
+    call expect_shape(w, 'index', shape(index), shape(kind))
+    call expect_shape(w, 're', shape(re), shape(kind))
+    call expect_shape(w, 'im', shape(im), shape(kind))
+    call expect_index(w, 'which', 1, which, w%dimension - 1)
+    do i = 1, min(size(kind), size(index))
+      if (kind(i) == TRIBO_PARAMETER_LIMIT) call expect_index(w, 'index', i, index(i), w%n)
+      contact(i) = int(max(index(i), 1) - 1, c_size_t)
+    end do
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_multiplier_derivatives(w%object, int(which - 1, c_size_t), int(size(kind), c_size_t), to_int(kind), &
+        contact, re, im)
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine multiplier_derivatives
 
   !> Advances call observer%seen, see tribo_observer; without observer, none. The observer must have the attribute target (or be a
   !> pointer) where it is declared, and must outlive its use.

@@ -751,6 +751,19 @@ module tribo_dynamics_c
       integer(c_int) :: answer
     end function c_driver_period_derivatives
 
+    function c_driver_multiplier_derivatives(drv, which, count, kind, index, re, im) result(answer) &
+      bind(c,name='tribo_driver_multiplier_derivatives')
+      import
+      type(c_ptr), value :: drv
+      integer(c_size_t), value :: which
+      integer(c_size_t), value :: count
+      integer(c_int), intent(in), optional :: kind(*)
+      integer(c_size_t), intent(in), optional :: index(*)
+      real(c_double), intent(inout), optional :: re(*)
+      real(c_double), intent(inout), optional :: im(*)
+      integer(c_int) :: answer
+    end function c_driver_multiplier_derivatives
+
     function c_driver_follow_curve(drv, curve, t, period, y, seen, data) result(answer) &
       bind(c,name='tribo_driver_follow_curve')
       import

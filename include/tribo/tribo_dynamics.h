@@ -534,6 +534,17 @@ enum {
 TRIBO_API int tribo_driver_period_derivatives(tribo_driver *drv, size_t count, const int *kind, const size_t *index,
                                               const double *c, double *extremes, double *energy, double *y);
 
+/* Derivatives of a multiplier of the last periodic motion found by parameters, in closed form along its events. The system must
+ * be unchanged since.
+ * which        in               the multiplier, in the order of tribo_driver_get_multipliers
+ * kind         [count] in       TRIBO_PARAMETER_LIMIT, _LOADS or _FREQUENCY
+ * index        [count] in       contacts of TRIBO_PARAMETER_LIMIT; not read for other kinds
+ * re, im       [count] out      derivatives of the real and the imaginary part
+ * Returns what tribo_driver_period_derivatives returns, TRIBO_ERR_RANGE (which), TRIBO_ERR_UNSUPPORTED also for multipliers that
+ * are repeated or 0 within rounding, elastic contacts, limits that change, bases that move, and the damping. */
+TRIBO_API int tribo_driver_multiplier_derivatives(tribo_driver *drv, size_t which, size_t count, const int *kind,
+                                                  const size_t *index, double *re, double *im);
+
 /* The motions of a curve. */
 enum {
     TRIBO_MOTION_PERIODIC = 0, /* of tribo_driver_find_periodic */

@@ -36,6 +36,9 @@ static void put_period(tribo_driver *drv, double *y)
     put_one(tribo_driver_period_derivatives(drv, 2, kind, index, NULL, NULL, NULL, state));
     put(2 * DIMENSION, state);
     put_one(tribo_driver_period_derivatives(drv, 2, kind, index, NULL, NULL, each, NULL));
+    put_one(tribo_driver_multiplier_derivatives(drv, 1, 2, kind, index, re, im));
+    put(2, re);
+    put(2, im);
     tribo_driver_count(drv, TRIBO_COUNT_PERIODS, &count);
     put_one((double)count);
 }

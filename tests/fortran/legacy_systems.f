@@ -100,6 +100,10 @@ C
       CALL CMPR('TRBDEY', 10, DY)
       CALL TRBDEN(IH, 2, 2, KIND, INDX, DX, IERR)
       CALL CMPI('TRBDEN', IERR)
+      CALL TRBDML(IH, 2, 2, 2, KIND, INDX, RE, AI, IERR)
+      CALL CMPI('TRBDML', IERR)
+      CALL CMPR('TRBDML', 2, RE)
+      CALL CMPR('TRBDML', 2, AI)
       CALL TRBDCT(IH, 105, I, IERR)
       CALL CMPI('TRBDCT', I)
       END
@@ -178,6 +182,8 @@ C     and, if it works on a driver, without one.
          CALL WANTED('TRBDEN', IH, IERR, ICODE(K), TEXT(K))
          CALL TRBDEY(IH, 2, 1, M, M, X, 5, IERR)
          CALL WANTED('TRBDEY', IH, IERR, ICODE(K), TEXT(K))
+         CALL TRBDML(IH, 2, 1, 1, M, M, X, X, IERR)
+         CALL WANTED('TRBDML', IH, IERR, ICODE(K), TEXT(K))
          CALL TRBDCT(IH, 100, I, IERR)
          CALL WANTED('TRBDCT', IH, IERR, ICODE(K), TEXT(K))
    20 CONTINUE

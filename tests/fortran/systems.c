@@ -217,6 +217,10 @@ static void periodic(void)
     put(6, extremes);
     put(3, energy);
     put(9, by_y);
+    static const int kinds[] = {TRIBO_PARAMETER_LIMIT, TRIBO_PARAMETER_FREQUENCY};
+    put_one(tribo_driver_multiplier_derivatives(drv, 0, 2, kinds, index, re, im));
+    put(2, re);
+    put(2, im);
     tribo_driver_destroy(drv);
     tribo_system_destroy(sys);
 }

@@ -356,6 +356,12 @@ contains
     call require(stat == TRIBO_ERR_RANGE, 'a limit of no contact')
     call drv%period_derivatives([TRIBO_PARAMETER_LIMIT], [1], c, by_extremes(:, :2), stat=stat)
     call require(stat == TRIBO_ERR_SIZE, 'more derivatives than parameters')
+    call drv%multiplier_derivatives(1, [TRIBO_PARAMETER_LIMIT, TRIBO_PARAMETER_FREQUENCY], [1, 0], re, im, stat)
+    call compare('multiplier_derivatives', stat)
+    call compare('multiplier_derivatives: re', re)
+    call compare('multiplier_derivatives: im', im)
+    call drv%multiplier_derivatives(3, [TRIBO_PARAMETER_LIMIT], [1], re(:1), im(:1), stat)
+    call require(stat == TRIBO_ERR_RANGE, 'no such multiplier')
   end subroutine periodic
 
   !> Arrays as sections against whole arrays, and outputs each by itself.

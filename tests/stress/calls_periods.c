@@ -99,6 +99,10 @@ static void question(struct bytes *b, const struct scene *s, const struct run *r
     }
     status = say(r, tribo_driver_period_derivatives(r->drv, count, kind, index, legal ? c : NULL, NULL, NULL, y));
     demand(status || (count && are_finite(y, count * s->dimension)), "derivatives");
+    double re[5], im[5];
+    const size_t which = choose(b, s->dimension);
+    status = say(r, tribo_driver_multiplier_derivatives(r->drv, which, count, kind, index, re, im));
+    demand(status || (are_finite(re, count) && are_finite(im, count)), "derivatives of a multiplier");
 }
 
 void periods(struct bytes *b, struct scene *s, struct run *r)

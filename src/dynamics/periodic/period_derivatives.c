@@ -8,7 +8,7 @@
  * Perturbations by the frequency are at constant phase theta = (1 + e) t of the loads, where q'' += -2 e q'' - e AC q', as by a
  * source, and q' = (1 + e) dq/dtheta. A factor of all loads and bases needs no source: the motion is homogeneous in loads, bases
  * and limits. */
-#include "shooting.h"
+#include "sensitivity.h"
 #include "common/layout.h"
 #include "common/real.h"
 
@@ -21,39 +21,6 @@
 
 /* Slope of a signal, times the period, over its value, above which an extreme at an event is a corner. */
 #define CORNER 1e-6
-
-/* An extreme so far, and its derivatives. */
-struct extreme {
-    double value;
-    int corner;  /* 1: at an event at which the signal has a corner */
-    double *by;  /* [columns] */
-    size_t step; /* its phase, a step of the span */
-    double at;   /* time after the start of the phase */
-    double *v;   /* [n][columns] perturbations at the start of the phase */
-};
-
-/* Observer of a span. */
-struct sensitivity {
-    struct company company;
-    struct period_map *map;
-    struct variation variation;
-    struct derivative steps, first; /* of this span; of the following that found w */
-    struct parameters by;
-    size_t columns, n, contacts;
-    const int *kind;
-    int moves;       /* 1: a kind has inertia or damping */
-    const double *c; /* [n] coefficients of the state; NULL: no extremes */
-    struct extreme least, most;
-    int located;             /* 1: the phases and times of both are known */
-    double *from, *now;      /* [n + 1] state at the start of the phase; workspace */
-    double *start, *end;     /* [n][columns] perturbations at the start; workspace */
-    double *rise, *moved_by; /* members of by */
-    double *way;             /* [contacts][columns] J q + G f of perturbations at the end of the last phase */
-    double *force;           /* [contacts][columns] workspace */
-    double *energy, *path;   /* [contacts] dissipated energy; [contacts][columns] derivative of the length of slip; or NULL */
-    signed char *slip;       /* [contacts] slip in the last phase */
-    int begun;               /* 1: there was a phase */
-};
 
 /* Adds slip J q to the paths: the parts of the last phase at the end of it, and of the phase that ends now, at its start. The
  * slider of a contact that rested before the event was where it was before the jump, of another where it is after it. */
@@ -139,12 +106,16 @@ static int sensitivity_phase(struct company *company, double tau, double t, cons
         d->begun = 1;
     }
     memcpy(d->from, y, (d->n + 1) * sizeof *y);
-    return status;
+    return status || !d->second || !d->last ? status : tribo_second_phase(d->second, tau, y);
 }
 
 static void sensitivity_event(struct company *company)
 {
-    tribo_variation_event(&((struct sensitivity *)company)->variation);
+    struct sensitivity *d = (struct sensitivity *)company;
+    tribo_variation_event(&d->variation);
+    if (d->second && d->last) {
+        tribo_second_event(d->second);
+    }
 }
 
 static const struct company observer = {sensitivity_phase, sensitivity_event};
@@ -263,6 +234,10 @@ static int set_parameter(struct sensitivity *d, const tribo_driver *drv, size_t 
     if (kind == TRIBO_PARAMETER_LIMIT && !tribo_system_limits_vary(sys) && limit[index] == 0.0) {
         return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "contact %zu is open, and has no derivative by its limit", index);
     }
+    if (kind == TRIBO_PARAMETER_DAMPING && d->second) {
+        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "kind[%zu]: multipliers have no derivatives by the damping here",
+                           j);
+    }
     if (kind == TRIBO_PARAMETER_LOADS && tribo_system_limits_vary(sys)) {
         return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
                            "kind[%zu]: derivatives by the loads are found with constant limits", j);
@@ -353,13 +328,19 @@ static int differentiate(struct sensitivity *d, struct shooting *s, const size_t
     double *path = d->path, *energies = d->energy;
     d->path = d->energy = NULL; /* until d->start is known */
     int status = TRIBO_OK;
-    const char *const without = s->told->extra.count                   ? "an unknown period"
-                                : drv->sys->normals.count              ? "limits that follow the motion"
-                                : drv->sys->circulation > 0.0          ? "a stiffness that is not symmetric"
-                                : tribo_system_is_plain(drv->sys) == 0 ? "static limits and contacts in a plane"
-                                                                       : NULL;
+    const tribo_system *sys = drv->sys;
+    const char *const without = s->told->extra.count                         ? "an unknown period"
+                                : sys->normals.count                         ? "limits that follow the motion"
+                                : sys->circulation > 0.0                     ? "a stiffness that is not symmetric"
+                                : tribo_system_is_plain(sys) == 0            ? "static limits and contacts in a plane"
+                                : d->second && sys->compliance.count         ? "elastic contacts"
+                                : d->second && tribo_system_limits_vary(sys) ? "limits that change"
+                                : d->second && tribo_system_bases_move(sys)  ? "bases that move"
+                                : d->second && sys->loads.tables             ? "tables"
+                                                                             : NULL;
     if (without) {
-        status = tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "derivatives are found without %s", without);
+        status = tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "derivatives%s are found without %s",
+                             d->second ? " of multipliers" : "", without);
     } else if (s->flow != s->here) {
         status =
             tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
@@ -375,6 +356,7 @@ static int differentiate(struct sensitivity *d, struct shooting *s, const size_t
     status = status ? status : find_start(d, s);
     d->path = energy ? path : NULL;
     d->energy = energy ? energies : NULL;
+    d->last = 1;
     status = status ? status : follow_perturbed(d, d->start);
     status = status ? status : check_return(d);
     status = status || !extremes ? status : write_extremes(d, extremes);
@@ -387,6 +369,33 @@ static int differentiate(struct sensitivity *d, struct shooting *s, const size_t
     return status;
 }
 
+int tribo_sensitivity_find(struct sensitivity *d, tribo_driver *drv, const size_t *index, double *extremes, double *energy,
+                           double *y)
+{
+    struct shooting *s = drv->shooting;
+    const size_t count = d->columns;
+    d->company = observer;
+    d->map = &s->map;
+    d->n = s->map.n;
+    d->contacts = drv->sys->ncontact;
+    d->least.value = HUGE_VAL;
+    d->most.value = -HUGE_VAL;
+    const size_t each = d->contacts * count, all = d->n * count;
+    const int room = ALLOCATE(ARRAY(d->start, all), ARRAY(d->end, all + each), ARRAY(d->from, d->n + 1), ARRAY(d->now, d->n + 1),
+                              ARRAY(d->least.v, all), ARRAY(d->most.v, all), ARRAY(d->least.by, count), ARRAY(d->most.by, count),
+                              ARRAY(d->moved_by, 2 * count), ARRAY(d->rise, each), ARRAY(d->way, each), ARRAY(d->force, each),
+                              ARRAY(d->path, each), ARRAY(d->energy, d->contacts), ARRAY(d->slip, d->contacts)) &&
+                     tribo_variation_create(&d->variation, s->map.sys, count);
+    const int status =
+        room ? differentiate(d, s, index, extremes, energy, y)
+             : tribo_error(s->map.drv->message, TRIBO_ERR_MEMORY, "out of memory for %zu derivative%s", count, plural(count));
+    tribo_derivative_free(&d->steps);
+    tribo_derivative_free(&d->first);
+    tribo_variation_free(&d->variation);
+    free(d->start);
+    return status && s->map.drv != drv ? tribo_error(drv->message, status, "%s", s->map.drv->message) : status;
+}
+
 int tribo_driver_period_derivatives(tribo_driver *drv, size_t count, const int *kind, const size_t *index, const double *c,
                                     double *extremes, double *energy, double *y)
 {
@@ -396,18 +405,10 @@ int tribo_driver_period_derivatives(tribo_driver *drv, size_t count, const int *
     if (status || !count) {
         return status ? status : tribo_error(drv->message, TRIBO_ERR_SIZE, "count = 0");
     }
-    struct shooting *s = drv->shooting;
-    struct sensitivity d = {.company = observer,
-                            .map = &s->map,
-                            .columns = count,
-                            .n = s->map.n,
-                            .contacts = drv->sys->ncontact,
-                            .kind = kind,
-                            .c = c,
-                            .least = {.value = HUGE_VAL},
-                            .most = {.value = -HUGE_VAL}};
-    for (size_t k = 2 * drv->sys->ndof; c && drv->motion && k < d.n; k++) { /* c of f' */
-        if (c[k + d.n - 2 * drv->sys->ndof] != 0.0) {
+    const size_t n = drv->shooting->map.n;
+    struct sensitivity d = {.columns = count, .kind = kind, .c = c};
+    for (size_t k = 2 * drv->sys->ndof; c && drv->motion && k < n; k++) { /* c of f' */
+        if (c[k + n - 2 * drv->sys->ndof] != 0.0) {
             return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
                                "extremes of velocities of degrees of freedom without mass have no derivatives");
         }
@@ -419,18 +420,5 @@ int tribo_driver_period_derivatives(tribo_driver *drv, size_t count, const int *
     if (energy && tribo_system_limits_vary(drv->sys)) {
         return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "derivatives of energies are found with constant limits");
     }
-    const size_t each = d.contacts * count, all = d.n * count;
-    const int room = ALLOCATE(ARRAY(d.start, all), ARRAY(d.end, all + each), ARRAY(d.from, d.n + 1), ARRAY(d.now, d.n + 1),
-                              ARRAY(d.least.v, all), ARRAY(d.most.v, all), ARRAY(d.least.by, count), ARRAY(d.most.by, count),
-                              ARRAY(d.moved_by, 2 * count), ARRAY(d.rise, each), ARRAY(d.way, each), ARRAY(d.force, each),
-                              ARRAY(d.path, each), ARRAY(d.energy, d.contacts), ARRAY(d.slip, d.contacts)) &&
-                     tribo_variation_create(&d.variation, s->map.sys, count);
-    status = room
-                 ? differentiate(&d, s, index, extremes, energy, y)
-                 : tribo_error(s->map.drv->message, TRIBO_ERR_MEMORY, "out of memory for %zu derivative%s", count, plural(count));
-    tribo_derivative_free(&d.steps);
-    tribo_derivative_free(&d.first);
-    tribo_variation_free(&d.variation);
-    free(d.start);
-    return status && s->map.drv != drv ? tribo_error(drv->message, status, "%s", s->map.drv->message) : status;
+    return tribo_sensitivity_find(&d, drv, index, extremes, energy, y);
 }

@@ -92,7 +92,7 @@ int tribo_derivative_apply(const struct derivative *d, size_t first, size_t colu
         status = d->events->motion->transition(d->events->own, s->phase, s->tau, columns, v, p ? &source : NULL);
         if (!status && p && p->moves && !s->response) {
             double *x = s->response = calloc(2 * (all + d->sys->ncontact) + 1, sizeof *x);
-            const struct source units = {.force = x + (x ? 2 * all : 0), .inertia = unit[0], .damping = unit[1]};
+            const struct source units = {.force = x ? x + 2 * all : NULL, .inertia = unit[0], .damping = unit[1]};
             status = x ? d->events->motion->transition(d->events->own, s->phase, s->tau, 2, x, &units) : no_room(d);
         }
         tribo_multiply_add(!status && p && p->moves ? all : 0, 2, columns, 1.0, s->response, p ? p->moves : NULL, v);

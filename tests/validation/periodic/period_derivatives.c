@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Derivatives of periodic motions by limits, loads, frequency and damping: against closed forms, and differences of motions. */
+/* Derivatives of periodic motions, and of their multipliers, by limits, loads, frequency and damping: against closed forms, and
+ * differences of motions. */
 #include "run.h"
 #include "search.h"
 
+#include <complex.h>
 #include <string.h>
 
 #define DOFS 48
@@ -461,5 +463,191 @@ TEST(no_derivative)
     search_free(&s);
 }
 
+/* -------------------------------------------------------------------------------------------------------- multipliers */
+
+/* Of Den Hartog's motion, beta = 0.7, r = 0.3: with rho = (x0 beta^2 - r)/(x0 beta^2 + r) the multipliers are lambda^2,
+ * lambda^2 + (1 + rho) cos(pi/beta) lambda + rho = 0. */
+TEST(multipliers_den_hartog)
+{
+    static const int kind[] = {TRIBO_PARAMETER_LIMIT, TRIBO_PARAMETER_LOADS, TRIBO_PARAMETER_FREQUENCY};
+    static const size_t index[3] = {0};
+    const double by_limit = -0.51052875503341, by_beta = 4.80844813153893, r = 0.3, beta = 0.7, square = beta * beta;
+    struct search s = oscillator_search(methods[_i], 0.0, r, 1.0, beta);
+    double y[3] = {0}, mr[2], mi[2], re[3], im[3];
+    find(&s, 0.0, y);
+    const double x0 = amplitude(&s, 0), sum = x0 * square + r, c = cos(PI / beta), rho = (x0 * square - r) / sum;
+    const double by_x0 = 2.0 * r * square / (sum * sum), by_r = -2.0 * x0 * square / (sum * sum);
+    const double rho_by[] = {by_r + by_x0 * by_limit, -r * (by_r + by_x0 * by_limit),
+                             beta * by_x0 * by_beta + 4.0 * x0 * square * r / (sum * sum)};
+    const double c_by[] = {0.0, 0.0, sin(PI / beta) * PI / beta};
+    const double complex lambda = csqrt((1.0 + rho) * (1.0 + rho) * c * c / 4.0 - rho) - (1.0 + rho) * c / 2.0;
+    assert_ok(tribo_driver_get_multipliers(s.drv, mr, mi));
+    for (size_t k = 0; k < 2; k++) {
+        const int upper = cimag(lambda * lambda) * mi[k] > 0.0;
+        assert_close(mr[k], creal(lambda * lambda), 1e-10);
+        assert_ok(tribo_driver_multiplier_derivatives(s.drv, k, 3, kind, index, re, im));
+        for (size_t j = 0; j < 3; j++) {
+            const double complex by = -(rho_by[j] * c * lambda + (1.0 + rho) * c_by[j] * lambda + rho_by[j]) /
+                                      (2.0 * lambda + (1.0 + rho) * c) * 2.0 * lambda;
+            assert_close(re[j], creal(by), 1e-9);
+            assert_close(im[j], upper ? cimag(by) : -cimag(by), 1e-9);
+        }
+    }
+    search_free(&s);
+}
+
+/* to[2] = the multiplier nearest to at[2] of the scene with a parameter more by h, from the guess y. */
+static void multiplier_beside(const struct scene *from, int kind, size_t index, double h, const double *y, const double *at,
+                              double *to)
+{
+    double guess[STATES], re[STATES], im[STATES], nearest = HUGE_VAL;
+    struct scene s = *from;
+    *parameter(&s, kind, index) += h;
+    tribo_system *sys = build(&s);
+    tribo_driver *drv = driver_create(sys, "exact", 0.1, 1e-14);
+    memcpy(guess, y, sizeof guess);
+    assert_ok(tribo_driver_find_periodic(drv, 0.0, period_of(&s), guess));
+    assert_ok(tribo_driver_get_multipliers(drv, re, im));
+    for (size_t k = 0; k < 2 * s.n; k++) {
+        const double off = hypot(re[k] - at[0], im[k] - at[1]);
+        if (off < nearest) {
+            nearest = off;
+            to[0] = re[k];
+            to[1] = im[k];
+        }
+    }
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+/* Compares with differences of fourth order, and what halving their step leaves of their error. */
+static void check_multiplier(const struct scene *s, tribo_driver *drv, size_t which, int kind, size_t index, const double *y)
+{
+    double mr[STATES], mi[STATES], got[2], coarse[2], fine[2];
+    assert_ok(tribo_driver_get_multipliers(drv, mr, mi));
+    const int status = tribo_driver_multiplier_derivatives(drv, which, 1, &kind, &index, got, got + 1);
+    require(!status, "multiplier %zu: %s", which, tribo_driver_message(drv));
+    for (int half = 0; half < 2; half++) {
+        const double h = half ? 1e-4 : 2e-4, at[] = {mr[which], mi[which]};
+        double *const by = half ? fine : coarse, a[2], b[2], c[2], d[2];
+        multiplier_beside(s, kind, index, -2.0 * h, y, at, a);
+        multiplier_beside(s, kind, index, -h, y, at, b);
+        multiplier_beside(s, kind, index, h, y, at, c);
+        multiplier_beside(s, kind, index, 2.0 * h, y, at, d);
+        for (size_t k = 0; k < 2; k++) {
+            by[k] = (a[k] - d[k] + 8.0 * (c[k] - b[k])) / (12.0 * h);
+        }
+    }
+    const double size = fmax(1.0, hypot(got[0], got[1]));
+    for (size_t k = 0; k < 2; k++) {
+        const double want = fine[k] + (fine[k] - coarse[k]) / 15.0;
+        require(fabs(got[k] - want) <= 1e-8 * size, "multiplier %zu, kind %d of %zu: %.15g, differences %.15g and %.15g", which,
+                kind, index, got[k], fine[k], coarse[k]);
+    }
+}
+
+TEST(multipliers_by_differences)
+{
+    static const size_t scene[] = {0, 1, 8, 2, 4};
+    struct scene s = scene_of(scene[_i / 2]);
+    double y[STATES] = {0}, share[CONTACTS];
+    size_t rest = 0;
+    s.with &= ~BASE;
+    for (size_t i = 0; _i >= 6 && i < s.contacts; i++) {
+        s.limit[i] *= 1.7; /* contacts rest for a part of the period */
+    }
+    tribo_system *sys = build(&s);
+    tribo_driver *drv = driver_create(sys, methods[_i % 2], 0.1, 1e-14);
+    assert_ok(tribo_driver_find_periodic(drv, 0.0, period_of(&s), y));
+    if (_i >= 6) {
+        assert_ok(tribo_driver_period_stick(drv, share));
+        for (size_t i = 0; i < s.contacts; i++) {
+            rest += share[i] > 0.0 && share[i] < 1.0;
+        }
+        ck_assert_uint_ge(rest, 1);
+    }
+    for (size_t which = 0; which < 3 && which < 2 * s.n; which += 2) {
+        check_multiplier(&s, drv, which, TRIBO_PARAMETER_LIMIT, 0, y);
+        check_multiplier(&s, drv, which, TRIBO_PARAMETER_LIMIT, s.contacts - 1, y);
+        check_multiplier(&s, drv, which, TRIBO_PARAMETER_LOADS, 0, y);
+        check_multiplier(&s, drv, which, TRIBO_PARAMETER_FREQUENCY, 0, y);
+    }
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+/* A contact at rest has the multiplier 1, whatever the parameters; two have it twice. */
+TEST(multipliers_of_rest)
+{
+    static const int kind[] = {TRIBO_PARAMETER_LIMIT, TRIBO_PARAMETER_LOADS, TRIBO_PARAMETER_FREQUENCY};
+    static const size_t index[3] = {0};
+    double y[STATES] = {0}, re[3], im[3], zero[3] = {0};
+    struct scene s = scene_of(1);
+    for (size_t resting = 1; resting < 3; resting++) {
+        s.limit[resting] = 50.0;
+        tribo_system *sys = build(&s);
+        tribo_driver *drv = driver_create(sys, methods[_i], 0.1, 1e-14);
+        assert_ok(tribo_driver_find_periodic(drv, 0.0, period_of(&s), y));
+        const int status = tribo_driver_multiplier_derivatives(drv, 0, 3, kind, index, re, im);
+        assert_status(status, resting == 1 ? TRIBO_OK : TRIBO_ERR_UNSUPPORTED);
+        if (status) {
+            assert_says(tribo_driver_message(drv), "repeated");
+        } else {
+            assert_all_close(re, zero, 3, 1e-10);
+            assert_all_close(im, zero, 3, 1e-10);
+        }
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+}
+
+/* Two equal oscillators apart have each multiplier twice; two contacts on one body stop at one instant. */
+TEST(multipliers_refused)
+{
+    const int limit = TRIBO_PARAMETER_LIMIT, damping = TRIBO_PARAMETER_DAMPING, frequency = TRIBO_PARAMETER_FREQUENCY;
+    const size_t zero = 0;
+    const double unit[] = {1.0, 0.0, 0.0, 1.0}, part[] = {0.1, 0.0, 0.0, 0.1}, cosine[] = {1.0, 1.0}, both[] = {1.0, 1.0},
+                 limits[] = {0.1, 0.2}, ratio = 1.5;
+    double y[5] = {0}, z[3] = {0}, re, im;
+    struct search s = search_create(methods[_i], 2, 2, unit, part, unit, unit, 0.7, cosine);
+    assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), 0.3));
+    find(&s, 0.0, y);
+    assert_status(tribo_driver_multiplier_derivatives(s.drv, 0, 1, &limit, &zero, &re, &im), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_driver_message(s.drv), "repeated");
+    search_free(&s);
+    s = search_create(methods[_i], 1, 2, unit, part, unit, both, 0.7, cosine);
+    assert_ok(tribo_set_limit(tribo_system_context(s.sys), limits));
+    find(&s, 0.0, z);
+    assert_status(tribo_driver_multiplier_derivatives(s.drv, 0, 1, &limit, &zero, &re, &im), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_driver_message(s.drv), "one instant");
+    search_free(&s);
+    s = oscillator_search(methods[_i], 0.1, 0.3, 1.0, 0.7);
+    re = im = 7.0;
+    assert_status(tribo_driver_multiplier_derivatives(NULL, 0, 1, &limit, &zero, &re, &im), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_multiplier_derivatives(s.drv, 0, 1, &limit, &zero, &re, &im), TRIBO_ERR_STATE);
+    find(&s, 0.0, z);
+    assert_status(tribo_driver_multiplier_derivatives(s.drv, 0, 1, NULL, &zero, &re, &im), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_multiplier_derivatives(s.drv, 0, 1, &limit, NULL, &re, &im), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_multiplier_derivatives(s.drv, 0, 1, &limit, &zero, NULL, &im), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_multiplier_derivatives(s.drv, 0, 1, &limit, &zero, &re, NULL), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_multiplier_derivatives(s.drv, 0, 0, &limit, &zero, &re, &im), TRIBO_ERR_SIZE);
+    assert_status(tribo_driver_multiplier_derivatives(s.drv, 2, 1, &limit, &zero, &re, &im), TRIBO_ERR_RANGE);
+    assert_status(tribo_driver_multiplier_derivatives(s.drv, 0, 1, &damping, &zero, &re, &im), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_driver_message(s.drv), "damping");
+    assert_ok(tribo_system_add_base_motion(s.sys, 0.7, NULL, limits));
+    find(&s, 0.0, z);
+    assert_status(tribo_driver_multiplier_derivatives(s.drv, 0, 1, &frequency, &zero, &re, &im), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_driver_message(s.drv), "bases");
+    assert_ok(tribo_system_clear_base_motion(s.sys));
+    assert_ok(tribo_set_static(tribo_system_context(s.sys), &ratio, NULL));
+    find(&s, 0.0, z);
+    assert_status(tribo_driver_multiplier_derivatives(s.drv, 0, 1, &limit, &zero, &re, &im), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_driver_message(s.drv), "static");
+    assert_exact(re, 7.0);
+    assert_exact(im, 7.0);
+    search_free(&s);
+}
+
 TEST_MAIN("period_derivatives", {den_hartog, 3}, {most_energy, 3}, {by_differences, 2 * COUNT(scenes)}, {at_once, 3},
-          {ten_limits, 1}, {rests, 2}, {errors, 3}, {no_derivative, 3})
+          {ten_limits, 1}, {rests, 2}, {errors, 3}, {no_derivative, 3}, {multipliers_den_hartog, 3},
+          {multipliers_by_differences, 10}, {multipliers_of_rest, 2}, {multipliers_refused, 2})

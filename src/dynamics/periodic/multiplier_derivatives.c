@@ -1,0 +1,293 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Derivatives of a multiplier by parameters p. With D = d image/d x, its eigenvalue lambda, and right and left eigenvectors u, w,
+ *     dlambda = w'(dD) u / w'u.
+ * (dD) u is found along the motion: V, the perturbation that begins as u, and DV, its derivative by p, which begins as zero.
+ * An event of contact i at time t comes later by
+ *     dt = -J_i dq'/v_i' where v_i = 0,  dt = (dlimit_i - d|f_i|)/|f_i|' where contact i breaks away,
+ * d: by p at constant time. A phase that lasts dtau longer adds V' dtau to DV. A jump V += c (r V), c = q''+ - q''-,
+ * r = J_i/v_i', adds to DV
+ *     c (r DV) + (dc + c' dt) (r V) - c (r V) J_i (dq''- + q'''- dt)/v_i'.
+ * For a set of contacts at rest q'' is linear in the state, the load and the limits, so that all these derivatives are
+ * accelerations by changes of these. By the frequency times are those of the motion, not of constant phase. */
+#include "sensitivity.h"
+#include "common/imaginary.h"
+#include "common/layout.h"
+#include "common/real.h"
+#include "numerics/linalg.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Distance of two multipliers over the size of the larger one, cosine of the angle of u and w, and size of lambda times that
+ * cosine, below which a multiplier is not simple, or rounding. */
+#define SIMPLE 1e-6
+#define ROUNDING 1e-9
+
+/* Columns of w: V, real and imaginary part, then for each parameter DV, likewise. */
+struct second {
+    struct sensitivity *d;
+    size_t count, wide; /* parameters; columns of w */
+    double *w;          /* [n][wide] */
+    double *rate;       /* [n][2] V' at the end of the phase */
+    double *before;     /* [n][count] perturbations by p at the end of the phase */
+    double *y;          /* [n] state there */
+    double *bend;       /* [count + 1][ndof] change of q'' there by p, and by time */
+    double *pull;       /* [count + 1][contacts] change of forces of contacts at rest, likewise */
+    double *shift;      /* [count] dt at the end of the phase */
+    double *last;       /* [count] dt at its start */
+    double *z, *after;  /* [n] change of a state; [ndof] of q'' after a jump */
+    double *push, *a;   /* [contacts] workspace */
+    double *along;      /* [wide] workspace */
+    double tau;
+    size_t steps; /* of d at the end of the phase */
+    int open;     /* 1: the end of the last phase is not yet in w */
+    int status;   /* of an event */
+};
+
+/* to [ndof], f [contacts] = change of q'' and of the forces of contacts at rest by the change x->z of the state, the load dt later,
+ * and the limits of sliding contacts by parameter p; p = count: none. Returns a status. */
+static int find_change(struct second *x, double dt, size_t p, double *to, double *f)
+{
+    const struct sensitivity *d = x->d;
+    struct stick_slip *m = &d->map->events->stick_slip;
+    const tribo_system *sys = d->map->sys;
+    tribo_system_smooth(sys, 1, dt, x->z, x->z + sys->ndof, NULL, to);
+    for (size_t i = 0; i < d->contacts; i++) {
+        const signed char slip = m->state.slip[i];
+        x->push[i] = p < x->count && tribo_slides(slip) ? -slip * d->rise[i * x->count + p] : 0.0;
+    }
+    tribo_matrix_multiply_add(&sys->response, 1.0, x->push, to);
+    tribo_matrix_multiply(&sys->direction, to, x->a);
+    const int status = tribo_stick_slip_balance(m, x->a, f);
+    tribo_matrix_multiply_add(&sys->response, 1.0, f, to);
+    return status;
+}
+
+/* x->z = change of the state by p at the end of the phase, and dt later. */
+static void change_state(struct second *x, size_t p, double dt)
+{
+    const struct sensitivity *d = x->d;
+    const size_t n = d->map->sys->ndof;
+    const double turns = d->kind[p] == TRIBO_PARAMETER_FREQUENCY ? 1.0 : 0.0;
+    for (size_t i = 0; i < n; i++) {
+        x->z[i] = x->before[i * x->count + p] + dt * x->y[n + i];
+        x->z[n + i] = x->before[(n + i) * x->count + p] + turns * x->y[n + i] + dt * d->variation.acceleration[i];
+    }
+}
+
+/* Puts the end of the last phase, later by shift, into w. */
+static void close_phase(struct second *x)
+{
+    for (size_t p = 0; x->open && p < x->count; p++) {
+        const double turns = x->d->kind[p] == TRIBO_PARAMETER_FREQUENCY ? 1.0 : 0.0;
+        const double longer = x->shift[p] - x->last[p] - turns * x->tau;
+        for (size_t i = 0; i < 2 * x->d->n; i++) {
+            x->w[i / 2 * x->wide + 2 + 2 * p + i % 2] += longer * x->rate[i];
+        }
+        x->last[p] = x->shift[p];
+        x->shift[p] = 0.0;
+    }
+    x->open = 0;
+}
+
+int tribo_second_phase(struct second *x, double tau, const double *y)
+{
+    struct sensitivity *d = x->d;
+    const size_t n = d->map->sys->ndof;
+    close_phase(x);
+    int status = x->status ? x->status : tribo_derivative_apply(&d->steps, d->steps.steps - 1, x->wide, x->w, NULL);
+    memcpy(x->before, d->variation.v, d->n * x->count * sizeof *x->before);
+    memcpy(x->y, y, d->n * sizeof *y);
+    for (size_t k = 0; !status && k < 2; k++) {
+        for (size_t i = 0; i < d->n; i++) {
+            x->z[i] = x->w[i * x->wide + k];
+        }
+        status = find_change(x, 0.0, x->count, x->after, x->pull);
+        for (size_t i = 0; i < n; i++) {
+            x->rate[2 * i + k] = x->z[n + i];
+            x->rate[2 * (n + i) + k] = x->after[i];
+        }
+    }
+    for (size_t p = 0; !status && p < x->count; p++) {
+        change_state(x, p, 0.0);
+        status = find_change(x, 0.0, p, x->bend + p * n, x->pull + p * d->contacts);
+    }
+    memcpy(x->z, y + n, n * sizeof *y);
+    memcpy(x->z + n, d->variation.acceleration, n * sizeof *y);
+    status = status ? status : find_change(x, 1.0, x->count, x->bend + x->count * n, x->pull + x->count * d->contacts);
+    x->tau = tau;
+    x->steps = d->steps.steps;
+    x->open = 1;
+    return status;
+}
+
+/* Sets shift at an event. Returns 0 if the event is of more than one contact, or its time has no derivative. */
+static int find_shift(struct second *x)
+{
+    const struct sensitivity *d = x->d;
+    const struct variation *v = &d->variation;
+    const signed char *now = d->map->events->stick_slip.state.slip;
+    const size_t n = d->map->sys->ndof, stops = v->count ? v->contact[0] : d->contacts;
+    size_t changed = d->contacts, changes = 0;
+    for (size_t i = 0; i < d->contacts; i++) {
+        const int apart = v->before[i] != now[i] && !(v->count == 1 && v->group[i] == 1);
+        changed = apart ? i : changed;
+        changes += (size_t)apart;
+    }
+    for (size_t p = 0; p < x->count; p++) {
+        const double *pull = x->pull + changed, *by_time = pull + x->count * d->contacts;
+        change_state(x, p, 0.0);
+        if (v->count == 1) {
+            x->shift[p] = -tribo_matrix_row_dot(&d->map->sys->direction, stops, x->z + n) / v->rate[stops];
+        } else if (changes == 1) {
+            x->shift[p] = -(now[changed] * d->rise[changed * x->count + p] + pull[p * d->contacts]) / *by_time;
+        }
+        if (!isfinite(x->shift[p])) {
+            return 0;
+        }
+    }
+    const struct guard *met = d->map->events->met;
+    const int breaks = changes == 1 && v->before[changed] == 0 && met && met->kind == HOLDS && met->contact == changed;
+    return v->count == 1 ? changes == 0 : v->count == 0 && (changes == 0 || breaks);
+}
+
+void tribo_second_event(struct second *x)
+{
+    const struct sensitivity *d = x->d;
+    const size_t n = d->map->sys->ndof;
+    if (!x->status && !find_shift(x)) {
+        x->status = tribo_error(d->map->sys->message, TRIBO_ERR_UNSUPPORTED,
+                                "contacts stop or break away at one instant, or a force only touches its limit: derivatives of "
+                                "multipliers are found where each event has its own time");
+    }
+    close_phase(x);
+    if (x->status || d->steps.steps == x->steps) {
+        return;
+    }
+    const double *row = d->steps.step[d->steps.steps - 1].jump, *c = row + d->n;
+    const size_t i = d->variation.contact[0];
+    double *along = x->along; /* r V, then r DV of each parameter */
+    memset(along, 0, x->wide * sizeof *along);
+    tribo_multiply_add(1, d->n, x->wide, 1.0, row, x->w, along);
+    for (size_t p = 0; !x->status && p < x->count; p++) {
+        const double dt = x->last[p];
+        double *before = x->bend + p * n;
+        tribo_add(before, dt, x->bend + x->count * n, n);
+        change_state(x, p, dt);
+        x->status = find_change(x, dt, p, x->after, x->pull);
+        const double part = tribo_matrix_row_dot(&d->map->sys->direction, i, before) / d->variation.rate[i];
+        for (size_t at = 0; at < 2 * n; at++) {
+            const size_t k = at % 2, r = at / 2;
+            x->w[(n + r) * x->wide + 2 + 2 * p + k] +=
+                c[r] * (along[2 + 2 * p + k] - along[k] * part) + (x->after[r] - before[r]) * along[k];
+        }
+    }
+    for (size_t at = 0; at < 2 * n; at++) {
+        x->w[(n + at / 2) * x->wide + at % 2] += c[at / 2] * along[at % 2];
+    }
+}
+
+/* vector [2][n] = right and left eigenvector u, w of D for multiplier `which`, w'u = 1; *lambda = its eigenvalue. room: workspace
+ * [2 n^2 + 2 dimension]. Returns a status, its message on the driver at work. */
+static int find_vectors(struct shooting *s, size_t which, double complex *vector, double complex *lambda, double *room)
+{
+    const size_t n = s->map.n, all = tribo_system_dimension(s->map.sys) - 1;
+    double *a = room, *x = a + n * n, *re = x + n * n, *im = re + all, gap = HUGE_VAL;
+    double complex product = 0.0;
+    int status = tribo_shooting_multipliers(s, re, im);
+    status = status ? status : tribo_period_map_matrix(&s->map, s->here);
+    if (status) {
+        return status;
+    }
+    const double complex mu = re[which] + im[which] * I;
+    for (int left = 0; !status && left < 2; left++) {
+        double nearest = HUGE_VAL;
+        size_t at = 0, row;
+        memcpy(a, s->here->derivative.matrix, n * n * sizeof *a);
+        if (left) {
+            tribo_transpose(n, n, s->here->derivative.matrix, a);
+        }
+        status = tribo_eigen(a, n, re, im, x);
+        for (size_t k = 0; !status && k < n; k++) {
+            const double complex one = re[k] + im[k] * I;
+            const double off = left ? cabs(one - *lambda) : cabs((s->here->odd ? one * one : one) - mu);
+            gap = left ? gap : off < nearest ? nearest : lesser(gap, off);
+            at = off < nearest ? k : at;
+            nearest = lesser(nearest, off);
+        }
+        *lambda = left ? *lambda : re[at] + im[at] * I;
+        row = im[at] < 0.0 ? at - 1 : at;
+        for (size_t i = 0; !status && i < n; i++) {
+            const double turned = im[at] == 0.0 ? 0.0 : (im[at] > 0.0 ? 1.0 : -1.0) * x[(row + 1) * n + i];
+            vector[(size_t)left * n + i] = x[row * n + i] + turned * I;
+            product += left ? vector[n + i] * vector[i] : 0.0;
+        }
+    }
+    if (status) {
+        return tribo_error(s->map.drv->message, status, "multiplier[%zu]: %s", which, tribo_strerror(status));
+    }
+    for (size_t i = 0; i < n; i++) {
+        vector[n + i] /= product;
+    }
+    return gap > SIMPLE * cabs(mu) && cabs(product) > SIMPLE && cabs(*lambda) * cabs(product) > ROUNDING
+               ? TRIBO_OK
+               : tribo_error(s->map.drv->message, TRIBO_ERR_UNSUPPORTED,
+                             "multiplier[%zu] = %g%+gi is repeated, or 0, within rounding, and has no derivatives", which,
+                             creal(mu), cimag(mu));
+}
+
+int tribo_driver_multiplier_derivatives(tribo_driver *drv, size_t which, size_t count, const int *kind, const size_t *index,
+                                        double *re, double *im)
+{
+    const double *none = NULL;
+    int status = tribo_shooting_ready(drv, !kind ? "kind" : !index ? "index" : !re ? "re" : !im ? "im" : NULL, &none);
+    if (status || !count) {
+        return status ? status : tribo_error(drv->message, TRIBO_ERR_SIZE, "count = 0");
+    }
+    struct shooting *s = drv->shooting;
+    if (s->told->extra.count) {
+        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "derivatives of multipliers are found without an unknown period");
+    }
+    const size_t n = s->map.n, dofs = drv->sys->ndof, c = drv->sys->ncontact, wide = 2 + 2 * count;
+    if (which >= n) {
+        return tribo_error(drv->message, TRIBO_ERR_RANGE, "multiplier[%zu] is 0, or there is none", which);
+    }
+    struct sensitivity d = {.columns = count, .kind = kind};
+    struct second x = {.d = &d, .count = count, .wide = wide};
+    double complex *vector = NULL, lambda; /* [2][n] u, w */
+    double *room, *coordinates;
+    if (!ALLOCATE(ARRAY(vector, 2 * n), ARRAY(room, 2 * n * n + 2 * tribo_system_dimension(drv->sys)),
+                  ARRAY(coordinates, n * wide), ARRAY(x.w, n * wide), ARRAY(x.rate, 2 * n), ARRAY(x.before, n * count),
+                  ARRAY(x.y, n), ARRAY(x.bend, (count + 1) * dofs), ARRAY(x.pull, (count + 1) * c), ARRAY(x.shift, count),
+                  ARRAY(x.last, count), ARRAY(x.z, n), ARRAY(x.after, dofs), ARRAY(x.push, c), ARRAY(x.a, c),
+                  ARRAY(x.along, wide))) {
+        return tribo_error(drv->message, TRIBO_ERR_MEMORY, "out of memory for derivatives of a multiplier");
+    }
+    d.second = &x;
+    status = find_vectors(s, which, vector, &lambda, room);
+    for (size_t i = 0; !status && i < n; i++) {
+        coordinates[i * wide] = creal(vector[i]);
+        coordinates[i * wide + 1] = cimag(vector[i]);
+    }
+    tribo_energy_norm_state(&s->map.norm, wide, coordinates, x.w);
+    status = status ? status : tribo_sensitivity_find(&d, drv, index, NULL, NULL, NULL);
+    status = status ? status : tribo_driver_pass(drv, x.status);
+    if (!status) {
+        close_phase(&x);
+        tribo_energy_norm_of(&s->map.norm, wide, x.w, coordinates);
+        for (size_t p = 0; p < count; p++) {
+            double complex sum = 0.0;
+            for (size_t i = 0; i < n; i++) {
+                sum += vector[n + i] * (coordinates[i * wide + 2 + 2 * p] + coordinates[i * wide + 3 + 2 * p] * I);
+            }
+            sum *= s->map.odd ? -2.0 * lambda : 1.0;
+            /* multipliers depend on loads over limits */
+            sum *= kind[p] == TRIBO_PARAMETER_LOADS ? -1.0 : 1.0;
+            re[p] = creal(sum);
+            im[p] = cimag(sum);
+        }
+    }
+    free(vector);
+    return status;
+}
