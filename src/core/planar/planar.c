@@ -426,9 +426,17 @@ void tribo_clusters_keep(struct clusters *to, const struct clusters *from, size_
 
 int tribo_clusters_clone(tribo_context *clone, const tribo_context *from)
 {
+    const struct clusters *c = &from->plane;
+    const struct sparse *factored = c->problem.factor.group.sparse;
     const int status = tribo_clusters_copy(clone, from);
-    if (!status) {
-        tribo_clusters_keep(&clone->plane, &from->plane, from->n);
+    if (status) {
+        return status;
+    }
+    tribo_clusters_keep(&clone->plane, c, from->n);
+    for (size_t q = 0; factored && q < c->clusters; q++) {
+        if (c->cluster[q].pattern == factored) {
+            tribo_disc_copy_factor(&clone->plane.problem, &c->problem, clone->plane.cluster[q].pattern);
+        }
     }
     return status;
 }

@@ -20,9 +20,10 @@ enum { FROM_BEFORE = 12, FROM_INTERIOR = 40 };
 #define SETTLED 4.0
 
 /* A sparse factor of more than MANY entries a row takes far longer than a step. It serves further steps with the same freedoms,
- * while each step leaves at most GAIN of the residual. */
+ * while each step leaves at most GAIN of the residual, also those of the next problem from residuals below LASTING on. */
 #define MANY 16
 #define GAIN 0.03
+#define LASTING 0.1
 
 /* y = the point of the set nearest to from + part (aim - from). */
 static void disc_project(struct disc_qp *p, const double *from, const double *aim, double part)
@@ -34,6 +35,12 @@ static void disc_project(struct disc_qp *p, const double *from, const double *ai
         }
         tribo_lens_project(p->wide[i], p->shift + i, z, p->y + i);
     }
+}
+
+/* 1 if the factor serves further steps. */
+static int takes_long(const struct disc_qp *p)
+{
+    return p->s.pattern && tribo_sparse_slots(p->s.pattern) > MANY * p->s.places;
 }
 
 /* from = y, aim = y + Newton's step, for gradient and places at y. */
@@ -54,7 +61,7 @@ static void find_aim(struct disc_qp *p)
         tribo_disc_assemble(p);
         tribo_disc_factorize(p);
     }
-    p->factor.serves = p->s.pattern && tribo_sparse_slots(p->s.pattern) > MANY * p->s.places ? GAIN * p->residual : 0.0;
+    p->factor.serves = takes_long(p) ? GAIN * p->residual : 0.0;
     tribo_disc_gradients(p);
     tribo_disc_follow(p, p->gradient, p->aim);
     if (p->factor.redundant) {
@@ -138,14 +145,16 @@ static void step_down(struct disc_qp *p)
     disc_sweep(p);
 }
 
-/* Repeats step until y is the solution up to rounding, at most rounds times. Returns 0 without convergence. */
-static int disc_settle(struct disc_qp *p, int rounds, void (*step)(struct disc_qp *p))
+/* Repeats step until y, looked at, is the solution up to rounding, at most rounds times. distance: as of disc_look. Returns 0
+ * without convergence. */
+static int disc_settle(struct disc_qp *p, double distance, int rounds, void (*step)(struct disc_qp *p))
 {
-    for (int round = 0; !(disc_look(p) <= SETTLED); round++) {
+    for (int round = 0; !(distance <= SETTLED); round++) {
         if (round == rounds) {
             return 0;
         }
         step(p);
+        distance = disc_look(p);
     }
     /* Steps that halve the distance still improve y; those by the factor of an earlier step converge linearly, and go on. */
     double before = HUGE_VAL;
@@ -169,18 +178,21 @@ static int disc_settle(struct disc_qp *p, int rounds, void (*step)(struct disc_q
 
 static int solve_once(struct disc_qp *p)
 {
-    /* Of contacts that do not couple this is the solution. */
-    p->factor.sets = (struct sets){0};
-    p->factor.serves = 0.0;
+    const int kept = takes_long(p) && p->factor.group.sparse == p->s.pattern && !p->factor.sets.dependents;
+    p->factor.serves = kept ? LASTING : 0.0;
+    p->factor.sets = kept ? p->factor.sets : (struct sets){0};
     tribo_disc_gains(p);
     disc_project(p, p->y, p->y, 1.0);
-    disc_look(p);
-    disc_project(p, p->to, p->to, 1.0);
-    int done = disc_settle(p, FROM_BEFORE, step_newton);
+    double distance = disc_look(p);
+    if (p->residual >= p->factor.serves) { /* of contacts that do not couple `to` is the solution */
+        disc_project(p, p->to, p->to, 1.0);
+        distance = disc_look(p);
+    }
+    int done = disc_settle(p, distance, FROM_BEFORE, step_newton);
     for (int deep = 0; !done && deep < 2; deep++) {
         tribo_disc_interior(p, deep ? NOTHING : NEXT_TO_NOTHING);
         p->factor.serves = 0.0;
-        done = disc_settle(p, FROM_INTERIOR, step_down);
+        done = disc_settle(p, disc_look(p), FROM_INTERIOR, step_down);
     }
     return done;
 }
@@ -220,6 +232,7 @@ static int solve_towards(struct disc_qp *p, double more, const double *centre)
         p->s.val[tribo_disc_own(p, i)] = diagonal[i];
         p->pull[i] = pull[i];
     }
+    p->factor.group.sparse = NULL; /* the next problem has another stiffness */
     tribo_disc_gains(p);
     return done;
 }
@@ -344,6 +357,25 @@ int tribo_disc_create(struct disc_qp *p, const struct disc_room *room)
         lay_out_disc(p, &(struct layout){.memory = p->room.block}, room);
     }
     return p->room.block != NULL;
+}
+
+void tribo_disc_copy_factor(struct disc_qp *p, const struct disc_qp *from, struct sparse *pattern)
+{
+    struct disc_factor *f = &p->factor;
+    const struct box_qp *like = &from->factor.qp;
+    const size_t n = from->factor.group.size;
+    f->group = (struct group){.size = n, .sparse = pattern};
+    f->sets = from->factor.sets;
+    f->qp.group = &f->group;
+    f->qp.sets = &f->sets;
+    f->qp.scale = f->qp.q;
+    f->qp.far = 1;
+    memcpy(f->qp.q, like->q, n * sizeof *like->q);
+    memcpy(f->qp.at, like->at, n);
+    memcpy(f->qp.order, like->order, n * sizeof *like->order);
+    memcpy(f->qp.sparse.l, like->sparse.l, tribo_sparse_slots(pattern) * sizeof *like->sparse.l);
+    memcpy(f->qp.sparse.d, like->sparse.d, n * sizeof *like->sparse.d);
+    memcpy(f->qp.sparse.index, like->sparse.index, n * sizeof *like->sparse.index);
 }
 
 void tribo_disc_free(struct disc_qp *p)

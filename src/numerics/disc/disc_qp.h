@@ -81,7 +81,8 @@ struct disc_factor {
     struct sets sets;
     struct box_qp qp;
     size_t redundant; /* null vectors */
-    double serves;    /* a sparse factor serves steps from residuals below this, with the same freedoms; 0: none */
+    double serves;    /* a sparse factor serves steps from residuals below this, with the same freedoms; 0: none. It stays from
+                         problem to problem; group.sparse: the pattern that it is of */
 };
 
 struct disc_qp {
@@ -125,6 +126,9 @@ struct disc_room {
  * tribo_disc_free frees p, too. */
 int tribo_disc_create(struct disc_qp *p, const struct disc_room *room);
 void tribo_disc_free(struct disc_qp *p);
+
+/* Takes over the sparse factor of a problem that was created alike; pattern: that of p in its place. */
+void tribo_disc_copy_factor(struct disc_qp *p, const struct disc_qp *from, struct sparse *pattern);
 
 /* Room for the problem of one planar contact. */
 struct disc_alone {

@@ -10,12 +10,18 @@
 
 enum { SECULAR_ROUNDS = 40 };
 
+/* Squares of numbers between TINY and its inverse have all digits. */
+#define TINY 1e-150
+
 double tribo_length(int directions, const double *x)
 {
     if (directions == 1) {
         return fabs(x[0]);
     }
     const double most = greater(fabs(x[0]), fabs(x[1]));
+    if (most > TINY && most < 1.0 / TINY) {
+        return sqrt(x[0] * x[0] + x[1] * x[1]);
+    }
     if (!(most > 0.0)) {
         return 0.0;
     }
@@ -53,6 +59,13 @@ static void corner_at(struct corner k, double *y)
  * it. Returns 0, with mu = 0, if |n| <= 1 there. */
 static int minimize_on_disc(const double *weight, const double *q, double *n)
 {
+    if (weight[0] == weight[1]) { /* the point nearest to q/weight */
+        const double length = tribo_length(2, q);
+        const int beyond = length > weight[0];
+        n[0] = q[0] / (beyond ? length : weight[0]);
+        n[1] = q[1] / (beyond ? length : weight[0]);
+        return beyond;
+    }
     double mu = greater(0.0, greater(fabs(q[0]) - weight[0], fabs(q[1]) - weight[1])), rise = HUGE_VAL;
     for (int round = 0; round < SECULAR_ROUNDS && rise > DBL_EPSILON * mu; round++) {
         n[0] = q[0] / (weight[0] + mu);
@@ -81,7 +94,7 @@ int tribo_lens_minimize(const double *c, const double *weight, const double *q, 
         y[1] = n[1];
         return LENS_ON_DISC;
     }
-    const int far = minimize_on_disc(weight, shifted, m);
+    const int far = square > 0.0 && minimize_on_disc(weight, shifted, m);
     if (!beyond && !far) {
         y[0] = n[0];
         y[1] = n[1];

@@ -55,15 +55,21 @@ TRIBO_SIMD void tribo_disc_multiply(const struct disc_qp *p, const double *x, do
             size[k] += fabs(term);
         }
     }
-    for (size_t i = 0; p->s.pattern && i < n; i++) {
-        double sum = 0.0, all = 0.0;
-        for (size_t e = p->s.first[i]; e < p->s.first[i + 1]; e++) {
-            const double term = p->s.val[e] * x[p->s.col[e]];
-            sum += term;
-            all += fabs(term);
+    for (size_t i = 0; p->s.pattern && i < n; i += p->wide[i]) { /* rows of one contact have the same columns */
+        const size_t other = i + p->wide[i] - 1, *col = p->s.col + p->s.first[i];
+        const double *row = p->s.val + p->s.first[i], *beside = p->s.val + p->s.first[other];
+        double sum[2] = {0.0, 0.0}, all[2] = {0.0, 0.0};
+        for (size_t e = 0; e < p->s.first[i + 1] - p->s.first[i]; e++) {
+            const double to = x[col[e]], term[2] = {row[e] * to, beside[e] * to};
+            sum[0] += term[0];
+            sum[1] += term[1];
+            all[0] += fabs(term[0]);
+            all[1] += fabs(term[1]);
         }
-        y[i] = sum;
-        size[i] = all;
+        y[i] = sum[0];
+        y[other] = sum[other - i];
+        size[i] = all[0];
+        size[other] = all[other - i];
     }
 }
 

@@ -165,7 +165,7 @@ TEST(tied)
 TEST(clone)
 {
     struct random g = random_of(_i);
-    struct field s = field_create(&g, 200, 200, 0, 0);
+    struct field s = _i % 2 ? field_create(&g, 1600, 40, 0, 0) : field_create(&g, 200, 200, 0, 0);
     tribo_context *copy;
     pull_at_random(&s, &g, 0.7);
     assert_ok(tribo_step_force(s.c, 1.0, s.pull, s.f));
@@ -182,4 +182,34 @@ TEST(clone)
     field_free(&s);
 }
 
-TEST_MAIN("planar_sparse", {rows_and_carpets, 4}, {tied, 2}, {clone, 2})
+/* Loads, then limits, then the operator change little: the factor of the call before serves, for the same forces. */
+TEST(little_changes)
+{
+    struct random g = random_of(_i);
+    struct field s = field_create(&g, 1600, 40, 0, _i > 0);
+    pull_at_random(&s, &g, 0.9);
+    assert_ok(tribo_step_force(s.c, 1.0, s.pull, s.f));
+    for (int call = 0; call < 9; call++) {
+        const uint64_t factors = count_of(s.c, TRIBO_COUNT_FACTORIZATIONS), reused = count_of(s.c, TRIBO_COUNT_REUSED);
+        const double most = call % 3 == 2 ? 0.1 : 1e-6;
+        for (size_t i = 0; i < s.n; i++) {
+            s.pull[i] *= 1.0 + uniform(&g, -most, most);
+            s.limit[i] = i % 2 ? s.limit[i - 1] : s.limit[i] * (call > 2 ? 1.0 + uniform(&g, -most, most) : 1.0);
+        }
+        assert_ok(tribo_set_limit(s.c, s.limit));
+        if (call > 5) {
+            s.val[s.rowptr[2 * call]] += 0.1;
+            s.val[s.rowptr[2 * call + 1]] += 0.1;
+            assert_ok(tribo_update_operator(s.c, s.val));
+        }
+        assert_ok(tribo_step_force(s.c, 1.0, s.pull, s.f));
+        require(check_forces(&s) > 100, "few slide");
+        if (most < 0.1 && call < 6 && call % 3 == 1) {
+            ck_assert_uint_eq(count_of(s.c, TRIBO_COUNT_FACTORIZATIONS), factors);
+            ck_assert_uint_eq(count_of(s.c, TRIBO_COUNT_REUSED), reused + 1);
+        }
+    }
+    field_free(&s);
+}
+
+TEST_MAIN("planar_sparse", {rows_and_carpets, 4}, {tied, 2}, {clone, 2}, {little_changes, 2})
