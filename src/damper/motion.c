@@ -122,14 +122,12 @@ static int see_opening(const tribo_moment *moment, void *data)
     return 0;
 }
 
-/* What normal loads that follow the motion bring about. open [contacts] out: shares of the period, which begins with y, for which
- * contacts have lifted off; m->message if motions beside this one leave it. */
-static int measure_following(struct worker *w, const double *y, double *open, struct motion *m)
+int measure_openings(struct worker *w, double hz, double *y)
 {
     const struct damper *d = w->d;
     const size_t n = d->dimension;
+    double *open = y + n + 2 * d->contacts, *state = need_memory(n + d->rows, sizeof *state), *f = state + n, now = 0.0;
     struct opening o = {d->contacts, w->each, open};
-    double *state = need_memory(3 * n + d->rows, sizeof *state), *re = state + n, *im = re + n, *f = im + n, now = 0.0;
     signed char *slip = need_memory(d->rows, sizeof *slip);
     memcpy(state, y, n * sizeof *state);
     int status = tribo_system_contacts(w->sys, 0.0, y, NULL, NULL, f);
@@ -139,27 +137,34 @@ static int measure_following(struct worker *w, const double *y, double *open, st
         o.since[c] = is_open ? 0.0 : (double)NAN;
         open[c] = 0.0;
     }
-    if (tribo_driver_get_multipliers(w->drv, re, im) == TRIBO_OK && hypot(re[0], im[0]) > 1.0 + 1e-6) {
-        snprintf(m->message, sizeof m->message, "unstable: motions beside it leave it by a factor of %.4g a period",
-                 hypot(re[0], im[0]));
-    }
     status = status ? status : tribo_driver_set_observer(w->drv, see_opening, &o);
-    status = status ? status : tribo_driver_advance(w->drv, &now, 1.0 / m->hz, state);
+    status = status ? status : tribo_driver_advance(w->drv, &now, 1.0 / hz, state);
     need(tribo_driver_set_observer(w->drv, NULL, NULL), NULL);
     for (size_t c = 0; c < d->contacts; c++) {
-        open[c] = fmin(m->hz * (open[c] + (isnan(o.since[c]) ? 0.0 : 1.0 / m->hz - o.since[c])), 1.0);
+        open[c] = fmin(hz * (open[c] + (isnan(o.since[c]) ? 0.0 : 1.0 / hz - o.since[c])), 1.0);
     }
     free(state);
     free(slip);
     return status;
 }
 
-/* Quantities of the motion just found, in closed form. The mean power of the loads is that of the first harmonic of the
- * displacements in phase with their rates; friction and damping take it. */
-static int measure(struct worker *w, struct motion *m, double *power)
+/* Sets the message of a motion just found that motions beside it leave. */
+static void note_instability(struct worker *w, struct motion *m)
+{
+    double *re = need_memory(2 * w->dimension, sizeof *re), *im = re + w->dimension;
+    if (tribo_driver_get_multipliers(w->drv, re, im) == TRIBO_OK && hypot(re[0], im[0]) > 1.0 + 1e-6) {
+        snprintf(m->message, sizeof m->message, "unstable: motions beside it leave it by a factor of %.4g a period",
+                 hypot(re[0], im[0]));
+    }
+    free(re);
+}
+
+/* In closed form. The mean power of the loads is that of the first harmonic of the displacements in phase with their rates;
+ * friction and damping take it. */
+int measure_motion(struct worker *w, struct motion *m, double *y)
 {
     const struct damper *d = w->d;
-    double least, most, cosine[2], sine[2];
+    double *power = y + d->dimension, least, most, cosine[2], sine[2];
     memcpy(w->c, d->open.measured, d->modes * sizeof *w->c);
     int status = tribo_driver_period_extremes(w->drv, w->c, &least, &most, NULL, NULL);
     for (int k = 0; k < 2 && !status; k++) {
@@ -199,9 +204,10 @@ static struct motion shoot(struct worker *w, double limit, double hz, double *y)
     set_point(w, limit, hz); /* may open another driver, which counts anew */
     const size_t before = periods_of(w);
     int status = tribo_driver_find_periodic(w->drv, 0.0, 1.0 / hz, y);
-    status = status ? status : measure(w, &m, y + w->dimension);
-    if (!status && w->d->rows > w->d->contacts) {
-        status = measure_following(w, y, y + w->dimension + 2 * w->d->contacts, &m);
+    status = status ? status : measure_motion(w, &m, y);
+    if (!status && w->d->rows > w->d->contacts) { /* loads of normal directions follow the motion */
+        note_instability(w, &m);
+        status = measure_openings(w, hz, y);
     }
     m.periods = periods_of(w) - before;
     m.found = !status;

@@ -10,6 +10,7 @@ struct motion {
     double friction, damped, input; /* lost to friction, lost to damping, put in by the loads */
     size_t periods;                 /* that were integrated to find it */
     int found;                      /* 0: numbers mean nothing, and message says why */
+    int stable;                     /* of a curve that is followed: 1, 0; -1: a special point, or not known */
     char message[200];              /* of a motion that was found: why it may not be the one that is seen; or empty */
 };
 
@@ -43,6 +44,13 @@ size_t record_of(const struct damper *d);
 
 /* Finds it from the state guess, or from rest if that is NULL. y out, if found: its record. */
 struct motion find_motion(struct worker *w, double limit, double hz, const double *guess, double *y);
+
+/* Quantities of the motion of the driver's last search, or of the point of a curve, whose frequency is m->hz; sets *m and the
+ * record y behind the state, without shares open. Returns a status. */
+int measure_motion(struct worker *w, struct motion *m, double *y);
+
+/* Sets the shares open of the record y by a period from its state on; the frequency is that of set_point. Returns a status. */
+int measure_openings(struct worker *w, double hz, double *y);
 
 /* Motions that are found by themselves, each by a worker of its own; guess as above. Sets motion. */
 struct task {

@@ -40,6 +40,19 @@ static void read_method(struct text *value, void *march)
     *(int *)march = choose(value, "exact", "march");
 }
 
+static void read_follow(struct text *value, void *follow)
+{
+    static const char *const ways[] = {"down:events", "down", "", "up", "up:events"};
+    int k = 0;
+    while (k < 5 && strcmp(value->at, ways[k]) != 0) {
+        k++;
+    }
+    if (k == 5) {
+        die_at(value, "must be up, down, up:events or down:events");
+    }
+    *(int *)follow = k - 2;
+}
+
 static void read_plot(struct text *value, void *plot)
 {
     *(const char **)plot = choose(value, "png", "svg") ? "svg" : "png";
@@ -231,6 +244,12 @@ static const struct option {
     {OPTION(read_drive, drive),
      "  --drive HZ           frequency of the loads, or a band FROM:TO:N that begins with N frequencies; 0 (the default): the\n"
      "                       first natural frequency\n"},
+    {OPTION(read_follow, follow),
+     "  --follow up|down     a band: each curve is followed from its lower end up, or from its upper end down, also where it\n"
+     "                       turns back (pseudo-arc-length), in steps of at most a distance of the N frequencies; whether\n"
+     "                       motions are stable, and special points of the curve, are found. No best limit is looked for.\n"
+     "                       up:events, down:events: changes of the sequence of events are special points, too, of which\n"
+     "                       contacts on many modes have hundreds\n"},
     {OPTION(read_range, limits),
      "  --limits FROM:TO:N   N limits of contacts (forces), geometric from FROM to TO; or one limit. Default: 0.001 to 10 times\n"
      "                       the sum of the forces (of --base: moving mass times acceleration), 33 limits, or 9 for a band\n"},
@@ -321,6 +340,12 @@ static const struct option {
      "that for which it is open, all blank by marching; for each --output amplitude, phase of\n"
      "the first harmonic, and with --harmonics the amplitude of harmonic 1, amplitude and phase of harmonics 2 to N; harmonic h\n"
      "is a sin(h omega t + phase), phase in degrees.\n"
+     "With --follow the message of a special point is its kind: fold (the curve turns back), flip (motions of twice the period\n"
+     "begin), torus (motions of another frequency begin), branch (another curve crosses); or what changes in the sequence of\n"
+     "events, with the contact or normal spring: stick, slide (it begins, ceases to stick, once more a period), graze (it "
+     "begins\n"
+     "or ceases to touch, to lift off or to reverse), order (events of several contacts). A column behind the message is 1 for\n"
+     "stable motions, 0 for unstable ones, blank at special points and where that is not known; periods are not counted.\n"
      "If a contact that follows --limits has mu=, the column, the texts, and best.load and band.load in values-damper.txt are\n"
      "normal loads, else limits: a contact slides at mu times the normal load.\n"
      "Sweeps up and down agree: with a linear structure and constant limits the motion is unique, except for the places of\n"
@@ -413,6 +438,27 @@ const struct place *measured_place(const struct options *o)
     return o->outputs.count ? &o->outputs.place[0] : NULL;
 }
 
+/* Ends the program where --backbone, --cycle or --follow exclude other options, or need them. */
+static void check_study(const struct options *o)
+{
+    if (is_unloaded(o) &&
+        (o->limits.points > 1 || o->drive.from > 0.0 || o->march || o->check || o->field.count || o->harmonics)) {
+        die("option %s: it takes one limit, and no --drive, --method march, --check, --field or --harmonics",
+            o->backbone ? "--backbone" : "--cycle");
+    }
+    if (o->follow && (o->drive.points < 2 || o->march || o->check)) {
+        die("option --follow: it is for a band, --drive FROM:TO:N, and takes no --method march or --check");
+    }
+    if (o->cycle >= 0.0 && (o->loads.count || o->backbone)) {
+        die("option --cycle: it takes no --load, --base or --backbone");
+    }
+    for (const struct contact *c = o->contacts.contact; c < o->contacts.contact + o->contacts.count; c++) {
+        if (o->cycle < 0.0 && (c->belt != 0.0 || c->ratio > 1.0)) {
+            die("%s: belt= and static= are for --cycle", c->at.origin);
+        }
+    }
+}
+
 /* Ends the program where options are missing, need others, or exclude them. */
 static void check_options(const struct options *o)
 {
@@ -442,19 +488,7 @@ static void check_options(const struct options *o)
     if (o->amplitudes.points && !o->backbone) {
         die("option --amplitudes: --backbone is missing, the mode that has them");
     }
-    if (is_unloaded(o) &&
-        (o->limits.points > 1 || o->drive.from > 0.0 || o->march || o->check || o->field.count || o->harmonics)) {
-        die("option %s: it takes one limit, and no --drive, --method march, --check, --field or --harmonics",
-            o->backbone ? "--backbone" : "--cycle");
-    }
-    if (o->cycle >= 0.0 && (o->loads.count || o->backbone)) {
-        die("option --cycle: it takes no --load, --base or --backbone");
-    }
-    for (const struct contact *c = o->contacts.contact; c < o->contacts.contact + o->contacts.count; c++) {
-        if (o->cycle < 0.0 && (c->belt != 0.0 || c->ratio > 1.0)) {
-            die("%s: belt= and static= are for --cycle", c->at.origin);
-        }
-    }
+    check_study(o);
     if (o->damping_matrix && o->damping.count) {
         die("option --damping-matrix %s: either a matrix or damping ratios, not both", o->damping_matrix);
     }

@@ -46,8 +46,13 @@ static void run_curve(void *data, size_t k)
     const struct job_of_curves *j = data;
     struct curve *c = &j->curve[k];
     struct worker w = create_worker(j->study->damper, j->study->options->march);
-    find_curve(c, &w, BEND);
-    if (!c->over_limit) {
+    if (j->study->options->follow) {
+        follow_curve(c, &w);
+    } else {
+        ask_samples(j->study, c);
+        find_curve(c, &w, BEND);
+    }
+    if (!c->over_limit && !j->study->options->follow) {
         find_largest(c, &w, BEND);
     }
     free_worker(&w);
@@ -58,7 +63,6 @@ struct curve *run_curves(const struct study *s, int over_limit, const double *fi
     struct job_of_curves j = {s, need_memory(count, sizeof *j.curve)};
     for (size_t k = 0; k < count; k++) {
         j.curve[k] = create_curve(over_limit, fixed[k], record_of(s->damper));
-        ask_samples(s, &j.curve[k]);
     }
     run_jobs(s->options->threads, count, run_curve, &j);
     end_progress();
@@ -131,6 +135,9 @@ void run_study(struct study *s)
             *s->tables = open_tables(o);
             s->gaps = 0;
         }
+    }
+    if (o->follow) {
+        report_folds(s, c, count);
     }
     if (band) {
         study_band(s, c, count);

@@ -79,6 +79,9 @@ void study_limits(struct study *s, struct curve *c);
 void write_family(struct study *s, const struct curve *c, size_t count);
 void study_band(struct study *s, const struct curve *c, size_t count);
 
+/* Prints where followed curves turn back, and how far that changes with twice the modes. */
+void report_folds(const struct study *s, const struct curve *c, size_t count);
+
 /* Frequency and damping ratio of a mode over the amplitude: table, picture, results, and their changes with twice the modes. */
 void study_backbone(struct study *s);
 

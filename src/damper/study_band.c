@@ -78,7 +78,7 @@ void study_band(struct study *s, const struct curve *c, size_t count)
         value[k] = top ? top->motion.amplitude : HUGE_VAL;
         least = fmin(least, value[k]);
     }
-    if (!interrupted() && count > 1) {
+    if (!interrupted() && count > 1 && !s->options->follow) {
         found = least < HUGE_VAL ? search_valleys(s, limit, value, count) : 0.0;
         if (least == HUGE_VAL) {
             printf("no motion was found at any of these %ss: %s\n", s->tables->limit, first_message(c, count));

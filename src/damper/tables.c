@@ -9,7 +9,7 @@
 
 struct tables open_tables(const struct options *o)
 {
-    struct tables t = {.out = o->out, .name = o->name, .limit = word_for_limit(o), .plot = o->plot};
+    struct tables t = {.out = o->out, .name = o->name, .limit = word_for_limit(o), .followed = o->follow != 0, .plot = o->plot};
     char *name = new_text("values-%s.txt", t.name);
     open_plots(&t);
     t.values = create_file(t.out, name);
@@ -49,6 +49,7 @@ void write_result(const struct tables *t, const char *key, double value)
 void write_motion_head(const struct tables *t, FILE *file, const struct damper *d)
 {
     fprintf(file, "%s,frequency,amplitude,friction power,damping power,input power,periods,message", t->limit);
+    fprintf(file, d && d->options->follow ? ",stable" : "");
     for (size_t c = 1; d && c <= d->contacts; c++) {
         fprintf(file, d->contact[c - 1].normal.direction ? ",power%zu,stick%zu,open%zu" : ",power%zu,stick%zu", c, c, c);
     }
@@ -79,6 +80,9 @@ void write_motion(FILE *file, const struct motion *m, const double *y, const str
         fputc(*c == '"' ? '\'' : *c, file);
     }
     fprintf(file, m->message[0] ? "\"" : "");
+    if (d && d->options->follow) {
+        write_number(file, m, m->stable < 0 ? (double)NAN : m->stable);
+    }
     for (size_t c = 0; d && c < d->contacts; c++) {
         write_number(file, m, y[d->dimension + c]);
         write_number(file, m, y[d->dimension + d->contacts + c]);

@@ -2,6 +2,7 @@
 /* tribo-damper on structures of a few masses, the motions of which are known. Works in the current folder. */
 #include <complex.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "support.h"
@@ -448,5 +449,55 @@ TEST(cycle)
 }
 END_TEST
 
-TEST_MAIN("damper_small", {spring, 1}, {backbone, 1}, {cycle, 1}, {loads, 1}, {damping_by_mode, 1}, {field, 1}, {normal_load, 1},
-          {normal_follows, 1}, {plane, 1}, {loose_row, 1}, {own_limit, 1})
+/* The stop of validation/periodic/curves.c, mass, stiffness and load 0.4, beside a direction along which the contact slides: the
+ * resonance turns back twice, up and down at the same frequencies, by det(D - I) = 0; between the folds motions are unstable. */
+#define STOPS                                                                                                                    \
+    "--mass turn.mtx --stiffness turn.mtx --damping-matrix stop-c.mtx --dofs follow.txt --load 0,0,0,y:force=0.4:phase=90 "      \
+    "--load 0,0,0,x:force=0.2 --contact 0,0,0,x:mu=0.5:normal=y,1.5:gap=1 "
+
+TEST(follow)
+{
+    static const double folds[] = {1.959116208891, 1.946569623911};
+    char text[TEXT];
+    write_text("turn.mtx", HEAD "2 2 2\n1 1 1\n2 2 1\n");
+    write_text("stop-c.mtx", HEAD "2 2 2\n1 1 0.1\n2 2 0.1\n");
+    write_text("follow.txt", "1 1 1 0 0 0\n2 1 2 0 0 0\n");
+    for (int down = 0; down < 2; down++) {
+        struct outcome o =
+            assert_runs(down ? STOPS "--drive 0.1:0.24:31 --follow down" : STOPS "--drive 0.1:0.24:31 --follow up");
+        for (int k = 0; k < 2; k++) {
+            assert_close(2.0 * PI * value_of(k ? "damper.fold1.2" : "damper.fold1.1"), 0.6 * folds[down ? 1 - k : k], 1e-8);
+        }
+        require(says(o.out, "the curve turns back at 0.18708181"), "%s", o.out);
+        assert_exact(value_of("damper.gaps"), 0.0);
+        read_text("damper-family.csv", text);
+        require(says(text, ",periods,message,stable,power1,stick1,open1\n"), "%.200s", text);
+        /* stable, fold, unstable, fold, stable */
+        const char *first = strstr(text, "\"fold\",,"), *second = first ? strstr(first + 1, "\"fold\",,") : NULL,
+                   *unstable = strstr(text, ",0,,0,");
+        require(first && second && unstable > first && unstable < second && !strstr(second, ",0,,0,"), "%s", text);
+        require(strstr(text, ",0,,1,") < first && strstr(second, ",0,,1,"), "%s", text);
+        assert_exact(column_of("damper-family.csv", 2), down ? 0.24 : 0.1);
+        assert_exact(column_of("damper-family.csv", 12), 1.0); /* too far from the resonance to meet the stop */
+    }
+    assert_runs(STOPS "--drive 0.1:0.13:4 --follow up:events"); /* where the amplitude without a stop is the gap */
+    read_text("damper-family.csv", text);
+    const char *graze = strstr(text, "\"graze of contact 1\"");
+    const double mean = 1.0 - 0.005, hz = sqrt(mean - sqrt(mean * mean - 0.84)) / (2.0 * PI);
+    require(graze, "%s", text);
+    while (graze[-1] != '\n') {
+        graze--;
+    }
+    assert_close(strtod(strchr(graze, ',') + 1, NULL), hz, 1e-8);
+    static const char *const wrong[][2] = {{"--drive 0.1 --follow up", "it is for a band"},
+                                           {"--drive 0.1:0.2:3 --follow up --check 1", "takes no --method march or --check"},
+                                           {"--drive 0.1:0.2:3 --follow on", "must be up, down, up:events or down:events"}};
+    for (size_t k = 0; k < COUNT(wrong); k++) {
+        snprintf(text, sizeof text, STOPS "%s", wrong[k][0]);
+        assert_refused(text, wrong[k][0], wrong[k][1]);
+    }
+}
+END_TEST
+
+TEST_MAIN("damper_small", {spring, 1}, {backbone, 1}, {cycle, 1}, {follow, 1}, {loads, 1}, {damping_by_mode, 1}, {field, 1},
+          {normal_load, 1}, {normal_follows, 1}, {plane, 1}, {loose_row, 1}, {own_limit, 1})

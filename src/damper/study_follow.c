@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Curves over the frequency that are followed around their turns. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "output.h"
+#include "study.h"
+#include "team.h"
+
+/* Kinds of special points. */
+static const char *const kinds[] = {
+    [TRIBO_POINT_FOLD] = "fold",   [TRIBO_POINT_FLIP] = "flip",   [TRIBO_POINT_TORUS] = "torus", [TRIBO_POINT_BRANCH] = "branch",
+    [TRIBO_POINT_STICK] = "stick", [TRIBO_POINT_SLIDE] = "slide", [TRIBO_POINT_GRAZE] = "graze", [TRIBO_POINT_ORDER] = "order"};
+
+/* A curve that is followed from the frequency hz. */
+struct trail {
+    struct curve *curve;
+    struct worker *w;
+    double hz;
+};
+
+static struct sample *add_sample(struct curve *c, double hz)
+{
+    c->sample = need_room(c->sample, c->count, &c->room, sizeof *c->sample);
+    struct sample *s = &c->sample[c->count++];
+    *s = (struct sample){
+        .x = hz, .motion = {.limit = c->fixed, .hz = hz, .stable = -1}, .y = need_memory(c->record, sizeof(double))};
+    return s;
+}
+
+static void set_failure(struct motion *m, int status, const struct worker *w)
+{
+    m->found = !status;
+    if (status) {
+        snprintf(m->message, sizeof m->message, "%s: %s", tribo_strerror(status), tribo_driver_message(w->drv));
+    }
+}
+
+static int see_point(const tribo_curve_point *point, void *data)
+{
+    const struct trail *t = data;
+    const struct damper *d = t->w->d;
+    struct sample *s = add_sample(t->curve, point->parameter * t->hz);
+    struct motion *m = &s->motion;
+    s->asked = point->kind == TRIBO_POINT_REGULAR;
+    m->stable = s->asked ? point->stable : -1;
+    memcpy(s->y, point->y, d->dimension * sizeof *s->y);
+    set_failure(m, measure_motion(t->w, m, s->y), t->w);
+    const size_t c = point->contact, contacts = d->contacts;
+    if (m->found && !s->asked && c < d->rows) {
+        snprintf(m->message, sizeof m->message, "%s of %s %zu", kinds[point->kind], c < contacts ? "contact" : "normal",
+                 c < contacts ? c + 1 : c - contacts + 1);
+    } else if (m->found && !s->asked) {
+        snprintf(m->message, sizeof m->message, "%s", kinds[point->kind]);
+    }
+    show_point();
+    return interrupted();
+}
+
+void follow_curve(struct curve *c, struct worker *w)
+{
+    const struct range *band = &w->d->options->drive;
+    const int up = w->d->options->follow > 0;
+    const struct trail t = {c, w, up ? band->from : band->to};
+    const double step = (band->to - band->from) / ((double)(band->points - 1) * t.hz);
+    const tribo_curve curve = {.size = sizeof curve,
+                               .parameter = TRIBO_PARAMETER_FREQUENCY,
+                               .least = band->from / t.hz,
+                               .most = band->to / t.hz,
+                               .step = up ? step : -step,
+                               .coarse = abs(w->d->options->follow) < 2};
+    double period = 1.0 / t.hz, *y = need_memory(w->dimension, sizeof *y);
+    set_point(w, c->fixed, t.hz);
+    const int status = tribo_driver_follow_curve(w->drv, &curve, 0.0, &period, y, see_point, (void *)&t);
+    if (status && !interrupted()) {
+        set_failure(&add_sample(c, 1.0 / period)->motion, status, w);
+    }
+    for (size_t k = 0; k < c->count && w->d->rows > w->d->contacts; k++) {
+        struct sample *s = &c->sample[k];
+        if (s->motion.found) {
+            set_point(w, c->fixed, s->motion.hz);
+            set_failure(&s->motion, measure_openings(w, s->motion.hz, s->y), w);
+        }
+    }
+    free(y);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- the folds */
+
+/* The first sample from `from` on that is a fold; c->count: none. */
+static size_t next_fold(const struct curve *c, size_t from)
+{
+    while (from < c->count && !(c->sample[from].motion.found && strncmp(c->sample[from].motion.message, "fold", 4) == 0)) {
+        from++;
+    }
+    return from;
+}
+
+void report_folds(const struct study *s, const struct curve *c, size_t count)
+{
+    struct study finer = *s;
+    double *fixed = need_memory(count, sizeof *fixed), change = 0.0;
+    size_t folds = 0, others = 0;
+    for (size_t k = 0; k < count; k++) {
+        fixed[k] = c[k].fixed;
+        for (size_t at = next_fold(&c[k], 0), i = 1; at < c[k].count; at = next_fold(&c[k], at + 1), i++, folds++) {
+            const struct motion *m = &c[k].sample[at].motion;
+            printf("  %12.5g  the curve turns back at %.10g, amplitude %.8g: %s\n", m->limit, m->hz, m->amplitude, m->message);
+            write_value(s->tables->values, m->hz, "%s.fold%zu.%zu", s->tables->name, k + 1, i);
+        }
+    }
+    finer.damper = &s->model->finer;
+    struct curve *more = folds && !s->model->whole && !interrupted() ? run_curves(&finer, 0, fixed, count) : NULL;
+    for (size_t k = 0; more && k < count; k++) {
+        size_t at = next_fold(&c[k], 0), there = next_fold(&more[k], 0);
+        for (; there < more[k].count; there = next_fold(&more[k], there + 1), others++) {
+            change = at < c[k].count ? fmax(change, relative_difference(more[k].sample[there].x, c[k].sample[at].x)) : change;
+            at = at < c[k].count ? next_fold(&c[k], at + 1) : at;
+        }
+    }
+    if (more && others == folds) {
+        printf("with %zu modes frequencies at which curves turn back change by %.1e\n", s->model->finer.kept, change);
+    } else if (more && !interrupted()) {
+        printf("with %zu modes curves turn back %zu times, not %zu times: take more --modes\n", s->model->finer.kept, others,
+               folds);
+    }
+    if (more) {
+        free_curves(more, count);
+    }
+    free(fixed);
+}
