@@ -541,7 +541,7 @@ TRIBO_API int tribo_driver_period_derivatives(tribo_driver *drv, size_t count, c
  * index        [count] in       contacts of TRIBO_PARAMETER_LIMIT; not read for other kinds
  * re, im       [count] out      derivatives of the real and the imaginary part
  * Returns what tribo_driver_period_derivatives returns, TRIBO_ERR_RANGE (which), TRIBO_ERR_UNSUPPORTED also for multipliers that
- * are repeated or 0 within rounding, elastic contacts, limits that change, bases that move, and the damping. */
+ * are repeated or 0 within rounding, limits that change, bases that move, and the damping. */
 TRIBO_API int tribo_driver_multiplier_derivatives(tribo_driver *drv, size_t which, size_t count, const int *kind,
                                                   const size_t *index, double *re, double *im);
 

@@ -4,7 +4,7 @@
  * (dD) u is found along the motion: V, the perturbation that begins as u, and DV, its derivative by p, which begins as zero.
  * An event of contact i at time t comes later by
  *     dt = -J_i dq'/v_i' where v_i = 0,  dt = (dlimit_i - d|f_i|)/|f_i|' where contact i breaks away,
- * d: by p at constant time. A phase that lasts dtau longer adds V' dtau to DV. A jump V += c (r V), c = q''+ - q''-,
+ * d: by p at constant time. V jumps at stops of rigid contacts only. A phase that lasts dtau longer adds V' dtau to DV. A jump V += c (r V), c = q''+ - q''-,
  * r = J_i/v_i', adds to DV
  *     c (r DV) + (dc + c' dt) (r V) - c (r V) J_i (dq''- + q'''- dt)/v_i'.
  * For a set of contacts at rest q'' is linear in the state, the load and the limits, so that all these derivatives are
@@ -27,40 +27,42 @@
 /* Columns of w: V, real and imaginary part, then for each parameter DV, likewise. */
 struct second {
     struct sensitivity *d;
-    size_t count, wide; /* parameters; columns of w */
-    double *w;          /* [n][wide] */
-    double *rate;       /* [n][2] V' at the end of the phase */
-    double *before;     /* [n][count] perturbations by p at the end of the phase */
-    double *y;          /* [n] state there */
-    double *bend;       /* [count + 1][ndof] change of q'' there by p, and by time */
-    double *pull;       /* [count + 1][contacts] change of forces of contacts at rest, likewise */
-    double *shift;      /* [count] dt at the end of the phase */
-    double *last;       /* [count] dt at its start */
-    double *z, *after;  /* [n] change of a state; [ndof] of q'' after a jump */
-    double *push, *a;   /* [contacts] workspace */
-    double *along;      /* [wide] workspace */
+    size_t count, wide;        /* parameters; columns of w */
+    double *w;                 /* [n][wide] */
+    double *rate;              /* [n][2] V' at the end of the phase */
+    double *before;            /* [n][count] perturbations by p at the end of the phase */
+    double *y;                 /* [n] state there */
+    double *bend;              /* [count + 1][ndof] change of q'' there by p, and by time */
+    double *pull;              /* [count + 1][contacts] change of forces of contacts at rest, likewise */
+    double *shift;             /* [count] dt at the end of the phase */
+    double *last;              /* [count] dt at its start */
+    double *z, *after;         /* [n] change of a state; [ndof] of q'' after a jump */
+    double *push, *a, *spring; /* [contacts] workspace */
+    double *along;             /* [wide] workspace */
     double tau;
     size_t steps; /* of d at the end of the phase */
     int open;     /* 1: the end of the last phase is not yet in w */
     int status;   /* of an event */
 };
 
-/* to [ndof], f [contacts] = change of q'' and of the forces of contacts at rest by the change x->z of the state, the load dt later,
+/* to [ndof], f [contacts] = change of q'' and of the forces of contacts at rest and of elastic ones by the change x->z of the state, the load dt later,
  * and the limits of sliding contacts by parameter p; p = count: none. Returns a status. */
 static int find_change(struct second *x, double dt, size_t p, double *to, double *f)
 {
     const struct sensitivity *d = x->d;
     struct stick_slip *m = &d->map->events->stick_slip;
     const tribo_system *sys = d->map->sys;
-    tribo_system_smooth(sys, 1, dt, x->z, x->z + sys->ndof, NULL, to);
+    tribo_compliance_get(sys, x->z, x->spring);
+    tribo_system_smooth(sys, 1, dt, x->z, x->z + sys->ndof, x->spring, to);
     for (size_t i = 0; i < d->contacts; i++) {
         const signed char slip = m->state.slip[i];
-        x->push[i] = p < x->count && tribo_slides(slip) ? -slip * d->rise[i * x->count + p] : 0.0;
+        x->push[i] = p < x->count && tribo_slides(slip) && !m->constant.elastic[i] ? -slip * d->rise[i * x->count + p] : 0.0;
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, x->push, to);
     tribo_matrix_multiply(&sys->direction, to, x->a);
     const int status = tribo_stick_slip_balance(m, x->a, f);
     tribo_matrix_multiply_add(&sys->response, 1.0, f, to);
+    tribo_add(f, 1.0, x->spring, d->contacts); /* of elastic contacts, which f lacks */
     return status;
 }
 
@@ -73,6 +75,10 @@ static void change_state(struct second *x, size_t p, double dt)
     for (size_t i = 0; i < n; i++) {
         x->z[i] = x->before[i * x->count + p] + dt * x->y[n + i];
         x->z[n + i] = x->before[(n + i) * x->count + p] + turns * x->y[n + i] + dt * d->variation.acceleration[i];
+    }
+    for (size_t k = 2 * n; k < d->n; k++) {
+        const size_t i = d->map->sys->compliance.contact[k - 2 * n];
+        x->z[k] = x->before[k * x->count + p] + dt * d->variation.spring_rate[i];
     }
 }
 
@@ -108,6 +114,14 @@ int tribo_second_phase(struct second *x, double tau, const double *y)
             x->rate[2 * i + k] = x->z[n + i];
             x->rate[2 * (n + i) + k] = x->after[i];
         }
+        tribo_matrix_multiply(&d->map->sys->direction, x->z + n, x->a);
+        for (size_t i = 0; i < d->contacts; i++) {
+            x->a[i] *= d->map->events->stick_slip.constant.elastic[i];
+        }
+        tribo_compliance_rates(d->map->sys, d->map->events->stick_slip.state.slip, NULL, 1, x->a, x->push);
+        for (size_t i = 2 * n; i < d->n; i++) {
+            x->rate[2 * i + k] = x->push[d->map->sys->compliance.contact[i - 2 * n]];
+        }
     }
     for (size_t p = 0; !status && p < x->count; p++) {
         change_state(x, p, 0.0);
@@ -115,6 +129,9 @@ int tribo_second_phase(struct second *x, double tau, const double *y)
     }
     memcpy(x->z, y + n, n * sizeof *y);
     memcpy(x->z + n, d->variation.acceleration, n * sizeof *y);
+    for (size_t k = 2 * n; k < d->n; k++) {
+        x->z[k] = d->variation.spring_rate[d->map->sys->compliance.contact[k - 2 * n]];
+    }
     status = status ? status : find_change(x, 1.0, x->count, x->bend + x->count * n, x->pull + x->count * d->contacts);
     x->tau = tau;
     x->steps = d->steps.steps;
@@ -127,29 +144,28 @@ static int find_shift(struct second *x)
 {
     const struct sensitivity *d = x->d;
     const struct variation *v = &d->variation;
-    const signed char *now = d->map->events->stick_slip.state.slip;
-    const size_t n = d->map->sys->ndof, stops = v->count ? v->contact[0] : d->contacts;
-    size_t changed = d->contacts, changes = 0;
+    const struct events *e = d->map->events;
+    const signed char *now = e->stick_slip.state.slip;
+    const size_t n = d->map->sys->ndof, at = v->count ? v->contact[0] : e->met ? e->met->contact : 0;
+    size_t changes = 0, own = 0; /* contacts that change: others; the one whose velocity or force ended the phase */
     for (size_t i = 0; i < d->contacts; i++) {
-        const int apart = v->before[i] != now[i] && !(v->count == 1 && v->group[i] == 1);
-        changed = apart ? i : changed;
-        changes += (size_t)apart;
+        const size_t change = v->before[i] != now[i] && !(v->count == 1 && v->group[i] == 1);
+        own += i == at ? change : 0;
+        changes += i == at ? 0 : change;
     }
-    for (size_t p = 0; p < x->count; p++) {
-        const double *pull = x->pull + changed, *by_time = pull + x->count * d->contacts;
+    const int stops = v->count == 1 || (own && tribo_slides(v->before[at]) && now[at] == TRIBO_SLIP_STUCK &&
+                                        e->stick_slip.constant.elastic[at] && e->met->kind == SLIDES);
+    const int breaks = own && !stops && v->before[at] == 0 && tribo_slides(now[at]) && e->met && e->met->kind == HOLDS;
+    for (size_t p = 0; (stops || breaks) && p < x->count; p++) {
+        const double *pull = x->pull + at, *by_time = pull + x->count * d->contacts;
         change_state(x, p, 0.0);
-        if (v->count == 1) {
-            x->shift[p] = -tribo_matrix_row_dot(&d->map->sys->direction, stops, x->z + n) / v->rate[stops];
-        } else if (changes == 1) {
-            x->shift[p] = -(now[changed] * d->rise[changed * x->count + p] + pull[p * d->contacts]) / *by_time;
-        }
+        x->shift[p] = stops ? -tribo_matrix_row_dot(&d->map->sys->direction, at, x->z + n) / v->rate[at]
+                            : -(now[at] * d->rise[at * x->count + p] + pull[p * d->contacts]) / *by_time;
         if (!isfinite(x->shift[p])) {
             return 0;
         }
     }
-    const struct guard *met = d->map->events->met;
-    const int breaks = changes == 1 && v->before[changed] == 0 && met && met->kind == HOLDS && met->contact == changed;
-    return v->count == 1 ? changes == 0 : v->count == 0 && (changes == 0 || breaks);
+    return changes == 0 && v->count <= 1 && (stops || breaks || !own);
 }
 
 void tribo_second_event(struct second *x)
@@ -260,7 +276,7 @@ int tribo_driver_multiplier_derivatives(tribo_driver *drv, size_t which, size_t 
     if (!ALLOCATE(ARRAY(vector, 2 * n), ARRAY(room, 2 * n * n + 2 * tribo_system_dimension(drv->sys)),
                   ARRAY(coordinates, n * wide), ARRAY(x.w, n * wide), ARRAY(x.rate, 2 * n), ARRAY(x.before, n * count),
                   ARRAY(x.y, n), ARRAY(x.bend, (count + 1) * dofs), ARRAY(x.pull, (count + 1) * c), ARRAY(x.shift, count),
-                  ARRAY(x.last, count), ARRAY(x.z, n), ARRAY(x.after, dofs), ARRAY(x.push, c), ARRAY(x.a, c),
+                  ARRAY(x.last, count), ARRAY(x.z, n), ARRAY(x.after, dofs), ARRAY(x.push, c), ARRAY(x.a, c), ARRAY(x.spring, c),
                   ARRAY(x.along, wide))) {
         return tribo_error(drv->message, TRIBO_ERR_MEMORY, "out of memory for derivatives of a multiplier");
     }

@@ -333,7 +333,6 @@ static int differentiate(struct sensitivity *d, struct shooting *s, const size_t
                                 : sys->normals.count                         ? "limits that follow the motion"
                                 : sys->circulation > 0.0                     ? "a stiffness that is not symmetric"
                                 : tribo_system_is_plain(sys) == 0            ? "static limits and contacts in a plane"
-                                : d->second && sys->compliance.count         ? "elastic contacts"
                                 : d->second && tribo_system_limits_vary(sys) ? "limits that change"
                                 : d->second && tribo_system_bases_move(sys)  ? "bases that move"
                                 : d->second && sys->loads.tables             ? "tables"
