@@ -11,7 +11,8 @@
 !>        thread at a time.
 !> N      number of contacts; must be that of TRBNEW
 !>        Limits, epsilons, RDIAG, FMU, DT and RLDT that are denormal, or not 0 but at most 1E-290 beside numbers of at least
-!>        1E-200 in one array, give TRIBO_ERR_RANGE: so a REAL for a DOUBLE PRECISION often reads.
+!>        1E-200 in one array, give TRIBO_ERR_RANGE: so a REAL for a DOUBLE PRECISION often reads. Values of other operators may
+!>        decay: R and VAL that are denormal give it unless the array has others below 1E-200.
 !> IERR   0, or one of the codes of module tribo (TRIBO_ERR_...): outputs are unchanged, and TRBMSG returns the text.
 !>
 !> Registry                                          in                                out
@@ -262,7 +263,6 @@ contains
     integer(c_int64_t) :: bits, least, most, refused
     integer :: i, count
     character(len=20) :: place
-    character(len=120) :: text
 
     if (ierr /= TRIBO_OK) return
     count = 1
@@ -270,22 +270,85 @@ contains
     least = huge(least)
     most = 0
     do i = 1, count
-      bits = iand(transfer(x(i), bits), huge(bits))
+      bits = size_bits(x(i))
       most = max(most, bits)
       if (bits > 0) least = min(least, bits)
     end do
-    refused = transfer(tiny(x), bits) - 1
-    if (most >= transfer(1e-200_dp, bits)) refused = transfer(1e-290_dp, bits)
+    refused = size_bits(tiny(x)) - 1
+    if (most >= size_bits(1e-200_dp)) refused = size_bits(1e-290_dp)
     if (least > refused) return
     do i = 1, count
-      if (iand(transfer(x(i), bits), huge(bits)) == least) exit
+      if (size_bits(x(i)) == least) exit
     end do
     place = ''
     if (present(n)) write (place, '(a,i0,a)') '(', i, ')'
-    write (text, '(3a,es10.3e3,3a)') name, trim(place), ' = ', x(i), ' is neither 0 nor of a usual size: is ', name, &
-      ' DOUBLE PRECISION?'
-    ierr = c_handle_note(ctx, int(TRIBO_ERR_RANGE, c_int), trim(text) // c_null_char)
+    call doubt_precision(ctx, ierr, name, trim(place), x(i))
   end subroutine check_precision
+
+  !> Fails if one of the values of an operator, x(:n, :columns), is denormal. Values may decay so far: no failure if another one is
+  !> between the least normal number and 1E-200; a REAL that is read as a DOUBLE PRECISION seldom is.
+  subroutine check_values(ctx, ierr, name, x, ldx, n, columns)
+    type(c_ptr), intent(in) :: ctx
+    integer, intent(inout) :: ierr
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: ldx, n
+    real(dp), intent(in) :: x(ldx, *)
+    integer, intent(in), optional :: columns
+    integer(c_int64_t) :: bits
+    integer :: i, j, count, found(2)
+    character(len=40) :: place
+
+    if (ierr /= TRIBO_OK) return
+    count = 1
+    if (present(columns)) count = columns
+    found = 0
+    do j = 1, count
+      do i = 1, n
+        bits = size_bits(x(i, j))
+        if (bits >= size_bits(tiny(x)) .and. bits < size_bits(1e-200_dp)) return
+        if (bits > 0 .and. bits < size_bits(tiny(x)) .and. found(1) == 0) found = [i, j]
+      end do
+    end do
+    if (found(1) == 0) return
+    write (place, '(a,i0,a)') '(', found(1), ')'
+    if (present(columns)) write (place, '(a,i0,a,i0,a)') '(', found(1), ',', found(2), ')'
+    call doubt_precision(ctx, ierr, name, trim(place), x(found(1), found(2)))
+  end subroutine check_values
+
+  !> check_values of the entries VAL of n sparse rows; no failure if a row is wrong, or a column, 1 to width, which the library says.
+  subroutine check_entries(ih, ierr, n, width, irow, icol, val)
+    integer, intent(in) :: ih, n, width, irow(*), icol(*)
+    integer, intent(inout) :: ierr
+    real(dp), intent(in) :: val(*)
+    type(c_ptr) :: ctx
+    integer :: count
+
+    if (ierr /= TRIBO_OK) return
+    if (irow(1) /= 1 .or. any(irow(2:n + 1) < irow(:n))) return
+    count = irow(n + 1) - 1
+    if (any(icol(:count) < 1 .or. icol(:count) > width)) return
+    call find(ih, ctx, ierr)
+    call check_values(ctx, ierr, 'VAL', val, max(count, 1), count)
+  end subroutine check_entries
+
+  !> Bits of |x|, larger for larger |x|.
+  elemental integer(c_int64_t) function size_bits(x)
+    real(dp), intent(in) :: x
+
+    size_bits = iand(transfer(x, size_bits), huge(size_bits))
+  end function size_bits
+
+  !> The error of an argument that may be a REAL.
+  subroutine doubt_precision(ctx, ierr, name, place, x)
+    type(c_ptr), intent(in) :: ctx
+    integer, intent(inout) :: ierr
+    character(len=*), intent(in) :: name, place
+    real(dp), intent(in) :: x
+    character(len=120) :: text
+
+    write (text, '(3a,es10.3e3,3a)') name, place, ' = ', x, ' is neither 0 nor of a usual size: is ', name, ' DOUBLE PRECISION?'
+    ierr = c_handle_note(ctx, int(TRIBO_ERR_RANGE, c_int), trim(text) // c_null_char)
+  end subroutine doubt_precision
 
   !> A handle for a context, if there is no error yet.
   subroutine give(ctx, ih, ierr)
@@ -784,8 +847,11 @@ subroutine trbopf(ih, n, r, ldr, ierr)
   real(dp), intent(in) :: r(ldr, *)
   integer, intent(out) :: ierr
   type(tribo_context) :: c
+  type(c_ptr) :: ctx
 
   call borrow(ih, c, ierr, n, 'LDR', ldr, n)
+  if (ierr == TRIBO_OK) call find(ih, ctx, ierr)
+  call check_values(ctx, ierr, 'R', r, ldr, n, n)
   if (ierr == TRIBO_OK) call c%set_operator(r(:n, :n), ierr)
 end subroutine trbopf
 
@@ -798,6 +864,7 @@ subroutine trbops(ih, n, irow, icol, val, ierr)
   type(tribo_context) :: c
 
   call borrow(ih, c, ierr, n)
+  call check_entries(ih, ierr, n, n, irow, icol, val)
   if (ierr == TRIBO_OK) call c%set_operator_csr(irow(:n + 1), icol(:max(irow(n + 1) - 1, 0)), val(:max(irow(n + 1) - 1, 0)), ierr)
 end subroutine trbops
 
@@ -810,6 +877,7 @@ subroutine trbopm(ih, n, ndof, rminv, irow, icol, val, ierr)
   type(tribo_context) :: c
 
   call borrow(ih, c, ierr, n, 'NDOF', ndof, 0)
+  call check_entries(ih, ierr, n, ndof, irow, icol, val)
   if (ierr /= TRIBO_OK) return
   call c%set_operator_mass(rminv(:ndof), irow(:n + 1), icol(:max(irow(n + 1) - 1, 0)), val(:max(irow(n + 1) - 1, 0)), ierr)
 end subroutine trbopm
@@ -827,6 +895,7 @@ subroutine trbopc(ih, n, ndof, minv, irow, icol, val, rpar, ipar, ierr)
   type(external_mass) :: mass
 
   call borrow(ih, c, ierr, n, 'NDOF', ndof, 0)
+  call check_entries(ih, ierr, n, ndof, irow, icol, val)
   if (ierr /= TRIBO_OK) return
   mass%minv => minv
   mass%rpar => rpar(:1)
@@ -847,6 +916,7 @@ subroutine trbupd(ih, nval, val, ierr)
   if (ierr == TRIBO_OK) ierr = c_get_count(ctx, int(TRIBO_COUNT_VALUES, c_int), count)
   if (ierr /= TRIBO_OK) return
   if (count > 0 .and. nval /= count) call refuse(ctx, ierr, 'NVAL', nval, ' is not ', int(count))
+  call check_values(ctx, ierr, 'VAL', val, max(nval, 1), int(count))
   if (ierr == TRIBO_OK) ierr = told(ctx, c_update_operator(ctx, val))
 end subroutine trbupd
 

@@ -422,9 +422,11 @@ C     A place in the table lasts for 2047 handles.
 C
 C     A REAL that is read as a DOUBLE PRECISION is refused; 0 is not.
       SUBROUTINE SINGLE
-      INTEGER IH, IERR
+      INTEGER IH, IERR, IROW(3), ICOL(2)
       REAL S(2)
-      DOUBLE PRECISION D(1), X(2), Y(2)
+      DOUBLE PRECISION D(1), X(2), Y(2), R(2,2)
+      CHARACTER*56 SAYS
+      EXTERNAL MINV
       EQUIVALENCE (S, D)
       CALL TRBNEW(2, IH, IERR)
       S(1) = 1.0
@@ -464,5 +466,56 @@ C     Not in the way of others: 0, small ones alone, and far ones.
       X(2) = 1D-300
       CALL TRBLIM(IH, 2, X, IERR)
       CALL EXPECT('1D-300 alone', IERR .EQ. 0)
+C     Values of operators; small ones beside one of 1D-250 decay.
+      SAYS = ' neither 0 nor of a usual size: is VAL DOUBLE PRECISION?'
+      X(1) = 2D0
+      X(2) = 3D0
+      CALL TRBOPD(IH, 2, X, IERR)
+      X(2) = D(1)
+      CALL TRBUPD(IH, 2, X, IERR)
+      CALL WANTED('TRBUPD', IH, IERR, 5, 'VAL(2) = 5.264E-315 is'//SAYS)
+      X(1) = 1D-250
+      CALL TRBUPD(IH, 2, X, IERR)
+      CALL EXPECT('TRBUPD, decay', IERR .EQ. 0)
+      R(1,1) = 2D0
+      R(1,2) = D(1)
+      R(2,1) = D(1)
+      R(2,2) = 3D0
+      CALL TRBOPF(IH, 2, R, 2, IERR)
+      CALL WANTED('TRBOPF', IH, IERR, 5, 'R(2,1) = 5.264E-315 is'//
+     1' neither 0 nor of a usual size: is R DOUBLE PRECISION?')
+      R(2,2) = 1D-250
+      CALL TRBOPF(IH, 2, R, 2, IERR)
+      CALL EXPECT('TRBOPF, decay', IERR .EQ. 0)
+      R(2,2) = 3D0
+      CALL TRBUPD(IH, 4, R, IERR)
+      CALL WANTED('TRBUPD', IH, IERR, 5, 'VAL(2) = 5.264E-315 is'//SAYS)
+      R(1,2) = 0D0
+      R(2,1) = -0D0
+      CALL TRBUPD(IH, 4, R, IERR)
+      CALL EXPECT('TRBUPD, 0', IERR .EQ. 0)
+      IROW(1) = 1
+      IROW(2) = 2
+      IROW(3) = 3
+      ICOL(1) = 1
+      ICOL(2) = 2
+      X(1) = 2D0
+      Y(1) = 1D0
+      Y(2) = 1D0
+      CALL TRBOPS(IH, 2, IROW, ICOL, X, IERR)
+      CALL WANTED('TRBOPS', IH, IERR, 5, 'VAL(2) = 5.264E-315 is'//SAYS)
+      CALL TRBOPM(IH, 2, 2, Y, IROW, ICOL, X, IERR)
+      CALL WANTED('TRBOPM', IH, IERR, 5, 'VAL(2) = 5.264E-315 is'//SAYS)
+      CALL TRBOPC(IH, 2, 2, MINV, IROW, ICOL, X, Y, IROW, IERR)
+      CALL WANTED('TRBOPC', IH, IERR, 5, 'VAL(2) = 5.264E-315 is'//SAYS)
+C     A wrong row or column is named first.
+      ICOL(2) = 3
+      CALL TRBOPS(IH, 2, IROW, ICOL, X, IERR)
+      CALL WANTED('TRBOPS', IH, IERR, 5,
+     1            'col(2) = 3 is not in 1 to 2')
+      ICOL(2) = 2
+      IROW(2) = 4
+      CALL TRBOPM(IH, 2, 2, Y, IROW, ICOL, X, IERR)
+      CALL EXPECT('TRBOPM, row', IERR .NE. 0 .AND. IERR .NE. 5)
       CALL TRBDEL(IH, IERR)
       END
