@@ -87,6 +87,7 @@
 !>                                                   TRBDRV
 !>   TRBADV(IH, NDOF, T, T1, Y, IERR)                T, Y, T1 >= T                     T, Y there; on error the last good step
 !>   TRBPER(IH, NDOF, T, PERIOD, Y, IERR)            T, PERIOD of the loads; Y guess   Y at T of a periodic motion
+!>   TRBRNG(IH, NSECT, IORDER, IERR)                 NSECT equal sectors, 0: no ring; IORDER: engine order of TRBPER's loads
 !>   TRBCYC(IH, NDOF, T, PERIOD, Y, IERR)            T; PERIOD, Y guess, PERIOD 0: none    PERIOD and Y at T of a cycle
 !>   TRBNLM(IH, NDOF, CV, AMPL, OMEGA, ZETA, Y,      CV(2*NDOF), AMPL of CV'Y; OMEGA, ZETA OMEGA, ZETA and Y of a nonlinear mode
 !>          IERR)                                    and Y guess, OMEGA 0, Y 0: none
@@ -955,6 +956,17 @@ subroutine trbper(ih, ndof, t, period, y, ierr)
   call find_driven(ih, s, ierr, ndof)
   if (ierr == TRIBO_OK) call s%driver%find_periodic(t, period, y(:s%system%dimension()), ierr)
 end subroutine trbper
+
+subroutine trbrng(ih, nsect, iorder, ierr)
+  use tribo_fixed_dynamics
+  implicit none
+  integer, intent(in) :: ih, nsect, iorder
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_driven(ih, s, ierr)
+  if (ierr == TRIBO_OK) call s%driver%set_ring(nsect, iorder, ierr)
+end subroutine trbrng
 
 subroutine trbcyc(ih, ndof, t, period, y, ierr)
   use tribo_fixed_dynamics

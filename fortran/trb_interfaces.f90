@@ -647,6 +647,11 @@ module trb_interfaces
       integer, intent(out) :: ierr
     end subroutine trbper
 
+    subroutine trbrng(ih, nsect, iorder, ierr)
+      integer, intent(in) :: ih, nsect, iorder
+      integer, intent(out) :: ierr
+    end subroutine trbrng
+
     subroutine trbcyc(ih, ndof, t, period, y, ierr)
       integer, intent(in) :: ih, ndof
       double precision, intent(in) :: t

@@ -99,7 +99,7 @@ module tribo_systems
     procedure, private :: count_short, count_long
     generic :: count => count_short, count_long
     procedure :: real => driver_real
-    procedure :: find_periodic, find_cycle, find_mode
+    procedure :: set_ring, find_periodic, find_cycle, find_mode
     procedure :: follow_curve
     procedure :: get_multipliers
     procedure :: get_freedom
@@ -1287,6 +1287,23 @@ contains
     if (w%status == TRIBO_OK) value = found(1)
     call finish(w, stat, errmsg)
   end subroutine driver_real
+
+  !> find_periodic is about a ring of equal sectors from now on, sectors 0: no ring; see tribo_driver_set_ring.
+  subroutine set_ring(this, sectors, order, stat, errmsg)
+    class(tribo_driver), intent(inout) :: this
+    integer, intent(in) :: sectors, order
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_driver(this, w)
+    call expect_count(w, 'sectors', sectors)
+    call expect_count(w, 'order', order)
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_set_ring(w%object, int(sectors, c_size_t), int(order, c_size_t))
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine set_ring
 
   !> A periodic motion, from a guess y; see tribo_driver_find_periodic.
   subroutine find_periodic(this, t, period, y, stat, errmsg)

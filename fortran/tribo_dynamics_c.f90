@@ -666,6 +666,14 @@ module tribo_dynamics_c
       integer(c_int) :: answer
     end function c_driver_find_periodic
 
+    function c_driver_set_ring(drv, sectors, order) result(answer) bind(c,name='tribo_driver_set_ring')
+      import
+      type(c_ptr), value :: drv
+      integer(c_size_t), value :: sectors
+      integer(c_size_t), value :: order
+      integer(c_int) :: answer
+    end function c_driver_set_ring
+
     function c_driver_find_cycle(drv, t, period, y) result(answer) bind(c,name='tribo_driver_find_cycle')
       import
       type(c_ptr), value :: drv

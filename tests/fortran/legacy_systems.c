@@ -39,6 +39,9 @@ static void put_period(tribo_driver *drv, double *y)
     put_one(tribo_driver_multiplier_derivatives(drv, 1, 2, kind, index, re, im));
     put(2, re);
     put(2, im);
+    put_one(tribo_driver_set_ring(drv, 2, 1));
+    put_one(tribo_driver_find_periodic(drv, 0.5, 7.853981633974483, y));
+    put_one(tribo_driver_set_ring(drv, 0, 0));
     tribo_driver_count(drv, TRIBO_COUNT_PERIODS, &count);
     put_one((double)count);
 }

@@ -53,6 +53,7 @@ program models
   call compliance()
   call normal()
   call cycle_of_belt()
+  call ring_of_three()
   call report()
 
 contains
@@ -352,4 +353,45 @@ contains
     call d%find_cycle(0.0_dp, period, y(:2), stat)
     call require(stat == TRIBO_ERR_SIZE, 'cycle: a short state')
   end subroutine cycle_of_belt
+
+  !> Three equal bodies in a ring, under a load of order 1: as without the ring, whose other direction is refused.
+  subroutine ring_of_three()
+    type(tribo_model) :: model
+    type(tribo_system) :: s
+    type(tribo_driver) :: d
+    type(tribo_context) :: c
+    real(dp) :: k(3, 3), eye(3, 3), y(7), ring(7), third
+    integer :: j, stat
+
+    third = 2*acos(-1.0_dp)/3
+    k = -0.5_dp
+    eye = 0
+    do j = 1, 3
+      k(j, j) = 2
+      eye(j, j) = 1
+    end do
+    call model%create(3, 3)
+    call model%set_mass([1.0_dp, 1.0_dp, 1.0_dp])
+    call model%set_damping([0.1_dp, 0.1_dp, 0.1_dp])
+    call model%set_stiffness(k)
+    call model%set_direction(eye)
+    call s%create(model)
+    call s%context(c)
+    call c%set_limit(0.3_dp)
+    call s%add_load(0.9_dp, cosine=[(cos(j*third), j=0, 2)], sine=[(sin(j*third), j=0, 2)])
+    call d%create(s, 'exact')
+    y = 0
+    call d%find_periodic(0.0_dp, 3*third/0.9_dp, y)
+    call d%set_ring(3, 1)
+    ring = 0
+    call d%find_periodic(0.0_dp, 3*third/0.9_dp, ring)
+    call require(all(abs(ring - y) < 1e-11_dp) .and. abs(y(1)) > 0.1_dp, 'ring: the same motion')
+    call d%set_ring(3, 2)
+    call d%find_periodic(0.0_dp, 3*third/0.9_dp, ring, stat)
+    call require(stat == TRIBO_ERR_RANGE, 'ring: the other direction')
+    call d%set_ring(2, 1, stat)
+    call require(stat == TRIBO_ERR_RANGE, 'ring: two sectors of three bodies')
+    call d%set_ring(-3, 1, stat)
+    call require(stat == TRIBO_ERR_NEGATIVE, 'ring: a negative number of sectors')
+  end subroutine ring_of_three
 end program models

@@ -230,7 +230,7 @@ static int search_cycle(struct shooting *s, struct course *c, double guess, doub
         return status;
     }
     return tribo_error(s->map.drv->message, TRIBO_ERR_NO_CONVERGENCE, "no cycle was found in %g times of %g: %s",
-                       0.5 * (double)s->map.halves, time,
+                       tribo_periods_followed(&s->map), time,
                        rests          ? "the motion comes to rest, or near to a state of rest"
                        : period > 0.0 ? "the motion does not come back to its beginning"
                                       : "the motion does not come back near to a state that it had");
@@ -320,7 +320,7 @@ int tribo_shooting_find_cycle(struct shooting *s, struct wanted *w)
     if (!status) {
         tribo_shooting_keep(s, w);
     }
-    s->map.drv->periods += (s->map.halves + 1) / 2;
+    s->map.drv->periods += (size_t)ceil(tribo_periods_followed(&s->map));
     free(c.state);
     return status;
 }

@@ -19,6 +19,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* In a ring all sectors have the forces of sector 0, later by multiples of lag: f has the contacts of sector 0 only, and A_ij is
+ * the sum over all sectors j of the mobilities times e^{-i w lag j}. */
+
 /* N = number of modes, rounded down to even, within these bounds; at most N sweeps. */
 enum { LEAST_TIMES = 32, MOST_TIMES = 96 };
 
@@ -36,24 +39,26 @@ enum { LEAST_TIMES = 32, MOST_TIMES = 96 };
  * Re((1 - i) z e^{i w_p j h})/sqrt(N). */
 struct forecast {
     struct period_map *m;
-    size_t modes, contacts, times; /* times: N, even */
+    double span;                   /* half a period */
+    size_t modes, contacts, times; /* contacts: of sector 0; times: N, even */
+    size_t sectors;                /* 1: no ring */
     double *wave, *back;           /* [N][N] its transpose */
     double complex *receptance;    /* [N/2][modes] H_k */
-    double *shape;                 /* [contacts][modes] J phi_k */
+    double *shape;                 /* [sectors contacts][modes] J phi_k */
     double complex *inverse;       /* [N/2][contacts][contacts] (1 + rho A)^-1 */
     double *rho;                   /* [contacts] */
-    double *limit, *v, *f, *s;     /* [contacts][N]; v: v_0 */
-    double *y, *part;              /* [contacts][N] workspace */
+    double *limit, *v, *f, *s;     /* [sectors contacts][N], of which sweeps have those of sector 0; v: v_0 */
+    double *y, *part;              /* [sectors contacts][N] workspace */
     double *load, *motion;         /* [modes][N] spectra of forces on modes; workspace */
     double complex *matrix;        /* [contacts][contacts] workspace */
-    double *at;                    /* [contacts] workspace */
+    double *at;                    /* [sectors contacts] workspace */
     int *pivot;                    /* [contacts] workspace */
 };
 
 /* w_p. */
 static double harmonic(const struct forecast *x, size_t p)
 {
-    return acos(-1.0) * (double)(2 * p + 1) / x->m->span;
+    return acos(-1.0) * (double)(2 * p + 1) / x->span;
 }
 
 /* Get and put z at harmonic p of row `row` of spectra. */
@@ -84,6 +89,13 @@ static double complex mobility(const struct forecast *x, size_t p, size_t i, siz
     return harmonic(x, p) * sum * I;
 }
 
+/* Returns e^{-i w_p lag sector}. */
+static double complex delay(const struct forecast *x, size_t p, size_t sector)
+{
+    const double angle = harmonic(x, p) * x->m->ring.lag * (double)sector;
+    return cos(angle) - sin(angle) * I;
+}
+
 /* to [rows][N] = from by wave or back, from values to spectra by back. */
 static void transform(const struct forecast *x, size_t rows, const double *by, const double *from, double *to)
 {
@@ -105,11 +117,11 @@ static int forecast_modes(struct forecast *x)
         }
         x->receptance[at] = 1.0 / stiffness;
     }
-    for (size_t at = 0; at < x->contacts * x->modes; at++) {
+    for (size_t at = 0; at < x->sectors * x->contacts * x->modes; at++) {
         x->shape[at] = tribo_matrix_row_dot(&x->m->sys->direction, at / x->modes, norm->phi + at % x->modes * x->modes);
     }
     for (size_t at = 0; at < times * times; at++) {
-        const double turn = harmonic(x, at / times) * (double)(at % times) * x->m->span / (double)times;
+        const double turn = harmonic(x, at / times) * (double)(at % times) * x->span / (double)times;
         x->wave[at] = (cos(turn) + sin(turn)) / sqrt((double)times);
     }
     tribo_transpose(times, times, x->wave, x->back);
@@ -134,6 +146,14 @@ static void find_inverses(struct forecast *x)
             inverse[at] = i == j;
             x->matrix[at] = inverse[at] + x->rho[i] * mobility(x, p, i, j, own);
         }
+        for (size_t sector = 1; sector < x->sectors; sector++) {
+            const double complex later = delay(x, p, sector);
+            for (size_t at = 0; at < c * c; at++) {
+                const size_t i = at / c, j = sector * c + at % c;
+                const double own = tribo_compliance_entry(&x->m->sys->compliance, i, j);
+                x->matrix[at] += x->rho[i] * mobility(x, p, i, j, own) * later;
+            }
+        }
         zgesv_(&count, &count, x->matrix, &count, x->pivot, inverse, &count, &info);
     }
 }
@@ -141,16 +161,16 @@ static void find_inverses(struct forecast *x)
 /* Sets v, limit and load. */
 static void find_drive(struct forecast *x)
 {
-    const size_t c = x->contacts, n = x->modes, times = x->times;
+    const size_t c = x->contacts, all = x->sectors * c, n = x->modes, times = x->times;
     tribo_system *sys = x->m->sys;
     for (size_t j = 0; j < times; j++) {
-        tribo_system_set_time(sys, x->m->t + (double)j * x->m->span / (double)times);
+        tribo_system_set_time(sys, x->m->t + (double)j * x->span / (double)times);
         tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, x->motion + j * n);
-        tribo_system_loads(sys, DRIVES_BASE, 0, -1.0, x->f + j * c);
-        tribo_system_limits(sys, x->y + j * c, x->at);
+        tribo_system_loads(sys, DRIVES_BASE, 0, -1.0, x->f + j * all);
+        tribo_system_limits(sys, x->y + j * all, x->at);
     }
-    tribo_transpose(times, c, x->f, x->v);
-    tribo_transpose(times, c, x->y, x->limit);
+    tribo_transpose(times, all, x->f, x->v);
+    tribo_transpose(times, all, x->y, x->limit);
     tribo_transpose(times, n, x->motion, x->load);
     memset(x->motion, 0, n * times * sizeof *x->motion);
     tribo_multiply_add(n, n, times, 1.0, x->m->norm.psi, x->load, x->motion);
@@ -198,9 +218,20 @@ static void forecast_forces(struct forecast *x)
 static void forecast_state(struct forecast *x)
 {
     struct period_map *m = x->m;
-    const size_t n = x->modes, times = x->times;
-    transform(x, x->contacts, x->back, x->f, x->part);
-    tribo_multiply_transposed_add(x->contacts, n, times, x->shape, x->part, x->load);
+    const size_t n = x->modes, times = x->times, c = x->contacts, all = x->sectors * c;
+    transform(x, c, x->back, x->f, x->part);
+    for (size_t sector = 1; sector < x->sectors; sector++) {
+        for (size_t p = 0; p < times / 2; p++) {
+            const double complex later = delay(x, p, sector);
+            for (size_t i = 0; i < c; i++) {
+                put(x, x->part, sector * c + i, p, get(x, x->part, i, p) * later);
+            }
+        }
+    }
+    if (x->sectors > 1) {
+        transform(x, all, x->wave, x->part, x->f);
+    }
+    tribo_multiply_transposed_add(all, n, times, x->shape, x->part, x->load);
     memset(m->y, 0, (m->n + 1) * sizeof *m->y);
     for (size_t k = 0; k < n; k++) {
         double complex eta = 0.0, rate = 0.0;
@@ -212,7 +243,7 @@ static void forecast_state(struct forecast *x)
         tribo_add(m->y, creal(eta), m->norm.phi + k * n, n);
         tribo_add(m->y + n, creal(rate), m->norm.phi + k * n, n);
     }
-    for (size_t i = 0; i < x->contacts; i++) {
+    for (size_t i = 0; i < all; i++) {
         x->at[i] = x->f[i * times];
     }
     tribo_compliance_put(m->sys, x->at, m->y);
@@ -220,14 +251,15 @@ static void forecast_state(struct forecast *x)
 
 int tribo_forecast(struct period_map *m, double *x, int *done)
 {
-    const size_t n = m->sys->ndof, c = m->sys->ncontact, even = n - n % 2;
+    const size_t n = m->sys->ndof, sectors = m->ring.sectors ? m->ring.sectors : 1, all = m->sys->ncontact, c = all / sectors;
+    const size_t even = n - n % 2;
     const size_t times = even < LEAST_TIMES ? LEAST_TIMES : even > MOST_TIMES ? MOST_TIMES : even;
-    struct forecast f = {.m = m, .modes = n, .contacts = c, .times = times};
-    if (!ALLOCATE(ARRAY(f.receptance, times / 2 * n), ARRAY(f.shape, n * c), ARRAY(f.wave, times * times),
-                  ARRAY(f.back, times * times), ARRAY(f.inverse, times / 2 * c * c), ARRAY(f.limit, times * c),
-                  ARRAY(f.v, times * c), ARRAY(f.f, times * c), ARRAY(f.s, times * c), ARRAY(f.y, times * c),
-                  ARRAY(f.part, times * c), ARRAY(f.load, times * n), ARRAY(f.motion, times * n), ARRAY(f.matrix, c * c),
-                  ARRAY(f.rho, c), ARRAY(f.at, c), ARRAY(f.pivot, c))) {
+    struct forecast f = {.m = m, .span = 0.5 * m->period, .modes = n, .contacts = c, .times = times, .sectors = sectors};
+    if (!ALLOCATE(ARRAY(f.receptance, times / 2 * n), ARRAY(f.shape, n * all), ARRAY(f.wave, times * times),
+                  ARRAY(f.back, times * times), ARRAY(f.inverse, times / 2 * c * c), ARRAY(f.limit, times * all),
+                  ARRAY(f.v, times * all), ARRAY(f.f, times * all), ARRAY(f.s, times * all), ARRAY(f.y, times * all),
+                  ARRAY(f.part, times * all), ARRAY(f.load, times * n), ARRAY(f.motion, times * n), ARRAY(f.matrix, c * c),
+                  ARRAY(f.rho, c), ARRAY(f.at, all), ARRAY(f.pivot, c))) {
         return tribo_error(m->drv->message, TRIBO_ERR_MEMORY, "out of memory for the forces of %zu contact%s", c, plural(c));
     }
     *done = c > 0 && tribo_lapack_takes(c) && forecast_modes(&f);

@@ -194,20 +194,31 @@ static int follow_path(struct shooting *s, double period, double delta, double r
     return status;
 }
 
-int tribo_shooting_create_twin(struct shooting *s, int steady)
+void tribo_shooting_leave_twin(struct shooting *s)
 {
-    tribo_driver *drv = s->map.drv;
     tribo_driver_destroy(s->twin.drv);
     tribo_system_destroy(s->twin.sys);
     s->twin = (struct twin){NULL, NULL};
-    int status = tribo_driver_pass(drv, tribo_system_clone(drv->sys, &s->twin.sys));
+}
+
+int tribo_shooting_create_twin(struct shooting *s, int steady)
+{
+    tribo_driver *drv = s->map.drv;
+    tribo_shooting_leave_twin(s);
+    const int status = tribo_driver_pass(drv, tribo_system_clone(drv->sys, &s->twin.sys));
     if (status) {
         return status;
     }
     if (steady) {
         tribo_loads_keep_constant(s->twin.sys);
     }
-    status = tribo_driver_create(&s->twin.drv, s->twin.sys, drv->at_work->name);
+    return tribo_shooting_drive_twin(s);
+}
+
+int tribo_shooting_drive_twin(struct shooting *s)
+{
+    const tribo_driver *drv = s->map.drv;
+    const int status = tribo_driver_create(&s->twin.drv, s->twin.sys, drv->at_work->name);
     if (status) {
         return tribo_error(drv->message, status, "%s", tribo_system_message(s->twin.sys));
     }
@@ -263,7 +274,7 @@ int tribo_shooting_find_mode(struct shooting *s, struct wanted *w)
         tribo_error(s->map.drv->message, status, "%s", tribo_driver_message(t->map.drv));
     }
     s->map.drv->newton += t->map.drv->newton;
-    s->map.drv->periods += (t->map.halves + 1) / 2;
+    s->map.drv->periods += (size_t)ceil(tribo_periods_followed(&t->map));
     t->mode = NULL;
     free(mode.x);
     return status;

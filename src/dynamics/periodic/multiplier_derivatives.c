@@ -262,8 +262,9 @@ int tribo_driver_multiplier_derivatives(tribo_driver *drv, size_t which, size_t 
         return status ? status : tribo_error(drv->message, TRIBO_ERR_SIZE, "count = 0");
     }
     struct shooting *s = drv->shooting;
-    if (s->told->extra.count) {
-        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "derivatives of multipliers are found without an unknown period");
+    if (s->told->extra.count || s->told->map.ring.sectors) {
+        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "derivatives of multipliers are found without %s",
+                           s->told->extra.count ? "an unknown period" : "a ring");
     }
     const size_t n = s->map.n, dofs = drv->sys->ndof, c = drv->sys->ncontact, wide = 2 + 2 * count;
     if (which >= n) {

@@ -330,6 +330,7 @@ static int differentiate(struct sensitivity *d, struct shooting *s, const size_t
     int status = TRIBO_OK;
     const tribo_system *sys = drv->sys;
     const char *const without = s->told->extra.count                         ? "an unknown period"
+                                : s->told->map.ring.sectors                  ? "a ring"
                                 : sys->normals.count                         ? "limits that follow the motion"
                                 : sys->circulation > 0.0                     ? "a stiffness that is not symmetric"
                                 : tribo_system_is_plain(sys) == 0            ? "static limits and contacts in a plane"

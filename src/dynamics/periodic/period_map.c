@@ -94,9 +94,26 @@ int tribo_period_map_march(struct period_map *m, double time, size_t times, stru
     return status;
 }
 
-/* x [n][columns] = coordinates of states y, or of -y if odd. */
+void tribo_ring_turn(const struct period_map *m, size_t step, double sign, size_t columns, const double *y, double *to)
+{
+    const struct ring *r = &m->ring;
+    const size_t block[] = {m->sys->ndof, m->sys->ndof, m->n - 2 * m->sys->ndof};
+    for (size_t b = 0; b < 3; y += block[b] * columns, to += block[b] * columns, b++) {
+        const size_t values = block[b] / r->sectors * columns;
+        for (size_t i = 0; i < r->sectors * values; i++) {
+            const size_t from = i + step * values, wrap = r->sectors * values;
+            to[i] = from < wrap ? sign * y[from] : (r->alternates ? -sign : sign) * y[from - wrap];
+        }
+    }
+}
+
+/* x [n][columns] = coordinates of states y, in a ring turned back, or of -y if odd. */
 static void find_image(const struct period_map *m, int odd, size_t columns, const double *y, double *x)
 {
+    if (m->ring.sectors) {
+        tribo_ring_turn(m, m->ring.step, m->ring.reversed ? -1.0 : 1.0, columns, y, m->turned);
+        y = m->turned;
+    }
     tribo_energy_norm_of(&m->norm, columns, y, x);
     for (size_t i = 0; odd && i < m->n * columns; i++) {
         x[i] = -x[i];
@@ -138,6 +155,18 @@ static void lower_springs(struct period_map *m)
     }
 }
 
+/* Turns the contacts at rest of a ring back as the state after a span. Returns a status, its message on the system's context. */
+static int turn_contacts(struct period_map *m, struct stick_slip *contacts)
+{
+    const size_t count = m->sys->ncontact, by = m->ring.step * (count / m->ring.sectors);
+    signed char *before = (signed char *)m->limit;
+    memcpy(before, contacts->state.slip, count);
+    for (size_t i = 0; i < count; i++) {
+        tribo_stick_slip_set(contacts, i, before[(i + by) % count]);
+    }
+    return tribo_stick_slip_find_holds(contacts, m->sys);
+}
+
 /* Sets m->y = the state of coordinates x, corrected for rounding of velocities at contacts that rest since the last integration,
  * and for spring forces above limits. Returns a status. */
 static int enter(struct period_map *m, const double *x)
@@ -150,7 +179,9 @@ static int enter(struct period_map *m, const double *x)
         tribo_system_set_time(m->sys, m->t);
         memset(contacts->state.base, 0, m->sys->ncontact * sizeof *contacts->state.base);
         tribo_system_loads(m->sys, DRIVES_BASE, 0, 1.0, contacts->state.base);
-        status = tribo_driver_pass(m->drv, tribo_stick_slip_hold(contacts, m->sys, contacts->state.base, m->y + m->sys->ndof));
+        status = m->ring.sectors ? turn_contacts(m, contacts) : TRIBO_OK;
+        status = status ? status : tribo_stick_slip_hold(contacts, m->sys, contacts->state.base, m->y + m->sys->ndof);
+        status = tribo_driver_pass(m->drv, status);
     }
     lower_springs(m);
     return status;
@@ -230,6 +261,12 @@ int tribo_period_map_matrix(struct period_map *m, struct point *p)
         p->derivative.matrix = NULL;
     }
     return status;
+}
+
+void tribo_period_map_turn(struct period_map *m, double *x)
+{
+    tribo_energy_norm_state(&m->norm, 1, x, m->y);
+    find_image(m, 0, 1, m->y, x);
 }
 
 int tribo_period_map_complete(struct period_map *m, struct point *p)
@@ -347,9 +384,7 @@ int tribo_period_map_find_touch(struct period_map *m, const double *y, int chang
 
 /* -------------------------------------------------------------------------------------------------------------- preparation */
 
-/* Returns 1 if, half a period later, loads and bases have the opposite sign and limits are the same. Limits that follow the
- * motion are not. */
-static int is_odd(const tribo_system *sys, double period)
+int tribo_system_is_odd(const tribo_system *sys, double period)
 {
     if (sys->normals.count) {
         return 0;
@@ -395,7 +430,9 @@ static double least_motion(struct period_map *m)
 int tribo_period_map_prepare(struct period_map *m, double t, double period, const double *y)
 {
     m->halves = 0;
-    int status = m->drv->at_work->open(m->drv, &m->events);
+    m->turned = m->turned || !m->ring.sectors ? m->turned : calloc(m->n * m->n + 1, sizeof *m->turned);
+    int status = m->turned || !m->ring.sectors ? m->drv->at_work->open(m->drv, &m->events)
+                                               : tribo_error(m->drv->message, TRIBO_ERR_MEMORY, "out of memory for a ring");
     if (!status && !m->norm.phi) {
         status = tribo_driver_pass(m->drv, tribo_energy_norm_create(&m->norm, m->sys));
         if (status) {
@@ -408,7 +445,8 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period, cons
     m->t = t;
     m->period = period;
     m->moved = 0;
-    tribo_period_map_choose(m, is_odd(m->sys, period));
+    m->alternates = tribo_system_is_odd(m->sys, period);
+    tribo_period_map_choose(m, m->alternates && !m->ring.sectors);
     tribo_energy_norm_set(&m->norm, m->sys, LEAST_OMEGA * FULL_TURN / period);
     /* size of the motion: the larger of least and the guess y */
     const double least = least_motion(m);
@@ -431,7 +469,7 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period, cons
 void tribo_period_map_choose(struct period_map *m, int odd)
 {
     m->odd = odd;
-    m->span = odd ? 0.5 * m->period : m->period;
+    m->span = odd ? 0.5 * m->period : m->ring.sectors ? m->period / (double)m->ring.parts : m->period;
 }
 
 /* -------------------------------------------------------------------------------------------------------------- life */
@@ -448,6 +486,7 @@ void tribo_period_map_free(struct period_map *m)
 {
     tribo_energy_norm_free(&m->norm);
     tribo_variation_free(&m->variation);
+    free(m->turned);
     free(m->y);
     memset(m, 0, sizeof *m);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The map x -> image over one period, and its derivative. If all drives are odd (loads and bases change sign after half a
- * period), the map to minus the state after half a period replaces it: applied twice it is the map over a period. */
+ * period), the map to minus the state after half a period replaces it: applied twice it is the map over a period. In a ring the
+ * map to the state after a part of the period, turned back by some sectors, replaces it (struct ring). */
 #ifndef TRIBO_PERIOD_MAP_H
 #define TRIBO_PERIOD_MAP_H
 
@@ -23,6 +24,16 @@ struct point {
     int odd;                                                        /* 1: image is that of -end */
 };
 
+/* A ring of equal sectors with x_j+1(t) = x_j(t - lag), sector j + sectors = sector j. */
+struct ring {
+    size_t sectors;    /* 0: the map is that of no ring, and the other members are not read */
+    size_t step;       /* below sectors: sector j + step after the span = sector j before, times -1 if reversed = 1 */
+    size_t parts;      /* of the period, each a span */
+    size_t alternates; /* 1: sector j + sectors = minus sector j */
+    int reversed;
+    double lag;
+};
+
 struct period_map {
     struct company company; /* of follow: the first member */
     tribo_driver *drv;
@@ -36,11 +47,20 @@ struct period_map {
     size_t columns;         /* n, or fewer if phases are kept */
     double *limit;          /* [2 ncontact] workspace */
     double t, period, span; /* span: length of an integration of the map */
+    int alternates;         /* 1: all drives are odd */
     int odd;                /* 1: span = period/2 */
+    struct ring ring;       /* span = period/parts */
+    double *turned;         /* [n][n] workspace; NULL before the first ring */
     double size, least;     /* size: largest |x| of this integration so far; motions below `least` are rounding */
     int moved;              /* 1: follow has integrated since prepare */
-    size_t halves;          /* half periods integrated since prepare */
+    size_t halves;          /* half periods integrated since prepare; of a ring, parts */
 };
+
+/* Returns the number of periods integrated since prepare. */
+static inline double tribo_periods_followed(const struct period_map *m)
+{
+    return (double)m->halves / (m->ring.sectors ? (double)m->ring.parts : 2.0);
+}
 
 /* Returns 1, or 0 if out of memory. Call tribo_period_map_free also after a failure. */
 int tribo_period_map_create(struct period_map *m, tribo_driver *drv);
@@ -81,8 +101,18 @@ int tribo_period_map_find_touch(struct period_map *m, const double *y, int chang
 /* rate [n] = coordinates of the derivative of the state by time at the end of the last integration by follow. */
 void tribo_period_map_rate(const struct period_map *m, const double *end, double *rate);
 
-/* Sets m->odd, and m->span = period/2 if odd, else period. odd = 1 is for odd drives only. */
+/* Sets m->odd, and m->span = period/2 if odd, else period, or that of the ring. odd = 1 is for odd drives only. */
 void tribo_period_map_choose(struct period_map *m, int odd);
+
+/* Returns 1 if, half a period later, loads and bases have the opposite sign and limits are the same. Limits that follow the
+ * motion are not. */
+int tribo_system_is_odd(const tribo_system *sys, double period);
+
+/* to [n][columns] = states y of which sector j is that of sector j + step, times -1 where sign = -1. */
+void tribo_ring_turn(const struct period_map *m, size_t step, double sign, size_t columns, const double *y, double *to);
+
+/* x [n] = coordinates of the state of coordinates x turned back as after a span. */
+void tribo_period_map_turn(struct period_map *m, double *x);
 
 /* forecast.c: sets x [m->n] = coordinates of the forecast of the state at m->t, m->odd = 1. Sets *done = 0 if there is no
  * forecast: a mode does not oscillate (as without stiffness), or resonates without damping, or x is not finite. Returns a status,

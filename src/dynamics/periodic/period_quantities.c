@@ -89,6 +89,10 @@ static int replay(tribo_driver *drv, struct replay *r, const char *missing, cons
     r->company = quantities;
     r->map = &drv->shooting->told->map;
     r->omega = FULL_TURN * (double)order / s->map.period;
+    if (c && s->map.ring.sectors) {
+        tribo_ring_fold_combination(drv->shooting, c, s->a);
+        r->c = s->a;
+    }
     const int status = tribo_period_map_replay(r->map, s->here->y, s->map.period, &r->company);
     return status && s->map.drv != drv ? tribo_error(drv->message, status, "%s", s->map.drv->message) : status;
 }
@@ -132,8 +136,8 @@ static int sum_up(tribo_driver *drv, struct replay *r, const char *name, double 
     const int status = *sum || !to
                            ? replay(drv, r, to ? NULL : name, NULL, 0)
                            : tribo_error(drv->message, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", count, plural(count));
-    if (!status) {
-        memcpy(to, *sum, count * sizeof *to);
+    for (size_t i = 0; !status && i < count; i++) { /* sectors of a ring that the twin has not are as those that it has */
+        to[i] = (*sum)[i % drv->shooting->told->map.sys->ncontact];
     }
     free(*sum);
     return status;

@@ -65,26 +65,63 @@ static int check_friction(tribo_driver *drv)
     return TRIBO_OK;
 }
 
-int tribo_events_find_periodic(tribo_driver *drv, struct wanted *w)
+/* Creates the search of drv, unless it has one. Returns a status. */
+static int open_search(tribo_driver *drv)
 {
     drv->shooting = drv->shooting ? drv->shooting : tribo_shooting_create(drv);
     return drv->shooting
-               ? w->find(drv->shooting, w)
+               ? TRIBO_OK
                : tribo_error(drv->message, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
                              drv->sys->ndof, plural(drv->sys->ndof));
+}
+
+int tribo_events_find_periodic(tribo_driver *drv, struct wanted *w)
+{
+    const int status = open_search(drv);
+    if (!status) {
+        drv->shooting->map.ring.sectors = 0;
+    }
+    return status ? status : w->find(drv->shooting, w);
+}
+
+/* Returns TRIBO_OK if the method of drv finds periodic motions. what: the motions, for a message. */
+static int check_method(tribo_driver *drv, const char *what)
+{
+    return drv->method->find_periodic ? TRIBO_OK
+                                      : tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
+                                                    "method %s finds no %s: take exact, event or auto", drv->method->name, what);
+}
+
+int tribo_driver_set_ring(tribo_driver *drv, size_t sectors, size_t order)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
+    }
+    const size_t n = tribo_system_ndof(drv->sys), contacts = drv->sys->ncontact;
+    int status = check_method(drv, "periodic motions");
+    if (!status && sectors > 1 && (n % sectors || contacts % sectors)) {
+        status = tribo_error(drv->message, TRIBO_ERR_RANGE,
+                             "%zu degree%s of freedom and %zu contact%s are not those of equal sectors = %zu", n, plural(n),
+                             contacts, plural(contacts), sectors);
+    }
+    status = status ? status : open_search(drv);
+    if (!status) {
+        drv->shooting->asked = sectors > 1 ? (struct ring_of){sectors, order % sectors} : (struct ring_of){0, 0};
+    }
+    return status;
 }
 
 /* Returns TRIBO_OK if the method of drv finds periodic motions, and y is a state at t. what: the motions, for a message. */
 static int check_search(tribo_driver *drv, const char *what, double t, const double *y)
 {
-    if (!drv->method->find_periodic) {
-        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "method %s finds no %s: take exact, event or auto",
-                           drv->method->name, what);
+    int status = check_method(drv, what);
+    if (status) {
+        return status;
     }
     if (!y) {
         return tribo_error(drv->message, TRIBO_ERR_NULL, "y is NULL");
     }
-    int status = tribo_system_check_state(drv->sys, t, y);
+    status = tribo_system_check_state(drv->sys, t, y);
     status = status ? status : tribo_system_take_settings(drv->sys);
     return tribo_driver_pass(drv, status);
 }
@@ -108,7 +145,9 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
     if (!drv) {
         return TRIBO_ERR_NULL;
     }
-    struct wanted w = {.find = tribo_shooting_find, .t = t, .period = period};
+    struct wanted w = {.find = drv->shooting && drv->shooting->asked.sectors ? tribo_shooting_find_ring : tribo_shooting_find,
+                       .t = t,
+                       .period = period};
     int status = check_search(drv, "periodic motions", t, y);
     status = status ? status : check_period(drv, t, period);
     status = status ? status : check_loads(drv, period);
@@ -291,8 +330,14 @@ static int get_found(const tribo_driver *drv, const char *missing, struct shooti
         return drv ? tribo_error(drv->message, TRIBO_ERR_NULL, "%s is NULL", missing) : TRIBO_ERR_NULL;
     }
     *s = drv->shooting && drv->shooting->found ? drv->shooting->told : NULL;
-    return *s ? TRIBO_OK
-              : tribo_error(drv->message, TRIBO_ERR_STATE, "no periodic motion was found: call tribo_driver_find_periodic first");
+    if (!*s) {
+        return tribo_error(drv->message, TRIBO_ERR_STATE, "no periodic motion was found: call tribo_driver_find_periodic first");
+    }
+    if ((*s)->map.ring.sectors) {
+        *s = drv->shooting;
+        return tribo_ring_find_flow(*s);
+    }
+    return TRIBO_OK;
 }
 
 int tribo_driver_get_freedom(const tribo_driver *drv, size_t *freedom)

@@ -26,7 +26,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Residual over size that ends the search. */
+/* Residual over size that ends the search; in a ring divided by the number of parts, as errors of the parts add up. */
 #define AIM 1e-12
 
 /* Half periods, at most, of a search. */
@@ -86,7 +86,7 @@ int tribo_shooting_fails(const struct shooting *s, double residual)
 {
     return tribo_error(s->map.drv->message, TRIBO_ERR_NO_CONVERGENCE,
                        "no motion of period %.17g was found in %g periods: the nearest misses its beginning by %.3g of its size",
-                       s->map.period, 0.5 * (double)s->map.halves, residual);
+                       s->map.period, tribo_periods_followed(&s->map), residual);
 }
 
 static int no_memory(const struct shooting *s)
@@ -140,23 +140,74 @@ static double left_along(const struct shooting *s, const struct point *p)
     return tribo_dot(s->step, p->x, n) - tribo_dot(s->step, p->image, n);
 }
 
-/* If s->preconditions, x = (I - F)^-1 x, F: flow of the free structure over a span; modes without vibration, and modes for
- * which that is nearly singular, stay. */
-static void apply_free(const struct shooting *s, double *x)
+/* Flow of a mode of the free structure: its coordinates are multiplied by [qq, qu; uq, uu]. */
+struct free_flow {
+    double qq, qu, uq, uu;
+};
+
+/* Returns the flow of mode k over a span, times sign; all 0 if the mode does not vibrate. */
+static struct free_flow free_flow_of(const struct energy_norm *norm, size_t k, double span, double sign)
+{
+    const double omega = norm->natural[k], half = 0.5 * norm->damping[k], square = omega * omega - half * half;
+    const double nu = sqrt(fabs(square)), size = sign * exp(-half * span), c = size * cos(nu * span);
+    const double d = nu > 0.0 ? size * sin(nu * span) / nu : 0.0;
+    return square > 0.0 ? (struct free_flow){c + half * d, norm->omega[k] * d, -omega * omega / norm->omega[k] * d, c - half * d}
+                        : (struct free_flow){0.0, 0.0, 0.0, 0.0};
+}
+
+/* x = (I - F)^-1 x, F: flow of the free structure over a span, times sign; modes without vibration, and modes for which that is
+ * nearly singular, stay, and stay [n] = their part of x, which becomes 0 in x; NULL: they stay in x. */
+static void solve_free(const struct shooting *s, double span, double sign, double *stay, double *x)
 {
     const struct energy_norm *norm = &s->map.norm;
-    const double span = s->map.span, sign = s->map.odd ? -1.0 : 1.0;
-    for (size_t k = 0; s->preconditions && k < norm->n; k++) {
-        const double omega = norm->natural[k], half = 0.5 * norm->damping[k], square = omega * omega - half * half;
-        const double nu = sqrt(fabs(square)), size = sign * exp(-half * span), c = size * cos(nu * span);
-        const double d = nu > 0.0 ? size * sin(nu * span) / nu : 0.0;
-        const double qq = 1.0 - (c + half * d), qu = -norm->omega[k] * d, uq = omega * omega / norm->omega[k] * d;
-        const double uu = 1.0 - (c - half * d), det = qq * uu - qu * uq, q = x[k], u = x[norm->n + k];
-        if (square > 0.0 && fabs(det) > NEARLY_SINGULAR) {
-            x[k] = (uu * q - qu * u) / det;
-            x[norm->n + k] = (qq * u - uq * q) / det;
+    if (stay) {
+        memcpy(stay, x, s->map.n * sizeof *x);
+    }
+    for (size_t k = 0; k < norm->n; k++) {
+        const struct free_flow f = free_flow_of(norm, k, span, sign);
+        const double det = (1.0 - f.qq) * (1.0 - f.uu) - f.qu * f.uq, q = x[k], u = x[norm->n + k];
+        const int solves = (f.qq != 0.0 || f.qu != 0.0) && fabs(det) > NEARLY_SINGULAR;
+        if (solves) {
+            x[k] = ((1.0 - f.uu) * q + f.qu * u) / det;
+            x[norm->n + k] = ((1.0 - f.qq) * u + f.uq * q) / det;
+        }
+        if (stay) {
+            *(solves ? &stay[k] : &x[k]) = 0.0;
+            *(solves ? &stay[norm->n + k] : &x[norm->n + k]) = 0.0;
         }
     }
+    memset(x + 2 * norm->n, 0, (stay ? norm->springs : 0) * sizeof *x);
+}
+
+/* If s->preconditions, x = (I - F)^-1 x, F: flow of the free structure over a span, in a ring then turned back. There
+ * (I - F)^-1 = (I + F + ... + F^(parts - 1)) (I - F^parts)^-1, and turned back by all parts a state is itself; or, if all drives
+ * are odd, by half of the parts minus itself. Uses s->a. */
+static void apply_free(struct shooting *s, double *x)
+{
+    const struct ring *r = &s->map.ring;
+    const struct energy_norm *norm = &s->map.norm;
+    const size_t n = s->map.n, parts = s->map.alternates ? r->parts / 2 : r->parts;
+    double *stay = s->a, *first = stay + n;
+    if (!s->preconditions) {
+        return;
+    }
+    if (!r->sectors) {
+        solve_free(s, s->map.span, s->map.odd ? -1.0 : 1.0, NULL, x);
+        return;
+    }
+    solve_free(s, (double)parts * s->map.span, s->map.alternates ? -1.0 : 1.0, stay, x);
+    memcpy(first, x, n * sizeof *x);
+    for (size_t p = 1; p < parts; p++) {
+        for (size_t k = 0; k < norm->n; k++) {
+            const struct free_flow f = free_flow_of(norm, k, s->map.span, 1.0);
+            const double q = x[k], u = x[norm->n + k];
+            x[k] = f.qq * q + f.qu * u;
+            x[norm->n + k] = f.uq * q + f.uu * u;
+        }
+        tribo_period_map_turn(&s->map, x);
+        tribo_add(x, 1.0, first, n);
+    }
+    tribo_add(x, 1.0, stay, n);
 }
 
 /* x = (I - D) x, D = the derivative at s->here over s->spans spans; apply_free first. */
@@ -166,31 +217,39 @@ static int apply_equation(void *data, double *x)
     int status = TRIBO_OK;
     apply_free(s, x);
     memcpy(s->a, x, s->map.n * sizeof *x);
-    for (int k = 0; !status && k < s->spans; k++) {
+    for (size_t k = 0; !status && k < s->spans; k++) {
         status = tribo_period_map_apply(&s->map, s->here, s->a);
     }
     tribo_add(x, -1.0, s->a, s->map.n);
     return status;
 }
 
-/* Sets s->b = D, the derivative at p over `spans` spans, 1 or 2. Returns a status. */
-static int find_derivative(struct shooting *s, struct point *p, int spans)
+/* Sets s->b = D, the derivative at p over `spans` spans. Returns a status. */
+static int find_derivative(struct shooting *s, struct point *p, size_t spans)
 {
     const size_t n = s->map.n;
     const int status = tribo_period_map_matrix(&s->map, p);
     const double *d = p->derivative.matrix;
-    if (!status && spans == 2) {
-        memset(s->b, 0, n * n * sizeof *s->b);
-        tribo_multiply_add(n, n, n, 1.0, d, d, s->b);
-    } else if (!status) {
+    if (!status) {
         memcpy(s->b, d, n * n * sizeof *s->b);
+    }
+    for (size_t k = 1; !status && k < spans; k++) {
+        memcpy(s->a, s->b, n * n * sizeof *s->b);
+        memset(s->b, 0, n * n * sizeof *s->b);
+        tribo_multiply_add(n, n, n, 1.0, d, s->a, s->b);
+    }
+    if (!status && spans > 1 && s->map.ring.sectors) { /* on again, by what all parts have turned back */
+        const size_t turned = spans * s->map.ring.step % s->map.ring.sectors;
+        tribo_energy_norm_state(&s->map.norm, n, s->b, s->a);
+        tribo_ring_turn(&s->map, (s->map.ring.sectors - turned) % s->map.ring.sectors, 1.0, n, s->a, s->map.turned);
+        tribo_energy_norm_of(&s->map.norm, n, s->map.turned, s->b);
     }
     return status;
 }
 
 /* x [n + count] = the shortest solution of (I - D) y = x, D over `spans` spans from p, bordered by the columns and rows of
  * `count` unknowns, by a matrix, with singular values below cut taken as zero; *kernel = their number. Returns a status. */
-static int solve_dense(struct shooting *s, struct point *p, int spans, size_t count, double cut, double *x, size_t *kernel)
+static int solve_dense(struct shooting *s, struct point *p, size_t spans, size_t count, double cut, double *x, size_t *kernel)
 {
     const size_t n = s->map.n, all = n + count;
     const int status = find_derivative(s, p, spans);
@@ -352,7 +411,8 @@ int tribo_shooting_search(struct shooting *s)
     }
     s->rate = s->stride = s->before = 0.0;
     s->nearest = s->here->residual / s->here->size;
-    while (!status && isfinite(s->here->size) && !tribo_point_is_closed(s->here, AIM) && s->map.halves < most) {
+    const double aim = s->map.ring.sectors ? AIM / (double)s->map.ring.parts : AIM;
+    while (!status && isfinite(s->here->size) && !tribo_point_is_closed(s->here, aim) && s->map.halves < most) {
         double part;
         status = newton(s, &part);
         const int falls = !status && pays(s);
@@ -388,7 +448,7 @@ static int search_all(struct shooting *s)
     static const size_t marched[] = {0, 20, 100};
     const size_t n = s->map.n, statics = !tribo_system_is_plain(s->map.sys), marches = statics || may_diverge(s);
     const int was_odd = s->map.odd;
-    int tries = was_odd && !statics && s->map.norm.scale == 1.0, done = 0;
+    int tries = (was_odd || (s->map.alternates && s->map.ring.sectors)) && !statics && s->map.norm.scale == 1.0, done = 0;
     int status = tries ? tribo_forecast(&s->map, s->here->x, &tries) : TRIBO_OK;
     if (!status && tries && tribo_energy_distance(s->guess, s->here->x, n) > FAR * tribo_energy_length(s->here->x, n)) {
         status = tribo_shooting_search(s);
@@ -487,16 +547,22 @@ int tribo_shooting_check_touches(struct shooting *s, const char *what)
                              contact, what);
 }
 
+/* Returns the number of spans of the period of the motion found. */
+static size_t spans_of_period(const struct shooting *s)
+{
+    return s->flow->odd ? 2 : s->map.ring.sectors ? s->map.ring.parts : 1;
+}
+
 int tribo_shooting_freedom(struct shooting *s, size_t *freedom)
 {
     memset(s->step, 0, s->map.n * sizeof *s->step);
-    return solve_dense(s, s->flow, s->flow->odd ? 2 : 1, 0, FREE, s->step, freedom);
+    return solve_dense(s, s->flow, spans_of_period(s), 0, FREE, s->step, freedom);
 }
 
 int tribo_shooting_multipliers(struct shooting *s, double *re, double *im)
 {
     const size_t n = s->map.n, all = tribo_system_dimension(s->map.sys) - 1;
-    const int missing = find_derivative(s, s->flow, s->flow->odd ? 2 : 1);
+    const int missing = find_derivative(s, s->flow, spans_of_period(s));
     const int status = missing ? missing : tribo_eigen(s->b, n, s->step, s->guess, s->a);
     if (status) {
         return missing ? missing
@@ -521,6 +587,21 @@ int tribo_shooting_multipliers(struct shooting *s, double *re, double *im)
 
 /* -------------------------------------------------------------------------------------------------------------- the whole */
 
+/* Sets the residual of s->here over all parts of the period of a ring: |r + D r + ... + D^(parts - 1) r|, r = image - x. Returns a
+ * status. */
+static int complete_ring(struct shooting *s)
+{
+    int status = TRIBO_OK;
+    find_misfit(s, s->here, s->step);
+    memcpy(s->guess, s->step, s->map.n * sizeof *s->step);
+    for (size_t k = 1; !status && k < s->map.ring.parts; k++) {
+        status = tribo_period_map_apply(&s->map, s->here, s->guess);
+        tribo_add(s->guess, 1.0, s->step, s->map.n);
+    }
+    s->here->residual = tribo_energy_length(s->guess, s->map.n);
+    return status;
+}
+
 void tribo_shooting_keep(struct shooting *s, struct wanted *w)
 {
     memcpy(w->y, s->here->y, s->map.n * sizeof *w->y);
@@ -542,15 +623,15 @@ int tribo_shooting_find(struct shooting *s, struct wanted *w)
         status = search_all(s);
     }
     status = status ? status : approach_guess(s);
-    status = status ? status : tribo_period_map_complete(&s->map, s->here);
+    status = status ? status : s->map.ring.sectors ? complete_ring(s) : tribo_period_map_complete(&s->map, s->here);
     if (!status && !tribo_point_is_closed(s->here, TRIBO_PERIODIC)) {
         status = tribo_shooting_fails(s, s->here->residual / s->here->size);
     }
-    status = status ? status : tribo_shooting_find_flow(s);
+    status = status || s->map.ring.sectors ? status : tribo_shooting_find_flow(s);
     if (!status) {
         tribo_shooting_keep(s, w);
     }
-    s->map.drv->periods += (s->map.halves + 1) / 2;
+    s->map.drv->periods += (size_t)ceil(tribo_periods_followed(&s->map));
     return status;
 }
 
@@ -584,8 +665,7 @@ void tribo_shooting_free(struct shooting *s)
             tribo_derivative_free(&s->point[k].derivative);
         }
         tribo_period_map_free(&s->map);
-        tribo_driver_destroy(s->twin.drv);
-        tribo_system_destroy(s->twin.sys);
+        tribo_shooting_leave_twin(s);
         free(s->a);
         free(s);
     }

@@ -30,10 +30,15 @@ struct mode {
     double amplitude;
 };
 
-/* The system of modes, and its driver. */
+/* The system of modes, of a curve, or of the sectors of a ring that move differently, and its driver. */
 struct twin {
     tribo_system *sys;
     tribo_driver *drv;
+};
+
+/* A ring, see tribo_driver_set_ring; sectors = 0: none. */
+struct ring_of {
+    size_t sectors, order;
 };
 
 struct shooting {
@@ -48,7 +53,7 @@ struct shooting {
     double ratio;               /* left_along(there)/left_along(here) of the step */
     double rate;                /* ratio of the last step if it was good, else 0 */
     double stride;              /* spans extrapolated at once; 0: Newton's steps */
-    int spans;                  /* spans of the equation solved in a Krylov space */
+    size_t spans;               /* spans of the equation solved in a Krylov space */
     int preconditions;          /* 1: that equation is I - D times (I - F)^-1 from the right, apply_free */
     double before;              /* residual before the last step */
     double nearest;             /* least residual/size so far */
@@ -57,7 +62,9 @@ struct shooting {
     size_t touches;        /* contact of check_touches, of the motion found: ncontact if none touches; SIZE_MAX: not yet known */
     struct mode *mode;     /* of the search of a mode; else NULL */
     struct track *curve;   /* of the curve that is followed; else NULL */
-    struct twin twin;      /* of the modes of this driver */
+    struct twin twin;      /* of this driver */
+    struct ring_of asked;  /* by tribo_driver_set_ring */
+    struct ring_of whole;  /* of which the twin has sectors */
     struct shooting *told; /* the search that has the motion found: this one, or that of twin.drv */
 };
 
@@ -115,6 +122,17 @@ extern const struct border tribo_cycle_border, tribo_mode_border;
 /* mode.c: sets the twin of s: a copy of its system, steady = 1: without loads and bases that change in time, and its driver.
  * Returns a status. */
 int tribo_shooting_create_twin(struct shooting *s, int steady);
+
+/* drive: creates the driver and the search of s->twin.sys, and returns a status; leave: s has no twin then. */
+int tribo_shooting_drive_twin(struct shooting *s);
+void tribo_shooting_leave_twin(struct shooting *s);
+
+/* ring.c. find_ring: the find of a motion of the ring s->asked. find_flow: sets s->flow for multipliers of the whole ring, of which
+ * s->told has the motion. Both return a status. fold_combination: to = the coefficients c [2 ndof + 2 springs] for the twin;
+ * without an expansion [2 ndof]. */
+int tribo_shooting_find_ring(struct shooting *s, struct wanted *w);
+int tribo_ring_find_flow(struct shooting *s);
+void tribo_ring_fold_combination(const struct shooting *s, const double *c, double *to);
 
 /* mode.c: sets the damping of the twin that s searches to factor times that of `like`, less 2 delta M. Returns a status. */
 int tribo_shooting_set_damping(struct shooting *s, const tribo_system *like, double factor, double delta);

@@ -155,6 +155,16 @@ int tribo_compliance_create(tribo_system *sys, const double *own, const double *
  * the motion, and the rounding of displacements changes the force by 1e-8 of the force: the contact should be rigid. */
 #define MOST_STIFF 1e8
 
+const struct matrix *tribo_springs_matrix(const tribo_system *sys)
+{
+    return &sys->compliance.g;
+}
+
+int tribo_springs_copy_first(tribo_model *model, const tribo_system *from)
+{
+    return from->compliance.count ? tribo_model_set_compliance(model, from->compliance.own) : TRIBO_OK;
+}
+
 int tribo_compliance_check(const tribo_system *sys)
 {
     const struct compliance *g = &sys->compliance;

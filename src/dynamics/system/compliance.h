@@ -47,6 +47,11 @@ static inline double tribo_compliance_entry(const struct compliance *g, size_t i
 int tribo_compliance_create(tribo_system *sys, const double *own, const double *entries, size_t *where);
 void tribo_compliance_free(struct compliance *g);
 
+/* Returns G of sys, without rows if all contacts are rigid. copy_first: sets the compliance of the model to G_ii of the first
+ * contacts of a system in which G is diagonal; returns a status. */
+const struct matrix *tribo_springs_matrix(const tribo_system *sys);
+int tribo_springs_copy_first(tribo_model *model, const tribo_system *from);
+
 /* Returns TRIBO_ERR_UNSUPPORTED if a compliant contact is so stiff relative to structure and loads that rounding of displacements
  * hides its force. */
 int tribo_compliance_check(const tribo_system *sys);

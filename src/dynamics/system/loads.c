@@ -66,6 +66,20 @@ int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
     return done;
 }
 
+int tribo_loads_copy_first(tribo_system *sys, const tribo_system *from)
+{
+    const int done = tribo_loads_copy(sys, from);
+    for (size_t k = 0; k < sys->loads.harmonics; k++) {
+        struct harmonic *h = &sys->loads.harmonic[k];
+        const size_t count = h->count;
+        h->count = 0;
+        for (size_t e = 0; e < count && h->index[e] < length_of(sys, h->drives); e++) {
+            h->count++;
+        }
+    }
+    return done;
+}
+
 /* ------------------------------------------------------------------------------------------------------------------ at a time */
 
 /* Returns the last knot of a table at or before t; 0 if there is none. */

@@ -174,6 +174,10 @@ void tribo_loads_free(tribo_system *sys);
 /* Copies loads, base motions and tables from `from` to sys, which has none. Returns 1, or 0 if out of memory. */
 int tribo_loads_copy(tribo_system *sys, const tribo_system *from);
 
+/* Adds the harmonics of `from` to sys, which has the first of its degrees of freedom and contacts, for these. Returns 1, or 0 if
+ * out of memory. */
+int tribo_loads_copy_first(tribo_system *sys, const tribo_system *from);
+
 /* Leaves of all harmonics those of omega = 0. */
 void tribo_loads_keep_constant(tribo_system *sys);
 
