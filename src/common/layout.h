@@ -32,26 +32,34 @@ union layout_unit {
     void *pointer;
 };
 
+/* Bytes of a layout, from which on it is too large to allocate. */
+#define TRIBO_LAYOUT_MOST (SIZE_MAX / 4)
+
+/* Returns the bytes of an array [count] of elements of size, in whole units. A constant size costs no division. */
+static inline size_t tribo_layout_bytes(size_t count, size_t size)
+{
+    enum { UNIT = sizeof(union layout_unit) };
+    return count < TRIBO_LAYOUT_MOST / size ? (count * size + UNIT - 1) / UNIT * UNIT : TRIBO_LAYOUT_MOST;
+}
+
 /* Returns an array [count] of elements; NULL in the first pass. If sizes overflow, their sum is too large to allocate. */
 static inline void *tribo_layout_array(struct layout *b, size_t count, size_t size)
 {
-    enum { UNIT = sizeof(union layout_unit) };
     void *array = b->memory ? b->memory + b->used : NULL;
-    const size_t most = SIZE_MAX / 4, bytes = count < most / size ? (count * size + UNIT - 1) / UNIT * UNIT : most;
-    const size_t used = b->used + bytes;
-    b->used = used < most ? used : most;
+    const size_t used = b->used + tribo_layout_bytes(count, size);
+    b->used = used < TRIBO_LAYOUT_MOST ? used : TRIBO_LAYOUT_MOST;
     return array;
 }
 
-/* The array *at [count] of elements of size. */
+/* The array *at. */
 struct array {
     void *at;
-    size_t count, size;
+    size_t bytes;
 };
 
 #define ARRAY(pointer, count)                                                                                                    \
     {                                                                                                                            \
-        &(pointer), (count), sizeof *(pointer)                                                                                   \
+        &(pointer), tribo_layout_bytes((count), sizeof *(pointer))                                                               \
     }
 
 /* A block of memory for one layout of arrays after the other. */
@@ -76,15 +84,17 @@ static inline void *tribo_make_room(struct room *room, size_t bytes)
  * to NULL, if out of memory. */
 static inline void *tribo_allocate_in(struct room *room, const struct array *list, size_t length)
 {
-    struct layout b = {0};
-    do {
-        b.used = 0;
-        for (size_t k = 0; k < length; k++) {
-            void *const array = tribo_layout_array(&b, list[k].count, list[k].size);
-            memcpy(list[k].at, &array, sizeof array); /* all pointers to objects have the representation of void * */
-        }
-    } while (!b.memory && (b.memory = tribo_make_room(room, b.used + 1)) != NULL);
-    return b.memory;
+    size_t used = 0;
+    for (size_t k = 0; k < length; k++) {
+        used = used + list[k].bytes < TRIBO_LAYOUT_MOST ? used + list[k].bytes : TRIBO_LAYOUT_MOST;
+    }
+    char *const block = tribo_make_room(room, used + 1), *at = block;
+    for (size_t k = 0; k < length; k++) {
+        void *const array = at;
+        memcpy(list[k].at, &array, sizeof array); /* all pointers to objects have the representation of void * */
+        at = block ? at + list[k].bytes : NULL;
+    }
+    return block;
 }
 
 /* Allocates the arrays of list [length] as zeros in one block, which the first array owns. Returns what tribo_allocate_in

@@ -50,7 +50,7 @@ void tribo_limits_set_stick(struct stick_slip *m, size_t i, double ratio)
 void tribo_limits_fall(struct stick_slip *m, const tribo_system *sys, const double *y, const double *a)
 {
     const struct slip_limits *b = &m->limits;
-    for (size_t i = 0; b->falls && i < m->constant.contacts; i++) {
+    for (size_t i = 0; i < m->constant.contacts; i++) {
         const signed char slip = m->state.slip[i];
         const double speed = slip ? fabs(tribo_stick_slip_velocity(m, sys, i, y)) : 0.0;
         const double more = (b->ratio[i] - 1.0) * exp(-quotient(speed, b->velocity[i]));

@@ -177,7 +177,7 @@ static void forget_gains(struct stick_slip *m)
 }
 
 /* Returns noise.size[d], the size of the terms of q''_d; finds it first if it is 0. */
-static double find_size(struct stick_slip *m, const tribo_system *sys, const double *y, size_t d)
+static inline double find_size(struct stick_slip *m, const tribo_system *sys, const double *y, size_t d)
 {
     if (m->noise.size[d] > 0.0) {
         return m->noise.size[d];
@@ -299,7 +299,9 @@ int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, doubl
         tribo_system_limits(sys, s->limit, s->limit_rate);
         tribo_limits_take(m);
     }
-    tribo_limits_fall(m, sys, y, NULL);
+    if (m->limits.falls) {
+        tribo_limits_fall(m, sys, y, NULL);
+    }
     for (size_t i = 0; i < c; i++) {
         const double follows = m->constant.swing[i] > 0.0 ? tribo_stick_slip_follows(m, i) : 0.0;
         force[i] = !s->loose[i]                     ? 0.0
@@ -477,7 +479,9 @@ static int decide_once(struct stick_slip *m, tribo_system *sys, double t, double
     }
     int status = m->plane ? tribo_planar_slip_find_resting(m, sys, y) : tribo_stick_slip_find_resting(m, sys, y);
     if (!status) {
-        tribo_limits_fall(m, sys, y, NULL);
+        if (m->limits.falls) {
+            tribo_limits_fall(m, sys, y, NULL);
+        }
         if (springs) {
             tribo_elastic_move(m, sys, y);
         }

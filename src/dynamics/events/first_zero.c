@@ -44,12 +44,6 @@
 /* A guard that begins at zero is allowed to be negative by this part of its size. */
 #define ALLOWED 1e-14
 
-/* Rounding of a guard. */
-static double noise(const struct guard *g)
-{
-    return 4.0 * DBL_EPSILON * g->size;
-}
-
 /* x^(1/6) within 7%: the bits of a double, as an integer, are nearly linear in its logarithm. */
 static double sixth_root(double x)
 {
@@ -85,13 +79,14 @@ static double parabola_fall(const struct sample *m, double most)
     return when <= most ? when : HUGE_VAL;
 }
 
-/* Finds bounds from a on, and a length of interval to try. */
+/* Finds bounds and noise from a on, and a length of interval to try. */
 static void find_bounds(struct first_zero *s)
 {
     s->better = s->motion->bound(s->own, s->a);
     double ratio = HUGE_VAL;
     for (size_t k = 0; k < s->guards; k++) {
-        const struct guard *g = &s->guard[k];
+        struct guard *g = &s->guard[k];
+        g->noise = 4.0 * DBL_EPSILON * g->size;
         ratio = lesser(ratio, g->bend > 0.0 ? g->size / g->bend : HUGE_VAL);
     }
     s->length = lesser(sixth_root(400.0 * ratio), s->longest);
@@ -136,7 +131,7 @@ static void keep_right(struct first_zero *s)
 /* 1 if least >= -noise; then updates lowest. */
 static int is_clear(struct guard *g, double least)
 {
-    if (!(least >= -noise(g))) {
+    if (!(least >= -g->noise)) {
         return 0;
     }
     g->lowest = greater(g->lowest, g->allowance - least);
@@ -146,7 +141,7 @@ static int is_clear(struct guard *g, double least)
 /* 1 if the guard is not below zero from the left sample until `until` later; sample b is h after the left one. */
 static int positive(struct guard *g, const struct sample *b, double h, double until)
 {
-    return is_clear(g, tribo_quintic_least(&g->left, b, h, g->bend, until, -noise(g)));
+    return is_clear(g, tribo_quintic_least(&g->left, b, h, g->bend, until, -g->noise));
 }
 
 /* 1 if parabolas at a show no guard but first below zero until a + step, in reach of the derivatives. */
@@ -166,7 +161,7 @@ static void watch_doubtful(struct first_zero *s, double h)
     size_t left = 0;
     for (size_t k = 0; k < s->watching; k++) {
         struct guard *g = s->watched[k];
-        if (!(g->right.g > noise(g)) || !positive(g, &g->right, h, h)) {
+        if (!(g->right.g > g->noise) || !positive(g, &g->right, h, h)) {
             s->watched[k] = s->watched[left];
             s->watched[left++] = g;
         }
@@ -182,13 +177,13 @@ static const struct guard *first_to_fall(const struct first_zero *s, double h, i
     const struct guard *first = NULL;
     for (size_t k = 0; k < s->watching; k++) {
         const struct guard *g = s->watched[k];
-        if (g->right.g <= noise(g)) {
+        if (g->right.g <= g->noise) {
             const double guess = g->right.g >= 0.0 ? h : tribo_quintic_zero(&g->left, &g->right, h);
             if (!first || guess < *when) {
                 first = g;
                 *when = guess;
                 *fine =
-                    !(begins && g->allowance > 0.0) && (guess == h || tribo_quintic_error(guess, h, g->bend) <= FINE * noise(g));
+                    !(begins && g->allowance > 0.0) && (guess == h || tribo_quintic_error(guess, h, g->bend) <= FINE * g->noise);
             }
         }
     }
@@ -249,7 +244,7 @@ static const struct guard *search_interval(struct first_zero *s, double b, doubl
         const double next = s->a + (begins ? 0.5 * at : falls && !(fine && at > CLOSE * h) ? at : 0.5 * h);
         if (!(next > s->a && next < b && h > s->resolution)) {
             *when = b;
-            if (falls && falls->right.g < -noise(falls)) {
+            if (falls && falls->right.g < -falls->noise) {
                 return falls;
             }
             break;

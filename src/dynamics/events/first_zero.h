@@ -20,6 +20,7 @@ struct guard {
     double limit;         /* factor of the motion's part of the limit; 0: none */
     double size;          /* bound of the sum of the sizes of its terms, from the last bound on */
     double bend;          /* bound of its sixth derivative, likewise */
+    double noise;         /* rounding of its values, by size */
     double allowance;     /* values down to -allowance count as zero until the guard has left zero */
     double lowest;        /* bound of its negative values so far */
     struct sample left;   /* at a, with the allowance added */

@@ -75,30 +75,26 @@ static int find_held(struct exact *x, int powers, struct modal **found)
     return TRIBO_OK;
 }
 
-/* Returns 1 if no base moves at a constant speed, no limit varies, K is symmetric, and the structure is large enough. */
-static int takes_powers(const tribo_system *sys)
-{
-    int plain = !tribo_system_limits_vary(sys) && sys->circulation == 0.0 && sys->ndof >= POWERS_LEAST &&
-                sys->ncontact >= POWERS_CONTACTS;
-    for (size_t k = 0; plain && k < sys->loads.harmonics; k++) {
-        const struct harmonic *w = &sys->loads.harmonic[k];
-        plain &= (w->drives == DRIVES_LOAD && !w->knots) || (w->drives == DRIVES_BASE && w->omega != 0.0);
-    }
-    return plain;
-}
-
-/* Sets x->h, the structure of the next phase. Phases have no modes, until LASTING follow each other with the same contacts held;
+/* Sets x->h, the structure of the next phase. If no base moves at a constant speed, no limit varies, K is symmetric, and the
+ * structure is large enough, phases have no modes, until LASTING follow each other with the same contacts held;
  * from there on in this run they have: no motion depends on runs before. Returns a status. */
 static int choose_held(struct exact *x)
 {
+    const tribo_system *sys = x->sys;
     struct held *s = &x->held;
     struct modal *h = NULL;
+    int powers = !tribo_system_limits_vary(sys) && sys->circulation == 0.0 && sys->ndof >= POWERS_LEAST &&
+                 sys->ncontact >= POWERS_CONTACTS;
+    for (size_t k = 0; powers && k < sys->loads.harmonics; k++) {
+        const struct harmonic *w = &sys->loads.harmonic[k];
+        powers &= (w->drives == DRIVES_LOAD && !w->knots) || (w->drives == DRIVES_BASE && w->omega != 0.0);
+    }
     if (x->events.anew) {
         s->run++;
         s->powers = NULL;
         x->events.anew = 0;
     }
-    int status = takes_powers(x->sys) ? find_held(x, 1, &h) : TRIBO_OK;
+    int status = powers ? find_held(x, 1, &h) : TRIBO_OK;
     s->phases = h && h == s->powers ? s->phases + 1 : 0;
     if (!status && h && s->phases == LASTING) {
         h->run = s->run;

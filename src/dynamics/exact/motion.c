@@ -11,14 +11,11 @@
 /* |lambda tau| below which the change of an exponential is computed by tribo_exp_1: a difference would lose digits. */
 #define LITTLE 0.1
 
-/* Makes room for the terms and shapes of x->h. Returns 0 if out of memory. */
+/* Makes room for twice the terms and shapes of x->h. Returns 0 if out of memory. */
 static int motion_reserve(struct exact *x)
 {
     const size_t least = x->h->terms > x->h->shapes ? x->h->terms : x->h->shapes, room = 2 * least + TRIBO_POWERS;
     const size_t c = x->sys->ncontact;
-    if (x->room >= least) {
-        return 1;
-    }
     free(x->lot);
     x->room =
         ALLOCATE(ARRAY(x->lot, room / TRIBO_TERMS + 1), ARRAY(x->course, c), ARRAY(x->way, c), ARRAY(x->steady, c),
@@ -116,13 +113,15 @@ static void add_resonances(struct exact *x, double tau)
 
 void tribo_modal_motion_go(struct exact *x, double tau)
 {
-    if (x->h->modal->powers) {
-        x->tau = tau;
-    } else if (tau != x->tau) {
+    if (tau == x->tau) {
+        return;
+    }
+    x->tau = tau;
+    if (!x->h->modal->powers) {
         tribo_modal_terms_go(x, tau);
-        if (x->h->resonant) {
-            add_resonances(x, tau);
-        }
+    }
+    if (x->h->resonant) {
+        add_resonances(x, tau);
     }
 }
 
@@ -245,31 +244,42 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
 
 /* ------------------------------------------------------------------------------------------------------- the start of a phase */
 
-/* Sets z, growth and growth6 of harmonics at t0, of limits times side; z of a table to its value; slopes.rate, limit and rise.
- * After the last term: zeros. */
+/* Sets z, growth and growth6 of harmonics at t0, of limits times side; z of a table to its value; slopes.rate, limit and rise; vel,
+ * acc, jerk and drift of the shapes beside the modes. After the last term: zeros. */
 static void start_harmonics(struct exact *x)
 {
     const struct forced *h = x->h;
+    const tribo_system *sys = x->sys;
     size_t p = h->modal->exponents;
     tribo_system_set_time(x->sys, x->t0);
+    for (size_t k = h->modal->modes; k < h->shapes; k++) {
+        x->acc[k] = x->jerk[k] = 0.0;
+        x->vel[k] = x->drift[k] = h->speed[k];
+    }
     for (size_t s = 0; s < h->harmonics; s++, p++) {
         const struct forcing *f = &h->forcing[s];
-        const struct harmonic *w = &x->sys->loads.harmonic[f->harmonic];
-        const int whole = f->contact == x->sys->ncontact;
+        const struct harmonic *w = &sys->loads.harmonic[f->harmonic];
+        const int whole = f->contact == sys->ncontact, base = w->drives == DRIVES_BASE;
         const double side = whole ? 1.0 : tribo_stick_slip_follows(&x->events.stick_slip, f->contact);
-        double rise = 0.0;
-        const double value = w->knots ? tribo_system_table(x->sys, f->harmonic, whole ? 0 : f->contact, &rise) : w->cos_t;
-        x->z.re[p] = side * value;
-        x->z.im[p] = w->knots ? 0.0 : side * w->sin_t;
-        x->slopes.rate[p] = side * rise;
-        for (size_t i = 0; whole && w->knots && w->drives == DRIVES_LIMIT && i < x->sys->ncontact; i++) {
-            x->slopes.limit[i] = tribo_system_table(x->sys, f->harmonic, i, &x->slopes.rise[i]);
-        }
+        x->z.re[p] = side * w->cos_t;
+        x->z.im[p] = side * w->sin_t;
         x->growth[p] = fabs(side);
         x->growth6[p] = h->sixth[p] * fabs(side);
+        if (w->knots) {
+            x->z.re[p] = side * tribo_system_table(sys, f->harmonic, whole ? 0 : f->contact, &x->slopes.rate[p]);
+            x->z.im[p] = 0.0;
+            x->slopes.rate[p] *= side;
+        }
+        for (size_t i = 0; w->knots && whole && w->drives == DRIVES_LIMIT && i < sys->ncontact; i++) {
+            x->slopes.limit[i] = tribo_system_table(sys, f->harmonic, i, &x->slopes.rise[i]);
+        }
+        if (f->table) {
+            x->vel[f->table - 1] = x->drift[f->table - 1] = base ? x->z.re[p] : x->slopes.rate[p];
+            x->acc[f->table - 1] = base ? x->slopes.rate[p] : 0.0;
+        }
     }
     for (; p < h->terms; p++) {
-        x->z.re[p] = x->z.im[p] = x->slopes.rate[p] = x->growth[p] = x->growth6[p] = 0.0;
+        x->z.re[p] = x->z.im[p] = x->growth[p] = x->growth6[p] = 0.0;
     }
 }
 
@@ -281,31 +291,27 @@ static void find_constant_forces(struct exact *x, const double *y, double *force
 {
     const struct forced *h = x->h;
     const tribo_system *sys = x->sys;
+    const struct stick_slip *c = &x->events.stick_slip;
     const int holds = h->holding > h->sliding;
     const size_t m = h->modal->modes;
     for (size_t i = 0; i < sys->ncontact; i++) {
-        double limit = tribo_system_steady_limit(sys, i);
-        for (size_t s = 0; sys->loads.limits && s < sys->loads.harmonics; s++) {
-            const struct harmonic *w = &sys->loads.harmonic[s];
-            limit += w->drives == DRIVES_LIMIT && w->omega == 0.0 && !w->knots ? w->cosine[i] : 0.0;
+        x->steady[i] = sys->loads.limits ? tribo_stick_slip_follows(c, i) * tribo_system_steady_limit(sys, i) : c->state.force[i];
+    }
+    for (size_t s = 0; sys->loads.limits && s < sys->loads.harmonics; s++) {
+        const struct harmonic *w = &sys->loads.harmonic[s];
+        for (size_t i = 0; w->drives == DRIVES_LIMIT && w->omega == 0.0 && !w->knots && i < sys->ncontact; i++) {
+            x->steady[i] += tribo_stick_slip_follows(c, i) * w->cosine[i];
         }
-        x->steady[i] =
-            sys->loads.limits ? tribo_stick_slip_follows(&x->events.stick_slip, i) * limit : x->events.stick_slip.state.force[i];
     }
     if (h->modal->stiff) {
         tribo_follow_forces(x, y, force);
         return;
     }
-    memcpy(force, h->constant, m * sizeof *force);
-    for (size_t s = 0; sys->loads.tables && s < h->harmonics; s++) {
-        const int base = sys->loads.harmonic[h->forcing[s].harmonic].drives == DRIVES_BASE;
-        for (size_t k = 0; h->forcing[s].table && k < m; k++) {
-            const double complex g = h->g[s * m + k];
-            force[k] += x->z.re[h->modal->exponents + s] * (base ? cimag(g) : creal(g));
-        }
+    for (size_t k = 0; k < m; k++) {
+        force[k] = h->constant[k];
     }
     if (holds) {
-        tribo_compliance_give(sys, 1, x->events.stick_slip.state.force, x->way);
+        tribo_compliance_give(sys, 1, c->state.force, x->way);
     }
     for (size_t s = 0; holds && s < sys->loads.harmonics; s++) {
         const struct harmonic *w = &sys->loads.harmonic[s];
@@ -320,29 +326,33 @@ static void find_constant_forces(struct exact *x, const double *y, double *force
         const double push = o >= h->holding  ? pressed * sys->normals.normal[o - h->holding].gap
                             : o < h->sliding ? x->steady[i]
                                              : -x->way[i] - tribo_matrix_row_dot(&sys->direction, i, y);
-        tribo_add(force, push, out->on_rate, m);
+        for (size_t k = 0; k < m; k++) {
+            force[k] += push * out->on_rate[k];
+        }
     }
 }
 
-/* Sets lead, bend and rest by the ramps of tables, and subtracts from force [modes] the forces by damping of eta' = lead, and by
- * inertia of eta'' = bend and rest. Of bases, places are quadratic in time. */
+/* With tables: sets lead, bend and rest by their ramps; adds to force [modes] the forces by their values, which with K~ it has,
+ * and subtracts those by damping of eta' = lead, and by inertia of eta'' = bend and rest. Of bases, places are quadratic in
+ * time. */
 static void lead_tables(struct exact *x, double *force)
 {
     const struct forced *h = x->h;
     const struct modal *own = h->modal;
     const size_t m = own->modes;
     double *lead = x->slopes.lead, *bend = x->slopes.bend, *ramp = x->slopes.rest;
-    memset(lead, 0, m * sizeof *lead);
-    memset(bend, 0, m * sizeof *bend);
-    memset(ramp, 0, m * sizeof *ramp);
     if (!x->sys->loads.tables) {
         return;
     }
+    memset(lead, 0, m * sizeof *lead);
+    memset(bend, 0, m * sizeof *bend);
+    memset(ramp, 0, m * sizeof *ramp);
     for (size_t s = 0; s < h->harmonics; s++) {
         const double rate = x->slopes.rate[own->exponents + s], value = x->z.re[own->exponents + s];
         const int base = x->sys->loads.harmonic[h->forcing[s].harmonic].drives == DRIVES_BASE;
         for (size_t k = 0; h->forcing[s].table && k < m; k++) {
             const double re = creal(h->g[s * m + k]), im = cimag(h->g[s * m + k]);
+            force[k] += own->stiff ? 0.0 : value * (base ? im : re);
             ramp[k] += base ? value * re + rate * im : rate * re;
             bend[k] += base && own->omega2[k] != 0.0 ? rate * re / own->omega2[k] : 0.0;
         }
@@ -363,43 +373,34 @@ static void lead_tables(struct exact *x, double *force)
     }
 }
 
-/* Sets vel, acc, jerk and drift, and subtracts from place = eta and rate = eta' of the modes the responses to the constant and
+/* Sets vel, acc, jerk and drift of the modes, and subtracts from place = eta and rate = eta' the responses to the constant and
  * linear right-hand side force [modes], and to harmonics. */
 static void split_amplitudes(struct exact *x, const double *force)
 {
     const struct forced *h = x->h;
     const struct modal *own = h->modal;
+    const int tables = x->sys->loads.tables > 0;
     tribo_modal_settle(own, 1, force, x->place, x->rate, x->vel, x->acc);
-    x->runs = h->steady || x->sys->loads.tables > 0;
+    x->runs = h->steady || tables;
     for (size_t k = 0; k < own->modes; k++) {
         const int drifts = tribo_modal_drifts(own, k);
+        x->jerk[k] = 0.0;
         if (x->runs && own->omega2[k] != 0.0) {
-            x->vel[k] += (own->stiff ? h->constant[k] : h->ramp[k] / own->omega2[k]) + x->slopes.lead[k];
+            x->vel[k] += (own->stiff ? h->constant[k] : h->ramp[k] / own->omega2[k]) + (tables ? x->slopes.lead[k] : 0.0);
             x->rate[k] -= x->vel[k];
         }
-        x->jerk[k] = drifts ? x->slopes.rest[k] : 0.0;
-        x->acc[k] += drifts ? 0.0 : x->slopes.rest[k] + x->slopes.bend[k];
+        if (tables) {
+            x->jerk[k] = drifts ? x->slopes.rest[k] : 0.0;
+            x->acc[k] += drifts ? 0.0 : x->slopes.rest[k] + x->slopes.bend[k];
+        }
         for (size_t s = 0; s < h->harmonics; s++) {
             const double xr = creal(h->x[s * h->shapes + k]), xi = cimag(h->x[s * h->shapes + k]);
             const double c = x->z.re[own->exponents + s], d = x->z.im[own->exponents + s];
             x->place[k] -= xr * c - xi * d;
             x->rate[k] += h->forcing[s].omega * (xr * d + xi * c);
         }
-        x->drift[k] = x->vel[k] + (tribo_modal_drifts(own, k) ? x->rate[k] : 0.0);
-        x->runs |= x->vel[k] != 0.0 || tribo_modal_drifts(own, k);
-    }
-    for (size_t k = own->modes; k < h->shapes; k++) {
-        x->acc[k] = x->jerk[k] = 0.0;
-        x->vel[k] = x->drift[k] = h->speed[k];
-    }
-    for (size_t s = 0; x->sys->loads.tables && s < h->harmonics; s++) {
-        const size_t k = h->forcing[s].table - 1;
-        if (h->forcing[s].table) {
-            const double rate = x->slopes.rate[own->exponents + s];
-            const int base = x->sys->loads.harmonic[h->forcing[s].harmonic].drives == DRIVES_BASE;
-            x->vel[k] = x->drift[k] = base ? x->z.re[own->exponents + s] : rate;
-            x->acc[k] = base ? rate : 0.0;
-        }
+        x->drift[k] = x->vel[k] + (drifts ? x->rate[k] : 0.0);
+        x->runs |= x->vel[k] != 0.0 || drifts;
     }
 }
 
@@ -426,7 +427,7 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
     const struct modal *own = h->modal;
     const size_t n = x->sys->ndof;
     const int varies = tribo_system_limits_vary(x->sys);
-    if (!motion_reserve(x)) {
+    if ((x->room < h->terms || x->room < h->shapes) && !motion_reserve(x)) {
         return 0;
     }
     for (size_t k = 0; varies && k < 2; k++) {
@@ -435,6 +436,7 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
         }
     }
     x->t0 = t;
+    x->tau = x->far = 0.0;
     start_harmonics(x);
     for (size_t k = 0; k < own->modes; k++) {
         const size_t begin = h->span[2 * k], moved = h->span[2 * k + 1] - begin;
@@ -445,7 +447,6 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
     find_constant_forces(x, y, x->work);
     if (own->powers) {
         x->runs = 0;
-        x->tau = 0.0;
         x->longest = *longest = lesser(*longest, TRIBO_POWERS_REACH / h->quickest);
         double power = 1.0, sixth = 1.0;
         for (size_t k = 0; k < TRIBO_POWERS; k++) {
@@ -464,7 +465,7 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
         tribo_follow_drift(own, 1, x->z.re, x->z.im, x->drift);
     }
     /* w = z at t0; resonances change only w' and w'' there. */
-    tribo_modal_terms_rest(x);
+    tribo_modal_terms_rest(h->terms, x->room, h->lr, x->far_e.re, x->z.re, x->lot);
     if (h->resonant) {
         add_resonances(x, 0.0);
     }

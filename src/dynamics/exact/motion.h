@@ -144,9 +144,10 @@ int tribo_modal_transition(void *own, const void *phase, double tau, size_t colu
  * status, its message on the system's context. */
 int tribo_modal_source(const struct exact *x, double tau, size_t columns, const struct source *source, double *eta, double *rate);
 
-/* terms.c. rest: sets w to z, at t0. go: sets w for t0 + tau, without resonances. tribo_exp_1 returns (e^z - 1)/z, the integral
+/* terms.c. rest: sets w to z [n], with derivatives, and e to 1; imaginary parts stand n numbers after real parts of lambda, else
+ * `next`. go: sets w for t0 + tau, without resonances. tribo_exp_1 returns (e^z - 1)/z, the integral
  * of e^{z s} over s from 0 to 1, without loss of digits for small z. */
-void tribo_modal_terms_rest(struct exact *x);
+void tribo_modal_terms_rest(size_t n, size_t next, const double *lambda, double *e, const double *z, struct lot *lot);
 void tribo_modal_terms_go(struct exact *x, double tau);
 double complex tribo_exp_1(double complex z);
 

@@ -115,7 +115,7 @@ static int follow_bases(struct modal_build *b)
     for (size_t at = 0, k = m; at < 2 * sys->loads.harmonics; at++) {
         const struct harmonic *w = &sys->loads.harmonic[at / 2];
         const int part = at % 2;
-        const double complex unit = part ? I : 1.0;
+        const double complex unit = part ? I : 1.0, along = part ? 1.0 : -I; /* along = unit/i */
         if (w->drives != DRIVES_BASE || (part && w->omega == 0.0)) {
             continue;
         }
@@ -132,10 +132,10 @@ static int follow_bases(struct modal_build *b)
             tribo_add(f->ramp, 1.0, place, m);
             tribo_add(f->constant, 1.0, rate, m);
         } else {
-            f->x[at / 2 * f->shapes + k] = unit / (w->omega * I);
+            f->x[at / 2 * f->shapes + k] = along / w->omega;
         }
         for (size_t l = 0; (w->knots || w->omega != 0.0) && l < m; l++) {
-            f->g[at / 2 * m + l] += w->knots ? place[l] + rate[l] * I : unit * (place[l] / (w->omega * I) + rate[l]);
+            f->g[at / 2 * m + l] += w->knots ? place[l] + rate[l] * I : place[l] / w->omega * along + rate[l] * unit;
         }
         k++;
     }
@@ -171,17 +171,18 @@ static void force_modes(struct modal_build *b, size_t s, double *work)
     for (int part = 0; part < 2; part++) {
         const double *value = part ? w->sine : w->cosine;
         const double complex unit = part ? -I : 1.0;
+        const double loads = w->drives == DRIVES_LOAD ? tribo_largest(value, w->count) : 0.0;
+        if ((i < sys->ncontact ? fabs(value[i]) : loads) == 0.0) {
+            continue;
+        }
         memset(work, 0, 2 * n * sizeof *work);
         if (i < sys->ncontact) {
             tribo_matrix_add_row(j, i, -value[i], force);
         } else {
-            for (size_t e = 0; w->drives == DRIVES_LOAD && e < w->count; e++) {
+            for (size_t e = 0; e < w->count; e++) {
                 load[w->index[e]] = -value[e];
             }
             tribo_matrix_multiply_add(&sys->mass, 1.0, load, force);
-        }
-        if (tribo_largest(force, n) == 0.0) {
-            continue;
         }
         tribo_modal_react(h, all, 1, force, react, by);
         for (size_t k = 0; k < m; k++) {

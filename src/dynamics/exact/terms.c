@@ -21,14 +21,34 @@ static inline void multiply(const double *ar, const double *ai, const double *br
     }
 }
 
-/* Sets w = e z, w' = lambda w and w'' = lambda w'. Imaginary parts stand n numbers after real parts of lambda, else `next`. */
+/* w' = lambda w and w'' = lambda w'. */
+static inline void derive(const double *re, const double *im, struct lot *lot)
+{
+    multiply(re, im, lot->re[0], lot->im[0], lot->re[1], lot->im[1]);
+    multiply(re, im, lot->re[1], lot->im[1], lot->re[2], lot->im[2]);
+}
+
+/* Sets w = e z, with derivatives. Imaginary parts stand n numbers after real parts of lambda, else `next`. */
 TRIBO_SIMD_OF_FOUR static void turn_terms(size_t n, size_t next, const double *restrict lambda, const double *restrict e,
                                           const double *restrict z, struct lot *restrict lot)
 {
     for (size_t p = 0; p < n; p += T, lot++) {
         multiply(e + p, e + next + p, z + p, z + next + p, lot->re[0], lot->im[0]);
-        multiply(lambda + p, lambda + n + p, lot->re[0], lot->im[0], lot->re[1], lot->im[1]);
-        multiply(lambda + p, lambda + n + p, lot->re[1], lot->im[1], lot->re[2], lot->im[2]);
+        derive(lambda + p, lambda + n + p, lot);
+    }
+}
+
+TRIBO_SIMD_OF_FOUR void tribo_modal_terms_rest(size_t n, size_t next, const double *restrict lambda, double *restrict e,
+                                               const double *restrict z, struct lot *restrict lot)
+{
+    for (size_t p = 0; p < n; p += T, lot++) {
+        for (size_t k = 0; k < T; k++) {
+            e[p + k] = 1.0;
+            e[next + p + k] = 0.0;
+            lot->re[0][k] = z[p + k];
+            lot->im[0][k] = z[next + p + k];
+        }
+        derive(lambda + p, lambda + n + p, lot);
     }
 }
 
@@ -44,14 +64,16 @@ static inline void grow_little(const double *restrict lr, const double *restrict
     }
 }
 
-/* to = e^{lambda delta} e. */
+/* Sets w = e^{lambda delta} e z, with derivatives. */
 TRIBO_SIMD_OF_FOUR static void turn_little(size_t n, size_t next, double delta, const double *restrict lambda,
-                                           const double *restrict e, double *restrict to)
+                                           const double *restrict e, const double *restrict z, struct lot *restrict lot)
 {
-    for (size_t p = 0; p < n; p += T) {
-        double re[T], im[T];
+    for (size_t p = 0; p < n; p += T, lot++) {
+        double re[T], im[T], er[T], ei[T];
         grow_little(lambda + p, lambda + n + p, delta, re, im);
-        multiply(re, im, e + p, e + next + p, to + p, to + next + p);
+        multiply(re, im, e + p, e + next + p, er, ei);
+        multiply(er, ei, z + p, z + next + p, lot->re[0], lot->im[0]);
+        derive(lambda + p, lambda + n + p, lot);
     }
 }
 
@@ -75,38 +97,25 @@ double complex tribo_exp_1(double complex z)
     return re + im * I;
 }
 
-void tribo_modal_terms_rest(struct exact *x)
-{
-    x->tau = x->far = 0.0;
-    for (size_t p = 0; p < x->h->terms; p++) {
-        x->far_e.re[p] = 1.0;
-        x->far_e.im[p] = 0.0;
-    }
-    turn_terms(x->h->terms, x->room, x->h->lr, x->far_e.re, x->z.re, x->lot);
-}
-
 /* w = e^{lambda tau} z. e^{lambda tau} is computed from tau, or from e^{lambda far} if tau is close to far. Other looks do not
  * start at far: the rounding of w at late times must not vary from look to look. */
 void tribo_modal_terms_go(struct exact *x, double tau)
 {
     const struct forced *h = x->h;
-    const double *e = x->far_e.re;
-    x->tau = tau;
     if (fabs(tau - x->far) * h->quickest < CLOSE) {
-        turn_little(h->terms, x->room, tau - x->far, h->lr, x->far_e.re, x->move.re);
-        e = x->move.re;
-    } else {
-        x->far = tau;
-        tribo_cos_sin_all(tau, h->terms, h->li, x->far_e.re, x->far_e.im);
-        for (size_t p = 0; (h->decay > 0.0 || h->growth > 0.0) && p < h->modal->exponents; p++) {
-            if (h->lr[p] != 0.0) {
-                const double size = exp(h->lr[p] * tau);
-                x->far_e.re[p] *= size;
-                x->far_e.im[p] *= size;
-            }
+        turn_little(h->terms, x->room, tau - x->far, h->lr, x->far_e.re, x->z.re, x->lot);
+        return;
+    }
+    x->far = tau;
+    tribo_cos_sin_all(tau, h->terms, h->li, x->far_e.re, x->far_e.im);
+    for (size_t p = 0; (h->decay > 0.0 || h->growth > 0.0) && p < h->modal->exponents; p++) {
+        if (h->lr[p] != 0.0) {
+            const double size = exp(h->lr[p] * tau);
+            x->far_e.re[p] *= size;
+            x->far_e.im[p] *= size;
         }
     }
-    turn_terms(h->terms, x->room, h->lr, e, x->z.re, x->lot);
+    turn_terms(h->terms, x->room, h->lr, x->far_e.re, x->z.re, x->lot);
 }
 
 /* ------------------------------------------------------------------------------------------------------- outputs in a phase */
@@ -174,9 +183,13 @@ void tribo_course_look(const struct exact *x, struct course *c)
     }
     sum_terms(x->h->terms, c->output->cr, x->lot, sum);
     c->tau = x->tau;
-    c->at.g = total(sum) + (c->start + (c->ramp + (c->square + c->cube * x->tau) * x->tau) * x->tau);
-    c->at.d = total(sum + T) + (c->ramp + (2.0 * c->square + 3.0 * c->cube * x->tau) * x->tau);
-    c->at.e = total(sum + 2 * T) + (2.0 * c->square + 6.0 * c->cube * x->tau);
+    struct sample line = {c->start, 0.0, 0.0};
+    if (x->runs) {
+        line.g += (c->ramp + (c->square + c->cube * x->tau) * x->tau) * x->tau;
+        line.d = c->ramp + (2.0 * c->square + 3.0 * c->cube * x->tau) * x->tau;
+        line.e = 2.0 * c->square + 6.0 * c->cube * x->tau;
+    }
+    c->at = (struct sample){total(sum) + line.g, total(sum + T) + line.d, total(sum + 2 * T) + line.e};
 }
 
 void tribo_course_bound(const struct exact *x, struct course *c)
@@ -188,8 +201,10 @@ void tribo_course_bound(const struct exact *x, struct course *c)
         return;
     }
     sum_bounds(x->h->terms, c->output->size, x->growth, x->growth6, sum);
-    const double square = fabs(c->square) + fabs(c->cube) * x->longest;
-    c->size = total(sum) + fabs(c->start) + (fabs(c->ramp) + square * x->longest) * x->longest;
+    c->size = total(sum) + fabs(c->start);
+    if (x->runs) {
+        c->size += (fabs(c->ramp) + (fabs(c->square) + fabs(c->cube) * x->longest) * x->longest) * x->longest;
+    }
     c->bend = total(sum + T);
 }
 
@@ -200,9 +215,11 @@ void tribo_course_begin(struct exact *x, size_t o, double value)
     const int of_velocity = o < x->h->sliding, of_normal = o >= x->h->holding;
     c->output = w;
     c->start = 0.0;
-    c->ramp = x->runs ? tribo_dot(w->on_rate, of_velocity ? x->acc : of_normal ? x->drift : x->vel, x->h->shapes) : 0.0;
-    c->square = x->runs && of_normal ? 0.5 * tribo_dot(w->on_rate, x->acc, x->h->shapes) : 0.0;
-    c->cube = 0.0;
+    c->ramp = c->square = c->cube = 0.0;
+    if (x->runs) {
+        c->ramp = tribo_dot(w->on_rate, of_velocity ? x->acc : of_normal ? x->drift : x->vel, x->h->shapes);
+        c->square = of_normal ? 0.5 * tribo_dot(w->on_rate, x->acc, x->h->shapes) : 0.0;
+    }
     if (x->sys->loads.tables) {
         const double jerk = tribo_dot(w->on_rate, x->jerk, x->h->shapes);
         const double *by_u = !of_velocity && !of_normal && x->h->by_u ? x->h->by_u + w->contact * x->h->shapes : NULL;

@@ -59,16 +59,16 @@ TRIBO_SIMD_OF_FOUR void tribo_cos_sin(double omega, double t, double low, double
     *s = sa * cr + ca * sr;
 }
 
-TRIBO_SIMD_OF_FOUR void tribo_cos_sin_all(double omega, size_t n, const double *restrict t, double *restrict c,
-                                          double *restrict s)
+TRIBO_SIMD void tribo_cos_sin_all(double omega, size_t n, const double *restrict t, double *restrict c, double *restrict s)
 {
     int64_t far = 0; /* as wide as the doubles compared, for vectors */
     for (size_t k = 0; k < n; k++) {
-        const int near = fabs(omega * t[k]) <= COS_SIN_NEAR;
-        far |= near ? 0 : -1;
-        cos_sin_of(twofold_product(omega, near ? t[k] : 0.0), c + k, s + k);
+        far |= fabs(omega * t[k]) <= COS_SIN_NEAR ? 0 : -1;
     }
     for (size_t k = 0; far && k < n; k++) {
         tribo_cos_sin(omega, t[k], 0.0, c + k, s + k);
+    }
+    for (size_t k = 0; !far && k < n; k++) {
+        cos_sin_of(twofold_product(omega, t[k]), c + k, s + k);
     }
 }

@@ -128,11 +128,8 @@ void tribo_system_set_low(tribo_system *sys, double low)
     }
 }
 
-void tribo_system_set_time(tribo_system *sys, double t)
+void tribo_system_turn_to(tribo_system *sys, double t)
 {
-    if (t == sys->loads.time) {
-        return;
-    }
     sys->loads.time = t;
     for (size_t k = 0; k < sys->loads.harmonics; k++) {
         struct harmonic *const h = sys->loads.harmonic + k;

@@ -185,8 +185,15 @@ void tribo_loads_keep_constant(tribo_system *sys);
  * change in time also times swing, and frequencies times pace; these bases keep their displacements. */
 void tribo_loads_scale(tribo_system *sys, const tribo_system *like, const double *size, double swing, double pace);
 
-/* Sets time t. If limits vary, sets the limits of the contacts at t. */
-void tribo_system_set_time(tribo_system *sys, double t);
+/* Sets time t. If limits vary, sets the limits of the contacts at t. turn_to: also where t is the set time. */
+void tribo_system_turn_to(tribo_system *sys, double t);
+
+static inline void tribo_system_set_time(tribo_system *sys, double t)
+{
+    if (t != sys->loads.time) {
+        tribo_system_turn_to(sys, t);
+    }
+}
 
 /* Sets the part of the time below its last digit: all times t mean t + low. An event can lie between two adjacent doubles t. */
 void tribo_system_set_low(tribo_system *sys, double low);
