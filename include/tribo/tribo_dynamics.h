@@ -59,7 +59,9 @@ TRIBO_API int tribo_model_set_direction_csr(tribo_model *model, const size_t *ro
 
 /* Springs in series with the sliders of contacts (Jenkins, Masing): v = J q' + c f'.
  * c  [ncontact] in   1/stiffness of the spring, >= 0; 0: a rigid contact
- * Each c > 0 adds the displacement of the slider to the state of the system.
+ * Each c > 0 adds the displacement of the slider to the state of the system. Methods exact, event, auto, moreau/fixed. In the
+ * plane (tribo_set_planar): event, auto; both directions of each planar contact have the same c > 0 and limit, constant or by
+ * tribo_model_set_normal; anything else returns TRIBO_ERR_UNSUPPORTED as a motion begins.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_RANGE (1/c overflows), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_model_set_compliance(tribo_model *model, const double *c);
 

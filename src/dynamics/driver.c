@@ -14,7 +14,7 @@
 int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const struct method *m)
 {
     int status = tribo_system_take_settings(sys);
-    status = status ? status : tribo_system_check_contacts(sys, m->name, m->takes & NEEDS_SCALAR);
+    status = status ? status : tribo_system_check_contacts(sys, m->name, tribo_method_scalar(m));
     if (!status && m->takes & NEEDS_MASS) {
         char who[40];
         snprintf(who, sizeof who, "method %s", m->name);
@@ -277,7 +277,7 @@ static int advance_motion(tribo_driver *drv, double *t, double t1, double *y)
     if (!status && (method->takes & (TAKES_STEP | TAKES_TOLERANCE)) == TAKES_STEP && drv->dt == 0.0) {
         return tribo_error(drv->message, TRIBO_ERR_STATE, "method %s has no step: call tribo_driver_set_step", method->name);
     }
-    status = status ? status : tribo_system_check_contacts(sys, method->name, method->takes & NEEDS_SCALAR);
+    status = status ? status : tribo_system_check_contacts(sys, method->name, tribo_method_scalar(method));
     if (status || t1 == *t) {
         return tribo_driver_pass(drv, status);
     }

@@ -6,7 +6,8 @@
 #include "dynamics/system/system.h"
 
 /* Bits of `takes`. TAKES_STEP to TAKES_MAX_STEP: settings accepted, see tribo_driver_set_step and the functions after it.
- * TAKES_UNSOLVED: unsolved systems accepted. NEEDS_SCALAR: scalar contacts only. NEEDS_MASS: no massless degrees of freedom. */
+ * TAKES_UNSOLVED: unsolved systems accepted. NEEDS_SCALAR: scalar contacts only. NEEDS_MASS: no massless degrees of freedom.
+ * TAKES_PAIRS: contacts in a plane on springs accepted. */
 enum {
     TAKES_STEP = 1,
     TAKES_TOLERANCE = 2,
@@ -14,7 +15,8 @@ enum {
     TAKES_MAX_STEP = 8,
     TAKES_UNSOLVED = 16,
     NEEDS_SCALAR = 32,
-    NEEDS_MASS = 64
+    NEEDS_MASS = 64,
+    TAKES_PAIRS = 128
 };
 
 struct events;
@@ -44,6 +46,12 @@ struct method {
     /* Finds a periodic motion, with checked arguments; returns what w->find returns. NULL: TRIBO_ERR_UNSUPPORTED. */
     int (*find_periodic)(tribo_driver *drv, struct wanted *w);
 };
+
+/* Contacts that a method takes, as `scalar` of tribo_system_check_contacts. */
+static inline int tribo_method_scalar(const struct method *m)
+{
+    return m->takes & NEEDS_SCALAR ? 1 : m->takes & TAKES_PAIRS ? -1 : 0;
+}
 
 /* The data of the methods that auto takes, event and exact, each created at first use. */
 struct choice {

@@ -64,7 +64,7 @@ static int set_to_work(tribo_driver *drv, int which)
 {
     const struct method *m = drv->at_work = choices[which];
     drv->own = drv->choice.own[which];
-    int status = tribo_system_check_contacts(drv->sys, m->name, m->takes & NEEDS_SCALAR);
+    int status = tribo_system_check_contacts(drv->sys, m->name, tribo_method_scalar(m));
     status = status || drv->own ? status : m->create(drv);
     if (status) {
         drv->at_work->destroy(drv);
@@ -128,7 +128,7 @@ static int find_by_choice(tribo_driver *drv, struct wanted *w)
 }
 
 static const struct method automatic = {.name = "auto",
-                                        .takes = TAKES_TOLERANCE | TAKES_OUTPUT,
+                                        .takes = TAKES_TOLERANCE | TAKES_OUTPUT | TAKES_PAIRS,
                                         .create = create_choice,
                                         .destroy = destroy_choice,
                                         .advance = advance_choice,

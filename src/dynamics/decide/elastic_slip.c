@@ -10,6 +10,8 @@
 #include "stick_slip.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
@@ -21,11 +23,63 @@ void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const dou
     }
 }
 
+double tribo_spring_of(const struct stick_slip *m, size_t i)
+{
+    return m->constant.sys->compliance.own[i];
+}
+
+int tribo_elastic_pair(struct stick_slip *m, const tribo_system *sys)
+{
+    const struct compliance *g = &sys->compliance;
+    const size_t c = sys->ncontact;
+    memset(m->constant.pair, 0, c);
+    m->constant.pairs = 0;
+    if (g->count == 0 || !tribo_system_planar(sys)) {
+        return TRIBO_OK;
+    }
+    tribo_context *probe = NULL;
+    double *one = malloc(2 * c * sizeof *one);
+    signed char *slip = (signed char *)(one + c);
+    int status = one ? tribo_clone(sys->contacts, &probe) : TRIBO_ERR_MEMORY;
+    status = status ? status : tribo_system_find_pairs(probe, c, one, slip);
+    for (size_t i = 0; !status && i < c; i++) {
+        const int pair = slip[i] == TRIBO_SLIP_PLANE;
+        if (pair &&
+            (g->factor || !(g->own[i] > 0.0) || g->own[i] != g->own[i + 1] || m->state.limit[i] != m->state.limit[i + 1])) {
+            status = tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                                 "contact %zu has a direction beside it in its plane: method event takes both with the same "
+                                 "compliance and limit, each on springs of its own, or no contact with compliance",
+                                 i);
+        }
+        if (!status && pair) {
+            m->constant.pair[i] = 1;
+            m->constant.pair[i + 1] = 2;
+            m->constant.pairs++;
+        }
+        i += (size_t)pair;
+    }
+    free(one);
+    tribo_destroy(probe);
+    return status == TRIBO_ERR_MEMORY ? tribo_error(sys->message, status, "out of memory for %zu contact%s", c, plural(c))
+                                      : status;
+}
+
 void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *y)
 {
     if (sys->compliance.count == 0) {
         return;
     }
+    tribo_compliance_get(sys, y, m->state.spring);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        double *f = m->state.spring + i, size = m->constant.pair[i] == 1 ? hypot(f[0], f[1]) : 0.0;
+        const double limit = m->state.limit[i];
+        if (size > limit) {
+            y[tribo_system_energy(sys)] += sys->tally[i] * limit * (size - limit) * sys->compliance.own[i];
+            f[0] *= limit / size;
+            f[1] *= limit / size;
+        }
+    }
+    tribo_compliance_put(sys, m->state.spring, y);
     tribo_compliance_enter(sys, m->state.limit, m->state.spring, y);
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (m->constant.elastic[i]) {
@@ -33,6 +87,58 @@ void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *
             tribo_stick_slip_set(m, i, m->state.slid[i]);
         }
     }
+}
+
+/* A force turns at once if it does so in this part of the horizon, and the square of that part times the angle to turn by is at most
+ * LEAST: the velocity changes by the same part of 1e-8. */
+#define AT_ONCE 0.01
+#define LEAST 1e-8
+
+/* A limit changes slowly if it does so by less than itself in this number of the times in which the force turns. */
+#define SLOW 64.0
+
+int tribo_follows_velocity(const struct stick_slip *m, size_t i, const double *v)
+{
+    const struct slip_state *s = &m->state;
+    const double c = tribo_spring_of(m, i), speed = hypot(v[0], v[1]), part = c * s->limit[i] / (m->constant.horizon * speed);
+    if (s->limit[i] == 0.0 || !(part <= AT_ONCE && SLOW * c * fabs(s->limit_rate[i]) <= speed)) {
+        return s->limit[i] == 0.0;
+    }
+    const double angle = hypot(s->spring[i] / s->limit[i] + v[0] / speed, s->spring[i + 1] / s->limit[i] + v[1] / speed);
+    return part * part * angle <= LEAST;
+}
+
+/* u [2] = direction in which the slider of the contact in a plane with first direction i moves: against the force, or along v [2]
+ * if the force follows that; 0 if both are 0. */
+static void find_way(const struct stick_slip *m, size_t i, const double *v, double *u)
+{
+    const double *f = m->state.spring + i, speed = hypot(v[0], v[1]);
+    const double force = tribo_follows_velocity(m, i, v) ? 0.0 : hypot(f[0], f[1]);
+    for (size_t d = 0; d < 2; d++) {
+        u[d] = force > 0.0 ? -f[d] / force : speed > 0.0 ? v[d] / speed : 0.0;
+    }
+}
+
+/* Decides about the contact in a plane with first direction i: its slider moves along u, if its speed v'u - c limit' is more than
+ * rounding. */
+static void place_pair(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i)
+{
+    struct slip_state *s = &m->state;
+    double *f = s->spring + i, u[2];
+    const double v[2] = {tribo_stick_slip_find_velocity(m, sys, i, y), tribo_stick_slip_find_velocity(m, sys, i + 1, y)};
+    const int open = s->slip[i] == TRIBO_SLIP_OPEN, moved = s->slid[i] == TRIBO_SLIP_PLANE;
+    const int stopped = s->slip[i] == TRIBO_SLIP_STUCK && moved;
+    const int at_limit = moved || i == s->reached || hypot(f[0], f[1]) >= s->limit[i] - m->noise.spring[i];
+    find_way(m, i, v, u);
+    for (size_t d = 0; d < 2; d++) {
+        f[d] = open ? 0.0 : at_limit ? -s->limit[i] * u[d] : f[d];
+    }
+    const double along = u[0] * v[0] + u[1] * v[1] - sys->compliance.own[i] * s->limit_rate[i];
+    const double noise = m->noise.factor * (m->noise.velocity[i] + m->noise.velocity[i + 1]);
+    const int slides = !stopped && at_limit && along > noise;
+    const signed char slip = (signed char)(open ? TRIBO_SLIP_OPEN : slides ? TRIBO_SLIP_PLANE : TRIBO_SLIP_STUCK);
+    tribo_stick_slip_set(m, i, slip);
+    tribo_stick_slip_set(m, i + 1, slip);
 }
 
 void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *y)
@@ -44,6 +150,14 @@ void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *
     signed char *side = m->work.pulled; /* [ncontact] at the limit: direction to slide, against the force; else 0 */
     tribo_elastic_find(m, sys, y);
     for (size_t i = 0; i < sys->ncontact; i++) {
+        if (m->constant.pair[i]) {
+            if (m->constant.pair[i] == 1) {
+                place_pair(m, sys, y, i);
+            }
+            side[i] = 0;
+            v[i] = g->lo[i] = g->hi[i] = 0.0;
+            continue;
+        }
         const int open = !elastic[i] || s->slip[i] == TRIBO_SLIP_OPEN;
         const int stopped = s->slip[i] == TRIBO_SLIP_STUCK && tribo_slides(s->slid[i]);
         const int slides = tribo_slides(s->slip[i]) && s->slid[i] == s->slip[i];
@@ -58,7 +172,7 @@ void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *
     }
     tribo_compliance_share(g, v);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        if (elastic[i] && s->slip[i] != TRIBO_SLIP_OPEN) {
+        if (elastic[i] && !m->constant.pair[i] && s->slip[i] != TRIBO_SLIP_OPEN) {
             if (side[i] && s->limit[i] == 0.0) {
                 side[i] = (signed char)(v[i] > 0.0 ? TRIBO_SLIP_FORTH : TRIBO_SLIP_BACK);
             }
@@ -76,6 +190,15 @@ void tribo_elastic_move(struct stick_slip *m, const tribo_system *sys, const dou
         const int elastic = m->constant.elastic[i];
         m->state.glide[i] = elastic ? tribo_stick_slip_velocity(m, sys, i, y) : 0.0;
         slide[i] = elastic && tribo_slides(m->state.slip[i]) ? -m->state.slip[i] * m->state.limit_rate[i] : 0.0;
+        if (m->constant.pair[i] == 2 && m->state.slip[i] == TRIBO_SLIP_PLANE) {
+            const double *v = m->state.glide + i - 1;
+            double u[2];
+            find_way(m, i - 1, v, u);
+            const double w = (u[0] * v[1] - u[1] * v[0]) / sys->compliance.own[i];
+            slide[i - 1] = -m->state.limit_rate[i] * u[0] + w * u[1];
+            slide[i] = -m->state.limit_rate[i] * u[1] - w * u[0];
+        }
     }
-    tribo_compliance_rates(sys, m->state.slip, sys->normals.count ? slide : NULL, 1, m->state.glide, m->state.spring_rate);
+    tribo_compliance_rates(sys, m->state.slip, sys->normals.count || m->constant.pairs ? slide : NULL, 1, m->state.glide,
+                           m->state.spring_rate);
 }

@@ -113,7 +113,7 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
     }
     tribo_planar_slip_free(m->plane);
     m->plane = NULL;
-    if (!planar) {
+    if (!planar || m->constant.pairs) { /* all planar contacts of the system, if there are pairs */
         return TRIBO_OK;
     }
     /* forces of planar contacts are known for limits that are the same at all times and speeds, at rest and not */

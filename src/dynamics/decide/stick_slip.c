@@ -109,7 +109,7 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
                          ARRAY(r->size, dofs), ARRAY(c->load_size, dofs), ARRAY(w->acceleration, dofs), ARRAY(w->free, dofs),
                          ARRAY(w->rate, dofs), ARRAY(s->slip, n), ARRAY(s->tied, n), ARRAY(s->before, n), ARRAY(s->loose, n),
                          ARRAY(s->slid, n), ARRAY(w->pulled, n), ARRAY(s->key, n + sizeof(uint64_t)), ARRAY(s->holds, n),
-                         ARRAY(s->rested, n), ARRAY(c->elastic, n), ARRAY(w->last, n), ARRAY(s->pressed, n),
+                         ARRAY(s->rested, n), ARRAY(c->elastic, n), ARRAY(c->pair, n), ARRAY(w->last, n), ARRAY(s->pressed, n),
                          ARRAY(s->was_pressed, n), ARRAY(s->rests, n), ARRAY(w->at, n), ARRAY(w->doubt, n), ARRAY(s->snap, n));
     if (c->memory && create_contexts(c, sys->contacts) && find_constants(m, sys)) {
         return TRIBO_OK;
@@ -306,6 +306,7 @@ int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, doubl
         const double follows = m->constant.swing[i] > 0.0 ? tribo_stick_slip_follows(m, i) : 0.0;
         force[i] = !s->loose[i]                     ? 0.0
                    : s->slip[i] == TRIBO_SLIP_OPEN  ? 0.0
+                   : m->constant.pair[i]            ? s->spring[i]
                    : s->slip[i] != TRIBO_SLIP_STUCK ? -s->slip[i] * s->limit[i]
                    : follows != 0.0                 ? follows * m->limits.kinetic[i]
                    : m->constant.elastic[i]         ? s->spring[i]
@@ -563,6 +564,10 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
             s->rested[i] = 0;
         }
         tribo_stick_slip_forget_shares(m);
+        const int status = tribo_elastic_pair(m, sys);
+        if (status) {
+            return status;
+        }
         tribo_elastic_start(m, sys, y);
     }
     s->fresh = s->hold_differs = 1;

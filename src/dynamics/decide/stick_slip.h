@@ -35,6 +35,8 @@ struct slip_constant {
     double *base_rate_size; /* [ncontact] bound of |b_i'| */
     double *load_size;      /* [ndof] bound of accelerations by harmonic loads */
     unsigned char *elastic; /* [ncontact] 1: elastic contact */
+    size_t pairs;           /* number of elastic contacts in a plane */
+    unsigned char *pair;    /* [ncontact] 1: first direction of one; 2: second direction; 0: none */
 };
 
 /* What contacts do from the last decision on. */
@@ -208,6 +210,9 @@ static inline int tribo_slides(signed char slip)
     return slip == TRIBO_SLIP_FORTH || slip == TRIBO_SLIP_BACK;
 }
 
+/* The displacement by a unit force of the spring before the slider of contact i. */
+double tribo_spring_of(const struct stick_slip *m, size_t i);
+
 /* 1 if planar contact p slides. */
 static inline int tribo_slides_in_plane(const struct stick_slip *m, const struct planar_contact *p)
 {
@@ -252,6 +257,13 @@ void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, 
  * slip, and forces, also in y) and move (sets rates of forces, and velocities of contacts that slide). */
 void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *y);
+
+/* Returns 1 if the force of the contact in a plane with first direction i turns with its velocity v [2] at once: its limit is 0, or
+ * so small that the time c limit/|v| in which the force turns does not count, and changes slowly in this time. */
+int tribo_follows_velocity(const struct stick_slip *m, size_t i, const double *v);
+
+/* Sets pair; returns a status, its message on the system's context. */
+int tribo_elastic_pair(struct stick_slip *m, const tribo_system *sys);
 void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *y);
 void tribo_elastic_move(struct stick_slip *m, const tribo_system *sys, const double *y);
 

@@ -149,7 +149,7 @@ static int show_changes(struct events *e, tribo_driver *drv, double t, const dou
     int status = TRIBO_OK;
     for (size_t i = 0; i < m->constant.contacts && !status; i++) {
         const signed char from = e->shown[i], to = shown_slip(m, i);
-        const int second = m->plane && m->plane->in_plane[i] == 2;
+        const int second = (m->plane && m->plane->in_plane[i] == 2) || m->constant.pair[i] == 2;
         e->shown[i] = to;
         if (!second && from != to) {
             const int moment = to == TRIBO_SLIP_OPEN      ? TRIBO_MOMENT_LIFT

@@ -293,6 +293,9 @@ static int stops(const struct variation *x, size_t i)
     const signed char before = x->before[i], *now = x->to->events->stick_slip.state.slip;
     const struct guard *met = x->to->events->met;
     int acts = now[i] != before;
+    if (x->to->events->stick_slip.constant.pair[i]) {
+        return 0;
+    }
     if (before == TRIBO_SLIP_PLANE) {
         return now[i] == TRIBO_SLIP_STUCK || x->to->events->stick_slip.state.rested[i];
     }

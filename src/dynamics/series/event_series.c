@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "event_series.h"
 #include "common/layout.h"
+#include "common/real.h"
 
 #include <float.h>
 #include <math.h>
@@ -37,9 +38,10 @@ static void find_velocities(const struct event *e, size_t k, double scale, doubl
     tribo_system_loads(e->sys, DRIVES_BASE, (int)k, -scale, v);
     tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->u + k * e->sys->ndof, v);
     if (e->sys->compliance.count) {
-        const double *slide = e->sys->normals.count ? e->room.a : NULL;
+        const double *slide = e->sys->normals.count || e->pairs.count ? e->room.a : NULL;
         if (slide) {
             tribo_normal_series_slide(e, k, e->room.a);
+            tribo_pair_series_slide(e, k, v, e->room.a);
         }
         tribo_compliance_rates(e->sys, m->state.slip, slide, 1, v, e->room.rate);
         for (size_t i = 0; k < e->order && i < c; i++) {
@@ -62,8 +64,8 @@ static int expand_forces(struct event *e, size_t k, double scale)
     if (sys->normals.count) {
         tribo_normal_series_expand(e, k);
     }
-    tribo_system_smooth(sys, (int)k, scale, e->q + k * n, e->u + k * n, e->spring + k * c, acc);
     find_velocities(e, k, scale, watch);
+    tribo_system_smooth(sys, (int)k, scale, e->q + k * n, e->u + k * n, e->spring + k * c, acc);
     if (m->limits.falls) {
         expand_falling(e, k);
     }
@@ -105,7 +107,8 @@ int tribo_event_start(struct event *e, double t, const double *y)
     e->d[0] = y[tribo_system_energy(sys)];
     tribo_compliance_get(sys, y, e->spring);
     e->order = e->most_order;
-    const int status = m->plane ? tribo_planar_series_begin(e) : TRIBO_OK;
+    int status = m->plane ? tribo_planar_series_begin(e) : TRIBO_OK;
+    status = status ? status : tribo_pair_series_begin(e);
     tribo_system_set_time(sys, t);
     /* limits; a coefficient of a limit that falls with the speed needs that of the velocity first */
     const int falls = m->limits.falls;
@@ -151,6 +154,9 @@ int tribo_event_series(struct event *e)
         for (size_t i = 0; i < e->sys->ncontact; i++) {
             power += tribo_slides(m->state.slip[i]) ? e->sys->tally[i] * power_of(e, i, k) : 0.0;
         }
+        for (const struct pair_line *l = e->pairs.line; l < e->pairs.line + e->pairs.count; l++) {
+            power += e->sys->tally[l->at] * tribo_pair_series_power(e, l, k);
+        }
         e->d[k + 1] = power / (double)(k + 1);
     }
     return TRIBO_OK;
@@ -162,10 +168,32 @@ double tribo_event_work(void *own, size_t i, double tau)
     const int turns = e->events.stick_slip.state.slip[i] == TRIBO_SLIP_PLANE;
     double work = 0.0;
     for (size_t k = e->order; k-- > 0;) {
-        const double power = turns ? tribo_planar_series_power_along(e, i, k) : power_of(e, i, k);
+        const double power = turns && e->events.stick_slip.plane ? tribo_planar_series_power_along(e, i, k)
+                             : turns                             ? tribo_pair_series_power_along(e, i, k)
+                                                                 : power_of(e, i, k);
         work = work * tau + power / (double)(k + 1);
     }
     return work * tau;
+}
+
+/* Longest step of a periodic motion, in parts of the radius of convergence of the series that perturbations need. */
+#define WITHIN 0.7
+
+/* The radius is found from the first coefficient that exceeds LARGEST, since the next ones may overflow. */
+#define LARGEST 1e100
+
+double tribo_series_within(const double *x, size_t powers, double *inverse, double h)
+{
+    double term = 0.0;
+    inverse[0] = 1.0; /* the series of x_0/x */
+    for (size_t k = 1; k <= powers && !(term > LARGEST); k++) {
+        inverse[k] = -tribo_series_product(x, inverse, 1, k, 1, k + 1) / x[0];
+        term = fabs(inverse[k]);
+        if ((k + 2 > powers && term > 0.0) || term > LARGEST) {
+            h = lesser(h, WITHIN * pow(term, -1.0 / (double)k));
+        }
+    }
+    return h;
 }
 
 /* ------------------------------------------------------------------------------------------------------- perturbations */
@@ -182,6 +210,7 @@ struct perturbed {
     double *force;   /* [ncontact] forces by limits that fall, or follow the motion */
     double *v;       /* [rows][ncontact] velocities of contacts, the last orders cyclically */
     struct planar_turns turns;
+    struct pair_turns pairs;
     const struct source *source;
     double *drag; /* [ndof] workspace, one column: AC q' */
     double power; /* tau^(k - 1) */
@@ -209,6 +238,25 @@ static void add_source(struct event *e, size_t k, double part, const struct pert
         const double acceleration = (double)k * e->u[k * n + at / c];
         p->next[at] += part * p->power * (s->inertia[at % c] * acceleration + s->damping[at % c] * p->drag[at / c]);
     }
+}
+
+/* p->next += part times the terms of order k - 1 of accelerations by limits N that fall, from terms of v: dN/d|v| = (limit -
+ * N)/velocity. */
+static void perturb_falling(const struct event *e, size_t k, double part, double tau, const struct perturbed *p)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const size_t c = e->sys->ncontact, each = c * p->columns;
+    double power = 1.0;
+    memset(p->force, 0, each * sizeof *p->force);
+    for (size_t j = 0; j < k && j <= e->order; j++) {
+        const double *fall = e->fall + j * c, *limit = e->limit + j * c, *from = p->v + (k - 1 - j) % p->rows * each;
+        for (size_t i = 0; i < c; i++) {
+            const double slope = tribo_slides(m->state.slip[i]) ? (fall[i] - limit[i]) / m->limits.velocity[i] : 0.0;
+            tribo_add(p->force + i * p->columns, power * slope, from + i * p->columns, p->columns);
+        }
+        power *= tau;
+    }
+    tribo_matrix_add_columns(&e->sys->response, part, p->columns, p->force, p->next);
 }
 
 /* Sets the terms of order k from those before. Returns a status. */
@@ -241,19 +289,10 @@ static int find_term(struct event *e, size_t k, double tau, const struct perturb
             p->spring[i] = slides ? part * p->force[i] : -part * p->spring[i];
         }
     }
-    if (m->limits.falls) { /* forces by limits N that fall, from terms of v: dN/d|v| = (limit - N)/velocity */
-        double power = 1.0;
-        memset(p->force, 0, each * sizeof *p->force);
-        for (size_t j = 0; j < k && j < p->rows; j++) {
-            const double *fall = e->fall + j * c, *limit = e->limit + j * c, *from = p->v + (k - 1 - j) % p->rows * each;
-            for (size_t i = 0; i < c; i++) {
-                const double slope = tribo_slides(m->state.slip[i]) ? (fall[i] - limit[i]) / m->limits.velocity[i] : 0.0;
-                tribo_add(p->force + i * p->columns, power * slope, from + i * p->columns, p->columns);
-            }
-            power *= tau;
-        }
-        tribo_matrix_add_columns(&sys->response, part, p->columns, p->force, p->next);
+    if (m->limits.falls) {
+        perturb_falling(e, k, part, tau, p);
     }
+    tribo_pair_series_turn(e, k - 1, &p->pairs, p->q, p->v, p->rows);
     add_source(e, k, part, p);
     if (m->plane) {
         tribo_planar_series_turn(e, k - 1, &p->turns, p->force);
@@ -262,9 +301,27 @@ static int find_term(struct event *e, size_t k, double tau, const struct perturb
     for (size_t i = 0; i < half; i++) {
         p->q[i] = part * p->u[i];
     }
+    tribo_pair_series_force(e, k, &p->pairs, p->q, p->spring);
     memset(p->u, 0, half * sizeof *p->u);
     tribo_multiply_add(n, n, p->columns, 1.0, p->project, p->next, p->u);
     return m->plane ? tribo_planar_series_turn_finish(e, k - 1, &p->turns, p->u) : TRIBO_OK;
+}
+
+/* Sets p->project. Returns a status. */
+static int find_projection(struct event *e, const struct perturbed *p)
+{
+    struct stick_slip *m = &e->events.stick_slip;
+    const size_t n = e->sys->ndof;
+    int status = TRIBO_OK;
+    for (size_t j = 0; !status && j < n; j++) {
+        memset(p->next, 0, n * sizeof *p->next);
+        p->next[j] = 1.0;
+        status = tribo_stick_slip_project(m, e->sys, m->constant.still, p->next);
+        for (size_t i = 0; i < n; i++) {
+            p->project[i * n + j] = p->next[i];
+        }
+    }
+    return status;
 }
 
 int tribo_event_transition(void *own, const void *phase, double tau, size_t columns, double *v, const struct source *source)
@@ -274,33 +331,33 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
     const struct compliance *g = &e->sys->compliance;
     const size_t n = e->sys->ndof, half = n * columns, each = e->sys->ncontact * columns;
     const size_t planes = m->plane ? m->plane->count * columns : 0;
-    struct perturbed p = {
-        .columns = columns, .rows = m->limits.falls || m->plane ? e->order + 1 : 1, .source = source, .power = 1.0};
+    struct perturbed p = {.columns = columns,
+                          .rows = m->limits.falls || m->plane || e->pairs.count ? e->order + 2 : 1,
+                          .source = source,
+                          .power = 1.0};
     struct planar_turns *t = &p.turns;
     if (!ALLOCATE(ARRAY(p.project, n * n), ARRAY(p.q, half), ARRAY(p.u, half), ARRAY(p.next, half), ARRAY(p.spring, each),
                   ARRAY(p.force, each), ARRAY(p.v, p.rows * each), ARRAY(t->z, p.rows * planes), ARRAY(t->g, p.rows * planes),
-                  ARRAY(t->w, planes), ARRAY(p.drag, n))) {
+                  ARRAY(t->w, planes), ARRAY(p.drag, n), ARRAY(p.pairs.z, p.rows * e->pairs.count * columns),
+                  ARRAY(p.pairs.g, p.rows * e->pairs.count * columns))) {
         return tribo_error(e->sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     }
+    p.pairs = (struct pair_turns){columns, p.rows, tau, p.pairs.z, p.pairs.g};
     *t = (struct planar_turns){columns, p.rows, tau, p.q, p.v, t->z, t->g, t->w};
     (void)phase;
     tribo_stick_slip_press(m, e->sys);
-    int status = TRIBO_OK;
-    for (size_t j = 0; !status && j < n; j++) {
-        memset(p.next, 0, n * sizeof *p.next);
-        p.next[j] = 1.0;
-        status = tribo_stick_slip_project(m, e->sys, m->constant.still, p.next);
-        for (size_t i = 0; i < n; i++) {
-            p.project[i * n + j] = p.next[i];
-        }
-    }
+    int status = find_projection(e, &p);
     memcpy(p.q, v, half * sizeof *v);
     tribo_multiply_add(n, n, columns, 1.0, p.project, v + half, p.u);
     memcpy(v + half, p.u, half * sizeof *v);
     for (size_t k = 0; k < g->count; k++) {
         memcpy(p.spring + g->contact[k] * columns, v + 2 * half + k * columns, columns * sizeof *v);
     }
-    const size_t most = m->plane ? tribo_planar_series_terms(e, MOST_TERMS) : MOST_TERMS;
+    tribo_pair_series_force(e, 0, &p.pairs, p.q, p.spring);
+    for (size_t k = 0; k < g->count; k++) {
+        memcpy(v + 2 * half + k * columns, p.spring + g->contact[k] * columns, columns * sizeof *v);
+    }
+    const size_t most = tribo_pair_series_terms(e, m->plane ? tribo_planar_series_terms(e, MOST_TERMS) : MOST_TERMS);
     for (size_t k = 1, small = 0; !status && small < 2 && k < most; k++) {
         status = find_term(e, k, tau, &p);
         tribo_add(v, 1.0, p.q, 2 * half); /* q and u */

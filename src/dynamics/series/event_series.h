@@ -39,6 +39,22 @@ struct planar_series {
     double *held;             /* [begins][ncontact] holding forces by unit t-parts */
 };
 
+/* Series of a contact in a plane with a spring before its slider, along n, the first direction of its slip, and the normal t. */
+struct pair_line {
+    size_t at;                                 /* its first direction */
+    size_t lag;                                /* 1: its limit begins at 0 */
+    int fades;                                 /* 1: its limit ends at 0, and is so small that u may stay */
+    double n[2];                               /* t = (-n[1], n[0]) */
+    double *un, *ut, *a, *w, *vn, *vt, *sigma; /* [order + 2] */
+    double *limit, *rise;                      /* [order + 2] the limit and its rate */
+    double *square;                            /* [2 order + 1] of the guard */
+};
+
+struct pair_series {
+    size_t count;
+    struct pair_line *line; /* [count]; owns the memory of all; freed by method_event.c */
+};
+
 #define TRIBO_CREEP_NODES 8
 
 struct creep {
@@ -85,6 +101,7 @@ struct event {
     struct curve *limit_curve; /* [ncontact] limit */
     struct event_room room;
     struct planar_series planar;
+    struct pair_series pairs;
     struct creep creep;
 };
 
@@ -113,6 +130,9 @@ static inline double tribo_series_value(const double *x, size_t powers, double h
     }
     return sum;
 }
+
+/* Returns h, shortened to a part of the radius of convergence of 1/x, x [powers + 1]; inverse [powers + 1]: workspace. */
+double tribo_series_within(const double *x, size_t powers, double *inverse, double h);
 
 /* Finds the coefficients of the motion from (t, y) on: first those known at the start, then the series, which collocation
  * repeats with other directions of sliding forces. Returns a status. */
@@ -190,11 +210,53 @@ size_t tribo_planar_series_terms(const struct event *e, size_t most);
 /* The k-th coefficient of the power that direction i of a planar contact dissipates. */
 double tribo_planar_series_power_along(const struct event *e, size_t i, size_t k);
 
+/* -------------------------------------------------------------------------------------------------------- pair_series.c */
+
+/* Makes room. Returns a status, its message on the system's context. */
+int tribo_pair_series_begin(struct event *e);
+
+/* Takes the k-th coefficients v [ncontact] of velocities; sets slide [ncontact] = those of the rates of forces of contacts in a
+ * plane whose sliders move. */
+void tribo_pair_series_slide(const struct event *e, size_t k, const double *v, double *slide);
+
+/* The k-th coefficient of the power that contact l dissipates, and that along direction i of such a contact. */
+double tribo_pair_series_power(const struct event *e, const struct pair_line *l, size_t k);
+double tribo_pair_series_power_along(const struct event *e, size_t i, size_t k);
+
+/* Terms x^(k) tau^k/k! of perturbations: z and g [rows][pairs][columns] of the turns of directions u and of limits, the last orders
+ * cyclically; rows > order + 1 of the series. */
+struct pair_turns {
+    size_t columns, rows;
+    double tau;
+    double *z, *g;
+};
+
+/* turn: takes terms of order k, q [ndof][columns] of displacements and v [rows][ncontact][columns] of velocities of contacts, the
+ * last orders cyclically; sets those of turns that follow. force: sets those of order k of forces [ncontact][columns] of contacts
+ * whose sliders move; of order 0 from forces of which the part along u is not used. */
+void tribo_pair_series_turn(const struct event *e, size_t k, const struct pair_turns *p, const double *q, const double *v,
+                            size_t rows);
+void tribo_pair_series_force(const struct event *e, size_t k, const struct pair_turns *p, const double *q, double *force);
+
+/* Returns h without such contacts, else at most `most`, shortened until forces follow velocities, and in a periodic motion until
+ * series of perturbations converge, and do not cancel. */
+double tribo_pair_series_shorten(const struct event *e, double h, double most);
+
+/* Returns the number of terms of perturbations, at most `most`: where a limit begins with the square of time, series are
+ * asymptotic. */
+size_t tribo_pair_series_terms(const struct event *e, size_t most);
+
+/* Adds their guards: the speed of the slider, or the force at rest. */
+void tribo_pair_series_guards(struct event *e);
+
 /* ------------------------------------------------------------------------------------------------------ normal_series.c */
 
 /* Sets the k-th coefficients of normal loads, in the rows of their directions, and of limits that follow them; < 0 where a
  * contact has lifted off. */
 void tribo_normal_series_expand(struct event *e, size_t k);
+
+/* g [columns] = change of the limit of contact i by perturbations q [ndof][columns] of displacements. */
+void tribo_event_perturb_limit(const struct event *e, size_t i, const double *q, size_t columns, double *g);
 
 /* slide [ncontact] = the k-th coefficients of the rates of forces of contacts that slide at limits that follow; 0 of others. */
 void tribo_normal_series_slide(const struct event *e, size_t k, double *slide);

@@ -67,6 +67,8 @@ double tribo_event_length(struct event *e)
             const double stick = m->limits.ratio[i] * force;
             const double speed = m->plane ? m->plane->error[i] : u;
             const double scale = m->state.slip[i] == TRIBO_SLIP_STUCK && !tribo_stick_slip_may_part(m, i) ? stick : speed;
+            const int turns = m->constant.pair[i] && m->state.slip[i] == TRIBO_SLIP_PLANE;
+            term = turns ? greater(term, fabs(e->spring[k * c + i]) / force) : term;
             term = m->state.slip[i] == TRIBO_SLIP_OPEN ? term : greater(term, fabs(e->watch[k * c + i]) / scale);
             term = k < e->terms && m->constant.swing[i] > 0.0 ? greater(term, fabs(e->limit[k * c + i]) / force) : term;
         }
@@ -124,10 +126,11 @@ static int set_guards(struct event *e)
     if (m->plane) {
         tribo_planar_series_guards(e);
     }
+    tribo_pair_series_guards(e);
     for (size_t i = 0; i < c; i++) {
         struct curve *curve = &e->curve[i];
         const struct curve *limit = &e->limit_curve[i];
-        if (!(m->plane && m->plane->in_plane[i])) {
+        if (!(m->plane && m->plane->in_plane[i]) && !m->constant.pair[i]) {
             if (tribo_stick_slip_may_part(m, i)) { /* bound of the sum of the sizes of the terms of v_i */
                 curve->size = 0.0;
                 for (size_t d = j->first[i]; d < j->first[i + 1]; d++) {
@@ -153,6 +156,8 @@ static void free_series(struct event *e)
 {
     free(e->q);
     free(e->planar.line);
+    free(e->pairs.line);
+    e->pairs = (struct pair_series){0};
     e->planar = (struct planar_series){0};
     free(e->creep.weight);
     e->creep = (struct creep){0};
@@ -267,7 +272,7 @@ static int method_event_begin(void *own, double t, const double *y, double *reac
     }
     for (int overflows = 1; overflows; e->order = overflows ? e->order / 2 : e->order) {
         if (!creeps) {
-            length = tribo_event_length(e);
+            length = tribo_pair_series_shorten(e, tribo_event_length(e), most);
             length = m->plane ? tribo_planar_series_shorten(e, lesser(length, most)) : length;
         }
         if ((double)(e->order + 1) < DBL_EPSILON * fabs(t + whole) * e->fastest) {
@@ -277,7 +282,7 @@ static int method_event_begin(void *own, double t, const double *y, double *reac
         /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
         e->length = fastest(e) > 0.0 ? greater(*reach, lesser(length, 1.0 / fastest(e))) : *reach;
         overflows = !set_guards(e);
-        if (overflows && (creeps || !m->plane || (double)e->order < 2.0 * LEAST_ORDER)) { /* else squares overflow */
+        if (overflows && (creeps || !e->planes || (double)e->order < 2.0 * LEAST_ORDER)) { /* else squares overflow */
             return tribo_error(e->sys->message, TRIBO_ERR_NOT_FINITE,
                                "at t = %.17g derivatives of the motion overflow: it grows without bound, or is too fast", t);
         }
@@ -348,6 +353,10 @@ static int open_events(tribo_driver *drv, struct events **events)
     return tribo_driver_pass(drv, status);
 }
 
-const struct method tribo_method_event = {
-    "event",     TAKES_TOLERANCE | TAKES_OUTPUT, method_event_create, method_event_destroy, tribo_events_method,
-    open_events, tribo_events_find_periodic};
+const struct method tribo_method_event = {"event",
+                                          TAKES_TOLERANCE | TAKES_OUTPUT | TAKES_PAIRS,
+                                          method_event_create,
+                                          method_event_destroy,
+                                          tribo_events_method,
+                                          open_events,
+                                          tribo_events_find_periodic};

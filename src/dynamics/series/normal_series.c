@@ -56,3 +56,14 @@ void tribo_normal_series_perturb(const struct event *e, size_t columns, const do
         tribo_add(to + f->contact * columns, tribo_slides(slip) ? slip * f->mu : 0.0, normal, columns);
     }
 }
+
+void tribo_event_perturb_limit(const struct event *e, size_t i, const double *q, size_t columns, double *g)
+{
+    const struct follower *f = tribo_normals_follower(e->sys, i);
+    const struct normal *n = f ? &e->sys->normals.normal[f->normal] : NULL;
+    const struct matrix *j = &e->sys->direction;
+    memset(g, 0, columns * sizeof *g);
+    for (size_t d = n ? j->first[n->row] : 0; n && n->pressed && d < j->first[n->row + 1]; d++) {
+        tribo_add(g, f->mu * n->stiffness * j->val[d], q + j->col[d] * columns, columns);
+    }
+}

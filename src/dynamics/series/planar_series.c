@@ -29,14 +29,8 @@
 /* Error of a velocity, in parts of the contact's own speed, even if that is far below the tolerance: the direction counts. */
 #define PART 1e-4
 
-/* Longest step of a periodic motion, in parts of the radius of convergence of 1/|x|, which perturbations need. */
-#define WITHIN 0.7
-
 /* Error of a direction in a periodic motion: that of perturbations. */
 #define STRAIGHT 1e-8
-
-/* The radius is found from the first coefficient that exceeds LARGEST, since the next ones may overflow. */
-#define LARGEST 1e100
 
 /* Limits of a step that are below this part of the largest one do not make the guard of a contact at rest larger. */
 #define LEAST_PART 1e-3
@@ -352,18 +346,6 @@ static void add_turned(const struct event *e, size_t c, const struct planar_turn
     }
 }
 
-/* g [columns] = term of the limit of contact p by terms q [ndof][columns] of displacements; weight 1. */
-static void perturb_limit(const struct event *e, const struct planar_contact *p, const double *q, size_t columns, double *g)
-{
-    const struct follower *f = tribo_normals_follower(e->sys, p->at);
-    const struct normal *n = f ? &e->sys->normals.normal[f->normal] : NULL;
-    const struct matrix *j = &e->sys->direction;
-    memset(g, 0, columns * sizeof *g);
-    for (size_t d = n ? j->first[n->row] : 0; n && n->pressed && d < j->first[n->row + 1]; d++) {
-        tribo_add(g, f->mu * n->stiffness * j->val[d], q + j->col[d] * columns, columns);
-    }
-}
-
 void tribo_planar_series_turn(const struct event *e, size_t k, const struct planar_turns *p, double *force)
 {
     const struct stick_slip *m = &e->events.stick_slip;
@@ -374,7 +356,7 @@ void tribo_planar_series_turn(const struct event *e, size_t k, const struct plan
         const struct planar_line *l = &e->planar.line[c];
         double *z = p->z + (k % p->rows * plane->count + c) * p->columns;
         memset(z, 0, p->columns * sizeof *z);
-        perturb_limit(e, contact, p->q, p->columns, p->g + (k % p->rows * plane->count + c) * p->columns);
+        tribo_event_perturb_limit(e, contact->at, p->q, p->columns, p->g + (k % p->rows * plane->count + c) * p->columns);
         if (!tribo_slides_in_plane(m, contact)) {
             continue;
         }
@@ -526,18 +508,7 @@ double tribo_planar_series_shorten(const struct event *e, double h)
         for (size_t k = last + 1; k-- > 0;) {
             sum = sum * h + fabs(l->xn[k]) + fabs(l->xt[k]);
         }
-        double *inverse = l->square; /* overwritten: the series of 1/|x|, times |x_0|, for its radius of convergence */
-        inverse[0] = 1.0;
-        for (size_t k = 1; e->events.sharp && k <= last; k++) {
-            inverse[k] = -product_of(l->speed, inverse, k, 1, k + 1) / l->speed[0];
-            const double term = fabs(inverse[k]);
-            if ((k + 2 > last && term > 0.0) || term > LARGEST) {
-                h = lesser(h, WITHIN * pow(term, -1.0 / (double)k));
-            }
-            if (term > LARGEST) {
-                break;
-            }
-        }
+        h = e->events.sharp ? tribo_series_within(l->speed, last, l->square, h) : h;
         if ((e->events.sharp && !(off <= STRAIGHT)) ||
             !(off * tribo_planar_series_brake(e, c, h) * h / (double)(e->order + 1) <= m->plane->error[p->at] &&
               sum <= FASTER * l->xn[0])) {

@@ -355,7 +355,7 @@ void tribo_compliance_perturb(const tribo_system *sys, const signed char *slip, 
     double *f = v + 2 * sys->ndof * columns, *way = work + c * columns;
     memset(work, 0, c * row);
     for (size_t k = 0; k < g->count; k++) {
-        if (slip[g->contact[k]] != TRIBO_SLIP_STUCK) {
+        if (slip[g->contact[k]] != TRIBO_SLIP_STUCK && slip[g->contact[k]] != TRIBO_SLIP_PLANE) {
             memcpy(work + g->contact[k] * columns, f + k * columns, row);
             memset(f + k * columns, 0, row);
             const struct follower *own = tribo_normals_follower(sys, g->contact[k]);

@@ -56,7 +56,7 @@ int tribo_system_check_solved(const tribo_system *sys, const char *what)
 int tribo_system_check_contacts(const tribo_system *sys, const char *method, int scalar)
 {
     const int springs = sys->expansion.place != NULL;
-    const size_t planar = scalar || springs ? tribo_system_planar(sys) : 0;
+    const size_t planar = scalar > 0 || (springs && scalar == 0) ? tribo_system_planar(sys) : 0;
     if (planar) {
         return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
                            "method %s knows no planar contacts%s, of which the system has %zu%s", method,

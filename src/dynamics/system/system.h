@@ -337,8 +337,8 @@ int tribo_system_check_solved(const tribo_system *sys, const char *what);
  * Sets sys->status, and returns it. */
 int tribo_system_begin_rates(tribo_system *sys, const char *what, const double *y, const char *name, const double *to);
 
-/* Returns TRIBO_ERR_UNSUPPORTED for planar contacts if scalar = 1 or the system has massless degrees of freedom, and for static
- * limits of elastic contacts. */
+/* Returns TRIBO_ERR_UNSUPPORTED for planar contacts if scalar = 1, or scalar = 0 and the system has massless degrees of freedom,
+ * and for static limits of elastic contacts. */
 int tribo_system_check_contacts(const tribo_system *sys, const char *method, int scalar);
 
 /* Returns TRIBO_OK if all x [n] are finite, or x is NULL, else an error with the name of x. */
