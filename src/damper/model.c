@@ -11,7 +11,6 @@
 enum { LEAST_MODES = 12, MOST_MODES = 200 /* kept by default */ };
 enum { HARMONICS = 9 /* of the load, up to which displacements at the contacts are right to MOST_MISSING */ };
 static const double MOST_MISSING = 0.01, MOST_ERROR = 0.01;
-static const double MARGIN = 2.5; /* error over change: up to 2.2 on beams and plates of 5 to 20 modes */
 
 /* -------------------------------------------------------------------------------------------------------------- comparing */
 
@@ -188,6 +187,11 @@ void report_model(const struct tables *t, const struct model *m)
     }
 }
 
+const char *advice(const struct model *m, double error)
+{
+    return error <= MOST_ERROR ? "" : may_double(m) ? ": again with these" : ": take more --modes";
+}
+
 void report_error(const struct tables *t, const struct model *m, const struct point *point, size_t count)
 {
     const double error = model_error(m, point, count), stuck = m->whole ? 0.0 : stuck_change(m);
@@ -206,10 +210,7 @@ void report_error(const struct tables *t, const struct model *m, const struct po
     } else {
         printf("model error: at most %.1e; with %zu modes amplitudes change by %.1e, powers by %.1e (at %zu point%s), all stuck "
                "by %.1e%s\n",
-               error, m->finer.kept, amplitude, power, compared, compared == 1 ? "" : "s", stuck,
-               error <= MOST_ERROR ? ""
-               : may_double(m)     ? ": again with these"
-                                   : ": take more --modes");
+               error, m->finer.kept, amplitude, power, compared, compared == 1 ? "" : "s", stuck, advice(m, error));
     }
     for (size_t k = 0; !m->whole && compared > 0 && k < count; k++) {
         const struct point *p = &point[k];

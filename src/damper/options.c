@@ -129,7 +129,9 @@ static void read_force(struct text *value, void *force)
 
 static void read_cycle(struct text *value, void *period)
 {
-    *(double *)period = strcmp(value->at, "0") == 0 ? 0.0 : next_positive(value, "period", "");
+    if (!((*(double *)period = next_real(value, "period", "")) >= 0.0)) {
+        die_at(value, "must be at least 0");
+    }
 }
 
 static void read_drive(struct text *value, void *drive)
@@ -264,7 +266,8 @@ static const struct option {
     {OPTION(read_cycle, cycle),
      "  --cycle PERIOD       in the place of a response: the motion that contacts on belts keep up by themselves, stick-slip or\n"
      "                       squeal, from rest, at one limit; PERIOD is a guess, 0: none. There are no loads; amplitudes are\n"
-     "                       measured at the first --output\n"},
+     "                       measured at the first --output. A cycle that twice the modes do not have is one of the modes kept:\n"
+     "                       --modes left out, more of them are taken\n"},
     {OPTION(read_output, outputs),
      "  --output X,Y,Z,DIR   a further place: amplitude and phase there; may be given several times\n"},
     {OPTION(read_count, harmonics), "  --harmonics N        of each --output also the harmonics 1 to N\n"},

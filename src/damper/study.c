@@ -105,8 +105,6 @@ void run_study(struct study *s)
 {
     const struct options *o = s->options;
     if (is_unloaded(o)) {
-        write_frequencies(s->tables, s->damper, o->frequencies);
-        report_model(s->tables, s->model);
         (o->backbone ? study_backbone : study_cycle)(s);
         return;
     }

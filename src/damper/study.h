@@ -36,9 +36,15 @@ double change_of(const struct point *p);
 /* Finds the points with both numbers of modes, unless m is whole. */
 void compare_models(const struct model *m, size_t threads, struct point *point, size_t count);
 
+/* Error over change with twice the modes: up to 2.2 on beams and plates of 5 to 20 modes. */
+#define MARGIN 2.5
+
 /* Bounds the error: MARGIN times the largest change of the points, and of frequencies and amplitudes with all contacts stuck.
  * NaN if no point was compared. */
 double model_error(const struct model *m, const struct point *point, size_t count);
+
+/* The end of a line that tells the error: what follows from it, "" if it is small. */
+const char *advice(const struct model *m, double error);
 
 /* Prints the number of modes and the bound of missing displacements; prints the model error. */
 void report_model(const struct tables *t, const struct model *m);

@@ -78,6 +78,8 @@ void study_backbone(struct study *s)
     const struct vibration *most = NULL;
     double hz = 0.0, zeta = 0.0;
     size_t compared = 0;
+    write_frequencies(s->tables, d, s->options->frequencies);
+    report_model(s->tables, s->model);
     FILE *table = create_table(s->tables, "backbone", "csv");
     find_backbone(d, s->options, 1, v, table);
     close_table(s->tables, table, "backbone", "csv");

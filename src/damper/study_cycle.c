@@ -42,23 +42,59 @@ static struct motion find_cycle(struct worker *w, double limit, double guess, do
     return m;
 }
 
-void study_cycle(struct study *s)
+/* The error of a cycle that was found, by twice the modes: MARGIN times the larger change of period and amplitude; infinite if
+ * these have no cycle; 0 if all modes are there. */
+static double error_of_cycle(const struct study *s, const struct motion *m)
 {
-    const struct options *o = s->options;
-    struct worker w = create_worker(s->damper, 0);
-    double *y = need_memory(3 * w.dimension, sizeof *y), *re = y + w.dimension, *im = re + w.dimension, largest;
+    double largest, error = s->model->whole ? 0.0 : HUGE_VAL;
+    if (!s->model->whole) {
+        struct worker w = create_worker(&s->model->finer, 0);
+        double *y = need_memory(w.dimension, sizeof *y);
+        const struct motion there = find_cycle(&w, s->options->limits.from, 1.0 / m->hz, y, &largest);
+        if (there.found) {
+            const double change = relative_difference(there.hz, m->hz);
+            error = MARGIN * fmax(change, relative_difference(there.amplitude, m->amplitude));
+        }
+        free(y);
+        free_worker(&w);
+    }
+    return error;
+}
+
+/* Steady sliding of the system of w, its exponents and frequencies. */
+static void report_sliding(const struct study *s, struct worker *w)
+{
+    double *y = need_memory(3 * w->dimension, sizeof *y), *re = y + w->dimension, *im = re + w->dimension;
     size_t count = 0;
-    set_point(&w, o->limits.from, s->damper->lowest);
-    if (tribo_system_equilibrium(w.sys, NULL, y, NULL, &count, re, im)) {
-        printf("steady sliding: not known: %s\n", tribo_system_message(w.sys));
+    if (tribo_system_equilibrium(w->sys, NULL, y, NULL, &count, re, im)) {
+        printf("steady sliding: not known: %s\n", tribo_system_message(w->sys));
     } else if (count > 0) {
         printf("steady sliding: %s, exponent %.8g a unit of time, at %.8g Hz\n", re[0] > 0.0 ? "unstable" : "stable", re[0],
                im[0] / TURN);
         write_result(s->tables, "sliding.growth", re[0]);
         write_result(s->tables, "sliding.frequency", im[0] / TURN);
     }
-    memset(y, 0, w.dimension * sizeof *y);
-    const struct motion m = find_cycle(&w, o->limits.from, o->cycle, y, &largest);
+    free(y);
+}
+
+void study_cycle(struct study *s)
+{
+    const struct options *o = s->options;
+    struct worker w = create_worker(s->damper, 0);
+    double *y = need_memory(w.dimension, sizeof *y), largest;
+    struct motion m = find_cycle(&w, o->limits.from, o->cycle, y, &largest);
+    double error = m.found ? error_of_cycle(s, &m) : 0.0;
+    while (take_more_modes(s->model, error)) {
+        free_worker(&w);
+        free(y);
+        w = create_worker(s->damper, 0);
+        y = need_memory(w.dimension, sizeof *y);
+        m = find_cycle(&w, o->limits.from, o->cycle, y, &largest);
+        error = m.found ? error_of_cycle(s, &m) : 0.0;
+    }
+    write_frequencies(s->tables, s->damper, o->frequencies);
+    report_model(s->tables, s->model);
+    report_sliding(s, &w);
     s->tables->motions += (size_t)m.found;
     s->gaps += (size_t)!m.found;
     if (m.found) {
@@ -82,15 +118,15 @@ void study_cycle(struct study *s)
         printf("  a period multiplies the distance of motions beside it by %.8g\n", largest);
         write_result(s->tables, "cycle.multiplier", largest);
     }
-    if (m.found && !s->model->whole && !interrupted()) {
-        struct worker more = create_worker(&s->model->finer, 0);
-        double *z = need_memory(more.dimension, sizeof *z);
-        const struct motion there = find_cycle(&more, o->limits.from, 1.0 / m.hz, z, &largest);
-        printf(there.found ? "model error: with %zu modes the period changes by %.1e of itself, the amplitude by %.1e\n"
-                           : "model error: not known, since no cycle was found with %zu modes\n",
-               s->model->finer.kept, relative_difference(there.hz, m.hz), relative_difference(there.amplitude, m.amplitude));
-        free(z);
-        free_worker(&more);
+    if (m.found && s->model->whole) {
+        printf("model error: none, since all modes are there\n");
+    } else if (m.found && error < HUGE_VAL) {
+        printf("model error: at most %.1e of period and amplitude, by %zu modes%s\n", error, s->model->finer.kept,
+               advice(s->model, error));
+        write_result(s->tables, "model.error", error);
+    } else if (m.found) {
+        printf("model error: not known, since no cycle was found with %zu modes: this one may be of the modes kept only%s\n",
+               s->model->finer.kept, advice(s->model, error));
     }
     free(y);
     free_worker(&w);

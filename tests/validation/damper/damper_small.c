@@ -440,7 +440,7 @@ TEST(cycle)
                                            {"--load 1,0,0,x", "belt= and static= are for --cycle"},
                                            {"--cycle 0 --load 1,0,0,x", "it takes no --load"},
                                            {"--cycle 0 --drive 1", "no --drive"},
-                                           {"--cycle -1", "must be above 0"},
+                                           {"--cycle -1", "must be at least 0"},
                                            {"--cycle 0 --contact 1,0,0,x:static=0.5", "at least that while sliding"}};
     for (size_t k = 0; k < COUNT(wrong); k++) {
         snprintf(options, sizeof options, "%s %s", one, wrong[k][0]);
