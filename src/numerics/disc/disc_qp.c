@@ -237,10 +237,13 @@ static int solve_towards(struct disc_qp *p, double more, const double *centre)
     return done;
 }
 
-/* Stiffness that keeps y near a point, in parts of the largest s_kk: the least, the largest, and their ratio. */
+/* Stiffness that keeps y near a point, in parts of the largest s_kk: the first one, and its factor after a solution and without
+ * convergence. */
 #define KEEPS 1e-8
-#define KEEPS_MOST 1e-4
+#define LOOSER 0.1
 #define FIRMER 10.0
+
+enum { KEPT_ROUNDS = 16 };
 
 /* Where S is nearly singular, Newton's steps along its soft directions are rounding, and projection to the rims adds their
  * squares, which the other directions feel. Stiffness towards the end of the interior-point method leaves short steps, and moves y
@@ -251,21 +254,22 @@ int tribo_disc_solve(struct disc_qp *p)
     if (solve_once(p)) {
         return 1;
     }
-    double *centre = p->kept + 2 * p->size;
-    const double most = stiffest_of(p);
-    int done = 0;
+    double *centre = p->kept + 2 * p->size, keeps = KEEPS * stiffest_of(p);
+    memset(p->place, LENS_INSIDE, p->size);
+    tribo_disc_linearize(p);
+    const size_t dependents = p->factor.sets.dependents;
     tribo_disc_interior(p, NOTHING);
     memcpy(centre, p->y, p->size * sizeof *centre);
-    for (double keeps = KEEPS; !done && keeps <= KEEPS_MOST; keeps *= FIRMER) {
-        if (solve_towards(p, keeps * most, centre)) {
-            memcpy(centre, p->y, p->size * sizeof *centre);
+    for (int round = 0; round < KEPT_ROUNDS; round++) {
+        const int found = solve_towards(p, keeps, centre);
+        p->factor.sets.dependents = dependents;
+        if (disc_look(p) <= SETTLED) {
+            return 1;
         }
-        done = disc_look(p) <= SETTLED;
-        if (!done) {
-            memcpy(p->y, centre, p->size * sizeof *centre);
-        }
+        keeps *= found ? LOOSER : FIRMER;
+        memcpy(found ? centre : p->y, found ? p->y : centre, p->size * sizeof *centre);
     }
-    return done;
+    return 0;
 }
 
 /* ------------------------------------------------------------------------------------------------ redundant contacts */
