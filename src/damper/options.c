@@ -444,16 +444,24 @@ const struct place *measured_place(const struct options *o)
 /* Ends the program where --backbone, --cycle or --follow exclude other options, or need them. */
 static void check_study(const struct options *o)
 {
-    if (is_unloaded(o) &&
-        (o->limits.points > 1 || o->drive.from > 0.0 || o->march || o->check || o->field.count || o->harmonics)) {
-        die("option %s: it takes one limit, and no --drive, --method march, --check, --field or --harmonics",
-            o->backbone ? "--backbone" : "--cycle");
+    const char *march = o->march ? "--method march" : o->check ? "--check" : NULL;
+    const char *unloaded = o->limits.points > 1  ? "more than one limit"
+                           : o->drive.from > 0.0 ? "--drive"
+                           : march               ? march
+                           : o->field.count      ? "--field"
+                           : o->harmonics        ? "--harmonics"
+                                                 : NULL;
+    if (is_unloaded(o) && unloaded) {
+        die("option %s: it takes no %s", o->backbone ? "--backbone" : "--cycle", unloaded);
     }
-    if (o->follow && (o->drive.points < 2 || o->march || o->check)) {
-        die("option --follow: it is for a band, --drive FROM:TO:N, and takes no --method march or --check");
+    if (o->follow && o->drive.points < 2) {
+        die("option --follow: it is for a band, --drive FROM:TO:N");
+    }
+    if (o->follow && march) {
+        die("option --follow: it takes no %s", march);
     }
     if (o->cycle >= 0.0 && (o->loads.count || o->backbone)) {
-        die("option --cycle: it takes no --load, --base or --backbone");
+        die("option --cycle: it takes no %s", o->backbone ? "--backbone" : o->loads.load[0].supports ? "--base" : "--load");
     }
     for (const struct contact *c = o->contacts.contact; c < o->contacts.contact + o->contacts.count; c++) {
         if (o->cycle < 0.0 && (c->belt != 0.0 || c->ratio > 1.0)) {

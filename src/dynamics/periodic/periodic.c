@@ -182,10 +182,12 @@ static int check_mode(tribo_driver *drv, const double *c, double amplitude, doub
 {
     const tribo_system *sys = drv->sys;
     const size_t given = tribo_system_ndof(sys), n = sys->ndof;
-    int status = TRIBO_OK;
-    if (!(tribo_dense_finite(c, 2 * given) && isfinite(amplitude + omega + zeta))) {
-        status = tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "c, or amplitude = %g, omega = %g or zeta = %g is not finite",
-                             amplitude, omega, zeta);
+    int status = tribo_check_numbers(drv->message, 3, (const char *const[]){"amplitude", "omega", "zeta"},
+                                     (const double[]){amplitude, omega, zeta});
+    for (size_t i = 0; !status && i < 2 * given; i++) {
+        if (!isfinite(c[i])) {
+            status = tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "c[%zu] = %g is not finite", i, c[i]);
+        }
     }
     if (!status && (!(amplitude > 0.0) || omega < 0.0)) {
         status = tribo_error(drv->message, TRIBO_ERR_NOT_POSITIVE, "%s = %g is not positive",
@@ -211,8 +213,10 @@ static int check_mode(tribo_driver *drv, const double *c, double amplitude, doub
     } else {
         memcpy(to, c, 2 * n * sizeof *c);
     }
-    if (!(tribo_largest(to, 2 * n) > 0.0) || tribo_largest(to + 2 * n, 2 * (tribo_system_energy(sys) - 2 * n)) > 0.0) {
-        status = tribo_error(drv->message, TRIBO_ERR_RANGE, "c is 0, or takes in degrees of freedom without mass");
+    const int unmoved = tribo_largest(to + 2 * n, 2 * (tribo_system_energy(sys) - 2 * n)) > 0.0;
+    if (unmoved || !(tribo_largest(to, 2 * n) > 0.0)) {
+        status =
+            tribo_error(drv->message, TRIBO_ERR_RANGE, "c %s", unmoved ? "takes in degrees of freedom without mass" : "is 0");
     } else if (sys->normals.count && tribo_largest(to + n, n) > 0.0) {
         status = tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "where limits follow the motion c takes displacements only");
     }
@@ -253,20 +257,25 @@ static int check_curve(tribo_driver *drv, const tribo_curve *curve, const double
     if (curve->size != sizeof *curve) {
         return tribo_error(drv->message, TRIBO_ERR_SIZE, "curve->size is not sizeof(tribo_curve)");
     }
-    if (!isfinite(curve->least + curve->most + curve->step + curve->amplitude + *period)) {
-        return tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "least, most, step, amplitude or period is not finite");
+    const int finite = tribo_check_numbers(drv->message, 5, (const char *const[]){"least", "most", "step", "amplitude", "period"},
+                                           (const double[]){curve->least, curve->most, curve->step, curve->amplitude, *period});
+    if (finite) {
+        return finite;
     }
     if (mode && !curve->c) {
         return tribo_error(drv->message, TRIBO_ERR_NULL, "curve->c is NULL");
     }
-    if (curve->motion < TRIBO_MOTION_PERIODIC || curve->motion > TRIBO_MOTION_MODE || kind < TRIBO_PARAMETER_LIMIT ||
-        kind > TRIBO_PARAMETER_BASES) {
-        return tribo_error(drv->message, TRIBO_ERR_RANGE, "motion = %d or parameter = %d is none", curve->motion, kind);
+    if (curve->motion < TRIBO_MOTION_PERIODIC || curve->motion > TRIBO_MOTION_MODE) {
+        return tribo_error(drv->message, TRIBO_ERR_RANGE, "motion = %d is no TRIBO_MOTION_...", curve->motion);
     }
-    if (mode != (kind == TRIBO_PARAMETER_AMPLITUDE) ||
-        (curve->motion == TRIBO_MOTION_CYCLE && kind == TRIBO_PARAMETER_FREQUENCY)) {
-        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
-                           "modes are followed over their amplitude, others not; cycles have no frequency of loads");
+    if (kind < TRIBO_PARAMETER_LIMIT || kind > TRIBO_PARAMETER_BASES) {
+        return tribo_error(drv->message, TRIBO_ERR_RANGE, "parameter = %d is no TRIBO_PARAMETER_...", kind);
+    }
+    if (mode != (kind == TRIBO_PARAMETER_AMPLITUDE)) {
+        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "modes are followed over their amplitude, other motions are not");
+    }
+    if (curve->motion == TRIBO_MOTION_CYCLE && kind == TRIBO_PARAMETER_FREQUENCY) {
+        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "cycles have no frequency of loads");
     }
     if (kind == TRIBO_PARAMETER_LIMIT && curve->index >= sys->ncontact) {
         return tribo_error(drv->message, TRIBO_ERR_RANGE, "there is no contact %zu", curve->index);
@@ -278,10 +287,11 @@ static int check_curve(tribo_driver *drv, const tribo_curve *curve, const double
             return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "the limit of contact %zu follows the motion", i);
         }
     }
-    return curve->step == 0.0 || !(bounded ? curve->least > 0.0 : curve->least >= 0.0)
-               ? tribo_error(drv->message, TRIBO_ERR_NOT_POSITIVE, "step = %g is 0, or least = %g is too small", curve->step,
-                             curve->least)
-               : TRIBO_OK;
+    const int low = !(bounded ? curve->least > 0.0 : curve->least >= 0.0);
+    return low                  ? tribo_error(drv->message, TRIBO_ERR_NOT_POSITIVE, "least = %g is %s", curve->least,
+                             bounded ? "not positive" : "negative")
+           : curve->step == 0.0 ? tribo_error(drv->message, TRIBO_ERR_NOT_POSITIVE, "step is 0")
+                                : TRIBO_OK;
 }
 
 int tribo_driver_follow_curve(tribo_driver *drv, const tribo_curve *curve, double t, double *period, double *y,

@@ -161,11 +161,13 @@ int tribo_system_find_flutter(tribo_system *sys, int parameter, const signed cha
     if (parameter != TRIBO_FLUTTER_FRICTION && parameter != TRIBO_FLUTTER_SPEED) {
         return tribo_error(sys->message, TRIBO_ERR_RANGE, "parameter = %d is no TRIBO_FLUTTER_...", parameter);
     }
-    if (!isfinite(from + to)) {
-        return tribo_error(sys->message, TRIBO_ERR_NOT_FINITE, "from = %g or to = %g is not finite", from, to);
+    const int finite = tribo_check_numbers(sys->message, 2, (const char *const[]){"from", "to"}, (const double[]){from, to});
+    if (finite) {
+        return finite;
     }
     if (from < 0.0 || to < 0.0) {
-        return tribo_error(sys->message, TRIBO_ERR_NEGATIVE, "from = %g or to = %g is negative", from, to);
+        return tribo_error(sys->message, TRIBO_ERR_NEGATIVE, "%s = %g is negative", from < 0.0 ? "from" : "to",
+                           from < 0.0 ? from : to);
     }
     struct equilibrium e;
     struct onset o = {.e = &e, .parameter = parameter};

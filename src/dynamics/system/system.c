@@ -21,6 +21,19 @@ int tribo_error(char *message, int status, const char *format, ...)
     return status;
 }
 
+int tribo_check_numbers(char *message, size_t n, const char *const *name, const double *x)
+{
+    size_t worst = 0;
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        sum += x[i];
+        worst = isfinite(x[worst]) && !(fabs(x[i]) <= fabs(x[worst])) ? i : worst;
+    }
+    return isfinite(sum) ? TRIBO_OK
+                         : tribo_error(message, TRIBO_ERR_NOT_FINITE, "%s = %g is %s", name[worst], x[worst],
+                                       isfinite(x[worst]) ? "too large" : "not finite");
+}
+
 int tribo_system_explain(const tribo_system *sys, int status)
 {
     return status ? tribo_error(sys->message, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;

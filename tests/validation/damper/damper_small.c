@@ -377,8 +377,13 @@ TEST(backbone)
         {"--backbone 1 --limits 0.5", "what is missing: --amplitudes"},
         {"--backbone 1 --amplitudes 1", "what is missing: --limits"},
         {"--amplitudes 1 --load 1,0,0,x", "--backbone is missing"},
-        {"--backbone 1 --limits 0.5:1:3 --amplitudes 1", "it takes one limit"},
-        {"--backbone 1 --limits 1 --amplitudes 1 --method march", "no --drive, --method march"},
+        {"--backbone 1 --limits 0.5:1:3 --amplitudes 1", "--backbone: it takes no more than one limit"},
+        {"--backbone 1 --limits 1 --amplitudes 1 --drive 0.1", "--backbone: it takes no --drive"},
+        {"--backbone 1 --limits 1 --amplitudes 1 --method march", "--backbone: it takes no --method march"},
+        {"--backbone 1 --limits 1 --amplitudes 1 --check 1", "--backbone: it takes no --check"},
+        {"--cycle 10 --limits 1 --amplitudes 1 --backbone 1", "--cycle: it takes no --backbone"},
+        {"--cycle 10 --limits 1 --load 1,0,0,x", "--cycle: it takes no --load"},
+        {"--cycle 10 --limits 1 --base x:acceleration=1", "--cycle: it takes no --base"},
         {"--backbone 2 --limits 1 --amplitudes 1", "the model keeps 1 mode"}};
     for (size_t k = 0; k < COUNT(wrong); k++) {
         snprintf(options, sizeof options, "%s %s", one, wrong[k][0]);
@@ -490,7 +495,7 @@ TEST(follow)
     }
     assert_close(strtod(strchr(graze, ',') + 1, NULL), hz, 1e-8);
     static const char *const wrong[][2] = {{"--drive 0.1 --follow up", "it is for a band"},
-                                           {"--drive 0.1:0.2:3 --follow up --check 1", "takes no --method march or --check"},
+                                           {"--drive 0.1:0.2:3 --follow up --check 1", "it takes no --check"},
                                            {"--drive 0.1:0.2:3 --follow on", "must be up, down, up:events or down:events"}};
     for (size_t k = 0; k < COUNT(wrong); k++) {
         snprintf(text, sizeof text, STOPS "%s", wrong[k][0]);

@@ -367,28 +367,75 @@ TEST(refuses)
         tribo_curve curve;
         double period;
         int status;
+        const char *says;
     } cases[] = {
-        {{.size = 3, .parameter = 2, .least = 0.5, .most = 3.0, .step = 0.1}, period, TRIBO_ERR_SIZE},
-        {{.size = sizeof good, .parameter = 2, .least = 0.5, .most = 3.0, .step = HUGE_VAL}, period, TRIBO_ERR_NOT_FINITE},
-        {{.size = sizeof good, .parameter = 8, .least = 0.5, .most = 3.0, .step = 0.1}, period, TRIBO_ERR_RANGE},
-        {{.size = sizeof good, .motion = 3, .parameter = 2, .least = 0.5, .most = 3.0, .step = 0.1}, period, TRIBO_ERR_RANGE},
-        {{.size = sizeof good, .parameter = 2, .least = 1.5, .most = 3.0, .step = 0.1}, period, TRIBO_ERR_RANGE},
-        {{.size = sizeof good, .parameter = 0, .index = 2, .most = 3.0, .step = 0.1}, period, TRIBO_ERR_RANGE},
-        {{.size = sizeof good, .parameter = 0, .index = 0, .most = 3.0, .step = 0.1}, period, TRIBO_ERR_UNSUPPORTED},
-        {{.size = sizeof good, .parameter = 5, .least = 0.5, .most = 3.0, .step = 0.1}, period, TRIBO_ERR_UNSUPPORTED},
-        {{.size = sizeof good, .motion = 1, .parameter = 2, .least = 0.5, .most = 3.0, .step = 0.1}, 0.0, TRIBO_ERR_UNSUPPORTED},
-        {{.size = sizeof good, .motion = 1, .parameter = 1, .least = 0.5, .most = 3.0, .step = 0.1}, 0.0, TRIBO_ERR_UNSUPPORTED},
-        {{.size = sizeof good, .motion = 2, .parameter = 5, .least = 0.5, .most = 3.0, .step = 0.1}, 0.0, TRIBO_ERR_NULL},
-        {{.size = sizeof good, .parameter = 2, .least = 0.0, .most = 3.0, .step = 0.1}, period, TRIBO_ERR_NOT_POSITIVE},
-        {{.size = sizeof good, .parameter = 2, .least = 0.5, .most = 3.0}, period, TRIBO_ERR_NOT_POSITIVE},
-        {{.size = sizeof good, .parameter = 2, .least = 0.5, .most = 3.0, .step = 0.1}, 3.0, TRIBO_ERR_RANGE},
+        {{.size = 3, .parameter = 2, .least = 0.5, .most = 3.0, .step = 0.1}, period, TRIBO_ERR_SIZE, "curve->size"},
+        {{.size = sizeof good, .parameter = 2, .least = 1e308, .most = 1.5e308, .step = 0.1},
+         period,
+         TRIBO_ERR_NOT_FINITE,
+         "most = 1.5e+308 is too large"},
+        {{.size = sizeof good, .parameter = 2, .least = 0.5, .most = 3.0, .step = 0.1},
+         NAN,
+         TRIBO_ERR_NOT_FINITE,
+         "period = nan is not finite"},
+        {{.size = sizeof good, .parameter = 2, .least = 0.5, .most = 3.0, .step = HUGE_VAL},
+         period,
+         TRIBO_ERR_NOT_FINITE,
+         "step = inf is not finite"},
+        {{.size = sizeof good, .parameter = 8, .least = 0.5, .most = 3.0, .step = 0.1},
+         period,
+         TRIBO_ERR_RANGE,
+         "parameter = 8 is no"},
+        {{.size = sizeof good, .motion = 3, .parameter = 2, .least = 0.5, .most = 3.0, .step = 0.1},
+         period,
+         TRIBO_ERR_RANGE,
+         "motion = 3 is no"},
+        {{.size = sizeof good, .parameter = 2, .least = 1.5, .most = 3.0, .step = 0.1},
+         period,
+         TRIBO_ERR_RANGE,
+         "the parameter of the system, 1, is outside"},
+        {{.size = sizeof good, .parameter = 0, .index = 2, .most = 3.0, .step = 0.1},
+         period,
+         TRIBO_ERR_RANGE,
+         "there is no contact 2"},
+        {{.size = sizeof good, .parameter = 0, .index = 0, .most = 3.0, .step = 0.1},
+         period,
+         TRIBO_ERR_UNSUPPORTED,
+         "the limit of contact 0 follows the motion"},
+        {{.size = sizeof good, .parameter = 5, .least = 0.5, .most = 3.0, .step = 0.1},
+         period,
+         TRIBO_ERR_UNSUPPORTED,
+         "modes are followed over their amplitude"},
+        {{.size = sizeof good, .motion = 1, .parameter = 2, .least = 0.5, .most = 3.0, .step = 0.1},
+         0.0,
+         TRIBO_ERR_UNSUPPORTED,
+         "cycles have no frequency"},
+        {{.size = sizeof good, .motion = 1, .parameter = 1, .least = 0.5, .most = 3.0, .step = 0.1},
+         0.0,
+         TRIBO_ERR_UNSUPPORTED,
+         "load[0]"},
+        {{.size = sizeof good, .motion = 2, .parameter = 5, .least = 0.5, .most = 3.0, .step = 0.1},
+         0.0,
+         TRIBO_ERR_NULL,
+         "curve->c is NULL"},
+        {{.size = sizeof good, .parameter = 2, .least = 0.0, .most = 3.0, .step = 0.1},
+         period,
+         TRIBO_ERR_NOT_POSITIVE,
+         "least = 0 is not positive"},
+        {{.size = sizeof good, .parameter = 1, .least = -1.0, .most = 3.0, .step = 0.1},
+         period,
+         TRIBO_ERR_NOT_POSITIVE,
+         "least = -1 is negative"},
+        {{.size = sizeof good, .parameter = 2, .least = 0.5, .most = 3.0}, period, TRIBO_ERR_NOT_POSITIVE, "step is 0"},
+        {{.size = sizeof good, .parameter = 2, .least = 0.5, .most = 3.0, .step = 0.1}, 3.0, TRIBO_ERR_RANGE, "load[0]"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const double before[] = {y[0], y[1], y[2]};
         same = cases[k].period;
         const int status = tribo_driver_follow_curve(drv, &cases[k].curve, 0.0, &same, y, NULL, NULL);
         require(status == cases[k].status, "case %zu: %d, %s", k, status, tribo_driver_message(drv));
-        assert_exact(same, cases[k].period);
+        assert_says(tribo_driver_message(drv), cases[k].says);
+        ck_assert_int_eq(memcmp(&same, &cases[k].period, sizeof same), 0);
         ck_assert_int_eq(memcmp(before, y, sizeof before), 0);
     }
     assert_status(tribo_driver_follow_curve(NULL, &good, 0.0, &period, y, NULL, NULL), TRIBO_ERR_NULL);

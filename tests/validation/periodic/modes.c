@@ -171,8 +171,11 @@ TEST(refused)
     assert_status(tribo_driver_find_mode(drv, c, 0.0, &omega, &zeta, y), TRIBO_ERR_NOT_POSITIVE);
     assert_status(tribo_driver_find_mode(drv, c, 1.0, &less, &zeta, y), TRIBO_ERR_NOT_POSITIVE);
     assert_status(tribo_driver_find_mode(drv, c, 1.0, &nan, &zeta, y), TRIBO_ERR_NOT_FINITE);
+    assert_says(tribo_driver_message(drv), "omega = nan is not finite");
     assert_status(tribo_driver_find_mode(drv, bad, 1.0, &omega, &zeta, y), TRIBO_ERR_NOT_FINITE);
+    assert_says(tribo_driver_message(drv), "c[");
     assert_status(tribo_driver_find_mode(drv, none, 1.0, &omega, &zeta, y), TRIBO_ERR_RANGE);
+    assert_says(tribo_driver_message(drv), "c is 0");
     assert_status(tribo_driver_find_mode(steps, c, 1.0, &omega, &zeta, y), TRIBO_ERR_UNSUPPORTED);
     assert_says(tribo_driver_message(steps), "method moreau/fixed finds no modes");
     if (_i) {

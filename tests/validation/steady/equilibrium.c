@@ -556,7 +556,9 @@ TEST(refused)
     assert_status(tribo_system_find_flutter(sys, flutter, NULL, NULL, 0.0, 1.0, NULL, &omega), TRIBO_ERR_NULL);
     assert_status(tribo_system_find_flutter(sys, 2, NULL, NULL, 0.0, 1.0, &critical, &omega), TRIBO_ERR_RANGE);
     assert_status(tribo_system_find_flutter(sys, flutter, NULL, NULL, 0.0, NAN, &critical, &omega), TRIBO_ERR_NOT_FINITE);
+    assert_says(tribo_system_message(sys), "to = nan is not finite");
     assert_status(tribo_system_find_flutter(sys, flutter, NULL, NULL, 0.0, -1.0, &critical, &omega), TRIBO_ERR_NEGATIVE);
+    assert_says(tribo_system_message(sys), "to = -1 is negative");
     assert_status(tribo_system_find_flutter(sys, flutter, NULL, bad, 0.0, 1.0, &critical, &omega), TRIBO_ERR_NOT_FINITE);
     assert_ok(tribo_system_add_base_motion(sys, 2.0, one, NULL));
     assert_status(tribo_system_equilibrium(sys, NULL, y, NULL, &count, re, im), TRIBO_ERR_UNSUPPORTED);
