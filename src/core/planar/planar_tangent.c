@@ -67,7 +67,9 @@ static void planar_follow(struct disc_qp *p, const unsigned char *directions, co
     for (size_t e = 0; e < p->size; e++) {
         rhs[e] += product(growth[e], p->gradient[e]);
         turn[e] = dshift[e] + product(p->shift[e], growth[e]);
-        rhs[e] += tribo_disc_dot(p, e, dy);
+    }
+    for (size_t e = 0; e < p->size; e += p->wide[e]) {
+        tribo_disc_add(p, e, dy, rhs + e);
     }
     tribo_planar_turn(p, directions, turn, rhs);
     tribo_disc_follow(p, rhs, move);

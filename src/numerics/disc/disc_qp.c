@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Solves the problem of discs, lenses and intervals.
  *
- *     Newton's method from the last solution, its steps projected to the set; a problem like the last one ends it at once
+ *     from the last solution, where a factor takes long: sweeps, contact by contact
+ *     Newton's method, its steps projected to the set; a problem like the last one ends it at once
  *     without convergence: an interior-point method, and Newton's method from there
  *     without convergence: the same with a little stiffness towards the end of the interior-point method
  *
@@ -14,7 +15,7 @@
 #include "common/layout.h"
 #include "common/real.h"
 
-enum { FROM_BEFORE = 12, FROM_INTERIOR = 40 };
+enum { FROM_BEFORE = 12, FROM_INTERIOR = 40, SWEEPS = 12 };
 
 /* Distances up to SETTLED times their rounding count as 0. */
 #define SETTLED 4.0
@@ -24,6 +25,10 @@ enum { FROM_BEFORE = 12, FROM_INTERIOR = 40 };
 #define MANY 16
 #define GAIN 0.03
 #define LASTING 0.1
+
+/* See disc_approach. */
+#define SLOW 0.7
+#define CLOSE 1e-6
 
 /* y = the point of the set nearest to from + part (aim - from). */
 static void disc_project(struct disc_qp *p, const double *from, const double *aim, double part)
@@ -37,7 +42,29 @@ static void disc_project(struct disc_qp *p, const double *from, const double *ai
     }
 }
 
-/* 1 if the factor serves further steps. */
+/* Takes each contact to the point of its set nearest to y - gain gradient, which lowers the objective: every other contact first,
+ * since a contact waits for the one before it, to which it often couples. Returns the largest move. */
+static double disc_sweep(struct disc_qp *p)
+{
+    double most = 0.0;
+    for (size_t odd = 0; odd < 2; odd++) {
+        size_t contact = 0;
+        for (size_t i = 0; i < p->size; i += p->wide[i]) {
+            if (contact++ % 2 == odd) {
+                double gradient[2] = {p->pull[i], p->pull[i + p->wide[i] - 1]}, to[2];
+                tribo_disc_add(p, i, p->y, gradient);
+                tribo_disc_descend(p, i, gradient, to);
+                for (size_t k = 0; k < p->wide[i]; k++) {
+                    most = greater(most, fabs(to[k] - p->y[i + k]));
+                    p->y[i + k] = to[k];
+                }
+            }
+        }
+    }
+    return most;
+}
+
+/* 1 if a factor serves further steps, and sweeps come before it. */
 static int takes_long(const struct disc_qp *p)
 {
     return p->s.pattern && tribo_sparse_slots(p->s.pattern) > MANY * p->s.places;
@@ -100,18 +127,6 @@ static int descends(struct disc_qp *p)
     return change <= rounding;
 }
 
-/* Takes each contact to the point of its set nearest to y - gain gradient, which lowers the objective. */
-static void disc_sweep(struct disc_qp *p)
-{
-    for (size_t i = 0; i < p->size; i += p->wide[i]) {
-        double gradient[2];
-        for (size_t k = 0; k < p->wide[i]; k++) {
-            gradient[k] = p->pull[i + k] + tribo_disc_dot(p, i + k, p->y);
-        }
-        tribo_disc_descend(p, i, gradient, p->y + i);
-    }
-}
-
 /* Takes as much of Newton's step as lowers the objective: from its part up to the first rim of an inside contact on, halved until
  * it does; all of it if it halves the distance, since near the solution the objective is rounding. If no part does, sweeps. */
 static void step_down(struct disc_qp *p)
@@ -171,6 +186,17 @@ static int disc_settle(struct disc_qp *p, double distance, int rounds, void (*st
     return 1;
 }
 
+/* Sweeps while each sweep leaves at most SLOW of the move before it: a dozen sweeps take less time than a factor, and show most
+ * places and the angles of slides. Newton's method then takes moves from CLOSE on to rounding. */
+static void disc_approach(struct disc_qp *p)
+{
+    double before = HUGE_VAL, move = disc_sweep(p);
+    for (int sweep = 1; sweep < SWEEPS && move < SLOW * before && move > CLOSE; sweep++) {
+        before = move;
+        move = disc_sweep(p);
+    }
+}
+
 /* Rooms times presses at which interior-point methods end, in parts of the largest stiffness: NEXT_TO_NOTHING shows the places
  * unless S is nearly singular. */
 #define NEXT_TO_NOTHING 1e-13
@@ -184,7 +210,10 @@ static int solve_once(struct disc_qp *p)
     tribo_disc_gains(p);
     disc_project(p, p->y, p->y, 1.0);
     double distance = disc_look(p);
-    if (p->residual >= p->factor.serves) { /* of contacts that do not couple `to` is the solution */
+    if (takes_long(p) && distance > SETTLED) {
+        disc_approach(p);
+        distance = disc_look(p);
+    } else if (!takes_long(p)) { /* of contacts that do not couple `to` is the solution */
         disc_project(p, p->to, p->to, 1.0);
         distance = disc_look(p);
     }

@@ -172,8 +172,8 @@ static inline double *tribo_disc_entry(const struct disc_qp *p, size_t e)
     return &p->factor.matrix[p->s.pattern ? p->s.slot[e] : e];
 }
 
-/* Returns sum_k s_ik x_k. */
-double tribo_disc_dot(const struct disc_qp *p, size_t i, const double *x);
+/* sum [wide] += S x in the rows of the contact at i. */
+void tribo_disc_add(const struct disc_qp *p, size_t i, const double *x, double *sum);
 
 /* y [size] = S x, size_i [size] = sum_k |s_ik x_k|; neither is x. */
 void tribo_disc_multiply(const struct disc_qp *p, const double *x, double *y, double *size);

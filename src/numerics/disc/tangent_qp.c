@@ -30,14 +30,20 @@
 /* A distance longer than any within a set, in parts of limits. */
 #define BEYOND_ALL 4.0
 
-double tribo_disc_dot(const struct disc_qp *p, size_t i, const double *x)
+void tribo_disc_add(const struct disc_qp *p, size_t i, const double *x, double *sum)
 {
-    const size_t begin = tribo_disc_row(p, i), terms = tribo_disc_terms(p, i);
-    double sum = 0.0;
+    const size_t begin = tribo_disc_row(p, i), terms = tribo_disc_terms(p, i), other = i + p->wide[i] - 1;
+    const double *row = p->s.val + begin, *beside = p->s.val + tribo_disc_row(p, other);
+    double first = 0.0, second = 0.0;
     for (size_t t = 0; t < terms; t++) {
-        sum += p->s.val[begin + t] * x[p->s.pattern ? p->s.col[begin + t] : t];
+        const double to = x[p->s.pattern ? p->s.col[begin + t] : t];
+        first += row[t] * to;
+        second += beside[t] * to;
     }
-    return sum;
+    sum[0] += first;
+    if (other > i) {
+        sum[1] += second;
+    }
 }
 
 /* S is symmetric: a dense S is summed by columns, which are its rows, in vectors. */

@@ -182,8 +182,9 @@ static void pair_free(struct disc_qp *dense, struct disc_qp *sparse, struct spar
 /* rows [size] = S x. */
 static void multiply(const struct disc_qp *p, const double *x, double *rows)
 {
-    for (size_t e = 0; e < p->size; e++) {
-        rows[e] = tribo_disc_dot(p, e, x);
+    memset(rows, 0, p->size * sizeof *rows);
+    for (size_t e = 0; e < p->size; e += p->wide[e]) {
+        tribo_disc_add(p, e, x, rows + e);
     }
 }
 

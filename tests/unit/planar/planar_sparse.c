@@ -212,4 +212,47 @@ TEST(little_changes)
     field_free(&s);
 }
 
-TEST_MAIN("planar_sparse", {rows_and_carpets, 4}, {tied, 2}, {clone, 2}, {little_changes, 2})
+/* Each call has another load, far from the one before: sweeps come near the solution, and two factors at most follow. */
+TEST(other_loads)
+{
+    struct random g = random_of(_i);
+    struct field s = field_create(&g, 1600, 40, 0, 1);
+    for (size_t i = 0; i < s.n; i++) {
+        s.val[s.rowptr[i]] += 1.0;
+    }
+    assert_ok(tribo_set_operator_csr(s.c, s.rowptr, s.col, s.val));
+    const uint64_t factors = count_of(s.c, TRIBO_COUNT_FACTORIZATIONS);
+    for (int call = 0; call < 4; call++) {
+        pull_at_random(&s, &g, 0.9);
+        assert_ok(tribo_step_force(s.c, 1.0, s.pull, s.f));
+        require(check_forces(&s) > 100, "few slide");
+    }
+    ck_assert_uint_le(count_of(s.c, TRIBO_COUNT_FACTORIZATIONS), factors + 8);
+    field_free(&s);
+}
+
+/* Loads of 0, equal ones, ones that just reach the limits, opposite halves, one direction, a slope. Another call with the load gives
+ * the same. */
+TEST(even_loads)
+{
+    struct random g = random_of(_i);
+    struct field s = field_create(&g, 2000, 40, 0, 1);
+    for (int kind = 0; kind < 6; kind++) {
+        for (size_t i = 0; i < s.n; i++) {
+            const double x = (double)(i / 2 % 40) - 19.5;
+            const double load[] = {0.0, 0.9, 1.0, x < 0.0 ? -1.2 : 1.2, i % 2 ? 0.0 : 1.0, 0.05 * x};
+            s.spare[i] = load[kind];
+        }
+        for (size_t i = 0; i < s.n; i++) {
+            s.pull[i] = row_of(&s, i, s.spare);
+        }
+        assert_ok(tribo_step_force(s.c, 1.0, s.pull, s.f));
+        const size_t slide = check_forces(&s);
+        assert_ok(tribo_step_force(s.c, 1.0, s.pull, s.spare));
+        ck_assert_uint_eq(check_forces(&s), slide);
+        assert_all_close(s.spare, s.f, s.n, 1e-13);
+    }
+    field_free(&s);
+}
+
+TEST_MAIN("planar_sparse", {rows_and_carpets, 4}, {tied, 2}, {clone, 2}, {little_changes, 2}, {other_loads, 2}, {even_loads, 1})
