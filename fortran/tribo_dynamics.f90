@@ -1556,7 +1556,7 @@ contains
   end subroutine period_derivatives
 
   !> Derivatives of multiplier `which` (from 1, in the order of get_multipliers) of that motion by parameters, kind(n)
-  !> TRIBO_PARAMETER_LIMIT, _LOADS or _FREQUENCY and index(n), the contacts of limits: of its real and imaginary part, re(n), im(n).
+  !> TRIBO_PARAMETER_... and index(n), the contacts of limits: of its real and imaginary part, re(n), im(n).
   subroutine multiplier_derivatives(this, which, kind, index, re, im, stat, errmsg)
     class(tribo_driver), intent(in) :: this
     integer, intent(in) :: which, kind(:), index(:)

@@ -551,11 +551,11 @@ TRIBO_API int tribo_driver_period_derivatives(tribo_driver *drv, size_t count, c
 /* Derivatives of a multiplier of the last periodic motion found by parameters, in closed form along its events. The system must
  * be unchanged since.
  * which        in               the multiplier, in the order of tribo_driver_get_multipliers
- * kind         [count] in       TRIBO_PARAMETER_LIMIT, _LOADS or _FREQUENCY
+ * kind         [count] in       TRIBO_PARAMETER_...; those of curves are refused
  * index        [count] in       contacts of TRIBO_PARAMETER_LIMIT; not read for other kinds
  * re, im       [count] out      derivatives of the real and the imaginary part
  * Returns what tribo_driver_period_derivatives returns, TRIBO_ERR_RANGE (which), TRIBO_ERR_UNSUPPORTED also for multipliers that
- * are repeated or 0 within rounding, limits that change, bases that move, and the damping. */
+ * are repeated or 0 within rounding, limits that change, and bases that move. */
 TRIBO_API int tribo_driver_multiplier_derivatives(tribo_driver *drv, size_t which, size_t count, const int *kind,
                                                   const size_t *index, double *re, double *im);
 

@@ -4,13 +4,14 @@
  * (dD) u is found along the motion: V, the perturbation that begins as u, and DV, its derivative by p, which begins as zero.
  * An event of contact i at time t comes later by
  *     dt = -J_i dq'/v_i' where v_i = 0,  dt = (dlimit_i - d|f_i|)/|f_i|' where contact i breaks away,
- * d: by p at constant time. V jumps at stops of rigid contacts only. A phase that lasts dtau longer adds V' dtau to DV. A jump V += c (r V), c = q''+ - q''-,
+ * d: by p at constant time. V jumps at stops of rigid contacts only. A phase that lasts dtau longer adds V' dtau to DV, and the damping what V
+ * gets by more of it. A jump V += c (r V), c = q''+ - q''-,
  * r = J_i/v_i', adds to DV
  *     c (r DV) + (dc + c' dt) (r V) - c (r V) J_i (dq''- + q'''- dt)/v_i'.
  * For a set of contacts at rest q'' is linear in the state, the load and the limits, so that all these derivatives are
- * accelerations by changes of these. By the frequency times are those of the motion, not of constant phase. */
+ * accelerations by changes of these. By the frequency times are those of the motion, not of constant phase.
+ * Multipliers depend on loads over limits. */
 #include "sensitivity.h"
-#include "common/imaginary.h"
 #include "common/layout.h"
 #include "common/real.h"
 #include "numerics/linalg.h"
@@ -18,11 +19,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Distance of two multipliers over the size of the larger one, cosine of the angle of u and w, and size of lambda times that
- * cosine, below which a multiplier is not simple, or rounding. */
-#define SIMPLE 1e-6
-#define ROUNDING 1e-9
 
 /* Columns of w: V, real and imaginary part, then for each parameter DV, likewise. */
 struct second {
@@ -36,11 +32,13 @@ struct second {
     double *pull;              /* [count + 1][contacts] change of forces of contacts at rest, likewise */
     double *shift;             /* [count] dt at the end of the phase */
     double *last;              /* [count] dt at its start */
-    double *z, *after;         /* [n] change of a state; [ndof] of q'' after a jump */
+    double *damped;            /* [3][n], and at least [4][contacts], workspace */
+    double *z, *after;         /* [n + 1] change of a state; [ndof] of q'' after a jump */
     double *push, *a, *spring; /* [contacts] workspace */
     double *along;             /* [wide] workspace */
     double tau;
     size_t steps; /* of d at the end of the phase */
+    int damps;    /* 1: a parameter is the damping */
     int open;     /* 1: the end of the last phase is not yet in w */
     int status;   /* of an event */
 };
@@ -54,6 +52,9 @@ static int find_change(struct second *x, double dt, size_t p, double *to, double
     const tribo_system *sys = d->map->sys;
     tribo_compliance_get(sys, x->z, x->spring);
     tribo_system_smooth(sys, 1, dt, x->z, x->z + sys->ndof, x->spring, to);
+    if (p < x->count && d->kind[p] == TRIBO_PARAMETER_DAMPING && sys->damping.rows) {
+        tribo_matrix_multiply_add(&sys->damping, -1.0, x->y + sys->ndof, to);
+    }
     for (size_t i = 0; i < d->contacts; i++) {
         const signed char slip = m->state.slip[i];
         x->push[i] = p < x->count && tribo_slides(slip) && !m->constant.elastic[i] ? -slip * d->rise[i * x->count + p] : 0.0;
@@ -97,12 +98,67 @@ static void close_phase(struct second *x)
     x->open = 0;
 }
 
-int tribo_second_phase(struct second *x, double tau, const double *y)
+/* x->rate = what V at the start of the phase that ends gets in it by damping = 1 of struct source: the source is linear in the
+ * motion, so that it is the response of the motion from the state + V, less that of the motion, which begins anew here. Returns a
+ * status. */
+static int find_damped(struct second *x, double tau, double t)
+{
+    static const double none = 0.0, one = 1.0;
+    const struct sensitivity *d = x->d;
+    struct events *e = d->map->events;
+    tribo_system *sys = d->map->sys;
+    const size_t n = d->n, guards = e->search.guards;
+    const struct source source = {.force = x->push, .inertia = &none, .damping = &one};
+    struct guard *const kept = malloc((guards + 1) * sizeof *kept);
+    if (!kept) {
+        return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for derivatives of a multiplier");
+    }
+    memcpy(kept, e->search.guard, guards * sizeof *kept);
+    memset(x->push, 0, d->contacts * sizeof *x->push);
+    memcpy(x->a, e->stick_slip.state.force, d->contacts * sizeof *x->a);
+    for (size_t i = 0; i < 2 * n; i++) {
+        x->rate[i] = x->w[i / 2 * x->wide + i % 2];
+    }
+    if (sys->compliance.count) {
+        tribo_compliance_perturb(sys, e->stick_slip.state.slip, NULL, 2, x->rate, x->damped);
+    }
+    const double size = tribo_largest(d->from, n), part = (size > 0.0 ? size : 1.0) / tribo_largest(x->rate, 2 * n);
+    memset(x->damped, 0, 3 * n * sizeof *x->damped);
+    int status = TRIBO_OK;
+    for (size_t k = 0; !status && k < 3; k++) { /* the motion itself last */
+        double reach = tau;
+        memcpy(x->z, d->from, (n + 1) * sizeof *x->z);
+        memcpy(e->stick_slip.state.force, x->a, d->contacts * sizeof *x->a);
+        for (size_t i = 0; k < 2 && i < n; i++) {
+            x->z[i] += part * x->rate[2 * i + k];
+            if (i >= 2 * sys->ndof) {
+                e->stick_slip.state.force[sys->compliance.contact[i - 2 * sys->ndof]] += part * x->rate[2 * i + k];
+            }
+        }
+        status = e->motion->begin(e->own, t - tau, x->z, &reach);
+        status = status ? status : e->motion->transition(e->own, NULL, tau, 1, x->damped + k * n, &source);
+    }
+    for (size_t i = 0; i < 2 * n; i++) {
+        x->rate[i] = (x->damped[i % 2 * n + i / 2] - x->damped[2 * n + i / 2]) / part;
+    }
+    memcpy(e->search.guard, kept, guards * sizeof *kept);
+    e->search.guards = guards;
+    free(kept);
+    tribo_system_set_time(sys, t);
+    return status;
+}
+
+int tribo_second_phase(struct second *x, double tau, double t, const double *y)
 {
     struct sensitivity *d = x->d;
     const size_t n = d->map->sys->ndof;
     close_phase(x);
-    int status = x->status ? x->status : tribo_derivative_apply(&d->steps, d->steps.steps - 1, x->wide, x->w, NULL);
+    int status = x->status || !x->damps ? x->status : find_damped(x, tau, t);
+    status = status ? status : tribo_derivative_apply(&d->steps, d->steps.steps - 1, x->wide, x->w, NULL);
+    for (size_t at = 0; x->damps && at < d->n * x->wide - 2 * d->n; at++) {
+        const size_t i = at / (2 * x->count), j = at % (2 * x->count);
+        x->w[i * x->wide + 2 + j] -= d->kind[j / 2] == TRIBO_PARAMETER_DAMPING ? x->rate[2 * i + j % 2] : 0.0;
+    }
     memcpy(x->before, d->variation.v, d->n * x->count * sizeof *x->before);
     memcpy(x->y, y, d->n * sizeof *y);
     for (size_t k = 0; !status && k < 2; k++) {
@@ -204,55 +260,6 @@ void tribo_second_event(struct second *x)
     }
 }
 
-/* vector [2][n] = right and left eigenvector u, w of D for multiplier `which`, w'u = 1; *lambda = its eigenvalue. room: workspace
- * [2 n^2 + 2 dimension]. Returns a status, its message on the driver at work. */
-static int find_vectors(struct shooting *s, size_t which, double complex *vector, double complex *lambda, double *room)
-{
-    const size_t n = s->map.n, all = tribo_system_dimension(s->map.sys) - 1;
-    double *a = room, *x = a + n * n, *re = x + n * n, *im = re + all, gap = HUGE_VAL;
-    double complex product = 0.0;
-    int status = tribo_shooting_multipliers(s, re, im);
-    status = status ? status : tribo_period_map_matrix(&s->map, s->here);
-    if (status) {
-        return status;
-    }
-    const double complex mu = re[which] + im[which] * I;
-    for (int left = 0; !status && left < 2; left++) {
-        double nearest = HUGE_VAL;
-        size_t at = 0, row;
-        memcpy(a, s->here->derivative.matrix, n * n * sizeof *a);
-        if (left) {
-            tribo_transpose(n, n, s->here->derivative.matrix, a);
-        }
-        status = tribo_eigen(a, n, re, im, x);
-        for (size_t k = 0; !status && k < n; k++) {
-            const double complex one = re[k] + im[k] * I;
-            const double off = left ? cabs(one - *lambda) : cabs((s->here->odd ? one * one : one) - mu);
-            gap = left ? gap : off < nearest ? nearest : lesser(gap, off);
-            at = off < nearest ? k : at;
-            nearest = lesser(nearest, off);
-        }
-        *lambda = left ? *lambda : re[at] + im[at] * I;
-        row = im[at] < 0.0 ? at - 1 : at;
-        for (size_t i = 0; !status && i < n; i++) {
-            const double turned = im[at] == 0.0 ? 0.0 : (im[at] > 0.0 ? 1.0 : -1.0) * x[(row + 1) * n + i];
-            vector[(size_t)left * n + i] = x[row * n + i] + turned * I;
-            product += left ? vector[n + i] * vector[i] : 0.0;
-        }
-    }
-    if (status) {
-        return tribo_error(s->map.drv->message, status, "multiplier[%zu]: %s", which, tribo_strerror(status));
-    }
-    for (size_t i = 0; i < n; i++) {
-        vector[n + i] /= product;
-    }
-    return gap > SIMPLE * cabs(mu) && cabs(product) > SIMPLE && cabs(*lambda) * cabs(product) > ROUNDING
-               ? TRIBO_OK
-               : tribo_error(s->map.drv->message, TRIBO_ERR_UNSUPPORTED,
-                             "multiplier[%zu] = %g%+gi is repeated, or 0, within rounding, and has no derivatives", which,
-                             creal(mu), cimag(mu));
-}
-
 int tribo_driver_multiplier_derivatives(tribo_driver *drv, size_t which, size_t count, const int *kind, const size_t *index,
                                         double *re, double *im)
 {
@@ -262,13 +269,12 @@ int tribo_driver_multiplier_derivatives(tribo_driver *drv, size_t which, size_t 
         return status ? status : tribo_error(drv->message, TRIBO_ERR_SIZE, "count = 0");
     }
     struct shooting *s = drv->shooting;
-    if (s->told->extra.count || s->told->map.ring.sectors) {
-        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "derivatives of multipliers are found without %s",
-                           s->told->extra.count ? "an unknown period" : "a ring");
-    }
     const size_t n = s->map.n, dofs = drv->sys->ndof, c = drv->sys->ncontact, wide = 2 + 2 * count;
-    if (which >= n) {
-        return tribo_error(drv->message, TRIBO_ERR_RANGE, "multiplier[%zu] is 0, or there is none", which);
+    const char *const without = s->told->extra.count ? "an unknown period" : s->told->map.ring.sectors ? "a ring" : NULL;
+    if (without || which >= n) {
+        return without
+                   ? tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "derivatives of multipliers are found without %s", without)
+                   : tribo_error(drv->message, TRIBO_ERR_RANGE, "multiplier[%zu] is 0, or there is none", which);
     }
     struct sensitivity d = {.columns = count, .kind = kind};
     struct second x = {.d = &d, .count = count, .wide = wide};
@@ -277,12 +283,15 @@ int tribo_driver_multiplier_derivatives(tribo_driver *drv, size_t which, size_t 
     if (!ALLOCATE(ARRAY(vector, 2 * n), ARRAY(room, 2 * n * n + 2 * tribo_system_dimension(drv->sys)),
                   ARRAY(coordinates, n * wide), ARRAY(x.w, n * wide), ARRAY(x.rate, 2 * n), ARRAY(x.before, n * count),
                   ARRAY(x.y, n), ARRAY(x.bend, (count + 1) * dofs), ARRAY(x.pull, (count + 1) * c), ARRAY(x.shift, count),
-                  ARRAY(x.last, count), ARRAY(x.z, n), ARRAY(x.after, dofs), ARRAY(x.push, c), ARRAY(x.a, c), ARRAY(x.spring, c),
-                  ARRAY(x.along, wide))) {
+                  ARRAY(x.last, count), ARRAY(x.z, n + 1), ARRAY(x.damped, 3 * n + 4 * c), ARRAY(x.after, dofs), ARRAY(x.push, c),
+                  ARRAY(x.a, c), ARRAY(x.spring, c), ARRAY(x.along, wide))) {
         return tribo_error(drv->message, TRIBO_ERR_MEMORY, "out of memory for derivatives of a multiplier");
     }
     d.second = &x;
-    status = find_vectors(s, which, vector, &lambda, room);
+    for (size_t p = 0; p < count; p++) {
+        x.damps |= kind[p] == TRIBO_PARAMETER_DAMPING;
+    }
+    status = tribo_shooting_vectors(s, which, vector, &lambda, room);
     for (size_t i = 0; !status && i < n; i++) {
         coordinates[i * wide] = creal(vector[i]);
         coordinates[i * wide + 1] = cimag(vector[i]);
@@ -298,9 +307,7 @@ int tribo_driver_multiplier_derivatives(tribo_driver *drv, size_t which, size_t 
             for (size_t i = 0; i < n; i++) {
                 sum += vector[n + i] * (coordinates[i * wide + 2 + 2 * p] + coordinates[i * wide + 3 + 2 * p] * I);
             }
-            sum *= s->map.odd ? -2.0 * lambda : 1.0;
-            /* multipliers depend on loads over limits */
-            sum *= kind[p] == TRIBO_PARAMETER_LOADS ? -1.0 : 1.0;
+            sum *= (s->map.odd ? -2.0 * lambda : 1.0) * (kind[p] == TRIBO_PARAMETER_LOADS ? -1.0 : 1.0);
             re[p] = creal(sum);
             im[p] = cimag(sum);
         }

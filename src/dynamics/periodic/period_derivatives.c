@@ -105,8 +105,9 @@ static int sensitivity_phase(struct company *company, double tau, double t, cons
         memcpy(d->slip, slip, d->contacts);
         d->begun = 1;
     }
+    status = status || !d->second || !d->last ? status : tribo_second_phase(d->second, tau, t, y);
     memcpy(d->from, y, (d->n + 1) * sizeof *y);
-    return status || !d->second || !d->last ? status : tribo_second_phase(d->second, tau, y);
+    return status;
 }
 
 static void sensitivity_event(struct company *company)
@@ -127,7 +128,7 @@ static int follow_perturbed(struct sensitivity *d, const double *v)
     const struct shooting *s = m->drv->shooting;
     tribo_variation_begin(&d->variation, m->events, v, d->columns, &d->steps);
     d->variation.by = &d->by;
-    d->variation.known = &d->first;
+    d->variation.known = d->second ? NULL : &d->first; /* tribo_second_phase may change the phases of the method */
     memcpy(d->from, s->here->y, d->n * sizeof *d->from);
     d->from[d->n] = 0.0;
     int status = tribo_period_map_replay(m, s->here->y, m->span, &d->company);
@@ -233,10 +234,6 @@ static int set_parameter(struct sensitivity *d, const tribo_driver *drv, size_t 
     }
     if (kind == TRIBO_PARAMETER_LIMIT && !tribo_system_limits_vary(sys) && limit[index] == 0.0) {
         return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "contact %zu is open, and has no derivative by its limit", index);
-    }
-    if (kind == TRIBO_PARAMETER_DAMPING && d->second) {
-        return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "kind[%zu]: multipliers have no derivatives by the damping here",
-                           j);
     }
     if (kind == TRIBO_PARAMETER_LOADS && tribo_system_limits_vary(sys)) {
         return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,

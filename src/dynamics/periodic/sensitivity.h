@@ -48,9 +48,9 @@ struct sensitivity {
 int tribo_sensitivity_find(struct sensitivity *d, tribo_driver *drv, const size_t *index, double *extremes, double *energy,
                            double *y);
 
-/* multiplier_derivatives.c: of d->second, after d itself: a phase that lasted tau and ended in the state y, which returns a status;
+/* multiplier_derivatives.c: of d->second, after d itself: a phase that lasted tau and ended at (t, y), which returns a status;
  * the decision at an event. */
-int tribo_second_phase(struct second *x, double tau, const double *y);
+int tribo_second_phase(struct second *x, double tau, double t, const double *y);
 void tribo_second_event(struct second *x);
 
 #endif

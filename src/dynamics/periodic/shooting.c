@@ -76,6 +76,11 @@
 #define AT_ONCE 1e-8
 #define LASTS 1e-6
 
+/* Distance of two multipliers over the size of the larger one, cosine of the angle of u and w, and size of lambda times that
+ * cosine, below which a multiplier is not simple, or rounding. */
+#define SIMPLE 1e-6
+#define ROUNDING 1e-9
+
 /* A guess chooses a motion of the family if its distance from the odd motion along the family is this part of the size. */
 #define MEANT 0.1
 
@@ -583,6 +588,53 @@ int tribo_shooting_multipliers(struct shooting *s, double *re, double *im)
         re[i] = im[i] = 0.0;
     }
     return TRIBO_OK;
+}
+
+int tribo_shooting_vectors(struct shooting *s, size_t which, double complex *vector, double complex *lambda, double *room)
+{
+    const size_t n = s->map.n, all = tribo_system_dimension(s->map.sys) - 1;
+    double *a = room, *x = a + n * n, *re = x + n * n, *im = re + all, gap = HUGE_VAL;
+    double complex product = 0.0;
+    int status = tribo_shooting_multipliers(s, re, im);
+    status = status ? status : tribo_period_map_matrix(&s->map, s->here);
+    if (status) {
+        return status;
+    }
+    const double complex mu = re[which] + im[which] * I;
+    for (int left = 0; !status && left < 2; left++) {
+        double nearest = HUGE_VAL;
+        size_t at = 0, row;
+        memcpy(a, s->here->derivative.matrix, n * n * sizeof *a);
+        if (left) {
+            tribo_transpose(n, n, s->here->derivative.matrix, a);
+        }
+        status = tribo_eigen(a, n, re, im, x);
+        for (size_t k = 0; !status && k < n; k++) {
+            const double complex one = re[k] + im[k] * I;
+            const double off = left ? cabs(one - *lambda) : cabs((s->here->odd ? one * one : one) - mu);
+            gap = left ? gap : off < nearest ? nearest : lesser(gap, off);
+            at = off < nearest ? k : at;
+            nearest = lesser(nearest, off);
+        }
+        *lambda = left ? *lambda : re[at] + im[at] * I;
+        row = im[at] < 0.0 ? at - 1 : at;
+        for (size_t i = 0; !status && i < n; i++) {
+            const double turned = im[at] == 0.0 ? 0.0 : (im[at] > 0.0 ? 1.0 : -1.0) * x[(row + 1) * n + i];
+            vector[(size_t)left * n + i] = x[row * n + i] + turned * I;
+            product += left ? vector[n + i] * vector[i] : 0.0;
+        }
+    }
+    if (status) {
+        return tribo_error(s->map.drv->message, status, "multiplier[%zu]: %s", which, tribo_strerror(status));
+    }
+    for (size_t i = 0; i < n; i++) {
+        vector[n + i] /= product;
+    }
+    return gap > SIMPLE * cabs(mu) && cabs(product) > SIMPLE && cabs(*lambda) * cabs(product) > ROUNDING
+               ? TRIBO_OK
+               : tribo_error(s->map.drv->message, TRIBO_ERR_UNSUPPORTED,
+                             "multiplier[%zu] = %g%+gi is repeated, or 0, within rounding, and has no derivatives", which,
+                             creal(mu), cimag(mu));
 }
 
 /* -------------------------------------------------------------------------------------------------------------- the whole */

@@ -4,6 +4,7 @@
 #define TRIBO_SHOOTING_H
 
 #include "period_map.h"
+#include "common/imaginary.h"
 
 struct shooting;
 
@@ -74,6 +75,11 @@ struct shooting *tribo_shooting_create(tribo_driver *drv);
 /* Sets re, im [tribo_system_dimension - 1] = multipliers of the motion found; *freedom = dimension of its family. */
 int tribo_shooting_multipliers(struct shooting *s, double *re, double *im);
 int tribo_shooting_freedom(struct shooting *s, size_t *freedom);
+
+/* vector [2][n] = right and left eigenvector u, w of D = d image/d x at s->here for multiplier `which`, w'u = 1; *lambda = its
+ * eigenvalue. room: workspace [2 n^2 + 2 tribo_system_dimension]. Returns a status; TRIBO_ERR_UNSUPPORTED: the multiplier is
+ * repeated, or 0. */
+int tribo_shooting_vectors(struct shooting *s, size_t which, double complex *vector, double complex *lambda, double *room);
 
 /* Returns TRIBO_OK; TRIBO_ERR_UNSUPPORTED if the force of an elastic contact only touches its limit in the motion found, so that
  * the motion has no `what`; or another status. The message is on the driver. */

@@ -469,24 +469,24 @@ TEST(no_derivative)
  * lambda^2 + (1 + rho) cos(pi/beta) lambda + rho = 0. */
 TEST(multipliers_den_hartog)
 {
-    static const int kind[] = {TRIBO_PARAMETER_LIMIT, TRIBO_PARAMETER_LOADS, TRIBO_PARAMETER_FREQUENCY};
-    static const size_t index[3] = {0};
+    static const int kind[] = {TRIBO_PARAMETER_LIMIT, TRIBO_PARAMETER_LOADS, TRIBO_PARAMETER_FREQUENCY, TRIBO_PARAMETER_DAMPING};
+    static const size_t index[4] = {0};
     const double by_limit = -0.51052875503341, by_beta = 4.80844813153893, r = 0.3, beta = 0.7, square = beta * beta;
     struct search s = oscillator_search(methods[_i], 0.0, r, 1.0, beta);
-    double y[3] = {0}, mr[2], mi[2], re[3], im[3];
+    double y[3] = {0}, mr[2], mi[2], re[4], im[4];
     find(&s, 0.0, y);
     const double x0 = amplitude(&s, 0), sum = x0 * square + r, c = cos(PI / beta), rho = (x0 * square - r) / sum;
     const double by_x0 = 2.0 * r * square / (sum * sum), by_r = -2.0 * x0 * square / (sum * sum);
     const double rho_by[] = {by_r + by_x0 * by_limit, -r * (by_r + by_x0 * by_limit),
-                             beta * by_x0 * by_beta + 4.0 * x0 * square * r / (sum * sum)};
-    const double c_by[] = {0.0, 0.0, sin(PI / beta) * PI / beta};
+                             beta * by_x0 * by_beta + 4.0 * x0 * square * r / (sum * sum), 0.0};
+    const double c_by[] = {0.0, 0.0, sin(PI / beta) * PI / beta, 0.0};
     const double complex lambda = csqrt((1.0 + rho) * (1.0 + rho) * c * c / 4.0 - rho) - (1.0 + rho) * c / 2.0;
     assert_ok(tribo_driver_get_multipliers(s.drv, mr, mi));
     for (size_t k = 0; k < 2; k++) {
         const int upper = cimag(lambda * lambda) * mi[k] > 0.0;
         assert_close(mr[k], creal(lambda * lambda), 1e-10);
-        assert_ok(tribo_driver_multiplier_derivatives(s.drv, k, 3, kind, index, re, im));
-        for (size_t j = 0; j < 3; j++) {
+        assert_ok(tribo_driver_multiplier_derivatives(s.drv, k, 4, kind, index, re, im));
+        for (size_t j = 0; j < 4; j++) {
             const double complex by = -(rho_by[j] * c * lambda + (1.0 + rho) * c_by[j] * lambda + rho_by[j]) /
                                       (2.0 * lambda + (1.0 + rho) * c) * 2.0 * lambda;
             assert_close(re[j], creal(by), 1e-9);
@@ -548,7 +548,7 @@ static void check_multiplier(const struct scene *s, tribo_driver *drv, size_t wh
 
 TEST(multipliers_by_differences)
 {
-    static const size_t scene[] = {0, 1, 8, 2, 4, 5, 6};
+    static const size_t scene[] = {0, 1, 8, 2, 4, 5, 6, 11};
     struct scene s = scene_of(scene[_i / 2]);
     double y[STATES] = {0}, share[CONTACTS];
     size_t rest = 0;
@@ -570,7 +570,10 @@ TEST(multipliers_by_differences)
         check_multiplier(&s, drv, which, TRIBO_PARAMETER_LIMIT, 0, y);
         check_multiplier(&s, drv, which, TRIBO_PARAMETER_LIMIT, s.contacts - 1, y);
         check_multiplier(&s, drv, which, TRIBO_PARAMETER_LOADS, 0, y);
-        check_multiplier(&s, drv, which, TRIBO_PARAMETER_FREQUENCY, 0, y);
+        if (_i < 14) { /* the large structure has two multipliers that nearly merge over the frequency */
+            check_multiplier(&s, drv, which, TRIBO_PARAMETER_FREQUENCY, 0, y);
+        }
+        check_multiplier(&s, drv, which, TRIBO_PARAMETER_DAMPING, 0, y);
     }
     tribo_driver_destroy(drv);
     tribo_system_destroy(sys);
@@ -604,7 +607,7 @@ TEST(multipliers_of_rest)
 /* Two equal oscillators apart have each multiplier twice; two contacts on one body stop at one instant. */
 TEST(multipliers_refused)
 {
-    const int limit = TRIBO_PARAMETER_LIMIT, damping = TRIBO_PARAMETER_DAMPING, frequency = TRIBO_PARAMETER_FREQUENCY;
+    const int limit = TRIBO_PARAMETER_LIMIT, frequency = TRIBO_PARAMETER_FREQUENCY;
     const size_t zero = 0;
     const double unit[] = {1.0, 0.0, 0.0, 1.0}, part[] = {0.1, 0.0, 0.0, 0.1}, cosine[] = {1.0, 1.0}, both[] = {1.0, 1.0},
                  limits[] = {0.1, 0.2}, ratio = 1.5;
@@ -632,8 +635,6 @@ TEST(multipliers_refused)
     assert_status(tribo_driver_multiplier_derivatives(s.drv, 0, 1, &limit, &zero, &re, NULL), TRIBO_ERR_NULL);
     assert_status(tribo_driver_multiplier_derivatives(s.drv, 0, 0, &limit, &zero, &re, &im), TRIBO_ERR_SIZE);
     assert_status(tribo_driver_multiplier_derivatives(s.drv, 2, 1, &limit, &zero, &re, &im), TRIBO_ERR_RANGE);
-    assert_status(tribo_driver_multiplier_derivatives(s.drv, 0, 1, &damping, &zero, &re, &im), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_driver_message(s.drv), "damping");
     assert_ok(tribo_system_add_base_motion(s.sys, 0.7, NULL, limits));
     find(&s, 0.0, z);
     assert_status(tribo_driver_multiplier_derivatives(s.drv, 0, 1, &frequency, &zero, &re, &im), TRIBO_ERR_UNSUPPORTED);
@@ -650,4 +651,4 @@ TEST(multipliers_refused)
 
 TEST_MAIN("period_derivatives", {den_hartog, 3}, {most_energy, 3}, {by_differences, 2 * COUNT(scenes)}, {at_once, 3},
           {ten_limits, 1}, {rests, 2}, {errors, 3}, {no_derivative, 3}, {multipliers_den_hartog, 3},
-          {multipliers_by_differences, 14}, {multipliers_of_rest, 2}, {multipliers_refused, 2})
+          {multipliers_by_differences, 16}, {multipliers_of_rest, 2}, {multipliers_refused, 2})
