@@ -32,7 +32,7 @@ int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f)
 void tribo_stick_slip_set_hold(struct stick_slip *m, size_t i, int holds)
 {
     struct slip_state *s = &m->state;
-    const int rests = s->slip[i] == TRIBO_SLIP_STUCK, loose = !holds || m->constant.elastic[i];
+    const int rests = s->slip[i] == TRIBO_SLIP_STUCK, loose = !holds || tribo_force_is_state(m, i);
     s->dependents += (size_t)(rests && !holds);
     s->dependents -= (size_t)(s->key[i] == 1);
     s->hold_differs |= loose != s->loose[i];
@@ -56,7 +56,7 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
         s->holds[i] = s->slip[i] == TRIBO_SLIP_STUCK && tribo_can_hold(m, i);
         at[rest] = i;
         m->work.last[rest] = (unsigned char)(s->tied[i] == 1 ? 2 : s->tied[i] == 2);
-        rest += s->holds[i] && !c->elastic[i];
+        rest += s->holds[i] && !tribo_force_is_state(m, i);
     }
     if (rest > 1) {
         /* an independent set: first contacts inside their limits, then those that go back inside, then those at their limits */

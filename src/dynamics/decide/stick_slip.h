@@ -185,6 +185,12 @@ void tribo_stick_slip_forget_shares(struct stick_slip *m);
 /* holds.c: sets what follows from slip[i] and from holds, 1 if contact i is at rest and in H. */
 void tribo_stick_slip_set_hold(struct stick_slip *m, size_t i, int holds);
 
+/* 1 if the force of contact i is a part of the state, as behind a spring: it has no jumps. */
+static inline int tribo_force_is_state(const struct stick_slip *m, size_t i)
+{
+    return m->constant.elastic[i];
+}
+
 /* 1 if contact i has R_ii > 0, or is elastic. */
 static inline int tribo_can_hold(const struct stick_slip *m, size_t i)
 {

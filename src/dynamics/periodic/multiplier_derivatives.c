@@ -43,8 +43,8 @@ struct second {
     int status;   /* of an event */
 };
 
-/* to [ndof], f [contacts] = change of q'' and of the forces of contacts at rest and of elastic ones by the change x->z of the state, the load dt later,
- * and the limits of sliding contacts by parameter p; p = count: none. Returns a status. */
+/* to [ndof], f [contacts] = change of q'' and of the forces of contacts at rest and of elastic ones by the change x->z of the
+ * state, the load dt later, and the limits of sliding contacts by parameter p; p = count: none. Returns a status. */
 static int find_change(struct second *x, double dt, size_t p, double *to, double *f)
 {
     const struct sensitivity *d = x->d;
@@ -57,7 +57,7 @@ static int find_change(struct second *x, double dt, size_t p, double *to, double
     }
     for (size_t i = 0; i < d->contacts; i++) {
         const signed char slip = m->state.slip[i];
-        x->push[i] = p < x->count && tribo_slides(slip) && !m->constant.elastic[i] ? -slip * d->rise[i * x->count + p] : 0.0;
+        x->push[i] = p < x->count && tribo_slides(slip) && !tribo_force_is_state(m, i) ? -slip * d->rise[i * x->count + p] : 0.0;
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, x->push, to);
     tribo_matrix_multiply(&sys->direction, to, x->a);
@@ -172,7 +172,7 @@ int tribo_second_phase(struct second *x, double tau, double t, const double *y)
         }
         tribo_matrix_multiply(&d->map->sys->direction, x->z + n, x->a);
         for (size_t i = 0; i < d->contacts; i++) {
-            x->a[i] *= d->map->events->stick_slip.constant.elastic[i];
+            x->a[i] *= tribo_force_is_state(&d->map->events->stick_slip, i);
         }
         tribo_compliance_rates(d->map->sys, d->map->events->stick_slip.state.slip, NULL, 1, x->a, x->push);
         for (size_t i = 2 * n; i < d->n; i++) {
@@ -210,7 +210,7 @@ static int find_shift(struct second *x)
         changes += i == at ? 0 : change;
     }
     const int stops = v->count == 1 || (own && tribo_slides(v->before[at]) && now[at] == TRIBO_SLIP_STUCK &&
-                                        e->stick_slip.constant.elastic[at] && e->met->kind == SLIDES);
+                                        tribo_force_is_state(&e->stick_slip, at) && e->met->kind == SLIDES);
     const int breaks = own && !stops && v->before[at] == 0 && tribo_slides(now[at]) && e->met && e->met->kind == HOLDS;
     for (size_t p = 0; (stops || breaks) && p < x->count; p++) {
         const double *pull = x->pull + at, *by_time = pull + x->count * d->contacts;

@@ -86,7 +86,7 @@ int tribo_derivative_apply(const struct derivative *d, size_t first, size_t colu
         }
         for (size_t i = 0; p && i < each; i++) {
             const size_t contact = i / columns;
-            const int pushes = tribo_slides(s->slip[contact]) && !d->events->stick_slip.constant.elastic[contact];
+            const int pushes = tribo_slides(s->slip[contact]) && !tribo_force_is_state(&d->events->stick_slip, contact);
             force[i] = pushes ? -s->slip[contact] * p->rise[i] : 0.0;
         }
         status = d->events->motion->transition(d->events->own, s->phase, s->tau, columns, v, p ? &source : NULL);
@@ -299,7 +299,7 @@ static int stops(const struct variation *x, size_t i)
     if (before == TRIBO_SLIP_PLANE) {
         return now[i] == TRIBO_SLIP_STUCK || x->to->events->stick_slip.state.rested[i];
     }
-    if (!tribo_slides(before) || x->to->events->stick_slip.constant.elastic[i] || now[i] == TRIBO_SLIP_OPEN) {
+    if (!tribo_slides(before) || tribo_force_is_state(&x->to->events->stick_slip, i) || now[i] == TRIBO_SLIP_OPEN) {
         return 0;
     }
     for (size_t k = 0; met && met->kind == SLIDES && met->contact == i && k < x->sys->ncontact; k++) {
@@ -318,8 +318,8 @@ static void gather(struct variation *x, size_t i, size_t group)
     const double least = TOGETHER * tribo_system_delassus(x->sys, i, i);
     x->group[i] = group;
     for (size_t j = 0; j < x->sys->ncontact; j++) {
-        const int passes =
-            !x->group[j] && !m->constant.elastic[j] && (x->before[j] == 0 || m->state.slip[j] == TRIBO_SLIP_STUCK || stops(x, j));
+        const int passes = !x->group[j] && !tribo_force_is_state(m, j) &&
+                           (x->before[j] == 0 || m->state.slip[j] == TRIBO_SLIP_STUCK || stops(x, j));
         const int pair = m->plane && (m->plane->in_plane[i] == 1 ? j == i + 1 : m->plane->in_plane[i] == 2 && j + 1 == i);
         if (passes && (pair || fabs(tribo_system_delassus(x->sys, i, j)) > least)) {
             gather(x, j, group);

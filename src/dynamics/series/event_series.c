@@ -90,7 +90,7 @@ static int expand_forces(struct event *e, size_t k, double scale)
     for (size_t i = 0; i < c; i++) {
         if (m->state.slip[i] == TRIBO_SLIP_STUCK && !tribo_stick_slip_may_part(m, i)) {
             const double own = held[i] + (given ? e->room.given[i] : 0.0);
-            watch[i] = k == 0 ? m->state.force[i] : m->constant.elastic[i] ? e->spring[k * c + i] : own;
+            watch[i] = k == 0 ? m->state.force[i] : tribo_force_is_state(m, i) ? e->spring[k * c + i] : own;
         }
     }
     /* contacts at rest must not creep by what rounding leaves in acc */
@@ -285,7 +285,7 @@ static int find_term(struct event *e, size_t k, double tau, const struct perturb
         memcpy(p->spring, v, each * sizeof *v);
         tribo_compliance_solve(sys, m->state.slip, p->columns, p->spring);
         for (size_t i = 0; i < each; i++) {
-            const int slides = sys->normals.count && m->constant.elastic[i / p->columns] && m->state.slip[i / p->columns];
+            const int slides = sys->normals.count && tribo_force_is_state(m, i / p->columns) && m->state.slip[i / p->columns];
             p->spring[i] = slides ? part * p->force[i] : -part * p->spring[i];
         }
     }
