@@ -252,9 +252,45 @@ static double count_steady(const char *method, int derivatives)
     return derivatives ? (double)w.times : periods;
 }
 
+/* Searches for the motion of a ring of BODIES bodies with a contact each, told = 1: declared as a ring. */
+static double count_ring(const char *method, int told)
+{
+    const double turn = 2.0 * acos(-1.0);
+    struct steady s = {.period = turn / 0.9};
+    double one[BODIES], damping[BODIES], stiffness[BODIES * BODIES] = {0}, direction[BODIES * BODIES] = {0};
+    double cosine[BODIES], sine[BODIES];
+    tribo_model *model;
+    tribo_system *sys;
+    for (size_t j = 0; j < BODIES; j++) {
+        one[j] = direction[j * BODIES + j] = 1.0;
+        damping[j] = 0.1;
+        stiffness[j * BODIES + j] = 2.0;
+        stiffness[j * BODIES + (j + 1) % BODIES] = stiffness[(j + 1) % BODIES * BODIES + j] = -0.5;
+        cosine[j] = cos(turn * (double)j / BODIES);
+        sine[j] = sin(turn * (double)j / BODIES);
+    }
+    need(tribo_model_create(&model, BODIES, BODIES), NULL);
+    need(tribo_model_set_mass_diagonal(model, one), NULL);
+    need(tribo_model_set_stiffness(model, stiffness), NULL);
+    need(tribo_model_set_damping_diagonal(model, damping), NULL);
+    need(tribo_model_set_direction(model, direction), NULL);
+    need(tribo_system_create(&sys, model), tribo_model_message(model));
+    tribo_model_destroy(model);
+    need(tribo_system_add_load(sys, 0.9, cosine, sine), NULL);
+    need(tribo_set_limit_all(tribo_system_context(sys), 0.3), NULL);
+    need(set_up_driver(&s.drv, sys, method, 0.01, 1e-11, 1e-11), NULL);
+    need(tribo_driver_set_ring(s.drv, told ? BODIES : 0, 1), tribo_driver_message(s.drv));
+    run_search(&s);
+    const struct work w = {run_search, &s, 10};
+    counted(&w);
+    tribo_driver_destroy(s.drv);
+    tribo_system_destroy(sys);
+    return (double)w.times;
+}
+
 /* --------------------------------------------------------------------------------------------------------------- scenes */
 
-enum subject { KERNEL, FIXED_FORM, CHAIN, RESTING, SLIDING, OSCILLATOR, BELT, STEADY, DERIVATIVES };
+enum subject { KERNEL, FIXED_FORM, CHAIN, RESTING, SLIDING, OSCILLATOR, BELT, STEADY, DERIVATIVES, RING };
 
 static const struct scene {
     const char *name, *unit;
@@ -309,6 +345,10 @@ static const struct scene {
     {"derivatives-exact", "call", DERIVATIVES, FORCE, BODIES, 0, "exact", 0.0, 0.0},
     {"steady-event", "period", STEADY, FORCE, BODIES, 0, "event", 0.0, 0.0},
     {"derivatives-event", "call", DERIVATIVES, FORCE, BODIES, 0, "event", 0.0, 0.0},
+    {"ring-whole-exact", "search", RING, FORCE, BODIES, 0, "exact", 0.0, 0.0},
+    {"ring-exact", "search", RING, FORCE, BODIES, 1, "exact", 0.0, 0.0},
+    {"ring-whole-event", "search", RING, FORCE, BODIES, 0, "event", 0.0, 0.0},
+    {"ring-event", "search", RING, FORCE, BODIES, 1, "event", 0.0, 0.0},
 };
 enum { SCENES = sizeof scenes / sizeof *scenes };
 
@@ -329,6 +369,8 @@ static double run_scene(const struct scene *s)
     case STEADY:
     case DERIVATIVES:
         return count_steady(s->method, s->subject == DERIVATIVES);
+    case RING:
+        return count_ring(s->method, s->alike);
     default:
         break;
     }
