@@ -65,6 +65,7 @@ module tribo_systems
     generic :: set_direction => direction_dense, direction_sparse
     procedure :: set_compliance
     procedure :: set_normal
+    procedure :: set_ring => set_model_ring
     procedure :: message => model_message
     procedure, private :: assign_model
     generic :: assignment(=) => assign_model
@@ -590,6 +591,21 @@ contains
     call adopt_system(this, w, sys, w%dimension)
     call finish_model(w, stat, errmsg)
   end subroutine reduce_to
+
+  !> Matrices of a ring of equal sectors, from the model of one; see tribo_model_set_ring.
+  subroutine set_model_ring(this, sector, sectors, stat, errmsg)
+    class(tribo_model), intent(inout) :: this
+    class(tribo_model), intent(in) :: sector
+    integer, intent(in) :: sectors
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_model(this, w)
+    call expect_count(w, 'sectors', sectors)
+    if (w%status == TRIBO_OK) w%status = c_model_set_ring(w%object, object_of(sector), int(sectors, c_size_t))
+    call finish_model(w, stat, errmsg)
+  end subroutine set_model_ring
 
   !> Begins a call on a model: w%dimension degrees of freedom, w%n contacts.
   subroutine find_model(this, w)

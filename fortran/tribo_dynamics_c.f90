@@ -254,6 +254,14 @@ module tribo_dynamics_c
       integer(c_int) :: answer
     end function c_dynamics_has
 
+    function c_model_set_ring(model, sector, sectors) result(answer) bind(c,name='tribo_model_set_ring')
+      import
+      type(c_ptr), value :: model
+      type(c_ptr), value :: sector
+      integer(c_size_t), value :: sectors
+      integer(c_int) :: answer
+    end function c_model_set_ring
+
     function c_system_create(sys, model) result(answer) bind(c,name='tribo_system_create')
       import
       type(c_ptr), intent(inout) :: sys

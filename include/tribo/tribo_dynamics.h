@@ -94,6 +94,16 @@ enum {
 /* Returns 1 if this build has the feature, else 0; 0 for any other int. Thread-safe. */
 TRIBO_API int tribo_dynamics_has(int feature);
 
+/* Sets matrices, springs and normals to those of a ring of equal sectors, see tribo_driver_set_ring: sector by sector, each joined
+ * to the next one, the last to the first.
+ * model     in/out   of sectors times m degrees of freedom and sectors times the contacts of the sector
+ * sector    in       m to 2 m degrees of freedom, copied: those from m on are the first ones of the next sector, to which the
+ *                    matrices are added. Damping may be missing
+ * sectors   in       > 0
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE, TRIBO_ERR_STATE (a matrix of the sector is not set), TRIBO_ERR_MEMORY, and what
+ * tribo_model_set_normal returns. */
+TRIBO_API int tribo_model_set_ring(tribo_model *model, tribo_model *sector, size_t sectors);
+
 /* --------------------------------------------------------------------------------------------------------- systems */
 
 typedef struct tribo_system tribo_system;

@@ -356,25 +356,25 @@ contains
 
   !> Three equal bodies in a ring, under a load of order 1: as without the ring, whose other direction is refused.
   subroutine ring_of_three()
-    type(tribo_model) :: model
+    type(tribo_model) :: model, sector
     type(tribo_system) :: s
     type(tribo_driver) :: d
     type(tribo_context) :: c
-    real(dp) :: k(3, 3), eye(3, 3), y(7), ring(7), third
+    real(dp) :: y(7), ring(7), third
     integer :: j, stat
 
     third = 2*acos(-1.0_dp)/3
-    k = -0.5_dp
-    eye = 0
-    do j = 1, 3
-      k(j, j) = 2
-      eye(j, j) = 1
-    end do
+    call sector%create(2, 1)
+    call sector%set_mass([1.0_dp, 0.0_dp])
+    call sector%set_damping([0.1_dp, 0.0_dp])
+    call sector%set_stiffness(reshape([1.5_dp, -0.5_dp, -0.5_dp, 0.5_dp], [2, 2]))
     call model%create(3, 3)
-    call model%set_mass([1.0_dp, 1.0_dp, 1.0_dp])
-    call model%set_damping([0.1_dp, 0.1_dp, 0.1_dp])
-    call model%set_stiffness(k)
-    call model%set_direction(eye)
+    call model%set_ring(sector, 3, stat)
+    call require(stat == TRIBO_ERR_STATE, 'ring: a sector without directions')
+    call sector%set_direction(reshape([1.0_dp, 0.0_dp], [1, 2]))
+    call model%set_ring(sector, 2, stat)
+    call require(stat == TRIBO_ERR_SIZE, 'ring: three bodies in two sectors')
+    call model%set_ring(sector, 3)
     call s%create(model)
     call s%context(c)
     call c%set_limit(0.3_dp)

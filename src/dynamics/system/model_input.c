@@ -390,3 +390,74 @@ int tribo_system_reduce(tribo_system **sys, tribo_model *model, size_t nmode, in
 {
     return build_system(sys, model, 1, nmode, static_contacts);
 }
+
+/* -------------------------------------------------------------------------------------------------------------------- rings */
+
+/* to [sectors rows][sectors columns] = the sum of the matrix a of all sectors, each `rows` and `columns` after the one before; what
+ * is beyond the last sector belongs to the first. a is at most twice as large. Returns 1, or 0 if out of memory. */
+static int repeat_around(const struct matrix *a, size_t sectors, size_t rows, size_t columns, struct matrix *to)
+{
+    struct triplets all = {0};
+    double *sum = calloc(sectors * columns + 1, sizeof *sum);
+    for (size_t row = 0; sum && row < sectors * rows; row++) {
+        for (size_t pass = 0; pass < 4; pass++) { /* add up the row of its sector and of the one before, then take them out */
+            const size_t i = row % rows + pass % 2 * rows, s = row / rows + pass % 2 * (sectors - 1);
+            for (size_t k = i < a->rows ? a->first[i] : 0; i < a->rows && k < a->first[i + 1]; k++) {
+                const size_t at = (s * columns + a->col[k]) % (sectors * columns);
+                if (pass < 2) {
+                    sum[at] += a->val[k];
+                } else {
+                    tribo_triplets_put(&all, row, at, sum[at]);
+                    sum[at] = 0.0;
+                }
+            }
+        }
+    }
+    all.failed |= !sum;
+    free(sum);
+    return tribo_triplets_finish(&all, sectors * rows, sectors * columns, to);
+}
+
+int tribo_model_set_ring(tribo_model *model, tribo_model *sector, size_t sectors)
+{
+    if (!model) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!sector || sector == model) {
+        return tribo_error(model->message, TRIBO_ERR_NULL, "sector is NULL, or the model itself");
+    }
+    const size_t own = sectors ? model->ndof / sectors : 0, each = sector->ncontact;
+    if (!own || model->ndof % sectors || model->ncontact != sectors * each || sector->ndof < own || sector->ndof > 2 * own) {
+        return tribo_error(model->message, TRIBO_ERR_SIZE,
+                           "%zu degree%s of freedom and %zu contact%s are not those of a ring of this sector, sectors = %zu",
+                           model->ndof, plural(model->ndof), model->ncontact, plural(model->ncontact), sectors);
+    }
+    int status = TRIBO_OK;
+    for (int which = MASS; !status && which <= DIRECTION; which++) {
+        const struct input in = model_input_of(model, (enum which)which), from = model_input_of(sector, (enum which)which);
+        struct matrix a = {0};
+        if (from.to->first) {
+            const int done = repeat_around(from.to, sectors, which == DIRECTION ? each : own, own, &a);
+            status = model_take(&in, &a, done);
+        } else if (which != DAMPING && from.rows) {
+            status = tribo_error(model->message, TRIBO_ERR_STATE, "%s of the sector has not been set", in.name);
+        } else {
+            tribo_matrix_free(in.to);
+        }
+    }
+    free(status ? NULL : model->compliance);
+    model->compliance = status ? model->compliance : NULL;
+    model->normals = status ? model->normals : 0;
+    double *c = !status && sector->compliance ? malloc((model->ncontact + 1) * sizeof *c) : NULL;
+    for (size_t i = 0; c && i < model->ncontact; i++) {
+        c[i] = sector->compliance[i % each];
+    }
+    status = c ? tribo_model_set_compliance(model, c) : !status && sector->compliance ? tribo_model_no_memory(model) : status;
+    for (size_t k = 0; !status && k < sectors * sector->normals; k++) {
+        const struct normal_input *n = sector->normal + k % sector->normals;
+        const size_t first = k / sector->normals * each;
+        status = tribo_model_set_normal(model, first + n->contact, first + n->row, n->mu, n->stiffness, n->gap);
+    }
+    free(c);
+    return status;
+}

@@ -57,20 +57,29 @@ static void add_travelling(const struct ring *r, int (*add)(tribo_system *, doub
     assert_ok(add(r->sys, 2.0 * PI * (double)k / r->period, c, s));
 }
 
-/* BLADES bodies on springs of stiffness 1, coupled by springs of 0.5, each on the ground by a contact. */
+/* A body on a spring of stiffness 1, on the ground by a contact, with a spring of 0.5 to the next body. */
+static tribo_model *one_blade(double damping)
+{
+    return dense_model(2, 1, (double[]){1.0, 0.0, 0.0, 0.0}, (double[]){damping, 0.0, 0.0, 0.0}, (double[]){1.5, -0.5, -0.5, 0.5},
+                       (double[]){1.0, 0.0});
+}
+
+/* BLADES of these. */
 static struct ring blades(const char *method, const struct row *row, double mass_of_3)
 {
     struct ring r = {.sectors = BLADES, .order = row->order, .n = BLADES, .contacts = BLADES, .period = 2.0 * PI / row->omega};
-    double mass[BLADES * BLADES] = {0}, damping[BLADES * BLADES] = {0}, stiffness[BLADES * BLADES] = {0},
-                         direction[BLADES * BLADES] = {0};
-    for (size_t j = 0; j < BLADES; j++) {
-        mass[j * BLADES + j] = j == 3 ? mass_of_3 : 1.0;
-        damping[j * BLADES + j] = row->c;
-        stiffness[j * BLADES + j] = 2.0;
-        stiffness[j * BLADES + (j + 1) % BLADES] = stiffness[(j + 1) % BLADES * BLADES + j] = -0.5;
-        direction[j * BLADES + j] = 1.0;
+    tribo_model *blade = one_blade(row->c), *model;
+    double mass[BLADES];
+    assert_ok(tribo_model_create(&model, BLADES, BLADES));
+    assert_ok(tribo_model_set_ring(model, blade, BLADES));
+    if (mass_of_3 != 1.0) {
+        for (size_t j = 0; j < BLADES; j++) {
+            mass[j] = j == 3 ? mass_of_3 : 1.0;
+        }
+        assert_ok(tribo_model_set_mass_diagonal(model, mass));
     }
-    r.sys = finish_model(dense_model(BLADES, BLADES, mass, damping, stiffness, direction));
+    tribo_model_destroy(blade);
+    r.sys = finish_model(model);
     add_travelling(&r, tribo_system_add_load, 1, BLADES, (double[]){1.0}, (double[]){0.0});
     assert_ok(tribo_set_limit_all(tribo_system_context(r.sys), row->limit));
     ring_start(&r, method);
@@ -288,4 +297,43 @@ TEST(refused)
     ring_free(&r);
 }
 
-TEST_MAIN("ring", {closed_form, 3 * COUNT(rows)}, {random_rings, 90}, {refused, 3})
+/* What is no ring of the sector is refused; springs and normals go around. */
+TEST(models)
+{
+    tribo_model *sector = one_blade(0.1), *model, *empty;
+    tribo_system *sys;
+    assert_ok(tribo_model_create(&model, 3, 3));
+    assert_ok(tribo_model_create(&empty, 2, 1));
+    assert_status(tribo_model_set_ring(NULL, sector, 3), TRIBO_ERR_NULL);
+    assert_status(tribo_model_set_ring(model, NULL, 3), TRIBO_ERR_NULL);
+    assert_status(tribo_model_set_ring(model, model, 3), TRIBO_ERR_NULL);
+    assert_status(tribo_model_set_ring(model, sector, 0), TRIBO_ERR_SIZE);
+    assert_status(tribo_model_set_ring(model, sector, 2), TRIBO_ERR_SIZE);
+    assert_status(tribo_model_set_ring(model, sector, 1), TRIBO_ERR_SIZE);
+    assert_says(tribo_model_message(model), "sectors = 1");
+    assert_status(tribo_model_set_ring(model, empty, 3), TRIBO_ERR_STATE);
+    assert_says(tribo_model_message(model), "mass of the sector");
+    assert_ok(tribo_model_set_ring(model, sector, 3));
+    assert_ok(tribo_model_set_compliance(sector, (double[]){0.25}));
+    assert_ok(tribo_model_set_ring(model, sector, 3));
+    sys = finish_model(model);
+    ck_assert_uint_eq(tribo_system_dimension(sys), 2 * 3 + 3 + 1);
+    tribo_system_destroy(sys);
+    tribo_model_destroy(sector);
+    tribo_model_destroy(empty);
+    sector =
+        dense_model(2, 2, (double[]){1.0, 0.0, 0.0, 1.0}, NULL, (double[]){1.0, 0.0, 0.0, 1.0}, (double[]){1.0, 0.0, 0.0, 1.0});
+    assert_ok(tribo_model_set_normal(sector, 0, 1, 0.5, 3.0, 0.0));
+    assert_ok(tribo_model_create(&model, 6, 6));
+    assert_ok(tribo_model_set_compliance(model, (double[]){0.1, 0.1, 0.1, 0.1, 0.1, 0.1})); /* of no sector: goes */
+    assert_ok(tribo_model_set_ring(model, sector, 3));
+    tribo_model_destroy(sector);
+    sys = finish_model(model);
+    double y[13] = {0}, force[6];
+    y[3] = 1.0; /* the normal of sector 1 presses with 3 */
+    assert_ok(tribo_system_contacts(sys, 0.0, y, NULL, NULL, force));
+    assert_all_exact(force, ((double[]){0.0, 0.0, 0.0, -3.0, 0.0, 0.0}), 6);
+    tribo_system_destroy(sys);
+}
+
+TEST_MAIN("ring", {models, 1}, {closed_form, 3 * COUNT(rows)}, {random_rings, 90}, {refused, 3})
