@@ -7,7 +7,9 @@
  *     of others that are at their limit: solve for a moment later, and those that accelerate then slide from here on
  *     an independent set of those at rest holds
  *
- * The problem is convex: each solution decides about all contacts together. */
+ * The problem is convex: each solution decides about all contacts together. With static limits the limits at rest are those in the
+ * first round; a contact that accelerates there does not slide yet: its limit is that to slide, and all that began to slide are at
+ * rest again, until no static limit is lost. */
 #include "stick_slip.h"
 #include "common/layout.h"
 #include "common/real.h"
@@ -116,12 +118,12 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
     if (!planar || m->constant.pairs) { /* all planar contacts of the system, if there are pairs */
         return TRIBO_OK;
     }
-    /* forces of planar contacts are known for limits that are the same at all times and speeds, at rest and not */
-    const size_t i = tribo_system_first_dropping(sys, 0);
+    /* directions turn by forces that do not depend on the speed */
+    const size_t i = tribo_system_first_dropping(sys, 1);
     if (i < m->constant.contacts) {
         return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
-                           "method event knows no static limits beside planar contacts: contact %zu has ratio[%zu] = "
-                           "%g: take moreau/fixed",
+                           "method event knows no limits that fall with the speed beside planar contacts: contact %zu has "
+                           "ratio[%zu] = %g: take moreau/fixed",
                            i, i, m->limits.ratio[i]);
     }
     const int status = create_plane(m, sys);
@@ -272,6 +274,37 @@ double tribo_stick_slip_excess(const struct stick_slip *m, size_t i, double lowe
     return blunt > 0.0 ? sqrt(2.0 * blunt * greater(lowest, 0.0)) : lowest;
 }
 
+void tribo_stick_slip_turn(const struct stick_slip *m, const tribo_system *sys, const double *y, const double *times, double *row)
+{
+    for (size_t k = 0; m->plane && k < m->plane->count; k++) {
+        const struct planar_contact *p = &m->plane->contact[k];
+        const double *limit = m->state.limit + p->at;
+        const double v[2] = {p->weight[0] * tribo_stick_slip_velocity(m, sys, p->at, y),
+                             p->weight[1] * tribo_stick_slip_velocity(m, sys, p->at + 1, y)};
+        const double size = length(v);
+        if (tribo_slides_in_plane(m, p) && size > 0.0) {
+            const double aside[2] = {-v[1] / size, v[0] / size};
+            const double push = limit[0] * aside[0] * times[p->at] + limit[1] * aside[1] * times[p->at + 1];
+            for (size_t d = 0; d < 2; d++) {
+                tribo_matrix_add_row(&sys->direction, p->at + d, -push * aside[d] * p->weight[d] / size, row);
+            }
+        }
+    }
+}
+
+void tribo_stick_slip_hold_by_forces(const struct stick_slip *m, size_t i, const double *force, double *by_force,
+                                     double *by_limit)
+{
+    const double ratio = m->limits.ratio[i];
+    for (size_t k = 0; m->plane && k < m->plane->count; k++) {
+        const struct planar_contact *p = &m->plane->contact[k];
+        for (size_t d = 0; p->at == i && d < 2; d++) {
+            by_force[i + d] = -2.0 * p->half * force[i + d] / (p->weight[d] * p->weight[d]);
+            *by_limit = p->varies ? 2.0 * p->half * ratio * ratio * m->state.limit[i] : 0.0;
+        }
+    }
+}
+
 /* Finds forces f [ncontact] at accelerations a without friction: work.lo of sliding contacts, Coulomb's law with limits work.hi
  * for the others. Sets work.v = a + R f. */
 static int solve_discs(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
@@ -351,7 +384,7 @@ static int goes_beyond(const struct stick_slip *m, const tribo_system *sys, cons
     const double lacks[2] = {(r[0][1] * v[1] - r[1][1] * v[0]) / determinant, (r[1][0] * v[0] - r[0][0] * v[1]) / determinant};
     for (size_t d = 0; p->lag == 0 && d < 2; d++) {
         const double force = m->state.force[p->at + d], part = force / (p->limit[d] * p->limit[d]);
-        const double rises = h * m->state.limit_rate[p->at + d] / p->limit[d] * force;
+        const double rises = h * m->state.stick_rate[p->at + d] / p->limit[d] * force;
         beyond += part * (f[p->at + d] + lacks[d] - force - rises);
         noise += fabs(part) * m->noise.allowance[p->at + d];
     }
@@ -376,7 +409,9 @@ static int look_ahead_in_plane(struct stick_slip *m, const tribo_system *sys, co
         double noise;
         const double part = !counts ? 0.0 : m->state.tied[p->at] ? lesser(share(m, p, m->state.force, &noise), 1.0) : 1.0;
         for (size_t d = 0; d < p->size; d++) {
-            m->work.hi[p->at + d] = greater(part * p->limit[d] + (counts ? h * m->state.limit_rate[p->at + d] : 0.0), 0.0);
+            const double rise =
+                m->state.slip[p->at] == TRIBO_SLIP_STUCK ? m->state.stick_rate[p->at + d] : m->state.limit_rate[p->at + d];
+            m->work.hi[p->at + d] = greater(part * p->limit[d] + (counts ? h * rise : 0.0), 0.0);
         }
     }
     const int status = solve_discs(m, sys, m->plane->ahead, m->work.f);
@@ -388,14 +423,28 @@ static int look_ahead_in_plane(struct stick_slip *m, const tribo_system *sys, co
     return status;
 }
 
-int tribo_planar_slip_settle(struct stick_slip *m, const tribo_system *sys, const double *y)
+/* Lets planar or scalar contact p break away: its limit is that to slide, and contacts that rested are at rest again. */
+static void let_break(struct stick_slip *m, struct planar_contact *p)
+{
+    for (size_t d = 0; d < p->size; d++) {
+        tribo_limits_set_stick(m, p->at + d, 1.0);
+    }
+    m->work.limit_lost = 1;
+}
+
+/* One round: finds the forces, and contacts that slide or, with work.limit_lost = 1, lose static limits. *ties = number of contacts
+ * at their limits that a moment later decides about. Returns a status. */
+static int settle_once(struct stick_slip *m, const tribo_system *sys, const double *y, size_t *ties)
 {
     struct slip_state *s = &m->state;
-    size_t ties = 0;
-    given_forces(m, sys, y, m->constant.still);
+    struct planar_contact *reached = NULL;
+    size_t changes = 0;
+    *ties = 0;
+    m->work.limit_lost = 0;
     for (size_t i = 0; i < m->constant.contacts; i++) {
-        m->work.hi[i] = s->slip[i] == TRIBO_SLIP_STUCK ? s->limit[i] : 0.0;
+        m->work.hi[i] = s->slip[i] == TRIBO_SLIP_STUCK ? s->stick[i] : 0.0;
     }
+    given_forces(m, sys, y, m->constant.still);
     int status = solve_discs(m, sys, m->work.a, s->force);
     if (status) {
         return status;
@@ -405,16 +454,49 @@ int tribo_planar_slip_settle(struct stick_slip *m, const tribo_system *sys, cons
         struct planar_contact *const p = m->plane->contact + k;
         /* at its limit; slides if it accelerates, else is tied */
         double noise;
+        for (size_t d = 0; s->slip[p->at] == TRIBO_SLIP_STUCK && d < p->size; d++) {
+            p->limit[d] = s->stick[p->at + d];
+        }
         if (s->slip[p->at] == TRIBO_SLIP_STUCK && (share(m, p, s->force, &noise) >= 1.0 - noise || p->at == s->reached)) {
-            s->tied[p->at] = !accelerates(m, p, s->force);
-            ties += (size_t)s->tied[p->at];
-            if (!s->tied[p->at]) {
+            const int leaves = accelerates(m, p, s->force), drops = tribo_drops(m, p->at);
+            s->tied[p->at] = !leaves && !drops;
+            *ties += (size_t)s->tied[p->at];
+            reached = !leaves && drops && p->at == s->reached ? p : reached;
+            changes += (size_t)leaves;
+            if (leaves && drops) {
+                let_break(m, p);
+            } else if (leaves) {
                 let_slide_against(m, p, BY_ACCELERATION);
             }
         }
     }
-    status = ties ? look_ahead_in_plane(m, sys, y) : TRIBO_OK;
+    if (reached && !changes) { /* rounding of others hides its acceleration, but not the force that ended the phase */
+        let_break(m, reached);
+    }
+    return TRIBO_OK;
+}
+
+int tribo_planar_slip_settle(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    struct slip_state *s = &m->state;
+    size_t ties = 0;
+    int status = settle_once(m, sys, y, &ties);
+    while (!status && m->work.limit_lost) {
+        for (size_t i = 0; i < m->constant.contacts; i++) {
+            tribo_stick_slip_set(m, i, s->rested[i] ? TRIBO_SLIP_STUCK : s->slip[i]);
+        }
+        status = settle_once(m, sys, y, &ties);
+    }
+    status = status || !ties ? status : look_ahead_in_plane(m, sys, y);
     memset(s->tied, 0, m->constant.contacts);
+    for (size_t k = 0; m->limits.differ && k < m->plane->all; k++) {
+        struct planar_contact *const p = m->plane->contact + k;
+        for (size_t d = 0; d < p->size; d++) {
+            /* a contact that broke away, and is held by others after all, has its static limit again */
+            tribo_limits_set_stick(m, p->at + d, m->limits.ratio[p->at + d]);
+            p->limit[d] = s->limit[p->at + d];
+        }
+    }
     status = status ? status : tribo_stick_slip_find_holds(m, sys);
     return status ? status : check_holds(m, sys);
 }

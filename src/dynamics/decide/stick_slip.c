@@ -572,5 +572,9 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     }
     s->fresh = s->hold_differs = 1;
     s->reached = c;
-    return tribo_planar_slip_start(m, sys, continues);
+    const int status = tribo_planar_slip_start(m, sys, continues);
+    if (m->plane) { /* decisions set limits at rest */
+        tribo_set_static(m->plane->disc, NULL, NULL);
+    }
+    return status;
 }

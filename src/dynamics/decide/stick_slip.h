@@ -127,6 +127,7 @@ struct planar_contact {
     double limit[2];     /* at this decision */
     double weight[2];    /* the force is along weight v; limit, or 1 if that varies */
     int varies;          /* 1: the limit varies, and is the same in both directions */
+    double half;         /* the guard at rest is half (ratio^2 limit^2 - |f|^2), each over weight */
     double blunt;        /* > 0: the guard at rest is (limit^2 - |f|^2)/2 over this, and limits may be less */
     size_t lag;          /* the power of time with which the limit begins: 0, 1, or 2 for all higher ones */
     double brake;        /* the largest of weight R_ii */
@@ -336,6 +337,16 @@ size_t tribo_stick_slip_uncertain(const struct stick_slip *m);
 
 /* The excess of a force over its limit in a phase in which the guard of contact i at rest falls to -lowest. */
 double tribo_stick_slip_excess(const struct stick_slip *m, size_t i, double lowest);
+
+/* Of the guard of contact i at rest, if it is planar: sets the derivatives by forces, entries i and i + 1 of by_force, and by the
+ * limit to slide; force [ncontact]: the forces. */
+void tribo_stick_slip_hold_by_forces(const struct stick_slip *m, size_t i, const double *force, double *by_force,
+                                     double *by_limit);
+
+/* row [ndof] += derivatives, by the velocities of the structure, of times'f, f [ncontact]: forces of planar contacts that slide at
+ * y, which turn. */
+void tribo_stick_slip_turn(const struct stick_slip *m, const tribo_system *sys, const double *y, const double *times,
+                           double *row);
 
 /* Sets the entries of force [ncontact] of planar contacts that slide, by their velocities in y. */
 void tribo_planar_slip_forces(const struct stick_slip *m, const tribo_system *sys, const double *y, double *force);

@@ -150,10 +150,10 @@ static void add_transposed(const struct matrix *a, double factor, const double *
     }
 }
 
-/* Lists the crossings of static limits that drop at once, at tau into the phase: by the guard that ended the phase, and of other
- * contacts at the same time. Forces that do not rise only touch their limits. Sets row = df_i/dstate: f_i = e'J (-AK q - AC q'),
- * e = -R_HH^-1 unit_i, with the forces of normals. Returns a status. */
-static int find_drops(struct variation *x, double tau)
+/* Lists the crossings of static limits that drop at once, at tau into the phase, which ends at y: by the guard that ended the phase,
+ * and of other contacts at the same time. Forces that do not rise only touch their limits. Sets row = dg/dstate over the rate of the
+ * guard g: by forces f_i = e'J (-AK q - AC q' + B f), e = -R_HH^-1 unit_i, with f of normals and of sliding contacts. */
+static int find_drops(struct variation *x, double tau, const double *y)
 {
     struct events *e = x->to->events;
     struct stick_slip *m = &e->stick_slip;
@@ -171,29 +171,33 @@ static int find_drops(struct variation *x, double tau)
         }
         double *row = x->row + x->count * n;
         memset(row, 0, n * sizeof *row);
-        memset(x->a, 0, x->sys->ncontact * sizeof *x->a);
         memset(x->change, 0, x->sys->ndof * sizeof *x->change);
-        x->a[i] = 1.0;
+        memset(x->a, 0, x->sys->ncontact * sizeof *x->a);
+        x->a[i] = g->side;
+        double by_limit = m->limits.ratio[i];
+        tribo_stick_slip_hold_by_forces(m, i, x->force, x->a, &by_limit);
         status = tribo_stick_slip_balance(m, x->a, x->f);
         add_transposed(&x->sys->direction, 1.0, x->f, x->change);
+        memset(x->a, 0, x->sys->ncontact * sizeof *x->a); /* from here on: x->change times what forces do to q'' */
+        add_transposed(&x->sys->response, 1.0, x->change, x->a);
         add_transposed(&x->sys->stiffness, -1.0, x->change, row);
         for (size_t j = 0; j < x->sys->normals.count; j++) {
             const struct normal *normal = &x->sys->normals.normal[j];
-            double force = 0.0; /* by x->change, less the limit that follows */
+            double force = 0.0; /* by x->change, and by the limit that follows */
             for (size_t c = 0; m->state.pressed[j] && c < x->sys->ncontact; c++) {
                 const struct follower *f = tribo_normals_follower(x->sys, c);
-                const double mu = f && f->normal == j ? f->mu : 0.0;
-                const double part = c == normal->row ? 1.0 : tribo_slides(m->state.slip[c]) ? m->state.slip[c] * mu : 0.0;
-                for (size_t d = 0; part != 0.0 && d < x->sys->ndof; d++) {
-                    force -= part * x->change[d] * tribo_matrix_get(&x->sys->response, d, c);
-                }
-                force += c == i ? g->side * m->limits.ratio[i] * mu : 0.0;
+                const double mu = f && f->normal == j ? f->mu : 0.0, limit = m->state.limit[c];
+                const int slides = tribo_slides(m->state.slip[c]) || m->state.slip[c] == TRIBO_SLIP_PLANE;
+                const double part = c == normal->row ? 1.0 : slides && limit > 0.0 ? -mu * x->force[c] / limit : 0.0;
+                force -= part * x->a[c];
+                force += c == i ? by_limit * mu : 0.0;
             }
             tribo_matrix_add_row(&x->sys->direction, normal->row, force * normal->stiffness, row);
         }
         add_transposed(&x->sys->damping, -1.0, x->change, row + x->sys->ndof);
+        tribo_stick_slip_turn(m, x->sys, y, x->a, row + x->sys->ndof);
         for (size_t l = 0; l < n; l++) {
-            row[l] /= g->side * g->middle.d;
+            row[l] /= g->middle.d;
         }
         x->contact[x->count++] = i;
     }
@@ -280,7 +284,7 @@ int tribo_variation_phase(struct variation *x, double tau, double t, const doubl
     }
     status = done && (s->phase || !motion->keep) ? TRIBO_OK : no_room(x->to);
     status = status || may_wait(x) ? status : catch_up(x);
-    return status ? status : find_drops(x, tau);
+    return status ? status : find_drops(x, tau, y);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- velocities */
@@ -489,7 +493,8 @@ void tribo_variation_event(struct variation *x)
     }
     /* contact i loses its static limit by none of these groups: the order of the crossings matters */
     for (size_t i = 0; x->count && i < x->sys->ncontact; i++) {
-        if (x->before[i] == 0 && tribo_slides(m->state.slip[i]) && !x->group[i] && tribo_drops(m, i)) {
+        const int slides = tribo_slides(m->state.slip[i]) || m->state.slip[i] == TRIBO_SLIP_PLANE;
+        if (x->before[i] == 0 && slides && !x->group[i] && tribo_drops(m, i)) {
             tear(x, i, x->contact[0]);
         }
     }

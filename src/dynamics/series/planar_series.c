@@ -429,11 +429,12 @@ int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct plan
 
 /* -------------------------------------------------------------------------------------------------------------- guards */
 
-/* Returns the limit by which the guard of a contact at rest, (limit^2 - |f|^2)/2 divided by it, is in units of forces: the least
- * one of the step, not below a part of the largest one. Sets blunt. */
+/* Returns the limit at rest by which the guard of a contact at rest, (limit^2 - |f|^2)/2 divided by it, is in units of forces: the
+ * least one of the step, not below a part of the largest one. Sets blunt. */
 static double find_reference(const struct event *e, struct planar_contact *p)
 {
-    const double most = e->limit_curve[p->at].size, least = 2.0 * p->limit[0] - most;
+    const double ratio = e->events.stick_slip.limits.ratio[p->at];
+    const double most = ratio * e->limit_curve[p->at].size, least = 2.0 * ratio * p->limit[0] - most;
     const double reference = greater(greater(least, LEAST_PART * most), DBL_MIN);
     p->blunt = reference > least ? reference : 0.0;
     return reference;
@@ -448,10 +449,12 @@ void tribo_planar_series_guards(struct event *e)
         struct curve *curve = &e->curve[p->at];
         const int moves = tribo_slides_in_plane(m, p);
         const size_t last = e->order - (moves ? (size_t)p->begins : 0);
-        const double half = 0.5 * greater(p->weight[0], p->weight[1]) / (p->varies ? find_reference(e, p) : 1.0);
+        const double ratio = m->limits.ratio[p->at], square_ratio = ratio * ratio;
+        const double half = 0.5 * greater(p->weight[0], p->weight[1]) / (p->varies ? find_reference(e, p) : ratio);
         if (p->varies) {
             tribo_events_guard_limit(&e->events, p->at, &(struct watch){.varies = 1});
         }
+        p->half = half;
         if (m->state.slip[p->at] == TRIBO_SLIP_OPEN) {
             continue;
         }
@@ -463,14 +466,15 @@ void tribo_planar_series_guards(struct event *e)
         for (size_t k = 0; k <= 2 * e->order; k++) { /* terms of the square are not small where those of x end */
             const size_t from = k < last ? 0 : k - last, to = k < last ? k + 1 : last + 1;
             const double square = product_of(l->xn, l->xn, k, from, to) + product_of(l->xt, l->xt, k, from, to);
-            const double limit = moves || !p->varies ? 0.0 : product_of(l->g, l->g, k, from, to);
+            const double limit = moves || !p->varies ? 0.0 : square_ratio * product_of(l->g, l->g, k, from, to);
             l->square[k] = moves ? square : half * (square - limit);
         }
         tribo_curves_bound(curve, 1, 2 * e->order + 1, 1, l->square, e->length);
         struct guard g = {.contact = p->at, .output = curve, .kind = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
-        g.offset = moves ? -TRIBO_SLOWER * TRIBO_SLOWER * l->square[0] : p->varies ? 0.0 : half;
         g.allowance = moves ? 0.0 : greater(m->noise.allowance[p->at], m->noise.allowance[p->at + 1]);
-        if (moves || p->varies || curve->size >= half) {
+        g.offset = moves ? -TRIBO_SLOWER * TRIBO_SLOWER * l->square[0] : p->varies ? 0.0 : square_ratio * half;
+        g.offset += tribo_drops(m, p->at) ? g.allowance : 0.0; /* a static limit is lost for more than rounding only */
+        if (moves || p->varies || curve->size >= g.offset) {
             e->events.search.guard[e->events.search.guards++] = g;
         }
     }
