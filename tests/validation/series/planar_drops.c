@@ -139,6 +139,9 @@ static tribo_system *varying(uint64_t seed, size_t wide, const double *e, double
         stiff[i * n + i] = spring;
         damping[i * n + i] = 0.05;
         load[i] = i == wide ? 0.0 : force * (wide == 2 ? e[i] : 1.0);
+        if (i < wide) { /* the normal direction moves along, or multipliers would not know how limits follow it */
+            stiff[i * n + wide] = stiff[wide * n + i] = 0.2 * (wide == 2 ? e[i] : 1.0);
+        }
     }
     press[wide] = between(&s, 0.3, 1.5);
     still[wide] = 1.0;
