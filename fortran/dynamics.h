@@ -19,8 +19,8 @@ TRIBO_API TRIBO_PURE size_t tribo_fortran_dimension(const struct tribo_held *hel
 TRIBO_API TRIBO_PURE size_t tribo_fortran_ncontact(const struct tribo_held *held);
 TRIBO_API TRIBO_PURE size_t tribo_fortran_given(const struct tribo_held *held);
 
-/* Methods of tribo_dynamics.h, followed by the steppers of GSL in a build with libtribo_gsl, and a driver by one of them: methods.c
- * without GSL, methods_gsl.c with it. */
+/* Methods of tribo_dynamics.h, followed by the steppers of GSL in a build with libtribo_gsl, and a driver by one of them:
+ * methods.c without GSL, methods_gsl.c with it. */
 TRIBO_API int tribo_fortran_method_count(void);
 TRIBO_API const char *tribo_fortran_method_name(int method);
 TRIBO_API int tribo_fortran_driver_create(tribo_driver **drv, tribo_system *sys, const char *method);

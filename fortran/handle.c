@@ -2,8 +2,8 @@
 /* Objects by number, for Fortran.
  *
  * A Fortran object cannot own a pointer. Compilers copy its bits without its assignment (allocate(source=), allocatable
- * components, temporaries), and finalize a component twice if its type has an assignment of its own (GCC bug 110626; flang and ifx
- * do so too). So it holds a number that is never given twice: copies of the number of a destroyed object find nothing.
+ * components, temporaries), and finalize a component twice if its type has an assignment of its own (GCC bug 110626; flang and
+ * ifx do so too). So it holds a number that is never given twice: copies of the number of a destroyed object find nothing.
  *
  * A number is a place in a table and the uses of this place. The table grows by chunks that never move. A place is not used again
  * after the largest number of uses. Finding takes no lock: an object belongs to one thread at a

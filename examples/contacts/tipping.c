@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A tall box that falls on a rough floor, slides, tips over an edge and comes to rest. Each of its eight corners is a planar
- * contact; those in the air have limit 0. R follows the box by tribo_update_operator at each step. The normal loads are of springs
- * in this program: tribo finds no gaps and no impacts. Core library only. Units: kg, m, s, N.
+ * contact; those in the air have limit 0. R follows the box by tribo_update_operator at each step. The normal loads are of
+ * springs in this program: tribo finds no gaps and no impacts. Core library only. Units: kg, m, s, N.
  *
  *     contact_tipping FOLDER
  *
@@ -69,8 +69,8 @@ static double energy(const struct box *b)
     return sum;
 }
 
-/* J, of the place that the box has. Contacts act at the level of the floor: corners rest deeper by their loads, and rows of J that
- * differ by so little would make R nearly singular. */
+/* J, of the place that the box has. Contacts act at the level of the floor: corners rest deeper by their loads, and rows of J
+ * that differ by so little would make R nearly singular. */
 static void find_rows(struct box *b)
 {
     double r[3][3], point[3];
@@ -229,8 +229,8 @@ static double fastest(const struct box *b)
     return most;
 }
 
-/* The box falls, pushed and turning a little. Writes table and course unless they are NULL. *drift = the way of the box in the last
- * half second. */
+/* The box falls, pushed and turning a little. Writes table and course unless they are NULL. *drift = the way of the box in the
+ * last half second. */
 static void fall(struct box *b, double dt, FILE *table, FILE *course, double *drift)
 {
     const double end = 1.6;

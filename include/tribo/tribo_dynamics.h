@@ -94,8 +94,8 @@ enum {
 /* Returns 1 if this build has the feature, else 0; 0 for any other int. Thread-safe. */
 TRIBO_API int tribo_dynamics_has(int feature);
 
-/* Sets matrices, springs and normals to those of a ring of equal sectors, see tribo_driver_set_ring: sector by sector, each joined
- * to the next one, the last to the first.
+/* Sets matrices, springs and normals to those of a ring of equal sectors, see tribo_driver_set_ring: sector by sector, each
+ * joined to the next one, the last to the first.
  * model     in/out   of sectors times m degrees of freedom and sectors times the contacts of the sector
  * sector    in       m to 2 m degrees of freedom, copied: those from m on are the first ones of the next sector, to which the
  *                    matrices are added. Damping may be missing
@@ -464,15 +464,15 @@ TRIBO_API int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(const tri
 TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y);
 
 /* Declares a ring of equal sectors under loads that travel, as of a bladed disk: tribo_driver_find_periodic then finds the motion
- * with x_j+1(t) = x_j(t - order period/sectors), x_j: degrees of freedom of sector j, by a part of the period and of the sectors, in
- * a sixth to a thirtieth of the time (Petrov 2004). What is asked about the motion, also the multipliers, is that of the whole ring.
- * Degrees of freedom and contacts are numbered sector by sector, in each in the same order.
+ * with x_j+1(t) = x_j(t - order period/sectors), x_j: degrees of freedom of sector j, by a part of the period and of the sectors,
+ * in a sixth to a thirtieth of the time (Petrov 2004). What is asked about the motion, also the multipliers, is that of the whole
+ * ring. Degrees of freedom and contacts are numbered sector by sector, in each in the same order.
  * sectors   in   a divisor of ndof and ncontact; 0 or 1: no ring
  * order     in   engine order: turns of the load around the ring in a period
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE, TRIBO_ERR_UNSUPPORTED (other methods), TRIBO_ERR_MEMORY. tribo_driver_find_periodic then
- * returns TRIBO_ERR_RANGE also if limits differ between sectors, matrices do by 1e-12 of the largest entry, or a load, base motion
- * or limit does not travel, to 1e-11; TRIBO_ERR_UNSUPPORTED for reduced systems, degrees of freedom without mass, limits that
- * follow the motion, static limits and planar contacts. */
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE, TRIBO_ERR_UNSUPPORTED (other methods), TRIBO_ERR_MEMORY. tribo_driver_find_periodic
+ * then returns TRIBO_ERR_RANGE also if limits differ between sectors, matrices do by 1e-12 of the largest entry, or a load, base
+ * motion or limit does not travel, to 1e-11; TRIBO_ERR_UNSUPPORTED for reduced systems, degrees of freedom without mass, limits
+ * that follow the motion, static limits and planar contacts. */
 TRIBO_API int tribo_driver_set_ring(tribo_driver *drv, size_t sectors, size_t order);
 
 /* Finds a cycle: a periodic motion, and its period, of a system in which no load, base motion or limit depends on time (constant

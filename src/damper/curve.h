@@ -47,8 +47,8 @@ size_t spread_samples(const struct curve *c, size_t most, const struct sample **
 /* 1 if the motion was searched; after an interruption some were not. */
 int searched(const struct sample *s);
 
-/* Follows the curve over the band of frequencies around its turns, from its lower or upper end (--follow): samples in the order of
- * the curve, special points among them with their kind as the message, not asked for. */
+/* Follows the curve over the band of frequencies around its turns, from its lower or upper end (--follow): samples in the order
+ * of the curve, special points among them with their kind as the message, not asked for. */
 void follow_curve(struct curve *c, struct worker *w);
 
 /* The number of motions that were searched and not found. */

@@ -2,7 +2,8 @@
 /* What a contact whose limit follows the motion costs, and how exact it is: a period of a motion that slides, lifts off and
  * touches down, from its beginning, to which it must return. Two bodies of mass 1 in one: x'' + 0.346 x' + 12 x + f = 60 cos 5t,
  * y'' + 2 y' + 21 y + N = 100 + 60 cos 5t, N = 21 max(y, 0), |f| <= 0.85 N; rigid, or with a spring of stiffness 5 before the
- * slider (case 4 of tests/validation/series/normals.c). Then periodic motions of the beam of the examples on three such contacts. */
+ * slider (case 4 of tests/validation/series/normals.c). Then periodic motions of the beam of the examples on three such
+ * contacts. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -89,7 +90,8 @@ enum { ROWS = sizeof row / sizeof *row };
 
 /* ------------------------------------------------------------------------------------------------------ the beam's motions
  * Three contacts on its centre line slide along x, mu 0.3; springs of 1 N/mm along z press with `load` N at rest, with more and
- * less as the beam bends, and lift off. 0.1 N at the free end, POINTS frequencies from 20 to 60 Hz, each from the motion before. */
+ * less as the beam bends, and lift off. 0.1 N at the free end, POINTS frequencies from 20 to 60 Hz, each from the motion
+ * before. */
 
 enum { CONTACTS = 3, POINTS = 41, MODES = 12 };
 

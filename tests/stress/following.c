@@ -291,8 +291,8 @@ static int turns(const struct scene *s, double t, double y[9][2 * DOFS + FOLLOWE
     return 0;
 }
 
-/* Residual of the equations of motion and of the law at t, the middle of states y, less the rounding of differences; largest number of
- * these in *size. */
+/* Residual of the equations of motion and of the law at t, the middle of states y, less the rounding of differences; largest
+ * number of these in *size. */
 static double residual(const struct scene *s, double t, double y[9][2 * DOFS + FOLLOWERS + 1], double *size)
 {
     const size_t n = s->n;
@@ -599,7 +599,8 @@ static double trace_of(const struct scene *s, int seed, double period, const dou
     return sum;
 }
 
-/* A periodic motion of planar contacts by event returns, and has the multipliers of the motions beside it, to `error` of its size. */
+/* A periodic motion of planar contacts by event returns, and has the multipliers of the motions beside it, to `error` of its
+ * size. */
 static void check_planes(int seed, int elastic, double error)
 {
     struct scene s = scene_create(seed);

@@ -89,8 +89,8 @@ void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *
     }
 }
 
-/* A force turns at once if it does so in this part of the horizon, and the square of that part times the angle to turn by is at most
- * LEAST: the velocity changes by the same part of 1e-8. */
+/* A force turns at once if it does so in this part of the horizon, and the square of that part times the angle to turn by is at
+ * most LEAST: the velocity changes by the same part of 1e-8. */
 #define AT_ONCE 0.01
 #define LEAST 1e-8
 

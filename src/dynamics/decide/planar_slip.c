@@ -7,9 +7,9 @@
  *     of others that are at their limit: solve for a moment later, and those that accelerate then slide from here on
  *     an independent set of those at rest holds
  *
- * The problem is convex: each solution decides about all contacts together. With static limits the limits at rest are those in the
- * first round; a contact that accelerates there does not slide yet: its limit is that to slide, and all that began to slide are at
- * rest again, until no static limit is lost. */
+ * The problem is convex: each solution decides about all contacts together. With static limits the limits at rest are those in
+ * the first round; a contact that accelerates there does not slide yet: its limit is that to slide, and all that began to slide
+ * are at rest again, until no static limit is lost. */
 #include "stick_slip.h"
 #include "common/layout.h"
 #include "common/real.h"
@@ -432,8 +432,8 @@ static void let_break(struct stick_slip *m, struct planar_contact *p)
     m->work.limit_lost = 1;
 }
 
-/* One round: finds the forces, and contacts that slide or, with work.limit_lost = 1, lose static limits. *ties = number of contacts
- * at their limits that a moment later decides about. Returns a status. */
+/* One round: finds the forces, and contacts that slide or, with work.limit_lost = 1, lose static limits. *ties = number of
+ * contacts at their limits that a moment later decides about. Returns a status. */
 static int settle_once(struct stick_slip *m, const tribo_system *sys, const double *y, size_t *ties)
 {
     struct slip_state *s = &m->state;

@@ -265,8 +265,8 @@ void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, 
 void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *y);
 
-/* Returns 1 if the force of the contact in a plane with first direction i turns with its velocity v [2] at once: its limit is 0, or
- * so small that the time c limit/|v| in which the force turns does not count, and changes slowly in this time. */
+/* Returns 1 if the force of the contact in a plane with first direction i turns with its velocity v [2] at once: its limit is 0,
+ * or so small that the time c limit/|v| in which the force turns does not count, and changes slowly in this time. */
 int tribo_follows_velocity(const struct stick_slip *m, size_t i, const double *v);
 
 /* Sets pair; returns a status, its message on the system's context. */
@@ -343,8 +343,8 @@ double tribo_stick_slip_excess(const struct stick_slip *m, size_t i, double lowe
 void tribo_stick_slip_hold_by_forces(const struct stick_slip *m, size_t i, const double *force, double *by_force,
                                      double *by_limit);
 
-/* row [ndof] += derivatives, by the velocities of the structure, of times'f, f [ncontact]: forces of planar contacts that slide at
- * y, which turn. */
+/* row [ndof] += derivatives, by the velocities of the structure, of times'f, f [ncontact]: forces of planar contacts that slide
+ * at y, which turn. */
 void tribo_stick_slip_turn(const struct stick_slip *m, const tribo_system *sys, const double *y, const double *times,
                            double *row);
 

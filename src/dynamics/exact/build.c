@@ -26,8 +26,8 @@
 
 /* ------------------------------------------------------------------------------------------------------------------ memory */
 
-/* Units of a block, which holds several short arrays; a longer array has a block of its own. With its head a block has 1032 bytes,
- * the most that malloc of the GNU C library keeps at hand after free. */
+/* Units of a block, which holds several short arrays; a longer array has a block of its own. With its head a block has 1032
+ * bytes, the most that malloc of the GNU C library keeps at hand after free. */
 #define BLOCK ((size_t)126)
 
 struct modal_block {

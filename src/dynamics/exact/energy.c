@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The energy that friction dissipates in a phase, in closed form. A steady force dissipates |force| times the distance slid. The
  * part of a force by harmonics of the limit is integrated with the velocity, a sum of exponentials (signal.h), and so is a limit
- * that follows a normal load. If a large limit swings through zero, these parts cancel each other: then the power, of one sign, is
- * integrated by samples; so it is if a load resonates, and in a phase so short that samples are fewer than products of terms. */
+ * that follows a normal load. If a large limit swings through zero, these parts cancel each other: then the power, of one sign,
+ * is integrated by samples; so it is if a load resonates, and in a phase so short that samples are fewer than products of
+ * terms. */
 #include "motion.h"
 #include "common/real.h"
 

@@ -244,8 +244,8 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
 
 /* ------------------------------------------------------------------------------------------------------- the start of a phase */
 
-/* Sets z, growth and growth6 of harmonics at t0, of limits times side; z of a table to its value; slopes.rate, limit and rise; vel,
- * acc, jerk and drift of the shapes beside the modes. After the last term: zeros. */
+/* Sets z, growth and growth6 of harmonics at t0, of limits times side; z of a table to its value; slopes.rate, limit and rise;
+ * vel, acc, jerk and drift of the shapes beside the modes. After the last term: zeros. */
 static void start_harmonics(struct exact *x)
 {
     const struct forced *h = x->h;

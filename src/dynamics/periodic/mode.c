@@ -20,7 +20,8 @@
 enum { MOST_SHOTS = 60 };
 
 /* NEARBY: difference of delta, times the period, for the derivative by delta. MOST_GROWTH: largest |delta| T; zeta is at most 1.
- * STRAYS: largest change of a period by a search, as a factor. UNSEEN: |c'y| over the size of a mode below which c'y is at rest. */
+ * STRAYS: largest change of a period by a search, as a factor. UNSEEN: |c'y| over the size of a mode below which c'y is at
+ * rest. */
 #define NEARBY 1e-7
 #define MOST_GROWTH 6.3
 #define STRAYS 1.3

@@ -4,8 +4,8 @@
  * (dD) u is found along the motion: V, the perturbation that begins as u, and DV, its derivative by p, which begins as zero.
  * An event of contact i at time t comes later by
  *     dt = -J_i dq'/v_i' where v_i = 0,  dt = (dlimit_i - d|f_i|)/|f_i|' where contact i breaks away,
- * d: by p at constant time. V jumps at stops of rigid contacts only. A phase that lasts dtau longer adds V' dtau to DV, and the damping what V
- * gets by more of it. A jump V += c (r V), c = q''+ - q''-,
+ * d: by p at constant time. V jumps at stops of rigid contacts only. A phase that lasts dtau longer adds V' dtau to DV, and the
+ * damping what V gets by more of it. A jump V += c (r V), c = q''+ - q''-,
  * r = J_i/v_i', adds to DV
  *     c (r DV) + (dc + c' dt) (r V) - c (r V) J_i (dq''- + q'''- dt)/v_i'.
  * For a set of contacts at rest q'' is linear in the state, the load and the limits, so that all these derivatives are

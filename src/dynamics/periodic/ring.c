@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Periodic motions of a ring of N equal sectors under loads that travel: x_j+1(t) = x_j(t - order period/N). With g the greatest
- * common divisor of N and the order, sector j + N/g moves as sector j; and, if all drives are odd and N/g is even, sector j + N/(2g)
- * as minus sector j. The twin has the first of these sectors only, with matrices that close the ring behind the last one, and the
- * search follows a part of the period, period g/N; if all drives are odd and N/g is odd, half of that. */
+ * common divisor of N and the order, sector j + N/g moves as sector j; and, if all drives are odd and N/g is even, sector j +
+ * N/(2g) as minus sector j. The twin has the first of these sectors only, with matrices that close the ring behind the last one,
+ * and the search follows a part of the period, period g/N; if all drives are odd and N/g is odd, half of that. */
 #include "shooting.h"
 #include "common/real.h"
 

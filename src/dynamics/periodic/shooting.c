@@ -639,8 +639,8 @@ int tribo_shooting_vectors(struct shooting *s, size_t which, double complex *vec
 
 /* -------------------------------------------------------------------------------------------------------------- the whole */
 
-/* Sets the residual of s->here over all parts of the period of a ring: |r + D r + ... + D^(parts - 1) r|, r = image - x. Returns a
- * status. */
+/* Sets the residual of s->here over all parts of the period of a ring: |r + D r + ... + D^(parts - 1) r|, r = image - x. Returns
+ * a status. */
 static int complete_ring(struct shooting *s)
 {
     int status = TRIBO_OK;

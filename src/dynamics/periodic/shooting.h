@@ -133,9 +133,9 @@ int tribo_shooting_create_twin(struct shooting *s, int steady);
 int tribo_shooting_drive_twin(struct shooting *s);
 void tribo_shooting_leave_twin(struct shooting *s);
 
-/* ring.c. find_ring: the find of a motion of the ring s->asked. find_flow: sets s->flow for multipliers of the whole ring, of which
- * s->told has the motion. Both return a status. fold_combination: to = the coefficients c [2 ndof + 2 springs] for the twin;
- * without an expansion [2 ndof]. */
+/* ring.c. find_ring: the find of a motion of the ring s->asked. find_flow: sets s->flow for multipliers of the whole ring, of
+ * which s->told has the motion. Both return a status. fold_combination: to = the coefficients c [2 ndof + 2 springs] for the
+ * twin; without an expansion [2 ndof]. */
 int tribo_shooting_find_ring(struct shooting *s, struct wanted *w);
 int tribo_ring_find_flow(struct shooting *s);
 void tribo_ring_fold_combination(const struct shooting *s, const double *c, double *to);

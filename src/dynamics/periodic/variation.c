@@ -150,9 +150,10 @@ static void add_transposed(const struct matrix *a, double factor, const double *
     }
 }
 
-/* Lists the crossings of static limits that drop at once, at tau into the phase, which ends at y: by the guard that ended the phase,
- * and of other contacts at the same time. Forces that do not rise only touch their limits. Sets row = dg/dstate over the rate of the
- * guard g: by forces f_i = e'J (-AK q - AC q' + B f), e = -R_HH^-1 unit_i, with f of normals and of sliding contacts. */
+/* Lists the crossings of static limits that drop at once, at tau into the phase, which ends at y: by the guard that ended the
+ * phase, and of other contacts at the same time. Forces that do not rise only touch their limits. Sets row = dg/dstate over the
+ * rate of the guard g: by forces f_i = e'J (-AK q - AC q' + B f), e = -R_HH^-1 unit_i, with f of normals and of sliding
+ * contacts. */
 static int find_drops(struct variation *x, double tau, const double *y)
 {
     struct events *e = x->to->events;

@@ -223,8 +223,8 @@ void tribo_pair_series_slide(const struct event *e, size_t k, const double *v, d
 double tribo_pair_series_power(const struct event *e, const struct pair_line *l, size_t k);
 double tribo_pair_series_power_along(const struct event *e, size_t i, size_t k);
 
-/* Terms x^(k) tau^k/k! of perturbations: z and g [rows][pairs][columns] of the turns of directions u and of limits, the last orders
- * cyclically; rows > order + 1 of the series. */
+/* Terms x^(k) tau^k/k! of perturbations: z and g [rows][pairs][columns] of the turns of directions u and of limits, the last
+ * orders cyclically; rows > order + 1 of the series. */
 struct pair_turns {
     size_t columns, rows;
     double tau;

@@ -254,8 +254,8 @@ static double pair_reach(const struct event *e, const struct pair_line *l, doubl
     return (pair_size(f, c, e->order, h) + pair_size(f + 1, c, e->order, h)) / limit;
 }
 
-/* The error of the velocity v by h, in parts of it, where a force that is not 0 is along v: it lags behind by c L A/|v|. 1/c is at
- * most fastest^2 times the mass. */
+/* The error of the velocity v by h, in parts of it, where a force that is not 0 is along v: it lags behind by c L A/|v|. 1/c is
+ * at most fastest^2 times the mass. */
 static double pair_lag(const struct event *e, const struct pair_line *l, double h)
 {
     const double c = tribo_spring_of(&e->events.stick_slip, l->at) / l->vn[0] * e->fastest;

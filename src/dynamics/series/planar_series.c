@@ -429,8 +429,8 @@ int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct plan
 
 /* -------------------------------------------------------------------------------------------------------------- guards */
 
-/* Returns the limit at rest by which the guard of a contact at rest, (limit^2 - |f|^2)/2 divided by it, is in units of forces: the
- * least one of the step, not below a part of the largest one. Sets blunt. */
+/* Returns the limit at rest by which the guard of a contact at rest, (limit^2 - |f|^2)/2 divided by it, is in units of forces:
+ * the least one of the step, not below a part of the largest one. Sets blunt. */
 static double find_reference(const struct event *e, struct planar_contact *p)
 {
     const double ratio = e->events.stick_slip.limits.ratio[p->at];

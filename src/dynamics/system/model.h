@@ -33,8 +33,8 @@ int tribo_model_factorize(const tribo_model *m, struct cholesky *c);
  * *sys. */
 int tribo_model_build_massive(tribo_model *m, const double *soft, tribo_system **sys);
 
-/* structure.c: returns TRIBO_OK if a is symmetric to rounding, or has no rows; else TRIBO_ERR_NOT_SYMMETRIC. The message names the
- * entries and ends with `why`. */
+/* structure.c: returns TRIBO_OK if a is symmetric to rounding, or has no rows; else TRIBO_ERR_NOT_SYMMETRIC. The message names
+ * the entries and ends with `why`. */
 int tribo_model_check_symmetric(const tribo_model *m, const char *name, const struct matrix *a, const char *why);
 
 /* condense.c: builds the system of the degrees of freedom with mass, from checked matrices; the others, and the sliders of

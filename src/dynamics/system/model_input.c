@@ -393,8 +393,8 @@ int tribo_system_reduce(tribo_system **sys, tribo_model *model, size_t nmode, in
 
 /* -------------------------------------------------------------------------------------------------------------------- rings */
 
-/* to [sectors rows][sectors columns] = the sum of the matrix a of all sectors, each `rows` and `columns` after the one before; what
- * is beyond the last sector belongs to the first. a is at most twice as large. Returns 1, or 0 if out of memory. */
+/* to [sectors rows][sectors columns] = the sum of the matrix a of all sectors, each `rows` and `columns` after the one before;
+ * what is beyond the last sector belongs to the first. a is at most twice as large. Returns 1, or 0 if out of memory. */
 static int repeat_around(const struct matrix *a, size_t sectors, size_t rows, size_t columns, struct matrix *to)
 {
     struct triplets all = {0};

@@ -327,8 +327,8 @@ int tribo_error(char *message, int status, const char *format, ...)
 #endif
     ;
 
-/* Returns TRIBO_OK if the numbers x [n] and their sum are finite; else TRIBO_ERR_NOT_FINITE, with the name of the first number that
- * is not, or of the largest. */
+/* Returns TRIBO_OK if the numbers x [n] and their sum are finite; else TRIBO_ERR_NOT_FINITE, with the name of the first number
+ * that is not, or of the largest. */
 int tribo_check_numbers(char *message, size_t n, const char *const *name, const double *x);
 
 /* Returns TRIBO_OK if all degrees of freedom have mass; else TRIBO_ERR_UNSUPPORTED, with a message that names `who`. */

@@ -393,8 +393,8 @@ static int box_descend(struct box_qp *p)
     return box_move(p, 1.0);
 }
 
-/* Returns 1 if the gradients of the independent x are rounding of x: beside large forces which redundant contacts hold against each
- * other, a force of 0 cannot be found to its own rounding. */
+/* Returns 1 if the gradients of the independent x are rounding of x: beside large forces which redundant contacts hold against
+ * each other, a force of 0 cannot be found to its own rounding. */
 static int box_hidden(const struct box_qp *p)
 {
     for (size_t k = 0; k < p->sets->rank; k++) {

@@ -275,9 +275,9 @@ static int solve_towards(struct disc_qp *p, double more, const double *centre)
 enum { KEPT_ROUNDS = 16 };
 
 /* Where S is nearly singular, Newton's steps along its soft directions are rounding, and projection to the rims adds their
- * squares, which the other directions feel. Stiffness towards the end of the interior-point method leaves short steps, and moves y
- * by so little that y is the solution without stiffness, too (proximal point algorithm, Rockafellar 1976, SIAM J. Control Optim.
- * 14, 877, doi:10.1137/0314056). */
+ * squares, which the other directions feel. Stiffness towards the end of the interior-point method leaves short steps, and moves
+ * y by so little that y is the solution without stiffness, too (proximal point algorithm, Rockafellar 1976, SIAM J. Control
+ * Optim. 14, 877, doi:10.1137/0314056). */
 int tribo_disc_solve(struct disc_qp *p)
 {
     if (solve_once(p)) {

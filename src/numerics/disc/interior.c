@@ -10,8 +10,8 @@
 
 enum { ROUNDS = 100 };
 
-/* press exceeds aim/room by this factor at most. Where a step along a rim leaves little room, aim/room is far beyond the pressure:
- * press falls below it to the part TOO_LITTLE. */
+/* press exceeds aim/room by this factor at most. Where a step along a rim leaves little room, aim/room is far beyond the
+ * pressure: press falls below it to the part TOO_LITTLE. */
 #define FAR_OFF 100.0
 #define TOO_LITTLE 1e-6
 

@@ -301,8 +301,8 @@ TEST(rounding_takes_no_part)
     tribo_destroy(c);
 }
 
-/* Contacts 0, 1, 2 hold bodies 0 and 1 against each other, beside bodies without velocity: forces of 3 and 4 are 0, which no solver
- * finds to their own rounding. */
+/* Contacts 0, 1, 2 hold bodies 0 and 1 against each other, beside bodies without velocity: forces of 3 and 4 are 0, which no
+ * solver finds to their own rounding. */
 TEST(rest_beside_contacts_that_press)
 {
     static const double inverse[] = {130.0, 0.0105, 108.0, 112.0, 0.879},

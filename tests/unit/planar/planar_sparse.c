@@ -231,8 +231,8 @@ TEST(other_loads)
     field_free(&s);
 }
 
-/* Loads of 0, equal ones, ones that just reach the limits, opposite halves, one direction, a slope. Another call with the load gives
- * the same. */
+/* Loads of 0, equal ones, ones that just reach the limits, opposite halves, one direction, a slope. Another call with the load
+ * gives the same. */
 TEST(even_loads)
 {
     struct random g = random_of(_i);

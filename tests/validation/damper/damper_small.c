@@ -403,8 +403,8 @@ TEST(backbone)
 }
 END_TEST
 
-/* Stick-slip of m = k = 1 on a belt, limit 0.6 and 1 at rest: closed form. Mode coupling as in validation/squeal.c, the preload as
- * the load of the normal spring at the equilibrium without friction. */
+/* Stick-slip of m = k = 1 on a belt, limit 0.6 and 1 at rest: closed form. Mode coupling as in validation/squeal.c, the preload
+ * as the load of the normal spring at the equilibrium without friction. */
 TEST(cycle)
 {
     static const char one[] = "--mass one.mtx --stiffness one.mtx --dofs one.txt --output 1,0,0,x --limits 0.6 "

@@ -42,8 +42,8 @@ static void ring_start(struct ring *r, const char *method)
     assert_ok(tribo_driver_set_ring(r->drv, r->sectors, r->order));
 }
 
-/* Calls add for sector 0's amplitudes [n of a sector] of harmonic k of the period, in all sectors, each later by order/sectors of the
- * period. */
+/* Calls add for sector 0's amplitudes [n of a sector] of harmonic k of the period, in all sectors, each later by order/sectors of
+ * the period. */
 static void add_travelling(const struct ring *r, int (*add)(tribo_system *, double, const double *, const double *), size_t k,
                            size_t all, const double *cosine, const double *sine)
 {
@@ -92,8 +92,8 @@ static void find_motion(tribo_driver *drv, double t, double period, double *y)
     require(!status, "%s: %s", tribo_strerror(status), tribo_driver_message(drv));
 }
 
-/* Digits of the closed form at all bodies. The whole ring takes half a period, the ring a twelfth, of order 2 a sixth, with a half or
- * a quarter of the bodies; events of bodies that move alike count once. */
+/* Digits of the closed form at all bodies. The whole ring takes half a period, the ring a twelfth, of order 2 a sixth, with a
+ * half or a quarter of the bodies; events of bodies that move alike count once. */
 TEST(closed_form)
 {
     const struct row *row = &rows[_i / 3];
@@ -127,9 +127,9 @@ static void put_in_sectors(double *a, size_t sectors, size_t rows_each, size_t c
     }
 }
 
-/* Random sectors: chains of bodies, a spring and a damper to the next sector, a contact to the ground, and one to the next sector;
- * kind 1: elastic; 2: loads of all harmonics, a constant one, too; 3: a base that travels; 4: limits that do; 5: masses that are
- * coupled. */
+/* Random sectors: chains of bodies, a spring and a damper to the next sector, a contact to the ground, and one to the next
+ * sector; kind 1: elastic; 2: loads of all harmonics, a constant one, too; 3: a base that travels; 4: limits that do; 5: masses
+ * that are coupled. */
 static struct ring random_ring(struct random *g, const char *method, int kind)
 {
     const size_t sectors = 2 + below(g, 6), m = 1 + below(g, 3), contacts = 1 + below(g, 2);

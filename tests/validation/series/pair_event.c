@@ -8,8 +8,8 @@
 
 enum { MOST = 11 };
 
-/* How the whirl of a mass has its contact: along its axes; along others; by a limit that follows a normal load, which a third degree
- * of freedom makes; rigid, on a node without mass. */
+/* How the whirl of a mass has its contact: along its axes; along others; by a limit that follows a normal load, which a third
+ * degree of freedom makes; rigid, on a node without mass. */
 enum { PLAIN, ASKEW, FOLLOWS, MASSLESS, KINDS };
 
 /* x'' + k x + f = e^(i w t), the slider behind a spring kt under the limit. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Static limits that drop at once, of planar contacts and of scalar ones beside them, in driver "event": closed forms of the line,
- * structures of lines beside method "exact", and methods with steps as these become short. */
+/* Static limits that drop at once, of planar contacts and of scalar ones beside them, in driver "event": closed forms of the
+ * line, structures of lines beside method "exact", and methods with steps as these become short. */
 #include "make.h"
 #include "run.h"
 
@@ -44,11 +44,11 @@ TEST(stick_slip)
 }
 
 /* ----------------------------------------------------------------------------------------------------------------- lines
- * A chain of bodies on a line with contacts to ground, or to each other, and the same along an axis in a plane, each stiffness and
- * mass the same in all directions. */
+ * A chain of bodies on a line with contacts to ground, or to each other, and the same along an axis in a plane, each stiffness
+ * and mass the same in all directions. */
 
-/* Scene of seed on a line, wide = 1, or in a plane, wide = 2: every second contact of every second seed is scalar there, along the
- * axis. alike: limits and loads of all bodies are equal, and so are the motions. ratio 1: no static limits. */
+/* Scene of seed on a line, wide = 1, or in a plane, wide = 2: every second contact of every second seed is scalar there, along
+ * the axis. alike: limits and loads of all bodies are equal, and so are the motions. ratio 1: no static limits. */
 static tribo_system *chain(uint64_t seed, size_t wide, const double *e, int alike, double *omega)
 {
     uint64_t s = seed * 7919u + 999u;
@@ -121,8 +121,8 @@ TEST(lines)
             line[2 * bodies]);
 }
 
-/* A body on a line, wide = 1, or in a plane, wide = 2, whose limit follows a normal load that lifts off or, for even seeds, changes
- * with time, with a static ratio. */
+/* A body on a line, wide = 1, or in a plane, wide = 2, whose limit follows a normal load that lifts off or, for even seeds,
+ * changes with time, with a static ratio. */
 static tribo_system *varying(uint64_t seed, size_t wide, const double *e, double *omega)
 {
     uint64_t s = seed + 17;
@@ -219,8 +219,8 @@ TEST(across)
             largest(coarse, want), largest(fine, want));
 }
 
-/* The periodic motion from `begin` on returns, and the traces of the map over a period and of its square are those of multipliers.
- * Ends the test, and sys. */
+/* The periodic motion from `begin` on returns, and the traces of the map over a period and of its square are those of
+ * multipliers. Ends the test, and sys. */
 static void assert_multipliers(tribo_system *sys, double begin, double period)
 {
     const double h = 1e-6;
@@ -256,8 +256,8 @@ static void assert_multipliers(tribo_system *sys, double begin, double period)
     tribo_system_destroy(sys);
 }
 
-/* From 0.17 of a period on, where in these scenes no contact at rest has a force above its kinetic limit: moved, that would not come
- * to rest. */
+/* From 0.17 of a period on, where in these scenes no contact at rest has a force above its kinetic limit: moved, that would not
+ * come to rest. */
 TEST(multipliers)
 {
     double aside[FLAT], omega;
