@@ -424,6 +424,7 @@ void tribo_disc_alone(struct disc_alone *x, const double *s, const double *pull,
     lay_out_disc(&x->p, &l, &(struct disc_room){.size = 2, .dense = 2});
     x->p.size = x->p.wide[0] = 2;
     x->p.near_enough = TRIBO_NEAR_ENOUGH;
+    x->p.weight[0] = x->p.weight[1] = 1.0;
     memcpy(x->p.s.val, s, 4 * sizeof *s);
     memcpy(x->p.pull, pull, 2 * sizeof *pull);
     memcpy(x->p.shift, shift, 2 * sizeof *shift);

@@ -94,7 +94,7 @@ int tribo_lens_minimize(const double *c, const double *weight, const double *q, 
         y[1] = n[1];
         return LENS_ON_DISC;
     }
-    const int far = square > 0.0 && minimize_on_disc(weight, shifted, m);
+    const int far = (c[0] != 0.0 || c[1] != 0.0) && minimize_on_disc(weight, shifted, m); /* square may underflow */
     if (!beyond && !far) {
         y[0] = n[0];
         y[1] = n[1];

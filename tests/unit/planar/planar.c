@@ -148,6 +148,23 @@ TEST(lens)
     tribo_destroy(c);
 }
 
+/* A velocity whose square underflows: the force is along the pull, as at rest. */
+TEST(hardly_a_lens)
+{
+    const double a[2] = {5.0, 1.0}, feq[2] = {-5.0, -1.0}, length = sqrt(26.0);
+    tribo_context *c = disc(TRIBO_QUINN, 1.0, 1e-3, 1.0);
+    for (double speed = 1e-100; speed > 0.0; speed *= 1e-10) {
+        for (int side = -1; side <= 1; side += 2) {
+            double f[2];
+            assert_ok(tribo_balance(c, TWO(side * speed, 0.0), a, NULL, f));
+            assert_all_close(f, TWO(-5.0 / length, -1.0 / length), 2, 1e-15);
+            assert_ok(tribo_force(c, TWO(side * speed, 0.0), feq, f));
+            assert_all_close(f, TWO(-5.0 / length, -1.0 / length), 2, 1e-15);
+        }
+    }
+    tribo_destroy(c);
+}
+
 /* A contact that moves and is pulled along one direction only is a scalar one, however its axes are turned. */
 TEST(line)
 {
@@ -343,5 +360,5 @@ TEST(bounded)
     tribo_destroy(scalar);
 }
 
-TEST_MAIN("planar", {arguments, 1}, {undone, 1}, {rest, 4}, {motion, 1}, {lens, 1}, {line, 4}, {flat, 2}, {open, 1},
-          {immovable, 1}, {ellipse, 1}, {blocks, 36}, {bounded, 2})
+TEST_MAIN("planar", {arguments, 1}, {undone, 1}, {rest, 4}, {motion, 1}, {lens, 1}, {hardly_a_lens, 1}, {line, 4}, {flat, 2},
+          {open, 1}, {immovable, 1}, {ellipse, 1}, {blocks, 36}, {bounded, 2})
