@@ -13,12 +13,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Rounding of the length of a force in a plane, in parts of its limit. */
+#define PAIR_NOISE 4e-16
+
 void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     tribo_compliance_get(sys, y, m->state.spring);
     tribo_compliance_noise(sys, y, m->noise.spring);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->noise.spring[i] += m->constant.elastic[i] ? TRIBO_LIMIT_NOISE * m->constant.swing[i] : 0.0;
+        m->noise.spring[i] += m->constant.pair[i] ? PAIR_NOISE * m->state.limit[i] : 0.0;
         m->noise.spring[i] *= TRIBO_SPRING_ALLOWED * m->noise.factor;
     }
 }

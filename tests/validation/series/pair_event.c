@@ -108,6 +108,25 @@ TEST(faint)
     }
 }
 
+/* At rest at the limit, the constant load balances the spring: nothing moves, however the force is turned. */
+TEST(rest_at_the_limit)
+{
+    const double kt = 1000.0, limit = 0.0143;
+    for (int k = 0; k < 60; k++) {
+        const double at[2] = {limit * cos(0.1 * k), limit * sin(0.1 * k)};
+        double y[7] = {0.0, 0.0, 0.0, 0.0, at[0] / kt, at[1] / kt}, t = 0.0;
+        tribo_system *sys = whirl(PLAIN, 1.0, kt, limit, 1.0);
+        assert_ok(tribo_system_clear_loads(sys));
+        assert_ok(tribo_system_add_load(sys, 0.0, (const double[]){-at[0], -at[1]}, NULL));
+        tribo_driver *d = driver_create(sys, "event", 1.0, 0.0);
+        driver_advance(d, &t, 0.5, y);
+        require(driver_count(d, TRIBO_COUNT_EVENTS) < 10, "%zu events", driver_count(d, TRIBO_COUNT_EVENTS));
+        assert_all_close(y, ((double[]){0.0, 0.0}), 2, 1e-15);
+        tribo_driver_destroy(d);
+        tribo_system_destroy(sys);
+    }
+}
+
 /* Springs or limits that differ, or one spring only. */
 TEST(refused)
 {
@@ -132,4 +151,4 @@ TEST(refused)
     tribo_system_destroy(sys);
 }
 
-TEST_MAIN("pair_event", {circle, 2 * KINDS}, {faint, 1}, {refused, 3})
+TEST_MAIN("pair_event", {circle, 2 * KINDS}, {faint, 1}, {rest_at_the_limit, 1}, {refused, 3})
