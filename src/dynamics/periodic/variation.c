@@ -9,6 +9,9 @@
 /* Relative difference of equal times, and of a force at its limit; relative size of a negligible coupling. */
 #define TOGETHER 1e-6
 
+/* Crossings within this part of 1/(highest frequency) may follow each other in any order: a periodic motion is exact to 1e-10. */
+#define AT_ONCE 1e-9
+
 /* ---------------------------------------------------------------------------------------------------------------- steps */
 
 void tribo_derivative_free(struct derivative *d)
@@ -250,6 +253,7 @@ int tribo_variation_phase(struct variation *x, double tau, double t, const doubl
 {
     struct stick_slip *m = &x->to->events->stick_slip;
     x->count = 0;
+    x->clock += tau;
     for (size_t k = 0; k < x->sys->normals.count; k++) {
         x->pressed[k] = m->state.pressed[k];
     }
@@ -457,6 +461,20 @@ static void carry_over_normals(struct variation *x)
     }
 }
 
+/* Where contact i crosses at an instant at which a contact that it is coupled with has crossed, and one of them slides, there is no
+ * derivative. */
+static void tear_at_once(struct variation *x, size_t i)
+{
+    const struct stick_slip *m = &x->to->events->stick_slip;
+    const double least = TOGETHER * tribo_system_delassus(x->sys, i, i), before = x->clock - AT_ONCE / x->to->events->fastest;
+    for (size_t j = 0; j < x->sys->ncontact; j++) {
+        const int slides = m->state.slip[i] != TRIBO_SLIP_STUCK || m->state.slip[j] != TRIBO_SLIP_STUCK;
+        if (x->crossed[j] >= before && j != i && slides && fabs(tribo_system_delassus(x->sys, i, j)) > least) {
+            tear(x, i, j);
+        }
+    }
+}
+
 void tribo_variation_event(struct variation *x)
 {
     const struct stick_slip *m = &x->to->events->stick_slip;
@@ -491,6 +509,12 @@ void tribo_variation_event(struct variation *x)
         if (x->group[x->contact[k]] == k + 1) {
             carry_over(x, k);
         }
+    }
+    for (size_t k = 0; k < x->count; k++) {
+        tear_at_once(x, x->contact[k]);
+    }
+    for (size_t k = 0; k < x->count; k++) {
+        x->crossed[x->contact[k]] = x->clock;
     }
     /* contact i loses its static limit by none of these groups: the order of the crossings matters */
     for (size_t i = 0; x->count && i < x->sys->ncontact; i++) {
@@ -539,6 +563,10 @@ void tribo_variation_begin(struct variation *x, struct events *e, const double *
     x->known = NULL;
     x->applied = 0;
     x->status = TRIBO_OK;
+    x->clock = 0.0;
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        x->crossed[i] = -HUGE_VAL;
+    }
 }
 
 int tribo_variation_create(struct variation *x, tribo_system *sys, size_t columns)
@@ -547,7 +575,8 @@ int tribo_variation_create(struct variation *x, tribo_system *sys, size_t column
     *x = (struct variation){.sys = sys};
     return ALLOCATE(ARRAY(x->v, all * columns), ARRAY(x->acceleration, n), ARRAY(x->force, c), ARRAY(x->rate, c),
                     ARRAY(x->spring_rate, c), ARRAY(x->row, c * all), ARRAY(x->a, c), ARRAY(x->f, c), ARRAY(x->change, all - n),
-                    ARRAY(x->delay, 2 * columns), ARRAY(x->pressed, c), ARRAY(x->contact, c), ARRAY(x->group, c)) != NULL;
+                    ARRAY(x->delay, 2 * columns), ARRAY(x->pressed, c), ARRAY(x->contact, c), ARRAY(x->group, c),
+                    ARRAY(x->crossed, c)) != NULL;
 }
 
 void tribo_variation_free(struct variation *x)

@@ -18,7 +18,8 @@
  * If several quantities cross zero at one instant by coincidence, contacts are divided into groups that pass no forces to each
  * other, and each group makes the jump of its own forces. There is no derivative, because the order of the crossings matters, if
  * in a group they come apart in perturbed motions and a contact slides afterwards, or if the jump of one group changes g' of
- * another. */
+ * another. Coupled contacts that cross one after the other, by so little that rounding may change their order, count as crossing at
+ * one instant. */
 #ifndef TRIBO_VARIATION_H
 #define TRIBO_VARIATION_H
 
@@ -89,6 +90,8 @@ struct variation {
     size_t *contact; /* [ncontact] contact of crossing k */
     double *row;     /* [ncontact][n] (dg/dstate)/g': perturbed motions are earlier by row v */
     size_t *group;   /* [ncontact] 1, 2, ...: groups of contacts; 0: none */
+    double clock;    /* time since begin */
+    double *crossed; /* [ncontact] clock of the last crossing; -HUGE_VAL: none */
 
     double *a, *f;          /* [ncontact] workspace */
     double *change, *delay; /* [n - ndof], [2 columns] workspace */

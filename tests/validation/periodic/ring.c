@@ -3,6 +3,7 @@
  * searches over the whole period. */
 #include "make.h"
 #include "run.h"
+#include "search.h"
 
 #include <string.h>
 
@@ -336,4 +337,33 @@ TEST(models)
     tribo_system_destroy(sys);
 }
 
-TEST_MAIN("ring", {models, 1}, {closed_form, 3 * COUNT(rows)}, {random_rings, 90}, {refused, 3})
+/* Coupled blades that all stop at one instant, but for rounding of the search, have no multipliers. */
+TEST(one_instant)
+{
+    struct random g = random_of(_i);
+    double mass[BLADES * BLADES] = {0.0}, stiffness[BLADES * BLADES] = {0.0}, damping[BLADES * BLADES] = {0.0},
+                         unit[BLADES * BLADES] = {0.0}, cosine[BLADES];
+    for (size_t i = 0; i < BLADES; i++) {
+        const size_t next = (i + 1) % BLADES;
+        cosine[i] = unit[i * BLADES + i] = 1.0;
+        mass[i * BLADES + i] = 1.1;
+        stiffness[i * BLADES + i] = 2.0;
+        damping[i * BLADES + i] = 0.1;
+        mass[i * BLADES + next] = mass[next * BLADES + i] = 0.05;
+        stiffness[i * BLADES + next] = stiffness[next * BLADES + i] = -0.3;
+    }
+    for (int k = 0; k < 120; k++) {
+        double y[2 * BLADES + 1] = {0.0}, re[2 * BLADES], im[2 * BLADES];
+        struct search s = search_create("exact", BLADES, BLADES, mass, damping, stiffness, unit, 0.7 + 0.15 * (k % 9), cosine);
+        assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), 0.05 + 0.043 * (k % 7)));
+        for (size_t i = 0; i < 2 * BLADES; i++) {
+            y[i] = uniform(&g, -0.5, 0.5);
+        }
+        find(&s, 0.0, y);
+        assert_status(tribo_driver_get_multipliers(s.drv, re, im), TRIBO_ERR_UNSUPPORTED);
+        assert_says(tribo_driver_message(s.drv), "one instant");
+        search_free(&s);
+    }
+}
+
+TEST_MAIN("ring", {models, 1}, {closed_form, 3 * COUNT(rows)}, {random_rings, 90}, {refused, 3}, {one_instant, 2})
