@@ -98,6 +98,30 @@ static void close_phase(struct second *x)
     x->open = 0;
 }
 
+/* to [n] = the response to source of the motion from the state x->z, over the time tau up to t, in as many series as that takes.
+ * Returns a status. */
+static int respond(struct second *x, double tau, double t, const struct source *source, double *to)
+{
+    struct events *e = x->d->map->events;
+    const tribo_system *sys = x->d->map->sys;
+    double reach = 0.0;
+    int status = TRIBO_OK;
+    for (double left = tau; !status && left > 0.0; left = reach < left ? left - reach : 0.0) {
+        reach = left;
+        status = e->motion->begin(e->own, t - left, x->z, &reach);
+        status = status ? status : e->motion->transition(e->own, NULL, reach, 1, to, source);
+        if (!status && reach < left) {
+            e->motion->state(e->own, reach, x->z, x->z);
+            tribo_compliance_get(sys, x->z, x->spring);
+            for (size_t k = 0; k < sys->compliance.count; k++) {
+                const size_t i = sys->compliance.contact[k];
+                e->stick_slip.state.force[i] = x->spring[i];
+            }
+        }
+    }
+    return status;
+}
+
 /* x->rate = what V at the start of the phase that ends gets in it by damping = 1 of struct source: the source is linear in the
  * motion, so that it is the response of the motion from the state + V, less that of the motion, which begins anew here. Returns a
  * status. */
@@ -126,7 +150,6 @@ static int find_damped(struct second *x, double tau, double t)
     memset(x->damped, 0, 3 * n * sizeof *x->damped);
     int status = TRIBO_OK;
     for (size_t k = 0; !status && k < 3; k++) { /* the motion itself last */
-        double reach = tau;
         memcpy(x->z, d->from, (n + 1) * sizeof *x->z);
         memcpy(e->stick_slip.state.force, x->a, d->contacts * sizeof *x->a);
         for (size_t i = 0; k < 2 && i < n; i++) {
@@ -135,8 +158,7 @@ static int find_damped(struct second *x, double tau, double t)
                 e->stick_slip.state.force[sys->compliance.contact[i - 2 * sys->ndof]] += part * x->rate[2 * i + k];
             }
         }
-        status = e->motion->begin(e->own, t - tau, x->z, &reach);
-        status = status ? status : e->motion->transition(e->own, NULL, tau, 1, x->damped + k * n, &source);
+        status = respond(x, tau, t, &source, x->damped + k * n);
     }
     for (size_t i = 0; i < 2 * n; i++) {
         x->rate[i] = (x->damped[i % 2 * n + i / 2] - x->damped[2 * n + i / 2]) / part;

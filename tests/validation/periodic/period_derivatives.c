@@ -649,6 +649,41 @@ TEST(multipliers_refused)
     search_free(&s);
 }
 
+/* Damping where the series of a perturbed motion is shorter than that of the motion; the contact never slides. */
+TEST(multipliers_by_shorter_series)
+{
+    static const double mass[] = {0.6, 0.0, 0.0, 0.6}, stiffness[] = {4.0, -1.0, -1.0, 3.5}, damping[] = {0.2, -0.05, -0.05, 0.3},
+                        row[] = {1.0, 0.5}, compliance[] = {0.1};
+    static const int kind = TRIBO_PARAMETER_DAMPING;
+    static const size_t zero = 0;
+    double re[2][5], im[2][5];
+    for (int k = 0; k < 2; k++) {
+        double y[6] = {0}, x[5], v[5];
+        tribo_model *model;
+        assert_ok(tribo_model_create(&model, 2, 1));
+        assert_ok(tribo_model_set_mass(model, mass));
+        assert_ok(tribo_model_set_stiffness(model, stiffness));
+        assert_ok(tribo_model_set_damping(model, damping));
+        assert_ok(tribo_model_set_direction(model, row));
+        assert_ok(tribo_model_set_compliance(model, compliance));
+        tribo_system *sys = finish_model(model);
+        assert_ok(tribo_set_limit_all(tribo_system_context(sys), 10.0));
+        assert_ok(tribo_system_add_load(sys, 1.1, (const double[]){0.3, 0.2}, NULL));
+        assert_ok(tribo_system_add_load(sys, 2.2, (const double[]){0.1, -0.1}, NULL));
+        tribo_driver *drv = driver_create(sys, methods[k], 0.1, 1e-14);
+        assert_ok(tribo_driver_find_periodic(drv, 0.3, 2.0 * PI / 1.1, y));
+        assert_ok(tribo_driver_get_multipliers(drv, x, v));
+        for (size_t i = 0; i < 5; i++) {
+            assert_ok(tribo_driver_multiplier_derivatives(drv, i, 1, &kind, &zero, &re[k][i], &im[k][i]));
+        }
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+    assert_all_close(re[1], re[0], 5, 1e-8);
+    assert_all_close(im[1], im[0], 5, 1e-8);
+}
+
 TEST_MAIN("period_derivatives", {den_hartog, 3}, {most_energy, 3}, {by_differences, 2 * COUNT(scenes)}, {at_once, 3},
           {ten_limits, 1}, {rests, 2}, {errors, 3}, {no_derivative, 3}, {multipliers_den_hartog, 3},
-          {multipliers_by_differences, 16}, {multipliers_of_rest, 2}, {multipliers_refused, 2})
+          {multipliers_by_differences, 16}, {multipliers_of_rest, 2}, {multipliers_refused, 2},
+          {multipliers_by_shorter_series, 1})
