@@ -2,6 +2,7 @@
 /* Curves over the frequency that are followed around their turns. */
 #include <math.h>
 #include <stdio.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -70,6 +71,7 @@ void follow_curve(struct curve *c, struct worker *w)
                                .least = band->from / t.hz,
                                .most = band->to / t.hz,
                                .step = up ? step : -step,
+                               .points = SIZE_MAX,
                                .coarse = abs(w->d->options->follow) < 2};
     double period = 1.0 / t.hz, *y = need_memory(w->dimension, sizeof *y);
     set_point(w, c->fixed, t.hz);

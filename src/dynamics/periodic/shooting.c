@@ -416,12 +416,12 @@ int tribo_shooting_search(struct shooting *s)
     }
     s->rate = s->stride = s->before = 0.0;
     s->nearest = s->here->residual / s->here->size;
-    const double aim = s->map.ring.sectors ? AIM / (double)s->map.ring.parts : AIM;
+    const double part_of = s->map.ring.sectors ? 1.0 / (double)s->map.ring.parts : 1.0, aim = AIM * part_of;
     while (!status && isfinite(s->here->size) && !tribo_point_is_closed(s->here, aim) && s->map.halves < most) {
         double part;
         status = newton(s, &part);
         const int falls = !status && pays(s);
-        if (!status && !falls && tribo_point_is_closed(s->here, TRIBO_PERIODIC)) {
+        if (!status && !falls && tribo_point_is_closed(s->here, TRIBO_PERIODIC * part_of)) {
             break; /* limit of rounding */
         }
         s->rate = falls && s->stride == 0.0 ? s->ratio : 0.0;
