@@ -492,7 +492,7 @@ TRIBO_API int tribo_driver_find_cycle(tribo_driver *drv, double t, double *perio
  * delta M makes up for what friction and damping dissipate (extended periodic motion concept, Krack 2015). Loads and base motions
  * that depend on time do not act, constant ones do. omega and zeta = delta/omega over the amplitude are what vibration tests
  * measure of a joint. Methods exact, event, auto. The questions about periodic motions are about the mode then. The period begins
- * at t = 0.
+ * at t = 0. Near another branch of modes the search may end at that; tribo_driver_follow_curve stays on one.
  * c          [2 ndof] in      coefficients of a signal c'[q, q'], of degrees of freedom with mass
  * amplitude  in               > 0; of the signal at the beginning of the period, where its rate is 0
  * omega      in/out           in: >= 0, a guess, or 0 for the lowest mode; out: 2 pi/period; unchanged on error, as zeta and y
@@ -506,9 +506,9 @@ TRIBO_API int tribo_driver_find_mode(tribo_driver *drv, const double *c, double 
 /* Floquet multipliers re + i im of the last periodic motion found, largest modulus first; in a complex pair im > 0 is first.
  * re, im   [dimension - 1] out
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_STATE (no search yet, or the last search failed;
- * with elastic contacts: the system has changed since), TRIBO_ERR_UNSUPPORTED (contacts that act on each other stop or break away
- * at one instant, a normal rests at depth 0, or the force of an elastic contact only touches its limit: the motion nearby is not
- * linear; the message names the contact). */
+ * with elastic contacts, or of a ring: the system has changed since), TRIBO_ERR_UNSUPPORTED (contacts that act on each other stop
+ * or break away at one instant, a normal rests at depth 0, or the force of an elastic contact only touches its limit: the motion
+ * nearby is not linear; the message names the contact). */
 TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im);
 
 /* The dimension of the family of periodic motions around the last periodic motion found: a contact that never slips can rest at
