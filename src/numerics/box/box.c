@@ -59,12 +59,17 @@ static int box_pulls(const struct box_qp *p, size_t i, double pull)
     return pull > p->noise[i] && pull > tribo_box_tolerance(p, i);
 }
 
-/* Returns 1 if the gradients of the independent x are at most noises times their rounding. */
-static int box_settled(const struct box_qp *p, double noises)
+/* Returns 1 if the gradients of the independent x are at most noises times their rounding. error [size]: that of x, which then
+ * counts as rounding of the gradients; NULL: not. */
+static int box_settled(const struct box_qp *p, double noises, const double *error)
 {
     for (size_t k = 0; k < p->sets->rank; k++) {
         const size_t i = p->order[k];
-        if (!(fabs(p->gradient[i]) <= noises * p->noise[i])) {
+        double doubt = 0.0;
+        if (error) {
+            tribo_row_dot(p, i, error, &doubt);
+        }
+        if (!(fabs(p->gradient[i]) <= noises * (p->noise[i] + doubt))) {
             return 0;
         }
     }
@@ -215,7 +220,7 @@ static void box_enter(struct box_qp *p, int keep_bounds)
 /* Takes the gradient of the independent x, which is up to date, to its rounding. */
 static void box_refine(struct box_qp *p)
 {
-    for (int pass = 0; pass < 4 && !box_settled(p, 1.0); pass++) {
+    for (int pass = 0; pass < 4 && !box_settled(p, 1.0, NULL); pass++) {
         box_newton(p);
         for (size_t k = 0; k < p->sets->rank; k++) {
             const size_t i = p->order[k];
@@ -273,7 +278,7 @@ static int box_solve_sets(struct box_qp *p)
     }
     tribo_box_gradients(p);
     box_refine(p);
-    return box_settled(p, TRIBO_SETTLED);
+    return box_settled(p, TRIBO_SETTLED, NULL);
 }
 
 /* Patience as with block pivoting (Judice and Pires 1994, Comput. Oper. Res. 21, 587): it ends when the number of changes has
@@ -397,13 +402,8 @@ static int box_descend(struct box_qp *p)
  * each other, a force of 0 cannot be found to its own rounding. */
 static int box_hidden(const struct box_qp *p)
 {
-    for (size_t k = 0; k < p->sets->rank; k++) {
-        const size_t i = p->order[k];
-        if (!(fabs(p->gradient[i]) <= TRIBO_SETTLED * tribo_box_doubt(p, i))) {
-            return 0;
-        }
-    }
-    return 1;
+    find_doubt(p, p->spare[0]);
+    return box_settled(p, TRIBO_SETTLED, p->spare[0]);
 }
 
 /* Each round lowers the objective, or takes an x out of the set: no set returns. */
@@ -435,7 +435,7 @@ static int box_primal(struct box_qp *p)
         const size_t i = box_worst(p, 0);
         if (i < p->group->size) {
             tribo_box_change(p, i, FREE);
-        } else if (box_settled(p, TRIBO_SETTLED) || (anew && box_hidden(p))) {
+        } else if (box_settled(p, TRIBO_SETTLED, NULL) || (anew && box_hidden(p))) {
             return 1;
         } else {
             tribo_factor_rebuild(p, NULL);
@@ -676,7 +676,7 @@ static int minimum_norm(struct box_qp *p)
                 const size_t i = p->near[e];
                 consistent &= pass > 0 || fabs(p->step[i] - p->gradient[i]) <= rounding + disagreement(p, i);
             }
-        } else if (pass > 0 && box_settled(p, 1.0)) {
+        } else if (pass > 0 && box_settled(p, 1.0, NULL)) {
             break;
         }
         box_newton(p);
@@ -705,7 +705,7 @@ int tribo_box_linear(struct box_qp *p)
     box_enter(p, 0);
     int consistent = minimum_norm(p);
     /* The rank of a factor made row by row may differ from that of one with the largest pivots first. */
-    if (!consistent || !box_settled(p, TRIBO_SETTLED)) {
+    if (!consistent || !box_settled(p, TRIBO_SETTLED, NULL)) {
         tribo_factor_rebuild(p, NULL);
         consistent = minimum_norm(p);
     }
