@@ -379,6 +379,8 @@ static void lay_out_disc(struct disc_qp *p, struct layout *l, const struct disc_
     p->wide = tribo_layout_array(l, s, 1);
     p->place = tribo_layout_array(l, s, 1);
     p->factor.qp.at = tribo_layout_array(l, s, 1);
+    p->factor.qp.scale = p->factor.qp.q;
+    p->factor.qp.far = 1;
 }
 
 int tribo_disc_create(struct disc_qp *p, const struct disc_room *room)
@@ -401,8 +403,6 @@ void tribo_disc_copy_factor(struct disc_qp *p, const struct disc_qp *from, struc
     f->sets = from->factor.sets;
     f->qp.group = &f->group;
     f->qp.sets = &f->sets;
-    f->qp.scale = f->qp.q;
-    f->qp.far = 1;
     memcpy(f->qp.q, like->q, n * sizeof *like->q);
     memcpy(f->qp.at, like->at, n);
     memcpy(f->qp.order, like->order, n * sizeof *like->order);

@@ -221,9 +221,7 @@ void tribo_disc_factorize(struct disc_qp *p)
     f->group = &p->factor.group;
     f->sets = &p->factor.sets;
     f->r = p->factor.matrix;
-    f->scale = scale;
     f->count = p->freedoms;
-    f->far = 1;
     memset(f->at, AWAY, p->factor.group.size);
     for (size_t k = 0; p->s.pattern && k < p->s.places; k++) {
         scale[k] = 0.0;
