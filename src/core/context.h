@@ -80,8 +80,8 @@ struct last {
     size_t clusters; /* solved */
 };
 
-/* The new operator of a context, until install exchanges the new operator for that of the context; then the replaced operator, in
- * whose memory the next update makes the new operator. */
+/* Before install: the new operator of a context. After install, which exchanges the two: the operator that the context had; the
+ * next update overwrites that operator with a new one. */
 struct renewal {
     struct delassus *op;
     struct memory memory;

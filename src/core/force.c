@@ -76,14 +76,14 @@ static void find_outputs(const tribo_context *ctx, int plain, const double *v, c
     }
 }
 
-/* 1 if a law of the caller failed, or gave no number for one of the outputs. */
+/* 1 if the law of the caller failed, or gave no number for one of the outputs. */
 static int own_failed(const tribo_context *ctx, double *const *out)
 {
-    int failed = 0;
-    for (int k = FORCES; tribo_is_own(ctx) && k < BY_LIMIT; k++) {
+    int failed = out[BY_LIMIT] && !tribo_all_within(out[BY_LIMIT], ctx->n, DBL_MAX);
+    for (int k = FORCES; k < BY_LIMIT; k++) {
         failed |= out[k] && tribo_own_failed(ctx, out[k]);
     }
-    return failed || (tribo_is_own(ctx) && out[BY_LIMIT] && !tribo_all_within(out[BY_LIMIT], ctx->n, DBL_MAX));
+    return failed;
 }
 
 int tribo_force(const tribo_context *ctx, const double *v, const double *feq, double *f)
@@ -99,7 +99,7 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
     }
     double *const out[OUTPUTS] = {f, NULL, NULL, NULL};
     find_outputs(ctx, plain, v, feq, out);
-    return own_failed(ctx, out) ? TRIBO_ERR_CALLBACK : tribo_plane_force(ctx, v, feq, out);
+    return tribo_is_own(ctx) && own_failed(ctx, out) ? TRIBO_ERR_CALLBACK : tribo_plane_force(ctx, v, feq, out);
 }
 
 int tribo_find_tangents(const tribo_context *ctx, int pairs, const double *v, const double *feq, double *const *out)
@@ -113,7 +113,7 @@ int tribo_find_tangents(const tribo_context *ctx, int pairs, const double *v, co
         return TRIBO_ERR_UNSUPPORTED;
     }
     find_outputs(ctx, plain, v, feq, out);
-    if (own_failed(ctx, out)) {
+    if (tribo_is_own(ctx) && own_failed(ctx, out)) {
         return TRIBO_ERR_CALLBACK;
     }
     /* [n] become [n][2]: scalar contacts have nothing beside their own derivative. */

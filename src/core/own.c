@@ -151,7 +151,7 @@ static void own_force_all(const struct contacts *c, size_t n, const double *v, c
     }
 }
 
-/* Of the sides of a box, that which carries the force x at f_eq - shift = x; inside of it the shift, whose sign turns. */
+/* Returns the derivative of clamp(x, lower, upper), x = feq - shift, at constant feq; rows: derivatives of lower, upper, shift. */
 static inline double by_side(double x, const double *restrict box, const double *restrict rows, size_t n, size_t i)
 {
     const double lower = rows[i], upper = rows[n + i], inside = -rows[SHIFT * n + i], above = x >= box[n + i] ? upper : inside;
