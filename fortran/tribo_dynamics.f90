@@ -1541,6 +1541,19 @@ contains
     call finish(w, stat, errmsg)
   end subroutine period_stick
 
+  !> contact = index, counted from 0, of parameters kind; checks those of limits.
+  subroutine to_contacts(w, kind, index, contact)
+    type(work), intent(inout) :: w
+    integer, intent(in) :: kind(:), index(:)
+    integer(c_size_t), intent(out) :: contact(:)
+    integer :: i
+
+    do i = 1, min(size(kind), size(index))
+      if (kind(i) == TRIBO_PARAMETER_LIMIT) call expect_index(w, 'index', i, index(i), w%n)
+      contact(i) = int(max(index(i), 1) - 1, c_size_t)
+    end do
+  end subroutine to_contacts
+
   !> Derivatives of that motion by parameters, kind(n) TRIBO_PARAMETER_... and index(n), the contacts of limits: of the extremes of
   !> period_extremes for c, extremes(2,n), of the energies of period_dissipation, energy(ncontact,n), and of its state, y(dimension,n).
   subroutine period_derivatives(this, kind, index, c, extremes, energy, y, stat, errmsg)
@@ -1552,7 +1565,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     integer(c_size_t) :: contact(size(index))
     type(work) :: w
-    integer :: i, n
+    integer :: n
 
     n = size(kind)
     call find_driver(this, w)
@@ -1561,10 +1574,7 @@ contains
     if (present(extremes)) call expect_shape(w, 'extremes', shape(extremes), [2, n])
     if (present(energy)) call expect_shape(w, 'energy', shape(energy), [w%n, n])
     if (present(y)) call expect_shape(w, 'y', shape(y), [w%dimension, n])
-    do i = 1, min(n, size(index))
-      if (kind(i) == TRIBO_PARAMETER_LIMIT) call expect_index(w, 'index', i, index(i), w%n)
-      contact(i) = int(max(index(i), 1) - 1, c_size_t)
-    end do
+    call to_contacts(w, kind, index, contact)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_period_derivatives(w%object, int(n, c_size_t), to_int(kind), contact, c, extremes, energy, y)
     end if
@@ -1581,17 +1591,13 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     integer(c_size_t) :: contact(size(index))
     type(work) :: w
-    integer :: i
 
     call find_driver(this, w)
     call expect_shape(w, 'index', shape(index), shape(kind))
     call expect_shape(w, 're', shape(re), shape(kind))
     call expect_shape(w, 'im', shape(im), shape(kind))
     call expect_index(w, 'which', 1, which, w%dimension - 1)
-    do i = 1, min(size(kind), size(index))
-      if (kind(i) == TRIBO_PARAMETER_LIMIT) call expect_index(w, 'index', i, index(i), w%n)
-      contact(i) = int(max(index(i), 1) - 1, c_size_t)
-    end do
+    call to_contacts(w, kind, index, contact)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_multiplier_derivatives(w%object, int(which - 1, c_size_t), int(size(kind), c_size_t), to_int(kind), &
         contact, re, im)

@@ -26,10 +26,8 @@ C     Every routine that takes a handle, with one that is none.
          Z(I) = -777D0
          D(I) = -777D0
          E(I) = -777D0
-         IROW(I) = I
-         ICOL(I) = I
    10 CONTINUE
-      IROW(3) = 3
+      CALL DIAGON(N, IROW, ICOL)
       CALL CLEAR(N*N, Q)
       CALL CLEAR(N*N, P)
       DO 100 K = 1, 5
@@ -325,13 +323,8 @@ C     Values
       CALL TRBOPF(IH, N, Q, 4, IERR)
       CALL WANTED('TRBOPF', IH, IERR, 20,
      1            'r of contacts 1, 3 is 0.5 one way and 0 the other')
-      IROW(1) = 1
-      IROW(2) = 2
-      IROW(3) = 3
-      IROW(4) = 4
-      ICOL(1) = 1
+      CALL DIAGON(N, IROW, ICOL)
       ICOL(2) = 4
-      ICOL(3) = 3
       CALL TRBOPS(IH, N, IROW, ICOL, VAL, IERR)
       CALL WANTED('TRBOPS', IH, IERR, 5, 'col(2) = 4 is not in 1 to 3')
       ICOL(2) = 2
@@ -420,6 +413,16 @@ C     A place in the table lasts for 2047 handles.
       CALL EXPECT('every handle is new', NEW)
       END
 C
+C     Rows of a diagonal matrix.
+      SUBROUTINE DIAGON(N, IROW, ICOL)
+      INTEGER N, IROW(N+1), ICOL(N), K
+      DO 10 K = 1, N
+         IROW(K) = K
+         ICOL(K) = K
+   10 CONTINUE
+      IROW(N+1) = N + 1
+      END
+C
 C     A REAL that is read as a DOUBLE PRECISION is refused; 0 is not.
       SUBROUTINE SINGLE
       INTEGER IH, IERR, IROW(3), ICOL(2)
@@ -494,11 +497,7 @@ C     Values of operators; small ones beside one of 1D-250 decay.
       R(2,1) = -0D0
       CALL TRBUPD(IH, 4, R, IERR)
       CALL EXPECT('TRBUPD, 0', IERR .EQ. 0)
-      IROW(1) = 1
-      IROW(2) = 2
-      IROW(3) = 3
-      ICOL(1) = 1
-      ICOL(2) = 2
+      CALL DIAGON(2, IROW, ICOL)
       X(1) = 2D0
       Y(1) = 1D0
       Y(2) = 1D0
