@@ -207,16 +207,32 @@ static void run_derivatives(void *data)
          tribo_driver_message(s->drv));
 }
 
-/* Counts the periods of a search, or one call for its derivatives. */
-static double count_steady(const char *method, int derivatives)
+/* Creates the system of BODIES bodies of mass 1. */
+static tribo_system *bodies_of(const double *stiffness, const double *damping, size_t contacts, const double *direction)
 {
-    struct steady s = {.period = 2.0 * acos(-1.0) / 0.6};
-    double mass[BODIES], stiffness[BODIES * BODIES] = {0}, damping[BODIES * BODIES], direction[TOUCHING * BODIES] = {0};
-    double load[BODIES], limit[TOUCHING];
+    double mass[BODIES];
     tribo_model *model;
     tribo_system *sys;
     for (size_t d = 0; d < BODIES; d++) {
         mass[d] = 1.0;
+    }
+    need(tribo_model_create(&model, BODIES, contacts), NULL);
+    need(tribo_model_set_mass_diagonal(model, mass), NULL);
+    need(tribo_model_set_stiffness(model, stiffness), NULL);
+    need(tribo_model_set_damping(model, damping), NULL);
+    need(tribo_model_set_direction(model, direction), NULL);
+    need(tribo_system_create(&sys, model), tribo_model_message(model));
+    tribo_model_destroy(model);
+    return sys;
+}
+
+/* Counts the periods of a search, or one call for its derivatives. */
+static double count_steady(const char *method, int derivatives)
+{
+    struct steady s = {.period = 2.0 * acos(-1.0) / 0.6};
+    double stiffness[BODIES * BODIES] = {0}, damping[BODIES * BODIES], direction[TOUCHING * BODIES] = {0};
+    double load[BODIES], limit[TOUCHING];
+    for (size_t d = 0; d < BODIES; d++) {
         load[d] = 1.0 + 0.3 * sin(3.0 * (double)d);
         stiffness[d * BODIES + d] = d == 0 || d + 1 == BODIES ? 20.3 : 40.3;
         if (d > 0) {
@@ -231,13 +247,7 @@ static double count_steady(const char *method, int derivatives)
         limit[i] = 0.4 + 0.15 * sin(2.0 * (double)i);
         s.index[i] = s.index[i + TOUCHING] = i;
     }
-    need(tribo_model_create(&model, BODIES, TOUCHING), NULL);
-    need(tribo_model_set_mass_diagonal(model, mass), NULL);
-    need(tribo_model_set_stiffness(model, stiffness), NULL);
-    need(tribo_model_set_damping(model, damping), NULL);
-    need(tribo_model_set_direction(model, direction), NULL);
-    need(tribo_system_create(&sys, model), tribo_model_message(model));
-    tribo_model_destroy(model);
+    tribo_system *sys = bodies_of(stiffness, damping, TOUCHING, direction);
     need(tribo_system_add_load(sys, 0.6, load, NULL), NULL);
     need(tribo_set_limit(tribo_system_context(sys), limit), NULL);
     need(set_up_driver(&s.drv, sys, method, 0.01, 1e-11, 1e-11), NULL);
@@ -257,25 +267,17 @@ static double count_ring(const char *method, int told)
 {
     const double turn = 2.0 * acos(-1.0);
     struct steady s = {.period = turn / 0.9};
-    double one[BODIES], damping[BODIES], stiffness[BODIES * BODIES] = {0}, direction[BODIES * BODIES] = {0};
+    double stiffness[BODIES * BODIES] = {0}, damping[BODIES * BODIES] = {0}, direction[BODIES * BODIES] = {0};
     double cosine[BODIES], sine[BODIES];
-    tribo_model *model;
-    tribo_system *sys;
     for (size_t j = 0; j < BODIES; j++) {
-        one[j] = direction[j * BODIES + j] = 1.0;
-        damping[j] = 0.1;
+        direction[j * BODIES + j] = 1.0;
+        damping[j * BODIES + j] = 0.1;
         stiffness[j * BODIES + j] = 2.0;
         stiffness[j * BODIES + (j + 1) % BODIES] = stiffness[(j + 1) % BODIES * BODIES + j] = -0.5;
         cosine[j] = cos(turn * (double)j / BODIES);
         sine[j] = sin(turn * (double)j / BODIES);
     }
-    need(tribo_model_create(&model, BODIES, BODIES), NULL);
-    need(tribo_model_set_mass_diagonal(model, one), NULL);
-    need(tribo_model_set_stiffness(model, stiffness), NULL);
-    need(tribo_model_set_damping_diagonal(model, damping), NULL);
-    need(tribo_model_set_direction(model, direction), NULL);
-    need(tribo_system_create(&sys, model), tribo_model_message(model));
-    tribo_model_destroy(model);
+    tribo_system *sys = bodies_of(stiffness, damping, BODIES, direction);
     need(tribo_system_add_load(sys, 0.9, cosine, sine), NULL);
     need(tribo_set_limit_all(tribo_system_context(sys), 0.3), NULL);
     need(set_up_driver(&s.drv, sys, method, 0.01, 1e-11, 1e-11), NULL);
