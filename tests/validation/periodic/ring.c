@@ -21,7 +21,7 @@ static const struct row {
             {0.1, 1.0, 0.2, 5, 0.522947882341},
             {0.0, 0.9, 0.3, 2, 1.391711300796}};
 
-/* The same system twice; drv is told the ring, plain is not. */
+/* Two drivers of one system: drv with the ring, plain without. */
 struct ring {
     size_t sectors, order, n, contacts;
     double period;
@@ -65,7 +65,7 @@ static tribo_model *one_blade(double damping)
                        (double[]){1.0, 0.0});
 }
 
-/* BLADES of these. */
+/* A ring of BLADES blades, as by one_blade; mass_of_3: mass of blade 3. */
 static struct ring blades(const char *method, const struct row *row, double mass_of_3)
 {
     struct ring r = {.sectors = BLADES, .order = row->order, .n = BLADES, .contacts = BLADES, .period = 2.0 * PI / row->omega};
@@ -222,7 +222,7 @@ static void assert_same_flow(const struct ring *r, size_t all)
     ck_assert_uint_eq(driver_freedom(r->drv), driver_freedom(r->plain));
 }
 
-/* The motion is that of the whole search, and comes back; so are all that is asked about it. */
+/* The motion and its quantities are those of the search over the whole period; the motion comes back to its beginning. */
 TEST(random_rings)
 {
     struct random g = random_of(_i);
@@ -256,7 +256,8 @@ static void assert_refused(const struct ring *r, int status, const char *part)
     assert_says(tribo_driver_message(r->drv), part);
 }
 
-/* What does not travel, or is not equal, is refused, with the entry; without a ring it is found. */
+/* A load that does not travel, or a sector that differs, is refused, and the message names the entry; without the ring the motion
+ * is found. */
 TEST(refused)
 {
     const int kind = TRIBO_PARAMETER_LIMIT;
@@ -298,7 +299,7 @@ TEST(refused)
     ring_free(&r);
 }
 
-/* What is no ring of the sector is refused; springs and normals go around. */
+/* A model that is no ring of the sector is refused; springs and normals of the sector stand in all sectors. */
 TEST(models)
 {
     tribo_model *sector = one_blade(0.1), *model, *empty;

@@ -244,21 +244,14 @@ static const struct wall {
 
 static tribo_system *between_walls(double fast, double load)
 {
-    const double mass[] = {1.0, 1.5}, damping[] = {0.3, 0.5}, stiffness[] = {12.0, 2.0, 2.0, 17.0};
+    const double mass[] = {1.0, 0.0, 0.0, 1.5}, damping[] = {0.3, 0.0, 0.0, 0.5}, stiffness[] = {12.0, 2.0, 2.0, 17.0};
     const double direction[] = {1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 1.0, 0.0};
     const double base[] = {fast, fast, -fast, 0.0, 0.0, 0.0};
-    tribo_model *model;
-    tribo_system *sys;
-    assert_ok(tribo_model_create(&model, 2, 6));
-    assert_ok(tribo_model_set_mass_diagonal(model, mass));
-    assert_ok(tribo_model_set_damping_diagonal(model, damping));
-    assert_ok(tribo_model_set_stiffness(model, stiffness));
-    assert_ok(tribo_model_set_direction(model, direction));
+    tribo_model *model = dense_model(2, 6, mass, damping, stiffness, direction);
     for (size_t k = 0; k < 3; k++) {
         assert_ok(tribo_model_set_normal(model, k, 3 + k, walls[k].mu, walls[k].stiffness, walls[k].gap));
     }
-    assert_ok(tribo_system_create(&sys, model));
-    tribo_model_destroy(model);
+    tribo_system *sys = finish_model(model);
     assert_ok(tribo_system_add_load(sys, 3.0, (const double[]){9.0 * load, 20.0 * load}, (const double[]){4.0 * load, 0.0}));
     assert_ok(tribo_system_add_base_motion(sys, 0.0, base, NULL));
     return sys;

@@ -130,18 +130,12 @@ TEST(rest_at_the_limit)
 /* Springs or limits that differ, or one spring only. */
 TEST(refused)
 {
-    const double one[2] = {1.0, 1.0}, rows[4] = {1.0, 0.0, 0.0, 1.0}, c[3][2] = {{0.5, 0.4}, {0.5, 0.0}, {0.5, 0.5}};
+    const double one[4] = {1.0, 0.0, 0.0, 1.0}, c[3][2] = {{0.5, 0.4}, {0.5, 0.0}, {0.5, 0.5}};
     const double limit[2] = {0.3, _i == 2 ? 0.4 : 0.3};
     double y[7] = {0.0}, t = 0.0;
-    tribo_model *model;
-    tribo_system *sys;
-    assert_ok(tribo_model_create(&model, 2, 2));
-    assert_ok(tribo_model_set_mass_diagonal(model, one));
-    assert_ok(tribo_model_set_stiffness_diagonal(model, one));
-    assert_ok(tribo_model_set_direction(model, rows));
+    tribo_model *model = dense_model(2, 2, one, NULL, one, one);
     assert_ok(tribo_model_set_compliance(model, c[_i]));
-    assert_ok(tribo_system_create(&sys, model));
-    tribo_model_destroy(model);
+    tribo_system *sys = finish_model(model);
     assert_ok(tribo_set_planar(tribo_system_context(sys), 1, (const size_t[]){0}));
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
     tribo_driver *d = driver_create(sys, "event", 0.0, 0.0);
