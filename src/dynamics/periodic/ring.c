@@ -39,8 +39,8 @@ static int check_equal(tribo_driver *drv, const char *name, const struct matrix 
     return TRIBO_OK;
 }
 
-/* Returns TRIBO_OK if all functions of time of the kind and the frequency of h travel: sector j + 1 has
- * those of sector j, later by order/sectors of the period. work [2n]. */
+/* Returns TRIBO_OK if all functions of time of the kind and the frequency of h travel: sector j + 1 has those of sector j, later
+ * by order/sectors of the period. work [2n]. */
 static int check_travel(tribo_driver *drv, const struct harmonic *h, double period, double *work)
 {
     const tribo_system *sys = drv->sys;
@@ -78,15 +78,6 @@ static int check_travel(tribo_driver *drv, const struct harmonic *h, double peri
     return TRIBO_OK;
 }
 
-/* limit [ncontact] = limits, without harmonics. */
-static void find_steady_limits(const tribo_system *sys, double *limit)
-{
-    tribo_get_limit(sys->contacts, limit);
-    if (tribo_system_limits_vary(sys)) {
-        memcpy(limit, sys->loads.given_limit, sys->ncontact * sizeof *limit);
-    }
-}
-
 /* Returns TRIBO_OK if the system has equal sectors, and loads that travel. */
 static int check_ring(tribo_driver *drv, double period)
 {
@@ -101,7 +92,7 @@ static int check_ring(tribo_driver *drv, double period)
     }
     double *limit = sys->work.put_limit, *work = malloc((2 * most + 1) * sizeof *work);
     int status = work ? TRIBO_OK : tribo_error(drv->message, TRIBO_ERR_MEMORY, "out of memory for a ring");
-    find_steady_limits(sys, limit);
+    tribo_system_given_limits(sys, limit);
     for (size_t i = 0; !status && i < sys->ncontact; i++) {
         const size_t to = (i + each) % sys->ncontact;
         if (limit[i] != limit[to]) {
@@ -198,7 +189,7 @@ static int fold_system(tribo_driver *drv, const struct ring *r, tribo_system **s
     status = status ? status : tribo_springs_copy_first(m, from);
     status = status ? status : tribo_system_create(sys, m);
     if (!status) {
-        find_steady_limits(from, limit);
+        tribo_system_given_limits(from, limit);
         status = tribo_set_limit(tribo_system_context(*sys), limit);
         status = status ? status : tribo_system_take_settings(*sys);
     }

@@ -215,6 +215,15 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
 
 /* ------------------------------------------------------------------------------------------------------------------- limits */
 
+void tribo_system_given_limits(const tribo_system *sys, double *limit)
+{
+    if (tribo_system_limits_vary(sys)) {
+        memcpy(limit, sys->loads.given_limit, sys->ncontact * sizeof *limit);
+    } else {
+        tribo_get_limit(sys->contacts, limit);
+    }
+}
+
 void tribo_system_limits(const tribo_system *sys, double *limit, double *rate)
 {
     memset(rate, 0, sys->ncontact * sizeof *rate);

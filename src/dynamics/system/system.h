@@ -174,8 +174,8 @@ void tribo_loads_free(tribo_system *sys);
 /* Copies loads, base motions and tables from `from` to sys, which has none. Returns 1, or 0 if out of memory. */
 int tribo_loads_copy(tribo_system *sys, const tribo_system *from);
 
-/* Adds the harmonics of `from` to sys, which has the first of its degrees of freedom and contacts, for these. Returns 1, or 0 if
- * out of memory. */
+/* Copies harmonics as tribo_loads_copy to sys, which has the first degrees of freedom and contacts of `from` only, and leaves out
+ * the others. Returns 1, or 0 if out of memory. */
 int tribo_loads_copy_first(tribo_system *sys, const tribo_system *from);
 
 /* Leaves of all harmonics those of omega = 0. */
@@ -226,6 +226,9 @@ static inline double tribo_system_steady_limit(const tribo_system *sys, size_t i
 {
     return sys->loads.limit_tables ? 0.0 : sys->loads.given_limit[i];
 }
+
+/* limit [ncontact] = limits set by the caller, without harmonics and motion. */
+void tribo_system_given_limits(const tribo_system *sys, double *limit);
 
 /* limit, rate [ncontact] = limits and derivatives at the set time, and motion (tribo_normals_move). With harmonics, and where
  * limits follow the motion, limit < 0 where a contact has lifted off. */
