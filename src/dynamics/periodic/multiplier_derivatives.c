@@ -5,8 +5,7 @@
  * An event of contact i at time t comes later by
  *     dt = -J_i dq'/v_i' where v_i = 0,  dt = (dlimit_i - d|f_i|)/|f_i|' where contact i breaks away,
  * d: by p at constant time. V jumps at stops of rigid contacts only. A phase that lasts dtau longer adds V' dtau to DV, and the
- * damping what V gets by more of it. A jump V += c (r V), c = q''+ - q''-,
- * r = J_i/v_i', adds to DV
+ * damping adds the response of V to damping = 1. A jump V += c (r V), c = q''+ - q''-, r = J_i/v_i', adds to DV
  *     c (r DV) + (dc + c' dt) (r V) - c (r V) J_i (dq''- + q'''- dt)/v_i'.
  * For a set of contacts at rest q'' is linear in the state, the load and the limits, so that all these derivatives are
  * accelerations by changes of these. By the frequency times are those of the motion, not of constant phase.
@@ -67,19 +66,18 @@ static int find_change(struct second *x, double dt, size_t p, double *to, double
     return status;
 }
 
-/* x->z = change of the state by p at the end of the phase, and dt later. */
+/* x->z = change of the state by p at the end of the phase, and dt later; p = count: by dt only. */
 static void change_state(struct second *x, size_t p, double dt)
 {
     const struct sensitivity *d = x->d;
     const size_t n = d->map->sys->ndof;
-    const double turns = d->kind[p] == TRIBO_PARAMETER_FREQUENCY ? 1.0 : 0.0;
-    for (size_t i = 0; i < n; i++) {
-        x->z[i] = x->before[i * x->count + p] + dt * x->y[n + i];
-        x->z[n + i] = x->before[(n + i) * x->count + p] + turns * x->y[n + i] + dt * d->variation.acceleration[i];
-    }
-    for (size_t k = 2 * n; k < d->n; k++) {
-        const size_t i = d->map->sys->compliance.contact[k - 2 * n];
-        x->z[k] = x->before[k * x->count + p] + dt * d->variation.spring_rate[i];
+    const int by = p < x->count, turns = by && d->kind[p] == TRIBO_PARAMETER_FREQUENCY;
+    memcpy(x->z, x->y + n, n * sizeof *x->z);
+    memcpy(x->z + n, d->variation.acceleration, n * sizeof *x->z);
+    tribo_compliance_put(d->map->sys, d->variation.spring_rate, x->z);
+    for (size_t i = 0; i < d->n; i++) {
+        const double turned = turns && i >= n && i < 2 * n ? x->y[i] : 0.0;
+        x->z[i] = (by ? x->before[i * x->count + p] + turned : 0.0) + dt * x->z[i];
     }
 }
 
@@ -122,9 +120,9 @@ static int respond(struct second *x, double tau, double t, const struct source *
     return status;
 }
 
-/* x->rate = what V at the start of the phase that ends gets in it by damping = 1 of struct source: the source is linear in the
- * motion, so that it is the response of the motion from the state + V, less that of the motion, which begins anew here. Returns a
- * status. */
+/* x->rate [n][2] = the response of V to damping = 1 of struct source, over the phase of length tau that ends at t. The source is
+ * linear in the motion: the response of V is that of the motion from the state + part V, less that of the motion from the state,
+ * over part. Begins the phase of the motion anew. Returns a status. */
 static int find_damped(struct second *x, double tau, double t)
 {
     static const double none = 0.0, one = 1.0;
@@ -177,7 +175,7 @@ int tribo_second_phase(struct second *x, double tau, double t, const double *y)
     close_phase(x);
     int status = x->status || !x->damps ? x->status : find_damped(x, tau, t);
     status = status ? status : tribo_derivative_apply(&d->steps, d->steps.steps - 1, x->wide, x->w, NULL);
-    for (size_t at = 0; x->damps && at < d->n * x->wide - 2 * d->n; at++) {
+    for (size_t at = 0; x->damps && at < 2 * d->n * x->count; at++) {
         const size_t i = at / (2 * x->count), j = at % (2 * x->count);
         x->w[i * x->wide + 2 + j] -= d->kind[j / 2] == TRIBO_PARAMETER_DAMPING ? x->rate[2 * i + j % 2] : 0.0;
     }
@@ -205,11 +203,7 @@ int tribo_second_phase(struct second *x, double tau, double t, const double *y)
         change_state(x, p, 0.0);
         status = find_change(x, 0.0, p, x->bend + p * n, x->pull + p * d->contacts);
     }
-    memcpy(x->z, y + n, n * sizeof *y);
-    memcpy(x->z + n, d->variation.acceleration, n * sizeof *y);
-    for (size_t k = 2 * n; k < d->n; k++) {
-        x->z[k] = d->variation.spring_rate[d->map->sys->compliance.contact[k - 2 * n]];
-    }
+    change_state(x, x->count, 1.0);
     status = status ? status : find_change(x, 1.0, x->count, x->bend + x->count * n, x->pull + x->count * d->contacts);
     x->tau = tau;
     x->steps = d->steps.steps;

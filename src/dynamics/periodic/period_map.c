@@ -216,9 +216,7 @@ void tribo_period_map_rate(const struct period_map *m, const double *end, double
     const size_t n = m->sys->ndof;
     memcpy(m->y, end + n, n * sizeof *m->y);
     memcpy(m->y + n, m->variation.acceleration, n * sizeof *m->y);
-    for (size_t k = 0; k < m->sys->compliance.count; k++) {
-        m->y[2 * n + k] = m->variation.spring_rate[m->sys->compliance.contact[k]];
-    }
+    tribo_compliance_put(m->sys, m->variation.spring_rate, m->y);
     tribo_energy_norm_of(&m->norm, 1, m->y, rate);
 }
 
