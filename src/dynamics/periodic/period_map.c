@@ -464,7 +464,7 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period, cons
 void tribo_period_map_choose(struct period_map *m, int odd)
 {
     m->odd = odd;
-    m->span = odd ? 0.5 * m->period : m->ring.sectors ? m->period / (double)m->ring.parts : m->period;
+    m->span = odd ? 0.5 * m->period : m->period / (double)m->ring.parts;
 }
 
 /* -------------------------------------------------------------------------------------------------------------- life */
@@ -472,7 +472,7 @@ void tribo_period_map_choose(struct period_map *m, int odd)
 int tribo_period_map_create(struct period_map *m, tribo_driver *drv)
 {
     const size_t n = tribo_system_energy(drv->sys);
-    *m = (struct period_map){.company = with_derivative, .drv = drv, .sys = drv->sys, .n = n};
+    *m = (struct period_map){.company = with_derivative, .drv = drv, .sys = drv->sys, .n = n, .ring = {.parts = 1}};
     return ALLOCATE(ARRAY(m->y, n + 1), ARRAY(m->x, n), ARRAY(m->probe, n * n), ARRAY(m->limit, 2 * drv->sys->ncontact)) &&
            tribo_variation_create(&m->variation, drv->sys, n);
 }

@@ -26,7 +26,7 @@ struct point {
 
 /* A ring of equal sectors with x_j+1(t) = x_j(t - lag), sector j + sectors = sector j. */
 struct ring {
-    size_t sectors;    /* 0: the map is that of no ring, and the other members are not read */
+    size_t sectors;    /* 0: no ring: parts = 1, and the other members are not read */
     size_t step;       /* below sectors: sector j + step after the span = sector j before, times -1 if reversed = 1 */
     size_t parts;      /* of the period, each a span */
     size_t alternates; /* 1: sector j + sectors = minus sector j */
@@ -49,7 +49,7 @@ struct period_map {
     double t, period, span; /* span: length of an integration of the map */
     int alternates;         /* 1: all drives are odd */
     int odd;                /* 1: span = period/2 */
-    struct ring ring;       /* span = period/parts */
+    struct ring ring;       /* span = period/parts if not odd */
     double *turned;         /* [n][n] workspace; NULL before the first ring */
     double size, least;     /* size: largest |x| of this integration so far; motions below `least` are rounding */
     int moved;              /* 1: follow has integrated since prepare */
@@ -101,7 +101,7 @@ int tribo_period_map_find_touch(struct period_map *m, const double *y, int chang
 /* rate [n] = coordinates of the derivative of the state by time at the end of the last integration by follow. */
 void tribo_period_map_rate(const struct period_map *m, const double *end, double *rate);
 
-/* Sets m->odd, and m->span = period/2 if odd, else period, or that of the ring. odd = 1 is for odd drives only. */
+/* Sets m->odd, and m->span = period/2 if odd, else period/parts. odd = 1 is for odd drives only. */
 void tribo_period_map_choose(struct period_map *m, int odd);
 
 /* Returns 1 if, half a period later, loads and bases have the opposite sign and limits are the same. Limits that follow the

@@ -79,7 +79,7 @@ int tribo_events_find_periodic(tribo_driver *drv, struct wanted *w)
 {
     const int status = open_search(drv);
     if (!status) {
-        drv->shooting->map.ring.sectors = 0;
+        drv->shooting->map.ring = (struct ring){.parts = 1};
     }
     return status ? status : w->find(drv->shooting, w);
 }

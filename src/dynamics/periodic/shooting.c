@@ -416,7 +416,7 @@ int tribo_shooting_search(struct shooting *s)
     }
     s->rate = s->stride = s->before = 0.0;
     s->nearest = s->here->residual / s->here->size;
-    const double part_of = s->map.ring.sectors ? 1.0 / (double)s->map.ring.parts : 1.0, aim = AIM * part_of;
+    const double part_of = 1.0 / (double)s->map.ring.parts, aim = AIM * part_of;
     while (!status && isfinite(s->here->size) && !tribo_point_is_closed(s->here, aim) && s->map.halves < most) {
         double part;
         status = newton(s, &part);
@@ -555,7 +555,7 @@ int tribo_shooting_check_touches(struct shooting *s, const char *what)
 /* Returns the number of spans of the period of the motion found. */
 static size_t spans_of_period(const struct shooting *s)
 {
-    return s->flow->odd ? 2 : s->map.ring.sectors ? s->map.ring.parts : 1;
+    return s->flow->odd ? 2 : s->map.ring.parts;
 }
 
 int tribo_shooting_freedom(struct shooting *s, size_t *freedom)
