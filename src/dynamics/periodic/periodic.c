@@ -364,8 +364,7 @@ int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im
     if (!status && s->flow->derivative.torn < s->map.sys->ncontact) {
         return tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED,
                            "contact %zu and contact %zu stop or break away at one instant, or are a contact and its normal that "
-                           "just touches: which "
-                           "of them is first may change the motion, and it has no multipliers",
+                           "just touches: which of them is first may change the motion, and it has no multipliers",
                            s->flow->derivative.torn, s->flow->derivative.other);
     }
     if (!status) {

@@ -65,7 +65,7 @@ struct shooting {
     struct track *curve;   /* of the curve that is followed; else NULL */
     struct twin twin;      /* of this driver */
     struct ring_of asked;  /* by tribo_driver_set_ring */
-    struct ring_of whole;  /* of which the twin has sectors */
+    struct ring_of whole;  /* ring of which twin.sys has the first sectors */
     struct shooting *told; /* the search that has the motion found: this one, or that of twin.drv */
 };
 

@@ -461,8 +461,8 @@ static void carry_over_normals(struct variation *x)
     }
 }
 
-/* Where contact i crosses at an instant at which a contact that it is coupled with has crossed, and one of them slides, there is no
- * derivative. */
+/* There is no derivative if a contact coupled to i has crossed at an event before, at the instant at which i crosses, and one of
+ * the two slides. */
 static void tear_at_once(struct variation *x, size_t i)
 {
     const struct stick_slip *m = &x->to->events->stick_slip;

@@ -18,8 +18,7 @@
  * If several quantities cross zero at one instant by coincidence, contacts are divided into groups that pass no forces to each
  * other, and each group makes the jump of its own forces. There is no derivative, because the order of the crossings matters, if
  * in a group they come apart in perturbed motions and a contact slides afterwards, or if the jump of one group changes g' of
- * another. Coupled contacts that cross one after the other, by so little that rounding may change their order, count as crossing at
- * one instant. */
+ * another. Coupled contacts count as crossing at one instant if rounding may change the order of their crossings. */
 #ifndef TRIBO_VARIATION_H
 #define TRIBO_VARIATION_H
 
