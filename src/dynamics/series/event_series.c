@@ -187,13 +187,21 @@ double tribo_series_within(const double *x, size_t powers, double *inverse, doub
     double term = 0.0;
     inverse[0] = 1.0; /* the series of x_0/x */
     for (size_t k = 1; k <= powers && !(term > LARGEST); k++) {
-        inverse[k] = -tribo_series_product(x, inverse, 1, k, 1, k + 1) / x[0];
+        inverse[k] = -tribo_product_of(x, inverse, k, 1, k + 1) / x[0];
         term = fabs(inverse[k]);
         if ((k + 2 > powers && term > 0.0) || term > LARGEST) {
             h = lesser(h, WITHIN * pow(term, -1.0 / (double)k));
         }
     }
     return h;
+}
+
+/* Limits of a step that are below this part of the largest one do not make the guard of a contact at rest larger. */
+#define LEAST_PART 1e-3
+
+double tribo_series_reference(double least, double most)
+{
+    return greater(greater(least, LEAST_PART * most), DBL_MIN);
 }
 
 /* ------------------------------------------------------------------------------------------------------- perturbations */
@@ -292,7 +300,7 @@ static int find_term(struct event *e, size_t k, double tau, const struct perturb
     if (m->limits.falls) {
         perturb_falling(e, k, part, tau, p);
     }
-    tribo_pair_series_turn(e, k - 1, &p->pairs, p->q, p->v, p->rows);
+    tribo_pair_series_turn(e, k - 1, &p->pairs, p->q, p->v);
     add_source(e, k, part, p);
     if (m->plane) {
         tribo_planar_series_turn(e, k - 1, &p->turns, p->force);

@@ -121,6 +121,12 @@ static inline double tribo_series_product(const double *x, const double *y, size
     return sum;
 }
 
+/* The same of coefficients that stand together. */
+static inline double tribo_product_of(const double *x, const double *y, size_t k, size_t from, size_t to)
+{
+    return tribo_series_product(x, y, 1, k, from, to);
+}
+
 /* Returns the value at h of a series x [powers + 1]. */
 static inline double tribo_series_value(const double *x, size_t powers, double h)
 {
@@ -133,6 +139,13 @@ static inline double tribo_series_value(const double *x, size_t powers, double h
 
 /* Returns h, shortened to a part of the radius of convergence of 1/x, x [powers + 1]; inverse [powers + 1]: workspace. */
 double tribo_series_within(const double *x, size_t powers, double *inverse, double h);
+
+/* Error of a direction in a periodic motion: that of perturbations. */
+#define TRIBO_STRAIGHT 1e-8
+
+/* Returns the limit by which the guard (|f|^2 - limit^2)/2 of a contact at rest is divided: the least one of the step, not below
+ * a part of the largest one, `most`. */
+double tribo_series_reference(double least, double most);
 
 /* Finds the coefficients of the motion from (t, y) on: first those known at the start, then the series, which collocation
  * repeats with other directions of sliding forces. Returns a status. */
@@ -215,8 +228,8 @@ double tribo_planar_series_power_along(const struct event *e, size_t i, size_t k
 /* Makes room. Returns a status, its message on the system's context. */
 int tribo_pair_series_begin(struct event *e);
 
-/* Takes the k-th coefficients v [ncontact] of velocities; sets slide [ncontact] = those of the rates of forces of contacts in a
- * plane whose sliders move. */
+/* Sets entries of slide [ncontact], the k-th coefficients of the rates of forces, of pairs with slip TRIBO_SLIP_PLANE, from the
+ * k-th coefficients v [ncontact] of velocities. */
 void tribo_pair_series_slide(const struct event *e, size_t k, const double *v, double *slide);
 
 /* The k-th coefficient of the power that contact l dissipates, and that along direction i of such a contact. */
@@ -231,11 +244,11 @@ struct pair_turns {
     double *z, *g;
 };
 
-/* turn: takes terms of order k, q [ndof][columns] of displacements and v [rows][ncontact][columns] of velocities of contacts, the
- * last orders cyclically; sets those of turns that follow. force: sets those of order k of forces [ncontact][columns] of contacts
- * whose sliders move; of order 0 from forces of which the part along u is not used. */
-void tribo_pair_series_turn(const struct event *e, size_t k, const struct pair_turns *p, const double *q, const double *v,
-                            size_t rows);
+/* turn: sets g of order k of all pairs, and, of pairs with slip TRIBO_SLIP_PLANE, z of order k + 1, or k if lag = 1, from terms
+ * of order k of displacements, q [ndof][columns], and of velocities of contacts, v [rows][ncontact][columns], the last orders
+ * cyclically. force: sets g of order k and the two rows of force [ncontact][columns], terms of order k, of pairs with slip
+ * TRIBO_SLIP_PLANE; for k = 0 and lag = 0 first z, from the part of these rows across u. */
+void tribo_pair_series_turn(const struct event *e, size_t k, const struct pair_turns *p, const double *q, const double *v);
 void tribo_pair_series_force(const struct event *e, size_t k, const struct pair_turns *p, const double *q, double *force);
 
 /* Returns h without such contacts, else at most `most`, shortened until forces follow velocities, and in a periodic motion until

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Taylor series of contacts in a plane whose slider has a spring c. The force is -L u while the slider moves along u, |u| = 1:
- *     v + c f' = sigma u,   sigma > 0 its speed,
- * so that with w the part of v across u, and c constant,
+/* Taylor series of a contact in a plane with a spring of compliance c before its slider. While the slider moves along u, |u| = 1,
+ * the force f is -L u, L its limit, and
+ *     v + c f' = sigma u,   sigma > 0 the speed of the slider.
+ * With w the part of v across u,
  *     u' = A across,   c L A = w,   sigma = v'u - c L',   f' = -L' u - w across/c.
- * u is taken along its first direction n and the normal t. At touch-down L begins with a power of time, u with the direction of
- * v, and A of order k - 1 follows from w of order k. The same series, without c L(0) A, is that of a contact whose L is so small
- * that its force turns with v at once: by the other one steps are as short as the time c L/|v|. */
+ * lag = 0: w of order k gives A of order k.
+ * lag = 1, where L(0) = 0 (touch-down), or the time c L(0)/|v| in which f turns is so short that f follows v: n is along v, the
+ * term c L(0) A is left out, and w of order k gives A of order k - 1. Steps of lag = 0 would be as short as that time. */
 #include "event_series.h"
 #include "common/layout.h"
 #include "common/real.h"
@@ -13,9 +14,6 @@
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Limits of a step that are below this part of the largest one do not make the guard of a contact at rest larger. */
-#define LEAST_PART 1e-3
 
 /* Time before lift-off, in units of 1 over the highest frequency, in which the force is too small for its direction to count:
  * there A becomes infinite, and steps ever shorter. */
@@ -34,9 +32,6 @@
 
 /* Error of a velocity that the force follows, in parts of it. */
 #define LAGS 1e-13
-
-/* Error of |u| in a periodic motion: that of perturbations. */
-#define STRAIGHT 1e-8
 
 /* Arrays of a pair with [order + 2] entries. */
 #define SERIES 11
@@ -93,25 +88,20 @@ static void set_first(struct pair_line *l, const double *f, const double *v)
     l->n[1] = side * x[1] / size;
 }
 
-static double pair_product(const double *x, const double *y, size_t k, size_t from, size_t to)
-{
-    return tribo_series_product(x, y, 1, k, from, to);
-}
-
 /* Sets u of order k + 1 from A up to order k. */
 static void turn_pair(struct pair_line *l, size_t k)
 {
-    l->un[k + 1] = -pair_product(l->ut, l->a, k, 0, k + 1) / (double)(k + 1);
-    l->ut[k + 1] = pair_product(l->un, l->a, k, 0, k + 1) / (double)(k + 1);
+    l->un[k + 1] = -tribo_product_of(l->ut, l->a, k, 0, k + 1) / (double)(k + 1);
+    l->ut[k + 1] = tribo_product_of(l->un, l->a, k, 0, k + 1) / (double)(k + 1);
 }
 
 /* w of order k. */
 static double across(const struct pair_line *l, size_t k)
 {
-    return pair_product(l->un, l->vt, k, 0, k + 1) - pair_product(l->ut, l->vn, k, 0, k + 1);
+    return tribo_product_of(l->un, l->vt, k, 0, k + 1) - tribo_product_of(l->ut, l->vn, k, 0, k + 1);
 }
 
-/* Finds coefficients of order k of pair l, spring c, and of u of the next order. */
+/* Finds coefficients of order k of pair l, compliance c, and those of u of order k + 1, or k if lag = 1. */
 static void expand(struct pair_line *l, double c, size_t k)
 {
     if (k == 0) {
@@ -120,14 +110,14 @@ static void expand(struct pair_line *l, double c, size_t k)
     } else if (l->lag) { /* w_k = w without A_(k - 1), less vn_0 A_(k - 1)/k */
         l->a[k - 1] = 0.0;
         turn_pair(l, k - 1);
-        const double known = k > 1 ? pair_product(l->limit, l->a, k, 2, k + 1) : 0.0;
+        const double known = k > 1 ? tribo_product_of(l->limit, l->a, k, 2, k + 1) : 0.0;
         l->a[k - 1] = (across(l, k) - c * known) / (c * l->limit[1] + l->vn[0] / (double)k);
         turn_pair(l, k - 1);
     }
     l->w[k] = l->fades ? 0.0 : across(l, k);
-    l->sigma[k] = pair_product(l->un, l->vn, k, 0, k + 1) + pair_product(l->ut, l->vt, k, 0, k + 1) - c * l->rise[k];
+    l->sigma[k] = tribo_product_of(l->un, l->vn, k, 0, k + 1) + tribo_product_of(l->ut, l->vt, k, 0, k + 1) - c * l->rise[k];
     if (!l->lag) {
-        l->a[k] = (l->w[k] / c - pair_product(l->limit, l->a, k, 1, k + 1)) / l->limit[0];
+        l->a[k] = (l->w[k] / c - tribo_product_of(l->limit, l->a, k, 1, k + 1)) / l->limit[0];
         turn_pair(l, k);
     }
 }
@@ -169,8 +159,8 @@ void tribo_pair_series_slide(const struct event *e, size_t k, const double *v, d
                     *own -= l->limit[j] * u_of(l, d, k - j);
                 }
             }
-            const double along = -pair_product(l->rise, l->un, k, 0, k + 1) + pair_product(l->w, l->ut, k, 0, k + 1) / c;
-            const double side = -pair_product(l->rise, l->ut, k, 0, k + 1) - pair_product(l->w, l->un, k, 0, k + 1) / c;
+            const double along = tribo_product_of(l->w, l->ut, k, 0, k + 1) / c - tribo_product_of(l->rise, l->un, k, 0, k + 1);
+            const double side = -tribo_product_of(l->rise, l->ut, k, 0, k + 1) - tribo_product_of(l->w, l->un, k, 0, k + 1) / c;
             slide[l->at] = l->n[0] * along - l->n[1] * side;
             slide[l->at + 1] = l->n[1] * along + l->n[0] * side;
         }
@@ -180,7 +170,7 @@ void tribo_pair_series_slide(const struct event *e, size_t k, const double *v, d
 double tribo_pair_series_power(const struct event *e, const struct pair_line *l, size_t k)
 {
     const int slides = e->events.stick_slip.state.slip[l->at] == TRIBO_SLIP_PLANE;
-    return slides ? pair_product(l->limit, l->sigma, k, 0, k + 1) : 0.0;
+    return slides ? tribo_product_of(l->limit, l->sigma, k, 0, k + 1) : 0.0;
 }
 
 double tribo_pair_series_power_along(const struct event *e, size_t i, size_t k)
@@ -210,14 +200,14 @@ void tribo_pair_series_guards(struct event *e)
             continue;
         }
         const double most = tribo_normals_follower(e->sys, l->at) ? e->limit_curve[l->at].size : l->limit[0];
-        const double reference = greater(greater(2.0 * l->limit[0] - most, LEAST_PART * most), DBL_MIN);
+        const double reference = tribo_series_reference(2.0 * l->limit[0] - most, most);
         for (size_t k = 0; k <= 2 * e->order; k++) {
             const size_t from = k < e->order ? 0 : k - e->order, to = k < e->order ? k + 1 : e->order + 1;
             const double *f = e->spring + l->at;
             const double square = slides ? 0.0
                                          : tribo_series_product(f, f, c, k, from, to) +
                                                tribo_series_product(f + 1, f + 1, c, k, from, to) -
-                                               pair_product(l->limit, l->limit, k, from, to);
+                                               tribo_product_of(l->limit, l->limit, k, from, to);
             l->square[k] = slides ? (k <= e->order ? l->sigma[k] : 0.0) : 0.5 * square / reference;
         }
         tribo_curves_bound(curve, 1, 2 * e->order + 1, 1, l->square, e->length);
@@ -287,8 +277,8 @@ double tribo_pair_series_shorten(const struct event *e, double h, double most)
             power++;
         }
         h = tribo_series_within(l->limit + power, e->order - power, l->square, h);
-        while (h > 0.0 &&
-               !(fabs(hypot(tribo_series_value(l->un, e->order, h), tribo_series_value(l->ut, e->order, h)) - 1.0) <= STRAIGHT)) {
+        while (h > 0.0 && !(fabs(hypot(tribo_series_value(l->un, e->order, h), tribo_series_value(l->ut, e->order, h)) - 1.0) <=
+                            TRIBO_STRAIGHT)) {
             h *= 0.8;
         }
     }
@@ -306,8 +296,7 @@ static double across_of(const struct pair_line *l, size_t d, size_t j)
     return d ? u_of(l, 0, j) : -u_of(l, 1, j);
 }
 
-void tribo_pair_series_turn(const struct event *e, size_t k, const struct pair_turns *p, const double *q, const double *v,
-                            size_t rows)
+void tribo_pair_series_turn(const struct event *e, size_t k, const struct pair_turns *p, const double *q, const double *v)
 {
     const tribo_system *sys = e->sys;
     const size_t columns = p->columns, each = e->pairs.count * columns, all = sys->ncontact * columns;
@@ -325,13 +314,13 @@ void tribo_pair_series_turn(const struct event *e, size_t k, const struct pair_t
         for (size_t j = 0; !l->fades && j <= k && j <= e->order; j++, power *= p->tau) {
             const double *turned = p->z + (k - j) % p->rows * each + s * columns;
             for (size_t d = 0; d < 2; d++) {
-                const double *dv = v + (k - j) % rows * all + (l->at + d) * columns;
+                const double *dv = v + (k - j) % p->rows * all + (l->at + d) * columns;
                 tribo_add(z, power * across_of(l, d, j), dv, columns);
             }
             tribo_add(z, -power * c * (l->lag && j == e->order ? 0.0 : l->a[j]), p->g + (k - j) % p->rows * each + s * columns,
                       columns);
             tribo_add(z, l->lag && j == 0 ? 0.0 : -power * (l->sigma[j] + c * l->rise[j]), turned, columns);
-            if (j > l->lag && k + 1 - j > 0) {
+            if (j > l->lag) {
                 const double *before = p->z + (k + 1 - j) % p->rows * each + s * columns;
                 tribo_add(z, -power / p->tau * c * l->limit[j] * (double)(k + 1 - j), before, columns);
             }

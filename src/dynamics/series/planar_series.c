@@ -29,12 +29,6 @@
 /* Error of a velocity, in parts of the contact's own speed, even if that is far below the tolerance: the direction counts. */
 #define PART 1e-4
 
-/* Error of a direction in a periodic motion: that of perturbations. */
-#define STRAIGHT 1e-8
-
-/* Limits of a step that are below this part of the largest one do not make the guard of a contact at rest larger. */
-#define LEAST_PART 1e-3
-
 /* Least orders. */
 #define LEAST_ORDER 4.0
 #define LEAST_GIVEN (TRIBO_CREEP_NODES + 2.0)
@@ -167,15 +161,10 @@ int tribo_planar_series_begin(struct event *e)
 
 /* ------------------------------------------------------------------------------------------------------- coefficients */
 
-static double product_of(const double *x, const double *y, size_t k, size_t from, size_t to)
-{
-    return tribo_series_product(x, y, 1, k, from, to);
-}
-
 /* Part of coefficient k of |x| u along t that does not have the last coefficients of u and |x|. */
 static double before(const struct planar_line *l, size_t k)
 {
-    return product_of(l->speed, l->ut, k, 1, k);
+    return tribo_product_of(l->speed, l->ut, k, 1, k);
 }
 
 int tribo_planar_series_forces(struct event *e, size_t k, const double *v)
@@ -204,15 +193,15 @@ int tribo_planar_series_forces(struct event *e, size_t k, const double *v)
                                e->sys->loads.time, p->at);
         }
         if (e->planar.given == 0.0 && k >= lead) {
-            l->un[a] = a ? -0.5 * (product_of(l->un, l->un, a, 1, a) + product_of(l->ut, l->ut, a, 1, a)) : 1.0;
+            l->un[a] = a ? -0.5 * (tribo_product_of(l->un, l->un, a, 1, a) + tribo_product_of(l->ut, l->ut, a, 1, a)) : 1.0;
             l->ut[a] = a && shift == lead ? (l->xt[a] - before(l, a)) / l->xn[0] : 0.0;
         }
         if (e->planar.given == 0.0 && k >= shift) {
-            l->speed[j] = l->xn[j] - product_of(l->speed, l->un, j, 0, j);
+            l->speed[j] = l->xn[j] - tribo_product_of(l->speed, l->un, j, 0, j);
         }
         const size_t terms = tribo_event_limit_terms(e), to = k < terms ? k + 1 : terms;
-        l->fn[k] = product_of(l->g, l->un, k, lead, to);
-        l->ft[k] = product_of(l->g, l->ut, k, lead, to);
+        l->fn[k] = tribo_product_of(l->g, l->un, k, lead, to);
+        l->ft[k] = tribo_product_of(l->g, l->ut, k, lead, to);
         for (size_t d = 0; d < 2; d++) {
             e->room.given[p->at + d] = -p->weight[d] * (l->n[d] * l->fn[k] + l->t[d] * l->ft[k]);
         }
@@ -275,7 +264,8 @@ double tribo_planar_series_power(const struct event *e, size_t k)
         const struct planar_line *l = &e->planar.line[c];
         const size_t j = k - (size_t)p->begins;
         if (tribo_slides_in_plane(m, p) && k >= (size_t)p->begins) {
-            power += e->sys->tally[p->at] * (product_of(l->fn, l->xn, j, 0, j + 1) + product_of(l->ft, l->xt, j, 0, j + 1));
+            power += e->sys->tally[p->at] *
+                     (tribo_product_of(l->fn, l->xn, j, 0, j + 1) + tribo_product_of(l->ft, l->xt, j, 0, j + 1));
         }
     }
     return power;
@@ -435,7 +425,7 @@ static double find_reference(const struct event *e, struct planar_contact *p)
 {
     const double ratio = e->events.stick_slip.limits.ratio[p->at];
     const double most = ratio * e->limit_curve[p->at].size, least = 2.0 * ratio * p->limit[0] - most;
-    const double reference = greater(greater(least, LEAST_PART * most), DBL_MIN);
+    const double reference = tribo_series_reference(least, most);
     p->blunt = reference > least ? reference : 0.0;
     return reference;
 }
@@ -465,8 +455,8 @@ void tribo_planar_series_guards(struct event *e)
         }
         for (size_t k = 0; k <= 2 * e->order; k++) { /* terms of the square are not small where those of x end */
             const size_t from = k < last ? 0 : k - last, to = k < last ? k + 1 : last + 1;
-            const double square = product_of(l->xn, l->xn, k, from, to) + product_of(l->xt, l->xt, k, from, to);
-            const double limit = moves || !p->varies ? 0.0 : square_ratio * product_of(l->g, l->g, k, from, to);
+            const double square = tribo_product_of(l->xn, l->xn, k, from, to) + tribo_product_of(l->xt, l->xt, k, from, to);
+            const double limit = moves || !p->varies ? 0.0 : square_ratio * tribo_product_of(l->g, l->g, k, from, to);
             l->square[k] = moves ? square : half * (square - limit);
         }
         tribo_curves_bound(curve, 1, 2 * e->order + 1, 1, l->square, e->length);
@@ -513,7 +503,7 @@ double tribo_planar_series_shorten(const struct event *e, double h)
             sum = sum * h + fabs(l->xn[k]) + fabs(l->xt[k]);
         }
         h = e->events.sharp ? tribo_series_within(l->speed, last, l->square, h) : h;
-        if ((e->events.sharp && !(off <= STRAIGHT)) ||
+        if ((e->events.sharp && !(off <= TRIBO_STRAIGHT)) ||
             !(off * tribo_planar_series_brake(e, c, h) * h / (double)(e->order + 1) <= m->plane->error[p->at] &&
               sum <= FASTER * l->xn[0])) {
             h *= 0.8;
