@@ -326,10 +326,9 @@ static double residual(const struct scene *s, double t, double y[9][2 * DOFS + F
         double v = velocity(s, k, t, q);
         if (s->pair[k] == FIRST && s->compliance[k] > 0.0) {
             double slides[2], force[2];
+            spring_force(s, k, q, force);
             for (size_t e = 0; e < 2; e++) {
-                const double *along = row + e * n;
-                force[e] = (q[2 * n + springs] - row_of(along, q, n)) / s->compliance[k];
-                slides[e] = velocity(s, k + e, t, q) + derivative(y, 2 * n + springs++) - row_of(along, u, n);
+                slides[e] = velocity(s, k + e, t, q) + derivative(y, 2 * n + springs++) - row_of(row + e * n, u, n);
             }
             const double moves = hypot(slides[0], slides[1]);
             off = fmax(off, hypot(force[0], force[1]) - limit);

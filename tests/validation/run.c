@@ -2,6 +2,7 @@
 #include "run.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include "../set_up_driver.h"
 
 tribo_model *dense_model(size_t ndof, size_t ncontact, const double *mass, const double *damping, const double *stiffness,
@@ -62,6 +63,52 @@ void run(tribo_system *sys, const char *method, double dt, double tolerance, dou
     double t = 0.0;
     driver_advance(drv, &t, t1, y);
     tribo_driver_destroy(drv);
+}
+
+double between(uint64_t *seed, double from, double to)
+{
+    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+    return from + (to - from) * (double)(*seed >> 11) / 9007199254740992.0;
+}
+
+double largest_difference(const double *x, const double *y, size_t n)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        most = fmax(most, fabs(x[i] - y[i]));
+    }
+    return most;
+}
+
+enum { MOST_MULTIPLIERS = 16 };
+
+void assert_traces(tribo_driver *drv, size_t n, double t, double period, const double *y, double h, double error)
+{
+    double map[MOST_MULTIPLIERS][MOST_MULTIPLIERS], re[MOST_MULTIPLIERS], im[MOST_MULTIPLIERS], trace[2] = {0.0}, sum[2] = {0.0};
+    require(n <= MOST_MULTIPLIERS, "%zu multipliers", n);
+    assert_ok(tribo_driver_get_multipliers(drv, re, im));
+    for (size_t j = 0; j < n; j++) {
+        double end[2][MOST_MULTIPLIERS + 1];
+        for (int side = 0; side < 2; side++) {
+            double from = t;
+            memcpy(end[side], y, (n + 1) * sizeof *y);
+            end[side][j] += side ? h : -h;
+            driver_advance(drv, &from, t + period, end[side]);
+        }
+        for (size_t i = 0; i < n; i++) {
+            map[i][j] = (end[1][i] - end[0][i]) / (2.0 * h);
+        }
+    }
+    for (size_t i = 0; i < n; i++) {
+        trace[0] += map[i][i];
+        sum[0] += re[i];
+        sum[1] += re[i] * re[i] - im[i] * im[i];
+        for (size_t j = 0; j < n; j++) {
+            trace[1] += map[i][j] * map[j][i];
+        }
+    }
+    require(fabs(sum[0] - trace[0]) < error && fabs(sum[1] - trace[1]) < error, "%.9g, %.9g; squares %.9g, %.9g", sum[0],
+            trace[0], sum[1], trace[1]);
 }
 
 tribo_system *oscillator(int law, double alpha, double omega)

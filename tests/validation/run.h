@@ -6,6 +6,8 @@
 #include "support.h"
 #include "tribo/tribo_gsl.h"
 
+#include <stdint.h>
+
 /* A model of dense matrices, damping NULL: none; compliances and normals may follow. finish_model: its system, and the end of the
  * model. What fails ends the test. */
 tribo_model *dense_model(size_t ndof, size_t ncontact, const double *mass, const double *damping, const double *stiffness,
@@ -20,6 +22,16 @@ size_t driver_freedom(const tribo_driver *drv);
 
 /* Advances y from 0 to t1 with a driver of its own. */
 void run(tribo_system *sys, const char *method, double dt, double tolerance, double t1, double *y);
+
+/* Returns a random number, from <= number < to, and changes the seed. */
+double between(uint64_t *seed, double from, double to);
+
+/* The largest |x_i - y_i| of n. */
+double largest_difference(const double *x, const double *y, size_t n);
+
+/* The sum of the n <= 16 multipliers of the periodic motion (t, y) that drv has found, and that of their squares, differ by less
+ * than error from the traces of the map over the period and of its square, by differences of motions from y_j - h and y_j + h. */
+void assert_traces(tribo_driver *drv, size_t n, double t, double period, const double *y, double h, double error);
 
 tribo_system *oscillator(int law, double alpha, double omega);
 

@@ -3,8 +3,6 @@
 #include "make.h"
 #include "run.h"
 
-#include <string.h>
-
 enum { MOST = 6 };
 
 static const double identity[4] = {1.0, 0.0, 0.0, 1.0};
@@ -74,12 +72,6 @@ TEST(line)
     tribo_system_destroy(s);
 }
 
-static double between(uint64_t *seed, double from, double to)
-{
-    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-    return from + (to - from) * (double)(*seed >> 11) / 9007199254740992.0;
-}
-
 /* One to three masses with planar contacts, with each other for every third seed, some with ellipses; two harmonics of a period.
  * wide: limits of a hundredth to three: some contacts turn within 1e-6 while others rest, and squares of their series
  * overflow. */
@@ -138,38 +130,15 @@ TEST(multipliers)
         int sticks, wide;
     } scene[] = {{0, 0, 0},  {3, 0, 0},   {5, 1, 0},  {9, 1, 0},  {13, 1, 0},
                  {17, 1, 0}, {122, 0, 1}, {24, 0, 1}, {60, 0, 1}, {92, 0, 1}};
-    const double h = 1e-5; /* motions after stops in the plane have rounding of 1e-11 */
     size_t n;
-    double y[2 * MOST + 1] = {0.0}, map[2 * MOST][2 * MOST], re[2 * MOST], im[2 * MOST], trace[2] = {0.0}, sum[2] = {0.0};
-    double period, stick[MOST];
+    double y[2 * MOST + 1] = {0.0}, period, stick[MOST];
     tribo_system *sys = coupled(scene[_i].seed, scene[_i].wide, &n, &period);
     tribo_driver *d = driver_create(sys, "event", 0.0, 0.0);
     const int status = tribo_driver_find_periodic(d, 0.0, period, y);
     require(!status, "%d: %s", _i, tribo_driver_message(d));
-    assert_ok(tribo_driver_get_multipliers(d, re, im));
     assert_ok(tribo_driver_period_stick(d, stick));
-    for (size_t j = 0; j < 2 * n; j++) {
-        double end[2][2 * MOST + 1];
-        for (int side = 0; side < 2; side++) {
-            double t = 0.0;
-            memcpy(end[side], y, sizeof y);
-            end[side][j] += side ? h : -h;
-            driver_advance(d, &t, period, end[side]);
-        }
-        for (size_t i = 0; i < 2 * n; i++) {
-            map[i][j] = (end[1][i] - end[0][i]) / (2.0 * h);
-        }
-    }
-    for (size_t i = 0; i < 2 * n; i++) {
-        trace[0] += map[i][i];
-        sum[0] += re[i];
-        sum[1] += re[i] * re[i] - im[i] * im[i];
-        for (size_t j = 0; j < 2 * n; j++) {
-            trace[1] += map[i][j] * map[j][i];
-        }
-    }
-    assert_close(sum[0], trace[0], 1e-6);
-    assert_close(sum[1], trace[1], 1e-6);
+    /* motions after stops in the plane have rounding of 1e-11 */
+    assert_traces(d, 2 * n, 0.0, period, y, 1e-5, 1e-6);
     require(!scene[_i].sticks || (stick[0] > 0.05 && stick[0] < 1.0), "at rest for %g", stick[0]);
     tribo_driver_destroy(d);
     tribo_system_destroy(sys);

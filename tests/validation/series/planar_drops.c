@@ -8,12 +8,6 @@
 
 enum { BODIES = 3, FLAT = 2 * BODIES };
 
-static double between(uint64_t *seed, double from, double to)
-{
-    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-    return from + (to - from) * (double)(*seed >> 11) / 9007199254740992.0;
-}
-
 static const double axis[4][2] = {{1.0, 0.0}, {0.0, -1.0}, {0.6, 0.8}, {-0.28, 0.96}};
 
 /* A block of mass 1 on springs of 1, kinetic limit 0.6 and static one 1, on a belt that runs at 0.2 along e: t_stick = 2 D/v0,
@@ -197,61 +191,29 @@ static void run_across(uint64_t seed, const char *method, double dt, double tole
     tribo_system_destroy(sys);
 }
 
-static double largest(const double *x, const double *y)
-{
-    double most = 0.0;
-    for (size_t i = 0; i < 2 * FLAT + 1; i++) {
-        most = fmax(most, fabs(x[i] - y[i]));
-    }
-    return most;
-}
-
 /* Tolerances are kept; and methods with steps, of first order where static limits are lost, come to the same. */
 TEST(across)
 {
     double want[2 * FLAT + 1], rough[2 * FLAT + 1], coarse[2 * FLAT + 1], fine[2 * FLAT + 1];
     run_across((uint64_t)_i, "event", 0.1, 1e-12, want);
     run_across((uint64_t)_i, "event", 0.1, 1e-9, rough);
-    require(largest(rough, want) < 1e-6, "seed %d: off by %g", _i, largest(rough, want));
+    const double off = largest_difference(rough, want, 2 * FLAT + 1);
+    require(off < 1e-6, "seed %d: off by %g", _i, off);
     run_across((uint64_t)_i, "moreau/fixed", 8e-3, 0.0, coarse);
     run_across((uint64_t)_i, "moreau/fixed", 1e-3, 0.0, fine);
-    require(largest(fine, want) < 0.01 && largest(fine, want) < 0.35 * largest(coarse, want) + 1e-3, "seed %d: off by %g, %g", _i,
-            largest(coarse, want), largest(fine, want));
+    const double far = largest_difference(coarse, want, 2 * FLAT + 1), near = largest_difference(fine, want, 2 * FLAT + 1);
+    require(near < 0.01 && near < 0.35 * far + 1e-3, "seed %d: off by %g, %g", _i, far, near);
 }
 
 /* The periodic motion from `begin` on returns, and the traces of the map over a period and of its square are those of
  * multipliers. Ends the test, and sys. */
 static void assert_multipliers(tribo_system *sys, double begin, double period)
 {
-    const double h = 1e-6;
-    const size_t n = tribo_system_ndof(sys);
-    double y[2 * FLAT + 1] = {0.0}, map[2 * FLAT][2 * FLAT], re[2 * FLAT], im[2 * FLAT], trace[2] = {0.0}, sum[2] = {0.0};
+    double y[2 * FLAT + 1] = {0.0};
     tribo_driver *d = driver_create(sys, "event", 0.0, 0.0);
     const int status = tribo_driver_find_periodic(d, begin, period, y);
     require(!status, "%s", tribo_driver_message(d));
-    assert_ok(tribo_driver_get_multipliers(d, re, im));
-    for (size_t j = 0; j < 2 * n; j++) {
-        double end[2][2 * FLAT + 1];
-        for (int side = 0; side < 2; side++) {
-            double t = begin;
-            memcpy(end[side], y, sizeof y);
-            end[side][j] += side ? h : -h;
-            driver_advance(d, &t, begin + period, end[side]);
-        }
-        for (size_t i = 0; i < 2 * n; i++) {
-            map[i][j] = (end[1][i] - end[0][i]) / (2.0 * h);
-        }
-    }
-    for (size_t i = 0; i < 2 * n; i++) {
-        trace[0] += map[i][i];
-        sum[0] += re[i];
-        sum[1] += re[i] * re[i] - im[i] * im[i];
-        for (size_t j = 0; j < 2 * n; j++) {
-            trace[1] += map[i][j] * map[j][i];
-        }
-    }
-    require(fabs(sum[0] - trace[0]) < 1e-5 && fabs(sum[1] - trace[1]) < 1e-5, "%.9g, %.9g; squares %.9g, %.9g", sum[0], trace[0],
-            sum[1], trace[1]);
+    assert_traces(d, 2 * tribo_system_ndof(sys), begin, period, y, 1e-6, 1e-5);
     tribo_driver_destroy(d);
     tribo_system_destroy(sys);
 }

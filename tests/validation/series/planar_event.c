@@ -169,12 +169,6 @@ TEST(reverses_on_line)
 
 enum { MOST = 8 };
 
-static double between(uint64_t *seed, double from, double to)
-{
-    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-    return from + (to - from) * (double)(*seed >> 11) / 9007199254740992.0;
-}
-
 /* One to three masses with planar contacts, with each other for every third seed, and up to two with scalar ones, which may be
  * on the planar masses: springs and inertia between all, and two harmonics. scale: of limits; every second one has ellipses. */
 static tribo_system *coupled(uint64_t seed, double scale, size_t *ndof)
@@ -230,15 +224,6 @@ static void run_coupled(uint64_t seed, double scale, const char *method, double 
     tribo_system_destroy(s);
 }
 
-static double largest(const double *x, const double *y)
-{
-    double most = 0.0;
-    for (size_t i = 0; i < 2 * MOST + 1; i++) {
-        most = fmax(most, fabs(x[i] - y[i]));
-    }
-    return most;
-}
-
 /* Tolerances are kept, up to what motions make of errors, also where contacts rest for long: then when they let go counts. */
 TEST(tolerances)
 {
@@ -246,7 +231,8 @@ TEST(tolerances)
     double rough[2 * MOST + 1], fine[2 * MOST + 1];
     run_coupled((uint64_t)_i, scale, "event", 0.1, 1e-9, rough);
     run_coupled((uint64_t)_i, scale, "event", 0.1, 1e-12, fine);
-    require(largest(rough, fine) < 1e-7, "seed %d: off by %g", _i, largest(rough, fine));
+    const double off = largest_difference(rough, fine, 2 * MOST + 1);
+    require(off < 1e-7, "seed %d: off by %g", _i, off);
 }
 
 /* What methods with steps come to as these become short. */
@@ -259,9 +245,9 @@ TEST(agreement)
     run_coupled(seed, scale, "event", 0.1, 1e-10, want);
     run_coupled(seed, scale, methods[_i % 3], 1.6e-2, 0.0, coarse);
     run_coupled(seed, scale, methods[_i % 3], 1e-3, 0.0, fine);
-    require(largest(fine, want) < 2e-3, "%s, seed %d: off by %g", methods[_i % 3], _i / 3, largest(fine, want));
-    require(largest(fine, want) < 0.25 * largest(coarse, want) + 1e-6, "%s, seed %d: %g does not become less than %g",
-            methods[_i % 3], _i / 3, largest(coarse, want), largest(fine, want));
+    const double far = largest_difference(coarse, want, 2 * MOST + 1), near = largest_difference(fine, want, 2 * MOST + 1);
+    require(near < 2e-3, "%s, seed %d: off by %g", methods[_i % 3], _i / 3, near);
+    require(near < 0.25 * far + 1e-6, "%s, seed %d: %g does not become less than %g", methods[_i % 3], _i / 3, far, near);
 }
 
 /* Two equal masses, pulled equally and joined by a spring, move equally; contacts let go and stick at the same instants. */
