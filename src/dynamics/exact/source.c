@@ -25,19 +25,18 @@ enum { TERMS = 18 };
 struct response {
     const struct exact *x;
     double tau;
-    double *steady, *ramp; /* c_0, c_1 */
-    double *re, *im;       /* [SOURCES][harmonics][modes] c of harmonics */
-    double *eta, *rate;    /* responses at tau */
-    double *zr, *zi;       /* [exponents] response of exponents */
-    double complex *along,
-        *against;              /* [harmonics] what an exponent takes until tau from e^{i omega s}, and from e^{-i omega s} */
-    double complex *at_tau;    /* [exponents] e^{lambda tau} */
-    double *cr, *ci;           /* [modes][SOURCES][exponents] c of exponents; coupled */
-    double *rr, *ii, *ri, *ir; /* [exponents][SOURCES][exponents] products of re and im of b with re and im of c; coupled */
-    double *q, *u;             /* [ndof] workspace */
-    double *unit;              /* [shapes] workspace */
-    double *power;             /* [TRIBO_POWERS][modes][SOURCES] coefficients of the sources; without modes */
-    double *e, *e_rate, *out;  /* [modes][SOURCES], [modes][SOURCES], [4 modes + 1][SOURCES] workspace; without modes */
+    double *steady, *ramp;           /* c_0, c_1 */
+    double *re, *im;                 /* [SOURCES][harmonics][modes] c of harmonics */
+    double *eta, *rate;              /* responses at tau */
+    double *zr, *zi;                 /* [SOURCES][exponents] response of exponents */
+    double complex *along, *against; /* [exponents + harmonics] responses of an exponent at tau to e^{mu s}/2, its conjugate */
+    double complex *at_tau;          /* [exponents + harmonics] e^{mu tau} */
+    double *cr, *ci;                 /* [modes][SOURCES][exponents] c of exponents; coupled */
+    double *rr, *ii, *ri, *ir;       /* [exponents][SOURCES][exponents] products of re and im of b with re and im of c; coupled */
+    double *q, *u;                   /* [ndof] workspace */
+    double *unit;                    /* [shapes] workspace */
+    double *power;                   /* [TRIBO_POWERS][modes][SOURCES] coefficients of the sources; without modes */
+    double *e, *e_rate, *out;        /* [modes][SOURCES], [modes][SOURCES], [4 modes + 1][SOURCES] workspace; without modes */
 };
 
 /* Returns (e^z - 1 - z)/z^2, the integral of (1 - s) e^{z s} over s from 0 to 1. */
@@ -105,15 +104,15 @@ static void find_source(struct response *r, int source)
     }
 }
 
-/* Sets at_tau, and of coupled modes c of exponents and its products with b. */
+/* Sets at_tau; of coupled modes c of exponents, and products of c with b. */
 static void find_exponents(struct response *r)
 {
-    const struct modal *h = r->x->h->modal;
+    const struct forced *f = r->x->h;
+    const struct modal *h = f->modal;
     const size_t m = h->modes, e = h->exponents, wide = SOURCES * e;
-    for (size_t q = 0; q < e; q++) {
+    for (size_t q = 0; !h->owner && q < e; q++) {
         const double complex mu = h->lr[q] + h->li[q] * I, z = tribo_part(&r->x->z, q), square = mu * mu;
-        r->at_tau[q] = cexp(mu * r->tau);
-        for (size_t k = 0; !h->owner && k < m; k++) {
+        for (size_t k = 0; k < m; k++) {
             const double complex motion = (h->rr[q * m + k] - h->ri[q * m + k] * I) * z;
             const double complex c[] = {[INERTIA] = square * motion, [DAMPING] = -(square + h->omega2[k]) * motion};
             for (size_t source = 0; source < SOURCES; source++) {
@@ -121,6 +120,9 @@ static void find_exponents(struct response *r)
                 r->ci[k * wide + source * e + q] = cimag(c[source]);
             }
         }
+    }
+    for (size_t q = 0; q < e + f->harmonics; q++) {
+        r->at_tau[q] = cexp((f->lr[q] + f->li[q] * I) * r->tau);
     }
     if (!h->owner) {
         tribo_multiply_transposed_add(m, e, wide, h->left.br, r->cr, r->rr);
@@ -130,72 +132,67 @@ static void find_exponents(struct response *r)
     }
 }
 
-/* Returns what exponent p takes until tau: from c_0, c_1, harmonics, and exponents. */
-static double complex respond_exponent(const struct response *r, int source, size_t p)
+/* Sets the responses of exponent p at tau to both sources: to c_0, c_1, harmonics, and exponents. */
+static void respond_exponent(struct response *r, size_t p)
 {
     const struct forced *f = r->x->h;
     const struct modal *h = f->modal;
     const double complex own = h->lr[p] + h->li[p] * I;
-    const size_t m = h->modes, first = h->owner ? h->owner[p] : 0, end = h->owner ? first + 1 : m, at = (size_t)source * m;
+    const size_t m = h->modes, e = h->exponents, first = h->owner ? h->owner[p] : 0, end = h->owner ? first + 1 : m;
     const double complex steady = r->tau * tribo_exp_1(own * r->tau), ramp = r->tau * r->tau * exp_2(own * r->tau);
-    double complex sum = 0.0, b = 0.0;
-    for (size_t s = 0; s < f->harmonics; s++) {
-        const double complex turn = f->forcing[s].omega * I, turned = cexp(turn * r->tau);
-        r->along[s] = 0.5 * meet(own, turn, r->tau, r->at_tau[p], turned);
-        r->against[s] = 0.5 * meet(own, -turn, r->tau, r->at_tau[p], conj(turned));
-    }
-    for (size_t k = first; k < end; k++) {
-        const size_t of = h->owner ? p : k * h->exponents + p;
-        double complex part = r->steady[at + k] * steady + r->ramp[at + k] * ramp;
-        for (size_t s = 0; s < f->harmonics; s++) {
-            const size_t to = ((size_t)source * f->harmonics + s) * m + k;
-            const double complex c = r->re[to] + r->im[to] * I;
-            part += c * r->along[s] + conj(c) * r->against[s];
+    for (size_t q = 0; q < e + f->harmonics; q++) {
+        const double complex mu = f->lr[q] + f->li[q] * I;
+        if (q >= e || !h->owner || h->owner[q] == first) {
+            r->along[q] = 0.5 * meet(own, mu, r->tau, r->at_tau[p], r->at_tau[q]);
+            r->against[q] = 0.5 * meet(own, conj(mu), r->tau, r->at_tau[p], conj(r->at_tau[q]));
         }
-        b = h->left.br[of] + h->left.bi[of] * I;
-        sum += b * part;
     }
-    for (size_t q = 0; q < h->exponents; q++) {
-        const double complex mu = h->lr[q] + h->li[q] * I, square = mu * mu;
-        const size_t to = (p * SOURCES + (size_t)source) * h->exponents + q;
-        double complex with, conjugate;
-        if (!h->owner) {
-            with = r->rr[to] - r->ii[to] + (r->ri[to] + r->ir[to]) * I;
-            conjugate = r->rr[to] + r->ii[to] + (r->ir[to] - r->ri[to]) * I;
-        } else if (h->owner[q] == first) {
-            const double complex c = (source == INERTIA ? square : -(square + h->omega2[first])) * tribo_part(&r->x->z, q);
-            with = b * c;
-            conjugate = b * conj(c);
-        } else {
-            continue;
+    for (size_t source = 0; source < SOURCES; source++) {
+        double complex sum = 0.0, b = 0.0;
+        for (size_t k = first; k < end; k++) {
+            const size_t of = h->owner ? p : k * e + p;
+            double complex part = r->steady[source * m + k] * steady + r->ramp[source * m + k] * ramp;
+            for (size_t s = 0; s < f->harmonics; s++) {
+                const size_t to = (source * f->harmonics + s) * m + k;
+                const double complex c = r->re[to] + r->im[to] * I;
+                part += c * r->along[e + s] + conj(c) * r->against[e + s];
+            }
+            b = h->left.br[of] + h->left.bi[of] * I;
+            sum += b * part;
         }
-        sum += 0.5 * with * meet(own, mu, r->tau, r->at_tau[p], r->at_tau[q]);
-        sum += 0.5 * conjugate * meet(own, conj(mu), r->tau, r->at_tau[p], conj(r->at_tau[q]));
+        for (size_t q = 0; q < e; q++) {
+            const double complex mu = h->lr[q] + h->li[q] * I, square = mu * mu;
+            const size_t to = (p * SOURCES + source) * e + q;
+            if (!h->owner) {
+                sum += (r->rr[to] - r->ii[to] + (r->ri[to] + r->ir[to]) * I) * r->along[q];
+                sum += (r->rr[to] + r->ii[to] + (r->ir[to] - r->ri[to]) * I) * r->against[q];
+            } else if (h->owner[q] == first) {
+                const double complex c = (source == INERTIA ? square : -(square + h->omega2[first])) * tribo_part(&r->x->z, q);
+                sum += b * c * r->along[q];
+                sum += b * conj(c) * r->against[q];
+            }
+        }
+        r->zr[source * e + p] = creal(sum);
+        r->zi[source * e + p] = cimag(sum);
     }
-    return sum;
 }
 
-/* Sets the responses of modes. */
-static void respond_modes(struct response *r, int source)
+/* Sets the responses of modes to a source by those of exponents. */
+static void respond_modes(struct response *r, size_t source)
 {
     const struct forced *f = r->x->h;
     const struct modal *h = f->modal;
     const size_t m = h->modes, e = h->exponents;
     const double t = r->tau;
-    double *eta = r->eta + (size_t)source * m, *rate = r->rate + (size_t)source * m;
-    const double *steady = r->steady + (size_t)source * m, *ramp = r->ramp + (size_t)source * m;
+    double *eta = r->eta + source * m, *rate = r->rate + source * m, *zr = r->zr + source * e, *zi = r->zi + source * e;
+    const double *steady = r->steady + source * m, *ramp = r->ramp + source * m;
+    tribo_modal_join(h, 1, zr, zi, eta);
     for (size_t p = 0; p < e; p++) {
-        const double complex z = respond_exponent(r, source, p);
-        r->zr[p] = creal(z);
-        r->zi[p] = cimag(z);
+        const double re = zr[p];
+        zr[p] = h->lr[p] * re - h->li[p] * zi[p];
+        zi[p] = h->lr[p] * zi[p] + h->li[p] * re;
     }
-    tribo_modal_join(h, 1, r->zr, r->zi, eta);
-    for (size_t p = 0; p < e; p++) {
-        const double re = r->zr[p];
-        r->zr[p] = h->lr[p] * re - h->li[p] * r->zi[p];
-        r->zi[p] = h->lr[p] * r->zi[p] + h->li[p] * re;
-    }
-    tribo_modal_join(h, 1, r->zr, r->zi, rate);
+    tribo_modal_join(h, 1, zr, zi, rate);
     for (size_t k = 0; k < m; k++) {
         if (!tribo_modal_drifts(h, k)) {
             continue;
@@ -203,7 +200,7 @@ static void respond_modes(struct response *r, int source)
         eta[k] += t * t * (0.5 * steady[k] + t / 6.0 * ramp[k]);
         rate[k] += t * (steady[k] + 0.5 * t * ramp[k]);
         for (size_t s = 0; s < f->harmonics; s++) {
-            const size_t at = ((size_t)source * f->harmonics + s) * m + k;
+            const size_t at = (source * f->harmonics + s) * m + k;
             const double complex c = r->re[at] + r->im[at] * I, turn = f->forcing[s].omega * t * I;
             eta[k] += t * t * creal(c * exp_2(turn));
             rate[k] += t * creal(c * tribo_exp_1(turn));
@@ -257,11 +254,11 @@ int tribo_modal_source(const struct exact *x, double tau, size_t columns, const 
     }
     struct response r = {.x = x, .tau = tau};
     if (!ALLOCATE(ARRAY(r.steady, SOURCES * m), ARRAY(r.ramp, SOURCES * m), ARRAY(r.eta, SOURCES * m), ARRAY(r.rate, SOURCES * m),
-                  ARRAY(r.re, loads), ARRAY(r.im, loads), ARRAY(r.zr, e), ARRAY(r.zi, e), ARRAY(r.at_tau, e),
-                  ARRAY(r.along, f->harmonics), ARRAY(r.against, f->harmonics), ARRAY(r.cr, m * each), ARRAY(r.ci, m * each),
-                  ARRAY(r.rr, e * each), ARRAY(r.ii, e * each), ARRAY(r.ri, e * each), ARRAY(r.ir, e * each),
-                  ARRAY(r.q, x->sys->ndof), ARRAY(r.u, x->sys->ndof), ARRAY(r.unit, f->shapes),
-                  ARRAY(r.power, TRIBO_POWERS * powers), ARRAY(r.e, powers), ARRAY(r.e_rate, powers),
+                  ARRAY(r.re, loads), ARRAY(r.im, loads), ARRAY(r.zr, SOURCES * e), ARRAY(r.zi, SOURCES * e),
+                  ARRAY(r.at_tau, e + f->harmonics), ARRAY(r.along, e + f->harmonics), ARRAY(r.against, e + f->harmonics),
+                  ARRAY(r.cr, m * each), ARRAY(r.ci, m * each), ARRAY(r.rr, e * each), ARRAY(r.ii, e * each),
+                  ARRAY(r.ri, e * each), ARRAY(r.ir, e * each), ARRAY(r.q, x->sys->ndof), ARRAY(r.u, x->sys->ndof),
+                  ARRAY(r.unit, f->shapes), ARRAY(r.power, TRIBO_POWERS * powers), ARRAY(r.e, powers), ARRAY(r.e_rate, powers),
                   ARRAY(r.out, 4 * powers + SOURCES))) {
         return tribo_error(x->sys->message, TRIBO_ERR_MEMORY, "out of memory for derivatives of %zu mode%s", m, plural(m));
     }
@@ -270,8 +267,11 @@ int tribo_modal_source(const struct exact *x, double tau, size_t columns, const 
     } else {
         find_exponents(&r);
         find_source(&r, INERTIA);
-        respond_modes(&r, INERTIA);
         find_source(&r, DAMPING);
+        for (size_t p = 0; p < e; p++) {
+            respond_exponent(&r, p);
+        }
+        respond_modes(&r, INERTIA);
         respond_modes(&r, DAMPING);
     }
     for (size_t at = 0; at < m * columns; at++) {
