@@ -16,7 +16,7 @@ struct curve {
     int over_limit; /* else over the frequency */
     double fixed;   /* the other one */
     struct sample *sample;
-    size_t count, room; /* ascending in x */
+    size_t count, room; /* ascending in x, or in the order of a followed curve */
     size_t record;      /* numbers in the record of a motion */
 };
 
@@ -47,8 +47,8 @@ size_t spread_samples(const struct curve *c, size_t most, const struct sample **
 /* 1 if the motion was searched; after an interruption some were not. */
 int searched(const struct sample *s);
 
-/* Follows the curve over the band of frequencies around its turns, from its lower or upper end (--follow): samples in the order
- * of the curve, special points among them with their kind as the message, not asked for. */
+/* Follows c around folds over the band, from the lower or the upper end (--follow). Adds samples in the order of the curve: a
+ * special point has asked = 0 and its kind as the message; if the following fails, the last sample is one that was not found. */
 void follow_curve(struct curve *c, struct worker *w);
 
 /* The number of motions that were searched and not found. */

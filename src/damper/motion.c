@@ -148,7 +148,7 @@ int measure_openings(struct worker *w, double hz, double *y)
     return status;
 }
 
-/* Sets the message of a motion just found that motions beside it leave. */
+/* Sets m->message if the motion that w->drv found last has a multiplier outside of the unit circle. */
 static void note_instability(struct worker *w, struct motion *m)
 {
     double *re = need_memory(2 * w->dimension, sizeof *re), *im = re + w->dimension;
@@ -159,8 +159,16 @@ static void note_instability(struct worker *w, struct motion *m)
     free(re);
 }
 
-/* In closed form. The mean power of the loads is that of the first harmonic of the displacements in phase with their rates;
- * friction and damping take it. */
+void set_outcome(struct motion *m, int status, const struct worker *w)
+{
+    m->found = !status;
+    if (status) {
+        snprintf(m->message, sizeof m->message, "%s: %s", tribo_strerror(status), tribo_driver_message(w->drv));
+    }
+}
+
+/* In closed form. Harmonic loads do work on the first harmonic of the displacements only. The power of damping is the input less
+ * that of friction. */
 int measure_motion(struct worker *w, struct motion *m, double *y)
 {
     const struct damper *d = w->d;
@@ -210,10 +218,7 @@ static struct motion shoot(struct worker *w, double limit, double hz, double *y)
         status = measure_openings(w, hz, y);
     }
     m.periods = periods_of(w) - before;
-    m.found = !status;
-    if (status) {
-        snprintf(m.message, sizeof m.message, "%s: %s", tribo_strerror(status), tribo_driver_message(w->drv));
-    }
+    set_outcome(&m, status, w);
     return m;
 }
 

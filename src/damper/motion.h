@@ -10,8 +10,8 @@ struct motion {
     double friction, damped, input; /* lost to friction, lost to damping, put in by the loads */
     size_t periods;                 /* that were integrated to find it */
     int found;                      /* 0: numbers mean nothing, and message says why */
-    int stable;                     /* of a curve that is followed: 1, 0; -1: a special point, or not known */
-    char message[200];              /* of a motion that was found: why it may not be the one that is seen; or empty */
+    int stable;                     /* points of followed curves: 1: stable, 0: unstable, -1: special, or not known */
+    char message[200];              /* an error; if found: a warning, the kind of a special point, or empty */
 };
 
 /* One that computes, with a copy of the system: belongs to one thread. */
@@ -45,11 +45,16 @@ size_t record_of(const struct damper *d);
 /* Finds it from the state guess, or from rest if that is NULL. y out, if found: its record. */
 struct motion find_motion(struct worker *w, double limit, double hz, const double *guess, double *y);
 
-/* Quantities of the motion of the driver's last search, or of the point of a curve, whose frequency is m->hz; sets *m and the
- * record y behind the state, without shares open. Returns a status. */
+/* Sets m->found = 1 with status 0, else m->message to the error of w->drv. */
+void set_outcome(struct motion *m, int status, const struct worker *w);
+
+/* Measures the periodic motion that w->drv found last, or the point of a curve during its callback, of frequency m->hz: sets
+ * amplitude and powers of m and the record y behind the state, except shares for which contacts have lifted off. Returns a
+ * status. */
 int measure_motion(struct worker *w, struct motion *m, double *y);
 
-/* Sets the shares open of the record y by a period from its state on; the frequency is that of set_point. Returns a status. */
+/* Follows the motion for a period 1/hz from the state in the record y, after set_point with this hz; sets shares of the period
+ * for which contacts have lifted off in y. Returns a status. */
 int measure_openings(struct worker *w, double hz, double *y);
 
 /* Motions that are found by themselves, each by a worker of its own; guess as above. Sets motion. */

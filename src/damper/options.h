@@ -34,7 +34,7 @@ struct options {
     double size;             /* the sum of all forces; of supports, acceleration times mass */
     struct range drive;      /* Hz; from 0: the first natural frequency */
     struct range limits;     /* of contacts, or normal loads */
-    int follow;              /* curves over the band are followed, > 0: up, < 0: down; 2, -2: through changes of events; or 0 */
+    int follow;              /* curves over the band: 1: up, -1: down, 2, -2: with changes of events; 0: not followed */
     double cycle;            /* a guess of the period, 0: none; < 0: no cycle is looked for */
     size_t backbone;         /* number of a mode; 0: no backbone curve */
     struct range amplitudes; /* of the backbone curve */

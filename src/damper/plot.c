@@ -104,17 +104,15 @@ void plot_family(const struct tables *t, const double *limit, size_t count, doub
     begin_picture(t, "family", "frequency of the load", "amplitude where the load acts");
     fprintf(t->script, "set logscale y\nset key title '%s'\n", t->limit);
     fprintf(t->script, "plot %s using 1:2 with lines linecolor '#9a9a9a' dashtype (2, 3) title 'no friction', \\\n", linear);
-    for (size_t k = 0; k < count; k++) { /* stable parts, then dashed the unstable ones */
-        const double part = count > 1 ? (double)k / (double)(count - 1) : 0.0;
-        fprintf(t->script,
-                "     %s skip 1 every :::%zu::%zu using 2:%s with lines linecolor palette frac %.4g title '%.3g', \\\n", family,
-                k, k, t->followed ? "(strcol(9) eq '0' ? NaN : $3)" : "3", part, limit[k]);
-        if (t->followed) {
-            fprintf(
-                t->script,
-                "     %s skip 1 every :::%zu::%zu using 2:(strcol(9) eq '1' ? NaN : $3) with lines linecolor palette frac %.4g "
-                "dashtype (6, 4), \\\n",
-                family, k, k, part);
+    for (size_t k = 0; k < count; k++) {
+        for (int unstable = 0; unstable <= t->followed; unstable++) {
+            fprintf(t->script, "     %s skip 1 every :::%zu::%zu using 2:%s with lines linecolor palette frac %.4g ", family, k,
+                    k,
+                    unstable      ? "(strcol(9) eq '1' ? NaN : $3)"
+                    : t->followed ? "(strcol(9) eq '0' ? NaN : $3)"
+                                  : "3",
+                    count > 1 ? (double)k / (double)(count - 1) : 0.0);
+            fprintf(t->script, unstable ? "dashtype (6, 4), \\\n" : "title '%.3g', \\\n", limit[k]);
         }
     }
     if (best > 0.0) {

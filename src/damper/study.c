@@ -51,9 +51,9 @@ static void run_curve(void *data, size_t k)
     } else {
         ask_samples(j->study, c);
         find_curve(c, &w, BEND);
-    }
-    if (!c->over_limit && !j->study->options->follow) {
-        find_largest(c, &w, BEND);
+        if (!c->over_limit) {
+            find_largest(c, &w, BEND);
+        }
     }
     free_worker(&w);
 }

@@ -43,7 +43,8 @@ void compare_models(const struct model *m, size_t threads, struct point *point, 
  * NaN if no point was compared. */
 double model_error(const struct model *m, const struct point *point, size_t count);
 
-/* The end of a line that tells the error: what follows from it, "" if it is small. */
+/* Returns the end of a printed model error: ": again with these" if take_more_modes is to take the finer modes, ": take more
+ * --modes" if only the user can, "" if `error` is small. */
 const char *advice(const struct model *m, double error);
 
 /* Prints the number of modes and the bound of missing displacements; prints the model error. */
@@ -85,7 +86,8 @@ void study_limits(struct study *s, struct curve *c);
 void write_family(struct study *s, const struct curve *c, size_t count);
 void study_band(struct study *s, const struct curve *c, size_t count);
 
-/* Prints where followed curves turn back, and how far that changes with twice the modes. */
+/* Prints limit, frequency and amplitude of the folds of followed curves c [count], and the largest change of the frequencies
+ * with twice the modes. */
 void report_folds(const struct study *s, const struct curve *c, size_t count);
 
 /* Frequency and damping ratio of a mode over the amplitude: table, picture, results, and their changes with twice the modes. */

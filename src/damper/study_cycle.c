@@ -11,8 +11,8 @@
 /* A multiplier of at most this size is that of a cycle which is stable. */
 static const double STABLE = 1.0 + 1e-6;
 
-/* Finds a cycle from rest, with the modes of w; y [dimension] out: its state. *largest = the largest modulus of its multipliers,
- * without the one nearest to 1, of the motion along it; NaN if they are not known. */
+/* Finds a cycle from rest, with the modes of w; y [dimension] out: state of the cycle. *largest = the largest modulus of the
+ * multipliers, without the one nearest to 1, of the motion along the cycle; NaN if multipliers are not known. */
 static struct motion find_cycle(struct worker *w, double limit, double guess, double *y, double *largest)
 {
     const size_t n = w->dimension - 1;
@@ -25,12 +25,9 @@ static struct motion find_cycle(struct worker *w, double limit, double guess, do
         w->c[k] = k < w->d->modes ? w->d->open.measured[k] : 0.0;
     }
     status = status ? status : tribo_driver_period_extremes(w->drv, w->c, &least, &most, NULL, NULL);
-    m.found = !status;
     m.hz = 1.0 / period;
     m.amplitude = 0.5 * (most - least);
-    if (status) {
-        snprintf(m.message, sizeof m.message, "%s: %s", tribo_strerror(status), tribo_driver_message(w->drv));
-    }
+    set_outcome(&m, status, w);
     *largest = !status && tribo_driver_get_multipliers(w->drv, re, im) == TRIBO_OK ? 0.0 : (double)NAN;
     for (size_t k = 1; k < n; k++) {
         along = hypot(re[k] - 1.0, im[k]) < hypot(re[along] - 1.0, im[along]) ? k : along;
@@ -42,26 +39,23 @@ static struct motion find_cycle(struct worker *w, double limit, double guess, do
     return m;
 }
 
-/* The error of a cycle that was found, by twice the modes: MARGIN times the larger change of period and amplitude; infinite if
- * these have no cycle; 0 if all modes are there. */
+/* Returns the error of cycle m: MARGIN times the larger change of period and amplitude with twice the modes; infinite if twice
+ * the modes have no cycle; 0 if m was not found, or with all modes. */
 static double error_of_cycle(const struct study *s, const struct motion *m)
 {
-    double largest, error = s->model->whole ? 0.0 : HUGE_VAL;
-    if (!s->model->whole) {
-        struct worker w = create_worker(&s->model->finer, 0);
-        double *y = need_memory(w.dimension, sizeof *y);
-        const struct motion there = find_cycle(&w, s->options->limits.from, 1.0 / m->hz, y, &largest);
-        if (there.found) {
-            const double change = relative_difference(there.hz, m->hz);
-            error = MARGIN * fmax(change, relative_difference(there.amplitude, m->amplitude));
-        }
-        free(y);
-        free_worker(&w);
+    if (!m->found || s->model->whole) {
+        return 0.0;
     }
-    return error;
+    struct worker w = create_worker(&s->model->finer, 0);
+    double *y = need_memory(w.dimension, sizeof *y), largest;
+    const struct motion there = find_cycle(&w, s->options->limits.from, 1.0 / m->hz, y, &largest);
+    const double change = fmax(relative_difference(there.hz, m->hz), relative_difference(there.amplitude, m->amplitude));
+    free(y);
+    free_worker(&w);
+    return there.found ? MARGIN * change : HUGE_VAL;
 }
 
-/* Steady sliding of the system of w, its exponents and frequencies. */
+/* Prints whether steady sliding of w->sys is stable, and the exponent of largest growth. */
 static void report_sliding(const struct study *s, struct worker *w)
 {
     double *y = need_memory(3 * w->dimension, sizeof *y), *re = y + w->dimension, *im = re + w->dimension;
@@ -80,18 +74,17 @@ static void report_sliding(const struct study *s, struct worker *w)
 void study_cycle(struct study *s)
 {
     const struct options *o = s->options;
-    struct worker w = create_worker(s->damper, 0);
-    double *y = need_memory(w.dimension, sizeof *y), largest;
-    struct motion m = find_cycle(&w, o->limits.from, o->cycle, y, &largest);
-    double error = m.found ? error_of_cycle(s, &m) : 0.0;
-    while (take_more_modes(s->model, error)) {
+    struct worker w = {0};
+    struct motion m;
+    double *y = NULL, largest, error;
+    do {
         free_worker(&w);
         free(y);
         w = create_worker(s->damper, 0);
         y = need_memory(w.dimension, sizeof *y);
         m = find_cycle(&w, o->limits.from, o->cycle, y, &largest);
-        error = m.found ? error_of_cycle(s, &m) : 0.0;
-    }
+        error = error_of_cycle(s, &m);
+    } while (take_more_modes(s->model, error));
     write_frequencies(s->tables, s->damper, o->frequencies);
     report_model(s->tables, s->model);
     report_sliding(s, &w);

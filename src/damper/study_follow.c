@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Curves over the frequency that are followed around their turns. */
+/* Curves over the frequency, followed around their folds. */
 #include <math.h>
 #include <stdio.h>
 #include <stdint.h>
@@ -15,7 +15,7 @@ static const char *const kinds[] = {
     [TRIBO_POINT_FOLD] = "fold",   [TRIBO_POINT_FLIP] = "flip",   [TRIBO_POINT_TORUS] = "torus", [TRIBO_POINT_BRANCH] = "branch",
     [TRIBO_POINT_STICK] = "stick", [TRIBO_POINT_SLIDE] = "slide", [TRIBO_POINT_GRAZE] = "graze", [TRIBO_POINT_ORDER] = "order"};
 
-/* A curve that is followed from the frequency hz. */
+/* Data of see_point: the curve so far, and the frequency hz at which it begins, parameter 1. */
 struct trail {
     struct curve *curve;
     struct worker *w;
@@ -31,14 +31,6 @@ static struct sample *add_sample(struct curve *c, double hz)
     return s;
 }
 
-static void set_failure(struct motion *m, int status, const struct worker *w)
-{
-    m->found = !status;
-    if (status) {
-        snprintf(m->message, sizeof m->message, "%s: %s", tribo_strerror(status), tribo_driver_message(w->drv));
-    }
-}
-
 static int see_point(const tribo_curve_point *point, void *data)
 {
     const struct trail *t = data;
@@ -48,7 +40,7 @@ static int see_point(const tribo_curve_point *point, void *data)
     s->asked = point->kind == TRIBO_POINT_REGULAR;
     m->stable = s->asked ? point->stable : -1;
     memcpy(s->y, point->y, d->dimension * sizeof *s->y);
-    set_failure(m, measure_motion(t->w, m, s->y), t->w);
+    set_outcome(m, measure_motion(t->w, m, s->y), t->w);
     const size_t c = point->contact, contacts = d->contacts;
     if (m->found && !s->asked && c < d->rows) {
         snprintf(m->message, sizeof m->message, "%s of %s %zu", kinds[point->kind], c < contacts ? "contact" : "normal",
@@ -77,13 +69,13 @@ void follow_curve(struct curve *c, struct worker *w)
     set_point(w, c->fixed, t.hz);
     const int status = tribo_driver_follow_curve(w->drv, &curve, 0.0, &period, y, see_point, (void *)&t);
     if (status && !interrupted()) {
-        set_failure(&add_sample(c, 1.0 / period)->motion, status, w);
+        set_outcome(&add_sample(c, 1.0 / period)->motion, status, w);
     }
     for (size_t k = 0; k < c->count && w->d->rows > w->d->contacts; k++) {
         struct sample *s = &c->sample[k];
         if (s->motion.found) {
             set_point(w, c->fixed, s->motion.hz);
-            set_failure(&s->motion, measure_openings(w, s->motion.hz, s->y), w);
+            set_outcome(&s->motion, measure_openings(w, s->motion.hz, s->y), w);
         }
     }
     free(y);
@@ -91,7 +83,7 @@ void follow_curve(struct curve *c, struct worker *w)
 
 /* ------------------------------------------------------------------------------------------------------------- the folds */
 
-/* The first sample from `from` on that is a fold; c->count: none. */
+/* Returns the index of the first fold among samples from `from` on; c->count: none. */
 static size_t next_fold(const struct curve *c, size_t from)
 {
     while (from < c->count && !(c->sample[from].motion.found && strncmp(c->sample[from].motion.message, "fold", 4) == 0)) {

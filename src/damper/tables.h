@@ -10,7 +10,7 @@ struct tables {
     const char *out, *name;
     FILE *values;
     const char *limit; /* the head of the column of limits */
-    int followed;      /* 1: curves have stable and unstable parts */
+    int followed;      /* 1: tables of curves have a column `stable` (--follow) */
     size_t motions;    /* found, in tables */
     const char *plot;  /* format of pictures */
     FILE *script;      /* NAME-plot.gp, which draws them; NULL: none */
