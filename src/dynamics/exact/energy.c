@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The energy that friction dissipates in a phase, in closed form. A steady force dissipates |force| times the distance slid. The
  * part of a force by harmonics of the limit is integrated with the velocity, a sum of exponentials (signal.h), and so is a limit
- * that follows a normal load. If a large limit swings through zero, these parts cancel each other: then the power, of one sign,
- * is integrated by samples; so it is if a load resonates, and in a phase so short that samples are fewer than products of
- * terms. */
+ * that follows a normal load. If a large limit swings through zero, these parts cancel each other. Samples integrate the power,
+ * of one sign, then, if a load resonates, of limits by tables, and in a phase so short that samples are fewer than terms. */
 #include "motion.h"
 #include "common/real.h"
 
@@ -12,12 +11,11 @@
 /* Smallest |sum|/(size of the parts) at which the sum keeps enough digits. */
 #define CANCELS 1e-4
 
-/* Samples of an interval, and the largest number of samples in a phase without resonance. */
-enum { SAMPLES = 8 };
-#define MOST_SAMPLES 32768.0
+/* Number of samples of an interval; largest number of samples of a phase without resonance. */
+enum { SAMPLES = 8, MOST_SAMPLES = 32768 };
 
-/* Returns the work of the contact by Gauss's rule with 8 points in each interval. The caller chooses intervals in which no term
- * turns by more than 1 rad. Goes through the phase and back to tau. */
+/* Returns the work of the contact by Gauss's rule with SAMPLES points in each interval. The caller chooses intervals in which no
+ * term turns by more than 1 rad. Goes through the phase and back to tau. */
 static double sampled_work(struct exact *x, const struct course *course, double tau, size_t intervals)
 {
     static const double at[] = {0.18343464249564980, 0.52553240991632899, 0.79666647741362674, 0.96028985649753623},
@@ -60,8 +58,9 @@ static double set_signal(const struct exact *x, const struct course *c, double t
     return size;
 }
 
-/* Returns the energy that the contact of course c, which slides at a limit that follows `load` or a table, dissipates until tau:
- * the integral of mu times the output of `load` times the velocity, closed; or by samples, with load = NULL always. */
+/* Returns the energy that the sliding contact of course c dissipates until tau. The limit is mu times the output of `load`; a
+ * table with load = NULL. Closed, as the integral of limit times velocity; by samples with a table, with resonance, in a short
+ * phase, or where parts cancel. */
 static double following_work(struct exact *x, const struct course *c, double tau, double mu, const struct course *load)
 {
     const double intervals = ceil(x->h->quickest * tau) + 1.0;
@@ -75,8 +74,8 @@ static double following_work(struct exact *x, const struct course *c, double tau
     return sampled_work(x, c, tau, (size_t)intervals);
 }
 
-/* Returns the energy that the contact of course c, which slides, dissipates until tau: steady, by its steady force, and the
- * integral of the part of its limit by harmonics times the velocity, closed; or by samples where both cancel each other. */
+/* Returns the energy that the sliding contact of course c dissipates until tau: `steady`, by the steady force, plus the integral
+ * of the part of the limit by harmonics times the velocity, closed; or by samples with resonance or where both cancel. */
 static double varying_work(struct exact *x, const struct course *c, double tau, double steady)
 {
     const struct forced *h = x->h;

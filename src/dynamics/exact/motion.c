@@ -11,7 +11,7 @@
 /* |lambda tau| below which the change of an exponential is computed by tribo_exp_1: a difference would lose digits. */
 #define LITTLE 0.1
 
-/* Makes room for twice the terms and shapes of x->h. Returns 0 if out of memory. */
+/* Makes room for twice the terms and shapes of x->h, since the next structure may have more. Returns 0 if out of memory. */
 static int motion_reserve(struct exact *x)
 {
     const size_t least = x->h->terms > x->h->shapes ? x->h->terms : x->h->shapes, room = 2 * least + TRIBO_POWERS;
@@ -332,9 +332,9 @@ static void find_constant_forces(struct exact *x, const double *y, double *force
     }
 }
 
-/* With tables: sets lead, bend and rest by their ramps; adds to force [modes] the forces by their values, which with K~ it has,
- * and subtracts those by damping of eta' = lead, and by inertia of eta'' = bend and rest. Of bases, places are quadratic in
- * time. */
+/* Without tables: does nothing. Sets lead, bend and rest by the ramps of tables; adds to force [modes] the forces by values of
+ * tables, without K~ (tribo_follow_forces has them); subtracts the forces by damping of eta' = lead, and by inertia of eta'' =
+ * bend and rest. Of bases, places are quadratic in time. */
 static void lead_tables(struct exact *x, double *force)
 {
     const struct forced *h = x->h;

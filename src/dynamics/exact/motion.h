@@ -45,12 +45,12 @@ struct held {
     size_t phases;                        /* number of phases in a row that powers had before the last one */
 };
 
-/* Tables in a phase, linear in time. */
+/* Tables in a phase, linear in time. Without tables nothing is set. */
 struct slopes {
-    double *rate;         /* [terms] of the forcings: rate of a table, of a limit times side; else 0 */
+    double *rate;         /* [terms] of forcings by a table: rate of the table, of a limit times side; others are not set */
     double *lead, *bend;  /* [modes] constant eta' and eta'' by the ramps, of modes with a stiffness */
     double *rest;         /* [modes] by ramps that no stiffness takes: eta'' of a mode with damping, else the rate of eta'' */
-    double *limit, *rise; /* [ncontact] table of the limit at t0, and its rate; 0 without a table */
+    double *limit, *rise; /* [ncontact] table of the limit at t0, and rate of the table */
 };
 
 /* The driver's own data, and a phase from t0. A mode: eta = constant + vel tau + acc tau^2/2 + jerk tau^3/6 + harmonics + (Re(r
@@ -144,15 +144,15 @@ int tribo_modal_transition(void *own, const void *phase, double tau, size_t colu
  * status, its message on the system's context. */
 int tribo_modal_source(const struct exact *x, double tau, size_t columns, const struct source *source, double *eta, double *rate);
 
-/* terms.c. rest: sets w to z [n], with derivatives, and e to 1; imaginary parts stand n numbers after real parts of lambda, else
- * `next`. go: sets w for t0 + tau, without resonances. tribo_exp_1 returns (e^z - 1)/z, the integral
- * of e^{z s} over s from 0 to 1, without loss of digits for small z. */
+/* terms.c. rest: sets w to z [n], with derivatives, and e to 1; imaginary parts stand n numbers after real parts of lambda,
+ * `next` after those of e and z. go: sets w for t0 + tau, without resonances. tribo_exp_1 returns (e^z - 1)/z, the integral of
+ * e^{z s} over s from 0 to 1, without loss of digits for small z. */
 void tribo_modal_terms_rest(size_t n, size_t next, const double *lambda, double *e, const double *z, struct lot *lot);
 void tribo_modal_terms_go(struct exact *x, double tau);
 double complex tribo_exp_1(double complex z);
 
-/* terms.c. begin: starts the course of output o, value at t0; x is at t0. look: sets
- * c->at for x->tau. bound: sets c->size and c->bend from growth and growth6. */
+/* terms.c. begin: starts the course of output o, value at t0; x is at t0. look: sets c->at for x->tau. bound: sets c->size and
+ * c->bend from growth and growth6. */
 void tribo_course_begin(struct exact *x, size_t o, double value);
 void tribo_course_look(const struct exact *x, struct course *c);
 void tribo_course_bound(const struct exact *x, struct course *c);

@@ -21,14 +21,14 @@ static inline void multiply(const double *ar, const double *ai, const double *br
     }
 }
 
-/* w' = lambda w and w'' = lambda w'. */
+/* Sets w' = lambda w and w'' = lambda w'; lambda = re + i im. */
 static inline void derive(const double *re, const double *im, struct lot *lot)
 {
     multiply(re, im, lot->re[0], lot->im[0], lot->re[1], lot->im[1]);
     multiply(re, im, lot->re[1], lot->im[1], lot->re[2], lot->im[2]);
 }
 
-/* Sets w = e z, with derivatives. Imaginary parts stand n numbers after real parts of lambda, else `next`. */
+/* Sets w = e z, with derivatives. Imaginary parts stand n numbers after real parts of lambda, `next` after those of e and z. */
 TRIBO_SIMD_OF_FOUR static void turn_terms(size_t n, size_t next, const double *restrict lambda, const double *restrict e,
                                           const double *restrict z, struct lot *restrict lot)
 {
