@@ -6,7 +6,7 @@
  *     without convergence: an interior-point method, and Newton's method from there
  *     without convergence: the same with a little stiffness towards the end of the interior-point method
  *
- * Either ends only if y is, up to rounding, the point of the set nearest to y - gain gradient: the solution. */
+ * Each ends only if y is, up to rounding, the point of the set nearest to y - gain gradient: the solution. */
 #include "disc_qp.h"
 
 #include <stdlib.h>
@@ -197,11 +197,11 @@ static void disc_approach(struct disc_qp *p)
     }
 }
 
-/* Rooms times presses at which interior-point methods end, in parts of the largest stiffness: NEXT_TO_NOTHING shows the places
- * unless S is nearly singular. */
-#define NEXT_TO_NOTHING 1e-13
+/* Ends of the interior-point method: LITTLE shows the places unless S is nearly singular. */
+#define LITTLE 1e-13
 #define NOTHING 1e-20
 
+/* y = the solution, from y; without convergence, from the interior-point method. Returns 0 if that does not converge, either. */
 static int solve_once(struct disc_qp *p)
 {
     const int kept = takes_long(p) && p->factor.group.sparse == p->s.pattern && !p->factor.sets.dependents;
@@ -219,7 +219,7 @@ static int solve_once(struct disc_qp *p)
     }
     int done = disc_settle(p, distance, FROM_BEFORE, step_newton);
     for (int deep = 0; !done && deep < 2; deep++) {
-        tribo_disc_interior(p, deep ? NOTHING : NEXT_TO_NOTHING);
+        tribo_disc_interior(p, deep ? NOTHING : LITTLE);
         p->factor.serves = 0.0;
         done = disc_settle(p, disc_look(p), FROM_INTERIOR, step_down);
     }
@@ -291,7 +291,7 @@ int tribo_disc_solve(struct disc_qp *p)
     memcpy(centre, p->y, p->size * sizeof *centre);
     for (int round = 0; round < KEPT_ROUNDS; round++) {
         const int found = solve_towards(p, keeps, centre);
-        p->factor.sets.dependents = dependents;
+        p->factor.sets.dependents = dependents; /* of S as it is; the stiffer S has none */
         if (disc_look(p) <= SETTLED) {
             return 1;
         }
