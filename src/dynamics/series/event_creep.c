@@ -135,7 +135,7 @@ static double find_least(const struct stick_slip *m, struct creep *c)
 /* Rate of turn of the direction of contact k at the end of the last step. */
 static double find_turn(const struct event *e, size_t k)
 {
-    const struct planar_line *l = &e->planar.line[k];
+    const struct line *l = &e->lines.line[k];
     double un = 0.0, ut = 0.0, dn = 0.0, dt = 0.0;
     for (size_t p = e->order + 1; p-- > 0;) {
         dn = dn * e->length + un;
@@ -164,8 +164,8 @@ static double find_settled(const struct event *e)
 /* x along n and along t at tau. */
 static void find_velocity(const struct event *e, size_t k, double tau, double *x)
 {
-    x[0] = tribo_series_value(e->planar.line[k].xn, e->order, tau);
-    x[1] = tribo_series_value(e->planar.line[k].xt, e->order, tau);
+    x[0] = tribo_series_value(e->lines.line[k].xn, e->order, tau);
+    x[1] = tribo_series_value(e->lines.line[k].xt, e->order, tau);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ response */
@@ -175,7 +175,7 @@ static void add_series(const struct event *e, double factor, double *to)
 {
     const size_t slides = e->creep.count;
     for (size_t s = 0; s < slides; s++) {
-        const struct planar_line *l = &e->planar.line[e->creep.slides[s]];
+        const struct line *l = &e->lines.line[e->creep.slides[s]];
         for (size_t k = 0; k <= e->order; k++) {
             to[2 * (k * slides + s)] += factor * l->xn[k];
             to[2 * (k * slides + s) + 1] += factor * l->xt[k];
@@ -189,8 +189,8 @@ static int find_response(struct event *e)
     struct creep *c = &e->creep;
     const size_t terms = e->order + 1, slides = c->count, each = 2 * slides * terms;
     for (size_t s = 0; s < slides; s++) {
-        memset(e->planar.line[c->slides[s]].un, 0, terms * sizeof(double));
-        memset(e->planar.line[c->slides[s]].ut, 0, terms * sizeof(double));
+        memset(e->lines.line[c->slides[s]].un, 0, terms * sizeof(double));
+        memset(e->lines.line[c->slides[s]].ut, 0, terms * sizeof(double));
     }
     memset(c->response, 0, 2 * slides * each * sizeof *c->response);
     int status = tribo_event_series(e);
@@ -198,7 +198,7 @@ static int find_response(struct event *e)
         add_series(e, -1.0, c->response + s * each);
     }
     for (size_t s = 0; !status && s < 2 * slides; s++) {
-        const struct planar_line *l = &e->planar.line[c->slides[s / 2]];
+        const struct line *l = &e->lines.line[c->slides[s / 2]];
         double *u = s % 2 ? l->ut : l->un;
         u[0] = 1.0;
         status = tribo_event_series(e);
@@ -262,7 +262,7 @@ static double allowed(const struct event *e, size_t k, double h)
 /* x along u and across u at tau. */
 static void take_parts(const struct event *e, size_t k, double tau, double *along, double *across)
 {
-    const struct planar_line *l = &e->planar.line[k];
+    const struct line *l = &e->lines.line[k];
     const double un = tribo_series_value(l->un, NODES - 1, tau), ut = tribo_series_value(l->ut, NODES - 1, tau);
     double x[2];
     find_velocity(e, k, tau, x);
@@ -283,7 +283,7 @@ static double find_stray(const struct event *e, size_t k, double h, double tau)
     const struct planar_contact *p = &e->events.stick_slip.plane->contact[k];
     double along, across;
     take_parts(e, k, tau, &along, &across);
-    const double size = greater(hypot(along, across), TRIBO_SLOWER * e->planar.line[k].xn[0]);
+    const double size = greater(hypot(along, across), TRIBO_SLOWER * e->lines.line[k].xn[0]);
     const double gone = fabs(across) / size * lesser(1.0, h / stop_of(p, size));
     return gone / lesser(MOST_STRAY, e->error * lesser(p->weight[0], p->weight[1]) / size);
 }
@@ -307,7 +307,7 @@ static int is_with(const struct event *e, size_t k, double h)
         *(along > 0.0 ? &from : &to) = middle;
         along = 0.0;
     }
-    return along > 0.0 || fabs(across) < 0.5 * TRIBO_SLOWER * e->planar.line[k].xn[0];
+    return along > 0.0 || fabs(across) < 0.5 * TRIBO_SLOWER * e->lines.line[k].xn[0];
 }
 
 /* Iterates directions of sliding contacts at the nodes of a step of length h until their series satisfies the equation of
@@ -321,7 +321,7 @@ static int find_angles(struct event *e, double h, int *found)
     }
     for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
         for (size_t s = 0; s < c->count; s++) { /* u at the nodes by angle; un and ut fitted to that */
-            struct planar_line *l = &e->planar.line[c->slides[s]];
+            struct line *l = &e->lines.line[c->slides[s]];
             double power = 1.0;
             memset(l->un, 0, (e->order + 1) * sizeof *l->un);
             memset(l->ut, 0, (e->order + 1) * sizeof *l->ut);
@@ -360,7 +360,7 @@ static void judge(const struct event *e, double h, struct creep_step *step)
     double defect = 0.0, slow = h, stray = 0.0;
     for (size_t s = 0; s < e->creep.count; s++) {
         const size_t k = e->creep.slides[s];
-        const struct planar_line *l = &e->planar.line[k];
+        const struct line *l = &e->lines.line[k];
         const double begins = find_stray(e, k, h, 0.0);
         /* A contact that creeps may start in another direction than its equation asks for, at any length of the step: stray is no
          * reason for shorter steps then. */
@@ -403,11 +403,11 @@ static int creep_expand(struct event *e, double t, const double *y, double h, st
             c->slides[s++] = k;
         }
     }
-    e->planar.given = h;
+    e->lines.given = h;
     int status = tribo_event_start(e, t, y);
     status = status ? status : find_response(e);
     status = status ? status : find_angles(e, h, &found);
-    e->planar.given = 0.0;
+    e->lines.given = 0.0;
     step->good = 0;
     step->next = SHRINKS * h;
     if (!status && found) {

@@ -38,14 +38,16 @@ static void find_velocities(const struct event *e, size_t k, double scale, doubl
     tribo_system_loads(e->sys, DRIVES_BASE, (int)k, -scale, v);
     tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->u + k * e->sys->ndof, v);
     if (e->sys->compliance.count) {
-        const double *slide = e->sys->normals.count || e->pairs.count ? e->room.a : NULL;
+        const double *slide = e->sys->normals.count || m->constant.pairs ? e->room.a : NULL;
         if (slide) {
             tribo_normal_series_slide(e, k, e->room.a);
+        }
+        if (m->constant.pairs) {
             tribo_pair_series_slide(e, k, v, e->room.a);
         }
         tribo_compliance_rates(e->sys, m->state.slip, slide, 1, v, e->room.rate);
         for (size_t i = 0; k < e->order && i < c; i++) {
-            e->spring[(k + 1) * c + i] = e->room.rate[i] / (double)(k + 1);
+            e->force[(k + 1) * c + i] = e->room.rate[i] / (double)(k + 1);
         }
     }
     for (size_t i = 0; k == 0 && i < c; i++) {
@@ -65,7 +67,7 @@ static int expand_forces(struct event *e, size_t k, double scale)
         tribo_normal_series_expand(e, k);
     }
     find_velocities(e, k, scale, watch);
-    tribo_system_smooth(sys, (int)k, scale, e->q + k * n, e->u + k * n, e->spring + k * c, acc);
+    tribo_system_smooth(sys, (int)k, scale, e->q + k * n, e->u + k * n, e->force + k * c, acc);
     if (m->limits.falls) {
         expand_falling(e, k);
     }
@@ -90,7 +92,7 @@ static int expand_forces(struct event *e, size_t k, double scale)
     for (size_t i = 0; i < c; i++) {
         if (m->state.slip[i] == TRIBO_SLIP_STUCK && !tribo_stick_slip_may_part(m, i)) {
             const double own = held[i] + (given ? e->room.given[i] : 0.0);
-            watch[i] = k == 0 ? m->state.force[i] : tribo_force_is_state(m, i) ? e->spring[k * c + i] : own;
+            watch[i] = k == 0 ? m->state.force[i] : tribo_force_is_state(m, i) ? e->force[k * c + i] : own;
         }
     }
     /* contacts at rest must not creep by what rounding leaves in acc */
@@ -105,10 +107,10 @@ int tribo_event_start(struct event *e, double t, const double *y)
     memcpy(e->q, y, n * sizeof *y);
     memcpy(e->u, y + n, n * sizeof *y);
     e->d[0] = y[tribo_system_energy(sys)];
-    tribo_compliance_get(sys, y, e->spring);
+    tribo_compliance_get(sys, y, e->force);
     e->order = e->most_order;
-    int status = m->plane ? tribo_planar_series_begin(e) : TRIBO_OK;
-    status = status ? status : tribo_pair_series_begin(e);
+    e->lines.count = m->plane ? m->plane->count : m->constant.pairs;
+    const int status = m->plane ? tribo_planar_series_begin(e) : m->constant.pairs ? tribo_pair_series_begin(e) : TRIBO_OK;
     tribo_system_set_time(sys, t);
     /* limits; a coefficient of a limit that falls with the speed needs that of the velocity first */
     const int falls = m->limits.falls;
@@ -124,11 +126,14 @@ int tribo_event_start(struct event *e, double t, const double *y)
     return status;
 }
 
-/* The k-th coefficient of the power of sliding contact i, limit times velocity. */
+/* The k-th coefficient of the power that contact i dissipates: force times velocity, behind a spring that of the slider. */
 static double power_of(const struct event *e, size_t i, size_t k)
 {
-    const size_t to = k < e->slide_terms ? k + 1 : e->slide_terms;
-    return e->events.stick_slip.state.slip[i] * tribo_series_product(e->slide + i, e->watch + i, e->sys->ncontact, k, 0, to);
+    const signed char slip = e->events.stick_slip.state.slip[i];
+    const size_t to = k < e->slide_terms ? k + 1 : e->slide_terms, c = e->sys->ncontact;
+    return slip == TRIBO_SLIP_PLANE ? -tribo_series_product(e->force + i, e->watch + i, c, k, 0, k + 1)
+           : tribo_slides(slip)     ? slip * tribo_series_product(e->slide + i, e->watch + i, c, k, 0, to)
+                                    : 0.0;
 }
 
 int tribo_event_series(struct event *e)
@@ -148,14 +153,10 @@ int tribo_event_series(struct event *e)
         }
     }
     e->sys->evaluations += e->order + 1;
-    const struct stick_slip *m = &e->events.stick_slip;
     for (size_t k = 0; k < e->order; k++) {
-        double power = m->plane ? tribo_planar_series_power(e, k) : 0.0;
+        double power = 0.0;
         for (size_t i = 0; i < e->sys->ncontact; i++) {
-            power += tribo_slides(m->state.slip[i]) ? e->sys->tally[i] * power_of(e, i, k) : 0.0;
-        }
-        for (const struct pair_line *l = e->pairs.line; l < e->pairs.line + e->pairs.count; l++) {
-            power += e->sys->tally[l->at] * tribo_pair_series_power(e, l, k);
+            power += e->sys->tally[i] * power_of(e, i, k);
         }
         e->d[k + 1] = power / (double)(k + 1);
     }
@@ -165,13 +166,9 @@ int tribo_event_series(struct event *e)
 double tribo_event_work(void *own, size_t i, double tau)
 {
     const struct event *e = own;
-    const int turns = e->events.stick_slip.state.slip[i] == TRIBO_SLIP_PLANE;
     double work = 0.0;
     for (size_t k = e->order; k-- > 0;) {
-        const double power = turns && e->events.stick_slip.plane ? tribo_planar_series_power_along(e, i, k)
-                             : turns                             ? tribo_pair_series_power_along(e, i, k)
-                                                                 : power_of(e, i, k);
-        work = work * tau + power / (double)(k + 1);
+        work = work * tau + power_of(e, i, k) / (double)(k + 1);
     }
     return work * tau;
 }
@@ -217,8 +214,7 @@ struct perturbed {
     double *spring;  /* [ncontact] forces of compliant contacts */
     double *force;   /* [ncontact] forces by limits that fall, or follow the motion */
     double *v;       /* [rows][ncontact] velocities of contacts, the last orders cyclically */
-    struct planar_turns turns;
-    struct pair_turns pairs;
+    struct turns turns;
     const struct source *source;
     double *drag; /* [ndof] workspace, one column: AC q' */
     double power; /* tau^(k - 1) */
@@ -300,7 +296,9 @@ static int find_term(struct event *e, size_t k, double tau, const struct perturb
     if (m->limits.falls) {
         perturb_falling(e, k, part, tau, p);
     }
-    tribo_pair_series_turn(e, k - 1, &p->pairs, p->q, p->v);
+    if (m->constant.pairs) {
+        tribo_pair_series_turn(e, k - 1, &p->turns);
+    }
     add_source(e, k, part, p);
     if (m->plane) {
         tribo_planar_series_turn(e, k - 1, &p->turns, p->force);
@@ -309,7 +307,9 @@ static int find_term(struct event *e, size_t k, double tau, const struct perturb
     for (size_t i = 0; i < half; i++) {
         p->q[i] = part * p->u[i];
     }
-    tribo_pair_series_force(e, k, &p->pairs, p->q, p->spring);
+    if (m->constant.pairs) {
+        tribo_pair_series_force(e, k, &p->turns, p->spring);
+    }
     memset(p->u, 0, half * sizeof *p->u);
     tribo_multiply_add(n, n, p->columns, 1.0, p->project, p->next, p->u);
     return m->plane ? tribo_planar_series_turn_finish(e, k - 1, &p->turns, p->u) : TRIBO_OK;
@@ -338,20 +338,16 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
     struct stick_slip *m = &e->events.stick_slip;
     const struct compliance *g = &e->sys->compliance;
     const size_t n = e->sys->ndof, half = n * columns, each = e->sys->ncontact * columns;
-    const size_t planes = m->plane ? m->plane->count * columns : 0;
-    struct perturbed p = {.columns = columns,
-                          .rows = m->limits.falls || m->plane || e->pairs.count ? e->order + 2 : 1,
-                          .source = source,
-                          .power = 1.0};
-    struct planar_turns *t = &p.turns;
+    const size_t lines = e->lines.count * columns;
+    struct perturbed p = {
+        .columns = columns, .rows = m->limits.falls || lines ? e->order + 2 : 1, .source = source, .power = 1.0};
+    struct turns *t = &p.turns;
     if (!ALLOCATE(ARRAY(p.project, n * n), ARRAY(p.q, half), ARRAY(p.u, half), ARRAY(p.next, half), ARRAY(p.spring, each),
-                  ARRAY(p.force, each), ARRAY(p.v, p.rows * each), ARRAY(t->z, p.rows * planes), ARRAY(t->g, p.rows * planes),
-                  ARRAY(t->w, planes), ARRAY(p.drag, n), ARRAY(p.pairs.z, p.rows * e->pairs.count * columns),
-                  ARRAY(p.pairs.g, p.rows * e->pairs.count * columns))) {
+                  ARRAY(p.force, each), ARRAY(p.v, p.rows * each), ARRAY(t->z, p.rows * lines), ARRAY(t->g, p.rows * lines),
+                  ARRAY(t->w, lines), ARRAY(p.drag, n))) {
         return tribo_error(e->sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     }
-    p.pairs = (struct pair_turns){columns, p.rows, tau, p.pairs.z, p.pairs.g};
-    *t = (struct planar_turns){columns, p.rows, tau, p.q, p.v, t->z, t->g, t->w};
+    *t = (struct turns){columns, p.rows, tau, p.q, p.v, t->z, t->g, t->w};
     (void)phase;
     tribo_stick_slip_press(m, e->sys);
     int status = find_projection(e, &p);
@@ -361,11 +357,16 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
     for (size_t k = 0; k < g->count; k++) {
         memcpy(p.spring + g->contact[k] * columns, v + 2 * half + k * columns, columns * sizeof *v);
     }
-    tribo_pair_series_force(e, 0, &p.pairs, p.q, p.spring);
+    if (m->constant.pairs) {
+        tribo_pair_series_force(e, 0, t, p.spring);
+    }
     for (size_t k = 0; k < g->count; k++) {
         memcpy(v + 2 * half + k * columns, p.spring + g->contact[k] * columns, columns * sizeof *v);
     }
-    const size_t most = tribo_pair_series_terms(e, m->plane ? tribo_planar_series_terms(e, MOST_TERMS) : MOST_TERMS);
+    size_t most = MOST_TERMS;
+    for (size_t k = 0; k < e->lines.count; k++) {
+        most = e->lines.line[k].asymptotic ? e->order : most;
+    }
     for (size_t k = 1, small = 0; !status && small < 2 && k < most; k++) {
         status = find_term(e, k, tau, &p);
         tribo_add(v, 1.0, p.q, 2 * half); /* q and u */

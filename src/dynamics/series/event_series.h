@@ -16,43 +16,39 @@ struct event_room {
     double *rate;
 };
 
-/* Series of a planar contact, along the first direction n of its velocity and the normal t. */
-struct planar_line {
-    double n[2], t[2];
-    double *xn, *xt, *un, *ut; /* [order + 1] coefficients of x and u along n and t */
-    double *speed;             /* [order + 1] coefficients of |x| */
-    double *g, *fn, *ft;       /* [order + 1] coefficients of the limit over weight, and of g u along n and t */
-    double *square; /* [2 order + 1] |x|^2/time^(2s); of a contact at rest half the larger limit times |force/limit|^2 */
+/* Series of a contact in a plane. The direction u, |u| = 1, of the force -weight g u is along n and the normal
+ * t = (-n[1], n[0]). */
+struct line {
+    size_t at;         /* its first direction */
+    double weight[2];  /* 1 with a spring */
+    double n[2], t[2]; /* n: first direction of x */
+    int asymptotic;    /* 1: series of perturbations do not converge */
+    double *un, *ut;   /* [order + 2] coefficients of u along n and t; arrays below as well */
+    double *xn, *xt;   /* x = weight v */
+    double *speed;     /* |x|; with a spring the speed of the slider */
+    double *g;         /* limit over weight */
+    double *square;    /* [2 order + 1] |x|^2/time^(2s); of a contact at rest half the larger limit times |force/limit|^2 */
+
+    /* with a spring before the slider: pair_series.c */
+    size_t lag;    /* 1: the limit begins at 0 */
+    int fades;     /* 1: the limit ends at 0, and is so small that u may stay */
+    double *a, *w; /* u' = a across; the part of v across u */
+    double *rise;  /* rate of the limit */
 };
 
-struct planar_series {
-    size_t room;              /* for contacts */
-    double given;             /* > 0: un and ut are given for a step of this length, and all sliding contacts slide already */
-    struct planar_line *line; /* [room]; owns the memory of all; freed by method_event.c */
-    size_t begins;            /* number of contacts that begin to slide */
-    size_t begin_room;        /* for such contacts */
-    size_t *begin;            /* [begins] these contacts */
-    int *pivot;               /* [begins] */
-    double *s, *lu;           /* [begins][begins] S, S + D */
-    double *tau;              /* [begins] */
-    double *answer;           /* [begins][ndof] q'' by unit t-parts */
-    double *held;             /* [begins][ncontact] holding forces by unit t-parts */
-};
-
-/* Series of a contact in a plane with a spring before its slider, along n, the first direction of its slip, and the normal t. */
-struct pair_line {
-    size_t at;                                 /* its first direction */
-    size_t lag;                                /* 1: its limit begins at 0 */
-    int fades;                                 /* 1: its limit ends at 0, and is so small that u may stay */
-    double n[2];                               /* t = (-n[1], n[0]) */
-    double *un, *ut, *a, *w, *vn, *vt, *sigma; /* [order + 2] */
-    double *limit, *rise;                      /* [order + 2] the limit and its rate */
-    double *square;                            /* [2 order + 1] of the guard */
-};
-
-struct pair_series {
-    size_t count;
-    struct pair_line *line; /* [count]; owns the memory of all; freed by method_event.c */
+struct lines {
+    size_t count;      /* number of contacts in planes: all are rigid, or all have springs */
+    size_t room;       /* for such contacts */
+    double given;      /* > 0: un and ut are given for a step of this length, and all sliding contacts slide already */
+    struct line *line; /* [count]; owns the memory of all; freed by method_event.c */
+    size_t begins;     /* number of rigid contacts that begin to slide */
+    size_t begin_room; /* for such contacts */
+    size_t *begin;     /* [begins] these contacts */
+    int *pivot;        /* [begins] */
+    double *s, *lu;    /* [begins][begins] S, S + D */
+    double *tau;       /* [begins] */
+    double *answer;    /* [begins][ndof] q'' by unit t-parts */
+    double *held;      /* [begins][ncontact] holding forces by unit t-parts */
 };
 
 #define TRIBO_CREEP_NODES 8
@@ -96,12 +92,11 @@ struct event {
     size_t slide_terms;        /* number of rows of slide that are not zero */
     double *fall, *part;       /* [order + 1][ncontact] limits that fall with the speed; exp(-|v|/velocity) */
     double *d;                 /* [order + 1] dissipated energy */
-    double *spring;            /* [order + 1][ncontact] forces of compliant contacts */
+    double *force;             /* [order + 1][ncontact] forces of compliant contacts, and of contacts that slide in a plane */
     struct curve *curve;       /* [ncontact] watch; squares of planar contacts */
     struct curve *limit_curve; /* [ncontact] limit */
     struct event_room room;
-    struct planar_series planar;
-    struct pair_series pairs;
+    struct lines lines;
     struct creep creep;
 };
 
@@ -125,6 +120,12 @@ static inline double tribo_series_product(const double *x, const double *y, size
 static inline double tribo_product_of(const double *x, const double *y, size_t k, size_t from, size_t to)
 {
     return tribo_series_product(x, y, 1, k, from, to);
+}
+
+/* The same of a square, of a series with the powers up to `last`. */
+static inline double tribo_series_square(const double *x, size_t stride, size_t k, size_t last)
+{
+    return tribo_series_product(x, x, stride, k, k < last ? 0 : k - last, k < last ? k + 1 : last + 1);
 }
 
 /* Returns the value at h of a series x [powers + 1]. */
@@ -169,23 +170,40 @@ double tribo_event_length(struct event *e);
 
 /* ------------------------------------------------------------------------------------------------------ planar_series.c */
 
+/* Makes room for e->lines, and for `begins` contacts that begin to slide. Returns a status, its message on the system's
+ * context, as functions below. */
+int tribo_lines_reserve(struct event *e, size_t begins);
+
+/* Sets n = (x, y), and its normal t. */
+void tribo_line_set_direction(struct line *l, double x, double y);
+
+/* Component d of u and of its normal r, of order j. */
+static inline double tribo_line_along(const struct line *l, size_t d, size_t j)
+{
+    return l->n[d] * l->un[j] + l->t[d] * l->ut[j];
+}
+
+static inline double tribo_line_across(const struct line *l, size_t d, size_t j)
+{
+    return l->t[d] * l->un[j] - l->n[d] * l->ut[j];
+}
+
+/* Sets e->force of contact l, of order k, from coefficients of g of the orders from <= j < to. */
+void tribo_line_force(const struct event *e, const struct line *l, size_t k, size_t from, size_t to);
+
 /* The least time in which friction would stop a planar contact that slides already; HUGE_VAL if there is none. */
 double tribo_planar_series_first_stop(const struct stick_slip *m);
 
-/* Sets the order for a phase; makes room; finds S for contacts that begin to slide. Returns a status, its
- * message on the system's context, as the functions below. */
+/* Sets the order for a phase; makes room; finds S for contacts that begin to slide. Returns a status. */
 int tribo_planar_series_begin(struct event *e);
 
-/* Takes the k-th coefficients v [ncontact] of velocities; sets those of sliding forces room.given, without the t-parts of
- * contacts that begin to slide. */
-int tribo_planar_series_forces(struct event *e, size_t k, const double *v);
+/* Takes the k-th coefficients v [ncontact] of velocities, and sets those to 0 that are before contacts slide; sets coefficients
+ * of sliding forces e->force and room.given, without the t-parts of contacts that begin to slide. */
+int tribo_planar_series_forces(struct event *e, size_t k, double *v);
 
-/* Finds these t-parts, and adds their effect to the k-th coefficients room.acceleration and room.held. room.base: those of
+/* Finds these t-parts, and adds their effect to the k-th coefficients e->force, room.acceleration and room.held. room.base: those of
  * accelerations of bases. */
 int tribo_planar_series_finish(struct event *e, size_t k);
-
-/* The k-th coefficient of the power that planar contacts dissipate. */
-double tribo_planar_series_power(const struct event *e, size_t k);
 
 /* Adds the guards of planar contacts: speed, or the force at rest. */
 void tribo_planar_series_guards(struct event *e);
@@ -201,27 +219,29 @@ double tribo_planar_series_brake(const struct event *e, size_t k, double tau);
 double tribo_planar_series_shorten(const struct event *e, double h);
 
 /* Terms x^(k) tau^k/k! of perturbations: q [ndof][columns] of displacements, of order k; v [rows][ncontact][columns] of
- * velocities of contacts, z and g [rows][planar contacts][columns] of the turns of directions u and of limits that follow. v, z
- * and g: of the last orders, cyclically; rows > order of the series. */
-struct planar_turns {
+ * velocities of contacts, z and g [rows][lines][columns] of the turns of directions u and of limits that follow. v, z and g: of
+ * the last orders, cyclically; rows > order + 1 of the series. */
+struct turns {
     size_t columns, rows;
     double tau;
     const double *q;
-    double *v, *z, *g, *w; /* w [planar contacts][columns]: workspace */
+    double *v, *z, *g, *w; /* w [lines][columns]: workspace */
 };
+
+/* Rows of z and of g of order k, of contact c of e->lines. */
+static inline double *tribo_turn_of(const struct event *e, const struct turns *p, double *rows, size_t k, size_t c)
+{
+    return rows + (k % p->rows * e->lines.count + c) * p->columns;
+}
+
+/* force [ncontact][columns] += terms of order k of the force of contact c by z and g. */
+void tribo_line_turn_force(const struct event *e, size_t c, size_t k, const struct turns *p, double *force);
 
 /* Sets the k-th terms of turns, and force [ncontact][columns] = those of forces of sliding planar contacts; without the turns of
  * contacts that begin to slide, which finish finds: it adds their effect to the terms of order k + 1 of velocities
  * u [ndof][columns]. */
-void tribo_planar_series_turn(const struct event *e, size_t k, const struct planar_turns *p, double *force);
-int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct planar_turns *p, double *u);
-
-/* Returns the number of terms of perturbations, at most `most`: where a contact begins to slide by its force, series are
- * asymptotic. */
-size_t tribo_planar_series_terms(const struct event *e, size_t most);
-
-/* The k-th coefficient of the power that direction i of a planar contact dissipates. */
-double tribo_planar_series_power_along(const struct event *e, size_t i, size_t k);
+void tribo_planar_series_turn(const struct event *e, size_t k, const struct turns *p, double *force);
+int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct turns *p, double *u);
 
 /* -------------------------------------------------------------------------------------------------------- pair_series.c */
 
@@ -232,32 +252,15 @@ int tribo_pair_series_begin(struct event *e);
  * k-th coefficients v [ncontact] of velocities. */
 void tribo_pair_series_slide(const struct event *e, size_t k, const double *v, double *slide);
 
-/* The k-th coefficient of the power that contact l dissipates, and that along direction i of such a contact. */
-double tribo_pair_series_power(const struct event *e, const struct pair_line *l, size_t k);
-double tribo_pair_series_power_along(const struct event *e, size_t i, size_t k);
-
-/* Terms x^(k) tau^k/k! of perturbations: z and g [rows][pairs][columns] of the turns of directions u and of limits, the last
- * orders cyclically; rows > order + 1 of the series. */
-struct pair_turns {
-    size_t columns, rows;
-    double tau;
-    double *z, *g;
-};
-
 /* turn: sets g of order k of all pairs, and, of pairs with slip TRIBO_SLIP_PLANE, z of order k + 1, or k if lag = 1, from terms
- * of order k of displacements, q [ndof][columns], and of velocities of contacts, v [rows][ncontact][columns], the last orders
- * cyclically. force: sets g of order k and the two rows of force [ncontact][columns], terms of order k, of pairs with slip
- * TRIBO_SLIP_PLANE; for k = 0 and lag = 0 first z, from the part of these rows across u. */
-void tribo_pair_series_turn(const struct event *e, size_t k, const struct pair_turns *p, const double *q, const double *v);
-void tribo_pair_series_force(const struct event *e, size_t k, const struct pair_turns *p, const double *q, double *force);
+ * of order k of q and v. force: sets g of order k and the two rows of force [ncontact][columns], terms of order k, of pairs with
+ * slip TRIBO_SLIP_PLANE; for k = 0 and lag = 0 first z, from the part of these rows across u. */
+void tribo_pair_series_turn(const struct event *e, size_t k, const struct turns *p);
+void tribo_pair_series_force(const struct event *e, size_t k, const struct turns *p, double *force);
 
 /* Returns h without such contacts, else at most `most`, shortened until forces follow velocities, and in a periodic motion until
  * series of perturbations converge, and do not cancel. */
 double tribo_pair_series_shorten(const struct event *e, double h, double most);
-
-/* Returns the number of terms of perturbations, at most `most`: where a limit begins with the square of time, series are
- * asymptotic. */
-size_t tribo_pair_series_terms(const struct event *e, size_t most);
 
 /* Adds their guards: the speed of the slider, or the force at rest. */
 void tribo_pair_series_guards(struct event *e);

@@ -68,7 +68,7 @@ double tribo_event_length(struct event *e)
             const double speed = m->plane ? m->plane->error[i] : u;
             const double scale = m->state.slip[i] == TRIBO_SLIP_STUCK && !tribo_stick_slip_may_part(m, i) ? stick : speed;
             const int turns = m->constant.pair[i] && m->state.slip[i] == TRIBO_SLIP_PLANE;
-            term = turns ? greater(term, fabs(e->spring[k * c + i]) / force) : term;
+            term = turns ? greater(term, fabs(e->force[k * c + i]) / force) : term;
             term = m->state.slip[i] == TRIBO_SLIP_OPEN ? term : greater(term, fabs(e->watch[k * c + i]) / scale);
             term = k < e->terms && m->constant.swing[i] > 0.0 ? greater(term, fabs(e->limit[k * c + i]) / force) : term;
         }
@@ -125,8 +125,9 @@ static int set_guards(struct event *e)
     tribo_curves_bound(e->limit_curve, c, tribo_event_limit_terms(e), c, e->limit, e->length);
     if (m->plane) {
         tribo_planar_series_guards(e);
+    } else {
+        tribo_pair_series_guards(e);
     }
-    tribo_pair_series_guards(e);
     for (size_t i = 0; i < c; i++) {
         struct curve *curve = &e->curve[i];
         const struct curve *limit = &e->limit_curve[i];
@@ -155,10 +156,8 @@ static int set_guards(struct event *e)
 static void free_series(struct event *e)
 {
     free(e->q);
-    free(e->planar.line);
-    free(e->pairs.line);
-    e->pairs = (struct pair_series){0};
-    e->planar = (struct planar_series){0};
+    free(e->lines.line);
+    e->lines = (struct lines){0};
     free(e->creep.weight);
     e->creep = (struct creep){0};
 }
@@ -206,7 +205,7 @@ static int method_event_prepare(struct event *e)
     const size_t terms = e->order + 1;
     return ALLOCATE(ARRAY(e->q, terms * n), ARRAY(e->u, terms * n), ARRAY(e->d, terms), ARRAY(e->room.acceleration, n),
                     ARRAY(e->curve, c), ARRAY(e->limit_curve, c), ARRAY(e->watch, terms * c), ARRAY(e->limit, terms * c),
-                    ARRAY(e->fall, terms * c), ARRAY(e->part, terms * c), ARRAY(e->spring, terms * c), ARRAY(e->room.base, c),
+                    ARRAY(e->fall, terms * c), ARRAY(e->part, terms * c), ARRAY(e->force, terms * c), ARRAY(e->room.base, c),
                     ARRAY(e->room.a, c), ARRAY(e->room.given, c), ARRAY(e->room.held, c), ARRAY(e->room.rate, c))
                ? TRIBO_OK
                : tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for method event");
@@ -226,7 +225,7 @@ static void series_state(void *own, double tau, const double *from, double *to)
             to[n + i] = to[n + i] * tau + e->u[k * n + i];
         }
         for (size_t i = 0; i < g->count; i++) {
-            to[2 * n + i] = to[2 * n + i] * tau + e->spring[k * e->sys->ncontact + g->contact[i]];
+            to[2 * n + i] = to[2 * n + i] * tau + e->force[k * e->sys->ncontact + g->contact[i]];
         }
         *energy = *energy * tau + e->d[k];
     }
@@ -272,8 +271,8 @@ static int method_event_begin(void *own, double t, const double *y, double *reac
     }
     for (int overflows = 1; overflows; e->order = overflows ? e->order / 2 : e->order) {
         if (!creeps) {
-            length = tribo_pair_series_shorten(e, tribo_event_length(e), most);
-            length = m->plane ? tribo_planar_series_shorten(e, lesser(length, most)) : length;
+            length = tribo_event_length(e);
+            length = m->plane ? tribo_planar_series_shorten(e, lesser(length, most)) : tribo_pair_series_shorten(e, length, most);
         }
         if ((double)(e->order + 1) < DBL_EPSILON * fabs(t + whole) * e->fastest) {
             length = 0.0; /* steps that frequencies allow are lost in the rounding of the end: it is never reached */
@@ -303,7 +302,7 @@ static int series_signal(void *own, const double *c, double tau, const double *e
     for (size_t k = 0; k <= e->order; k++) {
         to->a[k] = tribo_dot(c, e->q + k * n, n) + tribo_dot(c + n, e->u + k * n, n);
         for (size_t i = 0; i < g->count; i++) {
-            const double *f = e->spring + k * count + g->contact[i], next = k < e->order ? (double)(k + 1) * f[count] : 0.0;
+            const double *f = e->force + k * count + g->contact[i], next = k < e->order ? (double)(k + 1) * f[count] : 0.0;
             to->a[k] += c[2 * n + i] * f[0] + c[2 * n + g->count + i] * next;
         }
     }

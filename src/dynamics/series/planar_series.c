@@ -20,6 +20,7 @@
 
 #include <float.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Decimal digits of the largest coefficient; squares have twice as many. At a small speed time is short, and its inverse
@@ -37,38 +38,73 @@
  * lost in rounding, and with it a zero. */
 #define FASTER 1e4
 
-/* Makes room for all planar contacts, and for those that begin to slide. Returns 0 if out of memory. */
-static int reserve_lines(struct event *e, size_t begins)
+/* --------------------------------------------------------------------------------------------------- contacts in planes */
+
+/* Arrays of coefficients of a line. */
+#define SERIES 11
+
+int tribo_lines_reserve(struct event *e, size_t begins)
 {
-    struct planar_series *s = &e->planar;
-    const size_t terms = e->most_order + 1, count = e->events.stick_slip.plane->count;
-    double *series;
+    struct lines *s = &e->lines;
+    const size_t terms = e->most_order + 2, count = s->count;
+    double *x;
     if (s->line && s->room >= count && s->begin_room >= begins) {
-        return 1;
+        return TRIBO_OK;
     }
     free(s->line);
-    const int done =
-        ALLOCATE(ARRAY(s->line, count), ARRAY(series, 10 * terms * count), ARRAY(s->begin, begins), ARRAY(s->pivot, begins),
-                 ARRAY(s->s, begins * begins), ARRAY(s->lu, begins * begins), ARRAY(s->tau, begins),
-                 ARRAY(s->answer, begins * e->sys->ndof), ARRAY(s->held, begins * e->sys->ncontact)) != NULL;
-    for (size_t k = 0; done && k < count; k++, series += 10 * terms) {
-        s->line[k] = (struct planar_line){.xn = series,
-                                          .xt = series + terms,
-                                          .un = series + 2 * terms,
-                                          .ut = series + 3 * terms,
-                                          .speed = series + 4 * terms,
-                                          .g = series + 5 * terms,
-                                          .fn = series + 6 * terms,
-                                          .ft = series + 7 * terms,
-                                          .square = series + 8 * terms};
-    }
     s->room = count;
     s->begin_room = begins;
-    return done;
+    if (!ALLOCATE(ARRAY(s->line, count), ARRAY(x, SERIES * terms * count), ARRAY(s->begin, begins), ARRAY(s->pivot, begins),
+                  ARRAY(s->s, begins * begins), ARRAY(s->lu, begins * begins), ARRAY(s->tau, begins),
+                  ARRAY(s->answer, begins * e->sys->ndof), ARRAY(s->held, begins * e->sys->ncontact))) {
+        return tribo_error(e->sys->message, TRIBO_ERR_MEMORY, "out of memory for series of %zu contact%s in a plane", count,
+                           plural(count));
+    }
+    for (struct line *l = s->line; l < s->line + count; l++) {
+        double **const series[SERIES - 1] = {&l->xn, &l->xt, &l->un, &l->ut,   &l->speed,
+                                             &l->g,  &l->a,  &l->w,  &l->rise, &l->square};
+        for (size_t k = 0; k < SERIES - 1; k++, x += terms) {
+            *series[k] = x;
+        }
+        x += terms; /* square has twice as many */
+    }
+    return TRIBO_OK;
 }
 
+void tribo_line_set_direction(struct line *l, double x, double y)
+{
+    l->n[0] = l->t[1] = x;
+    l->n[1] = y;
+    l->t[0] = -y;
+}
+
+void tribo_line_force(const struct event *e, const struct line *l, size_t k, size_t from, size_t to)
+{
+    const double along = tribo_product_of(l->g, l->un, k, from, to), across = tribo_product_of(l->g, l->ut, k, from, to);
+    for (size_t d = 0; d < 2; d++) {
+        e->force[k * e->sys->ncontact + l->at + d] = -l->weight[d] * (l->n[d] * along + l->t[d] * across);
+    }
+}
+
+void tribo_line_turn_force(const struct event *e, size_t c, size_t k, const struct turns *p, double *force)
+{
+    const struct line *l = &e->lines.line[c];
+    double power = 1.0;
+    for (size_t j = 0; j <= k && j <= e->order; j++, power *= p->tau) {
+        const double *f = e->force + j * e->sys->ncontact + l->at, *g = tribo_turn_of(e, p, p->g, k - j, c);
+        const double turned[2] = {-f[1] * l->weight[0] / l->weight[1], f[0] * l->weight[1] / l->weight[0]};
+        for (size_t d = 0; d < 2; d++) {
+            double *to = force + (l->at + d) * p->columns;
+            tribo_add(to, l->lag && j == 0 ? 0.0 : power * turned[d], tribo_turn_of(e, p, p->z, k - j, c), p->columns);
+            tribo_add(to, -power * l->weight[d] * tribo_line_along(l, d, j), g, p->columns);
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ rigid planar contacts */
+
 /* (weight t)'J acc, acc [ncontact] = J acc. */
-static double planar_series_along(const struct planar_contact *p, const struct planar_line *l, const double *acc)
+static double planar_series_along(const struct planar_contact *p, const struct line *l, const double *acc)
 {
     return p->weight[0] * l->t[0] * acc[p->at] + p->weight[1] * l->t[1] * acc[p->at + 1];
 }
@@ -83,7 +119,7 @@ double tribo_planar_series_brake(const struct event *e, size_t k, double tau)
 {
     double size = 0.0;
     for (size_t j = tribo_event_limit_terms(e); j-- > 0;) {
-        size = size * tau + fabs(e->planar.line[k].g[j]);
+        size = size * tau + fabs(e->lines.line[k].g[j]);
     }
     return e->events.stick_slip.plane->contact[k].brake * size;
 }
@@ -99,47 +135,18 @@ double tribo_planar_series_first_stop(const struct stick_slip *m)
     return least;
 }
 
-/* Sets n and the normal t of a line. */
-static void set_direction(struct planar_line *l, double x, double y)
-{
-    l->n[0] = l->t[1] = x;
-    l->n[1] = y;
-    l->t[0] = -y;
-}
-
-int tribo_planar_series_begin(struct event *e)
+/* Sets answer, held and the columns of S: what a unit t-part of each beginning contact does to q'', to holding forces, to
+ * accelerations along all t. Returns a status. */
+static int find_answers(struct event *e)
 {
     struct stick_slip *m = &e->events.stick_slip;
-    struct planar_series *s = &e->planar;
+    struct lines *s = &e->lines;
     const tribo_system *sys = e->sys;
     const struct planar_contact *all = m->plane->contact;
-    const size_t count = m->plane->count, c = sys->ncontact;
-    size_t begins = 0;
-    for (size_t k = 0; k < count; k++) {
-        begins += (size_t)is_implicit(m, &all[k]);
-    }
-    if (!reserve_lines(e, begins)) {
-        return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for series of %zu contact%s in a plane", count,
-                           plural(count));
-    }
-    /* coefficients stay within MOST_DIGITS: their unit of time is that of the first stop, or of the step; given directions and
-     * constant limits make no higher powers of it */
-    const double unit = s->given > 0.0 ? s->given : tribo_planar_series_first_stop(m),
-                 least = s->given > 0.0 ? LEAST_GIVEN : LEAST_ORDER, most = MOST_DIGITS / greater(-log10(unit), 1.0);
-    const int bounded = s->given > 0.0 && e->terms == 1;
-    e->order = bounded ? e->most_order : (size_t)lesser((double)e->most_order, greater(most, least));
-    s->begins = begins;
-    for (size_t k = 0, q = 0; q < begins; k++) {
-        if (is_implicit(m, &all[k])) {
-            set_direction(&s->line[k], all[k].direction[0], all[k].direction[1]);
-            s->begin[q++] = k;
-        }
-    }
-    /* answer, held and a column of S: what a unit t-part of beginning contact q does to q'', to holding forces, to accelerations
-     * along all t */
+    const size_t begins = s->begins, c = sys->ncontact;
     for (size_t q = 0; q < begins; q++) {
         const struct planar_contact *p = &all[s->begin[q]];
-        const struct planar_line *l = &s->line[s->begin[q]];
+        const struct line *l = &s->line[s->begin[q]];
         double *acc = s->answer + q * sys->ndof, *a = e->room.a, *f = e->room.given;
         memset(acc, 0, sys->ndof * sizeof *acc);
         memset(f, 0, c * sizeof *f);
@@ -159,20 +166,57 @@ int tribo_planar_series_begin(struct event *e)
     return TRIBO_OK;
 }
 
+int tribo_planar_series_begin(struct event *e)
+{
+    struct stick_slip *m = &e->events.stick_slip;
+    struct lines *s = &e->lines;
+    const struct planar_contact *all = m->plane->contact;
+    const size_t count = s->count;
+    size_t begins = 0;
+    for (size_t k = 0; k < count; k++) {
+        begins += (size_t)is_implicit(m, &all[k]);
+    }
+    const int status = tribo_lines_reserve(e, begins);
+    if (status) {
+        return status;
+    }
+    /* coefficients stay within MOST_DIGITS: their unit of time is that of the first stop, or of the step; given directions and
+     * constant limits make no higher powers of it */
+    const double unit = s->given > 0.0 ? s->given : tribo_planar_series_first_stop(m),
+                 least = s->given > 0.0 ? LEAST_GIVEN : LEAST_ORDER, most = MOST_DIGITS / greater(-log10(unit), 1.0);
+    const int bounded = s->given > 0.0 && e->terms == 1;
+    e->order = bounded ? e->most_order : (size_t)lesser((double)e->most_order, greater(most, least));
+    s->begins = begins;
+    for (size_t k = 0, q = 0; k < count; k++) {
+        struct line *l = &s->line[k];
+        const int implicit = is_implicit(m, &all[k]);
+        l->at = all[k].at;
+        l->lag = 0;
+        l->weight[0] = all[k].weight[0];
+        l->weight[1] = all[k].weight[1];
+        l->asymptotic = implicit && all[k].begins == BY_FORCE;
+        if (implicit) {
+            tribo_line_set_direction(l, all[k].direction[0], all[k].direction[1]);
+            s->begin[q++] = k;
+        }
+    }
+    return find_answers(e);
+}
+
 /* ------------------------------------------------------------------------------------------------------- coefficients */
 
 /* Part of coefficient k of |x| u along t that does not have the last coefficients of u and |x|. */
-static double before(const struct planar_line *l, size_t k)
+static double before(const struct line *l, size_t k)
 {
     return tribo_product_of(l->speed, l->ut, k, 1, k);
 }
 
-int tribo_planar_series_forces(struct event *e, size_t k, const double *v)
+int tribo_planar_series_forces(struct event *e, size_t k, double *v)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     for (size_t c = 0; c < m->plane->count; c++) {
         const struct planar_contact *p = &m->plane->contact[c];
-        struct planar_line *l = &e->planar.line[c];
+        struct line *l = &e->lines.line[c];
         const size_t shift = (size_t)p->begins, j = k - shift;
         const size_t lead = shift < p->lag ? shift : p->lag, a = k - lead; /* a: the last order of u in this force */
         const double x[2] = {p->weight[0] * v[p->at], p->weight[1] * v[p->at + 1]}, size = hypot(x[0], x[1]);
@@ -181,9 +225,11 @@ int tribo_planar_series_forces(struct event *e, size_t k, const double *v)
             continue;
         }
         if (k == shift && !is_implicit(m, p) && size > 0.0) {
-            set_direction(l, x[0] / size, x[1] / size);
+            tribo_line_set_direction(l, x[0] / size, x[1] / size);
         }
-        if (k >= shift) {
+        if (k < shift) {
+            v[p->at] = v[p->at + 1] = 0.0;
+        } else {
             l->xn[j] = l->n[0] * x[0] + l->n[1] * x[1];
             l->xt[j] = j ? l->t[0] * x[0] + l->t[1] * x[1] : 0.0;
         }
@@ -192,19 +238,16 @@ int tribo_planar_series_forces(struct event *e, size_t k, const double *v)
                                "at t = %.17g it is not clear in which direction the planar contact %zu begins to slide",
                                e->sys->loads.time, p->at);
         }
-        if (e->planar.given == 0.0 && k >= lead) {
+        if (e->lines.given == 0.0 && k >= lead) {
             l->un[a] = a ? -0.5 * (tribo_product_of(l->un, l->un, a, 1, a) + tribo_product_of(l->ut, l->ut, a, 1, a)) : 1.0;
             l->ut[a] = a && shift == lead ? (l->xt[a] - before(l, a)) / l->xn[0] : 0.0;
         }
-        if (e->planar.given == 0.0 && k >= shift) {
+        if (e->lines.given == 0.0 && k >= shift) {
             l->speed[j] = l->xn[j] - tribo_product_of(l->speed, l->un, j, 0, j);
         }
         const size_t terms = tribo_event_limit_terms(e), to = k < terms ? k + 1 : terms;
-        l->fn[k] = tribo_product_of(l->g, l->un, k, lead, to);
-        l->ft[k] = tribo_product_of(l->g, l->ut, k, lead, to);
-        for (size_t d = 0; d < 2; d++) {
-            e->room.given[p->at + d] = -p->weight[d] * (l->n[d] * l->fn[k] + l->t[d] * l->ft[k]);
-        }
+        tribo_line_force(e, l, k, lead, to);
+        memcpy(e->room.given + p->at, e->force + k * e->sys->ncontact + p->at, 2 * sizeof *e->force);
     }
     return TRIBO_OK;
 }
@@ -213,7 +256,7 @@ int tribo_planar_series_finish(struct event *e, size_t k)
 {
     const tribo_system *sys = e->sys;
     const struct planar_contact *all = e->events.stick_slip.plane->contact;
-    struct planar_series *s = &e->planar;
+    struct lines *s = &e->lines;
     const size_t n = s->begins;
     const double times = (double)(k + 1);
     double *a = e->room.a;
@@ -225,7 +268,7 @@ int tribo_planar_series_finish(struct event *e, size_t k)
     memcpy(s->lu, s->s, n * n * sizeof *s->s);
     for (size_t q = 0; q < n; q++) {
         const struct planar_contact *p = &all[s->begin[q]];
-        const struct planar_line *l = &s->line[s->begin[q]];
+        const struct line *l = &s->line[s->begin[q]];
         double asked = k > 1 ? l->ut[k - 1] * l->xn[0] + before(l, k - 1) : 0.0;
         if ((size_t)p->begins == p->lag + 1) {
             asked = before(l, k - p->lag);
@@ -246,47 +289,15 @@ int tribo_planar_series_finish(struct event *e, size_t k)
     tribo_lu_solve(s->lu, n, s->pivot, s->tau, 1);
     for (size_t q = 0; q < n; q++) {
         const size_t lag = all[s->begin[q]].lag;
-        struct planar_line *l = &s->line[s->begin[q]];
+        struct line *l = &s->line[s->begin[q]];
         l->ut[k - lag] = s->tau[q];
-        l->ft[k] += l->g[lag] * s->tau[q];
+        for (size_t d = 0; d < 2; d++) {
+            e->force[k * sys->ncontact + l->at + d] -= l->weight[d] * l->t[d] * l->g[lag] * s->tau[q];
+        }
         tribo_add(e->room.acceleration, s->tau[q], s->answer + q * sys->ndof, sys->ndof);
         tribo_add(e->room.held, s->tau[q], s->held + q * sys->ncontact, sys->ncontact);
     }
     return TRIBO_OK;
-}
-
-double tribo_planar_series_power(const struct event *e, size_t k)
-{
-    const struct stick_slip *m = &e->events.stick_slip;
-    double power = 0.0;
-    for (size_t c = 0; c < m->plane->count; c++) {
-        const struct planar_contact *p = &m->plane->contact[c];
-        const struct planar_line *l = &e->planar.line[c];
-        const size_t j = k - (size_t)p->begins;
-        if (tribo_slides_in_plane(m, p) && k >= (size_t)p->begins) {
-            power += e->sys->tally[p->at] *
-                     (tribo_product_of(l->fn, l->xn, j, 0, j + 1) + tribo_product_of(l->ft, l->xt, j, 0, j + 1));
-        }
-    }
-    return power;
-}
-
-double tribo_planar_series_power_along(const struct event *e, size_t i, size_t k)
-{
-    const struct stick_slip *m = &e->events.stick_slip;
-    double power = 0.0;
-    for (size_t c = 0; c < m->plane->count; c++) {
-        const struct planar_contact *p = &m->plane->contact[c];
-        const struct planar_line *l = &e->planar.line[c];
-        const size_t d = i - p->at, shift = (size_t)p->begins;
-        if (d < 2 && tribo_slides_in_plane(m, p)) {
-            for (size_t j = 0; j + shift <= k; j++) {
-                const double x = l->n[d] * l->xn[j] + l->t[d] * l->xt[j];
-                power += x * (l->n[d] * l->fn[k - shift - j] + l->t[d] * l->ft[k - shift - j]);
-            }
-        }
-    }
-    return power;
 }
 
 /* ------------------------------------------------------------------------------------------------------- perturbations */
@@ -296,57 +307,41 @@ double tribo_planar_series_power_along(const struct event *e, size_t i, size_t k
  * from which each term of z follows; of contacts that begin to slide by the equation of their t-parts, with S. The force turns
  * by -weight g du, and grows by -weight u dg. */
 
-size_t tribo_planar_series_terms(const struct event *e, size_t most)
-{
-    const struct planar_contact *all = e->events.stick_slip.plane->contact;
-    for (size_t q = 0; q < e->planar.begins; q++) {
-        most = all[e->planar.begin[q]].begins == BY_FORCE ? e->order : most;
-    }
-    return most;
-}
-
-/* Component d of the coefficient j of r. */
-static double normal_of(const struct planar_line *l, size_t d, size_t j)
-{
-    return l->t[d] * l->un[j] - l->n[d] * l->ut[j];
-}
-
 /* w [columns] += term k of r'(weight dv) of contact c, with coefficients of r from `from` on. */
-static void add_sideways(const struct event *e, size_t c, const struct planar_turns *p, size_t k, size_t from, double *w)
+static void add_sideways(const struct event *e, size_t c, const struct turns *p, size_t k, size_t from, double *w)
 {
     const struct planar_contact *contact = &e->events.stick_slip.plane->contact[c];
     double power = pow(p->tau, (double)from);
     for (size_t j = from; j <= k && j <= e->order; j++, power *= p->tau) {
         const double *v = p->v + (k - j) % p->rows * e->sys->ncontact * p->columns;
         for (size_t i = contact->at; i < contact->at + 2; i++) {
-            const double part = contact->weight[i - contact->at] * normal_of(&e->planar.line[c], i - contact->at, j);
+            const double part = contact->weight[i - contact->at] * tribo_line_across(&e->lines.line[c], i - contact->at, j);
             tribo_add(w, power * part, v + i * p->columns, p->columns);
         }
     }
 }
 
 /* w [columns] += factor times term k of |x| z of contact c, with coefficients of |x| from `from` on. */
-static void add_turned(const struct event *e, size_t c, const struct planar_turns *p, size_t k, size_t from, double factor,
-                       double *w)
+static void add_turned(const struct event *e, size_t c, const struct turns *p, size_t k, size_t from, double factor, double *w)
 {
     const struct planar_slip *plane = e->events.stick_slip.plane;
     for (size_t j = from; j <= k && j + (size_t)plane->contact[c].begins <= e->order; j++) {
-        const double *z = p->z + ((k - j) % p->rows * plane->count + c) * p->columns;
-        tribo_add(w, factor * pow(p->tau, (double)j) * e->planar.line[c].speed[j], z, p->columns);
+        tribo_add(w, factor * pow(p->tau, (double)j) * e->lines.line[c].speed[j], tribo_turn_of(e, p, p->z, k - j, c),
+                  p->columns);
     }
 }
 
-void tribo_planar_series_turn(const struct event *e, size_t k, const struct planar_turns *p, double *force)
+void tribo_planar_series_turn(const struct event *e, size_t k, const struct turns *p, double *force)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const struct planar_slip *plane = m->plane;
     memset(force, 0, e->sys->ncontact * p->columns * sizeof *force);
     for (size_t c = 0; c < plane->count; c++) {
         const struct planar_contact *contact = &plane->contact[c];
-        const struct planar_line *l = &e->planar.line[c];
-        double *z = p->z + (k % p->rows * plane->count + c) * p->columns;
+        const struct line *l = &e->lines.line[c];
+        double *z = tribo_turn_of(e, p, p->z, k, c);
         memset(z, 0, p->columns * sizeof *z);
-        tribo_event_perturb_limit(e, contact->at, p->q, p->columns, p->g + (k % p->rows * plane->count + c) * p->columns);
+        tribo_event_perturb_limit(e, contact->at, p->q, p->columns, tribo_turn_of(e, p, p->g, k, c));
         if (!tribo_slides_in_plane(m, contact)) {
             continue;
         }
@@ -357,24 +352,15 @@ void tribo_planar_series_turn(const struct event *e, size_t k, const struct plan
                 z[j] /= l->speed[0];
             }
         }
-        double power = 1.0;
-        for (size_t j = 0; j <= k && j <= e->order; j++, power *= p->tau) {
-            const size_t at = ((k - j) % p->rows * plane->count + c) * p->columns;
-            for (size_t d = 0; d < 2; d++) {
-                const double turns = l->t[d] * l->fn[j] - l->n[d] * l->ft[j], grows = l->n[d] * l->un[j] + l->t[d] * l->ut[j];
-                double *to = force + (contact->at + d) * p->columns;
-                tribo_add(to, -power * contact->weight[d] * turns, p->z + at, p->columns);
-                tribo_add(to, -power * contact->weight[d] * grows, p->g + at, contact->varies ? p->columns : 0);
-            }
-        }
+        tribo_line_turn_force(e, c, k, p, force);
     }
 }
 
-int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct planar_turns *p, double *u)
+int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct turns *p, double *u)
 {
     const tribo_system *sys = e->sys;
     const struct planar_slip *plane = e->events.stick_slip.plane;
-    struct planar_series *s = &e->planar;
+    struct lines *s = &e->lines;
     const size_t n = s->begins;
     const double part = p->tau / (double)(k + 1);
     memcpy(s->lu, s->s, n * n * sizeof *s->s);
@@ -386,7 +372,7 @@ int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct plan
         for (size_t d = 0; d < 2; d++) {
             const size_t i = contact->at + d;
             for (size_t at = sys->direction.first[i]; at < sys->direction.first[i + 1]; at++) {
-                const double side = contact->weight[d] * normal_of(&s->line[c], d, 0) * sys->direction.val[at];
+                const double side = contact->weight[d] * tribo_line_across(&s->line[c], d, 0) * sys->direction.val[at];
                 tribo_add(w, side, u + sys->direction.col[at] * p->columns, p->columns);
             }
         }
@@ -409,7 +395,7 @@ int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct plan
     tribo_lu_solve(s->lu, n, s->pivot, p->w, p->columns);
     for (size_t q = 0; q < n; q++) {
         const double *w = p->w + q * p->columns;
-        memcpy(p->z + (k % p->rows * plane->count + s->begin[q]) * p->columns, w, p->columns * sizeof *w);
+        memcpy(tribo_turn_of(e, p, p->z, k, s->begin[q]), w, p->columns * sizeof *w);
         for (size_t d = 0; d < sys->ndof; d++) {
             tribo_add(u + d * p->columns, part * s->answer[q * sys->ndof + d], w, p->columns);
         }
@@ -419,32 +405,24 @@ int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct plan
 
 /* -------------------------------------------------------------------------------------------------------------- guards */
 
-/* Returns the limit at rest by which the guard of a contact at rest, (limit^2 - |f|^2)/2 divided by it, is in units of forces:
- * the least one of the step, not below a part of the largest one. Sets blunt. */
-static double find_reference(const struct event *e, struct planar_contact *p)
-{
-    const double ratio = e->events.stick_slip.limits.ratio[p->at];
-    const double most = ratio * e->limit_curve[p->at].size, least = 2.0 * ratio * p->limit[0] - most;
-    const double reference = tribo_series_reference(least, most);
-    p->blunt = reference > least ? reference : 0.0;
-    return reference;
-}
-
 void tribo_planar_series_guards(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     for (size_t c = 0; c < m->plane->count; c++) {
         struct planar_contact *p = &m->plane->contact[c];
-        struct planar_line *l = &e->planar.line[c];
+        struct line *l = &e->lines.line[c];
         struct curve *curve = &e->curve[p->at];
         const int moves = tribo_slides_in_plane(m, p);
         const size_t last = e->order - (moves ? (size_t)p->begins : 0);
         const double ratio = m->limits.ratio[p->at], square_ratio = ratio * ratio;
-        const double half = 0.5 * greater(p->weight[0], p->weight[1]) / (p->varies ? find_reference(e, p) : ratio);
+        /* the guard of a contact at rest, (limit^2 - |f|^2)/2 divided by reference, is in units of forces */
+        const double most = ratio * e->limit_curve[p->at].size, least = 2.0 * ratio * p->limit[0] - most;
+        const double reference = p->varies ? tribo_series_reference(least, most) : ratio;
+        const double half = p->half = 0.5 * greater(p->weight[0], p->weight[1]) / reference;
         if (p->varies) {
+            p->blunt = reference > least ? reference : 0.0;
             tribo_events_guard_limit(&e->events, p->at, &(struct watch){.varies = 1});
         }
-        p->half = half;
         if (m->state.slip[p->at] == TRIBO_SLIP_OPEN) {
             continue;
         }
@@ -454,9 +432,8 @@ void tribo_planar_series_guards(struct event *e)
             l->xt[k] = force[1] / p->weight[1];
         }
         for (size_t k = 0; k <= 2 * e->order; k++) { /* terms of the square are not small where those of x end */
-            const size_t from = k < last ? 0 : k - last, to = k < last ? k + 1 : last + 1;
-            const double square = tribo_product_of(l->xn, l->xn, k, from, to) + tribo_product_of(l->xt, l->xt, k, from, to);
-            const double limit = moves || !p->varies ? 0.0 : square_ratio * tribo_product_of(l->g, l->g, k, from, to);
+            const double square = tribo_series_square(l->xn, 1, k, last) + tribo_series_square(l->xt, 1, k, last);
+            const double limit = moves || !p->varies ? 0.0 : square_ratio * tribo_series_square(l->g, 1, k, last);
             l->square[k] = moves ? square : half * (square - limit);
         }
         tribo_curves_bound(curve, 1, 2 * e->order + 1, 1, l->square, e->length);
@@ -479,7 +456,7 @@ void tribo_planar_series_errors(struct event *e)
     for (size_t c = 0; c < plane->count; c++) {
         const struct planar_contact *p = &plane->contact[c];
         if (tribo_slides_in_plane(&e->events.stick_slip, p) && p->begins == SLIDES_ON) {
-            const double own = PART * e->planar.line[c].xn[0] / greater(p->weight[0], p->weight[1]);
+            const double own = PART * e->lines.line[c].xn[0] / greater(p->weight[0], p->weight[1]);
             plane->error[p->at] = plane->error[p->at + 1] = lesser(e->error, own);
         }
     }
@@ -490,7 +467,7 @@ double tribo_planar_series_shorten(const struct event *e, double h)
     const struct stick_slip *m = &e->events.stick_slip;
     for (size_t c = 0; c < m->plane->count && h > 0.0; c++) {
         const struct planar_contact *p = &m->plane->contact[c];
-        const struct planar_line *l = &e->planar.line[c];
+        const struct line *l = &e->lines.line[c];
         if (!tribo_slides_in_plane(m, p)) {
             continue;
         }
