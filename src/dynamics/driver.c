@@ -87,20 +87,13 @@ int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(const tribo_moment 
     return TRIBO_OK;
 }
 
-static int check_positive(const tribo_driver *drv, const char *name, double value)
-{
-    return !isfinite(value) ? tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "%s = %g is not finite", name, value)
-           : value <= 0.0   ? tribo_error(drv->message, TRIBO_ERR_NOT_POSITIVE, "%s = %g is not positive", name, value)
-                            : TRIBO_OK;
-}
-
 /* Returns TRIBO_OK if the method of drv accepts the setting, a bit TAKES_..., and value, called name, is positive. text: the
  * setting, and the methods that accept it. */
 static int check_setting(const tribo_driver *drv, int setting, const char *text, const char *name, double value)
 {
     return !drv ? TRIBO_ERR_NULL
            : drv->method->takes & setting
-               ? check_positive(drv, name, value)
+               ? tribo_check_number(drv->message, POSITIVE, value, "%s = %g", name, value)
                : tribo_error(drv->message, TRIBO_ERR_UNSUPPORTED, "method %s takes no %s do", drv->method->name, text);
 }
 
@@ -118,10 +111,7 @@ int tribo_driver_set_step(tribo_driver *drv, double dt)
 int tribo_driver_set_tolerance(tribo_driver *drv, double abstol, double reltol)
 {
     int status = check_setting(drv, TAKES_TOLERANCE, "tolerance; event, auto and GSL's adaptive methods", "abstol", abstol);
-    if (!status && !(reltol >= 0.0 && isfinite(reltol))) {
-        status = isfinite(reltol) ? tribo_error(drv->message, TRIBO_ERR_NEGATIVE, "reltol = %g is negative", reltol)
-                                  : check_positive(drv, "reltol", reltol);
-    }
+    status = status ? status : tribo_check_number(drv->message, NOT_NEGATIVE, reltol, "reltol = %g", reltol);
     if (!status) {
         drv->abstol = abstol;
         drv->reltol = reltol;
@@ -255,17 +245,9 @@ static int check_times(tribo_driver *drv, const double *t, double t1, const doub
     if (!t || !y) {
         return tribo_error(drv->message, TRIBO_ERR_NULL, "%s is NULL", t ? "y" : "t");
     }
-    const int status = tribo_system_check_state(drv->sys, *t, y);
-    if (status) {
-        return tribo_driver_pass(drv, status);
-    }
-    if (!isfinite(t1)) {
-        return tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "t1 = %g is not finite", t1);
-    }
-    if (t1 < *t) {
-        return tribo_error(drv->message, TRIBO_ERR_RANGE, "t1 = %.17g is before t = %.17g", t1, *t);
-    }
-    return TRIBO_OK;
+    int status = tribo_driver_pass(drv, tribo_system_check_state(drv->sys, *t, y));
+    status = status ? status : tribo_check_number(drv->message, FINITE, t1, "t1 = %g", t1);
+    return status || t1 >= *t ? status : tribo_error(drv->message, TRIBO_ERR_RANGE, "t1 = %.17g is before t = %.17g", t1, *t);
 }
 
 /* tribo_driver_advance for a methods' state y [tribo_system_size]. */

@@ -14,14 +14,9 @@ static const char *const drive_name[] = {[DRIVES_LOAD] = "load", [DRIVES_BASE] =
 
 static int check_period(tribo_driver *drv, double t, double period)
 {
-    if (!isfinite(period)) {
-        return tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "period = %g is not finite", period);
-    }
-    if (period <= 0.0) {
-        return tribo_error(drv->message, TRIBO_ERR_NOT_POSITIVE, "period = %g is not positive", period);
-    }
-    return t + 0.5 * period > t && t + period > t + 0.5 * period && isfinite(t + period)
-               ? TRIBO_OK
+    const int status = tribo_check_number(drv->message, POSITIVE, period, "period = %g", period);
+    return status || (t + 0.5 * period > t && t + period > t + 0.5 * period && isfinite(t + period))
+               ? status
                : tribo_error(drv->message, TRIBO_ERR_STEP, "period = %g is lost beside t = %.17g", period, t);
 }
 
@@ -184,11 +179,7 @@ static int check_mode(tribo_driver *drv, const double *c, double amplitude, doub
     const size_t given = tribo_system_ndof(sys), n = sys->ndof;
     int status = tribo_check_numbers(drv->message, 3, (const char *const[]){"amplitude", "omega", "zeta"},
                                      (const double[]){amplitude, omega, zeta});
-    for (size_t i = 0; !status && i < 2 * given; i++) {
-        if (!isfinite(c[i])) {
-            status = tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "c[%zu] = %g is not finite", i, c[i]);
-        }
-    }
+    status = status ? status : tribo_check_array(drv->message, FINITE, "c", c, 2 * given);
     if (!status && (!(amplitude > 0.0) || omega < 0.0)) {
         status = tribo_error(drv->message, TRIBO_ERR_NOT_POSITIVE, "%s = %g is not positive",
                              amplitude > 0.0 ? "omega" : "amplitude", amplitude > 0.0 ? omega : amplitude);

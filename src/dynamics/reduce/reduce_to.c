@@ -15,17 +15,10 @@ int tribo_system_reduce_to(tribo_system **sys, tribo_model *model, double omega,
     if (!sys) {
         return tribo_error(model->message, TRIBO_ERR_NULL, "sys is NULL");
     }
-    if (!isfinite(omega) || !isfinite(tolerance)) {
-        return isfinite(omega) ? tribo_error(model->message, TRIBO_ERR_NOT_FINITE, "tolerance = %g is not finite", tolerance)
-                               : tribo_error(model->message, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
-    }
-    if (omega < 0.0 || tolerance <= 0.0) {
-        return omega < 0.0 ? tribo_error(model->message, TRIBO_ERR_NEGATIVE, "omega = %g is negative", omega)
-                           : tribo_error(model->message, TRIBO_ERR_NOT_POSITIVE, "tolerance = %g is not positive", tolerance);
-    }
+    int status = tribo_check_number(model->message, NOT_NEGATIVE, omega, "omega = %g", omega);
+    status = status ? status : tribo_check_number(model->message, POSITIVE, tolerance, "tolerance = %g", tolerance);
     const size_t most = model->ndof;
     size_t few = 0, enough = 0, nmode = FIRST < most ? FIRST : most; /* number of modes: too few, enough */
-    int status = TRIBO_OK;
     tribo_system *best = NULL;
     while (!status && (enough == 0 || enough - few > 1 + enough / CLOSE)) {
         tribo_system *found = NULL;

@@ -163,26 +163,16 @@ int tribo_model_reduce(tribo_model *m, tribo_system **sys)
 /* Checks that sys is reduced, and that its argument of that name is not NULL. */
 static int check_reduced(const tribo_system *sys, const void *argument, const char *name)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!sys->reduced.modes) {
-        return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED, "the system is not reduced to modes");
-    }
-    return argument ? TRIBO_OK : tribo_error(sys->message, TRIBO_ERR_NULL, "%s is NULL", name);
+    return sys && !sys->reduced.modes ? tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED, "the system is not reduced to modes")
+                                      : tribo_system_check_given(sys, argument, name);
 }
 
 int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
 {
-    const int status = check_reduced(sys, &zeta, "zeta");
+    int status = check_reduced(sys, &zeta, "zeta");
+    status = status ? status : tribo_check_number(sys->message, NOT_NEGATIVE, zeta, "zeta = %g", zeta);
     if (status) {
         return status;
-    }
-    if (!isfinite(zeta)) {
-        return tribo_error(sys->message, TRIBO_ERR_NOT_FINITE, "zeta = %g is not finite", zeta);
-    }
-    if (zeta < 0.0) {
-        return tribo_error(sys->message, TRIBO_ERR_NEGATIVE, "zeta = %g is negative", zeta);
     }
     struct matrix damping = {0}, rates = {0}; /* equal, because M = 1 */
     double *entries = malloc(sys->ndof * sizeof *entries);
@@ -228,12 +218,10 @@ int tribo_system_expand(const tribo_system *sys, const double *reduced, double *
 
 int tribo_system_get_truncation(const tribo_system *sys, double omega, double *error)
 {
-    const int status = check_reduced(sys, error, "error");
+    int status = check_reduced(sys, error, "error");
+    status = status ? status : tribo_check_number(sys->message, FINITE, omega, "omega = %g", omega);
     if (status) {
         return status;
-    }
-    if (!isfinite(omega)) {
-        return tribo_error(sys->message, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
     }
     const struct truncation *t = &sys->reduced.truncation;
     const double square = omega * omega, x = square < t->above ? square / t->above : 1.0;

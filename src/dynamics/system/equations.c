@@ -82,10 +82,8 @@ int tribo_system_begin_rates(tribo_system *sys, const char *what, const double *
     int status = tribo_system_take_settings(sys);
     status = status ? status : tribo_system_check_mass(sys, what);
     status = status ? status : tribo_system_check_solved(sys, what);
-    if (!status && (!y || !to)) {
-        status = tribo_error(sys->message, TRIBO_ERR_NULL, "%s is NULL", y ? name : "y");
-    }
-    return sys->status = status;
+    status = status ? status : tribo_system_check_given(sys, y, "y");
+    return sys->status = status ? status : tribo_system_check_given(sys, to, name);
 }
 
 int tribo_system_derivative(tribo_system *sys, double t, const double *y, double *dydt)
@@ -107,14 +105,11 @@ int tribo_system_derivative(tribo_system *sys, double t, const double *y, double
 
 int tribo_system_get_force(const tribo_system *sys, double *f)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
+    const int status = tribo_system_check_given(sys, f, "f");
+    if (!status) {
+        memcpy(f, sys->work.f, sys->ncontact * sizeof *f);
     }
-    if (!f) {
-        return tribo_error(sys->message, TRIBO_ERR_NULL, "f is NULL");
-    }
-    memcpy(f, sys->work.f, sys->ncontact * sizeof *f);
-    return TRIBO_OK;
+    return status;
 }
 
 /* --------------------------------------------------------------------------------------------------------------------- states */

@@ -310,7 +310,7 @@ int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
 static int check_pattern(const tribo_system *sys, enum drives drives, const char *name, const double *x)
 {
     const size_t *place = sys->expansion.place, n = drives == DRIVES_LOAD ? sys->reduced.given : sys->ncontact;
-    const int status = tribo_system_check_finite(sys, name, x, n);
+    const int status = tribo_check_array(sys->message, FINITE, name, x, n);
     for (size_t i = 0; x && place && !status && i < n; i++) {
         if (x[i] != 0.0 && drives == DRIVES_LOAD && !sys->reduced.modes && place[i] >= sys->ndof) {
             return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
@@ -362,7 +362,7 @@ static int check_table(const tribo_system *sys, const struct harmonic *h, const 
         return h->knots ? tribo_error(sys->message, TRIBO_ERR_NULL, "%s is NULL", time ? name : "time")
                         : tribo_error(sys->message, TRIBO_ERR_SIZE, "knots = 0");
     }
-    int status = tribo_system_check_finite(sys, "time", time, h->knots);
+    int status = tribo_check_array(sys->message, FINITE, "time", time, h->knots);
     for (size_t k = 1; !status && k < h->knots; k++) {
         if (time[k] <= time[k - 1]) {
             status = tribo_error(sys->message, TRIBO_ERR_RANGE, "time[%zu] = %.17g is not after time[%zu] = %.17g", k, time[k],
@@ -370,15 +370,11 @@ static int check_table(const tribo_system *sys, const struct harmonic *h, const 
         }
     }
     if (status || h->drives != DRIVES_LIMIT) {
-        return status ? status : tribo_system_check_finite(sys, name, value, h->knots);
+        return status ? status : tribo_check_array(sys->message, FINITE, name, value, h->knots);
     }
-    for (size_t k = 0; k < h->knots * n; k++) {
-        const int finite = isfinite(value[k]);
-        if (!(finite && value[k] >= 0.0)) {
-            return tribo_error(sys->message, finite ? TRIBO_ERR_NEGATIVE : TRIBO_ERR_NOT_FINITE,
-                               "limit[%zu] = %g of contact %zu is %s", k / n, value[k], k % n,
-                               finite ? "negative" : "not finite");
-        }
+    for (size_t k = 0; !status && k < h->knots * n; k++) {
+        status =
+            tribo_check_number(sys->message, NOT_NEGATIVE, value[k], "limit[%zu] = %g of contact %zu", k / n, value[k], k % n);
     }
     for (size_t k = 0; !status && k < h->knots; k++) {
         status = check_pattern(sys, DRIVES_LIMIT, name, value + k * n);
@@ -486,12 +482,8 @@ static int loads_add(tribo_system *sys, struct harmonic h, const char *table, co
     if (!sys) {
         return TRIBO_ERR_NULL;
     }
-    int status = table               ? check_table(sys, &h, table)
-                 : isfinite(h.omega) ? TRIBO_OK
-                                     : tribo_error(sys->message, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", h.omega);
-    if (!status && table && !cosine && h.drives != DRIVES_LIMIT) {
-        return tribo_error(sys->message, TRIBO_ERR_NULL, "pattern is NULL");
-    }
+    int status = table ? check_table(sys, &h, table) : tribo_check_number(sys->message, FINITE, h.omega, "omega = %g", h.omega);
+    status = status || !table || h.drives == DRIVES_LIMIT ? status : tribo_system_check_given(sys, cosine, "pattern");
     status = status ? status : check_pattern(sys, h.drives, table ? "pattern" : "cosine", cosine);
     status = status ? status : check_pattern(sys, h.drives, "sine", sine);
     status = status || h.drives != DRIVES_LIMIT ? status : check_limits(sys, cosine, sine);

@@ -233,14 +233,9 @@ int tribo_model_set_compliance(tribo_model *model, const double *c)
 {
     const struct input in = {.model = model, .name = "compliance"};
     const size_t n = model ? model->ncontact : 0;
-    const int status = check_input(&in, c, "", n);
+    int status = check_input(&in, c, "", n);
+    status = status ? status : tribo_check_array(model->message, NOT_NEGATIVE, "compliance", c, n);
     for (size_t i = 0; !status && i < n; i++) {
-        if (!isfinite(c[i])) {
-            return tribo_error(model->message, TRIBO_ERR_NOT_FINITE, "compliance[%zu] = %g is not finite", i, c[i]);
-        }
-        if (c[i] < 0.0) {
-            return tribo_error(model->message, TRIBO_ERR_NEGATIVE, "compliance[%zu] = %g is negative", i, c[i]);
-        }
         if (c[i] > 0.0 && !(c[i] > 1.0 / DBL_MAX)) {
             return tribo_error(model->message, TRIBO_ERR_RANGE,
                                "compliance[%zu] = %g is of a stiffness that overflows: 0 is a rigid contact", i, c[i]);
@@ -295,19 +290,12 @@ int tribo_model_set_normal(tribo_model *model, size_t contact, size_t normal, do
         return TRIBO_ERR_NULL;
     }
     const struct normal_input in = {contact, normal, mu, stiffness, gap};
-    const double value[] = {mu, stiffness, gap};
-    static const char *const name[] = {"mu", "stiffness", "gap"};
-    for (int k = 0; k < 3; k++) {
-        if (!isfinite(value[k])) {
-            return tribo_error(model->message, TRIBO_ERR_NOT_FINITE, "%s = %g of contact %zu is not finite", name[k], value[k],
-                               contact);
-        }
-        if (k < 2 && value[k] < 0.0) {
-            return tribo_error(model->message, TRIBO_ERR_NEGATIVE, "%s = %g of contact %zu is negative", name[k], value[k],
-                               contact);
-        }
-    }
-    const int status = check_roles(model, &in);
+    int status = tribo_check_number(model->message, NOT_NEGATIVE, mu, "mu = %g of contact %zu", mu, contact);
+    status =
+        status ? status
+               : tribo_check_number(model->message, NOT_NEGATIVE, stiffness, "stiffness = %g of contact %zu", stiffness, contact);
+    status = status ? status : tribo_check_number(model->message, FINITE, gap, "gap = %g of contact %zu", gap, contact);
+    status = status ? status : check_roles(model, &in);
     if (status) {
         return status;
     }

@@ -21,6 +21,31 @@ int tribo_error(char *message, int status, const char *format, ...)
     return status;
 }
 
+int tribo_check_number(char *message, enum range range, double x, const char *format, ...)
+{
+    static const char *const text[] = {"is not finite", "is negative", "is not positive"};
+    static const int error[] = {TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_NOT_POSITIVE};
+    char subject[TRIBO_MESSAGE];
+    va_list args;
+    if (isfinite(x) && (range == FINITE || x > 0.0 || (range == NOT_NEGATIVE && x == 0.0))) {
+        return TRIBO_OK;
+    }
+    const int which = isfinite(x) ? (int)range : FINITE;
+    va_start(args, format);
+    vsnprintf(subject, sizeof subject, format, args);
+    va_end(args);
+    return tribo_error(message, error[which], "%s %s", subject, text[which]);
+}
+
+int tribo_check_array(char *message, enum range range, const char *name, const double *x, size_t n)
+{
+    int status = TRIBO_OK;
+    for (size_t i = 0; x && !status && i < n; i++) {
+        status = tribo_check_number(message, range, x[i], "%s[%zu] = %g", name, i, x[i]);
+    }
+    return status;
+}
+
 int tribo_check_numbers(char *message, size_t n, const char *const *name, const double *x)
 {
     size_t worst = 0;
@@ -88,25 +113,16 @@ int tribo_system_check_contacts(const tribo_system *sys, const char *method, int
     return TRIBO_OK;
 }
 
-int tribo_system_check_finite(const tribo_system *sys, const char *name, const double *x, size_t n)
+int tribo_system_check_given(const tribo_system *sys, const void *argument, const char *name)
 {
-    for (size_t i = 0; x && i < n; i++) {
-        if (!isfinite(x[i])) {
-            return tribo_error(sys->message, TRIBO_ERR_NOT_FINITE, "%s[%zu] = %g is not finite", name, i, x[i]);
-        }
-    }
-    return TRIBO_OK;
+    return !sys ? TRIBO_ERR_NULL : argument ? TRIBO_OK : tribo_error(sys->message, TRIBO_ERR_NULL, "%s is NULL", name);
 }
 
 int tribo_system_check_state(const tribo_system *sys, double t, const double *y)
 {
-    if (!isfinite(t)) {
-        return tribo_error(sys->message, TRIBO_ERR_NOT_FINITE, "t = %g is not finite", t);
-    }
-    if (!y) {
-        return tribo_error(sys->message, TRIBO_ERR_NULL, "y is NULL");
-    }
-    return tribo_system_check_finite(sys, "y", y, tribo_system_dimension(sys));
+    int status = tribo_check_number(sys->message, FINITE, t, "t = %g", t);
+    status = status ? status : tribo_system_check_given(sys, y, "y");
+    return status ? status : tribo_check_array(sys->message, FINITE, "y", y, tribo_system_dimension(sys));
 }
 
 /* -------------------------------------------------------------------------------------------------------------------- queries */
@@ -210,22 +226,15 @@ int tribo_system_get_count(const tribo_system *sys, int which, size_t *value)
 
 int tribo_system_get_limit(tribo_system *sys, double t, double *limit)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!isfinite(t)) {
-        return tribo_error(sys->message, TRIBO_ERR_NOT_FINITE, "t = %g is not finite", t);
-    }
-    if (!limit && sys->ncontact) {
-        return tribo_error(sys->message, TRIBO_ERR_NULL, "limit is NULL");
-    }
-    if (sys->normals.count) {
+    int status = sys ? tribo_check_number(sys->message, FINITE, t, "t = %g", t) : TRIBO_ERR_NULL;
+    status = status || sys->ncontact == 0 ? status : tribo_system_check_given(sys, limit, "limit");
+    if (!status && sys->normals.count) {
         return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
                            "the limit of contact %zu follows its normal load, and is no function of time: tribo_system_contacts "
                            "finds the loads by the state",
                            sys->normals.follower[0].contact);
     }
-    const int status = tribo_system_take_settings(sys);
+    status = status ? status : tribo_system_take_settings(sys);
     if (!status) {
         tribo_system_set_time(sys, t);
         tribo_get_limit(sys->contacts, limit);
@@ -336,11 +345,9 @@ static const struct attached *attached_find(const tribo_system *sys, const void 
 
 int tribo_system_attach(tribo_system *sys, const void *key, void *data, void (*destroy)(void *data))
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!key) {
-        return tribo_error(sys->message, TRIBO_ERR_NULL, "key is NULL");
+    const int status = tribo_system_check_given(sys, key, "key");
+    if (status) {
+        return status;
     }
     if (attached_find(sys, key)) {
         return tribo_error(sys->message, TRIBO_ERR_STATE, "data of this key is attached to the system already");
@@ -397,11 +404,9 @@ void tribo_system_put_damping(tribo_system *sys, const struct matrix *c, const s
 
 int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!copy) {
-        return tribo_error(sys->message, TRIBO_ERR_NULL, "copy is NULL");
+    const int status = tribo_system_check_given(sys, copy, "copy");
+    if (status) {
+        return status;
     }
     tribo_system *to = NULL;
     const struct compliance *g = &sys->compliance;

@@ -330,6 +330,20 @@ int tribo_error(char *message, int status, const char *format, ...)
 #endif
     ;
 
+/* What a number must be, beside finite. */
+enum range { FINITE, NOT_NEGATIVE, POSITIVE };
+
+/* Returns TRIBO_OK if x is finite and in range; else an error, with the message "... is not finite", or negative, or not positive,
+ * which begins as format says. */
+int tribo_check_number(char *message, enum range range, double x, const char *format, ...)
+#if defined(__GNUC__)
+    __attribute__((format(printf, 4, 5)))
+#endif
+    ;
+
+/* Returns TRIBO_OK if all x [n] are finite and in range, or x is NULL, else an error with the name of x. */
+int tribo_check_array(char *message, enum range range, const char *name, const double *x, size_t n);
+
 /* Returns TRIBO_OK if the numbers x [n] and their sum are finite; else TRIBO_ERR_NOT_FINITE, with the name of the first number
  * that is not, or of the largest. */
 int tribo_check_numbers(char *message, size_t n, const char *const *name, const double *x);
@@ -348,8 +362,8 @@ int tribo_system_begin_rates(tribo_system *sys, const char *what, const double *
  * and for static limits of elastic contacts. */
 int tribo_system_check_contacts(const tribo_system *sys, const char *method, int scalar);
 
-/* Returns TRIBO_OK if all x [n] are finite, or x is NULL, else an error with the name of x. */
-int tribo_system_check_finite(const tribo_system *sys, const char *name, const double *x, size_t n);
+/* Returns TRIBO_OK if neither sys nor its argument of this name is NULL, else TRIBO_ERR_NULL. */
+int tribo_system_check_given(const tribo_system *sys, const void *argument, const char *name);
 
 /* Returns TRIBO_OK if t and the caller's state y are finite, else an error. */
 int tribo_system_check_state(const tribo_system *sys, double t, const double *y);
