@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "model.h"
+#include "common/layout.h"
 #include "common/real.h"
 
 /* A sum is rounding if at most ROUNDING times its terms; a pivot, if at most ROUNDING times its diagonal entry. */
@@ -19,7 +20,8 @@ struct condensed {
     size_t with, without;     /* lengths of q, of w */
     struct expansion x;       /* of the system, before the sliders are appended */
     double *row, *sum, *size; /* [ndof] workspace; sum of the entries of a row, and of their sizes, by columns */
-    size_t columns, *column;  /* columns of a row with an entry */
+    size_t *column;           /* [ndof] columns of a row with an entry */
+    struct matrix whole;      /* [ndof][with] the identity, and follow: all displacements, by place, by q */
     double *own, *shared;     /* [ncontact] G_ii; [ncontact][ncontact] G, NULL if G is diagonal */
     struct matrix kww, kqw;   /* blocks of K */
     struct cholesky factor;   /* Cholesky factor of K_ww */
@@ -30,9 +32,9 @@ static void condensed_free(struct condensed *s)
     tribo_expansion_free(&s->x);
     tribo_matrix_free(&s->kww);
     tribo_matrix_free(&s->kqw);
+    tribo_matrix_free(&s->whole);
     tribo_cholesky_free(&s->factor);
     free(s->row);
-    free(s->column);
     free(s->shared);
 }
 
@@ -51,14 +53,10 @@ static int condense_number(const tribo_model *m, struct condensed *s)
 {
     const size_t n = m->ndof, c = m->ncontact;
     s->x = (struct expansion){.dofs = n, .place = malloc((n + c) * sizeof *s->x.place), .terms = malloc(n * sizeof *s->x.terms)};
-    s->row = calloc(3 * n + c, sizeof *s->row);
-    s->column = malloc(n * sizeof *s->column);
-    if (!s->row || !s->column || !s->x.place || !s->x.terms) {
+    if (!ALLOCATE(ARRAY(s->row, n), ARRAY(s->sum, n), ARRAY(s->size, n), ARRAY(s->own, c), ARRAY(s->column, n)) || !s->x.place ||
+        !s->x.terms) {
         return 0;
     }
-    s->sum = s->row + n;
-    s->size = s->sum + n;
-    s->own = s->size + n;
     for (size_t d = 0; d < n; d++) {
         s->with += !is_massless(m, d);
     }
@@ -130,16 +128,23 @@ static int solve_row(struct condensed *s, const struct matrix *a, size_t i)
     return a->first[i] < a->first[i + 1] && tribo_cholesky_solve(&s->factor, 1, s->row);
 }
 
-/* Sets follow = -K_ww^-1 K_wq; own = G_ii, give, and shared = G if an entry off the diagonal is more than rounding. Returns 0 if
- * out of memory. */
+/* Sets follow = -K_ww^-1 K_wq, and whole; own = G_ii, give, and shared = G if an entry off the diagonal is more than rounding.
+ * Returns 0 if out of memory. */
 static int find_responses(const tribo_model *m, struct condensed *s)
 {
     const size_t n = m->ncontact;
-    struct triplets follow = {0}, give = {0};
-    int done = 1;
+    struct triplets follow = {0}, give = {0}, whole = {0};
     for (size_t q = 0; q < s->with; q++) {
         for (size_t k = 0, end = solve_row(s, &s->kqw, q) ? s->without : 0; k < end; k++) {
             tribo_triplets_put(&follow, k, q, -s->row[k]);
+        }
+    }
+    int done = tribo_triplets_finish(&follow, s->without, s->with, &s->x.follow);
+    for (size_t d = 0; done && d < s->with + s->without; d++) {
+        if (d < s->with) {
+            tribo_triplets_put(&whole, d, d, 1.0);
+        } else {
+            tribo_triplets_put_row(&whole, d, &s->x.follow, d - s->with);
         }
     }
     for (size_t i = 0; done && i < n; i++) {
@@ -162,43 +167,36 @@ static int find_responses(const tribo_model *m, struct condensed *s)
     for (size_t i = 0; s->shared && i < n; i++) {
         s->shared[i * n + i] = s->own[i];
     }
-    return tribo_triplets_finish(&follow, s->without, s->with, &s->x.follow) &
-           tribo_triplets_finish(&give, s->without, n, &s->x.give) & done;
+    return tribo_triplets_finish(&give, s->without, n, &s->x.give) &
+           tribo_triplets_finish(&whole, s->with + s->without, s->with, &s->whole) & done;
 }
 
-/* Adds x to column j of the sum of a row. */
-static void combine_add(struct condensed *s, size_t j, double x)
-{
-    if (s->size[j] == 0.0) {
-        s->column[s->columns++] = j;
-    }
-    s->sum[j] += x;
-    s->size[j] += fabs(x);
-}
-
-/* to = columns q + (columns w) follow of a, of the rows q, or of all rows (a = J); 0 for entries that are rounding. terms [rows]
- * out, or NULL: sum of the sizes of the terms of to_ii. Returns 0 if out of memory. */
+/* to = a whole, of the rows q, or of all rows (a = J); 0 for entries that are rounding. terms [rows] out, or NULL: sum of the
+ * sizes of the terms of to_ii. Returns 0 if out of memory. */
 static int condense_combine(struct condensed *s, const struct matrix *a, int all, double *terms, struct matrix *to)
 {
     const size_t *place = s->x.place, rows = all ? a->rows : s->with;
-    const struct matrix *follow = &s->x.follow;
     struct triplets t = {0};
     for (size_t i = 0; i < a->rows; i++) {
         const size_t row = all ? i : place[i];
+        size_t columns = 0;
         for (size_t e = a->first[i]; row < rows && e < a->first[i + 1]; e++) {
-            const size_t j = place[a->col[e]], w = j < s->with ? s->without : j - s->with;
-            if (w == s->without) {
-                combine_add(s, j, a->val[e]);
-            }
-            for (size_t f = w < s->without ? follow->first[w] : 0; w < s->without && f < follow->first[w + 1]; f++) {
-                combine_add(s, follow->col[f], a->val[e] * follow->val[f]);
+            const size_t j = place[a->col[e]];
+            for (size_t f = s->whole.first[j]; f < s->whole.first[j + 1]; f++) {
+                const size_t column = s->whole.col[f];
+                const double term = a->val[e] * s->whole.val[f];
+                if (s->size[column] == 0.0 && term != 0.0) {
+                    s->column[columns++] = column;
+                }
+                s->sum[column] += term;
+                s->size[column] += fabs(term);
             }
         }
         if (terms && row < rows) {
             terms[row] = s->size[row];
         }
-        for (; s->columns > 0; s->columns--) {
-            const size_t j = s->column[s->columns - 1];
+        while (columns > 0) {
+            const size_t j = s->column[--columns];
             tribo_triplets_put(&t, row, j, fabs(s->sum[j]) > ROUNDING * s->size[j] ? s->sum[j] : 0.0);
             s->sum[j] = s->size[j] = 0.0;
         }

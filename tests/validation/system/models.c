@@ -206,4 +206,46 @@ TEST(compliance_reduced)
     }
 }
 
-TEST_MAIN("models", {forms, 1}, {set_again, 1}, {errors, 1}, {compliance, 1}, {compliance_reduced, 1})
+/* Entries of the stiffness that are given as 0 change no bit, also between degrees of freedom without mass, W, and with mass. */
+TEST(given_zeros)
+{
+    enum { W = 40, M = 2 * W };
+    static size_t first[M + 1], at[M * M];
+    static double entry[M * M], masses[M], way[M], y[2][2 * M + 1];
+    for (size_t d = 0; d < M; d++) {
+        masses[d] = d < W ? 0.0 : 1.0;
+        y[0][d] = y[1][d] = d < W ? 0.0 : 0.01 * (double)(d - W);
+    }
+    way[W] = 1.0;
+    for (int given = 0; given < 2; given++) {
+        size_t count = 0;
+        for (size_t i = 0; i < M; i++) {
+            first[i] = count;
+            for (size_t j = 0; j < M; j++) {
+                const size_t low = i < j ? i : j, off = i < j ? j - i : i - j;
+                const int coupled = (off == 1 && i < W && j < W) || (off == W && low + 1 < W); /* the last mass stands alone */
+                if (off == 0 || coupled || given) {
+                    at[count] = j;
+                    entry[count++] = off == 0 ? 4.0 : coupled ? -1.0 : 0.0;
+                }
+            }
+        }
+        first[M] = count;
+        const double limit = 0.02;
+        tribo_model *model;
+        assert_ok(tribo_model_create(&model, M, 1));
+        assert_ok(tribo_model_set_mass_diagonal(model, masses));
+        assert_ok(tribo_model_set_stiffness_csr(model, first, at, entry));
+        assert_ok(tribo_model_set_direction(model, way));
+        tribo_system *sys = finish_model(model);
+        assert_ok(tribo_set_limit(tribo_system_context(sys), &limit));
+        tribo_driver *drv = driver_create(sys, "event", 0.5, 1e-9);
+        double t = 0.0;
+        assert_ok(tribo_driver_advance(drv, &t, 5.0, y[given]));
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+    require(memcmp(y[0], y[1], sizeof y[0]) == 0 && y[0][M - 1] != 0.0, "zeros");
+}
+
+TEST_MAIN("models", {forms, 1}, {set_again, 1}, {errors, 1}, {compliance, 1}, {compliance_reduced, 1}, {given_zeros, 1})
