@@ -152,24 +152,20 @@ int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
     if (status) {
         return status;
     }
-    const struct {
-        int which;
-        size_t value;
-    } counts[] = {
-        {TRIBO_COUNT_STEPS, drv->steps},
-        {TRIBO_COUNT_REJECTED, drv->rejected},
-        {TRIBO_COUNT_EVALUATIONS, drv->evaluations},
-        {TRIBO_COUNT_JACOBIANS, drv->jacobians},
-        {TRIBO_COUNT_EVENTS, drv->events},
-        {TRIBO_COUNT_PERIODS, drv->periods},
-        {TRIBO_COUNT_NEWTON, drv->newton},
-        {TRIBO_COUNT_RESTED, drv->rested},
+    enum { FIRST = TRIBO_COUNT_STEPS };
+    const size_t counts[] = {
+        [TRIBO_COUNT_STEPS - FIRST] = drv->steps,
+        [TRIBO_COUNT_REJECTED - FIRST] = drv->rejected,
+        [TRIBO_COUNT_EVALUATIONS - FIRST] = drv->evaluations,
+        [TRIBO_COUNT_JACOBIANS - FIRST] = drv->jacobians,
+        [TRIBO_COUNT_EVENTS - FIRST] = drv->events,
+        [TRIBO_COUNT_PERIODS - FIRST] = drv->periods,
+        [TRIBO_COUNT_NEWTON - FIRST] = drv->newton,
+        [TRIBO_COUNT_RESTED - FIRST] = drv->rested,
     };
-    for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
-        if (counts[k].which == which) {
-            *value = counts[k].value;
-            return TRIBO_OK;
-        }
+    if (which >= FIRST && (size_t)which - FIRST < sizeof counts / sizeof *counts) {
+        *value = counts[which - FIRST];
+        return TRIBO_OK;
     }
     return tribo_error(drv->message, TRIBO_ERR_RANGE, "which = %d is no count of a driver", which);
 }
@@ -240,16 +236,6 @@ int tribo_driver_accept(tribo_driver *drv, double t, const double *y)
     return tribo_driver_show(drv, t, y, TRIBO_MOMENT_STEP, SIZE_MAX);
 }
 
-static int check_times(tribo_driver *drv, const double *t, double t1, const double *y)
-{
-    if (!t || !y) {
-        return tribo_error(drv->message, TRIBO_ERR_NULL, "%s is NULL", t ? "y" : "t");
-    }
-    int status = tribo_driver_pass(drv, tribo_system_check_state(drv->sys, *t, y));
-    status = status ? status : tribo_check_number(drv->message, FINITE, t1, "t1 = %g", t1);
-    return status || t1 >= *t ? status : tribo_error(drv->message, TRIBO_ERR_RANGE, "t1 = %.17g is before t = %.17g", t1, *t);
-}
-
 /* tribo_driver_advance for a methods' state y [tribo_system_size]. */
 static int advance_motion(tribo_driver *drv, double *t, double t1, double *y)
 {
@@ -281,10 +267,14 @@ static int advance_motion(tribo_driver *drv, double *t, double t1, double *y)
 
 int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)
 {
-    if (!drv) {
-        return TRIBO_ERR_NULL;
+    if (!drv || !t) {
+        return drv ? tribo_error(drv->message, TRIBO_ERR_NULL, "t is NULL") : TRIBO_ERR_NULL;
     }
-    int status = check_times(drv, t, t1, y);
+    int status = tribo_driver_pass(drv, tribo_system_check_state(drv->sys, *t, y));
+    status = status ? status : tribo_check_number(drv->message, FINITE, t1, "t1 = %g", t1);
+    if (!status && t1 < *t) {
+        status = tribo_error(drv->message, TRIBO_ERR_RANGE, "t1 = %.17g is before t = %.17g", t1, *t);
+    }
     if (status || !drv->motion) {
         return status ? status : advance_motion(drv, t, t1, y);
     }

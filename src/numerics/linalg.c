@@ -244,7 +244,7 @@ void tribo_half_solve(const struct cholesky *c, int back, double *x, size_t cols
 {
     const double one = 1.0;
     const int n = (int)c->n, count = (int)cols;
-    if (c->sparse) {
+    if (c->sparse && cols) {
         tribo_cholmod->half_solve(c->sparse, back, x, cols);
     } else if (c->factor && c->n && cols) {
         dtrsm_("R", "U", back ? "T" : "N", "N", &count, &n, &one, c->factor, &n, x, &count, 1, 1, 1, 1);

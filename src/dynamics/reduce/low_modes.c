@@ -36,6 +36,9 @@
 /* Part of the diagonal added to a flexibility that is singular because displacements of contacts depend on each other. */
 #define RIDGE 1e-12
 
+/* The remedy of a message about a mode in doubt. */
+#define FEWER "reduce the system to fewer modes"
+
 /* K + shift M and its factor. */
 struct shifted {
     double shift;
@@ -138,7 +141,7 @@ static int find_among(const tribo_model *m, size_t count, const double *x, size_
     const size_t n = m->ndof;
     struct matrix rows = {0}, z = {0}, mass = {0};
     struct cholesky c = {0};
-    const struct modes_text text = {m->message, "", "reduce the system to fewer modes"};
+    const struct modes_text text = {m->message, "", FEWER};
     size_t where;
     double pivot, *product = malloc(count * count * sizeof *product);
     const int done = product && tribo_matrix_from_dense(&rows, count, n, x) && tribo_matrix_transpose(&z, &rows) &&
@@ -187,29 +190,20 @@ static int check_modes(const tribo_model *m, const struct shifted *s, const stru
     return right ? TRIBO_OK : TRIBO_ERR_NO_CONVERGENCE;
 }
 
-static int find_densely(const tribo_model *m, struct reduced *r)
-{
-    const struct matrix whole = {0};
-    struct cholesky mass;
-    const struct modes_text text = {m->message, "", "reduce the system to fewer modes"};
-    int status = m->ndof > DENSE_MOST ? tribo_model_too_large(m) : tribo_model_factorize(m, &mass);
-    if (status) {
-        return status;
-    }
-    status = tribo_normal_modes(&m->stiffness, NULL, &whole, &mass, m->nmode, r->omega2, r->phi, &text);
-    tribo_cholesky_free(&mass);
-    r->count = m->nmode;
-    r->truncation.above = m->nmode == m->ndof ? HUGE_VAL : status ? 0.0 : r->omega2[m->nmode - 1];
-    return status;
-}
-
 /* Finds the lowest modes: by Lanczos' method for large structures with few modes, and for singular mass. Returns a status. */
 static int find_lowest(const tribo_model *m, struct shifted *s, struct reduced *r)
 {
     const int large = m->ndof > DENSE_MOST || (m->ndof >= SPARSE_LEAST && 4 * m->nmode <= m->ndof);
     size_t where = 0;
     if (!large || !tribo_cholmod) {
-        const int status = find_densely(m, r);
+        const struct matrix whole = {0};
+        const struct modes_text text = {m->message, "", FEWER};
+        struct cholesky mass = {0};
+        int status = m->ndof > DENSE_MOST ? tribo_model_too_large(m) : tribo_model_factorize(m, &mass);
+        status = status ? status : tribo_normal_modes(&m->stiffness, NULL, &whole, &mass, m->nmode, r->omega2, r->phi, &text);
+        tribo_cholesky_free(&mass);
+        r->count = m->nmode;
+        r->truncation.above = m->nmode == m->ndof ? HUGE_VAL : status ? 0.0 : r->omega2[m->nmode - 1];
         if (status != TRIBO_ERR_INDEFINITE || !tribo_cholmod || check_mass(m, &where) == TRIBO_ERR_INDEFINITE) {
             return status || r->omega2[0] < 0.0 ? status : factorize_shifted(m, s);
         }

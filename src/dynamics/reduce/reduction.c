@@ -207,11 +207,7 @@ int tribo_system_expand(const tribo_system *sys, const double *reduced, double *
     }
     const size_t n = tribo_system_ndof(sys), dofs = sys->expansion.dofs;
     for (size_t i = 0; i < sys->reduced.given; i++) {
-        double sum = 0.0;
-        for (size_t j = 0; j < n; j++) {
-            sum += sys->reduced.modes[i * dofs + j] * reduced[j];
-        }
-        full[i] = sum;
+        full[i] = tribo_dot(sys->reduced.modes + i * dofs, reduced, n);
     }
     return TRIBO_OK;
 }

@@ -3,6 +3,7 @@
  * only lower the eigenvalue; normals count as pressed. Of a K that is not symmetric: a bound. */
 #include "spectrum.h"
 #include "lanczos.h"
+#include "common/layout.h"
 #include "common/real.h"
 #include "numerics/lapack.h"
 
@@ -95,14 +96,8 @@ int tribo_system_highest(const tribo_system *sys, double stiffness, double dampi
     if (sys->c.rows == 0 || tribo_matrix_flaw(&sys->c, 1, &i, &j, &x, &y)) {
         l.damping = 0.0;
     }
-    int status = TRIBO_ERR_MEMORY;
-    l.v = calloc(3 * n, sizeof *l.v);
-    if (l.v) {
-        l.mv = l.v + n;
-        l.next = l.mv + n;
-        status = iterate(&l, value);
-        *value = bound * greater(*value, 0.0);
-    }
+    const int status = ALLOCATE(ARRAY(l.v, n), ARRAY(l.mv, n), ARRAY(l.next, n)) ? iterate(&l, value) : TRIBO_ERR_MEMORY;
+    *value = bound * greater(*value, 0.0);
     free(l.v);
     return status ? tribo_error(sys->message, status, "frequencies of %zu degree%s of freedom: %s", n, plural(n),
                                 tribo_strerror(status))

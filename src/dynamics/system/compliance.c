@@ -69,14 +69,9 @@ static int factorize_at_rest(const struct compliance *g, const signed char *slip
     for (size_t k = 0; k < g->count; k++) {
         const size_t i = g->contact[k];
         const int in = gives_at_rest(g, slip, i);
-        size_t e = g->g.first[i];
         for (size_t l = 0; in && l < g->count; l++) {
-            const size_t j = g->contact[l];
-            while (e < g->g.first[i + 1] && g->g.col[e] < j) {
-                e++;
-            }
-            if (gives_at_rest(g, slip, j)) {
-                *to++ = e < g->g.first[i + 1] && g->g.col[e] == j ? g->g.val[e] : 0.0;
+            if (gives_at_rest(g, slip, g->contact[l])) {
+                *to++ = tribo_matrix_get(&g->g, i, g->contact[l]);
             }
         }
         rows += in;
@@ -355,22 +350,22 @@ void tribo_compliance_perturb(const tribo_system *sys, const signed char *slip, 
     double *f = v + 2 * sys->ndof * columns, *way = work + c * columns;
     memset(work, 0, c * row);
     for (size_t k = 0; k < g->count; k++) {
-        if (slip[g->contact[k]] != TRIBO_SLIP_STUCK && slip[g->contact[k]] != TRIBO_SLIP_PLANE) {
-            memcpy(work + g->contact[k] * columns, f + k * columns, row);
-            memset(f + k * columns, 0, row);
-            const struct follower *own = tribo_normals_follower(sys, g->contact[k]);
-            const struct normal *n = own ? &sys->normals.normal[own->normal] : NULL;
-            const signed char side = slip[g->contact[k]];
-            const double *own_rise = rise && side != TRIBO_SLIP_OPEN ? rise + g->contact[k] * columns : NULL;
-            tribo_add(f + k * columns, -side, own_rise, own_rise ? columns : 0);
-            tribo_add(work + g->contact[k] * columns, side, own_rise, own_rise ? columns : 0);
-            for (size_t e = n && side != TRIBO_SLIP_OPEN ? j->first[n->row] : 0;
-                 n && side != TRIBO_SLIP_OPEN && e < j->first[n->row + 1]; e++) {
-                const double slope = -side * own->mu * n->stiffness * j->val[e];
-                tribo_add(f + k * columns, slope, v + j->col[e] * columns, columns);
-                tribo_add(work + g->contact[k] * columns, -slope, v + j->col[e] * columns, columns);
-            }
+        const size_t i = g->contact[k];
+        const int pressed = slip[i] != TRIBO_SLIP_OPEN;
+        if (slip[i] == TRIBO_SLIP_STUCK || slip[i] == TRIBO_SLIP_PLANE) {
+            continue;
         }
+        memcpy(work + i * columns, f + k * columns, row);
+        memset(f + k * columns, 0, row);
+        if (rise && pressed) {
+            tribo_add(f + k * columns, -slip[i], rise + i * columns, columns);
+        }
+        const struct follower *own = pressed ? tribo_normals_follower(sys, i) : NULL;
+        const struct normal *n = own ? &sys->normals.normal[own->normal] : NULL;
+        for (size_t e = n ? j->first[n->row] : 0; n && e < j->first[n->row + 1]; e++) {
+            tribo_add(f + k * columns, -slip[i] * own->mu * n->stiffness * j->val[e], v + j->col[e] * columns, columns);
+        }
+        tribo_add(work + i * columns, -1.0, f + k * columns, columns);
     }
     tribo_compliance_give(sys, columns, work, way);
     tribo_compliance_solve(sys, slip, columns, way);

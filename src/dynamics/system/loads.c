@@ -71,10 +71,8 @@ int tribo_loads_copy_first(tribo_system *sys, const tribo_system *from)
     const int done = tribo_loads_copy(sys, from);
     for (size_t k = 0; k < sys->loads.harmonics; k++) {
         struct harmonic *h = &sys->loads.harmonic[k];
-        const size_t count = h->count;
-        h->count = 0;
-        for (size_t e = 0; e < count && h->index[e] < length_of(sys, h->drives); e++) {
-            h->count++;
+        while (h->count && h->index[h->count - 1] >= length_of(sys, h->drives)) {
+            h->count--;
         }
     }
     return done;
@@ -305,27 +303,23 @@ int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
 
 /* ------------------------------------------------------------------------------------------------------------------- checks */
 
-/* Checks x, amplitudes of loads, bases or limits in the caller's coordinates, or NULL. Returns TRIBO_ERR_UNSUPPORTED for a load
- * on a degree of freedom without mass, or a varying limit of a compliant contact. */
+/* Checks x, amplitudes of loads, bases or limits in the caller's coordinates, or NULL. Returns TRIBO_ERR_UNSUPPORTED for a load on
+ * a degree of freedom without mass, or the varying limit of a compliant contact, of a normal, or of a contact that has one. */
 static int check_pattern(const tribo_system *sys, enum drives drives, const char *name, const double *x)
 {
-    const size_t *place = sys->expansion.place, n = drives == DRIVES_LOAD ? sys->reduced.given : sys->ncontact;
-    const int status = tribo_check_array(sys->message, FINITE, name, x, n);
-    for (size_t i = 0; x && place && !status && i < n; i++) {
-        if (x[i] != 0.0 && drives == DRIVES_LOAD && !sys->reduced.modes && place[i] >= sys->ndof) {
-            return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
-                               "%s[%zu] = %g, but degree of freedom %zu has no mass, and takes no load", name, i, x[i], i);
-        }
-        if (x[i] != 0.0 && drives == DRIVES_LIMIT && tribo_is_compliant(&sys->compliance, i)) {
-            return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
-                               "%s[%zu] = %g, but contact %zu is elastic, and its limit must be constant", name, i, x[i], i);
-        }
-    }
-    for (size_t i = 0; x && !status && drives == DRIVES_LIMIT && sys->normals.count && i < n; i++) {
-        const int follows = tribo_normals_follower(sys, i) != NULL;
-        if (x[i] != 0.0 && (follows || tribo_normals_at(sys, i))) {
-            return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED, "%s[%zu] = %g, but contact %zu %s", name, i, x[i], i,
-                               follows ? "has a limit that follows its normal load" : "is a normal direction, without friction");
+    const size_t *place = sys->reduced.modes ? NULL : sys->expansion.place;
+    const size_t n = drives == DRIVES_LOAD ? sys->reduced.given : sys->ncontact;
+    int status = tribo_check_array(sys->message, FINITE, name, x, n);
+    for (size_t i = 0; x && drives != DRIVES_BASE && !status && i < n; i++) {
+        const int load = drives == DRIVES_LOAD;
+        const char *why = load ? (place && place[i] >= sys->ndof ? "has no mass, and takes no load" : NULL)
+                          : tribo_is_compliant(&sys->compliance, i) ? "is elastic, and its limit must be constant"
+                          : tribo_normals_follower(sys, i)          ? "has a limit that follows its normal load"
+                          : tribo_normals_at(sys, i)                ? "is a normal direction, without friction"
+                                                                    : NULL;
+        if (why && x[i] != 0.0) {
+            status = tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED, "%s[%zu] = %g, but %s %zu %s", name, i, x[i],
+                                 load ? "degree of freedom" : "contact", i, why);
         }
     }
     return status;
@@ -333,25 +327,6 @@ static int check_pattern(const tribo_system *sys, enum drives drives, const char
 
 /* Largest limit; keeps results computed from limits finite. */
 #define MOST_LIMIT 1e300
-
-/* Takes the settings; if limits are still constant, copies the limits of the context to given_limit. Checks the sum of
- * given_limit and all amplitudes of harmonics, with those of a new harmonic (NULL: none). */
-static int check_limits(tribo_system *sys, const double *cosine, const double *sine)
-{
-    const int status = tribo_system_take_settings(sys);
-    if (!status && !tribo_system_limits_vary(sys)) {
-        tribo_get_limit(sys->contacts, sys->loads.given_limit);
-    }
-    for (size_t i = 0; !status && (cosine || sine) && i < sys->ncontact; i++) {
-        const double most =
-            sys->loads.given_limit[i] + tribo_system_swing(sys, i) + hypot(cosine ? cosine[i] : 0.0, sine ? sine[i] : 0.0);
-        if (!(most <= MOST_LIMIT)) {
-            return tribo_error(sys->message, TRIBO_ERR_RANGE, "limit of contact %zu comes to %g, and %g is the most", i, most,
-                               MOST_LIMIT);
-        }
-    }
-    return status;
-}
 
 /* Returns TRIBO_OK if knots ascend, and the values, called name, are finite; limits >= 0, and 0 of compliant contacts. */
 static int check_table(const tribo_system *sys, const struct harmonic *h, const char *name)
@@ -476,7 +451,8 @@ static int take_harmonic(tribo_system *sys, struct harmonic h, const double *cos
                : tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for a function of time of %zu value%s", n, plural(n));
 }
 
-/* Checks and adds a function of time; table: name of the values of a table, NULL: a harmonic. Returns a status. */
+/* Checks and adds a function of time; table: name of the values of a table, NULL: a harmonic. Where limits are still constant, a
+ * function of limits copies those of the context to given_limit. Returns a status. */
 static int loads_add(tribo_system *sys, struct harmonic h, const char *table, const double *cosine, const double *sine)
 {
     if (!sys) {
@@ -486,7 +462,19 @@ static int loads_add(tribo_system *sys, struct harmonic h, const char *table, co
     status = status || !table || h.drives == DRIVES_LIMIT ? status : tribo_system_check_given(sys, cosine, "pattern");
     status = status ? status : check_pattern(sys, h.drives, table ? "pattern" : "cosine", cosine);
     status = status ? status : check_pattern(sys, h.drives, "sine", sine);
-    status = status || h.drives != DRIVES_LIMIT ? status : check_limits(sys, cosine, sine);
+    const int limits = h.drives == DRIVES_LIMIT;
+    status = status || !limits ? status : tribo_system_take_settings(sys);
+    if (!status && limits && !tribo_system_limits_vary(sys)) {
+        tribo_get_limit(sys->contacts, sys->loads.given_limit);
+    }
+    for (size_t i = 0; !status && limits && !table && i < sys->ncontact; i++) {
+        const double most =
+            sys->loads.given_limit[i] + tribo_system_swing(sys, i) + hypot(cosine ? cosine[i] : 0.0, sine ? sine[i] : 0.0);
+        if (!(most <= MOST_LIMIT)) {
+            status = tribo_error(sys->message, TRIBO_ERR_RANGE, "limit of contact %zu comes to %g, and %g is the most", i, most,
+                                 MOST_LIMIT);
+        }
+    }
     return status ? status : take_harmonic(sys, h, cosine, sine);
 }
 

@@ -174,60 +174,31 @@ static int set_csr(tribo_model *model, enum which which, const size_t *rowptr, c
     return status ? status : model_take(&in, &a, done);
 }
 
-int tribo_model_set_mass(tribo_model *model, const double *m)
-{
-    return set_dense(model, MASS, 0, m);
-}
+/* Defines tribo_model_set_NAME and tribo_model_set_NAME_csr. */
+#define SETTERS(name, which)                                                                                                     \
+    int tribo_model_set_##name(tribo_model *model, const double *entries)                                                        \
+    {                                                                                                                            \
+        return set_dense(model, which, 0, entries);                                                                              \
+    }                                                                                                                            \
+    int tribo_model_set_##name##_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val)             \
+    {                                                                                                                            \
+        return set_csr(model, which, rowptr, col, val);                                                                          \
+    }
 
-int tribo_model_set_mass_diagonal(tribo_model *model, const double *m)
-{
-    return set_dense(model, MASS, 1, m);
-}
+/* Defines tribo_model_set_NAME_diagonal. */
+#define DIAGONAL_SETTER(name, which)                                                                                             \
+    int tribo_model_set_##name##_diagonal(tribo_model *model, const double *entries)                                             \
+    {                                                                                                                            \
+        return set_dense(model, which, 1, entries);                                                                              \
+    }
 
-int tribo_model_set_mass_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val)
-{
-    return set_csr(model, MASS, rowptr, col, val);
-}
-
-int tribo_model_set_damping(tribo_model *model, const double *c)
-{
-    return set_dense(model, DAMPING, 0, c);
-}
-
-int tribo_model_set_damping_diagonal(tribo_model *model, const double *c)
-{
-    return set_dense(model, DAMPING, 1, c);
-}
-
-int tribo_model_set_damping_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val)
-{
-    return set_csr(model, DAMPING, rowptr, col, val);
-}
-
-int tribo_model_set_stiffness(tribo_model *model, const double *k)
-{
-    return set_dense(model, STIFFNESS, 0, k);
-}
-
-int tribo_model_set_stiffness_diagonal(tribo_model *model, const double *k)
-{
-    return set_dense(model, STIFFNESS, 1, k);
-}
-
-int tribo_model_set_stiffness_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val)
-{
-    return set_csr(model, STIFFNESS, rowptr, col, val);
-}
-
-int tribo_model_set_direction(tribo_model *model, const double *j)
-{
-    return set_dense(model, DIRECTION, 0, j);
-}
-
-int tribo_model_set_direction_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val)
-{
-    return set_csr(model, DIRECTION, rowptr, col, val);
-}
+SETTERS(mass, MASS)
+SETTERS(damping, DAMPING)
+SETTERS(stiffness, STIFFNESS)
+SETTERS(direction, DIRECTION)
+DIAGONAL_SETTER(mass, MASS)
+DIAGONAL_SETTER(damping, DAMPING)
+DIAGONAL_SETTER(stiffness, STIFFNESS)
 
 int tribo_model_set_compliance(tribo_model *model, const double *c)
 {

@@ -89,21 +89,12 @@ int tribo_normals_copy(tribo_system *to, const tribo_system *from)
 {
     struct normals *s = &to->normals;
     const struct normals *f = &from->normals;
-    if (f->count && !normals_reserve(s, f->followers, from->ncontact)) {
-        return 0;
+    *s = *f;
+    const int done = !f->count || normals_reserve(s, f->followers, from->ncontact);
+    if (done && f->count) {
+        memcpy(s->normal, f->normal, (size_t)((char *)f->force - (char *)f->normal));
     }
-    s->count = f->count;
-    s->followers = f->followers;
-    s->stiffest = f->stiffest;
-    for (size_t k = 0; k < f->followers; k++) {
-        s->normal[k] = f->normal[k];
-        s->follower[k] = f->follower[k];
-    }
-    for (size_t i = 0; f->count && i < from->ncontact; i++) {
-        s->at[i] = f->at[i];
-        s->by[i] = f->by[i];
-    }
-    return 1;
+    return done;
 }
 
 /* ------------------------------------------------------------------------------------------------------------------- checks */

@@ -3,39 +3,40 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "common/layout.h"
 #include "model.h"
 
-/* Sets *sys = made, or destroys made if status is an error. Returns status. */
-static int quinn_finish(tribo_system **sys, tribo_system *made, int status)
+/* Creates the system of the matrices of m, which are complete if done = 1, and frees these. limit, load, motion [ncontact], load
+ * and motion with cos(omega t), or NULL. Returns a status. */
+static int quinn_build(tribo_system **sys, tribo_model *m, int done, const double *limit, double omega, const double *load,
+                       const double *motion)
 {
+    tribo_system *s = NULL;
+    int status = done ? tribo_model_build(m, &s) : TRIBO_ERR_MEMORY;
+    tribo_model_free(m);
+    status = status ? status : tribo_set_limit(s->contacts, limit);
+    status = status || !load ? status : tribo_system_add_load(s, omega, NULL, load);
+    status = status || !motion ? status : tribo_system_add_base_motion(s, omega, NULL, motion);
     if (status) {
-        tribo_system_destroy(made);
+        tribo_system_destroy(s);
     } else {
-        *sys = made;
+        *sys = s;
     }
     return status;
 }
 
-/* Creates a system of n <= 2 bodies with masses 1 and n contacts; stiffness, direction [n][n]; limit, load, motion [n], load and
- * motion with cos(omega t), or NULL. Returns a status. */
+/* quinn_build for n <= 2 bodies with masses 1 and n contacts; stiffness, direction [n][n]. */
 static int build_dense(tribo_system **sys, size_t n, const double *stiffness, const double *direction, const double *limit,
                        double omega, const double *load, const double *motion)
 {
     tribo_model m = {.ndof = n, .ncontact = n};
-    tribo_system *s = NULL;
+    if (!sys || !isfinite(stiffness[n * n - 1])) {
+        return sys ? TRIBO_ERR_NOT_FINITE : TRIBO_ERR_NULL;
+    }
     const int done = tribo_matrix_diagonal(&m.mass, n, NULL) && tribo_matrix_from_dense(&m.stiffness, n, n, stiffness) &&
                      tribo_matrix_from_dense(&m.direction, n, n, direction);
-    int status = !sys                              ? TRIBO_ERR_NULL
-                 : !isfinite(stiffness[n * n - 1]) ? TRIBO_ERR_NOT_FINITE
-                 : done                            ? tribo_model_build(&m, &s)
-                                                   : TRIBO_ERR_MEMORY;
-    tribo_model_free(&m);
-    status = status ? status : tribo_set_limit(s->contacts, limit);
-    status = status || !load ? status : tribo_system_add_load(s, omega, NULL, load);
-    status = status || !motion ? status : tribo_system_add_base_motion(s, omega, NULL, motion);
-    return quinn_finish(sys, s, status);
+    return quinn_build(sys, &m, done, limit, omega, load, motion);
 }
 
 int tribo_system_oscillator(tribo_system **sys, double limit, double alpha, double omega)
@@ -69,34 +70,26 @@ int tribo_system_chain(tribo_system **sys, size_t n, double limit, double alpha,
     if (n < 2 || n > SIZE_MAX / 1024) {
         return TRIBO_ERR_SIZE;
     }
-    tribo_system *s = NULL;
     tribo_model m = {.ndof = n, .ncontact = n};
     struct triplets t = {0};
     const double spring = (double)n;
-    double *each = malloc(n * sizeof *each); /* [n] masses, then limits, then loads */
-    for (size_t i = 0; each && i < n; i++) {
+    double *mass = tribo_zeros(3 * n, sizeof *mass), *bound = mass + n, *load = bound + n;
+    for (size_t i = 0; mass && i < n; i++) {
         for (size_t j = i ? i - 1 : 0; j < n && j <= i + 1; j++) {
             tribo_triplets_put(&t, i, j, j != i ? -spring : i == 0 ? spring : i + 1 < n ? 2.0 * spring : 3.0 * spring);
         }
     }
-    if (each) {
-        share_out(each, n, 1.0);
+    if (mass) {
+        share_out(mass, n, 1.0);
+        share_out(bound, n, limit);
+        load[0] = alpha;
     }
-    int status = each && tribo_triplets_finish(&t, n, n, &m.stiffness) && tribo_matrix_diagonal(&m.mass, n, each) &&
-                         tribo_matrix_diagonal(&m.direction, n, NULL)
-                     ? tribo_model_build(&m, &s)
-                     : TRIBO_ERR_MEMORY;
-    tribo_model_free(&m);
+    const int done = tribo_triplets_finish(&t, n, n, &m.stiffness) && mass && tribo_matrix_diagonal(&m.mass, n, mass) &&
+                     tribo_matrix_diagonal(&m.direction, n, NULL);
+    const int status = quinn_build(sys, &m, done, bound, omega, load, NULL);
     if (!status) {
-        s->tally[n - 1] = 4.0 / 3.0; /* the paper counts the friction of every block in full */
-        share_out(each, n, limit);
-        status = tribo_set_limit(s->contacts, each);
+        (*sys)->tally[n - 1] = 4.0 / 3.0; /* the paper counts the friction of every block in full */
     }
-    if (!status) {
-        memset(each, 0, n * sizeof *each);
-        each[0] = alpha;
-        status = tribo_system_add_load(s, omega, NULL, each);
-    }
-    free(each);
-    return quinn_finish(sys, s, status);
+    free(mass);
+    return status;
 }

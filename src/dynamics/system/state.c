@@ -119,33 +119,26 @@ void tribo_system_write_state(tribo_system *sys, double t, const double *from, d
 {
     const struct expansion *x = &sys->expansion;
     const size_t n = sys->ndof, caller = x->dofs - x->sliders, without = x->dofs - n;
-    double *w = sys->work.motion + tribo_system_size(sys), *force = w + without, *v = force + sys->ncontact;
-    for (size_t d = 0; d < x->dofs; d++) {
-        if (x->place[d] < n) {
-            y[d] = from[x->place[d]];
-            y[caller + d] = from[n + x->place[d]];
-        }
-    }
-    for (int rate = 0; rate < (without > x->sliders ? 2 : 1); rate++) {
-        if (rate) {
+    double *force = sys->work.motion + tribo_system_size(sys) + without, *v = force + sys->ncontact;
+    for (int rate = 0; rate < 2; rate++) {
+        const double *q = from + (rate ? n : 0);
+        if (!rate) {
+            tribo_compliance_get(sys, from, force);
+        } else if (without > x->sliders) {
             memset(v, 0, sys->ncontact * sizeof *v);
             tribo_system_set_time(sys, t);
             tribo_normals_move(sys, from, from + n);
             tribo_system_loads(sys, DRIVES_BASE, 0, -1.0, v);
-            tribo_matrix_multiply_add(&sys->direction, 1.0, from + n, v);
+            tribo_matrix_multiply_add(&sys->direction, 1.0, q, v);
             tribo_compliance_move(sys, from, v, force); /* force: f' */
-        } else {
-            tribo_compliance_get(sys, from, force);
         }
-        memset(w, 0, without * sizeof *w);
-        tribo_matrix_multiply_add(&x->follow, 1.0, from + (rate ? n : 0), w);
-        tribo_matrix_multiply_add(&x->give, 1.0, force, w);
-        for (size_t d = 0; d < x->dofs; d++) {
-            if (x->place[d] >= n && (!rate || d < caller)) {
-                const size_t k = x->place[d] - n;
-                const double size =
-                    tribo_matrix_row_size(&x->follow, k, from + (rate ? n : 0)) + tribo_matrix_row_size(&x->give, k, force);
-                y[rate ? caller + d : displacement_at(x, d)] = fabs(w[k]) < ROUNDING * size ? 0.0 : w[k];
+        for (size_t d = 0; d < (rate ? caller : x->dofs); d++) {
+            const size_t k = x->place[d], w = k - n;
+            double *to = y + (rate ? caller + d : displacement_at(x, d));
+            *to = k < n ? q[k] : tribo_matrix_row_dot(&x->follow, w, q) + tribo_matrix_row_dot(&x->give, w, force);
+            if (k >= n &&
+                fabs(*to) < ROUNDING * (tribo_matrix_row_size(&x->follow, w, q) + tribo_matrix_row_size(&x->give, w, force))) {
+                *to = 0.0;
             }
         }
     }

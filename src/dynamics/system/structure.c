@@ -88,74 +88,56 @@ static int set_dense_operator(const tribo_model *m, tribo_system *sys, const str
                             : status;
 }
 
-/* solved = M^-1 a. Returns 0 if out of memory. */
-static int solve_matrix(const struct cholesky *c, const struct matrix *a, struct matrix *solved)
+/* Returns 1/M_dd [ndof], in memory of the caller's, or NULL if out of memory. */
+static double *invert_masses(const tribo_system *sys)
 {
+    double *inverse = malloc(sys->ndof * sizeof *inverse);
+    for (size_t d = 0; inverse && d < sys->ndof; d++) {
+        inverse[d] = 1.0 / tribo_matrix_get(&sys->mass, d, d);
+    }
+    return inverse;
+}
+
+/* solved = M^-1 a; inverse [ndof]: 1/M_dd, NULL: by the factor of M. Returns 0 if out of memory. */
+static int solve_matrix(const tribo_system *sys, const double *inverse, const struct matrix *a, struct matrix *solved)
+{
+    if (inverse) {
+        const int done = tribo_matrix_copy(solved, a);
+        tribo_matrix_scale_rows(solved, inverse);
+        return done;
+    }
     double *x = tribo_matrix_to_dense(a);
-    if (x && a->cols) {
-        tribo_half_solve(c, 0, x, a->cols);
-        tribo_half_solve(c, 1, x, a->cols);
+    if (x) {
+        tribo_half_solve(&sys->factor, 0, x, a->cols);
+        tribo_half_solve(&sys->factor, 1, x, a->cols);
     }
     const int done = x && tribo_matrix_from_dense(solved, a->rows, a->cols, x);
     free(x);
     return done;
 }
 
-/* Sets M^-1 K, M^-1 C and, in the place of J', M^-1 J' of sys, for a diagonal mass matrix; sets R. Returns a status. */
-static int divide_by_masses(const tribo_model *m, tribo_system *sys, const struct matrix *j)
-{
-    double *inverse = malloc(m->ndof * sizeof *inverse);
-    if (!inverse || !tribo_matrix_copy(&sys->stiffness, &sys->k) || !tribo_matrix_copy(&sys->damping, &sys->c)) {
-        free(inverse);
-        return TRIBO_ERR_MEMORY;
-    }
-    for (size_t i = 0; i < m->ndof; i++) {
-        inverse[i] = 1.0 / tribo_matrix_get(&sys->mass, i, i);
-    }
-    tribo_matrix_scale_rows(&sys->response, inverse);
-    tribo_matrix_scale_rows(&sys->stiffness, inverse);
-    tribo_matrix_scale_rows(&sys->damping, inverse);
-    const int status = tribo_set_operator_mass(sys->contacts, m->ndof, inverse, j->first, j->col, j->val);
-    free(inverse);
-    return status ? tribo_error(m->message, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
-}
-
-/* Sets M^-1 K, M^-1 C and, in the place of J', M^-1 J' of sys by the factor of M; sets R. Returns a status. */
+/* Sets M^-1 K, M^-1 C and, in the place of J', M^-1 J' of sys; sets R. Returns a status. */
 static int solve_by_masses(const tribo_model *m, tribo_system *sys, const struct matrix *j)
 {
-    const struct cholesky *c = &sys->factor;
+    const int diagonal = !sys->factor.factor && !sys->factor.sparse;
     struct matrix turned = sys->response;
-    double *z = tribo_matrix_to_dense(&turned);
     sys->response = (struct matrix){0};
-    const int done = z && solve_matrix(c, &turned, &sys->response) && solve_matrix(c, &sys->k, &sys->stiffness) &&
-                     (!sys->c.rows || solve_matrix(c, &sys->c, &sys->damping));
-    if (done && m->ncontact) {
-        tribo_half_solve(c, 0, z, m->ncontact);
+    double *inverse = diagonal ? invert_masses(sys) : NULL, *z = NULL;
+    const int done = (inverse || !diagonal) && solve_matrix(sys, inverse, &turned, &sys->response) &&
+                     solve_matrix(sys, inverse, &sys->k, &sys->stiffness) &&
+                     (!sys->c.rows || solve_matrix(sys, inverse, &sys->c, &sys->damping));
+    int status = TRIBO_ERR_MEMORY;
+    if (done && diagonal && !m->nmode) {
+        status = tribo_set_operator_mass(sys->contacts, m->ndof, inverse, j->first, j->col, j->val);
+        status = status ? tribo_error(m->message, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
+    } else if (done && (z = tribo_matrix_to_dense(&turned)) != NULL) {
+        tribo_half_solve(&sys->factor, 0, z, m->ncontact);
+        status = set_dense_operator(m, sys, j, z);
     }
-    const int status = done ? set_dense_operator(m, sys, j, z) : TRIBO_ERR_MEMORY;
     tribo_matrix_free(&turned);
+    free(inverse);
     free(z);
     return status;
-}
-
-/* Sets circulation = the largest sum of |entries| of a row of M^-1 (K - K')/2. That matrix is antisymmetric in the metric of M:
- * the sum bounds its norm there. Returns a status. */
-static int find_circulation(tribo_system *sys)
-{
-    struct matrix mirror = {0}, odd = {0}, rates = {0};
-    const int solves = sys->factor.factor || sys->factor.sparse;
-    const int done = tribo_matrix_transpose(&mirror, &sys->k) && tribo_matrix_sum(&odd, 0.5, &sys->k, -0.5, &mirror) &&
-                     (!solves || solve_matrix(&sys->factor, &odd, &rates));
-    for (size_t i = 0; done && !solves && i < sys->ndof; i++) {
-        for (size_t e = odd.first[i]; e < odd.first[i + 1]; e++) {
-            odd.val[e] /= tribo_matrix_get(&sys->mass, i, i);
-        }
-    }
-    sys->circulation = done ? tribo_matrix_row_sum(solves ? &rates : &odd) : 0.0;
-    tribo_matrix_free(&mirror);
-    tribo_matrix_free(&odd);
-    tribo_matrix_free(&rates);
-    return done ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
 int tribo_model_build_massive(tribo_model *m, const double *soft, tribo_system **sys)
@@ -197,7 +179,7 @@ int tribo_model_build_massive(tribo_model *m, const double *soft, tribo_system *
         status = set_dense_operator(m, s, &rigid, NULL);
         tribo_cholesky_free(&s->factor);
     } else {
-        status = (diagonal && !m->nmode ? divide_by_masses : solve_by_masses)(m, s, &rigid);
+        status = solve_by_masses(m, s, &rigid);
     }
     tribo_matrix_free(&rigid);
     return status;
@@ -206,6 +188,7 @@ int tribo_model_build_massive(tribo_model *m, const double *soft, tribo_system *
 int tribo_model_build(tribo_model *m, tribo_system **sys)
 {
     tribo_system *s = NULL;
+    struct matrix mirror = {0}, odd = {0}, rates = {0};
     size_t i, j;
     double x, y;
     const int circulates = tribo_matrix_flaw(&m->stiffness, 1, &i, &j, &x, &y);
@@ -216,9 +199,19 @@ int tribo_model_build(tribo_model *m, tribo_system **sys)
     }
     if (!status) {
         status = m->nmode ? tribo_model_reduce(m, &s) : tribo_model_condense(m, &s);
-        status = status || !circulates ? status : find_circulation(s);
+        if (!status && circulates) { /* the row sum bounds the norm of M^-1 (K - K')/2, antisymmetric in the metric of M */
+            double *inverse = s->factor.factor || s->factor.sparse ? NULL : invert_masses(s);
+            const int done = tribo_matrix_transpose(&mirror, &s->k) && tribo_matrix_sum(&odd, 0.5, &s->k, -0.5, &mirror) &&
+                             solve_matrix(s, inverse, &odd, &rates);
+            free(inverse);
+            s->circulation = tribo_matrix_row_sum(&rates);
+            status = done ? TRIBO_OK : TRIBO_ERR_MEMORY;
+        }
         status = status ? status : tribo_normals_create(s, m->normals, m->normal, m->message);
     }
+    tribo_matrix_free(&mirror);
+    tribo_matrix_free(&odd);
+    tribo_matrix_free(&rates);
     tribo_model_free(m);
     if (status) {
         tribo_system_destroy(s);

@@ -21,13 +21,18 @@ int tribo_error(char *message, int status, const char *format, ...)
     return status;
 }
 
+static int is_in(enum range range, double x)
+{
+    return isfinite(x) && (range == FINITE || x > 0.0 || (range == NOT_NEGATIVE && x == 0.0));
+}
+
 int tribo_check_number(char *message, enum range range, double x, const char *format, ...)
 {
     static const char *const text[] = {"is not finite", "is negative", "is not positive"};
     static const int error[] = {TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_NOT_POSITIVE};
     char subject[TRIBO_MESSAGE];
     va_list args;
-    if (isfinite(x) && (range == FINITE || x > 0.0 || (range == NOT_NEGATIVE && x == 0.0))) {
+    if (is_in(range, x)) {
         return TRIBO_OK;
     }
     const int which = isfinite(x) ? (int)range : FINITE;
@@ -39,11 +44,11 @@ int tribo_check_number(char *message, enum range range, double x, const char *fo
 
 int tribo_check_array(char *message, enum range range, const char *name, const double *x, size_t n)
 {
-    int status = TRIBO_OK;
-    for (size_t i = 0; x && !status && i < n; i++) {
-        status = tribo_check_number(message, range, x[i], "%s[%zu] = %g", name, i, x[i]);
+    size_t i = 0;
+    while (x && i < n && is_in(range, x[i])) {
+        i++;
     }
-    return status;
+    return x && i < n ? tribo_check_number(message, range, x[i], "%s[%zu] = %g", name, i, x[i]) : TRIBO_OK;
 }
 
 int tribo_check_numbers(char *message, size_t n, const char *const *name, const double *x)
