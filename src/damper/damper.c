@@ -98,7 +98,8 @@ static struct sparse make_rows(const struct options *o, const struct structure *
     return j;
 }
 
-/* A displacement of a contact below this part of that of its strongest mode is rounding: it would be a body of enormous mass. */
+/* A displacement of a place below this part of that of its strongest mode is rounding: of a contact, it would be a body of
+ * enormous mass. */
 static const double UNMOVED = 1e-8;
 
 static double row_product(const struct sparse *m, size_t row, const double *x)
@@ -273,6 +274,26 @@ tribo_system *create_system(const struct damper *d, double limit)
     return sys;
 }
 
+const struct linear *linear_of_backbone(const struct damper *d)
+{
+    return d->options->backbone <= d->stuck.count ? &d->stuck : &d->open;
+}
+
+/* Ends the program if the mode of --backbone does not move the place where amplitudes are measured. */
+static void check_backbone(const struct damper *d)
+{
+    const struct linear *l = linear_of_backbone(d);
+    const size_t mode = d->options->backbone;
+    double most = 0.0;
+    for (size_t k = 0; k < l->count; k++) {
+        most = fmax(most, fabs(l->measured[k]));
+    }
+    if (!(fabs(l->measured[mode - 1]) > UNMOVED * most)) {
+        die("option --backbone %zu: the mode does not move the place where amplitudes are measured, %s", mode,
+            measured_place(d->options)->origin);
+    }
+}
+
 struct damper create_damper(const struct options *o, const struct structure *s, size_t kept)
 {
     struct damper d = {.options = o,
@@ -292,6 +313,9 @@ struct damper create_damper(const struct options *o, const struct structure *s, 
     d.lowest = o->drive.from > 0.0 ? o->drive.from : d.open.omega[o->backbone ? o->backbone - 1 : 0] / TURN;
     d.highest = o->drive.from > 0.0 ? o->drive.to : d.lowest;
     d.stuck = stick(&d.open, d.contact, d.rows, d.contact_shape);
+    if (o->backbone) {
+        check_backbone(&d);
+    }
     /* rigid contacts must not hold all motions of the modes, unless they hold the structure itself */
     if (d.modes < d.ndof && d.stuck.count == 0) {
         die("the contacts, if they stick, hold all that the %zu mode%s of the reduced structure let%s move: keep more --modes",

@@ -42,6 +42,9 @@ tribo_system *create_system(const struct damper *d, double limit);
 /* The load of a normal spring where the structure is at rest, for a value of --limits; 0 if the contact has a gap. */
 double rest_load(const struct contact *c, double limit);
 
+/* The linear structure the modes of which --backbone counts: with all contacts stuck; without friction, where that has less. */
+const struct linear *linear_of_backbone(const struct damper *d);
+
 /* Ends the program if at this frequency of the load there is nothing to compute with. */
 void check_drive(const struct damper *d, double hz);
 

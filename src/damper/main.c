@@ -22,7 +22,7 @@ int main(int argc, char **argv)
     watch_interrupts();
     struct model model = create_model(&options, &structure);
     struct tables tables = open_tables(&options);
-    struct study study = {&options, &model, &model.damper, &tables, 0};
+    struct study study = {&options, &model, &model.damper, &tables, .gaps = 0};
     run_study(&study);
     write_result(&tables, "gaps", (double)study.gaps);
     if (study.gaps) {
@@ -34,6 +34,9 @@ int main(int argc, char **argv)
     }
     close_tables(&tables);
     draw_plots(&tables);
+    if (study.nothing[0]) {
+        die("option --follow: no motion was found: %s", study.nothing);
+    }
     close_file(stdout, "standard output");
     free_model(&model);
     free_structure(&structure);

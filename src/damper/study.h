@@ -57,7 +57,8 @@ struct study {
     struct model *model;
     const struct damper *damper; /* that of the model */
     struct tables *tables;
-    size_t gaps; /* points that were not found */
+    size_t gaps;       /* points that were not found */
+    char nothing[200]; /* why curves of --follow have no point; else empty */
 };
 
 /* At one frequency: the response over the limits, the limit of most power, and the motion there. Over a band of frequencies: the

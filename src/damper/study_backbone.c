@@ -38,8 +38,7 @@ static void find_backbone(const struct damper *d, const struct options *o, size_
 {
     struct worker w = create_worker(d, 0);
     double *y = need_memory(w.dimension, sizeof *y);
-    const struct linear *from = o->backbone <= d->stuck.count ? &d->stuck : &d->open;
-    struct vibration before = {.omega = from->omega[o->backbone - 1]};
+    struct vibration before = {.omega = linear_of_backbone(d)->omega[o->backbone - 1]};
     set_point(&w, o->limits.from, d->lowest);
     for (size_t c = 0; table && c <= d->contacts; c++) {
         fprintf(table, c ? ",stick%zu" : "amplitude,frequency,damping ratio", c);

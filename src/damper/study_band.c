@@ -88,6 +88,9 @@ void study_band(struct study *s, const struct curve *c, size_t count)
             printf("no %s within the range is better than its ends: widen --limits to find the best\n", s->tables->limit);
         }
     }
+    if (s->options->follow && least == HUGE_VAL && !interrupted()) {
+        snprintf(s->nothing, sizeof s->nothing, "%s", first_message(c, count));
+    }
     const struct sample *top = best ? largest_of(best, AMPLITUDE) : NULL;
     const int shown = top && !interrupted();
     check_by_marching(s, best ? best : c);

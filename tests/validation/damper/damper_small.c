@@ -318,6 +318,9 @@ TEST(loose_row)
     const struct outcome o = assert_runs("--mass together.mtx" STRUCTURE " --damping 0.05 --drive 0.1:0.2:3 --limits 0.1:1:3");
     require(strstr(o.out, "loose.mtx: no stiffness holds row 4 (node 7, direction z)\n") != NULL, "%s", o.out);
     require(strstr(o.out, "no motion was found at any of these limits: not available here") != NULL, "%s", o.out);
+    assert_refused("--mass together.mtx" STRUCTURE " --damping 0.05 --drive 0.1:0.2:3 --limits 0.1:1:3 --follow up", "no curve",
+                   "option --follow: no motion was found: not available here");
+    assert_exact(value_of("damper.gaps"), 3.0);
     const struct outcome minus = run_tool("--mass minus.mtx" STRUCTURE);
     ck_assert_int_eq(minus.status, 1);
     require(strstr(minus.err, "at degree of freedom 1 (counted from 0)") != NULL, "%s", minus.err);
@@ -400,6 +403,11 @@ TEST(backbone)
         assert_runs(options);
         assert_close(2.0 * PI * column_of("damper-backbone.csv", 2), sqrt(2.0 * mode - 1.0), 1e-5);
     }
+    write_text("two-k.mtx", HEAD "2 2 2\n1 1 1\n2 2 4\n"); /* mode 2 moves the other mass */
+    assert_refused("--mass two-m.mtx --stiffness two-k.mtx --dofs two.txt --output 0,0,0,x --contact 0,0,0,x:stiffness=1 "
+                   "--limits 0.5 --amplitudes 1 --backbone 2",
+                   "mode 2",
+                   "--backbone 2: the mode does not move the place where amplitudes are measured, option --output 0,0,0,x");
 }
 END_TEST
 
