@@ -47,9 +47,7 @@ static struct row_contacts read_row_contacts(const char *path, size_t rows)
     struct row_contacts c = {0};
     struct text t = open_text(path);
     for (size_t k = 0; next_data(&t); c.first[++c.count] = k) {
-        if (c.count == MAX_CONTACTS) {
-            die_at(&t, "more than %d contacts", (int)MAX_CONTACTS);
-        }
+        die_at_if(&t, c.count == MAX_CONTACTS, "more than %d contacts", (int)MAX_CONTACTS);
         c.col[k] = next_whole(&t, "row", " ", 1, rows) - 1;
         c.val[k++] = 1.0;
         const size_t other = next_whole(&t, "other row", " ", 0, rows);

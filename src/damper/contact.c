@@ -20,10 +20,9 @@ static int next_direction(struct text *t, const char *separators, int *second)
 {
     const char *word = next_word(t, "direction", separators);
     const int first = direction_of(word[0]), other = word[1] ? direction_of(word[1]) : 0;
-    if (!first || (word[1] && (!second || !other || other == first || word[2]))) {
-        die_at(t, "direction \"%.40s\" must be x, y or z%s", word,
-               second ? "; or two of them, for a contact that slides in their plane" : "");
-    }
+    die_at_if(t, !first || (word[1] && (!second || !other || other == first || word[2])),
+              "direction \"%.40s\" must be x, y or z%s", word,
+              second ? "; or two of them, for a contact that slides in their plane" : "");
     if (second) {
         *second = other;
     }
@@ -60,31 +59,21 @@ static void read_words(struct text *t, const struct word *known, size_t count, s
         for (size_t k = 0; k < count; k++) {
             w = strcmp(known[k].name, name) == 0 ? &known[k] : w;
         }
-        if (t->end != '=' || !(w || is_to || is_normal)) {
-            die_at(t, "\"%.40s\" is none of %s", name, all);
-        }
-        if (is_to ? to->between : is_normal ? to->normal.direction : !isnan(*w->value)) {
-            die_at(t, "%s= is there twice", name);
-        }
+        die_at_if(t, t->end != '=' || !(w || is_to || is_normal), "\"%.40s\" is none of %s", name, all);
+        die_at_if(t, is_to ? to->between : is_normal ? to->normal.direction : !isnan(*w->value), "%s= is there twice", name);
         if (is_to) {
             next_coordinates(t, ",", PARTED, 3, to->to.at);
             to->between = 1;
         } else if (is_normal) {
             const char *word = next_word(t, "direction", ",");
             const int against = word[0] == '-', signs = against || word[0] == '+', along = direction_of(word[signs]);
-            if (!along || word[signs + 1]) {
-                die_at(t, "normal=%.40s must be x, y or z, or one of them with a sign", word);
-            }
-            if (t->end != ',') {
-                die_at(t, "normal=%.40s needs a stiffness: normal=%.40s,STIFFNESS", word, word);
-            }
+            die_at_if(t, !along || word[signs + 1], "normal=%.40s must be x, y or z, or one of them with a sign", word);
+            die_at_if(t, t->end != ',', "normal=%.40s needs a stiffness: normal=%.40s,STIFFNESS", word, word);
             to->normal.direction = against ? -along : along;
             to->normal.stiffness = next_positive(t, "stiffness", PARTED);
         } else {
             *w->value = (w->sign == POSITIVE ? next_positive : next_real)(t, name, PARTED);
-            if (*w->value < 0.0 && w->sign == NOT_NEGATIVE) {
-                die_at(t, "must be at least 0");
-            }
+            die_at_if(t, *w->value < 0.0 && w->sign == NOT_NEGATIVE, "must be at least 0");
         }
     }
 }
@@ -94,30 +83,16 @@ static void check_contact(const struct text *t, const struct contact *c, int sec
 {
     const struct normal *n = &c->normal;
     const int along = abs(n->direction);
-    if (!isnan(c->limit) && !(isnan(c->mu) && isnan(n->load))) {
-        die_at(t, "either limit= or mu=, not both");
-    }
-    if (isnan(c->mu) && !isnan(n->load)) {
-        die_at(t, "load= needs mu=, too");
-    }
-    if (!along && !isnan(n->gap)) {
-        die_at(t, "gap=%g needs normal=, too", n->gap);
-    }
-    if (along && isnan(c->mu)) {
-        die_at(t, "normal= needs mu=, in the place of limit=: the limit is mu times the load of the normal spring");
-    }
-    if (along && (along == c->at.direction || along == second)) {
-        die_at(t, "normal=%c is a direction along which the contact slides", "xyz"[along - 1]);
-    }
-    if (c->ratio < 1.0) {
-        die_at(t, "static=%g: the limit at rest is at least that while sliding", c->ratio);
-    }
-    if (second && c->belt != 0.0 && !isnan(c->belt)) {
-        die_at(t, "belt= is for contacts along one axis");
-    }
-    if (!isnan(n->gap) && !isnan(n->load)) {
-        die_at(t, "either gap=%g or load=%g, not both", n->gap, n->load);
-    }
+    die_at_if(t, !isnan(c->limit) && !(isnan(c->mu) && isnan(n->load)), "either limit= or mu=, not both");
+    die_at_if(t, isnan(c->mu) && !isnan(n->load), "load= needs mu=, too");
+    die_at_if(t, !along && !isnan(n->gap), "gap=%g needs normal=, too", n->gap);
+    die_at_if(t, along && isnan(c->mu),
+              "normal= needs mu=, in the place of limit=: the limit is mu times the load of the normal spring");
+    die_at_if(t, along && (along == c->at.direction || along == second),
+              "normal=%c is a direction along which the contact slides", " xyz"[along]);
+    die_at_if(t, c->ratio < 1.0, "static=%g: the limit at rest is at least that while sliding", c->ratio);
+    die_at_if(t, second && c->belt != 0.0 && !isnan(c->belt), "belt= is for contacts along one axis");
+    die_at_if(t, !isnan(n->gap) && !isnan(n->load), "either gap=%g or load=%g, not both", n->gap, n->load);
 }
 
 void read_contact(struct text *t, void *contacts)
@@ -164,9 +139,7 @@ static void add_load(struct text *t, int supports, struct loads *all)
     }
     read_words(t, known, sizeof known / sizeof *known, NULL,
                supports ? "acceleration=NUMBER phase=DEGREES" : "force=FORCE phase=DEGREES");
-    if (supports && isnan(l.size)) {
-        die_at(t, "acceleration= is missing");
-    }
+    die_at_if(t, supports && isnan(l.size), "acceleration= is missing");
     l.phase = isnan(l.phase) ? 0.0 : l.phase;
     all->load = need_room(all->load, all->count, &all->room, sizeof *all->load);
     all->load[all->count++] = l;
@@ -195,9 +168,7 @@ void read_contacts(struct text *path, void *contacts)
         read_contact(&contact, contacts);
         all->contact[at].line = line;
     }
-    if (all->count == before) {
-        die("%s: there is no contact in it", path->at);
-    }
+    die_if(all->count == before, "%s: there is no contact in it", path->at);
 }
 
 void add_normals(struct contacts *all)

@@ -39,19 +39,15 @@ void complete_options(struct options *o, const struct structure *s)
     for (size_t c = 0; c < o->contacts.count; c++) {
         const struct contact *contact = &o->contacts.contact[c];
         const char *origin = contact->at.origin;
-        if (!isfinite(isnan(contact->limit) ? contact->mu * o->limits.to : contact->limit)) {
-            die("%s: mu times the normal load, up to %g, is too large a limit", origin, o->limits.to);
-        }
-        if (contact->stiffness > 0.0 && (o->march || o->check) && o->law != TRIBO_COULOMB) {
-            die("%s: with --law %s marching takes rigid contacts only: leave out stiffness=, or --law", origin,
-                tribo_law_name(o->law));
-        }
-        if (contact->directions == 2 && contact->normal.direction && !o->march) {
-            die("%s: a contact in a plane with normal= is for --method march: periodic motions are found of such contacts along "
-                "one "
-                "axis only",
-                origin);
-        }
+        die_if(!isfinite(isnan(contact->limit) ? contact->mu * o->limits.to : contact->limit),
+               "%s: mu times the normal load, up to %g, is too large a limit", origin, o->limits.to);
+        die_if(contact->stiffness > 0.0 && (o->march || o->check) && o->law != TRIBO_COULOMB,
+               "%s: with --law %s marching takes rigid contacts only: leave out stiffness=, or --law", origin,
+               tribo_law_name(o->law));
+        die_if(contact->directions == 2 && contact->normal.direction && !o->march,
+               "%s: a contact in a plane with normal= is for --method march: periodic motions are found of such contacts along "
+               "one axis only",
+               origin);
     }
     add_normals(&o->contacts);
 }
@@ -89,9 +85,7 @@ static struct sparse make_rows(const struct options *o, const struct structure *
         if (contact && contact->between) {
             j.col[count] = find_degree(s, &contact->to);
             j.val[count++] = -sign;
-            if (j.col[count - 1] == j.col[count - 2]) {
-                die("%s: both ends are the same node", contact->at.origin);
-            }
+            die_if(j.col[count - 1] == j.col[count - 2], "%s: both ends are the same node", contact->at.origin);
         }
         j.first[r + 1] = count;
     }
@@ -208,10 +202,9 @@ static void check_spring(const struct damper *d, size_t c)
         spring += stiffness * shape * shape;
         lowest = d->open.omega[k] > 1e-6 * d->open.omega[d->modes - 1] ? fmin(lowest, d->open.omega[k]) : lowest;
     }
-    if (!(spring <= MOST_STIFF * lowest * lowest)) {
-        die("%s: stiffness=%g is more than %g times that of the structure there%s", d->contact[c].at.origin, stiffness,
-            MOST_STIFF, c < d->contacts ? ": leave it out for a rigid contact" : "; that of normal=");
-    }
+    die_if(!(spring <= MOST_STIFF * lowest * lowest), "%s: stiffness=%g is more than %g times that of the structure there%s",
+           d->contact[c].at.origin, stiffness, MOST_STIFF,
+           c < d->contacts ? ": leave it out for a rigid contact" : "; that of normal=");
 }
 
 double rest_load(const struct contact *c, double limit)
@@ -260,9 +253,8 @@ tribo_system *create_system(const struct damper *d, double limit)
             need(tribo_model_set_normal(model, c, row++, contact->mu, to->stiffness, gap), tribo_model_message(model));
         }
     }
-    if (tribo_system_create(&sys, model)) {
-        die("modes and springs: %s", tribo_model_message(model));
-    }
+    const int status = tribo_system_create(&sys, model);
+    die_if(status, "modes and springs: %s", tribo_model_message(model));
     tribo_context *context = tribo_system_context(sys);
     need(tribo_set_law(context, d->law), tribo_message(context));
     need(tribo_set_planar(context, planar, first), tribo_message(context));
@@ -288,10 +280,9 @@ static void check_backbone(const struct damper *d)
     for (size_t k = 0; k < l->count; k++) {
         most = fmax(most, fabs(l->measured[k]));
     }
-    if (!(fabs(l->measured[mode - 1]) > UNMOVED * most)) {
-        die("option --backbone %zu: the mode does not move the place where amplitudes are measured, %s", mode,
-            measured_place(d->options)->origin);
-    }
+    die_if(!(fabs(l->measured[mode - 1]) > UNMOVED * most),
+           "option --backbone %zu: the mode does not move the place where amplitudes are measured, %s", mode,
+           measured_place(d->options)->origin);
 }
 
 struct damper create_damper(const struct options *o, const struct structure *s, size_t kept)
@@ -303,13 +294,10 @@ struct damper create_damper(const struct options *o, const struct structure *s, 
                        .rows = o->contacts.count + o->contacts.normals,
                        .contact = o->contacts.contact,
                        .law = o->law};
-    if (o->modes > s->ndof) {
-        die("option --modes %zu: the structure has %zu degrees of freedom", o->modes, s->ndof);
-    }
+    die_if(o->modes > s->ndof, "option --modes %zu: the structure has %zu degrees of freedom", o->modes, s->ndof);
     reduce(&d, s);
-    if (o->backbone > d.kept) {
-        die("option --backbone %zu: the model keeps %zu mode%s: take more --modes", o->backbone, d.kept, d.kept == 1 ? "" : "s");
-    }
+    die_if(o->backbone > d.kept, "option --backbone %zu: the model keeps %zu mode%s: take more --modes", o->backbone, d.kept,
+           d.kept == 1 ? "" : "s");
     d.lowest = o->drive.from > 0.0 ? o->drive.from : d.open.omega[o->backbone ? o->backbone - 1 : 0] / TURN;
     d.highest = o->drive.from > 0.0 ? o->drive.to : d.lowest;
     d.stuck = stick(&d.open, d.contact, d.rows, d.contact_shape);
@@ -317,10 +305,9 @@ struct damper create_damper(const struct options *o, const struct structure *s, 
         check_backbone(&d);
     }
     /* rigid contacts must not hold all motions of the modes, unless they hold the structure itself */
-    if (d.modes < d.ndof && d.stuck.count == 0) {
-        die("the contacts, if they stick, hold all that the %zu mode%s of the reduced structure let%s move: keep more --modes",
-            d.modes, d.modes == 1 ? "" : "s", d.modes == 1 ? "s" : "");
-    }
+    die_if(d.modes < d.ndof && d.stuck.count == 0,
+           "the contacts, if they stick, hold all that the %zu mode%s of the reduced structure let%s move: keep more --modes",
+           d.modes, d.modes == 1 ? "" : "s", d.modes == 1 ? "s" : "");
     for (size_t c = 0; c < d.rows; c++) {
         if (d.contact[c].stiffness > 0.0) {
             check_spring(&d, c);
@@ -345,19 +332,15 @@ void free_damper(struct damper *d)
 void check_drive(const struct damper *d, double hz)
 {
     const double highest = d->open.omega[d->modes - 1];
-    if (!(TURN * hz > 1e-6 * highest)) {
-        die("the load's frequency, %g Hz, is next to nothing beside %g Hz of the highest mode kept; see --drive", hz,
-            highest / TURN);
-    }
+    die_if(!(TURN * hz > 1e-6 * highest),
+           "the load's frequency, %g Hz, is next to nothing beside %g Hz of the highest mode kept; see --drive", hz,
+           highest / TURN);
     const struct scale s = scale_of(&d->open, TURN * hz);
-    if (isnan(s.amplitude)) {
-        die("the load's frequency, %g Hz, is beyond what can be computed with; see --drive", hz);
-    }
-    if (!isnormal(s.amplitude * s.amplitude) || !isnormal(s.power * s.power) || !isnormal(NOTHING * s.norm * s.norm)) {
-        die("without friction the load makes an amplitude of %g: nothing to compute with; see --load, --base, --force, "
-            "--output and --modes",
-            s.amplitude);
-    }
+    die_if(isnan(s.amplitude), "the load's frequency, %g Hz, is beyond what can be computed with; see --drive", hz);
+    die_if(!isnormal(s.amplitude * s.amplitude) || !isnormal(s.power * s.power) || !isnormal(NOTHING * s.norm * s.norm),
+           "without friction the load makes an amplitude of %g: nothing to compute with; see --load, --base, --force, "
+           "--output and --modes",
+           s.amplitude);
 }
 
 size_t output_size(const struct damper *d)

@@ -21,9 +21,8 @@ static void sort_rows(const char *path, const char *what, struct degree *all, si
         qsort(all, count, sizeof *all, compare_rows);
     }
     for (size_t i = 1; i < count; i++) {
-        if (all[i].row == all[i - 1].row) {
-            die("%s:%zu: %s %zu has been given in line %zu", path, all[i].line, what, all[i].row, all[i - 1].line);
-        }
+        die_if(all[i].row == all[i - 1].row, "%s:%zu: %s %zu has been given in line %zu", path, all[i].line, what, all[i].row,
+               all[i - 1].line);
     }
 }
 
@@ -51,9 +50,8 @@ static struct degree *read_nodes(const char *path, size_t *count)
     while (next_data(&t)) {
         if (*t.at == '*') {
             reading = t.at[1] == '*' ? reading : is_keyword(t.at, "*NODE");
-            if (is_keyword(t.at, "*TRANSFORM")) {
-                die_at(&t, "*TRANSFORM turns directions of nodes, so that 1, 2, 3 need not be x, y, z");
-            }
+            die_at_if(&t, is_keyword(t.at, "*TRANSFORM"),
+                      "*TRANSFORM turns directions of nodes, so that 1, 2, 3 need not be x, y, z");
         } else if (reading) {
             struct degree d = {.line = t.line};
             d.row = next_whole(&t, "node", ",", 1, INT_MAX);
@@ -83,10 +81,8 @@ static void find_places(const char *path, struct degree *dof, size_t count)
     struct degree *all = read_nodes(input, &nodes);
     for (size_t i = 0; i < count; i++) {
         const struct degree *node = nodes ? bsearch(&dof[i].node, all, nodes, sizeof *all, compare_row) : NULL;
-        if (!node) {
-            die("%s:%zu: node %zu has no place in %s (files that it includes are not read)", path, dof[i].line, dof[i].node,
-                input);
-        }
+        die_if(!node, "%s:%zu: node %zu has no place in %s (files that it includes are not read)", path, dof[i].line, dof[i].node,
+               input);
         memcpy(dof[i].at, node->at, sizeof dof[i].at);
     }
     free(all);
@@ -101,9 +97,7 @@ static struct degree read_degree(struct text *t, int calculix)
     struct degree d = {.line = t->line};
     if (calculix) {
         const char *dot = strchr(t->at, '.');
-        if (!dot || strchr(dot + 1, '.')) {
-            die_at(t, "expected node.direction, a point between two whole numbers");
-        }
+        die_at_if(t, !dot || strchr(dot + 1, '.'), "expected node.direction, a point between two whole numbers");
         d.node = next_whole(t, "node", ".", 1, INT_MAX);
         d.direction = (int)next_whole(t, "direction", "", 1, 3);
         return d;
@@ -126,18 +120,14 @@ struct degree *read_degrees(const char *path, size_t *count)
         dof[n] = read_degree(&t, calculix);
         dof[n].row = calculix ? n + 1 : dof[n].row;
     }
-    if (n == 0) {
-        die("%s: there is no degree of freedom in it", path);
-    }
+    die_if(n == 0, "%s: there is no degree of freedom in it", path);
     if (calculix) {
         find_places(path, dof, n);
     } else {
         sort_rows(path, "row", dof, n);
     }
     for (size_t i = 0; i < n; i++) {
-        if (dof[i].row != i + 1) {
-            die("%s:%zu: row %zu, but there is no row %zu", path, dof[i].line, dof[i].row, i + 1);
-        }
+        die_if(dof[i].row != i + 1, "%s:%zu: row %zu, but there is no row %zu", path, dof[i].line, dof[i].row, i + 1);
     }
     *count = n;
     return dof;

@@ -34,9 +34,7 @@ int main(int argc, char **argv)
     }
     close_tables(&tables);
     draw_plots(&tables);
-    if (study.nothing[0]) {
-        die("option --follow: no motion was found: %s", study.nothing);
-    }
+    die_if(study.nothing[0], "option --follow: no motion was found: %s", study.nothing);
     close_file(stdout, "standard output");
     free_model(&model);
     free_structure(&structure);

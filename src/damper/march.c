@@ -43,10 +43,8 @@ static double steps_of(const struct damper *d, double hz)
 
 void check_steps(const struct damper *d, double hz)
 {
-    if (!(steps_of(d, hz) <= MOST_STEPS)) {
-        die("a period of %g Hz would take %g steps, more than %g: take a larger --step%s", hz, steps_of(d, hz), MOST_STEPS,
-            d->law == TRIBO_COULOMB ? "" : ", fewer --modes, --statics off, or --law coulomb");
-    }
+    die_if(!(steps_of(d, hz) <= MOST_STEPS), "a period of %g Hz would take %g steps, more than %g: take a larger --step%s", hz,
+           steps_of(d, hz), MOST_STEPS, d->law == TRIBO_COULOMB ? "" : ", fewer --modes, --statics off, or --law coulomb");
 }
 
 tribo_driver *create_marcher(struct worker *w, double limit, double hz)

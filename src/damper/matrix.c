@@ -24,44 +24,35 @@ struct entries {
 static int read_head(struct text *t, const struct rows *expected, size_t *entries)
 {
     char word[5][21] = {"", "", "", "", ""};
-    if (!next_line(t)) {
-        die("%s is empty", t->place);
-    }
+    die_if(!next_line(t), "%s is empty", t->place);
     const int words = sscanf(t->at, "%20s %20s %20s %20s %20s", word[0], word[1], word[2], word[3], word[4]);
     for (size_t i = 0; i < sizeof word; i++) {
         char *const c = &word[i / sizeof *word][i % sizeof *word];
         *c = (char)tolower((unsigned char)*c);
     }
-    if (words != 5 || strcmp(word[0], "%%matrixmarket") != 0 || strcmp(word[1], "matrix") != 0 ||
-        strcmp(word[2], "coordinate") != 0) {
-        die_at(t, "expected a header \"%%%%MatrixMarket matrix coordinate real symmetric\", found \"%s %s %s %s %s\"", word[0],
-               word[1], word[2], word[3], word[4]);
-    }
-    if (strcmp(word[3], "real") != 0 && strcmp(word[3], "integer") != 0) {
-        die_at(t, "values are \"%s\"; only real and integer ones will do", word[3]);
-    }
-    if (strcmp(word[4], "symmetric") != 0 && strcmp(word[4], "general") != 0) {
-        die_at(t, "the matrix is \"%s\"; it must be symmetric or general", word[4]);
-    }
-    if (!next_data(t)) {
-        die("%s ends before the line with its sizes", t->place);
-    }
+    die_at_if(t,
+              words != 5 || strcmp(word[0], "%%matrixmarket") != 0 || strcmp(word[1], "matrix") != 0 ||
+                  strcmp(word[2], "coordinate") != 0,
+              "expected a header \"%%%%MatrixMarket matrix coordinate real symmetric\", found \"%s %s %s %s %s\"", word[0],
+              word[1], word[2], word[3], word[4]);
+    die_at_if(t, strcmp(word[3], "real") != 0 && strcmp(word[3], "integer") != 0,
+              "values are \"%s\"; only real and integer ones will do", word[3]);
+    die_at_if(t, strcmp(word[4], "symmetric") != 0 && strcmp(word[4], "general") != 0,
+              "the matrix is \"%s\"; it must be symmetric or general", word[4]);
+    die_if(!next_data(t), "%s ends before the line with its sizes", t->place);
     const size_t rows = next_whole(t, "the number of rows", " ", 1, INT_MAX),
                  columns = next_whole(t, "the number of columns", " ", 1, INT_MAX);
     *entries = next_whole(t, "the number of entries", "", 0, INT_MAX);
-    if (rows != expected->count || columns != expected->count) {
-        die_at(t, "%zu rows and %zu columns, but the degrees of freedom in %s are %zu", rows, columns, expected->path,
-               expected->count);
-    }
+    die_at_if(t, rows != expected->count || columns != expected->count,
+              "%zu rows and %zu columns, but the degrees of freedom in %s are %zu", rows, columns, expected->path,
+              expected->count);
     return strcmp(word[4], "symmetric") == 0;
 }
 
 static size_t next_index(struct text *t, const char *what, const struct rows *rows)
 {
     const size_t index = next_whole(t, what, " ", 1, INT_MAX);
-    if (index > rows->count) {
-        die_at(t, "%s %zu, but the degrees of freedom in %s are %zu", what, index, rows->path, rows->count);
-    }
+    die_at_if(t, index > rows->count, "%s %zu, but the degrees of freedom in %s are %zu", what, index, rows->path, rows->count);
     return index;
 }
 
@@ -99,11 +90,10 @@ static struct sparse make_matrix(const char *path, struct entries *all, size_t r
     for (size_t i = 1, k = 0; i <= rows; i++) {
         for (; k < all->count && all->entry[k].row == i; k++) {
             const struct entry *e = &all->entry[k], *before = e - (k > 0);
-            if (k > 0 && e->row == before->row && e->column == before->column) {
-                const int turned = symmetric && e->column > e->row;
-                die("%s:%zu: row %zu, column %zu has been given in line %zu", path, e->line, turned ? e->column : e->row,
-                    turned ? e->row : e->column, before->line);
-            }
+            const int turned = symmetric && e->column > e->row;
+            die_if(e != before && e->row == before->row && e->column == before->column,
+                   "%s:%zu: row %zu, column %zu has been given in line %zu", path, e->line, turned ? e->column : e->row,
+                   turned ? e->row : e->column, before->line);
             m.col[count] = e->column - 1;
             m.val[count] = e->value;
             count += e->value != 0.0;
@@ -122,26 +112,20 @@ struct sparse read_matrix(const char *path, const struct rows *rows)
     const int symmetric = calculix || read_head(&t, rows, &announced);
     char *diagonal = need_memory(rows->count, 1);
     while (next_data(&t)) {
-        if (all.count == announced) {
-            die_at(&t, "more entries than the %zu announced", announced);
-        }
+        die_at_if(&t, all.count == announced, "more entries than the %zu announced", announced);
         struct entry e = {.line = t.line};
         e.row = next_index(&t, "row", rows);
         e.column = next_index(&t, "column", rows);
         e.value = next_real(&t, "value", "");
         if (symmetric && e.column > e.row) {
-            if (!calculix) {
-                die_at(&t, "row %zu, column %zu is above the diagonal; a symmetric file holds the lower triangle", e.row,
-                       e.column);
-            }
+            die_at_if(&t, !calculix, "row %zu, column %zu is above the diagonal; a symmetric file holds the lower triangle",
+                      e.row, e.column);
             e = (struct entry){e.column, e.row, e.line, e.value};
         }
         diagonal[e.row - 1] |= e.row == e.column;
         add_entry(&all, e);
     }
-    if (!calculix && all.count < announced) {
-        die_at(&t, "the file ends after %zu entries of %zu", all.count, announced);
-    }
+    die_at_if(&t, !calculix && all.count < announced, "the file ends after %zu entries of %zu", all.count, announced);
     /* CalculiX's format has no count of entries: a file that is cut off lacks entries on the diagonal */
     const char *missing = calculix ? memchr(diagonal, 0, rows->count) : NULL;
     if (missing) {

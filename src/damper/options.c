@@ -24,9 +24,7 @@ static const double DAMPING = 0.002;
 static int choose(const struct text *value, const char *first, const char *second)
 {
     const int choice = strcmp(value->at, second) == 0;
-    if (!choice && strcmp(value->at, first) != 0) {
-        die_at(value, "must be %s or %s", first, second);
-    }
+    die_at_if(value, !choice && strcmp(value->at, first) != 0, "must be %s or %s", first, second);
     return choice;
 }
 
@@ -47,9 +45,7 @@ static void read_follow(struct text *value, void *follow)
     while (k < 5 && strcmp(value->at, ways[k]) != 0) {
         k++;
     }
-    if (k == 5) {
-        die_at(value, "must be up, down, up:events or down:events");
-    }
+    die_at_if(value, k == 5, "must be up, down, up:events or down:events");
     *(int *)follow = k - 2;
 }
 
@@ -75,9 +71,7 @@ static void read_check(struct text *value, void *count)
 
 static void check_ratio(const struct text *t, double ratio)
 {
-    if (!(ratio > 0.0 && ratio < 1.0)) {
-        die_at(t, "%g: must be above 0 and below 1", ratio);
-    }
+    die_at_if(t, !(ratio > 0.0 && ratio < 1.0), "%g: must be above 0 and below 1", ratio);
 }
 
 static void read_damping(struct text *value, void *to)
@@ -99,9 +93,7 @@ static void read_damping_file(struct text *value, void *to)
         check_ratio(&t, ratio);
         add_number(ratios, ratio);
     }
-    if (ratios->count == 0) {
-        die_at(value, "there is no damping ratio in it");
-    }
+    die_at_if(value, ratios->count == 0, "there is no damping ratio in it");
 }
 
 static void read_output(struct text *value, void *to)
@@ -116,9 +108,8 @@ static void read_field(struct text *value, void *to)
     struct list *phases = to;
     read_list(value, phases);
     for (size_t k = 0; k < phases->count; k++) {
-        if (!(phases->value[k] >= 0.0 && phases->value[k] <= 360.0)) {
-            die_at(value, "%g: a phase must be from 0 to 360 degrees", phases->value[k]);
-        }
+        die_at_if(value, !(phases->value[k] >= 0.0 && phases->value[k] <= 360.0), "%g: a phase must be from 0 to 360 degrees",
+                  phases->value[k]);
     }
 }
 
@@ -129,9 +120,8 @@ static void read_force(struct text *value, void *force)
 
 static void read_cycle(struct text *value, void *period)
 {
-    if (!((*(double *)period = next_real(value, "period", "")) >= 0.0)) {
-        die_at(value, "must be at least 0");
-    }
+    *(double *)period = next_real(value, "period", "");
+    die_at_if(value, *(double *)period < 0.0, "must be at least 0");
 }
 
 static void read_drive(struct text *value, void *drive)
@@ -146,9 +136,7 @@ static void read_drive(struct text *value, void *drive)
 static void read_step(struct text *value, void *to)
 {
     const double step = next_positive(value, "step", "");
-    if (step > 1.0) {
-        die_at(value, "at most 1, for the highest mode kept to be followed");
-    }
+    die_at_if(value, step > 1.0, "at most 1, for the highest mode kept to be followed");
     *(double *)to = step;
 }
 
@@ -156,24 +144,19 @@ static void read_law(struct text *value, void *to)
 {
     int *law = to;
     char names[200] = "";
-    if (tribo_law_find(value->at, law)) {
-        for (int i = 0; i < tribo_law_count(); i++) {
-            strcat(strcat(names, " "), tribo_law_name(i));
-        }
-        die_at(value, "no law has this name; there are%s", names);
+    for (int i = 0; i < tribo_law_count(); i++) {
+        strcat(strcat(names, " "), tribo_law_name(i));
     }
+    die_at_if(value, tribo_law_find(value->at, law), "no law has this name; there are%s", names);
     /* nothing holds a velocity at 0 in rk4, whose four stages meet forces of either sign that may cancel */
-    if (*law == TRIBO_KARNOPP) {
-        die_at(value, "the contacts of this law rest at velocities that are exactly zero, which marching does not make: take "
-                      "coulomb, quinn, quinn-reversal, velocity-limited or smooth");
-    }
+    die_at_if(value, *law == TRIBO_KARNOPP,
+              "the contacts of this law rest at velocities that are exactly zero, which marching does not make: take "
+              "coulomb, quinn, quinn-reversal, velocity-limited or smooth");
 }
 
 static void read_name(struct text *value, void *name)
 {
-    if (strcspn(value->at, "/ \t") != strlen(value->at)) {
-        die_at(value, "files cannot be named so");
-    }
+    die_at_if(value, strcspn(value->at, "/ \t") != strlen(value->at), "files cannot be named so");
     *(const char **)name = value->at;
 }
 
@@ -390,12 +373,8 @@ static void read_option_file(struct text *path, void *options)
         const char *name = next_word(&t, "an option", "= ");
         const struct option *option = find_option(name);
         char *value = keep(options, new_text("%s", rest_of(&t)));
-        if (!option || option->read == read_option_file) {
-            die_at(&t, "there is no option \"%s\"; see --help", name);
-        }
-        if (*value == '\0') {
-            die_at(&t, "option %s needs a value", name);
-        }
+        die_at_if(&t, !option || option->read == read_option_file, "there is no option \"%s\"; see --help", name);
+        die_at_if(&t, *value == '\0', "option %s needs a value", name);
         const char *argument = option->help + 5 + strlen(name);
         struct text text =
             text_of(make_printable(keep(options, new_text("%s:%zu: %s %s", path->at, t.line, name, value))), value);
@@ -451,22 +430,13 @@ static void check_study(const struct options *o)
                            : o->field.count      ? "--field"
                            : o->harmonics        ? "--harmonics"
                                                  : NULL;
-    if (is_unloaded(o) && unloaded) {
-        die("option %s: it takes no %s", o->backbone ? "--backbone" : "--cycle", unloaded);
-    }
-    if (o->follow && o->drive.points < 2) {
-        die("option --follow: it is for a band, --drive FROM:TO:N");
-    }
-    if (o->follow && march) {
-        die("option --follow: it takes no %s", march);
-    }
-    if (o->cycle >= 0.0 && (o->loads.count || o->backbone)) {
-        die("option --cycle: it takes no %s", o->backbone ? "--backbone" : o->loads.load[0].supports ? "--base" : "--load");
-    }
+    die_if(is_unloaded(o) && unloaded, "option %s: it takes no %s", o->backbone ? "--backbone" : "--cycle", unloaded);
+    die_if(o->follow && o->drive.points < 2, "option --follow: it is for a band, --drive FROM:TO:N");
+    die_if(o->follow && march, "option --follow: it takes no %s", march);
+    const char *driven = o->backbone ? "--backbone" : !o->loads.count ? NULL : o->loads.load->supports ? "--base" : "--load";
+    die_if(o->cycle >= 0.0 && driven, "option --cycle: it takes no %s", driven);
     for (const struct contact *c = o->contacts.contact; c < o->contacts.contact + o->contacts.count; c++) {
-        if (o->cycle < 0.0 && (c->belt != 0.0 || c->ratio > 1.0)) {
-            die("%s: belt= and static= are for --cycle", c->at.origin);
-        }
+        die_if(o->cycle < 0.0 && (c->belt != 0.0 || c->ratio > 1.0), "%s: belt= and static= are for --cycle", c->at.origin);
     }
 }
 
@@ -490,28 +460,18 @@ static void check_options(const struct options *o)
             strcat(strcat(missing, " "), part[k].name);
         }
     }
-    if (missing[0]) {
-        die("what is missing:%s; see --help", missing);
-    }
+    die_if(missing[0], "what is missing:%s; see --help", missing);
     if (!measured_place(o)) {
         die("%s: --output is missing, the place where amplitudes are measured", o->loads.load[0].at.origin);
     }
-    if (o->amplitudes.points && !o->backbone) {
-        die("option --amplitudes: --backbone is missing, the mode that has them");
-    }
+    die_if(o->amplitudes.points && !o->backbone, "option --amplitudes: --backbone is missing, the mode that has them");
     check_study(o);
-    if (o->damping_matrix && o->damping.count) {
-        die("option --damping-matrix %s: either a matrix or damping ratios, not both", o->damping_matrix);
-    }
-    if (o->harmonics && !o->outputs.count) {
-        die("option --harmonics %zu: --output is missing, a place where they are wanted", o->harmonics);
-    }
-    if (o->field.count && o->drive.points > 1) {
-        die("option --field: displacement fields are for one frequency: --drive HZ");
-    }
-    if (o->limits.points && !limits_vary(o)) {
-        die("option --limits: every contact has a limit of its own, and none follows");
-    }
+    die_if(o->damping_matrix && o->damping.count, "option --damping-matrix %s: either a matrix or damping ratios, not both",
+           o->damping_matrix);
+    die_if(o->harmonics && !o->outputs.count, "option --harmonics %zu: --output is missing, a place where they are wanted",
+           o->harmonics);
+    die_if(o->field.count && o->drive.points > 1, "option --field: displacement fields are for one frequency: --drive HZ");
+    die_if(o->limits.points && !limits_vary(o), "option --limits: every contact has a limit of its own, and none follows");
 }
 
 struct options read_options(int argc, char **argv)
@@ -534,13 +494,9 @@ struct options read_options(int argc, char **argv)
             *equals = '\0';
         }
         const struct option *option = strncmp(name, "--", 2) == 0 ? find_option(name + 2) : NULL;
-        if (!option) {
-            die("there is no option \"%s\"; see --help", name);
-        }
+        die_if(!option, "there is no option \"%s\"; see --help", name);
         char *value = equals ? equals + 1 : argv[++i];
-        if (!value || !*value) {
-            die("option %s needs a value; see --help", name);
-        }
+        die_if(!value || !*value, "option %s needs a value; see --help", name);
         struct text text = text_of(keep(&o, new_text("option %s %s", name, value)), value);
         option->read(&text, (char *)&o + option->offset);
     }

@@ -11,34 +11,42 @@
 
 const char *program = "example";
 
-void die(const char *format, ...)
+static void end_with(const char *format, va_list args)
 {
-    va_list args;
     fflush(stdout);
     fprintf(stderr, "%s: ", program);
-    va_start(args, format);
     vfprintf(stderr, format, args);
-    va_end(args);
     fputc('\n', stderr);
     exit(EXIT_FAILURE);
 }
 
+void die(const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    end_with(format, args);
+    va_end(args);
+}
+
+void die_if(int wrong, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    if (wrong) {
+        end_with(format, args);
+    }
+    va_end(args);
+}
+
 void need(int status, const char *detail)
 {
-    if (status && detail && *detail) {
-        die("%s: %s", tribo_strerror(status), detail);
-    }
-    if (status) {
-        die("%s", tribo_strerror(status));
-    }
+    die_if(status, "%s%s%s", tribo_strerror(status), detail && *detail ? ": " : "", detail ? detail : "");
 }
 
 void *need_memory(size_t count, size_t size)
 {
     void *memory = calloc(count ? count : 1, size);
-    if (!memory) {
-        die("out of memory for %zu times %zu bytes", count, size);
-    }
+    die_if(!memory, "out of memory for %zu times %zu bytes", count, size);
     return memory;
 }
 
@@ -49,9 +57,7 @@ void *need_room(void *array, size_t count, size_t *room, size_t size)
     }
     *room = 2 * *room + 256;
     void *more = *room <= SIZE_MAX / size ? realloc(array, *room * size) : NULL;
-    if (!more) {
-        die("out of memory for %zu times %zu bytes", *room, size);
-    }
+    die_if(!more, "out of memory for %zu times %zu bytes", *room, size);
     return more;
 }
 
@@ -72,9 +78,7 @@ FILE *create_file(const char *folder, const char *name)
 {
     char *path = new_text("%s/%s", folder, name);
     FILE *file = fopen(path, "w");
-    if (!file) {
-        die("cannot create %s: %s", path, strerror(errno));
-    }
+    die_if(!file, "cannot create %s: %s", path, strerror(errno));
     free(path);
     return file;
 }
@@ -83,9 +87,8 @@ void close_file(FILE *file, const char *name)
 {
     const int failed = ferror(file);
     errno = 0;
-    if (fclose(file) || failed) {
-        die("cannot write %s%s%s", name, errno ? ": " : "", errno ? strerror(errno) : "");
-    }
+    const int kept = fclose(file) == 0 && !failed;
+    die_if(!kept, "cannot write %s%s%s", name, errno ? ": " : "", errno ? strerror(errno) : "");
 }
 
 void write_value(FILE *file, double value, const char *key, ...)

@@ -16,6 +16,9 @@
 extern const char *program;
 void die(const char *format, ...) PRINTF_LIKE(1);
 
+/* The same if something is wrong. */
+void die_if(int wrong, const char *format, ...) PRINTF_LIKE(2);
+
 /* Ends the program if a call of the library failed; detail is the message that belongs to it, or NULL. */
 void need(int status, const char *detail);
 

@@ -39,9 +39,8 @@ void open_plots(struct tables *t)
     if (!t->plot) {
         return;
     }
-    if (system("gnuplot --version >/dev/null 2>&1") != 0) {
-        die("option --plot %s: gnuplot cannot be run: is it installed?", t->plot);
-    }
+    die_if(system("gnuplot --version >/dev/null 2>&1") != 0, "option --plot %s: gnuplot cannot be run: is it installed?",
+           t->plot);
     const int png = strcmp(t->plot, "png") == 0;
     t->script = create_table(t, "plot", "gp");
     fprintf(t->script, "# Pictures of tribo-damper's tables: gnuplot %s-plot.gp, in this folder.\n", t->name);
@@ -148,9 +147,7 @@ void draw_plots(const struct tables *t)
         char *name = new_text("%s-plot.gp", t->name), *script = quoted(name, "'\\''"), *folder = quoted(t->out, "'\\''");
         char *command = new_text("cd %s && gnuplot %s", folder, script);
         close_table(t, t->script, "plot", "gp");
-        if (system(command) != 0) {
-            die("gnuplot could not draw %s/%s", t->out, name);
-        }
+        die_if(system(command) != 0, "gnuplot could not draw %s/%s", t->out, name);
         free(name);
         free(script);
         free(folder);

@@ -81,17 +81,13 @@ struct source *open_source(const char *path)
 {
     struct source *s = need_memory(1, sizeof *s);
     s->file = fopen(path, "rb");
-    if (!s->file) {
-        die("cannot open %s: %s", path, strerror(errno));
-    }
+    die_if(!s->file, "cannot open %s: %s", path, strerror(errno));
     if (ends_with(path, strlen(path), ".gz")) {
 #if defined(DAMPER_ZLIB)
         const int first = getc(s->file), second = getc(s->file);
         rewind(s->file);
         s->packed = first == 0x1f && second == 0x8b;
-        if (s->packed && inflateInit2(&s->stream, 16 + MAX_WBITS) != Z_OK) {
-            die("%s: out of memory", path);
-        }
+        die_if(s->packed && inflateInit2(&s->stream, 16 + MAX_WBITS) != Z_OK, "%s: out of memory", path);
 #else
         die("%s is compressed, and this program has been built without zlib (Debian: zlib1g-dev): gunzip the file, or build "
             "again",

@@ -60,22 +60,18 @@ size_t find_degree(const struct structure *s, const struct place *p)
         nearest = distance_to(&s->dof[i], p->at) < distance_to(&s->dof[nearest], p->at) ? i : nearest;
     }
     const double *at = s->dof[nearest].at;
-    if (!(distance_to(&s->dof[nearest], p->at) <= 1e-6 * size)) {
-        die("%s: no free node is there; the nearest is at %g,%g,%g", p->origin, at[0], at[1], at[2]);
-    }
+    die_if(!(distance_to(&s->dof[nearest], p->at) <= 1e-6 * size), "%s: no free node is there; the nearest is at %g,%g,%g",
+           p->origin, at[0], at[1], at[2]);
     for (size_t i = 0; i < s->ndof; i++) {
         if (s->dof[i].direction != p->direction || distance_to(&s->dof[i], p->at) > 1e-6 * size) {
             continue;
         }
-        if (found < s->ndof) {
-            die("%s: two rows are there, %zu (node %zu) and %zu (node %zu)", p->origin, s->dof[found].row, s->dof[found].node,
-                s->dof[i].row, s->dof[i].node);
-        }
+        const struct degree *one = &s->dof[i], *other = &s->dof[found < s->ndof ? found : i];
+        die_if(other != one, "%s: two rows are there, %zu (node %zu) and %zu (node %zu)", p->origin, other->row, other->node,
+               one->row, one->node);
         found = i;
     }
-    if (found == s->ndof) {
-        die("%s: the node there cannot move along %c", p->origin, "xyz"[p->direction - 1]);
-    }
+    die_if(found == s->ndof, "%s: the node there cannot move along %c", p->origin, "xyz"[p->direction - 1]);
     return found;
 }
 
@@ -85,9 +81,7 @@ size_t read_frequencies(const char *path, double *hz, size_t room)
     size_t count = 0;
     while (next_data(&t)) {
         const double value = next_real(&t, "frequency", "");
-        if (value <= 0.0) {
-            die_at(&t, "frequency %g is not positive", value);
-        }
+        die_at_if(&t, value <= 0.0, "frequency %g is not positive", value);
         if (count < room) {
             hz[count++] = value;
         }

@@ -16,16 +16,17 @@ char *make_printable(char *text)
     return text;
 }
 
-void die_at(const struct text *t, const char *format, ...)
+void die_at_if(const struct text *t, int wrong, const char *format, ...)
 {
     char text[300];
     va_list args;
+    if (!wrong) {
+        return;
+    }
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    if (t->line) {
-        die("%s:%zu: %s", t->place, t->line, make_printable(text));
-    }
+    die_if(t->line > 0, "%s:%zu: %s", t->place, t->line, make_printable(text));
     die("%s: %s", t->place, make_printable(text));
 }
 
@@ -53,18 +54,10 @@ int next_line(struct text *t)
         return 0;
     }
     for (t->line++; c != '\n'; c = next_byte(t->source, &error)) {
-        if (error) {
-            die_at(t, "cannot be read: %s", error);
-        }
-        if (c < 0) {
-            die_at(t, "the file ends within this line: is it cut off? If it is whole, end the line");
-        }
-        if (c == '\0') {
-            die_at(t, "byte %zu of the line is zero: this is no text", length + 1);
-        }
-        if (length + 1 == sizeof t->bytes) {
-            die_at(t, "the line is longer than %zu characters", length);
-        }
+        die_at_if(t, error != NULL, "cannot be read: %s", error);
+        die_at_if(t, c < 0, "the file ends within this line: is it cut off? If it is whole, end the line");
+        die_at_if(t, c == '\0', "byte %zu of the line is zero: this is no text", length + 1);
+        die_at_if(t, length + 1 == sizeof t->bytes, "the line is longer than %zu characters", length);
         t->bytes[length++] = (char)c;
     }
     t->bytes[length] = '\0';
@@ -88,9 +81,7 @@ int next_data(struct text *t)
 void expect_end(struct text *t)
 {
     const char *rest = t->at + strspn(t->at, BLANK);
-    if (*rest) {
-        die_at(t, "\"%.40s\" is too much", rest);
-    }
+    die_at_if(t, *rest, "\"%.40s\" is too much", rest);
 }
 
 char *next_word(struct text *t, const char *what, const char *separators)
@@ -98,21 +89,16 @@ char *next_word(struct text *t, const char *what, const char *separators)
     char *word = t->at + strspn(t->at, BLANK);
     const size_t to_blank = strcspn(word, BLANK), to_separator = strcspn(word, separators);
     char *end = word + (to_blank < to_separator ? to_blank : to_separator), *next = end + strspn(end, BLANK);
-    if (end == word && *next == '\0') {
-        die_at(t, "the %s ends before %s", t->line ? "line" : "value", what);
-    }
-    if (end == word) {
-        die_at(t, "%s is missing before \"%.40s\"", what, next);
-    }
+    die_at_if(t, end == word && *next == '\0', "the %s ends before %s", t->line ? "line" : "value", what);
+    die_at_if(t, end == word, "%s is missing before \"%.40s\"", what, next);
     const int parted = *next && strchr(separators, *next);
     t->end = parted || !*next ? *next : ' ';
     t->at = next + parted;
     *end = '\0';
     if (!*separators) {
         expect_end(t);
-    } else if (t->end == ' ' && !strchr(separators, ' ')) {
-        die_at(t, "expected \"%s\" before \"%.40s\"", separators, next);
     }
+    die_at_if(t, t->end == ' ' && !strchr(separators, ' '), "expected \"%s\" before \"%.40s\"", separators, next);
     return word;
 }
 
@@ -134,18 +120,14 @@ double next_real(struct text *t, const char *what, const char *separators)
 {
     char *word = next_word(t, what, separators);
     const double value = number_of(word);
-    if (isnan(value)) {
-        die_at(t, "%s \"%.40s\" is no finite number", what, word);
-    }
+    die_at_if(t, isnan(value), "%s \"%.40s\" is no finite number", what, word);
     return value;
 }
 
 double next_positive(struct text *t, const char *what, const char *separators)
 {
     const double value = next_real(t, what, separators);
-    if (value <= 0.0) {
-        die_at(t, "must be above 0");
-    }
+    die_at_if(t, value <= 0.0, "must be above 0");
     return value;
 }
 
@@ -153,9 +135,8 @@ size_t next_whole(struct text *t, const char *what, const char *separators, size
 {
     char *word = next_word(t, what, separators);
     const double value = number_of(word);
-    if (!(value == floor(value) && value >= (double)least && value <= (double)most)) {
-        die_at(t, "%s \"%.40s\" is no whole number from %zu to %zu", what, word, least, most);
-    }
+    die_at_if(t, !(value == floor(value) && value >= (double)least && value <= (double)most),
+              "%s \"%.40s\" is no whole number from %zu to %zu", what, word, least, most);
     return (size_t)value;
 }
 
@@ -200,8 +181,6 @@ void read_range(struct text *t, void *range)
         r.to = next_real(t, "number", ":");
         r.points = next_whole(t, "number of points", "", 1, MOST_COUNT);
     }
-    if (r.to < r.from || (r.to == r.from) != (r.points == 1)) {
-        die_at(t, "a range must be positive and ascend");
-    }
+    die_at_if(t, r.to < r.from || (r.to == r.from) != (r.points == 1), "a range must be positive and ascend");
     *(struct range *)range = r;
 }

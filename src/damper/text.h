@@ -52,8 +52,8 @@ char *rest_of(const struct text *t);
 /* For messages: characters that do not print become question marks. Returns text. */
 char *make_printable(char *text);
 
-/* Ends the program: "place: ..." or "path:line: ..." */
-void die_at(const struct text *t, const char *format, ...) PRINTF_LIKE(2);
+/* Ends the program with "place: ..." or "path:line: ..." if something is wrong. */
+void die_at_if(const struct text *t, int wrong, const char *format, ...) PRINTF_LIKE(3);
 
 /* Reads a value into the object at to. */
 typedef void reader(struct text *value, void *to);
