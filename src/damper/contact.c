@@ -111,8 +111,9 @@ void read_contact(struct text *t, void *contacts)
                "to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER normal=DIR,STIFFNESS gap=LENGTH "
                "belt=VELOCITY static=RATIO");
     check_contact(t, &c, second);
-    c.by_load = isnan(c.limit) && isnan(c.normal.load) && isnan(c.normal.gap) && !isnan(c.mu);
     c.limit = !isnan(c.normal.gap) ? 0.0 : isnan(c.normal.load) ? c.limit : c.mu * c.normal.load;
+    all->vary |= isnan(c.limit);
+    all->by_load |= isnan(c.limit) && !isnan(c.mu);
     c.mu = isnan(c.mu) ? 1.0 : c.mu;
     c.stiffness = isnan(c.stiffness) ? 0.0 : c.stiffness;
     c.belt = isnan(c.belt) ? 0.0 : c.belt;

@@ -27,7 +27,6 @@ struct contact {
     int between;  /* 0: to the ground, and there is no to */
     double limit; /* NaN: mu times the value of --limits */
     double mu;
-    int by_load;      /* 1: limit is NaN and mu is given, so that --limits gives normal loads */
     double stiffness; /* of the spring before the slider, 0: a rigid contact; of a normal direction, of the spring that presses */
     double belt;      /* velocity of the other end, the ground, along the contact */
     double ratio;     /* limit at rest over limit while sliding, >= 1 */
@@ -60,6 +59,8 @@ struct contacts {
     struct contact *contact; /* [count + normals] */
     size_t count, room;
     size_t normals; /* normal directions, behind all contacts, in the order of their contacts; added by add_normals */
+    int vary;       /* 1: a contact follows --limits */
+    int by_load;    /* 1: one that does has mu=, so that --limits gives normal loads */
 };
 
 /* "X,Y,Z,DIR", where DIR may be two directions, and words to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER

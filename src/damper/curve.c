@@ -14,32 +14,14 @@ static const double LEAST_AMPLITUDE = 1e-5;      /* of the largest one: below, i
 
 /* -------------------------------------------------------------------------------------------------------------- samples */
 
-struct curve create_curve(int over_limit, double fixed, size_t record)
-{
-    return (struct curve){.over_limit = over_limit, .fixed = fixed, .record = record};
-}
-
-void free_curve(struct curve *c)
-{
-    for (size_t k = 0; k < c->count; k++) {
-        free(c->sample[k].y);
-    }
-    free(c->sample);
-}
-
 /* Index of the first sample at or right of x. */
 static size_t index_of(const struct curve *c, double x)
 {
-    size_t low = 0, high = c->count;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (c->sample[middle].x < x) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
+    size_t k = 0;
+    while (k < c->count && c->sample[k].x < x) {
+        k++;
     }
-    return low;
+    return k;
 }
 
 void ask_sample(struct curve *c, double x, int asked)
@@ -101,11 +83,16 @@ static size_t find_at(struct curve *c, struct worker *w, double x)
 
 const struct sample *largest_of(const struct curve *c, enum quantity of)
 {
+    static const double PART = 0.3; /* of the power of the loads: less of it lost to friction is not sensitive */
     const struct sample *best = NULL;
+    double most = -HUGE_VAL;
     for (size_t k = 0; k < c->count; k++) {
-        const struct motion *m = &c->sample[k].motion, *b = best ? &best->motion : NULL;
-        if (m->found && (!b || (of == POWER ? m->friction > b->friction : m->amplitude > b->amplitude))) {
+        const struct motion *m = &c->sample[k].motion;
+        const double slip = m->friction > PART * m->input ? -m->friction / m->limit : -HUGE_VAL;
+        const double value = of == AMPLITUDE ? m->amplitude : of == POWER ? m->friction : slip;
+        if (m->found && value > most) {
             best = &c->sample[k];
+            most = value;
         }
     }
     return best;
@@ -193,15 +180,6 @@ const struct sample *reach_sample(struct curve *c, struct worker *w, double x)
 
 /* --------------------------------------------------------------------------------------------------------------- largest */
 
-/* The top of the parabola through a sample and its neighbours. */
-static double top_of(const struct sample *s)
-{
-    const double left = s[-1].x - s[0].x, right = s[1].x - s[0].x;
-    const double a = (s[-1].motion.amplitude - s[0].motion.amplitude) / left,
-                 b = (s[1].motion.amplitude - s[0].motion.amplitude) / right;
-    return s[0].x + 0.5 * (a * right - b * left) / (a - b);
-}
-
 /* 1 if sample k is not below its neighbours. */
 static int is_top(const struct curve *c, size_t k)
 {
@@ -210,14 +188,17 @@ static int is_top(const struct curve *c, size_t k)
            s->motion.amplitude >= s[-1].motion.amplitude && s->motion.amplitude >= s[1].motion.amplitude;
 }
 
-/* Adds samples from a top of the samples, at x, to the top of the curve. */
+/* Adds samples from a top of the samples, at x, to the top of the curve: each at the top of the parabola through a sample and its
+ * neighbours. */
 static void climb(struct curve *c, struct worker *w, double x)
 {
-    for (int i = 0; i < CLIMBS && !interrupted(); i++) {
-        const size_t k = index_of(c, x);
-        const double top = top_of(&c->sample[k]), whole = c->sample[c->count - 1].x - c->sample[0].x;
-        const double reached = c->sample[k].motion.amplitude;
-        if (!(is_top(c, k) && fabs(top - x) > 1e-8 * whole)) {
+    const double whole = c->sample[c->count - 1].x - c->sample[0].x;
+    for (int i = 0; i < CLIMBS && !interrupted() && is_top(c, index_of(c, x)); i++) {
+        const struct sample *s = &c->sample[index_of(c, x)];
+        const double left = s[-1].x - s[0].x, right = s[1].x - s[0].x, reached = s->motion.amplitude;
+        const double a = (s[-1].motion.amplitude - reached) / left, b = (s[1].motion.amplitude - reached) / right;
+        const double top = s[0].x + 0.5 * (a * right - b * left) / (a - b);
+        if (!(fabs(top - x) > 1e-8 * whole)) {
             return;
         }
         const struct motion *there = &c->sample[find_at(c, w, top)].motion;

@@ -20,9 +20,6 @@ struct curve {
     size_t record;      /* numbers in the record of a motion */
 };
 
-struct curve create_curve(int over_limit, double fixed, size_t record);
-void free_curve(struct curve *c);
-
 /* Adds a sample at x; a sample that is there already becomes asked if asked is 1. */
 void ask_sample(struct curve *c, double x, int asked);
 
@@ -34,8 +31,9 @@ void find_curve(struct curve *c, struct worker *w, double tolerance);
  * address until the next one is added. */
 const struct sample *reach_sample(struct curve *c, struct worker *w, double x);
 
-/* The sample with the largest amplitude, or the largest power lost to friction; NULL if none was found. */
-enum quantity { AMPLITUDE, POWER };
+/* The sample with the largest amplitude, or the largest power lost to friction, or the motion that more modes change most: contacts
+ * slip by the least, and friction still takes a good part of the power. NULL if none was found. */
+enum quantity { AMPLITUDE, POWER, SENSITIVITY };
 const struct sample *largest_of(const struct curve *c, enum quantity of);
 
 /* Finds the largest amplitude to rounding, by more samples at each top that is within the tolerance of the largest. */

@@ -31,7 +31,7 @@ void complete_options(struct options *o, const struct structure *s)
         l->size = isnan(l->size) ? o->force : l->size;
         o->size += l->size * mass;
     }
-    if (!limits_vary(o)) {
+    if (!o->contacts.vary) {
         o->limits = (struct range){1.0, 1.0, 1};
     } else if (!o->limits.points) {
         o->limits = (struct range){LIMIT_FROM * o->size, LIMIT_TO * o->size, o->drive.points > 1 ? 9 : 33};
@@ -229,9 +229,7 @@ tribo_system *create_system(const struct damper *d, double limit)
         belt[c] = d->contact[c].belt;
         ratio[c] = d->contact[c].ratio;
         moves += belt[c] != 0.0;
-    }
-    for (size_t c = 0; c < d->contacts; c++) {
-        if (d->contact[c].stiffness > 0.0) {
+        if (c < d->contacts && d->contact[c].stiffness > 0.0) {
             compliance[c] = 1.0 / d->contact[c].stiffness;
         }
         if (d->contact[c].directions == 2) {
@@ -266,16 +264,11 @@ tribo_system *create_system(const struct damper *d, double limit)
     return sys;
 }
 
-const struct linear *linear_of_backbone(const struct damper *d)
+/* The frequency, rad/time, of the mode of --backbone: with all contacts stuck, or without friction where such modes are fewer. Ends
+ * the program if the mode does not move the place where amplitudes are measured. */
+static double find_mode(const struct damper *d, size_t mode)
 {
-    return d->options->backbone <= d->stuck.count ? &d->stuck : &d->open;
-}
-
-/* Ends the program if the mode of --backbone does not move the place where amplitudes are measured. */
-static void check_backbone(const struct damper *d)
-{
-    const struct linear *l = linear_of_backbone(d);
-    const size_t mode = d->options->backbone;
+    const struct linear *l = mode <= d->stuck.count ? &d->stuck : &d->open;
     double most = 0.0;
     for (size_t k = 0; k < l->count; k++) {
         most = fmax(most, fabs(l->measured[k]));
@@ -283,6 +276,7 @@ static void check_backbone(const struct damper *d)
     die_if(!(fabs(l->measured[mode - 1]) > UNMOVED * most),
            "option --backbone %zu: the mode does not move the place where amplitudes are measured, %s", mode,
            measured_place(d->options)->origin);
+    return l->omega[mode - 1];
 }
 
 struct damper create_damper(const struct options *o, const struct structure *s, size_t kept)
@@ -301,9 +295,7 @@ struct damper create_damper(const struct options *o, const struct structure *s, 
     d.lowest = o->drive.from > 0.0 ? o->drive.from : d.open.omega[o->backbone ? o->backbone - 1 : 0] / TURN;
     d.highest = o->drive.from > 0.0 ? o->drive.to : d.lowest;
     d.stuck = stick(&d.open, d.contact, d.rows, d.contact_shape);
-    if (o->backbone) {
-        check_backbone(&d);
-    }
+    d.backbone = o->backbone ? find_mode(&d, o->backbone) : 0.0;
     /* rigid contacts must not hold all motions of the modes, unless they hold the structure itself */
     die_if(d.modes < d.ndof && d.stuck.count == 0,
            "the contacts, if they stick, hold all that the %zu mode%s of the reduced structure let%s move: keep more --modes",
@@ -317,6 +309,8 @@ struct damper create_damper(const struct options *o, const struct structure *s, 
     }
     d.sys = create_system(&d, o->limits.from);
     d.dimension = tribo_system_dimension(d.sys);
+    d.output = 1 + 2 * (o->harmonics ? o->harmonics : 1);
+    d.record = d.dimension + 3 * d.contacts + d.output * o->outputs.count;
     return d;
 }
 
@@ -341,9 +335,4 @@ void check_drive(const struct damper *d, double hz)
            "without friction the load makes an amplitude of %g: nothing to compute with; see --load, --base, --force, "
            "--output and --modes",
            s.amplitude);
-}
-
-size_t output_size(const struct damper *d)
-{
-    return 1 + 2 * (d->options->harmonics ? d->options->harmonics : 1);
 }

@@ -26,7 +26,7 @@ struct run {
     double limit, period, omega; /* of the load */
     size_t steps;                /* a period */
     struct scale free;
-    double *output;  /* [outputs][output_size] of the last cycle: amplitude, then cosine and sine of each harmonic */
+    double *output;  /* [outputs][d->output] of the last cycle: amplitude, then cosine and sine of each harmonic */
     double *extreme; /* [outputs][2] least and most */
 };
 
@@ -73,7 +73,7 @@ static void sample_outputs(const struct run *r, const double *y, double t, size_
         extreme[0] = step == 1 ? x : fmin(extreme[0], x);
         extreme[1] = step == 1 ? x : fmax(extreme[1], x);
         *o++ = 0.5 * (extreme[1] - extreme[0]);
-        for (size_t h = 1; 2 * h < output_size(d); h++, o += 2) {
+        for (size_t h = 1; 2 * h < d->output; h++, o += 2) {
             o[0] = (step == 1 ? 0.0 : o[0]) + 2.0 * x * cos((double)h * r->omega * t) / (double)r->steps;
             o[1] = (step == 1 ? 0.0 : o[1]) + 2.0 * x * sin((double)h * r->omega * t) / (double)r->steps;
         }
@@ -217,7 +217,7 @@ struct motion march(struct worker *w, double limit, double hz, double *y)
     const struct damper *d = w->d;
     struct run r = {.d = d, .limit = limit, .period = 1.0 / hz, .omega = TURN * hz, .steps = (size_t)steps_of(d, hz)};
     r.free = scale_of(&d->open, r.omega);
-    r.output = need_memory(d->options->outputs.count * output_size(d), sizeof *r.output);
+    r.output = need_memory(d->options->outputs.count * d->output, sizeof *r.output);
     r.extreme = need_memory(2 * d->options->outputs.count, sizeof *r.extreme);
     r.drv = create_marcher(w, limit, hz);
     struct motion m = settle_motion(&r, state);
@@ -231,8 +231,8 @@ struct motion march(struct worker *w, double limit, double hz, double *y)
     for (size_t c = 0; c < 3 * d->contacts; c++) {
         *record++ = (double)NAN;
     }
-    for (size_t k = 0; k < output_size(d) * d->options->outputs.count; k++) {
-        const size_t h = k % output_size(d);
+    for (size_t k = 0; k < d->output * d->options->outputs.count; k++) {
+        const size_t h = k % d->output;
         const double *o = &r.output[k];
         *record++ = h == 0 ? o[0] : h % 2 ? hypot(o[0], o[1]) : atan2(o[-1], o[0]) * 360.0 / TURN;
     }

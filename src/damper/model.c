@@ -170,6 +170,7 @@ void report_model(const struct tables *t, const struct model *m)
 {
     const struct damper *d = &m->damper;
     const double error = missing(d);
+    write_frequencies(t, d, m->options->frequencies);
     if (m->whole) {
         printf("model: all %zu modes\n", d->kept);
     } else {

@@ -28,11 +28,6 @@ struct worker create_worker(const struct damper *d, int march)
     return w;
 }
 
-size_t record_of(const struct damper *d)
-{
-    return d->dimension + 3 * d->contacts + output_size(d) * d->options->outputs.count;
-}
-
 void free_worker(struct worker *w)
 {
     tribo_driver_destroy(w->drv);
@@ -83,7 +78,7 @@ tribo_driver *driver_at(struct worker *w, double limit, double hz)
 
 /* ------------------------------------------------------------------------------------------------------------ measuring */
 
-/* output [outputs][output_size]: half of the way from least to most; of each harmonic amplitude and phase. */
+/* output [outputs][d->output]: half of the way from least to most; of each harmonic amplitude and phase. */
 static int measure_outputs(struct worker *w, double *output)
 {
     const struct damper *d = w->d;
@@ -93,7 +88,7 @@ static int measure_outputs(struct worker *w, double *output)
         memcpy(w->c, d->output_shape + k * d->modes, d->modes * sizeof *w->c);
         status = tribo_driver_period_extremes(w->drv, w->c, &least, &most, NULL, NULL);
         *output++ = 0.5 * (most - least);
-        for (size_t h = 1; 2 * h < output_size(d) && !status; h++) {
+        for (size_t h = 1; 2 * h < d->output && !status; h++) {
             status = tribo_driver_period_harmonic(w->drv, w->c, h, &cosine, &sine);
             *output++ = hypot(cosine, sine);
             *output++ = atan2(cosine, sine) * 360.0 / TURN;
@@ -224,7 +219,7 @@ static struct motion shoot(struct worker *w, double limit, double hz, double *y)
 
 struct motion find_motion(struct worker *w, double limit, double hz, const double *guess, double *y)
 {
-    double *state = need_memory(record_of(w->d), sizeof *state);
+    double *state = need_memory(w->d->record, sizeof *state);
     if (guess) {
         memcpy(state, guess, w->dimension * sizeof *state);
     }
@@ -235,7 +230,7 @@ struct motion find_motion(struct worker *w, double limit, double hz, const doubl
         m.friction = fabs(m.friction) < NOTHING * fmax(10.0 * m.damped, whole.power) ? 0.0 : m.friction;
         m.damped = fabs(m.damped) < NOTHING * whole.power ? 0.0 : m.damped;
         m.input = fabs(m.input) < NOTHING * whole.power ? 0.0 : m.input;
-        memcpy(y, state, record_of(w->d) * sizeof *y);
+        memcpy(y, state, w->d->record * sizeof *y);
     }
     free(state);
     show_point();
@@ -246,7 +241,7 @@ static void run_task(void *data, size_t k)
 {
     struct task *t = (struct task *)data + k;
     struct worker w = create_worker(t->d, t->march);
-    double *y = need_memory(record_of(t->d), sizeof *y);
+    double *y = need_memory(t->d->record, sizeof *y);
     t->motion = find_motion(&w, t->limit, t->hz, t->guess, y);
     free(y);
     free_worker(&w);

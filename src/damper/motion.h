@@ -25,7 +25,7 @@ struct worker {
     size_t dimension;
     double *limit; /* [rows] */
     double *each;  /* [rows] workspace: a quantity of each contact */
-    double *c;     /* [2 modes] workspace: coefficients of a signal c'[q, q'] */
+    double *c;     /* [2 modes] workspace: coefficients of a signal c'[q, q'], those of q' are 0 */
 };
 struct worker create_worker(const struct damper *d, int march);
 void free_worker(struct worker *w);
@@ -35,12 +35,6 @@ void set_point(struct worker *w, double limit, double hz);
 
 /* A driver for a limit and a frequency, which belongs to the worker: drv if there is one, else one that marches. */
 tribo_driver *driver_at(struct worker *w, double limit, double hz);
-
-/* Numbers in the record of a motion: the state at the beginning of a period; of each contact the power lost to its friction; of
- * each contact the shares of the period for which it is at rest, and for which it has lifted off; of each output the amplitude,
- * and of each harmonic h of it a and phase of a sin(h omega t + phase), phase in degrees. Marching leaves powers and shares
- * NaN. */
-size_t record_of(const struct damper *d);
 
 /* Finds it from the state guess, or from rest if that is NULL. y out, if found: its record. */
 struct motion find_motion(struct worker *w, double limit, double hz, const double *guess, double *y);

@@ -20,38 +20,37 @@ static const double DAMPING = 0.002;
 
 /* ------------------------------------------------------------------------------------------------------------- readers */
 
-/* 0 if the value is the first word, 1 if it is the second one. */
-static int choose(const struct text *value, const char *first, const char *second)
+/* Returns the index of the value among count words; all: the words, for the message. */
+static int choose(const struct text *value, const char *const *word, int count, const char *all)
 {
-    const int choice = strcmp(value->at, second) == 0;
-    die_at_if(value, !choice && strcmp(value->at, first) != 0, "must be %s or %s", first, second);
-    return choice;
+    int k = 0;
+    while (k < count && strcmp(value->at, word[k]) != 0) {
+        k++;
+    }
+    die_at_if(value, k == count, "must be %s", all);
+    return k;
 }
 
 static void read_statics(struct text *value, void *statics)
 {
-    *(int *)statics = choose(value, "off", "on");
+    *(int *)statics = choose(value, (const char *const[]){"off", "on"}, 2, "off or on");
 }
 
 static void read_method(struct text *value, void *march)
 {
-    *(int *)march = choose(value, "exact", "march");
+    *(int *)march = choose(value, (const char *const[]){"exact", "march"}, 2, "exact or march");
 }
 
 static void read_follow(struct text *value, void *follow)
 {
     static const char *const ways[] = {"down:events", "down", "", "up", "up:events"};
-    int k = 0;
-    while (k < 5 && strcmp(value->at, ways[k]) != 0) {
-        k++;
-    }
-    die_at_if(value, k == 5, "must be up, down, up:events or down:events");
-    *(int *)follow = k - 2;
+    *(int *)follow = choose(value, ways, 5, "up, down, up:events or down:events") - 2;
 }
 
 static void read_plot(struct text *value, void *plot)
 {
-    *(const char **)plot = choose(value, "png", "svg") ? "svg" : "png";
+    static const char *const formats[] = {"png", "svg"};
+    *(const char **)plot = formats[choose(value, formats, 2, "png or svg")];
 }
 
 static void read_path(struct text *value, void *path)
@@ -206,10 +205,9 @@ static const struct option {
      "                                            sticks; with --law coulomb only\n"
      "                         normal=DIR,STIFFNESS   the normal load follows the motion: that of a spring along DIR, which\n"
      "                                            presses as the node moves along DIR (against it: -DIR), relative to the other\n"
-     "                                            end, and lifts off; mu= is needed. At rest the spring has the load of load= "
-     "or\n"
-     "                                            --limits, which the structure holds; or, with gap=LENGTH, it begins to press\n"
-     "                                            at this displacement, below 0 if it presses at rest\n"
+     "                                            end, and lifts off; mu= is needed. At rest the spring has the load of load=\n"
+     "                                            or --limits, which the structure holds; or, with gap=LENGTH, it begins to\n"
+     "                                            press at this displacement, below 0 if it presses at rest\n"
      "                         belt=VELOCITY   with --cycle: the other end moves along the contact\n"
      "                         static=RATIO    with --cycle: limit at rest over limit of sliding, at least 1; rigid contacts\n"},
     {OPTION(read_contacts, contacts), "  --contacts FILE      contacts, one a line, in the same words\n"},
@@ -239,11 +237,10 @@ static const struct option {
      "  --limits FROM:TO:N   N limits of contacts (forces), geometric from FROM to TO; or one limit. Default: 0.001 to 10 times\n"
      "                       the sum of the forces (of --base: moving mass times acceleration), 33 limits, or 9 for a band\n"},
     {OPTION(read_count, backbone),
-     "  --backbone MODE      in the place of a response: natural frequency and damping ratio of this mode over the amplitude, "
-     "as\n"
-     "                       free vibrations have them (nonlinear mode), at one limit. MODE counts as with all contacts stuck.\n"
-     "                       Loads do not act; without --load amplitudes are measured at the first --output. Contacts that\n"
-     "                       stick for a part of the period need stiffness=\n"},
+     "  --backbone MODE      in the place of a response: natural frequency and damping ratio of this mode over the amplitude,\n"
+     "                       as free vibrations have them (nonlinear mode), at one limit. MODE counts as with all contacts\n"
+     "                       stuck. Loads do not act; without --load amplitudes are measured at the first --output. Contacts\n"
+     "                       that stick for a part of the period need stiffness=\n"},
     {OPTION(read_range, amplitudes),
      "  --amplitudes FROM:TO:N   N amplitudes of --backbone, geometric from FROM to TO; or one\n"},
     {OPTION(read_cycle, cycle),
@@ -256,8 +253,7 @@ static const struct option {
     {OPTION(read_count, harmonics), "  --harmonics N        of each --output also the harmonics 1 to N\n"},
     {OPTION(read_field, field),
      "  --field DEG,DEG,...  displacements of the whole structure at these phases of the loads' period, 0 to 360, of each\n"
-     "                       motion written (history, sticking, loop below): damper-loop.vtk, legacy format of VTK, for "
-     "ParaView\n"},
+     "                       motion written (history, sticking, loop below): damper-loop.vtk, legacy VTK, for ParaView\n"},
     {OPTION(read_force, force), "  --force AMPLITUDE    of loads without force=; 1\n"},
     {OPTION(read_count, modes),
      "  --modes COUNT        the number of lowest modes. Default: 12 or more, up to 200, until the model error is below 1%\n"},
@@ -306,8 +302,7 @@ static const struct option {
      "  damper-history.csv       one frequency: three periods at the limit of most power; cycle, time, displacement where\n"
      "                           amplitudes are measured; of each contact velocity (with a spring, of the slider), force,\n"
      "                           and slip (0 sticks, 1 and -1 slides, 2 open, 3 slides in a plane); then of each contact the\n"
-     "                           displacement, over which the force makes its hysteresis loop; then the load of each normal "
-     "spring\n"
+     "                           displacement, over which the force makes its hysteresis loop; then each normal spring's load\n"
      "  damper-sticking.csv      the same at three times that limit\n"
      "  damper-loop.csv          one frequency and one limit: the same there\n"
      "  damper-history.vtk, damper-sticking.vtk, damper-loop.vtk   with --field: nodes, and vectors displacement_DEG\n"
@@ -328,16 +323,14 @@ static const struct option {
      "is a sin(h omega t + phase), phase in degrees.\n"
      "With --follow the message of a special point is its kind: fold (the curve turns back), flip (motions of twice the period\n"
      "begin), torus (motions of another frequency begin), branch (another curve crosses); or what changes in the sequence of\n"
-     "events, with the contact or normal spring: stick, slide (it begins, ceases to stick, once more a period), graze (it "
-     "begins\n"
-     "or ceases to touch, to lift off or to reverse), order (events of several contacts). A column behind the message is 1 for\n"
-     "stable motions, 0 for unstable ones, blank at special points and where that is not known; periods are not counted.\n"
+     "events, with the contact or normal spring: stick, slide (it begins, ceases to stick, once more a period), graze (it\n"
+     "begins or ceases to touch, to lift off or to reverse), order (events of several contacts). A column behind the message is\n"
+     "1 for stable motions, 0 for unstable ones, blank at special points and where that is not known; periods are not counted.\n"
      "If a contact that follows --limits has mu=, the column, the texts, and best.load and band.load in values-damper.txt are\n"
      "normal loads, else limits: a contact slides at mu times the normal load.\n"
      "Sweeps up and down agree: with a linear structure and constant limits the motion is unique, except for the places of\n"
-     "contacts that never slip, since friction takes energy from the difference of two motions. With normal= there may be "
-     "several\n"
-     "motions, or none that is stable, and friction may feed energy in: each point is searched from its neighbour.\n"},
+     "contacts that never slip, since friction takes energy from the difference of two motions. With normal= there may be\n"
+     "several motions, or none that is stable, and friction may feed energy in: each point is searched from its neighbour.\n"},
     {TEXT,
      "\n"
      "Status 0; 1 with a message if something is wrong; 130 after Ctrl-C, the tables then hold the points found until then.\n"},
@@ -392,24 +385,6 @@ int is_unloaded(const struct options *o)
     return o->backbone || o->cycle >= 0.0;
 }
 
-int limits_vary(const struct options *o)
-{
-    int vary = 0;
-    for (size_t c = 0; c < o->contacts.count; c++) {
-        vary = vary || isnan(o->contacts.contact[c].limit);
-    }
-    return vary;
-}
-
-const char *word_for_limit(const struct options *o)
-{
-    int by_load = 0;
-    for (size_t c = 0; c < o->contacts.count; c++) {
-        by_load = by_load || o->contacts.contact[c].by_load;
-    }
-    return by_load ? "normal load" : "limit";
-}
-
 const struct place *measured_place(const struct options *o)
 {
     for (size_t k = 0; k < o->loads.count; k++) {
@@ -453,7 +428,7 @@ static void check_options(const struct options *o)
                 {"--load", o->loads.count > 0 || is_unloaded(o)},
                 {"--output", o->outputs.count > 0 || o->loads.count > 0 || !is_unloaded(o)},
                 {"--amplitudes", o->amplitudes.points || !o->backbone},
-                {"--limits", o->limits.points || !limits_vary(o) || !is_unloaded(o)}};
+                {"--limits", o->limits.points || !o->contacts.vary || !is_unloaded(o)}};
     char missing[80] = "";
     for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
         if (!part[k].given) {
@@ -471,7 +446,7 @@ static void check_options(const struct options *o)
     die_if(o->harmonics && !o->outputs.count, "option --harmonics %zu: --output is missing, a place where they are wanted",
            o->harmonics);
     die_if(o->field.count && o->drive.points > 1, "option --field: displacement fields are for one frequency: --drive HZ");
-    die_if(o->limits.points && !limits_vary(o), "option --limits: every contact has a limit of its own, and none follows");
+    die_if(o->limits.points && !o->contacts.vary, "option --limits: every contact has a limit of its own, and none follows");
 }
 
 struct options read_options(int argc, char **argv)

@@ -50,14 +50,8 @@ struct options {
 struct options read_options(int argc, char **argv);
 void free_options(struct options *o);
 
-/* 1 if the limit of a contact follows the option --limits. */
-int limits_vary(const struct options *o);
-
 /* 1 if loads do not act: with --backbone or --cycle. */
 int is_unloaded(const struct options *o);
-
-/* What --limits varies: "normal load" if a contact that follows has mu=, else "limit". */
-const char *word_for_limit(const struct options *o);
 
 /* Where amplitudes are measured: at the first force, without forces at the first output. */
 const struct place *measured_place(const struct options *o);

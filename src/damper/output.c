@@ -11,31 +11,19 @@
 
 const char *program = "example";
 
-static void end_with(const char *format, va_list args)
-{
-    fflush(stdout);
-    fprintf(stderr, "%s: ", program);
-    vfprintf(stderr, format, args);
-    fputc('\n', stderr);
-    exit(EXIT_FAILURE);
-}
-
-void die(const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    end_with(format, args);
-    va_end(args);
-}
-
 void die_if(int wrong, const char *format, ...)
 {
     va_list args;
-    va_start(args, format);
-    if (wrong) {
-        end_with(format, args);
+    if (!wrong) {
+        return;
     }
+    fflush(stdout);
+    fprintf(stderr, "%s: ", program);
+    va_start(args, format);
+    vfprintf(stderr, format, args);
     va_end(args);
+    fputc('\n', stderr);
+    exit(EXIT_FAILURE);
 }
 
 void need(int status, const char *detail)

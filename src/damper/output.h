@@ -12,12 +12,10 @@
 #define PRINTF_LIKE(at)
 #endif
 
-/* Prints "program: ..." to stderr and exits with 1. program is set by main. */
+/* Prints "program: ..." to stderr and exits with 1 if something is wrong; die does always. program is set by main. */
 extern const char *program;
-void die(const char *format, ...) PRINTF_LIKE(1);
-
-/* The same if something is wrong. */
 void die_if(int wrong, const char *format, ...) PRINTF_LIKE(2);
+#define die(...) die_if(1, __VA_ARGS__)
 
 /* Ends the program if a call of the library failed; detail is the message that belongs to it, or NULL. */
 void need(int status, const char *detail);

@@ -61,37 +61,33 @@ static void begin_picture(const struct tables *t, const char *what, const char *
     free(picture);
 }
 
-/* Columns `left` and left + 1 of NAME-what.csv over the first one, on scales of their own. */
-static void plot_two(const struct tables *t, const char *what, int left, const char *const *title, const char *scale)
+/* Columns `left` and left + 1 of NAME-what.csv over the first one, on scales of their own; axis [3]: what they show. */
+static void plot_two(const struct tables *t, const char *what, const char *scale, int left, const char *const *axis,
+                     const char *const *title)
 {
-    char *file = file_of(t, what, "csv");
-    fprintf(t->script,
-            "set logscale %s\nset y2tics\nset key bottom\n"
-            "plot %s using 1:%d with lines linecolor '#0072b2' title '%s', \\\n"
-            "     %s using 1:%d axes x1y2 with lines linecolor '#d55e00' dashtype (10, 5) title '%s'\n"
-            "unset logscale\nunset y2label\nunset y2tics\nset key top\n",
-            scale, file, left, title[0], file, left + 1, title[1]);
-    free(file);
+    if (t->script) {
+        char *file = file_of(t, what, "csv");
+        begin_picture(t, what, axis[0], axis[1]);
+        fprintf(t->script,
+                "set y2label '%s'\nset logscale %s\nset y2tics\nset key bottom\n"
+                "plot %s using 1:%d with lines linecolor '#0072b2' title '%s', \\\n"
+                "     %s using 1:%d axes x1y2 with lines linecolor '#d55e00' dashtype (10, 5) title '%s'\n"
+                "unset logscale\nunset y2label\nunset y2tics\nset key top\n",
+                axis[2], scale, file, left, title[0], file, left + 1, title[1]);
+        free(file);
+    }
 }
 
 void plot_curve(const struct tables *t)
 {
-    static const char *const title[] = {"amplitude", "power"};
-    if (t->script) {
-        begin_picture(t, "curve", t->limit, "amplitude where the load acts");
-        fprintf(t->script, "set y2label 'mean power that friction takes'\n");
-        plot_two(t, "curve", 3, title, "xy");
-    }
+    const char *const axis[] = {t->limit, "amplitude where the load acts", "mean power that friction takes"};
+    plot_two(t, "curve", "xy", 3, axis, (const char *const[]){"amplitude", "power"});
 }
 
 void plot_backbone(const struct tables *t)
 {
-    static const char *const title[] = {"frequency", "damping"};
-    if (t->script) {
-        begin_picture(t, "backbone", "amplitude", "natural frequency");
-        fprintf(t->script, "set y2label 'damping ratio'\n");
-        plot_two(t, "backbone", 2, title, "x");
-    }
+    static const char *const axis[] = {"amplitude", "natural frequency", "damping ratio"};
+    plot_two(t, "backbone", "x", 2, axis, (const char *const[]){"frequency", "damping"});
 }
 
 void plot_family(const struct tables *t, const double *limit, size_t count, double best)

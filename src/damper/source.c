@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "source.h"
+#include "text.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -9,8 +9,6 @@
 #if defined(DAMPER_ZLIB)
 #include <zlib.h>
 #endif
-
-#include "output.h"
 
 enum { BLOCK = 1 << 16 };
 

@@ -62,7 +62,7 @@ struct curve *run_curves(const struct study *s, int over_limit, const double *fi
 {
     struct job_of_curves j = {s, need_memory(count, sizeof *j.curve)};
     for (size_t k = 0; k < count; k++) {
-        j.curve[k] = create_curve(over_limit, fixed[k], record_of(s->damper));
+        j.curve[k] = (struct curve){.over_limit = over_limit, .fixed = fixed[k], .record = s->damper->record};
     }
     run_jobs(s->options->threads, count, run_curve, &j);
     end_progress();
@@ -72,7 +72,10 @@ struct curve *run_curves(const struct study *s, int over_limit, const double *fi
 void free_curves(struct curve *c, size_t count)
 {
     for (size_t k = 0; k < count; k++) {
-        free_curve(&c[k]);
+        for (size_t i = 0; i < c[k].count; i++) {
+            free(c[k].sample[i].y);
+        }
+        free(c[k].sample);
     }
     free(c);
 }
@@ -114,7 +117,6 @@ void run_study(struct study *s)
     struct curve *c = NULL;
     for (int again = 1; again;) {
         const double hz = s->damper->lowest;
-        write_frequencies(s->tables, s->damper, o->frequencies);
         report_model(s->tables, s->model);
         check_extremes(s, hz);
         for (size_t k = 0; k < count; k++) {

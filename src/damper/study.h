@@ -47,7 +47,7 @@ double model_error(const struct model *m, const struct point *point, size_t coun
  * --modes" if only the user can, "" if `error` is small. */
 const char *advice(const struct model *m, double error);
 
-/* Prints the number of modes and the bound of missing displacements; prints the model error. */
+/* Writes frequencies, prints the number of modes and the bound of missing displacements; prints the model error. */
 void report_model(const struct tables *t, const struct model *m);
 void report_error(const struct tables *t, const struct model *m, const struct point *point, size_t count);
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "output.h"
 #include "study.h"
@@ -98,7 +97,7 @@ void study_band(struct study *s, const struct curve *c, size_t count)
         write_curves(s->tables, "best", best, 1, s->damper);
         printf("best %s of the band: %.6g, largest amplitude %.8g at %.7g Hz\n", s->tables->limit, found, top->motion.amplitude,
                top->motion.hz);
-        write_result(s->tables, strcmp(s->tables->limit, "limit") == 0 ? "band.limit" : "band.load", found);
+        write_result(s->tables, s->options->contacts.by_load ? "band.load" : "band.limit", found);
         write_result(s->tables, "band.amplitude", top->motion.amplitude);
         write_result(s->tables, "band.frequency", top->motion.hz);
         s->gaps += gaps_of(best);

@@ -13,17 +13,15 @@ static void compare(const struct study *s, const struct motion *m, double known,
         printf("%s: not found: %s\n", what, m->message);
         return;
     }
-    char *analytic = new_text("%s.analytic", key);
     printf("%s: amplitude %.10g, in closed form within the same modes %.10g\n", what, m->amplitude, known);
     write_result(s->tables, key, m->amplitude);
-    write_result(s->tables, analytic, known);
-    free(analytic);
+    write_value(s->tables->values, known, "%s.%s.analytic", s->tables->name, key);
 }
 
 void check_extremes(const struct study *s, double hz)
 {
     const struct damper *d = s->damper;
-    if (!limits_vary(s->options) || d->rows > d->contacts) {
+    if (!s->options->contacts.vary || d->rows > d->contacts) {
         return; /* a contact that lifts off is not linear without friction */
     }
     struct contact *each = need_memory(d->contacts, sizeof *each);
@@ -53,20 +51,6 @@ void check_extremes(const struct study *s, double hz)
 enum { EVEN_POINTS = 8 /* of one curve, the largest and the most sensitive among them */ };
 enum { CURVE_POINTS = 3 /* of each of several curves, the largest among them */ };
 enum { ROUNDS = 4 /* of two more points beside that of the largest change */ };
-
-/* The motion that more modes change most: contacts slip by the least, and friction still takes a good part of the power. */
-static const struct sample *most_sensitive(const struct curve *c)
-{
-    static const double PART = 0.3;
-    const struct sample *best = NULL;
-    for (size_t k = 0; k < c->count; k++) {
-        const struct motion *m = &c->sample[k].motion, *b = best ? &best->motion : NULL;
-        if (m->found && m->friction > PART * m->input && (!b || m->friction / m->limit < b->friction / b->limit)) {
-            best = &c->sample[k];
-        }
-    }
-    return best;
-}
 
 struct points {
     size_t count;
@@ -131,7 +115,7 @@ double show_model_error(const struct study *s, const struct curve *c, size_t cur
         const struct sample *chosen[EVEN_POINTS];
         size_t count = spread_samples(&c[k], most - others, chosen);
         chosen[count++] = largest_of(&c[k], AMPLITUDE);
-        chosen[count++] = others > 1 ? most_sensitive(&c[k]) : NULL;
+        chosen[count++] = others > 1 ? largest_of(&c[k], SENSITIVITY) : NULL;
         for (size_t i = 0; i < count; i++) {
             if (chosen[i]) {
                 add_point(&p, &c[k], (size_t)(chosen[i] - c[k].sample));

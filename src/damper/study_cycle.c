@@ -21,9 +21,7 @@ static struct motion find_cycle(struct worker *w, double limit, double guess, do
     size_t along = 0;
     set_point(w, limit, w->d->lowest);
     int status = tribo_driver_find_cycle(w->drv, 0.0, &period, y);
-    for (size_t k = 0; k < 2 * w->d->modes; k++) {
-        w->c[k] = k < w->d->modes ? w->d->open.measured[k] : 0.0;
-    }
+    memcpy(w->c, w->d->open.measured, w->d->modes * sizeof *w->c);
     status = status ? status : tribo_driver_period_extremes(w->drv, w->c, &least, &most, NULL, NULL);
     m.hz = 1.0 / period;
     m.amplitude = 0.5 * (most - least);
@@ -85,7 +83,6 @@ void study_cycle(struct study *s)
         m = find_cycle(&w, o->limits.from, o->cycle, y, &largest);
         error = error_of_cycle(s, &m);
     } while (take_more_modes(s->model, error));
-    write_frequencies(s->tables, s->damper, o->frequencies);
     report_model(s->tables, s->model);
     report_sliding(s, &w);
     s->tables->motions += (size_t)m.found;

@@ -42,11 +42,9 @@ static int see_point(const tribo_curve_point *point, void *data)
     memcpy(s->y, point->y, d->dimension * sizeof *s->y);
     set_outcome(m, measure_motion(t->w, m, s->y), t->w);
     const size_t c = point->contact, contacts = d->contacts;
-    if (m->found && !s->asked && c < d->rows) {
-        snprintf(m->message, sizeof m->message, "%s of %s %zu", kinds[point->kind], c < contacts ? "contact" : "normal",
-                 c < contacts ? c + 1 : c - contacts + 1);
-    } else if (m->found && !s->asked) {
-        snprintf(m->message, sizeof m->message, "%s", kinds[point->kind]);
+    if (m->found && !s->asked) {
+        snprintf(m->message, sizeof m->message, c < d->rows ? "%s of %s %zu" : "%s", kinds[point->kind],
+                 c < contacts ? "contact" : "normal", c < contacts ? c + 1 : c - contacts + 1);
     }
     show_point();
     return interrupted();

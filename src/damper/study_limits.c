@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "output.h"
 #include "study.h"
@@ -104,7 +103,7 @@ static void find_most_power(struct study *s, struct curve *c)
             const struct optimum simple = balance_mode(s->damper, TURN * best.hz);
             printf("most power: %s %.8g dissipates %.8g, amplitude %.8g\n", s->tables->limit, best.limit, best.friction,
                    best.amplitude);
-            write_result(s->tables, strcmp(s->tables->limit, "limit") == 0 ? "best.limit" : "best.load", best.limit);
+            write_result(s->tables, s->options->contacts.by_load ? "best.load" : "best.limit", best.limit);
             write_result(s->tables, "best.power", best.friction);
             write_result(s->tables, "best.amplitude", best.amplitude);
             if (isfinite(simple.limit)) {

@@ -5,7 +5,19 @@
 #include <stddef.h>
 
 #include "output.h"
-#include "source.h"
+
+/* The bytes of a file, unpacked if its name ends with .gz and zlib was there when the program was built (source.c). */
+struct source;
+
+/* Ends the program if the file cannot be opened. */
+struct source *open_source(const char *path);
+void close_source(struct source *s);
+
+/* The next byte, or -1: then there is no more, and *error says why, or is NULL at the end of the file. */
+int next_byte(struct source *s, const char **error);
+
+/* 1 if path ends in ending, or in ending and .gz. */
+int is_named(const char *path, const char *ending);
 
 /* Text that is read word by word: a value that the user gives, or the lines of a file. An error in it ends the program, with
  * place and value. */
