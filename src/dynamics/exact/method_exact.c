@@ -127,7 +127,7 @@ static void method_exact_look(void *own, double tau, size_t guards, struct guard
             g->middle = (struct sample){g->offset, 0.0, 0.0};
         }
         if (g->limit != 0.0) {
-            /* Adds the part of the limit by harmonics, or the limit that follows. */
+            /* Adds the part of the limit by functions of time, or the limit that follows. */
             const struct sample limit = tribo_modal_motion_limit(x, g->contact);
             g->middle.g += g->limit * limit.g;
             g->middle.d += g->limit * limit.d;
@@ -154,22 +154,10 @@ static double method_exact_bound(void *own, double tau)
         g->size = fabs(g->offset) + (c ? c->size : 0.0);
         g->bend = c ? c->bend : 0.0;
         double mu;
-        const struct course *follows = g->limit != 0.0 ? tribo_modal_limit_course(x, g->contact, &mu) : NULL;
-        if (follows) {
-            g->size += fabs(g->limit) * mu * follows->size;
-            g->bend += fabs(g->limit) * mu * follows->bend;
-            continue;
-        }
-        g->size += g->limit != 0.0 ? fabs(g->limit) * x->events.stick_slip.constant.swing[g->contact] : 0.0;
-        if (g->limit != 0.0 && x->sys->loads.limit_tables) {
-            /* over a time of the structure's: what is rounding must not depend on where the next knot is */
-            const double time = greater(x->longest, 1.0 / x->events.fastest);
-            g->size += fabs(g->limit) * (fabs(x->slopes.limit[g->contact]) + fabs(x->slopes.rise[g->contact]) * time);
-        }
-        for (size_t s = 0; g->limit != 0.0 && s < x->sys->loads.harmonics; s++) {
-            const struct harmonic *w = &x->sys->loads.harmonic[s];
-            const double swing = w->drives == DRIVES_LIMIT ? hypot(w->cosine[g->contact], w->sine[g->contact]) : 0.0;
-            g->bend += fabs(g->limit) * swing * x->h->sixth[x->h->modal->exponents + s];
+        if (g->limit != 0.0) {
+            const struct course *limit = tribo_modal_limit_course(x, g->contact, &mu);
+            g->size += fabs(g->limit) * mu * limit->size;
+            g->bend += fabs(g->limit) * mu * limit->bend;
         }
     }
     return decay > 0.0 ? greater(2.0 * tau, 1.0 / decay) : HUGE_VAL;
@@ -179,15 +167,14 @@ static double method_exact_bound(void *own, double tau)
 static struct watch watch_of(const struct exact *x, size_t i, struct course *c)
 {
     const double swing = x->events.stick_slip.constant.swing[i];
-    const double steady = swing > 0.0 ? x->sys->loads.given_limit[i] : x->events.stick_slip.state.limit[i];
-    double mu;
-    const int follows = x->sys->normals.count > 0 && tribo_modal_limit_course(x, i, &mu) != NULL;
-    const int table = x->sys->loads.limit_tables > 0;
+    const int follows = x->sys->normals.count && (tribo_normals_follower(x->sys, i) || tribo_normals_at(x->sys, i));
+    const int varies = swing > 0.0 || follows || x->sys->loads.limit_tables;
+    const double steady = varies ? tribo_system_steady_limit(x->sys, i) : x->events.stick_slip.state.limit[i];
     return (struct watch){.output = c,
                           .size = c ? c->size : 0.0,
-                          .constant = follows || table ? 0.0 : steady,
-                          .least = follows ? -HUGE_VAL : (table ? 0.0 : steady) - swing,
-                          .varies = swing > 0.0 || follows || table};
+                          .constant = follows ? 0.0 : steady,
+                          .least = follows ? -HUGE_VAL : steady - swing,
+                          .varies = varies};
 }
 
 static int method_exact_begin(void *own, double t, const double *y, double *reach)
@@ -207,11 +194,13 @@ static int method_exact_begin(void *own, double t, const double *y, double *reac
     for (size_t k = 0; k < h->outputs; k++) {
         const size_t i = h->output[k].contact;
         /* N of a normal, < 0 if it is apart, without rounding against the decision */
-        const struct normal *n = k >= h->holding ? &x->sys->normals.normal[k - h->holding] : NULL;
+        const struct normal *n = k >= h->holding && k < h->limits ? &x->sys->normals.normal[k - h->holding] : NULL;
         const double load = n ? n->stiffness * (tribo_matrix_row_dot(&x->sys->direction, n->row, y) - n->gap) : 0.0;
-        const double value = n                ? (n->pressed ? greater(load, 0.0) : lesser(load, 0.0))
-                             : k < h->sliding ? tribo_stick_slip_first_velocity(m, x->sys, i, y)
-                                              : m->state.force[i];
+        const double value = k < h->sliding   ? tribo_stick_slip_first_velocity(m, x->sys, i, y)
+                             : k < h->holding ? m->state.force[i]
+                             : !n             ? x->slopes.limit[i]
+                             : n->pressed     ? greater(load, 0.0)
+                                              : lesser(load, 0.0);
         tribo_course_begin(x, k, value);
     }
     for (size_t k = 0; k < h->holding; k++) {

@@ -75,12 +75,12 @@ struct modal {
     size_t *owner;   /* [exponents] mode of an exponent: eta = sum of Re z; NULL if coupled */
 };
 
-/* Velocity of a sliding contact, force of a held contact, or N of a normal: Re(sum c_p z_p) + constant + ramp t, of N also +
- * square t^2. First the terms z_p of the exponents, then the terms of the harmonics: z = e^{i Omega t}, c = response. */
+/* Velocity of a sliding contact, force of a held contact, N of a normal, or part of a limit: Re(sum c_p z_p) + constant + ramp t,
+ * of N also + square t^2. First the terms z_p of the exponents, then the terms of the harmonics: z = e^{i Omega t}, c = response. */
 struct output {
     size_t contact;
     double *cr, *ci, *size; /* [terms] c_p, |c_p| */
-    const double *on_rate;  /* [shapes] held, normal: per eta, ramp per eta'; sliding: velocity per eta', ramp per eta'' */
+    const double *on_rate;  /* [shapes] held, normal: per eta, ramp per eta'; sliding: velocity per eta', ramp per eta''; limit: 0 */
 };
 
 /* Forcing of the modes: a harmonic or table of the system; or a harmonic or table of the limit of one contact that does not hold,
@@ -103,7 +103,6 @@ struct forced {
     size_t within[2];        /* first and end of the degrees of freedom of phi */
     double *phi, *on, *by_u; /* of the modal, with further rows, or columns, [shapes] */
     double *speed;           /* [shapes] eta' of a shape for bases of constant speed, 1; else 0 */
-    size_t *span;            /* [shapes][2] first and end of the degrees of freedom that a shape moves, or that move a mode */
 
     size_t harmonics;        /* the harmonics of the system, in order, then harmonics of limits */
     struct forcing *forcing; /* [harmonics] */
@@ -120,7 +119,8 @@ struct forced {
     double *lr, *li, *size;  /* [terms] lambda (harmonics: i Omega); |lambda| */
     double *sixth;           /* [terms] |lambda|^6 */
     size_t outputs, sliding; /* output [0, sliding): velocities; [sliding, holding): forces of contacts that hold */
-    size_t holding;          /* output [holding, outputs): N of the normals, in their order */
+    size_t holding;          /* output [holding, limits): N of the normals, in their order */
+    size_t limits; /* output [limits, outputs): parts of limits by functions of time, of all contacts, if there are any */
     struct output *output;
     double quickest;      /* largest |lambda| of exponents and harmonics; without modes a bound of these */
     double decay, growth; /* largest -Re lambda; largest Re lambda; at least 0 */

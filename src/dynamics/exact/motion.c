@@ -18,7 +18,7 @@ static int motion_reserve(struct exact *x)
     const size_t c = x->sys->ncontact;
     free(x->lot);
     x->room =
-        ALLOCATE(ARRAY(x->lot, room / TRIBO_TERMS + 1), ARRAY(x->course, c), ARRAY(x->way, c), ARRAY(x->steady, c),
+        ALLOCATE(ARRAY(x->lot, room / TRIBO_TERMS + 1), ARRAY(x->course, 2 * c), ARRAY(x->way, c), ARRAY(x->steady, c),
                  ARRAY(x->work, room + 2 * x->sys->ndof), ARRAY(x->power, (4 * x->sys->ndof + c) * TRIBO_POWERS),
                  ARRAY(x->z.re, room), ARRAY(x->z.im, room), ARRAY(x->far_e.re, room), ARRAY(x->far_e.im, room),
                  ARRAY(x->move.re, room), ARRAY(x->move.im, room), ARRAY(x->rate_move.re, room), ARRAY(x->rate_move.im, room),
@@ -131,34 +131,17 @@ struct course *tribo_modal_limit_course(const struct exact *x, size_t i, double 
     const struct follower *f = tribo_normals_follower(x->sys, i);
     const struct normal *n = f ? &s->normal[f->normal] : tribo_normals_at(x->sys, i);
     *mu = f ? f->mu : 1.0;
-    return n ? &x->course[x->h->holding + (size_t)(n - s->normal)] : NULL;
+    return n ? &x->course[x->h->holding + (size_t)(n - s->normal)] : x->sys->loads.limits ? &x->course[x->h->limits + i] : NULL;
 }
 
 struct sample tribo_modal_motion_limit(struct exact *x, size_t i)
 {
-    struct sample sum = {0.0, 0.0, 0.0};
     double mu;
-    struct course *load = tribo_modal_limit_course(x, i, &mu);
-    if (load) {
-        if (load->tau != x->tau) {
-            tribo_course_look(x, load);
-        }
-        return (struct sample){mu * load->at.g, mu * load->at.d, mu * load->at.e};
+    struct course *part = tribo_modal_limit_course(x, i, &mu);
+    if (part->tau != x->tau) {
+        tribo_course_look(x, part);
     }
-    for (size_t s = 0; s < x->sys->loads.harmonics; s++) {
-        const struct harmonic *w = &x->sys->loads.harmonic[s];
-        if (w->drives == DRIVES_LIMIT && w->knots) {
-            sum.g += x->slopes.limit[i] + x->slopes.rise[i] * x->tau;
-            sum.d += x->slopes.rise[i];
-        } else if (w->drives == DRIVES_LIMIT) {
-            const double complex now = tribo_now(x, x->h->modal->exponents + s, 0);
-            const double c = w->cosine[i], d = w->sine[i], value = c * creal(now) + d * cimag(now);
-            sum.g += value;
-            sum.d += w->omega * (d * creal(now) - c * cimag(now));
-            sum.e -= w->omega * w->omega * value;
-        }
-    }
-    return sum;
+    return (struct sample){mu * part->at.g, mu * part->at.d, mu * part->at.e};
 }
 
 /* Sets place and rate of all shapes. */
@@ -175,6 +158,9 @@ static void move_shapes(struct exact *x, int brief)
     for (size_t p = 0; p < e + h->harmonics; p++) {
         const double complex lambda = h->lr[p] + h->li[p] * I;
         double complex move = tribo_now(x, p, 0) - tribo_part(&x->z, p);
+        if (p >= e && h->size[p] == 0.0) { /* constant */
+            continue;
+        }
         if (x->tau * h->size[p] < LITTLE && !(h->resonant && p < e)) {
             /* With a load far above the frequency of exponent p, or in a short slip under a limit far above all other forces,
              * this small change of z is the whole motion: a difference would lose digits. */
@@ -208,7 +194,7 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
     struct exact *x = own;
     const tribo_system *sys = x->sys;
     const struct forced *h = x->h;
-    const size_t n = sys->ndof;
+    const size_t n = sys->ndof, wide = tribo_modal_wide(h->within);
     tribo_modal_motion_go(x, tau);
     /* brief: |lambda| tau is small for all terms; then q', as q, is the value at t0 plus a change. With shapes by bases q' is
      * computed anew: it follows the bases to rounding. */
@@ -222,13 +208,13 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
         memcpy(to, from, tribo_system_size(sys) * sizeof *to);
     }
     memset(to + n, 0, brief ? 0 : n * sizeof *to);
-    for (size_t k = 0; k < h->shapes; k++) {
-        const size_t begin = h->span[2 * k], moved = h->span[2 * k + 1] - begin;
-        const double *phi = h->phi + k * tribo_modal_wide(h->within) + (begin - h->within[0]);
+    double *const q = to + h->within[0], *const u = q + n;
+    const double *phi = h->phi;
+    for (size_t k = 0; k < h->shapes; k++, phi += wide) {
         const double place = x->place[k], rate = x->rate[k];
-        for (size_t d = 0; d < moved; d++) {
-            to[begin + d] += phi[d] * place;
-            to[n + begin + d] += phi[d] * rate;
+        for (size_t d = 0; d < wide; d++) {
+            q[d] += phi[d] * place;
+            u[d] += phi[d] * rate;
         }
     }
     for (size_t k = 0; k < sys->compliance.count; k++) {
@@ -252,6 +238,12 @@ static void start_harmonics(struct exact *x)
     const tribo_system *sys = x->sys;
     size_t p = h->modal->exponents;
     tribo_system_set_time(x->sys, x->t0);
+    if (sys->loads.limits) {
+        memset(x->slopes.limit, 0, sys->ncontact * sizeof *x->slopes.limit);
+        memset(x->slopes.rise, 0, sys->ncontact * sizeof *x->slopes.rise);
+        tribo_system_loads(sys, DRIVES_LIMIT, 0, 1.0, x->slopes.limit);
+        tribo_system_loads(sys, DRIVES_LIMIT, 1, 1.0, x->slopes.rise);
+    }
     for (size_t k = h->modal->modes; k < h->shapes; k++) {
         x->acc[k] = x->jerk[k] = 0.0;
         x->vel[k] = x->drift[k] = h->speed[k];
@@ -269,9 +261,6 @@ static void start_harmonics(struct exact *x)
             x->z.re[p] = side * tribo_system_table(sys, f->harmonic, whole ? 0 : f->contact, &x->slopes.rate[p]);
             x->z.im[p] = 0.0;
             x->slopes.rate[p] *= side;
-        }
-        for (size_t i = 0; w->knots && whole && w->drives == DRIVES_LIMIT && i < sys->ncontact; i++) {
-            x->slopes.limit[i] = tribo_system_table(sys, f->harmonic, i, &x->slopes.rise[i]);
         }
         if (f->table) {
             x->vel[f->table - 1] = x->drift[f->table - 1] = base ? x->z.re[p] : x->slopes.rate[p];
@@ -319,7 +308,7 @@ static void find_constant_forces(struct exact *x, const double *y, double *force
             x->way[w->index[e]] -= (w->cosine[e] * w->sin_t - w->sine[e] * w->cos_t) / w->omega;
         }
     }
-    for (size_t o = 0; o < h->outputs; o++) {
+    for (size_t o = 0; o < h->limits; o++) {
         const struct output *out = &h->output[o];
         const size_t i = out->contact;
         const double pressed = o >= h->holding && h->modal->key[i] == KEY_PRESSED ? 1.0 : 0.0;
@@ -425,7 +414,7 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
 {
     const struct forced *h = x->h;
     const struct modal *own = h->modal;
-    const size_t n = x->sys->ndof;
+    const size_t wide = tribo_modal_wide(own->within);
     const int varies = tribo_system_limits_vary(x->sys);
     if ((x->room < h->terms || x->room < h->shapes) && !motion_reserve(x)) {
         return 0;
@@ -438,11 +427,10 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
     x->t0 = t;
     x->tau = x->far = 0.0;
     start_harmonics(x);
-    for (size_t k = 0; k < own->modes; k++) {
-        const size_t begin = h->span[2 * k], moved = h->span[2 * k + 1] - begin;
-        const double *psi = own->psi + k * tribo_modal_wide(own->within) + (begin - own->within[0]);
-        x->place[k] = tribo_dot(psi, y + begin, moved);
-        x->rate[k] = tribo_dot(psi, y + n + begin, moved);
+    const double *const q = y + own->within[0], *const u = q + x->sys->ndof, *psi = own->psi;
+    for (size_t k = 0; k < own->modes; k++, psi += wide) {
+        x->place[k] = tribo_dot(psi, q, wide);
+        x->rate[k] = tribo_dot(psi, u, wide);
     }
     find_constant_forces(x, y, x->work);
     if (own->powers) {

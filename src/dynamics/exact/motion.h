@@ -50,7 +50,7 @@ struct slopes {
     double *rate;         /* [terms] of forcings by a table: rate of the table, of a limit times side; others are not set */
     double *lead, *bend;  /* [modes] constant eta' and eta'' by the ramps, of modes with a stiffness */
     double *rest;         /* [modes] by ramps that no stiffness takes: eta'' of a mode with damping, else the rate of eta'' */
-    double *limit, *rise; /* [ncontact] table of the limit at t0, and rate of the table */
+    double *limit, *rise; /* [ncontact] part of the limit by functions of time at t0, and its rate; set if there is one */
 };
 
 /* The driver's own data, and a phase from t0. A mode: eta = constant + vel tau + acc tau^2/2 + jerk tau^3/6 + harmonics + (Re(r
@@ -79,7 +79,7 @@ struct exact {
     double *work;            /* [room + 2 ndof] workspace */
     double *way;             /* [ncontact] workspace */
     double *steady;          /* [ncontact] force of a sliding contact without harmonics of the limit */
-    struct course *course;   /* [ncontact] courses of the outputs of h */
+    struct course *course;   /* [2 ncontact] courses of the outputs of h */
     struct signal factor[2]; /* workspace: velocity and limit */
     double *power;           /* coefficients [TRIBO_POWERS][modes] of eta, eta'; [][TRIBO_POWERS] of outputs, eta, eta' */
 };
@@ -91,8 +91,8 @@ int tribo_modal_motion_start(struct exact *x, double t, const double *y, double 
 /* Goes to t0 + tau: sets w, w' and w'' of all terms. */
 void tribo_modal_motion_go(struct exact *x, double tau);
 
-/* Returns the part of limit i by harmonics, or the whole limit that follows the motion, with two derivatives, at x->tau.
- * limit_course: the course of its N, times *mu; NULL: it does not follow. */
+/* limit: returns the part of limit i by functions of time, or the whole limit that follows the motion, with two derivatives, at
+ * x->tau; limits vary. limit_course: its course, or that of its N, times *mu; NULL: it does not vary. */
 struct sample tribo_modal_motion_limit(struct exact *x, size_t i);
 struct course *tribo_modal_limit_course(const struct exact *x, size_t i, double *mu);
 

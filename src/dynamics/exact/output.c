@@ -88,13 +88,34 @@ static size_t fill_output(const struct modal_build *b, size_t i, const double co
     return 1;
 }
 
-/* Sets the outputs: of contacts that slide, where velocity, force or limit varies, and of all normals. */
+/* Sets *w = the part of the limit of contact i by harmonics; the part by a table is no term. Returns 1; 0 if out of memory. */
+static size_t fill_limit(const struct modal_build *b, size_t i, struct output *w)
+{
+    struct forced *f = b->forced;
+    double *c = tribo_modal_take(&f->store, 3 * f->terms + f->shapes, sizeof *c);
+    if (!c) {
+        return 0;
+    }
+    *w = (struct output){i, c, c + f->terms, c + 2 * f->terms, c + 3 * f->terms};
+    for (size_t s = 0, p = b->h->exponents; s < b->sys->loads.harmonics; s++, p++) {
+        const struct harmonic *part = &b->sys->loads.harmonic[s];
+        if (part->drives == DRIVES_LIMIT && !part->knots) {
+            w->cr[p] = part->cosine[i];
+            w->ci[p] = -part->sine[i];
+            w->size[p] = tribo_modal_magnitude(w->cr[p], w->ci[p]);
+        }
+    }
+    return 1;
+}
+
+/* Sets the outputs: of contacts that slide, where velocity, force or limit varies, of all normals, and of all limits that depend
+ * on time. */
 int tribo_forced_outputs(struct modal_build *b)
 {
     struct forced *f = b->forced;
     const struct modal *h = b->h;
     const tribo_system *sys = b->sys;
-    f->output = tribo_modal_take(&f->store, sys->ncontact, sizeof *f->output);
+    f->output = tribo_modal_take(&f->store, 2 * sys->ncontact, sizeof *f->output);
     if (!f->output || !find_terms(b)) {
         return 0;
     }
@@ -113,6 +134,10 @@ int tribo_forced_outputs(struct modal_build *b)
     f->holding = f->outputs;
     for (size_t k = 0; k < sys->normals.count; k++) {
         f->outputs += fill_output(b, sys->normals.normal[k].row, NULL, 1, &f->output[f->outputs]);
+    }
+    f->limits = f->outputs;
+    for (size_t i = 0; sys->loads.limits && i < sys->ncontact; i++) {
+        f->outputs += fill_limit(b, i, &f->output[f->outputs]);
     }
     return !f->store.failed;
 }

@@ -39,7 +39,6 @@ static int make_shapes(struct modal_build *b)
         f->forcing[s].table = table ? f->shapes : 0;
     }
     f->speed = tribo_modal_take(&f->store, f->shapes, sizeof *f->speed);
-    f->span = tribo_modal_take(&f->store, 2 * f->shapes, sizeof *f->span);
     f->x = tribo_modal_take(&f->store, f->harmonics * f->shapes, sizeof *f->x);
     f->within[0] = f->shapes > m ? 0 : h->within[0];
     f->within[1] = f->shapes > m ? sys->ndof : h->within[1];
@@ -138,19 +137,6 @@ static int follow_bases(struct modal_build *b)
             f->g[at / 2 * m + l] += w->knots ? place[l] + rate[l] * I : place[l] / w->omega * along + rate[l] * unit;
         }
         k++;
-    }
-    for (size_t k = 0; k < f->shapes; k++) {
-        const size_t *within = k < m ? h->within : f->within, n = tribo_modal_wide(within);
-        const double *phi = (k < m ? h->phi : f->phi) + k * n, *psi = k < m ? h->psi + k * n : phi;
-        size_t begin = 0, end = n;
-        while (begin < end && phi[begin] == 0.0 && psi[begin] == 0.0) {
-            begin++;
-        }
-        while (begin < end && phi[end - 1] == 0.0 && psi[end - 1] == 0.0) {
-            end--;
-        }
-        f->span[2 * k] = within[0] + begin;
-        f->span[2 * k + 1] = within[0] + end;
     }
     return !b->scratch.failed;
 }

@@ -2,6 +2,7 @@
 /* Terms of a motion, sums over terms, and sums over shapes. Terms are computed TRIBO_TERMS at a time: in a single sum each
  * addition waits for the one before. */
 #include "motion.h"
+#include "common/real.h"
 #include "common/simd.h"
 #include "dynamics/system/cos_sin.h"
 
@@ -203,7 +204,9 @@ void tribo_course_bound(const struct exact *x, struct course *c)
     sum_bounds(x->h->terms, c->output->size, x->growth, x->growth6, sum);
     c->size = total(sum) + fabs(c->start);
     if (x->runs) {
-        c->size += (fabs(c->ramp) + (fabs(c->square) + fabs(c->cube) * x->longest) * x->longest) * x->longest;
+        /* with tables over a time of the structure's: what is rounding must not depend on where the next knot is */
+        const double time = x->sys->loads.tables ? greater(x->longest, 1.0 / x->events.fastest) : x->longest;
+        c->size += (fabs(c->ramp) + (fabs(c->square) + fabs(c->cube) * time) * time) * time;
     }
     c->bend = total(sum + T);
 }
@@ -233,5 +236,9 @@ void tribo_course_begin(struct exact *x, size_t o, double value)
     }
     c->start = value - c->at.g;
     c->at.g = value;
+    if (x->sys->loads.limit_tables && o >= x->h->limits) {
+        c->ramp = x->slopes.rise[w->contact] - c->at.d;
+        c->at.d += c->ramp;
+    }
     tribo_course_bound(x, c);
 }
