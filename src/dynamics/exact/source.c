@@ -25,18 +25,16 @@ enum { TERMS = 18 };
 struct response {
     const struct exact *x;
     double tau;
-    double *steady, *ramp;           /* c_0, c_1 */
-    double *re, *im;                 /* [SOURCES][harmonics][modes] c of harmonics */
-    double *eta, *rate;              /* responses at tau */
-    double *zr, *zi;                 /* [SOURCES][exponents] response of exponents */
-    double complex *along, *against; /* [exponents + harmonics] responses of an exponent at tau to e^{mu s}/2, its conjugate */
-    double complex *at_tau;          /* [exponents + harmonics] e^{mu tau} */
-    double *cr, *ci;                 /* [modes][SOURCES][exponents] c of exponents; coupled */
-    double *rr, *ii, *ri, *ir;       /* [exponents][SOURCES][exponents] products of re and im of b with re and im of c; coupled */
-    double *q, *u;                   /* [ndof] workspace */
-    double *unit;                    /* [shapes] workspace */
-    double *power;                   /* [TRIBO_POWERS][modes][SOURCES] coefficients of the sources; without modes */
-    double *e, *e_rate, *out;        /* [modes][SOURCES], [modes][SOURCES], [4 modes + 1][SOURCES] workspace; without modes */
+    double *steady, *ramp;     /* c_0, c_1 */
+    double *eta, *rate;        /* responses at tau */
+    double *zr, *zi;           /* [SOURCES][exponents] response of exponents */
+    double complex *at_tau;    /* [terms] e^{mu tau}; terms: exponents, then harmonics */
+    double *cr, *ci;           /* [modes][SOURCES][terms] c */
+    double *rr, *ii, *ri, *ir; /* [exponents][SOURCES][terms] products of re and im of b with re and im of c; coupled */
+    double *q, *u;             /* [ndof] workspace */
+    double *unit, *part;       /* [shapes], [modes] workspace */
+    double *power;             /* [TRIBO_POWERS][modes][SOURCES] coefficients of the sources; without modes */
+    double *e, *e_rate, *out;  /* [modes][SOURCES], [modes][SOURCES], [4 modes + 1][SOURCES] workspace; without modes */
 };
 
 /* Returns (e^z - 1 - z)/z^2, the integral of (1 - s) e^{z s} over s from 0 to 1. */
@@ -73,56 +71,41 @@ static void add_damping(struct response *r, const double *rate, double *to)
     }
 }
 
-/* Sets c of harmonics, c_0 and c_1 of a source. */
-static void find_source(struct response *r, int source)
+/* Sets c_0, c_1, and c of all terms; of coupled modes, products of c with b. */
+static void find_sources(struct response *r)
 {
     const struct exact *x = r->x;
-    const struct forced *h = x->h;
-    const size_t m = h->modal->modes, at = (size_t)source * m;
-    if (source == INERTIA) {
-        memcpy(r->steady, x->acc, m * sizeof *x->acc);
-    } else {
-        add_damping(r, x->drift, r->steady + at);
-        add_damping(r, x->acc, r->ramp + at);
-    }
-    for (size_t s = 0; s < h->harmonics; s++) {
-        const double omega = h->forcing[s].omega;
-        const double complex z = tribo_part(&x->z, h->modal->exponents + s), *response = h->x + s * h->shapes;
-        for (int part = 0; part < 2; part++) {
-            double *to = (part ? r->im : r->re) + at * h->harmonics + s * m;
-            for (size_t k = 0; k < h->shapes; k++) {
-                const double complex motion = response[k] * z;
-                r->unit[k] = omega * (part ? creal(motion) : -cimag(motion));
-                if (source == INERTIA && k < m) {
-                    to[k] = -omega * omega * (part ? cimag(motion) : creal(motion));
-                }
-            }
-            if (source == DAMPING) {
-                add_damping(r, r->unit, to);
-            }
-        }
-    }
-}
-
-/* Sets at_tau; of coupled modes c of exponents, and products of c with b. */
-static void find_exponents(struct response *r)
-{
-    const struct forced *f = r->x->h;
+    const struct forced *f = x->h;
     const struct modal *h = f->modal;
-    const size_t m = h->modes, e = h->exponents, wide = SOURCES * e;
-    for (size_t q = 0; !h->owner && q < e; q++) {
-        const double complex mu = h->lr[q] + h->li[q] * I, z = tribo_part(&r->x->z, q), square = mu * mu;
-        for (size_t k = 0; k < m; k++) {
-            const double complex motion = (h->rr[q * m + k] - h->ri[q * m + k] * I) * z;
-            const double complex c[] = {[INERTIA] = square * motion, [DAMPING] = -(square + h->omega2[k]) * motion};
-            for (size_t source = 0; source < SOURCES; source++) {
-                r->cr[k * wide + source * e + q] = creal(c[source]);
-                r->ci[k * wide + source * e + q] = cimag(c[source]);
+    const size_t m = h->modes, e = h->exponents, terms = e + f->harmonics, wide = SOURCES * terms;
+    memcpy(r->steady, x->acc, m * sizeof *x->acc);
+    add_damping(r, x->drift, r->steady + m);
+    add_damping(r, x->acc, r->ramp + m);
+    for (size_t q = 0; q < terms; q++) {
+        const double complex mu = f->lr[q] + f->li[q] * I, z = tribo_part(&x->z, q), square = mu * mu;
+        const double complex *response = f->x + (q - (q < e ? q : e)) * f->shapes;
+        const size_t first = q < e && h->owner ? h->owner[q] : 0, end = q < e && h->owner ? first + 1 : m;
+        r->at_tau[q] = cexp(mu * r->tau);
+        for (size_t k = first; k < end; k++) {
+            const double complex unit = q >= e ? response[k] : h->owner ? 1.0 : h->rr[q * m + k] - h->ri[q * m + k] * I;
+            const double complex inertia = square * unit * z, damping = -(inertia + h->omega2[k] * unit * z);
+            const size_t to = k * wide + q;
+            r->cr[to + INERTIA * terms] = creal(inertia);
+            r->ci[to + INERTIA * terms] = cimag(inertia);
+            r->cr[to + DAMPING * terms] = creal(damping);
+            r->ci[to + DAMPING * terms] = cimag(damping);
+        }
+        for (int part = 0; q >= e && part < 2; part++) {
+            for (size_t k = 0; k < f->shapes; k++) {
+                const double complex rate = mu * response[k] * z;
+                r->unit[k] = part ? cimag(rate) : creal(rate);
+            }
+            memset(r->part, 0, m * sizeof *r->part);
+            add_damping(r, r->unit, r->part);
+            for (size_t k = 0; k < m; k++) {
+                (part ? r->ci : r->cr)[k * wide + DAMPING * terms + q] = r->part[k];
             }
         }
-    }
-    for (size_t q = 0; q < e + f->harmonics; q++) {
-        r->at_tau[q] = cexp((f->lr[q] + f->li[q] * I) * r->tau);
     }
     if (!h->owner) {
         tribo_multiply_transposed_add(m, e, wide, h->left.br, r->cr, r->rr);
@@ -132,48 +115,45 @@ static void find_exponents(struct response *r)
     }
 }
 
-/* Sets the responses of exponent p at tau to both sources: to c_0, c_1, harmonics, and exponents. */
+/* Sets the responses of exponent p at tau to both sources. */
 static void respond_exponent(struct response *r, size_t p)
 {
     const struct forced *f = r->x->h;
     const struct modal *h = f->modal;
     const double complex own = h->lr[p] + h->li[p] * I;
-    const size_t m = h->modes, e = h->exponents, first = h->owner ? h->owner[p] : 0, end = h->owner ? first + 1 : m;
+    const size_t m = h->modes, e = h->exponents, terms = e + f->harmonics;
+    const size_t first = h->owner ? h->owner[p] : 0, end = h->owner ? first + 1 : m;
     const double complex steady = r->tau * tribo_exp_1(own * r->tau), ramp = r->tau * r->tau * exp_2(own * r->tau);
-    for (size_t q = 0; q < e + f->harmonics; q++) {
+    double complex sum[SOURCES] = {0.0}, b = 0.0;
+    for (size_t k = first; k < end; k++) {
+        const size_t of = h->owner ? p : k * e + p;
+        b = h->left.br[of] + h->left.bi[of] * I;
+        for (size_t source = 0; source < SOURCES; source++) {
+            sum[source] += b * (r->steady[source * m + k] * steady + r->ramp[source * m + k] * ramp);
+        }
+    }
+    for (size_t q = 0; q < terms; q++) {
+        if (q < e && h->owner && h->owner[q] != first) {
+            continue;
+        }
+        /* half of c e^{mu s}, and half of its conjugate */
         const double complex mu = f->lr[q] + f->li[q] * I;
-        if (q >= e || !h->owner || h->owner[q] == first) {
-            r->along[q] = 0.5 * meet(own, mu, r->tau, r->at_tau[p], r->at_tau[q]);
-            r->against[q] = 0.5 * meet(own, conj(mu), r->tau, r->at_tau[p], conj(r->at_tau[q]));
+        const double complex along = 0.5 * meet(own, mu, r->tau, r->at_tau[p], r->at_tau[q]);
+        const double complex against = 0.5 * meet(own, conj(mu), r->tau, r->at_tau[p], conj(r->at_tau[q]));
+        for (size_t source = 0; source < SOURCES; source++) {
+            const size_t at = ((h->owner ? first : p) * SOURCES + source) * terms + q;
+            if (h->owner) {
+                const double complex c = r->cr[at] + r->ci[at] * I;
+                sum[source] += b * (c * along + conj(c) * against);
+            } else {
+                sum[source] += (r->rr[at] - r->ii[at] + (r->ri[at] + r->ir[at]) * I) * along;
+                sum[source] += (r->rr[at] + r->ii[at] + (r->ir[at] - r->ri[at]) * I) * against;
+            }
         }
     }
     for (size_t source = 0; source < SOURCES; source++) {
-        double complex sum = 0.0, b = 0.0;
-        for (size_t k = first; k < end; k++) {
-            const size_t of = h->owner ? p : k * e + p;
-            double complex part = r->steady[source * m + k] * steady + r->ramp[source * m + k] * ramp;
-            for (size_t s = 0; s < f->harmonics; s++) {
-                const size_t to = (source * f->harmonics + s) * m + k;
-                const double complex c = r->re[to] + r->im[to] * I;
-                part += c * r->along[e + s] + conj(c) * r->against[e + s];
-            }
-            b = h->left.br[of] + h->left.bi[of] * I;
-            sum += b * part;
-        }
-        for (size_t q = 0; q < e; q++) {
-            const double complex mu = h->lr[q] + h->li[q] * I, square = mu * mu;
-            const size_t to = (p * SOURCES + source) * e + q;
-            if (!h->owner) {
-                sum += (r->rr[to] - r->ii[to] + (r->ri[to] + r->ir[to]) * I) * r->along[q];
-                sum += (r->rr[to] + r->ii[to] + (r->ir[to] - r->ri[to]) * I) * r->against[q];
-            } else if (h->owner[q] == first) {
-                const double complex c = (source == INERTIA ? square : -(square + h->omega2[first])) * tribo_part(&r->x->z, q);
-                sum += b * c * r->along[q];
-                sum += b * conj(c) * r->against[q];
-            }
-        }
-        r->zr[source * e + p] = creal(sum);
-        r->zi[source * e + p] = cimag(sum);
+        r->zr[source * e + p] = creal(sum[source]);
+        r->zi[source * e + p] = cimag(sum[source]);
     }
 }
 
@@ -200,8 +180,8 @@ static void respond_modes(struct response *r, size_t source)
         eta[k] += t * t * (0.5 * steady[k] + t / 6.0 * ramp[k]);
         rate[k] += t * (steady[k] + 0.5 * t * ramp[k]);
         for (size_t s = 0; s < f->harmonics; s++) {
-            const size_t at = (source * f->harmonics + s) * m + k;
-            const double complex c = r->re[at] + r->im[at] * I, turn = f->forcing[s].omega * t * I;
+            const size_t at = (k * SOURCES + source) * (e + f->harmonics) + e + s;
+            const double complex c = r->cr[at] + r->ci[at] * I, turn = f->forcing[s].omega * t * I;
             eta[k] += t * t * creal(c * exp_2(turn));
             rate[k] += t * creal(c * tribo_exp_1(turn));
         }
@@ -246,18 +226,17 @@ int tribo_modal_source(const struct exact *x, double tau, size_t columns, const 
 {
     const struct forced *f = x->h;
     const struct modal *h = f->modal;
-    const size_t m = h->modes, loads = SOURCES * f->harmonics * m, powers = h->powers ? SOURCES * m : 0;
-    const size_t e = h->exponents, each = h->owner ? 0 : SOURCES * e;
+    const size_t m = h->modes, e = h->exponents, powers = h->powers ? SOURCES * m : 0, terms = h->powers ? 0 : e + f->harmonics;
+    const size_t products = h->owner ? 0 : SOURCES * e * terms;
     if (f->resonant) {
         return tribo_error(x->sys->message, TRIBO_ERR_UNSUPPORTED,
                            "method exact: a load is in resonance with an undamped mode; method event can do it");
     }
     struct response r = {.x = x, .tau = tau};
     if (!ALLOCATE(ARRAY(r.steady, SOURCES * m), ARRAY(r.ramp, SOURCES * m), ARRAY(r.eta, SOURCES * m), ARRAY(r.rate, SOURCES * m),
-                  ARRAY(r.re, loads), ARRAY(r.im, loads), ARRAY(r.zr, SOURCES * e), ARRAY(r.zi, SOURCES * e),
-                  ARRAY(r.at_tau, e + f->harmonics), ARRAY(r.along, e + f->harmonics), ARRAY(r.against, e + f->harmonics),
-                  ARRAY(r.cr, m * each), ARRAY(r.ci, m * each), ARRAY(r.rr, e * each), ARRAY(r.ii, e * each),
-                  ARRAY(r.ri, e * each), ARRAY(r.ir, e * each), ARRAY(r.q, x->sys->ndof), ARRAY(r.u, x->sys->ndof),
+                  ARRAY(r.zr, SOURCES * e), ARRAY(r.zi, SOURCES * e), ARRAY(r.at_tau, terms), ARRAY(r.cr, SOURCES * m * terms),
+                  ARRAY(r.ci, SOURCES * m * terms), ARRAY(r.rr, products), ARRAY(r.ii, products), ARRAY(r.ri, products),
+                  ARRAY(r.ir, products), ARRAY(r.q, x->sys->ndof), ARRAY(r.u, x->sys->ndof), ARRAY(r.part, m),
                   ARRAY(r.unit, f->shapes), ARRAY(r.power, TRIBO_POWERS * powers), ARRAY(r.e, powers), ARRAY(r.e_rate, powers),
                   ARRAY(r.out, 4 * powers + SOURCES))) {
         return tribo_error(x->sys->message, TRIBO_ERR_MEMORY, "out of memory for derivatives of %zu mode%s", m, plural(m));
@@ -265,9 +244,7 @@ int tribo_modal_source(const struct exact *x, double tau, size_t columns, const 
     if (h->powers) {
         respond_powers(&r);
     } else {
-        find_exponents(&r);
-        find_source(&r, INERTIA);
-        find_source(&r, DAMPING);
+        find_sources(&r);
         for (size_t p = 0; p < e; p++) {
             respond_exponent(&r, p);
         }
