@@ -35,37 +35,22 @@ double tribo_spring_of(const struct stick_slip *m, size_t i)
 int tribo_elastic_pair(struct stick_slip *m, const tribo_system *sys)
 {
     const struct compliance *g = &sys->compliance;
-    const size_t c = sys->ncontact;
-    memset(m->constant.pair, 0, c);
+    const double *own = g->own, *limit = m->state.limit;
+    unsigned char *pair = m->constant.pair;
+    memset(pair, PAIR_NONE, sys->ncontact);
     m->constant.pairs = 0;
-    if (g->count == 0 || !tribo_system_planar(sys)) {
-        return TRIBO_OK;
-    }
-    tribo_context *probe = NULL;
-    double *one = malloc(2 * c * sizeof *one);
-    signed char *slip = (signed char *)(one + c);
-    int status = one ? tribo_clone(sys->contacts, &probe) : TRIBO_ERR_MEMORY;
-    status = status ? status : tribo_system_find_pairs(probe, c, one, slip);
-    for (size_t i = 0; !status && i < c; i++) {
-        const int pair = slip[i] == TRIBO_SLIP_PLANE;
-        if (pair &&
-            (g->factor || !(g->own[i] > 0.0) || g->own[i] != g->own[i + 1] || m->state.limit[i] != m->state.limit[i + 1])) {
+    int status = g->count ? tribo_system_find_pairs(sys, pair) : TRIBO_OK;
+    for (size_t i = 0; !status && i < sys->ncontact; i++) {
+        const int first = pair[i] == PAIR_FIRST;
+        m->constant.pairs += (size_t)first;
+        if (first && (g->factor || !(own[i] > 0.0) || own[i] != own[i + 1] || limit[i] != limit[i + 1])) {
             status = tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
                                  "contact %zu has a direction beside it in its plane: method event takes both with the same "
                                  "compliance and limit, each on springs of its own, or no contact with compliance",
                                  i);
         }
-        if (!status && pair) {
-            m->constant.pair[i] = 1;
-            m->constant.pair[i + 1] = 2;
-            m->constant.pairs++;
-        }
-        i += (size_t)pair;
     }
-    free(one);
-    tribo_destroy(probe);
-    return status == TRIBO_ERR_MEMORY ? tribo_error(sys->message, status, "out of memory for %zu contact%s", c, plural(c))
-                                      : status;
+    return status;
 }
 
 void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *y)
@@ -75,7 +60,7 @@ void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *
     }
     tribo_compliance_get(sys, y, m->state.spring);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        double *f = m->state.spring + i, size = m->constant.pair[i] == 1 ? hypot(f[0], f[1]) : 0.0;
+        double *f = m->state.spring + i, size = m->constant.pair[i] == PAIR_FIRST ? hypot(f[0], f[1]) : 0.0;
         const double limit = m->state.limit[i];
         if (size > limit) {
             y[tribo_system_energy(sys)] += sys->tally[i] * limit * (size - limit) * sys->compliance.own[i];
@@ -155,7 +140,7 @@ void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *
     tribo_elastic_find(m, sys, y);
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (m->constant.pair[i]) {
-            if (m->constant.pair[i] == 1) {
+            if (m->constant.pair[i] == PAIR_FIRST) {
                 place_pair(m, sys, y, i);
             }
             side[i] = 0;
@@ -194,7 +179,7 @@ void tribo_elastic_move(struct stick_slip *m, const tribo_system *sys, const dou
         const int elastic = m->constant.elastic[i];
         m->state.glide[i] = elastic ? tribo_stick_slip_velocity(m, sys, i, y) : 0.0;
         slide[i] = elastic && tribo_slides(m->state.slip[i]) ? -m->state.slip[i] * m->state.limit_rate[i] : 0.0;
-        if (m->constant.pair[i] == 2 && m->state.slip[i] == TRIBO_SLIP_PLANE) {
+        if (m->constant.pair[i] == PAIR_SECOND && m->state.slip[i] == TRIBO_SLIP_PLANE) {
             const double *v = m->state.glide + i - 1;
             double u[2];
             find_way(m, i - 1, v, u);

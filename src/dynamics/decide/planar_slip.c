@@ -75,16 +75,15 @@ static int create_plane(struct stick_slip *m, const tribo_system *sys)
         return status;
     }
     tribo_set_sharing(p->disc, TRIBO_SHARE_PREVIOUS);
-    signed char *slip = (signed char *)p->in_plane;
-    status = tribo_system_find_pairs(p->disc, c, p->rate, slip);
+    tribo_set_law(p->disc, TRIBO_COULOMB);
+    status = tribo_system_find_pairs(sys, p->in_plane);
     for (size_t i = 0; !status && i < c; i++) {
         /* directions of planar contacts stand in pairs; one without both limits is scalar, or open */
         const double *limit = m->state.limit + i, *r = m->constant.diagonal + i;
-        const int pair = slip[i] == TRIBO_SLIP_PLANE, varies = pair && (limit_varies(sys, i) || limit_varies(sys, i + 1)),
+        const int pair = p->in_plane[i] == PAIR_FIRST, varies = pair && (limit_varies(sys, i) || limit_varies(sys, i + 1)),
                   slides = varies || (pair && limit[0] > 0.0 && limit[1] > 0.0);
-        p->in_plane[i] = (unsigned char)slides;
-        if (pair) {
-            p->in_plane[i + 1] = slides ? 2 : 0;
+        if (pair && !slides) {
+            p->in_plane[i] = p->in_plane[i + 1] = PAIR_NONE;
         }
         if (slides) {
             const double weight[2] = {varies ? 1.0 : limit[0], varies ? 1.0 : limit[1]};

@@ -36,7 +36,7 @@ struct slip_constant {
     double *load_size;      /* [ndof] bound of accelerations by harmonic loads */
     unsigned char *elastic; /* [ncontact] 1: elastic contact */
     size_t pairs;           /* number of elastic contacts in a plane */
-    unsigned char *pair;    /* [ncontact] 1: first direction of one; 2: second direction; 0: none */
+    unsigned char *pair;    /* [ncontact] PAIR_..., of these contacts */
 };
 
 /* What contacts do from the last decision on. */
@@ -147,7 +147,7 @@ struct planar_slip {
     size_t all;                     /* number of contacts */
     struct planar_contact *contact; /* [all] planar contacts, then scalar ones */
     size_t stopped;                 /* a contact that the last decision brought to rest; ncontact if none */
-    unsigned char *in_plane;        /* [ncontact] 1: first direction of a planar contact; 2: second direction; 0: scalar */
+    unsigned char *in_plane;        /* [ncontact] PAIR_... of a planar contact; of a scalar one PAIR_NONE */
     double *error;                  /* [ncontact] errors that velocities may have in a step */
     double *rate;                   /* [ncontact] workspace: rates of sliding forces */
     double *ahead;                  /* [ncontact] workspace: accelerations a moment later */

@@ -77,11 +77,11 @@ static int exponents_decoupled(struct modal_build *b)
     return TRIBO_OK;
 }
 
-/* Sets exponent p, with b and r of mode k, and a = -b omega^2/lambda, since b is a left eigenvector. */
-static void keep_coupled(struct modal *h, size_t p, size_t k, double complex lambda, double complex b, double complex r)
+/* Sets exponent p, with a, b and r of mode k; coupled. */
+static void keep_coupled(struct modal *h, size_t p, size_t k, double complex lambda, double complex a, double complex b,
+                         double complex r)
 {
     const size_t at = k * h->exponents + p;
-    const double complex a = -h->omega2[k] * b / lambda;
     h->lr[p] = creal(lambda);
     h->li[p] = cimag(lambda);
     h->left.ar[at] = creal(a);
@@ -102,36 +102,6 @@ static double eigen_error(const double *a, size_t size, double complex lambda, c
         square += creal(off * conj(off));
     }
     return sqrt(square) / cabs(lambda);
-}
-
-/* Keeps exponent p where K~ is not symmetric, of the modes at [count]. Right eigenvector: v + i w; left eigenvector: half (y - i
- * z); both are divided by s. Modes d that drift follow: lambda^2 r_d = -sum over k of (K~_dk + lambda C~_dk) r_k. */
-static void keep_following(struct modal *h, size_t p, size_t count, const size_t *at, const double *s, double complex lambda,
-                           double half, const double *const *vector)
-{
-    h->lr[p] = creal(lambda);
-    h->li[p] = cimag(lambda);
-    for (size_t i = 0; i < count; i++) {
-        const size_t k = at[i], ab = k * h->exponents + p, r = p * h->modes + k;
-        h->left.ar[ab] = half * s[i] * vector[2][i];
-        h->left.ai[ab] = -half * s[i] * vector[3][i];
-        h->left.br[ab] = half * vector[2][count + i];
-        h->left.bi[ab] = -half * vector[3][count + i];
-        h->rr[r] = vector[0][i] / (half * s[i]);
-        h->ri[r] = -vector[1][i] / (half * s[i]);
-    }
-    const size_t m = h->modes;
-    double *rr = h->rr + p * m, *ri = h->ri + p * m;
-    for (size_t d = 0; d < m; d++) {
-        const double *k = h->stiff + d * m, *c = h->coupling + d * m;
-        if (h->omega2[d] == 0.0) {
-            const double complex pull =
-                (tribo_dot(k, rr, m) - tribo_dot(k, ri, m) * I) + lambda * (tribo_dot(c, rr, m) - tribo_dot(c, ri, m) * I);
-            const double complex r = -pull / (lambda * lambda);
-            rr[d] = creal(r);
-            ri[d] = -cimag(r);
-        }
-    }
 }
 
 /* Sets s = omega and a = A of x' = A x, x = (s eta, eta'), of the modes at [count]. */
@@ -161,34 +131,38 @@ struct coupled {
     const double *s, *first, *re, *im, *zero, *x, *inverse;
 };
 
-/* Keeps all exponents. Returns a status. */
-static int keep_exponents(struct modal_build *b, const struct coupled *c)
+/* Keeps eigenvalue i as exponent p, with r of right eigenvector v + i w, x = (v + i w) z + conjugate, and a and b of left
+ * eigenvector half (y - i z); a = -b omega^2/lambda where K~ is diagonal. Modes d that drift follow: lambda^2 r_d = -sum over k of
+ * (K~_dk + lambda C~_dk) r_k. Returns a status. */
+static int keep_eigenvalue(struct modal_build *b, const struct coupled *c, size_t i, size_t p)
 {
     struct modal *h = b->h;
-    const size_t m = h->modes, size = 2 * c->count;
-    const double *s = c->s, *re = c->re, *im = c->im;
-    for (size_t i = 0, p = 0; i < size; i++) {
-        const double complex lambda = re[i] + im[i] * I;
-        const double half = im[i] > 0.0 ? 0.5 : 1.0, *v = c->x + i * size, *w = im[i] > 0.0 ? v + size : c->zero;
-        const double *y = c->inverse + i * size, *z = im[i] > 0.0 ? y + size : c->zero;
-        const double *const vector[] = {v, w, y, z};
-        if (im[i] < 0.0) {
-            continue;
+    const size_t m = h->modes, count = c->count, size = 2 * count;
+    const double complex lambda = c->re[i] + c->im[i] * I;
+    const int pair = c->im[i] > 0.0;
+    const double half = pair ? 0.5 : 1.0, *v = c->x + i * size, *w = pair ? v + size : c->zero;
+    const double *y = c->inverse + i * size, *z = pair ? y + size : c->zero;
+    double *rr = h->rr + p * m, *ri = h->ri + p * m;
+    if (!(eigen_error(c->first, size, lambda, v, w) < KNOWN)) {
+        return exponents_unsupported(b, "damping couples modes of too different frequencies");
+    }
+    if (h->stiff && half * sqrt(tribo_dot(y, y, size) + tribo_dot(z, z, size)) > CONDITION) {
+        return exponents_unsupported(b, "two modes have nearly the same exponent and shape, as at the border of flutter");
+    }
+    for (size_t l = 0; l < count; l++) {
+        const double s = half * c->s[l];
+        const double complex left = half * (y[count + l] - z[count + l] * I), place = s * (y[l] - z[l] * I);
+        keep_coupled(h, p, c->at[l], lambda, h->stiff ? place : -h->omega2[l] * left / lambda, left, (v[l] + w[l] * I) / s);
+    }
+    for (size_t d = 0; h->stiff && d < m; d++) {
+        const double *k = h->stiff + d * m, *drag = h->coupling + d * m;
+        if (h->omega2[d] == 0.0) {
+            const double complex pull =
+                (tribo_dot(k, rr, m) - tribo_dot(k, ri, m) * I) + lambda * (tribo_dot(drag, rr, m) - tribo_dot(drag, ri, m) * I);
+            const double complex r = -pull / (lambda * lambda);
+            rr[d] = creal(r);
+            ri[d] = -cimag(r);
         }
-        if (!(eigen_error(c->first, size, lambda, v, w) < KNOWN)) {
-            return exponents_unsupported(b, "damping couples modes of too different frequencies");
-        }
-        if (h->stiff && half * sqrt(tribo_dot(y, y, size) + tribo_dot(z, z, size)) > CONDITION) {
-            return exponents_unsupported(b, "two modes have nearly the same exponent and shape, as at the border of flutter");
-        }
-        if (h->stiff) {
-            keep_following(h, p, c->count, c->at, s, lambda, half, vector);
-        }
-        /* x = (v + i w) z + conjugate = 2 (v Re z - w Im z) */
-        for (size_t k = 0; !h->stiff && k < m; k++) {
-            keep_coupled(h, p, k, lambda, half * (y[m + k] - z[m + k] * I), (v[k] + w[k] * I) / (half * s[k]));
-        }
-        p++;
     }
     return TRIBO_OK;
 }
@@ -217,7 +191,7 @@ static int exponents_coupled(struct modal_build *b)
     const double *zero = im + size;
     fill_first_order(h, count, at, s, first);
     memcpy(a, first, size * size * sizeof *a);
-    const int status = tribo_eigen(a, size, re, im, x);
+    int status = tribo_eigen(a, size, re, im, x);
     if (status == TRIBO_ERR_NO_CONVERGENCE || status == TRIBO_ERR_NOT_FINITE) {
         return tribo_error(b->sys->message, status, "method exact: exponents of %zu mode%s that damping couples: %s", m,
                            plural(m), tribo_strerror(status));
@@ -234,7 +208,11 @@ static int exponents_coupled(struct modal_build *b)
         return exponents_unsupported(b, "two modes have nearly the same exponent and shape");
     }
     tribo_lu_solve(a, size, pivot, inverse, size);
-    return keep_exponents(b, &(struct coupled){count, at, s, first, re, im, zero, x, inverse});
+    const struct coupled found = {count, at, s, first, re, im, zero, x, inverse};
+    for (size_t i = 0, p = 0; !status && i < size; i++) {
+        status = im[i] < 0.0 ? TRIBO_OK : keep_eigenvalue(b, &found, i, p++);
+    }
+    return status;
 }
 
 /* ------------------------------------------------------------------------------------------------- weakly coupled modes
@@ -372,7 +350,7 @@ static int weak_find(struct weak *x, size_t k)
     }
     for (size_t j = 0; j < m; j++) {
         const double complex u = re[j] + im[j] * I, sum = 2.0 * u * part / d;
-        keep_coupled(h, k, j, x->lambda, u / d, 2.0 * u);
+        keep_coupled(h, k, j, x->lambda, -h->omega2[j] / x->lambda * u / d, u / d, 2.0 * u);
         x->sum[j] += creal(sum);
         x->sum[m + j] += creal(x->lambda * sum);
     }

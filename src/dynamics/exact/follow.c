@@ -22,6 +22,14 @@ double tribo_follow_side(signed char key)
     return key == KEY_BACK || key == KEY_TIED_BACK ? 1.0 : key == KEY_FORTH || key == KEY_TIED_FORTH ? -1.0 : 0.0;
 }
 
+double tribo_follow_spring(const tribo_system *sys, const struct modal *h, size_t i, size_t *row)
+{
+    const struct follower *f = tribo_normals_follower(sys, i);
+    const double side = f ? f->mu * tribo_follow_side(h->key[i]) : 0.0;
+    *row = side != 0.0 ? sys->normals.normal[f->normal].row : i;
+    return h->key[i] == KEY_HOLDS ? 1.0 : side;
+}
+
 const signed char *tribo_follow_key(const struct stick_slip *m, signed char *key)
 {
     const struct normals *s = &m->constant.sys->normals;

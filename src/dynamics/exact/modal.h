@@ -80,7 +80,8 @@ struct modal {
 struct output {
     size_t contact;
     double *cr, *ci, *size; /* [terms] c_p, |c_p| */
-    const double *on_rate;  /* [shapes] held, normal: per eta, ramp per eta'; sliding: velocity per eta', ramp per eta''; limit: 0 */
+    const double
+        *on_rate; /* [shapes] held, normal: per eta, ramp per eta'; sliding: velocity per eta', ramp per eta''; limit: 0 */
 };
 
 /* Forcing of the modes: a harmonic or table of the system; or a harmonic or table of the limit of one contact that does not hold,
@@ -156,10 +157,11 @@ int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed cha
 void tribo_modal_free(struct modal *h);
 void tribo_forced_free(struct modal *h);
 
-/* follow.c. side: sign of the force of a contact with this key that slides, or is tied, at a limit that follows; else 0. slide:
- * force
- * [ncontact][columns] = forces of such contacts by way [ncontact][columns] = J q. */
+/* follow.c. side: sign of the force of a contact with this key that slides, or is tied, at a limit that follows; else 0. spring:
+ * the force of compliant contact i changes by the returned factor times row *row of `on`. slide: force [ncontact][columns] =
+ * forces of contacts with a side by way [ncontact][columns] = J q. */
 double tribo_follow_side(signed char key);
+double tribo_follow_spring(const tribo_system *sys, const struct modal *h, size_t i, size_t *row);
 void tribo_follow_slide(const tribo_system *sys, const signed char *key, size_t columns, const double *way, double *force);
 
 /* Returns c of the part Re(c z) of term p in place'eta + speed'eta', place, speed [shapes] or NULL. */

@@ -218,11 +218,8 @@ void tribo_modal_motion_state(void *own, double tau, const double *from, double 
         }
     }
     for (size_t k = 0; k < sys->compliance.count; k++) {
-        const size_t i = sys->compliance.contact[k];
-        const struct follower *f = tribo_normals_follower(sys, i);
-        const double side = f ? f->mu * tribo_follow_side(h->modal->key[i]) : 0.0;
-        const size_t row = side != 0.0 ? sys->normals.normal[f->normal].row : i;
-        const double by = h->modal->key[i] == KEY_HOLDS ? 1.0 : side;
+        size_t row;
+        const double by = tribo_follow_spring(sys, h->modal, sys->compliance.contact[k], &row);
         to[2 * n + k] += by != 0.0 ? by * tribo_dot(h->on + row * h->shapes, x->place, h->shapes) : 0.0;
     }
     to[tribo_system_energy(sys)] += x->events.sharp ? 0.0 : tribo_modal_motion_dissipated(x, tau);

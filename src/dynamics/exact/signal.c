@@ -87,13 +87,10 @@ int tribo_modal_motion_signal(void *own, const double *c, double tau, const doub
     tribo_multiply_add(m, tribo_modal_wide(h->within), 1, 1.0, h->phi, c + h->within[0], place);
     tribo_multiply_add(m, tribo_modal_wide(h->within), 1, 1.0, h->phi, c + n + h->within[0], speed);
     for (size_t k = 0; k < g->count; k++) {
-        const size_t i = g->contact[k];
-        const struct follower *follower = tribo_normals_follower(x->sys, i);
-        const double side = follower ? follower->mu * tribo_follow_side(h->modal->key[i]) : 0.0;
-        const double by = h->modal->key[i] == KEY_HOLDS ? 1.0 : side;
-        const double *on = h->on + (side != 0.0 ? x->sys->normals.normal[follower->normal].row : i) * m;
-        tribo_add(place, by * c[2 * n + k], on, m);
-        tribo_add(rate, by * c[f + k], on, m);
+        size_t row;
+        const double by = tribo_follow_spring(x->sys, h->modal, g->contact[k], &row);
+        tribo_add(place, by * c[2 * n + k], h->on + row * m, m);
+        tribo_add(rate, by * c[f + k], h->on + row * m, m);
     }
     to->tau = tau;
     add_weights(x, place, speed, to);

@@ -96,12 +96,9 @@ int tribo_modal_transition(void *own, const void *phase, double tau, size_t colu
     tribo_multiply_transposed_add(m, wide, c, h->phi, eta, moved);
     tribo_multiply_transposed_add(m, wide, c, h->phi, rate, moved + block);
     for (size_t k = 0; k < sys->compliance.count; k++) {
-        const size_t i = sys->compliance.contact[k];
-        const struct follower *f = tribo_normals_follower(sys, i);
-        const double side = f ? tribo_follow_side(h->key[i]) * f->mu : 0.0;
-        const size_t row = side != 0.0 ? sys->normals.normal[f->normal].row : i;
-        tribo_multiply_add(h->key[i] == KEY_HOLDS || side != 0.0, m, c, h->key[i] == KEY_HOLDS ? 1.0 : side, h->on + row * m, eta,
-                           v + 2 * block + k * c);
+        size_t row;
+        const double by = tribo_follow_spring(sys, h, sys->compliance.contact[k], &row);
+        tribo_multiply_add(by != 0.0, m, c, by, h->on + row * m, eta, v + 2 * block + k * c);
     }
     free(eta);
     return status;

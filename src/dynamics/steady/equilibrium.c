@@ -60,13 +60,16 @@ static int steady_read_drives(struct equilibrium *e)
     tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, e->residual);
     tribo_matrix_multiply(&sys->mass, e->residual, e->load);
     tribo_system_limits(sys, e->limit, e->way);
-    int status = tribo_system_find_pairs(e->probe, c, e->way, e->pair);
+    const int unknown = tribo_system_find_pairs(sys, e->pair);
+    if (unknown) {
+        return unknown;
+    }
+    int status = tribo_set_law(e->probe, TRIBO_COULOMB);
     status = status ? status : tribo_set_coupling(e->probe, TRIBO_CONSISTENT);
     for (size_t i = 0; i < c; i++) {
         const signed char slip = e->given ? e->given[i] : 0, moves = (signed char)(e->base[i] > 0.0 ? -1 : e->base[i] < 0.0);
-        const int along = slip == TRIBO_SLIP_FORTH || slip == TRIBO_SLIP_BACK, paired = i > 0 && e->pair[i - 1] == PAIR_FIRST;
-        const int one = !paired && e->pair[i] != TRIBO_SLIP_PLANE;
-        e->pair[i] = (signed char)(paired ? PAIR_SECOND : one ? PAIR_NONE : PAIR_FIRST);
+        const int along = slip == TRIBO_SLIP_FORTH || slip == TRIBO_SLIP_BACK, paired = e->pair[i] == PAIR_SECOND;
+        const int one = e->pair[i] == PAIR_NONE;
         e->limit[i] = tribo_normals_follower(sys, i) ? 0.0 : greater(e->limit[i], 0.0);
         if (!along && slip != TRIBO_SLIP_STUCK && slip != TRIBO_SLIP_OPEN) {
             return tribo_error(e->message, TRIBO_ERR_RANGE, "given[%zu] = %d is none of -1, 0, 1, 2", i, slip);

@@ -8,7 +8,6 @@
 #include "dynamics/system/system.h"
 
 /* Position in a pair of directions of one contact in the plane. */
-enum { PAIR_NONE, PAIR_FIRST, PAIR_SECOND };
 
 struct equilibrium {
     tribo_system *sys;        /* a copy of the caller's, without loads that depend on time */
@@ -17,7 +16,8 @@ struct equilibrium {
     const signed char *given; /* [ncontact] as in tribo_system_equilibrium, or NULL */
     double friction, speed;   /* factors of limits and coefficients of friction; of base velocities */
     double *y;                /* [tribo_system_size] state by which sliders, and J q of contacts at rest, are known */
-    signed char *slip, *pair; /* [ncontact] TRIBO_SLIP_...; PAIR_... */
+    signed char *slip;        /* [ncontact] TRIBO_SLIP_... */
+    unsigned char *pair;      /* [ncontact] PAIR_... */
     double *base, *limit;     /* [ncontact] velocities; limits at high speed, 0 of followers */
     double *unit;             /* [ncontact] force of a contact that slides; of a follower per depth of its normal */
     double *slope;            /* [ncontact][ncontact] df/dv of contacts that slide; of followers per depth */

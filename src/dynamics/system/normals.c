@@ -124,32 +124,28 @@ int tribo_normals_pair(tribo_system *sys)
     if (s->count == 0) {
         return TRIBO_OK;
     }
-    tribo_context *probe = NULL;
-    double *one = malloc(2 * c * sizeof *one);
-    signed char *slip = (signed char *)(one + c);
-    int status = one ? tribo_clone(sys->contacts, &probe) : TRIBO_ERR_MEMORY;
-    status = status ? status : tribo_system_find_pairs(probe, c, one, slip);
+    unsigned char *pair = malloc(c);
+    int status = pair ? tribo_system_find_pairs(sys, pair) : TRIBO_ERR_MEMORY;
     memset(s->by, 0, c * sizeof *s->by);
     for (size_t k = 0; k < s->followers; k++) {
         s->by[s->follower[k].contact] = k + 1;
         s->follower[k].second = s->follower[k].contact;
     }
     for (size_t i = 0; !status && i < c; i++) {
-        const int pair = slip[i] == TRIBO_SLIP_PLANE;
-        if (pair && (s->at[i] || s->at[i + 1] || s->by[i + 1])) {
+        const int first = pair[i] == PAIR_FIRST;
+        if (first && (s->at[i] || s->at[i + 1] || s->by[i + 1])) {
             status = tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
                                  "contact %zu and contact %zu are the directions of one planar contact: only the first takes a "
                                  "normal, and none is one",
                                  i, i + 1);
-        } else if (pair && s->by[i]) {
+        } else if (first && s->by[i]) {
             s->by[i + 1] = s->by[i];
             s->follower[s->by[i] - 1].second = i + 1;
         }
-        i += (size_t)pair;
+        i += (size_t)first;
     }
     status = status || normals_find_stiffest(sys) ? status : TRIBO_ERR_MEMORY;
-    free(one);
-    tribo_destroy(probe);
+    free(pair);
     return status == TRIBO_ERR_MEMORY ? tribo_error(sys->message, status, "out of memory for %zu contact%s", c, plural(c))
                                       : status;
 }

@@ -144,15 +144,30 @@ size_t tribo_system_planar(const tribo_system *sys)
     return planar;
 }
 
-int tribo_system_find_pairs(tribo_context *contacts, size_t ncontact, double *one, signed char *slip)
+int tribo_system_find_pairs(const tribo_system *sys, unsigned char *pair)
 {
-    for (size_t i = 0; i < ncontact; i++) {
+    const size_t c = sys->ncontact;
+    memset(pair, PAIR_NONE, c);
+    if (!tribo_system_planar(sys)) {
+        return TRIBO_OK;
+    }
+    tribo_context *probe = NULL;
+    double *one = malloc(2 * c * sizeof *one);
+    signed char *slip = (signed char *)(one + c);
+    for (size_t i = 0; one && i < c; i++) {
         one[i] = 1.0;
     }
-    int status = tribo_set_law(contacts, TRIBO_COULOMB);
-    status = status ? status : tribo_set_limit(contacts, one);
-    status = status ? status : tribo_balance(contacts, one, one, NULL, one);
-    return status ? status : tribo_get_slip(contacts, slip);
+    int status = one ? tribo_clone(sys->contacts, &probe) : TRIBO_ERR_MEMORY;
+    status = status ? status : tribo_set_law(probe, TRIBO_COULOMB);
+    status = status ? status : tribo_set_limit(probe, one);
+    status = status ? status : tribo_balance(probe, one, one, NULL, one);
+    status = status ? status : tribo_get_slip(probe, slip);
+    for (size_t i = 0; !status && i < c; i++) {
+        pair[i] = i > 0 && pair[i - 1] == PAIR_FIRST ? PAIR_SECOND : slip[i] == TRIBO_SLIP_PLANE ? PAIR_FIRST : PAIR_NONE;
+    }
+    free(one);
+    tribo_destroy(probe);
+    return status ? tribo_error(sys->message, status, "%s, of planar contacts", tribo_strerror(status)) : TRIBO_OK;
 }
 
 size_t tribo_system_ndof(const tribo_system *sys)

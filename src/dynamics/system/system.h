@@ -211,9 +211,10 @@ static inline int tribo_system_bases_move(const tribo_system *sys)
 /* 1 if a function of time moves the limits of contacts i and j differently; i = j: if one moves that limit. */
 int tribo_system_varies_limit(const tribo_system *sys, size_t i, size_t j);
 
-/* slip [ncontact] = TRIBO_SLIP_PLANE at both directions of planar contacts, found by a balance in which all contacts slide.
- * contacts: a copy of the context, which keeps Coulomb's law and the limits 1; one [ncontact]: workspace. Returns a status. */
-int tribo_system_find_pairs(tribo_context *contacts, size_t ncontact, double *one, signed char *slip);
+/* pair [ncontact] = PAIR_FIRST and PAIR_SECOND at the directions of planar contacts, found by a balance in which all contacts
+ * slide; else PAIR_NONE. Returns a status, its message on the system. */
+enum { PAIR_NONE, PAIR_FIRST, PAIR_SECOND };
+int tribo_system_find_pairs(const tribo_system *sys, unsigned char *pair);
 
 /* Returns 1 if limits change, by a table or harmonics, or with the motion. */
 static inline int tribo_system_limits_vary(const tribo_system *sys)
