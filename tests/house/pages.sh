@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# pages.sh: pages and headers keep their sizes, each public function is named in a page or an example, and each source names its
-# licence.
+# pages.sh: pages and headers keep their sizes, each public function is named in a page or an example, each path and name of code in
+# src/README.md exists, and each source names its licence.
 #   README.md has at most 150 lines; a comment of a header at most 12, but the one at its head, which follows that of the licence.
 set -eu
 CDPATH= cd -- "$(dirname -- "$0")/../.."
@@ -22,6 +22,18 @@ awk 'FNR == 1 { comments = 0 }
 for name in $(sed -n 's/^TRIBO_API [^(]*\b\(tribo_[a-z0-9_]*\)(.*/\1/p' include/tribo/*.h | sort -u); do
     grep -rqw "$name" README.md include/tribo/README.md src/dynamics/README.md fortran/README.md examples || {
         echo "no page and no example names $name"
+        bad=1
+    }
+done
+for path in $(grep -o '`[A-Za-z0-9_./]*/[A-Za-z0-9_]*\.[a-z0-9]*`' src/README.md | tr -d '\140' | sort -u); do
+    [ -e "src/$path" ] || [ -e "$path" ] || {
+        echo "src/README.md names $path, which does not exist"
+        bad=1
+    }
+done
+for name in $(grep -o '`[a-z_]*`' src/README.md | tr -d '\140' | sort -u); do
+    grep -rqw --exclude='*.md' "$name" src fortran include || [ -e "src/$name" ] || {
+        echo "src/README.md names $name, which is nowhere in the sources"
         bad=1
     }
 done
