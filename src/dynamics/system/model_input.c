@@ -155,19 +155,23 @@ static int set_csr(tribo_model *model, enum which which, const size_t *rowptr, c
     if (status) {
         return status;
     }
-    /* a transposed matrix has ascending columns */
     const struct matrix rows = {
         .rows = in.rows, .cols = model->ndof, .first = (size_t *)rowptr, .col = (size_t *)col, .val = (double *)val};
-    struct matrix turned = {0};
-    const int done = tribo_matrix_transpose(&turned, &rows) && tribo_matrix_transpose(&a, &turned);
-    tribo_matrix_free(&turned);
+    struct matrix turned = {0}, sorted = {0}; /* a transposed matrix has ascending columns */
+    struct triplets t = {0};                  /* without entries that are 0, which would pass for bodies that a contact moves */
+    int done = tribo_matrix_transpose(&turned, &rows) && tribo_matrix_transpose(&sorted, &turned);
     for (size_t i = 0; done && i < in.rows; i++) {
-        for (size_t k = a.first[i] + 1; k < a.first[i + 1]; k++) {
-            if (a.col[k] == a.col[k - 1]) {
-                status = tribo_error(model->message, TRIBO_ERR_DUPLICATE, "%s[%zu][%zu] is given twice", in.name, i, a.col[k]);
+        for (size_t k = sorted.first[i]; k < sorted.first[i + 1]; k++) {
+            if (k > sorted.first[i] && sorted.col[k] == sorted.col[k - 1]) {
+                status =
+                    tribo_error(model->message, TRIBO_ERR_DUPLICATE, "%s[%zu][%zu] is given twice", in.name, i, sorted.col[k]);
             }
         }
+        tribo_triplets_put_row(&t, i, &sorted, i);
     }
+    done &= tribo_triplets_finish(&t, in.rows, model->ndof, &a);
+    tribo_matrix_free(&turned);
+    tribo_matrix_free(&sorted);
     if (status) {
         tribo_matrix_free(&a);
     }

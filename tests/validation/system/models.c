@@ -248,4 +248,31 @@ TEST(given_zeros)
     require(memcmp(y[0], y[1], sizeof y[0]) == 0 && y[0][M - 1] != 0.0, "zeros");
 }
 
-TEST_MAIN("models", {forms, 1}, {set_again, 1}, {errors, 1}, {compliance, 1}, {compliance_reduced, 1}, {given_zeros, 1})
+/* A contact whose row of J has zeros only touches nothing, as one without entries: no method divides by a 0. */
+TEST(zero_direction)
+{
+    static const size_t first[C + 1] = {0, 1, 3}, at[] = {0, 0, 1};
+    static const double entry[] = {1.0, 0.0, 0.0}, dense[C * N] = {1.0}, limit[C] = {0.2, 0.1}, load[N] = {1.0, 0.0, 0.5};
+    static const char *const method[] = {"central/fixed", "moreau/fixed", "exact", "event"};
+    for (size_t k = 0; k < sizeof method / sizeof *method; k++) {
+        double y[2][2 * N + 1] = {{0.0}};
+        for (int given = 0; given < 2; given++) {
+            tribo_model *model = new_model();
+            double t = 0.0;
+            assert_ok(tribo_model_set_mass_diagonal(model, mass));
+            assert_ok(tribo_model_set_stiffness(model, stiffness));
+            assert_ok(given ? tribo_model_set_direction_csr(model, first, at, entry) : tribo_model_set_direction(model, dense));
+            tribo_system *sys = finish_model(model);
+            assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
+            assert_ok(tribo_system_add_load(sys, 1.3, NULL, load));
+            tribo_driver *drv = driver_create(sys, method[k], 0.05, 1e-9);
+            assert_ok(tribo_driver_advance(drv, &t, 20.0, y[given]));
+            tribo_driver_destroy(drv);
+            tribo_system_destroy(sys);
+        }
+        require(memcmp(y[0], y[1], sizeof y[0]) == 0 && y[0][0] != 0.0, "zeros of J");
+    }
+}
+
+TEST_MAIN("models", {forms, 1}, {set_again, 1}, {errors, 1}, {compliance, 1}, {compliance_reduced, 1}, {given_zeros, 1},
+          {zero_direction, 1})
