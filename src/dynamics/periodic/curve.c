@@ -755,7 +755,7 @@ int tribo_shooting_follow_curve(struct shooting *s, struct wanted *w)
     if (status) {
         return status;
     }
-    tribo_system_given_limits(drv->sys, c->limit);
+    memcpy(c->limit, drv->sys->loads.given_limit, drv->sys->ncontact * sizeof *c->limit);
     c->t = w->t;
     const double first = tribo_curve_first(c);
     if (!(first >= c->ask->least && first <= c->ask->most)) {

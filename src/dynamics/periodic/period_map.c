@@ -357,7 +357,7 @@ int tribo_period_map_find_touch(struct period_map *m, const double *y, int chang
     }
     int status = tribo_period_map_replay(m, y, LATER * m->span, NULL);
     memcpy(later, m->y, m->n * sizeof *later);
-    tribo_system_given_limits(sys, limit);
+    memcpy(limit, sys->loads.given_limit, c * sizeof *limit);
     for (size_t k = 0; k < sys->normals.followers; k++) {
         mu[k] = sys->normals.follower[k].mu;
     }

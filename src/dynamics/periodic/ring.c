@@ -90,9 +90,9 @@ static int check_ring(tribo_driver *drv, double period)
             "rings have no modes or degrees of freedom without mass, no limits that are static or follow the motion, "
             "and no contacts in a plane");
     }
-    double *limit = sys->work.put_limit, *work = malloc((2 * most + 1) * sizeof *work);
+    const double *limit = sys->loads.given_limit;
+    double *work = malloc((2 * most + 1) * sizeof *work);
     int status = work ? TRIBO_OK : tribo_error(drv->message, TRIBO_ERR_MEMORY, "out of memory for a ring");
-    tribo_system_given_limits(sys, limit);
     for (size_t i = 0; !status && i < sys->ncontact; i++) {
         const size_t to = (i + each) % sys->ncontact;
         if (limit[i] != limit[to]) {
@@ -189,12 +189,10 @@ static int fold_system(tribo_driver *drv, const struct ring *r, tribo_system **s
     status = status ? status : tribo_springs_copy_first(m, from);
     status = status ? status : tribo_system_create(sys, m);
     if (!status) {
-        tribo_system_given_limits(from, limit);
-        status = tribo_set_limit(tribo_system_context(*sys), limit);
+        status = tribo_set_limit(tribo_system_context(*sys), from->loads.given_limit);
         status = status ? status : tribo_system_take_settings(*sys);
     }
     if (!status) {
-        memcpy((*sys)->loads.given_limit, limit, contacts * sizeof *limit);
         memcpy((*sys)->tally, from->tally, contacts * sizeof *limit);
         status = tribo_loads_copy_first(*sys, from) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/layout.h"
 #include "common/real.h"
 #include "lanczos.h"
 #include "dynamics/system/model.h"
@@ -236,11 +237,10 @@ static double low_modes_separate(const tribo_model *m, size_t count, const doubl
     return square > 0.0 ? sqrt(square) : 0.0;
 }
 
-/* Sets *omega2 = |x'Kx|/norm^2. Returns 1 if *omega2 < shift/2: no stiffness holds x, a static response does not exist. */
-static int drifts(const tribo_model *m, const struct shifted *s, const double *x, double norm, double *omega2)
+/* Returns |x'Kx|/norm^2. Below shift/2 no stiffness holds x, and a static response does not exist. */
+static double square_frequency(const tribo_model *m, const double *x, double norm)
 {
-    *omega2 = norm > 0.0 ? fabs(tribo_matrix_form(&m->stiffness, x, x)) / norm / norm : HUGE_VAL;
-    return *omega2 < 0.5 * s->shift;
+    return norm > 0.0 ? fabs(tribo_matrix_form(&m->stiffness, x, x)) / norm / norm : HUGE_VAL;
 }
 
 /* Appends the part of x [ndof], orthogonal to the modes and with norm `whole` in M, that is orthogonal to the other attachment
@@ -249,16 +249,15 @@ static int drifts(const tribo_model *m, const struct shifted *s, const double *x
 static void add_attachment(const tribo_model *m, const struct shifted *s, struct reduced *r, double *x, double whole, double *mx)
 {
     const size_t n = m->ndof;
-    double norm = low_modes_separate(m, r->count - m->nmode, r->phi + m->nmode * n, x, mx), omega2, before = HUGE_VAL;
+    double norm = low_modes_separate(m, r->count - m->nmode, r->phi + m->nmode * n, x, mx), before = HUGE_VAL;
     if (!(norm > OWN * whole)) {
         return;
     }
-    while (drifts(m, s, x, norm, &omega2) && omega2 < 0.25 * before) {
+    for (double omega2; (omega2 = square_frequency(m, x, norm)) < lesser(0.5 * s->shift, 0.25 * before); before = omega2) {
         memset(x, 0, n * sizeof *x); /* mx = M x, by low_modes_separate */
         tribo_add(x, s->shift, mx, n);
         tribo_cholesky_solve(&s->factor, 1, x);
         norm = low_modes_separate(m, r->count, r->phi, x, mx);
-        before = omega2;
     }
     for (size_t k = 0; k < n; k++) {
         r->phi[r->count * n + k] = x[k] / norm;
@@ -283,18 +282,20 @@ static double contact_response(const tribo_model *m, const struct shifted *s, co
         tribo_matrix_multiply_add(&m->mass, 1.0, mx, x);
     }
     const int taken = !(tribo_dot(x, x, n) > TAKEN * TAKEN * whole);
+    double norm = 0.0;
     memset(before, 0, n * sizeof *before);
     memset(x, 0, taken ? n * sizeof *x : 0);
     for (int solution = 0; !taken && solution < 2; solution++) {
+        if (solution) {
+            memcpy(before, x, n * sizeof *x);
+            memset(x, 0, n * sizeof *x);
+            tribo_add(x, s->shift, mx, n);
+        }
         tribo_cholesky_solve(&s->factor, 1, x);
         tribo_add(x, 1.0, before, n);
-        low_modes_separate(m, m->nmode, r->phi, x, mx);
-        memcpy(before, x, n * sizeof *x);
-        memset(x, 0, n * sizeof *x);
-        tribo_add(x, s->shift, mx, n);
+        norm = low_modes_separate(m, m->nmode, r->phi, x, mx);
     }
-    memcpy(x, before, n * sizeof *x);
-    return low_modes_separate(m, 0, r->phi, x, mx);
+    return norm;
 }
 
 /* Sets *part = the largest x'Ax/x'Bx, A [n][n] semidefinite and a part of B, to rounding of the diagonal of B; 1 if B is lost
@@ -322,13 +323,13 @@ static int largest_part(size_t n, double *a, double *b, double *value, double *p
 static int attach(const tribo_model *m, const struct shifted *s, struct reduced *r)
 {
     const size_t n = m->ndof, c = m->ncontact;
-    double omega2, *x = malloc((3 * n + 2 * c * c + c) * sizeof *x);
+    double *x = malloc((3 * n + 2 * c * c + c) * sizeof *x);
     double *mx = x + n, *missing = mx + 2 * n, *whole = missing + c * c, *work = whole + c * c; /* missing: J x in rows */
     int status = x ? TRIBO_OK : TRIBO_ERR_MEMORY;
     for (size_t i = 0; !status && i < c; i++) {
         const double norm = contact_response(m, s, r, i, x, mx + n, mx);
         tribo_matrix_multiply(&m->direction, x, missing + i * c);
-        if (r->residual && drifts(m, s, x, norm, &omega2)) {
+        if (r->residual && square_frequency(m, x, norm) < 0.5 * s->shift) {
             status = tribo_error(m->message, TRIBO_ERR_UNSUPPORTED,
                                  "nmode = %zu leaves out a motion that contact %zu moves and no stiffness holds: take "
                                  "more modes, or TRIBO_STATICS_MASS",
@@ -365,11 +366,13 @@ int tribo_model_find_modes(const tribo_model *m, struct reduced *r)
     const size_t n = m->ndof, most = m->nmode + (m->attachments ? m->ncontact : 0);
     struct shifted s = {0.0, {0}};
     *r = (struct reduced){.truncation.order = m->attachments ? 2.0 : m->flexible ? 1.0 : 0.0};
-    r->omega2 = malloc(most * sizeof *r->omega2);
-    r->phi = malloc(most * n * sizeof *r->phi);
-    r->residual = m->flexible ? calloc(m->ncontact * (n + m->ncontact) + 1, sizeof *r->residual) : NULL;
-    r->flexibility = r->residual ? r->residual + m->ncontact * n : NULL;
-    int status = r->omega2 && r->phi && (r->residual || !m->flexible) ? find_lowest(m, &s, r) : TRIBO_ERR_MEMORY;
+    const size_t c = m->flexible ? m->ncontact : 0;
+    int status = TRIBO_ERR_MEMORY;
+    if (ALLOCATE(ARRAY(r->omega2, most), ARRAY(r->phi, most * n), ARRAY(r->residual, c * n), ARRAY(r->flexibility, c * c))) {
+        r->residual = m->flexible ? r->residual : NULL;
+        r->flexibility = m->flexible ? r->flexibility : NULL;
+        status = find_lowest(m, &s, r);
+    }
     if (!status && r->omega2[0] < 0.0) {
         status = tribo_error(m->message, TRIBO_ERR_INDEFINITE, "stiffness is not positive semidefinite: omega^2 = %g of mode 0",
                              r->omega2[0]);

@@ -152,8 +152,6 @@ int tribo_model_reduce(tribo_model *m, tribo_system **sys)
     }
     status = status || set_modes(&r, m->ndof, *sys) ? status : TRIBO_ERR_MEMORY;
     free(r.omega2);
-    free(r.phi);
-    free(r.residual);
     free(own);
     return status;
 }

@@ -207,21 +207,20 @@ static int condense_combine(struct condensed *s, const struct matrix *a, int all
 /* Replaces the matrices of m by the matrices of q. Returns 0 if out of memory. */
 static int replace_matrices(tribo_model *m, struct condensed *s)
 {
-    struct matrix mass = {0}, damping = {0}, stiffness = {0}, direction = {0}, half = {0}, other = {0};
+    tribo_model made = *m;
+    struct matrix half = {0}, other = {0};
     const double even = s->without ? 0.5 : 0.0; /* K of q alone is as given, also if not symmetric */
-    const int done = condense_combine(s, &m->mass, 0, NULL, &mass) &&
-                     (!m->damping.rows || condense_combine(s, &m->damping, 0, NULL, &damping)) &&
+    made.mass = made.damping = made.stiffness = made.direction = (struct matrix){0};
+    made.ndof = s->with;
+    const int done = condense_combine(s, &m->mass, 0, NULL, &made.mass) &&
+                     (!m->damping.rows || condense_combine(s, &m->damping, 0, NULL, &made.damping)) &&
                      condense_combine(s, &m->stiffness, 0, s->x.terms, &half) && tribo_matrix_transpose(&other, &half) &&
-                     tribo_matrix_sum(&stiffness, 1.0 - even, &half, even, &other) &&
-                     condense_combine(s, &m->direction, 1, NULL, &direction);
+                     tribo_matrix_sum(&made.stiffness, 1.0 - even, &half, even, &other) &&
+                     condense_combine(s, &m->direction, 1, NULL, &made.direction);
     tribo_matrix_free(&half);
     tribo_matrix_free(&other);
     tribo_model_free(m);
-    m->mass = mass;
-    m->damping = damping;
-    m->stiffness = stiffness;
-    m->direction = direction;
-    m->ndof = s->with;
+    *m = made;
     return done;
 }
 
@@ -241,15 +240,11 @@ int tribo_model_condense(tribo_model *m, tribo_system **sys)
     if (s.without) {
         status = tribo_model_check_symmetric(m, "stiffness", &m->stiffness,
                                              ": beside degrees of freedom without mass it must be symmetric");
-        if (status) {
-            condensed_free(&s);
-            return status;
-        }
     }
     int done = take_without(&s, &m->stiffness, s.x.place, s.with, s.without, &s.kww) &&
                take_without(&s, &m->stiffness, s.x.place, 0, s.with, &s.kqw) &&
                take_without(&s, &m->direction, NULL, 0, m->ncontact, &s.x.touch);
-    status = done ? check_damping(m, &s) : TRIBO_ERR_MEMORY;
+    status = status ? status : done ? check_damping(m, &s) : TRIBO_ERR_MEMORY;
     status = status ? status : factorize_without(m, &s);
     if (!status) {
         done = find_responses(m, &s) && replace_matrices(m, &s);

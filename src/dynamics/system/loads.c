@@ -213,27 +213,15 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
 
 /* ------------------------------------------------------------------------------------------------------------------- limits */
 
-void tribo_system_given_limits(const tribo_system *sys, double *limit)
-{
-    if (tribo_system_limits_vary(sys)) {
-        memcpy(limit, sys->loads.given_limit, sys->ncontact * sizeof *limit);
-    } else {
-        tribo_get_limit(sys->contacts, limit);
-    }
-}
-
 void tribo_system_limits(const tribo_system *sys, double *limit, double *rate)
 {
-    memset(rate, 0, sys->ncontact * sizeof *rate);
-    tribo_get_limit(sys->contacts, limit);
-    if (tribo_system_limits_vary(sys)) {
-        for (size_t i = 0; i < sys->ncontact; i++) {
-            limit[i] = tribo_system_steady_limit(sys, i);
-        }
-        tribo_system_loads(sys, DRIVES_LIMIT, 0, 1.0, limit);
-        tribo_system_loads(sys, DRIVES_LIMIT, 1, 1.0, rate);
-        tribo_normals_limits(sys, limit, rate);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        limit[i] = tribo_system_steady_limit(sys, i);
+        rate[i] = 0.0;
     }
+    tribo_system_loads(sys, DRIVES_LIMIT, 0, 1.0, limit);
+    tribo_system_loads(sys, DRIVES_LIMIT, 1, 1.0, rate);
+    tribo_normals_limits(sys, limit, rate);
 }
 
 double tribo_system_swing(const tribo_system *sys, size_t i)
@@ -265,8 +253,7 @@ int tribo_system_varies_limit(const tribo_system *sys, size_t i, size_t j)
 
 void tribo_system_most_limits(const tribo_system *sys, double *most)
 {
-    tribo_get_limit(sys->contacts, most);
-    for (size_t i = 0; tribo_system_limits_vary(sys) && i < sys->ncontact; i++) {
+    for (size_t i = 0; i < sys->ncontact; i++) {
         most[i] = tribo_system_steady_limit(sys, i);
         for (size_t k = 0; k < sys->loads.harmonics; k++) {
             const struct harmonic *h = &sys->loads.harmonic[k];
@@ -451,8 +438,7 @@ static int take_harmonic(tribo_system *sys, struct harmonic h, const double *cos
                : tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for a function of time of %zu value%s", n, plural(n));
 }
 
-/* Checks and adds a function of time; table: name of the values of a table, NULL: a harmonic. Where limits are still constant, a
- * function of limits copies those of the context to given_limit. Returns a status. */
+/* Checks and adds a function of time; table: name of the values of a table, NULL: a harmonic. Returns a status. */
 static int loads_add(tribo_system *sys, struct harmonic h, const char *table, const double *cosine, const double *sine)
 {
     if (!sys) {
@@ -464,9 +450,6 @@ static int loads_add(tribo_system *sys, struct harmonic h, const char *table, co
     status = status ? status : check_pattern(sys, h.drives, "sine", sine);
     const int limits = h.drives == DRIVES_LIMIT;
     status = status || !limits ? status : tribo_system_take_settings(sys);
-    if (!status && limits && !tribo_system_limits_vary(sys)) {
-        tribo_get_limit(sys->contacts, sys->loads.given_limit);
-    }
     for (size_t i = 0; !status && limits && !table && i < sys->ncontact; i++) {
         const double most =
             sys->loads.given_limit[i] + tribo_system_swing(sys, i) + hypot(cosine ? cosine[i] : 0.0, sine ? sine[i] : 0.0);

@@ -47,7 +47,7 @@ int tribo_model_reduce(tribo_model *m, tribo_system **sys);
 /* Basis of a reduced system: vectors orthonormal in M and orthogonal in K. */
 struct reduced {
     size_t count;
-    double *omega2, *phi; /* [count] ascending; [count][ndof] */
+    double *omega2, *phi; /* [count] ascending, owns the memory of all; [count][ndof] */
     struct truncation truncation;
     double *residual;    /* [ncontact][ndof] static displacements by unit contact forces, without the part of the modes */
     double *flexibility; /* [ncontact][ncontact] residual at contacts; both NULL without residual flexibility */

@@ -169,7 +169,7 @@ static int set_csr(tribo_model *model, enum which which, const size_t *rowptr, c
         }
         tribo_triplets_put_row(&t, i, &sorted, i);
     }
-    done &= tribo_triplets_finish(&t, in.rows, model->ndof, &a);
+    done = done && tribo_triplets_finish(&t, in.rows, model->ndof, &a);
     tribo_matrix_free(&turned);
     tribo_matrix_free(&sorted);
     if (status) {
@@ -324,15 +324,11 @@ static int build_system(tribo_system **sys, const tribo_model *m, int reduces, s
                            "TRIBO_STATICS_COMPLIANCE takes no damping matrix: call tribo_system_set_damping_ratio, or take "
                            "TRIBO_STATICS_MASS");
     }
-    tribo_model copy = {.ndof = m->ndof,
-                        .ncontact = m->ncontact,
-                        .nmode = nmode,
-                        .attachments = statics == TRIBO_STATICS_MASS,
-                        .flexible = statics == TRIBO_STATICS_COMPLIANCE,
-                        .compliance = m->compliance,
-                        .normals = m->normals,
-                        .normal = m->normal,
-                        .message = m->message};
+    tribo_model copy = *m;
+    copy.mass = copy.damping = copy.stiffness = copy.direction = (struct matrix){0};
+    copy.nmode = nmode;
+    copy.attachments = statics == TRIBO_STATICS_MASS;
+    copy.flexible = statics == TRIBO_STATICS_COMPLIANCE;
     const int done = tribo_matrix_copy(&copy.mass, &m->mass) && tribo_matrix_copy(&copy.damping, &m->damping) &&
                      tribo_matrix_copy(&copy.stiffness, &m->stiffness) &&
                      (m->direction.first ? tribo_matrix_copy(&copy.direction, &m->direction)

@@ -102,16 +102,11 @@ int tribo_normals_copy(tribo_system *to, const tribo_system *from)
 int tribo_normals_check_limits(const tribo_system *sys, const double *limit)
 {
     for (size_t i = 0; sys->normals.count && i < sys->ncontact; i++) {
-        const struct follower *f = limit[i] > 0.0 ? tribo_normals_follower(sys, i) : NULL;
-        if (f) {
-            return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
-                               "limit[%zu] = %g, but the limit of contact %zu follows its normal load: leave it 0", i, limit[i],
-                               i);
-        }
-        if (limit[i] > 0.0 && tribo_normals_at(sys, i)) {
-            return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
-                               "limit[%zu] = %g, but contact %zu is a normal direction, which has no friction: leave it 0", i,
-                               limit[i], i);
+        const int follows = tribo_normals_follower(sys, i) != NULL;
+        if (limit[i] > 0.0 && (follows || tribo_normals_at(sys, i))) {
+            return tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED, "limit[%zu] = %g, but %scontact %zu %s: leave it 0", i,
+                               limit[i], follows ? "the limit of " : "", i,
+                               follows ? "follows its normal load" : "is a normal direction, which has no friction");
         }
     }
     return TRIBO_OK;

@@ -16,6 +16,9 @@ static int quinn_build(tribo_system **sys, tribo_model *m, int done, const doubl
     int status = done ? tribo_model_build(m, &s) : TRIBO_ERR_MEMORY;
     tribo_model_free(m);
     status = status ? status : tribo_set_limit(s->contacts, limit);
+    if (!status) {
+        tribo_get_limit(s->contacts, s->loads.given_limit);
+    }
     status = status || !load ? status : tribo_system_add_load(s, omega, NULL, load);
     status = status || !motion ? status : tribo_system_add_base_motion(s, omega, NULL, motion);
     if (status) {

@@ -155,6 +155,7 @@ int tribo_model_build_massive(tribo_model *m, const double *soft, tribo_system *
         status = status ? status : tribo_model_check_symmetric(m, "stiffness", &m->stiffness, why);
     }
     status = status ? status : tribo_system_build(sys, m->ndof, m->ncontact);
+    status = status ? status : tribo_create(&(*sys)->contacts, m->ncontact);
     status = status ? status : tribo_model_factorize(m, &(*sys)->factor);
     if (status) {
         return status;

@@ -403,13 +403,8 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact)
         new.tally[i] = 1.0;
     }
     *s = new;
-    const int status = tribo_create(&s->contacts, c);
-    if (status) {
-        free(s);
-    } else {
-        *sys = s;
-    }
-    return status;
+    *sys = s;
+    return TRIBO_OK;
 }
 
 void tribo_system_put_damping(tribo_system *sys, const struct matrix *c, const struct matrix *rates)
@@ -435,17 +430,14 @@ int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
     const size_t c = sys->ncontact, dofs = sys->expansion.dofs;
     int done = (entries || !g->factor) && tribo_system_build(&to, sys->ndof, c) == TRIBO_OK;
     if (done) {
-        tribo_destroy(to->contacts);
-        to->contacts = NULL;
         to->revision = sys->revision;
-        to->reduced.given = sys->reduced.given;
+        to->reduced = sys->reduced;
         to->unsolved = sys->unsolved;
         to->circulation = sys->circulation;
         to->settings.copied = sys->settings.copied;
         memcpy(to->loads.given_limit, sys->loads.given_limit, c * sizeof *to->loads.given_limit);
         memcpy(to->tally, sys->tally, c * sizeof *to->tally);
         to->reduced.modes = tribo_copy_of(sys->reduced.modes, sys->reduced.given * dofs, sizeof *to->reduced.modes, &done);
-        to->reduced.truncation = sys->reduced.truncation;
         const struct matrix *const from[] = {&sys->stiffness, &sys->damping, &sys->direction, &sys->response,
                                              &sys->k,         &sys->c,       &sys->mass};
         struct matrix *const copies[] = {&to->stiffness, &to->damping, &to->direction, &to->response, &to->k, &to->c, &to->mass};

@@ -53,7 +53,7 @@ struct loads {
     size_t bases, limits;      /* numbers of functions of b(t); of limits */
     size_t tables;             /* number of tables */
     size_t limit_tables;       /* number of tables of limits, at most 1 */
-    double *given_limit;       /* [ncontact] limits set by the caller; valid while limits vary */
+    double *given_limit;       /* [ncontact] limits set by the caller, without harmonics and motion */
     double time;               /* the set time; NaN: none, the next one is computed anew */
     double low;                /* the part of time below its last digit (tribo_system_set_low) */
 };
@@ -134,7 +134,7 @@ static inline const struct follower *tribo_normals_follower(const tribo_system *
     return s->count && s->by[i] ? &s->follower[s->by[i] - 1] : NULL;
 }
 
-/* Creates a system. The caller then sets M, K and J, and C and AC if there is damping: rows = 0 means no damping. Returns a
+/* Creates a system. The caller then sets contacts, M, K and J, and C and AC if there is damping: rows = 0 means no damping. Returns a
  * status. */
 int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact);
 
@@ -222,14 +222,11 @@ static inline int tribo_system_limits_vary(const tribo_system *sys)
     return sys->loads.limits > 0 || sys->normals.count > 0;
 }
 
-/* Returns the part of limit i that does not vary: 0 with a table. Valid while limits vary. */
+/* Returns the part of limit i that does not vary: 0 with a table. */
 static inline double tribo_system_steady_limit(const tribo_system *sys, size_t i)
 {
     return sys->loads.limit_tables ? 0.0 : sys->loads.given_limit[i];
 }
-
-/* limit [ncontact] = limits set by the caller, without harmonics and motion. */
-void tribo_system_given_limits(const tribo_system *sys, double *limit);
 
 /* limit, rate [ncontact] = limits and derivatives at the set time, and motion (tribo_normals_move). With harmonics, and where
  * limits follow the motion, limit < 0 where a contact has lifted off. */
