@@ -18,13 +18,6 @@ static inline void *tribo_zeros(size_t count, size_t size)
     return memory ? memset(memory, 0, small) : NULL;
 }
 
-/* A block in which a function lays out arrays twice: first with memory NULL, to add up the sizes; then in the allocated
- * memory. */
-struct layout {
-    char *memory; /* NULL in the first pass */
-    size_t used;
-};
-
 /* The alignment of arrays. */
 union layout_unit {
     double number;
@@ -40,15 +33,6 @@ static inline size_t tribo_layout_bytes(size_t count, size_t size)
 {
     enum { UNIT = sizeof(union layout_unit) };
     return count < TRIBO_LAYOUT_MOST / size ? (count * size + UNIT - 1) / UNIT * UNIT : TRIBO_LAYOUT_MOST;
-}
-
-/* Returns an array [count] of elements; NULL in the first pass. If sizes overflow, their sum is too large to allocate. */
-static inline void *tribo_layout_array(struct layout *b, size_t count, size_t size)
-{
-    void *array = b->memory ? b->memory + b->used : NULL;
-    const size_t used = b->used + tribo_layout_bytes(count, size);
-    b->used = used < TRIBO_LAYOUT_MOST ? used : TRIBO_LAYOUT_MOST;
-    return array;
 }
 
 /* The array *at. */

@@ -345,53 +345,29 @@ int tribo_disc_share(struct disc_qp *p)
 
 /* ------------------------------------------------------------------------------------------------------------ room */
 
-static void lay_out_disc(struct disc_qp *p, struct layout *l, const struct disc_room *room)
-{
-    double **const vector[] = {&p->pull, &p->shift,   &p->y,         &p->gradient,    &p->noise,         &p->gain,
-                               &p->to,   &p->outward, &p->curvature, &p->step,        &p->spare,         &p->best,
-                               &p->from, &p->aim,     &p->slide,     &p->factor.qp.q, &p->factor.qp.row, &p->weight};
-    double **const square[] = {&p->factor.dense, &p->factor.qp.l};
-    enum { VECTORS = sizeof vector / sizeof *vector, SQUARES = sizeof square / sizeof *square };
-    const size_t s = room->size + 1, dense = (room->dense + 1) * (room->dense + 1), sparse = room->places;
-    const size_t vectors = TRIBO_SPARSE_REDUNDANT * sparse;
-    struct sparse_factor *f = &p->factor.qp.sparse;
-    for (size_t k = 0; k < VECTORS; k++) {
-        *vector[k] = tribo_layout_array(l, s, sizeof **vector[k]);
-    }
-    for (size_t k = 0; k < SQUARES; k++) {
-        *square[k] = tribo_layout_array(l, dense, sizeof **square[k]);
-    }
-    p->s.val = tribo_layout_array(l, dense > room->entries ? dense : room->entries, sizeof *p->s.val);
-    p->factor.qp.null.basis = tribo_layout_array(l, dense > vectors ? dense : vectors, sizeof *p->factor.qp.null.basis);
-    p->s.first = tribo_layout_array(l, sparse + 1, sizeof *p->s.first);
-    p->s.own = tribo_layout_array(l, sparse, sizeof *p->s.own);
-    p->s.col = tribo_layout_array(l, room->entries, sizeof *p->s.col);
-    p->s.slot = tribo_layout_array(l, room->entries, sizeof *p->s.slot);
-    f->l = tribo_layout_array(l, room->slots, sizeof *f->l);
-    f->d = tribo_layout_array(l, sparse, sizeof *f->d);
-    f->w = tribo_layout_array(l, sparse, sizeof *f->w);
-    f->index = tribo_layout_array(l, sparse, sizeof *f->index);
-    p->kept = tribo_layout_array(l, 3 * s, sizeof *p->kept);
-    p->freedom = tribo_layout_array(l, s, sizeof *p->freedom);
-    p->disc = tribo_layout_array(l, 2 * s, sizeof *p->disc);
-    p->factor.qp.near = tribo_layout_array(l, s, sizeof *p->factor.qp.near);
-    p->factor.qp.order = tribo_layout_array(l, s, sizeof *p->factor.qp.order);
-    p->wide = tribo_layout_array(l, s, 1);
-    p->place = tribo_layout_array(l, s, 1);
-    p->factor.qp.at = tribo_layout_array(l, s, 1);
-    p->factor.qp.scale = p->factor.qp.q;
-    p->factor.qp.far = 1;
-}
-
 int tribo_disc_create(struct disc_qp *p, const struct disc_room *room)
 {
-    struct layout l = {0};
+    const size_t s = room->size + 1, dense = (room->dense + 1) * (room->dense + 1), places = room->places,
+                 entries = room->entries, vectors = TRIBO_SPARSE_REDUNDANT * places;
+    struct disc_rows *rows = &p->s;
+    struct box_qp *qp = &p->factor.qp;
+    struct sparse_factor *f = &qp->sparse;
     *p = (struct disc_qp){.room = p->room};
-    lay_out_disc(p, &l, room);
-    if (tribo_make_room(&p->room, l.used + 1)) {
-        lay_out_disc(p, &(struct layout){.memory = p->room.block}, room);
+    if (!ALLOCATE_IN(&p->room, ARRAY(p->pull, s), ARRAY(p->shift, s), ARRAY(p->y, s), ARRAY(p->gradient, s), ARRAY(p->noise, s),
+                     ARRAY(p->gain, s), ARRAY(p->to, s), ARRAY(p->outward, s), ARRAY(p->curvature, s), ARRAY(p->step, s),
+                     ARRAY(p->spare, s), ARRAY(p->best, s), ARRAY(p->from, s), ARRAY(p->aim, s), ARRAY(p->slide, s),
+                     ARRAY(qp->q, s), ARRAY(qp->row, s), ARRAY(p->weight, s), ARRAY(p->factor.dense, dense), ARRAY(qp->l, dense),
+                     ARRAY(rows->val, dense > entries ? dense : entries),
+                     ARRAY(qp->null.basis, dense > vectors ? dense : vectors), ARRAY(rows->first, places + 1),
+                     ARRAY(rows->own, places), ARRAY(rows->col, entries), ARRAY(rows->slot, entries), ARRAY(f->l, room->slots),
+                     ARRAY(f->d, places), ARRAY(f->w, places), ARRAY(f->index, places), ARRAY(p->kept, 3 * s),
+                     ARRAY(p->freedom, s), ARRAY(p->disc, 2 * s), ARRAY(qp->near, s), ARRAY(qp->order, s), ARRAY(p->wide, s),
+                     ARRAY(p->place, s), ARRAY(qp->at, s))) {
+        return 0;
     }
-    return p->room.block != NULL;
+    qp->scale = qp->q;
+    qp->far = 1;
+    return 1;
 }
 
 void tribo_disc_copy_factor(struct disc_qp *p, const struct disc_qp *from, struct sparse *pattern)
@@ -419,9 +395,8 @@ void tribo_disc_free(struct disc_qp *p)
 
 void tribo_disc_alone(struct disc_alone *x, const double *s, const double *pull, const double *shift)
 {
-    struct layout l = {.memory = (char *)x->store};
-    memset(x, 0, sizeof *x);
-    lay_out_disc(&x->p, &l, &(struct disc_room){.size = 2, .dense = 2});
+    x->p.room = (struct room){x->store, sizeof x->store};
+    tribo_disc_create(&x->p, &(struct disc_room){.size = 2, .dense = 2});
     x->p.size = x->p.wide[0] = 2;
     x->p.near_enough = TRIBO_NEAR_ENOUGH;
     x->p.weight[0] = x->p.weight[1] = 1.0;
