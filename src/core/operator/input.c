@@ -132,19 +132,6 @@ int tribo_fix_operator(tribo_context *ctx)
     return TRIBO_OK;
 }
 
-/* Takes a diagonal as the operator; a status. */
-static int put_diagonal(tribo_context *ctx, struct renewal *r, const double *diagonal)
-{
-    const double none = 0.0;
-    struct delassus *op = tribo_operator_diagonal(r->op, ctx->n, diagonal ? diagonal : &none);
-    if (!op) {
-        return input_out_of_memory(ctx);
-    }
-    r->op = op;
-    tribo_memory_clear(&r->memory);
-    return install(ctx, r);
-}
-
 /* Allocates the arrays of drafts but t and a, unless drafts have these arrays. Returns 0 if out of memory. */
 static int allocate_drafts(const tribo_context *ctx, struct drafts *d)
 {
@@ -161,55 +148,10 @@ static int put_rows(tribo_context *ctx, struct renewal *r, double negligible, co
     return status == TRIBO_ERR_MEMORY ? input_out_of_memory(ctx) : status ? status : install(ctx, r);
 }
 
-/* Takes the transpose of drafts.t as the operator; a status. */
-static int put_transposed(tribo_context *ctx, struct renewal *r)
-{
-    const struct csr *t = &r->drafts.t;
-    return tribo_csr_transpose(&r->drafts.a, t->n, t->n, t->first, t->col, t->val) ? put_rows(ctx, r, 0.0, NULL)
-                                                                                   : input_out_of_memory(ctx);
-}
-
-/* Takes J diag(inverse_mass) J' as the operator, drafts.t = J'; a status. */
-static int put_mass(tribo_context *ctx, struct renewal *r, const double *inverse_mass, const size_t *rowptr, const size_t *col,
-                    const double *val)
-{
-    struct drafts *d = &r->drafts;
-    const struct inertia from = {inverse_mass, rowptr, col, val, &d->t};
-    return allocate_drafts(ctx, d) && tribo_csr_product(&d->a, d->place, &d->t, inverse_mass, rowptr, col, val, ctx->n)
-               ? put_rows(ctx, r, 0.0, &from)
-               : input_out_of_memory(ctx);
-}
-
-int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
-{
-    struct renewal own = {0};
-    int status = check_change(ctx, 0);
-    status = status ? status : tribo_check_nonnegative(ctx, "r", r, ctx->n);
-    return status ? status : finish(ctx, &own, put_diagonal(ctx, &own, r), FORM_DIAGONAL, NULL);
-}
-
 /* -------------------------------------------------------------------------------------------------- forms of input */
 
-/* Checks that the values of the rows of contacts are finite; a status. */
-static int check_values(tribo_context *ctx, const size_t *rowptr, const double *val)
-{
-    if (rowptr[ctx->n] && !val) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "val is NULL");
-    }
-    for (size_t i = 0; i < ctx->n; i++) {
-        for (size_t k = rowptr[i]; k < rowptr[i + 1]; k++) {
-            if (!isfinite(val[k])) {
-                return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "val[%zu] = %g of contact %zu is not finite", k, val[k], i);
-            }
-        }
-    }
-    return TRIBO_OK;
-}
-
-/* Checks the rows of a matrix [n][columns], t = its transpose, in which equal columns of a row are neighbours; a status. t is
- * empty. */
-static int input_read(tribo_context *ctx, size_t columns, const size_t *rowptr, const size_t *col, const double *val,
-                      struct csr *t)
+/* Checks the places of the rows of a matrix [n][columns]; a status. */
+static int check_rows(tribo_context *ctx, size_t columns, const size_t *rowptr, const size_t *col)
 {
     const size_t n = ctx->n;
     if (!rowptr) {
@@ -234,11 +176,25 @@ static int input_read(tribo_context *ctx, size_t columns, const size_t *rowptr, 
             }
         }
     }
-    const int status = check_values(ctx, rowptr, val);
-    if (status) {
-        return status;
+    return TRIBO_OK;
+}
+
+/* t = the transpose of a matrix [n][columns] by rows, in which equal columns of a row are neighbours. Checks values, and that no
+ * row has a column twice; a status. */
+static int transpose_rows(tribo_context *ctx, struct csr *t, size_t columns, const size_t *rowptr, const size_t *col,
+                          const double *val)
+{
+    if (rowptr[ctx->n] && !val) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "val is NULL");
     }
-    if (!tribo_csr_transpose(t, n, columns, rowptr, col, val)) {
+    for (size_t i = 0; i < ctx->n; i++) {
+        for (size_t k = rowptr[i]; k < rowptr[i + 1]; k++) {
+            if (!isfinite(val[k])) {
+                return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "val[%zu] = %g of contact %zu is not finite", k, val[k], i);
+            }
+        }
+    }
+    if (!tribo_csr_transpose(t, ctx->n, columns, rowptr, col, val)) {
         return input_out_of_memory(ctx);
     }
     for (size_t j = 0; j < t->n; j++) {
@@ -251,144 +207,114 @@ static int input_read(tribo_context *ctx, size_t columns, const size_t *rowptr, 
     return TRIBO_OK;
 }
 
-/* *pattern = a copy of rows, and of inverse_mass [ndof]; a status. */
-static int keep_pattern(tribo_context *ctx, struct pattern **pattern, size_t ndof, const double *inverse_mass,
-                        const size_t *rowptr, const size_t *col)
+/* Takes val, of this form with this pattern, an argument of this name, as the operator; a status. */
+static int put_values(tribo_context *ctx, struct renewal *r, int form, const struct pattern *p, const char *name,
+                      const double *val)
 {
-    struct pattern *p, like = {.references = 1, .ndof = ndof};
     const size_t n = ctx->n;
-    if (!ALLOCATE(ARRAY(p, 1), ARRAY(like.inverse_mass, ndof), ARRAY(like.rowptr, n + 1), ARRAY(like.col, rowptr[n]))) {
-        return input_out_of_memory(ctx);
+    struct drafts *d = &r->drafts;
+    struct csr *a = &d->a, *t = &d->t;
+    if (form == FORM_DIAGONAL) {
+        const double none = 0.0;
+        const int status = tribo_check_nonnegative(ctx, name, val, n);
+        struct delassus *op = status ? NULL : tribo_operator_diagonal(r->op, n, n ? val : &none);
+        if (!op) {
+            return status ? status : input_out_of_memory(ctx);
+        }
+        r->op = op;
+        tribo_memory_clear(&r->memory);
+        return install(ctx, r);
     }
-    tribo_copy(like.inverse_mass, inverse_mass, ndof);
-    memcpy(like.rowptr, rowptr, (n + 1) * sizeof *rowptr);
-    memcpy(like.col, rowptr[n] ? col : like.rowptr, rowptr[n] * sizeof *col);
-    *p = like;
-    *pattern = p;
-    return TRIBO_OK;
+    if (form == FORM_DENSE) {
+        if (!val && n) {
+            return tribo_fail(ctx, TRIBO_ERR_NULL, "%s is NULL", name);
+        }
+        for (size_t k = 0; k < n * n; k++) {
+            if (!isfinite(val[k])) {
+                return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "%s[%zu][%zu] = %g is not finite", name, k / n, k % n, val[k]);
+            }
+        }
+        if (!a->first && !tribo_csr_create(a, n, n * n)) { /* room for all entries: further values may have other zeros */
+            return input_out_of_memory(ctx);
+        }
+        for (size_t i = 0, end = 0; i < n; i++) {
+            for (size_t j = 0; j < n; j++) {
+                a->col[end] = j;
+                a->val[end] = val[i * n + j];
+                end += val[i * n + j] != 0.0;
+            }
+            a->first[i + 1] = end;
+        }
+        return put_rows(ctx, r, 0.0, NULL);
+    }
+    const struct inertia from = {p->inverse_mass, p->rowptr, p->col, val, t};
+    const int status = transpose_rows(ctx, t, p->ndof, p->rowptr, p->col, val), mass = form == FORM_MASS;
+    const int made =
+        !status && (mass ? allocate_drafts(ctx, d) && tribo_csr_product(a, d->place, t, from.w, p->rowptr, p->col, val, n)
+                         : tribo_csr_transpose(a, t->n, t->n, t->first, t->col, t->val));
+    return status ? status : made ? put_rows(ctx, r, 0.0, mass ? &from : NULL) : input_out_of_memory(ctx);
+}
+
+/* Sets an operator of this form by val; rows: of a matrix [n][ndof], of FORM_ROWS and FORM_MASS; a status. */
+static int set_by_values(tribo_context *ctx, int form, size_t ndof, const double *inverse_mass, const size_t *rowptr,
+                         const size_t *col, const double *val)
+{
+    const int by_rows = form == FORM_ROWS || form == FORM_MASS;
+    struct renewal own = {0};
+    struct pattern *p = NULL, like = {.references = 1, .ndof = ndof};
+    int status = check_change(ctx, ndof);
+    status = status || form != FORM_MASS ? status : tribo_check_nonnegative(ctx, "inverse_mass", inverse_mass, ndof);
+    status = status || !by_rows ? status : check_rows(ctx, ndof, rowptr, col);
+    if (!status && rowptr) {
+        const size_t n = ctx->n, masses = form == FORM_MASS ? ndof : 0;
+        if (!ALLOCATE(ARRAY(p, 1), ARRAY(like.inverse_mass, masses), ARRAY(like.rowptr, n + 1), ARRAY(like.col, rowptr[n]))) {
+            return input_out_of_memory(ctx);
+        }
+        tribo_copy(like.inverse_mass, inverse_mass, masses);
+        memcpy(like.rowptr, rowptr, (n + 1) * sizeof *rowptr);
+        memcpy(like.col, rowptr[n] ? col : like.rowptr, rowptr[n] * sizeof *col);
+        *p = like;
+    }
+    status = status ? status : put_values(ctx, &own, form, p, by_rows ? "val" : "r", val);
+    return finish(ctx, &own, status, form, p);
+}
+
+int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
+{
+    return set_by_values(ctx, FORM_DIAGONAL, 0, NULL, NULL, NULL, r);
+}
+
+int tribo_set_operator_dense(tribo_context *ctx, const double *r)
+{
+    return set_by_values(ctx, FORM_DENSE, 0, NULL, NULL, NULL, r);
 }
 
 int tribo_set_operator_csr(tribo_context *ctx, const size_t *rowptr, const size_t *col, const double *val)
 {
-    struct renewal own = {0};
-    struct pattern *pattern = NULL;
-    int status = check_change(ctx, 0);
-    if (status) {
-        return status;
-    }
-    status = input_read(ctx, ctx->n, rowptr, col, val, &own.drafts.t);
-    status = status ? status : keep_pattern(ctx, &pattern, 0, NULL, rowptr, col);
-    status = status ? status : put_transposed(ctx, &own);
-    return finish(ctx, &own, status, FORM_ROWS, pattern);
+    return set_by_values(ctx, FORM_ROWS, ctx ? ctx->n : 0, NULL, rowptr, col, val);
 }
 
 int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inverse_mass, const size_t *rowptr, const size_t *col,
                             const double *val)
 {
-    struct renewal own = {0};
-    struct pattern *pattern = NULL;
-    int status = check_change(ctx, ndof);
-    status = status ? status : tribo_check_nonnegative(ctx, "inverse_mass", inverse_mass, ndof);
-    if (status) {
-        return status;
-    }
-    status = input_read(ctx, ndof, rowptr, col, val, &own.drafts.t);
-    status = status ? status : keep_pattern(ctx, &pattern, ndof, inverse_mass, rowptr, col);
-    status = status ? status : put_mass(ctx, &own, inverse_mass, rowptr, col, val);
-    return finish(ctx, &own, status, FORM_MASS, pattern);
+    return set_by_values(ctx, FORM_MASS, ndof, inverse_mass, rowptr, col, val);
 }
 
-/* Columns R e_j: given, or J M^-1 J' e_j by the caller's mass matrix. */
-struct columns {
-    const double *dense;        /* [n][n] R; NULL: by apply, f -> M^-1 f */
-    const size_t *rowptr, *col; /* J */
-    const double *val;
-    size_t ndof;
-    int (*apply)(size_t ndof, const double *force, double *acceleration, void *data);
-    void *data;
-};
+/* ------------------------------------------------------------------------------------------------- by the caller's solver */
 
-/* column [n] = R e_j, where apply finds it; a status. work [2 ndof] is zero between calls, but its second half. */
-static int find_column(tribo_context *ctx, const struct columns *m, size_t j, double *work, double *column)
+/* Moves the first rows of a to memory for entries. Returns 0 if out of memory. */
+static int widen_rows(struct csr *a, size_t rows, size_t entries)
 {
-    double *acceleration = work + m->ndof;
-    for (size_t k = m->rowptr[j]; k < m->rowptr[j + 1]; k++) {
-        work[m->col[k]] = m->val[k];
+    struct csr wide;
+    const int done = tribo_csr_create(&wide, a->n, entries);
+    if (done) {
+        memcpy(wide.first, a->first, (rows + 1) * sizeof *a->first);
+        memcpy(wide.col, a->col, a->first[rows] * sizeof *a->col);
+        memcpy(wide.val, a->val, a->first[rows] * sizeof *a->val);
+        tribo_csr_free(a);
+        *a = wide;
     }
-    const int answer = m->apply(m->ndof, work, acceleration, m->data);
-    for (size_t k = m->rowptr[j]; k < m->rowptr[j + 1]; k++) {
-        work[m->col[k]] = 0.0;
-    }
-    if (answer) {
-        return tribo_fail(ctx, TRIBO_ERR_CALLBACK, "apply answered %d for contact %zu", answer, j);
-    }
-    for (size_t i = 0; i < ctx->n; i++) {
-        column[i] = 0.0;
-        for (size_t k = m->rowptr[i]; k < m->rowptr[i + 1]; k++) {
-            column[i] += m->val[k] * acceleration[m->col[k]];
-        }
-        if (!isfinite(column[i])) {
-            return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "apply makes r of contacts %zu, %zu %g", i, j, column[i]);
-        }
-    }
-    return TRIBO_OK;
-}
-
-/* Takes columns, which are rows since R is symmetric, without their zeros as the operator; a status. */
-static int put_columns(tribo_context *ctx, struct renewal *r, const struct columns *m)
-{
-    const size_t n = ctx->n;
-    struct csr a = {0};
-    size_t room = n;
-    double *work = calloc(2 * m->ndof + n + 1, sizeof *work), *column = work ? work + 2 * m->ndof : NULL;
-    int status = work && tribo_csr_create(&a, n, room) ? TRIBO_OK : input_out_of_memory(ctx);
-    for (size_t j = 0; !status && j < n; j++) {
-        const double *row = m->dense ? m->dense + j * n : column;
-        status = m->dense ? TRIBO_OK : find_column(ctx, m, j, work, column);
-        if (!status && room - a.first[j] < n) {
-            const struct csr less = a;
-            room = 2 * room + n;
-            status = tribo_csr_create(&a, n, room) ? TRIBO_OK : input_out_of_memory(ctx);
-            if (!status) {
-                memcpy(a.first, less.first, (j + 1) * sizeof *a.first);
-                memcpy(a.col, less.col, less.first[j] * sizeof *a.col);
-                memcpy(a.val, less.val, less.first[j] * sizeof *a.val);
-            }
-            free(less.first);
-        }
-        for (size_t i = 0, end = status ? 0 : a.first[j]; !status && i < n; i++) {
-            a.col[end] = i;
-            a.val[end] = row[i];
-            end += row[i] != 0.0;
-            a.first[j + 1] = end;
-        }
-    }
-    free(work);
-    r->drafts.a = a;
-    return status ? status : put_rows(ctx, r, m->dense ? 0.0 : NEGLIGIBLE, NULL);
-}
-
-/* Checks r [n][n], an argument of this name; a status. */
-static int check_dense(tribo_context *ctx, const char *name, const double *r)
-{
-    const size_t n = ctx->n;
-    if (!r && n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "%s is NULL", name);
-    }
-    for (size_t k = 0; k < n * n; k++) {
-        if (!isfinite(r[k])) {
-            return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "%s[%zu][%zu] = %g is not finite", name, k / n, k % n, r[k]);
-        }
-    }
-    return TRIBO_OK;
-}
-
-int tribo_set_operator_dense(tribo_context *ctx, const double *r)
-{
-    struct renewal own = {0};
-    int status = check_change(ctx, 0);
-    status = status ? status : check_dense(ctx, "r", r);
-    return status ? status : finish(ctx, &own, put_columns(ctx, &own, &(const struct columns){.dense = r}), FORM_DENSE, NULL);
+    return done;
 }
 
 int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
@@ -396,59 +322,54 @@ int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
                                 const size_t *rowptr, const size_t *col, const double *val)
 {
     struct renewal own = {0};
+    struct csr *a = &own.drafts.a;
     int status = check_change(ctx, ndof);
     if (!status && !apply) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "apply is NULL");
     }
+    status = status ? status : check_rows(ctx, ndof, rowptr, col);
+    status = status ? status : transpose_rows(ctx, &own.drafts.t, ndof, rowptr, col, val);
     if (status) {
-        return status;
+        return finish(ctx, &own, status, FORM_CALLBACK, NULL);
     }
-    status = input_read(ctx, ndof, rowptr, col, val, &own.drafts.t);
-    status = status ? status : put_columns(ctx, &own, &(const struct columns){NULL, rowptr, col, val, ndof, apply, data});
+    /* Columns J M^-1 J' e_j are rows, since R is symmetric; without their zeros. */
+    const size_t n = ctx->n;
+    size_t room = n;
+    double *force = calloc(2 * ndof + 1, sizeof *force), *acceleration = force + ndof;
+    status = force && tribo_csr_create(a, n, room) ? TRIBO_OK : input_out_of_memory(ctx);
+    for (size_t j = 0; !status && j < n; j++) {
+        for (size_t k = rowptr[j]; k < rowptr[j + 1]; k++) {
+            force[col[k]] = val[k];
+        }
+        const int answer = apply(ndof, force, acceleration, data);
+        for (size_t k = rowptr[j]; k < rowptr[j + 1]; k++) {
+            force[col[k]] = 0.0;
+        }
+        status = answer ? tribo_fail(ctx, TRIBO_ERR_CALLBACK, "apply answered %d for contact %zu", answer, j) : TRIBO_OK;
+        if (!status && room - a->first[j] < n) {
+            room = 2 * room + n;
+            status = widen_rows(a, j, room) ? TRIBO_OK : input_out_of_memory(ctx);
+        }
+        for (size_t i = 0, end = status ? 0 : a->first[j]; !status && i < n; i++) {
+            double r = 0.0;
+            for (size_t k = rowptr[i]; k < rowptr[i + 1]; k++) {
+                r += val[k] * acceleration[col[k]];
+            }
+            if (!isfinite(r)) {
+                status = tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "apply makes r of contacts %zu, %zu %g", i, j, r);
+            }
+            a->col[end] = i;
+            a->val[end] = r;
+            end += r != 0.0;
+            a->first[j + 1] = end;
+        }
+    }
+    free(force);
+    status = status ? status : put_rows(ctx, &own, NEGLIGIBLE, NULL);
     return finish(ctx, &own, status, FORM_CALLBACK, NULL);
 }
 
 /* ---------------------------------------------------------------------------------------------------- new values */
-
-/* Takes r [n][n] as the operator; a status. */
-static int put_dense(tribo_context *ctx, struct renewal *to, const double *r)
-{
-    const size_t n = ctx->n;
-    struct csr *a = &to->drafts.a;
-    if (!a->first) {
-        if (!tribo_csr_create(a, n, n * n)) {
-            return input_out_of_memory(ctx);
-        }
-        for (size_t k = 0; k < n * n; k++) {
-            a->col[k] = k % n;
-        }
-        for (size_t i = 0; i < n; i++) {
-            a->first[i + 1] = (i + 1) * n;
-        }
-    }
-    tribo_copy(a->val, r, n * n);
-    return put_rows(ctx, to, 0.0, NULL);
-}
-
-/* Takes val, of the form of the operator, as its values; a status. */
-static int put_values(tribo_context *ctx, struct renewal *r, const double *val)
-{
-    const struct pattern *p = ctx->pattern;
-    const int status = ctx->form == FORM_DIAGONAL ? tribo_check_nonnegative(ctx, "val", val, ctx->n)
-                       : ctx->form == FORM_DENSE  ? check_dense(ctx, "val", val)
-                                                  : check_values(ctx, p->rowptr, val);
-    if (status || ctx->form == FORM_DIAGONAL) {
-        return status ? status : put_diagonal(ctx, r, val);
-    }
-    if (ctx->form == FORM_DENSE) {
-        return put_dense(ctx, r, val);
-    }
-    const size_t columns = ctx->form == FORM_ROWS ? ctx->n : p->ndof;
-    if (!tribo_csr_transpose(&r->drafts.t, ctx->n, columns, p->rowptr, p->col, val)) {
-        return input_out_of_memory(ctx);
-    }
-    return ctx->form == FORM_ROWS ? put_transposed(ctx, r) : put_mass(ctx, r, p->inverse_mass, p->rowptr, p->col, val);
-}
 
 size_t tribo_operator_values(const tribo_context *ctx)
 {
@@ -476,7 +397,7 @@ int tribo_update_operator(tribo_context *ctx, const double *val)
         tribo_operator_release(r->op); /* a clone has it */
         r->op = NULL;
     }
-    status = put_values(ctx, r, val);
+    status = put_values(ctx, r, ctx->form, ctx->pattern, "val", val);
     if (status || ctx->set.sharing != TRIBO_SHARE_PREVIOUS) {
         return status;
     }

@@ -281,20 +281,6 @@ static int fill_cluster(struct clusters *c, const struct parts *x, struct cluste
     return done;
 }
 
-/* Sets the pattern of a cluster; thin: see tribo_prefers_sparse. Returns 0 if out of memory. */
-static int find_factor(struct cluster *g, int thin)
-{
-    const int sparse = tribo_prefers_sparse(g->size, thin);
-    if (sparse && !g->made && !g->dense) {
-        if (!tribo_sparse_create(&g->made, &g->r)) {
-            return 0;
-        }
-        g->dense = !g->made;
-    }
-    g->pattern = sparse ? g->made : NULL;
-    return 1;
-}
-
 /* Makes R of all clusters, patterns of sparse ones, room for their problems, group_of and own. Returns 0 if out of memory. */
 static int fill_clusters(struct clusters *c, const struct parts *x, size_t n)
 {
@@ -312,9 +298,12 @@ static int fill_clusters(struct clusters *c, const struct parts *x, size_t n)
             g->redundant |= group != TRIBO_ALONE && op->group[group].nullity > 0;
             thin |= group != TRIBO_ALONE && op->group[group].thin;
         }
-        if (!fill_cluster(c, x, g) || !find_factor(g, thin)) {
+        const int prefers = tribo_prefers_sparse(g->size, thin);
+        if (!fill_cluster(c, x, g) || (prefers && !g->made && !g->dense && !tribo_sparse_create(&g->made, &g->r))) {
             return 0;
         }
+        g->dense |= prefers && !g->made;
+        g->pattern = prefers ? g->made : NULL;
         const size_t sparse = g->pattern ? g->size : 0, dense = g->size - sparse;
         room.size = g->size > room.size ? g->size : room.size;
         room.dense = dense > room.dense ? dense : room.dense;

@@ -106,13 +106,20 @@ static double pull_at(const tribo_context *ctx, const struct cluster *g, size_t 
     return sum;
 }
 
-/* pull = R f + a of the problem's directions, with the forces of all others. */
-static void find_pulls(tribo_context *ctx, const struct cluster *g)
+/* pull = R f + a of the problem's directions, with the forces of all others. Returns what f_k sqrt(R_kk) of all forces is at most
+ * if each balances its pull, or the force of another. */
+static double find_pulls(tribo_context *ctx, const struct cluster *g)
 {
     const struct clusters *c = &ctx->plane;
+    const double *bound = ctx->follow.contacts.bound, *r = ctx->op->diagonal;
+    double most = 0.0;
     for (size_t e = 0; e < c->problem.size; e++) {
+        const size_t i = c->contact[e];
         c->pull[e] = pull_at(ctx, g, c->near[e], 0, 0, 1);
+        const double ask = lesser(quotient(fabs(c->pull[e]), r[i]) + product(fabs(c->shift[e]), bound[i]), bound[i]);
+        most = greater(most, product(ask, sqrt(r[i])));
     }
+    return most;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ reaches
@@ -198,20 +205,6 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
         }
     }
     tribo_planar_turn(p, c->directions, p->shift, p->pull);
-}
-
-/* Returns what f_k sqrt(R_kk) of all forces is at most if each balances its pull, or the force of another. */
-static double estimate_forces(const tribo_context *ctx)
-{
-    const struct clusters *c = &ctx->plane;
-    const double *bound = ctx->follow.contacts.bound, *r = ctx->op->diagonal;
-    double most = 0.0;
-    for (size_t k = 0; k < c->problem.size; k++) {
-        const size_t i = c->contact[k];
-        const double ask = lesser(quotient(fabs(c->pull[k]), r[i]) + product(fabs(c->shift[k]), bound[i]), bound[i]);
-        most = greater(most, product(ask, sqrt(r[i])));
-    }
-    return most;
 }
 
 /* Sets the reaches of the problem's directions to most/sqrt(R_kk), most > 0, as far as limits exceed them. */
@@ -322,8 +315,7 @@ static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt)
     const struct work *work = &p->factor.qp.work;
     ctx->last.clusters++;
     do {
-        find_pulls(ctx, g);
-        double most = product(AMPLE, estimate_forces(ctx));
+        double most = product(AMPLE, find_pulls(ctx, g));
         for (size_t e = 0; !(most > 0.0) && e < p->size; e++) {
             c->y[c->contact[e]] = 0.0;
         }
