@@ -12,7 +12,7 @@
 struct call {
     void (*find)(tribo_context *ctx, const struct call *call, size_t k, double *f);
     const double *v, *a;
-    double *feq;     /* of a balance; NULL: f_eq is not kept, and no two contacts share a body */
+    double *feq;     /* of a balance: last.feq; NULL: f_eq is not kept, and no two contacts share a body */
     int wanted;      /* f_eq of contacts that slide, too */
     int plain;       /* |a_i| <= TRIBO_PLAIN */
     double dt;       /* of a step */
@@ -75,27 +75,7 @@ TRIBO_SIMD static void feq_alone(size_t n, const double *restrict inverse, const
 
 /* --------------------------------------------------------------------------------------------------------------- calls */
 
-/* Ends a call in which all contacts are alone. */
-static void alone_finish(tribo_context *ctx, double holds)
-{
-    ctx->last.slips = SLIPS_IN_FORCES;
-    ctx->last.holds = holds;
-    ctx->last.rank = 0;
-    ctx->last.linearized = 0;
-    ctx->count.skipped += ctx->op->islands;
-}
-
-/* Ends a call for the only contact. */
-static void put_one(tribo_context *ctx, double force, double holds, double *f)
-{
-    *ctx->last.f = force;
-    if (f) {
-        *f = force;
-    }
-    alone_finish(ctx, holds);
-}
-
-/* Finds and keeps the forces of all contacts; f may be NULL. */
+/* Sets last.f of all contacts, and its copy f [n], or NULL, chunk by chunk. */
 static void find_each(tribo_context *ctx, const struct call *call, double *f)
 {
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
@@ -162,66 +142,32 @@ static void balance_chunk(tribo_context *ctx, const struct call *call, size_t k,
     }
 }
 
-/* Balances chunk k by the law of the caller; its boxes stay in tribo_own_row. */
+/* Balances chunk k by the law of the caller; its box stays in tribo_own_box. */
 static void balance_own(tribo_context *ctx, const struct call *call, size_t k, double *f)
 {
     const size_t i = k * TRIBO_CHUNK, n = tribo_chunk_size(ctx, i);
-    double room[TRIBO_CHUNK], *feq = call->feq ? call->feq + i : room;
+    const struct contacts c = tribo_chunk_contacts(ctx, i);
+    double room[TRIBO_CHUNK], *feq = call->feq ? call->feq + i : room, *box = tribo_own_box(ctx, i);
     find_feq(ctx, call, k, feq);
-    tribo_own_forces(ctx, i, call->v + i, feq, f);
+    tribo_own_boxes(&c, n, 0, call->v + i, feq, box, f);
     for (size_t j = 0; ctx->op->groups && j < n; j++) {
-        ctx->last.near[i + j] = tribo_own_row(ctx, LOWER)[i + j] < tribo_own_row(ctx, UPPER)[i + j];
+        ctx->last.near[i + j] = box[j] < box[n + j];
         if (ctx->last.near[i + j]) {
             tribo_list_group(ctx, tribo_group_of(ctx)[i + j]);
         }
     }
 }
 
-void tribo_balance_each(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f)
+void tribo_balance_each(tribo_context *ctx, int plain, int wanted, const double *v, const double *a)
 {
-    const int alone = tribo_balance_alone(ctx), kept = feq || !tribo_all_alone(ctx);
-    const struct call call = {.find = tribo_is_own(ctx) ? balance_own : balance_chunk,
-                              .v = v,
-                              .a = a,
-                              .feq = alone  ? feq
-                                     : kept ? ctx->last.feq
-                                            : NULL,
-                              .wanted = feq != NULL,
-                              .plain = plain};
-    find_each(ctx, &call, alone ? f : NULL);
-}
-
-void tribo_balance_one(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f)
-{
-    const struct contacts *c = &ctx->follow.contacts;
-    const double inverse = *ctx->op->inverse;
-    const double balance = plain && ctx->follow.chunk->plain ? tribo_alone(*a, inverse) : tribo_alone_far(*a, inverse);
-    double force;
-    ctx->set.law->force(c, 1, v, &balance, &force);
-    if (feq) {
-        *feq = *c->limit > 0.0 ? balance : 0.0;
-    }
-    put_one(ctx, force, ctx->set.law->holds, f);
-    ctx->last.residual = 0.0;
-}
-
-int tribo_balance_own_one(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
-{
-    const struct contacts *c = &ctx->follow.contacts;
-    const double balance = *c->limit > 0.0 ? tribo_alone_far(*a, *ctx->op->inverse) : 0.0;
-    double force, box[BOX_ROWS];
-    if (!tribo_own_boxes(c, 1, 0, v, &balance, box, &force)) {
-        tribo_begin_call(ctx);
-        return tribo_own_fail(ctx, 0, v);
-    }
-    if (feq) {
-        *feq = balance;
-    }
-    put_one(ctx, force, ctx->set.law->holds, f);
-    *ctx->last.slip = tribo_own_slip(*v, force, *c->limit, box[LOWER], box[UPPER]);
-    ctx->last.slips = SLIPS_WRITTEN;
-    ctx->last.residual = 0.0;
-    return TRIBO_OK;
+    find_each(ctx,
+              &(const struct call){.find = tribo_is_own(ctx) ? balance_own : balance_chunk,
+                                   .v = v,
+                                   .a = a,
+                                   .feq = wanted || !tribo_all_alone(ctx) ? ctx->last.feq : NULL,
+                                   .wanted = wanted,
+                                   .plain = plain},
+              NULL);
 }
 
 /* ----------------------------------------------------------------------------------------------------------------- step */
@@ -237,8 +183,8 @@ static void step_chunk(tribo_context *ctx, const struct call *call, size_t k, do
     }
     const double *limit = tribo_chunk_contacts(ctx, i).limit;
     /* Contacts that are faster than reach, none of them open, slide on over dt, by a margin for rounding. */
-    const double far = product(1.0000001 * greater(product(chunk->quickest, dt), DBL_MIN), chunk->largest);
-    const double reach = chunk->least > 0.0 && far < TRIBO_FAR ? far : DBL_MAX;
+    const double gain = product(chunk->quickest, dt), far = product(1.0000001 * greater(gain, DBL_MIN), chunk->largest);
+    const double reach = chunk->least > 0.0 && greater(gain, far) < 0.5 * TRIBO_FAR ? far : DBL_MAX;
     if (!(fabs(*v) <= reach || any_in_band(n, v, reach))) {
         tribo_slide(n, v, limit, f);
     } else if (!chunk->plain || dt < LEAST_STEP || !tribo_is_within(v, n, TRIBO_PLAIN)) {
@@ -248,25 +194,12 @@ static void step_chunk(tribo_context *ctx, const struct call *call, size_t k, do
     }
 }
 
-void tribo_step_each(tribo_context *ctx, double dt, const double *v, struct bounds b)
+void tribo_step_each(tribo_context *ctx, double dt, const double *v, struct bounds b, double *f)
 {
-    find_each(ctx, &(const struct call){.find = step_chunk, .v = v, .dt = dt, .b = b}, NULL);
-}
-
-int tribo_step_alone(tribo_context *ctx, double dt, const double *v, double *f)
-{
-    const struct bounds b = {NULL, ctx->follow.contacts.limit};
-    if (ctx->n == 1) {
-        double force;
-        if (ctx->follow.chunk->plain && dt >= LEAST_STEP && tribo_within(*v, TRIBO_PLAIN)) {
-            force = clamp(tribo_alone(*v * quotient(1.0, dt), *ctx->op->inverse), -*b.upper, *b.upper);
-        } else {
-            stop_far(1, dt, v, ctx->op->inverse, &b, &force);
-        }
-        put_one(ctx, force, 1.0, f);
-    } else {
-        find_each(ctx, &(const struct call){.find = step_chunk, .v = v, .dt = dt, .b = b}, f);
-        alone_finish(ctx, 1.0);
+    if (ctx->n == 1 && !b.lower && ctx->follow.chunk->plain && dt >= LEAST_STEP && tribo_within(*v, TRIBO_PLAIN)) {
+        *ctx->last.f = clamp(tribo_alone(*v * quotient(1.0, dt), *ctx->op->inverse), -*b.upper, *b.upper);
+        tribo_copy(f, ctx->last.f, f != NULL);
+        return;
     }
-    return TRIBO_OK;
+    find_each(ctx, &(const struct call){.find = step_chunk, .v = v, .dt = dt, .b = b}, f);
 }

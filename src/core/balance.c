@@ -108,7 +108,6 @@ static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *
 {
     const struct contacts *c = &ctx->follow.contacts;
     const int relaxes = ctx->set.law->relaxes, own = tribo_is_own(ctx);
-    const double *shift = tribo_own_row(ctx, SHIFT); /* of a law of the caller */
     int status;
     for (size_t e = 0; ctx->set.breaking == DROPS && e < p->count; e++) {
         ctx->follow.now[p->member[p->near[e]]] = ctx->follow.hold[p->member[p->near[e]]];
@@ -116,11 +115,13 @@ static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *
     do {
         for (size_t e = 0; e < p->count; e++) {
             const size_t k = p->near[e], i = p->member[k];
-            const double limit = c->bound[i], kappa = own ? shift[i] : relaxes ? tribo_slope_of(c, i) * v[i] : 0.0;
-            p->lo[k] = own           ? clamp(tribo_own_row(ctx, LOWER)[i], -limit, limit)
+            const double limit = c->bound[i], kappa = own       ? tribo_own_at(ctx, SHIFT, i)
+                                                      : relaxes ? tribo_slope_of(c, i) * v[i]
+                                                                : 0.0;
+            p->lo[k] = own           ? clamp(tribo_own_at(ctx, LOWER, i), -limit, limit)
                        : kappa < 0.0 ? lesser(limit, -limit - kappa)
                                      : -limit;
-            p->hi[k] = own           ? clamp(tribo_own_row(ctx, UPPER)[i], -limit, limit)
+            p->hi[k] = own           ? clamp(tribo_own_at(ctx, UPPER, i), -limit, limit)
                        : kappa > 0.0 ? greater(-limit, limit - kappa)
                                      : limit;
             p->q[k] = cut(a[i]) + (own ? product(ctx->op->diagonal[i], kappa) : ctx->op->diagonal[i] * kappa);
@@ -128,7 +129,7 @@ static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *
         status = tribo_solve_group(ctx, p);
         for (size_t e = 0; !status && e < p->count; e++) {
             const size_t k = p->near[e], i = p->member[k];
-            const double kappa = own ? shift[i] : relaxes ? tribo_slope_of(c, i) * v[i] : 0.0;
+            const double kappa = own ? tribo_own_at(ctx, SHIFT, i) : relaxes ? tribo_slope_of(c, i) * v[i] : 0.0;
             /* The gradient of a free contact is rounding, of which a large group would gather too much. */
             const double beyond = p->at[k] == FREE ? 0.0 : quotient(p->gradient[k], ctx->op->diagonal[i]);
             ctx->last.feq[i] = cut(p->x[k] + kappa - beyond);
@@ -168,12 +169,12 @@ static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *v
                                    p->count, plural(p->count), p->member[p->near[0]], p->sets->rank);
 }
 
-/* Finds the forces of all contacts, and f_eq where laws read it; plain, feq, f: see tribo_balance_each. */
-static int balance_all(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f)
+/* Finds the forces of all contacts, and f_eq where laws read it; plain, wanted: see tribo_balance_each. */
+static int balance_all(tribo_context *ctx, int plain, int wanted, const double *v, const double *a)
 {
     int status = TRIBO_OK;
     tribo_begin_call(ctx);
-    tribo_balance_each(ctx, plain, v, a, feq, f);
+    tribo_balance_each(ctx, plain, wanted, v, a);
     if (tribo_is_own(ctx) && tribo_own_failed(ctx, ctx->last.f)) {
         return tribo_own_fail(ctx, 0, v);
     }
@@ -186,8 +187,8 @@ static int balance_all(tribo_context *ctx, int plain, const double *v, const dou
         status = one ? one : status;
         for (size_t e = 0; tribo_is_own(ctx) && e < p->count; e++) {
             const size_t i = p->member[p->near[e]];
-            ctx->last.f[i] = clamp(ctx->last.feq[i] - tribo_own_row(ctx, SHIFT)[i], tribo_own_row(ctx, LOWER)[i],
-                                   tribo_own_row(ctx, UPPER)[i]);
+            ctx->last.f[i] =
+                clamp(ctx->last.feq[i] - tribo_own_at(ctx, SHIFT, i), tribo_own_at(ctx, LOWER, i), tribo_own_at(ctx, UPPER, i));
         }
         /* The law's forces of the contacts near stick, neighbours at once. */
         for (size_t e = 0, run; !tribo_is_own(ctx) && e < p->count; e += run) {
@@ -209,15 +210,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     if (status) {
         return status;
     }
-    const int alone = tribo_balance_alone(ctx);
-    if (alone && ctx->n == 1) {
-        tribo_balance_one(ctx, plain, v, a, feq, f);
-        return TRIBO_OK;
-    }
-    if (ctx->n == 1 && tribo_all_alone(ctx)) {
-        return tribo_balance_own_one(ctx, v, a, feq, f);
-    }
-    status = balance_all(ctx, plain, v, a, feq, f);
+    status = balance_all(ctx, plain, feq != NULL, v, a);
     if (status && status != TRIBO_ERR_INCONSISTENT) {
         return status;
     }
@@ -245,7 +238,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     for (size_t q = 0; feq && q < ctx->plane.clusters; q++) {
         tribo_cluster_feq(ctx, q);
     }
-    tribo_copy(feq, ctx->last.feq, feq && !alone && feq != ctx->last.feq ? ctx->n : 0);
-    tribo_copy(f, ctx->last.f, f && !alone ? ctx->n : 0);
+    tribo_copy(feq, ctx->last.feq, feq && feq != ctx->last.feq ? ctx->n : 0);
+    tribo_copy(f, ctx->last.f, f ? ctx->n : 0);
     return status;
 }

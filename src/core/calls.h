@@ -31,25 +31,19 @@ static inline double tribo_carried(const tribo_context *ctx, const struct box_qp
 
 /* ---- alone.c: contacts as if no two shared a body */
 
-/* tribo_balance of one contact, by a law of the registry or of the caller, and tribo_step_force, where tribo_all_alone. feq and f
- * of the balance may be NULL. plain: |a_i| <= TRIBO_PLAIN. */
-void tribo_balance_one(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f);
-int tribo_balance_own_one(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
-int tribo_step_alone(tribo_context *ctx, double dt, const double *v, double *f);
-
 /* Returns 1 if the law reads f_eq of a contact of chunk k at v [its size]; 0 for a law with f_eq: all slide with their limits. */
 int tribo_any_near(const tribo_context *ctx, size_t k, const double *v);
 
 /* f [n] of contacts that slide at v != 0. */
 void tribo_slide(size_t n, const double *restrict v, const double *restrict limit, double *restrict f);
 
-/* The first part of a balance: last.f of contacts that need no solver, and last.feq where the law reads it, or of all such
- * contacts unless feq is NULL. Finds which contacts of groups are near stick, and lists their groups. Where tribo_all_alone: also
- * f, unless it is NULL, and f_eq in feq in the place of last.feq. */
-void tribo_balance_each(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f);
+/* The first part of a balance: last.f of contacts that need no solver, and last.feq where the law reads it and a contact is not
+ * alone, or if wanted = 1 of all such contacts. Finds which contacts of groups are near stick, and lists their groups. plain:
+ * |a_i| <= TRIBO_PLAIN. */
+void tribo_balance_each(tribo_context *ctx, int plain, int wanted, const double *v, const double *a);
 
-/* The first part of a step: last.f = -v/(dt R_ii) within bounds. */
-void tribo_step_each(tribo_context *ctx, double dt, const double *v, struct bounds b);
+/* The first part of a step: last.f = -v/(dt R_ii) within bounds, and its copy f, unless f is NULL. */
+void tribo_step_each(tribo_context *ctx, double dt, const double *v, struct bounds b, double *f);
 
 /* ---- balance.c */
 

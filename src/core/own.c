@@ -28,11 +28,7 @@ static int ask(const struct contacts *c, size_t n, int derivatives, const double
     for (size_t i = 0; c->follows && i < n; i++) {
         to->room[i] = tribo_epsilon_of(c, i);
     }
-    if (n == 1 && !derivatives) {
-        box[LOWER] = box[UPPER] = box[SHIFT] = HUGE_VAL;
-    } else {
-        fill_box(n * (derivatives ? ALL_ROWS : BOX_ROWS), box);
-    }
+    fill_box(n * (derivatives ? ALL_ROWS : BOX_ROWS), box);
     return c->user->law(c->first, n, derivatives, v, to->limit, to->epsilon, box, c->user->data);
 }
 
@@ -54,36 +50,26 @@ static const char *flaw(const struct asked *s, size_t n, size_t i, int rows, con
                            : NULL;
 }
 
-/* Negative if |lower| or |upper| > limit, or |shift| > SHIFT_MOST, or one is NaN. Raises no floating-point exception. */
-static inline int64_t bounds_room(const double *limit, const double *lower, const double *upper, const double *shift)
-{
-    const double most = SHIFT_MOST;
-    const int64_t bound = tribo_size_of(limit), far = tribo_size_of(&most);
-    return (bound - tribo_size_of(lower)) | (bound - tribo_size_of(upper)) | (far - tribo_size_of(shift));
-}
-
-/* Positive if lower > upper, or lower < upper where |v| > epsilon. */
-static inline double order_excess(double v, double epsilon, double lower, double upper)
-{
-    const double wide = (fabs(v) > epsilon ? upper : lower) - lower;
-    return greater(lower - upper, wide);
-}
-
 /* f = clamp(feq - shift, lower, upper). Returns 1, or 0 if one of the boxes is none: before a comparison with NaN. */
 TRIBO_SIMD static int take_forces(size_t n, const double *restrict v, const double *restrict limit,
                                   const double *restrict epsilon, const double *restrict feq, const double *restrict box,
                                   double *restrict f)
 {
-    int64_t room = 0, bad = 0; /* as wide as a double, for vectors */
+    const double most = SHIFT_MOST;
+    const int64_t far = tribo_size_of(&most);
+    int64_t room = 0, bad = 0; /* as wide as a double, for vectors; room is negative if a number is too large */
     TRIBO_UNROLLED
     for (size_t i = 0; i < n; i++) {
-        room |= bounds_room(limit + i, box + i, box + n + i, box + SHIFT * n + i);
+        const int64_t bound = tribo_size_of(limit + i);
+        room |=
+            (bound - tribo_size_of(box + i)) | (bound - tribo_size_of(box + n + i)) | (far - tribo_size_of(box + SHIFT * n + i));
     }
     if (room < 0) {
         return 0;
     }
     for (size_t i = 0; i < n; i++) {
-        bad |= order_excess(v[i], epsilon[i], box[i], box[n + i]) > 0.0 ? -1 : 0;
+        const double wide = (fabs(v[i]) > epsilon[i] ? box[n + i] : box[i]) - box[i];
+        bad |= greater(box[i] - box[n + i], wide) > 0.0 ? -1 : 0;
         f[i] = clamp(feq[i] - box[SHIFT * n + i], box[i], box[n + i]);
     }
     return bad == 0;
@@ -93,15 +79,8 @@ int tribo_own_boxes(const struct contacts *c, size_t n, int derivatives, const d
                     double *f)
 {
     struct asked s;
-    int good = !ask(c, n, derivatives, v, &s, box);
-    if (good && n == 1) {
-        good = bounds_room(s.limit, box + LOWER, box + UPPER, box + SHIFT) >= 0 &&
-               !(order_excess(*v, *s.epsilon, box[LOWER], box[UPPER]) > 0.0);
-        *f = good ? clamp(*feq - box[SHIFT], box[LOWER], box[UPPER]) : HUGE_VAL;
-    } else if (good) {
-        good = take_forces(n, v, s.limit, s.epsilon, feq, box, f);
-    }
-    good = good && (!derivatives || tribo_all_within(box + BY_V_ROWS * n, BOX_ROWS * n, DBL_MAX));
+    const int taken = !ask(c, n, derivatives, v, &s, box) && take_forces(n, v, s.limit, s.epsilon, feq, box, f),
+              good = taken && (!derivatives || tribo_all_within(box + BY_V_ROWS * n, BOX_ROWS * n, DBL_MAX));
     if (!good) {
         fill_box(n, f);
         fill_box(n * (derivatives ? ALL_ROWS : BOX_ROWS), box);
@@ -138,11 +117,6 @@ int tribo_own_fail(tribo_context *ctx, int derivatives, const double *v)
 
 static void own_force_all(const struct contacts *c, size_t n, const double *v, const double *feq, double *f)
 {
-    double one[BOX_ROWS];
-    if (n == 1) {
-        tribo_own_boxes(c, 1, 0, v, feq, one, f);
-        return;
-    }
     for (size_t i = 0, m; i < n; i += m) {
         const struct contacts part = tribo_contacts_from(c, i);
         double space[BOX_ROWS * TRIBO_CHUNK + TRIBO_LINE], *box = tribo_aligned(space);
@@ -197,33 +171,18 @@ const struct law tribo_law_own = {
 
 /* ------------------------------------------------------------------------------------------------------------- balances */
 
-TRIBO_SIMD static void slips_of_boxes(size_t n, const double *restrict v, const double *restrict f, const double *restrict limit,
-                                      const double *restrict lower, const double *restrict upper, signed char *restrict slip)
+TRIBO_SIMD void tribo_own_slips(tribo_context *ctx, const double *v)
 {
-    for (size_t i = 0; i < n; i++) {
-        slip[i] = tribo_own_slip(v[i], f[i], limit[i], lower[i], upper[i]);
-    }
-}
-
-void tribo_own_forces(tribo_context *ctx, size_t i, const double *v, const double *feq, double *f)
-{
-    const size_t n = tribo_chunk_size(ctx, i);
-    const struct contacts c = tribo_chunk_contacts(ctx, i);
-    double space[BOX_ROWS * TRIBO_CHUNK + TRIBO_LINE], *box = tribo_aligned(space);
-    tribo_own_boxes(&c, n, 0, v, feq, box, f);
-    if (tribo_all_alone(ctx)) {
-        slips_of_boxes(n, v, f, c.limit, box, box + n, ctx->last.slip + i);
-    }
-    for (int row = 0; !tribo_all_alone(ctx) && row < BOX_ROWS; row++) {
-        memcpy(tribo_own_row(ctx, row) + i, box + (size_t)row * n, n * sizeof *box);
-    }
-}
-
-void tribo_own_slips(tribo_context *ctx, const double *v)
-{
-    if (!tribo_all_alone(ctx)) {
-        slips_of_boxes(ctx->n, v, ctx->last.f, ctx->follow.contacts.limit, tribo_own_row(ctx, LOWER), tribo_own_row(ctx, UPPER),
-                       ctx->last.slip);
+    for (size_t at = 0, n; at < ctx->n; at += n) {
+        const double *limit = ctx->follow.contacts.limit + at, *f = ctx->last.f + at, *box = tribo_own_box(ctx, at), *w = v + at;
+        signed char *slip = ctx->last.slip + at;
+        n = tribo_chunk_size(ctx, at);
+        TRIBO_APART
+        for (size_t i = 0; i < n; i++) {
+            const double to = w[i] != 0.0 ? w[i] : -f[i], forth = to > 0.0 ? TRIBO_SLIP_FORTH : 0.0, back = to < 0.0 ? 1.0 : 0.0;
+            const double under = f[i] < box[n + i] ? 0.0 : forth - back, slides = f[i] > box[i] ? under : forth - back;
+            slip[i] = (signed char)(int)(limit[i] > 0.0 ? slides : TRIBO_SLIP_OPEN); /* as slip_by_force in queries.c */
+        }
     }
     ctx->last.slips = SLIPS_WRITTEN;
 }
@@ -243,8 +202,8 @@ void tribo_own_sides(tribo_context *ctx)
         const struct box_qp *p = tribo_problem(ctx, ctx->memory.solved_list[k]);
         for (size_t e = 0; e < p->group->size; e++) {
             const size_t i = p->member[e];
-            const double middle = 0.5 * tribo_own_row(ctx, LOWER)[i] + 0.5 * tribo_own_row(ctx, UPPER)[i];
-            const double inside = middle + tribo_own_row(ctx, SHIFT)[i];
+            const double middle = 0.5 * tribo_own_at(ctx, LOWER, i) + 0.5 * tribo_own_at(ctx, UPPER, i);
+            const double inside = middle + tribo_own_at(ctx, SHIFT, i);
             const double far = p->at[e] == AT_UPPER ? 2.0 * SHIFT_MOST : -2.0 * SHIFT_MOST;
             ctx->last.feq[i] = !ctx->last.near[i] ? ctx->last.feq[i] : p->at[e] == FREE ? inside : far;
         }

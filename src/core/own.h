@@ -10,12 +10,6 @@ static inline int tribo_is_own(const tribo_context *ctx)
     return ctx->set.law == &tribo_law_own;
 }
 
-/* 1 if a balance writes to its outputs directly. */
-static inline int tribo_balance_alone(const tribo_context *ctx)
-{
-    return tribo_all_alone(ctx) && !tribo_is_own(ctx);
-}
-
 /* Rows of what the law gives: a box, its derivatives by v, by the limit. */
 enum { LOWER, UPPER, SHIFT, BOX_ROWS, BY_V_ROWS = BOX_ROWS, BY_LIMIT_ROWS = 2 * BOX_ROWS, ALL_ROWS = 3 * BOX_ROWS };
 
@@ -24,24 +18,19 @@ enum { LOWER, UPPER, SHIFT, BOX_ROWS, BY_V_ROWS = BOX_ROWS, BY_LIMIT_ROWS = 2 * 
 int tribo_own_boxes(const struct contacts *c, size_t n, int derivatives, const double *v, const double *feq, double *box,
                     double *f);
 
-/* Where balances keep boxes [n] between their parts: in the place of the derivatives, which are found after them. */
-static inline double *tribo_own_row(const tribo_context *ctx, int row)
+/* Where balances keep the box [BOX_ROWS][n] of the chunk of contact i between their parts: in the place of the derivatives dv,
+ * dfeq and dlimit, which are one array, and are found after the box. */
+static inline double *tribo_own_box(const tribo_context *ctx, size_t i)
 {
-    double *const rows[] = {ctx->last.tangent.dv, ctx->last.tangent.dfeq, ctx->last.tangent.dlimit};
-    return rows[row];
+    return ctx->last.tangent.dv + BOX_ROWS * (i - i % TRIBO_CHUNK);
 }
 
-/* The slip of a contact by its force f, within [lower, upper]. */
-static inline signed char tribo_own_slip(double v, double f, double limit, double lower, double upper)
+/* The number of contact i in this row. */
+static inline double tribo_own_at(const tribo_context *ctx, int row, size_t i)
 {
-    const double to = v != 0.0 ? v : -f, forth = to > 0.0 ? TRIBO_SLIP_FORTH : 0.0, back = to < 0.0 ? 1.0 : 0.0;
-    const double under = f < upper ? 0.0 : forth - back, slides = f > lower ? under : forth - back;
-    return (signed char)(int)(limit > 0.0 ? slides : TRIBO_SLIP_OPEN); /* as in slip_by_force */
+    const size_t k = i % TRIBO_CHUNK;
+    return tribo_own_box(ctx, i)[(size_t)row * tribo_chunk_size(ctx, i - k) + k];
 }
-
-/* f [n] of the chunk of contact i from v and feq [n]; all HUGE_VAL where tribo_own_boxes returns 0. Keeps its boxes unless
- * tribo_all_alone: then sets last.slip. */
-void tribo_own_forces(tribo_context *ctx, size_t i, const double *v, const double *feq, double *f);
 
 /* 1 if tribo_own_boxes returned 0 for a chunk of f [ctx->n], or of derivatives by v or f_eq. */
 int tribo_own_failed(const tribo_context *ctx, const double *f);
@@ -49,7 +38,7 @@ int tribo_own_failed(const tribo_context *ctx, const double *f);
 /* The failure of the law at v [ctx->n], derivatives as in tribo_own_boxes; TRIBO_ERR_CALLBACK. */
 int tribo_own_fail(tribo_context *ctx, int derivatives, const double *v);
 
-/* last.slip of a balance at v, after tribo_own_forces of all chunks. */
+/* last.slip of a balance at v, which has kept all boxes. */
 void tribo_own_slips(tribo_context *ctx, const double *v);
 
 /* last.feq of contacts near stick = any f_eq for which the law is on the side of its box on which the balance left it. */

@@ -24,24 +24,20 @@ static inline signed char slip_by_force(double f, double limit, double holds)
                                           : TRIBO_SLIP_OPEN); /* doubles, as wide as f: vectors of them stay whole */
 }
 
-TRIBO_SIMD static void find_slips(size_t n, const double *restrict f, const double *restrict limit, double holds,
-                                  signed char *restrict slip)
+/* slip [n] of the last call, which has slips. */
+TRIBO_SIMD static void put_slips(const tribo_context *ctx, signed char *slip)
 {
-    for (size_t i = 0; i < n; i++) {
+    const double *f = ctx->last.f, *limit = ctx->follow.contacts.limit, holds = ctx->last.holds;
+    if (ctx->last.slips == SLIPS_WRITTEN) {
+        memcpy(slip, ctx->last.slip, ctx->n);
+        return;
+    }
+    TRIBO_APART
+    for (size_t i = 0; i < ctx->n; i++) {
         slip[i] = slip_by_force(f[i], limit[i], holds);
     }
-}
-
-/* slip [n] of the last call, which has slips. */
-static void put_slips(const tribo_context *ctx, signed char *slip)
-{
-    if (ctx->last.slips == SLIPS_IN_FORCES) {
-        find_slips(ctx->n, ctx->last.f, ctx->follow.contacts.limit, ctx->last.holds, slip);
-        for (size_t i = 0; ctx->plane.count && i < ctx->n; i++) {
-            slip[i] = tribo_is_scalar(ctx, i) ? slip[i] : tribo_plane_slip(ctx, i);
-        }
-    } else if (ctx->n) {
-        memcpy(slip, ctx->last.slip, ctx->n);
+    for (size_t i = 0; ctx->plane.count && i < ctx->n; i++) {
+        slip[i] = tribo_is_scalar(ctx, i) ? slip[i] : tribo_plane_slip(ctx, i);
     }
 }
 
@@ -61,7 +57,9 @@ int tribo_get_slip(const tribo_context *ctx, signed char *slip)
     if (ctx->last.slips == NO_SLIPS) {
         return TRIBO_ERR_STATE;
     }
-    put_slips(ctx, slip);
+    if (ctx->n) {
+        put_slips(ctx, slip);
+    }
     return TRIBO_OK;
 }
 

@@ -120,7 +120,7 @@ static int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bo
     const int estimates = !b.lower && !breaks && ctx->follow.largest < ESTIMATED && op->largest_sum < ESTIMATED;
     const struct call c = {b, dt, op->groups ? quotient(1.0, dt) : 0.0, v, group_of, breaks, estimates};
     struct memory *m = &ctx->memory;
-    tribo_step_each(ctx, dt, v, b);
+    tribo_step_each(ctx, dt, v, b, NULL);
     for (size_t i = 0; breaks && i < ctx->n; i++) {
         const double hold = ctx->follow.hold[i], held = product(op->diagonal[i] * dt, hold), beyond = fabs(v[i]) - held;
         const int alone = !op->groups || op->group_of[i] == TRIBO_ALONE;
@@ -147,18 +147,23 @@ static int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bo
     return status;
 }
 
-/* Finds last.f within bounds with v + dt R f = 0, or pushed against a bound; a status. known: see tribo_clusters_step. */
-static int solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known)
+/* Ends a step with this status; returns it. */
+static int end_step(tribo_context *ctx, int status)
 {
-    tribo_begin_call(ctx);
     ctx->last.holds = 1.0;
-    int status = solve_boxes(ctx, dt, v, b, tribo_group_of(ctx));
-    status = status ? status : tribo_clusters_step(ctx, dt, v, known);
     if (!status) {
         tribo_end_call(ctx, tribo_islands(ctx));
         ctx->last.slips = SLIPS_IN_FORCES;
     }
     return status;
+}
+
+/* Finds last.f within bounds with v + dt R f = 0, or pushed against a bound; a status. known: see tribo_clusters_step. */
+static int solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known)
+{
+    tribo_begin_call(ctx);
+    const int status = solve_boxes(ctx, dt, v, b, tribo_group_of(ctx));
+    return status ? status : end_step(ctx, tribo_clusters_step(ctx, dt, v, known));
 }
 
 /* Over a step a contact comes in sliding if its speed exceeds this part of what friction can stop: more than rounding, and so
@@ -216,7 +221,9 @@ int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double 
 {
     int status = ctx ? step_check(ctx, dt, vfree, f) : TRIBO_ERR_NULL;
     if (!status && tribo_all_alone(ctx)) {
-        return tribo_step_alone(ctx, dt, vfree, f);
+        tribo_begin_call(ctx);
+        tribo_step_each(ctx, dt, vfree, (struct bounds){NULL, ctx->follow.contacts.limit}, f);
+        return end_step(ctx, TRIBO_OK);
     }
     status = status ? status : step_at_end(ctx, dt, NULL, vfree);
     tribo_copy(f, status ? NULL : ctx->last.f, status ? 0 : ctx->n);

@@ -152,12 +152,11 @@ static void find_changes(tribo_context *ctx, const struct change *d, size_t colu
 int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
                           double *df_da)
 {
-    /* f_eq of contacts that are all alone is not kept but in an array that is given. */
-    const int alone = ctx && tribo_all_alone(ctx), status = tribo_balance(ctx, v, a, alone ? ctx->last.feq : feq, f);
+    const int status = tribo_balance(ctx, v, a, ctx ? ctx->last.feq : NULL, f);
     if (status) {
         return status;
     }
-    tribo_copy(feq, ctx->last.feq, alone && feq ? ctx->n : 0);
+    tribo_copy(feq, ctx->last.feq, feq ? ctx->n : 0);
     const size_t n = ctx->n;
     const struct tangents *t = &ctx->last.tangent;
     const int own = tribo_is_own(ctx);
