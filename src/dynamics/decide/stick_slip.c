@@ -340,15 +340,11 @@ void tribo_stick_slip_press(const struct stick_slip *m, tribo_system *sys)
 }
 
 /* Presses normals at depth 0 that do not move by their acceleration, with the forces of contacts of the last decision, if the
- * acceleration is more than rounding; else a normal leaves its side if its depth ended the phase, and is open if not. resting:
- * their number. Returns it. */
-static size_t press_by_acceleration(struct stick_slip *m, tribo_system *sys, const double *y, size_t resting)
+ * acceleration is more than rounding; else a normal leaves its side if its depth ended the phase, and is open if not. */
+static void press_by_acceleration(struct stick_slip *m, tribo_system *sys, const double *y)
 {
     const struct matrix *j = &sys->direction;
     double *size = m->work.rate, *acceleration = m->work.free;
-    if (resting == 0) {
-        return 0;
-    }
     tribo_system_free_acceleration(sys, sys->loads.time, y, acceleration);
     memcpy(size, acceleration, sys->ndof * sizeof *size);
     tribo_matrix_multiply_add(&sys->response, 1.0, m->state.force, acceleration);
@@ -361,7 +357,6 @@ static size_t press_by_acceleration(struct stick_slip *m, tribo_system *sys, con
             n->pressed = fabs(order) > rounding ? order > 0.0 : leaves;
         }
     }
-    return resting;
 }
 
 /* Sets which normals are pressed just after the set time: by the lowest derivative of the depth that is more than rounding. Sets
@@ -383,7 +378,9 @@ static size_t press(struct stick_slip *m, tribo_system *sys, const double *y)
         resting += m->state.rests[k];
         m->constant.swing[n->row] = greater(n->stiffness * n->size, DBL_MIN);
     }
-    resting = press_by_acceleration(m, sys, y, resting);
+    if (resting) {
+        press_by_acceleration(m, sys, y);
+    }
     for (size_t k = 0; k < sys->normals.count; k++) {
         m->state.pressed[k] = (unsigned char)sys->normals.normal[k].pressed;
     }

@@ -30,12 +30,12 @@ static double margin_of(const struct stick_slip *m, size_t i)
 void tribo_events_guard_contact(struct events *e, size_t i, const struct watch *w)
 {
     struct stick_slip *m = &e->stick_slip;
-    const double ratio = m->limits.ratio[i], margin = margin_of(m, i);
     if (m->state.slip[i] == TRIBO_SLIP_OPEN) {
         m->noise.velocity_scale[i] = w->size; /* for the decision when it touches down */
     } else if (tribo_slides(m->state.slip[i])) {
         append(e, i, SLIDES, m->state.slip[i], 0.0, 0.0, m->noise.factor * m->noise.velocity[i], w);
     } else if (m->state.holds[i]) {
+        const double ratio = m->limits.ratio[i], margin = margin_of(m, i);
         for (double side = -1.0; w->size >= ratio * w->least + margin && side <= 1.0; side += 2.0) {
             append(e, i, HOLDS, side, ratio, ratio * w->constant + margin, m->noise.allowance[i], w);
         }

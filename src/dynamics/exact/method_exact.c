@@ -274,14 +274,10 @@ static int method_exact_create(tribo_driver *drv)
     }
     struct exact *x = tribo_zeros(1, sizeof *x);
     drv->own = x;
-    if (!x) {
+    if (!x || !(x->held.room = tribo_zeros(drv->sys->ncontact + sizeof(uint64_t), 1))) {
         return tribo_error(drv->sys->message, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     x->sys = drv->sys;
-    x->held.room = tribo_zeros(drv->sys->ncontact + sizeof(uint64_t), 1);
-    if (!x->held.room) {
-        return tribo_error(drv->sys->message, TRIBO_ERR_MEMORY, "out of memory for method exact");
-    }
     return tribo_events_create(&x->events, drv, &motion_closed, x);
 }
 
